@@ -1,0 +1,87 @@
+#pragma once
+/// The background mesh: DMPlex holds topology and distribution, this flat copy serves the hot loops.
+/// Cells are in Morton order; every simplex is positively oriented. `dim` = 2: triangles, 3: tetrahedra.
+#include <petscdmplex.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "base/owned.h"
+#include "base/vec.h"
+#include "meshes/halo.h"
+
+namespace talus {
+
+/// One cell: what the walk and the gathers need, together in memory (128 bytes in 3D).
+template <int dim>
+struct Cell {
+  Vec<dim> origin;                          ///< position of vertex 0 [m]
+  std::array<Vec<dim>, dim> gradient;       ///< gradients of the barycentric coordinates 1..dim [1/m]
+  std::array<int, dim + 1> node;            ///< local node numbers
+  std::array<int, dim + 1> neighbour;       ///< cell across the face opposite to vertex k; boundary; or beyond(k)
+};
+inline constexpr int boundary = -1;  ///< no cell across this face
+/// A face shared with another rank is entry `-2 - neighbour` of BackgroundMesh::partition_faces.
+struct PartitionFace {
+  int rank, cell;  ///< the rank across, and the cell there (its local number)
+};
+/// A facet of a named group, on the domain's boundary or inside it (then listed once for each adjacent local cell).
+template <int dim>
+struct Facet {
+  int cell, face;                  ///< local cell, and the vertex opposite to the facet
+  std::array<int, dim> node;       ///< local node numbers
+  Vec<dim> normal;                 ///< unit normal pointing out of `cell`
+  double area;                     ///< [m2], in 2D per metre of thickness [m]
+};
+
+struct MeshReport {
+  long long cells, nodes;
+  double smallest_altitude, smallest_quality, mean_quality;  ///< quality: inscribed over circumscribed radius times dim, 1 is regular
+  bool one_element_slice;                                    ///< 3D, every node lies on one of two parallel planes z = const
+};
+
+template <int dim>
+class BackgroundMesh {
+ public:
+  /// Reads a Gmsh file on rank 0, checks it, cuts patches, distributes it. `cells_weight` gives the weight of a cell from the
+  /// names of its regions (particles it will hold plus one); patches of `patch_size` cells (0: the default of the dimension and
+  /// of slices) stay on one rank. Throws std::invalid_argument (the same on all ranks) for a file that cannot be read, a wrong
+  /// dimension, cells of zero volume, and cells in no named group.
+  static BackgroundMesh read(MPI_Comm comm, const std::string &file, int patch_size,
+                             const std::vector<std::pair<std::string, double>> &region_weight);
+  /// Takes a distributed DMPlex of a host program (a reference is kept). Labels with a physical name are regions and groups.
+  static BackgroundMesh adopt(DM plex, int patch_size);
+
+  int cell_count() const { return static_cast<int>(cells.size()); }
+  int node_count() const { return static_cast<int>(position.size()); }
+
+  std::vector<Cell<dim>> cells;
+  std::vector<double> volume;          ///< of cells [m3], in 2D [m2]
+  std::vector<int> patch;              ///< patch of a cell, 0 .. patch_count - 1, local
+  int patch_count = 0;
+  std::vector<Vec<dim>> position;      ///< of nodes [m]
+  std::vector<double> mean_edge;       ///< of the edges at a node, over all ranks [m]
+  std::vector<double> nodal_volume;    ///< sum of cell volumes / (dim + 1) at a node, over all ranks [m3]
+  std::vector<char> owned;             ///< 1 on the one rank that counts the node in global sums
+  std::vector<PetscInt> plex_point;    ///< DMPlex point of a cell
+  std::vector<PetscInt> plex_vertex;   ///< DMPlex point of a node
+  std::vector<long long> global_cell;  ///< number of the cell that does not depend on the partition (order in the file)
+  std::vector<PartitionFace> partition_faces;
+  Halo halo;
+
+  /// Local cells of a named group of cells, ascending; found on some rank or `has_region` is false on all.
+  std::vector<int> region(const std::string &name) const;
+  bool has_region(const std::string &name) const;
+  std::vector<Facet<dim>> facets(const std::string &group) const;
+  bool has_group(const std::string &name) const;
+  std::vector<std::string> region_names() const, group_names() const;  ///< the same on all ranks, sorted
+  MeshReport report() const;                                          ///< collective
+  DM plex() const { return plex_; }
+  MPI_Comm comm() const;
+
+ private:
+  Dm plex_;
+};
+
+}  // namespace talus

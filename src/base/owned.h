@@ -1,0 +1,61 @@
+#pragma once
+/// Ownership of PETSc objects: the only wrapping there is; everywhere else the reader sees PETSc's own calls.
+#include <petscdmplex.h>
+#include <petscdmswarm.h>
+
+#include <utility>
+
+namespace talus {
+
+/// Owns one PETSc object; destroyed at scope exit, also on PetscCall's early return.
+template <class Object, PetscErrorCode (*destroy)(Object *)>
+class Owned {
+ public:
+  Owned() = default;
+  Owned(Owned &&other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
+  Owned &operator=(Owned &&other) noexcept {
+    std::swap(object_, other.object_);
+    return *this;
+  }
+  ~Owned() {
+    if (object_) (void)destroy(&object_);
+  }
+
+  operator Object() const { return object_; }  ///< VecNorm(residual, NORM_2, &norm)
+  Object *create() {                           ///< VecDuplicate(y, residual.create())
+    *this = Owned();
+    return &object_;
+  }
+
+ private:
+  Object object_ = nullptr;
+};
+using Dm = Owned<DM, DMDestroy>;
+using Vector = Owned<Vec, VecDestroy>;
+
+/// Borrows a swarm field as an array of T, one per local particle; given back at scope exit.
+template <class T>
+class Field {
+ public:
+  Field() = default;
+  Field(const Field &) = delete;
+  Field &operator=(const Field &) = delete;
+  ~Field() {
+    if (data_) (void)DMSwarmRestoreField(swarm_, name_, nullptr, nullptr, reinterpret_cast<void **>(&data_));
+  }
+  PetscErrorCode borrow(DM swarm, const char *name) {
+    PetscFunctionBeginUser;
+    swarm_ = swarm, name_ = name;
+    PetscCall(DMSwarmGetField(swarm, name, nullptr, nullptr, reinterpret_cast<void **>(&data_)));
+    PetscFunctionReturn(0);
+  }
+  T *data() const { return data_; }
+  T &operator[](PetscInt p) const { return data_[p]; }
+
+ private:
+  DM swarm_ = nullptr;
+  const char *name_ = nullptr;
+  T *data_ = nullptr;
+};
+
+}  // namespace talus

@@ -1,0 +1,23 @@
+#pragma once
+/// The phase models as compile-time traits (docs/theory, section 1): what a scene does not model costs neither memory nor time.
+#include <type_traits>
+
+namespace talus {
+
+// pressure: pore pressure acts on the total stress; given: that pressure is a function of place and time;
+// liquid, gas: the fluid moves on its own; suction: the saturation may be below 1
+struct Dry {
+  static constexpr const char *name = "dry";
+  static constexpr bool pressure = false, given = false, liquid = false, gas = false, suction = false;
+};
+struct Drained {
+  static constexpr const char *name = "drained";
+  static constexpr bool pressure = true, given = true, liquid = false, gas = false, suction = false;
+};
+
+template <class State>
+struct Absent {};  // a distinct empty type per state, so it costs no bytes
+template <bool present, class State>
+using If = std::conditional_t<present, State, Absent<State>>;
+
+}  // namespace talus

@@ -1,0 +1,31 @@
+#pragma once
+/// Units of scene quantities: a name, its factor to SI, and its dimension as exponents of kg, m, s (and angle).
+
+namespace talus {
+
+struct Dimension {
+  int mass = 0, length = 0, time = 0, angle = 0;
+  constexpr bool operator==(const Dimension &) const = default;
+};
+struct Unit {
+  const char *name;
+  double si;  ///< value in SI = number * si
+  Dimension dimension;
+};
+inline constexpr Unit one{"-", 1, {}};
+inline constexpr Unit metre{"m", 1, {0, 1, 0, 0}};
+inline constexpr Unit second{"s", 1, {0, 0, 1, 0}};
+inline constexpr Unit pascal{"Pa", 1, {1, -1, -2, 0}};
+inline constexpr Unit degree{"deg", 3.14159265358979323846 / 180, {0, 0, 0, 1}};
+inline constexpr Unit metre_per_second{"m/s", 1, {0, 1, -1, 0}};
+inline constexpr Unit metre_per_second_squared{"m/s2", 1, {0, 1, -2, 0}};
+inline constexpr Unit kilogram_per_cubic_metre{"kg/m3", 1, {1, -3, 0, 0}};
+inline constexpr Unit square_metre{"m2", 1, {0, 2, 0, 0}};
+inline constexpr Unit pascal_second{"Pa s", 1, {1, -1, -1, 0}};
+
+/// Allowed values of a scene key, in the unit the key is stated in.
+struct Range {
+  double low, high;
+};
+
+}  // namespace talus

@@ -1,0 +1,28 @@
+#pragma once
+/// Small fixed-size vectors and matrices of the kernel; Eigen does their algebra.
+#include <Eigen/Dense>
+#include <array>
+
+namespace talus {
+
+template <int dim>
+using Vec = std::array<double, dim>;  ///< a point or vector as stored: plain, no alignment beyond double
+template <int dim>
+using Map = Eigen::Map<Eigen::Matrix<double, dim, 1>>;
+template <int dim>
+using ConstMap = Eigen::Map<const Eigen::Matrix<double, dim, 1>>;
+template <int dim>
+using Column = Eigen::Matrix<double, dim, 1>;
+template <int dim>
+using Square = Eigen::Matrix<double, dim, dim>;
+
+template <int dim>
+Map<dim> map(Vec<dim> &v) {
+  return Map<dim>(v.data());
+}
+template <int dim>
+ConstMap<dim> map(const Vec<dim> &v) {
+  return ConstMap<dim>(v.data());
+}
+
+}  // namespace talus

@@ -1,0 +1,247 @@
+#pragma once
+/// The scene as plain structs: SI units, radians, defaults; no PETSc, no TOML. `fields` names every key once; the reader,
+/// `talus describe`, the header of results and the test that every key is documented all visit it (docs/guide/scene.md).
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "base/units.h"
+#include "scene/deferred.h"
+#include "scene/function.h"
+
+namespace talus {
+
+/// A number with this initial value has no default: the scene must give it.
+inline constexpr double required = std::numeric_limits<double>::quiet_NaN();
+
+enum class PhaseModel { dry, drained };
+
+/// A box in which cells or particles are finer.
+struct RefineBox {
+  std::vector<double> from, to;  ///< opposite corners [m]
+  double size = required;        ///< cell size inside [m]
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.point("from", from, metre, "corner of the box with the smallest coordinates");
+    v.point("to", to, metre, "corner of the box with the largest coordinates");
+    v.number("size", size, metre, Range{1e-6, 1e5}, "cell size inside the box");
+  }
+};
+
+struct MeshSource {
+  std::string file;          ///< Gmsh .msh, 2.2 or 4.1, with physical groups
+  std::string section;       ///< section CSV, meshed by talus-mesh
+  double size = 0;           ///< cell size of a section [m]
+  double thickness = 0;      ///< of a 3D body cut from a section [m]; 0: one cell size
+  int layers = 1;            ///< element layers over the thickness; 0: free tetrahedra
+  std::vector<RefineBox> refine;
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.text("file", file, "Gmsh mesh file (.msh, format 2.2 or 4.1) with physical groups, relative to the scene");
+    v.text("section", section, "section CSV that talus-mesh turns into a mesh, relative to the scene");
+    v.number("size", size, metre, Range{0, 1e5}, "cell size of a mesh made from a section");
+    v.number("thickness", thickness, metre, Range{0, 1e5}, "thickness of a 3D body cut from a section; 0 is one cell size");
+    v.integer("layers", layers, Range{0, 1000}, "element layers over the thickness; 0 gives free tetrahedra");
+    v.list("refine", refine, "boxes with smaller cells");
+  }
+};
+
+/// A box in which a body gets more particles per cell.
+struct DenseBox {
+  std::vector<double> from, to;
+  int particles_per_cell = 0;
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.point("from", from, metre, "corner of the box with the smallest coordinates");
+    v.point("to", to, metre, "corner of the box with the largest coordinates");
+    v.integer("particles_per_cell", particles_per_cell, Range{1, 1000}, "particles seeded in a cell whose centre is in the box");
+  }
+};
+
+struct BodySource {
+  std::string name;                 ///< the table's own name, [body.NAME]
+  std::vector<std::string> region;  ///< physical groups of cells
+  double density = 0;               ///< total density of a dry body [kg/m3]; or porosity and grain_density
+  double porosity = 0;              ///< [-]
+  double grain_density = 0;         ///< [kg/m3]
+  double saturation = 0;            ///< of the pores above the water table [-]
+  int particles_per_cell = 0;       ///< 0: 3 a triangle, 4 a tetrahedron
+  double volume_cap = -1;           ///< largest V_p / V_p0; 0: none; -1: 1 for cohesionless laws, else none
+  double k0 = -1;                   ///< initial horizontal over vertical effective stress; < 0: start stress-free
+  std::vector<Function> velocity;             ///< initial velocity, functions of the place [m/s]
+  std::vector<Function> displacement;         ///< initial displacement, functions of the undeformed place [m]
+  std::vector<Function> stress;               ///< initial stress, functions of the undeformed place: xx, yy, zz, xy, yz, xz [Pa]
+  std::vector<Function> body_acceleration;    ///< beside gravity, functions of the undeformed place and t [m/s2]
+  std::vector<DenseBox> dense;
+  DeferredTable law;  ///< "law" and its parameters, read by physics/laws
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.texts("region", region, "name (or list of names) of the physical groups of cells that the body fills at the start");
+    v.number("density", density, kilogram_per_cubic_metre, Range{1e-3, 1e5}, "total density of a dry body; or give porosity and grain_density");
+    v.number("porosity", porosity, one, Range{0, 0.99}, "porosity n");
+    v.number("grain_density", grain_density, kilogram_per_cubic_metre, Range{1, 1e5}, "density of the solid grains rho_s");
+    v.number("saturation", saturation, one, Range{0, 1}, "degree of saturation above the water table");
+    v.integer("particles_per_cell", particles_per_cell, Range{0, 1000}, "particles seeded in a cell; 0 is 3 in a triangle, 4 in a tetrahedron");
+    v.number("volume_cap", volume_cap, one, Range{-1, 100}, "largest particle volume over its initial volume; 0 is no cap; -1 caps cohesionless laws at 1");
+    v.number("k0", k0, one, Range{-1, 10}, "initial horizontal over vertical effective stress under the body's own weight; negative starts free of stress");
+    v.functions("velocity", velocity, metre_per_second, "initial velocity, one function of x, y, z per component");
+    v.functions("displacement", displacement, metre, "initial displacement, one function of the undeformed x, y, z per component");
+    v.functions("stress", stress, pascal, "initial stress xx, yy, zz, xy (in 3D also yz, xz), functions of the undeformed x, y, z");
+    v.functions("body_acceleration", body_acceleration, metre_per_second_squared, "acceleration beside gravity, functions of the undeformed x, y, z and of t");
+    v.list("dense", dense, "boxes with more particles per cell");
+    v.deferred("law", law, "soil model; its parameters stand in the same table");
+  }
+};
+
+struct BoundarySource {
+  std::string name;  ///< the table's own name, [boundary.NAME]
+  std::vector<std::string> group;  ///< physical groups of facets; empty: the table's own name
+  DeferredTable kind;              ///< "kind" and its parameters, read by physics/boundary
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.texts("group", group, "name (or list of names) of the physical groups of facets; default is the table's own name");
+    v.deferred("kind", kind, "kind of boundary; its parameters stand in the same table");
+  }
+};
+
+/// Pore water given as a function of place and time (phase model `drained`).
+struct Water {
+  bool given = false;                        ///< the scene has a [water] table
+  double density = 1000;                     ///< [kg/m3]
+  std::vector<std::vector<double>> table;    ///< polyline x, elevation [m]; pressure is hydrostatic below it
+  Function level = 0.0;                      ///< added to the elevation of the table, function of t [m]
+  Function excess = 0.0;                     ///< added to the hydrostatic pressure, function of x, y, z, t and `table` [Pa]
+  bool open_water_load = true;               ///< open water above the ground rests on submerged faces
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    given = true;
+    v.number("density", density, kilogram_per_cubic_metre, Range{1, 1e4}, "density of the pore water");
+    v.points("table", table, metre, "water table: polyline of points [x, elevation]; pressure is hydrostatic below it");
+    v.function("level", level, metre, Range{-1e4, 1e4}, "rise of the whole water table, function of t");
+    v.function("excess", excess, pascal, Range{-1e9, 1e9}, "excess over the hydrostatic pressure, function of x, y, z, t and `table` (elevation of the water table at x)");
+    v.flag("open_water_load", open_water_load, "open water above the ground rests on submerged faces");
+  }
+};
+
+enum class StopWhen { duration, equilibrium, rest, failure };
+
+struct Stage {
+  std::string name;
+  double duration = required;   ///< longest duration [s]
+  StopWhen until = StopWhen::duration;
+  double damping = 0;           ///< local (Cundall) damping factor alpha [-]
+  double gravity_ramp = 0;      ///< gravity grows linearly over this time [s]
+  double force_ratio = 1e-3;    ///< equilibrium: unbalanced over applied force [-]
+  double energy_ratio = 1e-6;   ///< equilibrium: kinetic over strain energy [-]
+  double rest_speed = 1e-3;     ///< rest: no particle is faster [m/s]
+  std::string failure_point;    ///< failure: named output point that is watched
+  double failure_speed = 0.01;  ///< failure: its speed passes this [m/s] ...
+  double failure_time = 1;      ///< ... and keeps rising for this long [s]
+  bool hold_loads = false;      ///< functions of time keep the value they had when the stage began
+  bool reset_displacement = false;  ///< displacements, velocities and plastic strain are zeroed when the stage ends
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.text("name", name, "name of the stage in logs and results");
+    v.number("duration", duration, second, Range{0, 1e9}, "longest duration of the stage");
+    v.choice("until", until, {{"duration", StopWhen::duration}, {"equilibrium", StopWhen::equilibrium}, {"rest", StopWhen::rest}, {"failure", StopWhen::failure}}, "what ends the stage before its duration");
+    v.number("damping", damping, one, Range{0, 0.99}, "local (Cundall) damping factor");
+    v.number("gravity_ramp", gravity_ramp, second, Range{0, 1e9}, "time over which gravity grows linearly from 0");
+    v.number("force_ratio", force_ratio, one, Range{0, 1}, "equilibrium: unbalanced over applied nodal force");
+    v.number("energy_ratio", energy_ratio, one, Range{0, 1}, "equilibrium: kinetic over elastic strain energy");
+    v.number("rest_speed", rest_speed, metre_per_second, Range{0, 1e6}, "rest: no particle is faster");
+    v.text("failure_point", failure_point, "failure: name of the output point that is watched");
+    v.number("failure_speed", failure_speed, metre_per_second, Range{0, 1e6}, "failure: the point's speed passes this");
+    v.number("failure_time", failure_time, second, Range{0, 1e9}, "failure: and keeps rising for this long");
+    v.flag("hold_loads", hold_loads, "functions of time keep the value they had when the stage began");
+    v.flag("reset_displacement", reset_displacement, "zero displacement, velocity and plastic strain when the stage ends");
+  }
+};
+
+enum class Velocity { flip, pic, apic };
+enum class Integration { blended, particle, mixed, cell };
+enum class Locking { patches, none, nodal };
+
+/// How particles and nodes exchange what they know (design section 3; docs/theory section 4).
+struct Transfer {
+  Velocity velocity = Velocity::flip;
+  double relaxation = 400;    ///< FLIP relaxes to PIC with this time constant, in units of smallest altitude over wave speed; 0: never
+  double pic_fraction = 0;    ///< PIC share per remap, beside the relaxation [-]
+  Integration integration = Integration::blended;
+  double filling = 0.9;       ///< mixed: a cell filled beyond this counts as full [-]
+  bool average_stress = true; ///< one stress per cell and body, averaged at each remap
+  Locking locking = Locking::patches;
+  int patch_size = 0;         ///< cells; 0: 2 triangles, 8 tetrahedra, 4 in a one-element slice
+  double remap_interval = 0.1;  ///< remap when a node has moved this share of its mean edge; 0: every step
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.choice("velocity", velocity, {{"flip", Velocity::flip}, {"pic", Velocity::pic}, {"apic", Velocity::apic}}, "velocity a particle takes from the nodes");
+    v.number("relaxation", relaxation, one, Range{0, 1e9}, "time constant of the relaxation of FLIP to PIC over smallest altitude / wave speed; 0 is none");
+    v.number("pic_fraction", pic_fraction, one, Range{0, 1}, "PIC share at each remap, beside the relaxation");
+    v.choice("integration", integration, {{"blended", Integration::blended}, {"particle", Integration::particle}, {"mixed", Integration::mixed}, {"cell", Integration::cell}}, "volume by which a cell's stress is integrated");
+    v.number("filling", filling, one, Range{0, 1}, "mixed integration: filling above which a cell counts as full");
+    v.flag("average_stress", average_stress, "one stress per cell and body, averaged at each remap");
+    v.choice("locking", locking, {{"patches", Locking::patches}, {"none", Locking::none}, {"nodal", Locking::nodal}}, "cure of volumetric locking");
+    v.integer("patch_size", patch_size, Range{0, 64}, "cells of a patch; 0 is 2 triangles, 8 tetrahedra, 4 in a one-element slice");
+    v.number("remap_interval", remap_interval, one, Range{0, 0.3}, "remap when a node of a filled cell has moved this share of its mean edge; 0 is every step");
+  }
+};
+
+/// A point whose history is written.
+struct OutputPoint {
+  std::string name;  ///< the table's own name, [output.point.NAME]
+  std::vector<double> position;
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.point("position", position, metre, "place whose nearest particle is followed");
+  }
+};
+
+struct Output {
+  double interval = 0;          ///< time between snapshots [s]; 0: start and end of stages only
+  double history_interval = 0;  ///< [s]; 0: every 200th of the longest stage
+  double checkpoint_interval = 0;  ///< [s]; 0: with every snapshot
+  std::vector<OutputPoint> point;
+  std::vector<std::string> picture = {"displacement", "plastic_strain", "velocity", "pore_pressure"};
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.number("interval", interval, second, Range{0, 1e9}, "time between snapshots; 0 writes at the start and end of stages only");
+    v.number("history_interval", history_interval, second, Range{0, 1e9}, "time between lines of history.csv; 0 is a 200th of the longest stage");
+    v.number("checkpoint_interval", checkpoint_interval, second, Range{0, 1e9}, "time between checkpoints; 0 writes one with every snapshot");
+    v.named("point", point, "points whose history is written, [output.point.NAME]");
+    v.texts("picture", picture, "fields that are drawn");
+  }
+};
+
+struct Scene {
+  std::string title;
+  std::string file;        ///< path of the scene, for messages and relative paths; not a key
+  std::string source;      ///< the text as read, overrides applied; not a key
+  PhaseModel phases = PhaseModel::dry;
+  int dimension = 2;
+  std::vector<double> gravity;  ///< components [m/s2]; one number points down y; empty: no gravity
+  MeshSource mesh;
+  std::vector<BodySource> body;
+  std::vector<BoundarySource> boundary;
+  Water water;
+  std::vector<Stage> stage;
+  DeferredTable integrator;  ///< [integrator], read by solvers/
+  Transfer transfer;
+  Output output;
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.text("title", title, "one line that says what the scene shows");
+    v.choice("phases", phases, {{"dry", PhaseModel::dry}, {"drained", PhaseModel::drained}}, "phase model");
+    v.integer("dimension", dimension, Range{2, 3}, "2: plane strain on triangles, 3: tetrahedra");
+    v.point("gravity", gravity, metre_per_second_squared, "acceleration of gravity, one component per dimension; one number acts down the y axis");
+    v.table("mesh", mesh, "background mesh");
+    v.named("body", body, "soils, [body.NAME]");
+    v.named("boundary", boundary, "conditions on named groups of facets, [boundary.NAME]");
+    v.table("water", water, "pore water of the phase model drained");
+    v.list("stage", stage, "stages in their order, [[stage]]");
+    v.deferred_table("integrator", integrator, "time integration");
+    v.table("transfer", transfer, "exchange between particles and nodes");
+    v.table("output", output, "what is written");
+  }
+};
+
+}  // namespace talus
