@@ -67,7 +67,6 @@ struct BodySource {
   double saturation = 0;            ///< of the pores above the water table [-]
   int particles_per_cell = 0;       ///< 0: 3 a triangle, 4 a tetrahedron
   double volume_cap = -1;           ///< largest V_p / V_p0; 0: none; -1: 1 for cohesionless laws, else none
-  double k0 = -1;                   ///< initial horizontal over vertical effective stress; < 0: start stress-free
   std::vector<Function> velocity;             ///< initial velocity, functions of the place [m/s]
   std::vector<Function> displacement;         ///< initial displacement, functions of the undeformed place [m]
   std::vector<Function> stress;               ///< initial stress, functions of the undeformed place: xx, yy, zz, xy, yz, xz [Pa]
@@ -83,7 +82,6 @@ struct BodySource {
     v.number("saturation", saturation, one, Range{0, 1}, "degree of saturation above the water table");
     v.integer("particles_per_cell", particles_per_cell, Range{0, 1000}, "particles seeded in a cell; 0 is 3 in a triangle, 4 in a tetrahedron");
     v.number("volume_cap", volume_cap, one, Range{-1, 100}, "largest particle volume over its initial volume; 0 is no cap; -1 caps cohesionless laws at 1");
-    v.number("k0", k0, one, Range{-1, 10}, "initial horizontal over vertical effective stress under the body's own weight; negative starts free of stress");
     v.functions("velocity", velocity, metre_per_second, "initial velocity, one function of x, y, z per component");
     v.functions("displacement", displacement, metre, "initial displacement, one function of the undeformed x, y, z per component");
     v.functions("stress", stress, pascal, "initial stress xx, yy, zz, xy (in 3D also yz, xz), functions of the undeformed x, y, z");
