@@ -1,0 +1,75 @@
+#include "scene/function.h"
+
+#include <muParser.h>
+
+#include <algorithm>
+#include <numbers>
+#include <set>
+#include <stdexcept>
+
+namespace talus {
+
+/// muParser reads its variables where they were bound: here, so it can be neither copied nor moved.
+struct Function::Expression {
+  Expression(const std::string &text, double factor, const NamedFunctions &named) : functions(named), scale(factor) {
+    parser.DefineVar("x", &x);
+    parser.DefineVar("y", &y);
+    parser.DefineVar("z", &z);
+    parser.DefineVar("t", &t);
+    parser.DefineVar("table", &table);
+    parser.DefineConst("pi", std::numbers::pi);
+    for (auto &[name, function] : functions) parser.DefineFunUserData(name, call, &function);
+    parser.SetExpr(text);
+    for (const auto &[name, address] : parser.GetUsedVar()) used.insert(name);
+    (void)parser.Eval();  // translates the text, so that later calls only run it
+    if (parser.GetNumResults() != 1) throw std::invalid_argument("two values; decimals are written with a point");
+  }
+  Expression(const Expression &) = delete;
+  Expression &operator=(const Expression &) = delete;
+
+  static double call(void *function, double t) { return (*static_cast<const Function *>(function))(t); }
+
+  mu::Parser parser;
+  NamedFunctions functions;
+  std::set<std::string> used;
+  double scale;
+  double x = 0, y = 0, z = 0, t = 0, table = 0;
+};
+
+Function::Function(double value) : given_(true), value_(value) {}
+
+Function::Function(std::vector<double> times, std::vector<double> values)
+    : given_(true), times_(std::move(times)), values_(std::move(values)) {
+  if (times_.empty() || times_.size() != values_.size())
+    throw std::invalid_argument("a table needs at least one point, each with a time and a value");
+  const bool rising = std::adjacent_find(times_.begin(), times_.end(), std::greater_equal<>()) == times_.end();
+  if (!rising) throw std::invalid_argument("the times of a table must rise from point to point");
+}
+
+Function::Function(const std::string &expression, double scale, const NamedFunctions &functions) : given_(true) {
+  try {
+    expression_ = std::make_shared<Expression>(expression, scale, functions);
+  } catch (const mu::Parser::exception_type &error) {
+    throw std::invalid_argument(error.GetMsg());
+  }
+}
+
+bool Function::uses(const std::string &variable) const { return expression_ && expression_->used.contains(variable); }
+
+double Function::operator()(double x, double y, double z, double t, double table) const {
+  if (!times_.empty()) return interpolate(t);
+  if (!expression_) return value_;
+  Expression &e = *expression_;
+  e.x = x, e.y = y, e.z = z, e.t = t, e.table = table;
+  return e.scale * e.parser.Eval();
+}
+
+double Function::interpolate(double t) const {
+  if (t <= times_.front()) return values_.front();
+  if (t >= times_.back()) return values_.back();
+  const auto after = std::upper_bound(times_.begin(), times_.end(), t) - times_.begin();
+  const double share = (t - times_[after - 1]) / (times_[after] - times_[after - 1]);
+  return (1 - share) * values_[after - 1] + share * values_[after];
+}
+
+}  // namespace talus

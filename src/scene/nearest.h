@@ -1,0 +1,22 @@
+#pragma once
+/// Suggestions for misspelt keys.
+#include <string>
+#include <vector>
+
+namespace talus {
+
+/// Number of insertions, deletions, replacements and swaps of neighbours that turn `a` into `b` (optimal string
+/// alignment).
+int edit_distance(const std::string &a, const std::string &b);
+
+/// The candidate with the smallest edit distance to `word`, empty when none is closer than four edits and half the
+/// word.
+std::string nearest(const std::string &word, const std::vector<std::string> &candidates);
+
+/// "a, b, c"
+std::string join(const std::vector<std::string> &words);
+
+/// "did you mean `x`?" where a candidate is near, else "known are a, b, c".
+std::string suggestion(const std::string &word, const std::vector<std::string> &candidates);
+
+}  // namespace talus

@@ -1,0 +1,153 @@
+/// Reading a scene as a whole, and what its keys demand of one another.
+#include <algorithm>
+
+#include "scene/nearest.h"
+#include "scene/quantity.h"
+#include "scene/reader.h"
+#include "scene/scene.h"
+
+namespace talus {
+namespace {
+
+/// Checks between keys, and the few values that follow from others. Complains at the key's place in the file.
+class Checks {
+ public:
+  Checks(Scene &scene, const TableReader &reader) : scene_(scene), reader_(reader) {}
+
+  void all() {
+    if (scene_.body.empty())
+      reader_.complain("body", "has no soil; add a table [body.NAME] with region, density and law");
+    if (scene_.stage.empty()) reader_.complain("stage", "is missing; add a table [[stage]] with its duration");
+    mesh();
+    gravity();
+    for (BodySource &body : scene_.body) this->body(body);
+    for (BoundarySource &boundary : scene_.boundary)
+      if (boundary.group.empty()) boundary.group = {boundary.name};
+    water();
+    for (const OutputPoint &point : scene_.output.point)
+      components("output.point." + point.name + ".position", point.position.size(), scene_.dimension, "coordinates");
+    for (std::size_t i = 0; i < scene_.stage.size(); ++i) stage(scene_.stage[i], "stage." + std::to_string(i));
+  }
+
+ private:
+  void mesh() const {
+    const MeshSource &mesh = scene_.mesh;
+    if (mesh.file.empty() == mesh.section.empty())
+      reader_.complain("mesh", mesh.file.empty() ? "needs a source: give file or section"
+                                                 : "has two sources: give either file or section");
+    if (!mesh.section.empty() && !(mesh.size > 0))
+      reader_.complain("mesh.size", "must be a cell size above 0 m, since the mesh is made from a section");
+    for (std::size_t i = 0; i < mesh.refine.size(); ++i)
+      box("mesh.refine." + std::to_string(i), mesh.refine[i].from, mesh.refine[i].to);
+  }
+
+  void gravity() {
+    std::vector<double> &gravity = scene_.gravity;
+    if (gravity.empty()) gravity.assign(scene_.dimension, 0);
+    if (gravity.size() == 1) {
+      const double g = gravity[0];
+      if (g < 0) reader_.complain("gravity", "must not be negative: a single number acts down the y axis");
+      gravity.assign(scene_.dimension, 0);
+      gravity[1] = -g;
+    }
+    if (gravity.size() != static_cast<std::size_t>(scene_.dimension))
+      reader_.complain("gravity",
+                       "must be one number, which acts down the y axis, or have " + dimension() + " components");
+  }
+
+  void body(const BodySource &body) const {
+    const std::string path = "body." + body.name;
+    if (body.region.empty())
+      reader_.complain(path, "needs region, the name (or list of names) of the mesh's physical groups that it fills");
+    functions(path + ".velocity", body.velocity, scene_.dimension);
+    functions(path + ".displacement", body.displacement, scene_.dimension);
+    functions(path + ".body_acceleration", body.body_acceleration, scene_.dimension);
+    functions(path + ".stress", body.stress, scene_.dimension == 2 ? 4 : 6);
+    for (std::size_t i = 0; i < body.dense.size(); ++i) dense(path + ".dense." + std::to_string(i), body.dense[i]);
+    weight(path, body);
+  }
+
+  void dense(const std::string &path, const DenseBox &dense) const {
+    box(path, dense.from, dense.to);
+    if (dense.particles_per_cell == 0)
+      reader_.complain(path, "needs particles_per_cell, a whole number from 1 to 1000");
+  }
+
+  void weight(const std::string &path, const BodySource &body) const {
+    const bool grains = body.porosity > 0 && body.grain_density > 0;
+    if (scene_.phases == PhaseModel::drained && !grains)
+      reader_.complain(path, "needs porosity and grain_density, since the scene has pore water (phases = \"drained\")");
+    if (body.density > 0 && body.grain_density > 0)
+      reader_.complain(path + ".density", "is given twice: give density, or porosity and grain_density");
+    if (!(body.density > 0) && !grains)
+      reader_.complain(path, "needs a weight: give density, or porosity and grain_density");
+  }
+
+  void water() const {
+    const bool drained = scene_.phases == PhaseModel::drained;
+    if (drained && !scene_.water.given)
+      reader_.complain("phases", "needs pore water: add a table [water] with its table of points [x, elevation]");
+    if (!drained && scene_.water.given)
+      reader_.complain("water", "has no effect, since phases = \"dry\" has no pore water; set phases = \"drained\"");
+    const std::vector<std::vector<double>> &table = scene_.water.table;
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      const std::string path = "water.table." + std::to_string(i);
+      components(path, table[i].size(), 2, "coordinates, [x, elevation]");
+      if (i > 0 && table[i][0] <= table[i - 1][0])
+        reader_.complain(path, "must lie to the right of the point before it: sort the points by x");
+    }
+  }
+
+  void stage(const Stage &stage, const std::string &path) const {
+    if (stage.until != StopWhen::failure) return;
+    std::vector<std::string> points;
+    for (const OutputPoint &point : scene_.output.point) points.push_back(point.name);
+    if (points.empty())
+      reader_.complain(path, "ends by failure of a point, but there is none: add [output.point.NAME]");
+    if (std::find(points.begin(), points.end(), stage.failure_point) == points.end())
+      reader_.complain(path + ".failure_point",
+                       "must name a point of [output.point.NAME]; " + suggestion(stage.failure_point, points));
+  }
+
+  /// Opposite corners, the smaller coordinates first.
+  void box(const std::string &path, const std::vector<double> &from, const std::vector<double> &to) const {
+    components(path + ".from", from.size(), scene_.dimension, "coordinates");
+    components(path + ".to", to.size(), scene_.dimension, "coordinates");
+    for (std::size_t i = 0; i < from.size(); ++i)
+      if (!(from[i] < to[i])) reader_.complain(path + ".to", "must lie beyond `from` in every coordinate");
+  }
+
+  void functions(const std::string &path, const std::vector<Function> &value, int count) const {
+    if (!value.empty()) components(path, value.size(), count, "components");
+  }
+
+  void components(const std::string &path, std::size_t given, std::size_t wanted, const std::string &what) const {
+    if (given != wanted)
+      reader_.complain(path, "must have " + std::to_string(wanted) + " " + what + ", not " + std::to_string(given) +
+                                 " (dimension = " + dimension() + ")");
+  }
+
+  std::string dimension() const { return std::to_string(scene_.dimension); }
+
+  Scene &scene_;
+  const TableReader &reader_;
+};
+
+}  // namespace
+
+Scene parse_scene(const std::string &text, const std::string &file, const std::vector<std::string> &overrides) {
+  TableReader reader = TableReader::from_text(text, file, overrides);
+  Scene scene;
+  reader.fill(scene);
+  Checks(scene, reader).all();
+  scene.file = file;
+  for (const std::string &one : overrides) scene.source += "# --set " + one + "\n";
+  scene.source += text;
+  return scene;
+}
+
+Scene read_scene(const std::string &file, const std::vector<std::string> &overrides) {
+  return parse_scene(read_text(file), file, overrides);
+}
+
+}  // namespace talus
