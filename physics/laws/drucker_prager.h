@@ -1,0 +1,90 @@
+#pragma once
+#include <string>
+
+#include "physics/laws/history.h"
+#include "physics/laws/isotropic_elastic.h"
+
+namespace talus {
+
+enum class Cone { outer, inner, compromise, plane_strain };
+
+/// Non-associated, perfectly plastic Drucker-Prager cone sqrt(J2) + eta p = xi c around an elastic inside.
+/// Sources: de Souza Neto, Peric & Owen (2008), sec. 6.4.4 (cones through the outer or inner edges of the Mohr-Coulomb
+/// pyramid and the plane-strain match), sec. 8.3 (return to cone and apex, exact); Zienkiewicz et al. (1978), Numerical
+/// methods in offshore engineering, ch. 12 (compromise: the mean of outer and inner).
+struct DruckerPrager : IsotropicElastic {
+  static constexpr const char *name = "drucker_prager";
+  static constexpr auto history = plastic_strains;
+  using History = std::array<double, history.size()>;
+
+  double cohesion = required;        ///< c [Pa]
+  double friction_angle = required;  ///< phi [rad]
+  double dilation_angle = 0;         ///< psi [rad]
+  Cone cone = Cone::outer;
+
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    IsotropicElastic::fields(v);
+    v.number("cohesion", cohesion, pascal, Range{0, 1e9}, "cohesion c");
+    v.number("friction_angle", friction_angle, degree, Range{0, 70}, "friction angle phi");
+    v.number("dilation_angle", dilation_angle, degree, Range{0, 70}, "dilation angle psi");
+    v.choice(
+        "cone", cone,
+        {{"outer", Cone::outer},
+         {"inner", Cone::inner},
+         {"compromise", Cone::compromise},
+         {"plane_strain", Cone::plane_strain}},
+        "which Mohr-Coulomb strength the cone takes: triaxial compression, extension, their mean, or plane strain");
+  }
+
+  std::string problem() const {
+    return dilation_angle > friction_angle ? "dilation_angle must not exceed friction_angle" : "";
+  }
+
+  bool cohesionless() const { return cohesion == 0; }
+
+  double eta = 0, eta_bar = 0, xi = 0;  ///< of the cone, set by prepare()
+  void prepare() {
+    xi = slope_over_tan(friction_angle);
+    eta = xi * std::tan(friction_angle);
+    eta_bar = slope_over_tan(dilation_angle) * std::tan(dilation_angle);
+  }
+
+  double slope_over_tan(double angle) const {
+    const double sine = std::sin(angle), cosine = std::cos(angle), root3 = std::sqrt(3.);
+    switch (cone) {
+      case Cone::outer:
+        return 6 * cosine / (root3 * (3 - sine));
+      case Cone::inner:
+        return 6 * cosine / (root3 * (3 + sine));
+      case Cone::compromise:
+        return 18 * cosine / (root3 * (9 - sine * sine));
+      case Cone::plane_strain:
+        return 3 * cosine / std::sqrt(9 * cosine * cosine + 12 * sine * sine);
+    }
+    return 0;
+  }
+
+  /// Brings an elastic trial stress back to the cone.
+  template <int dim>
+  [[gnu::always_inline]] void correct(Stress<dim> &s, History &history, const Surroundings &) const {
+    const double G = shear_modulus(), K = bulk_modulus();
+    const Invariants<dim> trial(s);
+    const double f = trial.q + eta * trial.p - xi * cohesion;
+    const double to_cone = f / (G + K * eta_bar * eta);
+    const bool elastic = f <= 0, apex = eta > 0 && trial.q < G * to_cone;  // the return to the cone would pass its apex
+    const double q = elastic ? trial.q : apex ? 0 : trial.q - G * to_cone;
+    const double p = elastic ? trial.p : apex ? xi * cohesion / eta : trial.p - K * eta_bar * to_cone;
+    const double shrink = trial.q > 0 ? (trial.q - q) / trial.q : 0;
+    s.xx -= shrink * trial.deviator.xx + (trial.p - p);
+    s.yy -= shrink * trial.deviator.yy + (trial.p - p);
+    s.zz -= shrink * trial.deviator.zz + (trial.p - p);
+    s.xy -= shrink * trial.deviator.xy;
+    if constexpr (dim == 3) s.yz -= shrink * trial.deviator.yz, s.xz -= shrink * trial.deviator.xz;
+    auto &[plastic_strain, plastic_volume] = history;
+    plastic_strain += (trial.q - q) / (std::sqrt(3.) * G);
+    plastic_volume += (trial.p - p) / K;
+  }
+};
+
+}  // namespace talus

@@ -1,0 +1,43 @@
+#pragma once
+/// Linear isotropic elasticity: the inside of a law that brings nothing else.
+#include "physics/laws/stress.h"
+#include "scene/scene.h"
+
+namespace talus {
+
+/// Hypoelastic in Cauchy stress and logarithmic strain of one increment, docs/theory section 2.
+struct IsotropicElastic {
+  double young_modulus = required;  ///< E [Pa]
+  double poisson_ratio = required;  ///< nu [-]
+
+  double bulk_modulus() const { return young_modulus / (3 * (1 - 2 * poisson_ratio)); }  ///< K [Pa]
+  double shear_modulus() const { return young_modulus / (2 * (1 + poisson_ratio)); }     ///< G [Pa]
+  double lame_modulus() const { return bulk_modulus() - 2 * shear_modulus() / 3; }       ///< lambda [Pa]
+
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.elasticity(young_modulus, poisson_ratio);
+  }
+
+  void prepare() {}  ///< a law with derived parameters hides this function
+
+  /// Adds the stress of an elastic strain increment. A law with an elasticity of its own hides this function.
+  template <int dim>
+  [[gnu::always_inline]] void trial(Stress<dim> &s, const Strain<dim> &e, const Surroundings &) const {
+    const double spherical = lame_modulus() * (e.xx + e.yy + e.zz), twice_G = 2 * shear_modulus();
+    s.xx += spherical + twice_G * e.xx;
+    s.yy += spherical + twice_G * e.yy;
+    s.zz += spherical + twice_G * e.zz;
+    s.xy += twice_G * e.xy;
+    if constexpr (dim == 3) s.yz += twice_G * e.yz, s.xz += twice_G * e.xz;
+  }
+
+  /// Elastic energy per volume [J/m3].
+  template <int dim>
+  double elastic_energy(const Stress<dim> &s) const {
+    const Invariants<dim> stress(s);
+    return stress.p * stress.p / (2 * bulk_modulus()) + stress.q * stress.q / (2 * shear_modulus());
+  }
+};
+
+}  // namespace talus

@@ -1,0 +1,55 @@
+#pragma once
+/// The soil models. A law is a plain struct; to add one, write its file, put it into `Law`, add its claims to
+/// tests/unit/laws. What a law has:
+///   name, history, History          its name in scenes; the fields it remembers of a point, and their values
+///   fields(visitor), problem()      its parameters, read, checked and described; what is wrong with them together, or
+///   "" prepare()                       derives from the parameters what `correct` needs, once per update of all points
+///   trial(s, e, around)             adds the elastic stress of a strain increment: IsotropicElastic's, unless the law
+///   brings its own correct(s, history, around)     brings the trial back to what the law admits; changes nothing of an
+///   admissible stress bulk_modulus(), shear_modulus(), elastic_energy(s), cohesionless()
+#include <span>
+#include <variant>
+
+#include "physics/laws/drucker_prager.h"
+#include "physics/laws/linear_elastic.h"
+#include "physics/laws/mohr_coulomb.h"
+#include "scene/deferred.h"
+
+namespace talus {
+
+using Law = std::variant<LinearElastic, MohrCoulomb, DruckerPrager>;
+
+/// The law that key "law" of a body names, with its parameters. Throws like the reader.
+Law read_law(const DeferredTable &table);
+
+inline const char *law_name(const Law &law) {
+  return std::visit([](const auto &one) { return one.name; }, law);
+}
+/// Names, units and meanings of what the law remembers of a point.
+inline std::span<const HistoryField> history_fields(const Law &law) {
+  return std::visit([](const auto &one) { return std::span<const HistoryField>(one.history); }, law);
+}
+inline int history_size(const Law &law) { return static_cast<int>(history_fields(law).size()); }
+
+inline double bulk_modulus(const Law &law) {  ///< K [Pa]
+  return std::visit([](const auto &one) { return one.bulk_modulus(); }, law);
+}
+inline double shear_modulus(const Law &law) {  ///< G [Pa]
+  return std::visit([](const auto &one) { return one.shear_modulus(); }, law);
+}
+inline double constrained_modulus(const Law &law) {  ///< K + 4/3 G, of the elastic wave [Pa]
+  return bulk_modulus(law) + 4 * shear_modulus(law) / 3;
+}
+
+/// Does soil of this law open without resistance? Then volume that particles gain by opening gaps is not the soil's.
+inline bool cohesionless(const Law &law) {
+  return std::visit([](const auto &one) { return one.cohesionless(); }, law);
+}
+
+/// Elastic energy per volume [J/m3].
+template <int dim>
+double elastic_energy(const Law &law, const Stress<dim> &stress) {
+  return std::visit([&](const auto &one) { return one.elastic_energy(stress); }, law);
+}
+
+}  // namespace talus

@@ -1,0 +1,19 @@
+#pragma once
+#include "physics/laws/history.h"
+#include "physics/laws/isotropic_elastic.h"
+
+namespace talus {
+
+/// Linear elasticity without a limit of strength.
+struct LinearElastic : IsotropicElastic {
+  static constexpr const char *name = "linear_elastic";
+  static constexpr std::array<HistoryField, 0> history{};
+  using History = std::array<double, history.size()>;
+
+  bool cohesionless() const { return false; }
+
+  template <int dim>
+  [[gnu::always_inline]] void correct(Stress<dim> &, History &, const Surroundings &) const {}
+};
+
+}  // namespace talus
