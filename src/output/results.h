@@ -1,5 +1,6 @@
 #pragma once
-/// What the time loop hands to the writers: columns of particle values of this rank. Writers are collective over `comm`.
+/// What the time loop hands to the writers: columns of particle values of this rank. Writers are collective over
+/// `comm`.
 #include <petscsys.h>
 
 #include <string>
@@ -10,25 +11,26 @@ namespace talus {
 /// One field of all local particles, particle-major: values[particle * components + k].
 struct Column {
   std::string name, unit, meaning;
-  int components = 1;                 ///< 1, 2, 3 (vector), 4 or 6 (symmetric tensor xx, yy, zz, xy(, yz, xz))
+  int components = 1;  ///< 1, 2, 3 (vector), 4 or 6 (symmetric tensor xx, yy, zz, xy(, yz, xz))
   std::vector<double> values;
 };
 
-/// One state of the run. `id` is the particle's number, the same whatever the partition; columns have one row per local particle.
+/// One state of the run. `id` is the particle's number, the same whatever the partition; columns have one row per local
+/// particle.
 struct Snapshot {
-  double time = 0;                    ///< [s]
+  double time = 0;  ///< [s]
   long long step = 0;
   std::string stage;
   std::vector<long long> id;
-  std::vector<int> body;              ///< index into the run's body names
-  std::vector<Column> columns;        ///< "position" (components = dim) is always there
+  std::vector<int> body;        ///< index into the run's body names
+  std::vector<Column> columns;  ///< "position" (components = dim) is always there
 };
 
 /// The background mesh as written once; gathered over ranks by the writer.
 struct MeshPicture {
   int dimension = 2;
-  std::vector<double> position;       ///< [nodes][dim], local nodes
-  std::vector<long long> cell_node;   ///< [cells][dim + 1], local node numbers
+  std::vector<double> position;      ///< [nodes][dim], local nodes
+  std::vector<long long> cell_node;  ///< [cells][dim + 1], local node numbers
 };
 
 }  // namespace talus

@@ -1,0 +1,84 @@
+#include "output/history.h"
+
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <sstream>
+#include <stdexcept>
+
+#include "output/replace_file.h"
+#include "output/together.h"
+
+namespace talus {
+namespace {
+
+constexpr int digits = 12;           // of every number
+constexpr double round_off = 1e-11;  // that writing a time in so many digits may add to it
+
+std::string header(const std::vector<std::string> &names) {
+  std::string line = "time_s,step,stage";
+  for (const auto &name : names) line += "," + name;
+  return line;
+}
+
+/// A text as one field of a CSV line.
+std::string quoted(const std::string &text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string field = "\"";
+  for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return field + "\"";
+}
+
+/// The header and the complete lines up to `time`.
+std::string kept_lines(const std::string &path, const std::vector<std::string> &names, double time) {
+  std::ifstream file(path);
+  if (!file) throw std::runtime_error("cannot read " + path + ": " + std::strerror(errno));
+  std::string line, kept;
+  if (!std::getline(file, line) || line != header(names))
+    throw std::runtime_error(path + " has other columns than this run: start the run in another folder");
+  do {
+    if (file.eof()) break;  // no line end: the run died while it wrote this line
+    kept += line + "\n";
+  } while (std::getline(file, line) && std::strtod(line.c_str(), nullptr) <= time + round_off * std::abs(time));
+  return kept;
+}
+
+}  // namespace
+
+History::History(MPI_Comm comm, const std::string &path, const std::vector<std::string> &names) : History(comm, path) {
+  columns_ = names.size();
+  on_first_rank(comm_, [&] { open_with(header(names) + "\n"); });
+}
+
+History History::append(MPI_Comm comm, const std::string &path, const std::vector<std::string> &names, double time) {
+  History history(comm, path);
+  history.columns_ = names.size();
+  on_first_rank(comm, [&] {
+    history.open_with(std::filesystem::exists(path) ? kept_lines(path, names, time) : header(names) + "\n");
+  });
+  return history;
+}
+
+void History::open_with(const std::string &content) {
+  replace_file(path_, content);
+  file_.open(path_, std::ios::app);
+  if (!file_) throw std::runtime_error("cannot write " + path_ + ": " + std::strerror(errno));
+}
+
+void History::row(double time, long long step, const std::string &stage, const std::vector<double> &values) {
+  on_first_rank(comm_, [&] {
+    if (values.size() != columns_)
+      throw std::runtime_error(path_ + ": " + std::to_string(values.size()) + " values for " +
+                               std::to_string(columns_) + " columns");
+    std::ostringstream line;
+    line.precision(digits);
+    line << time << "," << step << "," << quoted(stage);
+    for (const double value : values) line << "," << value;
+    file_ << line.str() << std::endl;
+    if (!file_) throw std::runtime_error("cannot write " + path_ + ": " + std::strerror(errno));
+  });
+}
+
+}  // namespace talus

@@ -1,0 +1,36 @@
+#pragma once
+/// history.csv: numbers over time, one line each, readable while the run goes on.
+#include <mpi.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace talus {
+
+/// Columns are time_s, step, stage and then the caller's, whose names end in their units ("crest_displacement_m").
+/// Every function is collective over `comm`; rank 0 writes. Failures throw std::runtime_error with path and cause on
+/// all ranks.
+class History {
+ public:
+  /// Starts the file anew.
+  History(MPI_Comm comm, const std::string &path, const std::vector<std::string> &names);
+
+  /// Goes on with the file of an earlier run, without its lines later than `time` [s] or cut off by the end of that
+  /// run. A missing file is started; other columns than `names` are refused.
+  static History append(MPI_Comm comm, const std::string &path, const std::vector<std::string> &names, double time);
+
+  /// Adds a line and brings it to the file; `values` are rank 0's, one per name, in their order.
+  void row(double time, long long step, const std::string &stage, const std::vector<double> &values);
+
+ private:
+  History(MPI_Comm comm, const std::string &path) : comm_(comm), path_(path) {}
+  void open_with(const std::string &content);
+
+  MPI_Comm comm_;
+  std::string path_;
+  std::size_t columns_ = 0;  ///< after time, step and stage
+  std::ofstream file_;       ///< open on rank 0
+};
+
+}  // namespace talus

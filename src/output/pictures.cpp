@@ -1,0 +1,65 @@
+#include "output/pictures.h"
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <string_view>
+
+namespace talus {
+namespace {
+
+/// The script of the source tree this program was built in, else the one installed beside the program.
+std::string script() {
+  const std::filesystem::path source = TALUS_PLOTS "/talus_plot.py";
+  if (std::filesystem::exists(source)) return source;
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  return program.parent_path().parent_path() / "share/talus/plots/talus_plot.py";
+}
+
+/// The environment without what mpirun put there: with it, h5py would take itself for a rank of this run and wait for
+/// the others.
+std::vector<char *> environment_without_mpi() {
+  std::vector<char *> kept;
+  for (char **variable = environ; *variable; ++variable) {
+    const std::string_view text(*variable);
+    if (!text.starts_with("OMPI_") && !text.starts_with("PMIX_") && !text.starts_with("PMI_") &&
+        !text.starts_with("ORTE_"))
+      kept.push_back(*variable);
+  }
+  kept.push_back(nullptr);
+  return kept;
+}
+
+bool warn(const std::string &dir, const std::string &cause) {
+  std::fprintf(stderr, "warning: no pictures of %s: %s\n", dir.c_str(), cause.c_str());
+  return false;
+}
+
+}  // namespace
+
+bool draw_pictures(const std::string &dir, const std::vector<std::string> &fields) {
+  std::vector<std::string> words{TALUS_PYTHON, script(), dir};
+  if (!fields.empty()) words.push_back("--fields");
+  words.insert(words.end(), fields.begin(), fields.end());
+  std::vector<char *> arguments;
+  for (auto &word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+
+  pid_t child;
+  auto environment = environment_without_mpi();
+  if (const int error = posix_spawn(&child, TALUS_PYTHON, nullptr, nullptr, arguments.data(), environment.data()))
+    return warn(dir, std::string("cannot start " TALUS_PYTHON ": ") + std::strerror(error));
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) return warn(dir, std::strerror(errno));
+  if (!WIFEXITED(status) || WEXITSTATUS(status)) return warn(dir, words[1] + " failed");
+  return true;
+}
+
+}  // namespace talus

@@ -1,0 +1,138 @@
+#include "output/progress.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+#include <stdexcept>
+
+#include "output/together.h"
+
+namespace talus {
+namespace {
+
+constexpr double first_line = 2;  // after the start, except on a terminal [s]
+constexpr double terminal_interval = 0.5, plain_interval = 10, log_interval = 60;  // [s]
+constexpr double look_interval = 0.1;                                              // between readings of the clock [s]
+constexpr long long most_steps = 10000;  // between readings, in case steps become slow
+
+std::string time_of_day() {
+  const std::time_t now = std::time(nullptr);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S", std::localtime(&now));
+  return text;
+}
+
+/// 3.2 M, 870 k, 12.
+std::string short_number(double value) {
+  const char *prefix = "";
+  for (const char *next : {" k", " M", " G"})
+    if (value >= 1000) value /= 1000, prefix = next;
+  char text[32];
+  std::snprintf(text, sizeof text, value < 10 ? "%.1f%s" : "%.0f%s", value, prefix);
+  return text;
+}
+
+/// 42 s, 3 min 20 s, 5 h 12 min.
+std::string duration(double seconds) {
+  const auto s = std::llround(seconds);
+  char text[48];
+  if (s < 60)
+    std::snprintf(text, sizeof text, "%lld s", s);
+  else if (s < 3600)
+    std::snprintf(text, sizeof text, "%lld min %02lld s", s / 60, s % 60);
+  else
+    std::snprintf(text, sizeof text, "%lld h %02lld min", s / 3600, s / 60 % 60);
+  return text;
+}
+
+}  // namespace
+
+Progress::Progress(MPI_Comm comm, const std::string &log_path, double total, bool append, std::FILE *screen,
+                   std::function<double()> clock)
+    : speaks_(rank_in(comm) == 0), total_(total), screen_(screen), clock_(std::move(clock)) {
+  on_first_rank(comm, [&] {
+    log_.open(log_path, append ? std::ios::app : std::ios::trunc);
+    if (!log_) throw std::runtime_error("cannot write " + log_path + ": " + std::strerror(errno));
+    terminal_ = isatty(fileno(screen_));
+    looked_at_ = shown_at_ = clock_();
+    next_show_ = shown_at_ + (terminal_ ? terminal_interval : first_line);
+    next_log_ = shown_at_ + first_line;
+  });
+}
+
+Progress::~Progress() {
+  if (line_open_) std::fputc('\n', screen_);
+}
+
+void Progress::stage(const std::string &name) {
+  if (!speaks_) return;
+  stage_ = name;
+  log("stage " + name);
+}
+
+void Progress::look_at_clock() {
+  const double clock = clock_();
+  const double per_step = (clock - looked_at_) / static_cast<double>(steps_between_looks_);
+  const double steps = per_step > 0 ? look_interval / per_step : 2 * static_cast<double>(steps_between_looks_);
+  steps_between_looks_ = std::clamp(std::llround(std::min(steps, 1e9)), 1LL, most_steps);
+  until_clock_ = steps_between_looks_;
+  looked_at_ = clock;
+  if (clock < next_show_ && clock < next_log_) return;
+  const std::string line = describe(clock);
+  if (clock >= next_show_) {
+    show(line);
+    next_show_ = clock + (terminal_ ? terminal_interval : plain_interval);
+  }
+  if (clock >= next_log_) {
+    log(line);
+    next_log_ = clock + log_interval;
+  }
+  shown_ = now_, shown_at_ = clock;
+}
+
+/// Rate and remaining time are those of the interval since the last line.
+std::string Progress::describe(double clock) const {
+  const double elapsed = clock - shown_at_, advanced = now_.time - shown_.time;
+  char times[96];
+  std::snprintf(times, sizeof times, "  t = %.4g / %.4g s  step %lld", now_.time, total_, now_.step);
+  std::string line = stage_ + times;
+  if (elapsed <= 0 || advanced <= 0) return line;
+  line += "  " + short_number((now_.updates - shown_.updates) / elapsed) + " particle-updates/s";
+  if (now_.time < total_) line += "  at most " + duration((total_ - now_.time) / advanced * elapsed) + " left";
+  return line;
+}
+
+void Progress::show(const std::string &line) {
+  if (terminal_)
+    std::fprintf(screen_, "\r%s\033[K", line.c_str());
+  else
+    std::fprintf(screen_, "%s\n", line.c_str());
+  std::fflush(screen_);
+  line_open_ = terminal_;
+}
+
+void Progress::note(const std::string &text) {
+  if (!speaks_) return;
+  if (line_open_) std::fputs("\r\033[K", screen_);
+  std::fprintf(screen_, "%s\n", text.c_str());
+  std::fflush(screen_);
+  line_open_ = false;
+  log(text);
+}
+
+void Progress::finish() {
+  if (!speaks_) return;
+  const std::string line = describe(clock_());
+  show(line);
+  if (line_open_) std::fputc('\n', screen_);
+  line_open_ = false;
+  log(line);
+}
+
+void Progress::log(const std::string &line) { log_ << time_of_day() << "  " << line << std::endl; }
+
+}  // namespace talus

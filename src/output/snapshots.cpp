@@ -1,0 +1,281 @@
+#include "output/snapshots.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <iterator>
+#include <numeric>
+#include <sstream>
+#include <stdexcept>
+
+#include "output/hdf5_file.h"
+#include "output/replace_file.h"
+#include "output/together.h"
+
+namespace talus {
+namespace {
+
+constexpr const char *mesh_file = "run/mesh.h5";
+
+std::vector<std::string> component_names(int components) {
+  switch (components) {
+    case 1:
+      return {};
+    case 2:
+      return {"x", "y"};
+    case 3:
+      return {"x", "y", "z"};
+    case 4:
+      return {"xx", "yy", "zz", "xy"};
+    case 6:
+      return {"xx", "yy", "zz", "xy", "yz", "xz"};
+  }
+  throw std::invalid_argument("a column has 1, 2, 3, 4 or 6 components, not " + std::to_string(components));
+}
+
+std::string join(const std::vector<std::string> &words) {
+  std::string text;
+  for (const auto &word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+void check_lengths(const Snapshot &s) {
+  if (s.body.size() != s.id.size()) throw std::runtime_error("snapshot: body and id differ in length");
+  for (const auto &column : s.columns)
+    if (column.values.size() != s.id.size() * column.components)
+      throw std::runtime_error("snapshot: column " + column.name + " has " + std::to_string(column.values.size()) +
+                               " values for " + std::to_string(s.id.size()) + " particles of " +
+                               std::to_string(column.components) + " components");
+}
+
+/// `values`, rows of `row`, in the order in which `order` names the rows.
+template <class T>
+std::vector<T> reordered(const std::vector<T> &values, const std::vector<std::size_t> &order, int row = 1) {
+  std::vector<T> sorted;
+  sorted.reserve(values.size());
+  for (const std::size_t r : order) std::copy_n(values.begin() + r * row, row, std::back_inserter(sorted));
+  return sorted;
+}
+
+/// All particles on rank 0, by increasing id; elsewhere none.
+Snapshot gathered(MPI_Comm comm, const Snapshot &local) {
+  Snapshot all{local.time, local.step, local.stage, gather(comm, local.id), gather(comm, local.body), {}};
+  std::vector<std::size_t> order(all.id.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return all.id[a] < all.id[b]; });
+  for (const auto &column : local.columns) {
+    const auto values = gather(comm, column.values, column.components);
+    all.columns.push_back(
+        {column.name, column.unit, column.meaning, column.components, reordered(values, order, column.components)});
+  }
+  all.id = reordered(all.id, order);
+  all.body = reordered(all.body, order);
+  return all;
+}
+
+/// All cells on rank 0. Nodes that ranks share are there once per rank: for a picture that does no harm.
+MeshPicture gathered(MPI_Comm comm, const MeshPicture &local) {
+  long long nodes = static_cast<long long>(local.position.size()) / local.dimension, before = 0;
+  check_mpi(MPI_Exscan(&nodes, &before, 1, MPI_LONG_LONG, MPI_SUM, comm), "numbering nodes");
+  if (rank_in(comm) == 0) before = 0;
+  std::vector<long long> cell_node = local.cell_node;
+  for (auto &node : cell_node) node += before;
+  return {local.dimension, gather(comm, local.position, local.dimension), gather(comm, cell_node, local.dimension + 1)};
+}
+
+bool is_snapshot(const std::filesystem::path &file) {
+  const std::string name = file.stem();
+  return file.extension() == ".h5" && name.find_first_not_of("0123456789") == std::string::npos;
+}
+
+void remove_snapshots(const std::string &folder) {
+  std::vector<std::filesystem::path> old;
+  for (const auto &file : std::filesystem::directory_iterator(folder))
+    if (is_snapshot(file.path())) old.push_back(file.path());
+  for (const auto &file : old) std::filesystem::remove(file);
+}
+
+std::string numbered(std::size_t count) {
+  char text[24];
+  std::snprintf(text, sizeof text, "%06zu", count);
+  return text;
+}
+
+/// An XDMF reference to a dataset of rows.
+std::string data_item(const std::string &file, const std::string &name, unsigned long long rows, int columns,
+                      const char *type = "Float") {
+  std::ostringstream text;
+  text << "<DataItem Dimensions=\"" << rows << " " << columns << "\" NumberType=\"" << type
+       << "\" Precision=\"8\" Format=\"HDF\">" << file << ":/" << name << "</DataItem>";
+  return text.str();
+}
+
+/// One column of such a dataset.
+std::string data_item_component(const std::string &whole, unsigned long long rows, int component) {
+  std::ostringstream text;
+  text << "<DataItem ItemType=\"HyperSlab\" Dimensions=\"" << rows
+       << " 1\"><DataItem Dimensions=\"3 2\" Format=\"XML\">0 " << component << " 1 1 " << rows << " 1</DataItem>"
+       << whole << "</DataItem>";
+  return text.str();
+}
+
+std::string xdmf_attribute(const std::string &name, const char *type, const std::string &data) {
+  return "        <Attribute Name=\"" + name + "\" AttributeType=\"" + type + "\" Center=\"Node\">" + data +
+         "</Attribute>\n";
+}
+
+}  // namespace
+
+RunFile::RunFile(MPI_Comm comm, const std::string &dir, const RunHeader &header, const MeshPicture &local_mesh)
+    : RunFile(comm, dir) {
+  const MeshPicture mesh = gathered(comm, local_mesh);
+  on_first_rank(comm_, [&] {
+    header_ = header;
+    dimension_ = mesh.dimension;
+    nodes_ = mesh.position.size() / mesh.dimension;
+    cells_ = mesh.cell_node.size() / (mesh.dimension + 1);
+    make_folder(dir_ + "/run");
+    Hdf5Builder file(dir_ + "/" + mesh_file);
+    file.attribute("/", "dimension", static_cast<long long>(mesh.dimension));
+    file.dataset("node_position", mesh.position, mesh.dimension);
+    file.attribute("node_position", "unit", std::string("m"));
+    file.dataset("cell_node", mesh.cell_node, mesh.dimension + 1);
+    file.save();
+    write_doors();  // before the old snapshots go, so that no link ever leads nowhere
+    remove_snapshots(dir_ + "/run");
+  });
+}
+
+RunFile RunFile::append(MPI_Comm comm, const std::string &dir, double time) {
+  RunFile run(comm, dir);
+  on_first_rank(comm, [&] {
+    const Hdf5Reader door(dir + "/run.h5");
+    run.header_ = {door.text("/", "title"), door.text("/", "program"), door.texts("scene").at(0), door.texts("bodies")};
+    const Hdf5Reader mesh(dir + "/" + mesh_file);
+    run.dimension_ = static_cast<int>(mesh.integer("/", "dimension"));
+    run.nodes_ = mesh.shape("node_position").at(0);
+    run.cells_ = mesh.shape("cell_node").at(0);
+    std::vector<std::string> later;
+    for (const auto &number : door.names("snapshots")) {
+      const Entry entry = run.read_entry(number);
+      if (entry.time <= time)
+        run.entries_.push_back(entry);
+      else
+        later.push_back(number);
+    }
+    run.write_doors();
+    for (const auto &number : later) std::filesystem::remove(dir + "/" + run.snapshot_file(number));
+  });
+  run.share_last_step();
+  return run;
+}
+
+void RunFile::write(const Snapshot &local) {
+  together(comm_, [&] { check_lengths(local); });
+  const Snapshot all = gathered(comm_, local);
+  on_first_rank(comm_, [&] {
+    entries_.push_back(write_file(all, numbered(entries_.size())));
+    try {
+      write_doors();
+    } catch (...) {
+      entries_.pop_back();
+      throw;
+    }
+  });
+  last_step_ = local.step;
+}
+
+RunFile::Entry RunFile::write_file(const Snapshot &all, const std::string &number) const {
+  Entry entry{number, all.time, all.step, all.id.size(), {}};
+  Hdf5Builder file(dir_ + "/" + snapshot_file(number));
+  file.attribute("/", "time", all.time);
+  file.attribute("/", "step", all.step);
+  file.attribute("/", "stage", all.stage);
+  file.dataset("id", all.id, 1);
+  file.dataset("body", std::vector<long long>(all.body.begin(), all.body.end()), 1);
+  for (const auto &column : all.columns) {
+    file.dataset(column.name, column.values, column.components);
+    file.attribute(column.name, "unit", column.unit);
+    file.attribute(column.name, "meaning", column.meaning);
+    file.attribute(column.name, "components", join(component_names(column.components)));
+    entry.columns.push_back({column.name, column.components});
+  }
+  file.save();
+  return entry;
+}
+
+RunFile::Entry RunFile::read_entry(const std::string &number) const {
+  const Hdf5Reader file(dir_ + "/" + snapshot_file(number));
+  Entry entry{number, file.number("/", "time"), file.integer("/", "step"), file.shape("id").at(0), {}};
+  for (const auto &name : file.names("/"))
+    if (name != "id" && name != "body") entry.columns.push_back({name, static_cast<int>(file.shape(name).at(1))});
+  return entry;
+}
+
+void RunFile::share_last_step() {
+  if (!entries_.empty()) last_step_ = entries_.back().step;
+  check_mpi(MPI_Bcast(&last_step_, 1, MPI_LONG_LONG, 0, comm_), "sharing the last step");
+}
+
+/// run.h5 and run.xdmf, anew: they hold no particle data, so that this stays cheap.
+void RunFile::write_doors() const {
+  Hdf5Builder file(dir_ + "/run.h5");
+  file.attribute("/", "title", header_.title);
+  file.attribute("/", "program", header_.program);
+  file.dataset("scene", {header_.scene});
+  file.dataset("bodies", header_.bodies);
+  file.link("mesh", mesh_file);
+  file.group("snapshots");
+  for (const auto &entry : entries_) file.link("snapshots/" + entry.number, snapshot_file(entry.number));
+  file.save();
+  replace_file(dir_ + "/run.xdmf", xdmf());
+}
+
+/// Each time holds two blocks, particles and background mesh: every reader of XDMF keeps the mesh in view then.
+std::string RunFile::xdmf() const {
+  std::ostringstream text;
+  text.precision(17);
+  text << "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"3.0\">\n<Domain>\n"
+       << "  <Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  for (const auto &entry : entries_)
+    text << "    <Grid Name=\"" << entry.number
+         << "\" GridType=\"Collection\" CollectionType=\"Spatial\">\n      <Time Value=\"" << entry.time << "\"/>\n"
+         << xdmf_particles(entry) << xdmf_mesh() << "    </Grid>\n";
+  text << "  </Grid>\n</Domain>\n</Xdmf>\n";
+  return text.str();
+}
+
+std::string RunFile::xdmf_particles(const Entry &entry) const {
+  const std::string file = snapshot_file(entry.number), rows = std::to_string(entry.particles);
+  std::string text =
+      "      <Grid Name=\"particles\">\n        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"" + rows +
+      "\" NodesPerElement=\"1\"/>\n";
+  for (const char *name : {"id", "body"})
+    text += xdmf_attribute(name, "Scalar", data_item(file, name, entry.particles, 1, "Int"));
+  for (const auto &[name, components] : entry.columns) {
+    const std::string data = data_item(file, name, entry.particles, components);
+    if (name == "position")
+      text += "        <Geometry GeometryType=\"" + std::string(components == 2 ? "XY" : "XYZ") + "\">" + data +
+              "</Geometry>\n";
+    else if (components == 1)
+      text += xdmf_attribute(name, "Scalar", data);
+    else if (components <= 3)
+      text += xdmf_attribute(name, "Vector", data);
+    else  // readers differ in the order of a Tensor6
+      for (int k = 0; k < components; ++k)
+        text += xdmf_attribute(name + "_" + component_names(components)[k], "Scalar",
+                               data_item_component(data, entry.particles, k));
+  }
+  return text + "      </Grid>\n";
+}
+
+std::string RunFile::xdmf_mesh() const {
+  const bool flat = dimension_ == 2;
+  return "      <Grid Name=\"background_mesh\">\n        <Topology TopologyType=\"" +
+         std::string(flat ? "Triangle" : "Tetrahedron") + "\" NumberOfElements=\"" + std::to_string(cells_) + "\">" +
+         data_item(mesh_file, "cell_node", cells_, dimension_ + 1, "Int") +
+         "</Topology>\n        <Geometry GeometryType=\"" + (flat ? "XY" : "XYZ") + "\">" +
+         data_item(mesh_file, "node_position", nodes_, dimension_) + "</Geometry>\n      </Grid>\n";
+}
+
+}  // namespace talus

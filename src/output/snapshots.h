@@ -1,0 +1,83 @@
+#pragma once
+/// The results of a run, for ParaView and for scripts:
+///
+///     DIR/run.h5        the door: scene, program version, body names, and links `/mesh` and `/snapshots/000012`
+///     DIR/run/*.h5      behind it: `mesh.h5` and one file per snapshot
+///     DIR/run.xdmf      what ParaView opens: particles and background mesh over time
+///
+/// Through the links run.h5 reads like one file (`h5py.File("run.h5")["snapshots/000012/stress"]`). A snapshot has the
+/// attributes time [s], step and stage; `id` [particles][1] in increasing order; `body` [particles][1], an index into
+/// `/bodies`; and one [particles][components] dataset per column, with the attributes unit, meaning and components ("xx
+/// yy zz xy"). All numbers are double or 64-bit integers, whatever the number of ranks the file is the same.
+///
+/// Every file appears by renaming a complete one, so a run that dies, or a full disk, leaves all earlier snapshots
+/// readable (hdf5_file.h says why HDF5 alone does not give that). The price: rank 0 holds one snapshot of all particles
+/// while it is written.
+#include <mpi.h>
+
+#include <string>
+#include <vector>
+
+#include "output/results.h"
+
+namespace talus {
+
+/// What a run says about itself.
+struct RunHeader {
+  std::string title;
+  std::string program;              ///< name and version of the program
+  std::string scene;                ///< text of the scene as run, overrides applied
+  std::vector<std::string> bodies;  ///< names; Snapshot::body counts in this list
+};
+
+/// Writes the snapshots of a run. Every function is collective over `comm`; a failure throws std::runtime_error with
+/// path and cause, the same on all ranks, and leaves what was written before as it is.
+class RunFile {
+ public:
+  /// Starts the results in folder `dir`, which is made where it is missing; snapshots of an older run in it are
+  /// removed.
+  RunFile(MPI_Comm comm, const std::string &dir, const RunHeader &header, const MeshPicture &local_mesh);
+
+  /// Goes on with the results of an earlier run: header and mesh are kept, snapshots later than `time` [s] are removed.
+  static RunFile append(MPI_Comm comm, const std::string &dir, double time);
+
+  /// Adds a snapshot. Ranks without particles hand over columns without values.
+  void write(const Snapshot &local);
+
+  /// Step of the last snapshot; -1 if there is none.
+  long long last_step() const { return last_step_; }
+
+ private:
+  struct Shape {
+    std::string name;
+    int components;
+  };
+  struct Entry {  ///< what the door and ParaView need to know of a snapshot
+    std::string number;
+    double time;
+    long long step;
+    unsigned long long particles;
+    std::vector<Shape> columns;
+  };
+
+  RunFile(MPI_Comm comm, const std::string &dir) : comm_(comm), dir_(dir) {}
+  std::string snapshot_file(const std::string &number) const { return "run/" + number + ".h5"; }
+  Entry write_file(const Snapshot &all, const std::string &number) const;
+  Entry read_entry(const std::string &number) const;
+  void write_doors() const;
+  std::string xdmf() const;
+  std::string xdmf_mesh() const;
+  std::string xdmf_particles(const Entry &entry) const;
+  void share_last_step();
+
+  MPI_Comm comm_;
+  std::string dir_;
+  long long last_step_ = -1;
+  // on rank 0 only:
+  RunHeader header_;
+  int dimension_ = 2;
+  unsigned long long nodes_ = 0, cells_ = 0;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace talus
