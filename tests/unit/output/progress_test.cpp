@@ -1,0 +1,72 @@
+// Claims of output/progress.h, with a clock that the test turns.
+#include "output/progress.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "fixtures.h"
+
+namespace talus {
+namespace {
+
+long long lines_of(const std::string &text) { return std::count(text.begin(), text.end(), '\n'); }
+
+/// `seconds` of a run with 100 steps of 1000 particles a second, each of 1 ms simulated time.
+struct Spoken {
+  std::string screen, log;
+  long long looks = 0;
+};
+Spoken spoken(const SharedFolder &folder, int seconds) {
+  Spoken spoken;
+  double now = 0;
+  std::FILE *screen = std::fopen((folder / ("screen" + std::to_string(world_rank()))).c_str(), "w+");
+  {
+    Progress progress(MPI_COMM_WORLD, folder / "run.log", 1000, false, screen, [&] {
+      ++spoken.looks;
+      return now;
+    });
+    progress.stage("slide");
+    for (int n = 1; n <= 100 * seconds; ++n) {
+      now += 0.01;
+      progress.step(1e-3 * n, n, 1000);
+    }
+    progress.note("the slope failed");
+    progress.finish();
+  }
+  std::fclose(screen);
+  spoken.screen = content(folder / ("screen" + std::to_string(world_rank())));
+  spoken.log = content(folder / "run.log");
+  return spoken;
+}
+
+TEST(Progress, tells_rate_and_remaining_time_now_and_then) {
+  const SharedFolder folder;
+  const Spoken said = spoken(folder, 60);
+  if (world_rank()) {
+    EXPECT_TRUE(said.screen.empty());
+    return;
+  }
+  EXPECT_EQ(lines_of(said.screen), 8) << said.screen;  // at 2, 12, 22, 32, 42, 52 s; the note; the end
+  EXPECT_NE(said.screen.find("slide  t = 1.2"), std::string::npos) << said.screen;
+  EXPECT_NE(said.screen.find("100 k particle-updates/s"), std::string::npos) << said.screen;
+  EXPECT_NE(said.screen.find("at most 2 h 46 min left"), std::string::npos) << said.screen;
+  EXPECT_NE(said.screen.find("the slope failed\n"), std::string::npos);
+  EXPECT_EQ(lines_of(said.log), 4) << said.log;  // the stage, at 2 s, the note, the end
+}
+
+TEST(Progress, reads_the_clock_seldom) {
+  const SharedFolder folder;
+  const Spoken said = spoken(folder, 60);
+  if (world_rank() == 0) {
+    EXPECT_LT(said.looks, 700);
+    EXPECT_GT(said.looks, 500);
+  }
+}
+
+TEST(Progress, complains_about_a_log_that_cannot_be) {
+  const SharedFolder folder;
+  EXPECT_THROW(Progress(MPI_COMM_WORLD, folder / "missing/run.log", 1), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace talus

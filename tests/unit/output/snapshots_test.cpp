@@ -1,0 +1,249 @@
+// Claims of output/snapshots.h, read back with the HDF5 C API.
+#include "output/snapshots.h"
+
+#include <hdf5.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <stdexcept>
+
+#include "fixtures.h"
+
+namespace talus {
+namespace {
+
+/// A dataset as doubles, through the door run.h5 and its links.
+std::vector<double> read(const std::string &dir, const std::string &name) {
+  const hid_t file = H5Fopen((dir + "/run.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  const hid_t set = H5Dopen2(file, name.c_str(), H5P_DEFAULT), space = H5Dget_space(set);
+  std::vector<double> values(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space)));
+  EXPECT_EQ(H5Sget_simple_extent_ndims(space), 2) << name;
+  EXPECT_GE(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0) << name;
+  H5Sclose(space), H5Dclose(set), H5Fclose(file);
+  return values;
+}
+
+double read_time(const std::string &dir, const std::string &snapshot) {
+  double time = -1;
+  const hid_t file = H5Fopen((dir + "/run.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  const hid_t a = H5Aopen_by_name(file, ("snapshots/" + snapshot).c_str(), "time", H5P_DEFAULT, H5P_DEFAULT);
+  EXPECT_GE(H5Aread(a, H5T_NATIVE_DOUBLE, &time), 0);
+  H5Aclose(a), H5Fclose(file);
+  return time;
+}
+
+/// Number of snapshots that the door shows.
+hsize_t snapshots_in(const std::string &dir) {
+  H5G_info_t info{};
+  const hid_t file = H5Fopen((dir + "/run.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  EXPECT_GE(H5Gget_info_by_name(file, "snapshots", &info, H5P_DEFAULT), 0);
+  H5Fclose(file);
+  return info.nlinks;
+}
+
+void expect_snapshot(const std::string &dir, const std::string &number, double time, std::size_t count = 200) {
+  const auto id = read(dir, "snapshots/" + number + "/id");
+  const auto body = read(dir, "snapshots/" + number + "/body");
+  const auto position = read(dir, "snapshots/" + number + "/position");
+  const auto stress = read(dir, "snapshots/" + number + "/stress");
+  EXPECT_EQ(read_time(dir, number), time);
+  ASSERT_EQ(id.size(), count);
+  ASSERT_EQ(body.size(), count);
+  ASSERT_EQ(position.size(), 2 * count);
+  ASSERT_EQ(stress.size(), 4 * count);
+  for (std::size_t p = 0; p < count; ++p) {
+    const auto number_of = static_cast<long long>(p);
+    EXPECT_EQ(id[p], p);
+    EXPECT_EQ(body[p], p % 2);
+    EXPECT_EQ(position[2 * p + 1], y_of(number_of));
+    EXPECT_EQ(stress[4 * p + 3], static_cast<double>(10 * p + 3) + time);
+  }
+}
+
+/// Counts of opening and closing tags of a name; equal in well-formed XML.
+std::size_t count_of(const std::string &text, const std::string &word) {
+  std::size_t count = 0;
+  for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++count;
+  return count;
+}
+
+/// Files of this process cannot grow beyond a size while this lives: what a full disk does to a writer.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) : signal_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit tight{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &tight);
+  }
+  FullDisk(const FullDisk &) = delete;
+  FullDisk &operator=(const FullDisk &) = delete;
+  ~FullDisk() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, signal_);
+  }
+
+ private:
+  rlimit before_{};
+  void (*signal_)(int);
+};
+
+/// The complaint of `work`, empty if there was none.
+template <class Work>
+std::string complaint(Work &&work) {
+  try {
+    work();
+  } catch (const std::runtime_error &error) {
+    return error.what();
+  }
+  return {};
+}
+
+/// Whether all ranks hold the same text.
+bool agreed(std::string text) {
+  std::string first = text;
+  unsigned long long size = first.size();
+  MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG_LONG, 0, MPI_COMM_WORLD);
+  first.resize(size);
+  MPI_Bcast(first.data(), static_cast<int>(size), MPI_CHAR, 0, MPI_COMM_WORLD);
+  int same = first == text, all;
+  MPI_Allreduce(&same, &all, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+  return all;
+}
+
+TEST(Snapshots, are_read_back_as_written_whatever_the_ranks) {
+  const SharedFolder folder;
+  RunFile run(MPI_COMM_WORLD, folder / "run", small_header(), small_mesh());
+  EXPECT_EQ(run.last_step(), -1);
+  run.write(small_snapshot(0, 0));
+  run.write(small_snapshot(0.1, 25));
+  EXPECT_EQ(run.last_step(), 25);
+  if (world_rank()) return;
+  EXPECT_EQ(snapshots_in(folder / "run"), 2u);
+  expect_snapshot(folder / "run", "000000", 0);
+  expect_snapshot(folder / "run", "000001", 0.1);
+}
+
+TEST(Snapshots, may_hold_no_particles) {
+  const SharedFolder folder;
+  RunFile run(MPI_COMM_WORLD, folder / "run", small_header(), small_mesh());
+  run.write(small_snapshot(0, 0, 0));
+  if (world_rank() == 0) expect_snapshot(folder / "run", "000000", 0, 0);
+}
+
+TEST(Snapshots, show_the_mesh_of_all_ranks) {
+  const SharedFolder folder;
+  RunFile run(MPI_COMM_WORLD, folder / "run", small_header(), small_mesh());
+  if (world_rank()) return;
+  const auto position = read(folder / "run", "mesh/node_position"), cell = read(folder / "run", "mesh/cell_node");
+  const auto ranks = static_cast<std::size_t>(world_size());
+  ASSERT_EQ(position.size(), 8 * ranks);
+  ASSERT_EQ(cell.size(), 6 * ranks);
+  for (std::size_t r = 0; r < ranks; ++r) {
+    const auto corner = static_cast<std::size_t>(cell[6 * r]);
+    EXPECT_EQ(position[2 * corner], static_cast<double>(r)) << "first corner of the first cell of rank " << r;
+  }
+}
+
+TEST(Snapshots, are_described_to_paraview_in_well_formed_xml) {
+  const SharedFolder folder;
+  RunFile run(MPI_COMM_WORLD, folder / "run", small_header(), small_mesh());
+  run.write(small_snapshot(0, 0));
+  run.write(small_snapshot(0.5, 10));
+  if (world_rank()) return;
+  const std::string xdmf = content(folder / "run/run.xdmf");
+  for (const std::string tag : {"Grid", "Attribute", "DataItem", "Geometry", "Domain", "Xdmf"})
+    EXPECT_EQ(count_of(xdmf, "<" + tag + " ") + count_of(xdmf, "<" + tag + ">"), count_of(xdmf, "</" + tag + ">"))
+        << tag;
+  EXPECT_EQ(count_of(xdmf, "<Time Value="), 2u);
+  EXPECT_EQ(count_of(xdmf, "run/000001.h5:/position"), 1u);
+  EXPECT_EQ(count_of(xdmf, "Name=\"stress_xy\""), 2u);
+  EXPECT_EQ(count_of(xdmf, "background_mesh"), 2u);
+}
+
+TEST(Snapshots, of_a_resumed_run_follow_those_before_its_start) {
+  const SharedFolder folder;
+  const std::string dir = folder / "run";
+  {
+    RunFile run(MPI_COMM_WORLD, dir, small_header(), small_mesh());
+    for (int n = 0; n < 4; ++n) run.write(small_snapshot(0.1 * n, n));
+  }
+  RunFile resumed = RunFile::append(MPI_COMM_WORLD, dir, 0.1);
+  EXPECT_EQ(resumed.last_step(), 1);
+  resumed.write(small_snapshot(0.15, 2));
+  if (world_rank()) return;
+  EXPECT_EQ(snapshots_in(dir), 3u);
+  expect_snapshot(dir, "000001", 0.1);
+  expect_snapshot(dir, "000002", 0.15);
+  EXPECT_FALSE(std::filesystem::exists(dir + "/run/000003.h5"));
+  EXPECT_EQ(count_of(content(dir + "/run.xdmf"), "<Time Value="), 3u);
+}
+
+TEST(Snapshots, of_an_older_run_give_way) {
+  const SharedFolder folder;
+  const std::string dir = folder / "run";
+  {
+    RunFile older(MPI_COMM_WORLD, dir, small_header(), small_mesh());
+    for (int n = 0; n < 3; ++n) older.write(small_snapshot(n, n));
+  }
+  RunFile run(MPI_COMM_WORLD, dir, small_header(), small_mesh());
+  run.write(small_snapshot(5, 5));
+  if (world_rank()) return;
+  EXPECT_EQ(snapshots_in(dir), 1u);
+  expect_snapshot(dir, "000000", 5);
+  EXPECT_FALSE(std::filesystem::exists(dir + "/run/000002.h5"));
+}
+
+TEST(Snapshots, complain_on_all_ranks_about_a_folder_that_cannot_be) {
+  const SharedFolder folder;
+  if (world_rank() == 0) std::ofstream(folder / "taken") << "a file";
+  MPI_Barrier(MPI_COMM_WORLD);
+  const std::string said = complaint([&] { RunFile(MPI_COMM_WORLD, folder / "taken", small_header(), small_mesh()); });
+  EXPECT_NE(said.find("taken"), std::string::npos) << said;
+  EXPECT_NE(said.find("Not a directory"), std::string::npos) << said;
+  EXPECT_TRUE(agreed(said));
+}
+
+TEST(Snapshots, complain_about_results_that_are_not_there) {
+  const SharedFolder folder;
+  const std::string said = complaint([&] { RunFile::append(MPI_COMM_WORLD, folder / "none", 1); });
+  EXPECT_NE(said.find("none/run.h5"), std::string::npos) << said;
+  EXPECT_TRUE(agreed(said));
+}
+
+TEST(Snapshots, complain_about_columns_that_do_not_fit) {
+  const SharedFolder folder;
+  RunFile run(MPI_COMM_WORLD, folder / "run", small_header(), small_mesh());
+  Snapshot broken = small_snapshot(0, 0);
+  if (world_rank() == world_size() - 1) broken.columns[0].values.push_back(1);
+  const std::string said = complaint([&] { run.write(broken); });
+  EXPECT_NE(said.find("position"), std::string::npos) << said;
+  EXPECT_TRUE(agreed(said));
+}
+
+TEST(Snapshots, survive_a_full_disk) {
+  const SharedFolder folder;
+  const std::string dir = folder / "run";
+  RunFile run(MPI_COMM_WORLD, dir, small_header(), small_mesh());
+  run.write(small_snapshot(0, 0));
+  run.write(small_snapshot(1, 1));
+  for (const rlim_t room : {0, 1000, 10000}) {  // enough for no file, for a start of one, for the doors but no snapshot
+    const FullDisk full(room);
+    const std::string said = complaint([&] { run.write(small_snapshot(2, 2, 2000)); });
+    EXPECT_NE(said.find("run/000002.h5"), std::string::npos) << said;
+    EXPECT_NE(said.find("File too large"), std::string::npos) << said;
+    EXPECT_TRUE(agreed(said));
+  }
+  EXPECT_EQ(run.last_step(), 1);
+  if (world_rank() == 0) {
+    EXPECT_EQ(snapshots_in(dir), 2u);
+    expect_snapshot(dir, "000000", 0);
+    expect_snapshot(dir, "000001", 1);
+    EXPECT_FALSE(std::filesystem::exists(dir + "/run/000002.h5.part"));
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  run.write(small_snapshot(2, 2, 2000));  // there is room again
+  if (world_rank() == 0) expect_snapshot(dir, "000002", 2, 2000);
+}
+
+}  // namespace
+}  // namespace talus
