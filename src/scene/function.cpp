@@ -36,6 +36,31 @@ struct Function::Expression {
   double x = 0, y = 0, z = 0, t = 0, table = 0;
 };
 
+namespace {
+
+/// `x = 3` would be an assignment to muParser; `==`, `<=`, `>=` and `!=` are comparisons.
+bool assigns(const std::string &text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '=') continue;
+    if (i + 1 < text.size() && text[i + 1] == '=') {
+      ++i;
+    } else if (i == 0 || std::string("<>!").find(text[i - 1]) == std::string::npos) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// muParser's message; for what it did not recognise, the names that it would have.
+std::string message(const mu::Parser::exception_type &error, const NamedFunctions &functions) {
+  std::string names = "x, y, z, t, table, pi";
+  for (const auto &[name, function] : functions) names += ", " + name + "()";
+  const bool unknown = error.GetCode() == mu::ecUNASSIGNABLE_TOKEN || error.GetCode() == mu::ecUNEXPECTED_PARENS;
+  return error.GetMsg() + (unknown ? " Names of the scene are " + names : "");
+}
+
+}  // namespace
+
 Function::Function(double value) : given_(true), value_(value) {}
 
 Function::Function(std::vector<double> times, std::vector<double> values)
@@ -47,10 +72,11 @@ Function::Function(std::vector<double> times, std::vector<double> values)
 }
 
 Function::Function(const std::string &expression, double scale, const NamedFunctions &functions) : given_(true) {
+  if (assigns(expression)) throw std::invalid_argument("`=` assigns; equality is `==`");
   try {
     expression_ = std::make_shared<Expression>(expression, scale, functions);
   } catch (const mu::Parser::exception_type &error) {
-    throw std::invalid_argument(error.GetMsg());
+    throw std::invalid_argument(message(error, functions));
   }
 }
 

@@ -35,18 +35,26 @@ std::string place(const std::string &file, const toml::node &node, bool root) {
   return root || where.begin.line == 0 ? file : file + " line " + std::to_string(where.begin.line);
 }
 
-/// " = value" on one line and not too long, empty for tables.
-std::string written(const toml::node &node) {
-  if (node.is_table()) return "";
-  if (node.is_string()) return " = \"" + node.value_or(std::string()) + "\"";
-  if (node.is_number()) return " = " + shortest(node.value_or(0.));
+/// A value as a scene would write it.
+std::string literal(const toml::node &node) {
+  if (node.is_string()) return "\"" + node.value_or(std::string()) + "\"";
+  if (node.is_number()) return shortest(node.value_or(0.));
+  if (const toml::array *list = node.as_array()) {
+    std::vector<std::string> elements;
+    for (const toml::node &element : *list) elements.push_back(literal(element));
+    return "[" + join(elements) + "]";
+  }
   std::ostringstream stream;
   node.visit([&](const auto &value) { stream << value; });
-  std::istringstream words(stream.str());
-  std::string line, word;
-  while (words >> word) line += " " + word;
+  return stream.str();
+}
+
+/// " = value", not too long, empty for tables.
+std::string written(const toml::node &node) {
+  if (node.is_table()) return "";
+  const std::string text = literal(node);
   constexpr std::size_t longest = 72;
-  return " =" + (line.size() > longest ? line.substr(0, longest) + " ..." : line);
+  return " = " + (text.size() > longest ? text.substr(0, longest) + " ..." : text);
 }
 
 bool before(const toml::node &a, const toml::node &b) {
@@ -126,7 +134,7 @@ void apply_override(toml::table &root, const std::string &text) {
   const std::size_t equals = text.find('=');
   const std::string path = text.substr(0, equals);
   const std::vector<std::string> words = split(path);
-  if (equals == std::string::npos || words.empty())
+  if (equals == std::string::npos || words.empty() || std::find(words.begin(), words.end(), "") != words.end())
     throw SceneError("--set " + text + ": write key.path=value, for instance body.sand.cohesion=5e3");
   toml::node *node = &root;
   for (std::size_t i = 0; i < words.size(); ++i) {

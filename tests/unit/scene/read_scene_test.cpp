@@ -1,0 +1,177 @@
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+
+#include "complaint.h"
+#include "scene/reader.h"
+#include "scene/scene.h"
+
+namespace talus {
+namespace {
+
+const std::string dry = R"(title = "a slope"
+gravity = 9.81
+
+[mesh]
+file = "slope.msh"
+
+[body.sand]
+region = "hill"
+density = 2000
+law = "linear_elastic"
+
+[boundary.base]
+kind = "fixed"
+
+[[stage]]
+name = "creep"
+duration = "1 min"
+
+[output.point.crest]
+position = [1, 2]
+)";
+
+const std::string drained = R"(phases = "drained"
+[mesh]
+section = "slope.csv"
+size = 1
+[body.clay]
+region = "hill"
+porosity = 0.4
+grain_density = "2.65 t/m3"
+[water]
+table = [[0, 1], [10, 2]]
+[[stage]]
+duration = 1
+)";
+
+std::string refusal(const std::string &text, const std::vector<std::string> &overrides = {}) {
+  return complaint([&] { parse_scene(text, "slope.toml", overrides); });
+}
+
+TEST(ReadScene, ReadsADryScene) {
+  const Scene scene = parse_scene(dry, "slope.toml");
+  EXPECT_EQ(scene.title, "a slope");
+  EXPECT_EQ(scene.file, "slope.toml");
+  EXPECT_EQ(scene.phases, PhaseModel::dry);
+  EXPECT_EQ(scene.gravity, (std::vector<double>{0, -9.81}));
+  ASSERT_EQ(scene.body.size(), 1u);
+  EXPECT_EQ(scene.body[0].name, "sand");
+  EXPECT_EQ(scene.body[0].density, 2000);
+  EXPECT_TRUE(scene.body[0].law.reader);
+  EXPECT_FALSE(scene.integrator.reader);
+  EXPECT_FALSE(scene.water.given);
+  EXPECT_EQ(scene.boundary[0].group, std::vector<std::string>{"base"});
+  EXPECT_EQ(scene.stage[0].duration, 60);
+  EXPECT_EQ(scene.output.point[0].name, "crest");
+}
+
+TEST(ReadScene, ReadsADrainedScene) {
+  const Scene scene = parse_scene(drained, "slope.toml");
+  EXPECT_EQ(scene.phases, PhaseModel::drained);
+  EXPECT_TRUE(scene.water.given);
+  EXPECT_EQ(scene.water.table[1], (std::vector<double>{10, 2}));
+  EXPECT_EQ(scene.body[0].grain_density, 2650);
+  EXPECT_EQ(scene.gravity, (std::vector<double>{0, 0}));
+}
+
+TEST(ReadScene, PointsASingleGravityDownInThreeDimensions) {
+  const Scene scene = parse_scene(dry, "slope.toml", {"dimension=3", "output.point.crest.position=[1, 2, 3]"});
+  EXPECT_EQ(scene.gravity, (std::vector<double>{0, -9.81, 0}));
+}
+
+TEST(ReadScene, KeepsTheTextAsItWasRun) {
+  const Scene scene = parse_scene(dry, "slope.toml", {"body.sand.density=1800", "title=b"});
+  EXPECT_EQ(scene.source, "# --set body.sand.density=1800\n# --set title=b\n" + dry);
+  EXPECT_EQ(scene.body[0].density, 1800);
+}
+
+TEST(ReadScene, OverridesStagesByPositionAndByName) {
+  EXPECT_EQ(parse_scene(dry, "slope.toml", {"stage.0.duration=3"}).stage[0].duration, 3);
+  EXPECT_EQ(parse_scene(dry, "slope.toml", {"stage.creep.duration=1 h"}).stage[0].duration, 3600);
+  EXPECT_EQ(refusal(dry, {"stage.crep.duration=3"}), "--set stage.crep.duration: the scene has no such entry `crep`");
+}
+
+TEST(ReadScene, ReadsFiles) {
+  const std::string file = testing::TempDir() + "talus_read_scene_test.toml";
+  std::ofstream(file) << dry;
+  EXPECT_EQ(read_scene(file).title, "a slope");
+  EXPECT_EQ(read_scene(file).source, dry);
+  std::remove(file.c_str());
+}
+
+TEST(ReadScene, RefusesAnUnknownTableOfTheScene) {
+  EXPECT_EQ(refusal(dry + "[outptu]\n"), "slope.toml line 21: outptu is no known key; did you mean `output`?");
+}
+
+TEST(ReadScene, DemandsWhatASceneCannotDoWithout) {
+  EXPECT_EQ(refusal(""), "slope.toml: body has no soil; add a table [body.NAME] with region, density and law");
+  EXPECT_EQ(refusal("[body.a]\nregion = 'a'\n"),
+            "slope.toml: stage is missing; add a table [[stage]] with its duration");
+}
+
+TEST(ReadScene, ChecksOneKeyAgainstAnother) {
+  const struct {
+    const std::string &text;
+    std::vector<std::string> overrides;
+    const char *expected;
+  } table[] = {
+      {dry, {"mesh.section=a.csv"}, "slope.toml line 4: mesh has two sources: give either file or section"},
+      {dry, {"mesh={}"}, "--set: mesh needs a source: give file or section"},
+      {drained, {"mesh.size=0"}, "--set: mesh.size = 0 must be a cell size above 0 m"},
+      {dry,
+       {"dimension=4"},
+       "dimension = 4 (2: plane strain on triangles, 3: tetrahedra) must be a whole number from 2 to 3"},
+      {dry,
+       {"gravity=[0, 0, -9.81]"},
+       "--set: gravity = [0, 0, -9.81] must be one number, which acts down the y axis, or"},
+      {dry, {"gravity=-9.81"}, "gravity = -9.81 must not be negative"},
+      {dry, {"body.sand.region=[]"}, "slope.toml line 7: body.sand needs region"},
+      {dry, {"body.sand.velocity=[1, 2, 3]"}, "must have 2 components, not 3 (dimension = 2)"},
+      {dry, {"body.sand.displacement=1"}, "must have 2 components, not 1 (dimension = 2)"},
+      {dry, {"body.sand.body_acceleration=[1]"}, "must have 2 components, not 1 (dimension = 2)"},
+      {dry, {"body.sand.stress=[1, 2, 3]"}, "must have 4 components, not 3 (dimension = 2)"},
+      {dry, {"body.sand.density=0.01", "body.sand.grain_density=2650", "body.sand.porosity=0.3"}, "is given twice"},
+      {dry,
+       {"body.clay={region=\"a\"}"},
+       "--set: body.clay needs a weight: give density, or porosity and grain_density"},
+      {dry, {"body.clay={region=\"a\", porosity=0.3}"}, "body.clay needs a weight"},
+      {dry, {"body.sand.dense=[{from=[0, 0], to=[1, 1]}]"}, "body.sand.dense.0 needs particles_per_cell"},
+      {dry, {"mesh.refine=[{from=[0, 0], to=[1, 0], size=1}]"}, "mesh.refine.0.to = [1, 0] must lie beyond `from`"},
+      {dry, {"mesh.refine=[{from=[0], to=[1, 0], size=1}]"}, "mesh.refine.0.from = [0] must have 2 coordinates, not 1"},
+      {dry, {"phases=drained"}, "slope.toml line 7: body.sand needs porosity and grain_density"},
+      {dry, {"water={}"}, "--set: water has no effect, since phases = \"dry\""},
+      {drained,
+       {"water.table=[[1, 0], [1, 2]]"},
+       "water.table.1 = [1, 2] must lie to the right of the point before it"},
+      {drained,
+       {"water.table=[[1, 0, 3]]"},
+       "water.table.0 = [1, 0, 3] must have 2 coordinates, [x, elevation], not 3"},
+      {dry, {"output.point.crest.position=[1]"}, "output.point.crest.position = [1] must have 2 coordinates, not 1"},
+      {dry,
+       {"stage.0.until=failure"},
+       "slope.toml line 15: stage.0.failure_point must name a point of [output.point.NAME]"},
+      {dry, {"stage.0.until=failure", "stage.0.failure_point=crets"}, "did you mean `crest`?"},
+      {drained, {"stage.0.until=failure"}, "there is none: add [output.point.NAME]"},
+  };
+  for (const auto &[text, overrides, expected] : table)
+    EXPECT_TRUE(contains(refusal(text, overrides), expected)) << expected << "\n" << refusal(text, overrides);
+}
+
+TEST(ReadScene, NeedsWaterInADrainedScene) {
+  const std::string text =
+      "phases = 'drained'\n[mesh]\nfile = 'a'\n[body.a]\nregion = 'a'\nporosity = 0.3\ngrain_density = "
+      "2650\n[[stage]]\nduration = 1\n";
+  EXPECT_EQ(refusal(text),
+            "slope.toml line 1: phases = \"drained\" needs pore water: add a table [water] with its table of "
+            "points [x, elevation]");
+}
+
+TEST(ReadScene, TakesAFailureStageThatWatchesAnOutputPoint) {
+  const Scene scene = parse_scene(dry, "slope.toml", {"stage.0.until=failure", "stage.0.failure_point=crest"});
+  EXPECT_EQ(scene.stage[0].until, StopWhen::failure);
+}
+
+}  // namespace
+}  // namespace talus
