@@ -5,6 +5,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/owned.h"
@@ -13,13 +14,16 @@
 
 namespace talus {
 
+template <int dim>
+struct Simplices;  // meshes/plex.h
+
 /// One cell: what the walk and the gathers need, together in memory (128 bytes in 3D).
 template <int dim>
 struct Cell {
-  Vec<dim> origin;                          ///< position of vertex 0 [m]
-  std::array<Vec<dim>, dim> gradient;       ///< gradients of the barycentric coordinates 1..dim [1/m]
-  std::array<int, dim + 1> node;            ///< local node numbers
-  std::array<int, dim + 1> neighbour;       ///< cell across the face opposite to vertex k; boundary; or beyond(k)
+  Vec<dim> origin;                     ///< position of vertex 0 [m]
+  std::array<Vec<dim>, dim> gradient;  ///< gradients of the barycentric coordinates 1..dim [1/m]
+  std::array<int, dim + 1> node;       ///< local node numbers
+  std::array<int, dim + 1> neighbour;  ///< cell across the face opposite to vertex k; boundary; or beyond(k)
 };
 inline constexpr int boundary = -1;  ///< no cell across this face
 /// A face shared with another rank is entry `-2 - neighbour` of BackgroundMesh::partition_faces.
@@ -29,36 +33,40 @@ struct PartitionFace {
 /// A facet of a named group, on the domain's boundary or inside it (then listed once for each adjacent local cell).
 template <int dim>
 struct Facet {
-  int cell, face;                  ///< local cell, and the vertex opposite to the facet
-  std::array<int, dim> node;       ///< local node numbers
-  Vec<dim> normal;                 ///< unit normal pointing out of `cell`
-  double area;                     ///< [m2], in 2D per metre of thickness [m]
+  int cell, face;             ///< local cell, and the vertex opposite to the facet
+  std::array<int, dim> node;  ///< local node numbers
+  Vec<dim> normal;            ///< unit normal pointing out of `cell`
+  double area;                ///< [m2], in 2D per metre of thickness [m]
 };
 
 struct MeshReport {
   long long cells, nodes;
-  double smallest_altitude, smallest_quality, mean_quality;  ///< quality: inscribed over circumscribed radius times dim, 1 is regular
-  bool one_element_slice;                                    ///< 3D, every node lies on one of two parallel planes z = const
+  double smallest_altitude;               ///< [m]
+  double smallest_quality, mean_quality;  ///< inscribed over circumscribed radius times dim, 1 is regular
+  bool one_element_slice;                 ///< 3D, every node lies on one of two parallel planes z = const
 };
 
 template <int dim>
 class BackgroundMesh {
  public:
-  /// Reads a Gmsh file on rank 0, checks it, cuts patches, distributes it. `cells_weight` gives the weight of a cell from the
-  /// names of its regions (particles it will hold plus one); patches of `patch_size` cells (0: the default of the dimension and
-  /// of slices) stay on one rank. Throws std::invalid_argument (the same on all ranks) for a file that cannot be read, a wrong
-  /// dimension, cells of zero volume, and cells in no named group.
+  /// Reads a Gmsh file on rank 0, checks it, cuts patches, distributes it. `region_weight` gives the weight of a cell
+  /// from the names of its regions (particles it will hold plus one; the largest counts, 1 without any); patches of
+  /// `patch_size` cells (0: the default of the dimension and of slices) stay on one rank and do not depend on the
+  /// number of ranks. Collective. Throws std::invalid_argument (the same on all ranks) for a file that cannot be read,
+  /// a wrong dimension, cells of zero volume or that overlap, and cells in no named group.
   static BackgroundMesh read(MPI_Comm comm, const std::string &file, int patch_size,
                              const std::vector<std::pair<std::string, double>> &region_weight);
-  /// Takes a distributed DMPlex of a host program (a reference is kept). Labels with a physical name are regions and groups.
+  /// Takes a distributed DMPlex of a host program (a reference is kept). Labels with a physical name are regions and
+  /// groups; patches are cut within each rank, `global_cell` is DMPlex's cell numbering. Collective; throws as `read`
+  /// does.
   static BackgroundMesh adopt(DM plex, int patch_size);
 
   int cell_count() const { return static_cast<int>(cells.size()); }
   int node_count() const { return static_cast<int>(position.size()); }
 
   std::vector<Cell<dim>> cells;
-  std::vector<double> volume;          ///< of cells [m3], in 2D [m2]
-  std::vector<int> patch;              ///< patch of a cell, 0 .. patch_count - 1, local
+  std::vector<double> volume;  ///< of cells [m3], in 2D [m2]
+  std::vector<int> patch;      ///< patch of a cell, 0 .. patch_count - 1, local
   int patch_count = 0;
   std::vector<Vec<dim>> position;      ///< of nodes [m]
   std::vector<double> mean_edge;       ///< of the edges at a node, over all ranks [m]
@@ -73,15 +81,26 @@ class BackgroundMesh {
   /// Local cells of a named group of cells, ascending; found on some rank or `has_region` is false on all.
   std::vector<int> region(const std::string &name) const;
   bool has_region(const std::string &name) const;
+  /// Local facets of a named group, by cell and face. One between two local cells is listed for each of them, one on a
+  /// partition face on each of its two ranks.
   std::vector<Facet<dim>> facets(const std::string &group) const;
   bool has_group(const std::string &name) const;
-  std::vector<std::string> region_names() const, group_names() const;  ///< the same on all ranks, sorted
-  MeshReport report() const;                                          ///< collective
+  const std::vector<std::string> &region_names() const { return region_names_; }  ///< the same on all ranks, sorted
+  const std::vector<std::string> &group_names() const { return group_names_; }    ///< the same on all ranks, sorted
+  MeshReport report() const;                                                      ///< collective
   DM plex() const { return plex_; }
-  MPI_Comm comm() const;
+  MPI_Comm comm() const { return PetscObjectComm(reinterpret_cast<PetscObject>(plex())); }
 
  private:
+  /// Makes the flat copy of plex_; `number` and `patch_of` belong to its cells in its own order.
+  PetscErrorCode flatten(const Simplices<dim> &simplices, const std::vector<PetscInt> &number,
+                         const std::vector<PetscInt> &patch_of);
+
   Dm plex_;
+  PetscInt first_plex_cell_ = 0;
+  std::vector<int> flat_cell_;                             // of a plex cell, counted from the first
+  std::vector<std::array<PetscInt, dim + 1>> plex_facet_;  // DMPlex point of the face opposite to vertex k of a cell
+  std::vector<std::string> region_names_, group_names_;
 };
 
 }  // namespace talus

@@ -1,12 +1,19 @@
 #pragma once
 /// The walk from cell to cell by barycentric coordinates.
+#include <algorithm>
+#include <type_traits>
+
 #include "meshes/background_mesh.h"
 
 namespace talus {
 
+/// Keeps a point out of the deduction of `dim`, which std::array (counted by std::size_t) would spoil.
+template <int dim>
+using Point = std::type_identity_t<Vec<dim>>;
+
 /// Barycentric coordinates of x in a cell, frozen at the mesh's own node positions.
 template <int dim>
-inline std::array<double, dim + 1> barycentric(const Cell<dim> &cell, const Vec<dim> &x) {
+inline std::array<double, dim + 1> barycentric(const Cell<dim> &cell, const Point<dim> &x) {
   std::array<double, dim + 1> n;
   n[0] = 1;
   for (int k = 0; k < dim; ++k) {
@@ -18,20 +25,33 @@ inline std::array<double, dim + 1> barycentric(const Cell<dim> &cell, const Vec<
   return n;
 }
 
-/// Where a walk ended: in local `cell`; at a partition face (`partition_face` >= 0, `cell` the last local one); or against the
-/// boundary (`outside`, `cell` the boundary cell; x is then moved just inside it).
+/// A point counts as inside a cell while no barycentric coordinate is below this.
+inline constexpr double inside_tolerance = -1e-12;
+
+/// Where a walk ended: in local `cell`; at a partition face (`partition_face` >= 0, `cell` the last local one); or
+/// against the boundary (`outside`, `cell` the boundary cell; x is then moved just inside it).
 struct Located {
   int cell;
   int partition_face = -1;
   bool outside = false;
 };
 
-/// Walks from `start` to the cell that holds x. A point beyond the boundary is put back into the nearest boundary cell met.
+/// The walk of a point known to be outside `start`: what `walk` does when its first look fails.
 template <int dim>
-Located walk(const BackgroundMesh<dim> &mesh, int start, Vec<dim> &x);
+Located walk_on(const BackgroundMesh<dim> &mesh, int start, Point<dim> &x);
 
-/// The cell of a point given without a start, by a search over all local cells; -1 when no local cell holds it.
+/// Walks from `start` to the cell that holds x. A point beyond the boundary is put back into the nearest boundary cell
+/// met. Most points stay in their cell: that test is inline.
 template <int dim>
-int find(const BackgroundMesh<dim> &mesh, const Vec<dim> &x);
+inline Located walk(const BackgroundMesh<dim> &mesh, int start, Point<dim> &x) {
+  const auto n = barycentric(mesh.cells[start], x);
+  if (*std::min_element(n.begin(), n.end()) >= inside_tolerance) return {start};
+  return walk_on(mesh, start, x);
+}
+
+/// The cell of a point given without a start, by a search over all local cells; -1 when no local cell holds it. A point
+/// on a face belongs to the lowest of its cells; on a partition face each of the two ranks finds it.
+template <int dim>
+int find(const BackgroundMesh<dim> &mesh, const Point<dim> &x);
 
 }  // namespace talus
