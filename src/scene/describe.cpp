@@ -5,10 +5,10 @@
 #include <ostream>
 #include <sstream>
 
-#include "scene/nearest.h"
 #include "scene/quantity.h"
 #include "scene/reader.h"
 #include "scene/scene.h"
+#include "scene/words.h"
 
 namespace talus {
 namespace {
@@ -30,13 +30,6 @@ std::string coordinates(const std::vector<double> &point, Unit unit) {
   std::string text;
   for (const double coordinate : point) text += (text.empty() ? "" : ", ") + rounded(coordinate / unit.si);
   return text.empty() ? "" : "[" + text + "]";
-}
-
-std::vector<std::string> split(const std::string &path) {
-  std::vector<std::string> words;
-  std::istringstream stream(path);
-  for (std::string word; std::getline(stream, word, '.');) words.push_back(word);
-  return words;
 }
 
 bool placeholder(const std::string &word) { return word == "NAME" || word == "N"; }

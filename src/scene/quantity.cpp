@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "scene/nearest.h"
+#include "scene/words.h"
 
 namespace talus {
 namespace {

@@ -1,10 +1,10 @@
 /// Reading a scene as a whole, and what its keys demand of one another.
 #include <algorithm>
 
-#include "scene/nearest.h"
 #include "scene/quantity.h"
 #include "scene/reader.h"
 #include "scene/scene.h"
+#include "scene/words.h"
 
 namespace talus {
 namespace {

@@ -13,8 +13,8 @@
 #include <system_error>
 #include <tuple>
 
-#include "scene/nearest.h"
 #include "scene/quantity.h"
+#include "scene/words.h"
 
 namespace talus {
 namespace {
@@ -35,10 +35,15 @@ std::string place(const std::string &file, const toml::node &node, bool root) {
   return root || where.begin.line == 0 ? file : file + " line " + std::to_string(where.begin.line);
 }
 
+/// The number of a node that is one (toml++'s own conversion refuses integers that a double rounds).
+double number_of(const toml::node &node) {
+  return node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
+}
+
 /// A value as a scene would write it.
 std::string literal(const toml::node &node) {
   if (node.is_string()) return "\"" + node.value_or(std::string()) + "\"";
-  if (node.is_number()) return shortest(node.value_or(0.));
+  if (node.is_number()) return shortest(number_of(node));
   if (const toml::array *list = node.as_array()) {
     std::vector<std::string> elements;
     for (const toml::node &element : *list) elements.push_back(literal(element));
@@ -90,13 +95,6 @@ Node *child(Node &parent, const std::string &word) {
   if (auto *table = parent.as_table()) return table->get(word);
   if (auto *list = parent.as_array()) return list->get(position(*list, word));
   return nullptr;
-}
-
-std::vector<std::string> split(const std::string &path) {
-  std::vector<std::string> words;
-  std::istringstream stream(path);
-  for (std::string word; std::getline(stream, word, '.');) words.push_back(word);
-  return words;
 }
 
 bool is_function_name(const std::string &name) {
@@ -177,7 +175,7 @@ class TableReader::Value {
 
   /// The number in the key's unit.
   double number(Unit unit, Range range) const {
-    const double number = is_number() ? *node_->value<double>() : quantity(unit, range);
+    const double number = is_number() ? number_of(*node_) : quantity(unit, range);
     if (!std::isfinite(number) || !(range.low <= number && number <= range.high)) must_be(number_in(range, unit));
     return number;
   }
@@ -328,7 +326,7 @@ void TableReader::number(const char *key, double &value, Unit unit, Range range,
 void TableReader::integer(const char *key, int &value, Range range, const char *meaning) {
   const auto given = find(key, meaning);
   if (!given) return;
-  const double number = given->is_number() ? *given->node().value<double>() : range.low - 1;
+  const double number = given->is_number() ? number_of(given->node()) : range.low - 1;
   if (!(range.low <= number && number <= range.high) || number != std::floor(number))
     given->must_be("a whole number from " + shortest(range.low) + " to " + shortest(range.high));
   value = static_cast<int>(number);
@@ -445,7 +443,7 @@ std::string TableReader::path_to(const std::string &key) const {
 }
 
 std::optional<TableReader::Value> TableReader::find(const char *key, const char *meaning) {
-  known_.push_back(key);
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
   const toml::node *node = static_cast<const toml::table *>(table_)->get(key);
   if (!node) return std::nullopt;
   return Value(*document_, *node, path_to(key), meaning);
@@ -493,6 +491,12 @@ void TableReader::refuse_unknown_keys() const {
     throw SceneError(place(document_->file, *node, false) + ": " + path_to(key) + " is no known key; " +
                      suggestion(key, known_));
   }
+}
+
+void TableReader::refuse(const std::string &sentence) const {
+  const auto *table = static_cast<const toml::table *>(table_);
+  throw SceneError(place(document_->file, *table, table == &document_->root) + ": " +
+                   (path_.empty() ? "" : path_ + ": ") + sentence);
 }
 
 void TableReader::complain(const std::string &key_path, const std::string &sentence) const {

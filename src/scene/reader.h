@@ -78,8 +78,11 @@ class TableReader {
   /// The sub-table is read later.
   void deferred_table(const char *key, DeferredTable &value, const char *meaning);
 
+  /// Refuses the table as a whole: "slope.toml line 12: body.sand: residual_cohesion must not exceed cohesion".
+  [[noreturn]] void refuse(const std::string &sentence) const;
   /// Complains about a key of this table, given by its path from here (`failure_point`, `output.point.crest.position`;
   /// empty: the table itself), at its place in the file or, if it is not there, at the nearest enclosing table's.
+  /// The sentence goes on from the key: "must name a point".
   [[noreturn]] void complain(const std::string &key_path, const std::string &sentence) const;
 
   /// Number of the kind named at `key`; 0 for an absent key unless `deferred` announced it.
@@ -130,7 +133,7 @@ void TableReader::fill(Struct &value) {
                   { value.problem() } -> std::convertible_to<std::string>;
                 }) {
     const std::string sentence = value.problem();
-    if (!sentence.empty()) complain("", sentence);
+    if (!sentence.empty()) refuse(sentence);
   }
 }
 

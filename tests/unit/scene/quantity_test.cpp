@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "complaint.h"
-#include "scene/nearest.h"
+#include "scene/words.h"
 
 namespace talus {
 namespace {

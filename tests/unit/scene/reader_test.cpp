@@ -22,6 +22,12 @@ struct Grain {
   }
 };
 
+struct Strict {
+  template <class Visitor>
+  void fields(Visitor &&) {}
+  std::string problem() const { return "always wrong"; }
+};
+
 /// One key of every sort.
 struct Toy {
   double cohesion = 7, friction_angle = 0;
@@ -36,6 +42,7 @@ struct Toy {
   std::vector<Function> velocity;
   Grain grain{"", 0.5};
   std::vector<Grain> sort, layer;
+  Strict strict;
   template <class Visitor>
   void fields(Visitor &&v) {
     v.number("cohesion", cohesion, pascal, Range{0, 1e9}, "cohesion c");
@@ -53,6 +60,7 @@ struct Toy {
     v.table("grain", grain, "grain of it");
     v.named("sort", sort, "sorts of it");
     v.list("layer", layer, "layers of it");
+    v.table("strict", strict, "a table that is always wrong");
   }
 };
 
@@ -205,6 +213,10 @@ TEST(TableReader, RefusesAMissingRequiredKey) {
             "toy.toml line 2: sort.sand needs size (size of a grain), a number from 0 to 1 m");
 }
 
+TEST(TableReader, RefusesIntegersThatADoubleRounds) {
+  EXPECT_TRUE(contains(refusal("cohesion = 9007199254740993"), "must be a number from 0 to 1e9 Pa"));
+}
+
 TEST(TableReader, RefusesMalformedToml) {
   EXPECT_TRUE(contains(refusal("count = 1\ncohesion = = 2\n"), "toy.toml line 2: "));
   EXPECT_TRUE(contains(refusal("count = 1\ncount = 2\n"), "toy.toml line 2: "));
@@ -347,7 +359,7 @@ struct Loose {
     v.number("peak", peak, pascal, Range{0, 10}, "peak strength");
     v.number("residual", residual, pascal, Range{0, 10}, "residual strength");
   }
-  std::string problem() const { return residual > peak ? "has a residual strength above the peak strength" : ""; }
+  std::string problem() const { return residual > peak ? "residual must not exceed peak" : ""; }
 };
 struct Dense {
   static constexpr const char *name = "dense";
@@ -410,14 +422,15 @@ TEST(ReadOneOf, NeedsTheKeyThatTheTableAnnounces) {
 }
 
 TEST(ReadOneOf, RefusesKeysOfAnotherKindAndRequiresItsOwn) {
-  EXPECT_TRUE(
-      contains(complaint([] { read_law("law = 'dense'\ndensity = 1\npeak = 1"); }), "line 3: peak is no known key"));
+  EXPECT_TRUE(contains(complaint([] { read_law("law = 'dense'\ndensity = 1\npeak = 1"); }),
+                       "line 3: peak is no known key; known are functions, place, solver, law, density"));
   EXPECT_TRUE(contains(complaint([] { read_law("law = 'dense'"); }), "needs density"));
 }
 
 TEST(ReadOneOf, AsksTheAlternativeForProblemsBetweenItsKeys) {
   EXPECT_EQ(complaint([] { read_law("law = 'loose'\npeak = 1\nresidual = 2"); }),
-            "toy.toml: the scene has a residual strength above the peak strength");
+            "toy.toml: residual must not exceed peak");
+  EXPECT_EQ(refusal("count = 1\n[strict]\n"), "toy.toml line 2: strict: always wrong");
 }
 
 TEST(ReadOneOf, TakesTheFirstAlternativeForAnAbsentTableOrKey) {

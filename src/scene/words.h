@@ -1,5 +1,5 @@
 #pragma once
-/// Suggestions for misspelt keys.
+/// Words of keys: paths, lists, and suggestions where one is misspelt.
 #include <string>
 #include <vector>
 
@@ -12,6 +12,9 @@ int edit_distance(const std::string &a, const std::string &b);
 /// The candidate with the smallest edit distance to `word`, empty when none is closer than four edits and half the
 /// word.
 std::string nearest(const std::string &word, const std::vector<std::string> &candidates);
+
+/// Words of a dotted path.
+std::vector<std::string> split(const std::string &path);
 
 /// "a, b, c"
 std::string join(const std::vector<std::string> &words);

@@ -1,6 +1,7 @@
-#include "scene/nearest.h"
+#include "scene/words.h"
 
 #include <algorithm>
+#include <sstream>
 
 namespace talus {
 
@@ -27,6 +28,13 @@ std::string nearest(const std::string &word, const std::vector<std::string> &can
     if (distance < smallest) smallest = distance, best = candidate;
   }
   return best;
+}
+
+std::vector<std::string> split(const std::string &path) {
+  std::vector<std::string> words;
+  std::istringstream stream(path);
+  for (std::string word; std::getline(stream, word, '.');) words.push_back(word);
+  return words;
 }
 
 std::string join(const std::vector<std::string> &words) {
