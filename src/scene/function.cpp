@@ -3,6 +3,7 @@
 #include <muParser.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <set>
 #include <stdexcept>
@@ -91,6 +92,7 @@ double Function::operator()(double x, double y, double z, double t, double table
 }
 
 double Function::interpolate(double t) const {
+  if (std::isnan(t)) return t;  // an expression may call a table with 0/0
   if (t <= times_.front()) return values_.front();
   if (t >= times_.back()) return values_.back();
   const auto after = std::upper_bound(times_.begin(), times_.end(), t) - times_.begin();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstdlib>
 #include <new>
 #include <numbers>
@@ -51,6 +52,10 @@ TEST(Function, OfATableIsLinearBetweenItsPointsAndConstantOutside) {
   EXPECT_DOUBLE_EQ(function(15), 1.5);
   EXPECT_EQ(function(25), 0);
   EXPECT_EQ(Function(Numbers{2}, Numbers{7})(1), 7);
+}
+
+TEST(Function, OfATableHandsOnWhatIsNoNumber) {
+  EXPECT_TRUE(std::isnan(Function(Numbers{0, 1}, Numbers{2, 3})(std::nan(""))));
 }
 
 TEST(Function, RefusesATableWhoseTimesDoNotRise) {
