@@ -87,7 +87,7 @@ PetscErrorCode cut_and_distribute(Dm &plex, Simplices<dim> &cells, const std::ve
 template <int dim>
 Facet<dim> facet_of(const BackgroundMesh<dim> &mesh, int number, int face) {
   const Cell<dim> &cell = mesh.cells[number];
-  Column<dim> inward = Column<dim>::Zero();  // gradient of the coordinate that is 0 on the facet
+  ColumnVector<dim> inward = ColumnVector<dim>::Zero();  // gradient of the coordinate that is 0 on the facet
   if (face > 0)
     inward = map<dim>(cell.gradient[face - 1]);
   else

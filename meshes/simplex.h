@@ -47,7 +47,7 @@ struct Shape {
 /// sum |edge_k|^2 grad N_k / 2 from corner 0.
 template <int dim>
 Shape shape(const std::array<Vec<dim>, dim + 1> &corner, const std::array<Vec<dim>, dim> &gradient) {
-  Column<dim> first = Column<dim>::Zero(), centre = Column<dim>::Zero();
+  ColumnVector<dim> first = ColumnVector<dim>::Zero(), centre = ColumnVector<dim>::Zero();
   double steepest = 0, sum = 0;
   const auto count = [&](double norm) { steepest = std::max(steepest, norm), sum += norm; };
   for (int k = 0; k < dim; ++k) {

@@ -1,0 +1,269 @@
+#include "meshes/section.h"
+
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+
+#include "meshes/polygon.h"
+
+namespace talus {
+namespace {
+
+[[noreturn]] void complain(const std::string &file, int line, const std::string &text) {
+  throw std::invalid_argument(file + " line " + std::to_string(line) + ": " + text);
+}
+
+std::string trimmed(const std::string &text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+bool is_number(const std::string &text, double &value) {
+  std::istringstream in(text);
+  return (in >> value) && std::isfinite(value) && in.peek() == std::istringstream::traits_type::eof();
+}
+
+bool starts_with(const std::string &text, const std::string &start) { return text.rfind(start, 0) == 0; }
+
+struct Row {
+  std::string part;
+  Vec<2> numbers;
+  int line;
+};
+
+std::vector<Row> read_rows(const std::string &file) {
+  std::ifstream in(file);
+  if (!in || in.peek() == std::ifstream::traits_type::eof())
+    throw std::invalid_argument(file + ": cannot be read or is empty; check the path and its permissions");
+  std::vector<Row> rows;
+  std::string text;
+  for (int line = 1; std::getline(in, text); ++line) {
+    text = trimmed(text.substr(0, text.find('#')));
+    if (text.empty()) continue;
+    std::vector<std::string> cells;
+    std::istringstream split(text);
+    for (std::string cell; std::getline(split, cell, ',');) cells.push_back(trimmed(cell));
+    if (cells == std::vector<std::string>{"part", "x", "y"}) continue;
+    Row row{cells[0], {}, line};
+    if (cells.size() != 3 || row.part.empty() || !is_number(cells[1], row.numbers[0]) ||
+        !is_number(cells[2], row.numbers[1]))
+      complain(file, line, "'" + text + "' must be a row part,x,y with two numbers in metres");
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+class Reader {
+ public:
+  explicit Reader(const std::string &file) { section_.file = file; }
+
+  Section read() {
+    for (const Row &row : read_rows(section_.file)) take(row);
+    for (const auto &[number, polyline] : interfaces_) section_.interfaces.push_back(polyline);
+    for (const auto &[name, polyline] : boundaries_) section_.boundaries.push_back(polyline);
+    for (const auto &[part, rows] : boxes_) add_boxes(part, rows);
+    return section_;
+  }
+
+ private:
+  Section section_;
+  std::map<int, Polyline> interfaces_;
+  std::map<std::string, Polyline> boundaries_;
+  std::map<std::string, std::vector<Row>> boxes_;
+
+  static void append(Polyline &polyline, const std::string &part, const Row &row) {
+    polyline.part = part;
+    polyline.points.push_back(row.numbers);
+    polyline.lines.push_back(row.line);
+  }
+
+  std::string name_in(const Row &row, const std::string &start) const {
+    const std::string name = row.part.substr(start.size());
+    if (name.empty()) complain(section_.file, row.line, "'" + row.part + "' must be followed by a name");
+    return name;
+  }
+
+  void take(const Row &row) {
+    double number;
+    if (row.part == "outline") {
+      append(section_.outline, row.part, row);
+    } else if (starts_with(row.part, "interface") && is_number(row.part.substr(9), number) &&
+               number == std::floor(number)) {
+      append(interfaces_[static_cast<int>(number)], row.part, row);
+    } else if (starts_with(row.part, "b_")) {
+      const std::string name = name_in(row, "b_");
+      append(boundaries_[name], name, row);
+    } else if (starts_with(row.part, "region_")) {
+      section_.seeds.push_back({name_in(row, "region_"), row.numbers, row.line});
+    } else if (starts_with(row.part, "refine_")) {
+      boxes_[row.part].push_back(row);
+    } else if (row.part == "free_space") {
+      if (row.numbers[0] <= 0) complain(section_.file, row.line, "the height of the free space must be above 0 m");
+      section_.has_free_space = true;
+      section_.free_height = row.numbers[0], section_.free_extra = row.numbers[1];
+    } else {
+      complain(section_.file, row.line,
+               "'" + row.part +
+                   "' is no part of a section; parts are outline, interfaceN, b_NAME, region_NAME, refine_SIZE "
+                   "and free_space");
+    }
+  }
+
+  void add_boxes(const std::string &part, const std::vector<Row> &rows) {
+    double size;
+    if (!is_number(part.substr(7), size) || size <= 0)
+      complain(section_.file, rows[0].line, "'" + part + "' must be refine_SIZE with a cell size above 0 m");
+    if (rows.size() % 2)
+      complain(section_.file, rows.back().line,
+               "'" + part + "' needs a second row with the opposite corner of the box");
+    for (std::size_t i = 0; i < rows.size(); i += 2) {
+      const Vec<2> &a = rows[i].numbers, &b = rows[i + 1].numbers;
+      if (a[0] == b[0] || a[1] == b[1])
+        complain(section_.file, rows[i + 1].line, "the box of '" + part + "' has no area");
+      section_.boxes.push_back(
+          {{std::min(a[0], b[0]), std::min(a[1], b[1])}, {std::max(a[0], b[0]), std::max(a[1], b[1])}, size});
+    }
+  }
+};
+
+std::string segment_text(const Polyline &p, std::size_t i) {
+  const std::size_t j = (i + 1) % p.points.size();
+  std::ostringstream text;
+  text << "(" << p.points[i][0] << ", " << p.points[i][1] << ")-(" << p.points[j][0] << ", " << p.points[j][1] << ")";
+  return text.str();
+}
+
+void check_outline(const Section &section, double tolerance) {
+  const Polyline &outline = section.outline;
+  const auto &x = outline.points;
+  const std::size_t count = x.size();
+  if (count == 0) throw std::invalid_argument(section.file + ": has no outline; give rows outline,x,y");
+  if (count < 3) complain(section.file, outline.lines.back(), "an outline needs at least 3 points");
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (std::hypot(x[i][0] - x[j][0], x[i][1] - x[j][1]) <= tolerance)
+        complain(section.file, outline.lines[i],
+                 "repeats the point of line " + std::to_string(outline.lines[j]) +
+                     "; leave it out (an outline closes itself)");
+  const auto crosses = [&](std::size_t i, std::size_t j) {
+    const Vec<2> &a = x[i], &b = x[(i + 1) % count], &c = x[j], &d = x[(j + 1) % count];
+    if ((j + 1) % count == i)
+      return distance_to_segment(a, b, c) <= tolerance || distance_to_segment(c, d, b) <= tolerance;
+    if ((i + 1) % count == j)
+      return distance_to_segment(a, b, d) <= tolerance || distance_to_segment(c, d, a) <= tolerance;
+    return segments_meet(a, b, c, d, tolerance);
+  };
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (crosses(i, j))
+        complain(section.file, outline.lines[i],
+                 "the outline crosses itself: segment " + segment_text(outline, i) + " meets segment " +
+                     segment_text(outline, j) + " of line " + std::to_string(outline.lines[j]) +
+                     "; give its points in order around the section");
+}
+
+/// Some piece of the polyline lies inside the domain, or, for boundaries, on its edge. Pieces are cut finely.
+bool reaches(const Polyline &polyline, const std::vector<Vec<2>> &domain, bool edge_counts, double tolerance) {
+  constexpr int pieces = 1000;
+  for (std::size_t i = 0; i + 1 < polyline.points.size(); ++i)
+    for (int k = 0; k < pieces; ++k) {
+      const Vec<2> &a = polyline.points[i], &b = polyline.points[i + 1];
+      const double t = (k + 0.5) / pieces;
+      const Vec<2> x{a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])};
+      const bool on_edge = distance_to_polygon(domain, x) <= tolerance;
+      if (on_edge ? edge_counts : is_inside(domain, x)) return true;
+    }
+  return false;
+}
+
+void check_polyline(const Section &section, const Polyline &polyline, const std::string &what, bool edge_counts,
+                    double tolerance) {
+  if (polyline.points.size() < 2) complain(section.file, polyline.lines.back(), what + " needs at least 2 points");
+  for (std::size_t i = 1; i < polyline.points.size(); ++i)
+    if (std::hypot(polyline.points[i][0] - polyline.points[i - 1][0],
+                   polyline.points[i][1] - polyline.points[i - 1][1]) <= tolerance)
+      complain(section.file, polyline.lines[i], what + " repeats its last point; leave it out");
+  if (!reaches(polyline, section.domain(), edge_counts, tolerance))
+    complain(section.file, polyline.lines[0],
+             what + " lies outside the outline" + (edge_counts ? "" : " or only on it") + "; move it into the section");
+}
+
+void check(const Section &section) {
+  double extent = section.outline.points.empty() ? 0 : section.largest_extent();
+  const double tolerance = 1e-9 * extent;
+  check_outline(section, tolerance);
+  for (const Polyline &p : section.interfaces)
+    check_polyline(section, p, "the interface '" + p.part + "'", false, tolerance);
+  for (const Polyline &p : section.boundaries)
+    check_polyline(section, p, "the boundary 'b_" + p.part + "'", true, tolerance);
+  for (const Seed &seed : section.seeds)
+    if (!is_inside(section.domain(), seed.point))
+      complain(section.file, seed.line, "the seed of region '" + seed.name + "' lies outside the section");
+}
+
+}  // namespace
+
+double Section::largest_extent() const {
+  double extent = 0;
+  for (int d = 0; d < 2; ++d) {
+    const auto [low, high] = std::minmax_element(outline.points.begin(), outline.points.end(),
+                                                 [d](const auto &a, const auto &b) { return a[d] < b[d]; });
+    extent = std::max(extent, (*high)[d] - (*low)[d]);
+  }
+  return extent;
+}
+
+std::vector<Vec<2>> Section::domain() const {
+  std::vector<Vec<2>> x = outline.points;
+  if (!has_free_space) return x;
+  if (signed_area(x) < 0) std::reverse(x.begin(), x.end());
+  const auto lower_left = std::min_element(x.begin(), x.end());
+  std::rotate(x.begin(), lower_left, x.end());
+  const auto lower_right = std::min_element(
+      x.begin(), x.end(), [](const auto &a, const auto &b) { return a[0] != b[0] ? a[0] > b[0] : a[1] < b[1]; });
+  const double top = free_height + (*std::max_element(x.begin(), x.end(),
+                                                      [](const auto &a, const auto &b) { return a[1] < b[1]; }))[1];
+  std::vector<Vec<2>> domain(x.begin(), lower_right + 1);  // counter-clockwise, so this is the underside
+  const double left = x.front()[0] + std::min(0., free_extra), right = (*lower_right)[0] + std::max(0., free_extra);
+  if (free_extra > 0) domain.push_back({right, (*lower_right)[1]});
+  domain.push_back({right, top});
+  domain.push_back({left, top});
+  if (free_extra < 0) domain.push_back({left, x.front()[1]});
+  return domain;
+}
+
+double Section::area() const { return std::abs(signed_area(domain())); }
+
+std::string Section::layer_at(const Vec<2> &x) const {
+  if (has_free_space && !is_inside(outline.points, x)) return "air";
+  int layer = 0;
+  for (const Polyline &polyline : interfaces) {
+    // a ray upward crosses the interface an odd number of times from below it; the ends go on horizontally for ever
+    const auto crossed = [&](const Vec<2> &a, const Vec<2> &b) {
+      return (a[0] <= x[0]) != (b[0] <= x[0]) && a[1] + (x[0] - a[0]) / (b[0] - a[0]) * (b[1] - a[1]) > x[1];
+    };
+    const auto &p = polyline.points;
+    const bool rightward = p.front()[0] <= p.back()[0];
+    const double far = 1e3 * (largest_extent() + std::abs(x[0]) + std::abs(p.front()[0]) + std::abs(p.back()[0]));
+    bool below = crossed({rightward ? -far : far, p.front()[1]}, p.front());
+    for (std::size_t i = 0; i + 1 < p.size(); ++i) below ^= crossed(p[i], p[i + 1]);
+    below ^= crossed(p.back(), {rightward ? far : -far, p.back()[1]});
+    layer += below;
+  }
+  return "layer" + std::to_string(layer);
+}
+
+Section read_section(const std::string &file) {
+  Section section = Reader(file).read();
+  check(section);
+  return section;
+}
+
+bool is_on(const Polyline &line, const Vec<2> &x, double tolerance) {
+  for (std::size_t i = 0; i + 1 < line.points.size(); ++i)
+    if (distance_to_segment(line.points[i], line.points[i + 1], x) <= tolerance) return true;
+  return false;
+}
+
+}  // namespace talus

@@ -1,0 +1,60 @@
+#pragma once
+/// A surveyed cross-section as read from a CSV file of rows `part,x,y` [m]; `#` starts a comment. Parts:
+///
+///   outline           polygon, in order
+///   interface0, 1...  polylines from top to bottom; layer0 lies above interface0, layer1 below it, and so on. Beyond
+///   its ends
+///                     an interface goes on horizontally; it may have vertical steps and may stick out of the outline
+///   b_NAME            polyline along the boundary or inside; its facets form the group NAME
+///   region_NAME       seed: the piece that holds it is named NAME instead of layerN
+///   refine_SIZE       two opposite corners of a box with cells of SIZE
+///   free_space,HEIGHT,EXTRA   for an outline of soil only: adds free space, region `air`, to HEIGHT above the highest
+///   point, and
+///                     EXTRA beyond the right end (beyond the left end where negative)
+#include <string>
+#include <vector>
+
+#include "base/vec.h"
+
+namespace talus {
+
+struct Polyline {
+  std::string part;            ///< its name in the file
+  std::vector<Vec<2>> points;  ///< [m]
+  std::vector<int> lines;      ///< line of each point in the file
+};
+struct Seed {
+  std::string name;
+  Vec<2> point;  ///< [m]
+  int line;
+};
+struct RefinedBox {
+  Vec<2> from, to;  ///< lowest and highest corner [m]
+  double size;      ///< of cells inside [m]
+};
+
+struct Section {
+  std::string file;
+  Polyline outline;
+  std::vector<Polyline> interfaces;  ///< top to bottom
+  std::vector<Polyline> boundaries;  ///< `part` without b_
+  std::vector<Seed> seeds;
+  std::vector<RefinedBox> boxes;
+  bool has_free_space = false;
+  double free_height = 0, free_extra = 0;  ///< [m]
+
+  double largest_extent() const;  ///< of the outline, width or height [m]
+  std::vector<Vec<2>> domain()
+      const;            ///< polygon that is meshed: the outline, with free space above it where asked for
+  double area() const;  ///< of the domain [m2]
+  std::string layer_at(const Vec<2> &x) const;  ///< layerN or air; seeds are not looked at
+};
+
+/// Reads and checks a section. Throws std::invalid_argument with file and line for rows that are malformed or unknown,
+/// fewer than three points, repeated points, an outline that crosses itself, and parts that lie outside.
+Section read_section(const std::string &file);
+
+/// A point is within `tolerance` [m] of a polyline.
+bool is_on(const Polyline &line, const Vec<2> &x, double tolerance);
+
+}  // namespace talus

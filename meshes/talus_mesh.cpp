@@ -1,0 +1,165 @@
+// talus-mesh: from a section to a Gmsh mesh with named groups. A program of its own, since Gmsh is GPL.
+#include <gmsh.h>
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+
+#include "meshes/gmsh_elements.h"
+#include "meshes/section_mesh.h"
+#include "meshes/simplex.h"
+
+namespace talus {
+namespace {
+
+constexpr double most_cells = 1e8;
+
+struct Request {
+  std::string source, file;
+  std::string format = "4.1";
+  std::vector<double> boxes;  ///< x0 y0 x1 y1 h, repeated
+  MeshOptions options;
+};
+
+[[noreturn]] void complain(const std::string &text) { throw std::invalid_argument(text); }
+
+void check(const Request &request, const Section &section) {
+  const MeshOptions &o = request.options;
+  const double extent = section.largest_extent();
+  if (!(o.size > 0)) complain("--size must be above 0 m");
+  if (o.size > extent) {
+    std::ostringstream text;
+    text << "--size " << o.size << " m is larger than the section " << section.file << ", which measures " << extent
+         << " m; take a smaller size";
+    complain(text.str());
+  }
+  const int layers = std::max(1, o.layers);
+  const double per_layer = section.area() / (0.43 * o.size * o.size);
+  if (per_layer * (o.dimension == 3 ? 3 * layers : 1) > most_cells)
+    complain("--size " + std::to_string(o.size) + " m would give more than 1e8 cells; take a larger size");
+  if (o.thickness < 0) complain("--thickness must be above 0 m");
+  if (o.layers < 0) complain("--layers must be 1 or more, or 0 for free tetrahedra");
+  for (const RefinedBox &box : o.boxes)
+    if (!(box.size > 0)) complain("--refine x0 y0 x1 y1 h needs a cell size h above 0 m");
+}
+
+/// Measure of a simplex: length, area or volume.
+template <int dim, int space>
+double measure(const std::array<Vec<space>, dim + 1> &corner) {
+  Eigen::Matrix<double, space, dim> edges;
+  for (int k = 0; k < dim; ++k) edges.col(k) = map<space>(corner[k + 1]) - map<space>(corner[0]);
+  return std::sqrt((edges.transpose() * edges).determinant()) / (dim == 3 ? 6 : dim);
+}
+
+template <int dim, int space>
+void report_group(int group, const std::string &name, const char *what) {
+  std::vector<int> tags;
+  gmsh::model::getEntitiesForPhysicalGroup(dim, group, tags);
+  std::size_t count = 0;
+  double total = 0;
+  for (int tag : tags)
+    for (const auto &corner : corners_of<dim, space>(tag)) ++count, total += measure<dim, space>(corner);
+  static const char *const units[] = {"", "m", "m2", "m3"};
+  std::cout << "  " << what << " " << name << ": " << count << (dim == space ? " cells, " : " facets, ") << total << " "
+            << units[dim] << "\n";
+}
+
+template <int dim>
+void report_mesh() {
+  Shape worst{1e300, 1};
+  double quality = 0;
+  std::size_t count = 0;
+  for (const auto &corner : corners_of<dim>(-1)) {
+    const Shape one = shape<dim>(corner, Simplex<dim>(corner).gradient);
+    worst = {std::min(worst.altitude, one.altitude), std::min(worst.quality, one.quality)};
+    quality += one.quality, ++count;
+  }
+  std::vector<std::size_t> nodes;
+  std::vector<double> x, parametric;
+  gmsh::model::mesh::getNodes(nodes, x, parametric);
+  std::cout << "cells " << count << ", nodes " << nodes.size() << ", smallest altitude " << worst.altitude
+            << " m, quality " << worst.quality << " at least, " << quality / static_cast<double>(count)
+            << " on average\n";
+  gmsh::vectorpair groups;
+  gmsh::model::getPhysicalGroups(groups);
+  for (int of : {dim, dim - 1})
+    for (const auto &[dimension, group] : groups) {
+      std::string name;
+      gmsh::model::getPhysicalName(dimension, group, name);
+      if (dimension != of) continue;
+      if (of == dim)
+        report_group<dim, dim>(group, name, "region");
+      else
+        report_group<dim - 1, dim>(group, name, "group");
+    }
+}
+
+void check_writable(const std::string &file) {
+  if (!std::ofstream(file, std::ios::app))
+    throw std::runtime_error(file + ": cannot be written; check the folder and its permissions");
+}
+
+void run(const Request &request) {
+  const Section section = read_section(request.source);
+  check(request, section);
+  check_writable(request.file);
+  gmsh::initialize();
+  try {
+    mesh_section(section, request.options);
+    gmsh::option::setNumber("Mesh.MshFileVersion", request.format == "2.2" ? 2.2 : 4.1);
+    gmsh::write(request.file);
+    std::cout << request.file << " from " << request.source << "\n";
+    if (request.options.dimension == 2)
+      report_mesh<2>();
+    else
+      report_mesh<3>();
+  } catch (...) {
+    gmsh::finalize();
+    std::remove(request.file.c_str());
+    throw;
+  }
+  gmsh::finalize();
+}
+
+int parse(int argc, char **argv, Request &request) {
+  CLI::App app("Meshes a cross-section (CSV rows part,x,y in metres) for Talus: triangles, or a slice of tetrahedra.",
+               "talus-mesh");
+  app.add_option("SOURCE", request.source, "section CSV")->required();
+  app.add_option("-o,--output", request.file, "mesh file to write")->required();
+  app.add_option("--size", request.options.size, "cell size [m]")->required();
+  app.add_option("--dimension", request.options.dimension, "2: triangles, 3: tetrahedra")->check(CLI::IsMember({2, 3}));
+  app.add_option("--thickness", request.options.thickness, "of a 3D slice [m]; default one cell size");
+  app.add_option("--layers", request.options.layers, "of elements over the thickness; 0: free tetrahedra; default 1");
+  app.add_option("--refine", request.boxes, "x0 y0 x1 y1 h: cells of size h in a box; may be repeated")->expected(5);
+  app.add_option("--format", request.format, "of the mesh file: 2.2 or 4.1")->check(CLI::IsMember({"2.2", "4.1"}));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError &error) {
+    return app.exit(error) ? 2 : -1;
+  }
+  const auto &b = request.boxes;
+  for (std::size_t i = 0; i + 4 < b.size(); i += 5)
+    request.options.boxes.push_back({{std::min(b[i], b[i + 2]), std::min(b[i + 1], b[i + 3])},
+                                     {std::max(b[i], b[i + 2]), std::max(b[i + 1], b[i + 3])},
+                                     b[i + 4]});
+  return 0;
+}
+
+}  // namespace
+}  // namespace talus
+
+/// Exit status 0: a mesh was written; 2: bad input; 1: anything else.
+int main(int argc, char **argv) {
+  talus::Request request;
+  if (const int status = talus::parse(argc, argv, request)) return status < 0 ? 0 : status;
+  try {
+    talus::run(request);
+  } catch (const std::invalid_argument &error) {
+    std::cerr << "talus-mesh: " << error.what() << "\n";
+    return 2;
+  } catch (const std::exception &error) {
+    std::cerr << "talus-mesh: " << error.what() << "\n";
+    return 1;
+  }
+  return 0;
+}
