@@ -12,7 +12,7 @@ using Map = Eigen::Map<Eigen::Matrix<double, dim, 1>>;
 template <int dim>
 using ConstMap = Eigen::Map<const Eigen::Matrix<double, dim, 1>>;
 template <int dim>
-using Column = Eigen::Matrix<double, dim, 1>;
+using ColumnVector = Eigen::Matrix<double, dim, 1>;
 template <int dim>
 using Square = Eigen::Matrix<double, dim, dim>;
 

@@ -1,0 +1,293 @@
+#include "physics/boundary/conditions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace talus {
+namespace {
+
+constexpr double same_direction = 0.9986;  // cosine of 3 degrees: facets of one curved face share a constraint within this
+
+template <int dim>
+double dot(const Vec<dim> &a, const Vec<dim> &b) {
+  double s = 0;
+  for (int d = 0; d < dim; ++d) s += a[d] * b[d];
+  return s;
+}
+template <int dim>
+void add(Vec<dim> &a, double scale, const Vec<dim> &b) {
+  for (int d = 0; d < dim; ++d) a[d] += scale * b[d];
+}
+
+/// Plates that move come first, then what is fixed, then rollers: a node where they meet follows the strongest.
+int priority(const Boundary &kind) {
+  return std::holds_alternative<PrescribedVelocity>(kind) ? 0 : std::holds_alternative<Fixed>(kind) ? 1 : 2;
+}
+
+}  // namespace
+
+template <int dim>
+struct Conditions<dim>::NodeNormal {
+  int source, node;
+  Vec<dim> position, normal;
+  double area;
+};
+
+template <int dim>
+void Conditions<dim>::add_direction(int node, int source, const Vec<dim> &direction) {
+  int &index = prescribed_of_node_[node];
+  if (index < 0) index = static_cast<int>(prescribed_.size()), prescribed_.push_back({});
+  Prescribed &c = prescribed_[index];
+  Vec<dim> rest = direction;
+  for (int k = 0; k < c.count; ++k) add<dim>(rest, -dot<dim>(rest, c.direction[k]), c.direction[k]);
+  const double length = std::sqrt(dot<dim>(rest, rest));
+  if (c.count == dim || length < std::sqrt(1 - same_direction * same_direction)) return;
+  for (double &r : rest) r /= length;
+  c.direction[c.count] = rest, c.source[c.count++] = source;
+}
+
+template <int dim>
+void Conditions<dim>::add_contact(int node, int source, const Vec<dim> &normal, double area) {
+  int &index = first_contact_of_node_[node];
+  if (index < 0) index = static_cast<int>(contacts_.size()), contacts_.emplace_back();
+  for (Contact &c : contacts_[index])
+    if (c.source == source && dot<dim>(c.normal, normal) > same_direction) {  // area-weighted mean of nearly equal normals
+      for (int d = 0; d < dim; ++d) c.normal[d] = c.normal[d] * c.area + normal[d] * area;
+      const double length = std::sqrt(dot<dim>(c.normal, c.normal));
+      for (double &n : c.normal) n /= length;
+      c.area += area;
+      return;
+    }
+  contacts_[index].push_back({node, source, normal, area});
+}
+
+template <int dim>
+PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vector<Source> sources) {
+  PetscFunctionBeginUser;
+  sources_ = std::move(sources);
+  impulse_.assign(sources_.size(), Vec<dim>{});
+  prescribed_of_node_.assign(mesh.node_count(), -1), first_contact_of_node_.assign(mesh.node_count(), -1);
+  std::vector<NodeNormal> normals;
+  for (int s = 0; s < static_cast<int>(sources_.size()); ++s) {
+    std::vector<Facet<dim>> facets;
+    for (const std::string &group : sources_[s].groups) {
+      const auto more = mesh.facets(group);
+      facets.insert(facets.end(), more.begin(), more.end());
+    }
+    const Boundary &kind = sources_[s].kind;
+    if (std::holds_alternative<Traction>(kind)) {
+      loads_.emplace_back(s, facets);
+    } else if (std::holds_alternative<NonReflecting>(kind)) {
+      dashpots_.emplace_back(s, facets);
+    } else {
+      if (std::holds_alternative<Friction>(kind)) bases_.emplace_back(s, facets);
+      for (const Facet<dim> &f : facets)
+        for (int node : f.node) normals.push_back({s, node, mesh.position[node], f.normal, f.area / dim});
+    }
+  }
+  // Facets of shared nodes may lie on one rank only: every rank tells its own, and finds nodes by their exact position.
+  int ranks, rank;
+  PetscCallMPI(MPI_Comm_size(mesh.comm(), &ranks));
+  PetscCallMPI(MPI_Comm_rank(mesh.comm(), &rank));
+  if (ranks > 1) {
+    constexpr int width = 2 + 2 * dim;
+    std::map<Vec<dim>, int> shared;
+    for (int node : mesh.halo.shared_nodes()) shared[mesh.position[node]] = node;
+    std::vector<double> mine, all;
+    for (const NodeNormal &n : normals)
+      if (shared.count(n.position)) {
+        mine.push_back(n.source), mine.push_back(n.area);
+        mine.insert(mine.end(), n.position.begin(), n.position.end());
+        mine.insert(mine.end(), n.normal.begin(), n.normal.end());
+      }
+    std::vector<int> counts(ranks), starts(ranks + 1, 0);
+    const int count = static_cast<int>(mine.size());
+    PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, mesh.comm()));
+    for (int r = 0; r < ranks; ++r) starts[r + 1] = starts[r] + counts[r];
+    all.resize(starts[ranks]);
+    PetscCallMPI(MPI_Allgatherv(mine.data(), count, MPI_DOUBLE, all.data(), counts.data(), starts.data(), MPI_DOUBLE, mesh.comm()));
+    for (int r = 0; r < ranks; ++r)
+      for (int i = starts[r]; r != rank && i < starts[r + 1]; i += width) {
+        NodeNormal n{static_cast<int>(all[i]), -1, {}, {}, all[i + 1]};
+        std::copy_n(&all[i + 2], dim, n.position.begin());
+        std::copy_n(&all[i + 2 + dim], dim, n.normal.begin());
+        const auto found = shared.find(n.position);
+        if (found != shared.end()) n.node = found->second, normals.push_back(n);
+      }
+  }
+  // an order that does not depend on the partition, so that all ranks build the same constraints
+  std::stable_sort(normals.begin(), normals.end(), [&](const NodeNormal &a, const NodeNormal &b) {
+    const auto key = [&](const NodeNormal &n) { return std::make_tuple(priority(sources_[n.source].kind), n.source, n.normal, n.area); };
+    return key(a) < key(b);
+  });
+  for (const NodeNormal &n : normals)
+    std::visit(
+        [&](const auto &kind) {
+          if constexpr (requires { kind.template directions<dim>(n.normal); })
+            for (const Vec<dim> &direction : kind.template directions<dim>(n.normal)) add_direction(n.node, n.source, direction);
+          else
+            add_contact(n.node, n.source, n.normal, n.area);
+        },
+        sources_[n.source].kind);
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<std::array<double, 2>> &impedance,
+                                      const std::vector<double> &filling) {
+  PetscFunctionBeginUser;
+  const BackgroundMesh<dim> &mesh = grid.mesh();
+  const int nodes = grid.node_count();
+  active_prescribed_.clear(), active_contacts_.clear(), active_loads_.clear(), active_dashpots_.clear();
+  counted_.resize(nodes);
+  for (int i = 0; i < nodes; ++i) {
+    counted_[i] = mesh.owned[grid.mesh_node[i]];
+    const int index = prescribed_of_node_[grid.mesh_node[i]];
+    if (index >= 0) active_prescribed_.push_back({i, &prescribed_[index]});
+  }
+  if (!bases_.empty()) {
+    nodal_.assign(nodes, 0);
+    for (const auto &[source, facets] : bases_)
+      for (const Facet<dim> &f : facets) {
+        const int cell = grid.find_cell(f.cell);
+        if (cell < 0) continue;
+        for (int node : f.node) nodal_[grid.find_node(node)] += f.area / dim * std::min(1., filling[cell]);
+      }
+    PetscCall(grid.sum(nodal_.data(), 1));
+    for (int i = 0; i < nodes; ++i) {
+      const int index = first_contact_of_node_[grid.mesh_node[i]];
+      if (index < 0) continue;
+      double total = 0;
+      for (const Contact &c : contacts_[index]) total += c.area;
+      for (const Contact &c : contacts_[index]) active_contacts_.push_back({i, &c, nodal_[i] * c.area / total, false});
+    }
+  }
+  for (const auto &[source, facets] : loads_)
+    for (const Facet<dim> &f : facets) {
+      if (grid.find_cell(f.cell) < 0) continue;
+      const int across = mesh.cells[f.cell].neighbour[f.face];
+      LoadedFacet load{&f, {}, source, across >= 0 && grid.find_cell(across) >= 0 ? 0.5 : 1};
+      for (int k = 0; k < dim; ++k) load.node[k] = grid.find_node(f.node[k]);
+      active_loads_.push_back(load);
+    }
+  if (!dashpots_.empty()) {
+    constexpr int width = dim * dim;
+    for (const auto &[source, facets] : dashpots_) {
+      nodal_.assign(static_cast<size_t>(nodes) * width, 0);
+      for (const Facet<dim> &f : facets) {
+        const int cell = grid.find_cell(f.cell);
+        if (cell < 0) continue;
+        for (int node : f.node)
+          for (int i = 0; i < dim; ++i)
+            for (int j = 0; j < dim; ++j)
+              nodal_[grid.find_node(node) * width + i * dim + j] +=
+                  f.area / dim * ((impedance[cell][0] - impedance[cell][1]) * f.normal[i] * f.normal[j] + (i == j ? impedance[cell][1] : 0));
+      }
+      PetscCall(grid.sum(nodal_.data(), width));
+      for (int i = 0; i < nodes; ++i) {
+        const Square<dim> matrix = Eigen::Map<const Square<dim>>(&nodal_[i * width]);
+        if (matrix.trace() > 0) active_dashpots_.push_back({i, source, matrix});
+      }
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+void Conditions<dim>::add_loads(double t, const FilledGrid<dim> &grid, Vec<dim> *force) const {
+  const BackgroundMesh<dim> &mesh = grid.mesh();
+  for (const LoadedFacet &load : active_loads_) {
+    Vec<dim> centre{};
+    for (int node : load.facet->node) add<dim>(centre, 1. / dim, mesh.position[node]);
+    const Vec<dim> traction = std::get<Traction>(sources_[load.source].kind).template load<dim>(load.facet->normal, centre, t);
+    for (int node : load.node) add<dim>(force[node], load.share * load.facet->area / dim, traction);
+  }
+}
+
+template <int dim>
+double Conditions<dim>::target(const Prescribed &c, int k, const Vec<dim> &x, double t) const {
+  return std::visit(
+      [&](const auto &kind) -> double {
+        if constexpr (requires { kind.template value<dim>(c.direction[k], x, t); })
+          return kind.template value<dim>(c.direction[k], x, t);
+        else
+          return 0;
+      },
+      sources_[c.source[k]].kind);
+}
+
+template <int dim>
+void Conditions<dim>::constrain(double t, const FilledGrid<dim> &grid, Vec<dim> *v, bool sticking) const {
+  for (const ActiveContact &c : active_contacts_) {
+    const double into = dot<dim>(v[c.node], c.contact->normal);
+    if (sticking && c.sticks) v[c.node] = {};
+    else if (into > 0) add<dim>(v[c.node], -into, c.contact->normal);
+  }
+  for (const ActivePrescribed &p : active_prescribed_)
+    for (int k = 0; k < p.condition->count; ++k)
+      add<dim>(v[p.node], target(*p.condition, k, grid.position[p.node], t) - dot<dim>(v[p.node], p.condition->direction[k]),
+               p.condition->direction[k]);
+}
+
+template <int dim>
+void Conditions<dim>::project(const FilledGrid<dim> &, const Vec<dim> *, Vec<dim> *force) const {
+  for (const ActiveContact &c : active_contacts_) {
+    const double into = dot<dim>(force[c.node], c.contact->normal);
+    if (c.sticks) force[c.node] = {};
+    else if (into > 0) add<dim>(force[c.node], -into, c.contact->normal);
+  }
+  for (const ActivePrescribed &p : active_prescribed_)
+    for (int k = 0; k < p.condition->count; ++k)
+      add<dim>(force[p.node], -dot<dim>(force[p.node], p.condition->direction[k]), p.condition->direction[k]);
+}
+
+template <int dim>
+void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v) {
+  const auto account = [&](int node, int source, const Vec<dim> &before) {
+    if (!counted_[node]) return;
+    for (int d = 0; d < dim; ++d) impulse_[source][d] += grid.mass[node] * (v[node][d] - before[d]);
+  };
+  for (const Dashpot &d : active_dashpots_) {
+    const Vec<dim> before = v[d.node];
+    const Square<dim> system = Square<dim>::Identity() + gamma / grid.mass[d.node] * d.matrix;
+    map<dim>(v[d.node]) = system.inverse() * map<dim>(before);
+    account(d.node, d.source, before);
+  }
+  for (ActiveContact &c : active_contacts_) {
+    const Vec<dim> before = v[c.node], &n = c.contact->normal;
+    const double into = dot<dim>(before, n);
+    c.sticks = false;
+    if (into <= 0) continue;  // separating
+    add<dim>(v[c.node], -into, n);
+    const Friction &base = std::get<Friction>(sources_[c.contact->source].kind);
+    const double slip = std::sqrt(dot<dim>(v[c.node], v[c.node]));
+    const double hold = std::tan(base.friction_angle(t)) * into + base.adhesion(t) * c.area * gamma / grid.mass[c.node];
+    c.sticks = slip <= hold;
+    const double keep = c.sticks ? 0 : 1 - hold / slip;
+    for (double &component : v[c.node]) component *= keep;
+    account(c.node, c.contact->source, before);
+  }
+  for (const ActivePrescribed &p : active_prescribed_)
+    for (int k = 0; k < p.condition->count; ++k) {
+      const Vec<dim> before = v[p.node];
+      add<dim>(v[p.node], target(*p.condition, k, grid.position[p.node], t) - dot<dim>(before, p.condition->direction[k]),
+               p.condition->direction[k]);
+      account(p.node, p.condition->source[k], before);
+    }
+}
+
+template <int dim>
+PetscErrorCode Conditions<dim>::take_impulses(MPI_Comm comm, std::vector<Vec<dim>> &impulse) {
+  PetscFunctionBeginUser;
+  impulse.resize(impulse_.size());
+  if (!impulse_.empty())
+    PetscCallMPI(MPI_Allreduce(impulse_.data(), impulse.data(), static_cast<int>(impulse_.size()) * dim, MPI_DOUBLE, MPI_SUM, comm));
+  std::fill(impulse_.begin(), impulse_.end(), Vec<dim>{});
+  PetscFunctionReturn(0);
+}
+
+template class Conditions<2>;
+template class Conditions<3>;
+
+}  // namespace talus

@@ -1,0 +1,89 @@
+#pragma once
+/// What the boundaries of a scene do to nodes, docs/theory section 6: prescribed directions are orthonormalised per node once;
+/// contacts keep one constraint per facet normal; loads and dashpots act where facets have soil behind them.
+#include <string>
+#include <vector>
+
+#include "meshes/background_mesh.h"
+#include "physics/boundary/boundary.h"
+#include "transfer/filled_grid.h"
+
+namespace talus {
+
+template <int dim>
+class Conditions {
+ public:
+  struct Source {
+    std::string name;
+    std::vector<std::string> groups;
+    Boundary kind;
+  };
+  /// Collects nodes and normals of all groups, also of facets that only a neighbouring rank has. Collective.
+  PetscErrorCode setup(const BackgroundMesh<dim> &mesh, std::vector<Source> sources);
+  /// Picks the nodes and facets of the filled grid. `impedance` [filled cells] holds rho c_p and rho c_s. Collective.
+  PetscErrorCode begin(FilledGrid<dim> &grid, const std::vector<std::array<double, 2>> &impedance, const std::vector<double> &filling);
+
+  /// Adds tractions to nodal forces of this rank.
+  void add_loads(double t, const FilledGrid<dim> &grid, Vec<dim> *force) const;
+  /// Imposes prescribed velocities and keeps nodes from entering a base; sticking nodes of the last `resolve` stay.
+  void constrain(double t, const FilledGrid<dim> &grid, Vec<dim> *v, bool sticking) const;
+  /// Removes from an acceleration or force the part that supports take up, where nodes rest on them.
+  void project(const FilledGrid<dim> &grid, const Vec<dim> *v, Vec<dim> *force) const;
+  /// Implicit in a step gamma: dashpots, contact with friction, prescribed velocities. Sums up the reactions.
+  void resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v);
+
+  const std::vector<Source> &sources() const { return sources_; }
+  /// Impulse on the soil by each boundary since the last call, per source [N s]; collective.
+  PetscErrorCode take_impulses(MPI_Comm comm, std::vector<Vec<dim>> &impulse);
+
+ private:
+  struct Prescribed {      // a node with prescribed directions
+    int count = 0;
+    std::array<Vec<dim>, dim> direction;
+    std::array<int, dim> source;
+  };
+  struct Contact {         // one facet normal of a base at a node
+    int node, source;      // mesh node
+    Vec<dim> normal;
+    double area;
+  };
+  struct ActivePrescribed {
+    int node;              // compact
+    const Prescribed *condition;
+  };
+  struct ActiveContact {
+    int node;
+    const Contact *contact;
+    double area;           // with soil behind it [m2]
+    bool sticks;
+  };
+  struct LoadedFacet {
+    const Facet<dim> *facet;
+    std::array<int, dim> node;  // compact
+    int source;
+    double share;               // of the facet's area that this side carries
+  };
+  struct Dashpot {
+    int node, source;
+    Square<dim> matrix;         // [kg/s]
+  };
+  struct NodeNormal;       // what a rank tells the others of its facets
+  void add_direction(int node, int source, const Vec<dim> &direction);
+  void add_contact(int node, int source, const Vec<dim> &normal, double area);
+  double target(const Prescribed &c, int k, const Vec<dim> &x, double t) const;
+
+  std::vector<Source> sources_;
+  std::vector<int> prescribed_of_node_, first_contact_of_node_;
+  std::vector<Prescribed> prescribed_;
+  std::vector<std::vector<Contact>> contacts_;
+  std::vector<std::pair<int, std::vector<Facet<dim>>>> loads_, dashpots_, bases_;
+  std::vector<ActivePrescribed> active_prescribed_;
+  std::vector<ActiveContact> active_contacts_;
+  std::vector<LoadedFacet> active_loads_;
+  std::vector<Dashpot> active_dashpots_;
+  std::vector<double> nodal_;
+  std::vector<Vec<dim>> impulse_;
+  std::vector<char> counted_;   // [compact] this rank counts the node in global sums
+};
+
+}  // namespace talus

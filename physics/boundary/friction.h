@@ -1,0 +1,20 @@
+#pragma once
+#include "base/units.h"
+#include "scene/function.h"
+
+namespace talus {
+
+/// Contact with a rigid base: no penetration, free to separate, Coulomb friction and adhesion against sliding. At a kink every
+/// facet normal is a constraint of its own, since one averaged normal distorts the contact just where shearing starts.
+struct Friction {
+  static constexpr const char *name = "friction";
+  Function friction_angle = 0.0;
+  Function adhesion = 0.0;
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.function("friction_angle", friction_angle, degree, {0, 89}, "friction angle phi_b of the base, function of t");
+    v.function("adhesion", adhesion, pascal, {0, 1e9}, "adhesion of the base, function of t");
+  }
+};
+
+}  // namespace talus

@@ -1,0 +1,37 @@
+#pragma once
+#include <vector>
+
+#include "base/units.h"
+#include "base/vec.h"
+#include "scene/function.h"
+
+namespace talus {
+
+/// Velocity given as a function of place and time: the whole vector (a rough plate), or its part across the face (a smooth one).
+struct PrescribedVelocity {
+  static constexpr const char *name = "velocity";
+  std::vector<Function> velocity;
+  bool smooth = false;
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.functions("velocity", velocity, metre_per_second, "velocity, one function of x, y, z, t per component");
+    v.flag("smooth", smooth, "prescribe only the component across the face");
+  }
+  std::string problem() const { return velocity.empty() ? "velocity must be given, one function per component" : ""; }
+
+  template <int dim>
+  std::vector<Vec<dim>> directions(const Vec<dim> &normal) const {
+    if (smooth) return {normal};
+    std::vector<Vec<dim>> axes(dim, Vec<dim>{});
+    for (int d = 0; d < dim; ++d) axes[d][d] = 1;
+    return axes;
+  }
+  template <int dim>
+  double value(const Vec<dim> &direction, const Vec<dim> &x, double t) const {
+    double sum = 0;
+    for (int d = 0; d < dim; ++d) sum += direction[d] * velocity[d](x[0], x[1], dim == 3 ? x[2] : 0, t);
+    return sum;
+  }
+};
+
+}  // namespace talus

@@ -1,0 +1,76 @@
+#pragma once
+/// Deformation of a cell between two accepted states: dF = I + grad u = R U, docs/theory (3.1)-(3.4).
+#include <cmath>
+
+#include "base/vec.h"
+#include "physics/laws/stress.h"
+
+namespace talus {
+
+/// Below this size of grad u the midpoint rule replaces the polar decomposition: its strain errs by |grad u|^3 / 12.
+inline constexpr double small_increment = 1e-4;
+
+/// Rotation and logarithmic strain of dF = I + g. The midpoint rule (Hughes & Winget 1980) is exact for rigid rotation and third
+/// order in the strain; larger increments are decomposed exactly. Returns false for an inverted cell (det dF <= 0).
+template <int dim>
+bool decompose(const Square<dim> &g, Increment<dim> &increment);
+
+/// ln(1 + x), by its series where the library's function would cost more than the rest of a cell.
+inline double log1p_small(double x) {
+  return std::abs(x) < 1e-3 ? x * (1 - x * (1. / 2 - x * (1. / 3 - x * (1. / 4 - x / 5)))) : std::log1p(x);
+}
+/// exp(x), likewise.
+inline double exp_small(double x) {
+  return std::abs(x) < 1e-3 ? 1 + x * (1 + x * (1. / 2 + x * (1. / 6 + x * (1. / 24 + x / 120)))) : std::exp(x);
+}
+
+template <>
+inline bool decompose<2>(const Square<2> &g, Increment<2> &out) {
+  // In the plane the rotation of F is the angle of (F00 + F11, F10 - F01), and U = R^T F is symmetric. Differences are taken of
+  // g, not of F, so that small increments lose no digits.
+  const double volume = g(0, 0) + g(1, 1) + (g(0, 0) * g(1, 1) - g(0, 1) * g(1, 0));  // det F - 1
+  if (!(volume > -1)) return false;
+  const double a = 2 + g(0, 0) + g(1, 1), b = g(1, 0) - g(0, 1), r = std::sqrt(a * a + b * b), c = a / r, s = b / r;
+  const double m = r / 2, d = (c * (g(0, 0) - g(1, 1)) + s * (g(1, 0) + g(0, 1))) / 2;
+  const double o = (c * (g(0, 1) + g(1, 0)) + s * (g(1, 1) - g(0, 0))) / 2, q = std::sqrt(d * d + o * o), ratio = q / m;
+  // ln U = ln sqrt(det F) I + slope (U - m I): the stretches are m + q and m - q
+  const double mean = log1p_small(volume) / 2;
+  const double slope = ratio < 1e-3 ? (1 + ratio * ratio / 3) / m : std::atanh(ratio) / q;  // series where q vanishes
+  out.strain = {mean + slope * d, mean - slope * d, 0, slope * o};
+  out.rotation = {c, s};
+  return true;
+}
+
+template <>
+inline bool decompose<3>(const Square<3> &g, Increment<3> &out) {
+  const double size = g.cwiseAbs().maxCoeff();
+  if (size < small_increment) {
+    // midpoint gradient h = g (I + g/2)^-1, strain sym h, rotation (I - w/2)^-1 (I + w/2) with w = skew h
+    const Square<3> h = g * (Square<3>::Identity() - g / 2 + g * g / 4);
+    const double wx = (h(2, 1) - h(1, 2)) / 2, wy = (h(0, 2) - h(2, 0)) / 2, wz = (h(1, 0) - h(0, 1)) / 2;
+    out.strain = {h(0, 0), h(1, 1), h(2, 2), (h(0, 1) + h(1, 0)) / 2, (h(1, 2) + h(2, 1)) / 2, (h(0, 2) + h(2, 0)) / 2};
+    const double ww = (wx * wx + wy * wy + wz * wz) / 4, k = 1 / (1 + ww), e = 1 - 2 * ww * k;  // Cayley transform
+    out.rotation = {e + k * wx * wx / 2,        k * (wx * wy / 2 - wz), k * (wx * wz / 2 + wy),
+                    k * (wx * wy / 2 + wz),     e + k * wy * wy / 2,    k * (wy * wz / 2 - wx),
+                    k * (wx * wz / 2 - wy),     k * (wy * wz / 2 + wx), e + k * wz * wz / 2};
+    return true;
+  }
+  const Square<3> f = Square<3>::Identity() + g;
+  if (!(f.determinant() > 0)) return false;
+  const Eigen::SelfAdjointEigenSolver<Square<3>> eigen(f.transpose() * f);
+  const ColumnVector<3> stretch = eigen.eigenvalues().cwiseSqrt();
+  const Square<3> &axes = eigen.eigenvectors();
+  const Square<3> log_u = axes * stretch.array().log().matrix().asDiagonal() * axes.transpose();
+  const Square<3> r = f * axes * stretch.cwiseInverse().asDiagonal() * axes.transpose();
+  out.strain = {log_u(0, 0), log_u(1, 1), log_u(2, 2), log_u(0, 1), log_u(1, 2), log_u(0, 2)};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) out.rotation[3 * i + j] = r(i, j);
+  return true;
+}
+
+template <int dim>
+inline double trace(const Increment<dim> &increment) {
+  return increment.strain[0] + increment.strain[1] + increment.strain[2];
+}
+
+}  // namespace talus

@@ -1,0 +1,29 @@
+#pragma once
+/// Motion of the nodes between two remaps: the plug every integrator takes. No integrator contains physics, and no physics knows
+/// an integrator's name. Virtual calls are per stage of a step, never per particle.
+#include <petscsys.h>
+
+namespace talus {
+
+/// The state is nodal: `u` displacement since the last accepted state [m], `v` velocity [m/s], `size()` doubles each, node-major, all
+/// phases. Stress is a pure function of the accepted history and `u`: call `acceleration` as often as you like; only `accept`
+/// changes history.
+class Motion {
+ public:
+  virtual ~Motion() = default;
+  /// Gathers mass and momentum and freezes cells, if particles have moved since; `velocity()` is then the start of a step.
+  virtual PetscErrorCode begin(double t) = 0;
+  /// Accelerations [m/s2] from the divergence of stress, gravity, loads and local damping. `u` = null stands for the accepted state.
+  virtual PetscErrorCode acceleration(double t, const double *u, const double *v, double *a) = 0;
+  /// Node-local implicit part over a step `gamma` [s]: prescribed motion, contact with friction, dashpots (later: drag between phases).
+  virtual PetscErrorCode drag(double t, double gamma, double *v) = 0;
+  /// What the nodes would receive if the particles took `v` and were mapped back (MUSL), docs/theory (4.9); `v` itself relaxes towards it.
+  virtual PetscErrorCode map_back(double t, double gamma, double *v, double *w) = 0;
+  /// Commits stress, history and volumes for displacement `u`, moves the nodes, keeps `v`.
+  virtual PetscErrorCode accept(double t, const double *u, const double *v) = 0;
+
+  virtual int size() const = 0;
+  virtual double *velocity() = 0;
+};
+
+}  // namespace talus

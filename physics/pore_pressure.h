@@ -1,0 +1,40 @@
+#pragma once
+/// Pore pressure as a given function of place and time: hydrostatic below a water table whose level moves, plus an excess
+/// (phase model `drained`). Pressure is positive in compression.
+#include "base/vec.h"
+#include "scene/scene.h"
+
+namespace talus {
+
+template <int dim>
+class GivenPressure {
+ public:
+  /// `weight` is the magnitude of gravity along -y [m/s2].
+  GivenPressure(const Water &water, double gravity) : water_(&water), unit_weight_(water.density * gravity) {}
+
+  /// Elevation of the water table at x [m].
+  double table(double x, double t) const {
+    const auto &points = water_->table;
+    if (points.empty()) return -1e300;
+    size_t k = 1;
+    while (k + 1 < points.size() && points[k][0] < x) ++k;
+    const double level = water_->level(t);
+    if (points.size() == 1) return points[0][1] + level;
+    const double s = std::clamp((x - points[k - 1][0]) / (points[k][0] - points[k - 1][0]), 0., 1.);
+    return points[k - 1][1] + s * (points[k][1] - points[k - 1][1]) + level;
+  }
+  bool below_table(const Vec<dim> &x, double t) const { return x[1] < table(x[0], t); }
+  /// Pore pressure at x [Pa].
+  double operator()(const Vec<dim> &x, double t) const {
+    const double elevation = table(x[0], t);
+    return std::max(0., unit_weight_ * (elevation - x[1])) + water_->excess(x[0], x[1], dim == 3 ? x[2] : 0, t, elevation);
+  }
+  bool open_water_load() const { return water_->open_water_load; }
+  double density() const { return water_->density; }
+
+ private:
+  const Water *water_;
+  double unit_weight_;
+};
+
+}  // namespace talus

@@ -1,0 +1,129 @@
+#pragma once
+/// The right-hand side of the material point method on simplices, docs/theory sections 2 to 4: stress and volume live at stress
+/// points, gradients at cells, momentum at nodes. One class for plane strain and 3D and for every phase model.
+#include <algorithm>
+#include <limits>
+#include <memory>
+
+#include "base/phases.h"
+#include "physics/boundary/conditions.h"
+#include "physics/kinematics.h"
+#include "physics/laws/update_stress.h"
+#include "physics/motion.h"
+#include "physics/pore_pressure.h"
+#include "transfer/transfer.h"
+
+namespace talus {
+
+/// What acts on the soil at a time: set by the time loop, read by the motion.
+template <int dim>
+struct Loading {
+  Vec<dim> gravity{};     ///< with the ramp of the stage [m/s2]
+  double time = 0;        ///< time that functions of the scene see [s]; stands still in a stage that holds loads
+  double damping = 0;     ///< local damping factor
+};
+
+/// Sums over all ranks, for the ledger and the stop criteria.
+struct Balance {
+  double unbalanced = 0, applied = 0;   ///< sums of nodal force magnitudes [N]
+  double kinetic = 0, strain = 0;       ///< [J]
+};
+
+template <int dim, class Phases>
+class SoilMotion final : public Motion {
+ public:
+  SoilMotion(const BackgroundMesh<dim> &mesh, std::vector<std::unique_ptr<Body<dim>>> &bodies, Conditions<dim> &conditions,
+             const Transfer &transfer, const Water &water, double relaxation_time, double particle_mass, double gravity);
+
+  PetscErrorCode begin(double t) override;
+  PetscErrorCode acceleration(double t, const double *u, const double *v, double *a) override;
+  PetscErrorCode drag(double t, double gamma, double *v) override;
+  PetscErrorCode map_back(double t, double gamma, double *v, double *w) override;
+  PetscErrorCode accept(double t, const double *u, const double *v) override;
+  int size() const override { return grid_.node_count() * dim; }
+  double *velocity() override { return velocity_.empty() ? nullptr : velocity_[0].data(); }
+
+  /// Hands particles what the nodes learned and frees the grid; the particles in `movers[body]` have left their cells.
+  PetscErrorCode release(double t, std::vector<std::vector<int>> &movers);
+
+  Loading<dim> loading;
+  /// Largest displacement of a node of this rank since the last remap, over its mean edge.
+  double moved() const { return moved_; }
+  /// Smallest cell volume of this rank over its volume in the mesh.
+  double smallest_volume_ratio() const { return smallest_ratio_; }
+  /// How much the critical step has shrunk with the cells of this rank since the last remap (at most 1).
+  double step_ratio() const { return step_ratio_; }
+  /// Largest nodal speed squared of this rank; NaN when a node has no finite velocity.
+  double speed_squared() const { return speed_squared_; }
+  bool gathered() const { return gathered_; }
+  const FilledGrid<dim> &grid() const { return grid_; }
+  const std::vector<PointSet> &points() const { return points_; }
+  /// Place of a node without a finite velocity on this rank; false when there is none.
+  bool find_broken(Vec<dim> *where) const;
+
+  /// Position and velocity of a particle within the Lagrangian part.
+  void present(const Body<dim> &body, int particle, Vec<dim> *position, Vec<dim> *velocity) const;
+  /// Stress [stress_size], history and volume of a particle within the Lagrangian part.
+  void state(int body, int particle, double *stress, double *history, double *volume) const;
+  /// Pore pressure at a place [Pa]; 0 where the phase model has none.
+  double pore_pressure(const Vec<dim> &x) const;
+  /// Sums of the present state; collective.
+  PetscErrorCode balance(double t, Balance *sums);
+
+ private:
+  static constexpr int components = stress_size<dim>;
+
+  template <bool apic>
+  void gather();
+  PetscErrorCode finish_gather(double t);
+  PetscErrorCode gather_pore_water() requires Phases::given;
+  PetscErrorCode total_force(double t, bool trial);
+  void set_weights(const std::vector<double> &nodal_volume);
+  PetscErrorCode deform(const Vec<dim> *u, bool trial);
+  PetscErrorCode smooth_volume_strain();
+  PetscErrorCode internal_force(bool trial);
+  void add_body_forces(double t);
+  void add_pore_pressure(double t, bool trial) requires Phases::given;
+  void sample_pressure(double t) requires Phases::given;
+  PetscErrorCode back_and_forth(const Vec<dim> *in, Vec<dim> *out);
+
+  const BackgroundMesh<dim> &mesh_;
+  std::vector<std::unique_ptr<Body<dim>>> &bodies_;
+  Conditions<dim> &conditions_;
+  const Transfer &transfer_;
+  GivenPressure<dim> pressure_;
+  double relaxation_time_, smallest_mass_;
+  FilledGrid<dim> grid_;
+  std::vector<PointSet> points_;
+
+  // nodes
+  std::vector<Vec<dim>> start_velocity_, velocity_, force_, scratch_, trial_position_;
+  std::vector<Vec<dim>> mapped_start_;            ///< start velocity less its own mapping to particles and back [m/s]
+  std::vector<double> nodal_;                     ///< room for sums over ranks
+  std::vector<double> extra_mass_;                ///< pore water gained since seeding, weighs but is not inert [kg]
+  NodalUpdate update_;
+  // cells
+  std::vector<double> particle_volume_, weight_, blend_, volume_strain_;
+  std::vector<double> slenderness_;               ///< sum of squared shape-function gradients at the remap [1/m2]
+  std::vector<Increment<dim>> increment_;
+  std::vector<std::array<double, components>> cell_stress_;
+  std::vector<std::array<double, 2>> impedance_;
+  std::vector<double> patch_weight_, patch_sum_;
+  std::vector<double> affine_;
+  // the trial state of integrators that look ahead
+  std::vector<Shape<dim>> trial_shape_;
+  std::vector<double> trial_particle_volume_, trial_weight_;
+  std::vector<std::vector<double>> trial_stress_, trial_history_, trial_volume_;
+  // given pore pressure, sampled now and then and linear in between
+  struct Sample {
+    std::vector<Vec<dim>> gradient;
+    std::vector<double> value, nodal;
+  };
+  [[no_unique_address]] If<Phases::given, std::array<Sample, 2>> sample_;
+  double sample_time_[2] = {0, 0}, last_pressure_time_ = 0;
+
+  bool gathered_ = false;
+  double remap_time_ = 0, moved_ = 0, smallest_ratio_ = 1, step_ratio_ = 1, speed_squared_ = 0;
+};
+
+}  // namespace talus

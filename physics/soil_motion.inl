@@ -1,0 +1,649 @@
+// Implementation of SoilMotion; included only where it is instantiated (src/variants).
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "physics/soil_motion.h"
+
+namespace talus {
+
+/// Elastic energy per volume of a stress as stored.
+template <int dim>
+double stored_energy(const Law &law, const double *stress) {
+  Stress<dim> s;
+  static_assert(sizeof s == stress_size<dim> * sizeof(double));
+  std::memcpy(&s, stress, sizeof s);
+  return elastic_energy<dim>(law, s);
+}
+
+/// Does strength differ from point to point? Then averaged stress may lie outside the mean strength.
+inline bool softens(const Law &law) {
+  return std::visit(
+      [](const auto &one) {
+        if constexpr (requires { one.shape_factor; })
+          return one.shape_factor > 0;
+        else
+          return false;
+      },
+      law);
+}
+
+template <int dim, class Phases>
+SoilMotion<dim, Phases>::SoilMotion(const BackgroundMesh<dim> &mesh, std::vector<std::unique_ptr<Body<dim>>> &bodies,
+                                    Conditions<dim> &conditions, const Transfer &transfer, const Water &water,
+                                    double relaxation_time, double particle_mass, double gravity)
+    : mesh_(mesh), bodies_(bodies), conditions_(conditions), transfer_(transfer), pressure_(water, gravity),
+      relaxation_time_(relaxation_time), smallest_mass_(1e-6 * particle_mass), grid_(mesh), points_(bodies.size()) {
+  const int nodes = mesh.node_count(), cells = mesh.cell_count();
+  for (auto *field : {&start_velocity_, &velocity_, &mapped_start_, &force_, &scratch_}) field->assign(nodes, Vec<dim>{});
+  update_.velocity.assign(nodes, Quad{}), update_.displacement.assign(nodes, Quad{});
+  if (Phases::given) extra_mass_.assign(nodes, 0);
+  for (auto *field : {&particle_volume_, &weight_, &blend_, &volume_strain_, &slenderness_}) field->assign(cells, 0);
+  increment_.resize(cells), cell_stress_.resize(cells), impedance_.resize(cells);
+  patch_weight_.assign(mesh.patch_count, 0), patch_sum_.assign(mesh.patch_count, 0);
+  nodal_.assign(static_cast<size_t>(nodes) * (dim + 2), 0);
+  for (size_t b = 0; b < bodies.size(); ++b) {
+    PointSet &points = points_[b];
+    points.of_cell.assign(cells, -1);
+    if (!transfer.average_stress) continue;
+    points.own_cell.resize(cells), points.own_volume.resize(cells), points.own_limit.resize(cells), points.start_volume.resize(cells);
+    points.own_stress.resize(static_cast<size_t>(cells) * components);
+    points.own_history.resize(static_cast<size_t>(cells) * bodies[b]->history_count());
+    points.start_history.resize(points.own_history.size());
+  }
+}
+
+// ---- remap ----
+
+template <int dim, class Phases>
+template <bool apic>
+void SoilMotion<dim, Phases>::gather() {
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    PointSet &points = points_[b];
+    points.count = 0;
+    if (transfer_.average_stress) {
+      to_nodes<dim, true, apic>(*bodies_[b], grid_, start_velocity_.data(), points);
+      points.cell = points.own_cell.data(), points.stress = points.own_stress.data(), points.history = points.own_history.data();
+      points.volume = points.own_volume.data(), points.limit = points.own_limit.data();
+    } else {
+      const ParticleArrays<dim> &p = bodies_[b]->particles();
+      points.own_cell.resize(std::max<size_t>(points.own_cell.size(), p.count));
+      to_nodes<dim, false, apic>(*bodies_[b], grid_, start_velocity_.data(), points);
+      points.count = p.count, points.cell = points.own_cell.data(), points.stress = p.stress, points.history = p.history;
+      points.volume = p.volume, points.limit = p.initial_volume;
+    }
+  }
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::begin(double t) {
+  PetscFunctionBeginUser;
+  if (gathered_) PetscFunctionReturn(0);
+  std::fill(start_velocity_.begin(), start_velocity_.end(), Vec<dim>{});
+  if (transfer_.velocity == Velocity::apic)
+    gather<true>();
+  else
+    gather<false>();
+  grid_.enter_shared_nodes();
+  PetscCall(finish_gather(t));
+  gathered_ = true, remap_time_ = t, moved_ = 0, smallest_ratio_ = 1, step_ratio_ = 1;
+  PetscFunctionReturn(0);
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double) {
+  PetscFunctionBeginUser;
+  constexpr int width = dim + 2;  // mass, momentum, volume
+  const int nodes = grid_.node_count(), cells = grid_.cell_count();
+  std::fill_n(nodal_.begin(), nodes * width, 0.);
+  for (int c = 0; c < cells; ++c) {
+    const auto &matrix = grid_.mass_matrix[c];
+    const auto &node = grid_.shape[c].node;
+    for (int k = 0, pair = dim + 1; k <= dim; ++k) {
+      nodal_[node[k] * width] += matrix[k];
+      for (int l = k + 1; l <= dim; ++l, ++pair) nodal_[node[k] * width] += matrix[pair], nodal_[node[l] * width] += matrix[pair];
+      nodal_[node[k] * width + dim + 1] += grid_.nodal_share[c][k];
+    }
+  }
+  for (int i = 0; i < nodes; ++i)
+    for (int d = 0; d < dim; ++d) nodal_[i * width + 1 + d] = start_velocity_[i][d];
+  PetscCall(grid_.sum(nodal_.data(), width));
+  for (int i = 0; i < nodes; ++i) {
+    const double m = grid_.mass[i] = nodal_[i * width];
+    for (int d = 0; d < dim; ++d) start_velocity_[i][d] = m > 0 ? nodal_[i * width + 1 + d] / m : 0;
+    if (!(m > 0)) grid_.mass[i] = std::numeric_limits<double>::min();  // no particle sees this node
+  }
+  set_weights(nodal_);
+  // what the cells are made of: wave impedances for dashpots
+  for (int c = 0; c < cells; ++c) impedance_[c] = {0, 0};
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    const double wave = constrained_modulus(bodies_[b]->law()), shear = shear_modulus(bodies_[b]->law());
+    for (int q = 0; q < points_[b].count; ++q) {
+      const int c = points_[b].cell[q];
+      double m = 0;
+      for (int k = 0; k < simplex_pairs<dim>; ++k) m += (k <= dim ? 1 : 2) * grid_.mass_matrix[c][k];
+      const double density = m / particle_volume_[c], share = points_[b].volume[q] / particle_volume_[c];
+      impedance_[c][0] += share * std::sqrt(density * wave), impedance_[c][1] += share * std::sqrt(density * shear);
+    }
+  }
+  for (int c = 0; c < cells; ++c) volume_strain_[c] = particle_volume_[c] / grid_.shape[c].volume;  // filling, borrowed room
+  PetscCall(conditions_.begin(grid_, impedance_, volume_strain_));
+  conditions_.constrain(loading.time, grid_, start_velocity_.data(), false);
+  std::copy_n(start_velocity_.begin(), nodes, velocity_.begin());
+  PetscCall(back_and_forth(start_velocity_.data(), mapped_start_.data()));
+  for (int i = 0; i < nodes; ++i)
+    for (int d = 0; d < dim; ++d) mapped_start_[i][d] = start_velocity_[i][d] - mapped_start_[i][d];
+  if (transfer_.average_stress)
+    for (size_t b = 0; b < bodies_.size(); ++b) {
+      if (!softens(bodies_[b]->law())) continue;  // the mean of admissible stresses is admissible where strength is uniform
+      const PointSet &p = points_[b];
+      admit_stress<dim>(bodies_[b]->law(), {p.count, p.stress, p.history, p.stress, p.history, p.cell, increment_.data(), grid_.size.data()});
+    }
+  if constexpr (Phases::given) {
+    PetscCall(gather_pore_water());
+    sample_time_[1] = -std::numeric_limits<double>::infinity();
+  }
+  PetscFunctionReturn(0);
+}
+
+/// Integration volume: the cell's own where its nodes are well filled, that of its particles at the surface, theory (4.5).
+template <int dim, class Phases>
+void SoilMotion<dim, Phases>::set_weights(const std::vector<double> &nodal) {
+  constexpr int width = dim + 2;
+  constexpr double ramp_start = dim == 2 ? 0.7 : 0.6, ramp_length = 0.2;
+  for (int c = 0; c < grid_.cell_count(); ++c) {
+    const auto &node = grid_.shape[c].node;
+    double volume = 0, filling = 1e300;
+    for (double share : grid_.nodal_share[c]) volume += share;
+    for (int i : node) filling = std::min(filling, nodal[i * width + dim + 1] / mesh_.nodal_volume[grid_.mesh_node[i]]);
+    double &blend = blend_[c];
+    switch (transfer_.integration) {
+      case Integration::blended: blend = std::clamp((filling - ramp_start) / ramp_length, 0., 1.); break;
+      case Integration::mixed: blend = filling > 0.5 && volume > transfer_.filling * grid_.shape[c].volume; break;
+      case Integration::cell: blend = filling > 0.5; break;
+      case Integration::particle: blend = 0; break;
+    }
+    particle_volume_[c] = volume;
+    weight_[c] = volume + blend * (grid_.shape[c].volume - volume);
+    slenderness_[c] = 0;
+    for (const auto &g : grid_.shape[c].gradient)
+      for (double x : g) slenderness_[c] += x * x;
+  }
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::release(double t, std::vector<std::vector<int>> &movers) {
+  PetscFunctionBeginUser;
+  const int nodes = grid_.node_count();
+  const double relaxed = relaxation_time_ > 0 ? std::exp(-(t - remap_time_) / relaxation_time_) : 1;
+  const bool apic = transfer_.velocity == Velocity::apic;
+  const double flip = transfer_.velocity == Velocity::flip ? relaxed * (1 - transfer_.pic_fraction) : 0;
+  for (int i = 0; i < nodes; ++i) {
+    const Vec<dim> &v = velocity_[i], &v0 = start_velocity_[i], &x = grid_.position[i], &X = mesh_.position[grid_.mesh_node[i]];
+    for (int d = 0; d < dim; ++d) {
+      update_.velocity[i][d] = v[d] - flip * v0[d];
+      update_.displacement[i][d] = x[d] - X[d];
+    }
+  }
+  if (apic) {
+    affine_.resize(static_cast<size_t>(mesh_.cell_count()) * dim * dim);
+    for (int c = 0; c < grid_.cell_count(); ++c)
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) {
+          double g = 0;
+          for (int k = 0; k < dim; ++k)
+            g += (velocity_[grid_.shape[c].node[k + 1]][i] - velocity_[grid_.shape[c].node[0]][i]) * mesh_.cells[grid_.mesh_cell[c]].gradient[k][j];
+          affine_[(c * dim + i) * dim + j] = g;
+        }
+  }
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    if (transfer_.average_stress)
+      to_particles<dim, true>(*bodies_[b], grid_, update_, flip, apic ? affine_.data() : nullptr, points_[b], movers[b]);
+    else
+      to_particles<dim, false>(*bodies_[b], grid_, update_, flip, apic ? affine_.data() : nullptr, points_[b], movers[b]);
+    for (int cell : grid_.mesh_cell) points_[b].of_cell[cell] = -1;
+  }
+  grid_.clear();
+  gathered_ = false;
+  PetscFunctionReturn(0);
+}
+
+/// Nodes to particles and back at frozen positions, out = M^-1 M^c in: the operator form of MUSL, theory (4.9).
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::back_and_forth(const Vec<dim> *in, Vec<dim> *out) {
+  PetscFunctionBeginUser;
+  const int nodes = grid_.node_count(), cells = grid_.cell_count();
+  std::fill_n(out, nodes, Vec<dim>{});
+  for (int c = 0; c < cells; ++c) {
+    const auto &node = grid_.shape[c].node;
+    const auto &matrix = grid_.mass_matrix[c];
+    Vec<dim> sum[dim + 1];
+    for (int k = 0; k <= dim; ++k)
+      for (int d = 0; d < dim; ++d) sum[k][d] = matrix[k] * in[node[k]][d];
+    for (int k = 0, pair = dim + 1; k <= dim; ++k)
+      for (int l = k + 1; l <= dim; ++l, ++pair)
+        for (int d = 0; d < dim; ++d) {
+          sum[k][d] += matrix[pair] * in[node[l]][d];
+          sum[l][d] += matrix[pair] * in[node[k]][d];
+        }
+    for (int k = 0; k <= dim; ++k)
+      for (int d = 0; d < dim; ++d) out[node[k]][d] += sum[k][d];
+  }
+  PetscCall(grid_.sum(out[0].data(), dim));
+  for (int i = 0; i < nodes; ++i)
+    for (int d = 0; d < dim; ++d) out[i][d] /= grid_.mass[i];
+  PetscFunctionReturn(0);
+}
+
+// ---- Lagrangian part ----
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::smooth_volume_strain() {
+  PetscFunctionBeginUser;
+  const int cells = grid_.cell_count();
+  if (transfer_.locking == Locking::patches) {  // F-bar: one mean per patch, weighted as in the forces, theory (4.7)
+    for (int c = 0; c < cells; ++c) patch_weight_[grid_.patch[c]] = patch_sum_[grid_.patch[c]] = 0;
+    for (int c = 0; c < cells; ++c) patch_weight_[grid_.patch[c]] += weight_[c], patch_sum_[grid_.patch[c]] += weight_[c] * volume_strain_[c];
+    for (int c = 0; c < cells; ++c) {
+      const double mean = patch_sum_[grid_.patch[c]] / patch_weight_[grid_.patch[c]];
+      const double correction = (mean - volume_strain_[c]) / 3;
+      for (int k = 0; k < 3; ++k) increment_[c].strain[k] += correction;
+      volume_strain_[c] = mean;
+    }
+  } else if (transfer_.locking == Locking::nodal) {
+    std::fill_n(nodal_.begin(), 2 * grid_.node_count(), 0.);
+    for (int c = 0; c < cells; ++c)
+      for (int i : grid_.shape[c].node) {
+        nodal_[2 * i] += grid_.shape[c].volume;
+        nodal_[2 * i + 1] += grid_.shape[c].volume * volume_strain_[c];
+      }
+    PetscCall(grid_.sum(nodal_.data(), 2));
+    for (int c = 0; c < cells; ++c) {
+      double mean = 0;
+      for (int i : grid_.shape[c].node) mean += nodal_[2 * i + 1] / nodal_[2 * i] / (dim + 1);
+      const double correction = (mean - volume_strain_[c]) / 3;
+      for (int k = 0; k < 3; ++k) increment_[c].strain[k] += correction;
+      volume_strain_[c] = mean;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/// Deforms the accepted state by nodal displacements `u`: into the trial state, or in place.
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::deform(const Vec<dim> *u, bool trial) {
+  PetscFunctionBeginUser;
+  const int nodes = grid_.node_count(), cells = grid_.cell_count();
+  if (trial) {
+    trial_position_.resize(velocity_.size()), trial_shape_.resize(cells);
+    trial_particle_volume_.resize(cells), trial_weight_.resize(cells);
+    trial_stress_.resize(bodies_.size()), trial_history_.resize(bodies_.size()), trial_volume_.resize(bodies_.size());
+  }
+  Vec<dim> *position = trial ? trial_position_.data() : grid_.position.data();
+  Shape<dim> *shape = trial ? trial_shape_.data() : grid_.shape.data();
+  double *particle_volume = trial ? trial_particle_volume_.data() : particle_volume_.data();
+  double *weight = trial ? trial_weight_.data() : weight_.data();
+  for (int i = 0; i < nodes; ++i)
+    for (int d = 0; d < dim; ++d) position[i][d] = grid_.position[i][d] + u[i][d];
+  double slender = 1, smallest = 1;
+  for (int c = 0; c < cells; ++c) {
+    const Shape<dim> &from = grid_.shape[c];
+    Shape<dim> &to = shape[c];
+    Square<dim> g = Square<dim>::Zero();
+    for (int k = 0; k < dim; ++k)
+      for (int i = 0; i < dim; ++i) {
+        const double du = u[from.node[k + 1]][i] - u[from.node[0]][i];
+        for (int j = 0; j < dim; ++j) g(i, j) += du * from.gradient[k][j];
+      }
+    if (!decompose<dim>(g, increment_[c])) {
+      smallest = -1;
+      increment_[c] = {};
+      increment_[c].rotation[0] = 1;
+      if constexpr (dim == 3) increment_[c].rotation[4] = increment_[c].rotation[8] = 1;
+    }
+    volume_strain_[c] = trace<dim>(increment_[c]);
+    std::array<const Vec<dim> *, dim + 1> x;
+    for (int k = 0; k <= dim; ++k) x[k] = &position[from.node[k]];
+    to.node = from.node;
+    to.volume = simplex_gradients<dim>(x, to.gradient);
+    double gradient = 0;
+    for (const auto &row : to.gradient)
+      for (double value : row) gradient += value * value;
+    slender = std::max(slender, gradient / slenderness_[c]);
+    smallest = std::min(smallest, to.volume / mesh_.volume[grid_.mesh_cell[c]]);
+  }
+  if (!trial) step_ratio_ = 1 / std::sqrt(slender), smallest_ratio_ = smallest;
+  PetscCall(smooth_volume_strain());
+  for (int c = 0; c < cells; ++c) particle_volume[c] = 0;
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    const PointSet &p = points_[b];
+    const Body<dim> &body = *bodies_[b];
+    double *stress = p.stress, *history = p.history, *volume = p.volume;
+    if (trial) {
+      trial_stress_[b].resize(p.count * components), trial_history_[b].resize(p.count * body.history_count()), trial_volume_[b].resize(p.count);
+      stress = trial_stress_[b].data(), history = trial_history_[b].data(), volume = trial_volume_[b].data();
+    }
+    update_stress<dim>(body.law(), {p.count, p.stress, p.history, stress, history, p.cell, increment_.data(), grid_.size.data()});
+    for (int q = 0; q < p.count; ++q) {
+      const int c = p.cell[q];
+      volume[q] = std::min(p.volume[q] * exp_small(volume_strain_[c]), body.volume_limit(p.limit[q], history + q * body.history_count()));
+      particle_volume[c] += volume[q];
+    }
+  }
+  for (int c = 0; c < cells; ++c) weight[c] = particle_volume[c] + blend_[c] * (shape[c].volume - particle_volume[c]);
+  PetscFunctionReturn(0);
+}
+
+/// Forces of the stress of the accepted or the trial state on the nodes of this rank, theory (3.6).
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::internal_force(bool trial) {
+  PetscFunctionBeginUser;
+  const int cells = grid_.cell_count();
+  const Shape<dim> *shape = trial ? trial_shape_.data() : grid_.shape.data();
+  const double *particle_volume = trial ? trial_particle_volume_.data() : particle_volume_.data();
+  const double *weight = trial ? trial_weight_.data() : weight_.data();
+  std::fill_n(cell_stress_.begin(), cells, std::array<double, components>{});
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    const PointSet &p = points_[b];
+    const double *stress = trial ? trial_stress_[b].data() : p.stress, *volume = trial ? trial_volume_[b].data() : p.volume;
+    for (int q = 0; q < p.count; ++q) {
+      auto &sum = cell_stress_[p.cell[q]];
+      const double share = volume[q] / particle_volume[p.cell[q]];
+      for (int s = 0; s < components; ++s) sum[s] += share * stress[q * components + s];
+    }
+  }
+  if (transfer_.locking == Locking::patches) {
+    for (int c = 0; c < cells; ++c) patch_weight_[grid_.patch[c]] = patch_sum_[grid_.patch[c]] = 0;
+    for (int c = 0; c < cells; ++c) {
+      const auto &s = cell_stress_[c];
+      patch_weight_[grid_.patch[c]] += weight[c], patch_sum_[grid_.patch[c]] += weight[c] * (s[0] + s[1] + s[2]) / 3;
+    }
+    for (int c = 0; c < cells; ++c) {
+      auto &s = cell_stress_[c];
+      const double correction = patch_sum_[grid_.patch[c]] / patch_weight_[grid_.patch[c]] - (s[0] + s[1] + s[2]) / 3;
+      for (int k = 0; k < 3; ++k) s[k] += correction;
+    }
+  }
+  std::fill_n(force_.begin(), grid_.node_count(), Vec<dim>{});
+  for (int c = 0; c < cells; ++c) {
+    const auto &s = cell_stress_[c];
+    const double w = weight[c];
+    Vec<dim> first{};
+    for (int k = 0; k < dim; ++k) {
+      const Vec<dim> &g = shape[c].gradient[k];
+      Vec<dim> f;
+      if constexpr (dim == 2)
+        f = {w * (s[0] * g[0] + s[3] * g[1]), w * (s[3] * g[0] + s[1] * g[1])};
+      else
+        f = {w * (s[0] * g[0] + s[3] * g[1] + s[5] * g[2]), w * (s[3] * g[0] + s[1] * g[1] + s[4] * g[2]),
+             w * (s[5] * g[0] + s[4] * g[1] + s[2] * g[2])};
+      for (int d = 0; d < dim; ++d) force_[shape[c].node[k + 1]][d] -= f[d], first[d] += f[d];
+    }
+    for (int d = 0; d < dim; ++d) force_[shape[c].node[0]][d] += first[d];
+  }
+  PetscFunctionReturn(0);
+}
+
+/// Accelerations that the scene gives per particle, beside gravity.
+template <int dim, class Phases>
+void SoilMotion<dim, Phases>::add_body_forces(double t) {
+  for (const auto &body : bodies_) {
+    const auto &given = body->source().body_acceleration;
+    if (given.empty()) continue;
+    const ParticleArrays<dim> &p = body->particles();
+    for (int i = 0; i < p.count; ++i) {
+      const auto n = barycentric(mesh_.cells[p.cell[i]], p.position[i]);
+      const auto &node = grid_.shape[grid_.find_cell(p.cell[i])].node;
+      const Vec<dim> &X = p.reference[i];
+      for (int d = 0; d < dim; ++d) {
+        const double f = p.mass[i] * given[d](X[0], X[1], dim == 3 ? X[dim - 1] : 0, t);
+        for (int k = 0; k <= dim; ++k) force_[node[k]][d] += n[k] * f;
+      }
+    }
+  }
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::total_force(double t, bool trial) {
+  PetscFunctionBeginUser;
+  PetscCall(internal_force(trial));
+  conditions_.add_loads(t, grid_, force_.data());
+  add_body_forces(t);
+  if constexpr (Phases::given) add_pore_pressure(t, trial);
+  PetscCall(grid_.sum(force_[0].data(), dim));
+  for (int i = 0; i < grid_.node_count(); ++i) {
+    const double m = grid_.mass[i] + (Phases::given ? extra_mass_[i] : 0);
+    for (int d = 0; d < dim; ++d) force_[i][d] += m * loading.gravity[d];
+  }
+  PetscFunctionReturn(0);
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::acceleration(double, const double *u, const double *v, double *a) {
+  PetscFunctionBeginUser;
+  if (u) PetscCall(deform(reinterpret_cast<const Vec<dim> *>(u), true));
+  PetscCall(total_force(loading.time, u != nullptr));
+  for (int i = 0; i < grid_.node_count(); ++i) {
+    const double inverse = grid_.mass[i] > smallest_mass_ ? 1 / grid_.mass[i] : 0;  // a lighter node is carried along
+    for (int d = 0; d < dim; ++d) {
+      double f = force_[i][d];
+      const double power = f * v[i * dim + d];
+      f *= 1 - loading.damping * ((power > 0) - (power < 0));
+      a[i * dim + d] = inverse * f;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::drag(double, double gamma, double *v) {
+  PetscFunctionBeginUser;
+  conditions_.resolve(loading.time, gamma, grid_, reinterpret_cast<Vec<dim> *>(v));
+  PetscFunctionReturn(0);
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::map_back(double, double gamma, double *v, double *w) {
+  PetscFunctionBeginUser;
+  Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v), *mapped = reinterpret_cast<Vec<dim> *>(w);
+  PetscCall(back_and_forth(velocity, mapped));
+  if (transfer_.remap_interval > 0 && relaxation_time_ > 0) {
+    const double share = 1 - std::exp(-gamma / relaxation_time_);
+    for (int i = 0; i < grid_.node_count(); ++i)
+      for (int d = 0; d < dim; ++d) velocity[i][d] += share * (mapped[i][d] - velocity[i][d]);
+    conditions_.constrain(loading.time, grid_, velocity, true);
+  }
+  for (int i = 0; i < grid_.node_count(); ++i)
+    for (int d = 0; d < dim; ++d) mapped[i][d] += mapped_start_[i][d];
+  conditions_.constrain(loading.time, grid_, mapped, true);
+  PetscFunctionReturn(0);
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::accept(double, const double *u, const double *v) {
+  PetscFunctionBeginUser;
+  if (v != velocity_[0].data()) std::copy_n(reinterpret_cast<const Vec<dim> *>(v), grid_.node_count(), velocity_.begin());
+  PetscCall(deform(reinterpret_cast<const Vec<dim> *>(u), false));
+  moved_ = 0, speed_squared_ = 0;
+  for (int i = 0; i < grid_.node_count(); ++i) {
+    const Vec<dim> &x = grid_.position[i], &X = mesh_.position[grid_.mesh_node[i]];
+    double distance = 0, speed = 0;
+    for (int d = 0; d < dim; ++d) distance += (x[d] - X[d]) * (x[d] - X[d]), speed += velocity_[i][d] * velocity_[i][d];
+    const double edge = mesh_.mean_edge[grid_.mesh_node[i]];
+    moved_ = std::max(moved_, distance / (edge * edge));
+    speed_squared_ = speed <= speed_squared_ ? speed_squared_ : speed;  // a NaN passes through
+  }
+  moved_ = std::sqrt(moved_);
+  PetscFunctionReturn(0);
+}
+
+template <int dim, class Phases>
+bool SoilMotion<dim, Phases>::find_broken(Vec<dim> *where) const {
+  for (int i = 0; i < grid_.node_count(); ++i)
+    for (int d = 0; d < dim; ++d)
+      if (!std::isfinite(velocity_[i][d])) {
+        *where = mesh_.position[grid_.mesh_node[i]];
+        return true;
+      }
+  return false;
+}
+
+// ---- given pore pressure ----
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::gather_pore_water()
+  requires Phases::given
+{
+  PetscFunctionBeginUser;
+  std::fill_n(extra_mass_.begin(), grid_.node_count(), 0.);
+  for (const auto &body : bodies_) {
+    const BodySource &source = body->source();
+    const ParticleArrays<dim> &p = body->particles();
+    for (int i = 0; i < p.count; ++i) {
+      const double dry = source.grain_density * (1 - source.porosity);
+      const double saturation = pressure_.below_table(p.position[i], loading.time) ? 1 : source.saturation;
+      const double extra = (dry + source.porosity * saturation * pressure_.density()) * p.initial_volume[i] - p.mass[i];
+      if (std::abs(extra) <= 1e-12 * p.mass[i]) continue;
+      const auto n = barycentric(mesh_.cells[p.cell[i]], p.position[i]);
+      const auto &node = grid_.shape[grid_.find_cell(p.cell[i])].node;
+      for (int k = 0; k <= dim; ++k) extra_mass_[node[k]] += n[k] * extra;
+    }
+  }
+  PetscCall(grid_.sum(extra_mass_.data(), 1));
+  PetscFunctionReturn(0);
+}
+
+/// Samples the given pressure at the nodes now and a few steps ahead; in between it is linear in time.
+template <int dim, class Phases>
+void SoilMotion<dim, Phases>::sample_pressure(double t)
+  requires Phases::given
+{
+  constexpr double steps_ahead = 16;
+  if (t >= sample_time_[0] && t <= sample_time_[1]) return;
+  const double step = last_pressure_time_ < t ? t - last_pressure_time_ : 1e-6 * (1 + std::abs(t));
+  sample_time_[0] = t, sample_time_[1] = t + steps_ahead * step;
+  for (int k = 0; k < 2; ++k) {
+    auto &sample = sample_[k];
+    sample.gradient.resize(mesh_.cell_count()), sample.value.resize(mesh_.cell_count()), sample.nodal.resize(mesh_.node_count());
+    for (int i = 0; i < grid_.node_count(); ++i) sample.nodal[i] = pressure_(mesh_.position[grid_.mesh_node[i]], sample_time_[k]);
+    for (int c = 0; c < grid_.cell_count(); ++c) {
+      const auto &node = grid_.shape[c].node;
+      const Cell<dim> &cell = mesh_.cells[grid_.mesh_cell[c]];
+      Vec<dim> gradient{};
+      double value = 0;
+      for (int a = 0; a < dim; ++a)
+        for (int d = 0; d < dim; ++d) gradient[d] += (sample.nodal[node[a + 1]] - sample.nodal[node[0]]) * cell.gradient[a][d];
+      double volume = 0;
+      for (int a = 0; a <= dim; ++a) volume += grid_.nodal_share[c][a];
+      for (int a = 0; a <= dim; ++a)
+        value += sample.nodal[node[a]] * (blend_[c] / (dim + 1) + (1 - blend_[c]) * grid_.nodal_share[c][a] / volume);
+      sample.gradient[c] = gradient, sample.value[c] = value;
+    }
+  }
+}
+
+/// With open water on submerged faces the pore pressure acts as the body force -grad p, which includes the water's weight on the
+/// face without knowing where the face is; without it, as a part of the stress, theory (2.8), (2.9).
+template <int dim, class Phases>
+void SoilMotion<dim, Phases>::add_pore_pressure(double t, bool trial)
+  requires Phases::given
+{
+  sample_pressure(t);
+  last_pressure_time_ = t;
+  const double s = (t - sample_time_[0]) / (sample_time_[1] - sample_time_[0]);
+  const Shape<dim> *shape = trial ? trial_shape_.data() : grid_.shape.data();
+  const double *weight = trial ? trial_weight_.data() : weight_.data();
+  for (int c = 0; c < grid_.cell_count(); ++c) {
+    const auto &node = shape[c].node;
+    if (pressure_.open_water_load()) {
+      for (int k = 0; k <= dim; ++k)
+        for (int d = 0; d < dim; ++d)
+          force_[node[k]][d] -= grid_.nodal_share[c][k] * ((1 - s) * sample_[0].gradient[c][d] + s * sample_[1].gradient[c][d]);
+    } else {
+      const double push = weight[c] * ((1 - s) * sample_[0].value[c] + s * sample_[1].value[c]);
+      for (int k = 0; k < dim; ++k)
+        for (int d = 0; d < dim; ++d) {
+          force_[node[k + 1]][d] += push * shape[c].gradient[k][d];
+          force_[node[0]][d] -= push * shape[c].gradient[k][d];
+        }
+    }
+  }
+}
+
+template <int dim, class Phases>
+double SoilMotion<dim, Phases>::pore_pressure(const Vec<dim> &x) const {
+  if constexpr (Phases::given)
+    return pressure_(x, loading.time);
+  else
+    return 0;
+}
+
+// ---- what others read ----
+
+template <int dim, class Phases>
+void SoilMotion<dim, Phases>::present(const Body<dim> &body, int i, Vec<dim> *position, Vec<dim> *velocity) const {
+  const ParticleArrays<dim> &p = body.particles();
+  *position = p.position[i], *velocity = p.velocity[i];
+  if (!gathered_) return;
+  const auto n = barycentric(mesh_.cells[p.cell[i]], p.position[i]);
+  const auto &node = grid_.shape[grid_.find_cell(p.cell[i])].node;
+  for (int k = 0; k <= dim; ++k)
+    for (int d = 0; d < dim; ++d) {
+      (*position)[d] += n[k] * (grid_.position[node[k]][d] - mesh_.position[grid_.mesh_node[node[k]]][d]);
+      (*velocity)[d] += n[k] * (velocity_[node[k]][d] - start_velocity_[node[k]][d]);
+    }
+}
+
+template <int dim, class Phases>
+void SoilMotion<dim, Phases>::state(int b, int i, double *stress, double *history, double *volume) const {
+  const Body<dim> &body = *bodies_[b];
+  const ParticleArrays<dim> &p = body.particles();
+  const int count = body.history_count();
+  std::copy_n(&p.stress[i * components], components, stress);
+  if (count) std::copy_n(&p.history[i * count], count, history);
+  *volume = p.volume[i];
+  if (!gathered_ || !transfer_.average_stress) return;
+  const PointSet &points = points_[b];
+  const int q = points.of_cell[p.cell[i]];
+  std::copy_n(&points.stress[q * components], components, stress);
+  for (int h = 0; h < count; ++h) history[h] += points.history[q * count + h] - points.start_history[q * count + h];
+  *volume = std::min(p.volume[i] * points.volume[q] / points.start_volume[q], body.volume_limit(p.initial_volume[i], history));
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::balance(double, Balance *sums) {
+  PetscFunctionBeginUser;
+  double local[4]{}, total[4];
+  PetscCall(total_force(loading.time, false));
+  std::copy_n(force_.begin(), grid_.node_count(), scratch_.begin());
+  conditions_.project(grid_, velocity_.data(), scratch_.data());
+  const auto magnitude = [](const Vec<dim> &x) {
+    double s = 0;
+    for (double c : x) s += c * c;
+    return std::sqrt(s);
+  };
+  for (int i = 0; i < grid_.node_count(); ++i) {
+    if (!mesh_.owned[grid_.mesh_node[i]]) continue;
+    double speed = 0;
+    for (double c : velocity_[i]) speed += c * c;
+    local[0] += magnitude(scratch_[i]);
+    local[2] += grid_.mass[i] * speed / 2;
+  }
+  std::fill_n(force_.begin(), grid_.node_count(), Vec<dim>{});
+  conditions_.add_loads(loading.time, grid_, force_.data());
+  add_body_forces(loading.time);
+  PetscCall(grid_.sum(force_[0].data(), dim));
+  for (int i = 0; i < grid_.node_count(); ++i) {
+    if (!mesh_.owned[grid_.mesh_node[i]]) continue;
+    for (int d = 0; d < dim; ++d) force_[i][d] += grid_.mass[i] * loading.gravity[d];
+    local[1] += magnitude(force_[i]);
+  }
+  for (size_t b = 0; b < bodies_.size(); ++b)
+    for (int q = 0; q < points_[b].count; ++q)
+      local[3] += points_[b].volume[q] * stored_energy<dim>(bodies_[b]->law(), &points_[b].stress[q * components]);
+  PetscCallMPI(MPI_Allreduce(local, total, 4, MPI_DOUBLE, MPI_SUM, mesh_.comm()));
+  *sums = {total[0], total[1], total[2], total[3]};
+  PetscFunctionReturn(0);
+}
+
+}  // namespace talus

@@ -1,0 +1,36 @@
+#pragma once
+/// The largest stable step 2 / omega_max of an explicit integrator, from the eigenvalue bound of the filled cells: with lumped mass the
+/// largest frequency of the assembled mesh is at most the largest of any one cell (Irons & Treharne 1971; Belytschko, Liu &
+/// Moran 2000, sec. 6.2). MUSL keeps light nodes from lowering it (docs/theory, section 5.2).
+#include <limits>
+#include <vector>
+
+#include "meshes/background_mesh.h"
+#include "physics/laws/laws.h"
+
+namespace talus {
+
+/// Largest eigenfrequency squared of a cell of a uniform elastic material [1/s2].
+template <int dim>
+double cell_frequency_squared(const Cell<dim> &cell, const Law &law, double density);
+
+/// Critical steps of one body's cells, computed when a cell is first filled.
+template <int dim>
+class CriticalStep {
+ public:
+  CriticalStep(const BackgroundMesh<dim> &mesh, const Law &law, double density)
+      : mesh_(&mesh), law_(&law), density_(density), step_(mesh.cell_count(), 0) {}
+  double operator()(int mesh_cell) {
+    double &step = step_[mesh_cell];
+    if (step == 0) step = 2 / std::sqrt(cell_frequency_squared(mesh_->cells[mesh_cell], *law_, density_));
+    return step;
+  }
+
+ private:
+  const BackgroundMesh<dim> *mesh_;
+  const Law *law_;
+  double density_;
+  std::vector<double> step_;
+};
+
+}  // namespace talus

@@ -1,0 +1,31 @@
+#pragma once
+/// The paper's explicit Euler with the velocity updated first and strain from velocities mapped back from the particles (MUSL),
+/// docs/theory (5.1)-(5.4). Alonso, Yerro & Pinyol (2015), sec. 2.2; Sulsky, Zhou & Schreyer (1995).
+#include <vector>
+
+#include "base/units.h"
+#include "solvers/integrator.h"
+
+namespace talus {
+
+/// Keys of [integrator] with kind = "euler".
+struct EulerSettings {
+  static constexpr const char *name = "euler";
+  double step = 0;        ///< fixed step [s]; 0: a fraction of the critical step
+  double fraction = 0.6;  ///< of the critical step 2 / omega_max [-]
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.number("step", step, second, Range{0, 1e9}, "fixed time step; 0 takes a fraction of the critical step");
+    v.number("fraction", fraction, one, Range{0.001, 1}, "time step over the critical step 2 / omega_max, recomputed as the run goes");
+  }
+};
+
+class Euler final : public Integrator {
+ public:
+  PetscErrorCode advance(Motion &motion, double t, double step) override;
+
+ private:
+  std::vector<double> acceleration_, mapped_;
+};
+
+}  // namespace talus

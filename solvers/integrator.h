@@ -1,0 +1,14 @@
+#pragma once
+/// The plug of the time loop: one step of any integrator over any motion.
+#include "physics/motion.h"
+
+namespace talus {
+
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+  /// Advances the motion from t by `step` [s]; a step that an integrator divides further ends at t + step all the same.
+  virtual PetscErrorCode advance(Motion &motion, double t, double step) = 0;
+};
+
+}  // namespace talus

@@ -1,0 +1,22 @@
+#pragma once
+/// Four doubles in one register: the barycentric coordinates of a simplex, or a vector padded with zeros.
+
+namespace talus {
+
+using Quad = double __attribute__((vector_size(32)));
+
+inline Quad quad(double x) { return Quad{x, x, x, x}; }
+
+/// The first n of four doubles, the rest zero.
+template <int n>
+inline Quad load(const double *x) {
+  Quad q{};
+  for (int k = 0; k < n; ++k) q[k] = x[k];
+  return q;
+}
+template <int n>
+inline void store(double *x, Quad q) {
+  for (int k = 0; k < n; ++k) x[k] = q[k];
+}
+
+}  // namespace talus

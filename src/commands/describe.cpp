@@ -1,0 +1,30 @@
+#include <iostream>
+
+#include "commands/commands.h"
+#include "physics/boundary/boundary.h"
+#include "physics/laws/laws.h"
+#include "scene/describe.h"
+#include "scene/scene.h"
+#include "solvers/integrators.h"
+
+namespace talus {
+
+Action add_describe(CLI::App &app) {
+  auto key = std::make_shared<std::string>();
+  CLI::App *command = app.add_subcommand("describe", "every key of a scene: meaning, unit, default, range");
+  command->add_option("KEY", *key, "a key, a table or a kind, such as body.density, stage or mohr_coulomb");
+  return [key] {
+    Describer describer;
+    describe_scene(describer);
+    describe_one_of<Law>(describer, "body.NAME", "law");
+    describe_one_of<Boundary>(describer, "boundary.NAME", "kind");
+    describe_one_of<IntegratorSettings>(describer, "integrator", "kind");
+    int rank;
+    MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+    std::ostringstream nowhere;
+    describer.print(rank == 0 ? std::cout : static_cast<std::ostream &>(nowhere), *key);
+    return 0;
+  };
+}
+
+}  // namespace talus

@@ -1,0 +1,46 @@
+#include <csignal>
+#include <filesystem>
+
+#include "commands/commands.h"
+#include "commands/gallery.h"
+#include "scene/reader.h"
+#include "simulation.h"
+
+namespace talus {
+namespace {
+
+struct RunArguments {
+  std::string scene, directory;
+  std::vector<std::string> set;
+  bool no_pictures = false;
+};
+
+void on_signal(int) { interrupted = 1; }
+
+int run(const RunArguments &arguments) {
+  Scene scene = read_scene(find_scene(arguments.scene), arguments.set);
+  RunOptions options;
+  options.directory = arguments.directory.empty() ? "results/" + std::filesystem::path(find_scene(arguments.scene)).parent_path().filename().string() : arguments.directory;
+  options.pictures = !arguments.no_pictures;
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  make_simulation(PETSC_COMM_WORLD, scene, options)->run();
+  int rank;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  if (rank == 0) std::fprintf(stderr, "results are in %s: report.html to read, run.xdmf for ParaView\n", options.directory.c_str());
+  return 0;
+}
+
+}  // namespace
+
+Action add_run(CLI::App &app) {
+  auto arguments = std::make_shared<RunArguments>();
+  CLI::App *command = app.add_subcommand("run", "run a scene and draw its pictures");
+  command->add_option("SCENE", arguments->scene, "scene file (.toml) or the name of a gallery scene")->required();
+  command->add_option("-o,--output", arguments->directory, "folder of the results (default results/NAME)");
+  command->add_option("--set", arguments->set, "override a key of the scene: key.path=value")->take_all();
+  command->add_flag("--no-pictures", arguments->no_pictures, "do not draw pictures at the end");
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace talus

@@ -1,0 +1,60 @@
+/// The program `talus`: commands, and how errors become exit statuses (0 success, 2 bad input, 1 anything else).
+#include <petscsys.h>
+
+#include <cstdio>
+#include <map>
+#include <stdexcept>
+
+#include "base/version.h"
+#include "commands/commands.h"
+
+namespace {
+
+/// Runs the chosen command; owned PETSc objects die in here, before PetscFinalize.
+int perform(int argc, char **argv, bool speaks) {
+  CLI::App app{"Talus: landslides by the material point method, from the first creep to the last metre of run-out"};
+  app.set_version_flag("--version", std::string("talus ") + talus::version);
+  app.require_subcommand(1);
+  std::map<CLI::App *, talus::Action> actions;
+  for (auto add : {talus::add_run, talus::add_describe}) {
+    const auto before = app.get_subcommands({}).size();
+    const talus::Action action = add(app);
+    actions[app.get_subcommands({})[before]] = action;
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError &error) {
+    if (!speaks) return error.get_exit_code() ? 2 : 0;
+    return app.exit(error) ? 2 : 0;
+  }
+  try {
+    for (CLI::App *chosen : app.get_subcommands()) return actions.at(chosen)();
+  } catch (const std::invalid_argument &error) {
+    if (speaks) std::fprintf(stderr, "talus: %s\n", error.what());
+    return 2;
+  } catch (const std::exception &error) {
+    if (speaks) std::fprintf(stderr, "talus: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char **argv) {
+  // everything behind a lone "--" is PETSc's
+  int own = argc;
+  for (int i = 1; i < argc; ++i)
+    if (std::string(argv[i]) == "--") own = i;
+  std::vector<char *> petsc_arguments{argv[0]};
+  for (int i = own + 1; i < argc; ++i) petsc_arguments.push_back(argv[i]);
+  int petsc_count = static_cast<int>(petsc_arguments.size());
+  petsc_arguments.push_back(nullptr);
+  char **petsc_argv = petsc_arguments.data();
+  if (PetscInitialize(&petsc_count, &petsc_argv, nullptr, nullptr)) return 1;
+  int rank;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  const int status = perform(own, argv, rank == 0);
+  if (PetscFinalize()) return 1;
+  return status;
+}

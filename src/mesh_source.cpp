@@ -1,0 +1,100 @@
+#include "mesh_source.h"
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <sstream>
+#include <stdexcept>
+
+extern char **environ;
+
+namespace talus {
+namespace {
+
+std::string number(double x) {
+  std::ostringstream s;
+  s.precision(17);
+  s << x;
+  return s.str();
+}
+
+/// talus-mesh stands beside the program that runs.
+std::string talus_mesh_path() {
+  const std::filesystem::path beside = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "talus-mesh";
+  return std::filesystem::exists(beside) ? beside.string() : TALUS_MESH_PROGRAM;
+}
+
+}  // namespace
+
+MeshRun run_talus_mesh(const std::vector<std::string> &arguments) {
+  const std::string program = talus_mesh_path();
+  std::vector<char *> argv{const_cast<char *>(program.c_str())};
+  for (const std::string &a : arguments) argv.push_back(const_cast<char *>(a.c_str()));
+  argv.push_back(nullptr);
+  int ends[2];
+  if (pipe(ends)) return {1, "cannot make a pipe"};
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], 2);
+  posix_spawn_file_actions_addclose(&actions, ends[0]);
+  posix_spawn_file_actions_addclose(&actions, ends[1]);
+  pid_t child;
+  const int error = posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  close(ends[1]);
+  if (error) {
+    close(ends[0]);
+    return {1, "cannot start " + program};
+  }
+  MeshRun run{1, ""};
+  std::array<char, 4096> block;
+  for (ssize_t n; (n = read(ends[0], block.data(), block.size())) > 0;) run.output.append(block.data(), n);
+  close(ends[0]);
+  int status;
+  waitpid(child, &status, 0);
+  run.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+  return run;
+}
+
+std::string beside_scene(const Scene &scene, const std::string &path) {
+  const std::filesystem::path p(path);
+  return p.is_absolute() ? path : (std::filesystem::path(scene.file).parent_path() / p).lexically_normal().string();
+}
+
+std::string mesh_file(MPI_Comm comm, const Scene &scene, const std::string &directory) {
+  const MeshSource &source = scene.mesh;
+  if (!source.file.empty()) return beside_scene(scene, source.file);
+  int rank, status = 0;
+  MPI_Comm_rank(comm, &rank);
+  const std::string file = (std::filesystem::path(directory) / "mesh.msh").string();
+  std::string complaint;
+  if (rank == 0) {
+    std::error_code error;
+    std::filesystem::create_directories(directory, error);
+    std::vector<std::string> arguments{beside_scene(scene, source.section), "-o", file, "--size", number(source.size),
+                                       "--dimension", std::to_string(scene.dimension)};
+    if (scene.dimension == 3) {
+      arguments.insert(arguments.end(), {"--layers", std::to_string(source.layers)});
+      if (source.thickness > 0) arguments.insert(arguments.end(), {"--thickness", number(source.thickness)});
+    }
+    for (const RefineBox &box : source.refine)
+      arguments.insert(arguments.end(), {"--refine", number(box.from[0]), number(box.from[1]), number(box.to[0]), number(box.to[1]), number(box.size)});
+    const MeshRun run = run_talus_mesh(arguments);
+    status = run.status, complaint = run.output;
+  }
+  MPI_Bcast(&status, 1, MPI_INT, 0, comm);
+  int length = static_cast<int>(complaint.size());
+  MPI_Bcast(&length, 1, MPI_INT, 0, comm);
+  complaint.resize(length);
+  MPI_Bcast(complaint.data(), length, MPI_CHAR, 0, comm);
+  if (status == 2) throw std::invalid_argument(complaint);
+  if (status) throw std::runtime_error("talus-mesh failed: " + complaint);
+  return file;
+}
+
+}  // namespace talus

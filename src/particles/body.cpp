@@ -1,0 +1,147 @@
+#include "particles/body.h"
+
+#include <cstring>
+#include <limits>
+
+namespace talus {
+namespace {
+
+struct FieldSpec {
+  const char *name;
+  int components;
+  PetscDataType type;
+};
+constexpr int spare = 64;  // each removal zeroes the whole spare room of a swarm: keep it small
+
+template <int dim>
+std::vector<FieldSpec> field_specs(int history_count, bool affine) {
+  std::vector<FieldSpec> specs{{"position", dim, PETSC_DOUBLE},  {"velocity", dim, PETSC_DOUBLE},
+                               {"reference", dim, PETSC_DOUBLE}, {"mass", 1, PETSC_DOUBLE},
+                               {"volume", 1, PETSC_DOUBLE},      {"initial_volume", 1, PETSC_DOUBLE},
+                               {"stress", stress_size<dim>, PETSC_DOUBLE},
+                               {"cell", 1, PETSC_INT},           {"id", 1, PETSC_INT}};
+  if (history_count) specs.push_back({"history", history_count, PETSC_DOUBLE});
+  if (affine) specs.push_back({"affine", dim * dim, PETSC_DOUBLE});
+  return specs;
+}
+
+}  // namespace
+
+template <int dim>
+PetscErrorCode Body<dim>::create(MPI_Comm comm, const BodySource &source, Law law, bool affine) {
+  PetscFunctionBeginUser;
+  source_ = &source, law_ = std::move(law), history_count_ = history_size(law_), affine_ = affine;
+  const bool capped = source.volume_cap > 0 || (source.volume_cap < 0 && cohesionless(law_));
+  volume_cap_ = !capped ? std::numeric_limits<double>::infinity() : source.volume_cap > 0 ? source.volume_cap : 1;
+  for (int h = 0; h < history_count_; ++h)
+    if (std::string(history_fields(law_)[h].name) == "plastic_volume") expansion_field_ = h;
+  PetscCall(DMCreate(comm, swarm_.create()));
+  PetscCall(DMSetType(swarm_, DMSWARM));
+  PetscCall(DMSetDimension(swarm_, dim));
+  PetscCall(DMSwarmSetType(swarm_, DMSWARM_BASIC));
+  PetscCall(DMSwarmInitializeFieldRegister(swarm_));
+  for (const FieldSpec &f : field_specs<dim>(history_count_, affine))
+    PetscCall(DMSwarmRegisterPetscDatatypeField(swarm_, f.name, f.components, f.type));
+  PetscCall(DMSwarmFinalizeFieldRegister(swarm_));
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode Body<dim>::resize(PetscInt count) {
+  PetscFunctionBeginUser;
+  PetscCall(give_back());
+  PetscCall(DMSwarmSetLocalSizes(swarm_, count, spare));
+  PetscCall(borrow());
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode Body<dim>::borrow() {
+  PetscFunctionBeginUser;
+  PetscInt count;
+  PetscCall(DMSwarmGetLocalSize(swarm_, &count));
+  const auto take = [&](const char *name, auto *&array) -> PetscErrorCode {
+    return DMSwarmGetField(swarm_, name, nullptr, nullptr, reinterpret_cast<void **>(&array));
+  };
+  arrays_.count = count;
+  PetscCall(take("position", arrays_.position));
+  PetscCall(take("velocity", arrays_.velocity));
+  PetscCall(take("reference", arrays_.reference));
+  PetscCall(take("mass", arrays_.mass));
+  PetscCall(take("volume", arrays_.volume));
+  PetscCall(take("initial_volume", arrays_.initial_volume));
+  PetscCall(take("stress", arrays_.stress));
+  PetscCall(take("cell", arrays_.cell));
+  PetscCall(take("id", arrays_.id));
+  arrays_.history = arrays_.affine = nullptr;
+  if (history_count_) PetscCall(take("history", arrays_.history));
+  if (affine_) PetscCall(take("affine", arrays_.affine));
+  borrowed_ = true;
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode Body<dim>::give_back() {
+  PetscFunctionBeginUser;
+  if (!borrowed_) PetscFunctionReturn(0);
+  for (const FieldSpec &f : field_specs<dim>(history_count_, affine_)) {
+    void *array = nullptr;
+    PetscCall(DMSwarmRestoreField(swarm_, f.name, nullptr, nullptr, &array));
+  }
+  borrowed_ = false;
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode Body<dim>::sort(int cell_count) {
+  PetscFunctionBeginUser;
+  const int count = arrays_.count;
+  start_.assign(cell_count + 1, 0), order_.resize(count);
+  for (int p = 0; p < count; ++p) ++start_[arrays_.cell[p] + 1];
+  for (int c = 0; c < cell_count; ++c) start_[c + 1] += start_[c];
+  for (int p = 0; p < count; ++p) order_[p] = start_[arrays_.cell[p]]++;  // counting sort: stable, so results repeat
+  const auto permute = [&](void *array, size_t bytes) {
+    if (!array) return;
+    scratch_.resize(std::max(scratch_.size(), bytes * count));
+    const char *from = static_cast<const char *>(array);
+    for (int p = 0; p < count; ++p) std::memcpy(&scratch_[bytes * order_[p]], from + bytes * p, bytes);
+    std::memcpy(array, scratch_.data(), bytes * count);
+  };
+  permute(arrays_.position, sizeof(Vec<dim>));
+  permute(arrays_.velocity, sizeof(Vec<dim>));
+  permute(arrays_.reference, sizeof(Vec<dim>));
+  permute(arrays_.mass, sizeof(double));
+  permute(arrays_.volume, sizeof(double));
+  permute(arrays_.initial_volume, sizeof(double));
+  permute(arrays_.stress, sizeof(double) * stress_size<dim>);
+  permute(arrays_.history, sizeof(double) * history_count_);
+  permute(arrays_.affine, sizeof(double) * dim * dim);
+  permute(arrays_.cell, sizeof(PetscInt));
+  permute(arrays_.id, sizeof(PetscInt));
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode Body<dim>::migrate(const std::vector<std::pair<int, int>> &leavers, int *first_arrival) {
+  PetscFunctionBeginUser;
+  MPI_Comm comm;
+  int rank;
+  PetscCall(PetscObjectGetComm(reinterpret_cast<PetscObject>(static_cast<DM>(swarm_)), &comm));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  const int before = arrays_.count;
+  PetscInt *destination;
+  PetscCall(DMSwarmGetField(swarm_, DMSwarmField_rank, nullptr, nullptr, reinterpret_cast<void **>(&destination)));
+  for (int p = 0; p < before; ++p) destination[p] = rank;
+  for (const auto &[particle, to] : leavers) destination[particle] = to;
+  PetscCall(DMSwarmRestoreField(swarm_, DMSwarmField_rank, nullptr, nullptr, reinterpret_cast<void **>(&destination)));
+  PetscCall(give_back());
+  PetscCall(DMSwarmMigrate(swarm_, PETSC_TRUE));
+  PetscCall(borrow());
+  *first_arrival = before - static_cast<int>(leavers.size());
+  PetscFunctionReturn(0);
+}
+
+template class Body<2>;
+template class Body<3>;
+
+}  // namespace talus

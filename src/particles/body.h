@@ -1,0 +1,87 @@
+#pragma once
+/// The particles of one soil, in a DMSwarm of their own: a law then runs over one array without looking at body numbers, and
+/// a body carries the history fields of its own law only.
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "base/owned.h"
+#include "base/vec.h"
+#include "meshes/background_mesh.h"
+#include "physics/laws/laws.h"
+#include "physics/laws/stress.h"
+#include "scene/scene.h"
+
+namespace talus {
+
+/// Raw arrays of a body's swarm fields, valid until particles are added, removed or migrated. One entry per local particle.
+template <int dim>
+struct ParticleArrays {
+  int count = 0;
+  Vec<dim> *position;          ///< at the last remap [m]
+  Vec<dim> *velocity;          ///< at the last remap [m/s]
+  Vec<dim> *reference;         ///< where displacement is counted from [m]
+  double *mass;                ///< [kg], in 2D per metre of thickness
+  double *volume;              ///< V_p [m3]
+  double *initial_volume;      ///< V_p0 [m3]
+  double *stress;              ///< [stress_size] Cauchy effective stress [Pa]
+  double *history;             ///< [history_size(law)] internal variables of the law
+  double *affine;              ///< [dim * dim] velocity gradient carried by APIC [1/s]; null otherwise
+  PetscInt *cell;              ///< local cell
+  PetscInt *id;                ///< number that does not depend on the partition
+};
+
+template <int dim>
+class Body {
+ public:
+  /// Registers the fields; `affine` adds the velocity gradient of APIC.
+  PetscErrorCode create(MPI_Comm comm, const BodySource &source, Law law, bool affine);
+  /// Makes room for `count` particles, not yet filled.
+  PetscErrorCode resize(PetscInt count);
+
+  const BodySource &source() const { return *source_; }
+  const std::string &name() const { return source_->name; }
+  const Law &law() const { return law_; }
+  int history_count() const { return history_count_; }
+  /// Largest volume of a point with initial volume `initial`: the cap, grown by the soil's own plastic expansion [m3].
+  double volume_limit(double initial, const double *history) const {
+    if (volume_cap_ == std::numeric_limits<double>::infinity()) return volume_cap_;
+    const double expansion = expansion_field_ < 0 ? 0 : history[expansion_field_];
+    return volume_cap_ * initial * (expansion > 0 ? std::exp(expansion) : 1);
+  }
+  const ParticleArrays<dim> &particles() const { return arrays_; }
+
+  /// Orders the particles by cell, which keeps runs of one cell together in memory.
+  PetscErrorCode sort(int cell_count);
+  /// Sends each leaver (particle, rank) away; collective, also for ranks without leavers. Afterwards the arrived particles are the
+  /// last ones: `first_arrival` is the index of the first.
+  PetscErrorCode migrate(const std::vector<std::pair<int, int>> &leavers, int *first_arrival);
+
+ private:
+  PetscErrorCode borrow();   ///< takes the arrays out of the swarm ...
+  PetscErrorCode give_back();  ///< ... and returns them, as every change of size asks for
+
+  const BodySource *source_ = nullptr;
+  Law law_;
+  int history_count_ = 0, expansion_field_ = -1;
+  double volume_cap_ = 0;
+  bool affine_ = false, borrowed_ = false;
+  Dm swarm_;
+  ParticleArrays<dim> arrays_;
+  std::vector<int> start_, order_;
+  std::vector<char> scratch_;
+};
+
+/// Fills `body` with particles on barycentric lattices in the cells of its regions: equal volumes that add up to the cell's, mass from
+/// density, initial velocity, displacement and stress from the scene. `mass_density(x)` is the total density at a place.
+/// Throws std::invalid_argument for an empty region or a number of particles that has no lattice.
+template <int dim>
+void seed(Body<dim> &body, const BackgroundMesh<dim> &mesh, int id_stride, const std::function<double(const Vec<dim> &)> &density);
+
+/// Barycentric coordinates of the lattice of n points in a simplex; empty when there is none.
+template <int dim>
+std::vector<std::array<double, dim + 1>> lattice(int n);
+
+}  // namespace talus

@@ -1,0 +1,80 @@
+#pragma once
+/// A scene in motion: seeds the bodies, runs the stages, writes the results. This header is free of templates; the kernel behind it is
+/// compiled once per dimension and phase model (src/variants).
+#include <petscdmplex.h>
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "output/results.h"
+#include "scene/scene.h"
+
+namespace talus {
+
+/// The run cannot go on: the program ends with status 1 and this text; what was written before stays.
+class RunError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct RunOptions {
+  std::string directory;       ///< of the results; empty: nothing is written
+  bool pictures = true;        ///< draw them when the run ends
+  bool screen = true;          ///< progress line
+  DM plex = nullptr;           ///< mesh of a host program, instead of the scene's
+};
+
+/// What happened when: failure, end of stages.
+struct Event {
+  double time, load_time;  ///< [s]; load_time is what functions of the scene see as t
+  std::string stage, text;
+};
+
+/// Values over time, as in history.csv.
+struct HistoryTable {
+  std::vector<std::string> names;  ///< "time_s" first
+  std::vector<std::vector<double>> rows;
+  /// Column by name; throws std::out_of_range.
+  std::vector<double> column(const std::string &name) const;
+};
+
+/// Where the time of the steps went [s], summed over steps.
+struct Breakdown {
+  double gather = 0, step = 0, release = 0, relocate = 0, sort = 0;
+};
+
+class AnySimulation {
+ public:
+  virtual ~AnySimulation() = default;
+  /// Runs all stages. Throws RunError.
+  virtual void run() = 0;
+  /// Advances by steps of the scene's integrator until simulated time `t`; for host programs. Loads of the first stage apply.
+  virtual void advance_to(double t) = 0;
+  /// Takes one step and returns it [s]; for benchmarks.
+  virtual double single_step() = 0;
+
+  virtual double time() const = 0;
+  virtual long long steps() const = 0;
+  virtual long long remaps() const = 0;
+  virtual long long particles() const = 0;       ///< over all ranks
+  virtual double mass() const = 0;               ///< over all ranks [kg]
+  virtual double critical_step() = 0;            ///< of the present state, over all ranks [s]
+  virtual Snapshot snapshot() = 0;               ///< particles of this rank
+  virtual const HistoryTable &history() const = 0;
+  virtual const std::vector<Event> &events() const = 0;
+  virtual const Breakdown &breakdown() const = 0;
+  /// Nodal field "velocity" or "displacement" per vertex of the DMPlex (its point number), zero where no soil is; for host programs.
+  virtual void nodal_field(const std::string &name, const std::function<void(PetscInt point, const double *value)> &put) = 0;
+};
+
+/// Builds a simulation; collective over `comm`. The scene must outlive it. Throws std::invalid_argument for bad input, the same on all ranks.
+std::unique_ptr<AnySimulation> make_simulation(MPI_Comm comm, Scene &scene, const RunOptions &options);
+
+/// Set by signal handlers: the run writes a snapshot and ends with RunError.
+extern volatile int interrupted;
+
+}  // namespace talus

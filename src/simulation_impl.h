@@ -1,0 +1,111 @@
+#pragma once
+/// The time loop, docs/theory section 5; instantiated in src/variants only.
+#include <petsctime.h>
+
+#include <map>
+
+#include "output/history.h"
+#include "output/pictures.h"
+#include "output/progress.h"
+#include "output/snapshots.h"
+#include "physics/soil_motion.h"
+#include "simulation.h"
+#include "solvers/critical_step.h"
+#include "solvers/integrators.h"
+
+namespace talus {
+
+template <int dim, class Phases>
+class Simulation final : public AnySimulation {
+ public:
+  Simulation(MPI_Comm comm, Scene &scene, const RunOptions &options, const std::string &mesh_file);
+
+  void run() override;
+  void advance_to(double t) override;
+  double single_step() override;
+  double time() const override { return time_; }
+  long long steps() const override { return steps_; }
+  long long remaps() const override { return remaps_; }
+  long long particles() const override { return particle_count_; }
+  double mass() const override { return total_mass_; }
+  double critical_step() override;
+  Snapshot snapshot() override;
+  const HistoryTable &history() const override { return history_; }
+  const std::vector<Event> &events() const override { return events_; }
+  const Breakdown &breakdown() const override { return breakdown_; }
+  void nodal_field(const std::string &name, const std::function<void(PetscInt, const double *)> &put) override;
+
+ private:
+  struct Followed {  // a named point's particle, known on the rank that has it
+    std::string name;
+    int body = -1;
+    PetscInt id = -1;
+    int index = -1;
+  };
+  struct Results {   // files of a run
+    RunFile file;
+    History history;
+    Progress progress;
+  };
+  /// What all ranks learn from one another after a step.
+  struct Verdict {
+    double moved = 0, shrink = 1, speed_squared = 0, watched_speed = -1;
+    bool inverted = false, broken = false, interrupted = false;
+  };
+
+  // setup
+  void check_groups() const;
+  void seed_bodies();
+  double seeding_density(const BodySource &source, const Vec<dim> &x) const;
+  void follow_points();
+  // time loop
+  void run_stage(const Stage &stage);
+  void set_loading(const Stage &stage, double stage_time);
+  double choose_step(double until);
+  PetscErrorCode step(double step);
+  PetscErrorCode remap();
+  PetscErrorCode check_conservation();
+  Verdict agree();
+  void refuse(const Verdict &verdict);
+  bool stage_ends(const Stage &stage, double stage_time, const Verdict &verdict);
+  void reset_displacement();
+  // output
+  void open_results();
+  void write_snapshot();
+  void write_history();
+  void note(const std::string &text);
+  int find(Followed &point);
+  [[noreturn]] void fail(const std::string &text);
+
+  MPI_Comm comm_;
+  Scene &scene_;
+  RunOptions options_;
+  std::vector<Law> laws_;
+  IntegratorSettings integrator_settings_;
+  std::unique_ptr<Integrator> integrator_;
+  BackgroundMesh<dim> mesh_;
+  GivenPressure<dim> pressure_;
+  std::vector<std::unique_ptr<Body<dim>>> bodies_;
+  Conditions<dim> conditions_;
+  std::unique_ptr<SoilMotion<dim, Phases>> motion_;
+  std::vector<CriticalStep<dim>> critical_;
+  std::vector<std::vector<int>> movers_;
+  std::vector<Followed> points_;
+  std::vector<std::string> field_names_;
+
+  std::string stage_name_;
+  double time_ = 0, load_time_ = 0, critical_step_ = 0, shrink_ = 1, impulse_time_ = 0, last_step_ = 0;
+  long long steps_ = 0, remaps_ = 0, particle_count_ = 0, since_sort_ = 0;
+  double total_mass_ = 0;
+  bool hold_loads_ = false, remap_due_ = false;
+  std::string watched_;
+  double failure_time_ = -1, failure_load_time_ = 0, last_rise_time_ = 0, last_rise_speed_ = 0;
+  int quiet_steps_ = 0;
+
+  std::unique_ptr<Results> results_;
+  HistoryTable history_;
+  std::vector<Event> events_;
+  Breakdown breakdown_;
+};
+
+}  // namespace talus

@@ -1,0 +1,85 @@
+#include "transfer/filled_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+
+template <>
+double element_size<2>(double volume) {
+  return std::sqrt(4 * volume / std::sqrt(3.));
+}
+template <>
+double element_size<3>(double volume) {
+  return std::cbrt(6 * std::sqrt(2.) * volume);
+}
+
+template <int dim>
+FilledGrid<dim>::FilledGrid(const BackgroundMesh<dim> &mesh) : mesh_(&mesh), halo_(mesh.halo) {
+  const int nodes = mesh.node_count(), cells = mesh.cell_count();
+  compact_node_.assign(nodes, -1), compact_cell_.assign(cells, -1);
+  staging_.assign(halo_.empty() ? 0 : static_cast<size_t>(nodes) * (dim * dim + 1), 0);
+  mesh_node.reserve(nodes), mass.reserve(nodes), position.reserve(nodes);
+  mesh_cell.reserve(cells), shape.reserve(cells), mass_matrix.reserve(cells), nodal_share.reserve(cells);
+  size.reserve(cells), patch.reserve(cells);
+}
+
+template <int dim>
+void FilledGrid<dim>::clear() {
+  for (int node : mesh_node) compact_node_[node] = -1;
+  for (int cell : mesh_cell) compact_cell_[cell] = -1;
+  mesh_node.clear(), mass.clear(), position.clear();
+  mesh_cell.clear(), shape.clear(), mass_matrix.clear(), nodal_share.clear(), size.clear(), patch.clear();
+}
+
+template <int dim>
+int FilledGrid<dim>::enter_node(int node) {
+  int &compact = compact_node_[node];
+  if (compact < 0) {
+    compact = node_count();
+    mesh_node.push_back(node), mass.push_back(0), position.push_back(mesh_->position[node]);
+  }
+  return compact;
+}
+
+template <int dim>
+int FilledGrid<dim>::enter_cell(int cell) {
+  int &compact = compact_cell_[cell];
+  if (compact < 0) {
+    compact = cell_count();
+    Shape<dim> s;
+    for (int k = 0; k <= dim; ++k) s.node[k] = enter_node(mesh_->cells[cell].node[k]);
+    s.gradient = mesh_->cells[cell].gradient, s.volume = mesh_->volume[cell];
+    mesh_cell.push_back(cell), shape.push_back(s), mass_matrix.push_back({}), nodal_share.push_back({});
+    size.push_back(element_size<dim>(s.volume)), patch.push_back(mesh_->patch[cell]);
+  }
+  return compact;
+}
+
+template <int dim>
+void FilledGrid<dim>::enter_shared_nodes() {
+  if (halo_.empty()) return;
+  for (int node : halo_.shared_nodes()) staging_[node] = compact_node_[node] >= 0;
+  (void)halo_.sum(staging_.data(), 1);
+  for (int node : halo_.shared_nodes())
+    if (staging_[node] > 0) enter_node(node);
+}
+
+template <int dim>
+PetscErrorCode FilledGrid<dim>::sum(double *values, int width) {
+  PetscFunctionBeginUser;
+  if (halo_.empty()) PetscFunctionReturn(0);
+  for (int node : halo_.shared_nodes())
+    for (int k = 0; k < width; ++k)
+      staging_[node * width + k] = compact_node_[node] < 0 ? 0 : values[compact_node_[node] * width + k];
+  PetscCall(halo_.sum(staging_.data(), width));
+  for (int node : halo_.shared_nodes())
+    if (compact_node_[node] >= 0)
+      std::copy_n(&staging_[node * width], width, &values[compact_node_[node] * width]);
+  PetscFunctionReturn(0);
+}
+
+template class FilledGrid<2>;
+template class FilledGrid<3>;
+
+}  // namespace talus

@@ -1,0 +1,98 @@
+#pragma once
+/// The part of the background mesh that holds particles, during one Lagrangian part: nodes and cells are numbered compactly, so
+/// that the time loop touches nothing else. Everything is sized for the whole local mesh once; nothing is allocated later.
+#include <array>
+#include <vector>
+
+#include "meshes/background_mesh.h"
+#include "physics/laws/stress.h"
+
+namespace talus {
+
+/// Entries of a symmetric (dim + 1) x (dim + 1) matrix: diagonal first, then 01, 02, (03,) 12, (13, 23).
+template <int dim>
+inline constexpr int simplex_pairs = (dim + 1) * (dim + 2) / 2;
+
+/// Shape of a filled cell on the current node positions.
+template <int dim>
+struct Shape {
+  std::array<int, dim + 1> node;            ///< compact node numbers
+  std::array<Vec<dim>, dim> gradient;       ///< of the shape functions 1..dim [1/m]
+  double volume;                            ///< [m3]
+};
+
+template <int dim>
+class FilledGrid {
+ public:
+  explicit FilledGrid(const BackgroundMesh<dim> &mesh);
+
+  /// Forgets all nodes and cells.
+  void clear();
+  /// Compact number of a mesh cell, entered on first use.
+  int enter_cell(int mesh_cell);
+  /// Compact number of a mesh cell, -1 when it holds nothing.
+  int find_cell(int mesh_cell) const { return compact_cell_[mesh_cell]; }
+  /// Compact number of a mesh node, -1 when no filled cell has it.
+  int find_node(int mesh_node) const { return compact_node_[mesh_node]; }
+  /// Enters nodes that only other ranks have filled; collective.
+  void enter_shared_nodes();
+  /// Adds up `width` <= dim * dim + 1 doubles per compact node over the ranks that share the node; collective.
+  PetscErrorCode sum(double *values, int width);
+
+  int node_count() const { return static_cast<int>(mesh_node.size()); }
+  int cell_count() const { return static_cast<int>(mesh_cell.size()); }
+  const BackgroundMesh<dim> &mesh() const { return *mesh_; }
+
+  // nodes, by compact number
+  std::vector<int> mesh_node;
+  std::vector<double> mass;                 ///< lumped [kg]
+  std::vector<Vec<dim>> position;           ///< current [m]; the mesh's own at a remap
+  // cells, by compact number
+  std::vector<int> mesh_cell;
+  std::vector<Shape<dim>> shape;
+  std::vector<std::array<double, simplex_pairs<dim>>> mass_matrix;    ///< sum_p m_p N_ip N_jp [kg]
+  std::vector<std::array<double, dim + 1>> nodal_share;               ///< sum_p V_p N_ip [m3]
+  std::vector<double> size;                 ///< element size of the softening law [m]
+  std::vector<int> patch;                   ///< patch of the mesh
+
+ private:
+  int enter_node(int mesh_node);
+
+  const BackgroundMesh<dim> *mesh_;
+  std::vector<int> compact_node_, compact_cell_;
+  std::vector<double> staging_;
+  Halo halo_;
+};
+
+/// Gradients 1..dim and volume of a simplex from its vertices; the volume is negative for an inverted one.
+template <int dim>
+inline double simplex_gradients(const std::array<const Vec<dim> *, dim + 1> &x, std::array<Vec<dim>, dim> &gradient) {
+  if constexpr (dim == 2) {
+    const double ax = (*x[1])[0] - (*x[0])[0], ay = (*x[1])[1] - (*x[0])[1];
+    const double bx = (*x[2])[0] - (*x[0])[0], by = (*x[2])[1] - (*x[0])[1];
+    const double det = ax * by - ay * bx, i = 1 / det;
+    gradient[0] = {by * i, -bx * i};
+    gradient[1] = {-ay * i, ax * i};
+    return det / 2;
+  } else {
+    double e[3][3];
+    for (int k = 0; k < 3; ++k)
+      for (int d = 0; d < 3; ++d) e[k][d] = (*x[k + 1])[d] - (*x[0])[d];
+    const auto cross = [](const double *a, const double *b, Vec<3> &c) {
+      c = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    };
+    cross(e[1], e[2], gradient[0]);
+    cross(e[2], e[0], gradient[1]);
+    cross(e[0], e[1], gradient[2]);
+    const double det = e[0][0] * gradient[0][0] + e[0][1] * gradient[0][1] + e[0][2] * gradient[0][2], i = 1 / det;
+    for (auto &g : gradient)
+      for (double &c : g) c *= i;
+    return det / 6;
+  }
+}
+
+/// Element size of the softening law (design section 2), equal for a triangle and for the tetrahedra of its slice.
+template <int dim>
+double element_size(double volume);
+
+}  // namespace talus
