@@ -44,7 +44,7 @@ bool warn(const std::string &dir, const std::string &cause) {
 }  // namespace
 
 bool draw_pictures(const std::string &dir, const std::vector<std::string> &fields) {
-  std::vector<std::string> words{TALUS_PYTHON, script(), dir};
+  std::vector<std::string> words{TALUS_PYTHON, "-B", script(), dir};  // -B: no caches among the sources
   if (!fields.empty()) words.push_back("--fields");
   words.insert(words.end(), fields.begin(), fields.end());
   std::vector<char *> arguments;
@@ -58,7 +58,7 @@ bool draw_pictures(const std::string &dir, const std::vector<std::string> &field
   int status = 0;
   while (waitpid(child, &status, 0) < 0)
     if (errno != EINTR) return warn(dir, std::strerror(errno));
-  if (!WIFEXITED(status) || WEXITSTATUS(status)) return warn(dir, words[1] + " failed");
+  if (!WIFEXITED(status) || WEXITSTATUS(status)) return warn(dir, words[2] + " failed");
   return true;
 }
 

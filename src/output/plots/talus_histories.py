@@ -1,0 +1,86 @@
+"""Curves over time: named points, energies, whatever else history.csv holds."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.ticker import MaxNLocator
+
+import talus_style as style
+
+PLACES = ("x", "y", "z")  # coordinates of points: the pictures show them better
+
+
+def draw_histories(results, folder):
+    """history_QUANTITY.png of each group of columns that varies, and energy.png. Returns [(quantity, path)]."""
+    history = results.history
+    if history is None or len(history.time) < 2:
+        return []
+    pictures = []
+    for (quantity, unit), lines in history.groups().items():
+        if quantity in PLACES or all(np.ptp(values) <= 1e-9 * np.abs(values).max() for values in lines.values()):
+            continue
+        if quantity == "energy":
+            pictures.append((quantity, draw_energy(history, lines, results.title, folder / "energy.png")))
+        else:
+            path = folder / f"history_{quantity}.png"
+            pictures.append((quantity, draw_curves(history, quantity, unit, lines, results.title, path)))
+    return pictures
+
+
+def draw_curves(history, quantity, unit, lines, title, path):
+    figure, axes = plt.subplots(figsize=(7.6, 3.7))
+    plot_lines(axes, history, lines, unit, style.words(quantity))
+    return finish(figure, [axes], history, style.capital(style.words(quantity)), title, path)
+
+
+def draw_energy(history, lines, title, path):
+    """All energies, and below them the kinetic one alone: it is the smallest and tells most."""
+    kinetic = {name: values for name, values in lines.items() if "kinetic" in name}
+    if not kinetic or len(lines) == len(kinetic):
+        return draw_curves(history, "energy", "J", lines, title, path)
+    shape = {"figsize": (7.6, 4.9), "gridspec_kw": {"height_ratios": [3, 1.4]}}
+    figure, (upper, lower) = plt.subplots(2, 1, sharex=True, **shape)
+    plot_lines(upper, history, lines, "J", "energy")
+    colour = style.LINES[list(lines).index(next(iter(kinetic))) % len(style.LINES)]
+    plot_lines(lower, history, kinetic, "J", "kinetic", colour)
+    return finish(figure, [upper, lower], history, "Energy", title, path)
+
+
+def plot_lines(axes, history, lines, unit, what, colour=None):
+    largest = max(np.nanmax(np.abs(values)) for values in lines.values())
+    factor, unit = style.readable_unit(largest, unit)
+    for k, (name, values) in enumerate(lines.items()):
+        axes.plot(history.time, factor * values, linewidth=1.5, color=colour or style.LINES[k % len(style.LINES)],
+                  linestyle=("-", "--", ":")[k // len(style.LINES) % 3], label=style.words(name))
+    axes.set_ylabel(style.with_unit(what, unit))
+    axes.grid(axis="y", color=style.FAINT, linewidth=0.5)
+    axes.set_axisbelow(True)
+    axes.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]))
+    axes.margins(x=0.01)
+    if colour is None and any(lines):
+        axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8, handlelength=1.6)
+
+
+def mark_stages(axes, history, named):
+    """Bands for the stages, with their names above the uppermost axes."""
+    starts = history.stage_starts()
+    ends = [time for time, _ in starts[1:]] + [history.time[-1]]
+    whole = ends[-1] - starts[0][0]
+    for k, ((start, name), end) in enumerate(zip(starts, ends)):
+        if k % 2:
+            axes.axvspan(start, end, color="#f1f3f5", zorder=0, linewidth=0)
+        if k:
+            axes.axvline(start, color=style.FAINT, linewidth=0.8, zorder=0.5)
+        if named and end - start > 0.06 * whole:
+            axes.annotate(name, ((start + end) / 2, 1.02), xycoords=("data", "axes fraction"), ha="center", va="bottom",
+                          fontsize=8, color=style.SOFT)
+
+
+def finish(figure, axes, history, headline, title, path):
+    for k, one in enumerate(axes):
+        mark_stages(one, history, named=k == 0)
+    axes[-1].set_xlabel("time [s]")
+    height = figure.get_figheight()
+    figure.subplots_adjust(left=0.1, right=0.82, bottom=0.48 / height, top=1 - 0.72 / height, hspace=0.12)
+    figure.text(0.1, 1 - 0.24 / height, headline, fontsize=12, fontweight="bold", va="center")
+    figure.text(0.985, 1 - 0.24 / height, title, fontsize=8, color=style.SOFT, va="center", ha="right")
+    return style.save(figure, path)

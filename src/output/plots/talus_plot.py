@@ -1,0 +1,44 @@
+#!/usr/bin/python3
+"""Draws the pictures and the report of a run: DIR/pictures/*.png and DIR/report.html."""
+
+import argparse
+import sys
+
+from talus_histories import draw_histories
+from talus_report import write_report
+from talus_results import Results
+from talus_sections import draw_sections
+
+FIELDS = ("displacement", "plastic_strain", "velocity", "pore_pressure")
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", metavar="DIR", help="folder of the run")
+    parser.add_argument("--fields", nargs="+", default=FIELDS, metavar="FIELD",
+                        help="columns to draw; a vector by its size, a tensor by its mean, or one component: stress_xy")
+    parser.add_argument("--times", nargs="+", type=float, metavar="T", help="times to draw [s], the nearest snapshots")
+    parser.add_argument("--log", action="store_true", help="plastic strain on a logarithmic scale")
+    return parser.parse_args()
+
+
+def draw(folder, fields=FIELDS, times=None, log=False):
+    """Draws everything; fields that the run does not have are left out. Returns the report's path."""
+    results = Results(folder)
+    if not results.snapshots:
+        raise ValueError(f"{folder} holds no snapshots")
+    pictures = results.folder / "pictures"
+    sections = draw_sections(results, fields, times, pictures, log)
+    return write_report(results, sections, draw_histories(results, pictures))
+
+
+def main():
+    given = arguments()
+    try:
+        draw(given.folder, given.fields, given.times, given.log)
+    except (OSError, ValueError) as error:
+        sys.exit(f"talus_plot: {error}")
+
+
+if __name__ == "__main__":
+    main()

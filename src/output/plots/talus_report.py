@@ -1,0 +1,190 @@
+"""report.html: one page that stands alone, with the pictures inside it."""
+
+import base64
+import html
+import pathlib
+
+import numpy as np
+
+import talus_style as style
+
+LOG_LINES = 25
+PAGE = """<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{title}</title>
+<style>
+{css}</style>
+</head>
+<body>
+{body}<footer>{foot}</footer>
+</body>
+</html>
+"""
+
+
+def write_report(results, sections, histories):
+    """`sections` [(field, large picture, sheet of times)], `histories` [(quantity, picture)] -> path of the page."""
+    css = (pathlib.Path(__file__).parent / "report.css").read_text()
+    parts = [
+        header(results),
+        cards(key_results(results)),
+        summary(results),
+        section("Sections", "".join(field_block(*one) for one in sections)),
+        section("Histories", grid(histories)),
+        folded("Scene as run", results.scene_text),
+        folded("Last lines of the log", "\n".join(results.log_lines(LOG_LINES)), is_open=True),
+    ]
+    page = PAGE.format(title=html.escape(results.title), css=css, body="".join(parts), foot=html.escape(results.program))
+    path = results.folder / "report.html"
+    path.write_text(page)
+    return path
+
+
+def header(results):
+    last = results.snapshots[-1]
+    facts = [results.scene.get("phases", "dry"), f"{results.snapshots[0].position().shape[1]}D", results.program,
+             f"{thousands(last.step)} steps to t = {last.time:.4g} s"]
+    return (f'<header><p class="kicker">Talus · report of a run</p><h1>{html.escape(results.title)}</h1>'
+            f"<p>{' · '.join(html.escape(str(fact)) for fact in facts)}</p></header>\n")
+
+
+def key_results(results):
+    """[(what, number, note)] that a reader wants first."""
+    first, last = results.snapshots[0], results.snapshots[-1]
+    found = [("Particles", thousands(len(last.position())), ", ".join(results.bodies))]
+    if "displacement" in last and len(last.position()):
+        vector = last.column("displacement").values
+        size = np.linalg.norm(vector, axis=1)
+        up = results.up_axis()
+        level, rise = np.abs(np.delete(vector, up, axis=1)).max(), np.abs(vector[:, up]).max()
+        parts = f"{quantity(level, 'm')} level, {quantity(rise, 'm')} up or down"
+        found.append(("Largest displacement", quantity(size.max(), "m"), parts))
+        if "volume" in last:
+            volume = last.column("volume").values[size > 0.1 * size.max(), 0].sum()
+            volume = quantity(volume, per_metre("m³", results))
+            found.append(("Sliding volume", volume, "moved more than a tenth of the largest"))
+    speed = top_speed(results)
+    if speed:
+        found.append(("Largest velocity", quantity(speed[0], "m/s"), f"{speed[2]}, t = {speed[1]:.4g} s"))
+    if "plastic_strain" in last:
+        found.append(("Largest plastic strain", f"{last.column('plastic_strain').values.max():.3g}", "at the end"))
+    mass = results.history.columns.get("mass_kg") if results.history else None
+    if mass is not None and len(mass) and mass[0]:
+        lost = (mass[-1] - mass[0]) / mass[0]
+        end = quantity(mass[-1] / 1e3, per_metre("t", results))
+        found.append(("Mass ledger", "closed" if abs(lost) < 1e-12 else f"{lost:+.1e}", f"{end} at the end"))
+    return found
+
+
+def top_speed(results):
+    """(speed, time, where) of the fastest particle in the snapshots or the fastest named point, whichever is more."""
+    best = None
+    for snapshot in results.snapshots:
+        if "velocity" in snapshot and len(snapshot.position()):
+            speed = snapshot.scalar("velocity")[0].max()
+            best = max(best or (0,), (float(speed), snapshot.time, "of all particles"))
+    if results.history:
+        for name, values in results.history.groups().get(("velocity", "m/s"), {}).items():
+            if len(values):
+                when = float(results.history.time[values.argmax()])
+                best = max(best or (0,), (float(values.max()), when, f"at {style.words(name)}"))
+    return best if best and best[0] > 0 else None
+
+
+def per_metre(unit, results):
+    """In plane strain a mass or volume is that of a metre of the slope."""
+    return unit + "/m" if results.snapshots[0].position().shape[1] == 2 else unit
+
+
+def quantity(value, unit):
+    factor, unit = style.readable_unit(abs(value), unit)
+    return f"{factor * value:.3g} {unit}" if abs(factor * value) < 1000 else f"{thousands(round(factor * value))} {unit}"
+
+
+def thousands(number):
+    return f"{number:,}".replace(",", "\u202f")
+
+
+def cards(numbers):
+    boxes = "".join(
+        f"<div><span>{html.escape(what)}</span><strong>{html.escape(number)}</strong>"
+        f"<em>{html.escape(note)}</em></div>"
+        for what, number, note in numbers
+    )
+    return f'<section class="cards">{boxes}</section>\n'
+
+
+def summary(results):
+    """Soils and stages as the scene gives them."""
+    scene = results.scene
+    tables = [table("Soils", named_rows("body", scene)),
+              table("Stages", [flat(stage) for stage in scene.get("stage", [])]),
+              table("Boundaries", named_rows("boundary", scene))]
+    general = {key: text_of(scene[key]) for key in ("phases", "dimension", "gravity") if key in scene}
+    general |= {f"mesh {key}": text_of(value) for key, value in scene.get("mesh", {}).items() if key != "refine"}
+    general |= {f"integrator {key}": text_of(value) for key, value in scene.get("integrator", {}).items()}
+    entry = "<tr><th>{}</th><td>{}</td></tr>"
+    rows = "".join(entry.format(html.escape(key), html.escape(value)) for key, value in general.items())
+    if not rows and not any(tables):
+        return ""
+    model = f"<div><h3>Model</h3><table>{rows}</table></div>"
+    return section("Scene", f'<div class="tables">{model}{"".join(tables)}</div>')
+
+
+def named_rows(kind, scene):
+    """The tables [KIND.NAME] of the scene."""
+    return [{kind: name, **flat(values)} for name, values in scene.get(kind, {}).items()]
+
+
+def flat(values):
+    """The entries of a table of the scene that fit into a cell."""
+    return {style.words(key): text_of(value) for key, value in values.items() if not isinstance(value, dict)}
+
+
+def text_of(value):
+    if isinstance(value, list):
+        if any(isinstance(one, (list, dict)) for one in value):
+            return f"{len(value)} entries"
+        return ", ".join(text_of(one) for one in value)
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def table(name, rows):
+    """Rows of dictionaries; a property a line, since soils have more properties than there are soils."""
+    if not rows:
+        return ""
+    keys = list(dict.fromkeys(key for row in rows for key in row))
+    lines = []
+    for k, key in enumerate(keys):
+        tag = "th" if k == 0 else "td"
+        cells = "".join(f"<{tag}>{html.escape(row.get(key, '–'))}</{tag}>" for row in rows)
+        lines.append(f"<tr><th>{html.escape(key)}</th>{cells}</tr>")
+    return f"<div><h3>{name}</h3><table>{''.join(lines)}</table></div>"
+
+
+def section(name, content):
+    return f"<section><h2>{name}</h2>{content}</section>\n" if content else ""
+
+
+def field_block(field, large, over_time):
+    name = style.capital(style.words(field))
+    return f'<div class="field">{picture(large, name)}{picture(over_time, f"{name} over time")}</div>'
+
+
+def grid(histories):
+    pictures = [picture(path, style.capital(style.words(what))) for what, path in histories]
+    return f'<div class="grid">{"".join(pictures)}</div>' if pictures else ""
+
+
+def picture(path, caption):
+    data = base64.b64encode(path.read_bytes()).decode()
+    return f'<figure><img alt="{html.escape(caption)}" src="data:image/png;base64,{data}"></figure>'
+
+
+def folded(name, text, is_open=False):
+    if not text:
+        return ""
+    return f"<details{' open' if is_open else ''}><summary>{name}</summary><pre>{html.escape(text)}</pre></details>\n"

@@ -1,0 +1,174 @@
+"""Reads what a run of Talus left in its folder: run.h5, history.csv, run.log."""
+
+import csv
+import pathlib
+import re
+import tomllib
+
+import h5py
+import numpy as np
+
+# ending of a history column -> unit
+UNITS = {"m_s2": "m/s²", "m_s": "m/s", "m": "m", "m3": "m³", "J": "J", "W": "W", "Pa": "Pa", "N": "N", "kg": "kg", "s": "s"}
+# words that may stand before the unit: what is left is the name of a point
+QUANTITIES = ("displacement", "velocity", "acceleration", "pore_pressure", "pressure", "plastic_strain", "x", "y", "z")
+
+
+class Column:
+    """One field of a snapshot: values [particles, components]."""
+
+    def __init__(self, dataset):
+        self.values = dataset[...]
+        self.unit = dataset.attrs.get("unit", "")
+        self.meaning = dataset.attrs.get("meaning", "")
+        self.components = dataset.attrs.get("components", "").split()
+
+
+class Snapshot:
+    """One state of the run; columns are read when asked for."""
+
+    def __init__(self, group):
+        self._group = group
+        self.time = float(group.attrs["time"])
+        self.step = int(group.attrs["step"])
+        self.stage = group.attrs["stage"]
+
+    def __contains__(self, name):
+        return name in self._group
+
+    def names(self):
+        return [name for name in self._group if name not in ("id", "body")]
+
+    def column(self, name):
+        return Column(self._group[name])
+
+    def position(self):
+        return self._group["position"][...]
+
+    def body(self):
+        return self._group["body"][:, 0]
+
+    def scalar(self, name):
+        """A field as one number a particle, with its unit; None if there is no such field. Of a vector it is the
+        magnitude, of a tensor the mean of the diagonal, or one component: `stress_xy`."""
+        if name in self._group:
+            column = self.column(name)
+            count = column.values.shape[1]
+            if count == 1:
+                return column.values[:, 0], column.unit
+            if count <= 3:
+                return np.linalg.norm(column.values, axis=1), column.unit
+            return column.values[:, :3].mean(axis=1), column.unit
+        whole, _, component = name.rpartition("_")
+        if whole in self._group:
+            column = self.column(whole)
+            if component in column.components:
+                return column.values[:, column.components.index(component)], column.unit
+        return None
+
+
+class History:
+    """history.csv as columns of numbers, grouped by what they measure."""
+
+    def __init__(self, path):
+        with open(path, newline="") as file:
+            lines = list(csv.reader(file))
+        header, rows = lines[0], [row for row in lines[1:] if len(row) == len(lines[0])]
+        self.columns = {}
+        for k, name in enumerate(header):
+            if name != "stage":
+                self.columns[name] = np.array([float(row[k]) for row in rows])
+        self.time = self.columns.pop("time_s")
+        self.columns.pop("step", None)
+        self.stage = [row[header.index("stage")] for row in rows] if "stage" in header else [""] * len(rows)
+
+    def groups(self):
+        """{(quantity, unit): {label: values}}; energies are one group, and so is each measure of the named points."""
+        groups = {}
+        for name, values in self.columns.items():
+            label, quantity, unit = split_name(name)
+            groups.setdefault((quantity, unit), {})[label] = values
+        return groups
+
+    def points(self, time):
+        """Where the named points are at a time [s]: {name: coordinates}."""
+        places = {}
+        for name in self.columns:
+            if name.endswith("_x_m") and len(self.time):
+                point = name[: -len("_x_m")]
+                axes = [self.columns[f"{point}_{axis}_m"] for axis in "xyz" if f"{point}_{axis}_m" in self.columns]
+                places[point] = np.array([np.interp(time, self.time, axis) for axis in axes])
+        return places
+
+    def stage_starts(self):
+        """[(time, name)] of the stages."""
+        return [(self.time[k], name) for k, name in enumerate(self.stage) if k == 0 or name != self.stage[k - 1]]
+
+
+def split_name(name):
+    """'crest_displacement_m' -> ('crest', 'displacement', 'm'); 'kinetic_J' -> ('kinetic', 'energy', 'J')."""
+    unit = next((ending for ending in UNITS if name.endswith("_" + ending)), None)
+    stem = name[: -len(unit) - 1] if unit else name
+    if unit == "J":
+        return stem, "energy", "J"
+    for quantity in QUANTITIES:
+        if stem == quantity:
+            return "", quantity, UNITS.get(unit, "")
+        if stem.endswith("_" + quantity):
+            return stem[: -len(quantity) - 1], quantity, UNITS.get(unit, "")
+    return "", stem, UNITS.get(unit, "")
+
+
+class Results:
+    """The results in a folder. Raises FileNotFoundError or OSError where there are none."""
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+        if not (self.folder / "run.h5").exists():
+            raise FileNotFoundError(f"{self.folder} holds no run.h5")
+        self._file = h5py.File(self.folder / "run.h5", "r")
+        self.title = self._file.attrs["title"] or self.folder.resolve().name
+        self.program = self._file.attrs["program"]
+        self.scene_text = self._file["scene"].asstr()[0]
+        self.bodies = list(self._file["bodies"].asstr()[...])
+        self.scene = parsed(self.scene_text)
+        self.snapshots = [Snapshot(group) for group in self._file["snapshots"].values()]
+        path = self.folder / "history.csv"
+        self.history = History(path) if path.exists() else None
+
+    def mesh(self):
+        """Nodes [n, dim] and cells [m, dim + 1] of the background mesh; nodes that ranks shared are one again."""
+        position, cells = self._file["mesh/node_position"][...], self._file["mesh/cell_node"][...]
+        if not len(cells):
+            return position, cells
+        size = np.ptp(position, axis=0).max() or 1.0
+        _, first, number = np.unique(np.round(position / (1e-9 * size)), axis=0, return_index=True, return_inverse=True)
+        return position[first], number.reshape(-1)[cells]
+
+    def log_lines(self, count):
+        """The last lines of run.log."""
+        path = self.folder / "run.log"
+        return path.read_text(errors="replace").splitlines()[-count:] if path.exists() else []
+
+    def up_axis(self):
+        """The axis that gravity acts along: y unless the scene says otherwise."""
+        gravity = self.scene.get("gravity")
+        if isinstance(gravity, list) and gravity:
+            strength = [number_in(component) for component in gravity]
+            if max(strength) > 0:
+                return int(np.argmax(strength))
+        return 1
+
+
+def parsed(text):
+    """The scene as a dictionary; empty if it cannot be read."""
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError:
+        return {}
+
+
+def number_in(quantity):
+    """Size of a number or of a text like '9.81 m/s2'."""
+    match = re.match(r"\s*[-+]?[0-9.]+(?:[eE][-+]?\d+)?", str(quantity))
+    return abs(float(match.group())) if match else 0.0

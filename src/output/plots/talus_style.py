@@ -1,0 +1,74 @@
+"""How the pictures of Talus look: type, colours, units of a size that reads well."""
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.colors import LinearSegmentedColormap
+
+INK, SOFT, FAINT, ACCENT = "#1f2933", "#616e7c", "#cbd2d9", "#0b7285"
+LINES = ("#0b7285", "#d9480f", "#5f3dc4", "#2b8a3e", "#c2255c", "#e67700", "#1864ab", "#495057")
+RESOLUTION = 170  # dots per inch
+
+plt.rcParams.update({
+    "font.family": "DejaVu Sans", "font.size": 9, "axes.titlesize": 9.5, "axes.labelsize": 9,
+    "text.color": INK, "axes.labelcolor": INK, "axes.edgecolor": SOFT, "xtick.color": SOFT, "ytick.color": SOFT,
+    "xtick.labelcolor": INK, "ytick.labelcolor": INK, "xtick.labelsize": 8, "ytick.labelsize": 8,
+    "axes.linewidth": 0.7, "xtick.major.width": 0.7, "ytick.major.width": 0.7,
+    "xtick.major.size": 3, "ytick.major.size": 3,
+    "axes.spines.top": False, "axes.spines.right": False, "axes.prop_cycle": matplotlib.cycler(color=LINES),
+    "figure.facecolor": "white", "savefig.facecolor": "white", "savefig.dpi": RESOLUTION, "legend.frameon": False,
+})
+
+
+def part_of(name, low, high):
+    """A piece of a colour map."""
+    return LinearSegmentedColormap.from_list(f"{name}_part", plt.get_cmap(name)(np.linspace(low, high, 256)))
+
+
+# of even steps in lightness; strain and pressure start pale, so that the eye goes to where there is some
+MAPS = {"displacement": plt.get_cmap("viridis"), "velocity": plt.get_cmap("plasma"),
+        "plastic_strain": part_of("magma_r", 0.03, 0.95), "pore_pressure": part_of("YlGnBu", 0.08, 1.0)}
+SYMBOL = {"displacement": "|u|", "velocity": "|v|", "plastic_strain": "εₚ", "pore_pressure": "p"}
+
+
+def colours_of(field):
+    return MAPS.get(field, plt.get_cmap("cividis"))
+
+
+def words(name):
+    """'plastic_strain' -> 'plastic strain'."""
+    return name.replace("_", " ")
+
+
+def capital(text):
+    return text[:1].upper() + text[1:]
+
+
+def readable_unit(largest, unit):
+    """Factor and unit in which numbers up to `largest` read well: 110000 Pa -> (1e-3, 'kPa')."""
+    if unit in ("Pa", "J", "N", "W"):
+        for power, prefix in ((9, "G"), (6, "M"), (3, "k")):
+            if largest >= 10**power:
+                return 10.0**-power, prefix + unit
+    if unit in ("m", "m/s") and 0 < largest < 0.1:
+        return 1e3, "m" + unit
+    return 1.0, "" if unit in ("-", "1") else unit
+
+
+def with_unit(text, unit):
+    return f"{text} [{unit}]" if unit else text
+
+
+def at_time(time, last):
+    """'t = 12.5 s', with the digits that a run up to `last` [s] needs."""
+    digits = 1 if last >= 10 else 2 if last >= 1 else 3
+    return f"t = {time:.{digits}f} s"
+
+
+def save(figure, path):
+    path.parent.mkdir(exist_ok=True)
+    figure.savefig(path)
+    plt.close(figure)
+    return path

@@ -1,0 +1,124 @@
+"""Turns particles into areas: each pixel shows its nearest particle, so that the soil has no gaps and a sharp edge."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.tri import Triangulation
+
+GAP = 1.4   # widest gap between particles that is closed, as a radius over their spacing
+EDGE = 0.5  # soil beyond its outermost particles, over their spacing
+
+
+class Frame:
+    """A rectangle of the plane in pixels: `low`, `high` are its corners [m], row 0 is at the bottom."""
+
+    def __init__(self, low, high, columns):
+        self.low, self.high = np.asarray(low, float), np.asarray(high, float)
+        self.pixel = (self.high[0] - self.low[0]) / columns
+        self.shape = (max(1, int(round((self.high[1] - self.low[1]) / self.pixel))), columns)
+
+    def extent(self):
+        return (self.low[0], self.high[0], self.low[1], self.high[1])
+
+
+def tiles(points, spacing, frame):
+    """For each pixel the number of its nearest particle, -1 outside the soil."""
+    inside, reach = (points - frame.low) / frame.pixel, GAP * spacing / frame.pixel
+    owner, _ = nearest(inside, frame.shape, reach)
+    soil = owner >= 0
+    rim = np.argwhere(~soil & touching(soil))[:, ::-1] + 0.5
+    _, depth = nearest(rim, frame.shape, reach)
+    owner[depth <= reach - EDGE * spacing / frame.pixel] = -1
+    return owner
+
+
+def nearest(points, shape, reach):
+    """Number of and distance to the nearest of some points (in pixels: column, row), -1 and infinity beyond `reach`.
+
+    Jump flooding: Rong & Tan (2006), Jump flooding in GPU with applications to Voronoi diagrams."""
+    owner = np.full(shape, -1, np.int32)
+    if not len(points):
+        return owner, np.full(shape, np.inf, np.float32)
+    x, y = points.astype(np.float32).T
+    row, column = y.astype(int), x.astype(int)
+    seen = (row >= 0) & (row < shape[0]) & (column >= 0) & (column < shape[1])
+    owner[row[seen], column[seen]] = np.flatnonzero(seen)
+    centre_y, centre_x = (np.arange(size, dtype=np.float32) + 0.5 for size in shape)
+    squared = np.full(shape, np.inf, np.float32)
+    rows, columns = np.nonzero(owner >= 0)
+    mine = owner[rows, columns]
+    squared[rows, columns] = (x[mine] - centre_x[columns]) ** 2 + (y[mine] - centre_y[rows]) ** 2
+    for step in [*(2**k for k in range(int(np.ceil(np.log2(max(reach, 1)))), -1, -1)), 1]:
+        for down in (-step, 0, step):
+            for right in (-step, 0, step):
+                to_rows, from_rows = shifted(shape[0], down)
+                to_columns, from_columns = shifted(shape[1], right)
+                other = owner[from_rows, from_columns]
+                distance = (x[other] - centre_x[to_columns]) ** 2 + (y[other] - centre_y[to_rows, None]) ** 2
+                better = (other >= 0) & (distance < squared[to_rows, to_columns])
+                owner[to_rows, to_columns][better] = other[better]
+                squared[to_rows, to_columns][better] = distance[better]
+    far = squared > reach**2
+    owner[far] = -1
+    distance = np.sqrt(squared)
+    distance[far] = np.inf
+    return owner, distance
+
+
+def shifted(size, by):
+    """Slices of an axis that pair each place with the one `by` further on."""
+    if abs(by) >= size:
+        return slice(0, 0), slice(0, 0)
+    return slice(max(0, -by), size - max(0, by)), slice(max(0, by), size + min(0, by))
+
+
+def touching(mask):
+    """Places beside or in a mask."""
+    wide = mask.copy()
+    for axis in (0, 1):
+        for by in (-1, 1):
+            to, from_ = shifted(mask.shape[axis], by)
+            wide[(slice(None),) * axis + (to,)] |= mask[(slice(None),) * axis + (from_,)]
+    return wide
+
+
+def outline_of_points(points, spacing, frame):
+    """Polylines around the soil."""
+    soil = tiles(points, spacing, frame) >= 0
+    centres = [frame.low[k] + (np.arange(soil.shape[1 - k]) + 0.5) * frame.pixel for k in (0, 1)]
+    figure, axes = plt.subplots()
+    contour = axes.contour(*centres, soil.astype(float), levels=[0.5])
+    plt.close(figure)
+    return [line for line in contour.allsegs[0] if len(line) > 20]
+
+
+def outline_of_cells(node, cell, position, body):
+    """Polylines around the triangles that bodies fill, and between bodies: exact, since bodies are made of cells."""
+    mesh = Triangulation(node[:, 0], node[:, 1], cell)
+    inside = mesh.get_trifinder()(position[:, 0], position[:, 1])
+    filled = np.full(len(cell), -1)
+    filled[inside[inside >= 0]] = body[inside >= 0]
+    other = np.where(mesh.neighbors >= 0, filled[mesh.neighbors], -1)
+    lines = []
+    for wanted in ((filled[:, None] >= 0) & (other < 0), (other >= 0) & (filled[:, None] > other)):
+        cells, sides = np.nonzero(wanted)
+        edges = np.column_stack([mesh.triangles[cells, sides], mesh.triangles[cells, (sides + 1) % 3]])
+        lines.append([node[chain] for chain in chained(edges)])
+    return lines
+
+
+def chained(edges):
+    """Edges as polylines of nodes, so that a dotted line runs on around them."""
+    beside = {}
+    for a, b in edges:
+        beside.setdefault(a, []).append(b)
+        beside.setdefault(b, []).append(a)
+    chains = []
+    for start in [node for node, others in beside.items() if len(others) != 2] + list(beside):
+        while beside[start]:
+            chain = [start]
+            while beside[chain[-1]]:
+                following = beside[chain[-1]].pop()
+                beside[following].remove(chain[-1])
+                chain.append(following)
+            chains.append(chain)
+    return chains
