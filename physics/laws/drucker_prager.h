@@ -43,11 +43,17 @@ struct DruckerPrager : IsotropicElastic {
 
   bool cohesionless() const { return cohesion == 0; }
 
-  double eta = 0, eta_bar = 0, xi = 0;  ///< of the cone, set by prepare()
+  double G = 0, K = 0;  ///< [Pa], set by prepare() like the cone's eta, eta_bar and xi
+  double eta = 0, eta_bar = 0, xi = 0;
+  double over_stiffness = 0;  ///< slip per excess of f [1/Pa]
+  double apex = 0;            ///< mean stress at the apex [Pa]
   void prepare() {
+    G = shear_modulus(), K = bulk_modulus();
     xi = slope_over_tan(friction_angle);
     eta = xi * std::tan(friction_angle);
     eta_bar = slope_over_tan(dilation_angle) * std::tan(dilation_angle);
+    over_stiffness = 1 / (G + K * eta_bar * eta);
+    apex = eta > 0 ? xi * cohesion / eta : 1e100;
   }
 
   double slope_over_tan(double angle) const {
@@ -68,13 +74,12 @@ struct DruckerPrager : IsotropicElastic {
   /// Brings an elastic trial stress back to the cone.
   template <int dim>
   [[gnu::always_inline]] void correct(Stress<dim> &s, History &history, const Surroundings &) const {
-    const double G = shear_modulus(), K = bulk_modulus();
     const Invariants<dim> trial(s);
     const double f = trial.q + eta * trial.p - xi * cohesion;
-    const double to_cone = f / (G + K * eta_bar * eta);
-    const bool elastic = f <= 0, apex = eta > 0 && trial.q < G * to_cone;  // the return to the cone would pass its apex
-    const double q = elastic ? trial.q : apex ? 0 : trial.q - G * to_cone;
-    const double p = elastic ? trial.p : apex ? xi * cohesion / eta : trial.p - K * eta_bar * to_cone;
+    const double to_cone = (f > 0 ? f : 0) * over_stiffness;
+    const double cone_p = trial.p - K * eta_bar * to_cone, cone_q = trial.q - G * to_cone;
+    const double p = cone_p < apex ? cone_p : apex;
+    const double q = cone_p < apex ? cone_q : 0;
     const double shrink = trial.q > 0 ? (trial.q - q) / trial.q : 0;
     s.xx -= shrink * trial.deviator.xx + (trial.p - p);
     s.yy -= shrink * trial.deviator.yy + (trial.p - p);
@@ -82,8 +87,8 @@ struct DruckerPrager : IsotropicElastic {
     s.xy -= shrink * trial.deviator.xy;
     if constexpr (dim == 3) s.yz -= shrink * trial.deviator.yz, s.xz -= shrink * trial.deviator.xz;
     auto &[plastic_strain, plastic_volume] = history;
-    plastic_strain += (trial.q - q) / (std::sqrt(3.) * G);
-    plastic_volume += (trial.p - p) / K;
+    plastic_strain += (trial.q - q) * (1 / (std::sqrt(3.) * G));
+    plastic_volume += (trial.p - p) * (1 / K);
   }
 };
 

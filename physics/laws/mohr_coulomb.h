@@ -57,83 +57,89 @@ struct MohrCoulomb : IsotropicElastic {
 
   bool cohesionless() const { return cohesion == 0; }
 
+  /// Of the parameters alone, set by prepare().
+  double G = 0, K = 0, lambda = 0, cutoff = 0;                ///< [Pa]
+  double residual_c = 0, residual_phi = 0, sin_psi_peak = 0;  ///< [Pa], [rad], [-]
+  double eta = 0, eta_per_metre = 0;                          ///< [-], [1/m]
+  double plane_drag = 0, line_drag = 0;                       ///< stress that opening takes off the others [-]
+  static constexpr double unlimited = 1e100;                  ///< [Pa]
+  void prepare() {
+    G = shear_modulus(), K = bulk_modulus(), lambda = K - 2 * G / 3;
+    cutoff = tension_cutoff < 0 ? unlimited : tension_cutoff;
+    residual_c = residual_cohesion < 0 ? cohesion : residual_cohesion;
+    residual_phi = residual_friction_angle < 0 ? friction_angle : residual_friction_angle;
+    sin_psi_peak = std::sin(dilation_angle);
+    eta = reference_size > 0 ? 0 : shape_factor;
+    eta_per_metre = reference_size > 0 ? shape_factor / reference_size : 0;
+    plane_drag = lambda / (lambda + 2 * G), line_drag = lambda / (lambda + G);
+  }
+
   struct Strength {
     double sin_phi, sin_psi;
     double twice_c_cos_phi;  ///< [Pa]
     double tension;          ///< largest principal stress: cut-off or apex [Pa]
     /// Yield function of one pair of principal stresses [Pa].
-    double yield(double greater, double less) const {
+    [[gnu::always_inline]] double yield(double greater, double less) const {
       return (1 + sin_phi) * greater - (1 - sin_phi) * less - twice_c_cos_phi;
     }
   };
 
   [[gnu::always_inline]] Strength strength(double plastic_strain, const Surroundings &around) const {
-    const double residual_c = residual_cohesion < 0 ? cohesion : residual_cohesion;
-    const double residual_phi = residual_friction_angle < 0 ? friction_angle : residual_friction_angle;
-    const double eta = shape_factor * (reference_size > 0 && around.size > 0 ? around.size / reference_size : 1);
-    const double left = exponential(-eta * plastic_strain);  // of the way from residual to peak
-    const double sin_phi = sine(residual_phi + (friction_angle - residual_phi) * left), sin_psi = sine(dilation_angle);
-    const double cos_phi = std::sqrt(1 - sin_phi * sin_phi);
-    const double c_cos_phi = (residual_c + (cohesion - residual_c) * left) * cos_phi;
-    const double apex = sin_phi > 0 ? c_cos_phi / sin_phi : 1e100;
-    const double cutoff = tension_cutoff < 0 ? 1e100 : tension_cutoff;
-    return {sin_phi, sin_psi < sin_phi ? sin_psi : sin_phi, 2 * c_cos_phi, cutoff < apex ? cutoff : apex};
+    const double left = exponential(-(eta + eta_per_metre * around.size) * plastic_strain);  // from residual to peak
+    const double sin_phi = sine(residual_phi + (friction_angle - residual_phi) * left);
+    const double c_cos_phi = (residual_c + (cohesion - residual_c) * left) * std::sqrt(1 - sin_phi * sin_phi);
+    const double quotient = c_cos_phi / sin_phi, apex = sin_phi > 0 ? quotient : unlimited;
+    return {sin_phi, sin_psi_peak < sin_phi ? sin_psi_peak : sin_phi, 2 * c_cos_phi, cutoff < apex ? cutoff : apex};
   }
 
   /// The principal stresses that plastic flow leaves of an elastic trial.
   [[gnu::always_inline]] Principal admissible(const Principal &s, const Strength &m) const {
-    const double G = shear_modulus(), lambda = lame_modulus();
-    // What unit slip of a pair takes off its greater, the third, and its lesser principal stress.
-    const double side = 2 * lambda * m.sin_psi, greater = side + 2 * G * (1 + m.sin_psi),
-                 less = side - 2 * G * (1 - m.sin_psi);
+    // What unit slip of a pair takes off its greater, the third and its lesser principal stress.
+    const double side = 2 * lambda * m.sin_psi;
+    const double greater = side + 2 * G * (1 + m.sin_psi), less = side - 2 * G * (1 - m.sin_psi);
 
-    const double f = m.yield(s.s1, s.s3);
-    const double own = (1 + m.sin_phi) * greater - (1 - m.sin_phi) * less;  // drop of f by slip of this pair
-    const double slip = (f > 0 ? f : 0) / own;
-    const Principal face{s.s1 - slip * greater, s.s2 - slip * side, s.s3 - slip * less};
-
-    // Edge s1 = s2 (triaxial compression) if the trial is nearer to it, else s2 = s3; a second pair slips.
-    const bool upper = (1 - m.sin_psi) * s.s1 - 2 * s.s2 + (1 + m.sin_psi) * s.s3 <= 0;
-    const double f2 = upper ? m.yield(s.s2, s.s3) : m.yield(s.s1, s.s2);
-    const double other =
-        upper ? (1 + m.sin_phi) * side - (1 - m.sin_phi) * less : (1 + m.sin_phi) * greater - (1 - m.sin_phi) * side;
-    const double over_det = 1 / ((own - other) * (own + other));
-    const double slip1 = (own * f - other * f2) * over_det, slip2 = (own * f2 - other * f) * over_det;
-    const Principal edge{s.s1 - slip1 * greater - slip2 * (upper ? side : greater),
-                         s.s2 - slip1 * side - slip2 * (upper ? greater : less),
-                         s.s3 - slip1 * less - slip2 * (upper ? less : side)};
-    const bool on_face = face.s1 >= face.s2 && face.s2 >= face.s3;
-    const Principal sheared{on_face ? face.s1 : edge.s1, on_face ? face.s2 : edge.s2, on_face ? face.s3 : edge.s3};
+    // Slip of s1, s3 would pass an edge if it brought one of these gaps below zero: there two pairs slip, which is slip
+    // of the mean of the two equal stresses against the third. At the edge s1 = s2 that is triaxial compression.
+    const double f = m.yield(s.s1, s.s3), drop = (1 + m.sin_phi) * greater - (1 - m.sin_phi) * less;
+    const double gap12 = (s.s1 - s.s2) * (1 - m.sin_psi), gap23 = (s.s2 - s.s3) * (1 + m.sin_psi);
+    const bool upper = gap12 < gap23;
+    const bool on_edge = (upper ? gap12 : gap23) * drop < 2 * G * (1 - m.sin_psi * m.sin_psi) * f;
+    const double mean12 = (s.s1 + s.s2) / 2, mean23 = (s.s2 + s.s3) / 2;
+    const double edge1 = upper ? mean12 : s.s1, edge2 = upper ? mean12 : mean23, edge3 = upper ? s.s3 : mean23;
+    const double flow12 = (greater + side) / 2, flow23 = (side + less) / 2;
+    const double flow1 = upper ? flow12 : greater, flow2 = upper ? flow12 : flow23, flow3 = upper ? less : flow23;
+    const double x1 = on_edge ? edge1 : s.s1, x2 = on_edge ? edge2 : s.s2, x3 = on_edge ? edge3 : s.s3;
+    const double d1 = on_edge ? flow1 : greater, d2 = on_edge ? flow2 : side, d3 = on_edge ? flow3 : less;
+    const double slip = m.yield(x1, x3) / ((1 + m.sin_phi) * d1 - (1 - m.sin_phi) * d3);
+    const bool elastic = f <= 0;
+    const double sheared1 = elastic ? s.s1 : x1 - slip * d1;
+    const double sheared2 = elastic ? s.s2 : x2 - slip * d2;
+    const double sheared3 = elastic ? s.s3 : x3 - slip * d3;
 
     // The cut-off alone: plane s1 = T, line s1 = s2 = T, or its corner.
-    const double T = m.tension, drag = lambda / (lambda + 2 * G);
-    const double opened2 = s.s2 - drag * (s.s1 - T);
-    const bool both = opened2 > T;
-    const double opened3 = s.s3 - (both ? lambda / (lambda + G) * ((s.s1 + s.s2) / 2 - T) : drag * (s.s1 - T));
-    const Principal opened{T, both ? T : opened2, opened3 < T ? opened3 : T};
+    const double T = m.tension;
+    const double plane2 = s.s2 - plane_drag * (s.s1 - T), plane3 = s.s3 - plane_drag * (s.s1 - T);
+    const double line3 = s.s3 - line_drag * (mean12 - T), opened = plane2 > T ? line3 : plane3;
+    const double opened2 = plane2 < T ? plane2 : T, opened3 = opened < T ? opened : T;
 
-    // Shear face and cut-off together: their line s1 = T, s3 = low, whose ends lie on the edges.
-    const double low = ((1 + m.sin_phi) * T - m.twice_c_cos_phi) / (1 - m.sin_phi);
-    const double drop1 = s.s1 - T, drop3 = s.s3 - low, det = 4 * G * (1 - m.sin_psi) * (lambda + G);
-    const double line_slip = (lambda * drop1 - (lambda + 2 * G) * drop3) / det;
-    const double line_opening = (greater * drop3 - less * drop1) / det;
+    // Shear and cut-off together: the line s1 = T, s3 = low, whose ends lie on the edges.
+    const double over = 1 / ((1 - m.sin_phi) * (1 - m.sin_psi));
+    const double low = ((1 + m.sin_phi) * T - m.twice_c_cos_phi) * (1 - m.sin_psi) * over;
+    const double drop1 = s.s1 - T, drop3 = s.s3 - low, over_det = (1 - m.sin_phi) * over * (1 / (4 * G * (lambda + G)));
+    const double line_slip = (lambda * drop1 - (lambda + 2 * G) * drop3) * over_det;
+    const double line_opening = (greater * drop3 - less * drop1) * over_det;
     const double middle = s.s2 - side * line_slip - lambda * line_opening;
-    const Principal corner{T, middle > T ? T : middle < low ? low : middle, low};
+    const double below = middle < T ? middle : T, corner2 = below > low ? below : low;
 
-    const bool keep = sheared.s1 <= T, open = m.yield(opened.s1, opened.s3) <= 0;
-    return {keep ? sheared.s1 : T,
-            keep   ? sheared.s2
-            : open ? opened.s2
-                   : corner.s2,
-            keep   ? sheared.s3
-            : open ? opened.s3
-                   : corner.s3};
+    const bool keep = sheared1 <= T, open = m.yield(T, opened3) <= 0;
+    const double torn2 = open ? opened2 : corner2, torn3 = open ? opened3 : low;
+    return {keep ? sheared1 : T, keep ? sheared2 : torn2, keep ? sheared3 : torn3};
   }
 
   /// Equivalent deviatoric plastic strain of a return.
   [[gnu::always_inline]] double shearing(const Principal &change) const {
     const double d12 = change.s1 - change.s2, d23 = change.s2 - change.s3, d31 = change.s3 - change.s1;
-    return std::sqrt(d12 * d12 + d23 * d23 + d31 * d31) * (1. / 3) * 1.4142135623730951 / (2 * shear_modulus());
+    return std::sqrt(d12 * d12 + d23 * d23 + d31 * d31) * (0.47140452079103168 / (2 * G));  // sqrt(2) / 3
   }
 
   /// Brings an elastic trial stress back to the surface. The strength is that of the plastic strain which the strength
@@ -151,7 +157,7 @@ struct MohrCoulomb : IsotropicElastic {
     const Principal taken = change(strength(predicted, around));
     axes.subtract(taken, stress);
     plastic_strain += shearing(taken);
-    plastic_volume += (taken.s1 + taken.s2 + taken.s3) / (3 * bulk_modulus());
+    plastic_volume += (taken.s1 + taken.s2 + taken.s3) * (1 / (3 * K));
   }
 };
 

@@ -14,8 +14,8 @@ struct Principal {
 /// Slope of the change between two principal values; isotropic returns only ever bring them closer: 0 <= slope <= 1.
 /// Holding it there keeps the quotient of two round-offs, at equal values, harmless.
 [[gnu::always_inline]] inline double divided_difference(double change, double gap) {
-  const double slope = change / (gap > 1e-200 ? gap : 1e-200);
-  return slope < 0 ? 0 : slope > 1 ? 1 : slope;
+  const double slope = change / (gap > 1e-200 ? gap : 1e-200), positive = slope > 0 ? slope : 0;
+  return positive < 1 ? positive : 1;
 }
 
 template <int dim>
@@ -63,7 +63,7 @@ class PrincipalAxes<3> {
     const double xx = stress.deviator.xx * over_q, yy = stress.deviator.yy * over_q, zz = stress.deviator.zz * over_q;
     const double xy = s.xy * over_q, yz = s.yz * over_q, xz = s.xz * over_q;
     const double half_J3 = (xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)) / 2;
-    const double cos3 = half_J3 < -1 ? -1 : half_J3 > 1 ? 1 : half_J3;
+    const double above = half_J3 > -1 ? half_J3 : -1, cos3 = above < 1 ? above : 1;
     const double Bxx = xx * xx + xy * xy + xz * xz - 2 - cos3 * xx, Bxy = xx * xy + xy * yy + xz * yz - cos3 * xy;
     const double Byy = xy * xy + yy * yy + yz * yz - 2 - cos3 * yy, Byz = xy * xz + yy * yz + yz * zz - cos3 * yz;
     const double Bzz = xz * xz + yz * yz + zz * zz - 2 - cos3 * zz, Bxz = xx * xz + xy * yz + xz * zz - cos3 * xz;
@@ -72,8 +72,13 @@ class PrincipalAxes<3> {
     const bool mirrored =
         cos3 < 0;  // theta -> pi/3 - theta: the angle below is at most pi/6, where cos(3 theta) is well conditioned
     const double target = mirrored ? -cos3 : cos3;
-    double c = 0.8660254037844386 + target * (0.16666666666666666 - 0.0326920704511053 * target);
-    for (int newton = 0; newton < 3; ++newton) c -= (c * (4 * c * c - 3) - target) / (12 * c * c - 3);
+    double c = -0.004035398717;  // cos(theta) to 5e-6, then one step of Halley's method to round-off
+    c = c * target + 0.01751218858;
+    c = c * target - 0.04592193313;
+    c = c * target + 0.1664117218;
+    c = c * target + 0.866030432;
+    const double f = c * (4 * c * c - 3) - target, slope = 12 * c * c - 3;
+    c -= f * slope / (slope * slope - 12 * c * f);
     const double sin_term =
         std::sqrt(B2 * 0.5) / (4 * c * c - 1);  // sqrt(3) sin(theta), from sin(3 theta) = sin(theta) (4 c^2 - 1)
     const double single = 2 * q * c, near = q * (sin_term - c), far = -q * (sin_term + c);

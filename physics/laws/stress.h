@@ -26,7 +26,7 @@ using Strain = Stress<dim>;  ///< the same shape; tensor components, not enginee
 /// Mean stress and deviator s - p I, with q = sqrt(J2) its norm over sqrt(2) [Pa].
 template <int dim>
 struct Invariants {
-  [[gnu::always_inline]] explicit Invariants(const Stress<dim> &s) : p((s.xx + s.yy + s.zz) / 3), deviator(s) {
+  [[gnu::always_inline]] explicit Invariants(const Stress<dim> &s) : p((s.xx + s.yy + s.zz) * (1. / 3)), deviator(s) {
     deviator.xx -= p, deviator.yy -= p, deviator.zz -= p;
     double shear = deviator.xy * deviator.xy;
     if constexpr (dim == 3) shear += deviator.yz * deviator.yz + deviator.xz * deviator.xz;

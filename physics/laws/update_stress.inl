@@ -9,38 +9,45 @@
 namespace talus {
 namespace {
 
-using Four = double __attribute__((vector_size(32)));
+using Four = double __attribute__((vector_size(4 * sizeof(double))));
+using Row = double __attribute__((vector_size(lanes * sizeof(double))));
 
-/// Numbers k to k + 3 of four points become four lanes of four rows. Left to itself the compiler moves one number at a
-/// time.
-[[gnu::always_inline]] inline void transpose(const double *const from[4], std::size_t k, double *to) {
-  Four a, b, c, d;
-  std::memcpy(&a, from[0] + k, sizeof a), std::memcpy(&b, from[1] + k, sizeof b);
-  std::memcpy(&c, from[2] + k, sizeof c), std::memcpy(&d, from[3] + k, sizeof d);
-  const Four ab02 = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab13 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-  const Four cd02 = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd13 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-  a = __builtin_shufflevector(ab02, cd02, 0, 1, 4, 5), b = __builtin_shufflevector(ab13, cd13, 0, 1, 4, 5);
-  c = __builtin_shufflevector(ab02, cd02, 2, 3, 6, 7), d = __builtin_shufflevector(ab13, cd13, 2, 3, 6, 7);
-  std::memcpy(to, &a, sizeof a), std::memcpy(to + lanes, &b, sizeof b);
-  std::memcpy(to + 2 * lanes, &c, sizeof c), std::memcpy(to + 3 * lanes, &d, sizeof d);
-}
+/// Numbers k to k + 3 of four points, from one Four a point to one Four a number.
+struct Transposed {
+  Four row[4];
+  [[gnu::always_inline]] Transposed(const double *const from[4], std::size_t k) {
+    Four a, b, c, d;
+    std::memcpy(&a, from[0] + k, sizeof a), std::memcpy(&b, from[1] + k, sizeof b);
+    std::memcpy(&c, from[2] + k, sizeof c), std::memcpy(&d, from[3] + k, sizeof d);
+    const Four ab02 = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab13 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    const Four cd02 = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd13 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    row[0] = __builtin_shufflevector(ab02, cd02, 0, 1, 4, 5), row[1] = __builtin_shufflevector(ab13, cd13, 0, 1, 4, 5);
+    row[2] = __builtin_shufflevector(ab02, cd02, 2, 3, 6, 7), row[3] = __builtin_shufflevector(ab13, cd13, 2, 3, 6, 7);
+  }
+};
 
 /// `size` numbers of each of `lanes` points: all points' first numbers, then all second ones.
 template <std::size_t size>
 struct Block {
-  alignas(64) double value[size > 0 ? size : 1][lanes];
+  alignas(sizeof(Row)) double value[size > 0 ? size : 1][lanes];
 
+  /// Each row is written at once: a wide read of what was written in pieces would wait for memory.
   [[gnu::always_inline]] void load(const double *const from[lanes]) {
-    for (int half = 0; half < lanes; half += 4) {
-      if constexpr (size < 4)
-        for (std::size_t k = 0; k < size; ++k)
-          for (int i = half; i < half + 4; ++i) value[k][i] = from[i][k];
-      else
-        for (std::size_t k = 0; k < size; k += 4) {
-          const std::size_t start = k + 4 <= size ? k : size - 4;  // the last four overlap the four before
-          transpose(from + half, start, &value[start][half]);
+    if constexpr (size < 4)
+      for (std::size_t k = 0; k < size; ++k) {
+        const Row row{from[0][k], from[1][k], from[2][k], from[3][k], from[4][k], from[5][k], from[6][k], from[7][k]};
+        std::memcpy(value[k], &row, sizeof row);
+      }
+    else
+      for (std::size_t step = 0; step < size; step += 4) {
+        const std::size_t first = step + 4 <= size ? step : size - 4;  // the last four overlap those before
+        const Transposed low(from, first), high(from + 4, first);
+        for (int k = 0; k < 4; ++k) {
+          const Row row = __builtin_shufflevector(low.row[k], high.row[k], 0, 1, 2, 3, 4, 5, 6, 7);
+          std::memcpy(value[first + k], &row, sizeof row);
         }
-    }
+      }
+    asm("" : "+m"(value));  // the compiler must not trace single lanes back to here: it would peel them off the loop
   }
   void store(int lane, double *to) const {
     for (std::size_t k = 0; k < size; ++k) to[k] = value[k][lane];
