@@ -110,13 +110,9 @@ std::string data_item(const std::string &file, const std::string &name, unsigned
   return text.str();
 }
 
-/// One column of such a dataset.
-std::string data_item_component(const std::string &whole, unsigned long long rows, int component) {
-  std::ostringstream text;
-  text << "<DataItem ItemType=\"HyperSlab\" Dimensions=\"" << rows
-       << " 1\"><DataItem Dimensions=\"3 2\" Format=\"XML\">0 " << component << " 1 1 " << rows << " 1</DataItem>"
-       << whole << "</DataItem>";
-  return text.str();
+/// ParaView itself names six components xx, yy, zz, xy, yz, xz, but not four.
+std::string shown_name(const std::string &name, int components) {
+  return components == 4 ? name + " (" + join(component_names(4)) + ")" : name;
 }
 
 std::string xdmf_attribute(const std::string &name, const char *type, const std::string &data) {
@@ -261,10 +257,8 @@ std::string RunFile::xdmf_particles(const Entry &entry) const {
       text += xdmf_attribute(name, "Scalar", data);
     else if (components <= 3)
       text += xdmf_attribute(name, "Vector", data);
-    else  // readers differ in the order of a Tensor6
-      for (int k = 0; k < components; ++k)
-        text += xdmf_attribute(name + "_" + component_names(components)[k], "Scalar",
-                               data_item_component(data, entry.particles, k));
+    else  // ParaView's readers differ in what they make of a Tensor6; numbers they hand on as they are
+      text += xdmf_attribute(shown_name(name, components), "Matrix", data);
   }
   return text + "      </Grid>\n";
 }

@@ -3,6 +3,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import LogNorm, Normalize
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
 import talus_style as style
@@ -10,7 +11,7 @@ from talus_tiles import Frame, outline_of_cells, outline_of_points, tiles
 
 WIDTH, LEFT, RIGHT, HEAD, TITLE, FOOT = 12.0, 0.62, 1.0, 0.42, 0.3, 0.62  # of a sheet [inch]
 BESIDE, BELOW, STACKED = 0.5, 0.38, 0.55  # between blocks, and between the views of one block [inch]
-DOTTED = (0, (1, 1.6))
+DOTTED, HALO = (0, (1, 1.6)), withStroke(linewidth=2, foreground="#ffffffaa")  # seen on pale and on dark soil
 OUTLINE_PIXELS = 900
 
 
@@ -209,9 +210,9 @@ class Painter:
         axes.imshow(image, extent=frame.extent(), origin="lower", cmap=colours.map, norm=colours.norm, aspect="auto")
         around, between = self.outlines[k]
         for line in around:
-            axes.plot(*line.T, color=style.INK, linestyle=DOTTED, linewidth=1.1, alpha=0.9)
+            axes.plot(*line.T, color=style.INK, linestyle=DOTTED, linewidth=1.1, path_effects=[HALO])
         for line in between:
-            axes.plot(*line.T, color=style.SOFT, linestyle=DOTTED, linewidth=0.8, alpha=0.8)
+            axes.plot(*line.T, color=style.SOFT, linestyle=DOTTED, linewidth=0.8, path_effects=[HALO])
         if named_points:
             self._mark_points(axes, self.views[k], snapshot.time)
         axes.set_xlim(low[0], high[0])

@@ -156,7 +156,7 @@ TEST(Snapshots, are_described_to_paraview_in_well_formed_xml) {
         << tag;
   EXPECT_EQ(count_of(xdmf, "<Time Value="), 2u);
   EXPECT_EQ(count_of(xdmf, "run/000001.h5:/position"), 1u);
-  EXPECT_EQ(count_of(xdmf, "Name=\"stress_xy\""), 2u);
+  EXPECT_EQ(count_of(xdmf, "Name=\"stress (xx yy zz xy)\""), 2u);
   EXPECT_EQ(count_of(xdmf, "background_mesh"), 2u);
 }
 
