@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "meshes/gmsh_file.h"
+#include "meshes/partition.h"
 #include "meshes/patches.h"
 #include "meshes/plex.h"
 #include "meshes/simplex.h"
@@ -59,23 +60,44 @@ PetscErrorCode carry(PetscSF migration, DM from, DM to, const std::vector<PetscI
   PetscFunctionReturn(0);
 }
 
-/// Cuts patches on rank 0, gives each to one rank and moves the cells; number and patch of a cell move along.
+/// Ranks of cells: whole patches, equal sums of weight.
 template <int dim>
-PetscErrorCode cut_and_distribute(Dm &plex, Simplices<dim> &cells, const std::vector<int> &patch,
+std::vector<int> ranks_of_cells(const Simplices<dim> &cells, const std::vector<int> &patch,
+                                const std::vector<double> &weight, int ranks) {
+  const int count = patch.empty() ? 0 : *std::max_element(patch.begin(), patch.end()) + 1;
+  std::vector<Vec<dim>> centre(count, Vec<dim>{});
+  std::vector<double> patch_weight(count, 0);
+  std::vector<int> size(count, 0);
+  std::vector<std::vector<int>> touching(count);
+  for (std::size_t c = 0; c < patch.size(); ++c) {
+    const int p = patch[c];
+    for (const auto &x : cells.corners(static_cast<int>(c))) map<dim>(centre[p]) += map<dim>(x) / (dim + 1);
+    patch_weight[p] += weight[c], ++size[p];
+    for (int other : cells.neighbour[c])
+      if (other >= 0 && patch[other] != p) touching[p].push_back(patch[other]);
+  }
+  for (int p = 0; p < count; ++p) map<dim>(centre[p]) /= size[p];
+  const auto rank = partition<dim>(centre, patch_weight, touching, ranks);
+  std::vector<int> rank_of_cell;
+  for (int p : patch) rank_of_cell.push_back(rank[p]);
+  return rank_of_cell;
+}
+
+/// Gives each patch of rank 0 to one rank and moves the cells; number and patch of a cell move along.
+template <int dim>
+PetscErrorCode distribute_patches(Dm &plex, Simplices<dim> &cells, const std::vector<int> &patch,
                                   const std::vector<double> &weight, std::vector<PetscInt> &number,
                                   std::vector<PetscInt> &patch_of) {
   Dm distributed;
   StarForest migration;
-  std::vector<int> rank_of_patch, rank_of_cell;
   int ranks;
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)(DM)plex), &ranks));
   patch_of.assign(patch.begin(), patch.end());
   for (std::size_t c = 0; c < patch.size(); ++c) number.push_back(static_cast<PetscInt>(c));
   if (ranks == 1) PetscFunctionReturn(0);
-  if (!patch.empty()) PetscCall(partition_patches<dim>(cells, patch, weight, ranks, rank_of_patch));
-  for (int p : patch) rank_of_cell.push_back(rank_of_patch[p]);
-  PetscCall(distribute(plex, rank_of_cell, distributed.create(), migration.create()));
+  PetscCall(
+      distribute(plex, ranks_of_cells<dim>(cells, patch, weight, ranks), distributed.create(), migration.create()));
   PetscCall(carry(migration, plex, distributed, std::vector(number), number));
   PetscCall(carry(migration, plex, distributed, std::vector(patch_of), patch_of));
   std::swap(plex, distributed);
@@ -120,21 +142,19 @@ PetscErrorCode cell_numbers(DM plex, std::vector<PetscInt> &number) {
 template <int dim>
 BackgroundMesh<dim> BackgroundMesh<dim>::read(MPI_Comm comm, const std::string &file, int patch_size,
                                               const std::vector<std::pair<std::string, double>> &region_weight) {
-  int rank, binary = 0;
+  int rank;
   MPI_Comm_rank(comm, &rank);
   std::string complaint;
-  if (rank == 0) {
-    bool is_binary = false;
-    complaint = complaint_about_file(file, dim, is_binary);
-    binary = is_binary;
-  }
+  GmshFile source;
+  source.name = file;
+  if (rank == 0) complaint = complaint_about_file(source, dim);
   agree(comm, complaint);
-  MPI_Bcast(&binary, 1, MPI_INT, 0, comm);
+  MPI_Bcast(&source.binary, 1, MPI_INT, 0, comm);
 
   BackgroundMesh mesh;
   Simplices<dim> cells;
   Regions regions;
-  require(open_gmsh(comm, file, binary, true, mesh.plex_.create()));
+  require(open_gmsh(comm, source, true, mesh.plex_.create()));
   require(read_simplices(mesh.plex_, cells));
   require(read_regions(mesh.plex_, regions));
   agree(comm, complaint_about_cells(file, cells, regions, Names::required));
@@ -142,7 +162,7 @@ BackgroundMesh<dim> BackgroundMesh<dim>::read(MPI_Comm comm, const std::string &
   if (patch_size == 0) patch_size = default_patch_size<dim>(is_one_element_slice<dim>(comm, cells.position));
   const auto patch = make_patches<dim>(cells.node, cells.neighbour, regions.combination, patch_size);
   std::vector<PetscInt> number, patch_of;
-  require(cut_and_distribute(mesh.plex_, cells, patch, weights_of(regions, region_weight), number, patch_of));
+  require(distribute_patches(mesh.plex_, cells, patch, weights_of(regions, region_weight), number, patch_of));
   require(mesh.flatten(cells, number, patch_of));
   return mesh;
 }

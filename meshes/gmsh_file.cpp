@@ -15,11 +15,6 @@ const char *kind_of_dimension(int dimension) {
   return 0 <= dimension && dimension <= 3 ? kinds[dimension] : "entities of unknown dimension";
 }
 
-struct PhysicalName {
-  int dimension;
-  std::string name;
-};
-
 /// What a pass over the lines of a Gmsh file finds; blocks of binary numbers are lines like others.
 struct Outline {
   std::string version;
@@ -34,8 +29,7 @@ bool read_names(std::istream &in, std::vector<PhysicalName> &names) {
   if (!(std::getline(in, line) && std::istringstream(line) >> count)) return false;
   for (int i = 0; i < count; ++i) {
     PhysicalName one;
-    int tag;
-    if (!(std::getline(in, line) && std::istringstream(line) >> one.dimension >> tag)) return false;
+    if (!(std::getline(in, line) && std::istringstream(line) >> one.dimension >> one.tag)) return false;
     const auto open = line.find('"'), close = line.rfind('"');
     if (open == close) return false;
     one.name = line.substr(open + 1, close - open - 1);
@@ -65,8 +59,7 @@ std::string complaint_about_names(const std::vector<PhysicalName> &names, int di
     highest = std::max(highest, one.dimension);
     if (is_reserved_label(one.name))
       return "the group name '" + one.name + "' is taken by DMPlex; rename the physical group";
-    if (one.name.empty() || one.name.size() > 127)
-      return "the group name '" + one.name + "' must have 1 to 127 characters; rename the physical group";
+    if (one.name.empty()) return "a physical group has an empty name; name it in Gmsh";
   }
   if (highest == dimension) return "";
   std::ostringstream text;
@@ -77,11 +70,11 @@ std::string complaint_about_names(const std::vector<PhysicalName> &names, int di
 }
 
 /// Lets PETSc read the cells quietly, so that whatever it refuses becomes a complaint and not an abort.
-std::string complaint_of_petsc(const std::string &file, bool binary, int dimension) {
+std::string complaint_of_petsc(const GmshFile &file, int dimension) {
   Dm plex;
   PetscInt found = -1, first = 0, end = 0;
   if (PetscPushErrorHandler(PetscIgnoreErrorHandler, nullptr)) return "PETSc failed";
-  const PetscErrorCode error = open_gmsh(PETSC_COMM_SELF, file, binary, false, plex.create());
+  const PetscErrorCode error = open_gmsh(PETSC_COMM_SELF, file, false, plex.create());
   if (PetscPopErrorHandler()) return "PETSc failed";
   if (error) {
     const char *text = nullptr;
@@ -133,12 +126,14 @@ bool overlap(const Simplices<dim> &cells, int cell, int face) {
 
 }  // namespace
 
-std::string complaint_about_file(const std::string &file, int dimension, bool &binary) {
-  std::ifstream in(file, std::ios::binary);
+std::string complaint_about_file(GmshFile &file, int dimension) {
+  std::ifstream in(file.name, std::ios::binary);
   if (!in || in.peek() == std::ifstream::traits_type::eof())
-    return file + ": cannot be read or is empty; check the path and its permissions";
+    return file.name + ": cannot be read or is empty; check the path and its permissions";
   const Outline outline = outline_of(in);
-  binary = outline.file_type != 0;
+  file.binary = outline.file_type != 0;
+  file.entities = !outline.version.empty() && outline.version[0] == '4';
+  file.groups = outline.names;
   std::string wrong;
   if (outline.version.empty())
     wrong = "is not a Gmsh mesh (no $MeshFormat); give a .msh file, format 2.2 or 4.1";
@@ -151,8 +146,8 @@ std::string complaint_about_file(const std::string &file, int dimension, bool &b
   else if (!outline.nodes || !outline.elements)
     wrong = "ends early (no $EndNodes or no $EndElements); save it again from Gmsh";
   if (wrong.empty()) wrong = complaint_about_names(outline.names, dimension);
-  if (wrong.empty()) wrong = complaint_of_petsc(file, binary, dimension);
-  return wrong.empty() ? "" : file + ": " + wrong;
+  if (wrong.empty()) wrong = complaint_of_petsc(file, dimension);
+  return wrong.empty() ? "" : file.name + ": " + wrong;
 }
 
 template <int dim>

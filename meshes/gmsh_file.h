@@ -8,8 +8,8 @@
 
 namespace talus {
 
-/// Looks through a Gmsh file before PETSc does, whose own reader would abort. Serial; sets `binary`.
-std::string complaint_about_file(const std::string &file, int dimension, bool &binary);
+/// Looks through a Gmsh file before PETSc does, whose own reader would abort. Serial; fills in what it finds.
+std::string complaint_about_file(GmshFile &file, int dimension);
 
 /// Cells of no volume, cells that overlap, and, where each has to have a name, cells in no region. Serial; `source`
 /// names the mesh.

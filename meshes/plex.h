@@ -49,14 +49,19 @@ PetscErrorCode names_at_height(DM plex, int height, std::vector<std::string> &na
 PetscErrorCode points_at_height(DM plex, const std::string &label, int height, std::vector<PetscInt> &points);
 bool is_reserved_label(const std::string &name);
 
-/// Opens a Gmsh file with a label for each physical name. All cells are on rank 0. Options of the caller's database are
-/// neither read nor changed.
-PetscErrorCode open_gmsh(MPI_Comm comm, const std::string &file, bool binary, bool interpolate, DM *plex);
-
-/// Ranks of patches: equal sums of `weight` (>= 1, of cells), few faces cut. Serial.
-template <int dim>
-PetscErrorCode partition_patches(const Simplices<dim> &cells, const std::vector<int> &patch,
-                                 const std::vector<double> &weight, int ranks, std::vector<int> &rank_of_patch);
+struct PhysicalName {
+  int dimension, tag;
+  std::string name;
+};
+struct GmshFile {
+  std::string name;
+  int binary = 0;                    ///< numbers are not text
+  int entities = 0;                  ///< format 4: elements belong to entities, which may be in several groups
+  std::vector<PhysicalName> groups;  ///< known on rank 0
+};
+/// Opens a Gmsh file with a label for each physical name of cells and facets. All cells are on rank 0. Options of the
+/// caller's database are neither read nor changed.
+PetscErrorCode open_gmsh(MPI_Comm comm, const GmshFile &file, bool interpolate, DM *plex);
 
 /// Sends each cell of rank 0 to `rank_of_cell`. `migration` leads from points there to local points. On one rank
 /// nothing moves: `distributed` and `migration` stay null.

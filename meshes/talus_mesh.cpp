@@ -2,6 +2,7 @@
 #include <gmsh.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 
@@ -95,6 +96,7 @@ void report_mesh() {
 }
 
 void check_writable(const std::string &file) {
+  if (std::filesystem::path(file).extension() != ".msh") complain("--output " + file + " must end in .msh");
   if (!std::ofstream(file, std::ios::app))
     throw std::runtime_error(file + ": cannot be written; check the folder and its permissions");
 }
@@ -102,6 +104,7 @@ void check_writable(const std::string &file) {
 void run(const Request &request) {
   const Section section = read_section(request.source);
   check(request, section);
+  const bool existed = std::filesystem::exists(request.file);
   check_writable(request.file);
   gmsh::initialize();
   try {
@@ -115,7 +118,7 @@ void run(const Request &request) {
       report_mesh<3>();
   } catch (...) {
     gmsh::finalize();
-    std::remove(request.file.c_str());
+    if (!existed) std::filesystem::remove(request.file);
     throw;
   }
   gmsh::finalize();
@@ -130,7 +133,9 @@ int parse(int argc, char **argv, Request &request) {
   app.add_option("--dimension", request.options.dimension, "2: triangles, 3: tetrahedra")->check(CLI::IsMember({2, 3}));
   app.add_option("--thickness", request.options.thickness, "of a 3D slice [m]; default one cell size");
   app.add_option("--layers", request.options.layers, "of elements over the thickness; 0: free tetrahedra; default 1");
-  app.add_option("--refine", request.boxes, "x0 y0 x1 y1 h: cells of size h in a box; may be repeated")->expected(5);
+  app.add_option("--refine", request.boxes, "x0 y0 x1 y1 h: cells of size h in a box; may be repeated")
+      ->type_size(5)
+      ->expected(-1);
   app.add_option("--format", request.format, "of the mesh file: 2.2 or 4.1")->check(CLI::IsMember({"2.2", "4.1"}));
   try {
     app.parse(argc, argv);
@@ -159,6 +164,9 @@ int main(int argc, char **argv) {
     return 2;
   } catch (const std::exception &error) {
     std::cerr << "talus-mesh: " << error.what() << "\n";
+    return 1;
+  } catch (const std::string &error) {
+    std::cerr << "talus-mesh: Gmsh: " << error << "\n";
     return 1;
   }
   return 0;

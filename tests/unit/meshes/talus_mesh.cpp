@@ -1,0 +1,126 @@
+// The program talus-mesh from outside: exit status, messages, files.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace talus {
+namespace {
+
+struct Answer {
+  int status;
+  std::string text;
+};
+
+class TalusMesh : public ::testing::Test {
+ protected:
+  const std::filesystem::path folder = std::filesystem::path(P_tmpdir) / ("talus_mesh_" + std::to_string(getpid()));
+  void SetUp() override { std::filesystem::create_directories(folder); }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+
+  std::string in_folder(const std::string &name) const { return (folder / name).string(); }
+
+  std::string write(const std::string &name, const std::string &content) const {
+    std::ofstream(in_folder(name)) << content;
+    return in_folder(name);
+  }
+
+  static std::string content(const std::string &file) {
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    return text.str();
+  }
+
+  static Answer run(const std::string &arguments) {
+    Answer answer{-1, ""};
+    FILE *pipe = popen((TALUS_MESH " " + arguments + " 2>&1").c_str(), "r");
+    if (!pipe) return answer;
+    for (int c; (c = std::fgetc(pipe)) != EOF;) answer.text += static_cast<char>(c);
+    answer.status = WEXITSTATUS(pclose(pipe));
+    return answer;
+  }
+
+  static void expect_words(const Answer &answer, const std::vector<std::string> &words) {
+    for (const auto &word : words)
+      EXPECT_NE(answer.text.find(word), std::string::npos) << word << " is not in: " << answer.text;
+  }
+};
+
+TEST_F(TalusMesh, MeshesEverySectionOfTheGallery) {
+  const std::vector<std::pair<std::string, std::string>> sections{
+      {"selborne", "2"}, {"selborne_deck", "2"}, {"column", "0.02"}, {"bar", "0.05"},
+      {"box", "0.25"},   {"oedometer", "0.1"},   {"footing", "0.5"}, {"incline_block", "0.25"}};
+  for (const auto &[name, size] : sections)
+    for (const std::string dimension : {"2", "3"}) {
+      const Answer answer = run(TALUS_SECTIONS + name + ".csv -o " + in_folder("m.msh") + " --size " + size +
+                                " --dimension " + dimension);
+      EXPECT_EQ(answer.status, 0) << name << ": " << answer.text;
+      expect_words(answer, {"cells", "smallest altitude", "quality", "region", "group base"});
+    }
+}
+
+TEST_F(TalusMesh, MakesTheSameMeshEveryTime) {
+  const std::string arguments = TALUS_SECTIONS "selborne.csv --size 1 --dimension 3 -o ";
+  ASSERT_EQ(run(arguments + in_folder("a.msh")).status, 0);
+  ASSERT_EQ(run(arguments + in_folder("b.msh")).status, 0);
+  EXPECT_EQ(content(in_folder("a.msh")), content(in_folder("b.msh")));
+}
+
+TEST_F(TalusMesh, HasNodesAtTheEndsOfANamedBoundary) {
+  const Answer answer = run(TALUS_SECTIONS "footing.csv --size 0.7 -o " + in_folder("m.msh"));
+  expect_words(answer, {"group footing: 2 facets, 1 m", "m\n", "group surface"});
+}
+
+TEST_F(TalusMesh, TakesABoundaryThatEndsInsideTheSection) {
+  const std::string square = "outline,0,0\noutline,4,0\noutline,4,2\noutline,0,2\n";
+  const std::string source = write("s.csv", square + "b_slip,1,1\nb_slip,3,1\n");
+  expect_words(run(source + " --size 0.5 -o " + in_folder("m.msh")), {"group slip: 4 facets, 2 m", "8 m2"});
+}
+
+TEST_F(TalusMesh, RefinesBoxesOfTheSectionAndOfTheCommandLine) {
+  const std::string coarse = "box.csv --size 0.25 -o ";
+  const auto cells = [&](const std::string &options) {
+    const std::string text = run(TALUS_SECTIONS + coarse + in_folder("m.msh") + options).text;
+    return std::stoi(text.substr(text.find("cells ") + 6));
+  };
+  EXPECT_GT(cells(" --refine 0 0 0.3 0.3 0.05"), 2 * cells(""));
+  EXPECT_GT(cells(" --refine 0 0 0.3 0.3 0.05 --refine 0.7 0.7 1 1 0.05"), cells(" --refine 0 0 0.3 0.3 0.05"));
+}
+
+TEST_F(TalusMesh, ComplainsAboutBadInputWithStatus2) {
+  const std::string out = " -o " + in_folder("m.msh");
+  const std::string bow = write("bow.csv", "outline,0,0\noutline,4,2\noutline,4,0\noutline,0,2\n");
+  Answer answer = run(bow + out + " --size 1");
+  EXPECT_EQ(answer.status, 2);
+  expect_words(answer, {"bow.csv line 3", "crosses itself", "(0, 0)-(4, 2)"});
+  EXPECT_EQ(run(in_folder("nowhere.csv") + out + " --size 1").status, 2);
+  const std::string box = TALUS_SECTIONS "box.csv";
+  for (const std::string wrong :
+       {" --size 0", " --size -1", " --size 2", " --size 1e-9", " --size big", "", " --size 1 --dimension 4",
+        " --size 1 --refine 0 0 1 1 0", " --size 1 --thickness -1", " --size 1 --layers -1"})
+    EXPECT_EQ(run(box + out + wrong).status, 2) << wrong;
+  EXPECT_EQ(run(box + " --size 1 -o " + in_folder("m.vtk")).status, 2);
+  EXPECT_FALSE(std::filesystem::exists(in_folder("m.msh")));
+}
+
+TEST_F(TalusMesh, ComplainsAboutSeedsThatContradictEachOther) {
+  const std::string square = "outline,0,0\noutline,4,0\noutline,4,2\noutline,0,2\n";
+  const Answer answer =
+      run(write("s.csv", square + "region_clay,1,1\nregion_sand,3,1\n") + " --size 1 -o " + in_folder("m.msh"));
+  EXPECT_EQ(answer.status, 2);
+  expect_words(answer, {"line 6", "'sand'", "'clay'", "interface"});
+  EXPECT_FALSE(std::filesystem::exists(in_folder("m.msh")));
+}
+
+TEST_F(TalusMesh, CannotWriteWithStatus1) {
+  const Answer answer = run(TALUS_SECTIONS "box.csv --size 0.5 -o " + in_folder("no/such/folder/m.msh"));
+  EXPECT_EQ(answer.status, 1);
+  expect_words(answer, {"cannot be written"});
+}
+
+}  // namespace
+}  // namespace talus
