@@ -12,7 +12,8 @@ namespace {
 /// Checks between keys, and the few values that follow from others. Complains at the key's place in the file.
 class Checks {
  public:
-  Checks(Scene &scene, const TableReader &reader) : scene_(scene), reader_(reader) {}
+  Checks(Scene &scene, const TableReader &reader, bool host_mesh)
+      : scene_(scene), reader_(reader), host_mesh_(host_mesh) {}
 
   void all() {
     if (scene_.body.empty())
@@ -32,6 +33,11 @@ class Checks {
  private:
   void mesh() const {
     const MeshSource &mesh = scene_.mesh;
+    if (host_mesh_) {
+      if (!mesh.file.empty() || !mesh.section.empty())
+        reader_.complain("mesh", "has a source, but the host program brings the mesh: leave out file and section");
+      return;
+    }
     if (mesh.file.empty() == mesh.section.empty())
       reader_.complain("mesh", mesh.file.empty() ? "needs a source: give file or section"
                                                  : "has two sources: give either file or section");
@@ -131,20 +137,28 @@ class Checks {
 
   Scene &scene_;
   const TableReader &reader_;
+  bool host_mesh_;
 };
 
-}  // namespace
-
-Scene parse_scene(const std::string &text, const std::string &file, const std::vector<std::string> &overrides) {
+Scene parse(const std::string &text, const std::string &file, const std::vector<std::string> &overrides,
+            bool host_mesh) {
   TableReader reader = TableReader::from_text(text, file, overrides);
   Scene scene;
   reader.fill(scene);
-  Checks(scene, reader).all();
+  Checks(scene, reader, host_mesh).all();
   scene.file = file;
   for (const std::string &one : overrides) scene.source += "# --set " + one + "\n";
   scene.source += text;
   return scene;
 }
+
+}  // namespace
+
+Scene parse_scene(const std::string &text, const std::string &file, const std::vector<std::string> &overrides) {
+  return parse(text, file, overrides, false);
+}
+
+Scene parse_host_scene(const std::string &text, const std::string &name) { return parse(text, name, {}, true); }
 
 Scene read_scene(const std::string &file, const std::vector<std::string> &overrides) {
   return parse_scene(read_text(file), file, overrides);

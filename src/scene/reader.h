@@ -122,6 +122,8 @@ struct Scene;
 Scene read_scene(const std::string &file, const std::vector<std::string> &overrides = {});
 /// The same from text; `file` stands for the path of the scene.
 Scene parse_scene(const std::string &text, const std::string &file, const std::vector<std::string> &overrides = {});
+/// A scene whose mesh a host program brings, so without [mesh]; `name` stands for the file in complaints. Also in talus.h.
+Scene parse_host_scene(const std::string &text, const std::string &name);
 
 // ---- templates ----
 
