@@ -464,6 +464,7 @@ PetscErrorCode SoilMotion<dim, Phases>::accept(double, const double *u, const do
   PetscFunctionBeginUser;
   if (v != velocity_[0].data()) std::copy_n(reinterpret_cast<const Vec<dim> *>(v), grid_.node_count(), velocity_.begin());
   PetscCall(deform(reinterpret_cast<const Vec<dim> *>(u), false));
+  conditions_.follow_loads(reinterpret_cast<const Vec<dim> *>(u));
   moved_ = 0, speed_squared_ = 0;
   for (int i = 0; i < grid_.node_count(); ++i) {
     const Vec<dim> &x = grid_.position[i], &X = mesh_.position[grid_.mesh_node[i]];

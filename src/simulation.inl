@@ -452,8 +452,11 @@ void Simulation<dim, Phases>::open_results() {
     if (Phases::given) history_.names.push_back(point.name + "_pore_pressure_Pa");
   }
   for (const char *name : {"kinetic_J", "strain_J", "potential_J", "mass_kg", "particles", "load_time_s"}) history_.names.push_back(name);
-  for (const auto &source : conditions_.sources())
-    for (int d = 0; d < dim; ++d) history_.names.push_back(source.name + "_force_" + axis[d] + "_N");
+  // a loaded face shows how far it went, every other boundary the force by which it holds the soil
+  for (size_t s = 0; s < conditions_.sources().size(); ++s)
+    for (int d = 0; d < dim; ++d)
+      history_.names.push_back(conditions_.sources()[s].name + (conditions_.loads(static_cast<int>(s)) ? "_displacement_" : "_force_") + axis[d] +
+                               (conditions_.loads(static_cast<int>(s)) ? "_m" : "_N"));
   if (options_.directory.empty()) return;
 
   RunHeader header{scene_.title, std::string("Talus ") + version, scene_.source, {}};
@@ -561,11 +564,13 @@ void Simulation<dim, Phases>::write_history() {
   require(motion_->balance(time_, &sums));
   row.insert(row.end() - 1, sums.strain);
   row.push_back(total_mass_), row.push_back(static_cast<double>(particle_count_)), row.push_back(load_time_);
-  std::vector<Vec<dim>> impulses;
+  std::vector<Vec<dim>> impulses, faces;
   require(conditions_.take_impulses(comm_, impulses));
+  require(conditions_.face_displacements(comm_, faces));
   const double elapsed = time_ - impulse_time_;
-  for (const Vec<dim> &impulse : impulses)
-    for (double component : impulse) row.push_back(elapsed > 0 ? component / elapsed : 0);
+  for (size_t s = 0; s < impulses.size(); ++s)
+    for (int d = 0; d < dim; ++d)
+      row.push_back(conditions_.loads(static_cast<int>(s)) ? faces[s][d] : elapsed > 0 ? impulses[s][d] / elapsed : 0);
   impulse_time_ = time_;
   row.insert(row.begin(), {time_, static_cast<double>(steps_)});
   history_.rows.push_back(row);

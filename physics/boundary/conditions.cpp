@@ -66,7 +66,7 @@ template <int dim>
 PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vector<Source> sources) {
   PetscFunctionBeginUser;
   sources_ = std::move(sources);
-  impulse_.assign(sources_.size(), Vec<dim>{});
+  impulse_.assign(sources_.size(), Vec<dim>{}), face_travel_ = impulse_;
   prescribed_of_node_.assign(mesh.node_count(), -1), first_contact_of_node_.assign(mesh.node_count(), -1);
   std::vector<NodeNormal> normals;
   for (int s = 0; s < static_cast<int>(sources_.size()); ++s) {
@@ -203,6 +203,27 @@ void Conditions<dim>::add_loads(double t, const FilledGrid<dim> &grid, Vec<dim> 
     const Vec<dim> traction = std::get<Traction>(sources_[load.source].kind).template load<dim>(load.facet->normal, centre, t);
     for (int node : load.node) add<dim>(force[node], load.share * load.facet->area / dim, traction);
   }
+}
+
+template <int dim>
+void Conditions<dim>::follow_loads(const Vec<dim> *u) {
+  for (const LoadedFacet &load : active_loads_)
+    for (int node : load.node) add<dim>(face_travel_[load.source], load.share * load.facet->area / dim, u[node]);
+}
+
+template <int dim>
+PetscErrorCode Conditions<dim>::face_displacements(MPI_Comm comm, std::vector<Vec<dim>> &mean) const {
+  PetscFunctionBeginUser;
+  std::vector<double> area(sources_.size(), 0);
+  mean = face_travel_;
+  for (const LoadedFacet &load : active_loads_) area[load.source] += load.share * load.facet->area;
+  if (!mean.empty()) {
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, area.data(), static_cast<int>(area.size()), MPI_DOUBLE, MPI_SUM, comm));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, mean[0].data(), static_cast<int>(mean.size()) * dim, MPI_DOUBLE, MPI_SUM, comm));
+  }
+  for (size_t s = 0; s < mean.size(); ++s)
+    for (double &component : mean[s]) component = area[s] > 0 ? component / area[s] : 0;
+  PetscFunctionReturn(0);
 }
 
 template <int dim>

@@ -32,9 +32,15 @@ class Conditions {
   /// Implicit in a step gamma: dashpots, contact with friction, prescribed velocities. Sums up the reactions.
   void resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v);
 
+  /// Follows the loaded faces: `u` is the displacement of the nodes in an accepted step.
+  void follow_loads(const Vec<dim> *u);
+
   const std::vector<Source> &sources() const { return sources_; }
+  bool loads(int source) const { return std::holds_alternative<Traction>(sources_[source].kind); }
   /// Impulse on the soil by each boundary since the last call, per source [N s]; collective.
   PetscErrorCode take_impulses(MPI_Comm comm, std::vector<Vec<dim>> &impulse);
+  /// Mean displacement of the loaded face of each source since the start [m], zero for other sources; collective.
+  PetscErrorCode face_displacements(MPI_Comm comm, std::vector<Vec<dim>> &mean) const;
 
  private:
   struct Prescribed {      // a node with prescribed directions
@@ -83,6 +89,7 @@ class Conditions {
   std::vector<Dashpot> active_dashpots_;
   std::vector<double> nodal_;
   std::vector<Vec<dim>> impulse_;
+  std::vector<Vec<dim>> face_travel_;  ///< per source: sum over facets and time of area times displacement [m3]
   std::vector<char> counted_;   // [compact] this rank counts the node in global sums
 };
 

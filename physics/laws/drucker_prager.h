@@ -14,6 +14,7 @@ enum class Cone { outer, inner, compromise, plane_strain };
 /// methods in offshore engineering, ch. 12 (compromise: the mean of outer and inner).
 struct DruckerPrager : IsotropicElastic {
   static constexpr const char *name = "drucker_prager";
+  static constexpr const char *meaning = "Drucker-Prager cone with dilation";
   static constexpr auto history = plastic_strains;
   using History = std::array<double, history.size()>;
 
@@ -43,20 +44,21 @@ struct DruckerPrager : IsotropicElastic {
 
   bool cohesionless() const { return cohesion == 0; }
 
-  double G = 0, K = 0;  ///< [Pa], set by prepare() like the cone's eta, eta_bar and xi
-  double eta = 0, eta_bar = 0, xi = 0;
-  double over_stiffness = 0;  ///< slip per excess of f [1/Pa]
-  double apex = 0;            ///< mean stress at the apex [Pa]
+  // Of the parameters alone, set by prepare().
+  double eta = 0, eta_bar = 0, xi = 0;  ///< of the cone [-]
+  double over_stiffness = 0;            ///< slip per excess of f [1/Pa]
+  double apex = 0;                      ///< mean stress at the apex [Pa]
   void prepare() {
-    G = shear_modulus(), K = bulk_modulus();
-    xi = slope_over_tan(friction_angle);
+    IsotropicElastic::prepare();
+    xi = xi_of(friction_angle);
     eta = xi * std::tan(friction_angle);
-    eta_bar = slope_over_tan(dilation_angle) * std::tan(dilation_angle);
+    eta_bar = xi_of(dilation_angle) * std::tan(dilation_angle);
     over_stiffness = 1 / (G + K * eta_bar * eta);
     apex = eta > 0 ? xi * cohesion / eta : 1e100;
   }
 
-  double slope_over_tan(double angle) const {
+  /// xi of the cone for an angle of friction, over which eta = xi tan(phi), or of dilation.
+  double xi_of(double angle) const {
     const double sine = std::sin(angle), cosine = std::cos(angle), root3 = std::sqrt(3.);
     switch (cone) {
       case Cone::outer:

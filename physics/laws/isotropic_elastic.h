@@ -12,19 +12,19 @@ struct IsotropicElastic {
 
   double bulk_modulus() const { return young_modulus / (3 * (1 - 2 * poisson_ratio)); }  ///< K [Pa]
   double shear_modulus() const { return young_modulus / (2 * (1 + poisson_ratio)); }     ///< G [Pa]
-  double lame_modulus() const { return bulk_modulus() - 2 * shear_modulus() / 3; }       ///< lambda [Pa]
 
   template <class Visitor>
   void fields(Visitor &&v) {
     v.elasticity(young_modulus, poisson_ratio);
   }
 
-  void prepare() {}  ///< a law with derived parameters hides this function
+  double K = 0, G = 0, lambda = 0;  ///< [Pa], set by prepare()
+  void prepare() { K = bulk_modulus(), G = shear_modulus(), lambda = K - 2 * G / 3; }
 
   /// Adds the stress of an elastic strain increment. A law with an elasticity of its own hides this function.
   template <int dim>
   [[gnu::always_inline]] void trial(Stress<dim> &s, const Strain<dim> &e, const Surroundings &) const {
-    const double spherical = lame_modulus() * (e.xx + e.yy + e.zz), twice_G = 2 * shear_modulus();
+    const double spherical = lambda * (e.xx + e.yy + e.zz), twice_G = 2 * G;
     s.xx += spherical + twice_G * e.xx;
     s.yy += spherical + twice_G * e.yy;
     s.zz += spherical + twice_G * e.zz;

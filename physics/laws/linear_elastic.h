@@ -7,6 +7,7 @@ namespace talus {
 /// Linear elasticity without a limit of strength.
 struct LinearElastic : IsotropicElastic {
   static constexpr const char *name = "linear_elastic";
+  static constexpr const char *meaning = "linear elasticity";
   static constexpr std::array<HistoryField, 0> history{};
   using History = std::array<double, history.size()>;
 

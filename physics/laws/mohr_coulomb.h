@@ -16,17 +16,18 @@ namespace talus {
 /// (softening).
 struct MohrCoulomb : IsotropicElastic {
   static constexpr const char *name = "mohr_coulomb";
+  static constexpr const char *meaning = "Mohr-Coulomb with dilation, tension cut-off and strain softening";
   static constexpr auto history = plastic_strains;
   using History = std::array<double, history.size()>;
 
-  double cohesion = required;           ///< c, peak [Pa]
-  double friction_angle = required;     ///< phi, peak [rad]
-  double dilation_angle = 0;            ///< psi, never above the current phi [rad]
-  double tension_cutoff = -1;           ///< T [Pa]; negative: none, the apex is the limit
-  double residual_cohesion = -1;        ///< [Pa]; negative: the peak
-  double residual_friction_angle = -1;  ///< [rad]; negative: the peak
-  double shape_factor = 0;              ///< eta: strength falls with exp(-eta plastic_strain) [-]
-  double reference_size = 0;            ///< h_ref: eta is multiplied by h / h_ref [m]; 0: it is not
+  double cohesion = required;                   ///< c, peak [Pa]
+  double friction_angle = required;             ///< phi, peak [rad]
+  double dilation_angle = 0;                    ///< psi, never above the current phi [rad]
+  double tension_cutoff = -1;                   ///< T [Pa]; negative: none, the apex is the limit
+  double residual_cohesion = -1;                ///< [Pa]; negative: the peak
+  double residual_friction_angle = -degree.si;  ///< [rad]; negative: the peak
+  double shape_factor = 0;                      ///< eta: strength falls with exp(-eta plastic_strain) [-]
+  double reference_size = 0;                    ///< h_ref: eta is multiplied by h / h_ref [m]; 0: it is not
 
   template <class Visitor>
   void fields(Visitor &&v) {
@@ -52,25 +53,26 @@ struct MohrCoulomb : IsotropicElastic {
     if (dilation_angle > friction_angle) return "dilation_angle must not exceed friction_angle";
     if (residual_cohesion > cohesion) return "residual_cohesion must not exceed cohesion";
     if (residual_friction_angle > friction_angle) return "residual_friction_angle must not exceed friction_angle";
+    if ((residual_cohesion >= 0 || residual_friction_angle >= 0) && shape_factor == 0)
+      return "a residual strength needs a shape_factor above 0, the rate at which it is reached";
     return "";
   }
 
   bool cohesionless() const { return cohesion == 0; }
 
-  /// Of the parameters alone, set by prepare().
-  double G = 0, K = 0, lambda = 0, cutoff = 0;                ///< [Pa]
+  // Of the parameters alone, set by prepare().
+  double cutoff = 0;                                          ///< [Pa]
   double residual_c = 0, residual_phi = 0, sin_psi_peak = 0;  ///< [Pa], [rad], [-]
-  double eta = 0, eta_per_metre = 0;                          ///< [-], [1/m]
+  double over_size = 0;                                       ///< 1 / h_ref [1/m]
   double plane_drag = 0, line_drag = 0;                       ///< stress that opening takes off the others [-]
   static constexpr double unlimited = 1e100;                  ///< [Pa]
   void prepare() {
-    G = shear_modulus(), K = bulk_modulus(), lambda = K - 2 * G / 3;
+    IsotropicElastic::prepare();
     cutoff = tension_cutoff < 0 ? unlimited : tension_cutoff;
     residual_c = residual_cohesion < 0 ? cohesion : residual_cohesion;
     residual_phi = residual_friction_angle < 0 ? friction_angle : residual_friction_angle;
     sin_psi_peak = std::sin(dilation_angle);
-    eta = reference_size > 0 ? 0 : shape_factor;
-    eta_per_metre = reference_size > 0 ? shape_factor / reference_size : 0;
+    over_size = reference_size > 0 ? 1 / reference_size : 0;
     plane_drag = lambda / (lambda + 2 * G), line_drag = lambda / (lambda + G);
   }
 
@@ -85,7 +87,8 @@ struct MohrCoulomb : IsotropicElastic {
   };
 
   [[gnu::always_inline]] Strength strength(double plastic_strain, const Surroundings &around) const {
-    const double left = exponential(-(eta + eta_per_metre * around.size) * plastic_strain);  // from residual to peak
+    const double scale = around.size * over_size, eta = scale > 0 ? shape_factor * scale : shape_factor;
+    const double left = exponential(-eta * plastic_strain);  // of the way from residual to peak
     const double sin_phi = sine(residual_phi + (friction_angle - residual_phi) * left);
     const double c_cos_phi = (residual_c + (cohesion - residual_c) * left) * std::sqrt(1 - sin_phi * sin_phi);
     const double quotient = c_cos_phi / sin_phi, apex = sin_phi > 0 ? quotient : unlimited;
@@ -142,8 +145,9 @@ struct MohrCoulomb : IsotropicElastic {
     return std::sqrt(d12 * d12 + d23 * d23 + d31 * d31) * (0.47140452079103168 / (2 * G));  // sqrt(2) / 3
   }
 
-  /// Brings an elastic trial stress back to the surface. The strength is that of the plastic strain which the strength
-  /// at the start would cause: first order in the step, with half the error of the strength at the start.
+  /// Brings an elastic trial stress back to the surface. The strength is that after the plastic strain which the
+  /// strength at the start would cause: first order in the step, and behind the strain that results by only
+  /// (softening slope / 2 G) of what the strength at the start would be.
   template <int dim>
   [[gnu::always_inline]] void correct(Stress<dim> &stress, History &history, const Surroundings &around) const {
     auto &[plastic_strain, plastic_volume] = history;

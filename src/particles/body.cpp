@@ -25,6 +25,18 @@ std::vector<FieldSpec> field_specs(int history_count, bool affine) {
   return specs;
 }
 
+/// Does shearing expand the soil?
+bool dilates(const Law &law) {
+  return std::visit(
+      [](const auto &one) {
+        if constexpr (requires { one.dilation_angle; })
+          return one.dilation_angle > 0;
+        else
+          return false;
+      },
+      law);
+}
+
 }  // namespace
 
 template <int dim>
@@ -34,7 +46,7 @@ PetscErrorCode Body<dim>::create(MPI_Comm comm, const BodySource &source, Law la
   const bool capped = source.volume_cap > 0 || (source.volume_cap < 0 && cohesionless(law_));
   volume_cap_ = !capped ? std::numeric_limits<double>::infinity() : source.volume_cap > 0 ? source.volume_cap : 1;
   for (int h = 0; h < history_count_; ++h)
-    if (std::string(history_fields(law_)[h].name) == "plastic_volume") expansion_field_ = h;
+    if (dilates(law_) && std::string(history_fields(law_)[h].name) == "plastic_volume") expansion_field_ = h;
   PetscCall(DMCreate(comm, swarm_.create()));
   PetscCall(DMSetType(swarm_, DMSWARM));
   PetscCall(DMSetDimension(swarm_, dim));
