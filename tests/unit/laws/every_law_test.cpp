@@ -1,0 +1,277 @@
+/// What holds for any law. A new law is tested here as soon as it stands in `Law`; it brings its examples.
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "fixtures.h"
+
+namespace talus {
+namespace {
+
+/// Typical and extreme parameters of a law.
+template <class OneLaw>
+std::vector<OneLaw> examples();
+
+template <>
+std::vector<LinearElastic> examples() {
+  LinearElastic sand, clay;
+  sand.young_modulus = 20e6, sand.poisson_ratio = 0.3;
+  clay.young_modulus = 5e6, clay.poisson_ratio = 0.49;
+  return {sand, clay};
+}
+
+template <>
+std::vector<MohrCoulomb> examples() {
+  MohrCoulomb tension = mohr_coulomb(10e3, 25, 5), softening = mohr_coulomb(20e3, 30, 10);
+  tension.tension_cutoff = 2e3;
+  softening.residual_cohesion = 1e3, softening.residual_friction_angle = 20 * degree.si;
+  softening.shape_factor = 300, softening.reference_size = 0.5;
+  MohrCoulomb both = softening;
+  both.tension_cutoff = 5e3, both.residual_cohesion = 0;
+  return {mohr_coulomb(0, 35),
+          mohr_coulomb(0, 45, 45),
+          mohr_coulomb(15e3, 0),
+          mohr_coulomb(0, 0),
+          tension,
+          softening,
+          both};
+}
+
+template <>
+std::vector<DruckerPrager> examples() {
+  std::vector<DruckerPrager> laws;
+  for (const Cone cone : {Cone::outer, Cone::inner, Cone::compromise, Cone::plane_strain})
+    for (const double psi : {0., 15., 35.}) {
+      DruckerPrager law;
+      law.young_modulus = 20e6, law.poisson_ratio = 0.3, law.cone = cone;
+      law.cohesion = psi * 200, law.friction_angle = 35 * degree.si, law.dilation_angle = psi * degree.si;
+      laws.push_back(law);
+    }
+  laws.push_back(laws[0]);
+  laws.back().friction_angle = 0;
+  return laws;
+}
+
+template <class Variant>
+struct TypesOf;
+template <class... OneLaw>
+struct TypesOf<std::variant<OneLaw...>> {
+  using type = ::testing::Types<OneLaw...>;
+};
+
+template <class OneLaw>
+class EveryLaw : public ::testing::Test {};
+TYPED_TEST_SUITE(EveryLaw, TypesOf<Law>::type);
+
+/// Runs a claim in both dimensions on all examples of the law.
+template <class OneLaw, class Claim>
+void for_all(Claim claim) {
+  int number = 0;
+  for (const OneLaw &law : examples<OneLaw>()) {
+    SCOPED_TRACE(std::string(OneLaw::name) + " example " + std::to_string(number++));
+    claim(Dim<2>(), Law(law));
+    claim(Dim<3>(), Law(law));
+  }
+}
+
+constexpr double scale = 1e5;  // [Pa], of the stresses below
+
+TYPED_TEST(EveryLaw, says_what_it_remembers) {
+  std::set<std::string> names;
+  for (const HistoryField &field : TypeParam::history) {
+    EXPECT_TRUE(names.insert(field.name).second);
+    EXPECT_GT(std::string(field.meaning).size(), 10u);
+    EXPECT_NE(field.unit.name, nullptr);
+  }
+  const Law law = examples<TypeParam>()[0];
+  EXPECT_EQ(history_size(law), static_cast<int>(TypeParam::history.size()));
+  EXPECT_STREQ(law_name(law), TypeParam::name);
+  EXPECT_GT(std::string(TypeParam::meaning).size(), 10u);
+}
+
+TYPED_TEST(EveryLaw, has_moduli_of_a_stable_material) {
+  for (const TypeParam &law : examples<TypeParam>()) {
+    EXPECT_GT(bulk_modulus(law), 0);
+    EXPECT_GT(shear_modulus(law), 0);
+    EXPECT_DOUBLE_EQ(constrained_modulus(law), bulk_modulus(law) + 4 * shear_modulus(law) / 3);
+  }
+}
+
+/// Q s Q^T strained by Q e Q^T ends as Q s' Q^T: no direction is preferred.
+TYPED_TEST(EveryLaw, is_objective) {
+  for_all<TypeParam>([]<int dim>(Dim<dim>, const Law &law) {
+    Random random;
+    const int n = 2000;
+    Points<dim> points(law, n), turned(law, n);
+    std::vector<Matrix> Q(n);
+    for (int i = 0; i < n; ++i) {
+      Q[i] = random.rotation<dim>();
+      points.stress[i] = random.symmetric<dim>(scale);
+      points.increment[i].strain = random.symmetric<dim>(0.01);
+      turned.stress[i] = components<dim>(Q[i] * matrix<dim>(points.stress[i]) * Q[i].transpose());
+      turned.increment[i].strain = components<dim>(Q[i] * matrix<dim>(points.increment[i].strain) * Q[i].transpose());
+    }
+    points.update(), turned.update();
+    double worst = 0, worst_history = 0;
+    for (int i = 0; i < n; ++i)
+      worst = std::max(
+          worst, (Q[i] * matrix<dim>(points.stress[i]) * Q[i].transpose() - matrix<dim>(turned.stress[i])).norm());
+    for (std::size_t k = 0; k < points.history.size(); ++k)
+      worst_history = std::max(worst_history, std::abs(points.history[k] - turned.history[k]));
+    EXPECT_LT(worst, 1e-10 * scale);
+    EXPECT_LT(worst_history, 1e-12);
+  });
+}
+
+TYPED_TEST(EveryLaw, keeps_principal_stresses_under_finite_rotation) {
+  for_all<TypeParam>([]<int dim>(Dim<dim>, const Law &law) {
+    Random random;
+    const int n = 2000;
+    Points<dim> still(law, n), turned(law, n);
+    std::vector<Matrix> R(n);
+    for (int i = 0; i < n; ++i) {
+      R[i] = random.rotation<dim>();
+      still.stress[i] = turned.stress[i] = random.symmetric<dim>(scale);
+      still.increment[i].strain = random.symmetric<dim>(0.02);
+      turned.increment[i] = still.increment[i];
+      turned.turn(i, R[i]);
+    }
+    still.update(), turned.update();
+    double worst = 0;
+    for (int i = 0; i < n; ++i)
+      worst = std::max(worst,
+                       (R[i] * matrix<dim>(still.stress[i]) * R[i].transpose() - matrix<dim>(turned.stress[i])).norm());
+    EXPECT_LT(worst, 1e-12 * 1e6);
+    EXPECT_EQ(still.history, turned.history);
+  });
+}
+
+/// s : (d eps - C^-1 ds) >= 0 in every step from an admissible stress.
+TYPED_TEST(EveryLaw, dissipates) {
+  for_all<TypeParam>([]<int dim>(Dim<dim>, const Law &law) {
+    Random random;
+    const int n = 4000;
+    Points<dim> points(law, n);
+    for (auto &s : points.stress) s = random.symmetric<dim>(scale);
+    points.admit();
+    const auto before = points.stress;
+    for (auto &cell : points.increment) cell.strain = random.symmetric<dim>(std::pow(10, random.between(-6, -1)));
+    points.update();
+    double least = 0;
+    for (int i = 0; i < n; ++i) {
+      const Matrix s = matrix<dim>(points.stress[i]), strain = matrix<dim>(points.increment[i].strain);
+      const Matrix plastic = strain - elastic_strain(law, s - matrix<dim>(before[i]));
+      least = std::min(least, s.cwiseProduct(plastic).sum() / ((s.norm() + 1e-3 * scale) * strain.norm()));
+    }
+    EXPECT_GT(least, -1e-9);
+  });
+}
+
+TYPED_TEST(EveryLaw, leaves_what_it_admitted) {
+  for_all<TypeParam>([]<int dim>(Dim<dim>, const Law &law) {
+    Random random;
+    Points<dim> points(law, 2000);
+    for (auto &s : points.stress) s = random.symmetric<dim>(scale);
+    points.admit();
+    if (!points.history.empty())
+      std::fill(points.history.begin(), points.history.end(), 1e3);  // no strength is left to lose
+    points.admit();
+    const auto admitted = points.stress;
+    points.admit();
+    double worst = 0;
+    for (std::size_t i = 0; i < admitted.size(); ++i)
+      worst = std::max(worst, (matrix<dim>(points.stress[i]) - matrix<dim>(admitted[i])).norm());
+    EXPECT_LT(worst, 1e-12 * scale);
+  });
+}
+
+TYPED_TEST(EveryLaw, is_the_same_in_plane_strain_and_in_3d) {
+  for (const TypeParam &law : examples<TypeParam>()) {
+    Random random;
+    const int n = 5000;
+    Points<2> plane(law, n);
+    Points<3> solid(law, n);
+    for (int i = 0; i < n; ++i) {
+      const Matrix R = random.rotation<2>();
+      plane.stress[i] = random.symmetric<2>(scale);
+      plane.increment[i].strain = random.symmetric<2>(0.01);
+      solid.stress[i] = components<3>(matrix<2>(plane.stress[i]));
+      solid.increment[i].strain = components<3>(matrix<2>(plane.increment[i].strain));
+      plane.turn(i, R), solid.turn(i, R);
+    }
+    plane.update(), solid.update();
+    double worst = 0, worst_history = 0;
+    for (int i = 0; i < n; ++i)
+      worst = std::max(worst, (matrix<2>(plane.stress[i]) - matrix<3>(solid.stress[i])).norm());
+    for (std::size_t k = 0; k < plane.history.size(); ++k)
+      worst_history = std::max(worst_history, std::abs(plane.history[k] - solid.history[k]));
+    EXPECT_LT(worst, 1e-10 * scale);
+    EXPECT_LT(worst_history, 1e-12);
+  }
+}
+
+/// The answer for a point depends on neither its place in a block nor the number of points; input may be output.
+TYPED_TEST(EveryLaw, treats_points_alone_and_in_blocks_alike) {
+  for_all<TypeParam>([]<int dim>(Dim<dim>, const Law &law) {
+    Random random;
+    for (int n = 1; n < 20; ++n) {
+      Points<dim> many(law, n);
+      for (int i = 0; i < n; ++i) {
+        many.stress[i] = random.symmetric<dim>(scale);
+        many.increment[i].strain = random.symmetric<dim>(0.01);
+        many.turn(i, random.rotation<dim>());
+        many.cell[i] = n - 1 - i;
+      }
+      std::vector<Components<dim>> out(n, Components<dim>{});
+      std::vector<double> history(many.history.size());
+      StressPoints<dim> apart = many.view();
+      apart.stress_out = out[0].data(), apart.history_out = history.data();
+      update_stress<dim>(law, apart);
+      for (int i = 0; i < n; ++i) {
+        Points<dim> one(law, 1);
+        one.stress[0] = many.stress[i], one.increment[0] = many.increment[many.cell[i]];
+        one.update();
+        EXPECT_EQ(one.stress[0], out[i]);
+      }
+      many.update();
+      EXPECT_EQ(many.stress, out);
+      EXPECT_EQ(many.history, history);
+    }
+  });
+}
+
+/// Strains from 1e-8 to 10 %, many steps, with rotation: no stress or history stops being a number.
+TYPED_TEST(EveryLaw, survives_random_walks) {
+  for_all<TypeParam>([]<int dim>(Dim<dim>, const Law &law) {
+    Random random;
+    const int n = 256;
+    Points<dim> points(law, n, 0.7);
+    for (int step = 0; step < 200; ++step) {
+      for (int i = 0; i < n; ++i) {
+        points.increment[i].strain = random.symmetric<dim>(std::pow(10, random.between(-8, -1)));
+        if (step % 3 == 0) points.increment[i].strain = {};
+        points.turn(i, random.rotation<dim>());
+      }
+      points.update();
+    }
+    for (const auto &s : points.stress)
+      for (const double component : s) ASSERT_TRUE(std::isfinite(component));
+    for (const double h : points.history) ASSERT_TRUE(std::isfinite(h));
+  });
+}
+
+/// Elastic energy is the work of straining from zero stress, where the law stays elastic: 1/2 s : C^-1 : s.
+TYPED_TEST(EveryLaw, stores_elastic_energy) {
+  Random random;
+  const Law law = examples<TypeParam>()[0];
+  for (int i = 0; i < 100; ++i) {
+    const Components<3> s = random.symmetric<3>(scale);
+    const Stress<3> stress{s[0], s[1], s[2], s[3], s[4], s[5]};
+    const double expected = matrix<3>(s).cwiseProduct(elastic_strain(law, matrix<3>(s))).sum() / 2;
+    EXPECT_NEAR(elastic_energy(law, stress), expected, 1e-12 * expected);
+  }
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,111 @@
+#pragma once
+/// Points under strain, and an independent look at their stress, for the claims of this folder.
+#include <Eigen/Dense>
+#include <random>
+#include <vector>
+
+#include "physics/laws/update_stress.h"
+
+namespace talus {
+
+using Matrix = Eigen::Matrix3d;
+
+template <int dim>
+using Components = std::array<double, stress_size<dim>>;
+
+template <int dim>
+Matrix matrix(const Components<dim> &s) {
+  Matrix m = Matrix::Zero();
+  m.diagonal() << s[0], s[1], s[2];
+  m(0, 1) = m(1, 0) = s[3];
+  if constexpr (dim == 3) m(1, 2) = m(2, 1) = s[4], m(0, 2) = m(2, 0) = s[5];
+  return m;
+}
+template <int dim>
+Components<dim> components(const Matrix &m) {
+  if constexpr (dim == 2)
+    return {m(0, 0), m(1, 1), m(2, 2), m(0, 1)};
+  else
+    return {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(1, 2), m(0, 2)};
+}
+
+/// Principal values, greatest first.
+inline std::array<double, 3> principal(const Matrix &m) {
+  const Eigen::Vector3d rising = Eigen::SelfAdjointEigenSolver<Matrix>(m, Eigen::EigenvaluesOnly).eigenvalues();
+  return {rising[2], rising[1], rising[0]};
+}
+
+/// C^-1 : s of isotropic elasticity.
+inline Matrix elastic_strain(const Law &law, const Matrix &s) {
+  const double p = s.trace() / 3;
+  return (s - p * Matrix::Identity()) / (2 * shear_modulus(law)) + p / (3 * bulk_modulus(law)) * Matrix::Identity();
+}
+
+/// Points of one law, each in a cell of its own.
+template <int dim>
+struct Points {
+  Points(const Law &l, int n, double size = 1)
+      : law(l), stress(n), history(n * history_size(l)), increment(n), element_size(n, size), cell(n) {
+    for (int i = 0; i < n; ++i) cell[i] = i, turn(i, Matrix::Identity());
+  }
+  void turn(int i, const Matrix &R) {
+    if constexpr (dim == 2)
+      increment[i].rotation = {R(0, 0), R(1, 0)};
+    else
+      increment[i].rotation = {R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2)};
+  }
+  StressPoints<dim> view() {
+    return {static_cast<int>(stress.size()),
+            stress[0].data(),
+            history.data(),
+            stress[0].data(),
+            history.data(),
+            cell.data(),
+            increment.data(),
+            element_size.data()};
+  }
+  void update() { update_stress<dim>(law, view()); }
+  void admit() { admit_stress<dim>(law, view()); }
+
+  Law law;
+  std::vector<Components<dim>> stress;
+  std::vector<double> history;
+  std::vector<Increment<dim>> increment;
+  std::vector<double> element_size;
+  std::vector<int> cell;
+};
+
+class Random {
+ public:
+  double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(generator_); }
+  template <int dim>
+  Components<dim> symmetric(double scale) {
+    Components<dim> s;
+    for (double &component : s) component = between(-scale, scale);
+    return s;
+  }
+  /// In 2D about z.
+  template <int dim>
+  Matrix rotation() {
+    if constexpr (dim == 2) return Eigen::AngleAxisd(between(-3, 3), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    const Eigen::Vector4d q(between(-1, 1), between(-1, 1), between(-1, 1), between(-1, 1));
+    return Eigen::Quaterniond(q / q.norm()).toRotationMatrix();
+  }
+
+ private:
+  std::mt19937 generator_{20150518};
+};
+
+/// A number 2 or 3 as a type, for typed tests over dimensions.
+template <int n>
+using Dim = std::integral_constant<int, n>;
+using Dims = ::testing::Types<Dim<2>, Dim<3>>;
+
+inline MohrCoulomb mohr_coulomb(double cohesion, double phi_degrees, double psi_degrees = 0) {
+  MohrCoulomb law;
+  law.young_modulus = 20e6, law.poisson_ratio = 0.3;
+  law.cohesion = cohesion, law.friction_angle = phi_degrees * degree.si, law.dilation_angle = psi_degrees * degree.si;
+  return law;
+}
+
+}  // namespace talus
