@@ -67,7 +67,9 @@ class AnySimulation {
   virtual const HistoryTable &history() const = 0;
   virtual const std::vector<Event> &events() const = 0;
   virtual const Breakdown &breakdown() const = 0;
-  /// Nodal field "velocity" or "displacement" per vertex of the DMPlex (its point number), zero where no soil is; for host programs.
+  /// Hands over the nodal field "velocity" [m/s] or "displacement" [m] (since the start or the last reset) of each vertex of the DMPlex,
+  /// by its point number, that has soil in a cell around it on any rank; ranks that share a vertex get the same bits. Collective; for
+  /// host programs.
   virtual void nodal_field(const std::string &name, const std::function<void(PetscInt point, const double *value)> &put) = 0;
 };
 

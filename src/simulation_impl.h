@@ -69,6 +69,7 @@ class Simulation final : public AnySimulation {
   void refuse(const Verdict &verdict);
   bool stage_ends(const Stage &stage, double stage_time, const Verdict &verdict);
   void reset_displacement();
+  std::vector<Vec<dim>> nodal_displacement();  ///< of mesh nodes; only nodes of the filled grid have one
   // output
   void open_results();
   void write_snapshot();
