@@ -236,7 +236,7 @@ double Simulation<dim, Phases>::choose_step(double until) {
                      " s (2 / omega_max of the filled cells); take a smaller step, a coarser mesh, or leave step out");
   const double left = until - time_;
   const double count = std::ceil(left / step * (1 - 1e-9));
-  if (settings.step > 0 && count > 1) return step;
+  if ((settings.step > 0 && count > 1) || count > 1e6) return step;
   return left / std::max(1., count);
 }
 

@@ -1,0 +1,157 @@
+#include <petsctime.h>
+
+#include <cstdio>
+#include <fstream>
+#include <numeric>
+#include <thread>
+
+#include "base/version.h"
+#include "commands/commands.h"
+#include "scene/reader.h"
+#include "simulation.h"
+
+namespace talus {
+namespace {
+
+struct BenchArguments {
+  bool json = false;
+  int steps = 150;
+  std::string only;
+};
+
+/// One case: what is measured and what it gave.
+struct BenchCase {
+  int dimension;
+  std::string phases, law, transfer;
+  int ranks = 1;
+  long long particles = 0;
+  double rate = 0;                 ///< particle-updates per second and core
+  double step_time = 0;            ///< wall time of a step [s]
+  double simulated_per_wall = 0;   ///< simulated over wall time
+  Breakdown breakdown;             ///< [s] per particle and step
+};
+
+const std::vector<std::pair<std::string, std::string>> laws = {
+    {"linear_elastic", "law = \"linear_elastic\""},
+    {"drucker_prager", "law = \"drucker_prager\"\ncohesion = \"1 kPa\"\nfriction_angle = 30"},
+    {"mohr_coulomb", "law = \"mohr_coulomb\"\ncohesion = \"1 kPa\"\nfriction_angle = 30"},
+    {"mohr_coulomb, softening",
+     "law = \"mohr_coulomb\"\ncohesion = \"2 kPa\"\nfriction_angle = 35\nresidual_cohesion = \"1 kPa\"\n"
+     "residual_friction_angle = 25\nshape_factor = 50"},
+};
+const std::vector<std::pair<std::string, std::string>> transfers = {
+    {"default", ""},
+    {"remap every step", "remap_interval = 0"},
+    {"remap every step, stress per particle", "remap_interval = 0\naverage_stress = false"},
+};
+
+/// A block of soil that slumps: about 100,000 particles, 8 in a tetrahedron and 6 in a triangle.
+std::string scene_text(const BenchCase &c, const std::string &law, const std::string &transfer) {
+  const bool solid = c.dimension == 3, drained = c.phases == "drained";
+  return "phases = \"" + c.phases + "\"\ndimension = " + std::to_string(c.dimension) + "\ngravity = 9.81\n[mesh]\nsection = \"" +
+         std::string(TALUS_MESHES) + "/dam.csv\"\n" + (solid ? "size = 0.091\nthickness = 1\nlayers = 0\n" : "size = 0.0165\n") +
+         "[body.soil]\nregion = \"soil\"\n" + (drained ? "porosity = 0.3\ngrain_density = 2650\n" : "density = 2000\n") +
+         "young_modulus = \"10 MPa\"\npoisson_ratio = 0.3\nparticles_per_cell = " + (solid ? "8" : "6") + "\nvelocity = [\"0.3\", \"0\"" +
+         (solid ? ", \"0\"" : "") + "]\n" + law + "\n" + (drained ? "[water]\ntable = [[0, 0.5], [4, 0.5]]\n" : "") +
+         "[boundary.base]\nkind = \"roller\"\n[boundary.left]\nkind = \"roller\"\n[boundary.right]\nkind = \"roller\"\n" +
+         (solid ? "[boundary.front]\nkind = \"roller\"\n[boundary.back]\nkind = \"roller\"\n" : "") +
+         "[[stage]]\nduration = 100\n[transfer]\n" + transfer + "\n";
+}
+
+void measure(BenchCase &c, const std::string &law, const std::string &transfer, int steps) {
+  Scene scene = parse_scene(scene_text(c, law, transfer), "bench");
+  RunOptions options;
+  const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+  for (int i = 0; i < steps / 5; ++i) simulation->single_step();
+  const Breakdown before = simulation->breakdown();
+  const double simulated = simulation->time();
+  PetscLogDouble start, end;
+  PetscTime(&start);
+  for (int i = 0; i < steps; ++i) simulation->single_step();
+  PetscTime(&end);
+  const double wall = end - start, updates = static_cast<double>(simulation->particles()) * steps;
+  MPI_Comm_size(PETSC_COMM_WORLD, &c.ranks);
+  c.particles = simulation->particles(), c.rate = updates / wall / c.ranks, c.step_time = wall / steps;
+  c.simulated_per_wall = (simulation->time() - simulated) / wall;
+  const Breakdown &after = simulation->breakdown();
+  const double scale = c.ranks / updates;
+  c.breakdown = {(after.gather - before.gather) * scale, (after.step - before.step) * scale, (after.release - before.release) * scale,
+                 (after.relocate - before.relocate) * scale, (after.sort - before.sort) * scale};
+}
+
+/// Memory bandwidth of one core, by the triad a = b + s c on arrays beyond the caches [B/s].
+double bandwidth() {
+  const size_t count = size_t{1} << 23;
+  std::vector<double> a(count, 0), b(count, 1), c(count, 2);
+  double best = 0;
+  for (int round = 0; round < 5; ++round) {
+    PetscLogDouble start, end;
+    PetscTime(&start);
+    for (size_t i = 0; i < count; ++i) a[i] = b[i] + 3 * c[i];
+    PetscTime(&end);
+    best = std::max(best, 3. * sizeof(double) * static_cast<double>(count) / (end - start));
+  }
+  return std::accumulate(a.begin(), a.end(), 0.) > 0 ? best : 0;
+}
+
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
+  return "unknown";
+}
+
+void print_json(const std::vector<BenchCase> &cases) {
+  std::printf("{\"machine\": {\"processor\": \"%s\", \"cores\": %u, \"memory_bandwidth_per_core\": %.4g, \"program\": \"Talus %s\"}, \"cases\": [",
+              processor().c_str(), std::thread::hardware_concurrency(), bandwidth(), version);
+  for (size_t i = 0; i < cases.size(); ++i) {
+    const BenchCase &c = cases[i];
+    std::printf("%s\n {\"dimension\": %d, \"phases\": \"%s\", \"law\": \"%s\", \"transfer\": \"%s\", \"ranks\": %d, \"particles\": %lld, "
+                "\"updates_per_second_per_core\": %.5g, \"wall_seconds_per_simulated_second\": %.4g, "
+                "\"breakdown_ns\": {\"step\": %.3g, \"to_particles\": %.3g, \"relocate_and_sort\": %.3g, \"to_nodes\": %.3g}}",
+                i ? "," : "", c.dimension, c.phases.c_str(), c.law.c_str(), c.transfer.c_str(), c.ranks, c.particles, c.rate, 1 / c.simulated_per_wall,
+                1e9 * c.breakdown.step, 1e9 * c.breakdown.release, 1e9 * c.breakdown.relocate, 1e9 * c.breakdown.gather);
+  }
+  std::printf("]}\n");
+}
+
+int bench(const BenchArguments &arguments) {
+  int rank;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  std::vector<BenchCase> cases;
+  if (rank == 0 && !arguments.json) {
+    std::printf("%s, %.1f GB/s a core\n\n", processor().c_str(), bandwidth() / 1e9);
+    std::printf("%-3s %-8s %-24s %-38s %9s %9s | ns: %6s %7s %7s %7s | %s\n", "dim", "phases", "law", "transfer", "particles", "M/s/core", "step",
+                "to_part", "relocate", "to_node", "wall s / simulated s");
+  }
+  for (int dimension : {2, 3})
+    for (const std::string phases : {"dry", "drained"})
+      for (const auto &[law, keys] : laws)
+        for (const auto &[transfer, options] : transfers) {
+          if (phases == "drained" && law != "mohr_coulomb, softening") continue;
+          BenchCase c{dimension, phases, law, transfer, 1, 0, 0, 0, 0, {}};
+          const std::string label = std::to_string(dimension) + " " + phases + " " + law + " " + transfer;
+          if (label.find(arguments.only) == std::string::npos) continue;
+          measure(c, keys, options, arguments.steps);
+          cases.push_back(c);
+          if (rank == 0 && !arguments.json)
+            std::printf("%-3d %-8s %-24s %-38s %9lld %9.1f |     %6.1f %7.1f %7.1f %7.1f | %.3g\n", dimension, phases.c_str(), law.c_str(), transfer.c_str(),
+                        c.particles, c.rate / 1e6, 1e9 * c.breakdown.step, 1e9 * c.breakdown.release, 1e9 * c.breakdown.relocate, 1e9 * c.breakdown.gather,
+                        1 / c.simulated_per_wall), std::fflush(stdout);
+        }
+  if (rank == 0 && arguments.json) print_json(cases);
+  return 0;
+}
+
+}  // namespace
+
+Action add_bench(CLI::App &app) {
+  auto arguments = std::make_shared<BenchArguments>();
+  CLI::App *command = app.add_subcommand("bench", "particle-updates per second and core, by dimension, phase model, law and transfer");
+  command->add_flag("--json", arguments->json, "one JSON document on standard output");
+  command->add_option("--steps", arguments->steps, "steps of each case")->check(CLI::Range(10, 100000));
+  command->add_option("--only", arguments->only, "cases whose line contains this, such as \"3 dry mohr\"");
+  return [arguments] { return bench(*arguments); };
+}
+
+}  // namespace talus
