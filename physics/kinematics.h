@@ -7,8 +7,8 @@
 
 namespace talus {
 
-/// Below this size of grad u the midpoint rule replaces the polar decomposition: its strain errs by |grad u|^3 / 12.
-inline constexpr double small_increment = 1e-4;
+/// Below this size of grad u the midpoint rule replaces the polar decomposition in 3D: its strain errs by less than 1e-5 of itself.
+inline constexpr double small_increment = 1e-2;
 
 /// Rotation and logarithmic strain of dF = I + g. The midpoint rule (Hughes & Winget 1980) is exact for rigid rotation and third
 /// order in the strain; larger increments are decomposed exactly. Returns false for an inverted cell (det dF <= 0).
@@ -43,10 +43,18 @@ inline bool decompose<2>(const Square<2> &g, Increment<2> &out) {
 
 template <>
 inline bool decompose<3>(const Square<3> &g, Increment<3> &out) {
-  const double size = g.cwiseAbs().maxCoeff();
+  double size = 0;
+  for (int i = 0; i < 9; ++i) size = std::max(size, std::abs(g.data()[i]));
   if (size < small_increment) {
     // midpoint gradient h = g (I + g/2)^-1, strain sym h, rotation (I - w/2)^-1 (I + w/2) with w = skew h
-    const Square<3> h = g * (Square<3>::Identity() - g / 2 + g * g / 4);
+    Square<3> half = g / 2, inverse;
+    half.diagonal().array() += 1;
+    const auto minor = [&](int a, int b, int c, int d) { return half(a, b) * half(c, d) - half(a, d) * half(c, b); };
+    inverse << minor(1, 1, 2, 2), -minor(0, 1, 2, 2), minor(0, 1, 1, 2),  //
+        -minor(1, 0, 2, 2), minor(0, 0, 2, 2), -minor(0, 0, 1, 2),        //
+        minor(1, 0, 2, 1), -minor(0, 0, 2, 1), minor(0, 0, 1, 1);
+    const double det = half(0, 0) * inverse(0, 0) + half(0, 1) * inverse(1, 0) + half(0, 2) * inverse(2, 0);
+    const Square<3> h = g.lazyProduct(inverse) / det;
     const double wx = (h(2, 1) - h(1, 2)) / 2, wy = (h(0, 2) - h(2, 0)) / 2, wz = (h(1, 0) - h(0, 1)) / 2;
     out.strain = {h(0, 0), h(1, 1), h(2, 2), (h(0, 1) + h(1, 0)) / 2, (h(1, 2) + h(2, 1)) / 2, (h(0, 2) + h(2, 0)) / 2};
     const double ww = (wx * wx + wy * wy + wz * wz) / 4, k = 1 / (1 + ww), e = 1 - 2 * ww * k;  // Cayley transform

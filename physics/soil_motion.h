@@ -78,6 +78,7 @@ class SoilMotion final : public Motion {
   PetscErrorCode finish_gather(double t);
   PetscErrorCode gather_pore_water() requires Phases::given;
   PetscErrorCode total_force(double t, bool trial);
+  void measure_impedance();
   void set_weights(const std::vector<double> &nodal_volume);
   PetscErrorCode deform(const Vec<dim> *u, bool trial);
   PetscErrorCode smooth_volume_strain();

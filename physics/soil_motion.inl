@@ -114,18 +114,7 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double) {
     if (!(m > 0)) grid_.mass[i] = std::numeric_limits<double>::min();  // no particle sees this node
   }
   set_weights(nodal_);
-  // what the cells are made of: wave impedances for dashpots
-  for (int c = 0; c < cells; ++c) impedance_[c] = {0, 0};
-  for (size_t b = 0; b < bodies_.size(); ++b) {
-    const double wave = constrained_modulus(bodies_[b]->law()), shear = shear_modulus(bodies_[b]->law());
-    for (int q = 0; q < points_[b].count; ++q) {
-      const int c = points_[b].cell[q];
-      double m = 0;
-      for (int k = 0; k < simplex_pairs<dim>; ++k) m += (k <= dim ? 1 : 2) * grid_.mass_matrix[c][k];
-      const double density = m / particle_volume_[c], share = points_[b].volume[q] / particle_volume_[c];
-      impedance_[c][0] += share * std::sqrt(density * wave), impedance_[c][1] += share * std::sqrt(density * shear);
-    }
-  }
+  if (conditions_.has_dashpots()) measure_impedance();
   for (int c = 0; c < cells; ++c) volume_strain_[c] = particle_volume_[c] / grid_.shape[c].volume;  // filling, borrowed room
   PetscCall(conditions_.begin(grid_, impedance_, volume_strain_));
   conditions_.constrain(loading.time, grid_, start_velocity_.data(), false);
@@ -144,6 +133,22 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double) {
     sample_time_[1] = -std::numeric_limits<double>::infinity();
   }
   PetscFunctionReturn(0);
+}
+
+/// What the cells are made of: rho c_p and rho c_s, weighted by volume.
+template <int dim, class Phases>
+void SoilMotion<dim, Phases>::measure_impedance() {
+  for (int c = 0; c < grid_.cell_count(); ++c) impedance_[c] = {0, 0};
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    const double wave = constrained_modulus(bodies_[b]->law()), shear = shear_modulus(bodies_[b]->law());
+    for (int q = 0; q < points_[b].count; ++q) {
+      const int c = points_[b].cell[q];
+      double m = 0;
+      for (int k = 0; k < simplex_pairs<dim>; ++k) m += (k <= dim ? 1 : 2) * grid_.mass_matrix[c][k];
+      const double density = m / particle_volume_[c], share = points_[b].volume[q] / particle_volume_[c];
+      impedance_[c][0] += share * std::sqrt(density * wave), impedance_[c][1] += share * std::sqrt(density * shear);
+    }
+  }
 }
 
 /// Integration volume: the cell's own where its nodes are well filled, that of its particles at the surface, theory (4.5).

@@ -65,6 +65,7 @@ struct MohrCoulomb : IsotropicElastic {
   double residual_c = 0, residual_phi = 0, sin_psi_peak = 0;  ///< [Pa], [rad], [-]
   double over_size = 0;                                       ///< 1 / h_ref [1/m]
   double plane_drag = 0, line_drag = 0;                       ///< stress that opening takes off the others [-]
+  static constexpr double right_angle = 90 * degree.si;       ///< [rad]
   static constexpr double unlimited = 1e100;                  ///< [Pa]
   void prepare() {
     IsotropicElastic::prepare();
@@ -89,8 +90,8 @@ struct MohrCoulomb : IsotropicElastic {
   [[gnu::always_inline]] Strength strength(double plastic_strain, const Surroundings &around) const {
     const double scale = around.size * over_size, eta = scale > 0 ? shape_factor * scale : shape_factor;
     const double left = exponential(-eta * plastic_strain);  // of the way from residual to peak
-    const double sin_phi = sine(residual_phi + (friction_angle - residual_phi) * left);
-    const double c_cos_phi = (residual_c + (cohesion - residual_c) * left) * std::sqrt(1 - sin_phi * sin_phi);
+    const double phi = residual_phi + (friction_angle - residual_phi) * left, sin_phi = sine(phi);
+    const double c_cos_phi = (residual_c + (cohesion - residual_c) * left) * sine(right_angle - phi);
     const double quotient = c_cos_phi / sin_phi, apex = sin_phi > 0 ? quotient : unlimited;
     return {sin_phi, sin_psi_peak < sin_phi ? sin_psi_peak : sin_phi, 2 * c_cos_phi, cutoff < apex ? cutoff : apex};
   }

@@ -5,11 +5,22 @@
 #include "scene/reader.h"
 
 namespace talus {
+namespace {
+
+/// The gallery of the source tree this program was built in, else the one installed beside the program.
+std::filesystem::path gallery_folder() {
+  std::error_code error;
+  if (std::filesystem::is_directory(TALUS_GALLERY, error)) return TALUS_GALLERY;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  return program.parent_path().parent_path() / "share/talus/docs/gallery";
+}
+
+}  // namespace
 
 std::string find_scene(const std::string &name) {
   namespace fs = std::filesystem;
   if (fs::is_regular_file(name)) return name;
-  const fs::path gallery(TALUS_GALLERY);
+  const fs::path gallery = gallery_folder();
   const fs::path scene = gallery / name / "scene.toml";
   if (fs::is_regular_file(scene)) return scene.string();
   std::string known;

@@ -21,7 +21,8 @@ FilledGrid<dim>::FilledGrid(const BackgroundMesh<dim> &mesh) : mesh_(&mesh), hal
   staging_.assign(halo_.empty() ? 0 : static_cast<size_t>(nodes) * (dim * dim + 1), 0);
   mesh_node.reserve(nodes), mass.reserve(nodes), position.reserve(nodes);
   mesh_cell.reserve(cells), shape.reserve(cells), mass_matrix.reserve(cells), nodal_share.reserve(cells);
-  size.reserve(cells), patch.reserve(cells);
+  size.reserve(cells), patch.reserve(cells), element_size_.reserve(cells);
+  for (double volume : mesh.volume) element_size_.push_back(element_size<dim>(volume));
 }
 
 template <int dim>
@@ -51,7 +52,7 @@ int FilledGrid<dim>::enter_cell(int cell) {
     for (int k = 0; k <= dim; ++k) s.node[k] = enter_node(mesh_->cells[cell].node[k]);
     s.gradient = mesh_->cells[cell].gradient, s.volume = mesh_->volume[cell];
     mesh_cell.push_back(cell), shape.push_back(s), mass_matrix.push_back({}), nodal_share.push_back({});
-    size.push_back(element_size<dim>(s.volume)), patch.push_back(mesh_->patch[cell]);
+    size.push_back(element_size_[cell]), patch.push_back(mesh_->patch[cell]);
   }
   return compact;
 }

@@ -60,6 +60,7 @@ class FilledGrid {
 
   const BackgroundMesh<dim> *mesh_;
   std::vector<int> compact_node_, compact_cell_;
+  std::vector<double> element_size_;   ///< of mesh cells [m]
   std::vector<double> staging_;
   Halo halo_;
 };

@@ -1,0 +1,141 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <sstream>
+
+#include "commands/commands.h"
+#include "commands/rungs.h"
+#include "scene/reader.h"
+#include "scene/words.h"
+
+namespace talus {
+namespace {
+
+struct VerifyArguments {
+  std::vector<std::string> cases;
+  bool json = false, list = false, longer = false;
+};
+
+struct Outcome {
+  const LadderEntry *entry;
+  std::vector<Quantity> quantities;
+  std::string error;  ///< why it ended before its last quantity
+
+  bool holds() const {
+    return error.empty() && std::all_of(quantities.begin(), quantities.end(), [](const auto &q) { return q.holds(); });
+  }
+};
+
+/// Scenes stand in the source tree, or in the share folder of an installation.
+std::string scene_of(const LadderEntry &entry) {
+  namespace fs = std::filesystem;
+  const fs::path installed = fs::read_symlink("/proc/self/exe").parent_path().parent_path() / "share/talus/tests";
+  for (const fs::path &tests : {fs::path(TALUS_LADDER), installed}) {
+    const fs::path scene = tests / entry.label / entry.name / "scene.toml";
+    if (fs::is_regular_file(scene)) return scene.string();
+  }
+  throw std::runtime_error("the scene of the case " + std::string(entry.name) + " is neither in " + TALUS_LADDER + " nor in " + installed.string());
+}
+
+std::vector<const LadderEntry *> choose(const std::vector<std::string> &names) {
+  std::vector<const LadderEntry *> chosen;
+  std::vector<std::string> known;
+  for (const LadderEntry &entry : ladder) known.emplace_back(entry.name);
+  for (const std::string &name : names) {
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end()) throw SceneError("there is no case " + name + "; " + suggestion(name, known));
+    chosen.push_back(&ladder[found - known.begin()]);
+  }
+  if (names.empty())
+    for (const LadderEntry &entry : ladder) chosen.push_back(&entry);
+  return chosen;
+}
+
+Outcome climb(const LadderEntry &entry, bool longer) {
+  Rung rung(scene_of(entry), longer);
+  Outcome outcome{&entry, {}, ""};
+  try {
+    entry.check(rung);
+  } catch (const RunError &error) {
+    outcome.error = error.what();
+  }
+  outcome.quantities = rung.quantities();
+  return outcome;
+}
+
+void print_header() {
+  std::printf("%-22s %-52s %13s %13s %9s %9s %8s\n", "case", "quantity", "exact", "computed", "error", "tolerance", "wall s");
+}
+
+void print(const Outcome &outcome) {
+  for (const Quantity &q : outcome.quantities) {
+    const bool claimed = std::isfinite(q.tolerance);
+    std::printf("%-22s %-52s %13.6g %13.6g %9.2e ", outcome.entry->name, q.name.c_str(), q.exact, q.computed, q.relative_error);
+    claimed ? std::printf("%9.2e", q.tolerance) : std::printf("%9s", "-");
+    std::printf(" %8.2f  %s\n", q.wall_seconds, !claimed ? "reported" : q.holds() ? "pass" : "FAIL");
+  }
+  if (!outcome.error.empty()) std::printf("%-22s FAIL: %s\n", outcome.entry->name, outcome.error.c_str());
+  std::fflush(stdout);
+}
+
+/// A number of a JSON document, which knows no NaN.
+std::string json(double x) {
+  if (!std::isfinite(x)) return "null";
+  std::ostringstream text;
+  text.precision(17);
+  text << x;
+  return text.str();
+}
+
+/// Claims only. A case that broke off has a last entry without numbers.
+void print_json(const std::vector<Outcome> &outcomes) {
+  const char *separator = "\n";
+  const auto put = [&](const char *name, const std::string &quantity, double exact, double computed, double error, double tolerance, double wall) {
+    std::printf("%s  {\"name\": \"%s\", \"quantity\": \"%s\", \"exact\": %s, \"computed\": %s, \"relative_error\": %s, \"tolerance\": %s, \"wall_seconds\": %s}",
+                separator, name, quantity.c_str(), json(exact).c_str(), json(computed).c_str(), json(error).c_str(), json(tolerance).c_str(), json(wall).c_str());
+    separator = ",\n";
+  };
+  std::printf("{\"cases\": [");
+  for (const Outcome &outcome : outcomes) {
+    for (const Quantity &q : outcome.quantities)
+      if (std::isfinite(q.tolerance)) put(outcome.entry->name, q.name, q.exact, q.computed, q.relative_error, q.tolerance, q.wall_seconds);
+    if (!outcome.error.empty()) put(outcome.entry->name, "completed", 1, 0, 1, 0, NAN);
+  }
+  std::printf("\n]}\n");
+}
+
+int verify(const VerifyArguments &arguments) {
+  int rank;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  const auto chosen = choose(arguments.cases);
+  if (arguments.list) {
+    if (rank == 0)
+      for (const LadderEntry *entry : chosen) std::printf("%-22s %-12s %s\n", entry->name, entry->label, entry->meaning);
+    return 0;
+  }
+  const bool table = rank == 0 && !arguments.json;
+  std::vector<Outcome> outcomes;
+  if (table) print_header();
+  for (const LadderEntry *entry : chosen) {
+    outcomes.push_back(climb(*entry, arguments.longer));
+    if (table) print(outcomes.back());
+    if (rank == 0 && arguments.json && !outcomes.back().error.empty()) std::fprintf(stderr, "talus: %s: %s\n", entry->name, outcomes.back().error.c_str());
+  }
+  if (rank == 0 && arguments.json) print_json(outcomes);
+  return std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome &o) { return o.holds(); }) ? 0 : 1;
+}
+
+}  // namespace
+
+Action add_verify(CLI::App &app) {
+  auto arguments = std::make_shared<VerifyArguments>();
+  CLI::App *command = app.add_subcommand("verify", "cases with an exact answer: computed, error, tolerance");
+  command->add_option("CASE", arguments->cases, "names of cases (default: all)");
+  command->add_flag("--json", arguments->json, "print the claims as one JSON document");
+  command->add_flag("--list", arguments->list, "name the cases and what they show");
+  command->add_flag("--long", arguments->longer, "with the finer studies, which take minutes");
+  return [arguments] { return verify(*arguments); };
+}
+
+}  // namespace talus
