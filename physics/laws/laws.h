@@ -1,12 +1,17 @@
 #pragma once
-/// The soil models. A law is a plain struct; to add one, write its file, put it into `Law`, add its claims to
-/// tests/unit/laws. What a law has:
-///   name, history, History          its name in scenes; the fields it remembers of a point, and their values
-///   fields(visitor), problem()      its parameters, read, checked and described; what is wrong with them together, or
-///   "" prepare()                       derives from the parameters what `correct` needs, once per update of all points
-///   trial(s, e, around)             adds the elastic stress of a strain increment: IsotropicElastic's, unless the law
-///   brings its own correct(s, history, around)     brings the trial back to what the law admits; changes nothing of an
-///   admissible stress bulk_modulus(), shear_modulus(), elastic_energy(s), cohesionless()
+/// The soil models. A law is a plain struct. To add one: its file, one word in `Law`, and in tests/unit/laws its
+/// examples and claims. What a law has:
+/// - `name`, `meaning`: how scenes call it, and what it is
+/// - `history`, `History`: fields it remembers of a point, and their values
+/// - `fields(visitor)`: its parameters, for reader and descriptions; `problem()`: what is wrong between them, or ""
+/// - `prepare()`: derives what follows from the parameters alone, once per update of all points
+/// - `trial(s, e, around)`: adds the elastic stress of a strain increment (IsotropicElastic's, unless the law has its
+/// own)
+/// - `correct(s, history, around)`: brings the trial back to what the law admits; leaves admissible stress alone
+/// - `bulk_modulus()`, `shear_modulus()`, `elastic_energy(s)`, `cohesionless()`
+///
+/// `trial` and `correct` run in a loop over points that must vectorise: straight-line code; choices as `?:` between
+/// values that are already there; comparisons not joined by && or &.
 #include <span>
 #include <variant>
 
