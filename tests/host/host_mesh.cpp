@@ -77,8 +77,10 @@ PetscErrorCode make_host_mesh(MPI_Comm comm, DM *plex) {
       for (int i = 0; i < columns; ++i) {
         const PetscInt a = j * (columns + 1) + i, b = a + 1, c = b + columns + 1, d = c - 1;
         // diagonals alternate, so that no direction is preferred
-        if ((i + j) % 2) corners.insert(corners.end(), {a, b, d, b, c, d});
-        else corners.insert(corners.end(), {a, b, c, a, c, d});
+        if ((i + j) % 2)
+          corners.insert(corners.end(), {a, b, d, b, c, d});
+        else
+          corners.insert(corners.end(), {a, b, c, a, c, d});
       }
   }
   PetscCall(DMPlexCreateFromCellListPetsc(comm, 2, static_cast<PetscInt>(corners.size() / 3),
