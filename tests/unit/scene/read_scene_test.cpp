@@ -173,5 +173,12 @@ TEST(ReadScene, TakesAFailureStageThatWatchesAnOutputPoint) {
   EXPECT_EQ(scene.stage[0].until, StopWhen::failure);
 }
 
+TEST(ReadScene, LeavesTheMeshToAHost) {
+  const std::string rest = "[body.a]\nregion = 'a'\ndensity = 2000\nlaw = 'linear_elastic'\n[[stage]]\nduration = 1\n";
+  EXPECT_EQ(parse_host_scene(rest, "host").body[0].name, "a");
+  EXPECT_TRUE(contains(complaint([&] { parse_host_scene("[mesh]\nfile = 'a.msh'\n" + rest, "host"); }),
+                       "host line 1: mesh has a source, but the host program brings the mesh"));
+}
+
 }  // namespace
 }  // namespace talus
