@@ -1,6 +1,6 @@
 #pragma once
-/// What a rung of the verification ladder sees of the program: its own scene, run with overrides by the reader and the time loop of every
-/// user, and the numbers of the results that it compares with exact ones.
+/// What a rung of the verification ladder sees of the program: its own scene, run with overrides by the reader and the
+/// time loop of every user, and the numbers of the results that it compares with exact ones.
 #include <string>
 #include <vector>
 

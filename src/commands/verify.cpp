@@ -35,7 +35,8 @@ std::string scene_of(const LadderEntry &entry) {
     const fs::path scene = tests / entry.label / entry.name / "scene.toml";
     if (fs::is_regular_file(scene)) return scene.string();
   }
-  throw std::runtime_error("the scene of the case " + std::string(entry.name) + " is neither in " + TALUS_LADDER + " nor in " + installed.string());
+  throw std::runtime_error("the scene of the case " + std::string(entry.name) + " is neither in " + TALUS_LADDER +
+                           " nor in " + installed.string());
 }
 
 std::vector<const LadderEntry *> choose(const std::vector<std::string> &names) {
@@ -65,13 +66,15 @@ Outcome climb(const LadderEntry &entry, bool longer) {
 }
 
 void print_header() {
-  std::printf("%-22s %-52s %13s %13s %9s %9s %8s\n", "case", "quantity", "exact", "computed", "error", "tolerance", "wall s");
+  std::printf("%-22s %-52s %13s %13s %9s %9s %8s\n", "case", "quantity", "exact", "computed", "error", "tolerance",
+              "wall s");
 }
 
 void print(const Outcome &outcome) {
   for (const Quantity &q : outcome.quantities) {
     const bool claimed = std::isfinite(q.tolerance);
-    std::printf("%-22s %-52s %13.6g %13.6g %9.2e ", outcome.entry->name, q.name.c_str(), q.exact, q.computed, q.relative_error);
+    std::printf("%-22s %-52s %13.6g %13.6g %9.2e ", outcome.entry->name, q.name.c_str(), q.exact, q.computed,
+                q.relative_error);
     claimed ? std::printf("%9.2e", q.tolerance) : std::printf("%9s", "-");
     std::printf(" %8.2f  %s\n", q.wall_seconds, !claimed ? "reported" : q.holds() ? "pass" : "FAIL");
   }
@@ -91,15 +94,20 @@ std::string json(double x) {
 /// Claims only. A case that broke off has a last entry without numbers.
 void print_json(const std::vector<Outcome> &outcomes) {
   const char *separator = "\n";
-  const auto put = [&](const char *name, const std::string &quantity, double exact, double computed, double error, double tolerance, double wall) {
-    std::printf("%s  {\"name\": \"%s\", \"quantity\": \"%s\", \"exact\": %s, \"computed\": %s, \"relative_error\": %s, \"tolerance\": %s, \"wall_seconds\": %s}",
-                separator, name, quantity.c_str(), json(exact).c_str(), json(computed).c_str(), json(error).c_str(), json(tolerance).c_str(), json(wall).c_str());
+  const auto put = [&](const char *name, const std::string &quantity, double exact, double computed, double error,
+                       double tolerance, double wall) {
+    std::printf(
+        "%s  {\"name\": \"%s\", \"quantity\": \"%s\", \"exact\": %s, \"computed\": %s, \"relative_error\": %s, "
+        "\"tolerance\": %s, \"wall_seconds\": %s}",
+        separator, name, quantity.c_str(), json(exact).c_str(), json(computed).c_str(), json(error).c_str(),
+        json(tolerance).c_str(), json(wall).c_str());
     separator = ",\n";
   };
   std::printf("{\"cases\": [");
   for (const Outcome &outcome : outcomes) {
     for (const Quantity &q : outcome.quantities)
-      if (std::isfinite(q.tolerance)) put(outcome.entry->name, q.name, q.exact, q.computed, q.relative_error, q.tolerance, q.wall_seconds);
+      if (std::isfinite(q.tolerance))
+        put(outcome.entry->name, q.name, q.exact, q.computed, q.relative_error, q.tolerance, q.wall_seconds);
     if (!outcome.error.empty()) put(outcome.entry->name, "completed", 1, 0, 1, 0, NAN);
   }
   std::printf("\n]}\n");
@@ -111,7 +119,8 @@ int verify(const VerifyArguments &arguments) {
   const auto chosen = choose(arguments.cases);
   if (arguments.list) {
     if (rank == 0)
-      for (const LadderEntry *entry : chosen) std::printf("%-22s %-12s %s\n", entry->name, entry->label, entry->meaning);
+      for (const LadderEntry *entry : chosen)
+        std::printf("%-22s %-12s %s\n", entry->name, entry->label, entry->meaning);
     return 0;
   }
   const bool table = rank == 0 && !arguments.json;
@@ -120,7 +129,8 @@ int verify(const VerifyArguments &arguments) {
   for (const LadderEntry *entry : chosen) {
     outcomes.push_back(climb(*entry, arguments.longer));
     if (table) print(outcomes.back());
-    if (rank == 0 && arguments.json && !outcomes.back().error.empty()) std::fprintf(stderr, "talus: %s: %s\n", entry->name, outcomes.back().error.c_str());
+    if (rank == 0 && arguments.json && !outcomes.back().error.empty())
+      std::fprintf(stderr, "talus: %s: %s\n", entry->name, outcomes.back().error.c_str());
   }
   if (rank == 0 && arguments.json) print_json(outcomes);
   return std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome &o) { return o.holds(); }) ? 0 : 1;
