@@ -11,6 +11,7 @@
 #include "base/owned.h"
 #include "base/vec.h"
 #include "meshes/halo.h"
+#include "meshes/mesh_report.h"
 
 namespace talus {
 
@@ -37,13 +38,6 @@ struct Facet {
   std::array<int, dim> node;  ///< local node numbers
   Vec<dim> normal;            ///< unit normal pointing out of `cell`
   double area;                ///< [m2], in 2D per metre of thickness [m]
-};
-
-struct MeshReport {
-  long long cells, nodes;
-  double smallest_altitude;               ///< [m]
-  double smallest_quality, mean_quality;  ///< inscribed over circumscribed radius times dim, 1 is regular
-  bool one_element_slice;                 ///< 3D, every node lies on one of two parallel planes z = const
 };
 
 template <int dim>

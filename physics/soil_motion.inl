@@ -328,6 +328,10 @@ PetscErrorCode SoilMotion<dim, Phases>::deform(const Vec<dim> *u, bool trial) {
       trial_stress_[b].resize(p.count * components), trial_history_[b].resize(p.count * body.history_count()), trial_volume_[b].resize(p.count);
       stress = trial_stress_[b].data(), history = trial_history_[b].data(), volume = trial_volume_[b].data();
     }
+    if (!loading.softening) {
+      forgotten_.resize(std::max<size_t>(forgotten_.size(), p.count * body.history_count()));
+      history = forgotten_.data();
+    }
     update_stress<dim>(body.law(), {p.count, p.stress, p.history, stress, history, p.cell, increment_.data(), grid_.size.data()});
     for (int q = 0; q < p.count; ++q) {
       const int c = p.cell[q];
@@ -487,7 +491,7 @@ template <int dim, class Phases>
 bool SoilMotion<dim, Phases>::find_broken(Vec<dim> *where) const {
   for (int i = 0; i < grid_.node_count(); ++i)
     for (int d = 0; d < dim; ++d)
-      if (!std::isfinite(velocity_[i][d])) {
+      if (!(std::abs(velocity_[i][d]) < 1e149)) {  // its square has no room
         *where = mesh_.position[grid_.mesh_node[i]];
         return true;
       }

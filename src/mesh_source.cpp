@@ -66,25 +66,30 @@ std::string beside_scene(const Scene &scene, const std::string &path) {
   return p.is_absolute() ? path : (std::filesystem::path(scene.file).parent_path() / p).lexically_normal().string();
 }
 
-std::string mesh_file(MPI_Comm comm, const Scene &scene, const std::string &directory) {
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+}
+
+bool TemporaryFolder::make() {
+  std::error_code error;
+  std::string path = (std::filesystem::temp_directory_path(error) / "talus-XXXXXX").string();
+  if (error || !mkdtemp(path.data())) return false;
+  path_ = path;
+  return true;
+}
+
+MeshFile::MeshFile(MPI_Comm comm, const Scene &scene) {
   const MeshSource &source = scene.mesh;
-  if (!source.file.empty()) return beside_scene(scene, source.file);
+  if (!source.file.empty()) {
+    path_ = beside_scene(scene, source.file);
+    return;
+  }
   int rank, status = 0;
   MPI_Comm_rank(comm, &rank);
-  const std::string file = (std::filesystem::path(directory) / "mesh.msh").string();
   std::string complaint;
   if (rank == 0) {
-    std::error_code error;
-    std::filesystem::create_directories(directory, error);
-    std::vector<std::string> arguments{beside_scene(scene, source.section), "-o", file, "--size", number(source.size),
-                                       "--dimension", std::to_string(scene.dimension)};
-    if (scene.dimension == 3) {
-      arguments.insert(arguments.end(), {"--layers", std::to_string(source.layers)});
-      if (source.thickness > 0) arguments.insert(arguments.end(), {"--thickness", number(source.thickness)});
-    }
-    for (const RefineBox &box : source.refine)
-      arguments.insert(arguments.end(), {"--refine", number(box.from[0]), number(box.from[1]), number(box.to[0]), number(box.to[1]), number(box.size)});
-    const MeshRun run = run_talus_mesh(arguments);
+    const MeshRun run = mesh_section(scene);
     status = run.status, complaint = run.output;
   }
   MPI_Bcast(&status, 1, MPI_INT, 0, comm);
@@ -92,9 +97,27 @@ std::string mesh_file(MPI_Comm comm, const Scene &scene, const std::string &dire
   MPI_Bcast(&length, 1, MPI_INT, 0, comm);
   complaint.resize(length);
   MPI_Bcast(complaint.data(), length, MPI_CHAR, 0, comm);
-  if (status == 2) throw std::invalid_argument(complaint);
-  if (status) throw std::runtime_error("talus-mesh failed: " + complaint);
-  return file;
+  if (status == 2) scene.complain("mesh.section", "cannot be meshed: " + complaint);
+  if (status) throw std::runtime_error("no mesh could be made from " + source.section + ": " + complaint);
+}
+
+MeshRun MeshFile::mesh_section(const Scene &scene) {
+  const MeshSource &source = scene.mesh;
+  if (!folder_.make()) return {1, "cannot make a folder for temporary files; set TMPDIR to one that can be written"};
+  path_ = folder_.path() + "/mesh.msh";
+  std::vector<std::string> arguments{beside_scene(scene, source.section), "-o", path_, "--size", number(source.size),
+                                     "--dimension", std::to_string(scene.dimension)};
+  if (scene.dimension == 3) {
+    arguments.insert(arguments.end(), {"--layers", std::to_string(source.layers)});
+    if (source.thickness > 0) arguments.insert(arguments.end(), {"--thickness", number(source.thickness)});
+  }
+  for (const RefineBox &box : source.refine)
+    arguments.insert(arguments.end(), {"--refine", number(box.from[0]), number(box.from[1]), number(box.to[0]), number(box.to[1]), number(box.size)});
+  MeshRun run = run_talus_mesh(arguments);
+  const std::string speaker = "talus-mesh: ";
+  if (run.output.starts_with(speaker)) run.output.erase(0, speaker.size());
+  while (run.output.ends_with('\n')) run.output.pop_back();
+  return run;
 }
 
 }  // namespace talus

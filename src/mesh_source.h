@@ -3,14 +3,11 @@
 #include <mpi.h>
 
 #include <string>
+#include <vector>
 
 #include "scene/scene.h"
 
 namespace talus {
-
-/// Path of the .msh file of a scene, made in `directory` where the scene gives a section; collective. Throws
-/// std::invalid_argument with talus-mesh's own complaint, the same on all ranks.
-std::string mesh_file(MPI_Comm comm, const Scene &scene, const std::string &directory);
 
 /// Runs talus-mesh with arguments; returns its exit status and what it printed.
 struct MeshRun {
@@ -18,6 +15,35 @@ struct MeshRun {
   std::string output;
 };
 MeshRun run_talus_mesh(const std::vector<std::string> &arguments);
+
+/// A folder for temporary files, removed with all that is in it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() = default;
+  TemporaryFolder(const TemporaryFolder &) = delete;
+  TemporaryFolder &operator=(const TemporaryFolder &) = delete;
+  ~TemporaryFolder();
+  /// Makes the folder; false if that fails.
+  bool make();
+  const std::string &path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+/// The .msh file of a scene, for rank 0 to read: its own, or one made from its section that goes with this object.
+class MeshFile {
+ public:
+  /// Collective. Throws std::invalid_argument with talus-mesh's own complaint, the same on all ranks.
+  MeshFile(MPI_Comm comm, const Scene &scene);
+  const std::string &path() const { return path_; }
+
+ private:
+  MeshRun mesh_section(const Scene &scene);
+
+  TemporaryFolder folder_;
+  std::string path_;
+};
 
 /// `path` as written in a scene: relative to the scene's own folder.
 std::string beside_scene(const Scene &scene, const std::string &path);

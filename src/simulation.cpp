@@ -1,7 +1,5 @@
 #include "simulation.h"
 
-#include <filesystem>
-
 #include "mesh_source.h"
 #include "simulation_impl.h"
 
@@ -19,8 +17,10 @@ std::vector<double> HistoryTable::column(const std::string &name) const {
   throw std::out_of_range("no column " + name + " in the history");
 }
 
+namespace {
+
 template <int dim>
-std::unique_ptr<AnySimulation> make(MPI_Comm comm, Scene &scene, const RunOptions &options, const std::string &mesh) {
+std::unique_ptr<AnySimulation> make_in(MPI_Comm comm, Scene &scene, const RunOptions &options, const std::string &mesh) {
   switch (scene.phases) {
     case PhaseModel::dry: return std::make_unique<Simulation<dim, Dry>>(comm, scene, options, mesh);
     case PhaseModel::drained: return std::make_unique<Simulation<dim, Drained>>(comm, scene, options, mesh);
@@ -28,14 +28,16 @@ std::unique_ptr<AnySimulation> make(MPI_Comm comm, Scene &scene, const RunOption
   throw std::logic_error("phase model without a kernel");
 }
 
+std::unique_ptr<AnySimulation> make(MPI_Comm comm, Scene &scene, const RunOptions &options, const std::string &mesh) {
+  return scene.dimension == 2 ? make_in<2>(comm, scene, options, mesh) : make_in<3>(comm, scene, options, mesh);
+}
+
+}  // namespace
+
 std::unique_ptr<AnySimulation> make_simulation(MPI_Comm comm, Scene &scene, const RunOptions &options) {
-  std::string mesh;
-  if (!options.plex) {
-    std::string directory = options.directory;
-    if (directory.empty()) directory = (std::filesystem::temp_directory_path() / ("talus-" + std::to_string(std::hash<std::string>()(scene.source)))).string();
-    mesh = mesh_file(comm, scene, directory);
-  }
-  return scene.dimension == 2 ? make<2>(comm, scene, options, mesh) : make<3>(comm, scene, options, mesh);
+  if (options.plex) return make(comm, scene, options, "");
+  const MeshFile mesh(comm, scene);
+  return make(comm, scene, options, mesh.path());
 }
 
 }  // namespace talus

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "meshes/mesh_report.h"
 #include "output/results.h"
 #include "scene/scene.h"
 
@@ -47,6 +48,18 @@ struct Breakdown {
   double gather = 0, step = 0, release = 0, relocate = 0, sort = 0;
 };
 
+/// One body as it is now, over all ranks; in 2D per metre of thickness.
+struct BodyReport {
+  std::string name;
+  long long particles = 0, cells = 0;    ///< cells with particles of this body
+  int fewest_per_cell = 0;               ///< particles of this body in one of these cells
+  double mass = 0, volume = 0;           ///< [kg], [m3]
+  std::array<double, 3> low{}, high{};   ///< corners of the box around its cells [m]
+  double cell_size = 0;                  ///< side of the regular simplex of the mean size of its cells [m]
+  double critical_step = 0, mean_critical_step = 0;  ///< least and mean over its cells [s]
+  std::array<double, 3> slowest_cell{};  ///< centroid of the cell with the least [m]
+};
+
 class AnySimulation {
  public:
   virtual ~AnySimulation() = default;
@@ -63,6 +76,8 @@ class AnySimulation {
   virtual long long particles() const = 0;       ///< over all ranks
   virtual double mass() const = 0;               ///< over all ranks [kg]
   virtual double critical_step() = 0;            ///< of the present state, over all ranks [s]
+  virtual MeshReport mesh_report() const = 0;    ///< collective
+  virtual std::vector<BodyReport> bodies() = 0;  ///< collective
   virtual Snapshot snapshot() = 0;               ///< particles of this rank
   virtual const HistoryTable &history() const = 0;
   virtual const std::vector<Event> &events() const = 0;

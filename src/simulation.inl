@@ -7,6 +7,7 @@
 
 #include "base/version.h"
 #include "scene/reader.h"
+#include "scene/words.h"
 #include "simulation_impl.h"
 
 namespace talus {
@@ -14,6 +15,14 @@ namespace talus {
 /// Turns a PETSc error into an exception, where no PETSc function stands between thrower and catcher.
 inline void require(PetscErrorCode error) {
   if (error) throw RunError("PETSc reported error " + std::to_string(error) + " (its message stands above)");
+}
+
+/// Four digits, for messages.
+inline std::string rounded(double value) {
+  std::ostringstream text;
+  text.precision(4);
+  text << value;
+  return text.str();
 }
 
 // ---- setup ----
@@ -26,52 +35,86 @@ Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOption
     if (body.particles_per_cell == 0) body.particles_per_cell = dim == 2 ? 3 : 4;
   }
   std::vector<typename Conditions<dim>::Source> sources;
-  for (BoundarySource &b : scene.boundary)
-    sources.push_back({b.name, b.group.empty() ? std::vector<std::string>{b.name} : b.group, read_boundary(b.kind)});
+  for (BoundarySource &b : scene.boundary) sources.push_back({b.name, b.group, read_boundary(b.kind)});
   integrator_settings_ = read_integrator(scene.integrator);
   integrator_ = make_integrator(integrator_settings_);
 
   std::vector<std::pair<std::string, double>> weights;
   for (const BodySource &body : scene.body)
     for (const std::string &region : body.region) weights.emplace_back(region, body.particles_per_cell + 1);
-  mesh_ = options.plex ? BackgroundMesh<dim>::adopt(options.plex, scene.transfer.patch_size)
-                       : BackgroundMesh<dim>::read(comm, mesh_file, scene.transfer.patch_size, weights);
+  if (options.plex)
+    mesh_ = BackgroundMesh<dim>::adopt(options.plex, scene.transfer.patch_size);
+  else
+    try {
+      mesh_ = BackgroundMesh<dim>::read(comm, mesh_file, scene.transfer.patch_size, weights);
+    } catch (const std::invalid_argument &error) {
+      scene.complain(scene.mesh.file.empty() ? "mesh.section" : "mesh.file", std::string("cannot serve: ") + error.what());
+    }
   comm_ = mesh_.comm();
-  check_groups();
+  check_bodies();
+  check_boundaries(sources);
   require(conditions_.setup(mesh_, std::move(sources)));
   seed_bodies();
   follow_points();
+  check_step();
 }
 
 template <int dim, class Phases>
-void Simulation<dim, Phases>::check_groups() const {
-  const auto names = [](const std::vector<std::string> &all) {
-    std::string text;
-    for (const std::string &name : all) text += (text.empty() ? "" : ", ") + name;
-    return text.empty() ? std::string("none") : text;
+void Simulation<dim, Phases>::check_bodies() const {
+  const auto check_lattice = [&](const std::string &path, int count) {
+    if (lattice<dim>(count).empty())
+      scene_.complain(path + ".particles_per_cell",
+                      std::string("has no lattice of that many points; take ") + (dim == 2 ? "1, 3, 4, 6, 9, 10, 12, 15 or 16" : "1, 4, 8, 10 or 20"));
   };
-  std::map<std::string, std::string> owner;
-  for (const BodySource &body : scene_.body) {
-    if (body.region.empty()) throw SceneError(scene_.file + ": body." + body.name + ".region is missing: name the cell groups the body fills (the mesh has " + names(mesh_.region_names()) + ")");
+  std::vector<int> owner(mesh_.cell_count(), -1);
+  for (int b = 0; b < static_cast<int>(scene_.body.size()); ++b) {
+    const BodySource &body = scene_.body[b];
+    const std::string path = "body." + body.name;
+    int other = -1;
     for (const std::string &region : body.region) {
       if (!mesh_.has_region(region))
-        throw SceneError(scene_.file + ": body." + body.name + ".region = \"" + region + "\": the mesh has no such cell group; it has " + names(mesh_.region_names()));
-      const auto [at, fresh] = owner.emplace(region, body.name);
-      if (!fresh) throw SceneError(scene_.file + ": region \"" + region + "\" is filled twice, by body." + at->second + " and body." + body.name);
+        scene_.complain(path + ".region", "must name groups of cells; the mesh has no \"" + region + "\"; " + suggestion(region, mesh_.region_names()));
+      for (int cell : mesh_.region(region)) {
+        if (owner[cell] >= 0 && owner[cell] != b) other = owner[cell];
+        owner[cell] = b;
+      }
     }
-    for (int n : {body.particles_per_cell})
-      if (lattice<dim>(n).empty())
-        throw SceneError(scene_.file + ": body." + body.name + ".particles_per_cell = " + std::to_string(n) + ": there is no lattice of that many points; take " +
-                         (dim == 2 ? "1, 3, 4, 6, 9, 10, 12, 15 or 16" : "1, 4, 8, 10 or 20"));
-    for (const DenseBox &box : body.dense)
-      if (lattice<dim>(box.particles_per_cell).empty())
-        throw SceneError(scene_.file + ": body." + body.name + ".dense.particles_per_cell = " + std::to_string(box.particles_per_cell) +
-                         ": there is no lattice of that many points; take " + (dim == 2 ? "1, 3, 4, 6, 9, 10, 12, 15 or 16" : "1, 4, 8, 10 or 20"));
+    MPI_Allreduce(MPI_IN_PLACE, &other, 1, MPI_INT, MPI_MAX, comm_);
+    if (other >= 0) scene_.complain(path + ".region", "fills cells that body." + scene_.body[other].name + " fills too; give each cell to one body");
+    check_lattice(path, body.particles_per_cell);
+    for (size_t k = 0; k < body.dense.size(); ++k) check_lattice(path + ".dense." + std::to_string(k), body.dense[k].particles_per_cell);
   }
-  for (const BoundarySource &b : scene_.boundary)
-    for (const std::string &group : b.group.empty() ? std::vector<std::string>{b.name} : b.group)
+}
+
+template <int dim, class Phases>
+void Simulation<dim, Phases>::check_boundaries(const std::vector<typename Conditions<dim>::Source> &sources) const {
+  for (const auto &source : sources) {
+    const std::string path = "boundary." + source.name;
+    for (const std::string &group : source.groups)
       if (!mesh_.has_group(group))
-        throw SceneError(scene_.file + ": boundary." + b.name + ": the mesh has no facet group \"" + group + "\"; it has " + names(mesh_.group_names()));
+        scene_.complain(path + ".group", "must name groups of facets; the mesh has no \"" + group + "\"; " + suggestion(group, mesh_.group_names()));
+    const auto check_vector = [&](const char *key, const std::vector<Function> &value) {
+      if (!value.empty() && value.size() != dim) scene_.complain(path + "." + key, "must have " + std::to_string(dim) + " components");
+    };
+    if (const auto *moved = std::get_if<PrescribedVelocity>(&source.kind)) check_vector("velocity", moved->velocity);
+    if (const auto *loaded = std::get_if<Traction>(&source.kind)) check_vector("traction", loaded->traction);
+  }
+}
+
+/// What the functions of place made of a body's particles. Collective.
+template <int dim, class Phases>
+void Simulation<dim, Phases>::check_seeded(const Body<dim> &body, const std::string &path) const {
+  const ParticleArrays<dim> &p = body.particles();
+  const auto check = [&](const char *key, auto &&finite) {
+    int bad = 0;
+    while (bad < p.count && finite(bad)) ++bad;
+    const std::string where = place_of(bad < p.count, bad < p.count ? p.reference[bad] : Vec<dim>{});
+    if (!where.empty()) scene_.complain(path + "." + key, "is no number at " + where);
+  };
+  const auto all_finite = [](const double *x, int count) { return std::all_of(x, x + count, [](double value) { return std::isfinite(value); }); };
+  check("velocity", [&](int i) { return all_finite(p.velocity[i].data(), dim); });
+  check("stress", [&](int i) { return all_finite(p.stress + i * stress_size<dim>, stress_size<dim>); });
+  check("displacement", [&](int i) { return all_finite(p.position[i].data(), dim) && p.volume[i] > 0; });
 }
 
 template <int dim, class Phases>
@@ -101,7 +144,9 @@ void Simulation<dim, Phases>::seed_bodies() {
     double sums[2] = {static_cast<double>(body.particles().count), 0}, totals[2];
     sums[1] = std::accumulate(body.particles().mass, body.particles().mass + body.particles().count, 0.);
     MPI_Allreduce(sums, totals, 2, MPI_DOUBLE, MPI_SUM, comm_);
-    if (totals[0] == 0) throw SceneError(scene_.file + ": body." + source.name + " is empty: its regions have no cells");
+    const std::string path = "body." + source.name;
+    if (totals[0] == 0) scene_.complain(path, "is empty: its regions have no cells");
+    check_seeded(body, path);
     particle_count_ += static_cast<long long>(totals[0]), total_mass_ += totals[1];
     const double density = seeding_density(source, Vec<dim>{});
     wave_speed = std::max(wave_speed, std::sqrt(constrained_modulus(body.law()) / density));
@@ -109,14 +154,28 @@ void Simulation<dim, Phases>::seed_bodies() {
     if (!source.displacement.empty())
       for (int i = 0; i < body.particles().count; ++i) movers_[b].push_back(i);
     bool lost = false;
-    Vec<dim> where;
+    Vec<dim> where{};
     require(relocate<dim>(body, mesh_, movers_[b], &lost, &where));
+    const std::string outside = place_of(lost, where);
+    if (!outside.empty()) scene_.complain(path + ".displacement", "takes particles out of the mesh near " + outside);
     require(body.sort(mesh_.cell_count()));
   }
   const double relaxation = scene_.transfer.relaxation * mesh_.report().smallest_altitude / wave_speed;
   motion_ = std::make_unique<SoilMotion<dim, Phases>>(mesh_, bodies_, conditions_, scene_.transfer, scene_.water, relaxation,
                                                       total_mass_ / static_cast<double>(particle_count_),
                                                       std::hypot(scene_.gravity[0], scene_.gravity[1]));
+}
+
+/// A fixed step that the first state already forbids is bad input; one that a later state forbids ends the run.
+template <int dim, class Phases>
+void Simulation<dim, Phases>::check_step() {
+  const double step = std::get<EulerSettings>(integrator_settings_).step;
+  if (step == 0) return;
+  double critical = std::numeric_limits<double>::infinity();
+  for (const BodyReport &body : bodies()) critical = std::min(critical, body.critical_step);
+  if (step > critical)
+    scene_.complain("integrator.step", "must not exceed the critical step of " + rounded(critical) +
+                                           " s (2 / omega_max of the filled cells); take a smaller step, a coarser mesh, or leave step out");
 }
 
 template <int dim, class Phases>
@@ -161,9 +220,15 @@ int Simulation<dim, Phases>::find(Followed &point) {
 template <int dim, class Phases>
 void Simulation<dim, Phases>::run() {
   open_results();
-  write_history();
-  write_snapshot();
-  for (const Stage &stage : scene_.stage) run_stage(stage);
+  try {
+    write_history();
+    write_snapshot();
+    for (const Stage &stage : scene_.stage) run_stage(stage);
+  } catch (const RunError &) {
+    throw;
+  } catch (const std::runtime_error &error) {  // results that cannot be written: say how far the run came
+    fail(error.what());
+  }
   if (!results_) return;
   results_->progress.finish();
   int rank;
@@ -177,6 +242,7 @@ void Simulation<dim, Phases>::set_loading(const Stage &stage, double stage_time)
   for (int d = 0; d < dim; ++d) motion_->loading.gravity[d] = ramp * scene_.gravity[d];
   motion_->loading.time = load_time_;
   motion_->loading.damping = stage.damping;
+  motion_->loading.softening = stage.softening;
   hold_loads_ = stage.hold_loads;
 }
 
@@ -232,8 +298,8 @@ double Simulation<dim, Phases>::choose_step(double until) {
   const EulerSettings &settings = std::get<EulerSettings>(integrator_settings_);
   double step = settings.step > 0 ? settings.step : settings.fraction * critical_step_ * shrink_;
   if (settings.step > critical_step_)
-    throw SceneError(scene_.file + ": integrator.step = " + std::to_string(settings.step) + " s is above the critical step of " + std::to_string(critical_step_) +
-                     " s (2 / omega_max of the filled cells); take a smaller step, a coarser mesh, or leave step out");
+    fail("the soil has come to cells with a critical step of " + rounded(critical_step_) + " s, but integrator.step = " + rounded(settings.step) +
+         " s; take a smaller step, or leave it out");
   const double left = until - time_;
   const double count = std::ceil(left / step * (1 - 1e-9));
   if ((settings.step > 0 && count > 1) || count > 1e6) return step;
@@ -281,19 +347,9 @@ template <int dim, class Phases>
 void Simulation<dim, Phases>::refuse(const Verdict &verdict) {
   if (verdict.broken) {
     Vec<dim> where{};
-    double place[dim + 1]{};
-    place[dim] = motion_->find_broken(&where);
-    std::copy_n(where.begin(), dim, place);
-    int rank, first = std::numeric_limits<int>::max();
-    MPI_Comm_rank(comm_, &rank);
-    if (place[dim] > 0) first = rank;
-    MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm_);
-    MPI_Bcast(place, dim + 1, MPI_DOUBLE, first == std::numeric_limits<int>::max() ? 0 : first, comm_);
-    std::ostringstream text;
-    text << "the velocity is not finite near (" << place[0] << ", " << place[1];
-    if (dim == 3) text << ", " << place[dim - 1];
-    text << ") m; a smaller integrator.fraction, a volume_cap or transfer.remap_interval = 0 may help";
-    fail(text.str());
+    const bool mine = motion_->find_broken(&where);
+    fail("the velocity is not finite near " + place_of(mine, where) +
+         "; look at the loads there; a smaller integrator.fraction, a volume_cap or transfer.remap_interval = 0 may help");
   }
   if (verdict.interrupted) {
     write_history();
@@ -302,8 +358,9 @@ void Simulation<dim, Phases>::refuse(const Verdict &verdict) {
   }
 }
 
+/// Hands the particles what the nodes learned and walks them to their cells.
 template <int dim, class Phases>
-PetscErrorCode Simulation<dim, Phases>::remap() {
+PetscErrorCode Simulation<dim, Phases>::release() {
   PetscFunctionBeginUser;
   PetscLogDouble start, middle, end;
   PetscCall(PetscTime(&start));
@@ -313,24 +370,26 @@ PetscErrorCode Simulation<dim, Phases>::remap() {
   bool lost = false;
   Vec<dim> where{};
   for (size_t b = 0; b < bodies_.size(); ++b) PetscCall(relocate<dim>(*bodies_[b], mesh_, movers_[b], &lost, &where));
-  ++remaps_, critical_step_ = 0, shrink_ = 1;
-  constexpr int remaps_between_sorts = 20;
-  if (++since_sort_ >= remaps_between_sorts) {
-    for (auto &body : bodies_) PetscCall(body->sort(mesh_.cell_count()));
-    since_sort_ = 0;
-  }
+  critical_step_ = 0, shrink_ = 1;
   PetscCall(PetscTime(&end));
   breakdown_.release += middle - start, breakdown_.relocate += end - middle;
-  double out[dim + 1];
-  std::copy_n(where.begin(), dim, out);
-  out[dim] = lost;
-  int any = lost;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, comm_));
-  if (any) {
-    MPI_Allreduce(MPI_IN_PLACE, out, dim, MPI_DOUBLE, lost ? MPI_MAX : MPI_MAX, comm_);
-    std::ostringstream text;
-    text << "a particle left the mesh near (" << out[0] << ", " << out[1] << ") m; add free space there, or a boundary that keeps soil in";
-    fail(text.str());
+  const std::string outside = place_of(lost, where);
+  if (!outside.empty()) fail("a particle left the mesh near " + outside + "; add free space there, or a boundary that keeps soil in");
+  PetscFunctionReturn(0);
+}
+
+template <int dim, class Phases>
+PetscErrorCode Simulation<dim, Phases>::remap() {
+  PetscFunctionBeginUser;
+  PetscLogDouble start, end;
+  PetscCall(release());
+  ++remaps_;
+  constexpr int remaps_between_sorts = 20;
+  if (++since_sort_ >= remaps_between_sorts) {
+    PetscCall(PetscTime(&start));
+    for (auto &body : bodies_) PetscCall(body->sort(mesh_.cell_count()));
+    PetscCall(PetscTime(&end));
+    since_sort_ = 0, breakdown_.relocate += end - start;
   }
   PetscCall(check_conservation());
   PetscCall(PetscTime(&start));
@@ -401,13 +460,7 @@ bool Simulation<dim, Phases>::stage_ends(const Stage &stage, double stage_time, 
 
 template <int dim, class Phases>
 void Simulation<dim, Phases>::reset_displacement() {
-  if (motion_->gathered()) {
-    for (auto &list : movers_) list.clear();
-    require(motion_->release(time_, movers_));
-    bool lost = false;
-    Vec<dim> where;
-    for (size_t b = 0; b < bodies_.size(); ++b) require(relocate<dim>(*bodies_[b], mesh_, movers_[b], &lost, &where));
-  }
+  if (motion_->gathered()) require(release());
   for (const auto &body : bodies_) {
     const ParticleArrays<dim> &p = body->particles();
     std::copy_n(p.position, p.count, p.reference);
@@ -583,13 +636,28 @@ void Simulation<dim, Phases>::note(const std::string &text) {
   if (results_) results_->progress.note(text);
 }
 
+/// "(x, y) m" of the lowest rank that has a place to name, empty if none has. Collective.
+template <int dim, class Phases>
+std::string Simulation<dim, Phases>::place_of(bool mine, const Vec<dim> &where) const {
+  int rank, ranks;
+  MPI_Comm_rank(comm_, &rank), MPI_Comm_size(comm_, &ranks);
+  int first = mine ? rank : ranks;
+  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm_);
+  if (first == ranks) return "";
+  Vec<dim> place = where;
+  MPI_Bcast(place.data(), dim, MPI_DOUBLE, first, comm_);
+  std::ostringstream text;
+  for (int d = 0; d < dim; ++d) text << (d ? ", " : "(") << place[d];
+  return text.str() + ") m";
+}
+
 template <int dim, class Phases>
 void Simulation<dim, Phases>::fail(const std::string &text) {
   std::ostringstream message;
   message.precision(8);
   message << text << " (t = " << time_ << " s, step " << steps_ << ", stage " << stage_name_ << ")";
   if (results_) message << "; snapshots up to step " << results_->file.last_step() << " are in " << options_.directory;
-  if (results_) results_->progress.note(message.str());
+  if (results_) results_->progress.failure(message.str());
   throw RunError(message.str());
 }
 

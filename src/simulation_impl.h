@@ -29,6 +29,8 @@ class Simulation final : public AnySimulation {
   long long particles() const override { return particle_count_; }
   double mass() const override { return total_mass_; }
   double critical_step() override;
+  MeshReport mesh_report() const override { return mesh_.report(); }
+  std::vector<BodyReport> bodies() override;
   Snapshot snapshot() override;
   const HistoryTable &history() const override { return history_; }
   const std::vector<Event> &events() const override { return events_; }
@@ -54,7 +56,10 @@ class Simulation final : public AnySimulation {
   };
 
   // setup
-  void check_groups() const;
+  void check_bodies() const;
+  void check_boundaries(const std::vector<typename Conditions<dim>::Source> &sources) const;
+  void check_seeded(const Body<dim> &body, const std::string &path) const;
+  void check_step();
   void seed_bodies();
   double seeding_density(const BodySource &source, const Vec<dim> &x) const;
   void follow_points();
@@ -63,6 +68,7 @@ class Simulation final : public AnySimulation {
   void set_loading(const Stage &stage, double stage_time);
   double choose_step(double until);
   PetscErrorCode step(double step);
+  PetscErrorCode release();
   PetscErrorCode remap();
   PetscErrorCode check_conservation();
   Verdict agree();
@@ -76,6 +82,7 @@ class Simulation final : public AnySimulation {
   void write_history();
   void note(const std::string &text);
   int find(Followed &point);
+  std::string place_of(bool mine, const Vec<dim> &where) const;
   [[noreturn]] void fail(const std::string &text);
 
   MPI_Comm comm_;

@@ -24,10 +24,11 @@ int run(const RunArguments &arguments) {
   options.pictures = !arguments.no_pictures;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error of writing, not the end
   make_simulation(PETSC_COMM_WORLD, scene, options)->run();
   int rank;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  if (rank == 0) std::fprintf(stderr, "results are in %s: report.html to read, run.xdmf for ParaView\n", options.directory.c_str());
+  if (rank == 0) std::fprintf(stderr, "results are in %s: %srun.xdmf for ParaView\n", options.directory.c_str(), options.pictures ? "report.html to read, " : "");
   return 0;
 }
 

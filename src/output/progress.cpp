@@ -124,6 +124,10 @@ void Progress::note(const std::string &text) {
   log(text);
 }
 
+void Progress::failure(const std::string &text) {
+  if (speaks_) log(text);
+}
+
 void Progress::finish() {
   if (!speaks_) return;
   const std::string line = describe(clock_());

@@ -36,6 +36,9 @@ class Progress {
   /// A line of its own, on the screen and in the log.
   void note(const std::string &text);
 
+  /// The last line of a run that failed, in the log alone: the screen hears it from whoever catches the error.
+  void failure(const std::string &text);
+
   /// The last state, so that screen and log end with it.
   void finish();
 
