@@ -149,10 +149,16 @@ Scene parse(const std::string &text, const std::string &file, const std::vector<
   scene.file = file;
   for (const std::string &one : overrides) scene.source += "# --set " + one + "\n";
   scene.source += text;
+  scene.root = std::make_shared<TableReader>(reader);
   return scene;
 }
 
 }  // namespace
+
+void Scene::complain(const std::string &key_path, const std::string &sentence) const {
+  if (root) root->complain(key_path, sentence);
+  throw SceneError(key_path + " " + sentence);  // a scene that a program filled in itself
+}
 
 Scene parse_scene(const std::string &text, const std::string &file, const std::vector<std::string> &overrides) {
   return parse(text, file, overrides, false);

@@ -2,6 +2,7 @@
 /// The scene as plain structs: SI units, radians, defaults; no PETSc, no TOML. `fields` names every key once; the reader,
 /// `talus describe`, the header of results and the test that every key is documented all visit it (docs/guide/scene.md).
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -216,6 +217,7 @@ struct Scene {
   std::string source;      ///< the text as read, overrides applied; not a key
   PhaseModel phases = PhaseModel::dry;
   int dimension = 2;
+  std::shared_ptr<const TableReader> root;  ///< the file's root table, for complaints after reading; not a key
   std::vector<double> gravity;  ///< components [m/s2]; one number points down y; empty: no gravity
   MeshSource mesh;
   std::vector<BodySource> body;
@@ -242,4 +244,7 @@ struct Scene {
   }
 };
 
+
+  /// For what only mesh or soil can tell is wrong: throws the SceneError of TableReader::complain, with the key's place in the file.
+  [[noreturn]] void complain(const std::string &key_path, const std::string &sentence) const;
 }  // namespace talus

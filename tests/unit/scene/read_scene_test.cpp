@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 
@@ -48,6 +49,15 @@ duration = 1
 
 std::string refusal(const std::string &text, const std::vector<std::string> &overrides = {}) {
   return complaint([&] { parse_scene(text, "slope.toml", overrides); });
+}
+
+TEST(ReadScene, ComplainsAtAKeysPlaceAfterReadingToo) {
+  const Scene scene = parse_scene(dry, "slope.toml", {"mesh.size=0.5"});
+  const int line =
+      1 + static_cast<int>(std::count(dry.begin(), dry.begin() + static_cast<int>(dry.find("region =")), '\n'));
+  EXPECT_EQ(complaint([&] { scene.complain("body.sand.region", "is empty"); }),
+            "slope.toml line " + std::to_string(line) + ": body.sand.region = \"hill\" is empty");
+  EXPECT_EQ(complaint([&] { scene.complain("mesh.size", "is large"); }), "--set: mesh.size = 0.5 is large");
 }
 
 TEST(ReadScene, ReadsADryScene) {
