@@ -19,8 +19,10 @@ namespace talus {
 template <int dim>
 struct Loading {
   Vec<dim> gravity{};     ///< with the ramp of the stage [m/s2]
+  double ramp = 1;        ///< of the stage: gravity and with it pore pressure grow from 0 to 1
   double time = 0;        ///< time that functions of the scene see [s]; stands still in a stage that holds loads
   double damping = 0;     ///< local damping factor
+  bool softening = true;  ///< plastic strain is remembered; otherwise soil keeps the strength it has
 };
 
 /// Sums over all ranks, for the ledger and the stop criteria.
@@ -111,6 +113,7 @@ class SoilMotion final : public Motion {
   std::vector<std::array<double, 2>> impedance_;
   std::vector<double> patch_weight_, patch_sum_;
   std::vector<double> affine_;
+  std::vector<double> forgotten_;                 ///< history that a stage without softening does not keep
   // the trial state of integrators that look ahead
   std::vector<Shape<dim>> trial_shape_;
   std::vector<double> trial_particle_volume_, trial_weight_;

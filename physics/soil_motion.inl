@@ -560,7 +560,7 @@ void SoilMotion<dim, Phases>::add_pore_pressure(double t, bool trial)
 {
   sample_pressure(t);
   last_pressure_time_ = t;
-  const double s = (t - sample_time_[0]) / (sample_time_[1] - sample_time_[0]);
+  const double late = loading.ramp * (t - sample_time_[0]) / (sample_time_[1] - sample_time_[0]), early = loading.ramp - late;
   const Shape<dim> *shape = trial ? trial_shape_.data() : grid_.shape.data();
   const double *weight = trial ? trial_weight_.data() : weight_.data();
   for (int c = 0; c < grid_.cell_count(); ++c) {
@@ -568,9 +568,9 @@ void SoilMotion<dim, Phases>::add_pore_pressure(double t, bool trial)
     if (pressure_.open_water_load()) {
       for (int k = 0; k <= dim; ++k)
         for (int d = 0; d < dim; ++d)
-          force_[node[k]][d] -= grid_.nodal_share[c][k] * ((1 - s) * sample_[0].gradient[c][d] + s * sample_[1].gradient[c][d]);
+          force_[node[k]][d] -= grid_.nodal_share[c][k] * (early * sample_[0].gradient[c][d] + late * sample_[1].gradient[c][d]);
     } else {
-      const double push = weight[c] * ((1 - s) * sample_[0].value[c] + s * sample_[1].value[c]);
+      const double push = weight[c] * (early * sample_[0].value[c] + late * sample_[1].value[c]);
       for (int k = 0; k < dim; ++k)
         for (int d = 0; d < dim; ++d) {
           force_[node[k + 1]][d] += push * shape[c].gradient[k][d];
@@ -583,7 +583,7 @@ void SoilMotion<dim, Phases>::add_pore_pressure(double t, bool trial)
 template <int dim, class Phases>
 double SoilMotion<dim, Phases>::pore_pressure(const Vec<dim> &x) const {
   if constexpr (Phases::given)
-    return pressure_(x, loading.time);
+    return loading.ramp * pressure_(x, loading.time);
   else
     return 0;
 }
