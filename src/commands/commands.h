@@ -9,6 +9,9 @@ namespace talus {
 using Action = std::function<int()>;
 
 Action add_run(CLI::App &app);
+Action add_mesh(CLI::App &app);
+Action add_check(CLI::App &app);
+Action add_plot(CLI::App &app);
 Action add_bench(CLI::App &app);
 Action add_verify(CLI::App &app);
 Action add_describe(CLI::App &app);

@@ -43,10 +43,13 @@ bool warn(const std::string &dir, const std::string &cause) {
 
 }  // namespace
 
-bool draw_pictures(const std::string &dir, const std::vector<std::string> &fields) {
+bool draw_pictures(const std::string &dir, const PictureChoice &choice) {
   std::vector<std::string> words{TALUS_PYTHON, "-B", script(), dir};  // -B: no caches among the sources
-  if (!fields.empty()) words.push_back("--fields");
-  words.insert(words.end(), fields.begin(), fields.end());
+  if (!choice.fields.empty()) words.push_back("--fields");
+  words.insert(words.end(), choice.fields.begin(), choice.fields.end());
+  if (!choice.times.empty()) words.push_back("--times");
+  words.insert(words.end(), choice.times.begin(), choice.times.end());
+  if (choice.logarithmic) words.push_back("--log");
   std::vector<char *> arguments;
   for (auto &word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);

@@ -5,9 +5,15 @@
 
 namespace talus {
 
-/// Draws DIR/pictures/*.png and DIR/report.html from the results in `dir`; call it on one rank. `fields` are columns of
-/// the snapshots; none: the script's choice. Pictures never fail a run: false, after a warning on standard error, if it
-/// went wrong.
-bool draw_pictures(const std::string &dir, const std::vector<std::string> &fields = {});
+/// What to draw; empty lists are the script's choice.
+struct PictureChoice {
+  std::vector<std::string> fields;  ///< columns of the snapshots
+  std::vector<std::string> times;   ///< [s], the nearest snapshots
+  bool logarithmic = false;         ///< scale of plastic strain
+};
+
+/// Draws DIR/pictures/*.png and DIR/report.html from the results in `dir`; call it on one rank. Pictures never fail a
+/// run: false, after a warning on standard error, if it went wrong.
+bool draw_pictures(const std::string &dir, const PictureChoice &choice = {});
 
 }  // namespace talus

@@ -15,20 +15,24 @@ FIELDS = ("displacement", "plastic_strain", "velocity", "pore_pressure")
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", metavar="DIR", help="folder of the run")
-    parser.add_argument("--fields", nargs="+", default=FIELDS, metavar="FIELD",
+    parser.add_argument("--fields", nargs="+", metavar="FIELD",
                         help="columns to draw; a vector by its size, a tensor by its mean, or one component: stress_xy")
     parser.add_argument("--times", nargs="+", type=float, metavar="T", help="times to draw [s], the nearest snapshots")
     parser.add_argument("--log", action="store_true", help="plastic strain on a logarithmic scale")
     return parser.parse_args()
 
 
-def draw(folder, fields=FIELDS, times=None, log=False):
-    """Draws everything; fields that the run does not have are left out. Returns the report's path."""
+def draw(folder, fields=None, times=None, log=False):
+    """Draws everything; without `fields`, those of FIELDS that the run has. Returns the report's path."""
     results = Results(folder)
     if not results.snapshots:
         raise ValueError(f"{folder} holds no snapshots")
+    first = results.snapshots[0]
+    for field in fields or ():
+        if first.scalar(field) is None:
+            raise ValueError(f"{folder} has no field {field}; it has {', '.join(first.names())}")
     pictures = results.folder / "pictures"
-    sections = draw_sections(results, fields, times, pictures, log)
+    sections = draw_sections(results, fields or FIELDS, times, pictures, log)
     return write_report(results, sections, draw_histories(results, pictures))
 
 

@@ -1,0 +1,235 @@
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+#include <filesystem>
+
+#include "commands/commands.h"
+#include "commands/gallery.h"
+#include "commands/json.h"
+#include "commands/needs.h"
+#include "commands/scales.h"
+#include "scene/reader.h"
+
+namespace talus {
+namespace {
+
+struct CheckArguments {
+  std::string scene;
+  std::vector<std::string> set;
+  bool json = false;
+};
+
+constexpr int label_width = 10, page_width = 110;
+
+/// A line of the page with its label in the margin.
+[[gnu::format(printf, 2, 3)]] void line(const char *label, const char *format, ...) {
+  std::printf("%-*s", label_width, label);
+  va_list arguments;
+  va_start(arguments, format);
+  std::vprintf(format, arguments);
+  va_end(arguments);
+  std::printf("\n");
+}
+
+/// A paragraph, broken between words, behind a dash.
+void paragraph(const char *label, const std::string &text) {
+  std::string rest = text, margin = std::string("- ");
+  while (!rest.empty()) {
+    const std::size_t room = page_width - label_width - 2;
+    std::size_t end = rest.size() <= room ? rest.size() : rest.rfind(' ', room);
+    if (end == std::string::npos) end = rest.size();
+    line(label, "%s%s", margin.c_str(), rest.substr(0, end).c_str());
+    rest.erase(0, std::min(rest.size(), end + 1));
+    label = "", margin = "  ";
+  }
+}
+
+std::string spoken_bytes(double bytes) {
+  char text[32];
+  std::snprintf(text, sizeof text, bytes < 1e9 ? "%.3g MB" : "%.3g GB", bytes / (bytes < 1e9 ? 1e6 : 1e9));
+  return text;
+}
+
+std::string place(const std::array<double, 3> &x, int dimension) {
+  char text[96];
+  dimension == 2 ? std::snprintf(text, sizeof text, "(%.3g, %.3g) m", x[0], x[1])
+                 : std::snprintf(text, sizeof text, "(%.3g, %.3g, %.3g) m", x[0], x[1], x[2]);
+  return text;
+}
+
+const char *name_of(StopWhen until) {
+  switch (until) {
+    case StopWhen::duration:
+      return "duration";
+    case StopWhen::equilibrium:
+      return "equilibrium";
+    case StopWhen::rest:
+      return "rest";
+    case StopWhen::failure:
+      return "failure";
+  }
+  return "";
+}
+
+std::string source_of(const MeshSource &mesh) {
+  char size[32];
+  std::snprintf(size, sizeof size, " in cells of %.3g m", mesh.size);
+  return mesh.file.empty() ? std::filesystem::path(mesh.section).filename().string() + size
+                           : std::filesystem::path(mesh.file).filename().string();
+}
+
+void print_costs(const Scene &scene, const Needs &n) {
+  const char *per = scene.dimension == 2 ? "kg/m" : "kg";
+  line("mesh", "%lld cells, %lld nodes: %s", n.mesh.cells, n.mesh.nodes, source_of(scene.mesh).c_str());
+  line("", "quality %.2f at least, %.2f on average; smallest altitude %.3g m", n.mesh.smallest_quality,
+       n.mesh.mean_quality, n.mesh.smallest_altitude);
+  line("bodies", "%-16s %-14s %10s %8s %5s %10s %8s %8s %12s", "", "law", "particles", "cells", "each", per, "c_p m/s",
+       "c_s m/s", "critical s");
+  for (const BodyNeeds &b : n.bodies)
+    line("", "%-16s %-14s %10lld %8lld %5d %10.4g %8.3g %8.3g %12.3g", b.body.name.c_str(), law_name(b.law),
+         b.body.particles, b.body.cells, b.body.fewest_per_cell, b.body.mass, b.wave_speed, b.shear_speed,
+         b.body.critical_step);
+  line("memory", "%s resident; snapshots take about %s (%d)", spoken_bytes(n.memory).c_str(),
+       spoken_bytes(n.results).c_str(), n.snapshots);
+  line("step", "critical %.4g s (2 / omega_max), set by %s at %s; altitude over wave speed: %.3g s", n.critical_step,
+       n.slowest_body().body.name.c_str(), place(n.slowest_body().body.slowest_cell, scene.dimension).c_str(),
+       n.altitude_rule);
+  line("", "%s %.4g s, %.2f of it", n.fixed_step ? "fixed at" : "taken", n.step, n.step / n.critical_step);
+  line("stages", "%-16s %-12s %10s %10s %14s %12s", "", "until", "longest s", "steps", "wave transits", "run time");
+  for (std::size_t i = 0; i < n.stages.size(); ++i) {
+    const StageNeeds &s = n.stages[i];
+    line("", "%-16s %-12s %10.4g %10.0f %14.4g %12s", s.name.c_str(), name_of(scene.stage[i].until), s.duration,
+         s.steps, s.transits, n.burst_steps ? spoken(s.run_time).c_str() : "-");
+  }
+  if (n.burst_steps)
+    line("run time", "about %s at most on %d rank%s: an estimate from %d steps of %s each; fast soil remaps more often",
+         spoken(n.run_time()).c_str(), n.ranks, n.ranks > 1 ? "s" : "", n.burst_steps,
+         spoken(n.seconds_per_step).c_str());
+}
+
+void print_scales(const Needs &n) {
+  const LayerNeeds &layer = n.layer;
+  line("scales", "%.3g m high, crossed by a wave in %s", layer.height, spoken(layer.transit).c_str());
+  if (n.gravity > 0) {
+    line("", "weight, %.3g kPa over M = %.3g MPa: strain %.2g %% at the foot, settlement %.2g m",
+         layer.gravity_stress / 1e3, layer.modulus / 1e6, 100 * layer.gravity_strain, layer.settlement);
+    line("", "fall of its height: %s, and then %.2g of the wave speed",
+         spoken(scales::fall_time(layer.height, n.gravity)).c_str(),
+         scales::fall_speed(layer.height, n.gravity) / layer.wave_speed);
+  }
+  for (const BodyNeeds &b : n.bodies)
+    if (b.softening > 0)
+      line("", "strength of %s falls with plastic strain at %.2g of 2 G in cells of %.3g m", b.body.name.c_str(),
+           b.softening, b.body.cell_size);
+  const Drainage &d = n.drainage;
+  if (d.time == 0) return;
+  line("drainage", "in %s: drained (T = c_v t / L2 > %g) for k above %.1g m/s, undrained (T < %g) for k below %.1g m/s",
+       spoken(d.time).c_str(), scales::drained_factor, d.drained_above, scales::undrained_factor, d.undrained_below);
+  if (d.drag_relaxation > 0)
+    line("", "pore water follows Darcy's law after k / (n g) = %s or less", spoken(d.drag_relaxation).c_str());
+}
+
+void print_page(const Scene &scene, const Needs &needs, const std::vector<std::string> &advice) {
+  std::printf("%s\n%s, %s\n\n", scene.title.empty() ? scene.file.c_str() : scene.title.c_str(),
+              scene.phases == PhaseModel::dry ? "dry" : "drained",
+              scene.dimension == 2           ? "plane strain on triangles"
+              : needs.mesh.one_element_slice ? "a slice of one layer of tetrahedra"
+                                             : "tetrahedra");
+  print_costs(scene, needs);
+  print_scales(needs);
+  const char *label = "advice";
+  for (const std::string &sentence : advice) paragraph(label, sentence), label = "";
+}
+
+void print_json(const Scene &scene, const Needs &n, const std::vector<std::string> &advice) {
+  using json::Object;
+  const auto body = [](const BodyNeeds &b) {
+    return Object()
+        .add("name", json::text(b.body.name))
+        .add("law", json::text(law_name(b.law)))
+        .add("particles", static_cast<double>(b.body.particles))
+        .add("cells", static_cast<double>(b.body.cells))
+        .add("fewest_particles_per_cell", b.body.fewest_per_cell)
+        .add("mass_kg", b.body.mass)
+        .add("density_kg_m3", b.density)
+        .add("wave_speed_m_s", b.wave_speed)
+        .add("shear_wave_speed_m_s", b.shear_speed)
+        .add("cell_size_m", b.body.cell_size)
+        .add("critical_step_s", b.body.critical_step)
+        .add("softening_slope_over_2G", b.softening)
+        .str();
+  };
+  const auto stage = [](const StageNeeds &s) {
+    return Object()
+        .add("name", json::text(s.name))
+        .add("duration_s", s.duration)
+        .add("steps", s.steps)
+        .add("transits", s.transits)
+        .add("run_time_s", s.run_time)
+        .str();
+  };
+  Object page;
+  page.add("title", json::text(scene.title))
+      .add("dimension", scene.dimension)
+      .add("phases", json::text(scene.phases == PhaseModel::dry ? "dry" : "drained"))
+      .add("ranks", n.ranks)
+      .add("mesh", Object()
+                       .add("cells", static_cast<double>(n.mesh.cells))
+                       .add("nodes", static_cast<double>(n.mesh.nodes))
+                       .add("smallest_altitude_m", n.mesh.smallest_altitude)
+                       .add("smallest_quality", n.mesh.smallest_quality)
+                       .add("mean_quality", n.mesh.mean_quality)
+                       .add("one_element_slice", n.mesh.one_element_slice ? "true" : "false")
+                       .str())
+      .add("particles", static_cast<double>(n.particles()))
+      .add("bodies", json::array(n.bodies, body))
+      .add("layer", Object()
+                        .add("height_m", n.layer.height)
+                        .add("modulus_Pa", n.layer.modulus)
+                        .add("transit_s", n.layer.transit)
+                        .add("gravity_stress_Pa", n.layer.gravity_stress)
+                        .add("gravity_strain", n.layer.gravity_strain)
+                        .add("settlement_m", n.layer.settlement)
+                        .str())
+      .add("critical_step_s", n.critical_step)
+      .add("altitude_rule_s", n.altitude_rule)
+      .add("step_s", n.step)
+      .add("stages", json::array(n.stages, stage))
+      .add("burst_steps", n.burst_steps)
+      .add("seconds_per_step", n.seconds_per_step)
+      .add("run_time_s", n.run_time())
+      .add("memory_B", n.memory)
+      .add("snapshots", n.snapshots)
+      .add("snapshots_B", n.results)
+      .add("drainage", Object()
+                           .add("time_s", n.drainage.time)
+                           .add("drained_above_m_s", n.drainage.drained_above)
+                           .add("undrained_below_m_s", n.drainage.undrained_below)
+                           .add("drag_relaxation_s", n.drainage.drag_relaxation)
+                           .str())
+      .add("advice", json::array(advice, json::text));
+  std::printf("%s\n", page.str().c_str());
+}
+
+int check(const CheckArguments &arguments) {
+  Scene scene = read_scene(find_scene(arguments.scene), arguments.set);
+  const Needs needs = find_needs(scene);
+  const std::vector<std::string> advice = advise(scene, needs);
+  int rank;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  if (rank == 0) arguments.json ? print_json(scene, needs, advice) : print_page(scene, needs, advice);
+  return 0;
+}
+
+}  // namespace
+
+Action add_check(CLI::App &app) {
+  auto arguments = std::make_shared<CheckArguments>();
+  CLI::App *command = app.add_subcommand("check", "what a scene costs and needs, without running it, and advice");
+  command->add_option("SCENE", arguments->scene, "scene file (.toml) or the name of a gallery scene")->required();
+  command->add_option("--set", arguments->set, "override a key of the scene: key.path=value")->take_all();
+  command->add_flag("--json", arguments->json, "one JSON document on standard output");
+  return [arguments] { return check(*arguments); };
+}
+
+}  // namespace talus

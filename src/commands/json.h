@@ -1,0 +1,55 @@
+#pragma once
+/// Values of a JSON document.
+#include <cmath>
+#include <sstream>
+#include <string>
+
+namespace talus::json {
+
+/// JSON knows neither NaN nor infinity.
+inline std::string number(double x) {
+  if (!std::isfinite(x)) return "null";
+  std::ostringstream text;
+  text.precision(17);
+  text << x;
+  return text.str();
+}
+
+inline std::string text(const std::string &words) {
+  std::ostringstream quoted;
+  quoted << '"';
+  for (const char c : words) {
+    if (c == '"' || c == '\\')
+      quoted << '\\' << c;
+    else if (static_cast<unsigned char>(c) < 0x20)
+      quoted << ' ';
+    else
+      quoted << c;
+  }
+  quoted << '"';
+  return quoted.str();
+}
+
+/// An object built member by member.
+class Object {
+ public:
+  Object &add(const std::string &name, const std::string &value) {  ///< `value` is JSON
+    text_ += (text_.empty() ? "{" : ", ") + json::text(name) + ": " + value;
+    return *this;
+  }
+  Object &add(const std::string &name, double value) { return add(name, number(value)); }
+  std::string str() const { return text_.empty() ? "{}" : text_ + "}"; }
+
+ private:
+  std::string text_;
+};
+
+/// An array of values that are JSON.
+template <class Values, class ToJson>
+std::string array(const Values &values, const ToJson &to_json) {
+  std::string list;
+  for (const auto &value : values) list += (list.empty() ? "" : ",\n  ") + to_json(value);
+  return "[" + list + "]";
+}
+
+}  // namespace talus::json

@@ -1,0 +1,106 @@
+#include <cstdio>
+
+#include "commands/commands.h"
+#include "mesh_source.h"
+#include "scene/quantity.h"
+#include "scene/reader.h"
+#include "solvers/critical_step.h"
+
+namespace talus {
+namespace {
+
+struct MeshArguments {
+  std::string source, file, size, dimension = "2", thickness, layers, format;
+  std::vector<std::string> boxes;
+  std::string young_modulus = "10 MPa", poisson_ratio = "0.3", density = "2000";  // a soft soil
+};
+
+/// For talus-mesh, which checks them.
+std::vector<std::string> options_of(const MeshArguments &a) {
+  std::vector<std::string> options{a.source, "-o", a.file, "--dimension", a.dimension};
+  const std::pair<const char *, std::string> others[] = {
+      {"--size", a.size}, {"--thickness", a.thickness}, {"--layers", a.layers}, {"--format", a.format}};
+  for (const auto &[name, value] : others)
+    if (!value.empty()) options.insert(options.end(), {name, value});
+  for (std::size_t i = 0; i + 4 < a.boxes.size(); i += 5) {
+    options.push_back("--refine");
+    options.insert(options.end(), a.boxes.begin() + i, a.boxes.begin() + i + 5);
+  }
+  return options;
+}
+
+double quantity(const char *option, const std::string &text, Unit unit, Range range) {
+  double value;
+  try {
+    value = in_unit(text, unit);
+  } catch (const std::invalid_argument &error) {
+    throw SceneError(std::string(option) + " " + text + ": " + error.what());
+  }
+  if (range.low <= value && value <= range.high) return value * unit.si;
+  throw SceneError(std::string(option) + " " + text + " must be from " + shortest(range.low) + " to " +
+                   shortest(range.high) + " " + unit.name);
+}
+
+template <int dim>
+void report_step(const MeshArguments &arguments, const LinearElastic &soil, double density) {
+  const auto mesh = BackgroundMesh<dim>::read(PETSC_COMM_SELF, arguments.file, 0, {});
+  const Law law = soil;
+  CriticalStep<dim> critical(mesh, law, density);
+  int slowest = 0;
+  for (int cell = 1; cell < mesh.cell_count(); ++cell)
+    if (critical(cell) < critical(slowest)) slowest = cell;
+  const double speed = std::sqrt(constrained_modulus(law) / density);
+  std::printf(
+      "critical step %.4g s (2 / omega_max of all cells) in soil with E = %s, nu = %s, density %s, where c_p = %.4g "
+      "m/s\n",
+      critical(slowest), arguments.young_modulus.c_str(), arguments.poisson_ratio.c_str(), arguments.density.c_str(),
+      speed);
+  std::printf("set by the cell at (");
+  for (int d = 0; d < dim; ++d) {
+    double centre = 0;
+    for (int node : mesh.cells[slowest].node) centre += mesh.position[node][d] / (dim + 1);
+    std::printf("%s%.4g", d ? ", " : "", centre);
+  }
+  std::printf(") m; smallest altitude over wave speed is %.4g s\n", mesh.report().smallest_altitude / speed);
+}
+
+int make_mesh(const MeshArguments &arguments) {
+  const LinearElastic soil{{.young_modulus = quantity("--young-modulus", arguments.young_modulus, pascal, {1, 1e13}),
+                            .poisson_ratio = quantity("--poisson-ratio", arguments.poisson_ratio, one, {0, 0.4999})}};
+  const double density = quantity("--density", arguments.density, kilogram_per_cubic_metre, {1, 1e5});
+  const MeshRun run = run_talus_mesh(options_of(arguments));
+  std::fputs(run.output.c_str(), run.status ? stderr : stdout);
+  if (run.status) return run.status;
+  arguments.dimension == "2" ? report_step<2>(arguments, soil, density) : report_step<3>(arguments, soil, density);
+  return 0;
+}
+
+}  // namespace
+
+Action add_mesh(CLI::App &app) {
+  auto arguments = std::make_shared<MeshArguments>();
+  CLI::App *command =
+      app.add_subcommand("mesh", "section to mesh file, with a report on quality and the critical step it implies");
+  command->add_option("SOURCE", arguments->source, "section CSV")->required();
+  command->add_option("-o,--output", arguments->file, "mesh file to write (.msh)")->required();
+  command->add_option("--size", arguments->size, "cell size [m]")->required();
+  command->add_option("--dimension", arguments->dimension, "2: triangles, 3: tetrahedra (default 2)");
+  command->add_option("--thickness", arguments->thickness, "of a 3D slice [m] (default one cell size)");
+  command->add_option("--layers", arguments->layers, "of elements over the thickness; 0: free tetrahedra (default 1)");
+  command->add_option("--refine", arguments->boxes, "x0 y0 x1 y1 h: cells of size h in a box; may be repeated")
+      ->type_size(5)
+      ->expected(-1);
+  command->add_option("--format", arguments->format, "of the mesh file: 2.2 or 4.1 (default 4.1)");
+  command->add_option("--young-modulus", arguments->young_modulus,
+                      "of the soil, for the critical step (default 10 MPa)");
+  command->add_option("--poisson-ratio", arguments->poisson_ratio, "of the soil (default 0.3)");
+  command->add_option("--density", arguments->density, "of the soil (default 2000 kg/m3)");
+  return [arguments] {
+    int rank, status = 0;
+    MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+    if (rank == 0) status = make_mesh(*arguments);
+    return status;
+  };
+}
+
+}  // namespace talus

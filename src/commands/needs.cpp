@@ -1,0 +1,351 @@
+#include "commands/needs.h"
+
+#include <petsctime.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+
+#include "commands/scales.h"
+
+namespace talus {
+namespace {
+
+constexpr int burst_length = 40;
+constexpr double longest_burst = 5;  // [s]
+
+/// Four digits at most.
+std::string digits(double value, int count = 3) {
+  std::ostringstream text;
+  text.precision(count);
+  text << value;
+  return text.str();
+}
+
+double size_of(const std::vector<double> &v) {
+  return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.));
+}
+
+/// Slope of strength over plastic strain at its steepest, over 2 G, where the mean stress is `pressure`.
+double softening(const Law &law, double cell_size, double pressure) {
+  const auto *soil = std::get_if<MohrCoulomb>(&law);
+  if (!soil || soil->shape_factor == 0) return 0;
+  MohrCoulomb m = *soil;
+  m.prepare();
+  const double scale = m.reference_size > 0 ? cell_size / m.reference_size : 1;
+  const double drop = m.cohesion * std::cos(m.friction_angle) - m.residual_c * std::cos(m.residual_phi) +
+                      pressure * (std::sin(m.friction_angle) - std::sin(m.residual_phi));
+  return m.shape_factor * scale * drop / (2 * m.shear_modulus());
+}
+
+BodyNeeds needs_of(const BodyReport &report, const BodySource &source) {
+  BodyNeeds b{report, read_law(source.law)};
+  b.density = report.mass / report.volume;
+  b.wave_speed = std::sqrt(constrained_modulus(b.law) / b.density);
+  b.shear_speed = std::sqrt(shear_modulus(b.law) / b.density);
+  return b;
+}
+
+/// How far a point lies below the top of all soil, times |gravity| [m2/s2].
+double head_above(const Scene &scene, const std::array<double, 3> &x, const std::vector<BodyNeeds> &bodies) {
+  double head = 0;
+  for (int d = 0; d < scene.dimension; ++d) {
+    double top = -std::numeric_limits<double>::infinity();  // against gravity
+    for (const BodyNeeds &b : bodies)
+      top = std::max(top, -scene.gravity[d] * (scene.gravity[d] < 0 ? b.body.high[d] : b.body.low[d]));
+    head += top + scene.gravity[d] * x[d];
+  }
+  return head;
+}
+
+LayerNeeds layer_of(const Scene &scene, const std::vector<BodyNeeds> &bodies, double gravity) {
+  LayerNeeds layer;
+  double mass = 0, volume = 0;
+  std::array<double, 3> low = bodies[0].body.low, high = bodies[0].body.high;
+  layer.modulus = std::numeric_limits<double>::infinity(), layer.wave_speed = layer.modulus;
+  for (const BodyNeeds &b : bodies) {
+    mass += b.body.mass, volume += b.body.volume;
+    layer.modulus = std::min(layer.modulus, constrained_modulus(b.law));
+    layer.wave_speed = std::min(layer.wave_speed, b.wave_speed);
+    for (int d = 0; d < 3; ++d) low[d] = std::min(low[d], b.body.low[d]), high[d] = std::max(high[d], b.body.high[d]);
+  }
+  for (int d = 0; d < scene.dimension; ++d) {
+    const double extent = high[d] - low[d];
+    layer.height =
+        gravity > 0 ? layer.height + extent * std::abs(scene.gravity[d]) / gravity : std::max(layer.height, extent);
+  }
+  const double density = mass / volume;
+  layer.transit = scales::transit(layer.height, layer.wave_speed);
+  layer.gravity_stress = density * gravity * layer.height;
+  layer.gravity_strain = scales::own_weight_strain(density, gravity, layer.height, layer.modulus);
+  layer.settlement = scales::settlement(density, gravity, layer.height, layer.modulus);
+  return layer;
+}
+
+/// Takes some steps and times them, after a few that touch the memory first.
+void burst(AnySimulation &simulation, Needs &needs) {
+  PetscLogDouble start, now;
+  try {
+    for (int i = 0; i < 3; ++i) simulation.single_step();
+    PetscTime(&start);
+    int over = 0;
+    while (needs.burst_steps < burst_length && !over) {
+      simulation.single_step();
+      PetscTime(&now);
+      ++needs.burst_steps, needs.seconds_per_step = (now - start) / needs.burst_steps;
+      over = now - start > longest_burst;
+      MPI_Allreduce(MPI_IN_PLACE, &over, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD);
+    }
+  } catch (const RunError &error) {
+    needs.burst_failure = error.what();
+  }
+  PetscLogDouble resident = 0;
+  (void)PetscMemoryGetCurrentUsage(&resident);
+  double mine[2] = {resident, 0}, all[2];
+  for (const Column &column : simulation.snapshot().columns) mine[1] += 8. * static_cast<double>(column.values.size());
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  needs.memory = all[0], needs.results = all[1];
+}
+
+Drainage drainage_of(const Scene &scene, const Needs &needs) {
+  Drainage d;
+  if (needs.gravity == 0) return d;
+  for (const StageNeeds &stage : needs.stages) d.time += stage.duration;
+  const double water_weight = scene.water.density * needs.gravity;
+  const auto bound = [&](double factor) {
+    return scales::conductivity_at(factor, needs.layer.modulus, water_weight, d.time, needs.layer.height);
+  };
+  d.drained_above = bound(scales::drained_factor), d.undrained_below = bound(scales::undrained_factor);
+  for (const BodySource &body : scene.body)
+    if (body.porosity > 0)
+      d.drag_relaxation =
+          std::max(d.drag_relaxation, scales::drag_relaxation(d.drained_above, body.porosity, needs.gravity));
+  return d;
+}
+
+// ---- advice ----
+
+class Adviser {
+ public:
+  Adviser(const Scene &scene, const Needs &needs) : scene_(scene), needs_(needs) {}
+
+  std::vector<std::string> all() {
+    if (!needs_.burst_failure.empty()) say("The run breaks off in its first steps: " + needs_.burst_failure + ".");
+    for (const BodyNeeds &b : needs_.bodies) particles(b), locking(b), softening(b);
+    stiffness();
+    start();
+    for (std::size_t i = 0; i < scene_.stage.size(); ++i) stage(scene_.stage[i]);
+    step();
+    transfer();
+    dimension();
+    water();
+    return std::move(advice_);
+  }
+
+ private:
+  void say(const std::string &sentence) { advice_.push_back(sentence); }
+
+  void particles(const BodyNeeds &b) {
+    const int fewest = b.body.fewest_per_cell;
+    const bool plane = scene_.dimension == 2;
+    if (fewest >= (plane ? 3 : 4)) return;
+    const std::string wanted = plane ? "three or more a triangle" : "four or more a tetrahedron";
+    if (fewest == 1)
+      say("One particle a cell in " + b.body.name + " is useless: stress was " +
+          (plane ? "10 % wrong at rest and 23 % in motion, against 1.2 % and 5 % with three" : "13 to 18 % wrong") +
+          "; take " + wanted + ".");
+    else
+      say(std::to_string(fewest) + " particles a cell in " + b.body.name + " are few where cells empty; take " +
+          wanted + ".");
+  }
+
+  void locking(const BodyNeeds &b) {
+    const double K = bulk_modulus(b.law), G = shear_modulus(b.law), nu = (3 * K - 2 * G) / (2 * (3 * K + G));
+    if (nu > 0.45 && scene_.transfer.locking == Locking::none)
+      say("Poisson's ratio " + digits(nu) + " in " + b.body.name +
+          " locks linear cells (a footing carried 45 % too much at 0.49); take "
+          "transfer.locking = \"patches\".");
+  }
+
+  void softening(const BodyNeeds &b) {
+    if (b.softening == 0) return;
+    if (std::get<MohrCoulomb>(b.law).reference_size == 0)
+      say(b.body.name +
+          " softens without a reference_size: bands are one cell wide, so the answer depends on the mesh; give the "
+          "element "
+          "size that shape_factor belongs to.");
+    constexpr double snap_back =
+        0.87;  // sqrt(3) / 2: strength of simple shear falls as fast as elastic strain gives way
+    if (b.softening > snap_back / 2)
+      say("Strength of " + b.body.name + " falls with plastic strain at " + digits(b.softening, 2) +
+          " of 2 G in cells of " + digits(b.body.cell_size) + " m, " +
+          (b.softening > snap_back ? "above the " : "near the ") + digits(snap_back) +
+          " at which a sheared cell snaps back and fails at once; take smaller cells with a reference_size, or a "
+          "smaller shape_factor.");
+  }
+
+  void stiffness() {
+    const LayerNeeds &layer = needs_.layer;
+    if (layer.gravity_strain > 0.1)
+      say("The soil's weight strains it by " + digits(100 * layer.gravity_strain) +
+          " %: what falls its height strikes at " +
+          digits(100 * scales::fall_speed(layer.height, needs_.gravity) / layer.wave_speed) +
+          " % of the wave speed and bounces; a stiffer soil costs steps with the root of its stiffness.");
+  }
+
+  void start() {
+    if (needs_.gravity == 0) return;
+    const Stage &first = scene_.stage.front();
+    const bool stressed =
+        std::all_of(scene_.body.begin(), scene_.body.end(), [](const auto &b) { return !b.stress.empty(); });
+    if (!stressed && first.gravity_ramp == 0 && first.damping == 0)
+      say("Gravity sets in at once on soil without stress, which swings to twice the strain at rest; give "
+          "body.NAME.stress, or a first stage "
+          "with gravity_ramp = " +
+          digits(20 * needs_.layer.transit, 1) + " s (20 wave transits) and damping.");
+  }
+
+  void stage(const Stage &stage) {
+    if (stage.until == StopWhen::equilibrium && stage.damping == 0)
+      say("Stage " + stage.name +
+          " waits for equilibrium without damping: waves hardly fade; damping = 0.7 comes to rest soonest.");
+    if (stage.until == StopWhen::equilibrium && stage.duration < 20 * needs_.layer.transit)
+      say("Stage " + stage.name + " lasts " + digits(stage.duration / needs_.layer.transit) +
+          " wave transits, too short for equilibrium; give it " + digits(50 * needs_.layer.transit, 1) + " s or more.");
+  }
+
+  void step() {
+    if (needs_.fixed_step && needs_.step < 0.3 * needs_.critical_step)
+      say("The fixed step is " + digits(needs_.step / needs_.critical_step, 2) +
+          " of the critical one; without integrator.step it would be 0.6 of it.");
+    const BodyReport &b = needs_.slowest_body().body;
+    if (b.critical_step > 0.4 * b.mean_critical_step) return;
+    std::string at = std::string("(") + digits(b.slowest_cell[0]) + ", " + digits(b.slowest_cell[1]) +
+                     (scene_.dimension == 3 ? ", " + digits(b.slowest_cell[2]) : "") + ") m";
+    for (std::size_t i = 0; i < scene_.mesh.refine.size(); ++i)
+      if (inside(scene_.mesh.refine[i], b.slowest_cell)) at += ", in mesh.refine." + std::to_string(i) + ",";
+    say("Small cells at " + at + " dictate the step: it is " + digits(b.critical_step / b.mean_critical_step, 2) +
+        " of what the cells of " + b.name + " allow on average.");
+  }
+
+  bool inside(const RefineBox &box, const std::array<double, 3> &x) const {
+    for (int d = 0; d < 2; ++d)
+      if (x[d] < box.from[d] || x[d] > box.to[d]) return false;
+    return true;
+  }
+
+  void transfer() {
+    const Transfer &t = scene_.transfer;
+    if (t.remap_interval == 0)
+      say("A remap at every step costs twice the time or more and adds crossing noise; transfer.remap_interval = 0.1 "
+          "is the default.");
+    if (t.velocity == Velocity::apic)
+      say("APIC on simplices broke every run with a free surface; it pays where soil fills its cells and stays in "
+          "them.");
+    if (t.integration == Integration::particle || t.integration == Integration::mixed)
+      say("Integration by particle volumes was four to nine times less accurate than \"blended\" where soil crosses "
+          "cells.");
+    if (needs_.mesh.smallest_quality < 0.2)
+      say("The worst cell has a quality of " + digits(needs_.mesh.smallest_quality, 2) +
+          "; below 0.2 it costs steps and accuracy.");
+    constexpr long long few = 5000;
+    if (needs_.ranks > 1 && needs_.particles() / needs_.ranks < few)
+      say("A rank has " + std::to_string(needs_.particles() / needs_.ranks) + " particles; below " +
+          std::to_string(few) + " messages take longer than the work that they share.");
+  }
+
+  void dimension() {
+    if (!needs_.mesh.one_element_slice) return;
+    // measured on the gallery's column: with four particles a cell a step costs 7 times, and 1.6 times as many are
+    // needed
+    constexpr double per_particle_in_cell = 2.8;
+    double cells = 0;
+    for (const BodyNeeds &b : needs_.bodies) cells += static_cast<double>(b.body.cells);
+    say("A slice of one element gives the answer of plane strain on triangles at about " +
+        digits(per_particle_in_cell * static_cast<double>(needs_.particles()) / cells, 2) +
+        " times the cost; set dimension = 2.");
+  }
+
+  void water() {
+    const Drainage &d = needs_.drainage;
+    if (d.time == 0) return;
+    const std::string bounds = std::string("k above ") + digits(d.drained_above, 1) + " m/s", time = spoken(d.time);
+    if (scene_.phases == PhaseModel::drained)
+      say("A given pore pressure is right where soil drains in the " + time + " of the stages: " + bounds + ". Below " +
+          digits(d.undrained_below, 1) +
+          " m/s failure is undrained: take total-stress strengths; in between pore pressure has to be computed.");
+    else
+      say("Dry is right for soil without water, or with total-stress strengths; with water in its pores the soil would "
+          "stay drained in " +
+          time + " for " + bounds + " and undrained below " + digits(d.undrained_below, 1) + " m/s.");
+  }
+
+  const Scene &scene_;
+  const Needs &needs_;
+  std::vector<std::string> advice_;
+};
+
+}  // namespace
+
+double Needs::run_time() const {
+  return std::accumulate(stages.begin(), stages.end(), 0.,
+                         [](double sum, const auto &stage) { return sum + stage.run_time; });
+}
+
+long long Needs::particles() const {
+  return std::accumulate(bodies.begin(), bodies.end(), 0LL,
+                         [](long long sum, const auto &b) { return sum + b.body.particles; });
+}
+
+Needs find_needs(Scene &scene) {
+  RunOptions options;
+  options.pictures = options.screen = false;
+  const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+  Needs needs{};
+  needs.mesh = simulation->mesh_report();
+  needs.gravity = size_of(scene.gravity);
+  double fastest = 0;
+  const auto reports = simulation->bodies();
+  for (std::size_t b = 0; b < reports.size(); ++b) {
+    needs.bodies.push_back(needs_of(reports[b], scene.body[b]));
+    fastest = std::max(fastest, needs.bodies[b].wave_speed);
+    if (reports[b].critical_step < reports[needs.slowest].critical_step) needs.slowest = static_cast<int>(b);
+  }
+  needs.layer = layer_of(scene, needs.bodies, needs.gravity);
+  for (BodyNeeds &b : needs.bodies) {
+    std::array<double, 3> middle;
+    for (int d = 0; d < 3; ++d) middle[d] = (b.body.low[d] + b.body.high[d]) / 2;
+    b.softening = softening(b.law, b.body.cell_size, b.density * head_above(scene, middle, needs.bodies));
+  }
+  needs.critical_step = needs.slowest_body().body.critical_step;
+  needs.altitude_rule = needs.mesh.smallest_altitude / fastest;
+  const EulerSettings settings = std::get<EulerSettings>(read_integrator(scene.integrator));
+  needs.fixed_step = settings.step > 0;
+  needs.step = needs.fixed_step ? settings.step : settings.fraction * needs.critical_step;
+  MPI_Comm_size(PETSC_COMM_WORLD, &needs.ranks);
+  burst(*simulation, needs);
+  needs.snapshots = 1;
+  for (const Stage &stage : scene.stage) {
+    const double steps = std::ceil(stage.duration / needs.step);
+    needs.stages.push_back(
+        {stage.name, stage.duration, steps, steps * needs.seconds_per_step, stage.duration / needs.layer.transit});
+    needs.snapshots +=
+        scene.output.interval > 0 ? static_cast<int>(std::ceil(stage.duration / scene.output.interval)) : 1;
+  }
+  needs.results *= needs.snapshots;
+  needs.drainage = drainage_of(scene, needs);
+  return needs;
+}
+
+std::vector<std::string> advise(const Scene &scene, const Needs &needs) { return Adviser(scene, needs).all(); }
+
+std::string spoken(double seconds) {
+  const std::pair<double, const char *> units[] = {{86400, "d"}, {3600, "h"},  {60, "min"},
+                                                   {1, "s"},     {1e-3, "ms"}, {1e-6, "us"}};
+  for (const auto &[size, name] : units)
+    if (seconds >= size) return digits(seconds / size) + " " + name;
+  return digits(seconds) + " s";
+}
+
+}  // namespace talus

@@ -1,0 +1,79 @@
+#pragma once
+/// What a scene costs and what it needs, found without running it, and the advice that follows (`talus check`).
+#include <string>
+#include <vector>
+
+#include "physics/laws/laws.h"
+#include "simulation.h"
+#include "solvers/integrators.h"
+
+namespace talus {
+
+struct BodyNeeds {
+  BodyReport body;
+  Law law;
+  double density = 0;                      ///< mean [kg/m3]
+  double wave_speed = 0, shear_speed = 0;  ///< elastic, c_p and c_s [m/s]
+  double softening =
+      0;  ///< slope at which strength falls with plastic strain, over 2 G [-]; 0: the soil does not soften
+};
+
+/// All bodies taken for one layer, as high as they reach together.
+struct LayerNeeds {
+  double height = 0;          ///< along gravity; without gravity the largest extent [m]
+  double modulus = 0;         ///< M = K + 4/3 G of the softest body [Pa]
+  double transit = 0;         ///< of the slowest compression wave over the height [s]
+  double wave_speed = 0;      ///< of that wave [m/s]
+  double gravity_stress = 0;  ///< mean density g height [Pa]
+  double gravity_strain = 0;  ///< that over M [-]
+  double settlement = 0;      ///< of its top under its weight [m]
+};
+
+struct StageNeeds {
+  std::string name;
+  double duration;  ///< longest [s]
+  double steps;     ///< in that time
+  double run_time;  ///< estimated [s]
+  double transits;  ///< of the layer by a wave
+};
+
+/// Conductivities [m/s] that bound drained, partly drained and undrained behaviour over all stages.
+struct Drainage {
+  double time = 0, undrained_below = 0, drained_above = 0;
+  double drag_relaxation = 0;  ///< at the upper bound [s]; 0 where no porosity is known
+};
+
+struct Needs {
+  MeshReport mesh;
+  std::vector<BodyNeeds> bodies;
+  LayerNeeds layer;
+  std::vector<StageNeeds> stages;
+  Drainage drainage;            ///< time = 0 without gravity
+  double gravity;               ///< [m/s2]
+  int slowest;                  ///< body that sets the critical step
+  double critical_step;         ///< [s]
+  double altitude_rule;         ///< smallest altitude over the largest wave speed [s]
+  double step;                  ///< taken [s]
+  bool fixed_step;              ///< given by the scene
+  int burst_steps = 0;          ///< timed
+  double seconds_per_step = 0;  ///< of wall time
+  std::string burst_failure;    ///< why the burst broke off; empty if it did not
+  double memory;                ///< resident after the burst, over all ranks [B]
+  double results;               ///< snapshots on disk [B]
+  int snapshots, ranks;
+
+  double run_time() const;  ///< of all stages at their longest [s]
+  long long particles() const;
+  const BodyNeeds &slowest_body() const { return bodies[slowest]; }
+};
+
+/// Makes the simulation of a scene and takes a burst of steps with it. Collective. Throws as make_simulation does.
+Needs find_needs(Scene &scene);
+
+/// Plain sentences, the most important first.
+std::vector<std::string> advise(const Scene &scene, const Needs &needs);
+
+/// A duration as one says it: "40 ms", "12 min", "3.1 h".
+std::string spoken(double seconds);
+
+}  // namespace talus
