@@ -320,7 +320,7 @@ void TableReader::number(const char *key, double &value, Unit unit, Range range,
   if (const auto given = find(key, meaning))
     value = given->number(unit, range) * unit.si;
   else if (std::isnan(value))
-    complain("", std::string("needs ") + key + " (" + meaning + "), " + number_in(range, unit));
+    complain("", std::string("needs ") + key + " (" + meaning + "), " + number_in(range, unit) + misspelt(key));
 }
 
 void TableReader::integer(const char *key, int &value, Range range, const char *meaning) {
@@ -483,6 +483,15 @@ std::optional<std::vector<TableReader>> TableReader::listed_tables(const char *k
         TableReader(document_, element.node().as_table(), path_to(key) + "." + std::to_string(tables.size())));
   }
   return tables;
+}
+
+/// What may be meant by a key that is missing: one of the table that nothing has asked for and that looks like it.
+std::string TableReader::misspelt(const std::string &key) const {
+  std::vector<std::string> unclaimed;
+  for (const auto &[name, node] : in_file_order(*static_cast<const toml::table *>(table_)))
+    if (std::find(known_.begin(), known_.end(), name) == known_.end()) unclaimed.push_back(name);
+  const std::string near = nearest(key, unclaimed);
+  return near.empty() ? "" : "; did you mean it by `" + near + "`?";
 }
 
 void TableReader::refuse_unknown_keys() const {

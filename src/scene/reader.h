@@ -99,6 +99,7 @@ class TableReader {
   std::optional<TableReader> sub_table(const char *key, const char *meaning);
   std::optional<std::vector<std::pair<std::string, TableReader>>> named_tables(const char *key, const char *meaning);
   std::optional<std::vector<TableReader>> listed_tables(const char *key, const char *meaning);
+  std::string misspelt(const std::string &key) const;
   void refuse_unknown_keys() const;
 
   std::shared_ptr<const Document> document_;

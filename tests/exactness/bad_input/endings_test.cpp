@@ -1,0 +1,112 @@
+// Runs that cannot go on: status 1, one message that says where and when, and all snapshots written before can be read.
+#include <gtest/gtest.h>
+
+#include "scene.h"
+
+namespace talus {
+namespace {
+
+/// Reads every dataset of every snapshot through run.h5, as a script would; returns how many snapshots there are.
+int snapshots_read_by_h5py(const Folder &folder, const std::string &results) {
+  const std::string script =
+      "import h5py, numpy\n"
+      "run = h5py.File('" +
+      results +
+      "/run.h5')\n"
+      "for snapshot in run['snapshots'].values():\n"
+      "    assert all(numpy.isfinite(values[...]).all() for values in snapshot.values())\n"
+      "print('snapshots', len(run['snapshots']))\n";
+  const Ending ending = Program(folder, {PYTHON, "-c", script}).end();
+  EXPECT_EQ(ending.status, 0) << ending.output;
+  const std::size_t at = ending.output.rfind("snapshots ");
+  return at == std::string::npos ? 0 : std::stoi(ending.output.substr(at + 10));
+}
+
+std::string log_of(const Folder &folder) {
+  std::ostringstream text;
+  text << std::ifstream(folder / "results/run.log").rdbuf();
+  return text.str();
+}
+
+class RunThatEnds : public testing::Test {
+ protected:
+  RunThatEnds() { folder_.write("section.csv", good_section); }
+
+  std::vector<std::string> run(const std::string &scene, int ranks = 1, const std::string &results = "results") {
+    folder_.write("scene.toml", scene);
+    return talus_words({"run", "scene.toml", "-o", results, "--no-pictures"}, ranks);
+  }
+  /// Status 1 and one message with these words; snapshots written before can be read.
+  void expect(const Ending &ending, const std::vector<std::string> &words, int least_snapshots) {
+    EXPECT_EQ(ending.status, 1);
+    for (const std::string &word : words) EXPECT_TRUE(ending.says(word)) << word;
+    EXPECT_EQ(ending.count("talus: "), 1) << "one message";
+    EXPECT_FALSE(ending.says("PETSC ERROR"));
+    if (least_snapshots) {
+      EXPECT_GE(snapshots_read_by_h5py(folder_, "results"), least_snapshots);
+    }
+    if (HasFailure()) ADD_FAILURE() << ending.output;
+  }
+
+  const Folder folder_;
+  const std::string thrown_ = changed(good_scene, "density = 2000", "density = 2000\nvelocity = [\"40\", \"5\"]");
+  const std::string endless_ = changed(changed(good_scene, "duration = 0.05", "duration = 1000"), "interval = 0.01",
+                                       "interval = 0.05\nhistory_interval = 0.05");
+};
+
+TEST_F(RunThatEnds, BecauseAParticleLeftTheMesh) {
+  expect(Program(folder_, run(thrown_)).end(),
+         {"left the mesh near (2, 0.", "t = 0.0", "stage fall", "snapshots up to step", "are in results"}, 3);
+}
+
+TEST_F(RunThatEnds, BecauseAParticleLeftTheMeshOnTwoRanks) {
+  expect(Program(folder_, run(thrown_, 2)).end(), {"left the mesh near (2, 0.", "t = 0.0", "stage fall"}, 3);
+}
+
+TEST_F(RunThatEnds, BecauseALoadIsNoNumber) {
+  const std::string scene =
+      changed(good_scene, "density = 2000", "density = 2000\nbody_acceleration = [\"sqrt(0.025 - t)\", \"0\"]");
+  expect(Program(folder_, run(scene)).end(), {"the velocity is not finite near (", "t = 0.02", "snapshots up to step"},
+         3);
+}
+
+TEST_F(RunThatEnds, BecauseSpeedIsAbsurd) {
+  const std::string scene = changed(good_scene, "density = 2000", "density = 2000\nvelocity = [\"1e200\", \"0\"]");
+  expect(Program(folder_, run(scene)).end(), {"the velocity is not finite near (", "step 1,"}, 1);
+}
+
+TEST_F(RunThatEnds, BecauseResultsHaveNoPlace) {
+  expect(Program(folder_, run(good_scene, 1, "scene.toml/results")).end(), {"scene.toml/results", "Not a directory"},
+         0);
+  expect(Program(folder_, run(good_scene, 1, "/proc/results")).end(), {"/proc/results"}, 0);
+  expect(Program(folder_, run(good_scene, 2, "scene.toml/results")).end(), {"scene.toml/results"}, 0);
+}
+
+TEST_F(RunThatEnds, BecauseTheDiskIsFull) {
+  Program program(folder_, run(endless_));
+  ASSERT_TRUE(program.wait_for(folder_ / "results/run/000003.h5")) << program.end().output;
+  program.limit_files(2000);
+  expect(program.end(), {"cannot write results/", "File too large", "snapshots up to step"}, 3);
+}
+
+TEST_F(RunThatEnds, ByInterrupt) {
+  for (int signal : {SIGINT, SIGTERM}) {
+    Program program(folder_, run(endless_));
+    ASSERT_TRUE(program.wait_for(folder_ / "results/run/000001.h5")) << program.end().output;
+    program.signal(signal);
+    expect(program.end(), {"interrupted (t = ", "stage fall", "snapshots up to step"}, 3);
+    std::filesystem::remove_all(folder_ / "results");
+  }
+}
+
+TEST_F(RunThatEnds, ByTerminationOfTwoRanks) {
+  Program program(folder_, run(endless_, 2));
+  ASSERT_TRUE(program.wait_for(folder_ / "results/run/000001.h5")) << program.end().output;
+  program.signal(SIGTERM);
+  EXPECT_NE(program.end().status, 0);  // mpirun's own, and what the ranks still say may not pass it: the log has it
+  EXPECT_NE(log_of(folder_).find("interrupted (t = "), std::string::npos) << log_of(folder_);
+  EXPECT_GE(snapshots_read_by_h5py(folder_, "results"), 3);
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,242 @@
+// Bad input: the program ends with status 2 before it writes results, and says where the fault is and what would be
+// right.
+#include <gtest/gtest.h>
+
+#include "scene.h"
+
+namespace talus {
+namespace {
+
+/// One fault: what is changed in which file, and what the complaint has to say.
+struct Fault {
+  const char *name;
+  const char *file;  ///< "scene.toml", "section.csv" or "mesh.msh"
+  const char *from, *to;
+  std::vector<std::string> words;
+  int ranks = 1;
+};
+
+void PrintTo(const Fault &fault, std::ostream *out) { *out << fault.name; }
+
+const Fault faults[] = {
+    // the text
+    {"malformed", "scene.toml", "[mesh]", "[mesh", {"scene.toml line 3"}},
+    {"malformed_on_two_ranks", "scene.toml", "[mesh]", "[mesh", {"scene.toml line 3"}, 2},
+    {"wrong_unit",
+     "scene.toml",
+     "\"1 MPa\"",
+     "\"1 m\"",
+     {"scene.toml line 10", "body.sand.young_modulus = \"1 m\"", "Pa"}},
+    {"unknown_unit", "scene.toml", "\"1 MPa\"", "\"1 MPb\"", {"scene.toml line 10", "MPb"}},
+    {"out_of_range",
+     "scene.toml",
+     "friction_angle = 30",
+     "friction_angle = 130",
+     {"scene.toml line 13", "body.sand.friction_angle = 130", "0 to 70 deg"}},
+    {"no_stable_elasticity",
+     "scene.toml",
+     "poisson_ratio = 0.3",
+     "poisson_ratio = 0.5",
+     {"scene.toml line 6", "poisson_ratio"}},
+    {"unknown_key",
+     "scene.toml",
+     "cohesion = 0\n",
+     "cohesion = 0\ndilation_angel = 0\n",
+     {"scene.toml line 13", "did you mean `dilation_angle`?"}},
+    {"misspelt_parameter",
+     "scene.toml",
+     "friction_angle",
+     "friction_angel",
+     {"scene.toml line 6", "needs friction_angle", "did you mean it by `friction_angel`?"}},
+    {"unknown_table", "scene.toml", "[output]", "[ouput]", {"scene.toml line 21", "did you mean `output`?"}},
+    {"unknown_law",
+     "scene.toml",
+     "mohr_coulomb",
+     "mohr_columb",
+     {"scene.toml line 9", "body.sand.law", "did you mean `mohr_coulomb`?"}},
+    {"unknown_boundary",
+     "scene.toml",
+     "\"roller\"",
+     "\"roler\"",
+     {"scene.toml line 17", "boundary.left.kind", "did you mean `roller`?"}},
+    {"unknown_integrator",
+     "scene.toml",
+     "[output]",
+     "[integrator]\nkind = \"eular\"\n[output]",
+     {"scene.toml line 22", "did you mean `euler`?"}},
+    {"unknown_end",
+     "scene.toml",
+     "duration = 0.05",
+     "duration = 0.05\nuntil = \"stop\"",
+     {"scene.toml line 21", "stage.0.until", "equilibrium"}},
+    {"missing_parameter", "scene.toml", "cohesion = 0\n", "", {"body.sand", "needs cohesion"}},
+    {"no_region", "scene.toml", "region = \"sand\"", "region = []", {"body.sand", "needs region"}},
+    // what the mesh has
+    {"region_not_there",
+     "scene.toml",
+     "region = \"sand\"",
+     "region = \"snad\"",
+     {"scene.toml line 7", "body.sand.region = \"snad\"", "did you mean `sand`?"}},
+    {"region_not_there_on_two_ranks",
+     "scene.toml",
+     "region = \"sand\"",
+     "region = \"clay\"",
+     {"scene.toml line 7", "known are air, sand"},
+     2},
+    {"group_not_there",
+     "scene.toml",
+     "[boundary.left]",
+     "[boundary.lift]",
+     {"scene.toml line 16", "boundary.lift.group", "did you mean `left`?"}},
+    {"two_bodies_in_one_region",
+     "scene.toml",
+     "[boundary.base]",
+     "[body.more]\nregion = [\"air\", \"sand\"]\ndensity = 2000\nlaw = \"linear_elastic\"\nyoung_modulus = "
+     "1e6\npoisson_ratio = 0.3\n[boundary.base]",
+     {"scene.toml line 15", "body.more.region", "body.sand"}},
+    {"no_lattice",
+     "scene.toml",
+     "density = 2000",
+     "density = 2000\nparticles_per_cell = 5",
+     {"scene.toml line 9", "body.sand.particles_per_cell = 5", "1, 3, 4, 6"}},
+    {"no_lattice_in_a_box",
+     "scene.toml",
+     "[boundary.base]",
+     "[[body.sand.dense]]\nfrom = [0, 0]\nto = [1, 1]\nparticles_per_cell = 7\n[boundary.base]",
+     {"scene.toml line 17", "body.sand.dense.0.particles_per_cell = 7"}},
+    {"traction_of_three_components",
+     "scene.toml",
+     "kind = \"roller\"",
+     "kind = \"traction\"\ntraction = [\"0\", \"0\", \"1\"]",
+     {"scene.toml line 18", "boundary.left.traction", "2 components"}},
+    {"start_that_is_no_number",
+     "scene.toml",
+     "density = 2000",
+     "density = 2000\nvelocity = [\"1 / (x - x)\", \"0\"]",
+     {"scene.toml line 9", "body.sand.velocity", "is no number at ("}},
+    {"start_outside_the_mesh",
+     "scene.toml",
+     "density = 2000",
+     "density = 2000\ndisplacement = [\"-0.5\", \"0\"]",
+     {"scene.toml line 9", "body.sand.displacement", "out of the mesh near ("}},
+    {"step_above_the_critical",
+     "scene.toml",
+     "[output]",
+     "[integrator]\nstep = \"1 s\"\n[output]",
+     {"scene.toml line 22", "integrator.step", "critical step of 0.0"}},
+    {"step_above_the_critical_on_two_ranks",
+     "scene.toml",
+     "[output]",
+     "[integrator]\nstep = \"1 s\"\n[output]",
+     {"scene.toml line 22", "integrator.step"},
+     2},
+    // sections
+    {"section_not_there",
+     "scene.toml",
+     "section.csv",
+     "nosection.csv",
+     {"scene.toml line 4", "mesh.section", "nosection.csv: cannot be read"}},
+    {"outline_that_crosses_itself",
+     "section.csv",
+     "outline,2,1\noutline,0,1",
+     "outline,0,1\noutline,2,1",
+     {"scene.toml line 4", "section.csv", "outline", "cross"}},
+    {"malformed_row", "section.csv", "outline,2,1", "outline,2,one", {"scene.toml line 4", "section.csv line 4"}},
+    {"cells_larger_than_the_section",
+     "scene.toml",
+     "size = 0.25",
+     "size = 25",
+     {"scene.toml line 4", "25 m is larger than the section"}},
+    {"no_cell_size", "scene.toml", "size = 0.25\n", "", {"mesh.size", "above 0 m"}},
+    // mesh files
+    {"mesh_not_there",
+     "scene.toml",
+     "section = \"section.csv\"\nsize = 0.25",
+     "file = \"nomesh.msh\"",
+     {"scene.toml line 4", "nomesh.msh: cannot be read"}},
+    {"mesh_of_garbage", "mesh.msh", "$MeshFormat", "$Rubbish", {"scene.toml line 4", "mesh.msh"}},
+    {"mesh_of_garbage_on_two_ranks", "mesh.msh", "2.2 0 8", "two", {"scene.toml line 4", "mesh.msh"}, 2},
+    {"mesh_cut_short", "mesh.msh", "3 2 2 2 1 1 3 4\n$EndElements\n", "", {"scene.toml line 4", "mesh.msh"}},
+    {"mesh_of_another_dimension",
+     "scene.toml",
+     "section = \"section.csv\"\nsize = 0.25",
+     "file = \"mesh.msh\"\n[body.stone]\nregion = \"sand\"",
+     {"needs"}},
+    {"cell_without_area", "mesh.msh", "3 1 1 0", "3 2 0 0", {"scene.toml line 4", "mesh.msh", "no area"}},
+};
+
+class BadInput : public testing::TestWithParam<Fault> {};
+
+TEST_P(BadInput, IsRefused) {
+  const Fault &fault = GetParam();
+  const bool of_mesh = std::string(fault.file) == "mesh.msh";
+  std::string scene = good_scene, section = good_section, mesh = good_mesh;
+  if (of_mesh)
+    scene = changed(changed(scene, "section = \"section.csv\"\nsize = 0.25", "file = \"mesh.msh\"\n"),
+                    "[boundary.left]\nkind = \"roller\"\n", "");
+  std::string &spoilt = of_mesh ? mesh : std::string(fault.file) == "section.csv" ? section : scene;
+  spoilt = changed(spoilt, fault.from, fault.to);
+  const Folder folder;
+  folder.write("scene.toml", scene), folder.write("section.csv", section), folder.write("mesh.msh", mesh);
+
+  const Ending ending = talus(folder, {"run", "scene.toml", "-o", "results"}, fault.ranks);
+  EXPECT_EQ(ending.status, 2);
+  for (const std::string &words : fault.words) EXPECT_TRUE(ending.says(words)) << words;
+  EXPECT_EQ(ending.count("talus: "), 1) << "one message";
+  EXPECT_FALSE(ending.says("PETSC ERROR"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "results"));
+  if (HasFailure()) ADD_FAILURE() << ending.output;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BadInput, testing::ValuesIn(faults), [](const auto &fault) { return fault.param.name; });
+
+/// What is wrong on the command line.
+struct WrongWords {
+  const char *name;
+  std::vector<std::string> arguments, words;
+};
+
+void PrintTo(const WrongWords &wrong, std::ostream *out) { *out << wrong.name; }
+
+const WrongWords wrong_words[] = {
+    {"no_command", {}, {"A subcommand is required"}},
+    {"unknown_option", {"run", "scene.toml", "--fast"}, {"--fast"}},
+    {"scene_not_there", {"run", "noscene.toml"}, {"noscene.toml is neither a file nor a gallery scene", "column"}},
+    {"scene_is_a_folder", {"check", "."}, {". is neither a file nor a gallery scene"}},
+    {"unknown_override",
+     {"run", "scene.toml", "--set", "body.sand.densty=1"},
+     {"--set: body.sand.densty is no known key; did you mean `density`?"}},
+    {"override_without_value", {"run", "scene.toml", "--set", "gravity"}, {"--set gravity", "key.path=value"}},
+    {"override_out_of_range",
+     {"check", "scene.toml", "--set", "stage.fall.duration=-1"},
+     {"--set: stage.0.duration = -1"}},
+    {"check_of_a_bad_scene",
+     {"check", "scene.toml", "--set", "body.sand.region=clay"},
+     {"--set: body.sand.region = \"clay\"", "known are air, sand"}},
+    {"unknown_key_to_describe", {"describe", "densty"}, {"did you mean `density`?"}},
+    {"section_to_mesh_not_there",
+     {"mesh", "nosection.csv", "-o", "out.msh", "--size", "1"},
+     {"nosection.csv: cannot be read"}},
+    {"wrong_unit_for_a_mesh",
+     {"mesh", "section.csv", "-o", "out.msh", "--size", "1", "--young-modulus", "2 m"},
+     {"--young-modulus 2 m"}},
+    {"no_results_to_plot", {"plot", "nowhere"}, {"nowhere holds no results"}},
+};
+
+class WrongArguments : public testing::TestWithParam<WrongWords> {};
+
+TEST_P(WrongArguments, AreRefused) {
+  const Folder folder;
+  folder.write("scene.toml", good_scene), folder.write("section.csv", good_section);
+  const Ending ending = talus(folder, GetParam().arguments);
+  EXPECT_EQ(ending.status, 2);
+  for (const std::string &words : GetParam().words) EXPECT_TRUE(ending.says(words)) << words;
+  EXPECT_FALSE(std::filesystem::exists(folder / "results"));
+  if (HasFailure()) ADD_FAILURE() << ending.output;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, WrongArguments, testing::ValuesIn(wrong_words),
+                         [](const auto &wrong) { return wrong.param.name; });
+
+}  // namespace
+}  // namespace talus
