@@ -1,6 +1,7 @@
 #include "commands/rung.h"
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -68,6 +69,11 @@ void Rung::compare(const std::string &quantity, double exact, double computed, d
 
 void Rung::report(const std::string &quantity, double exact, double computed, double scale) {
   compare(quantity, exact, computed, std::numeric_limits<double>::infinity(), scale);
+}
+
+std::string number(double x) {
+  char text[32];
+  return std::string(text, std::to_chars(text, text + sizeof text, x).ptr);
 }
 
 std::vector<double> component(const Snapshot &snapshot, const std::string &field, int k) {

@@ -60,6 +60,9 @@ inline std::vector<std::string> in_dimension(int dimension, const std::vector<st
   return all;
 }
 
+/// A number as it stands in an override or an expression, in the fewest digits that give it back.
+std::string number(double x);
+
 /// "2D" or "3D", for names of quantities.
 inline std::string name_of(int dimension) { return std::to_string(dimension) + "D"; }
 

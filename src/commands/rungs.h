@@ -2,9 +2,16 @@
 /// The verification ladder: one line a case. Each has a folder tests/LABEL/NAME with its scene, its exact answer and a
 /// README.
 #include "commands/rung.h"
+#include "tests/convergence/manufactured/exact.h"
 #include "tests/verification/dynamic_oedometer/exact.h"
+#include "tests/verification/elastic_bar/exact.h"
 #include "tests/verification/gravity_column/exact.h"
+#include "tests/verification/incline_block/exact.h"
 #include "tests/verification/k0_column/exact.h"
+#include "tests/verification/mohr_coulomb_triaxial/exact.h"
+#include "tests/verification/rigid_rotation/exact.h"
+#include "tests/verification/rigid_translation/exact.h"
+#include "tests/verification/spinning_block/exact.h"
 
 namespace talus {
 
@@ -20,6 +27,18 @@ inline constexpr LadderEntry ladder[] = {
      rungs::gravity_column},
     {"k0_column", "verification", "lateral stress at rest, by gravity and as an initial state that stays",
      rungs::k0_column},
+    {"elastic_bar", "verification", "period, amplitude and energy of an elastic bar over ten periods",
+     rungs::elastic_bar},
+    {"incline_block", "verification", "block on a rough plane: sliding, sticking, adhesion, friction that drops",
+     rungs::incline_block},
+    {"rigid_translation", "verification", "block in free flight: no stress, momentum to round-off",
+     rungs::rigid_translation},
+    {"manufactured", "convergence", "observed order against a manufactured motion, cells frozen and crossed",
+     rungs::manufactured},
+    {"mohr_coulomb_triaxial", "verification", "strength in compression through the whole program",
+     rungs::mohr_coulomb_triaxial},
+    {"rigid_rotation", "verification", "stress of a body that turns ten times", rungs::rigid_rotation},
+    {"spinning_block", "verification", "momentum of a block that spins freely", rungs::spinning_block},
 };
 
 }  // namespace talus

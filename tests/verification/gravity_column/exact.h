@@ -28,11 +28,10 @@ inline void gravity_column(Rung &rung) {
   };
   for (const int dimension : {2, 3})
     for (const auto &[name, E] : {std::pair{"soft", 100e3}, {"stiff", 10e6}}) {
-      const Run run =
-          rung.run(in_dimension(dimension, {"body.soil.particles_per_cell=" + std::string(dimension == 2 ? "3" : "8"),
-                                            "body.soil.young_modulus=" + std::to_string(E),
-                                            "stage.0.duration=" + std::to_string(6 * std::sqrt(100e3 / E)),
-                                            "stage.0.gravity_ramp=" + std::to_string(std::sqrt(100e3 / E))}));
+      const Run run = rung.run(in_dimension(
+          dimension, {"body.soil.particles_per_cell=" + std::string(dimension == 2 ? "3" : "8"),
+                      "body.soil.young_modulus=" + number(E), "stage.0.duration=" + number(6 * std::sqrt(100e3 / E)),
+                      "stage.0.gravity_ramp=" + number(std::sqrt(100e3 / E))}));
       double stress, displacement, settlement;
       errors(run, E, stress, displacement, settlement);
       const std::string which = name_of(dimension) + " " + name;
