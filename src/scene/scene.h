@@ -215,9 +215,9 @@ struct Scene {
   std::string title;
   std::string file;        ///< path of the scene, for messages and relative paths; not a key
   std::string source;      ///< the text as read, overrides applied; not a key
+  std::shared_ptr<const TableReader> root;  ///< the file's root table, for complaints after reading; not a key
   PhaseModel phases = PhaseModel::dry;
   int dimension = 2;
-  std::shared_ptr<const TableReader> root;  ///< the file's root table, for complaints after reading; not a key
   std::vector<double> gravity;  ///< components [m/s2]; one number points down y; empty: no gravity
   MeshSource mesh;
   std::vector<BodySource> body;
@@ -242,9 +242,9 @@ struct Scene {
     v.table("transfer", transfer, "exchange between particles and nodes");
     v.table("output", output, "what is written");
   }
-};
-
 
   /// For what only mesh or soil can tell is wrong: throws the SceneError of TableReader::complain, with the key's place in the file.
   [[noreturn]] void complain(const std::string &key_path, const std::string &sentence) const;
+};
+
 }  // namespace talus
