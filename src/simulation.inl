@@ -240,6 +240,7 @@ template <int dim, class Phases>
 void Simulation<dim, Phases>::set_loading(const Stage &stage, double stage_time) {
   const double ramp = stage.gravity_ramp > 0 ? std::min(1., stage_time / stage.gravity_ramp) : 1;
   for (int d = 0; d < dim; ++d) motion_->loading.gravity[d] = ramp * scene_.gravity[d];
+  motion_->loading.ramp = ramp;
   motion_->loading.time = load_time_;
   motion_->loading.damping = stage.damping;
   motion_->loading.softening = stage.softening;

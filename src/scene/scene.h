@@ -129,14 +129,15 @@ struct Stage {
   double duration = required;   ///< longest duration [s]
   StopWhen until = StopWhen::duration;
   double damping = 0;           ///< local (Cundall) damping factor alpha [-]
-  double gravity_ramp = 0;      ///< gravity grows linearly over this time [s]
+  double gravity_ramp = 0;      ///< gravity and pore pressure grow linearly over this time [s]
   double force_ratio = 1e-3;    ///< equilibrium: unbalanced over applied force [-]
   double energy_ratio = 1e-6;   ///< equilibrium: kinetic over strain energy [-]
   double rest_speed = 1e-3;     ///< rest: no particle is faster [m/s]
   std::string failure_point;    ///< failure: named output point that is watched
   double failure_speed = 0.01;  ///< failure: its speed passes this [m/s] ...
   double failure_time = 1;      ///< ... and keeps rising for this long [s]
-  bool hold_loads = false;      ///< functions of time keep the value they had when the stage began
+  bool softening = true;        ///< soil remembers plastic strain; false: it keeps the strength it has
+  bool hold_loads = false;      ///< functions of time stand still: their t counts only stages that do not hold loads
   bool reset_displacement = false;  ///< displacements, velocities and plastic strain are zeroed when the stage ends
   template <class Visitor>
   void fields(Visitor &&v) {
@@ -144,14 +145,15 @@ struct Stage {
     v.number("duration", duration, second, Range{0, 1e9}, "longest duration of the stage");
     v.choice("until", until, {{"duration", StopWhen::duration}, {"equilibrium", StopWhen::equilibrium}, {"rest", StopWhen::rest}, {"failure", StopWhen::failure}}, "what ends the stage before its duration");
     v.number("damping", damping, one, Range{0, 0.99}, "local (Cundall) damping factor");
-    v.number("gravity_ramp", gravity_ramp, second, Range{0, 1e9}, "time over which gravity grows linearly from 0");
+    v.number("gravity_ramp", gravity_ramp, second, Range{0, 1e9}, "time over which gravity, and pore pressure with it, grows linearly from 0");
     v.number("force_ratio", force_ratio, one, Range{0, 1}, "equilibrium: unbalanced over applied nodal force");
     v.number("energy_ratio", energy_ratio, one, Range{0, 1}, "equilibrium: kinetic over elastic strain energy");
     v.number("rest_speed", rest_speed, metre_per_second, Range{0, 1e6}, "rest: no particle is faster");
     v.text("failure_point", failure_point, "failure: name of the output point that is watched");
     v.number("failure_speed", failure_speed, metre_per_second, Range{0, 1e6}, "failure: the point's speed passes this");
     v.number("failure_time", failure_time, second, Range{0, 1e9}, "failure: and keeps rising for this long");
-    v.flag("hold_loads", hold_loads, "functions of time keep the value they had when the stage began");
+    v.flag("softening", softening, "soil remembers plastic strain; without it soil keeps the strength it has, as for building up initial stress");
+    v.flag("hold_loads", hold_loads, "functions of time stand still: their t counts only stages that do not hold loads");
     v.flag("reset_displacement", reset_displacement, "zero displacement, velocity and plastic strain when the stage ends");
   }
 };
