@@ -634,10 +634,7 @@ PetscErrorCode SoilMotion<dim, Phases>::balance(double, Balance *sums) {
   };
   for (int i = 0; i < grid_.node_count(); ++i) {
     if (!mesh_.owned[grid_.mesh_node[i]]) continue;
-    double speed = 0;
-    for (double c : velocity_[i]) speed += c * c;
     local[0] += magnitude(scratch_[i]);
-    local[2] += grid_.mass[i] * speed / 2;
   }
   std::fill_n(force_.begin(), grid_.node_count(), Vec<dim>{});
   conditions_.add_loads(loading.time, grid_, force_.data());
@@ -648,6 +645,13 @@ PetscErrorCode SoilMotion<dim, Phases>::balance(double, Balance *sums) {
     for (int d = 0; d < dim; ++d) force_[i][d] += grid_.mass[i] * loading.gravity[d];
     local[1] += magnitude(force_[i]);
   }
+  // of the particles: nodes also carry modes that no particle feels
+  for (const auto &body : bodies_)
+    for (int i = 0; i < body->particles().count; ++i) {
+      Vec<dim> x, v;
+      present(*body, i, &x, &v);
+      for (double c : v) local[2] += body->particles().mass[i] * c * c / 2;
+    }
   for (size_t b = 0; b < bodies_.size(); ++b)
     for (int q = 0; q < points_[b].count; ++q)
       local[3] += points_[b].volume[q] * stored_energy<dim>(bodies_[b]->law(), &points_[b].stress[q * components]);

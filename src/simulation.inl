@@ -256,7 +256,7 @@ void Simulation<dim, Phases>::run_stage(const Stage &stage) {
   for (const Stage &s : scene_.stage) longest = std::max(longest, s.duration);
   const double history_interval = scene_.output.history_interval > 0 ? scene_.output.history_interval : longest / 200;
   long long rows = 1, snapshots = 1;
-  quiet_steps_ = 0, failure_time_ = -1, watched_ = stage.until == StopWhen::failure ? stage.failure_point : "";
+  quiet_checks_ = 0, failure_time_ = -1, watched_ = stage.until == StopWhen::failure ? stage.failure_point : "";
   bool ended = false;
   while (!ended && time_ < end * (1 - 1e-12)) {
     set_loading(stage, time_ - begin);
@@ -272,8 +272,17 @@ void Simulation<dim, Phases>::run_stage(const Stage &stage) {
     if (time_ >= next_snapshot * (1 - 1e-12) && time_ < end * (1 - 1e-12)) write_snapshot(), ++snapshots;
     ended = stage_ends(stage, time_ - begin, verdict);
   }
-  if (!ended && stage.until != StopWhen::duration)
-    note("stage " + stage.name + " reached its duration of " + std::to_string(stage.duration) + " s before its stop criterion was met");
+  if (!ended && stage.until != StopWhen::duration) {
+    Balance sums;
+    require(motion_->begin(time_));
+    require(motion_->balance(time_, &sums));
+    std::ostringstream text;
+    text.precision(3);
+    text << "stage " << stage.name << " reached its duration of " << stage.duration << " s before its stop criterion was met: unbalanced force ratio "
+         << sums.unbalanced / sums.applied << ", kinetic over strain energy " << sums.kinetic / sums.strain << ", rms speed "
+         << std::sqrt(2 * sums.kinetic / total_mass_) << " m/s";
+    note(text.str());
+  }
   write_history();
   write_snapshot();
   if (stage.reset_displacement) reset_displacement();
@@ -417,7 +426,7 @@ PetscErrorCode Simulation<dim, Phases>::check_conservation() {
 
 template <int dim, class Phases>
 bool Simulation<dim, Phases>::stage_ends(const Stage &stage, double stage_time, const Verdict &verdict) {
-  constexpr int steps_between_checks = 25, steps_of_rest = 100;
+  constexpr int steps_between_checks = 25, checks_of_rest = 8;
   switch (stage.until) {
     case StopWhen::duration: return false;
     case StopWhen::equilibrium: {
@@ -429,11 +438,16 @@ bool Simulation<dim, Phases>::stage_ends(const Stage &stage, double stage_time, 
       note("stage " + stage.name + " is in equilibrium: unbalanced force ratio " + std::to_string(sums.unbalanced / sums.applied));
       return true;
     }
-    case StopWhen::rest:
-      quiet_steps_ = verdict.speed_squared < stage.rest_speed * stage.rest_speed ? quiet_steps_ + 1 : 0;
-      if (quiet_steps_ < steps_of_rest) return false;
+    case StopWhen::rest: {
+      if (steps_ % steps_between_checks) return false;
+      Balance sums;
+      require(motion_->begin(time_));
+      require(motion_->balance(time_, &sums));
+      quiet_checks_ = std::sqrt(2 * sums.kinetic / total_mass_) < stage.rest_speed ? quiet_checks_ + 1 : 0;
+      if (quiet_checks_ < checks_of_rest) return false;
       note("stage " + stage.name + " came to rest");
       return true;
+    }
     case StopWhen::failure: {
       // the speed must pass the threshold and be larger at each tenth of the watching time
       const double speed = verdict.watched_speed;
@@ -602,21 +616,21 @@ void Simulation<dim, Phases>::write_history() {
     mine.push_back(displacement), mine.push_back(map<dim>(v).norm());
     if (Phases::given) mine.push_back(pressure);
   }
-  double kinetic = 0, potential = 0;
+  double potential = 0;
   for (const auto &body : bodies_) {
     const ParticleArrays<dim> &p = body->particles();
     for (int i = 0; i < p.count; ++i) {
       Vec<dim> x, v;
       motion_->present(*body, i, &x, &v);
-      for (int d = 0; d < dim; ++d) kinetic += p.mass[i] * v[d] * v[d] / 2, potential -= p.mass[i] * scene_.gravity[d] * x[d];
+      for (int d = 0; d < dim; ++d) potential -= p.mass[i] * scene_.gravity[d] * x[d];
     }
   }
-  mine.push_back(kinetic), mine.push_back(potential);
+  mine.push_back(potential);
   row.resize(mine.size());
   MPI_Allreduce(mine.data(), row.data(), static_cast<int>(mine.size()), MPI_DOUBLE, MPI_SUM, comm_);
   Balance sums;
   require(motion_->balance(time_, &sums));
-  row.insert(row.end() - 1, sums.strain);
+  row.insert(row.end() - 1, {sums.kinetic, sums.strain});
   row.push_back(total_mass_), row.push_back(static_cast<double>(particle_count_)), row.push_back(load_time_);
   std::vector<Vec<dim>> impulses, faces;
   require(conditions_.take_impulses(comm_, impulses));

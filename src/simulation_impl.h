@@ -108,7 +108,7 @@ class Simulation final : public AnySimulation {
   bool hold_loads_ = false, remap_due_ = false;
   std::string watched_;
   double failure_time_ = -1, failure_load_time_ = 0, last_rise_time_ = 0, last_rise_speed_ = 0;
-  int quiet_steps_ = 0;
+  int quiet_checks_ = 0;
 
   std::unique_ptr<Results> results_;
   HistoryTable history_;
