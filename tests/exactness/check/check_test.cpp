@@ -1,0 +1,115 @@
+// `talus check`: its numbers are those of a run, its advice fits the scene, and it writes nothing.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bad_input/scene.h"
+
+namespace talus {
+namespace {
+
+Ending check(const Folder &folder, const std::vector<std::string> &overrides, int ranks = 1) {
+  folder.write("scene.toml", good_scene), folder.write("section.csv", good_section);
+  std::vector<std::string> arguments{"check", "scene.toml", "--json"};
+  for (const std::string &one : overrides) arguments.insert(arguments.end(), {"--set", one});
+  return talus(folder, arguments, ranks);
+}
+
+/// The first number behind "key": in a JSON document.
+double number(const Ending &ending, const std::string &key) {
+  const std::size_t at = ending.output.find("\"" + key + "\": ");
+  return at == std::string::npos ? NAN : std::stod(ending.output.substr(at + key.size() + 4));
+}
+
+TEST(Check, KnowsParticlesMassAndLayer) {
+  const Folder folder;
+  const Ending ending = check(folder, {});
+  ASSERT_EQ(ending.status, 0) << ending.output;
+  EXPECT_NEAR(number(ending, "mass_kg"), 2000 * 0.5, 1e-9);
+  EXPECT_NEAR(number(ending, "height_m"), 0.5, 1e-12);
+  const double modulus = 1e6 * 0.7 / (1.3 * 0.4);  // E (1 - nu) / ((1 + nu) (1 - 2 nu))
+  EXPECT_NEAR(number(ending, "gravity_strain"), 2000 * 9.81 * 0.5 / modulus, 1e-9);
+  EXPECT_NEAR(number(ending, "wave_speed_m_s"), std::sqrt(modulus / 2000), 1e-9);
+  EXPECT_NEAR(number(ending, "step_s"), 0.6 * number(ending, "critical_step_s"), 1e-15);
+  EXPECT_GT(number(ending, "burst_steps"), 10);
+}
+
+TEST(Check, FindsTheSameOnTwoRanks) {
+  const Folder folder;
+  const Ending one = check(folder, {}), two = check(folder, {}, 2);
+  ASSERT_EQ(two.status, 0) << two.output;
+  for (const char *key : {"cells", "nodes", "particles", "mass_kg", "critical_step_s", "height_m", "mean_quality"})
+    EXPECT_NEAR(number(two, key), number(one, key), 1e-12 * number(one, key)) << key;
+}
+
+TEST(Check, GivesTheCriticalStepThatARunIsRefusedAt) {
+  const Folder folder;
+  const double critical = number(check(folder, {}), "critical_step_s");
+  const auto run = [&](double step) {
+    return talus(folder, {"run", "scene.toml", "-o", "results", "--no-pictures", "--set",
+                          "integrator.step=" + std::to_string(step), "--set", "stage.0.duration=0.01"})
+        .status;
+  };
+  EXPECT_EQ(run(1.02 * critical), 2);
+  EXPECT_EQ(run(0.9 * critical), 0);
+}
+
+TEST(Check, WritesNothing) {
+  const Folder folder;
+  ASSERT_EQ(check(folder, {}).status, 0);
+  for (const auto &entry : std::filesystem::directory_iterator(folder.path())) {
+    const std::string name = entry.path().filename();
+    EXPECT_TRUE(name == "scene.toml" || name == "section.csv" || name == "output") << name;
+  }
+}
+
+struct Case {
+  const char *name;
+  std::vector<std::string> overrides;
+  const char *advice;
+};
+
+void PrintTo(const Case &one, std::ostream *out) { *out << one.name; }
+
+const Case cases[] = {
+    {"one_particle", {"body.sand.particles_per_cell=1"}, "One particle a cell in sand is useless"},
+    {"locking", {"body.sand.poisson_ratio=0.48", "transfer.locking=none"}, "locks linear cells"},
+    {"softening",
+     {"body.sand.residual_friction_angle=20", "body.sand.shape_factor=10"},
+     "softens without a reference_size"},
+    {"snap_back",
+     {"body.sand.residual_friction_angle=20", "body.sand.shape_factor=5000", "body.sand.reference_size=0.25"},
+     "snaps back"},
+    {"soft_soil", {"body.sand.young_modulus=2e4"}, "The soil's weight strains it by"},
+    {"gravity_at_once", {}, "Gravity sets in at once"},
+    {"equilibrium_without_damping", {"stage.0.until=equilibrium"}, "waits for equilibrium without damping"},
+    {"equilibrium_too_soon", {"stage.0.until=equilibrium", "stage.0.duration=0.1"}, "too short for equilibrium"},
+    {"timid_step", {"integrator.step=1e-5"}, "of the critical one"},
+    {"small_cells",
+     {"mesh.refine=[{from = [0, 0], to = [0.1, 0.1], size = 0.02}]"},
+     "in mesh.refine.0, dictate the step"},
+    {"remap_every_step", {"transfer.remap_interval=0"}, "A remap at every step costs"},
+    {"apic", {"transfer.velocity=apic"}, "APIC on simplices"},
+    {"slice", {"dimension=3", "boundary.front.kind=roller", "boundary.back.kind=roller"}, "A slice of one element"},
+    {"dry", {}, "Dry is right for soil without water"},
+};
+
+class Advice : public testing::TestWithParam<Case> {};
+
+TEST_P(Advice, IsGivenWhereItIsDue) {
+  const Folder folder;
+  const Ending ending = check(folder, GetParam().overrides);
+  EXPECT_EQ(ending.status, 0);
+  EXPECT_TRUE(ending.says(GetParam().advice)) << ending.output;
+}
+
+TEST(NoAdvice, IsGivenWhereAllIsWell) {
+  const Folder folder;
+  const Ending ending = check(folder, {"gravity=0"});
+  EXPECT_TRUE(ending.says("\"advice\": []")) << ending.output;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Advice, testing::ValuesIn(cases), [](const auto &one) { return one.param.name; });
+
+}  // namespace
+}  // namespace talus
