@@ -1,0 +1,88 @@
+// Steps take no memory from the heap once the soil has been seen everywhere it goes: every call of malloc, by whatever
+// road, is counted.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+
+#include "scene/reader.h"
+#include "simulation.h"
+
+namespace {
+std::atomic<long long> calls{0};
+}
+
+// glibc's own functions stand behind these; operator new and PETSc call them.
+extern "C" {
+void *__libc_malloc(size_t);
+void *__libc_calloc(size_t, size_t);
+void *__libc_realloc(void *, size_t);
+void *__libc_memalign(size_t, size_t);
+void *malloc(size_t size) { return ++calls, __libc_malloc(size); }
+void *calloc(size_t count, size_t size) { return ++calls, __libc_calloc(count, size); }
+void *realloc(void *old, size_t size) { return ++calls, __libc_realloc(old, size); }
+void *memalign(size_t alignment, size_t size) { return ++calls, __libc_memalign(alignment, size); }
+void *aligned_alloc(size_t alignment, size_t size) { return ++calls, __libc_memalign(alignment, size); }
+int posix_memalign(void **memory, size_t alignment, size_t size) {
+  return ++calls, (*memory = __libc_memalign(alignment, size)) ? 0 : 12;
+}
+}
+
+namespace talus {
+namespace {
+
+struct Count {
+  long long steps = 0, remaps = 0, in_steps = 0, in_remaps = 0;
+};
+
+/// Calls in steps with and without a remap, after a warm-up in which every buffer has found its size.
+Count count(const std::string &file, const std::vector<std::string> &overrides, int warm_up, int steps) {
+  Scene scene = read_scene(file, overrides);
+  RunOptions options;
+  options.pictures = options.screen = false;
+  const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+  for (int i = 0; i < warm_up; ++i) simulation->single_step();
+  Count count;
+  for (int i = 0; i < steps; ++i) {
+    const long long before = calls, remaps = simulation->remaps();
+    simulation->single_step();
+    const long long taken = calls - before;
+    if (simulation->remaps() == remaps)
+      ++count.steps, count.in_steps += taken;
+    else
+      ++count.remaps, count.in_remaps += taken;
+  }
+  return count;
+}
+
+const std::string column = std::string(TALUS_GALLERY) + "/column/scene.toml",
+                  slope = std::string(TALUS_EXACTNESS) + "/ranks/slope.toml";
+
+TEST(Allocations, are_counted) {
+  const long long before = calls;
+  std::vector<double> some(1000, 1.);
+  EXPECT_GT(calls, before) << some[0];
+}
+
+TEST(Allocations, none_between_remaps_of_a_collapsing_column) {
+  const Count c = count(column, {"mesh.size=0.01"}, 400, 100);
+  EXPECT_GT(c.steps, 50);
+  EXPECT_EQ(c.in_steps, 0);
+}
+
+TEST(Allocations, none_during_remaps_of_a_collapsing_column) {
+  const Count c = count(column, {"mesh.size=0.01", "transfer.remap_interval=0"}, 2000, 100);
+  EXPECT_EQ(c.remaps, 100);
+  EXPECT_EQ(c.in_remaps, 0);
+}
+
+TEST(Allocations, none_in_a_drained_slope_of_two_soils) {
+  const Count c = count(slope, {"transfer.remap_interval=0.1"}, 1000, 200);
+  EXPECT_GT(c.steps, 10);
+  EXPECT_GT(c.remaps, 1);
+  EXPECT_EQ(c.in_steps, 0);
+  EXPECT_EQ(c.in_remaps, 0);
+}
+
+}  // namespace
+}  // namespace talus
