@@ -49,8 +49,8 @@ struct Increment {
 
 /// What a law may know of the place beside stress and history.
 struct Surroundings {
-  double size;  ///< element size h: sqrt(4 A / sqrt 3) of a triangle, (6 sqrt 2 V)^(1/3) of a tetrahedron [m] (design
-                ///< section 2)
+  double size;  ///< element size h: sqrt(4 A / sqrt 3) of a triangle, (6 sqrt 2 V)^(1/3) of a tetrahedron [m],
+                ///< docs/theory (2.7)
 };
 
 }  // namespace talus

@@ -92,7 +92,7 @@ inline double simplex_gradients(const std::array<const Vec<dim> *, dim + 1> &x, 
   }
 }
 
-/// Element size of the softening law (design section 2), equal for a triangle and for the tetrahedra of its slice.
+/// Element size of the softening law, docs/theory (2.7), equal for a triangle and for the tetrahedra of its slice.
 template <int dim>
 double element_size(double volume);
 
