@@ -162,7 +162,7 @@ enum class Velocity { flip, pic, apic };
 enum class Integration { blended, particle, mixed, cell };
 enum class Locking { patches, none, nodal };
 
-/// How particles and nodes exchange what they know (design section 3; docs/theory section 4).
+/// How particles and nodes exchange what they know (docs/theory section 4).
 struct Transfer {
   Velocity velocity = Velocity::flip;
   double relaxation = 400;    ///< FLIP relaxes to PIC with this time constant, in units of smallest altitude over wave speed; 0: never
