@@ -34,7 +34,7 @@ SERIES = {
     "30°, no slip, cells L₀/40": (30, None, 1 / 40),
 }
 SHORT = (0.5, 1, 2, 4, 6)
-ONLY = {"22°, no slip": SHORT, "36°, no slip": SHORT, "30°, base 20°": (0.5, 1, 2, 4),
+ONLY = {"22°, no slip": SHORT, "36°, no slip": SHORT, "33°, no slip": (*SHORT, 8), "30°, base 20°": (0.5, 1, 2),
         "30°, no slip, cells L₀/40": (1, 4)}  # series that do not run every aspect
 LAWS = {"Lube et al. (2005)": (1.2, 1.9), "Lajeunesse et al. (2005)": (1.8, 2.3)}  # prefactors of a and a^(2/3)
 SMALL, LARGE = (0.5, 3), (3, 8)  # aspects over which the two exponents are fitted
@@ -86,11 +86,12 @@ def law(aspect, small, large):
 
 
 def write_scene(folder, aspect, friction, base_friction, cell):
-    """The section and the scene of one column; free space for 1.5 times the larger law."""
+    """The section and the scene of one column; free space for 1.5 times the larger law, and high over a base with friction,
+    where the front throws up single particles."""
     folder.mkdir(parents=True, exist_ok=True)
     height, far = aspect * WIDTH, WIDTH * (1.6 + 1.5 * float(max(law(aspect, 1.8, 2.3), 1.8 * aspect)))
     (folder / "section.csv").write_text(SECTION.format(
-        right=f"{far:.4f}", top=f"{height + 0.05:.4f}", height=height, width=WIDTH, x=WIDTH / 2, y=height / 2,
+        right=f"{far:.4f}", top=f"{height + (0.05 if base_friction is None else 0.4):.4f}", height=height, width=WIDTH, x=WIDTH / 2, y=height / 2,
         beside=far - WIDTH / 2))
     base = 'kind = "fixed"' if base_friction is None else f'kind = "friction"\nfriction_angle = {base_friction}'
     (folder / "scene.toml").write_text(SCENE.format(
