@@ -10,10 +10,13 @@ std::vector<BodyReport> Simulation<dim, Phases>::bodies() {
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const ParticleArrays<dim> &p = bodies_[b]->particles();
     BodyReport report{bodies_[b]->name()};
-    double sums[6]{};                                      // particles, cells, mass, volume, steps and sizes of cells
-    std::array<double, 7> least;                           // particles in a cell, lowest and highest corner
+    double sums[6]{};             // particles, cells, mass, volume, steps and sizes of cells
+    std::array<double, 7> least;  // particles in a cell, lowest and highest corner
     least.fill(infinity);
-    struct { double step; int rank; } mine{infinity, 0}, slowest;
+    struct {
+      double step;
+      int rank;
+    } mine{infinity, 0}, slowest;
     std::array<double, 3> place{};
     for (int i = 0; i < p.count;) {
       const Cell<dim> &cell = mesh_.cells[p.cell[i]];
@@ -26,7 +29,8 @@ std::vector<BodyReport> Simulation<dim, Phases>::bodies() {
       for (int node : cell.node)
         for (int d = 0; d < dim; ++d) {
           const double x = mesh_.position[node][d];
-          least[1 + d] = std::min(least[1 + d], x), least[4 + d] = std::min(least[4 + d], -x), centre[d] += x / (dim + 1);
+          least[1 + d] = std::min(least[1 + d], x), least[4 + d] = std::min(least[4 + d], -x),
+                    centre[d] += x / (dim + 1);
         }
       if (step < mine.step) mine.step = step, std::copy_n(centre.begin(), dim, place.begin());
     }

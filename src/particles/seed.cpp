@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <map>
 #include <sstream>
 #include <stdexcept>
@@ -128,6 +129,7 @@ void seed(Body<dim> &body, const BackgroundMesh<dim> &mesh, int id_stride,
     cells.insert(cells.end(), more.begin(), more.end());
   }
   std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());  // regions may share cells
   PetscInt count = 0;
   for (int cell : cells) count += static_cast<PetscInt>(points_in(cell).size());
   PetscCallVoid(body.resize(count));

@@ -34,6 +34,18 @@ TEST(Check, KnowsParticlesMassAndLayer) {
   EXPECT_GT(number(ending, "burst_steps"), 10);
 }
 
+TEST(Check, FillsACellOnceThatTwoOfABodysRegionsName) {
+  const Folder folder;
+  EXPECT_NEAR(number(check(folder, {"body.sand.region=['sand', 'sand']"}), "mass_kg"), 1000, 1e-9);
+}
+
+TEST(Check, TellsThatARunBreaksOffAtOnce) {
+  const Folder folder;
+  const Ending ending = check(folder, {"body.sand.velocity=['1e200', '0']"});
+  EXPECT_EQ(ending.status, 0);
+  EXPECT_TRUE(ending.says("The run breaks off in its first steps: the velocity is not finite near (")) << ending.output;
+}
+
 TEST(Check, FindsTheSameOnTwoRanks) {
   const Folder folder;
   const Ending one = check(folder, {}), two = check(folder, {}, 2);
