@@ -247,7 +247,7 @@ class Adviser {
       say("Integration by particle volumes was four to nine times less accurate than \"blended\" where soil crosses "
           "cells.");
     if (needs_.mesh.smallest_quality < 0.2)
-      say("The worst cell has a quality of " + digits(needs_.mesh.smallest_quality, 2) +
+      say("The worst cell has a quality of " + digits(needs_.mesh.smallest_quality) +
           "; below 0.2 it costs steps and accuracy.");
     constexpr long long few = 5000;
     if (needs_.ranks > 1 && needs_.particles() / needs_.ranks < few)
@@ -272,8 +272,8 @@ class Adviser {
     if (d.time == 0) return;
     const std::string bounds = std::string("k above ") + digits(d.drained_above, 1) + " m/s", time = spoken(d.time);
     if (scene_.phases == PhaseModel::drained)
-      say("A given pore pressure is right where soil drains in the " + time + " of the stages: " + bounds + ". Below " +
-          digits(d.undrained_below, 1) +
+      say("A given pore pressure is right where soil drains in the " + time + " of the stages, " + bounds +
+          " (less in proportion where a stage stands for a longer time). Below " + digits(d.undrained_below, 1) +
           " m/s failure is undrained: take total-stress strengths; in between pore pressure has to be computed.");
     else
       say("Dry is right for soil without water, or with total-stress strengths; with water in its pores the soil would "
