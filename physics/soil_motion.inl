@@ -432,13 +432,17 @@ PetscErrorCode SoilMotion<dim, Phases>::acceleration(double, const double *u, co
   PetscFunctionBeginUser;
   if (u) PetscCall(deform(reinterpret_cast<const Vec<dim> *>(u), true));
   PetscCall(total_force(loading.time, u != nullptr));
+  const Vec<dim> *unbalanced = force_.data();
+  if (loading.damping > 0) {  // what supports take up is not out of balance: damping must not change their reactions
+    std::copy_n(force_.begin(), grid_.node_count(), scratch_.begin());
+    conditions_.project(grid_, reinterpret_cast<const Vec<dim> *>(v), scratch_.data());
+    unbalanced = scratch_.data();
+  }
   for (int i = 0; i < grid_.node_count(); ++i) {
     const double inverse = grid_.mass[i] > smallest_mass_ ? 1 / grid_.mass[i] : 0;  // a lighter node is carried along
     for (int d = 0; d < dim; ++d) {
-      double f = force_[i][d];
-      const double power = f * v[i * dim + d];
-      f *= 1 - loading.damping * ((power > 0) - (power < 0));
-      a[i * dim + d] = inverse * f;
+      const double rest = unbalanced[i][d], power = rest * v[i * dim + d];
+      a[i * dim + d] = inverse * (force_[i][d] - loading.damping * rest * ((power > 0) - (power < 0)));
     }
   }
   PetscFunctionReturn(0);
