@@ -5,6 +5,7 @@
 #include "tests/convergence/manufactured/exact.h"
 #include "tests/verification/dynamic_oedometer/exact.h"
 #include "tests/verification/elastic_bar/exact.h"
+#include "tests/verification/footing/exact.h"
 #include "tests/verification/gravity_column/exact.h"
 #include "tests/verification/incline_block/exact.h"
 #include "tests/verification/k0_column/exact.h"
@@ -39,6 +40,7 @@ inline constexpr LadderEntry ladder[] = {
      rungs::mohr_coulomb_triaxial},
     {"rigid_rotation", "verification", "stress of a body that turns ten times", rungs::rigid_rotation},
     {"spinning_block", "verification", "momentum of a block that spins freely", rungs::spinning_block},
+    {"footing", "verification", "bearing capacity of Tresca soil, where cells could lock", rungs::footing},
 };
 
 }  // namespace talus
