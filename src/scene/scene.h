@@ -132,7 +132,7 @@ struct Stage {
   double gravity_ramp = 0;      ///< gravity and pore pressure grow linearly over this time [s]
   double force_ratio = 1e-3;    ///< equilibrium: unbalanced over applied force [-]
   double energy_ratio = 1e-6;   ///< equilibrium: kinetic over strain energy [-]
-  double rest_speed = 1e-3;     ///< rest: no particle is faster [m/s]
+  double rest_speed = 1e-3;     ///< rest: the root mean square speed of all soil stays below this [m/s]
   std::string failure_point;    ///< failure: named output point that is watched
   double failure_speed = 0.01;  ///< failure: its speed passes this [m/s] ...
   double failure_time = 1;      ///< ... and keeps rising for this long [s]
@@ -148,7 +148,7 @@ struct Stage {
     v.number("gravity_ramp", gravity_ramp, second, Range{0, 1e9}, "time over which gravity, and pore pressure with it, grows linearly from 0");
     v.number("force_ratio", force_ratio, one, Range{0, 1}, "equilibrium: unbalanced over applied nodal force");
     v.number("energy_ratio", energy_ratio, one, Range{0, 1}, "equilibrium: kinetic over elastic strain energy");
-    v.number("rest_speed", rest_speed, metre_per_second, Range{0, 1e6}, "rest: no particle is faster");
+    v.number("rest_speed", rest_speed, metre_per_second, Range{0, 1e6}, "rest: the root mean square speed of all soil stays below this");
     v.text("failure_point", failure_point, "failure: name of the output point that is watched");
     v.number("failure_speed", failure_speed, metre_per_second, Range{0, 1e6}, "failure: the point's speed passes this");
     v.number("failure_time", failure_time, second, Range{0, 1e9}, "failure: and keeps rising for this long");
