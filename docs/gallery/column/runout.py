@@ -82,7 +82,7 @@ rest_speed = 0.005
 def law(aspect, small, large):
     """Run-out over L0: the line and the 2/3 power, which change places where they meet or at the published limit."""
     limit = 2.3 if small == 1.2 else 3.0  # middle of 1.8 to 2.8 (Lube), 3.0 (Lajeunesse)
-    return np.where(aspect < limit, small * aspect, large * aspect ** (2 / 3))
+    return np.where(aspect <= limit, small * aspect, large * aspect ** (2 / 3))
 
 
 def write_scene(folder, aspect, friction, base_friction, cell):
@@ -155,9 +155,8 @@ def read_series():
 
 def tell(series):
     """The exponents, and how far run-outs lie outside the two laws."""
-    low, high = (np.array(list(LAWS.values())).T)[:, 0], (np.array(list(LAWS.values())).T)[:, 1]
     for name, (aspects, runouts) in series.items():
-        bounds = np.array([law(aspects, *pair) for pair in zip(low, high)])
+        bounds = np.array([law(aspects, *pair) for pair in LAWS.values()])
         outside = np.where(runouts > bounds.max(0), runouts / bounds.max(0) - 1,
                            np.where(runouts < bounds.min(0), runouts / bounds.min(0) - 1, 0))
         print(f"{name:26s} exponent {exponent(aspects, runouts, SMALL):.2f} for a {SMALL[0]:g} to {SMALL[1]:g}, "
@@ -173,7 +172,7 @@ def draw(series, path):
     bounds = [law(a, *pair) for pair in LAWS.values()]
     axes.fill_between(a, np.minimum(*bounds), np.maximum(*bounds), color="#e6eef0", lw=0, zorder=0)
     for (name, (small, large)), limit, dash in zip(LAWS.items(), (2.3, 3.0), ((0, (4, 2)), (0, (1, 1.4)))):
-        for part, values in ((a < limit, small * a), (a >= limit, large * a ** (2 / 3))):
+        for part, values in ((a <= limit, small * a), (a > limit, large * a ** (2 / 3))):
             axes.plot(a[part], values[part], color=style.SOFT, lw=1.3, ls=dash,
                       label=f"{name}: {small:g} a, {large:g} a$^{{2/3}}$" if part[0] else None)
     looks = {"36°, no slip": ("^", style.LINES[3]), "33°, no slip": ("P", style.LINES[6]), "30°, no slip": ("o", style.LINES[0]), "22°, no slip": ("v", style.LINES[1]),
