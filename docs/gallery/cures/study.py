@@ -30,7 +30,7 @@ class Run:
             start = time.time()
             done = subprocess.run([talus, "run", HERE / scene, "-o", folder, "--no-pictures", "--set", *overrides], capture_output=True, text=True)
             self.wall = time.time() - start
-            self.broke = next((line for line in done.stderr.splitlines() if line.startswith("talus:")), "stopped") if done.returncode else ""
+            self.broke = next((line.split("; ")[0] for line in done.stderr.splitlines() if line.startswith("talus:")), "stopped") if done.returncode else ""
             rows = list(csv.DictReader(open(f"{folder}/history.csv"))) if Path(f"{folder}/history.csv").exists() else []
             self.history = {name: np.array([float(row[name] or "nan") for row in rows]) for name in (rows[0] if rows else ()) if name != "stage"}
             self.steps = int(self.history["step"][-1]) if rows else 0
@@ -177,38 +177,40 @@ INTEGRATION = ("particle", "mixed", "cell", "blended")
 WEIGHT, HEIGHT, MODULUS = 2000 * 10, 1.0, 100e3 * 0.8 / (1.2 * 0.6)  # rho g [N/m3], [m], E_c [Pa]
 
 
-def settled(at):
+def settled(at, stiff=1):
     """Exact displacement of the point that was at this height."""
-    scale = MODULUS / WEIGHT
+    scale = stiff * MODULUS / WEIGHT
     return scale * (np.exp(-(HEIGHT - at) / scale) - np.exp(-HEIGHT / scale)) - at
 
 
-def column(talus, dimension, integration, average, particles):
+def column(talus, dimension, integration, average, particles, stiff=1):
     """Errors of stress in per cent of the base stress and of displacement in per cent of the settlement, places and stresses."""
     run = Run(talus, "column.toml", [f"transfer.integration={integration}", f"transfer.average_stress={str(average).lower()}",
-                                     f"body.soil.particles_per_cell={particles}", *(SLICE if dimension == 3 else [])])
+                                     f"body.soil.particles_per_cell={particles}", f"body.soil.young_modulus={stiff * 100e3}",
+                                     *(SLICE if dimension == 3 else [])])
     if run.broke:
         return {"broke": run.broke}, [], []
     end = run.snapshots[-1]
     share = end["mass"][:, 0] / end["mass"].sum()
     start, stress = end["position"][:, 1] - end["displacement"][:, 1], end["stress"][:, 1]
     error = {"stress_percent": round(100 * np.sqrt(share @ (stress / WEIGHT / HEIGHT + 1 - start / HEIGHT) ** 2), 2),
-             "displacement_percent": round(100 * np.sqrt(share @ (end["displacement"][:, 1] - settled(start)) ** 2) / -settled(HEIGHT), 2),
+             "displacement_percent": round(100 * np.sqrt(share @ (end["displacement"][:, 1] - settled(start, stiff)) ** 2) / -settled(HEIGHT, stiff), 2),
              "speed_mm_s": round(1e3 * np.sqrt(share @ (end["velocity"] ** 2).sum(axis=1)), 3), "steps": run.steps, "wall_s": round(run.wall, 1), "broke": ""}
     return error, start, stress
 
 
 def crossing(talus):
     rows, profiles = [], []
-    cases = [(2, i, a, n) for n in (1, 3, 6, 12) for a in (False, True) for i in INTEGRATION]
-    cases += [(3, i, a, n) for n in (4, 8) for i, a in (("particle", False), ("blended", False), ("blended", True))]
-    for dimension, integration, average, particles in cases:
-        error, start, stress = column(talus, dimension, integration, average, particles)
-        rows.append({"dimension": dimension, "integration": integration, "average_stress": average, "particles_per_cell": particles,
+    cases = [(d, "blended", a, n, 100) for d, n in ((2, 3), (3, 8)) for a in (False, True)]  # so stiff that nothing crosses
+    cases += [(2, i, a, n, 1) for n in (1, 3, 6, 12) for a in (False, True) for i in INTEGRATION]
+    cases += [(3, i, a, n, 1) for n in (4, 8) for i, a in (("particle", False), ("blended", False), ("blended", True))]
+    for dimension, integration, average, particles, stiff in cases:
+        error, start, stress = column(talus, dimension, integration, average, particles, stiff)
+        rows.append({"E_kPa": 100 * stiff, "dimension": dimension, "integration": integration, "average_stress": average, "particles_per_cell": particles,
                      **dict.fromkeys(("stress_percent", "displacement_percent", "speed_mm_s", "steps", "wall_s"), ""), **error})
         print(rows[-1], flush=True)
         write("crossing.csv", rows)
-        if (dimension, particles) == (2, 3) and (integration, average) in (("particle", False), ("blended", True)):
+        if (dimension, particles, stiff) == (2, 3, 1) and (integration, average) in (("particle", False), ("blended", True)):
             profiles += [{"integration": integration, "height_m": round(y, 4), "stress_kPa": round(s / 1e3, 3)} for y, s in zip(start, stress)]
             write("crossing_profile.csv", profiles)
 
@@ -220,28 +222,29 @@ def draw_crossing(plt, style):
         mine = [r for r in profile if r["integration"] == integration]
         axes.plot([-float(r["stress_kPa"]) for r in mine], [float(r["height_m"]) for r in mine], ".", color=colour, ms=3, mec="none", alpha=0.7)
         axes.plot([WEIGHT / 1e3, 0], [0, 1], color=style.INK, lw=0.9)
-        axes.set(title=title, xlabel="vertical stress [kPa]", xlim=(-1, 30), ylim=(0, 1))
+        axes.set(title=title, xlabel="vertical stress [kPa]", xlim=(-1, 30), ylim=(0, 1.02))
     panels[0].set_ylabel("height before settlement [m]")
-    panels[0].text(15.8, 0.25, "exact", size=8, ha="right", va="top")
+    panels[0].annotate("exact", (17, 0.15), (25, 0.42), size=8, arrowprops={"arrowstyle": "-", "color": style.SOFT, "lw": 0.7})
     axes = panels[2]
     names = {"particle": "particle", "mixed": "mixed", "cell": "cell", "blended": "blended"}
     for integration, colour, marker in zip(INTEGRATION, (style.LINES[1], style.LINES[5], style.LINES[2], style.ACCENT), "osD^"):
         for average in ("False", "True"):
-            mine = [r for r in rows if (r["dimension"], r["integration"], r["average_stress"]) == ("2", integration, average) and r["stress_percent"]]
+            mine = [r for r in rows if (r["dimension"], r["integration"], r["average_stress"]) == ("2", integration, average) and r["E_kPa"] == "100"]
             axes.plot([int(r["particles_per_cell"]) for r in mine], [float(r["stress_percent"]) for r in mine], marker + ("-" if average == "True" else ":"), color=colour,
                       ms=4, lw=1.4, mfc=colour if average == "True" else "white", label=names[integration] if average == "True" else None)
-    axes.set(xscale="log", yscale="log", xlabel="particles per triangle", title="error of stress [% of 20 kPa]")
+    axes.set(xscale="log", yscale="log", ylim=(0.4, 40), xlabel="particles per triangle", title="error of stress [% of 20 kPa]")
     axes.set_xticks([1, 3, 6, 12], ["1", "3", "6", "12"])
-    axes.set_yticks([1, 2, 5, 10, 20], ["1", "2", "5", "10", "20"])
+    axes.set_yticks([0.5, 1, 2, 5, 10, 20], ["0.5", "1", "2", "5", "10", "20"])
     axes.minorticks_off()
     axes.plot([], [], ":", color=style.SOFT, label="not averaged")
-    axes.legend(fontsize=8, loc="upper right", handlelength=2.2)
+    axes.legend(fontsize=8, loc="upper right", handlelength=2.2, ncol=2)
     figure.savefig(HERE / "crossing.png")
 
 
 # Noise --------------------------------------------------------------------------------------------------------------------
 
 TRANSFERS = {"particle volumes": ["transfer.integration=particle", "transfer.average_stress=false", "transfer.relaxation=0"],
+             "stress not averaged": ["transfer.average_stress=false", "transfer.relaxation=0"],
              "relaxation 0": ["transfer.relaxation=0"], "relaxation 400": [],
              "PIC share 0.01": ["transfer.relaxation=0", "transfer.pic_fraction=0.01"],
              "APIC": ["transfer.velocity=apic", "transfer.relaxation=0"]}
@@ -279,15 +282,15 @@ def noise(talus):
 def draw_noise(plt, style):
     rows, curves = read("noise.csv"), read("noise_curves.csv")
     figure, panels = plt.subplots(1, 3, figsize=(8.6, 3.4), layout="constrained", gridspec_kw={"width_ratios": (1.2, 1.2, 1)})
-    colours = dict(zip(TRANSFERS, (style.LINES[1], style.LINES[5], style.ACCENT, style.LINES[2], style.LINES[4])))
+    colours = dict(zip(TRANSFERS, (style.LINES[1], style.SOFT, style.LINES[5], style.ACCENT, style.LINES[2], style.LINES[4])))
     for axes, interval, title in zip(panels, ("0", "0.1"), ("remap in every step", "remap interval 0.1 (default)")):
         for name, colour in colours.items():
             mine = [r for r in curves if (r["transfer"], r["remap_interval"]) == (name, interval)]
             axes.plot([float(r["periods"]) for r in mine], [float(r["energy"]) for r in mine], color=colour, lw=1.5, label=name)
-        axes.set(title=title, xlabel="periods", xlim=(0, 20), ylim=(0.5, 1.2))
+        axes.set(title=title, xlabel="periods", xlim=(0, 20), ylim=(0.92, 1.16))
     panels[0].set_ylabel("energy over its initial value")
     panels[1].tick_params(labelleft=False)
-    panels[0].legend(fontsize=8, loc="lower left")
+    panels[1].legend(fontsize=8, loc="upper left")
     axes = panels[2]
     names = list(TRANSFERS)
     for interval, marker in (("0", "o"), ("0.1", "s")):
@@ -297,10 +300,13 @@ def draw_noise(plt, style):
                     axes.plot(float(r["roughness"]), -k, marker, color=colours[name], mfc="white" if interval == "0" else colours[name], ms=6)
     for marker, colour, label in (("o", "white", "every step"), ("s", style.SOFT, "interval 0.1")):
         axes.plot([], [], marker, color=style.SOFT, mfc=colour, label=label)
-    axes.set(xscale="log", title="roughness of particle velocity / V", ylim=(-len(names) + 0.4, 0.6))
+    axes.set(xscale="log", title="roughness of velocity / V", ylim=(-len(names) + 0.4, 0.6))
+    broken = [k for k, name in enumerate(names) if all(r["broke"] for r in rows if r["transfer"] == name)]
+    for k in broken:
+        axes.text(0.06, -k, "breaks off", color=colours[names[k]], size=8.5, va="center", transform=axes.get_yaxis_transform())
     axes.set_yticks([-k for k in range(len(names))], names)
     axes.grid(axis="x", color=style.FAINT, lw=0.5)
-    axes.legend(fontsize=8)
+    axes.legend(fontsize=8, loc="lower right")
     figure.savefig(HERE / "noise.png")
 
 
