@@ -1,7 +1,7 @@
 #include "simulation.h"
 
 #include "mesh_source.h"
-#include "simulation_impl.h"
+#include "simulation/simulation_impl.h"
 
 namespace talus {
 

@@ -103,7 +103,7 @@ class TableReader {
   void refuse_unknown_keys() const;
 
   std::shared_ptr<const Document> document_;
-  const void *table_;  ///< a toml::table of the document; toml++ stays inside reader.cpp
+  const void *table_;  ///< a toml::table of the document; toml++ stays inside the reader's own files
   std::string path_;   ///< of this table from the root: body.sand, stage.0
   std::vector<std::string> known_;
   bool rest_deferred_ = false;

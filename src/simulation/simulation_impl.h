@@ -2,7 +2,7 @@
 /// The time loop, docs/theory section 5; instantiated in src/variants only.
 #include <petsctime.h>
 
-#include <map>
+#include <sstream>
 
 #include "output/history.h"
 #include "output/pictures.h"
@@ -14,6 +14,19 @@
 #include "solvers/integrators.h"
 
 namespace talus {
+
+/// Turns a PETSc error into an exception, where no PETSc function stands between thrower and catcher.
+inline void require(PetscErrorCode error) {
+  if (error) throw RunError("PETSc reported error " + std::to_string(error) + " (its message stands above)");
+}
+
+/// Four digits, for messages.
+inline std::string rounded(double value) {
+  std::ostringstream text;
+  text.precision(4);
+  text << value;
+  return text.str();
+}
 
 template <int dim, class Phases>
 class Simulation final : public AnySimulation {

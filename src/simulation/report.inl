@@ -1,5 +1,5 @@
 // What a simulation says about its bodies before it runs; included only where it is instantiated (src/variants).
-#include "simulation_impl.h"
+#include "simulation/simulation_impl.h"
 
 namespace talus {
 

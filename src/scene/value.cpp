@@ -1,0 +1,116 @@
+#include "scene/value.h"
+
+#include <cmath>
+
+#include "scene/quantity.h"
+#include "scene/toml_nodes.h"
+
+namespace talus {
+
+std::string number_in(Range range, Unit unit) {
+  const std::string in = unit.dimension == Dimension{} ? "" : std::string(" ") + unit.name;
+  if (std::isinf(range.low)) return in.empty() ? "a number" : "a number in" + in;
+  return "a number from " + shortest(range.low) + " to " + shortest(range.high) + in;
+}
+
+void TableReader::Value::must_be(const std::string &expected, const std::string &why) const {
+  throw SceneError(place(document_->file, *node_, false) + ": " + path_ + written(*node_) + " (" + meaning_ +
+                   ") must be " + expected + (why.empty() ? "" : "; " + why));
+}
+
+std::string TableReader::Value::string(const std::string &expected) const {
+  const auto text = node_->value_exact<std::string>();
+  if (!text) must_be(expected);
+  return *text;
+}
+
+double TableReader::Value::number(Unit unit, Range range) const {
+  const double number = is_number() ? number_of(*node_) : quantity(unit, range);
+  if (!std::isfinite(number) || !(range.low <= number && number <= range.high)) must_be(number_in(range, unit));
+  return number;
+}
+
+std::vector<TableReader::Value> TableReader::Value::elements(const std::string &expected) const {
+  const toml::array *list = node_->as_array();
+  if (!list) must_be(expected);
+  std::vector<Value> values;
+  for (const toml::node &node : *list)
+    values.emplace_back(*document_, node, path_ + "." + std::to_string(values.size()), meaning_);
+  return values;
+}
+
+std::vector<TableReader::Value> TableReader::Value::elements_or_self() const {
+  return node_->is_array() ? elements("a list") : std::vector<Value>{*this};
+}
+
+std::vector<double> TableReader::Value::point(Unit unit) const {
+  std::vector<double> coordinates;
+  for (const Value &value : elements_or_self()) coordinates.push_back(value.number(unit, unbounded) * unit.si);
+  return coordinates;
+}
+
+double TableReader::Value::quantity(Unit unit, Range range) const {
+  const std::string text = string(number_in(range, unit));
+  try {
+    return in_unit(text, unit);
+  } catch (const std::invalid_argument &error) {
+    must_be(number_in(range, unit), error.what());
+  }
+}
+
+double TableReader::Value::any_quantity() const {
+  if (is_number()) return number(one, unbounded);
+  const std::string expected = "a number or a quantity";
+  const std::string text = string(expected);
+  try {
+    const Quantity quantity = parse_quantity(text);
+    return quantity.number * quantity.si;
+  } catch (const std::invalid_argument &error) {
+    must_be(expected, error.what());
+  }
+}
+
+template <class ReadValue>
+Function TableReader::Value::table(const std::string &expected, const ReadValue &read_value) const {
+  std::vector<double> times, values;
+  for (const Value &row : elements(expected)) {
+    const std::vector<Value> pair = row.elements(expected);
+    if (pair.size() != 2) row.must_be("a point [t, value]");
+    times.push_back(pair[0].number(second, unbounded));
+    values.push_back(read_value(pair[1]));
+  }
+  try {
+    return Function(times, values);
+  } catch (const std::invalid_argument &error) {
+    must_be(expected, error.what());
+  }
+}
+
+Function TableReader::Value::expression(const std::string &expected, double scale) const {
+  try {
+    return Function(string(expected), scale, document_->functions);
+  } catch (const std::invalid_argument &error) {
+    must_be(expected, error.what());
+  }
+}
+
+Function TableReader::Value::function(Unit unit, Range range) const {
+  const std::string expected =
+      number_in(range, unit) + ", a list of [t, value] points or an expression of x, y, z, t";
+  const auto value = [&](const Value &element) { return element.number(unit, range) * unit.si; };
+  if (node_->is_array()) return table(expected, value);
+  if (is_number() || looks_like_quantity(string(expected))) return value(*this);
+  return expression(expected, unit.si);
+}
+
+Function TableReader::Value::named_function() const {
+  const std::string expected = "a list of [t, value] points or an expression of t";
+  if (node_->is_array()) return table(expected, [](const Value &element) { return element.any_quantity(); });
+  if (is_number() || looks_like_quantity(string(expected))) return any_quantity();
+  const Function function = expression(expected, 1);
+  for (const char *place : {"x", "y", "z", "table"})
+    if (function.uses(place)) must_be(expected, std::string("a named function cannot depend on ") + place);
+  return function;
+}
+
+}  // namespace talus

@@ -1,0 +1,59 @@
+#pragma once
+/// One value of a scene file: how numbers, quantities, points and functions are read from it, and what complaints say about it.
+/// Included only by the reader's own files.
+#include <toml++/toml.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "scene/reader.h"
+
+namespace talus {
+
+inline constexpr Range unbounded{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+
+/// "a number from 0 to 60 deg"
+std::string number_in(Range range, Unit unit);
+
+struct TableReader::Document {
+  std::string file;
+  toml::table root;
+  NamedFunctions functions;
+};
+
+/// One value of the file and what complaints say about it.
+class TableReader::Value {
+ public:
+  Value(const Document &document, const toml::node &node, std::string path, const char *meaning)
+      : document_(&document), node_(&node), path_(std::move(path)), meaning_(meaning) {}
+
+  const toml::node &node() const { return *node_; }
+  [[noreturn]] void must_be(const std::string &expected, const std::string &why = "") const;
+
+  bool is_number() const { return node_->is_number(); }
+  std::string string(const std::string &expected) const;
+  /// The number in the key's unit.
+  double number(Unit unit, Range range) const;
+  std::vector<Value> elements(const std::string &expected) const;
+  /// A list's elements, or the value itself.
+  std::vector<Value> elements_or_self() const;
+  std::vector<double> point(Unit unit) const;
+  Function function(Unit unit, Range range) const;
+  /// A function of [functions]: of t alone, its values in any unit.
+  Function named_function() const;
+
+ private:
+  double quantity(Unit unit, Range range) const;
+  double any_quantity() const;
+  template <class ReadValue>
+  Function table(const std::string &expected, const ReadValue &read_value) const;
+  Function expression(const std::string &expected, double scale) const;
+
+  const Document *document_;
+  const toml::node *node_;
+  std::string path_;
+  const char *meaning_;
+};
+
+}  // namespace talus

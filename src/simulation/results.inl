@@ -1,0 +1,189 @@
+// What a run tells: snapshots, history, notes, and why it ended; included only where it is instantiated (src/variants).
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+
+#include "base/version.h"
+#include "simulation/simulation_impl.h"
+
+namespace talus {
+
+template <int dim, class Phases>
+void Simulation<dim, Phases>::open_results() {
+  const char axis[] = "xyz";
+  history_.names = {"time_s", "step"};
+  for (const Followed &point : points_) {
+    for (int d = 0; d < dim; ++d) history_.names.push_back(point.name + "_" + axis[d] + "_m");
+    history_.names.push_back(point.name + "_displacement_m");
+    history_.names.push_back(point.name + "_velocity_m_s");
+    if (Phases::given) history_.names.push_back(point.name + "_pore_pressure_Pa");
+  }
+  for (const char *name : {"kinetic_J", "strain_J", "potential_J", "mass_kg", "particles", "load_time_s"}) history_.names.push_back(name);
+  // a loaded face shows how far it went, every other boundary the force by which it holds the soil
+  for (size_t s = 0; s < conditions_.sources().size(); ++s)
+    for (int d = 0; d < dim; ++d)
+      history_.names.push_back(conditions_.sources()[s].name + (conditions_.loads(static_cast<int>(s)) ? "_displacement_" : "_force_") + axis[d] +
+                               (conditions_.loads(static_cast<int>(s)) ? "_m" : "_N"));
+  if (options_.directory.empty()) return;
+
+  RunHeader header{scene_.title, std::string("Talus ") + version, scene_.source, {}};
+  for (const auto &body : bodies_) header.bodies.push_back(body->name());
+  MeshPicture picture;
+  picture.dimension = dim;
+  for (const Vec<dim> &x : mesh_.position) picture.position.insert(picture.position.end(), x.begin(), x.end());
+  for (const Cell<dim> &cell : mesh_.cells) picture.cell_node.insert(picture.cell_node.end(), cell.node.begin(), cell.node.end());
+  const double total = std::accumulate(scene_.stage.begin(), scene_.stage.end(), 0., [](double s, const Stage &stage) { return s + stage.duration; });
+  RunFile file(comm_, options_.directory, header, picture);
+  results_.reset(new Results{std::move(file), History(comm_, options_.directory + "/history.csv", {history_.names.begin() + 2, history_.names.end()}),
+                             Progress(comm_, options_.directory + "/run.log", total)});
+}
+
+template <int dim, class Phases>
+Snapshot Simulation<dim, Phases>::snapshot() {
+  Snapshot s;
+  s.time = time_, s.step = steps_, s.stage = stage_name_;
+  const auto column = [&](const char *name, const char *unit, const char *meaning, int components) {
+    s.columns.push_back({name, unit, meaning, components, {}});
+  };
+  column("position", "m", "place of the particle", dim);
+  column("displacement", "m", "displacement since the start or the last reset", dim);
+  column("velocity", "m/s", "velocity of the soil skeleton", dim);
+  column("stress", "Pa", Phases::pressure ? "effective stress, positive in tension" : "stress, positive in tension", stress_size<dim>);
+  column("volume", "m3", "volume of the particle", 1);
+  column("mass", "kg", "mass of the particle", 1);
+  if (Phases::given) column("pore_pressure", "Pa", "pore pressure, positive in compression", 1);
+  const size_t first_history = s.columns.size();
+  for (const auto &body : bodies_)
+    for (const HistoryField &field : history_fields(body->law()))
+      if (std::none_of(s.columns.begin(), s.columns.end(), [&](const auto &c) { return c.name == field.name; }))
+        column(field.name, field.unit.name, field.meaning, 1);
+  std::vector<double> history(16);
+  double stress[stress_size<dim>];
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    const ParticleArrays<dim> &p = bodies_[b]->particles();
+    const auto fields = history_fields(bodies_[b]->law());
+    for (int i = 0; i < p.count; ++i) {
+      Vec<dim> x, v;
+      double volume;
+      motion_->present(*bodies_[b], i, &x, &v);
+      motion_->state(static_cast<int>(b), i, stress, history.data(), &volume);
+      s.id.push_back(p.id[i]), s.body.push_back(static_cast<int>(b));
+      size_t k = 0;
+      const auto put = [&](const double *values, int count) {
+        s.columns[k].values.insert(s.columns[k].values.end(), values, values + count);
+        ++k;
+      };
+      Vec<dim> u;
+      for (int d = 0; d < dim; ++d) u[d] = x[d] - p.reference[i][d];
+      put(x.data(), dim), put(u.data(), dim), put(v.data(), dim), put(stress, stress_size<dim>), put(&volume, 1), put(&p.mass[i], 1);
+      if (Phases::given) {
+        const double pressure = motion_->pore_pressure(x);
+        put(&pressure, 1);
+      }
+      for (size_t c = first_history; c < s.columns.size(); ++c) {
+        double value = std::numeric_limits<double>::quiet_NaN();
+        for (size_t h = 0; h < fields.size(); ++h)
+          if (s.columns[c].name == fields[h].name) value = history[h];
+        s.columns[c].values.push_back(value);
+      }
+    }
+  }
+  return s;
+}
+
+template <int dim, class Phases>
+void Simulation<dim, Phases>::write_snapshot() {
+  if (!results_ || results_->file.last_step() == steps_) return;
+  results_->file.write(snapshot());
+}
+
+template <int dim, class Phases>
+void Simulation<dim, Phases>::write_history() {
+  require(motion_->begin(time_));
+  if (!history_.rows.empty() && history_.rows.back()[1] == static_cast<double>(steps_)) return;
+  std::vector<double> mine, row;
+  for (Followed &point : points_) {
+    const int i = find(point);
+    Vec<dim> x{}, v{};
+    double displacement = 0, pressure = 0;
+    if (i >= 0) {
+      motion_->present(*bodies_[point.body], i, &x, &v);
+      displacement = (map<dim>(x) - map<dim>(bodies_[point.body]->particles().reference[i])).norm();
+      pressure = motion_->pore_pressure(x);
+    }
+    mine.insert(mine.end(), x.begin(), x.end());
+    mine.push_back(displacement), mine.push_back(map<dim>(v).norm());
+    if (Phases::given) mine.push_back(pressure);
+  }
+  double potential = 0;
+  for (const auto &body : bodies_) {
+    const ParticleArrays<dim> &p = body->particles();
+    for (int i = 0; i < p.count; ++i) {
+      Vec<dim> x, v;
+      motion_->present(*body, i, &x, &v);
+      for (int d = 0; d < dim; ++d) potential -= p.mass[i] * scene_.gravity[d] * x[d];
+    }
+  }
+  mine.push_back(potential);
+  row.resize(mine.size());
+  MPI_Allreduce(mine.data(), row.data(), static_cast<int>(mine.size()), MPI_DOUBLE, MPI_SUM, comm_);
+  Balance sums;
+  require(motion_->balance(time_, &sums));
+  row.insert(row.end() - 1, {sums.kinetic, sums.strain});
+  row.push_back(total_mass_), row.push_back(static_cast<double>(particle_count_)), row.push_back(load_time_);
+  std::vector<Vec<dim>> impulses, faces;
+  require(conditions_.take_impulses(comm_, impulses));
+  require(conditions_.face_displacements(comm_, faces));
+  const double elapsed = time_ - impulse_time_;
+  for (size_t s = 0; s < impulses.size(); ++s)
+    for (int d = 0; d < dim; ++d)
+      row.push_back(conditions_.loads(static_cast<int>(s)) ? faces[s][d] : elapsed > 0 ? impulses[s][d] / elapsed : 0);
+  impulse_time_ = time_;
+  row.insert(row.begin(), {time_, static_cast<double>(steps_)});
+  history_.rows.push_back(row);
+  if (results_) results_->history.row(time_, steps_, stage_name_.empty() ? "start" : stage_name_, {row.begin() + 2, row.end()});
+}
+
+template <int dim, class Phases>
+int Simulation<dim, Phases>::find(Followed &point) {
+  const ParticleArrays<dim> &p = bodies_[point.body]->particles();
+  if (point.index >= 0 && point.index < p.count && p.id[point.index] == point.id) return point.index;
+  point.index = -1;
+  for (int i = 0; i < p.count; ++i)
+    if (p.id[i] == point.id) point.index = i;
+  return point.index;
+}
+
+template <int dim, class Phases>
+void Simulation<dim, Phases>::note(const std::string &text) {
+  events_.push_back({time_, load_time_, stage_name_, text});
+  if (results_) results_->progress.note(text);
+}
+
+/// "(x, y) m" of the lowest rank that has a place to name, empty if none has. Collective.
+template <int dim, class Phases>
+std::string Simulation<dim, Phases>::place_of(bool mine, const Vec<dim> &where) const {
+  int rank, ranks;
+  MPI_Comm_rank(comm_, &rank), MPI_Comm_size(comm_, &ranks);
+  int first = mine ? rank : ranks;
+  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm_);
+  if (first == ranks) return "";
+  Vec<dim> place = where;
+  MPI_Bcast(place.data(), dim, MPI_DOUBLE, first, comm_);
+  std::ostringstream text;
+  for (int d = 0; d < dim; ++d) text << (d ? ", " : "(") << place[d];
+  return text.str() + ") m";
+}
+
+template <int dim, class Phases>
+void Simulation<dim, Phases>::fail(const std::string &text) {
+  std::ostringstream message;
+  message.precision(8);
+  message << text << " (t = " << time_ << " s, step " << steps_ << ", stage " << stage_name_ << ")";
+  if (results_) message << "; snapshots up to step " << results_->file.last_step() << " are in " << options_.directory;
+  if (results_) results_->progress.failure(message.str());
+  throw RunError(message.str());
+}
+
+}  // namespace talus

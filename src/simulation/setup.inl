@@ -1,0 +1,119 @@
+// From the scene to the first state: mesh, bodies, boundaries, followed points; included only where it is instantiated (src/variants).
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "scene/reader.h"
+#include "simulation/simulation_impl.h"
+
+namespace talus {
+
+template <int dim, class Phases>
+Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOptions &options, const std::string &mesh_file)
+    : comm_(comm), scene_(scene), options_(options), pressure_(scene.water, std::hypot(scene.gravity[0], scene.gravity[1])) {
+  for (BodySource &body : scene.body) {
+    laws_.push_back(read_law(body.law));
+    if (body.particles_per_cell == 0) body.particles_per_cell = dim == 2 ? 3 : 4;
+  }
+  std::vector<typename Conditions<dim>::Source> sources;
+  for (BoundarySource &b : scene.boundary) sources.push_back({b.name, b.group, read_boundary(b.kind)});
+  integrator_settings_ = read_integrator(scene.integrator);
+  integrator_ = make_integrator(integrator_settings_);
+
+  std::vector<std::pair<std::string, double>> weights;
+  for (const BodySource &body : scene.body)
+    for (const std::string &region : body.region) weights.emplace_back(region, body.particles_per_cell + 1);
+  if (options.plex)
+    mesh_ = BackgroundMesh<dim>::adopt(options.plex, scene.transfer.patch_size);
+  else
+    try {
+      mesh_ = BackgroundMesh<dim>::read(comm, mesh_file, scene.transfer.patch_size, weights);
+    } catch (const std::invalid_argument &error) {
+      scene.complain(scene.mesh.file.empty() ? "mesh.section" : "mesh.file", std::string("cannot serve: ") + error.what());
+    }
+  comm_ = mesh_.comm();
+  check_bodies();
+  check_boundaries(sources);
+  require(conditions_.setup(mesh_, std::move(sources)));
+  seed_bodies();
+  follow_points();
+  check_step();
+}
+
+template <int dim, class Phases>
+double Simulation<dim, Phases>::seeding_density(const BodySource &source, const Vec<dim> &x) const {
+  if (source.density > 0) return source.density;
+  double density = (1 - source.porosity) * source.grain_density;
+  if constexpr (Phases::given)
+    density += source.porosity * scene_.water.density * (pressure_.below_table(x, 0) ? 1 : source.saturation);
+  return density;
+}
+
+template <int dim, class Phases>
+void Simulation<dim, Phases>::seed_bodies() {
+  int stride = 1;
+  for (const BodySource &source : scene_.body) {
+    stride = std::max(stride, source.particles_per_cell);
+    for (const DenseBox &box : source.dense) stride = std::max(stride, box.particles_per_cell);
+  }
+  double wave_speed = 0;
+  movers_.resize(scene_.body.size());
+  for (size_t b = 0; b < scene_.body.size(); ++b) {
+    const BodySource &source = scene_.body[b];
+    bodies_.push_back(std::make_unique<Body<dim>>());
+    Body<dim> &body = *bodies_.back();
+    require(body.create(comm_, source, laws_[b], scene_.transfer.velocity == Velocity::apic));
+    seed<dim>(body, mesh_, stride, [&](const Vec<dim> &x) { return seeding_density(source, x); });
+    double sums[2] = {static_cast<double>(body.particles().count), 0}, totals[2];
+    sums[1] = std::accumulate(body.particles().mass, body.particles().mass + body.particles().count, 0.);
+    MPI_Allreduce(sums, totals, 2, MPI_DOUBLE, MPI_SUM, comm_);
+    const std::string path = "body." + source.name;
+    if (totals[0] == 0) scene_.complain(path, "is empty: its regions have no cells");
+    check_seeded(body, path);
+    particle_count_ += static_cast<long long>(totals[0]), total_mass_ += totals[1];
+    const double density = seeding_density(source, Vec<dim>{});
+    wave_speed = std::max(wave_speed, std::sqrt(constrained_modulus(body.law()) / density));
+    critical_.emplace_back(mesh_, body.law(), density);
+    if (!source.displacement.empty())
+      for (int i = 0; i < body.particles().count; ++i) movers_[b].push_back(i);
+    bool lost = false;
+    Vec<dim> where{};
+    require(relocate<dim>(body, mesh_, movers_[b], &lost, &where));
+    const std::string outside = place_of(lost, where);
+    if (!outside.empty()) scene_.complain(path + ".displacement", "takes particles out of the mesh near " + outside);
+    require(body.sort(mesh_.cell_count()));
+  }
+  const double relaxation = scene_.transfer.relaxation * mesh_.report().smallest_altitude / wave_speed;
+  motion_ = std::make_unique<SoilMotion<dim, Phases>>(mesh_, bodies_, conditions_, scene_.transfer, scene_.water, relaxation,
+                                                      total_mass_ / static_cast<double>(particle_count_),
+                                                      std::hypot(scene_.gravity[0], scene_.gravity[1]));
+}
+
+template <int dim, class Phases>
+void Simulation<dim, Phases>::follow_points() {
+  for (const OutputPoint &wanted : scene_.output.point) {
+    Followed point{wanted.name};
+    double nearest = std::numeric_limits<double>::infinity();
+    for (size_t b = 0; b < bodies_.size(); ++b) {
+      const ParticleArrays<dim> &p = bodies_[b]->particles();
+      for (int i = 0; i < p.count; ++i) {
+        double distance = 0;
+        for (int d = 0; d < dim; ++d) distance += (p.position[i][d] - wanted.position[d]) * (p.position[i][d] - wanted.position[d]);
+        if (distance < nearest * (1 - 1e-9) || (distance <= nearest * (1 + 1e-9) && p.id[i] < point.id))
+          nearest = distance, point.body = static_cast<int>(b), point.id = p.id[i];
+      }
+    }
+    // the same particle whatever the partition: nearest, then smallest number
+    double best;
+    MPI_Allreduce(&nearest, &best, 1, MPI_DOUBLE, MPI_MIN, comm_);
+    const bool candidate = nearest <= best * (1 + 1e-9);
+    long long id = candidate ? point.id : std::numeric_limits<long long>::max(), winner;
+    MPI_Allreduce(&id, &winner, 1, MPI_LONG_LONG, MPI_MIN, comm_);
+    int body = candidate && point.id == winner ? point.body : -1;
+    MPI_Allreduce(MPI_IN_PLACE, &body, 1, MPI_INT, MPI_MAX, comm_);
+    point.id = static_cast<PetscInt>(winner), point.body = body;
+    points_.push_back(point);
+  }
+}
+
+}  // namespace talus

@@ -1,0 +1,167 @@
+// One step after another: its length, the step itself, what all ranks agree on after it, the remap; docs/theory section 5; included only where it is instantiated (src/variants).
+#include <algorithm>
+#include <cmath>
+
+#include "simulation/simulation_impl.h"
+
+namespace talus {
+
+template <int dim, class Phases>
+double Simulation<dim, Phases>::single_step() {
+  if (stage_name_.empty()) stage_name_ = scene_.stage.front().name;
+  set_loading(scene_.stage.front(), time_);
+  require(motion_->begin(time_));
+  require(step(choose_step(std::numeric_limits<double>::max())));
+  refuse(agree());
+  if (remap_due_) require(remap());
+  return last_step_;
+}
+
+template <int dim, class Phases>
+void Simulation<dim, Phases>::advance_to(double t) {
+  while (time_ < t * (1 - 1e-12)) {
+    set_loading(scene_.stage.front(), time_);
+    require(motion_->begin(time_));
+    require(step(choose_step(t)));
+    refuse(agree());
+    if (remap_due_) require(remap());
+  }
+}
+
+template <int dim, class Phases>
+double Simulation<dim, Phases>::critical_step() {
+  require(motion_->begin(time_));
+  double local = std::numeric_limits<double>::infinity(), step;
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    const PointSet &points = motion_->points()[b];
+    int last = -1;
+    for (int q = 0; q < points.count; ++q)
+      if (points.cell[q] != last) local = std::min(local, critical_[b](motion_->grid().mesh_cell[last = points.cell[q]]));
+  }
+  MPI_Allreduce(&local, &step, 1, MPI_DOUBLE, MPI_MIN, comm_);
+  return step;
+}
+
+template <int dim, class Phases>
+double Simulation<dim, Phases>::choose_step(double until) {
+  if (critical_step_ == 0) critical_step_ = critical_step();
+  const EulerSettings &settings = std::get<EulerSettings>(integrator_settings_);
+  double step = settings.step > 0 ? settings.step : settings.fraction * critical_step_ * shrink_;
+  if (settings.step > critical_step_)
+    fail("the soil has come to cells with a critical step of " + rounded(critical_step_) + " s, but integrator.step = " + rounded(settings.step) +
+         " s; take a smaller step, or leave it out");
+  const double left = until - time_;
+  const double count = std::ceil(left / step * (1 - 1e-9));
+  if ((settings.step > 0 && count > 1) || count > 1e6) return step;
+  return left / std::max(1., count);
+}
+
+template <int dim, class Phases>
+PetscErrorCode Simulation<dim, Phases>::step(double step) {
+  PetscFunctionBeginUser;
+  PetscLogDouble start, end;
+  PetscCall(PetscTime(&start));
+  PetscCall(integrator_->advance(*motion_, time_, step));
+  PetscCall(PetscTime(&end));
+  breakdown_.step += end - start;
+  time_ += step, last_step_ = step;
+  if (!hold_loads_) load_time_ += step;
+  ++steps_;
+  remap_due_ = scene_.transfer.remap_interval == 0;
+  PetscFunctionReturn(0);
+}
+
+template <int dim, class Phases>
+typename Simulation<dim, Phases>::Verdict Simulation<dim, Phases>::agree() {
+  double mine[7] = {motion_->moved(), 1 / motion_->step_ratio(), motion_->speed_squared(), -1, motion_->smallest_volume_ratio() <= 0.2 ? 1. : 0.,
+                    !(motion_->speed_squared() < 1e300) ? 1. : 0., interrupted ? 1. : 0.};
+  if (!watched_.empty())
+    for (Followed &point : points_)
+      if (point.name == watched_) {
+        const int i = find(point);
+        if (i < 0) continue;
+        Vec<dim> x, v;
+        motion_->present(*bodies_[point.body], i, &x, &v);
+        mine[3] = map<dim>(v).norm();
+      }
+  if (mine[5]) mine[2] = 0;
+  double all[7];
+  MPI_Allreduce(mine, all, 7, MPI_DOUBLE, MPI_MAX, comm_);
+  const Verdict verdict{all[0], all[1], all[2], all[3], all[4] > 0, all[5] > 0, all[6] > 0};
+  shrink_ = 1 / verdict.shrink;
+  if (verdict.moved > scene_.transfer.remap_interval || verdict.inverted) remap_due_ = true;
+  return verdict;
+}
+
+template <int dim, class Phases>
+void Simulation<dim, Phases>::refuse(const Verdict &verdict) {
+  if (verdict.broken) {
+    Vec<dim> where{};
+    const bool mine = motion_->find_broken(&where);
+    fail("the velocity is not finite near " + place_of(mine, where) +
+         "; look at the loads there; a smaller integrator.fraction, a volume_cap or transfer.remap_interval = 0 may help");
+  }
+  if (verdict.interrupted) {
+    write_history();
+    write_snapshot();
+    fail("interrupted");
+  }
+}
+
+/// Hands the particles what the nodes learned and walks them to their cells.
+template <int dim, class Phases>
+PetscErrorCode Simulation<dim, Phases>::release() {
+  PetscFunctionBeginUser;
+  PetscLogDouble start, middle, end;
+  PetscCall(PetscTime(&start));
+  for (auto &list : movers_) list.clear();
+  PetscCall(motion_->release(time_, movers_));
+  PetscCall(PetscTime(&middle));
+  bool lost = false;
+  Vec<dim> where{};
+  for (size_t b = 0; b < bodies_.size(); ++b) PetscCall(relocate<dim>(*bodies_[b], mesh_, movers_[b], &lost, &where));
+  critical_step_ = 0, shrink_ = 1;
+  PetscCall(PetscTime(&end));
+  breakdown_.release += middle - start, breakdown_.relocate += end - middle;
+  const std::string outside = place_of(lost, where);
+  if (!outside.empty()) fail("a particle left the mesh near " + outside + "; add free space there, or a boundary that keeps soil in");
+  PetscFunctionReturn(0);
+}
+
+template <int dim, class Phases>
+PetscErrorCode Simulation<dim, Phases>::remap() {
+  PetscFunctionBeginUser;
+  PetscLogDouble start, end;
+  PetscCall(release());
+  ++remaps_;
+  constexpr int remaps_between_sorts = 20;
+  if (++since_sort_ >= remaps_between_sorts) {
+    PetscCall(PetscTime(&start));
+    for (auto &body : bodies_) PetscCall(body->sort(mesh_.cell_count()));
+    PetscCall(PetscTime(&end));
+    since_sort_ = 0, breakdown_.relocate += end - start;
+  }
+  PetscCall(check_conservation());
+  PetscCall(PetscTime(&start));
+  PetscCall(motion_->begin(time_));
+  PetscCall(PetscTime(&end));
+  breakdown_.gather += end - start;
+  PetscFunctionReturn(0);
+}
+
+template <int dim, class Phases>
+PetscErrorCode Simulation<dim, Phases>::check_conservation() {
+  PetscFunctionBeginUser;
+  double mine[2]{}, all[2];
+  for (const auto &body : bodies_) {
+    const ParticleArrays<dim> &p = body->particles();
+    mine[0] += p.count;
+    for (int i = 0; i < p.count; ++i) mine[1] += p.mass[i];
+  }
+  PetscCallMPI(MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, comm_));
+  if (all[0] != static_cast<double>(particle_count_) || std::abs(all[1] - total_mass_) > 1e-12 * total_mass_)
+    fail("particles were lost or doubled: " + std::to_string(static_cast<long long>(all[0])) + " of " + std::to_string(particle_count_) + " are left");
+  PetscFunctionReturn(0);
+}
+
+}  // namespace talus
