@@ -47,6 +47,9 @@ class SoilMotion final : public Motion {
 
   /// Hands particles what the nodes learned and frees the grid; the particles in `movers[body]` have left their cells.
   PetscErrorCode release(double t, std::vector<std::vector<int>> &movers);
+  /// The same when `begin` follows as soon as the movers have found their new cells: particles that stay are gathered in the same
+  /// sweep, `begin` adds what `movers` lists by then. In between particles have their places, but no stress.
+  PetscErrorCode release_to_next(double t, std::vector<std::vector<int>> &movers);
 
   Loading<dim> loading;
   /// Largest displacement of a node of this rank since the last remap, over its mean edge.
@@ -77,6 +80,10 @@ class SoilMotion final : public Motion {
 
   template <bool apic>
   void gather();
+  double end(double t);
+  template <bool apic>
+  void gather_staying(double flip, std::vector<std::vector<int>> &movers);
+  void forget();
   PetscErrorCode finish_gather(double t);
   PetscErrorCode gather_pore_water() requires Phases::given;
   PetscErrorCode total_force(double t, bool trial);
@@ -96,8 +103,9 @@ class SoilMotion final : public Motion {
   const Transfer &transfer_;
   GivenPressure<dim> pressure_;
   double relaxation_time_, smallest_mass_;
-  FilledGrid<dim> grid_;
-  std::vector<PointSet> points_;
+  FilledGrid<dim> grid_, next_grid_;
+  std::vector<PointSet> points_, next_points_;
+  const std::vector<std::vector<int>> *movers_ = nullptr;  ///< when all but these are gathered
 
   // nodes
   std::vector<Vec<dim>> start_velocity_, velocity_, force_, scratch_, trial_position_;

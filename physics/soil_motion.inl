@@ -33,7 +33,8 @@ SoilMotion<dim, Phases>::SoilMotion(const BackgroundMesh<dim> &mesh, std::vector
                                     Conditions<dim> &conditions, const Transfer &transfer, const Water &water,
                                     double relaxation_time, double particle_mass, double gravity)
     : mesh_(mesh), bodies_(bodies), conditions_(conditions), transfer_(transfer), pressure_(water, gravity),
-      relaxation_time_(relaxation_time), smallest_mass_(1e-6 * particle_mass), grid_(mesh), points_(bodies.size()) {
+      relaxation_time_(relaxation_time), smallest_mass_(1e-6 * particle_mass), grid_(mesh), next_grid_(mesh),
+      points_(bodies.size()), next_points_(bodies.size()) {
   const int nodes = mesh.node_count(), cells = mesh.cell_count();
   for (auto *field : {&start_velocity_, &velocity_, &mapped_start_, &force_, &scratch_}) field->assign(nodes, Vec<dim>{});
   update_.velocity.assign(nodes, Quad{}), update_.displacement.assign(nodes, Quad{});
@@ -42,44 +43,47 @@ SoilMotion<dim, Phases>::SoilMotion(const BackgroundMesh<dim> &mesh, std::vector
   increment_.resize(cells), cell_stress_.resize(cells), impedance_.resize(cells);
   patch_weight_.assign(mesh.patch_count, 0), patch_sum_.assign(mesh.patch_count, 0);
   nodal_.assign(static_cast<size_t>(nodes) * (dim + 2), 0);
-  for (size_t b = 0; b < bodies.size(); ++b) {
-    PointSet &points = points_[b];
-    points.of_cell.assign(cells, -1);
-    if (!transfer.average_stress) continue;
-    points.own_cell.resize(cells), points.own_volume.resize(cells), points.own_limit.resize(cells), points.start_volume.resize(cells);
-    points.own_stress.resize(static_cast<size_t>(cells) * components);
-    points.own_history.resize(static_cast<size_t>(cells) * bodies[b]->history_count());
-    points.start_history.resize(points.own_history.size());
-  }
+  for (auto *all : {&points_, &next_points_})
+    for (size_t b = 0; b < bodies.size(); ++b) {
+      PointSet &points = (*all)[b];
+      points.of_cell.assign(cells, -1);
+      if (!transfer.average_stress) continue;
+      points.own_cell.resize(cells), points.own_volume.resize(cells), points.own_limit.resize(cells), points.start_volume.resize(cells);
+      points.own_stress.resize(static_cast<size_t>(cells) * components);
+      points.own_history.resize(static_cast<size_t>(cells) * bodies[b]->history_count());
+      points.start_history.resize(points.own_history.size());
+    }
 }
 
 // ---- remap ----
 
+/// Adds the particles, or those that are still missing, to the grid.
 template <int dim, class Phases>
 template <bool apic>
 void SoilMotion<dim, Phases>::gather() {
   for (size_t b = 0; b < bodies_.size(); ++b) {
     PointSet &points = points_[b];
-    points.count = 0;
+    const std::vector<int> *missing = movers_ ? &(*movers_)[b] : nullptr;
+    const ParticleArrays<dim> &p = bodies_[b]->particles();
     if (transfer_.average_stress) {
-      to_nodes<dim, true, apic>(*bodies_[b], grid_, start_velocity_.data(), points);
+      to_nodes<dim, true, apic>(*bodies_[b], grid_, start_velocity_.data(), points, missing);
       points.cell = points.own_cell.data(), points.stress = points.own_stress.data(), points.history = points.own_history.data();
       points.volume = points.own_volume.data(), points.limit = points.own_limit.data();
     } else {
-      const ParticleArrays<dim> &p = bodies_[b]->particles();
       points.own_cell.resize(std::max<size_t>(points.own_cell.size(), p.count));
-      to_nodes<dim, false, apic>(*bodies_[b], grid_, start_velocity_.data(), points);
+      to_nodes<dim, false, apic>(*bodies_[b], grid_, start_velocity_.data(), points, missing);
       points.count = p.count, points.cell = points.own_cell.data(), points.stress = p.stress, points.history = p.history;
       points.volume = p.volume, points.limit = p.initial_volume;
     }
   }
+  movers_ = nullptr;
 }
 
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::begin(double t) {
   PetscFunctionBeginUser;
   if (gathered_) PetscFunctionReturn(0);
-  std::fill(start_velocity_.begin(), start_velocity_.end(), Vec<dim>{});
+  if (!movers_) std::fill(start_velocity_.begin(), start_velocity_.end(), Vec<dim>{});
   if (transfer_.velocity == Velocity::apic)
     gather<true>();
   else
@@ -176,21 +180,19 @@ void SoilMotion<dim, Phases>::set_weights(const std::vector<double> &nodal) {
   }
 }
 
+/// What the nodes learned, as particles read it; the share of their own velocity that particles keep.
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::release(double t, std::vector<std::vector<int>> &movers) {
-  PetscFunctionBeginUser;
-  const int nodes = grid_.node_count();
+double SoilMotion<dim, Phases>::end(double t) {
   const double relaxed = relaxation_time_ > 0 ? std::exp(-(t - remap_time_) / relaxation_time_) : 1;
-  const bool apic = transfer_.velocity == Velocity::apic;
   const double flip = transfer_.velocity == Velocity::flip ? relaxed * (1 - transfer_.pic_fraction) : 0;
-  for (int i = 0; i < nodes; ++i) {
+  for (int i = 0; i < grid_.node_count(); ++i) {
     const Vec<dim> &v = velocity_[i], &v0 = start_velocity_[i], &x = grid_.position[i], &X = mesh_.position[grid_.mesh_node[i]];
     for (int d = 0; d < dim; ++d) {
       update_.velocity[i][d] = v[d] - flip * v0[d];
       update_.displacement[i][d] = x[d] - X[d];
     }
   }
-  if (apic) {
+  if (transfer_.velocity == Velocity::apic) {
     affine_.resize(static_cast<size_t>(mesh_.cell_count()) * dim * dim);
     for (int c = 0; c < grid_.cell_count(); ++c)
       for (int i = 0; i < dim; ++i)
@@ -201,15 +203,58 @@ PetscErrorCode SoilMotion<dim, Phases>::release(double t, std::vector<std::vecto
           affine_[(c * dim + i) * dim + j] = g;
         }
   }
-  for (size_t b = 0; b < bodies_.size(); ++b) {
-    if (transfer_.average_stress)
-      to_particles<dim, true>(*bodies_[b], grid_, update_, flip, apic ? affine_.data() : nullptr, points_[b], movers[b]);
-    else
-      to_particles<dim, false>(*bodies_[b], grid_, update_, flip, apic ? affine_.data() : nullptr, points_[b], movers[b]);
-    for (int cell : grid_.mesh_cell) points_[b].of_cell[cell] = -1;
+  return flip;
+}
+
+template <int dim, class Phases>
+void SoilMotion<dim, Phases>::forget() {
+  for (PointSet &points : points_) {
+    for (int cell : grid_.mesh_cell) points.of_cell[cell] = -1;
+    points.count = 0;
   }
   grid_.clear();
   gathered_ = false;
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::release(double t, std::vector<std::vector<int>> &movers) {
+  PetscFunctionBeginUser;
+  const double flip = end(t);
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    const Lagrangian<dim> from{grid_, update_, flip, affine_.empty() ? nullptr : affine_.data(), points_[b]};
+    if (transfer_.average_stress)
+      to_particles<dim, true>(*bodies_[b], from, movers[b]);
+    else
+      to_particles<dim, false>(*bodies_[b], from, movers[b]);
+  }
+  forget();
+  PetscFunctionReturn(0);
+}
+
+template <int dim, class Phases>
+template <bool apic>
+void SoilMotion<dim, Phases>::gather_staying(double flip, std::vector<std::vector<int>> &movers) {
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    const Lagrangian<dim> from{grid_, update_, flip, apic ? affine_.data() : nullptr, points_[b]};
+    if (transfer_.average_stress)
+      to_next_nodes<dim, true, apic>(*bodies_[b], from, next_grid_, start_velocity_.data(), next_points_[b], movers[b]);
+    else
+      to_next_nodes<dim, false, apic>(*bodies_[b], from, next_grid_, start_velocity_.data(), next_points_[b], movers[b]);
+  }
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::release_to_next(double t, std::vector<std::vector<int>> &movers) {
+  PetscFunctionBeginUser;
+  const double flip = end(t);
+  std::fill(start_velocity_.begin(), start_velocity_.end(), Vec<dim>{});
+  if (transfer_.velocity == Velocity::apic)
+    gather_staying<true>(flip, movers);
+  else
+    gather_staying<false>(flip, movers);
+  forget();
+  std::swap(grid_, next_grid_), std::swap(points_, next_points_);
+  movers_ = &movers;
   PetscFunctionReturn(0);
 }
 

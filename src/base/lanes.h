@@ -19,4 +19,12 @@ inline void store(double *x, Quad q) {
   for (int k = 0; k < n; ++k) x[k] = q[k];
 }
 
+/// True when no lane is negative or NaN.
+inline bool none_negative(Quad q) {
+  auto good = q >= Quad{};
+  good &= __builtin_shufflevector(good, good, 2, 3, 0, 1);
+  good &= __builtin_shufflevector(good, good, 1, 0, 3, 2);
+  return good[0];
+}
+
 }  // namespace talus

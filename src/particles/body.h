@@ -47,10 +47,12 @@ class Body {
   int history_count() const { return history_count_; }
   /// Largest volume of a point with initial volume `initial`: the cap, grown by the soil's own plastic expansion [m3].
   double volume_limit(double initial, const double *history) const {
-    if (volume_cap_ == std::numeric_limits<double>::infinity()) return volume_cap_;
+    if (!capped()) return volume_cap_;
     const double expansion = expansion_field_ < 0 ? 0 : history[expansion_field_];
     return volume_cap_ * initial * (expansion > 0 ? std::exp(expansion) : 1);
   }
+  /// Is the volume of a particle limited?
+  bool capped() const { return volume_cap_ != std::numeric_limits<double>::infinity(); }
   const ParticleArrays<dim> &particles() const { return arrays_; }
 
   /// Orders the particles by cell, which keeps runs of one cell together in memory.

@@ -81,7 +81,7 @@ class Simulation final : public AnySimulation {
   void set_loading(const Stage &stage, double stage_time);
   double choose_step(double until);
   PetscErrorCode step(double step);
-  PetscErrorCode release();
+  PetscErrorCode release(bool to_next);
   PetscErrorCode remap();
   PetscErrorCode check_conservation();
   Verdict agree();

@@ -129,7 +129,7 @@ bool Simulation<dim, Phases>::stage_ends(const Stage &stage, double stage_time, 
 
 template <int dim, class Phases>
 void Simulation<dim, Phases>::reset_displacement() {
-  if (motion_->gathered()) require(release());
+  if (motion_->gathered()) require(release(false));
   for (const auto &body : bodies_) {
     const ParticleArrays<dim> &p = body->particles();
     std::copy_n(p.position, p.count, p.reference);

@@ -110,12 +110,12 @@ void Simulation<dim, Phases>::refuse(const Verdict &verdict) {
 
 /// Hands the particles what the nodes learned and walks them to their cells.
 template <int dim, class Phases>
-PetscErrorCode Simulation<dim, Phases>::release() {
+PetscErrorCode Simulation<dim, Phases>::release(bool to_next) {
   PetscFunctionBeginUser;
   PetscLogDouble start, middle, end;
   PetscCall(PetscTime(&start));
   for (auto &list : movers_) list.clear();
-  PetscCall(motion_->release(time_, movers_));
+  PetscCall(to_next ? motion_->release_to_next(time_, movers_) : motion_->release(time_, movers_));
   PetscCall(PetscTime(&middle));
   bool lost = false;
   Vec<dim> where{};
@@ -132,10 +132,11 @@ template <int dim, class Phases>
 PetscErrorCode Simulation<dim, Phases>::remap() {
   PetscFunctionBeginUser;
   PetscLogDouble start, end;
-  PetscCall(release());
-  ++remaps_;
   constexpr int remaps_between_sorts = 20;
-  if (++since_sort_ >= remaps_between_sorts) {
+  const bool sorting = ++since_sort_ >= remaps_between_sorts;
+  PetscCall(release(!sorting));
+  ++remaps_;
+  if (sorting) {
     PetscCall(PetscTime(&start));
     for (auto &body : bodies_) PetscCall(body->sort(mesh_.cell_count()));
     PetscCall(PetscTime(&end));
@@ -156,7 +157,10 @@ PetscErrorCode Simulation<dim, Phases>::check_conservation() {
   for (const auto &body : bodies_) {
     const ParticleArrays<dim> &p = body->particles();
     mine[0] += p.count;
-    for (int i = 0; i < p.count; ++i) mine[1] += p.mass[i];
+    double mass = 0;
+#pragma omp simd reduction(+ : mass)
+    for (int i = 0; i < p.count; ++i) mass += p.mass[i];
+    mine[1] += mass;
   }
   PetscCallMPI(MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, comm_));
   if (all[0] != static_cast<double>(particle_count_) || std::abs(all[1] - total_mass_) > 1e-12 * total_mass_)

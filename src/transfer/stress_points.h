@@ -1,6 +1,7 @@
 #pragma once
 /// Where stress is known during a Lagrangian part: with averaged stress one point per cell and body, otherwise the particles
 /// themselves. Both look the same to the kernel (docs/theory, section 4.3).
+#include <algorithm>
 #include <vector>
 
 namespace talus {
@@ -18,6 +19,28 @@ struct PointSet {
   std::vector<double> own_stress, own_history, own_volume, own_limit;
   std::vector<double> start_history, start_volume;  ///< at the remap: what particles gain is the difference
   std::vector<int> of_cell;                         ///< [mesh cells] point of a cell, -1: none
+
+  /// The point of a mesh cell, with sums of zero on first use.
+  int enter(int mesh_cell, int compact_cell, int components, int history_count) {
+    int &point = of_cell[mesh_cell];
+    if (point < 0) {
+      point = count++;
+      own_cell[point] = compact_cell, own_volume[point] = own_limit[point] = 0;
+      std::fill_n(own_stress.begin() + point * components, components, 0.);
+      std::fill_n(own_history.begin() + point * history_count, history_count, 0.);
+    }
+    return point;
+  }
+  /// Turns sums over particles into means weighted by volume, where the Lagrangian part starts.
+  void start(int components, int history_count) {
+    for (int q = 0; q < count; ++q) {
+      const double scale = 1 / own_volume[q];
+      for (int s = 0; s < components; ++s) own_stress[q * components + s] *= scale;
+      for (int h = 0; h < history_count; ++h) own_history[q * history_count + h] *= scale;
+    }
+    std::copy_n(own_history.begin(), count * history_count, start_history.begin());
+    std::copy_n(own_volume.begin(), count, start_volume.begin());
+  }
 };
 
 }  // namespace talus

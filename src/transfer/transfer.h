@@ -14,7 +14,7 @@ namespace talus {
 /// Barycentric coordinates of a cell as an affine map of the position, four lanes wide.
 template <int dim>
 struct BarycentricMap {
-  explicit BarycentricMap(const Cell<dim> &cell) : origin(cell.origin) {
+  explicit BarycentricMap(const Cell<dim> &cell) : origin(load<dim>(cell.origin.data())) {
     constant = Quad{1, 0, 0, 0};
     for (int d = 0; d < dim; ++d) {
       column[d] = Quad{};
@@ -24,19 +24,19 @@ struct BarycentricMap {
       }
     }
   }
-  Quad operator()(const Vec<dim> &x) const {
+  Quad operator()(Quad x) const {
     Quad n = constant;
-    for (int d = 0; d < dim; ++d) n += quad(x[d] - origin[d]) * column[d];
+    x -= origin;
+    for (int d = 0; d < dim; ++d) n += quad(x[d]) * column[d];
     return n;
   }
-  Quad constant, column[dim];
-  Vec<dim> origin;
+  Quad origin, constant, column[dim];
 };
 
-/// Adds the particles of one body to the grid: mass matrices, momentum, volumes and, with averaged stress, the stress points.
-/// `momentum` [compact nodes][dim] has room for every node of the local mesh.
+/// Adds the particles of one body to the grid: mass matrices, momentum, volumes and, with averaged stress, the stress points; those
+/// listed in `only`, or all. `momentum` [compact nodes][dim] has room for every node of the local mesh.
 template <int dim, bool averaged, bool apic>
-void to_nodes(const Body<dim> &body, FilledGrid<dim> &grid, Vec<dim> *momentum, PointSet &points);
+void to_nodes(const Body<dim> &body, FilledGrid<dim> &grid, Vec<dim> *momentum, PointSet &points, const std::vector<int> *only);
 
 /// Nodal fields that particles read at a remap, four lanes wide, by compact node.
 struct NodalUpdate {
@@ -44,14 +44,28 @@ struct NodalUpdate {
   std::vector<Quad> displacement;  ///< since the last remap
 };
 
-/// Gives the particles of one body what the nodes learned since the last remap. `flip` is the share a of their own velocity they
-/// keep; `affine` [compact cells][dim * dim] the velocity gradients of APIC (else null). Particles whose cell changed are listed in `movers`.
-template <int dim, bool averaged>
-void to_particles(Body<dim> &body, const FilledGrid<dim> &grid, const NodalUpdate &nodes, double flip, const double *affine,
-                  const PointSet &points, std::vector<int> &movers);
+/// A Lagrangian part at its end: where particles take from what the nodes learned since the last remap.
+template <int dim>
+struct Lagrangian {
+  const FilledGrid<dim> &grid;
+  const NodalUpdate &nodes;
+  double flip;             ///< the share a of their own velocity that particles keep
+  const double *affine;    ///< [compact cells][dim * dim] velocity gradients of APIC [1/s], else null
+  const PointSet &points;
+};
 
-/// Walks the listed particles of a body to their new cells and sends those that leave the rank; collective. `lost` is the position of
-/// a particle that left the mesh, if any did.
+/// Brings the particles of one body to the end of a Lagrangian part. Particles outside their cell are listed in `movers`.
+template <int dim, bool averaged>
+void to_particles(Body<dim> &body, const Lagrangian<dim> &from, std::vector<int> &movers);
+
+/// The same, and adds those that stay in their cell to the next grid in one sweep; the movers are still to be added. With averaged
+/// stress a particle that stays keeps its stress in the stress point only.
+template <int dim, bool averaged, bool apic>
+void to_next_nodes(Body<dim> &body, const Lagrangian<dim> &from, FilledGrid<dim> &grid, Vec<dim> *momentum, PointSet &points,
+                   std::vector<int> &movers);
+
+/// Walks the listed particles of a body to their new cells and sends those that leave the rank; collective. Afterwards `movers`
+/// lists the walkers that are on this rank. `lost` is set and `where` the position of a particle that left the mesh, if any did.
 template <int dim>
 PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::vector<int> &movers, bool *lost, Vec<dim> *where);
 

@@ -1,0 +1,159 @@
+#pragma once
+/// A run of particles of one cell on their way to and from the nodes: what the cell knows stays in registers, nodes are touched once.
+#include <algorithm>
+
+#include "transfer/transfer.h"
+
+namespace talus {
+
+/// Values of a history that a run keeps in registers; the rest takes loops of its own.
+inline constexpr int unrolled_history = 4;
+
+/// Gives particles of one cell what the nodes learned since the last remap.
+template <int dim, bool averaged>
+class RunFromNodes {
+ public:
+  static constexpr int vertices = dim + 1, components = stress_size<dim>;
+
+  [[gnu::always_inline]] RunFromNodes(const Body<dim> &body, const Lagrangian<dim> &from, int mesh_cell)
+      : coordinates(from.grid.mesh().cells[mesh_cell]), body_(body), flip_(quad(from.flip)) {
+    const int cell = from.grid.find_cell(mesh_cell);
+    for (int k = 0; k < vertices; ++k) {
+      velocity_[k] = from.nodes.velocity[from.grid.shape[cell].node[k]];
+      displacement_[k] = from.nodes.displacement[from.grid.shape[cell].node[k]];
+    }
+    if (from.affine) affine_ = &from.affine[cell * dim * dim];
+    if constexpr (averaged) {
+      const int point = from.points.of_cell[mesh_cell], count = body.history_count();
+      stress = from.points.stress + point * components;
+      growth_ = from.points.volume[point] / from.points.start_volume[point];
+      history_ = from.points.history + point * count, start_history_ = from.points.start_history.data() + point * count;
+      for (int h = 0; h < std::min(count, unrolled_history); ++h) gain_[h] = history_[h] - start_history_[h];
+    }
+  }
+
+  /// Moves particle i; its barycentric coordinates in the cell that it may have left.
+  [[gnu::always_inline]] Quad move(int i) const {
+    const ParticleArrays<dim> &p = body_.particles();
+    Quad v = flip_ * load<dim>(p.velocity[i].data()), x = load<dim>(p.position[i].data());
+    const Quad n = coordinates(x);
+    for (int k = 0; k < vertices; ++k) {
+      v += quad(n[k]) * velocity_[k];
+      x += quad(n[k]) * displacement_[k];
+    }
+    store<dim>(p.velocity[i].data(), v);
+    store<dim>(p.position[i].data(), x);
+    if constexpr (averaged) {
+      const int count = body_.history_count();
+#pragma GCC unroll 4
+      for (int h = 0; h < unrolled_history; ++h)
+        if (h < count) p.history[i * count + h] += gain_[h];
+      for (int h = unrolled_history; h < count; ++h) p.history[i * count + h] += history_[h] - start_history_[h];
+      p.volume[i] *= growth_;
+      if (body_.capped()) p.volume[i] = std::min(p.volume[i], body_.volume_limit(p.initial_volume[i], p.history + i * count));
+    }
+    if (affine_) std::copy_n(affine_, dim * dim, &p.affine[i * dim * dim]);
+    return coordinates(x);
+  }
+  /// Writes the stress of the cell to particle i.
+  [[gnu::always_inline]] void give_stress(int i) const {
+    if constexpr (averaged) std::copy_n(stress, components, &body_.particles().stress[i * components]);
+  }
+
+  const BarycentricMap<dim> coordinates;
+  const double *stress = nullptr;  ///< of the stress point [Pa]
+
+ private:
+  const Body<dim> &body_;
+  const Quad flip_;
+  Quad velocity_[vertices], displacement_[vertices];
+  const double *affine_ = nullptr, *history_ = nullptr, *start_history_ = nullptr;
+  double growth_ = 1, gain_[unrolled_history]{};
+};
+
+/// Adds particles of one cell to the grid, which their cell enters with them.
+template <int dim, bool averaged, bool apic>
+class RunToNodes {
+ public:
+  static constexpr int vertices = dim + 1, components = stress_size<dim>;
+
+  [[gnu::always_inline]] RunToNodes(const Body<dim> &body, FilledGrid<dim> &grid, PointSet &points, int mesh_cell)
+      : body_(body), grid_(grid), points_(points), mesh_cell_(mesh_cell) {}
+
+  /// Adds particle i with barycentric coordinates n; its stress and what `add_rest` adds apart.
+  [[gnu::always_inline]] void add(int i, Quad n) {
+    const ParticleArrays<dim> &p = body_.particles();
+    const Quad mn = quad(p.mass[i]) * n;
+    for (int k = 0; k < vertices; ++k) mass_[k] += quad(n[k]) * mn;
+    for (int d = 0; d < dim; ++d) {
+      Quad v = quad(p.velocity[i][d]);
+      if constexpr (apic) {  // velocity the affine field has at each vertex
+        const double *c = &p.affine[(i * dim + d) * dim];
+        const auto &node = grid_.mesh().cells[mesh_cell_].node;
+        for (int e = 0; e < dim; ++e) {
+          Quad x{};
+          for (int k = 0; k < vertices; ++k) x[k] = grid_.mesh().position[node[k]][e];
+          v += quad(c[e]) * (x - quad(p.position[i][e]));
+        }
+      }
+      momentum_[d] += v * mn;
+    }
+    share_ += quad(p.volume[i]) * n;
+    if constexpr (averaged) {
+      const int count = body_.history_count();
+#pragma GCC unroll 4
+      for (int h = 0; h < unrolled_history; ++h)
+        if (h < count) history_[h] += p.volume[i] * p.history[i * count + h];
+      if (body_.capped()) limit_ += p.initial_volume[i];
+    }
+    any_ = true;
+  }
+  /// Adds the stress that particle i carries itself.
+  [[gnu::always_inline]] void add_stress(int i) {
+    const ParticleArrays<dim> &p = body_.particles();
+    for (int s = 0; s < components; ++s) stress_[s] += p.volume[i] * p.stress[i * components + s];
+  }
+  /// Sums into grid and stress points; `common` is the stress of all particles added, null if they brought their own. The stress
+  /// point of the cell, -1 if there is none or nothing was added.
+  [[gnu::always_inline]] int finish(Vec<dim> *momentum, const double *common) const {
+    if (!any_) return -1;
+    const int cell = grid_.enter_cell(mesh_cell_);
+    auto &matrix = grid_.mass_matrix[cell];
+    for (int k = 0, pair = vertices; k < vertices; ++k) {
+      matrix[k] += mass_[k][k];
+      for (int l = k + 1; l < vertices; ++l) matrix[pair++] += mass_[k][l];
+    }
+    double volume = 0;
+    for (int k = 0; k < vertices; ++k) {
+      Vec<dim> &sum = momentum[grid_.shape[cell].node[k]];
+      for (int d = 0; d < dim; ++d) sum[d] += momentum_[d][k];
+      grid_.nodal_share[cell][k] += share_[k];
+      volume += share_[k];
+    }
+    if constexpr (!averaged) return -1;
+    const int count = body_.history_count(), point = points_.enter(mesh_cell_, cell, components, count);
+    points_.own_volume[point] += volume, points_.own_limit[point] += limit_;
+    double *stress = &points_.own_stress[point * components], *history = points_.own_history.data() + point * count;
+    for (int s = 0; s < components; ++s) stress[s] += common ? volume * common[s] : stress_[s];
+    for (int h = 0; h < std::min(count, unrolled_history); ++h) history[h] += history_[h];
+    return point;
+  }
+  /// Adds what a law remembers of particle i beyond the first few values.
+  void add_rest(int i, int point) const {
+    const ParticleArrays<dim> &p = body_.particles();
+    const int count = body_.history_count();
+    double *history = points_.own_history.data() + point * count;
+    for (int h = unrolled_history; h < count; ++h) history[h] += p.volume[i] * p.history[i * count + h];
+  }
+
+ private:
+  const Body<dim> &body_;
+  FilledGrid<dim> &grid_;
+  PointSet &points_;
+  const int mesh_cell_;
+  bool any_ = false;
+  Quad mass_[vertices]{}, momentum_[dim]{}, share_{};
+  double stress_[components]{}, history_[unrolled_history]{}, limit_ = 0;
+};
+
+}  // namespace talus
