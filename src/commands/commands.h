@@ -11,6 +11,7 @@ using Action = std::function<int()>;
 Action add_run(CLI::App &app);
 Action add_mesh(CLI::App &app);
 Action add_check(CLI::App &app);
+Action add_soil(CLI::App &app);
 Action add_plot(CLI::App &app);
 Action add_bench(CLI::App &app);
 Action add_verify(CLI::App &app);

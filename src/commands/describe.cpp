@@ -2,6 +2,7 @@
 
 #include "commands/commands.h"
 #include "physics/boundary/boundary.h"
+#include "physics/laws/element_test.h"
 #include "physics/laws/laws.h"
 #include "scene/describe.h"
 #include "scene/scene.h"
@@ -19,6 +20,7 @@ Action add_describe(CLI::App &app) {
     describe_one_of<Law>(describer, "body.NAME", "law");
     describe_one_of<Boundary>(describer, "boundary.NAME", "kind");
     describe_one_of<IntegratorSettings>(describer, "integrator", "kind");
+    describer.add({"File of `talus soil`", "", "A material and its tests.", "", {}}, SoilFile{});
     int rank;
     MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
     std::ostringstream nowhere;

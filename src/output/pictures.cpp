@@ -13,13 +13,13 @@
 namespace talus {
 namespace {
 
-/// The script of the source tree this program was built in, else the one installed beside the program.
-std::string script() {
-  const std::filesystem::path source = TALUS_PLOTS "/talus_plot.py";
+/// A script of the source tree this program was built in, else the one installed beside the program.
+std::string script(const char *name) {
+  const std::filesystem::path source = std::filesystem::path(TALUS_PLOTS) / name;
   if (std::filesystem::exists(source)) return source;
   std::error_code error;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  return program.parent_path().parent_path() / "share/talus/plots/talus_plot.py";
+  return program.parent_path().parent_path() / "share/talus/plots" / name;
 }
 
 /// The environment without what mpirun put there: with it, h5py would take itself for a rank of this run and wait for
@@ -41,15 +41,10 @@ bool warn(const std::string &dir, const std::string &cause) {
   return false;
 }
 
-}  // namespace
-
-bool draw_pictures(const std::string &dir, const PictureChoice &choice) {
-  std::vector<std::string> words{TALUS_PYTHON, "-B", script(), dir};  // -B: no caches among the sources
-  if (!choice.fields.empty()) words.push_back("--fields");
-  words.insert(words.end(), choice.fields.begin(), choice.fields.end());
-  if (!choice.times.empty()) words.push_back("--times");
-  words.insert(words.end(), choice.times.begin(), choice.times.end());
-  if (choice.logarithmic) words.push_back("--log");
+/// Runs a script on the results in `dir`.
+bool draw(const char *name, const std::string &dir, const std::vector<std::string> &options) {
+  std::vector<std::string> words{TALUS_PYTHON, "-B", script(name), dir};  // -B: no caches among the sources
+  words.insert(words.end(), options.begin(), options.end());
   std::vector<char *> arguments;
   for (auto &word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -63,6 +58,24 @@ bool draw_pictures(const std::string &dir, const PictureChoice &choice) {
     if (errno != EINTR) return warn(dir, std::strerror(errno));
   if (!WIFEXITED(status) || WEXITSTATUS(status)) return warn(dir, words[2] + " failed");
   return true;
+}
+
+}  // namespace
+
+bool draw_pictures(const std::string &dir, const PictureChoice &choice) {
+  std::vector<std::string> options;
+  if (!choice.fields.empty()) options.push_back("--fields");
+  options.insert(options.end(), choice.fields.begin(), choice.fields.end());
+  if (!choice.times.empty()) options.push_back("--times");
+  options.insert(options.end(), choice.times.begin(), choice.times.end());
+  if (choice.logarithmic) options.push_back("--log");
+  return draw("talus_plot.py", dir, options);
+}
+
+bool draw_element_tests(const std::string &dir, const std::vector<std::string> &tests, const std::string &title) {
+  std::vector<std::string> options{"--title", title, "--tests"};
+  options.insert(options.end(), tests.begin(), tests.end());
+  return draw("talus_soil.py", dir, options);
 }
 
 }  // namespace talus

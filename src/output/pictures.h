@@ -1,5 +1,5 @@
 #pragma once
-/// Pictures and report of a finished run, drawn by src/output/plots/talus_plot.py with matplotlib.
+/// Pictures and report of a finished run, and of element tests, drawn by src/output/plots/*.py with matplotlib.
 #include <string>
 #include <vector>
 
@@ -15,5 +15,8 @@ struct PictureChoice {
 /// Draws DIR/pictures/*.png and DIR/report.html from the results in `dir`; call it on one rank. Pictures never fail a
 /// run: false, after a warning on standard error, if it went wrong.
 bool draw_pictures(const std::string &dir, const PictureChoice &choice = {});
+
+/// Draws DIR/soil.png from the CSV files of element tests in `dir`; otherwise the same.
+bool draw_element_tests(const std::string &dir, const std::vector<std::string> &tests, const std::string &title);
 
 }  // namespace talus

@@ -255,6 +255,8 @@ void TableReader::refuse_unknown_keys() const {
   }
 }
 
+bool TableReader::has(const char *key) const { return static_cast<const toml::table *>(table_)->contains(key); }
+
 void TableReader::refuse(const std::string &sentence) const {
   const auto *table = static_cast<const toml::table *>(table_);
   throw SceneError(place(document_->file, *table, table == &document_->root) + ": " +

@@ -39,6 +39,9 @@ class TableReader {
   static TableReader from_text(const std::string &text, const std::string &name,
                                const std::vector<std::string> &overrides = {});
 
+  /// Does the table have this key?
+  bool has(const char *key) const;
+
   /// Visits the struct's fields, refuses keys that none of them claimed, then asks `value.problem()`, where there is
   /// such a member, for a sentence on what is wrong between its keys.
   template <class Struct>

@@ -220,6 +220,13 @@ const WrongWords wrong_words[] = {
     {"wrong_unit_for_a_mesh",
      {"mesh", "section.csv", "-o", "out.msh", "--size", "1", "--young-modulus", "2 m"},
      {"--young-modulus 2 m"}},
+    {"soil_that_is_not_there", {"soil", "scene.toml", "--body", "clay"}, {"--body clay", "known are sand"}},
+    {"unknown_key_of_a_test",
+     {"soil", "scene.toml", "--set", "test.a.stran=0.1"},
+     {"--set: test.a.stran is no known key; did you mean `strain`?"}},
+    {"test_of_a_saturated_oedometer",
+     {"soil", "scene.toml", "--set", "test.a.type=oedometer", "--set", "test.a.undrained=true"},
+     {"test.a", "keeps its volume", "pore_stiffness"}},
     {"no_results_to_plot", {"plot", "nowhere"}, {"nowhere holds no results"}},
 };
 
