@@ -4,6 +4,8 @@
 #include "physics/boundary/boundary.h"
 #include "physics/laws/element_test.h"
 #include "physics/laws/laws.h"
+#include "physics/pores/permeability.h"
+#include "physics/pores/retention.h"
 #include "scene/describe.h"
 #include "scene/scene.h"
 #include "solvers/integrators.h"
@@ -18,6 +20,8 @@ Action add_describe(CLI::App &app) {
     Describer describer;
     describe_scene(describer);
     describe_one_of<Law>(describer, "body.NAME", "law");
+    describe_one_of<Retention>(describer, "body.NAME.retention", "curve");
+    describe_one_of<RelativePermeability>(describer, "body.NAME.relative_permeability", "curve");
     describe_one_of<Boundary>(describer, "boundary.NAME", "kind");
     describe_one_of<IntegratorSettings>(describer, "integrator", "kind");
     describer.add({"File of `talus soil`", "", "A material and its tests.", "", {}}, SoilFile{});

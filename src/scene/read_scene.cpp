@@ -71,6 +71,8 @@ class Checks {
     functions(path + ".stress", body.stress, scene_.dimension == 2 ? 4 : 6);
     for (std::size_t i = 0; i < body.dense.size(); ++i) dense(path + ".dense." + std::to_string(i), body.dense[i]);
     weight(path, body);
+    if (body.permeability > 0 && body.hydraulic_conductivity > 0)
+      reader_.complain(path + ".permeability", "is given twice: give permeability or hydraulic_conductivity");
   }
 
   void dense(const std::string &path, const DenseBox &dense) const {

@@ -59,6 +59,8 @@ struct DenseBox {
   }
 };
 
+enum class PermeabilityChange { none, kozeny_carman, grain_share };
+
 struct BodySource {
   std::string name;                 ///< the table's own name, [body.NAME]
   std::vector<std::string> region;  ///< physical groups of cells
@@ -66,6 +68,12 @@ struct BodySource {
   double porosity = 0;              ///< [-]
   double grain_density = 0;         ///< [kg/m3]
   double saturation = 0;            ///< of the pores above the water table [-]
+  double permeability = 0;          ///< intrinsic, k [m2]; or hydraulic_conductivity
+  double hydraulic_conductivity = 0;  ///< k rho_w g / mu_w [m/s]
+  double gas_permeability = 0;      ///< intrinsic, of the gas [m2]; 0: that of the liquid
+  PermeabilityChange permeability_change = PermeabilityChange::none;  ///< with porosity
+  DeferredTable retention;              ///< [body.NAME.retention], read by physics/pores
+  DeferredTable relative_permeability;  ///< [body.NAME.relative_permeability], likewise
   int particles_per_cell = 0;       ///< 0: 3 a triangle, 4 a tetrahedron
   double volume_cap = -1;           ///< largest V_p / V_p0; 0: none; -1: 1 for cohesionless laws, else none
   std::vector<Function> velocity;             ///< initial velocity, functions of the place [m/s]
@@ -81,6 +89,12 @@ struct BodySource {
     v.number("porosity", porosity, one, Range{0, 0.99}, "porosity n");
     v.number("grain_density", grain_density, kilogram_per_cubic_metre, Range{1, 1e5}, "density of the solid grains rho_s");
     v.number("saturation", saturation, one, Range{0, 1}, "degree of saturation above the water table");
+    v.number("permeability", permeability, square_metre, Range{0, 1e-3}, "intrinsic permeability k; or give hydraulic_conductivity");
+    v.number("hydraulic_conductivity", hydraulic_conductivity, metre_per_second, Range{0, 1e3}, "hydraulic conductivity k rho_w g / mu_w; or give permeability");
+    v.number("gas_permeability", gas_permeability, square_metre, Range{0, 1e-3}, "intrinsic permeability for the gas; 0 takes that for the liquid");
+    v.choice("permeability_change", permeability_change, {{"none", PermeabilityChange::none}, {"kozeny_carman", PermeabilityChange::kozeny_carman}, {"grain_share", PermeabilityChange::grain_share}}, "how permeability follows porosity n: not, as n^3 / (1 - n)^2, or as 1 / (1 - n)^2");
+    v.deferred_table("retention", retention, "degree of saturation over suction");
+    v.deferred_table("relative_permeability", relative_permeability, "permeability over degree of saturation");
     v.integer("particles_per_cell", particles_per_cell, Range{0, 1000}, "particles seeded in a cell; 0 is 3 in a triangle, 4 in a tetrahedron");
     v.number("volume_cap", volume_cap, one, Range{-1, 100}, "largest particle volume over its initial volume; 0 is no cap; -1 caps cohesionless laws at 1");
     v.functions("velocity", velocity, metre_per_second, "initial velocity, one function of x, y, z per component");
@@ -103,10 +117,15 @@ struct BoundarySource {
   }
 };
 
+enum class Compression { linear, exponential };
+
 /// Pore water given as a function of place and time (phase model `drained`).
 struct Water {
   bool given = false;                        ///< the scene has a [water] table
   double density = 1000;                     ///< [kg/m3]
+  double bulk_modulus = 2.2e9;               ///< K_l [Pa]
+  double viscosity = 1e-3;                   ///< mu_l [Pa s]
+  Compression compression = Compression::linear;  ///< density over pressure
   std::vector<std::vector<double>> table;    ///< polyline x, elevation [m]; pressure is hydrostatic below it
   Function level = 0.0;                      ///< added to the elevation of the table, function of t [m]
   Function excess = 0.0;                     ///< added to the hydrostatic pressure, function of x, y, z, t and `table` [Pa]
@@ -115,10 +134,28 @@ struct Water {
   void fields(Visitor &&v) {
     given = true;
     v.number("density", density, kilogram_per_cubic_metre, Range{1, 1e4}, "density of the pore water");
+    v.number("bulk_modulus", bulk_modulus, pascal, Range{1e3, 1e11}, "bulk modulus K_l of the pore water");
+    v.number("viscosity", viscosity, pascal_second, Range{1e-8, 1e3}, "dynamic viscosity of the pore water");
+    v.choice("compression", compression, {{"linear", Compression::linear}, {"exponential", Compression::exponential}}, "density over pressure P: rho_0 (1 + P / K_l) or rho_0 exp(P / K_l)");
     v.points("table", table, metre, "water table: polyline of points [x, elevation]; pressure is hydrostatic below it");
     v.function("level", level, metre, Range{-1e4, 1e4}, "rise of the whole water table, function of t");
     v.function("excess", excess, pascal, Range{-1e9, 1e9}, "excess over the hydrostatic pressure, function of x, y, z, t and `table` (elevation of the water table at x)");
     v.flag("open_water_load", open_water_load, "open water above the ground rests on submerged faces");
+  }
+};
+
+/// Pore gas of the phase model `three-phase`; pressures are gauge.
+struct Gas {
+  bool given = false;             ///< the scene has a [gas] table
+  double density = 1.2;           ///< at atmospheric pressure [kg/m3]
+  double bulk_modulus = 101325;   ///< K_g; an ideal gas has its absolute pressure [Pa]
+  double viscosity = 1.8e-5;      ///< mu_g [Pa s]
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    given = true;
+    v.number("density", density, kilogram_per_cubic_metre, Range{1e-6, 1e3}, "density of the pore gas at atmospheric pressure");
+    v.number("bulk_modulus", bulk_modulus, pascal, Range{1, 1e9}, "bulk modulus K_g; the atmospheric pressure stands for an ideal gas");
+    v.number("viscosity", viscosity, pascal_second, Range{1e-9, 1e3}, "dynamic viscosity of the pore gas");
   }
 };
 
@@ -225,6 +262,7 @@ struct Scene {
   std::vector<BodySource> body;
   std::vector<BoundarySource> boundary;
   Water water;
+  Gas gas;
   std::vector<Stage> stage;
   DeferredTable integrator;  ///< [integrator], read by solvers/
   Transfer transfer;
@@ -239,6 +277,7 @@ struct Scene {
     v.named("body", body, "soils, [body.NAME]");
     v.named("boundary", boundary, "conditions on named groups of facets, [boundary.NAME]");
     v.table("water", water, "pore water of the phase model drained");
+    v.table("gas", gas, "pore gas");
     v.list("stage", stage, "stages in their order, [[stage]]");
     v.deferred_table("integrator", integrator, "time integration");
     v.table("transfer", transfer, "exchange between particles and nodes");

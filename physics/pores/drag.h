@@ -1,0 +1,25 @@
+#pragma once
+/// Drag between skeleton and fluids at a node, implicit and in closed form, docs/theory/pores.md (4.6).
+namespace talus {
+
+/// One fluid at a node: its partial mass [kg], M = sum w rho_l [kg] and Q = phi V / k, with k the mean conductivity k k_r / mu [kg/s].
+struct NodalFluid {
+  double mass, whole_mass, resistance;
+};
+
+/// Over a step gamma [s], for one velocity component: `solid` and `fluid` go from their values without drag to those with it. Momentum is
+/// conserved to round-off; where the drag is large all move together, where it vanishes nothing changes. `held`: the solid is held by
+/// a support, which takes the drag on it.
+template <int fluids>
+inline void resolve_drag(double gamma, double solid_mass, double &solid, const NodalFluid *node, double *fluid, bool held = false) {
+  double factor[fluids], momentum = solid_mass * solid, mass = solid_mass;
+  for (int a = 0; a < fluids; ++a) {
+    const double d = node[a].whole_mass > 0 ? gamma * node[a].resistance / node[a].whole_mass : 0;
+    factor[a] = d / (1 + d);
+    momentum += node[a].mass * factor[a] * fluid[a], mass += node[a].mass * factor[a];
+  }
+  if (!held) solid = momentum / mass;
+  for (int a = 0; a < fluids; ++a) fluid[a] += factor[a] * (solid - fluid[a]);
+}
+
+}  // namespace talus

@@ -1,0 +1,37 @@
+#pragma once
+/// What fills the pores, docs/theory/pores.md (1.2), (1.3). Pressures are gauge: 0 is the atmosphere's.
+#include <cmath>
+
+#include "scene/scene.h"
+
+namespace talus {
+
+struct Liquid {
+  explicit Liquid(const Water &water)
+      : density(water.density), bulk_modulus(water.bulk_modulus), viscosity(water.viscosity),
+        exponential(water.compression == Compression::exponential) {}
+  double density;       ///< rho_l0 at zero pressure [kg/m3]
+  double bulk_modulus;  ///< K_l [Pa]
+  double viscosity;     ///< mu_l [Pa s]
+  bool exponential;     ///< rho_l0 exp(P / K_l), else rho_l0 (1 + P / K_l)
+
+  double density_at(double pressure) const {
+    return density * (exponential ? std::exp(pressure / bulk_modulus) : 1 + pressure / bulk_modulus);
+  }
+  double pressure_at(double rho) const { return bulk_modulus * (exponential ? std::log(rho / density) : rho / density - 1); }
+  double density_slope(double rho) const { return (exponential ? rho : density) / bulk_modulus; }  ///< d rho / dP [kg/m3/Pa]
+};
+
+/// P = K (rho / rho_0 - 1): an ideal isothermal gas with K its absolute pressure at gauge 0, or a gas of any other bulk modulus.
+struct PoreGas {
+  explicit PoreGas(const Gas &gas) : density(gas.density), bulk_modulus(gas.bulk_modulus), viscosity(gas.viscosity) {}
+  double density;       ///< rho_g0 at gauge pressure 0 [kg/m3]
+  double bulk_modulus;  ///< K_g [Pa]
+  double viscosity;     ///< mu_g [Pa s]
+
+  double density_at(double pressure) const { return density * (1 + pressure / bulk_modulus); }
+  double pressure_at(double rho) const { return bulk_modulus * (rho / density - 1); }
+  double density_slope() const { return density / bulk_modulus; }
+};
+
+}  // namespace talus

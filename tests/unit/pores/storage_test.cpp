@@ -1,0 +1,130 @@
+// Pressures from contents: identities, the path through saturation, and what it costs.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "fixtures.h"
+#include "physics/pores/storage.h"
+
+namespace talus {
+namespace {
+
+Liquid water() {
+  Water w;
+  w.bulk_modulus = 1e8;
+  return Liquid(w);
+}
+PoreGas air() { return PoreGas(Gas{}); }
+
+TEST(Storage, liquids_invert_their_density) {
+  for (const Compression law : {Compression::linear, Compression::exponential}) {
+    Water w;
+    w.bulk_modulus = 2e7, w.compression = law;
+    const Liquid liquid(w);
+    for (double p : {-1e5, 0., 3e6}) {
+      EXPECT_NEAR(liquid.pressure_at(liquid.density_at(p)), p, 1e-6);
+      const double rho = liquid.density_at(p);
+      EXPECT_NEAR(liquid.density_slope(rho), (liquid.density_at(p + 10) - liquid.density_at(p - 10)) / 20, 1e-7 * rho / 2e7);
+    }
+  }
+}
+
+TEST(Storage, unsaturated_pressure_holds_the_content) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<> wide(0, 1);
+  const Liquid liquid = water();
+  for (const std::string &text : soils) {
+    const SoilPores soil = soil_of(text);
+    for (int k = 0; k < 2000; ++k) {
+      const double y = soil.largest_gas_share() * std::pow(wide(random), k % 5 + 1) * 0.98;
+      if (soil.suction(y) > 0.5 * liquid.bulk_modulus) continue;  // water torn apart
+      const double content = (1 - y) * liquid.density_at(-soil.suction(y));
+      double share = wide(random) * soil.largest_gas_share();  // from anywhere
+      const PorePressures p = unsaturated_pressure(soil, liquid, content, share);
+      // the content is what counts: its round-off is the share's tolerance
+      EXPECT_NEAR((1 - share) * liquid.density_at(-soil.suction(share)), content, 1e-9 * content) << text << y;
+      EXPECT_LT(p.iterations, 60);
+    }
+  }
+}
+
+TEST(Storage, three_phases_hold_both_contents) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<> wide(0, 1);
+  const Liquid liquid = water();
+  const PoreGas gas = air();
+  for (const std::string &text : soils) {
+    const SoilPores soil = soil_of(text);
+    for (int k = 0; k < 2000; ++k) {
+      const double y = residual_gas + (soil.largest_gas_share() - residual_gas) * std::pow(wide(random), k % 5 + 1) * 0.98;
+      const double pg = 1e5 * (wide(random) - 0.5), pl = pg - soil.suction(y);
+      if (pl < -0.9 * liquid.bulk_modulus) continue;
+      double share = wide(random);
+      const PorePressures p = three_phase_pressures(soil, liquid, gas, (1 - y) * liquid.density_at(pl), y * gas.density_at(pg), share);
+      EXPECT_NEAR(share, y, 2e-6 * y) << text;
+      EXPECT_NEAR(p.gas, pg, 0.5 + 1e-5 * soil.suction(y)) << text << y;
+      EXPECT_NEAR(p.liquid, pl, 0.5 + 1e-5 * soil.suction(y)) << text << y;
+    }
+  }
+}
+
+TEST(Storage, newton_takes_three_steps_in_the_mean_along_a_path) {
+  // wetting and drying through saturation in steps of 0.05 % of the pores, as large as a step of a run ever makes them
+  const SoilPores soil = soil_of(silt);
+  const Liquid liquid = water();
+  const PoreGas gas = air();
+  double dry_share = 0.5, share = 0.5, gas_content = 0.3 * gas.density;
+  long iterations = 0, gas_iterations = 0, count = 0;
+  for (int k = 0; k < 4000; ++k) {
+    const double content = 1000 * (0.7 + 0.305 * std::sin(k * 1.6e-3));
+    iterations += unsaturated_pressure(soil, liquid, content, dry_share).iterations;
+    gas_content = std::max(residual_gas, 1 - content / 1000) * gas.density;
+    gas_iterations += three_phase_pressures(soil, liquid, gas, content, gas_content, share).iterations;
+    ++count;
+  }
+  EXPECT_LE(static_cast<double>(iterations) / count, 3);
+  EXPECT_LE(static_cast<double>(gas_iterations) / count, 3);
+}
+
+TEST(Storage, passes_through_saturation_without_a_jump) {
+  for (const std::string &text : {soils[0], soils[1]}) {
+    const SoilPores soil = soil_of(text);
+    const Liquid liquid = water();
+    const PoreGas gas = air();
+    double share = 1e-3, trapped = 1e-3, last = 0, last_trapped = 0;
+    std::vector<double> up, down;
+    const int n = 2000;
+    for (int k = 0; k <= 2 * n; ++k) {
+      const double part = (k <= n ? k : 2 * n - k) / static_cast<double>(n), content = 999 + 1.2 * part;
+      const double p = unsaturated_pressure(soil, liquid, content, share).liquid;
+      const double q = three_phase_pressures(soil, liquid, gas, content, 2e-4 * gas.density, trapped).liquid;
+      (k <= n ? up : down).push_back(p);
+      if (k) {
+        EXPECT_LT(std::abs(p - last), 1.2 * liquid.bulk_modulus * 1.2e-3 / n) << text << content;  // never stiffer than the liquid
+        EXPECT_LT(std::abs(q - last_trapped), 1.2 * liquid.bulk_modulus * 1.2e-3 / n) << text << content;
+      }
+      last = p, last_trapped = q;
+    }
+    for (int k = 0; k < n; ++k) EXPECT_NEAR(down[k], up[n - 1 - k], 1e-2) << "the way back is the way there";
+  }
+}
+
+TEST(Storage, tangent_is_the_derivative_and_symmetric) {
+  const SoilPores soil = soil_of(silt);
+  const Liquid liquid = water();
+  const PoreGas gas = air();
+  double y = 0.2;
+  const double cl = (1 - y) * liquid.density_at(-soil.suction(y)), cg = y * gas.density;
+  const PorePressures p = three_phase_pressures(soil, liquid, gas, cl, cg, y);
+  const StorageTangent k = storage_tangent(soil, liquid, gas, p, y);
+  const double rl = liquid.density_at(p.liquid), rg = gas.density_at(p.gas);
+  for (const auto &[dl, dg] : {std::pair{1e-5, 0.}, {0., 1e-5}}) {  // relative changes of content per pore volume
+    double share = y;
+    const PorePressures q = three_phase_pressures(soil, liquid, gas, cl + dl * rl, cg + dg * rg, share);
+    EXPECT_NEAR(k.ll * (q.liquid - p.liquid) + k.lg * (q.gas - p.gas), dl, 2e-8);
+    EXPECT_NEAR(k.lg * (q.liquid - p.liquid) + k.gg * (q.gas - p.gas), dg, 2e-8);
+  }
+}
+
+}  // namespace
+}  // namespace talus
