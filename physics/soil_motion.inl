@@ -119,7 +119,7 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double) {
   }
   set_weights(nodal_);
   if (conditions_.has_dashpots()) measure_impedance();
-  for (int c = 0; c < cells; ++c) volume_strain_[c] = particle_volume_[c] / grid_.shape[c].volume;  // filling, borrowed room
+  for (int c = 0; c < cells; ++c) volume_strain_[c] = weight_[c] / grid_.shape[c].volume;  // filling, borrowed room
   PetscCall(conditions_.begin(grid_, impedance_, volume_strain_));
   conditions_.constrain(loading.time, grid_, start_velocity_.data(), false);
   std::copy_n(start_velocity_.begin(), nodes, velocity_.begin());

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace talus {
 namespace {
 
+constexpr double never = std::numeric_limits<double>::infinity();
 constexpr double same_direction = 0.9986;  // cosine of 3 degrees: facets of one curved face share a constraint within this
 
 template <int dim>
@@ -59,7 +61,7 @@ void Conditions<dim>::add_contact(int node, int source, const Vec<dim> &normal, 
       c.area += area;
       return;
     }
-  contacts_[index].push_back({node, source, normal, area});
+  contacts_[index].push_back({node, source, normal, area, 0, never});
 }
 
 template <int dim>
@@ -147,6 +149,9 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
     if (index >= 0) active_prescribed_.push_back({i, &prescribed_[index]});
   }
   if (!bases_.empty()) {
+    for (auto &of_node : contacts_)
+      for (Contact &c : of_node)
+        if (grid.find_node(c.node) < 0) c.capacity = 0, c.since_pressed = never;  // whoever comes here later has not pressed yet
     nodal_.assign(nodes, 0);
     for (const auto &[source, facets] : bases_)
       for (const Facet<dim> &f : facets) {
@@ -160,7 +165,7 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
       if (index < 0) continue;
       double total = 0;
       for (const Contact &c : contacts_[index]) total += c.area;
-      for (const Contact &c : contacts_[index]) active_contacts_.push_back({i, &c, nodal_[i] * c.area / total, false});
+      for (Contact &c : contacts_[index]) active_contacts_.push_back({i, &c, nodal_[i] * c.area / total, 0, false, false});
     }
   }
   for (const auto &[source, facets] : loads_)
@@ -242,8 +247,8 @@ template <int dim>
 void Conditions<dim>::constrain(double t, const FilledGrid<dim> &grid, Vec<dim> *v, bool sticking) const {
   for (const ActiveContact &c : active_contacts_) {
     const double into = dot<dim>(v[c.node], c.contact->normal);
-    if (sticking && c.sticks) v[c.node] = {};
-    else if (into > 0) add<dim>(v[c.node], -into, c.contact->normal);
+    if (sticking && c.sticks) v[c.node] = {}, add<dim>(v[c.node], into, c.contact->normal);
+    if (into > 0 || (sticking && c.presses)) add<dim>(v[c.node], -into, c.contact->normal);
   }
   for (const ActivePrescribed &p : active_prescribed_)
     for (int k = 0; k < p.condition->count; ++k)
@@ -252,11 +257,17 @@ void Conditions<dim>::constrain(double t, const FilledGrid<dim> &grid, Vec<dim> 
 }
 
 template <int dim>
-void Conditions<dim>::project(const FilledGrid<dim> &, const Vec<dim> *, Vec<dim> *force) const {
+void Conditions<dim>::project(const FilledGrid<dim> &, const Vec<dim> *v, Vec<dim> *force) const {
+  for (const Dashpot &d : active_dashpots_) map<dim>(force[d.node]) -= d.matrix * map<dim>(v[d.node]);
   for (const ActiveContact &c : active_contacts_) {
-    const double into = dot<dim>(force[c.node], c.contact->normal);
-    if (c.sticks) force[c.node] = {};
-    else if (into > 0) add<dim>(force[c.node], -into, c.contact->normal);
+    Vec<dim> &f = force[c.node], slip = v[c.node];
+    const Vec<dim> &n = c.contact->normal;
+    const double into = dot<dim>(f, n);
+    add<dim>(slip, -dot<dim>(slip, n), n);
+    const double speed = std::sqrt(dot<dim>(slip, slip));
+    if (c.sticks) f = {}, add<dim>(f, into, n);
+    else if (speed > 0) add<dim>(f, -c.force / speed, slip);
+    if (into > 0) add<dim>(f, -into, n);
   }
   for (const ActivePrescribed &p : active_prescribed_)
     for (int k = 0; k < p.condition->count; ++k)
@@ -275,18 +286,23 @@ void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &gri
     map<dim>(v[d.node]) = system.inverse() * map<dim>(before);
     account(d.node, d.source, before);
   }
+  const double answer = friction_delay_ > 0 ? 1 - std::exp(-gamma / friction_delay_) : 1;
   for (ActiveContact &c : active_contacts_) {
     const Vec<dim> before = v[c.node], &n = c.contact->normal;
-    const double into = dot<dim>(before, n);
-    c.sticks = false;
-    if (into <= 0) continue;  // separating
-    add<dim>(v[c.node], -into, n);
+    const double into = dot<dim>(before, n), m = grid.mass[c.node];
     const Friction &base = std::get<Friction>(sources_[c.contact->source].kind);
-    const double slip = std::sqrt(dot<dim>(v[c.node], v[c.node]));
-    const double hold = std::tan(base.friction_angle(t)) * into + base.adhesion(t) * c.area * gamma / grid.mass[c.node];
-    c.sticks = slip <= hold;
-    const double keep = c.sticks ? 0 : 1 - hold / slip;
-    for (double &component : v[c.node]) component *= keep;
+    Vec<dim> slip = before;
+    add<dim>(slip, -into, n);
+    c.presses = into > 0;
+    Contact &contact = *c.contact;
+    contact.since_pressed = c.presses ? 0 : contact.since_pressed + gamma;
+    if (c.presses) contact.capacity += std::tan(base.friction_angle(t)) * m * into;
+    const double rubbing = answer * contact.capacity, speed = std::sqrt(dot<dim>(slip, slip));
+    const double hold = rubbing + (contact.since_pressed <= friction_delay_ ? base.adhesion(t) * c.area * gamma : 0);
+    contact.capacity -= rubbing, c.force = hold / gamma, c.sticks = m * speed <= hold;
+    v[c.node] = {};
+    if (!c.presses) add<dim>(v[c.node], into, n);
+    if (!c.sticks) add<dim>(v[c.node], 1 - hold / (m * speed), slip);
     account(c.node, c.contact->source, before);
   }
   for (const ActivePrescribed &p : active_prescribed_)

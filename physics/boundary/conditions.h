@@ -32,6 +32,9 @@ class Conditions {
   /// Implicit in a step gamma: dashpots, contact with friction, prescribed velocities. Sums up the reactions.
   void resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v);
 
+  /// Time over which friction follows the normal force [s].
+  void set_friction_delay(double delay) { friction_delay_ = delay; }
+
   /// Follows the loaded faces: `u` is the displacement of the nodes in an accepted step.
   void follow_loads(const Vec<dim> *u);
 
@@ -53,6 +56,8 @@ class Conditions {
     int node, source;      // mesh node
     Vec<dim> normal;
     double area;
+    double capacity;       // friction impulse owed to the normal impulses of the recent past [N s]
+    double since_pressed;  // [s]
   };
   struct ActivePrescribed {
     int node;              // compact
@@ -60,9 +65,10 @@ class Conditions {
   };
   struct ActiveContact {
     int node;
-    const Contact *contact;
+    Contact *contact;
     double area;           // with soil behind it [m2]
-    bool sticks;
+    double force;          // friction against sliding in the last `resolve` [N]
+    bool presses, sticks;  // in the last `resolve`
   };
   struct LoadedFacet {
     const Facet<dim> *facet;
@@ -89,6 +95,7 @@ class Conditions {
   std::vector<LoadedFacet> active_loads_;
   std::vector<Dashpot> active_dashpots_;
   std::vector<double> nodal_;
+  double friction_delay_ = 0;
   std::vector<Vec<dim>> impulse_;
   std::vector<Vec<dim>> face_travel_;  ///< per source: sum over facets and time of area times displacement [m3]
   std::vector<char> counted_;   // [compact] this rank counts the node in global sums

@@ -22,10 +22,10 @@ inline void incline_block(Rung &rung) {
   };
   for (const int dimension : {2, 3}) {
     const std::string space = name_of(dimension) + " ";
-    const auto slide = [&](const std::string &friction, double adhesion, double duration) {
+    const auto slide = [&](const std::string &friction, double adhesion, double duration, double damping = 0) {
       std::vector<std::string> overrides{"boundary.base.friction_angle=" + friction,
                                          "boundary.base.adhesion=" + number(adhesion),
-                                         "stage.0.duration=" + number(duration)};
+                                         "stage.0.duration=" + number(duration), "stage.0.damping=" + number(damping)};
       if (dimension == 3)
         overrides.insert(
             overrides.end(),
@@ -34,8 +34,8 @@ inline void incline_block(Rung &rung) {
       return speed(rung.run(in_dimension(dimension, overrides)));
     };
     // from 0.2 s on: until the shear stress at the base has built up, friction is less than it could be
-    const auto measured = [&](const std::string &friction, double adhesion, double from, double to) {
-      return (slide(friction, adhesion, to) - slide(friction, adhesion, from)) / (to - from);
+    const auto measured = [&](const std::string &friction, double adhesion, double from, double to, double damping = 0) {
+      return (slide(friction, adhesion, to, damping) - slide(friction, adhesion, from, damping)) / (to - from);
     };
     const std::string drop = "[[0, 28], [0.7, 28], [0.700001, 15]]", of_driving = ", of g sin beta";
     rung.compare(space + "a, phi_b 20 deg" + of_driving, acceleration(20, 0) / driving,
@@ -48,10 +48,12 @@ inline void incline_block(Rung &rung) {
                  0.01, 1);
     rung.compare(space + "at rest, adhesion 6 kPa, velocity over g sin beta t", 0,
                  slide("0", 6000, 1.5) / (1.5 * driving), 0.01, 1);
-    rung.report(space + "a, phi_b 20 deg, adhesion 1 kPa" + of_driving, acceleration(20, 1000) / driving,
-                measured("20", 1000, 0.2, 1.5) / driving, 1);
-    rung.report(space + "a, adhesion 3 kPa" + of_driving, acceleration(0, 3000) / driving,
-                measured("0", 3000, 0.2, 1.5) / driving, 1);
+    rung.compare(space + "a, phi_b 20 deg, adhesion 1 kPa" + of_driving, acceleration(20, 1000) / driving,
+                 measured("20", 1000, 0.2, 1.5) / driving, 0.01, 1);
+    rung.compare(space + "a, adhesion 3 kPa" + of_driving, acceleration(0, 3000) / driving,
+                 measured("0", 3000, 0.2, 1.5) / driving, 0.01, 1);
+    rung.report(space + "a, phi_b 20 deg, local damping 0.1" + of_driving, 0.9 * acceleration(20, 0) / driving,
+                measured("20", 0, 0.2, 1.5, 0.1) / driving, 1);
   }
 }
 
