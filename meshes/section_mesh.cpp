@@ -2,6 +2,7 @@
 
 #include <gmsh.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -112,9 +113,18 @@ class SectionModel {
   }
 
   void extrude() {
-    Entities result;
     const std::vector<int> layers(options_.layers > 0 ? 1 : 0, options_.layers);
-    occ::extrude(surfaces_, 0, 0, thickness_, result, layers, {}, false);
+    std::vector<double> ends = options_.cuts;
+    ends.push_back(thickness_);
+    Entities from = surfaces_;
+    double start = 0;
+    for (double end : ends) {
+      Entities made, top;
+      occ::extrude(from, 0, 0, end - start, made, layers, {}, false);
+      for (std::size_t i = 0; i + 1 < made.size(); ++i)
+        if (made[i + 1].first == 3) top.push_back(made[i]);  // Gmsh lists each volume after the face opposite its source
+      from = top, start = end;
+    }
     occ::synchronize();
   }
 
@@ -185,10 +195,19 @@ class SectionModel {
       for (const auto &[dimension, tag] : entities(3)) {
         const auto tetrahedron = corners_of<3>(tag).at(0);
         Vec<2> middle{};
-        for (const auto &x : tetrahedron)
+        double z = 0;
+        for (const auto &x : tetrahedron) {
           for (int d = 0; d < 2; ++d) middle[d] += x[d] / 4;
-        groups_[{3, pieces_.at(piece_at(middle)).name}].push_back(tag);
+          z += x[2] / 4;
+        }
+        groups_[{3, pieces_.at(piece_at(middle)).name + part_at(z)}].push_back(tag);
       }
+  }
+
+  /// Ending of the group of cells at z.
+  std::string part_at(double z) const {
+    if (options_.cuts.empty()) return "";
+    return "_" + std::to_string(std::upper_bound(options_.cuts.begin(), options_.cuts.end(), z) - options_.cuts.begin() + 1);
   }
 
   void name_facets() {
@@ -215,6 +234,7 @@ class SectionModel {
     const double tolerance = tolerance_;
     if (dimension == 2 && z1 < tolerance) return "front";
     if (dimension == 2 && z0 > thickness_ - tolerance) return "back";
+    if (dimension == 2 && z1 - z0 < tolerance) return "";  // a cut
     for (const Polyline &polyline : section_.boundaries)
       if (is_on(polyline, {(x0 + x1) / 2, (y0 + y1) / 2}, tolerance)) return polyline.part;
     if (!is_outer) return "";

@@ -36,10 +36,14 @@ void check(const Request &request, const Section &section) {
   }
   const int layers = std::max(1, o.layers);
   const double per_layer = section.area() / (0.43 * o.size * o.size);
-  if (per_layer * (o.dimension == 3 ? 3 * layers : 1) > most_cells)
+  if (per_layer * (o.dimension == 3 ? 3. * layers * (o.cuts.size() + 1) : 1) > most_cells)
     complain("--size " + std::to_string(o.size) + " m would give more than 1e8 cells; take a larger size");
   if (o.thickness < 0) complain("--thickness must be above 0 m");
   if (o.layers < 0) complain("--layers must be 1 or more, or 0 for free tetrahedra");
+  if (!o.cuts.empty() && o.dimension == 2) complain("--cuts part the thickness of a 3D body; give --dimension 3");
+  for (std::size_t i = 0; i < o.cuts.size(); ++i)
+    if (!(o.cuts[i] > (i ? o.cuts[i - 1] : 0) && o.cuts[i] < o.thickness))
+      complain("--cuts must ascend between 0 and the thickness of " + std::to_string(o.thickness) + " m");
   for (const RefinedBox &box : o.boxes)
     if (!(box.size > 0)) complain("--refine x0 y0 x1 y1 h needs a cell size h above 0 m");
 }
@@ -133,6 +137,7 @@ int parse(int argc, char **argv, Request &request) {
   app.add_option("--dimension", request.options.dimension, "2: triangles, 3: tetrahedra")->check(CLI::IsMember({2, 3}));
   app.add_option("--thickness", request.options.thickness, "of a 3D slice [m]; default one cell size");
   app.add_option("--layers", request.options.layers, "of elements over the thickness; 0: free tetrahedra; default 1");
+  app.add_option("--cuts", request.options.cuts, "z [m] that part the thickness into groups of cells ending in _1, _2, ...");
   app.add_option("--refine", request.boxes, "x0 y0 x1 y1 h: cells of size h in a box; may be repeated")
       ->type_size(5)
       ->expected(-1);

@@ -110,6 +110,7 @@ MeshRun MeshFile::mesh_section(const Scene &scene) {
   if (scene.dimension == 3) {
     arguments.insert(arguments.end(), {"--layers", std::to_string(source.layers)});
     if (source.thickness > 0) arguments.insert(arguments.end(), {"--thickness", number(source.thickness)});
+    for (double cut : source.cuts) arguments.insert(arguments.end(), {"--cuts", number(cut)});
   }
   for (const RefineBox &box : source.refine)
     arguments.insert(arguments.end(), {"--refine", number(box.from[0]), number(box.from[1]), number(box.to[0]), number(box.to[1]), number(box.size)});

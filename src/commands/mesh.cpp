@@ -11,7 +11,7 @@ namespace {
 
 struct MeshArguments {
   std::string source, file, size, dimension = "2", thickness, layers, format;
-  std::vector<std::string> boxes;
+  std::vector<std::string> cuts, boxes;
   std::string young_modulus = "10 MPa", poisson_ratio = "0.3", density = "2000";  // a soft soil
 };
 
@@ -22,6 +22,7 @@ std::vector<std::string> options_of(const MeshArguments &a) {
       {"--size", a.size}, {"--thickness", a.thickness}, {"--layers", a.layers}, {"--format", a.format}};
   for (const auto &[name, value] : others)
     if (!value.empty()) options.insert(options.end(), {name, value});
+  for (const std::string &cut : a.cuts) options.insert(options.end(), {"--cuts", cut});
   for (std::size_t i = 0; i + 4 < a.boxes.size(); i += 5) {
     options.push_back("--refine");
     options.insert(options.end(), a.boxes.begin() + i, a.boxes.begin() + i + 5);
@@ -87,6 +88,7 @@ Action add_mesh(CLI::App &app) {
   command->add_option("--dimension", arguments->dimension, "2: triangles, 3: tetrahedra (default 2)");
   command->add_option("--thickness", arguments->thickness, "of a 3D slice [m] (default one cell size)");
   command->add_option("--layers", arguments->layers, "of elements over the thickness; 0: free tetrahedra (default 1)");
+  command->add_option("--cuts", arguments->cuts, "z [m] that part the thickness into regions ending in _1, _2, ...");
   command->add_option("--refine", arguments->boxes, "x0 y0 x1 y1 h: cells of size h in a box; may be repeated")
       ->type_size(5)
       ->expected(-1);

@@ -35,6 +35,7 @@ struct MeshSource {
   double size = 0;           ///< cell size of a section [m]
   double thickness = 0;      ///< of a 3D body cut from a section [m]; 0: one cell size
   int layers = 1;            ///< element layers over the thickness; 0: free tetrahedra
+  std::vector<double> cuts;  ///< z at which regions of a 3D body from a section are parted [m]
   std::vector<RefineBox> refine;
   template <class Visitor>
   void fields(Visitor &&v) {
@@ -43,6 +44,7 @@ struct MeshSource {
     v.number("size", size, metre, Range{0, 1e5}, "cell size of a mesh made from a section");
     v.number("thickness", thickness, metre, Range{0, 1e5}, "thickness of a 3D body cut from a section; 0 is one cell size");
     v.integer("layers", layers, Range{0, 1000}, "element layers over the thickness; 0 gives free tetrahedra");
+    v.point("cuts", cuts, metre, "ascending z that part the thickness: regions are then named region_1, region_2, ... along z");
     v.list("refine", refine, "boxes with smaller cells");
   }
 };
