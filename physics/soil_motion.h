@@ -51,6 +51,10 @@ class SoilMotion final : public Motion {
   /// sweep, `begin` adds what `movers` lists by then. In between particles have their places, but no stress.
   PetscErrorCode release_to_next(double t, std::vector<std::vector<int>> &movers);
 
+  /// The state between two steps, also in the middle of a Lagrangian part, so that it does not matter to a run where it was kept.
+  /// After the bodies; collective.
+  PetscErrorCode keep(Archive &archive);
+
   Loading<dim> loading;
   /// Largest displacement of a node of this rank since the last remap, over its mean edge.
   double moved() const { return moved_; }
@@ -84,6 +88,7 @@ class SoilMotion final : public Motion {
   template <bool apic>
   void gather_staying(double flip, std::vector<std::vector<int>> &movers);
   void forget();
+  void attach(size_t body);
   PetscErrorCode finish_gather(double t);
   PetscErrorCode gather_pore_water() requires Phases::given;
   PetscErrorCode total_force(double t, bool trial);
@@ -115,6 +120,7 @@ class SoilMotion final : public Motion {
   NodalUpdate update_;
   // cells
   std::vector<double> particle_volume_, weight_, blend_, volume_strain_;
+  std::vector<double> filling_;                   ///< integration volume over cell volume at the remap
   std::vector<double> slenderness_;               ///< sum of squared shape-function gradients at the remap [1/m2]
   std::vector<Increment<dim>> increment_;
   std::vector<std::array<double, components>> cell_stress_;

@@ -39,7 +39,7 @@ SoilMotion<dim, Phases>::SoilMotion(const BackgroundMesh<dim> &mesh, std::vector
   for (auto *field : {&start_velocity_, &velocity_, &mapped_start_, &force_, &scratch_}) field->assign(nodes, Vec<dim>{});
   update_.velocity.assign(nodes, Quad{}), update_.displacement.assign(nodes, Quad{});
   if (Phases::given) extra_mass_.assign(nodes, 0);
-  for (auto *field : {&particle_volume_, &weight_, &blend_, &volume_strain_, &slenderness_}) field->assign(cells, 0);
+  for (auto *field : {&particle_volume_, &weight_, &blend_, &filling_, &volume_strain_, &slenderness_}) field->assign(cells, 0);
   increment_.resize(cells), cell_stress_.resize(cells), impedance_.resize(cells);
   patch_weight_.assign(mesh.patch_count, 0), patch_sum_.assign(mesh.patch_count, 0);
   nodal_.assign(static_cast<size_t>(nodes) * (dim + 2), 0);
@@ -67,16 +67,25 @@ void SoilMotion<dim, Phases>::gather() {
     const ParticleArrays<dim> &p = bodies_[b]->particles();
     if (transfer_.average_stress) {
       to_nodes<dim, true, apic>(*bodies_[b], grid_, start_velocity_.data(), points, missing);
-      points.cell = points.own_cell.data(), points.stress = points.own_stress.data(), points.history = points.own_history.data();
-      points.volume = points.own_volume.data(), points.limit = points.own_limit.data();
     } else {
       points.own_cell.resize(std::max<size_t>(points.own_cell.size(), p.count));
       to_nodes<dim, false, apic>(*bodies_[b], grid_, start_velocity_.data(), points, missing);
-      points.count = p.count, points.cell = points.own_cell.data(), points.stress = p.stress, points.history = p.history;
-      points.volume = p.volume, points.limit = p.initial_volume;
+      points.count = p.count;
     }
+    attach(b);
   }
   movers_ = nullptr;
+}
+
+/// Shows the kernel where stress is: at points of their own or at the particles.
+template <int dim, class Phases>
+void SoilMotion<dim, Phases>::attach(size_t b) {
+  PointSet &points = points_[b];
+  const ParticleArrays<dim> &p = bodies_[b]->particles();
+  const bool own = transfer_.average_stress;
+  points.cell = points.own_cell.data();
+  points.stress = own ? points.own_stress.data() : p.stress, points.history = own ? points.own_history.data() : p.history;
+  points.volume = own ? points.own_volume.data() : p.volume, points.limit = own ? points.own_limit.data() : p.initial_volume;
 }
 
 template <int dim, class Phases>
@@ -119,8 +128,8 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double) {
   }
   set_weights(nodal_);
   if (conditions_.has_dashpots()) measure_impedance();
-  for (int c = 0; c < cells; ++c) volume_strain_[c] = weight_[c] / grid_.shape[c].volume;  // filling, borrowed room
-  PetscCall(conditions_.begin(grid_, impedance_, volume_strain_));
+  for (int c = 0; c < cells; ++c) filling_[c] = weight_[c] / grid_.shape[c].volume;
+  PetscCall(conditions_.begin(grid_, impedance_, filling_));
   conditions_.constrain(loading.time, grid_, start_velocity_.data(), false);
   std::copy_n(start_velocity_.begin(), nodes, velocity_.begin());
   PetscCall(back_and_forth(start_velocity_.data(), mapped_start_.data()));
@@ -667,6 +676,25 @@ void SoilMotion<dim, Phases>::state(int b, int i, double *stress, double *histor
   std::copy_n(&points.stress[q * components], components, stress);
   for (int h = 0; h < count; ++h) history[h] += points.history[q * count + h] - points.start_history[q * count + h];
   *volume = std::min(p.volume[i] * points.volume[q] / points.start_volume[q], body.volume_limit(p.initial_volume[i], history));
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::keep(Archive &archive) {
+  PetscFunctionBeginUser;
+  grid_.keep(archive);
+  archive.keep("nodes", start_velocity_, velocity_, mapped_start_, extra_mass_);
+  archive.keep("cells", particle_volume_, weight_, blend_, filling_, slenderness_, impedance_);
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    PointSet &p = points_[b];
+    archive.keep("points", p.count, p.own_cell, p.own_stress, p.own_history, p.own_volume, p.own_limit, p.start_history, p.start_volume, p.of_cell);
+    attach(b);
+  }
+  archive.keep("motion", gathered_, remap_time_, moved_, smallest_ratio_, step_ratio_, speed_squared_, sample_time_, last_pressure_time_);
+  if constexpr (Phases::given)
+    for (Sample &sample : sample_) archive.keep("pressure", sample.gradient, sample.value, sample.nodal);
+  if (archive.reading()) PetscCall(conditions_.begin(grid_, impedance_, filling_));
+  conditions_.keep(archive);
+  PetscFunctionReturn(0);
 }
 
 template <int dim, class Phases>

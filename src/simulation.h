@@ -24,6 +24,7 @@ class RunError : public std::runtime_error {
 
 struct RunOptions {
   std::string directory;       ///< of the results; empty: nothing is written
+  bool resume = false;         ///< go on from the checkpoint in the directory
   bool pictures = true;        ///< draw them when the run ends
   bool screen = true;          ///< progress line
   DM plex = nullptr;           ///< mesh of a host program, instead of the scene's
@@ -63,7 +64,7 @@ struct BodyReport {
 class AnySimulation {
  public:
   virtual ~AnySimulation() = default;
-  /// Runs all stages. Throws RunError.
+  /// Runs all stages, or what is left of them. Throws RunError, and std::invalid_argument where there is nothing to resume.
   virtual void run() = 0;
   /// Advances by steps of the scene's integrator until simulated time `t`; for host programs. Loads of the first stage apply.
   virtual void advance_to(double t) = 0;
@@ -91,7 +92,7 @@ class AnySimulation {
 /// Builds a simulation; collective over `comm`. The scene must outlive it. Throws std::invalid_argument for bad input, the same on all ranks.
 std::unique_ptr<AnySimulation> make_simulation(MPI_Comm comm, Scene &scene, const RunOptions &options);
 
-/// Set by signal handlers: the run writes a snapshot and ends with RunError.
+/// Set by signal handlers: the run writes a checkpoint and a snapshot and ends with RunError.
 extern volatile int interrupted;
 
 }  // namespace talus

@@ -324,6 +324,14 @@ PetscErrorCode Conditions<dim>::take_impulses(MPI_Comm comm, std::vector<Vec<dim
   PetscFunctionReturn(0);
 }
 
+template <int dim>
+void Conditions<dim>::keep(Archive &archive) {
+  archive.keep("boundaries", impulse_, face_travel_);
+  for (auto &contacts : contacts_)
+    for (Contact &c : contacts) archive.keep("contact", c.capacity, c.since_pressed);
+  for (ActiveContact &c : active_contacts_) archive.keep("contact now", c.force, c.presses, c.sticks);
+}
+
 template class Conditions<2>;
 template class Conditions<3>;
 

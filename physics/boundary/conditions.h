@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/archive.h"
 #include "meshes/background_mesh.h"
 #include "physics/boundary/boundary.h"
 #include "transfer/filled_grid.h"
@@ -37,6 +38,9 @@ class Conditions {
 
   /// Follows the loaded faces: `u` is the displacement of the nodes in an accepted step.
   void follow_loads(const Vec<dim> *u);
+
+  /// What `begin` does not find out anew: how contacts press and slide, impulses and ways of loaded faces.
+  void keep(Archive &archive);
 
   const std::vector<Source> &sources() const { return sources_; }
   bool has_dashpots() const { return !dashpots_.empty(); }

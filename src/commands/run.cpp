@@ -12,7 +12,7 @@ namespace {
 struct RunArguments {
   std::string scene, directory;
   std::vector<std::string> set;
-  bool no_pictures = false;
+  bool no_pictures = false, resume = false;
 };
 
 void on_signal(int) { interrupted = 1; }
@@ -22,6 +22,7 @@ int run(const RunArguments &arguments) {
   RunOptions options;
   options.directory = arguments.directory.empty() ? "results/" + std::filesystem::path(find_scene(arguments.scene)).parent_path().filename().string() : arguments.directory;
   options.pictures = !arguments.no_pictures;
+  options.resume = arguments.resume;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error of writing, not the end
@@ -40,6 +41,7 @@ Action add_run(CLI::App &app) {
   command->add_option("SCENE", arguments->scene, "scene file (.toml) or the name of a gallery scene")->required();
   command->add_option("-o,--output", arguments->directory, "folder of the results (default results/NAME)");
   command->add_option("--set", arguments->set, "override a key of the scene: key.path=value")->take_all();
+  command->add_flag("--resume", arguments->resume, "go on with the run in that folder from its last checkpoint, on as many ranks as before");
   command->add_flag("--no-pictures", arguments->no_pictures, "do not draw pictures at the end");
   return [arguments] { return run(*arguments); };
 }

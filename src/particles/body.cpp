@@ -153,6 +153,24 @@ PetscErrorCode Body<dim>::migrate(const std::vector<std::pair<int, int>> &leaver
   PetscFunctionReturn(0);
 }
 
+template <int dim>
+PetscErrorCode Body<dim>::keep(Archive &archive) {
+  PetscFunctionBeginUser;
+  PetscInt count = arrays_.count;
+  archive.keep("particles", count);
+  if (archive.reading()) PetscCall(resize(count));
+  PetscCall(give_back());
+  for (const FieldSpec &f : field_specs<dim>(history_count_, affine_)) {
+    void *values;
+    PetscCall(DMSwarmGetField(swarm_, f.name, nullptr, nullptr, &values));
+    const size_t size = f.type == PETSC_INT ? sizeof(PetscInt) : sizeof(double);
+    archive.keep_bytes(f.name, values, size * f.components * count);
+    PetscCall(DMSwarmRestoreField(swarm_, f.name, nullptr, nullptr, &values));
+  }
+  PetscCall(borrow());
+  PetscFunctionReturn(0);
+}
+
 template class Body<2>;
 template class Body<3>;
 

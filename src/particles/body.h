@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/archive.h"
 #include "base/owned.h"
 #include "base/vec.h"
 #include "meshes/background_mesh.h"
@@ -60,6 +61,8 @@ class Body {
   /// Sends each leaver (particle, rank) away; collective, also for ranks without leavers. Afterwards the arrived particles are the
   /// last ones: `first_arrival` is the index of the first.
   PetscErrorCode migrate(const std::vector<std::pair<int, int>> &leavers, int *first_arrival);
+  /// All particles of this rank, with every field that is registered.
+  PetscErrorCode keep(Archive &archive);
 
  private:
   PetscErrorCode borrow();   ///< takes the arrays out of the swarm ...

@@ -58,6 +58,12 @@ TableReader TableReader::from_text(const std::string &text, const std::string &n
   return reader;
 }
 
+std::string TableReader::values() const {
+  std::ostringstream text;
+  text << document_->root;
+  return text.str();
+}
+
 std::string read_text(const std::string &file) {
   if (std::filesystem::is_directory(file)) throw SceneError("cannot read " + file + ": it is a directory");
   std::ifstream stream(file);

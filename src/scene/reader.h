@@ -88,6 +88,9 @@ class TableReader {
   /// The sentence goes on from the key: "must name a point".
   [[noreturn]] void complain(const std::string &key_path, const std::string &sentence) const;
 
+  /// The whole file with overrides applied, as TOML without its comments.
+  std::string values() const;
+
   /// Number of the kind named at `key`; 0 for an absent key unless `deferred` announced it.
   std::size_t kind(const char *key, const std::vector<std::string> &kinds);
 

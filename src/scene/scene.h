@@ -246,7 +246,7 @@ struct Output {
   void fields(Visitor &&v) {
     v.number("interval", interval, second, Range{0, 1e9}, "time between snapshots; 0 writes at the start and end of stages only");
     v.number("history_interval", history_interval, second, Range{0, 1e9}, "time between lines of history.csv; 0 is a 200th of the longest stage");
-    v.number("checkpoint_interval", checkpoint_interval, second, Range{0, 1e9}, "time between checkpoints; 0 writes one with every snapshot");
+    v.number("checkpoint_interval", checkpoint_interval, second, Range{0, 1e9}, "time between checkpoints, from which --resume goes on; 0 writes one with every snapshot; the answer does not depend on them");
     v.named("point", point, "points whose history is written, [output.point.NAME]");
     v.texts("picture", picture, "fields that are drawn");
   }

@@ -11,20 +11,6 @@
 namespace talus {
 namespace {
 
-/// A value as a scene would write it.
-std::string literal(const toml::node &node) {
-  if (node.is_string()) return std::string("\"") + node.value_or(std::string()) + "\"";
-  if (node.is_number()) return shortest(number_of(node));
-  if (const toml::array *list = node.as_array()) {
-    std::vector<std::string> elements;
-    for (const toml::node &element : *list) elements.push_back(literal(element));
-    return std::string("[") + join(elements) + "]";
-  }
-  std::ostringstream stream;
-  node.visit([&](const auto &value) { stream << value; });
-  return stream.str();
-}
-
 bool before(const toml::node &a, const toml::node &b) {
   const auto rank = [](const toml::node &node) {
     const toml::source_region &where = node.source();
@@ -44,6 +30,19 @@ std::string place(const std::string &file, const toml::node &node, bool root) {
 
 double number_of(const toml::node &node) {
   return node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
+}
+
+std::string literal(const toml::node &node) {
+  if (node.is_string()) return std::string("\"") + node.value_or(std::string()) + "\"";
+  if (node.is_number()) return shortest(number_of(node));
+  if (const toml::array *list = node.as_array()) {
+    std::vector<std::string> elements;
+    for (const toml::node &element : *list) elements.push_back(literal(element));
+    return std::string("[") + join(elements) + "]";
+  }
+  std::ostringstream stream;
+  node.visit([&](const auto &value) { stream << value; });
+  return stream.str();
 }
 
 std::string written(const toml::node &node) {

@@ -19,6 +19,9 @@ std::string place(const std::string &file, const toml::node &node, bool root);
 /// The number of a node that is one (toml++'s own conversion refuses integers that a double rounds).
 double number_of(const toml::node &node);
 
+/// A value as a scene would write it.
+std::string literal(const toml::node &node);
+
 /// " = value" as a scene would write it, not too long, empty for tables.
 std::string written(const toml::node &node);
 

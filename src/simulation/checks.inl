@@ -68,7 +68,7 @@ void Simulation<dim, Phases>::check_seeded(const Body<dim> &body, const std::str
 /// A fixed step that the first state already forbids is bad input; one that a later state forbids ends the run.
 template <int dim, class Phases>
 void Simulation<dim, Phases>::check_step() {
-  const double step = std::get<EulerSettings>(integrator_settings_).step;
+  const double step = fixed_step();
   if (step == 0) return;
   double critical = std::numeric_limits<double>::infinity();
   for (const BodyReport &body : bodies()) critical = std::min(critical, body.critical_step);

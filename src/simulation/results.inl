@@ -10,7 +10,7 @@
 namespace talus {
 
 template <int dim, class Phases>
-void Simulation<dim, Phases>::open_results() {
+void Simulation<dim, Phases>::name_columns() {
   const char axis[] = "xyz";
   history_.names = {"time_s", "step"};
   for (const Followed &point : points_) {
@@ -25,18 +25,27 @@ void Simulation<dim, Phases>::open_results() {
     for (int d = 0; d < dim; ++d)
       history_.names.push_back(conditions_.sources()[s].name + (conditions_.loads(static_cast<int>(s)) ? "_displacement_" : "_force_") + axis[d] +
                                (conditions_.loads(static_cast<int>(s)) ? "_m" : "_N"));
-  if (options_.directory.empty()) return;
+}
 
+template <int dim, class Phases>
+void Simulation<dim, Phases>::open_results() {
+  name_columns();
+  if (options_.directory.empty()) return;
   RunHeader header{scene_.title, std::string("Talus ") + version, scene_.source, {}};
   for (const auto &body : bodies_) header.bodies.push_back(body->name());
   MeshPicture picture;
   picture.dimension = dim;
   for (const Vec<dim> &x : mesh_.position) picture.position.insert(picture.position.end(), x.begin(), x.end());
   for (const Cell<dim> &cell : mesh_.cells) picture.cell_node.insert(picture.cell_node.end(), cell.node.begin(), cell.node.end());
-  const double total = std::accumulate(scene_.stage.begin(), scene_.stage.end(), 0., [](double s, const Stage &stage) { return s + stage.duration; });
   RunFile file(comm_, options_.directory, header, picture);
-  results_.reset(new Results{std::move(file), History(comm_, options_.directory + "/history.csv", {history_.names.begin() + 2, history_.names.end()}),
-                             Progress(comm_, options_.directory + "/run.log", total)});
+  History rows(comm_, options_.directory + "/history.csv", {history_.names.begin() + 2, history_.names.end()});
+  results_.reset(new Results{std::move(file), std::move(rows), Progress(comm_, options_.directory + "/run.log", longest_duration())});
+}
+
+/// Time at which the run ends at the latest [s].
+template <int dim, class Phases>
+double Simulation<dim, Phases>::longest_duration() const {
+  return std::accumulate(scene_.stage.begin(), scene_.stage.end(), 0., [](double s, const Stage &stage) { return s + stage.duration; });
 }
 
 template <int dim, class Phases>
@@ -96,12 +105,14 @@ template <int dim, class Phases>
 void Simulation<dim, Phases>::write_snapshot() {
   if (!results_ || results_->file.last_step() == steps_) return;
   results_->file.write(snapshot());
+  last_snapshot_time_ = time_;
 }
 
 template <int dim, class Phases>
 void Simulation<dim, Phases>::write_history() {
   require(motion_->begin(time_));
-  if (!history_.rows.empty() && history_.rows.back()[1] == static_cast<double>(steps_)) return;
+  if (last_row_step_ == steps_) return;
+  last_row_step_ = steps_, last_row_time_ = time_;
   std::vector<double> mine, row;
   for (Followed &point : points_) {
     const int i = find(point);
@@ -182,6 +193,7 @@ void Simulation<dim, Phases>::fail(const std::string &text) {
   message.precision(8);
   message << text << " (t = " << time_ << " s, step " << steps_ << ", stage " << stage_name_ << ")";
   if (results_) message << "; snapshots up to step " << results_->file.last_step() << " are in " << options_.directory;
+  if (checkpoint_time_ >= 0) message << ", and --resume goes on from t = " << checkpoint_time_ << " s";
   if (results_) results_->progress.failure(message.str());
   throw RunError(message.str());
 }

@@ -4,6 +4,7 @@
 
 #include <sstream>
 
+#include "output/checkpoint.h"
 #include "output/history.h"
 #include "output/pictures.h"
 #include "output/progress.h"
@@ -62,6 +63,14 @@ class Simulation final : public AnySimulation {
     History history;
     Progress progress;
   };
+  /// How far a stage is, and what its stop criterion has seen.
+  struct StageState {
+    int number = -1;               // -1: before the first
+    double begin = 0;              // [s]
+    bool met = false, told = false;  // the criterion is met; it was said how the stage ended
+    int quiet_checks = 0;
+    double failure_time = -1, failure_load_time = 0, last_rise_time = 0, last_rise_speed = 0;
+  };
   /// What all ranks learn from one another after a step.
   struct Verdict {
     double moved = 0, shrink = 1, speed_squared = 0, watched_speed = -1;
@@ -77,8 +86,10 @@ class Simulation final : public AnySimulation {
   double seeding_density(const BodySource &source, const Vec<dim> &x) const;
   void follow_points();
   // time loop
-  void run_stage(const Stage &stage);
+  void run_stage();
+  void start_stage();
   void set_loading(const Stage &stage, double stage_time);
+  double fixed_step() const;
   double choose_step(double until);
   PetscErrorCode step(double step);
   PetscErrorCode release(bool to_next);
@@ -86,13 +97,22 @@ class Simulation final : public AnySimulation {
   PetscErrorCode check_conservation();
   Verdict agree();
   void refuse(const Verdict &verdict);
+  void heed_interrupt(const Verdict &verdict);
   bool stage_ends(const Stage &stage, double stage_time, const Verdict &verdict);
   void reset_displacement();
   std::vector<Vec<dim>> nodal_displacement();  ///< of mesh nodes; only nodes of the filled grid have one
   // output
   void open_results();
+  void resume_results();
+  void name_columns();
+  double longest_duration() const;
   void write_snapshot();
   void write_history();
+  void write_checkpoint();
+  CheckpointDoor door() const;
+  void check_door(const CheckpointDoor &found) const;
+  unsigned long long mesh_fingerprint() const;
+  PetscErrorCode keep(Archive &archive);
   void note(const std::string &text);
   int find(Followed &point);
   std::string place_of(bool mine, const Vec<dim> &where) const;
@@ -112,7 +132,6 @@ class Simulation final : public AnySimulation {
   std::vector<CriticalStep<dim>> critical_;
   std::vector<std::vector<int>> movers_;
   std::vector<Followed> points_;
-  std::vector<std::string> field_names_;
 
   std::string stage_name_;
   double time_ = 0, load_time_ = 0, critical_step_ = 0, shrink_ = 1, impulse_time_ = 0, last_step_ = 0;
@@ -120,10 +139,11 @@ class Simulation final : public AnySimulation {
   double total_mass_ = 0;
   bool hold_loads_ = false, remap_due_ = false;
   std::string watched_;
-  double failure_time_ = -1, failure_load_time_ = 0, last_rise_time_ = 0, last_rise_speed_ = 0;
-  int quiet_checks_ = 0;
+  StageState stage_;
 
   std::unique_ptr<Results> results_;
+  long long last_row_step_ = -1, checkpoints_ = 0;
+  double last_row_time_ = -1, last_snapshot_time_ = -1, checkpoint_time_ = -1;  ///< [s]
   HistoryTable history_;
   std::vector<Event> events_;
   Breakdown breakdown_;

@@ -1,19 +1,34 @@
 // Stages: what loads them, how long they last, what ends them; included only where it is instantiated (src/variants).
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "simulation/simulation_impl.h"
 
 namespace talus {
 
+/// Is the time t there, but for round-off?
+inline bool reached(double t, double now) { return now >= t * (1 - 1e-12); }
+
+/// The first of the times begin + k interval that is still to come; never for interval 0.
+inline double next_time(double begin, double interval, double now) {
+  if (interval == 0) return std::numeric_limits<double>::infinity();
+  double k = std::max(1., std::floor((now - begin) / interval));
+  while (reached(begin + k * interval, now)) ++k;
+  return begin + k * interval;
+}
+
 template <int dim, class Phases>
 void Simulation<dim, Phases>::run() {
-  open_results();
+  options_.resume ? resume_results() : open_results();
   try {
-    write_history();
-    write_snapshot();
-    for (const Stage &stage : scene_.stage) run_stage(stage);
+    if (stage_.number < 0) write_history(), write_snapshot(), start_stage(), write_checkpoint();
+    while (true) {
+      run_stage();
+      if (stage_.number + 1 == static_cast<int>(scene_.stage.size())) break;
+      start_stage();
+    }
   } catch (const RunError &) {
     throw;
   } catch (const std::runtime_error &error) {  // results that cannot be written: say how far the run came
@@ -38,31 +53,41 @@ void Simulation<dim, Phases>::set_loading(const Stage &stage, double stage_time)
 }
 
 template <int dim, class Phases>
-void Simulation<dim, Phases>::run_stage(const Stage &stage) {
-  stage_name_ = stage.name;
+void Simulation<dim, Phases>::start_stage() {
+  const int number = stage_.number + 1;
+  stage_ = StageState{};
+  stage_.number = number, stage_.begin = time_;
+}
+
+template <int dim, class Phases>
+void Simulation<dim, Phases>::run_stage() {
+  const Stage &stage = scene_.stage[stage_.number];
+  stage_name_ = stage.name, watched_ = stage.until == StopWhen::failure ? stage.failure_point : "";
   if (results_) results_->progress.stage(stage.name);
-  const double begin = time_, end = time_ + stage.duration;
+  const double begin = stage_.begin, end = begin + stage.duration;
   double longest = 0;
   for (const Stage &s : scene_.stage) longest = std::max(longest, s.duration);
-  const double history_interval = scene_.output.history_interval > 0 ? scene_.output.history_interval : longest / 200;
-  long long rows = 1, snapshots = 1;
-  quiet_checks_ = 0, failure_time_ = -1, watched_ = stage.until == StopWhen::failure ? stage.failure_point : "";
-  bool ended = false;
-  while (!ended && time_ < end * (1 - 1e-12)) {
+  const Output &output = scene_.output;
+  const double history_interval = output.history_interval > 0 ? output.history_interval : longest / 200;
+  set_loading(stage, time_ - begin);
+  while (!stage_.met && !reached(end, time_)) {
     set_loading(stage, time_ - begin);
-    const double next_row = begin + rows * history_interval;
-    const double next_snapshot = scene_.output.interval > 0 ? begin + snapshots * scene_.output.interval : end;
+    const double next_row = next_time(begin, history_interval, time_), next_snapshot = next_time(begin, output.interval, time_);
+    const double next_checkpoint = next_time(begin, output.checkpoint_interval > 0 ? output.checkpoint_interval : output.interval, time_);
     require(motion_->begin(time_));
-    require(step(choose_step(std::min({end, next_row, next_snapshot}))));
+    require(step(choose_step(fixed_step() > 0 ? end : std::min({end, next_row, next_snapshot}))));
     const Verdict verdict = agree();
     refuse(verdict);
     if (remap_due_) require(remap());
     if (results_) results_->progress.step(time_, steps_, particle_count_);
-    if (time_ >= next_row * (1 - 1e-12)) write_history(), ++rows;
-    if (time_ >= next_snapshot * (1 - 1e-12) && time_ < end * (1 - 1e-12)) write_snapshot(), ++snapshots;
-    ended = stage_ends(stage, time_ - begin, verdict);
+    if (reached(next_row, time_)) write_history();
+    if (reached(next_snapshot, time_) && !reached(end, time_)) write_snapshot();
+    stage_.met = stage_ends(stage, time_ - begin, verdict);
+    stage_.told = false;
+    if (reached(next_checkpoint, time_) && !reached(end, time_)) write_checkpoint();
+    heed_interrupt(verdict);
   }
-  if (!ended && stage.until != StopWhen::duration) {
+  if (!stage_.met && !stage_.told && stage.until != StopWhen::duration) {
     Balance sums;
     require(motion_->begin(time_));
     require(motion_->balance(time_, &sums));
@@ -73,8 +98,10 @@ void Simulation<dim, Phases>::run_stage(const Stage &stage) {
          << std::sqrt(2 * sums.kinetic / total_mass_) << " m/s";
     note(text.str());
   }
+  stage_.told = true;
   write_history();
   write_snapshot();
+  write_checkpoint();
   if (stage.reset_displacement) reset_displacement();
 }
 
@@ -97,30 +124,30 @@ bool Simulation<dim, Phases>::stage_ends(const Stage &stage, double stage_time, 
       Balance sums;
       require(motion_->begin(time_));
       require(motion_->balance(time_, &sums));
-      quiet_checks_ = std::sqrt(2 * sums.kinetic / total_mass_) < stage.rest_speed ? quiet_checks_ + 1 : 0;
-      if (quiet_checks_ < checks_of_rest) return false;
+      stage_.quiet_checks = std::sqrt(2 * sums.kinetic / total_mass_) < stage.rest_speed ? stage_.quiet_checks + 1 : 0;
+      if (stage_.quiet_checks < checks_of_rest) return false;
       note("stage " + stage.name + " came to rest");
       return true;
     }
     case StopWhen::failure: {
       // the speed must pass the threshold and be larger at each tenth of the watching time
       const double speed = verdict.watched_speed;
-      if (failure_time_ < 0) {
-        if (speed > stage.failure_speed) failure_time_ = last_rise_time_ = time_, failure_load_time_ = load_time_, last_rise_speed_ = speed;
+      if (stage_.failure_time < 0) {
+        if (speed > stage.failure_speed) stage_.failure_time = stage_.last_rise_time = time_, stage_.failure_load_time = load_time_, stage_.last_rise_speed = speed;
         return false;
       }
-      if (speed < stage.failure_speed) failure_time_ = -1;
-      else if (time_ - last_rise_time_ >= stage.failure_time / 10) {
-        if (speed <= last_rise_speed_) failure_time_ = -1;
-        last_rise_time_ = time_, last_rise_speed_ = speed;
+      if (speed < stage.failure_speed) stage_.failure_time = -1;
+      else if (time_ - stage_.last_rise_time >= stage.failure_time / 10) {
+        if (speed <= stage_.last_rise_speed) stage_.failure_time = -1;
+        stage_.last_rise_time = time_, stage_.last_rise_speed = speed;
       }
-      if (failure_time_ < 0 || time_ - failure_time_ < stage.failure_time) return false;
+      if (stage_.failure_time < 0 || time_ - stage_.failure_time < stage.failure_time) return false;
       std::ostringstream text;
       text.precision(8);
-      text << "failure at " << failure_time_ << " s (loads at t = " << failure_load_time_ << " s): point " << stage.failure_point << " passed "
+      text << "failure at " << stage_.failure_time << " s (loads at t = " << stage_.failure_load_time << " s): point " << stage.failure_point << " passed "
            << stage.failure_speed << " m/s and kept accelerating";
       note(text.str());
-      events_.back().time = failure_time_, events_.back().load_time = failure_load_time_;
+      events_.back().time = stage_.failure_time, events_.back().load_time = stage_.failure_load_time;
       return true;
     }
   }

@@ -12,8 +12,10 @@ double Simulation<dim, Phases>::single_step() {
   set_loading(scene_.stage.front(), time_);
   require(motion_->begin(time_));
   require(step(choose_step(std::numeric_limits<double>::max())));
-  refuse(agree());
+  const Verdict verdict = agree();
+  refuse(verdict);
   if (remap_due_) require(remap());
+  heed_interrupt(verdict);
   return last_step_;
 }
 
@@ -23,8 +25,10 @@ void Simulation<dim, Phases>::advance_to(double t) {
     set_loading(scene_.stage.front(), time_);
     require(motion_->begin(time_));
     require(step(choose_step(t)));
-    refuse(agree());
+    const Verdict verdict = agree();
+    refuse(verdict);
     if (remap_due_) require(remap());
+    heed_interrupt(verdict);
   }
 }
 
@@ -42,17 +46,23 @@ double Simulation<dim, Phases>::critical_step() {
   return step;
 }
 
+/// The step that the scene fixes; 0 where it follows the critical step.
+template <int dim, class Phases>
+double Simulation<dim, Phases>::fixed_step() const {
+  return std::get<EulerSettings>(integrator_settings_).step;
+}
+
 template <int dim, class Phases>
 double Simulation<dim, Phases>::choose_step(double until) {
   if (critical_step_ == 0) critical_step_ = critical_step();
-  const EulerSettings &settings = std::get<EulerSettings>(integrator_settings_);
-  double step = settings.step > 0 ? settings.step : settings.fraction * critical_step_ * shrink_;
-  if (settings.step > critical_step_)
-    fail("the soil has come to cells with a critical step of " + rounded(critical_step_) + " s, but integrator.step = " + rounded(settings.step) +
+  const double fixed = fixed_step(), fraction = std::get<EulerSettings>(integrator_settings_).fraction;
+  const double step = fixed > 0 ? fixed : fraction * critical_step_ * shrink_;
+  if (fixed > critical_step_)
+    fail("the soil has come to cells with a critical step of " + rounded(critical_step_) + " s, but integrator.step = " + rounded(fixed) +
          " s; take a smaller step, or leave it out");
   const double left = until - time_;
   const double count = std::ceil(left / step * (1 - 1e-9));
-  if ((settings.step > 0 && count > 1) || count > 1e6) return step;
+  if ((fixed > 0 && count > 1) || count > 1e6) return step;
   return left / std::max(1., count);
 }
 
@@ -101,11 +111,16 @@ void Simulation<dim, Phases>::refuse(const Verdict &verdict) {
     fail("the velocity is not finite near " + place_of(mine, where) +
          "; look at the loads there; a smaller integrator.fraction, a volume_cap or transfer.remap_interval = 0 may help");
   }
-  if (verdict.interrupted) {
-    write_history();
-    write_snapshot();
-    fail("interrupted");
-  }
+}
+
+/// The checkpoint comes first: what a run writes because it is interrupted must not be in the way when it goes on.
+template <int dim, class Phases>
+void Simulation<dim, Phases>::heed_interrupt(const Verdict &verdict) {
+  if (!verdict.interrupted) return;
+  write_checkpoint();
+  write_history();
+  write_snapshot();
+  fail("interrupted");
 }
 
 /// Hands the particles what the nodes learned and walks them to their cells.

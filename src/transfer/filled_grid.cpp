@@ -80,6 +80,14 @@ PetscErrorCode FilledGrid<dim>::sum(double *values, int width) {
   PetscFunctionReturn(0);
 }
 
+template <int dim>
+void FilledGrid<dim>::keep(Archive &archive) {
+  if (archive.reading()) clear();
+  archive.keep("grid", mesh_node, mass, position, mesh_cell, shape, mass_matrix, nodal_share, size, patch);
+  for (int i = 0; i < node_count(); ++i) compact_node_[mesh_node[i]] = i;
+  for (int c = 0; c < cell_count(); ++c) compact_cell_[mesh_cell[c]] = c;
+}
+
 template class FilledGrid<2>;
 template class FilledGrid<3>;
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "base/archive.h"
 #include "meshes/background_mesh.h"
 #include "physics/laws/stress.h"
 
@@ -38,6 +39,8 @@ class FilledGrid {
   void enter_shared_nodes();
   /// Adds up `width` <= dim * dim + 1 doubles per compact node over the ranks that share the node; collective.
   PetscErrorCode sum(double *values, int width);
+  /// Nodes and cells with what they carry.
+  void keep(Archive &archive);
 
   int node_count() const { return static_cast<int>(mesh_node.size()); }
   int cell_count() const { return static_cast<int>(mesh_cell.size()); }

@@ -1,0 +1,114 @@
+#include "output/checkpoint.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+#include "output/replace_file.h"
+#include "output/together.h"
+
+namespace talus {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char *first_line = "Talus checkpoint 1\n";
+
+std::string door_file(const std::string &dir) { return dir + "/checkpoint/door"; }
+
+std::string state_name(long long number, int rank) {
+  char name[64];
+  std::snprintf(name, sizeof name, "%06lld.%d", number, rank);
+  return name;
+}
+
+/// With a line that says what the file is, and a fingerprint by which damage is seen.
+void save(const std::string &path, const std::string &content) {
+  const auto sum = fingerprint(content.data(), content.size());
+  std::string file = first_line;
+  file.append(reinterpret_cast<const char *>(&sum), sizeof sum);
+  replace_file(path, file + content);
+}
+
+std::string load(const std::string &path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw std::runtime_error("cannot read " + path + ": " + std::strerror(errno));
+  std::string file(fs::file_size(path), '\0');
+  stream.read(file.data(), static_cast<std::streamsize>(file.size()));
+  unsigned long long sum;
+  const std::size_t head = std::strlen(first_line) + sizeof sum;
+  if (!stream || file.size() < head || file.compare(0, head - sizeof sum, first_line))
+    throw std::runtime_error(path + " is no checkpoint of this version of Talus");
+  std::memcpy(&sum, file.data() + head - sizeof sum, sizeof sum);
+  file.erase(0, head);
+  if (fingerprint(file.data(), file.size()) != sum) throw std::runtime_error(path + " is damaged: its content does not match its fingerprint");
+  return file;
+}
+
+void keep(Archive &archive, CheckpointDoor &door) {
+  archive.keep("door", door.program, door.scene, door.time, door.step, door.number, door.stage, door.ranks);
+}
+
+/// Removes the states of this rank but one.
+void remove_others(const std::string &dir, int rank, long long number) {
+  std::vector<fs::path> old;
+  const std::string mine = fs::path(state_name(number, rank)).extension();
+  for (const auto &file : fs::directory_iterator(dir + "/checkpoint"))
+    if (file.path().extension() == mine && file.path().filename() != state_name(number, rank)) old.push_back(file.path());
+  for (const auto &file : old) fs::remove(file);
+}
+
+/// `together` for what a user can mend: bad input.
+template <class Work>
+void together_or_refuse(MPI_Comm comm, Work &&work) {
+  try {
+    together(comm, work);
+  } catch (const std::runtime_error &error) {
+    throw std::invalid_argument(std::string("the run cannot be resumed: ") + error.what());
+  }
+}
+
+}  // namespace
+
+void write_checkpoint(MPI_Comm comm, const std::string &dir, CheckpointDoor door, const Archive &state) {
+  const int rank = rank_in(comm);
+  check_mpi(MPI_Comm_size(comm, &door.ranks), "counting ranks");
+  on_first_rank(comm, [&] { make_folder(dir + "/checkpoint"); });
+  const std::string path = dir + "/checkpoint/" + state_name(door.number, rank);
+  try {
+    together(comm, [&] { save(path, state.bytes()); });
+    on_first_rank(comm, [&] {
+      Archive archive;
+      keep(archive, door);
+      save(door_file(dir), archive.bytes());
+    });
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(path, ignored);  // leaves room on a full disk
+    throw;
+  }
+  together(comm, [&] { remove_others(dir, rank, door.number); });
+}
+
+CheckpointDoor read_checkpoint_door(MPI_Comm comm, const std::string &dir) {
+  CheckpointDoor door;
+  together_or_refuse(comm, [&] {
+    if (!fs::exists(door_file(dir))) throw std::runtime_error(dir + " holds no checkpoint; run the scene without --resume");
+    Archive archive(load(door_file(dir)));
+    keep(archive, door);
+  });
+  return door;
+}
+
+Archive read_checkpoint(MPI_Comm comm, const std::string &dir, const CheckpointDoor &door) {
+  Archive archive;
+  together_or_refuse(comm, [&] { archive = Archive(load(dir + "/checkpoint/" + state_name(door.number, rank_in(comm)))); });
+  return archive;
+}
+
+}  // namespace talus

@@ -1,0 +1,173 @@
+// A run that was interrupted, at whatever step, or killed, and then resumed, is the run that was not: bit for bit on the same number of
+// ranks. What cannot be resumed is refused and left as it is.
+#include <gtest/gtest.h>
+
+#include "tests/exactness/bad_input/scene.h"
+
+namespace talus {
+namespace {
+
+/// Sand that settles and then falls for ever onto a rough base, whose contacts stick and slip; strength falls with plastic strain.
+const std::string falling_scene = changed(
+    changed(changed(changed(good_scene, "density = 2000", "porosity = 0.3\ngrain_density = 2650"), "[boundary.base]\nkind = \"fixed\"", "[boundary.base]\nkind = \"friction\"\nfriction_angle = 15"),
+            "cohesion = 0\nfriction_angle = 30", "cohesion = \"1 kPa\"\nfriction_angle = 30\nresidual_cohesion = 0\nshape_factor = 20"),
+    "[[stage]]\nname = \"fall\"\nduration = 0.05\n[output]\n",
+    "[[stage]]\nname = \"settle\"\nduration = 0.02\ndamping = 0.5\nreset_displacement = true\n"
+    "[[stage]]\nname = \"fall\"\nduration = 1000\n[output]\nhistory_interval = 0.003\npoint.tip.position = [1, 0.5]\n");
+
+struct Variant {
+  const char *name;
+  std::vector<std::string> set;
+  int ranks = 1, signal = SIGINT;
+};
+
+void PrintTo(const Variant &variant, std::ostream *out) { *out << variant.name; }
+
+const Variant variants[] = {
+    {"dry", {}},
+    {"dry_when_killed", {}, 1, SIGKILL},
+    {"dry_with_checkpoints_of_their_own_times", {"output.checkpoint_interval=0.007"}, 1, SIGKILL},
+    {"dry_on_two_ranks", {}, 2, SIGTERM},
+    {"dry_with_particle_stress_and_apic", {"transfer.average_stress=false", "transfer.locking=nodal", "transfer.velocity=apic"}},
+    {"drained",
+     {"phases=drained", "water.table=[[0, 0.3], [2, 0.1]]", "water.excess=100 * t"}},
+    {"with_a_fixed_step", {"integrator.step=2e-4"}},
+    {"in_3d",
+     {"dimension=3", "mesh.thickness=0.25", "boundary.front.kind=roller", "boundary.back.kind=roller",
+      "output.point.tip.position=[1, 0.5, 0]"}},
+};
+
+class Resumed : public testing::TestWithParam<Variant> {
+ protected:
+  Resumed() { folder_.write("section.csv", good_section), folder_.write("scene.toml", falling_scene); }
+
+  /// Runs until a snapshot is there, then ends the run by a signal.
+  void run_until(const std::string &results, const std::string &snapshot, int signal, bool resume) {
+    std::vector<std::string> words{"run", "scene.toml", "-o", results, "--no-pictures"};
+    for (const std::string &key : GetParam().set) words.insert(words.end(), {"--set", key});
+    if (resume) words.push_back("--resume");
+    Program program(folder_, talus_words(words, GetParam().ranks));
+    ASSERT_TRUE(program.wait_for(folder_ / results + "/run/" + snapshot + ".h5")) << program.end().output;
+    program.signal(signal);
+    program.end();
+  }
+
+  const Folder folder_;
+};
+
+/// The first eight snapshots value by value, and the lines of history.csv up to them character by character.
+const char *comparison = R"(
+import h5py, numpy
+runs = [h5py.File(name + '/run.h5')['snapshots'] for name in ('whole', 'resumed')]
+for number in [f'{k:06d}' for k in range(8)]:
+    a, b = (run[number] for run in runs)
+    assert a.attrs['step'] == b.attrs['step'] and a.attrs['time'] == b.attrs['time'], number
+    assert a.keys() == b.keys()
+    for field in a: assert numpy.array_equal(a[field][...], b[field][...]), f'{number} {field}'
+rows = [[line for line in open(name + '/history.csv')] for name in ('whole', 'resumed')]
+end = runs[0]['000007'].attrs['time']
+kept = [[line for line in some[1:] if float(line.split(',')[0]) <= end] for some in rows]
+assert kept[0] == kept[1] and len(kept[0]) > 15, 'history'
+print('the same')
+)";
+
+TEST_P(Resumed, IsTheSameToTheBit) {
+  run_until("whole", "000008", SIGINT, false);
+  run_until("resumed", "000004", GetParam().signal, false);
+  run_until("resumed", "000008", SIGINT, true);
+  const Ending ending = Program(folder_, {PYTHON, "-c", comparison}).end();
+  EXPECT_TRUE(ending.says("the same")) << ending.output;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Resumed, testing::ValuesIn(variants), [](const auto &variant) { return variant.param.name; });
+
+/// A short run that has ended.
+class EndedRun : public testing::Test {
+ protected:
+  EndedRun() {
+    folder_.write("section.csv", good_section), folder_.write("scene.toml", good_scene);
+    EXPECT_EQ(run({}).status, 0);
+  }
+  Ending run(const std::vector<std::string> &more, int ranks = 1) {
+    std::vector<std::string> words{"run", "scene.toml", "-o", "results", "--no-pictures"};
+    words.insert(words.end(), more.begin(), more.end());
+    return talus(folder_, words, ranks);
+  }
+  /// Bad input, and nothing of the results is touched.
+  void expect_refused(const Ending &ending, const std::vector<std::string> &words) {
+    EXPECT_EQ(ending.status, 2);
+    for (const std::string &word : words) EXPECT_TRUE(ending.says(word)) << word;
+    EXPECT_EQ(ending.count("talus: "), 1);
+    EXPECT_FALSE(ending.says("PETSC ERROR"));
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "results/run/000005.h5"));
+    if (HasFailure()) ADD_FAILURE() << ending.output;
+  }
+  std::string state() const {
+    for (const auto &file : std::filesystem::directory_iterator(folder_ / "results/checkpoint"))
+      if (file.path().extension() == ".0") return "results/checkpoint/" + file.path().filename().string();
+    return "";
+  }
+  std::string content(const std::string &name) const {
+    std::ostringstream text;
+    text << std::ifstream(folder_ / name, std::ios::binary).rdbuf();
+    return text.str();
+  }
+
+  const Folder folder_;
+};
+
+TEST_F(EndedRun, GoesOnWithALongerStage) {
+  const std::string history = content("results/history.csv");
+  EXPECT_EQ(run({"--resume"}).status, 0) << "nothing is left to do";
+  EXPECT_EQ(content("results/history.csv"), history);
+  const Ending ending = run({"--resume", "--set", "stage.0.duration=0.08", "--set", "output.interval=0.02"});
+  EXPECT_EQ(ending.status, 0) << ending.output;
+  const std::string longer = content("results/history.csv");
+  EXPECT_EQ(longer.compare(0, history.size(), history), 0);
+  EXPECT_NE(longer.find("\n0.08,"), std::string::npos);
+}
+
+TEST_F(EndedRun, IsNotResumedWithAnotherSoil) {
+  expect_refused(run({"--resume", "--set", "body.sand.friction_angle=31"}), {"body.sand.friction_angle = 31", "--resume"});
+}
+
+TEST_F(EndedRun, IsNotResumedWithAnotherMesh) {
+  folder_.write("section.csv", changed(good_section, "interface0,1,0\n", "interface0,1.1,0\n"));
+  expect_refused(run({"--resume"}), {"mesh"});
+}
+
+TEST_F(EndedRun, IsNotResumedOnOtherRanks) { expect_refused(run({"--resume"}, 2), {"it ran on 1 ranks, not 2"}); }
+
+TEST_F(EndedRun, IsNotResumedFromADamagedCheckpoint) {
+  const std::string name = state(), whole = content(name);
+  std::string damaged = whole;
+  damaged[damaged.size() / 2] ^= 1;
+  folder_.write(name, damaged);
+  expect_refused(run({"--resume"}), {name + " is damaged"});
+  folder_.write(name, whole.substr(0, whole.size() - 100));
+  expect_refused(run({"--resume"}), {name + " is damaged"});
+  folder_.write(name, "");
+  expect_refused(run({"--resume"}), {name + " is no checkpoint"});
+  std::filesystem::remove(folder_ / name);
+  expect_refused(run({"--resume"}), {"cannot read " + name});
+  folder_.write("results/checkpoint/door", "?");
+  expect_refused(run({"--resume"}), {"results/checkpoint/door is no checkpoint"});
+  std::filesystem::remove_all(folder_ / "results/checkpoint");
+  expect_refused(run({"--resume"}), {"results holds no checkpoint"});
+}
+
+TEST_F(EndedRun, OutlivesAFullDisk) {
+  const std::string name = state();
+  std::vector<std::string> words{"run", "scene.toml", "-o", "results", "--no-pictures", "--resume", "--set", "stage.0.duration=1000"};
+  Program program(folder_, talus_words(words));
+  ASSERT_TRUE(program.wait_for(folder_ / "results/run/000006.h5")) << program.end().output;
+  program.limit_files(2000);
+  const Ending full = program.end();
+  EXPECT_EQ(full.status, 1);
+  EXPECT_TRUE(full.says("File too large") && full.says("--resume goes on from t = ")) << full.output;
+  const Ending ending = run({"--resume", "--set", "stage.0.duration=0.2"});
+  EXPECT_EQ(ending.status, 0) << ending.output;
+}
+
+}  // namespace
+}  // namespace talus
