@@ -84,6 +84,7 @@ class SoilMotion final : public Motion {
 
   template <bool apic>
   void gather();
+  double relaxed(double t) const;
   double end(double t);
   template <bool apic>
   void gather_staying(double flip, std::vector<std::vector<int>> &movers);
@@ -141,7 +142,7 @@ class SoilMotion final : public Motion {
   double sample_time_[2] = {0, 0}, last_pressure_time_ = 0;
 
   bool gathered_ = false;
-  double remap_time_ = 0, moved_ = 0, smallest_ratio_ = 1, step_ratio_ = 1, speed_squared_ = 0;
+  double remap_time_ = 0, own_share_ = 1, moved_ = 0, smallest_ratio_ = 1, step_ratio_ = 1, speed_squared_ = 0;
 };
 
 }  // namespace talus

@@ -99,7 +99,7 @@ PetscErrorCode SoilMotion<dim, Phases>::begin(double t) {
     gather<false>();
   grid_.enter_shared_nodes();
   PetscCall(finish_gather(t));
-  gathered_ = true, remap_time_ = t, moved_ = 0, smallest_ratio_ = 1, step_ratio_ = 1;
+  gathered_ = true, remap_time_ = t, own_share_ = 1, moved_ = 0, smallest_ratio_ = 1, step_ratio_ = 1;
   PetscFunctionReturn(0);
 }
 
@@ -189,11 +189,16 @@ void SoilMotion<dim, Phases>::set_weights(const std::vector<double> &nodal) {
   }
 }
 
+/// Share of its own velocity, which no node needs to feel, that a particle has kept since the remap, theory (4.11).
+template <int dim, class Phases>
+double SoilMotion<dim, Phases>::relaxed(double t) const {
+  return relaxation_time_ > 0 ? std::exp(-(t - remap_time_) / relaxation_time_) : 1;
+}
+
 /// What the nodes learned, as particles read it; the share of their own velocity that particles keep.
 template <int dim, class Phases>
 double SoilMotion<dim, Phases>::end(double t) {
-  const double relaxed = relaxation_time_ > 0 ? std::exp(-(t - remap_time_) / relaxation_time_) : 1;
-  const double flip = transfer_.velocity == Velocity::flip ? relaxed * (1 - transfer_.pic_fraction) : 0;
+  const double flip = transfer_.velocity == Velocity::flip ? relaxed(t) * (1 - transfer_.pic_fraction) : 0;
   for (int i = 0; i < grid_.node_count(); ++i) {
     const Vec<dim> &v = velocity_[i], &v0 = start_velocity_[i], &x = grid_.position[i], &X = mesh_.position[grid_.mesh_node[i]];
     for (int d = 0; d < dim; ++d) {
@@ -527,8 +532,9 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double, double gamma, double *v
 }
 
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::accept(double, const double *u, const double *v) {
+PetscErrorCode SoilMotion<dim, Phases>::accept(double t, const double *u, const double *v) {
   PetscFunctionBeginUser;
+  if (transfer_.velocity == Velocity::flip) own_share_ = relaxed(t);
   if (v != velocity_[0].data()) std::copy_n(reinterpret_cast<const Vec<dim> *>(v), grid_.node_count(), velocity_.begin());
   PetscCall(deform(reinterpret_cast<const Vec<dim> *>(u), false));
   conditions_.follow_loads(reinterpret_cast<const Vec<dim> *>(u));
@@ -655,10 +661,11 @@ void SoilMotion<dim, Phases>::present(const Body<dim> &body, int i, Vec<dim> *po
   if (!gathered_) return;
   const auto n = barycentric(mesh_.cells[p.cell[i]], p.position[i]);
   const auto &node = grid_.shape[grid_.find_cell(p.cell[i])].node;
+  for (double &component : *velocity) component *= own_share_;  // as a remap would find it now
   for (int k = 0; k <= dim; ++k)
     for (int d = 0; d < dim; ++d) {
       (*position)[d] += n[k] * (grid_.position[node[k]][d] - mesh_.position[grid_.mesh_node[node[k]]][d]);
-      (*velocity)[d] += n[k] * (velocity_[node[k]][d] - start_velocity_[node[k]][d]);
+      (*velocity)[d] += n[k] * (velocity_[node[k]][d] - own_share_ * start_velocity_[node[k]][d]);
     }
 }
 
@@ -689,7 +696,7 @@ PetscErrorCode SoilMotion<dim, Phases>::keep(Archive &archive) {
     archive.keep("points", p.count, p.own_cell, p.own_stress, p.own_history, p.own_volume, p.own_limit, p.start_history, p.start_volume, p.of_cell);
     attach(b);
   }
-  archive.keep("motion", gathered_, remap_time_, moved_, smallest_ratio_, step_ratio_, speed_squared_, sample_time_, last_pressure_time_);
+  archive.keep("motion", gathered_, remap_time_, own_share_, moved_, smallest_ratio_, step_ratio_, speed_squared_, sample_time_, last_pressure_time_);
   if constexpr (Phases::given)
     for (Sample &sample : sample_) archive.keep("pressure", sample.gradient, sample.value, sample.nodal);
   if (archive.reading()) PetscCall(conditions_.begin(grid_, impedance_, filling_));

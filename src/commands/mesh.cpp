@@ -15,31 +15,35 @@ struct MeshArguments {
   std::string young_modulus = "10 MPa", poisson_ratio = "0.3", density = "2000";  // a soft soil
 };
 
-/// For talus-mesh, which checks them.
-std::vector<std::string> options_of(const MeshArguments &a) {
-  std::vector<std::string> options{a.source, "-o", a.file, "--dimension", a.dimension};
-  const std::pair<const char *, std::string> others[] = {
-      {"--size", a.size}, {"--thickness", a.thickness}, {"--layers", a.layers}, {"--format", a.format}};
-  for (const auto &[name, value] : others)
-    if (!value.empty()) options.insert(options.end(), {name, value});
-  for (const std::string &cut : a.cuts) options.insert(options.end(), {"--cuts", cut});
-  for (std::size_t i = 0; i + 4 < a.boxes.size(); i += 5) {
-    options.push_back("--refine");
-    options.insert(options.end(), a.boxes.begin() + i, a.boxes.begin() + i + 5);
-  }
-  return options;
-}
-
-double quantity(const char *option, const std::string &text, Unit unit, Range range) {
-  double value;
+double in_unit_of(const char *option, const std::string &text, Unit unit) {
   try {
-    value = in_unit(text, unit);
+    return in_unit(text, unit);
   } catch (const std::invalid_argument &error) {
     throw SceneError(std::string(option) + " " + text + ": " + error.what());
   }
+}
+
+double quantity(const char *option, const std::string &text, Unit unit, Range range) {
+  const double value = in_unit_of(option, text, unit);
   if (range.low <= value && value <= range.high) return value * unit.si;
   throw SceneError(std::string(option) + " " + text + " must be from " + shortest(range.low) + " to " +
                    shortest(range.high) + " " + unit.name);
+}
+
+/// For talus-mesh, which takes metres and checks what they are good for.
+std::vector<std::string> options_of(const MeshArguments &a) {
+  std::vector<std::string> options{a.source, "-o", a.file, "--dimension", a.dimension};
+  const auto metres = [](const char *option, const std::string &text) { return shortest(in_unit_of(option, text, metre)); };
+  for (const auto &[name, value] : {std::pair{"--size", a.size}, {"--thickness", a.thickness}})
+    if (!value.empty()) options.insert(options.end(), {name, metres(name, value)});
+  for (const auto &[name, value] : {std::pair{"--layers", a.layers}, {"--format", a.format}})
+    if (!value.empty()) options.insert(options.end(), {name, value});
+  for (const std::string &cut : a.cuts) options.insert(options.end(), {"--cuts", metres("--cuts", cut)});
+  for (std::size_t i = 0; i < a.boxes.size(); ++i) {
+    if (i % 5 == 0) options.push_back("--refine");
+    options.push_back(metres("--refine", a.boxes[i]));
+  }
+  return options;
 }
 
 template <int dim>
@@ -84,11 +88,11 @@ Action add_mesh(CLI::App &app) {
       app.add_subcommand("mesh", "section to mesh file, with a report on quality and the critical step it implies");
   command->add_option("SOURCE", arguments->source, "section CSV")->required();
   command->add_option("-o,--output", arguments->file, "mesh file to write (.msh)")->required();
-  command->add_option("--size", arguments->size, "cell size [m]")->required();
+  command->add_option("--size", arguments->size, "cell size, such as 0.5 or \"50 cm\"")->required();
   command->add_option("--dimension", arguments->dimension, "2: triangles, 3: tetrahedra (default 2)");
-  command->add_option("--thickness", arguments->thickness, "of a 3D slice [m] (default one cell size)");
+  command->add_option("--thickness", arguments->thickness, "of a 3D slice (default one cell size)");
   command->add_option("--layers", arguments->layers, "of elements over the thickness; 0: free tetrahedra (default 1)");
-  command->add_option("--cuts", arguments->cuts, "z [m] that part the thickness into regions ending in _1, _2, ...");
+  command->add_option("--cuts", arguments->cuts, "z that part the thickness into regions ending in _1, _2, ...");
   command->add_option("--refine", arguments->boxes, "x0 y0 x1 y1 h: cells of size h in a box; may be repeated")
       ->type_size(5)
       ->expected(-1);

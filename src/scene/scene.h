@@ -241,14 +241,14 @@ struct Output {
   double history_interval = 0;  ///< [s]; 0: every 200th of the longest stage
   double checkpoint_interval = 0;  ///< [s]; 0: with every snapshot
   std::vector<OutputPoint> point;
-  std::vector<std::string> picture = {"displacement", "plastic_strain", "velocity", "pore_pressure"};
+  std::vector<std::string> picture;  ///< empty: displacement, plastic strain, velocity and pore pressure, as far as there are
   template <class Visitor>
   void fields(Visitor &&v) {
     v.number("interval", interval, second, Range{0, 1e9}, "time between snapshots; 0 writes at the start and end of stages only");
     v.number("history_interval", history_interval, second, Range{0, 1e9}, "time between lines of history.csv; 0 is a 200th of the longest stage");
     v.number("checkpoint_interval", checkpoint_interval, second, Range{0, 1e9}, "time between checkpoints, from which --resume goes on; 0 writes one with every snapshot; the answer does not depend on them");
     v.named("point", point, "points whose history is written, [output.point.NAME]");
-    v.texts("picture", picture, "fields that are drawn");
+    v.texts("picture", picture, "fields that are drawn: a vector by its size, a tensor by its mean, or one component such as stress_xy; none: displacement, plastic_strain, velocity, pore_pressure as far as there are");
   }
 };
 

@@ -77,4 +77,20 @@ void Simulation<dim, Phases>::check_step() {
                                            " s (2 / omega_max of the filled cells); take a smaller step, a coarser mesh, or leave step out");
 }
 
+/// A picture that nobody can draw is refused before the run, not missed after it.
+template <int dim, class Phases>
+void Simulation<dim, Phases>::check_pictures() {
+  if (scene_.output.picture.empty()) return;
+  const Snapshot state = snapshot();
+  std::vector<std::string> known;
+  for (const Column &column : state.columns)
+    if (column.name != "position") known.push_back(column.name);
+  for (const std::string &field : scene_.output.picture) {
+    const bool drawn = std::any_of(state.columns.begin(), state.columns.end(), [&](const Column &column) {
+      return field == column.name || (column.components > 1 && field.rfind(column.name + "_", 0) == 0);
+    });
+    if (!drawn) scene_.complain("output.picture", "names \"" + field + "\", which this run does not have; " + suggestion(field, known));
+  }
+}
+
 }  // namespace talus

@@ -38,6 +38,7 @@ Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOption
   seed_bodies();
   follow_points();
   check_step();
+  check_pictures();
 }
 
 template <int dim, class Phases>

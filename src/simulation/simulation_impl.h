@@ -82,6 +82,7 @@ class Simulation final : public AnySimulation {
   void check_boundaries(const std::vector<typename Conditions<dim>::Source> &sources) const;
   void check_seeded(const Body<dim> &body, const std::string &path) const;
   void check_step();
+  void check_pictures();
   void seed_bodies();
   double seeding_density(const BodySource &source, const Vec<dim> &x) const;
   void follow_points();

@@ -38,7 +38,7 @@ void Simulation<dim, Phases>::run() {
   results_->progress.finish();
   int rank;
   MPI_Comm_rank(comm_, &rank);
-  if (rank == 0 && options_.pictures) draw_pictures(options_.directory);
+  if (rank == 0 && options_.pictures) draw_pictures(options_.directory, {.fields = scene_.output.picture, .times = {}});
 }
 
 template <int dim, class Phases>

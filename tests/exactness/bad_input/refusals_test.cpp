@@ -130,6 +130,11 @@ const Fault faults[] = {
      "[integrator]\nstep = \"1 s\"\n[output]",
      {"scene.toml line 22", "integrator.step"},
      2},
+    {"picture_of_a_field_not_there",
+     "scene.toml",
+     "[output]",
+     "[output]\npicture = [\"velocity\", \"plastic_strane\"]",
+     {"scene.toml line 22", "output.picture", "did you mean `plastic_strain`?"}},
     // sections
     {"section_not_there",
      "scene.toml",
@@ -220,6 +225,10 @@ const WrongWords wrong_words[] = {
     {"wrong_unit_for_a_mesh",
      {"mesh", "section.csv", "-o", "out.msh", "--size", "1", "--young-modulus", "2 m"},
      {"--young-modulus 2 m"}},
+    {"wrong_unit_for_a_cell_size",
+     {"mesh", "section.csv", "-o", "out.msh", "--size", "1 s"},
+     {"--size 1 s"}},
+    {"nothing_to_resume", {"run", "scene.toml", "-o", "results", "--resume"}, {"results holds no checkpoint"}},
     {"soil_that_is_not_there", {"soil", "scene.toml", "--body", "clay"}, {"--body clay", "known are sand"}},
     {"unknown_key_of_a_test",
      {"soil", "scene.toml", "--set", "test.a.stran=0.1"},
@@ -229,6 +238,15 @@ const WrongWords wrong_words[] = {
      {"test.a", "keeps its volume", "pore_stiffness"}},
     {"no_results_to_plot", {"plot", "nowhere"}, {"nowhere holds no results"}},
 };
+
+TEST(RightArguments, HaveUnits) {
+  const Folder folder;
+  folder.write("section.csv", good_section);
+  const Ending plain = talus(folder, {"mesh", "section.csv", "-o", "out.msh", "--size", "0.25"});
+  const Ending in_unit = talus(folder, {"mesh", "section.csv", "-o", "out.msh", "--size", "25 cm"});
+  EXPECT_EQ(in_unit.status, 0);
+  EXPECT_EQ(in_unit.output, plain.output);
+}
 
 class WrongArguments : public testing::TestWithParam<WrongWords> {};
 
