@@ -7,6 +7,7 @@
 
 #include "base/version.h"
 #include "commands/commands.h"
+#include "commands/gallery.h"
 #include "scene/reader.h"
 #include "simulation.h"
 
@@ -79,6 +80,37 @@ void measure(BenchCase &c, const std::string &law, const std::string &transfer, 
                  (after.relocate - before.relocate) * scale, (after.sort - before.sort) * scale};
 }
 
+/// A scene of the gallery in motion: wall time per simulated second, between two simulated times of its first stage [s].
+struct BenchScene {
+  std::string scene, transfer, override;
+  double from, to;
+  long long particles = 0, steps = 0, remaps = 0;
+  int ranks = 1;
+  double wall_per_simulated = 0;
+};
+
+const std::vector<BenchScene> scenes = {
+    {"column", "default", "", 0.1, 0.3},
+    {"column", "remap every step", "transfer.remap_interval=0", 0.1, 0.3},
+    {"selborne", "default", "", 1, 3},
+    {"selborne", "remap every step", "transfer.remap_interval=0", 1, 3},
+};
+
+void measure(BenchScene &s) {
+  Scene scene = read_scene(find_scene(s.scene), s.override.empty() ? std::vector<std::string>{} : std::vector{s.override});
+  RunOptions options;
+  const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+  simulation->advance_to(s.from);
+  const long long steps = simulation->steps(), remaps = simulation->remaps();
+  PetscLogDouble start, end;
+  PetscTime(&start);
+  simulation->advance_to(s.to);
+  PetscTime(&end);
+  MPI_Comm_size(PETSC_COMM_WORLD, &s.ranks);
+  s.particles = simulation->particles(), s.steps = simulation->steps() - steps, s.remaps = simulation->remaps() - remaps;
+  s.wall_per_simulated = (end - start) / (s.to - s.from);
+}
+
 /// Memory bandwidth of one core, by the triad a = b + s c on arrays beyond the caches [B/s].
 double bandwidth() {
   const size_t count = size_t{1} << 23;
@@ -101,7 +133,7 @@ std::string processor() {
   return "unknown";
 }
 
-void print_json(const std::vector<BenchCase> &cases) {
+void print_json(const std::vector<BenchCase> &cases, const std::vector<BenchScene> &scenes) {
   std::printf("{\"machine\": {\"processor\": \"%s\", \"cores\": %u, \"memory_bandwidth_per_core\": %.4g, \"program\": \"Talus %s\"}, \"cases\": [",
               processor().c_str(), std::thread::hardware_concurrency(), bandwidth(), version);
   for (size_t i = 0; i < cases.size(); ++i) {
@@ -111,6 +143,13 @@ void print_json(const std::vector<BenchCase> &cases) {
                 "\"breakdown_ns\": {\"step\": %.3g, \"to_particles\": %.3g, \"relocate_and_sort\": %.3g, \"to_nodes\": %.3g}}",
                 i ? "," : "", c.dimension, c.phases.c_str(), c.law.c_str(), c.transfer.c_str(), c.ranks, c.particles, c.rate, 1 / c.simulated_per_wall,
                 1e9 * c.breakdown.step, 1e9 * c.breakdown.release, 1e9 * c.breakdown.relocate, 1e9 * c.breakdown.gather);
+  }
+  std::printf("], \"scenes\": [");
+  for (size_t i = 0; i < scenes.size(); ++i) {
+    const BenchScene &s = scenes[i];
+    std::printf("%s\n {\"scene\": \"%s\", \"transfer\": \"%s\", \"ranks\": %d, \"particles\": %lld, \"steps\": %lld, \"remaps\": %lld, "
+                "\"wall_seconds_per_simulated_second\": %.4g}",
+                i ? "," : "", s.scene.c_str(), s.transfer.c_str(), s.ranks, s.particles, s.steps, s.remaps, s.wall_per_simulated);
   }
   std::printf("]}\n");
 }
@@ -158,7 +197,16 @@ int bench(const BenchArguments &arguments) {
     measure(done, keys, options, arguments.steps);
     if (rank == 0 && !arguments.json) print_line(done);
   }
-  if (rank == 0 && arguments.json) print_json(cases);
+  if (rank == 0 && !arguments.json)
+    std::printf("\n%-12s %-25s %9s %7s %7s | %s\n", "scene", "transfer", "particles", "steps", "remaps", "wall s / simulated s");
+  std::vector<BenchScene> measured;
+  for (BenchScene s : scenes) {
+    if ((s.scene + " " + s.transfer).find(arguments.only) == std::string::npos) continue;
+    measure(s), measured.push_back(s);
+    if (rank == 0 && !arguments.json)
+      std::printf("%-12s %-25s %9lld %7lld %7lld | %.3g\n", s.scene.c_str(), s.transfer.c_str(), s.particles, s.steps, s.remaps, s.wall_per_simulated);
+  }
+  if (rank == 0 && arguments.json) print_json(cases, measured);
   return 0;
 }
 
@@ -166,7 +214,7 @@ int bench(const BenchArguments &arguments) {
 
 Action add_bench(CLI::App &app) {
   auto arguments = std::make_shared<BenchArguments>();
-  CLI::App *command = app.add_subcommand("bench", "particle-updates per second and core, by dimension, phase model, law and transfer");
+  CLI::App *command = app.add_subcommand("bench", "particle-updates per second and core by dimension, phase model, law and transfer; wall time per simulated second of two scenes");
   command->add_flag("--json", arguments->json, "one JSON document on standard output");
   command->add_option("--steps", arguments->steps, "steps of each case")->check(CLI::Range(10, 100000));
   command->add_option("--only", arguments->only, "cases whose line contains this, such as \"3 dry mohr\"");

@@ -89,5 +89,28 @@ TEST(Ranks, column_collapse_is_the_same_in_3d) {
 }
 TEST(Ranks, drained_slope_of_two_soils_is_the_same) { expect_the_same(slope, {}); }
 
+/// The slope of the guide, coarse and weaker, until it fails; the event's time is when the crest passed the threshold [s].
+double failure_time(MPI_Comm comm) {
+  Scene scene = read_scene(TALUS_GUIDE "/slope.toml", {"mesh.size=1", "body.clay.cohesion=5e3", "stage.slide.duration=0"});
+  RunOptions options;
+  options.pictures = options.screen = false;
+  const auto simulation = make_simulation(comm, scene, options);
+  simulation->run();
+  for (const Event &event : simulation->events())
+    if (event.text.find("failure at") == 0) return event.load_time;
+  return -1;
+}
+
+// Round-off that ranks add in another order is amplified once the slope runs away; when it does is the result.
+TEST(Ranks, a_softening_slope_fails_at_the_same_time) {
+  int rank;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  double alone = rank == 0 ? failure_time(PETSC_COMM_SELF) : 0;
+  MPI_Bcast(&alone, 1, MPI_DOUBLE, 0, PETSC_COMM_WORLD);
+  const double shared = failure_time(PETSC_COMM_WORLD);
+  EXPECT_GT(alone, 5);
+  EXPECT_NEAR(shared, alone, 0.01 * alone);
+}
+
 }  // namespace
 }  // namespace talus

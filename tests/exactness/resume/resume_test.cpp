@@ -55,26 +55,26 @@ class Resumed : public testing::TestWithParam<Variant> {
   const Folder folder_;
 };
 
-/// The first eight snapshots value by value, and the lines of history.csv up to them character by character.
+/// The first snapshots value by value, and the lines of history.csv up to them character by character.
 const char *comparison = R"(
 import h5py, numpy
 runs = [h5py.File(name + '/run.h5')['snapshots'] for name in ('whole', 'resumed')]
-for number in [f'{k:06d}' for k in range(8)]:
+for number in [f'{k:06d}' for k in range(24)]:
     a, b = (run[number] for run in runs)
     assert a.attrs['step'] == b.attrs['step'] and a.attrs['time'] == b.attrs['time'], number
     assert a.keys() == b.keys()
     for field in a: assert numpy.array_equal(a[field][...], b[field][...]), f'{number} {field}'
 rows = [[line for line in open(name + '/history.csv')] for name in ('whole', 'resumed')]
-end = runs[0]['000007'].attrs['time']
+end = runs[0]['000023'].attrs['time']
 kept = [[line for line in some[1:] if float(line.split(',')[0]) <= end] for some in rows]
 assert kept[0] == kept[1] and len(kept[0]) > 15, 'history'
 print('the same')
 )";
 
 TEST_P(Resumed, IsTheSameToTheBit) {
-  run_until("whole", "000008", SIGINT, false);
-  run_until("resumed", "000004", GetParam().signal, false);
-  run_until("resumed", "000008", SIGINT, true);
+  run_until("whole", "000024", SIGINT, false);
+  run_until("resumed", "000003", GetParam().signal, false);
+  run_until("resumed", "000024", SIGINT, true);
   const Ending ending = Program(folder_, {PYTHON, "-c", comparison}).end();
   EXPECT_TRUE(ending.says("the same")) << ending.output;
 }
