@@ -9,10 +9,12 @@
 #include "tests/verification/gravity_column/exact.h"
 #include "tests/verification/incline_block/exact.h"
 #include "tests/verification/k0_column/exact.h"
+#include "tests/verification/leaving_waves/exact.h"
 #include "tests/verification/mohr_coulomb_triaxial/exact.h"
 #include "tests/verification/rigid_rotation/exact.h"
 #include "tests/verification/rigid_translation/exact.h"
 #include "tests/verification/spinning_block/exact.h"
+#include "tests/verification/water_table/exact.h"
 
 namespace talus {
 
@@ -32,6 +34,8 @@ inline constexpr LadderEntry ladder[] = {
      rungs::elastic_bar},
     {"incline_block", "verification", "block on a rough plane: sliding, sticking, adhesion, friction that drops",
      rungs::incline_block},
+    {"leaving_waves", "verification", "pulses that leave through non-reflecting faces", rungs::leaving_waves},
+    {"water_table", "verification", "column below open water, and below a water table that falls", rungs::water_table},
     {"rigid_translation", "verification", "block in free flight: no stress, momentum to round-off",
      rungs::rigid_translation},
     {"manufactured", "convergence", "observed order against a manufactured motion, cells frozen and crossed",
