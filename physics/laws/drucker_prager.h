@@ -74,23 +74,23 @@ struct DruckerPrager : IsotropicElastic {
   }
 
   /// Brings an elastic trial stress back to the cone.
-  template <int dim>
-  [[gnu::always_inline]] void correct(Stress<dim> &s, History &history, const Surroundings &) const {
-    const Invariants<dim> trial(s);
-    const double f = trial.q + eta * trial.p - xi * cohesion;
-    const double to_cone = (f > 0 ? f : 0) * over_stiffness;
-    const double cone_p = trial.p - K * eta_bar * to_cone, cone_q = trial.q - G * to_cone;
-    const double p = cone_p < apex ? cone_p : apex;
-    const double q = cone_p < apex ? cone_q : 0;
-    const double shrink = trial.q > 0 ? (trial.q - q) / trial.q : 0;
+  template <int dim, class Number>
+  [[gnu::always_inline]] void correct(Stress<dim, Number> &s, History &history, const Surroundings &) const {
+    const Invariants<dim, Number> trial(s);
+    const Number f = trial.q + eta * trial.p - xi * cohesion;
+    const Number to_cone = (f > 0 ? f : 0) * over_stiffness;
+    const Number cone_p = trial.p - K * eta_bar * to_cone, cone_q = trial.q - G * to_cone;
+    const Number p = cone_p < apex ? cone_p : apex;
+    const Number q = cone_p < apex ? cone_q : 0;
+    const Number shrink = trial.q > 0 ? (trial.q - q) / trial.q : 0;
     s.xx -= shrink * trial.deviator.xx + (trial.p - p);
     s.yy -= shrink * trial.deviator.yy + (trial.p - p);
     s.zz -= shrink * trial.deviator.zz + (trial.p - p);
     s.xy -= shrink * trial.deviator.xy;
     if constexpr (dim == 3) s.yz -= shrink * trial.deviator.yz, s.xz -= shrink * trial.deviator.xz;
     auto &[plastic_strain, plastic_volume] = history;
-    plastic_strain += (trial.q - q) * (1 / (std::sqrt(3.) * G));
-    plastic_volume += (trial.p - p) * (1 / K);
+    plastic_strain += value_of(trial.q - q) * (1 / (std::sqrt(3.) * G));
+    plastic_volume += value_of(trial.p - p) * (1 / K);
   }
 };
 

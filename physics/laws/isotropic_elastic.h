@@ -7,6 +7,8 @@ namespace talus {
 
 /// Hypoelastic in Cauchy stress and logarithmic strain of one increment, docs/theory section 2.
 struct IsotropicElastic {
+  static constexpr bool reads_suction = false;  ///< a law that does hides this
+
   double young_modulus = required;  ///< E [Pa]
   double poisson_ratio = required;  ///< nu [-]
 
@@ -22,9 +24,10 @@ struct IsotropicElastic {
   void prepare() { K = bulk_modulus(), G = shear_modulus(), lambda = K - 2 * G / 3; }
 
   /// Adds the stress of an elastic strain increment. A law with an elasticity of its own hides this function.
-  template <int dim>
-  [[gnu::always_inline]] void trial(Stress<dim> &s, const Strain<dim> &e, const Surroundings &) const {
-    const double spherical = lambda * (e.xx + e.yy + e.zz), twice_G = 2 * G;
+  template <int dim, class Number>
+  [[gnu::always_inline]] void trial(Stress<dim, Number> &s, const Strain<dim, Number> &e, const Surroundings &) const {
+    const Number spherical = lambda * (e.xx + e.yy + e.zz);
+    const double twice_G = 2 * G;
     s.xx += spherical + twice_G * e.xx;
     s.yy += spherical + twice_G * e.yy;
     s.zz += spherical + twice_G * e.zz;

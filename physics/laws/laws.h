@@ -5,12 +5,15 @@
 /// - `history`, `History`: fields it remembers of a point, and their values
 /// - `fields(visitor)`: its parameters, for reader and descriptions; `problem()`: what is wrong between them, or ""
 /// - `prepare()`: derives what follows from the parameters alone, once per update of all points
+/// - `reads_suction`: does its strength follow `Surroundings::suction`?
 /// - `trial(s, e, around)`: adds the elastic stress of a strain increment (IsotropicElastic's, unless the law has its
 /// own)
 /// - `correct(s, history, around)`: brings the trial back to what the law admits; leaves admissible stress alone
 /// - `bulk_modulus()`, `shear_modulus()`, `elastic_energy(s)`, `cohesionless()`
+/// `trial` and `correct` are templates over the number type too: a run with Duals (dual.h) gives the consistent tangent.
+/// History takes values only (`value_of`).
 ///
-/// `trial` and `correct` run in a loop over points that must vectorise: straight-line code; choices as `?:` between
+/// They run in a loop over points that must vectorise: straight-line code; choices as `?:` between
 /// values that are already there; comparisons not joined by && or &.
 #include <span>
 #include <variant>
@@ -35,6 +38,11 @@ inline std::span<const HistoryField> history_fields(const Law &law) {
   return std::visit([](const auto &one) { return std::span<const HistoryField>(one.history); }, law);
 }
 inline int history_size(const Law &law) { return static_cast<int>(history_fields(law).size()); }
+
+/// Must the phase model bring suction?
+inline bool reads_suction(const Law &law) {
+  return std::visit([](const auto &one) { return one.reads_suction; }, law);
+}
 
 inline double bulk_modulus(const Law &law) {  ///< K [Pa]
   return std::visit([](const auto &one) { return one.bulk_modulus(); }, law);

@@ -13,8 +13,8 @@ struct LinearElastic : IsotropicElastic {
 
   bool cohesionless() const { return false; }
 
-  template <int dim>
-  [[gnu::always_inline]] void correct(Stress<dim> &, History &, const Surroundings &) const {}
+  template <int dim, class Number>
+  [[gnu::always_inline]] void correct(Stress<dim, Number> &, History &, const Surroundings &) const {}
 };
 
 }  // namespace talus

@@ -77,92 +77,97 @@ struct MohrCoulomb : IsotropicElastic {
     plane_drag = lambda / (lambda + 2 * G), line_drag = lambda / (lambda + G);
   }
 
+  template <class Number = double>
   struct Strength {
-    double sin_phi, sin_psi;
-    double twice_c_cos_phi;  ///< [Pa]
-    double tension;          ///< largest principal stress: cut-off or apex [Pa]
+    Number sin_phi, sin_psi;
+    Number twice_c_cos_phi;  ///< [Pa]
+    Number tension;          ///< largest principal stress: cut-off or apex [Pa]
     /// Yield function of one pair of principal stresses [Pa].
-    [[gnu::always_inline]] double yield(double greater, double less) const {
+    [[gnu::always_inline]] Number yield(const Number &greater, const Number &less) const {
       return (1 + sin_phi) * greater - (1 - sin_phi) * less - twice_c_cos_phi;
     }
   };
 
-  [[gnu::always_inline]] Strength strength(double plastic_strain, const Surroundings &around) const {
+  template <class Number>
+  [[gnu::always_inline]] Strength<Number> strength(const Number &plastic_strain, const Surroundings &around) const {
     const double scale = around.size * over_size, eta = scale > 0 ? shape_factor * scale : shape_factor;
-    const double left = exponential(-eta * plastic_strain);  // of the way from residual to peak
-    const double phi = residual_phi + (friction_angle - residual_phi) * left, sin_phi = sine(phi);
-    const double c_cos_phi = (residual_c + (cohesion - residual_c) * left) * sine(right_angle - phi);
-    const double quotient = c_cos_phi / sin_phi, apex = sin_phi > 0 ? quotient : unlimited;
+    const Number left = exponential(-eta * plastic_strain);  // of the way from residual to peak
+    const Number phi = residual_phi + (friction_angle - residual_phi) * left, sin_phi = sine(phi);
+    const Number c_cos_phi = (residual_c + (cohesion - residual_c) * left) * sine(right_angle - phi);
+    const Number quotient = c_cos_phi / sin_phi, apex = sin_phi > 0 ? quotient : unlimited;
     return {sin_phi, sin_psi_peak < sin_phi ? sin_psi_peak : sin_phi, 2 * c_cos_phi, cutoff < apex ? cutoff : apex};
   }
 
   /// The principal stresses that plastic flow leaves of an elastic trial.
-  [[gnu::always_inline]] Principal admissible(const Principal &s, const Strength &m) const {
+  template <class Number>
+  [[gnu::always_inline]] Principal<Number> admissible(const Principal<Number> &s, const Strength<Number> &m) const {
     // What unit slip of a pair takes off its greater, the third and its lesser principal stress.
-    const double side = 2 * lambda * m.sin_psi;
-    const double greater = side + 2 * G * (1 + m.sin_psi), less = side - 2 * G * (1 - m.sin_psi);
+    const Number side = 2 * lambda * m.sin_psi;
+    const Number greater = side + 2 * G * (1 + m.sin_psi), less = side - 2 * G * (1 - m.sin_psi);
 
     // Slip of s1, s3 would pass an edge if it brought one of these gaps below zero: there two pairs slip, which is slip
     // of the mean of the two equal stresses against the third. At the edge s1 = s2 that is triaxial compression.
-    const double f = m.yield(s.s1, s.s3), drop = (1 + m.sin_phi) * greater - (1 - m.sin_phi) * less;
-    const double gap12 = (s.s1 - s.s2) * (1 - m.sin_psi), gap23 = (s.s2 - s.s3) * (1 + m.sin_psi);
+    const Number f = m.yield(s.s1, s.s3), drop = (1 + m.sin_phi) * greater - (1 - m.sin_phi) * less;
+    const Number gap12 = (s.s1 - s.s2) * (1 - m.sin_psi), gap23 = (s.s2 - s.s3) * (1 + m.sin_psi);
     const bool upper = gap12 < gap23;
     const bool on_edge = (upper ? gap12 : gap23) * drop < 2 * G * (1 - m.sin_psi * m.sin_psi) * f;
-    const double mean12 = (s.s1 + s.s2) / 2, mean23 = (s.s2 + s.s3) / 2;
-    const double edge1 = upper ? mean12 : s.s1, edge2 = upper ? mean12 : mean23, edge3 = upper ? s.s3 : mean23;
-    const double flow12 = (greater + side) / 2, flow23 = (side + less) / 2;
-    const double flow1 = upper ? flow12 : greater, flow2 = upper ? flow12 : flow23, flow3 = upper ? less : flow23;
-    const double x1 = on_edge ? edge1 : s.s1, x2 = on_edge ? edge2 : s.s2, x3 = on_edge ? edge3 : s.s3;
-    const double d1 = on_edge ? flow1 : greater, d2 = on_edge ? flow2 : side, d3 = on_edge ? flow3 : less;
-    const double slip = m.yield(x1, x3) / ((1 + m.sin_phi) * d1 - (1 - m.sin_phi) * d3);
+    const Number mean12 = (s.s1 + s.s2) / 2, mean23 = (s.s2 + s.s3) / 2;
+    const Number edge1 = upper ? mean12 : s.s1, edge2 = upper ? mean12 : mean23, edge3 = upper ? s.s3 : mean23;
+    const Number flow12 = (greater + side) / 2, flow23 = (side + less) / 2;
+    const Number flow1 = upper ? flow12 : greater, flow2 = upper ? flow12 : flow23, flow3 = upper ? less : flow23;
+    const Number x1 = on_edge ? edge1 : s.s1, x2 = on_edge ? edge2 : s.s2, x3 = on_edge ? edge3 : s.s3;
+    const Number d1 = on_edge ? flow1 : greater, d2 = on_edge ? flow2 : side, d3 = on_edge ? flow3 : less;
+    const Number slip = m.yield(x1, x3) / ((1 + m.sin_phi) * d1 - (1 - m.sin_phi) * d3);
     const bool elastic = f <= 0;
-    const double sheared1 = elastic ? s.s1 : x1 - slip * d1;
-    const double sheared2 = elastic ? s.s2 : x2 - slip * d2;
-    const double sheared3 = elastic ? s.s3 : x3 - slip * d3;
+    const Number sheared1 = elastic ? s.s1 : x1 - slip * d1;
+    const Number sheared2 = elastic ? s.s2 : x2 - slip * d2;
+    const Number sheared3 = elastic ? s.s3 : x3 - slip * d3;
 
     // The cut-off alone: plane s1 = T, line s1 = s2 = T, or its corner.
-    const double T = m.tension;
-    const double plane2 = s.s2 - plane_drag * (s.s1 - T), plane3 = s.s3 - plane_drag * (s.s1 - T);
-    const double line3 = s.s3 - line_drag * (mean12 - T), opened = plane2 > T ? line3 : plane3;
-    const double opened2 = plane2 < T ? plane2 : T, opened3 = opened < T ? opened : T;
+    const Number T = m.tension;
+    const Number plane2 = s.s2 - plane_drag * (s.s1 - T), plane3 = s.s3 - plane_drag * (s.s1 - T);
+    const Number line3 = s.s3 - line_drag * (mean12 - T), opened = plane2 > T ? line3 : plane3;
+    const Number opened2 = plane2 < T ? plane2 : T, opened3 = opened < T ? opened : T;
 
     // Shear and cut-off together: the line s1 = T, s3 = low, whose ends lie on the edges.
-    const double over = 1 / ((1 - m.sin_phi) * (1 - m.sin_psi));
-    const double low = ((1 + m.sin_phi) * T - m.twice_c_cos_phi) * (1 - m.sin_psi) * over;
-    const double drop1 = s.s1 - T, drop3 = s.s3 - low, over_det = (1 - m.sin_phi) * over * (1 / (4 * G * (lambda + G)));
-    const double line_slip = (lambda * drop1 - (lambda + 2 * G) * drop3) * over_det;
-    const double line_opening = (greater * drop3 - less * drop1) * over_det;
-    const double middle = s.s2 - side * line_slip - lambda * line_opening;
-    const double below = middle < T ? middle : T, corner2 = below > low ? below : low;
+    const Number over = 1 / ((1 - m.sin_phi) * (1 - m.sin_psi));
+    const Number low = ((1 + m.sin_phi) * T - m.twice_c_cos_phi) * (1 - m.sin_psi) * over;
+    const Number drop1 = s.s1 - T, drop3 = s.s3 - low, over_det = (1 - m.sin_phi) * over * (1 / (4 * G * (lambda + G)));
+    const Number line_slip = (lambda * drop1 - (lambda + 2 * G) * drop3) * over_det;
+    const Number line_opening = (greater * drop3 - less * drop1) * over_det;
+    const Number middle = s.s2 - side * line_slip - lambda * line_opening;
+    const Number below = middle < T ? middle : T, corner2 = below > low ? below : low;
 
     const bool keep = sheared1 <= T, open = m.yield(T, opened3) <= 0;
-    const double torn2 = open ? opened2 : corner2, torn3 = open ? opened3 : low;
+    const Number torn2 = open ? opened2 : corner2, torn3 = open ? opened3 : low;
     return {keep ? sheared1 : T, keep ? sheared2 : torn2, keep ? sheared3 : torn3};
   }
 
   /// Equivalent deviatoric plastic strain of a return.
-  [[gnu::always_inline]] double shearing(const Principal &change) const {
-    const double d12 = change.s1 - change.s2, d23 = change.s2 - change.s3, d31 = change.s3 - change.s1;
-    return std::sqrt(d12 * d12 + d23 * d23 + d31 * d31) * (0.47140452079103168 / (2 * G));  // sqrt(2) / 3
+  template <class Number>
+  [[gnu::always_inline]] Number shearing(const Principal<Number> &change) const {
+    const Number d12 = change.s1 - change.s2, d23 = change.s2 - change.s3, d31 = change.s3 - change.s1;
+    return sqrt(d12 * d12 + d23 * d23 + d31 * d31) * (0.47140452079103168 / (2 * G));  // sqrt(2) / 3
   }
 
   /// Brings an elastic trial stress back to the surface. The strength is that after the plastic strain which the
   /// strength at the start would cause: first order in the step, and behind the strain that results by only
   /// (softening slope / 2 G) of what the strength at the start would be.
-  template <int dim>
-  [[gnu::always_inline]] void correct(Stress<dim> &stress, History &history, const Surroundings &around) const {
+  template <int dim, class Number>
+  [[gnu::always_inline]] void correct(Stress<dim, Number> &stress, History &history, const Surroundings &around) const {
     auto &[plastic_strain, plastic_volume] = history;
-    const PrincipalAxes<dim> axes(stress);
-    const Principal trial = axes.values();
-    const auto change = [&](const Strength &strength) __attribute__((always_inline)) {
-      const Principal end = admissible(trial, strength);
-      return Principal{trial.s1 - end.s1, trial.s2 - end.s2, trial.s3 - end.s3};
+    const PrincipalAxes<dim, Number> axes(stress);
+    const auto trial = axes.values();
+    using Value = decltype(trial.s1);
+    const auto change = [&](const Strength<Value> &strength) __attribute__((always_inline)) {
+      const Principal<Value> end = admissible(trial, strength);
+      return Principal<Value>{trial.s1 - end.s1, trial.s2 - end.s2, trial.s3 - end.s3};
     };
-    const double predicted = plastic_strain + shearing(change(strength(plastic_strain, around)));
-    const Principal taken = change(strength(predicted, around));
+    const Value predicted = plastic_strain + shearing(change(strength(Value(plastic_strain), around)));
+    const Principal<Value> taken = change(strength(predicted, around));
     axes.subtract(taken, stress);
-    plastic_strain += shearing(taken);
-    plastic_volume += (taken.s1 + taken.s2 + taken.s3) * (1 / (3 * K));
+    plastic_strain += value_of(shearing(taken));
+    plastic_volume += value_of(taken.s1 + taken.s2 + taken.s3) * (1 / (3 * K));
   }
 };
 

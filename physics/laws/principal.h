@@ -7,8 +7,9 @@
 namespace talus {
 
 /// s1 >= s2 >= s3 [Pa].
+template <class Number = double>
 struct Principal {
-  double s1, s2, s3;
+  Number s1, s2, s3;
 };
 
 /// Slope of the change between two principal values; isotropic returns only ever bring them closer: 0 <= slope <= 1.
@@ -18,7 +19,8 @@ struct Principal {
   return positive < 1 ? positive : 1;
 }
 
-template <int dim>
+/// Of a stress of doubles here, of Duals in principal_tangent.h.
+template <int dim, class Number = double>
 class PrincipalAxes;
 
 /// In plane strain zz is principal and the other two are centre and radius of the circle in the plane.
@@ -31,10 +33,10 @@ class PrincipalAxes<2> {
     zz_first_ = zz_ > high, zz_last_ = zz_ < low;
     values_ = {zz_first_ ? zz_ : high, zz_first_ ? high : zz_last_ ? low : zz_, zz_last_ ? zz_ : low};
   }
-  Principal values() const { return values_; }
+  Principal<> values() const { return values_; }
 
   /// Takes `change`, given per principal value, off the stress.
-  [[gnu::always_inline]] void subtract(const Principal &change, Stress<2> &s) const {
+  [[gnu::always_inline]] void subtract(const Principal<> &change, Stress<2> &s) const {
     const double high = zz_first_ ? change.s2 : change.s1, low = zz_last_ ? change.s2 : change.s3;
     const double mean = (high + low) / 2, slope = divided_difference((high - low) / 2, radius_);
     s.zz -= zz_first_ ? change.s1 : zz_last_ ? change.s3 : change.s2;
@@ -46,7 +48,7 @@ class PrincipalAxes<2> {
  private:
   double half_, radius_, zz_;
   bool zz_first_, zz_last_;
-  Principal values_;
+  Principal<> values_;
 };
 
 /// The deviator over q = sqrt(J2 / 3), called x, has the principal values 2 cos(theta) and 2 cos(theta -+ 2 pi / 3)
@@ -86,10 +88,10 @@ class PrincipalAxes<3> {
     deviator_ = stress.deviator;
     p_ = stress.p;
   }
-  Principal values() const { return {p_ + e1_, p_ + e2_, p_ + e3_}; }
+  Principal<> values() const { return {p_ + e1_, p_ + e2_, p_ + e3_}; }
 
   /// Takes `change`, given per principal value, off the stress: change(x) = d1 + d12 (x - s1) + d123 (x - s1)(x - s2).
-  [[gnu::always_inline]] void subtract(const Principal &change, Stress<3> &s) const {
+  [[gnu::always_inline]] void subtract(const Principal<> &change, Stress<3> &s) const {
     const double d12 = divided_difference(change.s1 - change.s2, e1_ - e2_);
     const double d23 = divided_difference(change.s2 - change.s3, e2_ - e3_);
     const double d123 = (d12 - d23) / (e1_ - e3_);

@@ -9,32 +9,36 @@ namespace talus {
 template <int dim>
 inline constexpr int stress_size = dim == 2 ? 4 : 6;
 
-template <int dim>
+/// `Number` is double, or a Dual where derivatives are wanted.
+template <int dim, class Number = double>
 struct Stress;
-template <>
-struct Stress<2> {
-  double xx, yy, zz, xy;
+template <class Number>
+struct Stress<2, Number> {
+  Number xx, yy, zz, xy;
 };
-template <>
-struct Stress<3> {
-  double xx, yy, zz, xy, yz, xz;
+template <class Number>
+struct Stress<3, Number> {
+  Number xx, yy, zz, xy, yz, xz;
 };
 
-template <int dim>
-using Strain = Stress<dim>;  ///< the same shape; tensor components, not engineering shear [-]
+template <int dim, class Number = double>
+using Strain = Stress<dim, Number>;  ///< the same shape; tensor components, not engineering shear [-]
+
+using std::sqrt;  // of doubles; a Dual brings its own
 
 /// Mean stress and deviator s - p I, with q = sqrt(J2) its norm over sqrt(2) [Pa].
-template <int dim>
+template <int dim, class Number = double>
 struct Invariants {
-  [[gnu::always_inline]] explicit Invariants(const Stress<dim> &s) : p((s.xx + s.yy + s.zz) * (1. / 3)), deviator(s) {
+  [[gnu::always_inline]] explicit Invariants(const Stress<dim, Number> &s)
+      : p((s.xx + s.yy + s.zz) * (1. / 3)), deviator(s) {
     deviator.xx -= p, deviator.yy -= p, deviator.zz -= p;
-    double shear = deviator.xy * deviator.xy;
+    Number shear = deviator.xy * deviator.xy;
     if constexpr (dim == 3) shear += deviator.yz * deviator.yz + deviator.xz * deviator.xz;
-    q = std::sqrt((deviator.xx * deviator.xx + deviator.yy * deviator.yy + deviator.zz * deviator.zz) / 2 + shear);
+    q = sqrt((deviator.xx * deviator.xx + deviator.yy * deviator.yy + deviator.zz * deviator.zz) / 2 + shear);
   }
-  double p;
-  Stress<dim> deviator;
-  double q;
+  Number p;
+  Stress<dim, Number> deviator;
+  Number q;
 };
 
 /// Deformation since the accepted state, one per cell that holds particles: dF = R U.
@@ -49,8 +53,10 @@ struct Increment {
 
 /// What a law may know of the place beside stress and history.
 struct Surroundings {
-  double size;  ///< element size h: sqrt(4 A / sqrt 3) of a triangle, (6 sqrt 2 V)^(1/3) of a tetrahedron [m],
-                ///< docs/theory (2.7)
+  double size;           ///< element size h: sqrt(4 A / sqrt 3) of a triangle, (6 sqrt 2 V)^(1/3) of a tetrahedron [m],
+                         ///< docs/theory (2.7)
+  double suction = 0;    ///< s = P_g - P_l where positive, else 0 [Pa]
+  double time_step = 0;  ///< over which the strain came about [s]; 0: at once, or no strain
 };
 
 }  // namespace talus

@@ -1,9 +1,11 @@
 /// The loops behind update_stress.h, compiled once per (law, dimension) by update_stress_2d.cpp and
 /// update_stress_3d.cpp.
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <utility>
 
+#include "physics/laws/principal_tangent.h"
 #include "physics/laws/update_stress.h"
 
 namespace talus {
@@ -74,25 +76,35 @@ template <std::size_t size>
 }
 
 /// R s R^T with R = [cos -sin; sin cos].
-[[gnu::always_inline]] inline Stress<2> rotated(const Stress<2> &s, const Block<2> &rotation, int i) {
-  const double c = rotation.value[0][i], sn = rotation.value[1][i];
-  const double cos2 = c * c - sn * sn, sin2 = 2 * c * sn;
-  const double centre = (s.xx + s.yy) / 2, half = (s.xx - s.yy) / 2;
-  const double turned = half * cos2 - s.xy * sin2;
+template <class Number>
+[[gnu::always_inline]] inline Stress<2, Number> rotated(const Stress<2, Number> &s, const std::array<double, 2> &R) {
+  const double cos2 = R[0] * R[0] - R[1] * R[1], sin2 = 2 * R[0] * R[1];
+  const Number centre = (s.xx + s.yy) / 2, half = (s.xx - s.yy) / 2;
+  const Number turned = half * cos2 - s.xy * sin2;
   return {centre + turned, centre - turned, s.zz, half * sin2 + s.xy * cos2};
 }
-[[gnu::always_inline]] inline Stress<3> rotated(const Stress<3> &s, const Block<9> &rotation, int i) {
-  const double a = rotation.value[0][i], b = rotation.value[1][i], c = rotation.value[2][i];
-  const double d = rotation.value[3][i], e = rotation.value[4][i], f = rotation.value[5][i];
-  const double g = rotation.value[6][i], h = rotation.value[7][i], k = rotation.value[8][i];
-  const double ax = a * s.xx + b * s.xy + c * s.xz, ay = a * s.xy + b * s.yy + c * s.yz,
+template <class Number>
+[[gnu::always_inline]] inline Stress<3, Number> rotated(const Stress<3, Number> &s, const std::array<double, 9> &R) {
+  const auto &[a, b, c, d, e, f, g, h, k] = R;
+  const Number ax = a * s.xx + b * s.xy + c * s.xz, ay = a * s.xy + b * s.yy + c * s.yz,
                az = a * s.xz + b * s.yz + c * s.zz;
-  const double dx = d * s.xx + e * s.xy + f * s.xz, dy = d * s.xy + e * s.yy + f * s.yz,
+  const Number dx = d * s.xx + e * s.xy + f * s.xz, dy = d * s.xy + e * s.yy + f * s.yz,
                dz = d * s.xz + e * s.yz + f * s.zz;
-  const double gx = g * s.xx + h * s.xy + k * s.xz, gy = g * s.xy + h * s.yy + k * s.yz,
+  const Number gx = g * s.xx + h * s.xy + k * s.xz, gy = g * s.xy + h * s.yy + k * s.yz,
                gz = g * s.xz + h * s.yz + k * s.zz;
   return {ax * a + ay * b + az * c, dx * d + dy * e + dz * f, gx * g + gy * h + gz * k,
           ax * d + ay * e + az * f, dx * g + dy * h + dz * k, ax * g + ay * h + az * k};
+}
+
+/// A stress of the law's after a strain, before rotation.
+template <int dim, class Number, class OneLaw>
+[[gnu::always_inline]] inline Stress<dim, Number> strained_by(const OneLaw &law, Stress<dim, Number> s,
+                                                              const Strain<dim, Number> &e,
+                                                              typename OneLaw::History &history,
+                                                              const Surroundings &around) {
+  law.trial(s, e, around);
+  law.correct(s, history, around);
+  return s;
 }
 
 /// `lanes` points on their way through one law.
@@ -102,17 +114,22 @@ struct PointBlock {
   Block<std::tuple_size_v<decltype(Increment<dim>::rotation)>> rotation;
   Block<OneLaw::history.size()> history;
   Block<1> element_size;
+  Block<OneLaw::reads_suction> suction;
 
   /// One call is the whole body of the loop: what lived in the loop itself would be kept in memory, and the loop stay
   /// scalar.
   template <bool strained>
-  [[gnu::always_inline]] void correct(const OneLaw &law, int i) {
+  [[gnu::always_inline]] void correct(const OneLaw &law, double time_step, int i) {
     auto s = take<Stress<dim>>(stress, i);
     auto h = take<typename OneLaw::History>(history, i);
-    const Surroundings around{element_size.value[0][i]};
-    if constexpr (strained) law.trial(s, take<Strain<dim>>(strain, i), around);
-    law.correct(s, h, around);
-    if constexpr (strained) s = rotated(s, rotation, i);
+    Surroundings around{element_size.value[0][i], 0, time_step};
+    if constexpr (OneLaw::reads_suction) around.suction = suction.value[0][i];
+    if constexpr (strained) {
+      s = strained_by(law, s, take<Strain<dim>>(strain, i), h, around);
+      s = rotated(s, take<decltype(Increment<dim>::rotation)>(rotation, i));
+    } else {
+      law.correct(s, h, around);
+    }
     put(stress, i, s);
     put(history, i, h);
   }
@@ -124,16 +141,18 @@ template <bool strained, int dim, class OneLaw>
 void correct_all(OneLaw law, const StressPoints<dim> &points) {
   constexpr int size = stress_size<dim>, memory = static_cast<int>(OneLaw::history.size());
   law.prepare();
+  const double time_step = points.time_step, no_suction = 0;
   PointBlock<dim, OneLaw> block;
 
   for (int first = 0; first < points.count; first += lanes) {
     const int filled = std::min(lanes, points.count - first);
-    const double *stress[lanes], *history[lanes], *strain[lanes], *rotation[lanes], *element_size[lanes];
+    const double *stress[lanes], *history[lanes], *strain[lanes], *rotation[lanes], *element_size[lanes], *suction[lanes];
     for (int i = 0; i < lanes; ++i) {
       const int p = first + std::min(i, filled - 1);  // the last block repeats its last point
       stress[i] = points.stress_in + p * size;
       history[i] = points.history_in + p * memory;
       element_size[i] = points.size + points.cell[p];
+      if constexpr (OneLaw::reads_suction) suction[i] = points.suction ? points.suction + p : &no_suction;
       if constexpr (strained) {
         strain[i] = points.increment[points.cell[p]].strain.data();
         rotation[i] = points.increment[points.cell[p]].rotation.data();
@@ -142,9 +161,10 @@ void correct_all(OneLaw law, const StressPoints<dim> &points) {
     block.stress.load(stress);
     block.history.load(history);
     block.element_size.load(element_size);
+    if constexpr (OneLaw::reads_suction) block.suction.load(suction);
     if constexpr (strained) block.strain.load(strain), block.rotation.load(rotation);
 #pragma omp simd
-    for (int i = 0; i < lanes; ++i) block.template correct<strained>(law, i);
+    for (int i = 0; i < lanes; ++i) block.template correct<strained>(law, time_step, i);
     for (int i = 0; i < filled; ++i) {
       block.stress.store(i, points.stress_out + (first + i) * size);
       block.history.store(i, points.history_out + (first + i) * memory);
@@ -152,7 +172,38 @@ void correct_all(OneLaw law, const StressPoints<dim> &points) {
   }
 }
 
+/// Point by point, with the strain as the `stress_size` variables to differentiate by.
+template <int dim, class OneLaw>
+void differentiate_all(OneLaw law, const StressPoints<dim> &points, double *tangent) {
+  constexpr int size = stress_size<dim>, memory = static_cast<int>(OneLaw::history.size());
+  using Number = Dual<size>;
+  using Row = std::array<Number, size>;
+  law.prepare();
+  for (int p = 0; p < points.count; ++p, tangent += size * size) {
+    const Increment<dim> &increment = points.increment[points.cell[p]];
+    typename OneLaw::History history;
+    std::copy_n(points.history_in + p * memory, memory, history.begin());
+    Row stress, strain;
+    for (int k = 0; k < size; ++k) {
+      stress[k] = points.stress_in[p * size + k], strain[k] = increment.strain[k];
+      strain[k].slope[k] = 1;
+    }
+    const Surroundings around{points.size[points.cell[p]], points.suction ? points.suction[p] : 0, points.time_step};
+    const auto s = rotated(strained_by<dim>(law, std::bit_cast<Stress<dim, Number>>(stress),
+                                            std::bit_cast<Strain<dim, Number>>(strain), history, around),
+                           increment.rotation);
+    const Row row = std::bit_cast<Row>(s);
+    for (int k = 0; k < size; ++k) std::copy_n(row[k].slope.begin(), size, tangent + k * size);
+  }
+}
+
 }  // namespace
+
+template <int dim>
+void update_stress_with_tangent(const Law &law, const StressPoints<dim> &points, double *tangent) {
+  std::visit([&](const auto &one) { differentiate_all(one, points, tangent); }, law);
+  update_stress(law, points);
+}
 
 template <int dim>
 void update_stress(const Law &law, const StressPoints<dim> &points) {

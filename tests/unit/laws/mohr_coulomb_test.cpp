@@ -180,7 +180,7 @@ TEST(MohrCoulomb, with_associated_flow_returns_to_the_closest_point) {
     Triple s(random.between(-3e4, 3e4), random.between(-3e4, 3e4), random.between(-3e4, 3e4));
     std::sort(s.begin(), s.end(), std::greater<>());
     law.prepare();
-    const Principal x = law.admissible({s[0], s[1], s[2]}, law.strength(0, {1}));
+    const Principal<> x = law.admissible({s[0], s[1], s[2]}, law.strength(0., {1}));
     const Triple exact = closest_point(s, planes(Surface(law)), stiffness(law), 1e-6);
     worst = std::max(worst, (Triple(x.s1, x.s2, x.s3) - exact).norm() / (s.norm() + law.cohesion));
   }
@@ -195,7 +195,7 @@ TEST(MohrCoulomb, with_any_dilation_flows_off_active_planes_only) {
     Triple s(random.between(-3e4, 3e4), random.between(-3e4, 3e4), random.between(-3e4, 3e4));
     std::sort(s.begin(), s.end(), std::greater<>());
     law.prepare();
-    const Principal x = law.admissible({s[0], s[1], s[2]}, law.strength(0, {1}));
+    const Principal<> x = law.admissible({s[0], s[1], s[2]}, law.strength(0., {1}));
     ASSERT_TRUE(flows(s, Triple(x.s1, x.s2, x.s3), planes(Surface(law)), stiffness(law), 1e-5))
         << number << ": from " << s.transpose() << " to " << x.s1 << " " << x.s2 << " " << x.s3 << ", phi "
         << law.friction_angle << ", psi " << law.dilation_angle << ", c " << law.cohesion << ", T "
@@ -362,7 +362,7 @@ TEST(MohrCoulomb, never_dilates_more_than_it_rubs) {
   MohrCoulomb law = softening_law();
   law.dilation_angle = 28 * degree.si, law.residual_friction_angle = 0;
   law.prepare();
-  EXPECT_NEAR(law.strength(0, {1}).sin_psi, std::sin(28 * degree.si), 1e-15);
+  EXPECT_NEAR(law.strength(0., {1}).sin_psi, std::sin(28 * degree.si), 1e-15);
   EXPECT_LT(law.strength(1e3, {1}).sin_psi, 1e-300);
 }
 
