@@ -95,12 +95,14 @@ class SoilMotion final : public Motion {
   PetscErrorCode total_force(double t, bool trial);
   void measure_impedance();
   void set_weights(const std::vector<double> &nodal_volume);
-  PetscErrorCode deform(const Vec<dim> *u, bool trial);
+  PetscErrorCode deform(double t, const Vec<dim> *u, bool trial);
   PetscErrorCode smooth_volume_strain();
   PetscErrorCode internal_force(bool trial);
   void add_body_forces(double t);
   void add_pore_pressure(double t, bool trial) requires Phases::given;
   void sample_pressure(double t) requires Phases::given;
+  std::array<double, 2> sample_shares(double t) const;
+  const double *find_suction(size_t body);
   PetscErrorCode back_and_forth(const Vec<dim> *in, Vec<dim> *out);
 
   const BackgroundMesh<dim> &mesh_;
@@ -136,13 +138,15 @@ class SoilMotion final : public Motion {
   // given pore pressure, sampled now and then and linear in between
   struct Sample {
     std::vector<Vec<dim>> gradient;
-    std::vector<double> value, nodal;
+    std::vector<double> value, nodal, suction;
   };
   [[no_unique_address]] If<Phases::given, std::array<Sample, 2>> sample_;
   double sample_time_[2] = {0, 0}, last_pressure_time_ = 0;
+  bool suction_matters_ = false;                  ///< a law reads it: pressure below zero is suction, not stress
+  std::vector<double> suction_;                   ///< at the stress points of one body [Pa]
 
   bool gathered_ = false;
-  double remap_time_ = 0, own_share_ = 1, moved_ = 0, smallest_ratio_ = 1, step_ratio_ = 1, speed_squared_ = 0;
+  double remap_time_ = 0, accepted_time_ = 0, own_share_ = 1, moved_ = 0, smallest_ratio_ = 1, step_ratio_ = 1, speed_squared_ = 0;
 };
 
 }  // namespace talus

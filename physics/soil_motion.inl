@@ -16,18 +16,6 @@ double stored_energy(const Law &law, const double *stress) {
   return elastic_energy<dim>(law, s);
 }
 
-/// Does strength differ from point to point? Then averaged stress may lie outside the mean strength.
-inline bool softens(const Law &law) {
-  return std::visit(
-      [](const auto &one) {
-        if constexpr (requires { one.shape_factor; })
-          return one.shape_factor > 0;
-        else
-          return false;
-      },
-      law);
-}
-
 template <int dim, class Phases>
 SoilMotion<dim, Phases>::SoilMotion(const BackgroundMesh<dim> &mesh, std::vector<std::unique_ptr<Body<dim>>> &bodies,
                                     Conditions<dim> &conditions, const Transfer &transfer, const Water &water,
@@ -43,6 +31,7 @@ SoilMotion<dim, Phases>::SoilMotion(const BackgroundMesh<dim> &mesh, std::vector
   increment_.resize(cells), cell_stress_.resize(cells), impedance_.resize(cells);
   patch_weight_.assign(mesh.patch_count, 0), patch_sum_.assign(mesh.patch_count, 0);
   nodal_.assign(static_cast<size_t>(nodes) * (dim + 2), 0);
+  for (const auto &body : bodies) suction_matters_ = suction_matters_ || reads_suction(body->law());
   for (auto *all : {&points_, &next_points_})
     for (size_t b = 0; b < bodies.size(); ++b) {
       PointSet &points = (*all)[b];
@@ -99,7 +88,7 @@ PetscErrorCode SoilMotion<dim, Phases>::begin(double t) {
     gather<false>();
   grid_.enter_shared_nodes();
   PetscCall(finish_gather(t));
-  gathered_ = true, remap_time_ = t, own_share_ = 1, moved_ = 0, smallest_ratio_ = 1, step_ratio_ = 1;
+  gathered_ = true, remap_time_ = accepted_time_ = t, own_share_ = 1, moved_ = 0, smallest_ratio_ = 1, step_ratio_ = 1;
   PetscFunctionReturn(0);
 }
 
@@ -135,16 +124,16 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double) {
   PetscCall(back_and_forth(start_velocity_.data(), mapped_start_.data()));
   for (int i = 0; i < nodes; ++i)
     for (int d = 0; d < dim; ++d) mapped_start_[i][d] = start_velocity_[i][d] - mapped_start_[i][d];
-  if (transfer_.average_stress)
-    for (size_t b = 0; b < bodies_.size(); ++b) {
-      if (!softens(bodies_[b]->law())) continue;  // the mean of admissible stresses is admissible where strength is uniform
-      const PointSet &p = points_[b];
-      admit_stress<dim>(bodies_[b]->law(), {p.count, p.stress, p.history, p.stress, p.history, p.cell, increment_.data(), grid_.size.data()});
-    }
   if constexpr (Phases::given) {
     PetscCall(gather_pore_water());
     sample_time_[1] = -std::numeric_limits<double>::infinity();
   }
+  if (transfer_.average_stress)
+    for (size_t b = 0; b < bodies_.size(); ++b) {
+      if (!strength_varies(bodies_[b]->law())) continue;  // the mean of admissible stresses is admissible where strength is uniform
+      const PointSet &p = points_[b];
+      admit_stress<dim>(bodies_[b]->law(), {p.count, p.stress, p.history, p.stress, p.history, p.cell, increment_.data(), grid_.size.data(), find_suction(b)});
+    }
   PetscFunctionReturn(0);
 }
 
@@ -333,9 +322,9 @@ PetscErrorCode SoilMotion<dim, Phases>::smooth_volume_strain() {
   PetscFunctionReturn(0);
 }
 
-/// Deforms the accepted state by nodal displacements `u`: into the trial state, or in place.
+/// Deforms the accepted state by nodal displacements `u`, reached at time t: into the trial state, or in place.
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::deform(const Vec<dim> *u, bool trial) {
+PetscErrorCode SoilMotion<dim, Phases>::deform(double t, const Vec<dim> *u, bool trial) {
   PetscFunctionBeginUser;
   const int nodes = grid_.node_count(), cells = grid_.cell_count();
   if (trial) {
@@ -391,7 +380,7 @@ PetscErrorCode SoilMotion<dim, Phases>::deform(const Vec<dim> *u, bool trial) {
       forgotten_.resize(std::max<size_t>(forgotten_.size(), p.count * body.history_count()));
       history = forgotten_.data();
     }
-    update_stress<dim>(body.law(), {p.count, p.stress, p.history, stress, history, p.cell, increment_.data(), grid_.size.data()});
+    update_stress<dim>(body.law(), {p.count, p.stress, p.history, stress, history, p.cell, increment_.data(), grid_.size.data(), find_suction(b), t - accepted_time_});
     for (int q = 0; q < p.count; ++q) {
       const int c = p.cell[q];
       volume[q] = std::min(p.volume[q] * exp_small(volume_strain_[c]), body.volume_limit(p.limit[q], history + q * body.history_count()));
@@ -487,9 +476,9 @@ PetscErrorCode SoilMotion<dim, Phases>::total_force(double t, bool trial) {
 }
 
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::acceleration(double, const double *u, const double *v, double *a) {
+PetscErrorCode SoilMotion<dim, Phases>::acceleration(double t, const double *u, const double *v, double *a) {
   PetscFunctionBeginUser;
-  if (u) PetscCall(deform(reinterpret_cast<const Vec<dim> *>(u), true));
+  if (u) PetscCall(deform(t, reinterpret_cast<const Vec<dim> *>(u), true));
   PetscCall(total_force(loading.time, u != nullptr));
   const Vec<dim> *unbalanced = force_.data();
   if (loading.damping > 0) {  // what supports take up is not out of balance: damping must not change their reactions
@@ -536,7 +525,8 @@ PetscErrorCode SoilMotion<dim, Phases>::accept(double t, const double *u, const 
   PetscFunctionBeginUser;
   if (transfer_.velocity == Velocity::flip) own_share_ = relaxed(t);
   if (v != velocity_[0].data()) std::copy_n(reinterpret_cast<const Vec<dim> *>(v), grid_.node_count(), velocity_.begin());
-  PetscCall(deform(reinterpret_cast<const Vec<dim> *>(u), false));
+  PetscCall(deform(t, reinterpret_cast<const Vec<dim> *>(u), false));
+  accepted_time_ = t;
   conditions_.follow_loads(reinterpret_cast<const Vec<dim> *>(u));
   moved_ = 0, speed_squared_ = 0;
   for (int i = 0; i < grid_.node_count(); ++i) {
@@ -587,6 +577,22 @@ PetscErrorCode SoilMotion<dim, Phases>::gather_pore_water()
   PetscFunctionReturn(0);
 }
 
+/// Suction at the stress points of a body, or null where its law reads none. It is what the given pressure falls below zero; a scene
+/// without it takes the pressure as it is, theory (2.10).
+template <int dim, class Phases>
+const double *SoilMotion<dim, Phases>::find_suction(size_t b) {
+  if (!reads_suction(bodies_[b]->law())) return nullptr;
+  if constexpr (Phases::given) {
+    sample_pressure(loading.time);
+    const auto [early, late] = sample_shares(loading.time);
+    const PointSet &p = points_[b];
+    suction_.resize(std::max<size_t>(suction_.size(), p.count));
+    for (int q = 0; q < p.count; ++q) suction_[q] = early * sample_[0].suction[p.cell[q]] + late * sample_[1].suction[p.cell[q]];
+    return suction_.data();
+  }
+  return nullptr;  // refused at the door
+}
+
 /// Samples the given pressure at the nodes now and a few steps ahead; in between it is linear in time.
 template <int dim, class Phases>
 void SoilMotion<dim, Phases>::sample_pressure(double t)
@@ -600,6 +606,14 @@ void SoilMotion<dim, Phases>::sample_pressure(double t)
     auto &sample = sample_[k];
     sample.gradient.resize(mesh_.cell_count()), sample.value.resize(mesh_.cell_count()), sample.nodal.resize(mesh_.node_count());
     for (int i = 0; i < grid_.node_count(); ++i) sample.nodal[i] = pressure_(mesh_.position[grid_.mesh_node[i]], sample_time_[k]);
+    if (suction_matters_) {
+      sample.suction.resize(mesh_.cell_count());
+      for (int c = 0; c < grid_.cell_count(); ++c) {
+        sample.suction[c] = 0;
+        for (int i : grid_.shape[c].node) sample.suction[c] += std::max(0., -sample.nodal[i]) / (dim + 1);
+      }
+      for (int i = 0; i < grid_.node_count(); ++i) sample.nodal[i] = std::max(0., sample.nodal[i]);
+    }
     for (int c = 0; c < grid_.cell_count(); ++c) {
       const auto &node = grid_.shape[c].node;
       const Cell<dim> &cell = mesh_.cells[grid_.mesh_cell[c]];
@@ -616,6 +630,13 @@ void SoilMotion<dim, Phases>::sample_pressure(double t)
   }
 }
 
+/// Of the two samples at time t, the ramp of the stage included.
+template <int dim, class Phases>
+std::array<double, 2> SoilMotion<dim, Phases>::sample_shares(double t) const {
+  const double late = loading.ramp * (t - sample_time_[0]) / (sample_time_[1] - sample_time_[0]);
+  return {loading.ramp - late, late};
+}
+
 /// With open water on submerged faces the pore pressure acts as the body force -grad p, which includes the water's weight on the
 /// face without knowing where the face is; without it, as a part of the stress, theory (2.8), (2.9).
 template <int dim, class Phases>
@@ -624,7 +645,7 @@ void SoilMotion<dim, Phases>::add_pore_pressure(double t, bool trial)
 {
   sample_pressure(t);
   last_pressure_time_ = t;
-  const double late = loading.ramp * (t - sample_time_[0]) / (sample_time_[1] - sample_time_[0]), early = loading.ramp - late;
+  const auto [early, late] = sample_shares(t);
   const Shape<dim> *shape = trial ? trial_shape_.data() : grid_.shape.data();
   const double *weight = trial ? trial_weight_.data() : weight_.data();
   for (int c = 0; c < grid_.cell_count(); ++c) {

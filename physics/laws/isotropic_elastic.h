@@ -7,8 +7,6 @@ namespace talus {
 
 /// Hypoelastic in Cauchy stress and logarithmic strain of one increment, docs/theory section 2.
 struct IsotropicElastic {
-  static constexpr bool reads_suction = false;  ///< a law that does hides this
-
   double young_modulus = required;  ///< E [Pa]
   double poisson_ratio = required;  ///< nu [-]
 
@@ -19,6 +17,11 @@ struct IsotropicElastic {
   void fields(Visitor &&v) {
     v.elasticity(young_modulus, poisson_ratio);
   }
+
+  // A law that differs hides these.
+  static constexpr bool takes_suction = false;
+  bool reads_suction() const { return false; }
+  bool strength_varies() const { return false; }
 
   double K = 0, G = 0, lambda = 0;  ///< [Pa], set by prepare()
   void prepare() { K = bulk_modulus(), G = shear_modulus(), lambda = K - 2 * G / 3; }

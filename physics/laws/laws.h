@@ -5,11 +5,13 @@
 /// - `history`, `History`: fields it remembers of a point, and their values
 /// - `fields(visitor)`: its parameters, for reader and descriptions; `problem()`: what is wrong between them, or ""
 /// - `prepare()`: derives what follows from the parameters alone, once per update of all points
-/// - `reads_suction`: does its strength follow `Surroundings::suction`?
+/// - `reads_suction()`: does its strength follow `Surroundings::suction`?
+/// - `takes_suction`: the same of the compiled case
+/// - `as_case(use)`: where the law is compiled in several cases, calls `use` with the one that serves its parameters
 /// - `trial(s, e, around)`: adds the elastic stress of a strain increment (IsotropicElastic's, unless the law has its
 /// own)
 /// - `correct(s, history, around)`: brings the trial back to what the law admits; leaves admissible stress alone
-/// - `bulk_modulus()`, `shear_modulus()`, `elastic_energy(s)`, `cohesionless()`
+/// - `bulk_modulus()`, `shear_modulus()`, `elastic_energy(s)`, `cohesionless()`, `strength_varies()`
 /// `trial` and `correct` are templates over the number type too: a run with Duals (dual.h) gives the consistent tangent.
 /// History takes values only (`value_of`).
 ///
@@ -41,7 +43,7 @@ inline int history_size(const Law &law) { return static_cast<int>(history_fields
 
 /// Must the phase model bring suction?
 inline bool reads_suction(const Law &law) {
-  return std::visit([](const auto &one) { return one.reads_suction; }, law);
+  return std::visit([](const auto &one) { return one.reads_suction(); }, law);
 }
 
 inline double bulk_modulus(const Law &law) {  ///< K [Pa]
@@ -57,6 +59,11 @@ inline double constrained_modulus(const Law &law) {  ///< K + 4/3 G, of the elas
 /// Does soil of this law open without resistance? Then volume that particles gain by opening gaps is not the soil's.
 inline bool cohesionless(const Law &law) {
   return std::visit([](const auto &one) { return one.cohesionless(); }, law);
+}
+
+/// Does strength differ from point to point? Then averaged stress may lie outside the mean strength.
+inline bool strength_varies(const Law &law) {
+  return std::visit([](const auto &one) { return one.strength_varies(); }, law);
 }
 
 /// Elastic energy per volume [J/m3].

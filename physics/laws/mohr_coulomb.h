@@ -8,15 +8,16 @@
 
 namespace talus {
 
-/// Mohr-Coulomb with non-associated flow, tension cut-off and softening; Tresca where phi = 0. In principal stresses
+/// Mohr-Coulomb with non-associated flow, tension cut-off, softening and strength from suction, docs/theory/laws/mohr_coulomb.md;
+/// Tresca where phi = 0. In principal stresses
 /// s1 >= s2 >= s3 a pair yields where (1 + sin phi) s_i - (1 - sin phi) s_j = 2 c cos phi and flows with psi for phi;
 /// the cut-off s_i <= T flows along its normal. The return is exact to face, edges, apex, cut-off and their
 /// intersections. Sources: Clausen, Damkilde & Andersen (2006, 2007), Comput. Struct. 85 (regions in principal space);
-/// de Souza Neto, Peric & Owen (2008), sec. 8.2 (which edge); Alonso, Yerro & Pinyol (2015), eqs. (18), (19)
-/// (softening).
+/// de Souza Neto, Peric & Owen (2008), sec. 8.2 (which edge); Alonso, Yerro & Pinyol (2015), eqs. (14)
+/// to (17) (suction), (18), (19) (softening).
 struct MohrCoulomb : IsotropicElastic {
   static constexpr const char *name = "mohr_coulomb";
-  static constexpr const char *meaning = "Mohr-Coulomb with dilation, tension cut-off and strain softening";
+  static constexpr const char *meaning = "Mohr-Coulomb with dilation, tension cut-off, strain softening and strength from suction; Tresca where friction_angle = 0";
   static constexpr auto history = plastic_strains;
   using History = std::array<double, history.size()>;
 
@@ -26,8 +27,12 @@ struct MohrCoulomb : IsotropicElastic {
   double tension_cutoff = -1;                   ///< T [Pa]; negative: none, the apex is the limit
   double residual_cohesion = -1;                ///< [Pa]; negative: the peak
   double residual_friction_angle = -degree.si;  ///< [rad]; negative: the peak
+  double residual_dilation_angle = -degree.si;  ///< [rad]; negative: the peak
   double shape_factor = 0;                      ///< eta: strength falls with exp(-eta plastic_strain) [-]
   double reference_size = 0;                    ///< h_ref: eta is multiplied by h / h_ref [m]; 0: it is not
+  double suction_cohesion = 0;                  ///< dc_max: what suction adds to c at most [Pa]
+  double suction_cohesion_rate = 0;             ///< B over P_atm: dc_max (1 - exp(-B s / P_atm)) is added [1/Pa]
+  double suction_friction_rate = 0;             ///< A over P_atm: A s / P_atm is added to phi [rad/Pa]
 
   template <class Visitor>
   void fields(Visitor &&v) {
@@ -43,29 +48,44 @@ struct MohrCoulomb : IsotropicElastic {
              "cohesion at large strain; negative is the peak");
     v.number("residual_friction_angle", residual_friction_angle, degree, Range{-1, 70},
              "friction angle at large strain; negative is the peak");
+    v.number("residual_dilation_angle", residual_dilation_angle, degree, Range{-1, 70},
+             "dilation angle at large strain; negative is the peak");
     v.number("shape_factor", shape_factor, one, Range{0, 1e6}, "eta: strength falls with exp(-eta plastic_strain)");
     v.number("reference_size", reference_size, metre, Range{0, 1e4},
              "element size that shape_factor belongs to; in cells of size h it is scaled by h / reference_size; 0 is "
              "no scaling");
+    v.number("suction_cohesion", suction_cohesion, pascal, Range{0, 1e9},
+             "most that suction adds to the cohesion: c = c' + suction_cohesion (1 - exp(-suction_cohesion_rate s))");
+    v.number("suction_cohesion_rate", suction_cohesion_rate, per_pascal, Range{0, 1e-4},
+             "rate at which cohesion grows with suction, per pressure, such as \"0.0007 1/kPa\"");
+    v.number("suction_friction_rate", suction_friction_rate, degree_per_pascal, Range{0, 1e-2},
+             "growth of the friction angle with suction, such as \"0.0001 deg/kPa\"; phi stops at 80 degrees");
   }
 
   std::string problem() const {
     if (dilation_angle > friction_angle) return "dilation_angle must not exceed friction_angle";
     if (residual_cohesion > cohesion) return "residual_cohesion must not exceed cohesion";
     if (residual_friction_angle > friction_angle) return "residual_friction_angle must not exceed friction_angle";
-    if ((residual_cohesion >= 0 || residual_friction_angle >= 0) && shape_factor == 0)
+    if (residual_dilation_angle > dilation_angle) return "residual_dilation_angle must not exceed dilation_angle";
+    if ((suction_cohesion > 0) != (suction_cohesion_rate > 0))
+      return "suction_cohesion and suction_cohesion_rate go together: give both above 0, or neither";
+    if ((residual_cohesion >= 0 || residual_friction_angle >= 0 || residual_dilation_angle >= 0) && shape_factor == 0)
       return "a residual strength needs a shape_factor above 0, the rate at which it is reached";
     return "";
   }
 
-  bool cohesionless() const { return cohesion == 0; }
+  bool cohesionless() const { return cohesion == 0 && suction_cohesion == 0; }
+  bool reads_suction() const { return suction_cohesion > 0 || suction_friction_rate > 0; }
+  bool strength_varies() const { return shape_factor > 0 || reads_suction(); }
 
   // Of the parameters alone, set by prepare().
   double cutoff = 0;                                          ///< [Pa]
-  double residual_c = 0, residual_phi = 0, sin_psi_peak = 0;  ///< [Pa], [rad], [-]
+  double residual_c = 0, residual_phi = 0;                    ///< [Pa], [rad]
+  double sin_psi_peak = 0, sin_psi_residual = 0;              ///< [-]
   double over_size = 0;                                       ///< 1 / h_ref [1/m]
   double plane_drag = 0, line_drag = 0;                       ///< stress that opening takes off the others [-]
   static constexpr double right_angle = 90 * degree.si;       ///< [rad]
+  static constexpr double steepest = 80 * degree.si;          ///< of phi with suction [rad]
   static constexpr double unlimited = 1e100;                  ///< [Pa]
   void prepare() {
     IsotropicElastic::prepare();
@@ -73,6 +93,7 @@ struct MohrCoulomb : IsotropicElastic {
     residual_c = residual_cohesion < 0 ? cohesion : residual_cohesion;
     residual_phi = residual_friction_angle < 0 ? friction_angle : residual_friction_angle;
     sin_psi_peak = std::sin(dilation_angle);
+    sin_psi_residual = residual_dilation_angle < 0 ? sin_psi_peak : std::sin(residual_dilation_angle);
     over_size = reference_size > 0 ? 1 / reference_size : 0;
     plane_drag = lambda / (lambda + 2 * G), line_drag = lambda / (lambda + G);
   }
@@ -88,14 +109,21 @@ struct MohrCoulomb : IsotropicElastic {
     }
   };
 
-  template <class Number>
+  /// After a plastic strain, under the suction of the place. Where sin psi fades it does so as c and phi do.
+  template <class Number, bool with_suction = true>
   [[gnu::always_inline]] Strength<Number> strength(const Number &plastic_strain, const Surroundings &around) const {
     const double scale = around.size * over_size, eta = scale > 0 ? shape_factor * scale : shape_factor;
     const Number left = exponential(-eta * plastic_strain);  // of the way from residual to peak
-    const Number phi = residual_phi + (friction_angle - residual_phi) * left, sin_phi = sine(phi);
-    const Number c_cos_phi = (residual_c + (cohesion - residual_c) * left) * sine(right_angle - phi);
+    Number c = residual_c + (cohesion - residual_c) * left, phi = residual_phi + (friction_angle - residual_phi) * left;
+    if constexpr (with_suction) {
+      c += suction_cohesion * (1 - exponential(-suction_cohesion_rate * around.suction));
+      phi += suction_friction_rate * around.suction;
+      phi = phi < steepest ? phi : steepest;
+    }
+    const Number sin_phi = sine(phi), c_cos_phi = c * sine(right_angle - phi);
+    const Number sin_psi = sin_psi_residual + (sin_psi_peak - sin_psi_residual) * left;
     const Number quotient = c_cos_phi / sin_phi, apex = sin_phi > 0 ? quotient : unlimited;
-    return {sin_phi, sin_psi_peak < sin_phi ? sin_psi_peak : sin_phi, 2 * c_cos_phi, cutoff < apex ? cutoff : apex};
+    return {sin_phi, sin_psi < sin_phi ? sin_psi : sin_phi, 2 * c_cos_phi, cutoff < apex ? cutoff : apex};
   }
 
   /// The principal stresses that plastic flow leaves of an elastic trial.
@@ -150,6 +178,22 @@ struct MohrCoulomb : IsotropicElastic {
     return sqrt(d12 * d12 + d23 * d23 + d31 * d31) * (0.47140452079103168 / (2 * G));  // sqrt(2) / 3
   }
 
+  /// Calls `use` with this law as the simplest of its cases: what a soil does not do costs its particles nothing.
+  template <class Use>
+  void as_case(Use use) const;
+};
+
+/// Mohr-Coulomb of soil that softens or does not, and reads suction or does not.
+template <bool softens, bool with_suction>
+struct MohrCoulombCase : MohrCoulomb {
+  static constexpr bool takes_suction = with_suction;
+  Strength<> peak;
+
+  void prepare() {
+    MohrCoulomb::prepare();
+    peak = strength(0., Surroundings{0});
+  }
+
   /// Brings an elastic trial stress back to the surface. The strength is that after the plastic strain which the
   /// strength at the start would cause: first order in the step, and behind the strain that results by only
   /// (softening slope / 2 G) of what the strength at the start would be.
@@ -163,12 +207,25 @@ struct MohrCoulomb : IsotropicElastic {
       const Principal<Value> end = admissible(trial, strength);
       return Principal<Value>{trial.s1 - end.s1, trial.s2 - end.s2, trial.s3 - end.s3};
     };
-    const Value predicted = plastic_strain + shearing(change(strength(Value(plastic_strain), around)));
-    const Principal<Value> taken = change(strength(predicted, around));
+    Strength<Value> now{peak.sin_phi, peak.sin_psi, peak.twice_c_cos_phi, peak.tension};
+    if constexpr (softens || with_suction) now = strength<Value, with_suction>(Value(plastic_strain), around);
+    if constexpr (softens) {
+      const Value predicted = plastic_strain + shearing(change(now));
+      now = strength<Value, with_suction>(predicted, around);
+    }
+    const Principal<Value> taken = change(now);
     axes.subtract(taken, stress);
     plastic_strain += value_of(shearing(taken));
     plastic_volume += value_of(taken.s1 + taken.s2 + taken.s3) * (1 / (3 * K));
   }
 };
+
+template <class Use>
+void MohrCoulomb::as_case(Use use) const {
+  if (reads_suction())
+    shape_factor > 0 ? use(MohrCoulombCase<true, true>{*this, {}}) : use(MohrCoulombCase<false, true>{*this, {}});
+  else
+    shape_factor > 0 ? use(MohrCoulombCase<true, false>{*this, {}}) : use(MohrCoulombCase<false, false>{*this, {}});
+}
 
 }  // namespace talus

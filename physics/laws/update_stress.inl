@@ -114,7 +114,7 @@ struct PointBlock {
   Block<std::tuple_size_v<decltype(Increment<dim>::rotation)>> rotation;
   Block<OneLaw::history.size()> history;
   Block<1> element_size;
-  Block<OneLaw::reads_suction> suction;
+  Block<OneLaw::takes_suction> suction;
 
   /// One call is the whole body of the loop: what lived in the loop itself would be kept in memory, and the loop stay
   /// scalar.
@@ -123,7 +123,7 @@ struct PointBlock {
     auto s = take<Stress<dim>>(stress, i);
     auto h = take<typename OneLaw::History>(history, i);
     Surroundings around{element_size.value[0][i], 0, time_step};
-    if constexpr (OneLaw::reads_suction) around.suction = suction.value[0][i];
+    if constexpr (OneLaw::takes_suction) around.suction = suction.value[0][i];
     if constexpr (strained) {
       s = strained_by(law, s, take<Strain<dim>>(strain, i), h, around);
       s = rotated(s, take<decltype(Increment<dim>::rotation)>(rotation, i));
@@ -134,6 +134,19 @@ struct PointBlock {
     put(history, i, h);
   }
 };
+
+/// Calls `use` with the law, or with the simplest case of it if it offers cases (`as_case`).
+template <class Use>
+void visit_case(const Law &law, Use use) {
+  std::visit(
+      [&](const auto &one) {
+        if constexpr (requires { one.as_case(use); })
+          one.as_case(use);
+        else
+          use(one);
+      },
+      law);
+}
 
 /// `law` is a copy, so that no store to the arrays can change it: the compiler then takes what depends on it alone out
 /// of the loop.
@@ -152,7 +165,7 @@ void correct_all(OneLaw law, const StressPoints<dim> &points) {
       stress[i] = points.stress_in + p * size;
       history[i] = points.history_in + p * memory;
       element_size[i] = points.size + points.cell[p];
-      if constexpr (OneLaw::reads_suction) suction[i] = points.suction ? points.suction + p : &no_suction;
+      if constexpr (OneLaw::takes_suction) suction[i] = points.suction ? points.suction + p : &no_suction;
       if constexpr (strained) {
         strain[i] = points.increment[points.cell[p]].strain.data();
         rotation[i] = points.increment[points.cell[p]].rotation.data();
@@ -161,7 +174,7 @@ void correct_all(OneLaw law, const StressPoints<dim> &points) {
     block.stress.load(stress);
     block.history.load(history);
     block.element_size.load(element_size);
-    if constexpr (OneLaw::reads_suction) block.suction.load(suction);
+    if constexpr (OneLaw::takes_suction) block.suction.load(suction);
     if constexpr (strained) block.strain.load(strain), block.rotation.load(rotation);
 #pragma omp simd
     for (int i = 0; i < lanes; ++i) block.template correct<strained>(law, time_step, i);
@@ -201,18 +214,18 @@ void differentiate_all(OneLaw law, const StressPoints<dim> &points, double *tang
 
 template <int dim>
 void update_stress_with_tangent(const Law &law, const StressPoints<dim> &points, double *tangent) {
-  std::visit([&](const auto &one) { differentiate_all(one, points, tangent); }, law);
+  visit_case(law, [&](const auto &one) { differentiate_all(one, points, tangent); });
   update_stress(law, points);
 }
 
 template <int dim>
 void update_stress(const Law &law, const StressPoints<dim> &points) {
-  std::visit([&](const auto &one) { correct_all<true>(one, points); }, law);
+  visit_case(law, [&](const auto &one) { correct_all<true>(one, points); });
 }
 
 template <int dim>
 void admit_stress(const Law &law, const StressPoints<dim> &points) {
-  std::visit([&](const auto &one) { correct_all<false>(one, points); }, law);
+  visit_case(law, [&](const auto &one) { correct_all<false>(one, points); });
 }
 
 }  // namespace talus

@@ -21,6 +21,8 @@ inline constexpr Unit metre_per_second{"m/s", 1, {0, 1, -1, 0}};
 inline constexpr Unit metre_per_second_squared{"m/s2", 1, {0, 1, -2, 0}};
 inline constexpr Unit kilogram_per_cubic_metre{"kg/m3", 1, {1, -3, 0, 0}};
 inline constexpr Unit square_metre{"m2", 1, {0, 2, 0, 0}};
+inline constexpr Unit per_pascal{"1/Pa", 1, {-1, 1, 2, 0}};
+inline constexpr Unit degree_per_pascal{"deg/Pa", degree.si, {-1, 1, 2, 1}};
 inline constexpr Unit pascal_second{"Pa s", 1, {1, -1, -1, 0}};
 
 /// Allowed values of a scene key, in the unit the key is stated in.

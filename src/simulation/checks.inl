@@ -29,6 +29,10 @@ void Simulation<dim, Phases>::check_bodies() const {
     }
     MPI_Allreduce(MPI_IN_PLACE, &other, 1, MPI_INT, MPI_MAX, comm_);
     if (other >= 0) scene_.complain(path + ".region", "fills cells that body." + scene_.body[other].name + " fills too; give each cell to one body");
+    if (!Phases::given && !Phases::suction && reads_suction(laws_[b]))
+      scene_.complain(path + ".law", std::string("takes strength from suction, and `phases = \"") + Phases::name +
+                                         "\"` has none; model the water (`phases = \"drained\"` and a [water] excess below zero), or leave out the "
+                                         "keys suction_...");
     check_lattice(path, body.particles_per_cell);
     for (size_t k = 0; k < body.dense.size(); ++k) check_lattice(path + ".dense." + std::to_string(k), body.dense[k].particles_per_cell);
   }

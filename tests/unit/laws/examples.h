@@ -26,6 +26,10 @@ inline std::vector<MohrCoulomb> examples() {
   tension.tension_cutoff = 2e3;
   softening.residual_cohesion = 1e3, softening.residual_friction_angle = 20 * degree.si;
   softening.shape_factor = 300, softening.reference_size = 0.5;
+  MohrCoulomb wet = mohr_coulomb(2e3, 25, 5), wet_softening = softening;
+  wet.suction_cohesion = 20e3, wet.suction_cohesion_rate = 1e-5, wet.suction_friction_rate = 1e-4 * degree.si;
+  wet_softening.suction_cohesion = 20e3, wet_softening.suction_cohesion_rate = 1e-5;
+  wet_softening.residual_dilation_angle = 0;
   MohrCoulomb both = softening;
   both.tension_cutoff = 5e3, both.residual_cohesion = 0;
   return {mohr_coulomb(0, 35),
@@ -34,7 +38,9 @@ inline std::vector<MohrCoulomb> examples() {
           mohr_coulomb(0, 0),
           tension,
           softening,
-          both};
+          both,
+          wet,
+          wet_softening};
 }
 
 template <>

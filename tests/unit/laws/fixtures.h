@@ -45,7 +45,7 @@ inline Matrix elastic_strain(const Law &law, const Matrix &s) {
 template <int dim>
 struct Points {
   Points(const Law &l, int n, double size = 1)
-      : law(l), stress(n), history(n * history_size(l)), increment(n), element_size(n, size), cell(n) {
+      : law(l), stress(n), history(n * history_size(l)), increment(n), element_size(n, size), suction(n, 30e3), cell(n) {
     for (int i = 0; i < n; ++i) cell[i] = i, turn(i, Matrix::Identity());
   }
   void turn(int i, const Matrix &R) {
@@ -62,7 +62,9 @@ struct Points {
             history.data(),
             cell.data(),
             increment.data(),
-            element_size.data()};
+            element_size.data(),
+            suction.data(),
+            1e-3};
   }
   void update() { update_stress<dim>(law, view()); }
   void admit() { admit_stress<dim>(law, view()); }
@@ -71,7 +73,7 @@ struct Points {
   std::vector<Components<dim>> stress;
   std::vector<double> history;
   std::vector<Increment<dim>> increment;
-  std::vector<double> element_size;
+  std::vector<double> element_size, suction;
   std::vector<int> cell;
 };
 

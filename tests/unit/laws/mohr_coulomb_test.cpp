@@ -366,5 +366,56 @@ TEST(MohrCoulomb, never_dilates_more_than_it_rubs) {
   EXPECT_LT(law.strength(1e3, {1}).sin_psi, 1e-300);
 }
 
+TEST(MohrCoulomb, loses_dilation_as_it_loses_strength) {
+  MohrCoulomb law = softening_law();
+  law.residual_dilation_angle = 0;
+  law.prepare();
+  EXPECT_NEAR(law.strength(0., {1}).sin_psi, std::sin(10 * degree.si), 1e-15);
+  EXPECT_NEAR(law.strength(0.02, {1}).sin_psi, std::sin(10 * degree.si) * std::exp(-40 * 0.02), 1e-15);
+  EXPECT_LT(law.strength(10., {1}).sin_psi, 1e-100);
+}
+
+/// Alonso et al. (2015), Table 3: dc_max = 15 kPa, B = 0.0007 and A = 0.0001 degrees per kPa give
+/// 1 + 6.43 kPa and 0.08 degrees more at s = 800 kPa.
+MohrCoulomb embankment() {
+  MohrCoulomb law = mohr_coulomb(1e3, 23);
+  law.suction_cohesion = 15e3, law.suction_cohesion_rate = 7e-7, law.suction_friction_rate = 1e-7 * degree.si;
+  return law;
+}
+
+/// Alonso et al. (2015), eqs. (14) to (17), alone and with (18), (19).
+TEST(MohrCoulomb, gains_strength_from_suction) {
+  MohrCoulomb law = embankment();
+  law.prepare();
+  const double s = 800e3, c = 1e3 + 15e3 * (1 - std::exp(-0.56)), phi = (23 + 0.08) * degree.si;
+  EXPECT_NEAR(c, 7.43e3, 5);
+  EXPECT_NEAR(law.strength(0., {1, s}).sin_phi, std::sin(phi), 1e-15);
+  EXPECT_NEAR(law.strength(0., {1, s}).twice_c_cos_phi, 2 * c * std::cos(phi), 1e-11);
+  EXPECT_NEAR(law.strength(0., {1, 0}).twice_c_cos_phi, 2e3 * std::cos(23 * degree.si), 1e-12);
+  EXPECT_NEAR(law.strength(0., {1, 1e12}).sin_phi, std::sin(80 * degree.si), 1e-15) << "phi has an end";
+  law.residual_cohesion = 0, law.residual_friction_angle = 20 * degree.si, law.shape_factor = 40;
+  law.prepare();
+  const double left = std::exp(-40 * 0.03), soft_phi = (20 + 3 * left + 0.08) * degree.si;
+  EXPECT_NEAR(law.strength(0.03, {1, s}).sin_phi, std::sin(soft_phi), 1e-15);
+  EXPECT_NEAR(law.strength(0.03, {1, s}).twice_c_cos_phi, 2 * (c - 1e3 + 1e3 * left) * std::cos(soft_phi), 1e-11);
+}
+
+/// Each point has the strength of its own suction; a point without a suction array has none.
+TEST(MohrCoulomb, yields_where_its_suction_says) {
+  Points<2> points(embankment(), 20);
+  for (int i = 0; i < 20; ++i) points.suction[i] = 40e3 * i, points.stress[i] = {-4e4, -4e4, -4e4, 0};
+  for (auto &increment : points.increment) increment.strain = {0, 0, 0, 0.05};
+  Points<2> dry = points;
+  points.update();
+  StressPoints<2> view = dry.view();
+  view.suction = nullptr;
+  update_stress<2>(dry.law, view);
+  for (int i = 0; i < 20; ++i) {
+    MohrCoulomb same = mohr_coulomb(1e3 + 15e3 * (1 - std::exp(-7e-7 * 40e3 * i)), 23 + 1e-7 * 40e3 * i);
+    EXPECT_NEAR(Surface(same).excess(principal(matrix<2>(points.stress[i]))), 0, 1e-9);
+    EXPECT_NEAR(Surface(mohr_coulomb(1e3, 23)).excess(principal(matrix<2>(dry.stress[i]))), 0, 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace talus

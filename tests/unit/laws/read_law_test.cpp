@@ -55,6 +55,19 @@ TEST(ReadLaw, knows_cohesionless_soil) {
   EXPECT_FALSE(cohesionless(read("law = \"linear_elastic\"\nyoung_modulus = 1e7\npoisson_ratio = 0.3\n")));
 }
 
+/// Alonso et al. (2015), Table 3: its B and A go with kPa; without a unit they would be 1000 times too large.
+TEST(ReadLaw, takes_rates_per_pressure) {
+  const std::string rest =
+      "law = \"mohr_coulomb\"\nyoung_modulus = 1e7\npoisson_ratio = 0.3\ncohesion = \"1 kPa\"\nfriction_angle = 23\n"
+      "suction_cohesion = \"15 kPa\"\n";
+  const Law law = read(rest + "suction_cohesion_rate = \"0.0007 1/kPa\"\nsuction_friction_rate = \"0.0001 deg/kPa\"\n");
+  EXPECT_TRUE(reads_suction(law));
+  EXPECT_DOUBLE_EQ(std::get<MohrCoulomb>(law).suction_cohesion_rate, 7e-7);
+  EXPECT_DOUBLE_EQ(std::get<MohrCoulomb>(law).suction_friction_rate, 1e-7 * degree.si);
+  EXPECT_THROW(read(rest + "suction_cohesion_rate = 0.0007\n"), SceneError);
+  EXPECT_THROW(read(rest + "suction_cohesion_rate = \"0.0007 kPa\"\n"), SceneError);
+}
+
 TEST(ReadLaw, complains_about_parameters_that_contradict_each_other) {
   EXPECT_EQ(complaint(""), "");
   EXPECT_NE(complaint("dilation_angle = 31").find("dilation_angle must not exceed"), std::string::npos);
@@ -63,6 +76,8 @@ TEST(ReadLaw, complains_about_parameters_that_contradict_each_other) {
   EXPECT_NE(complaint("residual_friction_angle = 31\nshape_factor = 1").find("residual_friction_angle must not"),
             std::string::npos);
   EXPECT_NE(complaint("residual_cohesion = 0").find("shape_factor"), std::string::npos);
+  EXPECT_NE(complaint("residual_dilation_angle = 1\nshape_factor = 1").find("residual_dilation_angle must not"), std::string::npos);
+  EXPECT_NE(complaint("suction_cohesion = \"15 kPa\"").find("go together"), std::string::npos);
   EXPECT_NE(complaint("cohesionn = 0").find("cohesionn"), std::string::npos);
 }
 
