@@ -82,12 +82,10 @@ class SoilMotion final : public Motion {
  private:
   static constexpr int components = stress_size<dim>;
 
-  template <bool apic>
+  template <bool averaged, bool apic>
   void gather();
   double relaxed(double t) const;
   double end(double t);
-  template <bool apic>
-  void gather_staying(double flip, std::vector<std::vector<int>> &movers);
   void forget();
   void attach(size_t body);
   PetscErrorCode finish_gather(double t);
@@ -103,6 +101,8 @@ class SoilMotion final : public Motion {
   void sample_pressure(double t) requires Phases::given;
   std::array<double, 2> sample_shares(double t) const;
   const double *find_suction(size_t body);
+  /// Does velocity relax between remaps? Otherwise only remaps relax it.
+  bool relaxes() const { return transfer_.remap_interval > 0 && relaxation_time_ > 0; }
   PetscErrorCode back_and_forth(const Vec<dim> *in, Vec<dim> *out);
 
   const BackgroundMesh<dim> &mesh_;
@@ -117,7 +117,7 @@ class SoilMotion final : public Motion {
 
   // nodes
   std::vector<Vec<dim>> start_velocity_, velocity_, force_, scratch_, trial_position_;
-  std::vector<Vec<dim>> mapped_start_;            ///< start velocity less its own mapping to particles and back [m/s]
+  std::vector<Vec<dim>> mapped_start_;            ///< start velocity less its own mapping to particles and back, where it relaxes [m/s]
   std::vector<double> nodal_;                     ///< room for sums over ranks
   std::vector<double> extra_mass_;                ///< pore water gained since seeding, weighs but is not inert [kg]
   NodalUpdate update_;

@@ -46,21 +46,26 @@ SoilMotion<dim, Phases>::SoilMotion(const BackgroundMesh<dim> &mesh, std::vector
 
 // ---- remap ----
 
+/// Calls f<averaged, apic>() as the scene's transfer asks for.
+template <class F>
+void with_transfer(const Transfer &transfer, F &&f) {
+  const bool apic = transfer.velocity == Velocity::apic;
+  if (transfer.average_stress)
+    apic ? f.template operator()<true, true>() : f.template operator()<true, false>();
+  else
+    apic ? f.template operator()<false, true>() : f.template operator()<false, false>();
+}
+
 /// Adds the particles, or those that are still missing, to the grid.
 template <int dim, class Phases>
-template <bool apic>
+template <bool averaged, bool apic>
 void SoilMotion<dim, Phases>::gather() {
   for (size_t b = 0; b < bodies_.size(); ++b) {
     PointSet &points = points_[b];
-    const std::vector<int> *missing = movers_ ? &(*movers_)[b] : nullptr;
     const ParticleArrays<dim> &p = bodies_[b]->particles();
-    if (transfer_.average_stress) {
-      to_nodes<dim, true, apic>(*bodies_[b], grid_, start_velocity_.data(), points, missing);
-    } else {
-      points.own_cell.resize(std::max<size_t>(points.own_cell.size(), p.count));
-      to_nodes<dim, false, apic>(*bodies_[b], grid_, start_velocity_.data(), points, missing);
-      points.count = p.count;
-    }
+    if (!averaged) points.own_cell.resize(std::max<size_t>(points.own_cell.size(), p.count));
+    to_nodes<dim, averaged, apic>(*bodies_[b], grid_, start_velocity_.data(), points, movers_ ? &(*movers_)[b] : nullptr);
+    if (!averaged) points.count = p.count;
     attach(b);
   }
   movers_ = nullptr;
@@ -82,10 +87,7 @@ PetscErrorCode SoilMotion<dim, Phases>::begin(double t) {
   PetscFunctionBeginUser;
   if (gathered_) PetscFunctionReturn(0);
   if (!movers_) std::fill(start_velocity_.begin(), start_velocity_.end(), Vec<dim>{});
-  if (transfer_.velocity == Velocity::apic)
-    gather<true>();
-  else
-    gather<false>();
+  with_transfer(transfer_, [&]<bool averaged, bool apic>() { gather<averaged, apic>(); });
   grid_.enter_shared_nodes();
   PetscCall(finish_gather(t));
   gathered_ = true, remap_time_ = accepted_time_ = t, own_share_ = 1, moved_ = 0, smallest_ratio_ = 1, step_ratio_ = 1;
@@ -121,9 +123,11 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double) {
   PetscCall(conditions_.begin(grid_, impedance_, filling_));
   conditions_.constrain(loading.time, grid_, start_velocity_.data(), false);
   std::copy_n(start_velocity_.begin(), nodes, velocity_.begin());
-  PetscCall(back_and_forth(start_velocity_.data(), mapped_start_.data()));
-  for (int i = 0; i < nodes; ++i)
-    for (int d = 0; d < dim; ++d) mapped_start_[i][d] = start_velocity_[i][d] - mapped_start_[i][d];
+  if (relaxes()) {
+    PetscCall(back_and_forth(start_velocity_.data(), mapped_start_.data()));
+    for (int i = 0; i < nodes; ++i)
+      for (int d = 0; d < dim; ++d) mapped_start_[i][d] = start_velocity_[i][d] - mapped_start_[i][d];
+  }
   if constexpr (Phases::given) {
     PetscCall(gather_pore_water());
     sample_time_[1] = -std::numeric_limits<double>::infinity();
@@ -212,7 +216,7 @@ double SoilMotion<dim, Phases>::end(double t) {
 template <int dim, class Phases>
 void SoilMotion<dim, Phases>::forget() {
   for (PointSet &points : points_) {
-    for (int cell : grid_.mesh_cell) points.of_cell[cell] = -1;
+    for (int c = 0; c < grid_.cell_count(); ++c) points.of_cell[grid_.mesh_cell[c]] = -1;
     points.count = 0;
   }
   grid_.clear();
@@ -223,27 +227,12 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::release(double t, std::vector<std::vector<int>> &movers) {
   PetscFunctionBeginUser;
   const double flip = end(t);
-  for (size_t b = 0; b < bodies_.size(); ++b) {
-    const Lagrangian<dim> from{grid_, update_, flip, affine_.empty() ? nullptr : affine_.data(), points_[b]};
-    if (transfer_.average_stress)
-      to_particles<dim, true>(*bodies_[b], from, movers[b]);
-    else
-      to_particles<dim, false>(*bodies_[b], from, movers[b]);
-  }
+  with_transfer(transfer_, [&]<bool averaged, bool apic>() {
+    for (size_t b = 0; b < bodies_.size(); ++b)
+      to_particles<dim, averaged, apic>(*bodies_[b], {grid_, update_, flip, affine_.data(), points_[b]}, movers[b]);
+  });
   forget();
   PetscFunctionReturn(0);
-}
-
-template <int dim, class Phases>
-template <bool apic>
-void SoilMotion<dim, Phases>::gather_staying(double flip, std::vector<std::vector<int>> &movers) {
-  for (size_t b = 0; b < bodies_.size(); ++b) {
-    const Lagrangian<dim> from{grid_, update_, flip, apic ? affine_.data() : nullptr, points_[b]};
-    if (transfer_.average_stress)
-      to_next_nodes<dim, true, apic>(*bodies_[b], from, next_grid_, start_velocity_.data(), next_points_[b], movers[b]);
-    else
-      to_next_nodes<dim, false, apic>(*bodies_[b], from, next_grid_, start_velocity_.data(), next_points_[b], movers[b]);
-  }
 }
 
 template <int dim, class Phases>
@@ -251,10 +240,11 @@ PetscErrorCode SoilMotion<dim, Phases>::release_to_next(double t, std::vector<st
   PetscFunctionBeginUser;
   const double flip = end(t);
   std::fill(start_velocity_.begin(), start_velocity_.end(), Vec<dim>{});
-  if (transfer_.velocity == Velocity::apic)
-    gather_staying<true>(flip, movers);
-  else
-    gather_staying<false>(flip, movers);
+  with_transfer(transfer_, [&]<bool averaged, bool apic>() {
+    for (size_t b = 0; b < bodies_.size(); ++b)
+      to_next_nodes<dim, averaged, apic>(*bodies_[b], {grid_, update_, flip, affine_.data(), points_[b]}, next_grid_, start_velocity_.data(),
+                                         next_points_[b], movers[b]);
+  });
   forget();
   std::swap(grid_, next_grid_), std::swap(points_, next_points_);
   movers_ = &movers;
@@ -507,15 +497,22 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::map_back(double, double gamma, double *v, double *w) {
   PetscFunctionBeginUser;
   Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v), *mapped = reinterpret_cast<Vec<dim> *>(w);
-  PetscCall(back_and_forth(velocity, mapped));
-  if (transfer_.remap_interval > 0 && relaxation_time_ > 0) {
+  if (relaxes()) {
+    PetscCall(back_and_forth(velocity, mapped));
     const double share = 1 - std::exp(-gamma / relaxation_time_);
     for (int i = 0; i < grid_.node_count(); ++i)
-      for (int d = 0; d < dim; ++d) velocity[i][d] += share * (mapped[i][d] - velocity[i][d]);
+      for (int d = 0; d < dim; ++d) {
+        velocity[i][d] += share * (mapped[i][d] - velocity[i][d]);
+        mapped[i][d] += mapped_start_[i][d];
+      }
     conditions_.constrain(loading.time, grid_, velocity, true);
+  } else {  // the same sum, mapped once
+    for (int i = 0; i < grid_.node_count(); ++i)
+      for (int d = 0; d < dim; ++d) scratch_[i][d] = velocity[i][d] - start_velocity_[i][d];
+    PetscCall(back_and_forth(scratch_.data(), mapped));
+    for (int i = 0; i < grid_.node_count(); ++i)
+      for (int d = 0; d < dim; ++d) mapped[i][d] += start_velocity_[i][d];
   }
-  for (int i = 0; i < grid_.node_count(); ++i)
-    for (int d = 0; d < dim; ++d) mapped[i][d] += mapped_start_[i][d];
   conditions_.constrain(loading.time, grid_, mapped, true);
   PetscFunctionReturn(0);
 }

@@ -1,5 +1,8 @@
 #pragma once
 /// Four doubles in one register: the barycentric coordinates of a simplex, or a vector padded with zeros.
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
 
 namespace talus {
 
@@ -19,12 +22,13 @@ inline void store(double *x, Quad q) {
   for (int k = 0; k < n; ++k) x[k] = q[k];
 }
 
-/// True when no lane is negative or NaN.
+/// True when no lane is negative.
 inline bool none_negative(Quad q) {
-  auto good = q >= Quad{};
-  good &= __builtin_shufflevector(good, good, 2, 3, 0, 1);
-  good &= __builtin_shufflevector(good, good, 1, 0, 3, 2);
-  return good[0];
+#ifdef __AVX__
+  return !_mm256_movemask_pd(q);
+#else
+  return q[0] >= 0 && q[1] >= 0 && q[2] >= 0 && q[3] >= 0;
+#endif
 }
 
 }  // namespace talus

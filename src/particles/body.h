@@ -50,7 +50,7 @@ class Body {
   double volume_limit(double initial, const double *history) const {
     if (!capped()) return volume_cap_;
     const double expansion = expansion_field_ < 0 ? 0 : history[expansion_field_];
-    return volume_cap_ * initial * (expansion > 0 ? std::exp(expansion) : 1);
+    return volume_cap_ * initial * (expansion > 0 ? exponential(expansion) : 1);
   }
   /// Is the volume of a particle limited?
   bool capped() const { return volume_cap_ != std::numeric_limits<double>::infinity(); }

@@ -19,26 +19,25 @@ FilledGrid<dim>::FilledGrid(const BackgroundMesh<dim> &mesh) : mesh_(&mesh), hal
   const int nodes = mesh.node_count(), cells = mesh.cell_count();
   compact_node_.assign(nodes, -1), compact_cell_.assign(cells, -1);
   staging_.assign(halo_.empty() ? 0 : static_cast<size_t>(nodes) * (dim * dim + 1), 0);
-  mesh_node.reserve(nodes), mass.reserve(nodes), position.reserve(nodes);
-  mesh_cell.reserve(cells), shape.reserve(cells), mass_matrix.reserve(cells), nodal_share.reserve(cells);
-  size.reserve(cells), patch.reserve(cells), element_size_.reserve(cells);
+  mesh_node.resize(nodes), mass.resize(nodes), position.resize(nodes);
+  mesh_cell.resize(cells), shape.resize(cells), mass_matrix.resize(cells), nodal_share.resize(cells);
+  size.resize(cells), patch.resize(cells), element_size_.reserve(cells);
   for (double volume : mesh.volume) element_size_.push_back(element_size<dim>(volume));
 }
 
 template <int dim>
 void FilledGrid<dim>::clear() {
-  for (int node : mesh_node) compact_node_[node] = -1;
-  for (int cell : mesh_cell) compact_cell_[cell] = -1;
-  mesh_node.clear(), mass.clear(), position.clear();
-  mesh_cell.clear(), shape.clear(), mass_matrix.clear(), nodal_share.clear(), size.clear(), patch.clear();
+  for (int i = 0; i < node_count_; ++i) compact_node_[mesh_node[i]] = -1;
+  for (int c = 0; c < cell_count_; ++c) compact_cell_[mesh_cell[c]] = -1;
+  node_count_ = cell_count_ = 0;
 }
 
 template <int dim>
 int FilledGrid<dim>::enter_node(int node) {
   int &compact = compact_node_[node];
   if (compact < 0) {
-    compact = node_count();
-    mesh_node.push_back(node), mass.push_back(0), position.push_back(mesh_->position[node]);
+    compact = node_count_++;
+    mesh_node[compact] = node, mass[compact] = 0, position[compact] = mesh_->position[node];
   }
   return compact;
 }
@@ -47,12 +46,12 @@ template <int dim>
 int FilledGrid<dim>::enter_cell(int cell) {
   int &compact = compact_cell_[cell];
   if (compact < 0) {
-    compact = cell_count();
-    Shape<dim> s;
+    compact = cell_count_++;
+    Shape<dim> &s = shape[compact];
     for (int k = 0; k <= dim; ++k) s.node[k] = enter_node(mesh_->cells[cell].node[k]);
     s.gradient = mesh_->cells[cell].gradient, s.volume = mesh_->volume[cell];
-    mesh_cell.push_back(cell), shape.push_back(s), mass_matrix.push_back({}), nodal_share.push_back({});
-    size.push_back(element_size_[cell]), patch.push_back(mesh_->patch[cell]);
+    mesh_cell[compact] = cell, mass_matrix[compact] = {}, nodal_share[compact] = {};
+    size[compact] = element_size_[cell], patch[compact] = mesh_->patch[cell];
   }
   return compact;
 }
@@ -83,7 +82,7 @@ PetscErrorCode FilledGrid<dim>::sum(double *values, int width) {
 template <int dim>
 void FilledGrid<dim>::keep(Archive &archive) {
   if (archive.reading()) clear();
-  archive.keep("grid", mesh_node, mass, position, mesh_cell, shape, mass_matrix, nodal_share, size, patch);
+  archive.keep("grid", node_count_, cell_count_, mesh_node, mass, position, mesh_cell, shape, mass_matrix, nodal_share, size, patch);
   for (int i = 0; i < node_count(); ++i) compact_node_[mesh_node[i]] = i;
   for (int c = 0; c < cell_count(); ++c) compact_cell_[mesh_cell[c]] = c;
 }

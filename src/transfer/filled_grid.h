@@ -1,6 +1,7 @@
 #pragma once
 /// The part of the background mesh that holds particles, during one Lagrangian part: nodes and cells are numbered compactly, so
-/// that the time loop touches nothing else. Everything is sized for the whole local mesh once; nothing is allocated later.
+/// that the time loop touches nothing else. Every array is sized for the whole local mesh once: its first node_count() or
+/// cell_count() entries count.
 #include <array>
 #include <vector>
 
@@ -42,8 +43,8 @@ class FilledGrid {
   /// Nodes and cells with what they carry.
   void keep(Archive &archive);
 
-  int node_count() const { return static_cast<int>(mesh_node.size()); }
-  int cell_count() const { return static_cast<int>(mesh_cell.size()); }
+  int node_count() const { return node_count_; }
+  int cell_count() const { return cell_count_; }
   const BackgroundMesh<dim> &mesh() const { return *mesh_; }
 
   // nodes, by compact number
@@ -62,6 +63,7 @@ class FilledGrid {
   int enter_node(int mesh_node);
 
   const BackgroundMesh<dim> *mesh_;
+  int node_count_ = 0, cell_count_ = 0;
   std::vector<int> compact_node_, compact_cell_;
   std::vector<double> element_size_;   ///< of mesh cells [m]
   std::vector<double> staging_;

@@ -9,8 +9,11 @@ namespace talus {
 /// Values of a history that a run keeps in registers; the rest takes loops of its own.
 inline constexpr int unrolled_history = 4;
 
+/// Particles that a run takes at a time: what calls functions waits for the end of such a part, so that sums stay in registers.
+inline constexpr int run_part = 32;
+
 /// Gives particles of one cell what the nodes learned since the last remap.
-template <int dim, bool averaged>
+template <int dim, bool averaged, bool apic>
 class RunFromNodes {
  public:
   static constexpr int vertices = dim + 1, components = stress_size<dim>;
@@ -18,11 +21,12 @@ class RunFromNodes {
   [[gnu::always_inline]] RunFromNodes(const Body<dim> &body, const Lagrangian<dim> &from, int mesh_cell)
       : coordinates(from.grid.mesh().cells[mesh_cell]), body_(body), flip_(quad(from.flip)) {
     const int cell = from.grid.find_cell(mesh_cell);
+#pragma GCC unroll 8
     for (int k = 0; k < vertices; ++k) {
       velocity_[k] = from.nodes.velocity[from.grid.shape[cell].node[k]];
       displacement_[k] = from.nodes.displacement[from.grid.shape[cell].node[k]];
     }
-    if (from.affine) affine_ = &from.affine[cell * dim * dim];
+    if constexpr (apic) affine_ = &from.affine[cell * dim * dim];
     if constexpr (averaged) {
       const int point = from.points.of_cell[mesh_cell], count = body.history_count();
       stress = from.points.stress + point * components;
@@ -37,6 +41,7 @@ class RunFromNodes {
     const ParticleArrays<dim> &p = body_.particles();
     Quad v = flip_ * load<dim>(p.velocity[i].data()), x = load<dim>(p.position[i].data());
     const Quad n = coordinates(x);
+#pragma GCC unroll 8
     for (int k = 0; k < vertices; ++k) {
       v += quad(n[k]) * velocity_[k];
       x += quad(n[k]) * displacement_[k];
@@ -45,15 +50,23 @@ class RunFromNodes {
     store<dim>(p.position[i].data(), x);
     if constexpr (averaged) {
       const int count = body_.history_count();
-#pragma GCC unroll 4
+#pragma GCC unroll 8
       for (int h = 0; h < unrolled_history; ++h)
         if (h < count) p.history[i * count + h] += gain_[h];
-      for (int h = unrolled_history; h < count; ++h) p.history[i * count + h] += history_[h] - start_history_[h];
       p.volume[i] *= growth_;
       if (body_.capped()) p.volume[i] = std::min(p.volume[i], body_.volume_limit(p.initial_volume[i], p.history + i * count));
     }
-    if (affine_) std::copy_n(affine_, dim * dim, &p.affine[i * dim * dim]);
+    if constexpr (apic)
+      for (int k = 0; k < dim * dim; ++k) p.affine[i * dim * dim + k] = affine_[k];
     return coordinates(x);
+  }
+  /// Values of the history that `move` leaves for later, of particles first to last - 1.
+  void move_rest(int first, int last) const {
+    const ParticleArrays<dim> &p = body_.particles();
+    const int count = body_.history_count();
+    if constexpr (averaged)
+      for (int i = first; i < last; ++i)
+        for (int h = unrolled_history; h < count; ++h) p.history[i * count + h] += history_[h] - start_history_[h];
   }
   /// Writes the stress of the cell to particle i.
   [[gnu::always_inline]] void give_stress(int i) const {
@@ -84,7 +97,9 @@ class RunToNodes {
   [[gnu::always_inline]] void add(int i, Quad n) {
     const ParticleArrays<dim> &p = body_.particles();
     const Quad mn = quad(p.mass[i]) * n;
+#pragma GCC unroll 8
     for (int k = 0; k < vertices; ++k) mass_[k] += quad(n[k]) * mn;
+#pragma GCC unroll 8
     for (int d = 0; d < dim; ++d) {
       Quad v = quad(p.velocity[i][d]);
       if constexpr (apic) {  // velocity the affine field has at each vertex
@@ -92,6 +107,7 @@ class RunToNodes {
         const auto &node = grid_.mesh().cells[mesh_cell_].node;
         for (int e = 0; e < dim; ++e) {
           Quad x{};
+#pragma GCC unroll 8
           for (int k = 0; k < vertices; ++k) x[k] = grid_.mesh().position[node[k]][e];
           v += quad(c[e]) * (x - quad(p.position[i][e]));
         }
@@ -106,26 +122,31 @@ class RunToNodes {
         if (h < count) history_[h] += p.volume[i] * p.history[i * count + h];
       if (body_.capped()) limit_ += p.initial_volume[i];
     }
-    any_ = true;
+    ++count_;
   }
   /// Adds the stress that particle i carries itself.
   [[gnu::always_inline]] void add_stress(int i) {
     const ParticleArrays<dim> &p = body_.particles();
+#pragma GCC unroll 8
     for (int s = 0; s < components; ++s) stress_[s] += p.volume[i] * p.stress[i * components + s];
   }
   /// Sums into grid and stress points; `common` is the stress of all particles added, null if they brought their own. The stress
   /// point of the cell, -1 if there is none or nothing was added.
   [[gnu::always_inline]] int finish(Vec<dim> *momentum, const double *common) const {
-    if (!any_) return -1;
+    if (!count_) return -1;
     const int cell = grid_.enter_cell(mesh_cell_);
     auto &matrix = grid_.mass_matrix[cell];
+#pragma GCC unroll 8
     for (int k = 0, pair = vertices; k < vertices; ++k) {
       matrix[k] += mass_[k][k];
+#pragma GCC unroll 8
       for (int l = k + 1; l < vertices; ++l) matrix[pair++] += mass_[k][l];
     }
     double volume = 0;
+#pragma GCC unroll 8
     for (int k = 0; k < vertices; ++k) {
       Vec<dim> &sum = momentum[grid_.shape[cell].node[k]];
+#pragma GCC unroll 8
       for (int d = 0; d < dim; ++d) sum[d] += momentum_[d][k];
       grid_.nodal_share[cell][k] += share_[k];
       volume += share_[k];
@@ -134,6 +155,7 @@ class RunToNodes {
     const int count = body_.history_count(), point = points_.enter(mesh_cell_, cell, components, count);
     points_.own_volume[point] += volume, points_.own_limit[point] += limit_;
     double *stress = &points_.own_stress[point * components], *history = points_.own_history.data() + point * count;
+#pragma GCC unroll 8
     for (int s = 0; s < components; ++s) stress[s] += common ? volume * common[s] : stress_[s];
     for (int h = 0; h < std::min(count, unrolled_history); ++h) history[h] += history_[h];
     return point;
@@ -151,7 +173,7 @@ class RunToNodes {
   FilledGrid<dim> &grid_;
   PointSet &points_;
   const int mesh_cell_;
-  bool any_ = false;
+  int count_ = 0;
   Quad mass_[vertices]{}, momentum_[dim]{}, share_{};
   double stress_[components]{}, history_[unrolled_history]{}, limit_ = 0;
 };

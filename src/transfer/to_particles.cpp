@@ -4,16 +4,17 @@
 
 namespace talus {
 
-template <int dim, bool averaged>
+template <int dim, bool averaged, bool apic>
 void to_particles(Body<dim> &body, const Lagrangian<dim> &from, std::vector<int> &movers) {
   const ParticleArrays<dim> &p = body.particles();
   for (int i = 0; i < p.count;) {
-    const int mesh_cell = p.cell[i];
-    const RunFromNodes<dim, averaged> run(body, from, mesh_cell);
+    const int mesh_cell = p.cell[i], first = i;
+    const RunFromNodes<dim, averaged, apic> run(body, from, mesh_cell);
     for (; i < p.count && p.cell[i] == mesh_cell; ++i) {
       if (!none_negative(run.move(i))) movers.push_back(i);
       run.give_stress(i);
     }
+    run.move_rest(first, i);
   }
 }
 
@@ -22,18 +23,22 @@ void to_next_nodes(Body<dim> &body, const Lagrangian<dim> &from, FilledGrid<dim>
                    std::vector<int> &movers) {
   const ParticleArrays<dim> &p = body.particles();
   for (int i = 0; i < p.count;) {
-    const int mesh_cell = p.cell[i];
-    const RunFromNodes<dim, averaged> old(body, from, mesh_cell);
+    const int mesh_cell = p.cell[i], first = i;
+    const RunFromNodes<dim, averaged, apic> old(body, from, mesh_cell);
     RunToNodes<dim, averaged, apic> next(body, grid, points, mesh_cell);
-    const int first = i;
-    for (; i < p.count && p.cell[i] == mesh_cell; ++i) {
-      const Quad n = old.move(i);
-      if (none_negative(n)) {
-        next.add(i, n);
-      } else {
-        old.give_stress(i);
-        movers.push_back(i);
+    while (i < p.count && p.cell[i] == mesh_cell) {
+      int leaving[run_part], left = 0;
+      const int start = i, end = std::min(p.count, i + run_part);
+      for (; i < end && p.cell[i] == mesh_cell; ++i) {
+        const Quad n = old.move(i);
+        const bool stays = none_negative(n);
+        leaving[left] = i;
+        left += !stays;
+        if (stays) next.add(i, n);
       }
+      old.move_rest(start, i);
+      for (int k = 0; k < left; ++k) old.give_stress(leaving[k]);
+      movers.insert(movers.end(), leaving, leaving + left);
     }
     const int point = next.finish(momentum, old.stress);
     if (body.history_count() > unrolled_history && point >= 0)
@@ -83,16 +88,18 @@ PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::v
   PetscFunctionReturn(0);
 }
 
-#define TALUS_TO_PARTICLES(dim, averaged)                                                                                            \
-  template void to_particles<dim, averaged>(Body<dim> &, const Lagrangian<dim> &, std::vector<int> &);                              \
-  template void to_next_nodes<dim, averaged, true>(Body<dim> &, const Lagrangian<dim> &, FilledGrid<dim> &, Vec<dim> *, PointSet &, \
-                                                   std::vector<int> &);                                                             \
-  template void to_next_nodes<dim, averaged, false>(Body<dim> &, const Lagrangian<dim> &, FilledGrid<dim> &, Vec<dim> *, PointSet &, \
-                                                    std::vector<int> &);
-TALUS_TO_PARTICLES(2, true)
-TALUS_TO_PARTICLES(2, false)
-TALUS_TO_PARTICLES(3, true)
-TALUS_TO_PARTICLES(3, false)
+#define TALUS_TO_PARTICLES(dim, averaged, apic)                                                       \
+  template void to_particles<dim, averaged, apic>(Body<dim> &, const Lagrangian<dim> &, std::vector<int> &); \
+  template void to_next_nodes<dim, averaged, apic>(Body<dim> &, const Lagrangian<dim> &, FilledGrid<dim> &, Vec<dim> *, PointSet &, \
+                                                   std::vector<int> &);
+TALUS_TO_PARTICLES(2, true, true)
+TALUS_TO_PARTICLES(2, true, false)
+TALUS_TO_PARTICLES(2, false, true)
+TALUS_TO_PARTICLES(2, false, false)
+TALUS_TO_PARTICLES(3, true, true)
+TALUS_TO_PARTICLES(3, true, false)
+TALUS_TO_PARTICLES(3, false, true)
+TALUS_TO_PARTICLES(3, false, false)
 template PetscErrorCode relocate<2>(Body<2> &, const BackgroundMesh<2> &, std::vector<int> &, bool *, Vec<2> *);
 template PetscErrorCode relocate<3>(Body<3> &, const BackgroundMesh<3> &, std::vector<int> &, bool *, Vec<3> *);
 

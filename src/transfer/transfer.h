@@ -50,12 +50,12 @@ struct Lagrangian {
   const FilledGrid<dim> &grid;
   const NodalUpdate &nodes;
   double flip;             ///< the share a of their own velocity that particles keep
-  const double *affine;    ///< [compact cells][dim * dim] velocity gradients of APIC [1/s], else null
+  const double *affine;    ///< [compact cells][dim * dim] velocity gradients of APIC [1/s], unused otherwise
   const PointSet &points;
 };
 
 /// Brings the particles of one body to the end of a Lagrangian part. Particles outside their cell are listed in `movers`.
-template <int dim, bool averaged>
+template <int dim, bool averaged, bool apic>
 void to_particles(Body<dim> &body, const Lagrangian<dim> &from, std::vector<int> &movers);
 
 /// The same, and adds those that stay in their cell to the next grid in one sweep; the movers are still to be added. With averaged
