@@ -1,6 +1,7 @@
 #pragma once
 /// Motion of the nodes between two remaps: the plug every integrator takes. No integrator contains physics, and no physics knows
 /// an integrator's name. Virtual calls are per stage of a step, never per particle.
+#include <mpi.h>
 #include <petscsys.h>
 
 namespace talus {
@@ -19,11 +20,21 @@ class Motion {
   virtual PetscErrorCode drag(double t, double gamma, double *v) = 0;
   /// What the nodes would receive if the particles took `v` and were mapped back (MUSL), docs/theory (4.9); `v` itself relaxes towards it.
   virtual PetscErrorCode map_back(double t, double gamma, double *v, double *w) = 0;
+  /// Both rates of the state, for integrators that look ahead: `du` is the velocity of places, w of docs/theory (4.9), `dv` the
+  /// acceleration less the relaxation (4.10). `u` = null as above; changes nothing.
+  virtual PetscErrorCode rates(double t, const double *u, const double *v, double *du, double *dv) = 0;
+  /// Did the last trial state turn a cell of this rank inside out?
+  virtual bool inverted() const = 0;
   /// Commits stress, history and volumes for displacement `u`, moves the nodes, keeps `v`.
   virtual PetscErrorCode accept(double t, const double *u, const double *v) = 0;
 
   virtual int size() const = 0;
+  virtual int capacity() const = 0;  ///< that `size()` never exceeds
   virtual double *velocity() = 0;
+  /// Sum of m_p |x_p|^2 over the particles of this rank, x_p being what they see of the nodal field `x`: the weight of errors.
+  virtual double seen_square(const double *x) const = 0;
+  virtual double mass() const = 0;   ///< of all particles of all ranks [kg]
+  virtual MPI_Comm comm() const = 0;
 };
 
 }  // namespace talus

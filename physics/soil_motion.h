@@ -18,11 +18,17 @@ namespace talus {
 /// What acts on the soil at a time: set by the time loop, read by the motion.
 template <int dim>
 struct Loading {
-  Vec<dim> gravity{};     ///< with the ramp of the stage [m/s2]
+  Vec<dim> gravity{};     ///< once the ramp of the stage is over [m/s2]
   double ramp = 1;        ///< of the stage: gravity and with it pore pressure grow from 0 to 1
-  double time = 0;        ///< time that functions of the scene see [s]; stands still in a stage that holds loads
+  double time = 0;        ///< time that functions of the scene see [s]
+  double set_at = 0;      ///< time of the run at which ramp and time are these [s]; a step looks ahead from there:
+  double ramp_rate = 0;   ///< [1/s]
+  double time_rate = 1;   ///< 0 in a stage that holds loads
   double damping = 0;     ///< local damping factor
   bool softening = true;  ///< plastic strain is remembered; otherwise soil keeps the strength it has
+
+  double ramp_at(double t) const { return std::min(1., ramp + ramp_rate * (t - set_at)); }
+  double time_at(double t) const { return time + time_rate * (t - set_at); }
 };
 
 /// Sums over all ranks, for the ledger and the stop criteria.
@@ -35,13 +41,19 @@ template <int dim, class Phases>
 class SoilMotion final : public Motion {
  public:
   SoilMotion(const BackgroundMesh<dim> &mesh, std::vector<std::unique_ptr<Body<dim>>> &bodies, Conditions<dim> &conditions,
-             const Transfer &transfer, const Water &water, double relaxation_time, double particle_mass, double gravity);
+             const Transfer &transfer, const Water &water, double relaxation_time, double total_mass, long long particles, double gravity);
 
   PetscErrorCode begin(double t) override;
   PetscErrorCode acceleration(double t, const double *u, const double *v, double *a) override;
   PetscErrorCode drag(double t, double gamma, double *v) override;
   PetscErrorCode map_back(double t, double gamma, double *v, double *w) override;
   PetscErrorCode accept(double t, const double *u, const double *v) override;
+  PetscErrorCode rates(double t, const double *u, const double *v, double *du, double *dv) override;
+  double seen_square(const double *x) const override;
+  bool inverted() const override { return inverted_; }
+  int capacity() const override { return static_cast<int>(velocity_.size()) * dim; }
+  double mass() const override { return total_mass_; }
+  MPI_Comm comm() const override { return mesh_.comm(); }
   int size() const override { return grid_.node_count() * dim; }
   double *velocity() override { return velocity_.empty() ? nullptr : velocity_[0].data(); }
 
@@ -90,16 +102,16 @@ class SoilMotion final : public Motion {
   void attach(size_t body);
   PetscErrorCode finish_gather(double t);
   PetscErrorCode gather_pore_water() requires Phases::given;
-  PetscErrorCode total_force(double t, bool trial);
+  PetscErrorCode total_force(double load_time, double ramp, bool trial);
   void measure_impedance();
   void set_weights(const std::vector<double> &nodal_volume);
   PetscErrorCode deform(double t, const Vec<dim> *u, bool trial);
-  PetscErrorCode smooth_volume_strain();
+  PetscErrorCode smooth_volume_strain(const Shape<dim> *shape);
   PetscErrorCode internal_force(bool trial);
   void add_body_forces(double t);
-  void add_pore_pressure(double t, bool trial) requires Phases::given;
+  void add_pore_pressure(double load_time, double ramp, bool trial) requires Phases::given;
   void sample_pressure(double t) requires Phases::given;
-  std::array<double, 2> sample_shares(double t) const;
+  std::array<double, 2> sample_shares(double t, double ramp) const;
   const double *find_suction(size_t body);
   /// Does velocity relax between remaps? Otherwise only remaps relax it.
   bool relaxes() const { return transfer_.remap_interval > 0 && relaxation_time_ > 0; }
@@ -110,7 +122,7 @@ class SoilMotion final : public Motion {
   Conditions<dim> &conditions_;
   const Transfer &transfer_;
   GivenPressure<dim> pressure_;
-  double relaxation_time_, smallest_mass_;
+  double relaxation_time_, total_mass_, smallest_mass_;
   FilledGrid<dim> grid_, next_grid_;
   std::vector<PointSet> points_, next_points_;
   const std::vector<std::vector<int>> *movers_ = nullptr;  ///< when all but these are gathered
@@ -145,7 +157,7 @@ class SoilMotion final : public Motion {
   bool suction_matters_ = false;                  ///< a law reads it: pressure below zero is suction, not stress
   std::vector<double> suction_;                   ///< at the stress points of one body [Pa]
 
-  bool gathered_ = false;
+  bool gathered_ = false, inverted_ = false;
   double remap_time_ = 0, accepted_time_ = 0, own_share_ = 1, moved_ = 0, smallest_ratio_ = 1, step_ratio_ = 1, speed_squared_ = 0;
 };
 

@@ -19,9 +19,10 @@ double stored_energy(const Law &law, const double *stress) {
 template <int dim, class Phases>
 SoilMotion<dim, Phases>::SoilMotion(const BackgroundMesh<dim> &mesh, std::vector<std::unique_ptr<Body<dim>>> &bodies,
                                     Conditions<dim> &conditions, const Transfer &transfer, const Water &water,
-                                    double relaxation_time, double particle_mass, double gravity)
+                                    double relaxation_time, double total_mass, long long particles, double gravity)
     : mesh_(mesh), bodies_(bodies), conditions_(conditions), transfer_(transfer), pressure_(water, gravity),
-      relaxation_time_(relaxation_time), smallest_mass_(1e-6 * particle_mass), grid_(mesh), next_grid_(mesh),
+      relaxation_time_(relaxation_time), total_mass_(total_mass),
+      smallest_mass_(1e-6 * total_mass / static_cast<double>(particles)), grid_(mesh), next_grid_(mesh),
       points_(bodies.size()), next_points_(bodies.size()) {
   const int nodes = mesh.node_count(), cells = mesh.cell_count();
   for (auto *field : {&start_velocity_, &velocity_, &mapped_start_, &force_, &scratch_}) field->assign(nodes, Vec<dim>{});
@@ -281,7 +282,7 @@ PetscErrorCode SoilMotion<dim, Phases>::back_and_forth(const Vec<dim> *in, Vec<d
 // ---- Lagrangian part ----
 
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::smooth_volume_strain() {
+PetscErrorCode SoilMotion<dim, Phases>::smooth_volume_strain(const Shape<dim> *shape) {
   PetscFunctionBeginUser;
   const int cells = grid_.cell_count();
   if (transfer_.locking == Locking::patches) {  // F-bar: one mean per patch, weighted as in the forces, theory (4.7)
@@ -296,14 +297,14 @@ PetscErrorCode SoilMotion<dim, Phases>::smooth_volume_strain() {
   } else if (transfer_.locking == Locking::nodal) {
     std::fill_n(nodal_.begin(), 2 * grid_.node_count(), 0.);
     for (int c = 0; c < cells; ++c)
-      for (int i : grid_.shape[c].node) {
-        nodal_[2 * i] += grid_.shape[c].volume;
-        nodal_[2 * i + 1] += grid_.shape[c].volume * volume_strain_[c];
+      for (int i : shape[c].node) {
+        nodal_[2 * i] += shape[c].volume;
+        nodal_[2 * i + 1] += shape[c].volume * volume_strain_[c];
       }
     PetscCall(grid_.sum(nodal_.data(), 2));
     for (int c = 0; c < cells; ++c) {
       double mean = 0;
-      for (int i : grid_.shape[c].node) mean += nodal_[2 * i + 1] / nodal_[2 * i] / (dim + 1);
+      for (int i : shape[c].node) mean += nodal_[2 * i + 1] / nodal_[2 * i] / (dim + 1);
       const double correction = (mean - volume_strain_[c]) / 3;
       for (int k = 0; k < 3; ++k) increment_[c].strain[k] += correction;
       volume_strain_[c] = mean;
@@ -329,6 +330,7 @@ PetscErrorCode SoilMotion<dim, Phases>::deform(double t, const Vec<dim> *u, bool
   for (int i = 0; i < nodes; ++i)
     for (int d = 0; d < dim; ++d) position[i][d] = grid_.position[i][d] + u[i][d];
   double slender = 1, smallest = 1;
+  inverted_ = false;
   for (int c = 0; c < cells; ++c) {
     const Shape<dim> &from = grid_.shape[c];
     Shape<dim> &to = shape[c];
@@ -339,7 +341,7 @@ PetscErrorCode SoilMotion<dim, Phases>::deform(double t, const Vec<dim> *u, bool
         for (int j = 0; j < dim; ++j) g(i, j) += du * from.gradient[k][j];
       }
     if (!decompose<dim>(g, increment_[c])) {
-      smallest = -1;
+      smallest = -1, inverted_ = true;
       increment_[c] = {};
       increment_[c].rotation[0] = 1;
       if constexpr (dim == 3) increment_[c].rotation[4] = increment_[c].rotation[8] = 1;
@@ -356,7 +358,7 @@ PetscErrorCode SoilMotion<dim, Phases>::deform(double t, const Vec<dim> *u, bool
     smallest = std::min(smallest, to.volume / mesh_.volume[grid_.mesh_cell[c]]);
   }
   if (!trial) step_ratio_ = 1 / std::sqrt(slender), smallest_ratio_ = smallest;
-  PetscCall(smooth_volume_strain());
+  PetscCall(smooth_volume_strain(shape));
   for (int c = 0; c < cells; ++c) particle_volume[c] = 0;
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const PointSet &p = points_[b];
@@ -451,16 +453,16 @@ void SoilMotion<dim, Phases>::add_body_forces(double t) {
 }
 
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::total_force(double t, bool trial) {
+PetscErrorCode SoilMotion<dim, Phases>::total_force(double load_time, double ramp, bool trial) {
   PetscFunctionBeginUser;
   PetscCall(internal_force(trial));
-  conditions_.add_loads(t, grid_, force_.data());
-  add_body_forces(t);
-  if constexpr (Phases::given) add_pore_pressure(t, trial);
+  conditions_.add_loads(load_time, grid_, force_.data());
+  add_body_forces(load_time);
+  if constexpr (Phases::given) add_pore_pressure(load_time, ramp, trial);
   PetscCall(grid_.sum(force_[0].data(), dim));
   for (int i = 0; i < grid_.node_count(); ++i) {
     const double m = grid_.mass[i] + (Phases::given ? extra_mass_[i] : 0);
-    for (int d = 0; d < dim; ++d) force_[i][d] += m * loading.gravity[d];
+    for (int d = 0; d < dim; ++d) force_[i][d] += m * (ramp * loading.gravity[d]);
   }
   PetscFunctionReturn(0);
 }
@@ -469,7 +471,7 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::acceleration(double t, const double *u, const double *v, double *a) {
   PetscFunctionBeginUser;
   if (u) PetscCall(deform(t, reinterpret_cast<const Vec<dim> *>(u), true));
-  PetscCall(total_force(loading.time, u != nullptr));
+  PetscCall(total_force(loading.time_at(t), loading.ramp_at(t), u != nullptr));
   const Vec<dim> *unbalanced = force_.data();
   if (loading.damping > 0) {  // what supports take up is not out of balance: damping must not change their reactions
     std::copy_n(force_.begin(), grid_.node_count(), scratch_.begin());
@@ -487,14 +489,14 @@ PetscErrorCode SoilMotion<dim, Phases>::acceleration(double t, const double *u, 
 }
 
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::drag(double, double gamma, double *v) {
+PetscErrorCode SoilMotion<dim, Phases>::drag(double t, double gamma, double *v) {
   PetscFunctionBeginUser;
-  conditions_.resolve(loading.time, gamma, grid_, reinterpret_cast<Vec<dim> *>(v));
+  conditions_.resolve(loading.time_at(t), gamma, grid_, reinterpret_cast<Vec<dim> *>(v));
   PetscFunctionReturn(0);
 }
 
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::map_back(double, double gamma, double *v, double *w) {
+PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double *v, double *w) {
   PetscFunctionBeginUser;
   Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v), *mapped = reinterpret_cast<Vec<dim> *>(w);
   if (relaxes()) {
@@ -505,7 +507,7 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double, double gamma, double *v
         velocity[i][d] += share * (mapped[i][d] - velocity[i][d]);
         mapped[i][d] += mapped_start_[i][d];
       }
-    conditions_.constrain(loading.time, grid_, velocity, true);
+    conditions_.constrain(loading.time_at(t), grid_, velocity, true);
   } else {  // the same sum, mapped once
     for (int i = 0; i < grid_.node_count(); ++i)
       for (int d = 0; d < dim; ++d) scratch_[i][d] = velocity[i][d] - start_velocity_[i][d];
@@ -513,8 +515,52 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double, double gamma, double *v
     for (int i = 0; i < grid_.node_count(); ++i)
       for (int d = 0; d < dim; ++d) mapped[i][d] += start_velocity_[i][d];
   }
-  conditions_.constrain(loading.time, grid_, mapped, true);
+  conditions_.constrain(loading.time_at(t), grid_, mapped, true);
   PetscFunctionReturn(0);
+}
+
+/// Supports and bases hold the places in every stage; what they take from the velocity is taken once, by `drag` after the step.
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::rates(double t, const double *u, const double *v, double *du, double *dv) {
+  PetscFunctionBeginUser;
+  PetscCall(acceleration(t, u, v, dv));
+  const int nodes = grid_.node_count();
+  Vec<dim> *held = scratch_.data(), *mapped = reinterpret_cast<Vec<dim> *>(du), *change = reinterpret_cast<Vec<dim> *>(dv);
+  std::copy_n(reinterpret_cast<const Vec<dim> *>(v), nodes, held);
+  conditions_.constrain(loading.time_at(t), grid_, held, true);
+  if (relaxes()) {
+    PetscCall(back_and_forth(held, mapped));
+    for (int i = 0; i < nodes; ++i)
+      for (int d = 0; d < dim; ++d) {
+        change[i][d] -= (held[i][d] - mapped[i][d]) / relaxation_time_;
+        mapped[i][d] += mapped_start_[i][d];
+      }
+  } else {  // the same sum, mapped once
+    for (int i = 0; i < nodes; ++i)
+      for (int d = 0; d < dim; ++d) held[i][d] -= start_velocity_[i][d];
+    PetscCall(back_and_forth(held, mapped));
+    for (int i = 0; i < nodes; ++i)
+      for (int d = 0; d < dim; ++d) mapped[i][d] += start_velocity_[i][d];
+  }
+  conditions_.constrain(loading.time_at(t), grid_, mapped, true);
+  PetscFunctionReturn(0);
+}
+
+template <int dim, class Phases>
+double SoilMotion<dim, Phases>::seen_square(const double *x) const {
+  const Vec<dim> *field = reinterpret_cast<const Vec<dim> *>(x);
+  double sum = 0;
+  for (int c = 0; c < grid_.cell_count(); ++c) {
+    const auto &node = grid_.shape[c].node;
+    const auto &matrix = grid_.mass_matrix[c];
+    for (int d = 0; d < dim; ++d)
+      for (int k = 0, pair = dim + 1; k <= dim; ++k) {
+        const double xk = field[node[k]][d];
+        sum += matrix[k] * xk * xk;
+        for (int l = k + 1; l <= dim; ++l, ++pair) sum += 2 * matrix[pair] * xk * field[node[l]][d];
+      }
+  }
+  return sum;
 }
 
 template <int dim, class Phases>
@@ -581,7 +627,7 @@ const double *SoilMotion<dim, Phases>::find_suction(size_t b) {
   if (!reads_suction(bodies_[b]->law())) return nullptr;
   if constexpr (Phases::given) {
     sample_pressure(loading.time);
-    const auto [early, late] = sample_shares(loading.time);
+    const auto [early, late] = sample_shares(loading.time, loading.ramp);
     const PointSet &p = points_[b];
     suction_.resize(std::max<size_t>(suction_.size(), p.count));
     for (int q = 0; q < p.count; ++q) suction_[q] = early * sample_[0].suction[p.cell[q]] + late * sample_[1].suction[p.cell[q]];
@@ -627,22 +673,21 @@ void SoilMotion<dim, Phases>::sample_pressure(double t)
   }
 }
 
-/// Of the two samples at time t, the ramp of the stage included.
+/// Of the two samples at time t, times the ramp.
 template <int dim, class Phases>
-std::array<double, 2> SoilMotion<dim, Phases>::sample_shares(double t) const {
-  const double late = loading.ramp * (t - sample_time_[0]) / (sample_time_[1] - sample_time_[0]);
-  return {loading.ramp - late, late};
+std::array<double, 2> SoilMotion<dim, Phases>::sample_shares(double t, double ramp) const {
+  const double late = ramp * (t - sample_time_[0]) / (sample_time_[1] - sample_time_[0]);
+  return {ramp - late, late};
 }
 
 /// With open water on submerged faces the pore pressure acts as the body force -grad p, which includes the water's weight on the
 /// face without knowing where the face is; without it, as a part of the stress, theory (2.8), (2.9).
 template <int dim, class Phases>
-void SoilMotion<dim, Phases>::add_pore_pressure(double t, bool trial)
+void SoilMotion<dim, Phases>::add_pore_pressure(double load_time, double ramp, bool trial)
   requires Phases::given
 {
-  sample_pressure(t);
-  last_pressure_time_ = t;
-  const auto [early, late] = sample_shares(t);
+  if (!trial) sample_pressure(load_time), last_pressure_time_ = load_time;  // a step that looks ahead sees the line go on
+  const auto [early, late] = sample_shares(load_time, ramp);
   const Shape<dim> *shape = trial ? trial_shape_.data() : grid_.shape.data();
   const double *weight = trial ? trial_weight_.data() : weight_.data();
   for (int c = 0; c < grid_.cell_count(); ++c) {
@@ -726,7 +771,7 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::balance(double, Balance *sums) {
   PetscFunctionBeginUser;
   double local[4]{}, total[4];
-  PetscCall(total_force(loading.time, false));
+  PetscCall(total_force(loading.time, loading.ramp, false));
   std::copy_n(force_.begin(), grid_.node_count(), scratch_.begin());
   conditions_.project(grid_, velocity_.data(), scratch_.data());
   const auto magnitude = [](const Vec<dim> &x) {
@@ -744,7 +789,7 @@ PetscErrorCode SoilMotion<dim, Phases>::balance(double, Balance *sums) {
   PetscCall(grid_.sum(force_[0].data(), dim));
   for (int i = 0; i < grid_.node_count(); ++i) {
     if (!mesh_.owned[grid_.mesh_node[i]]) continue;
-    for (int d = 0; d < dim; ++d) force_[i][d] += grid_.mass[i] * loading.gravity[d];
+    for (int d = 0; d < dim; ++d) force_[i][d] += grid_.mass[i] * (loading.ramp * loading.gravity[d]);
     local[1] += magnitude(force_[i]);
   }
   // of the particles: nodes also carry modes that no particle feels

@@ -2,8 +2,12 @@
 
 namespace talus {
 
-PetscErrorCode Euler::advance(Motion &motion, double t, double step) {
+std::unique_ptr<Integrator> EulerSettings::make() const { return std::make_unique<Euler>(*this); }
+
+PetscErrorCode Euler::advance(Motion &motion, double t, const StepBounds &bounds, double *taken) {
   PetscFunctionBeginUser;
+  const bool fixed = settings_.step > 0;
+  const double wanted = fixed ? settings_.step : settings_.fraction * bounds.critical, step = even_step(wanted, bounds.until - t, fixed);
   const int size = motion.size();
   double *v = motion.velocity();
   acceleration_.resize(size), mapped_.resize(size);  // within capacity once the soil has spread furthest
@@ -13,6 +17,9 @@ PetscErrorCode Euler::advance(Motion &motion, double t, double step) {
   PetscCall(motion.map_back(t, step, v, mapped_.data()));
   for (int i = 0; i < size; ++i) mapped_[i] *= step;
   PetscCall(motion.accept(t + step, mapped_.data(), v));
+  *taken = step;
+  ++statistics_.evaluations;
+  count(step, bounded_by(bounds.until - t, step));
   PetscFunctionReturn(0);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// The paper's explicit Euler with the velocity updated first and strain from velocities mapped back from the particles (MUSL),
 /// docs/theory (5.1)-(5.4). Alonso, Yerro & Pinyol (2015), sec. 2.2; Sulsky, Zhou & Schreyer (1995).
+#include <memory>
 #include <vector>
 
 #include "base/units.h"
@@ -13,6 +14,8 @@ struct EulerSettings {
   static constexpr const char *name = "euler";
   double step = 0;        ///< fixed step [s]; 0: a fraction of the critical step
   double fraction = 0.6;  ///< of the critical step 2 / omega_max [-]
+  StepRule rule() const { return {step, fraction, 1}; }
+  std::unique_ptr<Integrator> make() const;
   template <class Visitor>
   void fields(Visitor &&v) {
     v.number("step", step, second, Range{0, 1e9}, "fixed time step; 0 takes a fraction of the critical step");
@@ -22,9 +25,11 @@ struct EulerSettings {
 
 class Euler final : public Integrator {
  public:
-  PetscErrorCode advance(Motion &motion, double t, double step) override;
+  explicit Euler(const EulerSettings &settings) : settings_(settings) {}
+  PetscErrorCode advance(Motion &motion, double t, const StepBounds &bounds, double *taken) override;
 
  private:
+  EulerSettings settings_;
   std::vector<double> acceleration_, mapped_;
 };
 

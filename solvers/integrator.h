@@ -1,17 +1,69 @@
 #pragma once
 /// The plug of the time loop: one step of any integrator over any motion.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
 #include "base/archive.h"
 #include "physics/motion.h"
 
 namespace talus {
 
+/// What bounds a step from outside.
+struct StepBounds {
+  double critical;  ///< 2 / omega_max of the present state [s]
+  double until;     ///< time at which some step must end [s]
+};
+
+/// What a scene fixes about steps, in units of the critical step 2 / omega_max where it is not a time.
+struct StepRule {
+  double fixed;  ///< [s]; 0: chosen as the run goes
+  double share;  ///< largest step that is taken [-]
+  double limit;  ///< largest step at which elastic motion does not grow [-]
+};
+
+/// Sums since the start of a run.
+struct StepStatistics {
+  long long steps = 0, evaluations = 0;  ///< evaluations of the forces
+  long long rejections = 0;              ///< attempts that failed the error test
+  long long by_error = 0, by_stability = 0, by_schedule = 0;  ///< steps by what bounded them: error, stability or given step, an output
+  double shortest = std::numeric_limits<double>::infinity(), longest = 0;  ///< [s]
+};
+
 class Integrator {
  public:
   virtual ~Integrator() = default;
-  /// Advances the motion from t by `step` [s]; a step that an integrator divides further ends at t + step all the same.
-  virtual PetscErrorCode advance(Motion &motion, double t, double step) = 0;
+  /// Takes one step from t and says how long it was [s]; it does not pass `bounds.until`.
+  virtual PetscErrorCode advance(Motion &motion, double t, const StepBounds &bounds, double *taken) = 0;
+  /// The nodes or the loads are others than at the end of the last step: after a remap, between stages.
+  virtual void restart() {}
   /// What the next step depends on beside the motion, such as an adapted step size; for checkpoints.
-  virtual void keep(Archive &) {}
+  virtual void keep(Archive &archive) { archive.keep("integrator", statistics_); }
+  /// Why no further step is possible, the same on all ranks; empty while it is.
+  virtual std::string obstacle() const { return ""; }
+  /// Node of this rank that stands in the way, -1: none on this rank.
+  virtual int obstructing_node() const { return -1; }
+
+  const StepStatistics &statistics() const { return statistics_; }
+
+ protected:
+  enum class Bound { error, stability, schedule };
+  /// Of a step that no error bounds, with `left` to go at its start.
+  static Bound bounded_by(double left, double step) { return left > 2 * step ? Bound::stability : Bound::schedule; }
+  void count(double step, Bound bound) {
+    ++statistics_.steps;
+    ++(bound == Bound::error ? statistics_.by_error : bound == Bound::stability ? statistics_.by_stability : statistics_.by_schedule);
+    statistics_.shortest = std::min(statistics_.shortest, step), statistics_.longest = std::max(statistics_.longest, step);
+  }
+  StepStatistics statistics_;
 };
+
+/// A little less than `step`, so that whole steps end at `left`; a fixed step is only cut at the end.
+inline double even_step(double step, double left, bool fixed) {
+  const double count = std::ceil(left / step * (1 - 1e-9));
+  if ((fixed && count > 1) || count > 1e6) return step;
+  return left / std::max(1., count);
+}
 
 }  // namespace talus

@@ -10,6 +10,12 @@ IntegratorSettings read_integrator(DeferredTable &table) {
   return settings;
 }
 
-std::unique_ptr<Integrator> make_integrator(const IntegratorSettings &) { return std::make_unique<Euler>(); }
+std::unique_ptr<Integrator> make_integrator(const IntegratorSettings &settings) {
+  return std::visit([](const auto &kind) -> std::unique_ptr<Integrator> { return kind.make(); }, settings);
+}
+
+StepRule step_rule(const IntegratorSettings &settings) {
+  return std::visit([](const auto &kind) { return kind.rule(); }, settings);
+}
 
 }  // namespace talus

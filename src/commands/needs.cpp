@@ -320,9 +320,9 @@ Needs find_needs(Scene &scene) {
   }
   needs.critical_step = needs.slowest_body().body.critical_step;
   needs.altitude_rule = needs.mesh.smallest_altitude / fastest;
-  const EulerSettings settings = std::get<EulerSettings>(read_integrator(scene.integrator));
-  needs.fixed_step = settings.step > 0;
-  needs.step = needs.fixed_step ? settings.step : settings.fraction * needs.critical_step;
+  const StepRule rule = step_rule(read_integrator(scene.integrator));
+  needs.fixed_step = rule.fixed > 0;
+  needs.step = needs.fixed_step ? rule.fixed : rule.share * needs.critical_step;
   MPI_Comm_size(PETSC_COMM_WORLD, &needs.ranks);
   burst(*simulation, needs);
   needs.snapshots = 1;

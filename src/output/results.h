@@ -4,6 +4,7 @@
 #include <petscsys.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace talus {
@@ -24,6 +25,7 @@ struct Snapshot {
   std::vector<long long> id;
   std::vector<int> body;        ///< index into the run's body names
   std::vector<Column> columns;  ///< "position" (components = dim) is always there
+  std::vector<std::pair<std::string, double>> numbers;  ///< of the run so far, such as evaluations of the forces
 };
 
 /// The background mesh as written once; gathered over ranks by the writer.

@@ -59,7 +59,7 @@ std::vector<T> reordered(const std::vector<T> &values, const std::vector<std::si
 
 /// All particles on rank 0, by increasing id; elsewhere none.
 Snapshot gathered(MPI_Comm comm, const Snapshot &local) {
-  Snapshot all{local.time, local.step, local.stage, gather(comm, local.id), gather(comm, local.body), {}};
+  Snapshot all{local.time, local.step, local.stage, gather(comm, local.id), gather(comm, local.body), {}, local.numbers};
   std::vector<std::size_t> order(all.id.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return all.id[a] < all.id[b]; });
@@ -187,6 +187,7 @@ RunFile::Entry RunFile::write_file(const Snapshot &all, const std::string &numbe
   file.attribute("/", "time", all.time);
   file.attribute("/", "step", all.step);
   file.attribute("/", "stage", all.stage);
+  for (const auto &[name, value] : all.numbers) file.attribute("/", name.c_str(), value);
   file.dataset("id", all.id, 1);
   file.dataset("body", std::vector<long long>(all.body.begin(), all.body.end()), 1);
   for (const auto &column : all.columns) {

@@ -72,13 +72,13 @@ void Simulation<dim, Phases>::check_seeded(const Body<dim> &body, const std::str
 /// A fixed step that the first state already forbids is bad input; one that a later state forbids ends the run.
 template <int dim, class Phases>
 void Simulation<dim, Phases>::check_step() {
-  const double step = fixed_step();
-  if (step == 0) return;
+  const StepRule rule = step_rule(integrator_settings_);
+  if (rule.fixed == 0) return;
   double critical = std::numeric_limits<double>::infinity();
   for (const BodyReport &body : bodies()) critical = std::min(critical, body.critical_step);
-  if (step > critical)
-    scene_.complain("integrator.step", "must not exceed the critical step of " + rounded(critical) +
-                                           " s (2 / omega_max of the filled cells); take a smaller step, a coarser mesh, or leave step out");
+  if (rule.fixed > rule.limit * critical)
+    scene_.complain("integrator.step", "must not exceed the critical step of " + rounded(rule.limit * critical) + " s (" + rounded(2 * rule.limit) +
+                                           " / omega_max of the filled cells); take a smaller step, a coarser mesh, or leave step out");
 }
 
 /// A picture that nobody can draw is refused before the run, not missed after it.

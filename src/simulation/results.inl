@@ -52,6 +52,12 @@ template <int dim, class Phases>
 Snapshot Simulation<dim, Phases>::snapshot() {
   Snapshot s;
   s.time = time_, s.step = steps_, s.stage = stage_name_;
+  const StepStatistics &sums = integrator_->statistics();
+  for (const auto &[name, value] : {std::pair{"evaluations", sums.evaluations}, {"rejections", sums.rejections}, {"steps_bounded_by_error", sums.by_error},
+                                    {"steps_bounded_by_stability", sums.by_stability}, {"steps_bounded_by_outputs", sums.by_schedule}})
+    s.numbers.emplace_back(name, static_cast<double>(value));
+  s.numbers.emplace_back("shortest_step_s", sums.steps ? sums.shortest : 0);
+  s.numbers.emplace_back("longest_step_s", sums.longest);
   const auto column = [&](const char *name, const char *unit, const char *meaning, int components) {
     s.columns.push_back({name, unit, meaning, components, {}});
   };
@@ -194,7 +200,10 @@ void Simulation<dim, Phases>::fail(const std::string &text) {
   message << text << " (t = " << time_ << " s, step " << steps_ << ", stage " << stage_name_ << ")";
   if (results_) message << "; snapshots up to step " << results_->file.last_step() << " are in " << options_.directory;
   if (checkpoint_time_ >= 0) message << ", and --resume goes on from t = " << checkpoint_time_ << " s";
-  if (results_) results_->progress.failure(message.str());
+  if (results_) {
+    note_steps();
+    results_->progress.failure(message.str());
+  }
   throw RunError(message.str());
 }
 

@@ -88,7 +88,7 @@ void Simulation<dim, Phases>::seed_bodies() {
   constexpr double friction_delay = 10;  // in units of altitude over wave speed, docs/theory (6.2)
   conditions_.set_friction_delay(friction_delay * mesh_.report().smallest_altitude / wave_speed);
   motion_ = std::make_unique<SoilMotion<dim, Phases>>(mesh_, bodies_, conditions_, scene_.transfer, scene_.water, relaxation,
-                                                      total_mass_ / static_cast<double>(particle_count_),
+                                                      total_mass_, particle_count_,
                                                       std::hypot(scene_.gravity[0], scene_.gravity[1]));
 }
 

@@ -90,9 +90,7 @@ class Simulation final : public AnySimulation {
   void run_stage();
   void start_stage();
   void set_loading(const Stage &stage, double stage_time);
-  double fixed_step() const;
-  double choose_step(double until);
-  PetscErrorCode step(double step);
+  PetscErrorCode step(double until);  ///< time that it must not pass
   PetscErrorCode release(bool to_next);
   PetscErrorCode remap();
   PetscErrorCode check_conservation();
@@ -115,6 +113,7 @@ class Simulation final : public AnySimulation {
   unsigned long long mesh_fingerprint() const;
   PetscErrorCode keep(Archive &archive);
   void note(const std::string &text);
+  void note_steps();
   int find(Followed &point);
   std::string place_of(bool mine, const Vec<dim> &where) const;
   [[noreturn]] void fail(const std::string &text);

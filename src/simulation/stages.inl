@@ -35,17 +35,34 @@ void Simulation<dim, Phases>::run() {
     fail(error.what());
   }
   if (!results_) return;
+  note_steps();
   results_->progress.finish();
   int rank;
   MPI_Comm_rank(comm_, &rank);
   if (rank == 0 && options_.pictures) draw_pictures(options_.directory, {.fields = scene_.output.picture, .times = {}});
 }
 
+/// What the integrator did, for the log.
+template <int dim, class Phases>
+void Simulation<dim, Phases>::note_steps() {
+  const StepStatistics &s = integrator_->statistics();
+  const std::pair<long long, const char *> bounds[] = {{s.by_error, "the error"}, {s.by_stability, "stability"}, {s.by_schedule, "outputs"}};
+  std::ostringstream text;
+  text.precision(3);
+  text << s.steps << " steps from " << s.shortest << " to " << s.longest << " s, " << s.evaluations << " evaluations of the forces, " << s.rejections
+       << " attempts rejected by the error test; steps bounded by";
+  for (const auto &[count, what] : bounds) text << " " << what << ": " << count << (what == bounds[2].second ? "" : ",");
+  note(text.str());
+}
+
 template <int dim, class Phases>
 void Simulation<dim, Phases>::set_loading(const Stage &stage, double stage_time) {
   const double ramp = stage.gravity_ramp > 0 ? std::min(1., stage_time / stage.gravity_ramp) : 1;
-  for (int d = 0; d < dim; ++d) motion_->loading.gravity[d] = ramp * scene_.gravity[d];
+  for (int d = 0; d < dim; ++d) motion_->loading.gravity[d] = scene_.gravity[d];
   motion_->loading.ramp = ramp;
+  motion_->loading.ramp_rate = ramp < 1 ? 1 / stage.gravity_ramp : 0;
+  motion_->loading.set_at = time_;
+  motion_->loading.time_rate = stage.hold_loads ? 0 : 1;
   motion_->loading.time = load_time_;
   motion_->loading.damping = stage.damping;
   motion_->loading.softening = stage.softening;
@@ -64,6 +81,7 @@ void Simulation<dim, Phases>::run_stage() {
   const Stage &stage = scene_.stage[stage_.number];
   stage_name_ = stage.name, watched_ = stage.until == StopWhen::failure ? stage.failure_point : "";
   if (results_) results_->progress.stage(stage.name);
+  integrator_->restart();
   const double begin = stage_.begin, end = begin + stage.duration;
   double longest = 0;
   for (const Stage &s : scene_.stage) longest = std::max(longest, s.duration);
@@ -75,7 +93,7 @@ void Simulation<dim, Phases>::run_stage() {
     const double next_row = next_time(begin, history_interval, time_), next_snapshot = next_time(begin, output.interval, time_);
     const double next_checkpoint = next_time(begin, output.checkpoint_interval > 0 ? output.checkpoint_interval : output.interval, time_);
     require(motion_->begin(time_));
-    require(step(choose_step(fixed_step() > 0 ? end : std::min({end, next_row, next_snapshot}))));
+    require(step(step_rule(integrator_settings_).fixed > 0 ? end : std::min({end, next_row, next_snapshot})));
     const Verdict verdict = agree();
     refuse(verdict);
     if (remap_due_) require(remap());
@@ -164,6 +182,7 @@ void Simulation<dim, Phases>::reset_displacement() {
     if (p.history) std::fill_n(p.history, p.count * body->history_count(), 0.);
   }
   critical_step_ = 0, shrink_ = 1;
+  integrator_->restart();
 }
 
 }  // namespace talus

@@ -11,7 +11,7 @@ double Simulation<dim, Phases>::single_step() {
   if (stage_name_.empty()) stage_name_ = scene_.stage.front().name;
   set_loading(scene_.stage.front(), time_);
   require(motion_->begin(time_));
-  require(step(choose_step(std::numeric_limits<double>::max())));
+  require(step(std::numeric_limits<double>::max()));
   const Verdict verdict = agree();
   refuse(verdict);
   if (remap_due_) require(remap());
@@ -24,7 +24,7 @@ void Simulation<dim, Phases>::advance_to(double t) {
   while (time_ < t * (1 - 1e-12)) {
     set_loading(scene_.stage.front(), time_);
     require(motion_->begin(time_));
-    require(step(choose_step(t)));
+    require(step(t));
     const Verdict verdict = agree();
     refuse(verdict);
     if (remap_due_) require(remap());
@@ -46,33 +46,23 @@ double Simulation<dim, Phases>::critical_step() {
   return step;
 }
 
-/// The step that the scene fixes; 0 where it follows the critical step.
 template <int dim, class Phases>
-double Simulation<dim, Phases>::fixed_step() const {
-  return std::get<EulerSettings>(integrator_settings_).step;
-}
-
-template <int dim, class Phases>
-double Simulation<dim, Phases>::choose_step(double until) {
-  if (critical_step_ == 0) critical_step_ = critical_step();
-  const double fixed = fixed_step(), fraction = std::get<EulerSettings>(integrator_settings_).fraction;
-  const double step = fixed > 0 ? fixed : fraction * critical_step_ * shrink_;
-  if (fixed > critical_step_)
-    fail("the soil has come to cells with a critical step of " + rounded(critical_step_) + " s, but integrator.step = " + rounded(fixed) +
-         " s; take a smaller step, or leave it out");
-  const double left = until - time_;
-  const double count = std::ceil(left / step * (1 - 1e-9));
-  if ((fixed > 0 && count > 1) || count > 1e6) return step;
-  return left / std::max(1., count);
-}
-
-template <int dim, class Phases>
-PetscErrorCode Simulation<dim, Phases>::step(double step) {
+PetscErrorCode Simulation<dim, Phases>::step(double until) {
   PetscFunctionBeginUser;
+  if (critical_step_ == 0) critical_step_ = critical_step();
+  const StepRule rule = step_rule(integrator_settings_);
+  if (rule.fixed > rule.limit * critical_step_)
+    fail("the soil has come to cells with a critical step of " + rounded(rule.limit * critical_step_) + " s, but integrator.step = " +
+         rounded(rule.fixed) + " s; take a smaller step, or leave it out");
   PetscLogDouble start, end;
+  double step = 0;
   PetscCall(PetscTime(&start));
-  PetscCall(integrator_->advance(*motion_, time_, step));
+  PetscCall(integrator_->advance(*motion_, time_, {critical_step_ * shrink_, until}, &step));
   PetscCall(PetscTime(&end));
+  if (const std::string cause = integrator_->obstacle(); !cause.empty()) {
+    const int node = integrator_->obstructing_node();
+    fail(cause + " near " + place_of(node >= 0, node >= 0 ? motion_->grid().position[node] : Vec<dim>{}));
+  }
   breakdown_.step += end - start;
   time_ += step, last_step_ = step;
   if (!hold_loads_) load_time_ += step;
@@ -136,6 +126,7 @@ PetscErrorCode Simulation<dim, Phases>::release(bool to_next) {
   Vec<dim> where{};
   for (size_t b = 0; b < bodies_.size(); ++b) PetscCall(relocate<dim>(*bodies_[b], mesh_, movers_[b], &lost, &where));
   critical_step_ = 0, shrink_ = 1;
+  integrator_->restart();
   PetscCall(PetscTime(&end));
   breakdown_.release += middle - start, breakdown_.relocate += end - middle;
   const std::string outside = place_of(lost, where);

@@ -76,6 +76,14 @@ TEST(Allocations, none_during_remaps_of_a_collapsing_column) {
   EXPECT_EQ(c.in_remaps, 0);
 }
 
+TEST(Allocations, none_in_steps_and_remaps_under_error_control) {
+  const Count c = count(column, {"mesh.size=0.01", "integrator.kind=arkode"}, 1500, 200);
+  EXPECT_GT(c.steps, 50);
+  EXPECT_GT(c.remaps, 1);
+  EXPECT_EQ(c.in_steps, 0);
+  EXPECT_EQ(c.in_remaps, 0);
+}
+
 TEST(Allocations, none_in_a_drained_slope_of_two_soils) {
   const Count c = count(slope, {"transfer.remap_interval=0.1"}, 1000, 200);
   EXPECT_GT(c.steps, 10);

@@ -75,6 +75,12 @@ TEST_F(RunThatEnds, BecauseSpeedIsAbsurd) {
   expect(Program(folder_, run(scene)).end(), {"the velocity is not finite near (", "step 1,"}, 1);
 }
 
+TEST_F(RunThatEnds, BecauseNoStepKeepsTheTolerance) {
+  const std::string scene = changed(good_scene, "[output]", "[integrator]\nkind = \"arkode\"\nvelocity_tolerance = 1e-12\nfloor = 0.05\n[output]");
+  for (const int ranks : {1, 2})
+    expect(Program(folder_, run(scene, ranks)).end(), {"integrator.velocity_tolerance", "integrator.floor", "near (", "t = "}, 1);
+}
+
 TEST_F(RunThatEnds, BecauseResultsHaveNoPlace) {
   expect(Program(folder_, run(good_scene, 1, "scene.toml/results")).end(), {"scene.toml/results", "Not a directory"},
          0);

@@ -1,0 +1,49 @@
+#pragma once
+/// Explicit Runge-Kutta of orders 2 to 5 with embedded error control on the nodal state (u, v), by SUNDIALS ARKODE (Reynolds et al.
+/// 2023), docs/theory/integrators.md. Stages look ahead from the accepted history; only a step that passed its error test is accepted.
+#include <memory>
+
+#include "base/units.h"
+#include "solvers/integrator.h"
+
+namespace talus {
+
+/// Keys of [integrator] with kind = "arkode".
+struct ArkodeSettings {
+  static constexpr const char *name = "arkode";
+  int order = 3;
+  double velocity_tolerance = 1e-3;      ///< of one step [m/s]
+  double displacement_tolerance = 1e-5;  ///< of one step [m]
+  double fraction = 0.8;                 ///< of the order's stability limit [-]
+  double step = 0;                       ///< fixed step without error control [s]; 0: by the tolerances
+  double floor = 1e-4;                   ///< of the critical step: a run that needs less stops [-]
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.integer("order", order, Range{2, 5}, "order of the explicit Runge-Kutta method; its embedded method, one order lower, tells the error");
+    v.number("velocity_tolerance", velocity_tolerance, metre_per_second, Range{1e-12, 1e3}, "error of the velocity that one step may make, root mean square over the soil's mass");
+    v.number("displacement_tolerance", displacement_tolerance, metre, Range{1e-15, 1e3}, "error of the displacement that one step may make, root mean square over the soil's mass");
+    v.number("fraction", fraction, one, Range{0.001, 1}, "largest step over the order's own stability limit: 2, 1.73, 2.83, 1.0 over omega_max for orders 2 to 5");
+    v.number("step", step, second, Range{0, 1e9}, "fixed time step without error control; 0 follows the tolerances");
+    v.number("floor", floor, one, Range{1e-12, 1}, "shortest step over the critical step 2 / omega_max; a run that needs a shorter one stops");
+  }
+  StepRule rule() const;
+  std::unique_ptr<Integrator> make() const;
+};
+
+class Arkode final : public Integrator {
+ public:
+  explicit Arkode(const ArkodeSettings &settings);
+  ~Arkode() override;
+  PetscErrorCode advance(Motion &motion, double t, const StepBounds &bounds, double *taken) override;
+  void restart() override;
+  void keep(Archive &archive) override;
+  std::string obstacle() const override;
+  int obstructing_node() const override;
+
+ private:
+  struct Memory;  // SUNDIALS stays inside arkode.cpp
+  ArkodeSettings settings_;
+  std::unique_ptr<Memory> memory_;
+};
+
+}  // namespace talus

@@ -1,0 +1,36 @@
+#pragma once
+/// The textbook's explicit Euler: places and velocities both move with the rates at the start of the step. For comparison only: it
+/// amplifies every undamped wave, docs/theory/integrators.md, section 1.
+#include <memory>
+#include <vector>
+
+#include "base/units.h"
+#include "solvers/integrator.h"
+
+namespace talus {
+
+/// Keys of [integrator] with kind = "forward-euler".
+struct ForwardEulerSettings {
+  static constexpr const char *name = "forward-euler";
+  double step = 0;        ///< fixed step [s]; 0: a fraction of the critical step
+  double fraction = 0.1;  ///< of the critical step 2 / omega_max [-]
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.number("step", step, second, Range{0, 1e9}, "fixed time step; 0 takes a fraction of the critical step");
+    v.number("fraction", fraction, one, Range{0.001, 1}, "time step over the critical step 2 / omega_max; waves grow at any fraction, slowly at small ones");
+  }
+  StepRule rule() const { return {step, fraction, 1}; }
+  std::unique_ptr<Integrator> make() const;
+};
+
+class ForwardEuler final : public Integrator {
+ public:
+  explicit ForwardEuler(const ForwardEulerSettings &settings) : settings_(settings) {}
+  PetscErrorCode advance(Motion &motion, double t, const StepBounds &bounds, double *taken) override;
+
+ private:
+  ForwardEulerSettings settings_;
+  std::vector<double> displacement_, change_;
+};
+
+}  // namespace talus

@@ -1,0 +1,30 @@
+#pragma once
+/// The state (u, v) of a motion as an N_Vector of SUNDIALS: one array per vector on each rank, as long as the mesh allows, of which the
+/// nodes that hold soil now are used. So remaps change no vector, and no step allocates. Shared nodes stand on each rank that has
+/// them, equal to the bit; algebra is local, and only norms are summed over ranks. docs/theory/integrators.md, section 3.
+#include <sundials/sundials_nvector.h>
+
+#include "physics/motion.h"
+
+namespace talus {
+
+/// What all vectors of one integration share: the motion, and how much error of the particles' places and velocities counts as 1.
+struct NodalSpace {
+  Motion *motion;
+  double displacement_tolerance;  ///< [m]
+  double velocity_tolerance;      ///< [m/s]
+  bool inverted = false;          ///< a stage since the last norm turned a cell of this rank inside out
+};
+
+/// An N_Vector, zero; ends with N_VDestroy. The space must outlive it.
+N_Vector make_nodal_vector(NodalSpace &space, SUNContext context);
+
+/// `size()` doubles each: displacement [m] and velocity [m/s], or their rates.
+double *displacement_of(N_Vector y);
+double *velocity_of(N_Vector y);
+
+/// Root mean square over the soil's mass of the particles' share of a nodal error, over the tolerances, docs/theory/integrators.md (3);
+/// far above 1 if a cell was turned inside out or the error is no number. Collective.
+double error_norm(N_Vector error);
+
+}  // namespace talus
