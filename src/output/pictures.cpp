@@ -8,7 +8,8 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <string_view>
+
+#include "base/child_environment.h"
 
 namespace talus {
 namespace {
@@ -20,20 +21,6 @@ std::string script(const char *name) {
   std::error_code error;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
   return program.parent_path().parent_path() / "share/talus/plots" / name;
-}
-
-/// The environment without what mpirun put there: with it, h5py would take itself for a rank of this run and wait for
-/// the others.
-std::vector<char *> environment_without_mpi() {
-  std::vector<char *> kept;
-  for (char **variable = environ; *variable; ++variable) {
-    const std::string_view text(*variable);
-    if (!text.starts_with("OMPI_") && !text.starts_with("PMIX_") && !text.starts_with("PMI_") &&
-        !text.starts_with("ORTE_"))
-      kept.push_back(*variable);
-  }
-  kept.push_back(nullptr);
-  return kept;
 }
 
 bool warn(const std::string &dir, const std::string &cause) {
@@ -71,6 +58,8 @@ bool draw_pictures(const std::string &dir, const PictureChoice &choice) {
   if (choice.logarithmic) options.push_back("--log");
   return draw("talus_plot.py", dir, options);
 }
+
+bool draw_comparison(const std::string &dir) { return draw("talus_compare.py", dir, {}); }
 
 bool draw_element_tests(const std::string &dir, const std::vector<std::string> &tests, const std::string &title) {
   std::vector<std::string> options{"--title", title, "--tests"};

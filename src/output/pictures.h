@@ -16,6 +16,9 @@ struct PictureChoice {
 /// run: false, after a warning on standard error, if it went wrong.
 bool draw_pictures(const std::string &dir, const PictureChoice &choice = {});
 
+/// Draws DIR/compare.png from DIR/compare.csv; otherwise the same.
+bool draw_comparison(const std::string &dir);
+
 /// Draws DIR/soil.png from the CSV files of element tests in `dir`; otherwise the same.
 bool draw_element_tests(const std::string &dir, const std::vector<std::string> &tests, const std::string &title);
 

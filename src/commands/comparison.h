@@ -1,0 +1,150 @@
+#pragma once
+/// The arithmetic of `talus compare`: what its arguments mean, and what a series converges to.
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scene/reader.h"
+
+namespace talus {
+
+/// A line of the chart: keys with the values that they take in turn.
+struct Series {
+  std::string name;
+  std::vector<std::pair<std::string, std::vector<std::string>>> lists;
+};
+
+inline std::string trimmed(const std::string &text) {
+  const size_t first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+/// Pieces between separators that stand outside brackets and quotes.
+inline std::vector<std::string> pieces(const std::string &text, char separator) {
+  std::vector<std::string> out(1);
+  int depth = 0;
+  bool quoted = false;
+  for (const char c : text) {
+    if (c == '"') quoted = !quoted;
+    if (!quoted) depth += (c == '[' || c == '{') - (c == ']' || c == '}');
+    if (c == separator && depth == 0 && !quoted)
+      out.emplace_back();
+    else
+      out.back() += c;
+  }
+  for (std::string &piece : out) piece = trimmed(piece);
+  return out;
+}
+
+/// "NAME: key=a,b; key=c". Throws SceneError.
+inline Series parse_series(const std::string &text) {
+  const size_t colon = text.find(':');
+  if (colon == std::string::npos || trimmed(text.substr(0, colon)).empty())
+    throw SceneError("--series \"" + text + "\" needs a name and a colon first, such as \"euler: integrator.fraction=0.2,0.4\"");
+  Series series{trimmed(text.substr(0, colon)), {}};
+  for (const std::string &part : pieces(text.substr(colon + 1), ';')) {
+    if (part.empty()) continue;
+    const size_t equal = part.find('=');
+    if (equal == std::string::npos || equal == 0) throw SceneError("--series \"" + text + "\": `" + part + "` must be key.path=value,value,...");
+    series.lists.emplace_back(trimmed(part.substr(0, equal)), pieces(part.substr(equal + 1), ','));
+    for (const std::string &value : series.lists.back().second)
+      if (value.empty()) throw SceneError("--series \"" + text + "\": `" + part + "` has an empty value");
+  }
+  return series;
+}
+
+/// Every combination as overrides key=value; the last key varies fastest.
+inline std::vector<std::vector<std::string>> products(const Series &series) {
+  std::vector<std::vector<std::string>> all{{}};
+  for (const auto &[key, values] : series.lists) {
+    std::vector<std::vector<std::string>> next;
+    for (const auto &head : all)
+      for (const std::string &value : values) {
+        next.push_back(head);
+        next.back().push_back(key + "=" + value);
+      }
+    all = std::move(next);
+  }
+  return all;
+}
+
+/// A number, also one with a unit behind it ("5 mm": within a series the unit is the same); NaN if it is none.
+inline double number_of(const std::string &text) {
+  const std::string bare = !text.empty() && text.front() == '"' ? text.substr(1) : text;
+  char *end = nullptr;
+  const double value = std::strtod(bare.c_str(), &end);
+  return end == bare.c_str() ? NAN : value;
+}
+
+/// What is read off a history.
+struct Measure {
+  std::string column;
+  double time = NAN;  ///< NaN: the last line
+  bool largest = false;
+};
+
+inline Measure parse_measure(const std::string &text) {
+  Measure m;
+  m.largest = text.rfind("max:", 0) == 0;
+  m.column = m.largest ? text.substr(4) : text;
+  const size_t at = m.column.find('@');
+  if (at == std::string::npos) return m;
+  m.time = number_of(m.column.substr(at + 1)), m.column = m.column.substr(0, at);
+  if (m.largest || !std::isfinite(m.time)) throw SceneError("--measure " + text + " must be COLUMN, COLUMN@TIME or max:COLUMN");
+  return m;
+}
+
+/// The measure of a history.csv, linear between its lines. Throws SceneError for a column it lacks.
+inline double value_of(const std::string &path, const Measure &measure) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  const std::vector<std::string> names = pieces(line, ',');
+  const auto found = std::find(names.begin(), names.end(), measure.column);
+  if (found == names.end()) throw SceneError("--measure: " + path + " has no column " + measure.column + "; it has " + line);
+  const size_t column = found - names.begin();
+  double last_time = 0, last = NAN, largest = -INFINITY;
+  while (std::getline(file, line)) {
+    const std::vector<std::string> cells = pieces(line, ',');
+    if (cells.size() != names.size()) continue;
+    const double time = number_of(cells[0]), value = number_of(cells[column]);
+    if (time >= measure.time * (1 - 1e-9)) return std::isnan(last) || time <= measure.time ? value : last + (value - last) * (measure.time - last_time) / (time - last_time);
+    last_time = time, last = value, largest = std::max(largest, value);
+  }
+  return measure.largest ? largest : std::isnan(measure.time) ? last : NAN;
+}
+
+struct Reference {
+  double value, uncertainty;
+  std::string origin;
+};
+
+/// Limit of values refined by a parameter that goes to zero, from the three finest: Richardson's extrapolation with the order that
+/// they show, if they converge at one between 0.5 and 8; otherwise the finest value, as uncertain as the last refinement changed it.
+inline Reference extrapolate(std::vector<std::pair<double, double>> refined) {
+  std::erase_if(refined, [](const auto &p) { return !std::isfinite(p.first) || !std::isfinite(p.second); });
+  std::sort(refined.begin(), refined.end());
+  if (refined.size() < 2) return {NAN, INFINITY, "too few runs"};
+  const double finest = refined[0].second, change = refined[1].second - finest;
+  if (refined.size() > 2) {
+    const double before = refined[2].second - refined[1].second, r1 = refined[1].first / refined[0].first, r2 = refined[2].first / refined[1].first;
+    if (change * before > 0 && std::abs(r1 - r2) < 0.05 * r1) {
+      const double order = std::log(before / change) / std::log(r1);
+      if (order > 0.5 && order < 8) {
+        const double rest = change / (std::pow(r1, order) - 1);
+        std::ostringstream text;
+        text.precision(2);
+        text << "extrapolated at the observed order " << order;
+        return {finest - rest, std::abs(rest), text.str()};
+      }
+    }
+  }
+  return {finest, std::abs(change), "its finest run"};
+}
+
+}  // namespace talus

@@ -1,0 +1,60 @@
+// What the arguments of `talus compare` mean, and what a series converges to.
+#include "commands/comparison.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+namespace talus {
+namespace {
+
+TEST(Comparison, a_series_is_every_combination_of_its_values) {
+  const Series series = parse_series("arkode: integrator.kind=arkode; integrator.order=3,4; body.a.velocity=[1, 2],[3, 4]");
+  EXPECT_EQ(series.name, "arkode");
+  const auto runs = products(series);
+  ASSERT_EQ(runs.size(), 4u);
+  EXPECT_EQ(runs[0], (std::vector<std::string>{"integrator.kind=arkode", "integrator.order=3", "body.a.velocity=[1, 2]"}));
+  EXPECT_EQ(runs[3], (std::vector<std::string>{"integrator.kind=arkode", "integrator.order=4", "body.a.velocity=[3, 4]"}));
+  EXPECT_EQ(products(parse_series("as it is:")).size(), 1u);
+}
+
+TEST(Comparison, bad_series_are_refused) {
+  for (const char *text : {"euler", ": a=1", "euler: a", "euler: =3", "euler: a=1,,2"}) EXPECT_THROW(parse_series(text), SceneError) << text;
+  EXPECT_THROW(parse_measure("crest@noon"), SceneError);
+  EXPECT_THROW(parse_measure("max:crest@3"), SceneError);
+}
+
+TEST(Comparison, numbers_may_have_a_unit) {
+  EXPECT_EQ(number_of("\"5 mm\""), 5);
+  EXPECT_EQ(number_of("1e-3"), 1e-3);
+  EXPECT_TRUE(std::isnan(number_of("euler")));
+}
+
+TEST(Comparison, richardson_finds_the_limit_of_a_power) {
+  std::vector<std::pair<double, double>> refined;
+  for (const double h : {0.1, 0.2, 0.4}) refined.emplace_back(h, 7 + 3 * h * h);
+  const Reference limit = extrapolate(refined);
+  EXPECT_NEAR(limit.value, 7, 1e-12);
+  EXPECT_NEAR(limit.uncertainty, 3 * 0.01, 1e-12);
+}
+
+TEST(Comparison, without_convergence_the_finest_run_is_as_uncertain_as_its_last_change) {
+  const Reference limit = extrapolate({{0.1, 5}, {0.2, 6}, {0.4, 5.5}, {NAN, 1}});
+  EXPECT_EQ(limit.value, 5);
+  EXPECT_EQ(limit.uncertainty, 1);
+  EXPECT_TRUE(std::isinf(extrapolate({{0.1, 5}}).uncertainty));
+}
+
+TEST(Comparison, measures_are_read_off_a_history) {
+  const std::string path = testing::TempDir() + "comparison_history.csv";
+  std::ofstream(path) << "time_s,step,stage,x_m\n0,0,start,0\n1,5,fall,4\n2,9,fall,2\n";
+  EXPECT_EQ(value_of(path, parse_measure("x_m")), 2);
+  EXPECT_EQ(value_of(path, parse_measure("x_m@0.5")), 2);
+  EXPECT_EQ(value_of(path, parse_measure("x_m@2")), 2);
+  EXPECT_EQ(value_of(path, parse_measure("max:x_m")), 4);
+  EXPECT_THROW(value_of(path, parse_measure("y_m")), SceneError);
+  std::remove(path.c_str());
+}
+
+}  // namespace
+}  // namespace talus
