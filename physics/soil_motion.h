@@ -11,6 +11,7 @@
 #include "physics/laws/update_stress.h"
 #include "physics/motion.h"
 #include "physics/pore_pressure.h"
+#include "transfer/nonlocal_strain.h"
 #include "transfer/transfer.h"
 
 namespace talus {
@@ -81,6 +82,8 @@ class SoilMotion final : public Motion {
   const std::vector<PointSet> &points() const { return points_; }
   /// Place of a node without a finite velocity on this rank; false when there is none.
   bool find_broken(Vec<dim> *where) const;
+  /// Place and cause of the first call in which a law of this rank went wrong; false when there is none.
+  bool find_trouble(Vec<dim> *where, std::string *cause) const;
 
   /// Position and velocity of a particle within the Lagrangian part.
   void present(const Body<dim> &body, int particle, Vec<dim> *position, Vec<dim> *velocity) const;
@@ -107,6 +110,8 @@ class SoilMotion final : public Motion {
   void set_weights(const std::vector<double> &nodal_volume);
   PetscErrorCode deform(double t, const Vec<dim> *u, bool trial);
   PetscErrorCode smooth_volume_strain(const Shape<dim> *shape);
+  const double *seen_history(size_t body) { return nonlocal_[body] ? nonlocal_[body]->averaged(points_[body]) : points_[body].history; }
+  const double *softening_size(size_t body) const { return nonlocal_[body] ? nonlocal_[body]->size() : grid_.size.data(); }
   PetscErrorCode internal_force(bool trial);
   void add_body_forces(double t);
   void add_pore_pressure(double load_time, double ramp, bool trial) requires Phases::given;
@@ -125,6 +130,7 @@ class SoilMotion final : public Motion {
   double relaxation_time_, total_mass_, smallest_mass_;
   FilledGrid<dim> grid_, next_grid_;
   std::vector<PointSet> points_, next_points_;
+  std::vector<std::unique_ptr<NonlocalStrain<dim>>> nonlocal_;  ///< per body; null: the law softens by the strain of its point
   const std::vector<std::vector<int>> *movers_ = nullptr;  ///< when all but these are gathered
 
   // nodes

@@ -33,6 +33,11 @@ SoilMotion<dim, Phases>::SoilMotion(const BackgroundMesh<dim> &mesh, std::vector
   patch_weight_.assign(mesh.patch_count, 0), patch_sum_.assign(mesh.patch_count, 0);
   nodal_.assign(static_cast<size_t>(nodes) * (dim + 2), 0);
   for (const auto &body : bodies) suction_matters_ = suction_matters_ || reads_suction(body->law());
+  for (const auto &body : bodies) {
+    const double length = body->source().averaging_length;
+    nonlocal_.push_back(length > 0 ? std::make_unique<NonlocalStrain<dim>>(mesh, length, plastic_strain_field(body->law()), body->history_count())
+                                   : nullptr);
+  }
   for (auto *all : {&points_, &next_points_})
     for (size_t b = 0; b < bodies.size(); ++b) {
       PointSet &points = (*all)[b];
@@ -68,6 +73,7 @@ void SoilMotion<dim, Phases>::gather() {
     to_nodes<dim, averaged, apic>(*bodies_[b], grid_, start_velocity_.data(), points, movers_ ? &(*movers_)[b] : nullptr);
     if (!averaged) points.count = p.count;
     attach(b);
+    if (nonlocal_[b]) nonlocal_[b]->keep(archive);
   }
   movers_ = nullptr;
 }
@@ -133,11 +139,14 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double) {
     PetscCall(gather_pore_water());
     sample_time_[1] = -std::numeric_limits<double>::infinity();
   }
+  for (size_t b = 0; b < bodies_.size(); ++b)
+    if (nonlocal_[b]) PetscCall(nonlocal_[b]->begin(grid_, points_[b]));
   if (transfer_.average_stress)
     for (size_t b = 0; b < bodies_.size(); ++b) {
       if (!strength_varies(bodies_[b]->law())) continue;  // the mean of admissible stresses is admissible where strength is uniform
       const PointSet &p = points_[b];
-      admit_stress<dim>(bodies_[b]->law(), {p.count, p.stress, p.history, p.stress, p.history, p.cell, increment_.data(), grid_.size.data(), find_suction(b)});
+      admit_stress<dim>(bodies_[b]->law(), {p.count, p.stress, seen_history(b), p.stress, p.history, p.cell, increment_.data(), softening_size(b), find_suction(b)});
+      if (nonlocal_[b]) nonlocal_[b]->restore(p, p.history);
     }
   PetscFunctionReturn(0);
 }
@@ -372,7 +381,8 @@ PetscErrorCode SoilMotion<dim, Phases>::deform(double t, const Vec<dim> *u, bool
       forgotten_.resize(std::max<size_t>(forgotten_.size(), p.count * body.history_count()));
       history = forgotten_.data();
     }
-    update_stress<dim>(body.law(), {p.count, p.stress, p.history, stress, history, p.cell, increment_.data(), grid_.size.data(), find_suction(b), t - accepted_time_});
+    update_stress<dim>(body.law(), {p.count, p.stress, seen_history(b), stress, history, p.cell, increment_.data(), softening_size(b), find_suction(b), t - accepted_time_, accepted_time_});
+    if (nonlocal_[b]) nonlocal_[b]->restore(p, history);
     for (int q = 0; q < p.count; ++q) {
       const int c = p.cell[q];
       volume[q] = std::min(p.volume[q] * exp_small(volume_strain_[c]), body.volume_limit(p.limit[q], history + q * body.history_count()));
@@ -380,6 +390,9 @@ PetscErrorCode SoilMotion<dim, Phases>::deform(double t, const Vec<dim> *u, bool
     }
   }
   for (int c = 0; c < cells; ++c) weight[c] = particle_volume[c] + blend_[c] * (shape[c].volume - particle_volume[c]);
+  if (!trial && loading.softening)
+    for (size_t b = 0; b < bodies_.size(); ++b)
+      if (nonlocal_[b]) PetscCall(nonlocal_[b]->follow(grid_, points_[b]));
   PetscFunctionReturn(0);
 }
 
@@ -595,6 +608,19 @@ bool SoilMotion<dim, Phases>::find_broken(Vec<dim> *where) const {
   return false;
 }
 
+template <int dim, class Phases>
+bool SoilMotion<dim, Phases>::find_trouble(Vec<dim> *where, std::string *cause) const {
+  for (const auto &body : bodies_) {
+    const auto trouble = law_trouble(body->law());
+    if (trouble.text.empty()) continue;
+    *cause = trouble.text, *where = {};
+    for (int i : grid_.shape[trouble.cell].node)
+      for (int d = 0; d < dim; ++d) (*where)[d] += mesh_.position[grid_.mesh_node[i]][d] / (dim + 1);
+    return true;
+  }
+  return false;
+}
+
 // ---- given pore pressure ----
 
 template <int dim, class Phases>
@@ -759,7 +785,7 @@ PetscErrorCode SoilMotion<dim, Phases>::keep(Archive &archive) {
     archive.keep("points", p.count, p.own_cell, p.own_stress, p.own_history, p.own_volume, p.own_limit, p.start_history, p.start_volume, p.of_cell);
     attach(b);
   }
-  archive.keep("motion", gathered_, remap_time_, own_share_, moved_, smallest_ratio_, step_ratio_, speed_squared_, sample_time_, last_pressure_time_);
+  archive.keep("motion", gathered_, remap_time_, accepted_time_, own_share_, moved_, smallest_ratio_, step_ratio_, speed_squared_, sample_time_, last_pressure_time_);
   if constexpr (Phases::given)
     for (Sample &sample : sample_) archive.keep("pressure", sample.gradient, sample.value, sample.nodal);
   if (archive.reading()) PetscCall(conditions_.begin(grid_, impedance_, filling_));

@@ -16,18 +16,20 @@
 /// History takes values only (`value_of`).
 ///
 /// They run in a loop over points that must vectorise: straight-line code; choices as `?:` between
-/// values that are already there; comparisons not joined by && or &.
+/// values that are already there; comparisons not joined by && or &. The exception is `Umat`, which is called point by point.
 #include <span>
+#include <string_view>
 #include <variant>
 
 #include "physics/laws/drucker_prager.h"
 #include "physics/laws/linear_elastic.h"
 #include "physics/laws/mohr_coulomb.h"
+#include "physics/laws/umat.h"
 #include "scene/deferred.h"
 
 namespace talus {
 
-using Law = std::variant<LinearElastic, MohrCoulomb, DruckerPrager>;
+using Law = std::variant<LinearElastic, MohrCoulomb, DruckerPrager, Umat>;
 
 /// The law that key "law" of a body names, with its parameters. Throws like the reader.
 Law read_law(const DeferredTable &table);
@@ -45,6 +47,13 @@ inline int history_size(const Law &law) { return static_cast<int>(history_fields
 inline bool reads_suction(const Law &law) {
   return std::visit([](const auto &one) { return one.reads_suction(); }, law);
 }
+/// Place of the plastic strain that softening reads among the history fields; -1 where there is none.
+inline int plastic_strain_field(const Law &law) {
+  const auto fields = history_fields(law);
+  for (std::size_t h = 0; h < fields.size(); ++h)
+    if (std::string_view(fields[h].name) == "plastic_strain") return static_cast<int>(h);
+  return -1;
+}
 
 inline double bulk_modulus(const Law &law) {  ///< K [Pa]
   return std::visit([](const auto &one) { return one.bulk_modulus(); }, law);
@@ -54,6 +63,17 @@ inline double shear_modulus(const Law &law) {  ///< G [Pa]
 }
 inline double constrained_modulus(const Law &law) {  ///< K + 4/3 G, of the elastic wave [Pa]
   return bulk_modulus(law) + 4 * shear_modulus(law) / 3;
+}
+
+/// What is wrong with a law in a dimension that its parameters alone do not show, or "".
+inline std::string law_problem(const Law &law, int dim) {
+  const Umat *umat = std::get_if<Umat>(&law);
+  return umat ? umat->problem_in(dim) : "";
+}
+/// The first thing that went wrong inside of a law since it was read, if it can go wrong, and the cell of its point.
+inline Umat::Trouble law_trouble(const Law &law) {
+  const Umat *umat = std::get_if<Umat>(&law);
+  return umat ? umat->trouble() : Umat::Trouble{};
 }
 
 /// Does soil of this law open without resistance? Then volume that particles gain by opening gaps is not the soil's.

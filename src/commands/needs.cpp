@@ -41,6 +41,7 @@ double softening(const Law &law, double cell_size, double pressure) {
 
 BodyNeeds needs_of(const BodyReport &report, const BodySource &source) {
   BodyNeeds b{report, read_law(source.law)};
+  b.averaging_length = source.averaging_length;
   b.density = report.mass / report.volume;
   b.wave_speed = std::sqrt(constrained_modulus(b.law) / b.density);
   b.shear_speed = std::sqrt(shear_modulus(b.law) / b.density);
@@ -170,11 +171,11 @@ class Adviser {
 
   void softening(const BodyNeeds &b) {
     if (b.softening == 0) return;
+    if (b.averaging_length > 0) return;  // bands are wider than a cell, and cells do not snap back alone
     if (std::get<MohrCoulomb>(b.law).reference_size == 0)
       say(b.body.name +
           " softens without a reference_size: bands are one cell wide, so the answer depends on the mesh; give the "
-          "element "
-          "size that shape_factor belongs to.");
+          "element size that shape_factor belongs to, or an averaging_length.");
     constexpr double snap_back =
         0.87;  // sqrt(3) / 2: strength of simple shear falls as fast as elastic strain gives way
     if (b.softening > snap_back / 2)

@@ -102,6 +102,8 @@ int test_soil(const SoilArguments &arguments) {
   const std::filesystem::path path(file);
   const std::string name = (path.stem() == "scene" ? path.parent_path().filename() : path.stem()).string();
   const std::string dir = arguments.directory.empty() ? "results/soil-" + name : arguments.directory;
+  const std::string problem = law_problem(job.law, 3);
+  if (!problem.empty()) throw SceneError(file + ": the law cannot be used: " + problem);
   std::filesystem::create_directories(dir);
 
   std::printf("%s (%s)\n%-24s %10s %10s %10s %10s %10s %10s\n", job.title.c_str(), law_name(job.law), "test", "peak q kPa", "at p' kPa",

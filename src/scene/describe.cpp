@@ -134,6 +134,12 @@ void Describer::text(const char *key, const std::string &value, const char *mean
   line(key, "text", value, meaning);
 }
 
+void Describer::path(const char *key, const std::string &value, const char *meaning) { line(key, "file", value, meaning); }
+
+void Describer::quantities(const char *key, const std::vector<double> &, const char *meaning) {
+  line(key, "list of numbers or quantities", "", meaning);
+}
+
 void Describer::texts(const char *key, const std::vector<std::string> &value, const char *meaning) {
   line(key, "text or list of texts", join(value), meaning);
 }

@@ -50,6 +50,8 @@ class Describer {
   void integer(const char *key, int value, Range range, const char *meaning);
   void flag(const char *key, bool value, const char *meaning);
   void text(const char *key, const std::string &value, const char *meaning);
+  void path(const char *key, const std::string &value, const char *meaning);
+  void quantities(const char *key, const std::vector<double> &value, const char *meaning);
   void texts(const char *key, const std::vector<std::string> &value, const char *meaning);
   template <class Enum>
   void choice(const char *key, Enum value,

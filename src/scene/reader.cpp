@@ -102,6 +102,13 @@ void TableReader::text(const char *key, std::string &value, const char *meaning)
   if (const auto given = find(key, meaning)) value = given->string("a text in quotes");
 }
 
+void TableReader::path(const char *key, std::string &value, const char *meaning) {
+  const auto given = find(key, meaning);
+  if (!given) return;
+  const std::filesystem::path path(given->string("the name of a file"));
+  value = path.is_absolute() ? path.string() : std::filesystem::absolute(std::filesystem::path(document_->file).parent_path() / path).lexically_normal().string();
+}
+
 void TableReader::texts(const char *key, std::vector<std::string> &value, const char *meaning) {
   const auto given = find(key, meaning);
   if (!given) return;
@@ -124,6 +131,13 @@ std::optional<std::size_t> TableReader::choose(const char *key, const std::vecto
 
 void TableReader::point(const char *key, std::vector<double> &value, Unit unit, const char *meaning) {
   if (const auto given = find(key, meaning)) value = given->point(unit);
+}
+
+void TableReader::quantities(const char *key, std::vector<double> &value, const char *meaning) {
+  const auto given = find(key, meaning);
+  if (!given) return;
+  value.clear();
+  for (const Value &one : given->elements_or_self()) value.push_back(one.any_quantity());
 }
 
 void TableReader::points(const char *key, std::vector<std::vector<double>> &value, Unit unit, const char *meaning) {

@@ -54,11 +54,15 @@ class TableReader {
   void integer(const char *key, int &value, Range range, const char *meaning);
   void flag(const char *key, bool &value, const char *meaning);
   void text(const char *key, std::string &value, const char *meaning);
+  /// A file; relative to the folder of this one.
+  void path(const char *key, std::string &value, const char *meaning);
   /// A string or a list of strings.
   void texts(const char *key, std::vector<std::string> &value, const char *meaning);
   template <class Enum>
   void choice(const char *key, Enum &value,
               std::initializer_list<std::pair<const char *, std::type_identity_t<Enum>>> choices, const char *meaning);
+  /// A list of numbers or of quantities of any unit, in SI; a single one gives a vector of size 1.
+  void quantities(const char *key, std::vector<double> &value, const char *meaning);
   /// A list of quantities; a single one gives a vector of size 1.
   void point(const char *key, std::vector<double> &value, Unit unit, const char *meaning);
   void points(const char *key, std::vector<std::vector<double>> &value, Unit unit, const char *meaning);

@@ -78,6 +78,7 @@ struct BodySource {
   DeferredTable relative_permeability;  ///< [body.NAME.relative_permeability], likewise
   int particles_per_cell = 0;       ///< 0: 3 a triangle, 4 a tetrahedron
   double volume_cap = -1;           ///< largest V_p / V_p0; 0: none; -1: 1 for cohesionless laws, else none
+  double averaging_length = 0;      ///< l of the average of plastic strain that the law takes for its own [m]; 0: none
   std::vector<Function> velocity;             ///< initial velocity, functions of the place [m/s]
   std::vector<Function> displacement;         ///< initial displacement, functions of the undeformed place [m]
   std::vector<Function> stress;               ///< initial stress, functions of the undeformed place: xx, yy, zz, xy, yz, xz [Pa]
@@ -99,6 +100,7 @@ struct BodySource {
     v.deferred_table("relative_permeability", relative_permeability, "permeability over degree of saturation");
     v.integer("particles_per_cell", particles_per_cell, Range{0, 1000}, "particles seeded in a cell; 0 is 3 in a triangle, 4 in a tetrahedron");
     v.number("volume_cap", volume_cap, one, Range{-1, 100}, "largest particle volume over its initial volume; 0 is no cap; -1 caps cohesionless laws at 1");
+    v.number("averaging_length", averaging_length, metre, Range{0, 1e4}, "softening by the plastic strain averaged over this length l, as if bands were 2 l wide; 0 is no average; l should not be below the cell size");
     v.functions("velocity", velocity, metre_per_second, "initial velocity, one function of x, y, z per component");
     v.functions("displacement", displacement, metre, "initial displacement, one function of the undeformed x, y, z per component");
     v.functions("stress", stress, pascal, "initial stress xx, yy, zz, xy (in 3D also yz, xz), functions of the undeformed x, y, z");

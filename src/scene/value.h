@@ -42,10 +42,11 @@ class TableReader::Value {
   Function function(Unit unit, Range range) const;
   /// A function of [functions]: of t alone, its values in any unit.
   Function named_function() const;
+  /// A number or a quantity of any unit, in SI.
+  double any_quantity() const;
 
  private:
   double quantity(Unit unit, Range range) const;
-  double any_quantity() const;
   template <class ReadValue>
   Function table(const std::string &expected, const ReadValue &read_value) const;
   Function expression(const std::string &expected, double scale) const;

@@ -194,6 +194,19 @@ std::string Simulation<dim, Phases>::place_of(bool mine, const Vec<dim> &where) 
 }
 
 template <int dim, class Phases>
+std::string Simulation<dim, Phases>::text_of(bool mine, std::string text) const {
+  int rank, ranks, size = static_cast<int>(text.size());
+  MPI_Comm_rank(comm_, &rank), MPI_Comm_size(comm_, &ranks);
+  int first = mine ? rank : ranks;
+  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm_);
+  if (first == ranks) return "";
+  MPI_Bcast(&size, 1, MPI_INT, first, comm_);
+  text.resize(size);
+  MPI_Bcast(text.data(), size, MPI_CHAR, first, comm_);
+  return text;
+}
+
+template <int dim, class Phases>
 void Simulation<dim, Phases>::fail(const std::string &text) {
   std::ostringstream message;
   message.precision(8);

@@ -13,6 +13,10 @@ Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOption
     : comm_(comm), scene_(scene), options_(options), pressure_(scene.water, std::hypot(scene.gravity[0], scene.gravity[1])) {
   for (BodySource &body : scene.body) {
     laws_.push_back(read_law(body.law));
+    const std::string problem = law_problem(laws_.back(), dim);
+    if (!problem.empty()) scene.complain("body." + body.name, "cannot be used: " + problem);
+    if (body.averaging_length > 0 && plastic_strain_field(laws_.back()) < 0)
+      scene.complain("body." + body.name + ".averaging_length", "needs a law that remembers a plastic_strain, not " + std::string(law_name(laws_.back())));
     if (body.particles_per_cell == 0) body.particles_per_cell = dim == 2 ? 3 : 4;
   }
   std::vector<typename Conditions<dim>::Source> sources;

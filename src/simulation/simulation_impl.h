@@ -116,6 +116,7 @@ class Simulation final : public AnySimulation {
   void note_steps();
   int find(Followed &point);
   std::string place_of(bool mine, const Vec<dim> &where) const;
+  std::string text_of(bool mine, std::string text) const;  ///< that of the first rank which has one
   [[noreturn]] void fail(const std::string &text);
 
   MPI_Comm comm_;

@@ -84,6 +84,8 @@ typename Simulation<dim, Phases>::Verdict Simulation<dim, Phases>::agree() {
         motion_->present(*bodies_[point.body], i, &x, &v);
         mine[3] = map<dim>(v).norm();
       }
+  for (const auto &body : bodies_)
+    if (!law_trouble(body->law()).text.empty()) mine[5] = 1;
   if (mine[5]) mine[2] = 0;
   double all[7];
   MPI_Allreduce(mine, all, 7, MPI_DOUBLE, MPI_MAX, comm_);
@@ -97,6 +99,10 @@ template <int dim, class Phases>
 void Simulation<dim, Phases>::refuse(const Verdict &verdict) {
   if (verdict.broken) {
     Vec<dim> where{};
+    std::string cause;
+    const bool refused = motion_->find_trouble(&where, &cause);
+    const std::string place = place_of(refused, where);
+    if (!place.empty()) fail("near " + place + ", " + text_of(refused, cause));
     const bool mine = motion_->find_broken(&where);
     fail("the velocity is not finite near " + place_of(mine, where) +
          "; look at the loads there; a smaller integrator.fraction, a volume_cap or transfer.remap_interval = 0 may help");

@@ -77,6 +77,9 @@ TEST(Ranks, column_collapse_is_the_same) { expect_the_same(column, {"mesh.size=0
 TEST(Ranks, column_collapse_is_the_same_with_a_remap_in_every_step) {
   expect_the_same(column, {"mesh.size=0.01", "transfer.remap_interval=0"});
 }
+TEST(Ranks, slope_that_softens_by_averaged_strain_is_the_same) {
+  expect_the_same(slope, {"body.weathered.averaging_length=1.5"});
+}
 TEST(Ranks, column_collapse_is_the_same_with_particle_stress) {
   expect_the_same(column, {"mesh.size=0.01", "transfer.average_stress=false", "transfer.locking=nodal"});
 }

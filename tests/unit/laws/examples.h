@@ -58,6 +58,10 @@ inline std::vector<DruckerPrager> examples() {
   return laws;
 }
 
+/// The linear elasticity of docs/guide/umat, in C++.
+template <>
+inline std::vector<Umat> examples() { return {umat("linear_elastic", {20e6, 0.3})}; }
+
 template <class Variant>
 struct TypesOf;
 template <class... OneLaw>

@@ -110,4 +110,14 @@ inline MohrCoulomb mohr_coulomb(double cohesion, double phi_degrees, double psi_
   return law;
 }
 
+/// A UMAT of tests/umat with E = PROPS(1) and nu = PROPS(2).
+inline Umat umat(const std::string &library, const std::vector<double> &props, const std::vector<std::string> &state = {}) {
+  Umat law;
+  law.young_modulus = props[0], law.poisson_ratio = props[1];
+  law.library = std::string(UMATS) + "/umat_" + library + ".so", law.props = props, law.state = state;
+  const std::string problem = law.problem();
+  if (!problem.empty()) throw std::runtime_error(problem);
+  return law;
+}
+
 }  // namespace talus

@@ -1,0 +1,193 @@
+#include "transfer/nonlocal_strain.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+namespace {
+
+/// Gradients of all shape functions; the first is minus the sum of the others.
+template <int dim>
+std::array<Vec<dim>, dim + 1> gradients(const std::array<Vec<dim>, dim> &given) {
+  std::array<Vec<dim>, dim + 1> all{};
+  for (int k = 0; k < dim; ++k)
+    for (int d = 0; d < dim; ++d) all[k + 1][d] = given[k][d], all[0][d] -= given[k][d];
+  return all;
+}
+
+template <int dim>
+double dot(const Vec<dim> &a, const Vec<dim> &b) {
+  double sum = 0;
+  for (int d = 0; d < dim; ++d) sum += a[d] * b[d];
+  return sum;
+}
+
+}  // namespace
+
+/// Eigenvalues of D^-1 A lie between the extremes of those of its cells (Irons & Treharne 1971), which Gershgorin's circles bound.
+template <int dim>
+NonlocalStrain<dim>::NonlocalStrain(const BackgroundMesh<dim> &mesh, double length, int field, int history_count)
+    : area_(length * length), field_(field), history_count_(history_count) {
+  double bounds[2] = {-1, 1};
+  for (const Cell<dim> &cell : mesh.cells) {
+    const auto g = gradients<dim>(cell.gradient);
+    for (int i = 0; i <= dim; ++i) {
+      const double mass = 1. / (dim + 1), diagonal = mass + area_ * dot<dim>(g[i], g[i]);
+      double row = diagonal;
+      for (int j = 0; j <= dim; ++j)
+        if (j != i) row += area_ * std::abs(dot<dim>(g[i], g[j]));
+      bounds[0] = std::max(bounds[0], -mass / diagonal), bounds[1] = std::max(bounds[1], row / diagonal);
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_DOUBLE, MPI_MAX, mesh.comm());
+  least_ = -bounds[0], largest_ = std::min(bounds[1], dim + 1.);
+  const std::size_t nodes = mesh.node_count(), cells = mesh.cell_count();
+  size_.assign(cells, 2 * length), volume_.assign(cells, 0), gradient_.resize(cells), cell_.resize(cells), sums_.resize(nodes);
+  for (auto *nodal : {&mass_, &over_diagonal_, &load_, &average_, &residual_, &direction_, &product_}) nodal->assign(nodes, 0);
+  excess_.resize(cells), own_.resize(cells), seen_.resize(cells * history_count);
+}
+
+template <int dim>
+int NonlocalStrain<dim>::iterations_to(double factor) const {
+  return static_cast<int>(std::ceil(std::acosh(1 / factor) / std::acosh((largest_ + least_) / (largest_ - least_))));
+}
+
+/// Nodal load of the points' own strain, with the volumes of the remap. Collective.
+template <int dim>
+PetscErrorCode NonlocalStrain<dim>::load(FilledGrid<dim> &grid, const PointSet &points) {
+  PetscFunctionBeginUser;
+  std::fill_n(cell_.begin(), grid.cell_count(), std::array<double, 2>{});
+  for (int q = 0; q < points.count; ++q) {
+    auto &[volume, sum] = cell_[points.cell[q]];
+    volume += points.volume[q], sum += points.volume[q] * points.history[q * history_count_ + field_];
+  }
+  std::fill_n(load_.begin(), grid.node_count(), 0.);
+  for (int c = 0; c < grid.cell_count(); ++c) {
+    const auto &[volume, sum] = cell_[c];
+    if (volume > 0)
+      for (int i : grid.shape[c].node) load_[i] += volume_[c] * (sum / volume) / (dim + 1);
+  }
+  PetscCall(grid.sum(load_.data(), 1));
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode NonlocalStrain<dim>::begin(FilledGrid<dim> &grid, const PointSet &points) {
+  PetscFunctionBeginUser;
+  const int nodes = grid.node_count(), cells = grid.cell_count();
+  std::fill_n(volume_.begin(), cells, 0.), std::fill_n(sums_.begin(), nodes, std::array<double, 2>{});
+  for (int q = 0; q < points.count; ++q) volume_[points.cell[q]] += points.volume[q];
+  for (int c = 0; c < cells; ++c) {
+    gradient_[c] = gradients<dim>(grid.shape[c].gradient);
+    for (int k = 0; k <= dim; ++k) {
+      auto &[mass, diagonal] = sums_[grid.shape[c].node[k]];
+      mass += volume_[c] / (dim + 1), diagonal += volume_[c] * (1. / (dim + 1) + area_ * dot<dim>(gradient_[c][k], gradient_[c][k]));
+    }
+  }
+  PetscCall(grid.sum(sums_[0].data(), 2));
+  PetscCall(load(grid, points));
+  for (int i = 0; i < nodes; ++i) {
+    const auto &[mass, diagonal] = sums_[i];
+    mass_[i] = mass, over_diagonal_[i] = diagonal > 0 ? 1 / diagonal : 0;
+    average_[i] = mass > 0 ? load_[i] / mass : 0;
+  }
+  PetscCall(iterate(grid, iterations_to(1e-8)));
+  if (static_cast<int>(excess_.size()) < points.count)  // particles as stress points
+    excess_.resize(points.count), own_.resize(points.count), seen_.resize(static_cast<std::size_t>(points.count) * history_count_);
+  spread(grid, points);
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode NonlocalStrain<dim>::follow(FilledGrid<dim> &grid, const PointSet &points) {
+  PetscFunctionBeginUser;
+  PetscCall(load(grid, points));
+  PetscCall(iterate(grid, iterations_to(0.5)));
+  spread(grid, points);
+  PetscFunctionReturn(0);
+}
+
+/// y = A x, summed over ranks.
+template <int dim>
+PetscErrorCode NonlocalStrain<dim>::apply(FilledGrid<dim> &grid, const double *x, double *y) {
+  PetscFunctionBeginUser;
+  const int nodes = grid.node_count();
+  std::fill_n(y, nodes, 0.);
+  for (int c = 0; c < grid.cell_count(); ++c) {
+    const auto &node = grid.shape[c].node;
+    const auto &g = gradient_[c];
+    Vec<dim> slope{};
+    for (int k = 0; k <= dim; ++k)
+      for (int d = 0; d < dim; ++d) slope[d] += x[node[k]] * g[k][d];
+    for (double &component : slope) component *= area_ * volume_[c];
+    for (int k = 0; k <= dim; ++k) y[node[k]] += dot<dim>(slope, g[k]);
+  }
+  PetscCall(grid.sum(y, 1));
+  for (int i = 0; i < nodes; ++i) y[i] += mass_[i] * x[i];
+  PetscFunctionReturn(0);
+}
+
+/// Chebyshev's iteration (Saad 2003, algorithm 12.1) from the present average: no sums over all nodes, so that the result is a smooth
+/// function of the strain, the same on any number of ranks.
+template <int dim>
+PetscErrorCode NonlocalStrain<dim>::iterate(FilledGrid<dim> &grid, int iterations) {
+  PetscFunctionBeginUser;
+  const int nodes = grid.node_count();
+  const double centre = (largest_ + least_) / 2, radius = (largest_ - least_) / 2, sigma = centre / radius;
+  double rho = 1 / sigma;
+  PetscCall(apply(grid, average_.data(), product_.data()));
+  for (int i = 0; i < nodes; ++i) {
+    residual_[i] = over_diagonal_[i] * (load_[i] - product_[i]);
+    direction_[i] = residual_[i] / centre;
+  }
+  for (int k = 0; k < iterations; ++k) {
+    for (int i = 0; i < nodes; ++i) average_[i] += direction_[i];
+    if (k + 1 == iterations) break;
+    PetscCall(apply(grid, direction_.data(), product_.data()));
+    const double next = 1 / (2 * sigma - rho);
+    for (int i = 0; i < nodes; ++i) {
+      residual_[i] -= over_diagonal_[i] * product_[i];
+      direction_[i] = next * rho * direction_[i] + 2 * next / radius * residual_[i];
+    }
+    rho = next;
+  }
+  PetscFunctionReturn(0);
+}
+
+/// To the points: the mean over the nodes of their cell.
+template <int dim>
+void NonlocalStrain<dim>::spread(const FilledGrid<dim> &grid, const PointSet &points) {
+  for (int q = 0; q < points.count; ++q) {
+    double mean = 0;
+    for (int i : grid.shape[points.cell[q]].node) mean += average_[i] / (dim + 1);
+    excess_[q] = mean - points.history[q * history_count_ + field_];
+  }
+}
+
+template <int dim>
+const double *NonlocalStrain<dim>::averaged(const PointSet &points) {
+  std::copy_n(points.history, static_cast<std::size_t>(points.count) * history_count_, seen_.begin());
+  for (int q = 0; q < points.count; ++q) {
+    double &strain = seen_[q * history_count_ + field_];
+    own_[q] = strain, strain += excess_[q];
+  }
+  return seen_.data();
+}
+
+template <int dim>
+void NonlocalStrain<dim>::restore(const PointSet &points, double *history) const {
+  for (int q = 0; q < points.count; ++q) {
+    const int k = q * history_count_ + field_;
+    history[k] = own_[q] + (history[k] - seen_[k]);
+  }
+}
+
+template <int dim>
+void NonlocalStrain<dim>::keep(Archive &archive) {
+  archive.keep("nonlocal strain", volume_, gradient_, mass_, over_diagonal_, average_, excess_, own_, seen_);
+}
+
+template class NonlocalStrain<2>;
+template class NonlocalStrain<3>;
+
+}  // namespace talus

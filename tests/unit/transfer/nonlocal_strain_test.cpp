@@ -1,0 +1,131 @@
+/// The average of plastic strain over a length, on the unit square and cube with shifted nodes.
+#include "transfer/nonlocal_strain.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "box_mesh.h"
+
+namespace talus {
+namespace {
+
+using test::BoxMesh;
+using test::SharedFile;
+using test::sum;
+
+/// One point in each cell, with strain as its only history.
+template <int dim>
+struct Filled {
+  Filled(int n, double length)
+      : file(BoxMesh(dim, n)), mesh(BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.name(), 0, {})), grid(mesh), nonlocal(mesh, length, 0, 1) {
+    for (int c = 0; c < mesh.cell_count(); ++c) {
+      cell.push_back(grid.enter_cell(c)), volume.push_back(mesh.volume[c]), strain.push_back(0);
+      Vec<dim> centre{};
+      for (int i : mesh.cells[c].node)
+        for (int d = 0; d < dim; ++d) centre[d] += mesh.position[i][d] / (dim + 1);
+      place.push_back(centre);
+    }
+    grid.enter_shared_nodes();
+    points.count = static_cast<int>(cell.size()), points.cell = cell.data();
+    points.volume = volume.data(), points.history = strain.data();
+  }
+  template <class Function>
+  void set(Function f) {
+    for (std::size_t q = 0; q < strain.size(); ++q) strain[q] = f(place[q]);
+  }
+  std::vector<double> averages() {
+    const double *seen = nonlocal.averaged(points);
+    return {seen, seen + points.count};
+  }
+
+  SharedFile file;
+  BackgroundMesh<dim> mesh;
+  FilledGrid<dim> grid;
+  NonlocalStrain<dim> nonlocal;
+  std::vector<int> cell;
+  std::vector<double> volume, strain;
+  std::vector<Vec<dim>> place;
+  PointSet points;
+};
+
+/// Root mean square of a - b, weighted by volume.
+double distance(const std::vector<double> &a, const std::vector<double> &b, const std::vector<double> &volume) {
+  double square = 0, all = 0;
+  for (std::size_t q = 0; q < a.size(); ++q) square += volume[q] * (a[q] - b[q]) * (a[q] - b[q]), all += volume[q];
+  return std::sqrt(sum(square) / sum(all));
+}
+
+/// cos(pi x) has no flux at x = 0 and 1: its average is cos(pi x) / (1 + pi^2 l^2).
+template <int dim>
+double error_of_cosine(int n) {
+  constexpr double length = 0.3, pi = std::numbers::pi;
+  Filled<dim> box(n, length);
+  box.set([](const Vec<dim> &x) { return 1 + std::cos(pi * x[0]); });
+  EXPECT_EQ(box.nonlocal.begin(box.grid, box.points), 0);
+  std::vector<double> exact;
+  for (const auto &x : box.place) exact.push_back(1 + std::cos(pi * x[0]) / (1 + pi * pi * length * length));
+  return distance(box.averages(), exact, box.volume);
+}
+
+TEST(NonlocalStrain, converges_at_second_order_in_the_plane) {
+  const double coarse = error_of_cosine<2>(8), middle = error_of_cosine<2>(16), fine = error_of_cosine<2>(32);
+  EXPECT_LT(fine, 2e-3);
+  EXPECT_GT(std::log2(coarse / middle), 1.7);
+  EXPECT_GT(std::log2(middle / fine), 1.8);
+}
+TEST(NonlocalStrain, converges_at_second_order_in_space) {
+  EXPECT_GT(std::log2(error_of_cosine<3>(5) / error_of_cosine<3>(10)), 1.6);
+}
+
+/// The average moves strain, it makes none; uniform strain stays.
+TEST(NonlocalStrain, keeps_the_sum_of_the_strain) {
+  Filled<2> box(12, 0.2);
+  box.set([](const Vec<2> &x) { return x[0] > 0.4 && x[0] < 0.5 ? 1 + x[1] : 0.; });
+  EXPECT_EQ(box.nonlocal.begin(box.grid, box.points), 0);
+  const auto average = box.averages();
+  double gain = 0;
+  for (std::size_t q = 0; q < average.size(); ++q) gain += box.volume[q] * (average[q] - box.strain[q]);
+  EXPECT_NEAR(sum(gain), 0, 1e-8);
+  box.set([](const Vec<2> &) { return 0.25; });
+  EXPECT_EQ(box.nonlocal.begin(box.grid, box.points), 0);
+  for (const double a : box.averages()) EXPECT_NEAR(a, 0.25, 1e-8);
+}
+
+TEST(NonlocalStrain, follows_a_change_and_halves_what_is_left_of_it) {
+  Filled<2> box(16, 0.25), aim(16, 0.25);
+  const auto band = [](const Vec<2> &x) { return x[1] < 0.3 ? 0.1 : 0.; };
+  EXPECT_EQ(box.nonlocal.begin(box.grid, box.points), 0);
+  aim.set(band);
+  EXPECT_EQ(aim.nonlocal.begin(aim.grid, aim.points), 0);
+  box.set(band);
+  const auto wanted = aim.averages();
+  double left = distance(std::vector<double>(wanted.size(), 0.), wanted, box.volume);
+  for (int step = 0; step < 10; ++step) {
+    EXPECT_EQ(box.nonlocal.follow(box.grid, box.points), 0);
+    const double now = distance(box.averages(), wanted, box.volume);
+    EXPECT_LT(now, 0.55 * left);
+    left = now;
+  }
+}
+
+/// A law sees the average, and what it adds goes to the point's own strain.
+TEST(NonlocalStrain, gives_back_what_the_law_adds) {
+  Filled<2> box(8, 0.25);
+  box.set([](const Vec<2> &x) { return x[1] < 0.3 ? 0.1 : 0.; });
+  EXPECT_EQ(box.nonlocal.begin(box.grid, box.points), 0);
+  const auto own = box.strain;
+  auto made = box.averages();
+  for (std::size_t q = 0; q < made.size(); q += 2) made[q] += 0.01;
+  box.nonlocal.restore(box.points, made.data());
+  for (std::size_t q = 0; q < made.size(); ++q) {
+    if (q % 2)
+      EXPECT_EQ(made[q], own[q]);
+    else
+      EXPECT_NEAR(made[q], own[q] + 0.01, 1e-15);
+  }
+}
+
+}  // namespace
+}  // namespace talus
