@@ -383,6 +383,11 @@ PetscErrorCode SoilMotion<dim, Phases>::deform(double t, const Vec<dim> *u, bool
     }
     update_stress<dim>(body.law(), {p.count, p.stress, seen_history(b), stress, history, p.cell, increment_.data(), softening_size(b), find_suction(b), t - accepted_time_, accepted_time_});
     if (nonlocal_[b]) nonlocal_[b]->restore(p, history);
+    if (!loading.softening && !trial) {
+      const auto fields = history_fields(body.law());
+      for (size_t k = 0; k < fields.size(); ++k)
+        for (int q = 0; fields[k].kept && q < p.count; ++q) p.history[q * fields.size() + k] = forgotten_[q * fields.size() + k];
+    }
     for (int q = 0; q < p.count; ++q) {
       const int c = p.cell[q];
       volume[q] = std::min(p.volume[q] * exp_small(volume_strain_[c]), body.volume_limit(p.limit[q], history + q * body.history_count()));

@@ -83,11 +83,7 @@ struct DruckerPrager : IsotropicElastic {
     const Number p = cone_p < apex ? cone_p : apex;
     const Number q = cone_p < apex ? cone_q : 0;
     const Number shrink = trial.q > 0 ? (trial.q - q) / trial.q : 0;
-    s.xx -= shrink * trial.deviator.xx + (trial.p - p);
-    s.yy -= shrink * trial.deviator.yy + (trial.p - p);
-    s.zz -= shrink * trial.deviator.zz + (trial.p - p);
-    s.xy -= shrink * trial.deviator.xy;
-    if constexpr (dim == 3) s.yz -= shrink * trial.deviator.yz, s.xz -= shrink * trial.deviator.xz;
+    trial.take_off(s, shrink, trial.p - p);
     auto &[plastic_strain, plastic_volume] = history;
     plastic_strain += value_of(trial.q - q) * (1 / (std::sqrt(3.) * G));
     plastic_volume += value_of(trial.p - p) * (1 / K);

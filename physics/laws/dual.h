@@ -60,12 +60,14 @@ Dual<n> exponential(const Dual<n> &x) {
   return Dual<n>::of(x, y, y);
 }
 template <int n>
+Dual<n> logarithm(const Dual<n> &x) {
+  return Dual<n>::of(x, logarithm(x.value), 1 / x.value);
+}
+template <int n>
 Dual<n> sine(const Dual<n> &x) {
   return Dual<n>::of(x, sine(x.value), std::cos(x.value));
 }
 
-/// What history keeps of a number: its value.
-inline double value_of(double x) { return x; }
 template <int n>
 double value_of(const Dual<n> &x) {
   return x.value;

@@ -10,6 +10,7 @@ struct HistoryField {
   const char *name;
   Unit unit;
   const char *meaning;
+  bool kept = false;  ///< of the state itself: stays where a stage forgets or resets plastic strain
 };
 
 /// History of the frictional laws. Softening reads the first, the volume cap of dilatant soil the second.

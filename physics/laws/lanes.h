@@ -29,6 +29,20 @@ inline constexpr int lanes = 8;
   return sum * power;
 }
 
+/// ln x of a normal x > 0, error below 3e-16 of max(1, |ln x|): ln x = k ln 2 + 2 artanh((f - 1) / (f + 1)) with
+/// x = 2^k f, f in [sqrt(1/2), sqrt(2)) (Muller 2016, sec. 11.3).
+[[gnu::always_inline]] inline double logarithm(double x) {
+  constexpr std::uint64_t root_half = 0x3fe6a09e667f3bcd, bias = std::uint64_t{1024} << 52;
+  const auto bits = std::bit_cast<std::uint64_t>(x), biased = (bits - root_half + bias) >> 52;
+  const double f = std::bit_cast<double>(bits - (biased << 52) + bias);
+  const double k = std::bit_cast<double>(biased + std::bit_cast<std::uint64_t>(0x1.8p52)) - (0x1.8p52 + 1024);
+  const double s = (f - 1) / (f + 1), y = s * s, y2 = y * y, y4 = y2 * y2;
+  const double low = (1. / 3 + y * (1. / 5)) + (1. / 7 + y * (1. / 9)) * y2;
+  const double high = (1. / 11 + y * (1. / 13)) + (1. / 15 + y * (1. / 17)) * y2;
+  const double sum = y * (low + y4 * (high + y4 * (1. / 19 + y * (1. / 21))));
+  return k * 0x1.62e42fefa3800p-1 + (k * 0x1.ef35793c76730p-45 + (2 * s + 2 * s * sum));
+}
+
 /// sin x for 0 <= x <= pi/2, error below 5e-16: Taylor polynomial of degree 19.
 [[gnu::always_inline]] inline double sine(double x) {
   const double y = x * x;

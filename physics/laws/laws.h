@@ -10,6 +10,7 @@
 /// - `as_case(use)`: where the law is compiled in several cases, calls `use` with the one that serves its parameters
 /// - `trial(s, e, around)`: adds the elastic stress of a strain increment (IsotropicElastic's, unless the law has its
 /// own)
+/// - `advance(s, e, history, around)`: in place of trial and correct, where a law does not part them
 /// - `correct(s, history, around)`: brings the trial back to what the law admits; leaves admissible stress alone
 /// - `bulk_modulus()`, `shear_modulus()`, `elastic_energy(s)`, `cohesionless()`, `strength_varies()`
 /// `trial` and `correct` are templates over the number type too: a run with Duals (dual.h) gives the consistent tangent.
@@ -21,15 +22,21 @@
 #include <string_view>
 #include <variant>
 
+#include "physics/laws/bingham.h"
+#include "physics/laws/cam_clay.h"
 #include "physics/laws/drucker_prager.h"
+#include "physics/laws/hencky.h"
 #include "physics/laws/linear_elastic.h"
 #include "physics/laws/mohr_coulomb.h"
+#include "physics/laws/mu_i.h"
+#include "physics/laws/newtonian.h"
 #include "physics/laws/umat.h"
 #include "scene/deferred.h"
 
 namespace talus {
 
-using Law = std::variant<LinearElastic, MohrCoulomb, DruckerPrager, Umat>;
+using Law = std::variant<LinearElastic, MohrCoulomb, DruckerPrager, CamClay, MuI, Newtonian, Bingham, HenckyElastic,
+                         HenckyMohrCoulomb, HenckyDruckerPrager, Umat>;
 
 /// The law that key "law" of a body names, with its parameters. Throws like the reader.
 Law read_law(const DeferredTable &table);

@@ -26,6 +26,9 @@ using Strain = Stress<dim, Number>;  ///< the same shape; tensor components, not
 
 using std::sqrt;  // of doubles; a Dual brings its own
 
+/// What history keeps of a number: its value.
+inline double value_of(double x) { return x; }
+
 /// Mean stress and deviator s - p I, with q = sqrt(J2) its norm over sqrt(2) [Pa].
 template <int dim, class Number = double>
 struct Invariants {
@@ -36,6 +39,15 @@ struct Invariants {
     if constexpr (dim == 3) shear += deviator.yz * deviator.yz + deviator.xz * deviator.xz;
     q = sqrt((deviator.xx * deviator.xx + deviator.yy * deviator.yy + deviator.zz * deviator.zz) / 2 + shear);
   }
+  /// Takes a share of the deviator and `tension` of the mean stress off `s`, whose invariants these are.
+  [[gnu::always_inline]] void take_off(Stress<dim, Number> &s, const Number &share, const Number &tension) const {
+    s.xx -= share * deviator.xx + tension;
+    s.yy -= share * deviator.yy + tension;
+    s.zz -= share * deviator.zz + tension;
+    s.xy -= share * deviator.xy;
+    if constexpr (dim == 3) s.yz -= share * deviator.yz, s.xz -= share * deviator.xz;
+  }
+
   Number p;
   Stress<dim, Number> deviator;
   Number q;

@@ -103,8 +103,10 @@ template <int dim, class Number, class OneLaw>
                                                               const Strain<dim, Number> &e,
                                                               typename OneLaw::History &history,
                                                               const Surroundings &around) {
-  law.trial(s, e, around);
-  law.correct(s, history, around);
+  if constexpr (requires { law.advance(s, e, history, around); })
+    law.advance(s, e, history, around);
+  else
+    law.trial(s, e, around), law.correct(s, history, around);
   return s;
 }
 

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "base/version.h"
+#include "commands/bench_laws.h"
 #include "commands/commands.h"
 #include "commands/gallery.h"
 #include "scene/reader.h"
@@ -133,7 +134,7 @@ std::string processor() {
   return "unknown";
 }
 
-void print_json(const std::vector<BenchCase> &cases, const std::vector<BenchScene> &scenes) {
+void print_json(const std::vector<BenchCase> &cases, const std::vector<BenchScene> &scenes, const std::vector<LawRate> &rates) {
   std::printf("{\"machine\": {\"processor\": \"%s\", \"cores\": %u, \"memory_bandwidth_per_core\": %.4g, \"program\": \"Talus %s\"}, \"cases\": [",
               processor().c_str(), std::thread::hardware_concurrency(), bandwidth(), version);
   for (size_t i = 0; i < cases.size(); ++i) {
@@ -151,6 +152,10 @@ void print_json(const std::vector<BenchCase> &cases, const std::vector<BenchScen
                 "\"wall_seconds_per_simulated_second\": %.4g}",
                 i ? "," : "", s.scene.c_str(), s.transfer.c_str(), s.ranks, s.particles, s.steps, s.remaps, s.wall_per_simulated);
   }
+  std::printf("], \"laws\": [");
+  for (size_t i = 0; i < rates.size(); ++i)
+    std::printf("%s\n {\"law\": \"%s\", \"plane_ns\": %.3g, \"solid_ns\": %.3g, \"solid_with_tangent_ns\": %.3g}", i ? "," : "",
+                rates[i].law.c_str(), rates[i].plane, rates[i].solid, rates[i].tangent);
   std::printf("]}\n");
 }
 
@@ -206,7 +211,13 @@ int bench(const BenchArguments &arguments) {
     if (rank == 0 && !arguments.json)
       std::printf("%-12s %-25s %9lld %7lld %7lld | %.3g\n", s.scene.c_str(), s.transfer.c_str(), s.particles, s.steps, s.remaps, s.wall_per_simulated);
   }
-  if (rank == 0 && arguments.json) print_json(cases, measured);
+  std::vector<LawRate> rates;
+  if (rank == 0 && std::string("laws alone").find(arguments.only) != std::string::npos) rates = measure_laws();
+  if (!rates.empty() && !arguments.json) {
+    std::printf("\n%-33s | ns per update alone: %7s %7s | %s\n", "law", "plane", "solid", "solid, with tangent");
+    for (const LawRate &r : rates) std::printf("%-33s | %20s %7.1f %7.1f | %.0f\n", r.law.c_str(), "", r.plane, r.solid, r.tangent);
+  }
+  if (rank == 0 && arguments.json) print_json(cases, measured, rates);
   return 0;
 }
 
@@ -217,7 +228,7 @@ Action add_bench(CLI::App &app) {
   CLI::App *command = app.add_subcommand("bench", "particle-updates per second and core by dimension, phase model, law and transfer; wall time per simulated second of two scenes");
   command->add_flag("--json", arguments->json, "one JSON document on standard output");
   command->add_option("--steps", arguments->steps, "steps of each case")->check(CLI::Range(10, 100000));
-  command->add_option("--only", arguments->only, "cases whose line contains this, such as \"3 dry mohr\"");
+  command->add_option("--only", arguments->only, "cases whose line contains this, such as \"3 dry mohr\", or \"laws alone\"");
   return [arguments] { return bench(*arguments); };
 }
 

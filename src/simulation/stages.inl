@@ -179,7 +179,9 @@ void Simulation<dim, Phases>::reset_displacement() {
     const ParticleArrays<dim> &p = body->particles();
     std::copy_n(p.position, p.count, p.reference);
     std::fill_n(p.velocity, p.count, Vec<dim>{});
-    if (p.history) std::fill_n(p.history, p.count * body->history_count(), 0.);
+    const auto fields = history_fields(body->law());
+    for (size_t k = 0; k < fields.size(); ++k)
+      for (int i = 0; !fields[k].kept && i < p.count; ++i) p.history[i * fields.size() + k] = 0;
   }
   critical_step_ = 0, shrink_ = 1;
   integrator_->restart();

@@ -54,7 +54,8 @@ TYPED_TEST(EveryLaw, is_objective) {
       worst = std::max(
           worst, (Q[i] * matrix<dim>(points.stress[i]) * Q[i].transpose() - matrix<dim>(turned.stress[i])).norm());
     for (std::size_t k = 0; k < points.history.size(); ++k)
-      worst_history = std::max(worst_history, std::abs(points.history[k] - turned.history[k]));
+      worst_history =
+          std::max(worst_history, std::abs(points.history[k] - turned.history[k]) / (1 + std::abs(points.history[k])));
     EXPECT_LT(worst, 1e-10 * scale);
     EXPECT_LT(worst_history, 1e-12);
   });
@@ -85,6 +86,7 @@ TYPED_TEST(EveryLaw, keeps_principal_stresses_under_finite_rotation) {
 
 /// s : (d eps - C^-1 ds) >= 0 in every step from an admissible stress.
 TYPED_TEST(EveryLaw, dissipates) {
+  if (!linear_inside<TypeParam>) GTEST_SKIP() << "its elasticity is not linear; see its own tests";
   for_all<TypeParam>([]<int dim>(Dim<dim>, const Law &law) {
     Random random;
     const int n = 4000;
@@ -110,8 +112,9 @@ TYPED_TEST(EveryLaw, leaves_what_it_admitted) {
     Points<dim> points(law, 2000);
     for (auto &s : points.stress) s = random.symmetric<dim>(scale);
     points.admit();
-    if (!points.history.empty())
-      std::fill(points.history.begin(), points.history.end(), 1e3);  // no strength is left to lose
+    const auto fields = history_fields(law);
+    for (std::size_t k = 0; k < points.history.size(); ++k)
+      if (!fields[k % fields.size()].kept) points.history[k] = 1e3;  // no strength is left to lose
     points.admit();
     const auto admitted = points.stress;
     points.admit();
@@ -199,6 +202,7 @@ TYPED_TEST(EveryLaw, survives_random_walks) {
 
 /// Elastic energy is the work of straining from zero stress, where the law stays elastic: 1/2 s : C^-1 : s.
 TYPED_TEST(EveryLaw, stores_elastic_energy) {
+  if (!linear_inside<TypeParam>) GTEST_SKIP() << "its elasticity is not linear; see its own tests";
   Random random;
   const Law law = examples<TypeParam>()[0];
   for (int i = 0; i < 100; ++i) {

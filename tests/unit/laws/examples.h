@@ -62,6 +62,72 @@ inline std::vector<DruckerPrager> examples() {
 template <>
 inline std::vector<Umat> examples() { return {umat("linear_elastic", {20e6, 0.3})}; }
 
+template <>
+inline std::vector<CamClay> examples() {
+  CamClay clay;
+  clay.compression_slope = 0.2, clay.swelling_slope = 0.04, clay.critical_stress_ratio = 1, clay.poisson_ratio = 0.3;
+  clay.void_ratio = 1, clay.preconsolidation_pressure = 100e3;
+  CamClay stiff = clay;
+  stiff.compression_slope = 0.1, stiff.swelling_slope = 0.01, stiff.critical_stress_ratio = 1.4, stiff.poisson_ratio = 0;
+  stiff.preconsolidation_pressure = 400e3, stiff.void_ratio = 0.6, stiff.attraction = 10e3;
+  return {clay, stiff};
+}
+
+template <>
+inline std::vector<MuI> examples() {
+  MuI sand;
+  sand.young_modulus = 20e6, sand.poisson_ratio = 0.3;
+  sand.static_friction = 0.38, sand.limiting_friction = 0.64, sand.grain_size = 1e-3;
+  MuI coulomb = sand;
+  coulomb.limiting_friction = coulomb.static_friction;
+  return {sand, coulomb};
+}
+
+template <>
+inline std::vector<Newtonian> examples() {
+  Newtonian water, mud;
+  water.young_modulus = 3e4, water.poisson_ratio = 0.49, water.viscosity = 1e-3;
+  mud.young_modulus = 1e6, mud.poisson_ratio = 0.4, mud.viscosity = 1e3;
+  return {water, mud};
+}
+
+template <>
+inline std::vector<Bingham> examples() {
+  Bingham mud;
+  mud.young_modulus = 1e6, mud.poisson_ratio = 0.4, mud.viscosity = 50, mud.yield_stress = 200;
+  Bingham stiff = mud;
+  stiff.yield_stress = 50e3;
+  return {mud, stiff};
+}
+
+template <class Large, class Small>
+std::vector<Large> large(const std::vector<Small> &small) {
+  std::vector<Large> laws;
+  for (const Small &one : small) laws.push_back(Large{{{one}}});
+  return laws;
+}
+template <>
+inline std::vector<HenckyElastic> examples() {
+  return large<HenckyElastic>(examples<LinearElastic>());
+}
+template <>
+inline std::vector<HenckyMohrCoulomb> examples() {
+  return large<HenckyMohrCoulomb>(examples<MohrCoulomb>());
+}
+template <>
+inline std::vector<HenckyDruckerPrager> examples() {
+  return large<HenckyDruckerPrager>(examples<DruckerPrager>());
+}
+
+/// Is its stress linear in strain? Then compliance is a constant, and claims about energy have closed forms. Laws that
+/// keep a volume are not.
+template <class OneLaw>
+constexpr bool linear_inside = [] {
+  for (const HistoryField &field : OneLaw::history)
+    if (field.kept) return false;
+  return true;
+}();
+
 template <class Variant>
 struct TypesOf;
 template <class... OneLaw>

@@ -67,7 +67,11 @@ struct Points {
             1e-3};
   }
   void update() { update_stress<dim>(law, view()); }
-  void admit() { admit_stress<dim>(law, view()); }
+  void admit() {
+    StressPoints<dim> at_rest = view();
+    at_rest.time_step = 0;
+    admit_stress<dim>(law, at_rest);
+  }
 
   Law law;
   std::vector<Components<dim>> stress;
