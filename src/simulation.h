@@ -13,6 +13,7 @@
 #include "meshes/mesh_report.h"
 #include "output/results.h"
 #include "scene/scene.h"
+#include "solvers/quasi_static/factor_of_safety.h"
 
 namespace talus {
 
@@ -27,6 +28,7 @@ struct RunOptions {
   bool resume = false;         ///< go on from the checkpoint in the directory
   bool pictures = true;        ///< draw them when the run ends
   bool screen = true;          ///< progress line
+  bool gauss_points = false;   ///< snapshots of quasi-static stages hold Gauss points, not the particles they are handed to
   DM plex = nullptr;           ///< mesh of a host program, instead of the scene's
 };
 
@@ -83,6 +85,9 @@ class AnySimulation {
   virtual const HistoryTable &history() const = 0;
   virtual const std::vector<Event> &events() const = 0;
   virtual const Breakdown &breakdown() const = 0;
+  /// Factor of safety of the state that the stages have led to, all of them quasi-static, by reduction of strength; runs them
+  /// first if they have not been run. Throws RunError.
+  virtual FactorOfSafety factor_of_safety() = 0;
   /// Hands over the nodal field "velocity" [m/s] or "displacement" [m] (since the start or the last reset) of each vertex of the DMPlex,
   /// by its point number, that has soil in a cell around it on any rank; ranks that share a vertex get the same bits. Collective; for
   /// host programs.

@@ -9,6 +9,7 @@ namespace talus {
 using Action = std::function<int()>;
 
 Action add_run(CLI::App &app);
+Action add_solve(CLI::App &app);
 Action add_mesh(CLI::App &app);
 Action add_check(CLI::App &app);
 Action add_soil(CLI::App &app);

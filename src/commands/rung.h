@@ -36,6 +36,8 @@ class Rung {
   bool longer() const { return longer_; }
   /// Runs the rung's scene with these overrides (key.path=value), without writing files.
   Run run(const std::vector<std::string> &overrides = {});
+  /// Factor of safety of the rung's scene with these overrides.
+  FactorOfSafety factor_of_safety(const std::vector<std::string> &overrides = {});
   /// Claims that a number is right to within a tolerance relative to `scale`; 0 takes the exact value itself.
   void compare(const std::string &quantity, double exact, double computed, double tolerance, double scale = 0);
   /// States a number without a claim.

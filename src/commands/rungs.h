@@ -2,9 +2,16 @@
 /// The verification ladder: one line a case. Each has a folder tests/LABEL/NAME with its scene, its exact answer and a
 /// README.
 #include "commands/rung.h"
+#include "tests/convergence/fem_manufactured/exact.h"
 #include "tests/convergence/manufactured/exact.h"
 #include "tests/verification/dynamic_oedometer/exact.h"
 #include "tests/verification/elastic_bar/exact.h"
+#include "tests/verification/fem_at_rest/exact.h"
+#include "tests/verification/fem_cylinder/exact.h"
+#include "tests/verification/fem_elastic_slope/exact.h"
+#include "tests/verification/fem_footing/exact.h"
+#include "tests/verification/fem_slope/exact.h"
+#include "tests/verification/fem_vertical_cut/exact.h"
 #include "tests/verification/footing/exact.h"
 #include "tests/verification/gravity_column/exact.h"
 #include "tests/verification/incline_block/exact.h"
@@ -40,11 +47,21 @@ inline constexpr LadderEntry ladder[] = {
      rungs::rigid_translation},
     {"manufactured", "convergence", "observed order against a manufactured motion, cells frozen and crossed",
      rungs::manufactured},
+    {"fem_manufactured", "convergence", "observed order of the finite elements against a manufactured equilibrium",
+     rungs::fem_manufactured},
     {"mohr_coulomb_triaxial", "verification", "strength in compression through the whole program",
      rungs::mohr_coulomb_triaxial},
     {"rigid_rotation", "verification", "stress of a body that turns ten times", rungs::rigid_rotation},
     {"spinning_block", "verification", "momentum of a block that spins freely", rungs::spinning_block},
     {"footing", "verification", "bearing capacity of Tresca soil, where cells could lock", rungs::footing},
+    {"fem_elastic_slope", "verification", "settlement of an elastic slope, on finer meshes and in a slice",
+     rungs::fem_elastic_slope},
+    {"fem_footing", "verification", "bearing capacity of Tresca soil by finite elements", rungs::fem_footing},
+    {"fem_vertical_cut", "verification", "height at which a vertical cut fails, by strength reduction",
+     rungs::fem_vertical_cut},
+    {"fem_cylinder", "verification", "thick cylinder that yields from its bore", rungs::fem_cylinder},
+    {"fem_slope", "verification", "factor of safety of a published slope", rungs::fem_slope},
+    {"fem_at_rest", "verification", "slope handed from finite elements to particles keeps still", rungs::fem_at_rest},
 };
 
 }  // namespace talus

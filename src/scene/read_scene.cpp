@@ -107,6 +107,15 @@ class Checks {
   }
 
   void stage(const Stage &stage, const std::string &path) const {
+    bodies_of(stage, path);
+    if (stage.kind == StageKind::quasi_static) {
+      const std::string no = "has no effect in a quasi-static stage; leave it out";
+      if (stage.until != StopWhen::duration) reader_.complain(path + ".until", no);
+      if (stage.damping > 0) reader_.complain(path + ".damping", no);
+      if (stage.gravity_ramp > 0) reader_.complain(path + ".gravity_ramp", no);
+    } else if (stage.initial_stress == InitialStress::k0) {
+      reader_.complain(path + ".initial_stress", "belongs to quasi-static stages: set kind = \"quasi_static\"");
+    }
     if (stage.until != StopWhen::failure) return;
     std::vector<std::string> points;
     for (const OutputPoint &point : scene_.output.point) points.push_back(point.name);
@@ -115,6 +124,19 @@ class Checks {
     if (std::find(points.begin(), points.end(), stage.failure_point) == points.end())
       reader_.complain(path + ".failure_point",
                        "must name a point of [output.point.NAME]; " + suggestion(stage.failure_point, points));
+  }
+
+  /// Bodies that come and go with a stage.
+  void bodies_of(const Stage &stage, const std::string &path) const {
+    std::vector<std::string> bodies;
+    for (const BodySource &body : scene_.body) bodies.push_back(body.name);
+    for (const auto &[key, named] : {std::pair{".add", &stage.add}, {".remove", &stage.remove}}) {
+      if (!named->empty() && stage.kind != StageKind::quasi_static)
+        reader_.complain(path + key, "belongs to quasi-static stages: set kind = \"quasi_static\"");
+      for (const std::string &name : *named)
+        if (std::find(bodies.begin(), bodies.end(), name) == bodies.end())
+          reader_.complain(path + key, "must name bodies; there is no [body." + name + "]; " + suggestion(name, bodies));
+    }
   }
 
   /// Opposite corners, the smaller coordinates first.

@@ -77,6 +77,7 @@ struct BodySource {
   DeferredTable retention;              ///< [body.NAME.retention], read by physics/pores
   DeferredTable relative_permeability;  ///< [body.NAME.relative_permeability], likewise
   int particles_per_cell = 0;       ///< 0: 3 a triangle, 4 a tetrahedron
+  double k0 = 0;                    ///< lateral over vertical effective stress at rest [-]; 0: 1 - sin phi (Jaky 1944)
   double volume_cap = -1;           ///< largest V_p / V_p0; 0: none; -1: 1 for cohesionless laws, else none
   double averaging_length = 0;      ///< l of the average of plastic strain that the law takes for its own [m]; 0: none
   std::vector<Function> velocity;             ///< initial velocity, functions of the place [m/s]
@@ -99,6 +100,7 @@ struct BodySource {
     v.deferred_table("retention", retention, "degree of saturation over suction");
     v.deferred_table("relative_permeability", relative_permeability, "permeability over degree of saturation");
     v.integer("particles_per_cell", particles_per_cell, Range{0, 1000}, "particles seeded in a cell; 0 is 3 in a triangle, 4 in a tetrahedron");
+    v.number("k0", k0, one, Range{0, 10}, "lateral over vertical effective stress at rest, for stages with initial_stress = \"k0\"; 0 is 1 - sin(friction_angle)");
     v.number("volume_cap", volume_cap, one, Range{-1, 100}, "largest particle volume over its initial volume; 0 is no cap; -1 caps cohesionless laws at 1");
     v.number("averaging_length", averaging_length, metre, Range{0, 1e4}, "softening by the plastic strain averaged over this length l, as if bands were 2 l wide; 0 is no average; l should not be below the cell size");
     v.functions("velocity", velocity, metre_per_second, "initial velocity, one function of x, y, z per component");
@@ -163,10 +165,14 @@ struct Gas {
   }
 };
 
+enum class StageKind { dynamic, quasi_static };
+enum class InitialStress { kept, k0 };
+enum class WhenLost { stop, go_on };
 enum class StopWhen { duration, equilibrium, rest, failure };
 
 struct Stage {
   std::string name;
+  StageKind kind = StageKind::dynamic;
   double duration = required;   ///< longest duration [s]
   StopWhen until = StopWhen::duration;
   double damping = 0;           ///< local (Cundall) damping factor alpha [-]
@@ -180,9 +186,15 @@ struct Stage {
   bool softening = true;        ///< soil remembers plastic strain; false: it keeps the strength it has
   bool hold_loads = false;      ///< functions of time stand still: their t counts only stages that do not hold loads
   bool reset_displacement = false;  ///< displacements, velocities and plastic strain are zeroed when the stage ends
+  // quasi-static stages
+  int load_steps = 5;               ///< in which loads come; fewer or more as Newton's iterations ask for
+  InitialStress initial_stress = InitialStress::kept;
+  std::vector<std::string> add, remove;  ///< bodies that come and go with the stage
+  WhenLost when_lost = WhenLost::stop;
   template <class Visitor>
   void fields(Visitor &&v) {
     v.text("name", name, "name of the stage in logs and results");
+    v.choice("kind", kind, {{"dynamic", StageKind::dynamic}, {"quasi_static", StageKind::quasi_static}}, "motion by the material point method, or equilibrium by finite elements");
     v.number("duration", duration, second, Range{0, 1e9}, "longest duration of the stage");
     v.choice("until", until, {{"duration", StopWhen::duration}, {"equilibrium", StopWhen::equilibrium}, {"rest", StopWhen::rest}, {"failure", StopWhen::failure}}, "what ends the stage before its duration");
     v.number("damping", damping, one, Range{0, 0.99}, "local (Cundall) damping factor");
@@ -196,6 +208,11 @@ struct Stage {
     v.flag("softening", softening, "soil remembers plastic strain; without it soil keeps the strength it has, as for building up initial stress");
     v.flag("hold_loads", hold_loads, "functions of time stand still: their t counts only stages that do not hold loads");
     v.flag("reset_displacement", reset_displacement, "zero displacement, velocity and plastic strain when the stage ends");
+    v.integer("load_steps", load_steps, Range{1, 10000}, "quasi-static: steps in which loads come; halved where Newton's iterations fail");
+    v.choice("initial_stress", initial_stress, {{"kept", InitialStress::kept}, {"k0", InitialStress::k0}}, "quasi-static: stress the stage starts from: as it is, or vertical stress by the weight above and k0 times it sideways");
+    v.texts("add", add, "quasi-static: bodies that come with this stage; until then they are not there");
+    v.texts("remove", remove, "quasi-static: bodies that go with this stage");
+    v.choice("when_lost", when_lost, {{"stop", WhenLost::stop}, {"next_stage", WhenLost::go_on}}, "quasi-static: what follows when there is no equilibrium under the loads: the end with status 1, or the next stage");
   }
 };
 
@@ -225,6 +242,26 @@ struct Transfer {
     v.choice("locking", locking, {{"patches", Locking::patches}, {"none", Locking::none}, {"nodal", Locking::nodal}}, "cure of volumetric locking");
     v.integer("patch_size", patch_size, Range{0, 64}, "cells of a patch; 0 is 2 triangles, 8 tetrahedra, 4 in a one-element slice");
     v.number("remap_interval", remap_interval, one, Range{0, 0.3}, "remap when a node of a filled cell has moved this share of its mean edge; 0 is every step");
+  }
+};
+
+enum class Elements { quadratic, linear, patches };
+enum class LinearSolver { automatic, direct, iterative };
+
+/// Finite elements of quasi-static stages (docs/theory/finite_elements.md).
+struct QuasiStaticSource {
+  Elements elements = Elements::quadratic;
+  double tolerance = 1e-8;      ///< Newton: out-of-balance force over the size of the forces [-]
+  int iterations = 25;          ///< Newton: most iterations in a load step
+  double smallest_step = 1e-3;  ///< share of a stage's loads below which equilibrium counts as lost [-]
+  LinearSolver linear_solver = LinearSolver::automatic;
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.choice("elements", elements, {{"quadratic", Elements::quadratic}, {"linear", Elements::linear}, {"patches", Elements::patches}}, "displacement of second or first order, or of first order with the patches against locking that the motion of particles has");
+    v.number("tolerance", tolerance, one, Range{1e-14, 1e-2}, "Newton's iterations end when the out-of-balance force over the size of the forces is below this");
+    v.integer("iterations", iterations, Range{1, 1000}, "most iterations in a load step; then it is halved");
+    v.number("smallest_step", smallest_step, one, Range{1e-9, 1}, "share of a stage's loads below which a step is not halved: equilibrium is lost");
+    v.choice("linear_solver", linear_solver, {{"automatic", LinearSolver::automatic}, {"direct", LinearSolver::direct}, {"iterative", LinearSolver::iterative}}, "LU (MUMPS), or GMRES with algebraic multigrid (GAMG); by size if automatic");
   }
 };
 
@@ -270,6 +307,7 @@ struct Scene {
   std::vector<Stage> stage;
   DeferredTable integrator;  ///< [integrator], read by solvers/
   Transfer transfer;
+  QuasiStaticSource quasi_static;
   Output output;
   template <class Visitor>
   void fields(Visitor &&v) {
@@ -285,6 +323,7 @@ struct Scene {
     v.list("stage", stage, "stages in their order, [[stage]]");
     v.deferred_table("integrator", integrator, "time integration");
     v.table("transfer", transfer, "exchange between particles and nodes");
+    v.table("quasi_static", quasi_static, "finite elements of quasi-static stages");
     v.table("output", output, "what is written");
   }
 

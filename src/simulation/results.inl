@@ -50,6 +50,7 @@ double Simulation<dim, Phases>::longest_duration() const {
 
 template <int dim, class Phases>
 Snapshot Simulation<dim, Phases>::snapshot() {
+  if (options_.gauss_points && in_statics_) return gauss_points();
   Snapshot s;
   s.time = time_, s.step = steps_, s.stage = stage_name_;
   const StepStatistics &sums = integrator_->statistics();
@@ -152,7 +153,8 @@ void Simulation<dim, Phases>::write_history() {
   std::vector<Vec<dim>> impulses, faces;
   require(conditions_.take_impulses(comm_, impulses));
   require(conditions_.face_displacements(comm_, faces));
-  const double elapsed = time_ - impulse_time_;
+  if (in_statics_) require(statics_->boundary_forces(load_time_, impulses, faces));
+  const double elapsed = in_statics_ ? 1 : time_ - impulse_time_;
   for (size_t s = 0; s < impulses.size(); ++s)
     for (int d = 0; d < dim; ++d)
       row.push_back(conditions_.loads(static_cast<int>(s)) ? faces[s][d] : elapsed > 0 ? impulses[s][d] / elapsed : 0);

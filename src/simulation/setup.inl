@@ -41,16 +41,25 @@ Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOption
   require(conditions_.setup(mesh_, std::move(sources)));
   seed_bodies();
   follow_points();
+  present_.assign(scene.body.size(), 1);
+  for (const Stage &stage : scene.stage)
+    for (size_t b = 0; b < scene.body.size(); ++b)
+      if (std::count(stage.add.begin(), stage.add.end(), scene.body[b].name)) present_[b] = 0;
+  if (std::count(present_.begin(), present_.end(), 0)) {
+    for (size_t b = 0; b < scene.body.size(); ++b)
+      if (!present_[b]) require(bodies_[b]->resize(0));
+    count_particles();
+  }
   check_step();
   check_pictures();
 }
 
 template <int dim, class Phases>
-double Simulation<dim, Phases>::seeding_density(const BodySource &source, const Vec<dim> &x) const {
+double Simulation<dim, Phases>::soil_density(const BodySource &source, const Vec<dim> &x, double t) const {
   if (source.density > 0) return source.density;
   double density = (1 - source.porosity) * source.grain_density;
   if constexpr (Phases::given)
-    density += source.porosity * scene_.water.density * (pressure_.below_table(x, 0) ? 1 : source.saturation);
+    density += source.porosity * scene_.water.density * (pressure_.below_table(x, t) ? 1 : source.saturation);
   return density;
 }
 
@@ -68,7 +77,7 @@ void Simulation<dim, Phases>::seed_bodies() {
     bodies_.push_back(std::make_unique<Body<dim>>());
     Body<dim> &body = *bodies_.back();
     require(body.create(comm_, source, laws_[b], scene_.transfer.velocity == Velocity::apic));
-    seed<dim>(body, mesh_, stride, [&](const Vec<dim> &x) { return seeding_density(source, x); });
+    seed<dim>(body, mesh_, stride, [&](const Vec<dim> &x) { return soil_density(source, x, 0); });
     double sums[2] = {static_cast<double>(body.particles().count), 0}, totals[2];
     sums[1] = std::accumulate(body.particles().mass, body.particles().mass + body.particles().count, 0.);
     MPI_Allreduce(sums, totals, 2, MPI_DOUBLE, MPI_SUM, comm_);
@@ -76,7 +85,7 @@ void Simulation<dim, Phases>::seed_bodies() {
     if (totals[0] == 0) scene_.complain(path, "is empty: its regions have no cells");
     check_seeded(body, path);
     particle_count_ += static_cast<long long>(totals[0]), total_mass_ += totals[1];
-    const double density = seeding_density(source, Vec<dim>{});
+    const double density = soil_density(source, Vec<dim>{}, 0);
     wave_speed = std::max(wave_speed, std::sqrt(constrained_modulus(body.law()) / density));
     critical_.emplace_back(mesh_, body.law(), density);
     if (!source.displacement.empty())

@@ -13,6 +13,7 @@
 #include "simulation.h"
 #include "solvers/critical_step.h"
 #include "solvers/integrators.h"
+#include "solvers/quasi_static/strength_reduction.h"
 
 namespace talus {
 
@@ -50,6 +51,7 @@ class Simulation final : public AnySimulation {
   const std::vector<Event> &events() const override { return events_; }
   const Breakdown &breakdown() const override { return breakdown_; }
   void nodal_field(const std::string &name, const std::function<void(PetscInt, const double *)> &put) override;
+  FactorOfSafety factor_of_safety() override;
 
  private:
   struct Followed {  // a named point's particle, known on the rank that has it
@@ -84,7 +86,7 @@ class Simulation final : public AnySimulation {
   void check_step();
   void check_pictures();
   void seed_bodies();
-  double seeding_density(const BodySource &source, const Vec<dim> &x) const;
+  double soil_density(const BodySource &source, const Vec<dim> &x, double t) const;
   void follow_points();
   // time loop
   void run_stage();
@@ -99,6 +101,15 @@ class Simulation final : public AnySimulation {
   void heed_interrupt(const Verdict &verdict);
   bool stage_ends(const Stage &stage, double stage_time, const Verdict &verdict);
   void reset_displacement();
+  // quasi-static stages
+  void run_quasi_static(const Stage &stage);
+  void make_statics();
+  void start_stress();
+  void choose_bodies(const Stage &stage);
+  void count_particles();
+  void to_particles();
+  void to_gauss_points();
+  Snapshot gauss_points() const;
   std::vector<Vec<dim>> nodal_displacement();  ///< of mesh nodes; only nodes of the filled grid have one
   // output
   void open_results();
@@ -133,6 +144,10 @@ class Simulation final : public AnySimulation {
   std::vector<CriticalStep<dim>> critical_;
   std::vector<std::vector<int>> movers_;
   std::vector<Followed> points_;
+  std::unique_ptr<QuasiStatic<dim>> statics_;
+  std::vector<char> present_;       ///< bodies that are there now
+  bool in_statics_ = false, moved_since_statics_ = false;
+  double strength_factor_ = 1;      ///< by which quasi-static stages divide strength
 
   std::string stage_name_;
   double time_ = 0, load_time_ = 0, critical_step_ = 0, shrink_ = 1, impulse_time_ = 0, last_step_ = 0;

@@ -23,7 +23,11 @@ template <int dim, class Phases>
 void Simulation<dim, Phases>::run() {
   options_.resume ? resume_results() : open_results();
   try {
-    if (stage_.number < 0) write_history(), write_snapshot(), start_stage(), write_checkpoint();
+    if (stage_.number < 0) {
+      write_history();
+      if (options_.gauss_points && scene_.stage.front().kind == StageKind::quasi_static) make_statics(), require(statics_->activate(present_)), in_statics_ = true;
+      write_snapshot(), start_stage(), write_checkpoint();
+    }
     while (true) {
       run_stage();
       if (stage_.number + 1 == static_cast<int>(scene_.stage.size())) break;
@@ -79,6 +83,8 @@ void Simulation<dim, Phases>::start_stage() {
 template <int dim, class Phases>
 void Simulation<dim, Phases>::run_stage() {
   const Stage &stage = scene_.stage[stage_.number];
+  if (stage.kind == StageKind::quasi_static) return run_quasi_static(stage);
+  in_statics_ = false, moved_since_statics_ = true;
   stage_name_ = stage.name, watched_ = stage.until == StopWhen::failure ? stage.failure_point : "";
   if (results_) results_->progress.stage(stage.name);
   integrator_->restart();

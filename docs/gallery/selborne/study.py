@@ -2,7 +2,7 @@
 """Studies of the Selborne scene: triangles against a one-element slice on three meshes, and load at failure against brittleness
 and initial stress.
 
-    study.py TALUS [pictures|meshes|brittleness|figure ...]
+    study.py TALUS [pictures|meshes|brittleness|excavation|figure ...]
 
 TALUS is the program (build/release/bin/talus). `pictures` runs the scene itself; each study writes a CSV beside this file; `figure` draws both from the CSVs.
 """
@@ -86,6 +86,28 @@ def brittleness(talus):
             write("brittleness.csv", rows)
 
 
+def excavation(talus):
+    """Load at failure from level ground with k0, excavated by finite elements (excavation.toml), and from gravity switched on (k0 = None)."""
+    rows = []
+    for k0 in (None, 1.0, 1.5, 2.0):
+        for eta in (0, 50, 500):
+            if k0 is None:
+                result = run(talus, variant(0.7, 2, None, eta), slide=False)
+            else:
+                text = (HERE / "excavation.toml").read_text().replace("../../../meshes", str(HERE.parents[2] / "meshes"))
+                text = re.sub(r"^k0 = .*$", f"k0 = {k0}", text, flags=re.M)
+                if eta:
+                    text = re.sub(r"^shape_factor = .*$", f"shape_factor = {eta}", text, flags=re.M)
+                else:
+                    text = re.sub(r"^(residual|shape_factor|reference_size).*\n", "", text, flags=re.M)
+                result = run(talus, text)
+                if result["excess_kPa"] != "":  # its first second of load time is the excavation
+                    result["excess_kPa"] -= 2
+            rows.append({"k0": "gravity" if k0 is None else k0, "eta": eta, **result})
+            print(rows[-1], flush=True)
+            write("excavation.csv", rows)
+
+
 def pictures(talus):
     import shutil
     with tempfile.TemporaryDirectory() as folder:
@@ -133,4 +155,4 @@ if __name__ == "__main__":
     if len(sys.argv) < 2:
         sys.exit(__doc__)
     for name in sys.argv[2:] or ("pictures", "meshes", "brittleness", "figure"):
-        {"pictures": pictures, "meshes": meshes, "brittleness": brittleness, "figure": figure}[name](sys.argv[1])
+        {"pictures": pictures, "meshes": meshes, "brittleness": brittleness, "excavation": excavation, "figure": figure}[name](sys.argv[1])

@@ -81,6 +81,20 @@ TEST_F(RunThatEnds, BecauseNoStepKeepsTheTolerance) {
     expect(Program(folder_, run(scene, ranks)).end(), {"integrator.velocity_tolerance", "integrator.floor", "near (", "t = "}, 1);
 }
 
+TEST_F(RunThatEnds, BecauseSoilHasNoSupport) {
+  const std::string scene =
+      changed(changed(good_scene, "kind = \"fixed\"", "kind = \"roller\""), "name = \"fall\"", "kind = \"quasi_static\"");
+  folder_.write("scene.toml", changed(scene, "[boundary.left]\nkind = \"roller\"\n", ""));
+  expect(Program(folder_, talus_words({"solve", "scene.toml", "-o", "results", "--no-pictures"})).end(),
+         {"free to move as a whole", "can move along x", "snapshots up to step 0"}, 1);
+}
+
+TEST_F(RunThatEnds, BecauseSoilDoesNotStand) {
+  folder_.write("scene.toml", changed(good_scene, "name = \"fall\"", "kind = \"quasi_static\""));
+  expect(Program(folder_, talus_words({"solve", "scene.toml", "-o", "results", "--no-pictures"})).end(),
+         {"no equilibrium beyond", "% of the loads", "snapshots up to step", "are in results"}, 1);
+}
+
 TEST_F(RunThatEnds, BecauseResultsHaveNoPlace) {
   expect(Program(folder_, run(good_scene, 1, "scene.toml/results")).end(), {"scene.toml/results", "Not a directory"},
          0);

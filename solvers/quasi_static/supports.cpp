@@ -1,0 +1,126 @@
+#include "solvers/quasi_static/supports.h"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+namespace talus {
+namespace {
+
+constexpr double least_angle_sine = 0.0523;  // of 3 degrees: facets of one curved face share a direction within this
+
+struct Wanted {
+  int priority, source;
+  PetscInt global;
+  double direction[3];
+  auto key() const { return std::make_tuple(global, priority, source, direction[0], direction[1], direction[2]); }
+};
+
+/// As in conditions.h: plates that move come first, then what is fixed, then rollers.
+int priority_of(const Boundary &kind) {
+  return std::holds_alternative<PrescribedVelocity>(kind) ? 0 : std::holds_alternative<Fixed>(kind) ? 1 : 2;
+}
+
+/// Completes the prescribed directions to a frame. Where they are axes, the frame is the identity.
+template <int dim>
+void make_frame(Support<dim> &s) {
+  s.frame.setIdentity(), s.held.fill(0), s.turned = false;
+  bool axes = true;
+  for (int k = 0; k < s.count; ++k) {
+    int axis = 0;
+    map<dim>(s.direction[k]).cwiseAbs().maxCoeff(&axis);
+    if (std::abs(s.direction[k][axis]) < 1 - 1e-14)
+      axes = false;
+    else
+      s.held[axis] = 1;
+  }
+  if (axes || s.count == dim) {
+    if (s.count == dim) s.held.fill(1);
+    return;
+  }
+  s.turned = true, s.held.fill(0);
+  int rows = 0;
+  const auto add = [&](ColumnVector<dim> v) {
+    for (int r = 0; r < rows; ++r) v -= v.dot(s.frame.row(r)) * s.frame.row(r).transpose();
+    if (rows < dim && v.norm() > 0.3) s.frame.row(rows++) = v.normalized().transpose();
+  };
+  for (int k = 0; k < s.count; ++k) add(map<dim>(s.direction[k])), s.held[k] = 1;
+  for (int d = 0; d < dim; ++d) add(ColumnVector<dim>::Unit(d));
+}
+
+}  // namespace
+
+template <int dim>
+PetscErrorCode Supports<dim>::setup(const BackgroundMesh<dim> &mesh, const ElementNodes<dim> &nodes,
+                                    const std::vector<char> &active, const std::vector<Source> &sources) {
+  PetscFunctionBeginUser;
+  sources_ = &sources;
+  std::vector<Wanted> mine;
+  for (int s = 0; s < static_cast<int>(sources.size()); ++s)
+    std::visit(
+        [&](const auto &kind) {
+          if constexpr (requires(Vec<dim> n) { kind.template directions<dim>(n); })
+            for (const std::string &group : sources[s].groups)
+              for (const Facet<dim> &facet : mesh.facets(group)) {
+                if (!active[facet.cell]) continue;
+                for (int node : nodes.of_facet(facet.cell, facet.face))
+                  for (const Vec<dim> &direction : kind.template directions<dim>(facet.normal)) {
+                    Wanted w{priority_of(sources[s].kind), s, nodes.global()[node], {}};
+                    std::copy(direction.begin(), direction.end(), w.direction);
+                    mine.push_back(w);
+                  }
+              }
+        },
+        sources[s].kind);
+
+  // a facet may lie on one rank and its nodes on others too: every rank hears of all
+  int ranks;
+  PetscCallMPI(MPI_Comm_size(nodes.comm(), &ranks));
+  std::vector<int> counts(ranks), starts(ranks + 1, 0);
+  const int bytes = static_cast<int>(mine.size() * sizeof(Wanted));
+  PetscCallMPI(MPI_Allgather(&bytes, 1, MPI_INT, counts.data(), 1, MPI_INT, nodes.comm()));
+  for (int r = 0; r < ranks; ++r) starts[r + 1] = starts[r] + counts[r];
+  std::vector<Wanted> all(starts[ranks] / sizeof(Wanted));
+  PetscCallMPI(MPI_Allgatherv(mine.data(), bytes, MPI_BYTE, all.data(), counts.data(), starts.data(), MPI_BYTE, nodes.comm()));
+  std::sort(all.begin(), all.end(), [](const Wanted &a, const Wanted &b) { return a.key() < b.key(); });
+
+  std::map<PetscInt, int> local;
+  for (int i = 0; i < nodes.count(); ++i) local[nodes.global()[i]] = i;
+  of_node_.assign(nodes.count(), -1), supports_.clear(), moves_ = false;
+  for (const Wanted &w : all) {
+    moves_ |= std::holds_alternative<PrescribedVelocity>(sources[w.source].kind);
+    const auto found = local.find(w.global);
+    if (found == local.end()) continue;
+    int &index = of_node_[found->second];
+    if (index < 0) index = static_cast<int>(supports_.size()), supports_.push_back({});
+    Support<dim> &s = supports_[index];
+    ColumnVector<dim> rest = Eigen::Map<const ColumnVector<dim>>(w.direction);
+    for (int k = 0; k < s.count; ++k) rest -= rest.dot(map<dim>(s.direction[k])) * map<dim>(s.direction[k]);
+    if (s.count == dim || rest.norm() < least_angle_sine) continue;
+    rest.normalize();
+    std::copy_n(rest.data(), dim, s.direction[s.count].begin());
+    s.source[s.count++] = w.source;
+  }
+  for (Support<dim> &s : supports_) make_frame(s);
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+Vec<dim> Supports<dim>::increment(int node, const Vec<dim> &x, double from, double to) const {
+  Vec<dim> given{}, in_frame{};
+  const Support<dim> &s = *at(node);
+  for (int k = 0; k < s.count; ++k) {
+    const auto *plate = std::get_if<PrescribedVelocity>(&(*sources_)[s.source[k]].kind);
+    const double travel = plate ? plate->template value<dim>(s.direction[k], x, (from + to) / 2) * (to - from) : 0;
+    for (int d = 0; d < dim; ++d) given[d] += travel * s.direction[k][d];
+  }
+  map<dim>(in_frame) = s.frame * map<dim>(given);
+  for (int d = 0; d < dim; ++d)
+    if (!s.held[d]) in_frame[d] = 0;
+  return in_frame;
+}
+
+template class Supports<2>;
+template class Supports<3>;
+
+}  // namespace talus

@@ -1,0 +1,260 @@
+// Finite elements where the answer is known to round-off: patch tests, columns under weight, soil that comes and goes, the same on any
+// number of ranks and by any linear solver. Solutions that the elements hold exactly are right to the round-off of a linear solve:
+// 1e-12 of the largest value is asked for, a thousand times a double's.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "scene/reader.h"
+#include "simulation.h"
+
+namespace talus {
+namespace {
+
+const std::string meshes = TALUS_MESHES;
+
+struct Solved {
+  Snapshot points;  ///< Gauss points of this rank
+  HistoryTable history;
+  std::vector<Event> events;
+
+  const Column &column(const std::string &name) const {
+    return *std::find_if(points.columns.begin(), points.columns.end(), [&](const Column &c) { return c.name == name; });
+  }
+  double value(const std::string &name, size_t i, int k = 0) const {
+    const Column &c = column(name);
+    return c.values[i * c.components + k];
+  }
+};
+
+Solved solve(const std::string &text, const std::vector<std::string> &overrides = {}, MPI_Comm comm = PETSC_COMM_WORLD) {
+  Scene scene = parse_scene(text, meshes + "/scene.toml", overrides);
+  RunOptions options;
+  options.pictures = options.screen = false, options.gauss_points = true;
+  const auto simulation = make_simulation(comm, scene, options);
+  simulation->run();
+  return {simulation->snapshot(), simulation->history(), simulation->events()};
+}
+
+/// Largest |error(i, k)| over the Gauss points of all ranks.
+template <class Error>
+double largest(const Solved &solved, int components, Error &&error) {
+  double most = 0;
+  for (size_t i = 0; i < solved.points.id.size(); ++i)
+    for (int k = 0; k < components; ++k) most = std::max(most, std::abs(error(i, k)));
+  MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD);
+  return most;
+}
+
+const std::string block = R"(
+[mesh]
+section = "box.csv"
+size = 0.3
+[body.soil]
+region = "soil"
+density = 2000
+law = "linear_elastic"
+young_modulus = "10 MPa"
+poisson_ratio = 0.3
+[[stage]]
+name = "load"
+kind = "quasi_static"
+duration = 1
+load_steps = 1
+)";
+const std::vector<std::string> in_3d{"dimension=3", "mesh.thickness=1", "mesh.layers=0", "mesh.size=0.45"};
+std::vector<std::string> operator+(std::vector<std::string> a, const std::vector<std::string> &b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+/// A linear displacement at the surface gives the same inside, and its uniform stress.
+TEST(QuasiStatic, patch_test) {
+  const double lambda = 10e6 * 0.3 / (1.3 * 0.4), mu = 10e6 / 2.6;
+  for (const int dim : {2, 3})
+    for (const char *elements : {"quadratic", "linear", "patches"}) {
+      const double g[3][3] = {{1e-3, 2e-3, -1e-3}, {0.5e-3, -2e-3, 1.5e-3}, {0.7e-3, -0.3e-3, 0.4e-3}};
+      std::string velocity;
+      const char axis[] = "xyz";
+      for (int i = 0; i < dim; ++i) {
+        velocity += std::string(i ? ", " : "[") + "\"0";
+        for (int j = 0; j < dim; ++j) velocity += " + (" + std::to_string(g[i][j]) + ") * " + axis[j];
+        velocity += "\"";
+      }
+      std::string groups = R"("base", "left", "right", "surface")";
+      if (dim == 3) groups += R"(, "front", "back")";
+      const Solved solved = solve(block + "[boundary.all]\ngroup = [" + groups + "]\nkind = \"velocity\"\nvelocity = " + velocity + "]\n",
+                                  (dim == 3 ? in_3d : std::vector<std::string>{}) + std::vector<std::string>{"quasi_static.elements=" + std::string(elements)});
+      double trace = 0;
+      for (int i = 0; i < dim; ++i) trace += g[i][i];
+      const int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
+      EXPECT_LT(largest(solved, dim, [&](size_t p, int i) {
+                  double exact = 0;
+                  for (int j = 0; j < dim; ++j) exact += g[i][j] * solved.value("position", p, j);
+                  return (solved.value("displacement", p, i) - exact) / 4e-3;
+                }),
+                1e-12)
+          << dim << elements;
+      EXPECT_LT(largest(solved, dim == 2 ? 4 : 6, [&](size_t p, int k) {
+                  const auto [i, j] = pairs[k];
+                  const double shear = i < dim && j < dim ? mu * (g[i][j] + g[j][i]) : 0;
+                  return (solved.value("stress", p, k) - shear - (i == j ? lambda * trace : 0)) / 4e4;
+                }),
+                1e-12)
+          << dim << elements;
+    }
+}
+
+/// The same on faces that are not axes, held by oblique rollers: a block that is pressed uniformly.
+TEST(QuasiStatic, pressure_between_rollers) {
+  for (const int dim : {2, 3}) {
+    const std::string rollers = "[boundary.rollers]\ngroup = [\"base\", \"left\"" + std::string(dim == 3 ? ", \"front\", \"back\"" : "") +
+                                "]\nkind = \"roller\"\n[boundary.load]\ngroup = [\"surface\", \"right\"]\nkind = \"traction\"\npressure = \"1 kPa\"\n";
+    const Solved solved = solve(block + rollers, dim == 3 ? in_3d : std::vector<std::string>{});
+    EXPECT_LT(largest(solved, 2, [&](size_t p, int k) { return (solved.value("stress", p, k) + 1e3) / 1e3; }), 1e-12);
+    EXPECT_NEAR(solved.history.column("rollers_force_x_N").back(), 1e3, 1e-9);
+  }
+}
+
+/// Weight of a column: stress is linear, displacement quadratic in depth, which elements of second order hold exactly.
+TEST(QuasiStatic, column_under_its_weight) {
+  const double modulus = 10e6 * 0.7 / (1.3 * 0.4), rho = 2000, g = 10;
+  const std::string walls = "gravity = 10\n" + block + "[boundary.walls]\ngroup = [\"base\", \"left\", \"right\"]\nkind = \"roller\"\n";
+  for (const int dim : {2, 3}) {
+    const Solved solved = solve(walls, dim == 3 ? in_3d + std::vector<std::string>{"boundary.front.kind=roller", "boundary.back.kind=roller"}
+                                                : std::vector<std::string>{});
+    EXPECT_LT(largest(solved, 1, [&](size_t p, int) { return (solved.value("stress", p, 1) + rho * g * (1 - solved.value("position", p, 1))) / 20e3; }), 1e-12);
+    EXPECT_LT(largest(solved, 1, [&](size_t p, int) {
+                const double y = solved.value("position", p, 1);
+                return (solved.value("displacement", p, 1) + rho * g / modulus * (y - y * y / 2)) / (rho * g / modulus);
+              }),
+              1e-12);
+    EXPECT_NEAR(solved.history.column("walls_force_y_N").back(), rho * g, 1e-7);
+  }
+}
+
+/// Level ground starts at rest with any k0, and stays there.
+TEST(QuasiStatic, ground_at_rest_does_not_move) {
+  const std::string text = "gravity = 10\n" + block + "initial_stress = \"k0\"\n[boundary.walls]\ngroup = [\"base\", \"left\", \"right\"]\nkind = \"roller\"\n";
+  const Solved solved = solve(text, {"body.soil.k0=1.7"});
+  EXPECT_LT(largest(solved, 1, [&](size_t p, int) { return solved.value("displacement", p, 1) / 1e-3; }), 1e-12);
+  EXPECT_LT(largest(solved, 1, [&](size_t p, int) { return (solved.value("stress", p, 0) - 1.7 * solved.value("stress", p, 1)) / 20e3; }), 1e-12);
+}
+
+/// Soil taken away unloads what is left, soil put back loads it again: each state is that of a column of the height it has.
+TEST(QuasiStatic, excavation_and_fill) {
+  const std::string layer = "density = 2000\nlaw = \"linear_elastic\"\nyoung_modulus = \"10 MPa\"\npoisson_ratio = 0.3\n";
+  const std::string text = "gravity = 10\n[mesh]\nsection = \"" + std::string(TALUS_LAYERS) + "\"\nsize = 0.25\n[body.lower]\nregion = \"lower\"\n" + layer +
+                           "[body.upper]\nregion = \"upper\"\n" + layer +
+                           "[boundary.walls]\ngroup = [\"base\", \"left\", \"right\"]\nkind = \"roller\"\n"
+                           "[[stage]]\nname = \"gravity\"\nkind = \"quasi_static\"\nduration = 1\n"
+                           "[[stage]]\nname = \"excavation\"\nkind = \"quasi_static\"\nduration = 1\nremove = \"upper\"\n";
+  const double modulus = 10e6 * 0.7 / (1.3 * 0.4), rho = 2000, g = 10;
+  const Solved dug = solve(text);
+  EXPECT_LT(largest(dug, 1, [&](size_t p, int) { return (dug.value("stress", p, 1) + rho * g * (0.5 - dug.value("position", p, 1))) / 20e3; }), 1e-12);
+  EXPECT_LT(largest(dug, 1, [&](size_t p, int) {
+              const double y = dug.value("position", p, 1);
+              return (dug.value("displacement", p, 1) + rho * g / modulus * (y / 2 - y * y / 2)) / (rho * g / modulus);
+            }),
+            1e-12);
+  EXPECT_NEAR(dug.history.column("mass_kg").back(), 1000, 1e-9);
+  const Solved filled = solve(text + "[[stage]]\nname = \"fill\"\nkind = \"quasi_static\"\nduration = 1\nadd = \"upper\"\n", {"stage.1.remove=[]"});
+  EXPECT_LT(largest(filled, 1, [&](size_t p, int) { return (filled.value("stress", p, 1) + rho * g * (1 - filled.value("position", p, 1))) / 20e3; }), 1e-12);
+  EXPECT_NEAR(filled.history.column("mass_kg").back(), 2000, 1e-9);
+}
+
+/// Where equilibrium ends the next stage goes on with motion, from the last state and loads that had one.
+TEST(QuasiStatic, motion_takes_over_where_equilibrium_is_lost) {
+  const std::string text = block + "when_lost = \"next_stage\"\n[boundary.base]\nkind = \"fixed\"\n[boundary.surface]\nkind = \"traction\"\npressure = \"60e3 * t\"\n"
+                                   "[[stage]]\nname = \"fall\"\nduration = 0.03\n[output.point.corner]\nposition = [1, 1]\n";
+  const Solved solved = solve(text, {"body.soil.law=mohr_coulomb", "body.soil.cohesion=10000", "body.soil.friction_angle=0", "stage.0.load_steps=10"});
+  const auto time = solved.history.column("load_time_s"), speed = solved.history.column("corner_velocity_m_s");
+  ASSERT_FALSE(solved.events.empty());
+  EXPECT_NE(solved.events[0].text.find("no equilibrium beyond"), std::string::npos) << solved.events[0].text;
+  EXPECT_GT(solved.events[0].load_time, 20e3 / 60e3);  // 2 c is the least that a block can bear
+  EXPECT_LT(solved.events[0].load_time, 30e3 / 60e3);
+  EXPECT_GT(speed.back(), 0);
+}
+
+/// Particles to Gauss points and back: what rests is still in equilibrium.
+TEST(QuasiStatic, stress_comes_back_from_particles) {
+  const std::string text = "gravity = 10\n" + block + "reset_displacement = true\n[boundary.base]\nkind = \"fixed\"\n[[stage]]\nname = \"rest\"\nduration = 0.05\n"
+                                                     "[[stage]]\nname = \"again\"\nkind = \"quasi_static\"\nduration = 1\n";
+  const Solved solved = solve(text, {"quasi_static.elements=patches", "quasi_static.tolerance=1e-12"});
+  EXPECT_LT(largest(solved, 2, [&](size_t p, int k) { return solved.value("displacement", p, k) / 1e-3; }), 1e-9);  // of what gravity moved it
+}
+
+/// Linear solver and number of ranks change nothing but round-off, in plastic soil either.
+TEST(QuasiStatic, slope_is_the_same_on_all_ranks_and_by_both_solvers) {
+  const std::string text = R"(gravity = 10
+[mesh]
+section = "selborne.csv"
+size = 3
+[body.soil]
+region = ["weathered", "unweathered"]
+density = 2000
+law = "mohr_coulomb"
+young_modulus = "10 MPa"
+poisson_ratio = 0.3
+cohesion = "14 kPa"
+friction_angle = 20
+[boundary.base]
+group = ["base", "recharge_base"]
+kind = "fixed"
+[boundary.sides]
+group = ["left", "recharge_side", "right"]
+kind = "roller"
+[[stage]]
+name = "gravity"
+kind = "quasi_static"
+duration = 1
+load_steps = 3
+[quasi_static]
+tolerance = 1e-11
+)";
+  int rank, ranks;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank), MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  Solved whole;
+  for (int r = 0; r < ranks; ++r) {  // one after the other: they share the file of the mesh
+    if (r == rank) whole = solve(text, {}, PETSC_COMM_SELF);
+    MPI_Barrier(PETSC_COMM_WORLD);
+  }
+  std::map<long long, size_t> place;
+  for (size_t i = 0; i < whole.points.id.size(); ++i) place[whole.points.id[i]] = i;
+  EXPECT_GT(*std::max_element(whole.column("plastic_strain").values.begin(), whole.column("plastic_strain").values.end()), 1e-4);
+  for (const char *solver : {"direct", "iterative"}) {
+    const Solved shared = solve(text, {"quasi_static.linear_solver=" + std::string(solver)});
+    EXPECT_LT(largest(shared, 2, [&](size_t p, int k) {
+                return (shared.value("displacement", p, k) - whole.value("displacement", place.at(shared.points.id[p]), k)) / 0.1;
+              }),
+              1e-8)
+        << solver;
+  }
+}
+
+/// One element across a layer is too few for elements of first order.
+TEST(QuasiStatic, one_element_across_is_refused) {
+  try {
+    solve("gravity = 10\n" + block + "[boundary.base]\nkind = \"fixed\"\n", {"mesh.section=" + std::string(TALUS_THIN_LAYER), "mesh.size=2", "boundary.base.group=plane", "quasi_static.elements=linear"});
+    ADD_FAILURE();
+  } catch (const RunError &error) {
+    EXPECT_NE(std::string(error.what()).find("body.soil is one element across"), std::string::npos) << error.what();
+  }
+}
+
+/// Soil that a support does not hold as a whole is found before the stiffness is factorised.
+TEST(QuasiStatic, soil_without_support_is_refused) {
+  for (const auto &[supports, words] : {std::pair{"[boundary.base]\nkind = \"roller\"\n", "along x"},
+                                        {"[boundary.left]\nkind = \"roller\"\n", "along y"}})
+    try {
+      solve("gravity = 10\n" + block + supports);
+      ADD_FAILURE() << supports;
+    } catch (const RunError &error) {
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+}
+
+}  // namespace
+}  // namespace talus
