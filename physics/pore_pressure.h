@@ -29,6 +29,8 @@ class GivenPressure {
     const double elevation = table(x[0], t);
     return std::max(0., unit_weight_ * (elevation - x[1])) + water_->excess(x[0], x[1], dim == 3 ? x[2] : 0, t, elevation);
   }
+  /// Hydrostatic suction at x above the water table; 0 without one [Pa].
+  double above_table(const Vec<dim> &x, double t) const { return water_->table.empty() ? 0 : std::max(0., unit_weight_ * (x[1] - table(x[0], t))); }
   bool open_water_load() const { return water_->open_water_load; }
   double density() const { return water_->density; }
 

@@ -11,6 +11,7 @@
 #include "physics/laws/update_stress.h"
 #include "physics/motion.h"
 #include "physics/pore_pressure.h"
+#include "physics/pores/pore_fluid.h"
 #include "transfer/nonlocal_strain.h"
 #include "transfer/transfer.h"
 
@@ -26,6 +27,7 @@ struct Loading {
   double ramp_rate = 0;   ///< [1/s]
   double time_rate = 1;   ///< 0 in a stage that holds loads
   double damping = 0;     ///< local damping factor
+  bool pore_flow = true;  ///< pore fluids move; otherwise their pressures are given
   bool softening = true;  ///< plastic strain is remembered; otherwise soil keeps the strength it has
 
   double ramp_at(double t) const { return std::min(1., ramp + ramp_rate * (t - set_at)); }
@@ -42,7 +44,7 @@ template <int dim, class Phases>
 class SoilMotion final : public Motion {
  public:
   SoilMotion(const BackgroundMesh<dim> &mesh, std::vector<std::unique_ptr<Body<dim>>> &bodies, Conditions<dim> &conditions,
-             const Transfer &transfer, const Water &water, double relaxation_time, double total_mass, long long particles, double gravity);
+             const Scene &scene, double relaxation_time, double total_mass, long long particles, double gravity);
 
   PetscErrorCode begin(double t) override;
   PetscErrorCode acceleration(double t, const double *u, const double *v, double *a) override;
@@ -55,7 +57,7 @@ class SoilMotion final : public Motion {
   int capacity() const override { return static_cast<int>(velocity_.size()) * dim; }
   double mass() const override { return total_mass_; }
   MPI_Comm comm() const override { return mesh_.comm(); }
-  int size() const override { return grid_.node_count() * dim; }
+  int size() const override { return grid_.node_count() * dim * velocity_fields<Phases>; }
   double *velocity() override { return velocity_.empty() ? nullptr : velocity_[0].data(); }
 
   /// Hands particles what the nodes learned and frees the grid; the particles in `movers[body]` have left their cells.
@@ -89,8 +91,14 @@ class SoilMotion final : public Motion {
   void present(const Body<dim> &body, int particle, Vec<dim> *position, Vec<dim> *velocity) const;
   /// Stress [stress_size], history and volume of a particle within the Lagrangian part.
   void state(int body, int particle, double *stress, double *history, double *volume) const;
-  /// Pore pressure at a place [Pa]; 0 where the phase model has none.
-  double pore_pressure(const Vec<dim> &x) const;
+  /// Given pore pressure at a place [Pa].
+  double pore_pressure(const Vec<dim> &x) const requires Phases::given { return loading.ramp * pressure_(x, loading.time); }
+  /// Pore pressures, suction and saturation of a particle within the Lagrangian part.
+  PoreReport pores(const Body<dim> &body, int particle) const requires Phases::liquid;
+  /// Masses of liquid and gas of all ranks; collective.
+  PetscErrorCode fluid_ledger(FluidLedger *sums) requires Phases::liquid { return fluid_.ledger(gathered_, sums); }
+  const PoreFluid<dim, Phases> &fluid() const requires Phases::liquid { return fluid_; }
+  PetscErrorCode setup_pores(bool fill) requires Phases::liquid;
   /// Sums of the present state; collective.
   PetscErrorCode balance(double t, Balance *sums);
 
@@ -121,6 +129,7 @@ class SoilMotion final : public Motion {
   /// Does velocity relax between remaps? Otherwise only remaps relax it.
   bool relaxes() const { return transfer_.remap_interval > 0 && relaxation_time_ > 0; }
   PetscErrorCode back_and_forth(const Vec<dim> *in, Vec<dim> *out);
+  typename PoreFluid<dim, Phases>::Frame pore_frame(bool trial) requires Phases::liquid;
 
   const BackgroundMesh<dim> &mesh_;
   std::vector<std::unique_ptr<Body<dim>>> &bodies_;
@@ -162,6 +171,11 @@ class SoilMotion final : public Motion {
   double sample_time_[2] = {0, 0}, last_pressure_time_ = 0;
   bool suction_matters_ = false;                  ///< a law reads it: pressure below zero is suction, not stress
   std::vector<double> suction_;                   ///< at the stress points of one body [Pa]
+  // fluids that move
+  [[no_unique_address]] If<Phases::liquid, PoreFluid<dim, Phases>> fluid_;
+  [[no_unique_address]] If<Phases::liquid, PoreConditions<dim>> pore_conditions_;
+  [[no_unique_address]] If<Phases::liquid, std::vector<const double *>> point_volume_;
+  [[no_unique_address]] If<Phases::liquid, std::vector<double>> pore_strain_;  ///< volume strain of the pores in cells
 
   bool gathered_ = false, inverted_ = false;
   double remap_time_ = 0, accepted_time_ = 0, own_share_ = 1, moved_ = 0, smallest_ratio_ = 1, step_ratio_ = 1, speed_squared_ = 0;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "physics/pores/pore_fluid.inl"
 #include "physics/soil_motion.h"
 
 namespace talus {
@@ -18,14 +19,16 @@ double stored_energy(const Law &law, const double *stress) {
 
 template <int dim, class Phases>
 SoilMotion<dim, Phases>::SoilMotion(const BackgroundMesh<dim> &mesh, std::vector<std::unique_ptr<Body<dim>>> &bodies,
-                                    Conditions<dim> &conditions, const Transfer &transfer, const Water &water,
-                                    double relaxation_time, double total_mass, long long particles, double gravity)
-    : mesh_(mesh), bodies_(bodies), conditions_(conditions), transfer_(transfer), pressure_(water, gravity),
+                                    Conditions<dim> &conditions, const Scene &scene, double relaxation_time, double total_mass,
+                                    long long particles, double gravity)
+    : mesh_(mesh), bodies_(bodies), conditions_(conditions), transfer_(scene.transfer), pressure_(scene.water, gravity),
       relaxation_time_(relaxation_time), total_mass_(total_mass),
       smallest_mass_(1e-6 * total_mass / static_cast<double>(particles)), grid_(mesh), next_grid_(mesh),
-      points_(bodies.size()), next_points_(bodies.size()) {
+      points_(bodies.size()), next_points_(bodies.size()), fluid_(mesh, bodies, scene) {
   const int nodes = mesh.node_count(), cells = mesh.cell_count();
-  for (auto *field : {&start_velocity_, &velocity_, &mapped_start_, &force_, &scratch_}) field->assign(nodes, Vec<dim>{});
+  force_.assign(nodes, Vec<dim>{});
+  for (auto *field : {&start_velocity_, &velocity_, &mapped_start_, &scratch_}) field->assign(nodes * velocity_fields<Phases>, Vec<dim>{});
+  if constexpr (Phases::liquid) pore_strain_.resize(cells), point_volume_.resize(bodies.size());
   update_.velocity.assign(nodes, Quad{}), update_.displacement.assign(nodes, Quad{});
   if (Phases::given) extra_mass_.assign(nodes, 0);
   for (auto *field : {&particle_volume_, &weight_, &blend_, &filling_, &volume_strain_, &slenderness_}) field->assign(cells, 0);
@@ -42,7 +45,7 @@ SoilMotion<dim, Phases>::SoilMotion(const BackgroundMesh<dim> &mesh, std::vector
     for (size_t b = 0; b < bodies.size(); ++b) {
       PointSet &points = (*all)[b];
       points.of_cell.assign(cells, -1);
-      if (!transfer.average_stress) continue;
+      if (!transfer_.average_stress) continue;
       points.own_cell.resize(cells), points.own_volume.resize(cells), points.own_limit.resize(cells), points.start_volume.resize(cells);
       points.own_stress.resize(static_cast<size_t>(cells) * components);
       points.own_history.resize(static_cast<size_t>(cells) * bodies[b]->history_count());
@@ -92,6 +95,7 @@ void SoilMotion<dim, Phases>::attach(size_t b) {
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::begin(double t) {
   PetscFunctionBeginUser;
+  if constexpr (Phases::liquid) fluid_.given = !loading.pore_flow, fluid_.given_ramp = loading.ramp;
   if (gathered_) PetscFunctionReturn(0);
   if (!movers_) std::fill(start_velocity_.begin(), start_velocity_.end(), Vec<dim>{});
   with_transfer(transfer_, [&]<bool averaged, bool apic>() { gather<averaged, apic>(); });
@@ -130,9 +134,13 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double) {
   PetscCall(conditions_.begin(grid_, impedance_, filling_));
   conditions_.constrain(loading.time, grid_, start_velocity_.data(), false);
   std::copy_n(start_velocity_.begin(), nodes, velocity_.begin());
+  if constexpr (Phases::liquid) {
+    PetscCall(fluid_.gather(pore_frame(false), pore_conditions_, filling_, start_velocity_.data(), velocity_.data() + nodes));
+    std::copy_n(velocity_.begin() + nodes, nodes * (velocity_fields<Phases> - 1), start_velocity_.begin() + nodes);
+  }
   if (relaxes()) {
-    PetscCall(back_and_forth(start_velocity_.data(), mapped_start_.data()));
-    for (int i = 0; i < nodes; ++i)
+    for (int f = 0; f < velocity_fields<Phases>; ++f) PetscCall(back_and_forth(&start_velocity_[f * nodes], &mapped_start_[f * nodes]));
+    for (int i = 0; i < nodes * velocity_fields<Phases>; ++i)
       for (int d = 0; d < dim; ++d) mapped_start_[i][d] = start_velocity_[i][d] - mapped_start_[i][d];
   }
   if constexpr (Phases::given) {
@@ -220,6 +228,7 @@ double SoilMotion<dim, Phases>::end(double t) {
           affine_[(c * dim + i) * dim + j] = g;
         }
   }
+  if constexpr (Phases::liquid) fluid_.release(pore_frame(false), velocity_.data() + grid_.node_count(), flip);
   return flip;
 }
 
@@ -336,6 +345,11 @@ PetscErrorCode SoilMotion<dim, Phases>::deform(double t, const Vec<dim> *u, bool
   Shape<dim> *shape = trial ? trial_shape_.data() : grid_.shape.data();
   double *particle_volume = trial ? trial_particle_volume_.data() : particle_volume_.data();
   double *weight = trial ? trial_weight_.data() : weight_.data();
+  if constexpr (Phases::liquid) {
+    auto accepted = pore_frame(false);
+    accepted.trial = trial;
+    PetscCall(fluid_.flow(accepted, u));
+  }
   for (int i = 0; i < nodes; ++i)
     for (int d = 0; d < dim; ++d) position[i][d] = grid_.position[i][d] + u[i][d];
   double slender = 1, smallest = 1;
@@ -367,7 +381,12 @@ PetscErrorCode SoilMotion<dim, Phases>::deform(double t, const Vec<dim> *u, bool
     smallest = std::min(smallest, to.volume / mesh_.volume[grid_.mesh_cell[c]]);
   }
   if (!trial) step_ratio_ = 1 / std::sqrt(slender), smallest_ratio_ = smallest;
+  if constexpr (Phases::liquid) std::copy_n(volume_strain_.begin(), cells, pore_strain_.begin());
   PetscCall(smooth_volume_strain(shape));
+  if constexpr (Phases::liquid) {  // the pores' volume follows the smoothing of their pressure
+    PetscCall(fluid_.smooth_flow(pore_frame(false), pore_strain_));
+    std::copy_n(pore_strain_.begin(), cells, volume_strain_.begin());
+  }
   for (int c = 0; c < cells; ++c) particle_volume[c] = 0;
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const PointSet &p = points_[b];
@@ -398,6 +417,7 @@ PetscErrorCode SoilMotion<dim, Phases>::deform(double t, const Vec<dim> *u, bool
   if (!trial && loading.softening)
     for (size_t b = 0; b < bodies_.size(); ++b)
       if (nonlocal_[b]) PetscCall(nonlocal_[b]->follow(grid_, points_[b]));
+  if constexpr (Phases::liquid) PetscCall(fluid_.exchange(pore_frame(trial)));
   PetscFunctionReturn(0);
 }
 
@@ -482,6 +502,7 @@ PetscErrorCode SoilMotion<dim, Phases>::total_force(double load_time, double ram
     const double m = grid_.mass[i] + (Phases::given ? extra_mass_[i] : 0);
     for (int d = 0; d < dim; ++d) force_[i][d] += m * (ramp * loading.gravity[d]);
   }
+  if constexpr (Phases::liquid) fluid_.add_to_mixture(pore_frame(trial), pore_conditions_, force_.data());
   PetscFunctionReturn(0);
 }
 
@@ -496,6 +517,8 @@ PetscErrorCode SoilMotion<dim, Phases>::acceleration(double t, const double *u, 
     conditions_.project(grid_, reinterpret_cast<const Vec<dim> *>(v), scratch_.data());
     unbalanced = scratch_.data();
   }
+  if constexpr (Phases::liquid)
+    fluid_.drive(pore_frame(u != nullptr), pore_conditions_, force_.data(), reinterpret_cast<Vec<dim> *>(a) + grid_.node_count());
   for (int i = 0; i < grid_.node_count(); ++i) {
     const double inverse = grid_.mass[i] > smallest_mass_ ? 1 / grid_.mass[i] : 0;  // a lighter node is carried along
     for (int d = 0; d < dim; ++d) {
@@ -509,7 +532,10 @@ PetscErrorCode SoilMotion<dim, Phases>::acceleration(double t, const double *u, 
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::drag(double t, double gamma, double *v) {
   PetscFunctionBeginUser;
-  conditions_.resolve(loading.time_at(t), gamma, grid_, reinterpret_cast<Vec<dim> *>(v));
+  Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v);
+  if constexpr (Phases::liquid) fluid_.resist(gamma, grid_, velocity, velocity + grid_.node_count());
+  conditions_.resolve(loading.time_at(t), gamma, grid_, velocity);
+  if constexpr (Phases::liquid) fluid_.follow(gamma, pore_frame(false), pore_conditions_, velocity, velocity + grid_.node_count());
   PetscFunctionReturn(0);
 }
 
@@ -517,23 +543,28 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double *v, double *w) {
   PetscFunctionBeginUser;
   Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v), *mapped = reinterpret_cast<Vec<dim> *>(w);
+  const int nodes = grid_.node_count(), all = nodes * velocity_fields<Phases>;
+  const auto constrain = [&](Vec<dim> *x) {
+    conditions_.constrain(loading.time_at(t), grid_, x, true);
+    if constexpr (Phases::liquid) fluid_.constrain(pore_frame(false), pore_conditions_, x, x + nodes);
+  };
   if (relaxes()) {
-    PetscCall(back_and_forth(velocity, mapped));
+    for (int f = 0; f < all; f += nodes) PetscCall(back_and_forth(velocity + f, mapped + f));
     const double share = 1 - std::exp(-gamma / relaxation_time_);
-    for (int i = 0; i < grid_.node_count(); ++i)
+    for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) {
         velocity[i][d] += share * (mapped[i][d] - velocity[i][d]);
         mapped[i][d] += mapped_start_[i][d];
       }
-    conditions_.constrain(loading.time_at(t), grid_, velocity, true);
+    constrain(velocity);
   } else {  // the same sum, mapped once
-    for (int i = 0; i < grid_.node_count(); ++i)
+    for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) scratch_[i][d] = velocity[i][d] - start_velocity_[i][d];
-    PetscCall(back_and_forth(scratch_.data(), mapped));
-    for (int i = 0; i < grid_.node_count(); ++i)
+    for (int f = 0; f < all; f += nodes) PetscCall(back_and_forth(&scratch_[f], mapped + f));
+    for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) mapped[i][d] += start_velocity_[i][d];
   }
-  conditions_.constrain(loading.time_at(t), grid_, mapped, true);
+  constrain(mapped);
   PetscFunctionReturn(0);
 }
 
@@ -585,7 +616,7 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::accept(double t, const double *u, const double *v) {
   PetscFunctionBeginUser;
   if (transfer_.velocity == Velocity::flip) own_share_ = relaxed(t);
-  if (v != velocity_[0].data()) std::copy_n(reinterpret_cast<const Vec<dim> *>(v), grid_.node_count(), velocity_.begin());
+  if (v != velocity_[0].data()) std::copy_n(reinterpret_cast<const Vec<dim> *>(v), grid_.node_count() * velocity_fields<Phases>, velocity_.begin());
   PetscCall(deform(t, reinterpret_cast<const Vec<dim> *>(u), false));
   accepted_time_ = t;
   conditions_.follow_loads(reinterpret_cast<const Vec<dim> *>(u));
@@ -664,6 +695,7 @@ const double *SoilMotion<dim, Phases>::find_suction(size_t b) {
     for (int q = 0; q < p.count; ++q) suction_[q] = early * sample_[0].suction[p.cell[q]] + late * sample_[1].suction[p.cell[q]];
     return suction_.data();
   }
+  if constexpr (Phases::suction) return fluid_.suction(static_cast<int>(b));
   return nullptr;  // refused at the door
 }
 
@@ -738,12 +770,38 @@ void SoilMotion<dim, Phases>::add_pore_pressure(double load_time, double ramp, b
   }
 }
 
+// ---- fluids that move ----
+
 template <int dim, class Phases>
-double SoilMotion<dim, Phases>::pore_pressure(const Vec<dim> &x) const {
-  if constexpr (Phases::given)
-    return loading.ramp * pressure_(x, loading.time);
-  else
-    return 0;
+typename PoreFluid<dim, Phases>::Frame SoilMotion<dim, Phases>::pore_frame(bool trial)
+  requires Phases::liquid
+{
+  for (size_t b = 0; b < bodies_.size(); ++b) point_volume_[b] = trial ? trial_volume_[b].data() : points_[b].volume;
+  Vec<dim> gravity = loading.gravity;
+  for (double &g : gravity) g *= loading.ramp;
+  return {grid_,  trial ? trial_shape_.data() : grid_.shape.data(), trial ? trial_position_.data() : grid_.position.data(), trial ? trial_weight_.data() : weight_.data(),
+          points_, point_volume_.data(), trial ? trial_particle_volume_.data() : particle_volume_.data(), blend_.data(), gravity, loading.time,
+          transfer_.average_stress, trial};
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::setup_pores(bool fill)
+  requires Phases::liquid
+{
+  PetscFunctionBeginUser;
+  PetscCall(pore_conditions_.setup(mesh_, conditions_.sources(), Phases::suction));
+  if (fill) fluid_.fill(0);
+  PetscFunctionReturn(0);
+}
+
+template <int dim, class Phases>
+PoreReport SoilMotion<dim, Phases>::pores(const Body<dim> &body, int i) const
+  requires Phases::liquid
+{
+  int b = 0;
+  while (bodies_[b].get() != &body) ++b;
+  const int cell = body.particles().cell[i];
+  return fluid_.report(b, transfer_.average_stress ? points_[b].of_cell[cell] : i, grid_.find_cell(cell));
 }
 
 // ---- what others read ----
@@ -794,6 +852,10 @@ PetscErrorCode SoilMotion<dim, Phases>::keep(Archive &archive) {
   if constexpr (Phases::given)
     for (Sample &sample : sample_) archive.keep("pressure", sample.gradient, sample.value, sample.nodal);
   if (archive.reading()) PetscCall(conditions_.begin(grid_, impedance_, filling_));
+  if constexpr (Phases::liquid) {
+    fluid_.keep(archive);
+    if (archive.reading()) PetscCall(pore_conditions_.begin(grid_, filling_, fluid_.surface()));
+  }
   conditions_.keep(archive);
   PetscFunctionReturn(0);
 }

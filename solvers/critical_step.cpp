@@ -5,7 +5,7 @@
 namespace talus {
 
 template <int dim>
-double cell_frequency_squared(const Cell<dim> &cell, const Law &law, double density) {
+double cell_frequency_squared(const Cell<dim> &cell, const Law &law, double density, const PoreStiffness &pores) {
   constexpr int size = dim == 2 ? 3 : 6;
   // K = V B^T D B and lumped masses rho V / (dim + 1): omega^2 = (dim + 1) / rho times the largest eigenvalue of L^T (B B^T) L, D = L L^T
   Eigen::Matrix<double, size, dim *(dim + 1)> b;
@@ -28,13 +28,26 @@ double cell_frequency_squared(const Cell<dim> &cell, const Law &law, double dens
   Eigen::Matrix<double, size, size> stiffness = Eigen::Matrix<double, size, size>::Zero();
   for (int i = 0; i < size; ++i) stiffness(i, i) = i < dim ? 2 * shear : shear;
   stiffness.template topLeftCorner<dim, dim>().array() += lame;
-  const Eigen::Matrix<double, size, size> l = stiffness.llt().matrixL();
-  const Eigen::Matrix<double, size, size> product = l.transpose() * (b * b.transpose()) * l;
-  return (dim + 1) / density *
-         Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, size, size>>(product, Eigen::EigenvaluesOnly).eigenvalues()[size - 1];
+  if (pores.fluids.empty()) {
+    const Eigen::Matrix<double, size, size> l = stiffness.llt().matrixL();
+    const Eigen::Matrix<double, size, size> product = l.transpose() * (b * b.transpose()) * l;
+    return (dim + 1) / density *
+           Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, size, size>>(product, Eigen::EigenvaluesOnly).eigenvalues()[size - 1];
+  }
+  // one more strain per fluid, (1 - n) div v_s + n div v_a, of stiffness K_a / n; docs/theory/pores.md (6.1)
+  const int count = static_cast<int>(pores.fluids.size());
+  const double n = pores.porosity, gradients = b.template topRows<dim>().squaredNorm();
+  Eigen::MatrixXd rows(size + count, b.cols()), all = Eigen::MatrixXd::Zero(size + count, size + count);
+  rows.topRows(size) = b;
+  all.topLeftCorner(size, size) = stiffness;
+  for (int a = 0; a < count; ++a) rows.row(size + a) = (1 - n) * b.template topRows<dim>().colwise().sum(), all(size + a, size + a) = pores.fluids[a].bulk_modulus / n;
+  Eigen::MatrixXd flexible = rows * rows.transpose() / density;
+  for (int a = 0; a < count; ++a) flexible(size + a, size + a) += n * gradients / pores.fluids[a].density;
+  const Eigen::MatrixXd l = all.llt().matrixL();
+  return (dim + 1) * Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(l.transpose() * flexible * l, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
 }
 
-template double cell_frequency_squared(const Cell<2> &, const Law &, double);
-template double cell_frequency_squared(const Cell<3> &, const Law &, double);
+template double cell_frequency_squared(const Cell<2> &, const Law &, double, const PoreStiffness &);
+template double cell_frequency_squared(const Cell<3> &, const Law &, double, const PoreStiffness &);
 
 }  // namespace talus

@@ -10,19 +10,29 @@
 
 namespace talus {
 
-/// Largest eigenfrequency squared of a cell of a uniform elastic material [1/s2].
+/// Fluids that move on their own: full pores of each, the stiffest they can be.
+struct PoreStiffness {
+  double porosity = 0;
+  struct Fluid {
+    double density, bulk_modulus;
+  };
+  std::vector<Fluid> fluids;
+};
+
+/// Largest eigenfrequency squared of a cell of a uniform elastic material [1/s2], with pore fluids that no drag holds back: implicit drag
+/// lowers frequencies. `density` is that of the soil, or of the skeleton per volume of soil where fluids move on their own.
 template <int dim>
-double cell_frequency_squared(const Cell<dim> &cell, const Law &law, double density);
+double cell_frequency_squared(const Cell<dim> &cell, const Law &law, double density, const PoreStiffness &pores = {});
 
 /// Critical steps of one body's cells, computed when a cell is first filled.
 template <int dim>
 class CriticalStep {
  public:
-  CriticalStep(const BackgroundMesh<dim> &mesh, const Law &law, double density)
-      : mesh_(&mesh), law_(&law), density_(density), step_(mesh.cell_count(), 0) {}
+  CriticalStep(const BackgroundMesh<dim> &mesh, const Law &law, double density, PoreStiffness pores = {})
+      : mesh_(&mesh), law_(&law), density_(density), pores_(std::move(pores)), step_(mesh.cell_count(), 0) {}
   double operator()(int mesh_cell) {
     double &step = step_[mesh_cell];
-    if (step == 0) step = 2 / std::sqrt(cell_frequency_squared(mesh_->cells[mesh_cell], *law_, density_));
+    if (step == 0) step = 2 / std::sqrt(cell_frequency_squared(mesh_->cells[mesh_cell], *law_, density_, pores_));
     return step;
   }
 
@@ -30,6 +40,7 @@ class CriticalStep {
   const BackgroundMesh<dim> *mesh_;
   const Law *law_;
   double density_;
+  PoreStiffness pores_;
   std::vector<double> step_;
 };
 

@@ -24,6 +24,9 @@ std::unique_ptr<AnySimulation> make_in(MPI_Comm comm, Scene &scene, const RunOpt
   switch (scene.phases) {
     case PhaseModel::dry: return std::make_unique<Simulation<dim, Dry>>(comm, scene, options, mesh);
     case PhaseModel::drained: return std::make_unique<Simulation<dim, Drained>>(comm, scene, options, mesh);
+    case PhaseModel::saturated: return std::make_unique<Simulation<dim, Saturated>>(comm, scene, options, mesh);
+    case PhaseModel::unsaturated: return std::make_unique<Simulation<dim, Unsaturated>>(comm, scene, options, mesh);
+    case PhaseModel::three_phase: return std::make_unique<Simulation<dim, ThreePhase>>(comm, scene, options, mesh);
   }
   throw std::logic_error("phase model without a kernel");
 }

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
+
+#include "physics/boundary/node_normals.h"
 
 namespace talus {
 namespace {
@@ -28,13 +29,6 @@ int priority(const Boundary &kind) {
 }
 
 }  // namespace
-
-template <int dim>
-struct Conditions<dim>::NodeNormal {
-  int source, node;
-  Vec<dim> position, normal;
-  double area;
-};
 
 template <int dim>
 void Conditions<dim>::add_direction(int node, int source, const Vec<dim> &direction) {
@@ -70,8 +64,9 @@ PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vect
   sources_ = std::move(sources);
   impulse_.assign(sources_.size(), Vec<dim>{}), face_travel_ = impulse_;
   prescribed_of_node_.assign(mesh.node_count(), -1), first_contact_of_node_.assign(mesh.node_count(), -1);
-  std::vector<NodeNormal> normals;
+  std::vector<NodeNormal<dim>> normals;
   for (int s = 0; s < static_cast<int>(sources_.size()); ++s) {
+    if (concerns_water(sources_[s].kind)) continue;
     std::vector<Facet<dim>> facets;
     for (const std::string &group : sources_[s].groups) {
       const auto more = mesh.facets(group);
@@ -88,42 +83,13 @@ PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vect
         for (int node : f.node) normals.push_back({s, node, mesh.position[node], f.normal, f.area / dim});
     }
   }
-  // Facets of shared nodes may lie on one rank only: every rank tells its own, and finds nodes by their exact position.
-  int ranks, rank;
-  PetscCallMPI(MPI_Comm_size(mesh.comm(), &ranks));
-  PetscCallMPI(MPI_Comm_rank(mesh.comm(), &rank));
-  if (ranks > 1) {
-    constexpr int width = 2 + 2 * dim;
-    std::map<Vec<dim>, int> shared;
-    for (int node : mesh.halo.shared_nodes()) shared[mesh.position[node]] = node;
-    std::vector<double> mine, all;
-    for (const NodeNormal &n : normals)
-      if (shared.count(n.position)) {
-        mine.push_back(n.source), mine.push_back(n.area);
-        mine.insert(mine.end(), n.position.begin(), n.position.end());
-        mine.insert(mine.end(), n.normal.begin(), n.normal.end());
-      }
-    std::vector<int> counts(ranks), starts(ranks + 1, 0);
-    const int count = static_cast<int>(mine.size());
-    PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, mesh.comm()));
-    for (int r = 0; r < ranks; ++r) starts[r + 1] = starts[r] + counts[r];
-    all.resize(starts[ranks]);
-    PetscCallMPI(MPI_Allgatherv(mine.data(), count, MPI_DOUBLE, all.data(), counts.data(), starts.data(), MPI_DOUBLE, mesh.comm()));
-    for (int r = 0; r < ranks; ++r)
-      for (int i = starts[r]; r != rank && i < starts[r + 1]; i += width) {
-        NodeNormal n{static_cast<int>(all[i]), -1, {}, {}, all[i + 1]};
-        std::copy_n(&all[i + 2], dim, n.position.begin());
-        std::copy_n(&all[i + 2 + dim], dim, n.normal.begin());
-        const auto found = shared.find(n.position);
-        if (found != shared.end()) n.node = found->second, normals.push_back(n);
-      }
-  }
+  PetscCall(complete_normals(mesh, normals));
   // an order that does not depend on the partition, so that all ranks build the same constraints
-  std::stable_sort(normals.begin(), normals.end(), [&](const NodeNormal &a, const NodeNormal &b) {
-    const auto key = [&](const NodeNormal &n) { return std::make_tuple(priority(sources_[n.source].kind), n.source, n.normal, n.area); };
+  std::stable_sort(normals.begin(), normals.end(), [&](const NodeNormal<dim> &a, const NodeNormal<dim> &b) {
+    const auto key = [&](const NodeNormal<dim> &n) { return std::make_tuple(priority(sources_[n.source].kind), n.source, n.normal, n.area); };
     return key(a) < key(b);
   });
-  for (const NodeNormal &n : normals)
+  for (const NodeNormal<dim> &n : normals)
     std::visit(
         [&](const auto &kind) {
           if constexpr (requires { kind.template directions<dim>(n.normal); })

@@ -84,7 +84,6 @@ class Conditions {
     int node, source;
     Square<dim> matrix;         // [kg/s]
   };
-  struct NodeNormal;       // what a rank tells the others of its facets
   void add_direction(int node, int source, const Vec<dim> &direction);
   void add_contact(int node, int source, const Vec<dim> &normal, double area);
   double target(const Prescribed &c, int k, const Vec<dim> &x, double t) const;

@@ -14,9 +14,27 @@ struct Drained {
   static constexpr const char *name = "drained";
   static constexpr bool pressure = true, given = true, liquid = false, gas = false, suction = false;
 };
+struct Saturated {
+  static constexpr const char *name = "saturated";
+  static constexpr bool pressure = true, given = false, liquid = true, gas = false, suction = false;
+};
+struct Unsaturated {  // gas at rest at atmospheric pressure
+  static constexpr const char *name = "unsaturated";
+  static constexpr bool pressure = true, given = false, liquid = true, gas = false, suction = true;
+};
+struct ThreePhase {
+  static constexpr const char *name = "three-phase";
+  static constexpr bool pressure = true, given = false, liquid = true, gas = true, suction = true;
+};
+/// Velocity fields at the nodes: of the solid and of the fluids that move on their own.
+template <class Phases>
+inline constexpr int velocity_fields = 1 + Phases::liquid + Phases::gas;
 
 template <class State>
-struct Absent {};  // a distinct empty type per state, so it costs no bytes
+struct Absent {  // a distinct empty type per state, so it costs no bytes
+  template <class... Arguments>
+  explicit constexpr Absent(Arguments &&...) {}
+};
 template <bool present, class State>
 using If = std::conditional_t<present, State, Absent<State>>;
 

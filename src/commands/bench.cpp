@@ -49,12 +49,17 @@ const std::vector<std::pair<std::string, std::string>> transfers = {
 
 /// A block of soil that slumps: about 100,000 particles, 8 in a tetrahedron and 6 in a triangle.
 std::string scene_text(const BenchCase &c, const std::string &law, const std::string &transfer) {
-  const bool solid = c.dimension == 3, drained = c.phases == "drained";
+  const bool solid = c.dimension == 3, wet = c.phases != "dry";
+  const bool moves = wet && c.phases != "drained";
+  const std::string pores = moves ? "permeability = 1e-11\n" : "";
+  const std::string curves = moves && c.phases != "saturated" ? "[body.soil.retention]\ncurve = \"van_genuchten\"\nreference_suction = 5e3\nshape = 0.4\n"
+                                                                "[body.soil.relative_permeability]\ncurve = \"van_genuchten_mualem\"\nshape = 0.4\n"
+                                                              : "";
   return "phases = \"" + c.phases + "\"\ndimension = " + std::to_string(c.dimension) + "\ngravity = 9.81\n[mesh]\nsection = \"" +
          std::string(TALUS_MESHES) + "/dam.csv\"\n" + (solid ? "size = 0.091\nthickness = 1\nlayers = 0\n" : "size = 0.0165\n") +
-         "[body.soil]\nregion = \"soil\"\n" + (drained ? "porosity = 0.3\ngrain_density = 2650\n" : "density = 2000\n") +
+         "[body.soil]\nregion = \"soil\"\n" + (wet ? "porosity = 0.3\ngrain_density = 2650\n" + pores : "density = 2000\n") +
          "young_modulus = \"10 MPa\"\npoisson_ratio = 0.3\nparticles_per_cell = " + (solid ? "8" : "6") + "\nvelocity = [\"0.3\", \"0\"" +
-         (solid ? ", \"0\"" : "") + "]\n" + law + "\n" + (drained ? "[water]\ntable = [[0, 0.5], [4, 0.5]]\n" : "") +
+         (solid ? ", \"0\"" : "") + "]\n" + law + "\n" + (wet ? curves + "[water]\ntable = [[0, 0.5], [4, 0.5]]\n" : "") +
          "[boundary.base]\nkind = \"roller\"\n[boundary.left]\nkind = \"roller\"\n[boundary.right]\nkind = \"roller\"\n" +
          (solid ? "[boundary.front]\nkind = \"roller\"\n[boundary.back]\nkind = \"roller\"\n" : "") +
          "[[stage]]\nduration = 100\n[transfer]\n" + transfer + "\n";
@@ -160,7 +165,7 @@ void print_json(const std::vector<BenchCase> &cases, const std::vector<BenchScen
 }
 
 void print_line(const BenchCase &c) {
-  std::printf("%-3d %-8s %-24s %-38s %9lld %9.1f |     %6.1f %7.1f %7.1f %7.1f | %.3g\n", c.dimension, c.phases.c_str(), c.law.c_str(),
+  std::printf("%-3d %-11s %-24s %-38s %9lld %9.1f |     %6.1f %7.1f %7.1f %7.1f | %.3g\n", c.dimension, c.phases.c_str(), c.law.c_str(),
               c.transfer.c_str(), c.particles, c.rate / 1e6, 1e9 * c.breakdown.step, 1e9 * c.breakdown.release, 1e9 * c.breakdown.relocate,
               1e9 * c.breakdown.gather, 1 / c.simulated_per_wall);
   std::fflush(stdout);
@@ -175,10 +180,10 @@ struct Selected {
 std::vector<Selected> select(const std::string &only) {
   std::vector<Selected> chosen;
   for (int dimension : {2, 3})
-    for (const std::string phases : {"dry", "drained"})
+    for (const std::string phases : {"dry", "drained", "saturated", "unsaturated", "three-phase"})
       for (const auto &[law, keys] : laws)
         for (const auto &[transfer, options] : transfers) {
-          if (phases == "drained" && law != laws.back().first) continue;
+          if (phases != "dry" && law != (phases == "drained" ? laws.back().first : laws[1].first)) continue;
           const std::string label = std::to_string(dimension) + " " + phases + " " + law + " " + transfer;
           const Selected one{{dimension, phases, law, transfer, 1, 0, 0, 0, 0, {}}, keys, options};
           if (label == only) return {one};
@@ -193,7 +198,7 @@ int bench(const BenchArguments &arguments) {
   std::vector<BenchCase> cases;
   if (rank == 0 && !arguments.json) {
     std::printf("%s, %.1f GB/s a core\n\n", processor().c_str(), bandwidth() / 1e9);
-    std::printf("%-3s %-8s %-24s %-38s %9s %9s | ns: %6s %7s %7s %7s | %s\n", "dim", "phases", "law", "transfer", "particles", "M/s/core", "step",
+    std::printf("%-3s %-11s %-24s %-38s %9s %9s | ns: %6s %7s %7s %7s | %s\n", "dim", "phases", "law", "transfer", "particles", "M/s/core", "step",
                 "to_part", "relocate", "to_node", "wall s / simulated s");
   }
   for (const auto &[c, keys, options] : select(arguments.only)) {

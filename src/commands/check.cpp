@@ -131,7 +131,7 @@ void print_scales(const Needs &n) {
 
 void print_page(const Scene &scene, const Needs &needs, const std::vector<std::string> &advice) {
   std::printf("%s\n%s, %s\n\n", scene.title.empty() ? scene.file.c_str() : scene.title.c_str(),
-              scene.phases == PhaseModel::dry ? "dry" : "drained",
+              name_of(scene.phases),
               scene.dimension == 2           ? "plane strain on triangles"
               : needs.mesh.one_element_slice ? "a slice of one layer of tetrahedra"
                                              : "tetrahedra");
@@ -171,7 +171,7 @@ void print_json(const Scene &scene, const Needs &n, const std::vector<std::strin
   Object page;
   page.add("title", json::text(scene.title))
       .add("dimension", scene.dimension)
-      .add("phases", json::text(scene.phases == PhaseModel::dry ? "dry" : "drained"))
+      .add("phases", json::text(name_of(scene.phases)))
       .add("ranks", n.ranks)
       .add("mesh", Object()
                        .add("cells", static_cast<double>(n.mesh.cells))

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "commands/scales.h"
+#include "physics/pores/hyperbolicity.h"
 
 namespace talus {
 namespace {
@@ -141,6 +142,7 @@ class Adviser {
     transfer();
     dimension();
     water();
+    suction();
     return std::move(advice_);
   }
 
@@ -276,10 +278,32 @@ class Adviser {
       say("A given pore pressure is right where soil drains in the " + time + " of the stages, " + bounds +
           " (less in proportion where a stage stands for a longer time). Below " + digits(d.undrained_below, 1) +
           " m/s failure is undrained: take total-stress strengths; in between pore pressure has to be computed.");
+    else if (fluids_move(scene_.phases))
+      say("Pore water that moves is needed for k between " + digits(d.undrained_below, 1) + " m/s, below which soil stays undrained in the " + time +
+          " of the stages, and " + digits(d.drained_above, 1) + " m/s, above which phases = \"drained\" gives the same for less.");
     else
       say("Dry is right for soil without water, or with total-stress strengths; with water in its pores the soil would "
           "stay drained in " +
           time + " for " + bounds + " and undrained below " + digits(d.undrained_below, 1) + " m/s.");
+  }
+
+  /// Gas shares at which waves of some body grow without bound.
+  void suction() {
+    const bool gas_moves = scene_.phases == PhaseModel::three_phase, bishop = scene_.water.stress == PoreStress::bishop;
+    if (scene_.phases != PhaseModel::unsaturated && !gas_moves) return;
+    const Liquid liquid(scene_.water);
+    for (std::size_t b = 0; b < scene_.body.size(); ++b) {
+      const SoilPores soil(scene_.body[b], scene_.water.density * (needs_.gravity > 0 ? needs_.gravity : 9.81), scene_.water.viscosity);
+      double first = 0, last = 0;
+      for (double share = 2 * residual_gas; share < 0.99 * soil.largest_gas_share(); share *= 1.05) {
+        if (hyperbolic(soil, liquid, PoreGas(scene_.gas), constrained_modulus(needs_.bodies[b].law), scene_.body[b].grain_density, share, gas_moves, bishop)) continue;
+        if (first == 0) first = share;
+        last = share;
+      }
+      if (first > 0)
+        say("The equations of " + scene_.body[b].name + " are not hyperbolic at saturations from " + digits(1 - last, 4) + " to " + digits(1 - first, 4) +
+            " with net stress and no drag: short waves grow there unless permeability is low; set water.stress = \"bishop\", or take stiffer soil or water.");
+    }
   }
 
   const Scene &scene_;

@@ -4,6 +4,7 @@
 #include "commands/rung.h"
 #include "tests/convergence/fem_manufactured/exact.h"
 #include "tests/convergence/manufactured/exact.h"
+#include "tests/verification/closed_box/exact.h"
 #include "tests/verification/dynamic_oedometer/exact.h"
 #include "tests/verification/elastic_bar/exact.h"
 #include "tests/verification/fem_at_rest/exact.h"
@@ -14,6 +15,7 @@
 #include "tests/verification/fem_vertical_cut/exact.h"
 #include "tests/verification/footing/exact.h"
 #include "tests/verification/gravity_column/exact.h"
+#include "tests/verification/hydrostatic/exact.h"
 #include "tests/verification/incline_block/exact.h"
 #include "tests/verification/k0_column/exact.h"
 #include "tests/verification/leaving_waves/exact.h"
@@ -21,6 +23,10 @@
 #include "tests/verification/rigid_rotation/exact.h"
 #include "tests/verification/rigid_translation/exact.h"
 #include "tests/verification/spinning_block/exact.h"
+#include "tests/verification/srivastava_yeh/exact.h"
+#include "tests/verification/terzaghi/exact.h"
+#include "tests/verification/two_waves/exact.h"
+#include "tests/verification/undrained/exact.h"
 #include "tests/verification/water_table/exact.h"
 
 namespace talus {
@@ -62,6 +68,12 @@ inline constexpr LadderEntry ladder[] = {
     {"fem_cylinder", "verification", "thick cylinder that yields from its bore", rungs::fem_cylinder},
     {"fem_slope", "verification", "factor of safety of a published slope", rungs::fem_slope},
     {"fem_at_rest", "verification", "slope handed from finite elements to particles keeps still", rungs::fem_at_rest},
+    {"terzaghi", "verification", "consolidation of a saturated layer, and the water it sheds", rungs::terzaghi},
+    {"two_waves", "verification", "two waves in a saturated column, drained and under water", rungs::two_waves},
+    {"undrained", "verification", "B of undrained compression", rungs::undrained},
+    {"hydrostatic", "verification", "still water in a column that fits its mesh", rungs::hydrostatic},
+    {"closed_box", "verification", "masses of water and gas in a closed box", rungs::closed_box},
+    {"srivastava_yeh", "verification", "rain on a column of soil above a water table", rungs::srivastava_yeh},
 };
 
 }  // namespace talus

@@ -11,10 +11,11 @@ struct FieldSpec {
   int components;
   PetscDataType type;
 };
+constexpr const char *fluid_mass[] = {"liquid_mass", "gas_mass"}, *fluid_velocity[] = {"liquid_velocity", "gas_velocity"};
 constexpr int spare = 64;  // each removal zeroes the whole spare room of a swarm: keep it small
 
 template <int dim>
-std::vector<FieldSpec> field_specs(int history_count, bool affine) {
+std::vector<FieldSpec> field_specs(int history_count, bool affine, int fluids) {
   std::vector<FieldSpec> specs{{"position", dim, PETSC_DOUBLE},  {"velocity", dim, PETSC_DOUBLE},
                                {"reference", dim, PETSC_DOUBLE}, {"mass", 1, PETSC_DOUBLE},
                                {"volume", 1, PETSC_DOUBLE},      {"initial_volume", 1, PETSC_DOUBLE},
@@ -22,6 +23,7 @@ std::vector<FieldSpec> field_specs(int history_count, bool affine) {
                                {"cell", 1, PETSC_INT},           {"id", 1, PETSC_INT}};
   if (history_count) specs.push_back({"history", history_count, PETSC_DOUBLE});
   if (affine) specs.push_back({"affine", dim * dim, PETSC_DOUBLE});
+  for (int a = 0; a < fluids; ++a) specs.push_back({fluid_mass[a], 1, PETSC_DOUBLE}), specs.push_back({fluid_velocity[a], dim, PETSC_DOUBLE});
   return specs;
 }
 
@@ -40,9 +42,9 @@ bool dilates(const Law &law) {
 }  // namespace
 
 template <int dim>
-PetscErrorCode Body<dim>::create(MPI_Comm comm, const BodySource &source, Law law, bool affine) {
+PetscErrorCode Body<dim>::create(MPI_Comm comm, const BodySource &source, Law law, bool affine, int fluids) {
   PetscFunctionBeginUser;
-  source_ = &source, law_ = std::move(law), history_count_ = history_size(law_), affine_ = affine;
+  source_ = &source, law_ = std::move(law), history_count_ = history_size(law_), affine_ = affine, fluids_ = fluids;
   const bool capped = source.volume_cap > 0 || (source.volume_cap < 0 && cohesionless(law_));
   volume_cap_ = !capped ? std::numeric_limits<double>::infinity() : source.volume_cap > 0 ? source.volume_cap : 1;
   for (int h = 0; h < history_count_; ++h)
@@ -52,7 +54,7 @@ PetscErrorCode Body<dim>::create(MPI_Comm comm, const BodySource &source, Law la
   PetscCall(DMSetDimension(swarm_, dim));
   PetscCall(DMSwarmSetType(swarm_, DMSWARM_BASIC));
   PetscCall(DMSwarmInitializeFieldRegister(swarm_));
-  for (const FieldSpec &f : field_specs<dim>(history_count_, affine))
+  for (const FieldSpec &f : field_specs<dim>(history_count_, affine, fluids))
     PetscCall(DMSwarmRegisterPetscDatatypeField(swarm_, f.name, f.components, f.type));
   PetscCall(DMSwarmFinalizeFieldRegister(swarm_));
   PetscFunctionReturn(0);
@@ -88,6 +90,12 @@ PetscErrorCode Body<dim>::borrow() {
   arrays_.history = arrays_.affine = nullptr;
   if (history_count_) PetscCall(take("history", arrays_.history));
   if (affine_) PetscCall(take("affine", arrays_.affine));
+  for (int a = 0; a < 2; ++a) {
+    arrays_.fluid_mass[a] = nullptr, arrays_.fluid_velocity[a] = nullptr;
+    if (a >= fluids_) continue;
+    PetscCall(take(fluid_mass[a], arrays_.fluid_mass[a]));
+    PetscCall(take(fluid_velocity[a], arrays_.fluid_velocity[a]));
+  }
   borrowed_ = true;
   PetscFunctionReturn(0);
 }
@@ -96,7 +104,7 @@ template <int dim>
 PetscErrorCode Body<dim>::give_back() {
   PetscFunctionBeginUser;
   if (!borrowed_) PetscFunctionReturn(0);
-  for (const FieldSpec &f : field_specs<dim>(history_count_, affine_)) {
+  for (const FieldSpec &f : field_specs<dim>(history_count_, affine_, fluids_)) {
     void *array = nullptr;
     PetscCall(DMSwarmRestoreField(swarm_, f.name, nullptr, nullptr, &array));
   }
@@ -128,6 +136,7 @@ PetscErrorCode Body<dim>::sort(int cell_count) {
   permute(arrays_.stress, sizeof(double) * stress_size<dim>);
   permute(arrays_.history, sizeof(double) * history_count_);
   permute(arrays_.affine, sizeof(double) * dim * dim);
+  for (int a = 0; a < fluids_; ++a) permute(arrays_.fluid_mass[a], sizeof(double)), permute(arrays_.fluid_velocity[a], sizeof(Vec<dim>));
   permute(arrays_.cell, sizeof(PetscInt));
   permute(arrays_.id, sizeof(PetscInt));
   PetscFunctionReturn(0);
@@ -160,7 +169,7 @@ PetscErrorCode Body<dim>::keep(Archive &archive) {
   archive.keep("particles", count);
   if (archive.reading()) PetscCall(resize(count));
   PetscCall(give_back());
-  for (const FieldSpec &f : field_specs<dim>(history_count_, affine_)) {
+  for (const FieldSpec &f : field_specs<dim>(history_count_, affine_, fluids_)) {
     void *values;
     PetscCall(DMSwarmGetField(swarm_, f.name, nullptr, nullptr, &values));
     const size_t size = f.type == PETSC_INT ? sizeof(PetscInt) : sizeof(double);

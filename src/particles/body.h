@@ -24,12 +24,14 @@ struct ParticleArrays {
   Vec<dim> *position;          ///< at the last remap [m]
   Vec<dim> *velocity;          ///< at the last remap [m/s]
   Vec<dim> *reference;         ///< where displacement is counted from [m]
-  double *mass;                ///< [kg], in 2D per metre of thickness
+  double *mass;                ///< [kg], in 2D per metre of thickness; of the grains alone where fluids move on their own
   double *volume;              ///< V_p [m3]
   double *initial_volume;      ///< V_p0 [m3]
   double *stress;              ///< [stress_size] Cauchy effective stress [Pa]
   double *history;             ///< [history_size(law)] internal variables of the law
   double *affine;              ///< [dim * dim] velocity gradient carried by APIC [1/s]; null otherwise
+  double *fluid_mass[2];       ///< of liquid and gas in the pores [kg]; null where the phase model has none
+  Vec<dim> *fluid_velocity[2]; ///< their velocities [m/s]; null likewise
   PetscInt *cell;              ///< local cell
   PetscInt *id;                ///< number that does not depend on the partition
 };
@@ -37,8 +39,8 @@ struct ParticleArrays {
 template <int dim>
 class Body {
  public:
-  /// Registers the fields; `affine` adds the velocity gradient of APIC.
-  PetscErrorCode create(MPI_Comm comm, const BodySource &source, Law law, bool affine);
+  /// Registers the fields; `affine` adds the velocity gradient of APIC; `fluids` 1 the liquid, 2 liquid and gas.
+  PetscErrorCode create(MPI_Comm comm, const BodySource &source, Law law, bool affine, int fluids);
   /// Makes room for `count` particles, not yet filled.
   PetscErrorCode resize(PetscInt count);
 
@@ -70,7 +72,7 @@ class Body {
 
   const BodySource *source_ = nullptr;
   Law law_;
-  int history_count_ = 0, expansion_field_ = -1;
+  int history_count_ = 0, expansion_field_ = -1, fluids_ = 0;
   double volume_cap_ = 0;
   bool affine_ = false, borrowed_ = false;
   Dm swarm_;

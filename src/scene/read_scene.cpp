@@ -83,19 +83,29 @@ class Checks {
 
   void weight(const std::string &path, const BodySource &body) const {
     const bool grains = body.porosity > 0 && body.grain_density > 0;
-    if (scene_.phases == PhaseModel::drained && !grains)
-      reader_.complain(path, "needs porosity and grain_density, since the scene has pore water (phases = \"drained\")");
+    if (scene_.phases != PhaseModel::dry && !grains)
+      reader_.complain(path, "needs porosity and grain_density, since the scene has pore water (phases = \"" + phases() + "\")");
+    if (fluids_move(scene_.phases)) pores(path, body);
     if (body.density > 0 && body.grain_density > 0)
       reader_.complain(path + ".density", "is given twice: give density, or porosity and grain_density");
     if (!(body.density > 0) && !grains)
       reader_.complain(path, "needs a weight: give density, or porosity and grain_density");
   }
 
+  void pores(const std::string &path, const BodySource &body) const {
+    if (!(body.permeability > 0) && !(body.hydraulic_conductivity > 0))
+      reader_.complain(path, "needs permeability [m2] or hydraulic_conductivity [m/s], since pore water moves (phases = \"" + phases() + "\")");
+    if (scene_.phases != PhaseModel::saturated && !body.retention.reader)
+      reader_.complain(path, "needs a retention curve, since its saturation may change (phases = \"" + phases() + "\"): add [" + path + ".retention] with curve");
+  }
+
   void water() const {
-    const bool drained = scene_.phases == PhaseModel::drained;
+    const bool drained = scene_.phases == PhaseModel::drained, dry = scene_.phases == PhaseModel::dry;
     if (drained && !scene_.water.given)
       reader_.complain("phases", "needs pore water: add a table [water] with its table of points [x, elevation]");
-    if (!drained && scene_.water.given)
+    if (scene_.gas.given && scene_.phases != PhaseModel::three_phase)
+      reader_.complain("gas", "has no effect, since phases = \"" + phases() + "\" has no gas that moves; set phases = \"three-phase\"");
+    if (dry && scene_.water.given)
       reader_.complain("water", "has no effect, since phases = \"dry\" has no pore water; set phases = \"drained\"");
     const std::vector<std::vector<double>> &table = scene_.water.table;
     for (std::size_t i = 0; i < table.size(); ++i) {
@@ -157,6 +167,7 @@ class Checks {
                                  " (dimension = " + dimension() + ")");
   }
 
+  std::string phases() const { return name_of(scene_.phases); }
   std::string dimension() const { return std::to_string(scene_.dimension); }
 
   Scene &scene_;

@@ -15,7 +15,14 @@ namespace talus {
 /// A number with this initial value has no default: the scene must give it.
 inline constexpr double required = std::numeric_limits<double>::quiet_NaN();
 
-enum class PhaseModel { dry, drained };
+enum class PhaseModel { dry, drained, saturated, unsaturated, three_phase };
+/// As scenes name it.
+inline const char *name_of(PhaseModel phases) {
+  constexpr const char *names[] = {"dry", "drained", "saturated", "unsaturated", "three-phase"};
+  return names[static_cast<int>(phases)];
+}
+/// Do pore fluids move on their own?
+inline bool fluids_move(PhaseModel phases) { return phases != PhaseModel::dry && phases != PhaseModel::drained; }
 
 /// A box in which cells or particles are finer.
 struct RefineBox {
@@ -124,6 +131,7 @@ struct BoundarySource {
 };
 
 enum class Compression { linear, exponential };
+enum class PoreStress { net, bishop };
 
 /// Pore water given as a function of place and time (phase model `drained`).
 struct Water {
@@ -132,6 +140,8 @@ struct Water {
   double bulk_modulus = 2.2e9;               ///< K_l [Pa]
   double viscosity = 1e-3;                   ///< mu_l [Pa s]
   Compression compression = Compression::linear;  ///< density over pressure
+  PoreStress stress = PoreStress::net;       ///< what the pores take off the total stress
+  Function suction;                          ///< above the table, function of x, y, z [Pa]; not given: hydrostatic
   std::vector<std::vector<double>> table;    ///< polyline x, elevation [m]; pressure is hydrostatic below it
   Function level = 0.0;                      ///< added to the elevation of the table, function of t [m]
   Function excess = 0.0;                     ///< added to the hydrostatic pressure, function of x, y, z, t and `table` [Pa]
@@ -143,6 +153,8 @@ struct Water {
     v.number("bulk_modulus", bulk_modulus, pascal, Range{1e3, 1e11}, "bulk modulus K_l of the pore water");
     v.number("viscosity", viscosity, pascal_second, Range{1e-8, 1e3}, "dynamic viscosity of the pore water");
     v.choice("compression", compression, {{"linear", Compression::linear}, {"exponential", Compression::exponential}}, "density over pressure P: rho_0 (1 + P / K_l) or rho_0 exp(P / K_l)");
+    v.choice("stress", stress, {{"net", PoreStress::net}, {"bishop", PoreStress::bishop}}, "what pores take off the total stress: the larger of the pressures of liquid and gas, or their mean weighted by saturation");
+    v.function("suction", suction, pascal, Range{0, 1e9}, "initial suction above the water table, function of x, y, z; without it suction is hydrostatic");
     v.points("table", table, metre, "water table: polyline of points [x, elevation]; pressure is hydrostatic below it");
     v.function("level", level, metre, Range{-1e4, 1e4}, "rise of the whole water table, function of t");
     v.function("excess", excess, pascal, Range{-1e9, 1e9}, "excess over the hydrostatic pressure, function of x, y, z, t and `table` (elevation of the water table at x)");
@@ -183,6 +195,7 @@ struct Stage {
   std::string failure_point;    ///< failure: named output point that is watched
   double failure_speed = 0.01;  ///< failure: its speed passes this [m/s] ...
   double failure_time = 1;      ///< ... and keeps rising for this long [s]
+  bool pore_flow = true;        ///< pore fluids move; false: pore pressures are those of [water], as in a drained scene
   bool softening = true;        ///< soil remembers plastic strain; false: it keeps the strength it has
   bool hold_loads = false;      ///< functions of time stand still: their t counts only stages that do not hold loads
   bool reset_displacement = false;  ///< displacements, velocities and plastic strain are zeroed when the stage ends
@@ -205,6 +218,7 @@ struct Stage {
     v.text("failure_point", failure_point, "failure: name of the output point that is watched");
     v.number("failure_speed", failure_speed, metre_per_second, Range{0, 1e6}, "failure: the point's speed passes this");
     v.number("failure_time", failure_time, second, Range{0, 1e9}, "failure: and keeps rising for this long");
+    v.flag("pore_flow", pore_flow, "pore fluids move; without it pore pressures are those of [water], with the ramp, as for building up initial stress");
     v.flag("softening", softening, "soil remembers plastic strain; without it soil keeps the strength it has, as for building up initial stress");
     v.flag("hold_loads", hold_loads, "functions of time stand still: their t counts only stages that do not hold loads");
     v.flag("reset_displacement", reset_displacement, "zero displacement, velocity and plastic strain when the stage ends");
@@ -219,6 +233,7 @@ struct Stage {
 enum class Velocity { flip, pic, apic };
 enum class Integration { blended, particle, mixed, cell };
 enum class Locking { patches, none, nodal };
+enum class PoreSmoothing { nodal, none };
 
 /// How particles and nodes exchange what they know (docs/theory section 4).
 struct Transfer {
@@ -230,6 +245,7 @@ struct Transfer {
   bool average_stress = true; ///< one stress per cell and body, averaged at each remap
   Locking locking = Locking::patches;
   int patch_size = 0;         ///< cells; 0: 2 triangles, 8 tetrahedra, 4 in a one-element slice
+  PoreSmoothing pore_smoothing = PoreSmoothing::nodal;  ///< against the noise of equal-order elements in saturated soil
   double remap_interval = 0.1;  ///< remap when a node has moved this share of its mean edge; 0: every step
   template <class Visitor>
   void fields(Visitor &&v) {
@@ -241,6 +257,7 @@ struct Transfer {
     v.flag("average_stress", average_stress, "one stress per cell and body, averaged at each remap");
     v.choice("locking", locking, {{"patches", Locking::patches}, {"none", Locking::none}, {"nodal", Locking::nodal}}, "cure of volumetric locking");
     v.integer("patch_size", patch_size, Range{0, 64}, "cells of a patch; 0 is 2 triangles, 8 tetrahedra, 4 in a one-element slice");
+    v.choice("pore_smoothing", pore_smoothing, {{"nodal", PoreSmoothing::nodal}, {"none", PoreSmoothing::none}}, "smoothing of pore pressures and fluid volumes among saturated cells, over their nodes");
     v.number("remap_interval", remap_interval, one, Range{0, 0.3}, "remap when a node of a filled cell has moved this share of its mean edge; 0 is every step");
   }
 };
@@ -312,13 +329,13 @@ struct Scene {
   template <class Visitor>
   void fields(Visitor &&v) {
     v.text("title", title, "one line that says what the scene shows");
-    v.choice("phases", phases, {{"dry", PhaseModel::dry}, {"drained", PhaseModel::drained}}, "phase model");
+    v.choice("phases", phases, {{"dry", PhaseModel::dry}, {"drained", PhaseModel::drained}, {"saturated", PhaseModel::saturated}, {"unsaturated", PhaseModel::unsaturated}, {"three-phase", PhaseModel::three_phase}}, "phase model");
     v.integer("dimension", dimension, Range{2, 3}, "2: plane strain on triangles, 3: tetrahedra");
     v.point("gravity", gravity, metre_per_second_squared, "acceleration of gravity, one component per dimension; one number acts down the y axis");
     v.table("mesh", mesh, "background mesh");
     v.named("body", body, "soils, [body.NAME]");
     v.named("boundary", boundary, "conditions on named groups of facets, [boundary.NAME]");
-    v.table("water", water, "pore water of the phase model drained");
+    v.table("water", water, "pore water");
     v.table("gas", gas, "pore gas");
     v.list("stage", stage, "stages in their order, [[stage]]");
     v.deferred_table("integrator", integrator, "time integration");

@@ -43,8 +43,10 @@ void Simulation<dim, Phases>::check_boundaries(const std::vector<typename Condit
   for (const auto &source : sources) {
     const std::string path = "boundary." + source.name;
     for (const std::string &group : source.groups)
-      if (!mesh_.has_group(group))
+      if (!mesh_.has_group(group) && !(concerns_water(source.kind) && group == free_surface))
         scene_.complain(path + ".group", "must name groups of facets; the mesh has no \"" + group + "\"; " + suggestion(group, mesh_.group_names()));
+    if (concerns_water(source.kind) && !Phases::liquid)
+      scene_.complain(path, std::string("is a boundary of moving pore water, but phases = \"") + Phases::name + "\" has none; set phases = \"saturated\", \"unsaturated\" or \"three-phase\"");
     const auto check_vector = [&](const char *key, const std::vector<Function> &value) {
       if (!value.empty() && value.size() != dim) scene_.complain(path + "." + key, "must have " + std::to_string(dim) + " components");
     };

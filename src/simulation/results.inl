@@ -17,9 +17,13 @@ void Simulation<dim, Phases>::name_columns() {
     for (int d = 0; d < dim; ++d) history_.names.push_back(point.name + "_" + axis[d] + "_m");
     history_.names.push_back(point.name + "_displacement_m");
     history_.names.push_back(point.name + "_velocity_m_s");
-    if (Phases::given) history_.names.push_back(point.name + "_pore_pressure_Pa");
+    if (Phases::pressure) history_.names.push_back(point.name + "_pore_pressure_Pa");
+    if (Phases::gas) history_.names.push_back(point.name + "_gas_pressure_Pa");
+    if (Phases::suction) history_.names.push_back(point.name + "_suction_Pa"), history_.names.push_back(point.name + "_saturation");
   }
   for (const char *name : {"kinetic_J", "strain_J", "potential_J", "mass_kg", "particles", "load_time_s"}) history_.names.push_back(name);
+  for (int a = 0; a + 1 < velocity_fields<Phases>; ++a)
+    for (const char *name : {"_kg", "_out_kg", "_given_kg", "_error_kg"}) history_.names.push_back(std::string(a ? "gas" : "water") + name);
   // a loaded face shows how far it went, every other boundary the force by which it holds the soil
   for (size_t s = 0; s < conditions_.sources().size(); ++s)
     for (int d = 0; d < dim; ++d)
@@ -51,6 +55,7 @@ double Simulation<dim, Phases>::longest_duration() const {
 template <int dim, class Phases>
 Snapshot Simulation<dim, Phases>::snapshot() {
   if (options_.gauss_points && in_statics_) return gauss_points();
+  if constexpr (Phases::liquid) require(motion_->begin(time_));  // pressures follow from what cells hold
   Snapshot s;
   s.time = time_, s.step = steps_, s.stage = stage_name_;
   const StepStatistics &sums = integrator_->statistics();
@@ -68,7 +73,10 @@ Snapshot Simulation<dim, Phases>::snapshot() {
   column("stress", "Pa", Phases::pressure ? "effective stress, positive in tension" : "stress, positive in tension", stress_size<dim>);
   column("volume", "m3", "volume of the particle", 1);
   column("mass", "kg", "mass of the particle", 1);
-  if (Phases::given) column("pore_pressure", "Pa", "pore pressure, positive in compression", 1);
+  if (Phases::pressure) column("pore_pressure", "Pa", "pore pressure, positive in compression", 1);
+  if (Phases::gas) column("gas_pressure", "Pa", "gauge pressure of the pore gas", 1);
+  if (Phases::suction) column("suction", "Pa", "gas less liquid pressure, where positive", 1), column("saturation", "-", "degree of saturation", 1);
+  if (Phases::liquid) column("porosity", "-", "porosity", 1);
   const size_t first_history = s.columns.size();
   for (const auto &body : bodies_)
     for (const HistoryField &field : history_fields(body->law()))
@@ -93,9 +101,17 @@ Snapshot Simulation<dim, Phases>::snapshot() {
       Vec<dim> u;
       for (int d = 0; d < dim; ++d) u[d] = x[d] - p.reference[i][d];
       put(x.data(), dim), put(u.data(), dim), put(v.data(), dim), put(stress, stress_size<dim>), put(&volume, 1), put(&p.mass[i], 1);
-      if (Phases::given) {
+      if constexpr (Phases::given) {
         const double pressure = motion_->pore_pressure(x);
         put(&pressure, 1);
+      }
+      if constexpr (Phases::liquid) {
+        const PoreReport pores = motion_->pores(*bodies_[b], i);
+        put(&pores.liquid, 1);
+        if (Phases::gas) put(&pores.gas, 1);
+        if (Phases::suction) put(&pores.suction, 1), put(&pores.saturation, 1);
+        const double porosity = 1 - p.mass[i] / (bodies_[b]->source().grain_density * volume);
+        put(&porosity, 1);
       }
       for (size_t c = first_history; c < s.columns.size(); ++c) {
         double value = std::numeric_limits<double>::quiet_NaN();
@@ -125,14 +141,18 @@ void Simulation<dim, Phases>::write_history() {
     const int i = find(point);
     Vec<dim> x{}, v{};
     double displacement = 0, pressure = 0;
+    [[maybe_unused]] If<Phases::liquid, PoreReport> pores{};
     if (i >= 0) {
       motion_->present(*bodies_[point.body], i, &x, &v);
       displacement = (map<dim>(x) - map<dim>(bodies_[point.body]->particles().reference[i])).norm();
-      pressure = motion_->pore_pressure(x);
+      if constexpr (Phases::given) pressure = motion_->pore_pressure(x);
+      if constexpr (Phases::liquid) pores = motion_->pores(*bodies_[point.body], i), pressure = pores.liquid;
     }
     mine.insert(mine.end(), x.begin(), x.end());
     mine.push_back(displacement), mine.push_back(map<dim>(v).norm());
-    if (Phases::given) mine.push_back(pressure);
+    if (Phases::pressure) mine.push_back(pressure);
+    if constexpr (Phases::gas) mine.push_back(pores.gas);
+    if constexpr (Phases::suction) mine.push_back(pores.suction), mine.push_back(pores.saturation);
   }
   double potential = 0;
   for (const auto &body : bodies_) {
@@ -150,6 +170,16 @@ void Simulation<dim, Phases>::write_history() {
   require(motion_->balance(time_, &sums));
   row.insert(row.end() - 1, {sums.kinetic, sums.strain});
   row.push_back(total_mass_), row.push_back(static_cast<double>(particle_count_)), row.push_back(load_time_);
+  if constexpr (Phases::liquid) {
+    FluidLedger fluids[velocity_fields<Phases> - 1];
+    require(motion_->fluid_ledger(fluids));
+    if (first_ledger_.empty())
+      for (const FluidLedger &fluid : fluids) first_ledger_.push_back(fluid.stored);
+    for (int a = 0; a + 1 < velocity_fields<Phases>; ++a) {
+      const double error = fluids[a].stored + fluids[a].out - fluids[a].given - first_ledger_[a];
+      row.insert(row.end(), {fluids[a].stored, fluids[a].out, fluids[a].given, error});
+    }
+  }
   std::vector<Vec<dim>> impulses, faces;
   require(conditions_.take_impulses(comm_, impulses));
   require(conditions_.face_displacements(comm_, faces));

@@ -23,6 +23,13 @@ Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOption
   for (BoundarySource &b : scene.boundary) sources.push_back({b.name, b.group, read_boundary(b.kind)});
   integrator_settings_ = read_integrator(scene.integrator);
   integrator_ = make_integrator(integrator_settings_);
+  if constexpr (Phases::liquid) {
+    if (!std::holds_alternative<EulerSettings>(integrator_settings_))
+      scene.complain("integrator.kind", "must be \"euler\" where pore fluids move; the others take phases = \"dry\" or \"drained\"");
+    for (size_t k = 0; k < scene.stage.size(); ++k)
+      if (scene.stage[k].kind == StageKind::quasi_static)
+        scene.complain("stage." + std::to_string(k) + ".kind", "must be \"dynamic\" where pore fluids move; quasi-static stages take phases = \"dry\" or \"drained\"");
+  }
 
   std::vector<std::pair<std::string, double>> weights;
   for (const BodySource &body : scene.body)
@@ -40,6 +47,7 @@ Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOption
   check_boundaries(sources);
   require(conditions_.setup(mesh_, std::move(sources)));
   seed_bodies();
+  set_loading(scene_.stage.front(), 0);  // under which the first state is gathered
   follow_points();
   present_.assign(scene.body.size(), 1);
   for (const Stage &stage : scene.stage)
@@ -56,8 +64,8 @@ Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOption
 
 template <int dim, class Phases>
 double Simulation<dim, Phases>::soil_density(const BodySource &source, const Vec<dim> &x, double t) const {
-  if (source.density > 0) return source.density;
-  double density = (1 - source.porosity) * source.grain_density;
+  if (source.density > 0 && !Phases::liquid) return source.density;
+  double density = (1 - source.porosity) * source.grain_density;  // where fluids move on their own, particles' mass is that of the grains
   if constexpr (Phases::given)
     density += source.porosity * scene_.water.density * (pressure_.below_table(x, t) ? 1 : source.saturation);
   return density;
@@ -76,7 +84,7 @@ void Simulation<dim, Phases>::seed_bodies() {
     const BodySource &source = scene_.body[b];
     bodies_.push_back(std::make_unique<Body<dim>>());
     Body<dim> &body = *bodies_.back();
-    require(body.create(comm_, source, laws_[b], scene_.transfer.velocity == Velocity::apic));
+    require(body.create(comm_, source, laws_[b], scene_.transfer.velocity == Velocity::apic, velocity_fields<Phases> - 1));
     seed<dim>(body, mesh_, stride, [&](const Vec<dim> &x) { return soil_density(source, x, 0); });
     double sums[2] = {static_cast<double>(body.particles().count), 0}, totals[2];
     sums[1] = std::accumulate(body.particles().mass, body.particles().mass + body.particles().count, 0.);
@@ -87,7 +95,10 @@ void Simulation<dim, Phases>::seed_bodies() {
     particle_count_ += static_cast<long long>(totals[0]), total_mass_ += totals[1];
     const double density = soil_density(source, Vec<dim>{}, 0);
     wave_speed = std::max(wave_speed, std::sqrt(constrained_modulus(body.law()) / density));
-    critical_.emplace_back(mesh_, body.law(), density);
+    PoreStiffness pores{source.porosity, {}};
+    if constexpr (Phases::liquid) pores.fluids.push_back({scene_.water.density, scene_.water.bulk_modulus});
+    if constexpr (Phases::gas) pores.fluids.push_back({scene_.gas.density, scene_.gas.bulk_modulus});
+    critical_.emplace_back(mesh_, body.law(), density, pores);
     if (!source.displacement.empty())
       for (int i = 0; i < body.particles().count; ++i) movers_[b].push_back(i);
     bool lost = false;
@@ -100,9 +111,9 @@ void Simulation<dim, Phases>::seed_bodies() {
   const double relaxation = scene_.transfer.relaxation * mesh_.report().smallest_altitude / wave_speed;
   constexpr double friction_delay = 10;  // in units of altitude over wave speed, docs/theory (6.2)
   conditions_.set_friction_delay(friction_delay * mesh_.report().smallest_altitude / wave_speed);
-  motion_ = std::make_unique<SoilMotion<dim, Phases>>(mesh_, bodies_, conditions_, scene_.transfer, scene_.water, relaxation,
-                                                      total_mass_, particle_count_,
+  motion_ = std::make_unique<SoilMotion<dim, Phases>>(mesh_, bodies_, conditions_, scene_, relaxation, total_mass_, particle_count_,
                                                       std::hypot(scene_.gravity[0], scene_.gravity[1]));
+  if constexpr (Phases::liquid) require(motion_->setup_pores(true));
 }
 
 template <int dim, class Phases>

@@ -153,6 +153,7 @@ class Simulation final : public AnySimulation {
   double time_ = 0, load_time_ = 0, critical_step_ = 0, shrink_ = 1, impulse_time_ = 0, last_step_ = 0;
   long long steps_ = 0, remaps_ = 0, particle_count_ = 0, since_sort_ = 0;
   double total_mass_ = 0;
+  std::vector<double> first_ledger_;  ///< fluid masses at the start [kg]
   bool hold_loads_ = false, remap_due_ = false;
   std::string watched_;
   StageState stage_;

@@ -70,6 +70,7 @@ void Simulation<dim, Phases>::set_loading(const Stage &stage, double stage_time)
   motion_->loading.time = load_time_;
   motion_->loading.damping = stage.damping;
   motion_->loading.softening = stage.softening;
+  motion_->loading.pore_flow = stage.pore_flow;
   hold_loads_ = stage.hold_loads;
 }
 
@@ -188,6 +189,7 @@ void Simulation<dim, Phases>::reset_displacement() {
     const auto fields = history_fields(body->law());
     for (size_t k = 0; k < fields.size(); ++k)
       for (int i = 0; !fields[k].kept && i < p.count; ++i) p.history[i * fields.size() + k] = 0;
+    for (int a = 0; a + 1 < velocity_fields<Phases>; ++a) std::fill_n(p.fluid_velocity[a], p.count, Vec<dim>{});
   }
   critical_step_ = 0, shrink_ = 1;
   integrator_->restart();

@@ -18,7 +18,6 @@ template <int dim>
 FilledGrid<dim>::FilledGrid(const BackgroundMesh<dim> &mesh) : mesh_(&mesh), halo_(mesh.halo) {
   const int nodes = mesh.node_count(), cells = mesh.cell_count();
   compact_node_.assign(nodes, -1), compact_cell_.assign(cells, -1);
-  staging_.assign(halo_.empty() ? 0 : static_cast<size_t>(nodes) * (dim * dim + 1), 0);
   mesh_node.resize(nodes), mass.resize(nodes), position.resize(nodes);
   mesh_cell.resize(cells), shape.resize(cells), mass_matrix.resize(cells), nodal_share.resize(cells);
   size.resize(cells), patch.resize(cells), element_size_.reserve(cells);
@@ -59,6 +58,7 @@ int FilledGrid<dim>::enter_cell(int cell) {
 template <int dim>
 void FilledGrid<dim>::enter_shared_nodes() {
   if (halo_.empty()) return;
+  staging_.resize(std::max(staging_.size(), compact_node_.size()));
   for (int node : halo_.shared_nodes()) staging_[node] = compact_node_[node] >= 0;
   (void)halo_.sum(staging_.data(), 1);
   for (int node : halo_.shared_nodes())
@@ -69,6 +69,7 @@ template <int dim>
 PetscErrorCode FilledGrid<dim>::sum(double *values, int width) {
   PetscFunctionBeginUser;
   if (halo_.empty()) PetscFunctionReturn(0);
+  staging_.resize(std::max(staging_.size(), compact_node_.size() * width));  // once for the widest sum
   for (int node : halo_.shared_nodes())
     for (int k = 0; k < width; ++k)
       staging_[node * width + k] = compact_node_[node] < 0 ? 0 : values[compact_node_[node] * width + k];

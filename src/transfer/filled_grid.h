@@ -38,7 +38,7 @@ class FilledGrid {
   int find_node(int mesh_node) const { return compact_node_[mesh_node]; }
   /// Enters nodes that only other ranks have filled; collective.
   void enter_shared_nodes();
-  /// Adds up `width` <= dim * dim + 1 doubles per compact node over the ranks that share the node; collective.
+  /// Adds up `width` doubles per compact node over the ranks that share the node; collective.
   PetscErrorCode sum(double *values, int width);
   /// Nodes and cells with what they carry.
   void keep(Archive &archive);

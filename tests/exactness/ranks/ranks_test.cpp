@@ -71,7 +71,8 @@ void expect_the_same(const std::string &file, const std::vector<std::string> &ov
 }
 
 const std::string column = std::string(TALUS_GALLERY) + "/column/scene.toml",
-                  slope = std::string(TALUS_EXACTNESS) + "/ranks/slope.toml";
+                  slope = std::string(TALUS_EXACTNESS) + "/ranks/slope.toml",
+                  box = std::string(TALUS_EXACTNESS) + "/../verification/closed_box/scene.toml";
 
 TEST(Ranks, column_collapse_is_the_same) { expect_the_same(column, {"mesh.size=0.01"}); }
 TEST(Ranks, column_collapse_is_the_same_with_a_remap_in_every_step) {
@@ -92,6 +93,10 @@ TEST(Ranks, column_collapse_is_the_same_in_3d) {
 }
 TEST(Ranks, column_collapse_is_the_same_under_error_control) {
   expect_the_same(column, {"mesh.size=0.01", "integrator.kind=arkode", "integrator.velocity_tolerance=1e-5"});
+}
+TEST(Ranks, soil_and_water_in_a_closed_box_are_the_same) { expect_the_same(box, {}); }
+TEST(Ranks, soil_water_and_gas_in_a_closed_box_are_the_same) {
+  expect_the_same(box, {"phases=three-phase", "water.table=[[0, 0.5], [1, 0.5]]"});
 }
 TEST(Ranks, drained_slope_of_two_soils_is_the_same) { expect_the_same(slope, {}); }
 

@@ -1,0 +1,20 @@
+#pragma once
+#include "base/units.h"
+#include "scene/function.h"
+
+namespace talus {
+
+/// Volume of liquid that enters per area and time, whatever pressure that takes.
+struct Flux {
+  static constexpr const char *name = "flux";
+  static constexpr const char *meaning = "liquid pumped through the face";
+  static constexpr bool water = true;
+  Function inflow = 0.0;
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.function("inflow", inflow, metre_per_second, {-1e3, 1e3}, "volume of liquid that enters per area and time, function of x, y, z, t; negative when it leaves");
+  }
+  double forced(double x, double y, double z, double t) const { return inflow(x, y, z, t); }
+};
+
+}  // namespace talus

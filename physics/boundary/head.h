@@ -1,0 +1,25 @@
+#pragma once
+#include <algorithm>
+
+#include "base/units.h"
+#include "scene/function.h"
+
+namespace talus {
+
+/// Open water up to a level: hydrostatic pressure on the face below it, with the water's weight; above it a seepage face.
+struct Head {
+  static constexpr const char *name = "head";
+  static constexpr const char *meaning = "open water up to a level, which rests on the face; above it a seepage face";
+  static constexpr bool water = true;
+  Function level = 0.0;
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.function("level", level, metre, {-1e5, 1e5}, "elevation y of the water level, function of t");
+  }
+  double outside(double, double y, double, double t, double unit_weight) const { return std::max(0., unit_weight * (level(t) - y)); }
+  double load(double pressure) const { return pressure; }
+  /// Volume that may enter per area and time where the face is dry [m/s].
+  double supply(double, double, double, double) const { return 0; }
+};
+
+}  // namespace talus

@@ -1,0 +1,120 @@
+#include "physics/boundary/pore_conditions.h"
+
+#include <cmath>
+#include <set>
+#include <tuple>
+
+namespace talus {
+
+template <int dim>
+PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const std::vector<Source> &sources, bool sealed) {
+  PetscFunctionBeginUser;
+  sources_ = &sources, sealed_ = sealed;
+  std::set<std::pair<int, int>> open;  // facets with water beyond
+  std::vector<NodeNormal<dim>> normals;
+  for (int s = 0; s < static_cast<int>(sources.size()); ++s) {
+    if (!concerns_water(sources[s].kind) || std::holds_alternative<Impermeable>(sources[s].kind)) continue;
+    groups_.emplace_back(s, std::vector<Facet<dim>>{});
+    for (const std::string &group : sources[s].groups) {
+      if (group == free_surface) {
+        rain_ = s;
+        continue;
+      }
+      for (const Facet<dim> &f : mesh.facets(group)) groups_.back().second.push_back(f), open.emplace(f.cell, f.face);
+    }
+  }
+  for (int s = 0; s < static_cast<int>(sources.size()); ++s) {
+    const Boundary &kind = sources[s].kind;
+    const bool holds = std::holds_alternative<Impermeable>(kind) || !(concerns_water(kind) || std::holds_alternative<Traction>(kind) || std::holds_alternative<NonReflecting>(kind));
+    if (!holds) continue;
+    for (const std::string &group : sources[s].groups)
+      for (const Facet<dim> &f : mesh.facets(group))
+        if (!open.count({f.cell, f.face}))
+          for (int node : f.node) normals.push_back({s, node, mesh.position[node], f.normal, f.area / dim});
+  }
+  PetscCall(complete_normals(mesh, normals));
+  std::stable_sort(normals.begin(), normals.end(), [](const auto &a, const auto &b) { return std::tie(a.source, a.normal, a.area) < std::tie(b.source, b.normal, b.area); });
+  wall_of_node_.assign(mesh.node_count(), -1);
+  for (const NodeNormal<dim> &n : normals) {
+    int &index = wall_of_node_[n.node];
+    if (index < 0) index = static_cast<int>(walls_.size()), walls_.emplace_back();
+    Wall &wall = walls_[index];
+    Vec<dim> rest = n.normal;
+    double length = 0;
+    for (int k = 0; k < wall.count; ++k) {
+      double along = 0;
+      for (int d = 0; d < dim; ++d) along += rest[d] * wall.normal[k][d];
+      for (int d = 0; d < dim; ++d) rest[d] -= along * wall.normal[k][d];
+    }
+    for (double r : rest) length += r * r;
+    constexpr double same_direction = 0.05;  // sine of 3 degrees
+    if (wall.count == dim || std::sqrt(length) < same_direction) continue;
+    for (double &r : rest) r /= std::sqrt(length);
+    wall.normal[wall.count++] = rest;
+  }
+  nodal_.resize(mesh.node_count()), taken_.resize(mesh.node_count());
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+void PoreConditions<dim>::add_face(int node, int source, const Vec<dim> &area) {
+  double length = 0;
+  for (double a : area) length += a * a;
+  Face face{node, source, area, area};
+  for (double &n : face.normal) n /= std::sqrt(length);
+  faces_.push_back(face);
+}
+
+template <int dim>
+PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<double> &filling, const std::vector<Vec<dim>> &surface) {
+  PetscFunctionBeginUser;
+  const BackgroundMesh<dim> &mesh = grid.mesh();
+  const int nodes = grid.node_count();
+  active_walls_.clear(), faces_.clear();
+  std::fill_n(taken_.begin(), nodes, Vec<dim>{});
+  for (int i = 0; i < nodes; ++i) {
+    const int index = wall_of_node_[grid.mesh_node[i]];
+    if (index >= 0) active_walls_.push_back({i, &walls_[index]});
+  }
+  const auto large = [&](int node, const Vec<dim> &area, double least) {
+    double square = 0;
+    for (double a : area) square += a * a;
+    const double edge = mesh.mean_edge[grid.mesh_node[node]];
+    return std::sqrt(square) > least * (dim == 2 ? edge : edge * edge);
+  };
+  for (const auto &[source, facets] : groups_) {
+    std::fill_n(nodal_.begin(), nodes, Vec<dim>{});
+    for (const Facet<dim> &f : facets) {
+      const int cell = grid.find_cell(f.cell);
+      if (cell < 0) continue;
+      for (int node : f.node)
+        for (int d = 0; d < dim; ++d) nodal_[grid.find_node(node)][d] += std::min(1., filling[cell]) * f.area / dim * f.normal[d];
+    }
+    PetscCall(grid.sum(nodal_[0].data(), dim));
+    for (int i = 0; i < nodes; ++i)
+      if (large(i, nodal_[i], 1e-9)) {
+        add_face(i, source, nodal_[i]);
+        for (int d = 0; d < dim; ++d) taken_[i][d] += nodal_[i][d];
+      }
+  }
+  for (int i = 0; i < nodes; ++i) {
+    Vec<dim> rest = surface[i];
+    for (int d = 0; d < dim; ++d) rest[d] -= taken_[i][d];
+    const int index = wall_of_node_[grid.mesh_node[i]];
+    for (int k = 0; index >= 0 && k < walls_[index].count; ++k) {
+      const Vec<dim> &n = walls_[index].normal[k];
+      double along = 0;
+      for (int d = 0; d < dim; ++d) along += rest[d] * n[d];
+      for (int d = 0; d < dim; ++d) rest[d] -= along * n[d];
+    }
+    constexpr double least = 0.3, nothing = 1e-10;  // of an edge or its square: less is a gap between particles, which nothing passes
+    if (large(i, rest, least)) add_face(i, rain_, rest);
+    else if (large(i, rest, nothing)) add_face(i, gap, rest);
+  }
+  PetscFunctionReturn(0);
+}
+
+template class PoreConditions<2>;
+template class PoreConditions<3>;
+
+}  // namespace talus

@@ -1,0 +1,116 @@
+#pragma once
+/// What boundaries do to the pore fluids, docs/theory/pores.md section 5. Faces that hold the soil, and `impermeable` ones, let no fluid pass.
+/// Everywhere else the atmosphere's pressure acts, on the soil's surface where it is now: the sum of w grad N at a node is the surface's area
+/// vector there. Where it is small there is a gap between particles, which nothing passes. The group name `free_surface` in a scene stands for that surface.
+#include <string>
+#include <vector>
+
+#include "physics/boundary/conditions.h"
+#include "physics/boundary/node_normals.h"
+
+namespace talus {
+
+inline constexpr const char *free_surface = "free_surface";
+
+/// What a node has of the liquid, for boundaries that limit its flux.
+struct LiquidAtNode {
+  double mass, volume;  ///< m_l [kg], V [m3]
+};
+
+template <int dim>
+class PoreConditions {
+ public:
+  using Source = typename Conditions<dim>::Source;
+  /// `sealed`: a surface without a boundary lets water out, not in. Collective.
+  PetscErrorCode setup(const BackgroundMesh<dim> &mesh, const std::vector<Source> &sources, bool sealed);
+  /// Picks nodes and faces of the filled grid; `surface` [node] is the sum of w grad N over all cells [m2]. Collective.
+  PetscErrorCode begin(FilledGrid<dim> &grid, const std::vector<double> &filling, const std::vector<Vec<dim>> &surface);
+
+  /// Calls put(node, P, area, load) for every face with a pressure P beyond it [Pa]; `load` presses on the skeleton [Pa].
+  template <class Put>
+  void pressures(double t, const FilledGrid<dim> &grid, double unit_weight, Put &&put) const {
+    for (const Face &f : faces_) {
+      if (f.source < 0) continue;
+      const Vec<dim> &x = grid.position[f.node];
+      std::visit(
+          [&](const auto &kind) {
+            if constexpr (requires { kind.load(0.); }) {
+              const double p = kind.outside(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t, unit_weight);
+              put(f.node, p, f.area, kind.load(p));
+            }
+          },
+          (*sources_)[f.source].kind);
+    }
+  }
+  /// Velocities of liquid and, if not null, gas relative to the solid's: no passage through walls, no more inflow than is supplied. `liquid_at(node)`
+  /// is LiquidAtNode; `density` that of the liquid beyond [kg/m3].
+  template <class At>
+  void constrain(double t, const FilledGrid<dim> &grid, double density, double unit_weight, At &&liquid_at, const Vec<dim> *solid, Vec<dim> *liquid,
+                 Vec<dim> *gas) const {
+    for (const Face &f : faces_) {
+      double least = -1e300, most = 1e300;  // of the volume that leaves per area and time
+      if (f.source == gap) {
+        least = most = 0;
+      } else if (f.source == atmosphere) {
+        if (sealed_) least = 0;
+      } else {
+        const Vec<dim> &x = grid.position[f.node];
+        const double z = dim == 3 ? x[dim - 1] : 0;
+        std::visit(
+            [&](const auto &kind) {
+              if constexpr (requires { kind.supply(0., 0., 0., 0.); })
+                if (kind.outside(x[0], x[1], z, t, unit_weight) <= 0) least = -kind.supply(x[0], x[1], z, t);
+              if constexpr (requires { kind.forced(0., 0., 0., 0.); }) least = most = -kind.forced(x[0], x[1], z, t);
+            },
+            (*sources_)[f.source].kind);
+      }
+      if (least == -1e300) continue;
+      const LiquidAtNode at = liquid_at(f.node);
+      const double scale = at.mass > 0 ? density * at.volume / at.mass : 0;
+      const auto limit = [&](Vec<dim> &v, double low, double high) {
+        double out = 0;
+        for (int d = 0; d < dim; ++d) out += (v[d] - solid[f.node][d]) * f.normal[d];
+        const double change = std::clamp(out, low, high) - out;
+        for (int d = 0; d < dim; ++d) v[d] += change * f.normal[d];
+      };
+      limit(liquid[f.node], least * scale, most * scale);
+      if (gas && f.source == gap) limit(gas[f.node], 0, 0);
+    }
+    for (Vec<dim> *fluid : {liquid, gas})
+      if (fluid)
+        for (const ActiveWall &w : active_walls_)
+          for (int k = 0; k < w.wall->count; ++k) {
+            const Vec<dim> &n = w.wall->normal[k];
+            double through = 0;
+            for (int d = 0; d < dim; ++d) through += (fluid[w.node][d] - solid[w.node][d]) * n[d];
+            for (int d = 0; d < dim; ++d) fluid[w.node][d] -= through * n[d];
+          }
+  }
+ private:
+  static constexpr int atmosphere = -1, gap = -2;
+  struct Wall {
+    int count = 0;
+    std::array<Vec<dim>, dim> normal;  ///< orthonormal
+  };
+  struct ActiveWall {
+    int node;  ///< compact
+    const Wall *wall;
+  };
+  struct Face {
+    int node, source;  ///< compact; a source, the atmosphere or a gap
+    Vec<dim> area, normal;
+  };
+  void add_face(int node, int source, const Vec<dim> &area);
+
+  const std::vector<Source> *sources_ = nullptr;
+  bool sealed_ = false;
+  int rain_ = atmosphere;  ///< what acts on the free surface
+  std::vector<int> wall_of_node_;
+  std::vector<Wall> walls_;
+  std::vector<std::pair<int, std::vector<Facet<dim>>>> groups_;
+  std::vector<ActiveWall> active_walls_;
+  std::vector<Face> faces_;
+  std::vector<Vec<dim>> nodal_, taken_;
+};
+
+}  // namespace talus

@@ -1,0 +1,159 @@
+#pragma once
+/// The fluid part of the motion, docs/theory/pores.md: liquid and, in three phases, gas. Stress points of the soil are pore points too: each
+/// holds masses of fluid, from which its pressures follow. SoilMotion calls, in the order of a step:
+///   gather -> [add_to_mixture -> drive -> resist -> follow -> flow -> smooth_flow -> exchange] ... -> release
+#include <memory>
+#include <vector>
+
+#include "base/phases.h"
+#include "physics/boundary/pore_conditions.h"
+#include "physics/pore_pressure.h"
+#include "physics/pores/drag.h"
+#include "physics/pores/fluids.h"
+#include "physics/pores/soil_pores.h"
+#include "physics/pores/storage.h"
+#include "transfer/transfer.h"
+
+namespace talus {
+
+/// Fluid masses of all ranks, for the ledger [kg].
+struct FluidLedger {
+  double stored = 0;  ///< now
+  double out = 0;     ///< left through boundaries since the start, less what entered
+  double given = 0;   ///< put in where pressures were given, less what was taken out
+};
+
+/// What a particle's pores hold.
+struct PoreReport {
+  double liquid, gas;  ///< pressures, smoothed where soil is nearly saturated [Pa]
+  double suction;      ///< [Pa]
+  double saturation;   ///< S_l [-]
+};
+
+template <int dim, class Phases>
+class PoreFluid {
+ public:
+  static constexpr int fluids = 1 + Phases::gas;
+  using Array = std::vector<double>;
+
+  PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<std::unique_ptr<Body<dim>>> &bodies, const Scene &scene);
+
+  /// Fills the pores of all particles as the scene's [water] says for time t.
+  void fill(double t);
+
+  // Where cells and nodes stand, as SoilMotion has them.
+  struct Frame {
+    FilledGrid<dim> &grid;
+    const Shape<dim> *shape;           ///< [cell]
+    const Vec<dim> *position;          ///< [node]
+    const double *weight;              ///< w [cell]
+    const std::vector<PointSet> &points;
+    const double *const *volume;       ///< [body][point]
+    const double *particle_volume;     ///< sum over the points of a cell
+    const double *blend;               ///< [cell]
+    Vec<dim> gravity;
+    double time;
+    bool averaged, trial;
+  };
+
+  /// Takes masses and momentum of the particles to points and nodes; `velocity` [fluids][nodes] receives the nodes'.
+  PetscErrorCode gather(const Frame &frame, PoreConditions<dim> &conditions, const Array &filling, const Vec<dim> *solid, Vec<dim> *velocity);
+  /// Hands particles what points and nodes learned; before the skeleton's particles move. `flip` is the share of their own velocity they keep.
+  void release(const Frame &frame, const Vec<dim> *velocity, double flip);
+
+  /// Adds what fluids do to the mixture at a node: pressure and weight.
+  void add_to_mixture(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force) const;
+  /// Accelerations without drag of the fluids [fluids][nodes], and less them what is left of the mixture's force for the solid.
+  void drive(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force, Vec<dim> *acceleration) const;
+  /// Velocity of the solid after implicit drag over `step`, from those of all without it.
+  void resist(double step, const FilledGrid<dim> &grid, Vec<dim> *solid, const Vec<dim> *fluid) const;
+  /// The fluids' after it, the solid now being where supports want it; then boundaries.
+  void follow(double step, const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid, Vec<dim> *fluid) const;
+  void constrain(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid, Vec<dim> *fluid) const;
+
+  /// Divergence of the fluids' fluxes over displacements u = [1 + fluids][nodes] from the accepted state, in cells. `frame` is that of the
+  /// accepted state but for `trial`. Collective.
+  PetscErrorCode flow(const Frame &frame, const Vec<dim> *u);
+  /// Smooths them together with the volume strain of the cells, which becomes that of the pores.
+  PetscErrorCode smooth_flow(const Frame &frame, Array &volume_strain);
+  /// Takes it from the points, whose volumes are now those at the end; pressures follow, and forces at cells and nodes.
+  PetscErrorCode exchange(const Frame &frame);
+  /// Pressures from masses, forces from pressures.
+  PetscErrorCode store(const Frame &frame);
+
+  /// At the points of a body [Pa].
+  const double *suction(int body) const requires Phases::suction { return points_[body].suction.data(); }
+  PoreReport report(int body, int point, int cell) const;
+  const SoilPores &soil(int body) const { return soils_[body]; }
+  /// `sums` [fluids]; `gathered`: points hold the masses, not particles. Collective.
+  PetscErrorCode ledger(bool gathered, FluidLedger *sums);
+
+  /// Sum of w grad N at the nodes, at the last remap [m2].
+  const std::vector<Vec<dim>> &surface() const { return surface_; }
+  void keep(Archive &archive);
+
+  bool given = false;   ///< pressures follow [water] instead of the fluids' motion
+  double given_ramp = 1;
+  long long newton_steps = 0, newton_solves = 0;
+
+ private:
+  struct PorePoints {
+    Array grains;             ///< V_s [m3]
+    Array mass[fluids];       ///< [kg]
+    Array share;              ///< S_g
+    Array pressure[fluids];   ///< [Pa]
+    Array suction;            ///< [Pa], where the phase model has it
+  };
+  struct CellPores {
+    double pressure[fluids], smooth[fluids];  ///< [Pa]
+    double conductivity[fluids];              ///< k k_r / mu [m2/(Pa s)]
+    double density[fluids], mass[fluids];     ///< [kg/m3], [kg]
+    double saturation;
+    double mixture;                           ///< what the pores take off the total stress [Pa]
+  };
+  struct NodePores {  // sums over cells and ranks, doubles only
+    double volume;
+    Vec<dim> surface, push;            ///< sum of w grad N; of w P grad N [N]
+    struct Fluid {
+      double mass, whole, conductivity;  ///< m [kg], M = sum w rho / (d+1) [kg], sum w k / (d+1)
+      Vec<dim> push;                     ///< sum of w P grad N [N]
+    } fluid[fluids];
+  };
+  static constexpr int node_width = sizeof(NodePores) / sizeof(double);
+
+  double given_pressure(const Vec<dim> &x, double t) const;
+  std::array<double, 3> contents(const SoilPores &soil, double pressure) const;
+  double unit_weight(const Frame &frame) const {
+    double square = 0;
+    for (double g : frame.gravity) square += g * g;
+    return liquid_.density * std::sqrt(square);
+  }
+  PetscErrorCode gas_flux(const Frame &frame, const Vec<dim> *gas, const Vec<dim> *solid) requires Phases::gas;
+  void solve(const Frame &frame);
+  PetscErrorCode smooth(const Frame &frame, double *const *fields, int count);
+  Vec<dim> place(const Frame &frame, int cell, const std::array<double, dim + 1> &barycentric) const;
+  double reference_density(int fluid) const;
+  NodalFluid at_node(int node, int a) const;
+  double mixture_pressure(const double *p, double saturation) const;
+
+  const BackgroundMesh<dim> &mesh_;
+  std::vector<std::unique_ptr<Body<dim>>> &bodies_;
+  const Scene &scene_;
+  Liquid liquid_;
+  [[no_unique_address]] If<Phases::gas, PoreGas> gas_;
+  std::vector<SoilPores> soils_;
+  GivenPressure<dim> pressure_;
+  bool bishop_, smoothing_;
+
+  std::vector<PorePoints> points_, trial_;
+  std::vector<CellPores> cells_;
+  std::vector<NodePores> nodes_, trial_nodes_;
+  std::vector<Vec<dim>> start_, flux_, surface_;
+  std::vector<std::array<double, dim + 1>> mean_, reference_;  ///< of a cell: where its particles are in the mean, and where its pressure counts
+  std::vector<std::array<double, dim + 1>> rows_;              ///< sums over rows of the solid's mass matrices [kg]
+  std::vector<std::array<Vec<dim>, dim + 1>> impulse_[fluids]; ///< of a cell: sum m_s N v_a, later times m_a / m_s [kg m/s]
+  Array divergence_[fluids], smooth_[fluids], nodal_;
+  double out_[fluids] = {}, given_mass_ = 0;
+};
+
+}  // namespace talus

@@ -1,0 +1,28 @@
+#pragma once
+/// Still water: p = rho_l g (level - y) everywhere. Grains as heavy as water leave the skeleton without stress, so nothing may move at all; also
+/// with 2 m of water on top, whose weight the face takes. With heavier grains the skeleton's own weight is a K0 state, given at the start.
+#include <algorithm>
+#include <cmath>
+
+#include "commands/rung.h"
+
+namespace talus::rungs {
+
+inline void hydrostatic(Rung &rung) {
+  const auto speed = [](const Run &run, int dimension) {
+    double largest = 0;
+    for (int d = 0; d < dimension; ++d)
+      for (const double v : component(run.end, "velocity", d)) largest = std::max(largest, std::abs(v));
+    return largest;
+  };
+  for (const int dimension : {2, 3})
+    for (const double level : {1., 3.}) {
+      const Run run = rung.run(in_dimension(dimension, {"water.table=[[0, " + number(level) + "], [1, " + number(level) + "]]",
+                                                        "boundary.water.level=" + number(level), "water.compression=exponential", "water.bulk_modulus=2e9",
+                                                        "stage.0.duration=0.01"}));
+      // water 1e-5 denser at the foot than assumed: 0.5 mm/s2 of it, less what the skeleton bears
+      rung.compare(name_of(dimension) + " level " + number(level) + " m, largest speed over g t", 0, speed(run, dimension) / 0.1, 1e-5, 1);
+    }
+}
+
+}  // namespace talus::rungs
