@@ -76,7 +76,6 @@ void SoilMotion<dim, Phases>::gather() {
     to_nodes<dim, averaged, apic>(*bodies_[b], grid_, start_velocity_.data(), points, movers_ ? &(*movers_)[b] : nullptr);
     if (!averaged) points.count = p.count;
     attach(b);
-    if (nonlocal_[b]) nonlocal_[b]->keep(archive);
   }
   movers_ = nullptr;
 }
@@ -847,6 +846,7 @@ PetscErrorCode SoilMotion<dim, Phases>::keep(Archive &archive) {
     PointSet &p = points_[b];
     archive.keep("points", p.count, p.own_cell, p.own_stress, p.own_history, p.own_volume, p.own_limit, p.start_history, p.start_volume, p.of_cell);
     attach(b);
+    if (nonlocal_[b]) nonlocal_[b]->keep(archive);
   }
   archive.keep("motion", gathered_, remap_time_, accepted_time_, own_share_, moved_, smallest_ratio_, step_ratio_, speed_squared_, sample_time_, last_pressure_time_);
   if constexpr (Phases::given)

@@ -484,7 +484,7 @@ PetscErrorCode QuasiStatic<dim>::residual(::Vec x, ::Vec f) {
   internal_force(force, true);
   PetscCall(nodes_.add_to_global(force, f));
   PetscCall(VecNorm(f, NORM_2, &size));
-  force_scale_ = std::max(force_scale_, size);
+  force_scale_ = std::max(load_size_, size);  // of this iterate: one that went astray must not widen what counts as small
   PetscCall(VecGetArray(f, &value));
   impose(value, true);
   PetscCall(VecRestoreArray(f, &value));
@@ -621,7 +621,7 @@ PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double 
   find_suction(load_time);
   external_force(load_time, external);
   PetscCall(nodes_.add_to_global(external, target_));
-  PetscCall(VecNorm(target_, NORM_2, &force_scale_));
+  PetscCall(VecNorm(target_, NORM_2, &load_size_));
   PetscCall(VecGetArray(target_, &value));
   impose(value, true);
   PetscCall(VecRestoreArray(target_, &value));
