@@ -95,9 +95,6 @@ TEST(Ranks, column_collapse_is_the_same_under_error_control) {
   expect_the_same(column, {"mesh.size=0.01", "integrator.kind=arkode", "integrator.velocity_tolerance=1e-5"});
 }
 TEST(Ranks, soil_and_water_in_a_closed_box_are_the_same) { expect_the_same(box, {}); }
-TEST(Ranks, soil_water_and_gas_in_a_closed_box_are_the_same) {
-  expect_the_same(box, {"phases=three-phase", "water.table=[[0, 0.5], [1, 0.5]]"});
-}
 TEST(Ranks, drained_slope_of_two_soils_is_the_same) { expect_the_same(slope, {}); }
 
 /// The slope of the guide, coarse and weaker, until it fails; the event's time is when the crest passed the threshold [s].
