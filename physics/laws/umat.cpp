@@ -78,7 +78,7 @@ std::string Umat::problem_in(int dim) const {
   const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   double stress[6] = {-100e3, -100e3, -100e3, 0, 0, 0}, tangent[36];
   std::vector<double> values(nstatv, 0.);
-  for (const double strain : {0., 1e-5, 0.1}) {
+  for (const double strain : {0., 1e-5, 0.3}) {
     const double given[6] = {strain / 4, -strain, strain / 8, strain / 2, strain / 3, -strain / 5};
     call({size, stress, given, values.data(), identity, 0, 1, 0, 1e-3, tangent});
     if (!loaded_->trouble.text.empty()) break;

@@ -484,7 +484,7 @@ PetscErrorCode QuasiStatic<dim>::residual(::Vec x, ::Vec f) {
   internal_force(force, true);
   PetscCall(nodes_.add_to_global(force, f));
   PetscCall(VecNorm(f, NORM_2, &size));
-  force_scale_ = std::max(load_size_, size);  // of this iterate: one that went astray must not widen what counts as small
+  if (scale_open_) force_scale_ = std::max(force_scale_, size);
   PetscCall(VecGetArray(f, &value));
   impose(value, true);
   PetscCall(VecRestoreArray(f, &value));
@@ -580,6 +580,7 @@ PetscErrorCode QuasiStatic<dim>::snes_converged(SNES solver, PetscInt iteration,
   PetscFunctionBeginUser;
   QuasiStatic &problem = *static_cast<QuasiStatic *>(context);
   *reason = SNES_CONVERGED_ITERATING;
+  if (iteration == 0) problem.scale_open_ = false;  // an iterate that goes astray must not widen what counts as small
   if (!std::isfinite(norm)) *reason = SNES_DIVERGED_FNORM_NAN;
   else if (norm <= problem.scene_.quasi_static.tolerance * problem.force_scale_) *reason = SNES_CONVERGED_FNORM_RELATIVE;
   else if (problem.blow_up > 0 && iteration > 0) {
@@ -617,11 +618,11 @@ PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double 
   SNESConvergedReason reason;
   PetscInt iterations;
   PetscFunctionBeginUser;
-  *outcome = {}, blown_up_ = false;
+  *outcome = {}, blown_up_ = false, scale_open_ = true;
   find_suction(load_time);
   external_force(load_time, external);
   PetscCall(nodes_.add_to_global(external, target_));
-  PetscCall(VecNorm(target_, NORM_2, &load_size_));
+  PetscCall(VecNorm(target_, NORM_2, &force_scale_));
   PetscCall(VecGetArray(target_, &value));
   impose(value, true);
   PetscCall(VecRestoreArray(target_, &value));

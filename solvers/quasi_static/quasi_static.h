@@ -173,7 +173,8 @@ class QuasiStatic {
   Vector x_, f_, out_of_balance_, target_, internal_, scratch_;
   std::vector<double> motion_;               // prescribed increments of owned nodes in their frames [row * dim]
   bool suction_matters_ = false;             // a law reads it: pressure below zero is suction, not stress
-  double load_size_ = 0, force_scale_ = 0, stiffness_scale_ = 1;
+  double force_scale_ = 0, stiffness_scale_ = 1;  // sizes of the forces before the first iteration [N] and of stiffness [Pa]
+  bool scale_open_ = true;
   bool direct_ = true, blown_up_ = false;
   long long unknowns_ = 0;
 };

@@ -12,9 +12,6 @@ namespace talus {
 
 template <int dim, class Phases>
 void Simulation<dim, Phases>::make_statics() {
-  for (const auto &source : conditions_.sources())
-    if (!std::visit([](const auto &kind) { return requires { kind.template directions<dim>(Vec<dim>{}); } || requires { kind.template load<dim>(Vec<dim>{}, Vec<dim>{}, 0.); }; }, source.kind))
-      scene_.complain("boundary." + source.name + ".kind", "has no quasi-static form; take fixed, roller, velocity or traction");
   SoilData<dim> data;
   data.density = [this](const BodySource &source, const Vec<dim> &x, double t) { return soil_density(source, x, t); };
   data.open_water_load = scene_.water.open_water_load;

@@ -189,7 +189,7 @@ const Fault faults[] = {
      "scene.toml",
      "[output]",
      "[integrator]\nkind = \"arkode\"\nstep = \"1 s\"\n[output]",
-     {"scene.toml line 22", "integrator.step", "1.732 / omega_max"}},
+     {"scene.toml line 23", "integrator.step", "1.732 / omega_max"}},
     // sections
     {"section_not_there",
      "scene.toml",

@@ -30,7 +30,7 @@ struct Soil {
     BodySource &source = scene.body[0];
     source.particles_per_cell = dim == 2 ? 3 : 4;
     bodies.push_back(std::make_unique<Body<dim>>());
-    EXPECT_EQ(bodies[0]->create(mesh.comm(), source, read_law(source.law), false), 0);
+    EXPECT_EQ(bodies[0]->create(mesh.comm(), source, read_law(source.law), false, 0), 0);
     seed<dim>(*bodies[0], mesh, 8, [](const Vec<dim> &) { return 2000.; });
     EXPECT_EQ(bodies[0]->sort(mesh.cell_count()), 0);
     std::vector<typename Conditions<dim>::Source> sources;
@@ -39,7 +39,7 @@ struct Soil {
     const ParticleArrays<dim> &p = bodies[0]->particles();
     for (int i = 0; i < p.count; ++i)  // compressed unevenly, so that some cells yield
       for (int d = 0; d < 3; ++d) p.stress[i * stress_size<dim> + d] = -1e4 * (1 + std::sin(3 * p.position[i][0] + 2 * d));
-    motion = std::make_unique<SoilMotion<dim, Dry>>(mesh, bodies, conditions, scene.transfer, scene.water, 0.1, 1000., 1000, 9.81);
+    motion = std::make_unique<SoilMotion<dim, Dry>>(mesh, bodies, conditions, scene, 0.1, 1000., 1000, 9.81);
     motion->loading.gravity[1] = -9.81;
   }
   Scene scene;
