@@ -548,7 +548,7 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
     if constexpr (Phases::liquid) fluid_.constrain(pore_frame(false), pore_conditions_, x, x + nodes);
   };
   if (relaxes()) {
-    for (int f = 0; f < all; f += nodes) PetscCall(back_and_forth(velocity + f, mapped + f));
+    for (int f = 0; f < velocity_fields<Phases>; ++f) PetscCall(back_and_forth(velocity + f * nodes, mapped + f * nodes));
     const double share = 1 - std::exp(-gamma / relaxation_time_);
     for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) {
@@ -559,7 +559,7 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
   } else {  // the same sum, mapped once
     for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) scratch_[i][d] = velocity[i][d] - start_velocity_[i][d];
-    for (int f = 0; f < all; f += nodes) PetscCall(back_and_forth(&scratch_[f], mapped + f));
+    for (int f = 0; f < velocity_fields<Phases>; ++f) PetscCall(back_and_forth(scratch_.data() + f * nodes, mapped + f * nodes));
     for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) mapped[i][d] += start_velocity_[i][d];
   }
