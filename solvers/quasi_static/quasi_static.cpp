@@ -670,8 +670,10 @@ PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double 
   outcome->iterations = static_cast<int>(iterations);
   outcome->residual /= force_scale_ > 0 ? force_scale_ : 1;
   outcome->converged = reason > 0, outcome->blown_up = blown_up_, outcome->singular = reason == SNES_DIVERGED_LINEAR_SOLVE;
-  if (outcome->singular) PetscCall(make_solver());  // MUMPS does not recover from a factorisation that failed
-  if (!outcome->converged) PetscFunctionReturn(0);
+  if (!outcome->converged) {  // neither MUMPS nor the line search recovers from numbers that ran away
+    PetscCall(make_solver());
+    PetscFunctionReturn(0);
+  }
 
   PetscCall(displacement_of(x_, true, u));
   strain_increments(u);
