@@ -31,6 +31,8 @@ class GivenPressure {
   }
   /// Hydrostatic suction at x above the water table; 0 without one [Pa].
   double above_table(const Vec<dim> &x, double t) const { return water_->table.empty() ? 0 : std::max(0., unit_weight_ * (x[1] - table(x[0], t))); }
+  /// Does the water table move?
+  bool moves() const { return !water_->table.empty() && !water_->level.constant(); }
   bool open_water_load() const { return water_->open_water_load; }
   double density() const { return water_->density; }
 

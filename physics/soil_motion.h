@@ -40,6 +40,13 @@ struct Balance {
   double kinetic = 0, strain = 0;       ///< [J]
 };
 
+/// What has been done to the soil since the start, docs/theory (6.6); of this rank, beside the work of boundaries (Conditions::work) [J].
+struct WorkDone {
+  double gravity = 0;
+  double imposed = 0;   ///< by body accelerations and given pore pressure
+  double damping = 0;   ///< by local damping: negative
+};
+
 template <int dim, class Phases>
 class SoilMotion final : public Motion {
  public:
@@ -99,6 +106,9 @@ class SoilMotion final : public Motion {
   PetscErrorCode fluid_ledger(FluidLedger *sums) requires Phases::liquid { return fluid_.ledger(gathered_, sums); }
   const PoreFluid<dim, Phases> &fluid() const requires Phases::liquid { return fluid_; }
   PetscErrorCode setup_pores(bool fill) requires Phases::liquid;
+  const WorkDone &work() const { return work_; }
+  /// Keeps what supports bear that stand in for dashpots. Collective.
+  PetscErrorCode freeze_reactions(double t);
   /// Sums of the present state; collective.
   PetscErrorCode balance(double t, Balance *sums);
 
@@ -122,7 +132,8 @@ class SoilMotion final : public Motion {
   const double *softening_size(size_t body) const { return nonlocal_[body] ? nonlocal_[body]->size() : grid_.size.data(); }
   PetscErrorCode internal_force(bool trial);
   void add_body_forces(double t);
-  void add_pore_pressure(double load_time, double ramp, bool trial) requires Phases::given;
+  void add_up_work(const Vec<dim> *u);
+  PetscErrorCode add_pore_pressure(double load_time, double ramp, bool trial) requires Phases::given;
   void sample_pressure(double t) requires Phases::given;
   std::array<double, 2> sample_shares(double t, double ramp) const;
   const double *find_suction(size_t body);
@@ -148,6 +159,10 @@ class SoilMotion final : public Motion {
   std::vector<double> nodal_;                     ///< room for sums over ranks
   std::vector<double> extra_mass_;                ///< pore water gained since seeding, weighs but is not inert [kg]
   NodalUpdate update_;
+  std::vector<Vec<dim>> imposed_;                 ///< force of body accelerations and pore pressure, of this rank [N]
+  std::vector<Vec<dim>> held_back_;               ///< force of local damping in the last evaluation [N]
+  WorkDone work_;
+  bool imposes_ = Phases::given;
   // cells
   std::vector<double> particle_volume_, weight_, blend_, volume_strain_;
   std::vector<double> filling_;                   ///< integration volume over cell volume at the remap
@@ -169,6 +184,7 @@ class SoilMotion final : public Motion {
   };
   [[no_unique_address]] If<Phases::given, std::array<Sample, 2>> sample_;
   double sample_time_[2] = {0, 0}, last_pressure_time_ = 0;
+  bool water_moved_ = false;                      ///< since pore water was counted
   bool suction_matters_ = false;                  ///< a law reads it: pressure below zero is suction, not stress
   std::vector<double> suction_;                   ///< at the stress points of one body [Pa]
   // fluids that move

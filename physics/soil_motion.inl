@@ -29,6 +29,9 @@ SoilMotion<dim, Phases>::SoilMotion(const BackgroundMesh<dim> &mesh, std::vector
   force_.assign(nodes, Vec<dim>{});
   for (auto *field : {&start_velocity_, &velocity_, &mapped_start_, &scratch_}) field->assign(nodes * velocity_fields<Phases>, Vec<dim>{});
   if constexpr (Phases::liquid) pore_strain_.resize(cells), point_volume_.resize(bodies.size());
+  for (const auto &body : bodies) imposes_ = imposes_ || !body->source().body_acceleration.empty();
+  if (imposes_) imposed_.assign(nodes, Vec<dim>{});
+  held_back_.assign(nodes, Vec<dim>{});
   update_.velocity.assign(nodes, Quad{}), update_.displacement.assign(nodes, Quad{});
   if (Phases::given) extra_mass_.assign(nodes, 0);
   for (auto *field : {&particle_volume_, &weight_, &blend_, &filling_, &volume_strain_, &slenderness_}) field->assign(cells, 0);
@@ -131,6 +134,7 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double) {
   if (conditions_.has_dashpots()) measure_impedance();
   for (int c = 0; c < cells; ++c) filling_[c] = weight_[c] / grid_.shape[c].volume;
   PetscCall(conditions_.begin(grid_, impedance_, filling_));
+  conditions_.surface_loads().begin(bodies_, grid_);
   conditions_.constrain(loading.time, grid_, start_velocity_.data(), false);
   std::copy_n(start_velocity_.begin(), nodes, velocity_.begin());
   if constexpr (Phases::liquid) {
@@ -208,6 +212,7 @@ double SoilMotion<dim, Phases>::relaxed(double t) const {
 /// What the nodes learned, as particles read it; the share of their own velocity that particles keep.
 template <int dim, class Phases>
 double SoilMotion<dim, Phases>::end(double t) {
+  conditions_.surface_loads().end(grid_);
   const double flip = transfer_.velocity == Velocity::flip ? relaxed(t) * (1 - transfer_.pic_fraction) : 0;
   for (int i = 0; i < grid_.node_count(); ++i) {
     const Vec<dim> &v = velocity_[i], &v0 = start_velocity_[i], &x = grid_.position[i], &X = mesh_.position[grid_.mesh_node[i]];
@@ -493,10 +498,17 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::total_force(double load_time, double ramp, bool trial) {
   PetscFunctionBeginUser;
   PetscCall(internal_force(trial));
-  conditions_.add_loads(load_time, grid_, force_.data());
-  add_body_forces(load_time);
-  if constexpr (Phases::given) add_pore_pressure(load_time, ramp, trial);
+  conditions_.surface_loads().add(load_time, grid_, trial ? trial_position_.data() : grid_.position.data(), force_.data());
+  if (imposes_) {
+    const int nodes = grid_.node_count();
+    std::copy_n(force_.begin(), nodes, imposed_.begin());
+    add_body_forces(load_time);
+    if constexpr (Phases::given) PetscCall(add_pore_pressure(load_time, ramp, trial));
+    for (int i = 0; i < nodes; ++i)
+      for (int d = 0; d < dim; ++d) imposed_[i][d] = force_[i][d] - imposed_[i][d];
+  }
   PetscCall(grid_.sum(force_[0].data(), dim));
+  conditions_.add_reactions(force_.data());
   for (int i = 0; i < grid_.node_count(); ++i) {
     const double m = grid_.mass[i] + (Phases::given ? extra_mass_[i] : 0);
     for (int d = 0; d < dim; ++d) force_[i][d] += m * (ramp * loading.gravity[d]);
@@ -522,7 +534,9 @@ PetscErrorCode SoilMotion<dim, Phases>::acceleration(double t, const double *u, 
     const double inverse = grid_.mass[i] > smallest_mass_ ? 1 / grid_.mass[i] : 0;  // a lighter node is carried along
     for (int d = 0; d < dim; ++d) {
       const double rest = unbalanced[i][d], power = rest * v[i * dim + d];
-      a[i * dim + d] = inverse * (force_[i][d] - loading.damping * rest * ((power > 0) - (power < 0)));
+      const double held_back = loading.damping * rest * ((power > 0) - (power < 0));
+      a[i * dim + d] = inverse * (force_[i][d] - held_back);
+      if (loading.damping > 0) held_back_[i][d] = held_back;
     }
   }
   PetscFunctionReturn(0);
@@ -618,7 +632,7 @@ PetscErrorCode SoilMotion<dim, Phases>::accept(double t, const double *u, const 
   if (v != velocity_[0].data()) std::copy_n(reinterpret_cast<const Vec<dim> *>(v), grid_.node_count() * velocity_fields<Phases>, velocity_.begin());
   PetscCall(deform(t, reinterpret_cast<const Vec<dim> *>(u), false));
   accepted_time_ = t;
-  conditions_.follow_loads(reinterpret_cast<const Vec<dim> *>(u));
+  add_up_work(reinterpret_cast<const Vec<dim> *>(u));
   moved_ = 0, speed_squared_ = 0;
   for (int i = 0; i < grid_.node_count(); ++i) {
     const Vec<dim> &x = grid_.position[i], &X = mesh_.position[grid_.mesh_node[i]];
@@ -629,6 +643,33 @@ PetscErrorCode SoilMotion<dim, Phases>::accept(double t, const double *u, const 
     speed_squared_ = speed <= speed_squared_ ? speed_squared_ : speed;  // a NaN passes through
   }
   moved_ = std::sqrt(moved_);
+  PetscFunctionReturn(0);
+}
+
+/// Work of the forces of the last evaluation in an accepted step, theory (6.6).
+template <int dim, class Phases>
+void SoilMotion<dim, Phases>::add_up_work(const Vec<dim> *u) {
+  conditions_.follow(u);
+  Vec<dim> weighted{};
+  for (int i = 0; i < grid_.node_count(); ++i) {
+    if (!mesh_.owned[grid_.mesh_node[i]]) continue;
+    const double m = grid_.mass[i] + (Phases::given ? extra_mass_[i] : 0);
+    for (int d = 0; d < dim; ++d) weighted[d] += m * u[i][d];
+    if (loading.damping > 0)
+      for (int d = 0; d < dim; ++d) work_.damping -= held_back_[i][d] * u[i][d];
+  }
+  for (int d = 0; d < dim; ++d) work_.gravity += loading.ramp * loading.gravity[d] * weighted[d];
+  if (imposes_)
+    for (int i = 0; i < grid_.node_count(); ++i)
+      for (int d = 0; d < dim; ++d) work_.imposed += imposed_[i][d] * u[i][d];
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::freeze_reactions(double t) {
+  PetscFunctionBeginUser;
+  PetscCall(begin(t));
+  PetscCall(total_force(loading.time, loading.ramp, false));
+  conditions_.freeze_reactions(grid_, force_.data());
   PetscFunctionReturn(0);
 }
 
@@ -663,6 +704,7 @@ PetscErrorCode SoilMotion<dim, Phases>::gather_pore_water()
   requires Phases::given
 {
   PetscFunctionBeginUser;
+  water_moved_ = false;
   std::fill_n(extra_mass_.begin(), grid_.node_count(), 0.);
   for (const auto &body : bodies_) {
     const BodySource &source = body->source();
@@ -707,6 +749,7 @@ void SoilMotion<dim, Phases>::sample_pressure(double t)
   if (t >= sample_time_[0] && t <= sample_time_[1]) return;
   const double step = last_pressure_time_ < t ? t - last_pressure_time_ : 1e-6 * (1 + std::abs(t));
   sample_time_[0] = t, sample_time_[1] = t + steps_ahead * step;
+  water_moved_ = pressure_.moves();
   for (int k = 0; k < 2; ++k) {
     auto &sample = sample_[k];
     sample.gradient.resize(mesh_.cell_count()), sample.value.resize(mesh_.cell_count()), sample.nodal.resize(mesh_.node_count());
@@ -745,10 +788,14 @@ std::array<double, 2> SoilMotion<dim, Phases>::sample_shares(double t, double ra
 /// With open water on submerged faces the pore pressure acts as the body force -grad p, which includes the water's weight on the
 /// face without knowing where the face is; without it, as a part of the stress, theory (2.8), (2.9).
 template <int dim, class Phases>
-void SoilMotion<dim, Phases>::add_pore_pressure(double load_time, double ramp, bool trial)
+PetscErrorCode SoilMotion<dim, Phases>::add_pore_pressure(double load_time, double ramp, bool trial)
   requires Phases::given
 {
-  if (!trial) sample_pressure(load_time), last_pressure_time_ = load_time;  // a step that looks ahead sees the line go on
+  PetscFunctionBeginUser;
+  if (!trial) {  // a step that looks ahead sees the line go on
+    sample_pressure(load_time), last_pressure_time_ = load_time;
+    if (water_moved_) PetscCall(gather_pore_water());
+  }
   const auto [early, late] = sample_shares(load_time, ramp);
   const Shape<dim> *shape = trial ? trial_shape_.data() : grid_.shape.data();
   const double *weight = trial ? trial_weight_.data() : weight_.data();
@@ -767,6 +814,7 @@ void SoilMotion<dim, Phases>::add_pore_pressure(double load_time, double ramp, b
         }
     }
   }
+  PetscFunctionReturn(0);
 }
 
 // ---- fluids that move ----
@@ -848,15 +896,15 @@ PetscErrorCode SoilMotion<dim, Phases>::keep(Archive &archive) {
     attach(b);
     if (nonlocal_[b]) nonlocal_[b]->keep(archive);
   }
-  archive.keep("motion", gathered_, remap_time_, accepted_time_, own_share_, moved_, smallest_ratio_, step_ratio_, speed_squared_, sample_time_, last_pressure_time_);
+  archive.keep("motion", work_.gravity, work_.imposed, work_.damping, gathered_, remap_time_, accepted_time_, own_share_, moved_, smallest_ratio_, step_ratio_, speed_squared_, sample_time_, last_pressure_time_, water_moved_);
   if constexpr (Phases::given)
     for (Sample &sample : sample_) archive.keep("pressure", sample.gradient, sample.value, sample.nodal);
-  if (archive.reading()) PetscCall(conditions_.begin(grid_, impedance_, filling_));
+  PetscCall(conditions_.keep(archive, grid_, impedance_, filling_));
+  if (archive.reading()) conditions_.surface_loads().begin(bodies_, grid_);
   if constexpr (Phases::liquid) {
     fluid_.keep(archive);
     if (archive.reading()) PetscCall(pore_conditions_.begin(grid_, filling_, fluid_.surface()));
   }
-  conditions_.keep(archive);
   PetscFunctionReturn(0);
 }
 
@@ -877,9 +925,10 @@ PetscErrorCode SoilMotion<dim, Phases>::balance(double, Balance *sums) {
     local[0] += magnitude(scratch_[i]);
   }
   std::fill_n(force_.begin(), grid_.node_count(), Vec<dim>{});
-  conditions_.add_loads(loading.time, grid_, force_.data());
+  conditions_.surface_loads().add(loading.time, grid_, grid_.position.data(), force_.data());
   add_body_forces(loading.time);
   PetscCall(grid_.sum(force_[0].data(), dim));
+  conditions_.add_reactions(force_.data());
   for (int i = 0; i < grid_.node_count(); ++i) {
     if (!mesh_.owned[grid_.mesh_node[i]]) continue;
     for (int d = 0; d < dim; ++d) force_[i][d] += grid_.mass[i] * (loading.ramp * loading.gravity[d]);

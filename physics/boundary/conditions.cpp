@@ -31,10 +31,10 @@ int priority(const Boundary &kind) {
 }  // namespace
 
 template <int dim>
-void Conditions<dim>::add_direction(int node, int source, const Vec<dim> &direction) {
-  int &index = prescribed_of_node_[node];
-  if (index < 0) index = static_cast<int>(prescribed_.size()), prescribed_.push_back({});
-  Prescribed &c = prescribed_[index];
+void Conditions<dim>::add_direction(PrescribedSet &set, int node, int source, const Vec<dim> &direction) {
+  int &index = set.of_node[node];
+  if (index < 0) index = static_cast<int>(set.entry.size()), set.entry.push_back({});
+  Prescribed &c = set.entry[index];
   Vec<dim> rest = direction;
   for (int k = 0; k < c.count; ++k) add<dim>(rest, -dot<dim>(rest, c.direction[k]), c.direction[k]);
   const double length = std::sqrt(dot<dim>(rest, rest));
@@ -62,8 +62,10 @@ template <int dim>
 PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vector<Source> sources) {
   PetscFunctionBeginUser;
   sources_ = std::move(sources);
-  impulse_.assign(sources_.size(), Vec<dim>{}), face_travel_ = impulse_;
-  prescribed_of_node_.assign(mesh.node_count(), -1), first_contact_of_node_.assign(mesh.node_count(), -1);
+  impulse_.assign(sources_.size(), Vec<dim>{});
+  work_.assign(sources_.size(), 0);
+  for (PrescribedSet &set : prescribed_) set.of_node.assign(mesh.node_count(), -1);
+  first_contact_of_node_.assign(mesh.node_count(), -1);
   std::vector<NodeNormal<dim>> normals;
   for (int s = 0; s < static_cast<int>(sources_.size()); ++s) {
     if (concerns_water(sources_[s].kind)) continue;
@@ -73,11 +75,10 @@ PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vect
       facets.insert(facets.end(), more.begin(), more.end());
     }
     const Boundary &kind = sources_[s].kind;
-    if (std::holds_alternative<Traction>(kind)) {
-      loads_.emplace_back(s, facets);
-    } else if (std::holds_alternative<NonReflecting>(kind)) {
-      dashpots_.emplace_back(s, facets);
+    if (const auto *load = std::get_if<Traction>(&kind)) {
+      surface_loads_.add_face(s, *load, std::move(facets));
     } else {
+      if (std::holds_alternative<NonReflecting>(kind)) dashpots_.emplace_back(s, facets);
       if (std::holds_alternative<Friction>(kind)) bases_.emplace_back(s, facets);
       for (const Facet<dim> &f : facets)
         for (int node : f.node) normals.push_back({s, node, mesh.position[node], f.normal, f.area / dim});
@@ -93,11 +94,18 @@ PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vect
     std::visit(
         [&](const auto &kind) {
           if constexpr (requires { kind.template directions<dim>(n.normal); })
-            for (const Vec<dim> &direction : kind.template directions<dim>(n.normal)) add_direction(n.node, n.source, direction);
+            for (const Vec<dim> &direction : kind.template directions<dim>(n.normal))
+              for (PrescribedSet &set : prescribed_) add_direction(set, n.node, n.source, direction);
+          else if constexpr (requires { kind.template held_directions<dim>(n.normal); })
+            for (const Vec<dim> &direction : kind.template held_directions<dim>(n.normal)) add_direction(prescribed_[1], n.node, n.source, direction);
           else
             add_contact(n.node, n.source, n.normal, n.area);
         },
         sources_[n.source].kind);
+  size_t reactions = dim * prescribed_[1].entry.size();
+  for (const auto &of_node : contacts_) reactions += of_node.size();
+  for (const auto &[source, facets] : dashpots_) reactions += dim * facets.size();
+  impulses_.reserve(reactions);
   PetscFunctionReturn(0);
 }
 
@@ -107,13 +115,16 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
   PetscFunctionBeginUser;
   const BackgroundMesh<dim> &mesh = grid.mesh();
   const int nodes = grid.node_count();
-  active_prescribed_.clear(), active_contacts_.clear(), active_loads_.clear(), active_dashpots_.clear();
+  active_prescribed_.clear(), active_contacts_.clear(), active_dashpots_.clear(), active_frozen_.clear(), impulses_.clear();
   counted_.resize(nodes);
   for (int i = 0; i < nodes; ++i) {
     counted_[i] = mesh.owned[grid.mesh_node[i]];
-    const int index = prescribed_of_node_[grid.mesh_node[i]];
-    if (index >= 0) active_prescribed_.push_back({i, &prescribed_[index]});
+    const PrescribedSet &set = prescribed_[held_];
+    const int index = set.of_node[grid.mesh_node[i]];
+    if (index >= 0) active_prescribed_.push_back({i, &set.entry[index]});
   }
+  for (const Reaction &r : frozen_)
+    if (!held_ && grid.find_node(r.node) >= 0) active_frozen_.push_back({grid.find_node(r.node), r.source, r.value});
   if (!bases_.empty()) {
     for (auto &of_node : contacts_)
       for (Contact &c : of_node)
@@ -134,15 +145,7 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
       for (Contact &c : contacts_[index]) active_contacts_.push_back({i, &c, nodal_[i] * c.area / total, 0, false, false});
     }
   }
-  for (const auto &[source, facets] : loads_)
-    for (const Facet<dim> &f : facets) {
-      if (grid.find_cell(f.cell) < 0) continue;
-      const int across = mesh.cells[f.cell].neighbour[f.face];
-      LoadedFacet load{&f, {}, source, across >= 0 && grid.find_cell(across) >= 0 ? 0.5 : 1};
-      for (int k = 0; k < dim; ++k) load.node[k] = grid.find_node(f.node[k]);
-      active_loads_.push_back(load);
-    }
-  if (!dashpots_.empty()) {
+  if (!dashpots_.empty() && !held_) {
     constexpr int width = dim * dim;
     for (const auto &[source, facets] : dashpots_) {
       nodal_.assign(static_cast<size_t>(nodes) * width, 0);
@@ -166,35 +169,29 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
 }
 
 template <int dim>
-void Conditions<dim>::add_loads(double t, const FilledGrid<dim> &grid, Vec<dim> *force) const {
-  const BackgroundMesh<dim> &mesh = grid.mesh();
-  for (const LoadedFacet &load : active_loads_) {
-    Vec<dim> centre{};
-    for (int node : load.facet->node) add<dim>(centre, 1. / dim, mesh.position[node]);
-    const Vec<dim> traction = std::get<Traction>(sources_[load.source].kind).template load<dim>(load.facet->normal, centre, t);
-    for (int node : load.node) add<dim>(force[node], load.share * load.facet->area / dim, traction);
-  }
+void Conditions<dim>::freeze_reactions(const FilledGrid<dim> &grid, const Vec<dim> *force) {
+  frozen_.clear();
+  for (const ActivePrescribed &p : active_prescribed_)
+    for (int k = 0; k < p.condition->count; ++k) {
+      const int source = p.condition->source[k];
+      if (!std::holds_alternative<NonReflecting>(sources_[source].kind)) continue;
+      Reaction r{grid.mesh_node[p.node], source, {}};
+      add<dim>(r.value, -dot<dim>(force[p.node], p.condition->direction[k]), p.condition->direction[k]);
+      frozen_.push_back(r);
+    }
 }
 
 template <int dim>
-void Conditions<dim>::follow_loads(const Vec<dim> *u) {
-  for (const LoadedFacet &load : active_loads_)
-    for (int node : load.node) add<dim>(face_travel_[load.source], load.share * load.facet->area / dim, u[node]);
+void Conditions<dim>::add_reactions(Vec<dim> *force) const {
+  for (const Reaction &r : active_frozen_) add<dim>(force[r.node], 1, r.value);
 }
 
 template <int dim>
-PetscErrorCode Conditions<dim>::face_displacements(MPI_Comm comm, std::vector<Vec<dim>> &mean) const {
-  PetscFunctionBeginUser;
-  std::vector<double> area(sources_.size(), 0);
-  mean = face_travel_;
-  for (const LoadedFacet &load : active_loads_) area[load.source] += load.share * load.facet->area;
-  if (!mean.empty()) {
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, area.data(), static_cast<int>(area.size()), MPI_DOUBLE, MPI_SUM, comm));
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, mean[0].data(), static_cast<int>(mean.size()) * dim, MPI_DOUBLE, MPI_SUM, comm));
-  }
-  for (size_t s = 0; s < mean.size(); ++s)
-    for (double &component : mean[s]) component = area[s] > 0 ? component / area[s] : 0;
-  PetscFunctionReturn(0);
+void Conditions<dim>::follow(const Vec<dim> *u) {
+  for (const Reaction &r : impulses_) work_[r.source] += dot<dim>(r.value, u[r.node]) / resolved_step_;
+  for (const Reaction &r : active_frozen_)
+    if (counted_[r.node]) work_[r.source] += dot<dim>(r.value, u[r.node]);
+  surface_loads_.add_work(u, work_);
 }
 
 template <int dim>
@@ -244,8 +241,11 @@ template <int dim>
 void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v) {
   const auto account = [&](int node, int source, const Vec<dim> &before) {
     if (!counted_[node]) return;
-    for (int d = 0; d < dim; ++d) impulse_[source][d] += grid.mass[node] * (v[node][d] - before[d]);
+    Reaction r{node, source, {}};
+    for (int d = 0; d < dim; ++d) r.value[d] = grid.mass[node] * (v[node][d] - before[d]), impulse_[source][d] += r.value[d];
+    impulses_.push_back(r);
   };
+  impulses_.clear(), resolved_step_ = gamma;
   for (const Dashpot &d : active_dashpots_) {
     const Vec<dim> before = v[d.node];
     const Square<dim> system = Square<dim>::Identity() + gamma / grid.mass[d.node] * d.matrix;
@@ -291,11 +291,16 @@ PetscErrorCode Conditions<dim>::take_impulses(MPI_Comm comm, std::vector<Vec<dim
 }
 
 template <int dim>
-void Conditions<dim>::keep(Archive &archive) {
-  archive.keep("boundaries", impulse_, face_travel_);
+PetscErrorCode Conditions<dim>::keep(Archive &archive, FilledGrid<dim> &grid, const std::vector<std::array<double, 2>> &impedance,
+                                     const std::vector<double> &filling) {
+  PetscFunctionBeginUser;
+  archive.keep("supports", held_, frozen_);
+  if (archive.reading()) PetscCall(begin(grid, impedance, filling));
+  archive.keep("boundaries", impulse_, work_);
   for (auto &contacts : contacts_)
     for (Contact &c : contacts) archive.keep("contact", c.capacity, c.since_pressed);
   for (ActiveContact &c : active_contacts_) archive.keep("contact now", c.force, c.presses, c.sticks);
+  PetscFunctionReturn(0);
 }
 
 template class Conditions<2>;

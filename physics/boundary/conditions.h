@@ -7,6 +7,7 @@
 #include "base/archive.h"
 #include "meshes/background_mesh.h"
 #include "physics/boundary/boundary.h"
+#include "physics/boundary/surface_loads.h"
 #include "transfer/filled_grid.h"
 
 namespace talus {
@@ -24,8 +25,14 @@ class Conditions {
   /// Picks the nodes and facets of the filled grid. `impedance` [filled cells] holds rho c_p and rho c_s. Collective.
   PetscErrorCode begin(FilledGrid<dim> &grid, const std::vector<std::array<double, 2>> &impedance, const std::vector<double> &filling);
 
-  /// Adds tractions to nodal forces of this rank.
-  void add_loads(double t, const FilledGrid<dim> &grid, Vec<dim> *force) const;
+  /// In stages that hold loads, supports stand in for dashpots; counts from the next `begin`.
+  void hold(bool held) { held_ = held; }
+  bool held() const { return held_; }
+  /// Keeps what those supports bear against the nodal forces (summed over ranks) as a dead load.
+  void freeze_reactions(const FilledGrid<dim> &grid, const Vec<dim> *force);
+  /// Adds the frozen reactions to nodal forces summed over ranks.
+  void add_reactions(Vec<dim> *force) const;
+
   /// Imposes prescribed velocities and keeps nodes from entering a base; sticking nodes of the last `resolve` stay.
   void constrain(double t, const FilledGrid<dim> &grid, Vec<dim> *v, bool sticking) const;
   /// Removes from an acceleration or force the part that supports take up, where nodes rest on them.
@@ -33,22 +40,23 @@ class Conditions {
   /// Implicit in a step gamma: dashpots, contact with friction, prescribed velocities. Sums up the reactions.
   void resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v);
 
+  /// Sums up the work of boundaries in an accepted step with nodal displacements `u`.
+  void follow(const Vec<dim> *u);
+  /// Work of each source on the soil, on this rank [J].
+  const std::vector<double> &work() const { return work_; }
+
   /// Time over which friction follows the normal force [s].
   void set_friction_delay(double delay) { friction_delay_ = delay; }
 
-  /// Follows the loaded faces: `u` is the displacement of the nodes in an accepted step.
-  void follow_loads(const Vec<dim> *u);
-
-  /// What `begin` does not find out anew: how contacts press and slide, impulses and ways of loaded faces.
-  void keep(Archive &archive);
+  SurfaceLoads<dim> &surface_loads() { return surface_loads_; }
+  /// What `begin` does not find out anew: how contacts press and slide, frozen reactions, impulses and work. Reading begins. Collective.
+  PetscErrorCode keep(Archive &archive, FilledGrid<dim> &grid, const std::vector<std::array<double, 2>> &impedance, const std::vector<double> &filling);
 
   const std::vector<Source> &sources() const { return sources_; }
   bool has_dashpots() const { return !dashpots_.empty(); }
   bool loads(int source) const { return std::holds_alternative<Traction>(sources_[source].kind); }
   /// Impulse on the soil by each boundary since the last call, per source [N s]; collective.
   PetscErrorCode take_impulses(MPI_Comm comm, std::vector<Vec<dim>> &impulse);
-  /// Mean displacement of the loaded face of each source since the start [m], zero for other sources; collective.
-  PetscErrorCode face_displacements(MPI_Comm comm, std::vector<Vec<dim>> &mean) const;
 
  private:
   struct Prescribed {      // a node with prescribed directions
@@ -74,33 +82,37 @@ class Conditions {
     double force;          // friction against sliding in the last `resolve` [N]
     bool presses, sticks;  // in the last `resolve`
   };
-  struct LoadedFacet {
-    const Facet<dim> *facet;
-    std::array<int, dim> node;  // compact
-    int source;
-    double share;               // of the facet's area that this side carries
-  };
   struct Dashpot {
     int node, source;
     Square<dim> matrix;         // [kg/s]
   };
-  void add_direction(int node, int source, const Vec<dim> &direction);
+  struct Reaction {
+    int node, source;
+    Vec<dim> value;             // impulse of the last `resolve` [N s], or dead load [N]
+  };
+  struct PrescribedSet {
+    std::vector<int> of_node;   // mesh node -> entry, -1: none
+    std::vector<Prescribed> entry;
+  };
+  void add_direction(PrescribedSet &set, int node, int source, const Vec<dim> &direction);
   void add_contact(int node, int source, const Vec<dim> &normal, double area);
   double target(const Prescribed &c, int k, const Vec<dim> &x, double t) const;
 
   std::vector<Source> sources_;
-  std::vector<int> prescribed_of_node_, first_contact_of_node_;
-  std::vector<Prescribed> prescribed_;
+  std::vector<int> first_contact_of_node_;
+  std::array<PrescribedSet, 2> prescribed_;  ///< with dashpots; with the supports that stand in for them
   std::vector<std::vector<Contact>> contacts_;
-  std::vector<std::pair<int, std::vector<Facet<dim>>>> loads_, dashpots_, bases_;
+  std::vector<std::pair<int, std::vector<Facet<dim>>>> dashpots_, bases_;
   std::vector<ActivePrescribed> active_prescribed_;
   std::vector<ActiveContact> active_contacts_;
-  std::vector<LoadedFacet> active_loads_;
   std::vector<Dashpot> active_dashpots_;
   std::vector<double> nodal_;
-  double friction_delay_ = 0;
+  double friction_delay_ = 0, resolved_step_ = 0;
+  bool held_ = false;
+  std::vector<Reaction> frozen_, active_frozen_, impulses_;  ///< by mesh node; by compact node; of the last `resolve`
+  std::vector<double> work_;
   std::vector<Vec<dim>> impulse_;
-  std::vector<Vec<dim>> face_travel_;  ///< per source: sum over facets and time of area times displacement [m3]
+  SurfaceLoads<dim> surface_loads_;
   std::vector<char> counted_;   // [compact] this rank counts the node in global sums
 };
 

@@ -19,6 +19,7 @@
 #include "tests/verification/incline_block/exact.h"
 #include "tests/verification/k0_column/exact.h"
 #include "tests/verification/leaving_waves/exact.h"
+#include "tests/verification/loaded_face/exact.h"
 #include "tests/verification/mohr_coulomb_triaxial/exact.h"
 #include "tests/verification/rigid_rotation/exact.h"
 #include "tests/verification/rigid_translation/exact.h"
@@ -47,6 +48,7 @@ inline constexpr LadderEntry ladder[] = {
      rungs::elastic_bar},
     {"incline_block", "verification", "block on a rough plane: sliding, sticking, adhesion, friction that drops",
      rungs::incline_block},
+    {"loaded_face", "verification", "loads on faces that move through several cells", rungs::loaded_face},
     {"leaving_waves", "verification", "pulses that leave through non-reflecting faces", rungs::leaving_waves},
     {"water_table", "verification", "column below open water, and below a water table that falls", rungs::water_table},
     {"rigid_translation", "verification", "block in free flight: no stress, momentum to round-off",

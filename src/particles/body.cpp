@@ -15,7 +15,7 @@ constexpr const char *fluid_mass[] = {"liquid_mass", "gas_mass"}, *fluid_velocit
 constexpr int spare = 64;  // each removal zeroes the whole spare room of a swarm: keep it small
 
 template <int dim>
-std::vector<FieldSpec> field_specs(int history_count, bool affine, int fluids) {
+std::vector<FieldSpec> field_specs(int history_count, bool affine, int fluids, int faces) {
   std::vector<FieldSpec> specs{{"position", dim, PETSC_DOUBLE},  {"velocity", dim, PETSC_DOUBLE},
                                {"reference", dim, PETSC_DOUBLE}, {"mass", 1, PETSC_DOUBLE},
                                {"volume", 1, PETSC_DOUBLE},      {"initial_volume", 1, PETSC_DOUBLE},
@@ -24,6 +24,7 @@ std::vector<FieldSpec> field_specs(int history_count, bool affine, int fluids) {
   if (history_count) specs.push_back({"history", history_count, PETSC_DOUBLE});
   if (affine) specs.push_back({"affine", dim * dim, PETSC_DOUBLE});
   for (int a = 0; a < fluids; ++a) specs.push_back({fluid_mass[a], 1, PETSC_DOUBLE}), specs.push_back({fluid_velocity[a], dim, PETSC_DOUBLE});
+  if (faces) specs.push_back({"surface", faces * static_cast<int>(sizeof(SurfacePiece<dim>) / sizeof(double)), PETSC_DOUBLE});
   return specs;
 }
 
@@ -42,9 +43,9 @@ bool dilates(const Law &law) {
 }  // namespace
 
 template <int dim>
-PetscErrorCode Body<dim>::create(MPI_Comm comm, const BodySource &source, Law law, bool affine, int fluids) {
+PetscErrorCode Body<dim>::create(MPI_Comm comm, const BodySource &source, Law law, bool affine, int fluids, int faces) {
   PetscFunctionBeginUser;
-  source_ = &source, law_ = std::move(law), history_count_ = history_size(law_), affine_ = affine, fluids_ = fluids;
+  source_ = &source, law_ = std::move(law), history_count_ = history_size(law_), affine_ = affine, fluids_ = fluids, face_count_ = faces;
   const bool capped = source.volume_cap > 0 || (source.volume_cap < 0 && cohesionless(law_));
   volume_cap_ = !capped ? std::numeric_limits<double>::infinity() : source.volume_cap > 0 ? source.volume_cap : 1;
   for (int h = 0; h < history_count_; ++h)
@@ -54,7 +55,7 @@ PetscErrorCode Body<dim>::create(MPI_Comm comm, const BodySource &source, Law la
   PetscCall(DMSetDimension(swarm_, dim));
   PetscCall(DMSwarmSetType(swarm_, DMSWARM_BASIC));
   PetscCall(DMSwarmInitializeFieldRegister(swarm_));
-  for (const FieldSpec &f : field_specs<dim>(history_count_, affine, fluids))
+  for (const FieldSpec &f : field_specs<dim>(history_count_, affine, fluids, faces))
     PetscCall(DMSwarmRegisterPetscDatatypeField(swarm_, f.name, f.components, f.type));
   PetscCall(DMSwarmFinalizeFieldRegister(swarm_));
   PetscFunctionReturn(0);
@@ -87,7 +88,7 @@ PetscErrorCode Body<dim>::borrow() {
   PetscCall(take("stress", arrays_.stress));
   PetscCall(take("cell", arrays_.cell));
   PetscCall(take("id", arrays_.id));
-  arrays_.history = arrays_.affine = nullptr;
+  arrays_.history = arrays_.affine = nullptr, arrays_.surface = nullptr;
   if (history_count_) PetscCall(take("history", arrays_.history));
   if (affine_) PetscCall(take("affine", arrays_.affine));
   for (int a = 0; a < 2; ++a) {
@@ -96,6 +97,7 @@ PetscErrorCode Body<dim>::borrow() {
     PetscCall(take(fluid_mass[a], arrays_.fluid_mass[a]));
     PetscCall(take(fluid_velocity[a], arrays_.fluid_velocity[a]));
   }
+  if (face_count_) PetscCall(take("surface", arrays_.surface));
   borrowed_ = true;
   PetscFunctionReturn(0);
 }
@@ -104,7 +106,7 @@ template <int dim>
 PetscErrorCode Body<dim>::give_back() {
   PetscFunctionBeginUser;
   if (!borrowed_) PetscFunctionReturn(0);
-  for (const FieldSpec &f : field_specs<dim>(history_count_, affine_, fluids_)) {
+  for (const FieldSpec &f : field_specs<dim>(history_count_, affine_, fluids_, face_count_)) {
     void *array = nullptr;
     PetscCall(DMSwarmRestoreField(swarm_, f.name, nullptr, nullptr, &array));
   }
@@ -137,6 +139,7 @@ PetscErrorCode Body<dim>::sort(int cell_count) {
   permute(arrays_.history, sizeof(double) * history_count_);
   permute(arrays_.affine, sizeof(double) * dim * dim);
   for (int a = 0; a < fluids_; ++a) permute(arrays_.fluid_mass[a], sizeof(double)), permute(arrays_.fluid_velocity[a], sizeof(Vec<dim>));
+  permute(arrays_.surface, sizeof(SurfacePiece<dim>) * face_count_);
   permute(arrays_.cell, sizeof(PetscInt));
   permute(arrays_.id, sizeof(PetscInt));
   PetscFunctionReturn(0);
@@ -169,7 +172,7 @@ PetscErrorCode Body<dim>::keep(Archive &archive) {
   archive.keep("particles", count);
   if (archive.reading()) PetscCall(resize(count));
   PetscCall(give_back());
-  for (const FieldSpec &f : field_specs<dim>(history_count_, affine_, fluids_)) {
+  for (const FieldSpec &f : field_specs<dim>(history_count_, affine_, fluids_, face_count_)) {
     void *values;
     PetscCall(DMSwarmGetField(swarm_, f.name, nullptr, nullptr, &values));
     const size_t size = f.type == PETSC_INT ? sizeof(PetscInt) : sizeof(double);

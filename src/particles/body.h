@@ -17,6 +17,15 @@
 
 namespace talus {
 
+/// What a particle carries of a loaded face (physics/boundary/surface_loads.h).
+template <int dim>
+struct SurfacePiece {
+  Vec<dim> offset{};     ///< from the particle to the piece [m]
+  Vec<dim> normal{};     ///< mean normal at the last remap, out of the soil; shorter than 1 where the piece goes around a corner
+  Vec<dim> place{};      ///< undeformed place [m]
+  double area = 0;       ///< undeformed area [m2]; 0: the particle carries nothing
+};
+
 /// Raw arrays of a body's swarm fields, valid until particles are added, removed or migrated. One entry per local particle.
 template <int dim>
 struct ParticleArrays {
@@ -32,6 +41,7 @@ struct ParticleArrays {
   double *affine;              ///< [dim * dim] velocity gradient carried by APIC [1/s]; null otherwise
   double *fluid_mass[2];       ///< of liquid and gas in the pores [kg]; null where the phase model has none
   Vec<dim> *fluid_velocity[2]; ///< their velocities [m/s]; null likewise
+  SurfacePiece<dim> *surface;  ///< [loaded faces] pieces of them; null when the scene has none
   PetscInt *cell;              ///< local cell
   PetscInt *id;                ///< number that does not depend on the partition
 };
@@ -39,8 +49,8 @@ struct ParticleArrays {
 template <int dim>
 class Body {
  public:
-  /// Registers the fields; `affine` adds the velocity gradient of APIC; `fluids` 1 the liquid, 2 liquid and gas.
-  PetscErrorCode create(MPI_Comm comm, const BodySource &source, Law law, bool affine, int fluids);
+  /// Registers the fields; `affine` adds the velocity gradient of APIC; `fluids` 1 the liquid, 2 liquid and gas; `faces` is the number of loaded faces.
+  PetscErrorCode create(MPI_Comm comm, const BodySource &source, Law law, bool affine, int fluids, int faces);
   /// Makes room for `count` particles, not yet filled.
   PetscErrorCode resize(PetscInt count);
 
@@ -72,7 +82,7 @@ class Body {
 
   const BodySource *source_ = nullptr;
   Law law_;
-  int history_count_ = 0, expansion_field_ = -1, fluids_ = 0;
+  int history_count_ = 0, expansion_field_ = -1, fluids_ = 0, face_count_ = 0;
   double volume_cap_ = 0;
   bool affine_ = false, borrowed_ = false;
   Dm swarm_;
@@ -86,6 +96,10 @@ class Body {
 /// Throws std::invalid_argument for an empty region or a number of particles that has no lattice.
 template <int dim>
 void seed(Body<dim> &body, const BackgroundMesh<dim> &mesh, int id_stride, const std::function<double(const Vec<dim> &)> &density);
+
+/// Deformation gradient of an initial displacement at an undeformed place, by central differences over `h` [m].
+template <int dim>
+Square<dim> displacement_gradient(const std::vector<Function> &displacement, const Vec<dim> &x, double h);
 
 /// Barycentric coordinates of the lattice of n points in a simplex; empty when there is none.
 template <int dim>

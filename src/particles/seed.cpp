@@ -84,19 +84,20 @@ bool inside(const DenseBox &box, const Vec<dim> &x) {
   return true;
 }
 
-/// Determinant of the deformation gradient of the initial displacement, by central differences.
+}  // namespace
+
 template <int dim>
-double initial_jacobian(const std::vector<Function> &displacement, const Vec<dim> &x, double h) {
+Square<dim> displacement_gradient(const std::vector<Function> &displacement, const Vec<dim> &x, double h) {
   Square<dim> f = Square<dim>::Identity();
   for (int j = 0; j < dim; ++j) {
     Vec<dim> a = x, b = x;
     a[j] -= h, b[j] += h;
     for (int i = 0; i < dim; ++i) f(i, j) += (value<dim>(displacement[i], b) - value<dim>(displacement[i], a)) / (2 * h);
   }
-  return f.determinant();
+  return f;
 }
-
-}  // namespace
+template Square<2> displacement_gradient<2>(const std::vector<Function> &, const Vec<2> &, double);
+template Square<3> displacement_gradient<3>(const std::vector<Function> &, const Vec<3> &, double);
 
 template <>
 std::vector<std::array<double, 3>> lattice<2>(int n) {
@@ -162,7 +163,7 @@ void seed(Body<dim> &body, const BackgroundMesh<dim> &mesh, int id_stride,
           }
       }
       if (!source.displacement.empty()) {
-        p.volume[i] *= initial_jacobian<dim>(source.displacement, x, 1e-5 * mesh.mean_edge[mesh.cells[cell].node[0]]);
+        p.volume[i] *= displacement_gradient<dim>(source.displacement, x, 1e-5 * mesh.mean_edge[mesh.cells[cell].node[0]]).determinant();
         for (int d = 0; d < dim; ++d) p.position[i][d] += value<dim>(source.displacement[d], x);
       }
       p.initial_volume[i] = p.volume[i];

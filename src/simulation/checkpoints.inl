@@ -17,7 +17,7 @@ PetscErrorCode Simulation<dim, Phases>::keep(Archive &archive) {
   PetscFunctionBeginUser;
   archive.keep("clock", time_, load_time_, last_step_, steps_, remaps_, since_sort_, critical_step_, shrink_, remap_due_, hold_loads_);
   archive.keep("stage", stage_);
-  archive.keep("results", last_row_step_, last_row_time_, last_snapshot_time_, impulse_time_, first_ledger_);
+  archive.keep("results", last_row_step_, last_row_time_, last_snapshot_time_, impulse_time_, first_ledger_, first_energy_);
   for (const auto &body : bodies_) PetscCall(body->keep(archive));
   PetscCall(motion_->keep(archive));
   integrator_->keep(archive);

@@ -51,6 +51,7 @@ void Simulation<dim, Phases>::choose_bodies(const Stage &stage) {
     if (std::count(stage.add.begin(), stage.add.end(), name) && !present_[b]) {
       present_[b] = 1;
       seed<dim>(*bodies_[b], mesh_, stride, [&](const Vec<dim> &x) { return soil_density(scene_.body[b], x, load_time_); });
+      conditions_.surface_loads().seed(*bodies_[b], mesh_);
       require(bodies_[b]->sort(mesh_.cell_count()));
     }
     if (std::count(stage.remove.begin(), stage.remove.end(), name) && present_[b]) {

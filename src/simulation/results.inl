@@ -29,6 +29,8 @@ void Simulation<dim, Phases>::name_columns() {
     for (int d = 0; d < dim; ++d)
       history_.names.push_back(conditions_.sources()[s].name + (conditions_.loads(static_cast<int>(s)) ? "_displacement_" : "_force_") + axis[d] +
                                (conditions_.loads(static_cast<int>(s)) ? "_m" : "_N"));
+  for (const auto &source : conditions_.sources()) history_.names.push_back("work_" + source.name + "_J");
+  for (const char *name : {"work_gravity_J", "work_imposed_J", "work_damping_J", "dissipated_J"}) history_.names.push_back(name);
 }
 
 template <int dim, class Phases>
@@ -180,15 +182,23 @@ void Simulation<dim, Phases>::write_history() {
       row.insert(row.end(), {fluids[a].stored, fluids[a].out, fluids[a].given, error});
     }
   }
-  std::vector<Vec<dim>> impulses, faces;
+  std::vector<Vec<dim>> impulses, faces(conditions_.sources().size());
   require(conditions_.take_impulses(comm_, impulses));
-  require(conditions_.face_displacements(comm_, faces));
+  require(conditions_.surface_loads().mean_displacements(motion_->grid(), faces));
   if (in_statics_) require(statics_->boundary_forces(load_time_, impulses, faces));
   const double elapsed = in_statics_ ? 1 : time_ - impulse_time_;
   for (size_t s = 0; s < impulses.size(); ++s)
     for (int d = 0; d < dim; ++d)
       row.push_back(conditions_.loads(static_cast<int>(s)) ? faces[s][d] : elapsed > 0 ? impulses[s][d] / elapsed : 0);
   impulse_time_ = time_;
+  std::vector<double> work = conditions_.work();
+  const WorkDone &done = motion_->work();
+  work.insert(work.end(), {done.gravity, done.imposed, done.damping});
+  MPI_Allreduce(MPI_IN_PLACE, work.data(), static_cast<int>(work.size()), MPI_DOUBLE, MPI_SUM, comm_);
+  const double held = sums.kinetic + sums.strain;
+  if (time_ == 0) first_energy_ = held;
+  row.insert(row.end(), work.begin(), work.end());
+  row.push_back(first_energy_ + std::accumulate(work.begin(), work.end(), 0.) - held);
   row.insert(row.begin(), {time_, static_cast<double>(steps_)});
   history_.rows.push_back(row);
   if (results_) results_->history.row(time_, steps_, stage_name_.empty() ? "start" : stage_name_, {row.begin() + 2, row.end()});

@@ -46,6 +46,7 @@ Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOption
   check_bodies();
   check_boundaries(sources);
   require(conditions_.setup(mesh_, std::move(sources)));
+  conditions_.hold(scene.stage.front().hold_loads);
   seed_bodies();
   set_loading(scene_.stage.front(), 0);  // under which the first state is gathered
   follow_points();
@@ -79,13 +80,20 @@ void Simulation<dim, Phases>::seed_bodies() {
     for (const DenseBox &box : source.dense) stride = std::max(stride, box.particles_per_cell);
   }
   double wave_speed = 0;
+  std::vector<char> filled(mesh_.cell_count(), 0);
+  for (const BodySource &source : scene_.body)
+    for (const std::string &region : source.region)
+      for (int cell : mesh_.region(region)) filled[cell] = 1;
+  SurfaceLoads<dim> &loads = conditions_.surface_loads();
+  require(loads.share(mesh_, filled));
   movers_.resize(scene_.body.size());
   for (size_t b = 0; b < scene_.body.size(); ++b) {
     const BodySource &source = scene_.body[b];
     bodies_.push_back(std::make_unique<Body<dim>>());
     Body<dim> &body = *bodies_.back();
-    require(body.create(comm_, source, laws_[b], scene_.transfer.velocity == Velocity::apic, velocity_fields<Phases> - 1));
+    require(body.create(comm_, source, laws_[b], scene_.transfer.velocity == Velocity::apic, velocity_fields<Phases> - 1, loads.face_count()));
     seed<dim>(body, mesh_, stride, [&](const Vec<dim> &x) { return soil_density(source, x, 0); });
+    loads.seed(body, mesh_);
     double sums[2] = {static_cast<double>(body.particles().count), 0}, totals[2];
     sums[1] = std::accumulate(body.particles().mass, body.particles().mass + body.particles().count, 0.);
     MPI_Allreduce(sums, totals, 2, MPI_DOUBLE, MPI_SUM, comm_);
@@ -108,6 +116,10 @@ void Simulation<dim, Phases>::seed_bodies() {
     if (!outside.empty()) scene_.complain(path + ".displacement", "takes particles out of the mesh near " + outside);
     require(body.sort(mesh_.cell_count()));
   }
+  const int idle = loads.find_idle(comm_, bodies_);
+  if (idle >= 0)
+    scene_.complain("boundary." + conditions_.sources()[idle].name + ".kind",
+                    "is a load on a face without soil behind it at the start; name a group on the surface of a body");
   const double relaxation = scene_.transfer.relaxation * mesh_.report().smallest_altitude / wave_speed;
   constexpr double friction_delay = 10;  // in units of altitude over wave speed, docs/theory (6.2)
   conditions_.set_friction_delay(friction_delay * mesh_.report().smallest_altitude / wave_speed);

@@ -89,6 +89,7 @@ class Simulation final : public AnySimulation {
   double soil_density(const BodySource &source, const Vec<dim> &x, double t) const;
   void follow_points();
   // time loop
+  PetscErrorCode hold_supports(bool held);
   void run_stage();
   void start_stage();
   void set_loading(const Stage &stage, double stage_time);
@@ -152,7 +153,7 @@ class Simulation final : public AnySimulation {
   std::string stage_name_;
   double time_ = 0, load_time_ = 0, critical_step_ = 0, shrink_ = 1, impulse_time_ = 0, last_step_ = 0;
   long long steps_ = 0, remaps_ = 0, particle_count_ = 0, since_sort_ = 0;
-  double total_mass_ = 0;
+  double total_mass_ = 0, first_energy_ = 0;
   std::vector<double> first_ledger_;  ///< fluid masses at the start [kg]
   bool hold_loads_ = false, remap_due_ = false;
   std::string watched_;

@@ -75,6 +75,20 @@ void Simulation<dim, Phases>::set_loading(const Stage &stage, double stage_time)
   hold_loads_ = stage.hold_loads;
 }
 
+/// Changes between dashpots and the supports that stand in for them; what these bore stays on as a dead load.
+template <int dim, class Phases>
+PetscErrorCode Simulation<dim, Phases>::hold_supports(bool held) {
+  PetscFunctionBeginUser;
+  if (held == conditions_.held() || !conditions_.has_dashpots()) PetscFunctionReturn(0);
+  if (motion_->gathered()) PetscCall(release(false));
+  if (!held) {
+    PetscCall(motion_->freeze_reactions(time_));
+    PetscCall(release(false));
+  }
+  conditions_.hold(held);
+  PetscFunctionReturn(0);
+}
+
 template <int dim, class Phases>
 void Simulation<dim, Phases>::start_stage() {
   const int number = stage_.number + 1;
@@ -87,6 +101,7 @@ void Simulation<dim, Phases>::run_stage() {
   const Stage &stage = scene_.stage[stage_.number];
   if (stage.kind == StageKind::quasi_static) return run_quasi_static(stage);
   in_statics_ = false, moved_since_statics_ = true;
+  require(hold_supports(stage.hold_loads));
   stage_name_ = stage.name, watched_ = stage.until == StopWhen::failure ? stage.failure_point : "";
   if (results_) results_->progress.stage(stage.name);
   integrator_->restart();

@@ -70,6 +70,12 @@ TEST_F(RunThatEnds, BecauseALoadIsNoNumber) {
          3);
 }
 
+TEST_F(RunThatEnds, BecauseAFixedStepBecameTooLong) {
+  folder_.write("section.csv", good_section + std::string("refine_0.03,1.2,0\nrefine_0.03,2,1\n"));
+  const std::string scene = changed(changed(good_scene, "density = 2000", "density = 2000\nvelocity = [\"10\", \"2\"]"), "[output]", "[integrator]\nstep = 0.0012\n[output]");
+  expect(Program(folder_, run(scene)).end(), {"the soil has come to cells with a critical step of", "integrator.step = 0.0012", "t = "}, 1);
+}
+
 TEST_F(RunThatEnds, BecauseSpeedIsAbsurd) {
   const std::string scene = changed(good_scene, "density = 2000", "density = 2000\nvelocity = [\"1e200\", \"0\"]");
   expect(Program(folder_, run(scene)).end(), {"the velocity is not finite near (", "step 1,"}, 1);

@@ -30,7 +30,7 @@ struct Soil {
     BodySource &source = scene.body[0];
     source.particles_per_cell = dim == 2 ? 3 : 4;
     bodies.push_back(std::make_unique<Body<dim>>());
-    EXPECT_EQ(bodies[0]->create(mesh.comm(), source, read_law(source.law), false, 0), 0);
+    EXPECT_EQ(bodies[0]->create(mesh.comm(), source, read_law(source.law), false, 0, 0), 0);
     seed<dim>(*bodies[0], mesh, 8, [](const Vec<dim> &) { return 2000.; });
     EXPECT_EQ(bodies[0]->sort(mesh.cell_count()), 0);
     std::vector<typename Conditions<dim>::Source> sources;

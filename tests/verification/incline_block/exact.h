@@ -22,7 +22,7 @@ inline void incline_block(Rung &rung) {
   };
   for (const int dimension : {2, 3}) {
     const std::string space = name_of(dimension) + " ";
-    const auto slide = [&](const std::string &friction, double adhesion, double duration, double damping = 0) {
+    const auto slide_run = [&](const std::string &friction, double adhesion, double duration, double damping) {
       std::vector<std::string> overrides{"boundary.base.friction_angle=" + friction,
                                          "boundary.base.adhesion=" + number(adhesion),
                                          "stage.0.duration=" + number(duration), "stage.0.damping=" + number(damping)};
@@ -31,7 +31,10 @@ inline void incline_block(Rung &rung) {
             overrides.end(),
             {"gravity=[4.905, -8.495709211125343, 0]",
              "body.block.stress=[\"0\", \"-2000 * 8.495709211125343 * (0.5 - y)\", \"0\", \"0\", \"0\", \"0\"]"});
-      return speed(rung.run(in_dimension(dimension, overrides)));
+      return rung.run(in_dimension(dimension, overrides));
+    };
+    const auto slide = [&](const std::string &friction, double adhesion, double duration, double damping = 0) {
+      return speed(slide_run(friction, adhesion, duration, damping));
     };
     // from 0.2 s on: until the shear stress at the base has built up, friction is less than it could be
     const auto measured = [&](const std::string &friction, double adhesion, double from, double to, double damping = 0) {
@@ -52,6 +55,17 @@ inline void incline_block(Rung &rung) {
                  measured("20", 1000, 0.2, 1.5) / driving, 0.01, 1);
     rung.compare(space + "a, adhesion 3 kPa" + of_driving, acceleration(0, 3000) / driving,
                  measured("0", 3000, 0.2, 1.5) / driving, 0.01, 1);
+    // ledger: friction and gravity along the way of the block's middle; the rest is what vibrations took
+    const Run run = slide_run("20", 0, 1.5, 0);
+    const auto mass = component(run.end, "mass"), way = component(run.end, "displacement");
+    double sum = 0, total = 0;
+    for (size_t i = 0; i < mass.size(); ++i) sum += mass[i] * way[i], total += mass[i];
+    const double friction = run.history.column("work_base_J").back(), gravity = run.history.column("work_gravity_J").back();
+    const double width = total / 1000;  // 1 m in the plane, the slice's thickness in 3D
+    rung.compare(space + "work of friction over its way [N]", -mass_per_area * width * g * std::cos(beta) * std::tan(20 * degree),
+                 friction / (sum / total), 0.01);
+    rung.compare(space + "work of gravity over its way [N]", total * driving, gravity / (sum / total), 0.01);
+    rung.compare(space + "energy not accounted for, of the work of friction", 0, run.history.column("dissipated_J").back() / friction, 0.02, 1);
     rung.report(space + "a, phi_b 20 deg, local damping 0.1" + of_driving, 0.9 * acceleration(20, 0) / driving,
                 measured("20", 0, 0.2, 1.5, 0.1) / driving, 1);
   }

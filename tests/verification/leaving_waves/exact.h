@@ -33,6 +33,25 @@ inline void leaving_waves(Rung &rung) {
   };
   rung.compare("2D energy left, ring in a square, non-reflecting", 0, with("non_reflecting"), 0.03, 1);
   rung.report("2D energy left, ring in a square, rollers", 1, with("roller"), 1);
+  // a block under its weight: a support holds the base at first, then its reaction
+  for (const int dimension : {2, 3}) {
+    std::vector<std::string> block{"mesh.section=../../../meshes/box.csv", "mesh.size=0.1", "gravity=10", "body.soil.poisson_ratio=0.25", "body.soil.young_modulus=1e6",
+                                   "boundary.base.kind=non_reflecting", "boundary.left.kind=roller", "boundary.right.group=right", "boundary.right.kind=roller",
+                                   "boundary.surface.kind=traction", "boundary.surface.pressure=0", "stage.0.duration=3", "stage.0.until=equilibrium",
+                                   "stage.0.gravity_ramp=0.1", "stage.0.damping=0.3", "stage.0.hold_loads=true", "stage.0.reset_displacement=true",
+                                   "stage.1.duration=0.5"};
+    for (const char *field : {"stress", "velocity"}) {
+      const int components = field[0] == 's' ? (dimension == 2 ? 4 : 6) : dimension;
+      std::string zeros;
+      for (int k = 0; k < components; ++k) zeros += (k ? ", " : "") + std::string("\"0\"");
+      block.push_back("body.soil." + std::string(field) + "=[" + zeros + "]");
+    }
+    const Run run = rung.run(in_dimension(dimension, block));
+    double moved = 0;
+    for (const double u : component(run.end, "displacement", 1)) moved = std::max(moved, std::abs(u));
+    constexpr double modulus = 1e6 * 0.75 / (1.25 * 0.5), settlement = 1000 * 10 / modulus / 2;
+    rung.compare(name_of(dimension) + " base that held and lets go: largest displacement over settlement by weight", 0, moved / settlement, 0.03, 1);
+  }
 }
 
 }  // namespace talus::rungs
