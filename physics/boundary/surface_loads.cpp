@@ -74,7 +74,9 @@ void SurfaceLoads<dim>::seed(Body<dim> &body, const BackgroundMesh<dim> &mesh) c
         int host = found->second;
         double nearest = 1e300;
         for (int i = host; i < p.count && p.cell[i] == f.cell; ++i) {
-          const double distance = (map<dim>(p.reference[i]) - map<dim>(place)).squaredNorm();
+          const SurfacePiece<dim> &held = p.surface[i * faces + k];
+          const bool around_a_corner = held.area > 0 && map<dim>(held.normal).dot(map<dim>(f.normal)) < 0.999;  // one mean place would not do
+          const double distance = (map<dim>(p.reference[i]) - map<dim>(place)).squaredNorm() + (around_a_corner ? 1e100 : 0);
           if (distance < nearest * (1 - 1e-9)) nearest = distance, host = i;
         }
         // several points of one host are one piece at their mean

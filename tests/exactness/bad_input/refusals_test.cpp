@@ -222,7 +222,7 @@ const Fault faults[] = {
      "section = \"section.csv\"\nsize = 0.25",
      "file = \"mesh.msh\"\n[body.stone]\nregion = \"sand\"",
      {"needs"}},
-    {"empty_body", "mesh.msh", "2\n1 1 \"base\"\n2 2 \"sand\"", "3\n1 1 \"base\"\n2 2 \"clay\"\n2 3 \"sand\"", {"scene.toml line 6", "sand"}},
+    {"empty_body", "mesh.msh", "2\n1 1 \"base\"\n2 2 \"sand\"", "3\n1 1 \"base\"\n2 2 \"clay\"\n2 3 \"sand\"", {"scene.toml line 7", "body.sand.region", "known are clay"}},
     {"cell_without_area", "mesh.msh", "3 1 1 0", "3 2 0 0", {"scene.toml line 4", "mesh.msh", "no area"}},
 };
 
