@@ -190,6 +190,7 @@ class SoilMotion final : public Motion {
   // fluids that move
   [[no_unique_address]] If<Phases::liquid, PoreFluid<dim, Phases>> fluid_;
   [[no_unique_address]] If<Phases::liquid, PoreConditions<dim>> pore_conditions_;
+  [[no_unique_address]] If<Phases::liquid, std::vector<Vec<dim>>> before_;  ///< velocities of all phases before the step [m/s]
   [[no_unique_address]] If<Phases::liquid, std::vector<const double *>> point_volume_;
   [[no_unique_address]] If<Phases::liquid, std::vector<double>> pore_strain_;  ///< volume strain of the pores in cells
 

@@ -28,7 +28,7 @@ SoilMotion<dim, Phases>::SoilMotion(const BackgroundMesh<dim> &mesh, std::vector
   const int nodes = mesh.node_count(), cells = mesh.cell_count();
   force_.assign(nodes, Vec<dim>{});
   for (auto *field : {&start_velocity_, &velocity_, &mapped_start_, &scratch_}) field->assign(nodes * velocity_fields<Phases>, Vec<dim>{});
-  if constexpr (Phases::liquid) pore_strain_.resize(cells), point_volume_.resize(bodies.size());
+  if constexpr (Phases::liquid) pore_strain_.resize(cells), before_.resize(velocity_.size()), point_volume_.resize(bodies.size());
   for (const auto &body : bodies) imposes_ = imposes_ || !body->source().body_acceleration.empty();
   if (imposes_) imposed_.assign(nodes, Vec<dim>{});
   held_back_.assign(nodes, Vec<dim>{});
@@ -140,10 +140,11 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double) {
   if constexpr (Phases::liquid) {
     PetscCall(fluid_.gather(pore_frame(false), pore_conditions_, filling_, start_velocity_.data(), velocity_.data() + nodes));
     std::copy_n(velocity_.begin() + nodes, nodes * (velocity_fields<Phases> - 1), start_velocity_.begin() + nodes);
+    std::copy_n(velocity_.begin(), nodes * velocity_fields<Phases>, before_.begin());
   }
-  if (relaxes()) {
-    for (int f = 0; f < velocity_fields<Phases>; ++f) PetscCall(back_and_forth(&start_velocity_[f * nodes], &mapped_start_[f * nodes]));
-    for (int i = 0; i < nodes * velocity_fields<Phases>; ++i)
+  if (relaxes() && !Phases::liquid) {
+    PetscCall(back_and_forth(start_velocity_.data(), mapped_start_.data()));
+    for (int i = 0; i < nodes; ++i)
       for (int d = 0; d < dim; ++d) mapped_start_[i][d] = start_velocity_[i][d] - mapped_start_[i][d];
   }
   if constexpr (Phases::given) {
@@ -232,7 +233,7 @@ double SoilMotion<dim, Phases>::end(double t) {
           affine_[(c * dim + i) * dim + j] = g;
         }
   }
-  if constexpr (Phases::liquid) fluid_.release(pore_frame(false), velocity_.data() + grid_.node_count(), flip);
+  if constexpr (Phases::liquid) fluid_.release(pore_frame(false), velocity_.data() + grid_.node_count(), start_velocity_.data() + grid_.node_count(), flip);
   return flip;
 }
 
@@ -556,25 +557,41 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double *v, double *w) {
   PetscFunctionBeginUser;
   Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v), *mapped = reinterpret_cast<Vec<dim> *>(w);
-  const int nodes = grid_.node_count(), all = nodes * velocity_fields<Phases>;
+  const int nodes = grid_.node_count();
   const auto constrain = [&](Vec<dim> *x) {
     conditions_.constrain(loading.time_at(t), grid_, x, true);
     if constexpr (Phases::liquid) fluid_.constrain(pore_frame(false), pore_conditions_, x, x + nodes);
   };
-  if (relaxes()) {
-    for (int f = 0; f < velocity_fields<Phases>; ++f) PetscCall(back_and_forth(velocity + f * nodes, mapped + f * nodes));
-    const double share = 1 - std::exp(-gamma / relaxation_time_);
+  if constexpr (Phases::liquid) {  // drag and walls act on what particles would map back, as after a remap: that becomes the state
+    const int all = nodes * velocity_fields<Phases>;
+    const double share = relaxes() ? 1 - std::exp(-gamma / relaxation_time_) : 0;
     for (int i = 0; i < all; ++i)
+      for (int d = 0; d < dim; ++d) scratch_[i][d] = velocity[i][d] - (1 - share) * before_[i][d];
+    for (int f = 0; f < velocity_fields<Phases>; ++f) PetscCall(back_and_forth(scratch_.data() + f * nodes, mapped + f * nodes));
+    for (int i = 0; i < all; ++i)
+      for (int d = 0; d < dim; ++d) mapped[i][d] += (1 - share) * before_[i][d];
+    constrain(mapped);
+    for (int i = 0; i < all; ++i)
+      for (int d = 0; d < dim; ++d) {
+        start_velocity_[i][d] += mapped[i][d] - velocity[i][d];  // particles take the change that is not mapped
+        velocity[i][d] = before_[i][d] = mapped[i][d];
+      }
+    PetscFunctionReturn(0);
+  }
+  if (relaxes()) {
+    PetscCall(back_and_forth(velocity, mapped));
+    const double share = 1 - std::exp(-gamma / relaxation_time_);
+    for (int i = 0; i < nodes; ++i)
       for (int d = 0; d < dim; ++d) {
         velocity[i][d] += share * (mapped[i][d] - velocity[i][d]);
         mapped[i][d] += mapped_start_[i][d];
       }
     constrain(velocity);
   } else {  // the same sum, mapped once
-    for (int i = 0; i < all; ++i)
+    for (int i = 0; i < nodes; ++i)
       for (int d = 0; d < dim; ++d) scratch_[i][d] = velocity[i][d] - start_velocity_[i][d];
-    for (int f = 0; f < velocity_fields<Phases>; ++f) PetscCall(back_and_forth(scratch_.data() + f * nodes, mapped + f * nodes));
-    for (int i = 0; i < all; ++i)
+    PetscCall(back_and_forth(scratch_.data(), mapped));
+    for (int i = 0; i < nodes; ++i)
       for (int d = 0; d < dim; ++d) mapped[i][d] += start_velocity_[i][d];
   }
   constrain(mapped);
@@ -903,6 +920,7 @@ PetscErrorCode SoilMotion<dim, Phases>::keep(Archive &archive) {
   if (archive.reading()) conditions_.surface_loads().begin(bodies_, grid_);
   if constexpr (Phases::liquid) {
     fluid_.keep(archive);
+    before_ = velocity_;
     if (archive.reading()) PetscCall(pore_conditions_.begin(grid_, filling_, fluid_.surface()));
   }
   PetscFunctionReturn(0);

@@ -42,6 +42,19 @@ class PoreConditions {
           (*sources_)[f.source].kind);
     }
   }
+  /// Calls put(node, P, area) for every face with a given gas pressure P beyond it [Pa]; beyond the others it is the atmosphere's.
+  template <class Put>
+  void gas_pressures(double t, const FilledGrid<dim> &grid, Put &&put) const {
+    for (const Face &f : faces_) {
+      if (f.source < 0) continue;
+      const Vec<dim> &x = grid.position[f.node];
+      std::visit(
+          [&](const auto &kind) {
+            if constexpr (requires { kind.gas_outside(0., 0., 0., 0.); }) put(f.node, kind.gas_outside(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t), f.area);
+          },
+          (*sources_)[f.source].kind);
+    }
+  }
   /// Velocities of liquid and, if not null, gas relative to the solid's: no passage through walls, no more inflow than is supplied. `liquid_at(node)`
   /// is LiquidAtNode; `density` that of the liquid beyond [kg/m3].
   template <class At>
@@ -60,6 +73,7 @@ class PoreConditions {
             [&](const auto &kind) {
               if constexpr (requires { kind.supply(0., 0., 0., 0.); })
                 if (kind.outside(x[0], x[1], z, t, unit_weight) <= 0) least = -kind.supply(x[0], x[1], z, t);
+              if constexpr (requires { kind.gas_outside(0., 0., 0., 0.); }) least = 0;
               if constexpr (requires { kind.forced(0., 0., 0., 0.); }) least = most = -kind.forced(x[0], x[1], z, t);
             },
             (*sources_)[f.source].kind);

@@ -58,13 +58,14 @@ class PoreFluid {
 
   /// Takes masses and momentum of the particles to points and nodes; `velocity` [fluids][nodes] receives the nodes'.
   PetscErrorCode gather(const Frame &frame, PoreConditions<dim> &conditions, const Array &filling, const Vec<dim> *solid, Vec<dim> *velocity);
-  /// Hands particles what points and nodes learned; before the skeleton's particles move. `flip` is the share of their own velocity they keep.
-  void release(const Frame &frame, const Vec<dim> *velocity, double flip);
+  /// Hands particles what points and nodes learned; before the skeleton's particles move. Velocities changed from `start`, both [fluids][nodes];
+  /// `flip` is the share of their own velocity that particles keep.
+  void release(const Frame &frame, const Vec<dim> *velocity, const Vec<dim> *start, double flip);
 
   /// Adds what fluids do to the mixture at a node: pressure and weight.
   void add_to_mixture(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force) const;
   /// Accelerations without drag of the fluids [fluids][nodes], and less them what is left of the mixture's force for the solid.
-  void drive(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force, Vec<dim> *acceleration) const;
+  void drive(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force, Vec<dim> *acceleration);
   /// Velocity of the solid after implicit drag over `step`, from those of all without it.
   void resist(double step, const FilledGrid<dim> &grid, Vec<dim> *solid, const Vec<dim> *fluid) const;
   /// The fluids' after it, the solid now being where supports want it; then boundaries.
@@ -107,12 +108,13 @@ class PoreFluid {
   struct CellPores {
     double pressure[fluids], smooth[fluids];  ///< [Pa]
     double conductivity[fluids];              ///< k k_r / mu [m2/(Pa s)]
+    double saturated;                         ///< conductivity of the liquid were the pores full of it [m2/(Pa s)]
     double density[fluids], mass[fluids];     ///< [kg/m3], [kg]
     double saturation;
     double mixture;                           ///< what the pores take off the total stress [Pa]
   };
   struct NodePores {  // sums over cells and ranks, doubles only
-    double volume;
+    double volume, saturated;          ///< V [m3], sum w k / (d+1) with full pores
     Vec<dim> surface, push;            ///< sum of w grad N; of w P grad N [N]
     struct Fluid {
       double mass, whole, conductivity;  ///< m [kg], M = sum w rho / (d+1) [kg], sum w k / (d+1)
@@ -122,7 +124,8 @@ class PoreFluid {
   static constexpr int node_width = sizeof(NodePores) / sizeof(double);
 
   double given_pressure(const Vec<dim> &x, double t) const;
-  std::array<double, 3> contents(const SoilPores &soil, double pressure) const;
+  double given_gas_pressure(const Vec<dim> &x) const;
+  std::array<double, 3> contents(const SoilPores &soil, double pressure, double gas_pressure) const;
   double unit_weight(const Frame &frame) const {
     double square = 0;
     for (double g : frame.gravity) square += g * g;
@@ -132,8 +135,13 @@ class PoreFluid {
   void solve(const Frame &frame);
   PetscErrorCode smooth(const Frame &frame, double *const *fields, int count);
   Vec<dim> place(const Frame &frame, int cell, const std::array<double, dim + 1> &barycentric) const;
-  double reference_density(int fluid) const;
+  /// Is the cell among those over which pressures are smoothed?
+  bool smoothed(int c) const {
+    constexpr double nearly_saturated = 0.99;
+    return !Phases::suction || cells_[c].saturation >= nearly_saturated;
+  }
   NodalFluid at_node(int node, int a) const;
+  double conductivity_beyond(int node, const NodePores &at, double pressure) const;
   double mixture_pressure(const double *p, double saturation) const;
 
   const BackgroundMesh<dim> &mesh_;
@@ -148,12 +156,14 @@ class PoreFluid {
   std::vector<PorePoints> points_, trial_;
   std::vector<CellPores> cells_;
   std::vector<NodePores> nodes_, trial_nodes_;
-  std::vector<Vec<dim>> start_, flux_, surface_;
+  std::vector<Vec<dim>> flux_, surface_;
   std::vector<std::array<double, dim + 1>> mean_, reference_;  ///< of a cell: where its particles are in the mean, and where its pressure counts
   std::vector<std::array<double, dim + 1>> rows_;              ///< sums over rows of the solid's mass matrices [kg]
   std::vector<std::array<Vec<dim>, dim + 1>> impulse_[fluids]; ///< of a cell: sum m_s N v_a, later times m_a / m_s [kg m/s]
-  Array divergence_[fluids], smooth_[fluids], nodal_;
-  double out_[fluids] = {}, given_mass_ = 0;
+  Array divergence_[fluids], smooth_[fluids], head_, nodal_;
+  Array beyond_;                   ///< conductivity of the liquid beyond a face with a given pressure [node]; 0 elsewhere
+  std::vector<int> body_of_node_;  ///< one of the bodies around it
+  double out_[fluids] = {}, given_mass_[fluids] = {};
 };
 
 }  // namespace talus

@@ -15,8 +15,8 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
   const double gravity = std::hypot(scene.gravity[0], scene.gravity[1], dim == 3 ? scene.gravity[dim - 1] : 0);
   constexpr double earth = 9.81;  // [m/s2], for a hydraulic conductivity in a scene without gravity
   for (const auto &body : bodies) soils_.emplace_back(body->source(), scene.water.density * (gravity > 0 ? gravity : earth), scene.water.viscosity);
-  cells_.resize(cells), nodes_.resize(nodes), mean_.resize(cells), reference_.resize(cells), rows_.resize(cells);
-  start_.resize(fluids * nodes), flux_.resize(nodes), surface_.resize(nodes);
+  cells_.resize(cells), nodes_.resize(nodes), mean_.resize(cells), reference_.resize(cells), rows_.resize(cells), head_.resize(cells);
+  flux_.resize(nodes), surface_.resize(nodes), beyond_.assign(nodes, 0), body_of_node_.assign(nodes, 0);
   for (int a = 0; a < fluids; ++a) impulse_[a].resize(cells), divergence_[a].resize(cells), smooth_[a].resize(cells);
   nodal_.resize(nodes * (fluids + 2 > fluids * (dim + 1) ? fluids + 2 : fluids * (dim + 1)));
 }
@@ -31,16 +31,23 @@ double PoreFluid<dim, Phases>::given_pressure(const Vec<dim> &x, double t) const
   return p;
 }
 
-/// Masses per pore volume [kg/m3] and gas share at a liquid pressure, the gas being at the atmosphere's.
 template <int dim, class Phases>
-std::array<double, 3> PoreFluid<dim, Phases>::contents(const SoilPores &soil, double pressure) const {
-  double share = 0;
+double PoreFluid<dim, Phases>::given_gas_pressure(const Vec<dim> &x) const {
+  if constexpr (Phases::gas) return scene_.gas.pressure(x[0], x[1], dim == 3 ? x[dim - 1] : 0, 0);
+  return 0;
+}
+
+/// Masses per pore volume [kg/m3] and gas share at a liquid pressure under the atmosphere; free gas, and liquid with it, has more by `gas_pressure`.
+template <int dim, class Phases>
+std::array<double, 3> PoreFluid<dim, Phases>::contents(const SoilPores &soil, double pressure, double gas_pressure) const {
+  double share = 0, gas = 0;
   if constexpr (Phases::suction) share = pressure < 0 ? 1 - talus::saturation(soil.retention(), -pressure) : 0;
-  if constexpr (Phases::gas) share = std::max(share, residual_gas);
-  const double gas = [&] {
-    if constexpr (Phases::gas) return share * gas_.density;
-    return 0.;
-  }();
+  if constexpr (Phases::gas) {  // below the water table what is left of the gas is in equilibrium with the water
+    const bool trapped = share < residual_gas;
+    share = std::max(share, residual_gas);
+    gas = share * gas_.density_at(trapped ? std::max(0., pressure + soil.suction(share)) : gas_pressure);
+    if (!trapped) pressure += gas_pressure;
+  }
   return {(1 - share) * liquid_.density_at(pressure), gas, share};
 }
 
@@ -50,7 +57,7 @@ void PoreFluid<dim, Phases>::fill(double t) {
     const ParticleArrays<dim> &p = bodies_[b]->particles();
     const double grain_density = bodies_[b]->source().grain_density;
     for (int i = 0; i < p.count; ++i) {
-      const auto content = contents(soils_[b], given_pressure(p.position[i], t));
+      const auto content = contents(soils_[b], given_pressure(p.position[i], t), given_gas_pressure(p.position[i]));
       for (int a = 0; a < fluids; ++a) {
         p.fluid_mass[a][i] = content[a] * (p.volume[i] - p.mass[i] / grain_density);
         p.fluid_velocity[a][i] = p.velocity[i];
@@ -105,6 +112,8 @@ PetscErrorCode PoreFluid<dim, Phases>::gather(const Frame &frame, PoreConditions
           for (int a = 0; a < fluids; ++a) points.mass[a][i] = p.fluid_mass[a][i], mass[a] += p.fluid_mass[a][i];
         }
       }
+      if (Phases::suction)
+        for (int node : grid.shape[cell].node) body_of_node_[node] = static_cast<int>(b);
       for (int a = 0; a < fluids; ++a) {
         cells_[cell].mass[a] += mass[a];
         for (int k = 0; k <= dim; ++k)
@@ -141,12 +150,11 @@ PetscErrorCode PoreFluid<dim, Phases>::gather(const Frame &frame, PoreConditions
   for (int i = 0; i < nodes; ++i) surface_[i] = nodes_[i].surface;
   PetscCall(conditions.begin(grid, filling, surface_));
   constrain(frame, conditions, solid, velocity);
-  std::copy_n(velocity, fluids * nodes, start_.begin());
   PetscFunctionReturn(0);
 }
 
 template <int dim, class Phases>
-void PoreFluid<dim, Phases>::release(const Frame &frame, const Vec<dim> *velocity, double flip) {
+void PoreFluid<dim, Phases>::release(const Frame &frame, const Vec<dim> *velocity, const Vec<dim> *start, double flip) {
   const FilledGrid<dim> &grid = frame.grid;
   const int nodes = grid.node_count();
   for (size_t b = 0; b < bodies_.size(); ++b) {
@@ -160,7 +168,7 @@ void PoreFluid<dim, Phases>::release(const Frame &frame, const Vec<dim> *velocit
       for (int a = 0; a < fluids; ++a)
         for (int k = 0; k <= dim; ++k) {
           const int n = a * nodes + grid.shape[cell].node[k];
-          change[a][k] = load<dim>(velocity[n].data()) - quad(flip) * load<dim>(start_[n].data());
+          change[a][k] = load<dim>(velocity[n].data()) - quad(flip) * load<dim>(start[n].data());
         }
       double growth = 1, content[fluids]{};
       if (frame.averaged) {
@@ -192,13 +200,6 @@ double PoreFluid<dim, Phases>::mixture_pressure(const double *p, double saturati
 }
 
 template <int dim, class Phases>
-double PoreFluid<dim, Phases>::reference_density(int fluid) const {
-  if constexpr (Phases::gas)
-    if (fluid == 1) return gas_.density;
-  return fluid == 0 ? liquid_.density : 0;
-}
-
-template <int dim, class Phases>
 Vec<dim> PoreFluid<dim, Phases>::place(const Frame &frame, int c, const std::array<double, dim + 1> &n) const {
   Vec<dim> x{};
   for (int k = 0; k <= dim; ++k)
@@ -220,9 +221,10 @@ void PoreFluid<dim, Phases>::solve(const Frame &frame) {
       const int c = set.cell[q];
       const double volume = frame.volume[b][q], pores = std::max(volume - accepted.grains[q], 1e-6 * volume), n = pores / volume;
       if (given) {
-        const auto content = contents(soil, given_ramp * given_pressure(place(frame, c, mean_[c]), frame.time));
+        const Vec<dim> x = place(frame, c, mean_[c]);
+        const auto content = contents(soil, given_ramp * given_pressure(x, frame.time), given_ramp * given_gas_pressure(x));
         for (int a = 0; a < fluids; ++a) {
-          if (!frame.trial) given_mass_ += a == 0 ? content[a] * pores - points.mass[a][q] : 0;
+          if (!frame.trial) given_mass_[a] += content[a] * pores - points.mass[a][q];
           points.mass[a][q] = content[a] * pores;
         }
         points.share[q] = content[2];
@@ -251,6 +253,7 @@ void PoreFluid<dim, Phases>::solve(const Frame &frame) {
       }
       cell.saturation += part * (1 - share);
       cell.pressure[0] += part * p.liquid, cell.mass[0] += points.mass[0][q];
+      cell.saturated += part * k * soil.permeability() / liquid_.viscosity;
       cell.conductivity[0] += part * k * soil.permeability() * k_l / liquid_.viscosity;
       cell.density[0] += part * content / (1 - share);
       if constexpr (Phases::gas) {
@@ -267,11 +270,10 @@ template <int dim, class Phases>
 PetscErrorCode PoreFluid<dim, Phases>::smooth(const Frame &frame, double *const *fields, int count) {
   PetscFunctionBeginUser;
   if (!smoothing_) PetscFunctionReturn(0);
-  constexpr double nearly_saturated = 0.99;
   const int cells = frame.grid.cell_count(), width = count + 1;
   std::fill_n(nodal_.begin(), frame.grid.node_count() * width, 0.);
   for (int c = 0; c < cells; ++c) {
-    if (Phases::suction && cells_[c].saturation < nearly_saturated) continue;
+    if (!smoothed(c)) continue;
     const double w = frame.weight[c];
     for (int i : frame.shape[c].node) {
       nodal_[i * width] += w;
@@ -284,7 +286,7 @@ PetscErrorCode PoreFluid<dim, Phases>::smooth(const Frame &frame, double *const 
     for (int f = 0; f < count; ++f) nodal_[i * width + 1 + f] *= scale;
   }
   for (int c = 0; c < cells; ++c) {
-    if (Phases::suction && cells_[c].saturation < nearly_saturated) continue;
+    if (!smoothed(c)) continue;
     for (int f = 0; f < count; ++f) {
       double mean = 0;
       for (int i : frame.shape[c].node) mean += nodal_[i * width + 1 + f];
@@ -299,19 +301,18 @@ PetscErrorCode PoreFluid<dim, Phases>::store(const Frame &frame) {
   PetscFunctionBeginUser;
   const int nodes = frame.grid.node_count(), cells = frame.grid.cell_count();
   solve(frame);
-  double *fields[fluids];
-  const auto head = [&](int c) {  // g . x where the cell's pressure counts
-    const Vec<dim> x = place(frame, c, reference_[c]);
+  const auto head = [&](int c, const std::array<double, dim + 1> &n) {  // g . x
+    const Vec<dim> x = place(frame, c, n);
     double sum = 0;
     for (int d = 0; d < dim; ++d) sum += frame.gravity[d] * x[d];
     return sum;
   };
-  for (int c = 0; c < cells; ++c) {
-    const Vec<dim> mean = place(frame, c, mean_[c]);
-    double at_mean = 0;
-    for (int d = 0; d < dim; ++d) at_mean += frame.gravity[d] * mean[d];
-    for (int a = 0; a < fluids; ++a) smooth_[a][c] = cells_[c].pressure[a] - reference_density(a) * at_mean;
+  for (int c = 0; c < cells; ++c) {  // of the liquid, and of the mixture where that is something else
+    const double weight = liquid_.density * (head_[c] = head(c, mean_[c]));
+    smooth_[0][c] = cells_[c].pressure[0] - weight;
+    if constexpr (Phases::gas) smooth_[1][c] = mixture_pressure(cells_[c].pressure, cells_[c].saturation) - weight;
   }
+  double *fields[fluids];
   for (int a = 0; a < fluids; ++a) fields[a] = smooth_[a].data();
   PetscCall(smooth(frame, fields, fluids));
   std::vector<NodePores> &at = frame.trial ? trial_nodes_ : nodes_;
@@ -320,21 +321,22 @@ PetscErrorCode PoreFluid<dim, Phases>::store(const Frame &frame) {
   for (int c = 0; c < cells; ++c) {
     CellPores &cell = cells_[c];
     const Shape<dim> &shape = frame.shape[c];
-    const double w = frame.weight[c], part = w / (dim + 1), here = head(c);
+    const double w = frame.weight[c], part = w / (dim + 1), here = head(c, reference_[c]);
     double total = 0, ratio[fluids];
     for (double row : rows_[c]) total += row;
-    for (int a = 0; a < fluids; ++a) {
-      cell.smooth[a] = smooth_[a][c] + reference_density(a) * here;
-      ratio[a] = cell.mass[a] / total;
-    }
+    for (int a = 0; a < fluids; ++a) ratio[a] = cell.mass[a] / total;
+    cell.smooth[0] = smooth_[0][c] + liquid_.density * here;
+    if constexpr (Phases::gas) cell.smooth[1] = cell.pressure[1] + gas_.density * (here - head_[c]);
     cell.mixture = mixture_pressure(cell.smooth, cell.saturation);
+    if constexpr (Phases::gas)
+      if (smoothed(c)) cell.mixture = smooth_[1][c] + liquid_.density * here;
     Vec<dim> first{};
     for (int k = dim; k >= 0; --k) {
       NodePores &node = at[shape.node[k]];
       if (k)
         for (int d = 0; d < dim; ++d) first[d] -= shape.gradient[k - 1][d];
       const Vec<dim> &g = k ? shape.gradient[k - 1] : first;
-      node.volume += part;
+      node.volume += part, node.saturated += part * cell.saturated;
       for (int d = 0; d < dim; ++d) {
         const double wg = w * g[d];
         node.surface[d] += wg, node.push[d] += wg * cell.mixture;
@@ -365,10 +367,22 @@ void PoreFluid<dim, Phases>::add_to_mixture(const Frame &frame, const PoreCondit
   });
 }
 
+/// Conductivity of the liquid where it has a given pressure, in the soil at a node [m2/(Pa s)].
 template <int dim, class Phases>
-void PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force, Vec<dim> *acceleration) const {
+double PoreFluid<dim, Phases>::conductivity_beyond(int node, const NodePores &at, double pressure) const {
+  double relative = 1;
+  if constexpr (Phases::suction) {
+    const SoilPores &soil = soils_[body_of_node_[node]];
+    if (pressure < -soil.entry()) relative = soil.at(1 - talus::saturation(soil.retention(), -pressure)).liquid;
+  }
+  return at.saturated / at.volume * relative;
+}
+
+template <int dim, class Phases>
+void PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force, Vec<dim> *acceleration) {
   const std::vector<NodePores> &at = frame.trial ? trial_nodes_ : nodes_;
   const int nodes = frame.grid.node_count();
+  std::fill_n(beyond_.begin(), nodes, 0.);
   for (int a = 0; a < fluids; ++a)
     for (int i = 0; i < nodes; ++i) {
       const auto &fluid = at[i].fluid[a];
@@ -376,7 +390,12 @@ void PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreConditions<dim>
     }
   conditions.pressures(frame.time, frame.grid, unit_weight(frame), [&](int i, double p, const Vec<dim> &area, double) {
     for (int d = 0; d < dim; ++d) acceleration[i][d] -= p * area[d] / at[i].fluid[0].whole;
+    beyond_[i] = conductivity_beyond(i, at[i], p);
   });
+  if constexpr (Phases::gas)
+    conditions.gas_pressures(frame.time, frame.grid, [&](int i, double p, const Vec<dim> &area) {
+      for (int d = 0; d < dim; ++d) acceleration[nodes + i][d] -= p * area[d] / at[i].fluid[1].whole;
+    });
   for (int a = 0; a < fluids; ++a)
     for (int i = 0; i < nodes; ++i)
       for (int d = 0; d < dim; ++d) force[i][d] -= at[i].fluid[a].mass * acceleration[a * nodes + i][d];
@@ -389,7 +408,9 @@ NodalFluid PoreFluid<dim, Phases>::at_node(int i, int a) const {
   const auto &fluid = node.fluid[a];
   if (!(fluid.whole > 0)) return {0, 0, 0};
   constexpr double closed = 1e30;  // [1/s]: where pressures are given, fluids go with the grains
-  const double resistance = given ? closed * fluid.whole : fluid.mass / fluid.whole * node.volume * node.volume / std::max(fluid.conductivity, 1e-300);
+  double conductivity = fluid.conductivity / node.volume;
+  if (a == 0 && beyond_[i] > 0) conductivity = (conductivity + beyond_[i]) / 2;  // as if there were one more cell, beyond the face
+  const double resistance = given ? closed * fluid.whole : fluid.mass / fluid.whole * node.volume / std::max(conductivity, 1e-300);
   return {fluid.mass, fluid.whole, resistance};
 }
 
@@ -439,10 +460,17 @@ PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<di
 {
   PetscFunctionBeginUser;
   constexpr int width = 3;
+  constexpr double empty = 1e-30;
   FilledGrid<dim> &grid = frame.grid;
+  const auto pore_share = [&](int i) {
+    const auto &fluid = nodes_[i].fluid[1];
+    return fluid.whole > 0 ? fluid.mass / fluid.whole : 0;
+  };
   std::fill_n(nodal_.begin(), grid.node_count() * width, 0.);
   for (int c = 0; c < grid.cell_count(); ++c) {
     const Shape<dim> &shape = grid.shape[c];
+    const CellPores &cell = cells_[c];
+    double takes[dim + 1], out = 0;  // volume that a node takes from the cell
     Vec<dim> first{};
     for (int k = dim; k >= 0; --k) {
       if (k)
@@ -451,17 +479,23 @@ PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<di
       const int i = shape.node[k];
       double towards = 0;
       for (int d = 0; d < dim; ++d) towards += g[d] * (gas[i][d] - solid[i][d]);
-      if (!(towards > 0)) continue;
-      const double w = frame.weight[c] * towards;
-      nodal_[i * width] += w, nodal_[i * width + 1] += w * cells_[c].density[1], nodal_[i * width + 2] += w * (1 - cells_[c].saturation);
+      takes[k] = frame.weight[c] * std::max(0., towards);
+      out += takes[k] * pore_share(i);
+    }
+    if (!(out > 0)) continue;
+    const double free = 1 - residual_gas / std::max(1 - cell.saturation, empty);  // share of the gas that may leave
+    const double open = std::clamp(std::min(free / residual_gas * (1 - cell.saturation), free * cell.mass[1] / (2 * out * cell.density[1])), empty, 1.);
+    for (int k = 0; k <= dim; ++k) {
+      if (!(takes[k] > 0)) continue;
+      double *node = &nodal_[shape.node[k] * width];
+      node[0] += takes[k], node[1] += takes[k] * cell.density[1], node[2] += 1 / open - 1;
     }
   }
   PetscCall(grid.sum(nodal_.data(), width));
   for (int i = 0; i < grid.node_count(); ++i) {
-    const double w = nodal_[i * width], share = w > 0 ? nodal_[i * width + 2] / w : 1, rho = w > 0 ? nodal_[i * width + 1] / w : gas_.density;
-    const auto &fluid = nodes_[i].fluid[1];
-    const double density = fluid.whole > 0 ? fluid.mass / fluid.whole * rho * std::clamp(share / residual_gas - 1, 0., 1.) : 0;
-    for (int d = 0; d < dim; ++d) flux_[i][d] = given ? 0 : density * (gas[i][d] - solid[i][d]);
+    const double *node = &nodal_[i * width], rho = node[0] > 0 ? node[1] / node[0] : gas_.density;
+    const double density = given ? 0 : pore_share(i) * rho / (1 + node[2]);
+    for (int d = 0; d < dim; ++d) flux_[i][d] = density * (gas[i][d] - solid[i][d]);
   }
   PetscFunctionReturn(0);
 }
@@ -497,9 +531,8 @@ PetscErrorCode PoreFluid<dim, Phases>::flow(const Frame &frame, const Vec<dim> *
 template <int dim, class Phases>
 PetscErrorCode PoreFluid<dim, Phases>::smooth_flow(const Frame &frame, Array &volume_strain) {
   PetscFunctionBeginUser;
-  double *fields[fluids + 1] = {volume_strain.data()};
-  for (int a = 0; a < fluids; ++a) fields[1 + a] = divergence_[a].data();
-  PetscCall(smooth(frame, fields, fluids + 1));
+  double *fields[] = {volume_strain.data(), divergence_[0].data()};  // gas moves by its own pressure, which is not smoothed
+  PetscCall(smooth(frame, fields, 2));
   const int cells = frame.grid.cell_count();
   for (int a = 0; a < fluids; ++a)
     for (int c = 0; c < cells; ++c) divergence_[a][c] *= frame.weight[c];
@@ -536,24 +569,23 @@ void PoreFluid<dim, Phases>::keep(Archive &archive) {
     archive.keep("pores", points.grains, points.share, points.suction);
     for (int a = 0; a < fluids; ++a) archive.keep("fluid", points.mass[a], points.pressure[a]);
   }
-  archive.keep("fluids", cells_, nodes_, start_, surface_, mean_, reference_, rows_, out_, given_mass_);
+  archive.keep("fluids", cells_, nodes_, surface_, mean_, reference_, rows_, body_of_node_, out_, given_mass_);
 }
 
 template <int dim, class Phases>
 PetscErrorCode PoreFluid<dim, Phases>::ledger(bool gathered, FluidLedger *sums) {
   PetscFunctionBeginUser;
-  double mine[2 * fluids + 1]{}, all[2 * fluids + 1];
+  double mine[3 * fluids]{}, all[3 * fluids];
   for (size_t b = 0; b < bodies_.size(); ++b)
     for (int a = 0; a < fluids; ++a) {
       if (gathered)
-        for (double m : points_[b].mass[a]) mine[2 * a] += m;
+        for (double m : points_[b].mass[a]) mine[3 * a] += m;
       else
-        for (int i = 0; i < bodies_[b]->particles().count; ++i) mine[2 * a] += bodies_[b]->particles().fluid_mass[a][i];
+        for (int i = 0; i < bodies_[b]->particles().count; ++i) mine[3 * a] += bodies_[b]->particles().fluid_mass[a][i];
     }
-  for (int a = 0; a < fluids; ++a) mine[2 * a + 1] = out_[a];
-  mine[2 * fluids] = given_mass_;
-  PetscCallMPI(MPI_Allreduce(mine, all, 2 * fluids + 1, MPI_DOUBLE, MPI_SUM, mesh_.comm()));
-  for (int a = 0; a < fluids; ++a) sums[a] = {all[2 * a], all[2 * a + 1], a == 0 ? all[2 * fluids] : 0};
+  for (int a = 0; a < fluids; ++a) mine[3 * a + 1] = out_[a], mine[3 * a + 2] = given_mass_[a];
+  PetscCallMPI(MPI_Allreduce(mine, all, 3 * fluids, MPI_DOUBLE, MPI_SUM, mesh_.comm()));
+  for (int a = 0; a < fluids; ++a) sums[a] = {all[3 * a], all[3 * a + 1], all[3 * a + 2]};
   PetscFunctionReturn(0);
 }
 

@@ -4,6 +4,7 @@
 #include "commands/rung.h"
 #include "tests/convergence/fem_manufactured/exact.h"
 #include "tests/convergence/manufactured/exact.h"
+#include "tests/verification/celia/exact.h"
 #include "tests/verification/closed_box/exact.h"
 #include "tests/verification/dynamic_oedometer/exact.h"
 #include "tests/verification/elastic_bar/exact.h"
@@ -14,6 +15,7 @@
 #include "tests/verification/fem_slope/exact.h"
 #include "tests/verification/fem_vertical_cut/exact.h"
 #include "tests/verification/footing/exact.h"
+#include "tests/verification/gas_column/exact.h"
 #include "tests/verification/gravity_column/exact.h"
 #include "tests/verification/hydrostatic/exact.h"
 #include "tests/verification/incline_block/exact.h"
@@ -21,6 +23,8 @@
 #include "tests/verification/leaving_waves/exact.h"
 #include "tests/verification/loaded_face/exact.h"
 #include "tests/verification/mohr_coulomb_triaxial/exact.h"
+#include "tests/verification/phase_reduction/exact.h"
+#include "tests/verification/pore_boundaries/exact.h"
 #include "tests/verification/rigid_rotation/exact.h"
 #include "tests/verification/rigid_translation/exact.h"
 #include "tests/verification/spinning_block/exact.h"
@@ -29,6 +33,7 @@
 #include "tests/verification/two_waves/exact.h"
 #include "tests/verification/undrained/exact.h"
 #include "tests/verification/water_table/exact.h"
+#include "tests/verification/wet_flight/exact.h"
 
 namespace talus {
 
@@ -76,6 +81,11 @@ inline constexpr LadderEntry ladder[] = {
     {"hydrostatic", "verification", "still water in a column that fits its mesh", rungs::hydrostatic},
     {"closed_box", "verification", "masses of water and gas in a closed box", rungs::closed_box},
     {"srivastava_yeh", "verification", "rain on a column of soil above a water table", rungs::srivastava_yeh},
+    {"gas_column", "verification", "damped wave and steady flow of the gas in a column", rungs::gas_column},
+    {"pore_boundaries", "verification", "one column under every boundary of the pore water", rungs::pore_boundaries},
+    {"wet_flight", "verification", "wet soil in free flight: nothing passes its surface", rungs::wet_flight},
+    {"celia", "verification", "infiltration into dry soil", rungs::celia},
+    {"phase_reduction", "verification", "phase models without what they add", rungs::phase_reduction},
 };
 
 }  // namespace talus

@@ -168,12 +168,14 @@ struct Gas {
   double density = 1.2;           ///< at atmospheric pressure [kg/m3]
   double bulk_modulus = 101325;   ///< K_g; an ideal gas has its absolute pressure [Pa]
   double viscosity = 1.8e-5;      ///< mu_g [Pa s]
+  Function pressure = 0.0;        ///< initial, where gas is free, function of x, y, z [Pa]
   template <class Visitor>
   void fields(Visitor &&v) {
     given = true;
     v.number("density", density, kilogram_per_cubic_metre, Range{1e-6, 1e3}, "density of the pore gas at atmospheric pressure");
     v.number("bulk_modulus", bulk_modulus, pascal, Range{1, 1e9}, "bulk modulus K_g; the atmospheric pressure stands for an ideal gas");
     v.number("viscosity", viscosity, pascal_second, Range{1e-9, 1e3}, "dynamic viscosity of the pore gas");
+    v.function("pressure", pressure, pascal, Range{-1e6, 1e9}, "initial gauge pressure of the gas above the water table, function of x, y, z");
   }
 };
 

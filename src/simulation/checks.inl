@@ -48,6 +48,8 @@ void Simulation<dim, Phases>::check_boundaries(const std::vector<typename Condit
         scene_.complain(path + ".group", "must name groups of facets; the mesh has no \"" + group + "\"; " + suggestion(group, mesh_.group_names()));
     if (concerns_water(source.kind) && !Phases::liquid)
       scene_.complain(path, std::string("is a boundary of moving pore water, but phases = \"") + Phases::name + "\" has none; set phases = \"saturated\", \"unsaturated\" or \"three-phase\"");
+    if (concerns_gas(source.kind) && !Phases::gas)
+      scene_.complain(path + ".kind", std::string("is a boundary of moving pore gas, but phases = \"") + Phases::name + "\" has none; set phases = \"three-phase\"");
     const auto check_vector = [&](const char *key, const std::vector<Function> &value) {
       if (!value.empty() && value.size() != dim) scene_.complain(path + "." + key, "must have " + std::to_string(dim) + " components");
     };

@@ -18,6 +18,7 @@ Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOption
     if (body.averaging_length > 0 && plastic_strain_field(laws_.back()) < 0)
       scene.complain("body." + body.name + ".averaging_length", "needs a law that remembers a plastic_strain, not " + std::string(law_name(laws_.back())));
     if (body.particles_per_cell == 0) body.particles_per_cell = dim == 2 ? 3 : 4;
+    if (Phases::liquid && body.volume_cap < 0) body.volume_cap = 0;  // pressure follows volume: a cap would pump it up, pores.md section 4
   }
   std::vector<typename Conditions<dim>::Source> sources;
   for (BoundarySource &b : scene.boundary) sources.push_back({b.name, b.group, read_boundary(b.kind)});

@@ -22,7 +22,6 @@ inline double next_time(double begin, double interval, double now) {
 template <int dim, class Phases>
 void Simulation<dim, Phases>::run() {
   options_.resume ? resume_results() : open_results();
-  if constexpr (Phases::gas) note("phases = \"three-phase\" is not usable yet: soil next to walls collapses, docs/theory/pores.md section 7; take \"unsaturated\"");
   try {
     if (stage_.number < 0) {
       write_history();

@@ -84,6 +84,12 @@ const Fault faults[] = {
      "kind = \"roller\"",
      "kind = \"rainfall\"",
      {"scene.toml line 16", "boundary.left", "phases = \"dry\" has none", "unsaturated"}},
+    {"gas_boundary_without_gas",
+     "scene.toml",
+     "[mesh]\nsection = \"section.csv\"\nsize = 0.25\n[body.sand]\nregion = \"sand\"\ndensity = 2000",
+     "phases = \"saturated\"\n[mesh]\nsection = \"section.csv\"\nsize = 0.25\n[boundary.gas]\ngroup = \"left\"\nkind = \"gas_pressure\"\n[body.sand]\nregion = \"sand\"\n"
+     "porosity = 0.3\ngrain_density = 2650\npermeability = 1e-10",
+     {"scene.toml line 9", "boundary.gas.kind", "moving pore gas", "three-phase"}},
     {"saturation_beyond_one",
      "scene.toml",
      "density = 2000",

@@ -72,6 +72,7 @@ void expect_the_same(const std::string &file, const std::vector<std::string> &ov
 
 const std::string column = std::string(TALUS_GALLERY) + "/column/scene.toml",
                   slope = std::string(TALUS_EXACTNESS) + "/ranks/slope.toml",
+                  wet_column = std::string(TALUS_GALLERY) + "/saturated_column/scene.toml",
                   box = std::string(TALUS_EXACTNESS) + "/../verification/closed_box/scene.toml";
 
 TEST(Ranks, column_collapse_is_the_same) { expect_the_same(column, {"mesh.size=0.01"}); }
@@ -95,6 +96,15 @@ TEST(Ranks, column_collapse_is_the_same_under_error_control) {
   expect_the_same(column, {"mesh.size=0.01", "integrator.kind=arkode", "integrator.velocity_tolerance=1e-5"});
 }
 TEST(Ranks, soil_and_water_in_a_closed_box_are_the_same) { expect_the_same(box, {}); }
+TEST(Ranks, moist_soil_in_a_closed_box_is_the_same) { expect_the_same(box, {"phases=unsaturated", "water.table=[[0, 0.5], [1, 0.5]]"}); }
+TEST(Ranks, soil_water_and_gas_in_a_closed_box_are_the_same) { expect_the_same(box, {"phases=three-phase", "water.table=[[0, 0.5], [1, 0.5]]"}); }
+TEST(Ranks, column_of_wet_sand_is_the_same) {
+  for (const std::string phases : {"saturated", "unsaturated", "three-phase"}) {
+    SCOPED_TRACE(phases);
+    expect_the_same(wet_column, {"mesh.size=0.01", "phases=" + phases, "body.sand.retention.curve=van_genuchten", "body.sand.retention.reference_suction=500",
+                                 "body.sand.retention.shape=0.5", "boundary.rain.kind=rainfall", "boundary.rain.group=free_surface", "boundary.rain.intensity=0.01"});
+  }
+}
 TEST(Ranks, drained_slope_of_two_soils_is_the_same) { expect_the_same(slope, {}); }
 
 /// The slope of the guide, coarse and weaker, until it fails; the event's time is when the crest passed the threshold [s].

@@ -23,6 +23,15 @@ struct Variant {
 
 void PrintTo(const Variant &variant, std::ostream *out) { *out << variant.name; }
 
+/// A moist soil with a water table in it.
+std::vector<std::string> with_pores(std::vector<std::string> set) {
+  for (const char *key : {"body.sand.permeability=1e-10", "water.bulk_modulus=1e7", "water.table=[[0, 0.2], [2, 0.2]]", "body.sand.retention.curve=van_genuchten",
+                          "body.sand.retention.reference_suction=5e3", "body.sand.retention.shape=0.5", "body.sand.relative_permeability.curve=van_genuchten_mualem",
+                          "body.sand.relative_permeability.shape=0.5"})
+    set.push_back(key);
+  return set;
+}
+
 const Variant variants[] = {
     {"dry", {}},
     {"dry_when_killed", {}, 1, SIGKILL},
@@ -32,6 +41,9 @@ const Variant variants[] = {
     {"drained",
      {"phases=drained", "water.table=[[0, 0.3], [2, 0.1]]", "water.excess=100 * t"}},
     {"saturated", {"phases=saturated", "body.sand.permeability=1e-10", "water.bulk_modulus=1e7"}},
+    {"unsaturated_in_rain", with_pores({"phases=unsaturated", "boundary.rain.kind=rainfall", "boundary.rain.group=free_surface", "boundary.rain.intensity=0.01"})},
+    {"unsaturated_with_given_pressures_at_first", with_pores({"phases=unsaturated", "stage.0.pore_flow=false"})},
+    {"three_phase", with_pores({"phases=three-phase"})},
     {"with_a_fixed_step", {"integrator.step=2e-4"}},
     {"in_3d",
      {"dimension=3", "mesh.thickness=0.25", "boundary.front.kind=roller", "boundary.back.kind=roller",

@@ -9,7 +9,7 @@ namespace talus::rungs {
 
 inline void closed_box(Rung &rung) {
   for (const int dimension : {2, 3})
-    for (const std::string phases : {"saturated", "unsaturated"}) {
+    for (const std::string phases : {"saturated", "unsaturated", "three-phase"}) {
       std::vector<std::string> more{"phases=" + phases, "water.table=[[0, " + number(phases == "saturated" ? 1 : 0.5) + "], [1, " + number(phases == "saturated" ? 1 : 0.5) + "]]"};
       if (dimension == 3) more.push_back("body.soil.velocity=[\"4 * sin(pi * x) * sin(2 * pi * y)\", \"-4 * sin(pi * y) * sin(2 * pi * x)\", \"0\"]"), more.push_back("mesh.size=0.2");
       const Run run = rung.run(in_dimension(dimension, more));

@@ -1,0 +1,20 @@
+#pragma once
+#include "base/units.h"
+#include "scene/function.h"
+
+namespace talus {
+
+/// The gas beyond the face has this gauge pressure; it moves in and out freely, liquid only out. The face carries no other load by it.
+struct GivenGasPressure {
+  static constexpr const char *name = "gas_pressure";
+  static constexpr const char *meaning = "pressure of the gas beyond the face; liquid may leave, not enter";
+  static constexpr bool water = true;
+  Function pressure = 0.0;
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.function("pressure", pressure, pascal, {-1e6, 1e9}, "gauge pressure of the gas, function of x, y, z, t");
+  }
+  double gas_outside(double x, double y, double z, double t) const { return pressure(x, y, z, t); }
+};
+
+}  // namespace talus

@@ -1,0 +1,38 @@
+#pragma once
+/// Free flight: boundaries follow the surface of the soil wherever it is, so nothing passes it and pressures stay what they were.
+#include <algorithm>
+#include <cmath>
+
+#include "commands/rung.h"
+
+namespace talus::rungs {
+
+inline void wet_flight(Rung &rung) {
+  const auto fly = [&](int dimension, const std::string &phases, const std::vector<std::string> &more) {
+    std::vector<std::string> overrides{"phases=" + phases};
+    overrides.insert(overrides.end(), more.begin(), more.end());
+    const Run run = rung.run(in_dimension(dimension, overrides));
+    const std::string name = name_of(dimension) + " " + phases;
+    const double start = component(run.start, "pore_pressure")[0];
+    double change = 0;
+    for (const double p : component(run.end, "pore_pressure")) change = std::max(change, std::abs(p - start));
+    const bool full = phases == "saturated";
+    const double scale = full ? 2e6 : 2e3;  // K_l, or the suction
+    if (phases == "three-phase") rung.report(name + ", largest change of pressure over suction", 0, change, scale);
+    else rung.compare(name + ", largest change of pressure over " + (full ? "K_l" : "suction"), 0, change, full ? 1e-6 : 0.03, scale);
+    for (const std::string fluid : {"water", "gas"}) {
+      if (fluid == "gas" && phases != "three-phase") continue;
+      const double mass = run.history.column(fluid + "_kg").front();
+      const double lost = std::abs(run.history.column(fluid + "_out_kg").back());
+      if (fluid == "gas") rung.report(name + ", gas lost over gas", 0, lost, mass);
+      else rung.compare(name + ", water lost over water", 0, lost, full ? 1e-6 : 5e-4, mass);
+      rung.compare(name + ", " + fluid + " error over " + fluid, 0, std::abs(run.history.column(fluid + "_error_kg").back()), 1e-10, mass);
+    }
+    rung.report(name + ", remaps", 0, static_cast<double>(run.remaps), 1);
+  };
+  fly(2, "saturated", {"water.table=[[0, 0], [1, 0]]"});
+  fly(2, "unsaturated", {});
+  fly(2, "three-phase", {});
+}
+
+}  // namespace talus::rungs
