@@ -5,6 +5,7 @@
 #include "physics/laws/history.h"
 #include "physics/laws/lanes.h"
 #include "physics/laws/stress.h"
+#include "scene/quantity.h"
 #include "scene/scene.h"
 
 namespace talus {
@@ -48,11 +49,11 @@ struct CamClay {
              "mean tension the soil can bear; gives it stiffness where it bears no stress");
   }
   std::string problem() const {
-    return compression_slope <= swelling_slope ? "compression_slope must exceed swelling_slope: soil hardens as it is compressed"
-                                               : "";
+    if (compression_slope > swelling_slope) return "";
+    return "compression_slope must exceed swelling_slope, " + shortest(swelling_slope) + ": soil hardens as it is compressed";
   }
 
-  static constexpr bool takes_suction = false;
+  static constexpr bool takes_suction = false, rate_dependent = false;
   bool reads_suction() const { return false; }
   bool strength_varies() const { return true; }
   bool cohesionless() const { return false; }

@@ -1,6 +1,5 @@
 #pragma once
-#include <string>
-
+#include "physics/laws/frictional_strength.h"
 #include "physics/laws/history.h"
 #include "physics/laws/isotropic_elastic.h"
 
@@ -8,27 +7,22 @@ namespace talus {
 
 enum class Cone { outer, inner, compromise, plane_strain };
 
-/// Non-associated, perfectly plastic Drucker-Prager cone sqrt(J2) + eta p = xi c around an elastic inside.
+/// Non-associated Drucker-Prager cone sqrt(J2) + eta p = xi c around an elastic inside, with softening.
 /// Sources: de Souza Neto, Peric & Owen (2008), sec. 6.4.4 (cones through the outer or inner edges of the Mohr-Coulomb
 /// pyramid and the plane-strain match), sec. 8.3 (return to cone and apex, exact); Zienkiewicz et al. (1978), Numerical
 /// methods in offshore engineering, ch. 12 (compromise: the mean of outer and inner).
-struct DruckerPrager : IsotropicElastic {
+struct DruckerPrager : IsotropicElastic, FrictionalStrength {
   static constexpr const char *name = "drucker_prager";
-  static constexpr const char *meaning = "Drucker-Prager cone with dilation";
+  static constexpr const char *meaning = "Drucker-Prager cone with dilation and strain softening";
   static constexpr auto history = plastic_strains;
   using History = std::array<double, history.size()>;
 
-  double cohesion = required;        ///< c [Pa]
-  double friction_angle = required;  ///< phi [rad]
-  double dilation_angle = 0;         ///< psi [rad]
   Cone cone = Cone::outer;
 
   template <class Visitor>
   void fields(Visitor &&v) {
     IsotropicElastic::fields(v);
-    v.number("cohesion", cohesion, pascal, Range{0, 1e9}, "cohesion c");
-    v.number("friction_angle", friction_angle, degree, Range{0, 70}, "friction angle phi");
-    v.number("dilation_angle", dilation_angle, degree, Range{0, 70}, "dilation angle psi");
+    FrictionalStrength::fields(v);
     v.choice(
         "cone", cone,
         {{"outer", Cone::outer},
@@ -38,56 +32,93 @@ struct DruckerPrager : IsotropicElastic {
         "which Mohr-Coulomb strength the cone takes: triaxial compression, extension, their mean, or plane strain");
   }
 
-  std::string problem() const {
-    return dilation_angle > friction_angle ? "dilation_angle must not exceed friction_angle" : "";
-  }
-
   bool cohesionless() const { return cohesion == 0; }
+  bool strength_varies() const { return softens(); }
 
   // Of the parameters alone, set by prepare().
-  double eta = 0, eta_bar = 0, xi = 0;  ///< of the cone [-]
-  double over_stiffness = 0;            ///< slip per excess of f [1/Pa]
-  double apex = 0;                      ///< mean stress at the apex [Pa]
+  double of_outer = 0, of_inner = 0, of_plane_strain = 0;  ///< weights of the cones in steepness()
   void prepare() {
     IsotropicElastic::prepare();
-    xi = xi_of(friction_angle);
-    eta = xi * std::tan(friction_angle);
-    eta_bar = xi_of(dilation_angle) * std::tan(dilation_angle);
-    over_stiffness = 1 / (G + K * eta_bar * eta);
-    apex = eta > 0 ? xi * cohesion / eta : 1e100;
+    FrictionalStrength::prepare();
+    const double root3 = std::sqrt(3.);
+    of_outer = cone == Cone::outer ? 2 * root3 : cone == Cone::compromise ? root3 : 0;
+    of_inner = cone == Cone::inner ? 2 * root3 : cone == Cone::compromise ? root3 : 0;
+    of_plane_strain = cone == Cone::plane_strain ? root3 : 0;
+  }
+  /// eta / sin(phi) and xi / cos(phi), of an angle's sine.
+  template <class Number>
+  [[gnu::always_inline]] Number steepness(const Number &s) const {
+    return of_outer / (3 - s) + of_inner / (3 + s) + of_plane_strain / sqrt(3 + s * s);
   }
 
-  /// xi of the cone for an angle of friction, over which eta = xi tan(phi), or of dilation.
-  double xi_of(double angle) const {
-    const double sine = std::sin(angle), cosine = std::cos(angle), root3 = std::sqrt(3.);
-    switch (cone) {
-      case Cone::outer:
-        return 6 * cosine / (root3 * (3 - sine));
-      case Cone::inner:
-        return 6 * cosine / (root3 * (3 + sine));
-      case Cone::compromise:
-        return 18 * cosine / (root3 * (9 - sine * sine));
-      case Cone::plane_strain:
-        return 3 * cosine / std::sqrt(9 * cosine * cosine + 12 * sine * sine);
-    }
-    return 0;
+  template <class Number = double>
+  struct Strength {
+    Number eta, eta_bar;  ///< of the cone and of the flow potential [-]
+    Number limit;         ///< xi c [Pa]
+    Number apex;          ///< mean stress there [Pa]
+  };
+  /// After a plastic strain.
+  template <class Number>
+  [[gnu::always_inline]] Strength<Number> strength(const Number &plastic_strain, const Surroundings &around) const {
+    const auto now = faded(plastic_strain, around);
+    const Number sin_phi = sine(now.phi), c_cos_phi = now.c * sine(right_angle - now.phi);
+    const Number sin_psi = now.sin_psi < sin_phi ? now.sin_psi : sin_phi;
+    const Number steep = steepness(sin_phi), quotient = c_cos_phi / sin_phi;
+    return {steep * sin_phi, steepness(sin_psi) * sin_psi, steep * c_cos_phi, sin_phi > 0 ? quotient : unlimited};
   }
 
-  /// Brings an elastic trial stress back to the cone.
+  /// Calls `use` with this law as the simpler of its cases.
+  template <class Use>
+  void as_case(Use use) const;
+};
+
+/// The cone of soil that softens or does not.
+template <bool softening>
+struct DruckerPragerCase : DruckerPrager {
+  Strength<> peak;
+  double over_stiffness = 0;  ///< slip per excess of f at the peak [1/Pa]
+
+  void prepare() {
+    DruckerPrager::prepare();
+    peak = strength(0., Surroundings{0});
+    over_stiffness = 1 / (G + K * peak.eta_bar * peak.eta);
+  }
+
+  /// Brings an elastic trial stress back to the cone. The strength is that after the plastic strain which the strength
+  /// at the start would cause, as in MohrCoulomb.
   template <int dim, class Number>
-  [[gnu::always_inline]] void correct(Stress<dim, Number> &s, History &history, const Surroundings &) const {
-    const Invariants<dim, Number> trial(s);
-    const Number f = trial.q + eta * trial.p - xi * cohesion;
-    const Number to_cone = (f > 0 ? f : 0) * over_stiffness;
-    const Number cone_p = trial.p - K * eta_bar * to_cone, cone_q = trial.q - G * to_cone;
-    const Number p = cone_p < apex ? cone_p : apex;
-    const Number q = cone_p < apex ? cone_q : 0;
-    const Number shrink = trial.q > 0 ? (trial.q - q) / trial.q : 0;
-    trial.take_off(s, shrink, trial.p - p);
+  [[gnu::always_inline]] void correct(Stress<dim, Number> &s, History &history, const Surroundings &around) const {
     auto &[plastic_strain, plastic_volume] = history;
-    plastic_strain += value_of(trial.q - q) * (1 / (std::sqrt(3.) * G));
-    plastic_volume += value_of(trial.p - p) * (1 / K);
+    const Invariants<dim, Number> trial(s);
+    struct End {
+      Number p, q;
+    };
+    const auto end_of = [&](const Strength<Number> &m, const Number &over) __attribute__((always_inline)) {
+      const Number f = trial.q + m.eta * trial.p - m.limit, to_cone = (f > 0 ? f : Number(0)) * over;
+      const Number cone_p = trial.p - K * m.eta_bar * to_cone, cone_q = trial.q - G * to_cone;
+      return End{cone_p < m.apex ? cone_p : m.apex, cone_p < m.apex ? cone_q : Number(0)};
+    };
+    const double shearing = 1 / (std::sqrt(3.) * G);  // plastic strain per loss of q
+    End end;
+    if constexpr (softening) {
+      const auto after = [&](const Number &strain) __attribute__((always_inline)) {
+        const Strength<Number> m = strength(strain, around);
+        return end_of(m, 1 / (G + K * m.eta_bar * m.eta));
+      };
+      end = after(plastic_strain + (trial.q - after(Number(plastic_strain)).q) * shearing);
+    } else {
+      end = end_of({peak.eta, peak.eta_bar, peak.limit, peak.apex}, over_stiffness);
+    }
+    const Number shrink = trial.q > 0 ? (trial.q - end.q) / trial.q : 0;
+    trial.take_off(s, shrink, trial.p - end.p);
+    plastic_strain += value_of(trial.q - end.q) * shearing;
+    plastic_volume += value_of(trial.p - end.p) * (1 / K);
   }
 };
+
+template <class Use>
+void DruckerPrager::as_case(Use use) const {
+  softens() ? use(DruckerPragerCase<true>{*this, {}}) : use(DruckerPragerCase<false>{*this, {}});
+}
 
 }  // namespace talus

@@ -21,7 +21,10 @@ struct Prescribed {
   double value = 0;  ///< [-] or [Pa]
   bool as_xx = false;
 };
-using Step = std::array<Prescribed, 6>;
+struct Step {
+  std::array<Prescribed, 6> of{};
+  double suction = 0, time_step = 0;  ///< at its end [Pa], that it takes [s]
+};
 
 /// 1 / (K_l / n), the volume that a pore pressure of 1 Pa takes [1/Pa].
 double pore_compliance(const ElementTest &test, double bulk_modulus) {
@@ -37,6 +40,7 @@ class Driver {
     for (int i = 0; i < 3; ++i) state_.stress[i] = -test.cell_pressure;
     std::copy(test.stress.begin(), test.stress.end(), state_.stress.begin());
     for (int i = 0; i < 6; ++i) start_[i] = total(state_, i);
+    if (test.suction.given()) state_.suction = test.suction(0);
   }
 
   std::vector<ElementState> walk() {
@@ -47,7 +51,11 @@ class Driver {
       guess_.setZero();
       for (int k = 1; k <= test_.steps; ++k) {
         const double share = static_cast<double>(k) / test_.steps;
-        advance(prescribed(from + (to - from) * share), states.size(), 0);
+        Step step = prescribed(from + (to - from) * share);
+        step.time_step = test_.duration / test_.steps;
+        const double all = static_cast<double>(legs.size()) * test_.steps;
+        if (test_.suction.given()) step.suction = test_.suction(static_cast<double>(states.size()) / all);
+        advance(step, states.size(), 0);
         states.push_back(state_);
       }
       from = to;
@@ -60,14 +68,15 @@ class Driver {
 
   /// The test's own rule: `driven` is its strain, or t of a controlled one.
   Step prescribed(double driven) const {
-    Step step{};
-    const auto hold = [&](int i) { step[i] = {true, start_[i]}; };
-    const auto strain = [&](int i, double value) { step[i].value = value; };
+    Step step;
+    auto &of = step.of;
+    const auto hold = [&](int i) { of[i] = {true, start_[i]}; };
+    const auto strain = [&](int i, double value) { of[i].value = value; };
     // a round sample stays round: softening soil would choose one side to bulge at, by round-off
     const auto hold_sides = [&] {
       hold(0);
       if (start_[0] == start_[2])
-        step[2].as_xx = true;
+        of[2].as_xx = true;
       else
         hold(2);
     };
@@ -82,15 +91,15 @@ class Driver {
         break;
       case TestType::controlled:
         for (int i = 0; i < 6; ++i) {
-          if (test_.control.stress[i].given()) step[i] = {true, test_.control.stress[i](driven)};
-          if (test_.control.strain[i].given()) step[i] = {false, test_.control.strain[i](driven)};
+          if (test_.control.stress[i].given()) of[i] = {true, test_.control.stress[i](driven)};
+          if (test_.control.strain[i].given()) of[i] = {false, test_.control.strain[i](driven)};
         }
     }
     return step;
   }
 
   /// The accepted state deformed by dF = [e^xx xy xz; 0 e^yy yz; 0 0 e^zz].
-  ElementState deformed(const Unknowns &x) const {
+  ElementState deformed(const Unknowns &x, const Step &step) const {
     Square<3> g = Square<3>::Zero();
     for (int i = 0; i < 3; ++i) g(i, i) = std::expm1(x[i]);
     g(0, 1) = x[3], g(1, 2) = x[4], g(0, 2) = x[5];
@@ -102,9 +111,10 @@ class Driver {
     point.count = 1, point.cell = &cell, point.increment = &increment, point.size = &test_.element_size;
     point.stress_in = state_.stress.data(), point.history_in = state_.history.data();
     point.stress_out = next.stress.data(), point.history_out = next.history.data();
+    point.suction = &step.suction, point.time_step = step.time_step, point.time = state_.time;
     update_stress<3>(law_, point);
     for (int i = 0; i < 6; ++i) next.strain[i] += x[i];
-    next.pore_pressure += K_ * x[6];
+    next.pore_pressure += K_ * x[6], next.suction = step.suction, next.time += step.time_step;
     return next;
   }
 
@@ -112,8 +122,9 @@ class Driver {
   Unknowns residual(const ElementState &next, const Unknowns &x, const Step &step) const {
     Unknowns r;
     for (int i = 0; i < 6; ++i) {
-      const double strain = step[i].as_xx ? next.strain[0] : step[i].value;
-      r[i] = step[i].stress ? total(next, i) - step[i].value : K_ * (next.strain[i] - strain);
+      const Prescribed &given = step.of[i];
+      const double strain = given.as_xx ? next.strain[0] : given.value;
+      r[i] = given.stress ? total(next, i) - given.value : K_ * (next.strain[i] - strain);
     }
     r[6] = K_ * (test_.undrained ? compliance_ * K_ * x[6] + x[0] + x[1] + x[2] : x[6]);
     return r;
@@ -125,7 +136,7 @@ class Driver {
     for (int k = 0; k < 7; ++k) {
       Unknowns moved = x;
       moved[k] += width;
-      slope.col(k) = (residual(deformed(moved), moved, step) - r) / width;
+      slope.col(k) = (residual(deformed(moved, step), moved, step) - r) / width;
     }
     return slope;
   }
@@ -136,19 +147,20 @@ class Driver {
     const ElementState before = state_;
     if (solve(step)) return;
     if (depth == deepest) give_up(number);
-    Step half = step;
-    for (int i = 0; i < 6; ++i) half[i].value = (step[i].value + (step[i].stress ? total(before, i) : before.strain[i])) / 2;
+    Step half = step, rest = step;
+    for (int i = 0; i < 6; ++i) half.of[i].value = (step.of[i].value + (step.of[i].stress ? total(before, i) : before.strain[i])) / 2;
+    half.suction = (step.suction + before.suction) / 2, half.time_step = rest.time_step = step.time_step / 2;
     guess_ /= 2;
     advance(half, number, depth + 1);
-    advance(step, number, depth + 1);
+    advance(rest, number, depth + 1);
   }
 
   bool solve(const Step &step) {
     constexpr int most = 60, shortest_cut = 12;
     Unknowns x = guess_;
     for (int i = 0; i < 6; ++i)
-      if (!step[i].stress && !step[i].as_xx) x[i] = step[i].value - state_.strain[i];
-    ElementState next = deformed(x);
+      if (!step.of[i].stress && !step.of[i].as_xx) x[i] = step.of[i].value - state_.strain[i];
+    ElementState next = deformed(x, step);
     Unknowns r = residual(next, x, step);
     for (int iteration = 0; iteration < most; ++iteration) {
       double scale = 1e-12 * K_;  // of the stress that round-off is counted from
@@ -162,7 +174,7 @@ class Driver {
       double share = 1;
       for (int cut = 0; cut <= shortest_cut; ++cut, share /= 2) {  // the residual must fall
         const Unknowns moved = x + share * full;
-        const ElementState trial = deformed(moved);
+        const ElementState trial = deformed(moved, step);
         const Unknowns rest = residual(trial, moved, step);
         if (rest.norm() < r.norm() || cut == shortest_cut) {
           x = moved, next = trial, r = rest;
@@ -209,6 +221,7 @@ std::string ElementTest::problem() const {
   if (control.given() && type != TestType::controlled) return "a table control belongs to type = \"controlled\"";
   if (!control.given() && type == TestType::controlled) return "type = \"controlled\" needs a table control, for instance with stress_yy";
   if (!undrained && (skempton_b < 1 || pore_stiffness > 0)) return "skempton_b and pore_stiffness need undrained = true";
+  if (undrained && suction.given()) return "takes either undrained or suction: water that cannot leave fills the pores";
   if (skempton_b < 1 && pore_stiffness > 0) return "takes either skempton_b or pore_stiffness";
   const bool closed = type == TestType::oedometer || type == TestType::isotropic_compression;
   if (closed && undrained && skempton_b == 1 && pore_stiffness == 0)
@@ -221,6 +234,16 @@ double ElementState::deviator() const {
   return std::sqrt(((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) / 2 + 3 * (xy * xy + yz * yz + xz * xz));
 }
 
-std::vector<ElementState> drive(const Law &law, const ElementTest &test) { return Driver(law, test).walk(); }
+void refuse_unsuitable(const Law &law, const ElementTest &test) {
+  const std::string of = "test." + test.name + ": the law " + law_name(law);
+  if (test.suction.given() && !reads_suction(law)) throw std::invalid_argument(of + " takes no strength from suction");
+  if (test.duration == 0 && rate_dependent(law))
+    throw std::invalid_argument(of + " flows with time; give the test a duration, such as \"1 s\"");
+}
+
+std::vector<ElementState> drive(const Law &law, const ElementTest &test) {
+  refuse_unsuitable(law, test);
+  return Driver(law, test).walk();
+}
 
 }  // namespace talus

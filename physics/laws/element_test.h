@@ -56,6 +56,8 @@ struct ElementTest {
   double pore_pressure = 0;               ///< at the start [Pa]
   double void_ratio = 0;                  ///< at the start; 0: not known [-]
   double element_size = 0;                ///< h of a softening law; 0: its shape_factor holds as it is [m]
+  Function suction;                       ///< of the law's surroundings, over t from 0 to 1 in the whole test [Pa]
+  double duration = 0;                    ///< of each leg, for laws that flow with time [s]
   Control control;
 
   template <class Visitor>
@@ -85,6 +87,11 @@ struct ElementTest {
     v.number("void_ratio", void_ratio, one, Range{0, 100}, "void ratio at the start; 0 is not known");
     v.number("element_size", element_size, metre, Range{0, 1e5},
              "element size h that a softening law with a reference_size sees; 0: shape_factor holds as it is");
+    v.function("suction", suction, pascal, Range{0, 1e10},
+               "suction that a law with suction_cohesion or suction_friction_rate reads, as a function of t, which runs from 0 to 1 in "
+               "the test; none is 0");
+    v.number("duration", duration, second, Range{0, 1e12},
+             "time in which strain goes from each of its values to the next; fluids and mu_i need it");
     v.table("control", control, "controlled: what is prescribed; a component that is not named keeps its strain");
   }
   std::string problem() const;
@@ -115,6 +122,8 @@ struct ElementState {
   std::array<double, 6> strain{};   ///< natural, since the start; shear as the angle gamma [-]
   std::array<double, 6> stress{};   ///< effective [Pa]
   double pore_pressure = 0;         ///< [Pa]
+  double suction = 0;               ///< [Pa]
+  double time = 0;                  ///< [s]
   std::vector<double> history;
 
   double mean_pressure() const { return -(stress[0] + stress[1] + stress[2]) / 3; }  ///< p', positive in compression [Pa]
@@ -122,8 +131,11 @@ struct ElementState {
   double compression() const { return -(strain[0] + strain[1] + strain[2]); }        ///< loss of volume, natural [-]
 };
 
+/// Throws std::invalid_argument for a test with a suction that the law does not read, or without the duration that it needs.
+void refuse_unsuitable(const Law &law, const ElementTest &test);
+
 /// Walks the point through the test; the first state is the start. Throws ElementTestError where no stress answers the prescribed
-/// deformation, and std::invalid_argument for a test that the law cannot stand at its start.
+/// deformation, and std::invalid_argument like refuse_unsuitable.
 std::vector<ElementState> drive(const Law &law, const ElementTest &test);
 
 class ElementTestError : public std::runtime_error {

@@ -31,8 +31,8 @@ struct Hencky : Base {
     const Number third = (s.xx + s.yy + s.zz) * over_2G * (1. / 3);
     // 2 eps_e = ln b_e, of the accepted stress and then of the trial
     const Strain<dim, Number> elastic = affine<dim, Number>(s, 2 * over_2G, 2 * (pressure - third));
-    const Strain<dim, Number> b = sandwich<dim, Number>(exponential_of<dim, Number>(e), exponential_of<dim, Number>(elastic));
-    const Strain<dim, Number> trial = logarithm_of<dim, Number>(b);
+    const Strain<dim, Number> b = sandwich<dim, Number>(exponential_of(e), exponential_of(elastic));
+    const Strain<dim, Number> trial = logarithm_of(b);
     s = affine<dim, Number>(trial, this->G, (trial.xx + trial.yy + trial.zz) * (this->lambda / 2));
     correct_kirchhoff(s, history, around);
     s = affine<dim, Number>(s, 1 / after, 0);
@@ -63,7 +63,12 @@ struct HenckyElastic : Hencky<LinearElastic> {
 };
 struct HenckyDruckerPrager : Hencky<DruckerPrager> {
   static constexpr const char *name = "hencky_drucker_prager";
-  static constexpr const char *meaning = "Drucker-Prager cone around Hencky's hyperelasticity";
+  static constexpr const char *meaning = "drucker_prager around Hencky's hyperelasticity";
+
+  template <class Use>
+  void as_case(Use use) const {
+    DruckerPrager::as_case([&]<class Case>(const Case &one) { use(Hencky<Case>{one}); });
+  }
 };
 struct HenckyMohrCoulomb : Hencky<MohrCoulomb> {
   static constexpr const char *name = "hencky_mohr_coulomb";

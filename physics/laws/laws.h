@@ -7,6 +7,7 @@
 /// - `prepare()`: derives what follows from the parameters alone, once per update of all points
 /// - `reads_suction()`: does its strength follow `Surroundings::suction`?
 /// - `takes_suction`: the same of the compiled case
+/// - `rate_dependent`: does its stress depend on the time that a strain takes?
 /// - `as_case(use)`: where the law is compiled in several cases, calls `use` with the one that serves its parameters
 /// - `trial(s, e, around)`: adds the elastic stress of a strain increment (IsotropicElastic's, unless the law has its
 /// own)
@@ -53,6 +54,10 @@ inline int history_size(const Law &law) { return static_cast<int>(history_fields
 /// Must the phase model bring suction?
 inline bool reads_suction(const Law &law) {
   return std::visit([](const auto &one) { return one.reads_suction(); }, law);
+}
+/// Does stress depend on the time that a strain takes?
+inline bool rate_dependent(const Law &law) {
+  return std::visit([](const auto &one) { return one.rate_dependent; }, law);
 }
 /// Place of the plastic strain that softening reads among the history fields; -1 where there is none.
 inline int plastic_strain_field(const Law &law) {

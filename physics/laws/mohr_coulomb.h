@@ -1,9 +1,9 @@
 #pragma once
 #include <string>
 
+#include "physics/laws/frictional_strength.h"
 #include "physics/laws/history.h"
 #include "physics/laws/isotropic_elastic.h"
-#include "physics/laws/lanes.h"
 #include "physics/laws/principal.h"
 
 namespace talus {
@@ -15,45 +15,23 @@ namespace talus {
 /// intersections. Sources: Clausen, Damkilde & Andersen (2006, 2007), Comput. Struct. 85 (regions in principal space);
 /// de Souza Neto, Peric & Owen (2008), sec. 8.2 (which edge); Alonso, Yerro & Pinyol (2015), eqs. (14)
 /// to (17) (suction), (18), (19) (softening).
-struct MohrCoulomb : IsotropicElastic {
+struct MohrCoulomb : IsotropicElastic, FrictionalStrength {
   static constexpr const char *name = "mohr_coulomb";
   static constexpr const char *meaning = "Mohr-Coulomb with dilation, tension cut-off, strain softening and strength from suction; Tresca where friction_angle = 0";
   static constexpr auto history = plastic_strains;
   using History = std::array<double, history.size()>;
 
-  double cohesion = required;                   ///< c, peak [Pa]
-  double friction_angle = required;             ///< phi, peak [rad]
-  double dilation_angle = 0;                    ///< psi, never above the current phi [rad]
-  double tension_cutoff = -1;                   ///< T [Pa]; negative: none, the apex is the limit
-  double residual_cohesion = -1;                ///< [Pa]; negative: the peak
-  double residual_friction_angle = -degree.si;  ///< [rad]; negative: the peak
-  double residual_dilation_angle = -degree.si;  ///< [rad]; negative: the peak
-  double shape_factor = 0;                      ///< eta: strength falls with exp(-eta plastic_strain) [-]
-  double reference_size = 0;                    ///< h_ref: eta is multiplied by h / h_ref [m]; 0: it is not
-  double suction_cohesion = 0;                  ///< dc_max: what suction adds to c at most [Pa]
-  double suction_cohesion_rate = 0;             ///< B over P_atm: dc_max (1 - exp(-B s / P_atm)) is added [1/Pa]
-  double suction_friction_rate = 0;             ///< A over P_atm: A s / P_atm is added to phi [rad/Pa]
+  double tension_cutoff = -1;        ///< T [Pa]; negative: none, the apex is the limit
+  double suction_cohesion = 0;       ///< dc_max: what suction adds to c at most [Pa]
+  double suction_cohesion_rate = 0;  ///< B over P_atm: dc_max (1 - exp(-B s / P_atm)) is added [1/Pa]
+  double suction_friction_rate = 0;  ///< A over P_atm: A s / P_atm is added to phi [rad/Pa]
 
   template <class Visitor>
   void fields(Visitor &&v) {
     IsotropicElastic::fields(v);
-    v.number("cohesion", cohesion, pascal, Range{0, 1e9}, "cohesion c, at its peak if the soil softens");
-    v.number("friction_angle", friction_angle, degree, Range{0, 70},
-             "friction angle phi, at its peak if the soil softens");
-    v.number("dilation_angle", dilation_angle, degree, Range{0, 70},
-             "dilation angle psi; held at phi where phi falls below it");
+    FrictionalStrength::fields(v);
     v.number("tension_cutoff", tension_cutoff, pascal, Range{-1, 1e9},
              "largest tension; negative is none but the apex");
-    v.number("residual_cohesion", residual_cohesion, pascal, Range{-1, 1e9},
-             "cohesion at large strain; negative is the peak");
-    v.number("residual_friction_angle", residual_friction_angle, degree, Range{-1, 70},
-             "friction angle at large strain; negative is the peak");
-    v.number("residual_dilation_angle", residual_dilation_angle, degree, Range{-1, 70},
-             "dilation angle at large strain; negative is the peak");
-    v.number("shape_factor", shape_factor, one, Range{0, 1e6}, "eta: strength falls with exp(-eta plastic_strain)");
-    v.number("reference_size", reference_size, metre, Range{0, 1e4},
-             "element size that shape_factor belongs to; in cells of size h it is scaled by h / reference_size; 0 is "
-             "no scaling");
     v.number("suction_cohesion", suction_cohesion, pascal, Range{0, 1e9},
              "most that suction adds to the cohesion: c = c' + suction_cohesion (1 - exp(-suction_cohesion_rate s))");
     v.number("suction_cohesion_rate", suction_cohesion_rate, per_pascal, Range{0, 1e-4},
@@ -63,38 +41,23 @@ struct MohrCoulomb : IsotropicElastic {
   }
 
   std::string problem() const {
-    if (dilation_angle > friction_angle) return "dilation_angle must not exceed friction_angle";
-    if (residual_cohesion > cohesion) return "residual_cohesion must not exceed cohesion";
-    if (residual_friction_angle > friction_angle) return "residual_friction_angle must not exceed friction_angle";
-    if (residual_dilation_angle > dilation_angle) return "residual_dilation_angle must not exceed dilation_angle";
     if ((suction_cohesion > 0) != (suction_cohesion_rate > 0))
       return "suction_cohesion and suction_cohesion_rate go together: give both above 0, or neither";
-    if ((residual_cohesion >= 0 || residual_friction_angle >= 0 || residual_dilation_angle >= 0) && shape_factor == 0)
-      return "a residual strength needs a shape_factor above 0, the rate at which it is reached";
-    return "";
+    return FrictionalStrength::problem();
   }
 
   bool cohesionless() const { return cohesion == 0 && suction_cohesion == 0; }
   bool reads_suction() const { return suction_cohesion > 0 || suction_friction_rate > 0; }
-  bool strength_varies() const { return shape_factor > 0 || reads_suction(); }
+  bool strength_varies() const { return softens() || reads_suction(); }
 
   // Of the parameters alone, set by prepare().
-  double cutoff = 0;                                          ///< [Pa]
-  double residual_c = 0, residual_phi = 0;                    ///< [Pa], [rad]
-  double sin_psi_peak = 0, sin_psi_residual = 0;              ///< [-]
-  double over_size = 0;                                       ///< 1 / h_ref [1/m]
-  double plane_drag = 0, line_drag = 0;                       ///< stress that opening takes off the others [-]
-  static constexpr double right_angle = 90 * degree.si;       ///< [rad]
-  static constexpr double steepest = 80 * degree.si;          ///< of phi with suction [rad]
-  static constexpr double unlimited = 1e100;                  ///< [Pa]
+  double cutoff = 0;                              ///< [Pa]
+  double plane_drag = 0, line_drag = 0;           ///< stress that opening takes off the others [-]
+  static constexpr double steepest = 80 * degree.si;  ///< of phi with suction [rad]
   void prepare() {
     IsotropicElastic::prepare();
+    FrictionalStrength::prepare();
     cutoff = tension_cutoff < 0 ? unlimited : tension_cutoff;
-    residual_c = residual_cohesion < 0 ? cohesion : residual_cohesion;
-    residual_phi = residual_friction_angle < 0 ? friction_angle : residual_friction_angle;
-    sin_psi_peak = std::sin(dilation_angle);
-    sin_psi_residual = residual_dilation_angle < 0 ? sin_psi_peak : std::sin(residual_dilation_angle);
-    over_size = reference_size > 0 ? 1 / reference_size : 0;
     plane_drag = lambda / (lambda + 2 * G), line_drag = lambda / (lambda + G);
   }
 
@@ -109,19 +72,16 @@ struct MohrCoulomb : IsotropicElastic {
     }
   };
 
-  /// After a plastic strain, under the suction of the place. Where sin psi fades it does so as c and phi do.
+  /// After a plastic strain, under the suction of the place.
   template <class Number, bool with_suction = true>
   [[gnu::always_inline]] Strength<Number> strength(const Number &plastic_strain, const Surroundings &around) const {
-    const double scale = around.size * over_size, eta = scale > 0 ? shape_factor * scale : shape_factor;
-    const Number left = exponential(-eta * plastic_strain);  // of the way from residual to peak
-    Number c = residual_c + (cohesion - residual_c) * left, phi = residual_phi + (friction_angle - residual_phi) * left;
+    auto [c, phi, sin_psi] = faded(plastic_strain, around);
     if constexpr (with_suction) {
       c += suction_cohesion * (1 - exponential(-suction_cohesion_rate * around.suction));
       phi += suction_friction_rate * around.suction;
       phi = phi < steepest ? phi : steepest;
     }
     const Number sin_phi = sine(phi), c_cos_phi = c * sine(right_angle - phi);
-    const Number sin_psi = sin_psi_residual + (sin_psi_peak - sin_psi_residual) * left;
     const Number quotient = c_cos_phi / sin_phi, apex = sin_phi > 0 ? quotient : unlimited;
     return {sin_phi, sin_psi < sin_phi ? sin_psi : sin_phi, 2 * c_cos_phi, cutoff < apex ? cutoff : apex};
   }
@@ -184,7 +144,7 @@ struct MohrCoulomb : IsotropicElastic {
 };
 
 /// Mohr-Coulomb of soil that softens or does not, and reads suction or does not.
-template <bool softens, bool with_suction>
+template <bool softening, bool with_suction>
 struct MohrCoulombCase : MohrCoulomb {
   static constexpr bool takes_suction = with_suction;
   Strength<> peak;
@@ -208,8 +168,8 @@ struct MohrCoulombCase : MohrCoulomb {
       return Principal<Value>{trial.s1 - end.s1, trial.s2 - end.s2, trial.s3 - end.s3};
     };
     Strength<Value> now{peak.sin_phi, peak.sin_psi, peak.twice_c_cos_phi, peak.tension};
-    if constexpr (softens || with_suction) now = strength<Value, with_suction>(Value(plastic_strain), around);
-    if constexpr (softens) {
+    if constexpr (softening || with_suction) now = strength<Value, with_suction>(Value(plastic_strain), around);
+    if constexpr (softening) {
       const Value predicted = plastic_strain + shearing(change(now));
       now = strength<Value, with_suction>(predicted, around);
     }
@@ -223,9 +183,9 @@ struct MohrCoulombCase : MohrCoulomb {
 template <class Use>
 void MohrCoulomb::as_case(Use use) const {
   if (reads_suction())
-    shape_factor > 0 ? use(MohrCoulombCase<true, true>{*this, {}}) : use(MohrCoulombCase<false, true>{*this, {}});
+    softens() ? use(MohrCoulombCase<true, true>{*this, {}}) : use(MohrCoulombCase<false, true>{*this, {}});
   else
-    shape_factor > 0 ? use(MohrCoulombCase<true, false>{*this, {}}) : use(MohrCoulombCase<false, false>{*this, {}});
+    softens() ? use(MohrCoulombCase<true, false>{*this, {}}) : use(MohrCoulombCase<false, false>{*this, {}});
 }
 
 }  // namespace talus

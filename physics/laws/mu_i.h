@@ -3,6 +3,7 @@
 
 #include "physics/laws/history.h"
 #include "physics/laws/isotropic_elastic.h"
+#include "scene/quantity.h"
 
 namespace talus {
 
@@ -15,6 +16,7 @@ struct MuI : IsotropicElastic {
   static constexpr const char *meaning = "dense granular flow with the friction mu(I)";
   static constexpr auto history = plastic_strains;
   using History = std::array<double, history.size()>;
+  static constexpr bool rate_dependent = true;
 
   double static_friction = required;    ///< mu_s, tau / p at rest [-]
   double limiting_friction = required;  ///< mu_2, tau / p of fast flow [-]
@@ -32,7 +34,8 @@ struct MuI : IsotropicElastic {
     v.number("solid_density", solid_density, kilogram_per_cubic_metre, Range{100, 1e4}, "density of the grains in I");
   }
   std::string problem() const {
-    return limiting_friction < static_friction ? "limiting_friction must not be below static_friction" : "";
+    if (limiting_friction >= static_friction) return "";
+    return "limiting_friction must not be below static_friction, " + shortest(static_friction);
   }
   bool cohesionless() const { return true; }
 

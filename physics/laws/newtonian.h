@@ -13,6 +13,7 @@ struct Newtonian : IsotropicElastic {
   static constexpr const char *meaning = "weakly compressible viscous fluid";
   static constexpr auto history = plastic_strains;
   using History = std::array<double, history.size()>;
+  static constexpr bool rate_dependent = true;
 
   double viscosity = required;  ///< mu [Pa s]
 

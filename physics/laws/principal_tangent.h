@@ -19,15 +19,10 @@ class PrincipalAxes<dim, Dual<n>> {
     for (int i = 0; i < 3; ++i) value_[i] = m[i][i];
     for (const auto &[i, j] : {std::pair{0, 1}, {1, 2}, {0, 1}})  // greatest first
       if (value_[i] < value_[j]) std::swap(value_[i], value_[j]), std::swap(axis_[i], axis_[j]);
-    for (int k = 0; k < n; ++k) {
-      const Tensor along = tensor(s, [k](const Dual<n> &x) { return x.slope[k]; });
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) {
-          along_[k][i][j] = 0;
-          for (int a = 0; a < 3; ++a)
-            for (int b = 0; b < 3; ++b) along_[k][i][j] += axis_[i][a] * along[a][b] * axis_[j][b];
-        }
-    }
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) transposed_[i][j] = axis_[j][i];
+    for (int k = 0; k < n; ++k)
+      along_[k] = product(product(axis_, tensor(s, [k](const Dual<n> &x) { return x.slope[k]; })), transposed_);
   }
   Principal<Value> values() const {
     Principal<Value> s{value_[0], value_[1], value_[2]};
@@ -72,12 +67,22 @@ class PrincipalAxes<dim, Dual<n>> {
       return {{{of(s.xx), of(s.xy), of(s.xz)}, {of(s.xy), of(s.yy), of(s.yz)}, {of(s.xz), of(s.yz), of(s.zz)}}};
   }
 
-  /// Cyclic Jacobi rotations (Golub & Van Loan 2013, Matrix Computations, sec. 8.5); rows of `axis_` become the axes.
+  static Tensor product(const Tensor &a, const Tensor &b) {
+    Tensor c{};
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k)
+        for (int j = 0; j < 3; ++j) c[i][j] += a[i][k] * b[k][j];
+    return c;
+  }
+
+  /// Cyclic Jacobi rotations (Golub & Van Loan 2013, Matrix Computations, sec. 8.5), which converge with the cube of what
+  /// is off the diagonal; rows of `axis_` become the axes.
   void diagonalise(Tensor &m) {
+    const double nothing = 1e-20 * (std::abs(m[0][0]) + std::abs(m[1][1]) + std::abs(m[2][2]));
     for (int i = 0; i < 3; ++i) axis_[i][i] = 1;
     for (int sweep = 0; sweep < 12; ++sweep)
       for (const auto &[i, j] : {std::pair{0, 1}, {1, 2}, {0, 2}}) {
-        if (m[i][j] == 0) continue;
+        if (std::abs(m[i][j]) <= nothing) continue;
         const double half = (m[j][j] - m[i][i]) / (2 * m[i][j]);
         const double t = (half < 0 ? -1 : 1) / (std::abs(half) + std::sqrt(half * half + 1));
         const double cosine = 1 / std::sqrt(t * t + 1), sine = t * cosine;
@@ -94,19 +99,41 @@ class PrincipalAxes<dim, Dual<n>> {
   /// `in_axes` as a tensor of space, taken off component by component.
   template <class Take>
   void take_off(const Tensor &in_axes, Stress<dim, Dual<n>> &s, Take take) const {
-    const auto component = [&](int a, int b) {
-      double sum = 0;
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) sum += axis_[i][a] * in_axes[i][j] * axis_[j][b];
-      return sum;
-    };
-    take(s.xx, component(0, 0)), take(s.yy, component(1, 1)), take(s.zz, component(2, 2)), take(s.xy, component(0, 1));
-    if constexpr (dim == 3) take(s.yz, component(1, 2)), take(s.xz, component(0, 2));
+    const Tensor t = product(product(transposed_, in_axes), axis_);
+    take(s.xx, t[0][0]), take(s.yy, t[1][1]), take(s.zz, t[2][2]), take(s.xy, t[0][1]);
+    if constexpr (dim == 3) take(s.yz, t[1][2]), take(s.xz, t[0][2]);
   }
 
   std::array<double, 3> value_;      ///< greatest first [Pa]
-  Tensor axis_{};                    ///< row by row
+  Tensor axis_{}, transposed_;       ///< row by row, and as columns
   std::array<Tensor, n> along_;      ///< derivatives of the stress, in its axes
 };
+
+/// Puts g(x) for the tensor x: `change` gives what its principal values lose, x - g(x).
+template <int dim, int n, class Change>
+void map_principal(Stress<dim, Dual<n>> &x, Change change) {
+  const PrincipalAxes<dim, Dual<n>> axes(x);
+  const auto [x1, x2, x3] = axes.values();
+  axes.subtract({change(x1), change(x2), change(x3)}, x);
+}
+
+/// e^a and ln b of tensors of Duals. Around the identity, so that the differences in (T.1) keep their digits.
+template <int dim, int n>
+Strain<dim, Dual<n>> exponential_of(const Strain<dim, Dual<n>> &a) {
+  Strain<dim, Dual<n>> x = a;
+  map_principal(x, [](const Dual<3> &x) {
+    const double rise = std::expm1(x.value);
+    return Dual<3>::of(x, x.value - rise, -rise);
+  });
+  x.xx += 1, x.yy += 1, x.zz += 1;
+  return x;
+}
+template <int dim, int n>
+Strain<dim, Dual<n>> logarithm_of(const Strain<dim, Dual<n>> &b) {
+  Strain<dim, Dual<n>> x = b;
+  x.xx -= 1, x.yy -= 1, x.zz -= 1;
+  map_principal(x, [](const Dual<3> &x) { return Dual<3>::of(x, x.value - std::log1p(x.value), x.value / (1 + x.value)); });
+  return x;
+}
 
 }  // namespace talus

@@ -1,6 +1,6 @@
 #pragma once
 /// Exponential and logarithm of symmetric tensors by products, sums and inverses alone: straight-line code for a loop
-/// that vectorises, and differentiable where principal values are equal.
+/// that vectorises. Those of tensors of Duals stand in principal_tangent.h.
 #include "physics/laws/stress.h"
 
 namespace talus {

@@ -19,12 +19,13 @@ struct Soil {
   }
 };
 
-const std::string elastic = "young_modulus = 1e7\npoisson_ratio = 0.3\n", frictional = elastic + "cohesion = 2e3\nfriction_angle = 35\n";
-const std::string softening = "residual_cohesion = 1e3\nresidual_friction_angle = 25\nshape_factor = 50\n",
+const std::string elastic = "young_modulus = 1e7\npoisson_ratio = 0.3\n", frictional = elastic + "cohesion = 1e3\nfriction_angle = 30\n";
+const std::string softening = "residual_cohesion = 5e2\nresidual_friction_angle = 25\nshape_factor = 50\n",
                   wet = "suction_cohesion = 1e4\nsuction_cohesion_rate = 1e-6\n";
 const std::vector<std::pair<std::string, std::string>> soils = {
     {"linear_elastic", "law = \"linear_elastic\"\n" + elastic},
     {"drucker_prager", "law = \"drucker_prager\"\n" + frictional},
+    {"drucker_prager, softening", "law = \"drucker_prager\"\n" + frictional + softening},
     {"mohr_coulomb", "law = \"mohr_coulomb\"\n" + frictional},
     {"mohr_coulomb, suction", "law = \"mohr_coulomb\"\n" + frictional + wet},
     {"mohr_coulomb, softening", "law = \"mohr_coulomb\"\n" + frictional + softening},
@@ -73,6 +74,8 @@ double time_of(const Law &law, bool with_tangent) {
 }
 
 }  // namespace
+
+const std::vector<std::pair<std::string, std::string>> &bench_soils() { return soils; }
 
 std::vector<LawRate> measure_laws() {
   std::vector<LawRate> rates;

@@ -72,6 +72,18 @@ FactorOfSafety Rung::factor_of_safety(const std::vector<std::string> &overrides)
   return factor;
 }
 
+std::vector<ElementState> Rung::element_test(const std::string &name, const std::vector<std::string> &overrides) {
+  if (compared_) wall_seconds_ = 0, compared_ = false;
+  const auto begin = std::chrono::steady_clock::now();
+  SoilFile soil;
+  TableReader::from_file(scene_, overrides).fill(soil);
+  const auto found = std::find_if(soil.test.begin(), soil.test.end(), [&](const ElementTest &test) { return test.name == name; });
+  if (found == soil.test.end()) throw std::out_of_range("no test " + name + " in " + scene_);
+  const auto states = drive(read_law(soil.material.law), *found);
+  wall_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return states;
+}
+
 void Rung::compare(const std::string &quantity, double exact, double computed, double tolerance, double scale) {
   const double error = std::abs(computed - exact) / (scale > 0 ? scale : std::abs(exact));
   quantities_.push_back({quantity, exact, computed, error, tolerance, wall_seconds_});

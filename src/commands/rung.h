@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "physics/laws/element_test.h"
 #include "simulation.h"
 
 namespace talus {
@@ -18,7 +19,7 @@ struct Run {
 };
 
 /// A number of the results beside the exact one.
-struct Quantity {
+struct Checked {
   std::string name;
   double exact, computed;
   double relative_error;  ///< |computed - exact| over |exact|, or over the scale that the rung names
@@ -38,18 +39,20 @@ class Rung {
   Run run(const std::vector<std::string> &overrides = {});
   /// Factor of safety of the rung's scene with these overrides.
   FactorOfSafety factor_of_safety(const std::vector<std::string> &overrides = {});
+  /// An element test of the rung's scene, which is then a file of `talus soil`. Throws std::out_of_range for an unknown name.
+  std::vector<ElementState> element_test(const std::string &name, const std::vector<std::string> &overrides = {});
   /// Claims that a number is right to within a tolerance relative to `scale`; 0 takes the exact value itself.
   void compare(const std::string &quantity, double exact, double computed, double tolerance, double scale = 0);
   /// States a number without a claim.
   void report(const std::string &quantity, double exact, double computed, double scale = 0);
 
-  const std::vector<Quantity> &quantities() const { return quantities_; }
+  const std::vector<Checked> &quantities() const { return quantities_; }
 
  private:
   std::string scene_;
   bool longer_, compared_ = false;
   double wall_seconds_ = 0;
-  std::vector<Quantity> quantities_;
+  std::vector<Checked> quantities_;
 };
 
 /// Overrides that make a plane scene three-dimensional: a slice, held by rollers at its faces.

@@ -68,7 +68,7 @@ void write_csv(const std::string &path, const Job &job, const ElementTest &test,
   csv << "step";
   for (const char *name : Control::strain_keys) csv << ',' << name;
   for (const char *name : Control::stress_keys) csv << ',' << name << "_Pa";
-  csv << ",pore_pressure_Pa,mean_pressure_Pa,deviator_Pa,compression,void_ratio";
+  csv << ",pore_pressure_Pa,mean_pressure_Pa,deviator_Pa,compression,void_ratio,suction_Pa,time_s";
   for (const HistoryField &field : history_fields(job.law)) csv << ',' << field.name;
   csv << '\n';
   csv.precision(12);
@@ -79,6 +79,7 @@ void write_csv(const std::string &path, const Job &job, const ElementTest &test,
     for (double component : s.stress) csv << ',' << component;
     csv << ',' << s.pore_pressure << ',' << s.mean_pressure() << ',' << s.deviator() << ',' << s.compression() << ',';
     if (test.void_ratio > 0) csv << (1 + test.void_ratio) * std::exp(-s.compression()) - 1;
+    csv << ',' << s.suction << ',' << s.time;
     for (double value : s.history) csv << ',' << value;
     csv << '\n';
   }
@@ -104,6 +105,7 @@ int test_soil(const SoilArguments &arguments) {
   const std::string dir = arguments.directory.empty() ? "results/soil-" + name : arguments.directory;
   const std::string problem = law_problem(job.law, 3);
   if (!problem.empty()) throw SceneError(file + ": the law cannot be used: " + problem);
+  for (const ElementTest &test : job.tests) refuse_unsuitable(job.law, test);
   std::filesystem::create_directories(dir);
 
   std::printf("%s (%s)\n%-24s %10s %10s %10s %10s %10s %10s\n", job.title.c_str(), law_name(job.law), "test", "peak q kPa", "at p' kPa",

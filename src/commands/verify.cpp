@@ -19,7 +19,7 @@ struct VerifyArguments {
 
 struct Outcome {
   const LadderEntry *entry;
-  std::vector<Quantity> quantities;
+  std::vector<Checked> quantities;
   std::string error;  ///< why it ended before its last quantity
 
   bool holds() const {
@@ -71,7 +71,7 @@ void print_header() {
 }
 
 void print(const Outcome &outcome) {
-  for (const Quantity &q : outcome.quantities) {
+  for (const Checked &q : outcome.quantities) {
     const bool claimed = std::isfinite(q.tolerance);
     std::printf("%-22s %-52s %13.6g %13.6g %9.2e ", outcome.entry->name, q.name.c_str(), q.exact, q.computed,
                 q.relative_error);
@@ -105,7 +105,7 @@ void print_json(const std::vector<Outcome> &outcomes) {
   };
   std::printf("{\"cases\": [");
   for (const Outcome &outcome : outcomes) {
-    for (const Quantity &q : outcome.quantities)
+    for (const Checked &q : outcome.quantities)
       if (std::isfinite(q.tolerance))
         put(outcome.entry->name, q.name, q.exact, q.computed, q.relative_error, q.tolerance, q.wall_seconds);
     if (!outcome.error.empty()) put(outcome.entry->name, "completed", 1, 0, 1, 0, NAN);

@@ -186,6 +186,8 @@ void TableReader::elasticity(double &young_modulus, double &poisson_ratio) {
     E = 9 * K * G / (3 * K + G);
     nu = (3 * K - 2 * G) / (2 * (3 * K + G));
   }
+  if (has_nu && !(-1 < nu && nu < 0.5))
+    complain("poisson_ratio", "(Poisson's ratio nu) must lie above -1 and below 0.5, where a material keeps its volume; 0.49 is nearly that");
   if (!(E > 0 && -1 < nu && nu < 0.5))
     complain("", names[0] + " and " + names[1] + " give Poisson's ratio " + shortest(nu) + " and Young's modulus " +
                      shortest(E) + " Pa; a stable material has -1 < nu < 0.5 and E > 0");
@@ -278,6 +280,9 @@ void TableReader::refuse_unknown_keys() const {
 bool TableReader::has(const char *key) const { return static_cast<const toml::table *>(table_)->contains(key); }
 
 void TableReader::refuse(const std::string &sentence) const {
+  const std::size_t must = sentence.find(" must ");
+  if (must != std::string::npos && has(sentence.substr(0, must).c_str()))
+    complain(sentence.substr(0, must), sentence.substr(must + 1));
   const auto *table = static_cast<const toml::table *>(table_);
   throw SceneError(place(document_->file, *table, table == &document_->root) + ": " +
                    (path_.empty() ? "" : path_ + ": ") + sentence);

@@ -24,6 +24,13 @@ def driven_strain(test):
     return np.sqrt(2 / 3 * (normal + sum(g**2 for g in e[3:]) / 2))
 
 
+def widen(limits, set_limits, least):
+    """Lets an axis span at least so much."""
+    low, high = limits()
+    if high - low < least:
+        set_limits((low + high - least) / 2, (low + high + least) / 2)
+
+
 def draw(tests, title, path):
     top = max(np.nanmax(np.abs([t["mean_pressure_Pa"], t["deviator_Pa"]])) for t in tests.values())
     scale, unit = readable_unit(top, "Pa")
@@ -40,12 +47,19 @@ def draw(tests, title, path):
         axes[0, 1].plot(strain, q, color=colour)
         axes[1, 0].plot(strain, 100 * t["compression"], color=colour)
         volume = t["void_ratio"] if has_void_ratio else -100 * t["compression"]
-        axes[1, 1].plot(np.where(p > 0, p, np.nan), volume, color=colour)
+        axes[1, 1].plot(np.where(p > 1e-3 * scale * top, p, np.nan), volume, color=colour)
     axes[0, 0].set(xlabel=f"mean effective pressure p' [{unit}]", ylabel=with_unit("q", unit), title="stress path (dashed: total)")
     axes[0, 1].set(xlabel="deviatoric strain [%]", ylabel=with_unit("q", unit), title="shear")
     axes[1, 0].set(xlabel="deviatoric strain [%]", ylabel="loss of volume [%]", title="volume")
     axes[1, 1].set(xscale="log", xlabel=f"mean effective pressure p' [{unit}]", title="compression",
                    ylabel="void ratio e" if has_void_ratio else "volume strain [%]")
+    widen(axes[0, 0].get_xlim, axes[0, 0].set_xlim, 0.1 * scale * top)  # what hardly changes is not blown up
+    low, high = axes[1, 1].get_xlim()
+    if high < 1.5 * low:
+        axes[1, 1].set_xlim(low / 1.5, high * 1.5)
+    widen(axes[1, 0].get_ylim, axes[1, 0].set_ylim, 0.01)
+    if not has_void_ratio:
+        widen(axes[1, 1].get_ylim, axes[1, 1].set_ylim, 0.01)
     axes[1, 0].invert_yaxis()
     for formatter in (axes[1, 1].xaxis.set_major_formatter, axes[1, 1].xaxis.set_minor_formatter):
         formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(2, 0.5)))

@@ -3,6 +3,7 @@
 
 #include "fixtures.h"
 #include "physics/laws/element_test.h"
+#include "scene/quantity.h"
 #include "scene/reader.h"
 
 namespace talus {
@@ -152,6 +153,101 @@ TEST(ElementTest, stress_and_strain_can_be_given_component_by_component) {
   EXPECT_NEAR(end.strain[3], 10e3 / G, 1e-2 * 10e3 / G);
 }
 
+/// c = c' + dc_max (1 - exp(-B s)), phi = phi' + A s: stronger by what the suction at that point of the test adds; wetting
+/// takes it away again.
+TEST(ElementTest, suction_gives_strength_and_wetting_takes_it) {
+  MohrCoulomb soil = mohr_coulomb(1e3, 23);
+  soil.suction_cohesion = 15e3, soil.suction_cohesion_rate = 7e-7, soil.suction_friction_rate = 1e-7 * degree.si;
+  const auto strength = [&](double s) {
+    const double c = 1e3 + 15e3 * (1 - std::exp(-7e-7 * s)), N = failure_ratio((23 + 1e-7 * s) * degree.si);
+    return 50e3 * N + 2 * c * std::sqrt(N);
+  };
+  ElementTest test = test_of(TestType::triaxial_compression, 50e3, 0.05);
+  for (const double s : {0., 100e3, 800e3}) {
+    test.suction = s;
+    const ElementState end = drive(soil, test).back();
+    EXPECT_NEAR(-end.stress[1], strength(s), 1e-9 * strength(s));
+    EXPECT_EQ(end.suction, s);
+  }
+  test.suction = Function("8e5 * (1 - t)", 1);
+  const auto states = drive(soil, test);
+  for (const int k : {100, 150, 200}) {
+    EXPECT_NEAR(states[k].suction, 8e5 * (1 - k / 200.), 1e-6);
+    EXPECT_NEAR(-states[k].stress[1], strength(states[k].suction), 1e-9 * strength(0));
+  }
+}
+
+/// A strain of 1 in `duration` is a rate: tau = mu gamma_dot, tau = tau_y + mu gamma_dot, tau = mu(I) p.
+TEST(ElementTest, duration_sets_the_rate_of_laws_that_flow) {
+  ElementTest test = test_of(TestType::simple_shear, 10e3, 1);
+  test.duration = 0.1;  // gamma_dot = 10 / s
+  Newtonian fluid;
+  fluid.young_modulus = 1e6, fluid.poisson_ratio = 0.4, fluid.viscosity = 100;
+  const ElementState flown = drive(fluid, test).back();
+  EXPECT_NEAR(flown.time, 0.1, 1e-12);
+  EXPECT_NEAR(flown.stress[3], 1e3, 0.02e3);  // a step turns its strain with itself: first order, as in simple shear above
+  Bingham mud;
+  mud.young_modulus = 1e6, mud.poisson_ratio = 0.4, mud.viscosity = 100, mud.yield_stress = 500;
+  EXPECT_NEAR(drive(mud, test).back().stress[3], 1.5e3, 0.03e3);
+  MuI sand;
+  sand.young_modulus = 20e6, sand.poisson_ratio = 0.3, sand.static_friction = 0.38, sand.limiting_friction = 0.64, sand.grain_size = 1e-2;
+  const ElementState end = drive(sand, test).back();
+  const double p = end.mean_pressure(), I = 10 * 1e-2 * std::sqrt(2650 / p), mu = 0.38 + 0.26 / (1 + 0.3 / I);
+  EXPECT_NEAR(end.deviator() / std::sqrt(3.), mu * p, 2e-3 * mu * p);
+}
+
+TEST(ElementTest, refuses_tests_that_do_not_suit_the_law) {
+  const auto refusal = [](const Law &law, const ElementTest &test) -> std::string {
+    try {
+      drive(law, test);
+    } catch (const std::invalid_argument &error) {
+      return error.what();
+    }
+    return "";
+  };
+  ElementTest test = test_of(TestType::simple_shear, 10e3, 1);
+  Bingham mud;
+  mud.young_modulus = 1e6, mud.poisson_ratio = 0.4, mud.viscosity = 100, mud.yield_stress = 500;
+  EXPECT_NE(refusal(mud, test).find("test.claim: the law bingham flows with time; give the test a duration"), std::string::npos);
+  test.suction = 1e5;
+  EXPECT_NE(refusal(elastic(), test).find("linear_elastic takes no strength from suction"), std::string::npos);
+}
+
+CamClay clay() {
+  CamClay law;
+  law.compression_slope = 0.2, law.swelling_slope = 0.04, law.critical_stress_ratio = 1, law.poisson_ratio = 0.3;
+  law.void_ratio = 1, law.preconsolidation_pressure = 100e3, law.attraction = 1;
+  return law;
+}
+
+/// Lines of slope lambda and kappa in v and ln p, to what a step loses of its volume to the midpoint rule, theory (3.4). The
+/// ladder has the drained and undrained triaxial paths.
+TEST(ElementTest, cam_clay_is_compressed_and_swells_along_its_lines) {
+  ElementTest test = test_of(TestType::isotropic_compression, 100e3, 0);
+  test.strain = {0.1, 0.05};
+  const auto states = drive(clay(), test);
+  const auto log_p = [&](int k) { return std::log(states[k].mean_pressure() + 1); };
+  EXPECT_NEAR(log_p(200) - log_p(0), 2 * (1 - std::exp(-0.1)) / 0.2, 1e-8);
+  EXPECT_NEAR(log_p(200) - log_p(400), 2 * (std::exp(-0.05) - std::exp(-0.1)) / 0.04, 1e-8);
+}
+
+/// One-dimensional compression comes to the constant eta = q / p at which eps_q / eps_v = 2 / 3: the flow rule for the share
+/// Lambda of the volume that is plastic, and d eps_q = dq / (3 G) with dq / q = dp / p for the rest (Muir Wood 1990, sec.
+/// 10.3): 2 eta / (M^2 - eta^2) Lambda + (1 - Lambda) eta K / (3 G) = 2 / 3.
+TEST(ElementTest, cam_clay_in_the_oedometer_comes_to_its_k0) {
+  ElementTest test = test_of(TestType::oedometer, 100e3, 0.25);
+  test.steps = 1000;
+  const CamClay law = clay();
+  const ElementState end = drive(law, test).back();
+  const double Lambda = 0.8, K_over_3G = 1 / (3 * law.shear_over_bulk());
+  double low = 0, high = 0.999;
+  for (int k = 0; k < 60; ++k) {
+    const double eta = (low + high) / 2, ratio = 2 * eta / (1 - eta * eta) * Lambda + 0.2 * eta * K_over_3G;
+    (ratio > 2. / 3 ? high : low) = eta;
+  }
+  EXPECT_NEAR(end.deviator() / (end.mean_pressure() + 1), low, 2e-3);
+}
+
 TEST(ElementTest, says_where_a_soil_softens_faster_than_it_unloads) {
   MohrCoulomb clay = mohr_coulomb(13e3, 24.5);
   clay.residual_cohesion = 4.7e3, clay.residual_friction_angle = 13.5 * degree.si, clay.shape_factor = 500;
@@ -194,6 +290,9 @@ TEST(ElementTest, reads_tests_and_refuses_those_that_contradict_themselves) {
       {"undrained = true\nskempton_b = 0.5\npore_stiffness = 1e9", "either"},
       {"type = \"oedometer\"\nundrained = true", "keeps its volume"},
       {"steps = 0", "steps"},
+      {"suction = -1", "suction"},
+      {"undrained = true\nsuction = 1e5", "either undrained or suction"},
+      {"duration = \"1 m\"", "s"},
   };
   for (const auto &[text, word] : faults) {
     SCOPED_TRACE(text);

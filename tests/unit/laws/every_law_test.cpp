@@ -84,28 +84,6 @@ TYPED_TEST(EveryLaw, keeps_principal_stresses_under_finite_rotation) {
   });
 }
 
-/// s : (d eps - C^-1 ds) >= 0 in every step from an admissible stress.
-TYPED_TEST(EveryLaw, dissipates) {
-  if (!linear_inside<TypeParam>) GTEST_SKIP() << "its elasticity is not linear; see its own tests";
-  for_all<TypeParam>([]<int dim>(Dim<dim>, const Law &law) {
-    Random random;
-    const int n = 4000;
-    Points<dim> points(law, n);
-    for (auto &s : points.stress) s = random.symmetric<dim>(scale);
-    points.admit();
-    const auto before = points.stress;
-    for (auto &cell : points.increment) cell.strain = random.symmetric<dim>(std::pow(10, random.between(-6, -1)));
-    points.update();
-    double least = 0;
-    for (int i = 0; i < n; ++i) {
-      const Matrix s = matrix<dim>(points.stress[i]), strain = matrix<dim>(points.increment[i].strain);
-      const Matrix plastic = strain - elastic_strain(law, s - matrix<dim>(before[i]));
-      least = std::min(least, s.cwiseProduct(plastic).sum() / ((s.norm() + 1e-3 * scale) * strain.norm()));
-    }
-    EXPECT_GT(least, -1e-9);
-  });
-}
-
 TYPED_TEST(EveryLaw, leaves_what_it_admitted) {
   for_all<TypeParam>([]<int dim>(Dim<dim>, const Law &law) {
     Random random;
@@ -180,37 +158,31 @@ TYPED_TEST(EveryLaw, treats_points_alone_and_in_blocks_alike) {
   });
 }
 
-/// Strains from 1e-8 to 10 %, many steps, with rotation: no stress or history stops being a number.
-TYPED_TEST(EveryLaw, survives_random_walks) {
-  for_all<TypeParam>([]<int dim>(Dim<dim>, const Law &law) {
-    Random random;
-    const int n = 256;
-    Points<dim> points(law, n, 0.7);
-    for (int step = 0; step < 200; ++step) {
-      for (int i = 0; i < n; ++i) {
-        points.increment[i].strain = random.symmetric<dim>(std::pow(10, random.between(-8, -1)));
-        if (step % 3 == 0) points.increment[i].strain = {};
-        points.turn(i, random.rotation<dim>());
-      }
-      points.update();
-    }
-    for (const auto &s : points.stress)
-      for (const double component : s) ASSERT_TRUE(std::isfinite(component));
-    for (const double h : points.history) ASSERT_TRUE(std::isfinite(h));
-  });
-}
-
-/// Elastic energy is the work of straining from zero stress, where the law stays elastic: 1/2 s : C^-1 : s.
+/// Elastic energy is the work of straining from zero stress, where the law stays elastic: 1/2 s : C^-1 : s if its
+/// elasticity is linear. Of any law: the work of isotropic compression by 1e-3, which for laws that keep a volume differs
+/// from the energy at the volume of the start by that share, or twice that.
 TYPED_TEST(EveryLaw, stores_elastic_energy) {
-  if (!linear_inside<TypeParam>) GTEST_SKIP() << "its elasticity is not linear; see its own tests";
   Random random;
   const Law law = examples<TypeParam>()[0];
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; linear_inside<TypeParam> && i < 100; ++i) {
     const Components<3> s = random.symmetric<3>(scale);
     const Stress<3> stress{s[0], s[1], s[2], s[3], s[4], s[5]};
     const double expected = matrix<3>(s).cwiseProduct(elastic_strain(law, matrix<3>(s))).sum() / 2;
     EXPECT_NEAR(elastic_energy(law, stress), expected, 1e-12 * expected);
   }
+  constexpr int steps = 1000;
+  Points<3> point(law, 1);
+  point.increment[0].strain = {-1e-3 / (3 * steps), -1e-3 / (3 * steps), -1e-3 / (3 * steps), 0, 0, 0};
+  double work = 0, p = 0;
+  for (int step = 0; step < steps; ++step) {
+    point.update();
+    const double now = -point.stress[0][0];
+    work += (p + now) / 2 * 1e-3 / steps, p = now;
+  }
+  const auto &s = point.stress[0];
+  const double energy = elastic_energy(law, Stress<3>{s[0], s[1], s[2], s[3], s[4], s[5]});
+  EXPECT_GT(work, 0);
+  EXPECT_NEAR(energy, work, 2e-3 * work);
 }
 
 }  // namespace

@@ -55,6 +55,12 @@ inline std::vector<DruckerPrager> examples() {
     }
   laws.push_back(laws[0]);
   laws.back().friction_angle = 0;
+  for (const Cone cone : {Cone::outer, Cone::plane_strain}) {
+    DruckerPrager softening = laws[1];
+    softening.cone = cone, softening.residual_cohesion = 0, softening.residual_friction_angle = 20 * degree.si;
+    softening.residual_dilation_angle = 0, softening.shape_factor = 200, softening.reference_size = 0.5;
+    laws.push_back(softening);
+  }
   return laws;
 }
 

@@ -110,6 +110,7 @@ TEST(Hencky, closed_cycles_dissipate_nothing) {
 TEST(Hencky, returns_kirchhoff_stress_onto_the_surface) {
   HenckyDruckerPrager law = examples<HenckyDruckerPrager>()[1];
   law.prepare();
+  const auto m = law.strength(0., {1});
   Random random;
   const int n = 5000;
   Points<3> points(law, n);
@@ -122,7 +123,7 @@ TEST(Hencky, returns_kirchhoff_stress_onto_the_surface) {
     for (int i = 0; i < n; ++i) {
       const Matrix tau = std::exp(points.history[3 * i + 2]) * talus::matrix<3>(points.stress[i]);
       const double p = tau.trace() / 3, q = (tau - p * Matrix::Identity()).norm() / std::sqrt(2.);
-      worst = std::max(worst, (q + law.eta * p - law.xi * law.cohesion) / (tau.norm() + law.cohesion));
+      worst = std::max(worst, (q + m.eta * p - m.limit) / (tau.norm() + law.cohesion));
     }
   }
   EXPECT_LT(worst, 1e-12);

@@ -1,0 +1,87 @@
+#pragma once
+#include <string>
+
+#include "physics/laws/lanes.h"
+#include "physics/laws/stress.h"
+#include "scene/quantity.h"
+#include "scene/scene.h"
+
+namespace talus {
+
+/// Cohesion, friction and dilation, which may fade with plastic strain: the strength of the frictional laws. Source of
+/// the softening: Alonso, Yerro & Pinyol (2015), eqs. (18), (19).
+struct FrictionalStrength {
+  double cohesion = required;                   ///< c, peak [Pa]
+  double friction_angle = required;             ///< phi, peak [rad]
+  double dilation_angle = 0;                    ///< psi, never above the current phi [rad]
+  double residual_cohesion = -1;                ///< [Pa]; negative: the peak
+  double residual_friction_angle = -degree.si;  ///< [rad]; negative: the peak
+  double residual_dilation_angle = -degree.si;  ///< [rad]; negative: the peak
+  double shape_factor = 0;                      ///< eta: strength falls with exp(-eta plastic_strain) [-]
+  double reference_size = 0;                    ///< h_ref: eta is multiplied by h / h_ref [m]; 0: it is not
+
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.number("cohesion", cohesion, pascal, Range{0, 1e9}, "cohesion c, at its peak if the soil softens");
+    v.number("friction_angle", friction_angle, degree, Range{0, 70},
+             "friction angle phi, at its peak if the soil softens");
+    v.number("dilation_angle", dilation_angle, degree, Range{0, 70},
+             "dilation angle psi; held at phi where phi falls below it");
+    v.number("residual_cohesion", residual_cohesion, pascal, Range{-1, 1e9},
+             "cohesion at large strain; negative is the peak");
+    v.number("residual_friction_angle", residual_friction_angle, degree, Range{-1, 70},
+             "friction angle at large strain; negative is the peak");
+    v.number("residual_dilation_angle", residual_dilation_angle, degree, Range{-1, 70},
+             "dilation angle at large strain; negative is the peak");
+    v.number("shape_factor", shape_factor, one, Range{0, 1e6}, "eta: strength falls with exp(-eta plastic_strain)");
+    v.number("reference_size", reference_size, metre, Range{0, 1e4},
+             "element size that shape_factor belongs to; in cells of size h it is scaled by h / reference_size; 0 is "
+             "no scaling");
+  }
+
+  std::string problem() const {
+    const auto above = [](const char *key, const char *limit, double value, Unit unit) {
+      return std::string(key) + " must not exceed " + limit + ", " + shortest(std::round(1e6 * value / unit.si) / 1e6) + " " + unit.name;
+    };
+    if (dilation_angle > friction_angle) return above("dilation_angle", "friction_angle", friction_angle, degree);
+    if (residual_cohesion > cohesion) return above("residual_cohesion", "cohesion", cohesion, pascal);
+    if (residual_friction_angle > friction_angle)
+      return above("residual_friction_angle", "friction_angle", friction_angle, degree);
+    if (residual_dilation_angle > dilation_angle)
+      return above("residual_dilation_angle", "dilation_angle", dilation_angle, degree);
+    if ((residual_cohesion >= 0 || residual_friction_angle >= 0 || residual_dilation_angle >= 0) && shape_factor == 0)
+      return "a residual strength needs a shape_factor above 0, the rate at which it is reached";
+    return "";
+  }
+
+  bool softens() const { return shape_factor > 0; }
+
+  // Set by prepare().
+  double residual_c = 0, residual_phi = 0;                  ///< [Pa], [rad]
+  double sin_psi_peak = 0, sin_psi_residual = 0;            ///< [-]
+  double over_size = 0;                                     ///< 1 / h_ref [1/m]
+  static constexpr double right_angle = 90 * degree.si;     ///< [rad]
+  static constexpr double unlimited = 1e100;                ///< stress of an apex that is not there [Pa]
+  void prepare() {
+    residual_c = residual_cohesion < 0 ? cohesion : residual_cohesion;
+    residual_phi = residual_friction_angle < 0 ? friction_angle : residual_friction_angle;
+    sin_psi_peak = std::sin(dilation_angle);
+    sin_psi_residual = residual_dilation_angle < 0 ? sin_psi_peak : std::sin(residual_dilation_angle);
+    over_size = reference_size > 0 ? 1 / reference_size : 0;
+  }
+
+  template <class Number>
+  struct Faded {
+    Number c, phi, sin_psi;  ///< [Pa], [rad], [-]; psi may exceed phi
+  };
+  /// What a plastic strain has left. sin psi fades as c and phi do.
+  template <class Number>
+  [[gnu::always_inline]] Faded<Number> faded(const Number &plastic_strain, const Surroundings &around) const {
+    const double scale = around.size * over_size, eta = scale > 0 ? shape_factor * scale : shape_factor;
+    const Number left = exponential(-eta * plastic_strain);  // of the way from residual to peak
+    return {residual_c + (cohesion - residual_c) * left, residual_phi + (friction_angle - residual_phi) * left,
+            sin_psi_residual + (sin_psi_peak - sin_psi_residual) * left};
+  }
+};
+
+}  // namespace talus
