@@ -4,6 +4,8 @@
 #include <mpi.h>
 #include <petscsys.h>
 
+#include <algorithm>
+
 namespace talus {
 
 /// The state is nodal: `u` displacement since the last accepted state [m], `v` velocity [m/s], `size()` doubles each, node-major, all
@@ -16,13 +18,24 @@ class Motion {
   virtual PetscErrorCode begin(double t) = 0;
   /// Accelerations [m/s2] from the divergence of stress, gravity, loads and local damping. `u` = null stands for the accepted state.
   virtual PetscErrorCode acceleration(double t, const double *u, const double *v, double *a) = 0;
-  /// Node-local implicit part over a step `gamma` [s]: prescribed motion, contact with friction, dashpots (later: drag between phases).
+  /// Node-local implicit part over a step `gamma` [s]: drag between phases, prescribed motion, contact with friction, dashpots.
   virtual PetscErrorCode drag(double t, double gamma, double *v) = 0;
+  /// Its two parts, for integrators that take drag as an implicit partition: drag between phases alone, v = v0 + gamma D v solved in place,
+  /// which changes nothing else; and what boundaries do once a step is over.
+  virtual PetscErrorCode resist(double, double, double *) { return 0; }
+  virtual PetscErrorCode hold(double t, double gamma, double *v) { return drag(t, gamma, v); }
   /// What the nodes would receive if the particles took `v` and were mapped back (MUSL), docs/theory (4.9); `v` itself relaxes towards it.
   virtual PetscErrorCode map_back(double t, double gamma, double *v, double *w) = 0;
   /// Both rates of the state, for integrators that look ahead: `du` is the velocity of places, w of docs/theory (4.9), `dv` the
   /// acceleration less the relaxation (4.10). `u` = null as above; changes nothing.
   virtual PetscErrorCode rates(double t, const double *u, const double *v, double *du, double *dv) = 0;
+  /// `rates` in two parts, for integrators with two clocks: what is slow and dear, such as the skeleton's stress, and what is fast. Nothing is
+  /// slow unless a motion says so.
+  virtual PetscErrorCode slow_rates(double, const double *, const double *, double *du, double *dv) {
+    std::fill_n(du, size(), 0.), std::fill_n(dv, size(), 0.);
+    return 0;
+  }
+  virtual PetscErrorCode fast_rates(double t, const double *u, const double *v, double *du, double *dv) { return rates(t, u, v, du, dv); }
   /// Did the last trial state turn a cell of this rank inside out?
   virtual bool inverted() const = 0;
   /// Commits stress, history and volumes for displacement `u`, moves the nodes, keeps `v`.

@@ -142,9 +142,9 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double) {
     std::copy_n(velocity_.begin() + nodes, nodes * (velocity_fields<Phases> - 1), start_velocity_.begin() + nodes);
     std::copy_n(velocity_.begin(), nodes * velocity_fields<Phases>, before_.begin());
   }
-  if (relaxes() && !Phases::liquid) {
-    PetscCall(back_and_forth(start_velocity_.data(), mapped_start_.data()));
-    for (int i = 0; i < nodes; ++i)
+  if (relaxes()) {
+    for (int f = 0; f < velocity_fields<Phases>; ++f) PetscCall(back_and_forth(start_velocity_.data() + f * nodes, mapped_start_.data() + f * nodes));
+    for (int i = 0; i < nodes * velocity_fields<Phases>; ++i)
       for (int d = 0; d < dim; ++d) mapped_start_[i][d] = start_velocity_[i][d] - mapped_start_[i][d];
   }
   if constexpr (Phases::given) {
@@ -553,15 +553,42 @@ PetscErrorCode SoilMotion<dim, Phases>::drag(double t, double gamma, double *v) 
   PetscFunctionReturn(0);
 }
 
+/// Fluids follow the skeleton where supports hold it; its own velocity stays free, as in the rates.
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::resist(double t, double gamma, double *v) {
+  PetscFunctionBeginUser;
+  if constexpr (Phases::liquid) {
+    const int nodes = grid_.node_count();
+    Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v), *held = scratch_.data();
+    fluid_.resist(gamma, grid_, velocity, velocity + nodes);
+    std::copy_n(velocity, nodes, held);
+    conditions_.constrain(loading.time_at(t), grid_, held, true);
+    fluid_.follow(gamma, pore_frame(false), pore_conditions_, held, velocity + nodes);
+  }
+  PetscFunctionReturn(0);
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::hold(double t, double gamma, double *v) {
+  PetscFunctionBeginUser;
+  Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v);
+  conditions_.resolve(loading.time_at(t), gamma, grid_, velocity);
+  if constexpr (Phases::liquid) fluid_.constrain(pore_frame(false), pore_conditions_, velocity, velocity + grid_.node_count());
+  PetscFunctionReturn(0);
+}
+
+/// Imposes on velocities of places, of all phases, what boundaries prescribe.
+template <int dim, class Phases>
+void SoilMotion<dim, Phases>::constrain(double t, Vec<dim> *v) {
+  conditions_.constrain(loading.time_at(t), grid_, v, true);
+  if constexpr (Phases::liquid) fluid_.constrain(pore_frame(false), pore_conditions_, v, v + grid_.node_count());
+}
+
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double *v, double *w) {
   PetscFunctionBeginUser;
   Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v), *mapped = reinterpret_cast<Vec<dim> *>(w);
   const int nodes = grid_.node_count();
-  const auto constrain = [&](Vec<dim> *x) {
-    conditions_.constrain(loading.time_at(t), grid_, x, true);
-    if constexpr (Phases::liquid) fluid_.constrain(pore_frame(false), pore_conditions_, x, x + nodes);
-  };
   if constexpr (Phases::liquid) {  // drag and walls act on what particles would map back, as after a remap: that becomes the state
     const int all = nodes * velocity_fields<Phases>;
     const double share = relaxes() ? 1 - std::exp(-gamma / relaxation_time_) : 0;
@@ -570,7 +597,7 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
     for (int f = 0; f < velocity_fields<Phases>; ++f) PetscCall(back_and_forth(scratch_.data() + f * nodes, mapped + f * nodes));
     for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) mapped[i][d] += (1 - share) * before_[i][d];
-    constrain(mapped);
+    constrain(t, mapped);
     for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) {
         start_velocity_[i][d] += mapped[i][d] - velocity[i][d];  // particles take the change that is not mapped
@@ -586,7 +613,7 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
         velocity[i][d] += share * (mapped[i][d] - velocity[i][d]);
         mapped[i][d] += mapped_start_[i][d];
       }
-    constrain(velocity);
+    constrain(t, velocity);
   } else {  // the same sum, mapped once
     for (int i = 0; i < nodes; ++i)
       for (int d = 0; d < dim; ++d) scratch_[i][d] = velocity[i][d] - start_velocity_[i][d];
@@ -594,7 +621,7 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
     for (int i = 0; i < nodes; ++i)
       for (int d = 0; d < dim; ++d) mapped[i][d] += start_velocity_[i][d];
   }
-  constrain(mapped);
+  constrain(t, mapped);
   PetscFunctionReturn(0);
 }
 
@@ -603,41 +630,43 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::rates(double t, const double *u, const double *v, double *du, double *dv) {
   PetscFunctionBeginUser;
   PetscCall(acceleration(t, u, v, dv));
-  const int nodes = grid_.node_count();
+  const int nodes = grid_.node_count(), all = nodes * velocity_fields<Phases>;
   Vec<dim> *held = scratch_.data(), *mapped = reinterpret_cast<Vec<dim> *>(du), *change = reinterpret_cast<Vec<dim> *>(dv);
-  std::copy_n(reinterpret_cast<const Vec<dim> *>(v), nodes, held);
-  conditions_.constrain(loading.time_at(t), grid_, held, true);
+  std::copy_n(reinterpret_cast<const Vec<dim> *>(v), all, held);
+  constrain(t, held);
   if (relaxes()) {
-    PetscCall(back_and_forth(held, mapped));
-    for (int i = 0; i < nodes; ++i)
+    for (int f = 0; f < velocity_fields<Phases>; ++f) PetscCall(back_and_forth(held + f * nodes, mapped + f * nodes));
+    for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) {
         change[i][d] -= (held[i][d] - mapped[i][d]) / relaxation_time_;
         mapped[i][d] += mapped_start_[i][d];
       }
   } else {  // the same sum, mapped once
-    for (int i = 0; i < nodes; ++i)
+    for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) held[i][d] -= start_velocity_[i][d];
-    PetscCall(back_and_forth(held, mapped));
-    for (int i = 0; i < nodes; ++i)
+    for (int f = 0; f < velocity_fields<Phases>; ++f) PetscCall(back_and_forth(held + f * nodes, mapped + f * nodes));
+    for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) mapped[i][d] += start_velocity_[i][d];
   }
-  conditions_.constrain(loading.time_at(t), grid_, mapped, true);
+  constrain(t, mapped);
   PetscFunctionReturn(0);
 }
 
 template <int dim, class Phases>
 double SoilMotion<dim, Phases>::seen_square(const double *x) const {
-  const Vec<dim> *field = reinterpret_cast<const Vec<dim> *>(x);
   double sum = 0;
-  for (int c = 0; c < grid_.cell_count(); ++c) {
-    const auto &node = grid_.shape[c].node;
-    const auto &matrix = grid_.mass_matrix[c];
-    for (int d = 0; d < dim; ++d)
-      for (int k = 0, pair = dim + 1; k <= dim; ++k) {
-        const double xk = field[node[k]][d];
-        sum += matrix[k] * xk * xk;
-        for (int l = k + 1; l <= dim; ++l, ++pair) sum += 2 * matrix[pair] * xk * field[node[l]][d];
-      }
+  for (int f = 0; f < velocity_fields<Phases>; ++f) {
+    const Vec<dim> *field = reinterpret_cast<const Vec<dim> *>(x) + f * grid_.node_count();
+    for (int c = 0; c < grid_.cell_count(); ++c) {
+      const auto &node = grid_.shape[c].node;
+      const auto &matrix = grid_.mass_matrix[c];
+      for (int d = 0; d < dim; ++d)
+        for (int k = 0, pair = dim + 1; k <= dim; ++k) {
+          const double xk = field[node[k]][d];
+          sum += matrix[k] * xk * xk;
+          for (int l = k + 1; l <= dim; ++l, ++pair) sum += 2 * matrix[pair] * xk * field[node[l]][d];
+        }
+    }
   }
   return sum;
 }

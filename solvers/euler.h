@@ -15,6 +15,7 @@ struct EulerSettings {
   double step = 0;        ///< fixed step [s]; 0: a fraction of the critical step
   double fraction = 0.6;  ///< of the critical step 2 / omega_max [-]
   StepRule rule() const { return {step, fraction, 1}; }
+  std::string drag_problem() const { return ""; }  ///< implicit in every step
   std::unique_ptr<Integrator> make() const;
   template <class Visitor>
   void fields(Visitor &&v) {

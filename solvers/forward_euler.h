@@ -20,6 +20,7 @@ struct ForwardEulerSettings {
     v.number("fraction", fraction, one, Range{0.001, 1}, "time step over the critical step 2 / omega_max; waves grow at any fraction, slowly at small ones");
   }
   StepRule rule() const { return {step, fraction, 1}; }
+  std::string drag_problem() const { return "would amplify the waves of the pores"; }
   std::unique_ptr<Integrator> make() const;
 };
 

@@ -27,6 +27,7 @@ struct StepRule {
 struct StepStatistics {
   long long steps = 0, evaluations = 0;  ///< evaluations of the forces
   long long rejections = 0;              ///< attempts that failed the error test
+  long long inversions = 0;              ///< attempts that failed because a stage turned a cell inside out
   long long by_error = 0, by_stability = 0, by_schedule = 0;  ///< steps by what bounded them: error, stability or given step, an output
   double shortest = std::numeric_limits<double>::infinity(), longest = 0;  ///< [s]
 };
@@ -42,8 +43,8 @@ class Integrator {
   virtual void keep(Archive &archive) { archive.keep("integrator", statistics_); }
   /// Why no further step is possible, the same on all ranks; empty while it is.
   virtual std::string obstacle() const { return ""; }
-  /// Node of this rank that stands in the way, -1: none on this rank.
-  virtual int obstructing_node() const { return -1; }
+  /// Component of the velocity of this rank that stands in the way, -1: none on this rank.
+  virtual int obstructing_component() const { return -1; }
 
   const StepStatistics &statistics() const { return statistics_; }
 

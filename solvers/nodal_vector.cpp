@@ -112,6 +112,7 @@ double error_norm(N_Vector error) {
                     space.inverted ? 1. : 0.};
   space.inverted = false;
   MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, motion.comm());
+  if (sums[1] > 0) ++space.inversions;
   constexpr double hopeless = 1e10;
   const double norm = std::sqrt(sums[0] / motion.mass());
   return sums[1] == 0 && norm < hopeless ? norm : hopeless;

@@ -14,6 +14,7 @@ struct NodalSpace {
   double displacement_tolerance;  ///< [m]
   double velocity_tolerance;      ///< [m/s]
   bool inverted = false;          ///< a stage since the last norm turned a cell of this rank inside out
+  long long inversions = 0;       ///< norms that found so on some rank
 };
 
 /// An N_Vector, zero; ends with N_VDestroy. The space must outlive it.

@@ -32,7 +32,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct CompareArguments {
-  std::string scene, directory, measure, exact;
+  std::string scene, directory, measure, exact, reference;
   std::vector<std::string> series, set;
   int jobs = 0;
   bool no_plot = false;
@@ -44,6 +44,7 @@ struct Trial {
   std::vector<std::string> overrides;
   double parameter = NAN;  ///< what is refined in the series: the value of its last list
   std::string folder;
+  bool is_reference = false;  ///< its value is the one that the others are compared with
   bool done = false, failed = false;
   std::string cause;
   double value = NAN, error = NAN, cpu = NAN, wall = NAN;
@@ -66,6 +67,14 @@ std::vector<Trial> matrix(const CompareArguments &arguments) {
       if (!series.lists.empty()) trial.parameter = number_of(overrides.back().substr(overrides.back().find('=') + 1));
       trials.push_back(trial);
     }
+  }
+  if (!arguments.reference.empty()) {
+    const Series series = parse_series(arguments.reference);
+    const auto overrides = products(series);
+    if (overrides.size() != 1) throw SceneError("--reference \"" + arguments.reference + "\" must be one run: one value for each key");
+    Trial trial;
+    trial.series = series.name, trial.overrides = overrides.front(), trial.is_reference = true;
+    trials.push_back(trial);
   }
   for (size_t i = 0; i < trials.size(); ++i) {
     char name[32];
@@ -170,6 +179,7 @@ void read_counts(Trial &trial) {
 
 Reference reference_of(const CompareArguments &arguments, const std::vector<Trial> &trials) {
   if (!arguments.exact.empty()) return {number_of(arguments.exact), 0, "given as exact"};
+  if (trials.back().is_reference) return {trials.back().value, 0, trials.back().series};
   std::vector<std::string> names;
   for (const Trial &t : trials)
     if (std::find(names.begin(), names.end(), t.series) == names.end()) names.push_back(t.series);
@@ -181,6 +191,8 @@ Reference reference_of(const CompareArguments &arguments, const std::vector<Tria
     const Reference own = extrapolate(refined);
     if (own.uncertainty < best.uncertainty) best = {own.value, own.uncertainty, name + ": " + own.origin};
   }
+  if (std::isinf(best.uncertainty))
+    std::fprintf(stderr, "no series has two runs that differ by their last key: without --exact or --reference there is nothing to measure errors against\n");
   return best;
 }
 
@@ -218,6 +230,8 @@ int compare(CompareArguments arguments) {
   if (arguments.directory.empty()) arguments.directory = "results/compare_" + fs::path(arguments.scene).parent_path().filename().string();
   if (arguments.jobs == 0) arguments.jobs = std::max(1u, std::thread::hardware_concurrency());
   const Measure measure = parse_measure(arguments.measure);
+  if (!arguments.exact.empty() && !arguments.reference.empty()) throw SceneError("--exact and --reference both say what is true: give one of them");
+  if (!arguments.exact.empty() && !std::isfinite(number_of(arguments.exact))) throw SceneError("--exact " + arguments.exact + " must be a number");
   std::vector<Trial> trials = matrix(arguments);
   for (Trial &trial : trials) {
     std::vector<std::string> all = arguments.set;
@@ -230,6 +244,10 @@ int compare(CompareArguments arguments) {
   for (Trial &trial : trials)
     if (!trial.failed) trial.value = value_of(trial.folder + "/history.csv", measure), read_counts(trial);
   const Reference reference = reference_of(arguments, trials);
+  if (trials.back().is_reference) {
+    if (trials.back().failed) throw std::runtime_error("the run of --reference failed: " + trials.back().cause);
+    trials.pop_back();
+  }
   for (Trial &trial : trials) trial.error = std::abs(trial.value - reference.value);
   print(trials, arguments.measure, reference);
   write_csv(arguments.directory + "/compare.csv", trials);
@@ -253,6 +271,8 @@ Action add_compare(CLI::App &app) {
       ->take_all();
   command->add_option("--measure", arguments->measure, "what is compared: a column of history.csv at the end, COLUMN@TIME, or max:COLUMN")->required();
   command->add_option("--exact", arguments->exact, "the true value; without it the series that converges best is extrapolated");
+  command->add_option("--reference", arguments->reference,
+                      "the run whose value counts as true: \"NAME: key=a; key=b\", such as \"finite elements: stage.0.kind=quasi_static\"");
   command->add_option("--set", arguments->set, "override a key in all runs: key.path=value")->take_all();
   command->add_option("-o,--output", arguments->directory, "folder of runs, compare.csv and compare.png (default results/compare_NAME)");
   command->add_option("-j,--jobs", arguments->jobs, "runs at the same time (default: one per core)")->check(CLI::Range(1, 1024));

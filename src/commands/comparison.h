@@ -125,14 +125,19 @@ struct Reference {
 };
 
 /// Limit of values refined by a parameter that goes to zero, from the three finest: Richardson's extrapolation with the order that
-/// they show, if they converge at one between 0.5 and 8; otherwise the finest value, as uncertain as the last refinement changed it.
+/// they show, if they converge at one between 0.5 and 8; otherwise the finest value, as uncertain as the last two refinements changed it. A
+/// refinement that changed nothing, such as a tolerance where stability rules, is none.
 inline Reference extrapolate(std::vector<std::pair<double, double>> refined) {
   std::erase_if(refined, [](const auto &p) { return !std::isfinite(p.first) || !std::isfinite(p.second); });
-  std::sort(refined.begin(), refined.end());
+  std::sort(refined.rbegin(), refined.rend());
+  refined.erase(std::unique(refined.begin(), refined.end(), [](const auto &p, const auto &finer) { return finer.second == p.second; }), refined.end());
+  std::reverse(refined.begin(), refined.end());
   if (refined.size() < 2) return {NAN, INFINITY, "too few runs"};
   const double finest = refined[0].second, change = refined[1].second - finest;
+  double uncertain = std::abs(change);
   if (refined.size() > 2) {
     const double before = refined[2].second - refined[1].second, r1 = refined[1].first / refined[0].first, r2 = refined[2].first / refined[1].first;
+    uncertain = std::max(uncertain, std::abs(before));
     if (change * before > 0 && std::abs(r1 - r2) < 0.05 * r1) {
       const double order = std::log(before / change) / std::log(r1);
       if (order > 0.5 && order < 8) {
@@ -144,7 +149,7 @@ inline Reference extrapolate(std::vector<std::pair<double, double>> refined) {
       }
     }
   }
-  return {finest, std::abs(change), "its finest run"};
+  return {finest, uncertain, "its finest run"};
 }
 
 }  // namespace talus

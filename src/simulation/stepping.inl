@@ -60,8 +60,10 @@ PetscErrorCode Simulation<dim, Phases>::step(double until) {
   PetscCall(integrator_->advance(*motion_, time_, {critical_step_ * shrink_, until}, &step));
   PetscCall(PetscTime(&end));
   if (const std::string cause = integrator_->obstacle(); !cause.empty()) {
-    const int node = integrator_->obstructing_node();
-    fail(cause + " near " + place_of(node >= 0, node >= 0 ? motion_->grid().position[node] : Vec<dim>{}));
+    const int component = integrator_->obstructing_component();
+    const Vec<dim> where = component < 0 ? Vec<dim>{} : motion_->grid().position[component / dim % motion_->grid().node_count()];
+    const std::string particle = text_of(component >= 0, component < 0 ? "" : nearest_particle(where));
+    fail(cause + "; it is largest near " + place_of(component >= 0, where) + ", at " + particle);
   }
   breakdown_.step += end - start;
   time_ += step, last_step_ = step;
@@ -69,6 +71,21 @@ PetscErrorCode Simulation<dim, Phases>::step(double until) {
   ++steps_;
   remap_due_ = scene_.transfer.remap_interval == 0;
   PetscFunctionReturn(0);
+}
+
+/// "particle 12 of body.sand" of this rank, the nearest to a place.
+template <int dim, class Phases>
+std::string Simulation<dim, Phases>::nearest_particle(const Vec<dim> &where) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  std::string found = "no particle";
+  for (const auto &body : bodies_)
+    for (int i = 0; i < body->particles().count; ++i) {
+      Vec<dim> x, v;
+      motion_->present(*body, i, &x, &v);
+      const double distance = (map<dim>(x) - map<dim>(where)).norm();
+      if (distance < nearest) nearest = distance, found = "particle " + std::to_string(body->particles().id[i]) + " of body." + body->name();
+    }
+  return found;
 }
 
 template <int dim, class Phases>

@@ -6,9 +6,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "mesh_source.h"
-#include "physics/soil_motion.h"
-#include "scene/reader.h"
+#include "soil.h"
 
 namespace talus {
 namespace {
@@ -22,37 +20,18 @@ std::string scene_of(int dimension, const std::string &transfer) {
          transfer + "\n";
 }
 
-/// A motion of its own, beside the time loop.
+/// Compressed unevenly, so that some cells yield.
 template <int dim>
-struct Soil {
-  explicit Soil(const std::string &transfer) : scene(parse_scene(scene_of(dim, transfer), "look_ahead")), file(PETSC_COMM_WORLD, scene) {
-    mesh = BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.path(), scene.transfer.patch_size, {{"soil", 5.}});
-    BodySource &source = scene.body[0];
-    source.particles_per_cell = dim == 2 ? 3 : 4;
-    bodies.push_back(std::make_unique<Body<dim>>());
-    EXPECT_EQ(bodies[0]->create(mesh.comm(), source, read_law(source.law), false, 0, 0), 0);
-    seed<dim>(*bodies[0], mesh, 8, [](const Vec<dim> &) { return 2000.; });
-    EXPECT_EQ(bodies[0]->sort(mesh.cell_count()), 0);
-    std::vector<typename Conditions<dim>::Source> sources;
-    for (BoundarySource &b : scene.boundary) sources.push_back({b.name, b.group.empty() ? std::vector{b.name} : b.group, read_boundary(b.kind)});
-    EXPECT_EQ(conditions.setup(mesh, std::move(sources)), 0);
-    const ParticleArrays<dim> &p = bodies[0]->particles();
-    for (int i = 0; i < p.count; ++i)  // compressed unevenly, so that some cells yield
-      for (int d = 0; d < 3; ++d) p.stress[i * stress_size<dim> + d] = -1e4 * (1 + std::sin(3 * p.position[i][0] + 2 * d));
-    motion = std::make_unique<SoilMotion<dim, Dry>>(mesh, bodies, conditions, scene, 0.1, 1000., 1000, 9.81);
-    motion->loading.gravity[1] = -9.81;
-  }
-  Scene scene;
-  MeshFile file;
-  BackgroundMesh<dim> mesh;
-  std::vector<std::unique_ptr<Body<dim>>> bodies;
-  Conditions<dim> conditions;
-  std::unique_ptr<SoilMotion<dim, Dry>> motion;
-};
+void compress(Soil<dim> &soil) {
+  const ParticleArrays<dim> &p = soil.particles();
+  for (int i = 0; i < p.count; ++i)
+    for (int d = 0; d < 3; ++d) p.stress[i * stress_size<dim> + d] = -1e4 * (1 + std::sin(3 * p.position[i][0] + 2 * d));
+}
 
 template <int dim>
 void expect_that_looking_ahead_is_exact(const std::string &transfer) {
-  Soil<dim> soil(transfer);
+  Soil<dim> soil(scene_of(dim, transfer), 0.1);
+  compress(soil);
   SoilMotion<dim, Dry> &motion = *soil.motion;
   ASSERT_EQ(motion.begin(0), 0);
   const int size = motion.size();

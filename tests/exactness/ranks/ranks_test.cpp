@@ -96,6 +96,8 @@ TEST(Ranks, column_collapse_is_the_same_under_error_control) {
   expect_the_same(column, {"mesh.size=0.01", "integrator.kind=arkode", "integrator.velocity_tolerance=1e-5"});
 }
 TEST(Ranks, soil_and_water_in_a_closed_box_are_the_same) { expect_the_same(box, {}); }
+TEST(Ranks, soil_and_water_in_a_closed_box_are_the_same_under_error_control) { expect_the_same(box, {"integrator.kind=arkode"}); }
+TEST(Ranks, column_collapse_is_the_same_with_the_steps_of_petsc) { expect_the_same(column, {"mesh.size=0.02", "integrator.kind=petsc"}); }
 TEST(Ranks, moist_soil_in_a_closed_box_is_the_same) { expect_the_same(box, {"phases=unsaturated", "water.table=[[0, 0.5], [1, 0.5]]"}); }
 TEST(Ranks, soil_water_and_gas_in_a_closed_box_are_the_same) { expect_the_same(box, {"phases=three-phase", "water.table=[[0, 0.5], [1, 0.5]]"}); }
 TEST(Ranks, column_of_wet_sand_is_the_same) {

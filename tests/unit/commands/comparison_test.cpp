@@ -38,11 +38,16 @@ TEST(Comparison, richardson_finds_the_limit_of_a_power) {
   EXPECT_NEAR(limit.uncertainty, 3 * 0.01, 1e-12);
 }
 
-TEST(Comparison, without_convergence_the_finest_run_is_as_uncertain_as_its_last_change) {
+TEST(Comparison, without_convergence_the_finest_run_is_as_uncertain_as_its_last_changes) {
   const Reference limit = extrapolate({{0.1, 5}, {0.2, 6}, {0.4, 5.5}, {NAN, 1}});
   EXPECT_EQ(limit.value, 5);
   EXPECT_EQ(limit.uncertainty, 1);
   EXPECT_TRUE(std::isinf(extrapolate({{0.1, 5}}).uncertainty));
+  EXPECT_NEAR(extrapolate({{0.1, 5}, {0.2, 5.1}, {0.4, 4}}).uncertainty, 1.1, 1e-12) << "the last change may be small by chance";
+  const Reference idle = extrapolate({{1e-4, 5}, {1e-3, 5}, {1e-2, 5}, {1e-1, 5.2}});  // a tolerance that stability overrules
+  EXPECT_EQ(idle.value, 5);
+  EXPECT_NEAR(idle.uncertainty, 0.2, 1e-12);
+  EXPECT_TRUE(std::isinf(extrapolate({{0.1, 5}, {0.2, 5}}).uncertainty));
 }
 
 TEST(Comparison, measures_are_read_off_a_history) {

@@ -119,7 +119,7 @@ TEST(Arkode, stops_at_its_floor_and_says_why) {
   Arkode integrator(settings);
   run_to(integrator, motion, 2, 10);
   EXPECT_NE(integrator.obstacle().find("velocity_tolerance"), std::string::npos);
-  EXPECT_EQ(integrator.obstructing_node(), 0);
+  EXPECT_EQ(integrator.obstructing_component(), 0);
 }
 
 }  // namespace

@@ -1,0 +1,179 @@
+#!/usr/bin/python3
+"""What `talus compare` cannot read off one column: energy over 100 periods, angular momentum, dissipation of remaps, time per evaluation.
+
+    runs.py TALUS [drift|spin|dissipation|cost|stability|figure ...]
+
+Each study writes NAME.csv beside this file, `figure` draws drift.png, orders.png and stability.png. TALUS is build/release/bin/talus; `stability` runs stability_test
+beside it.
+"""
+import csv
+import os
+import re
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parents[2]
+sys.path.insert(0, str(ROOT / "src/output/plots"))
+RUNS = Path("/tmp/talus_integrators/runs")
+VERIFICATION = ROOT / "tests/verification"
+KINDS = {"euler": [], **{f"arkode {k}": ["integrator.kind=arkode", f"integrator.order={k}"] for k in (2, 3, 4, 5)},
+         "petsc rk8": ["integrator.kind=petsc", "integrator.method=rk8"]}
+FROZEN = ["transfer.remap_interval=0.3", "transfer.relaxation=0", "transfer.locking=none"]
+
+
+def run(talus, scene, name, overrides):
+    """Rows of history.csv (None if the run failed), processor seconds, evaluations of the forces."""
+    folder = RUNS / name.replace(" ", "_")
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run([str(talus), "run", str(scene), "-o", str(folder), "--no-pictures", *(["--set", *overrides] if overrides else [])], capture_output=True, text=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    if not (folder / "history.csv").exists():
+        raise SystemExit(done.stderr)
+    rows = [{k: float(v) for k, v in r.items() if k != "stage"} for r in csv.DictReader(open(folder / "history.csv"))]
+    counts = re.findall(r"(\d+) evaluations of", (folder / "run.log").read_text())
+    return None if done.returncode else rows, after.ru_utime - before.ru_utime, int(counts[-1]) if counts else 0
+
+
+def write(name, rows):
+    with open(HERE / f"{name}.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, rows[0].keys())
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def read(name):
+    return list(csv.DictReader(open(HERE / f"{name}.csv")))
+
+
+def drift(talus):
+    """Energy of the elastic bar over 100 periods of 0.4 s."""
+    rows = []
+    for how, transfer in (("cells frozen", FROZEN), ("default transfer", [])):
+        for kind, overrides in KINDS.items():
+            history, _, _ = run(talus, VERIFICATION / "elastic_bar/scene.toml", f"drift {how} {kind}",
+                                ["mesh.size=0.05", "stage.0.duration=40", "output.history_interval=0.1", *transfer, *overrides])
+            if history is None:
+                print(how, kind, "failed")
+                continue
+            start = history[0]["kinetic_J"] + history[0]["strain_J"]
+            rows += [{"transfer": how, "integrator": kind, "time_s": r["time_s"], "energy": (r["kinetic_J"] + r["strain_J"]) / start} for r in history]
+            print(how, kind, rows[-1]["energy"], flush=True)
+    write("drift", rows)
+
+
+def momentum(folder):
+    """Angular momentum about the centre of mass at the start and at the end."""
+    import h5py
+    spins = []
+    with h5py.File(folder / "run.h5") as file:
+        names = sorted(file["snapshots"])
+        for name in (names[0], names[-1]):
+            s = file["snapshots"][name]
+            m, x, v = s["mass"][:, 0], s["position"][...], s["velocity"][...]
+            x = x - (m[:, None] * x).sum(0) / m.sum()
+            spins.append(float((m * (x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0])).sum()))
+    return spins[1] / spins[0]
+
+
+def spin(talus):
+    """Angular momentum of the spinning block after two turns over the initial."""
+    rows = []
+    transfers = {"default": [], "flip": ["transfer.relaxation=0"], "pic": ["transfer.velocity=pic"], "apic": ["transfer.velocity=apic"]}
+    for how, transfer in transfers.items():
+        for kind, overrides in KINDS.items():
+            name = f"spin {how} {kind}"
+            history, _, _ = run(talus, VERIFICATION / "spinning_block/scene.toml", name, [*transfer, *overrides])
+            rows.append({"transfer": how, "integrator": kind, "angular_momentum": "" if history is None else momentum(RUNS / name.replace(" ", "_"))})
+            print(rows[-1], flush=True)
+    write("spin", rows)
+
+
+def dissipation(talus):
+    """Energy of the elastic bar after ten periods against how often it is remapped, and the time that takes."""
+    rows = []
+    for relaxation in ("default", "0"):
+        for interval in (0, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3):
+            history, seconds, _ = run(talus, VERIFICATION / "elastic_bar/scene.toml", "dissipation",
+                                      [f"transfer.remap_interval={interval}", *([] if relaxation == "default" else ["transfer.relaxation=0"])])
+            energy = [r["kinetic_J"] + r["strain_J"] for r in history if r["time_s"] <= 4.0001]
+            rows.append({"relaxation": relaxation, "interval": interval, "energy_after_ten_periods": round(energy[-1] / energy[0], 5), "processor_s": round(seconds, 2)})
+            print(rows[-1], flush=True)
+    write("dissipation", rows)
+
+
+def cost(talus):
+    """Processor time per evaluation of the forces, arkode over euler, less what a run of no time takes; in turns, five times, and the least of each counts."""
+    rows = []
+    scenes = {"column": (HERE.parent / "column/scene.toml", ["stage.0.duration=0.3"], ["stage.0.duration=1e-6"]),
+              "Selborne": (HERE.parent / "selborne/scene.toml", ["mesh.size=0.9", "stage.recharge.duration=2", "stage.slide.duration=0"],
+                           ["mesh.size=0.9", "stage.gravity.duration=1e-6", "stage.recharge.duration=1e-6", "stage.slide.duration=0"])}
+    for scene, (path, overrides, nothing) in scenes.items():
+        least, count = {}, {}
+        for turn in range(5):
+            for kind in ("start", "euler", "arkode 2", "arkode 3", "arkode 4", "arkode 5"):
+                _, seconds, count[kind] = run(talus, path, "cost", ["output.interval=0", *(nothing if kind == "start" else overrides), *KINDS.get(kind, [])])
+                least[kind] = min(least.get(kind, 1e9), seconds)
+        best = {kind: (seconds - least["start"]) / count[kind] for kind, seconds in least.items() if kind != "start"}
+        rows += [{"scene": scene, "integrator": kind, "us_per_evaluation": round(1e6 * value, 1), "over_euler": round(value / best["euler"], 3)} for kind, value in best.items()]
+        print(*rows[-5:], sep="\n", flush=True)
+        write("cost", rows)
+
+
+def stability(talus):
+    test = Path(talus).parent / "stability_test"
+    subprocess.run([next(p for p in (test, *ROOT.glob("build/*/tests/**/stability_test"), *ROOT.glob("build/*/bin/stability_test")) if p.exists())], check=True,
+                   env={**os.environ, "TALUS_STABILITY_CSV": str(HERE / "stability.csv")})
+
+
+def figure(_):
+    from talus_style import LINES, np, plt, save
+    if (HERE / "stability.csv").exists():
+        rows = read("stability")
+        kinds = list(dict.fromkeys(r["integrator"] for r in rows))
+        picture, all_axes = plt.subplots(2, 3, figsize=(10.6, 5), sharex=True, sharey=True, layout="constrained")
+        for axes, kind in zip(all_axes.flat, kinds):
+            for k, share in enumerate(dict.fromkeys(r["share"] for r in rows)):
+                of = [r for r in rows if r["integrator"] == kind and r["share"] == share]
+                axes.plot([int(r["step"]) for r in of], [float(r["energy"]) for r in of], color=LINES[k % len(LINES)], linewidth=1, label=share)
+            axes.set(title=kind, yscale="log", ylim=(1e-6, 1e3))
+        all_axes[0, 0].legend(title="step over the limit", fontsize=6, ncols=2)
+        all_axes[1, 2].axis("off")
+        for axes in all_axes[:, 0]:
+            axes.set_ylabel("energy over the initial")
+        for axes in all_axes[-1]:
+            axes.set_xlabel("step")
+        save(picture, HERE / "stability.png")
+    if (HERE / "drift.csv").exists():
+        rows = read("drift")
+        picture, all_axes = plt.subplots(1, 2, figsize=(8, 3.2), layout="constrained")
+        for axes, how in zip(all_axes, dict.fromkeys(r["transfer"] for r in rows)):
+            for k, kind in enumerate(KINDS):
+                of = [r for r in rows if r["transfer"] == how and r["integrator"] == kind]
+                energy = np.array([float(r["energy"]) for r in of])[:400].reshape(100, 4).mean(1)
+                axes.plot(np.arange(100) + 0.5, energy, color=LINES[k % len(LINES)], linewidth=1, label=kind)
+            axes.set(title=how, xlabel="periods", ylabel="energy over the initial, mean of a period")
+        all_axes[0].legend()
+        save(picture, HERE / "drift.png")
+    studies = {"frozen": "elastic, cells frozen", "plastic": "plastic, cells frozen", "crossing": "elastic, a remap in every step"}
+    if all((HERE / f"{name}.csv").exists() for name in studies):
+        picture, all_axes = plt.subplots(1, 3, figsize=(10.6, 3.4), sharey=True, layout="constrained")
+        for axes, (name, title) in zip(all_axes, studies.items()):
+            rows = [r for r in read(name) if not r["failure"] and r["series"] != "forward-euler" and 0 < float(r["error"]) < 0.1]
+            for k, kind in enumerate(dict.fromkeys(r["series"] for r in rows)):
+                of = [r for r in rows if r["series"] == kind]
+                axes.plot([1e6 * float(r["parameter"]) for r in of], [float(r["error"]) for r in of], "o-", color=LINES[k % len(LINES)], markersize=4, linewidth=1, label=kind)
+            axes.set(title=title, xscale="log", yscale="log", xlabel="step [µs]")
+            axes.set_xticks([60, 120, 240, 480], [60, 120, 240, 480])
+            axes.set_xticks([], minor=True)
+        all_axes[0].set_ylabel("error of the place of the end [m]")
+        all_axes[2].legend(*all_axes[0].get_legend_handles_labels())
+        save(picture, HERE / "orders.png")
+
+
+if __name__ == "__main__":
+    RUNS.mkdir(parents=True, exist_ok=True)
+    for name in sys.argv[2:] or ["drift", "spin", "dissipation", "cost", "stability", "figure"]:
+        globals()[name](sys.argv[1])

@@ -1,0 +1,146 @@
+// A matrix of runs by `talus compare`: which runs, side by side, gone on with after an interrupt, against which reference, into which files.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "scene.h"
+
+namespace talus {
+namespace {
+
+using Row = std::map<std::string, std::string>;
+
+std::vector<std::string> cells_of(const std::string &line) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (const char c : line)
+    if (c == '"') quoted = !quoted;
+    else if (c == ',' && !quoted) cells.emplace_back();
+    else cells.back() += c;
+  return cells;
+}
+
+std::vector<Row> table(const Folder &folder, const std::string &name) {
+  std::ifstream file(folder / name);
+  std::string line;
+  std::getline(file, line);
+  const std::vector<std::string> names = cells_of(line);
+  std::vector<Row> rows;
+  while (std::getline(file, line)) {
+    const auto cells = cells_of(line);
+    EXPECT_EQ(cells.size(), names.size()) << line;
+    for (size_t i = 0; i < std::min(cells.size(), names.size()); ++i) (i ? rows.back() : rows.emplace_back())[names[i]] = cells[i];
+  }
+  return rows;
+}
+
+double number(const Row &row, const std::string &key) { return std::stod(row.at(key)); }
+
+class Compare : public testing::Test {
+ protected:
+  Compare() {
+    folder_.write("section.csv", good_section);
+    folder_.write("scene.toml", changed(good_scene, "density = 2000", "porosity = 0.4\ngrain_density = 3333") + "[output.point.corner]\nposition = [1, 0.5]\n");
+  }
+  std::vector<std::string> words(const std::vector<std::string> &more) const {
+    std::vector<std::string> all{"compare", "scene.toml", "-o", "out", "--measure", "corner_x_m", "-j", "2", "--no-plot"};
+    all.insert(all.end(), more.begin(), more.end());
+    return talus_words(all);
+  }
+  Ending compare(const std::vector<std::string> &more) const { return Program(folder_, words(more)).end(); }
+  const Folder folder_;
+};
+
+// integrator and its step or tolerance, mesh size, particles per cell, transfer, dimension and phase model
+TEST_F(Compare, VariesWhatASceneSays) {
+  const Ending ending = compare(
+      {"--series", "euler: integrator.fraction=0.8,0.4,0.2", "--series", "arkode: integrator.kind=arkode; integrator.velocity_tolerance=1e-2,1e-4",
+       "--series", "petsc: integrator.kind=petsc", "--series", "mesh: body.sand.particles_per_cell=3,6; mesh.size=0.25,0.17",
+       "--series", "transfer: transfer.velocity=flip,pic,apic", "--series", "water: water.table=[[0, 0], [2, 0]]; phases=drained",
+       "--series", "slice: dimension=3; output.point.corner.position=[1, 0.5, 0.1]; boundary.front.kind=roller; boundary.back.kind=roller"});
+  ASSERT_EQ(ending.status, 0) << ending.output;
+  const auto rows = table(folder_, "out/compare.csv");
+  ASSERT_EQ(rows.size(), 15u);
+  for (const Row &row : rows) {
+    EXPECT_NEAR(number(row, "value"), 1, 0.1) << row.at("overrides");  // the particle nearest to the corner, cells of 0.25 m
+    for (const char *key : {"processor_s", "wall_s", "steps"}) EXPECT_GT(number(row, key), 0) << key;
+    EXPECT_EQ(row.at("failure"), "");
+  }
+  EXPECT_EQ(rows[0].at("parameter"), "0.8");
+  EXPECT_EQ(rows[9].at("overrides"), "body.sand.particles_per_cell=6 mesh.size=0.17");
+  EXPECT_GT(number(rows[3], "evaluations"), 3.9 * number(rows[3], "steps")) << "order 3 has four stages";
+  // nothing on the front is beaten in time and error at once, and something is on it
+  int front = 0;
+  for (const Row &row : rows)
+    if (row.at("pareto") == "1") {
+      ++front;
+      for (const Row &other : rows)
+        EXPECT_FALSE(number(other, "processor_s") < number(row, "processor_s") && number(other, "error") < number(row, "error"));
+    }
+  EXPECT_GT(front, 0);
+  // progress, with what is left
+  EXPECT_TRUE(ending.says("15 of 15: ") && ending.says(" s left")) << ending.output;
+  // without a reference the series that converges best is taken to its limit, or its finest run, with what is uncertain about it
+  const Row reference = table(folder_, "out/reference.csv").at(0);
+  EXPECT_GT(number(reference, "uncertainty"), 0);
+}
+
+TEST_F(Compare, GoesOnWhereItStopped) {
+  const std::vector<std::string> matrix{"--set", "stage.fall.duration=0.3", "--series", "euler: integrator.fraction=0.8,0.4,0.1,0.05"};
+  {
+    Program program(folder_, words(matrix));
+    ASSERT_TRUE(program.wait_for(folder_ / "out/run001/trial"));
+    program.signal(SIGINT);
+    const Ending ending = program.end();
+    EXPECT_EQ(ending.status, 1) << ending.output;
+    EXPECT_TRUE(ending.says("the same command goes on where it stopped")) << ending.output;
+  }
+  const auto written = std::filesystem::last_write_time(folder_ / "out/run001/history.csv");
+  const Ending ending = compare(matrix);
+  EXPECT_EQ(ending.status, 0) << ending.output;
+  EXPECT_TRUE(ending.says(" of 4 runs are there already")) << ending.output;
+  EXPECT_EQ(std::filesystem::last_write_time(folder_ / "out/run001/history.csv"), written);
+  EXPECT_EQ(table(folder_, "out/compare.csv").size(), 4u);
+  std::vector<std::string> others = matrix;
+  others[1] = "stage.fall.duration=0.01";
+  EXPECT_FALSE(compare(others).says("there already")) << "runs of another scene do not count";
+}
+
+TEST_F(Compare, TellsOfRunsThatFail) {
+  const Ending ending = compare({"--exact", "1", "--series", "fast: body.sand.velocity=[\"0\", \"0\"],[\"400\", \"0\"]"});
+  EXPECT_EQ(ending.status, 1) << ending.output;
+  const auto rows = table(folder_, "out/compare.csv");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].at("failure"), "");
+  EXPECT_NE(rows[1].at("failure").find("left the mesh"), std::string::npos) << rows[1].at("failure");
+  EXPECT_EQ(rows[1].at("pareto"), "0");
+  EXPECT_NEAR(number(rows[0], "error"), std::abs(number(rows[0], "value") - 1), 1e-9);
+}
+
+TEST_F(Compare, TakesFiniteElementsForTheTruth) {
+  folder_.write("scene.toml", changed(changed(good_scene, "law = \"mohr_coulomb\"", "law = \"linear_elastic\""), "cohesion = 0\nfriction_angle = 30\n", "") +
+                                  "[output.point.corner]\nposition = [1, 0.5]\n");
+  const Ending ending = compare({"--series", "euler: integrator.fraction=0.8,0.4", "--reference", "finite elements: stage.fall.kind=quasi_static"});
+  ASSERT_EQ(ending.status, 0) << ending.output;
+  const Row reference = table(folder_, "out/reference.csv").at(0);
+  EXPECT_EQ(reference.at("origin"), "finite elements");
+  const auto rows = table(folder_, "out/compare.csv");
+  ASSERT_EQ(rows.size(), 2u);
+  for (const Row &row : rows) EXPECT_NEAR(number(row, "error"), std::abs(number(row, "value") - number(reference, "value")), 1e-9);
+}
+
+TEST_F(Compare, RefusesWhatItCannotRun) {
+  for (const auto &[more, said] : {std::pair{std::vector<std::string>{"--series", "euler: integrator.fractoin=1"}, "integrator.fractoin"},
+                                   {{"--series", "order: integrator.kind=arkode; integrator.order=3,9"}, "2 to 5"},
+                                   {{"--series", "euler:", "--exact", "one"}, "must be a number"},
+                                   {{"--series", "euler:", "--exact", "1", "--reference", "fem: stage.fall.kind=quasi_static"}, "give one of them"},
+                                   {{"--series", "euler:", "--reference", "two: mesh.size=0.2,0.1"}, "must be one run"}}) {
+    const Ending ending = compare(more);
+    EXPECT_EQ(ending.status, 2) << said;
+    EXPECT_TRUE(ending.says(said)) << ending.output;
+  }
+}
+
+}  // namespace
+}  // namespace talus

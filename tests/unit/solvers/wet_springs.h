@@ -1,0 +1,130 @@
+#pragma once
+/// A motion without soil for integrators that take phases apart: a chain of nodes that carry grains and water, between a wall and a free end.
+/// Skeleton springs hold the grains, the water in each cell resists (1 - n) strain of the grains + n strain of the water, and the two drag at
+/// one another. Linear, so its solution is known.
+#include <Eigen/Dense>
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include <cmath>
+#include <vector>
+
+#include "physics/pores/drag.h"
+#include "solvers/integrator.h"
+
+namespace talus {
+
+class WetSprings : public Motion {
+ public:
+  static constexpr int count = 8;
+  static constexpr double porosity = 0.4, grains = 0.6, water = 0.4;  ///< masses of a node [kg]
+
+  /// Stiffness of skeleton and pore water [N/m]; drag [kg/s]; velocity of the water at the start over that of the grains.
+  WetSprings(double skeleton, double pores, double drag, double water_velocity = 0.5) : place(2 * count, 0), speed(2 * count, 0), skeleton_(skeleton), pores_(pores), drag_(drag) {
+    for (int i = 0; i < count; ++i) speed[i] = std::sin(M_PI / 2 * (i + 1) / count), speed[count + i] = water_velocity * speed[i];
+  }
+
+  std::vector<double> place, speed;  ///< accepted [m], [m/s]: grains, then water
+  int accepted = 0;
+
+  /// Largest frequency without drag [1/s].
+  double largest_frequency() const {
+    return std::sqrt(matrix(0).eigenvalues().cwiseAbs().maxCoeff());
+  }
+  /// (u, v) at time t from the present state.
+  Eigen::VectorXd exact(double t) const {
+    const int n = 2 * count;
+    Eigen::MatrixXd rates = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+    rates.topRightCorner(n, n).setIdentity();
+    rates.bottomLeftCorner(n, n) = -matrix(0), rates.bottomRightCorner(n, n) = -matrix(1);
+    Eigen::VectorXd start(2 * n);
+    start << Eigen::Map<const Eigen::VectorXd>(place.data(), n), Eigen::Map<const Eigen::VectorXd>(speed.data(), n);
+    return (rates * t).exp() * start;
+  }
+  /// Largest difference of the present velocities to those.
+  double error(const Eigen::VectorXd &state) const { return (Eigen::Map<const Eigen::VectorXd>(speed.data(), 2 * count) - state.tail(2 * count)).cwiseAbs().maxCoeff(); }
+  /// Momentum of both phases [kg m/s].
+  double momentum() const {
+    double sum = 0;
+    for (int i = 0; i < count; ++i) sum += grains * speed[i] + water * speed[count + i];
+    return sum;
+  }
+
+  PetscErrorCode begin(double) override { return 0; }
+  PetscErrorCode acceleration(double, const double *u, const double *, double *a) override { return force(u, a, true, true); }
+  PetscErrorCode rates(double t, const double *u, const double *v, double *du, double *dv) override {
+    std::copy_n(v, size(), du);
+    return acceleration(t, u, v, dv);
+  }
+  PetscErrorCode slow_rates(double, const double *u, const double *, double *du, double *dv) override {
+    std::fill_n(du, size(), 0.);
+    return force(u, dv, true, false);
+  }
+  PetscErrorCode fast_rates(double, const double *u, const double *v, double *du, double *dv) override {
+    std::copy_n(v, size(), du);
+    return force(u, dv, false, true);
+  }
+  PetscErrorCode drag(double t, double gamma, double *v) override { return resist(t, gamma, v); }
+  PetscErrorCode resist(double, double gamma, double *v) override {
+    const NodalFluid node{water, water, drag_};
+    for (int i = 0; i < count; ++i) resolve_drag<1>(gamma, grains, v[i], &node, v + count + i);
+    return 0;
+  }
+  PetscErrorCode hold(double, double, double *) override { return 0; }
+  PetscErrorCode map_back(double, double, double *v, double *w) override {
+    std::copy_n(v, size(), w);
+    return 0;
+  }
+  PetscErrorCode accept(double, const double *u, const double *v) override {
+    for (int i = 0; i < size(); ++i) place[i] += u[i], speed[i] = v[i];
+    ++accepted;
+    return 0;
+  }
+  bool inverted() const override { return false; }
+  int size() const override { return 2 * count; }
+  int capacity() const override { return size(); }
+  double *velocity() override { return speed.data(); }
+  double seen_square(const double *x) const override {
+    double sum = 0;
+    for (int i = 0; i < size(); ++i) sum += x[i] * x[i] / 2;
+    return sum;
+  }
+  double mass() const override { return count; }
+  MPI_Comm comm() const override { return MPI_COMM_SELF; }
+
+ private:
+  PetscErrorCode force(const double *u, double *a, bool of_skeleton, bool of_pores) const {
+    std::fill_n(a, size(), 0.);
+    const auto at = [&](int i, int phase) { return i < 0 ? 0 : place[phase * count + i] + (u ? u[phase * count + i] : 0); };
+    for (int cell = 0; cell < count; ++cell) {  // between node cell - 1, which is the wall for the first, and node cell
+      const double solid = at(cell, 0) - at(cell - 1, 0), fluid = at(cell, 1) - at(cell - 1, 1);
+      const double push = of_pores ? pores_ * ((1 - porosity) * solid + porosity * fluid) : 0;
+      const double forces[] = {(of_skeleton ? skeleton_ * solid : 0) + (1 - porosity) * push, porosity * push};
+      for (int phase : {0, 1}) {
+        const double share = forces[phase] / (phase ? water : grains);
+        a[phase * count + cell] -= share;
+        if (cell) a[phase * count + cell - 1] += share;
+      }
+    }
+    return 0;
+  }
+  /// a = -M(0) u - M(1) v.
+  Eigen::MatrixXd matrix(int which) const {
+    Eigen::MatrixXd m = Eigen::MatrixXd::Zero(2 * count, 2 * count);
+    if (which == 1) {
+      for (int i = 0; i < count; ++i) m(i, i) = drag_ / grains, m(i, count + i) = -drag_ / grains, m(count + i, count + i) = drag_ / water, m(count + i, i) = -drag_ / water;
+      return m;
+    }
+    WetSprings probe(skeleton_, pores_, 0);
+    std::vector<double> unit(2 * count), a(2 * count);
+    for (int j = 0; j < 2 * count; ++j) {
+      std::fill(unit.begin(), unit.end(), 0.);
+      unit[j] = 1;
+      probe.force(unit.data(), a.data(), true, true);
+      for (int i = 0; i < 2 * count; ++i) m(i, j) = -a[i];
+    }
+    return m;
+  }
+  double skeleton_, pores_, drag_;
+};
+
+}  // namespace talus
