@@ -2,6 +2,7 @@
 /// The fluid part of the motion, docs/theory/pores.md: liquid and, in three phases, gas. Stress points of the soil are pore points too: each
 /// holds masses of fluid, from which its pressures follow. SoilMotion calls, in the order of a step:
 ///   gather -> [add_to_mixture -> drive -> resist -> follow -> flow -> smooth_flow -> exchange] ... -> release
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -40,6 +41,10 @@ class PoreFluid {
 
   /// Fills the pores of all particles as the scene's [water] says for time t.
   void fill(double t);
+  /// Fills them to the pressures of `liquid`(cell, place) [Pa].
+  void fill(const std::function<double(int, const Vec<dim> &)> &liquid);
+  /// Pressure at a place by [water] [Pa]; negative above the water table where pores may dry.
+  double given_pressure(const Vec<dim> &x, double t) const;
 
   // Where cells and nodes stand, as SoilMotion has them.
   struct Frame {
@@ -123,7 +128,6 @@ class PoreFluid {
   };
   static constexpr int node_width = sizeof(NodePores) / sizeof(double);
 
-  double given_pressure(const Vec<dim> &x, double t) const;
   double given_gas_pressure(const Vec<dim> &x) const;
   std::array<double, 3> contents(const SoilPores &soil, double pressure, double gas_pressure) const;
   double unit_weight(const Frame &frame) const {

@@ -53,11 +53,16 @@ std::array<double, 3> PoreFluid<dim, Phases>::contents(const SoilPores &soil, do
 
 template <int dim, class Phases>
 void PoreFluid<dim, Phases>::fill(double t) {
+  fill([&](int, const Vec<dim> &x) { return given_pressure(x, t); });
+}
+
+template <int dim, class Phases>
+void PoreFluid<dim, Phases>::fill(const std::function<double(int, const Vec<dim> &)> &liquid) {
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const ParticleArrays<dim> &p = bodies_[b]->particles();
     const double grain_density = bodies_[b]->source().grain_density;
     for (int i = 0; i < p.count; ++i) {
-      const auto content = contents(soils_[b], given_pressure(p.position[i], t), given_gas_pressure(p.position[i]));
+      const auto content = contents(soils_[b], liquid(p.cell[i], p.position[i]), given_gas_pressure(p.position[i]));
       for (int a = 0; a < fluids; ++a) {
         p.fluid_mass[a][i] = content[a] * (p.volume[i] - p.mass[i] / grain_density);
         p.fluid_velocity[a][i] = p.velocity[i];

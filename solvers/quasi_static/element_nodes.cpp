@@ -30,11 +30,11 @@ PetscErrorCode share_maximum(DM plex, std::vector<PetscInt> &value) {
 }  // namespace
 
 template <int dim>
-PetscErrorCode ElementNodes<dim>::setup(const BackgroundMesh<dim> &mesh, int order, const std::vector<char> &active) {
+PetscErrorCode ElementNodes<dim>::setup(const BackgroundMesh<dim> &mesh, int order, const std::vector<char> &active, int components) {
   PetscInt begin, end, first_edge, end_edge;
   const PetscInt *ends;
   PetscFunctionBeginUser;
-  order_ = order, per_cell_ = element_nodes<dim>(order);
+  order_ = order, per_cell_ = element_nodes<dim>(order), components_ = components;
   PetscCall(DMClone(mesh.plex(), dm_.create()));
   PetscCall(DMPlexGetChart(dm_, &begin, &end));
   PetscCall(DMPlexGetDepthStratum(dm_, 1, &first_edge, &end_edge));
@@ -64,7 +64,7 @@ PetscErrorCode ElementNodes<dim>::setup(const BackgroundMesh<dim> &mesh, int ord
   PetscCall(PetscSectionCreate(PetscObjectComm(reinterpret_cast<PetscObject>(static_cast<DM>(dm_))), section.create()));
   PetscCall(PetscSectionSetChart(section, begin, end));
   for (PetscInt p = begin; p < end; ++p)
-    if (has_node[p]) PetscCall(PetscSectionSetDof(section, p, dim));
+    if (has_node[p]) PetscCall(PetscSectionSetDof(section, p, components));
   PetscCall(PetscSectionSetUp(section));
   PetscCall(DMSetLocalSection(dm_, section));
   PetscSection numbering;
@@ -78,7 +78,7 @@ PetscErrorCode ElementNodes<dim>::setup(const BackgroundMesh<dim> &mesh, int ord
     PetscCall(PetscSectionGetOffset(numbering, p, &row));
     node_of[p] = count();
     owned.push_back(row >= 0), point.push_back(p);
-    global_.push_back((row >= 0 ? row : -row - 1) / dim);
+    global_.push_back((row >= 0 ? row : -row - 1) / components);
     position.push_back({});
     const auto found = vertex.find(p);
     if (found != vertex.end()) {
@@ -131,7 +131,7 @@ PetscErrorCode ElementNodes<dim>::to_local(::Vec global, std::vector<double> &lo
   PetscFunctionBeginUser;
   PetscCall(DMGlobalToLocal(dm_, global, INSERT_VALUES, local_));
   PetscCall(VecGetArrayRead(local_, &value));
-  local.assign(value, value + static_cast<size_t>(count()) * dim);
+  local.assign(value, value + static_cast<size_t>(count()) * components_);
   PetscCall(VecRestoreArrayRead(local_, &value));
   PetscFunctionReturn(0);
 }

@@ -15,8 +15,8 @@ using Matrix = Owned<Mat, MatDestroy>;
 template <int dim>
 class ElementNodes {
  public:
-  /// `active` [cells] says which cells have elements. Collective.
-  PetscErrorCode setup(const BackgroundMesh<dim> &mesh, int order, const std::vector<char> &active);
+  /// `active` [cells] says which cells have elements, `components` how many unknowns a node has. Collective.
+  PetscErrorCode setup(const BackgroundMesh<dim> &mesh, int order, const std::vector<char> &active, int components = dim);
 
   int order() const { return order_; }
   int count() const { return static_cast<int>(position.size()); }
@@ -32,11 +32,11 @@ class ElementNodes {
   std::vector<PetscInt> point;     ///< its point of the DMPlex
 
   PetscErrorCode global_vector(Vector &v) const;
-  /// Values of local nodes from a global vector; [count][dim].
+  /// Values of local nodes from a global vector; [count][components].
   PetscErrorCode to_local(::Vec global, std::vector<double> &local) const;
   /// Adds up local values of all ranks.
   PetscErrorCode add_to_global(const std::vector<double> &local, ::Vec global) const;
-  /// Adds up nodal values over the ranks that share the node, in place; [count][dim].
+  /// Adds up nodal values over the ranks that share the node, in place; [count][components].
   PetscErrorCode sum(std::vector<double> &local) const;
   /// Largest value over the ranks that share a node; [count].
   PetscErrorCode maximum(std::vector<PetscInt> &local) const;
@@ -45,7 +45,7 @@ class ElementNodes {
   MPI_Comm comm() const { return PetscObjectComm(reinterpret_cast<PetscObject>(static_cast<DM>(dm_))); }
 
  private:
-  int order_ = 1, per_cell_ = dim + 1;
+  int order_ = 1, per_cell_ = dim + 1, components_ = dim;
   Dm dm_;
   std::vector<int> cell_node_, vertex_node_;
   std::vector<PetscInt> global_;

@@ -81,10 +81,7 @@ QuasiStatic<dim>::QuasiStatic(const BackgroundMesh<dim> &mesh, const Scene &scen
 
 template <int dim>
 void QuasiStatic<dim>::place_points() {
-  body_of_.assign(mesh_.cell_count(), -1), first_point_.assign(mesh_.cell_count(), -1);
-  for (size_t b = 0; b < points_.size(); ++b)
-    for (const std::string &region : scene_.body[b].region)
-      for (int cell : mesh_.region(region)) body_of_[cell] = static_cast<int>(b);
+  body_of_ = bodies_of_cells(mesh_, scene_), first_point_.assign(mesh_.cell_count(), -1);
   // cells of a patch follow one another, so that its points do
   std::vector<int> order(mesh_.cell_count());
   std::iota(order.begin(), order.end(), 0);
@@ -132,9 +129,10 @@ PetscErrorCode QuasiStatic<dim>::activate(const std::vector<char> &present) {
 
   loads_.clear();
   for (size_t s = 0; s < sources_.size(); ++s) {
-    if (!std::holds_alternative<Traction>(sources_[s].kind)) continue;
+    const bool water = std::holds_alternative<Head>(sources_[s].kind);
+    if (!std::holds_alternative<Traction>(sources_[s].kind) && !water) continue;
     for (const std::string &group : sources_[s].groups)
-      for (const Facet<dim> &facet : mesh_.facets(group)) {
+      for (const Facet<dim> &facet : mesh_.has_group(group) ? mesh_.facets(group) : std::vector<Facet<dim>>{}) {
         if (!active_[facet.cell]) continue;
         const int across = mesh_.cells[facet.cell].neighbour[facet.face];
         loads_.push_back({facet, static_cast<int>(s), across >= 0 && active_[across] ? 0.5 : 1., nodes_.of_facet(facet.cell, facet.face)});
@@ -378,6 +376,7 @@ void QuasiStatic<dim>::find_suction(double t) {
   for (GaussPoints<dim> &p : points_) {
     if (!p.present || !reads_suction(p.law)) continue;
     p.suction.assign(p.count(), 0);
+    for (int q = 0; q < p.count() && data_.flow; ++q) p.suction[q] = std::max(0., -data_.flow->pressure_at(p.cell[q], rule_.point[q % points_per_cell()]));
     for (int q = 0; q < p.count() && data_.pressure; ++q)
       for (int a = 0; a <= dim; ++a)
         p.suction[q] += rule_.point[q % points_per_cell()][a] * std::max(0., -data_.pressure(mesh_.position[mesh_.cells[p.cell[q]].node[a]], t));
@@ -393,13 +392,14 @@ void QuasiStatic<dim>::internal_force(std::vector<double> &force, bool trial) co
     double mean_work = 0;  // of the mean stress
     for (int q = 0; q < g.points; ++q) {
       const double *s = &(trial ? p.trial_stress : p.stress)[static_cast<size_t>(g.first_point + q) * components];
-      const double volume = p.volume[g.first_point + q], mean = patches_ ? (s[0] + s[1] + s[2]) / 3 : 0;
+      const double pores = data_.flow ? data_.flow->stress_pressure(p.cell[g.first_point + q], rule_.point[q % points_per_cell()]) : 0;
+      const double volume = p.volume[g.first_point + q], mean = patches_ ? (s[0] + s[1] + s[2]) / 3 - pores : 0;
       Square<dim> stress = Square<dim>::Zero();
       for (int k = 0; k < components; ++k) {
         const auto [i, j] = component_axes<dim>()[k];
         if (i < dim && j < dim) stress(i, j) = stress(j, i) = s[k];
       }
-      stress.diagonal().array() -= mean;
+      stress.diagonal().array() -= mean + pores;
       mean_work += volume * mean;
       const Vec<dim> *shape = &gradient_[g.first_gradient + static_cast<size_t>(q) * g.nodes];
       for (int k = 0; k < g.nodes; ++k)
@@ -436,7 +436,8 @@ void QuasiStatic<dim>::external_force(double t, std::vector<double> &force) cons
       }
     for (size_t q = 0; q < rule_.point.size(); ++q) {
       const double volume = mesh_.volume[c] * rule_.weight[q];
-      const double density = data_.density(source, place_in(mesh_, c, rule_.point[q]), t);
+      double density = data_.density(source, place_in(mesh_, c, rule_.point[q]), t);
+      if (data_.flow) density += data_.flow->water_density(c, rule_.point[q]);
       shape_functions<dim>(order_, rule_.point[q], shape.data());
       if (data_.pressure && !data_.open_water_load) shape_gradients<dim>(order_, rule_.point[q], of_l, gradient.data());
       double here = 0;
@@ -453,7 +454,8 @@ void QuasiStatic<dim>::external_force(double t, std::vector<double> &force) cons
       Vec<dim> b;
       for (int d = 0; d < dim; ++d) b[d] = source.body_acceleration[d](x[0], x[1], dim == 3 ? x[dim - 1] : 0, t);
       shape_functions<dim>(order_, load_rule_.point[q], shape.data());
-      const double mass = mesh_.volume[c] * load_rule_.weight[q] * data_.density(source, x, t);
+      const double density = data_.density(source, x, t) + (data_.flow ? data_.flow->water_density(c, load_rule_.point[q]) : 0);
+      const double mass = mesh_.volume[c] * load_rule_.weight[q] * density;
       for (int a = 0; a < per_cell; ++a) add(a, mass * shape[a], b);
     }
   }
@@ -463,11 +465,21 @@ void QuasiStatic<dim>::external_force(double t, std::vector<double> &force) cons
       for (int a = 0; a < dim; ++a)
         for (int d = 0; d < dim; ++d) x[d] += facet_rule_.point[q][a] * nodes_.position[load.node[a]][d];
       shape_functions<dim - 1>(order_, facet_rule_.point[q], shape.data());
-      const Vec<dim> traction = std::get<Traction>(sources_[load.source].kind).template load<dim>(load.facet.normal, x, t);
+      const Vec<dim> traction = traction_of(load, x, t);
       const double area = load.share * load.facet.area * facet_rule_.weight[q];
       for (size_t a = 0; a < load.node.size(); ++a)
         for (int d = 0; d < dim; ++d) force[load.node[a] * dim + d] += area * shape[a] * traction[d];
     }
+}
+
+/// Of a load, or of open water [Pa].
+template <int dim>
+Vec<dim> QuasiStatic<dim>::traction_of(const LoadedFacet &load, const Vec<dim> &x, double t) const {
+  const Boundary &kind = sources_[load.source].kind;
+  if (const auto *given = std::get_if<Traction>(&kind)) return given->template load<dim>(load.facet.normal, x, t);
+  Vec<dim> traction = load.facet.normal;
+  for (double &component : traction) component *= -std::get<Head>(kind).outside(x[0], x[1], 0, t, data_.flow->unit_weight());
+  return traction;
 }
 
 // ---- Newton ----
@@ -611,14 +623,12 @@ PetscErrorCode QuasiStatic<dim>::begin_path(double load_time) {
 }
 
 template <int dim>
-PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double time, double dt, bool softening, StepOutcome *outcome) {
-  std::vector<double> external, u;
+PetscErrorCode QuasiStatic<dim>::prepare(double share, double load_time, double time, double dt, ::Vec x) {
+  std::vector<double> external;
   double *value;
   KSP ksp;
-  SNESConvergedReason reason;
-  PetscInt iterations;
   PetscFunctionBeginUser;
-  *outcome = {}, blown_up_ = false, scale_open_ = true;
+  blown_up_ = false, scale_open_ = true;
   find_suction(load_time);
   external_force(load_time, external);
   PetscCall(nodes_.add_to_global(external, target_));
@@ -630,38 +640,47 @@ PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double 
 
   stiffness_scale_ = 0;
   for (const GaussPoints<dim> &p : points_) stiffness_scale_ = std::max(stiffness_scale_, constrained_modulus(p.law));
-  PetscCall(SNESGetKSP(solver_, &ksp));
-  PetscCall(VecZeroEntries(x_));
-  int moved = 0;
+  PetscCall(VecZeroEntries(x));
   std::fill(motion_.begin(), motion_.end(), 0.);
-  if (supports_.moves()) {
-    std::vector<double> motion(static_cast<size_t>(nodes_.count()) * dim, 0), lift;
-    for (int i = 0; i < nodes_.count(); ++i)
-      if (supports_.at(i)) {
-        const Vec<dim> g = supports_.increment(i, nodes_.position[i], time, time + dt);
-        std::copy(g.begin(), g.end(), &motion[i * dim]);
-        for (double component : g) moved |= component != 0;
-      }
-    MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_INT, MPI_MAX, nodes_.comm());
-    if (moved) {  // the linear answer to the motion is where Newton starts: plates alone would strain their own cells only
-      PetscCall(residual(x_, f_));
-      PetscCall(stiffness(matrix_, &motion, &lift));
-      PetscCall(nodes_.add_to_global(lift, internal_));
-      PetscCall(VecGetArray(internal_, &value));
-      for (PetscInt row : owned_supported_)
-        for (int d = 0; d < dim; ++d)
-          if (supports_.at(owned_[row])->held[d]) value[row * dim + d] = 0;
-      PetscCall(VecRestoreArray(internal_, &value));
-      PetscCall(VecAYPX(internal_, -1, f_));
-      PetscCall(VecAXPY(internal_, -2, f_));  // -(f + lift)
-      PetscCall(KSPSetOperators(ksp, matrix_, matrix_));
-      PetscCall(KSPSolve(ksp, internal_, x_));
-      KSPConvergedReason linear;
-      PetscCall(KSPGetConvergedReason(ksp, &linear));
-      if (linear < 0) PetscCall(VecZeroEntries(x_));
-      for (size_t row = 0; row < owned_.size(); ++row) std::copy_n(&motion[owned_[row] * dim], dim, &motion_[row * dim]);
+  if (!supports_.moves()) PetscFunctionReturn(0);
+  int moved = 0;
+  std::vector<double> motion(static_cast<size_t>(nodes_.count()) * dim, 0), lift;
+  for (int i = 0; i < nodes_.count(); ++i)
+    if (supports_.at(i)) {
+      const Vec<dim> g = supports_.increment(i, nodes_.position[i], time, time + dt);
+      std::copy(g.begin(), g.end(), &motion[i * dim]);
+      for (double component : g) moved |= component != 0;
     }
-  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_INT, MPI_MAX, nodes_.comm()));
+  if (!moved) PetscFunctionReturn(0);
+  // the linear answer to the motion is where Newton starts: plates alone would strain their own cells only
+  PetscCall(SNESGetKSP(solver_, &ksp));
+  PetscCall(residual(x, f_));
+  PetscCall(stiffness(matrix_, &motion, &lift));
+  PetscCall(nodes_.add_to_global(lift, internal_));
+  PetscCall(VecGetArray(internal_, &value));
+  for (PetscInt row : owned_supported_)
+    for (int d = 0; d < dim; ++d)
+      if (supports_.at(owned_[row])->held[d]) value[row * dim + d] = 0;
+  PetscCall(VecRestoreArray(internal_, &value));
+  PetscCall(VecAYPX(internal_, -1, f_));
+  PetscCall(VecAXPY(internal_, -2, f_));  // -(f + lift)
+  PetscCall(KSPSetOperators(ksp, matrix_, matrix_));
+  PetscCall(KSPSolve(ksp, internal_, x));
+  KSPConvergedReason linear;
+  PetscCall(KSPGetConvergedReason(ksp, &linear));
+  if (linear < 0) PetscCall(VecZeroEntries(x));
+  for (size_t row = 0; row < owned_.size(); ++row) std::copy_n(&motion[owned_[row] * dim], dim, &motion_[row * dim]);
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double time, double dt, bool softening, StepOutcome *outcome) {
+  SNESConvergedReason reason;
+  PetscInt iterations;
+  PetscFunctionBeginUser;
+  *outcome = {};
+  PetscCall(prepare(share, load_time, time, dt, x_));
   PetscCall(SNESSolve(solver_, nullptr, x_));
   PetscCall(SNESGetConvergedReason(solver_, &reason));
   PetscCall(SNESGetIterationNumber(solver_, &iterations));
@@ -670,12 +689,16 @@ PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double 
   outcome->iterations = static_cast<int>(iterations);
   outcome->residual /= force_scale_ > 0 ? force_scale_ : 1;
   outcome->converged = reason > 0, outcome->blown_up = blown_up_, outcome->singular = reason == SNES_DIVERGED_LINEAR_SOLVE;
-  if (!outcome->converged) {  // neither MUMPS nor the line search recovers from numbers that ran away
-    PetscCall(make_solver());
-    PetscFunctionReturn(0);
-  }
+  if (outcome->converged) PetscCall(commit(x_, softening));
+  else PetscCall(make_solver());  // neither MUMPS nor the line search recovers from numbers that ran away
+  PetscFunctionReturn(0);
+}
 
-  PetscCall(displacement_of(x_, true, u));
+template <int dim>
+PetscErrorCode QuasiStatic<dim>::commit(::Vec x, bool softening) {
+  std::vector<double> u;
+  PetscFunctionBeginUser;
+  PetscCall(displacement_of(x, true, u));
   strain_increments(u);
   update_stresses();
   for (size_t i = 0; i < u.size(); ++i) displacement_[i] += u[i];

@@ -11,6 +11,7 @@
 
 #include "physics/laws/update_stress.h"
 #include "scene/scene.h"
+#include "solvers/quasi_static/pore_flow.h"
 #include "solvers/quasi_static/supports.h"
 
 namespace talus {
@@ -25,6 +26,8 @@ struct SoilData {
   /// Pore pressure at a place and time of the loads [Pa]; empty where the scene has none.
   std::function<double(const Vec<dim> &, double)> pressure;
   bool open_water_load = true;
+  /// Water whose pressure and weight the soil carries instead, where it flows; else null.
+  const PoreFlow<dim> *flow = nullptr;
 };
 
 /// The Gauss points of one body. Arrays have one row per point, those of a cell together.
@@ -80,6 +83,15 @@ class QuasiStatic {
   /// Solves for the state at `share` of the path, with loads of `load_time`; prescribed motion acts over (time, time + dt). The state
   /// is committed if it converges, else left as it was.
   PetscErrorCode advance(double share, double load_time, double time, double dt, bool softening, StepOutcome *outcome);
+  /// The parts of `advance`, for problems with more unknowns than displacement (flow_step.h): what stands before the iterations, `x` being
+  /// where they start; the out-of-balance force, with the tangent then in `matrix`; and the acceptance of what was found.
+  PetscErrorCode prepare(double share, double load_time, double time, double dt, ::Vec x);
+  PetscErrorCode residual(::Vec x, ::Vec f);
+  PetscErrorCode tangent() { return stiffness(matrix_, nullptr, nullptr); }
+  PetscErrorCode commit(::Vec x, bool softening);
+  Mat matrix() const { return matrix_; }
+  double force_scale() const { return force_scale_; }  ///< what forces are small against [N]
+  void close_scale() { scale_open_ = false; }          ///< an iterate that goes astray must not widen it
   /// Displacement counts from here; so does plastic strain.
   void reset_displacement();
   /// A state to come back to.
@@ -94,6 +106,11 @@ class QuasiStatic {
 
   std::vector<GaussPoints<dim>> &points() { return points_; }
   const std::vector<GaussPoints<dim>> &points() const { return points_; }
+  const BackgroundMesh<dim> &mesh() const { return mesh_; }
+  const ElementNodes<dim> &nodes() const { return nodes_; }
+  const Supports<dim> &supports() const { return supports_; }
+  const std::vector<char> &active() const { return active_; }
+  const std::vector<int> &bodies() const { return body_of_; }
   int points_per_cell() const { return static_cast<int>(rule_.point.size()); }
   const Quadrature<dim> &rule() const { return rule_; }
   /// Displacement at a place of a cell given in barycentric coordinates [m].
@@ -137,7 +154,7 @@ class QuasiStatic {
   double pore_pressure(const Vec<dim> &x, double t) const;
   void internal_force(std::vector<double> &force, bool trial) const;
   void external_force(double t, std::vector<double> &force) const;
-  PetscErrorCode residual(::Vec x, ::Vec f);
+  Vec<dim> traction_of(const LoadedFacet &load, const Vec<dim> &x, double t) const;
   PetscErrorCode stiffness(Mat matrix, const std::vector<double> *motion, std::vector<double> *lift);
   PetscErrorCode near_null_space();
   PetscErrorCode displacement_of(::Vec x, bool with_motion, std::vector<double> &u) const;

@@ -57,8 +57,18 @@ std::string place(const std::array<double, 3> &x, int dimension) {
   return text;
 }
 
-const char *name_of(StopWhen until) {
-  switch (until) {
+const char *ending_of(const Stage &stage) {
+  switch (stage.kind) {
+    case StageKind::quasi_static:
+      return "equilibrium by finite elements";
+    case StageKind::seepage:
+      return "seepage by finite elements";
+    case StageKind::consolidation:
+      return "consolidation by finite elements";
+    case StageKind::dynamic:
+      break;
+  }
+  switch (stage.until) {
     case StopWhen::duration:
       return "duration";
     case StopWhen::equilibrium:
@@ -98,7 +108,11 @@ void print_costs(const Scene &scene, const Needs &n) {
   line("stages", "%-16s %-12s %10s %10s %14s %12s", "", "until", "longest s", "steps", "wave transits", "run time");
   for (std::size_t i = 0; i < n.stages.size(); ++i) {
     const StageNeeds &s = n.stages[i];
-    line("", "%-16s %-12s %10.4g %10.0f %14.4g %12s", s.name.c_str(), name_of(scene.stage[i].until), s.duration,
+    if (is_static(scene.stage[i].kind)) {
+      line("", "%-16s %s", s.name.c_str(), ending_of(scene.stage[i]));
+      continue;
+    }
+    line("", "%-16s %-12s %10.4g %10.0f %14.4g %12s", s.name.c_str(), ending_of(scene.stage[i]), s.duration,
          s.steps, s.transits, n.burst_steps ? spoken(s.run_time).c_str() : "-");
   }
   if (n.burst_steps)

@@ -118,7 +118,12 @@ class Checks {
 
   void stage(const Stage &stage, const std::string &path) const {
     bodies_of(stage, path);
-    if (stage.kind == StageKind::quasi_static) {
+    if (water_flows(stage.kind) && scene_.phases != PhaseModel::saturated && scene_.phases != PhaseModel::unsaturated)
+      reader_.complain(path + ".kind", "needs pore water that moves: set phases = \"saturated\" or \"unsaturated\", not \"" + phases() + "\"");
+    if (stage.kind == StageKind::consolidation && scene_.quasi_static.elements != Elements::quadratic)
+      reader_.complain("quasi_static.elements", "must be \"quadratic\" for consolidation: displacement of first order beside pressure of first order is not stable");
+    if (stage.steady && stage.kind != StageKind::seepage) reader_.complain(path + ".steady", "belongs to seepage: set kind = \"seepage\"");
+    if (is_static(stage.kind)) {
       const std::string no = "has no effect in a quasi-static stage; leave it out";
       if (stage.until != StopWhen::duration) reader_.complain(path + ".until", no);
       if (stage.damping > 0) reader_.complain(path + ".damping", no);
@@ -141,7 +146,7 @@ class Checks {
     std::vector<std::string> bodies;
     for (const BodySource &body : scene_.body) bodies.push_back(body.name);
     for (const auto &[key, named] : {std::pair{".add", &stage.add}, {".remove", &stage.remove}}) {
-      if (!named->empty() && stage.kind != StageKind::quasi_static)
+      if (!named->empty() && !is_static(stage.kind))
         reader_.complain(path + key, "belongs to quasi-static stages: set kind = \"quasi_static\"");
       for (const std::string &name : *named)
         if (std::find(bodies.begin(), bodies.end(), name) == bodies.end())

@@ -179,10 +179,15 @@ struct Gas {
   }
 };
 
-enum class StageKind { dynamic, quasi_static };
+enum class StageKind { dynamic, quasi_static, seepage, consolidation };
 enum class InitialStress { kept, k0 };
 enum class WhenLost { stop, go_on };
 enum class StopWhen { duration, equilibrium, rest, failure };
+
+/// Is it solved by finite elements?
+inline bool is_static(StageKind kind) { return kind != StageKind::dynamic; }
+/// Does pore water flow in it by finite elements?
+inline bool water_flows(StageKind kind) { return kind == StageKind::seepage || kind == StageKind::consolidation; }
 
 struct Stage {
   std::string name;
@@ -206,10 +211,11 @@ struct Stage {
   InitialStress initial_stress = InitialStress::kept;
   std::vector<std::string> add, remove;  ///< bodies that come and go with the stage
   WhenLost when_lost = WhenLost::stop;
+  bool steady = false;              ///< seepage: the flow that the loads at the stage's end keep up
   template <class Visitor>
   void fields(Visitor &&v) {
     v.text("name", name, "name of the stage in logs and results");
-    v.choice("kind", kind, {{"dynamic", StageKind::dynamic}, {"quasi_static", StageKind::quasi_static}}, "motion by the material point method, or equilibrium by finite elements");
+    v.choice("kind", kind, {{"dynamic", StageKind::dynamic}, {"quasi_static", StageKind::quasi_static}, {"seepage", StageKind::seepage}, {"consolidation", StageKind::consolidation}}, "motion by the material point method, or by finite elements: equilibrium, flow of pore water through soil at rest, or both together in time");
     v.number("duration", duration, second, Range{0, 1e9}, "longest duration of the stage");
     v.choice("until", until, {{"duration", StopWhen::duration}, {"equilibrium", StopWhen::equilibrium}, {"rest", StopWhen::rest}, {"failure", StopWhen::failure}}, "what ends the stage before its duration");
     v.number("damping", damping, one, Range{0, 0.99}, "local (Cundall) damping factor");
@@ -229,6 +235,7 @@ struct Stage {
     v.texts("add", add, "quasi-static: bodies that come with this stage; until then they are not there");
     v.texts("remove", remove, "quasi-static: bodies that go with this stage");
     v.choice("when_lost", when_lost, {{"stop", WhenLost::stop}, {"next_stage", WhenLost::go_on}}, "quasi-static: what follows when there is no equilibrium under the loads: the end with status 1, or the next stage");
+    v.flag("steady", steady, "seepage: the flow that the loads at the end of the stage keep up, however long it takes to come about");
   }
 };
 
@@ -274,6 +281,7 @@ struct QuasiStaticSource {
   int iterations = 25;          ///< Newton: most iterations in a load step
   double smallest_step = 1e-3;  ///< share of a stage's loads below which equilibrium counts as lost [-]
   LinearSolver linear_solver = LinearSolver::automatic;
+  double step_error = 1e-3;     ///< seepage, consolidation: what a step may miss, of pressure over its largest change and of saturation [-]
   template <class Visitor>
   void fields(Visitor &&v) {
     v.choice("elements", elements, {{"quadratic", Elements::quadratic}, {"linear", Elements::linear}, {"patches", Elements::patches}}, "displacement of second or first order, or of first order with the patches against locking that the motion of particles has");
@@ -281,6 +289,7 @@ struct QuasiStaticSource {
     v.integer("iterations", iterations, Range{1, 1000}, "most iterations in a load step; then it is halved");
     v.number("smallest_step", smallest_step, one, Range{1e-9, 1}, "share of a stage's loads below which a step is not halved: equilibrium is lost");
     v.choice("linear_solver", linear_solver, {{"automatic", LinearSolver::automatic}, {"direct", LinearSolver::direct}, {"iterative", LinearSolver::iterative}}, "LU (MUMPS), or GMRES with algebraic multigrid (GAMG); by size if automatic");
+    v.number("step_error", step_error, one, Range{1e-8, 1}, "seepage and consolidation: what a step may miss by its length, of pressure over the largest change so far, and of saturation");
   }
 };
 

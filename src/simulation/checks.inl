@@ -40,7 +40,7 @@ void Simulation<dim, Phases>::check_bodies() const {
 
 template <int dim, class Phases>
 void Simulation<dim, Phases>::check_boundaries(const std::vector<typename Conditions<dim>::Source> &sources) const {
-  const bool quasi_static = std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &stage) { return stage.kind == StageKind::quasi_static; });
+  const bool quasi_static = std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &stage) { return is_static(stage.kind); });
   for (const auto &source : sources) {
     const std::string path = "boundary." + source.name;
     for (const std::string &group : source.groups)
@@ -55,7 +55,7 @@ void Simulation<dim, Phases>::check_boundaries(const std::vector<typename Condit
     };
     const bool has_static_form = std::visit(
         [](const auto &kind) { return requires { kind.template directions<dim>(Vec<dim>{}); } || requires { kind.template load<dim>(Vec<dim>{}, Vec<dim>{}, 0.); }; }, source.kind);
-    if (quasi_static && !has_static_form) scene_.complain(path + ".kind", "has no quasi-static form; take fixed, roller, velocity or traction");
+    if (quasi_static && !has_static_form && !concerns_water(source.kind)) scene_.complain(path + ".kind", "has no quasi-static form; take fixed, roller, velocity or traction");
     if (const auto *moved = std::get_if<PrescribedVelocity>(&source.kind)) check_vector("velocity", moved->velocity);
     if (const auto *loaded = std::get_if<Traction>(&source.kind)) check_vector("traction", loaded->traction);
   }

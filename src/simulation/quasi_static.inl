@@ -16,6 +16,10 @@ void Simulation<dim, Phases>::make_statics() {
   data.density = [this](const BodySource &source, const Vec<dim> &x, double t) { return soil_density(source, x, t); };
   data.open_water_load = scene_.water.open_water_load;
   if constexpr (Phases::given) data.pressure = [this](const Vec<dim> &x, double t) { return pressure_(x, t); };
+  if constexpr (Phases::liquid) {
+    flow_ = std::make_unique<PoreFlow<dim>>(mesh_, scene_, conditions_.sources(), Phases::suction);
+    data.flow = flow_.get();
+  }
   statics_ = std::make_unique<QuasiStatic<dim>>(mesh_, scene_, laws_, conditions_.sources(), data);
   for (size_t b = 0; b < bodies_.size(); ++b) {
     GaussPoints<dim> &p = statics_->points()[b];
@@ -24,6 +28,15 @@ void Simulation<dim, Phases>::make_statics() {
       for (int k = 0; k < stress_size<dim>; ++k)
         p.stress[q * stress_size<dim> + k] = given[k](p.position[q][0], p.position[q][1], dim == 3 ? p.position[q][dim - 1] : 0, 0);
   }
+}
+
+template <int dim, class Phases>
+PetscErrorCode Simulation<dim, Phases>::activate() {
+  PetscFunctionBeginUser;
+  PetscCall(statics_->activate(present_));
+  if constexpr (Phases::liquid)
+    PetscCall(flow_->activate(statics_->active(), [this](const Vec<dim> &x) { return motion_->fluid().given_pressure(x, load_time_); }));
+  PetscFunctionReturn(0);
 }
 
 template <int dim, class Phases>
@@ -83,11 +96,11 @@ void Simulation<dim, Phases>::run_quasi_static(const Stage &stage) {
     MPI_Allreduce(MPI_IN_PLACE, &sheared, 1, MPI_INT, MPI_MAX, comm_);
     if (!stage.softening && !sheared) points.law = without_softening(points.law);
   }
-  require(statics_->activate(present_));
+  require(activate());
   in_statics_ = true, moved_since_statics_ = false;
   std::string freedom;
   require(statics_->find_freedom(&freedom));
-  if (!freedom.empty()) fail("the supports leave soil free to move as a whole: " + freedom + "; hold it by fixed or roller boundaries");
+  if (!freedom.empty() && stage.kind != StageKind::seepage) fail("the supports leave soil free to move as a whole: " + freedom + "; hold it by fixed or roller boundaries");
   if (scene_.quasi_static.elements != Elements::quadratic && !mesh_.report().one_element_slice) {
     std::vector<char> thin;
     require(statics_->find_thin_bodies(&thin));
@@ -104,23 +117,26 @@ void Simulation<dim, Phases>::run_quasi_static(const Stage &stage) {
   StepOutcome outcome;
   int iterations = 0;
   const auto load_at = [&](double s) { return hold_loads_ ? begin_load : begin_load + s * stage.duration; };
-  require(follow_path(
-      1. / stage.load_steps, scene_.quasi_static.smallest_step,
-      [&](double from, double to, StepOutcome *o) {
-        return statics_->advance(to, load_at(to), load_at(from), load_at(to) - load_at(from), stage.softening, o);
-      },
-      [&](double s, const StepOutcome &) {
-        time_ = begin + s * stage.duration, load_time_ = load_at(s), ++steps_;
-        to_particles();
-        if (results_) results_->progress.step(time_, steps_, particle_count_);
-        write_history();
-        if (scene_.output.interval > 0 && s < 1 && s * stage.duration >= snapshots * scene_.output.interval * (1 - 1e-9))
-          write_snapshot(), snapshots = std::floor(s * stage.duration / scene_.output.interval * (1 + 1e-9)) + 1;
-        int stop = interrupted;
-        MPI_Allreduce(MPI_IN_PLACE, &stop, 1, MPI_INT, MPI_MAX, comm_);
-        if (stop) write_snapshot(), fail("interrupted");
-      },
-      &share, &outcome, &iterations));
+  const auto done = [&](double s) {
+    time_ = begin + s * stage.duration, load_time_ = load_at(s), ++steps_;
+    to_particles();
+    if (results_) results_->progress.step(time_, steps_, particle_count_);
+    write_history();
+    if (scene_.output.interval > 0 && s < 1 && s * stage.duration >= snapshots * scene_.output.interval * (1 - 1e-9))
+      write_snapshot(), snapshots = std::floor(s * stage.duration / scene_.output.interval * (1 + 1e-9)) + 1;
+    int stop = interrupted;
+    MPI_Allreduce(MPI_IN_PLACE, &stop, 1, MPI_INT, MPI_MAX, comm_);
+    if (stop) write_snapshot(), fail("interrupted");
+  };
+  if (water_flows(stage.kind))
+    follow_water(stage, load_at, done, &share, &outcome, &iterations);
+  else
+    require(follow_path(
+        1. / stage.load_steps, scene_.quasi_static.smallest_step,
+        [&](double from, double to, StepOutcome *o) {
+          return statics_->advance(to, load_at(to), load_at(from), load_at(to) - load_at(from), stage.softening, o);
+        },
+        [&](double s, const StepOutcome &) { done(s); }, &share, &outcome, &iterations));
   write_snapshot();
   std::ostringstream text;
   text.precision(3);
@@ -178,12 +194,14 @@ void Simulation<dim, Phases>::to_particles() {
       for (int d = 0; d < dim; ++d) p.reference[i][d] = p.position[i][d] - u[d], p.velocity[i][d] = 0;
     }
   }
+  fill_pores();
 }
 
 /// The other way after a dynamic stage: Gauss points take the mean of the particles in their cell, weighted by volume; cells that have
 /// none keep what they had.
 template <int dim, class Phases>
 void Simulation<dim, Phases>::to_gauss_points() {
+  pressure_from_particles();
   if (motion_->gathered()) require(release(false));
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const ParticleArrays<dim> &p = bodies_[b]->particles();
@@ -217,7 +235,8 @@ Snapshot Simulation<dim, Phases>::gauss_points() const {
   column("volume", "m3", "volume of the Gauss point", 1);
   column("mass", "kg", "mass of the Gauss point", 1);
   column("shear_strain", "-", "sqrt(2/3 e : e) of the deviator e of strain, since displacement was last reset", 1);
-  if (Phases::given) column("pore_pressure", "Pa", "pore pressure, positive in compression", 1);
+  if (Phases::pressure) column("pore_pressure", "Pa", "pore pressure, positive in compression", 1);
+  if (Phases::suction) column("saturation", "-", "degree of saturation", 1);
   const size_t first_history = s.columns.size();
   for (const auto &body : bodies_)
     for (const HistoryField &field : history_fields(body->law()))
@@ -239,13 +258,19 @@ Snapshot Simulation<dim, Phases>::gauss_points() const {
       const Vec<dim> u = statics_->displacement(p.cell[q], statics_->rule().point[place]);
       Stress<dim> strain;
       std::copy_n(&p.total_strain[q * stress_size<dim>], stress_size<dim>, &strain.xx);
-      const double mass = p.volume[q] * soil_density(scene_.body[b], p.position[q], load_time_);
+      const Barycentric<dim> &l = statics_->rule().point[place];
+      const double mass = p.volume[q] * (soil_density(scene_.body[b], p.position[q], load_time_) + (Phases::liquid ? flow_->water_density(p.cell[q], l) : 0));
       const double shear = Invariants<dim>(strain).q * std::sqrt(4. / 3);
       put(p.position[q].data(), dim), put(u.data(), dim), put(&p.stress[q * stress_size<dim>], stress_size<dim>);
       put(&p.volume[q], 1), put(&mass, 1), put(&shear, 1);
       if (Phases::given) {
         const double pressure = pressure_(p.position[q], load_time_);
         put(&pressure, 1);
+      }
+      if constexpr (Phases::liquid) {
+        const double pressure = flow_->pressure_at(p.cell[q], l), saturation = flow_->saturation(p.cell[q], l);
+        put(&pressure, 1);
+        if (Phases::suction) put(&saturation, 1);
       }
       for (size_t c = first_history; c < s.columns.size(); ++c) {
         double value = std::numeric_limits<double>::quiet_NaN();
@@ -292,6 +317,9 @@ void Simulation<dim, Phases>::start_stress() {
       for (int d = 0; d < dim; ++d) centre[d] += block.corner[a][d] / (dim + 1);
     }
     block.density = soil_density(scene_.body[b], centre, load_time_);
+    Barycentric<dim> middle;
+    middle.fill(1. / (dim + 1));
+    if constexpr (Phases::liquid) block.density += flow_->water_density(c, middle);
     mine.push_back(block);
   }
   int ranks;
@@ -342,6 +370,7 @@ void Simulation<dim, Phases>::start_stress() {
         pressure = pressure_(x, load_time_);
         if (scene_.water.open_water_load) weight += pressure_(surface, load_time_);
       }
+      if constexpr (Phases::liquid) pressure = flow_->stress_pressure(points.cell[q], statics_->rule().point[q % statics_->points_per_cell()]);
       double *stress = &points.stress[q * stress_size<dim>];
       std::fill_n(stress, stress_size<dim>, 0.);
       stress[1] = pressure - weight, stress[0] = stress[2] = k0 * stress[1];
@@ -355,7 +384,7 @@ template <int dim, class Phases>
 FactorOfSafety Simulation<dim, Phases>::factor_of_safety() {
   constexpr double least_factor = 0.1;
   for (size_t k = 0; k < scene_.stage.size(); ++k)
-    if (scene_.stage[k].kind != StageKind::quasi_static)
+    if (!is_static(scene_.stage[k].kind))
       scene_.complain("stage." + std::to_string(k) + ".kind", "must be \"quasi_static\" for a factor of safety");
   for (;; strength_factor_ /= 2) {
     try {

@@ -39,6 +39,13 @@ TEST(Check, FillsACellOnceThatTwoOfABodysRegionsName) {
   EXPECT_NEAR(number(check(folder, {"body.sand.region=['sand', 'sand']"}), "mass_kg"), 1000, 1e-9);
 }
 
+TEST(Check, KnowsStagesByFiniteElements) {
+  const Folder folder;
+  const Ending ending = check(folder, {"stage.0.kind=quasi_static"});
+  EXPECT_EQ(number(ending, "run_time_s"), 0);
+  EXPECT_FALSE(ending.says("Gravity sets in at once")) << ending.output;
+}
+
 TEST(Check, TellsThatARunBreaksOffAtOnce) {
   const Folder folder;
   const Ending ending = check(folder, {"body.sand.velocity=['1e200', '0']"});
@@ -103,6 +110,7 @@ const Case cases[] = {
     {"remap_every_step", {"transfer.remap_interval=0"}, "A remap at every step costs"},
     {"apic", {"transfer.velocity=apic"}, "APIC on simplices"},
     {"slice", {"dimension=3", "boundary.front.kind=roller", "boundary.back.kind=roller"}, "A slice of one element"},
+    {"ground_that_yields_at_rest", {"stage.0.kind=quasi_static", "body.sand.poisson_ratio=0.2"}, "poisson_ratio above 0.25 (sin phi > 1 - 2 nu)"},
     {"dry", {}, "Dry is right for soil without water"},
 };
 

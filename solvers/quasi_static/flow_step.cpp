@@ -1,0 +1,334 @@
+#include "solvers/quasi_static/flow_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+namespace {
+
+/// A matrix with room for what `fill` puts into it.
+template <class Fill>
+PetscErrorCode make_sparse(MPI_Comm comm, PetscInt rows, PetscInt columns, Matrix &matrix, Fill &&fill) {
+  Matrix pattern;
+  PetscFunctionBeginUser;
+  PetscCall(MatCreate(comm, pattern.create()));
+  PetscCall(MatSetSizes(pattern, rows, columns, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetType(pattern, MATPREALLOCATOR));
+  PetscCall(MatSetUp(pattern));
+  PetscCall(fill(pattern));
+  PetscCall(MatAssemblyBegin(pattern, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(pattern, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatCreate(comm, matrix.create()));
+  PetscCall(MatSetSizes(matrix, rows, columns, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetType(matrix, MATAIJ));
+  PetscCall(MatPreallocatorPreallocate(pattern, PETSC_TRUE, matrix));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode assemble(Mat matrix) {
+  PetscFunctionBeginUser;
+  PetscCall(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace
+
+/// Calls put(cell, Gauss point, places of the cell, its volume, gradients of the displacement's shape functions).
+template <int dim>
+template <class Put>
+void FlowStep<dim>::each_coupling(Put &&put) const {
+  std::array<Vec<dim>, element_nodes<dim>(2)> gradient;
+  for (int c = 0; c < soil_->mesh().cell_count(); ++c) {
+    if (!flow_.active(c)) continue;
+    const Cell<dim> &cell = soil_->mesh().cells[c];
+    std::array<Vec<dim>, dim + 1> of_l{};
+    for (int k = 0; k < dim; ++k)
+      for (int d = 0; d < dim; ++d) of_l[k + 1][d] = cell.gradient[k][d], of_l[0][d] -= cell.gradient[k][d];
+    for (size_t q = 0; q < soil_->rule().point.size(); ++q) {
+      shape_gradients<dim>(soil_->nodes().order(), soil_->rule().point[q], of_l, gradient.data());
+      put(c, static_cast<int>(q), soil_->rule().point[q], soil_->mesh().volume[c] * soil_->rule().weight[q], gradient.data());
+    }
+  }
+}
+
+template <int dim>
+PetscErrorCode FlowStep<dim>::setup() {
+  PetscFunctionBeginUser;
+  const ElementNodes<dim> &nodes = flow_.nodes();
+  const MPI_Comm comm = nodes.comm();
+  PetscCall(nodes.global_vector(p_));
+  PetscCall(nodes.global_vector(water_));
+  PetscCall(VecGetLocalSize(p_, &rows_p_));
+  owned_.clear();
+  for (int i = 0; i < nodes.count(); ++i)
+    if (nodes.owned[i]) owned_.push_back(i);
+  std::sort(owned_.begin(), owned_.end(), [&](int a, int b) { return nodes.global()[a] < nodes.global()[b]; });
+  if (soil_) {
+    PetscCall(soil_->nodes().global_vector(u_));
+    PetscCall(soil_->nodes().global_vector(force_));
+    PetscCall(VecGetLocalSize(u_, &rows_u_));
+  }
+  PetscCall(make_sparse(comm, rows_p_, rows_p_, flow_matrix_, [&](Mat pattern) { return flow_.tangent(1, pattern); }));
+  PetscCall(VecCreateMPI(comm, rows_u_ + rows_p_, PETSC_DETERMINE, x_.create()));
+  PetscCall(VecDuplicate(x_, f_.create()));
+  if (soil_) {
+    const auto rectangle = [&](PetscInt rows, PetscInt columns, Matrix &matrix, bool by_water) {
+      return make_sparse(comm, rows, columns, matrix, [&](Mat pattern) -> PetscErrorCode {
+        PetscFunctionBeginUser;
+        const double zeros[element_nodes<dim>(2) * dim * (dim + 1)]{};
+        PetscInt u[element_nodes<dim>(2) * dim], p[dim + 1];
+        const int count = element_nodes<dim>(soil_->nodes().order());
+        for (int c = 0; c < soil_->mesh().cell_count(); ++c) {
+          if (!flow_.active(c)) continue;
+          for (int a = 0; a < count * dim; ++a) u[a] = soil_->nodes().global()[soil_->nodes().of_cell(c)[a / dim]] * dim + a % dim;
+          for (int b = 0; b <= dim; ++b) p[b] = nodes.global()[nodes.of_cell(c)[b]];
+          if (by_water) PetscCall(MatSetValues(pattern, dim + 1, p, count * dim, u, zeros, ADD_VALUES));
+          else PetscCall(MatSetValues(pattern, count * dim, u, dim + 1, p, zeros, ADD_VALUES));
+        }
+        PetscFunctionReturn(0);
+      });
+    };
+    PetscCall(rectangle(rows_u_, rows_p_, press_, false));
+    PetscCall(rectangle(rows_p_, rows_u_, squeeze_, true));
+    for (Mat m : {static_cast<Mat>(press_), static_cast<Mat>(squeeze_), static_cast<Mat>(flow_matrix_)}) PetscCall(assemble(m));
+    Mat blocks[4] = {soil_->matrix(), press_, squeeze_, flow_matrix_};
+    PetscCall(assemble(blocks[0]));
+    PetscCall(MatCreateNest(comm, 2, nullptr, 2, nullptr, blocks, blocks_.create()));
+    PetscCall(MatConvert(blocks_, MATAIJ, MAT_INITIAL_MATRIX, matrix_.create()));
+  }
+  PetscCall(make_solver());
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode FlowStep<dim>::make_solver() {
+  KSP ksp;
+  PC pc;
+  Mat factor;
+  SNESLineSearch search;
+  PetscFunctionBeginUser;
+  const Mat matrix = soil_ ? static_cast<Mat>(matrix_) : static_cast<Mat>(flow_matrix_);
+  PetscCall(SNESCreate(flow_.nodes().comm(), solver_.create()));
+  PetscCall(SNESSetOptionsPrefix(solver_, "talus_flow_"));
+  PetscCall(SNESSetFunction(solver_, f_, snes_function, this));
+  PetscCall(SNESSetJacobian(solver_, matrix, matrix, snes_jacobian, this));
+  PetscCall(SNESSetType(solver_, SNESNEWTONLS));
+  PetscCall(SNESGetLineSearch(solver_, &search));
+  PetscCall(SNESLineSearchSetType(search, soil_ ? SNESLINESEARCHCP : SNESLINESEARCHBT));
+  PetscCall(SNESSetTolerances(solver_, 0, settings_.tolerance, 0, settings_.iterations, PETSC_MAX_INT));
+  PetscCall(SNESSetConvergenceTest(solver_, snes_converged, this, nullptr));
+  PetscCall(SNESGetKSP(solver_, &ksp));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(KSPSetType(ksp, KSPPREONLY));
+  PetscCall(PCSetType(pc, PCLU));
+  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(KSPSetOperators(ksp, matrix, matrix));
+  PetscCall(PCFactorSetUpMatSolverType(pc));
+  PetscCall(PCFactorGetMatrix(pc, &factor));
+  PetscCall(MatMumpsSetIcntl(factor, 14, 100));
+  PetscCall(SNESSetFromOptions(solver_));
+  PetscFunctionReturn(0);
+}
+
+/// What the volume strain of the trial state makes room for at the nodes [m3].
+template <int dim>
+PetscErrorCode FlowStep<dim>::volume_strain(std::vector<double> &taken, std::vector<double> &size) const {
+  PetscFunctionBeginUser;
+  each_coupling([&](int c, int q, const Barycentric<dim> &l, double volume, const Vec<dim> *) {
+    const auto &strain = soil_->points()[flow_.body_of(c)].increment[soil_->first_point(c) + q].strain;
+    const double room = volume * flow_.saturation(c, l) * (strain[0] + strain[1] + strain[2]);
+    for (int a = 0; a <= dim; ++a) taken[flow_.nodes().of_cell(c)[a]] += l[a] * room, size[flow_.nodes().of_cell(c)[a]] += l[a] * std::abs(room);
+  });
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode FlowStep<dim>::residual(::Vec x, ::Vec f) {
+  const double *unknown;
+  double *value, *rest;
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(x, &unknown));
+  PetscCall(VecGetArray(f, &value));
+  PetscCall(VecPlaceArray(p_, unknown + rows_u_));
+  PetscCall(flow_.nodes().to_local(p_, flow_.pressure));
+  PetscCall(VecResetArray(p_));
+  if (soil_) {
+    PetscCall(VecPlaceArray(u_, unknown));
+    PetscCall(VecPlaceArray(force_, value));
+    PetscCall(soil_->residual(u_, force_));
+    PetscCall(VecResetArray(u_));
+    PetscCall(VecResetArray(force_));
+  }
+  PetscCall(VecRestoreArrayRead(x, &unknown));
+  WaterBalance balance;
+  flow_.balance(load_time_, dt_, &balance);
+  if (soil_) PetscCall(volume_strain(balance.rest, balance.size));
+  if (scale_open_) {
+    double size;
+    PetscCall(flow_.nodes().add_to_global(balance.size, water_));
+    PetscCall(VecNorm(water_, NORM_2, &size));
+    water_scale_ = std::max(water_scale_, size);
+  }
+  PetscCall(flow_.nodes().add_to_global(balance.rest, water_));
+  PetscCall(flow_.nodes().to_local(water_, rest_));
+  PetscCall(VecGetArray(water_, &rest));
+  for (PetscInt row = 0; row < rows_p_; ++row) value[rows_u_ + row] = flow_.fixed(owned_[row]) ? 0 : rest[row];  // a fixed node starts where it belongs
+  PetscCall(VecRestoreArray(water_, &rest));
+  PetscCall(VecRestoreArray(f, &value));
+  PetscFunctionReturn(0);
+}
+
+/// How pressure pushes soil, and how soil squeezes water.
+template <int dim>
+PetscErrorCode FlowStep<dim>::couple() {
+  PetscFunctionBeginUser;
+  PetscCall(MatZeroEntries(press_));
+  PetscCall(MatZeroEntries(squeeze_));
+  const ElementNodes<dim> &soil = soil_->nodes(), &water = flow_.nodes();
+  const int count = element_nodes<dim>(soil.order());
+  PetscErrorCode error = 0;
+  each_coupling([&](int c, int, const Barycentric<dim> &l, double volume, const Vec<dim> *gradient) {
+    PetscInt u[element_nodes<dim>(2) * dim], p[dim + 1];
+    double push[element_nodes<dim>(2) * dim * (dim + 1)], room[(dim + 1) * element_nodes<dim>(2) * dim];
+    const double pressed = -volume * flow_.stress_pressure_slope(c, l), filled = volume * flow_.saturation(c, l);
+    for (int b = 0; b <= dim; ++b) p[b] = flow_.fixed(water.of_cell(c)[b]) ? -1 : water.global()[water.of_cell(c)[b]];
+    for (int a = 0; a < count; ++a) {
+      const int node = soil.of_cell(c)[a];
+      const Support<dim> *s = soil_->supports().at(node);
+      ColumnVector<dim> g = map<dim>(gradient[a]);
+      if (s && s->turned) g = (s->frame * g).eval();
+      for (int d = 0; d < dim; ++d) {
+        u[a * dim + d] = s && s->held[d] ? -1 : soil.global()[node] * dim + d;
+        for (int b = 0; b <= dim; ++b) push[(a * dim + d) * (dim + 1) + b] = pressed * l[b] * g[d], room[(b * count + a) * dim + d] = filled * l[b] * g[d];
+      }
+    }
+    if (!error) error = MatSetValues(press_, count * dim, u, dim + 1, p, push, ADD_VALUES);
+    if (!error) error = MatSetValues(squeeze_, dim + 1, p, count * dim, u, room, ADD_VALUES);
+  });
+  PetscCall(error);
+  PetscCall(assemble(press_));
+  PetscCall(assemble(squeeze_));
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode FlowStep<dim>::jacobian(Mat matrix) {
+  PetscFunctionBeginUser;
+  PetscCall(MatZeroEntries(flow_matrix_));
+  PetscCall(flow_.tangent(dt_, flow_matrix_));
+  PetscCall(assemble(flow_matrix_));
+  if (!soil_) PetscFunctionReturn(0);
+  PetscCall(soil_->tangent());
+  PetscCall(couple());
+  PetscCall(MatConvert(blocks_, MATAIJ, MAT_REUSE_MATRIX, &matrix));
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode FlowStep<dim>::snes_function(SNES, ::Vec x, ::Vec f, void *step) {
+  return static_cast<FlowStep *>(step)->residual(x, f);
+}
+
+template <int dim>
+PetscErrorCode FlowStep<dim>::snes_jacobian(SNES, ::Vec, Mat, Mat matrix, void *step) {
+  return static_cast<FlowStep *>(step)->jacobian(matrix);
+}
+
+/// Forces and water must each be balanced to the tolerance.
+template <int dim>
+PetscErrorCode FlowStep<dim>::snes_converged(SNES solver, PetscInt iteration, PetscReal, PetscReal, PetscReal norm, SNESConvergedReason *reason,
+                                             void *context) {
+  PetscFunctionBeginUser;
+  FlowStep &step = *static_cast<FlowStep *>(context);
+  ::Vec f;
+  const double *value;
+  *reason = SNES_CONVERGED_ITERATING;
+  if (iteration == 0) {
+    step.scale_open_ = false;
+    if (step.soil_) step.soil_->close_scale();
+  }
+  PetscCall(SNESGetFunction(solver, &f, nullptr, nullptr));
+  double sums[2]{};
+  PetscCall(VecGetArrayRead(f, &value));
+  for (PetscInt k = 0; k < step.rows_u_ + step.rows_p_; ++k) sums[k >= step.rows_u_] += value[k] * value[k];
+  PetscCall(VecRestoreArrayRead(f, &value));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, step.flow_.nodes().comm()));
+  const double tolerance = step.settings_.tolerance, forces = step.soil_ ? step.soil_->force_scale() : 0;
+  if (!std::isfinite(norm)) *reason = SNES_DIVERGED_FNORM_NAN;
+  else if (std::sqrt(sums[0]) <= tolerance * forces && std::sqrt(sums[1]) <= tolerance * step.water_scale_) *reason = SNES_CONVERGED_FNORM_RELATIVE;
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode FlowStep<dim>::solve(double load_time, double travel, double dt, StepOutcome *outcome) {
+  constexpr int most_changes = 50;  // of the seepage faces
+  SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
+  PetscInt iterations;
+  double *value;
+  PetscFunctionBeginUser;
+  *outcome = {}, load_time_ = load_time, dt_ = dt, water_scale_ = 0;
+  flow_.begin(load_time);
+  PetscCall(VecZeroEntries(x_));
+  if (soil_) {
+    PetscCall(VecGetArray(x_, &value));
+    PetscCall(VecPlaceArray(u_, value));
+    PetscCall(soil_->prepare(1, load_time, load_time - travel, travel, u_));
+    PetscCall(VecResetArray(u_));
+    PetscCall(VecRestoreArray(x_, &value));
+  }
+  for (int change = 0;; ++change) {
+    PetscCall(VecGetArray(x_, &value));
+    for (PetscInt row = 0; row < rows_p_; ++row) value[rows_u_ + row] = flow_.pressure[owned_[row]];
+    PetscCall(VecRestoreArray(x_, &value));
+    scale_open_ = true;
+    PetscCall(SNESSolve(solver_, nullptr, x_));
+    PetscCall(SNESGetConvergedReason(solver_, &reason));
+    PetscCall(SNESGetIterationNumber(solver_, &iterations));
+    outcome->iterations += static_cast<int>(iterations);
+    if (reason <= 0) break;
+    PetscCall(residual(x_, f_));  // the state that counts, not the last that the line search tried
+    if (!flow_.update_seepage(rest_)) break;
+    if (change == most_changes) {
+      reason = SNES_DIVERGED_MAX_IT;
+      break;
+    }
+  }
+  outcome->converged = reason > 0, outcome->singular = reason == SNES_DIVERGED_LINEAR_SOLVE;
+  if (!outcome->converged) PetscCall(make_solver());
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode FlowStep<dim>::commit(bool softening) {
+  const double *value;
+  PetscFunctionBeginUser;
+  if (soil_) {
+    PetscCall(VecGetArrayRead(x_, &value));
+    PetscCall(VecPlaceArray(u_, value));
+    PetscCall(soil_->commit(u_, softening));
+    PetscCall(VecResetArray(u_));
+    PetscCall(VecRestoreArrayRead(x_, &value));
+  }
+  flow_.commit(load_time_, dt_, rest_);
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+double FlowStep<dim>::shortest_step() const {
+  double shortest = 1e300;
+  for (int c = 0; c < soil_->mesh().cell_count(); ++c) {
+    if (!flow_.active(c)) continue;
+    double square = 0;
+    for (const Vec<dim> &g : soil_->mesh().cells[c].gradient) square = std::max(square, map<dim>(g).squaredNorm());
+    const double storage = 1 / constrained_modulus(soil_->points()[flow_.body_of(c)].law) + flow_.porosity(c) / flow_.liquid().bulk_modulus;
+    shortest = std::min(shortest, storage / (6 * square * flow_.conductivity(c)));
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &shortest, 1, MPI_DOUBLE, MPI_MIN, flow_.nodes().comm());
+  return shortest;
+}
+
+template class FlowStep<2>;
+template class FlowStep<3>;
+
+}  // namespace talus

@@ -1,0 +1,334 @@
+#include "solvers/quasi_static/pore_flow.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace talus {
+namespace {
+
+constexpr double earth = 9.81;  // [m/s2], for a hydraulic conductivity in a scene without gravity
+
+}  // namespace
+
+template <int dim>
+PoreFlow<dim>::PoreFlow(const BackgroundMesh<dim> &mesh, const Scene &scene, const std::vector<Source> &sources, bool suction)
+    : mesh_(mesh), scene_(scene), sources_(sources), body_of_(bodies_of_cells(mesh, scene)), suction_(suction),
+      bishop_(scene.water.stress == PoreStress::bishop), liquid_(scene.water) {
+  double square = 0;
+  for (int d = 0; d < dim; ++d) gravity_[d] = scene.gravity[d], square += gravity_[d] * gravity_[d];
+  for (const BodySource &body : scene.body) soils_.emplace_back(body, scene.water.density * (square > 0 ? std::sqrt(square) : earth), scene.water.viscosity);
+  PetscInt begin, end = 0;
+  (void)DMPlexGetChart(mesh_.plex(), &begin, &end);
+  pressure_of_point_.assign(end, std::numeric_limits<double>::quiet_NaN());
+  inflow_.assign(sources.size(), 0);
+}
+
+template <int dim>
+double PoreFlow<dim>::unit_weight() const {
+  double square = 0;
+  for (double g : gravity_) square += g * g;
+  return liquid_.density * std::sqrt(square);
+}
+
+// ---- what there is ----
+
+template <int dim>
+PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active, const std::function<double(const Vec<dim> &)> &fresh) {
+  PetscFunctionBeginUser;
+  for (int i = 0; i < nodes_.count(); ++i) pressure_of_point_[nodes_.point[i]] = accepted[i];
+  active_ = active;
+  PetscCall(nodes_.setup(mesh_, 1, active_, 1));
+  accepted.resize(nodes_.count());
+  for (int i = 0; i < nodes_.count(); ++i) {
+    accepted[i] = pressure_of_point_[nodes_.point[i]];
+    if (std::isnan(accepted[i])) accepted[i] = fresh(nodes_.position[i]);
+  }
+  pressure = accepted;
+  body_of_node_.assign(nodes_.count(), 0);
+  for (int c = 0; c < mesh_.cell_count(); ++c)
+    for (int a = 0; a <= dim && active_[c]; ++a) body_of_node_[nodes_.of_cell(c)[a]] = body_of_[c];
+
+  // is the soil across a face of another rank there?
+  int ranks, mine = mesh_.cell_count();
+  PetscCallMPI(MPI_Comm_size(nodes_.comm(), &ranks));
+  std::vector<int> counts(ranks), starts(ranks + 1, 0);
+  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, counts.data(), 1, MPI_INT, nodes_.comm()));
+  for (int r = 0; r < ranks; ++r) starts[r + 1] = starts[r] + counts[r];
+  std::vector<char> everywhere(starts[ranks]);
+  PetscCallMPI(MPI_Allgatherv(active_.data(), mine, MPI_CHAR, everywhere.data(), counts.data(), starts.data(), MPI_CHAR, nodes_.comm()));
+  const auto soil_across = [&](int neighbour) {
+    if (neighbour == boundary) return false;
+    if (neighbour >= 0) return active_[neighbour] != 0;
+    const PartitionFace &face = mesh_.partition_faces[-2 - neighbour];
+    return everywhere[starts[face.rank] + face.cell] != 0;
+  };
+
+  std::set<std::pair<int, int>> taken;  // faces with a boundary of their own
+  std::vector<PetscInt> beyond(nodes_.count(), -1);
+  supplies_.clear();
+  const int count = static_cast<int>(sources_.size()) + 1;  // ranks of what stands beyond a node, where several do: given pressures, open water, rain, the atmosphere
+  const auto put = [&](const Facet<dim> &facet, int source, int rank, bool supplied) {
+    for (int node : nodes_.of_facet(facet.cell, facet.face)) {
+      if (rank >= 0) beyond[node] = std::max<PetscInt>(beyond[node], rank * count + source + 1);
+      if (supplied) supplies_.push_back({node, source, facet.area / dim});
+    }
+  };
+  const auto put_source = [&](const Facet<dim> &facet, int s) {
+    const Boundary &kind = sources_[s].kind;
+    const bool pressed = std::visit([](const auto &one) { return requires { one.load(0.); }; }, kind);
+    put(facet, s, !pressed ? -1 : std::holds_alternative<Rainfall>(kind) ? 1 : std::holds_alternative<Head>(kind) ? 2 : 3,
+        std::holds_alternative<Flux>(kind) || std::holds_alternative<Rainfall>(kind));
+  };
+  int rain = atmosphere;
+  for (int s = 0; s < static_cast<int>(sources_.size()); ++s) {
+    const Boundary &kind = sources_[s].kind;
+    const bool holds = std::holds_alternative<Impermeable>(kind) || !(concerns_water(kind) || std::holds_alternative<Traction>(kind) || std::holds_alternative<NonReflecting>(kind));
+    if (!holds && !concerns_water(kind)) continue;
+    for (const std::string &group : sources_[s].groups) {
+      if (concerns_water(kind) && group == free_surface) rain = s;
+      if (!mesh_.has_group(group)) continue;
+      for (const Facet<dim> &f : mesh_.facets(group)) {
+        if (!active_[f.cell] || soil_across(mesh_.cells[f.cell].neighbour[f.face])) continue;
+        taken.emplace(f.cell, f.face);
+        if (!holds) put_source(f, s);
+      }
+    }
+  }
+  for (int c = 0; c < mesh_.cell_count(); ++c)
+    for (int k = 0; k <= dim && active_[c]; ++k) {
+      if (soil_across(mesh_.cells[c].neighbour[k]) || taken.count({c, k})) continue;
+      Facet<dim> facet{c, k, {}, {}, 0};
+      double square = 0;  // its area is that of the cell's gradient: |grad l_k| = area / (dim volume)
+      for (int d = 0; d < dim; ++d) {
+        double g = 0;
+        for (int j = 0; j < dim; ++j) g += k == 0 ? -mesh_.cells[c].gradient[j][d] : j == k - 1 ? mesh_.cells[c].gradient[j][d] : 0;
+        square += g * g;
+      }
+      facet.area = std::sqrt(square) * dim * mesh_.volume[c];
+      if (rain == atmosphere) put(facet, atmosphere, suction_ ? 0 : 3, false);
+      else put_source(facet, rain);
+    }
+  PetscCall(nodes_.maximum(beyond));
+  pressed_.assign(nodes_.count(), none);
+  may_close_.assign(nodes_.count(), 0), fixed_.assign(nodes_.count(), 0), open_.assign(nodes_.count(), 0);
+  for (int i = 0; i < nodes_.count(); ++i)
+    if (beyond[i] >= 0) pressed_[i] = static_cast<int>(beyond[i] % count) - 1, may_close_[i] = beyond[i] / count < 3, open_[i] = accepted[i] >= 0;
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+double PoreFlow<dim>::outside(int node, double t) const {
+  if (pressed_[node] < 0) return 0;
+  const Vec<dim> &x = nodes_.position[node];
+  return std::visit(
+      [&](const auto &kind) {
+        if constexpr (requires { kind.load(0.); })
+          return kind.outside(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t, unit_weight());
+        else
+          return 0.;
+      },
+      sources_[pressed_[node]].kind);
+}
+
+template <int dim>
+void PoreFlow<dim>::begin(double t) {
+  pressure = accepted;
+  for (int i = 0; i < nodes_.count(); ++i) {
+    if (pressed_[i] == none) continue;
+    const double p = outside(i, t);
+    fixed_[i] = !may_close_[i] || p > 0 || open_[i];  // below open water the pressure is the water's
+    if (fixed_[i]) pressure[i] = p;
+    if (p > 0) open_[i] = 1;  // when the water falls it seeps here at first
+  }
+}
+
+template <int dim>
+bool PoreFlow<dim>::update_seepage(const std::vector<double> &rest) {
+  int changed = 0;
+  double scale = 0;
+  for (double p : pressure) scale = std::max(scale, std::abs(p));
+  MPI_Allreduce(MPI_IN_PLACE, &scale, 1, MPI_DOUBLE, MPI_MAX, nodes_.comm());
+  for (int i = 0; i < nodes_.count(); ++i) {
+    if (!may_close_[i]) continue;
+    if (fixed_[i] && pressure[i] == 0 && rest[i] > 0) fixed_[i] = open_[i] = 0, changed = 1;           // it would draw in more than there is
+    else if (!fixed_[i] && pressure[i] > 1e-9 * scale) fixed_[i] = open_[i] = 1, pressure[i] = 0, changed = 1;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_MAX, nodes_.comm());
+  return changed;
+}
+
+// ---- what pores hold and pass ----
+
+template <int dim>
+double PoreFlow<dim>::saturation_of(int body, double p) const {
+  return has_curve(body) && p < 0 ? talus::saturation(soils_[body].retention(), -p) : 1;
+}
+template <int dim>
+double PoreFlow<dim>::saturation_slope_of(int body, double p) const {
+  return has_curve(body) && p < 0 ? -talus::saturation_slope(soils_[body].retention(), -p) : 0;
+}
+template <int dim>
+double PoreFlow<dim>::relative_permeability(int body, double p) const {
+  if (!has_curve(body) || p >= 0) return 1;
+  const Retention &curve = soils_[body].retention();
+  const double wet = std::visit([&](const auto &one) { return one.effective(-p); }, curve);
+  return talus::liquid_permeability(soils_[body].relative(), {wet, 1 - wet, -p});
+}
+template <int dim>
+double PoreFlow<dim>::content(int body, double p) const {
+  return soils_[body].porosity() * saturation_of(body, p) * liquid_.density_at(p) / liquid_.density;
+}
+template <int dim>
+double PoreFlow<dim>::content_slope(int body, double p) const {
+  const double rho = liquid_.density_at(p);
+  return soils_[body].porosity() * (saturation_slope_of(body, p) * rho + saturation_of(body, p) * liquid_.density_slope(rho)) / liquid_.density;
+}
+
+template <int dim>
+double PoreFlow<dim>::inflow_at(const Supply &supply, double t) const {
+  const Vec<dim> &x = nodes_.position[supply.node];
+  const double z = dim == 3 ? x[dim - 1] : 0;
+  if (const auto *flux = std::get_if<Flux>(&sources_[supply.source].kind)) return flux->forced(x[0], x[1], z, t);
+  return std::get<Rainfall>(sources_[supply.source].kind).supply(x[0], x[1], z, t);
+}
+
+template <int dim>
+void PoreFlow<dim>::balance(double t, double dt, WaterBalance *balance) const {
+  balance->rest.assign(nodes_.count(), 0), balance->size = balance->rest;
+  const auto add = [&](int node, double value, double size) { balance->rest[node] += value, balance->size[node] += size; };
+  for (int c = 0; c < mesh_.cell_count(); ++c) {
+    if (!active_[c]) continue;
+    const int *node = nodes_.of_cell(c), body = body_of_[c];
+    Vec<dim> drive{}, gradient[dim + 1]{};
+    for (int k = 0; k < dim; ++k)
+      for (int d = 0; d < dim; ++d) gradient[k + 1][d] = mesh_.cells[c].gradient[k][d], gradient[0][d] -= gradient[k + 1][d];
+    double passes = 0, slope = 0, weight = 0;
+    for (int a = 0; a <= dim; ++a) {
+      passes += relative_permeability(body, pressure[node[a]]) / (dim + 1);
+      for (int d = 0; d < dim; ++d) drive[d] += pressure[node[a]] * gradient[a][d];
+    }
+    for (int d = 0; d < dim; ++d) slope += drive[d] * drive[d], drive[d] -= liquid_.density * gravity_[d], weight += gravity_[d] * gravity_[d];
+    const double conducts = dt * mesh_.volume[c] * conductivity(c) * passes;
+    for (int a = 0; a <= dim; ++a) {
+      double flux = 0, length = 0;
+      for (int d = 0; d < dim; ++d) flux += drive[d] * gradient[a][d], length += gradient[a][d] * gradient[a][d];
+      add(node[a], conducts * flux, conducts * std::sqrt(length) * (std::sqrt(slope) + liquid_.density * std::sqrt(weight)));
+      const double stored = mesh_.volume[c] / (dim + 1) * (content(body, pressure[node[a]]) - content(body, accepted[node[a]]));
+      add(node[a], stored, std::abs(stored));
+    }
+  }
+  for (const Supply &s : supplies_) {
+    const double water = dt * s.area * inflow_at(s, t);
+    add(s.node, -water, std::abs(water));
+  }
+}
+
+template <int dim>
+PetscErrorCode PoreFlow<dim>::tangent(double dt, Mat matrix) const {
+  PetscFunctionBeginUser;
+  double largest = 0;
+  for (int c = 0; c < mesh_.cell_count(); ++c) {
+    if (!active_[c]) continue;
+    const int *node = nodes_.of_cell(c), body = body_of_[c];
+    Vec<dim> drive{}, gradient[dim + 1]{};
+    for (int k = 0; k < dim; ++k)
+      for (int d = 0; d < dim; ++d) gradient[k + 1][d] = mesh_.cells[c].gradient[k][d], gradient[0][d] -= gradient[k + 1][d];
+    double passes = 0, passes_slope[dim + 1];
+    for (int a = 0; a <= dim; ++a) {
+      const double p = pressure[node[a]], step = 1e-6 * (std::abs(p) + 10);
+      passes += relative_permeability(body, p) / (dim + 1);
+      passes_slope[a] = (relative_permeability(body, p + step) - relative_permeability(body, p - step)) / (2 * step) / (dim + 1);
+      for (int d = 0; d < dim; ++d) drive[d] += p * gradient[a][d];
+    }
+    for (int d = 0; d < dim; ++d) drive[d] -= liquid_.density * gravity_[d];
+    const double conducts = dt * mesh_.volume[c] * conductivity(c);
+    double entry[(dim + 1) * (dim + 1)];
+    PetscInt row[dim + 1];
+    for (int a = 0; a <= dim; ++a) {
+      row[a] = fixed_[node[a]] ? -1 : nodes_.global()[node[a]];
+      double flux = 0;
+      for (int d = 0; d < dim; ++d) flux += drive[d] * gradient[a][d];
+      for (int b = 0; b <= dim; ++b) {
+        double cross = 0;
+        for (int d = 0; d < dim; ++d) cross += gradient[a][d] * gradient[b][d];
+        entry[a * (dim + 1) + b] = conducts * (passes * cross + passes_slope[b] * flux);
+      }
+      entry[a * (dim + 2)] += mesh_.volume[c] / (dim + 1) * content_slope(body, pressure[node[a]]);
+      largest = std::max(largest, std::abs(entry[a * (dim + 2)]));
+    }
+    PetscCall(MatSetValues(matrix, dim + 1, row, dim + 1, row, entry, ADD_VALUES));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, nodes_.comm()));
+  for (int i = 0; i < nodes_.count(); ++i)
+    if (fixed_[i] && nodes_.owned[i]) PetscCall(MatSetValue(matrix, nodes_.global()[i], nodes_.global()[i], largest, ADD_VALUES));
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+void PoreFlow<dim>::commit(double t, double dt, const std::vector<double> &rest) {
+  accepted = pressure;
+  std::fill(inflow_.begin(), inflow_.end(), 0.);
+  for (int i = 0; i < nodes_.count(); ++i)
+    if (nodes_.owned[i] && fixed_[i] && pressed_[i] >= 0) inflow_[pressed_[i]] += rest[i] / dt;
+  for (const Supply &s : supplies_) inflow_[s.source] += s.area * inflow_at(s, t);
+}
+
+template <int dim>
+double PoreFlow<dim>::stored() const {
+  double sum = 0;
+  for (int c = 0; c < mesh_.cell_count(); ++c)
+    for (int a = 0; a <= dim && active_[c]; ++a) {
+      const int i = nodes_.of_cell(c)[a], body = body_of_[c];
+      sum += mesh_.volume[c] / (dim + 1) * std::abs(content(body, pressure[i]) - content(body, accepted[i]));
+    }
+  return sum;
+}
+
+template <int dim>
+std::vector<double> PoreFlow<dim>::inflow() const {
+  std::vector<double> all = inflow_;
+  if (!all.empty()) MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM, nodes_.comm());
+  return all;
+}
+
+// ---- what soil feels ----
+
+template <int dim>
+double PoreFlow<dim>::pressure_at(int cell, const Barycentric<dim> &l) const {
+  double p = 0;
+  for (int a = 0; a <= dim; ++a) p += l[a] * pressure[nodes_.of_cell(cell)[a]];
+  return p;
+}
+template <int dim>
+double PoreFlow<dim>::saturation(int cell, const Barycentric<dim> &l) const {
+  return saturation_of(body_of_[cell], pressure_at(cell, l));
+}
+template <int dim>
+double PoreFlow<dim>::stress_pressure(int cell, const Barycentric<dim> &l) const {
+  const double p = pressure_at(cell, l);
+  if (!suction_) return p;
+  return bishop_ ? saturation_of(body_of_[cell], p) * p : std::max(0., p);
+}
+template <int dim>
+double PoreFlow<dim>::stress_pressure_slope(int cell, const Barycentric<dim> &l) const {
+  const double p = pressure_at(cell, l);
+  if (!suction_ || p > 0) return 1;
+  return bishop_ ? saturation_of(body_of_[cell], p) + saturation_slope_of(body_of_[cell], p) * p : 0;
+}
+template <int dim>
+FlowMeasure PoreFlow<dim>::measure(int node) const {
+  const double p = pressure[node];
+  return {suction_ ? std::max(0., p) : p, saturation_of(body_of_node_[node], p)};
+}
+template <int dim>
+double PoreFlow<dim>::water_density(int cell, const Barycentric<dim> &l) const {
+  const double p = pressure_at(cell, l);
+  return soils_[body_of_[cell]].porosity() * saturation_of(body_of_[cell], p) * liquid_.density_at(p);
+}
+
+template class PoreFlow<2>;
+template class PoreFlow<3>;
+
+}  // namespace talus

@@ -1,0 +1,118 @@
+#pragma once
+/// Flow of pore water through soil by finite elements of first order on the active cells, docs/theory/seepage.md: Darcy's law with the
+/// retention curves and permeabilities of the scene, storage lumped at the nodes and conserved as mass. What its boundaries mean is what
+/// they mean for the motion of the fluids (physics/boundary/pore_conditions.h).
+#include <functional>
+
+#include "physics/boundary/pore_conditions.h"
+#include "physics/pores/fluids.h"
+#include "physics/pores/soil_pores.h"
+#include "solvers/quasi_static/element_nodes.h"
+
+namespace talus {
+
+/// What steps are judged by at a node: the pressure that soil feels [Pa], and the saturation.
+struct FlowMeasure {
+  double pressure, saturation;
+};
+
+/// The body of each cell by its place in the scene, -1 for none.
+template <int dim>
+std::vector<int> bodies_of_cells(const BackgroundMesh<dim> &mesh, const Scene &scene) {
+  std::vector<int> body(mesh.cell_count(), -1);
+  for (size_t b = 0; b < scene.body.size(); ++b)
+    for (const std::string &region : scene.body[b].region)
+      for (int cell : mesh.region(region)) body[cell] = static_cast<int>(b);
+  return body;
+}
+
+/// Sizes of the terms of a balance that must cancel, and the rows of the balance, both of local nodes.
+struct WaterBalance {
+  std::vector<double> rest;  ///< water that a node's share of the soil takes up and passes on in the step, less what flows in [m3]
+  std::vector<double> size;  ///< the same with all terms positive [m3]
+};
+
+template <int dim>
+class PoreFlow {
+ public:
+  using Source = typename Conditions<dim>::Source;
+  /// `suction`: pores may dry; else they stay full whatever the pressure. The references must outlive it.
+  PoreFlow(const BackgroundMesh<dim> &mesh, const Scene &scene, const std::vector<Source> &sources, bool suction);
+
+  /// Cells through which water flows. Nodes keep their pressure; those that were not there before take `fresh`(x). Collective.
+  PetscErrorCode activate(const std::vector<char> &active, const std::function<double(const Vec<dim> &)> &fresh);
+
+  /// Before a step that ends at the loads of time t: pressures that boundaries give, in `pressure` too. Unknown is what is not `fixed`.
+  void begin(double t);
+  /// Balance of a step dt from the accepted pressures to `pressure`, without what the soil's volume strain takes.
+  void balance(double t, double dt, WaterBalance *balance) const;
+  /// Adds its derivative to the rows and columns of nodes that are not fixed.
+  PetscErrorCode tangent(double dt, Mat matrix) const;
+  /// Seepage faces: nodes under pressure are opened, those that would draw in more than is supplied are closed. `rest` is the balance of
+  /// the solved step, summed over ranks. True, on all ranks alike, if any changed.
+  bool update_seepage(const std::vector<double> &rest);
+  /// Accepts `pressure`, and the water that crossed the boundaries.
+  void commit(double t, double dt, const std::vector<double> &rest);
+
+  // Fields of the present trial state, linear between the vertices of a cell.
+  double pressure_at(int cell, const Barycentric<dim> &l) const;
+  /// What the pores take off the total stress [Pa], docs/theory/pores.md (4.2), and its derivative with pressure.
+  double stress_pressure(int cell, const Barycentric<dim> &l) const;
+  double stress_pressure_slope(int cell, const Barycentric<dim> &l) const;
+  double saturation(int cell, const Barycentric<dim> &l) const;
+  FlowMeasure measure(int node) const;
+  /// Mass of water per volume of soil [kg/m3].
+  double water_density(int cell, const Barycentric<dim> &l) const;
+
+  const ElementNodes<dim> &nodes() const { return nodes_; }
+  bool fixed(int node) const { return fixed_[node]; }
+  bool active(int cell) const { return active_[cell]; }
+  int body_of(int cell) const { return body_of_[cell]; }
+  double conductivity(int cell) const { return soils_[body_of_[cell]].permeability() / liquid_.viscosity; }  ///< of full pores [m2/(Pa s)]
+  double porosity(int cell) const { return soils_[body_of_[cell]].porosity(); }
+  const Liquid &liquid() const { return liquid_; }
+  /// Weight of the water [N/m3].
+  double unit_weight() const;
+  /// Volume of water that this rank's pores have taken up or given off since the accepted state, all of one sign [m3].
+  double stored() const;
+  /// Volume per time that enters through each boundary in the last step [m3/s], by source. Collective.
+  std::vector<double> inflow() const;
+
+  std::vector<double> pressure;   ///< trial, of local nodes [Pa]
+  std::vector<double> accepted;   ///< at the start of the step [Pa]
+
+ private:
+  struct Supply {  ///< what may or must flow in at a node of a face
+    int node, source;
+    double area;
+  };
+  double saturation_of(int body, double p) const;
+  double saturation_slope_of(int body, double p) const;
+  double relative_permeability(int body, double p) const;
+  double content(int body, double p) const;        ///< of water per volume of soil, at its density without pressure [-]
+  double content_slope(int body, double p) const;  ///< [1/Pa]
+  double inflow_at(const Supply &supply, double t) const;
+  double outside(int node, double t) const;
+  bool has_curve(int body) const { return suction_ && scene_.body[body].retention.reader; }
+
+  const BackgroundMesh<dim> &mesh_;
+  const Scene &scene_;
+  const std::vector<Source> &sources_;
+  std::vector<int> body_of_;
+  bool suction_, bishop_;
+  Liquid liquid_;
+  Vec<dim> gravity_;
+  std::vector<SoilPores> soils_;
+  std::vector<char> active_;
+  std::vector<int> body_of_node_;           ///< of one of the cells around it
+  ElementNodes<dim> nodes_;
+  std::vector<double> pressure_of_point_;   ///< accepted, by point of the DMPlex; NaN where water never was
+  static constexpr int atmosphere = -1, none = -2;
+  std::vector<int> pressed_;                ///< of nodes: source whose pressure stands beyond, the atmosphere, or none
+  std::vector<char> may_close_;             ///< 1 where water leaves but does not enter beyond what is supplied
+  std::vector<char> open_, fixed_;          ///< seepage nodes at the pressure beyond; nodes whose pressure is known
+  std::vector<Supply> supplies_;
+  std::vector<double> inflow_;              ///< by source, of this rank [m3/s]
+};
+
+}  // namespace talus
