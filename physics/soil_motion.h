@@ -56,6 +56,8 @@ class SoilMotion final : public Motion {
   PetscErrorCode begin(double t) override;
   PetscErrorCode acceleration(double t, const double *u, const double *v, double *a) override;
   PetscErrorCode drag(double t, double gamma, double *v) override;
+  PetscErrorCode resist(double t, double gamma, double *v) override;
+  PetscErrorCode hold(double t, double gamma, double *v) override;
   PetscErrorCode map_back(double t, double gamma, double *v, double *w) override;
   PetscErrorCode accept(double t, const double *u, const double *v) override;
   PetscErrorCode rates(double t, const double *u, const double *v, double *du, double *dv) override;
@@ -109,6 +111,8 @@ class SoilMotion final : public Motion {
   const WorkDone &work() const { return work_; }
   /// Keeps what supports bear that stand in for dashpots. Collective.
   PetscErrorCode freeze_reactions(double t);
+  /// Fills the pores of the particles, which must have been released, to the pressures of `liquid`(cell, place) [Pa].
+  void fill_pores(const std::function<double(int, const Vec<dim> &)> &liquid) requires Phases::liquid { fluid_.fill(liquid); }
   /// Sums of the present state; collective.
   PetscErrorCode balance(double t, Balance *sums);
 
@@ -140,6 +144,7 @@ class SoilMotion final : public Motion {
   /// Does velocity relax between remaps? Otherwise only remaps relax it.
   bool relaxes() const { return transfer_.remap_interval > 0 && relaxation_time_ > 0; }
   PetscErrorCode back_and_forth(const Vec<dim> *in, Vec<dim> *out);
+  void constrain(double t, Vec<dim> *v);
   typename PoreFluid<dim, Phases>::Frame pore_frame(bool trial) requires Phases::liquid;
 
   const BackgroundMesh<dim> &mesh_;

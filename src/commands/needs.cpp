@@ -30,14 +30,29 @@ double size_of(const std::vector<double> &v) {
 
 /// Slope of strength over plastic strain at its steepest, over 2 G, where the mean stress is `pressure`.
 double softening(const Law &law, double cell_size, double pressure) {
-  const auto *soil = std::get_if<MohrCoulomb>(&law);
-  if (!soil || soil->shape_factor == 0) return 0;
-  MohrCoulomb m = *soil;
-  m.prepare();
-  const double scale = m.reference_size > 0 ? cell_size / m.reference_size : 1;
-  const double drop = m.cohesion * std::cos(m.friction_angle) - m.residual_c * std::cos(m.residual_phi) +
-                      pressure * (std::sin(m.friction_angle) - std::sin(m.residual_phi));
-  return m.shape_factor * scale * drop / (2 * m.shear_modulus());
+  return std::visit(
+      [&](auto one) -> double {
+        if constexpr (requires { one.softens(); }) {
+          if (!one.softens()) return 0;
+          one.prepare();
+          const double scale = one.reference_size > 0 ? cell_size / one.reference_size : 1;
+          const double drop = one.cohesion * std::cos(one.friction_angle) - one.residual_c * std::cos(one.residual_phi) +
+                              pressure * (std::sin(one.friction_angle) - std::sin(one.residual_phi));
+          return one.shape_factor * scale * drop / (2 * one.shear_modulus());
+        }
+        return 0;
+      },
+      law);
+}
+
+/// Does softening depend on the size of the cells?
+bool unscaled(const Law &law) {
+  return std::visit(
+      [](const auto &one) {
+        if constexpr (requires { one.softens(); }) return one.softens() && one.reference_size == 0;
+        return false;
+      },
+      law);
 }
 
 BodyNeeds needs_of(const BodyReport &report, const BodySource &source) {
@@ -113,7 +128,9 @@ void burst(AnySimulation &simulation, Needs &needs) {
 Drainage drainage_of(const Scene &scene, const Needs &needs) {
   Drainage d;
   if (needs.gravity == 0) return d;
-  for (const StageNeeds &stage : needs.stages) d.time += stage.duration;
+  for (std::size_t i = 0; i < needs.stages.size(); ++i)
+    if (!is_static(scene.stage[i].kind)) d.time += needs.stages[i].duration;
+  if (d.time == 0) return d;
   const double water_weight = scene.water.density * needs.gravity;
   const auto bound = [&](double factor) {
     return scales::conductivity_at(factor, needs.layer.modulus, water_weight, d.time, needs.layer.height);
@@ -134,7 +151,7 @@ class Adviser {
 
   std::vector<std::string> all() {
     if (!needs_.burst_failure.empty()) say("The run breaks off in its first steps: " + needs_.burst_failure + ".");
-    for (const BodyNeeds &b : needs_.bodies) particles(b), locking(b), softening(b);
+    for (const BodyNeeds &b : needs_.bodies) particles(b), locking(b), softening(b), yielding_ground(b);
     stiffness();
     start();
     for (std::size_t i = 0; i < scene_.stage.size(); ++i) stage(scene_.stage[i]);
@@ -174,7 +191,7 @@ class Adviser {
   void softening(const BodyNeeds &b) {
     if (b.softening == 0) return;
     if (b.averaging_length > 0) return;  // bands are wider than a cell, and cells do not snap back alone
-    if (std::get<MohrCoulomb>(b.law).reference_size == 0)
+    if (unscaled(b.law))
       say(b.body.name +
           " softens without a reference_size: bands are one cell wide, so the answer depends on the mesh; give the "
           "element size that shape_factor belongs to, or an averaging_length.");
@@ -198,7 +215,7 @@ class Adviser {
   }
 
   void start() {
-    if (needs_.gravity == 0) return;
+    if (needs_.gravity == 0 || is_static(scene_.stage.front().kind)) return;
     const Stage &first = scene_.stage.front();
     const bool stressed =
         std::all_of(scene_.body.begin(), scene_.body.end(), [](const auto &b) { return !b.stress.empty(); });
@@ -209,7 +226,20 @@ class Adviser {
           digits(20 * needs_.layer.transit, 1) + " s (20 wave transits) and damping.");
   }
 
+  /// Elastic soil at rest presses sideways with nu / (1 - nu); where that is less than the soil needs to stand, all of it yields.
+  void yielding_ground(const BodyNeeds &b) {
+    const bool by_weight = std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &s) { return s.kind == StageKind::quasi_static && s.initial_stress == InitialStress::kept; });
+    const auto *soil = std::get_if<MohrCoulomb>(&b.law);
+    if (!by_weight || !soil || needs_.gravity == 0) return;
+    const double K = bulk_modulus(b.law), G = shear_modulus(b.law), nu = (3 * K - 2 * G) / (2 * (3 * K + G));
+    if (std::sin(soil->friction_angle) >= 1 - 2 * nu || soil->friction_angle == 0) return;
+    say("Elastic ground of " + b.body.name + " at rest presses sideways with nu / (1 - nu) = " + digits(nu / (1 - nu), 2) +
+        ", too little to stand at its friction angle but for cohesion: much of it yields under its weight alone, and Newton's iterations may stall; take "
+        "initial_stress = \"k0\", or poisson_ratio above " + digits((1 - std::sin(soil->friction_angle)) / 2, 2) + " (sin phi > 1 - 2 nu).");
+  }
+
   void stage(const Stage &stage) {
+    if (is_static(stage.kind)) return;
     if (stage.until == StopWhen::equilibrium && stage.damping == 0)
       say("Stage " + stage.name +
           " waits for equilibrium without damping: waves hardly fade; damping = 0.7 comes to rest soonest.");
@@ -345,13 +375,17 @@ Needs find_needs(Scene &scene) {
   }
   needs.critical_step = needs.slowest_body().body.critical_step;
   needs.altitude_rule = needs.mesh.smallest_altitude / fastest;
-  const StepRule rule = step_rule(read_integrator(scene.integrator));
+  const StepRule rule = step_rule(read_integrator(scene.integrator, fluids_move(scene.phases)));
   needs.fixed_step = rule.fixed > 0;
   needs.step = needs.fixed_step ? rule.fixed : rule.share * needs.critical_step;
   MPI_Comm_size(PETSC_COMM_WORLD, &needs.ranks);
   burst(*simulation, needs);
   needs.snapshots = 1;
   for (const Stage &stage : scene.stage) {
+    if (is_static(stage.kind)) {  // by finite elements: no waves, no steps of the motion
+      needs.stages.push_back({stage.name, stage.duration, static_cast<double>(stage.load_steps), 0, 0});
+      continue;
+    }
     const double steps = std::ceil(stage.duration / needs.step);
     needs.stages.push_back(
         {stage.name, stage.duration, steps, steps * needs.seconds_per_step, stage.duration / needs.layer.transit});

@@ -4,14 +4,20 @@
 #include "commands/rung.h"
 #include "tests/convergence/fem_manufactured/exact.h"
 #include "tests/convergence/manufactured/exact.h"
+#include "tests/verification/cam_clay_paths/exact.h"
 #include "tests/verification/celia/exact.h"
 #include "tests/verification/closed_box/exact.h"
 #include "tests/verification/dynamic_oedometer/exact.h"
 #include "tests/verification/elastic_bar/exact.h"
 #include "tests/verification/fem_at_rest/exact.h"
+#include "tests/verification/fem_consolidation/exact.h"
 #include "tests/verification/fem_cylinder/exact.h"
+#include "tests/verification/fem_dam/exact.h"
 #include "tests/verification/fem_elastic_slope/exact.h"
 #include "tests/verification/fem_footing/exact.h"
+#include "tests/verification/fem_infiltration/exact.h"
+#include "tests/verification/fem_infinite_slope/exact.h"
+#include "tests/verification/fem_mandel_cryer/exact.h"
 #include "tests/verification/fem_slope/exact.h"
 #include "tests/verification/fem_vertical_cut/exact.h"
 #include "tests/verification/footing/exact.h"
@@ -20,6 +26,7 @@
 #include "tests/verification/hydrostatic/exact.h"
 #include "tests/verification/incline_block/exact.h"
 #include "tests/verification/k0_column/exact.h"
+#include "tests/verification/laboratory/exact.h"
 #include "tests/verification/leaving_waves/exact.h"
 #include "tests/verification/loaded_face/exact.h"
 #include "tests/verification/mohr_coulomb_triaxial/exact.h"
@@ -64,6 +71,9 @@ inline constexpr LadderEntry ladder[] = {
      rungs::fem_manufactured},
     {"mohr_coulomb_triaxial", "verification", "strength in compression through the whole program",
      rungs::mohr_coulomb_triaxial},
+    {"laboratory", "verification", "element tests of elastic and Mohr-Coulomb soils", rungs::laboratory},
+    {"cam_clay_paths", "verification", "drained and undrained paths of Cam-clay in triaxial compression",
+     rungs::cam_clay_paths},
     {"rigid_rotation", "verification", "stress of a body that turns ten times", rungs::rigid_rotation},
     {"spinning_block", "verification", "momentum of a block that spins freely", rungs::spinning_block},
     {"footing", "verification", "bearing capacity of Tresca soil, where cells could lock", rungs::footing},
@@ -74,7 +84,12 @@ inline constexpr LadderEntry ladder[] = {
      rungs::fem_vertical_cut},
     {"fem_cylinder", "verification", "thick cylinder that yields from its bore", rungs::fem_cylinder},
     {"fem_slope", "verification", "factor of safety of a published slope", rungs::fem_slope},
+    {"fem_infinite_slope", "verification", "factor of safety of a thin layer on a long slope", rungs::fem_infinite_slope},
     {"fem_at_rest", "verification", "slope handed from finite elements to particles keeps still", rungs::fem_at_rest},
+    {"fem_consolidation", "verification", "consolidation of a clay layer in days, by finite elements", rungs::fem_consolidation},
+    {"fem_mandel_cryer", "verification", "pressure that rises in a cylinder squeezed from outside", rungs::fem_mandel_cryer},
+    {"fem_dam", "verification", "steady seepage through a dam, with its seepage face", rungs::fem_dam},
+    {"fem_infiltration", "verification", "water that enters dry sand", rungs::fem_infiltration},
     {"terzaghi", "verification", "consolidation of a saturated layer, and the water it sheds", rungs::terzaghi},
     {"two_waves", "verification", "two waves in a saturated column, drained and under water", rungs::two_waves},
     {"undrained", "verification", "B of undrained compression", rungs::undrained},

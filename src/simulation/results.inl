@@ -24,6 +24,9 @@ void Simulation<dim, Phases>::name_columns() {
   for (const char *name : {"kinetic_J", "strain_J", "potential_J", "mass_kg", "particles", "load_time_s"}) history_.names.push_back(name);
   for (int a = 0; a + 1 < velocity_fields<Phases>; ++a)
     for (const char *name : {"_kg", "_out_kg", "_given_kg", "_error_kg"}) history_.names.push_back(std::string(a ? "gas" : "water") + name);
+  if (flow_stages())
+    for (const auto &source : conditions_.sources())
+      if (concerns_water(source.kind)) history_.names.push_back(source.name + "_inflow_m3_s");
   // a loaded face shows how far it went, every other boundary the force by which it holds the soil
   for (size_t s = 0; s < conditions_.sources().size(); ++s)
     for (int d = 0; d < dim; ++d)
@@ -61,7 +64,7 @@ Snapshot Simulation<dim, Phases>::snapshot() {
   Snapshot s;
   s.time = time_, s.step = steps_, s.stage = stage_name_;
   const StepStatistics &sums = integrator_->statistics();
-  for (const auto &[name, value] : {std::pair{"evaluations", sums.evaluations}, {"rejections", sums.rejections}, {"steps_bounded_by_error", sums.by_error},
+  for (const auto &[name, value] : {std::pair{"evaluations", sums.evaluations}, {"rejections", sums.rejections}, {"inversions", sums.inversions}, {"steps_bounded_by_error", sums.by_error},
                                     {"steps_bounded_by_stability", sums.by_stability}, {"steps_bounded_by_outputs", sums.by_schedule}})
     s.numbers.emplace_back(name, static_cast<double>(value));
   s.numbers.emplace_back("shortest_step_s", sums.steps ? sums.shortest : 0);
@@ -176,11 +179,16 @@ void Simulation<dim, Phases>::write_history() {
     FluidLedger fluids[velocity_fields<Phases> - 1];
     require(motion_->fluid_ledger(fluids));
     if (first_ledger_.empty())
-      for (const FluidLedger &fluid : fluids) first_ledger_.push_back(fluid.stored);
+      for (const FluidLedger &fluid : fluids) first_ledger_.push_back(fluid.stored + fluid.out - fluid.given);
     for (int a = 0; a + 1 < velocity_fields<Phases>; ++a) {
       const double error = fluids[a].stored + fluids[a].out - fluids[a].given - first_ledger_[a];
       row.insert(row.end(), {fluids[a].stored, fluids[a].out, fluids[a].given, error});
     }
+  }
+  if (flow_stages()) {
+    const std::vector<double> inflow = flow_ && in_statics_ ? flow_->inflow() : std::vector<double>(conditions_.sources().size(), 0);
+    for (size_t s = 0; s < inflow.size(); ++s)
+      if (concerns_water(conditions_.sources()[s].kind)) row.push_back(inflow[s]);
   }
   std::vector<Vec<dim>> impulses, faces(conditions_.sources().size());
   require(conditions_.take_impulses(comm_, impulses));

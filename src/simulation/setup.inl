@@ -22,14 +22,15 @@ Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOption
   }
   std::vector<typename Conditions<dim>::Source> sources;
   for (BoundarySource &b : scene.boundary) sources.push_back({b.name, b.group, read_boundary(b.kind)});
-  integrator_settings_ = read_integrator(scene.integrator);
+  integrator_settings_ = read_integrator(scene.integrator, Phases::liquid);
   integrator_ = make_integrator(integrator_settings_);
   if constexpr (Phases::liquid) {
-    if (!std::holds_alternative<EulerSettings>(integrator_settings_))
-      scene.complain("integrator.kind", "must be \"euler\" where pore fluids move; the others take phases = \"dry\" or \"drained\"");
-    for (size_t k = 0; k < scene.stage.size(); ++k)
-      if (scene.stage[k].kind == StageKind::quasi_static)
-        scene.complain("stage." + std::to_string(k) + ".kind", "must be \"dynamic\" where pore fluids move; quasi-static stages take phases = \"dry\" or \"drained\"");
+    if (const std::string problem = drag_problem(integrator_settings_); !problem.empty())
+      scene.complain("integrator.kind", "must be \"euler\", or \"arkode\" of order 3, where pore fluids move: " + problem +
+                                            "; or take phases = \"dry\" or \"drained\"");
+    for (size_t k = 0; k < scene.stage.size() && Phases::gas; ++k)
+      if (is_static(scene.stage[k].kind))
+        scene.complain("stage." + std::to_string(k) + ".kind", "must be \"dynamic\" where gas moves; quasi-static stages take any other phases");
   }
 
   std::vector<std::pair<std::string, double>> weights;

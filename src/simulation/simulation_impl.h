@@ -2,6 +2,8 @@
 /// The time loop, docs/theory section 5; instantiated in src/variants only.
 #include <petsctime.h>
 
+#include <algorithm>
+#include <functional>
 #include <sstream>
 
 #include "output/checkpoint.h"
@@ -13,6 +15,7 @@
 #include "simulation.h"
 #include "solvers/critical_step.h"
 #include "solvers/integrators.h"
+#include "solvers/quasi_static/flow_step.h"
 #include "solvers/quasi_static/strength_reduction.h"
 
 namespace talus {
@@ -105,11 +108,17 @@ class Simulation final : public AnySimulation {
   // quasi-static stages
   void run_quasi_static(const Stage &stage);
   void make_statics();
+  PetscErrorCode activate();
+  bool flow_stages() const { return std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &s) { return water_flows(s.kind); }); }
+  void follow_water(const Stage &stage, const std::function<double(double)> &load_at, const std::function<void(double)> &done, double *share, StepOutcome *outcome,
+                    int *iterations);
   void start_stress();
   void choose_bodies(const Stage &stage);
   void count_particles();
   void to_particles();
   void to_gauss_points();
+  void fill_pores();
+  void pressure_from_particles();
   Snapshot gauss_points() const;
   std::vector<Vec<dim>> nodal_displacement();  ///< of mesh nodes; only nodes of the filled grid have one
   // output
@@ -128,6 +137,7 @@ class Simulation final : public AnySimulation {
   void note_steps();
   int find(Followed &point);
   std::string place_of(bool mine, const Vec<dim> &where) const;
+  std::string nearest_particle(const Vec<dim> &where) const;
   std::string text_of(bool mine, std::string text) const;  ///< that of the first rank which has one
   [[noreturn]] void fail(const std::string &text);
 
@@ -145,6 +155,7 @@ class Simulation final : public AnySimulation {
   std::vector<CriticalStep<dim>> critical_;
   std::vector<std::vector<int>> movers_;
   std::vector<Followed> points_;
+  std::unique_ptr<PoreFlow<dim>> flow_;  ///< where pore fluids move
   std::unique_ptr<QuasiStatic<dim>> statics_;
   std::vector<char> present_;       ///< bodies that are there now
   bool in_statics_ = false, moved_since_statics_ = false;

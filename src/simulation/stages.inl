@@ -25,7 +25,7 @@ void Simulation<dim, Phases>::run() {
   try {
     if (stage_.number < 0) {
       write_history();
-      if (options_.gauss_points && scene_.stage.front().kind == StageKind::quasi_static) make_statics(), require(statics_->activate(present_)), in_statics_ = true;
+      if (options_.gauss_points && is_static(scene_.stage.front().kind)) make_statics(), require(activate()), in_statics_ = true;
       write_snapshot(), start_stage(), write_checkpoint();
     }
     while (true) {
@@ -50,11 +50,12 @@ void Simulation<dim, Phases>::run() {
 template <int dim, class Phases>
 void Simulation<dim, Phases>::note_steps() {
   const StepStatistics &s = integrator_->statistics();
+  if (s.steps == 0) return;  // nothing but equilibria
   const std::pair<long long, const char *> bounds[] = {{s.by_error, "the error"}, {s.by_stability, "stability"}, {s.by_schedule, "outputs"}};
   std::ostringstream text;
   text.precision(3);
   text << s.steps << " steps from " << s.shortest << " to " << s.longest << " s, " << s.evaluations << " evaluations of the forces, " << s.rejections
-       << " attempts rejected by the error test; steps bounded by";
+       << " attempts rejected by the error test, " << s.inversions << " because a cell turned inside out; steps bounded by";
   for (const auto &[count, what] : bounds) text << " " << what << ": " << count << (what == bounds[2].second ? "" : ",");
   note(text.str());
 }
@@ -98,7 +99,7 @@ void Simulation<dim, Phases>::start_stage() {
 template <int dim, class Phases>
 void Simulation<dim, Phases>::run_stage() {
   const Stage &stage = scene_.stage[stage_.number];
-  if (stage.kind == StageKind::quasi_static) return run_quasi_static(stage);
+  if (is_static(stage.kind)) return run_quasi_static(stage);
   in_statics_ = false, moved_since_statics_ = true;
   require(hold_supports(stage.hold_loads));
   stage_name_ = stage.name, watched_ = stage.until == StopWhen::failure ? stage.failure_point : "";

@@ -18,6 +18,11 @@ struct Fault {
 
 void PrintTo(const Fault &fault, std::ostream *out) { *out << fault.name; }
 
+constexpr const char *dry_part = "[mesh]\nsection = \"section.csv\"\nsize = 0.25\n[body.sand]\nregion = \"sand\"\ndensity = 2000";
+#define WET_PART                                                                                                                         \
+  "[mesh]\nsection = \"section.csv\"\nsize = 0.25\n[water]\ntable = [[0, 0.5], [2, 0.5]]\n[body.sand]\nregion = \"sand\"\nporosity = 0.4\n" \
+  "grain_density = 2600\npermeability = 1e-10"
+
 const Fault faults[] = {
     // the text
     {"malformed", "scene.toml", "[mesh]", "[mesh", {"scene.toml line 3"}},
@@ -42,7 +47,23 @@ const Fault faults[] = {
      "scene.toml",
      "friction_angle = 30",
      "friction_angle = 30\nresidual_friction_angle = 31\nshape_factor = 10",
-     {"scene.toml line 6", "residual_friction_angle must not exceed friction_angle"}},
+     {"scene.toml line 14", "body.sand.residual_friction_angle = 31 must not exceed friction_angle, 30 deg"}},
+    {"residual_cohesion_above_peak",
+     "scene.toml",
+     "cohesion = 0\nfriction_angle = 30",
+     "cohesion = \"5 kPa\"\nfriction_angle = 30\nresidual_cohesion = \"6 kPa\"\nshape_factor = 10",
+     {"scene.toml line 14", "body.sand.residual_cohesion = \"6 kPa\" must not exceed cohesion, 5000 Pa"}},
+    {"friction_of_a_right_angle",
+     "scene.toml",
+     "friction_angle = 30",
+     "friction_angle = \"90 deg\"",
+     {"scene.toml line 13", "body.sand.friction_angle = \"90 deg\"", "0 to 70 deg"}},
+    {"clay_that_swells_as_it_is_compressed",
+     "scene.toml",
+     "law = \"mohr_coulomb\"\nyoung_modulus = \"1 MPa\"\npoisson_ratio = 0.3\ncohesion = 0\nfriction_angle = 30",
+     "law = \"cam_clay\"\ncompression_slope = 0.04\nswelling_slope = 0.05\ncritical_stress_ratio = 1\npoisson_ratio = 0.3\nvoid_ratio = 1\n"
+     "preconsolidation_pressure = \"100 kPa\"",
+     {"scene.toml line 10", "body.sand.compression_slope = 0.04 must exceed swelling_slope, 0.05"}},
     {"suction_without_water",
      "scene.toml",
      "cohesion = 0",
@@ -57,7 +78,7 @@ const Fault faults[] = {
      "scene.toml",
      "poisson_ratio = 0.3",
      "poisson_ratio = 0.5",
-     {"scene.toml line 6", "poisson_ratio"}},
+     {"scene.toml line 11", "body.sand.poisson_ratio = 0.5", "below 0.5"}},
     {"unknown_key",
      "scene.toml",
      "cohesion = 0\n",
@@ -196,6 +217,22 @@ const Fault faults[] = {
      "[output]",
      "[integrator]\nkind = \"arkode\"\nstep = \"1 s\"\n[output]",
      {"scene.toml line 23", "integrator.step", "1.732 / omega_max"}},
+    {"forward_euler_where_water_moves",
+     "scene.toml",
+     dry_part,
+     "phases = \"saturated\"\n[integrator]\nkind = \"forward-euler\"\n" WET_PART,
+     {"scene.toml line 5", "integrator.kind", "\"euler\", or \"arkode\" of order 3", "phases = \"dry\""}},
+    {"order_four_where_water_moves",
+     "scene.toml",
+     dry_part,
+     "phases = \"saturated\"\n[integrator]\nkind = \"arkode\"\norder = 4\n" WET_PART,
+     {"scene.toml line 5", "integrator.kind", "order = 4, but only order 3"},
+     2},
+    {"unknown_method_of_petsc",
+     "scene.toml",
+     "[output]",
+     "[integrator]\nkind = \"petsc\"\nmethod = \"rk6\"\n[output]",
+     {"scene.toml line 23", "integrator.method = \"rk6\"", "rk3", "rk8"}},
     // sections
     {"section_not_there",
      "scene.toml",
@@ -298,6 +335,9 @@ const WrongWords wrong_words[] = {
     {"test_of_a_saturated_oedometer",
      {"soil", "scene.toml", "--set", "test.a.type=oedometer", "--set", "test.a.undrained=true"},
      {"test.a", "keeps its volume", "pore_stiffness"}},
+    {"suction_for_dry_strength",
+     {"soil", "scene.toml", "--set", "test.a.suction=1e5"},
+     {"test.a", "mohr_coulomb takes no strength from suction"}},
     {"solve_without_a_stage_for_it", {"solve", "scene.toml"}, {"no quasi-static stage", "quasi_static"}},
     {"damping_without_motion",
      {"solve", "scene.toml", "--set", "stage.0.kind=quasi_static", "stage.0.damping=0.5"},
@@ -311,6 +351,10 @@ const WrongWords wrong_words[] = {
     {"friction_without_motion",
      {"solve", "scene.toml", "--set", "stage.0.kind=quasi_static", "boundary.base.kind=friction"},
      {"boundary.base.kind", "no quasi-static form"}},
+    {"seepage_without_water_that_moves",
+     {"solve", "scene.toml", "--set", "stage.0.kind=seepage"},
+     {"stage.0.kind", "needs pore water that moves", "phases = \"saturated\" or \"unsaturated\", not \"dry\""}},
+    {"steady_motion", {"run", "scene.toml", "--set", "stage.0.steady=true"}, {"stage.0.steady", "set kind = \"seepage\""}},
     {"no_results_to_plot", {"plot", "nowhere"}, {"nowhere holds no results"}},
 };
 
