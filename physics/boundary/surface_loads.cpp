@@ -203,7 +203,10 @@ PetscErrorCode SurfaceLoads<dim>::mean_displacements(const FilledGrid<dim> &grid
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, grid.mesh().comm()));
   for (size_t k = 0; k < faces_.size(); ++k)
-    for (int d = 0; d < dim; ++d) mean[faces_[k].source][d] = sums[k * width + d] / sums[k * width + dim];
+    for (int d = 0; d < dim; ++d) {
+      const double area = sums[k * width + dim];  // none where the soil behind the face has been removed
+      mean[faces_[k].source][d] = area > 0 ? sums[k * width + d] / area : 0;
+    }
   PetscFunctionReturn(0);
 }
 

@@ -17,7 +17,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
 sys.path.insert(0, str(ROOT / "src/output/plots"))
-RUNS = Path("/tmp/talus_integrators/runs")
+RUNS = ROOT / "results/integrators/runs"
 VERIFICATION = ROOT / "tests/verification"
 KINDS = {"euler": [], **{f"arkode {k}": ["integrator.kind=arkode", f"integrator.order={k}"] for k in (2, 3, 4, 5)},
          "petsc rk8": ["integrator.kind=petsc", "integrator.method=rk8"]}

@@ -13,7 +13,7 @@ import time
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-RUNS = Path("/tmp/talus_integrators/slides")
+RUNS = HERE.parents[2] / "results/integrators/slides"
 SIDES = ["boundary.front.kind=roller", "boundary.back.kind=roller"]
 SIDE, TOP = '"-9.81 * 2650 * (0.1 - y) * 0.3 / 0.7"', '"-9.81 * 2650 * (0.1 - y)"'
 COLUMN3D = ["dimension=3", *SIDES, "output.point.corner.position=[0.2, 0.1, 0]", f'body.bars.stress=[{SIDE}, {TOP}, {SIDE}, "0 * x", "0 * x", "0 * x"]']

@@ -4,9 +4,8 @@
     study.py TALUS [frozen|plastic|crossing|bar|oedometer|column|selborne|remap|creep|figure ...]
 
 TALUS is the program (build/release/bin/talus). Each study writes its CSVs beside this file (NAME.csv, NAME_reference.csv); `figure` draws NAME.png
-from them. Runs are kept in /tmp/talus_integrators, so that a study goes on where it stopped; remove it to measure times anew.
+from them. Runs are kept in results/integrators, so that a study goes on where it stopped; remove it to measure times anew.
 """
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -14,7 +13,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
 sys.path.insert(0, str(ROOT / "src/output/plots"))
-RUNS = Path("/tmp/talus_integrators")
+RUNS = ROOT / "results/integrators"
 
 FRACTIONS = "euler: integrator.fraction=0.8,0.4,0.2,0.1,0.05,0.025"
 
@@ -56,8 +55,9 @@ def study(talus, name):
     words = [talus, "compare", ROOT / scene, "--measure", measure, "-o", RUNS / name, "--no-plot", *sum((["--series", s] for s in series), []),
              *(["--reference", REFERENCES[name]] if name in REFERENCES else [])]
     subprocess.run(words + (["--set", *overrides] if overrides else []), check=False)  # a failed run is a line of the table
-    shutil.copy(RUNS / name / "compare.csv", HERE / f"{name}.csv")
-    shutil.copy(RUNS / name / "reference.csv", HERE / f"{name}_reference.csv")
+    for file, kept in (("compare", name), ("reference", f"{name}_reference")):
+        text = (RUNS / name / f"{file}.csv").read_text()
+        (HERE / f"{kept}.csv").write_text(text.replace(f"{ROOT}/", ""))  # what runs say of themselves names folders
 
 
 def figure():
