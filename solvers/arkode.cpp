@@ -75,7 +75,7 @@ struct Arkode::Memory {
     if (drag) SUNNonlinSolFreeEmpty(drag);
     if (first) N_VDestroy(first);
     if (error) N_VDestroy(error);
-    if (state) N_VDestroy(state);
+    if (state) destroy_nodal_vector(state);
     if (context) SUNContext_Free(&context);
   }
   PetscErrorCode create(const ArkodeSettings &settings, Motion &motion, double t);
@@ -140,10 +140,11 @@ PetscErrorCode Arkode::Memory::create(const ArkodeSettings &settings, Motion &mo
   MPI_Comm comm = motion.comm();
   space = {&motion, settings.displacement_tolerance, settings.velocity_tolerance};
   PetscCheck(SUNContext_Create(&comm, &context) == 0, comm, PETSC_ERR_LIB, "SUNContext_Create");
-  state = make_nodal_vector(space, context), error = N_VClone(state), first = N_VClone(state);
+  PetscCall(make_nodal_vector(space, context, &state));
+  error = N_VClone(state), first = N_VClone(state);
   const ARKRhsFn no_rate = [](double, N_Vector, N_Vector rate, void *) { return N_VConst(0, rate), 0; };  // asked at a stage that does not count
   solver = ARKStepCreate(rates, settings.drag ? no_rate : nullptr, t, state, context);
-  PetscCheck(state && error && first && solver, comm, PETSC_ERR_MEM, "ARKStepCreate");
+  PetscCheck(error && first && solver, comm, PETSC_ERR_MEM, "ARKStepCreate");
   Tables tables;
   set_tables(settings, tables);
   int bad = ARKStepSetTables(solver, settings.order, settings.order - 1, tables.implicit_part, tables.explicit_part);

@@ -22,7 +22,7 @@ struct Multirate::Memory {
     if (slow) MRIStepFree(&slow);
     if (inner) MRIStepInnerStepper_Free(&inner);
     if (fast) ARKStepFree(&fast);
-    if (state) N_VDestroy(state);
+    if (state) destroy_nodal_vector(state);
     if (context) SUNContext_Free(&context);
   }
   PetscErrorCode create(Motion &motion, double t);
@@ -41,9 +41,9 @@ PetscErrorCode Multirate::Memory::create(Motion &motion, double t) {
   MPI_Comm comm = motion.comm();
   space = {&motion, 1, 1};
   PetscCheck(SUNContext_Create(&comm, &context) == 0, comm, PETSC_ERR_LIB, "SUNContext_Create");
-  state = make_nodal_vector(space, context);
+  PetscCall(make_nodal_vector(space, context, &state));
   fast = ARKStepCreate(call<&Motion::fast_rates, &Memory::fast_evaluations>, nullptr, t, state, context);
-  PetscCheck(state && fast, comm, PETSC_ERR_MEM, "ARKStepCreate");
+  PetscCheck(fast, comm, PETSC_ERR_MEM, "ARKStepCreate");
   int bad = ARKStepSetUserData(fast, this);
   bad |= ARKStepSetTableNum(fast, ARKODE_DIRK_NONE, ARKODE_BOGACKI_SHAMPINE_4_2_3);
   bad |= ARKStepSetMaxNumSteps(fast, -1);

@@ -1,111 +1,75 @@
 #include "solvers/nodal_vector.h"
 
-#include <algorithm>
+#include <nvector/nvector_petsc.h>
+#include <petscvec.h>
+
 #include <cmath>
-#include <vector>
+
+#include "base/owned.h"
 
 namespace talus {
 namespace {
 
-struct Content {
-  NodalSpace *space;
-  std::vector<double> data;  // [2 capacity]: u, then v, each `size()` long
-};
+constexpr const char *space_name = "talus nodal space";  // clones of a Vec share what was composed with it
 
-Content &content(N_Vector x) { return *static_cast<Content *>(x->content); }
-double *data(N_Vector x) { return content(x).data.data(); }
-int length(N_Vector x) { return 2 * content(x).space->motion->size(); }
-
-N_Vector clone(N_Vector like) {
-  N_Vector x = N_VNewEmpty(like->sunctx);
-  if (!x) return nullptr;
-  N_VCopyOps(like, x);
-  Content *copy = new Content{content(like).space, {}};
-  copy->data.assign(content(like).data.size(), 0);
-  x->content = copy;
-  return x;
+NodalSpace &space_of(N_Vector x) {
+  PetscObject container = nullptr;
+  void *space = nullptr;
+  PetscObjectQuery(reinterpret_cast<PetscObject>(N_VGetVector_Petsc(x)), space_name, &container);
+  PetscContainerGetPointer(reinterpret_cast<PetscContainer>(container), &space);
+  return *static_cast<NodalSpace *>(space);
 }
 
-void destroy(N_Vector x) {
-  if (!x) return;
-  delete static_cast<Content *>(x->content);
-  x->content = nullptr;
-  N_VFreeEmpty(x);
+/// A standard Vec never moves its array, so it outlives the borrowing.
+double *data(N_Vector x) {
+  double *array = nullptr;
+  VecGetArray(N_VGetVector_Petsc(x), &array);
+  double *const kept = array;
+  VecRestoreArray(N_VGetVector_Petsc(x), &array);
+  return kept;
 }
 
-template <class Operation>
-void each(N_Vector z, Operation operation) {
-  double *out = data(z);
-  const int n = length(z);
-#pragma omp simd
-  for (int i = 0; i < n; ++i) out[i] = operation(i);
-}
-
-void linear_sum(double a, N_Vector x, double b, N_Vector y, N_Vector z) {
-  const double *p = data(x), *q = data(y);
-  each(z, [=](int i) { return a * p[i] + b * q[i]; });
-}
-
-void scale(double a, N_Vector x, N_Vector z) {
-  const double *p = data(x);
-  if (a == 1)
-    std::copy_n(p, p == data(z) ? 0 : length(z), data(z));
-  else
-    each(z, [=](int i) { return a * p[i]; });
-}
-
-/// z = sum_k c_k x_k in one sweep over memory; z may be x_0.
-int linear_combination(int count, double *c, N_Vector *x, N_Vector z) {
-  constexpr int block = 256;
-  double *out = data(z);
-  const int n = length(z);
-  double sum[block];
-  for (int begin = 0; begin < n; begin += block) {
-    const int size = std::min(block, n - begin);
-    std::fill_n(sum, size, 0.);
-    for (int k = 0; k < count; ++k) {
-      const double *p = data(x[k]) + begin, a = c[k];
-#pragma omp simd
-      for (int i = 0; i < size; ++i) sum[i] += a * p[i];
-    }
-    std::copy_n(sum, size, out + begin);
-  }
-  return 0;
-}
-
-double max_norm(N_Vector x) {
-  double largest = 0, all;
-  for (int i = 0; i < length(x); ++i) largest = std::max(largest, std::abs(data(x)[i]));
-  MPI_Allreduce(&largest, &all, 1, MPI_DOUBLE, MPI_MAX, content(x).space->motion->comm());
-  return all;
+/// z = sum_k c_k x_k, z may be x_0. That of N_Vector_Petsc takes memory from the heap at each call.
+int combine(int count, double *c, N_Vector *x, N_Vector z) {
+  constexpr int most = 16;  // stages of a method and its embedded one
+  Vec vectors[most], sum = N_VGetVector_Petsc(z);
+  if (count > most) return -1;
+  for (int k = 0; k < count; ++k) vectors[k] = N_VGetVector_Petsc(x[k]);
+  PetscErrorCode failure = z == x[0] ? VecScale(sum, c[0]) : VecAXPBY(sum, c[0], 0, vectors[0]);
+  if (!failure) failure = VecMAXPY(sum, count - 1, c + 1, vectors + 1);
+  return failure ? -1 : 0;
 }
 
 }  // namespace
 
-N_Vector make_nodal_vector(NodalSpace &space, SUNContext context) {
-  N_Vector x = N_VNewEmpty(context);
-  if (!x) return nullptr;
-  x->content = new Content{&space, std::vector<double>(2 * static_cast<size_t>(space.motion->capacity()), 0)};
-  auto &ops = *x->ops;
-  ops.nvclone = clone, ops.nvdestroy = destroy;
-  ops.nvgetlength = [](N_Vector y) { return static_cast<sunindextype>(length(y)); };
-  ops.nvlinearsum = linear_sum, ops.nvscale = scale, ops.nvlinearcombination = linear_combination;
-  ops.nvconst = [](double c, N_Vector z) { each(z, [=](int) { return c; }); };
-  ops.nvprod = [](N_Vector a, N_Vector b, N_Vector z) { each(z, [p = data(a), q = data(b)](int i) { return p[i] * q[i]; }); };
-  ops.nvdiv = [](N_Vector a, N_Vector b, N_Vector z) { each(z, [p = data(a), q = data(b)](int i) { return p[i] / q[i]; }); };
-  ops.nvabs = [](N_Vector a, N_Vector z) { each(z, [p = data(a)](int i) { return std::abs(p[i]); }); };
-  ops.nvinv = [](N_Vector a, N_Vector z) { each(z, [p = data(a)](int i) { return 1 / p[i]; }); };
-  ops.nvaddconst = [](N_Vector a, double b, N_Vector z) { each(z, [p = data(a), b](int i) { return p[i] + b; }); };
-  ops.nvmaxnorm = max_norm;
-  ops.nvwrmsnorm = [](N_Vector e, N_Vector) { return error_norm(e); };  // the weights are in the space
-  return x;
+PetscErrorCode make_nodal_vector(NodalSpace &space, SUNContext context, N_Vector *x) {
+  PetscFunctionBeginUser;
+  const MPI_Comm comm = space.motion->comm();
+  Owned<PetscContainer, PetscContainerDestroy> container;
+  Vec array;
+  PetscCall(PetscContainerCreate(comm, container.create()));
+  PetscCall(PetscContainerSetPointer(container, &space));
+  PetscCall(VecCreateMPI(comm, 2 * space.motion->capacity(), PETSC_DETERMINE, &array));
+  PetscCall(VecSet(array, 0));
+  PetscCall(PetscObjectCompose(reinterpret_cast<PetscObject>(array), space_name, reinterpret_cast<PetscObject>(static_cast<PetscContainer>(container))));
+  *x = N_VMake_Petsc(array, context);
+  PetscCheck(*x, comm, PETSC_ERR_MEM, "N_VMake_Petsc");
+  (*x)->ops->nvlinearcombination = combine;
+  (*x)->ops->nvwrmsnorm = [](N_Vector error, N_Vector) { return error_norm(error); };  // the weights are in the space
+  PetscFunctionReturn(0);
+}
+
+void destroy_nodal_vector(N_Vector x) {
+  Vec array = N_VGetVector_Petsc(x);  // N_VMake_Petsc leaves it to its maker
+  N_VDestroy(x);
+  (void)VecDestroy(&array);
 }
 
 double *displacement_of(N_Vector y) { return data(y); }
-double *velocity_of(N_Vector y) { return data(y) + length(y) / 2; }
+double *velocity_of(N_Vector y) { return data(y) + space_of(y).motion->size(); }
 
 double error_norm(N_Vector error) {
-  NodalSpace &space = *content(error).space;
+  NodalSpace &space = space_of(error);
   const Motion &motion = *space.motion;
   const double u = space.displacement_tolerance, v = space.velocity_tolerance;
   double sums[2] = {motion.seen_square(displacement_of(error)) / (u * u) + motion.seen_square(velocity_of(error)) / (v * v),

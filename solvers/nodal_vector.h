@@ -1,7 +1,8 @@
 #pragma once
-/// The state (u, v) of a motion as an N_Vector of SUNDIALS: one array per vector on each rank, as long as the mesh allows, of which the
-/// nodes that hold soil now are used. So remaps change no vector, and no step allocates. Shared nodes stand on each rank that has
-/// them, equal to the bit; algebra is local, and only norms are summed over ranks. docs/theory/integrators.md, section 3.
+/// The state (u, v) of a motion as an N_Vector_Petsc of SUNDIALS with a norm of its own: as long on each rank as its mesh allows, of which
+/// the nodes that hold soil now are used, and nobody looks at the rest. So remaps change no vector, and no step allocates. Shared nodes stand
+/// on each rank that has them, equal to the bit; algebra is local, and only norms are summed over ranks. docs/theory/integrators.md, section 3.
+#include <petscsys.h>
 #include <sundials/sundials_nvector.h>
 
 #include "physics/motion.h"
@@ -17,8 +18,9 @@ struct NodalSpace {
   long long inversions = 0;       ///< norms that found so on some rank
 };
 
-/// An N_Vector, zero; ends with N_VDestroy. The space must outlive it.
-N_Vector make_nodal_vector(NodalSpace &space, SUNContext context);
+/// An N_Vector of zeros, to be cloned at will. The space must outlive it and its clones, which end with N_VDestroy. Collective.
+PetscErrorCode make_nodal_vector(NodalSpace &space, SUNContext context, N_Vector *x);
+void destroy_nodal_vector(N_Vector x);
 
 /// `size()` doubles each: displacement [m] and velocity [m/s], or their rates.
 double *displacement_of(N_Vector y);
