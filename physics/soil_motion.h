@@ -115,6 +115,9 @@ class SoilMotion final : public Motion {
   void fill_pores(const std::function<double(int, const Vec<dim> &)> &liquid) requires Phases::liquid { fluid_.fill(liquid); }
   /// Sums of the present state; collective.
   PetscErrorCode balance(double t, Balance *sums);
+  /// Largest frequency of elastic motion of the filled mesh [1/s] by power iteration, which comes from below, docs/theory (5.7). Goes on from the
+  /// mode that it found last. After `begin`; collective.
+  PetscErrorCode largest_frequency(int iterations, double *omega) requires(!Phases::liquid);
 
  private:
   static constexpr int components = stress_size<dim>;
@@ -144,6 +147,7 @@ class SoilMotion final : public Motion {
   /// Does velocity relax between remaps? Otherwise only remaps relax it.
   bool relaxes() const { return transfer_.remap_interval > 0 && relaxation_time_ > 0; }
   PetscErrorCode back_and_forth(const Vec<dim> *in, Vec<dim> *out);
+  double elastic_force(const Vec<dim> *x, Vec<dim> *force) const;
   void constrain(double t, Vec<dim> *v);
   typename PoreFluid<dim, Phases>::Frame pore_frame(bool trial) requires Phases::liquid;
 
@@ -192,6 +196,10 @@ class SoilMotion final : public Motion {
   bool water_moved_ = false;                      ///< since pore water was counted
   bool suction_matters_ = false;                  ///< a law reads it: pressure below zero is suction, not stress
   std::vector<double> suction_;                   ///< at the stress points of one body [Pa]
+  // the fastest mode, where a scene asks for it
+  std::vector<Vec<dim>> mode_;                    ///< of mesh nodes
+  std::vector<Vec<dim>> wave_, wave_force_;
+  std::vector<std::array<double, 2>> elasticity_; ///< Lame's constant and shear modulus of cells [Pa]
   // fluids that move
   [[no_unique_address]] If<Phases::liquid, PoreFluid<dim, Phases>> fluid_;
   [[no_unique_address]] If<Phases::liquid, PoreConditions<dim>> pore_conditions_;

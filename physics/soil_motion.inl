@@ -5,6 +5,7 @@
 
 #include "physics/pores/pore_fluid.inl"
 #include "physics/soil_motion.h"
+#include "physics/largest_frequency.inl"
 
 namespace talus {
 
@@ -945,6 +946,7 @@ PetscErrorCode SoilMotion<dim, Phases>::keep(Archive &archive) {
   archive.keep("motion", work_.gravity, work_.imposed, work_.damping, gathered_, remap_time_, accepted_time_, own_share_, moved_, smallest_ratio_, step_ratio_, speed_squared_, sample_time_, last_pressure_time_, water_moved_);
   if constexpr (Phases::given)
     for (Sample &sample : sample_) archive.keep("pressure", sample.gradient, sample.value, sample.nodal);
+  archive.keep("fastest mode", mode_);
   PetscCall(conditions_.keep(archive, grid_, impedance_, filling_));
   if (archive.reading()) conditions_.surface_loads().begin(bodies_, grid_);
   if constexpr (Phases::liquid) {

@@ -209,7 +209,7 @@ void Arkode::Memory::name_obstacle(double floor) {
 Arkode::Arkode(const ArkodeSettings &settings) : settings_(settings), memory_(std::make_unique<Memory>()) {}
 Arkode::~Arkode() = default;
 
-StepRule ArkodeSettings::rule() const { return {step, fraction * method_of(*this).limit / 2, method_of(*this).limit / 2}; }
+StepRule ArkodeSettings::rule() const { return {step, fraction * method_of(*this).limit / 2, method_of(*this).limit / 2, bound}; }
 std::unique_ptr<Integrator> ArkodeSettings::make() const { return std::make_unique<Arkode>(*this); }
 
 void Arkode::restart() { memory_->others = true; }

@@ -19,6 +19,7 @@ struct ArkodeSettings {
   double fraction = 0.8;                 ///< of the order's stability limit [-]
   double step = 0;                       ///< fixed step without error control [s]; 0: by the tolerances
   double floor = 1e-4;                   ///< of the critical step: a run that needs less stops [-]
+  FrequencyBound bound = FrequencyBound::cells;
   bool drag = false;                     ///< between phases; of the motion, not a key
   template <class Visitor>
   void fields(Visitor &&v) {
@@ -26,6 +27,7 @@ struct ArkodeSettings {
     v.number("velocity_tolerance", velocity_tolerance, metre_per_second, Range{1e-12, 1e3}, "error of the velocity that one step may make, root mean square over the soil's mass");
     v.number("displacement_tolerance", displacement_tolerance, metre, Range{1e-15, 1e3}, "error of the displacement that one step may make, root mean square over the soil's mass");
     v.number("fraction", fraction, one, Range{0.001, 1}, "largest step over the order's own stability limit: 2, 1.73, 2.83, 1.0 over omega_max for orders 2 to 5, 1.56 where pore fluids move");
+    frequency_bound(v, bound);
     v.number("step", step, second, Range{0, 1e9}, "fixed time step without error control; 0 follows the tolerances");
     v.number("floor", floor, one, Range{1e-12, 1}, "shortest step over the critical step 2 / omega_max; a run that needs a shorter one stops");
   }

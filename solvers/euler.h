@@ -14,13 +14,15 @@ struct EulerSettings {
   static constexpr const char *name = "euler";
   double step = 0;        ///< fixed step [s]; 0: a fraction of the critical step
   double fraction = 0.6;  ///< of the critical step 2 / omega_max [-]
-  StepRule rule() const { return {step, fraction, 1}; }
+  FrequencyBound bound = FrequencyBound::cells;
+  StepRule rule() const { return {step, fraction, 1, bound}; }
   std::string drag_problem() const { return ""; }  ///< implicit in every step
   std::unique_ptr<Integrator> make() const;
   template <class Visitor>
   void fields(Visitor &&v) {
     v.number("step", step, second, Range{0, 1e9}, "fixed time step; 0 takes a fraction of the critical step");
     v.number("fraction", fraction, one, Range{0.001, 1}, "time step over the critical step 2 / omega_max, recomputed as the run goes");
+    frequency_bound(v, bound);
   }
 };
 

@@ -16,12 +16,26 @@ struct StepBounds {
   double until;     ///< time at which some step must end [s]
 };
 
+/// What omega_max is taken from.
+enum class FrequencyBound {
+  cells,  ///< the fastest filled cell by itself: safe
+  mesh    ///< the filled mesh, by power iteration: sharp, and from below
+};
+
 /// What a scene fixes about steps, in units of the critical step 2 / omega_max where it is not a time.
 struct StepRule {
   double fixed;  ///< [s]; 0: chosen as the run goes
   double share;  ///< largest step that is taken [-]
   double limit;  ///< largest step at which elastic motion does not grow [-]
+  FrequencyBound bound = FrequencyBound::cells;
 };
+
+/// The key by which a scene chooses.
+template <class Visitor>
+void frequency_bound(Visitor &&v, FrequencyBound &bound) {
+  v.choice("omega_max", bound, {{"cells", FrequencyBound::cells}, {"mesh", FrequencyBound::mesh}},
+           "largest frequency, from the fastest filled cell by itself or from the whole filled mesh, by power iteration at remaps: longer steps, above all on tetrahedra; not where pore fluids move");
+}
 
 /// Sums since the start of a run.
 struct StepStatistics {

@@ -101,9 +101,11 @@ void print_costs(const Scene &scene, const Needs &n) {
          b.body.critical_step);
   line("memory", "%s resident; snapshots take about %s (%d)", spoken_bytes(n.memory).c_str(),
        spoken_bytes(n.results).c_str(), n.snapshots);
-  line("step", "critical %.4g s (2 / omega_max), set by %s at %s; altitude over wave speed: %.3g s", n.critical_step,
-       n.slowest_body().body.name.c_str(), place(n.slowest_body().body.slowest_cell, scene.dimension).c_str(),
-       n.altitude_rule);
+  const BodyReport &slowest = n.slowest_body().body;
+  if (n.critical_step > slowest.critical_step)
+    line("step", "critical %.4g s (2 / omega_max) of the filled mesh, %.2f times that of its fastest cell", n.critical_step, n.critical_step / slowest.critical_step);
+  line(n.critical_step > slowest.critical_step ? "" : "step", "critical %.4g s (2 / omega_max), set by %s at %s; altitude over wave speed: %.3g s",
+       slowest.critical_step, slowest.name.c_str(), place(slowest.slowest_cell, scene.dimension).c_str(), n.altitude_rule);
   line("", "%s %.4g s, %.2f of it", n.fixed_step ? "fixed at" : "taken", n.step, n.step / n.critical_step);
   line("stages", "%-16s %-12s %10s %10s %14s %12s", "", "until", "longest s", "steps", "wave transits", "run time");
   for (std::size_t i = 0; i < n.stages.size(); ++i) {

@@ -373,9 +373,9 @@ Needs find_needs(Scene &scene) {
     for (int d = 0; d < 3; ++d) middle[d] = (b.body.low[d] + b.body.high[d]) / 2;
     b.softening = softening(b.law, b.body.cell_size, b.density * head_above(scene, middle, needs.bodies));
   }
-  needs.critical_step = needs.slowest_body().body.critical_step;
-  needs.altitude_rule = needs.mesh.smallest_altitude / fastest;
   const StepRule rule = step_rule(read_integrator(scene.integrator, fluids_move(scene.phases)));
+  needs.critical_step = rule.bound == FrequencyBound::mesh ? simulation->critical_step() : needs.slowest_body().body.critical_step;
+  needs.altitude_rule = needs.mesh.smallest_altitude / fastest;
   needs.fixed_step = rule.fixed > 0;
   needs.step = needs.fixed_step ? rule.fixed : rule.share * needs.critical_step;
   MPI_Comm_size(PETSC_COMM_WORLD, &needs.ranks);

@@ -15,7 +15,7 @@ namespace talus {
 template <int dim, class Phases>
 PetscErrorCode Simulation<dim, Phases>::keep(Archive &archive) {
   PetscFunctionBeginUser;
-  archive.keep("clock", time_, load_time_, last_step_, steps_, remaps_, since_sort_, critical_step_, shrink_, remap_due_, hold_loads_);
+  archive.keep("clock", time_, load_time_, last_step_, steps_, remaps_, since_sort_, critical_step_, shrink_, omega_max_, omega_step_, remap_due_, hold_loads_);
   archive.keep("stage", stage_);
   archive.keep("results", last_row_step_, last_row_time_, last_snapshot_time_, impulse_time_, first_ledger_, first_energy_);
   for (const auto &body : bodies_) PetscCall(body->keep(archive));

@@ -28,6 +28,8 @@ Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOption
     if (const std::string problem = drag_problem(integrator_settings_); !problem.empty())
       scene.complain("integrator.kind", "must be \"euler\", or \"arkode\" of order 3, where pore fluids move: " + problem +
                                             "; or take phases = \"dry\" or \"drained\"");
+    if (step_rule(integrator_settings_).bound == FrequencyBound::mesh)
+      scene.complain("integrator.omega_max", "must be \"cells\" where pore fluids move: power iteration knows the elastic waves of the skeleton alone");
     for (size_t k = 0; k < scene.stage.size() && Phases::gas; ++k)
       if (is_static(scene.stage[k].kind))
         scene.complain("stage." + std::to_string(k) + ".kind", "must be \"dynamic\" where gas moves; quasi-static stages take any other phases");

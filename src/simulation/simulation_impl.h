@@ -163,6 +163,8 @@ class Simulation final : public AnySimulation {
 
   std::string stage_name_;
   double time_ = 0, load_time_ = 0, critical_step_ = 0, shrink_ = 1, impulse_time_ = 0, last_step_ = 0;
+  double omega_max_ = 0;  ///< of the filled mesh, at step omega_step_ [1/s]
+  long long omega_step_ = -1;
   long long steps_ = 0, remaps_ = 0, particle_count_ = 0, since_sort_ = 0;
   double total_mass_ = 0, first_energy_ = 0;
   std::vector<double> first_ledger_;  ///< fluid masses at the start [kg]

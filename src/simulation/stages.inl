@@ -94,6 +94,7 @@ void Simulation<dim, Phases>::start_stage() {
   const int number = stage_.number + 1;
   stage_ = StageState{};
   stage_.number = number, stage_.begin = time_;
+  omega_step_ = -1;
 }
 
 template <int dim, class Phases>

@@ -43,6 +43,16 @@ double Simulation<dim, Phases>::critical_step() {
       if (points.cell[q] != last) local = std::min(local, critical_[b](motion_->grid().mesh_cell[last = points.cell[q]]));
   }
   MPI_Allreduce(&local, &step, 1, MPI_DOUBLE, MPI_MIN, comm_);
+  if constexpr (!Phases::liquid)
+    if (step_rule(integrator_settings_).bound == FrequencyBound::mesh) {
+      constexpr int first = 60, further = 6, apart = 8;  // iterations; steps between two estimates where remaps come thick and fast
+      const bool anew = omega_step_ < 0;
+      if (anew || steps_ >= omega_step_ + apart) {
+        require(motion_->largest_frequency(anew ? first : further, &omega_max_));
+        omega_step_ = steps_;
+      }
+      step = std::max(step, 2 / omega_max_);
+    }
   return step;
 }
 

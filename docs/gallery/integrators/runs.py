@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""What `talus compare` cannot read off one column: energy over 100 periods, angular momentum, dissipation of remaps, time per evaluation.
+"""What `talus compare` cannot read off one column: energy over 100 periods, angular momentum, dissipation of remaps, time per evaluation, steps by the frequency of cells and of the mesh.
 
-    runs.py TALUS [drift|spin|dissipation|cost|stability|figure ...]
+    runs.py TALUS [drift|spin|dissipation|cost|bound|stability|figure ...]
 
 Each study writes NAME.csv beside this file, `figure` draws drift.png, orders.png and stability.png. TALUS is build/release/bin/talus; `stability` runs stability_test
 beside it.
@@ -122,6 +122,25 @@ def cost(talus):
         write("cost", rows)
 
 
+def bound(talus):
+    """Steps by the fastest cell and by the frequency of the whole filled mesh: how many, how long they take, and what comes out."""
+    from slides import COLUMN3D
+    scenes = {"column 2D": ("column", "corner_x_m", ["mesh.size=0.01"]), "column 3D": ("column", "corner_x_m", ["mesh.size=0.02", "mesh.layers=0", "mesh.thickness=0.06", *COLUMN3D]),
+              "Selborne 2D": ("selborne", "crest_displacement_m", ["mesh.size=0.9"]), "bowl": ("bowl", "crest_displacement_m", [])}
+    rows = []
+    for scene, (folder, column, overrides) in scenes.items():
+        for of in ("cells", "mesh"):
+            for fraction in (0.3, 0.4, 0.6, 0.8):
+                name = f"bound {scene} {of} {fraction}"
+                history, seconds, count = run(talus, HERE.parent / folder / "scene.toml", name, ["output.interval=0", f"integrator.omega_max={of}", f"integrator.fraction={fraction}", *overrides])
+                failure = re.search(r"loads at t = ([\d.]+) s", (RUNS / name.replace(" ", "_") / "run.log").read_text())
+                end = history[-1]["time_s"] if history else 0
+                rows.append({"scene": scene, "omega_max": of, "fraction": fraction, "steps": count, "mean_step_ms": round(1e3 * end / count, 4), "processor_s": round(seconds, 2),
+                             "failure_load_time_s": round(float(failure[1]), 3) if failure else "", "front_or_crest_m": round(history[-1][column], 4) if history else "failed"})
+                print(rows[-1], flush=True)
+                write("bound", rows)
+
+
 def stability(talus):
     test = Path(talus).parent / "stability_test"
     subprocess.run([next(p for p in (test, *ROOT.glob("build/*/tests/**/stability_test"), *ROOT.glob("build/*/bin/stability_test")) if p.exists())], check=True,
@@ -175,5 +194,5 @@ def figure(_):
 
 if __name__ == "__main__":
     RUNS.mkdir(parents=True, exist_ok=True)
-    for name in sys.argv[2:] or ["drift", "spin", "dissipation", "cost", "stability", "figure"]:
+    for name in sys.argv[2:] or ["drift", "spin", "dissipation", "cost", "bound", "stability", "figure"]:
         globals()[name](sys.argv[1])

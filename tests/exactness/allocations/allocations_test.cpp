@@ -84,6 +84,13 @@ TEST(Allocations, none_in_steps_and_remaps_under_error_control) {
   EXPECT_EQ(c.in_remaps, 0);
 }
 
+TEST(Allocations, none_where_steps_follow_the_frequency_of_the_mesh) {
+  const Count c = count(column, {"mesh.size=0.01", "integrator.omega_max=mesh"}, 1000, 200);
+  EXPECT_GT(c.remaps, 1);
+  EXPECT_EQ(c.in_steps, 0);
+  EXPECT_EQ(c.in_remaps, 0);
+}
+
 TEST(Allocations, none_in_a_drained_slope_of_two_soils) {
   const Count c = count(slope, {"transfer.remap_interval=0.1"}, 1000, 200);
   EXPECT_GT(c.steps, 10);

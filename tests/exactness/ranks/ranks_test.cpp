@@ -92,6 +92,9 @@ TEST(Ranks, column_collapse_is_the_same_in_3d) {
                "boundary.back.kind=roller", "output.point.corner.position=[0.2, 0.1, 0]",
                "body.bars.stress=[" + k0 + ", \"-9.81 * 2650 * (0.1 - y)\", " + k0 + ", \"0\", \"0\", \"0\"]"});
 }
+TEST(Ranks, column_collapse_is_the_same_with_steps_by_the_frequency_of_the_mesh) {
+  expect_the_same(column, {"mesh.size=0.01", "integrator.omega_max=mesh"});
+}
 TEST(Ranks, column_collapse_is_the_same_under_error_control) {
   expect_the_same(column, {"mesh.size=0.01", "integrator.kind=arkode", "integrator.velocity_tolerance=1e-5"});
 }

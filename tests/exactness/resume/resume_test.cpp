@@ -45,6 +45,7 @@ const Variant variants[] = {
     {"unsaturated_with_given_pressures_at_first", with_pores({"phases=unsaturated", "stage.0.pore_flow=false"})},
     {"three_phase", with_pores({"phases=three-phase"})},
     {"with_a_fixed_step", {"integrator.step=2e-4"}},
+    {"with_steps_by_the_frequency_of_the_mesh", {"integrator.omega_max=mesh"}},
     {"in_3d",
      {"dimension=3", "mesh.thickness=0.25", "boundary.front.kind=roller", "boundary.back.kind=roller",
       "output.point.tip.position=[1, 0.5, 0]"}},
