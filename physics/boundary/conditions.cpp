@@ -10,7 +10,7 @@ namespace talus {
 namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
-constexpr double same_direction = 0.9986;  // cosine of 3 degrees: facets of one curved face share a constraint within this
+const double same_direction = std::sqrt(1 - least_angle_sine * least_angle_sine);  // facets of one curved face share a contact within this
 
 template <int dim>
 double dot(const Vec<dim> &a, const Vec<dim> &b) {
@@ -23,24 +23,13 @@ void add(Vec<dim> &a, double scale, const Vec<dim> &b) {
   for (int d = 0; d < dim; ++d) a[d] += scale * b[d];
 }
 
-/// Plates that move come first, then what is fixed, then rollers: a node where they meet follows the strongest.
-int priority(const Boundary &kind) {
-  return std::holds_alternative<PrescribedVelocity>(kind) ? 0 : std::holds_alternative<Fixed>(kind) ? 1 : 2;
-}
-
 }  // namespace
 
 template <int dim>
 void Conditions<dim>::add_direction(PrescribedSet &set, int node, int source, const Vec<dim> &direction) {
   int &index = set.of_node[node];
   if (index < 0) index = static_cast<int>(set.entry.size()), set.entry.push_back({});
-  Prescribed &c = set.entry[index];
-  Vec<dim> rest = direction;
-  for (int k = 0; k < c.count; ++k) add<dim>(rest, -dot<dim>(rest, c.direction[k]), c.direction[k]);
-  const double length = std::sqrt(dot<dim>(rest, rest));
-  if (c.count == dim || length < std::sqrt(1 - same_direction * same_direction)) return;
-  for (double &r : rest) r /= length;
-  c.direction[c.count] = rest, c.source[c.count++] = source;
+  set.entry[index].add(direction, source);
 }
 
 template <int dim>
@@ -95,9 +84,7 @@ PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vect
         [&](const auto &kind) {
           if constexpr (requires { kind.template directions<dim>(n.normal); })
             for (const Vec<dim> &direction : kind.template directions<dim>(n.normal))
-              for (PrescribedSet &set : prescribed_) add_direction(set, n.node, n.source, direction);
-          else if constexpr (requires { kind.template held_directions<dim>(n.normal); })
-            for (const Vec<dim> &direction : kind.template held_directions<dim>(n.normal)) add_direction(prescribed_[1], n.node, n.source, direction);
+              for (int held = holds_loads(sources_[n.source].kind); held < 2; ++held) add_direction(prescribed_[held], n.node, n.source, direction);
           else
             add_contact(n.node, n.source, n.normal, n.area);
         },

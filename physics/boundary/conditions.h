@@ -7,6 +7,7 @@
 #include "base/archive.h"
 #include "meshes/background_mesh.h"
 #include "physics/boundary/boundary.h"
+#include "physics/boundary/prescribed_directions.h"
 #include "physics/boundary/surface_loads.h"
 #include "transfer/filled_grid.h"
 
@@ -59,11 +60,7 @@ class Conditions {
   PetscErrorCode take_impulses(MPI_Comm comm, std::vector<Vec<dim>> &impulse);
 
  private:
-  struct Prescribed {      // a node with prescribed directions
-    int count = 0;
-    std::array<Vec<dim>, dim> direction;
-    std::array<int, dim> source;
-  };
+  using Prescribed = PrescribedDirections<dim>;
   struct Contact {         // one facet normal of a base at a node
     int node, source;      // mesh node
     Vec<dim> normal;

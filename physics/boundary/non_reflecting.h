@@ -7,7 +7,8 @@
 namespace talus {
 
 /// Dashpots that swallow waves arriving straight at the face: rho c_p across it, rho c_s along it (Lysmer & Kuhlemeyer 1969). Dashpots
-/// carry no load at rest: in stages that hold loads a support stands in for them, and the reaction it bore at their end acts on as a dead load.
+/// carry no load at rest: in quasi-static stages and in those that hold loads a support stands in for them, and the reaction it bore at their
+/// end acts on as a dead load.
 struct NonReflecting {
   static constexpr const char *name = "non_reflecting";
   enum class Support { roller, fixed, none };
@@ -15,12 +16,13 @@ struct NonReflecting {
   template <class Visitor>
   void fields(Visitor &&v) {
     v.choice("support", support, {{"roller", Support::roller}, {"fixed", Support::fixed}, {"none", Support::none}},
-             "what holds the face in stages that hold_loads; the reaction it bears at their end stays on as a dead load");
+             "what holds the face in quasi-static stages and in those that hold_loads; the reaction it bears at their end stays on as a dead load");
   }
 
-  /// Directions in which a facet with normal n is held while loads are held.
+  static constexpr bool while_loads_are_held = true;
+  /// Directions in which a facet with normal n is held while loads are.
   template <int dim>
-  std::vector<Vec<dim>> held_directions(const Vec<dim> &normal) const {
+  std::vector<Vec<dim>> directions(const Vec<dim> &normal) const {
     if (support == Support::none) return {};
     if (support == Support::roller) return {normal};
     std::vector<Vec<dim>> axes(dim, Vec<dim>{});

@@ -12,6 +12,24 @@ namespace talus {
 
 using Matrix = Owned<Mat, MatDestroy>;
 
+/// Gradients of all barycentric coordinates of a cell [1/m].
+template <int dim>
+std::array<Vec<dim>, dim + 1> barycentric_gradients(const Cell<dim> &cell) {
+  std::array<Vec<dim>, dim + 1> g{};
+  for (int k = 0; k < dim; ++k)
+    for (int d = 0; d < dim; ++d) g[k + 1][d] = cell.gradient[k][d], g[0][d] -= cell.gradient[k][d];
+  return g;
+}
+
+/// Place of a cell with these barycentric coordinates.
+template <int dim>
+Vec<dim> place_in(const BackgroundMesh<dim> &mesh, int cell, const Barycentric<dim> &l) {
+  Vec<dim> x{};
+  for (int a = 0; a <= dim; ++a)
+    for (int d = 0; d < dim; ++d) x[d] += l[a] * mesh.position[mesh.cells[cell].node[a]][d];
+  return x;
+}
+
 template <int dim>
 class ElementNodes {
  public:

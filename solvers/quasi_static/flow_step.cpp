@@ -39,15 +39,12 @@ template <int dim>
 template <class Put>
 void FlowStep<dim>::each_coupling(Put &&put) const {
   std::array<Vec<dim>, element_nodes<dim>(2)> gradient;
-  for (int c = 0; c < soil_->mesh().cell_count(); ++c) {
+  for (int c = 0; c < soil_->soil().mesh().cell_count(); ++c) {
     if (!flow_.active(c)) continue;
-    const Cell<dim> &cell = soil_->mesh().cells[c];
-    std::array<Vec<dim>, dim + 1> of_l{};
-    for (int k = 0; k < dim; ++k)
-      for (int d = 0; d < dim; ++d) of_l[k + 1][d] = cell.gradient[k][d], of_l[0][d] -= cell.gradient[k][d];
-    for (size_t q = 0; q < soil_->rule().point.size(); ++q) {
-      shape_gradients<dim>(soil_->nodes().order(), soil_->rule().point[q], of_l, gradient.data());
-      put(c, static_cast<int>(q), soil_->rule().point[q], soil_->mesh().volume[c] * soil_->rule().weight[q], gradient.data());
+    const auto of_l = barycentric_gradients<dim>(soil_->soil().mesh().cells[c]);
+    for (size_t q = 0; q < soil_->soil().rule().point.size(); ++q) {
+      shape_gradients<dim>(soil_->soil().nodes().order(), soil_->soil().rule().point[q], of_l, gradient.data());
+      put(c, static_cast<int>(q), soil_->soil().rule().point[q], soil_->soil().mesh().volume[c] * soil_->soil().rule().weight[q], gradient.data());
     }
   }
 }
@@ -65,8 +62,8 @@ PetscErrorCode FlowStep<dim>::setup() {
     if (nodes.owned[i]) owned_.push_back(i);
   std::sort(owned_.begin(), owned_.end(), [&](int a, int b) { return nodes.global()[a] < nodes.global()[b]; });
   if (soil_) {
-    PetscCall(soil_->nodes().global_vector(u_));
-    PetscCall(soil_->nodes().global_vector(force_));
+    PetscCall(soil_->soil().nodes().global_vector(u_));
+    PetscCall(soil_->soil().nodes().global_vector(force_));
     PetscCall(VecGetLocalSize(u_, &rows_u_));
   }
   PetscCall(make_sparse(comm, rows_p_, rows_p_, flow_matrix_, [&](Mat pattern) { return flow_.tangent(1, pattern); }));
@@ -78,10 +75,10 @@ PetscErrorCode FlowStep<dim>::setup() {
         PetscFunctionBeginUser;
         const double zeros[element_nodes<dim>(2) * dim * (dim + 1)]{};
         PetscInt u[element_nodes<dim>(2) * dim], p[dim + 1];
-        const int count = element_nodes<dim>(soil_->nodes().order());
-        for (int c = 0; c < soil_->mesh().cell_count(); ++c) {
+        const int count = element_nodes<dim>(soil_->soil().nodes().order());
+        for (int c = 0; c < soil_->soil().mesh().cell_count(); ++c) {
           if (!flow_.active(c)) continue;
-          for (int a = 0; a < count * dim; ++a) u[a] = soil_->nodes().global()[soil_->nodes().of_cell(c)[a / dim]] * dim + a % dim;
+          for (int a = 0; a < count * dim; ++a) u[a] = soil_->soil().nodes().global()[soil_->soil().nodes().of_cell(c)[a / dim]] * dim + a % dim;
           for (int b = 0; b <= dim; ++b) p[b] = nodes.global()[nodes.of_cell(c)[b]];
           if (by_water) PetscCall(MatSetValues(pattern, dim + 1, p, count * dim, u, zeros, ADD_VALUES));
           else PetscCall(MatSetValues(pattern, count * dim, u, dim + 1, p, zeros, ADD_VALUES));
@@ -136,7 +133,7 @@ template <int dim>
 PetscErrorCode FlowStep<dim>::volume_strain(std::vector<double> &taken, std::vector<double> &size) const {
   PetscFunctionBeginUser;
   each_coupling([&](int c, int q, const Barycentric<dim> &l, double volume, const Vec<dim> *) {
-    const auto &strain = soil_->points()[flow_.body_of(c)].increment[soil_->first_point(c) + q].strain;
+    const auto &strain = soil_->soil().points()[flow_.body_of(c)].increment[soil_->soil().first_point(c) + q].strain;
     const double room = volume * flow_.saturation(c, l) * (strain[0] + strain[1] + strain[2]);
     for (int a = 0; a <= dim; ++a) taken[flow_.nodes().of_cell(c)[a]] += l[a] * room, size[flow_.nodes().of_cell(c)[a]] += l[a] * std::abs(room);
   });
@@ -185,7 +182,7 @@ PetscErrorCode FlowStep<dim>::couple() {
   PetscFunctionBeginUser;
   PetscCall(MatZeroEntries(press_));
   PetscCall(MatZeroEntries(squeeze_));
-  const ElementNodes<dim> &soil = soil_->nodes(), &water = flow_.nodes();
+  const ElementNodes<dim> &soil = soil_->soil().nodes(), &water = flow_.nodes();
   const int count = element_nodes<dim>(soil.order());
   PetscErrorCode error = 0;
   each_coupling([&](int c, int, const Barycentric<dim> &l, double volume, const Vec<dim> *gradient) {
@@ -317,11 +314,11 @@ PetscErrorCode FlowStep<dim>::commit(bool softening) {
 template <int dim>
 double FlowStep<dim>::shortest_step() const {
   double shortest = 1e300;
-  for (int c = 0; c < soil_->mesh().cell_count(); ++c) {
+  for (int c = 0; c < soil_->soil().mesh().cell_count(); ++c) {
     if (!flow_.active(c)) continue;
     double square = 0;
-    for (const Vec<dim> &g : soil_->mesh().cells[c].gradient) square = std::max(square, map<dim>(g).squaredNorm());
-    const double storage = 1 / constrained_modulus(soil_->points()[flow_.body_of(c)].law) + flow_.porosity(c) / flow_.liquid().bulk_modulus;
+    for (const Vec<dim> &g : soil_->soil().mesh().cells[c].gradient) square = std::max(square, map<dim>(g).squaredNorm());
+    const double storage = 1 / constrained_modulus(soil_->soil().points()[flow_.body_of(c)].law) + flow_.porosity(c) / flow_.liquid().bulk_modulus;
     shortest = std::min(shortest, storage / (6 * square * flow_.conductivity(c)));
   }
   MPI_Allreduce(MPI_IN_PLACE, &shortest, 1, MPI_DOUBLE, MPI_MIN, flow_.nodes().comm());

@@ -66,13 +66,13 @@ PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law>
   constexpr double first_step = 0.2, smallest_share = 1. / 16, largest_factor = 20;
   PetscFunctionBeginUser;
   *result = {factor, 0, {}};
-  problem.reset_displacement();
-  auto stable = problem.save();
+  problem.soil().reset_displacement();
+  auto stable = problem.soil().save();
   while (result->upper == 0 ? result->lower < largest_factor : result->upper - result->lower > resolution) {
     const double trial = result->upper > 0 ? (result->lower + result->upper) / 2 : result->lower + first_step;
-    problem.restore(stable);
-    for (size_t b = 0; b < laws.size(); ++b) problem.points()[b].law = with_reduced_strength(laws[b], trial);
-    problem.admit();
+    problem.soil().restore(stable);
+    for (size_t b = 0; b < laws.size(); ++b) problem.soil().points()[b].law = with_reduced_strength(laws[b], trial);
+    problem.soil().admit();
     PetscCall(problem.begin_path(load_time));
     problem.blow_up = blow_up;
     double share;
@@ -83,19 +83,19 @@ PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law>
         [&](double, double to, StepOutcome *o) { return problem.advance(to, load_time, time, 0, true, o); },
         [](double, const StepOutcome &) {}, &share, &outcome, &iterations));
     problem.blow_up = 0;
-    const double displacement = problem.largest_displacement();
+    const double displacement = problem.soil().largest_displacement();
     StrengthTrial t{trial, outcome.converged, iterations, outcome.residual, displacement, ""};
     if (t.stable && displacement > blow_up) t.stable = false;
     if (!t.stable)
       t.reason = outcome.blown_up || outcome.converged ? "displacement passed its limit" : outcome.singular ? "stiffness became singular" : "Newton's iterations did not converge";
     if (t.stable)
-      result->lower = trial, stable = problem.save();
+      result->lower = trial, stable = problem.soil().save();
     else
       result->upper = trial;
     result->trials.push_back(t);
     tell(t);
   }
-  problem.restore(stable);
+  problem.soil().restore(stable);
   PetscFunctionReturn(0);
 }
 

@@ -7,19 +7,13 @@
 namespace talus {
 namespace {
 
-constexpr double least_angle_sine = 0.0523;  // of 3 degrees: facets of one curved face share a direction within this
-
+template <int dim>
 struct Wanted {
   int priority, source;
   PetscInt global;
-  double direction[3];
-  auto key() const { return std::make_tuple(global, priority, source, direction[0], direction[1], direction[2]); }
+  Vec<dim> direction;
+  auto key() const { return std::make_tuple(global, priority, source, direction); }
 };
-
-/// As in conditions.h: plates that move come first, then what is fixed, then rollers.
-int priority_of(const Boundary &kind) {
-  return std::holds_alternative<PrescribedVelocity>(kind) ? 0 : std::holds_alternative<Fixed>(kind) ? 1 : 2;
-}
 
 /// Completes the prescribed directions to a frame. Where they are axes, the frame is the identity.
 template <int dim>
@@ -55,7 +49,7 @@ PetscErrorCode Supports<dim>::setup(const BackgroundMesh<dim> &mesh, const Eleme
                                     const std::vector<char> &active, const std::vector<Source> &sources) {
   PetscFunctionBeginUser;
   sources_ = &sources;
-  std::vector<Wanted> mine;
+  std::vector<Wanted<dim>> mine;
   for (int s = 0; s < static_cast<int>(sources.size()); ++s)
     std::visit(
         [&](const auto &kind) {
@@ -64,11 +58,8 @@ PetscErrorCode Supports<dim>::setup(const BackgroundMesh<dim> &mesh, const Eleme
               for (const Facet<dim> &facet : mesh.facets(group)) {
                 if (!active[facet.cell]) continue;
                 for (int node : nodes.of_facet(facet.cell, facet.face))
-                  for (const Vec<dim> &direction : kind.template directions<dim>(facet.normal)) {
-                    Wanted w{priority_of(sources[s].kind), s, nodes.global()[node], {}};
-                    std::copy(direction.begin(), direction.end(), w.direction);
-                    mine.push_back(w);
-                  }
+                  for (const Vec<dim> &direction : kind.template directions<dim>(facet.normal))
+                    mine.push_back({priority(sources[s].kind), s, nodes.global()[node], direction});
               }
         },
         sources[s].kind);
@@ -77,29 +68,23 @@ PetscErrorCode Supports<dim>::setup(const BackgroundMesh<dim> &mesh, const Eleme
   int ranks;
   PetscCallMPI(MPI_Comm_size(nodes.comm(), &ranks));
   std::vector<int> counts(ranks), starts(ranks + 1, 0);
-  const int bytes = static_cast<int>(mine.size() * sizeof(Wanted));
+  const int bytes = static_cast<int>(mine.size() * sizeof(Wanted<dim>));
   PetscCallMPI(MPI_Allgather(&bytes, 1, MPI_INT, counts.data(), 1, MPI_INT, nodes.comm()));
   for (int r = 0; r < ranks; ++r) starts[r + 1] = starts[r] + counts[r];
-  std::vector<Wanted> all(starts[ranks] / sizeof(Wanted));
+  std::vector<Wanted<dim>> all(starts[ranks] / sizeof(Wanted<dim>));
   PetscCallMPI(MPI_Allgatherv(mine.data(), bytes, MPI_BYTE, all.data(), counts.data(), starts.data(), MPI_BYTE, nodes.comm()));
-  std::sort(all.begin(), all.end(), [](const Wanted &a, const Wanted &b) { return a.key() < b.key(); });
+  std::sort(all.begin(), all.end(), [](const Wanted<dim> &a, const Wanted<dim> &b) { return a.key() < b.key(); });
 
   std::map<PetscInt, int> local;
   for (int i = 0; i < nodes.count(); ++i) local[nodes.global()[i]] = i;
   of_node_.assign(nodes.count(), -1), supports_.clear(), moves_ = false;
-  for (const Wanted &w : all) {
+  for (const Wanted<dim> &w : all) {
     moves_ |= std::holds_alternative<PrescribedVelocity>(sources[w.source].kind);
     const auto found = local.find(w.global);
     if (found == local.end()) continue;
     int &index = of_node_[found->second];
     if (index < 0) index = static_cast<int>(supports_.size()), supports_.push_back({});
-    Support<dim> &s = supports_[index];
-    ColumnVector<dim> rest = Eigen::Map<const ColumnVector<dim>>(w.direction);
-    for (int k = 0; k < s.count; ++k) rest -= rest.dot(map<dim>(s.direction[k])) * map<dim>(s.direction[k]);
-    if (s.count == dim || rest.norm() < least_angle_sine) continue;
-    rest.normalize();
-    std::copy_n(rest.data(), dim, s.direction[s.count].begin());
-    s.source[s.count++] = w.source;
+    supports_[index].add(w.direction, w.source);
   }
   for (Support<dim> &s : supports_) make_frame(s);
   PetscFunctionReturn(0);

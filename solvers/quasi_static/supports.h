@@ -4,15 +4,13 @@
 #include <vector>
 
 #include "physics/boundary/conditions.h"
+#include "physics/boundary/prescribed_directions.h"
 #include "solvers/quasi_static/element_nodes.h"
 
 namespace talus {
 
 template <int dim>
-struct Support {
-  int count = 0;                         ///< prescribed directions
-  std::array<Vec<dim>, dim> direction;   ///< orthonormal
-  std::array<int, dim> source;           ///< boundary of each direction
+struct Support : PrescribedDirections<dim> {
   Square<dim> frame;                     ///< rows: unit vectors of the node's own unknowns
   std::array<char, dim> held;            ///< 1 where that unknown is prescribed
   bool turned = false;                   ///< the frame is not the identity

@@ -22,7 +22,7 @@ void Simulation<dim, Phases>::make_statics() {
   }
   statics_ = std::make_unique<QuasiStatic<dim>>(mesh_, scene_, laws_, conditions_.sources(), data);
   for (size_t b = 0; b < bodies_.size(); ++b) {
-    GaussPoints<dim> &p = statics_->points()[b];
+    GaussPoints<dim> &p = statics_->soil().points()[b];
     const std::vector<Function> &given = scene_.body[b].stress;
     for (int q = 0; q < p.count() && !given.empty(); ++q)
       for (int k = 0; k < stress_size<dim>; ++k)
@@ -35,7 +35,7 @@ PetscErrorCode Simulation<dim, Phases>::activate() {
   PetscFunctionBeginUser;
   PetscCall(statics_->activate(present_));
   if constexpr (Phases::liquid)
-    PetscCall(flow_->activate(statics_->active(), [this](const Vec<dim> &x) { return motion_->fluid().given_pressure(x, load_time_); }));
+    PetscCall(flow_->activate(statics_->soil().active(), [this](const Vec<dim> &x) { return motion_->fluid().given_pressure(x, load_time_); }));
   PetscFunctionReturn(0);
 }
 
@@ -89,7 +89,7 @@ void Simulation<dim, Phases>::run_quasi_static(const Stage &stage) {
   else if (moved_since_statics_) to_gauss_points();
   choose_bodies(stage);
   for (size_t b = 0; b < laws_.size(); ++b) {
-    GaussPoints<dim> &points = statics_->points()[b];
+    GaussPoints<dim> &points = statics_->soil().points()[b];
     points.law = with_reduced_strength(laws_[b], strength_factor_);
     // steps are large here: strength would fall within one, though it is not remembered
     int sheared = std::any_of(points.history.begin(), points.history.end(), [](double h) { return h != 0; });
@@ -97,6 +97,7 @@ void Simulation<dim, Phases>::run_quasi_static(const Stage &stage) {
     if (!stage.softening && !sheared) points.law = without_softening(points.law);
   }
   require(activate());
+  require(hold_supports(true));
   in_statics_ = true, moved_since_statics_ = false;
   std::string freedom;
   require(statics_->find_freedom(&freedom));
@@ -147,7 +148,7 @@ void Simulation<dim, Phases>::run_quasi_static(const Stage &stage) {
     if (stage.when_lost == WhenLost::stop) fail(text.str());
   } else {
     text << "stage " << stage.name << " is in equilibrium: " << statics_->unknowns() << " unknowns, " << iterations << " iterations, largest displacement "
-         << statics_->largest_displacement() << " m";
+         << statics_->soil().largest_displacement() << " m";
   }
   Balance sums;
   set_loading(stage, 0);
@@ -157,7 +158,7 @@ void Simulation<dim, Phases>::run_quasi_static(const Stage &stage) {
   note(text.str());
   stage_.met = true;
   write_checkpoint();
-  if (stage.reset_displacement) statics_->reset_displacement(), reset_displacement();
+  if (stage.reset_displacement) statics_->soil().reset_displacement(), reset_displacement();
 }
 
 // ---- hand-over ----
@@ -167,14 +168,14 @@ void Simulation<dim, Phases>::run_quasi_static(const Stage &stage) {
 template <int dim, class Phases>
 void Simulation<dim, Phases>::to_particles() {
   if (motion_->gathered()) require(release(false));
-  const int per_cell = statics_->points_per_cell();
-  const double near = per_cell > 1 ? statics_->rule().point[0][0] : 1, far = per_cell > 1 ? statics_->rule().point[0][1] : 0;
+  const int per_cell = statics_->soil().points_per_cell();
+  const double near = per_cell > 1 ? statics_->soil().rule().point[0][0] : 1, far = per_cell > 1 ? statics_->soil().rule().point[0][1] : 0;
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const ParticleArrays<dim> &p = bodies_[b]->particles();
-    const GaussPoints<dim> &points = statics_->points()[b];
+    const GaussPoints<dim> &points = statics_->soil().points()[b];
     const int memory = bodies_[b]->history_count();
     for (int i = 0; i < p.count; ++i) {
-      const int cell = p.cell[i], first = statics_->first_point(cell);
+      const int cell = p.cell[i], first = statics_->soil().first_point(cell);
       const Barycentric<dim> l = barycentric(mesh_.cells[cell], p.position[i]);
       std::array<double, dim + 1> weight{};
       for (int a = 0; a < per_cell; ++a) weight[a] = per_cell > 1 ? (l[a] - far) / (near - far) : 1;
@@ -190,7 +191,7 @@ void Simulation<dim, Phases>::to_particles() {
           low = std::min(low, points.history[(first + a) * memory + k]), high = std::max(high, points.history[(first + a) * memory + k]);
         p.history[i * memory + k] = std::clamp(value(points.history, memory, k), low, high);
       }
-      const Vec<dim> u = statics_->displacement(cell, l);
+      const Vec<dim> u = statics_->soil().displacement(cell, l);
       for (int d = 0; d < dim; ++d) p.reference[i][d] = p.position[i][d] - u[d], p.velocity[i][d] = 0;
     }
   }
@@ -205,7 +206,7 @@ void Simulation<dim, Phases>::to_gauss_points() {
   if (motion_->gathered()) require(release(false));
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const ParticleArrays<dim> &p = bodies_[b]->particles();
-    GaussPoints<dim> &points = statics_->points()[b];
+    GaussPoints<dim> &points = statics_->soil().points()[b];
     const int memory = bodies_[b]->history_count(), width = stress_size<dim> + memory;
     std::vector<double> sums(static_cast<size_t>(mesh_.cell_count()) * width, 0), volume(mesh_.cell_count(), 0);
     for (int i = 0; i < p.count; ++i) {
@@ -241,24 +242,24 @@ Snapshot Simulation<dim, Phases>::gauss_points() const {
   for (const auto &body : bodies_)
     for (const HistoryField &field : history_fields(body->law()))
       if (std::none_of(s.columns.begin(), s.columns.end(), [&](const auto &c) { return c.name == field.name; })) column(field.name, field.unit.name, field.meaning, 1);
-  const int per_cell = statics_->points_per_cell();
+  const int per_cell = statics_->soil().points_per_cell();
   for (size_t b = 0; b < bodies_.size(); ++b) {
-    const GaussPoints<dim> &p = statics_->points()[b];
+    const GaussPoints<dim> &p = statics_->soil().points()[b];
     if (!p.present) continue;
     const auto fields = history_fields(bodies_[b]->law());
     const int memory = static_cast<int>(fields.size());
     for (int q = 0; q < p.count(); ++q) {
-      const int place = (q - statics_->first_point(p.cell[q]));
+      const int place = (q - statics_->soil().first_point(p.cell[q]));
       s.id.push_back(mesh_.global_cell[p.cell[q]] * per_cell + place), s.body.push_back(static_cast<int>(b));
       size_t k = 0;
       const auto put = [&](const double *values, int count) {
         s.columns[k].values.insert(s.columns[k].values.end(), values, values + count);
         ++k;
       };
-      const Vec<dim> u = statics_->displacement(p.cell[q], statics_->rule().point[place]);
+      const Vec<dim> u = statics_->soil().displacement(p.cell[q], statics_->soil().rule().point[place]);
       Stress<dim> strain;
       std::copy_n(&p.total_strain[q * stress_size<dim>], stress_size<dim>, &strain.xx);
-      const Barycentric<dim> &l = statics_->rule().point[place];
+      const Barycentric<dim> &l = statics_->soil().rule().point[place];
       const double mass = p.volume[q] * (soil_density(scene_.body[b], p.position[q], load_time_) + (Phases::liquid ? flow_->water_density(p.cell[q], l) : 0));
       const double shear = Invariants<dim>(strain).q * std::sqrt(4. / 3);
       put(p.position[q].data(), dim), put(u.data(), dim), put(&p.stress[q * stress_size<dim>], stress_size<dim>);
@@ -307,7 +308,7 @@ void Simulation<dim, Phases>::start_stress() {
   };
   std::vector<Block> mine, all;
   for (int c = 0; c < mesh_.cell_count(); ++c) {
-    const int b = statics_->body_of(c);
+    const int b = statics_->soil().body_of(c);
     if (b < 0 || !present_[b]) continue;
     Block block{{}, 0, 1e300, -1e300};
     Vec<dim> centre{};
@@ -339,7 +340,7 @@ void Simulation<dim, Phases>::start_stress() {
     for (int s = strip_of(all[k].low); s <= strip_of(all[k].high); ++s) in_strip[s].push_back(static_cast<int>(k));
 
   for (size_t b = 0; b < bodies_.size(); ++b) {
-    GaussPoints<dim> &points = statics_->points()[b];
+    GaussPoints<dim> &points = statics_->soil().points()[b];
     if (!present_[b]) continue;
     const double k0 = earth_pressure_at_rest(scene_.body[b], laws_[b]);
     for (int q = 0; q < points.count(); ++q) {
@@ -370,7 +371,7 @@ void Simulation<dim, Phases>::start_stress() {
         pressure = pressure_(x, load_time_);
         if (scene_.water.open_water_load) weight += pressure_(surface, load_time_);
       }
-      if constexpr (Phases::liquid) pressure = flow_->stress_pressure(points.cell[q], statics_->rule().point[q % statics_->points_per_cell()]);
+      if constexpr (Phases::liquid) pressure = flow_->stress_pressure(points.cell[q], statics_->soil().rule().point[q % statics_->soil().points_per_cell()]);
       double *stress = &points.stress[q * stress_size<dim>];
       std::fill_n(stress, stress_size<dim>, 0.);
       stress[1] = pressure - weight, stress[0] = stress[2] = k0 * stress[1];

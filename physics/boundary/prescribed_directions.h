@@ -1,0 +1,33 @@
+#pragma once
+/// The directions in which boundaries prescribe the motion of a node, orthonormal: what comes first counts, what a later one adds is kept.
+#include <array>
+#include <cmath>
+
+#include "physics/boundary/boundary.h"
+
+namespace talus {
+
+inline constexpr double least_angle_sine = 0.05233595624294384;  // of 3 degrees: facets of one curved face share a direction within this
+
+/// Plates that move come first, then what is fixed, then rollers: a node where they meet follows the strongest.
+inline int priority(const Boundary &kind) {
+  return std::holds_alternative<PrescribedVelocity>(kind) ? 0 : std::holds_alternative<Fixed>(kind) ? 1 : 2;
+}
+
+template <int dim>
+struct PrescribedDirections {
+  int count = 0;
+  std::array<Vec<dim>, dim> direction;  ///< orthonormal
+  std::array<int, dim> source;          ///< boundary of each direction
+  /// Takes what a unit vector has beyond the directions that are there, if it is more than round-off of the same face.
+  void add(const Vec<dim> &wanted, int of) {
+    ColumnVector<dim> rest = map<dim>(wanted);
+    for (int k = 0; k < count; ++k) rest -= rest.dot(map<dim>(direction[k])) * map<dim>(direction[k]);
+    if (count == dim || rest.norm() < least_angle_sine) return;
+    rest.normalize();
+    map<dim>(direction[count]) = rest;
+    source[count++] = of;
+  }
+};
+
+}  // namespace talus

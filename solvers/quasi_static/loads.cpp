@@ -1,0 +1,135 @@
+#include "solvers/quasi_static/loads.h"
+
+#include <algorithm>
+
+namespace talus {
+
+template <int dim>
+void Loads<dim>::activate() {
+  facets_.clear();
+  const BackgroundMesh<dim> &mesh = soil_.mesh();
+  for (size_t s = 0; s < sources_.size(); ++s) {
+    if (!std::holds_alternative<Traction>(sources_[s].kind) && !std::holds_alternative<Head>(sources_[s].kind)) continue;
+    for (const std::string &group : sources_[s].groups)
+      for (const Facet<dim> &facet : mesh.has_group(group) ? mesh.facets(group) : std::vector<Facet<dim>>{}) {
+        if (!soil_.active(facet.cell)) continue;
+        const int across = mesh.cells[facet.cell].neighbour[facet.face];
+        facets_.push_back({facet, static_cast<int>(s), across >= 0 && soil_.active(across) ? 0.5 : 1., soil_.nodes().of_facet(facet.cell, facet.face)});
+      }
+  }
+}
+
+template <int dim>
+double Loads<dim>::pore_pressure(const Vec<dim> &x, double t) const {
+  const double p = data_.pressure(x, t);
+  return soil_.suction_matters() ? std::max(0., p) : p;
+}
+
+/// Weight, pore pressure and body acceleration of a cell.
+template <int dim>
+void Loads<dim>::add_volume(int c, double t, std::vector<double> &force) const {
+  const BackgroundMesh<dim> &mesh = soil_.mesh();
+  const int order = soil_.nodes().order(), per_cell = element_nodes<dim>(order);
+  std::array<double, element_nodes<dim>(2)> shape;
+  std::array<Vec<dim>, element_nodes<dim>(2)> gradient;
+  const BodySource &source = scene_.body[soil_.body_of(c)];
+  const int *node = soil_.nodes().of_cell(c);
+  const auto add = [&](int a, double scale, const Vec<dim> &v) {
+    for (int d = 0; d < dim; ++d) force[node[a] * dim + d] += scale * v[d];
+  };
+  Vec<dim> gravity;
+  std::copy_n(scene_.gravity.begin(), dim, gravity.begin());
+  std::array<double, dim + 1> pressure{};  // at the vertices, linear between them as in the motion of particles
+  Vec<dim> slope{};
+  const auto of_l = barycentric_gradients<dim>(mesh.cells[c]);
+  if (data_.pressure)
+    for (int a = 0; a <= dim; ++a) {
+      pressure[a] = pore_pressure(mesh.position[mesh.cells[c].node[a]], t);
+      for (int d = 0; d < dim; ++d) slope[d] += pressure[a] * of_l[a][d];
+    }
+  const Quadrature<dim> &rule = soil_.rule();
+  for (size_t q = 0; q < rule.point.size(); ++q) {
+    const double volume = mesh.volume[c] * rule.weight[q];
+    double density = data_.density(source, place_in(mesh, c, rule.point[q]), t);
+    if (data_.flow) density += data_.flow->water_density(c, rule.point[q]);
+    shape_functions<dim>(order, rule.point[q], shape.data());
+    if (data_.pressure && !data_.open_water_load) shape_gradients<dim>(order, rule.point[q], of_l, gradient.data());
+    double here = 0;
+    for (int a = 0; a <= dim; ++a) here += rule.point[q][a] * pressure[a];
+    for (int a = 0; a < per_cell; ++a) {
+      add(a, density * volume * shape[a], gravity);
+      if (!data_.pressure) continue;
+      data_.open_water_load ? add(a, -volume * shape[a], slope) : add(a, volume * here, gradient[a]);
+    }
+  }
+  if (source.body_acceleration.empty()) return;
+  for (size_t q = 0; q < rule_.point.size(); ++q) {
+    const Vec<dim> x = place_in(mesh, c, rule_.point[q]);
+    Vec<dim> b;
+    for (int d = 0; d < dim; ++d) b[d] = source.body_acceleration[d](x[0], x[1], dim == 3 ? x[dim - 1] : 0, t);
+    shape_functions<dim>(order, rule_.point[q], shape.data());
+    const double density = data_.density(source, x, t) + (data_.flow ? data_.flow->water_density(c, rule_.point[q]) : 0);
+    const double mass = mesh.volume[c] * rule_.weight[q] * density;
+    for (int a = 0; a < per_cell; ++a) add(a, mass * shape[a], b);
+  }
+}
+
+template <int dim>
+void Loads<dim>::force(double t, std::vector<double> &force) const {
+  const ElementNodes<dim> &nodes = soil_.nodes();
+  force.assign(static_cast<size_t>(nodes.count()) * dim, 0);
+  for (int c = 0; c < soil_.mesh().cell_count(); ++c)
+    if (soil_.active(c)) add_volume(c, t, force);
+  std::array<double, element_nodes<dim>(2)> shape;
+  for (const LoadedFacet &load : facets_)
+    for (size_t q = 0; q < facet_rule_.point.size(); ++q) {
+      Vec<dim> x{};
+      for (int a = 0; a < dim; ++a)
+        for (int d = 0; d < dim; ++d) x[d] += facet_rule_.point[q][a] * nodes.position[load.node[a]][d];
+      shape_functions<dim - 1>(nodes.order(), facet_rule_.point[q], shape.data());
+      const Vec<dim> traction = traction_of(load, x, t);
+      const double area = load.share * load.facet.area * facet_rule_.weight[q];
+      for (size_t a = 0; a < load.node.size(); ++a)
+        for (int d = 0; d < dim; ++d) force[load.node[a] * dim + d] += area * shape[a] * traction[d];
+    }
+}
+
+/// Of a load, or of open water [Pa].
+template <int dim>
+Vec<dim> Loads<dim>::traction_of(const LoadedFacet &load, const Vec<dim> &x, double t) const {
+  const Boundary &kind = sources_[load.source].kind;
+  if (const auto *given = std::get_if<Traction>(&kind)) return given->template load<dim>(load.facet.normal, x, t);
+  Vec<dim> traction = load.facet.normal;
+  for (double &component : traction) component *= -std::get<Head>(kind).outside(x[0], x[1], 0, t, data_.flow->unit_weight());
+  return traction;
+}
+
+template <int dim>
+PetscErrorCode Loads<dim>::mean_displacement(std::vector<Vec<dim>> &face) const {
+  PetscFunctionBeginUser;
+  const int count = static_cast<int>(sources_.size());
+  const std::vector<double> &u = soil_.displacement();
+  face.assign(count, Vec<dim>{});
+  std::vector<double> area(count, 0);
+  std::array<double, element_nodes<dim>(2)> shape;
+  for (const LoadedFacet &load : facets_)
+    for (size_t q = 0; q < facet_rule_.point.size(); ++q) {
+      shape_functions<dim - 1>(soil_.nodes().order(), facet_rule_.point[q], shape.data());
+      const double weight = load.share * load.facet.area * facet_rule_.weight[q];
+      area[load.source] += weight;
+      for (size_t a = 0; a < load.node.size(); ++a)
+        for (int d = 0; d < dim; ++d) face[load.source][d] += weight * shape[a] * u[load.node[a] * dim + d];
+    }
+  if (count) {
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, face[0].data(), count * dim, MPI_DOUBLE, MPI_SUM, soil_.nodes().comm()));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, area.data(), count, MPI_DOUBLE, MPI_SUM, soil_.nodes().comm()));
+  }
+  for (int s = 0; s < count; ++s)
+    for (double &component : face[s]) component = area[s] > 0 ? component / area[s] : 0;
+  PetscFunctionReturn(0);
+}
+
+template class Loads<2>;
+template class Loads<3>;
+
+}  // namespace talus

@@ -1,0 +1,42 @@
+#pragma once
+/// What loads the soil of a quasi-static problem: weight, pore pressure, body accelerations, tractions and open water on faces.
+#include "physics/boundary/conditions.h"
+#include "solvers/quasi_static/soil_elements.h"
+
+namespace talus {
+
+template <int dim>
+class Loads {
+ public:
+  using Source = typename Conditions<dim>::Source;
+  /// The references must outlive the loads.
+  Loads(const SoilElements<dim> &soil, const Scene &scene, const std::vector<Source> &sources, const SoilData<dim> &data)
+      : soil_(soil), scene_(scene), sources_(sources), data_(data), rule_(load_quadrature<dim>()), facet_rule_(load_quadrature<dim - 1>()) {}
+  /// Finds the loaded faces of the soil that is active now.
+  void activate();
+  /// On local nodes at time t, this rank's part [N].
+  void force(double t, std::vector<double> &force) const;
+  /// Mean displacement of each loaded face, by source [m]. Collective.
+  PetscErrorCode mean_displacement(std::vector<Vec<dim>> &face) const;
+
+ private:
+  struct LoadedFacet {
+    Facet<dim> facet;
+    int source;
+    double share;   ///< of its force that falls to this cell: half of it where soil stands on both sides
+    std::vector<int> node;
+  };
+  double pore_pressure(const Vec<dim> &x, double t) const;
+  Vec<dim> traction_of(const LoadedFacet &load, const Vec<dim> &x, double t) const;
+  void add_volume(int cell, double t, std::vector<double> &force) const;
+
+  const SoilElements<dim> &soil_;
+  const Scene &scene_;
+  const std::vector<Source> &sources_;
+  const SoilData<dim> &data_;
+  Quadrature<dim> rule_;
+  Quadrature<dim - 1> facet_rule_;
+  std::vector<LoadedFacet> facets_;
+};
+
+}  // namespace talus
