@@ -1,6 +1,8 @@
 #pragma once
 /// Pore pressure as a given function of place and time: hydrostatic below a water table whose level moves, plus an excess
-/// (phase model `drained`). Pressure is positive in compression.
+/// (phase model `drained`); what seepage has found stands in place of both where water flowed. Pressure is positive in compression.
+#include <cmath>
+
 #include "base/vec.h"
 #include "scene/scene.h"
 
@@ -23,20 +25,26 @@ class GivenPressure {
     const double s = std::clamp((x - points[k - 1][0]) / (points[k][0] - points[k - 1][0]), 0., 1.);
     return points[k - 1][1] + s * (points[k][1] - points[k - 1][1]) + level;
   }
-  bool below_table(const Vec<dim> &x, double t) const { return x[1] < table(x[0], t); }
+  bool below_table(const Vec<dim> &x, double t) const {
+    const double p = seeped(x);
+    return std::isnan(p) ? x[1] < table(x[0], t) : p > 0;
+  }
   /// Pore pressure at x [Pa].
   double operator()(const Vec<dim> &x, double t) const {
-    const double elevation = table(x[0], t);
+    const double elevation = table(x[0], t), p = seeped(x);
+    if (!std::isnan(p)) return p;
     return std::max(0., unit_weight_ * (elevation - x[1])) + water_->excess(x[0], x[1], dim == 3 ? x[2] : 0, t, elevation);
   }
   /// Hydrostatic suction at x above the water table; 0 without one [Pa].
   double above_table(const Vec<dim> &x, double t) const { return water_->table.empty() ? 0 : std::max(0., unit_weight_ * (x[1] - table(x[0], t))); }
-  /// Does the water table move?
-  bool moves() const { return !water_->table.empty() && !water_->level.constant(); }
+  /// May pores have filled or dried since the start?
+  bool moves() const { return water_->seeped || (!water_->table.empty() && !water_->level.constant()); }
   bool open_water_load() const { return water_->open_water_load; }
   double density() const { return water_->density; }
 
  private:
+  double seeped(const Vec<dim> &x) const { return water_->seeped ? water_->seeped(x.data()) : NAN; }
+
   const Water *water_;
   double unit_weight_;
 };

@@ -13,8 +13,9 @@ constexpr double earth = 9.81;  // [m/s2], for a hydraulic conductivity in a sce
 }  // namespace
 
 template <int dim>
-PoreFlow<dim>::PoreFlow(const BackgroundMesh<dim> &mesh, const Scene &scene, const std::vector<Source> &sources, bool suction)
-    : mesh_(mesh), scene_(scene), sources_(sources), body_of_(bodies_of_cells(mesh, scene)), suction_(suction),
+PoreFlow<dim>::PoreFlow(const BackgroundMesh<dim> &mesh, const Scene &scene, const std::vector<Source> &sources, bool suction,
+                        const std::vector<Source> &more)
+    : mesh_(mesh), scene_(scene), sources_(sources), shared_sources_(sources.size()), body_of_(bodies_of_cells(mesh, scene)), suction_(suction),
       bishop_(scene.water.stress == PoreStress::bishop), liquid_(scene.water) {
   double square = 0;
   for (int d = 0; d < dim; ++d) gravity_[d] = scene.gravity[d], square += gravity_[d] * gravity_[d];
@@ -22,7 +23,8 @@ PoreFlow<dim>::PoreFlow(const BackgroundMesh<dim> &mesh, const Scene &scene, con
   PetscInt begin, end = 0;
   (void)DMPlexGetChart(mesh_.plex(), &begin, &end);
   pressure_of_point_.assign(end, std::numeric_limits<double>::quiet_NaN());
-  inflow_.assign(sources.size(), 0);
+  sources_.insert(sources_.end(), more.begin(), more.end());
+  inflow_.assign(sources_.size(), 0);
 }
 
 template <int dim>
@@ -288,9 +290,19 @@ double PoreFlow<dim>::stored() const {
 
 template <int dim>
 std::vector<double> PoreFlow<dim>::inflow() const {
-  std::vector<double> all = inflow_;
+  std::vector<double> all(inflow_.begin(), inflow_.begin() + shared_sources_);
   if (!all.empty()) MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM, nodes_.comm());
   return all;
+}
+
+template <int dim>
+std::vector<std::pair<std::string, double>> PoreFlow<dim>::own_inflow() const {
+  std::vector<std::pair<std::string, double>> own;
+  for (std::size_t s = shared_sources_; s < sources_.size(); ++s) {
+    own.emplace_back(sources_[s].name, inflow_[s]);
+    MPI_Allreduce(MPI_IN_PLACE, &own.back().second, 1, MPI_DOUBLE, MPI_SUM, nodes_.comm());
+  }
+  return own;
 }
 
 // ---- what soil feels ----

@@ -36,8 +36,9 @@ template <int dim>
 class PoreFlow {
  public:
   using Source = typename Conditions<dim>::Source;
-  /// `suction`: pores may dry; else they stay full whatever the pressure. The references must outlive it.
-  PoreFlow(const BackgroundMesh<dim> &mesh, const Scene &scene, const std::vector<Source> &sources, bool suction);
+  /// `suction`: pores may dry; else they stay full whatever the pressure. `more` are boundaries of the water that no one else knows. The
+  /// references must outlive it.
+  PoreFlow(const BackgroundMesh<dim> &mesh, const Scene &scene, const std::vector<Source> &sources, bool suction, const std::vector<Source> &more = {});
 
   /// Cells through which water flows. Nodes keep their pressure; those that were not there before take `fresh`(x). Collective.
   PetscErrorCode activate(const std::vector<char> &active, const std::function<double(const Vec<dim> &)> &fresh);
@@ -77,6 +78,9 @@ class PoreFlow {
   double stored() const;
   /// Volume per time that enters through each boundary in the last step [m3/s], by source. Collective.
   std::vector<double> inflow() const;
+  /// The same, of the boundaries that no one else knows, by their names. Collective.
+  std::vector<std::pair<std::string, double>> own_inflow() const;
+  int cell_count() const { return mesh_.cell_count(); }
 
   std::vector<double> pressure;   ///< trial, of local nodes [Pa]
   std::vector<double> accepted;   ///< at the start of the step [Pa]
@@ -97,7 +101,8 @@ class PoreFlow {
 
   const BackgroundMesh<dim> &mesh_;
   const Scene &scene_;
-  const std::vector<Source> &sources_;
+  std::vector<Source> sources_;
+  std::size_t shared_sources_;              ///< so many stand first
   std::vector<int> body_of_;
   bool suction_, bishop_;
   Liquid liquid_;

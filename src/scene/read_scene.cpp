@@ -85,7 +85,8 @@ class Checks {
     const bool grains = body.porosity > 0 && body.grain_density > 0;
     if (scene_.phases != PhaseModel::dry && !grains)
       reader_.complain(path, "needs porosity and grain_density, since the scene has pore water (phases = \"" + phases() + "\")");
-    if (fluids_move(scene_.phases)) pores(path, body);
+    const bool seeps = scene_.phases == PhaseModel::drained && std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &stage) { return stage.kind == StageKind::seepage; });
+    if (fluids_move(scene_.phases) || seeps) pores(path, body);
     if (body.density > 0 && body.grain_density > 0)
       reader_.complain(path + ".density", "is given twice: give density, or porosity and grain_density");
     if (!(body.density > 0) && !grains)
@@ -95,7 +96,9 @@ class Checks {
   void pores(const std::string &path, const BodySource &body) const {
     if (!(body.permeability > 0) && !(body.hydraulic_conductivity > 0))
       reader_.complain(path, "needs permeability [m2] or hydraulic_conductivity [m/s], since pore water moves (phases = \"" + phases() + "\")");
-    if (scene_.phases != PhaseModel::saturated && !body.retention.reader)
+    const bool may_dry = scene_.phases == PhaseModel::drained ? std::any_of(scene_.body.begin(), scene_.body.end(), [](const BodySource &b) { return b.retention.reader; })
+                                                              : scene_.phases != PhaseModel::saturated;
+    if (may_dry && !body.retention.reader)
       reader_.complain(path, "needs a retention curve, since its saturation may change (phases = \"" + phases() + "\"): add [" + path + ".retention] with curve");
   }
 
@@ -118,8 +121,12 @@ class Checks {
 
   void stage(const Stage &stage, const std::string &path) const {
     bodies_of(stage, path);
-    if (water_flows(stage.kind) && scene_.phases != PhaseModel::saturated && scene_.phases != PhaseModel::unsaturated)
-      reader_.complain(path + ".kind", "needs pore water that moves: set phases = \"saturated\" or \"unsaturated\", not \"" + phases() + "\"");
+    const bool drained = scene_.phases == PhaseModel::drained;
+    if (water_flows(stage.kind) && scene_.phases != PhaseModel::saturated && scene_.phases != PhaseModel::unsaturated && !(drained && stage.kind == StageKind::seepage))
+      reader_.complain(path + ".kind", "needs pore water that moves: set phases = \"saturated\" or \"unsaturated\"" +
+                                           std::string(stage.kind == StageKind::seepage ? " (or \"drained\", whose pressure then is what seeps in)" : "") + ", not \"" + phases() + "\"");
+    if (drained && water_flows(stage.kind) && !(scene_.water.excess.constant() && scene_.water.excess(0) == 0))
+      reader_.complain("water.excess", "has no place beside seepage, which finds the pressure: give pressures, heads or fluxes at [boundary.NAME]");
     if (stage.kind == StageKind::consolidation && scene_.quasi_static.elements != Elements::quadratic)
       reader_.complain("quasi_static.elements", "must be \"quadratic\" for consolidation: displacement of first order beside pressure of first order is not stable");
     if (stage.steady && stage.kind != StageKind::seepage) reader_.complain(path + ".steady", "belongs to seepage: set kind = \"seepage\"");

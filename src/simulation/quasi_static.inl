@@ -6,16 +6,33 @@
 #include <sstream>
 
 #include "scene/reader.h"
+#include "scene/words.h"
 #include "simulation/simulation_impl.h"
+#include "solvers/quasi_static/seeped_pressure.h"
 
 namespace talus {
+
 
 template <int dim, class Phases>
 void Simulation<dim, Phases>::make_statics() {
   SoilData<dim> data;
   data.density = [this](const BodySource &source, const Vec<dim> &x, double t) { return soil_density(source, x, t); };
   data.open_water_load = scene_.water.open_water_load;
-  if constexpr (Phases::given) data.pressure = [this](const Vec<dim> &x, double t) { return pressure_(x, t); };
+  if constexpr (Phases::given) {
+    data.pressure = [this](const Vec<dim> &x, double t) { return pressure_(x, t); };
+    if (flow_stages()) {
+      const bool dries = std::any_of(scene_.body.begin(), scene_.body.end(), [](const BodySource &b) { return b.retention.reader; });
+      std::vector<typename Conditions<dim>::Source> water;
+      for (BoundarySource &b : scene_.seepage_boundary) {
+        water.push_back({b.name, b.group, read_boundary(b.kind)});
+        for (const std::string &group : b.group)
+          if (!mesh_.has_group(group) && group != free_surface)
+            scene_.complain("boundary." + b.name + ".group", "must name groups of facets; the mesh has no \"" + group + "\"; " + suggestion(group, mesh_.group_names()));
+      }
+      scene_.water.seeped = nullptr;
+      flow_ = std::make_unique<PoreFlow<dim>>(mesh_, scene_, conditions_.sources(), dries, water);
+    }
+  }
   if constexpr (Phases::liquid) {
     flow_ = std::make_unique<PoreFlow<dim>>(mesh_, scene_, conditions_.sources(), Phases::suction);
     data.flow = flow_.get();
@@ -36,7 +53,22 @@ PetscErrorCode Simulation<dim, Phases>::activate() {
   PetscCall(statics_->activate(present_));
   if constexpr (Phases::liquid)
     PetscCall(flow_->activate(statics_->soil().active(), [this](const Vec<dim> &x) { return motion_->fluid().given_pressure(x, load_time_); }));
+  if constexpr (Phases::given)
+    if (flow_) PetscCall(flow_->activate(statics_->soil().active(), [this](const Vec<dim> &x) {
+      const Function &suction = scene_.water.suction;
+      const double above = suction.given() ? suction(x[0], x[1], dim == 3 ? x[dim - 1] : 0, load_time_) : pressure_.above_table(x, load_time_);
+      return pressure_(x, load_time_) - (pressure_.below_table(x, load_time_) ? 0 : above);
+    }));
   PetscFunctionReturn(0);
+}
+
+/// From now on the pressure of a drained scene is what the flow has found. Laws that read suction see it, others take it for none.
+template <int dim>
+std::shared_ptr<SeepedPressure<dim>> take_seeped(const PoreFlow<dim> &flow, const std::vector<Law> &laws, Water &water) {
+  const bool suction = std::any_of(laws.begin(), laws.end(), [](const Law &law) { return reads_suction(law); });
+  const auto found = std::make_shared<SeepedPressure<dim>>(flow, suction);
+  water.seeped = [found](const double *x) { return (*found)(x); };
+  return found;
 }
 
 template <int dim, class Phases>
@@ -120,6 +152,7 @@ void Simulation<dim, Phases>::run_quasi_static(const Stage &stage) {
   const auto load_at = [&](double s) { return hold_loads_ ? begin_load : begin_load + s * stage.duration; };
   const auto done = [&](double s) {
     time_ = begin + s * stage.duration, load_time_ = load_at(s), ++steps_;
+    if (Phases::given && water_flows(stage.kind)) take_seeped<dim>(*flow_, laws_, scene_.water);
     to_particles();
     if (results_) results_->progress.step(time_, steps_, particle_count_);
     write_history();
@@ -146,8 +179,11 @@ void Simulation<dim, Phases>::run_quasi_static(const Stage &stage) {
          << (outcome.singular ? "the stiffness became singular" : "Newton's iterations did not converge") << " (" << outcome.iterations
          << " iterations, out-of-balance force " << outcome.residual << " of the forces, largest step of a node " << outcome.largest << " m)";
     if (stage.when_lost == WhenLost::stop) fail(text.str());
+  } else if (stage.kind == StageKind::seepage) {
+    text << "stage " << stage.name << (stage.steady ? " has found the flow that lasts: " : " has followed the water: ") << iterations << " iterations";
+    for (const auto &[name, inflow] : flow_->own_inflow()) text << "; " << inflow << " m3/s enter at " << name;
   } else {
-    text << "stage " << stage.name << " is in equilibrium: " << statics_->unknowns() << " unknowns, " << iterations << " iterations, largest displacement "
+    text << "stage " << stage.name << " is in equilibrium: " << statics_->unknowns() << " unknowns, " << iterations << " iterations (" << (statics_->direct() ? "LU" : "GMRES and multigrid") << "), largest displacement "
          << statics_->soil().largest_displacement() << " m";
   }
   Balance sums;
@@ -157,6 +193,8 @@ void Simulation<dim, Phases>::run_quasi_static(const Stage &stage) {
   if (sums.applied > 0) text << "; unbalanced force ratio of the particles that take it over " << sums.unbalanced / sums.applied;
   note(text.str());
   stage_.met = true;
+  if (Phases::given && water_flows(stage.kind) && results_)  // for a run that is resumed behind this stage
+    take_seeped<dim>(*flow_, laws_, scene_.water)->save(comm_, seeped_file(options_.directory));
   write_checkpoint();
   if (stage.reset_displacement) statics_->soil().reset_displacement(), reset_displacement();
 }

@@ -359,10 +359,32 @@ const WrongWords wrong_words[] = {
      {"boundary.base.kind", "no quasi-static form"}},
     {"seepage_without_water_that_moves",
      {"solve", "scene.toml", "--set", "stage.0.kind=seepage"},
-     {"stage.0.kind", "needs pore water that moves", "phases = \"saturated\" or \"unsaturated\", not \"dry\""}},
+     {"stage.0.kind", "needs pore water that moves", "phases = \"saturated\" or \"unsaturated\" (or \"drained\"", "not \"dry\""}},
     {"steady_motion", {"run", "scene.toml", "--set", "stage.0.steady=true"}, {"stage.0.steady", "set kind = \"seepage\""}},
     {"no_results_to_plot", {"plot", "nowhere"}, {"nowhere holds no results"}},
 };
+
+/// A drained scene with a seepage stage, and what does not go with it.
+TEST(Seepage, OfDrainedSoilIsChecked) {
+  const Folder folder;
+  folder.write("section.csv", good_section);
+  const std::string wet = changed(changed(changed(good_scene, dry_part, WET_PART), "gravity", "phases = \"drained\"\ngravity"), "name = \"fall\"", "name = \"water\"\nkind = \"seepage\"");
+  struct Spoiled {
+    std::string scene;
+    std::vector<std::string> words;
+  };
+  for (const auto &[scene, words] : std::vector<Spoiled>{
+           {changed(wet, "seepage", "consolidation"), {"stage.0.kind", "phases = \"saturated\" or \"unsaturated\", not \"drained\""}},
+           {changed(wet, "[water]", "[water]\nexcess = \"10 kPa\""), {"water.excess", "has no place beside seepage", "[boundary.NAME]"}},
+           {changed(wet, "permeability = 1e-10", ""), {"body.sand", "needs permeability [m2] or hydraulic_conductivity [m/s]"}},
+           {wet + "[boundary.pond]\nkind = \"head\"\nlevel = 0.4\n", {"boundary.pond.group", "the mesh has no \"pond\""}},
+           {wet + "[boundary.air]\ngroup = \"free_surface\"\nkind = \"gas_pressure\"\n", {"boundary.air", "phases = \"drained\" has none"}}}) {
+    folder.write("scene.toml", scene);
+    const Ending ending = talus(folder, {"solve", "scene.toml", "--no-pictures"});
+    EXPECT_EQ(ending.status, 2) << ending.output;
+    for (const std::string &word : words) EXPECT_TRUE(ending.says(word)) << word << ending.output;
+  }
+}
 
 TEST(RightArguments, HaveUnits) {
   const Folder folder;

@@ -234,6 +234,87 @@ tolerance = 1e-11
   }
 }
 
+/// What a scene says to PETSc while it lives.
+struct Options {
+  explicit Options(const char *text) { PetscOptionsInsertString(nullptr, text); }
+  ~Options() { PetscOptionsClear(nullptr); }
+};
+
+/// A body too large for LU goes by multigrid, and the log says so; PETSc's options have the last word.
+TEST(QuasiStatic, linear_solver_follows_size_and_options) {
+  int ranks;
+  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  const std::string column = "gravity = 10\n" + block + "[boundary.walls]\ngroup = [\"base\", \"left\", \"right\", \"front\", \"back\"]\nkind = \"roller\"\n";
+  const double modulus = 10e6 * 0.7 / (1.3 * 0.4);
+  const auto settles = [&](const Solved &solved) {
+    return largest(solved, 1, [&](size_t p, int) {
+      const double y = solved.value("position", p, 1);
+      return (solved.value("displacement", p, 1) + 2e4 / modulus * (y - y * y / 2)) / (2e4 / modulus);
+    });
+  };
+  const Solved small = solve(column, in_3d);
+  EXPECT_NE(small.events.at(0).text.find("(LU)"), std::string::npos) << small.events[0].text;
+  for (const char *options : {"-talus_ksp_type cg -talus_pc_type hypre -talus_ksp_rtol 1e-12", "-talus_ksp_type gmres -talus_pc_type gamg -talus_ksp_rtol 1e-12"}) {
+    const Options given(options);
+    EXPECT_LT(settles(solve(column, in_3d)), 1e-8) << options;  // the tolerance of Newton
+  }
+  {
+    const Options given("-talus_ksp_type richardson -talus_pc_type none -talus_ksp_max_it 1");
+    EXPECT_THROW(solve(column, in_3d), RunError) << "a solver that cannot";
+  }
+  if (ranks > 1) return;  // once is enough for so large a body
+  const Solved large = solve(column, {"dimension=3", "mesh.thickness=1", "mesh.layers=0", "mesh.size=0.08"});
+  EXPECT_NE(large.events.at(0).text.find("(GMRES and multigrid)"), std::string::npos) << large.events[0].text;
+  EXPECT_LT(settles(large), 1e-7);  // ten times the tolerance of Newton and GMRES
+}
+
+/// What a stage hands over does not depend on ranks: stress of the particles, and the motion that goes on from it.
+TEST(QuasiStatic, hand_over_is_the_same_on_all_ranks) {
+  const std::string text = "gravity = 10\n" + block + "reset_displacement = true\n[boundary.base]\nkind = \"fixed\"\n[boundary.left]\nkind = \"non_reflecting\"\n"
+                           "[[stage]]\nname = \"load\"\nduration = 0.02\n[[stage]]\nname = \"again\"\nkind = \"quasi_static\"\nduration = 1\n"
+                           "[[stage]]\nname = \"motion\"\nduration = 0.02\n[boundary.right]\nkind = \"traction\"\npressure = \"200 * t\"\n";
+  const std::vector<std::string> keys{"quasi_static.elements=patches", "quasi_static.tolerance=1e-12", "body.soil.law=mohr_coulomb", "body.soil.cohesion=6000", "body.soil.friction_angle=10"};
+  const auto run = [&](MPI_Comm comm) {
+    Scene scene = parse_scene(text, meshes + "/scene.toml", keys);
+    RunOptions options;
+    options.pictures = options.screen = false;
+    const auto simulation = make_simulation(comm, scene, options);
+    simulation->run();
+    return Solved{simulation->snapshot(), simulation->history(), simulation->events()};
+  };
+  int rank, ranks;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank), MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  Solved whole;
+  for (int r = 0; r < ranks; ++r) {  // one after the other: they share the file of the mesh
+    if (r == rank) whole = run(PETSC_COMM_SELF);
+    MPI_Barrier(PETSC_COMM_WORLD);
+  }
+  std::map<long long, size_t> place;
+  for (size_t i = 0; i < whole.points.id.size(); ++i) place[whole.points.id[i]] = i;
+  const Solved shared = run(PETSC_COMM_WORLD);
+  const auto differs = [&](const char *field, int components, double scale) {
+    return largest(shared, components, [&](size_t p, int k) { return (shared.value(field, p, k) - whole.value(field, place.at(shared.points.id[p]), k)) / scale; });
+  };
+  EXPECT_LT(differs("stress", 4, 2e4), 1e-9);          // Newton's tolerance, a thousand times
+  EXPECT_LT(differs("displacement", 2, 1e-3), 1e-9);   // of what gravity moved it
+  EXPECT_LT(differs("velocity", 2, 1e-2), 1e-9);
+}
+
+/// A face that swallows waves bears in a quasi-static stage what its `support` bears, and goes on to do so as a dead load: a column between such faces
+/// settles as between rollers and then keeps still.
+TEST(QuasiStatic, non_reflecting_faces_hold) {
+  const std::string text = "gravity = 10\n" + block + "reset_displacement = true\n[boundary.base]\nkind = \"fixed\"\n[boundary.sides]\ngroup = [\"left\", \"right\"]\nkind = \"non_reflecting\"\n";
+  const std::vector<std::string> keys{"quasi_static.elements=patches", "quasi_static.tolerance=1e-12"};
+  const Solved column = solve(text, keys), between_rollers = solve(text, keys + std::vector<std::string>{"boundary.sides.kind=roller"});
+  EXPECT_LT(largest(column, 4, [&](size_t p, int k) { return (column.value("stress", p, k) - between_rollers.value("stress", p, k)) / 2e4; }), 1e-12);
+  const Solved moved = solve(text + "[[stage]]\nname = \"rest\"\nduration = 1\n[output.point.top]\nposition = [0.5, 1]\n", keys);
+  const auto way = moved.history.column("top_displacement_m"), speed = moved.history.column("top_velocity_m_s"), push = moved.history.column("sides_force_x_N");
+  EXPECT_LT(*std::max_element(way.end() - 100, way.end()), 1e-9);      // gravity moved it by 0.7 mm
+  EXPECT_LT(*std::max_element(speed.end() - 100, speed.end()), 1e-9);  // sound goes at 80 m/s
+  const Solved free = solve(text, keys + std::vector<std::string>{"boundary.sides.support=none"});
+  EXPECT_GT(largest(free, 1, [&](size_t p, int) { return (free.value("stress", p, 0) - column.value("stress", p, 0)) / 2e4; }), 0.1) << "nothing holds it then";
+}
+
 const std::string wet_block = R"(
 gravity = 10
 phases = "saturated"
@@ -269,6 +350,47 @@ TEST(Water, comes_to_rest_and_stays) {
     const double weight = 10 * (0.7 * 2600 - 0.7 * 1000);  // of the grains less that of the water they displace
     EXPECT_LT(largest(solved, 1, [&](size_t p, int) { return solved.value("stress", p, 1) / weight + (1 - solved.value("position", p, 1)); }), 1e-6);
   }
+}
+
+/// In a drained scene seepage finds the pressure of the stages after it: through a confined block it falls linearly, soil bears its gradient as in a
+/// saturated scene, and particles that take over keep still.
+TEST(Water, seeps_through_drained_soil) {
+  const std::string text = wet_block + "[boundary.in]\ngroup = \"left\"\nkind = \"pore_pressure\"\npressure = 8e3\n[boundary.out]\ngroup = \"right\"\nkind = \"pore_pressure\"\n"
+                                       "[boundary.lid]\ngroup = [\"base\", \"surface\"]\nkind = \"impermeable\"\n"
+                                       "[[stage]]\nname = \"water\"\nkind = \"seepage\"\nsteady = true\nduration = 1\n"
+                                       "[[stage]]\nname = \"soil\"\nkind = \"quasi_static\"\nduration = 1\nreset_displacement = true\n";
+  const std::vector<std::string> keys{"phases=drained", "gravity=0", "water.table=[]", "water.open_water_load=false", "quasi_static.elements=patches", "quasi_static.tolerance=1e-8",
+                                      "boundary.walls.kind=fixed", "boundary.walls.group=base"};
+  const Solved drained = solve(text, keys);
+  EXPECT_LT(largest(drained, 1, [&](size_t p, int) { return drained.value("pore_pressure", p) / 8e3 - (1 - drained.value("position", p, 0)); }), 1e-9);
+  const std::vector<std::string> fine = keys + std::vector<std::string>{"quasi_static.elements=quadratic"};  // patches average pressure in another way
+  const Solved given = solve(text, fine), moving = solve(text, fine + std::vector<std::string>{"phases=saturated"});
+  EXPECT_LT(largest(given, 4, [&](size_t p, int k) { return (given.value("stress", p, k) - moving.value("stress", p, k)) / 8e3; }), 1e-6);
+  EXPECT_GT(largest(given, 1, [&](size_t p, int) { return given.value("stress", p, 0) / 8e3; }), 0.1);
+  const Solved moved = solve(text + "[[stage]]\nname = \"rest\"\nduration = 0.5\n[output.point.top]\nposition = [0.5, 1]\n", keys);
+  const auto way = moved.history.column("top_displacement_m");
+  EXPECT_LT(*std::max_element(way.end() - 50, way.end()), 1e-9);
+}
+
+/// Water that rises by seepage makes a drained column lighter: effective stress follows the table where it stands, in static stages and at the particles.
+TEST(Water, rises_in_drained_soil) {
+  const std::string text = wet_block + "[body.soil.retention]\ncurve = \"van_genuchten\"\nreference_suction = \"1 kPa\"\nshape = 0.5\n"
+                                       "[body.soil.relative_permeability]\ncurve = \"van_genuchten_mualem\"\nshape = 0.5\n"
+                                       "[boundary.well]\ngroup = \"base\"\nkind = \"pore_pressure\"\npressure = \"min(9e3, 4e3 + t)\"\n"
+                                       "[[stage]]\nname = \"before\"\nkind = \"quasi_static\"\nduration = 1\nhold_loads = true\n"
+                                       "[[stage]]\nname = \"rise\"\nkind = \"seepage\"\nduration = 1e6\n"
+                                       "[[stage]]\nname = \"after\"\nkind = \"quasi_static\"\nduration = 1\nhold_loads = true\nreset_displacement = true\n"
+                                       "[[stage]]\nname = \"rest\"\nduration = 0.5\n[output.point.foot]\nposition = [0.5, 0.02]\n[output.point.top]\nposition = [0.5, 1]\n";
+  const std::vector<std::string> keys{"phases=drained", "water.table=[[0, 0.4]]", "output.history_interval=0.005", "quasi_static.elements=patches", "quasi_static.tolerance=1e-8"};
+  Scene scene = parse_scene(text, meshes + "/scene.toml", keys);
+  RunOptions options;
+  options.pictures = options.screen = false;
+  const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+  simulation->run();
+  const auto pressure = simulation->history().column("foot_pore_pressure_Pa"), way = simulation->history().column("top_displacement_m");
+  EXPECT_NEAR(pressure.front(), 4e3, 1e3);                             // the point is near the base, not at it
+  EXPECT_NEAR(pressure.back() - pressure.front(), 5e3, 5e3 * 1e-3);    // hydrostatic at last: time is a thousand times that of the flow
+  EXPECT_LT(*std::max_element(way.end() - 50, way.end()), 1e-7);
 }
 
 /// What consolidation has pressed out when it is over is what the soil has lost in volume.

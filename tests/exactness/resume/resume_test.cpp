@@ -95,6 +95,31 @@ TEST_P(Resumed, IsTheSameToTheBit) {
 
 INSTANTIATE_TEST_SUITE_P(All, Resumed, testing::ValuesIn(variants), [](const auto &variant) { return variant.param.name; });
 
+/// Pressures that seepage has found are there again when a drained run goes on behind it.
+TEST(ResumedBehindSeepage, KnowsItsPressures) {
+  const Folder folder;
+  folder.write("section.csv", good_section);
+  folder.write("scene.toml", changed(changed(changed(changed(good_scene, "density = 2000", "porosity = 0.3\ngrain_density = 2650\npermeability = 1e-10"), "gravity", "phases = \"drained\"\ngravity"),
+                                             "[body.sand]", "[water]\ntable = [[0, 0.1]]\n[body.sand]"),
+                                     "[[stage]]", "[boundary.well]\ngroup = \"left\"\nkind = \"pore_pressure\"\npressure = \"3 kPa\"\n"
+                                                  "[[stage]]\nname = \"water\"\nkind = \"seepage\"\nsteady = true\nduration = 1\n[[stage]]"));
+  const auto run = [&](const std::string &results, const std::string &duration, bool resume) {
+    std::vector<std::string> words{"run", "scene.toml", "-o", results, "--no-pictures", "--set", "stage.1.duration=" + duration};
+    if (resume) words.push_back("--resume");
+    const Ending ending = talus(folder, words);
+    EXPECT_EQ(ending.status, 0) << ending.output;
+  };
+  run("whole", "0.02", false), run("resumed", "0.01", false), run("resumed", "0.02", true);
+  const Ending ending = Program(folder, {PYTHON, "-c", R"(
+import h5py, numpy
+ends = [max(h5py.File(name + '/run.h5')['snapshots'].values(), key=lambda s: s.attrs['time']) for name in ('whole', 'resumed')]
+for field in ends[0]: assert numpy.array_equal(ends[0][field][...], ends[1][field][...]), field
+assert ends[0]['pore_pressure'][...].max() > 2e3
+print('the same')
+)"}).end();
+  EXPECT_TRUE(ending.says("the same")) << ending.output;
+}
+
 /// A short run that has ended.
 class EndedRun : public testing::Test {
  protected:

@@ -30,6 +30,15 @@ inline void laboratory(Rung &rung) {
   rung.compare("undrained q [Pa], Mohr-Coulomb", 6 * (5e3 * cosine + 100e3 * sine) / (3 - sine),
                rung.element_test("undrained", sand.keys()).back().deviator(), 1e-6);
 
+  // a plane that slips under an infinite slope, at constant stress across it: tan phi only if it dilates as much (Davis 1968)
+  for (const int psi : {0, 15, 35}) {
+    const double slip = 1 - sine * std::sin(psi * degree);
+    const ElementState state = rung.element_test("plane", {"material.law=mohr_coulomb", "material.friction_angle=35", "material.cohesion=5000",
+                                                           "material.dilation_angle=" + std::to_string(psi), "material.young_modulus=2e9"}).back();
+    rung.compare("shear stress of a slipping plane [Pa], Mohr-Coulomb, psi " + std::to_string(psi) + " deg",
+                 (100e3 * sine + 5e3 * cosine) * std::cos(psi * degree) / slip, state.stress[3], 1e-3);
+  }
+
   const double G = E / (2 * (1 + nu)), K = E / (3 * (1 - 2 * nu)), M = K + 4 * G / 3;
   const auto oedometer = rung.element_test("oedometer");
   for (const int leg : {1, 2, 3}) {

@@ -1,0 +1,133 @@
+#include "solvers/quasi_static/seeped_pressure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <numeric>
+#include <sstream>
+#include <stdexcept>
+
+namespace talus {
+
+template <int dim>
+SeepedPressure<dim>::SeepedPressure(const PoreFlow<dim> &flow, bool suction) {
+  std::vector<double> mine;
+  const ElementNodes<dim> &nodes = flow.nodes();
+  for (int c = 0; c < flow.cell_count(); ++c)
+    for (int a = 0; a <= dim && flow.active(c); ++a) {
+      const int node = nodes.of_cell(c)[a];
+      mine.insert(mine.end(), nodes.position[node].begin(), nodes.position[node].end());
+      mine.push_back(suction ? flow.accepted[node] : std::max(0., flow.accepted[node]));
+    }
+  int ranks, count = static_cast<int>(mine.size());
+  MPI_Comm_size(nodes.comm(), &ranks);
+  std::vector<int> counts(ranks), starts(ranks + 1, 0);
+  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, nodes.comm());
+  std::partial_sum(counts.begin(), counts.end(), starts.begin() + 1);
+  cells_.resize(starts[ranks]);
+  MPI_Allgatherv(mine.data(), count, MPI_DOUBLE, cells_.data(), counts.data(), starts.data(), MPI_DOUBLE, nodes.comm());
+  sort_into_bins();
+}
+
+template <int dim>
+SeepedPressure<dim>::SeepedPressure(const std::string &file) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);  // names of the columns
+  while (std::getline(in, line)) {
+    std::istringstream row(line);
+    for (std::string number; std::getline(row, number, ',');) cells_.push_back(std::stod(number));
+  }
+  if (!in.eof() || cells_.empty() || cells_.size() % width) throw std::runtime_error("cannot read the pore pressures in " + file);
+  sort_into_bins();
+}
+
+template <int dim>
+void SeepedPressure<dim>::save(MPI_Comm comm, const std::string &file) const {
+  int rank, failed = 0;
+  MPI_Comm_rank(comm, &rank);
+  if (rank == 0) {
+    std::ofstream out(file);
+    out.precision(17);
+    const char *axis[] = {"x", "y", "z"};
+    for (int a = 0; a <= dim; ++a) {
+      for (int d = 0; d < dim; ++d) out << axis[d] << a << "_m,";
+      out << "pore_pressure" << a << "_Pa" << (a < dim ? "," : "\n");
+    }
+    for (size_t k = 0; k < cells_.size(); ++k) out << cells_[k] << ((k + 1) % width ? "," : "\n");
+    failed = !out.flush();
+  }
+  MPI_Bcast(&failed, 1, MPI_INT, 0, comm);
+  if (failed) throw std::runtime_error("cannot write " + file);
+}
+
+template <int dim>
+void SeepedPressure<dim>::sort_into_bins() {
+  const int count = static_cast<int>(cells_.size() / width);
+  Vec<dim> high;
+  low_.fill(1e300), high.fill(-1e300);
+  for (size_t k = 0; k < cells_.size(); k += dim + 1)
+    for (int d = 0; d < dim; ++d) low_[d] = std::min(low_[d], cells_[k + d]), high[d] = std::max(high[d], cells_[k + d]);
+  for (int d = 0; d < dim; ++d) {
+    bins_[d] = std::max(1, static_cast<int>(std::pow(count, 1. / dim)));
+    bin_size_[d] = std::max((high[d] - low_[d]) / bins_[d], 1e-300);
+  }
+  // counted first, then filled
+  first_.assign(std::accumulate(bins_.begin(), bins_.end(), 1, std::multiplies<>()) + 1, 0);
+  const auto each_bin = [&](auto &&visit) {
+    for (int c = 0; c < count; ++c) {
+      std::array<int, dim> from, to, at;
+      from.fill(std::numeric_limits<int>::max()), to.fill(0);
+      for (int a = 0; a <= dim; ++a)
+        for (int d = 0; d < dim; ++d) {
+          const int bin = std::clamp(static_cast<int>((cells_[static_cast<size_t>(c) * width + a * (dim + 1) + d] - low_[d]) / bin_size_[d]), 0, bins_[d] - 1);
+          from[d] = std::min(from[d], bin), to[d] = std::max(to[d], bin);
+        }
+      for (at = from;;) {
+        int index = 0;
+        for (int d = 0; d < dim; ++d) index = index * bins_[d] + at[d];
+        visit(index, c);
+        int d = 0;
+        while (d < dim && ++at[d] > to[d]) at[d] = from[d], ++d;
+        if (d == dim) break;
+      }
+    }
+  };
+  each_bin([&](int bin, int) { ++first_[bin + 1]; });
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  in_bin_.resize(first_.back());
+  std::vector<int> next(first_.begin(), first_.end() - 1);
+  each_bin([&](int bin, int c) { in_bin_[next[bin]++] = c; });
+}
+
+template <int dim>
+double SeepedPressure<dim>::operator()(const double *x) const {
+  constexpr double edge = 1e-9;  // of a barycentric coordinate: round-off on faces
+  int bin = 0;
+  for (int d = 0; d < dim; ++d) {
+    const double at = (x[d] - low_[d]) / bin_size_[d];
+    if (!(at >= -edge && at <= bins_[d] + edge)) return std::numeric_limits<double>::quiet_NaN();
+    bin = bin * bins_[d] + std::clamp(static_cast<int>(at), 0, bins_[d] - 1);
+  }
+  for (int k = first_[bin]; k < first_[bin + 1]; ++k) {
+    const double *cell = &cells_[static_cast<size_t>(in_bin_[k]) * width];
+    Square<dim> edges;
+    ColumnVector<dim> from;
+    for (int d = 0; d < dim; ++d) {
+      from[d] = x[d] - cell[d];
+      for (int a = 0; a < dim; ++a) edges(d, a) = cell[(a + 1) * (dim + 1) + d] - cell[d];
+    }
+    const ColumnVector<dim> l = edges.inverse() * from;
+    if (l.minCoeff() < -edge || l.sum() > 1 + edge) continue;
+    double p = (1 - l.sum()) * cell[dim];
+    for (int a = 0; a < dim; ++a) p += l[a] * cell[(a + 1) * (dim + 1) + dim];
+    return p;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+template class SeepedPressure<2>;
+template class SeepedPressure<3>;
+
+}  // namespace talus

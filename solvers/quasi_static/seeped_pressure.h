@@ -1,0 +1,37 @@
+#pragma once
+/// Pore pressure that seepage has left in a `drained` scene, as a function of place (physics/pore_pressure.h): linear in the cells through which
+/// water flowed. Every rank knows all of it, since particles wander.
+#include <string>
+#include <vector>
+
+#include "solvers/quasi_static/pore_flow.h"
+
+namespace talus {
+
+/// Where a drained run keeps the pore pressure that its last seepage left.
+inline std::string seeped_file(const std::string &directory) { return directory + "/pore_pressure.csv"; }
+
+template <int dim>
+class SeepedPressure {
+ public:
+  /// The accepted pressures of a flow; with `suction` those below zero too, else zero in their place. Collective.
+  SeepedPressure(const PoreFlow<dim> &flow, bool suction);
+  /// As `save` wrote it. Throws std::runtime_error if the file cannot be read.
+  explicit SeepedPressure(const std::string &file);
+  /// One line for each cell: coordinates and pressure of its vertices. Throws std::runtime_error, on all ranks, if it cannot be written. Collective.
+  void save(MPI_Comm comm, const std::string &file) const;
+
+  /// Pressure at a place x [dim]; not a number where no water flowed [Pa].
+  double operator()(const double *x) const;
+
+ private:
+  static constexpr int width = (dim + 1) * (dim + 1);  ///< numbers of a cell: [vertex][coordinates, pressure]
+  void sort_into_bins();
+
+  std::vector<double> cells_;
+  std::vector<int> first_, in_bin_;      ///< cells that may reach into a bin of a regular grid
+  Vec<dim> low_{}, bin_size_{};
+  std::array<int, dim> bins_{};
+};
+
+}  // namespace talus
