@@ -69,6 +69,8 @@ class SoilMotion final : public Motion {
   int size() const override { return grid_.node_count() * dim * velocity_fields<Phases>; }
   double *velocity() override { return velocity_.empty() ? nullptr : velocity_[0].data(); }
 
+  /// Pore pressures of the state that a step has left, where no remap comes first. Collective.
+  PetscErrorCode settle();
   /// Hands particles what the nodes learned and frees the grid; the particles in `movers[body]` have left their cells.
   PetscErrorCode release(double t, std::vector<std::vector<int>> &movers);
   /// The same when `begin` follows as soon as the movers have found their new cells: particles that stay are gathered in the same
@@ -120,7 +122,7 @@ class SoilMotion final : public Motion {
   PetscErrorCode largest_frequency(int iterations, double *omega) requires(!Phases::liquid);
 
  private:
-  static constexpr int components = stress_size<dim>;
+  static constexpr int components = stress_size<dim>, fluids = velocity_fields<Phases> - 1;
 
   template <bool averaged, bool apic>
   void gather();
@@ -146,6 +148,7 @@ class SoilMotion final : public Motion {
   const double *find_suction(size_t body);
   /// Does velocity relax between remaps? Otherwise only remaps relax it.
   bool relaxes() const { return transfer_.remap_interval > 0 && relaxation_time_ > 0; }
+  typename Conditions<dim>::Inertia inertia(double gamma) const;
   PetscErrorCode back_and_forth(const Vec<dim> *in, Vec<dim> *out);
   double elastic_force(const Vec<dim> *x, Vec<dim> *force) const;
   void constrain(double t, Vec<dim> *v);

@@ -34,6 +34,7 @@ SoilMotion<dim, Phases>::SoilMotion(const BackgroundMesh<dim> &mesh, std::vector
   if (imposes_) imposed_.assign(nodes, Vec<dim>{});
   held_back_.assign(nodes, Vec<dim>{});
   update_.velocity.assign(nodes, Quad{}), update_.displacement.assign(nodes, Quad{});
+  for (int a = 0; a < fluids; ++a) update_.fluid[a].assign(nodes, Quad{});
   if (Phases::given) extra_mass_.assign(nodes, 0);
   for (auto *field : {&particle_volume_, &weight_, &blend_, &filling_, &volume_strain_, &slenderness_}) field->assign(cells, 0);
   increment_.resize(cells), cell_stress_.resize(cells), impedance_.resize(cells);
@@ -77,7 +78,9 @@ void SoilMotion<dim, Phases>::gather() {
     PointSet &points = points_[b];
     const ParticleArrays<dim> &p = bodies_[b]->particles();
     if (!averaged) points.own_cell.resize(std::max<size_t>(points.own_cell.size(), p.count));
-    to_nodes<dim, averaged, apic>(*bodies_[b], grid_, start_velocity_.data(), points, movers_ ? &(*movers_)[b] : nullptr);
+    Pores<dim> pores;
+    if constexpr (Phases::liquid) pores = fluid_.pores(b);
+    to_nodes<dim, averaged, apic, fluids>(*bodies_[b], grid_, start_velocity_.data(), points, pores, movers_ ? &(*movers_)[b] : nullptr);
     if (!averaged) points.count = p.count;
     attach(b);
   }
@@ -93,6 +96,13 @@ void SoilMotion<dim, Phases>::attach(size_t b) {
   points.cell = points.own_cell.data();
   points.stress = own ? points.own_stress.data() : p.stress, points.history = own ? points.own_history.data() : p.history;
   points.volume = own ? points.own_volume.data() : p.volume, points.limit = own ? points.own_limit.data() : p.initial_volume;
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::settle() {
+  PetscFunctionBeginUser;
+  if constexpr (Phases::liquid) PetscCall(fluid_.store(pore_frame(false)));
+  PetscFunctionReturn(0);
 }
 
 template <int dim, class Phases>
@@ -144,7 +154,7 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double) {
     std::copy_n(velocity_.begin(), nodes * velocity_fields<Phases>, before_.begin());
   }
   if (relaxes()) {
-    for (int f = 0; f < velocity_fields<Phases>; ++f) PetscCall(back_and_forth(start_velocity_.data() + f * nodes, mapped_start_.data() + f * nodes));
+    PetscCall(back_and_forth(start_velocity_.data(), mapped_start_.data()));
     for (int i = 0; i < nodes * velocity_fields<Phases>; ++i)
       for (int d = 0; d < dim; ++d) mapped_start_[i][d] = start_velocity_[i][d] - mapped_start_[i][d];
   }
@@ -234,7 +244,7 @@ double SoilMotion<dim, Phases>::end(double t) {
           affine_[(c * dim + i) * dim + j] = g;
         }
   }
-  if constexpr (Phases::liquid) fluid_.release(pore_frame(false), velocity_.data() + grid_.node_count(), start_velocity_.data() + grid_.node_count(), flip);
+  if constexpr (Phases::liquid) fluid_.hand_over(grid_.node_count(), velocity_.data() + grid_.node_count(), start_velocity_.data() + grid_.node_count(), flip, update_);
   return flip;
 }
 
@@ -253,8 +263,11 @@ PetscErrorCode SoilMotion<dim, Phases>::release(double t, std::vector<std::vecto
   PetscFunctionBeginUser;
   const double flip = end(t);
   with_transfer(transfer_, [&]<bool averaged, bool apic>() {
-    for (size_t b = 0; b < bodies_.size(); ++b)
-      to_particles<dim, averaged, apic>(*bodies_[b], {grid_, update_, flip, affine_.data(), points_[b]}, movers[b]);
+    for (size_t b = 0; b < bodies_.size(); ++b) {
+      Pores<dim> pores;
+      if constexpr (Phases::liquid) pores = fluid_.pores(b);
+      to_particles<dim, averaged, apic, fluids>(*bodies_[b], {grid_, update_, flip, affine_.data(), points_[b], pores}, movers[b]);
+    }
   });
   forget();
   PetscFunctionReturn(0);
@@ -266,40 +279,49 @@ PetscErrorCode SoilMotion<dim, Phases>::release_to_next(double t, std::vector<st
   const double flip = end(t);
   std::fill(start_velocity_.begin(), start_velocity_.end(), Vec<dim>{});
   with_transfer(transfer_, [&]<bool averaged, bool apic>() {
-    for (size_t b = 0; b < bodies_.size(); ++b)
-      to_next_nodes<dim, averaged, apic>(*bodies_[b], {grid_, update_, flip, affine_.data(), points_[b]}, next_grid_, start_velocity_.data(),
-                                         next_points_[b], movers[b]);
+    for (size_t b = 0; b < bodies_.size(); ++b) {
+      Pores<dim> pores, next;
+      if constexpr (Phases::liquid) pores = fluid_.pores(b), next = fluid_.next_pores(b);
+      to_next_nodes<dim, averaged, apic, fluids>(*bodies_[b], {grid_, update_, flip, affine_.data(), points_[b], pores}, next_grid_, start_velocity_.data(),
+                                                 next_points_[b], next, movers[b]);
+    }
   });
   forget();
   std::swap(grid_, next_grid_), std::swap(points_, next_points_);
+  if constexpr (Phases::liquid) fluid_.turn();
   movers_ = &movers;
   PetscFunctionReturn(0);
 }
 
-/// Nodes to particles and back at frozen positions, out = M^-1 M^c in: the operator form of MUSL, theory (4.9).
+/// Nodes to particles and back at frozen positions, out = M^-1 M^c in, of the velocities of all phases: the operator form of MUSL, theory (4.9).
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::back_and_forth(const Vec<dim> *in, Vec<dim> *out) {
   PetscFunctionBeginUser;
   const int nodes = grid_.node_count(), cells = grid_.cell_count();
-  std::fill_n(out, nodes, Vec<dim>{});
+  std::fill_n(out, nodes * velocity_fields<Phases>, Vec<dim>{});
   for (int c = 0; c < cells; ++c) {
     const auto &node = grid_.shape[c].node;
     const auto &matrix = grid_.mass_matrix[c];
-    Vec<dim> sum[dim + 1];
-    for (int k = 0; k <= dim; ++k)
-      for (int d = 0; d < dim; ++d) sum[k][d] = matrix[k] * in[node[k]][d];
-    for (int k = 0, pair = dim + 1; k <= dim; ++k)
-      for (int l = k + 1; l <= dim; ++l, ++pair)
-        for (int d = 0; d < dim; ++d) {
-          sum[k][d] += matrix[pair] * in[node[l]][d];
-          sum[l][d] += matrix[pair] * in[node[k]][d];
-        }
-    for (int k = 0; k <= dim; ++k)
-      for (int d = 0; d < dim; ++d) out[node[k]][d] += sum[k][d];
+    for (int first = 0; first < nodes * velocity_fields<Phases>; first += nodes) {
+      Quad v[dim + 1], sum[dim + 1];
+#pragma GCC unroll 8
+      for (int k = 0; k <= dim; ++k) v[k] = load<dim>(in[first + node[k]].data()), sum[k] = quad(matrix[k]) * v[k];
+#pragma GCC unroll 8
+      for (int k = 0, pair = dim + 1; k <= dim; ++k)
+#pragma GCC unroll 8
+        for (int l = k + 1; l <= dim; ++l, ++pair) sum[k] += quad(matrix[pair]) * v[l], sum[l] += quad(matrix[pair]) * v[k];
+#pragma GCC unroll 8
+      for (int k = 0; k <= dim; ++k) {
+        double *x = out[first + node[k]].data();
+        store<dim>(x, load<dim>(x) + sum[k]);
+      }
+    }
   }
-  PetscCall(grid_.sum(out[0].data(), dim));
-  for (int i = 0; i < nodes; ++i)
-    for (int d = 0; d < dim; ++d) out[i][d] /= grid_.mass[i];
+  for (int f = 0; f < velocity_fields<Phases>; ++f) {
+    PetscCall(grid_.sum(out[f * nodes].data(), dim));
+    for (int i = 0; i < nodes; ++i)
+      for (int d = 0; d < dim; ++d) out[f * nodes + i][d] /= grid_.mass[i];
+  }
   PetscFunctionReturn(0);
 }
 
@@ -423,7 +445,10 @@ PetscErrorCode SoilMotion<dim, Phases>::deform(double t, const Vec<dim> *u, bool
   if (!trial && loading.softening)
     for (size_t b = 0; b < bodies_.size(); ++b)
       if (nonlocal_[b]) PetscCall(nonlocal_[b]->follow(grid_, points_[b]));
-  if constexpr (Phases::liquid) PetscCall(fluid_.exchange(pore_frame(trial)));
+  if constexpr (Phases::liquid) {
+    fluid_.exchange(pore_frame(trial));
+    if (trial) PetscCall(fluid_.store(pore_frame(true)));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -544,12 +569,19 @@ PetscErrorCode SoilMotion<dim, Phases>::acceleration(double t, const double *u, 
   PetscFunctionReturn(0);
 }
 
+/// What supports hold of a node in a step gamma: fluids beside the skeleton, where there are any.
+template <int dim, class Phases>
+typename Conditions<dim>::Inertia SoilMotion<dim, Phases>::inertia(double gamma) const {
+  if constexpr (Phases::liquid) return [this, gamma](int i) { return fluid_.inertia(gamma, grid_, pore_conditions_, i); };
+  return {};
+}
+
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::drag(double t, double gamma, double *v) {
   PetscFunctionBeginUser;
   Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v);
-  if constexpr (Phases::liquid) fluid_.resist(gamma, grid_, velocity, velocity + grid_.node_count());
-  conditions_.resolve(loading.time_at(t), gamma, grid_, velocity);
+  if constexpr (Phases::liquid) fluid_.resist(gamma, pore_frame(false), pore_conditions_, velocity, velocity + grid_.node_count());
+  conditions_.resolve(loading.time_at(t), gamma, grid_, velocity, inertia(gamma));
   if constexpr (Phases::liquid) fluid_.follow(gamma, pore_frame(false), pore_conditions_, velocity, velocity + grid_.node_count());
   PetscFunctionReturn(0);
 }
@@ -561,7 +593,7 @@ PetscErrorCode SoilMotion<dim, Phases>::resist(double t, double gamma, double *v
   if constexpr (Phases::liquid) {
     const int nodes = grid_.node_count();
     Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v), *held = scratch_.data();
-    fluid_.resist(gamma, grid_, velocity, velocity + nodes);
+    fluid_.resist(gamma, pore_frame(false), pore_conditions_, velocity, velocity + nodes);
     std::copy_n(velocity, nodes, held);
     conditions_.constrain(loading.time_at(t), grid_, held, true);
     fluid_.follow(gamma, pore_frame(false), pore_conditions_, held, velocity + nodes);
@@ -573,7 +605,7 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::hold(double t, double gamma, double *v) {
   PetscFunctionBeginUser;
   Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v);
-  conditions_.resolve(loading.time_at(t), gamma, grid_, velocity);
+  conditions_.resolve(loading.time_at(t), gamma, grid_, velocity, inertia(gamma));
   if constexpr (Phases::liquid) fluid_.constrain(pore_frame(false), pore_conditions_, velocity, velocity + grid_.node_count());
   PetscFunctionReturn(0);
 }
@@ -595,7 +627,7 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
     const double share = relaxes() ? 1 - std::exp(-gamma / relaxation_time_) : 0;
     for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) scratch_[i][d] = velocity[i][d] - (1 - share) * before_[i][d];
-    for (int f = 0; f < velocity_fields<Phases>; ++f) PetscCall(back_and_forth(scratch_.data() + f * nodes, mapped + f * nodes));
+    PetscCall(back_and_forth(scratch_.data(), mapped));
     for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) mapped[i][d] += (1 - share) * before_[i][d];
     constrain(t, mapped);
@@ -636,7 +668,7 @@ PetscErrorCode SoilMotion<dim, Phases>::rates(double t, const double *u, const d
   std::copy_n(reinterpret_cast<const Vec<dim> *>(v), all, held);
   constrain(t, held);
   if (relaxes()) {
-    for (int f = 0; f < velocity_fields<Phases>; ++f) PetscCall(back_and_forth(held + f * nodes, mapped + f * nodes));
+    PetscCall(back_and_forth(held, mapped));
     for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) {
         change[i][d] -= (held[i][d] - mapped[i][d]) / relaxation_time_;
@@ -645,7 +677,7 @@ PetscErrorCode SoilMotion<dim, Phases>::rates(double t, const double *u, const d
   } else {  // the same sum, mapped once
     for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) held[i][d] -= start_velocity_[i][d];
-    for (int f = 0; f < velocity_fields<Phases>; ++f) PetscCall(back_and_forth(held + f * nodes, mapped + f * nodes));
+    PetscCall(back_and_forth(held, mapped));
     for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) mapped[i][d] += start_velocity_[i][d];
   }

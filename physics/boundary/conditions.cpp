@@ -225,32 +225,36 @@ void Conditions<dim>::project(const FilledGrid<dim> &, const Vec<dim> *v, Vec<di
 }
 
 template <int dim>
-void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v) {
+void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Inertia &inertia) {
+  const auto mass_of = [&](int node) -> Square<dim> { return inertia ? inertia(node) : Square<dim>(grid.mass[node] * Square<dim>::Identity()); };
   const auto account = [&](int node, int source, const Vec<dim> &before) {
     if (!counted_[node]) return;
     Reaction r{node, source, {}};
-    for (int d = 0; d < dim; ++d) r.value[d] = grid.mass[node] * (v[node][d] - before[d]), impulse_[source][d] += r.value[d];
+    map<dim>(r.value) = mass_of(node) * (map<dim>(v[node]) - map<dim>(before));
+    for (int d = 0; d < dim; ++d) impulse_[source][d] += r.value[d];
     impulses_.push_back(r);
   };
   impulses_.clear(), resolved_step_ = gamma;
   for (const Dashpot &d : active_dashpots_) {
     const Vec<dim> before = v[d.node];
-    const Square<dim> system = Square<dim>::Identity() + gamma / grid.mass[d.node] * d.matrix;
-    map<dim>(v[d.node]) = system.inverse() * map<dim>(before);
+    const Square<dim> mass = mass_of(d.node), system = mass + gamma * d.matrix;
+    map<dim>(v[d.node]) = system.inverse() * (mass * map<dim>(before));
     account(d.node, d.source, before);
   }
   const double answer = friction_delay_ > 0 ? 1 - std::exp(-gamma / friction_delay_) : 1;
   for (ActiveContact &c : active_contacts_) {
     const Vec<dim> before = v[c.node], &n = c.contact->normal;
-    const double into = dot<dim>(before, n), m = grid.mass[c.node];
+    const Square<dim> mass = mass_of(c.node);
+    const double into = dot<dim>(before, n);
     const Friction &base = std::get<Friction>(sources_[c.contact->source].kind);
     Vec<dim> slip = before;
     add<dim>(slip, -into, n);
     c.presses = into > 0;
     Contact &contact = *c.contact;
     contact.since_pressed = c.presses ? 0 : contact.since_pressed + gamma;
-    if (c.presses) contact.capacity += std::tan(base.friction_angle(t)) * m * into;
+    if (c.presses) contact.capacity += std::tan(base.friction_angle(t)) * map<dim>(n).dot(mass * map<dim>(n)) * into;
     const double rubbing = answer * contact.capacity, speed = std::sqrt(dot<dim>(slip, slip));
+    const double m = speed > 0 ? map<dim>(slip).dot(mass * map<dim>(slip)) / (speed * speed) : 0;
     const double hold = rubbing + (contact.since_pressed <= friction_delay_ ? base.adhesion(t) * c.area * gamma : 0);
     contact.capacity -= rubbing, c.force = hold / gamma, c.sticks = m * speed <= hold;
     v[c.node] = {};

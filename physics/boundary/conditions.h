@@ -1,6 +1,7 @@
 #pragma once
 /// What the boundaries of a scene do to nodes, docs/theory section 6: prescribed directions are orthonormalised per node once;
 /// contacts keep one constraint per facet normal; loads and dashpots act where facets have soil behind them.
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -38,8 +39,10 @@ class Conditions {
   void constrain(double t, const FilledGrid<dim> &grid, Vec<dim> *v, bool sticking) const;
   /// Removes from an acceleration or force the part that supports take up, where nodes rest on them.
   void project(const FilledGrid<dim> &grid, const Vec<dim> *v, Vec<dim> *force) const;
+  /// Inertia of a node against what holds it [kg], where that is more than the grid's mass.
+  using Inertia = std::function<Square<dim>(int node)>;
   /// Implicit in a step gamma: dashpots, contact with friction, prescribed velocities. Sums up the reactions.
-  void resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v);
+  void resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Inertia &inertia = {});
 
   /// Sums up the work of boundaries in an accepted step with nodal displacements `u`.
   void follow(const Vec<dim> *u);

@@ -55,11 +55,10 @@ class PoreConditions {
           (*sources_)[f.source].kind);
     }
   }
-  /// Velocities of liquid and, if not null, gas relative to the solid's: no passage through walls, no more inflow than is supplied. `liquid_at(node)`
-  /// is LiquidAtNode; `density` that of the liquid beyond [kg/m3].
-  template <class At>
-  void constrain(double t, const FilledGrid<dim> &grid, double density, double unit_weight, At &&liquid_at, const Vec<dim> *solid, Vec<dim> *liquid,
-                 Vec<dim> *gas) const {
+  /// Calls limit(node, n, low, high, gas_too) for every face whose outflow has limits: relative velocities of the liquid along n must be between them [m/s].
+  /// `liquid_at(node)` is LiquidAtNode; `density` that of the liquid beyond [kg/m3].
+  template <class At, class Limit>
+  void limits(double t, const FilledGrid<dim> &grid, double density, double unit_weight, At &&liquid_at, Limit &&limit) const {
     for (const Face &f : faces_) {
       double least = -1e300, most = 1e300;  // of the volume that leaves per area and time
       if (f.source == gap) {
@@ -81,25 +80,22 @@ class PoreConditions {
       if (least == -1e300) continue;
       const LiquidAtNode at = liquid_at(f.node);
       const double scale = at.mass > 0 ? density * at.volume / at.mass : 0;
-      const auto limit = [&](Vec<dim> &v, double low, double high) {
-        double out = 0;
-        for (int d = 0; d < dim; ++d) out += (v[d] - solid[f.node][d]) * f.normal[d];
-        const double change = std::clamp(out, low, high) - out;
-        for (int d = 0; d < dim; ++d) v[d] += change * f.normal[d];
-      };
-      limit(liquid[f.node], least * scale, most * scale);
-      if (gas && f.source == gap) limit(gas[f.node], 0, 0);
+      limit(f.node, f.normal, least * scale, most * scale, f.source == gap);
     }
-    for (Vec<dim> *fluid : {liquid, gas})
-      if (fluid)
-        for (const ActiveWall &w : active_walls_)
-          for (int k = 0; k < w.wall->count; ++k) {
-            const Vec<dim> &n = w.wall->normal[k];
-            double through = 0;
-            for (int d = 0; d < dim; ++d) through += (fluid[w.node][d] - solid[w.node][d]) * n[d];
-            for (int d = 0; d < dim; ++d) fluid[w.node][d] -= through * n[d];
-          }
   }
+  /// Calls wall(node, n) for every normal of walls that let no fluid pass; those of a node are orthonormal.
+  template <class Put>
+  void walls(Put &&wall) const {
+    for (const ActiveWall &w : active_walls_)
+      for (int k = 0; k < w.wall->count; ++k) wall(w.node, w.wall->normal[k]);
+  }
+  /// Calls wall(n) for those of one node.
+  template <class Put>
+  void walls_at(const FilledGrid<dim> &grid, int node, Put &&wall) const {
+    const int index = wall_of_node_[grid.mesh_node[node]];
+    for (int k = 0; index >= 0 && k < walls_[index].count; ++k) wall(walls_[index].normal[k]);
+  }
+
  private:
   static constexpr int atmosphere = -1, gap = -2;
   struct Wall {

@@ -15,11 +15,29 @@ struct Liquid {
   double viscosity;     ///< mu_l [Pa s]
   bool exponential;     ///< rho_l0 exp(P / K_l), else rho_l0 (1 + P / K_l)
 
-  double density_at(double pressure) const {
-    return density * (exponential ? std::exp(pressure / bulk_modulus) : 1 + pressure / bulk_modulus);
+  /// One of the two laws (1.2), for loops that must not ask which.
+  template <bool exponential>
+  struct Law {
+    double density, bulk_modulus;
+    double density_at(double p) const { return density * (exponential ? std::exp(p / bulk_modulus) : 1 + p / bulk_modulus); }
+    double pressure_at(double rho) const { return bulk_modulus * (exponential ? std::log(rho / density) : rho / density - 1); }
+    double density_slope(double rho) const { return (exponential ? rho : density) / bulk_modulus; }
+  };
+  /// Calls f(law).
+  template <class F>
+  auto with_compression(F &&f) const {
+    return exponential ? f(Law<true>{density, bulk_modulus}) : f(Law<false>{density, bulk_modulus});
   }
-  double pressure_at(double rho) const { return bulk_modulus * (exponential ? std::log(rho / density) : rho / density - 1); }
-  double density_slope(double rho) const { return (exponential ? rho : density) / bulk_modulus; }  ///< d rho / dP [kg/m3/Pa]
+
+  double density_at(double pressure) const {
+    return with_compression([&](const auto &law) { return law.density_at(pressure); });
+  }
+  double pressure_at(double rho) const {
+    return with_compression([&](const auto &law) { return law.pressure_at(rho); });
+  }
+  double density_slope(double rho) const {  ///< d rho / dP [kg/m3/Pa]
+    return with_compression([&](const auto &law) { return law.density_slope(rho); });
+  }
 };
 
 /// P = K (rho / rho_0 - 1): an ideal isothermal gas with K its absolute pressure at gauge 0, or a gas of any other bulk modulus.

@@ -12,7 +12,7 @@ namespace talus {
 inline bool hyperbolic(const SoilPores &soil, const Liquid &liquid, const PoreGas &gas, double modulus, double grain_density, double gas_share,
                        bool gas_moves, bool bishop) {
   const double n = soil.porosity(), wet = 1 - gas_share;
-  const PorePressures p{-soil.suction(gas_share), 0, 0};
+  const PorePressures p{-soil.suction(gas_share), 0};
   const StorageTangent k = storage_tangent(soil, liquid, gas, p, gas_share);
   Eigen::Matrix3d waves = Eigen::Matrix3d::Zero();
   const Eigen::RowVector3d liquid_strain{wet * (1 - n) / n, wet, 0}, gas_strain{gas_share * (1 - n) / n, 0, gas_share};  // over n

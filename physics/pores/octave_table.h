@@ -10,60 +10,60 @@
 
 namespace talus {
 
-template <int columns>
+/// `functions` of `columns` values each, one behind the other: which of them a look-up reads is part of its address, so that loops over many
+/// look-ups vectorise.
+template <int columns, int functions>
 class OctaveTable {
  public:
   using Values = std::array<double, columns>;
   static constexpr double smallest = 0x1p-40;  ///< below, values are those at the small end
 
-  /// `function(x)` gives all columns.
+  /// `function(x)` gives all columns of number `which`.
   template <class Function>
-  void fill(Function &&function) {
-    const std::uint64_t first = index(smallest), last = index(0.5);
-    cubic_.resize(last - first + 1);
-    for (std::uint64_t k = first; k <= last; ++k) {
+  void fill(int which, Function &&function) {
+    coefficients_.resize(functions * intervals * stride);
+    for (std::int64_t k = first; k < first + intervals; ++k) {
       const double a = left(k), h = left(k + 1) - a;
       // slopes from inside the interval, so that a kink between intervals stays one
       constexpr double near = 1e-3;
       const Values fa = function(a), fb = function(a + h), a1 = function(a + near * h), a2 = function(a + 2 * near * h),
                    b1 = function(a + (1 - near) * h), b2 = function(a + (1 - 2 * near) * h);
-      auto &c = cubic_[k - first];
-      for (int j = 0; j < columns; ++j) {
+      double *c = &coefficients_[(which * intervals + k - first) * stride];
+      for (int j = 0; j < columns; ++j, c += 4) {
         const double rise = fb[j] - fa[j];
         const auto limited = [&](double slope) { return slope * rise <= 0 ? 0 : std::abs(slope) > 3 * std::abs(rise) ? 3 * rise : slope; };
         const double da = limited((4 * a1[j] - a2[j] - 3 * fa[j]) / (2 * near)), db = limited((b2[j] - 4 * b1[j] + 3 * fb[j]) / (2 * near));
-        c[j] = {fa[j], da, 3 * rise - 2 * da - db, da + db - 2 * rise};
+        c[0] = fa[j], c[1] = da, c[2] = 3 * rise - 2 * da - db, c[3] = da + db - 2 * rise;
       }
     }
-    first_ = first;
   }
 
   struct Place {
-    const std::array<std::array<double, 4>, columns> *cubic;
+    const double *coefficients;
     double r, inverse_width;
   };
-  Place find(double x) const {
+  [[gnu::always_inline]] Place find(int which, double x) const {
     const double inside = x > smallest ? x : smallest;
-    const std::uint64_t k = index(inside);
+    const std::int64_t k = index(inside);
     const double a = left(k), inverse = 1 / (left(k + 1) - a);
-    return {&cubic_[k - first_], (inside - a) * inverse, inverse};
+    return {coefficients_.data() + (which * intervals + k - first) * stride, (inside - a) * inverse, inverse};
   }
-  static double value(const Place &at, int column) {
-    const auto &c = (*at.cubic)[column];
+  [[gnu::always_inline]] static double value(const Place &at, int column) {
+    const double *c = at.coefficients + 4 * column;
     return c[0] + at.r * (c[1] + at.r * (c[2] + at.r * c[3]));
   }
-  static double slope(const Place &at, int column) {
-    const auto &c = (*at.cubic)[column];
+  [[gnu::always_inline]] static double slope(const Place &at, int column) {
+    const double *c = at.coefficients + 4 * column;
     return (c[1] + at.r * (2 * c[2] + 3 * at.r * c[3])) * at.inverse_width;
   }
 
  private:
-  static constexpr int shift = 52 - 6;
-  static std::uint64_t index(double x) { return std::bit_cast<std::uint64_t>(x) >> shift; }
-  static double left(std::uint64_t k) { return std::bit_cast<double>(k << shift); }
+  static constexpr int shift = 52 - 6, stride = 4 * columns;
+  static constexpr std::int64_t index(double x) { return std::bit_cast<std::int64_t>(x) >> shift; }
+  static constexpr double left(std::int64_t k) { return std::bit_cast<double>(k << shift); }
+  static constexpr std::int64_t first = index(smallest), intervals = index(0.5) - first + 1;
 
-  std::uint64_t first_ = 0;
-  std::vector<std::array<std::array<double, 4>, columns>> cubic_;
+  std::vector<double> coefficients_;  ///< [functions][intervals][columns][4]
 };
 
 }  // namespace talus

@@ -1,7 +1,8 @@
 #pragma once
 /// The fluid part of the motion, docs/theory/pores.md: liquid and, in three phases, gas. Stress points of the soil are pore points too: each
 /// holds masses of fluid, from which its pressures follow. SoilMotion calls, in the order of a step:
-///   gather -> [add_to_mixture -> drive -> resist -> follow -> flow -> smooth_flow -> exchange] ... -> release
+///   gather -> [add_to_mixture -> drive -> resist -> follow -> flow -> smooth_flow -> exchange -> store] ... -> hand_over
+/// Particles give and take in the sweeps of the soil (transfer/), between `hand_over` and `gather`.
 #include <functional>
 #include <memory>
 #include <vector>
@@ -61,18 +62,25 @@ class PoreFluid {
     bool averaged, trial;
   };
 
-  /// Takes masses and momentum of the particles to points and nodes; `velocity` [fluids][nodes] receives the nodes'.
+  /// The pores of the points of a body as they are, and as they will be in the Lagrangian part to come, for the sweeps of the soil.
+  Pores<dim> pores(int body) { return show(points_, body); }
+  Pores<dim> next_pores(int body) { return show(next_points_, body); }
+  /// The next ones become those that are.
+  void turn() { std::swap(points_, next_points_); }
+  /// Once the particles of all bodies have been added to points and cells: `velocity` [fluids][nodes] receives the nodes'.
   PetscErrorCode gather(const Frame &frame, PoreConditions<dim> &conditions, const Array &filling, const Vec<dim> *solid, Vec<dim> *velocity);
-  /// Hands particles what points and nodes learned; before the skeleton's particles move. Velocities changed from `start`, both [fluids][nodes];
+  /// What particles read of the nodes in `update`, before they move. Velocities changed from `start`, both [fluids][nodes];
   /// `flip` is the share of their own velocity that particles keep.
-  void release(const Frame &frame, const Vec<dim> *velocity, const Vec<dim> *start, double flip);
+  void hand_over(int nodes, const Vec<dim> *velocity, const Vec<dim> *start, double flip, NodalUpdate &update) const;
 
   /// Adds what fluids do to the mixture at a node: pressure and weight.
   void add_to_mixture(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force) const;
   /// Accelerations without drag of the fluids [fluids][nodes], and less them what is left of the mixture's force for the solid.
   void drive(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force, Vec<dim> *acceleration);
-  /// Velocity of the solid after implicit drag over `step`, from those of all without it.
-  void resist(double step, const FilledGrid<dim> &grid, Vec<dim> *solid, const Vec<dim> *fluid) const;
+  /// Velocity of the solid after implicit drag over `step` and what limits the fluids at boundaries, from those of all without it.
+  void resist(double step, const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *solid, const Vec<dim> *fluid) const;
+  /// Inertia of the node against a support of the solid, after `resist` over `step` [kg].
+  Square<dim> inertia(double step, const FilledGrid<dim> &grid, const PoreConditions<dim> &conditions, int node) const;
   /// The fluids' after it, the solid now being where supports want it; then boundaries.
   void follow(double step, const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid, Vec<dim> *fluid) const;
   void constrain(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid, Vec<dim> *fluid) const;
@@ -82,9 +90,9 @@ class PoreFluid {
   PetscErrorCode flow(const Frame &frame, const Vec<dim> *u);
   /// Smooths them together with the volume strain of the cells, which becomes that of the pores.
   PetscErrorCode smooth_flow(const Frame &frame, Array &volume_strain);
-  /// Takes it from the points, whose volumes are now those at the end; pressures follow, and forces at cells and nodes.
-  PetscErrorCode exchange(const Frame &frame);
-  /// Pressures from masses, forces from pressures.
+  /// Takes it from the points, whose volumes are now those at the end.
+  void exchange(const Frame &frame);
+  /// Pressures from masses, forces at cells and nodes from pressures. Not needed where particles are released first. Collective.
   PetscErrorCode store(const Frame &frame);
 
   /// At the points of a body [Pa].
@@ -100,15 +108,20 @@ class PoreFluid {
 
   bool given = false;   ///< pressures follow [water] instead of the fluids' motion
   double given_ramp = 1;
-  long long newton_steps = 0, newton_solves = 0;
 
  private:
-  struct PorePoints {
+  struct PorePoints {         // room for a point in every cell or for all particles; the first `count` count
+    int count = 0;
     Array grains;             ///< V_s [m3]
     Array mass[fluids];       ///< [kg]
     Array share;              ///< S_g
-    Array pressure[fluids];   ///< [Pa]
-    Array suction;            ///< [Pa], where the phase model has it
+    Array suction;            ///< [Pa]
+
+    void room(int points) {
+      if (points <= static_cast<int>(grains.size())) return;
+      grains.resize(points), share.resize(points), suction.resize(points);
+      for (Array &m : mass) m.resize(points);
+    }
   };
   struct CellPores {
     double pressure[fluids], smooth[fluids];  ///< [Pa]
@@ -118,16 +131,20 @@ class PoreFluid {
     double saturation;
     double mixture;                           ///< what the pores take off the total stress [Pa]
   };
-  struct NodePores {  // sums over cells and ranks, doubles only
-    double volume, saturated;          ///< V [m3], sum w k / (d+1) with full pores
-    Vec<dim> surface, push;            ///< sum of w grad N; of w P grad N [N]
-    struct Fluid {
-      double mass, whole, conductivity;  ///< m [kg], M = sum w rho / (d+1) [kg], sum w k / (d+1)
-      Vec<dim> push;                     ///< sum of w P grad N [N]
-    } fluid[fluids];
+  static constexpr int last = 3, mixture = Phases::suction ? fluids : 0;  ///< lane; pressure that acts on the skeleton
+  struct NodePores {  // sums over cells and ranks
+    Quad geometry;             ///< sum of w grad N [m2]; V [m3] in the last lane
+    Quad amount;               ///< m, M = sum w rho / (d+1) of the liquid, and of the gas [kg]
+    Quad push[mixture ? mixture + 1 : fluids];  ///< sum of w P grad N [N]; sum of w k / (d+1), for the mixture with full pores, in the last lane
+
+    double volume() const { return geometry[last]; }
+    double mass(int a) const { return amount[2 * a]; }
+    double whole(int a) const { return amount[2 * a + 1]; }
+    double conductivity(int a) const { return push[a][last]; }
   };
   static constexpr int node_width = sizeof(NodePores) / sizeof(double);
 
+  Pores<dim> show(std::vector<PorePoints> &points, int body);
   double given_gas_pressure(const Vec<dim> &x) const;
   std::array<double, 3> contents(const SoilPores &soil, double pressure, double gas_pressure) const;
   double unit_weight(const Frame &frame) const {
@@ -136,8 +153,13 @@ class PoreFluid {
     return liquid_.density * std::sqrt(square);
   }
   PetscErrorCode gas_flux(const Frame &frame, const Vec<dim> *gas, const Vec<dim> *solid) requires Phases::gas;
+  static double pore_volume(double volume, double grains) { return std::max(volume - grains, 1e-6 * volume); }
+  void hold(const Frame &frame);
   void solve(const Frame &frame);
-  PetscErrorCode smooth(const Frame &frame, double *const *fields, int count);
+  template <class Limit>
+  void limits(const Frame &frame, const PoreConditions<dim> &conditions, Limit &&limit) const;
+  template <int count>
+  PetscErrorCode smooth(const Frame &frame, const std::array<double *, count> &fields);
   Vec<dim> place(const Frame &frame, int cell, const std::array<double, dim + 1> &barycentric) const;
   /// Is the cell among those over which pressures are smoothed?
   bool smoothed(int c) const {
@@ -157,14 +179,16 @@ class PoreFluid {
   GivenPressure<dim> pressure_;
   bool bishop_, smoothing_;
 
-  std::vector<PorePoints> points_, trial_;
-  std::vector<CellPores> cells_;
+  std::vector<PorePoints> points_, next_points_, trial_;
+  std::vector<CellPores> cells_, trial_cells_;
   std::vector<NodePores> nodes_, trial_nodes_;
-  std::vector<Vec<dim>> flux_, surface_;
+  std::vector<Vec<dim>> flux_[fluids], surface_;
   std::vector<std::array<double, dim + 1>> mean_, reference_;  ///< of a cell: where its particles are in the mean, and where its pressure counts
   std::vector<std::array<double, dim + 1>> rows_;              ///< sums over rows of the solid's mass matrices [kg]
-  std::vector<std::array<Vec<dim>, dim + 1>> impulse_[fluids]; ///< of a cell: sum m_s N v_a, later times m_a / m_s [kg m/s]
-  Array divergence_[fluids], smooth_[fluids], head_, nodal_;
+  Array grain_mass_;                                           ///< of a cell [kg]
+  std::vector<std::array<Quad, dim>> impulse_[fluids];         ///< of a cell [component][vertex]: sum m_s N v_a [kg m/s]
+  std::vector<std::array<Quad, fluids>> momentum_;             ///< of a node: m_a v_a [kg m/s], m_a in the last lane
+  Array divergence_[fluids], smooth_[fluids], head_, nodal_head_, nodal_;
   Array beyond_;                   ///< conductivity of the liquid beyond a face with a given pressure [node]; 0 elsewhere
   std::vector<int> body_of_node_;  ///< one of the bodies around it
   double out_[fluids] = {}, given_mass_[fluids] = {};

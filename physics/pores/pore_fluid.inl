@@ -10,15 +10,17 @@ template <int dim, class Phases>
 PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<std::unique_ptr<Body<dim>>> &bodies, const Scene &scene)
     : mesh_(mesh), bodies_(bodies), scene_(scene), liquid_(scene.water), gas_(scene.gas),
       pressure_(scene.water, std::hypot(scene.gravity[0], scene.gravity[1])), bishop_(scene.water.stress == PoreStress::bishop),
-      smoothing_(scene.transfer.pore_smoothing == PoreSmoothing::nodal), points_(bodies.size()), trial_(bodies.size()) {
+      smoothing_(scene.transfer.pore_smoothing == PoreSmoothing::nodal), points_(bodies.size()), next_points_(bodies.size()), trial_(bodies.size()) {
   const size_t nodes = mesh.node_count(), cells = mesh.cell_count();
   const double gravity = std::hypot(scene.gravity[0], scene.gravity[1], dim == 3 ? scene.gravity[dim - 1] : 0);
   constexpr double earth = 9.81;  // [m/s2], for a hydraulic conductivity in a scene without gravity
   for (const auto &body : bodies) soils_.emplace_back(body->source(), scene.water.density * (gravity > 0 ? gravity : earth), scene.water.viscosity);
-  cells_.resize(cells), nodes_.resize(nodes), mean_.resize(cells), reference_.resize(cells), rows_.resize(cells), head_.resize(cells);
-  flux_.resize(nodes), surface_.resize(nodes), beyond_.assign(nodes, 0), body_of_node_.assign(nodes, 0);
-  for (int a = 0; a < fluids; ++a) impulse_[a].resize(cells), divergence_[a].resize(cells), smooth_[a].resize(cells);
-  nodal_.resize(nodes * (fluids + 2 > fluids * (dim + 1) ? fluids + 2 : fluids * (dim + 1)));
+  cells_.resize(cells), nodes_.resize(nodes), mean_.resize(cells), reference_.resize(cells), rows_.resize(cells), head_.resize(cells), grain_mass_.resize(cells);
+  nodal_head_.resize(nodes), momentum_.resize(nodes), surface_.resize(nodes), beyond_.assign(nodes, 0), body_of_node_.assign(nodes, 0);
+  for (int a = 0; a < fluids; ++a) flux_[a].resize(nodes), impulse_[a].resize(cells), divergence_[a].resize(cells), smooth_[a].resize(cells);
+  nodal_.resize(3 * nodes);
+  for (auto *all : {&points_, &next_points_})
+    for (size_t b = 0; b < bodies.size(); ++b) (*all)[b].room(scene.transfer.average_stress ? static_cast<int>(cells) : bodies[b]->particles().count);
 }
 
 // ---- what pores hold at first ----
@@ -74,6 +76,13 @@ void PoreFluid<dim, Phases>::fill(const std::function<double(int, const Vec<dim>
 // ---- remap ----
 
 template <int dim, class Phases>
+Pores<dim> PoreFluid<dim, Phases>::show(std::vector<PorePoints> &points, int b) {
+  Pores<dim> pores{points[b].grains.data(), {}, {}, 1 / bodies_[b]->source().grain_density};
+  for (int a = 0; a < fluids; ++a) pores.mass[a] = points[b].mass[a].data(), pores.impulse[a] = impulse_[a].data();
+  return pores;
+}
+
+template <int dim, class Phases>
 PetscErrorCode PoreFluid<dim, Phases>::gather(const Frame &frame, PoreConditions<dim> &conditions, const Array &filling, const Vec<dim> *solid,
                                               Vec<dim> *velocity) {
   PetscFunctionBeginUser;
@@ -85,114 +94,70 @@ PetscErrorCode PoreFluid<dim, Phases>::gather(const Frame &frame, PoreConditions
     for (int k = 0; k <= dim; ++k) rows[k] = matrix[k];
     for (int k = 0, pair = dim + 1; k <= dim; ++k)
       for (int l = k + 1; l <= dim; ++l, ++pair) rows[k] += matrix[pair], rows[l] += matrix[pair];
-    for (int a = 0; a < fluids; ++a) impulse_[a][c] = {};
+    grain_mass_[c] = 0;
+    const double scale = 1 / frame.particle_volume[c];
     for (int k = 0; k <= dim; ++k) {
-      mean_[c][k] = grid.nodal_share[c][k] / frame.particle_volume[c];
+      grain_mass_[c] += rows[k];
+      mean_[c][k] = grid.nodal_share[c][k] * scale;
       reference_[c][k] = mean_[c][k] + frame.blend[c] * (1. / (dim + 1) - mean_[c][k]);
     }
     for (int a = 0; a < fluids; ++a) cells_[c].mass[a] = 0;
   }
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const ParticleArrays<dim> &p = bodies_[b]->particles();
+    const PointSet &set = frame.points[b];
     PorePoints &points = points_[b];
-    const int count = frame.points[b].count;
-    const double per_density = 1 / bodies_[b]->source().grain_density;
-    points.grains.assign(count, 0), points.share.assign(count, 0);
-    if (Phases::suction) points.suction.assign(count, 0);
-    for (int a = 0; a < fluids; ++a) points.mass[a].assign(count, 0), points.pressure[a].assign(count, 0);
-    for (int i = 0; i < p.count;) {
-      const int mesh_cell = p.cell[i], cell = grid.find_cell(mesh_cell), first = i;
-      const BarycentricMap<dim> coordinates(mesh_.cells[mesh_cell]);
-      Quad sum[fluids][dim]{};
-      double mass[fluids]{}, grains = 0;
-      for (; i < p.count && p.cell[i] == mesh_cell; ++i) {
-        const Quad mn = quad(p.mass[i]) * coordinates(load<dim>(p.position[i].data()));
-        for (int a = 0; a < fluids; ++a)
-          for (int d = 0; d < dim; ++d) sum[a][d] += quad(p.fluid_velocity[a][i][d]) * mn;
-        if (frame.averaged) {
-          grains += p.mass[i];
-          for (int a = 0; a < fluids; ++a) mass[a] += p.fluid_mass[a][i];
-        } else {
-          points.grains[i] = p.mass[i] * per_density;
-          for (int a = 0; a < fluids; ++a) points.mass[a][i] = p.fluid_mass[a][i], mass[a] += p.fluid_mass[a][i];
-        }
+    points.count = set.count;
+    if (!frame.averaged) {  // particles are the points
+      const double over_density = 1 / bodies_[b]->source().grain_density;
+      points.room(set.count);
+      for (int i = 0; i < p.count; ++i) {
+        points.grains[i] = p.mass[i] * over_density;
+        for (int a = 0; a < fluids; ++a) points.mass[a][i] = p.fluid_mass[a][i];
       }
-      if (Phases::suction)
-        for (int node : grid.shape[cell].node) body_of_node_[node] = static_cast<int>(b);
-      for (int a = 0; a < fluids; ++a) {
-        cells_[cell].mass[a] += mass[a];
-        for (int k = 0; k <= dim; ++k)
-          for (int d = 0; d < dim; ++d) impulse_[a][cell][k][d] += sum[a][d][k];
-      }
-      if (!frame.averaged || first == i) continue;
-      const int q = frame.points[b].of_cell[mesh_cell];
-      points.grains[q] += grains * per_density;
-      for (int a = 0; a < fluids; ++a) points.mass[a][q] += mass[a];
     }
-    for (int q = 0; q < count; ++q)  // where Newton starts
-      points.share[q] = std::clamp(1 - points.mass[0][q] / (liquid_.density * (frame.volume[b][q] - points.grains[q])), 0., 1.);
+    for (int q = 0; q < set.count; ++q) {
+      const int c = set.cell[q];
+      for (int a = 0; a < fluids; ++a) cells_[c].mass[a] += points.mass[a][q];
+      if constexpr (Phases::suction) {
+        points.share[q] = std::clamp(1 - points.mass[0][q] / (liquid_.density * (frame.volume[b][q] - points.grains[q])), 0., 1.);  // where Newton starts
+        for (int node : grid.shape[c].node) body_of_node_[node] = static_cast<int>(b);
+      }
+    }
   }
   // velocities of the fluids at nodes: within a cell a fluid is spread as the grains are
-  constexpr int width = dim + 1;
-  for (int a = 0; a < fluids; ++a) {
-    std::fill_n(nodal_.begin(), nodes * width, 0.);
-    for (int c = 0; c < cells; ++c) {
-      double total = 0;
-      for (double row : rows_[c]) total += row;
-      const double ratio = cells_[c].mass[a] / total;
+  std::fill_n(momentum_.begin(), nodes, std::array<Quad, fluids>{});
+  for (int c = 0; c < cells; ++c)
+    for (int a = 0; a < fluids; ++a) {
+      const double ratio = cells_[c].mass[a] / grain_mass_[c];
+      const auto &impulse = impulse_[a][c];
       for (int k = 0; k <= dim; ++k) {
-        double *node = &nodal_[grid.shape[c].node[k] * width];
-        node[0] += ratio * rows_[c][k];
-        for (int d = 0; d < dim; ++d) node[1 + d] += ratio * impulse_[a][c][k][d];
+        Quad part{};
+        for (int d = 0; d < dim; ++d) part[d] = impulse[d][k];
+        part[last] = rows_[c][k];
+        momentum_[grid.shape[c].node[k]][a] += quad(ratio) * part;
       }
     }
-    PetscCall(grid.sum(nodal_.data(), width));
-    for (int i = 0; i < nodes; ++i)
-      for (int d = 0; d < dim; ++d)
-        velocity[a * nodes + i][d] = nodal_[i * width] > 0 ? nodal_[i * width + 1 + d] / nodal_[i * width] : solid[i][d];
-  }
+  PetscCall(grid.sum(reinterpret_cast<double *>(momentum_.data()), 4 * fluids));
+  for (int i = 0; i < nodes; ++i)
+    for (int a = 0; a < fluids; ++a) {
+      const Quad &momentum = momentum_[i][a];
+      for (int d = 0; d < dim; ++d) velocity[a * nodes + i][d] = momentum[last] > 0 ? momentum[d] / momentum[last] : solid[i][d];
+    }
   PetscCall(store(frame));
-  for (int i = 0; i < nodes; ++i) surface_[i] = nodes_[i].surface;
+  for (int i = 0; i < nodes; ++i) talus::store<dim>(surface_[i].data(), nodes_[i].geometry);
   PetscCall(conditions.begin(grid, filling, surface_));
   constrain(frame, conditions, solid, velocity);
   PetscFunctionReturn(0);
 }
 
 template <int dim, class Phases>
-void PoreFluid<dim, Phases>::release(const Frame &frame, const Vec<dim> *velocity, const Vec<dim> *start, double flip) {
-  const FilledGrid<dim> &grid = frame.grid;
-  const int nodes = grid.node_count();
-  for (size_t b = 0; b < bodies_.size(); ++b) {
-    const ParticleArrays<dim> &p = bodies_[b]->particles();
-    const PorePoints &points = points_[b];
-    const double per_density = 1 / bodies_[b]->source().grain_density;
-    for (int i = 0; i < p.count;) {
-      const int mesh_cell = p.cell[i], cell = grid.find_cell(mesh_cell);
-      const BarycentricMap<dim> coordinates(mesh_.cells[mesh_cell]);
-      Quad change[fluids][dim + 1];
-      for (int a = 0; a < fluids; ++a)
-        for (int k = 0; k <= dim; ++k) {
-          const int n = a * nodes + grid.shape[cell].node[k];
-          change[a][k] = load<dim>(velocity[n].data()) - quad(flip) * load<dim>(start[n].data());
-        }
-      double growth = 1, content[fluids]{};
-      if (frame.averaged) {
-        const int q = frame.points[b].of_cell[mesh_cell];
-        growth = frame.points[b].volume[q] / frame.points[b].start_volume[q];
-        for (int a = 0; a < fluids; ++a) content[a] = points.mass[a][q] / (frame.points[b].volume[q] - points.grains[q]);
-      }
-      for (; i < p.count && p.cell[i] == mesh_cell; ++i) {
-        const Quad n = coordinates(load<dim>(p.position[i].data()));
-        for (int a = 0; a < fluids; ++a) {
-          Quad v = quad(flip) * load<dim>(p.fluid_velocity[a][i].data());
-          for (int k = 0; k <= dim; ++k) v += quad(n[k]) * change[a][k];
-          talus::store<dim>(p.fluid_velocity[a][i].data(), v);
-          // a cell's fluid fills its pores evenly, so that a particle that moves on takes its pressure along
-          p.fluid_mass[a][i] = frame.averaged ? content[a] * (p.volume[i] * growth - p.mass[i] * per_density) : points.mass[a][i];
-        }
-      }
+void PoreFluid<dim, Phases>::hand_over(int nodes, const Vec<dim> *velocity, const Vec<dim> *start, double flip, NodalUpdate &update) const {
+  for (int a = 0; a < fluids; ++a)
+    for (int i = 0; i < nodes; ++i) {
+      const int n = a * nodes + i;
+      update.fluid[a][i] = load<dim>(velocity[n].data()) - quad(flip) * load<dim>(start[n].data());
     }
-  }
 }
 
 // ---- pressures ----
@@ -212,59 +177,78 @@ Vec<dim> PoreFluid<dim, Phases>::place(const Frame &frame, int c, const std::arr
   return x;
 }
 
+/// Fills the points to the given pressures, where fluids do not move.
+template <int dim, class Phases>
+void PoreFluid<dim, Phases>::hold(const Frame &frame) {
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    PorePoints &points = frame.trial ? trial_[b] : points_[b];
+    for (int q = 0; q < frame.points[b].count; ++q) {
+      const int c = frame.points[b].cell[q];
+      const Vec<dim> x = place(frame, c, mean_[c]);
+      const double pores = pore_volume(frame.volume[b][q], points_[b].grains[q]);
+      const auto content = contents(soils_[b], given_ramp * given_pressure(x, frame.time), given_ramp * given_gas_pressure(x));
+      for (int a = 0; a < fluids; ++a) {
+        if (!frame.trial) given_mass_[a] += content[a] * pores - points.mass[a][q];
+        points.mass[a][q] = content[a] * pores;
+      }
+      points.share[q] = content[2];
+    }
+  }
+}
+
 /// Pressures of points from their masses, and what cells make of them, theory (3.1)-(3.3), (4.2).
 template <int dim, class Phases>
 void PoreFluid<dim, Phases>::solve(const Frame &frame) {
-  const int cells = frame.grid.cell_count();
-  std::fill_n(cells_.begin(), cells, CellPores{});
+  constexpr int lanes = 8;
+  std::vector<CellPores> &cells = frame.trial ? trial_cells_ : cells_;
+  if (frame.trial) cells.resize(cells_.size());
+  std::fill_n(cells.begin(), frame.grid.cell_count(), CellPores{});
+  if (given) hold(frame);
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const PorePoints &accepted = points_[b];
     PorePoints &points = frame.trial ? trial_[b] : points_[b];
     const PointSet &set = frame.points[b];
     const SoilPores &soil = soils_[b];
-    for (int q = 0; q < set.count; ++q) {
-      const int c = set.cell[q];
-      const double volume = frame.volume[b][q], pores = std::max(volume - accepted.grains[q], 1e-6 * volume), n = pores / volume;
-      if (given) {
-        const Vec<dim> x = place(frame, c, mean_[c]);
-        const auto content = contents(soil, given_ramp * given_pressure(x, frame.time), given_ramp * given_gas_pressure(x));
-        for (int a = 0; a < fluids; ++a) {
-          if (!frame.trial) given_mass_[a] += content[a] * pores - points.mass[a][q];
-          points.mass[a][q] = content[a] * pores;
-        }
-        points.share[q] = content[2];
+    const double permeability = soil.permeability() / liquid_.viscosity;
+    for (int first = 0; first < set.count; first += lanes) {
+      const int count = std::min(lanes, set.count - first);
+      PoreLanes<lanes> p;
+      double volume[lanes], k[lanes], k_l[lanes], k_g[lanes];
+      for (int i = 0; i < lanes; ++i) {
+        const int q = first + std::min(i, count - 1);  // the last point fills a last block
+        volume[i] = frame.volume[b][q];
+        const double pores = pore_volume(volume[i], accepted.grains[q]);
+        k[i] = soil.change(pores / volume[i]);
+        p.gas_share[i] = Phases::suction ? points.share[q] : 0;
+        p.liquid_content[i] = points.mass[0][q] / pores;
+        if constexpr (Phases::gas) p.gas_content[i] = points.mass[1][q] / pores;
       }
-      PorePressures p;
-      double &share = points.share[q];
-      const double content = points.mass[0][q] / pores;
-      if constexpr (Phases::gas)
-        p = three_phase_pressures(soil, liquid_, gas_, content, points.mass[1][q] / pores, share);
-      else if constexpr (Phases::suction)
-        p = unsaturated_pressure(soil, liquid_, content, share);
-      else
-        p = saturated_pressure(liquid_, content), share = 0;
-      newton_steps += p.iterations, ++newton_solves;
-      points.pressure[0][q] = p.liquid;
-      if constexpr (Phases::gas) points.pressure[1][q] = p.gas;
-      if constexpr (Phases::suction) points.suction[q] = std::max(0., p.gas - p.liquid);
-
-      CellPores &cell = cells_[c];
-      const double part = volume / frame.particle_volume[c], k = soil.change(n);
-      double k_l = 1, k_g = 1;
+      if constexpr (Phases::gas) three_phase_pressures(soil, liquid_, gas_, p);
+      else if constexpr (Phases::suction) unsaturated_pressures(soil, liquid_, p);
+      else saturated_pressures(liquid_, p);
       if constexpr (Phases::suction) {
-        const SoilPores::State state = soil.at(share);
-        constexpr double least_gas = 1e-6;  // trapped gas creeps
-        k_l = state.liquid, k_g = std::max(state.gas, least_gas);
+#pragma omp simd
+        for (int i = 0; i < lanes; ++i) {
+          const SoilPores::State state = soil.at(p.gas_share[i]);
+          constexpr double least_gas = 1e-6;  // trapped gas creeps
+          k_l[i] = state.liquid, k_g[i] = std::max(state.gas, least_gas);
+        }
       }
-      cell.saturation += part * (1 - share);
-      cell.pressure[0] += part * p.liquid, cell.mass[0] += points.mass[0][q];
-      cell.saturated += part * k * soil.permeability() / liquid_.viscosity;
-      cell.conductivity[0] += part * k * soil.permeability() * k_l / liquid_.viscosity;
-      cell.density[0] += part * content / (1 - share);
-      if constexpr (Phases::gas) {
-        cell.pressure[1] += part * p.gas, cell.mass[1] += points.mass[1][q];
-        cell.conductivity[1] += part * k * soil.gas_permeability() * k_g / gas_.viscosity;
-        cell.density[1] += part * gas_.density_at(p.gas);
+      for (int i = 0; i < count; ++i) {
+        const int q = first + i, c = set.cell[q];
+        CellPores &cell = cells[c];
+        const double part = volume[i] / frame.particle_volume[c];
+        cell.saturation += part * (1 - p.gas_share[i]);
+        cell.pressure[0] += part * p.liquid[i], cell.mass[0] += points.mass[0][q];
+        cell.saturated += part * k[i] * permeability;
+        cell.conductivity[0] += part * k[i] * permeability * (Phases::suction ? k_l[i] : 1);
+        cell.density[0] += part * p.liquid_content[i] / (1 - p.gas_share[i]);
+        if constexpr (Phases::suction) points.share[q] = p.gas_share[i], points.suction[q] = std::max(0., p.gas[i] - p.liquid[i]);
+        if constexpr (Phases::gas) {
+          cell.pressure[1] += part * p.gas[i], cell.mass[1] += points.mass[1][q];
+          cell.conductivity[1] += part * k[i] * soil.gas_permeability() * k_g[i] / gas_.viscosity;
+          cell.density[1] += part * gas_.density_at(p.gas[i]);
+        }
       }
     }
   }
@@ -272,10 +256,12 @@ void PoreFluid<dim, Phases>::solve(const Frame &frame) {
 
 /// Cell to node to cell, weighted, among nearly saturated cells: conservative and its own adjoint, theory (4.3). Collective.
 template <int dim, class Phases>
-PetscErrorCode PoreFluid<dim, Phases>::smooth(const Frame &frame, double *const *fields, int count) {
+template <int count>
+PetscErrorCode PoreFluid<dim, Phases>::smooth(const Frame &frame, const std::array<double *, count> &fields) {
   PetscFunctionBeginUser;
   if (!smoothing_) PetscFunctionReturn(0);
-  const int cells = frame.grid.cell_count(), width = count + 1;
+  constexpr int width = count + 1;
+  const int cells = frame.grid.cell_count();
   std::fill_n(nodal_.begin(), frame.grid.node_count() * width, 0.);
   for (int c = 0; c < cells; ++c) {
     if (!smoothed(c)) continue;
@@ -306,54 +292,58 @@ PetscErrorCode PoreFluid<dim, Phases>::store(const Frame &frame) {
   PetscFunctionBeginUser;
   const int nodes = frame.grid.node_count(), cells = frame.grid.cell_count();
   solve(frame);
+  std::vector<CellPores> &pores = frame.trial ? trial_cells_ : cells_;
+  for (int i = 0; i < nodes; ++i) {
+    nodal_head_[i] = 0;
+    for (int d = 0; d < dim; ++d) nodal_head_[i] += frame.gravity[d] * frame.position[i][d];
+  }
   const auto head = [&](int c, const std::array<double, dim + 1> &n) {  // g . x
-    const Vec<dim> x = place(frame, c, n);
     double sum = 0;
-    for (int d = 0; d < dim; ++d) sum += frame.gravity[d] * x[d];
+    for (int k = 0; k <= dim; ++k) sum += n[k] * nodal_head_[frame.shape[c].node[k]];
     return sum;
   };
+  std::array<double *, fluids> fields;
+  for (int a = 0; a < fluids; ++a) fields[a] = smooth_[a].data();
   for (int c = 0; c < cells; ++c) {  // of the liquid, and of the mixture where that is something else
     const double weight = liquid_.density * (head_[c] = head(c, mean_[c]));
-    smooth_[0][c] = cells_[c].pressure[0] - weight;
-    if constexpr (Phases::gas) smooth_[1][c] = mixture_pressure(cells_[c].pressure, cells_[c].saturation) - weight;
+    smooth_[0][c] = pores[c].pressure[0] - weight;
+    if constexpr (Phases::gas) smooth_[1][c] = mixture_pressure(pores[c].pressure, pores[c].saturation) - weight;
   }
-  double *fields[fluids];
-  for (int a = 0; a < fluids; ++a) fields[a] = smooth_[a].data();
-  PetscCall(smooth(frame, fields, fluids));
+  PetscCall(smooth<fluids>(frame, fields));
   std::vector<NodePores> &at = frame.trial ? trial_nodes_ : nodes_;
   if (frame.trial) at.resize(nodes_.size());
   std::fill_n(at.begin(), nodes, NodePores{});
   for (int c = 0; c < cells; ++c) {
-    CellPores &cell = cells_[c];
+    CellPores &cell = pores[c];
     const Shape<dim> &shape = frame.shape[c];
-    const double w = frame.weight[c], part = w / (dim + 1), here = head(c, reference_[c]);
-    double total = 0, ratio[fluids];
-    for (double row : rows_[c]) total += row;
-    for (int a = 0; a < fluids; ++a) ratio[a] = cell.mass[a] / total;
+    const double w = frame.weight[c], part = w / (dim + 1), here = head(c, reference_[c]), scale = 1 / grain_mass_[c];
     cell.smooth[0] = smooth_[0][c] + liquid_.density * here;
     if constexpr (Phases::gas) cell.smooth[1] = cell.pressure[1] + gas_.density * (here - head_[c]);
     cell.mixture = mixture_pressure(cell.smooth, cell.saturation);
     if constexpr (Phases::gas)
-      if (smoothed(c)) cell.mixture = smooth_[1][c] + liquid_.density * here;
-    Vec<dim> first{};
+      if (smoothed(c)) {  // the gas keeps its suction against the liquid: what smoothing takes must not draw gas
+        cell.smooth[1] += smooth_[0][c] + liquid_.density * head_[c] - cell.pressure[0];
+        cell.mixture = smooth_[1][c] + liquid_.density * here;
+      }
+    Quad push[sizeof(NodePores::push) / sizeof(Quad)], amount{};
+    push[mixture] = quad(cell.mixture), push[mixture][last] = cell.saturated;
+    for (int a = 0; a < fluids; ++a) {
+      push[a] = quad(cell.smooth[a]), push[a][last] = cell.conductivity[a];
+      amount[2 * a] = cell.mass[a] * scale, amount[2 * a + 1] = part * cell.density[a];
+    }
+    Quad first{};
     for (int k = dim; k >= 0; --k) {
       NodePores &node = at[shape.node[k]];
-      if (k)
-        for (int d = 0; d < dim; ++d) first[d] -= shape.gradient[k - 1][d];
-      const Vec<dim> &g = k ? shape.gradient[k - 1] : first;
-      node.volume += part, node.saturated += part * cell.saturated;
-      for (int d = 0; d < dim; ++d) {
-        const double wg = w * g[d];
-        node.surface[d] += wg, node.push[d] += wg * cell.mixture;
-        for (int a = 0; a < fluids; ++a) node.fluid[a].push[d] += wg * cell.smooth[a];
-      }
-      for (int a = 0; a < fluids; ++a) {
-        node.fluid[a].mass += ratio[a] * rows_[c][k], node.fluid[a].whole += part * cell.density[a];
-        node.fluid[a].conductivity += part * cell.conductivity[a];
-      }
+      Quad weighted = k ? quad(w) * load<dim>(shape.gradient[k - 1].data()) : first;
+      first -= weighted;
+      weighted[last] = part;
+      node.geometry += weighted;
+      const double row = rows_[c][k];
+      node.amount += amount * Quad{row, 1, row, 1};
+      for (size_t f = 0; f < std::size(push); ++f) node.push[f] += weighted * push[f];
     }
   }
-  PetscCall(frame.grid.sum(&at[0].volume, node_width));
+  PetscCall(frame.grid.sum(reinterpret_cast<double *>(at.data()), node_width));
   PetscFunctionReturn(0);
 }
 
@@ -364,8 +354,8 @@ void PoreFluid<dim, Phases>::add_to_mixture(const Frame &frame, const PoreCondit
   const std::vector<NodePores> &at = frame.trial ? trial_nodes_ : nodes_;
   for (int i = 0; i < frame.grid.node_count(); ++i)
     for (int d = 0; d < dim; ++d) {
-      force[i][d] += at[i].push[d];
-      for (int a = 0; a < fluids; ++a) force[i][d] += at[i].fluid[a].mass * frame.gravity[d];
+      force[i][d] += at[i].push[mixture][d];
+      for (int a = 0; a < fluids; ++a) force[i][d] += at[i].mass(a) * frame.gravity[d];
     }
   conditions.pressures(frame.time, frame.grid, unit_weight(frame), [&](int i, double, const Vec<dim> &area, double load) {
     for (int d = 0; d < dim; ++d) force[i][d] -= load * area[d];
@@ -380,7 +370,7 @@ double PoreFluid<dim, Phases>::conductivity_beyond(int node, const NodePores &at
     const SoilPores &soil = soils_[body_of_node_[node]];
     if (pressure < -soil.entry()) relative = soil.at(1 - talus::saturation(soil.retention(), -pressure)).liquid;
   }
-  return at.saturated / at.volume * relative;
+  return at.conductivity(mixture) / at.volume() * relative;
 }
 
 template <int dim, class Phases>
@@ -390,37 +380,43 @@ void PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreConditions<dim>
   std::fill_n(beyond_.begin(), nodes, 0.);
   for (int a = 0; a < fluids; ++a)
     for (int i = 0; i < nodes; ++i) {
-      const auto &fluid = at[i].fluid[a];
-      for (int d = 0; d < dim; ++d) acceleration[a * nodes + i][d] = fluid.whole > 0 ? fluid.push[d] / fluid.whole + frame.gravity[d] : 0;
+      const double whole = at[i].whole(a), scale = whole > 0 ? 1 / whole : 0;
+      for (int d = 0; d < dim; ++d) acceleration[a * nodes + i][d] = whole > 0 ? at[i].push[a][d] * scale + frame.gravity[d] : 0;
     }
   conditions.pressures(frame.time, frame.grid, unit_weight(frame), [&](int i, double p, const Vec<dim> &area, double) {
-    for (int d = 0; d < dim; ++d) acceleration[i][d] -= p * area[d] / at[i].fluid[0].whole;
+    for (int d = 0; d < dim; ++d) acceleration[i][d] -= p * area[d] / at[i].whole(0);
     beyond_[i] = conductivity_beyond(i, at[i], p);
   });
   if constexpr (Phases::gas)
     conditions.gas_pressures(frame.time, frame.grid, [&](int i, double p, const Vec<dim> &area) {
-      for (int d = 0; d < dim; ++d) acceleration[nodes + i][d] -= p * area[d] / at[i].fluid[1].whole;
+      for (int d = 0; d < dim; ++d) acceleration[nodes + i][d] -= p * area[d] / at[i].whole(1);
     });
   for (int a = 0; a < fluids; ++a)
     for (int i = 0; i < nodes; ++i)
-      for (int d = 0; d < dim; ++d) force[i][d] -= at[i].fluid[a].mass * acceleration[a * nodes + i][d];
+      for (int d = 0; d < dim; ++d) force[i][d] -= at[i].mass(a) * acceleration[a * nodes + i][d];
 }
 
 /// Mass, M and resistance Q = phi V / k of a fluid at a node: the flux of a steady state is then the mean conductivity times the gradient.
 template <int dim, class Phases>
 NodalFluid PoreFluid<dim, Phases>::at_node(int i, int a) const {
   const NodePores &node = nodes_[i];
-  const auto &fluid = node.fluid[a];
-  if (!(fluid.whole > 0)) return {0, 0, 0};
+  const double mass = node.mass(a), whole = node.whole(a);
+  if (!(whole > 0)) return {0, 0, 0};
   constexpr double closed = 1e30;  // [1/s]: where pressures are given, fluids go with the grains
-  double conductivity = fluid.conductivity / node.volume;
+  double conductivity = node.conductivity(a) / node.volume();
   if (a == 0 && beyond_[i] > 0) conductivity = (conductivity + beyond_[i]) / 2;  // as if there were one more cell, beyond the face
-  const double resistance = given ? closed * fluid.whole : fluid.mass / fluid.whole * node.volume / std::max(conductivity, 1e-300);
-  return {fluid.mass, fluid.whole, resistance};
+  const double resistance = given ? closed * whole : mass / whole * node.volume() / std::max(conductivity, 1e-300);
+  return {mass, whole, resistance};
 }
 
+/// Shortest change of a number that brings it between two others.
+inline double into(double x, double low, double high) { return std::clamp(x, low, high) - x; }
+
+/// Where a face or a wall holds a fluid back, that acts on the skeleton too: they share what momentum they have along its normal. A surface that lets no
+/// water in bears its suction so, and a wall that holds the skeleton bears the weight of the water, theory (4.7).
 template <int dim, class Phases>
-void PoreFluid<dim, Phases>::resist(double step, const FilledGrid<dim> &grid, Vec<dim> *solid, const Vec<dim> *fluid) const {
+void PoreFluid<dim, Phases>::resist(double step, const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *solid, const Vec<dim> *fluid) const {
+  const FilledGrid<dim> &grid = frame.grid;
   const int nodes = grid.node_count();
   for (int i = 0; i < nodes; ++i) {
     NodalFluid at[fluids];
@@ -431,6 +427,32 @@ void PoreFluid<dim, Phases>::resist(double step, const FilledGrid<dim> &grid, Ve
       resolve_drag<fluids>(step, grid.mass[i], solid[i][d], at, v);
     }
   }
+  const auto share = [&](int i, const Vec<dim> &n, int count, double low, double high) {
+    double momentum = 0, mass = grid.mass[i];
+    for (int a = 0; a < count; ++a) {
+      const NodalFluid at = at_node(i, a);
+      double out = 0;
+      for (int d = 0; d < dim; ++d) out += (fluid[a * nodes + i][d] - solid[i][d]) * n[d];
+      momentum -= at.mass * into(out / (1 + drag_number(step, at)), low, high), mass += at.mass;
+    }
+    for (int d = 0; d < dim; ++d) solid[i][d] += momentum / mass * n[d];
+  };
+  limits(frame, conditions, [&](int i, const Vec<dim> &n, double low, double high, bool gas_too) { share(i, n, gas_too ? fluids : 1, low, high); });
+  conditions.walls([&](int i, const Vec<dim> &n) { share(i, n, fluids, 0, 0); });
+}
+
+/// What a support at a node holds: the skeleton, all of a fluid along the normals of walls, elsewhere what drag takes along in a step [kg].
+template <int dim, class Phases>
+Square<dim> PoreFluid<dim, Phases>::inertia(double step, const FilledGrid<dim> &grid, const PoreConditions<dim> &conditions, int i) const {
+  double dragged = grid.mass[i], rest = 0;
+  for (int a = 0; a < fluids; ++a) {
+    const NodalFluid at = at_node(i, a);
+    const double free = at.mass / (1 + drag_number(step, at));
+    dragged += at.mass - free, rest += free;
+  }
+  Square<dim> held = dragged * Square<dim>::Identity();
+  conditions.walls_at(grid, i, [&](const Vec<dim> &n) { held += rest * map<dim>(n) * map<dim>(n).transpose(); });
+  return held;
 }
 
 template <int dim, class Phases>
@@ -450,10 +472,25 @@ void PoreFluid<dim, Phases>::follow(double step, const Frame &frame, const PoreC
 }
 
 template <int dim, class Phases>
+template <class Limit>
+void PoreFluid<dim, Phases>::limits(const Frame &frame, const PoreConditions<dim> &conditions, Limit &&limit) const {
+  conditions.limits(frame.time, frame.grid, liquid_.density, unit_weight(frame), [&](int i) { return LiquidAtNode{nodes_[i].mass(0), nodes_[i].volume()}; }, limit);
+}
+
+template <int dim, class Phases>
 void PoreFluid<dim, Phases>::constrain(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid, Vec<dim> *fluid) const {
-  conditions.constrain(
-      frame.time, frame.grid, liquid_.density, unit_weight(frame), [&](int i) { return LiquidAtNode{nodes_[i].fluid[0].mass, nodes_[i].volume}; }, solid,
-      fluid, Phases::gas ? fluid + frame.grid.node_count() : nullptr);
+  const int nodes = frame.grid.node_count();
+  const auto hold = [&](int i, const Vec<dim> &n, int count, double low, double high) {
+    for (int a = 0; a < count; ++a) {
+      Vec<dim> &v = fluid[a * nodes + i];
+      double out = 0;
+      for (int d = 0; d < dim; ++d) out += (v[d] - solid[i][d]) * n[d];
+      const double change = into(out, low, high);
+      for (int d = 0; d < dim; ++d) v[d] += change * n[d];
+    }
+  };
+  limits(frame, conditions, [&](int i, const Vec<dim> &n, double low, double high, bool gas_too) { hold(i, n, gas_too ? fluids : 1, low, high); });
+  conditions.walls([&](int i, const Vec<dim> &n) { hold(i, n, fluids, 0, 0); });
 }
 
 // ---- exchange ----
@@ -467,10 +504,7 @@ PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<di
   constexpr int width = 3;
   constexpr double empty = 1e-30;
   FilledGrid<dim> &grid = frame.grid;
-  const auto pore_share = [&](int i) {
-    const auto &fluid = nodes_[i].fluid[1];
-    return fluid.whole > 0 ? fluid.mass / fluid.whole : 0;
-  };
+  const auto pore_share = [&](int i) { return nodes_[i].whole(1) > 0 ? nodes_[i].mass(1) / nodes_[i].whole(1) : 0; };
   std::fill_n(nodal_.begin(), grid.node_count() * width, 0.);
   for (int c = 0; c < grid.cell_count(); ++c) {
     const Shape<dim> &shape = grid.shape[c];
@@ -500,7 +534,7 @@ PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<di
   for (int i = 0; i < grid.node_count(); ++i) {
     const double *node = &nodal_[i * width], rho = node[0] > 0 ? node[1] / node[0] : gas_.density;
     const double density = given ? 0 : pore_share(i) * rho / (1 + node[2]);
-    for (int d = 0; d < dim; ++d) flux_[i][d] = density * (gas[i][d] - solid[i][d]);
+    for (int d = 0; d < dim; ++d) flux_[1][i][d] = density * (gas[i][d] - solid[i][d]);
   }
   PetscFunctionReturn(0);
 }
@@ -510,23 +544,21 @@ PetscErrorCode PoreFluid<dim, Phases>::flow(const Frame &frame, const Vec<dim> *
   PetscFunctionBeginUser;
   const FilledGrid<dim> &grid = frame.grid;
   const int nodes = grid.node_count(), cells = grid.cell_count();
-  for (int a = 0; a < fluids; ++a) {
-    const Vec<dim> *moved = u + (1 + a) * nodes;
-    if constexpr (Phases::gas)
-      if (a == 1) PetscCall(gas_flux(frame, moved, u));
-    for (int i = 0; i < nodes && a == 0; ++i) {
-      const double density = given ? 0 : nodes_[i].volume > 0 ? nodes_[i].fluid[a].mass / nodes_[i].volume : 0;
-      for (int d = 0; d < dim; ++d) flux_[i][d] = density * (moved[i][d] - u[i][d]);
-    }
-    if (!frame.trial)
-      for (int i = 0; i < nodes; ++i)
-        if (mesh_.owned[grid.mesh_node[i]])
-          for (int d = 0; d < dim; ++d) out_[a] += flux_[i][d] * nodes_[i].surface[d];
-    for (int c = 0; c < cells; ++c) {
-      const Shape<dim> &shape = grid.shape[c];
+  for (int i = 0; i < nodes; ++i) {
+    const double density = given ? 0 : nodes_[i].volume() > 0 ? nodes_[i].mass(0) / nodes_[i].volume() : 0;
+    for (int d = 0; d < dim; ++d) flux_[0][i][d] = density * (u[nodes + i][d] - u[i][d]);
+  }
+  if constexpr (Phases::gas) PetscCall(gas_flux(frame, u + 2 * nodes, u));
+  for (int a = 0; a < fluids && !frame.trial; ++a)
+    for (int i = 0; i < nodes; ++i)
+      if (mesh_.owned[grid.mesh_node[i]])
+        for (int d = 0; d < dim; ++d) out_[a] += flux_[a][i][d] * nodes_[i].geometry[d];
+  for (int c = 0; c < cells; ++c) {
+    const Shape<dim> &shape = grid.shape[c];
+    for (int a = 0; a < fluids; ++a) {
       double sum = 0;
       for (int k = 0; k < dim; ++k)
-        for (int d = 0; d < dim; ++d) sum += shape.gradient[k][d] * (flux_[shape.node[k + 1]][d] - flux_[shape.node[0]][d]);
+        for (int d = 0; d < dim; ++d) sum += shape.gradient[k][d] * (flux_[a][shape.node[k + 1]][d] - flux_[a][shape.node[0]][d]);
       divergence_[a][c] = sum;
     }
   }
@@ -536,8 +568,7 @@ PetscErrorCode PoreFluid<dim, Phases>::flow(const Frame &frame, const Vec<dim> *
 template <int dim, class Phases>
 PetscErrorCode PoreFluid<dim, Phases>::smooth_flow(const Frame &frame, Array &volume_strain) {
   PetscFunctionBeginUser;
-  double *fields[] = {volume_strain.data(), divergence_[0].data()};  // gas moves by its own pressure, which is not smoothed
-  PetscCall(smooth(frame, fields, 2));
+  PetscCall(smooth<2>(frame, {volume_strain.data(), divergence_[0].data()}));  // gas moves by its own pressure, which is not smoothed
   const int cells = frame.grid.cell_count();
   for (int a = 0; a < fluids; ++a)
     for (int c = 0; c < cells; ++c) divergence_[a][c] *= frame.weight[c];
@@ -545,19 +576,17 @@ PetscErrorCode PoreFluid<dim, Phases>::smooth_flow(const Frame &frame, Array &vo
 }
 
 template <int dim, class Phases>
-PetscErrorCode PoreFluid<dim, Phases>::exchange(const Frame &frame) {
-  PetscFunctionBeginUser;
+void PoreFluid<dim, Phases>::exchange(const Frame &frame) {
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const PorePoints &from = points_[b];
     PorePoints &to = frame.trial ? trial_[b] : points_[b];
     const PointSet &set = frame.points[b];
-    if (frame.trial) to = from;
-    for (int a = 0; a < fluids; ++a)
-      for (int q = 0; q < set.count; ++q)
-        to.mass[a][q] = from.mass[a][q] - frame.volume[b][q] / frame.particle_volume[set.cell[q]] * divergence_[a][set.cell[q]];
+    if (frame.trial) to.room(set.count), std::copy_n(from.share.begin(), set.count, to.share.begin());
+    for (int q = 0; q < set.count; ++q) {
+      const double part = frame.volume[b][q] / frame.particle_volume[set.cell[q]];
+      for (int a = 0; a < fluids; ++a) to.mass[a][q] = from.mass[a][q] - part * divergence_[a][set.cell[q]];
+    }
   }
-  PetscCall(store(frame));
-  PetscFunctionReturn(0);
 }
 
 template <int dim, class Phases>
@@ -571,10 +600,10 @@ PoreReport PoreFluid<dim, Phases>::report(int body, int point, int cell) const {
 template <int dim, class Phases>
 void PoreFluid<dim, Phases>::keep(Archive &archive) {
   for (PorePoints &points : points_) {
-    archive.keep("pores", points.grains, points.share, points.suction);
-    for (int a = 0; a < fluids; ++a) archive.keep("fluid", points.mass[a], points.pressure[a]);
+    archive.keep("pores", points.count, points.grains, points.share, points.suction);
+    for (int a = 0; a < fluids; ++a) archive.keep("fluid", points.mass[a]);
   }
-  archive.keep("fluids", cells_, nodes_, surface_, mean_, reference_, rows_, body_of_node_, out_, given_mass_);
+  archive.keep("fluids", cells_, nodes_, surface_, mean_, reference_, rows_, grain_mass_, body_of_node_, out_, given_mass_);
 }
 
 template <int dim, class Phases>
@@ -584,7 +613,7 @@ PetscErrorCode PoreFluid<dim, Phases>::ledger(bool gathered, FluidLedger *sums) 
   for (size_t b = 0; b < bodies_.size(); ++b)
     for (int a = 0; a < fluids; ++a) {
       if (gathered)
-        for (double m : points_[b].mass[a]) mine[3 * a] += m;
+        for (int q = 0; q < points_[b].count; ++q) mine[3 * a] += points_[b].mass[a][q];
       else
         for (int i = 0; i < bodies_[b]->particles().count; ++i) mine[3 * a] += bodies_[b]->particles().fluid_mass[a][i];
     }

@@ -18,8 +18,8 @@ SoilPores::SoilPores(const BodySource &body, double unit_weight, double liquid_v
     const Wetness w{wet, dry, suction};
     return std::array<double, 3>{suction, talus::liquid_permeability(relative_, w), talus::gas_permeability(relative_, w)};
   };
-  wet_end_.fill([&](double dry) { return columns(1 - dry, dry); });
-  dry_end_.fill([&](double wet) { return columns(wet, 1 - wet); });
+  curves_.fill(wet_end, [&](double dry) { return columns(1 - dry, dry); });
+  curves_.fill(dry_end, [&](double wet) { return columns(wet, 1 - wet); });
   entry_ = suction_at(retention_, 1, 0);
 }
 

@@ -20,15 +20,12 @@ class SoilPores {
     double slope;          ///< ds / dS_g, S_g the gas share [Pa]
     double liquid, gas;    ///< k_rl, k_rg [-]
   };
-  State at(double gas_share) const {
+  [[gnu::always_inline]] State at(double gas_share) const {
     const double dry = gas_share * inverse_range_, wet = 1 - dry;
-    if (dry <= 0.5) {
-      const auto place = wet_end_.find(dry);
-      const bool beyond = dry < OctaveTable<3>::smallest;
-      return {beyond ? entry_ : wet_end_.value(place, 0), wet_end_.slope(place, 0) * inverse_range_, wet_end_.value(place, 1), wet_end_.value(place, 2)};
-    }
-    const auto place = dry_end_.find(wet);
-    return {dry_end_.value(place, 0), -dry_end_.slope(place, 0) * inverse_range_, wet > 0 ? dry_end_.value(place, 1) : 0, dry_end_.value(place, 2)};
+    const bool is_wet = dry <= 0.5, beyond = dry < Table::smallest;
+    const auto place = curves_.find(is_wet ? wet_end : dry_end, is_wet ? dry : wet);
+    const double suction = curves_.value(place, 0), slope = curves_.slope(place, 0) * inverse_range_, liquid = curves_.value(place, 1);
+    return {beyond ? entry_ : suction, is_wet ? slope : -slope, is_wet || wet > 0 ? liquid : 0, curves_.value(place, 2)};
   }
   double suction(double gas_share) const { return at(gas_share).suction; }
   /// Largest suction that saturated soil bears [Pa].
@@ -46,7 +43,9 @@ class SoilPores {
  private:
   Retention retention_;
   RelativePermeability relative_;
-  OctaveTable<3> wet_end_, dry_end_;  ///< suction, k_rl, k_rg over 1 - S_e and over S_e
+  static constexpr int wet_end = 0, dry_end = 1;
+  using Table = OctaveTable<3, 2>;
+  Table curves_;  ///< suction, k_rl, k_rg over 1 - S_e and over S_e
   PermeabilityChange change_;
   double permeability_, gas_permeability_, porosity_, residual_ = 0, entry_ = 0, inverse_range_ = 1;
 };

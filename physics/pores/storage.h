@@ -11,65 +11,107 @@ namespace talus {
 
 struct PorePressures {
   double liquid = 0, gas = 0;  ///< P_l, P_g [Pa], gauge
-  int iterations = 0;
 };
 
 /// Gas share below which soil counts as saturated: the pressure of its gas means nothing then [-].
 inline constexpr double residual_gas = 1e-4;
 
-/// Pores full of liquid of `content` = m_l / (n V) [kg/m3].
-inline PorePressures saturated_pressure(const Liquid &liquid, double content) { return {liquid.pressure_at(content), 0, 0}; }
+/// A few points side by side, so that their iterations run in vector registers. A lane does not depend on what the others hold.
+template <int lanes>
+struct PoreLanes {
+  double liquid_content[lanes], gas_content[lanes];  ///< m_a / (n V) [kg/m3]
+  double gas_share[lanes];                           ///< S_g: where the iteration starts, and its result
+  double liquid[lanes], gas[lanes];                  ///< P_l, P_g [Pa], gauge
+  int iterations[lanes];
+};
+inline constexpr int most_iterations = 100;
 
-/// Gas at atmospheric pressure: S_l rho_l(-s(S_l)) = content. `gas_share` is the start and becomes the result; 0 in saturated soil.
-inline PorePressures unsaturated_pressure(const SoilPores &soil, const Liquid &liquid, double content, double &gas_share) {
-  if (content >= liquid.density_at(-soil.entry())) {
-    gas_share = 0;
-    return {liquid.pressure_at(content), 0, 0};
-  }
-  const double largest = soil.largest_gas_share();
-  double low = 0, high = largest, y = std::clamp(gas_share, 1e-12 * high, (1 - 1e-12) * high);
-  PorePressures p;
-  while (p.iterations < 100) {
-    ++p.iterations;
-    const SoilPores::State state = soil.at(y);
-    const double rho = liquid.density_at(-state.suction), f = (1 - y) * rho - content;
-    (f > 0 ? low : high) = y;
-    p.liquid = -state.suction;
-    const double next = y + f / (rho + (1 - y) * liquid.density_slope(rho) * state.slope);
-    const double taken = next >= low && next <= high ? next : (low + high) / 2;
-    const double moved = std::abs(taken - y);
-    p.liquid -= state.slope * (taken - y);  // first order in the last correction, which is then below round-off of the content
-    y = taken;
-    if (moved <= 1e-7 * std::min(y, largest - y) + 1e-14) break;  // its square is what the quadratic convergence leaves
-  }
-  gas_share = y;
-  return p;
+/// Pores full of liquid.
+template <int lanes>
+inline void saturated_pressures(const Liquid &liquid, PoreLanes<lanes> &p) {
+  liquid.with_compression([&](const auto &law) {
+#pragma omp simd
+    for (int i = 0; i < lanes; ++i) p.liquid[i] = law.pressure_at(p.liquid_content[i]);
+  });
+}
+
+/// Gas at atmospheric pressure: S_l rho_l(-s(S_l)) = content; a gas share of 0 in saturated soil.
+template <int lanes>
+inline void unsaturated_pressures(const SoilPores &soil, const Liquid &liquid, PoreLanes<lanes> &p) {
+  liquid.with_compression([&](const auto &law) {
+    const double largest = soil.largest_gas_share(), full = law.density_at(-soil.entry());
+    double low[lanes], high[lanes], open[lanes];
+#pragma omp simd
+    for (int i = 0; i < lanes; ++i) {
+      const bool saturated = p.liquid_content[i] >= full;
+      low[i] = 0, high[i] = largest, open[i] = saturated ? 0 : 1, p.iterations[i] = 0;
+      p.gas_share[i] = saturated ? 0 : std::clamp(p.gas_share[i], 1e-12 * largest, (1 - 1e-12) * largest);
+      p.liquid[i] = law.pressure_at(p.liquid_content[i]), p.gas[i] = 0;
+    }
+    double left = 1;
+    for (int round = 0; round < most_iterations && left > 0; ++round) {
+      left = 0;
+#pragma omp simd reduction(+ : left)
+      for (int i = 0; i < lanes; ++i) {
+        const double y = p.gas_share[i], content = p.liquid_content[i];
+        const SoilPores::State state = soil.at(y);
+        const double rho = law.density_at(-state.suction), f = (1 - y) * rho - content;
+        const double a = f > 0 ? y : low[i], b = f > 0 ? high[i] : y;
+        const double next = y + f / (rho + (1 - y) * law.density_slope(rho) * state.slope);
+        const double taken = next >= a && next <= b ? next : (a + b) / 2, moved = std::abs(taken - y);
+        const double pressure = -state.suction - state.slope * (taken - y);  // first order in the last correction, which is then below round-off of the content
+        const bool turns = open[i] > 0;
+        low[i] = a, high[i] = b;
+        p.gas_share[i] = turns ? taken : y, p.liquid[i] = turns ? pressure : p.liquid[i];
+        p.iterations[i] += turns;
+        // the square of the last correction is what the quadratic convergence leaves
+        open[i] = turns && moved > 1e-7 * std::min(taken, largest - taken) + 1e-14 ? 1 : 0;
+        left += open[i];
+      }
+    }
+  });
 }
 
 /// Liquid and gas: P_g(c_g / y) - P_l(c_l / (1 - y)) = s(y) in the gas share y, which has one root (both sides are monotone).
-inline PorePressures three_phase_pressures(const SoilPores &soil, const Liquid &liquid, const PoreGas &gas, double liquid_content,
-                                           double gas_content, double &gas_share) {
-  const double largest = soil.largest_gas_share();
-  double low = 0, high = largest, y = std::clamp(gas_share, 1e-12 * high, (1 - 1e-12) * high);
-  PorePressures p;
-  while (p.iterations < 100) {
-    ++p.iterations;
-    const SoilPores::State state = soil.at(y);
-    const double rho_l = liquid_content / (1 - y), rho_g = gas_content / y;
-    p.liquid = liquid.pressure_at(rho_l), p.gas = gas.pressure_at(rho_g);
-    const double f = p.gas - p.liquid - state.suction;
-    (f > 0 ? low : high) = y;
-    const double slope = -gas.bulk_modulus / gas.density * rho_g / y - rho_l / (liquid.density_slope(rho_l) * (1 - y)) - state.slope;
-    // y f is nearly linear where gas is trapped, f itself where it is not: the smaller slope is the safer one
-    const double scaled = y * slope + f, next = y - (scaled < 0 ? y * f / scaled : f / slope);
-    const double taken = next >= low && next <= high ? next : low > 0 ? std::sqrt(low * high) : high < 1e-3 ? 0.1 * high : (low + high) / 2;
-    const double moved = std::abs(taken - y);
-    y = taken;
-    if (moved <= 1e-7 * std::min(y, largest - y)) break;  // its square is what the quadratic convergence leaves
-  }
-  gas_share = y;
-  p.liquid = liquid.pressure_at(liquid_content / (1 - y)), p.gas = gas.pressure_at(gas_content / y);
-  return p;
+template <int lanes>
+inline void three_phase_pressures(const SoilPores &soil, const Liquid &liquid, const PoreGas &gas, PoreLanes<lanes> &p) {
+  liquid.with_compression([&](const auto &law) {
+    const double largest = soil.largest_gas_share(), gas_slope = gas.bulk_modulus / gas.density;
+    double low[lanes], high[lanes], open[lanes];
+#pragma omp simd
+    for (int i = 0; i < lanes; ++i) {
+      low[i] = 0, high[i] = largest, open[i] = 1, p.iterations[i] = 0;
+      p.gas_share[i] = std::clamp(p.gas_share[i], 1e-12 * largest, (1 - 1e-12) * largest);
+    }
+    double left = 1;
+    for (int round = 0; round < most_iterations && left > 0; ++round) {
+      left = 0;
+#pragma omp simd reduction(+ : left)
+      for (int i = 0; i < lanes; ++i) {
+        const double y = p.gas_share[i], over_wet = 1 / (1 - y), over_y = 1 / y;
+        const SoilPores::State state = soil.at(y);
+        const double rho_l = p.liquid_content[i] * over_wet, rho_g = p.gas_content[i] * over_y;
+        const double f = gas.pressure_at(rho_g) - law.pressure_at(rho_l) - state.suction;
+        const double a = f > 0 ? y : low[i], b = f > 0 ? high[i] : y;
+        const double slope = -gas_slope * rho_g * over_y - rho_l * over_wet / law.density_slope(rho_l) - state.slope;
+        // y f is nearly linear where gas is trapped, f itself where it is not: the smaller slope is the safer one
+        const double scaled = y * slope + f, next = y - (scaled < 0 ? y * f / scaled : f / slope);
+        const double inside = a > 0 ? std::sqrt(a * b) : b < 1e-3 ? 0.1 * b : (a + b) / 2;
+        const double taken = next >= a && next <= b ? next : inside, moved = std::abs(taken - y);
+        const bool turns = open[i] > 0;
+        low[i] = a, high[i] = b;
+        p.gas_share[i] = turns ? taken : y;
+        p.iterations[i] += turns;
+        open[i] = turns && moved > 1e-7 * std::min(taken, largest - taken) ? 1 : 0;  // its square is what the quadratic convergence leaves
+        left += open[i];
+      }
+    }
+#pragma omp simd
+    for (int i = 0; i < lanes; ++i) {
+      p.liquid[i] = law.pressure_at(p.liquid_content[i] / (1 - p.gas_share[i]));
+      p.gas[i] = gas.pressure_at(p.gas_content[i] / p.gas_share[i]);
+    }
+  });
 }
 
 /// Symmetric storage matrix of dP_l, dP_g per pore volume change, docs/theory/pores.md (3.4), all over n [1/Pa]: ll, lg, gg.

@@ -120,7 +120,7 @@ void Simulation<dim, Phases>::run_stage() {
     require(step(step_rule(integrator_settings_).fixed > 0 ? end : std::min({end, next_row, next_snapshot})));
     const Verdict verdict = agree();
     refuse(verdict);
-    if (remap_due_) require(remap());
+    require(remap_due_ ? remap() : motion_->settle());
     if (results_) results_->progress.step(time_, steps_, particle_count_);
     if (reached(next_row, time_)) write_history();
     if (reached(next_snapshot, time_) && !reached(end, time_)) write_snapshot();

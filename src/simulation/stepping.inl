@@ -14,7 +14,7 @@ double Simulation<dim, Phases>::single_step() {
   require(step(std::numeric_limits<double>::max()));
   const Verdict verdict = agree();
   refuse(verdict);
-  if (remap_due_) require(remap());
+  require(remap_due_ ? remap() : motion_->settle());
   heed_interrupt(verdict);
   return last_step_;
 }
@@ -27,7 +27,7 @@ void Simulation<dim, Phases>::advance_to(double t) {
     require(step(t));
     const Verdict verdict = agree();
     refuse(verdict);
-    if (remap_due_) require(remap());
+    require(remap_due_ ? remap() : motion_->settle());
     heed_interrupt(verdict);
   }
 }

@@ -12,27 +12,39 @@ inline constexpr int unrolled_history = 4;
 /// Particles that a run takes at a time: what calls functions waits for the end of such a part, so that sums stay in registers.
 inline constexpr int run_part = 32;
 
+/// Instantiates `one(dim, averaged, apic, fluids)` for all that scenes may ask for.
+#define TALUS_EACH_TRANSFER(one) TALUS_EACH_PHASES(one, 2) TALUS_EACH_PHASES(one, 3)
+#define TALUS_EACH_PHASES(one, dim) TALUS_EACH_KIND(one, dim, 0) TALUS_EACH_KIND(one, dim, 1) TALUS_EACH_KIND(one, dim, 2)
+#define TALUS_EACH_KIND(one, dim, fluids) one(dim, true, true, fluids) one(dim, true, false, fluids) one(dim, false, true, fluids) one(dim, false, false, fluids)
+
 /// Gives particles of one cell what the nodes learned since the last remap.
-template <int dim, bool averaged, bool apic>
+template <int dim, bool averaged, bool apic, int fluids>
 class RunFromNodes {
  public:
   static constexpr int vertices = dim + 1, components = stress_size<dim>;
 
   [[gnu::always_inline]] RunFromNodes(const Body<dim> &body, const Lagrangian<dim> &from, int mesh_cell)
-      : coordinates(from.grid.mesh().cells[mesh_cell]), body_(body), flip_(quad(from.flip)) {
+      : coordinates(from.grid.mesh().cells[mesh_cell]), body_(body), flip_(quad(from.flip)), over_density_(from.pores.over_density) {
     const int cell = from.grid.find_cell(mesh_cell);
 #pragma GCC unroll 8
     for (int k = 0; k < vertices; ++k) {
       velocity_[k] = from.nodes.velocity[from.grid.shape[cell].node[k]];
       displacement_[k] = from.nodes.displacement[from.grid.shape[cell].node[k]];
+#pragma GCC unroll 2
+      for (int a = 0; a < fluids; ++a) fluid_velocity_[a][k] = from.nodes.fluid[a][from.grid.shape[cell].node[k]];
     }
     if constexpr (apic) affine_ = &from.affine[cell * dim * dim];
+    for (int a = 0; a < fluids; ++a) point_mass_[a] = from.pores.mass[a];
     if constexpr (averaged) {
       const int point = from.points.of_cell[mesh_cell], count = body.history_count();
       stress = from.points.stress + point * components;
       growth_ = from.points.volume[point] / from.points.start_volume[point];
       history_ = from.points.history + point * count, start_history_ = from.points.start_history.data() + point * count;
-      for (int h = 0; h < std::min(count, unrolled_history); ++h) gain_[h] = history_[h] - start_history_[h];
+#pragma GCC unroll 4
+      for (int h = 0; h < unrolled_history; ++h)
+        if (h < count) gain_[h] = history_[h] - start_history_[h];
+      // a cell's fluid fills its pores evenly, so that a particle that moves on takes its pressure along
+      for (int a = 0; a < fluids; ++a) content_[a] = from.pores.mass[a][point] / (from.points.volume[point] - from.pores.grains[point]);
     }
   }
 
@@ -48,6 +60,14 @@ class RunFromNodes {
     }
     store<dim>(p.velocity[i].data(), v);
     store<dim>(p.position[i].data(), x);
+#pragma GCC unroll 2
+    for (int a = 0; a < fluids; ++a) {
+      Quad w = flip_ * load<dim>(p.fluid_velocity[a][i].data());
+#pragma GCC unroll 8
+      for (int k = 0; k < vertices; ++k) w += quad(n[k]) * fluid_velocity_[a][k];
+      store<dim>(p.fluid_velocity[a][i].data(), w);
+      p.fluid_mass[a][i] = averaged ? content_[a] * (p.volume[i] * growth_ - p.mass[i] * over_density_) : point_mass_[a][i];
+    }
     if constexpr (averaged) {
       const int count = body_.history_count();
 #pragma GCC unroll 8
@@ -79,19 +99,21 @@ class RunFromNodes {
  private:
   const Body<dim> &body_;
   const Quad flip_;
-  Quad velocity_[vertices], displacement_[vertices];
+  const double over_density_;
+  const double *point_mass_[fluids ? fluids : 1]{};
+  Quad velocity_[vertices], displacement_[vertices], fluid_velocity_[fluids ? fluids : 1][vertices];
   const double *affine_ = nullptr, *history_ = nullptr, *start_history_ = nullptr;
-  double growth_ = 1, gain_[unrolled_history]{};
+  double growth_ = 1, gain_[unrolled_history]{}, content_[fluids ? fluids : 1];
 };
 
 /// Adds particles of one cell to the grid, which their cell enters with them.
-template <int dim, bool averaged, bool apic>
+template <int dim, bool averaged, bool apic, int fluids>
 class RunToNodes {
  public:
   static constexpr int vertices = dim + 1, components = stress_size<dim>;
 
-  [[gnu::always_inline]] RunToNodes(const Body<dim> &body, FilledGrid<dim> &grid, PointSet &points, int mesh_cell)
-      : body_(body), grid_(grid), points_(points), mesh_cell_(mesh_cell) {}
+  [[gnu::always_inline]] RunToNodes(const Body<dim> &body, FilledGrid<dim> &grid, PointSet &points, const Pores<dim> &pores, int mesh_cell)
+      : body_(body), grid_(grid), points_(points), pores_(pores), mesh_cell_(mesh_cell) {}
 
   /// Adds particle i with barycentric coordinates n; its stress and what `add_rest` adds apart.
   [[gnu::always_inline]] void add(int i, Quad n) {
@@ -115,6 +137,13 @@ class RunToNodes {
       momentum_[d] += v * mn;
     }
     share_ += quad(p.volume[i]) * n;
+#pragma GCC unroll 2
+    for (int a = 0; a < fluids; ++a) {
+#pragma GCC unroll 8
+      for (int d = 0; d < dim; ++d) fluid_momentum_[a][d] += quad(p.fluid_velocity[a][i][d]) * mn;
+      if constexpr (averaged) fluid_mass_[a] += p.fluid_mass[a][i];
+    }
+    if constexpr (averaged && fluids > 0) grains_ += p.mass[i];
     if constexpr (averaged) {
       const int count = body_.history_count();
 #pragma GCC unroll 4
@@ -134,7 +163,14 @@ class RunToNodes {
   /// point of the cell, -1 if there is none or nothing was added.
   [[gnu::always_inline]] int finish(Vec<dim> *momentum, const double *common) const {
     if (!count_) return -1;
-    const int cell = grid_.enter_cell(mesh_cell_);
+    const int cells = grid_.cell_count(), cell = grid_.enter_cell(mesh_cell_);
+#pragma GCC unroll 2
+    for (int a = 0; a < fluids; ++a) {
+      auto &impulse = pores_.impulse[a][cell];
+      if (cell == cells) impulse = {};
+#pragma GCC unroll 8
+      for (int d = 0; d < dim; ++d) impulse[d] += fluid_momentum_[a][d];
+    }
     auto &matrix = grid_.mass_matrix[cell];
 #pragma GCC unroll 8
     for (int k = 0, pair = vertices; k < vertices; ++k) {
@@ -152,12 +188,17 @@ class RunToNodes {
       volume += share_[k];
     }
     if constexpr (!averaged) return -1;
-    const int count = body_.history_count(), point = points_.enter(mesh_cell_, cell, components, count);
+    const int count = body_.history_count(), known = points_.count, point = points_.enter(mesh_cell_, cell, components, count);
+    if constexpr (fluids > 0) pores_.grains[point] = grains_ * pores_.over_density + (point == known ? 0 : pores_.grains[point]);
+#pragma GCC unroll 2
+    for (int a = 0; a < fluids; ++a) pores_.mass[a][point] = fluid_mass_[a] + (point == known ? 0 : pores_.mass[a][point]);
     points_.own_volume[point] += volume, points_.own_limit[point] += limit_;
     double *stress = &points_.own_stress[point * components], *history = points_.own_history.data() + point * count;
 #pragma GCC unroll 8
     for (int s = 0; s < components; ++s) stress[s] += common ? volume * common[s] : stress_[s];
-    for (int h = 0; h < std::min(count, unrolled_history); ++h) history[h] += history_[h];
+#pragma GCC unroll 4
+    for (int h = 0; h < unrolled_history; ++h)
+      if (h < count) history[h] += history_[h];
     return point;
   }
   /// Adds what a law remembers of particle i beyond the first few values.
@@ -172,10 +213,11 @@ class RunToNodes {
   const Body<dim> &body_;
   FilledGrid<dim> &grid_;
   PointSet &points_;
+  const Pores<dim> &pores_;
   const int mesh_cell_;
   int count_ = 0;
-  Quad mass_[vertices]{}, momentum_[dim]{}, share_{};
-  double stress_[components]{}, history_[unrolled_history]{}, limit_ = 0;
+  Quad mass_[vertices]{}, momentum_[dim]{}, share_{}, fluid_momentum_[fluids ? fluids : 1][dim]{};
+  double stress_[components]{}, history_[unrolled_history]{}, limit_ = 0, fluid_mass_[fluids ? fluids : 1]{}, grains_ = 0;
 };
 
 }  // namespace talus

@@ -4,12 +4,12 @@
 
 namespace talus {
 
-template <int dim, bool averaged, bool apic>
+template <int dim, bool averaged, bool apic, int fluids>
 void to_particles(Body<dim> &body, const Lagrangian<dim> &from, std::vector<int> &movers) {
   const ParticleArrays<dim> &p = body.particles();
   for (int i = 0; i < p.count;) {
     const int mesh_cell = p.cell[i], first = i;
-    const RunFromNodes<dim, averaged, apic> run(body, from, mesh_cell);
+    const RunFromNodes<dim, averaged, apic, fluids> run(body, from, mesh_cell);
     for (; i < p.count && p.cell[i] == mesh_cell; ++i) {
       if (!none_negative(run.move(i))) movers.push_back(i);
       run.give_stress(i);
@@ -18,14 +18,14 @@ void to_particles(Body<dim> &body, const Lagrangian<dim> &from, std::vector<int>
   }
 }
 
-template <int dim, bool averaged, bool apic>
+template <int dim, bool averaged, bool apic, int fluids>
 void to_next_nodes(Body<dim> &body, const Lagrangian<dim> &from, FilledGrid<dim> &grid, Vec<dim> *momentum, PointSet &points,
-                   std::vector<int> &movers) {
+                   const Pores<dim> &pores, std::vector<int> &movers) {
   const ParticleArrays<dim> &p = body.particles();
   for (int i = 0; i < p.count;) {
     const int mesh_cell = p.cell[i], first = i;
-    const RunFromNodes<dim, averaged, apic> old(body, from, mesh_cell);
-    RunToNodes<dim, averaged, apic> next(body, grid, points, mesh_cell);
+    const RunFromNodes<dim, averaged, apic, fluids> old(body, from, mesh_cell);
+    RunToNodes<dim, averaged, apic, fluids> next(body, grid, points, pores, mesh_cell);
     while (i < p.count && p.cell[i] == mesh_cell) {
       int leaving[run_part], left = 0;
       const int start = i, end = std::min(p.count, i + run_part);
@@ -88,18 +88,11 @@ PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::v
   PetscFunctionReturn(0);
 }
 
-#define TALUS_TO_PARTICLES(dim, averaged, apic)                                                       \
-  template void to_particles<dim, averaged, apic>(Body<dim> &, const Lagrangian<dim> &, std::vector<int> &); \
-  template void to_next_nodes<dim, averaged, apic>(Body<dim> &, const Lagrangian<dim> &, FilledGrid<dim> &, Vec<dim> *, PointSet &, \
-                                                   std::vector<int> &);
-TALUS_TO_PARTICLES(2, true, true)
-TALUS_TO_PARTICLES(2, true, false)
-TALUS_TO_PARTICLES(2, false, true)
-TALUS_TO_PARTICLES(2, false, false)
-TALUS_TO_PARTICLES(3, true, true)
-TALUS_TO_PARTICLES(3, true, false)
-TALUS_TO_PARTICLES(3, false, true)
-TALUS_TO_PARTICLES(3, false, false)
+#define TALUS_TO_PARTICLES(dim, averaged, apic, fluids)                                                            \
+  template void to_particles<dim, averaged, apic, fluids>(Body<dim> &, const Lagrangian<dim> &, std::vector<int> &);  \
+  template void to_next_nodes<dim, averaged, apic, fluids>(Body<dim> &, const Lagrangian<dim> &, FilledGrid<dim> &, Vec<dim> *, PointSet &, \
+                                                           const Pores<dim> &, std::vector<int> &);
+TALUS_EACH_TRANSFER(TALUS_TO_PARTICLES)
 template PetscErrorCode relocate<2>(Body<2> &, const BackgroundMesh<2> &, std::vector<int> &, bool *, Vec<2> *);
 template PetscErrorCode relocate<3>(Body<3> &, const BackgroundMesh<3> &, std::vector<int> &, bool *, Vec<3> *);
 

@@ -33,15 +33,26 @@ struct BarycentricMap {
   Quad origin, constant, column[dim];
 };
 
-/// Adds the particles of one body to the grid: mass matrices, momentum, volumes and, with averaged stress, the stress points; those
-/// listed in `only`, or all. `momentum` [compact nodes][dim] has room for every node of the local mesh.
-template <int dim, bool averaged, bool apic>
-void to_nodes(const Body<dim> &body, FilledGrid<dim> &grid, Vec<dim> *momentum, PointSet &points, const std::vector<int> *only);
+/// Pores of one body on the way between particles and nodes, docs/theory/pores.md section 4: arrays of PoreFluid. Nothing of it is read
+/// or written where no fluid moves.
+template <int dim>
+struct Pores {
+  double *grains = nullptr;          ///< [points] volume of the grains, with averaged stress [m3]
+  double *mass[2]{};                 ///< [points] of liquid and gas [kg]
+  std::array<Quad, dim> *impulse[2]{};  ///< [compact cells][component][vertex] sum of m_s N v_a over particles, of liquid and gas [kg m/s]
+  double over_density = 0;           ///< 1 / density of the grains [m3/kg]
+};
+
+/// Adds the particles of one body to the grid: mass matrices, momentum, volumes, the `fluids` in its pores and, with averaged stress, the
+/// stress points; those listed in `only`, or all. `momentum` [compact nodes][dim] has room for every node of the local mesh.
+template <int dim, bool averaged, bool apic, int fluids>
+void to_nodes(const Body<dim> &body, FilledGrid<dim> &grid, Vec<dim> *momentum, PointSet &points, const Pores<dim> &pores, const std::vector<int> *only);
 
 /// Nodal fields that particles read at a remap, four lanes wide, by compact node.
 struct NodalUpdate {
   std::vector<Quad> velocity;      ///< a (v - v0) + (1 - a) v: what is added to a times the particle's own velocity
   std::vector<Quad> displacement;  ///< since the last remap
+  std::vector<Quad> fluid[2];      ///< as `velocity`, of liquid and gas
 };
 
 /// A Lagrangian part at its end: where particles take from what the nodes learned since the last remap.
@@ -52,17 +63,18 @@ struct Lagrangian {
   double flip;             ///< the share a of their own velocity that particles keep
   const double *affine;    ///< [compact cells][dim * dim] velocity gradients of APIC [1/s], unused otherwise
   const PointSet &points;
+  const Pores<dim> &pores;
 };
 
 /// Brings the particles of one body to the end of a Lagrangian part. Particles outside their cell are listed in `movers`.
-template <int dim, bool averaged, bool apic>
+template <int dim, bool averaged, bool apic, int fluids>
 void to_particles(Body<dim> &body, const Lagrangian<dim> &from, std::vector<int> &movers);
 
 /// The same, and adds those that stay in their cell to the next grid in one sweep; the movers are still to be added. With averaged
 /// stress a particle that stays keeps its stress in the stress point only.
-template <int dim, bool averaged, bool apic>
+template <int dim, bool averaged, bool apic, int fluids>
 void to_next_nodes(Body<dim> &body, const Lagrangian<dim> &from, FilledGrid<dim> &grid, Vec<dim> *momentum, PointSet &points,
-                   std::vector<int> &movers);
+                   const Pores<dim> &pores, std::vector<int> &movers);
 
 /// Walks the listed particles of a body to their new cells and sends those that leave the rank; collective. Afterwards `movers`
 /// lists the walkers that are on this rank. `lost` is set and `where` the position of a particle that left the mesh, if any did.

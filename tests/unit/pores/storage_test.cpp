@@ -16,6 +16,23 @@ Liquid water() {
 }
 PoreGas air() { return PoreGas(Gas{}); }
 
+struct Solved : PorePressures {
+  int iterations;
+};
+/// One point, whose gas share is the start and becomes the result.
+Solved unsaturated_pressure(const SoilPores &soil, const Liquid &liquid, double content, double &gas_share) {
+  PoreLanes<1> p{{content}, {0}, {gas_share}, {}, {}, {}};
+  unsaturated_pressures(soil, liquid, p);
+  gas_share = p.gas_share[0];
+  return {{p.liquid[0], p.gas[0]}, p.iterations[0]};
+}
+Solved three_phase_pressure(const SoilPores &soil, const Liquid &liquid, const PoreGas &gas, double content, double gas_content, double &gas_share) {
+  PoreLanes<1> p{{content}, {gas_content}, {gas_share}, {}, {}, {}};
+  three_phase_pressures(soil, liquid, gas, p);
+  gas_share = p.gas_share[0];
+  return {{p.liquid[0], p.gas[0]}, p.iterations[0]};
+}
+
 TEST(Storage, liquids_invert_their_density) {
   for (const Compression law : {Compression::linear, Compression::exponential}) {
     Water w;
@@ -40,7 +57,7 @@ TEST(Storage, unsaturated_pressure_holds_the_content) {
       if (soil.suction(y) > 0.5 * liquid.bulk_modulus) continue;  // water torn apart
       const double content = (1 - y) * liquid.density_at(-soil.suction(y));
       double share = wide(random) * soil.largest_gas_share();  // from anywhere
-      const PorePressures p = unsaturated_pressure(soil, liquid, content, share);
+      const Solved p = unsaturated_pressure(soil, liquid, content, share);
       // the content is what counts: its round-off is the share's tolerance
       EXPECT_NEAR((1 - share) * liquid.density_at(-soil.suction(share)), content, 1e-9 * content) << text << y;
       EXPECT_LT(p.iterations, 60);
@@ -60,12 +77,43 @@ TEST(Storage, three_phases_hold_both_contents) {
       const double pg = 1e5 * (wide(random) - 0.5), pl = pg - soil.suction(y);
       if (pl < -0.9 * liquid.bulk_modulus) continue;
       double share = wide(random);
-      const PorePressures p = three_phase_pressures(soil, liquid, gas, (1 - y) * liquid.density_at(pl), y * gas.density_at(pg), share);
+      const PorePressures p = three_phase_pressure(soil, liquid, gas, (1 - y) * liquid.density_at(pl), y * gas.density_at(pg), share);
       EXPECT_NEAR(share, y, 2e-6 * y) << text;
       EXPECT_NEAR(p.gas, pg, 0.5 + 1e-5 * soil.suction(y)) << text << y;
       EXPECT_NEAR(p.liquid, pl, 0.5 + 1e-5 * soil.suction(y)) << text << y;
     }
   }
+}
+
+TEST(Storage, a_lane_does_not_depend_on_the_others) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<> wide(0, 1);
+  const PoreGas gas = air();
+  Water exponential;
+  exponential.bulk_modulus = 1e8, exponential.compression = Compression::exponential;
+  for (const Liquid &liquid : {water(), Liquid(exponential)})
+    for (const std::string &text : soils) {
+      const SoilPores soil = soil_of(text);
+      for (int k = 0; k < 200; ++k) {
+        PoreLanes<8> one, two;
+        for (int i = 0; i < 8; ++i) {
+          const double y = 1.2 * std::pow(wide(random), 4) - 0.01;  // also saturated pores, and drier ones than the residual water allows
+          one.liquid_content[i] = two.liquid_content[i] = std::max(1., 1000 * (1 - y));
+          one.gas_content[i] = two.gas_content[i] = std::max(residual_gas, y) * gas.density;
+          one.gas_share[i] = two.gas_share[i] = std::clamp(y, 0., 1.);
+        }
+        unsaturated_pressures(soil, liquid, one), three_phase_pressures(soil, liquid, gas, two);
+        for (int i = 0; i < 8; ++i) {
+          const double content = one.liquid_content[i];
+          double share = std::clamp(1 - content / 1000, 0., 1.), other = share;
+          const Solved p = unsaturated_pressure(soil, liquid, content, share), q = three_phase_pressure(soil, liquid, gas, content, two.gas_content[i], other);
+          EXPECT_NEAR(one.gas_share[i], share, 1e-12) << text << content;
+          EXPECT_NEAR(one.liquid[i], p.liquid, 1e-9 * (1e8 + std::abs(p.liquid))) << text << content;
+          EXPECT_NEAR(two.gas_share[i], other, 1e-12) << text << content;
+          EXPECT_NEAR(two.liquid[i], q.liquid, 1e-9 * (1e8 + std::abs(q.liquid))) << text << content;
+        }
+      }
+    }
 }
 
 TEST(Storage, newton_takes_three_steps_in_the_mean_along_a_path) {
@@ -79,7 +127,7 @@ TEST(Storage, newton_takes_three_steps_in_the_mean_along_a_path) {
     const double content = 1000 * (0.7 + 0.305 * std::sin(k * 1.6e-3));
     iterations += unsaturated_pressure(soil, liquid, content, dry_share).iterations;
     gas_content = std::max(residual_gas, 1 - content / 1000) * gas.density;
-    gas_iterations += three_phase_pressures(soil, liquid, gas, content, gas_content, share).iterations;
+    gas_iterations += three_phase_pressure(soil, liquid, gas, content, gas_content, share).iterations;
     ++count;
   }
   EXPECT_LE(static_cast<double>(iterations) / count, 3);
@@ -97,7 +145,7 @@ TEST(Storage, passes_through_saturation_without_a_jump) {
     for (int k = 0; k <= 2 * n; ++k) {
       const double part = (k <= n ? k : 2 * n - k) / static_cast<double>(n), content = 999 + 1.2 * part;
       const double p = unsaturated_pressure(soil, liquid, content, share).liquid;
-      const double q = three_phase_pressures(soil, liquid, gas, content, 2e-4 * gas.density, trapped).liquid;
+      const double q = three_phase_pressure(soil, liquid, gas, content, 2e-4 * gas.density, trapped).liquid;
       (k <= n ? up : down).push_back(p);
       if (k) {
         EXPECT_LT(std::abs(p - last), 1.2 * liquid.bulk_modulus * 1.2e-3 / n) << text << content;  // never stiffer than the liquid
@@ -115,12 +163,12 @@ TEST(Storage, tangent_is_the_derivative_and_symmetric) {
   const PoreGas gas = air();
   double y = 0.2;
   const double cl = (1 - y) * liquid.density_at(-soil.suction(y)), cg = y * gas.density;
-  const PorePressures p = three_phase_pressures(soil, liquid, gas, cl, cg, y);
+  const PorePressures p = three_phase_pressure(soil, liquid, gas, cl, cg, y);
   const StorageTangent k = storage_tangent(soil, liquid, gas, p, y);
   const double rl = liquid.density_at(p.liquid), rg = gas.density_at(p.gas);
   for (const auto &[dl, dg] : {std::pair{1e-5, 0.}, {0., 1e-5}}) {  // relative changes of content per pore volume
     double share = y;
-    const PorePressures q = three_phase_pressures(soil, liquid, gas, cl + dl * rl, cg + dg * rg, share);
+    const PorePressures q = three_phase_pressure(soil, liquid, gas, cl + dl * rl, cg + dg * rg, share);
     EXPECT_NEAR(k.ll * (q.liquid - p.liquid) + k.lg * (q.gas - p.gas), dl, 2e-8);
     EXPECT_NEAR(k.lg * (q.liquid - p.liquid) + k.gg * (q.gas - p.gas), dg, 2e-8);
   }

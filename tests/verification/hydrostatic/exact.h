@@ -22,6 +22,10 @@ inline void hydrostatic(Rung &rung) {
                                                         "stage.0.duration=0.01"}));
       // water 1e-5 denser at the foot than assumed: 0.5 mm/s2 of it, less what the skeleton bears
       rung.compare(name_of(dimension) + " level " + number(level) + " m, largest speed over g t", 0, speed(run, dimension) / 0.1, 1e-5, 1);
+      // supports bear grains, pore water and, through the skeleton, the water on top
+      const double grains = run.history.column("mass_kg").back(), above = (level - 1) * 1000 / 600 * grains;
+      rung.compare(name_of(dimension) + " level " + number(level) + " m, force on the base", 10 * (grains + run.history.column("water_kg").back() + above),
+                   run.history.column("base_force_y_N").back(), 1e-4);
     }
 }
 
