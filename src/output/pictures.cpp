@@ -7,9 +7,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <exception>
 #include <filesystem>
 
 #include "base/child_environment.h"
+#include "output/strength.h"
 
 namespace talus {
 namespace {
@@ -56,6 +58,10 @@ bool draw_pictures(const std::string &dir, const PictureChoice &choice) {
   if (!choice.times.empty()) options.push_back("--times");
   options.insert(options.end(), choice.times.begin(), choice.times.end());
   if (choice.logarithmic) options.push_back("--log");
+  try {
+    write_strength(dir);
+  } catch (const std::exception &) {  // stress paths are then drawn without envelopes
+  }
   return draw("talus_plot.py", dir, options);
 }
 

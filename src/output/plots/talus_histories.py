@@ -20,6 +20,8 @@ def draw_histories(results, folder):
             continue
         if quantity == "energy":
             pictures.append((quantity, draw_energy(history, lines, results.title, folder / "energy.png")))
+        elif quantity.endswith("_ledger"):
+            pictures.append((quantity, draw_ledger(history, quantity, lines, results.title, folder / f"{quantity}.png")))
         else:
             path = folder / f"history_{quantity}.png"
             pictures.append((quantity, draw_curves(history, quantity, unit, lines, results.title, path)))
@@ -43,6 +45,16 @@ def draw_energy(history, lines, title, path):
     colour = style.LINES[list(lines).index(next(iter(kinetic))) % len(style.LINES)]
     plot_lines(lower, history, kinetic, "J", "kinetic", colour)
     return finish(figure, [upper, lower], history, "Energy", title, path)
+
+
+def draw_ledger(history, quantity, lines, title, path):
+    """What has been gained, what has come in through boundaries and what was given, and below the error of the sum."""
+    gains = {"gained": lines["stored"] - lines["stored"][0], "came in": -lines["out"], "was given": lines["given"]}
+    gains = {name: values for name, values in gains.items() if np.ptp(values) > 0}
+    figure, (upper, lower) = plt.subplots(2, 1, sharex=True, figsize=(7.6, 4.9), gridspec_kw={"height_ratios": [3, 1.4]})
+    plot_lines(upper, history, gains or {"gained": 0 * history.time}, "kg", "mass")
+    plot_lines(lower, history, {"error": lines["error"]}, "kg", "error", style.INK)
+    return finish(figure, [upper, lower], history, style.capital(style.words(quantity)), title, path)
 
 
 def plot_lines(axes, history, lines, unit, what, colour=None):

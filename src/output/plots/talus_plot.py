@@ -5,11 +5,12 @@ import argparse
 import sys
 
 from talus_histories import draw_histories
+from talus_paths import draw_stress_paths, strength_of
 from talus_report import write_report
-from talus_results import Results
+from talus_results import DERIVED, Results
 from talus_sections import draw_sections
 
-FIELDS = ("displacement", "plastic_strain", "velocity", "pore_pressure")
+FIELDS = ("displacement", "plastic_strain", "velocity", "pore_pressure", "suction", "saturation")
 
 
 def arguments():
@@ -23,17 +24,19 @@ def arguments():
 
 
 def draw(folder, fields=None, times=None, log=False):
-    """Draws everything; without `fields`, those of FIELDS that the run has. Returns the report's path."""
+    """Draws everything; without `fields`, those of FIELDS that the run has, and mobilised friction of frictional soils. Returns the
+    report's path."""
     results = Results(folder)
     if not results.snapshots:
         raise ValueError(f"{folder} holds no snapshots")
     first = results.snapshots[0]
     for field in fields or ():
         if first.scalar(field) is None:
-            raise ValueError(f"{folder} has no field {field}; it has {', '.join(first.names())}")
+            raise ValueError(f"{folder} has no field {field}; it has {', '.join((*first.names(), *DERIVED))}")
     pictures = results.folder / "pictures"
-    sections = draw_sections(results, fields or FIELDS, times, pictures, log)
-    return write_report(results, sections, draw_histories(results, pictures))
+    usual = (*FIELDS, *(DERIVED if strength_of(pictures) else ()))
+    sections = draw_sections(results, fields or usual, times, pictures, log)
+    return write_report(results, sections, draw_histories(results, pictures) + draw_stress_paths(results, pictures))
 
 
 def main():

@@ -11,7 +11,9 @@ import numpy as np
 # ending of a history column -> unit
 UNITS = {"m_s2": "m/s²", "m_s": "m/s", "m": "m", "m3": "m³", "J": "J", "W": "W", "Pa": "Pa", "N": "N", "kg": "kg", "s": "s"}
 # words that may stand before the unit: what is left is the name of a point
-QUANTITIES = ("displacement", "velocity", "acceleration", "pore_pressure", "pressure", "plastic_strain", "x", "y", "z")
+QUANTITIES = ("displacement", "velocity", "acceleration", "pore_pressure", "gas_pressure", "pressure", "suction", "saturation", "plastic_strain", "x", "y", "z")
+FLUIDS = ("water", "gas")  # whose ledgers history.csv holds
+DERIVED = ("mobilised_friction",)  # fields that follow from the columns
 
 
 class Column:
@@ -48,9 +50,16 @@ class Snapshot:
     def body(self):
         return self._group["body"][:, 0]
 
+    def ids(self):
+        """Numbers of the particles, increasing."""
+        return self._group["id"][:, 0]
+
     def scalar(self, name):
         """A field as one number a particle, with its unit; None if there is no such field. Of a vector it is the
-        magnitude, of a tensor the mean of the diagonal, or one component: `stress_xy`."""
+        magnitude, of a tensor the mean of the diagonal, or one component: `stress_xy`. `mobilised_friction` follows from
+        the stress."""
+        if name == "mobilised_friction" and "stress" in self._group:
+            return mobilised_friction(self._group["stress"][...]), "deg"
         if name in self._group:
             column = self.column(name)
             count = column.values.shape[1]
@@ -65,6 +74,30 @@ class Snapshot:
             if component in column.components:
                 return column.values[:, column.components.index(component)], column.unit
         return None
+
+
+def full(stress):
+    """Columns xx, yy, zz, xy(, yz, xz) as matrices [particles, 3, 3]."""
+    xx, yy, zz, xy, yz, xz = (*stress.T, *[np.zeros(len(stress))] * (6 - stress.shape[1]))
+    return np.moveaxis(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]), 2, 0)
+
+
+def mobilised_friction(stress):
+    """Angle at whose tangent through the origin Mohr's circle of the (effective) stress lies, asin((s1 - s3) / -(s1 + s3)) [deg]: with
+    cohesion it may exceed the friction angle, and it is 90 where there is tension or no stress."""
+    principal = np.linalg.eigvalsh(full(stress))
+    least, most = principal[:, 0], principal[:, 2]
+    pressure = -(least + most)
+    share = np.where((pressure > 0) & (most <= 0), (most - least) / np.where(pressure > 0, pressure, 1), 1)
+    return np.degrees(np.arcsin(np.clip(share, 0, 1)))
+
+
+def invariants(stress):
+    """Mean pressure, positive in compression, and deviator q = sqrt(3/2 s : s) of stress columns."""
+    whole = full(stress)
+    mean = np.trace(whole, axis1=1, axis2=2) / 3
+    rest = whole - mean[:, None, None] * np.eye(3)
+    return -mean, np.sqrt(1.5 * (rest**2).sum(axis=(1, 2)))
 
 
 class History:
@@ -111,6 +144,9 @@ def split_name(name):
     stem = name[: -len(unit) - 1] if unit else name
     if unit == "J":
         return stem, "energy", "J"
+    fluid, _, part = stem.partition("_")
+    if unit == "kg" and fluid in FLUIDS:
+        return part or "stored", fluid + "_ledger", "kg"
     for quantity in QUANTITIES:
         if stem == quantity:
             return "", quantity, UNITS.get(unit, "")

@@ -29,8 +29,9 @@ def part_of(name, low, high):
 
 # of even steps in lightness; strain and pressure start pale, so that the eye goes to where there is some
 MAPS = {"displacement": plt.get_cmap("viridis"), "velocity": plt.get_cmap("plasma"),
-        "plastic_strain": part_of("magma_r", 0.03, 0.95), "pore_pressure": part_of("YlGnBu", 0.08, 1.0)}
-SYMBOL = {"displacement": "|u|", "velocity": "|v|", "plastic_strain": "εₚ", "pore_pressure": "p"}
+        "plastic_strain": part_of("magma_r", 0.03, 0.95), "pore_pressure": part_of("YlGnBu", 0.08, 1.0),
+        "suction": part_of("YlOrBr", 0.03, 0.95), "saturation": plt.get_cmap("YlGnBu"), "mobilised_friction": part_of("magma_r", 0.03, 0.95)}
+SYMBOL = {"displacement": "|u|", "velocity": "|v|", "plastic_strain": "εₚ", "pore_pressure": "p", "suction": "s", "saturation": "S", "mobilised_friction": "φₘ"}
 
 
 def colours_of(field):

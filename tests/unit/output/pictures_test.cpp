@@ -1,10 +1,12 @@
 // Claims of output/pictures.h and of the scripts in src/output/plots.
 #include "output/pictures.h"
 
+#include <cmath>
 #include <stdexcept>
 
 #include "fixtures.h"
 #include "output/history.h"
+#include "output/strength.h"
 
 namespace talus {
 namespace {
@@ -26,6 +28,72 @@ TEST(Pictures, and_a_report_are_drawn_from_the_results) {
   EXPECT_NE(report.find("a small slope"), std::string::npos);
   EXPECT_NE(report.find("data:image/png;base64,"), std::string::npos);
   EXPECT_EQ(report.find("src=\"http"), std::string::npos) << "a report stands alone";
+}
+
+const std::string frictional_scene = R"(
+title = "a frictional slope"
+[mesh]
+file = "slope.msh"
+[body.sand]
+region = "sand"
+density = 2000
+law = "mohr_coulomb"
+young_modulus = "10 MPa"
+poisson_ratio = 0.3
+cohesion = "1 kPa"
+friction_angle = 30
+residual_cohesion = 0
+shape_factor = 50
+[body.clay]
+region = "clay"
+density = 2000
+law = "linear_elastic"
+young_modulus = "10 MPa"
+poisson_ratio = 0.3
+[boundary.base]
+kind = "fixed"
+[[stage]]
+name = "slide"
+duration = 1
+)";
+
+/// q = 6 (c cos(phi) + p sin(phi)) / (3 - sin(phi)) in triaxial compression; elastic soil has no line.
+TEST(Strength, is_that_of_the_law) {
+  const auto lines = strength_lines(frictional_scene);
+  ASSERT_EQ(lines.size(), 2u);
+  for (const StrengthLine &line : lines) {
+    EXPECT_EQ(line.body, "sand");
+    EXPECT_NEAR(line.slope, 1.2, 1e-12);
+    EXPECT_NEAR(line.intercept, line.residual ? 0 : 2.4e3 * std::cos(M_PI / 6), 1e-9);
+  }
+}
+
+TEST(Strength, grows_with_suction) {
+  const std::string keys = "friction_angle = 30\nsuction_cohesion = \"154 kPa\"\nsuction_cohesion_rate = 7e-7\n";
+  std::string scene = frictional_scene;
+  scene.replace(scene.find("friction_angle"), std::string("friction_angle = 30\n").size(), keys);
+  const auto lines = strength_lines(scene);
+  const double steep = 2.4 * std::cos(M_PI / 6);
+  ASSERT_EQ(lines.size(), 22u);  // peak and residual at 0, 1, 2, 5 ... 1000 kPa
+  EXPECT_EQ(lines[10].suction, 1e6);
+  EXPECT_NEAR(lines[10].intercept, steep * (1e3 + 154e3 * (1 - std::exp(-0.7))), 1e-6);
+}
+
+TEST(Pictures, show_stress_paths_and_the_water_ledger) {
+  const SharedFolder folder;
+  const std::string dir = folder / "run";
+  RunHeader header = small_header();
+  header.scene = frictional_scene;
+  RunFile run(MPI_COMM_WORLD, dir, header, small_mesh());
+  History history(MPI_COMM_WORLD, dir + "/history.csv", {"crest_x_m", "crest_y_m", "water_kg", "water_out_kg", "water_given_kg", "water_error_kg"});
+  for (int n = 0; n < 3; ++n) {
+    run.write(small_snapshot(n, n));
+    history.row(n, n, "slide", {0.5, 0.4, 100. - n, 1. * n, 0, 1e-14 * n});
+  }
+  if (world_rank()) return;
+  ASSERT_TRUE(draw_pictures(dir));
+  EXPECT_EQ(content(dir + "/pictures/strength.csv").substr(0, 40), "body,state,suction_Pa,slope,intercept_Pa");
+  for (const char *name : {"stress_paths.png", "mobilised_friction.png", "water_ledger.png"}) EXPECT_EQ(content(dir + "/pictures/" + name).substr(1, 3), "PNG") << name;
 }
 
 TEST(Pictures, never_fail_a_run) {
