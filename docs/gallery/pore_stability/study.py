@@ -1,15 +1,19 @@
 #!/usr/bin/python3
-"""Where the scheme for pore water holds: stable, oscillating or failed, over permeability, stiffness of the water and particles per cell.
+"""Where the scheme for pore water holds: stable, oscillating or failed, over permeability, stiffness of the water, particles per cell and saturation.
 
-    study.py TALUS        runs all (minutes), writes map.csv and wetting.csv and draws map.png and wetting.png
+    study.py TALUS [map steps wetting]     runs all or some of them (minutes), writes map.csv, steps.csv and wetting.csv
+    study.py                               redraws map.png, steps.png and wetting.png from them
 
-The scene is tests/verification/terzaghi: a saturated layer under a load whose undrained pressures are given at the start, run for 400 steps at 0.6 of the critical
-step. Noise is the rms difference of the pore pressure of a cell from the median of its row, over the load's pressure: the exact solution has none. The second
-study wets the column of tests/verification/srivastava_yeh from the top until it is saturated.
+*map*: tests/verification/terzaghi, a saturated layer under a load whose undrained pressures are given at the start, for 400 steps at 0.6 of the critical step.
+Noise is the rms scatter of pressure along rows of cells, over the load's pressure: the exact solution has none.
+*steps*: the step at which that scene loses its stability, beside the one that the program computes; and the same for a string of elements in which drag may be
+explicit, as it may not be in the program, beside a formula for both limits together.
+*wetting*: wetting.toml, through saturation and back.
 """
 
 import argparse
 import csv
+import functools
 import pathlib
 import re
 import subprocess
@@ -26,23 +30,39 @@ import matplotlib.pyplot as plt  # noqa: E402
 import talus_style as style  # noqa: E402
 from talus_results import Results  # noqa: E402
 
+TERZAGHI, WETTING = ROOT / "tests/verification/terzaghi/scene.toml", HERE / "wetting.toml"
 PERMEABILITY = [1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-14, 1e-17]
 STIFFNESS = [20e3, 1e6, 20e6, 200e6, 2.2e9]
-PARTICLES = [1, 3, 6, 12]
+PARTICLES = [1, 3, 6, 16]
+SHOWN = 20e6  # stiffness over which particles per cell are varied
 NOISY = 0.05  # of the pressure: more is called oscillating
+LARGEST = [0.8, 0.9, 1, 1.1, 1.25, 1.4, 1.6, 1.8, 2, 2.5, 3, 4]  # steps over the critical one that are tried
+POROSITY, MODULUS, LOAD, GRAINS, WATER, VISCOSITY = 0.3, 10e6, 1e3, 2650.0, 1000.0, 1e-3
+
+
+def options(words):
+    return [option for word in words for option in ("--set", word)]
 
 
 def run(talus, scene, words, folder):
     """Results, or None when the run failed."""
-    end = subprocess.run([talus, "run", ROOT / f"tests/verification/{scene}/scene.toml", "-o", folder, "--no-pictures", *(w for word in words for w in ("--set", word))],
-                         capture_output=True, text=True)
-    return (Results(folder) if end.returncode == 0 else None), end.stdout + end.stderr
+    end = subprocess.run([talus, "run", scene, "-o", folder, "--no-pictures", *options(words)], capture_output=True, text=True)
+    return Results(folder) if end.returncode == 0 else None
 
 
+@functools.cache
 def critical_step(talus, words):
     """What `check` states [s]."""
-    end = subprocess.run([talus, "check", ROOT / "tests/verification/terzaghi/scene.toml", *(w for word in words for w in ("--set", word))], capture_output=True, text=True)
+    end = subprocess.run([talus, "check", TERZAGHI, *options(words)], capture_output=True, text=True)
     return float(re.search(r"critical ([0-9.e+-]+) s", end.stdout).group(1))
+
+
+def layer(stiffness, k, particles, smoothing):
+    """Overrides of the Terzaghi scene, and the pressure of its water at the start [Pa]."""
+    share = (stiffness / POROSITY) / (MODULUS + stiffness / POROSITY)  # of the load that the water bears
+    return (f"transfer.pore_smoothing={smoothing}", f"water.bulk_modulus={stiffness}", "water.compression=exponential", f"body.soil.permeability={k}",
+            f"body.soil.particles_per_cell={particles}", f"water.excess={LOAD * share}", f'body.soil.stress=["0", "{-LOAD * (1 - share)}", "0", "0"]',
+            "mesh.size=0.075"), LOAD * share
 
 
 def noise(snapshot, rows=20):
@@ -54,42 +74,154 @@ def noise(snapshot, rows=20):
     for k in range(rows):
         inside = band == k
         if inside.sum() > 6:
-            rest.append(p[inside] - np.polyval(np.polyfit(y[inside], p[inside], 2), y[inside]))
+            middle = y[inside] - y[inside].mean()
+            rest.append(p[inside] - np.polyval(np.polyfit(middle, p[inside], 2), middle))
     return np.sqrt((np.concatenate(rest) ** 2).mean())
+
+
+# ---- drag, explicit and implicit ----
+
+
+def inverse_square(stiffness, h):
+    """B of the formula for a saturated string of elements of length h [1/s2]: sqrt(8 / B) is its step without drag."""
+    n, solid, total = POROSITY, (1 - POROSITY) * GRAINS * WATER, (1 - POROSITY) * GRAINS + POROSITY * WATER
+    b = 4 * (n * total * stiffness + (1 - 2 * n) * WATER * stiffness + n * WATER * MODULUS) / (n * solid * h**2)
+    return b + np.sqrt(b**2 - 64 * MODULUS * stiffness / (solid * h**4))
+
+
+def explicit_limit(stiffness, k, h):
+    """Step with explicit drag by formula [s]."""
+    n, total, big = POROSITY, (1 - POROSITY) * GRAINS + POROSITY * WATER, inverse_square(stiffness, h)
+    a = n * total * VISCOSITY / ((1 - n) * GRAINS * WATER * k)
+    return 8 / (2 * a + np.sqrt(4 * a**2 + 8 * big))  # the root, written so that it keeps its digits
+
+
+def growth(stiffness, k, step, h, implicit, cells=12):
+    """Largest amplification in a step of a string of elements, fixed and closed below, free and drained above; velocity first, drag before or after it."""
+    n, size = POROSITY, 4 * cells
+    difference = np.zeros((cells, cells))  # of nodal velocities in a cell; the node below the first is fixed
+    for c in range(cells):
+        difference[c, c] = 1 / h
+        if c:
+            difference[c, c - 1] = -1 / h
+    volume = np.full(cells, h)
+    volume[-1] = h / 2
+    solid, water, whole = (1 - n) * GRAINS * volume, n * WATER * volume, WATER * volume
+    drag = n * volume * VISCOSITY / k
+    out = np.zeros((size, size))
+    for j in range(size):
+        state = np.zeros(size)
+        state[j] = 1
+        vs, vl, stress, p = state.reshape(4, cells)
+        push, pull = h * difference.T @ p, h * difference.T @ stress
+        resist = 0 if implicit else drag * (vl - vs)
+        free_l = vl + step * (push - resist) / whole
+        free_s = vs + step * ((1 - n) * push - pull + n * resist) / solid
+        if implicit:
+            d = step * drag / whole
+            held = d / (1 + d)
+            new_s = (solid * free_s + water * held * free_l) / (solid + water * held)
+            new_l = (free_l + d * new_s) / (1 + d)
+        else:
+            new_s, new_l = free_s, free_l
+        out[:, j] = np.concatenate([new_s, new_l, stress + step * MODULUS * difference @ new_s,
+                                    p - step * stiffness / n * (difference @ ((1 - n) * new_s + n * new_l))])
+    return np.abs(np.linalg.eigvals(out)).max()
+
+
+def string_limit(stiffness, k, h, implicit):
+    """Step at which the string loses its stability [s], by bisection."""
+    low, high = 0.0, 4 * np.sqrt(8 / inverse_square(stiffness, h))
+    for _ in range(40):
+        middle = (low + high) / 2
+        if growth(stiffness, k, middle, h, implicit) <= 1 + 1e-9:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+def length_of(stiffness, step):
+    """Length of elements whose step without drag is that of a mesh [m]."""
+    return step / np.sqrt(8 / inverse_square(stiffness, 1.0))
+
+
+# ---- studies ----
 
 
 def map_of(talus):
     rows = []
     for smoothing in ("none", "nodal"):
         for stiffness in STIFFNESS:
-            for particles in PARTICLES if stiffness == 20e6 else [3]:
+            for particles in PARTICLES if stiffness == SHOWN else [3]:
                 for k in PERMEABILITY:
-                    n, modulus, load = 0.3, 10e6, 1e3
-                    share = (stiffness / n) / (modulus + stiffness / n)  # of the load that the water bears
-                    words = [f"transfer.pore_smoothing={smoothing}", f"water.bulk_modulus={stiffness}", "water.compression=exponential", f"body.soil.permeability={k}", f"body.soil.particles_per_cell={particles}",
-                             f"water.excess={load * share}", f'body.soil.stress=["0", "{-load * (1 - share)}", "0", "0"]', "mesh.size=0.075"]
+                    words, pressure = layer(stiffness, k, particles, smoothing)
                     step = critical_step(talus, words)
                     with tempfile.TemporaryDirectory() as folder:
-                        results, _ = run(talus, "terzaghi", [*words, f"stage.0.duration={240 * step}", f"output.history_interval={100 * step}"], folder)
-                        worst = noise(results.snapshots[-1]) / (load * share) if results else np.inf
+                        results = run(talus, TERZAGHI, [*words, f"stage.0.duration={240 * step}", f"output.history_interval={100 * step}"], folder)
+                        worst = noise(results.snapshots[-1]) / pressure if results else np.inf
                     state = "failed" if not worst < 10 else "oscillating" if worst > NOISY else "stable"
-                    rows.append((smoothing, particles, f"{stiffness:g}", f"{k:g}", f"{step:.4g}", f"{worst:.3g}", state))
+                    explicit = explicit_limit(stiffness, k, length_of(stiffness, step)) / step
+                    rows.append((smoothing, particles, f"{stiffness:g}", f"{k:g}", f"{step:.4g}", f"{explicit:.2g}", f"{worst:.2g}", state))
                     print(*rows[-1], flush=True)
-    write("map.csv", ("smoothing", "particles", "K_l_Pa", "k_m2", "critical_step_s", "noise", "state"), rows)
+    write("map.csv", ("smoothing", "particles", "K_l_Pa", "k_m2", "critical_step_s", "explicit_over_critical", "noise", "state"), rows)
+
+
+def stable_at(talus, words, step, count=1500):
+    """Does the layer keep its energy over so many steps of a length?"""
+    with tempfile.TemporaryDirectory() as folder:
+        results = run(talus, TERZAGHI, [*words, f"integrator.step={step}", f"stage.0.duration={count * step}", f"output.history_interval={count / 50 * step}"], folder)
+        if not results:
+            return False
+        kinetic = results.history.columns["kinetic_J"]
+        return bool(np.isfinite(kinetic).all() and kinetic[-5:].max() <= 2 * kinetic[: len(kinetic) // 2].max())
+
+
+def steps_of(talus):
+    rows, h = [], 0.05
+    for stiffness in (STIFFNESS[0], SHOWN, STIFFNESS[-1]):
+        free = np.sqrt(8 / inverse_square(stiffness, h))
+        for k in PERMEABILITY:
+            row = [f"{stiffness:g}", f"{k:g}", *(f"{step / free:.3g}" for step in (explicit_limit(stiffness, k, h), string_limit(stiffness, k, h, False), string_limit(stiffness, k, h, True)))]
+            for smoothing in ("none", "nodal"):
+                words, _ = layer(stiffness, k, 3, smoothing)
+                step, held = critical_step(talus, words), 0
+                for factor in LARGEST:
+                    if not stable_at(talus, words, factor * step):
+                        break
+                    held = factor
+                row.append(f"{held:g}")
+            rows.append(row)
+            print(*row, flush=True)
+    write("steps.csv", ("K_l_Pa", "k_m2", "explicit_formula", "explicit_string", "implicit_string", "program_unsmoothed", "program_smoothed"), rows)
+
+
+def deviator(snapshot, row):
+    xx, yy, zz, xy = snapshot.column("stress").values[row]
+    return np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * xy**2)
+
+
+VARIANTS = {
+    "defaults": [],
+    "pressures as they are": ["transfer.pore_smoothing=none"],
+    "volumes of particles, remap every step, no cure": ["transfer.pore_smoothing=none", "transfer.integration=particle", "transfer.average_stress=false", "transfer.locking=none",
+                                                         "transfer.remap_interval=0", "transfer.relaxation=0"],
+    "defaults, soil settled by 1 mm before": ['body.soil.displacement=["0", "-0.001 * y"]'],
+}
 
 
 def wetting(talus):
     rows = []
-    for smoothing in ("none", "nodal"):
+    for name, words in VARIANTS.items():
         with tempfile.TemporaryDirectory() as folder:
-            results, said = run(talus, "srivastava_yeh", [f"transfer.pore_smoothing={smoothing}", "boundary.rain.kind=rainfall", "boundary.rain.intensity=0.03", "boundary.table.kind=impermeable", "stage.0.duration=8",
-                                                          "output.interval=0.1", "mesh.size=0.02", "water.suction=2000"], folder)
-            if not results:
-                print(smoothing, "failed:", said.strip().splitlines()[-1])
-                results = Results(folder)
+            if not run(talus, WETTING, words, folder):
+                print(name, "failed")
+            results = Results(folder)
+            followed = np.linalg.norm(results.snapshots[0].position() - (0.15, 0.5), axis=1).argmin()
             for s in results.snapshots:
-                rows.append((smoothing, f"{s.time:.3f}", f"{s.column('saturation').values.mean():.5f}", f"{noise(s, 25):.5g}"))
-    write("wetting.csv", ("smoothing", "time_s", "saturation", "noise_Pa"), rows)
+                rows.append((name, f"{s.time:.3f}", f"{s.column('saturation').values.mean():.5f}", f"{noise(s):.5g}", f"{deviator(s, followed):.6g}"))
+            print(name, rows[-1], flush=True)
+    write("wetting.csv", ("variant", "time_s", "saturation", "scatter_Pa", "deviator_Pa"), rows)
 
 
 def write(name, head, rows):
@@ -104,45 +236,83 @@ def read(name):
         return list(csv.DictReader(file))
 
 
-def draw():
+# ---- pictures ----
+
+
+def draw_map():
     colour = {"stable": style.LINES[3], "oscillating": style.LINES[5], "failed": style.LINES[4]}
     rows = read("map.csv")
-    figure, grid = plt.subplots(2, 2, figsize=(8.6, 4.6), sharex=True)
-    for line, (key, choices, label) in zip(grid, (("K_l_Pa", STIFFNESS, "K_l [Pa]"), ("particles", PARTICLES, "particles a cell"))):
-        for axes, smoothing in zip(line, ("none", "nodal")):
+    figure, grid = plt.subplots(2, 3, figsize=(11.5, 4.8), sharex=True)
+    for upper, line, (key, choices, label) in zip((True, False), grid, (("K_l_Pa", STIFFNESS, "K_l [Pa]"), ("particles", PARTICLES, "particles a cell"))):
+        for axes, column in zip(line, ("explicit", "none", "nodal")):
             for row in rows:
-                if row["smoothing"] != smoothing or (key == "K_l_Pa" and row["particles"] != "3") or (key == "particles" and float(row["K_l_Pa"]) != 20e6):
+                if row["smoothing"] != (column if column != "explicit" else "none") or (key == "K_l_Pa" and row["particles"] != "3") or (key == "particles" and float(row["K_l_Pa"]) != SHOWN):
                     continue
                 x, y = PERMEABILITY.index(float(row["k_m2"])), choices.index(float(row[key]))
-                axes.scatter(x, y, s=260, marker="s", color=colour[row["state"]], lw=0)
-                axes.text(x, y, row["noise"] if row["state"] != "failed" else "x", ha="center", va="center", size=5.5, color="white")
+                explicit = float(row["explicit_over_critical"])
+                state, text = (row["state"], row["noise"]) if column != "explicit" else ("stable" if explicit >= 0.6 else "failed", row["explicit_over_critical"])
+                axes.scatter(x, y, s=330, marker="s", color=colour[state], lw=0)
+                axes.text(x, y, text if text != "inf" else "x", ha="center", va="center", size=5, color="white")
             axes.set_yticks(range(len(choices)), [f"{c:g}" for c in choices])
             axes.set_xticks(range(len(PERMEABILITY)), [f"{k:g}" for k in PERMEABILITY])
             axes.set(ylabel=label, xlim=(-0.6, len(PERMEABILITY) - 0.4), ylim=(-0.7, len(choices) - 0.3))
-            if line is grid[0]:
-                axes.set_title("pressures as they are" if smoothing == "none" else "smoothed (the default)", loc="left")
+            if upper:
+                axes.set_title({"explicit": "explicit drag: its limit over the critical step", "none": "implicit drag: noise, pressures as they are", "nodal": "implicit drag: noise, smoothed (the default)"}[column], loc="left", fontsize=8.5)
             else:
                 axes.set_xlabel("permeability [m²]")
     for state in colour:
-        grid[0, 1].scatter([], [], marker="s", color=colour[state], label=state)
+        grid[0, 2].scatter([], [], marker="s", color=colour[state], label=state)
     figure.legend(loc="upper right", ncols=3, fontsize=8)
     figure.tight_layout(rect=(0, 0, 1, 0.96))
     style.save(figure, HERE / "map.png")
-    figure, axes = plt.subplots(figsize=(6, 2.8))
-    for smoothing, label in (("none", "pressures as they are"), ("nodal", "smoothed (the default)")):
-        mine = [r for r in read("wetting.csv") if r["smoothing"] == smoothing]
-        axes.semilogy([float(r["saturation"]) for r in mine], [max(float(r["noise_Pa"]), 1e-3) for r in mine], label=label)
-    axes.set(xlabel="mean degree of saturation of the column", ylabel="scatter of pressure [Pa]")
-    axes.legend(fontsize=8)
+
+
+def draw_steps():
+    rows = read("steps.csv")
+    choices = sorted({float(row["K_l_Pa"]) for row in rows})
+    figure, grid = plt.subplots(1, len(choices), figsize=(11.5, 3.3), sharey=True)
+    for axes, stiffness in zip(grid, choices):
+        mine = [row for row in rows if float(row["K_l_Pa"]) == stiffness]
+        k = [float(row["k_m2"]) for row in mine]
+        for key, look, label in (("explicit_formula", {"color": style.LINES[1]}, "explicit drag, formula"), ("explicit_string", {"color": style.LINES[1], "ls": "", "marker": "o"}, "explicit drag, string of elements"),
+                                 ("implicit_string", {"color": style.LINES[0], "ls": "", "marker": "o"}, "implicit drag, string of elements"),
+                                 ("program_unsmoothed", {"color": style.LINES[2], "marker": "^", "ls": ":"}, "program over its bound, pressures as they are"),
+                                 ("program_smoothed", {"color": style.LINES[3], "marker": "v", "ls": ":"}, "program over its bound, smoothed")):
+            axes.loglog(k, [float(row[key]) for row in mine], ms=4, lw=1.2, label=label, **look)
+        axes.axhline(0.6, color=style.FAINT, lw=0.8)
+        axes.set(xlabel="permeability [m²]", title=f"K_l = {stiffness:g} Pa", ylim=(3e-8, 10))
+    grid[0].set_ylabel("largest stable step / step without drag")
+    grid[0].legend(fontsize=6.5, loc="lower right")
+    figure.tight_layout()
+    style.save(figure, HERE / "steps.png")
+
+
+def draw_wetting():
+    rows = read("wetting.csv")
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(11.5, 3.4))
+    for colour, name in zip((style.LINES[0], style.LINES[3], style.LINES[1], style.LINES[4]), VARIANTS):
+        mine = [r for r in rows if r["variant"] == name]
+        t = [float(r["time_s"]) for r in mine]
+        left.plot(t, [float(r["saturation"]) for r in mine], color=colour, label=name)
+        middle.semilogy(t, [max(float(r["scatter_Pa"]), 1) for r in mine], color=colour, label=name)
+        right.plot(t, [float(r["deviator_Pa"]) / 1e3 for r in mine], color=colour, lw=1)
+    left.set(xlabel="time [s]", ylabel="mean degree of saturation")
+    middle.set(xlabel="time [s]", ylabel="scatter of pressure along rows [Pa]")
+    middle.legend(fontsize=6.5)
+    right.set(xlabel="time [s]", ylabel="q at half height [kPa]", xlim=(0, 3))
     figure.tight_layout()
     style.save(figure, HERE / "wetting.png")
 
 
+STUDIES = {"map": (map_of, draw_map), "steps": (steps_of, draw_steps), "wetting": (wetting, draw_wetting)}
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("talus", nargs="?", help="the program")
+    parser.add_argument("studies", nargs="*", help=", ".join(STUDIES) + " (default: all)")
     given = parser.parse_args()
-    if given.talus:
-        map_of(given.talus)
-        wetting(given.talus)
-    draw()
+    for study in (given.studies or STUDIES) if given.talus else ():
+        STUDIES[study][0](given.talus)
+    for study, (_, draw) in STUDIES.items():
+        if (HERE / f"{study}.csv").exists():
+            draw()
