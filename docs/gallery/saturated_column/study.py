@@ -3,6 +3,7 @@
 
     study.py TALUS                     runs all (minutes), writes models.csv and draws models.png
     study.py --sequence DIR            redraws sequence.png from a run of scene.toml
+    study.py TALUS --block DIR         runs a block 0.1 m thick that may fall two ways, on tetrahedra, into DIR (minutes) and draws block.png
 """
 
 import argparse
@@ -21,7 +22,7 @@ sys.path.insert(0, str(HERE.parents[2] / "src/output/plots"))
 import matplotlib.pyplot as plt  # noqa: E402
 import talus_style as style  # noqa: E402
 from talus_results import Results  # noqa: E402
-from talus_sections import spacing_of  # noqa: E402
+from talus_sections import on_top, spacing_of  # noqa: E402
 from talus_tiles import Frame, tiles  # noqa: E402
 
 SUCTION = [f"body.sand.retention.{key}" for key in ("curve=van_genuchten", "reference_suction=500", "shape=0.5")] + [
@@ -33,6 +34,8 @@ MODELS = {
     "unsaturated": ["phases=unsaturated", "water.stress=bishop", *SUCTION],
     "three-phase": ["phases=three-phase", "water.stress=bishop", *SUCTION],
 }
+LATERAL = "-9.81 * 990 * (0.1 - y) * 0.3 / 0.7"  # of the scene, in six components
+STRESS = f'body.sand.stress=["{LATERAL}", "-9.81 * 990 * (0.1 - y)", "{LATERAL}", "0 * x", "0 * x", "0 * x"]'
 TIMES = (0, 0.1, 0.2, 0.4, 1.0)  # of the sequence [s]
 
 
@@ -55,8 +58,7 @@ def run(talus, model, dimension, folder):
     words = list(MODELS[model])
     if dimension == 3:
         words += ["dimension=3", "mesh.thickness=0.01", "boundary.front.kind=roller", "boundary.back.kind=roller", "output.point.corner.position=[0.2, 0.1, 0]"]
-        lateral = '"-9.81 * 990 * (0.1 - y) * 0.3 / 0.7"'
-        words.append(f'body.sand.stress=[{lateral}, "-9.81 * 990 * (0.1 - y)", {lateral}, "0 * x", "0 * x", "0 * x"]')
+        words.append(STRESS)
     words += ["mesh.size=0.01"]
     results = folder / f"{model}{dimension}"
     start = time.time()
@@ -78,6 +80,44 @@ def study(talus, dimensions):
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(("dimension", "model", "steps", "wall_s", "time_s", "front_m"))
         writer.writerows(rows)
+
+
+BLOCK = ["dimension=3", "mesh.size=0.016", "mesh.thickness=0.3", "mesh.layers=0", "mesh.cuts=[0.1]", "body.sand.region=bars_1", "boundary.front.kind=roller", "boundary.back.kind=roller",
+         "output.point.corner.position=[0.2, 0.1, 0.1]", STRESS]
+
+
+def block(talus, folder):
+    scene = folder.parent / "block.toml"
+    scene.write_text(scene_of("saturated"))
+    subprocess.run([talus, "run", scene, "-o", folder, "--no-pictures", *(w for word in BLOCK for w in ("--set", word))], check=True)
+    draw_block(folder)
+
+
+def draw_block(folder):
+    """The block from above, and its section along the wall at z = 0, at three times."""
+    results = Results(folder)
+    spacing, times = spacing_of(results), (0.1, 0.3, 1.0)
+    figure, grid = plt.subplots(2, len(times), figsize=(11, 4.6), gridspec_kw={"height_ratios": (0.3, 0.12)})
+    figure.subplots_adjust(left=0.06, right=0.9, bottom=0.1, top=0.94, hspace=0.3, wspace=0.12)
+    for (above, section), t in zip(grid.T, times):
+        snapshot = min(results.snapshots, key=lambda each: abs(each.time - t))
+        position, values = snapshot.position(), snapshot.scalar("pore_pressure")[0]
+        for axes, up, rows, high in ((above, 2, np.flatnonzero(on_top(position, 0, 2, 1, spacing)), 0.3), (section, 1, np.flatnonzero(position[:, 2] < 1.5 * spacing), 0.12)):
+            frame = Frame((0, 0), (0.5, high), 600)
+            owner = tiles(position[rows][:, [0, up]], spacing, frame)
+            shown = values[rows] if up == 1 else 1e3 * position[rows, 1]
+            picture = axes.imshow(np.ma.array(shown[np.maximum(owner, 0)], mask=owner < 0), origin="lower", extent=frame.extent(), interpolation="nearest",
+                                  **({"cmap": "RdBu_r", "vmin": -1000, "vmax": 1000} if up == 1 else {"cmap": "viridis", "vmin": 0, "vmax": 100}))
+            axes.set(xlim=(0, 0.5), ylim=(0, high), aspect="equal", ylabel=("height [m]" if up == 1 else "z [m]") if t == times[0] else "")
+            if up == 2:
+                axes.plot([0, 0.2, 0.2], [0.1, 0.1, 0], color=style.INK, lw=0.8, ls=":")
+                axes.set_title(style.at_time(snapshot.time, 1), loc="left", pad=3)
+            if t == times[-1]:
+                box = axes.get_position()
+                place = figure.add_axes((0.92, box.y0, 0.012, box.height))
+                figure.colorbar(picture, cax=place, extend="both" if up == 1 else "neither").outline.set_visible(False)
+                place.set_title("p [Pa]" if up == 1 else "height [mm]", size=8, loc="left", pad=6)
+    style.save(figure, HERE / "block.png")
 
 
 def draw_models():
@@ -128,8 +168,11 @@ if __name__ == "__main__":
     parser.add_argument("talus", nargs="?", help="the program")
     parser.add_argument("--dimensions", type=int, nargs="+", default=(2, 3), choices=(2, 3))
     parser.add_argument("--sequence", metavar="DIR", type=pathlib.Path)
+    parser.add_argument("--block", metavar="DIR", type=pathlib.Path)
     given = parser.parse_args()
-    if given.talus:
+    if given.talus and given.block:
+        block(given.talus, given.block)
+    elif given.talus:
         study(given.talus, given.dimensions)
     if given.sequence:
         draw_sequence(given.sequence)
