@@ -27,6 +27,7 @@
 #include "tests/verification/incline_block/exact.h"
 #include "tests/verification/k0_column/exact.h"
 #include "tests/verification/laboratory/exact.h"
+#include "tests/verification/large_strain_consolidation/exact.h"
 #include "tests/verification/leaving_waves/exact.h"
 #include "tests/verification/loaded_face/exact.h"
 #include "tests/verification/mohr_coulomb_triaxial/exact.h"
@@ -36,11 +37,13 @@
 #include "tests/verification/rigid_translation/exact.h"
 #include "tests/verification/spinning_block/exact.h"
 #include "tests/verification/srivastava_yeh/exact.h"
+#include "tests/verification/submerged_slope/exact.h"
 #include "tests/verification/terzaghi/exact.h"
 #include "tests/verification/two_waves/exact.h"
 #include "tests/verification/undrained/exact.h"
 #include "tests/verification/water_table/exact.h"
 #include "tests/verification/wet_flight/exact.h"
+#include "tests/verification/wet_hand_over/exact.h"
 
 namespace talus {
 
@@ -91,9 +94,13 @@ inline constexpr LadderEntry ladder[] = {
     {"fem_dam", "verification", "steady seepage through a dam, with its seepage face", rungs::fem_dam},
     {"fem_infiltration", "verification", "water that enters dry sand", rungs::fem_infiltration},
     {"terzaghi", "verification", "consolidation of a saturated layer, and the water it sheds", rungs::terzaghi},
+    {"large_strain_consolidation", "verification", "consolidation by a fifth and more of the height",
+     rungs::large_strain_consolidation},
     {"two_waves", "verification", "two waves in a saturated column, drained and under water", rungs::two_waves},
     {"undrained", "verification", "B of undrained compression", rungs::undrained},
     {"hydrostatic", "verification", "still water in a column that fits its mesh", rungs::hydrostatic},
+    {"submerged_slope", "verification", "slope under still water", rungs::submerged_slope},
+    {"wet_hand_over", "verification", "slope with seepage handed from finite elements to particles", rungs::wet_hand_over},
     {"closed_box", "verification", "masses of water and gas in a closed box", rungs::closed_box},
     {"srivastava_yeh", "verification", "rain on a column of soil above a water table", rungs::srivastava_yeh},
     {"gas_column", "verification", "damped wave and steady flow of the gas in a column", rungs::gas_column},

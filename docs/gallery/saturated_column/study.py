@@ -97,18 +97,18 @@ def draw_block(folder):
     """The block from above, and its section along the wall at z = 0, at three times."""
     results = Results(folder)
     spacing, times = spacing_of(results), (0.1, 0.3, 1.0)
-    figure, grid = plt.subplots(2, len(times), figsize=(11, 4.6), gridspec_kw={"height_ratios": (0.3, 0.12)})
+    figure, grid = plt.subplots(2, len(times), figsize=(10, 3.9), gridspec_kw={"height_ratios": (0.26, 0.12)})
     figure.subplots_adjust(left=0.06, right=0.9, bottom=0.1, top=0.94, hspace=0.3, wspace=0.12)
     for (above, section), t in zip(grid.T, times):
         snapshot = min(results.snapshots, key=lambda each: abs(each.time - t))
         position, values = snapshot.position(), snapshot.scalar("pore_pressure")[0]
-        for axes, up, rows, high in ((above, 2, np.flatnonzero(on_top(position, 0, 2, 1, spacing)), 0.3), (section, 1, np.flatnonzero(position[:, 2] < 1.5 * spacing), 0.12)):
-            frame = Frame((0, 0), (0.5, high), 600)
+        for axes, up, rows, high in ((above, 2, np.flatnonzero(on_top(position, 0, 2, 1, spacing)), 0.26), (section, 1, np.flatnonzero(position[:, 2] < 1.5 * spacing), 0.12)):
+            frame = Frame((0, 0), (0.34, high), 360)
             owner = tiles(position[rows][:, [0, up]], spacing, frame)
             shown = values[rows] if up == 1 else 1e3 * position[rows, 1]
             picture = axes.imshow(np.ma.array(shown[np.maximum(owner, 0)], mask=owner < 0), origin="lower", extent=frame.extent(), interpolation="nearest",
                                   **({"cmap": "RdBu_r", "vmin": -1000, "vmax": 1000} if up == 1 else {"cmap": "viridis", "vmin": 0, "vmax": 100}))
-            axes.set(xlim=(0, 0.5), ylim=(0, high), aspect="equal", ylabel=("height [m]" if up == 1 else "z [m]") if t == times[0] else "")
+            axes.set(xlim=(0, 0.34), ylim=(0, high), aspect="equal", ylabel=("height [m]" if up == 1 else "z [m]") if t == times[0] else "")
             if up == 2:
                 axes.plot([0, 0.2, 0.2], [0.1, 0.1, 0], color=style.INK, lw=0.8, ls=":")
                 axes.set_title(style.at_time(snapshot.time, 1), loc="left", pad=3)

@@ -10,10 +10,11 @@
 namespace talus::rungs {
 
 inline void celia(Rung &rung) {
-  const auto infiltrate = [&](double size, double tolerance) {
-    constexpr double width = 0.05, height = 0.5;
-    const Run run = rung.run({"mesh.size=" + number(size)});
-    auto cells = cell_means(run.end, "suction", 2);
+  const auto infiltrate = [&](int dimension, double size, double tolerance) {
+    constexpr double width = 0.05, height = 0.5, thickness = 0.0125;
+    const double area = dimension == 3 ? width * thickness : width;
+    const Run run = rung.run(in_dimension(dimension, {"mesh.size=" + number(size)}));
+    auto cells = cell_means(run.end, "suction", dimension);
     std::sort(cells.begin(), cells.end(), [](const auto &a, const auto &b) { return a.y > b.y; });
     double depth = 0, found = 0;  // of the layers next to 50 kPa, between cells above and below it
     for (size_t k = 1; k < cells.size(); ++k) {
@@ -21,15 +22,16 @@ inline void celia(Rung &rung) {
       if ((before < 50e3) == (after < 50e3)) continue;
       depth += height - (cells[k - 1].y + (50e3 - before) / (after - before) * (cells[k].y - cells[k - 1].y)), ++found;
     }
-    const std::string name = "cells of " + number(size * 1e3) + " mm";
+    const std::string name = name_of(dimension) + ", cells of " + number(size * 1e3) + " mm";
     rung.compare(name + ", depth of head -500 cm [m]", 0.254, depth / found, tolerance);
-    rung.compare(name + ", inflow [m]", 0.01741, -run.history.column("water_out_kg").back() / (1000 * width), tolerance);
+    rung.compare(name + ", inflow [m]", 0.01741, -run.history.column("water_out_kg").back() / (1000 * area), tolerance);
     rung.compare(name + ", water error over water", 0, run.history.column("water_error_kg").back(), 1e-10, run.history.column("water_kg").front());
   };
-  infiltrate(0.0125, 0.05);
+  infiltrate(2, 0.0125, 0.05);
   if (!rung.longer()) return;
-  infiltrate(0.00625, 0.03);
-  infiltrate(0.003125, 0.015);
+  infiltrate(2, 0.00625, 0.05);
+  infiltrate(2, 0.003125, 0.05);
+  infiltrate(3, 0.0125, 0.05);
 }
 
 }  // namespace talus::rungs

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "commands/rung.h"
+#include "tests/verification/cell_means.h"
 
 namespace talus::rungs {
 
@@ -26,6 +27,17 @@ inline void hydrostatic(Rung &rung) {
       const double grains = run.history.column("mass_kg").back(), above = (level - 1) * 1000 / 600 * grains;
       rung.compare(name_of(dimension) + " level " + number(level) + " m, force on the base", 10 * (grains + run.history.column("water_kg").back() + above),
                    run.history.column("base_force_y_N").back(), 1e-4);
+    }
+  // pores that may dry, but are full: the same, and with gas what its residue takes to find its pressure
+  for (const int dimension : {2, 3})
+    for (const std::string phases : {"unsaturated", "three-phase"}) {
+      const bool gas = phases == "three-phase";
+      const Run run = rung.run(in_dimension(dimension, {"phases=" + phases, "water.compression=exponential", "water.bulk_modulus=2e9", "stage.0.duration=0.01"}));
+      double largest = 0;
+      for (const CellMeans &cell : cell_means(run.end, "pore_pressure", dimension)) largest = std::max(largest, std::abs(cell.value - 1e4 * (1 - cell.y)));
+      const std::string name = name_of(dimension) + " " + phases;
+      rung.compare(name + ", largest speed over g t", 0, speed(run, dimension) / 0.1, gas ? 5e-3 : 1e-5, 1);
+      rung.compare(name + ", largest error of pressure in a cell over weight of the water", 0, largest, gas ? 0.03 : 1e-5, 1e4);
     }
 }
 

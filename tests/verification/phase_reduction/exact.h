@@ -9,10 +9,15 @@ namespace talus::rungs {
 
 inline void phase_reduction(Rung &rung) {
   using Overrides = std::vector<std::string>;
+  int dimension = 2;
   const auto difference = [&](const Overrides &one, const Overrides &other) {
-    const Run a = rung.run(one), b = rung.run(other);
+    const auto in_space = [&](Overrides all) {
+      if (dimension == 3) all.push_back("body.soil.velocity=[\"sin(pi * x) * sin(2 * pi * y)\", \"-sin(pi * y) * sin(2 * pi * x)\", \"0\"]");
+      return in_dimension(dimension, all);
+    };
+    const Run a = rung.run(in_space(one)), b = rung.run(in_space(other));
     double square = 0, all = 0;
-    for (int d = 0; d < 2; ++d) {
+    for (int d = 0; d < dimension; ++d) {
       const auto x = component(a.end, "displacement", d), y = component(b.end, "displacement", d);
       for (size_t i = 0; i < x.size(); ++i) square += (x[i] - y[i]) * (x[i] - y[i]), all += y[i] * y[i];
     }
@@ -23,12 +28,14 @@ inline void phase_reduction(Rung &rung) {
     a.push_back(more);
     return a;
   };
-  rung.compare("unsaturated, all pores full, and saturated", 0, difference(with(wet, "phases=unsaturated"), wet), 1e-9, 1);
-  // gas of 1e-4 of the pores, compressed by 50 kPa, gives way by 4e-10 /Pa beside the water's 5e-7 /Pa
-  rung.compare("three-phase, all pores full, and saturated", 0, difference(with(wet, "phases=three-phase"), wet), 5e-3, 1);
-  // 2e-5 of the pores hold water, 1e-5 of the mass of the grains
-  rung.compare("unsaturated, hardly any water, and dry", 0, difference(with(moist, "transfer.remap_interval=0"), {"phases=dry", "transfer.remap_interval=0"}), 1e-3, 1);
-  rung.report("the same with fewer remaps", 0, difference(moist, {"phases=dry"}), 1);
+  for (dimension = 2; dimension <= (rung.longer() ? 3 : 2); ++dimension) {
+    rung.compare(name_of(dimension) + " unsaturated, all pores full, and saturated", 0, difference(with(wet, "phases=unsaturated"), wet), 1e-9, 1);
+    // gas of 1e-4 of the pores, compressed by 50 kPa, gives way by 4e-10 /Pa beside the water's 5e-7 /Pa
+    rung.compare(name_of(dimension) + " three-phase, all pores full, and saturated", 0, difference(with(wet, "phases=three-phase"), wet), 5e-3, 1);
+    // 2e-5 of the pores hold water, 1e-5 of the mass of the grains
+    rung.compare(name_of(dimension) + " unsaturated, hardly any water, and dry", 0, difference(with(moist, "transfer.remap_interval=0"), {"phases=dry", "transfer.remap_interval=0"}), 1e-3, 1);
+    rung.report(name_of(dimension) + " the same with fewer remaps", 0, difference(moist, {"phases=dry"}), 1);
+  }
 }
 
 }  // namespace talus::rungs

@@ -10,6 +10,7 @@ namespace talus::rungs {
 inline void wet_flight(Rung &rung) {
   const auto fly = [&](int dimension, const std::string &phases, const std::vector<std::string> &more) {
     std::vector<std::string> overrides{"phases=" + phases};
+    if (dimension == 3) overrides.push_back("body.block.velocity=[\"1.5\", \"0.75\", \"0\"]");
     overrides.insert(overrides.end(), more.begin(), more.end());
     const Run run = rung.run(in_dimension(dimension, overrides));
     const std::string name = name_of(dimension) + " " + phases;
@@ -31,6 +32,9 @@ inline void wet_flight(Rung &rung) {
   fly(2, "saturated", {"water.table=[[0, 0], [1, 0]]"});
   fly(2, "unsaturated", {});
   fly(2, "three-phase", {});
+  if (!rung.longer()) return;
+  fly(3, "saturated", {"water.table=[[0, 0], [1, 0]]"});
+  fly(3, "unsaturated", {});
 }
 
 }  // namespace talus::rungs
