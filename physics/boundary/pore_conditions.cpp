@@ -107,7 +107,8 @@ PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vect
       for (int d = 0; d < dim; ++d) along += rest[d] * n[d];
       for (int d = 0; d < dim; ++d) rest[d] -= along * n[d];
     }
-    constexpr double least = 0.3, nothing = 1e-10;  // of an edge or its square: less is a gap between particles, which nothing passes
+    // of an edge or its square: less is a gap between particles, which nothing passes; the nodes of a one-element slice have a quarter of a square
+    constexpr double least = dim == 2 ? 0.3 : 0.3 * 0.3, nothing = 1e-10;
     if (large(i, rest, least)) add_face(i, rain_, rest);
     else if (large(i, rest, nothing)) add_face(i, gap, rest);
   }

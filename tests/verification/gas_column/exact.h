@@ -43,10 +43,10 @@ inline void gas_column(Rung &rung) {
   wave(2, 1e-8, 0.006);
   wave(2, 1e-10, 0.01);
   flow(2);
+  flow(3);
   if (!rung.longer()) return;
   wave(3, 1e-8, 0.006);
   wave(3, 1e-10, 0.01);
-  flow(3);
 }
 
 }  // namespace talus::rungs
