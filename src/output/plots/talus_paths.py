@@ -75,6 +75,8 @@ def draw_stress_paths(results, folder):
         mine = [suction for owner, _, _, suction in paths.values() if owner == body]
         for state, suction, slope, intercept in nearest_lines(lines, np.concatenate(mine)) if mine else ():
             height = slope * reach + factor * intercept
+            if height[0] > 1.3 * top:
+                continue  # above all that is shown
             left.plot(reach, height, color=style.SOFT, lw=0.8, ls="-" if state == "peak" else ":")
             size, of = style.readable_unit(suction, "Pa")
             words = [body] * (len(results.bodies) > 1) + [state] * (len({line[0] for line in lines}) > 1) + [f"s = {size * suction:g} {of}"] * (len({line[1] for line in lines}) > 1)

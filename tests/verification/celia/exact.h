@@ -13,7 +13,9 @@ inline void celia(Rung &rung) {
   const auto infiltrate = [&](int dimension, double size, double tolerance) {
     constexpr double width = 0.05, height = 0.5, thickness = 0.0125;
     const double area = dimension == 3 ? width * thickness : width;
-    const Run run = rung.run(in_dimension(dimension, {"mesh.size=" + number(size)}));
+    std::vector<std::string> overrides{"mesh.size=" + number(size)};
+    if (dimension == 3) overrides.push_back("body.soil.stress=[\"0\", \"-17769 * (0.5 - y)\", \"0\", \"0\", \"0\", \"0\"]");
+    const Run run = rung.run(in_dimension(dimension, overrides));
     auto cells = cell_means(run.end, "suction", dimension);
     std::sort(cells.begin(), cells.end(), [](const auto &a, const auto &b) { return a.y > b.y; });
     double depth = 0, found = 0;  // of the layers next to 50 kPa, between cells above and below it

@@ -27,7 +27,9 @@ inline void srivastava_yeh(Rung &rung) {
   constexpr double alpha = 20, height = 0.5, K_s = 1e-2, porosity = 0.4, decay = 500;
   const auto infiltrate = [&](int dimension, double t) {
     const double seconds = t * porosity / (alpha * K_s);
-    const Run run = rung.run(in_dimension(dimension, {"stage.0.duration=" + number(seconds)}));
+    std::vector<std::string> overrides{"stage.0.duration=" + number(seconds)};
+    if (dimension == 3) overrides.push_back("body.soil.stress=[\"0\", \"-10 * (1630 * (0.5 - y) + 18 * exp(-20 * y))\", \"0\", \"0\", \"0\", \"0\"]");
+    const Run run = rung.run(in_dimension(dimension, overrides));
     double square = 0, total = 0;
     for (const CellMeans &cell : cell_means(run.end, "suction", dimension)) {
       const double error = std::exp(-cell.value / decay) - srivastava_yeh_conductivity(alpha * cell.y, t, alpha * height, 0.1, 0.9);
