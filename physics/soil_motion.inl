@@ -376,7 +376,7 @@ PetscErrorCode SoilMotion<dim, Phases>::deform(double t, const Vec<dim> *u, bool
   if constexpr (Phases::liquid) {
     auto accepted = pore_frame(false);
     accepted.trial = trial;
-    PetscCall(fluid_.flow(accepted, u));
+    PetscCall(fluid_.flow(accepted, pore_conditions_, u));
   }
   for (int i = 0; i < nodes; ++i)
     for (int d = 0; d < dim; ++d) position[i][d] = grid_.position[i][d] + u[i][d];
@@ -556,7 +556,7 @@ PetscErrorCode SoilMotion<dim, Phases>::acceleration(double t, const double *u, 
     unbalanced = scratch_.data();
   }
   if constexpr (Phases::liquid)
-    fluid_.drive(pore_frame(u != nullptr), pore_conditions_, force_.data(), reinterpret_cast<Vec<dim> *>(a) + grid_.node_count());
+    PetscCall(fluid_.drive(pore_frame(u != nullptr), pore_conditions_, force_.data(), reinterpret_cast<Vec<dim> *>(a) + grid_.node_count()));
   for (int i = 0; i < grid_.node_count(); ++i) {
     const double inverse = grid_.mass[i] > smallest_mass_ ? 1 / grid_.mass[i] : 0;  // a lighter node is carried along
     for (int d = 0; d < dim; ++d) {

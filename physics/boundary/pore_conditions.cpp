@@ -52,7 +52,8 @@ PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const
     for (double &r : rest) r /= std::sqrt(length);
     wall.normal[wall.count++] = rest;
   }
-  nodal_.resize(mesh.node_count()), taken_.resize(mesh.node_count());
+  nodal_.resize(mesh.node_count()), taken_.resize(mesh.node_count()), at_gap_.resize(mesh.node_count());
+  gaps_.reserve(mesh.node_count()), gap_cells_.reserve((dim + 1) * mesh.cell_count());
   PetscFunctionReturn(0);
 }
 
@@ -97,22 +98,32 @@ PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vect
         for (int d = 0; d < dim; ++d) taken_[i][d] += nodal_[i][d];
       }
   }
+  gaps_.clear(), gap_cells_.clear();
   for (int i = 0; i < nodes; ++i) {
-    Vec<dim> rest = surface[i];
-    for (int d = 0; d < dim; ++d) rest[d] -= taken_[i][d];
-    const int index = wall_of_node_[grid.mesh_node[i]];
-    for (int k = 0; index >= 0 && k < walls_[index].count; ++k) {
-      const Vec<dim> &n = walls_[index].normal[k];
-      double along = 0;
-      for (int d = 0; d < dim; ++d) along += rest[d] * n[d];
-      for (int d = 0; d < dim; ++d) rest[d] -= along * n[d];
-    }
-    // of an edge or its square: less is a gap between particles, which nothing passes; the nodes of a one-element slice have a quarter of a square
+    const Vec<dim> rest = open_area(grid, i, surface[i]);
+    // of an edge or its square: less is a gap between particles; the nodes of a one-element slice have a quarter of a square
     constexpr double least = dim == 2 ? 0.3 : 0.3 * 0.3, nothing = 1e-10;
+    at_gap_[i] = 0;
     if (large(i, rest, least)) add_face(i, rain_, rest);
-    else if (large(i, rest, nothing)) add_face(i, gap, rest);
+    else if (large(i, rest, nothing)) gaps_.push_back(i), at_gap_[i] = 1;
   }
+  for (int c = 0; c < grid.cell_count(); ++c)
+    for (const int node : grid.shape[c].node)
+      if (at_gap_[node]) gap_cells_.push_back({node, c});
   PetscFunctionReturn(0);
+}
+
+/// What is left of the surface at a node beside named faces and across the normals of walls.
+template <int dim>
+Vec<dim> PoreConditions<dim>::open_area(const FilledGrid<dim> &grid, int node, const Vec<dim> &surface) const {
+  Vec<dim> rest = surface;
+  for (int d = 0; d < dim; ++d) rest[d] -= taken_[node][d];
+  walls_at(grid, node, [&](const Vec<dim> &n) {
+    double along = 0;
+    for (int d = 0; d < dim; ++d) along += rest[d] * n[d];
+    for (int d = 0; d < dim; ++d) rest[d] -= along * n[d];
+  });
+  return rest;
 }
 
 template class PoreConditions<2>;

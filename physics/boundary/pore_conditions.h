@@ -1,7 +1,7 @@
 #pragma once
 /// What boundaries do to the pore fluids, docs/theory/pores.md section 5. Faces that hold the soil, and `impermeable` ones, let no fluid pass.
 /// Everywhere else the atmosphere's pressure acts, on the soil's surface where it is now: the sum of w grad N at a node is the surface's area
-/// vector there. Where it is small there is a gap between particles, which nothing passes. The group name `free_surface` in a scene stands for that surface.
+/// vector there. Where it is small there is a gap between particles, beyond which is what is beside it. The group name `free_surface` in a scene stands for that surface.
 #include <string>
 #include <vector>
 
@@ -55,15 +55,20 @@ class PoreConditions {
           (*sources_)[f.source].kind);
     }
   }
-  /// Calls limit(node, n, low, high, gas_too) for every face whose outflow has limits: relative velocities of the liquid along n must be between them [m/s].
+  /// Calls put(node, area) for every gap; `surface(node)` is the sum of w grad N now, of which named faces and walls take their share [m2].
+  template <class Surface, class Put>
+  void gaps(const FilledGrid<dim> &grid, Surface &&surface, Put &&put) const {
+    for (const int node : gaps_) put(node, open_area(grid, node, surface(node)));
+  }
+  /// (gap node, cell) of all cells of this rank at gaps.
+  const std::vector<std::array<int, 2>> &gap_cells() const { return gap_cells_; }
+  /// Calls limit(node, n, low, high) for every face whose outflow has limits: relative velocities of the liquid along n must be between them [m/s].
   /// `liquid_at(node)` is LiquidAtNode; `density` that of the liquid beyond [kg/m3].
   template <class At, class Limit>
   void limits(double t, const FilledGrid<dim> &grid, double density, double unit_weight, At &&liquid_at, Limit &&limit) const {
     for (const Face &f : faces_) {
       double least = -1e300, most = 1e300;  // of the volume that leaves per area and time
-      if (f.source == gap) {
-        least = most = 0;
-      } else if (f.source == atmosphere) {
+      if (f.source == atmosphere) {
         if (sealed_) least = 0;
       } else {
         const Vec<dim> &x = grid.position[f.node];
@@ -80,7 +85,7 @@ class PoreConditions {
       if (least == -1e300) continue;
       const LiquidAtNode at = liquid_at(f.node);
       const double scale = at.mass > 0 ? density * at.volume / at.mass : 0;
-      limit(f.node, f.normal, least * scale, most * scale, f.source == gap);
+      limit(f.node, f.normal, least * scale, most * scale);
     }
   }
   /// Calls wall(node, n) for every normal of walls that let no fluid pass; those of a node are orthonormal.
@@ -97,7 +102,7 @@ class PoreConditions {
   }
 
  private:
-  static constexpr int atmosphere = -1, gap = -2;
+  static constexpr int atmosphere = -1;
   struct Wall {
     int count = 0;
     std::array<Vec<dim>, dim> normal;  ///< orthonormal
@@ -107,10 +112,11 @@ class PoreConditions {
     const Wall *wall;
   };
   struct Face {
-    int node, source;  ///< compact; a source, the atmosphere or a gap
+    int node, source;  ///< compact; a source or the atmosphere
     Vec<dim> area, normal;
   };
   void add_face(int node, int source, const Vec<dim> &area);
+  Vec<dim> open_area(const FilledGrid<dim> &grid, int node, const Vec<dim> &surface) const;
 
   const std::vector<Source> *sources_ = nullptr;
   bool sealed_ = false;
@@ -120,6 +126,9 @@ class PoreConditions {
   std::vector<std::pair<int, std::vector<Facet<dim>>>> groups_;
   std::vector<ActiveWall> active_walls_;
   std::vector<Face> faces_;
+  std::vector<int> gaps_;
+  std::vector<std::array<int, 2>> gap_cells_;
+  std::vector<char> at_gap_;
   std::vector<Vec<dim>> nodal_, taken_;
 };
 

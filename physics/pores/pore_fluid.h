@@ -76,7 +76,7 @@ class PoreFluid {
   /// Adds what fluids do to the mixture at a node: pressure and weight.
   void add_to_mixture(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force) const;
   /// Accelerations without drag of the fluids [fluids][nodes], and less them what is left of the mixture's force for the solid.
-  void drive(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force, Vec<dim> *acceleration);
+  PetscErrorCode drive(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force, Vec<dim> *acceleration);
   /// Velocity of the solid after implicit drag over `step` and what limits the fluids at boundaries, from those of all without it.
   void resist(double step, const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *solid, const Vec<dim> *fluid) const;
   /// Inertia of the node against a support of the solid, after `resist` over `step` [kg].
@@ -87,7 +87,7 @@ class PoreFluid {
 
   /// Divergence of the fluids' fluxes over displacements u = [1 + fluids][nodes] from the accepted state, in cells. `frame` is that of the
   /// accepted state but for `trial`. Collective.
-  PetscErrorCode flow(const Frame &frame, const Vec<dim> *u);
+  PetscErrorCode flow(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *u);
   /// Smooths them together with the volume strain of the cells, which becomes that of the pores.
   PetscErrorCode smooth_flow(const Frame &frame, Array &volume_strain);
   /// Takes it from the points, whose volumes are now those at the end.
@@ -145,6 +145,11 @@ class PoreFluid {
   static constexpr int node_width = sizeof(NodePores) / sizeof(double);
 
   Pores<dim> show(std::vector<PorePoints> &points, int body);
+  static Vec<dim> surface_at(const NodePores &node) {
+    Vec<dim> area;
+    talus::store<dim>(area.data(), node.geometry);
+    return area;
+  }
   double given_gas_pressure(const Vec<dim> &x) const;
   std::array<double, 3> contents(const SoilPores &soil, double pressure, double gas_pressure) const;
   double unit_weight(const Frame &frame) const {
@@ -183,6 +188,8 @@ class PoreFluid {
   std::vector<CellPores> cells_, trial_cells_;
   std::vector<NodePores> nodes_, trial_nodes_;
   std::vector<Vec<dim>> flux_[fluids], surface_;
+  std::vector<Vec<dim>> gap_;      ///< of a node: area vector of the gap over the volume of its cells [1/m]; 0 elsewhere
+  Array shut_[fluids];             ///< of a node: what a gap would let through over that volume [kg/(m3 s)]
   std::vector<std::array<double, dim + 1>> mean_, reference_;  ///< of a cell: where its particles are in the mean, and where its pressure counts
   std::vector<std::array<double, dim + 1>> rows_;              ///< sums over rows of the solid's mass matrices [kg]
   Array grain_mass_;                                           ///< of a cell [kg]

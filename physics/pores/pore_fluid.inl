@@ -16,8 +16,8 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
   constexpr double earth = 9.81;  // [m/s2], for a hydraulic conductivity in a scene without gravity
   for (const auto &body : bodies) soils_.emplace_back(body->source(), scene.water.density * (gravity > 0 ? gravity : earth), scene.water.viscosity);
   cells_.resize(cells), nodes_.resize(nodes), mean_.resize(cells), reference_.resize(cells), rows_.resize(cells), head_.resize(cells), grain_mass_.resize(cells);
-  nodal_head_.resize(nodes), momentum_.resize(nodes), surface_.resize(nodes), beyond_.assign(nodes, 0), body_of_node_.assign(nodes, 0);
-  for (int a = 0; a < fluids; ++a) flux_[a].resize(nodes), impulse_[a].resize(cells), divergence_[a].resize(cells), smooth_[a].resize(cells);
+  nodal_head_.resize(nodes), momentum_.resize(nodes), surface_.resize(nodes), gap_.resize(nodes), beyond_.assign(nodes, 0), body_of_node_.assign(nodes, 0);
+  for (int a = 0; a < fluids; ++a) flux_[a].resize(nodes), shut_[a].resize(nodes), impulse_[a].resize(cells), divergence_[a].resize(cells), smooth_[a].resize(cells);
   nodal_.resize(3 * nodes);
   for (auto *all : {&points_, &next_points_})
     for (size_t b = 0; b < bodies.size(); ++b) (*all)[b].room(scene.transfer.average_stress ? static_cast<int>(cells) : bodies[b]->particles().count);
@@ -374,7 +374,8 @@ double PoreFluid<dim, Phases>::conductivity_beyond(int node, const NodePores &at
 }
 
 template <int dim, class Phases>
-void PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force, Vec<dim> *acceleration) {
+PetscErrorCode PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force, Vec<dim> *acceleration) {
+  PetscFunctionBeginUser;
   const std::vector<NodePores> &at = frame.trial ? trial_nodes_ : nodes_;
   const int nodes = frame.grid.node_count();
   std::fill_n(beyond_.begin(), nodes, 0.);
@@ -383,6 +384,21 @@ void PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreConditions<dim>
       const double whole = at[i].whole(a), scale = whole > 0 ? 1 / whole : 0;
       for (int d = 0; d < dim; ++d) acceleration[a * nodes + i][d] = whole > 0 ? at[i].push[a][d] * scale + frame.gravity[d] : 0;
     }
+  // beyond a gap is the pressure of the cells around it, brought to the node with the weight of the fluid
+  const std::vector<CellPores> &pores = frame.trial ? trial_cells_ : cells_;
+  std::fill_n(nodal_.begin(), nodes * fluids, 0.);
+  for (const auto &[i, c] : conditions.gap_cells()) {
+    const Vec<dim> x = place(frame, c, reference_[c]);
+    double rise = 0;
+    for (int d = 0; d < dim; ++d) rise += frame.gravity[d] * (frame.position[i][d] - x[d]);
+    nodal_[i * fluids] += frame.weight[c] / (dim + 1) * (pores[c].smooth[0] + liquid_.density * rise);
+    if constexpr (Phases::gas) nodal_[i * fluids + 1] += frame.weight[c] / (dim + 1) * (pores[c].smooth[1] + gas_.density * rise);
+  }
+  PetscCall(frame.grid.sum(nodal_.data(), fluids));
+  conditions.gaps(frame.grid, [&](int i) { return surface_at(at[i]); }, [&](int i, const Vec<dim> &area) {
+    for (int a = 0; a < fluids; ++a)
+      for (int d = 0; d < dim && at[i].whole(a) > 0; ++d) acceleration[a * nodes + i][d] -= nodal_[i * fluids + a] / at[i].volume() * area[d] / at[i].whole(a);
+  });
   conditions.pressures(frame.time, frame.grid, unit_weight(frame), [&](int i, double p, const Vec<dim> &area, double) {
     for (int d = 0; d < dim; ++d) acceleration[i][d] -= p * area[d] / at[i].whole(0);
     beyond_[i] = conductivity_beyond(i, at[i], p);
@@ -394,6 +410,7 @@ void PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreConditions<dim>
   for (int a = 0; a < fluids; ++a)
     for (int i = 0; i < nodes; ++i)
       for (int d = 0; d < dim; ++d) force[i][d] -= at[i].mass(a) * acceleration[a * nodes + i][d];
+  PetscFunctionReturn(0);
 }
 
 /// Mass, M and resistance Q = phi V / k of a fluid at a node: the flux of a steady state is then the mean conductivity times the gradient.
@@ -437,7 +454,7 @@ void PoreFluid<dim, Phases>::resist(double step, const Frame &frame, const PoreC
     }
     for (int d = 0; d < dim; ++d) solid[i][d] += momentum / mass * n[d];
   };
-  limits(frame, conditions, [&](int i, const Vec<dim> &n, double low, double high, bool gas_too) { share(i, n, gas_too ? fluids : 1, low, high); });
+  limits(frame, conditions, [&](int i, const Vec<dim> &n, double low, double high) { share(i, n, 1, low, high); });
   conditions.walls([&](int i, const Vec<dim> &n) { share(i, n, fluids, 0, 0); });
 }
 
@@ -489,7 +506,7 @@ void PoreFluid<dim, Phases>::constrain(const Frame &frame, const PoreConditions<
       for (int d = 0; d < dim; ++d) v[d] += change * n[d];
     }
   };
-  limits(frame, conditions, [&](int i, const Vec<dim> &n, double low, double high, bool gas_too) { hold(i, n, gas_too ? fluids : 1, low, high); });
+  limits(frame, conditions, [&](int i, const Vec<dim> &n, double low, double high) { hold(i, n, 1, low, high); });
   conditions.walls([&](int i, const Vec<dim> &n) { hold(i, n, fluids, 0, 0); });
 }
 
@@ -517,7 +534,7 @@ PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<di
       const Vec<dim> &g = k ? shape.gradient[k - 1] : first;
       const int i = shape.node[k];
       double towards = 0;
-      for (int d = 0; d < dim; ++d) towards += g[d] * (gas[i][d] - solid[i][d]);
+      for (int d = 0; d < dim; ++d) towards += (g[d] - gap_[i][d]) * (gas[i][d] - solid[i][d]);
       takes[k] = frame.weight[c] * std::max(0., towards);
       out += takes[k] * pore_share(i);
     }
@@ -540,25 +557,33 @@ PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<di
 }
 
 template <int dim, class Phases>
-PetscErrorCode PoreFluid<dim, Phases>::flow(const Frame &frame, const Vec<dim> *u) {
+PetscErrorCode PoreFluid<dim, Phases>::flow(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *u) {
   PetscFunctionBeginUser;
   const FilledGrid<dim> &grid = frame.grid;
   const int nodes = grid.node_count(), cells = grid.cell_count();
+  std::fill_n(gap_.begin(), nodes, Vec<dim>{});
+  conditions.gaps(grid, [&](int i) { return surface_at(nodes_[i]); }, [&](int i, const Vec<dim> &area) {
+    for (int d = 0; d < dim; ++d) gap_[i][d] = area[d] / ((dim + 1) * nodes_[i].volume());
+  });
   for (int i = 0; i < nodes; ++i) {
     const double density = given ? 0 : nodes_[i].volume() > 0 ? nodes_[i].mass(0) / nodes_[i].volume() : 0;
     for (int d = 0; d < dim; ++d) flux_[0][i][d] = density * (u[nodes + i][d] - u[i][d]);
   }
   if constexpr (Phases::gas) PetscCall(gas_flux(frame, u + 2 * nodes, u));
-  for (int a = 0; a < fluids && !frame.trial; ++a)
-    for (int i = 0; i < nodes; ++i)
-      if (mesh_.owned[grid.mesh_node[i]])
-        for (int d = 0; d < dim; ++d) out_[a] += flux_[a][i][d] * nodes_[i].geometry[d];
+  for (int a = 0; a < fluids; ++a)
+    for (int i = 0; i < nodes; ++i) {
+      double out = 0, shut = 0;
+      for (int d = 0; d < dim; ++d) out += flux_[a][i][d] * nodes_[i].geometry[d], shut += flux_[a][i][d] * gap_[i][d];
+      shut_[a][i] = shut;
+      if (!frame.trial && mesh_.owned[grid.mesh_node[i]]) out_[a] += out - shut * (dim + 1) * nodes_[i].volume();
+    }
   for (int c = 0; c < cells; ++c) {
     const Shape<dim> &shape = grid.shape[c];
     for (int a = 0; a < fluids; ++a) {
       double sum = 0;
       for (int k = 0; k < dim; ++k)
         for (int d = 0; d < dim; ++d) sum += shape.gradient[k][d] * (flux_[a][shape.node[k + 1]][d] - flux_[a][shape.node[0]][d]);
+      for (const int i : shape.node) sum -= shut_[a][i];
       divergence_[a][c] = sum;
     }
   }
