@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""Draws wetting and sliding of the embankment from a run of its scene:  figure.py DIR"""
+"""Draws wetting and sliding of the embankment from a run of its scene, and takes its stress paths:  figure.py DIR"""
 
 import argparse
 import pathlib
+import shutil
 import sys
 
 import numpy as np
@@ -12,6 +13,7 @@ sys.path.insert(0, str(HERE.parents[2] / "src/output/plots"))
 
 import matplotlib.pyplot as plt  # noqa: E402
 import talus_style as style  # noqa: E402
+from talus_paths import draw_stress_paths  # noqa: E402
 from talus_results import Results  # noqa: E402
 from talus_sections import spacing_of  # noqa: E402
 from talus_tiles import Frame, tiles  # noqa: E402
@@ -41,4 +43,8 @@ def draw(results, path):
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", metavar="DIR", type=pathlib.Path, help="results of a run")
-    draw(Results(parser.parse_args().folder), HERE / "rain.png")
+    results = Results(parser.parse_args().folder)
+    draw(results, HERE / "rain.png")
+    plt.rcParams["savefig.dpi"] = 120
+    [(_, paths)] = draw_stress_paths(results, results.folder / "pictures")
+    shutil.copy(paths, HERE / "paths.png")
