@@ -53,7 +53,7 @@ def run(talus, dimension, size, ranks):
 
 def runs(talus):
     rows = []
-    for dimension, size, ranks in ((2, 2.2, 1), (2, 1.5, 1), (2, 0.7, 1), (3, 2.2, 1), (3, 2.2, 2), (3, 1.5, 2)):
+    for dimension, size, ranks in ((2, 2.2, 1), (2, 1.5, 1), (2, 0.7, 1), (3, 2.2, 1), (3, 2.2, 2), (3, 1.5, 1)):
         rows.append(run(talus, dimension, size, ranks))
         print(rows[-1], flush=True)
         with open(HERE / "runs.csv", "w", newline="") as out:
