@@ -163,6 +163,14 @@ class PoreFluid {
   void solve(const Frame &frame);
   template <class Limit>
   void limits(const Frame &frame, const PoreConditions<dim> &conditions, Limit &&limit) const;
+  PetscErrorCode give_around(const Frame &frame, Array &divergence) requires Phases::suction;
+  PetscErrorCode see_around(const Frame &frame, Array &pressure) requires Phases::suction;
+  /// Volume of a cell that stands for more, or less, than its particles have; 0 where smoothing evens out [m3].
+  double beyond_particles(const Frame &frame, int c) const { return smoothed(c) ? 0 : frame.weight[c] - frame.particle_volume[c]; }
+  double gas_density() const {
+    if constexpr (Phases::gas) return gas_.density;
+    return 0;
+  }
   template <int count>
   PetscErrorCode smooth(const Frame &frame, const std::array<double *, count> &fields);
   Vec<dim> place(const Frame &frame, int cell, const std::array<double, dim + 1> &barycentric) const;

@@ -309,6 +309,7 @@ PetscErrorCode PoreFluid<dim, Phases>::store(const Frame &frame) {
     smooth_[0][c] = pores[c].pressure[0] - weight;
     if constexpr (Phases::gas) smooth_[1][c] = mixture_pressure(pores[c].pressure, pores[c].saturation) - weight;
   }
+  if constexpr (Phases::suction) PetscCall(see_around(frame, smooth_[0]));
   PetscCall(smooth<fluids>(frame, fields));
   std::vector<NodePores> &at = frame.trial ? trial_nodes_ : nodes_;
   if (frame.trial) at.resize(nodes_.size());
@@ -319,7 +320,9 @@ PetscErrorCode PoreFluid<dim, Phases>::store(const Frame &frame) {
     const double w = frame.weight[c], part = w / (dim + 1), here = head(c, reference_[c]), scale = 1 / grain_mass_[c];
     cell.smooth[0] = smooth_[0][c] + liquid_.density * here;
     if constexpr (Phases::gas) cell.smooth[1] = cell.pressure[1] + gas_.density * (here - head_[c]);
-    cell.mixture = mixture_pressure(cell.smooth, cell.saturation);
+    double own[fluids];
+    for (int a = 0; a < fluids; ++a) own[a] = cell.pressure[a] + (a ? gas_density() : liquid_.density) * (here - head_[c]);
+    cell.mixture = mixture_pressure(smoothed(c) ? cell.smooth : own, cell.saturation);
     if constexpr (Phases::gas)
       if (smoothed(c)) {  // the gas keeps its suction against the liquid: what smoothing takes must not draw gas
         cell.smooth[1] += smooth_[0][c] + liquid_.density * head_[c] - cell.pressure[0];
@@ -595,8 +598,44 @@ PetscErrorCode PoreFluid<dim, Phases>::smooth_flow(const Frame &frame, Array &vo
   PetscFunctionBeginUser;
   PetscCall(smooth<2>(frame, {volume_strain.data(), divergence_[0].data()}));  // gas moves by its own pressure, which is not smoothed
   const int cells = frame.grid.cell_count();
-  for (int a = 0; a < fluids; ++a)
+  for (int a = Phases::suction; a < fluids; ++a)
     for (int c = 0; c < cells; ++c) divergence_[a][c] *= frame.weight[c];
+  if constexpr (Phases::suction) PetscCall(give_around(frame, divergence_[0]));
+  PetscFunctionReturn(0);
+}
+
+/// A cell takes up liquid as its particles' volume tells, and what its own volume tells beyond that goes to the cells around in proportion to theirs, theory (4.8a):
+/// where particles are spread unevenly over the cells of a front, contents stay even. Collective.
+template <int dim, class Phases>
+PetscErrorCode PoreFluid<dim, Phases>::give_around(const Frame &frame, Array &divergence) requires Phases::suction {
+  PetscFunctionBeginUser;
+  const int cells = frame.grid.cell_count();
+  std::fill_n(nodal_.begin(), frame.grid.node_count() * 2, 0.);
+  for (int c = 0; c < cells; ++c)
+    for (int i : frame.shape[c].node) nodal_[i * 2] += frame.particle_volume[c], nodal_[i * 2 + 1] += beyond_particles(frame, c) * divergence[c];
+  PetscCall(frame.grid.sum(nodal_.data(), 2));
+  for (int c = 0; c < cells; ++c) {
+    double given = 0;
+    for (int i : frame.shape[c].node) given += nodal_[i * 2 + 1] / nodal_[i * 2];
+    divergence[c] = (frame.weight[c] - beyond_particles(frame, c)) * divergence[c] + frame.particle_volume[c] / (dim + 1) * given;
+  }
+  PetscFunctionReturn(0);
+}
+
+/// The adjoint: a cell presses with the pressure of its particles as far as their volume goes, beyond that with that around it. Collective.
+template <int dim, class Phases>
+PetscErrorCode PoreFluid<dim, Phases>::see_around(const Frame &frame, Array &pressure) requires Phases::suction {
+  PetscFunctionBeginUser;
+  const int cells = frame.grid.cell_count();
+  std::fill_n(nodal_.begin(), frame.grid.node_count() * 2, 0.);
+  for (int c = 0; c < cells; ++c)
+    for (int i : frame.shape[c].node) nodal_[i * 2] += frame.particle_volume[c], nodal_[i * 2 + 1] += frame.particle_volume[c] * pressure[c];
+  PetscCall(frame.grid.sum(nodal_.data(), 2));
+  for (int c = 0; c < cells; ++c) {
+    double around = 0;
+    for (int i : frame.shape[c].node) around += nodal_[i * 2 + 1] / nodal_[i * 2] / (dim + 1);
+    pressure[c] += beyond_particles(frame, c) / frame.weight[c] * (around - pressure[c]);
+  }
   PetscFunctionReturn(0);
 }
 
