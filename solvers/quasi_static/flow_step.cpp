@@ -98,8 +98,12 @@ PetscErrorCode FlowStep<dim>::setup() {
   PetscFunctionReturn(0);
 }
 
+/// Direct, but for seepage beyond a size or on request: GMRES with algebraic multigrid. The matrix of a consolidation is indefinite, and no
+/// multigrid of its own is at hand.
 template <int dim>
 PetscErrorCode FlowStep<dim>::make_solver() {
+  constexpr PetscInt largest_direct = dim == 2 ? 400000 : 40000;  // unknowns, as for equilibrium
+  PetscInt unknowns;
   KSP ksp;
   PC pc;
   Mat factor;
@@ -117,13 +121,20 @@ PetscErrorCode FlowStep<dim>::make_solver() {
   PetscCall(SNESSetConvergenceTest(solver_, snes_converged, this, nullptr));
   PetscCall(SNESGetKSP(solver_, &ksp));
   PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(KSPSetType(ksp, KSPPREONLY));
-  PetscCall(PCSetType(pc, PCLU));
-  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  PetscCall(KSPSetOperators(ksp, matrix, matrix));
-  PetscCall(PCFactorSetUpMatSolverType(pc));
-  PetscCall(PCFactorGetMatrix(pc, &factor));
-  PetscCall(MatMumpsSetIcntl(factor, 14, 100));
+  PetscCall(VecGetSize(x_, &unknowns));
+  if (soil_ || settings_.linear_solver == LinearSolver::direct || (settings_.linear_solver == LinearSolver::automatic && unknowns <= largest_direct)) {
+    PetscCall(KSPSetType(ksp, KSPPREONLY));
+    PetscCall(PCSetType(pc, PCLU));
+    PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+    PetscCall(KSPSetOperators(ksp, matrix, matrix));
+    PetscCall(PCFactorSetUpMatSolverType(pc));
+    PetscCall(PCFactorGetMatrix(pc, &factor));
+    PetscCall(MatMumpsSetIcntl(factor, 14, 100));
+  } else {
+    PetscCall(KSPSetType(ksp, KSPGMRES));
+    PetscCall(KSPSetTolerances(ksp, 1e-8, PETSC_DEFAULT, PETSC_DEFAULT, 1000));
+    PetscCall(PCSetType(pc, PCGAMG));
+  }
   PetscCall(SNESSetFromOptions(solver_));
   PetscFunctionReturn(0);
 }

@@ -129,6 +129,8 @@ class Checks {
       reader_.complain("water.excess", "has no place beside seepage, which finds the pressure: give pressures, heads or fluxes at [boundary.NAME]");
     if (stage.kind == StageKind::consolidation && scene_.quasi_static.elements != Elements::quadratic)
       reader_.complain("quasi_static.elements", "must be \"quadratic\" for consolidation: displacement of first order beside pressure of first order is not stable");
+    if (stage.kind == StageKind::consolidation && scene_.quasi_static.linear_solver == LinearSolver::iterative)
+      reader_.complain("quasi_static.linear_solver", "must not be \"iterative\" for consolidation: its matrix is indefinite and is factorised; leave it out");
     if (stage.steady && stage.kind != StageKind::seepage) reader_.complain(path + ".steady", "belongs to seepage: set kind = \"seepage\"");
     if (is_static(stage.kind)) {
       const std::string no = "has no effect in a quasi-static stage; leave it out";

@@ -375,6 +375,8 @@ TEST(Seepage, OfDrainedSoilIsChecked) {
   };
   for (const auto &[scene, words] : std::vector<Spoiled>{
            {changed(wet, "seepage", "consolidation"), {"stage.0.kind", "phases = \"saturated\" or \"unsaturated\", not \"drained\""}},
+           {changed(changed(changed(wet, "seepage", "consolidation"), "drained", "saturated"), "[output]", "[quasi_static]\nlinear_solver = \"iterative\"\n[output]"),
+            {"quasi_static.linear_solver", "must not be \"iterative\" for consolidation"}},
            {changed(wet, "[water]", "[water]\nexcess = \"10 kPa\""), {"water.excess", "has no place beside seepage", "[boundary.NAME]"}},
            {changed(wet, "permeability = 1e-10", ""), {"body.sand", "needs permeability [m2] or hydraulic_conductivity [m/s]"}},
            {wet + "[boundary.pond]\nkind = \"head\"\nlevel = 0.4\n", {"boundary.pond.group", "the mesh has no \"pond\""}},
