@@ -36,6 +36,11 @@ inline void fem_dam(Rung &rung) {
     rung.compare(name + ": what goes in and does not come out", 0, lost, 1e-5, exact);
     rung.report(name + ": end of the seepage face, m", behind, exit);
   }
+  // the same flow gives a drained scene its pressure, without suction; particles that carry water share what their cell has of it, others do not
+  const auto moving = component(rung.run({}).end, "pore_pressure"), given = component(rung.run({"phases=drained"}).end, "pore_pressure");
+  double square = 0;
+  for (size_t i = 0; i < given.size(); ++i) square += std::pow(given[i] - std::max(0., moving[i]), 2) / given.size();
+  rung.compare("drained: pressure against that of the particles' own water, root mean square", 0, std::sqrt(square), 0.01, gamma * before);
 }
 
 }  // namespace talus::rungs
