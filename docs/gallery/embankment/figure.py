@@ -18,7 +18,7 @@ from talus_results import Results  # noqa: E402
 from talus_sections import spacing_of  # noqa: E402
 from talus_tiles import Frame, tiles  # noqa: E402
 
-TIMES = (8, 23, 43)  # [s]
+TIMES = (18, 43, 83)  # [s]
 
 
 def draw(results, path):
@@ -28,11 +28,11 @@ def draw(results, path):
     for line, t in zip(grid, TIMES):
         snapshot = min(results.snapshots, key=lambda each: abs(each.time - t))
         owner = tiles(snapshot.position()[:, :2], spacing_of(results), frame)
-        for axes, field, colours in zip(line, ("saturation", "displacement"), ({"cmap": "YlGnBu", "vmin": 0.5, "vmax": 1}, {"cmap": "viridis", "vmin": 0, "vmax": 3})):
+        for axes, field, colours in zip(line, ("saturation", "displacement"), ({"cmap": "YlGnBu", "vmin": 0.5, "vmax": 1}, {"cmap": "viridis", "vmin": 0, "vmax": 6})):
             values = snapshot.scalar(field)[0]
             picture = axes.imshow(np.ma.array(values[np.maximum(owner, 0)], mask=owner < 0), origin="lower", extent=frame.extent(), interpolation="nearest", **colours)
             axes.set(xlim=(0, 45), ylim=(0, 16), aspect="equal")
-            axes.set_title(style.at_time(snapshot.time, 43), loc="left", pad=3)
+            axes.set_title(style.at_time(snapshot.time, TIMES[-1]), loc="left", pad=3)
             if t == TIMES[-1]:
                 place = figure.add_axes((axes.get_position().x0 + 0.08, 0.06, 0.3, 0.018))
                 figure.colorbar(picture, cax=place, orientation="horizontal", extend="max" if field == "displacement" else "neither").outline.set_visible(False)
