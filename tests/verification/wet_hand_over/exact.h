@@ -24,7 +24,7 @@ inline void wet_hand_over(Rung &rung) {
     for (int d = 0; d < dimension; ++d)
       for (const double v : component(moved.end, "velocity", d)) speed = std::max(speed, std::abs(v));
     const std::string name = name_of(dimension) + ", cells of " + number(size) + " m";
-    rung.compare(name + ", rms change of pressure in 0.5 s over head", 0, std::sqrt(square / before.size()), 0.02, head);
+    rung.compare(name + ", rms change of pressure in 0.5 s over head", 0, std::sqrt(square / before.size()), 0.005, head);
     const double water = taken.history.column("water_kg").back();
     rung.compare(name + ", change of stored water in 0.5 s over water", 0, moved.history.column("water_kg").back() - water, 1e-4, water);
     rung.compare(name + ", water error over water", 0, moved.history.column("water_error_kg").back(), 1e-10, water);
