@@ -927,7 +927,10 @@ PoreReport SoilMotion<dim, Phases>::pores(const Body<dim> &body, int i) const
   int b = 0;
   while (bodies_[b].get() != &body) ++b;
   const int cell = body.particles().cell[i];
-  return fluid_.report(b, transfer_.average_stress ? points_[b].of_cell[cell] : i, grid_.find_cell(cell));
+  PoreReport report = fluid_.report(b, transfer_.average_stress ? points_[b].of_cell[cell] : i, grid_.find_cell(cell));
+  const auto &node = grid_.shape[grid_.find_cell(cell)].node;
+  report.surface = std::count_if(node.begin(), node.end(), [&](int n) { return pore_conditions_.at_surface(n); }) >= dim;
+  return report;
 }
 
 // ---- what others read ----

@@ -52,7 +52,7 @@ PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const
     for (double &r : rest) r /= std::sqrt(length);
     wall.normal[wall.count++] = rest;
   }
-  nodal_.resize(mesh.node_count()), taken_.resize(mesh.node_count()), at_gap_.resize(mesh.node_count());
+  nodal_.resize(mesh.node_count()), taken_.resize(mesh.node_count()), at_gap_.resize(mesh.node_count()), at_surface_.resize(mesh.node_count());
   gaps_.reserve(mesh.node_count()), gap_cells_.reserve((dim + 1) * mesh.cell_count());
   PetscFunctionReturn(0);
 }
@@ -64,6 +64,7 @@ void PoreConditions<dim>::add_face(int node, int source, const Vec<dim> &area) {
   Face face{node, source, area, area};
   for (double &n : face.normal) n /= std::sqrt(length);
   faces_.push_back(face);
+  at_surface_[node] = 1;
 }
 
 template <int dim>
@@ -72,6 +73,7 @@ PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vect
   const BackgroundMesh<dim> &mesh = grid.mesh();
   const int nodes = grid.node_count();
   active_walls_.clear(), faces_.clear();
+  std::fill_n(at_surface_.begin(), nodes, 0);
   std::fill_n(taken_.begin(), nodes, Vec<dim>{});
   for (int i = 0; i < nodes; ++i) {
     const int index = wall_of_node_[grid.mesh_node[i]];

@@ -60,6 +60,8 @@ class PoreConditions {
   void gaps(const FilledGrid<dim> &grid, Surface &&surface, Put &&put) const {
     for (const int node : gaps_) put(node, open_area(grid, node, surface(node)));
   }
+  /// Has the node a face, named or where the soil's surface is now?
+  bool at_surface(int node) const { return at_surface_[node]; }
   /// (gap node, cell) of all cells of this rank at gaps.
   const std::vector<std::array<int, 2>> &gap_cells() const { return gap_cells_; }
   /// Calls limit(node, n, low, high) for every face whose outflow has limits: relative velocities of the liquid along n must be between them [m/s].
@@ -128,7 +130,7 @@ class PoreConditions {
   std::vector<Face> faces_;
   std::vector<int> gaps_;
   std::vector<std::array<int, 2>> gap_cells_;
-  std::vector<char> at_gap_;
+  std::vector<char> at_gap_, at_surface_;
   std::vector<Vec<dim>> nodal_, taken_;
 };
 

@@ -30,6 +30,7 @@ struct PoreReport {
   double liquid, gas;  ///< pressures, smoothed where soil is nearly saturated [Pa]
   double suction;      ///< [Pa]
   double saturation;   ///< S_l [-]
+  bool surface;        ///< its cell has a side through which fluids may pass
 };
 
 template <int dim, class Phases>

@@ -658,7 +658,7 @@ PoreReport PoreFluid<dim, Phases>::report(int body, int point, int cell) const {
   const double *p = cells_[cell].smooth, gas = Phases::gas ? p[fluids - 1] : 0, share = points_[body].share[point];
   double suction = 0;
   if constexpr (Phases::suction) suction = points_[body].suction[point];
-  return {p[0], gas, suction, 1 - share};
+  return {p[0], gas, suction, 1 - share, false};
 }
 
 template <int dim, class Phases>

@@ -81,7 +81,7 @@ Snapshot Simulation<dim, Phases>::snapshot() {
   if (Phases::pressure) column("pore_pressure", "Pa", "pore pressure, positive in compression", 1);
   if (Phases::gas) column("gas_pressure", "Pa", "gauge pressure of the pore gas", 1);
   if (Phases::suction) column("suction", "Pa", "gas less liquid pressure, where positive", 1), column("saturation", "-", "degree of saturation", 1);
-  if (Phases::liquid) column("porosity", "-", "porosity", 1);
+  if (Phases::liquid) column("porosity", "-", "porosity", 1), column("surface", "-", "1 in cells with a side through which fluids may pass, named or the soil's surface where it is now; 0 elsewhere", 1);
   const size_t first_history = s.columns.size();
   for (const auto &body : bodies_)
     for (const HistoryField &field : history_fields(body->law()))
@@ -117,6 +117,8 @@ Snapshot Simulation<dim, Phases>::snapshot() {
         if (Phases::suction) put(&pores.suction, 1), put(&pores.saturation, 1);
         const double porosity = 1 - p.mass[i] / (bodies_[b]->source().grain_density * volume);
         put(&porosity, 1);
+        const double surface = pores.surface;
+        put(&surface, 1);
       }
       for (size_t c = first_history; c < s.columns.size(); ++c) {
         double value = std::numeric_limits<double>::quiet_NaN();

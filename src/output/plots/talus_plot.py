@@ -10,7 +10,7 @@ from talus_report import write_report
 from talus_results import DERIVED, Results
 from talus_sections import draw_sections
 
-FIELDS = ("displacement", "plastic_strain", "velocity", "pore_pressure", "suction", "saturation")
+FIELDS = ("displacement", "plastic_strain", "velocity", "pore_pressure", "suction", "saturation", "surface")
 
 
 def arguments():
