@@ -1,0 +1,126 @@
+// Forces and accelerations; theory (3.5) to (3.7); included only where SoilMotion is instantiated.
+#include <algorithm>
+#include <cmath>
+
+#include "physics/soil_motion.h"
+
+namespace talus {
+
+/// Forces of the stress of the accepted or the trial state on the nodes of this rank, theory (3.6).
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::internal_force(bool trial) {
+  PetscFunctionBeginUser;
+  const int cells = grid_.cell_count();
+  const Shape<dim> *shape = trial ? trial_shape_.data() : grid_.shape.data();
+  const double *particle_volume = trial ? trial_particle_volume_.data() : particle_volume_.data();
+  const double *weight = trial ? trial_weight_.data() : weight_.data();
+  std::fill_n(cell_stress_.begin(), cells, std::array<double, components>{});
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    const PointSet &p = points_[b];
+    const double *stress = trial ? trial_stress_[b].data() : p.stress, *volume = trial ? trial_volume_[b].data() : p.volume;
+    for (int q = 0; q < p.count; ++q) {
+      auto &sum = cell_stress_[p.cell[q]];
+      const double share = volume[q] / particle_volume[p.cell[q]];
+      for (int s = 0; s < components; ++s) sum[s] += share * stress[q * components + s];
+    }
+  }
+  if (transfer_.locking == Locking::patches) {
+    for (int c = 0; c < cells; ++c) patch_weight_[grid_.patch[c]] = patch_sum_[grid_.patch[c]] = 0;
+    for (int c = 0; c < cells; ++c) {
+      const auto &s = cell_stress_[c];
+      patch_weight_[grid_.patch[c]] += weight[c], patch_sum_[grid_.patch[c]] += weight[c] * (s[0] + s[1] + s[2]) / 3;
+    }
+    for (int c = 0; c < cells; ++c) {
+      auto &s = cell_stress_[c];
+      const double correction = patch_sum_[grid_.patch[c]] / patch_weight_[grid_.patch[c]] - (s[0] + s[1] + s[2]) / 3;
+      for (int k = 0; k < 3; ++k) s[k] += correction;
+    }
+  }
+  std::fill_n(force_.begin(), grid_.node_count(), Vec<dim>{});
+  for (int c = 0; c < cells; ++c) {
+    const auto &s = cell_stress_[c];
+    const double w = weight[c];
+    Vec<dim> first{};
+    for (int k = 0; k < dim; ++k) {
+      const Vec<dim> &g = shape[c].gradient[k];
+      Vec<dim> f;
+      if constexpr (dim == 2)
+        f = {w * (s[0] * g[0] + s[3] * g[1]), w * (s[3] * g[0] + s[1] * g[1])};
+      else
+        f = {w * (s[0] * g[0] + s[3] * g[1] + s[5] * g[2]), w * (s[3] * g[0] + s[1] * g[1] + s[4] * g[2]),
+             w * (s[5] * g[0] + s[4] * g[1] + s[2] * g[2])};
+      for (int d = 0; d < dim; ++d) force_[shape[c].node[k + 1]][d] -= f[d], first[d] += f[d];
+    }
+    for (int d = 0; d < dim; ++d) force_[shape[c].node[0]][d] += first[d];
+  }
+  PetscFunctionReturn(0);
+}
+
+/// Accelerations that the scene gives per particle, beside gravity.
+template <int dim, class Phases>
+void SoilMotion<dim, Phases>::add_body_forces(double t) {
+  for (const auto &body : bodies_) {
+    const auto &given = body->source().body_acceleration;
+    if (given.empty()) continue;
+    const ParticleArrays<dim> &p = body->particles();
+    for (int i = 0; i < p.count; ++i) {
+      const auto n = barycentric(mesh_.cells[p.cell[i]], p.position[i]);
+      const auto &node = grid_.shape[grid_.find_cell(p.cell[i])].node;
+      const Vec<dim> &X = p.reference[i];
+      for (int d = 0; d < dim; ++d) {
+        const double f = p.mass[i] * given[d](X[0], X[1], dim == 3 ? X[dim - 1] : 0, t);
+        for (int k = 0; k <= dim; ++k) force_[node[k]][d] += n[k] * f;
+      }
+    }
+  }
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::total_force(double load_time, double ramp, bool trial) {
+  PetscFunctionBeginUser;
+  PetscCall(internal_force(trial));
+  conditions_.surface_loads().add(load_time, grid_, trial ? trial_position_.data() : grid_.position.data(), force_.data());
+  if (imposes_) {
+    const int nodes = grid_.node_count();
+    std::copy_n(force_.begin(), nodes, imposed_.begin());
+    add_body_forces(load_time);
+    if constexpr (Phases::given) PetscCall(add_pore_pressure(load_time, ramp, trial));
+    for (int i = 0; i < nodes; ++i)
+      for (int d = 0; d < dim; ++d) imposed_[i][d] = force_[i][d] - imposed_[i][d];
+  }
+  PetscCall(grid_.sum(force_[0].data(), dim));
+  conditions_.add_reactions(force_.data());
+  for (int i = 0; i < grid_.node_count(); ++i) {
+    const double m = grid_.mass[i] + (Phases::given ? extra_mass_[i] : 0);
+    for (int d = 0; d < dim; ++d) force_[i][d] += m * (ramp * loading.gravity[d]);
+  }
+  if constexpr (Phases::liquid) fluid_.add_to_mixture(pore_frame(trial), pore_conditions_, force_.data());
+  PetscFunctionReturn(0);
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::acceleration(double t, const double *u, const double *v, double *a) {
+  PetscFunctionBeginUser;
+  if (u) PetscCall(deform(t, reinterpret_cast<const Vec<dim> *>(u), true));
+  PetscCall(total_force(loading.time_at(t), loading.ramp_at(t), u != nullptr));
+  const Vec<dim> *unbalanced = force_.data();
+  if (loading.damping > 0) {  // what supports take up is not out of balance: damping must not change their reactions
+    std::copy_n(force_.begin(), grid_.node_count(), scratch_.begin());
+    conditions_.project(grid_, reinterpret_cast<const Vec<dim> *>(v), scratch_.data());
+    unbalanced = scratch_.data();
+  }
+  if constexpr (Phases::liquid)
+    PetscCall(fluid_.drive(pore_frame(u != nullptr), pore_conditions_, force_.data(), reinterpret_cast<Vec<dim> *>(a) + grid_.node_count()));
+  for (int i = 0; i < grid_.node_count(); ++i) {
+    const double inverse = grid_.mass[i] > smallest_mass_ ? 1 / grid_.mass[i] : 0;  // a lighter node is carried along
+    for (int d = 0; d < dim; ++d) {
+      const double rest = unbalanced[i][d], power = rest * v[i * dim + d];
+      const double held_back = loading.damping * rest * ((power > 0) - (power < 0));
+      a[i * dim + d] = inverse * (force_[i][d] - held_back);
+      if (loading.damping > 0) held_back_[i][d] = held_back;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+}  // namespace talus

@@ -1,0 +1,166 @@
+// What others read: particles within the Lagrangian part, checkpoints, balances, trouble; included only where SoilMotion is instantiated.
+#include <algorithm>
+#include <cmath>
+
+#include "physics/soil_motion.h"
+
+namespace talus {
+
+template <int dim, class Phases>
+bool SoilMotion<dim, Phases>::find_broken(Vec<dim> *where) const {
+  for (int i = 0; i < grid_.node_count(); ++i)
+    for (int d = 0; d < dim; ++d)
+      if (!(std::abs(velocity_[i][d]) < 1e149)) {  // its square has no room
+        *where = mesh_.position[grid_.mesh_node[i]];
+        return true;
+      }
+  return false;
+}
+
+template <int dim, class Phases>
+bool SoilMotion<dim, Phases>::find_trouble(Vec<dim> *where, std::string *cause) const {
+  for (const auto &body : bodies_) {
+    const auto trouble = law_trouble(body->law());
+    if (trouble.text.empty()) continue;
+    *cause = trouble.text, *where = {};
+    for (int i : grid_.shape[trouble.cell].node)
+      for (int d = 0; d < dim; ++d) (*where)[d] += mesh_.position[grid_.mesh_node[i]][d] / (dim + 1);
+    return true;
+  }
+  return false;
+}
+
+template <int dim, class Phases>
+typename PoreFluid<dim, Phases>::Frame SoilMotion<dim, Phases>::pore_frame(bool trial)
+  requires Phases::liquid
+{
+  for (size_t b = 0; b < bodies_.size(); ++b) point_volume_[b] = trial ? trial_volume_[b].data() : points_[b].volume;
+  Vec<dim> gravity = loading.gravity;
+  for (double &g : gravity) g *= loading.ramp;
+  return {grid_,  trial ? trial_shape_.data() : grid_.shape.data(), trial ? trial_position_.data() : grid_.position.data(), trial ? trial_weight_.data() : weight_.data(),
+          points_, point_volume_.data(), trial ? trial_particle_volume_.data() : particle_volume_.data(), blend_.data(), gravity, loading.time,
+          transfer_.average_stress, trial};
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::setup_pores(bool fill)
+  requires Phases::liquid
+{
+  PetscFunctionBeginUser;
+  PetscCall(pore_conditions_.setup(mesh_, conditions_.sources(), Phases::suction));
+  if (fill) fluid_.fill(0);
+  PetscFunctionReturn(0);
+}
+
+template <int dim, class Phases>
+PoreReport SoilMotion<dim, Phases>::pores(const Body<dim> &body, int i) const
+  requires Phases::liquid
+{
+  int b = 0;
+  while (bodies_[b].get() != &body) ++b;
+  const int cell = body.particles().cell[i];
+  PoreReport report = fluid_.report(b, transfer_.average_stress ? points_[b].of_cell[cell] : i, grid_.find_cell(cell));
+  const auto &node = grid_.shape[grid_.find_cell(cell)].node;
+  report.surface = std::count_if(node.begin(), node.end(), [&](int n) { return pore_conditions_.at_surface(n); }) >= dim;
+  return report;
+}
+
+template <int dim, class Phases>
+void SoilMotion<dim, Phases>::present(const Body<dim> &body, int i, Vec<dim> *position, Vec<dim> *velocity) const {
+  const ParticleArrays<dim> &p = body.particles();
+  *position = p.position[i], *velocity = p.velocity[i];
+  if (!gathered_) return;
+  const auto n = barycentric(mesh_.cells[p.cell[i]], p.position[i]);
+  const auto &node = grid_.shape[grid_.find_cell(p.cell[i])].node;
+  for (double &component : *velocity) component *= own_share_;  // as a remap would find it now
+  for (int k = 0; k <= dim; ++k)
+    for (int d = 0; d < dim; ++d) {
+      (*position)[d] += n[k] * (grid_.position[node[k]][d] - mesh_.position[grid_.mesh_node[node[k]]][d]);
+      (*velocity)[d] += n[k] * (velocity_[node[k]][d] - own_share_ * start_velocity_[node[k]][d]);
+    }
+}
+
+template <int dim, class Phases>
+void SoilMotion<dim, Phases>::state(int b, int i, double *stress, double *history, double *volume) const {
+  const Body<dim> &body = *bodies_[b];
+  const ParticleArrays<dim> &p = body.particles();
+  const int count = body.history_count();
+  std::copy_n(&p.stress[i * components], components, stress);
+  if (count) std::copy_n(&p.history[i * count], count, history);
+  *volume = p.volume[i];
+  if (!gathered_ || !transfer_.average_stress) return;
+  const PointSet &points = points_[b];
+  const int q = points.of_cell[p.cell[i]];
+  std::copy_n(&points.stress[q * components], components, stress);
+  for (int h = 0; h < count; ++h) history[h] += points.history[q * count + h] - points.start_history[q * count + h];
+  *volume = std::min(p.volume[i] * points.volume[q] / points.start_volume[q], body.volume_limit(p.initial_volume[i], history));
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::keep(Archive &archive) {
+  PetscFunctionBeginUser;
+  grid_.keep(archive);
+  archive.keep("nodes", start_velocity_, velocity_, mapped_start_, extra_mass_);
+  archive.keep("cells", particle_volume_, weight_, blend_, filling_, slenderness_, impedance_);
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    PointSet &p = points_[b];
+    archive.keep("points", p.count, p.own_cell, p.own_stress, p.own_history, p.own_volume, p.own_limit, p.start_history, p.start_volume, p.of_cell);
+    attach(b);
+    if (nonlocal_[b]) nonlocal_[b]->keep(archive);
+  }
+  archive.keep("motion", work_.gravity, work_.imposed, work_.damping, gathered_, remap_time_, accepted_time_, own_share_, moved_, smallest_ratio_, step_ratio_, speed_squared_, sample_time_, last_pressure_time_, water_moved_);
+  if constexpr (Phases::given)
+    for (Sample &sample : sample_) archive.keep("pressure", sample.gradient, sample.value, sample.nodal);
+  archive.keep("fastest mode", mode_);
+  PetscCall(conditions_.keep(archive, grid_, impedance_, filling_));
+  if (archive.reading()) conditions_.surface_loads().begin(bodies_, grid_);
+  if constexpr (Phases::liquid) {
+    fluid_.keep(archive);
+    before_ = velocity_;
+    if (archive.reading()) PetscCall(pore_conditions_.begin(grid_, filling_, fluid_.surface()));
+  }
+  PetscFunctionReturn(0);
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::balance(double, Balance *sums) {
+  PetscFunctionBeginUser;
+  double local[4]{}, total[4];
+  PetscCall(total_force(loading.time, loading.ramp, false));
+  std::copy_n(force_.begin(), grid_.node_count(), scratch_.begin());
+  conditions_.project(grid_, velocity_.data(), scratch_.data());
+  const auto magnitude = [](const Vec<dim> &x) {
+    double s = 0;
+    for (double c : x) s += c * c;
+    return std::sqrt(s);
+  };
+  for (int i = 0; i < grid_.node_count(); ++i) {
+    if (!mesh_.owned[grid_.mesh_node[i]]) continue;
+    local[0] += magnitude(scratch_[i]);
+  }
+  std::fill_n(force_.begin(), grid_.node_count(), Vec<dim>{});
+  conditions_.surface_loads().add(loading.time, grid_, grid_.position.data(), force_.data());
+  add_body_forces(loading.time);
+  PetscCall(grid_.sum(force_[0].data(), dim));
+  conditions_.add_reactions(force_.data());
+  for (int i = 0; i < grid_.node_count(); ++i) {
+    if (!mesh_.owned[grid_.mesh_node[i]]) continue;
+    for (int d = 0; d < dim; ++d) force_[i][d] += grid_.mass[i] * (loading.ramp * loading.gravity[d]);
+    local[1] += magnitude(force_[i]);
+  }
+  // of the particles: nodes also carry modes that no particle feels
+  for (const auto &body : bodies_)
+    for (int i = 0; i < body->particles().count; ++i) {
+      Vec<dim> x, v;
+      present(*body, i, &x, &v);
+      for (double c : v) local[2] += body->particles().mass[i] * c * c / 2;
+    }
+  for (size_t b = 0; b < bodies_.size(); ++b)
+    for (int q = 0; q < points_[b].count; ++q)
+      local[3] += points_[b].volume[q] * stored_energy<dim>(bodies_[b]->law(), &points_[b].stress[q * components]);
+  PetscCallMPI(MPI_Allreduce(local, total, 4, MPI_DOUBLE, MPI_SUM, mesh_.comm()));
+  *sums = {total[0], total[1], total[2], total[3]};
+  PetscFunctionReturn(0);
+}
+
+}  // namespace talus
