@@ -317,7 +317,7 @@ struct Output {
     v.number("history_interval", history_interval, second, Range{0, 1e9}, "time between lines of history.csv; 0 is a 200th of the longest stage");
     v.number("checkpoint_interval", checkpoint_interval, second, Range{0, 1e9}, "time between checkpoints, from which --resume goes on; 0 writes one with every snapshot; the answer does not depend on them");
     v.named("point", point, "points whose history is written, [output.point.NAME]");
-    v.texts("picture", picture, "fields that are drawn: a vector by its size, a tensor by its mean, or one component such as stress_xy; none: displacement, plastic_strain, velocity, pore_pressure as far as there are");
+    v.texts("picture", picture, "fields that are drawn: a vector by its size, a tensor by its mean, or one component such as stress_xy; none: displacement, plastic_strain, velocity, pore_pressure, suction, saturation, surface as far as there are, and mobilised_friction of frictional soil");
   }
 };
 
