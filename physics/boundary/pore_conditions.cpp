@@ -38,19 +38,7 @@ PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const
   for (const NodeNormal<dim> &n : normals) {
     int &index = wall_of_node_[n.node];
     if (index < 0) index = static_cast<int>(walls_.size()), walls_.emplace_back();
-    Wall &wall = walls_[index];
-    Vec<dim> rest = n.normal;
-    double length = 0;
-    for (int k = 0; k < wall.count; ++k) {
-      double along = 0;
-      for (int d = 0; d < dim; ++d) along += rest[d] * wall.normal[k][d];
-      for (int d = 0; d < dim; ++d) rest[d] -= along * wall.normal[k][d];
-    }
-    for (double r : rest) length += r * r;
-    constexpr double same_direction = 0.05;  // sine of 3 degrees
-    if (wall.count == dim || std::sqrt(length) < same_direction) continue;
-    for (double &r : rest) r /= std::sqrt(length);
-    wall.normal[wall.count++] = rest;
+    walls_[index].add(n.normal, n.source);
   }
   nodal_.resize(mesh.node_count()), taken_.resize(mesh.node_count()), at_gap_.resize(mesh.node_count()), at_surface_.resize(mesh.node_count());
   gaps_.reserve(mesh.node_count()), gap_cells_.reserve((dim + 1) * mesh.cell_count());

@@ -7,6 +7,7 @@
 
 #include "physics/boundary/conditions.h"
 #include "physics/boundary/node_normals.h"
+#include "physics/boundary/prescribed_directions.h"
 
 namespace talus {
 
@@ -94,21 +95,18 @@ class PoreConditions {
   template <class Put>
   void walls(Put &&wall) const {
     for (const ActiveWall &w : active_walls_)
-      for (int k = 0; k < w.wall->count; ++k) wall(w.node, w.wall->normal[k]);
+      for (int k = 0; k < w.wall->count; ++k) wall(w.node, w.wall->direction[k]);
   }
   /// Calls wall(n) for those of one node.
   template <class Put>
   void walls_at(const FilledGrid<dim> &grid, int node, Put &&wall) const {
     const int index = wall_of_node_[grid.mesh_node[node]];
-    for (int k = 0; index >= 0 && k < walls_[index].count; ++k) wall(walls_[index].normal[k]);
+    for (int k = 0; index >= 0 && k < walls_[index].count; ++k) wall(walls_[index].direction[k]);
   }
 
  private:
   static constexpr int atmosphere = -1;
-  struct Wall {
-    int count = 0;
-    std::array<Vec<dim>, dim> normal;  ///< orthonormal
-  };
+  using Wall = PrescribedDirections<dim>;
   struct ActiveWall {
     int node;  ///< compact
     const Wall *wall;

@@ -98,7 +98,7 @@ class PoreFluid {
 
   /// At the points of a body [Pa].
   const double *suction(int body) const requires Phases::suction { return points_[body].suction.data(); }
-  PoreReport report(int body, int point, int cell) const;
+  PoreReport report(int body, int point, int cell, bool surface) const;
   const SoilPores &soil(int body) const { return soils_[body]; }
   /// `sums` [fluids]; `gathered`: points hold the masses, not particles. Collective.
   PetscErrorCode ledger(bool gathered, FluidLedger *sums);

@@ -433,7 +433,7 @@ NodalFluid PoreFluid<dim, Phases>::at_node(int i, int a) const {
 inline double into(double x, double low, double high) { return std::clamp(x, low, high) - x; }
 
 /// Where a face or a wall holds a fluid back, that acts on the skeleton too: they share what momentum they have along its normal. A surface that lets no
-/// water in bears its suction so, and a wall that holds the skeleton bears the weight of the water, theory (4.7).
+/// water in bears its suction so, and a wall that holds the skeleton bears the weight of the water, theory (4.6a).
 template <int dim, class Phases>
 void PoreFluid<dim, Phases>::resist(double step, const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *solid, const Vec<dim> *fluid) const {
   const FilledGrid<dim> &grid = frame.grid;
@@ -654,11 +654,11 @@ void PoreFluid<dim, Phases>::exchange(const Frame &frame) {
 }
 
 template <int dim, class Phases>
-PoreReport PoreFluid<dim, Phases>::report(int body, int point, int cell) const {
+PoreReport PoreFluid<dim, Phases>::report(int body, int point, int cell, bool surface) const {
   const double *p = cells_[cell].smooth, gas = Phases::gas ? p[fluids - 1] : 0, share = points_[body].share[point];
   double suction = 0;
   if constexpr (Phases::suction) suction = points_[body].suction[point];
-  return {p[0], gas, suction, 1 - share, false};
+  return {p[0], gas, suction, 1 - share, surface};
 }
 
 template <int dim, class Phases>

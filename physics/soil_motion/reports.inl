@@ -58,11 +58,10 @@ PoreReport SoilMotion<dim, Phases>::pores(const Body<dim> &body, int i) const
 {
   int b = 0;
   while (bodies_[b].get() != &body) ++b;
-  const int cell = body.particles().cell[i];
-  PoreReport report = fluid_.report(b, transfer_.average_stress ? points_[b].of_cell[cell] : i, grid_.find_cell(cell));
-  const auto &node = grid_.shape[grid_.find_cell(cell)].node;
-  report.surface = std::count_if(node.begin(), node.end(), [&](int n) { return pore_conditions_.at_surface(n); }) >= dim;
-  return report;
+  const int mesh_cell = body.particles().cell[i], cell = grid_.find_cell(mesh_cell);
+  const auto &node = grid_.shape[cell].node;
+  const bool surface = std::count_if(node.begin(), node.end(), [&](int n) { return pore_conditions_.at_surface(n); }) >= dim;
+  return fluid_.report(b, transfer_.average_stress ? points_[b].of_cell[mesh_cell] : i, cell, surface);
 }
 
 template <int dim, class Phases>

@@ -196,6 +196,15 @@ double PoreFlow<dim>::inflow_at(const Supply &supply, double t) const {
   return std::get<Rainfall>(sources_[supply.source].kind).supply(x[0], x[1], z, t);
 }
 
+/// Gradients of the shape functions 0..dim.
+template <int dim>
+std::array<Vec<dim>, dim + 1> all_gradients(const Cell<dim> &cell) {
+  std::array<Vec<dim>, dim + 1> gradient{};
+  for (int k = 0; k < dim; ++k)
+    for (int d = 0; d < dim; ++d) gradient[k + 1][d] = cell.gradient[k][d], gradient[0][d] -= cell.gradient[k][d];
+  return gradient;
+}
+
 template <int dim>
 void PoreFlow<dim>::balance(double t, double dt, WaterBalance *balance) const {
   balance->rest.assign(nodes_.count(), 0), balance->size = balance->rest;
@@ -203,9 +212,8 @@ void PoreFlow<dim>::balance(double t, double dt, WaterBalance *balance) const {
   for (int c = 0; c < mesh_.cell_count(); ++c) {
     if (!active_[c]) continue;
     const int *node = nodes_.of_cell(c), body = body_of_[c];
-    Vec<dim> drive{}, gradient[dim + 1]{};
-    for (int k = 0; k < dim; ++k)
-      for (int d = 0; d < dim; ++d) gradient[k + 1][d] = mesh_.cells[c].gradient[k][d], gradient[0][d] -= gradient[k + 1][d];
+    Vec<dim> drive{};
+    const auto gradient = all_gradients<dim>(mesh_.cells[c]);
     double passes = 0, slope = 0, weight = 0;
     for (int a = 0; a <= dim; ++a) {
       passes += relative_permeability(body, pressure[node[a]]) / (dim + 1);
@@ -234,9 +242,8 @@ PetscErrorCode PoreFlow<dim>::tangent(double dt, Mat matrix) const {
   for (int c = 0; c < mesh_.cell_count(); ++c) {
     if (!active_[c]) continue;
     const int *node = nodes_.of_cell(c), body = body_of_[c];
-    Vec<dim> drive{}, gradient[dim + 1]{};
-    for (int k = 0; k < dim; ++k)
-      for (int d = 0; d < dim; ++d) gradient[k + 1][d] = mesh_.cells[c].gradient[k][d], gradient[0][d] -= gradient[k + 1][d];
+    Vec<dim> drive{};
+    const auto gradient = all_gradients<dim>(mesh_.cells[c]);
     double passes = 0, passes_slope[dim + 1];
     for (int a = 0; a <= dim; ++a) {
       const double p = pressure[node[a]], step = 1e-6 * (std::abs(p) + 10);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <mpi.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -29,8 +30,13 @@ inline int world_size() {
 class SharedFolder {
  public:
   SharedFolder() {
-    char name[] = "/tmp/talus_output_XXXXXX";
-    if (world_rank() == 0 && !mkdtemp(name)) std::abort();
+    char name[4096] = {};
+    const std::string wanted = std::filesystem::temp_directory_path() / "talus_output_XXXXXX";
+    if (world_rank() == 0) {
+      if (wanted.size() >= sizeof name) std::abort();
+      std::copy(wanted.begin(), wanted.end(), name);
+      if (!mkdtemp(name)) std::abort();
+    }
     MPI_Bcast(name, sizeof name, MPI_CHAR, 0, MPI_COMM_WORLD);
     path_ = name;
   }

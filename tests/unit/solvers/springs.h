@@ -6,17 +6,17 @@
 #include <vector>
 
 #include "solvers/integrator.h"
+#include "given_places.h"
 
 namespace talus {
 
-class Springs : public Motion {
+class Springs : public GivenPlaces {
  public:
   /// `count` equal masses of 1 kg with springs of `stiffness` [N/m] between them and to both walls.
-  Springs(int count, double stiffness) : place(count, 0), speed(count, 0), stiffness_(stiffness) {}
+  Springs(int count, double stiffness) : GivenPlaces(count), stiffness_(stiffness) {}
 
   std::function<double(double)> force = [](double) { return 0.; };  ///< on each mass, of time [N]
-  std::vector<double> place, speed;                                  ///< accepted [m], [m/s]
-  int accepted = 0, evaluations = 0;
+  int evaluations = 0;
 
   /// Largest of the frequencies 2 sqrt(k) sin(pi n / 2 (count + 1)).
   double largest_frequency() const {
@@ -29,7 +29,6 @@ class Springs : public Motion {
     return sum + stiffness_ / 2 * before * before;
   }
 
-  PetscErrorCode begin(double) override { return 0; }
   PetscErrorCode acceleration(double t, const double *u, const double *, double *a) override {
     ++evaluations;
     const int n = size();
@@ -37,31 +36,13 @@ class Springs : public Motion {
     for (int i = 0; i < n; ++i) a[i] = stiffness_ * (at(i - 1) - 2 * at(i) + at(i + 1)) + force(t);
     return 0;
   }
-  PetscErrorCode rates(double t, const double *u, const double *v, double *du, double *dv) override {
-    std::copy_n(v, size(), du);
-    return acceleration(t, u, v, dv);
-  }
   PetscErrorCode drag(double, double, double *) override { return 0; }
-  PetscErrorCode map_back(double, double, double *v, double *w) override {
-    std::copy_n(v, size(), w);
-    return 0;
-  }
-  PetscErrorCode accept(double, const double *u, const double *v) override {
-    for (int i = 0; i < size(); ++i) place[i] += u[i], speed[i] = v[i];
-    ++accepted;
-    return 0;
-  }
-  bool inverted() const override { return false; }
-  int size() const override { return static_cast<int>(place.size()); }
-  int capacity() const override { return size(); }
-  double *velocity() override { return speed.data(); }
   double seen_square(const double *x) const override {
     double sum = 0;
     for (int i = 0; i < size(); ++i) sum += x[i] * x[i];
     return sum;
   }
   double mass() const override { return size(); }
-  MPI_Comm comm() const override { return MPI_COMM_SELF; }
 
  protected:
   double stiffness_;

@@ -10,21 +10,19 @@
 
 #include "physics/pores/drag.h"
 #include "solvers/integrator.h"
+#include "given_places.h"
 
 namespace talus {
 
-class WetSprings : public Motion {
+class WetSprings : public GivenPlaces {
  public:
   static constexpr int count = 8;
   static constexpr double porosity = 0.4, grains = 0.6, water = 0.4;  ///< masses of a node [kg]
 
   /// Stiffness of skeleton and pore water [N/m]; drag [kg/s]; velocity of the water at the start over that of the grains.
-  WetSprings(double skeleton, double pores, double drag, double water_velocity = 0.5) : place(2 * count, 0), speed(2 * count, 0), skeleton_(skeleton), pores_(pores), drag_(drag) {
+  WetSprings(double skeleton, double pores, double drag, double water_velocity = 0.5) : GivenPlaces(2 * count), skeleton_(skeleton), pores_(pores), drag_(drag) {
     for (int i = 0; i < count; ++i) speed[i] = std::sin(M_PI / 2 * (i + 1) / count), speed[count + i] = water_velocity * speed[i];
   }
-
-  std::vector<double> place, speed;  ///< accepted [m], [m/s]: grains, then water
-  int accepted = 0;
 
   /// Largest frequency without drag [1/s].
   double largest_frequency() const {
@@ -49,12 +47,7 @@ class WetSprings : public Motion {
     return sum;
   }
 
-  PetscErrorCode begin(double) override { return 0; }
   PetscErrorCode acceleration(double, const double *u, const double *, double *a) override { return force(u, a, true, true); }
-  PetscErrorCode rates(double t, const double *u, const double *v, double *du, double *dv) override {
-    std::copy_n(v, size(), du);
-    return acceleration(t, u, v, dv);
-  }
   PetscErrorCode slow_rates(double, const double *u, const double *, double *du, double *dv) override {
     std::fill_n(du, size(), 0.);
     return force(u, dv, true, false);
@@ -70,26 +63,12 @@ class WetSprings : public Motion {
     return 0;
   }
   PetscErrorCode hold(double, double, double *) override { return 0; }
-  PetscErrorCode map_back(double, double, double *v, double *w) override {
-    std::copy_n(v, size(), w);
-    return 0;
-  }
-  PetscErrorCode accept(double, const double *u, const double *v) override {
-    for (int i = 0; i < size(); ++i) place[i] += u[i], speed[i] = v[i];
-    ++accepted;
-    return 0;
-  }
-  bool inverted() const override { return false; }
-  int size() const override { return 2 * count; }
-  int capacity() const override { return size(); }
-  double *velocity() override { return speed.data(); }
   double seen_square(const double *x) const override {
     double sum = 0;
     for (int i = 0; i < size(); ++i) sum += x[i] * x[i] / 2;
     return sum;
   }
   double mass() const override { return count; }
-  MPI_Comm comm() const override { return MPI_COMM_SELF; }
 
  private:
   PetscErrorCode force(const double *u, double *a, bool of_skeleton, bool of_pores) const {
