@@ -127,7 +127,7 @@ class SoilMotion final : public Motion {
   template <bool averaged, bool apic>
   void gather();
   double relaxed(double t) const;
-  double end(double t);
+  PetscErrorCode end(double t, double *flip);
   void forget();
   void attach(size_t body);
   PetscErrorCode finish_gather(double t);

@@ -28,6 +28,16 @@ Vec<dim> carried_normal(const Square<dim> &f, const Vec<dim> &normal) {
   return result;
 }
 
+/// Deformation gradient of a cell since the remap.
+template <int dim>
+Square<dim> deformation(const Cell<dim> &cell, const std::array<int, dim + 1> &node, const Vec<dim> *position) {
+  Square<dim> f = Square<dim>::Zero();
+  for (int k = 0; k < dim; ++k)
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j) f(i, j) += (position[node[k + 1]][i] - position[node[0]][i]) * cell.gradient[k][j];
+  return f;
+}
+
 }  // namespace
 
 template <int dim>
@@ -142,17 +152,6 @@ void SurfaceLoads<dim>::begin(const std::vector<std::unique_ptr<Body<dim>>> &bod
   }
 }
 
-/// Deformation gradient of a piece's cell since the remap.
-template <int dim>
-Square<dim> SurfaceLoads<dim>::deformation(const Active &a, const FilledGrid<dim> &grid, const Vec<dim> *position) const {
-  const Cell<dim> &cell = grid.mesh().cells[a.mesh_cell];
-  Square<dim> f = Square<dim>::Zero();
-  for (int k = 0; k < dim; ++k)
-    for (int i = 0; i < dim; ++i)
-      for (int j = 0; j < dim; ++j) f(i, j) += (position[a.node[k + 1]][i] - position[a.node[0]][i]) * cell.gradient[k][j];
-  return f;
-}
-
 template <int dim>
 void SurfaceLoads<dim>::add(double t, const FilledGrid<dim> &grid, const Vec<dim> *position, Vec<dim> *force) {
   for (Active &a : active_) {
@@ -161,7 +160,7 @@ void SurfaceLoads<dim>::add(double t, const FilledGrid<dim> &grid, const Vec<dim
       Vec<dim> x{}, normal;
       for (int k = 0; k <= dim; ++k)
         for (int d = 0; d < dim; ++d) x[d] += a.coordinate[k] * position[a.node[k]][d];
-      normal = carried_normal<dim>(deformation(a, grid, position), a.piece->normal);
+      normal = carried_normal<dim>(deformation<dim>(grid.mesh().cells[a.mesh_cell], a.node, position), a.piece->normal);
       a.force = load.template load<dim>(normal, x, t);
     } else {
       a.force = load.template load<dim>({}, a.piece->place, t);
@@ -180,12 +179,31 @@ void SurfaceLoads<dim>::add_work(const Vec<dim> *u, std::vector<double> &work) c
 }
 
 template <int dim>
-void SurfaceLoads<dim>::end(const FilledGrid<dim> &grid) {
+PetscErrorCode SurfaceLoads<dim>::end(FilledGrid<dim> &grid, const std::vector<double> &weight) {
+  PetscFunctionBeginUser;
+  constexpr int square = dim * dim, width = square + 1;
+  if (faces_.empty()) PetscFunctionReturn(0);
+  nodal_.assign(static_cast<size_t>(grid.node_count()) * width, 0);
+  for (int c = 0; c < grid.cell_count(); ++c) {
+    const Square<dim> f = weight[c] * deformation<dim>(grid.mesh().cells[grid.mesh_cell[c]], grid.shape[c].node, grid.position.data());
+    for (const int i : grid.shape[c].node) {
+      Eigen::Map<Square<dim>>(&nodal_[i * width]) += f;
+      nodal_[i * width + square] += weight[c];
+    }
+  }
+  PetscCall(grid.sum(nodal_.data(), width));
   for (const Active &a : active_) {
-    const Square<dim> f = deformation(a, grid, grid.position.data());
+    Square<dim> f = Square<dim>::Zero();
+    double sum = 0;
+    for (int k = 0; k <= dim; ++k) {
+      const double *node = &nodal_[a.node[k] * width], part = std::max(0., a.coordinate[k]);
+      f += part / node[square] * Eigen::Map<const Square<dim>>(node), sum += part;
+    }
+    f /= sum;
     map<dim>(a.piece->offset) = (f * map<dim>(a.piece->offset)).eval();
     a.piece->normal = carried_normal<dim>(f, a.piece->normal);
   }
+  PetscFunctionReturn(0);
 }
 
 template <int dim>

@@ -32,8 +32,9 @@ class SurfaceLoads {
   void add(double t, const FilledGrid<dim> &grid, const Vec<dim> *position, Vec<dim> *force);
   /// Adds the work of the loads last added in a step with nodal displacements `u`, by source [J].
   void add_work(const Vec<dim> *u, std::vector<double> &work) const;
-  /// Lets the pieces follow their cells to the end of a Lagrangian part, before the particles do.
-  void end(const FilledGrid<dim> &grid);
+  /// Lets the pieces follow the soil to the end of a Lagrangian part, before the particles do: with the mean deformation around them, weighted by the
+  /// integration volumes `weight` [cell], since cells that are filled in part tilt at random, and a face whose pieces tilt loses load. Collective.
+  PetscErrorCode end(FilledGrid<dim> &grid, const std::vector<double> &weight);
   /// Mean displacement of each face since the undeformed state [m], weighted by undeformed area, into `mean[source]`. Collective.
   PetscErrorCode mean_displacements(const FilledGrid<dim> &grid, std::vector<Vec<dim>> &mean) const;
 
@@ -51,10 +52,10 @@ class SurfaceLoads {
     std::array<double, dim + 1> coordinate;  // barycentric, beyond the cell where the face is
     Vec<dim> force;                          // last added [N]
   };
-  Square<dim> deformation(const Active &a, const FilledGrid<dim> &grid, const Vec<dim> *position) const;
 
   std::vector<Face> faces_;
   std::vector<Active> active_;
+  std::vector<double> nodal_;  ///< sums over the cells of a node: w F, w
 };
 
 }  // namespace talus

@@ -169,9 +169,10 @@ double SoilMotion<dim, Phases>::relaxed(double t) const {
 
 /// What the nodes learned, as particles read it; the share of their own velocity that particles keep.
 template <int dim, class Phases>
-double SoilMotion<dim, Phases>::end(double t) {
-  conditions_.surface_loads().end(grid_);
-  const double flip = transfer_.velocity == Velocity::flip ? relaxed(t) * (1 - transfer_.pic_fraction) : 0;
+PetscErrorCode SoilMotion<dim, Phases>::end(double t, double *share) {
+  PetscFunctionBeginUser;
+  PetscCall(conditions_.surface_loads().end(grid_, weight_));
+  const double flip = *share = transfer_.velocity == Velocity::flip ? relaxed(t) * (1 - transfer_.pic_fraction) : 0;
   for (int i = 0; i < grid_.node_count(); ++i) {
     const Vec<dim> &v = velocity_[i], &v0 = start_velocity_[i], &x = grid_.position[i], &X = mesh_.position[grid_.mesh_node[i]];
     for (int d = 0; d < dim; ++d) {
@@ -191,7 +192,7 @@ double SoilMotion<dim, Phases>::end(double t) {
         }
   }
   if constexpr (Phases::liquid) fluid_.hand_over(grid_.node_count(), velocity_.data() + grid_.node_count(), start_velocity_.data() + grid_.node_count(), flip, update_);
-  return flip;
+  PetscFunctionReturn(0);
 }
 
 template <int dim, class Phases>
@@ -207,7 +208,8 @@ void SoilMotion<dim, Phases>::forget() {
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::release(double t, std::vector<std::vector<int>> &movers) {
   PetscFunctionBeginUser;
-  const double flip = end(t);
+  double flip;
+  PetscCall(end(t, &flip));
   with_transfer(transfer_, [&]<bool averaged, bool apic>() {
     for (size_t b = 0; b < bodies_.size(); ++b) {
       Pores<dim> pores;
@@ -222,7 +224,8 @@ PetscErrorCode SoilMotion<dim, Phases>::release(double t, std::vector<std::vecto
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::release_to_next(double t, std::vector<std::vector<int>> &movers) {
   PetscFunctionBeginUser;
-  const double flip = end(t);
+  double flip;
+  PetscCall(end(t, &flip));
   std::fill(start_velocity_.begin(), start_velocity_.end(), Vec<dim>{});
   with_transfer(transfer_, [&]<bool averaged, bool apic>() {
     for (size_t b = 0; b < bodies_.size(); ++b) {
