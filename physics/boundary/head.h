@@ -18,6 +18,7 @@ struct Head {
   }
   double outside(double, double y, double, double t, double unit_weight) const { return std::max(0., unit_weight * (level(t) - y)); }
   double load(double pressure) const { return pressure; }
+  static constexpr bool deepens = true;  ///< below its level pressure grows with depth by the weight of the water
   /// Volume that may enter per area and time where the face is dry [m/s].
   double supply(double, double, double, double) const { return 0; }
 };

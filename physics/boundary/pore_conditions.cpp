@@ -40,29 +40,31 @@ PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const
     if (index < 0) index = static_cast<int>(walls_.size()), walls_.emplace_back();
     walls_[index].add(n.normal, n.source);
   }
-  nodal_.resize(mesh.node_count()), taken_.resize(mesh.node_count()), at_gap_.resize(mesh.node_count()), at_surface_.resize(mesh.node_count());
+  for (auto *field : {&taken_, &taken_moment_}) field->resize(mesh.node_count());
+  nodal_.resize(mesh.node_count()), at_gap_.resize(mesh.node_count()), at_surface_.resize(mesh.node_count());
   gaps_.reserve(mesh.node_count()), gap_cells_.reserve((dim + 1) * mesh.cell_count());
   PetscFunctionReturn(0);
 }
 
 template <int dim>
-void PoreConditions<dim>::add_face(int node, int source, const Vec<dim> &area) {
+void PoreConditions<dim>::add_face(int node, int source, const Vec<dim> &area, const Vec<dim> &moment) {
   double length = 0;
   for (double a : area) length += a * a;
-  Face face{node, source, area, area};
+  Face face{node, source, area, area, moment};
   for (double &n : face.normal) n /= std::sqrt(length);
   faces_.push_back(face);
   at_surface_[node] = 1;
 }
 
 template <int dim>
-PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<double> &filling, const std::vector<Vec<dim>> &surface) {
+PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<double> &filling, const std::vector<Vec<dim>> &surface,
+                                          const std::vector<Vec<dim>> &moment) {
   PetscFunctionBeginUser;
   const BackgroundMesh<dim> &mesh = grid.mesh();
   const int nodes = grid.node_count();
   active_walls_.clear(), faces_.clear();
   std::fill_n(at_surface_.begin(), nodes, 0);
-  std::fill_n(taken_.begin(), nodes, Vec<dim>{});
+  for (auto *field : {&taken_, &taken_moment_}) std::fill_n(field->begin(), nodes, Vec<dim>{});
   for (int i = 0; i < nodes; ++i) {
     const int index = wall_of_node_[grid.mesh_node[i]];
     if (index >= 0) active_walls_.push_back({i, &walls_[index]});
@@ -74,18 +76,23 @@ PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vect
     return std::sqrt(square) > least * (dim == 2 ? edge : edge * edge);
   };
   for (const auto &[source, facets] : groups_) {
-    std::fill_n(nodal_.begin(), nodes, Vec<dim>{});
+    std::fill_n(nodal_.begin(), nodes, std::array<Vec<dim>, 2>{});
     for (const Facet<dim> &f : facets) {
       const int cell = grid.find_cell(f.cell);
       if (cell < 0) continue;
-      for (int node : f.node)
-        for (int d = 0; d < dim; ++d) nodal_[grid.find_node(node)][d] += std::min(1., filling[cell]) * f.area / dim * f.normal[d];
+      const double part = std::min(1., filling[cell]) * f.area / dim;
+      for (int node : f.node) {
+        double depth = 0;  // of the other nodes below this one
+        for (int other : f.node) depth += mesh.position[node][1] - mesh.position[other][1];
+        auto &[area, own_moment] = nodal_[grid.find_node(node)];
+        for (int d = 0; d < dim; ++d) area[d] += part * f.normal[d], own_moment[d] += part / (dim + 1) * depth * f.normal[d];
+      }
     }
-    PetscCall(grid.sum(nodal_[0].data(), dim));
+    PetscCall(grid.sum(nodal_[0][0].data(), 2 * dim));
     for (int i = 0; i < nodes; ++i)
-      if (large(i, nodal_[i], 1e-9)) {
-        add_face(i, source, nodal_[i]);
-        for (int d = 0; d < dim; ++d) taken_[i][d] += nodal_[i][d];
+      if (large(i, nodal_[i][0], 1e-9)) {
+        add_face(i, source, nodal_[i][0], nodal_[i][1]);
+        for (int d = 0; d < dim; ++d) taken_[i][d] += nodal_[i][0][d], taken_moment_[i][d] += nodal_[i][1][d];
       }
   }
   gaps_.clear(), gap_cells_.clear();
@@ -94,7 +101,7 @@ PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vect
     // of an edge or its square: less is a gap between particles; the nodes of a one-element slice have a quarter of a square
     constexpr double least = dim == 2 ? 0.3 : 0.3 * 0.3, nothing = 1e-10;
     at_gap_[i] = 0;
-    if (large(i, rest, least)) add_face(i, rain_, rest);
+    if (large(i, rest, least)) add_face(i, rain_, rest, open_water() ? open_part(grid, i, moment[i], taken_moment_[i]) : Vec<dim>{});
     else if (large(i, rest, nothing)) gaps_.push_back(i), at_gap_[i] = 1;
   }
   for (int c = 0; c < grid.cell_count(); ++c)
@@ -103,11 +110,11 @@ PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vect
   PetscFunctionReturn(0);
 }
 
-/// What is left of the surface at a node beside named faces and across the normals of walls.
+/// What is left of something at a node beside the share of named faces and across the normals of walls.
 template <int dim>
-Vec<dim> PoreConditions<dim>::open_area(const FilledGrid<dim> &grid, int node, const Vec<dim> &surface) const {
-  Vec<dim> rest = surface;
-  for (int d = 0; d < dim; ++d) rest[d] -= taken_[node][d];
+Vec<dim> PoreConditions<dim>::open_part(const FilledGrid<dim> &grid, int node, const Vec<dim> &whole, const Vec<dim> &taken) const {
+  Vec<dim> rest = whole;
+  for (int d = 0; d < dim; ++d) rest[d] -= taken[d];
   walls_at(grid, node, [&](const Vec<dim> &n) {
     double along = 0;
     for (int d = 0; d < dim; ++d) along += rest[d] * n[d];

@@ -24,10 +24,14 @@ class PoreConditions {
   using Source = typename Conditions<dim>::Source;
   /// `sealed`: a surface without a boundary lets water out, not in. Collective.
   PetscErrorCode setup(const BackgroundMesh<dim> &mesh, const std::vector<Source> &sources, bool sealed);
-  /// Picks nodes and faces of the filled grid; `surface` [node] is the sum of w grad N over all cells [m2]. Collective.
-  PetscErrorCode begin(FilledGrid<dim> &grid, const std::vector<double> &filling, const std::vector<Vec<dim>> &surface);
+  /// Is there open water on the free surface, so that `begin` needs its moments?
+  bool open_water() const { return rain_ != atmosphere && std::visit([](const auto &kind) { return requires { kind.deepens; }; }, (*sources_)[rain_].kind); }
+  /// Picks nodes and faces of the filled grid; `surface` [node] is the sum of w grad N over all cells [m2], `moment` [node] that area's first moment in depth
+  /// below the node [m3], theory (5.2), which only open water asks for. Collective.
+  PetscErrorCode begin(FilledGrid<dim> &grid, const std::vector<double> &filling, const std::vector<Vec<dim>> &surface, const std::vector<Vec<dim>> &moment);
 
-  /// Calls put(node, P, area, load) for every face with a pressure P beyond it [Pa]; `load` presses on the skeleton [Pa].
+  /// Calls put(node, P, push, load) for every face with a pressure P beyond it [Pa]: `push` is what that does to the node along the outer normal, `load` the part that
+  /// the skeleton bears [N].
   template <class Put>
   void pressures(double t, const FilledGrid<dim> &grid, double unit_weight, Put &&put) const {
     for (const Face &f : faces_) {
@@ -37,7 +41,11 @@ class PoreConditions {
           [&](const auto &kind) {
             if constexpr (requires { kind.load(0.); }) {
               const double p = kind.outside(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t, unit_weight);
-              put(f.node, p, f.area, kind.load(p));
+              double growth = 0;
+              if constexpr (requires { kind.deepens; }) growth = p > 0 ? unit_weight : 0;
+              Vec<dim> push, load;
+              for (int d = 0; d < dim; ++d) push[d] = p * f.area[d] + growth * f.moment[d], load[d] = kind.load(push[d]);
+              put(f.node, p, push, load);
             }
           },
           (*sources_)[f.source].kind);
@@ -113,10 +121,11 @@ class PoreConditions {
   };
   struct Face {
     int node, source;  ///< compact; a source or the atmosphere
-    Vec<dim> area, normal;
+    Vec<dim> area, normal, moment;  ///< moment: of the area, in depth below the node [m3]
   };
-  void add_face(int node, int source, const Vec<dim> &area);
-  Vec<dim> open_area(const FilledGrid<dim> &grid, int node, const Vec<dim> &surface) const;
+  void add_face(int node, int source, const Vec<dim> &area, const Vec<dim> &moment);
+  Vec<dim> open_area(const FilledGrid<dim> &grid, int node, const Vec<dim> &surface) const { return open_part(grid, node, surface, taken_[node]); }
+  Vec<dim> open_part(const FilledGrid<dim> &grid, int node, const Vec<dim> &whole, const Vec<dim> &taken) const;
 
   const std::vector<Source> *sources_ = nullptr;
   bool sealed_ = false;
@@ -129,7 +138,8 @@ class PoreConditions {
   std::vector<int> gaps_;
   std::vector<std::array<int, 2>> gap_cells_;
   std::vector<char> at_gap_, at_surface_;
-  std::vector<Vec<dim>> nodal_, taken_;
+  std::vector<std::array<Vec<dim>, 2>> nodal_;  ///< of a named face: area and moment
+  std::vector<Vec<dim>> taken_, taken_moment_;
 };
 
 }  // namespace talus

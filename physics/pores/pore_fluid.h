@@ -105,6 +105,8 @@ class PoreFluid {
 
   /// Sum of w grad N at the nodes, at the last remap [m2].
   const std::vector<Vec<dim>> &surface() const { return surface_; }
+  /// Its first moment in depth below the node, where open water rests on it [m3].
+  const std::vector<Vec<dim>> &surface_moment() const { return moment_; }
   void keep(Archive &archive);
 
   bool given = false;   ///< pressures follow [water] instead of the fluids' motion
@@ -196,7 +198,7 @@ class PoreFluid {
   std::vector<PorePoints> points_, next_points_, trial_;
   std::vector<CellPores> cells_, trial_cells_;
   std::vector<NodePores> nodes_, trial_nodes_;
-  std::vector<Vec<dim>> flux_[fluids], surface_;
+  std::vector<Vec<dim>> flux_[fluids], surface_, moment_;
   std::vector<Vec<dim>> gap_;      ///< of a node: area vector of the gap over the volume of its cells [1/m]; 0 elsewhere
   Array shut_[fluids];             ///< of a node: what a gap would let through over that volume [kg/(m3 s)]
   std::vector<std::array<double, dim + 1>> mean_, reference_;  ///< of a cell: where its particles are in the mean, and where its pressure counts

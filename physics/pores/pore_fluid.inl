@@ -16,7 +16,7 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
   constexpr double earth = 9.81;  // [m/s2], for a hydraulic conductivity in a scene without gravity
   for (const auto &body : bodies) soils_.emplace_back(body->source(), scene.water.density * (gravity > 0 ? gravity : earth), scene.water.viscosity);
   cells_.resize(cells), nodes_.resize(nodes), mean_.resize(cells), reference_.resize(cells), rows_.resize(cells), head_.resize(cells), grain_mass_.resize(cells);
-  nodal_head_.resize(nodes), momentum_.resize(nodes), surface_.resize(nodes), gap_.resize(nodes), beyond_.assign(nodes, 0), body_of_node_.assign(nodes, 0);
+  nodal_head_.resize(nodes), momentum_.resize(nodes), surface_.resize(nodes), moment_.resize(nodes), gap_.resize(nodes), beyond_.assign(nodes, 0), body_of_node_.assign(nodes, 0);
   for (int a = 0; a < fluids; ++a) flux_[a].resize(nodes), shut_[a].resize(nodes), impulse_[a].resize(cells), divergence_[a].resize(cells), smooth_[a].resize(cells);
   nodal_.resize(3 * nodes);
   for (auto *all : {&points_, &next_points_})
@@ -146,7 +146,24 @@ PetscErrorCode PoreFluid<dim, Phases>::gather(const Frame &frame, PoreConditions
     }
   PetscCall(store(frame));
   for (int i = 0; i < nodes; ++i) talus::store<dim>(surface_[i].data(), nodes_[i].geometry);
-  PetscCall(conditions.begin(grid, filling, surface_));
+  if (conditions.open_water()) {  // theory (5.2)
+    std::fill_n(moment_.begin(), nodes, Vec<dim>{});
+    for (int c = 0; c < cells; ++c) {
+      const double y = place(frame, c, reference_[c])[1], part = frame.weight[c] / (dim + 1);
+      Vec<dim> first{};
+      for (int k = dim; k >= 0; --k) {
+        const int i = grid.shape[c].node[k];
+        for (int d = 0; d < dim; ++d) {
+          const double g = k ? grid.shape[c].gradient[k - 1][d] : first[d];
+          first[d] -= g;
+          moment_[i][d] += frame.weight[c] * g * (frame.position[i][1] - y);
+        }
+        moment_[i][1] -= part;
+      }
+    }
+    PetscCall(grid.sum(moment_[0].data(), dim));
+  }
+  PetscCall(conditions.begin(grid, filling, surface_, moment_));
   constrain(frame, conditions, solid, velocity);
   PetscFunctionReturn(0);
 }
@@ -360,8 +377,8 @@ void PoreFluid<dim, Phases>::add_to_mixture(const Frame &frame, const PoreCondit
       force[i][d] += at[i].push[mixture][d];
       for (int a = 0; a < fluids; ++a) force[i][d] += at[i].mass(a) * frame.gravity[d];
     }
-  conditions.pressures(frame.time, frame.grid, unit_weight(frame), [&](int i, double, const Vec<dim> &area, double load) {
-    for (int d = 0; d < dim; ++d) force[i][d] -= load * area[d];
+  conditions.pressures(frame.time, frame.grid, unit_weight(frame), [&](int i, double, const Vec<dim> &, const Vec<dim> &load) {
+    for (int d = 0; d < dim; ++d) force[i][d] -= load[d];
   });
 }
 
@@ -402,8 +419,8 @@ PetscErrorCode PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreCondi
     for (int a = 0; a < fluids; ++a)
       for (int d = 0; d < dim && at[i].whole(a) > 0; ++d) acceleration[a * nodes + i][d] -= nodal_[i * fluids + a] / at[i].volume() * area[d] / at[i].whole(a);
   });
-  conditions.pressures(frame.time, frame.grid, unit_weight(frame), [&](int i, double p, const Vec<dim> &area, double) {
-    for (int d = 0; d < dim; ++d) acceleration[i][d] -= p * area[d] / at[i].whole(0);
+  conditions.pressures(frame.time, frame.grid, unit_weight(frame), [&](int i, double p, const Vec<dim> &push, const Vec<dim> &) {
+    for (int d = 0; d < dim; ++d) acceleration[i][d] -= push[d] / at[i].whole(0);
     beyond_[i] = conductivity_beyond(i, at[i], p);
   });
   if constexpr (Phases::gas)
@@ -667,7 +684,7 @@ void PoreFluid<dim, Phases>::keep(Archive &archive) {
     archive.keep("pores", points.count, points.grains, points.share, points.suction);
     for (int a = 0; a < fluids; ++a) archive.keep("fluid", points.mass[a]);
   }
-  archive.keep("fluids", cells_, nodes_, surface_, mean_, reference_, rows_, grain_mass_, body_of_node_, out_, given_mass_);
+  archive.keep("fluids", cells_, nodes_, surface_, moment_, mean_, reference_, rows_, grain_mass_, body_of_node_, out_, given_mass_);
 }
 
 template <int dim, class Phases>

@@ -116,7 +116,7 @@ PetscErrorCode SoilMotion<dim, Phases>::keep(Archive &archive) {
   if constexpr (Phases::liquid) {
     fluid_.keep(archive);
     before_ = velocity_;
-    if (archive.reading()) PetscCall(pore_conditions_.begin(grid_, filling_, fluid_.surface()));
+    if (archive.reading()) PetscCall(pore_conditions_.begin(grid_, filling_, fluid_.surface(), fluid_.surface_moment()));
   }
   PetscFunctionReturn(0);
 }
