@@ -105,8 +105,8 @@ PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vect
     else if (large(i, rest, nothing)) gaps_.push_back(i), at_gap_[i] = 1;
   }
   for (int c = 0; c < grid.cell_count(); ++c)
-    for (const int node : grid.shape[c].node)
-      if (at_gap_[node]) gap_cells_.push_back({node, c});
+    for (int k = 0; k <= dim; ++k)
+      if (at_gap_[grid.shape[c].node[k]]) gap_cells_.push_back({grid.shape[c].node[k], c, k});
   PetscFunctionReturn(0);
 }
 

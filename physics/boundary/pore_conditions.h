@@ -71,8 +71,8 @@ class PoreConditions {
   }
   /// Has the node a face, named or where the soil's surface is now?
   bool at_surface(int node) const { return at_surface_[node]; }
-  /// (gap node, cell) of all cells of this rank at gaps.
-  const std::vector<std::array<int, 2>> &gap_cells() const { return gap_cells_; }
+  /// (gap node, cell, number of the node in it) of all cells of this rank at gaps.
+  const std::vector<std::array<int, 3>> &gap_cells() const { return gap_cells_; }
   /// Calls limit(node, n, low, high) for every face whose outflow has limits: relative velocities of the liquid along n must be between them [m/s].
   /// `liquid_at(node)` is LiquidAtNode; `density` that of the liquid beyond [kg/m3].
   template <class At, class Limit>
@@ -136,7 +136,7 @@ class PoreConditions {
   std::vector<ActiveWall> active_walls_;
   std::vector<Face> faces_;
   std::vector<int> gaps_;
-  std::vector<std::array<int, 2>> gap_cells_;
+  std::vector<std::array<int, 3>> gap_cells_;
   std::vector<char> at_gap_, at_surface_;
   std::vector<std::array<Vec<dim>, 2>> nodal_;  ///< of a named face: area and moment
   std::vector<Vec<dim>> taken_, taken_moment_;

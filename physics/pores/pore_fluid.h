@@ -147,6 +147,8 @@ class PoreFluid {
   };
   static constexpr int node_width = sizeof(NodePores) / sizeof(double);
 
+  /// Weight of a fluid at a node over that of its mass: the liquid weighs as if it were not compressed, which a softened one would be, and still water in it is exactly hydrostatic.
+  double weighs(const NodePores &node, int a) const { return a == 0 && node.whole(0) > 0 ? liquid_.density * node.volume() / node.whole(0) : 1; }
   Pores<dim> show(std::vector<PorePoints> &points, int body);
   static Vec<dim> surface_at(const NodePores &node) {
     Vec<dim> area;

@@ -149,7 +149,7 @@ PetscErrorCode PoreFluid<dim, Phases>::gather(const Frame &frame, PoreConditions
   if (conditions.open_water()) {  // theory (5.2)
     std::fill_n(moment_.begin(), nodes, Vec<dim>{});
     for (int c = 0; c < cells; ++c) {
-      const double y = place(frame, c, reference_[c])[1], part = frame.weight[c] / (dim + 1);
+      const double y = place(frame, c, reference_[c])[1];
       Vec<dim> first{};
       for (int k = dim; k >= 0; --k) {
         const int i = grid.shape[c].node[k];
@@ -158,7 +158,7 @@ PetscErrorCode PoreFluid<dim, Phases>::gather(const Frame &frame, PoreConditions
           first[d] -= g;
           moment_[i][d] += frame.weight[c] * g * (frame.position[i][1] - y);
         }
-        moment_[i][1] -= part;
+        moment_[i][1] -= frame.weight[c] * reference_[c][k];
       }
     }
     PetscCall(grid.sum(moment_[0].data(), dim));
@@ -334,7 +334,7 @@ PetscErrorCode PoreFluid<dim, Phases>::store(const Frame &frame) {
   for (int c = 0; c < cells; ++c) {
     CellPores &cell = pores[c];
     const Shape<dim> &shape = frame.shape[c];
-    const double w = frame.weight[c], part = w / (dim + 1), here = head(c, reference_[c]), scale = 1 / grain_mass_[c];
+    const double w = frame.weight[c], here = head(c, reference_[c]), scale = 1 / grain_mass_[c];
     cell.smooth[0] = smooth_[0][c] + liquid_.density * here;
     if constexpr (Phases::gas) cell.smooth[1] = cell.pressure[1] + gas_.density * (here - head_[c]);
     double own[fluids];
@@ -349,17 +349,17 @@ PetscErrorCode PoreFluid<dim, Phases>::store(const Frame &frame) {
     push[mixture] = quad(cell.mixture), push[mixture][last] = cell.saturated;
     for (int a = 0; a < fluids; ++a) {
       push[a] = quad(cell.smooth[a]), push[a][last] = cell.conductivity[a];
-      amount[2 * a] = cell.mass[a] * scale, amount[2 * a + 1] = part * cell.density[a];
+      amount[2 * a] = cell.mass[a] * scale, amount[2 * a + 1] = w * cell.density[a];
     }
     Quad first{};
     for (int k = dim; k >= 0; --k) {
       NodePores &node = at[shape.node[k]];
       Quad weighted = k ? quad(w) * load<dim>(shape.gradient[k - 1].data()) : first;
       first -= weighted;
-      weighted[last] = part;
+      const double row = rows_[c][k], part = reference_[c][k];
+      weighted[last] = w * part;
       node.geometry += weighted;
-      const double row = rows_[c][k];
-      node.amount += amount * Quad{row, 1, row, 1};
+      node.amount += amount * Quad{row, part, row, part};
       for (size_t f = 0; f < std::size(push); ++f) node.push[f] += weighted * push[f];
     }
   }
@@ -375,7 +375,7 @@ void PoreFluid<dim, Phases>::add_to_mixture(const Frame &frame, const PoreCondit
   for (int i = 0; i < frame.grid.node_count(); ++i)
     for (int d = 0; d < dim; ++d) {
       force[i][d] += at[i].push[mixture][d];
-      for (int a = 0; a < fluids; ++a) force[i][d] += at[i].mass(a) * frame.gravity[d];
+      for (int a = 0; a < fluids; ++a) force[i][d] += at[i].mass(a) * weighs(at[i], a) * frame.gravity[d];
     }
   conditions.pressures(frame.time, frame.grid, unit_weight(frame), [&](int i, double, const Vec<dim> &, const Vec<dim> &load) {
     for (int d = 0; d < dim; ++d) force[i][d] -= load[d];
@@ -402,17 +402,18 @@ PetscErrorCode PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreCondi
   for (int a = 0; a < fluids; ++a)
     for (int i = 0; i < nodes; ++i) {
       const double whole = at[i].whole(a), scale = whole > 0 ? 1 / whole : 0;
-      for (int d = 0; d < dim; ++d) acceleration[a * nodes + i][d] = whole > 0 ? at[i].push[a][d] * scale + frame.gravity[d] : 0;
+      for (int d = 0; d < dim; ++d) acceleration[a * nodes + i][d] = whole > 0 ? at[i].push[a][d] * scale + weighs(at[i], a) * frame.gravity[d] : 0;
     }
   // beyond a gap is the pressure of the cells around it, brought to the node with the weight of the fluid
   const std::vector<CellPores> &pores = frame.trial ? trial_cells_ : cells_;
   std::fill_n(nodal_.begin(), nodes * fluids, 0.);
-  for (const auto &[i, c] : conditions.gap_cells()) {
+  for (const auto &[i, c, k] : conditions.gap_cells()) {
     const Vec<dim> x = place(frame, c, reference_[c]);
+    const double part = frame.weight[c] * reference_[c][k];
     double rise = 0;
     for (int d = 0; d < dim; ++d) rise += frame.gravity[d] * (frame.position[i][d] - x[d]);
-    nodal_[i * fluids] += frame.weight[c] / (dim + 1) * (pores[c].smooth[0] + liquid_.density * rise);
-    if constexpr (Phases::gas) nodal_[i * fluids + 1] += frame.weight[c] / (dim + 1) * (pores[c].smooth[1] + gas_.density * rise);
+    nodal_[i * fluids] += part * (pores[c].smooth[0] + liquid_.density * rise);
+    if constexpr (Phases::gas) nodal_[i * fluids + 1] += part * (pores[c].smooth[1] + gas_.density * rise);
   }
   PetscCall(frame.grid.sum(nodal_.data(), fluids));
   conditions.gaps(frame.grid, [&](int i) { return surface_at(at[i]); }, [&](int i, const Vec<dim> &area) {
@@ -554,7 +555,7 @@ PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<di
       const Vec<dim> &g = k ? shape.gradient[k - 1] : first;
       const int i = shape.node[k];
       double towards = 0;
-      for (int d = 0; d < dim; ++d) towards += (g[d] - gap_[i][d]) * (gas[i][d] - solid[i][d]);
+      for (int d = 0; d < dim; ++d) towards += (g[d] - reference_[c][k] * gap_[i][d]) * (gas[i][d] - solid[i][d]);
       takes[k] = frame.weight[c] * std::max(0., towards);
       out += takes[k] * pore_share(i);
     }
@@ -583,7 +584,7 @@ PetscErrorCode PoreFluid<dim, Phases>::flow(const Frame &frame, const PoreCondit
   const int nodes = grid.node_count(), cells = grid.cell_count();
   std::fill_n(gap_.begin(), nodes, Vec<dim>{});
   conditions.gaps(grid, [&](int i) { return surface_at(nodes_[i]); }, [&](int i, const Vec<dim> &area) {
-    for (int d = 0; d < dim; ++d) gap_[i][d] = area[d] / ((dim + 1) * nodes_[i].volume());
+    for (int d = 0; d < dim; ++d) gap_[i][d] = area[d] / nodes_[i].volume();
   });
   for (int i = 0; i < nodes; ++i) {
     const double density = given ? 0 : nodes_[i].volume() > 0 ? nodes_[i].mass(0) / nodes_[i].volume() : 0;
@@ -595,7 +596,7 @@ PetscErrorCode PoreFluid<dim, Phases>::flow(const Frame &frame, const PoreCondit
       double out = 0, shut = 0;
       for (int d = 0; d < dim; ++d) out += flux_[a][i][d] * nodes_[i].geometry[d], shut += flux_[a][i][d] * gap_[i][d];
       shut_[a][i] = shut;
-      if (!frame.trial && mesh_.owned[grid.mesh_node[i]]) out_[a] += out - shut * (dim + 1) * nodes_[i].volume();
+      if (!frame.trial && mesh_.owned[grid.mesh_node[i]]) out_[a] += out - shut * nodes_[i].volume();
     }
   for (int c = 0; c < cells; ++c) {
     const Shape<dim> &shape = grid.shape[c];
@@ -603,10 +604,11 @@ PetscErrorCode PoreFluid<dim, Phases>::flow(const Frame &frame, const PoreCondit
       double sum = 0;
       for (int k = 0; k < dim; ++k)
         for (int d = 0; d < dim; ++d) sum += shape.gradient[k][d] * (flux_[a][shape.node[k + 1]][d] - flux_[a][shape.node[0]][d]);
-      for (const int i : shape.node) sum -= shut_[a][i];
       divergence_[a][c] = sum;
     }
   }
+  for (const auto &[i, c, k] : conditions.gap_cells())
+    for (int a = 0; a < fluids; ++a) divergence_[a][c] -= reference_[c][k] * shut_[a][i];
   PetscFunctionReturn(0);
 }
 
