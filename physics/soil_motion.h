@@ -108,6 +108,8 @@ class SoilMotion final : public Motion {
   PoreReport pores(const Body<dim> &body, int particle) const requires Phases::liquid;
   /// Masses of liquid and gas of all ranks; collective.
   PetscErrorCode fluid_ledger(FluidLedger *sums) requires Phases::liquid { return fluid_.ledger(gathered_, sums); }
+  /// Of explicit drag, on this rank [1/s].
+  double drag_rate() const requires Phases::liquid { return fluid_.drag_rate(grid_); }
   const PoreFluid<dim, Phases> &fluid() const requires Phases::liquid { return fluid_; }
   PetscErrorCode setup_pores(bool fill) requires Phases::liquid;
   const WorkDone &work() const { return work_; }

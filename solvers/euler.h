@@ -14,14 +14,16 @@ struct EulerSettings {
   static constexpr const char *name = "euler";
   double step = 0;        ///< fixed step [s]; 0: a fraction of the critical step
   double fraction = 0.6;  ///< of the critical step 2 / omega_max [-]
+  double limit = 1;       ///< fixed step over the critical one beyond which no run starts [-]
   FrequencyBound bound = FrequencyBound::cells;
-  StepRule rule() const { return {step, fraction, 1, bound}; }
+  StepRule rule() const { return {step, fraction, limit, bound}; }
   std::string drag_problem() const { return ""; }  ///< implicit in every step
   std::unique_ptr<Integrator> make() const;
   template <class Visitor>
   void fields(Visitor &&v) {
     v.number("step", step, second, Range{0, 1e9}, "fixed time step; 0 takes a fraction of the critical step");
     v.number("fraction", fraction, one, Range{0.001, 1}, "time step over the critical step 2 / omega_max, recomputed as the run goes");
+    v.number("limit", limit, one, Range{1, 1e12}, "fixed step over the critical step beyond which a run is refused; more than 1 is there to show how runs fail");
     frequency_bound(v, bound);
   }
 };

@@ -76,8 +76,9 @@ class PoreFluid {
 
   /// Adds what fluids do to the mixture at a node: pressure and weight.
   void add_to_mixture(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force) const;
-  /// Accelerations without drag of the fluids [fluids][nodes], and less them what is left of the mixture's force for the solid.
-  PetscErrorCode drive(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force, Vec<dim> *acceleration);
+  /// Accelerations of the fluids [fluids][nodes], and less them what is left of the mixture's force for the solid: without drag, or with that of
+  /// `velocity` [1 + fluids][nodes] where drag is explicit.
+  PetscErrorCode drive(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force, Vec<dim> *acceleration, const Vec<dim> *velocity);
   /// Velocity of the solid after implicit drag over `step` and what limits the fluids at boundaries, from those of all without it.
   void resist(double step, const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *solid, const Vec<dim> *fluid) const;
   /// Inertia of the node against a support of the solid, after `resist` over `step` [kg].
@@ -103,6 +104,9 @@ class PoreFluid {
   /// `sums` [fluids]; `gathered`: points hold the masses, not particles. Collective.
   PetscErrorCode ledger(bool gathered, FluidLedger *sums);
 
+  /// Largest rate at which drag brings together what moves apart at a node of this rank, docs/theory/pores.md (6.1a) [1/s].
+  double drag_rate(const FilledGrid<dim> &grid) const;
+
   /// Sum of w grad N at the nodes, at the last remap [m2].
   const std::vector<Vec<dim>> &surface() const { return surface_; }
   /// Its first moment in depth below the node, where open water rests on it [m3].
@@ -119,6 +123,7 @@ class PoreFluid {
     Array mass[fluids];       ///< [kg]
     Array share;              ///< S_g
     Array suction;            ///< [Pa]
+    Array pressure;           ///< of the liquid, kept only where it follows its rate [Pa]
 
     void room(int points) {
       if (points <= static_cast<int>(grains.size())) return;
@@ -166,6 +171,8 @@ class PoreFluid {
   static double pore_volume(double volume, double grains) { return std::max(volume - grains, 1e-6 * volume); }
   void hold(const Frame &frame);
   void solve(const Frame &frame);
+  void keep_pressures(const Frame &frame);
+  void follow_rates(const Frame &frame);
   template <class Limit>
   void limits(const Frame &frame, const PoreConditions<dim> &conditions, Limit &&limit) const;
   PetscErrorCode give_around(const Frame &frame, Array &divergence) requires Phases::suction;
@@ -184,7 +191,9 @@ class PoreFluid {
     constexpr double nearly_saturated = 0.99;
     return !Phases::suction || cells_[c].saturation >= nearly_saturated;
   }
-  NodalFluid at_node(int node, int a) const;
+  NodalFluid at_node(int node, int a, double beyond) const;
+  NodalFluid at_node(int node, int a) const { return at_node(node, a, a ? 0 : beyond_[node]); }
+  NodalFluid over_step(int node, int a) const;
   double conductivity_beyond(int node, const NodePores &at, double pressure) const;
   double mixture_pressure(const double *p, double saturation) const;
 
@@ -195,7 +204,7 @@ class PoreFluid {
   [[no_unique_address]] If<Phases::gas, PoreGas> gas_;
   std::vector<SoilPores> soils_;
   GivenPressure<dim> pressure_;
-  bool bishop_, smoothing_;
+  bool bishop_, smoothing_, explicit_drag_, by_rate_;
 
   std::vector<PorePoints> points_, next_points_, trial_;
   std::vector<CellPores> cells_, trial_cells_;

@@ -10,7 +10,8 @@ template <int dim, class Phases>
 PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<std::unique_ptr<Body<dim>>> &bodies, const Scene &scene)
     : mesh_(mesh), bodies_(bodies), scene_(scene), liquid_(scene.water), gas_(scene.gas),
       pressure_(scene.water, std::hypot(scene.gravity[0], scene.gravity[1])), bishop_(scene.water.stress == PoreStress::bishop),
-      smoothing_(scene.transfer.pore_smoothing == PoreSmoothing::nodal), points_(bodies.size()), next_points_(bodies.size()), trial_(bodies.size()) {
+      smoothing_(scene.transfer.pore_smoothing == PoreSmoothing::nodal), explicit_drag_(scene.water.drag == PoreDrag::at_start),
+      by_rate_(scene.water.storage == PoreStorage::rate), points_(bodies.size()), next_points_(bodies.size()), trial_(bodies.size()) {
   const size_t nodes = mesh.node_count(), cells = mesh.cell_count();
   const double gravity = std::hypot(scene.gravity[0], scene.gravity[1], dim == 3 ? scene.gravity[dim - 1] : 0);
   constexpr double earth = 9.81;  // [m/s2], for a hydraulic conductivity in a scene without gravity
@@ -309,6 +310,7 @@ PetscErrorCode PoreFluid<dim, Phases>::store(const Frame &frame) {
   PetscFunctionBeginUser;
   const int nodes = frame.grid.node_count(), cells = frame.grid.cell_count();
   solve(frame);
+  if (by_rate_) keep_pressures(frame);
   std::vector<CellPores> &pores = frame.trial ? trial_cells_ : cells_;
   for (int i = 0; i < nodes; ++i) {
     nodal_head_[i] = 0;
@@ -394,7 +396,8 @@ double PoreFluid<dim, Phases>::conductivity_beyond(int node, const NodePores &at
 }
 
 template <int dim, class Phases>
-PetscErrorCode PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force, Vec<dim> *acceleration) {
+PetscErrorCode PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force, Vec<dim> *acceleration,
+                                             const Vec<dim> *velocity) {
   PetscFunctionBeginUser;
   const std::vector<NodePores> &at = frame.trial ? trial_nodes_ : nodes_;
   const int nodes = frame.grid.node_count();
@@ -428,6 +431,11 @@ PetscErrorCode PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreCondi
     conditions.gas_pressures(frame.time, frame.grid, [&](int i, double p, const Vec<dim> &area) {
       for (int d = 0; d < dim; ++d) acceleration[nodes + i][d] -= p * area[d] / at[i].whole(1);
     });
+  for (int i = 0; i < nodes && explicit_drag_ && !given; ++i)
+    for (int a = 0; a < fluids; ++a) {
+      const double rate = drag_number(1, at_node(i, a));
+      for (int d = 0; d < dim; ++d) acceleration[a * nodes + i][d] -= rate * (velocity[(1 + a) * nodes + i][d] - velocity[i][d]);
+    }
   for (int a = 0; a < fluids; ++a)
     for (int i = 0; i < nodes; ++i)
       for (int d = 0; d < dim; ++d) force[i][d] -= at[i].mass(a) * acceleration[a * nodes + i][d];
@@ -436,15 +444,37 @@ PetscErrorCode PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreCondi
 
 /// Mass, M and resistance Q = phi V / k of a fluid at a node: the flux of a steady state is then the mean conductivity times the gradient.
 template <int dim, class Phases>
-NodalFluid PoreFluid<dim, Phases>::at_node(int i, int a) const {
+NodalFluid PoreFluid<dim, Phases>::at_node(int i, int a, double beyond) const {
   const NodePores &node = nodes_[i];
   const double mass = node.mass(a), whole = node.whole(a);
   if (!(whole > 0)) return {0, 0, 0};
   constexpr double closed = 1e30;  // [1/s]: where pressures are given, fluids go with the grains
   double conductivity = node.conductivity(a) / node.volume();
-  if (a == 0 && beyond_[i] > 0) conductivity = (conductivity + beyond_[i]) / 2;  // as if there were one more cell, beyond the face
+  if (beyond > 0) conductivity = (conductivity + beyond) / 2;  // as if there were one more cell, beyond the face
   const double resistance = given ? closed * whole : mass / whole * node.volume() / std::max(conductivity, 1e-300);
   return {mass, whole, resistance};
+}
+
+/// What drag over a step sees of it: nothing to resist where drag is explicit and so one of the forces.
+template <int dim, class Phases>
+NodalFluid PoreFluid<dim, Phases>::over_step(int i, int a) const {
+  const NodalFluid at = at_node(i, a);
+  return explicit_drag_ && !given ? NodalFluid{at.mass, at.whole_mass, 0} : at;
+}
+
+/// Each fluid against the skeleton; together they are no faster than their sum. Pores that may be dry beyond a face count there with half the conductivity.
+template <int dim, class Phases>
+double PoreFluid<dim, Phases>::drag_rate(const FilledGrid<dim> &grid) const {
+  double largest = 0;
+  for (int i = 0; i < grid.node_count() && !given; ++i) {
+    double rate = 0;
+    for (int a = 0; a < fluids; ++a) {
+      const NodalFluid at = at_node(i, a, 0);
+      rate += (Phases::suction && a == 0 ? 2 : 1) * drag_number(1, at) * (1 + at.mass / grid.mass[i]);
+    }
+    largest = std::max(largest, rate);
+  }
+  return largest;
 }
 
 /// Shortest change of a number that brings it between two others.
@@ -458,7 +488,7 @@ void PoreFluid<dim, Phases>::resist(double step, const Frame &frame, const PoreC
   const int nodes = grid.node_count();
   for (int i = 0; i < nodes; ++i) {
     NodalFluid at[fluids];
-    for (int a = 0; a < fluids; ++a) at[a] = at_node(i, a);
+    for (int a = 0; a < fluids; ++a) at[a] = over_step(i, a);
     for (int d = 0; d < dim; ++d) {
       double v[fluids];
       for (int a = 0; a < fluids; ++a) v[a] = fluid[a * nodes + i][d];
@@ -468,7 +498,7 @@ void PoreFluid<dim, Phases>::resist(double step, const Frame &frame, const PoreC
   const auto share = [&](int i, const Vec<dim> &n, int count, double low, double high) {
     double momentum = 0, mass = grid.mass[i];
     for (int a = 0; a < count; ++a) {
-      const NodalFluid at = at_node(i, a);
+      const NodalFluid at = over_step(i, a);
       double out = 0;
       for (int d = 0; d < dim; ++d) out += (fluid[a * nodes + i][d] - solid[i][d]) * n[d];
       momentum -= at.mass * into(out / (1 + drag_number(step, at)), low, high), mass += at.mass;
@@ -484,7 +514,7 @@ template <int dim, class Phases>
 Square<dim> PoreFluid<dim, Phases>::inertia(double step, const FilledGrid<dim> &grid, const PoreConditions<dim> &conditions, int i) const {
   double dragged = grid.mass[i], rest = 0;
   for (int a = 0; a < fluids; ++a) {
-    const NodalFluid at = at_node(i, a);
+    const NodalFluid at = over_step(i, a);
     const double free = at.mass / (1 + drag_number(step, at));
     dragged += at.mass - free, rest += free;
   }
@@ -498,7 +528,7 @@ void PoreFluid<dim, Phases>::follow(double step, const Frame &frame, const PoreC
   const int nodes = frame.grid.node_count();
   for (int i = 0; i < nodes; ++i) {
     NodalFluid at[fluids];
-    for (int a = 0; a < fluids; ++a) at[a] = at_node(i, a);
+    for (int a = 0; a < fluids; ++a) at[a] = over_step(i, a);
     for (int d = 0; d < dim; ++d) {
       double v[fluids], held = solid[i][d];
       for (int a = 0; a < fluids; ++a) v[a] = fluid[a * nodes + i][d];
@@ -670,6 +700,30 @@ void PoreFluid<dim, Phases>::exchange(const Frame &frame) {
       for (int a = 0; a < fluids; ++a) to.mass[a][q] = from.mass[a][q] - part * divergence_[a][set.cell[q]];
     }
   }
+  if (by_rate_) follow_rates(frame);
+}
+
+// The naive form, theory (3.5): pressures go on at their rate from those of the last step, and what the curve then gives takes the place of the masses.
+
+template <int dim, class Phases>
+void PoreFluid<dim, Phases>::keep_pressures(const Frame &frame) {
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    PorePoints &points = points_[b];
+    points.pressure.resize(points.grains.size());
+    for (int q = 0; q < frame.points[b].count; ++q)
+      points.pressure[q] = points.suction[q] > 0 ? -points.suction[q] : liquid_.pressure_at(points.mass[0][q] / pore_volume(frame.volume[b][q], points.grains[q]));
+  }
+}
+
+template <int dim, class Phases>
+void PoreFluid<dim, Phases>::follow_rates(const Frame &frame) {
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    PorePoints &points = points_[b];
+    for (int q = 0; q < frame.points[b].count; ++q) {
+      const double pores = pore_volume(frame.volume[b][q], points.grains[q]);
+      points.mass[0][q] = pores * content_by_rate(soils_[b], liquid_, points.pressure[q], points.mass[0][q] / pores);
+    }
+  }
 }
 
 template <int dim, class Phases>
@@ -683,7 +737,7 @@ PoreReport PoreFluid<dim, Phases>::report(int body, int point, int cell, bool su
 template <int dim, class Phases>
 void PoreFluid<dim, Phases>::keep(Archive &archive) {
   for (PorePoints &points : points_) {
-    archive.keep("pores", points.count, points.grains, points.share, points.suction);
+    archive.keep("pores", points.count, points.grains, points.share, points.suction, points.pressure);
     for (int a = 0; a < fluids; ++a) archive.keep("fluid", points.mass[a]);
   }
   archive.keep("fluids", cells_, nodes_, surface_, moment_, mean_, reference_, rows_, grain_mass_, body_of_node_, out_, given_mass_);

@@ -114,6 +114,15 @@ inline void three_phase_pressures(const SoilPores &soil, const Liquid &liquid, c
   });
 }
 
+/// The naive form for gas at atmospheric pressure, docs/theory/pores.md (3.5): from `pressure` [Pa] on at its rate, with the storage that it has there, as the
+/// liquid per pore volume becomes `content`; what the curve gives where that leads takes its place [kg/m3].
+inline double content_by_rate(const SoilPores &soil, const Liquid &liquid, double pressure, double content) {
+  const auto at = [&](double p) { return p < -soil.entry() ? saturation(soil.retention(), -p) : 1; };
+  const double wet = at(pressure), rho = liquid.density_at(pressure), capacity = wet < 1 ? 1 / soil.at(1 - wet).slope : 0;
+  const double next = pressure + (content / rho - wet) / (wet * liquid.density_slope(rho) / rho + capacity);
+  return at(next) * liquid.density_at(next);
+}
+
 /// Symmetric storage matrix of dP_l, dP_g per pore volume change, docs/theory/pores.md (3.4), all over n [1/Pa]: ll, lg, gg.
 struct StorageTangent {
   double ll, lg, gg;

@@ -106,6 +106,7 @@ void print_costs(const Scene &scene, const Needs &n) {
     line("step", "critical %.4g s (2 / omega_max) of the filled mesh, %.2f times that of its fastest cell", n.critical_step, n.critical_step / slowest.critical_step);
   line(n.critical_step > slowest.critical_step ? "" : "step", "critical %.4g s (2 / omega_max), set by %s at %s; altitude over wave speed: %.3g s",
        slowest.critical_step, slowest.name.c_str(), place(slowest.slowest_cell, scene.dimension).c_str(), n.altitude_rule);
+  if (n.critical_step < slowest.critical_step) line("", "critical %.4g s with explicit drag, %.2g of that", n.critical_step, n.critical_step / slowest.critical_step);
   line("", "%s %.4g s, %.2f of it", n.fixed_step ? "fixed at" : "taken", n.step, n.step / n.critical_step);
   line("stages", "%-16s %-12s %10s %10s %14s %12s", "", "until", "longest s", "steps", "wave transits", "run time");
   for (std::size_t i = 0; i < n.stages.size(); ++i) {

@@ -374,7 +374,7 @@ Needs find_needs(Scene &scene) {
     b.softening = softening(b.law, b.body.cell_size, b.density * head_above(scene, middle, needs.bodies));
   }
   const StepRule rule = step_rule(read_integrator(scene.integrator, fluids_move(scene.phases)));
-  needs.critical_step = rule.bound == FrequencyBound::mesh ? simulation->critical_step() : needs.slowest_body().body.critical_step;
+  needs.critical_step = rule.bound == FrequencyBound::mesh || scene.water.drag == PoreDrag::at_start ? simulation->critical_step() : needs.slowest_body().body.critical_step;
   needs.altitude_rule = needs.mesh.smallest_altitude / fastest;
   needs.fixed_step = rule.fixed > 0;
   needs.step = needs.fixed_step ? rule.fixed : rule.share * needs.critical_step;

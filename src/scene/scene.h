@@ -133,6 +133,8 @@ struct BoundarySource {
 
 enum class Compression { linear, exponential };
 enum class PoreStress { net, bishop };
+enum class PoreDrag { over_step, at_start };
+enum class PoreStorage { mass, rate };
 
 /// Pore water given as a function of place and time (phase model `drained`).
 struct Water {
@@ -142,6 +144,8 @@ struct Water {
   double viscosity = 1e-3;                   ///< mu_l [Pa s]
   Compression compression = Compression::linear;  ///< density over pressure
   PoreStress stress = PoreStress::net;       ///< what the pores take off the total stress
+  PoreDrag drag = PoreDrag::over_step;       ///< implicit in a step, or from the velocities at its start
+  PoreStorage storage = PoreStorage::mass;   ///< what pressure follows from
   Function suction;                          ///< above the table, function of x, y, z [Pa]; not given: hydrostatic
   std::vector<std::vector<double>> table;    ///< polyline x, elevation [m]; pressure is hydrostatic below it
   Function level = 0.0;                      ///< added to the elevation of the table, function of t [m]
@@ -156,6 +160,8 @@ struct Water {
     v.number("viscosity", viscosity, pascal_second, Range{1e-8, 1e3}, "dynamic viscosity of the pore water");
     v.choice("compression", compression, {{"linear", Compression::linear}, {"exponential", Compression::exponential}}, "density over pressure P: rho_0 (1 + P / K_l) or rho_0 exp(P / K_l)");
     v.choice("stress", stress, {{"net", PoreStress::net}, {"bishop", PoreStress::bishop}}, "what pores take off the total stress: the larger of the pressures of liquid and gas, or their mean weighted by saturation");
+    v.choice("drag", drag, {{"implicit", PoreDrag::over_step}, {"explicit", PoreDrag::at_start}}, "drag between soil and pore fluids: over a step, or from the velocities at its start, which is there to show how low permeability then limits the step; explicit only with integrator.kind = \"euler\"");
+    v.choice("storage", storage, {{"mass", PoreStorage::mass}, {"rate", PoreStorage::rate}}, "what pressure follows from: the mass that pores hold, or its own rate by the stiffness of the moment; the latter loses water near saturation and is there to show so, only with phases = \"unsaturated\"");
     v.function("suction", suction, pascal, Range{0, 1e9}, "initial suction above the water table, function of x, y, z; without it suction is hydrostatic");
     v.points("table", table, metre, "water table: polyline of points [x, elevation]; pressure is hydrostatic below it");
     v.function("level", level, metre, Range{-1e4, 1e4}, "rise of the whole water table, function of t");

@@ -82,12 +82,12 @@ template <int dim, class Phases>
 void Simulation<dim, Phases>::check_step() {
   const StepRule rule = step_rule(integrator_settings_);
   if (rule.fixed == 0) return;
-  double critical = rule.bound == FrequencyBound::mesh ? critical_step() : std::numeric_limits<double>::infinity();
-  if (rule.bound == FrequencyBound::cells)
+  double critical = rule.bound == FrequencyBound::mesh || explicit_drag() ? critical_step() : std::numeric_limits<double>::infinity();
+  if (std::isinf(critical))
     for (const BodyReport &body : bodies()) critical = std::min(critical, body.critical_step);
   if (rule.fixed > rule.limit * critical)
     scene_.complain("integrator.step", "must not exceed the critical step of " + rounded(rule.limit * critical) + " s (" + rounded(2 * rule.limit) +
-                                           " / omega_max of the filled cells); take a smaller step, a coarser mesh, or leave step out");
+                                           " / omega_max of the filled cells" + (explicit_drag() ? ", less for explicit drag" : "") + "); take a smaller step, a coarser mesh, or leave step out");
 }
 
 /// A picture that nobody can draw is refused before the run, not missed after it.

@@ -24,6 +24,12 @@ Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOption
   for (BoundarySource &b : scene.boundary) sources.push_back({b.name, b.group, read_boundary(b.kind)});
   integrator_settings_ = read_integrator(scene.integrator, Phases::liquid);
   integrator_ = make_integrator(integrator_settings_);
+  const bool by_euler = std::holds_alternative<EulerSettings>(integrator_settings_);
+  if (explicit_drag() && !(Phases::liquid && by_euler))
+    scene.complain("water.drag", std::string("can be \"explicit\" only ") +
+                                     (Phases::liquid ? "with integrator.kind = \"euler\": the others take drag over a step" : "where pore fluids move") + "; leave it out");
+  if (scene.water.storage == PoreStorage::rate && !(Phases::suction && !Phases::gas && by_euler))
+    scene.complain("water.storage", "can be \"rate\" only with phases = \"unsaturated\" and integrator.kind = \"euler\"; leave it out");
   if constexpr (Phases::liquid) {
     if (const std::string problem = drag_problem(integrator_settings_); !problem.empty())
       scene.complain("integrator.kind", "must be \"euler\", or \"arkode\" of order 3, where pore fluids move: " + problem +

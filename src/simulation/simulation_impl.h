@@ -91,6 +91,7 @@ class Simulation final : public AnySimulation {
   void seed_bodies();
   double soil_density(const BodySource &source, const Vec<dim> &x, double t) const;
   void follow_points();
+  bool explicit_drag() const { return scene_.water.drag == PoreDrag::at_start; }
   // time loop
   PetscErrorCode hold_supports(bool held);
   void run_stage();

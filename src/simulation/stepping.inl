@@ -53,13 +53,19 @@ double Simulation<dim, Phases>::critical_step() {
       }
       step = std::max(step, 2 / omega_max_);
     }
+  if constexpr (Phases::liquid)
+    if (explicit_drag()) {
+      double mine = motion_->drag_rate(), rate;
+      MPI_Allreduce(&mine, &rate, 1, MPI_DOUBLE, MPI_MAX, comm_);
+      step = with_explicit_drag(step, rate);
+    }
   return step;
 }
 
 template <int dim, class Phases>
 PetscErrorCode Simulation<dim, Phases>::step(double until) {
   PetscFunctionBeginUser;
-  if (critical_step_ == 0) critical_step_ = critical_step();
+  if (critical_step_ == 0 || explicit_drag()) critical_step_ = critical_step();  // drag follows saturation from step to step
   const StepRule rule = step_rule(integrator_settings_);
   if (rule.fixed > rule.limit * critical_step_)
     fail("the soil has come to cells with a critical step of " + rounded(rule.limit * critical_step_) + " s, but integrator.step = " +

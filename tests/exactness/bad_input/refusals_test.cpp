@@ -19,9 +19,10 @@ struct Fault {
 void PrintTo(const Fault &fault, std::ostream *out) { *out << fault.name; }
 
 constexpr const char *dry_part = "[mesh]\nsection = \"section.csv\"\nsize = 0.25\n[body.sand]\nregion = \"sand\"\ndensity = 2000";
-#define WET_PART                                                                                                                         \
-  "[mesh]\nsection = \"section.csv\"\nsize = 0.25\n[water]\ntable = [[0, 0.5], [2, 0.5]]\n[body.sand]\nregion = \"sand\"\nporosity = 0.4\n" \
-  "grain_density = 2600\npermeability = 1e-10"
+#define WET_PART_WITH(water)                                                                                                            \
+  "[mesh]\nsection = \"section.csv\"\nsize = 0.25\n[water]\n" water "table = [[0, 0.5], [2, 0.5]]\n[body.sand]\nregion = \"sand\"\n" \
+  "porosity = 0.4\ngrain_density = 2600\npermeability = 1e-10"
+#define WET_PART WET_PART_WITH("")
 
 const Fault faults[] = {
     // the text
@@ -234,6 +235,27 @@ const Fault faults[] = {
      "phases = \"saturated\"\n[integrator]\nomega_max = \"mesh\"\n" WET_PART,
      {"scene.toml line 5", "integrator.omega_max", "\"cells\" where pore fluids move"},
      2},
+    {"explicit_drag_with_another_integrator",
+     "scene.toml",
+     dry_part,
+     "phases = \"saturated\"\n[integrator]\nkind = \"arkode\"\n" WET_PART_WITH("drag = \"explicit\"\n"),
+     {"scene.toml line 10", "water.drag", "only with integrator.kind = \"euler\""},
+     2},
+    {"explicit_drag_where_no_water_moves",
+     "scene.toml",
+     dry_part,
+     "phases = \"drained\"\n" WET_PART_WITH("drag = \"explicit\"\n"),
+     {"scene.toml line 8", "water.drag", "only where pore fluids move"}},
+    {"storage_by_rate_in_saturated_soil",
+     "scene.toml",
+     dry_part,
+     "phases = \"saturated\"\n" WET_PART_WITH("storage = \"rate\"\n"),
+     {"scene.toml line 8", "water.storage", "only with phases = \"unsaturated\""}},
+    {"fixed_step_limit_below_one",
+     "scene.toml",
+     "[output]",
+     "[integrator]\nlimit = 0.5\n[output]",
+     {"scene.toml line 22", "integrator.limit = 0.5", "1 to"}},
     {"unknown_method_of_petsc",
      "scene.toml",
      "[output]",

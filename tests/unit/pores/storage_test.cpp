@@ -189,5 +189,18 @@ TEST(Hyperbolicity, bishops_stress_keeps_it_and_net_stress_loses_it_near_saturat
   EXPECT_EQ(lost_bishop, 0);
 }
 
+// One linearised step: right to second order where the storage hardly changes, far off where it jumps.
+TEST(NaiveStorage, is_right_far_from_saturation_and_wrong_across_it) {
+  const SoilPores soil = soil_of(silt);
+  const Liquid liquid = water();
+  const auto content = [&](double p) { return (p < 0 ? saturation(soil.retention(), -p) : 1) * liquid.density_at(p); };
+  for (const double step : {100., 10.}) {
+    const double told = content(-5e4 + step), got = content_by_rate(soil, liquid, -5e4, told);
+    EXPECT_LT(std::abs(got - told), 1e-4 * std::abs(told - content(-5e4)) * step / 10);
+  }
+  const double told = content(-1e3), got = content_by_rate(soil, liquid, 0, told);  // as if water alone had to stretch
+  EXPECT_LT(got, told - 10 * (content(0) - told));
+}
+
 }  // namespace
 }  // namespace talus

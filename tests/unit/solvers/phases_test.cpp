@@ -1,6 +1,7 @@
 // Integrators that take phases apart: drag as an implicit partition, and two clocks, on a chain of grains and water whose motion is known.
 #include <gtest/gtest.h>
 
+#include "solvers/critical_step.h"
 #include "solvers/integrators.h"
 #include "solvers/multirate.h"
 #include "springs.h"
@@ -94,6 +95,43 @@ TEST(Euler, takes_drag_implicitly) {
     Euler integrator(settings);
     run_to(integrator, motion, 2 / motion.largest_frequency(), end);
     EXPECT_LT(motion.error(exact), 0.02) << drag;
+  }
+}
+
+/// Drag among the forces, from the velocities at the start of a step.
+class DraggedFirst : public WetSprings {
+ public:
+  DraggedFirst(double skeleton, double pores, double drag) : WetSprings(skeleton, pores, 0), drag_(drag) {}
+  PetscErrorCode acceleration(double t, const double *u, const double *v, double *a) override {
+    WetSprings::acceleration(t, u, v, a);
+    for (int i = 0; i < count; ++i) {
+      const double force = drag_ * (v[count + i] - v[i]);
+      a[i] += force / grains, a[count + i] -= force / water;
+    }
+    return 0;
+  }
+
+ private:
+  double drag_;
+};
+
+// The formula is safe where waves and drag both matter, and sharp where one of them does (docs/theory/pores.md (6.1a)).
+TEST(Euler, with_explicit_drag_holds_up_to_the_step_of_both_limits) {
+  for (const double drag : {1e-3, 0.1, 1., 1e1, 1e3, 1e6}) {
+    const auto speed = [&](double share) {
+      DraggedFirst motion(1, 4, drag);
+      for (int i = 0; i < motion.size(); ++i) motion.speed[i] = i % 3 - 1;
+      EulerSettings settings;
+      settings.step = share * with_explicit_drag(2 / motion.largest_frequency(), drag * (1 / WetSprings::grains + 1 / WetSprings::water));
+      Euler integrator(settings);
+      run_to(integrator, motion, 1, 2000 * settings.step);
+      double largest = 0;
+      for (double v : motion.speed) largest = !(std::abs(v) < largest) ? std::abs(v) : largest;
+      return largest;
+    };
+    EXPECT_LT(speed(0.999), 100) << drag;
+    const bool alone = drag < 0.01 || drag > 5;
+    EXPECT_FALSE(speed(alone ? 1.03 : 1.5) < 1e4) << drag;
   }
 }
 
