@@ -1,14 +1,15 @@
 #!/usr/bin/python3
 """Where the scheme for pore water holds: stable, oscillating or failed, over permeability, stiffness of the water, particles per cell and saturation.
 
-    study.py TALUS [map steps wetting]     runs all or some of them (minutes), writes map.csv, steps.csv and wetting.csv
-    study.py                               redraws map.png, steps.png and wetting.png from them
+    study.py TALUS [map steps wetting choices]     runs all or some of them (minutes), writes map.csv, steps.csv, wetting.csv and choices.csv
+    study.py                                       redraws map.png, steps.png, wetting.png and choices.png from them
 
 *map*: tests/verification/terzaghi, a saturated layer under a load whose undrained pressures are given at the start, for 400 steps at 0.6 of the critical step.
 Noise is the rms scatter of pressure along rows of cells, over the load's pressure: the exact solution has none.
 *steps*: the step at which that scene loses its stability, beside the one that the program computes; and the same for a string of elements in which drag may be
 explicit, as it may not be in the program, beside a formula for both limits together.
 *wetting*: wetting.toml, through saturation and back.
+*choices*: every smoothing of pressures with every integration, on Terzaghi's layer, on strip.toml (a strip load on undrained soil) and on ../saturated_column.
 """
 
 import argparse
@@ -16,6 +17,7 @@ import csv
 import functools
 import pathlib
 import re
+import resource
 import subprocess
 import sys
 import tempfile
@@ -30,13 +32,18 @@ import matplotlib.pyplot as plt  # noqa: E402
 import talus_style as style  # noqa: E402
 from talus_results import Results  # noqa: E402
 
-TERZAGHI, WETTING = ROOT / "tests/verification/terzaghi/scene.toml", HERE / "wetting.toml"
+TERZAGHI, WETTING, STRIP = ROOT / "tests/verification/terzaghi/scene.toml", HERE / "wetting.toml", HERE / "strip.toml"
+COLUMN = ROOT / "docs/gallery/saturated_column/scene.toml"
 PERMEABILITY = [1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-14, 1e-17]
 STIFFNESS = [20e3, 1e6, 20e6, 200e6, 2.2e9]
 PARTICLES = [1, 3, 6, 16]
 SHOWN = 20e6  # stiffness over which particles per cell are varied
 NOISY = 0.05  # of the pressure: more is called oscillating
 LARGEST = [0.8, 0.9, 1, 1.1, 1.25, 1.4, 1.6, 1.8, 2, 2.5, 3, 4]  # steps over the critical one that are tried
+SMOOTHINGS, INTEGRATIONS = ("none", "nodal"), ("blended", "particle", "mixed", "cell")
+CELLS = {"layer": (0.1, 0.05, 0.025), "settled layer": (0.1, 0.05, 0.025), "strip": (0.125, 0.0625, 0.03125), "column": (0.01, 0.005)}  # sizes [m]
+SETTLED = 0.03  # of the layer's height
+STRIP_LOAD, COLUMN_WATER = 10e3, 981.0  # pressures that errors and noise are compared with [Pa]
 POROSITY, MODULUS, LOAD, GRAINS, WATER, VISCOSITY = 0.3, 10e6, 1e3, 2650.0, 1000.0, 1e-3
 
 
@@ -224,6 +231,69 @@ def wetting(talus):
     write("wetting.csv", ("variant", "time_s", "saturation", "scatter_Pa", "deviator_Pa"), rows)
 
 
+def roughness(snapshot, size):
+    """Scatter of pressure about a plane through each square of three cells by three [Pa]."""
+    x, p = snapshot.position()[:, :2], snapshot.column("pore_pressure").values[:, 0]
+    square, rest = np.unique(np.floor(x / (3 * size)).astype(int), axis=0, return_inverse=True)[1].ravel(), []
+    for k in range(square.max() + 1):
+        inside = square == k
+        if inside.sum() > 8:
+            plane = np.column_stack([x[inside] - x[inside].mean(axis=0), np.ones(inside.sum())])
+            rest.append(p[inside] - plane @ np.linalg.lstsq(plane, p[inside], rcond=None)[0])
+    return np.sqrt((np.concatenate(rest) ** 2).mean())
+
+
+def terzaghi(y, height, seconds):
+    """p / p_0 at a height over the base of the scene's layer, whose grains may have settled to a lower height."""
+    c_v = 1e-7 / (1 / MODULUS + (1 - (1 - POROSITY) / height) / 75e6)
+    M = (2 * np.arange(200) + 1) * np.pi / 2
+    return (2 / M * np.sin(np.outer(1 - y / height, M)) * np.exp(-M * M * c_v * seconds / height**2)).sum(axis=1)
+
+
+def strip_reference(talus, folder):
+    """Settlement under the load [m] and pressure as a function of place [Pa], by quadratic finite elements of 1/64 m."""
+    from scipy.interpolate import NearestNDInterpolator
+
+    results = run(talus, STRIP, ["mesh.size=0.015625", "stage.0.kind=consolidation", "stage.0.damping=0"], folder)
+    last = results.snapshots[-1]
+    return results.history.columns["load_displacement_y_m"][-1], NearestNDInterpolator(last.position()[:, :2], last.column("pore_pressure").values[:, 0])
+
+
+def measured(case, size, results, reference):
+    """Error of what the case asks for and noise of pressure, both over their scale, and the range of pressure [Pa]."""
+    last = results.snapshots[-1]
+    p, x = last.column("pore_pressure").values[:, 0], last.position()
+    if case.endswith("layer"):
+        p0, height = LOAD * 250 / 260, 1 - SETTLED * (case == "settled layer")
+        return np.sqrt(((p / p0 - terzaghi(x[:, 1], height, last.time)) ** 2).mean()), noise(last, int(1 / size)) / p0, p.min(), p.max()
+    if case == "strip":
+        settlement, pressure = reference
+        return results.history.columns["load_displacement_y_m"][-1] / settlement - 1, np.sqrt(((p - pressure(x[:, :2])) ** 2).mean()) / STRIP_LOAD, p.min(), p.max()
+    rough = [roughness(s, size) for s in results.snapshots if s.time > 0]
+    return np.quantile(x[:, 0], 0.995), np.mean(rough) / COLUMN_WATER, p.min(), p.max()
+
+
+def choices(talus):
+    tenth = ["stage.0.duration=0.104"]  # T = 0.1
+    scenes = {"layer": (TERZAGHI, tenth), "settled layer": (TERZAGHI, [*tenth, f'body.soil.displacement=["0", "-{SETTLED} * y"]']), "strip": (STRIP, []), "column": (COLUMN, [])}
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        reference = strip_reference(talus, folder)
+    print("strip: settlement", reference[0], flush=True)
+    for case, (scene, words) in scenes.items():
+        for size in CELLS[case]:
+            for smoothing in SMOOTHINGS:
+                for integration in INTEGRATIONS:
+                    with tempfile.TemporaryDirectory() as folder:
+                        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+                        results = run(talus, scene, [*words, f"mesh.size={size}", f"transfer.pore_smoothing={smoothing}", f"transfer.integration={integration}"], folder)
+                        seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+                        found = [f"{v:.4g}" for v in measured(case, size, results, reference)] if results else ["failed"] * 4
+                    rows.append((case, f"{size:g}", smoothing, integration, *found, f"{seconds:.1f}"))
+                    print(*rows[-1], flush=True)
+    write("choices.csv", ("case", "size_m", "smoothing", "integration", "answer", "noise", "lowest_Pa", "highest_Pa", "processor_s"), rows)
+
+
 def write(name, head, rows):
     with open(HERE / name, "w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
@@ -304,7 +374,31 @@ def draw_wetting():
     style.save(figure, HERE / "wetting.png")
 
 
-STUDIES = {"map": (map_of, draw_map), "steps": (steps_of, draw_steps), "wetting": (wetting, draw_wetting)}
+def draw_choices():
+    rows, colour = read("choices.csv"), dict(zip(INTEGRATIONS, style.LINES))
+    figure, grid = plt.subplots(1, 5, figsize=(14, 3.5))
+    panels = (("settled layer", "answer", "settled layer: rms error of p, T = 0.1 [% of p₀]"), ("strip", "noise", "strip: rms error of p [% of the load]"), ("strip", "answer", "strip: error of settlement [%]"),
+              ("column", "noise", "column: scatter of p [% of ρgH]"), ("column", "answer", "column: 99.5 % of the grains within [cm]"))
+    for axes, (case, key, title) in zip(grid, panels):
+        for smoothing, line in zip(SMOOTHINGS, ("--", "-")):
+            for integration in INTEGRATIONS:
+                mine = [r for r in rows if (r["case"], r["smoothing"], r["integration"]) == (case, smoothing, integration)]
+                held = [(100 * float(r["size_m"]), 100 * abs(float(r[key]))) for r in mine if r[key] != "failed"]
+                axes.plot(*zip(*held), line, color=colour[integration], marker="o", ms=4, mfc="white" if smoothing == "none" else None, lw=1.2 if integration != "blended" else 2.4, label=f"{integration}, {'smoothed' if smoothing == 'nodal' else 'as they are'}")
+        failed = sorted({100 * float(r["size_m"]) for r in rows if r["case"] == case and r[key] == "failed"})
+        sizes = [100 * size for size in CELLS[case]]
+        axes.set(xscale="log", yscale="linear" if (case, key) == ("column", "answer") else "log", xlabel="cells [cm]", xlim=(0.8 * min(sizes), 1.25 * max(sizes)))
+        axes.set_xticks(sizes, [f"{size:g}" for size in sizes])
+        axes.minorticks_off()
+        axes.set_title(title, loc="left", fontsize=8)
+        if failed or case == "strip":
+            axes.text(0.05, 0.5 if failed else 0.3, "all integrations alike" if case == "strip" else "as they are: failed at " + ", ".join(f"{size:g} cm" for size in failed), transform=axes.transAxes, fontsize=7)
+    figure.legend(*grid[0].get_legend_handles_labels(), loc="lower center", ncols=8, fontsize=7.5)
+    figure.tight_layout(rect=(0, 0.06, 1, 1))
+    style.save(figure, HERE / "choices.png")
+
+
+STUDIES = {"map": (map_of, draw_map), "steps": (steps_of, draw_steps), "wetting": (wetting, draw_wetting), "choices": (choices, draw_choices)}
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
