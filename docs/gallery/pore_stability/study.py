@@ -204,16 +204,21 @@ def steps_of(talus):
 
 
 def deviator(snapshot, row):
-    xx, yy, zz, xy = snapshot.column("stress").values[row]
-    return np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * xy**2)
+    xx, yy, zz, *shear = snapshot.column("stress").values[row]
+    return np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * np.square(shear).sum())
 
 
+WEIGHT = "-9.81 * 2071 * (1 - y)"  # of wetting.toml
+IN_3D = ["dimension=3", "boundary.front.kind=roller", "boundary.back.kind=roller",
+         f'body.soil.stress=["{WEIGHT} * 0.33 / 0.67", "{WEIGHT}", "{WEIGHT} * 0.33 / 0.67", "0", "0", "0"]']
 VARIANTS = {
     "defaults": [],
     "pressures as they are": ["transfer.pore_smoothing=none"],
     "volumes of particles, remap every step, no cure": ["transfer.pore_smoothing=none", "transfer.integration=particle", "transfer.average_stress=false", "transfer.locking=none",
                                                          "transfer.remap_interval=0", "transfer.relaxation=0"],
     "defaults, soil settled by 1 mm before": ['body.soil.displacement=["0", "-0.001 * y"]'],
+    "defaults, slice of tetrahedra": [*IN_3D, "mesh.thickness=0.05"],
+    "defaults, tetrahedra of 7.5 cm, 15 cm thick": [*IN_3D, "mesh.thickness=0.15", "mesh.layers=0", "mesh.size=0.075"],
 }
 
 
@@ -224,7 +229,7 @@ def wetting(talus):
             if not run(talus, WETTING, words, folder):
                 print(name, "failed")
             results = Results(folder)
-            followed = np.linalg.norm(results.snapshots[0].position() - (0.15, 0.5), axis=1).argmin()
+            followed = np.linalg.norm(results.snapshots[0].position()[:, :2] - (0.15, 0.5), axis=1).argmin()
             for s in results.snapshots:
                 rows.append((name, f"{s.time:.3f}", f"{s.column('saturation').values.mean():.5f}", f"{noise(s):.5g}", f"{deviator(s, followed):.6g}"))
             print(name, rows[-1], flush=True)
@@ -360,7 +365,7 @@ def draw_steps():
 def draw_wetting():
     rows = read("wetting.csv")
     figure, (left, middle, right) = plt.subplots(1, 3, figsize=(11.5, 3.4))
-    for colour, name in zip((style.LINES[0], style.LINES[3], style.LINES[1], style.LINES[4]), VARIANTS):
+    for colour, name in zip((style.LINES[0], style.LINES[3], style.LINES[1], style.LINES[4], style.LINES[2], style.LINES[5]), VARIANTS):
         mine = [r for r in rows if r["variant"] == name]
         t = [float(r["time_s"]) for r in mine]
         left.plot(t, [float(r["saturation"]) for r in mine], color=colour, label=name)
