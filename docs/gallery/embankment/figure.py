@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Draws wetting and sliding of the embankment from a run of its scene, and takes its stress paths:  figure.py DIR"""
+"""Draws wetting and sliding of the embankment from a run of its scene, and takes its stress paths:  figure.py DIR
+States what the README compares of a run, on triangles or in a slice:                                figure.py DIR --numbers"""
 
 import argparse
 import pathlib
@@ -19,6 +20,8 @@ from talus_sections import spacing_of  # noqa: E402
 from talus_tiles import Frame, tiles  # noqa: E402
 
 TIMES = (18, 43, 83)  # [s]
+PRESSED = (13, 18, 23, 26, 29, 32, 43, 60, 83)  # at which pressures are stated [s]
+TOE, MIDDLE = 30, (22.2, 10)  # [m]
 
 
 def draw(results, path):
@@ -40,10 +43,31 @@ def draw(results, path):
     style.save(figure, path)
 
 
+def state_numbers(results):
+    water = results.history.columns["water_error_kg"], results.history.columns["water_kg"]
+    print(f"ledger of water: error over water {np.abs(water[0]).max() / water[1][0]:.1e}")
+    for t in PRESSED:
+        snapshot = min(results.snapshots, key=lambda each: abs(each.time - t))
+        p, share = (snapshot.column(name).values[:, 0] for name in ("pore_pressure", "saturation"))
+        full = share > 0.999
+        print(f"{t} s: mean saturation {share.mean():.4f}; largest pressure {p.max() / 1e3:.0f} kPa, of full cells {p[full].max() / 1e3 if full.any() else 0:.0f} kPa; "
+              f"{(p[share < 0.99] > 5e3).sum()} particles above 5 kPa below S = 0.99; largest displacement {snapshot.scalar('displacement')[0].max():.3f} m")
+    start, last = results.snapshots[min(3, len(results.snapshots) - 1)].position(), results.snapshots[-1]
+    moved, level = last.scalar("displacement")[0], last.column("displacement").values[:, 0]
+    middle = np.flatnonzero(np.linalg.norm(start[:, :2] - MIDDLE, axis=1) < 1.2)
+    most = middle[moved[middle].argmax()]
+    print(f"end: {100 * (moved > 1).mean():.1f} % of the soil moved more than 1 m, to {last.position()[moved > 1, 0].max() - TOE:.1f} m beyond the toe; at mid-height {moved[most]:.1f} m, {level[most]:.1f} m of it level")
+
+
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", metavar="DIR", type=pathlib.Path, help="results of a run")
-    results = Results(parser.parse_args().folder)
+    parser.add_argument("--numbers", action="store_true", help="print, draw nothing")
+    given = parser.parse_args()
+    results = Results(given.folder)
+    if given.numbers:
+        state_numbers(results)
+        sys.exit()
     draw(results, HERE / "rain.png")
     plt.rcParams["savefig.dpi"] = 120
     [(_, paths)] = draw_stress_paths(results, results.folder / "pictures")
