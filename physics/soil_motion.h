@@ -150,7 +150,7 @@ class SoilMotion final : public Motion {
   const double *find_suction(size_t body);
   /// Does velocity relax between remaps? Otherwise only remaps relax it.
   bool relaxes() const { return transfer_.remap_interval > 0 && relaxation_time_ > 0; }
-  typename Conditions<dim>::Inertia inertia(double gamma) const;
+  typename Conditions<dim>::Pores contact(double gamma);
   PetscErrorCode back_and_forth(const Vec<dim> *in, Vec<dim> *out);
   double elastic_force(const Vec<dim> *x, Vec<dim> *force) const;
   void constrain(double t, Vec<dim> *v);

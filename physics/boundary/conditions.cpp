@@ -225,8 +225,8 @@ void Conditions<dim>::project(const FilledGrid<dim> &, const Vec<dim> *v, Vec<di
 }
 
 template <int dim>
-void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Inertia &inertia) {
-  const auto mass_of = [&](int node) -> Square<dim> { return inertia ? inertia(node) : Square<dim>(grid.mass[node] * Square<dim>::Identity()); };
+void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Pores &pores) {
+  const auto mass_of = [&](int node) -> Square<dim> { return pores.inertia ? pores.inertia(node) : Square<dim>(grid.mass[node] * Square<dim>::Identity()); };
   const auto account = [&](int node, int source, const Vec<dim> &before) {
     if (!counted_[node]) return;
     Reaction r{node, source, {}};
@@ -252,7 +252,9 @@ void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &gri
     c.presses = into > 0;
     Contact &contact = *c.contact;
     contact.since_pressed = c.presses ? 0 : contact.since_pressed + gamma;
-    if (c.presses) contact.capacity += std::tan(base.friction_angle(t)) * map<dim>(n).dot(mass * map<dim>(n)) * into;
+    const double slope = std::tan(base.friction_angle(t));
+    if (c.presses) contact.capacity += slope * map<dim>(n).dot(mass * map<dim>(n)) * into;
+    if (pores.thrust && contact.since_pressed <= friction_delay_) contact.capacity = std::max(0., contact.capacity - slope * gamma * pores.thrust(c.node, n));
     const double rubbing = answer * contact.capacity, speed = std::sqrt(dot<dim>(slip, slip));
     const double m = speed > 0 ? map<dim>(slip).dot(mass * map<dim>(slip)) / (speed * speed) : 0;
     const double hold = rubbing + (contact.since_pressed <= friction_delay_ ? base.adhesion(t) * c.area * gamma : 0);

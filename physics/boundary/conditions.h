@@ -39,10 +39,13 @@ class Conditions {
   void constrain(double t, const FilledGrid<dim> &grid, Vec<dim> *v, bool sticking) const;
   /// Removes from an acceleration or force the part that supports take up, where nodes rest on them.
   void project(const FilledGrid<dim> &grid, const Vec<dim> *v, Vec<dim> *force) const;
-  /// Inertia of a node against what holds it [kg], where that is more than the grid's mass.
-  using Inertia = std::function<Square<dim>(int node)>;
+  /// What fluids in the pores add to contact at a node; empty without them.
+  struct Pores {
+    std::function<Square<dim>(int node)> inertia;                    ///< against what holds the node, in place of the grid's mass [kg]
+    std::function<double(int node, const Vec<dim> &normal)> thrust;  ///< with which they press on a base, and which grains do not rub with [N]
+  };
   /// Implicit in a step gamma: dashpots, contact with friction, prescribed velocities. Sums up the reactions.
-  void resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Inertia &inertia = {});
+  void resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Pores &pores = {});
 
   /// Sums up the work of boundaries in an accepted step with nodal displacements `u`.
   void follow(const Vec<dim> *u);

@@ -83,6 +83,8 @@ class PoreFluid {
   void resist(double step, const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *solid, const Vec<dim> *fluid) const;
   /// Inertia of the node against a support of the solid, after `resist` over `step` [kg].
   Square<dim> inertia(double step, const FilledGrid<dim> &grid, const PoreConditions<dim> &conditions, int node) const;
+  /// Force with which the pores press on a wall of outer normal n at a node, docs/theory/pores.md (5.3) [N].
+  double thrust(const Vec<dim> &gravity, int node, const Vec<dim> &n) const;
   /// The fluids' after it, the solid now being where supports want it; then boundaries.
   void follow(double step, const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid, Vec<dim> *fluid) const;
   void constrain(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid, Vec<dim> *fluid) const;

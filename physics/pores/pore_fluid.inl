@@ -523,6 +523,14 @@ Square<dim> PoreFluid<dim, Phases>::inertia(double step, const FilledGrid<dim> &
   return held;
 }
 
+/// The sum of w p grad N is the pressure on the wall less its gradient over the cells beside it; along a wall's normal that is the liquid's weight.
+template <int dim, class Phases>
+double PoreFluid<dim, Phases>::thrust(const Vec<dim> &gravity, int i, const Vec<dim> &n) const {
+  double push = 0, weight = 0;
+  for (int d = 0; d < dim; ++d) push += nodes_[i].push[mixture][d] * n[d], weight += liquid_.density * nodes_[i].volume() * gravity[d] * n[d];
+  return Phases::suction && push <= 0 ? push : push + weight;
+}
+
 template <int dim, class Phases>
 void PoreFluid<dim, Phases>::follow(double step, const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid, Vec<dim> *fluid) const {
   const int nodes = frame.grid.node_count();
@@ -728,7 +736,7 @@ void PoreFluid<dim, Phases>::follow_rates(const Frame &frame) {
 
 template <int dim, class Phases>
 PoreReport PoreFluid<dim, Phases>::report(int body, int point, int cell, bool surface) const {
-  const double *p = cells_[cell].smooth, gas = Phases::gas ? p[fluids - 1] : 0, share = points_[body].share[point];
+  const double *p = smoothed(cell) ? cells_[cell].smooth : cells_[cell].pressure, gas = Phases::gas ? p[fluids - 1] : 0, share = points_[body].share[point];
   double suction = 0;
   if constexpr (Phases::suction) suction = points_[body].suction[point];
   return {p[0], gas, suction, 1 - share, surface};

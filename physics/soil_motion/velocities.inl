@@ -6,10 +6,11 @@
 
 namespace talus {
 
-/// What supports hold of a node in a step gamma: fluids beside the skeleton, where there are any.
+/// What supports feel in a step gamma of fluids, where there are any.
 template <int dim, class Phases>
-typename Conditions<dim>::Inertia SoilMotion<dim, Phases>::inertia(double gamma) const {
-  if constexpr (Phases::liquid) return [this, gamma](int i) { return fluid_.inertia(gamma, grid_, pore_conditions_, i); };
+typename Conditions<dim>::Pores SoilMotion<dim, Phases>::contact(double gamma) {
+  if constexpr (Phases::liquid)
+    return {[this, gamma](int i) { return fluid_.inertia(gamma, grid_, pore_conditions_, i); }, [this, gravity = pore_frame(false).gravity](int i, const Vec<dim> &n) { return fluid_.thrust(gravity, i, n); }};
   return {};
 }
 
@@ -18,7 +19,7 @@ PetscErrorCode SoilMotion<dim, Phases>::drag(double t, double gamma, double *v) 
   PetscFunctionBeginUser;
   Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v);
   if constexpr (Phases::liquid) fluid_.resist(gamma, pore_frame(false), pore_conditions_, velocity, velocity + grid_.node_count());
-  conditions_.resolve(loading.time_at(t), gamma, grid_, velocity, inertia(gamma));
+  conditions_.resolve(loading.time_at(t), gamma, grid_, velocity, contact(gamma));
   if constexpr (Phases::liquid) fluid_.follow(gamma, pore_frame(false), pore_conditions_, velocity, velocity + grid_.node_count());
   PetscFunctionReturn(0);
 }
@@ -42,7 +43,7 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::hold(double t, double gamma, double *v) {
   PetscFunctionBeginUser;
   Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v);
-  conditions_.resolve(loading.time_at(t), gamma, grid_, velocity, inertia(gamma));
+  conditions_.resolve(loading.time_at(t), gamma, grid_, velocity, contact(gamma));
   if constexpr (Phases::liquid) fluid_.constrain(pore_frame(false), pore_conditions_, velocity, velocity + grid_.node_count());
   PetscFunctionReturn(0);
 }

@@ -44,6 +44,7 @@
 #include "tests/verification/water_table/exact.h"
 #include "tests/verification/wet_flight/exact.h"
 #include "tests/verification/wet_hand_over/exact.h"
+#include "tests/verification/wet_incline/exact.h"
 
 namespace talus {
 
@@ -63,6 +64,7 @@ inline constexpr LadderEntry ladder[] = {
      rungs::elastic_bar},
     {"incline_block", "verification", "block on a rough plane: sliding, sticking, adhesion, friction that drops",
      rungs::incline_block},
+    {"wet_incline", "verification", "saturated block on a rough plane: friction without what pore pressure bears", rungs::wet_incline},
     {"loaded_face", "verification", "loads on faces that move through several cells", rungs::loaded_face},
     {"leaving_waves", "verification", "pulses that leave through non-reflecting faces", rungs::leaving_waves},
     {"water_table", "verification", "column below open water, and below a water table that falls", rungs::water_table},
