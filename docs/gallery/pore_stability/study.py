@@ -1,22 +1,22 @@
 #!/usr/bin/python3
 """Where the scheme for pore water holds: stable, oscillating or failed, over permeability, stiffness of the water, particles per cell and saturation.
 
-    study.py TALUS [map steps wetting choices]     runs all or some of them (minutes), writes map.csv, steps.csv, wetting.csv and choices.csv
-    study.py                                       redraws map.png, steps.png, wetting.png and choices.png from them
+    study.py TALUS [map steps wetting storage choices]     runs all or some of them (half an hour), writes map.csv, steps.csv, wetting.csv, storage.csv and choices.csv
+    study.py                                               redraws map.png, steps.png, wetting.png and choices.png from them
 
-*map*: tests/verification/terzaghi, a saturated layer under a load whose undrained pressures are given at the start, for 400 steps at 0.6 of the critical step.
-Noise is the rms scatter of pressure along rows of cells, over the load's pressure: the exact solution has none.
-*steps*: the step at which that scene loses its stability, beside the one that the program computes; and the same for a string of elements in which drag may be
-explicit, as it may not be in the program, beside a formula for both limits together.
-*wetting*: wetting.toml, through saturation and back.
+*map*: tests/verification/terzaghi, a saturated layer under a load whose undrained pressures are given at the start, for 400 steps at 0.6 of the critical step
+without drag, whatever the drag. Noise is the rms scatter of pressure along rows of cells, over the load's pressure: the exact solution has none.
+*steps*: the step at which that scene loses its stability with drag explicit and implicit, beside the one that the program computes, a formula for both limits
+together, and the same for a string of elements.
+*wetting*: wetting.toml, through saturation and back; *storage*: its first 0.2 s with pressure by its rate, over the length of the step.
 *choices*: every smoothing of pressures with every integration, on Terzaghi's layer, on strip.toml (a strip load on undrained soil) and on ../saturated_column.
 """
 
 import argparse
 import csv
 import functools
+import json
 import pathlib
-import re
 import resource
 import subprocess
 import sys
@@ -39,7 +39,8 @@ STIFFNESS = [20e3, 1e6, 20e6, 200e6, 2.2e9]
 PARTICLES = [1, 3, 6, 16]
 SHOWN = 20e6  # stiffness over which particles per cell are varied
 NOISY = 0.05  # of the pressure: more is called oscillating
-LARGEST = [0.8, 0.9, 1, 1.1, 1.25, 1.4, 1.6, 1.8, 2, 2.5, 3, 4]  # steps over the critical one that are tried
+LOWEST, HIGHEST = 0.5, 8  # steps over the critical one that are tried
+EXPLICIT = "water.drag=explicit"
 SMOOTHINGS, INTEGRATIONS = ("none", "nodal"), ("blended", "particle", "mixed", "cell")
 CELLS = {"layer": (0.1, 0.05, 0.025), "settled layer": (0.1, 0.05, 0.025), "strip": (0.125, 0.0625, 0.03125), "column": (0.01, 0.005)}  # sizes [m]
 SETTLED = 0.03  # of the layer's height
@@ -60,8 +61,13 @@ def run(talus, scene, words, folder):
 @functools.cache
 def critical_step(talus, words):
     """What `check` states [s]."""
-    end = subprocess.run([talus, "check", TERZAGHI, *options(words)], capture_output=True, text=True)
-    return float(re.search(r"critical ([0-9.e+-]+) s", end.stdout).group(1))
+    end = subprocess.run([talus, "check", TERZAGHI, "--json", *options(words)], capture_output=True, text=True)
+    return json.loads(end.stdout)["critical_step_s"]
+
+
+def of_step(step):
+    """Overrides for a fixed step, however long."""
+    return [f"integrator.step={step!r}", "integrator.limit=1e12"]
 
 
 def layer(stiffness, k, particles, smoothing):
@@ -148,40 +154,49 @@ def string_limit(stiffness, k, h, implicit):
     return low
 
 
-def length_of(stiffness, step):
-    """Length of elements whose step without drag is that of a mesh [m]."""
-    return step / np.sqrt(8 / inverse_square(stiffness, 1.0))
-
-
 # ---- studies ----
 
 
 def map_of(talus):
     rows = []
-    for smoothing in ("none", "nodal"):
+    for drag, smoothing in (("explicit", "none"), ("implicit", "none"), ("implicit", "nodal")):
         for stiffness in STIFFNESS:
             for particles in PARTICLES if stiffness == SHOWN else [3]:
                 for k in PERMEABILITY:
                     words, pressure = layer(stiffness, k, particles, smoothing)
                     step = critical_step(talus, words)
                     with tempfile.TemporaryDirectory() as folder:
-                        results = run(talus, TERZAGHI, [*words, f"stage.0.duration={240 * step}", f"output.history_interval={100 * step}"], folder)
+                        results = run(talus, TERZAGHI, [*words, f"water.drag={drag}", *of_step(0.6 * step), f"stage.0.duration={240 * step!r}", f"output.history_interval={100 * step!r}"], folder)
                         worst = noise(results.snapshots[-1]) / pressure if results else np.inf
                     state = "failed" if not worst < 10 else "oscillating" if worst > NOISY else "stable"
-                    explicit = explicit_limit(stiffness, k, length_of(stiffness, step)) / step
-                    rows.append((smoothing, particles, f"{stiffness:g}", f"{k:g}", f"{step:.4g}", f"{explicit:.2g}", f"{worst:.2g}", state))
+                    rows.append((drag, smoothing, particles, f"{stiffness:g}", f"{k:g}", f"{step:.4g}", f"{worst:.2g}", state))
                     print(*rows[-1], flush=True)
-    write("map.csv", ("smoothing", "particles", "K_l_Pa", "k_m2", "critical_step_s", "explicit_over_critical", "noise", "state"), rows)
+    write("map.csv", ("drag", "smoothing", "particles", "K_l_Pa", "k_m2", "critical_step_s", "noise", "state"), rows)
 
 
 def stable_at(talus, words, step, count=1500):
-    """Does the layer keep its energy over so many steps of a length?"""
+    """Does the layer keep its energy over so many steps of a length? Waves that set out from rest gain some, but little beside what the load stores."""
     with tempfile.TemporaryDirectory() as folder:
-        results = run(talus, TERZAGHI, [*words, f"integrator.step={step}", f"stage.0.duration={count * step}", f"output.history_interval={count / 50 * step}"], folder)
+        results = run(talus, TERZAGHI, [*words, *of_step(step), f"stage.0.duration={count * step!r}", f"output.history_interval={count / 50 * step!r}"], folder)
         if not results:
             return False
         kinetic = results.history.columns["kinetic_J"]
-        return bool(np.isfinite(kinetic).all() and kinetic[-5:].max() <= 2 * kinetic[: len(kinetic) // 2].max())
+        little = 1e-3 * LOAD**2 / (2 * MODULUS)  # [J/m3], and a cubic metre
+        return bool(np.isfinite(kinetic).all() and kinetic[-5:].max() <= max(little, 2 * kinetic[: len(kinetic) // 2].max()))
+
+
+def largest_stable(talus, words, step):
+    """Largest step over `step` that keeps its energy, within 3 %."""
+    low, high = LOWEST, HIGHEST
+    if not stable_at(talus, words, low * step):
+        return 0
+    while high > 1.03 * low:
+        middle = np.sqrt(low * high)
+        if stable_at(talus, words, float(middle * step)):
+            low = middle
+        else:
+            high = middle
+    return low
 
 
 def steps_of(talus):
@@ -190,17 +205,16 @@ def steps_of(talus):
         free = np.sqrt(8 / inverse_square(stiffness, h))
         for k in PERMEABILITY:
             row = [f"{stiffness:g}", f"{k:g}", *(f"{step / free:.3g}" for step in (explicit_limit(stiffness, k, h), string_limit(stiffness, k, h, False), string_limit(stiffness, k, h, True)))]
-            for smoothing in ("none", "nodal"):
-                words, _ = layer(stiffness, k, 3, smoothing)
-                step, held = critical_step(talus, words), 0
-                for factor in LARGEST:
-                    if not stable_at(talus, words, factor * step):
-                        break
-                    held = factor
-                row.append(f"{held:g}")
+            for drag, smoothing in (("explicit", "none"), ("implicit", "none"), ("implicit", "nodal")):
+                words = (*layer(stiffness, k, 3, smoothing)[0], f"water.drag={drag}")
+                step = critical_step(talus, words)
+                share = step / critical_step(talus, layer(stiffness, k, 3, smoothing)[0])
+                if drag == "explicit":
+                    row.append(f"{share:.3g}")
+                row.append(f"{share * largest_stable(talus, words, step):.3g}")
             rows.append(row)
             print(*row, flush=True)
-    write("steps.csv", ("K_l_Pa", "k_m2", "explicit_formula", "explicit_string", "implicit_string", "program_unsmoothed", "program_smoothed"), rows)
+    write("steps.csv", ("K_l_Pa", "k_m2", "explicit_formula", "explicit_string", "implicit_string", "explicit_stated", "explicit_program", "implicit_program", "implicit_program_smoothed"), rows)
 
 
 def deviator(snapshot, row):
@@ -211,15 +225,24 @@ def deviator(snapshot, row):
 WEIGHT = "-9.81 * 2071 * (1 - y)"  # of wetting.toml
 IN_3D = ["dimension=3", "boundary.front.kind=roller", "boundary.back.kind=roller",
          f'body.soil.stress=["{WEIGHT} * 0.33 / 0.67", "{WEIGHT}", "{WEIGHT} * 0.33 / 0.67", "0", "0", "0"]']
+UNCURED = ["transfer.pore_smoothing=none", "transfer.integration=particle", "transfer.average_stress=false", "transfer.locking=none", "transfer.remap_interval=0",
+           "transfer.relaxation=0"]
+BY_RATE = [*UNCURED, "water.storage=rate"]
 VARIANTS = {
     "defaults": [],
     "pressures as they are": ["transfer.pore_smoothing=none"],
-    "volumes of particles, remap every step, no cure": ["transfer.pore_smoothing=none", "transfer.integration=particle", "transfer.average_stress=false", "transfer.locking=none",
-                                                         "transfer.remap_interval=0", "transfer.relaxation=0"],
+    "volumes of particles, remap every step, no cure": UNCURED,
+    "the same, pressure by its rate": BY_RATE,
     "defaults, soil settled by 1 mm before": ['body.soil.displacement=["0", "-0.001 * y"]'],
     "defaults, slice of tetrahedra": [*IN_3D, "mesh.thickness=0.05"],
     "defaults, tetrahedra of 7.5 cm, 15 cm thick": [*IN_3D, "mesh.thickness=0.15", "mesh.layers=0", "mesh.size=0.075"],
 }
+FRACTIONS = [0.6, 0.4, 0.3, 0.2, 0.15, 0.1]  # of the critical step
+
+
+def followed(results):
+    """Row of the particle at half height."""
+    return np.linalg.norm(results.snapshots[0].position()[:, :2] - (0.15, 0.5), axis=1).argmin()
 
 
 def wetting(talus):
@@ -229,11 +252,25 @@ def wetting(talus):
             if not run(talus, WETTING, words, folder):
                 print(name, "failed")
             results = Results(folder)
-            followed = np.linalg.norm(results.snapshots[0].position()[:, :2] - (0.15, 0.5), axis=1).argmin()
+            row = followed(results)
+            lost = -results.history.columns["water_error_kg"]
             for s in results.snapshots:
-                rows.append((name, f"{s.time:.3f}", f"{s.column('saturation').values.mean():.5f}", f"{noise(s):.5g}", f"{deviator(s, followed):.6g}"))
+                rows.append((name, f"{s.time:.3f}", f"{s.column('saturation').values.mean():.5f}", f"{noise(s):.5g}", f"{deviator(s, row):.6g}", f"{np.interp(s.time, results.history.time, lost):.4g}"))
             print(name, rows[-1], flush=True)
-    write("wetting.csv", ("variant", "time_s", "saturation", "scatter_Pa", "deviator_Pa"), rows)
+    write("wetting.csv", ("variant", "time_s", "saturation", "scatter_Pa", "deviator_Pa", "water_lost_kg"), rows)
+
+
+def storage_of(talus):
+    rows = []
+    for form, words, fractions in (("rate", BY_RATE, FRACTIONS), ("mass", UNCURED, FRACTIONS[:1])):
+        for fraction in fractions:
+            with tempfile.TemporaryDirectory() as folder:
+                results = run(talus, WETTING, [*words, f"integrator.fraction={fraction}", "stage.0.duration=0.2", "output.interval=0.01"], folder)
+                ledger, row = results.history.columns, followed(results)
+                q = [deviator(s, row) for s in results.snapshots]
+                rows.append((form, fraction, f"{-ledger['water_out_kg'][-1]:.4g}", f"{-ledger['water_error_kg'][-1]:.3g}", f"{min(q):.4g}", f"{max(q):.4g}"))
+            print(*rows[-1], flush=True)
+    write("storage.csv", ("storage", "step_over_critical", "water_in_kg", "water_lost_kg", "least_deviator_Pa", "largest_deviator_Pa"), rows)
 
 
 def roughness(snapshot, size):
@@ -319,20 +356,18 @@ def draw_map():
     rows = read("map.csv")
     figure, grid = plt.subplots(2, 3, figsize=(11.5, 4.8), sharex=True)
     for upper, line, (key, choices, label) in zip((True, False), grid, (("K_l_Pa", STIFFNESS, "K_l [Pa]"), ("particles", PARTICLES, "particles a cell"))):
-        for axes, column in zip(line, ("explicit", "none", "nodal")):
+        for axes, column in zip(line, (("explicit", "none"), ("implicit", "none"), ("implicit", "nodal"))):
             for row in rows:
-                if row["smoothing"] != (column if column != "explicit" else "none") or (key == "K_l_Pa" and row["particles"] != "3") or (key == "particles" and float(row["K_l_Pa"]) != SHOWN):
+                if (row["drag"], row["smoothing"]) != column or (key == "K_l_Pa" and row["particles"] != "3") or (key == "particles" and float(row["K_l_Pa"]) != SHOWN):
                     continue
                 x, y = PERMEABILITY.index(float(row["k_m2"])), choices.index(float(row[key]))
-                explicit = float(row["explicit_over_critical"])
-                state, text = (row["state"], row["noise"]) if column != "explicit" else ("stable" if explicit >= 0.6 else "failed", row["explicit_over_critical"])
-                axes.scatter(x, y, s=330, marker="s", color=colour[state], lw=0)
-                axes.text(x, y, text if text != "inf" else "x", ha="center", va="center", size=5, color="white")
+                axes.scatter(x, y, s=330, marker="s", color=colour[row["state"]], lw=0)
+                axes.text(x, y, "x" if row["state"] == "failed" else row["noise"] if float(row["noise"]) > 1e-3 else f"{float(row['noise']):.0e}", ha="center", va="center", size=5, color="white")
             axes.set_yticks(range(len(choices)), [f"{c:g}" for c in choices])
             axes.set_xticks(range(len(PERMEABILITY)), [f"{k:g}" for k in PERMEABILITY])
             axes.set(ylabel=label, xlim=(-0.6, len(PERMEABILITY) - 0.4), ylim=(-0.7, len(choices) - 0.3))
             if upper:
-                axes.set_title({"explicit": "explicit drag: its limit over the critical step", "none": "implicit drag: noise, pressures as they are", "nodal": "implicit drag: noise, smoothed (the default)"}[column], loc="left", fontsize=8.5)
+                axes.set_title(f"{column[0]} drag: noise, {'pressures as they are' if column[1] == 'none' else 'smoothed (the default)'}", loc="left", fontsize=8.5)
             else:
                 axes.set_xlabel("permeability [m²]")
     for state in colour:
@@ -351,13 +386,15 @@ def draw_steps():
         k = [float(row["k_m2"]) for row in mine]
         for key, look, label in (("explicit_formula", {"color": style.LINES[1]}, "explicit drag, formula"), ("explicit_string", {"color": style.LINES[1], "ls": "", "marker": "o"}, "explicit drag, string of elements"),
                                  ("implicit_string", {"color": style.LINES[0], "ls": "", "marker": "o"}, "implicit drag, string of elements"),
-                                 ("program_unsmoothed", {"color": style.LINES[2], "marker": "^", "ls": ":"}, "program over its bound, pressures as they are"),
-                                 ("program_smoothed", {"color": style.LINES[3], "marker": "v", "ls": ":"}, "program over its bound, smoothed")):
+                                 ("explicit_stated", {"color": style.LINES[4], "ls": "--"}, "explicit drag on triangles, stated by the program"),
+                                 ("explicit_program", {"color": style.LINES[4], "ls": "", "marker": "s"}, "explicit drag on triangles, measured"),
+                                 ("implicit_program", {"color": style.LINES[2], "marker": "^", "ls": ":"}, "implicit drag on triangles, pressures as they are"),
+                                 ("implicit_program_smoothed", {"color": style.LINES[3], "marker": "v", "ls": ":"}, "implicit drag on triangles, smoothed")):
             axes.loglog(k, [float(row[key]) for row in mine], ms=4, lw=1.2, label=label, **look)
         axes.axhline(0.6, color=style.FAINT, lw=0.8)
         axes.set(xlabel="permeability [m²]", title=f"K_l = {stiffness:g} Pa", ylim=(3e-8, 10))
     grid[0].set_ylabel("largest stable step / step without drag")
-    grid[0].legend(fontsize=6.5, loc="lower right")
+    grid[-1].legend(fontsize=6.5, loc="lower right")
     figure.tight_layout()
     style.save(figure, HERE / "steps.png")
 
@@ -365,7 +402,7 @@ def draw_steps():
 def draw_wetting():
     rows = read("wetting.csv")
     figure, (left, middle, right) = plt.subplots(1, 3, figsize=(11.5, 3.4))
-    for colour, name in zip((style.LINES[0], style.LINES[3], style.LINES[1], style.LINES[4], style.LINES[2], style.LINES[5]), VARIANTS):
+    for colour, name in zip((style.LINES[0], style.LINES[3], style.LINES[1], style.LINES[4], style.LINES[2], style.LINES[5], style.FAINT), VARIANTS):
         mine = [r for r in rows if r["variant"] == name]
         t = [float(r["time_s"]) for r in mine]
         left.plot(t, [float(r["saturation"]) for r in mine], color=colour, label=name)
@@ -403,7 +440,7 @@ def draw_choices():
     style.save(figure, HERE / "choices.png")
 
 
-STUDIES = {"map": (map_of, draw_map), "steps": (steps_of, draw_steps), "wetting": (wetting, draw_wetting), "choices": (choices, draw_choices)}
+STUDIES = {"map": (map_of, draw_map), "steps": (steps_of, draw_steps), "wetting": (wetting, draw_wetting), "storage": (storage_of, None), "choices": (choices, draw_choices)}
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -413,5 +450,5 @@ if __name__ == "__main__":
     for study in (given.studies or STUDIES) if given.talus else ():
         STUDIES[study][0](given.talus)
     for study, (_, draw) in STUDIES.items():
-        if (HERE / f"{study}.csv").exists():
+        if draw and (HERE / f"{study}.csv").exists():
             draw()
