@@ -58,7 +58,7 @@ PetscErrorCode SoilMotion<dim, Phases>::begin(double t) {
   if (gathered_) PetscFunctionReturn(0);
   if (!movers_) std::fill(start_velocity_.begin(), start_velocity_.end(), Vec<dim>{});
   with_transfer(transfer_, [&]<bool averaged, bool apic>() { gather<averaged, apic>(); });
-  grid_.enter_shared_nodes();
+  grid_.complete();
   PetscCall(finish_gather(t));
   gathered_ = true, remap_time_ = accepted_time_ = t, own_share_ = 1, moved_ = 0, smallest_ratio_ = 1, step_ratio_ = 1;
   PetscFunctionReturn(0);

@@ -32,37 +32,22 @@ void FilledGrid<dim>::clear() {
 }
 
 template <int dim>
-int FilledGrid<dim>::enter_node(int node) {
-  int &compact = compact_node_[node];
-  if (compact < 0) {
-    compact = node_count_++;
-    mesh_node[compact] = node, mass[compact] = 0, position[compact] = mesh_->position[node];
+void FilledGrid<dim>::complete() {
+  if (!halo_.empty()) {
+    staging_.resize(std::max(staging_.size(), compact_node_.size()));
+    for (int node : halo_.shared_nodes()) staging_[node] = compact_node_[node] >= 0;
+    (void)halo_.sum(staging_.data(), 1);
+    for (int node : halo_.shared_nodes())
+      if (staging_[node] > 0) enter_node(node);
   }
-  return compact;
-}
-
-template <int dim>
-int FilledGrid<dim>::enter_cell(int cell) {
-  int &compact = compact_cell_[cell];
-  if (compact < 0) {
-    compact = cell_count_++;
-    Shape<dim> &s = shape[compact];
-    for (int k = 0; k <= dim; ++k) s.node[k] = enter_node(mesh_->cells[cell].node[k]);
-    s.gradient = mesh_->cells[cell].gradient, s.volume = mesh_->volume[cell];
-    mesh_cell[compact] = cell, mass_matrix[compact] = {}, nodal_share[compact] = {};
-    size[compact] = element_size_[cell], patch[compact] = mesh_->patch[cell];
+  for (int i = 0; i < node_count_; ++i) mass[i] = 0, position[i] = mesh_->position[mesh_node[i]];
+  for (int c = 0; c < cell_count_; ++c) {
+    const Cell<dim> &cell = mesh_->cells[mesh_cell[c]];
+    Shape<dim> &s = shape[c];
+    for (int k = 0; k <= dim; ++k) s.node[k] = compact_node_[cell.node[k]];
+    s.gradient = cell.gradient, s.volume = mesh_->volume[mesh_cell[c]];
   }
-  return compact;
-}
-
-template <int dim>
-void FilledGrid<dim>::enter_shared_nodes() {
-  if (halo_.empty()) return;
-  staging_.resize(std::max(staging_.size(), compact_node_.size()));
-  for (int node : halo_.shared_nodes()) staging_[node] = compact_node_[node] >= 0;
-  (void)halo_.sum(staging_.data(), 1);
-  for (int node : halo_.shared_nodes())
-    if (staging_[node] > 0) enter_node(node);
+  for (int c = 0; c < cell_count_; ++c) size[c] = element_size_[mesh_cell[c]], patch[c] = mesh_->patch[mesh_cell[c]];
 }
 
 template <int dim>

@@ -30,14 +30,21 @@ class FilledGrid {
 
   /// Forgets all nodes and cells.
   void clear();
-  /// Compact number of a mesh cell, entered on first use.
-  int enter_cell(int mesh_cell);
+  /// Compact number of a mesh cell, which is the last one on first use: its sums over particles are then to be set.
+  [[gnu::always_inline]] int enter_cell(int cell) {
+    int compact = compact_cell_[cell];
+    if (compact < 0) {
+      compact_cell_[cell] = compact = cell_count_++, mesh_cell[compact] = cell;
+      for (int node : mesh_->cells[cell].node) enter_node(node);
+    }
+    return compact;
+  }
   /// Compact number of a mesh cell, -1 when it holds nothing.
   int find_cell(int mesh_cell) const { return compact_cell_[mesh_cell]; }
   /// Compact number of a mesh node, -1 when no filled cell has it.
   int find_node(int mesh_node) const { return compact_node_[mesh_node]; }
-  /// Enters nodes that only other ranks have filled; collective.
-  void enter_shared_nodes();
+  /// Once all cells are entered: enters nodes that only other ranks have filled, and places cells and nodes as they are in the mesh; collective.
+  void complete();
   /// Adds up `width` doubles per compact node over the ranks that share the node; collective.
   PetscErrorCode sum(double *values, int width);
   /// Nodes and cells with what they carry.
@@ -60,7 +67,9 @@ class FilledGrid {
   std::vector<int> patch;                   ///< patch of the mesh
 
  private:
-  int enter_node(int mesh_node);
+  void enter_node(int node) {
+    if (compact_node_[node] < 0) mesh_node[node_count_] = node, compact_node_[node] = node_count_++;
+  }
 
   const BackgroundMesh<dim> *mesh_;
   int node_count_ = 0, cell_count_ = 0;

@@ -163,42 +163,22 @@ class RunToNodes {
   /// point of the cell, -1 if there is none or nothing was added.
   [[gnu::always_inline]] int finish(Vec<dim> *momentum, const double *common) const {
     if (!count_) return -1;
+    // what is entered with this run is set, not added to zeros, which would have to be written first
+    const auto set = [](auto &sum, auto x) { sum = x; };
+    const auto add = [](auto &sum, auto x) { sum += x; };
     const int cells = grid_.cell_count(), cell = grid_.enter_cell(mesh_cell_);
-#pragma GCC unroll 2
-    for (int a = 0; a < fluids; ++a) {
-      auto &impulse = pores_.impulse[a][cell];
-      if (cell == cells) impulse = {};
-#pragma GCC unroll 8
-      for (int d = 0; d < dim; ++d) impulse[d] += fluid_momentum_[a][d];
-    }
-    auto &matrix = grid_.mass_matrix[cell];
-#pragma GCC unroll 8
-    for (int k = 0, pair = vertices; k < vertices; ++k) {
-      matrix[k] += mass_[k][k];
-#pragma GCC unroll 8
-      for (int l = k + 1; l < vertices; ++l) matrix[pair++] += mass_[k][l];
-    }
+    cell == cells ? sum_into_cell(cell, set) : sum_into_cell(cell, add);
     double volume = 0;
 #pragma GCC unroll 8
     for (int k = 0; k < vertices; ++k) {
-      Vec<dim> &sum = momentum[grid_.shape[cell].node[k]];
+      Vec<dim> &sum = momentum[grid_.find_node(grid_.mesh().cells[mesh_cell_].node[k])];
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d) sum[d] += momentum_[d][k];
-      grid_.nodal_share[cell][k] += share_[k];
       volume += share_[k];
     }
     if constexpr (!averaged) return -1;
-    const int count = body_.history_count(), known = points_.count, point = points_.enter(mesh_cell_, cell, components, count);
-    if constexpr (fluids > 0) pores_.grains[point] = grains_ * pores_.over_density + (point == known ? 0 : pores_.grains[point]);
-#pragma GCC unroll 2
-    for (int a = 0; a < fluids; ++a) pores_.mass[a][point] = fluid_mass_[a] + (point == known ? 0 : pores_.mass[a][point]);
-    points_.own_volume[point] += volume, points_.own_limit[point] += limit_;
-    double *stress = &points_.own_stress[point * components], *history = points_.own_history.data() + point * count;
-#pragma GCC unroll 8
-    for (int s = 0; s < components; ++s) stress[s] += common ? volume * common[s] : stress_[s];
-#pragma GCC unroll 4
-    for (int h = 0; h < unrolled_history; ++h)
-      if (h < count) history[h] += history_[h];
+    const int known = points_.count, point = points_.enter(mesh_cell_, cell);
+    point == known ? sum_into_point(point, common, volume, set) : sum_into_point(point, common, volume, add);
     return point;
   }
   /// Adds what a law remembers of particle i beyond the first few values.
@@ -210,6 +190,36 @@ class RunToNodes {
   }
 
  private:
+  template <class Sum>
+  [[gnu::always_inline]] void sum_into_cell(int cell, Sum sum) const {
+#pragma GCC unroll 2
+    for (int a = 0; a < fluids; ++a)
+#pragma GCC unroll 8
+      for (int d = 0; d < dim; ++d) sum(pores_.impulse[a][cell][d], fluid_momentum_[a][d]);
+    auto &matrix = grid_.mass_matrix[cell];
+#pragma GCC unroll 8
+    for (int k = 0, pair = vertices; k < vertices; ++k) {
+      sum(matrix[k], mass_[k][k]), sum(grid_.nodal_share[cell][k], share_[k]);
+#pragma GCC unroll 8
+      for (int l = k + 1; l < vertices; ++l) sum(matrix[pair++], mass_[k][l]);
+    }
+  }
+  template <class Sum>
+  [[gnu::always_inline]] void sum_into_point(int point, const double *common, double volume, Sum sum) const {
+    const int count = body_.history_count();
+    if constexpr (fluids > 0) sum(pores_.grains[point], grains_ * pores_.over_density);
+#pragma GCC unroll 2
+    for (int a = 0; a < fluids; ++a) sum(pores_.mass[a][point], fluid_mass_[a]);
+    sum(points_.own_volume[point], volume), sum(points_.own_limit[point], limit_);
+    double *stress = &points_.own_stress[point * components], *history = points_.own_history.data() + point * count;
+#pragma GCC unroll 8
+    for (int s = 0; s < components; ++s) sum(stress[s], common ? volume * common[s] : stress_[s]);
+#pragma GCC unroll 4
+    for (int h = 0; h < unrolled_history; ++h)
+      if (h < count) sum(history[h], history_[h]);
+    for (int h = unrolled_history; h < count; ++h) sum(history[h], 0.);  // add_rest follows
+  }
+
   const Body<dim> &body_;
   FilledGrid<dim> &grid_;
   PointSet &points_;

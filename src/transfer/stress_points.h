@@ -20,15 +20,10 @@ struct PointSet {
   std::vector<double> start_history, start_volume;  ///< at the remap: what particles gain is the difference
   std::vector<int> of_cell;                         ///< [mesh cells] point of a cell, -1: none
 
-  /// The point of a mesh cell, with sums of zero on first use.
-  int enter(int mesh_cell, int compact_cell, int components, int history_count) {
+  /// The point of a mesh cell, which is the last one on first use: its sums are then to be set.
+  int enter(int mesh_cell, int compact_cell) {
     int &point = of_cell[mesh_cell];
-    if (point < 0) {
-      point = count++;
-      own_cell[point] = compact_cell, own_volume[point] = own_limit[point] = 0;
-      std::fill_n(own_stress.begin() + point * components, components, 0.);
-      std::fill_n(own_history.begin() + point * history_count, history_count, 0.);
-    }
+    if (point < 0) point = count++, own_cell[point] = compact_cell;
     return point;
   }
   /// Turns sums over particles into means weighted by volume, where the Lagrangian part starts.

@@ -27,7 +27,7 @@ struct Filled {
         for (int d = 0; d < dim; ++d) centre[d] += mesh.position[i][d] / (dim + 1);
       place.push_back(centre);
     }
-    grid.enter_shared_nodes();
+    grid.complete();
     points.count = static_cast<int>(cell.size()), points.cell = cell.data();
     points.volume = volume.data(), points.history = strain.data();
   }
