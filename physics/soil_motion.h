@@ -186,6 +186,7 @@ class SoilMotion final : public Motion {
   std::vector<std::array<double, 2>> impedance_;
   std::vector<double> patch_weight_, patch_sum_;
   std::vector<double> affine_;
+  std::vector<double> change_;                    ///< what the points of one body pass on to its particles
   std::vector<double> forgotten_;                 ///< history that a stage without softening does not keep
   // the trial state of integrators that look ahead
   std::vector<Shape<dim>> trial_shape_;

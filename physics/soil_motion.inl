@@ -54,6 +54,7 @@ SoilMotion<dim, Phases>::SoilMotion(const BackgroundMesh<dim> &mesh, std::vector
       points.own_stress.resize(static_cast<size_t>(cells) * components);
       points.own_history.resize(static_cast<size_t>(cells) * bodies[b]->history_count());
       points.start_history.resize(points.own_history.size());
+      change_.resize(std::max(change_.size(), static_cast<size_t>(cells) * (1 + fluids + bodies[b]->history_count())));
     }
 }
 

@@ -214,7 +214,7 @@ PetscErrorCode SoilMotion<dim, Phases>::release(double t, std::vector<std::vecto
     for (size_t b = 0; b < bodies_.size(); ++b) {
       Pores<dim> pores;
       if constexpr (Phases::liquid) pores = fluid_.pores(b);
-      to_particles<dim, averaged, apic, fluids>(*bodies_[b], {grid_, update_, flip, affine_.data(), points_[b], pores}, movers[b]);
+      to_particles<dim, averaged, apic, fluids>(*bodies_[b], {grid_, update_, flip, affine_.data(), points_[b], pores, change_.data()}, movers[b]);
     }
   });
   forget();
@@ -231,7 +231,7 @@ PetscErrorCode SoilMotion<dim, Phases>::release_to_next(double t, std::vector<st
     for (size_t b = 0; b < bodies_.size(); ++b) {
       Pores<dim> pores, next;
       if constexpr (Phases::liquid) pores = fluid_.pores(b), next = fluid_.next_pores(b);
-      to_next_nodes<dim, averaged, apic, fluids>(*bodies_[b], {grid_, update_, flip, affine_.data(), points_[b], pores}, next_grid_, start_velocity_.data(),
+      to_next_nodes<dim, averaged, apic, fluids>(*bodies_[b], {grid_, update_, flip, affine_.data(), points_[b], pores, change_.data()}, next_grid_, start_velocity_.data(),
                                                  next_points_[b], next, movers[b]);
     }
   });

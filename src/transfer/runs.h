@@ -17,6 +17,18 @@ inline constexpr int run_part = 32;
 #define TALUS_EACH_PHASES(one, dim) TALUS_EACH_KIND(one, dim, 0) TALUS_EACH_KIND(one, dim, 1) TALUS_EACH_KIND(one, dim, 2)
 #define TALUS_EACH_KIND(one, dim, fluids) one(dim, true, true, fluids) one(dim, true, false, fluids) one(dim, false, true, fluids) one(dim, false, false, fluids)
 
+/// What points pass on to their particles, with averaged stress: the factor of volumes, the contents of pores [kg/m3], gains of history. Side by
+/// side, for a sweep over particles reads and writes as many arrays as the caches can foresee.
+template <int fluids, int dim>
+void collect_changes(const PointSet &points, const Pores<dim> &pores, int history_count, double *change) {
+  for (int q = 0; q < points.count; ++q) {
+    *change++ = points.volume[q] / points.start_volume[q];
+    // a cell's fluid fills its pores evenly, so that a particle that moves on takes its pressure along
+    for (int a = 0; a < fluids; ++a) *change++ = pores.mass[a][q] / (points.volume[q] - pores.grains[q]);
+    for (int h = q * history_count; h < (q + 1) * history_count; ++h) *change++ = points.history[h] - points.start_history[h];
+  }
+}
+
 /// Gives particles of one cell what the nodes learned since the last remap.
 template <int dim, bool averaged, bool apic, int fluids>
 class RunFromNodes {
@@ -38,18 +50,19 @@ class RunFromNodes {
     if constexpr (averaged) {
       const int point = from.points.of_cell[mesh_cell], count = body.history_count();
       stress = from.points.stress + point * components;
-      growth_ = from.points.volume[point] / from.points.start_volume[point];
-      history_ = from.points.history + point * count, start_history_ = from.points.start_history.data() + point * count;
+      const double *change = from.change + point * (1 + fluids + count);
+      growth_ = change[0], content = change + 1, gain_ = change + 1 + fluids;
 #pragma GCC unroll 4
       for (int h = 0; h < unrolled_history; ++h)
-        if (h < count) gain_[h] = history_[h] - start_history_[h];
-      // a cell's fluid fills its pores evenly, so that a particle that moves on takes its pressure along
-      for (int a = 0; a < fluids; ++a) content_[a] = from.pores.mass[a][point] / (from.points.volume[point] - from.pores.grains[point]);
+        if (h < count) first_gain_[h] = gain_[h];
     }
   }
 
-  /// Moves particle i; its barycentric coordinates in the cell that it may have left.
-  [[gnu::always_inline]] Quad move(int i) const {
+  struct Moved {
+    Quad coordinates;  ///< barycentric, in the cell that the particle may have left
+    double pores;      ///< their volume, before the cap of the particle's [m3]
+  };
+  [[gnu::always_inline]] Moved move(int i) const {
     const ParticleArrays<dim> &p = body_.particles();
     Quad v = flip_ * load<dim>(p.velocity[i].data()), x = load<dim>(p.position[i].data());
     const Quad n = coordinates(x);
@@ -66,19 +79,21 @@ class RunFromNodes {
 #pragma GCC unroll 8
       for (int k = 0; k < vertices; ++k) w += quad(n[k]) * fluid_velocity_[a][k];
       store<dim>(p.fluid_velocity[a][i].data(), w);
-      p.fluid_mass[a][i] = averaged ? content_[a] * (p.volume[i] * growth_ - p.mass[i] * over_density_) : point_mass_[a][i];
+      if constexpr (!averaged) p.fluid_mass[a][i] = point_mass_[a][i];
     }
+    double pores = 0;
     if constexpr (averaged) {
       const int count = body_.history_count();
 #pragma GCC unroll 8
       for (int h = 0; h < unrolled_history; ++h)
-        if (h < count) p.history[i * count + h] += gain_[h];
+        if (h < count) p.history[i * count + h] += first_gain_[h];
       p.volume[i] *= growth_;
+      if constexpr (fluids > 0) pores = p.volume[i] - p.mass[i] * over_density_;
       if (body_.capped()) p.volume[i] = std::min(p.volume[i], body_.volume_limit(p.initial_volume[i], p.history + i * count));
     }
     if constexpr (apic)
       for (int k = 0; k < dim * dim; ++k) p.affine[i * dim * dim + k] = affine_[k];
-    return coordinates(x);
+    return {coordinates(x), pores};
   }
   /// Values of the history that `move` leaves for later, of particles first to last - 1.
   void move_rest(int first, int last) const {
@@ -86,15 +101,20 @@ class RunFromNodes {
     const int count = body_.history_count();
     if constexpr (averaged)
       for (int i = first; i < last; ++i)
-        for (int h = unrolled_history; h < count; ++h) p.history[i * count + h] += history_[h] - start_history_[h];
+        for (int h = unrolled_history; h < count; ++h) p.history[i * count + h] += gain_[h];
   }
-  /// Writes the stress of the cell to particle i.
-  [[gnu::always_inline]] void give_stress(int i) const {
-    if constexpr (averaged) std::copy_n(stress, components, &body_.particles().stress[i * components]);
+  /// Writes the stress of the cell, and its fluids as they fill `pores`, to particle i.
+  [[gnu::always_inline]] void give(int i, double pores) const {
+    if constexpr (averaged) {
+      std::copy_n(stress, components, &body_.particles().stress[i * components]);
+#pragma GCC unroll 2
+      for (int a = 0; a < fluids; ++a) body_.particles().fluid_mass[a][i] = content[a] * pores;
+    }
   }
 
   const BarycentricMap<dim> coordinates;
-  const double *stress = nullptr;  ///< of the stress point [Pa]
+  const double *stress = nullptr;   ///< of the stress point [Pa]
+  const double *content = nullptr;  ///< of its pores, of each fluid [kg/m3]
 
  private:
   const Body<dim> &body_;
@@ -102,8 +122,8 @@ class RunFromNodes {
   const double over_density_;
   const double *point_mass_[fluids ? fluids : 1]{};
   Quad velocity_[vertices], displacement_[vertices], fluid_velocity_[fluids ? fluids : 1][vertices];
-  const double *affine_ = nullptr, *history_ = nullptr, *start_history_ = nullptr;
-  double growth_ = 1, gain_[unrolled_history]{}, content_[fluids ? fluids : 1];
+  const double *affine_ = nullptr, *gain_ = nullptr;
+  double growth_ = 1, first_gain_[unrolled_history]{};
 };
 
 /// Adds particles of one cell to the grid, which their cell enters with them.
@@ -115,7 +135,7 @@ class RunToNodes {
   [[gnu::always_inline]] RunToNodes(const Body<dim> &body, FilledGrid<dim> &grid, PointSet &points, const Pores<dim> &pores, int mesh_cell)
       : body_(body), grid_(grid), points_(points), pores_(pores), mesh_cell_(mesh_cell) {}
 
-  /// Adds particle i with barycentric coordinates n; its stress and what `add_rest` adds apart.
+  /// Adds particle i with barycentric coordinates n; its stress, its fluids and what `add_rest` adds apart.
   [[gnu::always_inline]] void add(int i, Quad n) {
     const ParticleArrays<dim> &p = body_.particles();
     const Quad mn = quad(p.mass[i]) * n;
@@ -138,11 +158,9 @@ class RunToNodes {
     }
     share_ += quad(p.volume[i]) * n;
 #pragma GCC unroll 2
-    for (int a = 0; a < fluids; ++a) {
+    for (int a = 0; a < fluids; ++a)
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d) fluid_momentum_[a][d] += quad(p.fluid_velocity[a][i][d]) * mn;
-      if constexpr (averaged) fluid_mass_[a] += p.fluid_mass[a][i];
-    }
     if constexpr (averaged && fluids > 0) grains_ += p.mass[i];
     if constexpr (averaged) {
       const int count = body_.history_count();
@@ -153,15 +171,19 @@ class RunToNodes {
     }
     ++count_;
   }
-  /// Adds the stress that particle i carries itself.
-  [[gnu::always_inline]] void add_stress(int i) {
+  /// Adds the stress and the fluids that particle i carries itself, with averaged stress ...
+  [[gnu::always_inline]] void add_own(int i) {
     const ParticleArrays<dim> &p = body_.particles();
 #pragma GCC unroll 8
     for (int s = 0; s < components; ++s) stress_[s] += p.volume[i] * p.stress[i * components + s];
+#pragma GCC unroll 2
+    for (int a = 0; a < fluids; ++a) fluid_mass_[a] += p.fluid_mass[a][i];
   }
-  /// Sums into grid and stress points; `common` is the stress of all particles added, null if they brought their own. The stress
-  /// point of the cell, -1 if there is none or nothing was added.
-  [[gnu::always_inline]] int finish(Vec<dim> *momentum, const double *common) const {
+  /// ... or, where all that are added have them in common, the volume of its pores [m3].
+  [[gnu::always_inline]] void add_pores(double volume) { pore_volume_ += volume; }
+  /// Sums into grid and stress points; `common` is the stress of all particles added and `content` that of their pores, null if they brought
+  /// their own. The stress point of the cell, -1 if there is none or nothing was added.
+  [[gnu::always_inline]] int finish(Vec<dim> *momentum, const double *common, const double *content) const {
     if (!count_) return -1;
     // what is entered with this run is set, not added to zeros, which would have to be written first
     const auto set = [](auto &sum, auto x) { sum = x; };
@@ -178,7 +200,7 @@ class RunToNodes {
     }
     if constexpr (!averaged) return -1;
     const int known = points_.count, point = points_.enter(mesh_cell_, cell);
-    point == known ? sum_into_point(point, common, volume, set) : sum_into_point(point, common, volume, add);
+    point == known ? sum_into_point(point, common, content, volume, set) : sum_into_point(point, common, content, volume, add);
     return point;
   }
   /// Adds what a law remembers of particle i beyond the first few values.
@@ -205,11 +227,11 @@ class RunToNodes {
     }
   }
   template <class Sum>
-  [[gnu::always_inline]] void sum_into_point(int point, const double *common, double volume, Sum sum) const {
+  [[gnu::always_inline]] void sum_into_point(int point, const double *common, const double *content, double volume, Sum sum) const {
     const int count = body_.history_count();
     if constexpr (fluids > 0) sum(pores_.grains[point], grains_ * pores_.over_density);
 #pragma GCC unroll 2
-    for (int a = 0; a < fluids; ++a) sum(pores_.mass[a][point], fluid_mass_[a]);
+    for (int a = 0; a < fluids; ++a) sum(pores_.mass[a][point], content ? content[a] * pore_volume_ : fluid_mass_[a]);
     sum(points_.own_volume[point], volume), sum(points_.own_limit[point], limit_);
     double *stress = &points_.own_stress[point * components], *history = points_.own_history.data() + point * count;
 #pragma GCC unroll 8
@@ -227,7 +249,7 @@ class RunToNodes {
   const int mesh_cell_;
   int count_ = 0;
   Quad mass_[vertices]{}, momentum_[dim]{}, share_{}, fluid_momentum_[fluids ? fluids : 1][dim]{};
-  double stress_[components]{}, history_[unrolled_history]{}, limit_ = 0, fluid_mass_[fluids ? fluids : 1]{}, grains_ = 0;
+  double stress_[components]{}, history_[unrolled_history]{}, limit_ = 0, fluid_mass_[fluids ? fluids : 1]{}, grains_ = 0, pore_volume_ = 0;
 };
 
 }  // namespace talus

@@ -13,9 +13,9 @@ void gather(const Body<dim> &body, FilledGrid<dim> &grid, Vec<dim> *momentum, Po
     const int first = j;
     for (; j < count && p.cell[index(j)] == mesh_cell; ++j) {
       run.add(index(j), coordinates(load<dim>(p.position[index(j)].data())));
-      if constexpr (averaged) run.add_stress(index(j));
+      if constexpr (averaged) run.add_own(index(j));
     }
-    const int point = run.finish(momentum, nullptr);
+    const int point = run.finish(momentum, nullptr, nullptr);
     if (body.history_count() > unrolled_history && point >= 0)
       for (int k = first; k < j; ++k) run.add_rest(index(k), point);
   }

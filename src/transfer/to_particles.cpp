@@ -7,12 +7,14 @@ namespace talus {
 template <int dim, bool averaged, bool apic, int fluids>
 void to_particles(Body<dim> &body, const Lagrangian<dim> &from, std::vector<int> &movers) {
   const ParticleArrays<dim> &p = body.particles();
+  if constexpr (averaged) collect_changes<fluids>(from.points, from.pores, body.history_count(), from.change);
   for (int i = 0; i < p.count;) {
     const int mesh_cell = p.cell[i], first = i;
     const RunFromNodes<dim, averaged, apic, fluids> run(body, from, mesh_cell);
     for (; i < p.count && p.cell[i] == mesh_cell; ++i) {
-      if (!none_negative(run.move(i))) movers.push_back(i);
-      run.give_stress(i);
+      const auto moved = run.move(i);
+      if (!none_negative(moved.coordinates)) movers.push_back(i);
+      run.give(i, moved.pores);
     }
     run.move_rest(first, i);
   }
@@ -22,25 +24,29 @@ template <int dim, bool averaged, bool apic, int fluids>
 void to_next_nodes(Body<dim> &body, const Lagrangian<dim> &from, FilledGrid<dim> &grid, Vec<dim> *momentum, PointSet &points,
                    const Pores<dim> &pores, std::vector<int> &movers) {
   const ParticleArrays<dim> &p = body.particles();
+  if constexpr (averaged) collect_changes<fluids>(from.points, from.pores, body.history_count(), from.change);
   for (int i = 0; i < p.count;) {
     const int mesh_cell = p.cell[i], first = i;
     const RunFromNodes<dim, averaged, apic, fluids> old(body, from, mesh_cell);
     RunToNodes<dim, averaged, apic, fluids> next(body, grid, points, pores, mesh_cell);
     while (i < p.count && p.cell[i] == mesh_cell) {
       int leaving[run_part], left = 0;
+      double pores_left[run_part];
       const int start = i, end = std::min(p.count, i + run_part);
       for (; i < end && p.cell[i] == mesh_cell; ++i) {
-        const Quad n = old.move(i);
-        const bool stays = none_negative(n);
-        leaving[left] = i;
+        const auto moved = old.move(i);
+        const bool stays = none_negative(moved.coordinates);
+        leaving[left] = i, pores_left[left] = moved.pores;
         left += !stays;
-        if (stays) next.add(i, n);
+        if (!stays) continue;
+        next.add(i, moved.coordinates);
+        if constexpr (averaged && fluids > 0) next.add_pores(moved.pores);
       }
       old.move_rest(start, i);
-      for (int k = 0; k < left; ++k) old.give_stress(leaving[k]);
+      for (int k = 0; k < left; ++k) old.give(leaving[k], pores_left[k]);
       movers.insert(movers.end(), leaving, leaving + left);
     }
-    const int point = next.finish(momentum, old.stress);
+    const int point = next.finish(momentum, old.stress, old.content);
     if (body.history_count() > unrolled_history && point >= 0)
       for (int k = first; k < i; ++k)
         if (none_negative(old.coordinates(load<dim>(p.position[k].data())))) next.add_rest(k, point);

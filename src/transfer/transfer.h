@@ -64,6 +64,7 @@ struct Lagrangian {
   const double *affine;    ///< [compact cells][dim * dim] velocity gradients of APIC [1/s], unused otherwise
   const PointSet &points;
   const Pores<dim> &pores;
+  double *change;          ///< [points][1 + fluids + history] room for what points pass on to particles
 };
 
 /// Brings the particles of one body to the end of a Lagrangian part. Particles outside their cell are listed in `movers`.
