@@ -39,25 +39,27 @@ class OctaveTable {
   }
 
   struct Place {
-    const double *coefficients;
+    const double *coefficients;  ///< of the whole table, which all lanes of a loop read
+    std::int64_t offset;         ///< of those of the interval
     double r, inverse_width;
   };
   [[gnu::always_inline]] Place find(int which, double x) const {
     const double inside = x > smallest ? x : smallest;
     const std::int64_t k = index(inside);
-    const double a = left(k), inverse = 1 / (left(k + 1) - a);
-    return {coefficients_.data() + (which * intervals + k - first) * stride, (inside - a) * inverse, inverse};
+    const double a = left(k), inverse = std::bit_cast<double>((2 * bias + 6 - (k >> 6)) << 52);  // the width is a power of two
+    return {coefficients_.data(), (which * intervals + k - first) * stride, (inside - a) * inverse, inverse};
   }
   [[gnu::always_inline]] static double value(const Place &at, int column) {
-    const double *c = at.coefficients + 4 * column;
-    return c[0] + at.r * (c[1] + at.r * (c[2] + at.r * c[3]));
+    const auto c = [&](int j) { return at.coefficients[at.offset + 4 * column + j]; };
+    return c(0) + at.r * (c(1) + at.r * (c(2) + at.r * c(3)));
   }
   [[gnu::always_inline]] static double slope(const Place &at, int column) {
-    const double *c = at.coefficients + 4 * column;
-    return (c[1] + at.r * (2 * c[2] + 3 * at.r * c[3])) * at.inverse_width;
+    const auto c = [&](int j) { return at.coefficients[at.offset + 4 * column + j]; };
+    return (c(1) + at.r * (2 * c(2) + 3 * at.r * c(3))) * at.inverse_width;
   }
 
  private:
+  static constexpr std::int64_t bias = 1023;
   static constexpr int shift = 52 - 6, stride = 4 * columns;
   static constexpr std::int64_t index(double x) { return std::bit_cast<std::int64_t>(x) >> shift; }
   static constexpr double left(std::int64_t k) { return std::bit_cast<double>(k << shift); }

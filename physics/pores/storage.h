@@ -95,7 +95,7 @@ inline void three_phase_pressures(const SoilPores &soil, const Liquid &liquid, c
         const double a = f > 0 ? y : low[i], b = f > 0 ? high[i] : y;
         const double slope = -gas_slope * rho_g * over_y - rho_l * over_wet / law.density_slope(rho_l) - state.slope;
         // y f is nearly linear where gas is trapped, f itself where it is not: the smaller slope is the safer one
-        const double scaled = y * slope + f, next = y - (scaled < 0 ? y * f / scaled : f / slope);
+        const double scaled = y * slope + f, next = y - (scaled < 0 ? y * f : f) / (scaled < 0 ? scaled : slope);
         const double inside = a > 0 ? std::sqrt(a * b) : b < 1e-3 ? 0.1 * b : (a + b) / 2;
         const double taken = next >= a && next <= b ? next : inside, moved = std::abs(taken - y);
         const bool turns = open[i] > 0;
