@@ -19,7 +19,7 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
   cells_.resize(cells), nodes_.resize(nodes), mean_.resize(cells), reference_.resize(cells), rows_.resize(cells), head_.resize(cells), grain_mass_.resize(cells);
   nodal_head_.resize(nodes), momentum_.resize(nodes), surface_.resize(nodes), moment_.resize(nodes), gap_.resize(nodes), beyond_.assign(nodes, 0), body_of_node_.assign(nodes, 0);
   for (int a = 0; a < fluids; ++a) flux_[a].resize(nodes), shut_[a].resize(nodes), impulse_[a].resize(cells), divergence_[a].resize(cells), smooth_[a].resize(cells);
-  nodal_.resize(3 * nodes);
+  nodal_.resize(4 * nodes);
   for (auto *all : {&points_, &next_points_})
     for (size_t b = 0; b < bodies.size(); ++b) (*all)[b].room(scene.transfer.average_stress ? static_cast<int>(cells) : bodies[b]->particles().count);
 }
@@ -89,21 +89,8 @@ PetscErrorCode PoreFluid<dim, Phases>::gather(const Frame &frame, PoreConditions
   PetscFunctionBeginUser;
   FilledGrid<dim> &grid = frame.grid;
   const int nodes = grid.node_count(), cells = grid.cell_count();
-  for (int c = 0; c < cells; ++c) {
-    const auto &matrix = grid.mass_matrix[c];
-    auto &rows = rows_[c];
-    for (int k = 0; k <= dim; ++k) rows[k] = matrix[k];
-    for (int k = 0, pair = dim + 1; k <= dim; ++k)
-      for (int l = k + 1; l <= dim; ++l, ++pair) rows[k] += matrix[pair], rows[l] += matrix[pair];
-    grain_mass_[c] = 0;
-    const double scale = 1 / frame.particle_volume[c];
-    for (int k = 0; k <= dim; ++k) {
-      grain_mass_[c] += rows[k];
-      mean_[c][k] = grid.nodal_share[c][k] * scale;
-      reference_[c][k] = mean_[c][k] + frame.blend[c] * (1. / (dim + 1) - mean_[c][k]);
-    }
-    for (int a = 0; a < fluids; ++a) cells_[c].mass[a] = 0;
-  }
+  Array *const mass = smooth_;  // of the fluids in a cell [kg]; nothing is smoothed yet
+  for (int a = 0; a < fluids; ++a) std::fill_n(mass[a].begin(), cells, 0.);
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const ParticleArrays<dim> &p = bodies_[b]->particles();
     const PointSet &set = frame.points[b];
@@ -119,7 +106,7 @@ PetscErrorCode PoreFluid<dim, Phases>::gather(const Frame &frame, PoreConditions
     }
     for (int q = 0; q < set.count; ++q) {
       const int c = set.cell[q];
-      for (int a = 0; a < fluids; ++a) cells_[c].mass[a] += points.mass[a][q];
+      for (int a = 0; a < fluids; ++a) mass[a][c] += points.mass[a][q];
       if constexpr (Phases::suction) {
         points.share[q] = std::clamp(1 - points.mass[0][q] / (liquid_.density * (frame.volume[b][q] - points.grains[q])), 0., 1.);  // where Newton starts
         for (int node : grid.shape[c].node) body_of_node_[node] = static_cast<int>(b);
@@ -128,17 +115,31 @@ PetscErrorCode PoreFluid<dim, Phases>::gather(const Frame &frame, PoreConditions
   }
   // velocities of the fluids at nodes: within a cell a fluid is spread as the grains are
   std::fill_n(momentum_.begin(), nodes, std::array<Quad, fluids>{});
-  for (int c = 0; c < cells; ++c)
-    for (int a = 0; a < fluids; ++a) {
-      const double ratio = cells_[c].mass[a] / grain_mass_[c];
-      const auto &impulse = impulse_[a][c];
-      for (int k = 0; k <= dim; ++k) {
-        Quad part{};
-        for (int d = 0; d < dim; ++d) part[d] = impulse[d][k];
-        part[last] = rows_[c][k];
-        momentum_[grid.shape[c].node[k]][a] += quad(ratio) * part;
-      }
+  for (int c = 0; c < cells; ++c) {
+    const auto &matrix = grid.mass_matrix[c];
+    auto &rows = rows_[c];
+    for (int k = 0; k <= dim; ++k) rows[k] = matrix[k];
+    for (int k = 0, pair = dim + 1; k <= dim; ++k)
+      for (int l = k + 1; l <= dim; ++l, ++pair) rows[k] += matrix[pair], rows[l] += matrix[pair];
+    grain_mass_[c] = 0;
+    const double scale = 1 / frame.particle_volume[c];
+    for (int k = 0; k <= dim; ++k) {
+      grain_mass_[c] += rows[k];
+      mean_[c][k] = grid.nodal_share[c][k] * scale;
+      reference_[c][k] = mean_[c][k] + frame.blend[c] * (1. / (dim + 1) - mean_[c][k]);
     }
+    const Quad row = load<dim + 1>(rows.data());
+    for (int a = 0; a < fluids; ++a) {
+      const double ratio = mass[a][c] / grain_mass_[c];
+      Quad part[4]{};  // by component, then by vertex
+#pragma GCC unroll 8
+      for (int d = 0; d < dim; ++d) part[d] = impulse_[a][c][d];
+      part[last] = row;
+      transpose(part);
+#pragma GCC unroll 8
+      for (int k = 0; k <= dim; ++k) momentum_[grid.shape[c].node[k]][a] += quad(ratio) * part[k];
+    }
+  }
   PetscCall(grid.sum(reinterpret_cast<double *>(momentum_.data()), 4 * fluids));
   for (int i = 0; i < nodes; ++i)
     for (int a = 0; a < fluids; ++a) {
@@ -577,11 +578,14 @@ PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<di
   requires Phases::gas
 {
   PetscFunctionBeginUser;
-  constexpr int width = 3;
+  constexpr int width = 4, share = 3;  // of a node: volume taken, mass taken, what holds gas back; share of the gas that is in the pores
   constexpr double empty = 1e-30;
   FilledGrid<dim> &grid = frame.grid;
   const auto pore_share = [&](int i) { return nodes_[i].whole(1) > 0 ? nodes_[i].mass(1) / nodes_[i].whole(1) : 0; };
-  std::fill_n(nodal_.begin(), grid.node_count() * width, 0.);
+  for (int i = 0; i < grid.node_count(); ++i) {
+    talus::store<4>(&nodal_[i * width], Quad{0, 0, 0, pore_share(i)});
+    for (int d = 0; d < dim; ++d) flux_[1][i][d] = gas[i][d] - solid[i][d];
+  }
   for (int c = 0; c < grid.cell_count(); ++c) {
     const Shape<dim> &shape = grid.shape[c];
     const CellPores &cell = cells_[c];
@@ -593,24 +597,24 @@ PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<di
       const Vec<dim> &g = k ? shape.gradient[k - 1] : first;
       const int i = shape.node[k];
       double towards = 0;
-      for (int d = 0; d < dim; ++d) towards += (g[d] - reference_[c][k] * gap_[i][d]) * (gas[i][d] - solid[i][d]);
+      for (int d = 0; d < dim; ++d) towards += (g[d] - reference_[c][k] * gap_[i][d]) * flux_[1][i][d];
       takes[k] = frame.weight[c] * std::max(0., towards);
-      out += takes[k] * pore_share(i);
+      out += takes[k] * nodal_[i * width + share];
     }
     if (!(out > 0)) continue;
     const double free = 1 - residual_gas / std::max(1 - cell.saturation, empty);  // share of the gas that may leave
     const double open = std::clamp(std::min(free / residual_gas * (1 - cell.saturation), free * cell.mass[1] / (2 * out * cell.density[1])), empty, 1.);
-    for (int k = 0; k <= dim; ++k) {
-      if (!(takes[k] > 0)) continue;
+    const double held = 1 / open - 1;
+    for (int k = 0; k <= dim; ++k) {  // without branches: which nodes take is as good as random
       double *node = &nodal_[shape.node[k] * width];
-      node[0] += takes[k], node[1] += takes[k] * cell.density[1], node[2] += 1 / open - 1;
+      talus::store<4>(node, load<4>(node) + Quad{takes[k], takes[k] * cell.density[1], takes[k] > 0 ? held : 0, 0});
     }
   }
   PetscCall(grid.sum(nodal_.data(), width));
   for (int i = 0; i < grid.node_count(); ++i) {
     const double *node = &nodal_[i * width], rho = node[0] > 0 ? node[1] / node[0] : gas_.density;
     const double density = given ? 0 : pore_share(i) * rho / (1 + node[2]);
-    for (int d = 0; d < dim; ++d) flux_[1][i][d] = density * (gas[i][d] - solid[i][d]);
+    for (int d = 0; d < dim; ++d) flux_[1][i][d] *= density;
   }
   PetscFunctionReturn(0);
 }

@@ -22,6 +22,14 @@ inline void store(double *x, Quad q) {
   for (int k = 0; k < n; ++k) x[k] = q[k];
 }
 
+/// Swaps lanes and numbers of four.
+inline void transpose(Quad (&q)[4]) {
+  const Quad a = __builtin_shufflevector(q[0], q[1], 0, 4, 2, 6), b = __builtin_shufflevector(q[0], q[1], 1, 5, 3, 7);
+  const Quad c = __builtin_shufflevector(q[2], q[3], 0, 4, 2, 6), d = __builtin_shufflevector(q[2], q[3], 1, 5, 3, 7);
+  q[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5), q[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  q[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7), q[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+
 /// True when no lane is negative.
 inline bool none_negative(Quad q) {
 #ifdef __AVX__
