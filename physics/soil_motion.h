@@ -74,7 +74,7 @@ class SoilMotion final : public Motion {
   /// Hands particles what the nodes learned and frees the grid; the particles in `movers[body]` have left their cells.
   PetscErrorCode release(double t, std::vector<std::vector<int>> &movers);
   /// The same when `begin` follows as soon as the movers have found their new cells: particles that stay are gathered in the same
-  /// sweep, `begin` adds what `movers` lists by then. In between particles have their places, but no stress.
+  /// sweep, `begin` adds what `movers` lists by then. In between particles have their places, but no stress and no fluids.
   PetscErrorCode release_to_next(double t, std::vector<std::vector<int>> &movers);
 
   /// The state between two steps, also in the middle of a Lagrangian part, so that it does not matter to a run where it was kept.

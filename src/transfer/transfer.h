@@ -72,7 +72,7 @@ template <int dim, bool averaged, bool apic, int fluids>
 void to_particles(Body<dim> &body, const Lagrangian<dim> &from, std::vector<int> &movers);
 
 /// The same, and adds those that stay in their cell to the next grid in one sweep; the movers are still to be added. With averaged
-/// stress a particle that stays keeps its stress in the stress point only.
+/// stress a particle that stays keeps its stress and its fluids in the stress point only.
 template <int dim, bool averaged, bool apic, int fluids>
 void to_next_nodes(Body<dim> &body, const Lagrangian<dim> &from, FilledGrid<dim> &grid, Vec<dim> *momentum, PointSet &points,
                    const Pores<dim> &pores, std::vector<int> &movers);
