@@ -44,6 +44,7 @@ const Variant variants[] = {
     {"unsaturated_in_rain", with_pores({"phases=unsaturated", "boundary.rain.kind=rainfall", "boundary.rain.group=free_surface", "boundary.rain.intensity=0.01"})},
     {"unsaturated_with_given_pressures_at_first", with_pores({"phases=unsaturated", "stage.0.pore_flow=false"})},
     {"three_phase", with_pores({"phases=three-phase"})},
+    {"by_naive_forms", with_pores({"phases=unsaturated", "water.storage=rate", "water.drag=explicit", "boundary.rain.kind=rainfall", "boundary.rain.group=free_surface", "boundary.rain.intensity=0.01"})},
     {"with_a_fixed_step", {"integrator.step=2e-4"}},
     {"with_steps_by_the_frequency_of_the_mesh", {"integrator.omega_max=mesh"}},
     {"in_3d",
