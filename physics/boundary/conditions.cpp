@@ -254,11 +254,11 @@ void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &gri
     contact.since_pressed = c.presses ? 0 : contact.since_pressed + gamma;
     const double slope = std::tan(base.friction_angle(t));
     if (c.presses) contact.capacity += slope * map<dim>(n).dot(mass * map<dim>(n)) * into;
-    if (pores.thrust && contact.since_pressed <= friction_delay_) contact.capacity = std::max(0., contact.capacity - slope * gamma * pores.thrust(c.node, n));
-    const double rubbing = answer * contact.capacity, speed = std::sqrt(dot<dim>(slip, slip));
+    if (pores.thrust) contact.capacity -= slope * gamma * pores.thrust(c.node, n);
+    const double forgotten = answer * contact.capacity, rubbing = std::max(0., forgotten), speed = std::sqrt(dot<dim>(slip, slip));
     const double m = speed > 0 ? map<dim>(slip).dot(mass * map<dim>(slip)) / (speed * speed) : 0;
     const double hold = rubbing + (contact.since_pressed <= friction_delay_ ? base.adhesion(t) * c.area * gamma : 0);
-    contact.capacity -= rubbing, c.force = hold / gamma, c.sticks = m * speed <= hold;
+    contact.capacity -= forgotten, c.force = hold / gamma, c.sticks = m * speed <= hold;
     v[c.node] = {};
     if (!c.presses) add<dim>(v[c.node], into, n);
     if (!c.sticks) add<dim>(v[c.node], 1 - hold / (m * speed), slip);
