@@ -12,9 +12,9 @@ namespace talus::rungs {
 
 inline void large_strain_consolidation(Rung &rung) {
   constexpr double modulus = 100e3, load = 50e3, permeability = 2e-10, viscosity = 1e-3, c_v = permeability * modulus / viscosity;
-  const auto consolidate = [&](int dimension, double T, double size) {
+  const auto consolidate = [&](int dimension, double T, double size, double tolerance) {
     const double seconds = T / c_v;
-    const Run run = rung.run(in_dimension(dimension, {"stage.0.duration=" + number(seconds), "mesh.size=" + number(size), "mesh.thickness=" + number(size), "output.history_interval=" + number(seconds / 20)}));
+    const Run run = rung.run(in_dimension(dimension, {"body.soil.particles_per_cell=" + number(dimension == 2 ? 12 : 8), "stage.0.duration=" + number(seconds), "mesh.size=" + number(size), "mesh.thickness=" + number(size), "output.history_interval=" + number(seconds / 20)}));
     double settled = 1, square = 0, count = 0;
     for (int m = 0; m < 200; ++m) {
       const double M = (2 * m + 1) * M_PI / 2;
@@ -31,16 +31,19 @@ inline void large_strain_consolidation(Rung &rung) {
       square += std::pow(end[c].value - modulus * std::log1p(std::expm1(load / modulus) * sum), 2), ++count;
     }
     const std::string name = name_of(dimension) + ", cells of " + number(size * 1e3) + " mm, T = " + number(T);
-    // a surface that cuts its cells is known to a part of a cell
-    rung.compare(name + ", settlement [m], error over cell", settled, -run.history.column("load_displacement_y_m").back(), 0.25, size);
-    rung.compare(name + ", rms error of pressure over load", 0, std::sqrt(square / count), 0.06, load);
+    const double area = dimension == 2 ? 0.3 : 0.3 * size, left = -run.history.column("water_kg").back() + run.history.column("water_kg").front();
+    rung.compare(name + ", settlement by the water that has left [m]", settled, left / (1000 * area), tolerance);
+    rung.compare(name + ", rms error of pressure over load", 0, std::sqrt(square / count), tolerance + 0.01, load);
+    rung.report(name + ", settlement of the loaded face [m], error over cell", settled, -run.history.column("load_displacement_y_m").back(), size);
     rung.compare(name + ", water stored less initial, in and out", 0, run.history.column("water_error_kg").back(), 1e-10, run.history.column("water_kg").front());
   };
-  consolidate(2, 0.1, 0.05);
+  // first order in the cells: 1 % in cells of 25 mm; pressure has the scatter of the surface's cells on top
+  consolidate(2, 0.1, 0.05, 0.02);
+  consolidate(2, 0.1, 0.025, 0.01);
   if (!rung.longer()) return;
-  consolidate(2, 0.5, 0.05);
-  consolidate(2, 0.1, 0.025);
-  consolidate(3, 0.1, 0.05);
+  consolidate(2, 0.5, 0.05, 0.02);
+  consolidate(2, 0.5, 0.025, 0.01);
+  consolidate(3, 0.1, 0.05, 0.02);
 }
 
 }  // namespace talus::rungs
