@@ -23,6 +23,7 @@
 #include "tests/verification/footing/exact.h"
 #include "tests/verification/gas_column/exact.h"
 #include "tests/verification/gravity_column/exact.h"
+#include "tests/verification/green_ampt/exact.h"
 #include "tests/verification/hydrostatic/exact.h"
 #include "tests/verification/incline_block/exact.h"
 #include "tests/verification/k0_column/exact.h"
@@ -108,6 +109,7 @@ inline constexpr LadderEntry ladder[] = {
     {"gas_column", "verification", "damped wave and steady flow of the gas in a column", rungs::gas_column},
     {"pore_boundaries", "verification", "one column under every boundary of the pore water", rungs::pore_boundaries},
     {"wet_flight", "verification", "wet soil in free flight: nothing passes its surface", rungs::wet_flight},
+    {"green_ampt", "verification", "ponded infiltration with a sharp front, started by finite elements", rungs::green_ampt},
     {"celia", "verification", "infiltration into dry soil", rungs::celia},
     {"phase_reduction", "verification", "phase models without what they add", rungs::phase_reduction},
 };
