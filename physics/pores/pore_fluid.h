@@ -171,6 +171,7 @@ class PoreFluid {
   }
   PetscErrorCode gas_flux(const Frame &frame, const Vec<dim> *gas, const Vec<dim> *solid) requires Phases::gas;
   static double pore_volume(double volume, double grains) { return std::max(volume - grains, 1e-6 * volume); }
+  PetscErrorCode find_moment(const Frame &frame);
   void hold(const Frame &frame);
   void solve(const Frame &frame);
   void keep_pressures(const Frame &frame);

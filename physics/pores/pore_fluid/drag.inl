@@ -1,0 +1,136 @@
+// Drag, and what boundaries do to velocities; theory of pores, (4.6), section 5; included only where PoreFluid is instantiated.
+#include <algorithm>
+#include <cmath>
+
+#include "physics/pores/pore_fluid.h"
+
+namespace talus {
+
+/// Mass, M and resistance Q = phi V / k of a fluid at a node: the flux of a steady state is then the mean conductivity times the gradient.
+template <int dim, class Phases>
+NodalFluid PoreFluid<dim, Phases>::at_node(int i, int a, double beyond) const {
+  const NodePores &node = nodes_[i];
+  const double mass = node.mass(a), whole = node.whole(a);
+  if (!(whole > 0)) return {0, 0, 0};
+  constexpr double closed = 1e30;  // [1/s]: where pressures are given, fluids go with the grains
+  double conductivity = node.conductivity(a) / node.volume();
+  if (beyond > 0) conductivity = (conductivity + beyond) / 2;  // as if there were one more cell, beyond the face
+  const double resistance = given ? closed * whole : mass / whole * node.volume() / std::max(conductivity, 1e-300);
+  return {mass, whole, resistance};
+}
+
+/// What drag over a step sees of it: nothing to resist where drag is explicit and so one of the forces.
+template <int dim, class Phases>
+NodalFluid PoreFluid<dim, Phases>::over_step(int i, int a) const {
+  const NodalFluid at = at_node(i, a);
+  return explicit_drag_ && !given ? NodalFluid{at.mass, at.whole_mass, 0} : at;
+}
+
+/// Each fluid against the skeleton; together they are no faster than their sum. Pores that may be dry beyond a face count there with half the conductivity.
+template <int dim, class Phases>
+double PoreFluid<dim, Phases>::drag_rate(const FilledGrid<dim> &grid) const {
+  double largest = 0;
+  for (int i = 0; i < grid.node_count() && !given; ++i) {
+    double rate = 0;
+    for (int a = 0; a < fluids; ++a) {
+      const NodalFluid at = at_node(i, a, 0);
+      rate += (Phases::suction && a == 0 ? 2 : 1) * drag_number(1, at) * (1 + at.mass / grid.mass[i]);
+    }
+    largest = std::max(largest, rate);
+  }
+  return largest;
+}
+
+/// Shortest change of a number that brings it between two others.
+inline double into(double x, double low, double high) { return std::clamp(x, low, high) - x; }
+
+/// Where a face or a wall holds a fluid back, that acts on the skeleton too: they share what momentum they have along its normal. A surface that lets no
+/// water in bears its suction so, and a wall that holds the skeleton bears the weight of the water, theory (4.6a).
+template <int dim, class Phases>
+void PoreFluid<dim, Phases>::resist(double step, const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *solid, const Vec<dim> *fluid) const {
+  const FilledGrid<dim> &grid = frame.grid;
+  const int nodes = grid.node_count();
+  for (int i = 0; i < nodes; ++i) {
+    NodalFluid at[fluids];
+    for (int a = 0; a < fluids; ++a) at[a] = over_step(i, a);
+    for (int d = 0; d < dim; ++d) {
+      double v[fluids];
+      for (int a = 0; a < fluids; ++a) v[a] = fluid[a * nodes + i][d];
+      resolve_drag<fluids>(step, grid.mass[i], solid[i][d], at, v);
+    }
+  }
+  const auto share = [&](int i, const Vec<dim> &n, int count, double low, double high) {
+    double momentum = 0, mass = grid.mass[i];
+    for (int a = 0; a < count; ++a) {
+      const NodalFluid at = over_step(i, a);
+      double out = 0;
+      for (int d = 0; d < dim; ++d) out += (fluid[a * nodes + i][d] - solid[i][d]) * n[d];
+      momentum -= at.mass * into(out / (1 + drag_number(step, at)), low, high), mass += at.mass;
+    }
+    for (int d = 0; d < dim; ++d) solid[i][d] += momentum / mass * n[d];
+  };
+  limits(frame, conditions, [&](int i, const Vec<dim> &n, double low, double high) { share(i, n, 1, low, high); });
+  conditions.walls([&](int i, const Vec<dim> &n) { share(i, n, fluids, 0, 0); });
+}
+
+/// What a support at a node holds: the skeleton, all of a fluid along the normals of walls, elsewhere what drag takes along in a step [kg].
+template <int dim, class Phases>
+Square<dim> PoreFluid<dim, Phases>::inertia(double step, const FilledGrid<dim> &grid, const PoreConditions<dim> &conditions, int i) const {
+  double dragged = grid.mass[i], rest = 0;
+  for (int a = 0; a < fluids; ++a) {
+    const NodalFluid at = over_step(i, a);
+    const double free = at.mass / (1 + drag_number(step, at));
+    dragged += at.mass - free, rest += free;
+  }
+  Square<dim> held = dragged * Square<dim>::Identity();
+  conditions.walls_at(grid, i, [&](const Vec<dim> &n) { held += rest * map<dim>(n) * map<dim>(n).transpose(); });
+  return held;
+}
+
+/// The sum of w p grad N is the pressure on the wall less its gradient over the cells beside it; along a wall's normal that is the liquid's weight.
+template <int dim, class Phases>
+double PoreFluid<dim, Phases>::thrust(const Vec<dim> &gravity, int i, const Vec<dim> &n) const {
+  double push = 0, weight = 0;
+  for (int d = 0; d < dim; ++d) push += nodes_[i].push[mixture][d] * n[d], weight += liquid_.density * nodes_[i].volume() * gravity[d] * n[d];
+  return Phases::suction && push <= 0 ? push : push + weight;
+}
+
+template <int dim, class Phases>
+void PoreFluid<dim, Phases>::follow(double step, const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid, Vec<dim> *fluid) const {
+  const int nodes = frame.grid.node_count();
+  for (int i = 0; i < nodes; ++i) {
+    NodalFluid at[fluids];
+    for (int a = 0; a < fluids; ++a) at[a] = over_step(i, a);
+    for (int d = 0; d < dim; ++d) {
+      double v[fluids], held = solid[i][d];
+      for (int a = 0; a < fluids; ++a) v[a] = fluid[a * nodes + i][d];
+      resolve_drag<fluids>(step, frame.grid.mass[i], held, at, v, true);
+      for (int a = 0; a < fluids; ++a) fluid[a * nodes + i][d] = v[a];
+    }
+  }
+  constrain(frame, conditions, solid, fluid);
+}
+
+template <int dim, class Phases>
+template <class Limit>
+void PoreFluid<dim, Phases>::limits(const Frame &frame, const PoreConditions<dim> &conditions, Limit &&limit) const {
+  conditions.limits(frame.time, frame.grid, liquid_.density, unit_weight(frame), [&](int i) { return LiquidAtNode{nodes_[i].mass(0), nodes_[i].volume()}; }, limit);
+}
+
+template <int dim, class Phases>
+void PoreFluid<dim, Phases>::constrain(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid, Vec<dim> *fluid) const {
+  const int nodes = frame.grid.node_count();
+  const auto hold = [&](int i, const Vec<dim> &n, int count, double low, double high) {
+    for (int a = 0; a < count; ++a) {
+      Vec<dim> &v = fluid[a * nodes + i];
+      double out = 0;
+      for (int d = 0; d < dim; ++d) out += (v[d] - solid[i][d]) * n[d];
+      const double change = into(out, low, high);
+      for (int d = 0; d < dim; ++d) v[d] += change * n[d];
+    }
+  };
+  limits(frame, conditions, [&](int i, const Vec<dim> &n, double low, double high) { hold(i, n, 1, low, high); });
+  conditions.walls([&](int i, const Vec<dim> &n) { hold(i, n, fluids, 0, 0); });
+}
+
+}  // namespace talus
