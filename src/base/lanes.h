@@ -22,7 +22,7 @@ inline void store(double *x, Quad q) {
   for (int k = 0; k < n; ++k) x[k] = q[k];
 }
 
-/// Swaps lanes and numbers of four.
+/// Transposes: lane i of q[j] becomes lane j of q[i].
 inline void transpose(Quad (&q)[4]) {
   const Quad a = __builtin_shufflevector(q[0], q[1], 0, 4, 2, 6), b = __builtin_shufflevector(q[0], q[1], 1, 5, 3, 7);
   const Quad c = __builtin_shufflevector(q[2], q[3], 0, 4, 2, 6), d = __builtin_shufflevector(q[2], q[3], 1, 5, 3, 7);
