@@ -37,14 +37,17 @@ double cell_frequency_squared(const Cell<dim> &cell, const Law &law, double dens
   // one more strain per fluid, (1 - n) div v_s + n div v_a, of stiffness K_a / n; docs/theory/pores.md (6.1)
   const int count = static_cast<int>(pores.fluids.size());
   const double n = pores.porosity, gradients = b.template topRows<dim>().squaredNorm();
-  Eigen::MatrixXd rows(size + count, b.cols()), all = Eigen::MatrixXd::Zero(size + count, size + count);
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, size + 2, dim *(dim + 1)>;  // no memory from the heap: cells come as the soil moves
+  using Strains = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, size + 2, size + 2>;
+  Rows rows(size + count, b.cols());
+  Strains all = Strains::Zero(size + count, size + count);
   rows.topRows(size) = b;
   all.topLeftCorner(size, size) = stiffness;
   for (int a = 0; a < count; ++a) rows.row(size + a) = (1 - n) * b.template topRows<dim>().colwise().sum(), all(size + a, size + a) = pores.fluids[a].bulk_modulus / n;
-  Eigen::MatrixXd flexible = rows * rows.transpose() / density;
+  Strains flexible = rows * rows.transpose() / density;
   for (int a = 0; a < count; ++a) flexible(size + a, size + a) += n * gradients / pores.fluids[a].density;
-  const Eigen::MatrixXd l = all.llt().matrixL();
-  return (dim + 1) * Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(l.transpose() * flexible * l, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+  const Strains l = all.llt().matrixL(), product = l.transpose() * flexible * l;
+  return (dim + 1) * Eigen::SelfAdjointEigenSolver<Strains>(product, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
 }
 
 template double cell_frequency_squared(const Cell<2> &, const Law &, double, const PoreStiffness &);

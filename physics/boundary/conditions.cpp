@@ -89,8 +89,10 @@ PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vect
             add_contact(n.node, n.source, n.normal, n.area);
         },
         sources_[n.source].kind);
-  size_t reactions = dim * prescribed_[1].entry.size();
-  for (const auto &of_node : contacts_) reactions += of_node.size();
+  size_t contacts = 0;
+  for (const auto &of_node : contacts_) contacts += of_node.size();
+  size_t reactions = dim * prescribed_[1].entry.size() + contacts;
+  active_prescribed_.reserve(prescribed_[1].entry.size()), active_contacts_.reserve(contacts);
   for (const auto &[source, facets] : dashpots_) reactions += dim * facets.size();
   impulses_.reserve(reactions);
   PetscFunctionReturn(0);

@@ -42,7 +42,7 @@ PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const
   }
   for (auto *field : {&taken_, &taken_moment_}) field->resize(mesh.node_count());
   nodal_.resize(mesh.node_count()), at_gap_.resize(mesh.node_count()), at_surface_.resize(mesh.node_count());
-  gaps_.reserve(mesh.node_count()), gap_cells_.reserve((dim + 1) * mesh.cell_count());
+  active_walls_.reserve(walls_.size()), faces_.reserve(mesh.node_count()), gaps_.reserve(mesh.node_count()), gap_cells_.reserve((dim + 1) * mesh.cell_count());
   PetscFunctionReturn(0);
 }
 

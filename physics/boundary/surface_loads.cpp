@@ -183,7 +183,8 @@ PetscErrorCode SurfaceLoads<dim>::end(FilledGrid<dim> &grid, const std::vector<d
   PetscFunctionBeginUser;
   constexpr int square = dim * dim, width = square + 1;
   if (faces_.empty()) PetscFunctionReturn(0);
-  nodal_.assign(static_cast<size_t>(grid.node_count()) * width, 0);
+  nodal_.resize(static_cast<size_t>(grid.mesh().node_count()) * width);
+  std::fill_n(nodal_.begin(), grid.node_count() * width, 0.);
   for (int c = 0; c < grid.cell_count(); ++c) {
     const Square<dim> f = weight[c] * deformation<dim>(grid.mesh().cells[grid.mesh_cell[c]], grid.shape[c].node, grid.position.data());
     for (const int i : grid.shape[c].node) {

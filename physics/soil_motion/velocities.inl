@@ -6,11 +6,12 @@
 
 namespace talus {
 
-/// What supports feel in a step gamma of fluids, where there are any.
+/// What supports feel in a step gamma of fluids, where there are any; what is captured fits into a std::function without memory of its own.
 template <int dim, class Phases>
 typename Conditions<dim>::Pores SoilMotion<dim, Phases>::contact(double gamma) {
   if constexpr (Phases::liquid)
-    return {[this, gamma](int i) { return fluid_.inertia(gamma, grid_, pore_conditions_, i); }, [this, gravity = pore_frame(false).gravity](int i, const Vec<dim> &n) { return fluid_.thrust(gravity, i, n); }};
+    return {[this, gamma](int i) { return fluid_.inertia(gamma, grid_, pore_conditions_, i); },
+            [this](int i, const Vec<dim> &n) { return fluid_.thrust(pore_frame(false).gravity, i, n); }};
   return {};
 }
 

@@ -56,7 +56,10 @@ Count count(const std::string &file, const std::vector<std::string> &overrides, 
 }
 
 const std::string column = std::string(TALUS_GALLERY) + "/column/scene.toml",
-                  slope = std::string(TALUS_EXACTNESS) + "/ranks/slope.toml";
+                  slope = std::string(TALUS_EXACTNESS) + "/ranks/slope.toml",
+                  wet_column = std::string(TALUS_GALLERY) + "/saturated_column/scene.toml",
+                  loaded = std::string(TALUS_EXACTNESS) + "/../verification/loaded_face/scene.toml",
+                  wet_block = std::string(TALUS_EXACTNESS) + "/../verification/wet_incline/scene.toml";
 
 TEST(Allocations, are_counted) {
   const long long before = calls;
@@ -95,6 +98,35 @@ TEST(Allocations, none_in_a_drained_slope_of_two_soils) {
   const Count c = count(slope, {"transfer.remap_interval=0.1"}, 1000, 200);
   EXPECT_GT(c.steps, 10);
   EXPECT_GT(c.remaps, 1);
+  EXPECT_EQ(c.in_steps, 0);
+  EXPECT_EQ(c.in_remaps, 0);
+}
+
+TEST(Allocations, none_where_pore_fluids_move) {
+  const std::vector<std::string> curves = {"body.sand.retention.curve=van_genuchten", "body.sand.retention.reference_suction=500", "body.sand.retention.shape=0.5",
+                                           "body.sand.relative_permeability.curve=van_genuchten_mualem", "body.sand.relative_permeability.shape=0.5", "water.stress=bishop"};
+  for (const std::string phases : {"saturated", "unsaturated", "three-phase"}) {
+    std::vector<std::string> overrides{"mesh.size=0.01", "phases=" + phases};
+    if (phases != "saturated") overrides.insert(overrides.end(), curves.begin(), curves.end());
+    const Count c = count(wet_column, overrides, phases == "three-phase" ? 15000 : 3000, 400);
+    EXPECT_GT(c.steps, 10) << phases;
+    EXPECT_GT(c.remaps, 1) << phases;
+    EXPECT_EQ(c.in_steps, 0) << phases;
+    EXPECT_EQ(c.in_remaps, 0) << phases;
+  }
+}
+
+TEST(Allocations, none_under_loads_that_move_with_a_face) {
+  const Count c = count(loaded, {}, 300, 200);
+  EXPECT_GT(c.steps, 10);
+  EXPECT_GT(c.remaps, 1);
+  EXPECT_EQ(c.in_steps, 0);
+  EXPECT_EQ(c.in_remaps, 0);
+}
+
+TEST(Allocations, none_on_a_base_that_rubs_with_wet_grains) {
+  const Count c = count(wet_block, {}, 1500, 200);
+  EXPECT_GT(c.steps, 10);
   EXPECT_EQ(c.in_steps, 0);
   EXPECT_EQ(c.in_remaps, 0);
 }
