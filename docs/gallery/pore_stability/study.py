@@ -410,9 +410,9 @@ def draw_wetting():
         right.plot(t, [float(r["deviator_Pa"]) / 1e3 for r in mine], color=colour, lw=1)
     left.set(xlabel="time [s]", ylabel="mean degree of saturation")
     middle.set(xlabel="time [s]", ylabel="scatter of pressure along rows [Pa]")
-    middle.legend(fontsize=6.5)
     right.set(xlabel="time [s]", ylabel="q at half height [kPa]", xlim=(0, 3))
-    figure.tight_layout()
+    figure.legend(*left.get_legend_handles_labels(), loc="lower center", ncols=4, fontsize=7.5)
+    figure.tight_layout(rect=(0, 0.1, 1, 1))
     style.save(figure, HERE / "wetting.png")
 
 
@@ -427,14 +427,14 @@ def draw_choices():
                 mine = [r for r in rows if (r["case"], r["smoothing"], r["integration"]) == (case, smoothing, integration)]
                 held = [(100 * float(r["size_m"]), 100 * abs(float(r[key]))) for r in mine if r[key] != "failed"]
                 axes.plot(*zip(*held), line, color=colour[integration], marker="o", ms=4, mfc="white" if smoothing == "none" else None, lw=1.2 if integration != "blended" else 2.4, label=f"{integration}, {'smoothed' if smoothing == 'nodal' else 'as they are'}")
-        failed = sorted({100 * float(r["size_m"]) for r in rows if r["case"] == case and r[key] == "failed"})
+        failed = [f"{r['integration']}, {100 * float(r['size_m']):g} cm" for r in rows if r["case"] == case and r[key] == "failed"]
         sizes = [100 * size for size in CELLS[case]]
         axes.set(xscale="log", yscale="linear" if (case, key) == ("column", "answer") else "log", xlabel="cells [cm]", xlim=(0.8 * min(sizes), 1.25 * max(sizes)))
         axes.set_xticks(sizes, [f"{size:g}" for size in sizes])
         axes.minorticks_off()
         axes.set_title(title, loc="left", fontsize=8)
         if failed or case == "strip":
-            axes.text(0.05, 0.5 if failed else 0.3, "all integrations alike" if case == "strip" else "as they are: failed at " + ", ".join(f"{size:g} cm" for size in failed), transform=axes.transAxes, fontsize=7)
+            axes.text(0.05, 0.5 if failed else 0.3, "all integrations alike" if case == "strip" else "as they are, failed:\n" + "\n".join(failed), transform=axes.transAxes, fontsize=7)
     figure.legend(*grid[0].get_legend_handles_labels(), loc="lower center", ncols=8, fontsize=7.5)
     figure.tight_layout(rect=(0, 0.06, 1, 1))
     style.save(figure, HERE / "choices.png")
