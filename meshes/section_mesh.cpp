@@ -122,7 +122,8 @@ class SectionModel {
       Entities made, top;
       occ::extrude(from, 0, 0, end - start, made, layers, {}, false);
       for (std::size_t i = 0; i + 1 < made.size(); ++i)
-        if (made[i + 1].first == 3) top.push_back(made[i]);  // Gmsh lists each volume after the face opposite its source
+        if (made[i + 1].first == 3)
+          top.push_back(made[i]);  // Gmsh lists each volume after the face opposite its source
       from = top, start = end;
     }
     occ::synchronize();
@@ -207,7 +208,8 @@ class SectionModel {
   /// Ending of the group of cells at z.
   std::string part_at(double z) const {
     if (options_.cuts.empty()) return "";
-    return "_" + std::to_string(std::upper_bound(options_.cuts.begin(), options_.cuts.end(), z) - options_.cuts.begin() + 1);
+    return "_" +
+           std::to_string(std::upper_bound(options_.cuts.begin(), options_.cuts.end(), z) - options_.cuts.begin() + 1);
   }
 
   void name_facets() {

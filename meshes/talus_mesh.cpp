@@ -137,7 +137,8 @@ int parse(int argc, char **argv, Request &request) {
   app.add_option("--dimension", request.options.dimension, "2: triangles, 3: tetrahedra")->check(CLI::IsMember({2, 3}));
   app.add_option("--thickness", request.options.thickness, "of a 3D slice [m]; default one cell size");
   app.add_option("--layers", request.options.layers, "of elements over the thickness; 0: free tetrahedra; default 1");
-  app.add_option("--cuts", request.options.cuts, "z [m] that part the thickness into groups of cells ending in _1, _2, ...");
+  app.add_option("--cuts", request.options.cuts,
+                 "z [m] that part the thickness into groups of cells ending in _1, _2, ...");
   app.add_option("--refine", request.boxes, "x0 y0 x1 y1 h: cells of size h in a box; may be repeated")
       ->type_size(5)
       ->expected(-1);

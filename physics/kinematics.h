@@ -7,11 +7,13 @@
 
 namespace talus {
 
-/// Below this size of grad u the midpoint rule replaces the polar decomposition in 3D: its strain errs by less than 1e-4 of itself.
+/// Below this size of grad u the midpoint rule replaces the polar decomposition in 3D: its strain errs by less than
+/// 1e-4 of itself.
 inline constexpr double small_increment = 1e-2;
 
-/// Rotation and logarithmic strain of dF = I + g. The midpoint rule (Hughes & Winget 1980), its strain turned back by half the rotation, is
-/// exact for rigid rotation and errs by third order in g; larger increments are decomposed exactly. Returns false for an inverted cell (det dF <= 0).
+/// Rotation and logarithmic strain of dF = I + g. The midpoint rule (Hughes & Winget 1980), its strain turned back by
+/// half the rotation, is exact for rigid rotation and errs by third order in g; larger increments are decomposed
+/// exactly. Returns false for an inverted cell (det dF <= 0).
 template <int dim>
 bool decompose(const Square<dim> &g, Increment<dim> &increment);
 
@@ -26,8 +28,8 @@ inline double exp_small(double x) {
 
 template <>
 inline bool decompose<2>(const Square<2> &g, Increment<2> &out) {
-  // In the plane the rotation of F is the angle of (F00 + F11, F10 - F01), and U = R^T F is symmetric. Differences are taken of
-  // g, not of F, so that small increments lose no digits.
+  // In the plane the rotation of F is the angle of (F00 + F11, F10 - F01), and U = R^T F is symmetric. Differences are
+  // taken of g, not of F, so that small increments lose no digits.
   const double volume = g(0, 0) + g(1, 1) + (g(0, 0) * g(1, 1) - g(0, 1) * g(1, 0));  // det F - 1
   if (!(volume > -1)) return false;
   const double a = 2 + g(0, 0) + g(1, 1), b = g(1, 0) - g(0, 1), r = std::sqrt(a * a + b * b), c = a / r, s = b / r;
@@ -56,14 +58,19 @@ inline bool decompose<3>(const Square<3> &g, Increment<3> &out) {
     const double det = half(0, 0) * inverse(0, 0) + half(0, 1) * inverse(1, 0) + half(0, 2) * inverse(2, 0);
     const Square<3> h = g.lazyProduct(inverse) / det;
     const double wx = (h(2, 1) - h(1, 2)) / 2, wy = (h(0, 2) - h(2, 0)) / 2, wz = (h(1, 0) - h(0, 1)) / 2;
-    const double xx = h(0, 0), yy = h(1, 1), zz = h(2, 2), xy = (h(0, 1) + h(1, 0)) / 2, yz = (h(1, 2) + h(2, 1)) / 2, xz = (h(0, 2) + h(2, 0)) / 2;
+    const double xx = h(0, 0), yy = h(1, 1), zz = h(2, 2), xy = (h(0, 1) + h(1, 0)) / 2, yz = (h(1, 2) + h(2, 1)) / 2,
+                 xz = (h(0, 2) + h(2, 0)) / 2;
     // sym h is seen half way: e - (w e - e w) / 2 is what it was at the start, where R takes it from
-    out.strain = {xx + wz * xy - wy * xz, yy - wz * xy + wx * yz, zz + wy * xz - wx * yz,
-                  xy + (wz * (yy - xx) - wy * yz + wx * xz) / 2, yz + (wx * (zz - yy) - wz * xz + wy * xy) / 2, xz + (wy * (xx - zz) + wz * yz - wx * xy) / 2};
+    out.strain = {xx + wz * xy - wy * xz,
+                  yy - wz * xy + wx * yz,
+                  zz + wy * xz - wx * yz,
+                  xy + (wz * (yy - xx) - wy * yz + wx * xz) / 2,
+                  yz + (wx * (zz - yy) - wz * xz + wy * xy) / 2,
+                  xz + (wy * (xx - zz) + wz * yz - wx * xy) / 2};
     const double ww = (wx * wx + wy * wy + wz * wz) / 4, k = 1 / (1 + ww), e = 1 - 2 * ww * k;  // Cayley transform
-    out.rotation = {e + k * wx * wx / 2,        k * (wx * wy / 2 - wz), k * (wx * wz / 2 + wy),
-                    k * (wx * wy / 2 + wz),     e + k * wy * wy / 2,    k * (wy * wz / 2 - wx),
-                    k * (wx * wz / 2 - wy),     k * (wy * wz / 2 + wx), e + k * wz * wz / 2};
+    out.rotation = {e + k * wx * wx / 2,    k * (wx * wy / 2 - wz), k * (wx * wz / 2 + wy),
+                    k * (wx * wy / 2 + wz), e + k * wy * wy / 2,    k * (wy * wz / 2 - wx),
+                    k * (wx * wz / 2 - wy), k * (wy * wz / 2 + wx), e + k * wz * wz / 2};
     return true;
   }
   const Square<3> f = Square<3>::Identity() + g;

@@ -1,6 +1,7 @@
 #pragma once
-/// Pore pressure as a given function of place and time: hydrostatic below a water table whose level moves, plus an excess
-/// (phase model `drained`); what seepage has found stands in place of both where water flowed. Pressure is positive in compression.
+/// Pore pressure as a given function of place and time: hydrostatic below a water table whose level moves, plus an
+/// excess (phase model `drained`); what seepage has found stands in place of both where water flowed. Pressure is
+/// positive in compression.
 #include <cmath>
 
 #include "base/vec.h"
@@ -33,10 +34,13 @@ class GivenPressure {
   double operator()(const Vec<dim> &x, double t) const {
     const double elevation = table(x[0], t), p = seeped(x);
     if (!std::isnan(p)) return p;
-    return std::max(0., unit_weight_ * (elevation - x[1])) + water_->excess(x[0], x[1], dim == 3 ? x[2] : 0, t, elevation);
+    return std::max(0., unit_weight_ * (elevation - x[1])) +
+           water_->excess(x[0], x[1], dim == 3 ? x[2] : 0, t, elevation);
   }
   /// Hydrostatic suction at x above the water table; 0 without one [Pa].
-  double above_table(const Vec<dim> &x, double t) const { return water_->table.empty() ? 0 : std::max(0., unit_weight_ * (x[1] - table(x[0], t))); }
+  double above_table(const Vec<dim> &x, double t) const {
+    return water_->table.empty() ? 0 : std::max(0., unit_weight_ * (x[1] - table(x[0], t)));
+  }
   /// May pores have filled or dried since the start?
   bool moves() const { return water_->seeped || (!water_->table.empty() && !water_->level.constant()); }
   bool open_water_load() const { return water_->open_water_load; }

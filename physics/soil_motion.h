@@ -1,6 +1,7 @@
 #pragma once
-/// The right-hand side of the material point method on simplices, docs/theory sections 2 to 4: stress and volume live at stress
-/// points, gradients at cells, momentum at nodes. One class for plane strain and 3D and for every phase model.
+/// The right-hand side of the material point method on simplices, docs/theory sections 2 to 4: stress and volume live
+/// at stress points, gradients at cells, momentum at nodes. One class for plane strain and 3D and for every phase
+/// model.
 #include <algorithm>
 #include <limits>
 #include <memory>
@@ -36,22 +37,24 @@ struct Loading {
 
 /// Sums over all ranks, for the ledger and the stop criteria.
 struct Balance {
-  double unbalanced = 0, applied = 0;   ///< sums of nodal force magnitudes [N]
-  double kinetic = 0, strain = 0;       ///< [J]
+  double unbalanced = 0, applied = 0;  ///< sums of nodal force magnitudes [N]
+  double kinetic = 0, strain = 0;      ///< [J]
 };
 
-/// What has been done to the soil since the start, docs/theory (6.6); of this rank, beside the work of boundaries (Conditions::work) [J].
+/// What has been done to the soil since the start, docs/theory (6.6); of this rank, beside the work of boundaries
+/// (Conditions::work) [J].
 struct WorkDone {
   double gravity = 0;
-  double imposed = 0;   ///< by body accelerations and given pore pressure
-  double damping = 0;   ///< by local damping: negative
+  double imposed = 0;  ///< by body accelerations and given pore pressure
+  double damping = 0;  ///< by local damping: negative
 };
 
 template <int dim, class Phases>
 class SoilMotion final : public Motion {
  public:
-  SoilMotion(const BackgroundMesh<dim> &mesh, std::vector<std::unique_ptr<Body<dim>>> &bodies, Conditions<dim> &conditions,
-             const Scene &scene, double relaxation_time, double total_mass, long long particles, double gravity);
+  SoilMotion(const BackgroundMesh<dim> &mesh, std::vector<std::unique_ptr<Body<dim>>> &bodies,
+             Conditions<dim> &conditions, const Scene &scene, double relaxation_time, double total_mass,
+             long long particles, double gravity);
 
   PetscErrorCode begin(double t) override;
   PetscErrorCode acceleration(double t, const double *u, const double *v, double *a) override;
@@ -73,12 +76,13 @@ class SoilMotion final : public Motion {
   PetscErrorCode settle();
   /// Hands particles what the nodes learned and frees the grid; the particles in `movers[body]` have left their cells.
   PetscErrorCode release(double t, std::vector<std::vector<int>> &movers);
-  /// The same when `begin` follows as soon as the movers have found their new cells: particles that stay are gathered in the same
-  /// sweep, `begin` adds what `movers` lists by then. In between particles have their places, but no stress and no fluids.
+  /// The same when `begin` follows as soon as the movers have found their new cells: particles that stay are gathered
+  /// in the same sweep, `begin` adds what `movers` lists by then. In between particles have their places, but no stress
+  /// and no fluids.
   PetscErrorCode release_to_next(double t, std::vector<std::vector<int>> &movers);
 
-  /// The state between two steps, also in the middle of a Lagrangian part, so that it does not matter to a run where it was kept.
-  /// After the bodies; collective.
+  /// The state between two steps, also in the middle of a Lagrangian part, so that it does not matter to a run where it
+  /// was kept. After the bodies; collective.
   PetscErrorCode keep(Archive &archive);
 
   Loading<dim> loading;
@@ -103,7 +107,9 @@ class SoilMotion final : public Motion {
   /// Stress [stress_size], history and volume of a particle within the Lagrangian part.
   void state(int body, int particle, double *stress, double *history, double *volume) const;
   /// Given pore pressure at a place [Pa].
-  double pore_pressure(const Vec<dim> &x) const requires Phases::given { return loading.ramp * pressure_(x, loading.time); }
+  double pore_pressure(const Vec<dim> &x) const requires Phases::given {
+    return loading.ramp * pressure_(x, loading.time);
+  }
   /// Pore pressures, suction and saturation of a particle within the Lagrangian part.
   PoreReport pores(const Body<dim> &body, int particle) const requires Phases::liquid;
   /// Masses of liquid and gas of all ranks; collective.
@@ -116,11 +122,13 @@ class SoilMotion final : public Motion {
   /// Keeps what supports bear that stand in for dashpots. Collective.
   PetscErrorCode freeze_reactions(double t);
   /// Fills the pores of the particles, which must have been released, to the pressures of `liquid`(cell, place) [Pa].
-  void fill_pores(const std::function<double(int, const Vec<dim> &)> &liquid) requires Phases::liquid { fluid_.fill(liquid); }
+  void fill_pores(const std::function<double(int, const Vec<dim> &)> &liquid) requires Phases::liquid {
+    fluid_.fill(liquid);
+  }
   /// Sums of the present state; collective.
   PetscErrorCode balance(double t, Balance *sums);
-  /// Largest frequency of elastic motion of the filled mesh [1/s] by power iteration, which comes from below, docs/theory (5.7). Goes on from the
-  /// mode that it found last. After `begin`; collective.
+  /// Largest frequency of elastic motion of the filled mesh [1/s] by power iteration, which comes from below,
+  /// docs/theory (5.7). Goes on from the mode that it found last. After `begin`; collective.
   PetscErrorCode largest_frequency(int iterations, double *omega) requires(!Phases::liquid);
 
  private:
@@ -139,8 +147,12 @@ class SoilMotion final : public Motion {
   void set_weights(const std::vector<double> &nodal_volume);
   PetscErrorCode deform(double t, const Vec<dim> *u, bool trial);
   PetscErrorCode smooth_volume_strain(const Shape<dim> *shape);
-  const double *seen_history(size_t body) { return nonlocal_[body] ? nonlocal_[body]->averaged(points_[body]) : points_[body].history; }
-  const double *softening_size(size_t body) const { return nonlocal_[body] ? nonlocal_[body]->size() : grid_.size.data(); }
+  const double *seen_history(size_t body) {
+    return nonlocal_[body] ? nonlocal_[body]->averaged(points_[body]) : points_[body].history;
+  }
+  const double *softening_size(size_t body) const {
+    return nonlocal_[body] ? nonlocal_[body]->size() : grid_.size.data();
+  }
   PetscErrorCode internal_force(bool trial);
   void add_body_forces(double t);
   void add_up_work(const Vec<dim> *u);
@@ -164,30 +176,32 @@ class SoilMotion final : public Motion {
   double relaxation_time_, total_mass_, smallest_mass_;
   FilledGrid<dim> grid_, next_grid_;
   std::vector<PointSet> points_, next_points_;
-  std::vector<std::unique_ptr<NonlocalStrain<dim>>> nonlocal_;  ///< per body; null: the law softens by the strain of its point
+  std::vector<std::unique_ptr<NonlocalStrain<dim>>>
+      nonlocal_;  ///< per body; null: the law softens by the strain of its point
   const std::vector<std::vector<int>> *movers_ = nullptr;  ///< when all but these are gathered
 
   // nodes
   std::vector<Vec<dim>> start_velocity_, velocity_, force_, scratch_, trial_position_;
-  std::vector<Vec<dim>> mapped_start_;            ///< start velocity less its own mapping to particles and back, where it relaxes [m/s]
-  std::vector<double> nodal_;                     ///< room for sums over ranks
-  std::vector<double> extra_mass_;                ///< pore water gained since seeding, weighs but is not inert [kg]
+  std::vector<Vec<dim>>
+      mapped_start_;           ///< start velocity less its own mapping to particles and back, where it relaxes [m/s]
+  std::vector<double> nodal_;  ///< room for sums over ranks
+  std::vector<double> extra_mass_;  ///< pore water gained since seeding, weighs but is not inert [kg]
   NodalUpdate update_;
-  std::vector<Vec<dim>> imposed_;                 ///< force of body accelerations and pore pressure, of this rank [N]
-  std::vector<Vec<dim>> held_back_;               ///< force of local damping in the last evaluation [N]
+  std::vector<Vec<dim>> imposed_;    ///< force of body accelerations and pore pressure, of this rank [N]
+  std::vector<Vec<dim>> held_back_;  ///< force of local damping in the last evaluation [N]
   WorkDone work_;
   bool imposes_ = Phases::given;
   // cells
   std::vector<double> particle_volume_, weight_, blend_, volume_strain_;
-  std::vector<double> filling_;                   ///< integration volume over cell volume at the remap
-  std::vector<double> slenderness_;               ///< sum of squared shape-function gradients at the remap [1/m2]
+  std::vector<double> filling_;      ///< integration volume over cell volume at the remap
+  std::vector<double> slenderness_;  ///< sum of squared shape-function gradients at the remap [1/m2]
   std::vector<Increment<dim>> increment_;
   std::vector<std::array<double, components>> cell_stress_;
   std::vector<std::array<double, 2>> impedance_;
   std::vector<double> patch_weight_, patch_sum_;
   std::vector<double> affine_;
-  std::vector<double> change_;                    ///< what the points of one body pass on to its particles
-  std::vector<double> forgotten_;                 ///< history that a stage without softening does not keep
+  std::vector<double> change_;     ///< what the points of one body pass on to its particles
+  std::vector<double> forgotten_;  ///< history that a stage without softening does not keep
   // the trial state of integrators that look ahead
   std::vector<Shape<dim>> trial_shape_;
   std::vector<double> trial_particle_volume_, trial_weight_;
@@ -199,22 +213,24 @@ class SoilMotion final : public Motion {
   };
   [[no_unique_address]] If<Phases::given, std::array<Sample, 2>> sample_;
   double sample_time_[2] = {0, 0}, last_pressure_time_ = 0;
-  bool water_moved_ = false;                      ///< since pore water was counted
-  bool suction_matters_ = false;                  ///< a law reads it: pressure below zero is suction, not stress
-  std::vector<double> suction_;                   ///< at the stress points of one body [Pa]
+  bool water_moved_ = false;      ///< since pore water was counted
+  bool suction_matters_ = false;  ///< a law reads it: pressure below zero is suction, not stress
+  std::vector<double> suction_;   ///< at the stress points of one body [Pa]
   // the fastest mode, where a scene asks for it
-  std::vector<Vec<dim>> mode_;                    ///< of mesh nodes
+  std::vector<Vec<dim>> mode_;  ///< of mesh nodes
   std::vector<Vec<dim>> wave_, wave_force_;
-  std::vector<std::array<double, 2>> elasticity_; ///< Lame's constant and shear modulus of cells [Pa]
+  std::vector<std::array<double, 2>> elasticity_;  ///< Lame's constant and shear modulus of cells [Pa]
   // fluids that move
   [[no_unique_address]] If<Phases::liquid, PoreFluid<dim, Phases>> fluid_;
   [[no_unique_address]] If<Phases::liquid, PoreConditions<dim>> pore_conditions_;
-  [[no_unique_address]] If<Phases::liquid, std::vector<Vec<dim>>> before_;  ///< velocities of all phases before the step [m/s]
+  [[no_unique_address]] If<Phases::liquid, std::vector<Vec<dim>>>
+      before_;  ///< velocities of all phases before the step [m/s]
   [[no_unique_address]] If<Phases::liquid, std::vector<const double *>> point_volume_;
   [[no_unique_address]] If<Phases::liquid, std::vector<double>> pore_strain_;  ///< volume strain of the pores in cells
 
   bool gathered_ = false, inverted_ = false;
-  double remap_time_ = 0, accepted_time_ = 0, own_share_ = 1, moved_ = 0, smallest_ratio_ = 1, step_ratio_ = 1, speed_squared_ = 0;
+  double remap_time_ = 0, accepted_time_ = 0, own_share_ = 1, moved_ = 0, smallest_ratio_ = 1, step_ratio_ = 1,
+         speed_squared_ = 0;
 };
 
 }  // namespace talus

@@ -19,30 +19,43 @@ double stored_energy(const Law &law, const double *stress) {
 
 template <int dim, class Phases>
 SoilMotion<dim, Phases>::SoilMotion(const BackgroundMesh<dim> &mesh, std::vector<std::unique_ptr<Body<dim>>> &bodies,
-                                    Conditions<dim> &conditions, const Scene &scene, double relaxation_time, double total_mass,
-                                    long long particles, double gravity)
-    : mesh_(mesh), bodies_(bodies), conditions_(conditions), transfer_(scene.transfer), pressure_(scene.water, gravity),
-      relaxation_time_(relaxation_time), total_mass_(total_mass),
-      smallest_mass_(1e-6 * total_mass / static_cast<double>(particles)), grid_(mesh), next_grid_(mesh),
-      points_(bodies.size()), next_points_(bodies.size()), fluid_(mesh, bodies, scene) {
+                                    Conditions<dim> &conditions, const Scene &scene, double relaxation_time,
+                                    double total_mass, long long particles, double gravity)
+    : mesh_(mesh),
+      bodies_(bodies),
+      conditions_(conditions),
+      transfer_(scene.transfer),
+      pressure_(scene.water, gravity),
+      relaxation_time_(relaxation_time),
+      total_mass_(total_mass),
+      smallest_mass_(1e-6 * total_mass / static_cast<double>(particles)),
+      grid_(mesh),
+      next_grid_(mesh),
+      points_(bodies.size()),
+      next_points_(bodies.size()),
+      fluid_(mesh, bodies, scene) {
   const int nodes = mesh.node_count(), cells = mesh.cell_count();
   force_.assign(nodes, Vec<dim>{});
-  for (auto *field : {&start_velocity_, &velocity_, &mapped_start_, &scratch_}) field->assign(nodes * velocity_fields<Phases>, Vec<dim>{});
-  if constexpr (Phases::liquid) pore_strain_.resize(cells), before_.resize(velocity_.size()), point_volume_.resize(bodies.size());
+  for (auto *field : {&start_velocity_, &velocity_, &mapped_start_, &scratch_})
+    field->assign(nodes * velocity_fields<Phases>, Vec<dim>{});
+  if constexpr (Phases::liquid)
+    pore_strain_.resize(cells), before_.resize(velocity_.size()), point_volume_.resize(bodies.size());
   for (const auto &body : bodies) imposes_ = imposes_ || !body->source().body_acceleration.empty();
   if (imposes_) imposed_.assign(nodes, Vec<dim>{});
   held_back_.assign(nodes, Vec<dim>{});
   update_.velocity.assign(nodes, Quad{}), update_.displacement.assign(nodes, Quad{});
   for (int a = 0; a < fluids; ++a) update_.fluid[a].assign(nodes, Quad{});
   if (Phases::given) extra_mass_.assign(nodes, 0);
-  for (auto *field : {&particle_volume_, &weight_, &blend_, &filling_, &volume_strain_, &slenderness_}) field->assign(cells, 0);
+  for (auto *field : {&particle_volume_, &weight_, &blend_, &filling_, &volume_strain_, &slenderness_})
+    field->assign(cells, 0);
   increment_.resize(cells), cell_stress_.resize(cells), impedance_.resize(cells);
   patch_weight_.assign(mesh.patch_count, 0), patch_sum_.assign(mesh.patch_count, 0);
   nodal_.assign(static_cast<size_t>(nodes) * (dim + 2), 0);
   for (const auto &body : bodies) suction_matters_ = suction_matters_ || reads_suction(body->law());
   for (const auto &body : bodies) {
     const double length = body->source().averaging_length;
-    nonlocal_.push_back(length > 0 ? std::make_unique<NonlocalStrain<dim>>(mesh, length, plastic_strain_field(body->law()), body->history_count())
+    nonlocal_.push_back(length > 0 ? std::make_unique<NonlocalStrain<dim>>(
+                                         mesh, length, plastic_strain_field(body->law()), body->history_count())
                                    : nullptr);
   }
   for (auto *all : {&points_, &next_points_})
@@ -50,7 +63,8 @@ SoilMotion<dim, Phases>::SoilMotion(const BackgroundMesh<dim> &mesh, std::vector
       PointSet &points = (*all)[b];
       points.of_cell.assign(cells, -1);
       if (!transfer_.average_stress) continue;
-      points.own_cell.resize(cells), points.own_volume.resize(cells), points.own_limit.resize(cells), points.start_volume.resize(cells);
+      points.own_cell.resize(cells), points.own_volume.resize(cells), points.own_limit.resize(cells),
+          points.start_volume.resize(cells);
       points.own_stress.resize(static_cast<size_t>(cells) * components);
       points.own_history.resize(static_cast<size_t>(cells) * bodies[b]->history_count());
       points.start_history.resize(points.own_history.size());
@@ -60,10 +74,10 @@ SoilMotion<dim, Phases>::SoilMotion(const BackgroundMesh<dim> &mesh, std::vector
 
 }  // namespace talus
 
-#include "physics/soil_motion/remap.inl"
 #include "physics/soil_motion/deformation.inl"
 #include "physics/soil_motion/forces.inl"
-#include "physics/soil_motion/velocities.inl"
 #include "physics/soil_motion/given_pressure.inl"
-#include "physics/soil_motion/reports.inl"
 #include "physics/soil_motion/largest_frequency.inl"
+#include "physics/soil_motion/remap.inl"
+#include "physics/soil_motion/reports.inl"
+#include "physics/soil_motion/velocities.inl"

@@ -18,14 +18,20 @@ struct Method {
   double limit;
 };
 
-// Order 2 in three stages (Kinnmark & Gray 1984): two-stage methods of order 2 amplify every undamped wave. Of order 5, Cash-Karp and
-// Fehlberg do as well; of Dormand & Prince's, waves up to omega h = 1 fade.
-constexpr Method methods[] = {{ARKODE_ERK_NONE, 2}, {ARKODE_BOGACKI_SHAMPINE_4_2_3, 1.7320508}, {ARKODE_ZONNEVELD_5_3_4, 2.8284271}, {ARKODE_DORMAND_PRINCE_7_4_5, 0.9969}};
-// With drag: Ascher, Ruuth & Spiteri (1997), section 2.8, of order 3. No stage asks for the rate of the drag itself, only for the solution of
-// implicit steps, so that it may be as stiff as it likes. The limit holds for two phases of any masses, stiffnesses and drag.
+// Order 2 in three stages (Kinnmark & Gray 1984): two-stage methods of order 2 amplify every undamped wave. Of order 5,
+// Cash-Karp and Fehlberg do as well; of Dormand & Prince's, waves up to omega h = 1 fade.
+constexpr Method methods[] = {{ARKODE_ERK_NONE, 2},
+                              {ARKODE_BOGACKI_SHAMPINE_4_2_3, 1.7320508},
+                              {ARKODE_ZONNEVELD_5_3_4, 2.8284271},
+                              {ARKODE_DORMAND_PRINCE_7_4_5, 0.9969}};
+// With drag: Ascher, Ruuth & Spiteri (1997), section 2.8, of order 3. No stage asks for the rate of the drag itself,
+// only for the solution of implicit steps, so that it may be as stiff as it likes. The limit holds for two phases of
+// any masses, stiffnesses and drag.
 constexpr Method method_with_drag{ARKODE_ERK_NONE, 1.56};
 
-const Method &method_of(const ArkodeSettings &settings) { return settings.drag ? method_with_drag : methods[settings.order - 2]; }
+const Method &method_of(const ArkodeSettings &settings) {
+  return settings.drag ? method_with_drag : methods[settings.order - 2];
+}
 
 /// A pair of tables of one method; null where it has no such part.
 struct Tables {
@@ -37,9 +43,12 @@ struct Tables {
 
 void set_tables(const ArkodeSettings &settings, Tables &tables) {
   if (settings.drag) {
-    double c[] = {0, 1. / 2, 2. / 3, 1. / 2, 1}, embedded[] = {0, 2, -3. / 4, -1. / 2, 1. / 4};  // of order 2, and it forgets what drag ends at once
-    double a[] = {0, 0, 0, 0, 0, 1. / 2, 0, 0, 0, 0, 11. / 18, 1. / 18, 0, 0, 0, 5. / 6, -5. / 6, 1. / 2, 0, 0, 1. / 4, 7. / 4, 3. / 4, -7. / 4, 0};
-    double implicit[] = {0, 0, 0, 0, 0, 0, 1. / 2, 0, 0, 0, 0, 1. / 6, 1. / 2, 0, 0, 0, -1. / 2, 1. / 2, 1. / 2, 0, 0, 3. / 2, -3. / 2, 1. / 2, 1. / 2};
+    double c[] = {0, 1. / 2, 2. / 3, 1. / 2, 1},
+           embedded[] = {0, 2, -3. / 4, -1. / 2, 1. / 4};  // of order 2, and it forgets what drag ends at once
+    double a[] = {0, 0, 0,      0,       0,      1. / 2, 0, 0,      0,      0,      11. / 18, 1. / 18, 0,
+                  0, 0, 5. / 6, -5. / 6, 1. / 2, 0,      0, 1. / 4, 7. / 4, 3. / 4, -7. / 4,  0};
+    double implicit[] = {0, 0, 0, 0,       0,      0,      1. / 2, 0, 0,      0,       0,      1. / 6, 1. / 2,
+                         0, 0, 0, -1. / 2, 1. / 2, 1. / 2, 0,      0, 3. / 2, -3. / 2, 1. / 2, 1. / 2};
     tables.explicit_part = ARKodeButcherTable_Create(5, 3, 2, c, a, a + 20, embedded);
     tables.implicit_part = ARKodeButcherTable_Create(5, 3, 2, c, implicit, implicit + 20, embedded);
   } else if (method_of(settings).table == ARKODE_ERK_NONE) {
@@ -84,9 +93,10 @@ struct Arkode::Memory {
   static int rates(double t, N_Vector y, N_Vector rate, void *self);
   static int solve_drag(SUNNonlinearSolver, N_Vector, N_Vector change, N_Vector, double, int, void *solver);
   static int accept(double t, N_Vector y, void *self);
-  /// The step h whose error e, of order p + 1 for an embedded method of order p, just meets the tolerance. ARKODE's own controllers
-  /// look back over several steps; that history does not survive a remap.
-  static int next_step(N_Vector, double, double h, double, double, double e, double, double, int, int p, double *next, void *self) {
+  /// The step h whose error e, of order p + 1 for an embedded method of order p, just meets the tolerance. ARKODE's own
+  /// controllers look back over several steps; that history does not survive a remap.
+  static int next_step(N_Vector, double, double h, double, double, double e, double, double, int, int p, double *next,
+                       void *self) {
     constexpr double shrink = 0.1, growth = 5;
     const double factor = e > 0 ? std::pow(e, -1. / (p + 1)) : growth;
     *next = static_cast<Memory *>(self)->wanted = h * std::clamp(factor, shrink, growth);
@@ -94,7 +104,8 @@ struct Arkode::Memory {
   }
   static constexpr double cfl = 0.9;  // ARKODE wants a fraction below 1; `stable_step` makes up for it
   static int stable_step(N_Vector, double, double *step, void *self) {
-    *step = 1.25 / cfl * static_cast<Memory *>(self)->largest;  // `advance` caps each step; here it bounds what is carried on
+    *step = 1.25 / cfl *
+            static_cast<Memory *>(self)->largest;  // `advance` caps each step; here it bounds what is carried on
     return 0;
   }
 };
@@ -102,21 +113,25 @@ struct Arkode::Memory {
 int Arkode::Memory::rates(double t, N_Vector y, N_Vector rate, void *self) {
   Memory &m = *static_cast<Memory *>(self);
   Motion &motion = *m.space.motion;
-  if (!m.fresh && t == m.first_at) return N_VScale(1, m.first, rate), 0;  // ARKODE asks again after a reset, and for another attempt
+  if (!m.fresh && t == m.first_at)
+    return N_VScale(1, m.first, rate), 0;  // ARKODE asks again after a reset, and for another attempt
   ++m.evaluations;
-  m.failure = motion.rates(t, m.fresh ? nullptr : displacement_of(y), velocity_of(y), displacement_of(rate), velocity_of(rate));
+  m.failure =
+      motion.rates(t, m.fresh ? nullptr : displacement_of(y), velocity_of(y), displacement_of(rate), velocity_of(rate));
   if (!m.fresh && motion.inverted()) m.space.inverted = true;
   if (m.fresh) N_VScale(1, rate, m.first), m.first_at = t;
   m.fresh = false;
   return m.failure ? -1 : 0;
 }
 
-/// A stage of the implicit partition: y = predicted + change solves y = predicted + known + gamma D y; places have no drag.
+/// A stage of the implicit partition: y = predicted + change solves y = predicted + known + gamma D y; places have no
+/// drag.
 int Arkode::Memory::solve_drag(SUNNonlinearSolver, N_Vector, N_Vector change, N_Vector, double, int, void *solver) {
   double t, gamma;
   N_Vector predicted, known, stage, rate;
   void *self;
-  if (ARKStepGetNonlinearSystemData(solver, &t, &predicted, &stage, &rate, &gamma, &known, &self)) return SUN_NLS_MEM_NULL;
+  if (ARKStepGetNonlinearSystemData(solver, &t, &predicted, &stage, &rate, &gamma, &known, &self))
+    return SUN_NLS_MEM_NULL;
   Memory &m = *static_cast<Memory *>(self);
   N_VLinearSum(1, predicted, 1, known, change);
   m.failure = m.space.motion->resist(t, gamma, velocity_of(change));
@@ -124,7 +139,8 @@ int Arkode::Memory::solve_drag(SUNNonlinearSolver, N_Vector, N_Vector change, N_
   return m.failure ? SUN_NLS_EXT_FAIL : SUN_NLS_SUCCESS;
 }
 
-/// A step has passed its error test: boundaries take their share, history is committed, and displacement counts from here.
+/// A step has passed its error test: boundaries take their share, history is committed, and displacement counts from
+/// here.
 int Arkode::Memory::accept(double t, N_Vector y, void *self) {
   Memory &m = *static_cast<Memory *>(self);
   Motion &motion = *m.space.motion;
@@ -142,7 +158,9 @@ PetscErrorCode Arkode::Memory::create(const ArkodeSettings &settings, Motion &mo
   PetscCheck(SUNContext_Create(&comm, &context) == 0, comm, PETSC_ERR_LIB, "SUNContext_Create");
   PetscCall(make_nodal_vector(space, context, &state));
   error = N_VClone(state), first = N_VClone(state);
-  const ARKRhsFn no_rate = [](double, N_Vector, N_Vector rate, void *) { return N_VConst(0, rate), 0; };  // asked at a stage that does not count
+  const ARKRhsFn no_rate = [](double, N_Vector, N_Vector rate, void *) {
+    return N_VConst(0, rate), 0;
+  };  // asked at a stage that does not count
   solver = ARKStepCreate(rates, settings.drag ? no_rate : nullptr, t, state, context);
   PetscCheck(error && first && solver, comm, PETSC_ERR_MEM, "ARKStepCreate");
   Tables tables;
@@ -162,13 +180,14 @@ PetscErrorCode Arkode::Memory::create(const ArkodeSettings &settings, Motion &mo
   bad |= ARKStepSetStabilityFn(solver, stable_step, this);
   bad |= ARKStepSetCFLFraction(solver, cfl);
   bad |= ARKStepSetAdaptivityFn(solver, next_step, this);
-  bad |= ARKStepSetFixedStepBounds(solver, 1, 1.001);    // a step cut short for an output is made up for at once
+  bad |= ARKStepSetFixedStepBounds(solver, 1, 1.001);  // a step cut short for an output is made up for at once
   bad |= ARKStepSetInterpolantType(solver, ARK_INTERP_LAGRANGE);
-  bad |= ARKStepSetInterpolantDegree(solver, 1);         // nobody asks for values between steps
+  bad |= ARKStepSetInterpolantDegree(solver, 1);  // nobody asks for values between steps
   bad |= ARKStepSetMaxErrTestFails(solver, 30);
   bad |= ARKStepSetMaxNumSteps(solver, -1);
   bad |= ARKStepSetMaxHnilWarns(solver, -1);
-  bad |= ARKStepSetErrHandlerFn(solver, [](int, const char *, const char *, char *, void *) {}, nullptr);
+  bad |= ARKStepSetErrHandlerFn(
+      solver, [](int, const char *, const char *, char *, void *) {}, nullptr);
   PetscCheck(!bad, comm, PETSC_ERR_LIB, "ARKStep refuses its settings");
   PetscFunctionReturn(0);
 }
@@ -183,7 +202,8 @@ void Arkode::Memory::name_obstacle(double floor) {
   int at = -1;
   for (int i = 0; i < size; ++i)
     for (int k : {0, 1}) {
-      const double share = k ? std::abs(v[i]) / space.velocity_tolerance : std::abs(u[i]) / space.displacement_tolerance;
+      const double share =
+          k ? std::abs(v[i]) / space.velocity_tolerance : std::abs(u[i]) / space.displacement_tolerance;
       if (share > std::max(largest[0], largest[1])) at = i;
       largest[k] = std::max(largest[k], share);
     }
@@ -200,16 +220,20 @@ void Arkode::Memory::name_obstacle(double floor) {
   component = rank == all.rank ? at : -1;
   char text[400];
   std::snprintf(text, sizeof text,
-                "the error of the %s cannot be kept within integrator.%s with steps above integrator.floor (%.3g s); loosen the tolerance, lower the "
+                "the error of the %s cannot be kept within integrator.%s with steps above integrator.floor (%.3g s); "
+                "loosen the tolerance, lower the "
                 "floor, or look at the soil",
-                velocity ? "velocity" : "displacement", velocity ? "velocity_tolerance" : "displacement_tolerance", floor);
+                velocity ? "velocity" : "displacement", velocity ? "velocity_tolerance" : "displacement_tolerance",
+                floor);
   obstacle = text;
 }
 
 Arkode::Arkode(const ArkodeSettings &settings) : settings_(settings), memory_(std::make_unique<Memory>()) {}
 Arkode::~Arkode() = default;
 
-StepRule ArkodeSettings::rule() const { return {step, fraction * method_of(*this).limit / 2, method_of(*this).limit / 2, bound}; }
+StepRule ArkodeSettings::rule() const {
+  return {step, fraction * method_of(*this).limit / 2, method_of(*this).limit / 2, bound};
+}
 std::unique_ptr<Integrator> ArkodeSettings::make() const { return std::make_unique<Arkode>(*this); }
 
 void Arkode::restart() { memory_->others = true; }
@@ -234,7 +258,8 @@ PetscErrorCode Arkode::advance(Motion &motion, double t, const StepBounds &bound
   }
   m.largest = settings_.rule().share * bounds.critical, m.started = t;
   if (m.wanted == 0) m.wanted = 0.1 * m.largest;
-  const double wanted = m.wanted, step = even_step(fixed ? settings_.step : std::min(0.95 * wanted, m.largest), bounds.until - t, fixed);
+  const double wanted = m.wanted,
+               step = even_step(fixed ? settings_.step : std::min(0.95 * wanted, m.largest), bounds.until - t, fixed);
   const double floor = settings_.floor * bounds.critical;
   int bad = 0;
   if (fixed) {

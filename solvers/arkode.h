@@ -1,7 +1,8 @@
 #pragma once
-/// Explicit Runge-Kutta of orders 2 to 5 with embedded error control on the nodal state (u, v), by SUNDIALS ARKODE (Reynolds et al.
-/// 2023), docs/theory/integrators.md. Stages look ahead from the accepted history; only a step that passed its error test is accepted.
-/// Where phases drag at one another: an implicit-explicit method of order 3 whose implicit part is that drag, solved node by node.
+/// Explicit Runge-Kutta of orders 2 to 5 with embedded error control on the nodal state (u, v), by SUNDIALS ARKODE
+/// (Reynolds et al. 2023), docs/theory/integrators.md. Stages look ahead from the accepted history; only a step that
+/// passed its error test is accepted. Where phases drag at one another: an implicit-explicit method of order 3 whose
+/// implicit part is that drag, solved node by node.
 #include <memory>
 #include <string>
 
@@ -20,20 +21,29 @@ struct ArkodeSettings {
   double step = 0;                       ///< fixed step without error control [s]; 0: by the tolerances
   double floor = 1e-4;                   ///< of the critical step: a run that needs less stops [-]
   FrequencyBound bound = FrequencyBound::cells;
-  bool drag = false;                     ///< between phases; of the motion, not a key
+  bool drag = false;  ///< between phases; of the motion, not a key
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.integer("order", order, Range{2, 5}, "order of the Runge-Kutta method, 3 where pore fluids move; its embedded method, one order lower, tells the error");
-    v.number("velocity_tolerance", velocity_tolerance, metre_per_second, Range{1e-12, 1e3}, "error of the velocity that one step may make, root mean square over the soil's mass");
-    v.number("displacement_tolerance", displacement_tolerance, metre, Range{1e-15, 1e3}, "error of the displacement that one step may make, root mean square over the soil's mass");
-    v.number("fraction", fraction, one, Range{0.001, 1}, "largest step over the order's own stability limit: 2, 1.73, 2.83, 1.0 over omega_max for orders 2 to 5, 1.56 where pore fluids move");
+    v.integer("order", order, Range{2, 5},
+              "order of the Runge-Kutta method, 3 where pore fluids move; its embedded method, one order lower, tells "
+              "the error");
+    v.number("velocity_tolerance", velocity_tolerance, metre_per_second, Range{1e-12, 1e3},
+             "error of the velocity that one step may make, root mean square over the soil's mass");
+    v.number("displacement_tolerance", displacement_tolerance, metre, Range{1e-15, 1e3},
+             "error of the displacement that one step may make, root mean square over the soil's mass");
+    v.number("fraction", fraction, one, Range{0.001, 1},
+             "largest step over the order's own stability limit: 2, 1.73, 2.83, 1.0 over omega_max for orders 2 to 5, "
+             "1.56 where pore fluids move");
     frequency_bound(v, bound);
     v.number("step", step, second, Range{0, 1e9}, "fixed time step without error control; 0 follows the tolerances");
-    v.number("floor", floor, one, Range{1e-12, 1}, "shortest step over the critical step 2 / omega_max; a run that needs a shorter one stops");
+    v.number("floor", floor, one, Range{1e-12, 1},
+             "shortest step over the critical step 2 / omega_max; a run that needs a shorter one stops");
   }
   StepRule rule() const;
   /// What is wrong with these settings where phases drag at one another; empty: nothing.
-  std::string drag_problem() const { return order == 3 ? "" : "has order = " + std::to_string(order) + ", but only order 3 takes drag implicitly"; }
+  std::string drag_problem() const {
+    return order == 3 ? "" : "has order = " + std::to_string(order) + ", but only order 3 takes drag implicitly";
+  }
   std::unique_ptr<Integrator> make() const;
 };
 

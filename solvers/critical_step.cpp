@@ -7,7 +7,8 @@ namespace talus {
 template <int dim>
 double cell_frequency_squared(const Cell<dim> &cell, const Law &law, double density, const PoreStiffness &pores) {
   constexpr int size = dim == 2 ? 3 : 6;
-  // K = V B^T D B and lumped masses rho V / (dim + 1): omega^2 = (dim + 1) / rho times the largest eigenvalue of L^T (B B^T) L, D = L L^T
+  // K = V B^T D B and lumped masses rho V / (dim + 1): omega^2 = (dim + 1) / rho times the largest eigenvalue of L^T (B
+  // B^T) L, D = L L^T
   Eigen::Matrix<double, size, dim *(dim + 1)> b;
   b.setZero();
   for (int k = 0; k <= dim; ++k) {
@@ -32,18 +33,22 @@ double cell_frequency_squared(const Cell<dim> &cell, const Law &law, double dens
     const Eigen::Matrix<double, size, size> l = stiffness.llt().matrixL();
     const Eigen::Matrix<double, size, size> product = l.transpose() * (b * b.transpose()) * l;
     return (dim + 1) / density *
-           Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, size, size>>(product, Eigen::EigenvaluesOnly).eigenvalues()[size - 1];
+           Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, size, size>>(product, Eigen::EigenvaluesOnly)
+               .eigenvalues()[size - 1];
   }
   // one more strain per fluid, (1 - n) div v_s + n div v_a, of stiffness K_a / n; docs/theory/pores.md (6.1)
   const int count = static_cast<int>(pores.fluids.size());
   const double n = pores.porosity, gradients = b.template topRows<dim>().squaredNorm();
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, size + 2, dim *(dim + 1)>;  // no memory from the heap: cells come as the soil moves
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, size + 2,
+                             dim *(dim + 1)>;  // no memory from the heap: cells come as the soil moves
   using Strains = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, size + 2, size + 2>;
   Rows rows(size + count, b.cols());
   Strains all = Strains::Zero(size + count, size + count);
   rows.topRows(size) = b;
   all.topLeftCorner(size, size) = stiffness;
-  for (int a = 0; a < count; ++a) rows.row(size + a) = (1 - n) * b.template topRows<dim>().colwise().sum(), all(size + a, size + a) = pores.fluids[a].bulk_modulus / n;
+  for (int a = 0; a < count; ++a)
+    rows.row(size + a) = (1 - n) * b.template topRows<dim>().colwise().sum(),
+                    all(size + a, size + a) = pores.fluids[a].bulk_modulus / n;
   Strains flexible = rows * rows.transpose() / density;
   for (int a = 0; a < count; ++a) flexible(size + a, size + a) += n * gradients / pores.fluids[a].density;
   const Strains l = all.llt().matrixL(), product = l.transpose() * flexible * l;

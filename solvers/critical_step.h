@@ -1,7 +1,7 @@
 #pragma once
-/// The largest stable step 2 / omega_max of an explicit integrator, from the eigenvalue bound of the filled cells: with lumped mass the
-/// largest frequency of the assembled mesh is at most the largest of any one cell (Irons & Treharne 1971; Belytschko, Liu &
-/// Moran 2000, sec. 6.2). MUSL keeps light nodes from lowering it (docs/theory, section 5.2).
+/// The largest stable step 2 / omega_max of an explicit integrator, from the eigenvalue bound of the filled cells: with
+/// lumped mass the largest frequency of the assembled mesh is at most the largest of any one cell (Irons & Treharne
+/// 1971; Belytschko, Liu & Moran 2000, sec. 6.2). MUSL keeps light nodes from lowering it (docs/theory, section 5.2).
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -20,13 +20,15 @@ struct PoreStiffness {
   std::vector<Fluid> fluids;
 };
 
-/// Largest eigenfrequency squared of a cell of a uniform elastic material [1/s2], with pore fluids that no drag holds back: implicit drag
-/// lowers frequencies. `density` is that of the soil, or of the skeleton per volume of soil where fluids move on their own.
+/// Largest eigenfrequency squared of a cell of a uniform elastic material [1/s2], with pore fluids that no drag holds
+/// back: implicit drag lowers frequencies. `density` is that of the soil, or of the skeleton per volume of soil where
+/// fluids move on their own.
 template <int dim>
 double cell_frequency_squared(const Cell<dim> &cell, const Law &law, double density, const PoreStiffness &pores = {});
 
-/// Largest stable step where drag enters forces from the velocities at the start of the step, omega^2 dt^2 + 2 r dt = 4, docs/theory/pores.md (6.1a) [s].
-/// `critical`: 2 / omega without drag [s]; `rate`: r, the largest of the drag [1/s].
+/// Largest stable step where drag enters forces from the velocities at the start of the step, omega^2 dt^2 + 2 r dt =
+/// 4, docs/theory/pores.md (6.1a) [s]. `critical`: 2 / omega without drag [s]; `rate`: r, the largest of the drag
+/// [1/s].
 inline double with_explicit_drag(double critical, double rate) {
   const double r = rate * critical;
   return 4 * critical / (r + std::sqrt(r * r + 16));

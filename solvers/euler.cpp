@@ -7,7 +7,8 @@ std::unique_ptr<Integrator> EulerSettings::make() const { return std::make_uniqu
 PetscErrorCode Euler::advance(Motion &motion, double t, const StepBounds &bounds, double *taken) {
   PetscFunctionBeginUser;
   const bool fixed = settings_.step > 0;
-  const double wanted = fixed ? settings_.step : settings_.fraction * bounds.critical, step = even_step(wanted, bounds.until - t, fixed);
+  const double wanted = fixed ? settings_.step : settings_.fraction * bounds.critical,
+               step = even_step(wanted, bounds.until - t, fixed);
   const int size = motion.size();
   double *v = motion.velocity();
   acceleration_.resize(size), mapped_.resize(size);  // within capacity once the soil has spread furthest

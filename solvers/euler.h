@@ -1,6 +1,6 @@
 #pragma once
-/// The paper's explicit Euler with the velocity updated first and strain from velocities mapped back from the particles (MUSL),
-/// docs/theory (5.1)-(5.4). Alonso, Yerro & Pinyol (2015), sec. 2.2; Sulsky, Zhou & Schreyer (1995).
+/// The paper's explicit Euler with the velocity updated first and strain from velocities mapped back from the particles
+/// (MUSL), docs/theory (5.1)-(5.4). Alonso, Yerro & Pinyol (2015), sec. 2.2; Sulsky, Zhou & Schreyer (1995).
 #include <memory>
 #include <vector>
 
@@ -22,8 +22,11 @@ struct EulerSettings {
   template <class Visitor>
   void fields(Visitor &&v) {
     v.number("step", step, second, Range{0, 1e9}, "fixed time step; 0 takes a fraction of the critical step");
-    v.number("fraction", fraction, one, Range{0.001, 1}, "time step over the critical step 2 / omega_max, recomputed as the run goes");
-    v.number("limit", limit, one, Range{1, 1e12}, "fixed step over the critical step beyond which a run is refused; more than 1 is there to show how runs fail");
+    v.number("fraction", fraction, one, Range{0.001, 1},
+             "time step over the critical step 2 / omega_max, recomputed as the run goes");
+    v.number(
+        "limit", limit, one, Range{1, 1e12},
+        "fixed step over the critical step beyond which a run is refused; more than 1 is there to show how runs fail");
     frequency_bound(v, bound);
   }
 };

@@ -7,7 +7,8 @@ std::unique_ptr<Integrator> ForwardEulerSettings::make() const { return std::mak
 PetscErrorCode ForwardEuler::advance(Motion &motion, double t, const StepBounds &bounds, double *taken) {
   PetscFunctionBeginUser;
   const bool fixed = settings_.step > 0;
-  const double left = bounds.until - t, step = even_step(fixed ? settings_.step : settings_.fraction * bounds.critical, left, fixed);
+  const double left = bounds.until - t,
+               step = even_step(fixed ? settings_.step : settings_.fraction * bounds.critical, left, fixed);
   const int size = motion.size();
   double *v = motion.velocity();
   displacement_.resize(size), change_.resize(size);  // within capacity once the soil has spread furthest

@@ -1,6 +1,6 @@
 #pragma once
-/// The textbook's explicit Euler: places and velocities both move with the rates at the start of the step. For comparison only: it
-/// amplifies every undamped wave, docs/theory/integrators.md, section 1.
+/// The textbook's explicit Euler: places and velocities both move with the rates at the start of the step. For
+/// comparison only: it amplifies every undamped wave, docs/theory/integrators.md, section 1.
 #include <memory>
 #include <vector>
 
@@ -17,7 +17,8 @@ struct ForwardEulerSettings {
   template <class Visitor>
   void fields(Visitor &&v) {
     v.number("step", step, second, Range{0, 1e9}, "fixed time step; 0 takes a fraction of the critical step");
-    v.number("fraction", fraction, one, Range{0.001, 1}, "time step over the critical step 2 / omega_max; waves grow at any fraction, slowly at small ones");
+    v.number("fraction", fraction, one, Range{0.001, 1},
+             "time step over the critical step 2 / omega_max; waves grow at any fraction, slowly at small ones");
   }
   StepRule rule() const { return {step, fraction, 1}; }
   std::string drag_problem() const { return "would amplify the waves of the pores"; }

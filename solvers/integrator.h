@@ -34,7 +34,8 @@ struct StepRule {
 template <class Visitor>
 void frequency_bound(Visitor &&v, FrequencyBound &bound) {
   v.choice("omega_max", bound, {{"cells", FrequencyBound::cells}, {"mesh", FrequencyBound::mesh}},
-           "largest frequency, from the fastest filled cell by itself or from the whole filled mesh, by power iteration at remaps: longer steps, above all on tetrahedra; not where pore fluids move");
+           "largest frequency, from the fastest filled cell by itself or from the whole filled mesh, by power "
+           "iteration at remaps: longer steps, above all on tetrahedra; not where pore fluids move");
 }
 
 /// Sums since the start of a run.
@@ -42,7 +43,8 @@ struct StepStatistics {
   long long steps = 0, evaluations = 0;  ///< evaluations of the forces
   long long rejections = 0;              ///< attempts that failed the error test
   long long inversions = 0;              ///< attempts that failed because a stage turned a cell inside out
-  long long by_error = 0, by_stability = 0, by_schedule = 0;  ///< steps by what bounded them: error, stability or given step, an output
+  long long by_error = 0, by_stability = 0,
+            by_schedule = 0;  ///< steps by what bounded them: error, stability or given step, an output
   double shortest = std::numeric_limits<double>::infinity(), longest = 0;  ///< [s]
 };
 
@@ -68,8 +70,11 @@ class Integrator {
   static Bound bounded_by(double left, double step) { return left > 2 * step ? Bound::stability : Bound::schedule; }
   void count(double step, Bound bound) {
     ++statistics_.steps;
-    ++(bound == Bound::error ? statistics_.by_error : bound == Bound::stability ? statistics_.by_stability : statistics_.by_schedule);
-    statistics_.shortest = std::min(statistics_.shortest, step), statistics_.longest = std::max(statistics_.longest, step);
+    ++(bound == Bound::error       ? statistics_.by_error
+       : bound == Bound::stability ? statistics_.by_stability
+                                   : statistics_.by_schedule);
+    statistics_.shortest = std::min(statistics_.shortest, step),
+    statistics_.longest = std::max(statistics_.longest, step);
   }
   StepStatistics statistics_;
 };

@@ -12,7 +12,12 @@ IntegratorSettings read_integrator(DeferredTable &table, bool drag) {
 }
 
 std::string drag_problem(const IntegratorSettings &settings) {
-  return std::visit([](const auto &kind) { const std::string problem = kind.drag_problem(); return problem.empty() ? problem : kind.name + (" " + problem); }, settings);
+  return std::visit(
+      [](const auto &kind) {
+        const std::string problem = kind.drag_problem();
+        return problem.empty() ? problem : kind.name + (" " + problem);
+      },
+      settings);
 }
 
 std::unique_ptr<Integrator> make_integrator(const IntegratorSettings &settings) {

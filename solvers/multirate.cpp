@@ -31,7 +31,8 @@ struct Multirate::Memory {
   static int call(double t, N_Vector y, N_Vector rate, void *self) {
     Memory &m = *static_cast<Memory *>(self);
     ++(m.*evaluations);
-    m.failure = (m.space.motion->*rates)(t, displacement_of(y), velocity_of(y), displacement_of(rate), velocity_of(rate));
+    m.failure =
+        (m.space.motion->*rates)(t, displacement_of(y), velocity_of(y), displacement_of(rate), velocity_of(rate));
     return m.failure ? -1 : 0;
   }
 };

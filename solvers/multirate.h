@@ -1,7 +1,8 @@
 #pragma once
-/// Two clocks, by SUNDIALS MRIStep: an explicit multirate method of order 3 takes the slow rates of a motion a few times a step, and between
-/// them follows the fast ones by small Runge-Kutta steps of order 3 (Knoth & Wolke 1998; Schlegel et al. 2009), docs/theory/integrators.md,
-/// section 5. For a motion that tells its rates apart (`slow_rates`, `fast_rates`); no scene has such a motion yet, so no scene names it.
+/// Two clocks, by SUNDIALS MRIStep: an explicit multirate method of order 3 takes the slow rates of a motion a few
+/// times a step, and between them follows the fast ones by small Runge-Kutta steps of order 3 (Knoth & Wolke 1998;
+/// Schlegel et al. 2009), docs/theory/integrators.md, section 5. For a motion that tells its rates apart (`slow_rates`,
+/// `fast_rates`); no scene has such a motion yet, so no scene names it.
 #include <memory>
 
 #include "solvers/integrator.h"

@@ -51,7 +51,8 @@ PetscErrorCode make_nodal_vector(NodalSpace &space, SUNContext context, N_Vector
   PetscCall(PetscContainerSetPointer(container, &space));
   PetscCall(VecCreateMPI(comm, 2 * space.motion->capacity(), PETSC_DETERMINE, &array));
   PetscCall(VecSet(array, 0));
-  PetscCall(PetscObjectCompose(reinterpret_cast<PetscObject>(array), space_name, reinterpret_cast<PetscObject>(static_cast<PetscContainer>(container))));
+  PetscCall(PetscObjectCompose(reinterpret_cast<PetscObject>(array), space_name,
+                               reinterpret_cast<PetscObject>(static_cast<PetscContainer>(container))));
   *x = N_VMake_Petsc(array, context);
   PetscCheck(*x, comm, PETSC_ERR_MEM, "N_VMake_Petsc");
   (*x)->ops->nvlinearcombination = combine;
@@ -72,8 +73,9 @@ double error_norm(N_Vector error) {
   NodalSpace &space = space_of(error);
   const Motion &motion = *space.motion;
   const double u = space.displacement_tolerance, v = space.velocity_tolerance;
-  double sums[2] = {motion.seen_square(displacement_of(error)) / (u * u) + motion.seen_square(velocity_of(error)) / (v * v),
-                    space.inverted ? 1. : 0.};
+  double sums[2] = {
+      motion.seen_square(displacement_of(error)) / (u * u) + motion.seen_square(velocity_of(error)) / (v * v),
+      space.inverted ? 1. : 0.};
   space.inverted = false;
   MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, motion.comm());
   if (sums[1] > 0) ++space.inversions;

@@ -1,7 +1,8 @@
 #pragma once
-/// The state (u, v) of a motion as an N_Vector_Petsc of SUNDIALS with a norm of its own: as long on each rank as its mesh allows, of which
-/// the nodes that hold soil now are used, and nobody looks at the rest. So remaps change no vector, and no step allocates. Shared nodes stand
-/// on each rank that has them, equal to the bit; algebra is local, and only norms are summed over ranks. docs/theory/integrators.md, section 3.
+/// The state (u, v) of a motion as an N_Vector_Petsc of SUNDIALS with a norm of its own: as long on each rank as its
+/// mesh allows, of which the nodes that hold soil now are used, and nobody looks at the rest. So remaps change no
+/// vector, and no step allocates. Shared nodes stand on each rank that has them, equal to the bit; algebra is local,
+/// and only norms are summed over ranks. docs/theory/integrators.md, section 3.
 #include <petscsys.h>
 #include <sundials/sundials_nvector.h>
 
@@ -9,7 +10,8 @@
 
 namespace talus {
 
-/// What all vectors of one integration share: the motion, and how much error of the particles' places and velocities counts as 1.
+/// What all vectors of one integration share: the motion, and how much error of the particles' places and velocities
+/// counts as 1.
 struct NodalSpace {
   Motion *motion;
   double displacement_tolerance;  ///< [m]
@@ -18,7 +20,8 @@ struct NodalSpace {
   long long inversions = 0;       ///< norms that found so on some rank
 };
 
-/// An N_Vector of zeros, to be cloned at will. The space must outlive it and its clones, which end with N_VDestroy. Collective.
+/// An N_Vector of zeros, to be cloned at will. The space must outlive it and its clones, which end with N_VDestroy.
+/// Collective.
 PetscErrorCode make_nodal_vector(NodalSpace &space, SUNContext context, N_Vector *x);
 void destroy_nodal_vector(N_Vector x);
 
@@ -26,8 +29,8 @@ void destroy_nodal_vector(N_Vector x);
 double *displacement_of(N_Vector y);
 double *velocity_of(N_Vector y);
 
-/// Root mean square over the soil's mass of the particles' share of a nodal error, over the tolerances, docs/theory/integrators.md (3);
-/// far above 1 if a cell was turned inside out or the error is no number. Collective.
+/// Root mean square over the soil's mass of the particles' share of a nodal error, over the tolerances,
+/// docs/theory/integrators.md (3); far above 1 if a cell was turned inside out or the error is no number. Collective.
 double error_norm(N_Vector error);
 
 }  // namespace talus

@@ -45,14 +45,17 @@ struct PetscTs::Memory {
 PetscTs::PetscTs(const PetscTsSettings &settings) : settings_(settings), memory_(std::make_unique<Memory>()) {}
 PetscTs::~PetscTs() = default;
 
-StepRule PetscTsSettings::rule() const { return {step, fraction * method_of(method).limit / 2, method_of(method).limit / 2}; }
+StepRule PetscTsSettings::rule() const {
+  return {step, fraction * method_of(method).limit / 2, method_of(method).limit / 2};
+}
 std::unique_ptr<Integrator> PetscTsSettings::make() const { return std::make_unique<PetscTs>(*this); }
 
 PetscErrorCode PetscTs::advance(Motion &motion, double t, const StepBounds &bounds, double *taken) {
   PetscFunctionBeginUser;
   Memory &m = *memory_;
   const bool fixed = settings_.step > 0;
-  const double left = bounds.until - t, step = even_step(fixed ? settings_.step : settings_.rule().share * bounds.critical, left, fixed);
+  const double left = bounds.until - t,
+               step = even_step(fixed ? settings_.step : settings_.rule().share * bounds.critical, left, fixed);
   const int size = motion.size();
   m.motion = &motion, m.fresh = true;
   if (!m.stepper) {

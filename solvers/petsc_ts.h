@@ -1,6 +1,7 @@
 #pragma once
-/// Explicit Runge-Kutta methods of PETSc's TS on the nodal state (u, v), without error control: steps follow the stability limit or are given.
-/// A third family beside `euler` and `arkode`, up to order 8, docs/theory/integrators.md, section 2. Vectors are as long as the mesh allows.
+/// Explicit Runge-Kutta methods of PETSc's TS on the nodal state (u, v), without error control: steps follow the
+/// stability limit or are given. A third family beside `euler` and `arkode`, up to order 8, docs/theory/integrators.md,
+/// section 2. Vectors are as long as the mesh allows.
 #include <petscts.h>
 
 #include <memory>
@@ -21,10 +22,14 @@ struct PetscTsSettings {
   double fraction = 0.8;  ///< of the method's stability limit [-]
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.choice("method", method, {{"rk3", RungeKutta::rk3}, {"rk4", RungeKutta::rk4}, {"rk5", RungeKutta::rk5}, {"rk8", RungeKutta::rk8}},
-             "explicit Runge-Kutta method of PETSc: Kutta's of orders 3 and 4, Bogacki and Shampine's of order 5, Verner's of order 8");
-    v.number("step", step, second, Range{0, 1e9}, "fixed time step; 0 takes a fraction of the method's stability limit");
-    v.number("fraction", fraction, one, Range{0.001, 1}, "time step over the method's own stability limit: 1.73, 2.83, 1.66, 2.59 over omega_max");
+    v.choice("method", method,
+             {{"rk3", RungeKutta::rk3}, {"rk4", RungeKutta::rk4}, {"rk5", RungeKutta::rk5}, {"rk8", RungeKutta::rk8}},
+             "explicit Runge-Kutta method of PETSc: Kutta's of orders 3 and 4, Bogacki and Shampine's of order 5, "
+             "Verner's of order 8");
+    v.number("step", step, second, Range{0, 1e9},
+             "fixed time step; 0 takes a fraction of the method's stability limit");
+    v.number("fraction", fraction, one, Range{0.001, 1},
+             "time step over the method's own stability limit: 1.73, 2.83, 1.66, 2.59 over omega_max");
   }
   StepRule rule() const;
   std::string drag_problem() const { return "takes no drag implicitly"; }

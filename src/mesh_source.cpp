@@ -105,15 +105,17 @@ MeshRun MeshFile::mesh_section(const Scene &scene) {
   const MeshSource &source = scene.mesh;
   if (!folder_.make()) return {1, "cannot make a folder for temporary files; set TMPDIR to one that can be written"};
   path_ = folder_.path() + "/mesh.msh";
-  std::vector<std::string> arguments{beside_scene(scene, source.section), "-o", path_, "--size", number(source.size),
-                                     "--dimension", std::to_string(scene.dimension)};
+  std::vector<std::string> arguments{
+      beside_scene(scene, source.section), "-o", path_, "--size", number(source.size), "--dimension",
+      std::to_string(scene.dimension)};
   if (scene.dimension == 3) {
     arguments.insert(arguments.end(), {"--layers", std::to_string(source.layers)});
     if (source.thickness > 0) arguments.insert(arguments.end(), {"--thickness", number(source.thickness)});
     for (double cut : source.cuts) arguments.insert(arguments.end(), {"--cuts", number(cut)});
   }
   for (const RefineBox &box : source.refine)
-    arguments.insert(arguments.end(), {"--refine", number(box.from[0]), number(box.from[1]), number(box.to[0]), number(box.to[1]), number(box.size)});
+    arguments.insert(arguments.end(), {"--refine", number(box.from[0]), number(box.from[1]), number(box.to[0]),
+                                       number(box.to[1]), number(box.size)});
   MeshRun run = run_talus_mesh(arguments);
   const std::string speaker = "talus-mesh: ";
   if (run.output.starts_with(speaker)) run.output.erase(0, speaker.size());

@@ -23,13 +23,19 @@ std::vector<double> HistoryTable::column(const std::string &name) const {
 namespace {
 
 template <int dim>
-std::unique_ptr<AnySimulation> make_in(MPI_Comm comm, Scene &scene, const RunOptions &options, const std::string &mesh) {
+std::unique_ptr<AnySimulation> make_in(MPI_Comm comm, Scene &scene, const RunOptions &options,
+                                       const std::string &mesh) {
   switch (scene.phases) {
-    case PhaseModel::dry: return std::make_unique<Simulation<dim, Dry>>(comm, scene, options, mesh);
-    case PhaseModel::drained: return std::make_unique<Simulation<dim, Drained>>(comm, scene, options, mesh);
-    case PhaseModel::saturated: return std::make_unique<Simulation<dim, Saturated>>(comm, scene, options, mesh);
-    case PhaseModel::unsaturated: return std::make_unique<Simulation<dim, Unsaturated>>(comm, scene, options, mesh);
-    case PhaseModel::three_phase: return std::make_unique<Simulation<dim, ThreePhase>>(comm, scene, options, mesh);
+    case PhaseModel::dry:
+      return std::make_unique<Simulation<dim, Dry>>(comm, scene, options, mesh);
+    case PhaseModel::drained:
+      return std::make_unique<Simulation<dim, Drained>>(comm, scene, options, mesh);
+    case PhaseModel::saturated:
+      return std::make_unique<Simulation<dim, Saturated>>(comm, scene, options, mesh);
+    case PhaseModel::unsaturated:
+      return std::make_unique<Simulation<dim, Unsaturated>>(comm, scene, options, mesh);
+    case PhaseModel::three_phase:
+      return std::make_unique<Simulation<dim, ThreePhase>>(comm, scene, options, mesh);
   }
   throw std::logic_error("phase model without a kernel");
 }
@@ -38,14 +44,16 @@ std::unique_ptr<AnySimulation> make(MPI_Comm comm, Scene &scene, const RunOption
   return scene.dimension == 2 ? make_in<2>(comm, scene, options, mesh) : make_in<3>(comm, scene, options, mesh);
 }
 
-/// Boundaries of pore water in a drained scene belong to its seepage stages alone: the motion takes the pressure that they find.
+/// Boundaries of pore water in a drained scene belong to its seepage stages alone: the motion takes the pressure that
+/// they find.
 void set_seepage_apart(Scene &scene) {
   const auto seeps = [](const BoundarySource &b) {
     DeferredTable table = b.kind;
     const Boundary kind = read_boundary(table);
     return concerns_water(kind) && !concerns_gas(kind);
   };
-  const auto water = std::stable_partition(scene.boundary.begin(), scene.boundary.end(), [&](const BoundarySource &b) { return !seeps(b); });
+  const auto water = std::stable_partition(scene.boundary.begin(), scene.boundary.end(),
+                                           [&](const BoundarySource &b) { return !seeps(b); });
   scene.seepage_boundary.insert(scene.seepage_boundary.end(), water, scene.boundary.end());
   scene.boundary.erase(water, scene.boundary.end());
 }
@@ -56,8 +64,10 @@ void recall_seepage(MPI_Comm comm, Scene &scene, const RunOptions &options) {
   const std::string file = seeped_file(options.directory);
   if (options.resume && std::filesystem::exists(file)) {
     const auto recall = [&](auto found) { scene.water.seeped = [found](const double *x) { return (*found)(x); }; };
-    if (scene.dimension == 2) recall(std::make_shared<SeepedPressure<2>>(file));
-    else recall(std::make_shared<SeepedPressure<3>>(file));
+    if (scene.dimension == 2)
+      recall(std::make_shared<SeepedPressure<2>>(file));
+    else
+      recall(std::make_shared<SeepedPressure<3>>(file));
   }
   int rank;
   MPI_Comm_rank(comm, &rank);
@@ -67,7 +77,8 @@ void recall_seepage(MPI_Comm comm, Scene &scene, const RunOptions &options) {
 }  // namespace
 
 std::unique_ptr<AnySimulation> make_simulation(MPI_Comm comm, Scene &scene, const RunOptions &options) {
-  if (scene.phases == PhaseModel::drained && std::any_of(scene.stage.begin(), scene.stage.end(), [](const Stage &s) { return water_flows(s.kind); })) {
+  if (scene.phases == PhaseModel::drained &&
+      std::any_of(scene.stage.begin(), scene.stage.end(), [](const Stage &s) { return water_flows(s.kind); })) {
     set_seepage_apart(scene);
     if (!options.directory.empty()) recall_seepage(comm, scene, options);
   }

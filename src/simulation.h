@@ -1,6 +1,6 @@
 #pragma once
-/// A scene in motion: seeds the bodies, runs the stages, writes the results. This header is free of templates; the kernel behind it is
-/// compiled once per dimension and phase model (src/variants).
+/// A scene in motion: seeds the bodies, runs the stages, writes the results. This header is free of templates; the
+/// kernel behind it is compiled once per dimension and phase model (src/variants).
 #include <petscdmplex.h>
 
 #include <array>
@@ -24,12 +24,13 @@ class RunError : public std::runtime_error {
 };
 
 struct RunOptions {
-  std::string directory;       ///< of the results; empty: nothing is written
-  bool resume = false;         ///< go on from the checkpoint in the directory
-  bool pictures = true;        ///< draw them when the run ends
-  bool screen = true;          ///< progress line
-  bool gauss_points = false;   ///< snapshots of quasi-static stages hold Gauss points, not the particles they are handed to
-  DM plex = nullptr;           ///< mesh of a host program, instead of the scene's
+  std::string directory;  ///< of the results; empty: nothing is written
+  bool resume = false;    ///< go on from the checkpoint in the directory
+  bool pictures = true;   ///< draw them when the run ends
+  bool screen = true;     ///< progress line
+  bool gauss_points =
+      false;          ///< snapshots of quasi-static stages hold Gauss points, not the particles they are handed to
+  DM plex = nullptr;  ///< mesh of a host program, instead of the scene's
 };
 
 /// What happened when: failure, end of stages.
@@ -54,21 +55,23 @@ struct Breakdown {
 /// One body as it is now, over all ranks; in 2D per metre of thickness.
 struct BodyReport {
   std::string name;
-  long long particles = 0, cells = 0;    ///< cells with particles of this body
-  int fewest_per_cell = 0;               ///< particles of this body in one of these cells
-  double mass = 0, volume = 0;           ///< [kg], [m3]
-  std::array<double, 3> low{}, high{};   ///< corners of the box around its cells [m]
-  double cell_size = 0;                  ///< side of the regular simplex of the mean size of its cells [m]
+  long long particles = 0, cells = 0;                ///< cells with particles of this body
+  int fewest_per_cell = 0;                           ///< particles of this body in one of these cells
+  double mass = 0, volume = 0;                       ///< [kg], [m3]
+  std::array<double, 3> low{}, high{};               ///< corners of the box around its cells [m]
+  double cell_size = 0;                              ///< side of the regular simplex of the mean size of its cells [m]
   double critical_step = 0, mean_critical_step = 0;  ///< least and mean over its cells [s]
-  std::array<double, 3> slowest_cell{};  ///< centroid of the cell with the least [m]
+  std::array<double, 3> slowest_cell{};              ///< centroid of the cell with the least [m]
 };
 
 class AnySimulation {
  public:
   virtual ~AnySimulation() = default;
-  /// Runs all stages, or what is left of them. Throws RunError, and std::invalid_argument where there is nothing to resume.
+  /// Runs all stages, or what is left of them. Throws RunError, and std::invalid_argument where there is nothing to
+  /// resume.
   virtual void run() = 0;
-  /// Advances by steps of the scene's integrator until simulated time `t`; for host programs. Loads of the first stage apply.
+  /// Advances by steps of the scene's integrator until simulated time `t`; for host programs. Loads of the first stage
+  /// apply.
   virtual void advance_to(double t) = 0;
   /// Takes one step and returns it [s]; for benchmarks.
   virtual double single_step() = 0;
@@ -85,16 +88,18 @@ class AnySimulation {
   virtual const HistoryTable &history() const = 0;
   virtual const std::vector<Event> &events() const = 0;
   virtual const Breakdown &breakdown() const = 0;
-  /// Factor of safety of the state that the stages have led to, all of them quasi-static, by reduction of strength; runs them
-  /// first if they have not been run. Throws RunError.
+  /// Factor of safety of the state that the stages have led to, all of them quasi-static, by reduction of strength;
+  /// runs them first if they have not been run. Throws RunError.
   virtual FactorOfSafety factor_of_safety() = 0;
-  /// Hands over the nodal field "velocity" [m/s] or "displacement" [m] (since the start or the last reset) of each vertex of the DMPlex,
-  /// by its point number, that has soil in a cell around it on any rank; ranks that share a vertex get the same bits. Collective; for
-  /// host programs.
-  virtual void nodal_field(const std::string &name, const std::function<void(PetscInt point, const double *value)> &put) = 0;
+  /// Hands over the nodal field "velocity" [m/s] or "displacement" [m] (since the start or the last reset) of each
+  /// vertex of the DMPlex, by its point number, that has soil in a cell around it on any rank; ranks that share a
+  /// vertex get the same bits. Collective; for host programs.
+  virtual void nodal_field(const std::string &name,
+                           const std::function<void(PetscInt point, const double *value)> &put) = 0;
 };
 
-/// Builds a simulation; collective over `comm`. The scene must outlive it. Throws std::invalid_argument for bad input, the same on all ranks.
+/// Builds a simulation; collective over `comm`. The scene must outlive it. Throws std::invalid_argument for bad input,
+/// the same on all ranks.
 std::unique_ptr<AnySimulation> make_simulation(MPI_Comm comm, Scene &scene, const RunOptions &options);
 
 /// Set by signal handlers: the run writes a checkpoint and a snapshot and ends with RunError.

@@ -10,7 +10,8 @@ namespace talus {
 namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
-const double same_direction = std::sqrt(1 - least_angle_sine * least_angle_sine);  // facets of one curved face share a contact within this
+const double same_direction =
+    std::sqrt(1 - least_angle_sine * least_angle_sine);  // facets of one curved face share a contact within this
 
 template <int dim>
 double dot(const Vec<dim> &a, const Vec<dim> &b) {
@@ -37,7 +38,8 @@ void Conditions<dim>::add_contact(int node, int source, const Vec<dim> &normal, 
   int &index = first_contact_of_node_[node];
   if (index < 0) index = static_cast<int>(contacts_.size()), contacts_.emplace_back();
   for (Contact &c : contacts_[index])
-    if (c.source == source && dot<dim>(c.normal, normal) > same_direction) {  // area-weighted mean of nearly equal normals
+    if (c.source == source &&
+        dot<dim>(c.normal, normal) > same_direction) {  // area-weighted mean of nearly equal normals
       for (int d = 0; d < dim; ++d) c.normal[d] = c.normal[d] * c.area + normal[d] * area;
       const double length = std::sqrt(dot<dim>(c.normal, c.normal));
       for (double &n : c.normal) n /= length;
@@ -76,7 +78,9 @@ PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vect
   PetscCall(complete_normals(mesh, normals));
   // an order that does not depend on the partition, so that all ranks build the same constraints
   std::stable_sort(normals.begin(), normals.end(), [&](const NodeNormal<dim> &a, const NodeNormal<dim> &b) {
-    const auto key = [&](const NodeNormal<dim> &n) { return std::make_tuple(priority(sources_[n.source].kind), n.source, n.normal, n.area); };
+    const auto key = [&](const NodeNormal<dim> &n) {
+      return std::make_tuple(priority(sources_[n.source].kind), n.source, n.normal, n.area);
+    };
     return key(a) < key(b);
   });
   for (const NodeNormal<dim> &n : normals)
@@ -84,7 +88,8 @@ PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vect
         [&](const auto &kind) {
           if constexpr (requires { kind.template directions<dim>(n.normal); })
             for (const Vec<dim> &direction : kind.template directions<dim>(n.normal))
-              for (int held = holds_loads(sources_[n.source].kind); held < 2; ++held) add_direction(prescribed_[held], n.node, n.source, direction);
+              for (int held = holds_loads(sources_[n.source].kind); held < 2; ++held)
+                add_direction(prescribed_[held], n.node, n.source, direction);
           else
             add_contact(n.node, n.source, n.normal, n.area);
         },
@@ -104,7 +109,8 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
   PetscFunctionBeginUser;
   const BackgroundMesh<dim> &mesh = grid.mesh();
   const int nodes = grid.node_count();
-  active_prescribed_.clear(), active_contacts_.clear(), active_dashpots_.clear(), active_frozen_.clear(), impulses_.clear();
+  active_prescribed_.clear(), active_contacts_.clear(), active_dashpots_.clear(), active_frozen_.clear(),
+      impulses_.clear();
   counted_.resize(nodes);
   for (int i = 0; i < nodes; ++i) {
     counted_[i] = mesh.owned[grid.mesh_node[i]];
@@ -117,7 +123,8 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
   if (!bases_.empty()) {
     for (auto &of_node : contacts_)
       for (Contact &c : of_node)
-        if (grid.find_node(c.node) < 0) c.capacity = 0, c.since_pressed = never;  // whoever comes here later has not pressed yet
+        if (grid.find_node(c.node) < 0)
+          c.capacity = 0, c.since_pressed = never;  // whoever comes here later has not pressed yet
     nodal_.assign(nodes, 0);
     for (const auto &[source, facets] : bases_)
       for (const Facet<dim> &f : facets) {
@@ -131,7 +138,8 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
       if (index < 0) continue;
       double total = 0;
       for (const Contact &c : contacts_[index]) total += c.area;
-      for (Contact &c : contacts_[index]) active_contacts_.push_back({i, &c, nodal_[i] * c.area / total, 0, false, false});
+      for (Contact &c : contacts_[index])
+        active_contacts_.push_back({i, &c, nodal_[i] * c.area / total, 0, false, false});
     }
   }
   if (!dashpots_.empty() && !held_) {
@@ -145,7 +153,9 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
           for (int i = 0; i < dim; ++i)
             for (int j = 0; j < dim; ++j)
               nodal_[grid.find_node(node) * width + i * dim + j] +=
-                  f.area / dim * ((impedance[cell][0] - impedance[cell][1]) * f.normal[i] * f.normal[j] + (i == j ? impedance[cell][1] : 0));
+                  f.area / dim *
+                  ((impedance[cell][0] - impedance[cell][1]) * f.normal[i] * f.normal[j] +
+                   (i == j ? impedance[cell][1] : 0));
       }
       PetscCall(grid.sum(nodal_.data(), width));
       for (int i = 0; i < nodes; ++i) {
@@ -204,7 +214,8 @@ void Conditions<dim>::constrain(double t, const FilledGrid<dim> &grid, Vec<dim> 
   }
   for (const ActivePrescribed &p : active_prescribed_)
     for (int k = 0; k < p.condition->count; ++k)
-      add<dim>(v[p.node], target(*p.condition, k, grid.position[p.node], t) - dot<dim>(v[p.node], p.condition->direction[k]),
+      add<dim>(v[p.node],
+               target(*p.condition, k, grid.position[p.node], t) - dot<dim>(v[p.node], p.condition->direction[k]),
                p.condition->direction[k]);
 }
 
@@ -217,8 +228,10 @@ void Conditions<dim>::project(const FilledGrid<dim> &, const Vec<dim> *v, Vec<di
     const double into = dot<dim>(f, n);
     add<dim>(slip, -dot<dim>(slip, n), n);
     const double speed = std::sqrt(dot<dim>(slip, slip));
-    if (c.sticks) f = {}, add<dim>(f, into, n);
-    else if (speed > 0) add<dim>(f, -c.force / speed, slip);
+    if (c.sticks)
+      f = {}, add<dim>(f, into, n);
+    else if (speed > 0)
+      add<dim>(f, -c.force / speed, slip);
     if (into > 0) add<dim>(f, -into, n);
   }
   for (const ActivePrescribed &p : active_prescribed_)
@@ -228,7 +241,9 @@ void Conditions<dim>::project(const FilledGrid<dim> &, const Vec<dim> *v, Vec<di
 
 template <int dim>
 void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Pores &pores) {
-  const auto mass_of = [&](int node) -> Square<dim> { return pores.inertia ? pores.inertia(node) : Square<dim>(grid.mass[node] * Square<dim>::Identity()); };
+  const auto mass_of = [&](int node) -> Square<dim> {
+    return pores.inertia ? pores.inertia(node) : Square<dim>(grid.mass[node] * Square<dim>::Identity());
+  };
   const auto account = [&](int node, int source, const Vec<dim> &before) {
     if (!counted_[node]) return;
     Reaction r{node, source, {}};
@@ -257,7 +272,8 @@ void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &gri
     const double slope = std::tan(base.friction_angle(t));
     if (c.presses) contact.capacity += slope * map<dim>(n).dot(mass * map<dim>(n)) * into;
     if (pores.thrust) contact.capacity -= slope * gamma * pores.thrust(c.node, n);
-    const double forgotten = answer * contact.capacity, rubbing = std::max(0., forgotten), speed = std::sqrt(dot<dim>(slip, slip));
+    const double forgotten = answer * contact.capacity, rubbing = std::max(0., forgotten),
+                 speed = std::sqrt(dot<dim>(slip, slip));
     const double m = speed > 0 ? map<dim>(slip).dot(mass * map<dim>(slip)) / (speed * speed) : 0;
     const double hold = rubbing + (contact.since_pressed <= friction_delay_ ? base.adhesion(t) * c.area * gamma : 0);
     contact.capacity -= forgotten, c.force = hold / gamma, c.sticks = m * speed <= hold;
@@ -269,7 +285,8 @@ void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &gri
   for (const ActivePrescribed &p : active_prescribed_)
     for (int k = 0; k < p.condition->count; ++k) {
       const Vec<dim> before = v[p.node];
-      add<dim>(v[p.node], target(*p.condition, k, grid.position[p.node], t) - dot<dim>(before, p.condition->direction[k]),
+      add<dim>(v[p.node],
+               target(*p.condition, k, grid.position[p.node], t) - dot<dim>(before, p.condition->direction[k]),
                p.condition->direction[k]);
       account(p.node, p.condition->source[k], before);
     }
@@ -280,13 +297,15 @@ PetscErrorCode Conditions<dim>::take_impulses(MPI_Comm comm, std::vector<Vec<dim
   PetscFunctionBeginUser;
   impulse.resize(impulse_.size());
   if (!impulse_.empty())
-    PetscCallMPI(MPI_Allreduce(impulse_.data(), impulse.data(), static_cast<int>(impulse_.size()) * dim, MPI_DOUBLE, MPI_SUM, comm));
+    PetscCallMPI(MPI_Allreduce(impulse_.data(), impulse.data(), static_cast<int>(impulse_.size()) * dim, MPI_DOUBLE,
+                               MPI_SUM, comm));
   std::fill(impulse_.begin(), impulse_.end(), Vec<dim>{});
   PetscFunctionReturn(0);
 }
 
 template <int dim>
-PetscErrorCode Conditions<dim>::keep(Archive &archive, FilledGrid<dim> &grid, const std::vector<std::array<double, 2>> &impedance,
+PetscErrorCode Conditions<dim>::keep(Archive &archive, FilledGrid<dim> &grid,
+                                     const std::vector<std::array<double, 2>> &impedance,
                                      const std::vector<double> &filling) {
   PetscFunctionBeginUser;
   archive.keep("supports", held_, frozen_);

@@ -1,6 +1,6 @@
 #pragma once
-/// What the boundaries of a scene do to nodes, docs/theory section 6: prescribed directions are orthonormalised per node once;
-/// contacts keep one constraint per facet normal; loads and dashpots act where facets have soil behind them.
+/// What the boundaries of a scene do to nodes, docs/theory section 6: prescribed directions are orthonormalised per
+/// node once; contacts keep one constraint per facet normal; loads and dashpots act where facets have soil behind them.
 #include <functional>
 #include <string>
 #include <vector>
@@ -25,7 +25,8 @@ class Conditions {
   /// Collects nodes and normals of all groups, also of facets that only a neighbouring rank has. Collective.
   PetscErrorCode setup(const BackgroundMesh<dim> &mesh, std::vector<Source> sources);
   /// Picks the nodes and facets of the filled grid. `impedance` [filled cells] holds rho c_p and rho c_s. Collective.
-  PetscErrorCode begin(FilledGrid<dim> &grid, const std::vector<std::array<double, 2>> &impedance, const std::vector<double> &filling);
+  PetscErrorCode begin(FilledGrid<dim> &grid, const std::vector<std::array<double, 2>> &impedance,
+                       const std::vector<double> &filling);
 
   /// In stages that hold loads, supports stand in for dashpots; counts from the next `begin`.
   void hold(bool held) { held_ = held; }
@@ -41,8 +42,9 @@ class Conditions {
   void project(const FilledGrid<dim> &grid, const Vec<dim> *v, Vec<dim> *force) const;
   /// What fluids in the pores add to contact at a node; empty without them.
   struct Pores {
-    std::function<Square<dim>(int node)> inertia;                    ///< against what holds the node, in place of the grid's mass [kg]
-    std::function<double(int node, const Vec<dim> &normal)> thrust;  ///< with which they press on a base, and which grains do not rub with [N]
+    std::function<Square<dim>(int node)> inertia;  ///< against what holds the node, in place of the grid's mass [kg]
+    std::function<double(int node, const Vec<dim> &normal)>
+        thrust;  ///< with which they press on a base, and which grains do not rub with [N]
   };
   /// Implicit in a step gamma: dashpots, contact with friction, prescribed velocities. Sums up the reactions.
   void resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Pores &pores = {});
@@ -56,8 +58,10 @@ class Conditions {
   void set_friction_delay(double delay) { friction_delay_ = delay; }
 
   SurfaceLoads<dim> &surface_loads() { return surface_loads_; }
-  /// What `begin` does not find out anew: how contacts press and slide, frozen reactions, impulses and work. Reading begins. Collective.
-  PetscErrorCode keep(Archive &archive, FilledGrid<dim> &grid, const std::vector<std::array<double, 2>> &impedance, const std::vector<double> &filling);
+  /// What `begin` does not find out anew: how contacts press and slide, frozen reactions, impulses and work. Reading
+  /// begins. Collective.
+  PetscErrorCode keep(Archive &archive, FilledGrid<dim> &grid, const std::vector<std::array<double, 2>> &impedance,
+                      const std::vector<double> &filling);
 
   const std::vector<Source> &sources() const { return sources_; }
   bool has_dashpots() const { return !dashpots_.empty(); }
@@ -67,15 +71,15 @@ class Conditions {
 
  private:
   using Prescribed = PrescribedDirections<dim>;
-  struct Contact {         // one facet normal of a base at a node
-    int node, source;      // mesh node
+  struct Contact {     // one facet normal of a base at a node
+    int node, source;  // mesh node
     Vec<dim> normal;
     double area;
     double capacity;       // friction impulse owed to the normal impulses of the recent past [N s]
     double since_pressed;  // [s]
   };
   struct ActivePrescribed {
-    int node;              // compact
+    int node;  // compact
     const Prescribed *condition;
   };
   struct ActiveContact {
@@ -87,14 +91,14 @@ class Conditions {
   };
   struct Dashpot {
     int node, source;
-    Square<dim> matrix;         // [kg/s]
+    Square<dim> matrix;  // [kg/s]
   };
   struct Reaction {
     int node, source;
-    Vec<dim> value;             // impulse of the last `resolve` [N s], or dead load [N]
+    Vec<dim> value;  // impulse of the last `resolve` [N s], or dead load [N]
   };
   struct PrescribedSet {
-    std::vector<int> of_node;   // mesh node -> entry, -1: none
+    std::vector<int> of_node;  // mesh node -> entry, -1: none
     std::vector<Prescribed> entry;
   };
   void add_direction(PrescribedSet &set, int node, int source, const Vec<dim> &direction);
@@ -116,7 +120,7 @@ class Conditions {
   std::vector<double> work_;
   std::vector<Vec<dim>> impulse_;
   SurfaceLoads<dim> surface_loads_;
-  std::vector<char> counted_;   // [compact] this rank counts the node in global sums
+  std::vector<char> counted_;  // [compact] this rank counts the node in global sums
 };
 
 }  // namespace talus

@@ -12,7 +12,8 @@ struct Flux {
   Function inflow = 0.0;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.function("inflow", inflow, metre_per_second, {-1e3, 1e3}, "volume of liquid that enters per area and time, function of x, y, z, t; negative when it leaves");
+    v.function("inflow", inflow, metre_per_second, {-1e3, 1e3},
+               "volume of liquid that enters per area and time, function of x, y, z, t; negative when it leaves");
   }
   double forced(double x, double y, double z, double t) const { return inflow(x, y, z, t); }
 };

@@ -4,8 +4,9 @@
 
 namespace talus {
 
-/// Contact with a rigid base: no penetration, free to separate, Coulomb friction and adhesion against sliding, docs/theory (6.1), (6.2). At a kink every
-/// facet normal is a constraint of its own, since one averaged normal distorts the contact just where shearing starts.
+/// Contact with a rigid base: no penetration, free to separate, Coulomb friction and adhesion against sliding,
+/// docs/theory (6.1), (6.2). At a kink every facet normal is a constraint of its own, since one averaged normal
+/// distorts the contact just where shearing starts.
 struct Friction {
   static constexpr const char *name = "friction";
   Function friction_angle = 0.0;

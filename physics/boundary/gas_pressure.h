@@ -4,7 +4,8 @@
 
 namespace talus {
 
-/// The gas beyond the face has this gauge pressure; it moves in and out freely, liquid only out. The face carries no other load by it.
+/// The gas beyond the face has this gauge pressure; it moves in and out freely, liquid only out. The face carries no
+/// other load by it.
 struct GivenGasPressure {
   static constexpr const char *name = "gas_pressure";
   static constexpr const char *meaning = "pressure of the gas beyond the face; liquid may leave, not enter";

@@ -6,7 +6,8 @@
 
 namespace talus {
 
-/// Open water up to a level: hydrostatic pressure on the face below it, with the water's weight; above it a seepage face.
+/// Open water up to a level: hydrostatic pressure on the face below it, with the water's weight; above it a seepage
+/// face.
 struct Head {
   static constexpr const char *name = "head";
   static constexpr const char *meaning = "open water up to a level, which rests on the face; above it a seepage face";
@@ -16,7 +17,9 @@ struct Head {
   void fields(Visitor &&v) {
     v.function("level", level, metre, {-1e5, 1e5}, "elevation y of the water level, function of t");
   }
-  double outside(double, double y, double, double t, double unit_weight) const { return std::max(0., unit_weight * (level(t) - y)); }
+  double outside(double, double y, double, double t, double unit_weight) const {
+    return std::max(0., unit_weight * (level(t) - y));
+  }
   double load(double pressure) const { return pressure; }
   static constexpr bool deepens = true;  ///< below its level pressure grows with depth by the weight of the water
   /// Volume that may enter per area and time where the face is dry [m/s].

@@ -13,11 +13,11 @@ template <int dim>
 struct NodeNormal {
   int source, node;  ///< boundary, mesh node
   Vec<dim> position, normal;
-  double area;       ///< the node's share [m2]
+  double area;  ///< the node's share [m2]
 };
 
-/// Adds the facets of other ranks at nodes that this rank shares with them: facets of a shared node may lie on one rank only. Every rank tells its
-/// own, and finds nodes by their exact position. Collective.
+/// Adds the facets of other ranks at nodes that this rank shares with them: facets of a shared node may lie on one rank
+/// only. Every rank tells its own, and finds nodes by their exact position. Collective.
 template <int dim>
 PetscErrorCode complete_normals(const BackgroundMesh<dim> &mesh, std::vector<NodeNormal<dim>> &normals) {
   PetscFunctionBeginUser;
@@ -40,7 +40,8 @@ PetscErrorCode complete_normals(const BackgroundMesh<dim> &mesh, std::vector<Nod
   PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, mesh.comm()));
   for (int r = 0; r < ranks; ++r) starts[r + 1] = starts[r] + counts[r];
   all.resize(starts[ranks]);
-  PetscCallMPI(MPI_Allgatherv(mine.data(), count, MPI_DOUBLE, all.data(), counts.data(), starts.data(), MPI_DOUBLE, mesh.comm()));
+  PetscCallMPI(MPI_Allgatherv(mine.data(), count, MPI_DOUBLE, all.data(), counts.data(), starts.data(), MPI_DOUBLE,
+                              mesh.comm()));
   for (int r = 0; r < ranks; ++r)
     for (int i = starts[r]; r != rank && i < starts[r + 1]; i += width) {
       NodeNormal<dim> n{static_cast<int>(all[i]), -1, {}, {}, all[i + 1]};

@@ -6,9 +6,9 @@
 
 namespace talus {
 
-/// Dashpots that swallow waves arriving straight at the face: rho c_p across it, rho c_s along it (Lysmer & Kuhlemeyer 1969). Dashpots
-/// carry no load at rest: in quasi-static stages and in those that hold loads a support stands in for them, and the reaction it bore at their
-/// end acts on as a dead load.
+/// Dashpots that swallow waves arriving straight at the face: rho c_p across it, rho c_s along it (Lysmer & Kuhlemeyer
+/// 1969). Dashpots carry no load at rest: in quasi-static stages and in those that hold loads a support stands in for
+/// them, and the reaction it bore at their end acts on as a dead load.
 struct NonReflecting {
   static constexpr const char *name = "non_reflecting";
   enum class Support { roller, fixed, none };
@@ -16,7 +16,8 @@ struct NonReflecting {
   template <class Visitor>
   void fields(Visitor &&v) {
     v.choice("support", support, {{"roller", Support::roller}, {"fixed", Support::fixed}, {"none", Support::none}},
-             "what holds the face in quasi-static stages and in those that hold_loads; the reaction it bears at their end stays on as a dead load");
+             "what holds the face in quasi-static stages and in those that hold_loads; the reaction it bears at their "
+             "end stays on as a dead load");
   }
 
   static constexpr bool while_loads_are_held = true;

@@ -7,7 +7,8 @@
 namespace talus {
 
 template <int dim>
-PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const std::vector<Source> &sources, bool sealed) {
+PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const std::vector<Source> &sources,
+                                          bool sealed) {
   PetscFunctionBeginUser;
   sources_ = &sources, sealed_ = sealed;
   std::set<std::pair<int, int>> open;  // facets with water beyond
@@ -25,7 +26,9 @@ PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const
   }
   for (int s = 0; s < static_cast<int>(sources.size()); ++s) {
     const Boundary &kind = sources[s].kind;
-    const bool holds = std::holds_alternative<Impermeable>(kind) || !(concerns_water(kind) || std::holds_alternative<Traction>(kind) || std::holds_alternative<NonReflecting>(kind));
+    const bool holds =
+        std::holds_alternative<Impermeable>(kind) || !(concerns_water(kind) || std::holds_alternative<Traction>(kind) ||
+                                                       std::holds_alternative<NonReflecting>(kind));
     if (!holds) continue;
     for (const std::string &group : sources[s].groups)
       for (const Facet<dim> &f : mesh.facets(group))
@@ -33,7 +36,9 @@ PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const
           for (int node : f.node) normals.push_back({s, node, mesh.position[node], f.normal, f.area / dim});
   }
   PetscCall(complete_normals(mesh, normals));
-  std::stable_sort(normals.begin(), normals.end(), [](const auto &a, const auto &b) { return std::tie(a.source, a.normal, a.area) < std::tie(b.source, b.normal, b.area); });
+  std::stable_sort(normals.begin(), normals.end(), [](const auto &a, const auto &b) {
+    return std::tie(a.source, a.normal, a.area) < std::tie(b.source, b.normal, b.area);
+  });
   wall_of_node_.assign(mesh.node_count(), -1);
   for (const NodeNormal<dim> &n : normals) {
     int &index = wall_of_node_[n.node];
@@ -42,7 +47,8 @@ PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const
   }
   for (auto *field : {&taken_, &taken_moment_}) field->resize(mesh.node_count());
   nodal_.resize(mesh.node_count()), at_gap_.resize(mesh.node_count()), at_surface_.resize(mesh.node_count());
-  active_walls_.reserve(walls_.size()), faces_.reserve(mesh.node_count()), gaps_.reserve(mesh.node_count()), gap_cells_.reserve((dim + 1) * mesh.cell_count());
+  active_walls_.reserve(walls_.size()), faces_.reserve(mesh.node_count()), gaps_.reserve(mesh.node_count()),
+      gap_cells_.reserve((dim + 1) * mesh.cell_count());
   PetscFunctionReturn(0);
 }
 
@@ -57,8 +63,8 @@ void PoreConditions<dim>::add_face(int node, int source, const Vec<dim> &area, c
 }
 
 template <int dim>
-PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<double> &filling, const std::vector<Vec<dim>> &surface,
-                                          const std::vector<Vec<dim>> &moment) {
+PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<double> &filling,
+                                          const std::vector<Vec<dim>> &surface, const std::vector<Vec<dim>> &moment) {
   PetscFunctionBeginUser;
   const BackgroundMesh<dim> &mesh = grid.mesh();
   const int nodes = grid.node_count();
@@ -85,7 +91,8 @@ PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vect
         double depth = 0;  // of the other nodes below this one
         for (int other : f.node) depth += mesh.position[node][1] - mesh.position[other][1];
         auto &[area, own_moment] = nodal_[grid.find_node(node)];
-        for (int d = 0; d < dim; ++d) area[d] += part * f.normal[d], own_moment[d] += part / (dim + 1) * depth * f.normal[d];
+        for (int d = 0; d < dim; ++d)
+          area[d] += part * f.normal[d], own_moment[d] += part / (dim + 1) * depth * f.normal[d];
       }
     }
     PetscCall(grid.sum(nodal_[0][0].data(), 2 * dim));
@@ -98,11 +105,14 @@ PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vect
   gaps_.clear(), gap_cells_.clear();
   for (int i = 0; i < nodes; ++i) {
     const Vec<dim> rest = open_area(grid, i, surface[i]);
-    // of an edge or its square: less is a gap between particles; the nodes of a one-element slice have a quarter of a square
+    // of an edge or its square: less is a gap between particles; the nodes of a one-element slice have a quarter of a
+    // square
     constexpr double least = dim == 2 ? 0.3 : 0.3 * 0.3, nothing = 1e-10;
     at_gap_[i] = 0;
-    if (large(i, rest, least)) add_face(i, rain_, rest, open_water() ? open_part(grid, i, moment[i], taken_moment_[i]) : Vec<dim>{});
-    else if (large(i, rest, nothing)) gaps_.push_back(i), at_gap_[i] = 1;
+    if (large(i, rest, least))
+      add_face(i, rain_, rest, open_water() ? open_part(grid, i, moment[i], taken_moment_[i]) : Vec<dim>{});
+    else if (large(i, rest, nothing))
+      gaps_.push_back(i), at_gap_[i] = 1;
   }
   for (int c = 0; c < grid.cell_count(); ++c)
     for (int k = 0; k <= dim; ++k)
@@ -112,7 +122,8 @@ PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vect
 
 /// What is left of something at a node beside the share of named faces and across the normals of walls.
 template <int dim>
-Vec<dim> PoreConditions<dim>::open_part(const FilledGrid<dim> &grid, int node, const Vec<dim> &whole, const Vec<dim> &taken) const {
+Vec<dim> PoreConditions<dim>::open_part(const FilledGrid<dim> &grid, int node, const Vec<dim> &whole,
+                                        const Vec<dim> &taken) const {
   Vec<dim> rest = whole;
   for (int d = 0; d < dim; ++d) rest[d] -= taken[d];
   walls_at(grid, node, [&](const Vec<dim> &n) {

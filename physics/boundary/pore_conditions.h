@@ -1,7 +1,8 @@
 #pragma once
-/// What boundaries do to the pore fluids, docs/theory/pores.md section 5. Faces that hold the soil, and `impermeable` ones, let no fluid pass.
-/// Everywhere else the atmosphere's pressure acts, on the soil's surface where it is now: the sum of w grad N at a node is the surface's area
-/// vector there. Where it is small there is a gap between particles, beyond which is what is beside it. The group name `free_surface` in a scene stands for that surface.
+/// What boundaries do to the pore fluids, docs/theory/pores.md section 5. Faces that hold the soil, and `impermeable`
+/// ones, let no fluid pass. Everywhere else the atmosphere's pressure acts, on the soil's surface where it is now: the
+/// sum of w grad N at a node is the surface's area vector there. Where it is small there is a gap between particles,
+/// beyond which is what is beside it. The group name `free_surface` in a scene stands for that surface.
 #include <string>
 #include <vector>
 
@@ -25,13 +26,21 @@ class PoreConditions {
   /// `sealed`: a surface without a boundary lets water out, not in. Collective.
   PetscErrorCode setup(const BackgroundMesh<dim> &mesh, const std::vector<Source> &sources, bool sealed);
   /// Is there open water on the free surface, so that `begin` needs its moments?
-  bool open_water() const { return rain_ != atmosphere && std::visit([](const auto &kind) { return requires { kind.deepens; }; }, (*sources_)[rain_].kind); }
-  /// Picks nodes and faces of the filled grid; `surface` [node] is the sum of w grad N over all cells [m2], `moment` [node] that area's first moment in depth
-  /// below the node [m3], theory (5.2), which only open water asks for. Collective.
-  PetscErrorCode begin(FilledGrid<dim> &grid, const std::vector<double> &filling, const std::vector<Vec<dim>> &surface, const std::vector<Vec<dim>> &moment);
+  bool open_water() const {
+    return rain_ != atmosphere && std::visit(
+                                      [](const auto &kind) {
+                                        return requires { kind.deepens; };
+                                      },
+                                      (*sources_)[rain_].kind);
+  }
+  /// Picks nodes and faces of the filled grid; `surface` [node] is the sum of w grad N over all cells [m2], `moment`
+  /// [node] that area's first moment in depth below the node [m3], theory (5.2), which only open water asks for.
+  /// Collective.
+  PetscErrorCode begin(FilledGrid<dim> &grid, const std::vector<double> &filling, const std::vector<Vec<dim>> &surface,
+                       const std::vector<Vec<dim>> &moment);
 
-  /// Calls put(node, P, push, load) for every face with a pressure P beyond it [Pa]: `push` is what that does to the node along the outer normal, `load` the part that
-  /// the skeleton bears [N].
+  /// Calls put(node, P, push, load) for every face with a pressure P beyond it [Pa]: `push` is what that does to the
+  /// node along the outer normal, `load` the part that the skeleton bears [N].
   template <class Put>
   void pressures(double t, const FilledGrid<dim> &grid, double unit_weight, Put &&put) const {
     for (const Face &f : faces_) {
@@ -44,14 +53,16 @@ class PoreConditions {
               double growth = 0;
               if constexpr (requires { kind.deepens; }) growth = p > 0 ? unit_weight : 0;
               Vec<dim> push, load;
-              for (int d = 0; d < dim; ++d) push[d] = p * f.area[d] + growth * f.moment[d], load[d] = kind.load(push[d]);
+              for (int d = 0; d < dim; ++d)
+                push[d] = p * f.area[d] + growth * f.moment[d], load[d] = kind.load(push[d]);
               put(f.node, p, push, load);
             }
           },
           (*sources_)[f.source].kind);
     }
   }
-  /// Calls put(node, P, area) for every face with a given gas pressure P beyond it [Pa]; beyond the others it is the atmosphere's.
+  /// Calls put(node, P, area) for every face with a given gas pressure P beyond it [Pa]; beyond the others it is the
+  /// atmosphere's.
   template <class Put>
   void gas_pressures(double t, const FilledGrid<dim> &grid, Put &&put) const {
     for (const Face &f : faces_) {
@@ -59,12 +70,14 @@ class PoreConditions {
       const Vec<dim> &x = grid.position[f.node];
       std::visit(
           [&](const auto &kind) {
-            if constexpr (requires { kind.gas_outside(0., 0., 0., 0.); }) put(f.node, kind.gas_outside(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t), f.area);
+            if constexpr (requires { kind.gas_outside(0., 0., 0., 0.); })
+              put(f.node, kind.gas_outside(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t), f.area);
           },
           (*sources_)[f.source].kind);
     }
   }
-  /// Calls put(node, area) for every gap; `surface(node)` is the sum of w grad N now, of which named faces and walls take their share [m2].
+  /// Calls put(node, area) for every gap; `surface(node)` is the sum of w grad N now, of which named faces and walls
+  /// take their share [m2].
   template <class Surface, class Put>
   void gaps(const FilledGrid<dim> &grid, Surface &&surface, Put &&put) const {
     for (const int node : gaps_) put(node, open_area(grid, node, surface(node)));
@@ -73,10 +86,11 @@ class PoreConditions {
   bool at_surface(int node) const { return at_surface_[node]; }
   /// (gap node, cell, number of the node in it) of all cells of this rank at gaps.
   const std::vector<std::array<int, 3>> &gap_cells() const { return gap_cells_; }
-  /// Calls limit(node, n, low, high) for every face whose outflow has limits: relative velocities of the liquid along n must be between them [m/s].
-  /// `liquid_at(node)` is LiquidAtNode; `density` that of the liquid beyond [kg/m3].
+  /// Calls limit(node, n, low, high) for every face whose outflow has limits: relative velocities of the liquid along n
+  /// must be between them [m/s]. `liquid_at(node)` is LiquidAtNode; `density` that of the liquid beyond [kg/m3].
   template <class At, class Limit>
-  void limits(double t, const FilledGrid<dim> &grid, double density, double unit_weight, At &&liquid_at, Limit &&limit) const {
+  void limits(double t, const FilledGrid<dim> &grid, double density, double unit_weight, At &&liquid_at,
+              Limit &&limit) const {
     for (const Face &f : faces_) {
       double least = -1e300, most = 1e300;  // of the volume that leaves per area and time
       if (f.source == atmosphere) {
@@ -120,11 +134,13 @@ class PoreConditions {
     const Wall *wall;
   };
   struct Face {
-    int node, source;  ///< compact; a source or the atmosphere
+    int node, source;               ///< compact; a source or the atmosphere
     Vec<dim> area, normal, moment;  ///< moment: of the area, in depth below the node [m3]
   };
   void add_face(int node, int source, const Vec<dim> &area, const Vec<dim> &moment);
-  Vec<dim> open_area(const FilledGrid<dim> &grid, int node, const Vec<dim> &surface) const { return open_part(grid, node, surface, taken_[node]); }
+  Vec<dim> open_area(const FilledGrid<dim> &grid, int node, const Vec<dim> &surface) const {
+    return open_part(grid, node, surface, taken_[node]);
+  }
   Vec<dim> open_part(const FilledGrid<dim> &grid, int node, const Vec<dim> &whole, const Vec<dim> &taken) const;
 
   const std::vector<Source> *sources_ = nullptr;

@@ -1,5 +1,6 @@
 #pragma once
-/// The directions in which boundaries prescribe the motion of a node, orthonormal: what comes first counts, what a later one adds is kept.
+/// The directions in which boundaries prescribe the motion of a node, orthonormal: what comes first counts, what a
+/// later one adds is kept.
 #include <array>
 #include <cmath>
 
@@ -7,7 +8,8 @@
 
 namespace talus {
 
-inline constexpr double least_angle_sine = 0.05233595624294384;  // of 3 degrees: facets of one curved face share a direction within this
+inline constexpr double least_angle_sine =
+    0.05233595624294384;  // of 3 degrees: facets of one curved face share a direction within this
 
 /// Plates that move come first, then what is fixed, then rollers: a node where they meet follows the strongest.
 inline int priority(const Boundary &kind) {

@@ -7,7 +7,8 @@
 
 namespace talus {
 
-/// Velocity given as a function of place and time: the whole vector (a rough plate), or its part across the face (a smooth one).
+/// Velocity given as a function of place and time: the whole vector (a rough plate), or its part across the face (a
+/// smooth one).
 struct PrescribedVelocity {
   static constexpr const char *name = "velocity";
   std::vector<Function> velocity;

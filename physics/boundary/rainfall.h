@@ -4,8 +4,8 @@
 
 namespace talus {
 
-/// Rain: the soil takes it as long as it can at zero pressure and sheds the rest; water leaves where its pressure is above zero. Without rain
-/// this is a seepage face.
+/// Rain: the soil takes it as long as it can at zero pressure and sheds the rest; water leaves where its pressure is
+/// above zero. Without rain this is a seepage face.
 struct Rainfall {
   static constexpr const char *name = "rainfall";
   static constexpr const char *meaning = "rain that ponds at zero pressure; without rain a seepage face";
@@ -13,7 +13,8 @@ struct Rainfall {
   Function intensity = 0.0;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.function("intensity", intensity, metre_per_second, {0, 1e3}, "rain, volume per area of the face and time, function of x, y, z, t");
+    v.function("intensity", intensity, metre_per_second, {0, 1e3},
+               "rain, volume per area of the face and time, function of x, y, z, t");
   }
   double outside(double, double, double, double, double) const { return 0; }
   double load(double) const { return 0; }

@@ -49,7 +49,8 @@ PetscErrorCode SurfaceLoads<dim>::share(const BackgroundMesh<dim> &mesh, const s
   PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, mesh.comm()));
   for (int r = 0; r < ranks; ++r) starts[r + 1] = starts[r] + counts[r];
   std::vector<char> all(starts[ranks]);
-  PetscCallMPI(MPI_Allgatherv(filled.data(), count, MPI_CHAR, all.data(), counts.data(), starts.data(), MPI_CHAR, mesh.comm()));
+  PetscCallMPI(
+      MPI_Allgatherv(filled.data(), count, MPI_CHAR, all.data(), counts.data(), starts.data(), MPI_CHAR, mesh.comm()));
   for (Face &face : faces_)
     for (const Facet<dim> &f : face.facets) {
       const int across = mesh.cells[f.cell].neighbour[f.face];
@@ -85,8 +86,10 @@ void SurfaceLoads<dim>::seed(Body<dim> &body, const BackgroundMesh<dim> &mesh) c
         double nearest = 1e300;
         for (int i = host; i < p.count && p.cell[i] == f.cell; ++i) {
           const SurfacePiece<dim> &held = p.surface[i * faces + k];
-          const bool around_a_corner = held.area > 0 && map<dim>(held.normal).dot(map<dim>(f.normal)) < 0.999;  // one mean place would not do
-          const double distance = (map<dim>(p.reference[i]) - map<dim>(place)).squaredNorm() + (around_a_corner ? 1e100 : 0);
+          const bool around_a_corner =
+              held.area > 0 && map<dim>(held.normal).dot(map<dim>(f.normal)) < 0.999;  // one mean place would not do
+          const double distance =
+              (map<dim>(p.reference[i]) - map<dim>(place)).squaredNorm() + (around_a_corner ? 1e100 : 0);
           if (distance < nearest * (1 - 1e-9)) nearest = distance, host = i;
         }
         // several points of one host are one piece at their mean
@@ -107,7 +110,9 @@ void SurfaceLoads<dim>::seed(Body<dim> &body, const BackgroundMesh<dim> &mesh) c
       if (!displacement.empty()) {
         const Vec<dim> &x = piece.place;
         for (int d = 0; d < dim; ++d) now[d] += displacement[d](x[0], x[1], dim == 3 ? x[dim - 1] : 0, 0);
-        piece.normal = carried_normal<dim>(displacement_gradient<dim>(displacement, x, 1e-5 * mesh.mean_edge[mesh.cells[p.cell[i]].node[0]]), piece.normal);
+        piece.normal = carried_normal<dim>(
+            displacement_gradient<dim>(displacement, x, 1e-5 * mesh.mean_edge[mesh.cells[p.cell[i]].node[0]]),
+            piece.normal);
       }
       map<dim>(piece.offset) = map<dim>(now) - map<dim>(p.position[i]);
     }
@@ -186,7 +191,8 @@ PetscErrorCode SurfaceLoads<dim>::end(FilledGrid<dim> &grid, const std::vector<d
   nodal_.resize(static_cast<size_t>(grid.mesh().node_count()) * width);
   std::fill_n(nodal_.begin(), grid.node_count() * width, 0.);
   for (int c = 0; c < grid.cell_count(); ++c) {
-    const Square<dim> f = weight[c] * deformation<dim>(grid.mesh().cells[grid.mesh_cell[c]], grid.shape[c].node, grid.position.data());
+    const Square<dim> f =
+        weight[c] * deformation<dim>(grid.mesh().cells[grid.mesh_cell[c]], grid.shape[c].node, grid.position.data());
     for (const int i : grid.shape[c].node) {
       Eigen::Map<Square<dim>>(&nodal_[i * width]) += f;
       nodal_[i * width + square] += weight[c];
@@ -220,7 +226,8 @@ PetscErrorCode SurfaceLoads<dim>::mean_displacements(const FilledGrid<dim> &grid
       sums[a.face * width + d] += a.piece->area * x;
     }
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, grid.mesh().comm()));
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, grid.mesh().comm()));
   for (size_t k = 0; k < faces_.size(); ++k)
     for (int d = 0; d < dim; ++d) {
       const double area = sums[k * width + dim];  // none where the soil behind the face has been removed

@@ -1,6 +1,6 @@
 #pragma once
-/// Tractions on faces that move, docs/theory (6.4), (6.5): pieces of a loaded face travel with the particles behind it, from cell to cell
-/// and from rank to rank.
+/// Tractions on faces that move, docs/theory (6.4), (6.5): pieces of a loaded face travel with the particles behind it,
+/// from cell to cell and from rank to rank.
 #include <array>
 #include <memory>
 #include <string>
@@ -16,10 +16,13 @@ template <int dim>
 class SurfaceLoads {
  public:
   /// A face that `load` acts on: its facets that have soil behind them at the start.
-  void add_face(int source, const Traction &load, std::vector<Facet<dim>> facets) { faces_.push_back({source, load, std::move(facets)}); }
+  void add_face(int source, const Traction &load, std::vector<Facet<dim>> facets) {
+    faces_.push_back({source, load, std::move(facets)});
+  }
   int face_count() const { return static_cast<int>(faces_.size()); }
 
-  /// Takes the share of each facet that a side carries: all, or half where soil is on both sides. `filled` [local cells]. Collective.
+  /// Takes the share of each facet that a side carries: all, or half where soil is on both sides. `filled` [local
+  /// cells]. Collective.
   PetscErrorCode share(const BackgroundMesh<dim> &mesh, const std::vector<char> &filled);
   /// Hands the pieces in a freshly seeded body's cells to the nearest of its particles.
   void seed(Body<dim> &body, const BackgroundMesh<dim> &mesh) const;
@@ -32,10 +35,12 @@ class SurfaceLoads {
   void add(double t, const FilledGrid<dim> &grid, const Vec<dim> *position, Vec<dim> *force);
   /// Adds the work of the loads last added in a step with nodal displacements `u`, by source [J].
   void add_work(const Vec<dim> *u, std::vector<double> &work) const;
-  /// Lets the pieces follow the soil to the end of a Lagrangian part, before the particles do: with the mean deformation around them, weighted by the
-  /// integration volumes `weight` [cell], since cells that are filled in part tilt at random, and a face whose pieces tilt loses load. Collective.
+  /// Lets the pieces follow the soil to the end of a Lagrangian part, before the particles do: with the mean
+  /// deformation around them, weighted by the integration volumes `weight` [cell], since cells that are filled in part
+  /// tilt at random, and a face whose pieces tilt loses load. Collective.
   PetscErrorCode end(FilledGrid<dim> &grid, const std::vector<double> &weight);
-  /// Mean displacement of each face since the undeformed state [m], weighted by undeformed area, into `mean[source]`. Collective.
+  /// Mean displacement of each face since the undeformed state [m], weighted by undeformed area, into `mean[source]`.
+  /// Collective.
   PetscErrorCode mean_displacements(const FilledGrid<dim> &grid, std::vector<Vec<dim>> &mean) const;
 
  private:
@@ -48,7 +53,7 @@ class SurfaceLoads {
   struct Active {
     SurfacePiece<dim> *piece;
     int face, mesh_cell;
-    std::array<int, dim + 1> node;          // compact
+    std::array<int, dim + 1> node;           // compact
     std::array<double, dim + 1> coordinate;  // barycentric, beyond the cell where the face is
     Vec<dim> force;                          // last added [N]
   };

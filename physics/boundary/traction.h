@@ -8,16 +8,19 @@
 
 namespace talus {
 
-/// Load on a face of soil, which it follows: force per undeformed area at the undeformed place (a dead load), or a pressure against the face as it is
-/// now, where it is now. Acts on the facets that have soil behind them at the start, docs/theory (6.4), (6.5).
+/// Load on a face of soil, which it follows: force per undeformed area at the undeformed place (a dead load), or a
+/// pressure against the face as it is now, where it is now. Acts on the facets that have soil behind them at the start,
+/// docs/theory (6.4), (6.5).
 struct Traction {
   static constexpr const char *name = "traction";
   std::vector<Function> traction;
   Function pressure;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.functions("traction", traction, pascal, "force per undeformed area, one function of the undeformed x, y, z and of t per component");
-    v.function("pressure", pressure, pascal, {-1e12, 1e12}, "pressure against the face as it is now, function of x, y, z, t");
+    v.functions("traction", traction, pascal,
+                "force per undeformed area, one function of the undeformed x, y, z and of t per component");
+    v.function("pressure", pressure, pascal, {-1e12, 1e12},
+               "pressure against the face as it is now, function of x, y, z, t");
   }
   std::string problem() const {
     return traction.empty() == !pressure.given() ? "give either traction or pressure" : "";
@@ -30,7 +33,8 @@ struct Traction {
   Vec<dim> load(const Vec<dim> &normal, const Vec<dim> &x, double t) const {
     const double z = dim == 3 ? x[dim - 1] : 0;
     Vec<dim> force;
-    for (int d = 0; d < dim; ++d) force[d] = follows() ? -pressure(x[0], x[1], z, t) * normal[d] : traction[d](x[0], x[1], z, t);
+    for (int d = 0; d < dim; ++d)
+      force[d] = follows() ? -pressure(x[0], x[1], z, t) * normal[d] : traction[d](x[0], x[1], z, t);
     return force;
   }
 };

@@ -11,11 +11,11 @@
 namespace talus {
 
 /// Modified Cam-clay (Roscoe & Burland 1968; Muir Wood 1990, ch. 5), docs/theory/laws/cam_clay.md. With p positive in
-/// compression and counted from -`attraction`, v = 1 + e, triaxial q: elastic dv = -kappa dp / p and 2 G = 3 K (1 - 2 nu)
-/// / (1 + nu), K = v p / kappa; yield at q^2 = M^2 p (p_c - p), associated flow; hardening dv^p = -(lambda - kappa) dp_c
-/// / p_c. Volume changes are integrated exactly, so that v + kappa ln p + (lambda - kappa) ln p_c never changes; flow is
-/// implicit (Borja & Lee 1990, Comput. Methods Appl. Mech. Eng. 78), solved for t = q / (M p): below 1 on the wet side of
-/// critical state, above it on the dry side. Whatever is found lies on the ellipse.
+/// compression and counted from -`attraction`, v = 1 + e, triaxial q: elastic dv = -kappa dp / p and 2 G = 3 K (1 - 2
+/// nu) / (1 + nu), K = v p / kappa; yield at q^2 = M^2 p (p_c - p), associated flow; hardening dv^p = -(lambda - kappa)
+/// dp_c / p_c. Volume changes are integrated exactly, so that v + kappa ln p + (lambda - kappa) ln p_c never changes;
+/// flow is implicit (Borja & Lee 1990, Comput. Methods Appl. Mech. Eng. 78), solved for t = q / (M p): below 1 on the
+/// wet side of critical state, above it on the dry side. Whatever is found lies on the ellipse.
 struct CamClay {
   static constexpr const char *name = "cam_clay";
   static constexpr const char *meaning = "modified Cam-clay";
@@ -27,17 +27,18 @@ struct CamClay {
   }};
   using History = std::array<double, history.size()>;
 
-  double compression_slope = required;         ///< lambda [-]
-  double swelling_slope = required;            ///< kappa [-]
-  double critical_stress_ratio = required;     ///< M [-]
-  double poisson_ratio = required;             ///< nu [-]
-  double void_ratio = required;                ///< e at the start [-]
-  double preconsolidation_pressure = required; ///< p_c at the start, counted from p = 0 [Pa]
-  double attraction = 1e3;                     ///< the ellipse begins at p = -attraction [Pa]
+  double compression_slope = required;          ///< lambda [-]
+  double swelling_slope = required;             ///< kappa [-]
+  double critical_stress_ratio = required;      ///< M [-]
+  double poisson_ratio = required;              ///< nu [-]
+  double void_ratio = required;                 ///< e at the start [-]
+  double preconsolidation_pressure = required;  ///< p_c at the start, counted from p = 0 [Pa]
+  double attraction = 1e3;                      ///< the ellipse begins at p = -attraction [Pa]
 
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.number("compression_slope", compression_slope, one, Range{1e-4, 10}, "lambda: slope of normal compression, v against ln p");
+    v.number("compression_slope", compression_slope, one, Range{1e-4, 10},
+             "lambda: slope of normal compression, v against ln p");
     v.number("swelling_slope", swelling_slope, one, Range{1e-5, 10}, "kappa: slope of unloading, v against ln p");
     v.number("critical_stress_ratio", critical_stress_ratio, one, Range{0.1, 3},
              "M: q / p at critical state; 6 sin(phi) / (3 - sin(phi)) in triaxial compression");
@@ -50,7 +51,8 @@ struct CamClay {
   }
   std::string problem() const {
     if (compression_slope > swelling_slope) return "";
-    return "compression_slope must exceed swelling_slope, " + shortest(swelling_slope) + ": soil hardens as it is compressed";
+    return "compression_slope must exceed swelling_slope, " + shortest(swelling_slope) +
+           ": soil hardens as it is compressed";
   }
 
   static constexpr bool takes_suction = false, rate_dependent = false;
@@ -67,8 +69,8 @@ struct CamClay {
   double elastic_energy(const Stress<dim> &s) const {
     const Invariants<dim> stress(s);
     const double p = std::max(attraction - stress.p, 1e-6 * attraction), over_K = swelling_slope / (1 + void_ratio);
-    return over_K * (p - attraction - attraction * std::log(p / attraction) +
-                     stress.q * stress.q / (2 * shear_over_bulk() * p));
+    return over_K *
+           (p - attraction - attraction * std::log(p / attraction) + stress.q * stress.q / (2 * shear_over_bulk() * p));
   }
 
   // Of the parameters alone, set by prepare().
@@ -79,14 +81,14 @@ struct CamClay {
     log_least = std::log(1e-3 * attraction);
   }
 
-  /// Flow on the ellipse. With D the plastic volume and t_tr where the trial's pressure meets the ellipse (0 beyond p_c),
-  /// associated flow asks for q_trial = S = M p t + 6 G t D / (M (1 - t^2)). Over w, t = (t_tr + w) / (1 + w), S is nearly
-  /// straight: t runs from t_tr to critical state, t = 1, and D / (1 - t^2) is regular there.
+  /// Flow on the ellipse. With D the plastic volume and t_tr where the trial's pressure meets the ellipse (0 beyond
+  /// p_c), associated flow asks for q_trial = S = M p t + 6 G t D / (M (1 - t^2)). Over w, t = (t_tr + w) / (1 + w), S
+  /// is nearly straight: t runs from t_tr to critical state, t = 1, and D / (1 - t^2) is regular there.
   template <class Number>
   struct Flow {
-    Number G, q;                      ///< shear modulus and trial deviator [Pa]
-    Number log_p, log_pc;             ///< of the trial [ln Pa]
-    Number trial_t, volume_per_log;   ///< t_tr, (lambda - kappa) kappa / (lambda v)
+    Number G, q;                     ///< shear modulus and trial deviator [Pa]
+    Number log_p, log_pc;            ///< of the trial [ln Pa]
+    Number trial_t, volume_per_log;  ///< t_tr, (lambda - kappa) kappa / (lambda v)
     double M, compression_slope, swelling_slope;
 
     struct State {
@@ -106,7 +108,9 @@ struct CamClay {
       const Number bend = 2 * t / (1 + tt), stiff = (6 / M) * G, speed = (1 - trial_t) * share * share;
       const Number slope = M * p * (1 - (plastic_slope * over) * t * bend) * speed +
                            stiff * (over_gap * speed + (volume_per_log * bend + 2 * t * over_gap) * t * side * share);
-      return {t, p, log_pc + (swelling_slope * over) * since, volume_per_log * since, M * p * t + stiff * t * over_gap, slope};
+      return {
+          t,    p, log_pc + (swelling_slope * over) * since, volume_per_log * since, M * p * t + stiff * t * over_gap,
+          slope};
     }
 
     /// Where S = q: Newton's method, kept in a bracket. Twelve steps give all digits, also for strains of 10 % at once.
@@ -138,11 +142,12 @@ struct CamClay {
     const Number p_start = attraction - start.p;
     const double least = 1e-3 * attraction;
     const Number p_0 = p_start > least ? p_start : Number(least);
-    const Number far = logarithm(p_0) - growth * (1 / swelling_slope), log_p = far > log_least ? far : Number(log_least);
+    const Number far = logarithm(p_0) - growth * (1 / swelling_slope),
+                 log_p = far > log_least ? far : Number(log_least);
     const double log_pc = log_pc0 + consolidation;
 
-    // The shear modulus of the step is that of the geometric mean of its first and its trial pressure, of which more than
-    // p_c (or the first) is not reached.
+    // The shear modulus of the step is that of the geometric mean of its first and its trial pressure, of which more
+    // than p_c (or the first) is not reached.
     const Number half = logarithm(p_0) > log_pc ? logarithm(p_0) : Number(log_pc);
     const Number top = log_p < half ? log_p : half;
     const Number G = (ratio / swelling_slope) * v * exponential((logarithm(p_0) + top) * 0.5);
@@ -158,8 +163,10 @@ struct CamClay {
     const Number trial_t = sqrt(room > 0 ? room : 0);
     const bool elastic = q * q <= M * M * p_trial * p_trial * room;
     const Number per_log = over_v * (swelling_slope / compression_slope);
-    const double found = Flow<double>{value_of(G), value_of(q), value_of(log_p), log_pc, value_of(trial_t), value_of(per_log), M,
-                                      compression_slope, swelling_slope}.solve();
+    const double found =
+        Flow<double>{value_of(G),       value_of(q), value_of(log_p),   log_pc,        value_of(trial_t),
+                     value_of(per_log), M,           compression_slope, swelling_slope}
+            .solve();
     const Flow<Number> flow{G, q, log_p, log_pc, trial_t, per_log, M, compression_slope, swelling_slope};
     const auto last = flow.at(found);
     const auto end = flow.at(found - (last.q - q) / last.slope);  // the last step carries the derivatives of the root

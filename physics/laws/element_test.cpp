@@ -81,11 +81,21 @@ class Driver {
         hold(2);
     };
     switch (test_.type) {
-      case TestType::triaxial_compression: strain(1, -driven), hold_sides(); break;
-      case TestType::triaxial_extension: strain(1, driven), hold_sides(); break;
-      case TestType::biaxial: strain(1, -driven), hold(0); break;
-      case TestType::oedometer: strain(1, -driven); break;
-      case TestType::simple_shear: strain(3, driven), hold(1); break;
+      case TestType::triaxial_compression:
+        strain(1, -driven), hold_sides();
+        break;
+      case TestType::triaxial_extension:
+        strain(1, driven), hold_sides();
+        break;
+      case TestType::biaxial:
+        strain(1, -driven), hold(0);
+        break;
+      case TestType::oedometer:
+        strain(1, -driven);
+        break;
+      case TestType::simple_shear:
+        strain(3, driven), hold(1);
+        break;
       case TestType::isotropic_compression:
         for (int i = 0; i < 3; ++i) strain(i, -driven / 3);
         break;
@@ -148,7 +158,8 @@ class Driver {
     if (solve(step)) return;
     if (depth == deepest) give_up(number);
     Step half = step, rest = step;
-    for (int i = 0; i < 6; ++i) half.of[i].value = (step.of[i].value + (step.of[i].stress ? total(before, i) : before.strain[i])) / 2;
+    for (int i = 0; i < 6; ++i)
+      half.of[i].value = (step.of[i].value + (step.of[i].stress ? total(before, i) : before.strain[i])) / 2;
     half.suction = (step.suction + before.suction) / 2, half.time_step = rest.time_step = step.time_step / 2;
     guess_ /= 2;
     advance(half, number, depth + 1);
@@ -164,7 +175,8 @@ class Driver {
     Unknowns r = residual(next, x, step);
     for (int iteration = 0; iteration < most; ++iteration) {
       double scale = 1e-12 * K_;  // of the stress that round-off is counted from
-      for (int i = 0; i < 6; ++i) scale = std::max({scale, std::abs(next.stress[i]), std::abs(total(next, i)), K_ * std::abs(x[i])});
+      for (int i = 0; i < 6; ++i)
+        scale = std::max({scale, std::abs(next.stress[i]), std::abs(total(next, i)), K_ * std::abs(x[i])});
       if (!std::isfinite(r.norm())) return false;
       if (r.cwiseAbs().maxCoeff() <= 1e-11 * scale) {
         state_ = next, guess_ = x;
@@ -187,10 +199,13 @@ class Driver {
 
   [[noreturn]] void give_up(std::size_t number) const {
     const std::string trouble = law_trouble(law_).text;
-    if (!trouble.empty()) throw ElementTestError("test " + test_.name + ", step " + std::to_string(number) + ": " + trouble);
-    throw ElementTestError("test " + test_.name + ": no stress of the law " + law_name(law_) + " answers step " + std::to_string(number) +
-                           "; before it p' = " + shortest(state_.mean_pressure()) + " Pa, q = " + shortest(state_.deviator()) +
-                           " Pa. Take more steps; a soil that softens faster than its own elasticity unloads needs a smaller element_size");
+    if (!trouble.empty())
+      throw ElementTestError("test " + test_.name + ", step " + std::to_string(number) + ": " + trouble);
+    throw ElementTestError("test " + test_.name + ": no stress of the law " + law_name(law_) + " answers step " +
+                           std::to_string(number) + "; before it p' = " + shortest(state_.mean_pressure()) +
+                           " Pa, q = " + shortest(state_.deviator()) +
+                           " Pa. Take more steps; a soil that softens faster than its own elasticity unloads needs a "
+                           "smaller element_size");
   }
 
   const Law &law_;
@@ -211,16 +226,20 @@ bool Control::given() const {
 
 std::string Control::problem() const {
   for (int i = 0; i < 6; ++i)
-    if (strain[i].given() && stress[i].given()) return std::string("takes either ") + strain_keys[i] + " or " + stress_keys[i];
+    if (strain[i].given() && stress[i].given())
+      return std::string("takes either ") + strain_keys[i] + " or " + stress_keys[i];
   return "";
 }
 
 std::string ElementTest::problem() const {
-  if (!stress.empty() && stress.size() != 3 && stress.size() != 6) return "stress must have 3 components (xx, yy, zz) or 6";
+  if (!stress.empty() && stress.size() != 3 && stress.size() != 6)
+    return "stress must have 3 components (xx, yy, zz) or 6";
   if (type != TestType::controlled && strain.empty()) return "needs strain, at least one value";
   if (control.given() && type != TestType::controlled) return "a table control belongs to type = \"controlled\"";
-  if (!control.given() && type == TestType::controlled) return "type = \"controlled\" needs a table control, for instance with stress_yy";
-  if (!undrained && (skempton_b < 1 || pore_stiffness > 0)) return "skempton_b and pore_stiffness need undrained = true";
+  if (!control.given() && type == TestType::controlled)
+    return "type = \"controlled\" needs a table control, for instance with stress_yy";
+  if (!undrained && (skempton_b < 1 || pore_stiffness > 0))
+    return "skempton_b and pore_stiffness need undrained = true";
   if (undrained && suction.given()) return "takes either undrained or suction: water that cannot leave fills the pores";
   if (skempton_b < 1 && pore_stiffness > 0) return "takes either skempton_b or pore_stiffness";
   const bool closed = type == TestType::oedometer || type == TestType::isotropic_compression;
@@ -231,7 +250,8 @@ std::string ElementTest::problem() const {
 
 double ElementState::deviator() const {
   const auto &[xx, yy, zz, xy, yz, xz] = stress;
-  return std::sqrt(((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) / 2 + 3 * (xy * xy + yz * yz + xz * xz));
+  return std::sqrt(((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) / 2 +
+                   3 * (xy * xy + yz * yz + xz * xz));
 }
 
 void refuse_unsuitable(const Law &law, const ElementTest &test) {

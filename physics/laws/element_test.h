@@ -1,7 +1,7 @@
 #pragma once
-/// One point of a law in the laboratory: the tests of `talus soil`. The point sees neither inertia nor a mesh. Each component of its
-/// deformation is given, or the total stress that belongs to it is; what is not given follows by Newton's method. Without drainage
-/// the pore fluid adds its own equation, docs/theory/laws/element_tests.md.
+/// One point of a law in the laboratory: the tests of `talus soil`. The point sees neither inertia nor a mesh. Each
+/// component of its deformation is given, or the total stress that belongs to it is; what is not given follows by
+/// Newton's method. Without drainage the pore fluid adds its own equation, docs/theory/laws/element_tests.md.
 #include <array>
 #include <span>
 #include <stdexcept>
@@ -26,17 +26,22 @@ enum class TestType {
 
 /// What a test of type `controlled` prescribes of each component: strain, total stress, or nothing, which is no strain.
 struct Control {
-  static constexpr const char *strain_keys[6] = {"strain_xx", "strain_yy", "strain_zz", "strain_xy", "strain_yz", "strain_xz"};
-  static constexpr const char *stress_keys[6] = {"stress_xx", "stress_yy", "stress_zz", "stress_xy", "stress_yz", "stress_xz"};
-  std::array<Function, 6> strain;  ///< natural, since the start, shear as the angle gamma; function of t from 0 to 1 [-]
+  static constexpr const char *strain_keys[6] = {"strain_xx", "strain_yy", "strain_zz",
+                                                 "strain_xy", "strain_yz", "strain_xz"};
+  static constexpr const char *stress_keys[6] = {"stress_xx", "stress_yy", "stress_zz",
+                                                 "stress_xy", "stress_yz", "stress_xz"};
+  std::array<Function, 6>
+      strain;  ///< natural, since the start, shear as the angle gamma; function of t from 0 to 1 [-]
   std::array<Function, 6> stress;  ///< total, positive in tension; function of t from 0 to 1 [Pa]
   template <class Visitor>
   void fields(Visitor &&v) {
     for (int i = 0; i < 6; ++i)
       v.function(strain_keys[i], strain[i], one, Range{-10, 10},
-                 i < 3 ? "natural strain since the start; t runs from 0 to 1" : "angle of shear since the start; t runs from 0 to 1");
+                 i < 3 ? "natural strain since the start; t runs from 0 to 1"
+                       : "angle of shear since the start; t runs from 0 to 1");
     for (int i = 0; i < 6; ++i)
-      v.function(stress_keys[i], stress[i], pascal, Range{-1e12, 1e12}, "total stress, positive in tension, in place of the strain");
+      v.function(stress_keys[i], stress[i], pascal, Range{-1e12, 1e12},
+                 "total stress, positive in tension, in place of the strain");
   }
   std::string problem() const;
   bool given() const;
@@ -46,18 +51,18 @@ struct Control {
 struct ElementTest {
   std::string name;  ///< the table's own name, [test.NAME]
   TestType type = TestType::triaxial_compression;
-  double cell_pressure = 100e3;           ///< effective, at the start; stays on the sides (simple shear: on the top) [Pa]
-  std::vector<double> stress;             ///< effective, at the start, instead: xx, yy, zz, xy, yz, xz, positive in tension [Pa]
-  std::vector<double> strain = {0.1};     ///< what is driven, in the direction of the test; then where it turns [-]
-  int steps = 200;                        ///< of each leg
+  double cell_pressure = 100e3;  ///< effective, at the start; stays on the sides (simple shear: on the top) [Pa]
+  std::vector<double> stress;    ///< effective, at the start, instead: xx, yy, zz, xy, yz, xz, positive in tension [Pa]
+  std::vector<double> strain = {0.1};  ///< what is driven, in the direction of the test; then where it turns [-]
+  int steps = 200;                     ///< of each leg
   bool undrained = false;
-  double skempton_b = 1;                  ///< undrained: pressure rise over rise of the mean total stress, elastic [-]
-  double pore_stiffness = 0;              ///< undrained: K_l / n instead of skempton_b [Pa]
-  double pore_pressure = 0;               ///< at the start [Pa]
-  double void_ratio = 0;                  ///< at the start; 0: not known [-]
-  double element_size = 0;                ///< h of a softening law; 0: its shape_factor holds as it is [m]
-  Function suction;                       ///< of the law's surroundings, over t from 0 to 1 in the whole test [Pa]
-  double duration = 0;                    ///< of each leg, for laws that flow with time [s]
+  double skempton_b = 1;      ///< undrained: pressure rise over rise of the mean total stress, elastic [-]
+  double pore_stiffness = 0;  ///< undrained: K_l / n instead of skempton_b [Pa]
+  double pore_pressure = 0;   ///< at the start [Pa]
+  double void_ratio = 0;      ///< at the start; 0: not known [-]
+  double element_size = 0;    ///< h of a softening law; 0: its shape_factor holds as it is [m]
+  Function suction;           ///< of the law's surroundings, over t from 0 to 1 in the whole test [Pa]
+  double duration = 0;        ///< of each leg, for laws that flow with time [s]
   Control control;
 
   template <class Visitor>
@@ -74,21 +79,26 @@ struct ElementTest {
     v.number("cell_pressure", cell_pressure, pascal, Range{0, 1e10},
              "effective pressure at the start, which then stays on the sides (simple shear: on the top)");
     v.point("stress", stress, pascal,
-            "effective stress at the start in place of cell_pressure: xx, yy, zz, and xy, yz, xz if they are not 0; positive in tension");
+            "effective stress at the start in place of cell_pressure: xx, yy, zz, and xy, yz, xz if they are not 0; "
+            "positive in tension");
     v.point("strain", strain, one,
-            "natural strain that is driven, positive in the direction of the test: shortening, lengthening (extension), gamma, loss of "
+            "natural strain that is driven, positive in the direction of the test: shortening, lengthening "
+            "(extension), gamma, loss of "
             "volume (isotropic); a list turns at each of its values");
     v.integer("steps", steps, Range{1, 1000000}, "steps to each value of strain");
     v.flag("undrained", undrained, "water cannot leave the sample");
     v.number("skempton_b", skempton_b, one, Range{1e-6, 1},
-             "undrained: rise of pore pressure over rise of mean total stress while the soil is elastic; 1: the sample keeps its volume");
-    v.number("pore_stiffness", pore_stiffness, pascal, Range{0, 1e15}, "undrained: K_l / n, in place of skempton_b; 0 is not given");
+             "undrained: rise of pore pressure over rise of mean total stress while the soil is elastic; 1: the sample "
+             "keeps its volume");
+    v.number("pore_stiffness", pore_stiffness, pascal, Range{0, 1e15},
+             "undrained: K_l / n, in place of skempton_b; 0 is not given");
     v.number("pore_pressure", pore_pressure, pascal, Range{-1e10, 1e10}, "pore pressure at the start");
     v.number("void_ratio", void_ratio, one, Range{0, 100}, "void ratio at the start; 0 is not known");
     v.number("element_size", element_size, metre, Range{0, 1e5},
              "element size h that a softening law with a reference_size sees; 0: shape_factor holds as it is");
     v.function("suction", suction, pascal, Range{0, 1e10},
-               "suction that a law with suction_cohesion or suction_friction_rate reads, as a function of t, which runs from 0 to 1 in "
+               "suction that a law with suction_cohesion or suction_friction_rate reads, as a function of t, which "
+               "runs from 0 to 1 in "
                "the test; none is 0");
     v.number("duration", duration, second, Range{0, 1e12},
              "time in which strain goes from each of its values to the next; fluids and mu_i need it");
@@ -119,23 +129,26 @@ struct SoilFile {
 
 /// A point after a step. Order of components: xx, yy, zz, xy, yz, xz.
 struct ElementState {
-  std::array<double, 6> strain{};   ///< natural, since the start; shear as the angle gamma [-]
-  std::array<double, 6> stress{};   ///< effective [Pa]
-  double pore_pressure = 0;         ///< [Pa]
-  double suction = 0;               ///< [Pa]
-  double time = 0;                  ///< [s]
+  std::array<double, 6> strain{};  ///< natural, since the start; shear as the angle gamma [-]
+  std::array<double, 6> stress{};  ///< effective [Pa]
+  double pore_pressure = 0;        ///< [Pa]
+  double suction = 0;              ///< [Pa]
+  double time = 0;                 ///< [s]
   std::vector<double> history;
 
-  double mean_pressure() const { return -(stress[0] + stress[1] + stress[2]) / 3; }  ///< p', positive in compression [Pa]
-  double deviator() const;                                                           ///< q = sqrt(3 J2) [Pa]
-  double compression() const { return -(strain[0] + strain[1] + strain[2]); }        ///< loss of volume, natural [-]
+  double mean_pressure() const {
+    return -(stress[0] + stress[1] + stress[2]) / 3;
+  }                                                                            ///< p', positive in compression [Pa]
+  double deviator() const;                                                     ///< q = sqrt(3 J2) [Pa]
+  double compression() const { return -(strain[0] + strain[1] + strain[2]); }  ///< loss of volume, natural [-]
 };
 
-/// Throws std::invalid_argument for a test with a suction that the law does not read, or without the duration that it needs.
+/// Throws std::invalid_argument for a test with a suction that the law does not read, or without the duration that it
+/// needs.
 void refuse_unsuitable(const Law &law, const ElementTest &test);
 
-/// Walks the point through the test; the first state is the start. Throws ElementTestError where no stress answers the prescribed
-/// deformation, and std::invalid_argument like refuse_unsuitable.
+/// Walks the point through the test; the first state is the start. Throws ElementTestError where no stress answers the
+/// prescribed deformation, and std::invalid_argument like refuse_unsuitable.
 std::vector<ElementState> drive(const Law &law, const ElementTest &test);
 
 class ElementTestError : public std::runtime_error {

@@ -41,7 +41,8 @@ struct FrictionalStrength {
 
   std::string problem() const {
     const auto above = [](const char *key, const char *limit, double value, Unit unit) {
-      return std::string(key) + " must not exceed " + limit + ", " + shortest(std::round(1e6 * value / unit.si) / 1e6) + " " + unit.name;
+      return std::string(key) + " must not exceed " + limit + ", " + shortest(std::round(1e6 * value / unit.si) / 1e6) +
+             " " + unit.name;
     };
     if (dilation_angle > friction_angle) return above("dilation_angle", "friction_angle", friction_angle, degree);
     if (residual_cohesion > cohesion) return above("residual_cohesion", "cohesion", cohesion, pascal);
@@ -57,11 +58,11 @@ struct FrictionalStrength {
   bool softens() const { return shape_factor > 0; }
 
   // Set by prepare().
-  double residual_c = 0, residual_phi = 0;                  ///< [Pa], [rad]
-  double sin_psi_peak = 0, sin_psi_residual = 0;            ///< [-]
-  double over_size = 0;                                     ///< 1 / h_ref [1/m]
-  static constexpr double right_angle = 90 * degree.si;     ///< [rad]
-  static constexpr double unlimited = 1e100;                ///< stress of an apex that is not there [Pa]
+  double residual_c = 0, residual_phi = 0;               ///< [Pa], [rad]
+  double sin_psi_peak = 0, sin_psi_residual = 0;         ///< [-]
+  double over_size = 0;                                  ///< 1 / h_ref [1/m]
+  static constexpr double right_angle = 90 * degree.si;  ///< [rad]
+  static constexpr double unlimited = 1e100;             ///< stress of an apex that is not there [Pa]
   void prepare() {
     residual_c = residual_cohesion < 0 ? cohesion : residual_cohesion;
     residual_phi = residual_friction_angle < 0 ? friction_angle : residual_friction_angle;

@@ -9,9 +9,9 @@
 namespace talus {
 
 /// A law with a hyperelastic inside: the Kirchhoff stress is tau = C : 1/2 ln b_e (Hencky), b_e the elastic left
-/// Cauchy-Green tensor, which a step carries to dF b_e dF^T; sigma = tau / J. Since the law is isotropic, b_e follows from
-/// tau, and J is all that history keeps. The return map acts on tau, by exponential map the small-strain one (de Souza
-/// Neto, Peric & Owen 2008, sec. 14.4). docs/theory/laws/hencky.md says how it differs from the update of (2.5).
+/// Cauchy-Green tensor, which a step carries to dF b_e dF^T; sigma = tau / J. Since the law is isotropic, b_e follows
+/// from tau, and J is all that history keeps. The return map acts on tau, by exponential map the small-strain one (de
+/// Souza Neto, Peric & Owen 2008, sec. 14.4). docs/theory/laws/hencky.md says how it differs from the update of (2.5).
 template <class Base>
 struct Hencky : Base {
   static constexpr auto history = [] {
@@ -49,7 +49,8 @@ struct Hencky : Base {
 
  private:
   template <int dim, class Number>
-  [[gnu::always_inline]] void correct_kirchhoff(Stress<dim, Number> &s, History &history, const Surroundings &around) const {
+  [[gnu::always_inline]] void correct_kirchhoff(Stress<dim, Number> &s, History &history,
+                                                const Surroundings &around) const {
     typename Base::History of_base;
     for (std::size_t k = 0; k < of_base.size(); ++k) of_base[k] = history[k];
     Base::correct(s, of_base, around);

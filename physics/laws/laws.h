@@ -14,11 +14,12 @@
 /// - `advance(s, e, history, around)`: in place of trial and correct, where a law does not part them
 /// - `correct(s, history, around)`: brings the trial back to what the law admits; leaves admissible stress alone
 /// - `bulk_modulus()`, `shear_modulus()`, `elastic_energy(s)`, `cohesionless()`, `strength_varies()`
-/// `trial` and `correct` are templates over the number type too: a run with Duals (dual.h) gives the consistent tangent.
-/// History takes values only (`value_of`).
+/// `trial` and `correct` are templates over the number type too: a run with Duals (dual.h) gives the consistent
+/// tangent. History takes values only (`value_of`).
 ///
 /// They run in a loop over points that must vectorise: straight-line code; choices as `?:` between
-/// values that are already there; comparisons not joined by && or &. The exception is `Umat`, which is called point by point.
+/// values that are already there; comparisons not joined by && or &. The exception is `Umat`, which is called point by
+/// point.
 #include <span>
 #include <string_view>
 #include <variant>

@@ -8,16 +8,17 @@
 
 namespace talus {
 
-/// Mohr-Coulomb with non-associated flow, tension cut-off, softening and strength from suction, docs/theory/laws/mohr_coulomb.md;
-/// Tresca where phi = 0. In principal stresses
-/// s1 >= s2 >= s3 a pair yields where (1 + sin phi) s_i - (1 - sin phi) s_j = 2 c cos phi and flows with psi for phi;
-/// the cut-off s_i <= T flows along its normal. The return is exact to face, edges, apex, cut-off and their
-/// intersections. Sources: Clausen, Damkilde & Andersen (2006, 2007), Comput. Struct. 85 (regions in principal space);
-/// de Souza Neto, Peric & Owen (2008), sec. 8.2 (which edge); Alonso, Yerro & Pinyol (2015), eqs. (14)
-/// to (17) (suction), (18), (19) (softening).
+/// Mohr-Coulomb with non-associated flow, tension cut-off, softening and strength from suction,
+/// docs/theory/laws/mohr_coulomb.md; Tresca where phi = 0. In principal stresses s1 >= s2 >= s3 a pair yields where (1
+/// + sin phi) s_i - (1 - sin phi) s_j = 2 c cos phi and flows with psi for phi; the cut-off s_i <= T flows along its
+/// normal. The return is exact to face, edges, apex, cut-off and their intersections. Sources: Clausen, Damkilde &
+/// Andersen (2006, 2007), Comput. Struct. 85 (regions in principal space); de Souza Neto, Peric & Owen (2008), sec. 8.2
+/// (which edge); Alonso, Yerro & Pinyol (2015), eqs. (14) to (17) (suction), (18), (19) (softening).
 struct MohrCoulomb : IsotropicElastic, FrictionalStrength {
   static constexpr const char *name = "mohr_coulomb";
-  static constexpr const char *meaning = "Mohr-Coulomb with dilation, tension cut-off, strain softening and strength from suction; Tresca where friction_angle = 0";
+  static constexpr const char *meaning =
+      "Mohr-Coulomb with dilation, tension cut-off, strain softening and strength from suction; Tresca where "
+      "friction_angle = 0";
   static constexpr auto history = plastic_strains;
   using History = std::array<double, history.size()>;
 
@@ -51,8 +52,8 @@ struct MohrCoulomb : IsotropicElastic, FrictionalStrength {
   bool strength_varies() const { return softens() || reads_suction(); }
 
   // Of the parameters alone, set by prepare().
-  double cutoff = 0;                              ///< [Pa]
-  double plane_drag = 0, line_drag = 0;           ///< stress that opening takes off the others [-]
+  double cutoff = 0;                                  ///< [Pa]
+  double plane_drag = 0, line_drag = 0;               ///< stress that opening takes off the others [-]
   static constexpr double steepest = 80 * degree.si;  ///< of phi with suction [rad]
   void prepare() {
     IsotropicElastic::prepare();

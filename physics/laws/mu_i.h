@@ -8,9 +8,9 @@
 namespace talus {
 
 /// Dense granular flow: tau = mu(I) p with mu(I) = mu_s + (mu_2 - mu_s) / (1 + I_0 / I) and the inertial number
-/// I = gamma_dot d / sqrt(p / rho_s), tau = sqrt(J2), gamma_dot = sqrt(2 D:D); elastic below mu_s p, no volume change in
-/// shear, no tension. Sources: Jop, Forterre & Pouliquen (2006), Nature 441, eq. (1), (2); Dunatunga & Kamrin (2015), J.
-/// Fluid Mech. 779, sec. 2 (elasto-plastic form; the implicit step is a quadratic).
+/// I = gamma_dot d / sqrt(p / rho_s), tau = sqrt(J2), gamma_dot = sqrt(2 D:D); elastic below mu_s p, no volume change
+/// in shear, no tension. Sources: Jop, Forterre & Pouliquen (2006), Nature 441, eq. (1), (2); Dunatunga & Kamrin
+/// (2015), J. Fluid Mech. 779, sec. 2 (elasto-plastic form; the implicit step is a quadratic).
 struct MuI : IsotropicElastic {
   static constexpr const char *name = "mu_i";
   static constexpr const char *meaning = "dense granular flow with the friction mu(I)";
@@ -27,7 +27,8 @@ struct MuI : IsotropicElastic {
   template <class Visitor>
   void fields(Visitor &&v) {
     IsotropicElastic::fields(v);
-    v.number("static_friction", static_friction, one, Range{0, 2}, "mu_s: shear stress over pressure where flow begins");
+    v.number("static_friction", static_friction, one, Range{0, 2},
+             "mu_s: shear stress over pressure where flow begins");
     v.number("limiting_friction", limiting_friction, one, Range{0, 4}, "mu_2: shear stress over pressure of fast flow");
     v.number("inertial_number", inertial_number, one, Range{1e-6, 1e3}, "I_0: inertial number of the mean friction");
     v.number("grain_size", grain_size, metre, Range{1e-7, 10}, "diameter of the grains");
@@ -49,8 +50,9 @@ struct MuI : IsotropicElastic {
   [[gnu::always_inline]] void correct(Stress<dim, Number> &s, History &history, const Surroundings &around) const {
     const Invariants<dim, Number> trial(s);
     const Number pressure = trial.p < 0 ? -trial.p : Number(0);
-    // Between rest = mu_s p and limit = mu_2 p the rate is gamma_dot = xi (tau - rest) / (limit - tau), xi = rate sqrt(p).
-    // With tau = trial - G dt gamma_dot: tau^2 - b tau + c = 0, of which the smaller root is the one below the limit.
+    // Between rest = mu_s p and limit = mu_2 p the rate is gamma_dot = xi (tau - rest) / (limit - tau), xi = rate
+    // sqrt(p). With tau = trial - G dt gamma_dot: tau^2 - b tau + c = 0, of which the smaller root is the one below the
+    // limit.
     const Number rest = static_friction * pressure, limit = limiting_friction * pressure;
     const Number H = (G * around.time_step * rate) * sqrt(pressure);
     const Number b = trial.q + limit + H, c = trial.q * limit + H * rest;

@@ -5,9 +5,10 @@
 namespace talus {
 
 /// Weakly compressible viscous fluid, docs/theory/laws/viscous_fluids.md. Pressure p = -K ln J, K the `bulk_modulus`;
-/// shear is Maxwell's: an elastic strain of modulus G in series with the viscosity mu, so that the stress of steady flow
-/// is 2 mu D exactly, is reached within some mu / G, and the critical step is that of the wave speeds. Shear stress and
-/// rate are tau = sqrt(J2) and sqrt(2 D:D). The step is implicit (Simo & Hughes 1998, sec. 2.7: viscoplasticity).
+/// shear is Maxwell's: an elastic strain of modulus G in series with the viscosity mu, so that the stress of steady
+/// flow is 2 mu D exactly, is reached within some mu / G, and the critical step is that of the wave speeds. Shear
+/// stress and rate are tau = sqrt(J2) and sqrt(2 D:D). The step is implicit (Simo & Hughes 1998, sec. 2.7:
+/// viscoplasticity).
 struct Newtonian : IsotropicElastic {
   static constexpr const char *name = "newtonian";
   static constexpr const char *meaning = "weakly compressible viscous fluid";
@@ -31,7 +32,8 @@ struct Newtonian : IsotropicElastic {
                                    double threshold) const {
     const Invariants<dim, Number> trial(s);
     const Number over = trial.q - threshold, excess = over > 0 ? over : 0;
-    const Number slip = excess * (around.time_step / (viscosity + G * around.time_step));  // rate of shear times the step
+    const Number slip =
+        excess * (around.time_step / (viscosity + G * around.time_step));  // rate of shear times the step
     const Number shrink = trial.q > 0 ? G * slip / trial.q : 0;
     const Number p = trial.p < 0 ? trial.p : 0;
     trial.take_off(s, shrink, trial.p - p);

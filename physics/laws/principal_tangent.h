@@ -41,9 +41,9 @@ class PrincipalAxes<dim, Dual<n>> {
       taken[i][i] = c[i]->value;
       for (int j = i + 1; j < 3; ++j) {
         const double gap = value_[i] - value_[j];
-        shear[i][j] = shear[j][i] =
-            gap > near ? (c[i]->value - c[j]->value) / gap
-                       : (c[i]->slope[i] - c[i]->slope[j] + c[j]->slope[j] - c[j]->slope[i]) / 2;
+        shear[i][j] = shear[j][i] = gap > near
+                                        ? (c[i]->value - c[j]->value) / gap
+                                        : (c[i]->slope[i] - c[i]->slope[j] + c[j]->slope[j] - c[j]->slope[i]) / 2;
       }
     }
     take_off(taken, s, [](Dual<n> &x, double t) { x.value -= t; });
@@ -75,8 +75,8 @@ class PrincipalAxes<dim, Dual<n>> {
     return c;
   }
 
-  /// Cyclic Jacobi rotations (Golub & Van Loan 2013, Matrix Computations, sec. 8.5), which converge with the cube of what
-  /// is off the diagonal; rows of `axis_` become the axes.
+  /// Cyclic Jacobi rotations (Golub & Van Loan 2013, Matrix Computations, sec. 8.5), which converge with the cube of
+  /// what is off the diagonal; rows of `axis_` become the axes.
   void diagonalise(Tensor &m) {
     const double nothing = 1e-20 * (std::abs(m[0][0]) + std::abs(m[1][1]) + std::abs(m[2][2]));
     for (int i = 0; i < 3; ++i) axis_[i][i] = 1;
@@ -104,9 +104,9 @@ class PrincipalAxes<dim, Dual<n>> {
     if constexpr (dim == 3) take(s.yz, t[1][2]), take(s.xz, t[0][2]);
   }
 
-  std::array<double, 3> value_;      ///< greatest first [Pa]
-  Tensor axis_{}, transposed_;       ///< row by row, and as columns
-  std::array<Tensor, n> along_;      ///< derivatives of the stress, in its axes
+  std::array<double, 3> value_;  ///< greatest first [Pa]
+  Tensor axis_{}, transposed_;   ///< row by row, and as columns
+  std::array<Tensor, n> along_;  ///< derivatives of the stress, in its axes
 };
 
 /// Puts g(x) for the tensor x: `change` gives what its principal values lose, x - g(x).
@@ -132,7 +132,8 @@ template <int dim, int n>
 Strain<dim, Dual<n>> logarithm_of(const Strain<dim, Dual<n>> &b) {
   Strain<dim, Dual<n>> x = b;
   x.xx -= 1, x.yy -= 1, x.zz -= 1;
-  map_principal(x, [](const Dual<3> &x) { return Dual<3>::of(x, x.value - std::log1p(x.value), x.value / (1 + x.value)); });
+  map_principal(
+      x, [](const Dual<3> &x) { return Dual<3>::of(x, x.value - std::log1p(x.value), x.value / (1 + x.value)); });
   return x;
 }
 

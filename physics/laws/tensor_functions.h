@@ -7,7 +7,8 @@ namespace talus {
 
 /// a b of tensors with the same axes, which is symmetric.
 template <int dim, class Number>
-[[gnu::always_inline]] inline Strain<dim, Number> commuting_product(const Strain<dim, Number> &a, const Strain<dim, Number> &b) {
+[[gnu::always_inline]] inline Strain<dim, Number> commuting_product(const Strain<dim, Number> &a,
+                                                                    const Strain<dim, Number> &b) {
   if constexpr (dim == 2)
     return {a.xx * b.xx + a.xy * b.xy, a.xy * b.xy + a.yy * b.yy, a.zz * b.zz, a.xx * b.xy + a.xy * b.yy};
   else
@@ -18,17 +19,23 @@ template <int dim, class Number>
 
 /// share a + spherical I.
 template <int dim, class Number>
-[[gnu::always_inline]] inline Strain<dim, Number> affine(const Strain<dim, Number> &a, const Number &share, const Number &spherical) {
+[[gnu::always_inline]] inline Strain<dim, Number> affine(const Strain<dim, Number> &a, const Number &share,
+                                                         const Number &spherical) {
   if constexpr (dim == 2)
     return {share * a.xx + spherical, share * a.yy + spherical, share * a.zz + spherical, share * a.xy};
   else
-    return {share * a.xx + spherical, share * a.yy + spherical, share * a.zz + spherical,
-            share * a.xy, share * a.yz, share * a.xz};
+    return {share * a.xx + spherical,
+            share * a.yy + spherical,
+            share * a.zz + spherical,
+            share * a.xy,
+            share * a.yz,
+            share * a.xz};
 }
 
 /// a + share b.
 template <int dim, class Number>
-[[gnu::always_inline]] inline Strain<dim, Number> sum(const Strain<dim, Number> &a, const Strain<dim, Number> &b, double share) {
+[[gnu::always_inline]] inline Strain<dim, Number> sum(const Strain<dim, Number> &a, const Strain<dim, Number> &b,
+                                                      double share) {
   if constexpr (dim == 2)
     return {a.xx + share * b.xx, a.yy + share * b.yy, a.zz + share * b.zz, a.xy + share * b.xy};
   else
@@ -76,7 +83,8 @@ template <int dim, class Number>
   const auto horner = [&](double over) __attribute__((always_inline)) {
     r = affine<dim, Number>(commuting_product<dim, Number>(x, r), over, 1);
   };
-  horner(1. / 9), horner(1. / 8), horner(1. / 7), horner(1. / 6), horner(1. / 5), horner(1. / 4), horner(1. / 3), horner(1. / 2), horner(1);
+  horner(1. / 9), horner(1. / 8), horner(1. / 7), horner(1. / 6), horner(1. / 5), horner(1. / 4), horner(1. / 3),
+      horner(1. / 2), horner(1);
   r = commuting_product<dim, Number>(r, r);
   r = commuting_product<dim, Number>(r, r);
   return commuting_product<dim, Number>(r, r);
@@ -89,7 +97,9 @@ template <int dim, class Number>
   Strain<dim, Number> x = affine<dim, Number>(inverse<dim, Number>(affine<dim, Number>(b, 1, 1)), -4, 2);
   const auto halley = [&]() __attribute__((always_inline)) {
     const Strain<dim, Number> y = exponential_of<dim, Number>(x);
-    x = sum<dim, Number>(x, commuting_product<dim, Number>(sum<dim, Number>(b, y, -1), inverse<dim, Number>(sum<dim, Number>(b, y, 1))), 2);
+    x = sum<dim, Number>(
+        x, commuting_product<dim, Number>(sum<dim, Number>(b, y, -1), inverse<dim, Number>(sum<dim, Number>(b, y, 1))),
+        2);
   };
   halley(), halley(), halley();
   return x;

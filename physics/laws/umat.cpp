@@ -13,16 +13,17 @@ namespace talus {
 namespace {
 
 /// Fortran passes addresses, and the length of CMNAME behind all others.
-using Subroutine = void (*)(double *stress, double *statev, double *ddsdde, double *sse, double *spd, double *scd, double *rpl,
-                            double *ddsddt, double *drplde, double *drpldt, const double *stran, const double *dstran,
-                            const double *time, const double *dtime, const double *temp, const double *dtemp, const double *predef,
-                            const double *dpred, const char *cmname, const int *ndi, const int *nshr, const int *ntens,
-                            const int *nstatv, const double *props, const int *nprops, const double *coords, const double *drot,
-                            double *pnewdt, const double *celent, const double *dfgrd0, const double *dfgrd1, const int *noel,
+using Subroutine = void (*)(double *stress, double *statev, double *ddsdde, double *sse, double *spd, double *scd,
+                            double *rpl, double *ddsddt, double *drplde, double *drpldt, const double *stran,
+                            const double *dstran, const double *time, const double *dtime, const double *temp,
+                            const double *dtemp, const double *predef, const double *dpred, const char *cmname,
+                            const int *ndi, const int *nshr, const int *ntens, const int *nstatv, const double *props,
+                            const int *nprops, const double *coords, const double *drot, double *pnewdt,
+                            const double *celent, const double *dfgrd0, const double *dfgrd1, const int *noel,
                             const int *npt, const int *layer, const int *kspt, const int *kstep, const int *kinc,
                             std::size_t cmname_length);
 
-constexpr int guards = 16;               ///< numbers behind STATEV that a UMAT has no business with
+constexpr int guards = 16;  ///< numbers behind STATEV that a UMAT has no business with
 constexpr double untouched = 0x1.234p-567;
 constexpr int abaqus_order[6] = {0, 1, 2, 3, 5, 4};  ///< 12, 13, 23 out of xy, yz, xz
 constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
@@ -39,7 +40,7 @@ struct Umat::Loaded {
   void *handle = nullptr;
   Subroutine subroutine = nullptr;
   std::vector<double> statev, props;  ///< room of the arguments
-  std::vector<std::string> names;      ///< that `history` points to
+  std::vector<std::string> names;     ///< that `history` points to
   Trouble trouble;
   ~Loaded() {
     if (handle) dlclose(handle);
@@ -50,7 +51,8 @@ std::string Umat::problem() {
   if (library.empty()) return "needs library, the path of a shared library";
   if (nstatv < 0) nstatv = static_cast<int>(state.size());
   if (static_cast<int>(state.size()) > nstatv)
-    return "state has " + std::to_string(state.size()) + " names for nstatv = " + std::to_string(nstatv) + " state variables";
+    return "state has " + std::to_string(state.size()) + " names for nstatv = " + std::to_string(nstatv) +
+           " state variables";
   loaded_ = std::make_shared<Loaded>();
   loaded_->handle = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!loaded_->handle) {
@@ -59,7 +61,8 @@ std::string Umat::problem() {
   }
   loaded_->subroutine = reinterpret_cast<Subroutine>(dlsym(loaded_->handle, subroutine.c_str()));
   if (!loaded_->subroutine)
-    return "library " + library + " has no symbol " + subroutine + "; name it by subroutine, declare it extern \"C\" if it is C++, and see " +
+    return "library " + library + " has no symbol " + subroutine +
+           "; name it by subroutine, declare it extern \"C\" if it is C++, and see " +
            "`nm -D` for what the library has";
   loaded_->statev.assign(nstatv + guards, untouched);
   loaded_->props = props;
@@ -110,25 +113,36 @@ void Umat::call(const Point &point) const {
   char cmname[80];
   std::memset(cmname, ' ', sizeof cmname);
   std::memcpy(cmname, "TALUS", 5);
-  const double time[2] = {point.time, point.time}, zero = 0, none[1] = {0}, coords[3] = {not_given, not_given, not_given};
+  const double time[2] = {point.time, point.time}, zero = 0, none[1] = {0},
+               coords[3] = {not_given, not_given, not_given};
   double sse = 0, spd = 0, scd = 0, rpl = 0, drpldt = 0, pnewdt = 1;
   const int cell = point.cell + 1, once = 1, layer = 0, increment = point.time > 0 ? 2 : 1;
-  lib.subroutine(stress, lib.statev.data(), ddsdde, &sse, &spd, &scd, &rpl, ddsddt, drplde, &drpldt, stran, dstran, time, &point.time_step,
-                 &zero, &zero, none, none, cmname, &normals, &shears, &size, &nstatv, lib.props.data(), &count, coords, drot, &pnewdt,
-                 &point.element_size, dfgrd0, dfgrd1, &cell, &once, &layer, &once, &once, &increment, sizeof cmname);
+  lib.subroutine(stress, lib.statev.data(), ddsdde, &sse, &spd, &scd, &rpl, ddsddt, drplde, &drpldt, stran, dstran,
+                 time, &point.time_step, &zero, &zero, none, none, cmname, &normals, &shears, &size, &nstatv,
+                 lib.props.data(), &count, coords, drot, &pnewdt, &point.element_size, dfgrd0, dfgrd1, &cell, &once,
+                 &layer, &once, &once, &increment, sizeof cmname);
 
   const auto complain = [&](const std::string &text) {
     if (lib.trouble.text.empty()) lib.trouble = {text, point.cell};
   };
-  const auto given = [&] { return " for STRESS = (" + list(before, size) + ") Pa and DSTRAN = (" + list(dstran, size) + ")"; };
-  const auto broken = [](const double *values, int n) { return std::find_if(values, values + n, [](double x) { return !std::isfinite(x); }) - values; };
-  if (!std::all_of(lib.statev.data() + nstatv, lib.statev.data() + nstatv + guards, [](double x) { return x == untouched; }))
+  const auto given = [&] {
+    return " for STRESS = (" + list(before, size) + ") Pa and DSTRAN = (" + list(dstran, size) + ")";
+  };
+  const auto broken = [](const double *values, int n) {
+    return std::find_if(values, values + n, [](double x) { return !std::isfinite(x); }) - values;
+  };
+  if (!std::all_of(lib.statev.data() + nstatv, lib.statev.data() + nstatv + guards,
+                   [](double x) { return x == untouched; }))
     complain("the UMAT writes beyond its " + std::to_string(nstatv) + " state variables: nstatv must be larger");
   if (const auto k = broken(stress, size); k < size)
-    complain("the UMAT makes STRESS(" + std::to_string(k + 1) + ") = " + shortest(stress[k]) + given() + "; STRAN and COORDS are not given to it");
+    complain("the UMAT makes STRESS(" + std::to_string(k + 1) + ") = " + shortest(stress[k]) + given() +
+             "; STRAN and COORDS are not given to it");
   if (const auto k = broken(lib.statev.data(), nstatv); k < nstatv)
-    complain("the UMAT makes STATEV(" + std::to_string(k + 1) + ") = " + shortest(lib.statev[k]) + given() + "; STRAN and COORDS are not given to it");
-  if (pnewdt < 1) complain("the UMAT asks for a shorter step, PNEWDT = " + shortest(pnewdt) + "," + given() + "; lower integrator.fraction");
+    complain("the UMAT makes STATEV(" + std::to_string(k + 1) + ") = " + shortest(lib.statev[k]) + given() +
+             "; STRAN and COORDS are not given to it");
+  if (pnewdt < 1)
+    complain("the UMAT asks for a shorter step, PNEWDT = " + shortest(pnewdt) + "," + given() +
+             "; lower integrator.fraction");
 
   for (int i = 0; i < size; ++i) point.stress[size == 6 ? abaqus_order[i] : i] = stress[i];
   std::copy_n(lib.statev.data(), nstatv, point.state);

@@ -9,21 +9,22 @@
 
 namespace talus {
 
-/// The user's own law: a subroutine UMAT in a shared library, with the argument list that Abaqus gives it (Abaqus User Subroutines
-/// Reference, UMAT) and Fortran's calling convention. docs/theory/laws/umat.md says which arguments carry what. Stress order of
-/// Abaqus, 11, 22, 33, 12, 13, 23, shear strain as the angle, stress and strain positive in tension.
+/// The user's own law: a subroutine UMAT in a shared library, with the argument list that Abaqus gives it (Abaqus User
+/// Subroutines Reference, UMAT) and Fortran's calling convention. docs/theory/laws/umat.md says which arguments carry
+/// what. Stress order of Abaqus, 11, 22, 33, 12, 13, 23, shear strain as the angle, stress and strain positive in
+/// tension.
 ///
 /// It is called point by point, so it does not go through the blocks of the other laws.
 struct Umat : IsotropicElastic {
   static constexpr const char *name = "umat";
   static constexpr const char *meaning = "law of your own: an Abaqus-style UMAT in a shared library";
 
-  std::string library;                   ///< path
-  std::string subroutine = "umat_";      ///< symbol; gfortran's name of UMAT
-  std::vector<double> props;             ///< PROPS, SI and radians
-  int nstatv = -1;                       ///< NSTATV; -1: the number of names in `state`
-  std::vector<std::string> state;        ///< names of the first state variables
-  std::vector<HistoryField> history;     ///< one per state variable; set by problem()
+  std::string library;                ///< path
+  std::string subroutine = "umat_";   ///< symbol; gfortran's name of UMAT
+  std::vector<double> props;          ///< PROPS, SI and radians
+  int nstatv = -1;                    ///< NSTATV; -1: the number of names in `state`
+  std::vector<std::string> state;     ///< names of the first state variables
+  std::vector<HistoryField> history;  ///< one per state variable; set by problem()
 
   template <class Visitor>
   void fields(Visitor &&v) {
@@ -33,7 +34,8 @@ struct Umat : IsotropicElastic {
     v.quantities("props", props, "PROPS: numbers, or quantities, which arrive in SI and radians");
     v.integer("nstatv", nstatv, Range{-1, 1000}, "NSTATV, number of state variables; -1 is as many as `state` names");
     v.texts("state", state,
-            "names of the state variables in results; plastic_strain is drawn like that of other laws; those without a name are state_N");
+            "names of the state variables in results; plastic_strain is drawn like that of other laws; those without a "
+            "name are state_N");
   }
 
   /// Loads the library.
@@ -44,10 +46,11 @@ struct Umat : IsotropicElastic {
   bool cohesionless() const { return false; }
   bool strength_varies() const { return nstatv > 0; }
 
-  /// One point. `stress` and `strain` (tensor components) in the order of stress.h, already turned to the end of the step; `rotation`
-  /// row-major [9]; `state` [nstatv] in and out; `tangent` [size][size] gets DDSDDE in that order for shear as the angle, unless null.
+  /// One point. `stress` and `strain` (tensor components) in the order of stress.h, already turned to the end of the
+  /// step; `rotation` row-major [9]; `state` [nstatv] in and out; `tangent` [size][size] gets DDSDDE in that order for
+  /// shear as the angle, unless null.
   struct Point {
-    int size;                    ///< 4 or 6
+    int size;  ///< 4 or 6
     double *stress;
     const double *strain;
     double *state;

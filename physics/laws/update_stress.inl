@@ -162,7 +162,8 @@ void correct_all(OneLaw law, const StressPoints<dim> &points) {
 
   for (int first = 0; first < points.count; first += lanes) {
     const int filled = std::min(lanes, points.count - first);
-    const double *stress[lanes], *history[lanes], *strain[lanes], *rotation[lanes], *element_size[lanes], *suction[lanes];
+    const double *stress[lanes], *history[lanes], *strain[lanes], *rotation[lanes], *element_size[lanes],
+        *suction[lanes];
     for (int i = 0; i < lanes; ++i) {
       const int p = first + std::min(i, filled - 1);  // the last block repeats its last point
       stress[i] = points.stress_in + p * size;
@@ -213,31 +214,35 @@ void differentiate_all(OneLaw law, const StressPoints<dim> &points, double *tang
   }
 }
 
-/// One point of the user's law; `tangent` unless null as `update_stress_with_tangent` has it. Stress and strain are turned first, as a
-/// UMAT expects them.
+/// One point of the user's law; `tangent` unless null as `update_stress_with_tangent` has it. Stress and strain are
+/// turned first, as a UMAT expects them.
 template <bool strained, int dim>
-void call_one(const Umat &law, const StressPoints<dim> &points, int p, Stress<dim> &s, double *history, double *tangent) {
+void call_one(const Umat &law, const StressPoints<dim> &points, int p, Stress<dim> &s, double *history,
+              double *tangent) {
   constexpr int size = stress_size<dim>;
   const Increment<dim> &increment = points.increment[points.cell[p]];
   double rotation[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, at_point[size * size];
   Strain<dim> e{};
   std::memcpy(&s, points.stress_in + p * size, sizeof s);
-  if (history != points.history_in + p * law.nstatv) std::copy_n(points.history_in + p * law.nstatv, law.nstatv, history);
+  if (history != points.history_in + p * law.nstatv)
+    std::copy_n(points.history_in + p * law.nstatv, law.nstatv, history);
   if constexpr (strained) {
     std::memcpy(&e, increment.strain.data(), sizeof e);
     s = rotated(s, increment.rotation), e = rotated(e, increment.rotation);
     if constexpr (dim == 2)
-      rotation[0] = rotation[4] = increment.rotation[0], rotation[3] = increment.rotation[1], rotation[1] = -increment.rotation[1];
+      rotation[0] = rotation[4] = increment.rotation[0], rotation[3] = increment.rotation[1],
+      rotation[1] = -increment.rotation[1];
     else
       std::copy_n(increment.rotation.data(), 9, rotation);
   }
-  law.call({size, &s.xx, &e.xx, history, rotation, points.cell[p], points.size[points.cell[p]], points.time, points.time_step,
-            tangent ? at_point : nullptr});
+  law.call({size, &s.xx, &e.xx, history, rotation, points.cell[p], points.size[points.cell[p]], points.time,
+            points.time_step, tangent ? at_point : nullptr});
   if (!tangent) return;
   for (int j = 0; j < size; ++j) {  // along one component of the strain before it is turned
     std::array<double, size> unit{};
     unit[j] = 1;
-    const auto turned = std::bit_cast<std::array<double, size>>(rotated(std::bit_cast<Strain<dim>>(unit), increment.rotation));
+    const auto turned =
+        std::bit_cast<std::array<double, size>>(rotated(std::bit_cast<Strain<dim>>(unit), increment.rotation));
     for (int i = 0; i < size; ++i) {
       double sum = 0;
       for (int k = 0; k < size; ++k) sum += at_point[i * size + k] * (k < 3 ? 1 : 2) * turned[k];

@@ -2,19 +2,23 @@
 /// Drag between skeleton and fluids at a node, implicit and in closed form, docs/theory/pores.md (4.6).
 namespace talus {
 
-/// One fluid at a node: its partial mass [kg], M = sum w rho_l [kg] and Q = phi V / k, with k the mean conductivity k k_r / mu [kg/s].
+/// One fluid at a node: its partial mass [kg], M = sum w rho_l [kg] and Q = phi V / k, with k the mean conductivity k
+/// k_r / mu [kg/s].
 struct NodalFluid {
   double mass, whole_mass, resistance;
 };
 
 /// d of (4.6) over a step gamma [s].
-inline double drag_number(double gamma, const NodalFluid &at) { return at.whole_mass > 0 ? gamma * at.resistance / at.whole_mass : 0; }
+inline double drag_number(double gamma, const NodalFluid &at) {
+  return at.whole_mass > 0 ? gamma * at.resistance / at.whole_mass : 0;
+}
 
-/// Over a step gamma [s], for one velocity component: `solid` and `fluid` go from their values without drag to those with it. Momentum is
-/// conserved to round-off; where the drag is large all move together, where it vanishes nothing changes. `held`: the solid is held by
-/// a support, which takes the drag on it.
+/// Over a step gamma [s], for one velocity component: `solid` and `fluid` go from their values without drag to those
+/// with it. Momentum is conserved to round-off; where the drag is large all move together, where it vanishes nothing
+/// changes. `held`: the solid is held by a support, which takes the drag on it.
 template <int fluids>
-inline void resolve_drag(double gamma, double solid_mass, double &solid, const NodalFluid *node, double *fluid, bool held = false) {
+inline void resolve_drag(double gamma, double solid_mass, double &solid, const NodalFluid *node, double *fluid,
+                         bool held = false) {
   double factor[fluids], momentum = solid_mass * solid, mass = solid_mass;
   for (int a = 0; a < fluids; ++a) {
     const double d = drag_number(gamma, node[a]);

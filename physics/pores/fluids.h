@@ -8,7 +8,9 @@ namespace talus {
 
 struct Liquid {
   explicit Liquid(const Water &water)
-      : density(water.density), bulk_modulus(water.bulk_modulus), viscosity(water.viscosity),
+      : density(water.density),
+        bulk_modulus(water.bulk_modulus),
+        viscosity(water.viscosity),
         exponential(water.compression == Compression::exponential) {}
   double density;       ///< rho_l0 at zero pressure [kg/m3]
   double bulk_modulus;  ///< K_l [Pa]
@@ -19,8 +21,12 @@ struct Liquid {
   template <bool exponential>
   struct Law {
     double density, bulk_modulus;
-    double density_at(double p) const { return density * (exponential ? std::exp(p / bulk_modulus) : 1 + p / bulk_modulus); }
-    double pressure_at(double rho) const { return bulk_modulus * (exponential ? std::log(rho / density) : rho / density - 1); }
+    double density_at(double p) const {
+      return density * (exponential ? std::exp(p / bulk_modulus) : 1 + p / bulk_modulus);
+    }
+    double pressure_at(double rho) const {
+      return bulk_modulus * (exponential ? std::log(rho / density) : rho / density - 1);
+    }
     double density_slope(double rho) const { return (exponential ? rho : density) / bulk_modulus; }
   };
   /// Calls f(law).
@@ -40,7 +46,8 @@ struct Liquid {
   }
 };
 
-/// P = K (rho / rho_0 - 1): an ideal isothermal gas with K its absolute pressure at gauge 0, or a gas of any other bulk modulus.
+/// P = K (rho / rho_0 - 1): an ideal isothermal gas with K its absolute pressure at gauge 0, or a gas of any other bulk
+/// modulus.
 struct PoreGas {
   explicit PoreGas(const Gas &gas) : density(gas.density), bulk_modulus(gas.bulk_modulus), viscosity(gas.viscosity) {}
   double density;       ///< rho_g0 at gauge pressure 0 [kg/m3]

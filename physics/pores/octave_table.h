@@ -1,7 +1,8 @@
 #pragma once
-/// Functions of x in (0, 0.5] that behave like powers of x at the small end, tabulated on 64 intervals an octave. The interval comes out of
-/// the bits of x, so a look-up costs no logarithm. Cubic Hermite with slopes limited after Fritsch & Carlson (1980): monotone
-/// where the function is, and off by less than 1e-7 of the value for powers from -3 to 4.
+/// Functions of x in (0, 0.5] that behave like powers of x at the small end, tabulated on 64 intervals an octave. The
+/// interval comes out of the bits of x, so a look-up costs no logarithm. Cubic Hermite with slopes limited after
+/// Fritsch & Carlson (1980): monotone where the function is, and off by less than 1e-7 of the value for powers from -3
+/// to 4.
 #include <array>
 #include <bit>
 #include <cmath>
@@ -10,8 +11,8 @@
 
 namespace talus {
 
-/// `functions` of `columns` values each, one behind the other: which of them a look-up reads is part of its address, so that loops over many
-/// look-ups vectorise.
+/// `functions` of `columns` values each, one behind the other: which of them a look-up reads is part of its address, so
+/// that loops over many look-ups vectorise.
 template <int columns, int functions>
 class OctaveTable {
  public:
@@ -31,8 +32,11 @@ class OctaveTable {
       double *c = &coefficients_[(which * intervals + k - first) * stride];
       for (int j = 0; j < columns; ++j, c += 4) {
         const double rise = fb[j] - fa[j];
-        const auto limited = [&](double slope) { return slope * rise <= 0 ? 0 : std::abs(slope) > 3 * std::abs(rise) ? 3 * rise : slope; };
-        const double da = limited((4 * a1[j] - a2[j] - 3 * fa[j]) / (2 * near)), db = limited((b2[j] - 4 * b1[j] + 3 * fb[j]) / (2 * near));
+        const auto limited = [&](double slope) {
+          return slope * rise <= 0 ? 0 : std::abs(slope) > 3 * std::abs(rise) ? 3 * rise : slope;
+        };
+        const double da = limited((4 * a1[j] - a2[j] - 3 * fa[j]) / (2 * near)),
+                     db = limited((b2[j] - 4 * b1[j] + 3 * fb[j]) / (2 * near));
         c[0] = fa[j], c[1] = da, c[2] = 3 * rise - 2 * da - db, c[3] = da + db - 2 * rise;
       }
     }
@@ -46,7 +50,8 @@ class OctaveTable {
   [[gnu::always_inline]] Place find(int which, double x) const {
     const double inside = x > smallest ? x : smallest;
     const std::int64_t k = index(inside);
-    const double a = left(k), inverse = std::bit_cast<double>((2 * bias + 6 - (k >> 6)) << 52);  // the width is a power of two
+    const double a = left(k),
+                 inverse = std::bit_cast<double>((2 * bias + 6 - (k >> 6)) << 52);  // the width is a power of two
     return {coefficients_.data(), (which * intervals + k - first) * stride, (inside - a) * inverse, inverse};
   }
   [[gnu::always_inline]] static double value(const Place &at, int column) {

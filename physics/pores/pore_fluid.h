@@ -1,7 +1,9 @@
 #pragma once
-/// The fluid part of the motion, docs/theory/pores.md: liquid and, in three phases, gas. Stress points of the soil are pore points too: each
-/// holds masses of fluid, from which its pressures follow. SoilMotion calls, in the order of a step:
-///   gather -> [add_to_mixture -> drive -> resist -> follow -> flow -> smooth_flow -> exchange -> store] ... -> hand_over
+/// The fluid part of the motion, docs/theory/pores.md: liquid and, in three phases, gas. Stress points of the soil are
+/// pore points too: each holds masses of fluid, from which its pressures follow. SoilMotion calls, in the order of a
+/// step:
+///   gather -> [add_to_mixture -> drive -> resist -> follow -> flow -> smooth_flow -> exchange -> store] ... ->
+///   hand_over
 /// Particles give and take in the sweeps of the soil (transfer/), between `hand_over` and `gather`.
 #include <functional>
 #include <memory>
@@ -51,52 +53,61 @@ class PoreFluid {
   // Where cells and nodes stand, as SoilMotion has them.
   struct Frame {
     FilledGrid<dim> &grid;
-    const Shape<dim> *shape;           ///< [cell]
-    const Vec<dim> *position;          ///< [node]
-    const double *weight;              ///< w [cell]
+    const Shape<dim> *shape;   ///< [cell]
+    const Vec<dim> *position;  ///< [node]
+    const double *weight;      ///< w [cell]
     const std::vector<PointSet> &points;
-    const double *const *volume;       ///< [body][point]
-    const double *particle_volume;     ///< sum over the points of a cell
-    const double *blend;               ///< [cell]
+    const double *const *volume;    ///< [body][point]
+    const double *particle_volume;  ///< sum over the points of a cell
+    const double *blend;            ///< [cell]
     Vec<dim> gravity;
     double time;
     bool averaged, trial;
   };
 
-  /// The pores of the points of a body as they are, and as they will be in the Lagrangian part to come, for the sweeps of the soil.
+  /// The pores of the points of a body as they are, and as they will be in the Lagrangian part to come, for the sweeps
+  /// of the soil.
   Pores<dim> pores(int body) { return show(points_, body); }
   Pores<dim> next_pores(int body) { return show(next_points_, body); }
   /// The next ones become those that are.
   void turn() { std::swap(points_, next_points_); }
-  /// Once the particles of all bodies have been added to points and cells: `velocity` [fluids][nodes] receives the nodes'.
-  PetscErrorCode gather(const Frame &frame, PoreConditions<dim> &conditions, const Array &filling, const Vec<dim> *solid, Vec<dim> *velocity);
-  /// What particles read of the nodes in `update`, before they move. Velocities changed from `start`, both [fluids][nodes];
-  /// `flip` is the share of their own velocity that particles keep.
+  /// Once the particles of all bodies have been added to points and cells: `velocity` [fluids][nodes] receives the
+  /// nodes'.
+  PetscErrorCode gather(const Frame &frame, PoreConditions<dim> &conditions, const Array &filling,
+                        const Vec<dim> *solid, Vec<dim> *velocity);
+  /// What particles read of the nodes in `update`, before they move. Velocities changed from `start`, both
+  /// [fluids][nodes]; `flip` is the share of their own velocity that particles keep.
   void hand_over(int nodes, const Vec<dim> *velocity, const Vec<dim> *start, double flip, NodalUpdate &update) const;
 
   /// Adds what fluids do to the mixture at a node: pressure and weight.
   void add_to_mixture(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force) const;
-  /// Accelerations of the fluids [fluids][nodes], and less them what is left of the mixture's force for the solid: without drag, or with that of
-  /// `velocity` [1 + fluids][nodes] where drag is explicit.
-  PetscErrorCode drive(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force, Vec<dim> *acceleration, const Vec<dim> *velocity);
-  /// Velocity of the solid after implicit drag over `step` and what limits the fluids at boundaries, from those of all without it.
-  void resist(double step, const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *solid, const Vec<dim> *fluid) const;
+  /// Accelerations of the fluids [fluids][nodes], and less them what is left of the mixture's force for the solid:
+  /// without drag, or with that of `velocity` [1 + fluids][nodes] where drag is explicit.
+  PetscErrorCode drive(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force,
+                       Vec<dim> *acceleration, const Vec<dim> *velocity);
+  /// Velocity of the solid after implicit drag over `step` and what limits the fluids at boundaries, from those of all
+  /// without it.
+  void resist(double step, const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *solid,
+              const Vec<dim> *fluid) const;
   /// Inertia of the node against a support of the solid, after `resist` over `step` [kg].
   Square<dim> inertia(double step, const FilledGrid<dim> &grid, const PoreConditions<dim> &conditions, int node) const;
   /// Force with which the pores press on a wall of outer normal n at a node, docs/theory/pores.md (5.3) [N].
   double thrust(const Vec<dim> &gravity, int node, const Vec<dim> &n) const;
   /// The fluids' after it, the solid now being where supports want it; then boundaries.
-  void follow(double step, const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid, Vec<dim> *fluid) const;
-  void constrain(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid, Vec<dim> *fluid) const;
+  void follow(double step, const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid,
+              Vec<dim> *fluid) const;
+  void constrain(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid,
+                 Vec<dim> *fluid) const;
 
-  /// Divergence of the fluids' fluxes over displacements u = [1 + fluids][nodes] from the accepted state, in cells. `frame` is that of the
-  /// accepted state but for `trial`. Collective.
+  /// Divergence of the fluids' fluxes over displacements u = [1 + fluids][nodes] from the accepted state, in cells.
+  /// `frame` is that of the accepted state but for `trial`. Collective.
   PetscErrorCode flow(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *u);
   /// Smooths them together with the volume strain of the cells, which becomes that of the pores.
   PetscErrorCode smooth_flow(const Frame &frame, Array &volume_strain);
   /// Takes it from the points, whose volumes are now those at the end.
   void exchange(const Frame &frame);
-  /// Pressures from masses, forces at cells and nodes from pressures. Not needed where particles are released first. Collective.
+  /// Pressures from masses, forces at cells and nodes from pressures. Not needed where particles are released first.
+  /// Collective.
   PetscErrorCode store(const Frame &frame);
 
   /// At the points of a body [Pa].
@@ -106,7 +117,8 @@ class PoreFluid {
   /// `sums` [fluids]; `gathered`: points hold the masses, not particles. Collective.
   PetscErrorCode ledger(bool gathered, FluidLedger *sums);
 
-  /// Largest rate at which drag brings together what moves apart at a node of this rank, docs/theory/pores.md (6.1a) [1/s].
+  /// Largest rate at which drag brings together what moves apart at a node of this rank, docs/theory/pores.md (6.1a)
+  /// [1/s].
   double drag_rate(const FilledGrid<dim> &grid) const;
 
   /// Sum of w grad N at the nodes, at the last remap [m2].
@@ -115,17 +127,17 @@ class PoreFluid {
   const std::vector<Vec<dim>> &surface_moment() const { return moment_; }
   void keep(Archive &archive);
 
-  bool given = false;   ///< pressures follow [water] instead of the fluids' motion
+  bool given = false;  ///< pressures follow [water] instead of the fluids' motion
   double given_ramp = 1;
 
  private:
-  struct PorePoints {         // room for a point in every cell or for all particles; the first `count` count
+  struct PorePoints {  // room for a point in every cell or for all particles; the first `count` count
     int count = 0;
-    Array grains;             ///< V_s [m3]
-    Array mass[fluids];       ///< [kg]
-    Array share;              ///< S_g
-    Array suction;            ///< [Pa]
-    Array pressure;           ///< of the liquid, kept only where it follows its rate [Pa]
+    Array grains;        ///< V_s [m3]
+    Array mass[fluids];  ///< [kg]
+    Array share;         ///< S_g
+    Array suction;       ///< [Pa]
+    Array pressure;      ///< of the liquid, kept only where it follows its rate [Pa]
 
     void room(int points) {
       if (points <= static_cast<int>(grains.size())) return;
@@ -139,13 +151,14 @@ class PoreFluid {
     double saturated;                         ///< conductivity of the liquid were the pores full of it [m2/(Pa s)]
     double density[fluids], mass[fluids];     ///< [kg/m3], [kg]
     double saturation;
-    double mixture;                           ///< what the pores take off the total stress [Pa]
+    double mixture;  ///< what the pores take off the total stress [Pa]
   };
   static constexpr int last = 3, mixture = Phases::suction ? fluids : 0;  ///< lane; pressure that acts on the skeleton
-  struct NodePores {  // sums over cells and ranks
-    Quad geometry;             ///< sum of w grad N [m2]; V [m3] in the last lane
-    Quad amount;               ///< m, M = sum w rho / (d+1) of the liquid, and of the gas [kg]
-    Quad push[mixture ? mixture + 1 : fluids];  ///< sum of w P grad N [N]; sum of w k / (d+1), for the mixture with full pores, in the last lane
+  struct NodePores {                                                      // sums over cells and ranks
+    Quad geometry;                              ///< sum of w grad N [m2]; V [m3] in the last lane
+    Quad amount;                                ///< m, M = sum w rho / (d+1) of the liquid, and of the gas [kg]
+    Quad push[mixture ? mixture + 1 : fluids];  ///< sum of w P grad N [N]; sum of w k / (d+1), for the mixture with
+                                                ///< full pores, in the last lane
 
     double volume() const { return geometry[last]; }
     double mass(int a) const { return amount[2 * a]; }
@@ -154,8 +167,11 @@ class PoreFluid {
   };
   static constexpr int node_width = sizeof(NodePores) / sizeof(double);
 
-  /// Weight of a fluid at a node over that of its mass: the liquid weighs as if it were not compressed, which a softened one would be, and still water in it is exactly hydrostatic.
-  double weighs(const NodePores &node, int a) const { return a == 0 && node.whole(0) > 0 ? liquid_.density * node.volume() / node.whole(0) : 1; }
+  /// Weight of a fluid at a node over that of its mass: the liquid weighs as if it were not compressed, which a
+  /// softened one would be, and still water in it is exactly hydrostatic.
+  double weighs(const NodePores &node, int a) const {
+    return a == 0 && node.whole(0) > 0 ? liquid_.density * node.volume() / node.whole(0) : 1;
+  }
   Pores<dim> show(std::vector<PorePoints> &points, int body);
   static Vec<dim> surface_at(const NodePores &node) {
     Vec<dim> area;
@@ -181,7 +197,9 @@ class PoreFluid {
   PetscErrorCode give_around(const Frame &frame, Array &divergence) requires Phases::suction;
   PetscErrorCode see_around(const Frame &frame, Array &pressure) requires Phases::suction;
   /// Volume of a cell that stands for more, or less, than its particles have; 0 where smoothing evens out [m3].
-  double beyond_particles(const Frame &frame, int c) const { return smoothed(c) ? 0 : frame.weight[c] - frame.particle_volume[c]; }
+  double beyond_particles(const Frame &frame, int c) const {
+    return smoothed(c) ? 0 : frame.weight[c] - frame.particle_volume[c];
+  }
   double gas_density() const {
     if constexpr (Phases::gas) return gas_.density;
     return 0;
@@ -213,15 +231,16 @@ class PoreFluid {
   std::vector<CellPores> cells_, trial_cells_;
   std::vector<NodePores> nodes_, trial_nodes_;
   std::vector<Vec<dim>> flux_[fluids], surface_, moment_;
-  std::vector<Vec<dim>> gap_;      ///< of a node: area vector of the gap over the volume of its cells [1/m]; 0 elsewhere
-  Array shut_[fluids];             ///< of a node: what a gap would let through over that volume [kg/(m3 s)]
-  std::vector<std::array<double, dim + 1>> mean_, reference_;  ///< of a cell: where its particles are in the mean, and where its pressure counts
-  std::vector<std::array<double, dim + 1>> rows_;              ///< sums over rows of the solid's mass matrices [kg]
-  Array grain_mass_;                                           ///< of a cell [kg]
-  std::vector<std::array<Quad, dim>> impulse_[fluids];         ///< of a cell [component][vertex]: sum m_s N v_a [kg m/s]
-  std::vector<std::array<Quad, fluids>> momentum_;             ///< of a node: m_a v_a [kg m/s], m_a in the last lane
+  std::vector<Vec<dim>> gap_;  ///< of a node: area vector of the gap over the volume of its cells [1/m]; 0 elsewhere
+  Array shut_[fluids];         ///< of a node: what a gap would let through over that volume [kg/(m3 s)]
+  std::vector<std::array<double, dim + 1>> mean_,
+      reference_;  ///< of a cell: where its particles are in the mean, and where its pressure counts
+  std::vector<std::array<double, dim + 1>> rows_;       ///< sums over rows of the solid's mass matrices [kg]
+  Array grain_mass_;                                    ///< of a cell [kg]
+  std::vector<std::array<Quad, dim>> impulse_[fluids];  ///< of a cell [component][vertex]: sum m_s N v_a [kg m/s]
+  std::vector<std::array<Quad, fluids>> momentum_;      ///< of a node: m_a v_a [kg m/s], m_a in the last lane
   Array divergence_[fluids], smooth_[fluids], head_, nodal_head_, nodal_;
-  Array beyond_;                   ///< conductivity of the liquid beyond a face with a given pressure [node]; 0 elsewhere
+  Array beyond_;  ///< conductivity of the liquid beyond a face with a given pressure [node]; 0 elsewhere
   std::vector<int> body_of_node_;  ///< one of the bodies around it
   double out_[fluids] = {}, given_mass_[fluids] = {};
 };

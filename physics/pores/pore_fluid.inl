@@ -7,21 +7,37 @@
 namespace talus {
 
 template <int dim, class Phases>
-PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<std::unique_ptr<Body<dim>>> &bodies, const Scene &scene)
-    : mesh_(mesh), bodies_(bodies), scene_(scene), liquid_(scene.water), gas_(scene.gas),
-      pressure_(scene.water, std::hypot(scene.gravity[0], scene.gravity[1])), bishop_(scene.water.stress == PoreStress::bishop),
-      smoothing_(scene.transfer.pore_smoothing == PoreSmoothing::nodal), explicit_drag_(scene.water.drag == PoreDrag::at_start),
-      by_rate_(scene.water.storage == PoreStorage::rate), points_(bodies.size()), next_points_(bodies.size()), trial_(bodies.size()) {
+PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<std::unique_ptr<Body<dim>>> &bodies,
+                                  const Scene &scene)
+    : mesh_(mesh),
+      bodies_(bodies),
+      scene_(scene),
+      liquid_(scene.water),
+      gas_(scene.gas),
+      pressure_(scene.water, std::hypot(scene.gravity[0], scene.gravity[1])),
+      bishop_(scene.water.stress == PoreStress::bishop),
+      smoothing_(scene.transfer.pore_smoothing == PoreSmoothing::nodal),
+      explicit_drag_(scene.water.drag == PoreDrag::at_start),
+      by_rate_(scene.water.storage == PoreStorage::rate),
+      points_(bodies.size()),
+      next_points_(bodies.size()),
+      trial_(bodies.size()) {
   const size_t nodes = mesh.node_count(), cells = mesh.cell_count();
   const double gravity = std::hypot(scene.gravity[0], scene.gravity[1], dim == 3 ? scene.gravity[dim - 1] : 0);
   constexpr double earth = 9.81;  // [m/s2], for a hydraulic conductivity in a scene without gravity
-  for (const auto &body : bodies) soils_.emplace_back(body->source(), scene.water.density * (gravity > 0 ? gravity : earth), scene.water.viscosity);
-  cells_.resize(cells), nodes_.resize(nodes), mean_.resize(cells), reference_.resize(cells), rows_.resize(cells), head_.resize(cells), grain_mass_.resize(cells);
-  nodal_head_.resize(nodes), momentum_.resize(nodes), surface_.resize(nodes), moment_.resize(nodes), gap_.resize(nodes), beyond_.assign(nodes, 0), body_of_node_.assign(nodes, 0);
-  for (int a = 0; a < fluids; ++a) flux_[a].resize(nodes), shut_[a].resize(nodes), impulse_[a].resize(cells), divergence_[a].resize(cells), smooth_[a].resize(cells);
+  for (const auto &body : bodies)
+    soils_.emplace_back(body->source(), scene.water.density * (gravity > 0 ? gravity : earth), scene.water.viscosity);
+  cells_.resize(cells), nodes_.resize(nodes), mean_.resize(cells), reference_.resize(cells), rows_.resize(cells),
+      head_.resize(cells), grain_mass_.resize(cells);
+  nodal_head_.resize(nodes), momentum_.resize(nodes), surface_.resize(nodes), moment_.resize(nodes), gap_.resize(nodes),
+      beyond_.assign(nodes, 0), body_of_node_.assign(nodes, 0);
+  for (int a = 0; a < fluids; ++a)
+    flux_[a].resize(nodes), shut_[a].resize(nodes), impulse_[a].resize(cells), divergence_[a].resize(cells),
+        smooth_[a].resize(cells);
   nodal_.resize(4 * nodes);
   for (auto *all : {&points_, &next_points_})
-    for (size_t b = 0; b < bodies.size(); ++b) (*all)[b].room(scene.transfer.average_stress ? static_cast<int>(cells) : bodies[b]->particles().count);
+    for (size_t b = 0; b < bodies.size(); ++b)
+      (*all)[b].room(scene.transfer.average_stress ? static_cast<int>(cells) : bodies[b]->particles().count);
 }
 
 // ---- what pores hold at first ----
@@ -30,7 +46,9 @@ template <int dim, class Phases>
 double PoreFluid<dim, Phases>::given_pressure(const Vec<dim> &x, double t) const {
   double p = pressure_(x, t);
   if constexpr (Phases::suction)
-    if (!pressure_.below_table(x, t)) p -= scene_.water.suction.given() ? scene_.water.suction(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t) : pressure_.above_table(x, t);
+    if (!pressure_.below_table(x, t))
+      p -= scene_.water.suction.given() ? scene_.water.suction(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t)
+                                        : pressure_.above_table(x, t);
   return p;
 }
 
@@ -40,9 +58,11 @@ double PoreFluid<dim, Phases>::given_gas_pressure(const Vec<dim> &x) const {
   return 0;
 }
 
-/// Masses per pore volume [kg/m3] and gas share at a liquid pressure under the atmosphere; free gas, and liquid with it, has more by `gas_pressure`.
+/// Masses per pore volume [kg/m3] and gas share at a liquid pressure under the atmosphere; free gas, and liquid with
+/// it, has more by `gas_pressure`.
 template <int dim, class Phases>
-std::array<double, 3> PoreFluid<dim, Phases>::contents(const SoilPores &soil, double pressure, double gas_pressure) const {
+std::array<double, 3> PoreFluid<dim, Phases>::contents(const SoilPores &soil, double pressure,
+                                                       double gas_pressure) const {
   double share = 0, gas = 0;
   if constexpr (Phases::suction) share = pressure < 0 ? 1 - talus::saturation(soil.retention(), -pressure) : 0;
   if constexpr (Phases::gas) {  // below the water table what is left of the gas is in equilibrium with the water
@@ -78,7 +98,8 @@ void PoreFluid<dim, Phases>::fill(const std::function<double(int, const Vec<dim>
 
 template <int dim, class Phases>
 PoreReport PoreFluid<dim, Phases>::report(int body, int point, int cell, bool surface) const {
-  const double *p = smoothed(cell) ? cells_[cell].smooth : cells_[cell].pressure, gas = Phases::gas ? p[fluids - 1] : 0, share = points_[body].share[point];
+  const double *p = smoothed(cell) ? cells_[cell].smooth : cells_[cell].pressure, gas = Phases::gas ? p[fluids - 1] : 0,
+               share = points_[body].share[point];
   double suction = 0;
   if constexpr (Phases::suction) suction = points_[body].suction[point];
   return {p[0], gas, suction, 1 - share, surface};
@@ -90,7 +111,8 @@ void PoreFluid<dim, Phases>::keep(Archive &archive) {
     archive.keep("pores", points.count, points.grains, points.share, points.suction, points.pressure);
     for (int a = 0; a < fluids; ++a) archive.keep("fluid", points.mass[a]);
   }
-  archive.keep("fluids", cells_, nodes_, surface_, moment_, mean_, reference_, rows_, grain_mass_, body_of_node_, out_, given_mass_);
+  archive.keep("fluids", cells_, nodes_, surface_, moment_, mean_, reference_, rows_, grain_mass_, body_of_node_, out_,
+               given_mass_);
 }
 
 template <int dim, class Phases>
@@ -112,8 +134,8 @@ PetscErrorCode PoreFluid<dim, Phases>::ledger(bool gathered, FluidLedger *sums) 
 
 }  // namespace talus
 
-#include "physics/pores/pore_fluid/remap.inl"
-#include "physics/pores/pore_fluid/pressures.inl"
-#include "physics/pores/pore_fluid/forces.inl"
 #include "physics/pores/pore_fluid/drag.inl"
 #include "physics/pores/pore_fluid/exchange.inl"
+#include "physics/pores/pore_fluid/forces.inl"
+#include "physics/pores/pore_fluid/pressures.inl"
+#include "physics/pores/pore_fluid/remap.inl"

@@ -2,7 +2,8 @@
 /// The list of retention curves: one line to add one. A curve is a plain struct:
 /// - `effective(s)`: effective saturation S_e at a suction s [Pa]; 1 at s <= 0; falls monotonically
 /// - `slope(s)`: dS_e / ds [1/Pa]
-/// - `suction(wet, dry)`: the inverse for 0 < wet = S_e <= 1; dry = 1 - S_e is handed over as well, without its round-off
+/// - `suction(wet, dry)`: the inverse for 0 < wet = S_e <= 1; dry = 1 - S_e is handed over as well, without its
+/// round-off
 /// - `residual_saturation`, `fields`, `problem` as for laws
 #include <variant>
 

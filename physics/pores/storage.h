@@ -1,6 +1,7 @@
 #pragma once
-/// Pressures that follow from what the pores hold, docs/theory/pores.md section 3. Water and gas are stored as mass per pore volume, so
-/// they are conserved however large a step; Newton's iteration, bracketed, from the gas share of the last step.
+/// Pressures that follow from what the pores hold, docs/theory/pores.md section 3. Water and gas are stored as mass per
+/// pore volume, so they are conserved however large a step; Newton's iteration, bracketed, from the gas share of the
+/// last step.
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +17,8 @@ struct PorePressures {
 /// Gas share below which soil counts as saturated: the pressure of its gas means nothing then [-].
 inline constexpr double residual_gas = 1e-4;
 
-/// A few points side by side, so that their iterations run in vector registers. A lane does not depend on what the others hold.
+/// A few points side by side, so that their iterations run in vector registers. A lane does not depend on what the
+/// others hold.
 template <int lanes>
 struct PoreLanes {
   double liquid_content[lanes], gas_content[lanes];  ///< m_a / (n V) [kg/m3]
@@ -59,7 +61,10 @@ inline void unsaturated_pressures(const SoilPores &soil, const Liquid &liquid, P
         const double a = f > 0 ? y : low[i], b = f > 0 ? high[i] : y;
         const double next = y + f / (rho + (1 - y) * law.density_slope(rho) * state.slope);
         const double taken = next >= a && next <= b ? next : (a + b) / 2, moved = std::abs(taken - y);
-        const double pressure = -state.suction - state.slope * (taken - y);  // first order in the last correction, which is then below round-off of the content
+        const double pressure =
+            -state.suction -
+            state.slope *
+                (taken - y);  // first order in the last correction, which is then below round-off of the content
         const bool turns = open[i] > 0;
         low[i] = a, high[i] = b;
         p.gas_share[i] = turns ? taken : y, p.liquid[i] = turns ? pressure : p.liquid[i];
@@ -72,9 +77,11 @@ inline void unsaturated_pressures(const SoilPores &soil, const Liquid &liquid, P
   });
 }
 
-/// Liquid and gas: P_g(c_g / y) - P_l(c_l / (1 - y)) = s(y) in the gas share y, which has one root (both sides are monotone).
+/// Liquid and gas: P_g(c_g / y) - P_l(c_l / (1 - y)) = s(y) in the gas share y, which has one root (both sides are
+/// monotone).
 template <int lanes>
-inline void three_phase_pressures(const SoilPores &soil, const Liquid &liquid, const PoreGas &gas, PoreLanes<lanes> &p) {
+inline void three_phase_pressures(const SoilPores &soil, const Liquid &liquid, const PoreGas &gas,
+                                  PoreLanes<lanes> &p) {
   liquid.with_compression([&](const auto &law) {
     const double largest = soil.largest_gas_share(), gas_slope = gas.bulk_modulus / gas.density;
     double low[lanes], high[lanes], open[lanes];
@@ -102,7 +109,9 @@ inline void three_phase_pressures(const SoilPores &soil, const Liquid &liquid, c
         low[i] = a, high[i] = b;
         p.gas_share[i] = turns ? taken : y;
         p.iterations[i] += turns;
-        open[i] = turns && moved > 1e-7 * std::min(taken, largest - taken) ? 1 : 0;  // its square is what the quadratic convergence leaves
+        open[i] = turns && moved > 1e-7 * std::min(taken, largest - taken)
+                      ? 1
+                      : 0;  // its square is what the quadratic convergence leaves
         left += open[i];
       }
     }
@@ -114,23 +123,29 @@ inline void three_phase_pressures(const SoilPores &soil, const Liquid &liquid, c
   });
 }
 
-/// The naive form for gas at atmospheric pressure, docs/theory/pores.md (3.5): from `pressure` [Pa] on at its rate, with the storage that it has there, as the
-/// liquid per pore volume becomes `content`; what the curve gives where that leads takes its place [kg/m3].
+/// The naive form for gas at atmospheric pressure, docs/theory/pores.md (3.5): from `pressure` [Pa] on at its rate,
+/// with the storage that it has there, as the liquid per pore volume becomes `content`; what the curve gives where that
+/// leads takes its place [kg/m3].
 inline double content_by_rate(const SoilPores &soil, const Liquid &liquid, double pressure, double content) {
   const auto at = [&](double p) { return p < -soil.entry() ? saturation(soil.retention(), -p) : 1; };
-  const double wet = at(pressure), rho = liquid.density_at(pressure), capacity = wet < 1 ? 1 / soil.at(1 - wet).slope : 0;
+  const double wet = at(pressure), rho = liquid.density_at(pressure),
+               capacity = wet < 1 ? 1 / soil.at(1 - wet).slope : 0;
   const double next = pressure + (content / rho - wet) / (wet * liquid.density_slope(rho) / rho + capacity);
   return at(next) * liquid.density_at(next);
 }
 
-/// Symmetric storage matrix of dP_l, dP_g per pore volume change, docs/theory/pores.md (3.4), all over n [1/Pa]: ll, lg, gg.
+/// Symmetric storage matrix of dP_l, dP_g per pore volume change, docs/theory/pores.md (3.4), all over n [1/Pa]: ll,
+/// lg, gg.
 struct StorageTangent {
   double ll, lg, gg;
 };
-inline StorageTangent storage_tangent(const SoilPores &soil, const Liquid &liquid, const PoreGas &gas, const PorePressures &p, double gas_share) {
-  const double y = std::max(gas_share, residual_gas * 1e-6), rho_l = liquid.density_at(p.liquid), rho_g = gas.density_at(p.gas);
+inline StorageTangent storage_tangent(const SoilPores &soil, const Liquid &liquid, const PoreGas &gas,
+                                      const PorePressures &p, double gas_share) {
+  const double y = std::max(gas_share, residual_gas * 1e-6), rho_l = liquid.density_at(p.liquid),
+               rho_g = gas.density_at(p.gas);
   const double capacity = 1 / std::max(soil.at(y).slope, 1e-300);  // -dS_l/ds
-  return {(1 - y) * liquid.density_slope(rho_l) / rho_l + capacity, -capacity, y * gas.density_slope() / rho_g + capacity};
+  return {(1 - y) * liquid.density_slope(rho_l) / rho_l + capacity, -capacity,
+          y * gas.density_slope() / rho_g + capacity};
 }
 
 }  // namespace talus

@@ -1,4 +1,5 @@
-// Cells that deform: strain, stress, volume, and what that takes and gives of work; theory, section 3; included only where SoilMotion is instantiated.
+// Cells that deform: strain, stress, volume, and what that takes and gives of work; theory, section 3; included only
+// where SoilMotion is instantiated.
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +13,8 @@ PetscErrorCode SoilMotion<dim, Phases>::smooth_volume_strain(const Shape<dim> *s
   const int cells = grid_.cell_count();
   if (transfer_.locking == Locking::patches) {  // F-bar: one mean per patch, weighted as in the forces, theory (4.7)
     for (int c = 0; c < cells; ++c) patch_weight_[grid_.patch[c]] = patch_sum_[grid_.patch[c]] = 0;
-    for (int c = 0; c < cells; ++c) patch_weight_[grid_.patch[c]] += weight_[c], patch_sum_[grid_.patch[c]] += weight_[c] * volume_strain_[c];
+    for (int c = 0; c < cells; ++c)
+      patch_weight_[grid_.patch[c]] += weight_[c], patch_sum_[grid_.patch[c]] += weight_[c] * volume_strain_[c];
     for (int c = 0; c < cells; ++c) {
       const double mean = patch_sum_[grid_.patch[c]] / patch_weight_[grid_.patch[c]];
       const double correction = (mean - volume_strain_[c]) / 3;
@@ -100,23 +102,27 @@ PetscErrorCode SoilMotion<dim, Phases>::deform(double t, const Vec<dim> *u, bool
     const Body<dim> &body = *bodies_[b];
     double *stress = p.stress, *history = p.history, *volume = p.volume;
     if (trial) {
-      trial_stress_[b].resize(p.count * components), trial_history_[b].resize(p.count * body.history_count()), trial_volume_[b].resize(p.count);
+      trial_stress_[b].resize(p.count * components), trial_history_[b].resize(p.count * body.history_count()),
+          trial_volume_[b].resize(p.count);
       stress = trial_stress_[b].data(), history = trial_history_[b].data(), volume = trial_volume_[b].data();
     }
     if (!loading.softening) {
       forgotten_.resize(std::max<size_t>(forgotten_.size(), p.count * body.history_count()));
       history = forgotten_.data();
     }
-    update_stress<dim>(body.law(), {p.count, p.stress, seen_history(b), stress, history, p.cell, increment_.data(), softening_size(b), find_suction(b), t - accepted_time_, accepted_time_});
+    update_stress<dim>(body.law(), {p.count, p.stress, seen_history(b), stress, history, p.cell, increment_.data(),
+                                    softening_size(b), find_suction(b), t - accepted_time_, accepted_time_});
     if (nonlocal_[b]) nonlocal_[b]->restore(p, history);
     if (!loading.softening && !trial) {
       const auto fields = history_fields(body.law());
       for (size_t k = 0; k < fields.size(); ++k)
-        for (int q = 0; fields[k].kept && q < p.count; ++q) p.history[q * fields.size() + k] = forgotten_[q * fields.size() + k];
+        for (int q = 0; fields[k].kept && q < p.count; ++q)
+          p.history[q * fields.size() + k] = forgotten_[q * fields.size() + k];
     }
     for (int q = 0; q < p.count; ++q) {
       const int c = p.cell[q];
-      volume[q] = std::min(p.volume[q] * exp_small(volume_strain_[c]), body.volume_limit(p.limit[q], history + q * body.history_count()));
+      volume[q] = std::min(p.volume[q] * exp_small(volume_strain_[c]),
+                           body.volume_limit(p.limit[q], history + q * body.history_count()));
       particle_volume[c] += volume[q];
     }
   }
@@ -135,7 +141,8 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::accept(double t, const double *u, const double *v) {
   PetscFunctionBeginUser;
   if (transfer_.velocity == Velocity::flip) own_share_ = relaxed(t);
-  if (v != velocity_[0].data()) std::copy_n(reinterpret_cast<const Vec<dim> *>(v), grid_.node_count() * velocity_fields<Phases>, velocity_.begin());
+  if (v != velocity_[0].data())
+    std::copy_n(reinterpret_cast<const Vec<dim> *>(v), grid_.node_count() * velocity_fields<Phases>, velocity_.begin());
   PetscCall(deform(t, reinterpret_cast<const Vec<dim> *>(u), false));
   accepted_time_ = t;
   add_up_work(reinterpret_cast<const Vec<dim> *>(u));

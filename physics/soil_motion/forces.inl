@@ -17,7 +17,8 @@ PetscErrorCode SoilMotion<dim, Phases>::internal_force(bool trial) {
   std::fill_n(cell_stress_.begin(), cells, std::array<double, components>{});
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const PointSet &p = points_[b];
-    const double *stress = trial ? trial_stress_[b].data() : p.stress, *volume = trial ? trial_volume_[b].data() : p.volume;
+    const double *stress = trial ? trial_stress_[b].data() : p.stress,
+                 *volume = trial ? trial_volume_[b].data() : p.volume;
     for (int q = 0; q < p.count; ++q) {
       auto &sum = cell_stress_[p.cell[q]];
       const double share = volume[q] / particle_volume[p.cell[q]];
@@ -79,7 +80,8 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::total_force(double load_time, double ramp, bool trial) {
   PetscFunctionBeginUser;
   PetscCall(internal_force(trial));
-  conditions_.surface_loads().add(load_time, grid_, trial ? trial_position_.data() : grid_.position.data(), force_.data());
+  conditions_.surface_loads().add(load_time, grid_, trial ? trial_position_.data() : grid_.position.data(),
+                                  force_.data());
   if (imposes_) {
     const int nodes = grid_.node_count();
     std::copy_n(force_.begin(), nodes, imposed_.begin());
@@ -110,7 +112,8 @@ PetscErrorCode SoilMotion<dim, Phases>::acceleration(double t, const double *u, 
     unbalanced = scratch_.data();
   }
   if constexpr (Phases::liquid)
-    PetscCall(fluid_.drive(pore_frame(u != nullptr), pore_conditions_, force_.data(), reinterpret_cast<Vec<dim> *>(a) + grid_.node_count(),
+    PetscCall(fluid_.drive(pore_frame(u != nullptr), pore_conditions_, force_.data(),
+                           reinterpret_cast<Vec<dim> *>(a) + grid_.node_count(),
                            reinterpret_cast<const Vec<dim> *>(v)));
   for (int i = 0; i < grid_.node_count(); ++i) {
     const double inverse = grid_.mass[i] > smallest_mass_ ? 1 / grid_.mass[i] : 0;  // a lighter node is carried along

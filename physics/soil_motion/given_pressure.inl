@@ -7,9 +7,7 @@
 namespace talus {
 
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::gather_pore_water()
-  requires Phases::given
-{
+PetscErrorCode SoilMotion<dim, Phases>::gather_pore_water() requires Phases::given {
   PetscFunctionBeginUser;
   water_moved_ = false;
   std::fill_n(extra_mass_.begin(), grid_.node_count(), 0.);
@@ -30,8 +28,8 @@ PetscErrorCode SoilMotion<dim, Phases>::gather_pore_water()
   PetscFunctionReturn(0);
 }
 
-/// Suction at the stress points of a body, or null where its law reads none. It is what the given pressure falls below zero; a scene
-/// without it takes the pressure as it is, theory (2.10).
+/// Suction at the stress points of a body, or null where its law reads none. It is what the given pressure falls below
+/// zero; a scene without it takes the pressure as it is, theory (2.10).
 template <int dim, class Phases>
 const double *SoilMotion<dim, Phases>::find_suction(size_t b) {
   if (!reads_suction(bodies_[b]->law())) return nullptr;
@@ -40,7 +38,8 @@ const double *SoilMotion<dim, Phases>::find_suction(size_t b) {
     const auto [early, late] = sample_shares(loading.time, loading.ramp);
     const PointSet &p = points_[b];
     suction_.resize(std::max<size_t>(suction_.size(), p.count));
-    for (int q = 0; q < p.count; ++q) suction_[q] = early * sample_[0].suction[p.cell[q]] + late * sample_[1].suction[p.cell[q]];
+    for (int q = 0; q < p.count; ++q)
+      suction_[q] = early * sample_[0].suction[p.cell[q]] + late * sample_[1].suction[p.cell[q]];
     return suction_.data();
   }
   if constexpr (Phases::suction) return fluid_.suction(static_cast<int>(b));
@@ -49,9 +48,7 @@ const double *SoilMotion<dim, Phases>::find_suction(size_t b) {
 
 /// Samples the given pressure at the nodes now and a few steps ahead; in between it is linear in time.
 template <int dim, class Phases>
-void SoilMotion<dim, Phases>::sample_pressure(double t)
-  requires Phases::given
-{
+void SoilMotion<dim, Phases>::sample_pressure(double t) requires Phases::given {
   constexpr double steps_ahead = 16;
   if (t >= sample_time_[0] && t <= sample_time_[1]) return;
   const double step = last_pressure_time_ < t ? t - last_pressure_time_ : 1e-6 * (1 + std::abs(t));
@@ -59,8 +56,10 @@ void SoilMotion<dim, Phases>::sample_pressure(double t)
   water_moved_ = pressure_.moves();
   for (int k = 0; k < 2; ++k) {
     auto &sample = sample_[k];
-    sample.gradient.resize(mesh_.cell_count()), sample.value.resize(mesh_.cell_count()), sample.nodal.resize(mesh_.node_count());
-    for (int i = 0; i < grid_.node_count(); ++i) sample.nodal[i] = pressure_(mesh_.position[grid_.mesh_node[i]], sample_time_[k]);
+    sample.gradient.resize(mesh_.cell_count()), sample.value.resize(mesh_.cell_count()),
+        sample.nodal.resize(mesh_.node_count());
+    for (int i = 0; i < grid_.node_count(); ++i)
+      sample.nodal[i] = pressure_(mesh_.position[grid_.mesh_node[i]], sample_time_[k]);
     if (suction_matters_) {
       sample.suction.resize(mesh_.cell_count());
       for (int c = 0; c < grid_.cell_count(); ++c) {
@@ -75,7 +74,8 @@ void SoilMotion<dim, Phases>::sample_pressure(double t)
       Vec<dim> gradient{};
       double value = 0;
       for (int a = 0; a < dim; ++a)
-        for (int d = 0; d < dim; ++d) gradient[d] += (sample.nodal[node[a + 1]] - sample.nodal[node[0]]) * cell.gradient[a][d];
+        for (int d = 0; d < dim; ++d)
+          gradient[d] += (sample.nodal[node[a + 1]] - sample.nodal[node[0]]) * cell.gradient[a][d];
       double volume = 0;
       for (int a = 0; a <= dim; ++a) volume += grid_.nodal_share[c][a];
       for (int a = 0; a <= dim; ++a)
@@ -92,12 +92,11 @@ std::array<double, 2> SoilMotion<dim, Phases>::sample_shares(double t, double ra
   return {ramp - late, late};
 }
 
-/// With open water on submerged faces the pore pressure acts as the body force -grad p, which includes the water's weight on the
-/// face without knowing where the face is; without it, as a part of the stress, theory (2.8), (2.9).
+/// With open water on submerged faces the pore pressure acts as the body force -grad p, which includes the water's
+/// weight on the face without knowing where the face is; without it, as a part of the stress, theory (2.8), (2.9).
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::add_pore_pressure(double load_time, double ramp, bool trial)
-  requires Phases::given
-{
+PetscErrorCode SoilMotion<dim, Phases>::add_pore_pressure(double load_time, double ramp,
+                                                          bool trial) requires Phases::given {
   PetscFunctionBeginUser;
   if (!trial) {  // a step that looks ahead sees the line go on
     sample_pressure(load_time), last_pressure_time_ = load_time;
@@ -111,7 +110,8 @@ PetscErrorCode SoilMotion<dim, Phases>::add_pore_pressure(double load_time, doub
     if (pressure_.open_water_load()) {
       for (int k = 0; k <= dim; ++k)
         for (int d = 0; d < dim; ++d)
-          force_[node[k]][d] -= grid_.nodal_share[c][k] * (early * sample_[0].gradient[c][d] + late * sample_[1].gradient[c][d]);
+          force_[node[k]][d] -=
+              grid_.nodal_share[c][k] * (early * sample_[0].gradient[c][d] + late * sample_[1].gradient[c][d]);
     } else {
       const double push = weight[c] * (early * sample_[0].value[c] + late * sample_[1].value[c]);
       for (int k = 0; k < dim; ++k)

@@ -1,10 +1,11 @@
-// Largest frequency of elastic motion of the filled mesh, docs/theory (5.7); included only where SoilMotion is instantiated.
+// Largest frequency of elastic motion of the filled mesh, docs/theory (5.7); included only where SoilMotion is
+// instantiated.
 #include "physics/soil_motion.h"
 
 namespace talus {
 
-/// Adds the forces of the elastic stress that displacements `x` cause, and returns x^T K x of this rank [J]; cells without patches, which are
-/// stiffer than with them.
+/// Adds the forces of the elastic stress that displacements `x` cause, and returns x^T K x of this rank [J]; cells
+/// without patches, which are stiffer than with them.
 template <int dim, class Phases>
 double SoilMotion<dim, Phases>::elastic_force(const Vec<dim> *x, Vec<dim> *force) const {
   double energy = 0;
@@ -47,7 +48,8 @@ PetscErrorCode SoilMotion<dim, Phases>::largest_frequency(int iterations, double
   for (int i = 0; i < nodes; ++i)
     for (double x : mode_[grid_.mesh_node[i]]) peak = std::max(peak, std::abs(x));
   MPI_Allreduce(MPI_IN_PLACE, &peak, 1, MPI_DOUBLE, MPI_MAX, comm());
-  const double scale = peak > 0 ? 1 / peak : 0, noise = 0.1;  // the same at a node on all ranks: from it a mode of new cells grows
+  const double scale = peak > 0 ? 1 / peak : 0,
+               noise = 0.1;  // the same at a node on all ranks: from it a mode of new cells grows
   for (int i = 0; i < nodes; ++i)
     for (int d = 0; d < dim; ++d) {
       const Vec<dim> &X = mesh_.position[grid_.mesh_node[i]];

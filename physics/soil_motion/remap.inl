@@ -26,7 +26,8 @@ void SoilMotion<dim, Phases>::gather() {
     if (!averaged) points.own_cell.resize(std::max<size_t>(points.own_cell.size(), p.count));
     Pores<dim> pores;
     if constexpr (Phases::liquid) pores = fluid_.pores(b);
-    to_nodes<dim, averaged, apic, fluids>(*bodies_[b], grid_, start_velocity_.data(), points, pores, movers_ ? &(*movers_)[b] : nullptr);
+    to_nodes<dim, averaged, apic, fluids>(*bodies_[b], grid_, start_velocity_.data(), points, pores,
+                                          movers_ ? &(*movers_)[b] : nullptr);
     if (!averaged) points.count = p.count;
     attach(b);
   }
@@ -40,8 +41,10 @@ void SoilMotion<dim, Phases>::attach(size_t b) {
   const ParticleArrays<dim> &p = bodies_[b]->particles();
   const bool own = transfer_.average_stress;
   points.cell = points.own_cell.data();
-  points.stress = own ? points.own_stress.data() : p.stress, points.history = own ? points.own_history.data() : p.history;
-  points.volume = own ? points.own_volume.data() : p.volume, points.limit = own ? points.own_limit.data() : p.initial_volume;
+  points.stress = own ? points.own_stress.data() : p.stress,
+  points.history = own ? points.own_history.data() : p.history;
+  points.volume = own ? points.own_volume.data() : p.volume,
+  points.limit = own ? points.own_limit.data() : p.initial_volume;
 }
 
 template <int dim, class Phases>
@@ -75,7 +78,8 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double) {
     const auto &node = grid_.shape[c].node;
     for (int k = 0, pair = dim + 1; k <= dim; ++k) {
       nodal_[node[k] * width] += matrix[k];
-      for (int l = k + 1; l <= dim; ++l, ++pair) nodal_[node[k] * width] += matrix[pair], nodal_[node[l] * width] += matrix[pair];
+      for (int l = k + 1; l <= dim; ++l, ++pair)
+        nodal_[node[k] * width] += matrix[pair], nodal_[node[l] * width] += matrix[pair];
       nodal_[node[k] * width + dim + 1] += grid_.nodal_share[c][k];
     }
   }
@@ -95,7 +99,8 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double) {
   conditions_.constrain(loading.time, grid_, start_velocity_.data(), false);
   std::copy_n(start_velocity_.begin(), nodes, velocity_.begin());
   if constexpr (Phases::liquid) {
-    PetscCall(fluid_.gather(pore_frame(false), pore_conditions_, filling_, start_velocity_.data(), velocity_.data() + nodes));
+    PetscCall(
+        fluid_.gather(pore_frame(false), pore_conditions_, filling_, start_velocity_.data(), velocity_.data() + nodes));
     std::copy_n(velocity_.begin() + nodes, nodes * (velocity_fields<Phases> - 1), start_velocity_.begin() + nodes);
     std::copy_n(velocity_.begin(), nodes * velocity_fields<Phases>, before_.begin());
   }
@@ -112,9 +117,11 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double) {
     if (nonlocal_[b]) PetscCall(nonlocal_[b]->begin(grid_, points_[b]));
   if (transfer_.average_stress)
     for (size_t b = 0; b < bodies_.size(); ++b) {
-      if (!strength_varies(bodies_[b]->law())) continue;  // the mean of admissible stresses is admissible where strength is uniform
+      if (!strength_varies(bodies_[b]->law()))
+        continue;  // the mean of admissible stresses is admissible where strength is uniform
       const PointSet &p = points_[b];
-      admit_stress<dim>(bodies_[b]->law(), {p.count, p.stress, seen_history(b), p.stress, p.history, p.cell, increment_.data(), softening_size(b), find_suction(b)});
+      admit_stress<dim>(bodies_[b]->law(), {p.count, p.stress, seen_history(b), p.stress, p.history, p.cell,
+                                            increment_.data(), softening_size(b), find_suction(b)});
       if (nonlocal_[b]) nonlocal_[b]->restore(p, p.history);
     }
   PetscFunctionReturn(0);
@@ -136,7 +143,8 @@ void SoilMotion<dim, Phases>::measure_impedance() {
   }
 }
 
-/// Integration volume: the cell's own where its nodes are well filled, that of its particles at the surface, theory (4.5).
+/// Integration volume: the cell's own where its nodes are well filled, that of its particles at the surface, theory
+/// (4.5).
 template <int dim, class Phases>
 void SoilMotion<dim, Phases>::set_weights(const std::vector<double> &nodal) {
   constexpr int width = dim + 2;
@@ -148,10 +156,18 @@ void SoilMotion<dim, Phases>::set_weights(const std::vector<double> &nodal) {
     for (int i : node) filling = std::min(filling, nodal[i * width + dim + 1] / mesh_.nodal_volume[grid_.mesh_node[i]]);
     double &blend = blend_[c];
     switch (transfer_.integration) {
-      case Integration::blended: blend = std::clamp((filling - ramp_start) / ramp_length, 0., 1.); break;
-      case Integration::mixed: blend = filling > 0.5 && volume > transfer_.filling * grid_.shape[c].volume; break;
-      case Integration::cell: blend = filling > 0.5; break;
-      case Integration::particle: blend = 0; break;
+      case Integration::blended:
+        blend = std::clamp((filling - ramp_start) / ramp_length, 0., 1.);
+        break;
+      case Integration::mixed:
+        blend = filling > 0.5 && volume > transfer_.filling * grid_.shape[c].volume;
+        break;
+      case Integration::cell:
+        blend = filling > 0.5;
+        break;
+      case Integration::particle:
+        blend = 0;
+        break;
     }
     particle_volume_[c] = volume;
     weight_[c] = volume + blend * (grid_.shape[c].volume - volume);
@@ -174,7 +190,8 @@ PetscErrorCode SoilMotion<dim, Phases>::end(double t, double *share) {
   PetscCall(conditions_.surface_loads().end(grid_, weight_));
   const double flip = *share = transfer_.velocity == Velocity::flip ? relaxed(t) * (1 - transfer_.pic_fraction) : 0;
   for (int i = 0; i < grid_.node_count(); ++i) {
-    const Vec<dim> &v = velocity_[i], &v0 = start_velocity_[i], &x = grid_.position[i], &X = mesh_.position[grid_.mesh_node[i]];
+    const Vec<dim> &v = velocity_[i], &v0 = start_velocity_[i], &x = grid_.position[i],
+                   &X = mesh_.position[grid_.mesh_node[i]];
     for (int d = 0; d < dim; ++d) {
       update_.velocity[i][d] = v[d] - flip * v0[d];
       update_.displacement[i][d] = x[d] - X[d];
@@ -187,11 +204,14 @@ PetscErrorCode SoilMotion<dim, Phases>::end(double t, double *share) {
         for (int j = 0; j < dim; ++j) {
           double g = 0;
           for (int k = 0; k < dim; ++k)
-            g += (velocity_[grid_.shape[c].node[k + 1]][i] - velocity_[grid_.shape[c].node[0]][i]) * mesh_.cells[grid_.mesh_cell[c]].gradient[k][j];
+            g += (velocity_[grid_.shape[c].node[k + 1]][i] - velocity_[grid_.shape[c].node[0]][i]) *
+                 mesh_.cells[grid_.mesh_cell[c]].gradient[k][j];
           affine_[(c * dim + i) * dim + j] = g;
         }
   }
-  if constexpr (Phases::liquid) fluid_.hand_over(grid_.node_count(), velocity_.data() + grid_.node_count(), start_velocity_.data() + grid_.node_count(), flip, update_);
+  if constexpr (Phases::liquid)
+    fluid_.hand_over(grid_.node_count(), velocity_.data() + grid_.node_count(),
+                     start_velocity_.data() + grid_.node_count(), flip, update_);
   PetscFunctionReturn(0);
 }
 
@@ -214,7 +234,8 @@ PetscErrorCode SoilMotion<dim, Phases>::release(double t, std::vector<std::vecto
     for (size_t b = 0; b < bodies_.size(); ++b) {
       Pores<dim> pores;
       if constexpr (Phases::liquid) pores = fluid_.pores(b);
-      to_particles<dim, averaged, apic, fluids>(*bodies_[b], {grid_, update_, flip, affine_.data(), points_[b], pores, change_.data()}, movers[b]);
+      to_particles<dim, averaged, apic, fluids>(
+          *bodies_[b], {grid_, update_, flip, affine_.data(), points_[b], pores, change_.data()}, movers[b]);
     }
   });
   forget();
@@ -231,8 +252,9 @@ PetscErrorCode SoilMotion<dim, Phases>::release_to_next(double t, std::vector<st
     for (size_t b = 0; b < bodies_.size(); ++b) {
       Pores<dim> pores, next;
       if constexpr (Phases::liquid) pores = fluid_.pores(b), next = fluid_.next_pores(b);
-      to_next_nodes<dim, averaged, apic, fluids>(*bodies_[b], {grid_, update_, flip, affine_.data(), points_[b], pores, change_.data()}, next_grid_, start_velocity_.data(),
-                                                 next_points_[b], next, movers[b]);
+      to_next_nodes<dim, averaged, apic, fluids>(
+          *bodies_[b], {grid_, update_, flip, affine_.data(), points_[b], pores, change_.data()}, next_grid_,
+          start_velocity_.data(), next_points_[b], next, movers[b]);
     }
   });
   forget();
@@ -242,7 +264,8 @@ PetscErrorCode SoilMotion<dim, Phases>::release_to_next(double t, std::vector<st
   PetscFunctionReturn(0);
 }
 
-/// Nodes to particles and back at frozen positions, out = M^-1 M^c in, of the velocities of all phases: the operator form of MUSL, theory (4.9).
+/// Nodes to particles and back at frozen positions, out = M^-1 M^c in, of the velocities of all phases: the operator
+/// form of MUSL, theory (4.9).
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::back_and_forth(const Vec<dim> *in, Vec<dim> *out) {
   PetscFunctionBeginUser;
@@ -258,7 +281,8 @@ PetscErrorCode SoilMotion<dim, Phases>::back_and_forth(const Vec<dim> *in, Vec<d
 #pragma GCC unroll 8
       for (int k = 0, pair = dim + 1; k <= dim; ++k)
 #pragma GCC unroll 8
-        for (int l = k + 1; l <= dim; ++l, ++pair) sum[k] += quad(matrix[pair]) * v[l], sum[l] += quad(matrix[pair]) * v[k];
+        for (int l = k + 1; l <= dim; ++l, ++pair)
+          sum[k] += quad(matrix[pair]) * v[l], sum[l] += quad(matrix[pair]) * v[k];
 #pragma GCC unroll 8
       for (int k = 0; k <= dim; ++k) {
         double *x = out[first + node[k]].data();

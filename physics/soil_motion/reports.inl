@@ -1,4 +1,5 @@
-// What others read: particles within the Lagrangian part, checkpoints, balances, trouble; included only where SoilMotion is instantiated.
+// What others read: particles within the Lagrangian part, checkpoints, balances, trouble; included only where
+// SoilMotion is instantiated.
 #include <algorithm>
 #include <cmath>
 
@@ -31,21 +32,26 @@ bool SoilMotion<dim, Phases>::find_trouble(Vec<dim> *where, std::string *cause) 
 }
 
 template <int dim, class Phases>
-typename PoreFluid<dim, Phases>::Frame SoilMotion<dim, Phases>::pore_frame(bool trial)
-  requires Phases::liquid
-{
+typename PoreFluid<dim, Phases>::Frame SoilMotion<dim, Phases>::pore_frame(bool trial) requires Phases::liquid {
   for (size_t b = 0; b < bodies_.size(); ++b) point_volume_[b] = trial ? trial_volume_[b].data() : points_[b].volume;
   Vec<dim> gravity = loading.gravity;
   for (double &g : gravity) g *= loading.ramp;
-  return {grid_,  trial ? trial_shape_.data() : grid_.shape.data(), trial ? trial_position_.data() : grid_.position.data(), trial ? trial_weight_.data() : weight_.data(),
-          points_, point_volume_.data(), trial ? trial_particle_volume_.data() : particle_volume_.data(), blend_.data(), gravity, loading.time,
-          transfer_.average_stress, trial};
+  return {grid_,
+          trial ? trial_shape_.data() : grid_.shape.data(),
+          trial ? trial_position_.data() : grid_.position.data(),
+          trial ? trial_weight_.data() : weight_.data(),
+          points_,
+          point_volume_.data(),
+          trial ? trial_particle_volume_.data() : particle_volume_.data(),
+          blend_.data(),
+          gravity,
+          loading.time,
+          transfer_.average_stress,
+          trial};
 }
 
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::setup_pores(bool fill)
-  requires Phases::liquid
-{
+PetscErrorCode SoilMotion<dim, Phases>::setup_pores(bool fill) requires Phases::liquid {
   PetscFunctionBeginUser;
   PetscCall(pore_conditions_.setup(mesh_, conditions_.sources(), Phases::suction));
   if (fill) fluid_.fill(0);
@@ -53,14 +59,13 @@ PetscErrorCode SoilMotion<dim, Phases>::setup_pores(bool fill)
 }
 
 template <int dim, class Phases>
-PoreReport SoilMotion<dim, Phases>::pores(const Body<dim> &body, int i) const
-  requires Phases::liquid
-{
+PoreReport SoilMotion<dim, Phases>::pores(const Body<dim> &body, int i) const requires Phases::liquid {
   int b = 0;
   while (bodies_[b].get() != &body) ++b;
   const int mesh_cell = body.particles().cell[i], cell = grid_.find_cell(mesh_cell);
   const auto &node = grid_.shape[cell].node;
-  const bool surface = std::count_if(node.begin(), node.end(), [&](int n) { return pore_conditions_.at_surface(n); }) >= dim;
+  const bool surface =
+      std::count_if(node.begin(), node.end(), [&](int n) { return pore_conditions_.at_surface(n); }) >= dim;
   return fluid_.report(b, transfer_.average_stress ? points_[b].of_cell[mesh_cell] : i, cell, surface);
 }
 
@@ -92,7 +97,8 @@ void SoilMotion<dim, Phases>::state(int b, int i, double *stress, double *histor
   const int q = points.of_cell[p.cell[i]];
   std::copy_n(&points.stress[q * components], components, stress);
   for (int h = 0; h < count; ++h) history[h] += points.history[q * count + h] - points.start_history[q * count + h];
-  *volume = std::min(p.volume[i] * points.volume[q] / points.start_volume[q], body.volume_limit(p.initial_volume[i], history));
+  *volume = std::min(p.volume[i] * points.volume[q] / points.start_volume[q],
+                     body.volume_limit(p.initial_volume[i], history));
 }
 
 template <int dim, class Phases>
@@ -103,11 +109,14 @@ PetscErrorCode SoilMotion<dim, Phases>::keep(Archive &archive) {
   archive.keep("cells", particle_volume_, weight_, blend_, filling_, slenderness_, impedance_);
   for (size_t b = 0; b < bodies_.size(); ++b) {
     PointSet &p = points_[b];
-    archive.keep("points", p.count, p.own_cell, p.own_stress, p.own_history, p.own_volume, p.own_limit, p.start_history, p.start_volume, p.of_cell);
+    archive.keep("points", p.count, p.own_cell, p.own_stress, p.own_history, p.own_volume, p.own_limit, p.start_history,
+                 p.start_volume, p.of_cell);
     attach(b);
     if (nonlocal_[b]) nonlocal_[b]->keep(archive);
   }
-  archive.keep("motion", work_.gravity, work_.imposed, work_.damping, gathered_, remap_time_, accepted_time_, own_share_, moved_, smallest_ratio_, step_ratio_, speed_squared_, sample_time_, last_pressure_time_, water_moved_);
+  archive.keep("motion", work_.gravity, work_.imposed, work_.damping, gathered_, remap_time_, accepted_time_,
+               own_share_, moved_, smallest_ratio_, step_ratio_, speed_squared_, sample_time_, last_pressure_time_,
+               water_moved_);
   if constexpr (Phases::given)
     for (Sample &sample : sample_) archive.keep("pressure", sample.gradient, sample.value, sample.nodal);
   archive.keep("fastest mode", mode_);
@@ -116,7 +125,8 @@ PetscErrorCode SoilMotion<dim, Phases>::keep(Archive &archive) {
   if constexpr (Phases::liquid) {
     fluid_.keep(archive);
     before_ = velocity_;
-    if (archive.reading()) PetscCall(pore_conditions_.begin(grid_, filling_, fluid_.surface(), fluid_.surface_moment()));
+    if (archive.reading())
+      PetscCall(pore_conditions_.begin(grid_, filling_, fluid_.surface(), fluid_.surface_moment()));
   }
   PetscFunctionReturn(0);
 }

@@ -1,4 +1,5 @@
-// Velocities between acceleration and motion: supports, drag, what particles map back; theory (4.9) and section 6; included only where SoilMotion is instantiated.
+// Velocities between acceleration and motion: supports, drag, what particles map back; theory (4.9) and section 6;
+// included only where SoilMotion is instantiated.
 #include <algorithm>
 #include <cmath>
 
@@ -6,7 +7,8 @@
 
 namespace talus {
 
-/// What supports feel in a step gamma of fluids, where there are any; what is captured fits into a std::function without memory of its own.
+/// What supports feel in a step gamma of fluids, where there are any; what is captured fits into a std::function
+/// without memory of its own.
 template <int dim, class Phases>
 typename Conditions<dim>::Pores SoilMotion<dim, Phases>::contact(double gamma) {
   if constexpr (Phases::liquid)
@@ -19,9 +21,11 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::drag(double t, double gamma, double *v) {
   PetscFunctionBeginUser;
   Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v);
-  if constexpr (Phases::liquid) fluid_.resist(gamma, pore_frame(false), pore_conditions_, velocity, velocity + grid_.node_count());
+  if constexpr (Phases::liquid)
+    fluid_.resist(gamma, pore_frame(false), pore_conditions_, velocity, velocity + grid_.node_count());
   conditions_.resolve(loading.time_at(t), gamma, grid_, velocity, contact(gamma));
-  if constexpr (Phases::liquid) fluid_.follow(gamma, pore_frame(false), pore_conditions_, velocity, velocity + grid_.node_count());
+  if constexpr (Phases::liquid)
+    fluid_.follow(gamma, pore_frame(false), pore_conditions_, velocity, velocity + grid_.node_count());
   PetscFunctionReturn(0);
 }
 
@@ -45,7 +49,8 @@ PetscErrorCode SoilMotion<dim, Phases>::hold(double t, double gamma, double *v) 
   PetscFunctionBeginUser;
   Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v);
   conditions_.resolve(loading.time_at(t), gamma, grid_, velocity, contact(gamma));
-  if constexpr (Phases::liquid) fluid_.constrain(pore_frame(false), pore_conditions_, velocity, velocity + grid_.node_count());
+  if constexpr (Phases::liquid)
+    fluid_.constrain(pore_frame(false), pore_conditions_, velocity, velocity + grid_.node_count());
   PetscFunctionReturn(0);
 }
 
@@ -61,7 +66,8 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
   PetscFunctionBeginUser;
   Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v), *mapped = reinterpret_cast<Vec<dim> *>(w);
   const int nodes = grid_.node_count();
-  if constexpr (Phases::liquid) {  // drag and walls act on what particles would map back, as after a remap: that becomes the state
+  if constexpr (Phases::liquid) {  // drag and walls act on what particles would map back, as after a remap: that
+                                   // becomes the state
     const int all = nodes * velocity_fields<Phases>;
     const double share = relaxes() ? 1 - std::exp(-gamma / relaxation_time_) : 0;
     for (int i = 0; i < all; ++i)
@@ -97,13 +103,15 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
   PetscFunctionReturn(0);
 }
 
-/// Supports and bases hold the places in every stage; what they take from the velocity is taken once, by `drag` after the step.
+/// Supports and bases hold the places in every stage; what they take from the velocity is taken once, by `drag` after
+/// the step.
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::rates(double t, const double *u, const double *v, double *du, double *dv) {
   PetscFunctionBeginUser;
   PetscCall(acceleration(t, u, v, dv));
   const int nodes = grid_.node_count(), all = nodes * velocity_fields<Phases>;
-  Vec<dim> *held = scratch_.data(), *mapped = reinterpret_cast<Vec<dim> *>(du), *change = reinterpret_cast<Vec<dim> *>(dv);
+  Vec<dim> *held = scratch_.data(), *mapped = reinterpret_cast<Vec<dim> *>(du),
+           *change = reinterpret_cast<Vec<dim> *>(dv);
   std::copy_n(reinterpret_cast<const Vec<dim> *>(v), all, held);
   constrain(t, held);
   if (relaxes()) {

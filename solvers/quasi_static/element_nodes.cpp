@@ -30,7 +30,8 @@ PetscErrorCode share_maximum(DM plex, std::vector<PetscInt> &value) {
 }  // namespace
 
 template <int dim>
-PetscErrorCode ElementNodes<dim>::setup(const BackgroundMesh<dim> &mesh, int order, const std::vector<char> &active, int components) {
+PetscErrorCode ElementNodes<dim>::setup(const BackgroundMesh<dim> &mesh, int order, const std::vector<char> &active,
+                                        int components) {
   PetscInt begin, end, first_edge, end_edge;
   const PetscInt *ends;
   PetscFunctionBeginUser;
@@ -99,7 +100,8 @@ PetscErrorCode ElementNodes<dim>::setup(const BackgroundMesh<dim> &mesh, int ord
     for (int a = 0; a <= dim; ++a) mine[a] = vertex_node_[node[a]];
     if (order == 2)
       for (size_t e = 0; e < simplex_edges<dim>.size(); ++e)
-        mine[dim + 1 + e] = node_of[edge_between(node[simplex_edges<dim>[e].first], node[simplex_edges<dim>[e].second])];
+        mine[dim + 1 + e] =
+            node_of[edge_between(node[simplex_edges<dim>[e].first], node[simplex_edges<dim>[e].second])];
   }
   PetscCall(DMCreateLocalVector(dm_, local_.create()));
   PetscCall(DMCreateGlobalVector(dm_, scratch_.create()));
@@ -114,7 +116,8 @@ std::vector<int> ElementNodes<dim>::of_facet(int cell, int face) const {
     if (a != face) facet.push_back(node[a]);
   if (order_ == 2)
     for (size_t e = 0; e < simplex_edges<dim>.size(); ++e)
-      if (simplex_edges<dim>[e].first != face && simplex_edges<dim>[e].second != face) facet.push_back(node[dim + 1 + e]);
+      if (simplex_edges<dim>[e].first != face && simplex_edges<dim>[e].second != face)
+        facet.push_back(node[dim + 1 + e]);
   return facet;
 }
 

@@ -34,7 +34,8 @@ template <int dim>
 class ElementNodes {
  public:
   /// `active` [cells] says which cells have elements, `components` how many unknowns a node has. Collective.
-  PetscErrorCode setup(const BackgroundMesh<dim> &mesh, int order, const std::vector<char> &active, int components = dim);
+  PetscErrorCode setup(const BackgroundMesh<dim> &mesh, int order, const std::vector<char> &active,
+                       int components = dim);
 
   int order() const { return order_; }
   int count() const { return static_cast<int>(position.size()); }

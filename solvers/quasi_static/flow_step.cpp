@@ -44,7 +44,8 @@ void FlowStep<dim>::each_coupling(Put &&put) const {
     const auto of_l = barycentric_gradients<dim>(soil_->soil().mesh().cells[c]);
     for (size_t q = 0; q < soil_->soil().rule().point.size(); ++q) {
       shape_gradients<dim>(soil_->soil().nodes().order(), soil_->soil().rule().point[q], of_l, gradient.data());
-      put(c, static_cast<int>(q), soil_->soil().rule().point[q], soil_->soil().mesh().volume[c] * soil_->soil().rule().weight[q], gradient.data());
+      put(c, static_cast<int>(q), soil_->soil().rule().point[q],
+          soil_->soil().mesh().volume[c] * soil_->soil().rule().weight[q], gradient.data());
     }
   }
 }
@@ -78,17 +79,21 @@ PetscErrorCode FlowStep<dim>::setup() {
         const int count = element_nodes<dim>(soil_->soil().nodes().order());
         for (int c = 0; c < soil_->soil().mesh().cell_count(); ++c) {
           if (!flow_.active(c)) continue;
-          for (int a = 0; a < count * dim; ++a) u[a] = soil_->soil().nodes().global()[soil_->soil().nodes().of_cell(c)[a / dim]] * dim + a % dim;
+          for (int a = 0; a < count * dim; ++a)
+            u[a] = soil_->soil().nodes().global()[soil_->soil().nodes().of_cell(c)[a / dim]] * dim + a % dim;
           for (int b = 0; b <= dim; ++b) p[b] = nodes.global()[nodes.of_cell(c)[b]];
-          if (by_water) PetscCall(MatSetValues(pattern, dim + 1, p, count * dim, u, zeros, ADD_VALUES));
-          else PetscCall(MatSetValues(pattern, count * dim, u, dim + 1, p, zeros, ADD_VALUES));
+          if (by_water)
+            PetscCall(MatSetValues(pattern, dim + 1, p, count * dim, u, zeros, ADD_VALUES));
+          else
+            PetscCall(MatSetValues(pattern, count * dim, u, dim + 1, p, zeros, ADD_VALUES));
         }
         PetscFunctionReturn(0);
       });
     };
     PetscCall(rectangle(rows_u_, rows_p_, press_, false));
     PetscCall(rectangle(rows_p_, rows_u_, squeeze_, true));
-    for (Mat m : {static_cast<Mat>(press_), static_cast<Mat>(squeeze_), static_cast<Mat>(flow_matrix_)}) PetscCall(assemble(m));
+    for (Mat m : {static_cast<Mat>(press_), static_cast<Mat>(squeeze_), static_cast<Mat>(flow_matrix_)})
+      PetscCall(assemble(m));
     Mat blocks[4] = {soil_->matrix(), press_, squeeze_, flow_matrix_};
     PetscCall(assemble(blocks[0]));
     PetscCall(MatCreateNest(comm, 2, nullptr, 2, nullptr, blocks, blocks_.create()));
@@ -98,8 +103,8 @@ PetscErrorCode FlowStep<dim>::setup() {
   PetscFunctionReturn(0);
 }
 
-/// Direct, but for seepage beyond a size or on request: GMRES with algebraic multigrid. The matrix of a consolidation is indefinite, and no
-/// multigrid of its own is at hand.
+/// Direct, but for seepage beyond a size or on request: GMRES with algebraic multigrid. The matrix of a consolidation
+/// is indefinite, and no multigrid of its own is at hand.
 template <int dim>
 PetscErrorCode FlowStep<dim>::make_solver() {
   constexpr PetscInt largest_direct = dim == 2 ? 400000 : 40000;  // unknowns, as for equilibrium
@@ -122,7 +127,8 @@ PetscErrorCode FlowStep<dim>::make_solver() {
   PetscCall(SNESGetKSP(solver_, &ksp));
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(VecGetSize(x_, &unknowns));
-  if (soil_ || settings_.linear_solver == LinearSolver::direct || (settings_.linear_solver == LinearSolver::automatic && unknowns <= largest_direct)) {
+  if (soil_ || settings_.linear_solver == LinearSolver::direct ||
+      (settings_.linear_solver == LinearSolver::automatic && unknowns <= largest_direct)) {
     PetscCall(KSPSetType(ksp, KSPPREONLY));
     PetscCall(PCSetType(pc, PCLU));
     PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
@@ -146,7 +152,8 @@ PetscErrorCode FlowStep<dim>::volume_strain(std::vector<double> &taken, std::vec
   each_coupling([&](int c, int q, const Barycentric<dim> &l, double volume, const Vec<dim> *) {
     const auto &strain = soil_->soil().points()[flow_.body_of(c)].increment[soil_->soil().first_point(c) + q].strain;
     const double room = volume * flow_.saturation(c, l) * (strain[0] + strain[1] + strain[2]);
-    for (int a = 0; a <= dim; ++a) taken[flow_.nodes().of_cell(c)[a]] += l[a] * room, size[flow_.nodes().of_cell(c)[a]] += l[a] * std::abs(room);
+    for (int a = 0; a <= dim; ++a)
+      taken[flow_.nodes().of_cell(c)[a]] += l[a] * room, size[flow_.nodes().of_cell(c)[a]] += l[a] * std::abs(room);
   });
   PetscFunctionReturn(0);
 }
@@ -181,7 +188,8 @@ PetscErrorCode FlowStep<dim>::residual(::Vec x, ::Vec f) {
   PetscCall(flow_.nodes().add_to_global(balance.rest, water_));
   PetscCall(flow_.nodes().to_local(water_, rest_));
   PetscCall(VecGetArray(water_, &rest));
-  for (PetscInt row = 0; row < rows_p_; ++row) value[rows_u_ + row] = flow_.fixed(owned_[row]) ? 0 : rest[row];  // a fixed node starts where it belongs
+  for (PetscInt row = 0; row < rows_p_; ++row)
+    value[rows_u_ + row] = flow_.fixed(owned_[row]) ? 0 : rest[row];  // a fixed node starts where it belongs
   PetscCall(VecRestoreArray(water_, &rest));
   PetscCall(VecRestoreArray(f, &value));
   PetscFunctionReturn(0);
@@ -208,7 +216,9 @@ PetscErrorCode FlowStep<dim>::couple() {
       if (s && s->turned) g = (s->frame * g).eval();
       for (int d = 0; d < dim; ++d) {
         u[a * dim + d] = s && s->held[d] ? -1 : soil.global()[node] * dim + d;
-        for (int b = 0; b <= dim; ++b) push[(a * dim + d) * (dim + 1) + b] = pressed * l[b] * g[d], room[(b * count + a) * dim + d] = filled * l[b] * g[d];
+        for (int b = 0; b <= dim; ++b)
+          push[(a * dim + d) * (dim + 1) + b] = pressed * l[b] * g[d],
+                                           room[(b * count + a) * dim + d] = filled * l[b] * g[d];
       }
     }
     if (!error) error = MatSetValues(press_, count * dim, u, dim + 1, p, push, ADD_VALUES);
@@ -245,8 +255,8 @@ PetscErrorCode FlowStep<dim>::snes_jacobian(SNES, ::Vec, Mat, Mat matrix, void *
 
 /// Forces and water must each be balanced to the tolerance.
 template <int dim>
-PetscErrorCode FlowStep<dim>::snes_converged(SNES solver, PetscInt iteration, PetscReal, PetscReal, PetscReal norm, SNESConvergedReason *reason,
-                                             void *context) {
+PetscErrorCode FlowStep<dim>::snes_converged(SNES solver, PetscInt iteration, PetscReal, PetscReal, PetscReal norm,
+                                             SNESConvergedReason *reason, void *context) {
   PetscFunctionBeginUser;
   FlowStep &step = *static_cast<FlowStep *>(context);
   ::Vec f;
@@ -263,8 +273,10 @@ PetscErrorCode FlowStep<dim>::snes_converged(SNES solver, PetscInt iteration, Pe
   PetscCall(VecRestoreArrayRead(f, &value));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, step.flow_.nodes().comm()));
   const double tolerance = step.settings_.tolerance, forces = step.soil_ ? step.soil_->force_scale() : 0;
-  if (!std::isfinite(norm)) *reason = SNES_DIVERGED_FNORM_NAN;
-  else if (std::sqrt(sums[0]) <= tolerance * forces && std::sqrt(sums[1]) <= tolerance * step.water_scale_) *reason = SNES_CONVERGED_FNORM_RELATIVE;
+  if (!std::isfinite(norm))
+    *reason = SNES_DIVERGED_FNORM_NAN;
+  else if (std::sqrt(sums[0]) <= tolerance * forces && std::sqrt(sums[1]) <= tolerance * step.water_scale_)
+    *reason = SNES_CONVERGED_FNORM_RELATIVE;
   PetscFunctionReturn(0);
 }
 
@@ -328,8 +340,10 @@ double FlowStep<dim>::shortest_step() const {
   for (int c = 0; c < soil_->soil().mesh().cell_count(); ++c) {
     if (!flow_.active(c)) continue;
     double square = 0;
-    for (const Vec<dim> &g : soil_->soil().mesh().cells[c].gradient) square = std::max(square, map<dim>(g).squaredNorm());
-    const double storage = 1 / constrained_modulus(soil_->soil().points()[flow_.body_of(c)].law) + flow_.porosity(c) / flow_.liquid().bulk_modulus;
+    for (const Vec<dim> &g : soil_->soil().mesh().cells[c].gradient)
+      square = std::max(square, map<dim>(g).squaredNorm());
+    const double storage = 1 / constrained_modulus(soil_->soil().points()[flow_.body_of(c)].law) +
+                           flow_.porosity(c) / flow_.liquid().bulk_modulus;
     shortest = std::min(shortest, storage / (6 * square * flow_.conductivity(c)));
   }
   MPI_Allreduce(MPI_IN_PLACE, &shortest, 1, MPI_DOUBLE, MPI_MIN, flow_.nodes().comm());

@@ -1,6 +1,7 @@
 #pragma once
-/// Implicit steps of pore water in soil: seepage through soil at rest, or consolidation, in which the soil's equilibrium and the balance of
-/// its water are solved together (u-p: displacement of second order, pressure of first), docs/theory/seepage.md.
+/// Implicit steps of pore water in soil: seepage through soil at rest, or consolidation, in which the soil's
+/// equilibrium and the balance of its water are solved together (u-p: displacement of second order, pressure of first),
+/// docs/theory/seepage.md.
 #include "solvers/quasi_static/pore_flow.h"
 #include "solvers/quasi_static/quasi_static.h"
 
@@ -10,14 +11,15 @@ template <int dim>
 class FlowStep {
  public:
   /// Without `soil` it is at rest. Both must be active and outlive the steps.
-  FlowStep(QuasiStatic<dim> *soil, PoreFlow<dim> &flow, const QuasiStaticSource &settings) : soil_(soil), flow_(flow), settings_(settings) {}
+  FlowStep(QuasiStatic<dim> *soil, PoreFlow<dim> &flow, const QuasiStaticSource &settings)
+      : soil_(soil), flow_(flow), settings_(settings) {}
   PetscErrorCode setup();
-  /// Solves for the state a step dt later, at the loads of `load_time`; prescribed motion acts over (load_time - travel, load_time). What it
-  /// found is a trial state until `commit`. Collective.
+  /// Solves for the state a step dt later, at the loads of `load_time`; prescribed motion acts over (load_time -
+  /// travel, load_time). What it found is a trial state until `commit`. Collective.
   PetscErrorCode solve(double load_time, double travel, double dt, StepOutcome *outcome);
   PetscErrorCode commit(bool softening);
-  /// Shortest time in which pressure crosses a cell of consolidating soil: shorter first steps overshoot beside drained faces (Vermeer &
-  /// Verruijt 1981) [s]. Collective.
+  /// Shortest time in which pressure crosses a cell of consolidating soil: shorter first steps overshoot beside drained
+  /// faces (Vermeer & Verruijt 1981) [s]. Collective.
   double shortest_step() const;
 
  private:
@@ -39,8 +41,8 @@ class FlowStep {
   Vector x_, f_, u_, force_, p_, water_;
   Matrix flow_matrix_, press_, squeeze_, blocks_, matrix_;
   NonlinearSolver solver_;
-  std::vector<double> rest_;       ///< water balance of the last residual, of local nodes [m3]
-  std::vector<PetscInt> owned_;    ///< local pressure nodes in the order of their rows
+  std::vector<double> rest_;     ///< water balance of the last residual, of local nodes [m3]
+  std::vector<PetscInt> owned_;  ///< local pressure nodes in the order of their rows
   double load_time_ = 0, dt_ = 0, water_scale_ = 0;
   bool scale_open_ = true;
 };

@@ -1,5 +1,5 @@
-/// What is wrong with a problem before it is solved: rigid motions that supports leave to a piece of soil (the null space of its stiffness), and
-/// bodies that have one element across.
+/// What is wrong with a problem before it is solved: rigid motions that supports leave to a piece of soil (the null
+/// space of its stiffness), and bodies that have one element across.
 #include <algorithm>
 #include <map>
 #include <sstream>
@@ -52,19 +52,23 @@ PetscErrorCode QuasiStatic<dim>::find_freedom(std::string *freedom) const {
   PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, nodes.comm()));
   for (int r = 0; r < ranks; ++r) starts[r + 1] = starts[r] + counts[r];
   names.resize(starts[ranks]);
-  PetscCallMPI(MPI_Allgatherv(mine.data(), count, MPIU_INT, names.data(), counts.data(), starts.data(), MPIU_INT, nodes.comm()));
+  PetscCallMPI(
+      MPI_Allgatherv(mine.data(), count, MPIU_INT, names.data(), counts.data(), starts.data(), MPIU_INT, nodes.comm()));
   std::map<PetscInt, size_t> number;
   for (size_t k = 0; k < names.size(); ++k) number[names[k]] = k;
 
   // centre and size of each piece, then what the supports hold of its rigid modes
   constexpr int width = dim + 2 + modes * modes;
   std::vector<double> sums(names.size() * width, 0);
-  const auto add_up = [&]() { return MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, nodes.comm()); };
+  const auto add_up = [&]() {
+    return MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, nodes.comm());
+  };
   for (int i = 0; i < nodes.count(); ++i) {
     if (!nodes.owned[i]) continue;
     double *s = &sums[number.at(piece[i]) * width];
     s[0] += 1;
-    for (int d = 0; d < dim; ++d) s[1 + d] += nodes.position[i][d], s[1 + dim] += nodes.position[i][d] * nodes.position[i][d];
+    for (int d = 0; d < dim; ++d)
+      s[1 + d] += nodes.position[i][d], s[1 + dim] += nodes.position[i][d] * nodes.position[i][d];
   }
   PetscCallMPI(add_up());
   std::vector<Vec<dim>> centre(names.size());

@@ -9,12 +9,14 @@ void Loads<dim>::activate() {
   facets_.clear();
   const BackgroundMesh<dim> &mesh = soil_.mesh();
   for (size_t s = 0; s < sources_.size(); ++s) {
-    if (!std::holds_alternative<Traction>(sources_[s].kind) && !std::holds_alternative<Head>(sources_[s].kind)) continue;
+    if (!std::holds_alternative<Traction>(sources_[s].kind) && !std::holds_alternative<Head>(sources_[s].kind))
+      continue;
     for (const std::string &group : sources_[s].groups)
       for (const Facet<dim> &facet : mesh.has_group(group) ? mesh.facets(group) : std::vector<Facet<dim>>{}) {
         if (!soil_.active(facet.cell)) continue;
         const int across = mesh.cells[facet.cell].neighbour[facet.face];
-        facets_.push_back({facet, static_cast<int>(s), across >= 0 && soil_.active(across) ? 0.5 : 1., soil_.nodes().of_facet(facet.cell, facet.face)});
+        facets_.push_back({facet, static_cast<int>(s), across >= 0 && soil_.active(across) ? 0.5 : 1.,
+                           soil_.nodes().of_facet(facet.cell, facet.face)});
       }
   }
 }
@@ -68,7 +70,8 @@ void Loads<dim>::add_volume(int c, double t, std::vector<double> &force) const {
     Vec<dim> b;
     for (int d = 0; d < dim; ++d) b[d] = source.body_acceleration[d](x[0], x[1], dim == 3 ? x[dim - 1] : 0, t);
     shape_functions<dim>(order, rule_.point[q], shape.data());
-    const double density = data_.density(source, x, t) + (data_.flow ? data_.flow->water_density(c, rule_.point[q]) : 0);
+    const double density =
+        data_.density(source, x, t) + (data_.flow ? data_.flow->water_density(c, rule_.point[q]) : 0);
     const double mass = mesh.volume[c] * rule_.weight[q] * density;
     for (int a = 0; a < per_cell; ++a) add(a, mass * shape[a], b);
   }
@@ -100,7 +103,8 @@ Vec<dim> Loads<dim>::traction_of(const LoadedFacet &load, const Vec<dim> &x, dou
   const Boundary &kind = sources_[load.source].kind;
   if (const auto *given = std::get_if<Traction>(&kind)) return given->template load<dim>(load.facet.normal, x, t);
   Vec<dim> traction = load.facet.normal;
-  for (double &component : traction) component *= -std::get<Head>(kind).outside(x[0], x[1], 0, t, data_.flow->unit_weight());
+  for (double &component : traction)
+    component *= -std::get<Head>(kind).outside(x[0], x[1], 0, t, data_.flow->unit_weight());
   return traction;
 }
 

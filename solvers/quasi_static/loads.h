@@ -1,5 +1,6 @@
 #pragma once
-/// What loads the soil of a quasi-static problem: weight, pore pressure, body accelerations, tractions and open water on faces.
+/// What loads the soil of a quasi-static problem: weight, pore pressure, body accelerations, tractions and open water
+/// on faces.
 #include "physics/boundary/conditions.h"
 #include "solvers/quasi_static/soil_elements.h"
 
@@ -10,8 +11,14 @@ class Loads {
  public:
   using Source = typename Conditions<dim>::Source;
   /// The references must outlive the loads.
-  Loads(const SoilElements<dim> &soil, const Scene &scene, const std::vector<Source> &sources, const SoilData<dim> &data)
-      : soil_(soil), scene_(scene), sources_(sources), data_(data), rule_(load_quadrature<dim>()), facet_rule_(load_quadrature<dim - 1>()) {}
+  Loads(const SoilElements<dim> &soil, const Scene &scene, const std::vector<Source> &sources,
+        const SoilData<dim> &data)
+      : soil_(soil),
+        scene_(scene),
+        sources_(sources),
+        data_(data),
+        rule_(load_quadrature<dim>()),
+        facet_rule_(load_quadrature<dim - 1>()) {}
   /// Finds the loaded faces of the soil that is active now.
   void activate();
   /// On local nodes at time t, this rank's part [N].
@@ -23,7 +30,7 @@ class Loads {
   struct LoadedFacet {
     Facet<dim> facet;
     int source;
-    double share;   ///< of its force that falls to this cell: half of it where soil stands on both sides
+    double share;  ///< of its force that falls to this cell: half of it where soil stands on both sides
     std::vector<int> node;
   };
   double pore_pressure(const Vec<dim> &x, double t) const;

@@ -13,13 +13,20 @@ constexpr double earth = 9.81;  // [m/s2], for a hydraulic conductivity in a sce
 }  // namespace
 
 template <int dim>
-PoreFlow<dim>::PoreFlow(const BackgroundMesh<dim> &mesh, const Scene &scene, const std::vector<Source> &sources, bool suction,
-                        const std::vector<Source> &more)
-    : mesh_(mesh), scene_(scene), sources_(sources), shared_sources_(sources.size()), body_of_(bodies_of_cells(mesh, scene)), suction_(suction),
-      bishop_(scene.water.stress == PoreStress::bishop), liquid_(scene.water) {
+PoreFlow<dim>::PoreFlow(const BackgroundMesh<dim> &mesh, const Scene &scene, const std::vector<Source> &sources,
+                        bool suction, const std::vector<Source> &more)
+    : mesh_(mesh),
+      scene_(scene),
+      sources_(sources),
+      shared_sources_(sources.size()),
+      body_of_(bodies_of_cells(mesh, scene)),
+      suction_(suction),
+      bishop_(scene.water.stress == PoreStress::bishop),
+      liquid_(scene.water) {
   double square = 0;
   for (int d = 0; d < dim; ++d) gravity_[d] = scene.gravity[d], square += gravity_[d] * gravity_[d];
-  for (const BodySource &body : scene.body) soils_.emplace_back(body, scene.water.density * (square > 0 ? std::sqrt(square) : earth), scene.water.viscosity);
+  for (const BodySource &body : scene.body)
+    soils_.emplace_back(body, scene.water.density * (square > 0 ? std::sqrt(square) : earth), scene.water.viscosity);
   PetscInt begin, end = 0;
   (void)DMPlexGetChart(mesh_.plex(), &begin, &end);
   pressure_of_point_.assign(end, std::numeric_limits<double>::quiet_NaN());
@@ -37,7 +44,8 @@ double PoreFlow<dim>::unit_weight() const {
 // ---- what there is ----
 
 template <int dim>
-PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active, const std::function<double(const Vec<dim> &)> &fresh) {
+PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
+                                       const std::function<double(const Vec<dim> &)> &fresh) {
   PetscFunctionBeginUser;
   for (int i = 0; i < nodes_.count(); ++i) pressure_of_point_[nodes_.point[i]] = accepted[i];
   active_ = active;
@@ -59,7 +67,8 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active, const st
   PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, counts.data(), 1, MPI_INT, nodes_.comm()));
   for (int r = 0; r < ranks; ++r) starts[r + 1] = starts[r] + counts[r];
   std::vector<char> everywhere(starts[ranks]);
-  PetscCallMPI(MPI_Allgatherv(active_.data(), mine, MPI_CHAR, everywhere.data(), counts.data(), starts.data(), MPI_CHAR, nodes_.comm()));
+  PetscCallMPI(MPI_Allgatherv(active_.data(), mine, MPI_CHAR, everywhere.data(), counts.data(), starts.data(), MPI_CHAR,
+                              nodes_.comm()));
   const auto soil_across = [&](int neighbour) {
     if (neighbour == boundary) return false;
     if (neighbour >= 0) return active_[neighbour] != 0;
@@ -70,7 +79,9 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active, const st
   std::set<std::pair<int, int>> taken;  // faces with a boundary of their own
   std::vector<PetscInt> beyond(nodes_.count(), -1);
   supplies_.clear();
-  const int count = static_cast<int>(sources_.size()) + 1;  // ranks of what stands beyond a node, where several do: given pressures, open water, rain, the atmosphere
+  const int count =
+      static_cast<int>(sources_.size()) +
+      1;  // ranks of what stands beyond a node, where several do: given pressures, open water, rain, the atmosphere
   const auto put = [&](const Facet<dim> &facet, int source, int rank, bool supplied) {
     for (int node : nodes_.of_facet(facet.cell, facet.face)) {
       if (rank >= 0) beyond[node] = std::max<PetscInt>(beyond[node], rank * count + source + 1);
@@ -79,14 +90,24 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active, const st
   };
   const auto put_source = [&](const Facet<dim> &facet, int s) {
     const Boundary &kind = sources_[s].kind;
-    const bool pressed = std::visit([](const auto &one) { return requires { one.load(0.); }; }, kind);
-    put(facet, s, !pressed ? -1 : std::holds_alternative<Rainfall>(kind) ? 1 : std::holds_alternative<Head>(kind) ? 2 : 3,
+    const bool pressed = std::visit(
+        [](const auto &one) {
+          return requires { one.load(0.); };
+        },
+        kind);
+    put(facet, s,
+        !pressed                                 ? -1
+        : std::holds_alternative<Rainfall>(kind) ? 1
+        : std::holds_alternative<Head>(kind)     ? 2
+                                                 : 3,
         std::holds_alternative<Flux>(kind) || std::holds_alternative<Rainfall>(kind));
   };
   int rain = atmosphere;
   for (int s = 0; s < static_cast<int>(sources_.size()); ++s) {
     const Boundary &kind = sources_[s].kind;
-    const bool holds = std::holds_alternative<Impermeable>(kind) || !(concerns_water(kind) || std::holds_alternative<Traction>(kind) || std::holds_alternative<NonReflecting>(kind));
+    const bool holds =
+        std::holds_alternative<Impermeable>(kind) || !(concerns_water(kind) || std::holds_alternative<Traction>(kind) ||
+                                                       std::holds_alternative<NonReflecting>(kind));
     if (!holds && !concerns_water(kind)) continue;
     for (const std::string &group : sources_[s].groups) {
       if (concerns_water(kind) && group == free_surface) rain = s;
@@ -105,18 +126,23 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active, const st
       double square = 0;  // its area is that of the cell's gradient: |grad l_k| = area / (dim volume)
       for (int d = 0; d < dim; ++d) {
         double g = 0;
-        for (int j = 0; j < dim; ++j) g += k == 0 ? -mesh_.cells[c].gradient[j][d] : j == k - 1 ? mesh_.cells[c].gradient[j][d] : 0;
+        for (int j = 0; j < dim; ++j)
+          g += k == 0 ? -mesh_.cells[c].gradient[j][d] : j == k - 1 ? mesh_.cells[c].gradient[j][d] : 0;
         square += g * g;
       }
       facet.area = std::sqrt(square) * dim * mesh_.volume[c];
-      if (rain == atmosphere) put(facet, atmosphere, suction_ ? 0 : 3, false);
-      else put_source(facet, rain);
+      if (rain == atmosphere)
+        put(facet, atmosphere, suction_ ? 0 : 3, false);
+      else
+        put_source(facet, rain);
     }
   PetscCall(nodes_.maximum(beyond));
   pressed_.assign(nodes_.count(), none);
   may_close_.assign(nodes_.count(), 0), fixed_.assign(nodes_.count(), 0), open_.assign(nodes_.count(), 0);
   for (int i = 0; i < nodes_.count(); ++i)
-    if (beyond[i] >= 0) pressed_[i] = static_cast<int>(beyond[i] % count) - 1, may_close_[i] = beyond[i] / count < 3, open_[i] = accepted[i] >= 0;
+    if (beyond[i] >= 0)
+      pressed_[i] = static_cast<int>(beyond[i] % count) - 1, may_close_[i] = beyond[i] / count < 3,
+      open_[i] = accepted[i] >= 0;
   PetscFunctionReturn(0);
 }
 
@@ -154,8 +180,10 @@ bool PoreFlow<dim>::update_seepage(const std::vector<double> &rest) {
   MPI_Allreduce(MPI_IN_PLACE, &scale, 1, MPI_DOUBLE, MPI_MAX, nodes_.comm());
   for (int i = 0; i < nodes_.count(); ++i) {
     if (!may_close_[i]) continue;
-    if (fixed_[i] && pressure[i] == 0 && rest[i] > 0) fixed_[i] = open_[i] = 0, changed = 1;           // it would draw in more than there is
-    else if (!fixed_[i] && pressure[i] > 1e-9 * scale) fixed_[i] = open_[i] = 1, pressure[i] = 0, changed = 1;
+    if (fixed_[i] && pressure[i] == 0 && rest[i] > 0)
+      fixed_[i] = open_[i] = 0, changed = 1;  // it would draw in more than there is
+    else if (!fixed_[i] && pressure[i] > 1e-9 * scale)
+      fixed_[i] = open_[i] = 1, pressure[i] = 0, changed = 1;
   }
   MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_MAX, nodes_.comm());
   return changed;
@@ -185,7 +213,8 @@ double PoreFlow<dim>::content(int body, double p) const {
 template <int dim>
 double PoreFlow<dim>::content_slope(int body, double p) const {
   const double rho = liquid_.density_at(p);
-  return soils_[body].porosity() * (saturation_slope_of(body, p) * rho + saturation_of(body, p) * liquid_.density_slope(rho)) / liquid_.density;
+  return soils_[body].porosity() *
+         (saturation_slope_of(body, p) * rho + saturation_of(body, p) * liquid_.density_slope(rho)) / liquid_.density;
 }
 
 template <int dim>
@@ -208,7 +237,9 @@ std::array<Vec<dim>, dim + 1> all_gradients(const Cell<dim> &cell) {
 template <int dim>
 void PoreFlow<dim>::balance(double t, double dt, WaterBalance *balance) const {
   balance->rest.assign(nodes_.count(), 0), balance->size = balance->rest;
-  const auto add = [&](int node, double value, double size) { balance->rest[node] += value, balance->size[node] += size; };
+  const auto add = [&](int node, double value, double size) {
+    balance->rest[node] += value, balance->size[node] += size;
+  };
   for (int c = 0; c < mesh_.cell_count(); ++c) {
     if (!active_[c]) continue;
     const int *node = nodes_.of_cell(c), body = body_of_[c];
@@ -219,13 +250,16 @@ void PoreFlow<dim>::balance(double t, double dt, WaterBalance *balance) const {
       passes += relative_permeability(body, pressure[node[a]]) / (dim + 1);
       for (int d = 0; d < dim; ++d) drive[d] += pressure[node[a]] * gradient[a][d];
     }
-    for (int d = 0; d < dim; ++d) slope += drive[d] * drive[d], drive[d] -= liquid_.density * gravity_[d], weight += gravity_[d] * gravity_[d];
+    for (int d = 0; d < dim; ++d)
+      slope += drive[d] * drive[d], drive[d] -= liquid_.density * gravity_[d], weight += gravity_[d] * gravity_[d];
     const double conducts = dt * mesh_.volume[c] * conductivity(c) * passes;
     for (int a = 0; a <= dim; ++a) {
       double flux = 0, length = 0;
       for (int d = 0; d < dim; ++d) flux += drive[d] * gradient[a][d], length += gradient[a][d] * gradient[a][d];
-      add(node[a], conducts * flux, conducts * std::sqrt(length) * (std::sqrt(slope) + liquid_.density * std::sqrt(weight)));
-      const double stored = mesh_.volume[c] / (dim + 1) * (content(body, pressure[node[a]]) - content(body, accepted[node[a]]));
+      add(node[a], conducts * flux,
+          conducts * std::sqrt(length) * (std::sqrt(slope) + liquid_.density * std::sqrt(weight)));
+      const double stored =
+          mesh_.volume[c] / (dim + 1) * (content(body, pressure[node[a]]) - content(body, accepted[node[a]]));
       add(node[a], stored, std::abs(stored));
     }
   }
@@ -248,7 +282,8 @@ PetscErrorCode PoreFlow<dim>::tangent(double dt, Mat matrix) const {
     for (int a = 0; a <= dim; ++a) {
       const double p = pressure[node[a]], step = 1e-6 * (std::abs(p) + 10);
       passes += relative_permeability(body, p) / (dim + 1);
-      passes_slope[a] = (relative_permeability(body, p + step) - relative_permeability(body, p - step)) / (2 * step) / (dim + 1);
+      passes_slope[a] =
+          (relative_permeability(body, p + step) - relative_permeability(body, p - step)) / (2 * step) / (dim + 1);
       for (int d = 0; d < dim; ++d) drive[d] += p * gradient[a][d];
     }
     for (int d = 0; d < dim; ++d) drive[d] -= liquid_.density * gravity_[d];
@@ -271,7 +306,8 @@ PetscErrorCode PoreFlow<dim>::tangent(double dt, Mat matrix) const {
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, nodes_.comm()));
   for (int i = 0; i < nodes_.count(); ++i)
-    if (fixed_[i] && nodes_.owned[i]) PetscCall(MatSetValue(matrix, nodes_.global()[i], nodes_.global()[i], largest, ADD_VALUES));
+    if (fixed_[i] && nodes_.owned[i])
+      PetscCall(MatSetValue(matrix, nodes_.global()[i], nodes_.global()[i], largest, ADD_VALUES));
   PetscFunctionReturn(0);
 }
 
@@ -298,7 +334,8 @@ double PoreFlow<dim>::stored() const {
 template <int dim>
 std::vector<double> PoreFlow<dim>::inflow() const {
   std::vector<double> all(inflow_.begin(), inflow_.begin() + shared_sources_);
-  if (!all.empty()) MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM, nodes_.comm());
+  if (!all.empty())
+    MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM, nodes_.comm());
   return all;
 }
 

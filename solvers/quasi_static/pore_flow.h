@@ -1,7 +1,7 @@
 #pragma once
-/// Flow of pore water through soil by finite elements of first order on the active cells, docs/theory/seepage.md: Darcy's law with the
-/// retention curves and permeabilities of the scene, storage lumped at the nodes and conserved as mass. What its boundaries mean is what
-/// they mean for the motion of the fluids (physics/boundary/pore_conditions.h).
+/// Flow of pore water through soil by finite elements of first order on the active cells, docs/theory/seepage.md:
+/// Darcy's law with the retention curves and permeabilities of the scene, storage lumped at the nodes and conserved as
+/// mass. What its boundaries mean is what they mean for the motion of the fluids (physics/boundary/pore_conditions.h).
 #include <functional>
 
 #include "physics/boundary/pore_conditions.h"
@@ -28,7 +28,8 @@ std::vector<int> bodies_of_cells(const BackgroundMesh<dim> &mesh, const Scene &s
 
 /// Sizes of the terms of a balance that must cancel, and the rows of the balance, both of local nodes.
 struct WaterBalance {
-  std::vector<double> rest;  ///< water that a node's share of the soil takes up and passes on in the step, less what flows in [m3]
+  std::vector<double>
+      rest;  ///< water that a node's share of the soil takes up and passes on in the step, less what flows in [m3]
   std::vector<double> size;  ///< the same with all terms positive [m3]
 };
 
@@ -36,21 +37,24 @@ template <int dim>
 class PoreFlow {
  public:
   using Source = typename Conditions<dim>::Source;
-  /// `suction`: pores may dry; else they stay full whatever the pressure. `more` are boundaries of the water that no one else knows. The
-  /// references must outlive it.
-  PoreFlow(const BackgroundMesh<dim> &mesh, const Scene &scene, const std::vector<Source> &sources, bool suction, const std::vector<Source> &more = {});
+  /// `suction`: pores may dry; else they stay full whatever the pressure. `more` are boundaries of the water that no
+  /// one else knows. The references must outlive it.
+  PoreFlow(const BackgroundMesh<dim> &mesh, const Scene &scene, const std::vector<Source> &sources, bool suction,
+           const std::vector<Source> &more = {});
 
-  /// Cells through which water flows. Nodes keep their pressure; those that were not there before take `fresh`(x). Collective.
+  /// Cells through which water flows. Nodes keep their pressure; those that were not there before take `fresh`(x).
+  /// Collective.
   PetscErrorCode activate(const std::vector<char> &active, const std::function<double(const Vec<dim> &)> &fresh);
 
-  /// Before a step that ends at the loads of time t: pressures that boundaries give, in `pressure` too. Unknown is what is not `fixed`.
+  /// Before a step that ends at the loads of time t: pressures that boundaries give, in `pressure` too. Unknown is what
+  /// is not `fixed`.
   void begin(double t);
   /// Balance of a step dt from the accepted pressures to `pressure`, without what the soil's volume strain takes.
   void balance(double t, double dt, WaterBalance *balance) const;
   /// Adds its derivative to the rows and columns of nodes that are not fixed.
   PetscErrorCode tangent(double dt, Mat matrix) const;
-  /// Seepage faces: nodes under pressure are opened, those that would draw in more than is supplied are closed. `rest` is the balance of
-  /// the solved step, summed over ranks. True, on all ranks alike, if any changed.
+  /// Seepage faces: nodes under pressure are opened, those that would draw in more than is supplied are closed. `rest`
+  /// is the balance of the solved step, summed over ranks. True, on all ranks alike, if any changed.
   bool update_seepage(const std::vector<double> &rest);
   /// Accepts `pressure`, and the water that crossed the boundaries.
   void commit(double t, double dt, const std::vector<double> &rest);
@@ -69,7 +73,9 @@ class PoreFlow {
   bool fixed(int node) const { return fixed_[node]; }
   bool active(int cell) const { return active_[cell]; }
   int body_of(int cell) const { return body_of_[cell]; }
-  double conductivity(int cell) const { return soils_[body_of_[cell]].permeability() / liquid_.viscosity; }  ///< of full pores [m2/(Pa s)]
+  double conductivity(int cell) const {
+    return soils_[body_of_[cell]].permeability() / liquid_.viscosity;
+  }  ///< of full pores [m2/(Pa s)]
   double porosity(int cell) const { return soils_[body_of_[cell]].porosity(); }
   const Liquid &liquid() const { return liquid_; }
   /// Weight of the water [N/m3].
@@ -82,8 +88,8 @@ class PoreFlow {
   std::vector<std::pair<std::string, double>> own_inflow() const;
   int cell_count() const { return mesh_.cell_count(); }
 
-  std::vector<double> pressure;   ///< trial, of local nodes [Pa]
-  std::vector<double> accepted;   ///< at the start of the step [Pa]
+  std::vector<double> pressure;  ///< trial, of local nodes [Pa]
+  std::vector<double> accepted;  ///< at the start of the step [Pa]
 
  private:
   struct Supply {  ///< what may or must flow in at a node of a face
@@ -102,22 +108,22 @@ class PoreFlow {
   const BackgroundMesh<dim> &mesh_;
   const Scene &scene_;
   std::vector<Source> sources_;
-  std::size_t shared_sources_;              ///< so many stand first
+  std::size_t shared_sources_;  ///< so many stand first
   std::vector<int> body_of_;
   bool suction_, bishop_;
   Liquid liquid_;
   Vec<dim> gravity_;
   std::vector<SoilPores> soils_;
   std::vector<char> active_;
-  std::vector<int> body_of_node_;           ///< of one of the cells around it
+  std::vector<int> body_of_node_;  ///< of one of the cells around it
   ElementNodes<dim> nodes_;
-  std::vector<double> pressure_of_point_;   ///< accepted, by point of the DMPlex; NaN where water never was
+  std::vector<double> pressure_of_point_;  ///< accepted, by point of the DMPlex; NaN where water never was
   static constexpr int atmosphere = -1, none = -2;
-  std::vector<int> pressed_;                ///< of nodes: source whose pressure stands beyond, the atmosphere, or none
-  std::vector<char> may_close_;             ///< 1 where water leaves but does not enter beyond what is supplied
-  std::vector<char> open_, fixed_;          ///< seepage nodes at the pressure beyond; nodes whose pressure is known
+  std::vector<int> pressed_;        ///< of nodes: source whose pressure stands beyond, the atmosphere, or none
+  std::vector<char> may_close_;     ///< 1 where water leaves but does not enter beyond what is supplied
+  std::vector<char> open_, fixed_;  ///< seepage nodes at the pressure beyond; nodes whose pressure is known
   std::vector<Supply> supplies_;
-  std::vector<double> inflow_;              ///< by source, of this rank [m3/s]
+  std::vector<double> inflow_;  ///< by source, of this rank [m3/s]
 };
 
 }  // namespace talus

@@ -18,7 +18,8 @@ PetscErrorCode QuasiStatic<dim>::activate(const std::vector<char> &present) {
   PetscFunctionReturn(0);
 }
 
-/// Direct up to a size at which its fill is still cheap, else GMRES with algebraic multigrid; PETSc's options change all of it.
+/// Direct up to a size at which its fill is still cheap, else GMRES with algebraic multigrid; PETSc's options change
+/// all of it.
 template <int dim>
 PetscErrorCode QuasiStatic<dim>::make_solver() {
   KSP ksp;
@@ -28,7 +29,8 @@ PetscErrorCode QuasiStatic<dim>::make_solver() {
   constexpr long long largest_direct = dim == 2 ? 400000 : 40000;  // unknowns
   const QuasiStaticSource &settings = scene_.quasi_static;
   PetscFunctionBeginUser;
-  direct_ = settings.linear_solver == LinearSolver::direct || (settings.linear_solver == LinearSolver::automatic && unknowns() <= largest_direct);
+  direct_ = settings.linear_solver == LinearSolver::direct ||
+            (settings.linear_solver == LinearSolver::automatic && unknowns() <= largest_direct);
   PetscCall(SNESCreate(soil_.nodes().comm(), solver_.create()));
   PetscCall(SNESSetOptionsPrefix(solver_, "talus_"));
   PetscCall(SNESSetFunction(solver_, f_, snes_function, this));
@@ -113,8 +115,10 @@ PetscErrorCode QuasiStatic<dim>::snes_converged(SNES solver, PetscInt iteration,
   QuasiStatic &problem = *static_cast<QuasiStatic *>(context);
   *reason = SNES_CONVERGED_ITERATING;
   if (iteration == 0) problem.scale_open_ = false;  // an iterate that goes astray must not widen what counts as small
-  if (!std::isfinite(norm)) *reason = SNES_DIVERGED_FNORM_NAN;
-  else if (norm <= problem.scene_.quasi_static.tolerance * problem.force_scale_) *reason = SNES_CONVERGED_FNORM_RELATIVE;
+  if (!std::isfinite(norm))
+    *reason = SNES_DIVERGED_FNORM_NAN;
+  else if (norm <= problem.scene_.quasi_static.tolerance * problem.force_scale_)
+    *reason = SNES_CONVERGED_FNORM_RELATIVE;
   else if (problem.blow_up > 0 && iteration > 0) {
     ::Vec x;
     double largest;
@@ -152,7 +156,8 @@ PetscErrorCode QuasiStatic<dim>::prepare(double share, double load_time, double 
   PetscCall(VecAXPY(target_, -(1 - share), out_of_balance_));
 
   stiffness_scale_ = 0;
-  for (const GaussPoints<dim> &p : soil_.points()) stiffness_scale_ = std::max(stiffness_scale_, constrained_modulus(p.law));
+  for (const GaussPoints<dim> &p : soil_.points())
+    stiffness_scale_ = std::max(stiffness_scale_, constrained_modulus(p.law));
   PetscCall(VecZeroEntries(x));
   unknowns_.set_motion({});
   if (!supports_.moves()) PetscFunctionReturn(0);
@@ -188,7 +193,8 @@ PetscErrorCode QuasiStatic<dim>::start_with_motion(const std::vector<double> &mo
 }
 
 template <int dim>
-PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double time, double dt, bool softening, StepOutcome *outcome) {
+PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double time, double dt, bool softening,
+                                         StepOutcome *outcome) {
   SNESConvergedReason reason;
   PetscInt iterations;
   PetscFunctionBeginUser;
@@ -201,9 +207,12 @@ PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double 
   PetscCall(VecNorm(x_, NORM_INFINITY, &outcome->largest));
   outcome->iterations = static_cast<int>(iterations);
   outcome->residual /= force_scale_ > 0 ? force_scale_ : 1;
-  outcome->converged = reason > 0, outcome->blown_up = blown_up_, outcome->singular = reason == SNES_DIVERGED_LINEAR_SOLVE;
-  if (outcome->converged) PetscCall(commit(x_, softening));
-  else PetscCall(make_solver());  // neither MUMPS nor the line search recovers from numbers that ran away
+  outcome->converged = reason > 0, outcome->blown_up = blown_up_,
+  outcome->singular = reason == SNES_DIVERGED_LINEAR_SOLVE;
+  if (outcome->converged)
+    PetscCall(commit(x_, softening));
+  else
+    PetscCall(make_solver());  // neither MUMPS nor the line search recovers from numbers that ran away
   PetscFunctionReturn(0);
 }
 
@@ -219,7 +228,8 @@ PetscErrorCode QuasiStatic<dim>::commit(::Vec x, bool softening) {
 // ---- what it found ----
 
 template <int dim>
-PetscErrorCode QuasiStatic<dim>::boundary_forces(double load_time, std::vector<Vec<dim>> &force, std::vector<Vec<dim>> &face) const {
+PetscErrorCode QuasiStatic<dim>::boundary_forces(double load_time, std::vector<Vec<dim>> &force,
+                                                 std::vector<Vec<dim>> &face) const {
   std::vector<double> reaction, external;
   PetscFunctionBeginUser;
   const ElementNodes<dim> &nodes = soil_.nodes();
@@ -237,7 +247,8 @@ PetscErrorCode QuasiStatic<dim>::boundary_forces(double load_time, std::vector<V
     }
   }
   if (!force.empty())
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, force[0].data(), static_cast<int>(force.size()) * dim, MPI_DOUBLE, MPI_SUM, nodes.comm()));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, force[0].data(), static_cast<int>(force.size()) * dim, MPI_DOUBLE, MPI_SUM,
+                               nodes.comm()));
   PetscCall(loads_.mean_displacement(face));
   PetscFunctionReturn(0);
 }

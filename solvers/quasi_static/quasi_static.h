@@ -1,6 +1,7 @@
 #pragma once
-/// Quasi-static equilibrium by finite elements, docs/theory/finite_elements.md: Newton's iterations along a path of loads. What the soil does is in
-/// soil_elements.h, what loads it in loads.h, what holds it in supports.h, what is unknown in unknowns.h. One class for plane strain and 3D.
+/// Quasi-static equilibrium by finite elements, docs/theory/finite_elements.md: Newton's iterations along a path of
+/// loads. What the soil does is in soil_elements.h, what loads it in loads.h, what holds it in supports.h, what is
+/// unknown in unknowns.h. One class for plane strain and 3D.
 #include <petscsnes.h>
 
 #include <memory>
@@ -19,10 +20,10 @@ using NonlinearSolver = Owned<SNES, SNESDestroy>;
 struct StepOutcome {
   bool converged = false;
   int iterations = 0;
-  double residual = 0;      ///< out-of-balance force over the size of the forces
-  double largest = 0;       ///< largest displacement of a node in the step [m]
-  bool blown_up = false;    ///< it passed the limit of displacement
-  bool singular = false;    ///< the linear system had no solution
+  double residual = 0;    ///< out-of-balance force over the size of the forces
+  double largest = 0;     ///< largest displacement of a node in the step [m]
+  bool blown_up = false;  ///< it passed the limit of displacement
+  bool singular = false;  ///< the linear system had no solution
 };
 
 template <int dim>
@@ -30,9 +31,13 @@ class QuasiStatic {
  public:
   using Source = typename Loads<dim>::Source;
   /// The references must outlive the problem.
-  QuasiStatic(const BackgroundMesh<dim> &mesh, const Scene &scene, const std::vector<Law> &laws, const std::vector<Source> &sources,
-              SoilData<dim> data)
-      : scene_(scene), sources_(sources), data_(std::move(data)), soil_(mesh, scene, laws, data_), loads_(soil_, scene, sources, data_),
+  QuasiStatic(const BackgroundMesh<dim> &mesh, const Scene &scene, const std::vector<Law> &laws,
+              const std::vector<Source> &sources, SoilData<dim> data)
+      : scene_(scene),
+        sources_(sources),
+        data_(std::move(data)),
+        soil_(mesh, scene, laws, data_),
+        loads_(soil_, scene, sources, data_),
         unknowns_(soil_, supports_) {}
   QuasiStatic(const QuasiStatic &) = delete;  // its parts know each other's place
 
@@ -44,11 +49,12 @@ class QuasiStatic {
   PetscErrorCode find_thin_bodies(std::vector<char> *thin) const;  // freedom.cpp
   /// Begins a path from the present state at `load_time`: what is out of balance there is released along the path.
   PetscErrorCode begin_path(double load_time);
-  /// Solves for the state at `share` of the path, with loads of `load_time`; prescribed motion acts over (time, time + dt). The state
-  /// is committed if it converges, else left as it was.
+  /// Solves for the state at `share` of the path, with loads of `load_time`; prescribed motion acts over (time, time +
+  /// dt). The state is committed if it converges, else left as it was.
   PetscErrorCode advance(double share, double load_time, double time, double dt, bool softening, StepOutcome *outcome);
-  /// The parts of `advance`, for problems with more unknowns than displacement (flow_step.h): what stands before the iterations, `x` being
-  /// where they start; the out-of-balance force, with the tangent then in `matrix`; and the acceptance of what was found.
+  /// The parts of `advance`, for problems with more unknowns than displacement (flow_step.h): what stands before the
+  /// iterations, `x` being where they start; the out-of-balance force, with the tangent then in `matrix`; and the
+  /// acceptance of what was found.
   PetscErrorCode prepare(double share, double load_time, double time, double dt, ::Vec x);
   PetscErrorCode residual(::Vec x, ::Vec f);
   PetscErrorCode tangent() { return stiffness(nullptr, nullptr); }
@@ -60,7 +66,8 @@ class QuasiStatic {
   SoilElements<dim> &soil() { return soil_; }
   const SoilElements<dim> &soil() const { return soil_; }
   const Supports<dim> &supports() const { return supports_; }
-  /// Force of each boundary on the soil [N] and mean displacement of each loaded face [m], at the last converged state. Collective.
+  /// Force of each boundary on the soil [N] and mean displacement of each loaded face [m], at the last converged state.
+  /// Collective.
   PetscErrorCode boundary_forces(double load_time, std::vector<Vec<dim>> &force, std::vector<Vec<dim>> &face) const;
   long long unknowns() const { return unknowns_.count(); }
   bool direct() const { return direct_; }  ///< the linear solver
@@ -85,7 +92,8 @@ class QuasiStatic {
   Matrix matrix_;
   NonlinearSolver solver_;
   Vector x_, f_, out_of_balance_, target_, lifted_;
-  double force_scale_ = 0, stiffness_scale_ = 1;  // sizes of the forces before the first iteration [N] and of stiffness [Pa]
+  double force_scale_ = 0,
+         stiffness_scale_ = 1;  // sizes of the forces before the first iteration [N] and of stiffness [Pa]
   bool scale_open_ = true;
   bool direct_ = true, blown_up_ = false;
 };

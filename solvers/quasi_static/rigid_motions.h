@@ -5,7 +5,7 @@
 namespace talus {
 
 template <int dim>
-constexpr int rigid_modes = dim * (dim + 1) / 2;
+constexpr int rigid_modes = dim *(dim + 1) / 2;
 
 /// Velocity of rigid mode m at a place relative to a centre.
 template <int dim>

@@ -39,7 +39,8 @@ SeepedPressure<dim>::SeepedPressure(const std::string &file) {
     std::istringstream row(line);
     for (std::string number; std::getline(row, number, ',');) cells_.push_back(std::stod(number));
   }
-  if (!in.eof() || cells_.empty() || cells_.size() % width) throw std::runtime_error("cannot read the pore pressures in " + file);
+  if (!in.eof() || cells_.empty() || cells_.size() % width)
+    throw std::runtime_error("cannot read the pore pressures in " + file);
   sort_into_bins();
 }
 
@@ -68,7 +69,8 @@ void SeepedPressure<dim>::sort_into_bins() {
   Vec<dim> high;
   low_.fill(1e300), high.fill(-1e300);
   for (size_t k = 0; k < cells_.size(); k += dim + 1)
-    for (int d = 0; d < dim; ++d) low_[d] = std::min(low_[d], cells_[k + d]), high[d] = std::max(high[d], cells_[k + d]);
+    for (int d = 0; d < dim; ++d)
+      low_[d] = std::min(low_[d], cells_[k + d]), high[d] = std::max(high[d], cells_[k + d]);
   for (int d = 0; d < dim; ++d) {
     bins_[d] = std::max(1, static_cast<int>(std::pow(count, 1. / dim)));
     bin_size_[d] = std::max((high[d] - low_[d]) / bins_[d], 1e-300);
@@ -81,7 +83,9 @@ void SeepedPressure<dim>::sort_into_bins() {
       from.fill(std::numeric_limits<int>::max()), to.fill(0);
       for (int a = 0; a <= dim; ++a)
         for (int d = 0; d < dim; ++d) {
-          const int bin = std::clamp(static_cast<int>((cells_[static_cast<size_t>(c) * width + a * (dim + 1) + d] - low_[d]) / bin_size_[d]), 0, bins_[d] - 1);
+          const int bin = std::clamp(
+              static_cast<int>((cells_[static_cast<size_t>(c) * width + a * (dim + 1) + d] - low_[d]) / bin_size_[d]),
+              0, bins_[d] - 1);
           from[d] = std::min(from[d], bin), to[d] = std::max(to[d], bin);
         }
       for (at = from;;) {

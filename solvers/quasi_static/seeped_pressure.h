@@ -1,6 +1,6 @@
 #pragma once
-/// Pore pressure that seepage has left in a `drained` scene, as a function of place (physics/pore_pressure.h): linear in the cells through which
-/// water flowed. Every rank knows all of it, since particles wander.
+/// Pore pressure that seepage has left in a `drained` scene, as a function of place (physics/pore_pressure.h): linear
+/// in the cells through which water flowed. Every rank knows all of it, since particles wander.
 #include <string>
 #include <vector>
 
@@ -18,7 +18,8 @@ class SeepedPressure {
   SeepedPressure(const PoreFlow<dim> &flow, bool suction);
   /// As `save` wrote it. Throws std::runtime_error if the file cannot be read.
   explicit SeepedPressure(const std::string &file);
-  /// One line for each cell: coordinates and pressure of its vertices. Throws std::runtime_error, on all ranks, if it cannot be written. Collective.
+  /// One line for each cell: coordinates and pressure of its vertices. Throws std::runtime_error, on all ranks, if it
+  /// cannot be written. Collective.
   void save(MPI_Comm comm, const std::string &file) const;
 
   /// Pressure at a place x [dim]; not a number where no water flowed [Pa].
@@ -29,7 +30,7 @@ class SeepedPressure {
   void sort_into_bins();
 
   std::vector<double> cells_;
-  std::vector<int> first_, in_bin_;      ///< cells that may reach into a bin of a regular grid
+  std::vector<int> first_, in_bin_;  ///< cells that may reach into a bin of a regular grid
   Vec<dim> low_{}, bin_size_{};
   std::array<int, dim> bins_{};
 };

@@ -28,8 +28,8 @@ void strain_of(const Square<dim> &g, double extra, std::array<double, stress_siz
 template <int dim>
 using Operator = Eigen::Matrix<double, stress_size<dim>, dim>;
 
-/// Strain per nodal displacement (engineering = 1) or its work conjugate (engineering = 2, off-diagonal stress acts twice), with the
-/// mean gradient in the volumetric part where there is one.
+/// Strain per nodal displacement (engineering = 1) or its work conjugate (engineering = 2, off-diagonal stress acts
+/// twice), with the mean gradient in the volumetric part where there is one.
 template <int dim>
 Operator<dim> strain_operator(const Vec<dim> &g, const Vec<dim> *mean, double engineering) {
   Operator<dim> b = Operator<dim>::Zero();
@@ -49,10 +49,16 @@ Operator<dim> strain_operator(const Vec<dim> &g, const Vec<dim> *mean, double en
 }  // namespace
 
 template <int dim>
-SoilElements<dim>::SoilElements(const BackgroundMesh<dim> &mesh, const Scene &scene, const std::vector<Law> &laws, const SoilData<dim> &data)
-    : mesh_(mesh), data_(data), order_(scene.quasi_static.elements == Elements::quadratic ? 2 : 1),
-      patches_(scene.quasi_static.elements == Elements::patches), rule_(stress_quadrature<dim>(order_)), body_of_(bodies_of_cells(mesh, scene)) {
-  for (const Law &law : laws) points_.emplace_back().law = law, suction_matters_ = suction_matters_ || reads_suction(law);
+SoilElements<dim>::SoilElements(const BackgroundMesh<dim> &mesh, const Scene &scene, const std::vector<Law> &laws,
+                                const SoilData<dim> &data)
+    : mesh_(mesh),
+      data_(data),
+      order_(scene.quasi_static.elements == Elements::quadratic ? 2 : 1),
+      patches_(scene.quasi_static.elements == Elements::patches),
+      rule_(stress_quadrature<dim>(order_)),
+      body_of_(bodies_of_cells(mesh, scene)) {
+  for (const Law &law : laws)
+    points_.emplace_back().law = law, suction_matters_ = suction_matters_ || reads_suction(law);
   place_points();
 }
 
@@ -62,7 +68,8 @@ void SoilElements<dim>::place_points() {
   // cells of a patch follow one another, so that its points do
   std::vector<int> order(mesh_.cell_count());
   std::iota(order.begin(), order.end(), 0);
-  if (patches_) std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return mesh_.patch[a] < mesh_.patch[b]; });
+  if (patches_)
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return mesh_.patch[a] < mesh_.patch[b]; });
   for (int cell : order) {
     if (body_of_[cell] < 0) continue;
     GaussPoints<dim> &p = points_[body_of_[cell]];
@@ -120,7 +127,8 @@ void SoilElements<dim>::make_groups() {
         for (int q = first; q < last; q += per_rule) {
           const int *node = nodes_.of_cell(p.cell[q]);
           for (int a = 0; a < per_cell; ++a)
-            if (std::find(group_node_.begin() + g.first_node, group_node_.end(), node[a]) == group_node_.end()) group_node_.push_back(node[a]);
+            if (std::find(group_node_.begin() + g.first_node, group_node_.end(), node[a]) == group_node_.end())
+              group_node_.push_back(node[a]);
         }
         g.nodes = static_cast<int>(group_node_.size()) - g.first_node;
         gradient_.resize(gradient_.size() + static_cast<size_t>(g.points + (patches_ ? 1 : 0)) * g.nodes, Vec<dim>{});
@@ -129,7 +137,8 @@ void SoilElements<dim>::make_groups() {
         std::vector<Vec<dim>> shape(per_cell);
         for (int q = first; q < last; ++q) {
           const int *node = nodes_.of_cell(p.cell[q]);
-          shape_gradients<dim>(order_, rule_.point[(q - first) % per_rule], barycentric_gradients<dim>(mesh_.cells[p.cell[q]]), shape.data());
+          shape_gradients<dim>(order_, rule_.point[(q - first) % per_rule],
+                               barycentric_gradients<dim>(mesh_.cells[p.cell[q]]), shape.data());
           for (int a = 0; a < per_cell; ++a) {
             const auto found = std::find(group_node_.begin() + g.first_node, group_node_.end(), node[a]);
             const size_t k = found - (group_node_.begin() + g.first_node);
@@ -179,10 +188,12 @@ void SoilElements<dim>::find_suction(double t) {
   for (GaussPoints<dim> &p : points_) {
     if (!p.present || !reads_suction(p.law)) continue;
     p.suction.assign(p.count(), 0);
-    for (int q = 0; q < p.count() && data_.flow; ++q) p.suction[q] = std::max(0., -data_.flow->pressure_at(p.cell[q], rule_.point[q % points_per_cell()]));
+    for (int q = 0; q < p.count() && data_.flow; ++q)
+      p.suction[q] = std::max(0., -data_.flow->pressure_at(p.cell[q], rule_.point[q % points_per_cell()]));
     for (int q = 0; q < p.count() && data_.pressure; ++q)
       for (int a = 0; a <= dim; ++a)
-        p.suction[q] += rule_.point[q % points_per_cell()][a] * std::max(0., -data_.pressure(mesh_.position[mesh_.cells[p.cell[q]].node[a]], t));
+        p.suction[q] += rule_.point[q % points_per_cell()][a] *
+                        std::max(0., -data_.pressure(mesh_.position[mesh_.cells[p.cell[q]].node[a]], t));
   }
 }
 
@@ -195,7 +206,8 @@ void SoilElements<dim>::internal_force(std::vector<double> &force, bool trial) c
     double mean_work = 0;  // of the mean stress
     for (int q = 0; q < g.points; ++q) {
       const double *s = &(trial ? p.trial_stress : p.stress)[static_cast<size_t>(g.first_point + q) * components];
-      const double pores = data_.flow ? data_.flow->stress_pressure(p.cell[g.first_point + q], rule_.point[q % points_per_cell()]) : 0;
+      const double pores =
+          data_.flow ? data_.flow->stress_pressure(p.cell[g.first_point + q], rule_.point[q % points_per_cell()]) : 0;
       const double volume = p.volume[g.first_point + q], mean = patches_ ? (s[0] + s[1] + s[2]) / 3 - pores : 0;
       Square<dim> stress = Square<dim>::Zero();
       for (int k = 0; k < components; ++k) {
@@ -215,7 +227,8 @@ void SoilElements<dim>::internal_force(std::vector<double> &force, bool trial) c
 }
 
 template <int dim>
-PetscErrorCode SoilElements<dim>::each_stiffness(const std::function<PetscErrorCode(const int *, int, Stiffness &)> &put) {
+PetscErrorCode SoilElements<dim>::each_stiffness(
+    const std::function<PetscErrorCode(const int *, int, Stiffness &)> &put) {
   PetscFunctionBeginUser;
   using Tangent = Eigen::Matrix<double, components, components, Eigen::RowMajor>;
   std::vector<std::vector<double>> tangent(points_.size());
@@ -233,14 +246,16 @@ PetscErrorCode SoilElements<dim>::each_stiffness(const std::function<PetscErrorC
     left.resize(g.nodes), right.resize(g.nodes);
     for (int q = 0; q < g.points; ++q) {
       const Vec<dim> *shape = &gradient_[g.first_gradient + static_cast<size_t>(q) * g.nodes];
-      const Eigen::Map<const Tangent> c(&tangent[g.body][static_cast<size_t>(g.first_point + q) * components * components]);
+      const Eigen::Map<const Tangent> c(
+          &tangent[g.body][static_cast<size_t>(g.first_point + q) * components * components]);
       for (int k = 0; k < g.nodes; ++k) {
         const Vec<dim> *mean = patches_ ? &gradient_[g.mean_gradient + k] : nullptr;
         left[k] = p.volume[g.first_point + q] * strain_operator<dim>(shape[k], mean, 2);
         right[k] = c * strain_operator<dim>(shape[k], mean, 1);
       }
       for (int a = 0; a < g.nodes; ++a)
-        for (int b = 0; b < g.nodes; ++b) element.template block<dim, dim>(a * dim, b * dim) += left[a].transpose() * right[b];
+        for (int b = 0; b < g.nodes; ++b)
+          element.template block<dim, dim>(a * dim, b * dim) += left[a].transpose() * right[b];
     }
     PetscCall(put(&group_node_[g.first_node], g.nodes, element));
   }
@@ -282,8 +297,8 @@ void SoilElements<dim>::reset_displacement() {
 template <int dim>
 void SoilElements<dim>::admit() {
   for (GaussPoints<dim> &p : points_)
-    admit_stress<dim>(p.law, {p.count(), p.stress.data(), p.history.data(), p.stress.data(), p.history.data(), p.number.data(),
-                              p.increment.data(), p.size.data(), p.trial().suction});
+    admit_stress<dim>(p.law, {p.count(), p.stress.data(), p.history.data(), p.stress.data(), p.history.data(),
+                              p.number.data(), p.increment.data(), p.size.data(), p.trial().suction});
 }
 
 template <int dim>
@@ -299,7 +314,8 @@ Vec<dim> SoilElements<dim>::displacement(int cell, const Barycentric<dim> &place
 template <int dim>
 double SoilElements<dim>::largest_displacement() const {
   double largest = 0;
-  for (int i = 0; i < nodes_.count(); ++i) largest = std::max(largest, Eigen::Map<const ColumnVector<dim>>(&displacement_[i * dim]).norm());
+  for (int i = 0; i < nodes_.count(); ++i)
+    largest = std::max(largest, Eigen::Map<const ColumnVector<dim>>(&displacement_[i * dim]).norm());
   MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, nodes_.comm());
   return largest;
 }

@@ -1,7 +1,8 @@
 #pragma once
-/// The soil of a quasi-static problem as finite elements on the active cells of the background mesh, docs/theory/finite_elements.md section 2:
-/// Gauss points with stress and history, which go through the laws' own stress update; what nodal displacement makes of them; internal
-/// forces and element stiffness. Strains are small: geometry is that of the mesh.
+/// The soil of a quasi-static problem as finite elements on the active cells of the background mesh,
+/// docs/theory/finite_elements.md section 2: Gauss points with stress and history, which go through the laws' own
+/// stress update; what nodal displacement makes of them; internal forces and element stiffness. Strains are small:
+/// geometry is that of the mesh.
 #include <functional>
 
 #include "physics/laws/update_stress.h"
@@ -27,21 +28,28 @@ struct SoilData {
 template <int dim>
 struct GaussPoints {
   Law law;
-  bool present = true;                   ///< the body is there in this stage
-  std::vector<int> cell;                 ///< of points
-  std::vector<double> volume;            ///< [m3]
-  std::vector<Vec<dim>> position;        ///< [m]
-  std::vector<double> stress, history;   ///< at the last converged state, as laws store them
-  std::vector<double> total_strain;      ///< since displacement was last reset [stress_size]
+  bool present = true;                  ///< the body is there in this stage
+  std::vector<int> cell;                ///< of points
+  std::vector<double> volume;           ///< [m3]
+  std::vector<Vec<dim>> position;       ///< [m]
+  std::vector<double> stress, history;  ///< at the last converged state, as laws store them
+  std::vector<double> total_strain;     ///< since displacement was last reset [stress_size]
   std::vector<double> trial_stress, trial_history;
   std::vector<Increment<dim>> increment;
-  std::vector<int> number;               ///< 0, 1, ...: each point has an increment of its own
-  std::vector<double> size;              ///< element size of softening laws [m]
-  std::vector<double> suction;           ///< at the loads of the step, for laws that read it [Pa]
+  std::vector<int> number;      ///< 0, 1, ...: each point has an increment of its own
+  std::vector<double> size;     ///< element size of softening laws [m]
+  std::vector<double> suction;  ///< at the loads of the step, for laws that read it [Pa]
   int count() const { return static_cast<int>(cell.size()); }
   /// From the converged state to the trial one by `increment`.
   StressPoints<dim> trial() {
-    return {count(), stress.data(), history.data(), trial_stress.data(), trial_history.data(), number.data(), increment.data(), size.data(),
+    return {count(),
+            stress.data(),
+            history.data(),
+            trial_stress.data(),
+            trial_history.data(),
+            number.data(),
+            increment.data(),
+            size.data(),
             suction.empty() ? nullptr : suction.data()};
   }
 };
@@ -52,10 +60,11 @@ class SoilElements {
   /// Stiffness of one element, rows and columns [node][component].
   using Stiffness = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   /// Gauss points of all bodies, stresses zero. The references must outlive the elements.
-  SoilElements(const BackgroundMesh<dim> &mesh, const Scene &scene, const std::vector<Law> &laws, const SoilData<dim> &data);
+  SoilElements(const BackgroundMesh<dim> &mesh, const Scene &scene, const std::vector<Law> &laws,
+               const SoilData<dim> &data);
 
-  /// Takes these bodies (by their place in the scene) in and leaves out the others. Nodes keep their displacement; new ones have none.
-  /// Collective.
+  /// Takes these bodies (by their place in the scene) in and leaves out the others. Nodes keep their displacement; new
+  /// ones have none. Collective.
   PetscErrorCode activate(const std::vector<char> &present);
 
   /// Suction of laws that read it, at the loads of time t.
@@ -106,9 +115,9 @@ class SoilElements {
   /// Cells that are integrated together: one, or a patch that shares its volumetric strain.
   struct Group {
     int body, first_point, points;
-    int first_node, nodes;        ///< in group_node_
-    size_t first_gradient;        ///< in gradient_: [point][node]
-    size_t mean_gradient;         ///< in gradient_: [node]
+    int first_node, nodes;  ///< in group_node_
+    size_t first_gradient;  ///< in gradient_: [point][node]
+    size_t mean_gradient;   ///< in gradient_: [node]
   };
   void place_points();
   void make_groups();
@@ -118,8 +127,8 @@ class SoilElements {
   int order_;
   bool patches_, suction_matters_ = false;
   Quadrature<dim> rule_;
-  std::vector<int> body_of_, first_point_;     // of cells
-  std::vector<char> active_;                   // cells
+  std::vector<int> body_of_, first_point_;  // of cells
+  std::vector<char> active_;                // cells
   std::vector<GaussPoints<dim>> points_;
   ElementNodes<dim> nodes_;
   std::vector<Group> groups_;

@@ -19,7 +19,8 @@ Law with_reduced_strength(const Law &law, double factor) {
           if (one.residual_friction_angle > 0) one.residual_friction_angle = angle(one.residual_friction_angle);
         if constexpr (requires { one.friction_angle; }) {
           one.friction_angle = angle(one.friction_angle);
-          if constexpr (requires { one.dilation_angle; }) one.dilation_angle = std::min(one.dilation_angle, one.friction_angle);
+          if constexpr (requires { one.dilation_angle; })
+            one.dilation_angle = std::min(one.dilation_angle, one.friction_angle);
         }
         return one;
       },
@@ -37,8 +38,8 @@ Law without_softening(const Law &law) {
 
 PetscErrorCode follow_path(double step, double smallest,
                            const std::function<PetscErrorCode(double, double, StepOutcome *)> &advance,
-                           const std::function<void(double, const StepOutcome &)> &done, double *share, StepOutcome *outcome,
-                           int *iterations) {
+                           const std::function<void(double, const StepOutcome &)> &done, double *share,
+                           StepOutcome *outcome, int *iterations) {
   constexpr int quick = 6;
   PetscFunctionBeginUser;
   const double largest = step;
@@ -60,9 +61,9 @@ PetscErrorCode follow_path(double step, double smallest,
 }
 
 template <int dim>
-PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law> &laws, double factor, double load_time, double time,
-                               double blow_up, double resolution, const std::function<void(const StrengthTrial &)> &tell,
-                               FactorOfSafety *result) {
+PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law> &laws, double factor, double load_time,
+                               double time, double blow_up, double resolution,
+                               const std::function<void(const StrengthTrial &)> &tell, FactorOfSafety *result) {
   constexpr double first_step = 0.2, smallest_share = 1. / 16, largest_factor = 20;
   PetscFunctionBeginUser;
   *result = {factor, 0, {}};
@@ -87,7 +88,9 @@ PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law>
     StrengthTrial t{trial, outcome.converged, iterations, outcome.residual, displacement, ""};
     if (t.stable && displacement > blow_up) t.stable = false;
     if (!t.stable)
-      t.reason = outcome.blown_up || outcome.converged ? "displacement passed its limit" : outcome.singular ? "stiffness became singular" : "Newton's iterations did not converge";
+      t.reason = outcome.blown_up || outcome.converged ? "displacement passed its limit"
+                 : outcome.singular                    ? "stiffness became singular"
+                                                       : "Newton's iterations did not converge";
     if (t.stable)
       result->lower = trial, stable = problem.soil().save();
     else
@@ -99,9 +102,9 @@ PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law>
   PetscFunctionReturn(0);
 }
 
-template PetscErrorCode reduce_strength(QuasiStatic<2> &, const std::vector<Law> &, double, double, double, double, double,
-                                        const std::function<void(const StrengthTrial &)> &, FactorOfSafety *);
-template PetscErrorCode reduce_strength(QuasiStatic<3> &, const std::vector<Law> &, double, double, double, double, double,
-                                        const std::function<void(const StrengthTrial &)> &, FactorOfSafety *);
+template PetscErrorCode reduce_strength(QuasiStatic<2> &, const std::vector<Law> &, double, double, double, double,
+                                        double, const std::function<void(const StrengthTrial &)> &, FactorOfSafety *);
+template PetscErrorCode reduce_strength(QuasiStatic<3> &, const std::vector<Law> &, double, double, double, double,
+                                        double, const std::function<void(const StrengthTrial &)> &, FactorOfSafety *);
 
 }  // namespace talus

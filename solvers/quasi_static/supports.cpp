@@ -72,7 +72,8 @@ PetscErrorCode Supports<dim>::setup(const BackgroundMesh<dim> &mesh, const Eleme
   PetscCallMPI(MPI_Allgather(&bytes, 1, MPI_INT, counts.data(), 1, MPI_INT, nodes.comm()));
   for (int r = 0; r < ranks; ++r) starts[r + 1] = starts[r] + counts[r];
   std::vector<Wanted<dim>> all(starts[ranks] / sizeof(Wanted<dim>));
-  PetscCallMPI(MPI_Allgatherv(mine.data(), bytes, MPI_BYTE, all.data(), counts.data(), starts.data(), MPI_BYTE, nodes.comm()));
+  PetscCallMPI(
+      MPI_Allgatherv(mine.data(), bytes, MPI_BYTE, all.data(), counts.data(), starts.data(), MPI_BYTE, nodes.comm()));
   std::sort(all.begin(), all.end(), [](const Wanted<dim> &a, const Wanted<dim> &b) { return a.key() < b.key(); });
 
   std::map<PetscInt, int> local;

@@ -1,6 +1,7 @@
 #pragma once
-/// Prescribed directions at the nodes of the finite elements, from the boundaries of the scene (`fixed`, `roller`, `velocity`).
-/// A node whose directions are not axes has a frame of its own: its first rows are the prescribed directions.
+/// Prescribed directions at the nodes of the finite elements, from the boundaries of the scene (`fixed`, `roller`,
+/// `velocity`). A node whose directions are not axes has a frame of its own: its first rows are the prescribed
+/// directions.
 #include <vector>
 
 #include "physics/boundary/conditions.h"
@@ -11,9 +12,9 @@ namespace talus {
 
 template <int dim>
 struct Support : PrescribedDirections<dim> {
-  Square<dim> frame;                     ///< rows: unit vectors of the node's own unknowns
-  std::array<char, dim> held;            ///< 1 where that unknown is prescribed
-  bool turned = false;                   ///< the frame is not the identity
+  Square<dim> frame;           ///< rows: unit vectors of the node's own unknowns
+  std::array<char, dim> held;  ///< 1 where that unknown is prescribed
+  bool turned = false;         ///< the frame is not the identity
 };
 
 template <int dim>
@@ -25,7 +26,8 @@ class Supports {
                        const std::vector<Source> &sources);
   /// Support of a local node, or null.
   const Support<dim> *at(int node) const { return of_node_[node] < 0 ? nullptr : &supports_[of_node_[node]]; }
-  /// Displacement that the boundaries prescribe between two times, at a node, in its own frame; 0 in free components [m].
+  /// Displacement that the boundaries prescribe between two times, at a node, in its own frame; 0 in free components
+  /// [m].
   Vec<dim> increment(int node, const Vec<dim> &x, double from, double to) const;
   /// Is any motion prescribed?
   bool moves() const { return moves_; }

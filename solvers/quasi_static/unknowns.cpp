@@ -84,7 +84,8 @@ PetscErrorCode Unknowns<dim>::find_motion(double time, double dt, std::vector<do
 template <int dim>
 void Unknowns<dim>::set_motion(const std::vector<double> &motion) {
   std::fill(motion_.begin(), motion_.end(), 0.);
-  for (size_t row = 0; row < owned_.size() && !motion.empty(); ++row) std::copy_n(&motion[owned_[row] * dim], dim, &motion_[row * dim]);
+  for (size_t row = 0; row < owned_.size() && !motion.empty(); ++row)
+    std::copy_n(&motion[owned_[row] * dim], dim, &motion_[row * dim]);
 }
 
 // ---- matrices ----
@@ -122,8 +123,9 @@ PetscErrorCode Unknowns<dim>::make_matrix(Matrix &matrix) const {
 }
 
 template <int dim>
-PetscErrorCode Unknowns<dim>::add(Mat matrix, const int *node, int count, typename SoilElements<dim>::Stiffness &element,
-                                  const std::vector<double> *motion, std::vector<double> *lift) const {
+PetscErrorCode Unknowns<dim>::add(Mat matrix, const int *node, int count,
+                                  typename SoilElements<dim>::Stiffness &element, const std::vector<double> *motion,
+                                  std::vector<double> *lift) const {
   PetscFunctionBeginUser;
   std::vector<PetscInt> block(count);
   for (int a = 0; a < count; ++a) {
@@ -139,7 +141,8 @@ PetscErrorCode Unknowns<dim>::add(Mat matrix, const int *node, int count, typena
         if (s->held[d]) {
           if (lift)
             for (int b = 0; b < count; ++b)
-              for (int e = 0; e < dim; ++e) (*lift)[node[b] * dim + e] += element(b * dim + e, a * dim + d) * (*motion)[node[a] * dim + d];
+              for (int e = 0; e < dim; ++e)
+                (*lift)[node[b] * dim + e] += element(b * dim + e, a * dim + d) * (*motion)[node[a] * dim + d];
           element.row(a * dim + d).setZero(), element.col(a * dim + d).setZero();
         }
   PetscCall(MatSetValuesBlocked(matrix, count, block.data(), count, block.data(), element.data(), ADD_VALUES));
@@ -153,7 +156,8 @@ PetscErrorCode Unknowns<dim>::finish(Mat matrix, double diagonal) const {
   PetscCall(MatGetOwnershipRange(matrix, &first, nullptr));
   for (PetscInt row : supported_)
     for (int d = 0; d < dim; ++d)
-      if (supports_.at(owned_[row])->held[d]) PetscCall(MatSetValue(matrix, first + row * dim + d, first + row * dim + d, diagonal, ADD_VALUES));
+      if (supports_.at(owned_[row])->held[d])
+        PetscCall(MatSetValue(matrix, first + row * dim + d, first + row * dim + d, diagonal, ADD_VALUES));
   PetscCall(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(0);

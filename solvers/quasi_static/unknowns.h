@@ -1,6 +1,6 @@
 #pragma once
-/// The unknowns of a quasi-static problem: increments of nodal displacement, each node's in the frame of its support, and the matrices that act on
-/// them.
+/// The unknowns of a quasi-static problem: increments of nodal displacement, each node's in the frame of its support,
+/// and the matrices that act on them.
 #include "solvers/quasi_static/soil_elements.h"
 #include "solvers/quasi_static/supports.h"
 
@@ -31,13 +31,15 @@ class Unknowns {
   }
   /// Displacement of local nodes from the unknowns, with the prescribed motion if wanted. Collective.
   PetscErrorCode displacement_of(::Vec x, bool with_motion, std::vector<double> &u) const;
-  /// Puts the stiffness of an element into `matrix`. `lift` receives what `motion` (local nodes, in their frames) does to the free rows.
-  PetscErrorCode add(Mat matrix, const int *node, int count, typename SoilElements<dim>::Stiffness &element, const std::vector<double> *motion,
-                     std::vector<double> *lift) const;
+  /// Puts the stiffness of an element into `matrix`. `lift` receives what `motion` (local nodes, in their frames) does
+  /// to the free rows.
+  PetscErrorCode add(Mat matrix, const int *node, int count, typename SoilElements<dim>::Stiffness &element,
+                     const std::vector<double> *motion, std::vector<double> *lift) const;
   /// Diagonal of prescribed components, then assembly. Collective.
   PetscErrorCode finish(Mat matrix, double diagonal) const;
 
-  /// Prescribed increments of local nodes over (time, time + dt) in their frames; false if nothing moves on any rank. Collective.
+  /// Prescribed increments of local nodes over (time, time + dt) in their frames; false if nothing moves on any rank.
+  /// Collective.
   PetscErrorCode find_motion(double time, double dt, std::vector<double> &motion, bool *moves) const;
   /// From now on `displacement_of` takes these increments; none if empty.
   void set_motion(const std::vector<double> &motion);

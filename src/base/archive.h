@@ -1,6 +1,7 @@
 #pragma once
-/// The state of a run on one rank as a row of named blocks of bytes, for checkpoints. Each room lists once what it keeps, in a member
-/// `keep(Archive &)` that serves writing and reading alike, so that the two cannot differ. Bytes are as this machine stores them.
+/// The state of a run on one rank as a row of named blocks of bytes, for checkpoints. Each room lists once what it
+/// keeps, in a member `keep(Archive &)` that serves writing and reading alike, so that the two cannot differ. Bytes are
+/// as this machine stores them.
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
@@ -21,8 +22,8 @@ class Archive {
   bool reading() const { return reading_; }
   const std::string &bytes() const { return bytes_; }
 
-  /// Numbers, plain structs, texts, and vectors of plain structs, which get their size back; all under one name. Reading throws
-  /// std::runtime_error where the archive holds something else.
+  /// Numbers, plain structs, texts, and vectors of plain structs, which get their size back; all under one name.
+  /// Reading throws std::runtime_error where the archive holds something else.
   template <class... T>
   void keep(const char *name, T &...values) {
     std::string found = name;
@@ -78,8 +79,10 @@ class Archive {
   bool reading_ = false;
 };
 
-/// A number that tells contents apart: FNV-1a on words of 8 bytes (Fowler, Noll, Vo 1991), for damage, not against malice.
-inline unsigned long long fingerprint(const void *data, std::size_t size, unsigned long long seed = 0xcbf29ce484222325) {
+/// A number that tells contents apart: FNV-1a on words of 8 bytes (Fowler, Noll, Vo 1991), for damage, not against
+/// malice.
+inline unsigned long long fingerprint(const void *data, std::size_t size,
+                                      unsigned long long seed = 0xcbf29ce484222325) {
   const char *bytes = static_cast<const char *>(data);
   unsigned long long sum = seed;
   for (std::size_t at = 0; at < size; at += sizeof sum) {

@@ -6,13 +6,14 @@
 
 namespace talus {
 
-/// The environment for programs that this one starts, null at its end, without what mpirun put there: with it, a child would take
-/// itself for a rank of this run and wait for the others.
+/// The environment for programs that this one starts, null at its end, without what mpirun put there: with it, a child
+/// would take itself for a rank of this run and wait for the others.
 inline std::vector<char *> environment_without_mpi() {
   std::vector<char *> kept;
   for (char **variable = environ; *variable; ++variable) {
     const std::string_view text(*variable);
-    if (!text.starts_with("OMPI_") && !text.starts_with("PMIX_") && !text.starts_with("PMI_") && !text.starts_with("ORTE_"))
+    if (!text.starts_with("OMPI_") && !text.starts_with("PMIX_") && !text.starts_with("PMI_") &&
+        !text.starts_with("ORTE_"))
       kept.push_back(*variable);
   }
   kept.push_back(nullptr);

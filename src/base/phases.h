@@ -1,5 +1,6 @@
 #pragma once
-/// The phase models as compile-time traits (docs/theory, section 1): what a scene does not model costs neither memory nor time.
+/// The phase models as compile-time traits (docs/theory, section 1): what a scene does not model costs neither memory
+/// nor time.
 #include <type_traits>
 
 namespace talus {

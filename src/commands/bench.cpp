@@ -27,10 +27,10 @@ struct BenchCase {
   std::string phases, law, transfer;
   int ranks = 1;
   long long particles = 0;
-  double rate = 0;                 ///< particle-updates per second and core
-  double step_time = 0;            ///< wall time of a step [s]
-  double simulated_per_wall = 0;   ///< simulated over wall time
-  Breakdown breakdown;             ///< [s] per particle and step
+  double rate = 0;                ///< particle-updates per second and core
+  double step_time = 0;           ///< wall time of a step [s]
+  double simulated_per_wall = 0;  ///< simulated over wall time
+  Breakdown breakdown;            ///< [s] per particle and step
 };
 
 const std::vector<std::pair<std::string, std::string>> transfers = {
@@ -44,15 +44,20 @@ std::string scene_text(const BenchCase &c, const std::string &law, const std::st
   const bool solid = c.dimension == 3, wet = c.phases != "dry";
   const bool moves = wet && c.phases != "drained";
   const std::string pores = moves ? "permeability = 1e-11\n" : "";
-  const std::string curves = moves && c.phases != "saturated" ? "[body.soil.retention]\ncurve = \"van_genuchten\"\nreference_suction = 5e3\nshape = 0.4\n"
-                                                                "[body.soil.relative_permeability]\ncurve = \"van_genuchten_mualem\"\nshape = 0.4\n"
-                                                              : "";
-  return "phases = \"" + c.phases + "\"\ndimension = " + std::to_string(c.dimension) + "\ngravity = 9.81\n[mesh]\nsection = \"" +
-         std::string(TALUS_MESHES) + "/dam.csv\"\n" + (solid ? "size = 0.091\nthickness = 1\nlayers = 0\n" : "size = 0.0165\n") +
-         "[body.soil]\nregion = \"soil\"\n" + (wet ? "porosity = 0.3\ngrain_density = 2650\n" + pores : "density = 2000\n") +
-         "particles_per_cell = " + (solid ? "8" : "6") + "\nvelocity = [\"0.3\", \"0\"" +
-         (solid ? ", \"0\"" : "") + "]\n" + law + "\n" + (wet ? curves + "[water]\ntable = [[0, 0.5], [4, 0.5]]\n" : "") +
-         "[boundary.base]\nkind = \"roller\"\n[boundary.left]\nkind = \"roller\"\n[boundary.right]\nkind = \"roller\"\n" +
+  const std::string curves =
+      moves && c.phases != "saturated"
+          ? "[body.soil.retention]\ncurve = \"van_genuchten\"\nreference_suction = 5e3\nshape = 0.4\n"
+            "[body.soil.relative_permeability]\ncurve = \"van_genuchten_mualem\"\nshape = 0.4\n"
+          : "";
+  return "phases = \"" + c.phases + "\"\ndimension = " + std::to_string(c.dimension) +
+         "\ngravity = 9.81\n[mesh]\nsection = \"" + std::string(TALUS_MESHES) + "/dam.csv\"\n" +
+         (solid ? "size = 0.091\nthickness = 1\nlayers = 0\n" : "size = 0.0165\n") +
+         "[body.soil]\nregion = \"soil\"\n" +
+         (wet ? "porosity = 0.3\ngrain_density = 2650\n" + pores : "density = 2000\n") +
+         "particles_per_cell = " + (solid ? "8" : "6") + "\nvelocity = [\"0.3\", \"0\"" + (solid ? ", \"0\"" : "") +
+         "]\n" + law + "\n" + (wet ? curves + "[water]\ntable = [[0, 0.5], [4, 0.5]]\n" : "") +
+         "[boundary.base]\nkind = \"roller\"\n[boundary.left]\nkind = \"roller\"\n[boundary.right]\nkind = "
+         "\"roller\"\n" +
          (solid ? "[boundary.front]\nkind = \"roller\"\n[boundary.back]\nkind = \"roller\"\n" : "") +
          "[[stage]]\nduration = 100\n[transfer]\n" + transfer + "\n";
 }
@@ -74,11 +79,13 @@ void measure(BenchCase &c, const std::string &law, const std::string &transfer, 
   c.simulated_per_wall = (simulation->time() - simulated) / wall;
   const Breakdown &after = simulation->breakdown();
   const double scale = c.ranks / updates;
-  c.breakdown = {(after.gather - before.gather) * scale, (after.step - before.step) * scale, (after.release - before.release) * scale,
-                 (after.relocate - before.relocate) * scale, (after.sort - before.sort) * scale};
+  c.breakdown = {(after.gather - before.gather) * scale, (after.step - before.step) * scale,
+                 (after.release - before.release) * scale, (after.relocate - before.relocate) * scale,
+                 (after.sort - before.sort) * scale};
 }
 
-/// A scene of the gallery in motion: wall time per simulated second, between two simulated times of its first stage [s].
+/// A scene of the gallery in motion: wall time per simulated second, between two simulated times of its first stage
+/// [s].
 struct BenchScene {
   std::string scene, transfer, override;
   double from, to;
@@ -95,7 +102,8 @@ const std::vector<BenchScene> scenes = {
 };
 
 void measure(BenchScene &s) {
-  Scene scene = read_scene(find_scene(s.scene), s.override.empty() ? std::vector<std::string>{} : std::vector{s.override});
+  Scene scene =
+      read_scene(find_scene(s.scene), s.override.empty() ? std::vector<std::string>{} : std::vector{s.override});
   RunOptions options;
   const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
   simulation->advance_to(s.from);
@@ -105,7 +113,8 @@ void measure(BenchScene &s) {
   simulation->advance_to(s.to);
   PetscTime(&end);
   MPI_Comm_size(PETSC_COMM_WORLD, &s.ranks);
-  s.particles = simulation->particles(), s.steps = simulation->steps() - steps, s.remaps = simulation->remaps() - remaps;
+  s.particles = simulation->particles(), s.steps = simulation->steps() - steps,
+  s.remaps = simulation->remaps() - remaps;
   s.wall_per_simulated = (end - start) / (s.to - s.from);
 }
 
@@ -131,35 +140,45 @@ std::string processor() {
   return "unknown";
 }
 
-void print_json(const std::vector<BenchCase> &cases, const std::vector<BenchScene> &scenes, const std::vector<LawRate> &rates) {
-  std::printf("{\"machine\": {\"processor\": \"%s\", \"cores\": %u, \"memory_bandwidth_per_core\": %.4g, \"program\": \"Talus %s\"}, \"cases\": [",
-              processor().c_str(), std::thread::hardware_concurrency(), bandwidth(), version);
+void print_json(const std::vector<BenchCase> &cases, const std::vector<BenchScene> &scenes,
+                const std::vector<LawRate> &rates) {
+  std::printf(
+      "{\"machine\": {\"processor\": \"%s\", \"cores\": %u, \"memory_bandwidth_per_core\": %.4g, \"program\": \"Talus "
+      "%s\"}, \"cases\": [",
+      processor().c_str(), std::thread::hardware_concurrency(), bandwidth(), version);
   for (size_t i = 0; i < cases.size(); ++i) {
     const BenchCase &c = cases[i];
-    std::printf("%s\n {\"dimension\": %d, \"phases\": \"%s\", \"law\": \"%s\", \"transfer\": \"%s\", \"ranks\": %d, \"particles\": %lld, "
-                "\"updates_per_second_per_core\": %.5g, \"wall_seconds_per_simulated_second\": %.4g, "
-                "\"breakdown_ns\": {\"step\": %.3g, \"to_particles\": %.3g, \"relocate_and_sort\": %.3g, \"to_nodes\": %.3g}}",
-                i ? "," : "", c.dimension, c.phases.c_str(), c.law.c_str(), c.transfer.c_str(), c.ranks, c.particles, c.rate, 1 / c.simulated_per_wall,
-                1e9 * c.breakdown.step, 1e9 * c.breakdown.release, 1e9 * c.breakdown.relocate, 1e9 * c.breakdown.gather);
+    std::printf(
+        "%s\n {\"dimension\": %d, \"phases\": \"%s\", \"law\": \"%s\", \"transfer\": \"%s\", \"ranks\": %d, "
+        "\"particles\": %lld, "
+        "\"updates_per_second_per_core\": %.5g, \"wall_seconds_per_simulated_second\": %.4g, "
+        "\"breakdown_ns\": {\"step\": %.3g, \"to_particles\": %.3g, \"relocate_and_sort\": %.3g, \"to_nodes\": %.3g}}",
+        i ? "," : "", c.dimension, c.phases.c_str(), c.law.c_str(), c.transfer.c_str(), c.ranks, c.particles, c.rate,
+        1 / c.simulated_per_wall, 1e9 * c.breakdown.step, 1e9 * c.breakdown.release, 1e9 * c.breakdown.relocate,
+        1e9 * c.breakdown.gather);
   }
   std::printf("], \"scenes\": [");
   for (size_t i = 0; i < scenes.size(); ++i) {
     const BenchScene &s = scenes[i];
-    std::printf("%s\n {\"scene\": \"%s\", \"transfer\": \"%s\", \"ranks\": %d, \"particles\": %lld, \"steps\": %lld, \"remaps\": %lld, "
-                "\"wall_seconds_per_simulated_second\": %.4g}",
-                i ? "," : "", s.scene.c_str(), s.transfer.c_str(), s.ranks, s.particles, s.steps, s.remaps, s.wall_per_simulated);
+    std::printf(
+        "%s\n {\"scene\": \"%s\", \"transfer\": \"%s\", \"ranks\": %d, \"particles\": %lld, \"steps\": %lld, "
+        "\"remaps\": %lld, "
+        "\"wall_seconds_per_simulated_second\": %.4g}",
+        i ? "," : "", s.scene.c_str(), s.transfer.c_str(), s.ranks, s.particles, s.steps, s.remaps,
+        s.wall_per_simulated);
   }
   std::printf("], \"laws\": [");
   for (size_t i = 0; i < rates.size(); ++i)
-    std::printf("%s\n {\"law\": \"%s\", \"plane_ns\": %.3g, \"solid_ns\": %.3g, \"solid_with_tangent_ns\": %.3g}", i ? "," : "",
-                rates[i].law.c_str(), rates[i].plane, rates[i].solid, rates[i].tangent);
+    std::printf("%s\n {\"law\": \"%s\", \"plane_ns\": %.3g, \"solid_ns\": %.3g, \"solid_with_tangent_ns\": %.3g}",
+                i ? "," : "", rates[i].law.c_str(), rates[i].plane, rates[i].solid, rates[i].tangent);
   std::printf("]}\n");
 }
 
 void print_line(const BenchCase &c) {
-  std::printf("%-3d %-11s %-32s %-38s %9lld %9.1f |     %6.1f %7.1f %7.1f %7.1f | %.3g\n", c.dimension, c.phases.c_str(), c.law.c_str(),
-              c.transfer.c_str(), c.particles, c.rate / 1e6, 1e9 * c.breakdown.step, 1e9 * c.breakdown.release, 1e9 * c.breakdown.relocate,
-              1e9 * c.breakdown.gather, 1 / c.simulated_per_wall);
+  std::printf("%-3d %-11s %-32s %-38s %9lld %9.1f |     %6.1f %7.1f %7.1f %7.1f | %.3g\n", c.dimension,
+              c.phases.c_str(), c.law.c_str(), c.transfer.c_str(), c.particles, c.rate / 1e6, 1e9 * c.breakdown.step,
+              1e9 * c.breakdown.release, 1e9 * c.breakdown.relocate, 1e9 * c.breakdown.gather,
+              1 / c.simulated_per_wall);
   std::fflush(stdout);
 }
 
@@ -170,7 +189,8 @@ struct Selected {
 
 /// The laws that are measured with each way of transfer; the others with the default one.
 bool in_depth(const std::string &law) {
-  return law == "linear_elastic" || law == "drucker_prager" || law == "mohr_coulomb" || law == "mohr_coulomb, softening";
+  return law == "linear_elastic" || law == "drucker_prager" || law == "mohr_coulomb" ||
+         law == "mohr_coulomb, softening";
 }
 
 /// In which phase model a law is measured: dry, unless it reads suction; one law in each of the others.
@@ -201,8 +221,8 @@ int bench(const BenchArguments &arguments) {
   std::vector<BenchCase> cases;
   if (rank == 0 && !arguments.json) {
     std::printf("%s, %.1f GB/s a core\n\n", processor().c_str(), bandwidth() / 1e9);
-    std::printf("%-3s %-11s %-32s %-38s %9s %9s | ns: %6s %7s %7s %7s | %s\n", "dim", "phases", "law", "transfer", "particles", "M/s/core", "step",
-                "to_part", "relocate", "to_node", "wall s / simulated s");
+    std::printf("%-3s %-11s %-32s %-38s %9s %9s | ns: %6s %7s %7s %7s | %s\n", "dim", "phases", "law", "transfer",
+                "particles", "M/s/core", "step", "to_part", "relocate", "to_node", "wall s / simulated s");
   }
   for (const auto &[c, keys, options] : select(arguments.only)) {
     cases.push_back(c);
@@ -211,19 +231,22 @@ int bench(const BenchArguments &arguments) {
     if (rank == 0 && !arguments.json) print_line(done);
   }
   if (rank == 0 && !arguments.json)
-    std::printf("\n%-12s %-25s %9s %7s %7s | %s\n", "scene", "transfer", "particles", "steps", "remaps", "wall s / simulated s");
+    std::printf("\n%-12s %-25s %9s %7s %7s | %s\n", "scene", "transfer", "particles", "steps", "remaps",
+                "wall s / simulated s");
   std::vector<BenchScene> measured;
   for (BenchScene s : scenes) {
     if ((s.scene + " " + s.transfer).find(arguments.only) == std::string::npos) continue;
     measure(s), measured.push_back(s);
     if (rank == 0 && !arguments.json)
-      std::printf("%-12s %-25s %9lld %7lld %7lld | %.3g\n", s.scene.c_str(), s.transfer.c_str(), s.particles, s.steps, s.remaps, s.wall_per_simulated);
+      std::printf("%-12s %-25s %9lld %7lld %7lld | %.3g\n", s.scene.c_str(), s.transfer.c_str(), s.particles, s.steps,
+                  s.remaps, s.wall_per_simulated);
   }
   std::vector<LawRate> rates;
   if (rank == 0 && std::string("laws alone").find(arguments.only) != std::string::npos) rates = measure_laws();
   if (!rates.empty() && !arguments.json) {
     std::printf("\n%-33s | ns per update alone: %7s %7s | %s\n", "law", "plane", "solid", "solid, with tangent");
-    for (const LawRate &r : rates) std::printf("%-33s | %20s %7.1f %7.1f | %.0f\n", r.law.c_str(), "", r.plane, r.solid, r.tangent);
+    for (const LawRate &r : rates)
+      std::printf("%-33s | %20s %7.1f %7.1f | %.0f\n", r.law.c_str(), "", r.plane, r.solid, r.tangent);
   }
   if (rank == 0 && arguments.json) print_json(cases, measured, rates);
   return 0;
@@ -233,10 +256,13 @@ int bench(const BenchArguments &arguments) {
 
 Action add_bench(CLI::App &app) {
   auto arguments = std::make_shared<BenchArguments>();
-  CLI::App *command = app.add_subcommand("bench", "particle-updates per second and core by dimension, phase model, law and transfer; wall time per simulated second of two scenes");
+  CLI::App *command = app.add_subcommand("bench",
+                                         "particle-updates per second and core by dimension, phase model, law and "
+                                         "transfer; wall time per simulated second of two scenes");
   command->add_flag("--json", arguments->json, "one JSON document on standard output");
   command->add_option("--steps", arguments->steps, "steps of each case")->check(CLI::Range(10, 100000));
-  command->add_option("--only", arguments->only, "cases whose line contains this, such as \"3 dry mohr\", or \"laws alone\"");
+  command->add_option("--only", arguments->only,
+                      "cases whose line contains this, such as \"3 dry mohr\", or \"laws alone\"");
   return [arguments] { return bench(*arguments); };
 }
 

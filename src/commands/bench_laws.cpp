@@ -19,7 +19,8 @@ struct Soil {
   }
 };
 
-const std::string elastic = "young_modulus = 1e7\npoisson_ratio = 0.3\n", frictional = elastic + "cohesion = 1e3\nfriction_angle = 30\n";
+const std::string elastic = "young_modulus = 1e7\npoisson_ratio = 0.3\n",
+                  frictional = elastic + "cohesion = 1e3\nfriction_angle = 30\n";
 const std::string softening = "residual_cohesion = 5e2\nresidual_friction_angle = 25\nshape_factor = 50\n",
                   wet = "suction_cohesion = 1e4\nsuction_cohesion_rate = 1e-6\n";
 const std::vector<std::pair<std::string, std::string>> soils = {
@@ -30,8 +31,10 @@ const std::vector<std::pair<std::string, std::string>> soils = {
     {"mohr_coulomb, suction", "law = \"mohr_coulomb\"\n" + frictional + wet},
     {"mohr_coulomb, softening", "law = \"mohr_coulomb\"\n" + frictional + softening},
     {"mohr_coulomb, softening, suction", "law = \"mohr_coulomb\"\n" + frictional + softening + wet},
-    {"cam_clay", "law = \"cam_clay\"\ncompression_slope = 0.2\nswelling_slope = 0.04\ncritical_stress_ratio = 1\npoisson_ratio = 0.3\n"
-                 "void_ratio = 1\npreconsolidation_pressure = 1e5\n"},
+    {"cam_clay",
+     "law = \"cam_clay\"\ncompression_slope = 0.2\nswelling_slope = 0.04\ncritical_stress_ratio = 1\npoisson_ratio = "
+     "0.3\n"
+     "void_ratio = 1\npreconsolidation_pressure = 1e5\n"},
     {"mu_i", "law = \"mu_i\"\n" + elastic + "static_friction = 0.38\nlimiting_friction = 0.64\ngrain_size = 1e-3\n"},
     {"newtonian", "law = \"newtonian\"\n" + elastic + "viscosity = 10\n"},
     {"bingham", "law = \"bingham\"\n" + elastic + "viscosity = 10\nyield_stress = 1e3\n"},
@@ -48,17 +51,21 @@ double time_of(const Law &law, bool with_tangent) {
   std::mt19937 generator(1);
   std::uniform_real_distribution<double> random(-1, 1);
   std::vector<double> stress(count * size), history(count * memory), element_size(count, 1), suction(count, 3e4);
-  std::vector<double> stress_out(stress.size()), history_out(history.size()), tangent(with_tangent ? count * size * size : 0);
+  std::vector<double> stress_out(stress.size()), history_out(history.size()),
+      tangent(with_tangent ? count * size * size : 0);
   std::vector<Increment<dim>> increment(count);
   std::vector<int> cell(count);
   for (int i = 0; i < count; ++i) {
     cell[i] = i;
-    for (int k = 0; k < size; ++k) stress[i * size + k] = (k < 3 ? -5e4 : 0) + 2e4 * random(generator), increment[i].strain[k] = 2e-3 * random(generator);
+    for (int k = 0; k < size; ++k)
+      stress[i * size + k] = (k < 3 ? -5e4 : 0) + 2e4 * random(generator),
+                        increment[i].strain[k] = 2e-3 * random(generator);
     increment[i].rotation = {};
     for (int d = 0; d < (dim == 2 ? 1 : 3); ++d) increment[i].rotation[4 * d] = 1;
   }
-  const StressPoints<dim> points{count, stress.data(), history.data(), stress_out.data(), history_out.data(), cell.data(), increment.data(),
-                                 element_size.data(), suction.data(), 1e-3};
+  const StressPoints<dim> points{
+      count,       stress.data(),    history.data(),      stress_out.data(), history_out.data(),
+      cell.data(), increment.data(), element_size.data(), suction.data(),    1e-3};
   double best = 1e30;
   for (int round = 0; round < rounds; ++round) {
     PetscLogDouble start, end;

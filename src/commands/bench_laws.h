@@ -1,5 +1,6 @@
 #pragma once
-/// What each soil law costs by itself: the stress update of points that fit into the cache, beside the step of bench.cpp.
+/// What each soil law costs by itself: the stress update of points that fit into the cache, beside the step of
+/// bench.cpp.
 #include <string>
 #include <utility>
 #include <vector>

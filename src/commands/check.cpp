@@ -103,10 +103,14 @@ void print_costs(const Scene &scene, const Needs &n) {
        spoken_bytes(n.results).c_str(), n.snapshots);
   const BodyReport &slowest = n.slowest_body().body;
   if (n.critical_step > slowest.critical_step)
-    line("step", "critical %.4g s (2 / omega_max) of the filled mesh, %.2f times that of its fastest cell", n.critical_step, n.critical_step / slowest.critical_step);
-  line(n.critical_step > slowest.critical_step ? "" : "step", "critical %.4g s (2 / omega_max), set by %s at %s; altitude over wave speed: %.3g s",
-       slowest.critical_step, slowest.name.c_str(), place(slowest.slowest_cell, scene.dimension).c_str(), n.altitude_rule);
-  if (n.critical_step < slowest.critical_step) line("", "critical %.4g s with explicit drag, %.2g of that", n.critical_step, n.critical_step / slowest.critical_step);
+    line("step", "critical %.4g s (2 / omega_max) of the filled mesh, %.2f times that of its fastest cell",
+         n.critical_step, n.critical_step / slowest.critical_step);
+  line(n.critical_step > slowest.critical_step ? "" : "step",
+       "critical %.4g s (2 / omega_max), set by %s at %s; altitude over wave speed: %.3g s", slowest.critical_step,
+       slowest.name.c_str(), place(slowest.slowest_cell, scene.dimension).c_str(), n.altitude_rule);
+  if (n.critical_step < slowest.critical_step)
+    line("", "critical %.4g s with explicit drag, %.2g of that", n.critical_step,
+         n.critical_step / slowest.critical_step);
   line("", "%s %.4g s, %.2f of it", n.fixed_step ? "fixed at" : "taken", n.step, n.step / n.critical_step);
   line("stages", "%-16s %-12s %10s %10s %14s %12s", "", "until", "longest s", "steps", "wave transits", "run time");
   for (std::size_t i = 0; i < n.stages.size(); ++i) {
@@ -115,8 +119,8 @@ void print_costs(const Scene &scene, const Needs &n) {
       line("", "%-16s %s", s.name.c_str(), ending_of(scene.stage[i]));
       continue;
     }
-    line("", "%-16s %-12s %10.4g %10.0f %14.4g %12s", s.name.c_str(), ending_of(scene.stage[i]), s.duration,
-         s.steps, s.transits, n.burst_steps ? spoken(s.run_time).c_str() : "-");
+    line("", "%-16s %-12s %10.4g %10.0f %14.4g %12s", s.name.c_str(), ending_of(scene.stage[i]), s.duration, s.steps,
+         s.transits, n.burst_steps ? spoken(s.run_time).c_str() : "-");
   }
   if (n.burst_steps)
     line("run time", "about %s at most on %d rank%s: an estimate from %d steps of %s each; fast soil remaps more often",
@@ -147,8 +151,7 @@ void print_scales(const Needs &n) {
 }
 
 void print_page(const Scene &scene, const Needs &needs, const std::vector<std::string> &advice) {
-  std::printf("%s\n%s, %s\n\n", scene.title.empty() ? scene.file.c_str() : scene.title.c_str(),
-              name_of(scene.phases),
+  std::printf("%s\n%s, %s\n\n", scene.title.empty() ? scene.file.c_str() : scene.title.c_str(), name_of(scene.phases),
               scene.dimension == 2           ? "plane strain on triangles"
               : needs.mesh.one_element_slice ? "a slice of one layer of tetrahedra"
                                              : "tetrahedra");

@@ -1,6 +1,6 @@
 #pragma once
-/// The program's commands, one file each. A command adds itself to the command line and returns what it does when chosen; its
-/// result is the exit status (0 success, 2 bad input, 1 anything else).
+/// The program's commands, one file each. A command adds itself to the command line and returns what it does when
+/// chosen; its result is the exit status (0 success, 2 bad input, 1 anything else).
 #include <CLI/CLI.hpp>
 #include <functional>
 

@@ -1,4 +1,3 @@
-#include <csignal>
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/resource.h>
@@ -9,6 +8,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -71,7 +71,8 @@ std::vector<Trial> matrix(const CompareArguments &arguments) {
   if (!arguments.reference.empty()) {
     const Series series = parse_series(arguments.reference);
     const auto overrides = products(series);
-    if (overrides.size() != 1) throw SceneError("--reference \"" + arguments.reference + "\" must be one run: one value for each key");
+    if (overrides.size() != 1)
+      throw SceneError("--reference \"" + arguments.reference + "\" must be one run: one value for each key");
     Trial trial;
     trial.series = series.name, trial.overrides = overrides.front(), trial.is_reference = true;
     trials.push_back(trial);
@@ -99,7 +100,9 @@ bool resume(const CompareArguments &arguments, Trial &trial) {
 }
 
 void remember(const CompareArguments &arguments, const Trial &trial) {
-  std::ofstream(trial.folder + "/trial") << description(arguments, trial) << trial.failed << " " << trial.cpu << " " << trial.wall << "\n" << trial.cause << "\n";
+  std::ofstream(trial.folder + "/trial") << description(arguments, trial) << trial.failed << " " << trial.cpu << " "
+                                         << trial.wall << "\n"
+                                         << trial.cause << "\n";
 }
 
 pid_t start(const CompareArguments &arguments, const Trial &trial) {
@@ -134,7 +137,9 @@ std::string last_line(const std::string &path) {
 /// Runs what is not done yet, `jobs` at a time. Wall and processor time are of the whole process, meshing included.
 void run_all(const CompareArguments &arguments, std::vector<Trial> &trials) {
   using Clock = std::chrono::steady_clock;
-  const auto seconds_since = [](Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); };
+  const auto seconds_since = [](Clock::time_point t) {
+    return std::chrono::duration<double>(Clock::now() - t).count();
+  };
   std::map<pid_t, std::pair<Trial *, Clock::time_point>> running;
   size_t next = 0, done = std::count_if(trials.begin(), trials.end(), [](const Trial &t) { return t.done; });
   const size_t before = done;
@@ -152,16 +157,20 @@ void run_all(const CompareArguments &arguments, std::vector<Trial> &trials) {
     if (found == running.end()) continue;
     Trial &trial = *found->second.first;
     trial.wall = seconds_since(found->second.second);
-    trial.cpu = usage.ru_utime.tv_sec + usage.ru_stime.tv_sec + 1e-6 * (usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+    trial.cpu =
+        usage.ru_utime.tv_sec + usage.ru_stime.tv_sec + 1e-6 * (usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
     running.erase(found);
     trial.done = true, ++done;
     trial.failed = !WIFEXITED(status) || WEXITSTATUS(status) != 0;
     if (trial.failed) trial.cause = last_line(trial.folder + "/screen");
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 2) throw SceneError(trial.cause.substr(trial.cause.rfind("talus: ", 0) == 0 ? 7 : 0));
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 2)
+      throw SceneError(trial.cause.substr(trial.cause.rfind("talus: ", 0) == 0 ? 7 : 0));
     if (!interrupted) remember(arguments, trial);
-    const double left = seconds_since(begin) / static_cast<double>(done - before) * static_cast<double>(trials.size() - done);
-    std::fprintf(stderr, "%zu of %zu: %s %s %s in %.3g s; about %.0f s left\n", done, trials.size(), trial.series.c_str(), joined(trial.overrides).c_str(),
-                 trial.failed ? "FAILED" : "done", trial.wall, left);
+    const double left =
+        seconds_since(begin) / static_cast<double>(done - before) * static_cast<double>(trials.size() - done);
+    std::fprintf(stderr, "%zu of %zu: %s %s %s in %.3g s; about %.0f s left\n", done, trials.size(),
+                 trial.series.c_str(), joined(trial.overrides).c_str(), trial.failed ? "FAILED" : "done", trial.wall,
+                 left);
   }
   if (interrupted) throw std::runtime_error("interrupted; the same command goes on where it stopped");
 }
@@ -170,7 +179,8 @@ void run_all(const CompareArguments &arguments, std::vector<Trial> &trials) {
 void read_counts(Trial &trial) {
   std::ifstream file(trial.folder + "/run.log");
   for (std::string line; std::getline(file, line);) {
-    const size_t steps = line.find(" steps from "), evaluations = line.find(" evaluations of"), rejections = line.find(" attempts rejected");
+    const size_t steps = line.find(" steps from "), evaluations = line.find(" evaluations of"),
+                 rejections = line.find(" attempts rejected");
     if (steps == std::string::npos || evaluations == std::string::npos || rejections == std::string::npos) continue;
     const auto before = [&](size_t at) { return std::atoll(line.c_str() + line.rfind(' ', at - 1) + 1); };
     trial.steps = before(steps), trial.evaluations = before(evaluations), trial.rejections = before(rejections);
@@ -192,7 +202,9 @@ Reference reference_of(const CompareArguments &arguments, const std::vector<Tria
     if (own.uncertainty < best.uncertainty) best = {own.value, own.uncertainty, name + ": " + own.origin};
   }
   if (std::isinf(best.uncertainty))
-    std::fprintf(stderr, "no series has two runs that differ by their last key: without --exact or --reference there is nothing to measure errors against\n");
+    std::fprintf(stderr,
+                 "no series has two runs that differ by their last key: without --exact or --reference there is "
+                 "nothing to measure errors against\n");
   return best;
 }
 
@@ -201,21 +213,25 @@ void write_csv(const std::string &path, const std::vector<Trial> &trials) {
   file.precision(10);
   file << "series,overrides,parameter,value,error,processor_s,wall_s,steps,evaluations,rejections,pareto,failure\n";
   for (const Trial &t : trials) {
-    const bool beaten = std::any_of(trials.begin(), trials.end(), [&](const Trial &o) { return !o.failed && o.cpu < t.cpu && o.error < t.error; });
-    file << t.series << ",\"" << joined(t.overrides) << "\"," << t.parameter << "," << t.value << "," << t.error << "," << t.cpu << "," << t.wall << ","
-         << t.steps << "," << t.evaluations << "," << t.rejections << "," << (!t.failed && std::isfinite(t.error) && !beaten) << ",\"" << t.cause << "\"\n";
+    const bool beaten = std::any_of(trials.begin(), trials.end(),
+                                    [&](const Trial &o) { return !o.failed && o.cpu < t.cpu && o.error < t.error; });
+    file << t.series << ",\"" << joined(t.overrides) << "\"," << t.parameter << "," << t.value << "," << t.error << ","
+         << t.cpu << "," << t.wall << "," << t.steps << "," << t.evaluations << "," << t.rejections << ","
+         << (!t.failed && std::isfinite(t.error) && !beaten) << ",\"" << t.cause << "\"\n";
   }
 }
 
 void print(const std::vector<Trial> &trials, const std::string &measure, const Reference &reference) {
-  std::printf("%s; reference %.8g +- %.2g (%s)\n\n", measure.c_str(), reference.value, reference.uncertainty, reference.origin.c_str());
-  std::printf("%-20s %-50s %14s %10s %10s %10s %10s %8s\n", "series", "overrides", "value", "error", "cpu s", "steps", "evals", "rejected");
+  std::printf("%s; reference %.8g +- %.2g (%s)\n\n", measure.c_str(), reference.value, reference.uncertainty,
+              reference.origin.c_str());
+  std::printf("%-20s %-50s %14s %10s %10s %10s %10s %8s\n", "series", "overrides", "value", "error", "cpu s", "steps",
+              "evals", "rejected");
   for (const Trial &t : trials) {
     if (t.failed)
       std::printf("%-20s %-50s FAILED: %s\n", t.series.c_str(), joined(t.overrides).c_str(), t.cause.c_str());
     else
-      std::printf("%-20s %-50s %14.8g %10.2e %10.3g %10lld %10lld %8lld\n", t.series.c_str(), joined(t.overrides).c_str(), t.value, t.error, t.cpu, t.steps,
-                  t.evaluations, t.rejections);
+      std::printf("%-20s %-50s %14.8g %10.2e %10.3g %10lld %10lld %8lld\n", t.series.c_str(),
+                  joined(t.overrides).c_str(), t.value, t.error, t.cpu, t.steps, t.evaluations, t.rejections);
   }
 }
 
@@ -227,11 +243,14 @@ int compare(CompareArguments arguments) {
   if (ranks > 1) throw SceneError("`talus compare` starts its runs itself: call it on one rank, and give --jobs");
   arguments.scene = find_scene(arguments.scene);
   read_scene(arguments.scene, arguments.set);
-  if (arguments.directory.empty()) arguments.directory = "results/compare_" + fs::path(arguments.scene).parent_path().filename().string();
+  if (arguments.directory.empty())
+    arguments.directory = "results/compare_" + fs::path(arguments.scene).parent_path().filename().string();
   if (arguments.jobs == 0) arguments.jobs = std::max(1u, std::thread::hardware_concurrency());
   const Measure measure = parse_measure(arguments.measure);
-  if (!arguments.exact.empty() && !arguments.reference.empty()) throw SceneError("--exact and --reference both say what is true: give one of them");
-  if (!arguments.exact.empty() && !std::isfinite(number_of(arguments.exact))) throw SceneError("--exact " + arguments.exact + " must be a number");
+  if (!arguments.exact.empty() && !arguments.reference.empty())
+    throw SceneError("--exact and --reference both say what is true: give one of them");
+  if (!arguments.exact.empty() && !std::isfinite(number_of(arguments.exact)))
+    throw SceneError("--exact " + arguments.exact + " must be a number");
   std::vector<Trial> trials = matrix(arguments);
   for (Trial &trial : trials) {
     std::vector<std::string> all = arguments.set;
@@ -251,8 +270,9 @@ int compare(CompareArguments arguments) {
   for (Trial &trial : trials) trial.error = std::abs(trial.value - reference.value);
   print(trials, arguments.measure, reference);
   write_csv(arguments.directory + "/compare.csv", trials);
-  std::ofstream(arguments.directory + "/reference.csv") << std::setprecision(12) << "measure,value,uncertainty,origin\n\"" << arguments.measure << "\"," << reference.value << ","
-                                                         << reference.uncertainty << ",\"" << reference.origin << "\"\n";
+  std::ofstream(arguments.directory + "/reference.csv")
+      << std::setprecision(12) << "measure,value,uncertainty,origin\n\"" << arguments.measure << "\","
+      << reference.value << "," << reference.uncertainty << ",\"" << reference.origin << "\"\n";
   if (!arguments.no_plot) draw_comparison(arguments.directory);
   std::fprintf(stderr, "table and chart are in %s\n", arguments.directory.c_str());
   return std::any_of(trials.begin(), trials.end(), [](const Trial &t) { return t.failed; }) ? 1 : 0;
@@ -262,20 +282,29 @@ int compare(CompareArguments arguments) {
 
 Action add_compare(CLI::App &app) {
   auto arguments = std::make_shared<CompareArguments>();
-  CLI::App *command = app.add_subcommand("compare", "run a scene in many variants: error against time, table and chart");
+  CLI::App *command =
+      app.add_subcommand("compare", "run a scene in many variants: error against time, table and chart");
   command->add_option("SCENE", arguments->scene, "scene file (.toml) or the name of a gallery scene")->required();
   command
       ->add_option("--series", arguments->series,
-                   "a line of the chart: \"NAME: key=a,b,c; key=d\"; every combination is run, and the values of the last key count as its refinement")
+                   "a line of the chart: \"NAME: key=a,b,c; key=d\"; every combination is run, and the values of the "
+                   "last key count as its refinement")
       ->required()
       ->take_all();
-  command->add_option("--measure", arguments->measure, "what is compared: a column of history.csv at the end, COLUMN@TIME, or max:COLUMN")->required();
-  command->add_option("--exact", arguments->exact, "the true value; without it the series that converges best is extrapolated");
+  command
+      ->add_option("--measure", arguments->measure,
+                   "what is compared: a column of history.csv at the end, COLUMN@TIME, or max:COLUMN")
+      ->required();
+  command->add_option("--exact", arguments->exact,
+                      "the true value; without it the series that converges best is extrapolated");
   command->add_option("--reference", arguments->reference,
-                      "the run whose value counts as true: \"NAME: key=a; key=b\", such as \"finite elements: stage.0.kind=quasi_static\"");
+                      "the run whose value counts as true: \"NAME: key=a; key=b\", such as \"finite elements: "
+                      "stage.0.kind=quasi_static\"");
   command->add_option("--set", arguments->set, "override a key in all runs: key.path=value")->take_all();
-  command->add_option("-o,--output", arguments->directory, "folder of runs, compare.csv and compare.png (default results/compare_NAME)");
-  command->add_option("-j,--jobs", arguments->jobs, "runs at the same time (default: one per core)")->check(CLI::Range(1, 1024));
+  command->add_option("-o,--output", arguments->directory,
+                      "folder of runs, compare.csv and compare.png (default results/compare_NAME)");
+  command->add_option("-j,--jobs", arguments->jobs, "runs at the same time (default: one per core)")
+      ->check(CLI::Range(1, 1024));
   command->add_flag("--no-plot", arguments->no_plot, "do not draw the chart");
   return [arguments] { return compare(*arguments); };
 }

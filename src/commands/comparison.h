@@ -45,12 +45,14 @@ inline std::vector<std::string> pieces(const std::string &text, char separator) 
 inline Series parse_series(const std::string &text) {
   const size_t colon = text.find(':');
   if (colon == std::string::npos || trimmed(text.substr(0, colon)).empty())
-    throw SceneError("--series \"" + text + "\" needs a name and a colon first, such as \"euler: integrator.fraction=0.2,0.4\"");
+    throw SceneError("--series \"" + text +
+                     "\" needs a name and a colon first, such as \"euler: integrator.fraction=0.2,0.4\"");
   Series series{trimmed(text.substr(0, colon)), {}};
   for (const std::string &part : pieces(text.substr(colon + 1), ';')) {
     if (part.empty()) continue;
     const size_t equal = part.find('=');
-    if (equal == std::string::npos || equal == 0) throw SceneError("--series \"" + text + "\": `" + part + "` must be key.path=value,value,...");
+    if (equal == std::string::npos || equal == 0)
+      throw SceneError("--series \"" + text + "\": `" + part + "` must be key.path=value,value,...");
     series.lists.emplace_back(trimmed(part.substr(0, equal)), pieces(part.substr(equal + 1), ','));
     for (const std::string &value : series.lists.back().second)
       if (value.empty()) throw SceneError("--series \"" + text + "\": `" + part + "` has an empty value");
@@ -95,7 +97,8 @@ inline Measure parse_measure(const std::string &text) {
   const size_t at = m.column.find('@');
   if (at == std::string::npos) return m;
   m.time = number_of(m.column.substr(at + 1)), m.column = m.column.substr(0, at);
-  if (m.largest || !std::isfinite(m.time)) throw SceneError("--measure " + text + " must be COLUMN, COLUMN@TIME or max:COLUMN");
+  if (m.largest || !std::isfinite(m.time))
+    throw SceneError("--measure " + text + " must be COLUMN, COLUMN@TIME or max:COLUMN");
   return m;
 }
 
@@ -106,14 +109,18 @@ inline double value_of(const std::string &path, const Measure &measure) {
   std::getline(file, line);
   const std::vector<std::string> names = pieces(line, ',');
   const auto found = std::find(names.begin(), names.end(), measure.column);
-  if (found == names.end()) throw SceneError("--measure: " + path + " has no column " + measure.column + "; it has " + line);
+  if (found == names.end())
+    throw SceneError("--measure: " + path + " has no column " + measure.column + "; it has " + line);
   const size_t column = found - names.begin();
   double last_time = 0, last = NAN, largest = -INFINITY;
   while (std::getline(file, line)) {
     const std::vector<std::string> cells = pieces(line, ',');
     if (cells.size() != names.size()) continue;
     const double time = number_of(cells[0]), value = number_of(cells[column]);
-    if (time >= measure.time * (1 - 1e-9)) return std::isnan(last) || time <= measure.time ? value : last + (value - last) * (measure.time - last_time) / (time - last_time);
+    if (time >= measure.time * (1 - 1e-9))
+      return std::isnan(last) || time <= measure.time
+                 ? value
+                 : last + (value - last) * (measure.time - last_time) / (time - last_time);
     last_time = time, last = value, largest = std::max(largest, value);
   }
   return measure.largest ? largest : std::isnan(measure.time) ? last : NAN;
@@ -124,19 +131,23 @@ struct Reference {
   std::string origin;
 };
 
-/// Limit of values refined by a parameter that goes to zero, from the three finest: Richardson's extrapolation with the order that
-/// they show, if they converge at one between 0.5 and 8; otherwise the finest value, as uncertain as the last two refinements changed it. A
-/// refinement that changed nothing, such as a tolerance where stability rules, is none.
+/// Limit of values refined by a parameter that goes to zero, from the three finest: Richardson's extrapolation with the
+/// order that they show, if they converge at one between 0.5 and 8; otherwise the finest value, as uncertain as the
+/// last two refinements changed it. A refinement that changed nothing, such as a tolerance where stability rules, is
+/// none.
 inline Reference extrapolate(std::vector<std::pair<double, double>> refined) {
   std::erase_if(refined, [](const auto &p) { return !std::isfinite(p.first) || !std::isfinite(p.second); });
   std::sort(refined.rbegin(), refined.rend());
-  refined.erase(std::unique(refined.begin(), refined.end(), [](const auto &p, const auto &finer) { return finer.second == p.second; }), refined.end());
+  refined.erase(std::unique(refined.begin(), refined.end(),
+                            [](const auto &p, const auto &finer) { return finer.second == p.second; }),
+                refined.end());
   std::reverse(refined.begin(), refined.end());
   if (refined.size() < 2) return {NAN, INFINITY, "too few runs"};
   const double finest = refined[0].second, change = refined[1].second - finest;
   double uncertain = std::abs(change);
   if (refined.size() > 2) {
-    const double before = refined[2].second - refined[1].second, r1 = refined[1].first / refined[0].first, r2 = refined[2].first / refined[1].first;
+    const double before = refined[2].second - refined[1].second, r1 = refined[1].first / refined[0].first,
+                 r2 = refined[2].first / refined[1].first;
     uncertain = std::max(uncertain, std::abs(before));
     if (change * before > 0 && std::abs(r1 - r2) < 0.05 * r1) {
       const double order = std::log(before / change) / std::log(r1);

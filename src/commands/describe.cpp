@@ -1,3 +1,5 @@
+#include "scene/describe.h"
+
 #include <iostream>
 
 #include "commands/commands.h"
@@ -6,7 +8,6 @@
 #include "physics/laws/laws.h"
 #include "physics/pores/permeability.h"
 #include "physics/pores/retention.h"
-#include "scene/describe.h"
 #include "scene/scene.h"
 #include "solvers/integrators.h"
 

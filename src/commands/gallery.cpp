@@ -26,7 +26,8 @@ std::string find_scene(const std::string &name) {
   std::string known;
   if (fs::is_directory(gallery))
     for (const auto &entry : fs::directory_iterator(gallery))
-      if (fs::is_regular_file(entry.path() / "scene.toml")) known += (known.empty() ? "" : ", ") + entry.path().filename().string();
+      if (fs::is_regular_file(entry.path() / "scene.toml"))
+        known += (known.empty() ? "" : ", ") + entry.path().filename().string();
   throw SceneError(name + " is neither a file nor a gallery scene (" + known + ")");
 }
 

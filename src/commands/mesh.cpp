@@ -33,7 +33,9 @@ double quantity(const char *option, const std::string &text, Unit unit, Range ra
 /// For talus-mesh, which takes metres and checks what they are good for.
 std::vector<std::string> options_of(const MeshArguments &a) {
   std::vector<std::string> options{a.source, "-o", a.file, "--dimension", a.dimension};
-  const auto metres = [](const char *option, const std::string &text) { return shortest(in_unit_of(option, text, metre)); };
+  const auto metres = [](const char *option, const std::string &text) {
+    return shortest(in_unit_of(option, text, metre));
+  };
   for (const auto &[name, value] : {std::pair{"--size", a.size}, {"--thickness", a.thickness}})
     if (!value.empty()) options.insert(options.end(), {name, metres(name, value)});
   for (const auto &[name, value] : {std::pair{"--layers", a.layers}, {"--format", a.format}})

@@ -36,7 +36,8 @@ double softening(const Law &law, double cell_size, double pressure) {
           if (!one.softens()) return 0;
           one.prepare();
           const double scale = one.reference_size > 0 ? cell_size / one.reference_size : 1;
-          const double drop = one.cohesion * std::cos(one.friction_angle) - one.residual_c * std::cos(one.residual_phi) +
+          const double drop = one.cohesion * std::cos(one.friction_angle) -
+                              one.residual_c * std::cos(one.residual_phi) +
                               pressure * (std::sin(one.friction_angle) - std::sin(one.residual_phi));
           return one.shape_factor * scale * drop / (2 * one.shear_modulus());
         }
@@ -226,16 +227,22 @@ class Adviser {
           digits(20 * needs_.layer.transit, 1) + " s (20 wave transits) and damping.");
   }
 
-  /// Elastic soil at rest presses sideways with nu / (1 - nu); where that is less than the soil needs to stand, all of it yields.
+  /// Elastic soil at rest presses sideways with nu / (1 - nu); where that is less than the soil needs to stand, all of
+  /// it yields.
   void yielding_ground(const BodyNeeds &b) {
-    const bool by_weight = std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &s) { return s.kind == StageKind::quasi_static && s.initial_stress == InitialStress::kept; });
+    const bool by_weight = std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &s) {
+      return s.kind == StageKind::quasi_static && s.initial_stress == InitialStress::kept;
+    });
     const auto *soil = std::get_if<MohrCoulomb>(&b.law);
     if (!by_weight || !soil || needs_.gravity == 0) return;
     const double K = bulk_modulus(b.law), G = shear_modulus(b.law), nu = (3 * K - 2 * G) / (2 * (3 * K + G));
     if (std::sin(soil->friction_angle) >= 1 - 2 * nu || soil->friction_angle == 0) return;
-    say("Elastic ground of " + b.body.name + " at rest presses sideways with nu / (1 - nu) = " + digits(nu / (1 - nu), 2) +
-        ", too little to stand at its friction angle but for cohesion: much of it yields under its weight alone, and Newton's iterations may stall; take "
-        "initial_stress = \"k0\", or poisson_ratio above " + digits((1 - std::sin(soil->friction_angle)) / 2, 2) + " (sin phi > 1 - 2 nu).");
+    say("Elastic ground of " + b.body.name +
+        " at rest presses sideways with nu / (1 - nu) = " + digits(nu / (1 - nu), 2) +
+        ", too little to stand at its friction angle but for cohesion: much of it yields under its weight alone, and "
+        "Newton's iterations may stall; take "
+        "initial_stress = \"k0\", or poisson_ratio above " +
+        digits((1 - std::sin(soil->friction_angle)) / 2, 2) + " (sin phi > 1 - 2 nu).");
   }
 
   void stage(const Stage &stage) {
@@ -309,8 +316,9 @@ class Adviser {
           " (less in proportion where a stage stands for a longer time). Below " + digits(d.undrained_below, 1) +
           " m/s failure is undrained: take total-stress strengths; in between pore pressure has to be computed.");
     else if (fluids_move(scene_.phases))
-      say("Pore water that moves is needed for k between " + digits(d.undrained_below, 1) + " m/s, below which soil stays undrained in the " + time +
-          " of the stages, and " + digits(d.drained_above, 1) + " m/s, above which phases = \"drained\" gives the same for less.");
+      say("Pore water that moves is needed for k between " + digits(d.undrained_below, 1) +
+          " m/s, below which soil stays undrained in the " + time + " of the stages, and " +
+          digits(d.drained_above, 1) + " m/s, above which phases = \"drained\" gives the same for less.");
     else
       say("Dry is right for soil without water, or with total-stress strengths; with water in its pores the soil would "
           "stay drained in " +
@@ -323,16 +331,21 @@ class Adviser {
     if (scene_.phases != PhaseModel::unsaturated && !gas_moves) return;
     const Liquid liquid(scene_.water);
     for (std::size_t b = 0; b < scene_.body.size(); ++b) {
-      const SoilPores soil(scene_.body[b], scene_.water.density * (needs_.gravity > 0 ? needs_.gravity : 9.81), scene_.water.viscosity);
+      const SoilPores soil(scene_.body[b], scene_.water.density * (needs_.gravity > 0 ? needs_.gravity : 9.81),
+                           scene_.water.viscosity);
       double first = 0, last = 0;
       for (double share = 2 * residual_gas; share < 0.99 * soil.largest_gas_share(); share *= 1.05) {
-        if (hyperbolic(soil, liquid, PoreGas(scene_.gas), constrained_modulus(needs_.bodies[b].law), scene_.body[b].grain_density, share, gas_moves, bishop)) continue;
+        if (hyperbolic(soil, liquid, PoreGas(scene_.gas), constrained_modulus(needs_.bodies[b].law),
+                       scene_.body[b].grain_density, share, gas_moves, bishop))
+          continue;
         if (first == 0) first = share;
         last = share;
       }
       if (first > 0)
-        say("The equations of " + scene_.body[b].name + " are not hyperbolic at saturations from " + digits(1 - last, 4) + " to " + digits(1 - first, 4) +
-            " with net stress and no drag: short waves grow there unless permeability is low; set water.stress = \"bishop\", or take stiffer soil or water.");
+        say("The equations of " + scene_.body[b].name + " are not hyperbolic at saturations from " +
+            digits(1 - last, 4) + " to " + digits(1 - first, 4) +
+            " with net stress and no drag: short waves grow there unless permeability is low; set water.stress = "
+            "\"bishop\", or take stiffer soil or water.");
     }
   }
 
@@ -374,7 +387,9 @@ Needs find_needs(Scene &scene) {
     b.softening = softening(b.law, b.body.cell_size, b.density * head_above(scene, middle, needs.bodies));
   }
   const StepRule rule = step_rule(read_integrator(scene.integrator, fluids_move(scene.phases)));
-  needs.critical_step = rule.bound == FrequencyBound::mesh || scene.water.drag == PoreDrag::at_start ? simulation->critical_step() : needs.slowest_body().body.critical_step;
+  needs.critical_step = rule.bound == FrequencyBound::mesh || scene.water.drag == PoreDrag::at_start
+                            ? simulation->critical_step()
+                            : needs.slowest_body().body.critical_step;
   needs.altitude_rule = needs.mesh.smallest_altitude / fastest;
   needs.fixed_step = rule.fixed > 0;
   needs.step = needs.fixed_step ? rule.fixed : rule.share * needs.critical_step;

@@ -14,7 +14,7 @@ struct BodyNeeds {
   Law law;
   double density = 0;                      ///< mean [kg/m3]
   double wave_speed = 0, shear_speed = 0;  ///< elastic, c_p and c_s [m/s]
-  double averaging_length = 0;  ///< of the plastic strain that softens [m]; 0: none
+  double averaging_length = 0;             ///< of the plastic strain that softens [m]; 0: none
   double softening =
       0;  ///< slope at which strength falls with plastic strain, over 2 G [-]; 0: the soil does not soften
 };

@@ -20,7 +20,10 @@ void on_signal(int) { interrupted = 1; }
 int run(const RunArguments &arguments) {
   Scene scene = read_scene(find_scene(arguments.scene), arguments.set);
   RunOptions options;
-  options.directory = arguments.directory.empty() ? "results/" + std::filesystem::path(find_scene(arguments.scene)).parent_path().filename().string() : arguments.directory;
+  options.directory =
+      arguments.directory.empty()
+          ? "results/" + std::filesystem::path(find_scene(arguments.scene)).parent_path().filename().string()
+          : arguments.directory;
   options.pictures = !arguments.no_pictures;
   options.resume = arguments.resume;
   std::signal(SIGINT, on_signal);
@@ -29,7 +32,9 @@ int run(const RunArguments &arguments) {
   make_simulation(PETSC_COMM_WORLD, scene, options)->run();
   int rank;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  if (rank == 0) std::fprintf(stderr, "results are in %s: %srun.xdmf for ParaView\n", options.directory.c_str(), options.pictures ? "report.html to read, " : "");
+  if (rank == 0)
+    std::fprintf(stderr, "results are in %s: %srun.xdmf for ParaView\n", options.directory.c_str(),
+                 options.pictures ? "report.html to read, " : "");
   return 0;
 }
 
@@ -41,7 +46,8 @@ Action add_run(CLI::App &app) {
   command->add_option("SCENE", arguments->scene, "scene file (.toml) or the name of a gallery scene")->required();
   command->add_option("-o,--output", arguments->directory, "folder of the results (default results/NAME)");
   command->add_option("--set", arguments->set, "override a key of the scene: key.path=value")->take_all();
-  command->add_flag("--resume", arguments->resume, "go on with the run in that folder from its last checkpoint, on as many ranks as before");
+  command->add_flag("--resume", arguments->resume,
+                    "go on with the run in that folder from its last checkpoint, on as many ranks as before");
   command->add_flag("--no-pictures", arguments->no_pictures, "do not draw pictures at the end");
   return [arguments] { return run(*arguments); };
 }

@@ -77,7 +77,8 @@ std::vector<ElementState> Rung::element_test(const std::string &name, const std:
   const auto begin = std::chrono::steady_clock::now();
   SoilFile soil;
   TableReader::from_file(scene_, overrides).fill(soil);
-  const auto found = std::find_if(soil.test.begin(), soil.test.end(), [&](const ElementTest &test) { return test.name == name; });
+  const auto found =
+      std::find_if(soil.test.begin(), soil.test.end(), [&](const ElementTest &test) { return test.name == name; });
   if (found == soil.test.end()) throw std::out_of_range("no test " + name + " in " + scene_);
   const auto states = drive(read_law(soil.material.law), *found);
   wall_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -39,7 +39,8 @@ class Rung {
   Run run(const std::vector<std::string> &overrides = {});
   /// Factor of safety of the rung's scene with these overrides.
   FactorOfSafety factor_of_safety(const std::vector<std::string> &overrides = {});
-  /// An element test of the rung's scene, which is then a file of `talus soil`. Throws std::out_of_range for an unknown name.
+  /// An element test of the rung's scene, which is then a file of `talus soil`. Throws std::out_of_range for an unknown
+  /// name.
   std::vector<ElementState> element_test(const std::string &name, const std::vector<std::string> &overrides = {});
   /// Claims that a number is right to within a tolerance relative to `scale`; 0 takes the exact value itself.
   void compare(const std::string &quantity, double exact, double computed, double tolerance, double scale = 0);

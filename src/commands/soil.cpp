@@ -43,10 +43,12 @@ Job from_scene(const std::string &file, const SoilArguments &arguments) {
   const Scene scene = read_scene(file, of_scene);
   std::vector<std::string> names;
   for (const BodySource &body : scene.body) names.push_back(body.name);
-  if (arguments.body.empty() && names.size() > 1) throw SceneError(file + " has several soils: choose one by --body, of " + join(names));
+  if (arguments.body.empty() && names.size() > 1)
+    throw SceneError(file + " has several soils: choose one by --body, of " + join(names));
   const std::string wanted = arguments.body.empty() ? names[0] : arguments.body;
   const auto at = std::find(names.begin(), names.end(), wanted);
-  if (at == names.end()) throw SceneError("--body " + wanted + " is no soil of " + file + "; " + suggestion(wanted, names));
+  if (at == names.end())
+    throw SceneError("--body " + wanted + " is no soil of " + file + "; " + suggestion(wanted, names));
   ScenesTests tests;
   TableReader::from_text("", "--set", of_tests).fill(tests);
   if (tests.test.empty()) tests.test.emplace_back().name = "triaxial_compression";
@@ -54,16 +56,20 @@ Job from_scene(const std::string &file, const SoilArguments &arguments) {
 }
 
 Job from_soil_file(const TableReader &root, const SoilArguments &arguments) {
-  if (!arguments.body.empty()) throw SceneError("--body chooses a soil of a scene; " + arguments.file + " has one [material]");
+  if (!arguments.body.empty())
+    throw SceneError("--body chooses a soil of a scene; " + arguments.file + " has one [material]");
   SoilFile soil;
   TableReader(root).fill(soil);
-  if (!root.has("material")) root.complain("material", "is missing: add a table [material] with law and its parameters");
+  if (!root.has("material"))
+    root.complain("material", "is missing: add a table [material] with law and its parameters");
   if (soil.test.empty()) root.complain("test", "is missing: add a table [test.NAME] with its type");
   return {soil.title, read_law(soil.material.law), soil.test};
 }
 
-/// Law by law the same columns, then what the law remembers. Pressures and q are positive in compression, strain and stress in tension.
-void write_csv(const std::string &path, const Job &job, const ElementTest &test, const std::vector<ElementState> &states) {
+/// Law by law the same columns, then what the law remembers. Pressures and q are positive in compression, strain and
+/// stress in tension.
+void write_csv(const std::string &path, const Job &job, const ElementTest &test,
+               const std::vector<ElementState> &states) {
   std::ofstream csv(path);
   csv << "step";
   for (const char *name : Control::strain_keys) csv << ',' << name;
@@ -92,8 +98,9 @@ void summarise(const ElementTest &test, const std::vector<ElementState> &states)
   for (const ElementState &s : states)
     if (s.deviator() > peak->deviator()) peak = &s;
   const ElementState &end = states.back();
-  std::printf("%-24s %10.4g %10.4g %10.4g %10.4g %10.4g %10.4g\n", test.name.c_str(), peak->deviator() / 1e3, peak->mean_pressure() / 1e3,
-              end.deviator() / 1e3, end.mean_pressure() / 1e3, end.pore_pressure / 1e3, 100 * end.compression());
+  std::printf("%-24s %10.4g %10.4g %10.4g %10.4g %10.4g %10.4g\n", test.name.c_str(), peak->deviator() / 1e3,
+              peak->mean_pressure() / 1e3, end.deviator() / 1e3, end.mean_pressure() / 1e3, end.pore_pressure / 1e3,
+              100 * end.compression());
 }
 
 int test_soil(const SoilArguments &arguments) {
@@ -108,8 +115,8 @@ int test_soil(const SoilArguments &arguments) {
   for (const ElementTest &test : job.tests) refuse_unsuitable(job.law, test);
   std::filesystem::create_directories(dir);
 
-  std::printf("%s (%s)\n%-24s %10s %10s %10s %10s %10s %10s\n", job.title.c_str(), law_name(job.law), "test", "peak q kPa", "at p' kPa",
-              "end q kPa", "p' kPa", "u kPa", "-eps_v %");
+  std::printf("%s (%s)\n%-24s %10s %10s %10s %10s %10s %10s\n", job.title.c_str(), law_name(job.law), "test",
+              "peak q kPa", "at p' kPa", "end q kPa", "p' kPa", "u kPa", "-eps_v %");
   std::vector<std::string> names;
   for (const ElementTest &test : job.tests) {
     const std::vector<ElementState> states = drive(job.law, test);
@@ -126,11 +133,15 @@ int test_soil(const SoilArguments &arguments) {
 
 Action add_soil(CLI::App &app) {
   auto arguments = std::make_shared<SoilArguments>();
-  CLI::App *command = app.add_subcommand("soil", "element tests of a soil: triaxial, biaxial, oedometer, shear; CSV and plot");
+  CLI::App *command =
+      app.add_subcommand("soil", "element tests of a soil: triaxial, biaxial, oedometer, shear; CSV and plot");
   command->add_option("FILE", arguments->file, "file with [material] and [test.NAME], or a scene")->required();
   command->add_option("--body", arguments->body, "soil of the scene");
   command->add_option("-o,--output", arguments->directory, "folder of the results (default results/soil-NAME)");
-  command->add_option("--set", arguments->set, "override a key: material.cohesion=5e3; test.NAME.type=oedometer adds a test")->take_all();
+  command
+      ->add_option("--set", arguments->set,
+                   "override a key: material.cohesion=5e3; test.NAME.type=oedometer adds a test")
+      ->take_all();
   command->add_flag("--no-pictures", arguments->no_pictures, "do not draw the plot");
   return [arguments] {
     int rank;

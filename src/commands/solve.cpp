@@ -26,7 +26,9 @@ int solve(const SolveArguments &arguments) {
   if (scene.stage.empty())
     scene.complain("stage", "has no quasi-static stage to solve; set its kind = \"quasi_static\"");
   RunOptions options;
-  options.directory = arguments.directory.empty() ? "results/" + std::filesystem::path(file).parent_path().filename().string() : arguments.directory;
+  options.directory = arguments.directory.empty()
+                          ? "results/" + std::filesystem::path(file).parent_path().filename().string()
+                          : arguments.directory;
   options.pictures = false, options.gauss_points = true;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
@@ -36,7 +38,9 @@ int solve(const SolveArguments &arguments) {
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   if (arguments.factor_of_safety) {
     const FactorOfSafety factor = simulation->factor_of_safety();
-    if (rank == 0) std::printf("factor of safety %.3f: equilibrium with strength divided by %.4g, none by %.4g\n", factor.value(), factor.lower, factor.upper);
+    if (rank == 0)
+      std::printf("factor of safety %.3f: equilibrium with strength divided by %.4g, none by %.4g\n", factor.value(),
+                  factor.lower, factor.upper);
   } else {
     simulation->run();
   }
@@ -46,7 +50,9 @@ int solve(const SolveArguments &arguments) {
     if (scene.phases != PhaseModel::dry) choice.fields.push_back("pore_pressure");
     draw_pictures(options.directory, choice);
   }
-  if (rank == 0) std::fprintf(stderr, "results are in %s: %srun.xdmf for ParaView\n", options.directory.c_str(), arguments.no_pictures ? "" : "report.html to read, ");
+  if (rank == 0)
+    std::fprintf(stderr, "results are in %s: %srun.xdmf for ParaView\n", options.directory.c_str(),
+                 arguments.no_pictures ? "" : "report.html to read, ");
   return 0;
 }
 
@@ -54,11 +60,13 @@ int solve(const SolveArguments &arguments) {
 
 Action add_solve(CLI::App &app) {
   auto arguments = std::make_shared<SolveArguments>();
-  CLI::App *command = app.add_subcommand("solve", "quasi-static stages of a scene by finite elements; factor of safety");
+  CLI::App *command =
+      app.add_subcommand("solve", "quasi-static stages of a scene by finite elements; factor of safety");
   command->add_option("SCENE", arguments->scene, "scene file (.toml) or the name of a gallery scene")->required();
   command->add_option("-o,--output", arguments->directory, "folder of the results (default results/NAME)");
   command->add_option("--set", arguments->set, "override a key of the scene: key.path=value")->take_all();
-  command->add_flag("--factor-of-safety", arguments->factor_of_safety, "reduce strength after the stages until equilibrium is lost");
+  command->add_flag("--factor-of-safety", arguments->factor_of_safety,
+                    "reduce strength after the stages until equilibrium is lost");
   command->add_flag("--no-pictures", arguments->no_pictures, "do not draw pictures at the end");
   return [arguments] { return solve(*arguments); };
 }

@@ -46,7 +46,8 @@ std::string load(const std::string &path) {
     throw std::runtime_error(path + " is no checkpoint of this version of Talus");
   std::memcpy(&sum, file.data() + head - sizeof sum, sizeof sum);
   file.erase(0, head);
-  if (fingerprint(file.data(), file.size()) != sum) throw std::runtime_error(path + " is damaged: its content does not match its fingerprint");
+  if (fingerprint(file.data(), file.size()) != sum)
+    throw std::runtime_error(path + " is damaged: its content does not match its fingerprint");
   return file;
 }
 
@@ -59,7 +60,8 @@ void remove_others(const std::string &dir, int rank, long long number) {
   std::vector<fs::path> old;
   const std::string mine = fs::path(state_name(number, rank)).extension();
   for (const auto &file : fs::directory_iterator(dir + "/checkpoint"))
-    if (file.path().extension() == mine && file.path().filename() != state_name(number, rank)) old.push_back(file.path());
+    if (file.path().extension() == mine && file.path().filename() != state_name(number, rank))
+      old.push_back(file.path());
   for (const auto &file : old) fs::remove(file);
 }
 
@@ -98,7 +100,8 @@ void write_checkpoint(MPI_Comm comm, const std::string &dir, CheckpointDoor door
 CheckpointDoor read_checkpoint_door(MPI_Comm comm, const std::string &dir) {
   CheckpointDoor door;
   together_or_refuse(comm, [&] {
-    if (!fs::exists(door_file(dir))) throw std::runtime_error(dir + " holds no checkpoint; run the scene without --resume");
+    if (!fs::exists(door_file(dir)))
+      throw std::runtime_error(dir + " holds no checkpoint; run the scene without --resume");
     Archive archive(load(door_file(dir)));
     keep(archive, door);
   });
@@ -107,7 +110,8 @@ CheckpointDoor read_checkpoint_door(MPI_Comm comm, const std::string &dir) {
 
 Archive read_checkpoint(MPI_Comm comm, const std::string &dir, const CheckpointDoor &door) {
   Archive archive;
-  together_or_refuse(comm, [&] { archive = Archive(load(dir + "/checkpoint/" + state_name(door.number, rank_in(comm)))); });
+  together_or_refuse(comm,
+                     [&] { archive = Archive(load(dir + "/checkpoint/" + state_name(door.number, rank_in(comm)))); });
   return archive;
 }
 

@@ -1,7 +1,8 @@
 #pragma once
-/// Checkpoints of a run: DIR/checkpoint/NUMBER.RANK holds the state of a rank, DIR/checkpoint/door says which number counts and which
-/// run it belongs to. Every file appears whole, the door last and older states go after it, so a run that dies at any moment, or a full disk, leaves a
-/// checkpoint from which it can go on. All functions are collective over `comm` and fail alike on all ranks.
+/// Checkpoints of a run: DIR/checkpoint/NUMBER.RANK holds the state of a rank, DIR/checkpoint/door says which number
+/// counts and which run it belongs to. Every file appears whole, the door last and older states go after it, so a run
+/// that dies at any moment, or a full disk, leaves a checkpoint from which it can go on. All functions are collective
+/// over `comm` and fail alike on all ranks.
 #include <mpi.h>
 
 #include <string>
@@ -11,18 +12,20 @@
 namespace talus {
 
 struct CheckpointDoor {
-  std::string program;      ///< name and version of the program
-  std::string scene;        ///< values of the scene as run
-  double time = 0;          ///< simulated [s]
+  std::string program;  ///< name and version of the program
+  std::string scene;    ///< values of the scene as run
+  double time = 0;      ///< simulated [s]
   long long step = 0;
-  long long number = 0;     ///< of the checkpoint, never used twice
+  long long number = 0;  ///< of the checkpoint, never used twice
   int stage = 0, ranks = 0;
 };
 
-/// Replaces the checkpoint of the run in `dir`. Throws std::runtime_error with path and cause; the one before then stays.
+/// Replaces the checkpoint of the run in `dir`. Throws std::runtime_error with path and cause; the one before then
+/// stays.
 void write_checkpoint(MPI_Comm comm, const std::string &dir, CheckpointDoor door, const Archive &state);
 
-/// The door of the checkpoint in `dir`. Throws std::invalid_argument if there is none, it is damaged, or of another version.
+/// The door of the checkpoint in `dir`. Throws std::invalid_argument if there is none, it is damaged, or of another
+/// version.
 CheckpointDoor read_checkpoint_door(MPI_Comm comm, const std::string &dir);
 
 /// The state of this rank behind that door. Throws std::invalid_argument if it is missing or damaged.

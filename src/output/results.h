@@ -23,8 +23,8 @@ struct Snapshot {
   long long step = 0;
   std::string stage;
   std::vector<long long> id;
-  std::vector<int> body;        ///< index into the run's body names
-  std::vector<Column> columns;  ///< "position" (components = dim) is always there
+  std::vector<int> body;                                ///< index into the run's body names
+  std::vector<Column> columns;                          ///< "position" (components = dim) is always there
   std::vector<std::pair<std::string, double>> numbers;  ///< of the run so far, such as evaluations of the forces
 };
 

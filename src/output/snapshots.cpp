@@ -59,7 +59,8 @@ std::vector<T> reordered(const std::vector<T> &values, const std::vector<std::si
 
 /// All particles on rank 0, by increasing id; elsewhere none.
 Snapshot gathered(MPI_Comm comm, const Snapshot &local) {
-  Snapshot all{local.time, local.step, local.stage, gather(comm, local.id), gather(comm, local.body), {}, local.numbers};
+  Snapshot all{local.time, local.step,   local.stage, gather(comm, local.id), gather(comm, local.body),
+               {},         local.numbers};
   std::vector<std::size_t> order(all.id.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return all.id[a] < all.id[b]; });

@@ -6,8 +6,9 @@
 ///     DIR/run.xdmf      what ParaView opens: particles and background mesh over time
 ///
 /// Through the links run.h5 reads like one file (`h5py.File("run.h5")["snapshots/000012/stress"]`). A snapshot has the
-/// attributes time [s], step and stage, and what the integrator did up to then (evaluations, rejections, inversions, steps_bounded_by_error,
-/// steps_bounded_by_stability, steps_bounded_by_outputs, shortest_step_s, longest_step_s); `id` [particles][1] in increasing order; `body` [particles][1], an index into
+/// attributes time [s], step and stage, and what the integrator did up to then (evaluations, rejections, inversions,
+/// steps_bounded_by_error, steps_bounded_by_stability, steps_bounded_by_outputs, shortest_step_s, longest_step_s); `id`
+/// [particles][1] in increasing order; `body` [particles][1], an index into
 /// `/bodies`; and one [particles][components] dataset per column, with the attributes unit, meaning and components ("xx
 /// yy zz xy"). All numbers are double or 64-bit integers, whatever the number of ranks the file is the same.
 ///

@@ -49,7 +49,9 @@ std::vector<StrengthLine> strength_lines(const std::string &scene) {
     for (const bool residual : {false, true})
       for (const double suction : suctions) {
         StrengthLine line{body.name, residual, suction, 0, 0};
-        const bool found = std::visit([&](const auto &one) { return find_line(one, residual ? all : 0, suction, &line.slope, &line.intercept); }, law);
+        const bool found = std::visit(
+            [&](const auto &one) { return find_line(one, residual ? all : 0, suction, &line.slope, &line.intercept); },
+            law);
         if (found && (softens || !residual)) lines.push_back(line);
       }
   }
@@ -63,7 +65,8 @@ void write_strength(const std::string &dir) {
   text.precision(12);
   text << "body,state,suction_Pa,slope,intercept_Pa\n";
   for (const StrengthLine &line : lines)
-    text << line.body << "," << (line.residual ? "residual" : "peak") << "," << line.suction << "," << line.slope << "," << line.intercept << "\n";
+    text << line.body << "," << (line.residual ? "residual" : "peak") << "," << line.suction << "," << line.slope << ","
+         << line.intercept << "\n";
   make_folder(dir + "/pictures");
   replace_file(dir + "/pictures/strength.csv", text.str());
 }

@@ -11,20 +11,27 @@ struct FieldSpec {
   int components;
   PetscDataType type;
 };
-constexpr const char *fluid_mass[] = {"liquid_mass", "gas_mass"}, *fluid_velocity[] = {"liquid_velocity", "gas_velocity"};
+constexpr const char *fluid_mass[] = {"liquid_mass", "gas_mass"},
+                     *fluid_velocity[] = {"liquid_velocity", "gas_velocity"};
 constexpr int spare = 64;  // each removal zeroes the whole spare room of a swarm: keep it small
 
 template <int dim>
 std::vector<FieldSpec> field_specs(int history_count, bool affine, int fluids, int faces) {
-  std::vector<FieldSpec> specs{{"position", dim, PETSC_DOUBLE},  {"velocity", dim, PETSC_DOUBLE},
-                               {"reference", dim, PETSC_DOUBLE}, {"mass", 1, PETSC_DOUBLE},
-                               {"volume", 1, PETSC_DOUBLE},      {"initial_volume", 1, PETSC_DOUBLE},
+  std::vector<FieldSpec> specs{{"position", dim, PETSC_DOUBLE},
+                               {"velocity", dim, PETSC_DOUBLE},
+                               {"reference", dim, PETSC_DOUBLE},
+                               {"mass", 1, PETSC_DOUBLE},
+                               {"volume", 1, PETSC_DOUBLE},
+                               {"initial_volume", 1, PETSC_DOUBLE},
                                {"stress", stress_size<dim>, PETSC_DOUBLE},
-                               {"cell", 1, PETSC_INT},           {"id", 1, PETSC_INT}};
+                               {"cell", 1, PETSC_INT},
+                               {"id", 1, PETSC_INT}};
   if (history_count) specs.push_back({"history", history_count, PETSC_DOUBLE});
   if (affine) specs.push_back({"affine", dim * dim, PETSC_DOUBLE});
-  for (int a = 0; a < fluids; ++a) specs.push_back({fluid_mass[a], 1, PETSC_DOUBLE}), specs.push_back({fluid_velocity[a], dim, PETSC_DOUBLE});
-  if (faces) specs.push_back({"surface", faces * static_cast<int>(sizeof(SurfacePiece<dim>) / sizeof(double)), PETSC_DOUBLE});
+  for (int a = 0; a < fluids; ++a)
+    specs.push_back({fluid_mass[a], 1, PETSC_DOUBLE}), specs.push_back({fluid_velocity[a], dim, PETSC_DOUBLE});
+  if (faces)
+    specs.push_back({"surface", faces * static_cast<int>(sizeof(SurfacePiece<dim>) / sizeof(double)), PETSC_DOUBLE});
   return specs;
 }
 
@@ -45,7 +52,8 @@ bool dilates(const Law &law) {
 template <int dim>
 PetscErrorCode Body<dim>::create(MPI_Comm comm, const BodySource &source, Law law, bool affine, int fluids, int faces) {
   PetscFunctionBeginUser;
-  source_ = &source, law_ = std::move(law), history_count_ = history_size(law_), affine_ = affine, fluids_ = fluids, face_count_ = faces;
+  source_ = &source, law_ = std::move(law), history_count_ = history_size(law_), affine_ = affine, fluids_ = fluids,
+  face_count_ = faces;
   const bool capped = source.volume_cap > 0 || (source.volume_cap < 0 && cohesionless(law_));
   volume_cap_ = !capped ? std::numeric_limits<double>::infinity() : source.volume_cap > 0 ? source.volume_cap : 1;
   for (int h = 0; h < history_count_; ++h)
@@ -138,7 +146,8 @@ PetscErrorCode Body<dim>::sort(int cell_count) {
   permute(arrays_.stress, sizeof(double) * stress_size<dim>);
   permute(arrays_.history, sizeof(double) * history_count_);
   permute(arrays_.affine, sizeof(double) * dim * dim);
-  for (int a = 0; a < fluids_; ++a) permute(arrays_.fluid_mass[a], sizeof(double)), permute(arrays_.fluid_velocity[a], sizeof(Vec<dim>));
+  for (int a = 0; a < fluids_; ++a)
+    permute(arrays_.fluid_mass[a], sizeof(double)), permute(arrays_.fluid_velocity[a], sizeof(Vec<dim>));
   permute(arrays_.surface, sizeof(SurfacePiece<dim>) * face_count_);
   permute(arrays_.cell, sizeof(PetscInt));
   permute(arrays_.id, sizeof(PetscInt));

@@ -1,6 +1,6 @@
 #pragma once
-/// The particles of one soil, in a DMSwarm of their own: a law then runs over one array without looking at body numbers, and
-/// a body carries the history fields of its own law only.
+/// The particles of one soil, in a DMSwarm of their own: a law then runs over one array without looking at body
+/// numbers, and a body carries the history fields of its own law only.
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -20,36 +20,39 @@ namespace talus {
 /// What a particle carries of a loaded face (physics/boundary/surface_loads.h).
 template <int dim>
 struct SurfacePiece {
-  Vec<dim> offset{};     ///< from the particle to the piece [m]
-  Vec<dim> normal{};     ///< mean normal at the last remap, out of the soil; shorter than 1 where the piece goes around a corner
-  Vec<dim> place{};      ///< undeformed place [m]
-  double area = 0;       ///< undeformed area [m2]; 0: the particle carries nothing
+  Vec<dim> offset{};  ///< from the particle to the piece [m]
+  Vec<dim> normal{};  ///< mean normal at the last remap, out of the soil; shorter than 1 where the piece goes around a
+                      ///< corner
+  Vec<dim> place{};   ///< undeformed place [m]
+  double area = 0;    ///< undeformed area [m2]; 0: the particle carries nothing
 };
 
-/// Raw arrays of a body's swarm fields, valid until particles are added, removed or migrated. One entry per local particle.
+/// Raw arrays of a body's swarm fields, valid until particles are added, removed or migrated. One entry per local
+/// particle.
 template <int dim>
 struct ParticleArrays {
   int count = 0;
-  Vec<dim> *position;          ///< at the last remap [m]
-  Vec<dim> *velocity;          ///< at the last remap [m/s]
-  Vec<dim> *reference;         ///< where displacement is counted from [m]
-  double *mass;                ///< [kg], in 2D per metre of thickness; of the grains alone where fluids move on their own
-  double *volume;              ///< V_p [m3]
-  double *initial_volume;      ///< V_p0 [m3]
-  double *stress;              ///< [stress_size] Cauchy effective stress [Pa]
-  double *history;             ///< [history_size(law)] internal variables of the law
-  double *affine;              ///< [dim * dim] velocity gradient carried by APIC [1/s]; null otherwise
-  double *fluid_mass[2];       ///< of liquid and gas in the pores [kg]; null where the phase model has none
-  Vec<dim> *fluid_velocity[2]; ///< their velocities [m/s]; null likewise
-  SurfacePiece<dim> *surface;  ///< [loaded faces] pieces of them; null when the scene has none
-  PetscInt *cell;              ///< local cell
-  PetscInt *id;                ///< number that does not depend on the partition
+  Vec<dim> *position;      ///< at the last remap [m]
+  Vec<dim> *velocity;      ///< at the last remap [m/s]
+  Vec<dim> *reference;     ///< where displacement is counted from [m]
+  double *mass;            ///< [kg], in 2D per metre of thickness; of the grains alone where fluids move on their own
+  double *volume;          ///< V_p [m3]
+  double *initial_volume;  ///< V_p0 [m3]
+  double *stress;          ///< [stress_size] Cauchy effective stress [Pa]
+  double *history;         ///< [history_size(law)] internal variables of the law
+  double *affine;          ///< [dim * dim] velocity gradient carried by APIC [1/s]; null otherwise
+  double *fluid_mass[2];   ///< of liquid and gas in the pores [kg]; null where the phase model has none
+  Vec<dim> *fluid_velocity[2];  ///< their velocities [m/s]; null likewise
+  SurfacePiece<dim> *surface;   ///< [loaded faces] pieces of them; null when the scene has none
+  PetscInt *cell;               ///< local cell
+  PetscInt *id;                 ///< number that does not depend on the partition
 };
 
 template <int dim>
 class Body {
  public:
-  /// Registers the fields; `affine` adds the velocity gradient of APIC; `fluids` 1 the liquid, 2 liquid and gas; `faces` is the number of loaded faces.
+  /// Registers the fields; `affine` adds the velocity gradient of APIC; `fluids` 1 the liquid, 2 liquid and gas;
+  /// `faces` is the number of loaded faces.
   PetscErrorCode create(MPI_Comm comm, const BodySource &source, Law law, bool affine, int fluids, int faces);
   /// Makes room for `count` particles, not yet filled.
   PetscErrorCode resize(PetscInt count);
@@ -70,14 +73,14 @@ class Body {
 
   /// Orders the particles by cell, which keeps runs of one cell together in memory.
   PetscErrorCode sort(int cell_count);
-  /// Sends each leaver (particle, rank) away; collective, also for ranks without leavers. Afterwards the arrived particles are the
-  /// last ones: `first_arrival` is the index of the first.
+  /// Sends each leaver (particle, rank) away; collective, also for ranks without leavers. Afterwards the arrived
+  /// particles are the last ones: `first_arrival` is the index of the first.
   PetscErrorCode migrate(const std::vector<std::pair<int, int>> &leavers, int *first_arrival);
   /// All particles of this rank, with every field that is registered.
   PetscErrorCode keep(Archive &archive);
 
  private:
-  PetscErrorCode borrow();   ///< takes the arrays out of the swarm ...
+  PetscErrorCode borrow();     ///< takes the arrays out of the swarm ...
   PetscErrorCode give_back();  ///< ... and returns them, as every change of size asks for
 
   const BodySource *source_ = nullptr;
@@ -91,11 +94,12 @@ class Body {
   std::vector<char> scratch_;
 };
 
-/// Fills `body` with particles on barycentric lattices in the cells of its regions: equal volumes that add up to the cell's, mass from
-/// density, initial velocity, displacement and stress from the scene. `mass_density(x)` is the total density at a place.
-/// Throws std::invalid_argument for an empty region or a number of particles that has no lattice.
+/// Fills `body` with particles on barycentric lattices in the cells of its regions: equal volumes that add up to the
+/// cell's, mass from density, initial velocity, displacement and stress from the scene. `mass_density(x)` is the total
+/// density at a place. Throws std::invalid_argument for an empty region or a number of particles that has no lattice.
 template <int dim>
-void seed(Body<dim> &body, const BackgroundMesh<dim> &mesh, int id_stride, const std::function<double(const Vec<dim> &)> &density);
+void seed(Body<dim> &body, const BackgroundMesh<dim> &mesh, int id_stride,
+          const std::function<double(const Vec<dim> &)> &density);
 
 /// Deformation gradient of an initial displacement at an undeformed place, by central differences over `h` [m].
 template <int dim>

@@ -36,8 +36,10 @@ std::vector<std::array<double, 3>> triangle_lattice(int n) {
     if (k * (k + 1) / 2 == n) add_triangle_lattice(points, k, false);
   if (n == 12) {  // the three Gauss points in each of four congruent sub-triangles
     const auto gauss = triangle_lattice(3);
-    const std::array<double, 3> corner[3]{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, middle[3]{{0, .5, .5}, {.5, 0, .5}, {.5, .5, 0}};
-    const auto put = [&](const std::array<double, 3> &a, const std::array<double, 3> &b, const std::array<double, 3> &c) {
+    const std::array<double, 3> corner[3]{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+        middle[3]{{0, .5, .5}, {.5, 0, .5}, {.5, .5, 0}};
+    const auto put = [&](const std::array<double, 3> &a, const std::array<double, 3> &b,
+                         const std::array<double, 3> &c) {
       for (const auto &g : gauss) {
         std::array<double, 3> p;
         for (int k = 0; k < 3; ++k) p[k] = g[0] * a[k] + g[1] * b[k] + g[2] * c[k];
@@ -92,7 +94,8 @@ Square<dim> displacement_gradient(const std::vector<Function> &displacement, con
   for (int j = 0; j < dim; ++j) {
     Vec<dim> a = x, b = x;
     a[j] -= h, b[j] += h;
-    for (int i = 0; i < dim; ++i) f(i, j) += (value<dim>(displacement[i], b) - value<dim>(displacement[i], a)) / (2 * h);
+    for (int i = 0; i < dim; ++i)
+      f(i, j) += (value<dim>(displacement[i], b) - value<dim>(displacement[i], a)) / (2 * h);
   }
   return f;
 }
@@ -159,11 +162,15 @@ void seed(Body<dim> &body, const BackgroundMesh<dim> &mesh, int id_stride,
             Vec<dim> a = x, b = x;
             a[e] -= h, b[e] += h;
             p.affine[(i * dim + d) * dim + e] =
-                source.velocity.empty() ? 0 : (value<dim>(source.velocity[d], b) - value<dim>(source.velocity[d], a)) / (2 * h);
+                source.velocity.empty()
+                    ? 0
+                    : (value<dim>(source.velocity[d], b) - value<dim>(source.velocity[d], a)) / (2 * h);
           }
       }
       if (!source.displacement.empty()) {
-        p.volume[i] *= displacement_gradient<dim>(source.displacement, x, 1e-5 * mesh.mean_edge[mesh.cells[cell].node[0]]).determinant();
+        p.volume[i] *=
+            displacement_gradient<dim>(source.displacement, x, 1e-5 * mesh.mean_edge[mesh.cells[cell].node[0]])
+                .determinant();
         for (int d = 0; d < dim; ++d) p.position[i][d] += value<dim>(source.displacement[d], x);
       }
       p.initial_volume[i] = p.volume[i];

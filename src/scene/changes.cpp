@@ -8,16 +8,19 @@
 namespace talus {
 namespace {
 
-void compare(const toml::node *before, const toml::node *now, const std::string &path, std::vector<std::string> &changed) {
+void compare(const toml::node *before, const toml::node *now, const std::string &path,
+             std::vector<std::string> &changed) {
   const auto below = [&](const std::string &key) { return path.empty() ? key : path + "." + key; };
   if (before && now && before->is_table() && now->is_table()) {
     std::set<std::string> keys;
     for (const toml::node *node : {before, now})
       for (const auto &[key, value] : *node->as_table()) keys.emplace(key.str());
-    for (const std::string &key : keys) compare(before->as_table()->get(key), now->as_table()->get(key), below(key), changed);
+    for (const std::string &key : keys)
+      compare(before->as_table()->get(key), now->as_table()->get(key), below(key), changed);
   } else if (before && now && before->is_array_of_tables() && now->is_array_of_tables()) {
     const toml::array &a = *before->as_array(), &b = *now->as_array();
-    for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i) compare(a.get(i), b.get(i), below(std::to_string(i)), changed);
+    for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i)
+      compare(a.get(i), b.get(i), below(std::to_string(i)), changed);
   } else if (!before || !now || literal(*before) != literal(*now)) {
     changed.push_back(path);
   }

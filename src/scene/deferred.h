@@ -1,6 +1,6 @@
 #pragma once
-/// A table of the scene whose keys belong to a room further on (laws, boundaries, integrators): kept with its place in the file
-/// until that room reads it through `read_one_of` (scene/reader.h).
+/// A table of the scene whose keys belong to a room further on (laws, boundaries, integrators): kept with its place in
+/// the file until that room reads it through `read_one_of` (scene/reader.h).
 #include <memory>
 
 namespace talus {

@@ -134,7 +134,9 @@ void Describer::text(const char *key, const std::string &value, const char *mean
   line(key, "text", value, meaning);
 }
 
-void Describer::path(const char *key, const std::string &value, const char *meaning) { line(key, "file", value, meaning); }
+void Describer::path(const char *key, const std::string &value, const char *meaning) {
+  line(key, "file", value, meaning);
+}
 
 void Describer::quantities(const char *key, const std::vector<double> &, const char *meaning) {
   line(key, "list of numbers or quantities", "", meaning);

@@ -84,8 +84,11 @@ class Checks {
   void weight(const std::string &path, const BodySource &body) const {
     const bool grains = body.porosity > 0 && body.grain_density > 0;
     if (scene_.phases != PhaseModel::dry && !grains)
-      reader_.complain(path, "needs porosity and grain_density, since the scene has pore water (phases = \"" + phases() + "\")");
-    const bool seeps = scene_.phases == PhaseModel::drained && std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &stage) { return stage.kind == StageKind::seepage; });
+      reader_.complain(
+          path, "needs porosity and grain_density, since the scene has pore water (phases = \"" + phases() + "\")");
+    const bool seeps = scene_.phases == PhaseModel::drained &&
+                       std::any_of(scene_.stage.begin(), scene_.stage.end(),
+                                   [](const Stage &stage) { return stage.kind == StageKind::seepage; });
     if (fluids_move(scene_.phases) || seeps) pores(path, body);
     if (body.density > 0 && body.grain_density > 0)
       reader_.complain(path + ".density", "is given twice: give density, or porosity and grain_density");
@@ -95,11 +98,16 @@ class Checks {
 
   void pores(const std::string &path, const BodySource &body) const {
     if (!(body.permeability > 0) && !(body.hydraulic_conductivity > 0))
-      reader_.complain(path, "needs permeability [m2] or hydraulic_conductivity [m/s], since pore water moves (phases = \"" + phases() + "\")");
-    const bool may_dry = scene_.phases == PhaseModel::drained ? std::any_of(scene_.body.begin(), scene_.body.end(), [](const BodySource &b) { return b.retention.reader; })
-                                                              : scene_.phases != PhaseModel::saturated;
+      reader_.complain(path,
+                       "needs permeability [m2] or hydraulic_conductivity [m/s], since pore water moves (phases = \"" +
+                           phases() + "\")");
+    const bool may_dry = scene_.phases == PhaseModel::drained
+                             ? std::any_of(scene_.body.begin(), scene_.body.end(),
+                                           [](const BodySource &b) { return b.retention.reader; })
+                             : scene_.phases != PhaseModel::saturated;
     if (may_dry && !body.retention.reader)
-      reader_.complain(path, "needs a retention curve, since its saturation may change (phases = \"" + phases() + "\"): add [" + path + ".retention] with curve");
+      reader_.complain(path, "needs a retention curve, since its saturation may change (phases = \"" + phases() +
+                                 "\"): add [" + path + ".retention] with curve");
   }
 
   void water() const {
@@ -107,7 +115,8 @@ class Checks {
     if (drained && !scene_.water.given)
       reader_.complain("phases", "needs pore water: add a table [water] with its table of points [x, elevation]");
     if (scene_.gas.given && scene_.phases != PhaseModel::three_phase)
-      reader_.complain("gas", "has no effect, since phases = \"" + phases() + "\" has no gas that moves; set phases = \"three-phase\"");
+      reader_.complain("gas", "has no effect, since phases = \"" + phases() +
+                                  "\" has no gas that moves; set phases = \"three-phase\"");
     if (dry && scene_.water.given)
       reader_.complain("water", "has no effect, since phases = \"dry\" has no pore water; set phases = \"drained\"");
     const std::vector<std::vector<double>> &table = scene_.water.table;
@@ -122,16 +131,27 @@ class Checks {
   void stage(const Stage &stage, const std::string &path) const {
     bodies_of(stage, path);
     const bool drained = scene_.phases == PhaseModel::drained;
-    if (water_flows(stage.kind) && scene_.phases != PhaseModel::saturated && scene_.phases != PhaseModel::unsaturated && !(drained && stage.kind == StageKind::seepage))
+    if (water_flows(stage.kind) && scene_.phases != PhaseModel::saturated && scene_.phases != PhaseModel::unsaturated &&
+        !(drained && stage.kind == StageKind::seepage))
       reader_.complain(path + ".kind", "needs pore water that moves: set phases = \"saturated\" or \"unsaturated\"" +
-                                           std::string(stage.kind == StageKind::seepage ? " (or \"drained\", whose pressure then is what seeps in)" : "") + ", not \"" + phases() + "\"");
+                                           std::string(stage.kind == StageKind::seepage
+                                                           ? " (or \"drained\", whose pressure then is what seeps in)"
+                                                           : "") +
+                                           ", not \"" + phases() + "\"");
     if (drained && water_flows(stage.kind) && !(scene_.water.excess.constant() && scene_.water.excess(0) == 0))
-      reader_.complain("water.excess", "has no place beside seepage, which finds the pressure: give pressures, heads or fluxes at [boundary.NAME]");
+      reader_.complain(
+          "water.excess",
+          "has no place beside seepage, which finds the pressure: give pressures, heads or fluxes at [boundary.NAME]");
     if (stage.kind == StageKind::consolidation && scene_.quasi_static.elements != Elements::quadratic)
-      reader_.complain("quasi_static.elements", "must be \"quadratic\" for consolidation: displacement of first order beside pressure of first order is not stable");
+      reader_.complain("quasi_static.elements",
+                       "must be \"quadratic\" for consolidation: displacement of first order beside pressure of first "
+                       "order is not stable");
     if (stage.kind == StageKind::consolidation && scene_.quasi_static.linear_solver == LinearSolver::iterative)
-      reader_.complain("quasi_static.linear_solver", "must not be \"iterative\" for consolidation: its matrix is indefinite and is factorised; leave it out");
-    if (stage.steady && stage.kind != StageKind::seepage) reader_.complain(path + ".steady", "belongs to seepage: set kind = \"seepage\"");
+      reader_.complain(
+          "quasi_static.linear_solver",
+          "must not be \"iterative\" for consolidation: its matrix is indefinite and is factorised; leave it out");
+    if (stage.steady && stage.kind != StageKind::seepage)
+      reader_.complain(path + ".steady", "belongs to seepage: set kind = \"seepage\"");
     if (is_static(stage.kind)) {
       const std::string no = "has no effect in a quasi-static stage; leave it out";
       if (stage.until != StopWhen::duration) reader_.complain(path + ".until", no);
@@ -159,7 +179,8 @@ class Checks {
         reader_.complain(path + key, "belongs to quasi-static stages: set kind = \"quasi_static\"");
       for (const std::string &name : *named)
         if (std::find(bodies.begin(), bodies.end(), name) == bodies.end())
-          reader_.complain(path + key, "must name bodies; there is no [body." + name + "]; " + suggestion(name, bodies));
+          reader_.complain(path + key,
+                           "must name bodies; there is no [body." + name + "]; " + suggestion(name, bodies));
     }
   }
 

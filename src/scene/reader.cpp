@@ -106,7 +106,10 @@ void TableReader::path(const char *key, std::string &value, const char *meaning)
   const auto given = find(key, meaning);
   if (!given) return;
   const std::filesystem::path path(given->string("the name of a file"));
-  value = path.is_absolute() ? path.string() : std::filesystem::absolute(std::filesystem::path(document_->file).parent_path() / path).lexically_normal().string();
+  value = path.is_absolute() ? path.string()
+                             : std::filesystem::absolute(std::filesystem::path(document_->file).parent_path() / path)
+                                   .lexically_normal()
+                                   .string();
 }
 
 void TableReader::texts(const char *key, std::vector<std::string> &value, const char *meaning) {
@@ -187,7 +190,9 @@ void TableReader::elasticity(double &young_modulus, double &poisson_ratio) {
     nu = (3 * K - 2 * G) / (2 * (3 * K + G));
   }
   if (has_nu && !(-1 < nu && nu < 0.5))
-    complain("poisson_ratio", "(Poisson's ratio nu) must lie above -1 and below 0.5, where a material keeps its volume; 0.49 is nearly that");
+    complain(
+        "poisson_ratio",
+        "(Poisson's ratio nu) must lie above -1 and below 0.5, where a material keeps its volume; 0.49 is nearly that");
   if (!(E > 0 && -1 < nu && nu < 0.5))
     complain("", names[0] + " and " + names[1] + " give Poisson's ratio " + shortest(nu) + " and Young's modulus " +
                      shortest(E) + " Pa; a stable material has -1 < nu < 0.5 and E > 0");

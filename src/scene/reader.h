@@ -85,8 +85,9 @@ class TableReader {
   /// The sub-table is read later.
   void deferred_table(const char *key, DeferredTable &value, const char *meaning);
 
-  /// Refuses the table as a whole, "slope.toml line 12: body.sand: needs library", or where the sentence begins with one
-  /// of its keys and `must`, that key: "slope.toml line 17: body.sand.residual_cohesion = 6e3 must not exceed cohesion".
+  /// Refuses the table as a whole, "slope.toml line 12: body.sand: needs library", or where the sentence begins with
+  /// one of its keys and `must`, that key: "slope.toml line 17: body.sand.residual_cohesion = 6e3 must not exceed
+  /// cohesion".
   [[noreturn]] void refuse(const std::string &sentence) const;
   /// Complains about a key of this table, given by its path from here (`failure_point`, `output.point.crest.position`;
   /// empty: the table itself), at its place in the file or, if it is not there, at the nearest enclosing table's.
@@ -134,7 +135,8 @@ struct Scene;
 Scene read_scene(const std::string &file, const std::vector<std::string> &overrides = {});
 /// The same from text; `file` stands for the path of the scene.
 Scene parse_scene(const std::string &text, const std::string &file, const std::vector<std::string> &overrides = {});
-/// A scene whose mesh a host program brings, so without [mesh]; `name` stands for the file in complaints. Also in talus.h.
+/// A scene whose mesh a host program brings, so without [mesh]; `name` stands for the file in complaints. Also in
+/// talus.h.
 Scene parse_host_scene(const std::string &text, const std::string &name);
 
 // ---- templates ----

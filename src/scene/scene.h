@@ -1,6 +1,7 @@
 #pragma once
-/// The scene as plain structs: SI units, radians, defaults; no PETSc, no TOML. `fields` names every key once; the reader,
-/// `talus describe`, the header of results and the test that every key is documented all visit it (docs/guide/scene.md).
+/// The scene as plain structs: SI units, radians, defaults; no PETSc, no TOML. `fields` names every key once; the
+/// reader, `talus describe`, the header of results and the test that every key is documented all visit it
+/// (docs/guide/scene.md).
 #include <functional>
 #include <limits>
 #include <memory>
@@ -50,9 +51,11 @@ struct MeshSource {
     v.text("file", file, "Gmsh mesh file (.msh, format 2.2 or 4.1) with physical groups, relative to the scene");
     v.text("section", section, "section CSV that talus-mesh turns into a mesh, relative to the scene");
     v.number("size", size, metre, Range{0, 1e5}, "cell size of a mesh made from a section");
-    v.number("thickness", thickness, metre, Range{0, 1e5}, "thickness of a 3D body cut from a section; 0 is one cell size");
+    v.number("thickness", thickness, metre, Range{0, 1e5},
+             "thickness of a 3D body cut from a section; 0 is one cell size");
     v.integer("layers", layers, Range{0, 1000}, "element layers over the thickness; 0 gives free tetrahedra");
-    v.point("cuts", cuts, metre, "ascending z that part the thickness: regions are then named region_1, region_2, ... along z");
+    v.point("cuts", cuts, metre,
+            "ascending z that part the thickness: regions are then named region_1, region_2, ... along z");
     v.list("refine", refine, "boxes with smaller cells");
   }
 };
@@ -65,68 +68,89 @@ struct DenseBox {
   void fields(Visitor &&v) {
     v.point("from", from, metre, "corner of the box with the smallest coordinates");
     v.point("to", to, metre, "corner of the box with the largest coordinates");
-    v.integer("particles_per_cell", particles_per_cell, Range{1, 1000}, "particles seeded in a cell whose centre is in the box");
+    v.integer("particles_per_cell", particles_per_cell, Range{1, 1000},
+              "particles seeded in a cell whose centre is in the box");
   }
 };
 
 enum class PermeabilityChange { none, kozeny_carman, grain_share };
 
 struct BodySource {
-  std::string name;                 ///< the table's own name, [body.NAME]
-  std::vector<std::string> region;  ///< physical groups of cells
-  double density = 0;               ///< total density of a dry body [kg/m3]; or porosity and grain_density
-  double porosity = 0;              ///< [-]
-  double grain_density = 0;         ///< [kg/m3]
-  double saturation = 0;            ///< of the pores above the water table [-]
-  double permeability = 0;          ///< intrinsic, k [m2]; or hydraulic_conductivity
+  std::string name;                   ///< the table's own name, [body.NAME]
+  std::vector<std::string> region;    ///< physical groups of cells
+  double density = 0;                 ///< total density of a dry body [kg/m3]; or porosity and grain_density
+  double porosity = 0;                ///< [-]
+  double grain_density = 0;           ///< [kg/m3]
+  double saturation = 0;              ///< of the pores above the water table [-]
+  double permeability = 0;            ///< intrinsic, k [m2]; or hydraulic_conductivity
   double hydraulic_conductivity = 0;  ///< k rho_w g / mu_w [m/s]
-  double gas_permeability = 0;      ///< intrinsic, of the gas [m2]; 0: that of the liquid
+  double gas_permeability = 0;        ///< intrinsic, of the gas [m2]; 0: that of the liquid
   PermeabilityChange permeability_change = PermeabilityChange::none;  ///< with porosity
-  DeferredTable retention;              ///< [body.NAME.retention], read by physics/pores
-  DeferredTable relative_permeability;  ///< [body.NAME.relative_permeability], likewise
-  int particles_per_cell = 0;       ///< 0: 3 a triangle, 4 a tetrahedron
-  double k0 = 0;                    ///< lateral over vertical effective stress at rest [-]; 0: 1 - sin phi (Jaky 1944)
-  double volume_cap = -1;           ///< largest V_p / V_p0; 0: none; -1: 1 for cohesionless laws, else none
-  double averaging_length = 0;      ///< l of the average of plastic strain that the law takes for its own [m]; 0: none
-  std::vector<Function> velocity;             ///< initial velocity, functions of the place [m/s]
-  std::vector<Function> displacement;         ///< initial displacement, functions of the undeformed place [m]
-  std::vector<Function> stress;               ///< initial stress, functions of the undeformed place: xx, yy, zz, xy, yz, xz [Pa]
-  std::vector<Function> body_acceleration;    ///< beside gravity, functions of the undeformed place and t [m/s2]
+  DeferredTable retention;                                            ///< [body.NAME.retention], read by physics/pores
+  DeferredTable relative_permeability;                                ///< [body.NAME.relative_permeability], likewise
+  int particles_per_cell = 0;                                         ///< 0: 3 a triangle, 4 a tetrahedron
+  double k0 = 0;                   ///< lateral over vertical effective stress at rest [-]; 0: 1 - sin phi (Jaky 1944)
+  double volume_cap = -1;          ///< largest V_p / V_p0; 0: none; -1: 1 for cohesionless laws, else none
+  double averaging_length = 0;     ///< l of the average of plastic strain that the law takes for its own [m]; 0: none
+  std::vector<Function> velocity;  ///< initial velocity, functions of the place [m/s]
+  std::vector<Function> displacement;  ///< initial displacement, functions of the undeformed place [m]
+  std::vector<Function> stress;  ///< initial stress, functions of the undeformed place: xx, yy, zz, xy, yz, xz [Pa]
+  std::vector<Function> body_acceleration;  ///< beside gravity, functions of the undeformed place and t [m/s2]
   std::vector<DenseBox> dense;
   DeferredTable law;  ///< "law" and its parameters, read by physics/laws
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.texts("region", region, "name (or list of names) of the physical groups of cells that the body fills at the start");
-    v.number("density", density, kilogram_per_cubic_metre, Range{1e-3, 1e5}, "total density of a dry body; or give porosity and grain_density");
+    v.texts("region", region,
+            "name (or list of names) of the physical groups of cells that the body fills at the start");
+    v.number("density", density, kilogram_per_cubic_metre, Range{1e-3, 1e5},
+             "total density of a dry body; or give porosity and grain_density");
     v.number("porosity", porosity, one, Range{0, 0.99}, "porosity n");
-    v.number("grain_density", grain_density, kilogram_per_cubic_metre, Range{1, 1e5}, "density of the solid grains rho_s");
+    v.number("grain_density", grain_density, kilogram_per_cubic_metre, Range{1, 1e5},
+             "density of the solid grains rho_s");
     v.number("saturation", saturation, one, Range{0, 1}, "degree of saturation above the water table");
-    v.number("permeability", permeability, square_metre, Range{0, 1e-3}, "intrinsic permeability k; or give hydraulic_conductivity");
-    v.number("hydraulic_conductivity", hydraulic_conductivity, metre_per_second, Range{0, 1e3}, "hydraulic conductivity k rho_w g / mu_w; or give permeability");
-    v.number("gas_permeability", gas_permeability, square_metre, Range{0, 1e-3}, "intrinsic permeability for the gas; 0 takes that for the liquid");
-    v.choice("permeability_change", permeability_change, {{"none", PermeabilityChange::none}, {"kozeny_carman", PermeabilityChange::kozeny_carman}, {"grain_share", PermeabilityChange::grain_share}}, "how permeability follows porosity n: not, as n^3 / (1 - n)^2, or as 1 / (1 - n)^2");
+    v.number("permeability", permeability, square_metre, Range{0, 1e-3},
+             "intrinsic permeability k; or give hydraulic_conductivity");
+    v.number("hydraulic_conductivity", hydraulic_conductivity, metre_per_second, Range{0, 1e3},
+             "hydraulic conductivity k rho_w g / mu_w; or give permeability");
+    v.number("gas_permeability", gas_permeability, square_metre, Range{0, 1e-3},
+             "intrinsic permeability for the gas; 0 takes that for the liquid");
+    v.choice("permeability_change", permeability_change,
+             {{"none", PermeabilityChange::none},
+              {"kozeny_carman", PermeabilityChange::kozeny_carman},
+              {"grain_share", PermeabilityChange::grain_share}},
+             "how permeability follows porosity n: not, as n^3 / (1 - n)^2, or as 1 / (1 - n)^2");
     v.deferred_table("retention", retention, "degree of saturation over suction");
     v.deferred_table("relative_permeability", relative_permeability, "permeability over degree of saturation");
-    v.integer("particles_per_cell", particles_per_cell, Range{0, 1000}, "particles seeded in a cell; 0 is 3 in a triangle, 4 in a tetrahedron");
-    v.number("k0", k0, one, Range{0, 10}, "lateral over vertical effective stress at rest, for stages with initial_stress = \"k0\"; 0 is 1 - sin(friction_angle)");
-    v.number("volume_cap", volume_cap, one, Range{-1, 100}, "largest particle volume over its initial volume; 0 is no cap; -1 caps cohesionless laws at 1");
-    v.number("averaging_length", averaging_length, metre, Range{0, 1e4}, "softening by the plastic strain averaged over this length l, as if bands were 2 l wide; 0 is no average; l should not be below the cell size");
+    v.integer("particles_per_cell", particles_per_cell, Range{0, 1000},
+              "particles seeded in a cell; 0 is 3 in a triangle, 4 in a tetrahedron");
+    v.number("k0", k0, one, Range{0, 10},
+             "lateral over vertical effective stress at rest, for stages with initial_stress = \"k0\"; 0 is 1 - "
+             "sin(friction_angle)");
+    v.number("volume_cap", volume_cap, one, Range{-1, 100},
+             "largest particle volume over its initial volume; 0 is no cap; -1 caps cohesionless laws at 1");
+    v.number("averaging_length", averaging_length, metre, Range{0, 1e4},
+             "softening by the plastic strain averaged over this length l, as if bands were 2 l wide; 0 is no average; "
+             "l should not be below the cell size");
     v.functions("velocity", velocity, metre_per_second, "initial velocity, one function of x, y, z per component");
-    v.functions("displacement", displacement, metre, "initial displacement, one function of the undeformed x, y, z per component");
-    v.functions("stress", stress, pascal, "initial stress xx, yy, zz, xy (in 3D also yz, xz), functions of the undeformed x, y, z");
-    v.functions("body_acceleration", body_acceleration, metre_per_second_squared, "acceleration beside gravity, functions of the undeformed x, y, z and of t");
+    v.functions("displacement", displacement, metre,
+                "initial displacement, one function of the undeformed x, y, z per component");
+    v.functions("stress", stress, pascal,
+                "initial stress xx, yy, zz, xy (in 3D also yz, xz), functions of the undeformed x, y, z");
+    v.functions("body_acceleration", body_acceleration, metre_per_second_squared,
+                "acceleration beside gravity, functions of the undeformed x, y, z and of t");
     v.list("dense", dense, "boxes with more particles per cell");
     v.deferred("law", law, "soil model; its parameters stand in the same table");
   }
 };
 
 struct BoundarySource {
-  std::string name;  ///< the table's own name, [boundary.NAME]
+  std::string name;                ///< the table's own name, [boundary.NAME]
   std::vector<std::string> group;  ///< physical groups of facets; empty: the table's own name
   DeferredTable kind;              ///< "kind" and its parameters, read by physics/boundary
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.texts("group", group, "name (or list of names) of the physical groups of facets; default is the table's own name");
+    v.texts("group", group,
+            "name (or list of names) of the physical groups of facets; default is the table's own name");
     v.deferred("kind", kind, "kind of boundary; its parameters stand in the same table");
   }
 };
@@ -138,52 +162,66 @@ enum class PoreStorage { mass, rate };
 
 /// Pore water given as a function of place and time (phase model `drained`).
 struct Water {
-  bool given = false;                        ///< the scene has a [water] table
-  double density = 1000;                     ///< [kg/m3]
-  double bulk_modulus = 2.2e9;               ///< K_l [Pa]
-  double viscosity = 1e-3;                   ///< mu_l [Pa s]
+  bool given = false;                             ///< the scene has a [water] table
+  double density = 1000;                          ///< [kg/m3]
+  double bulk_modulus = 2.2e9;                    ///< K_l [Pa]
+  double viscosity = 1e-3;                        ///< mu_l [Pa s]
   Compression compression = Compression::linear;  ///< density over pressure
-  PoreStress stress = PoreStress::net;       ///< what the pores take off the total stress
-  PoreDrag drag = PoreDrag::over_step;       ///< implicit in a step, or from the velocities at its start
-  PoreStorage storage = PoreStorage::mass;   ///< what pressure follows from
-  Function suction;                          ///< above the table, function of x, y, z [Pa]; not given: hydrostatic
-  std::vector<std::vector<double>> table;    ///< polyline x, elevation [m]; pressure is hydrostatic below it
-  Function level = 0.0;                      ///< added to the elevation of the table, function of t [m]
-  Function excess = 0.0;                     ///< added to the hydrostatic pressure, function of x, y, z, t and `table` [Pa]
-  bool open_water_load = true;               ///< open water above the ground rests on submerged faces
-  std::function<double(const double *)> seeped;  ///< pressure that seepage has left at a place, not a number outside its soil [Pa]; not a key
+  PoreStress stress = PoreStress::net;            ///< what the pores take off the total stress
+  PoreDrag drag = PoreDrag::over_step;            ///< implicit in a step, or from the velocities at its start
+  PoreStorage storage = PoreStorage::mass;        ///< what pressure follows from
+  Function suction;                               ///< above the table, function of x, y, z [Pa]; not given: hydrostatic
+  std::vector<std::vector<double>> table;         ///< polyline x, elevation [m]; pressure is hydrostatic below it
+  Function level = 0.0;                           ///< added to the elevation of the table, function of t [m]
+  Function excess = 0.0;        ///< added to the hydrostatic pressure, function of x, y, z, t and `table` [Pa]
+  bool open_water_load = true;  ///< open water above the ground rests on submerged faces
+  std::function<double(const double *)>
+      seeped;  ///< pressure that seepage has left at a place, not a number outside its soil [Pa]; not a key
   template <class Visitor>
   void fields(Visitor &&v) {
     given = true;
     v.number("density", density, kilogram_per_cubic_metre, Range{1, 1e4}, "density of the pore water");
     v.number("bulk_modulus", bulk_modulus, pascal, Range{1e3, 1e11}, "bulk modulus K_l of the pore water");
     v.number("viscosity", viscosity, pascal_second, Range{1e-8, 1e3}, "dynamic viscosity of the pore water");
-    v.choice("compression", compression, {{"linear", Compression::linear}, {"exponential", Compression::exponential}}, "density over pressure P: rho_0 (1 + P / K_l) or rho_0 exp(P / K_l)");
-    v.choice("stress", stress, {{"net", PoreStress::net}, {"bishop", PoreStress::bishop}}, "what pores take off the total stress: the larger of the pressures of liquid and gas, or their mean weighted by saturation");
-    v.choice("drag", drag, {{"implicit", PoreDrag::over_step}, {"explicit", PoreDrag::at_start}}, "drag between soil and pore fluids: over a step, or from the velocities at its start, which is there to show how low permeability then limits the step; explicit only with integrator.kind = \"euler\"");
-    v.choice("storage", storage, {{"mass", PoreStorage::mass}, {"rate", PoreStorage::rate}}, "what pressure follows from: the mass that pores hold, or its own rate by the stiffness of the moment; the latter loses water near saturation and is there to show so, only with phases = \"unsaturated\"");
-    v.function("suction", suction, pascal, Range{0, 1e9}, "initial suction above the water table, function of x, y, z; without it suction is hydrostatic");
+    v.choice("compression", compression, {{"linear", Compression::linear}, {"exponential", Compression::exponential}},
+             "density over pressure P: rho_0 (1 + P / K_l) or rho_0 exp(P / K_l)");
+    v.choice("stress", stress, {{"net", PoreStress::net}, {"bishop", PoreStress::bishop}},
+             "what pores take off the total stress: the larger of the pressures of liquid and gas, or their mean "
+             "weighted by saturation");
+    v.choice("drag", drag, {{"implicit", PoreDrag::over_step}, {"explicit", PoreDrag::at_start}},
+             "drag between soil and pore fluids: over a step, or from the velocities at its start, which is there to "
+             "show how low permeability then limits the step; explicit only with integrator.kind = \"euler\"");
+    v.choice("storage", storage, {{"mass", PoreStorage::mass}, {"rate", PoreStorage::rate}},
+             "what pressure follows from: the mass that pores hold, or its own rate by the stiffness of the moment; "
+             "the latter loses water near saturation and is there to show so, only with phases = \"unsaturated\"");
+    v.function("suction", suction, pascal, Range{0, 1e9},
+               "initial suction above the water table, function of x, y, z; without it suction is hydrostatic");
     v.points("table", table, metre, "water table: polyline of points [x, elevation]; pressure is hydrostatic below it");
     v.function("level", level, metre, Range{-1e4, 1e4}, "rise of the whole water table, function of t");
-    v.function("excess", excess, pascal, Range{-1e9, 1e9}, "excess over the hydrostatic pressure, function of x, y, z, t and `table` (elevation of the water table at x)");
+    v.function(
+        "excess", excess, pascal, Range{-1e9, 1e9},
+        "excess over the hydrostatic pressure, function of x, y, z, t and `table` (elevation of the water table at x)");
     v.flag("open_water_load", open_water_load, "open water above the ground rests on submerged faces");
   }
 };
 
 /// Pore gas of the phase model `three-phase`; pressures are gauge.
 struct Gas {
-  bool given = false;             ///< the scene has a [gas] table
-  double density = 1.2;           ///< at atmospheric pressure [kg/m3]
-  double bulk_modulus = 101325;   ///< K_g; an ideal gas has its absolute pressure [Pa]
-  double viscosity = 1.8e-5;      ///< mu_g [Pa s]
-  Function pressure = 0.0;        ///< initial, where gas is free, function of x, y, z [Pa]
+  bool given = false;            ///< the scene has a [gas] table
+  double density = 1.2;          ///< at atmospheric pressure [kg/m3]
+  double bulk_modulus = 101325;  ///< K_g; an ideal gas has its absolute pressure [Pa]
+  double viscosity = 1.8e-5;     ///< mu_g [Pa s]
+  Function pressure = 0.0;       ///< initial, where gas is free, function of x, y, z [Pa]
   template <class Visitor>
   void fields(Visitor &&v) {
     given = true;
-    v.number("density", density, kilogram_per_cubic_metre, Range{1e-6, 1e3}, "density of the pore gas at atmospheric pressure");
-    v.number("bulk_modulus", bulk_modulus, pascal, Range{1, 1e9}, "bulk modulus K_g; the atmospheric pressure stands for an ideal gas");
+    v.number("density", density, kilogram_per_cubic_metre, Range{1e-6, 1e3},
+             "density of the pore gas at atmospheric pressure");
+    v.number("bulk_modulus", bulk_modulus, pascal, Range{1, 1e9},
+             "bulk modulus K_g; the atmospheric pressure stands for an ideal gas");
     v.number("viscosity", viscosity, pascal_second, Range{1e-9, 1e3}, "dynamic viscosity of the pore gas");
-    v.function("pressure", pressure, pascal, Range{-1e6, 1e9}, "initial gauge pressure of the gas above the water table, function of x, y, z");
+    v.function("pressure", pressure, pascal, Range{-1e6, 1e9},
+               "initial gauge pressure of the gas above the water table, function of x, y, z");
   }
 };
 
@@ -200,7 +238,7 @@ inline bool water_flows(StageKind kind) { return kind == StageKind::seepage || k
 struct Stage {
   std::string name;
   StageKind kind = StageKind::dynamic;
-  double duration = required;   ///< longest duration [s]
+  double duration = required;  ///< longest duration [s]
   StopWhen until = StopWhen::duration;
   double damping = 0;           ///< local (Cundall) damping factor alpha [-]
   double gravity_ramp = 0;      ///< gravity and pore pressure grow linearly over this time [s]
@@ -215,35 +253,60 @@ struct Stage {
   bool hold_loads = false;      ///< functions of time stand still: their t counts only stages that do not hold loads
   bool reset_displacement = false;  ///< displacements, velocities and plastic strain are zeroed when the stage ends
   // quasi-static stages
-  int load_steps = 5;               ///< in which loads come; fewer or more as Newton's iterations ask for
+  int load_steps = 5;  ///< in which loads come; fewer or more as Newton's iterations ask for
   InitialStress initial_stress = InitialStress::kept;
   std::vector<std::string> add, remove;  ///< bodies that come and go with the stage
   WhenLost when_lost = WhenLost::stop;
-  bool steady = false;              ///< seepage: the flow that the loads at the stage's end keep up
+  bool steady = false;  ///< seepage: the flow that the loads at the stage's end keep up
   template <class Visitor>
   void fields(Visitor &&v) {
     v.text("name", name, "name of the stage in logs and results");
-    v.choice("kind", kind, {{"dynamic", StageKind::dynamic}, {"quasi_static", StageKind::quasi_static}, {"seepage", StageKind::seepage}, {"consolidation", StageKind::consolidation}}, "motion by the material point method, or by finite elements: equilibrium, flow of pore water through soil at rest, or both together in time");
+    v.choice("kind", kind,
+             {{"dynamic", StageKind::dynamic},
+              {"quasi_static", StageKind::quasi_static},
+              {"seepage", StageKind::seepage},
+              {"consolidation", StageKind::consolidation}},
+             "motion by the material point method, or by finite elements: equilibrium, flow of pore water through soil "
+             "at rest, or both together in time");
     v.number("duration", duration, second, Range{0, 1e9}, "longest duration of the stage");
-    v.choice("until", until, {{"duration", StopWhen::duration}, {"equilibrium", StopWhen::equilibrium}, {"rest", StopWhen::rest}, {"failure", StopWhen::failure}}, "what ends the stage before its duration");
+    v.choice("until", until,
+             {{"duration", StopWhen::duration},
+              {"equilibrium", StopWhen::equilibrium},
+              {"rest", StopWhen::rest},
+              {"failure", StopWhen::failure}},
+             "what ends the stage before its duration");
     v.number("damping", damping, one, Range{0, 0.99}, "local (Cundall) damping factor");
-    v.number("gravity_ramp", gravity_ramp, second, Range{0, 1e9}, "time over which gravity, and pore pressure with it, grows linearly from 0");
+    v.number("gravity_ramp", gravity_ramp, second, Range{0, 1e9},
+             "time over which gravity, and pore pressure with it, grows linearly from 0");
     v.number("force_ratio", force_ratio, one, Range{0, 1}, "equilibrium: unbalanced over applied nodal force");
     v.number("energy_ratio", energy_ratio, one, Range{0, 1}, "equilibrium: kinetic over elastic strain energy");
-    v.number("rest_speed", rest_speed, metre_per_second, Range{0, 1e6}, "rest: the root mean square speed of all soil stays below this");
+    v.number("rest_speed", rest_speed, metre_per_second, Range{0, 1e6},
+             "rest: the root mean square speed of all soil stays below this");
     v.text("failure_point", failure_point, "failure: name of the output point that is watched");
     v.number("failure_speed", failure_speed, metre_per_second, Range{0, 1e6}, "failure: the point's speed passes this");
     v.number("failure_time", failure_time, second, Range{0, 1e9}, "failure: and keeps rising for this long");
-    v.flag("pore_flow", pore_flow, "pore fluids move; without it pore pressures are those of [water], with the ramp, as for building up initial stress");
-    v.flag("softening", softening, "soil remembers plastic strain; without it soil keeps the strength it has, as for building up initial stress");
-    v.flag("hold_loads", hold_loads, "functions of time stand still: their t counts only stages that do not hold loads");
-    v.flag("reset_displacement", reset_displacement, "zero displacement, velocity and plastic strain when the stage ends");
-    v.integer("load_steps", load_steps, Range{1, 10000}, "quasi-static: steps in which loads come; halved where Newton's iterations fail");
-    v.choice("initial_stress", initial_stress, {{"kept", InitialStress::kept}, {"k0", InitialStress::k0}}, "quasi-static: stress the stage starts from: as it is, or vertical stress by the weight above and k0 times it sideways");
+    v.flag("pore_flow", pore_flow,
+           "pore fluids move; without it pore pressures are those of [water], with the ramp, as for building up "
+           "initial stress");
+    v.flag(
+        "softening", softening,
+        "soil remembers plastic strain; without it soil keeps the strength it has, as for building up initial stress");
+    v.flag("hold_loads", hold_loads,
+           "functions of time stand still: their t counts only stages that do not hold loads");
+    v.flag("reset_displacement", reset_displacement,
+           "zero displacement, velocity and plastic strain when the stage ends");
+    v.integer("load_steps", load_steps, Range{1, 10000},
+              "quasi-static: steps in which loads come; halved where Newton's iterations fail");
+    v.choice("initial_stress", initial_stress, {{"kept", InitialStress::kept}, {"k0", InitialStress::k0}},
+             "quasi-static: stress the stage starts from: as it is, or vertical stress by the weight above and k0 "
+             "times it sideways");
     v.texts("add", add, "quasi-static: bodies that come with this stage; until then they are not there");
     v.texts("remove", remove, "quasi-static: bodies that go with this stage");
-    v.choice("when_lost", when_lost, {{"stop", WhenLost::stop}, {"next_stage", WhenLost::go_on}}, "quasi-static: what follows when there is no equilibrium under the loads: the end with status 1, or the next stage");
-    v.flag("steady", steady, "seepage: the flow that the loads at the end of the stage keep up, however long it takes to come about");
+    v.choice("when_lost", when_lost, {{"stop", WhenLost::stop}, {"next_stage", WhenLost::go_on}},
+             "quasi-static: what follows when there is no equilibrium under the loads: the end with status 1, or the "
+             "next stage");
+    v.flag("steady", steady,
+           "seepage: the flow that the loads at the end of the stage keep up, however long it takes to come about");
   }
 };
 
@@ -255,27 +318,39 @@ enum class PoreSmoothing { nodal, none };
 /// How particles and nodes exchange what they know (docs/theory section 4).
 struct Transfer {
   Velocity velocity = Velocity::flip;
-  double relaxation = 400;    ///< FLIP relaxes to PIC with this time constant, in units of smallest altitude over wave speed; 0: never
-  double pic_fraction = 0;    ///< PIC share per remap, beside the relaxation [-]
+  double relaxation =
+      400;  ///< FLIP relaxes to PIC with this time constant, in units of smallest altitude over wave speed; 0: never
+  double pic_fraction = 0;  ///< PIC share per remap, beside the relaxation [-]
   Integration integration = Integration::blended;
-  double filling = 0.9;       ///< mixed: a cell filled beyond this counts as full [-]
-  bool average_stress = true; ///< one stress per cell and body, averaged at each remap
+  double filling = 0.9;        ///< mixed: a cell filled beyond this counts as full [-]
+  bool average_stress = true;  ///< one stress per cell and body, averaged at each remap
   Locking locking = Locking::patches;
-  int patch_size = 0;         ///< cells; 0: 2 triangles, 8 tetrahedra, 4 in a one-element slice
+  int patch_size = 0;  ///< cells; 0: 2 triangles, 8 tetrahedra, 4 in a one-element slice
   PoreSmoothing pore_smoothing = PoreSmoothing::nodal;  ///< against the noise of equal-order elements in saturated soil
   double remap_interval = 0.1;  ///< remap when a node has moved this share of its mean edge; 0: every step
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.choice("velocity", velocity, {{"flip", Velocity::flip}, {"pic", Velocity::pic}, {"apic", Velocity::apic}}, "velocity a particle takes from the nodes");
-    v.number("relaxation", relaxation, one, Range{0, 1e9}, "time constant of the relaxation of FLIP to PIC over smallest altitude / wave speed; 0 is none");
+    v.choice("velocity", velocity, {{"flip", Velocity::flip}, {"pic", Velocity::pic}, {"apic", Velocity::apic}},
+             "velocity a particle takes from the nodes");
+    v.number("relaxation", relaxation, one, Range{0, 1e9},
+             "time constant of the relaxation of FLIP to PIC over smallest altitude / wave speed; 0 is none");
     v.number("pic_fraction", pic_fraction, one, Range{0, 1}, "PIC share at each remap, beside the relaxation");
-    v.choice("integration", integration, {{"blended", Integration::blended}, {"particle", Integration::particle}, {"mixed", Integration::mixed}, {"cell", Integration::cell}}, "volume by which a cell's stress is integrated");
+    v.choice("integration", integration,
+             {{"blended", Integration::blended},
+              {"particle", Integration::particle},
+              {"mixed", Integration::mixed},
+              {"cell", Integration::cell}},
+             "volume by which a cell's stress is integrated");
     v.number("filling", filling, one, Range{0, 1}, "mixed integration: filling above which a cell counts as full");
     v.flag("average_stress", average_stress, "one stress per cell and body, averaged at each remap");
-    v.choice("locking", locking, {{"patches", Locking::patches}, {"none", Locking::none}, {"nodal", Locking::nodal}}, "cure of volumetric locking");
-    v.integer("patch_size", patch_size, Range{0, 64}, "cells of a patch; 0 is 2 triangles, 8 tetrahedra, 4 in a one-element slice");
-    v.choice("pore_smoothing", pore_smoothing, {{"nodal", PoreSmoothing::nodal}, {"none", PoreSmoothing::none}}, "smoothing of pore pressures and fluid volumes among saturated cells, over their nodes");
-    v.number("remap_interval", remap_interval, one, Range{0, 0.3}, "remap when a node of a filled cell has moved this share of its mean edge; 0 is every step");
+    v.choice("locking", locking, {{"patches", Locking::patches}, {"none", Locking::none}, {"nodal", Locking::nodal}},
+             "cure of volumetric locking");
+    v.integer("patch_size", patch_size, Range{0, 64},
+              "cells of a patch; 0 is 2 triangles, 8 tetrahedra, 4 in a one-element slice");
+    v.choice("pore_smoothing", pore_smoothing, {{"nodal", PoreSmoothing::nodal}, {"none", PoreSmoothing::none}},
+             "smoothing of pore pressures and fluid volumes among saturated cells, over their nodes");
+    v.number("remap_interval", remap_interval, one, Range{0, 0.3},
+             "remap when a node of a filled cell has moved this share of its mean edge; 0 is every step");
   }
 };
 
@@ -289,15 +364,27 @@ struct QuasiStaticSource {
   int iterations = 25;          ///< Newton: most iterations in a load step
   double smallest_step = 1e-3;  ///< share of a stage's loads below which equilibrium counts as lost [-]
   LinearSolver linear_solver = LinearSolver::automatic;
-  double step_error = 1e-3;     ///< seepage, consolidation: what a step may miss, of pressure over its largest change and of saturation [-]
+  double step_error = 1e-3;  ///< seepage, consolidation: what a step may miss, of pressure over its largest change and
+                             ///< of saturation [-]
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.choice("elements", elements, {{"quadratic", Elements::quadratic}, {"linear", Elements::linear}, {"patches", Elements::patches}}, "displacement of second or first order, or of first order with the patches against locking that the motion of particles has");
-    v.number("tolerance", tolerance, one, Range{1e-14, 1e-2}, "Newton's iterations end when the out-of-balance force over the size of the forces is below this");
+    v.choice("elements", elements,
+             {{"quadratic", Elements::quadratic}, {"linear", Elements::linear}, {"patches", Elements::patches}},
+             "displacement of second or first order, or of first order with the patches against locking that the "
+             "motion of particles has");
+    v.number("tolerance", tolerance, one, Range{1e-14, 1e-2},
+             "Newton's iterations end when the out-of-balance force over the size of the forces is below this");
     v.integer("iterations", iterations, Range{1, 1000}, "most iterations in a load step; then it is halved");
-    v.number("smallest_step", smallest_step, one, Range{1e-9, 1}, "share of a stage's loads below which a step is not halved: equilibrium is lost");
-    v.choice("linear_solver", linear_solver, {{"automatic", LinearSolver::automatic}, {"direct", LinearSolver::direct}, {"iterative", LinearSolver::iterative}}, "LU (MUMPS), or GMRES with algebraic multigrid (GAMG); by size if automatic");
-    v.number("step_error", step_error, one, Range{1e-8, 1}, "seepage and consolidation: what a step may miss by its length, of pressure over the largest change so far, and of saturation");
+    v.number("smallest_step", smallest_step, one, Range{1e-9, 1},
+             "share of a stage's loads below which a step is not halved: equilibrium is lost");
+    v.choice("linear_solver", linear_solver,
+             {{"automatic", LinearSolver::automatic},
+              {"direct", LinearSolver::direct},
+              {"iterative", LinearSolver::iterative}},
+             "LU (MUMPS), or GMRES with algebraic multigrid (GAMG); by size if automatic");
+    v.number("step_error", step_error, one, Range{1e-8, 1},
+             "seepage and consolidation: what a step may miss by its length, of pressure over the largest change so "
+             "far, and of saturation");
   }
 };
 
@@ -312,25 +399,33 @@ struct OutputPoint {
 };
 
 struct Output {
-  double interval = 0;          ///< time between snapshots [s]; 0: start and end of stages only
-  double history_interval = 0;  ///< [s]; 0: every 200th of the longest stage
+  double interval = 0;             ///< time between snapshots [s]; 0: start and end of stages only
+  double history_interval = 0;     ///< [s]; 0: every 200th of the longest stage
   double checkpoint_interval = 0;  ///< [s]; 0: with every snapshot
   std::vector<OutputPoint> point;
-  std::vector<std::string> picture;  ///< empty: displacement, plastic strain, velocity and pore pressure, as far as there are
+  std::vector<std::string>
+      picture;  ///< empty: displacement, plastic strain, velocity and pore pressure, as far as there are
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.number("interval", interval, second, Range{0, 1e9}, "time between snapshots; 0 writes at the start and end of stages only");
-    v.number("history_interval", history_interval, second, Range{0, 1e9}, "time between lines of history.csv; 0 is a 200th of the longest stage");
-    v.number("checkpoint_interval", checkpoint_interval, second, Range{0, 1e9}, "time between checkpoints, from which --resume goes on; 0 writes one with every snapshot; the answer does not depend on them");
+    v.number("interval", interval, second, Range{0, 1e9},
+             "time between snapshots; 0 writes at the start and end of stages only");
+    v.number("history_interval", history_interval, second, Range{0, 1e9},
+             "time between lines of history.csv; 0 is a 200th of the longest stage");
+    v.number("checkpoint_interval", checkpoint_interval, second, Range{0, 1e9},
+             "time between checkpoints, from which --resume goes on; 0 writes one with every snapshot; the answer does "
+             "not depend on them");
     v.named("point", point, "points whose history is written, [output.point.NAME]");
-    v.texts("picture", picture, "fields that are drawn: a vector by its size, a tensor by its mean, or one component such as stress_xy; none: displacement, plastic_strain, velocity, pore_pressure, suction, saturation, surface as far as there are, and mobilised_friction of frictional soil");
+    v.texts("picture", picture,
+            "fields that are drawn: a vector by its size, a tensor by its mean, or one component such as stress_xy; "
+            "none: displacement, plastic_strain, velocity, pore_pressure, suction, saturation, surface as far as there "
+            "are, and mobilised_friction of frictional soil");
   }
 };
 
 struct Scene {
   std::string title;
-  std::string file;        ///< path of the scene, for messages and relative paths; not a key
-  std::string source;      ///< the text as read, overrides applied; not a key
+  std::string file;                         ///< path of the scene, for messages and relative paths; not a key
+  std::string source;                       ///< the text as read, overrides applied; not a key
   std::shared_ptr<const TableReader> root;  ///< the file's root table, for complaints after reading; not a key
   PhaseModel phases = PhaseModel::dry;
   int dimension = 2;
@@ -338,7 +433,8 @@ struct Scene {
   MeshSource mesh;
   std::vector<BodySource> body;
   std::vector<BoundarySource> boundary;
-  std::vector<BoundarySource> seepage_boundary;  ///< of pore water in a drained scene: its seepage stages know them, the motion does not; not a key
+  std::vector<BoundarySource> seepage_boundary;  ///< of pore water in a drained scene: its seepage stages know them,
+                                                 ///< the motion does not; not a key
   Water water;
   Gas gas;
   std::vector<Stage> stage;
@@ -349,9 +445,16 @@ struct Scene {
   template <class Visitor>
   void fields(Visitor &&v) {
     v.text("title", title, "one line that says what the scene shows");
-    v.choice("phases", phases, {{"dry", PhaseModel::dry}, {"drained", PhaseModel::drained}, {"saturated", PhaseModel::saturated}, {"unsaturated", PhaseModel::unsaturated}, {"three-phase", PhaseModel::three_phase}}, "phase model");
+    v.choice("phases", phases,
+             {{"dry", PhaseModel::dry},
+              {"drained", PhaseModel::drained},
+              {"saturated", PhaseModel::saturated},
+              {"unsaturated", PhaseModel::unsaturated},
+              {"three-phase", PhaseModel::three_phase}},
+             "phase model");
     v.integer("dimension", dimension, Range{2, 3}, "2: plane strain on triangles, 3: tetrahedra");
-    v.point("gravity", gravity, metre_per_second_squared, "acceleration of gravity, one component per dimension; one number acts down the y axis");
+    v.point("gravity", gravity, metre_per_second_squared,
+            "acceleration of gravity, one component per dimension; one number acts down the y axis");
     v.table("mesh", mesh, "background mesh");
     v.named("body", body, "soils, [body.NAME]");
     v.named("boundary", boundary, "conditions on named groups of facets, [boundary.NAME]");
@@ -364,7 +467,8 @@ struct Scene {
     v.table("output", output, "what is written");
   }
 
-  /// For what only mesh or soil can tell is wrong: throws the SceneError of TableReader::complain, with the key's place in the file.
+  /// For what only mesh or soil can tell is wrong: throws the SceneError of TableReader::complain, with the key's place
+  /// in the file.
   [[noreturn]] void complain(const std::string &key_path, const std::string &sentence) const;
 };
 

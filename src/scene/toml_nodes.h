@@ -1,6 +1,6 @@
 #pragma once
-/// What the reader asks of a parsed TOML file beyond toml++: where a value stands, how it is written, where a path leads.
-/// Included only by the reader's own files.
+/// What the reader asks of a parsed TOML file beyond toml++: where a value stands, how it is written, where a path
+/// leads. Included only by the reader's own files.
 #include <toml++/toml.h>
 
 #include <string>

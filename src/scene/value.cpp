@@ -95,8 +95,7 @@ Function TableReader::Value::expression(const std::string &expected, double scal
 }
 
 Function TableReader::Value::function(Unit unit, Range range) const {
-  const std::string expected =
-      number_in(range, unit) + ", a list of [t, value] points or an expression of x, y, z, t";
+  const std::string expected = number_in(range, unit) + ", a list of [t, value] points or an expression of x, y, z, t";
   const auto value = [&](const Value &element) { return element.number(unit, range) * unit.si; };
   if (node_->is_array()) return table(expected, value);
   if (is_number() || looks_like_quantity(string(expected))) return value(*this);

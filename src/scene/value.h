@@ -1,6 +1,6 @@
 #pragma once
-/// One value of a scene file: how numbers, quantities, points and functions are read from it, and what complaints say about it.
-/// Included only by the reader's own files.
+/// One value of a scene file: how numbers, quantities, points and functions are read from it, and what complaints say
+/// about it. Included only by the reader's own files.
 #include <toml++/toml.h>
 
 #include <limits>

@@ -1,5 +1,6 @@
-// Checkpoints and how a run goes on from one: all that the answer depends on, wherever between two steps it is kept, so that neither a
-// checkpoint nor an interruption changes the answer; included only where it is instantiated (src/variants).
+// Checkpoints and how a run goes on from one: all that the answer depends on, wherever between two steps it is kept, so
+// that neither a checkpoint nor an interruption changes the answer; included only where it is instantiated
+// (src/variants).
 #include <algorithm>
 
 #include "base/version.h"
@@ -15,9 +16,11 @@ namespace talus {
 template <int dim, class Phases>
 PetscErrorCode Simulation<dim, Phases>::keep(Archive &archive) {
   PetscFunctionBeginUser;
-  archive.keep("clock", time_, load_time_, last_step_, steps_, remaps_, since_sort_, critical_step_, shrink_, omega_max_, omega_step_, remap_due_, hold_loads_);
+  archive.keep("clock", time_, load_time_, last_step_, steps_, remaps_, since_sort_, critical_step_, shrink_,
+               omega_max_, omega_step_, remap_due_, hold_loads_);
   archive.keep("stage", stage_);
-  archive.keep("results", last_row_step_, last_row_time_, last_snapshot_time_, impulse_time_, first_ledger_, first_energy_);
+  archive.keep("results", last_row_step_, last_row_time_, last_snapshot_time_, impulse_time_, first_ledger_,
+               first_energy_);
   for (const auto &body : bodies_) PetscCall(body->keep(archive));
   PetscCall(motion_->keep(archive));
   integrator_->keep(archive);
@@ -34,7 +37,13 @@ unsigned long long Simulation<dim, Phases>::mesh_fingerprint() const {
 
 template <int dim, class Phases>
 CheckpointDoor Simulation<dim, Phases>::door() const {
-  CheckpointDoor door{std::string("Talus ") + version, scene_.root ? scene_.root->values() : "", time_, steps_, checkpoints_ + 1, stage_.number, 0};
+  CheckpointDoor door{std::string("Talus ") + version,
+                      scene_.root ? scene_.root->values() : "",
+                      time_,
+                      steps_,
+                      checkpoints_ + 1,
+                      stage_.number,
+                      0};
   MPI_Comm_size(comm_, &door.ranks);
   return door;
 }
@@ -55,7 +64,8 @@ template <int dim, class Phases>
 void Simulation<dim, Phases>::check_door(const CheckpointDoor &found) const {
   const CheckpointDoor mine = door();
   const std::string refusal = "the run in " + options_.directory + " cannot be resumed: ";
-  if (found.program != mine.program) throw SceneError(refusal + "it is one of " + found.program + ", this is " + mine.program);
+  if (found.program != mine.program)
+    throw SceneError(refusal + "it is one of " + found.program + ", this is " + mine.program);
   for (const std::string &path : changed_keys(found.scene, mine.scene)) {
     const std::vector<std::string> words = split(path);
     const bool listed = words.size() > 1 && words[0] == "stage";
@@ -64,11 +74,12 @@ void Simulation<dim, Phases>::check_door(const CheckpointDoor &found) const {
     const bool to_come = listed && (stage > found.stage || (stage == found.stage && words.back() == "duration"));
     if (!result && !to_come)
       scene_.complain(path, "is not what it was when the run in " + options_.directory +
-                                " began; with --resume only [output] without its points, the duration of the present stage and the stages after it may change");
+                                " began; with --resume only [output] without its points, the duration of the present "
+                                "stage and the stages after it may change");
   }
   if (found.ranks != mine.ranks)
-    throw SceneError(refusal + "it ran on " + std::to_string(found.ranks) + " ranks, not " + std::to_string(mine.ranks) + "; give -n " +
-                     std::to_string(found.ranks));
+    throw SceneError(refusal + "it ran on " + std::to_string(found.ranks) + " ranks, not " +
+                     std::to_string(mine.ranks) + "; give -n " + std::to_string(found.ranks));
 }
 
 template <int dim, class Phases>
@@ -86,8 +97,10 @@ void Simulation<dim, Phases>::resume_results() {
   require(keep(archive));
   checkpoints_ = found.number, checkpoint_time_ = found.time;
   RunFile file = RunFile::append(comm_, options_.directory, last_snapshot_time_);
-  History rows = History::append(comm_, options_.directory + "/history.csv", {history_.names.begin() + 2, history_.names.end()}, last_row_time_);
-  results_.reset(new Results{std::move(file), std::move(rows), Progress(comm_, options_.directory + "/run.log", longest_duration(), true)});
+  History rows = History::append(comm_, options_.directory + "/history.csv",
+                                 {history_.names.begin() + 2, history_.names.end()}, last_row_time_);
+  results_.reset(new Results{std::move(file), std::move(rows),
+                             Progress(comm_, options_.directory + "/run.log", longest_duration(), true)});
   results_->progress.note("resumed at t = " + rounded(time_) + " s, step " + std::to_string(steps_));
 }
 

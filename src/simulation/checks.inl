@@ -1,4 +1,5 @@
-// What only mesh, soil or particles can tell is wrong with a scene: complaints at the door, before the first step; included only where it is instantiated (src/variants).
+// What only mesh, soil or particles can tell is wrong with a scene: complaints at the door, before the first step;
+// included only where it is instantiated (src/variants).
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +13,8 @@ void Simulation<dim, Phases>::check_bodies() const {
   const auto check_lattice = [&](const std::string &path, int count) {
     if (lattice<dim>(count).empty())
       scene_.complain(path + ".particles_per_cell",
-                      std::string("has no lattice of that many points; take ") + (dim == 2 ? "1, 3, 4, 6, 9, 10, 12, 15 or 16" : "1, 4, 8, 10 or 20"));
+                      std::string("has no lattice of that many points; take ") +
+                          (dim == 2 ? "1, 3, 4, 6, 9, 10, 12, 15 or 16" : "1, 4, 8, 10 or 20"));
   };
   std::vector<int> owner(mesh_.cell_count(), -1);
   for (int b = 0; b < static_cast<int>(scene_.body.size()); ++b) {
@@ -21,41 +23,56 @@ void Simulation<dim, Phases>::check_bodies() const {
     int other = -1;
     for (const std::string &region : body.region) {
       if (!mesh_.has_region(region))
-        scene_.complain(path + ".region", "must name groups of cells; the mesh has no \"" + region + "\"; " + suggestion(region, mesh_.region_names()));
+        scene_.complain(path + ".region", "must name groups of cells; the mesh has no \"" + region + "\"; " +
+                                              suggestion(region, mesh_.region_names()));
       for (int cell : mesh_.region(region)) {
         if (owner[cell] >= 0 && owner[cell] != b) other = owner[cell];
         owner[cell] = b;
       }
     }
     MPI_Allreduce(MPI_IN_PLACE, &other, 1, MPI_INT, MPI_MAX, comm_);
-    if (other >= 0) scene_.complain(path + ".region", "fills cells that body." + scene_.body[other].name + " fills too; give each cell to one body");
+    if (other >= 0)
+      scene_.complain(path + ".region",
+                      "fills cells that body." + scene_.body[other].name + " fills too; give each cell to one body");
     if (!Phases::given && !Phases::suction && reads_suction(laws_[b]))
       scene_.complain(path + ".law", std::string("takes strength from suction, and `phases = \"") + Phases::name +
-                                         "\"` has none; model the water (`phases = \"drained\"` and a [water] excess below zero), or leave out the "
+                                         "\"` has none; model the water (`phases = \"drained\"` and a [water] excess "
+                                         "below zero), or leave out the "
                                          "keys suction_...");
     check_lattice(path, body.particles_per_cell);
-    for (size_t k = 0; k < body.dense.size(); ++k) check_lattice(path + ".dense." + std::to_string(k), body.dense[k].particles_per_cell);
+    for (size_t k = 0; k < body.dense.size(); ++k)
+      check_lattice(path + ".dense." + std::to_string(k), body.dense[k].particles_per_cell);
   }
 }
 
 template <int dim, class Phases>
 void Simulation<dim, Phases>::check_boundaries(const std::vector<typename Conditions<dim>::Source> &sources) const {
-  const bool quasi_static = std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &stage) { return is_static(stage.kind); });
+  const bool quasi_static =
+      std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &stage) { return is_static(stage.kind); });
   for (const auto &source : sources) {
     const std::string path = "boundary." + source.name;
     for (const std::string &group : source.groups)
       if (!mesh_.has_group(group) && !(concerns_water(source.kind) && group == free_surface))
-        scene_.complain(path + ".group", "must name groups of facets; the mesh has no \"" + group + "\"; " + suggestion(group, mesh_.group_names()));
+        scene_.complain(path + ".group", "must name groups of facets; the mesh has no \"" + group + "\"; " +
+                                             suggestion(group, mesh_.group_names()));
     if (concerns_water(source.kind) && !Phases::liquid)
-      scene_.complain(path, std::string("is a boundary of moving pore water, but phases = \"") + Phases::name + "\" has none; set phases = \"saturated\", \"unsaturated\" or \"three-phase\"");
+      scene_.complain(path, std::string("is a boundary of moving pore water, but phases = \"") + Phases::name +
+                                "\" has none; set phases = \"saturated\", \"unsaturated\" or \"three-phase\"");
     if (concerns_gas(source.kind) && !Phases::gas)
-      scene_.complain(path + ".kind", std::string("is a boundary of moving pore gas, but phases = \"") + Phases::name + "\" has none; set phases = \"three-phase\"");
+      scene_.complain(path + ".kind", std::string("is a boundary of moving pore gas, but phases = \"") + Phases::name +
+                                          "\" has none; set phases = \"three-phase\"");
     const auto check_vector = [&](const char *key, const std::vector<Function> &value) {
-      if (!value.empty() && value.size() != dim) scene_.complain(path + "." + key, "must have " + std::to_string(dim) + " components");
+      if (!value.empty() && value.size() != dim)
+        scene_.complain(path + "." + key, "must have " + std::to_string(dim) + " components");
     };
     const bool has_static_form = std::visit(
-        [](const auto &kind) { return requires { kind.template directions<dim>(Vec<dim>{}); } || requires { kind.template load<dim>(Vec<dim>{}, Vec<dim>{}, 0.); }; }, source.kind);
-    if (quasi_static && !has_static_form && !concerns_water(source.kind)) scene_.complain(path + ".kind", "has no quasi-static form; take fixed, roller, velocity or traction");
+        [](const auto &kind) {
+          return requires { kind.template directions<dim>(Vec<dim>{}); }
+          || requires { kind.template load<dim>(Vec<dim>{}, Vec<dim>{}, 0.); };
+        },
+        source.kind);
+    if (quasi_static && !has_static_form && !concerns_water(source.kind))
+      scene_.complain(path + ".kind", "has no quasi-static form; take fixed, roller, velocity or traction");
     if (const auto *moved = std::get_if<PrescribedVelocity>(&source.kind)) check_vector("velocity", moved->velocity);
     if (const auto *loaded = std::get_if<Traction>(&source.kind)) check_vector("traction", loaded->traction);
   }
@@ -71,7 +88,9 @@ void Simulation<dim, Phases>::check_seeded(const Body<dim> &body, const std::str
     const std::string where = place_of(bad < p.count, bad < p.count ? p.reference[bad] : Vec<dim>{});
     if (!where.empty()) scene_.complain(path + "." + key, "is no number at " + where);
   };
-  const auto all_finite = [](const double *x, int count) { return std::all_of(x, x + count, [](double value) { return std::isfinite(value); }); };
+  const auto all_finite = [](const double *x, int count) {
+    return std::all_of(x, x + count, [](double value) { return std::isfinite(value); });
+  };
   check("velocity", [&](int i) { return all_finite(p.velocity[i].data(), dim); });
   check("stress", [&](int i) { return all_finite(p.stress + i * stress_size<dim>, stress_size<dim>); });
   check("displacement", [&](int i) { return all_finite(p.position[i].data(), dim) && p.volume[i] > 0; });
@@ -82,12 +101,15 @@ template <int dim, class Phases>
 void Simulation<dim, Phases>::check_step() {
   const StepRule rule = step_rule(integrator_settings_);
   if (rule.fixed == 0) return;
-  double critical = rule.bound == FrequencyBound::mesh || explicit_drag() ? critical_step() : std::numeric_limits<double>::infinity();
+  double critical =
+      rule.bound == FrequencyBound::mesh || explicit_drag() ? critical_step() : std::numeric_limits<double>::infinity();
   if (std::isinf(critical))
     for (const BodyReport &body : bodies()) critical = std::min(critical, body.critical_step);
   if (rule.fixed > rule.limit * critical)
-    scene_.complain("integrator.step", "must not exceed the critical step of " + rounded(rule.limit * critical) + " s (" + rounded(2 * rule.limit) +
-                                           " / omega_max of the filled cells" + (explicit_drag() ? ", less for explicit drag" : "") + "); take a smaller step, a coarser mesh, or leave step out");
+    scene_.complain("integrator.step", "must not exceed the critical step of " + rounded(rule.limit * critical) +
+                                           " s (" + rounded(2 * rule.limit) + " / omega_max of the filled cells" +
+                                           (explicit_drag() ? ", less for explicit drag" : "") +
+                                           "); take a smaller step, a coarser mesh, or leave step out");
 }
 
 /// A picture that nobody can draw is refused before the run, not missed after it.
@@ -102,7 +124,9 @@ void Simulation<dim, Phases>::check_pictures() {
     const bool drawn = std::any_of(state.columns.begin(), state.columns.end(), [&](const Column &column) {
       return field == column.name || (column.components > 1 && field.rfind(column.name + "_", 0) == 0);
     });
-    if (!drawn) scene_.complain("output.picture", "names \"" + field + "\", which this run does not have; " + suggestion(field, known));
+    if (!drawn)
+      scene_.complain("output.picture",
+                      "names \"" + field + "\", which this run does not have; " + suggestion(field, known));
   }
 }
 

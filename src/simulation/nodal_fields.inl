@@ -5,7 +5,8 @@ namespace talus {
 
 template <int dim, class Phases>
 std::vector<Vec<dim>> Simulation<dim, Phases>::nodal_displacement() {
-  // up to the last remap the mean of the particles around a node, weighted as their velocity is; since then the node's own way
+  // up to the last remap the mean of the particles around a node, weighted as their velocity is; since then the node's
+  // own way
   std::vector<Vec<dim>> u(mesh_.node_count(), Vec<dim>{});
   for (const auto &body : bodies_) {
     const ParticleArrays<dim> &p = body->particles();
@@ -27,15 +28,18 @@ std::vector<Vec<dim>> Simulation<dim, Phases>::nodal_displacement() {
 }
 
 template <int dim, class Phases>
-void Simulation<dim, Phases>::nodal_field(const std::string &name, const std::function<void(PetscInt, const double *)> &put) {
+void Simulation<dim, Phases>::nodal_field(const std::string &name,
+                                          const std::function<void(PetscInt, const double *)> &put) {
   const bool displacement = name == "displacement";
-  if (!displacement && name != "velocity") throw std::invalid_argument("no nodal field " + name + "; there are velocity and displacement");
+  if (!displacement && name != "velocity")
+    throw std::invalid_argument("no nodal field " + name + "; there are velocity and displacement");
   require(motion_->begin(time_));
   std::vector<Vec<dim>> u;
   if (displacement) u = nodal_displacement();
   const FilledGrid<dim> &grid = motion_->grid();
   for (int i = 0; i < grid.node_count(); ++i)
-    put(mesh_.plex_vertex[grid.mesh_node[i]], displacement ? u[grid.mesh_node[i]].data() : motion_->velocity() + i * dim);
+    put(mesh_.plex_vertex[grid.mesh_node[i]],
+        displacement ? u[grid.mesh_node[i]].data() : motion_->velocity() + i * dim);
 }
 
 }  // namespace talus

@@ -1,5 +1,5 @@
-// Steps of seepage and consolidation, and what pore water by finite elements and by particles hand to one another; included only where it is
-// instantiated (src/variants).
+// Steps of seepage and consolidation, and what pore water by finite elements and by particles hand to one another;
+// included only where it is instantiated (src/variants).
 #include <algorithm>
 #include <cmath>
 
@@ -7,11 +7,14 @@
 
 namespace talus {
 
-/// Time steps by what each misses, docs/theory/seepage.md section 3: implicit Euler against the line through the last two states.
+/// Time steps by what each misses, docs/theory/seepage.md section 3: implicit Euler against the line through the last
+/// two states.
 template <int dim, class Phases>
-void Simulation<dim, Phases>::follow_water(const Stage &stage, const std::function<double(double)> &load_at, const std::function<void(double)> &done,
-                                           double *share, StepOutcome *outcome, int *iterations) {
-  constexpr double first = 1e-4, growth = 2, shrinkage = 0.2, safety = 0.9, steady_growth = 4, longest_steady = 1e9, still = 1e-7;
+void Simulation<dim, Phases>::follow_water(const Stage &stage, const std::function<double(double)> &load_at,
+                                           const std::function<void(double)> &done, double *share, StepOutcome *outcome,
+                                           int *iterations) {
+  constexpr double first = 1e-4, growth = 2, shrinkage = 0.2, safety = 0.9, steady_growth = 4, longest_steady = 1e9,
+                   still = 1e-7;
   const bool soil_moves = stage.kind == StageKind::consolidation;
   const QuasiStaticSource &settings = scene_.quasi_static;
   FlowStep<dim> flow(soil_moves ? statics_.get() : nullptr, *flow_, settings);
@@ -23,7 +26,8 @@ void Simulation<dim, Phases>::follow_water(const Stage &stage, const std::functi
   };
   measure(start), before = start;
   const double longest = stage.steady ? longest_steady * stage.duration : stage.duration / stage.load_steps;
-  double step = std::min(longest, std::max(first * stage.duration, soil_moves ? flow.shortest_step() : 0)), last = 0, range = 0;
+  double step = std::min(longest, std::max(first * stage.duration, soil_moves ? flow.shortest_step() : 0)), last = 0,
+         range = 0;
   int known = 0;  // steps behind: the first takes what is put on at once, so that the line starts with the second
   *share = 0, *iterations = 0;
   while (*share < 1) {
@@ -39,8 +43,9 @@ void Simulation<dim, Phases>::follow_water(const Stage &stage, const std::functi
         error[1] = std::max(error[1], std::abs(now[i].pressure - start[i].pressure));
         if (known < 2) continue;
         const double weight = dt / (dt + last);
-        error[0] = std::max({error[0], weight * std::abs(now[i].pressure - before[i].pressure - dt * rate[i].pressure) / range,
-                             weight * std::abs(now[i].saturation - before[i].saturation - dt * rate[i].saturation)});
+        error[0] =
+            std::max({error[0], weight * std::abs(now[i].pressure - before[i].pressure - dt * rate[i].pressure) / range,
+                      weight * std::abs(now[i].saturation - before[i].saturation - dt * rate[i].saturation)});
       }
       MPI_Allreduce(MPI_IN_PLACE, error, 2, MPI_DOUBLE, MPI_MAX, comm_);
       range = std::max({range, error[1], 1e-300});
@@ -75,7 +80,8 @@ void Simulation<dim, Phases>::follow_water(const Stage &stage, const std::functi
 template <int dim, class Phases>
 void Simulation<dim, Phases>::fill_pores() {
   if constexpr (Phases::liquid) {
-    motion_->fill_pores([this](int cell, const Vec<dim> &x) { return flow_->pressure_at(cell, barycentric(mesh_.cells[cell], x)); });
+    motion_->fill_pores(
+        [this](int cell, const Vec<dim> &x) { return flow_->pressure_at(cell, barycentric(mesh_.cells[cell], x)); });
     first_ledger_.clear();
   }
 }

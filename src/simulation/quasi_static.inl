@@ -1,4 +1,5 @@
-// Quasi-static stages: finite elements on the scene's mesh, laws and boundaries, and what they hand to the particles; included only where it is instantiated (src/variants).
+// Quasi-static stages: finite elements on the scene's mesh, laws and boundaries, and what they hand to the particles;
+// included only where it is instantiated (src/variants).
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,7 +13,6 @@
 
 namespace talus {
 
-
 template <int dim, class Phases>
 void Simulation<dim, Phases>::make_statics() {
   SoilData<dim> data;
@@ -21,13 +21,15 @@ void Simulation<dim, Phases>::make_statics() {
   if constexpr (Phases::given) {
     data.pressure = [this](const Vec<dim> &x, double t) { return pressure_(x, t); };
     if (flow_stages()) {
-      const bool dries = std::any_of(scene_.body.begin(), scene_.body.end(), [](const BodySource &b) { return b.retention.reader; });
+      const bool dries =
+          std::any_of(scene_.body.begin(), scene_.body.end(), [](const BodySource &b) { return b.retention.reader; });
       std::vector<typename Conditions<dim>::Source> water;
       for (BoundarySource &b : scene_.seepage_boundary) {
         water.push_back({b.name, b.group, read_boundary(b.kind)});
         for (const std::string &group : b.group)
           if (!mesh_.has_group(group) && group != free_surface)
-            scene_.complain("boundary." + b.name + ".group", "must name groups of facets; the mesh has no \"" + group + "\"; " + suggestion(group, mesh_.group_names()));
+            scene_.complain("boundary." + b.name + ".group", "must name groups of facets; the mesh has no \"" + group +
+                                                                 "\"; " + suggestion(group, mesh_.group_names()));
       }
       scene_.water.seeped = nullptr;
       flow_ = std::make_unique<PoreFlow<dim>>(mesh_, scene_, conditions_.sources(), dries, water);
@@ -43,7 +45,8 @@ void Simulation<dim, Phases>::make_statics() {
     const std::vector<Function> &given = scene_.body[b].stress;
     for (int q = 0; q < p.count() && !given.empty(); ++q)
       for (int k = 0; k < stress_size<dim>; ++k)
-        p.stress[q * stress_size<dim> + k] = given[k](p.position[q][0], p.position[q][1], dim == 3 ? p.position[q][dim - 1] : 0, 0);
+        p.stress[q * stress_size<dim> + k] =
+            given[k](p.position[q][0], p.position[q][1], dim == 3 ? p.position[q][dim - 1] : 0, 0);
   }
 }
 
@@ -52,19 +55,24 @@ PetscErrorCode Simulation<dim, Phases>::activate() {
   PetscFunctionBeginUser;
   PetscCall(statics_->activate(present_));
   if constexpr (Phases::liquid)
-    PetscCall(flow_->activate(statics_->soil().active(), [this](const Vec<dim> &x) { return motion_->fluid().given_pressure(x, load_time_); }));
+    PetscCall(flow_->activate(statics_->soil().active(),
+                              [this](const Vec<dim> &x) { return motion_->fluid().given_pressure(x, load_time_); }));
   if constexpr (Phases::given)
-    if (flow_) PetscCall(flow_->activate(statics_->soil().active(), [this](const Vec<dim> &x) {
-      const Function &suction = scene_.water.suction;
-      const double above = suction.given() ? suction(x[0], x[1], dim == 3 ? x[dim - 1] : 0, load_time_) : pressure_.above_table(x, load_time_);
-      return pressure_(x, load_time_) - (pressure_.below_table(x, load_time_) ? 0 : above);
-    }));
+    if (flow_)
+      PetscCall(flow_->activate(statics_->soil().active(), [this](const Vec<dim> &x) {
+        const Function &suction = scene_.water.suction;
+        const double above = suction.given() ? suction(x[0], x[1], dim == 3 ? x[dim - 1] : 0, load_time_)
+                                             : pressure_.above_table(x, load_time_);
+        return pressure_(x, load_time_) - (pressure_.below_table(x, load_time_) ? 0 : above);
+      }));
   PetscFunctionReturn(0);
 }
 
-/// From now on the pressure of a drained scene is what the flow has found. Laws that read suction see it, others take it for none.
+/// From now on the pressure of a drained scene is what the flow has found. Laws that read suction see it, others take
+/// it for none.
 template <int dim>
-std::shared_ptr<SeepedPressure<dim>> take_seeped(const PoreFlow<dim> &flow, const std::vector<Law> &laws, Water &water) {
+std::shared_ptr<SeepedPressure<dim>> take_seeped(const PoreFlow<dim> &flow, const std::vector<Law> &laws,
+                                                 Water &water) {
   const bool suction = std::any_of(laws.begin(), laws.end(), [](const Law &law) { return reads_suction(law); });
   const auto found = std::make_shared<SeepedPressure<dim>>(flow, suction);
   water.seeped = [found](const double *x) { return (*found)(x); };
@@ -95,7 +103,8 @@ void Simulation<dim, Phases>::choose_bodies(const Stage &stage) {
     const std::string &name = scene_.body[b].name;
     if (std::count(stage.add.begin(), stage.add.end(), name) && !present_[b]) {
       present_[b] = 1;
-      seed<dim>(*bodies_[b], mesh_, stride, [&](const Vec<dim> &x) { return soil_density(scene_.body[b], x, load_time_); });
+      seed<dim>(*bodies_[b], mesh_, stride,
+                [&](const Vec<dim> &x) { return soil_density(scene_.body[b], x, load_time_); });
       conditions_.surface_loads().seed(*bodies_[b], mesh_);
       require(bodies_[b]->sort(mesh_.cell_count()));
     }
@@ -114,11 +123,14 @@ void Simulation<dim, Phases>::run_quasi_static(const Stage &stage) {
     return;
   }
   if (options_.resume && !statics_ && stage_.number > 0)
-    throw SceneError("the run in " + options_.directory + " cannot be resumed before a quasi-static stage; start it anew");
+    throw SceneError("the run in " + options_.directory +
+                     " cannot be resumed before a quasi-static stage; start it anew");
   stage_name_ = stage.name, hold_loads_ = stage.hold_loads, watched_ = "";
   if (results_) results_->progress.stage(stage.name);
-  if (!statics_) make_statics();
-  else if (moved_since_statics_) to_gauss_points();
+  if (!statics_)
+    make_statics();
+  else if (moved_since_statics_)
+    to_gauss_points();
   choose_bodies(stage);
   for (size_t b = 0; b < laws_.size(); ++b) {
     GaussPoints<dim> &points = statics_->soil().points()[b];
@@ -133,13 +145,15 @@ void Simulation<dim, Phases>::run_quasi_static(const Stage &stage) {
   in_statics_ = true, moved_since_statics_ = false;
   std::string freedom;
   require(statics_->find_freedom(&freedom));
-  if (!freedom.empty() && stage.kind != StageKind::seepage) fail("the supports leave soil free to move as a whole: " + freedom + "; hold it by fixed or roller boundaries");
+  if (!freedom.empty() && stage.kind != StageKind::seepage)
+    fail("the supports leave soil free to move as a whole: " + freedom + "; hold it by fixed or roller boundaries");
   if (scene_.quasi_static.elements != Elements::quadratic && !mesh_.report().one_element_slice) {
     std::vector<char> thin;
     require(statics_->find_thin_bodies(&thin));
     for (size_t b = 0; b < thin.size(); ++b)
       if (thin[b])
-        fail("body." + scene_.body[b].name + " is one element across, which elements of first order cannot resolve; refine the mesh there, or set "
+        fail("body." + scene_.body[b].name +
+             " is one element across, which elements of first order cannot resolve; refine the mesh there, or set "
              "quasi_static.elements = \"quadratic\"");
   }
   if (stage.initial_stress == InitialStress::k0) start_stress();
@@ -176,21 +190,25 @@ void Simulation<dim, Phases>::run_quasi_static(const Stage &stage) {
   text.precision(3);
   if (share < 1) {
     text << "no equilibrium beyond " << 100 * share << " % of the loads of stage " << stage.name << ": "
-         << (outcome.singular ? "the stiffness became singular" : "Newton's iterations did not converge") << " (" << outcome.iterations
-         << " iterations, out-of-balance force " << outcome.residual << " of the forces, largest step of a node " << outcome.largest << " m)";
+         << (outcome.singular ? "the stiffness became singular" : "Newton's iterations did not converge") << " ("
+         << outcome.iterations << " iterations, out-of-balance force " << outcome.residual
+         << " of the forces, largest step of a node " << outcome.largest << " m)";
     if (stage.when_lost == WhenLost::stop) fail(text.str());
   } else if (stage.kind == StageKind::seepage) {
-    text << "stage " << stage.name << (stage.steady ? " has found the flow that lasts: " : " has followed the water: ") << iterations << " iterations";
+    text << "stage " << stage.name << (stage.steady ? " has found the flow that lasts: " : " has followed the water: ")
+         << iterations << " iterations";
     for (const auto &[name, inflow] : flow_->own_inflow()) text << "; " << inflow << " m3/s enter at " << name;
   } else {
-    text << "stage " << stage.name << " is in equilibrium: " << statics_->unknowns() << " unknowns, " << iterations << " iterations (" << (statics_->direct() ? "LU" : "GMRES and multigrid") << "), largest displacement "
+    text << "stage " << stage.name << " is in equilibrium: " << statics_->unknowns() << " unknowns, " << iterations
+         << " iterations (" << (statics_->direct() ? "LU" : "GMRES and multigrid") << "), largest displacement "
          << statics_->soil().largest_displacement() << " m";
   }
   Balance sums;
   set_loading(stage, 0);
   require(motion_->begin(time_));
   require(motion_->balance(time_, &sums));
-  if (sums.applied > 0) text << "; unbalanced force ratio of the particles that take it over " << sums.unbalanced / sums.applied;
+  if (sums.applied > 0)
+    text << "; unbalanced force ratio of the particles that take it over " << sums.unbalanced / sums.applied;
   note(text.str());
   stage_.met = true;
   if (Phases::given && water_flows(stage.kind) && results_)  // for a run that is resumed behind this stage
@@ -201,13 +219,14 @@ void Simulation<dim, Phases>::run_quasi_static(const Stage &stage) {
 
 // ---- hand-over ----
 
-/// Particles stay where they are and take stress and history; the displacement moves the place it is counted from. Stress is linear
-/// between the Gauss points of a cell.
+/// Particles stay where they are and take stress and history; the displacement moves the place it is counted from.
+/// Stress is linear between the Gauss points of a cell.
 template <int dim, class Phases>
 void Simulation<dim, Phases>::to_particles() {
   if (motion_->gathered()) require(release(false));
   const int per_cell = statics_->soil().points_per_cell();
-  const double near = per_cell > 1 ? statics_->soil().rule().point[0][0] : 1, far = per_cell > 1 ? statics_->soil().rule().point[0][1] : 0;
+  const double near = per_cell > 1 ? statics_->soil().rule().point[0][0] : 1,
+               far = per_cell > 1 ? statics_->soil().rule().point[0][1] : 0;
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const ParticleArrays<dim> &p = bodies_[b]->particles();
     const GaussPoints<dim> &points = statics_->soil().points()[b];
@@ -222,11 +241,13 @@ void Simulation<dim, Phases>::to_particles() {
         for (int a = 0; a < per_cell; ++a) sum += weight[a] * field[(first + a) * width + k];
         return sum;
       };
-      for (int k = 0; k < stress_size<dim>; ++k) p.stress[i * stress_size<dim> + k] = value(points.stress, stress_size<dim>, k);
+      for (int k = 0; k < stress_size<dim>; ++k)
+        p.stress[i * stress_size<dim> + k] = value(points.stress, stress_size<dim>, k);
       for (int k = 0; k < memory; ++k) {  // not beyond what the points have: strength must not grow
         double low = points.history[first * memory + k], high = low;
         for (int a = 1; a < per_cell; ++a)
-          low = std::min(low, points.history[(first + a) * memory + k]), high = std::max(high, points.history[(first + a) * memory + k]);
+          low = std::min(low, points.history[(first + a) * memory + k]),
+          high = std::max(high, points.history[(first + a) * memory + k]);
         p.history[i * memory + k] = std::clamp(value(points.history, memory, k), low, high);
       }
       const Vec<dim> u = statics_->soil().displacement(cell, l);
@@ -236,8 +257,8 @@ void Simulation<dim, Phases>::to_particles() {
   fill_pores();
 }
 
-/// The other way after a dynamic stage: Gauss points take the mean of the particles in their cell, weighted by volume; cells that have
-/// none keep what they had.
+/// The other way after a dynamic stage: Gauss points take the mean of the particles in their cell, weighted by volume;
+/// cells that have none keep what they had.
 template <int dim, class Phases>
 void Simulation<dim, Phases>::to_gauss_points() {
   pressure_from_particles();
@@ -267,10 +288,13 @@ template <int dim, class Phases>
 Snapshot Simulation<dim, Phases>::gauss_points() const {
   Snapshot s;
   s.time = time_, s.step = steps_, s.stage = stage_name_;
-  const auto column = [&](const char *name, const char *unit, const char *meaning, int components) { s.columns.push_back({name, unit, meaning, components, {}}); };
+  const auto column = [&](const char *name, const char *unit, const char *meaning, int components) {
+    s.columns.push_back({name, unit, meaning, components, {}});
+  };
   column("position", "m", "place of the Gauss point", dim);
   column("displacement", "m", "displacement since the start or the last reset", dim);
-  column("stress", "Pa", Phases::pressure ? "effective stress, positive in tension" : "stress, positive in tension", stress_size<dim>);
+  column("stress", "Pa", Phases::pressure ? "effective stress, positive in tension" : "stress, positive in tension",
+         stress_size<dim>);
   column("volume", "m3", "volume of the Gauss point", 1);
   column("mass", "kg", "mass of the Gauss point", 1);
   column("shear_strain", "-", "sqrt(2/3 e : e) of the deviator e of strain, since displacement was last reset", 1);
@@ -279,7 +303,8 @@ Snapshot Simulation<dim, Phases>::gauss_points() const {
   const size_t first_history = s.columns.size();
   for (const auto &body : bodies_)
     for (const HistoryField &field : history_fields(body->law()))
-      if (std::none_of(s.columns.begin(), s.columns.end(), [&](const auto &c) { return c.name == field.name; })) column(field.name, field.unit.name, field.meaning, 1);
+      if (std::none_of(s.columns.begin(), s.columns.end(), [&](const auto &c) { return c.name == field.name; }))
+        column(field.name, field.unit.name, field.meaning, 1);
   const int per_cell = statics_->soil().points_per_cell();
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const GaussPoints<dim> &p = statics_->soil().points()[b];
@@ -298,7 +323,8 @@ Snapshot Simulation<dim, Phases>::gauss_points() const {
       Stress<dim> strain;
       std::copy_n(&p.total_strain[q * stress_size<dim>], stress_size<dim>, &strain.xx);
       const Barycentric<dim> &l = statics_->soil().rule().point[place];
-      const double mass = p.volume[q] * (soil_density(scene_.body[b], p.position[q], load_time_) + (Phases::liquid ? flow_->water_density(p.cell[q], l) : 0));
+      const double mass = p.volume[q] * (soil_density(scene_.body[b], p.position[q], load_time_) +
+                                         (Phases::liquid ? flow_->water_density(p.cell[q], l) : 0));
       const double shear = Invariants<dim>(strain).q * std::sqrt(4. / 3);
       put(p.position[q].data(), dim), put(u.data(), dim), put(&p.stress[q * stress_size<dim>], stress_size<dim>);
       put(&p.volume[q], 1), put(&mass, 1), put(&shear, 1);
@@ -332,12 +358,14 @@ inline double earth_pressure_at_rest(const BodySource &source, const Law &law) {
         if constexpr (requires { one.friction_angle; })
           return 1 - std::sin(one.friction_angle);
         else
-          return (3 * one.bulk_modulus() - 2 * one.shear_modulus()) / (3 * one.bulk_modulus() + 4 * one.shear_modulus());
+          return (3 * one.bulk_modulus() - 2 * one.shear_modulus()) /
+                 (3 * one.bulk_modulus() + 4 * one.shear_modulus());
       },
       law);
 }
 
-/// Vertical stress by the weight of soil and open water above, lateral stress k0 times its effective part. Every rank sees all cells.
+/// Vertical stress by the weight of soil and open water above, lateral stress k0 times its effective part. Every rank
+/// sees all cells.
 template <int dim, class Phases>
 void Simulation<dim, Phases>::start_stress() {
   struct Block {
@@ -372,7 +400,9 @@ void Simulation<dim, Phases>::start_stress() {
   double low = 1e300, high = -1e300;
   for (const Block &block : all) low = std::min(low, block.low), high = std::max(high, block.high);
   const int strips = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(all.size()))));
-  const auto strip_of = [&](double x) { return std::clamp(static_cast<int>((x - low) / (high - low) * strips), 0, strips - 1); };
+  const auto strip_of = [&](double x) {
+    return std::clamp(static_cast<int>((x - low) / (high - low) * strips), 0, strips - 1);
+  };
   std::vector<std::vector<int>> in_strip(strips);
   for (size_t k = 0; k < all.size(); ++k)
     for (int s = strip_of(all[k].low); s <= strip_of(all[k].high); ++s) in_strip[s].push_back(static_cast<int>(k));
@@ -385,7 +415,8 @@ void Simulation<dim, Phases>::start_stress() {
       const Vec<dim> &x = points.position[q];
       double weight = 0, top = x[1];
       for (int k : in_strip[strip_of(x[0])]) {
-        // the part of the vertical through x that lies in the simplex and above x: barycentric coordinates are linear along it
+        // the part of the vertical through x that lies in the simplex and above x: barycentric coordinates are linear
+        // along it
         const Block &block = all[k];
         if (x[0] < block.low || x[0] > block.high) continue;
         Square<dim> edges;
@@ -394,9 +425,12 @@ void Simulation<dim, Phases>::start_stress() {
         const ColumnVector<dim> at = inverse * (map<dim>(x) - map<dim>(block.corner[0])), slope = inverse.col(1);
         double from = 0, to = 1e300;  // height above x
         const auto cut = [&](double value, double rise) {
-          if (rise > 0) from = std::max(from, -value / rise);
-          else if (rise < 0) to = std::min(to, -value / rise);
-          else if (value < 0) to = 0;
+          if (rise > 0)
+            from = std::max(from, -value / rise);
+          else if (rise < 0)
+            to = std::min(to, -value / rise);
+          else if (value < 0)
+            to = 0;
         };
         cut(1 - at.sum(), -slope.sum());
         for (int a = 0; a < dim; ++a) cut(at[a], slope[a]);
@@ -409,7 +443,9 @@ void Simulation<dim, Phases>::start_stress() {
         pressure = pressure_(x, load_time_);
         if (scene_.water.open_water_load) weight += pressure_(surface, load_time_);
       }
-      if constexpr (Phases::liquid) pressure = flow_->stress_pressure(points.cell[q], statics_->soil().rule().point[q % statics_->soil().points_per_cell()]);
+      if constexpr (Phases::liquid)
+        pressure = flow_->stress_pressure(points.cell[q],
+                                          statics_->soil().rule().point[q % statics_->soil().points_per_cell()]);
       double *stress = &points.stress[q * stress_size<dim>];
       std::fill_n(stress, stress_size<dim>, 0.);
       stress[1] = pressure - weight, stress[0] = stress[2] = k0 * stress[1];
@@ -431,8 +467,10 @@ FactorOfSafety Simulation<dim, Phases>::factor_of_safety() {
       break;
     } catch (const RunError &) {  // no equilibrium with this strength: come from a larger one
       if (interrupted || !in_statics_ || strength_factor_ / 2 < least_factor) throw;
-      note("strength divided by " + rounded(strength_factor_) + " is too little for the stages; they start again with twice of it");
-      time_ = load_time_ = 0, steps_ = 0, last_row_step_ = -1, stage_ = StageState{}, in_statics_ = false, statics_.reset();
+      note("strength divided by " + rounded(strength_factor_) +
+           " is too little for the stages; they start again with twice of it");
+      time_ = load_time_ = 0, steps_ = 0, last_row_step_ = -1, stage_ = StageState{}, in_statics_ = false,
+      statics_.reset();
     }
   }
   double low[dim], high[dim], extent = 0;
@@ -452,13 +490,17 @@ FactorOfSafety Simulation<dim, Phases>::factor_of_safety() {
   require(reduce_strength<dim>(
       *statics_, laws_, strength_factor_, load_time_, time_, 0.1 * extent, 0.01,
       [&](const StrengthTrial &t) {
-        note("strength divided by " + rounded(t.factor) + ": " + (t.stable ? "stable" : t.reason) + ", " + std::to_string(t.iterations) +
-             " iterations, largest displacement " + rounded(t.displacement) + " m");
-        if (table) std::fprintf(table, "%.6g,%d,%d,%.3g,%.6g,%s\n", t.factor, t.stable, t.iterations, t.residual, t.displacement, t.reason.c_str()), std::fflush(table);
+        note("strength divided by " + rounded(t.factor) + ": " + (t.stable ? "stable" : t.reason) + ", " +
+             std::to_string(t.iterations) + " iterations, largest displacement " + rounded(t.displacement) + " m");
+        if (table)
+          std::fprintf(table, "%.6g,%d,%d,%.3g,%.6g,%s\n", t.factor, t.stable, t.iterations, t.residual, t.displacement,
+                       t.reason.c_str()),
+              std::fflush(table);
       },
       &result));
   if (table) std::fclose(table);
-  if (result.upper == 0) fail("strength divided by " + rounded(result.lower) + " still has an equilibrium: there is nothing to fail");
+  if (result.upper == 0)
+    fail("strength divided by " + rounded(result.lower) + " still has an equilibrium: there is nothing to fail");
   ++steps_;
   to_particles();
   write_history();

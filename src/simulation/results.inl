@@ -19,21 +19,26 @@ void Simulation<dim, Phases>::name_columns() {
     history_.names.push_back(point.name + "_velocity_m_s");
     if (Phases::pressure) history_.names.push_back(point.name + "_pore_pressure_Pa");
     if (Phases::gas) history_.names.push_back(point.name + "_gas_pressure_Pa");
-    if (Phases::suction) history_.names.push_back(point.name + "_suction_Pa"), history_.names.push_back(point.name + "_saturation");
+    if (Phases::suction)
+      history_.names.push_back(point.name + "_suction_Pa"), history_.names.push_back(point.name + "_saturation");
   }
-  for (const char *name : {"kinetic_J", "strain_J", "potential_J", "mass_kg", "particles", "load_time_s"}) history_.names.push_back(name);
+  for (const char *name : {"kinetic_J", "strain_J", "potential_J", "mass_kg", "particles", "load_time_s"})
+    history_.names.push_back(name);
   for (int a = 0; a + 1 < velocity_fields<Phases>; ++a)
-    for (const char *name : {"_kg", "_out_kg", "_given_kg", "_error_kg"}) history_.names.push_back(std::string(a ? "gas" : "water") + name);
+    for (const char *name : {"_kg", "_out_kg", "_given_kg", "_error_kg"})
+      history_.names.push_back(std::string(a ? "gas" : "water") + name);
   if (flow_stages())
     for (const auto &source : conditions_.sources())
       if (concerns_water(source.kind)) history_.names.push_back(source.name + "_inflow_m3_s");
   // a loaded face shows how far it went, every other boundary the force by which it holds the soil
   for (size_t s = 0; s < conditions_.sources().size(); ++s)
     for (int d = 0; d < dim; ++d)
-      history_.names.push_back(conditions_.sources()[s].name + (conditions_.loads(static_cast<int>(s)) ? "_displacement_" : "_force_") + axis[d] +
+      history_.names.push_back(conditions_.sources()[s].name +
+                               (conditions_.loads(static_cast<int>(s)) ? "_displacement_" : "_force_") + axis[d] +
                                (conditions_.loads(static_cast<int>(s)) ? "_m" : "_N"));
   for (const auto &source : conditions_.sources()) history_.names.push_back("work_" + source.name + "_J");
-  for (const char *name : {"work_gravity_J", "work_imposed_J", "work_damping_J", "dissipated_J"}) history_.names.push_back(name);
+  for (const char *name : {"work_gravity_J", "work_imposed_J", "work_damping_J", "dissipated_J"})
+    history_.names.push_back(name);
 }
 
 template <int dim, class Phases>
@@ -45,16 +50,19 @@ void Simulation<dim, Phases>::open_results() {
   MeshPicture picture;
   picture.dimension = dim;
   for (const Vec<dim> &x : mesh_.position) picture.position.insert(picture.position.end(), x.begin(), x.end());
-  for (const Cell<dim> &cell : mesh_.cells) picture.cell_node.insert(picture.cell_node.end(), cell.node.begin(), cell.node.end());
+  for (const Cell<dim> &cell : mesh_.cells)
+    picture.cell_node.insert(picture.cell_node.end(), cell.node.begin(), cell.node.end());
   RunFile file(comm_, options_.directory, header, picture);
   History rows(comm_, options_.directory + "/history.csv", {history_.names.begin() + 2, history_.names.end()});
-  results_.reset(new Results{std::move(file), std::move(rows), Progress(comm_, options_.directory + "/run.log", longest_duration())});
+  results_.reset(new Results{std::move(file), std::move(rows),
+                             Progress(comm_, options_.directory + "/run.log", longest_duration())});
 }
 
 /// Time at which the run ends at the latest [s].
 template <int dim, class Phases>
 double Simulation<dim, Phases>::longest_duration() const {
-  return std::accumulate(scene_.stage.begin(), scene_.stage.end(), 0., [](double s, const Stage &stage) { return s + stage.duration; });
+  return std::accumulate(scene_.stage.begin(), scene_.stage.end(), 0.,
+                         [](double s, const Stage &stage) { return s + stage.duration; });
 }
 
 template <int dim, class Phases>
@@ -64,8 +72,12 @@ Snapshot Simulation<dim, Phases>::snapshot() {
   Snapshot s;
   s.time = time_, s.step = steps_, s.stage = stage_name_;
   const StepStatistics &sums = integrator_->statistics();
-  for (const auto &[name, value] : {std::pair{"evaluations", sums.evaluations}, {"rejections", sums.rejections}, {"inversions", sums.inversions}, {"steps_bounded_by_error", sums.by_error},
-                                    {"steps_bounded_by_stability", sums.by_stability}, {"steps_bounded_by_outputs", sums.by_schedule}})
+  for (const auto &[name, value] : {std::pair{"evaluations", sums.evaluations},
+                                    {"rejections", sums.rejections},
+                                    {"inversions", sums.inversions},
+                                    {"steps_bounded_by_error", sums.by_error},
+                                    {"steps_bounded_by_stability", sums.by_stability},
+                                    {"steps_bounded_by_outputs", sums.by_schedule}})
     s.numbers.emplace_back(name, static_cast<double>(value));
   s.numbers.emplace_back("shortest_step_s", sums.steps ? sums.shortest : 0);
   s.numbers.emplace_back("longest_step_s", sums.longest);
@@ -75,13 +87,20 @@ Snapshot Simulation<dim, Phases>::snapshot() {
   column("position", "m", "place of the particle", dim);
   column("displacement", "m", "displacement since the start or the last reset", dim);
   column("velocity", "m/s", "velocity of the soil skeleton", dim);
-  column("stress", "Pa", Phases::pressure ? "effective stress, positive in tension" : "stress, positive in tension", stress_size<dim>);
+  column("stress", "Pa", Phases::pressure ? "effective stress, positive in tension" : "stress, positive in tension",
+         stress_size<dim>);
   column("volume", "m3", "volume of the particle", 1);
   column("mass", "kg", "mass of the particle", 1);
   if (Phases::pressure) column("pore_pressure", "Pa", "pore pressure, positive in compression", 1);
   if (Phases::gas) column("gas_pressure", "Pa", "gauge pressure of the pore gas", 1);
-  if (Phases::suction) column("suction", "Pa", "gas less liquid pressure, where positive", 1), column("saturation", "-", "degree of saturation", 1);
-  if (Phases::liquid) column("porosity", "-", "porosity", 1), column("surface", "-", "1 in cells with a side through which fluids may pass, named or the soil's surface where it is now; 0 elsewhere", 1);
+  if (Phases::suction)
+    column("suction", "Pa", "gas less liquid pressure, where positive", 1),
+        column("saturation", "-", "degree of saturation", 1);
+  if (Phases::liquid)
+    column("porosity", "-", "porosity", 1), column("surface", "-",
+                                                   "1 in cells with a side through which fluids may pass, named or the "
+                                                   "soil's surface where it is now; 0 elsewhere",
+                                                   1);
   const size_t first_history = s.columns.size();
   for (const auto &body : bodies_)
     for (const HistoryField &field : history_fields(body->law()))
@@ -105,7 +124,8 @@ Snapshot Simulation<dim, Phases>::snapshot() {
       };
       Vec<dim> u;
       for (int d = 0; d < dim; ++d) u[d] = x[d] - p.reference[i][d];
-      put(x.data(), dim), put(u.data(), dim), put(v.data(), dim), put(stress, stress_size<dim>), put(&volume, 1), put(&p.mass[i], 1);
+      put(x.data(), dim), put(u.data(), dim), put(v.data(), dim), put(stress, stress_size<dim>), put(&volume, 1),
+          put(&p.mass[i], 1);
       if constexpr (Phases::given) {
         const double pressure = motion_->pore_pressure(x);
         put(&pressure, 1);
@@ -188,7 +208,8 @@ void Simulation<dim, Phases>::write_history() {
     }
   }
   if (flow_stages()) {
-    const std::vector<double> inflow = flow_ && in_statics_ ? flow_->inflow() : std::vector<double>(conditions_.sources().size(), 0);
+    const std::vector<double> inflow =
+        flow_ && in_statics_ ? flow_->inflow() : std::vector<double>(conditions_.sources().size(), 0);
     for (size_t s = 0; s < inflow.size(); ++s)
       if (concerns_water(conditions_.sources()[s].kind)) row.push_back(inflow[s]);
   }
@@ -211,7 +232,8 @@ void Simulation<dim, Phases>::write_history() {
   row.push_back(first_energy_ + std::accumulate(work.begin(), work.end(), 0.) - held);
   row.insert(row.begin(), {time_, static_cast<double>(steps_)});
   history_.rows.push_back(row);
-  if (results_) results_->history.row(time_, steps_, stage_name_.empty() ? "start" : stage_name_, {row.begin() + 2, row.end()});
+  if (results_)
+    results_->history.row(time_, steps_, stage_name_.empty() ? "start" : stage_name_, {row.begin() + 2, row.end()});
 }
 
 template <int dim, class Phases>

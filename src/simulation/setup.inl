@@ -1,4 +1,5 @@
-// From the scene to the first state: mesh, bodies, boundaries, followed points; included only where it is instantiated (src/variants).
+// From the scene to the first state: mesh, bodies, boundaries, followed points; included only where it is instantiated
+// (src/variants).
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -9,16 +10,22 @@
 namespace talus {
 
 template <int dim, class Phases>
-Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOptions &options, const std::string &mesh_file)
-    : comm_(comm), scene_(scene), options_(options), pressure_(scene.water, std::hypot(scene.gravity[0], scene.gravity[1])) {
+Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOptions &options,
+                                    const std::string &mesh_file)
+    : comm_(comm),
+      scene_(scene),
+      options_(options),
+      pressure_(scene.water, std::hypot(scene.gravity[0], scene.gravity[1])) {
   for (BodySource &body : scene.body) {
     laws_.push_back(read_law(body.law));
     const std::string problem = law_problem(laws_.back(), dim);
     if (!problem.empty()) scene.complain("body." + body.name, "cannot be used: " + problem);
     if (body.averaging_length > 0 && plastic_strain_field(laws_.back()) < 0)
-      scene.complain("body." + body.name + ".averaging_length", "needs a law that remembers a plastic_strain, not " + std::string(law_name(laws_.back())));
+      scene.complain("body." + body.name + ".averaging_length",
+                     "needs a law that remembers a plastic_strain, not " + std::string(law_name(laws_.back())));
     if (body.particles_per_cell == 0) body.particles_per_cell = dim == 2 ? 3 : 4;
-    if (Phases::liquid && body.volume_cap < 0) body.volume_cap = 0;  // pressure follows volume: a cap would pump it up, pores.md section 4
+    if (Phases::liquid && body.volume_cap < 0)
+      body.volume_cap = 0;  // pressure follows volume: a cap would pump it up, pores.md section 4
   }
   std::vector<typename Conditions<dim>::Source> sources;
   for (BoundarySource &b : scene.boundary) sources.push_back({b.name, b.group, read_boundary(b.kind)});
@@ -26,19 +33,26 @@ Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOption
   integrator_ = make_integrator(integrator_settings_);
   const bool by_euler = std::holds_alternative<EulerSettings>(integrator_settings_);
   if (explicit_drag() && !(Phases::liquid && by_euler))
-    scene.complain("water.drag", std::string("can be \"explicit\" only ") +
-                                     (Phases::liquid ? "with integrator.kind = \"euler\": the others take drag over a step" : "where pore fluids move") + "; leave it out");
+    scene.complain("water.drag",
+                   std::string("can be \"explicit\" only ") +
+                       (Phases::liquid ? "with integrator.kind = \"euler\": the others take drag over a step"
+                                       : "where pore fluids move") +
+                       "; leave it out");
   if (scene.water.storage == PoreStorage::rate && !(Phases::suction && !Phases::gas && by_euler))
-    scene.complain("water.storage", "can be \"rate\" only with phases = \"unsaturated\" and integrator.kind = \"euler\"; leave it out");
+    scene.complain("water.storage",
+                   "can be \"rate\" only with phases = \"unsaturated\" and integrator.kind = \"euler\"; leave it out");
   if constexpr (Phases::liquid) {
     if (const std::string problem = drag_problem(integrator_settings_); !problem.empty())
-      scene.complain("integrator.kind", "must be \"euler\", or \"arkode\" of order 3, where pore fluids move: " + problem +
-                                            "; or take phases = \"dry\" or \"drained\"");
+      scene.complain("integrator.kind", "must be \"euler\", or \"arkode\" of order 3, where pore fluids move: " +
+                                            problem + "; or take phases = \"dry\" or \"drained\"");
     if (step_rule(integrator_settings_).bound == FrequencyBound::mesh)
-      scene.complain("integrator.omega_max", "must be \"cells\" where pore fluids move: power iteration knows the elastic waves of the skeleton alone");
+      scene.complain(
+          "integrator.omega_max",
+          "must be \"cells\" where pore fluids move: power iteration knows the elastic waves of the skeleton alone");
     for (size_t k = 0; k < scene.stage.size() && Phases::gas; ++k)
       if (is_static(scene.stage[k].kind))
-        scene.complain("stage." + std::to_string(k) + ".kind", "must be \"dynamic\" where gas moves; quasi-static stages take any other phases");
+        scene.complain("stage." + std::to_string(k) + ".kind",
+                       "must be \"dynamic\" where gas moves; quasi-static stages take any other phases");
   }
 
   std::vector<std::pair<std::string, double>> weights;
@@ -50,7 +64,8 @@ Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOption
     try {
       mesh_ = BackgroundMesh<dim>::read(comm, mesh_file, scene.transfer.patch_size, weights);
     } catch (const std::invalid_argument &error) {
-      scene.complain(scene.mesh.file.empty() ? "mesh.section" : "mesh.file", std::string("cannot serve: ") + error.what());
+      scene.complain(scene.mesh.file.empty() ? "mesh.section" : "mesh.file",
+                     std::string("cannot serve: ") + error.what());
     }
   comm_ = mesh_.comm();
   check_bodies();
@@ -76,7 +91,8 @@ Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOption
 template <int dim, class Phases>
 double Simulation<dim, Phases>::soil_density(const BodySource &source, const Vec<dim> &x, double t) const {
   if (source.density > 0 && !Phases::liquid) return source.density;
-  double density = (1 - source.porosity) * source.grain_density;  // where fluids move on their own, particles' mass is that of the grains
+  double density = (1 - source.porosity) *
+                   source.grain_density;  // where fluids move on their own, particles' mass is that of the grains
   if constexpr (Phases::given)
     density += source.porosity * scene_.water.density * (pressure_.below_table(x, t) ? 1 : source.saturation);
   return density;
@@ -101,7 +117,8 @@ void Simulation<dim, Phases>::seed_bodies() {
     const BodySource &source = scene_.body[b];
     bodies_.push_back(std::make_unique<Body<dim>>());
     Body<dim> &body = *bodies_.back();
-    require(body.create(comm_, source, laws_[b], scene_.transfer.velocity == Velocity::apic, velocity_fields<Phases> - 1, loads.face_count()));
+    require(body.create(comm_, source, laws_[b], scene_.transfer.velocity == Velocity::apic,
+                        velocity_fields<Phases> - 1, loads.face_count()));
     seed<dim>(body, mesh_, stride, [&](const Vec<dim> &x) { return soil_density(source, x, 0); });
     loads.seed(body, mesh_);
     double sums[2] = {static_cast<double>(body.particles().count), 0}, totals[2];
@@ -133,8 +150,9 @@ void Simulation<dim, Phases>::seed_bodies() {
   const double relaxation = scene_.transfer.relaxation * mesh_.report().smallest_altitude / wave_speed;
   constexpr double friction_delay = 10;  // in units of altitude over wave speed, docs/theory (6.2)
   conditions_.set_friction_delay(friction_delay * mesh_.report().smallest_altitude / wave_speed);
-  motion_ = std::make_unique<SoilMotion<dim, Phases>>(mesh_, bodies_, conditions_, scene_, relaxation, total_mass_, particle_count_,
-                                                      std::hypot(scene_.gravity[0], scene_.gravity[1]));
+  motion_ =
+      std::make_unique<SoilMotion<dim, Phases>>(mesh_, bodies_, conditions_, scene_, relaxation, total_mass_,
+                                                particle_count_, std::hypot(scene_.gravity[0], scene_.gravity[1]));
   if constexpr (Phases::liquid) require(motion_->setup_pores(true));
 }
 
@@ -147,7 +165,8 @@ void Simulation<dim, Phases>::follow_points() {
       const ParticleArrays<dim> &p = bodies_[b]->particles();
       for (int i = 0; i < p.count; ++i) {
         double distance = 0;
-        for (int d = 0; d < dim; ++d) distance += (p.position[i][d] - wanted.position[d]) * (p.position[i][d] - wanted.position[d]);
+        for (int d = 0; d < dim; ++d)
+          distance += (p.position[i][d] - wanted.position[d]) * (p.position[i][d] - wanted.position[d]);
         if (distance < nearest * (1 - 1e-9) || (distance <= nearest * (1 + 1e-9) && p.id[i] < point.id))
           nearest = distance, point.body = static_cast<int>(b), point.id = p.id[i];
       }

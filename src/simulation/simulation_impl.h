@@ -63,15 +63,15 @@ class Simulation final : public AnySimulation {
     PetscInt id = -1;
     int index = -1;
   };
-  struct Results {   // files of a run
+  struct Results {  // files of a run
     RunFile file;
     History history;
     Progress progress;
   };
   /// How far a stage is, and what its stop criterion has seen.
   struct StageState {
-    int number = -1;               // -1: before the first
-    double begin = 0;              // [s]
+    int number = -1;                 // -1: before the first
+    double begin = 0;                // [s]
     bool met = false, told = false;  // the criterion is met; it was said how the stage ended
     int quiet_checks = 0;
     double failure_time = -1, failure_load_time = 0, last_rise_time = 0, last_rise_speed = 0;
@@ -110,9 +110,11 @@ class Simulation final : public AnySimulation {
   void run_quasi_static(const Stage &stage);
   void make_statics();
   PetscErrorCode activate();
-  bool flow_stages() const { return std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &s) { return water_flows(s.kind); }); }
-  void follow_water(const Stage &stage, const std::function<double(double)> &load_at, const std::function<void(double)> &done, double *share, StepOutcome *outcome,
-                    int *iterations);
+  bool flow_stages() const {
+    return std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &s) { return water_flows(s.kind); });
+  }
+  void follow_water(const Stage &stage, const std::function<double(double)> &load_at,
+                    const std::function<void(double)> &done, double *share, StepOutcome *outcome, int *iterations);
   void start_stress();
   void choose_bodies(const Stage &stage);
   void count_particles();
@@ -158,9 +160,9 @@ class Simulation final : public AnySimulation {
   std::vector<Followed> points_;
   std::unique_ptr<PoreFlow<dim>> flow_;  ///< where pore fluids move
   std::unique_ptr<QuasiStatic<dim>> statics_;
-  std::vector<char> present_;       ///< bodies that are there now
+  std::vector<char> present_;  ///< bodies that are there now
   bool in_statics_ = false, moved_since_statics_ = false;
-  double strength_factor_ = 1;      ///< by which quasi-static stages divide strength
+  double strength_factor_ = 1;  ///< by which quasi-static stages divide strength
 
   std::string stage_name_;
   double time_ = 0, load_time_ = 0, critical_step_ = 0, shrink_ = 1, impulse_time_ = 0, last_step_ = 0;

@@ -25,7 +25,8 @@ void Simulation<dim, Phases>::run() {
   try {
     if (stage_.number < 0) {
       write_history();
-      if (options_.gauss_points && is_static(scene_.stage.front().kind)) make_statics(), require(activate()), in_statics_ = true;
+      if (options_.gauss_points && is_static(scene_.stage.front().kind))
+        make_statics(), require(activate()), in_statics_ = true;
       write_snapshot(), start_stage(), write_checkpoint();
     }
     while (true) {
@@ -51,12 +52,15 @@ template <int dim, class Phases>
 void Simulation<dim, Phases>::note_steps() {
   const StepStatistics &s = integrator_->statistics();
   if (s.steps == 0) return;  // nothing but equilibria
-  const std::pair<long long, const char *> bounds[] = {{s.by_error, "the error"}, {s.by_stability, "stability"}, {s.by_schedule, "outputs"}};
+  const std::pair<long long, const char *> bounds[] = {
+      {s.by_error, "the error"}, {s.by_stability, "stability"}, {s.by_schedule, "outputs"}};
   std::ostringstream text;
   text.precision(3);
-  text << s.steps << " steps from " << s.shortest << " to " << s.longest << " s, " << s.evaluations << " evaluations of the forces, " << s.rejections
-       << " attempts rejected by the error test, " << s.inversions << " because a cell turned inside out; steps bounded by";
-  for (const auto &[count, what] : bounds) text << " " << what << ": " << count << (what == bounds[2].second ? "" : ",");
+  text << s.steps << " steps from " << s.shortest << " to " << s.longest << " s, " << s.evaluations
+       << " evaluations of the forces, " << s.rejections << " attempts rejected by the error test, " << s.inversions
+       << " because a cell turned inside out; steps bounded by";
+  for (const auto &[count, what] : bounds)
+    text << " " << what << ": " << count << (what == bounds[2].second ? "" : ",");
   note(text.str());
 }
 
@@ -114,8 +118,10 @@ void Simulation<dim, Phases>::run_stage() {
   set_loading(stage, time_ - begin);
   while (!stage_.met && !reached(end, time_)) {
     set_loading(stage, time_ - begin);
-    const double next_row = next_time(begin, history_interval, time_), next_snapshot = next_time(begin, output.interval, time_);
-    const double next_checkpoint = next_time(begin, output.checkpoint_interval > 0 ? output.checkpoint_interval : output.interval, time_);
+    const double next_row = next_time(begin, history_interval, time_),
+                 next_snapshot = next_time(begin, output.interval, time_);
+    const double next_checkpoint =
+        next_time(begin, output.checkpoint_interval > 0 ? output.checkpoint_interval : output.interval, time_);
     require(motion_->begin(time_));
     require(step(step_rule(integrator_settings_).fixed > 0 ? end : std::min({end, next_row, next_snapshot})));
     const Verdict verdict = agree();
@@ -135,8 +141,9 @@ void Simulation<dim, Phases>::run_stage() {
     require(motion_->balance(time_, &sums));
     std::ostringstream text;
     text.precision(3);
-    text << "stage " << stage.name << " reached its duration of " << stage.duration << " s before its stop criterion was met: unbalanced force ratio "
-         << sums.unbalanced / sums.applied << ", kinetic over strain energy " << sums.kinetic / sums.strain << ", rms speed "
+    text << "stage " << stage.name << " reached its duration of " << stage.duration
+         << " s before its stop criterion was met: unbalanced force ratio " << sums.unbalanced / sums.applied
+         << ", kinetic over strain energy " << sums.kinetic / sums.strain << ", rms speed "
          << std::sqrt(2 * sums.kinetic / total_mass_) << " m/s";
     note(text.str());
   }
@@ -151,14 +158,17 @@ template <int dim, class Phases>
 bool Simulation<dim, Phases>::stage_ends(const Stage &stage, double stage_time, const Verdict &verdict) {
   constexpr int steps_between_checks = 25, checks_of_rest = 8;
   switch (stage.until) {
-    case StopWhen::duration: return false;
+    case StopWhen::duration:
+      return false;
     case StopWhen::equilibrium: {
       if (steps_ % steps_between_checks || stage_time < stage.gravity_ramp) return false;
       Balance sums;
       require(motion_->begin(time_));
       require(motion_->balance(time_, &sums));
-      if (sums.unbalanced > stage.force_ratio * sums.applied || sums.kinetic > stage.energy_ratio * sums.strain) return false;
-      note("stage " + stage.name + " is in equilibrium: unbalanced force ratio " + std::to_string(sums.unbalanced / sums.applied));
+      if (sums.unbalanced > stage.force_ratio * sums.applied || sums.kinetic > stage.energy_ratio * sums.strain)
+        return false;
+      note("stage " + stage.name + " is in equilibrium: unbalanced force ratio " +
+           std::to_string(sums.unbalanced / sums.applied));
       return true;
     }
     case StopWhen::rest: {
@@ -175,10 +185,13 @@ bool Simulation<dim, Phases>::stage_ends(const Stage &stage, double stage_time, 
       // the speed must pass the threshold and be larger at each tenth of the watching time
       const double speed = verdict.watched_speed;
       if (stage_.failure_time < 0) {
-        if (speed > stage.failure_speed) stage_.failure_time = stage_.last_rise_time = time_, stage_.failure_load_time = load_time_, stage_.last_rise_speed = speed;
+        if (speed > stage.failure_speed)
+          stage_.failure_time = stage_.last_rise_time = time_, stage_.failure_load_time = load_time_,
+          stage_.last_rise_speed = speed;
         return false;
       }
-      if (speed < stage.failure_speed) stage_.failure_time = -1;
+      if (speed < stage.failure_speed)
+        stage_.failure_time = -1;
       else if (time_ - stage_.last_rise_time >= stage.failure_time / 10) {
         if (speed <= stage_.last_rise_speed) stage_.failure_time = -1;
         stage_.last_rise_time = time_, stage_.last_rise_speed = speed;
@@ -186,8 +199,8 @@ bool Simulation<dim, Phases>::stage_ends(const Stage &stage, double stage_time, 
       if (stage_.failure_time < 0 || time_ - stage_.failure_time < stage.failure_time) return false;
       std::ostringstream text;
       text.precision(8);
-      text << "failure at " << stage_.failure_time << " s (loads at t = " << stage_.failure_load_time << " s): point " << stage.failure_point << " passed "
-           << stage.failure_speed << " m/s and kept accelerating";
+      text << "failure at " << stage_.failure_time << " s (loads at t = " << stage_.failure_load_time << " s): point "
+           << stage.failure_point << " passed " << stage.failure_speed << " m/s and kept accelerating";
       note(text.str());
       events_.back().time = stage_.failure_time, events_.back().load_time = stage_.failure_load_time;
       return true;

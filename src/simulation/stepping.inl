@@ -1,4 +1,5 @@
-// One step after another: its length, the step itself, what all ranks agree on after it, the remap; docs/theory section 5; included only where it is instantiated (src/variants).
+// One step after another: its length, the step itself, what all ranks agree on after it, the remap; docs/theory section
+// 5; included only where it is instantiated (src/variants).
 #include <algorithm>
 #include <cmath>
 
@@ -40,12 +41,14 @@ double Simulation<dim, Phases>::critical_step() {
     const PointSet &points = motion_->points()[b];
     int last = -1;
     for (int q = 0; q < points.count; ++q)
-      if (points.cell[q] != last) local = std::min(local, critical_[b](motion_->grid().mesh_cell[last = points.cell[q]]));
+      if (points.cell[q] != last)
+        local = std::min(local, critical_[b](motion_->grid().mesh_cell[last = points.cell[q]]));
   }
   MPI_Allreduce(&local, &step, 1, MPI_DOUBLE, MPI_MIN, comm_);
   if constexpr (!Phases::liquid)
     if (step_rule(integrator_settings_).bound == FrequencyBound::mesh) {
-      constexpr int first = 60, further = 6, apart = 8;  // iterations; steps between two estimates where remaps come thick and fast
+      constexpr int first = 60, further = 6,
+                    apart = 8;  // iterations; steps between two estimates where remaps come thick and fast
       const bool anew = omega_step_ < 0;
       if (anew || steps_ >= omega_step_ + apart) {
         require(motion_->largest_frequency(anew ? first : further, &omega_max_));
@@ -65,11 +68,12 @@ double Simulation<dim, Phases>::critical_step() {
 template <int dim, class Phases>
 PetscErrorCode Simulation<dim, Phases>::step(double until) {
   PetscFunctionBeginUser;
-  if (critical_step_ == 0 || explicit_drag()) critical_step_ = critical_step();  // drag follows saturation from step to step
+  if (critical_step_ == 0 || explicit_drag())
+    critical_step_ = critical_step();  // drag follows saturation from step to step
   const StepRule rule = step_rule(integrator_settings_);
   if (rule.fixed > rule.limit * critical_step_)
-    fail("the soil has come to cells with a critical step of " + rounded(rule.limit * critical_step_) + " s, but integrator.step = " +
-         rounded(rule.fixed) + " s; take a smaller step, or leave it out");
+    fail("the soil has come to cells with a critical step of " + rounded(rule.limit * critical_step_) +
+         " s, but integrator.step = " + rounded(rule.fixed) + " s; take a smaller step, or leave it out");
   PetscLogDouble start, end;
   double step = 0;
   PetscCall(PetscTime(&start));
@@ -77,7 +81,8 @@ PetscErrorCode Simulation<dim, Phases>::step(double until) {
   PetscCall(PetscTime(&end));
   if (const std::string cause = integrator_->obstacle(); !cause.empty()) {
     const int component = integrator_->obstructing_component();
-    const Vec<dim> where = component < 0 ? Vec<dim>{} : motion_->grid().position[component / dim % motion_->grid().node_count()];
+    const Vec<dim> where =
+        component < 0 ? Vec<dim>{} : motion_->grid().position[component / dim % motion_->grid().node_count()];
     const std::string particle = text_of(component >= 0, component < 0 ? "" : nearest_particle(where));
     fail(cause + "; it is largest near " + place_of(component >= 0, where) + ", at " + particle);
   }
@@ -99,15 +104,21 @@ std::string Simulation<dim, Phases>::nearest_particle(const Vec<dim> &where) con
       Vec<dim> x, v;
       motion_->present(*body, i, &x, &v);
       const double distance = (map<dim>(x) - map<dim>(where)).norm();
-      if (distance < nearest) nearest = distance, found = "particle " + std::to_string(body->particles().id[i]) + " of body." + body->name();
+      if (distance < nearest)
+        nearest = distance, found = "particle " + std::to_string(body->particles().id[i]) + " of body." + body->name();
     }
   return found;
 }
 
 template <int dim, class Phases>
 typename Simulation<dim, Phases>::Verdict Simulation<dim, Phases>::agree() {
-  double mine[7] = {motion_->moved(), 1 / motion_->step_ratio(), motion_->speed_squared(), -1, motion_->smallest_volume_ratio() <= 0.2 ? 1. : 0.,
-                    !(motion_->speed_squared() < 1e300) ? 1. : 0., interrupted ? 1. : 0.};
+  double mine[7] = {motion_->moved(),
+                    1 / motion_->step_ratio(),
+                    motion_->speed_squared(),
+                    -1,
+                    motion_->smallest_volume_ratio() <= 0.2 ? 1. : 0.,
+                    !(motion_->speed_squared() < 1e300) ? 1. : 0.,
+                    interrupted ? 1. : 0.};
   if (!watched_.empty())
     for (Followed &point : points_)
       if (point.name == watched_) {
@@ -138,7 +149,8 @@ void Simulation<dim, Phases>::refuse(const Verdict &verdict) {
     if (!place.empty()) fail("near " + place + ", " + text_of(refused, cause));
     const bool mine = motion_->find_broken(&where);
     fail("the velocity is not finite near " + place_of(mine, where) +
-         "; look at the loads there; a smaller integrator.fraction, a volume_cap or transfer.remap_interval = 0 may help");
+         "; look at the loads there; a smaller integrator.fraction, a volume_cap or transfer.remap_interval = 0 may "
+         "help");
   }
 }
 
@@ -169,7 +181,8 @@ PetscErrorCode Simulation<dim, Phases>::release(bool to_next) {
   PetscCall(PetscTime(&end));
   breakdown_.release += middle - start, breakdown_.relocate += end - middle;
   const std::string outside = place_of(lost, where);
-  if (!outside.empty()) fail("a particle left the mesh near " + outside + "; add free space there, or a boundary that keeps soil in");
+  if (!outside.empty())
+    fail("a particle left the mesh near " + outside + "; add free space there, or a boundary that keeps soil in");
   PetscFunctionReturn(0);
 }
 
@@ -209,7 +222,8 @@ PetscErrorCode Simulation<dim, Phases>::check_conservation() {
   }
   PetscCallMPI(MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, comm_));
   if (all[0] != static_cast<double>(particle_count_) || std::abs(all[1] - total_mass_) > 1e-12 * total_mass_)
-    fail("particles were lost or doubled: " + std::to_string(static_cast<long long>(all[0])) + " of " + std::to_string(particle_count_) + " are left");
+    fail("particles were lost or doubled: " + std::to_string(static_cast<long long>(all[0])) + " of " +
+         std::to_string(particle_count_) + " are left");
   PetscFunctionReturn(0);
 }
 

@@ -60,15 +60,15 @@ PetscErrorCode FilledGrid<dim>::sum(double *values, int width) {
       staging_[node * width + k] = compact_node_[node] < 0 ? 0 : values[compact_node_[node] * width + k];
   PetscCall(halo_.sum(staging_.data(), width));
   for (int node : halo_.shared_nodes())
-    if (compact_node_[node] >= 0)
-      std::copy_n(&staging_[node * width], width, &values[compact_node_[node] * width]);
+    if (compact_node_[node] >= 0) std::copy_n(&staging_[node * width], width, &values[compact_node_[node] * width]);
   PetscFunctionReturn(0);
 }
 
 template <int dim>
 void FilledGrid<dim>::keep(Archive &archive) {
   if (archive.reading()) clear();
-  archive.keep("grid", node_count_, cell_count_, mesh_node, mass, position, mesh_cell, shape, mass_matrix, nodal_share, size, patch);
+  archive.keep("grid", node_count_, cell_count_, mesh_node, mass, position, mesh_cell, shape, mass_matrix, nodal_share,
+               size, patch);
   for (int i = 0; i < node_count(); ++i) compact_node_[mesh_node[i]] = i;
   for (int c = 0; c < cell_count(); ++c) compact_cell_[mesh_cell[c]] = c;
 }

@@ -1,7 +1,7 @@
 #pragma once
-/// The part of the background mesh that holds particles, during one Lagrangian part: nodes and cells are numbered compactly, so
-/// that the time loop touches nothing else. Every array is sized for the whole local mesh once: its first node_count() or
-/// cell_count() entries count.
+/// The part of the background mesh that holds particles, during one Lagrangian part: nodes and cells are numbered
+/// compactly, so that the time loop touches nothing else. Every array is sized for the whole local mesh once: its first
+/// node_count() or cell_count() entries count.
 #include <array>
 #include <vector>
 
@@ -18,9 +18,9 @@ inline constexpr int simplex_pairs = (dim + 1) * (dim + 2) / 2;
 /// Shape of a filled cell on the current node positions.
 template <int dim>
 struct Shape {
-  std::array<int, dim + 1> node;            ///< compact node numbers
-  std::array<Vec<dim>, dim> gradient;       ///< of the shape functions 1..dim [1/m]
-  double volume;                            ///< [m3]
+  std::array<int, dim + 1> node;       ///< compact node numbers
+  std::array<Vec<dim>, dim> gradient;  ///< of the shape functions 1..dim [1/m]
+  double volume;                       ///< [m3]
 };
 
 template <int dim>
@@ -43,7 +43,8 @@ class FilledGrid {
   int find_cell(int mesh_cell) const { return compact_cell_[mesh_cell]; }
   /// Compact number of a mesh node, -1 when no filled cell has it.
   int find_node(int mesh_node) const { return compact_node_[mesh_node]; }
-  /// Once all cells are entered: enters nodes that only other ranks have filled, and places cells and nodes as they are in the mesh; collective.
+  /// Once all cells are entered: enters nodes that only other ranks have filled, and places cells and nodes as they are
+  /// in the mesh; collective.
   void complete();
   /// Adds up `width` doubles per compact node over the ranks that share the node; collective.
   PetscErrorCode sum(double *values, int width);
@@ -56,15 +57,15 @@ class FilledGrid {
 
   // nodes, by compact number
   std::vector<int> mesh_node;
-  std::vector<double> mass;                 ///< lumped [kg]
-  std::vector<Vec<dim>> position;           ///< current [m]; the mesh's own at a remap
+  std::vector<double> mass;        ///< lumped [kg]
+  std::vector<Vec<dim>> position;  ///< current [m]; the mesh's own at a remap
   // cells, by compact number
   std::vector<int> mesh_cell;
   std::vector<Shape<dim>> shape;
-  std::vector<std::array<double, simplex_pairs<dim>>> mass_matrix;    ///< sum_p m_p N_ip N_jp [kg]
-  std::vector<std::array<double, dim + 1>> nodal_share;               ///< sum_p V_p N_ip [m3]
-  std::vector<double> size;                 ///< element size of the softening law [m]
-  std::vector<int> patch;                   ///< patch of the mesh
+  std::vector<std::array<double, simplex_pairs<dim>>> mass_matrix;  ///< sum_p m_p N_ip N_jp [kg]
+  std::vector<std::array<double, dim + 1>> nodal_share;             ///< sum_p V_p N_ip [m3]
+  std::vector<double> size;                                         ///< element size of the softening law [m]
+  std::vector<int> patch;                                           ///< patch of the mesh
 
  private:
   void enter_node(int node) {
@@ -74,7 +75,7 @@ class FilledGrid {
   const BackgroundMesh<dim> *mesh_;
   int node_count_ = 0, cell_count_ = 0;
   std::vector<int> compact_node_, compact_cell_;
-  std::vector<double> element_size_;   ///< of mesh cells [m]
+  std::vector<double> element_size_;  ///< of mesh cells [m]
   std::vector<double> staging_;
   Halo halo_;
 };

@@ -24,7 +24,8 @@ double dot(const Vec<dim> &a, const Vec<dim> &b) {
 
 }  // namespace
 
-/// Eigenvalues of D^-1 A lie between the extremes of those of its cells (Irons & Treharne 1971), which Gershgorin's circles bound.
+/// Eigenvalues of D^-1 A lie between the extremes of those of its cells (Irons & Treharne 1971), which Gershgorin's
+/// circles bound.
 template <int dim>
 NonlocalStrain<dim>::NonlocalStrain(const BackgroundMesh<dim> &mesh, double length, int field, int history_count)
     : area_(length * length), field_(field), history_count_(history_count) {
@@ -42,8 +43,10 @@ NonlocalStrain<dim>::NonlocalStrain(const BackgroundMesh<dim> &mesh, double leng
   MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_DOUBLE, MPI_MAX, mesh.comm());
   least_ = -bounds[0], largest_ = std::min(bounds[1], dim + 1.);
   const std::size_t nodes = mesh.node_count(), cells = mesh.cell_count();
-  size_.assign(cells, 2 * length), volume_.assign(cells, 0), gradient_.resize(cells), cell_.resize(cells), sums_.resize(nodes);
-  for (auto *nodal : {&mass_, &over_diagonal_, &load_, &average_, &residual_, &direction_, &product_}) nodal->assign(nodes, 0);
+  size_.assign(cells, 2 * length), volume_.assign(cells, 0), gradient_.resize(cells), cell_.resize(cells),
+      sums_.resize(nodes);
+  for (auto *nodal : {&mass_, &over_diagonal_, &load_, &average_, &residual_, &direction_, &product_})
+    nodal->assign(nodes, 0);
   excess_.resize(cells), own_.resize(cells), seen_.resize(cells * history_count);
 }
 
@@ -81,7 +84,8 @@ PetscErrorCode NonlocalStrain<dim>::begin(FilledGrid<dim> &grid, const PointSet 
     gradient_[c] = gradients<dim>(grid.shape[c].gradient);
     for (int k = 0; k <= dim; ++k) {
       auto &[mass, diagonal] = sums_[grid.shape[c].node[k]];
-      mass += volume_[c] / (dim + 1), diagonal += volume_[c] * (1. / (dim + 1) + area_ * dot<dim>(gradient_[c][k], gradient_[c][k]));
+      mass += volume_[c] / (dim + 1),
+          diagonal += volume_[c] * (1. / (dim + 1) + area_ * dot<dim>(gradient_[c][k], gradient_[c][k]));
     }
   }
   PetscCall(grid.sum(sums_[0].data(), 2));
@@ -93,7 +97,8 @@ PetscErrorCode NonlocalStrain<dim>::begin(FilledGrid<dim> &grid, const PointSet 
   }
   PetscCall(iterate(grid, iterations_to(1e-8)));
   if (static_cast<int>(excess_.size()) < points.count)  // particles as stress points
-    excess_.resize(points.count), own_.resize(points.count), seen_.resize(static_cast<std::size_t>(points.count) * history_count_);
+    excess_.resize(points.count), own_.resize(points.count),
+        seen_.resize(static_cast<std::size_t>(points.count) * history_count_);
   spread(grid, points);
   PetscFunctionReturn(0);
 }
@@ -127,8 +132,8 @@ PetscErrorCode NonlocalStrain<dim>::apply(FilledGrid<dim> &grid, const double *x
   PetscFunctionReturn(0);
 }
 
-/// Chebyshev's iteration (Saad 2003, algorithm 12.1) from the present average: no sums over all nodes, so that the result is a smooth
-/// function of the strain, the same on any number of ranks.
+/// Chebyshev's iteration (Saad 2003, algorithm 12.1) from the present average: no sums over all nodes, so that the
+/// result is a smooth function of the strain, the same on any number of ranks.
 template <int dim>
 PetscErrorCode NonlocalStrain<dim>::iterate(FilledGrid<dim> &grid, int iterations) {
   PetscFunctionBeginUser;

@@ -1,8 +1,9 @@
 #pragma once
-/// Plastic strain averaged over a length, so that a band in which soil softens has a width that is not the cell's. The average a of the
-/// plastic strain k of one body solves a - l^2 div grad a = k without flux through its surface (Peerlings et al. 1996, Int. J. Numer.
-/// Methods Eng. 39; for plasticity Engelen et al. 2003, Int. J. Plast. 19), docs/theory (2.11): across a band it weighs by exp(-|x| / l) /
-/// (2 l). Solved on the nodes, so that only sums over shared nodes cross from rank to rank; nothing is allocated in a step.
+/// Plastic strain averaged over a length, so that a band in which soil softens has a width that is not the cell's. The
+/// average a of the plastic strain k of one body solves a - l^2 div grad a = k without flux through its surface
+/// (Peerlings et al. 1996, Int. J. Numer. Methods Eng. 39; for plasticity Engelen et al. 2003, Int. J. Plast. 19),
+/// docs/theory (2.11): across a band it weighs by exp(-|x| / l) / (2 l). Solved on the nodes, so that only sums over
+/// shared nodes cross from rank to rank; nothing is allocated in a step.
 #include <vector>
 
 #include "base/archive.h"
@@ -15,7 +16,8 @@ namespace talus {
 template <int dim>
 class NonlocalStrain {
  public:
-  /// `length` is l [m], `field` the place of the plastic strain among the `history_count` numbers of a point. Collective.
+  /// `length` is l [m], `field` the place of the plastic strain among the `history_count` numbers of a point.
+  /// Collective.
   NonlocalStrain(const BackgroundMesh<dim> &mesh, double length, int field, int history_count);
 
   /// At a remap: takes volumes and shapes of the cells, and solves to 1e-8. Collective.
@@ -39,16 +41,17 @@ class NonlocalStrain {
   void spread(const FilledGrid<dim> &grid, const PointSet &points);
   int iterations_to(double factor) const;
 
-  double area_;                             ///< l^2 [m2]
+  double area_;  ///< l^2 [m2]
   int field_, history_count_;
-  double least_ = 1, largest_ = 1;          ///< bounds of the eigenvalues of the scaled matrix
-  std::vector<double> size_;                ///< [cells]
-  std::vector<double> volume_;              ///< [cells] of this body, at the remap [m3]
+  double least_ = 1, largest_ = 1;                       ///< bounds of the eigenvalues of the scaled matrix
+  std::vector<double> size_;                             ///< [cells]
+  std::vector<double> volume_;                           ///< [cells] of this body, at the remap [m3]
   std::vector<std::array<Vec<dim>, dim + 1>> gradient_;  ///< [cells] of the shape functions, at the remap [1/m]
-  std::vector<std::array<double, 2>> cell_; ///< [cells] volume, and its product with the strain: room
-  std::vector<std::array<double, 2>> sums_; ///< [nodes] volume and diagonal: room for sums over ranks
+  std::vector<std::array<double, 2>> cell_;              ///< [cells] volume, and its product with the strain: room
+  std::vector<std::array<double, 2>> sums_;              ///< [nodes] volume and diagonal: room for sums over ranks
   std::vector<double> mass_, over_diagonal_, load_, average_, residual_, direction_, product_;  ///< [nodes]
-  std::vector<double> excess_, own_, seen_; ///< [points]: average less own, own, and [points][history] as the law sees it
+  std::vector<double> excess_, own_,
+      seen_;  ///< [points]: average less own, own, and [points][history] as the law sees it
 };
 
 }  // namespace talus

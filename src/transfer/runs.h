@@ -1,5 +1,6 @@
 #pragma once
-/// A run of particles of one cell on their way to and from the nodes: what the cell knows stays in registers, nodes are touched once.
+/// A run of particles of one cell on their way to and from the nodes: what the cell knows stays in registers, nodes are
+/// touched once.
 #include <algorithm>
 
 #include "transfer/transfer.h"
@@ -9,23 +10,29 @@ namespace talus {
 /// Values of a history that a run keeps in registers; the rest takes loops of its own.
 inline constexpr int unrolled_history = 4;
 
-/// Particles that a run takes at a time: what calls functions waits for the end of such a part, so that sums stay in registers.
+/// Particles that a run takes at a time: what calls functions waits for the end of such a part, so that sums stay in
+/// registers.
 inline constexpr int run_part = 32;
 
 /// Instantiates `one(dim, averaged, apic, fluids)` for all that scenes may ask for.
 #define TALUS_EACH_TRANSFER(one) TALUS_EACH_PHASES(one, 2) TALUS_EACH_PHASES(one, 3)
-#define TALUS_EACH_PHASES(one, dim) TALUS_EACH_KIND(one, dim, 0) TALUS_EACH_KIND(one, dim, 1) TALUS_EACH_KIND(one, dim, 2)
-#define TALUS_EACH_KIND(one, dim, fluids) one(dim, true, true, fluids) one(dim, true, false, fluids) one(dim, false, true, fluids) one(dim, false, false, fluids)
+#define TALUS_EACH_PHASES(one, dim) \
+  TALUS_EACH_KIND(one, dim, 0) TALUS_EACH_KIND(one, dim, 1) TALUS_EACH_KIND(one, dim, 2)
+#define TALUS_EACH_KIND(one, dim, fluids)                                                  \
+  one(dim, true, true, fluids) one(dim, true, false, fluids) one(dim, false, true, fluids) \
+      one(dim, false, false, fluids)
 
-/// What points pass on to their particles, with averaged stress: the factor of volumes, the contents of pores [kg/m3], gains of history. Side by
-/// side, for a sweep over particles reads and writes as many arrays as the caches can foresee.
+/// What points pass on to their particles, with averaged stress: the factor of volumes, the contents of pores [kg/m3],
+/// gains of history. Side by side, for a sweep over particles reads and writes as many arrays as the caches can
+/// foresee.
 template <int fluids, int dim>
 void collect_changes(const PointSet &points, const Pores<dim> &pores, int history_count, double *change) {
   for (int q = 0; q < points.count; ++q) {
     *change++ = points.volume[q] / points.start_volume[q];
     // a cell's fluid fills its pores evenly, so that a particle that moves on takes its pressure along
     for (int a = 0; a < fluids; ++a) *change++ = pores.mass[a][q] / (points.volume[q] - pores.grains[q]);
-    for (int h = q * history_count; h < (q + 1) * history_count; ++h) *change++ = points.history[h] - points.start_history[h];
+    for (int h = q * history_count; h < (q + 1) * history_count; ++h)
+      *change++ = points.history[h] - points.start_history[h];
   }
 }
 
@@ -36,7 +43,10 @@ class RunFromNodes {
   static constexpr int vertices = dim + 1, components = stress_size<dim>;
 
   [[gnu::always_inline]] RunFromNodes(const Body<dim> &body, const Lagrangian<dim> &from, int mesh_cell)
-      : coordinates(from.grid.mesh().cells[mesh_cell]), body_(body), flip_(quad(from.flip)), over_density_(from.pores.over_density) {
+      : coordinates(from.grid.mesh().cells[mesh_cell]),
+        body_(body),
+        flip_(quad(from.flip)),
+        over_density_(from.pores.over_density) {
     const int cell = from.grid.find_cell(mesh_cell);
 #pragma GCC unroll 8
     for (int k = 0; k < vertices; ++k) {
@@ -89,7 +99,8 @@ class RunFromNodes {
         if (h < count) p.history[i * count + h] += first_gain_[h];
       p.volume[i] *= growth_;
       if constexpr (fluids > 0) pores = p.volume[i] - p.mass[i] * over_density_;
-      if (body_.capped()) p.volume[i] = std::min(p.volume[i], body_.volume_limit(p.initial_volume[i], p.history + i * count));
+      if (body_.capped())
+        p.volume[i] = std::min(p.volume[i], body_.volume_limit(p.initial_volume[i], p.history + i * count));
     }
     if constexpr (apic)
       for (int k = 0; k < dim * dim; ++k) p.affine[i * dim * dim + k] = affine_[k];
@@ -132,7 +143,8 @@ class RunToNodes {
  public:
   static constexpr int vertices = dim + 1, components = stress_size<dim>;
 
-  [[gnu::always_inline]] RunToNodes(const Body<dim> &body, FilledGrid<dim> &grid, PointSet &points, const Pores<dim> &pores, int mesh_cell)
+  [[gnu::always_inline]] RunToNodes(const Body<dim> &body, FilledGrid<dim> &grid, PointSet &points,
+                                    const Pores<dim> &pores, int mesh_cell)
       : body_(body), grid_(grid), points_(points), pores_(pores), mesh_cell_(mesh_cell) {}
 
   /// Adds particle i with barycentric coordinates n; its stress, its fluids and what `add_rest` adds apart.
@@ -181,8 +193,8 @@ class RunToNodes {
   }
   /// ... or, where all that are added have them in common, the volume of its pores [m3].
   [[gnu::always_inline]] void add_pores(double volume) { pore_volume_ += volume; }
-  /// Sums into grid and stress points; `common` is the stress of all particles added and `content` that of their pores, null if they brought
-  /// their own. The stress point of the cell, -1 if there is none or nothing was added.
+  /// Sums into grid and stress points; `common` is the stress of all particles added and `content` that of their pores,
+  /// null if they brought their own. The stress point of the cell, -1 if there is none or nothing was added.
   [[gnu::always_inline]] int finish(Vec<dim> *momentum, const double *common, const double *content) const {
     if (!count_) return -1;
     // what is entered with this run is set, not added to zeros, which would have to be written first
@@ -200,7 +212,8 @@ class RunToNodes {
     }
     if constexpr (!averaged) return -1;
     const int known = points_.count, point = points_.enter(mesh_cell_, cell);
-    point == known ? sum_into_point(point, common, content, volume, set) : sum_into_point(point, common, content, volume, add);
+    point == known ? sum_into_point(point, common, content, volume, set)
+                   : sum_into_point(point, common, content, volume, add);
     return point;
   }
   /// Adds what a law remembers of particle i beyond the first few values.
@@ -227,7 +240,8 @@ class RunToNodes {
     }
   }
   template <class Sum>
-  [[gnu::always_inline]] void sum_into_point(int point, const double *common, const double *content, double volume, Sum sum) const {
+  [[gnu::always_inline]] void sum_into_point(int point, const double *common, const double *content, double volume,
+                                             Sum sum) const {
     const int count = body_.history_count();
     if constexpr (fluids > 0) sum(pores_.grains[point], grains_ * pores_.over_density);
 #pragma GCC unroll 2
@@ -249,7 +263,8 @@ class RunToNodes {
   const int mesh_cell_;
   int count_ = 0;
   Quad mass_[vertices]{}, momentum_[dim]{}, share_{}, fluid_momentum_[fluids ? fluids : 1][dim]{};
-  double stress_[components]{}, history_[unrolled_history]{}, limit_ = 0, fluid_mass_[fluids ? fluids : 1]{}, grains_ = 0, pore_volume_ = 0;
+  double stress_[components]{}, history_[unrolled_history]{}, limit_ = 0, fluid_mass_[fluids ? fluids : 1]{},
+                                                              grains_ = 0, pore_volume_ = 0;
 };
 
 }  // namespace talus

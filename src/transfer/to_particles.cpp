@@ -21,8 +21,8 @@ void to_particles(Body<dim> &body, const Lagrangian<dim> &from, std::vector<int>
 }
 
 template <int dim, bool averaged, bool apic, int fluids>
-void to_next_nodes(Body<dim> &body, const Lagrangian<dim> &from, FilledGrid<dim> &grid, Vec<dim> *momentum, PointSet &points,
-                   const Pores<dim> &pores, std::vector<int> &movers) {
+void to_next_nodes(Body<dim> &body, const Lagrangian<dim> &from, FilledGrid<dim> &grid, Vec<dim> *momentum,
+                   PointSet &points, const Pores<dim> &pores, std::vector<int> &movers) {
   const ParticleArrays<dim> &p = body.particles();
   if constexpr (averaged) collect_changes<fluids>(from.points, from.pores, body.history_count(), from.change);
   for (int i = 0; i < p.count;) {
@@ -54,12 +54,15 @@ void to_next_nodes(Body<dim> &body, const Lagrangian<dim> &from, FilledGrid<dim>
 }
 
 template <int dim>
-PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::vector<int> &movers, bool *lost, Vec<dim> *where) {
+PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::vector<int> &movers, bool *lost,
+                        Vec<dim> *where) {
   PetscFunctionBeginUser;
-  std::vector<std::pair<int, int>> leavers;  // allocated only when particles change rank, as the swarm's own buffers are
+  std::vector<std::pair<int, int>>
+      leavers;  // allocated only when particles change rank, as the swarm's own buffers are
   const bool alone = mesh.partition_faces.empty();
   bool migrated = false;
-  size_t first = 0;  // movers before it have arrived; their cell is marked by its complement, which outlives a migration
+  size_t first =
+      0;  // movers before it have arrived; their cell is marked by its complement, which outlives a migration
   int ranks;
   PetscCallMPI(MPI_Comm_size(mesh.comm(), &ranks));
   while (true) {
@@ -94,10 +97,11 @@ PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::v
   PetscFunctionReturn(0);
 }
 
-#define TALUS_TO_PARTICLES(dim, averaged, apic, fluids)                                                            \
-  template void to_particles<dim, averaged, apic, fluids>(Body<dim> &, const Lagrangian<dim> &, std::vector<int> &);  \
-  template void to_next_nodes<dim, averaged, apic, fluids>(Body<dim> &, const Lagrangian<dim> &, FilledGrid<dim> &, Vec<dim> *, PointSet &, \
-                                                           const Pores<dim> &, std::vector<int> &);
+#define TALUS_TO_PARTICLES(dim, averaged, apic, fluids)                                                              \
+  template void to_particles<dim, averaged, apic, fluids>(Body<dim> &, const Lagrangian<dim> &, std::vector<int> &); \
+  template void to_next_nodes<dim, averaged, apic, fluids>(Body<dim> &, const Lagrangian<dim> &, FilledGrid<dim> &,  \
+                                                           Vec<dim> *, PointSet &, const Pores<dim> &,               \
+                                                           std::vector<int> &);
 TALUS_EACH_TRANSFER(TALUS_TO_PARTICLES)
 template PetscErrorCode relocate<2>(Body<2> &, const BackgroundMesh<2> &, std::vector<int> &, bool *, Vec<2> *);
 template PetscErrorCode relocate<3>(Body<3> &, const BackgroundMesh<3> &, std::vector<int> &, bool *, Vec<3> *);

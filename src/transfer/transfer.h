@@ -1,6 +1,6 @@
 #pragma once
-/// Particles to nodes and back, docs/theory section 4. Loops run over runs of particles of one cell: moments are accumulated in
-/// registers, nodes are touched once per run.
+/// Particles to nodes and back, docs/theory section 4. Loops run over runs of particles of one cell: moments are
+/// accumulated in registers, nodes are touched once per run.
 #include <cmath>
 
 #include "base/lanes.h"
@@ -33,20 +33,23 @@ struct BarycentricMap {
   Quad origin, constant, column[dim];
 };
 
-/// Pores of one body on the way between particles and nodes, docs/theory/pores.md section 4: arrays of PoreFluid. Nothing of it is read
-/// or written where no fluid moves.
+/// Pores of one body on the way between particles and nodes, docs/theory/pores.md section 4: arrays of PoreFluid.
+/// Nothing of it is read or written where no fluid moves.
 template <int dim>
 struct Pores {
-  double *grains = nullptr;          ///< [points] volume of the grains, with averaged stress [m3]
-  double *mass[2]{};                 ///< [points] of liquid and gas [kg]
-  std::array<Quad, dim> *impulse[2]{};  ///< [compact cells][component][vertex] sum of m_s N v_a over particles, of liquid and gas [kg m/s]
-  double over_density = 0;           ///< 1 / density of the grains [m3/kg]
+  double *grains = nullptr;  ///< [points] volume of the grains, with averaged stress [m3]
+  double *mass[2]{};         ///< [points] of liquid and gas [kg]
+  std::array<Quad, dim> *
+      impulse[2]{};  ///< [compact cells][component][vertex] sum of m_s N v_a over particles, of liquid and gas [kg m/s]
+  double over_density = 0;  ///< 1 / density of the grains [m3/kg]
 };
 
-/// Adds the particles of one body to the grid: mass matrices, momentum, volumes, the `fluids` in its pores and, with averaged stress, the
-/// stress points; those listed in `only`, or all. `momentum` [compact nodes][dim] has room for every node of the local mesh.
+/// Adds the particles of one body to the grid: mass matrices, momentum, volumes, the `fluids` in its pores and, with
+/// averaged stress, the stress points; those listed in `only`, or all. `momentum` [compact nodes][dim] has room for
+/// every node of the local mesh.
 template <int dim, bool averaged, bool apic, int fluids>
-void to_nodes(const Body<dim> &body, FilledGrid<dim> &grid, Vec<dim> *momentum, PointSet &points, const Pores<dim> &pores, const std::vector<int> *only);
+void to_nodes(const Body<dim> &body, FilledGrid<dim> &grid, Vec<dim> *momentum, PointSet &points,
+              const Pores<dim> &pores, const std::vector<int> *only);
 
 /// Nodal fields that particles read at a remap, four lanes wide, by compact node.
 struct NodalUpdate {
@@ -60,26 +63,29 @@ template <int dim>
 struct Lagrangian {
   const FilledGrid<dim> &grid;
   const NodalUpdate &nodes;
-  double flip;             ///< the share a of their own velocity that particles keep
-  const double *affine;    ///< [compact cells][dim * dim] velocity gradients of APIC [1/s], unused otherwise
+  double flip;           ///< the share a of their own velocity that particles keep
+  const double *affine;  ///< [compact cells][dim * dim] velocity gradients of APIC [1/s], unused otherwise
   const PointSet &points;
   const Pores<dim> &pores;
-  double *change;          ///< [points][1 + fluids + history] room for what points pass on to particles
+  double *change;  ///< [points][1 + fluids + history] room for what points pass on to particles
 };
 
-/// Brings the particles of one body to the end of a Lagrangian part. Particles outside their cell are listed in `movers`.
+/// Brings the particles of one body to the end of a Lagrangian part. Particles outside their cell are listed in
+/// `movers`.
 template <int dim, bool averaged, bool apic, int fluids>
 void to_particles(Body<dim> &body, const Lagrangian<dim> &from, std::vector<int> &movers);
 
-/// The same, and adds those that stay in their cell to the next grid in one sweep; the movers are still to be added. With averaged
-/// stress a particle that stays keeps its stress and its fluids in the stress point only.
+/// The same, and adds those that stay in their cell to the next grid in one sweep; the movers are still to be added.
+/// With averaged stress a particle that stays keeps its stress and its fluids in the stress point only.
 template <int dim, bool averaged, bool apic, int fluids>
-void to_next_nodes(Body<dim> &body, const Lagrangian<dim> &from, FilledGrid<dim> &grid, Vec<dim> *momentum, PointSet &points,
-                   const Pores<dim> &pores, std::vector<int> &movers);
+void to_next_nodes(Body<dim> &body, const Lagrangian<dim> &from, FilledGrid<dim> &grid, Vec<dim> *momentum,
+                   PointSet &points, const Pores<dim> &pores, std::vector<int> &movers);
 
-/// Walks the listed particles of a body to their new cells and sends those that leave the rank; collective. Afterwards `movers`
-/// lists the walkers that are on this rank. `lost` is set and `where` the position of a particle that left the mesh, if any did.
+/// Walks the listed particles of a body to their new cells and sends those that leave the rank; collective. Afterwards
+/// `movers` lists the walkers that are on this rank. `lost` is set and `where` the position of a particle that left the
+/// mesh, if any did.
 template <int dim>
-PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::vector<int> &movers, bool *lost, Vec<dim> *where);
+PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::vector<int> &movers, bool *lost,
+                        Vec<dim> *where);
 
 }  // namespace talus

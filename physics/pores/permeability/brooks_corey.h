@@ -6,7 +6,8 @@
 
 namespace talus {
 
-/// k_rl = S_e^((2 + 3 l) / l), k_rg = (1 - S_e)^2 [1 - S_e^((2 + l) / l)]. Source: Brooks & Corey (1964), eqs. (14), (15), after Burdine (1953).
+/// k_rl = S_e^((2 + 3 l) / l), k_rg = (1 - S_e)^2 [1 - S_e^((2 + l) / l)]. Source: Brooks & Corey (1964), eqs. (14),
+/// (15), after Burdine (1953).
 struct BrooksCoreyPermeability {
   static constexpr const char *name = "brooks_corey";
   static constexpr const char *meaning = "Brooks & Corey (1964) after Burdine (1953)";
@@ -17,7 +18,9 @@ struct BrooksCoreyPermeability {
   }
 
   double liquid(const Wetness &w) const { return std::pow(w.wet, 3 + 2 / pore_size_index); }
-  double gas(const Wetness &w) const { return -w.dry * w.dry * std::expm1(log_wet(w.wet, w.dry) * (1 + 2 / pore_size_index)); }
+  double gas(const Wetness &w) const {
+    return -w.dry * w.dry * std::expm1(log_wet(w.wet, w.dry) * (1 + 2 / pore_size_index));
+  }
 };
 
 }  // namespace talus

@@ -13,7 +13,8 @@ struct GardnerPermeability {
   double decay_suction = required;  ///< 1 / alpha [Pa]
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.number("decay_suction", decay_suction, pascal, Range{1, 1e9}, "suction 1 / alpha over which permeability falls by a factor e");
+    v.number("decay_suction", decay_suction, pascal, Range{1, 1e9},
+             "suction 1 / alpha over which permeability falls by a factor e");
   }
 
   double liquid(const Wetness &w) const { return std::exp(-w.suction / decay_suction); }

@@ -6,8 +6,8 @@
 
 namespace talus {
 
-/// k_rl = sqrt(S_e) [1 - (1 - S_e^(1/l))^l]^2, k_rg = sqrt(1 - S_e) (1 - S_e^(1/l))^(2 l). Sources: van Genuchten (1980), eq. (8), after Mualem (1976);
-/// Parker, Lenhard & Kuppusamy (1987), eq. (17), for the gas.
+/// k_rl = sqrt(S_e) [1 - (1 - S_e^(1/l))^l]^2, k_rg = sqrt(1 - S_e) (1 - S_e^(1/l))^(2 l). Sources: van Genuchten
+/// (1980), eq. (8), after Mualem (1976); Parker, Lenhard & Kuppusamy (1987), eq. (17), for the gas.
 struct VanGenuchtenMualem {
   static constexpr const char *name = "van_genuchten_mualem";
   static constexpr const char *meaning = "van Genuchten (1980) after Mualem (1976)";

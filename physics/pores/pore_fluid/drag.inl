@@ -1,4 +1,5 @@
-// Drag, and what boundaries do to velocities; theory of pores, (4.6), section 5; included only where PoreFluid is instantiated.
+// Drag, and what boundaries do to velocities; theory of pores, (4.6), section 5; included only where PoreFluid is
+// instantiated.
 #include <algorithm>
 #include <cmath>
 
@@ -6,7 +7,8 @@
 
 namespace talus {
 
-/// Mass, M and resistance Q = phi V / k of a fluid at a node: the flux of a steady state is then the mean conductivity times the gradient.
+/// Mass, M and resistance Q = phi V / k of a fluid at a node: the flux of a steady state is then the mean conductivity
+/// times the gradient.
 template <int dim, class Phases>
 NodalFluid PoreFluid<dim, Phases>::at_node(int i, int a, double beyond) const {
   const NodePores &node = nodes_[i];
@@ -26,7 +28,8 @@ NodalFluid PoreFluid<dim, Phases>::over_step(int i, int a) const {
   return explicit_drag_ && !given ? NodalFluid{at.mass, at.whole_mass, 0} : at;
 }
 
-/// Each fluid against the skeleton; together they are no faster than their sum. Pores that may be dry beyond a face count there with half the conductivity.
+/// Each fluid against the skeleton; together they are no faster than their sum. Pores that may be dry beyond a face
+/// count there with half the conductivity.
 template <int dim, class Phases>
 double PoreFluid<dim, Phases>::drag_rate(const FilledGrid<dim> &grid) const {
   double largest = 0;
@@ -44,10 +47,12 @@ double PoreFluid<dim, Phases>::drag_rate(const FilledGrid<dim> &grid) const {
 /// Shortest change of a number that brings it between two others.
 inline double into(double x, double low, double high) { return std::clamp(x, low, high) - x; }
 
-/// Where a face or a wall holds a fluid back, that acts on the skeleton too: they share what momentum they have along its normal. A surface that lets no
-/// water in bears its suction so, and a wall that holds the skeleton bears the weight of the water, theory (4.6a).
+/// Where a face or a wall holds a fluid back, that acts on the skeleton too: they share what momentum they have along
+/// its normal. A surface that lets no water in bears its suction so, and a wall that holds the skeleton bears the
+/// weight of the water, theory (4.6a).
 template <int dim, class Phases>
-void PoreFluid<dim, Phases>::resist(double step, const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *solid, const Vec<dim> *fluid) const {
+void PoreFluid<dim, Phases>::resist(double step, const Frame &frame, const PoreConditions<dim> &conditions,
+                                    Vec<dim> *solid, const Vec<dim> *fluid) const {
   const FilledGrid<dim> &grid = frame.grid;
   const int nodes = grid.node_count();
   for (int i = 0; i < nodes; ++i) {
@@ -73,9 +78,11 @@ void PoreFluid<dim, Phases>::resist(double step, const Frame &frame, const PoreC
   conditions.walls([&](int i, const Vec<dim> &n) { share(i, n, fluids, 0, 0); });
 }
 
-/// What a support at a node holds: the skeleton, all of a fluid along the normals of walls, elsewhere what drag takes along in a step [kg].
+/// What a support at a node holds: the skeleton, all of a fluid along the normals of walls, elsewhere what drag takes
+/// along in a step [kg].
 template <int dim, class Phases>
-Square<dim> PoreFluid<dim, Phases>::inertia(double step, const FilledGrid<dim> &grid, const PoreConditions<dim> &conditions, int i) const {
+Square<dim> PoreFluid<dim, Phases>::inertia(double step, const FilledGrid<dim> &grid,
+                                            const PoreConditions<dim> &conditions, int i) const {
   double dragged = grid.mass[i], rest = 0;
   for (int a = 0; a < fluids; ++a) {
     const NodalFluid at = over_step(i, a);
@@ -87,16 +94,19 @@ Square<dim> PoreFluid<dim, Phases>::inertia(double step, const FilledGrid<dim> &
   return held;
 }
 
-/// The sum of w p grad N is the pressure on the wall less its gradient over the cells beside it; along a wall's normal that is the liquid's weight.
+/// The sum of w p grad N is the pressure on the wall less its gradient over the cells beside it; along a wall's normal
+/// that is the liquid's weight.
 template <int dim, class Phases>
 double PoreFluid<dim, Phases>::thrust(const Vec<dim> &gravity, int i, const Vec<dim> &n) const {
   double push = 0, weight = 0;
-  for (int d = 0; d < dim; ++d) push += nodes_[i].push[mixture][d] * n[d], weight += liquid_.density * nodes_[i].volume() * gravity[d] * n[d];
+  for (int d = 0; d < dim; ++d)
+    push += nodes_[i].push[mixture][d] * n[d], weight += liquid_.density * nodes_[i].volume() * gravity[d] * n[d];
   return Phases::suction && push <= 0 ? push : push + weight;
 }
 
 template <int dim, class Phases>
-void PoreFluid<dim, Phases>::follow(double step, const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid, Vec<dim> *fluid) const {
+void PoreFluid<dim, Phases>::follow(double step, const Frame &frame, const PoreConditions<dim> &conditions,
+                                    const Vec<dim> *solid, Vec<dim> *fluid) const {
   const int nodes = frame.grid.node_count();
   for (int i = 0; i < nodes; ++i) {
     NodalFluid at[fluids];
@@ -114,11 +124,17 @@ void PoreFluid<dim, Phases>::follow(double step, const Frame &frame, const PoreC
 template <int dim, class Phases>
 template <class Limit>
 void PoreFluid<dim, Phases>::limits(const Frame &frame, const PoreConditions<dim> &conditions, Limit &&limit) const {
-  conditions.limits(frame.time, frame.grid, liquid_.density, unit_weight(frame), [&](int i) { return LiquidAtNode{nodes_[i].mass(0), nodes_[i].volume()}; }, limit);
+  conditions.limits(
+      frame.time, frame.grid, liquid_.density, unit_weight(frame),
+      [&](int i) {
+        return LiquidAtNode{nodes_[i].mass(0), nodes_[i].volume()};
+      },
+      limit);
 }
 
 template <int dim, class Phases>
-void PoreFluid<dim, Phases>::constrain(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid, Vec<dim> *fluid) const {
+void PoreFluid<dim, Phases>::constrain(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid,
+                                       Vec<dim> *fluid) const {
   const int nodes = frame.grid.node_count();
   const auto hold = [&](int i, const Vec<dim> &n, int count, double low, double high) {
     for (int a = 0; a < count; ++a) {

@@ -6,13 +6,15 @@
 
 namespace talus {
 
-/// Gas takes the density of where it comes from, and none leaves soil whose gas is down to its residue, theory (4.9). Collective.
+/// Gas takes the density of where it comes from, and none leaves soil whose gas is down to its residue, theory (4.9).
+/// Collective.
 template <int dim, class Phases>
-PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<dim> *gas, const Vec<dim> *solid)
-  requires Phases::gas
-{
+PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<dim> *gas,
+                                                const Vec<dim> *solid) requires Phases::gas {
   PetscFunctionBeginUser;
-  constexpr int width = 4, share = 3;  // of a node: volume taken, mass taken, what holds gas back; share of the gas that is in the pores
+  constexpr int
+      width = 4,
+      share = 3;  // of a node: volume taken, mass taken, what holds gas back; share of the gas that is in the pores
   constexpr double empty = 1e-30;
   FilledGrid<dim> &grid = frame.grid;
   const auto pore_share = [&](int i) { return nodes_[i].whole(1) > 0 ? nodes_[i].mass(1) / nodes_[i].whole(1) : 0; };
@@ -37,7 +39,9 @@ PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<di
     }
     if (!(out > 0)) continue;
     const double free = 1 - residual_gas / std::max(1 - cell.saturation, empty);  // share of the gas that may leave
-    const double open = std::clamp(std::min(free / residual_gas * (1 - cell.saturation), free * cell.mass[1] / (2 * out * cell.density[1])), empty, 1.);
+    const double open = std::clamp(
+        std::min(free / residual_gas * (1 - cell.saturation), free * cell.mass[1] / (2 * out * cell.density[1])), empty,
+        1.);
     const double held = 1 / open - 1;
     for (int k = 0; k <= dim; ++k) {  // without branches: which nodes take is as good as random
       double *node = &nodal_[shape.node[k] * width];
@@ -54,14 +58,17 @@ PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<di
 }
 
 template <int dim, class Phases>
-PetscErrorCode PoreFluid<dim, Phases>::flow(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *u) {
+PetscErrorCode PoreFluid<dim, Phases>::flow(const Frame &frame, const PoreConditions<dim> &conditions,
+                                            const Vec<dim> *u) {
   PetscFunctionBeginUser;
   const FilledGrid<dim> &grid = frame.grid;
   const int nodes = grid.node_count(), cells = grid.cell_count();
   std::fill_n(gap_.begin(), nodes, Vec<dim>{});
-  conditions.gaps(grid, [&](int i) { return surface_at(nodes_[i]); }, [&](int i, const Vec<dim> &area) {
-    for (int d = 0; d < dim; ++d) gap_[i][d] = area[d] / nodes_[i].volume();
-  });
+  conditions.gaps(
+      grid, [&](int i) { return surface_at(nodes_[i]); },
+      [&](int i, const Vec<dim> &area) {
+        for (int d = 0; d < dim; ++d) gap_[i][d] = area[d] / nodes_[i].volume();
+      });
   for (int i = 0; i < nodes; ++i) {
     const double density = given ? 0 : nodes_[i].volume() > 0 ? nodes_[i].mass(0) / nodes_[i].volume() : 0;
     for (int d = 0; d < dim; ++d) flux_[0][i][d] = density * (u[nodes + i][d] - u[i][d]);
@@ -79,7 +86,8 @@ PetscErrorCode PoreFluid<dim, Phases>::flow(const Frame &frame, const PoreCondit
     for (int a = 0; a < fluids; ++a) {
       double sum = 0;
       for (int k = 0; k < dim; ++k)
-        for (int d = 0; d < dim; ++d) sum += shape.gradient[k][d] * (flux_[a][shape.node[k + 1]][d] - flux_[a][shape.node[0]][d]);
+        for (int d = 0; d < dim; ++d)
+          sum += shape.gradient[k][d] * (flux_[a][shape.node[k + 1]][d] - flux_[a][shape.node[0]][d]);
       divergence_[a][c] = sum;
     }
   }
@@ -91,7 +99,8 @@ PetscErrorCode PoreFluid<dim, Phases>::flow(const Frame &frame, const PoreCondit
 template <int dim, class Phases>
 PetscErrorCode PoreFluid<dim, Phases>::smooth_flow(const Frame &frame, Array &volume_strain) {
   PetscFunctionBeginUser;
-  PetscCall(smooth<2>(frame, {volume_strain.data(), divergence_[0].data()}));  // gas moves by its own pressure, which is not smoothed
+  PetscCall(smooth<2>(
+      frame, {volume_strain.data(), divergence_[0].data()}));  // gas moves by its own pressure, which is not smoothed
   const int cells = frame.grid.cell_count();
   for (int a = Phases::suction; a < fluids; ++a)
     for (int c = 0; c < cells; ++c) divergence_[a][c] *= frame.weight[c];
@@ -99,32 +108,37 @@ PetscErrorCode PoreFluid<dim, Phases>::smooth_flow(const Frame &frame, Array &vo
   PetscFunctionReturn(0);
 }
 
-/// A cell takes up liquid as its particles' volume tells, and what its own volume tells beyond that goes to the cells around in proportion to theirs, theory (4.8a):
-/// where particles are spread unevenly over the cells of a front, contents stay even. Collective.
+/// A cell takes up liquid as its particles' volume tells, and what its own volume tells beyond that goes to the cells
+/// around in proportion to theirs, theory (4.8a): where particles are spread unevenly over the cells of a front,
+/// contents stay even. Collective.
 template <int dim, class Phases>
 PetscErrorCode PoreFluid<dim, Phases>::give_around(const Frame &frame, Array &divergence) requires Phases::suction {
   PetscFunctionBeginUser;
   const int cells = frame.grid.cell_count();
   std::fill_n(nodal_.begin(), frame.grid.node_count() * 2, 0.);
   for (int c = 0; c < cells; ++c)
-    for (int i : frame.shape[c].node) nodal_[i * 2] += frame.particle_volume[c], nodal_[i * 2 + 1] += beyond_particles(frame, c) * divergence[c];
+    for (int i : frame.shape[c].node)
+      nodal_[i * 2] += frame.particle_volume[c], nodal_[i * 2 + 1] += beyond_particles(frame, c) * divergence[c];
   PetscCall(frame.grid.sum(nodal_.data(), 2));
   for (int c = 0; c < cells; ++c) {
     double given = 0;
     for (int i : frame.shape[c].node) given += nodal_[i * 2 + 1] / nodal_[i * 2];
-    divergence[c] = (frame.weight[c] - beyond_particles(frame, c)) * divergence[c] + frame.particle_volume[c] / (dim + 1) * given;
+    divergence[c] =
+        (frame.weight[c] - beyond_particles(frame, c)) * divergence[c] + frame.particle_volume[c] / (dim + 1) * given;
   }
   PetscFunctionReturn(0);
 }
 
-/// The adjoint: a cell presses with the pressure of its particles as far as their volume goes, beyond that with that around it. Collective.
+/// The adjoint: a cell presses with the pressure of its particles as far as their volume goes, beyond that with that
+/// around it. Collective.
 template <int dim, class Phases>
 PetscErrorCode PoreFluid<dim, Phases>::see_around(const Frame &frame, Array &pressure) requires Phases::suction {
   PetscFunctionBeginUser;
   const int cells = frame.grid.cell_count();
   std::fill_n(nodal_.begin(), frame.grid.node_count() * 2, 0.);
   for (int c = 0; c < cells; ++c)
-    for (int i : frame.shape[c].node) nodal_[i * 2] += frame.particle_volume[c], nodal_[i * 2 + 1] += frame.particle_volume[c] * pressure[c];
+    for (int i : frame.shape[c].node)
+      nodal_[i * 2] += frame.particle_volume[c], nodal_[i * 2 + 1] += frame.particle_volume[c] * pressure[c];
   PetscCall(frame.grid.sum(nodal_.data(), 2));
   for (int c = 0; c < cells; ++c) {
     double around = 0;
@@ -149,7 +163,8 @@ void PoreFluid<dim, Phases>::exchange(const Frame &frame) {
   if (by_rate_) follow_rates(frame);
 }
 
-// The naive form, theory (3.5): pressures go on at their rate from those of the last step, and what the curve then gives takes the place of the masses.
+// The naive form, theory (3.5): pressures go on at their rate from those of the last step, and what the curve then
+// gives takes the place of the masses.
 
 template <int dim, class Phases>
 void PoreFluid<dim, Phases>::keep_pressures(const Frame &frame) {
@@ -157,7 +172,10 @@ void PoreFluid<dim, Phases>::keep_pressures(const Frame &frame) {
     PorePoints &points = points_[b];
     points.pressure.resize(points.grains.size());
     for (int q = 0; q < frame.points[b].count; ++q)
-      points.pressure[q] = points.suction[q] > 0 ? -points.suction[q] : liquid_.pressure_at(points.mass[0][q] / pore_volume(frame.volume[b][q], points.grains[q]));
+      points.pressure[q] =
+          points.suction[q] > 0
+              ? -points.suction[q]
+              : liquid_.pressure_at(points.mass[0][q] / pore_volume(frame.volume[b][q], points.grains[q]));
   }
 }
 

@@ -1,4 +1,5 @@
-// Forces on the mixture and accelerations of the fluids; theory of pores, (4.4), (4.5); included only where PoreFluid is instantiated.
+// Forces on the mixture and accelerations of the fluids; theory of pores, (4.4), (4.5); included only where PoreFluid
+// is instantiated.
 #include <algorithm>
 #include <cmath>
 
@@ -7,16 +8,18 @@
 namespace talus {
 
 template <int dim, class Phases>
-void PoreFluid<dim, Phases>::add_to_mixture(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force) const {
+void PoreFluid<dim, Phases>::add_to_mixture(const Frame &frame, const PoreConditions<dim> &conditions,
+                                            Vec<dim> *force) const {
   const std::vector<NodePores> &at = frame.trial ? trial_nodes_ : nodes_;
   for (int i = 0; i < frame.grid.node_count(); ++i)
     for (int d = 0; d < dim; ++d) {
       force[i][d] += at[i].push[mixture][d];
       for (int a = 0; a < fluids; ++a) force[i][d] += at[i].mass(a) * weighs(at[i], a) * frame.gravity[d];
     }
-  conditions.pressures(frame.time, frame.grid, unit_weight(frame), [&](int i, double, const Vec<dim> &, const Vec<dim> &load) {
-    for (int d = 0; d < dim; ++d) force[i][d] -= load[d];
-  });
+  conditions.pressures(frame.time, frame.grid, unit_weight(frame),
+                       [&](int i, double, const Vec<dim> &, const Vec<dim> &load) {
+                         for (int d = 0; d < dim; ++d) force[i][d] -= load[d];
+                       });
 }
 
 /// Conductivity of the liquid where it has a given pressure, in the soil at a node [m2/(Pa s)].
@@ -31,8 +34,8 @@ double PoreFluid<dim, Phases>::conductivity_beyond(int node, const NodePores &at
 }
 
 template <int dim, class Phases>
-PetscErrorCode PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force, Vec<dim> *acceleration,
-                                             const Vec<dim> *velocity) {
+PetscErrorCode PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force,
+                                             Vec<dim> *acceleration, const Vec<dim> *velocity) {
   PetscFunctionBeginUser;
   const std::vector<NodePores> &at = frame.trial ? trial_nodes_ : nodes_;
   const int nodes = frame.grid.node_count();
@@ -40,7 +43,8 @@ PetscErrorCode PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreCondi
   for (int a = 0; a < fluids; ++a)
     for (int i = 0; i < nodes; ++i) {
       const double whole = at[i].whole(a), scale = whole > 0 ? 1 / whole : 0;
-      for (int d = 0; d < dim; ++d) acceleration[a * nodes + i][d] = whole > 0 ? at[i].push[a][d] * scale + weighs(at[i], a) * frame.gravity[d] : 0;
+      for (int d = 0; d < dim; ++d)
+        acceleration[a * nodes + i][d] = whole > 0 ? at[i].push[a][d] * scale + weighs(at[i], a) * frame.gravity[d] : 0;
     }
   // beyond a gap is the pressure of the cells around it, brought to the node with the weight of the fluid
   const std::vector<CellPores> &pores = frame.trial ? trial_cells_ : cells_;
@@ -54,14 +58,18 @@ PetscErrorCode PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreCondi
     if constexpr (Phases::gas) nodal_[i * fluids + 1] += part * (pores[c].smooth[1] + gas_.density * rise);
   }
   PetscCall(frame.grid.sum(nodal_.data(), fluids));
-  conditions.gaps(frame.grid, [&](int i) { return surface_at(at[i]); }, [&](int i, const Vec<dim> &area) {
-    for (int a = 0; a < fluids; ++a)
-      for (int d = 0; d < dim && at[i].whole(a) > 0; ++d) acceleration[a * nodes + i][d] -= nodal_[i * fluids + a] / at[i].volume() * area[d] / at[i].whole(a);
-  });
-  conditions.pressures(frame.time, frame.grid, unit_weight(frame), [&](int i, double p, const Vec<dim> &push, const Vec<dim> &) {
-    for (int d = 0; d < dim; ++d) acceleration[i][d] -= push[d] / at[i].whole(0);
-    beyond_[i] = conductivity_beyond(i, at[i], p);
-  });
+  conditions.gaps(
+      frame.grid, [&](int i) { return surface_at(at[i]); },
+      [&](int i, const Vec<dim> &area) {
+        for (int a = 0; a < fluids; ++a)
+          for (int d = 0; d < dim && at[i].whole(a) > 0; ++d)
+            acceleration[a * nodes + i][d] -= nodal_[i * fluids + a] / at[i].volume() * area[d] / at[i].whole(a);
+      });
+  conditions.pressures(frame.time, frame.grid, unit_weight(frame),
+                       [&](int i, double p, const Vec<dim> &push, const Vec<dim> &) {
+                         for (int d = 0; d < dim; ++d) acceleration[i][d] -= push[d] / at[i].whole(0);
+                         beyond_[i] = conductivity_beyond(i, at[i], p);
+                       });
   if constexpr (Phases::gas)
     conditions.gas_pressures(frame.time, frame.grid, [&](int i, double p, const Vec<dim> &area) {
       for (int d = 0; d < dim; ++d) acceleration[nodes + i][d] -= p * area[d] / at[i].whole(1);
@@ -69,7 +77,8 @@ PetscErrorCode PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreCondi
   for (int i = 0; i < nodes && explicit_drag_ && !given; ++i)
     for (int a = 0; a < fluids; ++a) {
       const double rate = drag_number(1, at_node(i, a));
-      for (int d = 0; d < dim; ++d) acceleration[a * nodes + i][d] -= rate * (velocity[(1 + a) * nodes + i][d] - velocity[i][d]);
+      for (int d = 0; d < dim; ++d)
+        acceleration[a * nodes + i][d] -= rate * (velocity[(1 + a) * nodes + i][d] - velocity[i][d]);
     }
   for (int a = 0; a < fluids; ++a)
     for (int i = 0; i < nodes; ++i)

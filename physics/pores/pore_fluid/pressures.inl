@@ -1,4 +1,5 @@
-// Pressures from masses, and what cells and nodes make of them; theory of pores, (3.1) to (3.3), (4.2), (4.3); included only where PoreFluid is instantiated.
+// Pressures from masses, and what cells and nodes make of them; theory of pores, (3.1) to (3.3), (4.2), (4.3); included
+// only where PoreFluid is instantiated.
 #include <algorithm>
 #include <cmath>
 
@@ -8,9 +9,12 @@ namespace talus {
 
 template <int dim, class Phases>
 double PoreFluid<dim, Phases>::mixture_pressure(const double *p, double saturation) const {
-  if constexpr (Phases::gas) return bishop_ ? saturation * p[0] + (1 - saturation) * p[1] : std::max(p[0], p[1]);
-  else if constexpr (Phases::suction) return bishop_ ? saturation * p[0] : std::max(0., p[0]);  // gas at zero gauge pressure
-  else return p[0];
+  if constexpr (Phases::gas)
+    return bishop_ ? saturation * p[0] + (1 - saturation) * p[1] : std::max(p[0], p[1]);
+  else if constexpr (Phases::suction)
+    return bishop_ ? saturation * p[0] : std::max(0., p[0]);  // gas at zero gauge pressure
+  else
+    return p[0];
 }
 
 template <int dim, class Phases>
@@ -30,7 +34,8 @@ void PoreFluid<dim, Phases>::hold(const Frame &frame) {
       const int c = frame.points[b].cell[q];
       const Vec<dim> x = place(frame, c, mean_[c]);
       const double pores = pore_volume(frame.volume[b][q], points_[b].grains[q]);
-      const auto content = contents(soils_[b], given_ramp * given_pressure(x, frame.time), given_ramp * given_gas_pressure(x));
+      const auto content =
+          contents(soils_[b], given_ramp * given_pressure(x, frame.time), given_ramp * given_gas_pressure(x));
       for (int a = 0; a < fluids; ++a) {
         if (!frame.trial) given_mass_[a] += content[a] * pores - points.mass[a][q];
         points.mass[a][q] = content[a] * pores;
@@ -67,9 +72,12 @@ void PoreFluid<dim, Phases>::solve(const Frame &frame) {
         p.liquid_content[i] = points.mass[0][q] / pores;
         if constexpr (Phases::gas) p.gas_content[i] = points.mass[1][q] / pores;
       }
-      if constexpr (Phases::gas) three_phase_pressures(soil, liquid_, gas_, p);
-      else if constexpr (Phases::suction) unsaturated_pressures(soil, liquid_, p);
-      else saturated_pressures(liquid_, p);
+      if constexpr (Phases::gas)
+        three_phase_pressures(soil, liquid_, gas_, p);
+      else if constexpr (Phases::suction)
+        unsaturated_pressures(soil, liquid_, p);
+      else
+        saturated_pressures(liquid_, p);
       if constexpr (Phases::suction) {
 #pragma omp simd
         for (int i = 0; i < lanes; ++i) {
@@ -87,7 +95,8 @@ void PoreFluid<dim, Phases>::solve(const Frame &frame) {
         cell.saturated += part * k[i] * permeability;
         cell.conductivity[0] += part * k[i] * permeability * (Phases::suction ? k_l[i] : 1);
         cell.density[0] += part * p.liquid_content[i] / (1 - p.gas_share[i]);
-        if constexpr (Phases::suction) points.share[q] = p.gas_share[i], points.suction[q] = std::max(0., p.gas[i] - p.liquid[i]);
+        if constexpr (Phases::suction)
+          points.share[q] = p.gas_share[i], points.suction[q] = std::max(0., p.gas[i] - p.liquid[i]);
         if constexpr (Phases::gas) {
           cell.pressure[1] += part * p.gas[i], cell.mass[1] += points.mass[1][q];
           cell.conductivity[1] += part * k[i] * soil.gas_permeability() * k_g[i] / gas_.viscosity;
@@ -98,7 +107,8 @@ void PoreFluid<dim, Phases>::solve(const Frame &frame) {
   }
 }
 
-/// Cell to node to cell, weighted, among nearly saturated cells: conservative and its own adjoint, theory (4.3). Collective.
+/// Cell to node to cell, weighted, among nearly saturated cells: conservative and its own adjoint, theory (4.3).
+/// Collective.
 template <int dim, class Phases>
 template <int count>
 PetscErrorCode PoreFluid<dim, Phases>::smooth(const Frame &frame, const std::array<double *, count> &fields) {
@@ -166,7 +176,8 @@ PetscErrorCode PoreFluid<dim, Phases>::store(const Frame &frame) {
     cell.smooth[0] = smooth_[0][c] + liquid_.density * here;
     if constexpr (Phases::gas) cell.smooth[1] = cell.pressure[1] + gas_.density * (here - head_[c]);
     double own[fluids];
-    for (int a = 0; a < fluids; ++a) own[a] = cell.pressure[a] + (a ? gas_density() : liquid_.density) * (here - head_[c]);
+    for (int a = 0; a < fluids; ++a)
+      own[a] = cell.pressure[a] + (a ? gas_density() : liquid_.density) * (here - head_[c]);
     cell.mixture = mixture_pressure(smoothed(c) ? cell.smooth : own, cell.saturation);
     if constexpr (Phases::gas)
       if (smoothed(c)) {  // the gas keeps its suction against the liquid: what smoothing takes must not draw gas

@@ -37,8 +37,8 @@ PetscErrorCode PoreFluid<dim, Phases>::find_moment(const Frame &frame) {
 }
 
 template <int dim, class Phases>
-PetscErrorCode PoreFluid<dim, Phases>::gather(const Frame &frame, PoreConditions<dim> &conditions, const Array &filling, const Vec<dim> *solid,
-                                              Vec<dim> *velocity) {
+PetscErrorCode PoreFluid<dim, Phases>::gather(const Frame &frame, PoreConditions<dim> &conditions, const Array &filling,
+                                              const Vec<dim> *solid, Vec<dim> *velocity) {
   PetscFunctionBeginUser;
   FilledGrid<dim> &grid = frame.grid;
   const int nodes = grid.node_count(), cells = grid.cell_count();
@@ -61,7 +61,9 @@ PetscErrorCode PoreFluid<dim, Phases>::gather(const Frame &frame, PoreConditions
       const int c = set.cell[q];
       for (int a = 0; a < fluids; ++a) mass[a][c] += points.mass[a][q];
       if constexpr (Phases::suction) {
-        points.share[q] = std::clamp(1 - points.mass[0][q] / (liquid_.density * (frame.volume[b][q] - points.grains[q])), 0., 1.);  // where Newton starts
+        points.share[q] =
+            std::clamp(1 - points.mass[0][q] / (liquid_.density * (frame.volume[b][q] - points.grains[q])), 0.,
+                       1.);  // where Newton starts
         for (int node : grid.shape[c].node) body_of_node_[node] = static_cast<int>(b);
       }
     }
@@ -97,7 +99,8 @@ PetscErrorCode PoreFluid<dim, Phases>::gather(const Frame &frame, PoreConditions
   for (int i = 0; i < nodes; ++i)
     for (int a = 0; a < fluids; ++a) {
       const Quad &momentum = momentum_[i][a];
-      for (int d = 0; d < dim; ++d) velocity[a * nodes + i][d] = momentum[last] > 0 ? momentum[d] / momentum[last] : solid[i][d];
+      for (int d = 0; d < dim; ++d)
+        velocity[a * nodes + i][d] = momentum[last] > 0 ? momentum[d] / momentum[last] : solid[i][d];
     }
   PetscCall(store(frame));
   for (int i = 0; i < nodes; ++i) talus::store<dim>(surface_[i].data(), nodes_[i].geometry);
@@ -108,7 +111,8 @@ PetscErrorCode PoreFluid<dim, Phases>::gather(const Frame &frame, PoreConditions
 }
 
 template <int dim, class Phases>
-void PoreFluid<dim, Phases>::hand_over(int nodes, const Vec<dim> *velocity, const Vec<dim> *start, double flip, NodalUpdate &update) const {
+void PoreFluid<dim, Phases>::hand_over(int nodes, const Vec<dim> *velocity, const Vec<dim> *start, double flip,
+                                       NodalUpdate &update) const {
   for (int a = 0; a < fluids; ++a)
     for (int i = 0; i < nodes; ++i) {
       const int n = a * nodes + i;

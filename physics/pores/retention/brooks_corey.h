@@ -20,7 +20,9 @@ struct BrooksCorey : ResidualWater {
   }
 
   double effective(double s) const { return s > air_entry ? std::pow(air_entry / s, pore_size_index) : 1; }
-  double slope(double s) const { return s > air_entry ? -pore_size_index / s * std::pow(air_entry / s, pore_size_index) : 0; }
+  double slope(double s) const {
+    return s > air_entry ? -pore_size_index / s * std::pow(air_entry / s, pore_size_index) : 0;
+  }
   double suction(double wet, double) const { return air_entry * std::pow(wet, -1 / pore_size_index); }
 };
 

@@ -7,7 +7,8 @@
 
 namespace talus {
 
-/// S_e = exp(-alpha s). Source: Gardner (1958); with the relative permeability of the same name and rate Richards' equation is linear.
+/// S_e = exp(-alpha s). Source: Gardner (1958); with the relative permeability of the same name and rate Richards'
+/// equation is linear.
 struct Gardner : ResidualWater {
   static constexpr const char *name = "gardner";
   static constexpr const char *meaning = "exponential retention curve, Gardner (1958)";
@@ -15,7 +16,8 @@ struct Gardner : ResidualWater {
   template <class Visitor>
   void fields(Visitor &&v) {
     ResidualWater::fields(v);
-    v.number("decay_suction", decay_suction, pascal, Range{1, 1e9}, "suction 1 / alpha over which effective saturation falls by a factor e");
+    v.number("decay_suction", decay_suction, pascal, Range{1, 1e9},
+             "suction 1 / alpha over which effective saturation falls by a factor e");
   }
 
   double effective(double s) const { return s > 0 ? std::exp(-s / decay_suction) : 1; }

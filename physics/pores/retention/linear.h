@@ -6,8 +6,8 @@
 
 namespace talus {
 
-/// S_e = 1 - s / s_d, for tests and rough soils. Below `tail` it falls exponentially instead, without a kink, so that every water content has
-/// one suction.
+/// S_e = 1 - s / s_d, for tests and rough soils. Below `tail` it falls exponentially instead, without a kink, so that
+/// every water content has one suction.
 struct LinearRetention : ResidualWater {
   static constexpr const char *name = "linear";
   static constexpr const char *meaning = "saturation falls linearly with suction, exponentially below 2 %";
@@ -16,7 +16,8 @@ struct LinearRetention : ResidualWater {
   template <class Visitor>
   void fields(Visitor &&v) {
     ResidualWater::fields(v);
-    v.number("drying_suction", drying_suction, pascal, Range{1, 1e9}, "suction at which the line meets zero effective saturation");
+    v.number("drying_suction", drying_suction, pascal, Range{1, 1e9},
+             "suction at which the line meets zero effective saturation");
   }
 
   double effective(double s) const {

@@ -1,5 +1,6 @@
 #pragma once
-/// What retention curves share: they are written for the effective saturation S_e = (S - S_r) / (1 - S_r), docs/theory/pores.md (1.1).
+/// What retention curves share: they are written for the effective saturation S_e = (S - S_r) / (1 - S_r),
+/// docs/theory/pores.md (1.1).
 #include "base/units.h"
 
 namespace talus {
@@ -8,7 +9,8 @@ struct ResidualWater {
   double residual_saturation = 0;  ///< S_r: water that suction does not draw out [-]
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.number("residual_saturation", residual_saturation, one, Range{0, 0.9}, "degree of saturation that suction does not fall below");
+    v.number("residual_saturation", residual_saturation, one, Range{0, 0.9},
+             "degree of saturation that suction does not fall below");
   }
 };
 

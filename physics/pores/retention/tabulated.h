@@ -8,8 +8,8 @@
 
 namespace talus {
 
-/// Measured points (s, S), joined by monotone cubics: Fritsch & Carlson (1980), slopes by Fritsch & Butland (1984). Below the first suction
-/// the soil is as wet as there; beyond the last one saturation falls on exponentially.
+/// Measured points (s, S), joined by monotone cubics: Fritsch & Carlson (1980), slopes by Fritsch & Butland (1984).
+/// Below the first suction the soil is as wet as there; beyond the last one saturation falls on exponentially.
 struct TabulatedRetention {
   static constexpr const char *name = "tabulated";
   static constexpr const char *meaning = "measured points joined by monotone cubics";
@@ -23,20 +23,24 @@ struct TabulatedRetention {
   std::string problem() const {
     if (suctions.size() < 2 || suctions.size() != saturations.size())
       return "give suctions and saturations of at least two points, as many of one as of the other";
-    if (!(suctions[0] >= 0) || saturations[0] != 1) return "the first point must be saturated: suctions begins at 0 or above, saturations with 1";
+    if (!(suctions[0] >= 0) || saturations[0] != 1)
+      return "the first point must be saturated: suctions begins at 0 or above, saturations with 1";
     for (size_t i = 1; i < suctions.size(); ++i)
       if (!(suctions[i] > suctions[i - 1]) || !(saturations[i] < saturations[i - 1]) || !(saturations[i] > 0))
         return "the curve must be monotone, but point " + std::to_string(i + 1) +
-               " is not: suctions must rise and saturations fall from point to point and stay above 0; average scattered measurements first";
+               " is not: suctions must rise and saturations fall from point to point and stay above 0; average "
+               "scattered measurements first";
     return "";
   }
 
   double effective(double s) const {
     if (s <= suctions[0]) return 1;
     const size_t last = suctions.size() - 1;
-    if (s >= suctions[last]) return saturations[last] * std::exp(tangent(last) / saturations[last] * (s - suctions[last]));
+    if (s >= suctions[last])
+      return saturations[last] * std::exp(tangent(last) / saturations[last] * (s - suctions[last]));
     const Piece p = piece(s);
-    return p.a + p.r * p.h * p.ma + p.r * p.r * ((3 - 2 * p.r) * (p.b - p.a) - (2 - p.r) * p.h * p.ma - (1 - p.r) * p.h * p.mb);
+    return p.a + p.r * p.h * p.ma +
+           p.r * p.r * ((3 - 2 * p.r) * (p.b - p.a) - (2 - p.r) * p.h * p.ma - (1 - p.r) * p.h * p.mb);
   }
   double slope(double s) const {
     if (s <= suctions[0]) return 0;
@@ -48,7 +52,8 @@ struct TabulatedRetention {
   /// By bisection: curves are tabulated over saturation before the time loop.
   double suction(double wet, double) const {
     const size_t last = suctions.size() - 1;
-    if (wet <= saturations[last]) return suctions[last] + saturations[last] / tangent(last) * std::log(wet / saturations[last]);
+    if (wet <= saturations[last])
+      return suctions[last] + saturations[last] / tangent(last) * std::log(wet / saturations[last]);
     double low = suctions[0], high = suctions[last];
     for (int k = 0; k < 200 && low < high; ++k) {
       const double middle = (low + high) / 2;

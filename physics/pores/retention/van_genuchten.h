@@ -7,8 +7,8 @@
 
 namespace talus {
 
-/// S_e = [1 + (s / P_0)^(1 / (1 - l))]^(-l). Source: van Genuchten (1980), with Mualem's restriction m = 1 - 1/n, so l = m. His
-/// alpha is rho_w g / P_0 per metre of head.
+/// S_e = [1 + (s / P_0)^(1 / (1 - l))]^(-l). Source: van Genuchten (1980), with Mualem's restriction m = 1 - 1/n, so l
+/// = m. His alpha is rho_w g / P_0 per metre of head.
 struct VanGenuchten : ResidualWater {
   static constexpr const char *name = "van_genuchten";
   static constexpr const char *meaning = "smooth retention curve of van Genuchten (1980)";
@@ -17,11 +17,14 @@ struct VanGenuchten : ResidualWater {
   template <class Visitor>
   void fields(Visitor &&v) {
     ResidualWater::fields(v);
-    v.number("reference_suction", reference_suction, pascal, Range{1, 1e9}, "suction P_0 = rho_w g / alpha that scales the curve");
+    v.number("reference_suction", reference_suction, pascal, Range{1, 1e9},
+             "suction P_0 = rho_w g / alpha that scales the curve");
     v.number("shape", shape, one, Range{0.02, 0.95}, "exponent lambda = 1 - 1/n");
   }
 
-  double effective(double s) const { return s > 0 ? std::pow(1 + std::pow(s / reference_suction, 1 / (1 - shape)), -shape) : 1; }
+  double effective(double s) const {
+    return s > 0 ? std::pow(1 + std::pow(s / reference_suction, 1 / (1 - shape)), -shape) : 1;
+  }
   double slope(double s) const {
     if (!(s > 0)) return 0;
     const double x = std::pow(s / reference_suction, 1 / (1 - shape));

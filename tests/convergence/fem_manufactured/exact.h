@@ -1,6 +1,6 @@
 #pragma once
-/// Manufactured equilibrium of an elastic unit square or cube: u_i = a_i S, S the product of sin(pi x_j). With c_i S the product in
-/// which cos(pi x_i) stands for sin(pi x_i), and c_ij S the same for two, div sigma + rho b = 0 asks for
+/// Manufactured equilibrium of an elastic unit square or cube: u_i = a_i S, S the product of sin(pi x_j). With c_i S
+/// the product in which cos(pi x_i) stands for sin(pi x_i), and c_ij S the same for two, div sigma + rho b = 0 asks for
 ///     rho b_i = pi^2 [(lambda + mu) (a_i S - sum_{j != i} a_j c_ij S) + dim mu a_i S].
 #include <array>
 #include <cmath>
@@ -22,10 +22,11 @@ inline void fem_manufactured(Rung &rung) {
       for (int j = 0; j < dim; ++j) {
         if (j == i) continue;
         sum += " + (" + number(a[j]) + ")";
-        for (int k = 0; k < dim; ++k) sum += std::string(k == i || k == j ? " * cos" : " * sin") + "(pi * " + axis[k] + ")";
+        for (int k = 0; k < dim; ++k)
+          sum += std::string(k == i || k == j ? " * cos" : " * sin") + "(pi * " + axis[k] + ")";
       }
-      all += std::string(i ? ", " : "[") + "\"pi^2 / " + number(rho) + " * (" + number((lambda + mu + dim * mu) * a[i]) + " * " + S + " - " +
-             number(lambda + mu) + " * (0" + sum + "))\"";
+      all += std::string(i ? ", " : "[") + "\"pi^2 / " + number(rho) + " * (" +
+             number((lambda + mu + dim * mu) * a[i]) + " * " + S + " - " + number(lambda + mu) + " * (0" + sum + "))\"";
     }
     return all + "]";
   };
@@ -39,7 +40,8 @@ inline void fem_manufactured(Rung &rung) {
     }
     for (int i = 0; i < dim; ++i) {
       const auto u = component(run.end, "displacement", i);
-      for (size_t p = 0; p < S.size(); ++p) square += volume[p] * std::pow(u[p] - a[i] * S[p], 2), total += volume[p] * std::pow(a[i] * S[p], 2);
+      for (size_t p = 0; p < S.size(); ++p)
+        square += volume[p] * std::pow(u[p] - a[i] * S[p], 2), total += volume[p] * std::pow(a[i] * S[p], 2);
     }
     return std::sqrt(square / total);
   };
@@ -50,7 +52,9 @@ inline void fem_manufactured(Rung &rung) {
         std::vector<std::string> overrides{"mesh.size=" + number(size), "body.soil.body_acceleration=" + load(dim),
                                            "quasi_static.elements=" + std::string(elements)};
         if (dim == 3)
-          overrides.insert(overrides.end(), {"dimension=3", "boundary.walls.group=[\"base\", \"left\", \"right\", \"surface\", \"front\", \"back\"]"});
+          overrides.insert(overrides.end(),
+                           {"dimension=3",
+                            "boundary.walls.group=[\"base\", \"left\", \"right\", \"surface\", \"front\", \"back\"]"});
         const Run run = rung.run(overrides);
         size_of_cells = std::pow(static_cast<double>(run.end.id.size()), -1. / dim);
         return error(run, dim);

@@ -103,8 +103,12 @@ TEST(Allocations, none_in_a_drained_slope_of_two_soils) {
 }
 
 TEST(Allocations, none_where_pore_fluids_move) {
-  const std::vector<std::string> curves = {"body.sand.retention.curve=van_genuchten", "body.sand.retention.reference_suction=500", "body.sand.retention.shape=0.5",
-                                           "body.sand.relative_permeability.curve=van_genuchten_mualem", "body.sand.relative_permeability.shape=0.5", "water.stress=bishop"};
+  const std::vector<std::string> curves = {"body.sand.retention.curve=van_genuchten",
+                                           "body.sand.retention.reference_suction=500",
+                                           "body.sand.retention.shape=0.5",
+                                           "body.sand.relative_permeability.curve=van_genuchten_mualem",
+                                           "body.sand.relative_permeability.shape=0.5",
+                                           "water.stress=bishop"};
   for (const std::string phases : {"saturated", "unsaturated", "three-phase"}) {
     std::vector<std::string> overrides{"mesh.size=0.01", "phases=" + phases};
     if (phases != "saturated") overrides.insert(overrides.end(), curves.begin(), curves.end());

@@ -72,8 +72,10 @@ TEST_F(RunThatEnds, BecauseALoadIsNoNumber) {
 
 TEST_F(RunThatEnds, BecauseAFixedStepBecameTooLong) {
   folder_.write("section.csv", good_section + std::string("refine_0.03,1.2,0\nrefine_0.03,2,1\n"));
-  const std::string scene = changed(changed(good_scene, "density = 2000", "density = 2000\nvelocity = [\"10\", \"2\"]"), "[output]", "[integrator]\nstep = 0.0012\n[output]");
-  expect(Program(folder_, run(scene)).end(), {"the soil has come to cells with a critical step of", "integrator.step = 0.0012", "t = "}, 1);
+  const std::string scene = changed(changed(good_scene, "density = 2000", "density = 2000\nvelocity = [\"10\", \"2\"]"),
+                                    "[output]", "[integrator]\nstep = 0.0012\n[output]");
+  expect(Program(folder_, run(scene)).end(),
+         {"the soil has come to cells with a critical step of", "integrator.step = 0.0012", "t = "}, 1);
 }
 
 TEST_F(RunThatEnds, BecauseSpeedIsAbsurd) {
@@ -82,37 +84,53 @@ TEST_F(RunThatEnds, BecauseSpeedIsAbsurd) {
 }
 
 TEST_F(RunThatEnds, BecauseNoStepKeepsTheTolerance) {
-  const std::string scene = changed(good_scene, "[output]", "[integrator]\nkind = \"arkode\"\nvelocity_tolerance = 1e-12\nfloor = 0.05\n[output]");
+  const std::string scene = changed(
+      good_scene, "[output]", "[integrator]\nkind = \"arkode\"\nvelocity_tolerance = 1e-12\nfloor = 0.05\n[output]");
   for (const int ranks : {1, 2})
-    expect(Program(folder_, run(scene, ranks)).end(), {"integrator.velocity_tolerance", "integrator.floor", "largest near (", ", at particle ", " of body.sand", "t = "}, 1);
+    expect(Program(folder_, run(scene, ranks)).end(),
+           {"integrator.velocity_tolerance", "integrator.floor", "largest near (", ", at particle ", " of body.sand",
+            "t = "},
+           1);
 }
 
 TEST_F(RunThatEnds, BecauseSoilHasNoSupport) {
-  const std::string scene =
-      changed(changed(good_scene, "kind = \"fixed\"", "kind = \"roller\""), "name = \"fall\"", "kind = \"quasi_static\"");
+  const std::string scene = changed(changed(good_scene, "kind = \"fixed\"", "kind = \"roller\""), "name = \"fall\"",
+                                    "kind = \"quasi_static\"");
   folder_.write("scene.toml", changed(scene, "[boundary.left]\nkind = \"roller\"\n", ""));
   expect(Program(folder_, talus_words({"solve", "scene.toml", "-o", "results", "--no-pictures"})).end(),
          {"free to move as a whole", "can move along x", "snapshots up to step 0"}, 1);
 }
 
 TEST_F(RunThatEnds, BecauseSoilDoesNotStand) {
-  const std::string solved = changed(changed(good_scene, "name = \"fall\"", "name = \"weight\"\nkind = \"quasi_static\"\nload_steps = 10"), "interval = 0.01", "interval = 0.005");
-  for (const char *cohesion : {"0", "\"1 kPa\""}) {  // at once, or under a part of the weight: the last state that had an equilibrium is kept
+  const std::string solved =
+      changed(changed(good_scene, "name = \"fall\"", "name = \"weight\"\nkind = \"quasi_static\"\nload_steps = 10"),
+              "interval = 0.01", "interval = 0.005");
+  for (const char *cohesion :
+       {"0", "\"1 kPa\""}) {  // at once, or under a part of the weight: the last state that had an equilibrium is kept
     folder_.write("scene.toml", changed(solved, "cohesion = 0", "cohesion = " + std::string(cohesion)));
     expect(Program(folder_, talus_words({"solve", "scene.toml", "-o", "results", "--no-pictures"})).end(),
-           {"no equilibrium beyond", "% of the loads", "stage weight", "snapshots up to step", "are in results"}, *cohesion == '0' ? 1 : 3);
+           {"no equilibrium beyond", "% of the loads", "stage weight", "snapshots up to step", "are in results"},
+           *cohesion == '0' ? 1 : 3);
   }
-  const Ending last = Program(folder_, {PYTHON, "-c", "import h5py\nrun = h5py.File('results/run.h5')['snapshots']\nend = run[sorted(run)[-1]]\n"
-                                                      "print('kept', 0 < end.attrs['time'] < 0.05, abs(end['stress'][...]).max() > 1e3)"}).end();
+  const Ending last =
+      Program(folder_, {PYTHON, "-c",
+                        "import h5py\nrun = h5py.File('results/run.h5')['snapshots']\nend = run[sorted(run)[-1]]\n"
+                        "print('kept', 0 < end.attrs['time'] < 0.05, abs(end['stress'][...]).max() > 1e3)"})
+          .end();
   EXPECT_TRUE(last.says("kept True True")) << last.output;
 }
 
 TEST_F(RunThatEnds, BecauseALayerIsOneElementThick) {
-  folder_.write("section.csv", changed(good_section, "interface0,0,0.5\ninterface0,1,0.5\ninterface0,1,0\nregion_sand,0.5,0.25", "interface0,0,0.1\ninterface0,2,0.1\nregion_sand,0.5,0.05"));
-  const std::string scene = changed(changed(good_scene, "name = \"fall\"", "kind = \"quasi_static\""), "[output]", "[quasi_static]\nelements = \"linear\"\n[output]");
+  folder_.write("section.csv",
+                changed(good_section, "interface0,0,0.5\ninterface0,1,0.5\ninterface0,1,0\nregion_sand,0.5,0.25",
+                        "interface0,0,0.1\ninterface0,2,0.1\nregion_sand,0.5,0.05"));
+  const std::string scene = changed(changed(good_scene, "name = \"fall\"", "kind = \"quasi_static\""), "[output]",
+                                    "[quasi_static]\nelements = \"linear\"\n[output]");
   folder_.write("scene.toml", scene);
   expect(Program(folder_, talus_words({"solve", "scene.toml", "-o", "results", "--no-pictures"})).end(),
-         {"body.sand is one element across", "refine the mesh there, or set quasi_static.elements = \"quadratic\"", "snapshots up to step 0"}, 1);
+         {"body.sand is one element across", "refine the mesh there, or set quasi_static.elements = \"quadratic\"",
+          "snapshots up to step 0"},
+         1);
 }
 
 TEST_F(RunThatEnds, BecauseResultsHaveNoPlace) {

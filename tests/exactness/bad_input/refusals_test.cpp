@@ -18,9 +18,11 @@ struct Fault {
 
 void PrintTo(const Fault &fault, std::ostream *out) { *out << fault.name; }
 
-constexpr const char *dry_part = "[mesh]\nsection = \"section.csv\"\nsize = 0.25\n[body.sand]\nregion = \"sand\"\ndensity = 2000";
-#define WET_PART_WITH(water)                                                                                                            \
-  "[mesh]\nsection = \"section.csv\"\nsize = 0.25\n[water]\n" water "table = [[0, 0.5], [2, 0.5]]\n[body.sand]\nregion = \"sand\"\n" \
+constexpr const char *dry_part =
+    "[mesh]\nsection = \"section.csv\"\nsize = 0.25\n[body.sand]\nregion = \"sand\"\ndensity = 2000";
+#define WET_PART_WITH(water)                                        \
+  "[mesh]\nsection = \"section.csv\"\nsize = 0.25\n[water]\n" water \
+  "table = [[0, 0.5], [2, 0.5]]\n[body.sand]\nregion = \"sand\"\n"  \
   "porosity = 0.4\ngrain_density = 2600\npermeability = 1e-10"
 #define WET_PART WET_PART_WITH("")
 
@@ -62,7 +64,8 @@ const Fault faults[] = {
     {"clay_that_swells_as_it_is_compressed",
      "scene.toml",
      "law = \"mohr_coulomb\"\nyoung_modulus = \"1 MPa\"\npoisson_ratio = 0.3\ncohesion = 0\nfriction_angle = 30",
-     "law = \"cam_clay\"\ncompression_slope = 0.04\nswelling_slope = 0.05\ncritical_stress_ratio = 1\npoisson_ratio = 0.3\nvoid_ratio = 1\n"
+     "law = \"cam_clay\"\ncompression_slope = 0.04\nswelling_slope = 0.05\ncritical_stress_ratio = 1\npoisson_ratio = "
+     "0.3\nvoid_ratio = 1\n"
      "preconsolidation_pressure = \"100 kPa\"",
      {"scene.toml line 10", "body.sand.compression_slope = 0.04 must exceed swelling_slope, 0.05"}},
     {"suction_without_water",
@@ -109,7 +112,8 @@ const Fault faults[] = {
     {"gas_boundary_without_gas",
      "scene.toml",
      "[mesh]\nsection = \"section.csv\"\nsize = 0.25\n[body.sand]\nregion = \"sand\"\ndensity = 2000",
-     "phases = \"saturated\"\n[mesh]\nsection = \"section.csv\"\nsize = 0.25\n[boundary.gas]\ngroup = \"left\"\nkind = \"gas_pressure\"\n[body.sand]\nregion = \"sand\"\n"
+     "phases = \"saturated\"\n[mesh]\nsection = \"section.csv\"\nsize = 0.25\n[boundary.gas]\ngroup = \"left\"\nkind = "
+     "\"gas_pressure\"\n[body.sand]\nregion = \"sand\"\n"
      "porosity = 0.3\ngrain_density = 2650\npermeability = 1e-10",
      {"scene.toml line 9", "boundary.gas.kind", "moving pore gas", "three-phase"}},
     {"saturation_beyond_one",
@@ -293,7 +297,11 @@ const Fault faults[] = {
      "section = \"section.csv\"\nsize = 0.25",
      "file = \"mesh.msh\"\n[body.stone]\nregion = \"sand\"",
      {"needs"}},
-    {"empty_body", "mesh.msh", "2\n1 1 \"base\"\n2 2 \"sand\"", "3\n1 1 \"base\"\n2 2 \"clay\"\n2 3 \"sand\"", {"scene.toml line 7", "body.sand.region", "known are clay"}},
+    {"empty_body",
+     "mesh.msh",
+     "2\n1 1 \"base\"\n2 2 \"sand\"",
+     "3\n1 1 \"base\"\n2 2 \"clay\"\n2 3 \"sand\"",
+     {"scene.toml line 7", "body.sand.region", "known are clay"}},
     {"cell_without_area", "mesh.msh", "3 1 1 0", "3 2 0 0", {"scene.toml line 4", "mesh.msh", "no area"}},
 };
 
@@ -352,9 +360,7 @@ const WrongWords wrong_words[] = {
     {"wrong_unit_for_a_mesh",
      {"mesh", "section.csv", "-o", "out.msh", "--size", "1", "--young-modulus", "2 m"},
      {"--young-modulus 2 m"}},
-    {"wrong_unit_for_a_cell_size",
-     {"mesh", "section.csv", "-o", "out.msh", "--size", "1 s"},
-     {"--size 1 s"}},
+    {"wrong_unit_for_a_cell_size", {"mesh", "section.csv", "-o", "out.msh", "--size", "1 s"}, {"--size 1 s"}},
     {"nothing_to_resume", {"run", "scene.toml", "-o", "results", "--resume"}, {"results holds no checkpoint"}},
     {"soil_that_is_not_there", {"soil", "scene.toml", "--body", "clay"}, {"--body clay", "known are sand"}},
     {"unknown_key_of_a_test",
@@ -381,8 +387,11 @@ const WrongWords wrong_words[] = {
      {"boundary.base.kind", "no quasi-static form"}},
     {"seepage_without_water_that_moves",
      {"solve", "scene.toml", "--set", "stage.0.kind=seepage"},
-     {"stage.0.kind", "needs pore water that moves", "phases = \"saturated\" or \"unsaturated\" (or \"drained\"", "not \"dry\""}},
-    {"steady_motion", {"run", "scene.toml", "--set", "stage.0.steady=true"}, {"stage.0.steady", "set kind = \"seepage\""}},
+     {"stage.0.kind", "needs pore water that moves", "phases = \"saturated\" or \"unsaturated\" (or \"drained\"",
+      "not \"dry\""}},
+    {"steady_motion",
+     {"run", "scene.toml", "--set", "stage.0.steady=true"},
+     {"stage.0.steady", "set kind = \"seepage\""}},
     {"no_results_to_plot", {"plot", "nowhere"}, {"nowhere holds no results"}},
 };
 
@@ -390,19 +399,27 @@ const WrongWords wrong_words[] = {
 TEST(Seepage, OfDrainedSoilIsChecked) {
   const Folder folder;
   folder.write("section.csv", good_section);
-  const std::string wet = changed(changed(changed(good_scene, dry_part, WET_PART), "gravity", "phases = \"drained\"\ngravity"), "name = \"fall\"", "name = \"water\"\nkind = \"seepage\"");
+  const std::string wet =
+      changed(changed(changed(good_scene, dry_part, WET_PART), "gravity", "phases = \"drained\"\ngravity"),
+              "name = \"fall\"", "name = \"water\"\nkind = \"seepage\"");
   struct Spoiled {
     std::string scene;
     std::vector<std::string> words;
   };
-  for (const auto &[scene, words] : std::vector<Spoiled>{
-           {changed(wet, "seepage", "consolidation"), {"stage.0.kind", "phases = \"saturated\" or \"unsaturated\", not \"drained\""}},
-           {changed(changed(changed(wet, "seepage", "consolidation"), "drained", "saturated"), "[output]", "[quasi_static]\nlinear_solver = \"iterative\"\n[output]"),
-            {"quasi_static.linear_solver", "must not be \"iterative\" for consolidation"}},
-           {changed(wet, "[water]", "[water]\nexcess = \"10 kPa\""), {"water.excess", "has no place beside seepage", "[boundary.NAME]"}},
-           {changed(wet, "permeability = 1e-10", ""), {"body.sand", "needs permeability [m2] or hydraulic_conductivity [m/s]"}},
-           {wet + "[boundary.pond]\nkind = \"head\"\nlevel = 0.4\n", {"boundary.pond.group", "the mesh has no \"pond\""}},
-           {wet + "[boundary.air]\ngroup = \"free_surface\"\nkind = \"gas_pressure\"\n", {"boundary.air", "phases = \"drained\" has none"}}}) {
+  for (const auto &[scene, words] :
+       std::vector<Spoiled>{{changed(wet, "seepage", "consolidation"),
+                             {"stage.0.kind", "phases = \"saturated\" or \"unsaturated\", not \"drained\""}},
+                            {changed(changed(changed(wet, "seepage", "consolidation"), "drained", "saturated"),
+                                     "[output]", "[quasi_static]\nlinear_solver = \"iterative\"\n[output]"),
+                             {"quasi_static.linear_solver", "must not be \"iterative\" for consolidation"}},
+                            {changed(wet, "[water]", "[water]\nexcess = \"10 kPa\""),
+                             {"water.excess", "has no place beside seepage", "[boundary.NAME]"}},
+                            {changed(wet, "permeability = 1e-10", ""),
+                             {"body.sand", "needs permeability [m2] or hydraulic_conductivity [m/s]"}},
+                            {wet + "[boundary.pond]\nkind = \"head\"\nlevel = 0.4\n",
+                             {"boundary.pond.group", "the mesh has no \"pond\""}},
+                            {wet + "[boundary.air]\ngroup = \"free_surface\"\nkind = \"gas_pressure\"\n",
+                             {"boundary.air", "phases = \"drained\" has none"}}}) {
     folder.write("scene.toml", scene);
     const Ending ending = talus(folder, {"solve", "scene.toml", "--no-pictures"});
     EXPECT_EQ(ending.status, 2) << ending.output;

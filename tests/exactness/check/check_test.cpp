@@ -110,7 +110,9 @@ const Case cases[] = {
     {"remap_every_step", {"transfer.remap_interval=0"}, "A remap at every step costs"},
     {"apic", {"transfer.velocity=apic"}, "APIC on simplices"},
     {"slice", {"dimension=3", "boundary.front.kind=roller", "boundary.back.kind=roller"}, "A slice of one element"},
-    {"ground_that_yields_at_rest", {"stage.0.kind=quasi_static", "body.sand.poisson_ratio=0.2"}, "poisson_ratio above 0.25 (sin phi > 1 - 2 nu)"},
+    {"ground_that_yields_at_rest",
+     {"stage.0.kind=quasi_static", "body.sand.poisson_ratio=0.2"},
+     "poisson_ratio above 0.25 (sin phi > 1 - 2 nu)"},
     {"dry", {}, "Dry is right for soil without water"},
 };
 

@@ -1,4 +1,5 @@
-// A matrix of runs by `talus compare`: which runs, side by side, gone on with after an interrupt, against which reference, into which files.
+// A matrix of runs by `talus compare`: which runs, side by side, gone on with after an interrupt, against which
+// reference, into which files.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,9 +16,12 @@ std::vector<std::string> cells_of(const std::string &line) {
   std::vector<std::string> cells(1);
   bool quoted = false;
   for (const char c : line)
-    if (c == '"') quoted = !quoted;
-    else if (c == ',' && !quoted) cells.emplace_back();
-    else cells.back() += c;
+    if (c == '"')
+      quoted = !quoted;
+    else if (c == ',' && !quoted)
+      cells.emplace_back();
+    else
+      cells.back() += c;
   return cells;
 }
 
@@ -30,7 +34,8 @@ std::vector<Row> table(const Folder &folder, const std::string &name) {
   while (std::getline(file, line)) {
     const auto cells = cells_of(line);
     EXPECT_EQ(cells.size(), names.size()) << line;
-    for (size_t i = 0; i < std::min(cells.size(), names.size()); ++i) (i ? rows.back() : rows.emplace_back())[names[i]] = cells[i];
+    for (size_t i = 0; i < std::min(cells.size(), names.size()); ++i)
+      (i ? rows.back() : rows.emplace_back())[names[i]] = cells[i];
   }
   return rows;
 }
@@ -41,10 +46,12 @@ class Compare : public testing::Test {
  protected:
   Compare() {
     folder_.write("section.csv", good_section);
-    folder_.write("scene.toml", changed(good_scene, "density = 2000", "porosity = 0.4\ngrain_density = 3333") + "[output.point.corner]\nposition = [1, 0.5]\n");
+    folder_.write("scene.toml", changed(good_scene, "density = 2000", "porosity = 0.4\ngrain_density = 3333") +
+                                    "[output.point.corner]\nposition = [1, 0.5]\n");
   }
   std::vector<std::string> words(const std::vector<std::string> &more) const {
-    std::vector<std::string> all{"compare", "scene.toml", "-o", "out", "--measure", "corner_x_m", "-j", "2", "--no-plot"};
+    std::vector<std::string> all{"compare",    "scene.toml", "-o", "out",      "--measure",
+                                 "corner_x_m", "-j",         "2",  "--no-plot"};
     all.insert(all.end(), more.begin(), more.end());
     return talus_words(all);
   }
@@ -54,16 +61,20 @@ class Compare : public testing::Test {
 
 // integrator and its step or tolerance, mesh size, particles per cell, transfer, dimension and phase model
 TEST_F(Compare, VariesWhatASceneSays) {
-  const Ending ending = compare(
-      {"--series", "euler: integrator.fraction=0.8,0.4,0.2", "--series", "arkode: integrator.kind=arkode; integrator.velocity_tolerance=1e-2,1e-4",
-       "--series", "petsc: integrator.kind=petsc", "--series", "mesh: body.sand.particles_per_cell=3,6; mesh.size=0.25,0.17",
-       "--series", "transfer: transfer.velocity=flip,pic,apic", "--series", "water: water.table=[[0, 0], [2, 0]]; phases=drained",
-       "--series", "slice: dimension=3; output.point.corner.position=[1, 0.5, 0.1]; boundary.front.kind=roller; boundary.back.kind=roller"});
+  const Ending ending = compare({"--series", "euler: integrator.fraction=0.8,0.4,0.2", "--series",
+                                 "arkode: integrator.kind=arkode; integrator.velocity_tolerance=1e-2,1e-4", "--series",
+                                 "petsc: integrator.kind=petsc", "--series",
+                                 "mesh: body.sand.particles_per_cell=3,6; mesh.size=0.25,0.17", "--series",
+                                 "transfer: transfer.velocity=flip,pic,apic", "--series",
+                                 "water: water.table=[[0, 0], [2, 0]]; phases=drained", "--series",
+                                 "slice: dimension=3; output.point.corner.position=[1, 0.5, 0.1]; "
+                                 "boundary.front.kind=roller; boundary.back.kind=roller"});
   ASSERT_EQ(ending.status, 0) << ending.output;
   const auto rows = table(folder_, "out/compare.csv");
   ASSERT_EQ(rows.size(), 15u);
   for (const Row &row : rows) {
-    EXPECT_NEAR(number(row, "value"), 1, 0.1) << row.at("overrides");  // the particle nearest to the corner, cells of 0.25 m
+    EXPECT_NEAR(number(row, "value"), 1, 0.1)
+        << row.at("overrides");  // the particle nearest to the corner, cells of 0.25 m
     for (const char *key : {"processor_s", "wall_s", "steps"}) EXPECT_GT(number(row, key), 0) << key;
     EXPECT_EQ(row.at("failure"), "");
   }
@@ -76,18 +87,21 @@ TEST_F(Compare, VariesWhatASceneSays) {
     if (row.at("pareto") == "1") {
       ++front;
       for (const Row &other : rows)
-        EXPECT_FALSE(number(other, "processor_s") < number(row, "processor_s") && number(other, "error") < number(row, "error"));
+        EXPECT_FALSE(number(other, "processor_s") < number(row, "processor_s") &&
+                     number(other, "error") < number(row, "error"));
     }
   EXPECT_GT(front, 0);
   // progress, with what is left
   EXPECT_TRUE(ending.says("15 of 15: ") && ending.says(" s left")) << ending.output;
-  // without a reference the series that converges best is taken to its limit, or its finest run, with what is uncertain about it
+  // without a reference the series that converges best is taken to its limit, or its finest run, with what is uncertain
+  // about it
   const Row reference = table(folder_, "out/reference.csv").at(0);
   EXPECT_GT(number(reference, "uncertainty"), 0);
 }
 
 TEST_F(Compare, GoesOnWhereItStopped) {
-  const std::vector<std::string> matrix{"--set", "stage.fall.duration=0.3", "--series", "euler: integrator.fraction=0.8,0.4,0.1,0.05"};
+  const std::vector<std::string> matrix{"--set", "stage.fall.duration=0.3", "--series",
+                                        "euler: integrator.fraction=0.8,0.4,0.1,0.05"};
   {
     Program program(folder_, words(matrix));
     ASSERT_TRUE(program.wait_for(folder_ / "out/run001/trial"));
@@ -108,7 +122,8 @@ TEST_F(Compare, GoesOnWhereItStopped) {
 }
 
 TEST_F(Compare, TellsOfRunsThatFail) {
-  const Ending ending = compare({"--exact", "1", "--series", "fast: body.sand.velocity=[\"0\", \"0\"],[\"400\", \"0\"]"});
+  const Ending ending =
+      compare({"--exact", "1", "--series", "fast: body.sand.velocity=[\"0\", \"0\"],[\"400\", \"0\"]"});
   EXPECT_EQ(ending.status, 1) << ending.output;
   const auto rows = table(folder_, "out/compare.csv");
   ASSERT_EQ(rows.size(), 2u);
@@ -119,23 +134,28 @@ TEST_F(Compare, TellsOfRunsThatFail) {
 }
 
 TEST_F(Compare, TakesFiniteElementsForTheTruth) {
-  folder_.write("scene.toml", changed(changed(good_scene, "law = \"mohr_coulomb\"", "law = \"linear_elastic\""), "cohesion = 0\nfriction_angle = 30\n", "") +
+  folder_.write("scene.toml", changed(changed(good_scene, "law = \"mohr_coulomb\"", "law = \"linear_elastic\""),
+                                      "cohesion = 0\nfriction_angle = 30\n", "") +
                                   "[output.point.corner]\nposition = [1, 0.5]\n");
-  const Ending ending = compare({"--series", "euler: integrator.fraction=0.8,0.4", "--reference", "finite elements: stage.fall.kind=quasi_static"});
+  const Ending ending = compare({"--series", "euler: integrator.fraction=0.8,0.4", "--reference",
+                                 "finite elements: stage.fall.kind=quasi_static"});
   ASSERT_EQ(ending.status, 0) << ending.output;
   const Row reference = table(folder_, "out/reference.csv").at(0);
   EXPECT_EQ(reference.at("origin"), "finite elements");
   const auto rows = table(folder_, "out/compare.csv");
   ASSERT_EQ(rows.size(), 2u);
-  for (const Row &row : rows) EXPECT_NEAR(number(row, "error"), std::abs(number(row, "value") - number(reference, "value")), 1e-9);
+  for (const Row &row : rows)
+    EXPECT_NEAR(number(row, "error"), std::abs(number(row, "value") - number(reference, "value")), 1e-9);
 }
 
 TEST_F(Compare, RefusesWhatItCannotRun) {
-  for (const auto &[more, said] : {std::pair{std::vector<std::string>{"--series", "euler: integrator.fractoin=1"}, "integrator.fractoin"},
-                                   {{"--series", "order: integrator.kind=arkode; integrator.order=3,9"}, "2 to 5"},
-                                   {{"--series", "euler:", "--exact", "one"}, "must be a number"},
-                                   {{"--series", "euler:", "--exact", "1", "--reference", "fem: stage.fall.kind=quasi_static"}, "give one of them"},
-                                   {{"--series", "euler:", "--reference", "two: mesh.size=0.2,0.1"}, "must be one run"}}) {
+  for (const auto &[more, said] :
+       {std::pair{std::vector<std::string>{"--series", "euler: integrator.fractoin=1"}, "integrator.fractoin"},
+        {{"--series", "order: integrator.kind=arkode; integrator.order=3,9"}, "2 to 5"},
+        {{"--series", "euler:", "--exact", "one"}, "must be a number"},
+        {{"--series", "euler:", "--exact", "1", "--reference", "fem: stage.fall.kind=quasi_static"},
+         "give one of them"},
+        {{"--series", "euler:", "--reference", "two: mesh.size=0.2,0.1"}, "must be one run"}}) {
     const Ending ending = compare(more);
     EXPECT_EQ(ending.status, 2) << said;
     EXPECT_TRUE(ending.says(said)) << ending.output;

@@ -1,5 +1,5 @@
-// An integrator that looks ahead sees what it will get: forces of a trial state are those of the same state once accepted, bit by
-// bit, and looking changes nothing.
+// An integrator that looks ahead sees what it will get: forces of a trial state are those of the same state once
+// accepted, bit by bit, and looking changes nothing.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,11 +12,14 @@ namespace talus {
 namespace {
 
 std::string scene_of(int dimension, const std::string &transfer) {
-  return "phases = \"dry\"\ndimension = " + std::to_string(dimension) + "\ngravity = 9.81\n[mesh]\nsection = \"" + TALUS_MESHES +
-         "/dam.csv\"\nsize = 0.25\n" + (dimension == 3 ? "thickness = 0.5\nlayers = 0\n" : "") +
-         "[body.soil]\nregion = \"soil\"\ndensity = 2000\nyoung_modulus = \"1 MPa\"\npoisson_ratio = 0.3\nlaw = \"mohr_coulomb\"\n"
-         "cohesion = \"2 kPa\"\nfriction_angle = 35\nresidual_cohesion = \"1 kPa\"\nresidual_friction_angle = 25\nshape_factor = 50\n"
-         "[boundary.base]\nkind = \"friction\"\nfriction_angle = 20\n[boundary.left]\nkind = \"roller\"\n[[stage]]\nduration = 1\n[transfer]\n" +
+  return "phases = \"dry\"\ndimension = " + std::to_string(dimension) + "\ngravity = 9.81\n[mesh]\nsection = \"" +
+         TALUS_MESHES + "/dam.csv\"\nsize = 0.25\n" + (dimension == 3 ? "thickness = 0.5\nlayers = 0\n" : "") +
+         "[body.soil]\nregion = \"soil\"\ndensity = 2000\nyoung_modulus = \"1 MPa\"\npoisson_ratio = 0.3\nlaw = "
+         "\"mohr_coulomb\"\n"
+         "cohesion = \"2 kPa\"\nfriction_angle = 35\nresidual_cohesion = \"1 kPa\"\nresidual_friction_angle = "
+         "25\nshape_factor = 50\n"
+         "[boundary.base]\nkind = \"friction\"\nfriction_angle = 20\n[boundary.left]\nkind = "
+         "\"roller\"\n[[stage]]\nduration = 1\n[transfer]\n" +
          transfer + "\n";
 }
 
@@ -25,7 +28,8 @@ template <int dim>
 void compress(Soil<dim> &soil) {
   const ParticleArrays<dim> &p = soil.particles();
   for (int i = 0; i < p.count; ++i)
-    for (int d = 0; d < 3; ++d) p.stress[i * stress_size<dim> + d] = -1e4 * (1 + std::sin(3 * p.position[i][0] + 2 * d));
+    for (int d = 0; d < 3; ++d)
+      p.stress[i * stress_size<dim> + d] = -1e4 * (1 + std::sin(3 * p.position[i][0] + 2 * d));
 }
 
 template <int dim>
@@ -40,7 +44,8 @@ void expect_that_looking_ahead_is_exact(const std::string &transfer) {
     for (int i = 0; i < size / dim; ++i)
       for (int d = 0; d < dim; ++d) {
         const Vec<dim> &x = motion.grid().position[i];
-        u[i * dim + d] = 2e-3 * std::sin(7 * x[0] + 5 * x[1] + d + round), v[i * dim + d] = std::cos(4 * x[0] - 3 * x[1] + d);
+        u[i * dim + d] = 2e-3 * std::sin(7 * x[0] + 5 * x[1] + d + round),
+                    v[i * dim + d] = std::cos(4 * x[0] - 3 * x[1] + d);
       }
     ASSERT_EQ(motion.rates(0, nullptr, v.data(), start.data(), dv.data()), 0);
     std::vector<double> before = dv;
@@ -64,7 +69,9 @@ void expect_that_looking_ahead_is_exact(const std::string &transfer) {
 
 TEST(LookAhead, is_exact_on_triangles) { expect_that_looking_ahead_is_exact<2>(""); }
 TEST(LookAhead, is_exact_on_tetrahedra) { expect_that_looking_ahead_is_exact<3>(""); }
-TEST(LookAhead, is_exact_with_stress_per_particle) { expect_that_looking_ahead_is_exact<2>("average_stress = false\nlocking = \"nodal\""); }
+TEST(LookAhead, is_exact_with_stress_per_particle) {
+  expect_that_looking_ahead_is_exact<2>("average_stress = false\nlocking = \"nodal\"");
+}
 
 }  // namespace
 }  // namespace talus

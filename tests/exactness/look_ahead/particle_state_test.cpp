@@ -1,5 +1,6 @@
-// The state at the nodes is that of the particles: an integrator whose unknowns are places, velocities and strains of the particles, in cells
-// that stay, takes the same steps to round-off, docs/theory/integrators.md (1). And in that state methods have the order they are asked for.
+// The state at the nodes is that of the particles: an integrator whose unknowns are places, velocities and strains of
+// the particles, in cells that stay, takes the same steps to round-off, docs/theory/integrators.md (1). And in that
+// state methods have the order they are asked for.
 #include <cmath>
 
 #include "soil.h"
@@ -8,8 +9,8 @@
 namespace talus {
 namespace {
 
-/// Particles of one body as the unknowns: u holds their displacements, then those of the nodes (the strain of cells), v their velocities,
-/// then nothing. Nodes move with the mass-weighted mean of the particles around them.
+/// Particles of one body as the unknowns: u holds their displacements, then those of the nodes (the strain of cells), v
+/// their velocities, then nothing. Nodes move with the mass-weighted mean of the particles around them.
 template <int dim>
 class ParticleState final : public Motion {
  public:
@@ -17,9 +18,14 @@ class ParticleState final : public Motion {
     EXPECT_EQ(soil.motion->begin(0), 0);
     const FilledGrid<dim> &grid = soil.motion->grid();
     nodes_ = grid.node_count();
-    for (int i = 0; i < p_.count; ++i) shape_.push_back(barycentric(soil.mesh.cells[p_.cell[i]], p_.position[i])), node_.push_back(grid.shape[grid.find_cell(p_.cell[i])].node);
-    velocity_.assign(size(), 0), place_.assign(p_.count * dim, 0), nodal_.resize(nodes_ * dim), unused_.resize(nodes_ * dim), change_.resize(nodes_ * dim);
-    for (int i = 0; i < p_.count; ++i) std::copy_n(p_.velocity[i].data(), dim, &velocity_[i * dim]), std::copy_n(p_.position[i].data(), dim, &place_[i * dim]);
+    for (int i = 0; i < p_.count; ++i)
+      shape_.push_back(barycentric(soil.mesh.cells[p_.cell[i]], p_.position[i])),
+          node_.push_back(grid.shape[grid.find_cell(p_.cell[i])].node);
+    velocity_.assign(size(), 0), place_.assign(p_.count * dim, 0), nodal_.resize(nodes_ * dim),
+        unused_.resize(nodes_ * dim), change_.resize(nodes_ * dim);
+    for (int i = 0; i < p_.count; ++i)
+      std::copy_n(p_.velocity[i].data(), dim, &velocity_[i * dim]),
+          std::copy_n(p_.position[i].data(), dim, &place_[i * dim]);
   }
   const std::vector<double> &place() const { return place_; }
 
@@ -58,7 +64,9 @@ class ParticleState final : public Motion {
     std::fill_n(out, nodes_ * dim, 0.);
     for (int i = 0; i < p_.count; ++i)
       for (int k = 0; k <= dim; ++k)
-        for (int d = 0; d < dim; ++d) out[node_[i][k] * dim + d] += p_.mass[i] * shape_[i][k] * v[i * dim + d] / soil_.motion->grid().mass[node_[i][k]];
+        for (int d = 0; d < dim; ++d)
+          out[node_[i][k] * dim + d] +=
+              p_.mass[i] * shape_[i][k] * v[i * dim + d] / soil_.motion->grid().mass[node_[i][k]];
   }
   void at_particles(const double *x, double *out) const {
     for (int i = 0; i < p_.count; ++i)
@@ -78,10 +86,13 @@ class ParticleState final : public Motion {
 
 /// A free block that swells, shears and turns; strains of a few percent.
 std::string block(int dimension) {
-  return "phases = \"dry\"\ndimension = " + std::to_string(dimension) + "\ngravity = 0\n[mesh]\nsection = \"" + TALUS_MESHES + "/flight.csv\"\nsize = 0.17\n" +
-         (dimension == 3 ? "thickness = 0.3\nlayers = 0\n" : "") +
-         "[body.soil]\nregion = \"block\"\ndensity = 2000\nyoung_modulus = \"1 MPa\"\npoisson_ratio = 0.3\nlaw = \"linear_elastic\"\n"
-         "velocity = [\"sin(3 * x) - y\", \"cos(2 * y) + x\"" + (dimension == 3 ? ", \"sin(x + y + 3 * z)\"" : "") + "]\n[[stage]]\nduration = 1\n"
+  return "phases = \"dry\"\ndimension = " + std::to_string(dimension) + "\ngravity = 0\n[mesh]\nsection = \"" +
+         TALUS_MESHES + "/flight.csv\"\nsize = 0.17\n" + (dimension == 3 ? "thickness = 0.3\nlayers = 0\n" : "") +
+         "[body.soil]\nregion = \"block\"\ndensity = 2000\nyoung_modulus = \"1 MPa\"\npoisson_ratio = 0.3\nlaw = "
+         "\"linear_elastic\"\n"
+         "velocity = [\"sin(3 * x) - y\", \"cos(2 * y) + x\"" +
+         (dimension == 3 ? ", \"sin(x + y + 3 * z)\"" : "") +
+         "]\n[[stage]]\nduration = 1\n"
          "[transfer]\nrelaxation = 0\nlocking = \"none\"\nremap_interval = 0.3\n";
 }
 
@@ -138,7 +149,8 @@ TEST(ParticleState, is_what_the_nodal_state_stands_for) {
 template <int dim>
 std::array<double, 2> errors(int order, int steps) {
   static const std::vector<double> exact = places_of_particles<dim>(5, 160);
-  return {difference(places_of_particles<dim>(order, steps), exact), difference(places_of_particles<dim>(order, 2 * steps), exact)};
+  return {difference(places_of_particles<dim>(order, steps), exact),
+          difference(places_of_particles<dim>(order, 2 * steps), exact)};
 }
 
 TEST(ParticleState, has_the_order_it_is_asked_for_on_triangles) {
@@ -148,7 +160,8 @@ TEST(ParticleState, has_the_order_it_is_asked_for_on_triangles) {
   }
 }
 
-// In 3D small increments are decomposed by the midpoint rule, whose error is of third order in a step: below 1e-10 m order 5 ends at order 2.
+// In 3D small increments are decomposed by the midpoint rule, whose error is of third order in a step: below 1e-10 m
+// order 5 ends at order 2.
 TEST(ParticleState, has_the_order_it_is_asked_for_on_tetrahedra) {
   for (int order : {2, 3, 4}) {
     const auto [coarse, fine] = errors<3>(order, 20);

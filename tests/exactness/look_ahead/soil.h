@@ -1,5 +1,6 @@
 #pragma once
-/// A motion of soil of its own, beside the time loop, for tests that drive it by hand: one dry body out of the text of a scene.
+/// A motion of soil of its own, beside the time loop, for tests that drive it by hand: one dry body out of the text of
+/// a scene.
 #include <gtest/gtest.h>
 
 #include "mesh_source.h"
@@ -10,16 +11,19 @@ namespace talus {
 
 template <int dim>
 struct Soil {
-  Soil(const std::string &text, double relaxation_time) : scene(parse_scene(text, "soil")), file(PETSC_COMM_WORLD, scene) {
+  Soil(const std::string &text, double relaxation_time)
+      : scene(parse_scene(text, "soil")), file(PETSC_COMM_WORLD, scene) {
     BodySource &source = scene.body[0];
-    mesh = BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.path(), scene.transfer.patch_size, {{source.region[0], 5.}});
+    mesh =
+        BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.path(), scene.transfer.patch_size, {{source.region[0], 5.}});
     if (source.particles_per_cell == 0) source.particles_per_cell = dim == 2 ? 3 : 4;
     bodies.push_back(std::make_unique<Body<dim>>());
     EXPECT_EQ(bodies[0]->create(mesh.comm(), source, read_law(source.law), false, 0, 0), 0);
     seed<dim>(*bodies[0], mesh, 8, [&](const Vec<dim> &) { return source.density; });
     EXPECT_EQ(bodies[0]->sort(mesh.cell_count()), 0);
     std::vector<typename Conditions<dim>::Source> sources;
-    for (BoundarySource &b : scene.boundary) sources.push_back({b.name, b.group.empty() ? std::vector{b.name} : b.group, read_boundary(b.kind)});
+    for (BoundarySource &b : scene.boundary)
+      sources.push_back({b.name, b.group.empty() ? std::vector{b.name} : b.group, read_boundary(b.kind)});
     EXPECT_EQ(conditions.setup(mesh, std::move(sources)), 0);
     double mass = 0;
     for (int i = 0; i < particles().count; ++i) mass += particles().mass[i];

@@ -99,22 +99,34 @@ TEST(Ranks, column_collapse_is_the_same_under_error_control) {
   expect_the_same(column, {"mesh.size=0.01", "integrator.kind=arkode", "integrator.velocity_tolerance=1e-5"});
 }
 TEST(Ranks, soil_and_water_in_a_closed_box_are_the_same) { expect_the_same(box, {}); }
-TEST(Ranks, soil_and_water_in_a_closed_box_are_the_same_under_error_control) { expect_the_same(box, {"integrator.kind=arkode"}); }
-TEST(Ranks, column_collapse_is_the_same_with_the_steps_of_petsc) { expect_the_same(column, {"mesh.size=0.02", "integrator.kind=petsc"}); }
-TEST(Ranks, moist_soil_in_a_closed_box_is_the_same) { expect_the_same(box, {"phases=unsaturated", "water.table=[[0, 0.5], [1, 0.5]]"}); }
-TEST(Ranks, soil_water_and_gas_in_a_closed_box_are_the_same) { expect_the_same(box, {"phases=three-phase", "water.table=[[0, 0.5], [1, 0.5]]"}); }
+TEST(Ranks, soil_and_water_in_a_closed_box_are_the_same_under_error_control) {
+  expect_the_same(box, {"integrator.kind=arkode"});
+}
+TEST(Ranks, column_collapse_is_the_same_with_the_steps_of_petsc) {
+  expect_the_same(column, {"mesh.size=0.02", "integrator.kind=petsc"});
+}
+TEST(Ranks, moist_soil_in_a_closed_box_is_the_same) {
+  expect_the_same(box, {"phases=unsaturated", "water.table=[[0, 0.5], [1, 0.5]]"});
+}
+TEST(Ranks, soil_water_and_gas_in_a_closed_box_are_the_same) {
+  expect_the_same(box, {"phases=three-phase", "water.table=[[0, 0.5], [1, 0.5]]"});
+}
 TEST(Ranks, column_of_wet_sand_is_the_same) {
   for (const std::string phases : {"saturated", "unsaturated", "three-phase"}) {
     SCOPED_TRACE(phases);
-    expect_the_same(wet_column, {"mesh.size=0.01", "phases=" + phases, "body.sand.retention.curve=van_genuchten", "body.sand.retention.reference_suction=500",
-                                 "body.sand.retention.shape=0.5", "boundary.rain.kind=rainfall", "boundary.rain.group=free_surface", "boundary.rain.intensity=0.01"});
+    expect_the_same(wet_column, {"mesh.size=0.01", "phases=" + phases, "body.sand.retention.curve=van_genuchten",
+                                 "body.sand.retention.reference_suction=500", "body.sand.retention.shape=0.5",
+                                 "boundary.rain.kind=rainfall", "boundary.rain.group=free_surface",
+                                 "boundary.rain.intensity=0.01"});
   }
 }
 TEST(Ranks, drained_slope_of_two_soils_is_the_same) { expect_the_same(slope, {}); }
 
-/// The slope of the guide, coarse and weaker, until it fails; the event's time is when the crest passed the threshold [s].
+/// The slope of the guide, coarse and weaker, until it fails; the event's time is when the crest passed the threshold
+/// [s].
 double failure_time(MPI_Comm comm) {
-  Scene scene = read_scene(TALUS_GUIDE "/slope.toml", {"mesh.size=1", "body.clay.cohesion=5e3", "stage.slide.duration=0"});
+  Scene scene =
+      read_scene(TALUS_GUIDE "/slope.toml", {"mesh.size=1", "body.clay.cohesion=5e3", "stage.slide.duration=0"});
   RunOptions options;
   options.pictures = options.screen = false;
   const auto simulation = make_simulation(comm, scene, options);

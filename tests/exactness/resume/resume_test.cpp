@@ -1,5 +1,5 @@
-// A run that was interrupted, at whatever step, or killed, and then resumed, is the run that was not: bit for bit on the same number of
-// ranks. What cannot be resumed is refused and left as it is.
+// A run that was interrupted, at whatever step, or killed, and then resumed, is the run that was not: bit for bit on
+// the same number of ranks. What cannot be resumed is refused and left as it is.
 #include <gtest/gtest.h>
 
 #include "tests/exactness/bad_input/scene.h"
@@ -7,10 +7,13 @@
 namespace talus {
 namespace {
 
-/// Sand that settles and then falls for ever onto a rough base, whose contacts stick and slip; strength falls with plastic strain.
+/// Sand that settles and then falls for ever onto a rough base, whose contacts stick and slip; strength falls with
+/// plastic strain.
 const std::string falling_scene = changed(
-    changed(changed(changed(good_scene, "density = 2000", "porosity = 0.3\ngrain_density = 2650"), "[boundary.base]\nkind = \"fixed\"", "[boundary.base]\nkind = \"friction\"\nfriction_angle = 15"),
-            "cohesion = 0\nfriction_angle = 30", "cohesion = \"1 kPa\"\nfriction_angle = 30\nresidual_cohesion = 0\nshape_factor = 20"),
+    changed(changed(changed(good_scene, "density = 2000", "porosity = 0.3\ngrain_density = 2650"),
+                    "[boundary.base]\nkind = \"fixed\"", "[boundary.base]\nkind = \"friction\"\nfriction_angle = 15"),
+            "cohesion = 0\nfriction_angle = 30",
+            "cohesion = \"1 kPa\"\nfriction_angle = 30\nresidual_cohesion = 0\nshape_factor = 20"),
     "[[stage]]\nname = \"fall\"\nduration = 0.05\n[output]\n",
     "[[stage]]\nname = \"settle\"\nduration = 0.02\ndamping = 0.5\nreset_displacement = true\n"
     "[[stage]]\nname = \"fall\"\nduration = 1000\n[output]\nhistory_interval = 0.003\npoint.tip.position = [1, 0.5]\n");
@@ -25,8 +28,9 @@ void PrintTo(const Variant &variant, std::ostream *out) { *out << variant.name; 
 
 /// A moist soil with a water table in it.
 std::vector<std::string> with_pores(std::vector<std::string> set) {
-  for (const char *key : {"body.sand.permeability=1e-10", "water.bulk_modulus=1e7", "water.table=[[0, 0.2], [2, 0.2]]", "body.sand.retention.curve=van_genuchten",
-                          "body.sand.retention.reference_suction=5e3", "body.sand.retention.shape=0.5", "body.sand.relative_permeability.curve=van_genuchten_mualem",
+  for (const char *key : {"body.sand.permeability=1e-10", "water.bulk_modulus=1e7", "water.table=[[0, 0.2], [2, 0.2]]",
+                          "body.sand.retention.curve=van_genuchten", "body.sand.retention.reference_suction=5e3",
+                          "body.sand.retention.shape=0.5", "body.sand.relative_permeability.curve=van_genuchten_mualem",
                           "body.sand.relative_permeability.shape=0.5"})
     set.push_back(key);
   return set;
@@ -37,14 +41,17 @@ const Variant variants[] = {
     {"dry_when_killed", {}, 1, SIGKILL},
     {"dry_with_checkpoints_of_their_own_times", {"output.checkpoint_interval=0.007"}, 1, SIGKILL},
     {"dry_on_two_ranks", {}, 2, SIGTERM},
-    {"dry_with_particle_stress_and_apic", {"transfer.average_stress=false", "transfer.locking=nodal", "transfer.velocity=apic"}},
-    {"drained",
-     {"phases=drained", "water.table=[[0, 0.3], [2, 0.1]]", "water.excess=100 * t"}},
+    {"dry_with_particle_stress_and_apic",
+     {"transfer.average_stress=false", "transfer.locking=nodal", "transfer.velocity=apic"}},
+    {"drained", {"phases=drained", "water.table=[[0, 0.3], [2, 0.1]]", "water.excess=100 * t"}},
     {"saturated", {"phases=saturated", "body.sand.permeability=1e-10", "water.bulk_modulus=1e7"}},
-    {"unsaturated_in_rain", with_pores({"phases=unsaturated", "boundary.rain.kind=rainfall", "boundary.rain.group=free_surface", "boundary.rain.intensity=0.01"})},
+    {"unsaturated_in_rain", with_pores({"phases=unsaturated", "boundary.rain.kind=rainfall",
+                                        "boundary.rain.group=free_surface", "boundary.rain.intensity=0.01"})},
     {"unsaturated_with_given_pressures_at_first", with_pores({"phases=unsaturated", "stage.0.pore_flow=false"})},
     {"three_phase", with_pores({"phases=three-phase"})},
-    {"by_naive_forms", with_pores({"phases=unsaturated", "water.storage=rate", "water.drag=explicit", "boundary.rain.kind=rainfall", "boundary.rain.group=free_surface", "boundary.rain.intensity=0.01"})},
+    {"by_naive_forms",
+     with_pores({"phases=unsaturated", "water.storage=rate", "water.drag=explicit", "boundary.rain.kind=rainfall",
+                 "boundary.rain.group=free_surface", "boundary.rain.intensity=0.01"})},
     {"with_a_fixed_step", {"integrator.step=2e-4"}},
     {"with_steps_by_the_frequency_of_the_mesh", {"integrator.omega_max=mesh"}},
     {"in_3d",
@@ -94,18 +101,24 @@ TEST_P(Resumed, IsTheSameToTheBit) {
   EXPECT_TRUE(ending.says("the same")) << ending.output;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Resumed, testing::ValuesIn(variants), [](const auto &variant) { return variant.param.name; });
+INSTANTIATE_TEST_SUITE_P(All, Resumed, testing::ValuesIn(variants),
+                         [](const auto &variant) { return variant.param.name; });
 
 /// Pressures that seepage has found are there again when a drained run goes on behind it.
 TEST(ResumedBehindSeepage, KnowsItsPressures) {
   const Folder folder;
   folder.write("section.csv", good_section);
-  folder.write("scene.toml", changed(changed(changed(changed(good_scene, "density = 2000", "porosity = 0.3\ngrain_density = 2650\npermeability = 1e-10"), "gravity", "phases = \"drained\"\ngravity"),
-                                             "[body.sand]", "[water]\ntable = [[0, 0.1]]\n[body.sand]"),
-                                     "[[stage]]", "[boundary.well]\ngroup = \"left\"\nkind = \"pore_pressure\"\npressure = \"3 kPa\"\n"
-                                                  "[[stage]]\nname = \"water\"\nkind = \"seepage\"\nsteady = true\nduration = 1\n[[stage]]"));
+  folder.write("scene.toml",
+               changed(changed(changed(changed(good_scene, "density = 2000",
+                                               "porosity = 0.3\ngrain_density = 2650\npermeability = 1e-10"),
+                                       "gravity", "phases = \"drained\"\ngravity"),
+                               "[body.sand]", "[water]\ntable = [[0, 0.1]]\n[body.sand]"),
+                       "[[stage]]",
+                       "[boundary.well]\ngroup = \"left\"\nkind = \"pore_pressure\"\npressure = \"3 kPa\"\n"
+                       "[[stage]]\nname = \"water\"\nkind = \"seepage\"\nsteady = true\nduration = 1\n[[stage]]"));
   const auto run = [&](const std::string &results, const std::string &duration, bool resume) {
-    std::vector<std::string> words{"run", "scene.toml", "-o", results, "--no-pictures", "--set", "stage.1.duration=" + duration};
+    std::vector<std::string> words{
+        "run", "scene.toml", "-o", results, "--no-pictures", "--set", "stage.1.duration=" + duration};
     if (resume) words.push_back("--resume");
     const Ending ending = talus(folder, words);
     EXPECT_EQ(ending.status, 0) << ending.output;
@@ -117,7 +130,8 @@ ends = [max(h5py.File(name + '/run.h5')['snapshots'].values(), key=lambda s: s.a
 for field in ends[0]: assert numpy.array_equal(ends[0][field][...], ends[1][field][...]), field
 assert ends[0]['pore_pressure'][...].max() > 2e3
 print('the same')
-)"}).end();
+)"})
+                            .end();
   EXPECT_TRUE(ending.says("the same")) << ending.output;
 }
 
@@ -168,7 +182,8 @@ TEST_F(EndedRun, GoesOnWithALongerStage) {
 }
 
 TEST_F(EndedRun, IsNotResumedWithAnotherSoil) {
-  expect_refused(run({"--resume", "--set", "body.sand.friction_angle=31"}), {"body.sand.friction_angle = 31", "--resume"});
+  expect_refused(run({"--resume", "--set", "body.sand.friction_angle=31"}),
+                 {"body.sand.friction_angle = 31", "--resume"});
 }
 
 TEST_F(EndedRun, IsNotResumedWithAnotherMesh) {
@@ -198,7 +213,8 @@ TEST_F(EndedRun, IsNotResumedFromADamagedCheckpoint) {
 
 TEST_F(EndedRun, OutlivesAFullDisk) {
   const std::string name = state();
-  std::vector<std::string> words{"run", "scene.toml", "-o", "results", "--no-pictures", "--resume", "--set", "stage.0.duration=1000"};
+  std::vector<std::string> words{"run",           "scene.toml", "-o",    "results",
+                                 "--no-pictures", "--resume",   "--set", "stage.0.duration=1000"};
   Program program(folder_, talus_words(words));
   ASSERT_TRUE(program.wait_for(folder_ / "results/run/000006.h5")) << program.end().output;
   program.limit_files(2000);

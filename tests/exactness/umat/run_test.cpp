@@ -1,5 +1,5 @@
-// A law as a UMAT gives the answer of the same law built in, over a whole run: to 2e-13 at its end where 1e-10 is claimed, which
-// leaves room for round-off that softening soil on the move enlarges.
+// A law as a UMAT gives the answer of the same law built in, over a whole run: to 2e-13 at its end where 1e-10 is
+// claimed, which leaves room for round-off that softening soil on the move enlarges.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,8 @@ region = "clay"
 density = 1900
 young_modulus = "8 MPa"
 poisson_ratio = 0.3
-)" + law + R"(
+)" + law +
+         R"(
 [boundary.base]
 kind = "fixed"
 [boundary.left]
@@ -61,7 +62,8 @@ void expect_the_same(const Snapshot &a, const Snapshot &b, const std::string &na
   for (double value : x.values) scale = std::max(scale, std::abs(value));
   for (std::size_t i = 0; i < a.id.size(); ++i)
     for (int k = 0; k < x.components; ++k)
-      largest = std::max(largest, std::abs(x.values[i * x.components + k] - y.values[place.at(a.id[i]) * x.components + k]));
+      largest =
+          std::max(largest, std::abs(x.values[i * x.components + k] - y.values[place.at(a.id[i]) * x.components + k]));
   EXPECT_LT(largest / scale, 1e-10) << name;
   if (name != "velocity") EXPECT_GT(scale, 1e-3) << name;
 }
@@ -70,7 +72,9 @@ const std::string umats = UMATS;
 
 TEST(UmatRun, linear_elasticity_in_cpp_is_the_built_in_one) {
   const auto built_in = after(PETSC_COMM_WORLD, "law = \"linear_elastic\"", 100);
-  const auto own = after(PETSC_COMM_WORLD, "law = \"umat\"\nlibrary = \"" + umats + "/umat_linear_elastic.so\"\nprops = [\"8 MPa\", 0.3]", 100);
+  const auto own =
+      after(PETSC_COMM_WORLD,
+            "law = \"umat\"\nlibrary = \"" + umats + "/umat_linear_elastic.so\"\nprops = [\"8 MPa\", 0.3]", 100);
   for (const char *field : {"position", "velocity", "stress"}) expect_the_same(built_in, own, field);
 }
 
@@ -79,15 +83,17 @@ TEST(UmatRun, mohr_coulomb_in_fortran_is_the_built_in_one_from_the_first_step_to
   const auto built_in = after(PETSC_COMM_WORLD,
                               "law = \"mohr_coulomb\"\ncohesion = \"6 kPa\"\nfriction_angle = 20\ndilation_angle = 5\n"
                               "residual_cohesion = \"2 kPa\"\nresidual_friction_angle = 14\nshape_factor = 30");
-  const auto own = after(PETSC_COMM_WORLD,
-                         "law = \"umat\"\nlibrary = \"" + umats + "/umat_mohr_coulomb.so\"\n"
-                         "state = [\"plastic_strain\", \"plastic_volume\"]\n"
-                         "props = [\"8 MPa\", 0.3, \"6 kPa\", \"20 deg\", \"5 deg\", \"2 kPa\", \"14 deg\", 30, 0]");
+  const auto own = after(
+      PETSC_COMM_WORLD, "law = \"umat\"\nlibrary = \"" + umats +
+                            "/umat_mohr_coulomb.so\"\n"
+                            "state = [\"plastic_strain\", \"plastic_volume\"]\n"
+                            "props = [\"8 MPa\", 0.3, \"6 kPa\", \"20 deg\", \"5 deg\", \"2 kPa\", \"14 deg\", 30, 0]");
   const Column &moved = column(built_in, "displacement");
   double most = *std::max_element(moved.values.begin(), moved.values.end());
   MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD);
   EXPECT_GT(most, 4);
-  for (const char *field : {"position", "velocity", "stress", "plastic_strain", "plastic_volume"}) expect_the_same(built_in, own, field);
+  for (const char *field : {"position", "velocity", "stress", "plastic_strain", "plastic_volume"})
+    expect_the_same(built_in, own, field);
 }
 #endif
 

@@ -9,17 +9,21 @@ namespace talus {
 namespace {
 
 TEST(Comparison, a_series_is_every_combination_of_its_values) {
-  const Series series = parse_series("arkode: integrator.kind=arkode; integrator.order=3,4; body.a.velocity=[1, 2],[3, 4]");
+  const Series series =
+      parse_series("arkode: integrator.kind=arkode; integrator.order=3,4; body.a.velocity=[1, 2],[3, 4]");
   EXPECT_EQ(series.name, "arkode");
   const auto runs = products(series);
   ASSERT_EQ(runs.size(), 4u);
-  EXPECT_EQ(runs[0], (std::vector<std::string>{"integrator.kind=arkode", "integrator.order=3", "body.a.velocity=[1, 2]"}));
-  EXPECT_EQ(runs[3], (std::vector<std::string>{"integrator.kind=arkode", "integrator.order=4", "body.a.velocity=[3, 4]"}));
+  EXPECT_EQ(runs[0],
+            (std::vector<std::string>{"integrator.kind=arkode", "integrator.order=3", "body.a.velocity=[1, 2]"}));
+  EXPECT_EQ(runs[3],
+            (std::vector<std::string>{"integrator.kind=arkode", "integrator.order=4", "body.a.velocity=[3, 4]"}));
   EXPECT_EQ(products(parse_series("as it is:")).size(), 1u);
 }
 
 TEST(Comparison, bad_series_are_refused) {
-  for (const char *text : {"euler", ": a=1", "euler: a", "euler: =3", "euler: a=1,,2"}) EXPECT_THROW(parse_series(text), SceneError) << text;
+  for (const char *text : {"euler", ": a=1", "euler: a", "euler: =3", "euler: a=1,,2"})
+    EXPECT_THROW(parse_series(text), SceneError) << text;
   EXPECT_THROW(parse_measure("crest@noon"), SceneError);
   EXPECT_THROW(parse_measure("max:crest@3"), SceneError);
 }
@@ -43,8 +47,10 @@ TEST(Comparison, without_convergence_the_finest_run_is_as_uncertain_as_its_last_
   EXPECT_EQ(limit.value, 5);
   EXPECT_EQ(limit.uncertainty, 1);
   EXPECT_TRUE(std::isinf(extrapolate({{0.1, 5}}).uncertainty));
-  EXPECT_NEAR(extrapolate({{0.1, 5}, {0.2, 5.1}, {0.4, 4}}).uncertainty, 1.1, 1e-12) << "the last change may be small by chance";
-  const Reference idle = extrapolate({{1e-4, 5}, {1e-3, 5}, {1e-2, 5}, {1e-1, 5.2}});  // a tolerance that stability overrules
+  EXPECT_NEAR(extrapolate({{0.1, 5}, {0.2, 5.1}, {0.4, 4}}).uncertainty, 1.1, 1e-12)
+      << "the last change may be small by chance";
+  const Reference idle =
+      extrapolate({{1e-4, 5}, {1e-3, 5}, {1e-2, 5}, {1e-1, 5.2}});  // a tolerance that stability overrules
   EXPECT_EQ(idle.value, 5);
   EXPECT_NEAR(idle.uncertainty, 0.2, 1e-12);
   EXPECT_TRUE(std::isinf(extrapolate({{0.1, 5}, {0.2, 5}}).uncertainty));

@@ -47,19 +47,22 @@ TEST(CamClay, keeps_to_its_state_boundary_ellipse_and_normal) {
     points.admit();
     for (int step = 0; step < 25; ++step) {
       const Points<3> before = points;
-      for (auto &increment : points.increment) increment.strain = random.symmetric<3>(std::pow(10, random.between(-8, -1)));
+      for (auto &increment : points.increment)
+        increment.strain = random.symmetric<3>(std::pow(10, random.between(-8, -1)));
       points.update();
       for (int i = 0; i < n; ++i) {
         const State was(law, before, i), is(law, points, i);
         const double trial = std::log(was.p) - (is.v - was.v) / law.swelling_slope;
-        if (trial < law.log_least + 1e-6 || was.p < 1.0001e-3 * law.attraction) continue;  // torn: held at the least pressure
+        if (trial < law.log_least + 1e-6 || was.p < 1.0001e-3 * law.attraction)
+          continue;  // torn: held at the least pressure
         drift = std::max(drift, std::abs(is.boundary(law) - was.boundary(law)));
         off = std::max(off, is.yield(law) / (is.pc * is.pc));
         if (is.shear == was.shear) continue;
         off = std::max(off, std::abs(is.yield(law)) / (is.pc * is.pc));
         const double shear = is.shear - was.shear, squeeze = was.expansion - is.expansion;
         const double along = 2 * is.q / (law.M * law.M), into = 2 * is.p - is.pc, size = std::hypot(along, into);
-        oblique = std::max(oblique, std::abs(squeeze * along - shear * into) / (size * (std::hypot(shear, squeeze) + 1e-8)));
+        oblique =
+            std::max(oblique, std::abs(squeeze * along - shear * into) / (size * (std::hypot(shear, squeeze) + 1e-8)));
         backward = std::min(backward, (is.p * squeeze + is.q * shear) / (is.pc * std::hypot(shear, squeeze)));
       }
     }
@@ -126,8 +129,9 @@ TEST(CamClay, bears_large_steps) {
   }
 }
 
-/// Drained compression at constant lateral stress, to a strain of 2, ends at critical state, p = 3 p_0 / (3 - M), on the critical state line
-/// v = v_0 + lambda ln p_0 - (lambda - kappa) ln 2 - lambda ln p. Heavily overconsolidated clay peaks above it.
+/// Drained compression at constant lateral stress, to a strain of 2, ends at critical state, p = 3 p_0 / (3 - M), on
+/// the critical state line v = v_0 + lambda ln p_0 - (lambda - kappa) ln 2 - lambda ln p. Heavily overconsolidated clay
+/// peaks above it.
 TEST(CamClay, ends_drained_tests_at_critical_state) {
   const CamClay law = clay();
   for (const double p0 : {100e3, 12e3}) {

@@ -8,11 +8,13 @@ inline void draw_elasticity(IsotropicElastic &law, Random &random) {
   law.young_modulus = std::pow(10, random.between(5, 9)), law.poisson_ratio = random.between(0, 0.49);
 }
 
-/// Every sixth soil is without friction, every fifth without cohesion; half of them soften, every third of these to none.
+/// Every sixth soil is without friction, every fifth without cohesion; half of them soften, every third of these to
+/// none.
 inline void draw_strength(FrictionalStrength &law, Random &random, int number) {
   const double phi = number % 6 == 0 ? 0 : random.between(0, 45);
   law.cohesion = number % 5 == 0 ? 0 : std::pow(10, random.between(0, 5));
-  law.friction_angle = phi * degree.si, law.dilation_angle = (number % 4 == 0 ? phi : random.between(0, phi)) * degree.si;
+  law.friction_angle = phi * degree.si,
+  law.dilation_angle = (number % 4 == 0 ? phi : random.between(0, phi)) * degree.si;
   if (number % 2 == 0) return;
   law.residual_cohesion = number % 3 == 0 ? 0 : random.between(0, 1) * law.cohesion;
   law.residual_friction_angle = (number % 7 == 0 ? 0 : random.between(0, 1)) * law.friction_angle;
@@ -34,7 +36,8 @@ OneLaw drawn(Random &random, int number) {
   }
   if constexpr (requires { law.cone; }) law.cone = static_cast<Cone>(random.between(0, 4));
   if constexpr (requires { law.viscosity; }) law.viscosity = std::pow(10, random.between(-3, 5));
-  if constexpr (requires { law.yield_stress; }) law.yield_stress = number % 5 == 0 ? 0 : std::pow(10, random.between(0, 5));
+  if constexpr (requires { law.yield_stress; })
+    law.yield_stress = number % 5 == 0 ? 0 : std::pow(10, random.between(0, 5));
   if constexpr (requires { law.static_friction; }) {
     law.static_friction = number % 6 == 0 ? 0 : random.between(0, 1);
     law.limiting_friction = law.static_friction + (number % 4 == 0 ? 0 : random.between(0, 1));
@@ -48,7 +51,8 @@ inline CamClay drawn(Random &random, int number) {
   CamClay law;
   law.compression_slope = std::pow(10, random.between(-1.5, -0.3));
   law.swelling_slope = law.compression_slope * random.between(0.02, 0.6);
-  law.critical_stress_ratio = random.between(0.4, 1.8), law.poisson_ratio = number % 5 == 0 ? 0 : random.between(0, 0.45);
+  law.critical_stress_ratio = random.between(0.4, 1.8),
+  law.poisson_ratio = number % 5 == 0 ? 0 : random.between(0, 0.45);
   law.void_ratio = random.between(0.3, 3), law.preconsolidation_pressure = std::pow(10, random.between(4, 6));
   law.attraction = std::pow(10, random.between(1, 4));
   return law;

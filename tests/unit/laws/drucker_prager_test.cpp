@@ -85,9 +85,11 @@ TEST(DruckerPrager, cones_match_mohr_coulomb) {
   EXPECT_NEAR(excess(drucker_prager(c, 33, 0, Cone::inner), extension), 0, 1e-9);
   const DruckerPrager middle = drucker_prager(c, 33, 0, Cone::compromise);
   const auto eta = [](const DruckerPrager &law) { return law.strength(0., {1}).eta; };
-  EXPECT_NEAR(eta(middle), (eta(drucker_prager(c, 33, 0, Cone::outer)) + eta(drucker_prager(c, 33, 0, Cone::inner))) / 2, 1e-15);
+  EXPECT_NEAR(eta(middle),
+              (eta(drucker_prager(c, 33, 0, Cone::outer)) + eta(drucker_prager(c, 33, 0, Cone::inner))) / 2, 1e-15);
   EXPECT_NEAR(eta(middle), 18 * sine / (std::sqrt(3.) * (9 - sine * sine)), 1e-15);
-  EXPECT_NEAR(eta(drucker_prager(c, 33, 0, Cone::plane_strain)), 3 * std::tan(phi) / std::sqrt(9 + 12 * std::tan(phi) * std::tan(phi)), 1e-15);
+  EXPECT_NEAR(eta(drucker_prager(c, 33, 0, Cone::plane_strain)),
+              3 * std::tan(phi) / std::sqrt(9 + 12 * std::tan(phi) * std::tan(phi)), 1e-15);
 }
 
 /// With associated flow the plane-strain cone carries in plane strain what Mohr-Coulomb carries; the strain follows the
@@ -102,8 +104,8 @@ TEST(DruckerPrager, plane_strain_cone_matches_mohr_coulomb_in_plane_strain) {
   EXPECT_NEAR((s[0] - s[1]) + (s[0] + s[1]) * std::sin(phi), 2 * c * std::cos(phi), 1e-6 * std::abs(s[1]));
 }
 
-/// With associated flow the return is the point of the cone that is nearest in elastic energy, found here by trying: over
-/// its mean stress and the direction of its deviator in principal space.
+/// With associated flow the return is the point of the cone that is nearest in elastic energy, found here by trying:
+/// over its mean stress and the direction of its deviator in principal space.
 TEST(DruckerPrager, with_associated_flow_returns_to_the_closest_point) {
   using Triple = Eigen::Vector3d;
   Random random;
@@ -117,7 +119,8 @@ TEST(DruckerPrager, with_associated_flow_returns_to_the_closest_point) {
     const Triple s(random.between(-3e4, 3e4), random.between(-3e4, 3e4), random.between(-3e4, 3e4));
     if (excess(law, s.asDiagonal()) <= 0) continue;
     const auto on_cone = [&](double p, double angle) {  // sqrt(J2) is norm / sqrt(2)
-      return Triple(p * Triple::Ones() + std::sqrt(2.) * (m.limit - m.eta * p) * (std::cos(angle) * across + std::sin(angle) * along));
+      return Triple(p * Triple::Ones() +
+                    std::sqrt(2.) * (m.limit - m.eta * p) * (std::cos(angle) * across + std::sin(angle) * along));
     };
     const auto energy = [&](double p, double angle) {
       const Matrix gap = (on_cone(p, angle) - s).asDiagonal();
@@ -134,7 +137,8 @@ TEST(DruckerPrager, with_associated_flow_returns_to_the_closest_point) {
     double best_angle = 0;
     for (int k = 0; k < 36; ++k)
       if (energy(m.apex - 1e4, k * M_PI / 18) < energy(m.apex - 1e4, best_angle)) best_angle = k * M_PI / 18;
-    const double angle = least(best_angle - M_PI / 18, best_angle + M_PI / 18, [&](double a) { return energy(m.apex - 1e4, a); });
+    const double angle =
+        least(best_angle - M_PI / 18, best_angle + M_PI / 18, [&](double a) { return energy(m.apex - 1e4, a); });
     const double p = least(-3e5, m.apex, [&](double x) { return energy(x, angle); });
     Points<3> point(law, 1);
     point.stress[0] = {s[0], s[1], s[2], 0, 0, 0};
@@ -151,7 +155,8 @@ TEST(DruckerPrager, with_associated_flow_returns_to_the_closest_point) {
 TEST(DruckerPrager, softens_in_every_cone) {
   for (const Cone cone : {Cone::outer, Cone::inner, Cone::compromise, Cone::plane_strain}) {
     DruckerPrager law = drucker_prager(30e3, 28, 10, cone);
-    law.residual_cohesion = 4e3, law.residual_friction_angle = 15 * degree.si, law.residual_dilation_angle = 0, law.shape_factor = 40;
+    law.residual_cohesion = 4e3, law.residual_friction_angle = 15 * degree.si, law.residual_dilation_angle = 0,
+    law.shape_factor = 40;
     law.prepare();
     Points<3> point(law, 1);
     point.stress[0] = {-1e5, -1e5, -1e5, 0, 0, 0};
@@ -162,7 +167,10 @@ TEST(DruckerPrager, softens_in_every_cone) {
     EXPECT_LT(left, 0.7);
     const DruckerPrager now = drucker_prager(4e3 + 26e3 * left, 15 + 13 * left, 0, cone);
     EXPECT_NEAR(excess(now, matrix<3>(point.stress[0])), 0, 1e-5 * law.cohesion);
-    EXPECT_NEAR(law.strength(point.history[0], {1}).eta_bar, drucker_prager(0, 60, std::asin(left * std::sin(10 * degree.si)) / degree.si, cone).strength(0., {1}).eta_bar, 1e-12);
+    EXPECT_NEAR(
+        law.strength(point.history[0], {1}).eta_bar,
+        drucker_prager(0, 60, std::asin(left * std::sin(10 * degree.si)) / degree.si, cone).strength(0., {1}).eta_bar,
+        1e-12);
     point.increment[0].strain = {0, 0, 0, 0.01, 0, 0};
     for (int step = 0; step < 200; ++step) point.update();
     EXPECT_NEAR(excess(drucker_prager(4e3, 15, 0, cone), matrix<3>(point.stress[0])), 0, 1e-6);

@@ -1,8 +1,9 @@
 /// The laboratory tests of `talus soil` against closed forms.
+#include "physics/laws/element_test.h"
+
 #include <gtest/gtest.h>
 
 #include "fixtures.h"
-#include "physics/laws/element_test.h"
 #include "scene/quantity.h"
 #include "scene/reader.h"
 
@@ -34,7 +35,8 @@ struct Strength {
 TEST(ElementTest, triaxial_compression_reaches_mohr_coulomb_strength) {
   for (const Strength &soil : {Strength{35, 5e3, 203.7e3}, {47, 3e3, 337.5e3}, {30, 3e3, 160.4e3}, {40, 1e3, 234.2e3}})
     for (const double psi : {0., soil.phi_degrees}) {
-      const auto states = drive(mohr_coulomb(soil.cohesion, soil.phi_degrees, psi), test_of(TestType::triaxial_compression, 50e3, 0.05));
+      const auto states = drive(mohr_coulomb(soil.cohesion, soil.phi_degrees, psi),
+                                test_of(TestType::triaxial_compression, 50e3, 0.05));
       const ElementState &end = states.back();
       const double N = failure_ratio(soil.phi_degrees * degree.si);
       EXPECT_NEAR(-end.stress[1], soil.sigma_1, 0.05e3 + 1e-9);
@@ -117,8 +119,9 @@ TEST(ElementTest, undrained_shear_strength_of_mohr_coulomb_follows_from_the_mean
   EXPECT_NEAR(end.compression(), 0, 1e-12);
 }
 
-/// With the elastic rate of this code, which turns with the material: s_xy = G sin gamma, s_xx = -s_yy = G (1 - cos gamma).
-/// A step turns its own increment too, by d gamma / 2, where its middle would by half of that: first order, gamma d gamma / 2.
+/// With the elastic rate of this code, which turns with the material: s_xy = G sin gamma, s_xx = -s_yy = G (1 - cos
+/// gamma). A step turns its own increment too, by d gamma / 2, where its middle would by half of that: first order,
+/// gamma d gamma / 2.
 TEST(ElementTest, simple_shear_of_given_strain_turns_the_stress) {
   ElementTest test;
   test.name = "claim", test.type = TestType::controlled, test.cell_pressure = 0;
@@ -134,7 +137,8 @@ TEST(ElementTest, simple_shear_under_constant_load_reaches_the_strength_of_its_p
   const ElementState end = drive(mohr_coulomb(0, 30), test_of(TestType::simple_shear, 100e3, 0.2)).back();
   EXPECT_NEAR(end.stress[1], -100e3, 1e-4);
   const double ratio = end.stress[3] / 100e3, sine = std::sin(30 * degree.si), cosine = std::cos(30 * degree.si);
-  // without dilation stress and strain increment become coaxial: s_xx = s_yy, tau = sin(phi) times the centre of the circle
+  // without dilation stress and strain increment become coaxial: s_xx = s_yy, tau = sin(phi) times the centre of the
+  // circle
   EXPECT_NEAR(ratio, sine, 0.02);
   EXPECT_LT(ratio, sine / cosine);
 }
@@ -153,8 +157,8 @@ TEST(ElementTest, stress_and_strain_can_be_given_component_by_component) {
   EXPECT_NEAR(end.strain[3], 10e3 / G, 1e-2 * 10e3 / G);
 }
 
-/// c = c' + dc_max (1 - exp(-B s)), phi = phi' + A s: stronger by what the suction at that point of the test adds; wetting
-/// takes it away again.
+/// c = c' + dc_max (1 - exp(-B s)), phi = phi' + A s: stronger by what the suction at that point of the test adds;
+/// wetting takes it away again.
 TEST(ElementTest, suction_gives_strength_and_wetting_takes_it) {
   MohrCoulomb soil = mohr_coulomb(1e3, 23);
   soil.suction_cohesion = 15e3, soil.suction_cohesion_rate = 7e-7, soil.suction_friction_rate = 1e-7 * degree.si;
@@ -185,12 +189,14 @@ TEST(ElementTest, duration_sets_the_rate_of_laws_that_flow) {
   fluid.young_modulus = 1e6, fluid.poisson_ratio = 0.4, fluid.viscosity = 100;
   const ElementState flown = drive(fluid, test).back();
   EXPECT_NEAR(flown.time, 0.1, 1e-12);
-  EXPECT_NEAR(flown.stress[3], 1e3, 0.02e3);  // a step turns its strain with itself: first order, as in simple shear above
+  EXPECT_NEAR(flown.stress[3], 1e3,
+              0.02e3);  // a step turns its strain with itself: first order, as in simple shear above
   Bingham mud;
   mud.young_modulus = 1e6, mud.poisson_ratio = 0.4, mud.viscosity = 100, mud.yield_stress = 500;
   EXPECT_NEAR(drive(mud, test).back().stress[3], 1.5e3, 0.03e3);
   MuI sand;
-  sand.young_modulus = 20e6, sand.poisson_ratio = 0.3, sand.static_friction = 0.38, sand.limiting_friction = 0.64, sand.grain_size = 1e-2;
+  sand.young_modulus = 20e6, sand.poisson_ratio = 0.3, sand.static_friction = 0.38, sand.limiting_friction = 0.64,
+  sand.grain_size = 1e-2;
   const ElementState end = drive(sand, test).back();
   const double p = end.mean_pressure(), I = 10 * 1e-2 * std::sqrt(2650 / p), mu = 0.38 + 0.26 / (1 + 0.3 / I);
   EXPECT_NEAR(end.deviator() / std::sqrt(3.), mu * p, 2e-3 * mu * p);
@@ -208,7 +214,8 @@ TEST(ElementTest, refuses_tests_that_do_not_suit_the_law) {
   ElementTest test = test_of(TestType::simple_shear, 10e3, 1);
   Bingham mud;
   mud.young_modulus = 1e6, mud.poisson_ratio = 0.4, mud.viscosity = 100, mud.yield_stress = 500;
-  EXPECT_NE(refusal(mud, test).find("test.claim: the law bingham flows with time; give the test a duration"), std::string::npos);
+  EXPECT_NE(refusal(mud, test).find("test.claim: the law bingham flows with time; give the test a duration"),
+            std::string::npos);
   test.suction = 1e5;
   EXPECT_NE(refusal(elastic(), test).find("linear_elastic takes no strength from suction"), std::string::npos);
 }
@@ -220,8 +227,8 @@ CamClay clay() {
   return law;
 }
 
-/// Lines of slope lambda and kappa in v and ln p, to what a step loses of its volume to the midpoint rule, theory (3.4). The
-/// ladder has the drained and undrained triaxial paths.
+/// Lines of slope lambda and kappa in v and ln p, to what a step loses of its volume to the midpoint rule, theory
+/// (3.4). The ladder has the drained and undrained triaxial paths.
 TEST(ElementTest, cam_clay_is_compressed_and_swells_along_its_lines) {
   ElementTest test = test_of(TestType::isotropic_compression, 100e3, 0);
   test.strain = {0.1, 0.05};
@@ -231,9 +238,9 @@ TEST(ElementTest, cam_clay_is_compressed_and_swells_along_its_lines) {
   EXPECT_NEAR(log_p(200) - log_p(400), 2 * (std::exp(-0.05) - std::exp(-0.1)) / 0.04, 1e-8);
 }
 
-/// One-dimensional compression comes to the constant eta = q / p at which eps_q / eps_v = 2 / 3: the flow rule for the share
-/// Lambda of the volume that is plastic, and d eps_q = dq / (3 G) with dq / q = dp / p for the rest (Muir Wood 1990, sec.
-/// 10.3): 2 eta / (M^2 - eta^2) Lambda + (1 - Lambda) eta K / (3 G) = 2 / 3.
+/// One-dimensional compression comes to the constant eta = q / p at which eps_q / eps_v = 2 / 3: the flow rule for the
+/// share Lambda of the volume that is plastic, and d eps_q = dq / (3 G) with dq / q = dp / p for the rest (Muir Wood
+/// 1990, sec. 10.3): 2 eta / (M^2 - eta^2) Lambda + (1 - Lambda) eta K / (3 G) = 2 / 3.
 TEST(ElementTest, cam_clay_in_the_oedometer_comes_to_its_k0) {
   ElementTest test = test_of(TestType::oedometer, 100e3, 0.25);
   test.steps = 1000;
@@ -261,13 +268,17 @@ TEST(ElementTest, says_where_a_soil_softens_faster_than_it_unloads) {
   }
   clay.reference_size = 0.7, test.element_size = 0.1;  // eta = 71
   const double N = failure_ratio(13.5 * degree.si);
-  EXPECT_NEAR(-drive(clay, test).back().stress[1], 100e3 * N + 2 * 4.7e3 * std::sqrt(N), 500);  // all but exp(-71 * 0.1) of the way
+  EXPECT_NEAR(-drive(clay, test).back().stress[1], 100e3 * N + 2 * 4.7e3 * std::sqrt(N),
+              500);  // all but exp(-71 * 0.1) of the way
 }
 
 std::string complaint(const std::string &text) {
   SoilFile file;
   try {
-    TableReader::from_text("[material]\nlaw = \"linear_elastic\"\nyoung_modulus = 1e7\npoisson_ratio = 0.3\n[test.a]\n" + text, "soil.toml").fill(file);
+    TableReader::from_text(
+        "[material]\nlaw = \"linear_elastic\"\nyoung_modulus = 1e7\npoisson_ratio = 0.3\n[test.a]\n" + text,
+        "soil.toml")
+        .fill(file);
   } catch (const SceneError &error) {
     return error.what();
   }

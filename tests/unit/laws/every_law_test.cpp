@@ -159,8 +159,8 @@ TYPED_TEST(EveryLaw, treats_points_alone_and_in_blocks_alike) {
 }
 
 /// Elastic energy is the work of straining from zero stress, where the law stays elastic: 1/2 s : C^-1 : s if its
-/// elasticity is linear. Of any law: the work of isotropic compression by 1e-3, which for laws that keep a volume differs
-/// from the energy at the volume of the start by that share, or twice that.
+/// elasticity is linear. Of any law: the work of isotropic compression by 1e-3, which for laws that keep a volume
+/// differs from the energy at the volume of the start by that share, or twice that.
 TYPED_TEST(EveryLaw, stores_elastic_energy) {
   Random random;
   const Law law = examples<TypeParam>()[0];

@@ -66,7 +66,9 @@ inline std::vector<DruckerPrager> examples() {
 
 /// The linear elasticity of docs/guide/umat, in C++.
 template <>
-inline std::vector<Umat> examples() { return {umat("linear_elastic", {20e6, 0.3})}; }
+inline std::vector<Umat> examples() {
+  return {umat("linear_elastic", {20e6, 0.3})};
+}
 
 template <>
 inline std::vector<CamClay> examples() {
@@ -74,7 +76,8 @@ inline std::vector<CamClay> examples() {
   clay.compression_slope = 0.2, clay.swelling_slope = 0.04, clay.critical_stress_ratio = 1, clay.poisson_ratio = 0.3;
   clay.void_ratio = 1, clay.preconsolidation_pressure = 100e3;
   CamClay stiff = clay;
-  stiff.compression_slope = 0.1, stiff.swelling_slope = 0.01, stiff.critical_stress_ratio = 1.4, stiff.poisson_ratio = 0;
+  stiff.compression_slope = 0.1, stiff.swelling_slope = 0.01, stiff.critical_stress_ratio = 1.4,
+  stiff.poisson_ratio = 0;
   stiff.preconsolidation_pressure = 400e3, stiff.void_ratio = 0.6, stiff.attraction = 10e3;
   return {clay, stiff};
 }

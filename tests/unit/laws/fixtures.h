@@ -45,7 +45,13 @@ inline Matrix elastic_strain(const Law &law, const Matrix &s) {
 template <int dim>
 struct Points {
   Points(const Law &l, int n, double size = 1)
-      : law(l), stress(n), history(n * history_size(l)), increment(n), element_size(n, size), suction(n, 30e3), cell(n) {
+      : law(l),
+        stress(n),
+        history(n * history_size(l)),
+        increment(n),
+        element_size(n, size),
+        suction(n, 30e3),
+        cell(n) {
     for (int i = 0; i < n; ++i) cell[i] = i, turn(i, Matrix::Identity());
   }
   void turn(int i, const Matrix &R) {
@@ -115,7 +121,8 @@ inline MohrCoulomb mohr_coulomb(double cohesion, double phi_degrees, double psi_
 }
 
 /// A UMAT of tests/umat with E = PROPS(1) and nu = PROPS(2).
-inline Umat umat(const std::string &library, const std::vector<double> &props, const std::vector<std::string> &state = {}) {
+inline Umat umat(const std::string &library, const std::vector<double> &props,
+                 const std::vector<std::string> &state = {}) {
   Umat law;
   law.young_modulus = props[0], law.poisson_ratio = props[1];
   law.library = std::string(UMATS) + "/umat_" + library + ".so", law.props = props, law.state = state;

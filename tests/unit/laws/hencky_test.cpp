@@ -66,10 +66,12 @@ TEST(Hencky, stress_follows_from_the_deformation_alone) {
   Random random;
   Deformed body(law);
   for (int step = 0; step < 200; ++step) {
-    const Matrix F = Matrix::Identity() + 0.35 * random.between(0, 1) * Matrix::NullaryExpr([&]() { return random.between(-1, 1) / 2; });
+    const Matrix F = Matrix::Identity() +
+                     0.35 * random.between(0, 1) * Matrix::NullaryExpr([&]() { return random.between(-1, 1) / 2; });
     const Matrix b = F * F.transpose(), eps = b.log() / 2;
     body.go(F);
-    const Matrix tau = 2 * law.shear_modulus() * eps + (law.bulk_modulus() - 2 * law.shear_modulus() / 3) * eps.trace() * Matrix::Identity();
+    const Matrix tau = 2 * law.shear_modulus() * eps +
+                       (law.bulk_modulus() - 2 * law.shear_modulus() / 3) * eps.trace() * Matrix::Identity();
     EXPECT_LT((body.stress() * F.determinant() - tau).norm(), 1e-10 * law.young_modulus);
   }
 }
@@ -103,7 +105,8 @@ TEST(Hencky, closed_cycles_dissipate_nothing) {
   EXPECT_GT(hypo_stress, 1e-3);
   RecordProperty("hypoelastic_stress_over_E", std::to_string(hypo_stress));
   RecordProperty("hypoelastic_work_over_E", std::to_string(hypo_work));
-  std::printf("hypoelastic: stress %.3e, work %.3e; hencky: stress %.1e, work %.1e (over E)\n", hypo_stress, hypo_work, stress, work);
+  std::printf("hypoelastic: stress %.3e, work %.3e; hencky: stress %.1e, work %.1e (over E)\n", hypo_stress, hypo_work,
+              stress, work);
 }
 
 /// The yield surface holds for the Kirchhoff stress.

@@ -170,8 +170,8 @@ TEST(MohrCoulomb, with_associated_flow_returns_to_the_closest_point) {
   EXPECT_LT(worst, 1e-9);
 }
 
-/// The nearest to x of all stresses that s could return to: those that some set of up to three planes, each slipping forward
-/// along its own flow (Koiter), leaves on these planes and on the good side of all others. By trying all sets.
+/// The nearest to x of all stresses that s could return to: those that some set of up to three planes, each slipping
+/// forward along its own flow (Koiter), leaves on these planes and on the good side of all others. By trying all sets.
 class Returns {
  public:
   explicit Returns(const MohrCoulomb &law) : planes_(planes(Surface(law))) {
@@ -190,7 +190,8 @@ class Returns {
     const int n = static_cast<int>(planes_.size());
     double excess[9], least = 1e300;
     bool inside = true;
-    for (int i = 0; i < n; ++i) excess[i] = planes_[i].normal.dot(s) - planes_[i].limit, inside &= excess[i] <= tolerance;
+    for (int i = 0; i < n; ++i)
+      excess[i] = planes_[i].normal.dot(s) - planes_[i].limit, inside &= excess[i] <= tolerance;
     if (inside) least = (x - s).norm();
     const auto consider = [&](int i, int j, int k, double a, double b, double c) {
       if (!(std::min({a, b, c}) > -tolerance)) return;  // of slips times stiffness
@@ -229,8 +230,8 @@ class Returns {
   double stiffness_ = 1;
 };
 
-/// 200,000 states: face, edges, apex, cut-off and intersections are the right ones with any dilation. A million would take
-/// five times as long, some 3 s, and show no more.
+/// 200,000 states: face, edges, apex, cut-off and intersections are the right ones with any dilation. A million would
+/// take five times as long, some 3 s, and show no more.
 TEST(MohrCoulomb, with_any_dilation_returns_where_brute_force_does) {
   Random random;
   double worst = 0;
@@ -245,9 +246,9 @@ TEST(MohrCoulomb, with_any_dilation_returns_where_brute_force_does) {
       const Principal<> x = law.admissible({s[0], s[1], s[2]}, strength);
       const double distance = returns.distance(s, Triple(x.s1, x.s2, x.s3), 1e-5);
       if (distance > worst) worst = distance;
-      ASSERT_LT(distance, 1e-3) << number << ": from " << s.transpose() << " to " << x.s1 << " " << x.s2 << " " << x.s3 << ", phi "
-                                << law.friction_angle << ", psi " << law.dilation_angle << ", c " << law.cohesion << ", T "
-                                << law.tension_cutoff << ", nu " << law.poisson_ratio;
+      ASSERT_LT(distance, 1e-3) << number << ": from " << s.transpose() << " to " << x.s1 << " " << x.s2 << " " << x.s3
+                                << ", phi " << law.friction_angle << ", psi " << law.dilation_angle << ", c "
+                                << law.cohesion << ", T " << law.tension_cutoff << ", nu " << law.poisson_ratio;
     }
   }
   EXPECT_LT(worst, 1e-4);  // [Pa], of 3e4; a set that is nearly dependent costs the brute force digits
@@ -408,8 +409,9 @@ TEST(MohrCoulomb, scales_softening_with_element_size) {
   EXPECT_EQ(sheared(scaled, 50, 0), sheared(law, 50)) << "no size, no scaling";
 }
 
-/// A band of thickness h slips by d: gamma_p = d / h. With phi = 0 the stress in it is c, so the work lost over the area is
-/// c_r d + (c_p - c_r) sqrt(3) h_ref / eta (1 - exp(-eta d / (sqrt(3) h_ref))), the same for elements of any size.
+/// A band of thickness h slips by d: gamma_p = d / h. With phi = 0 the stress in it is c, so the work lost over the
+/// area is c_r d + (c_p - c_r) sqrt(3) h_ref / eta (1 - exp(-eta d / (sqrt(3) h_ref))), the same for elements of any
+/// size.
 TEST(MohrCoulomb, loses_the_same_work_over_the_area_of_a_band_whatever_the_size_of_the_element) {
   MohrCoulomb law = mohr_coulomb(30e3, 0);
   law.residual_cohesion = 5e3, law.shape_factor = 50, law.reference_size = 0.5;

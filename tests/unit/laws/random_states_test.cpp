@@ -1,7 +1,7 @@
-/// A million random states of every law, of random parameters: 2 dimensions, 50 soils, 10,000 points each. Stress and strain
-/// of a point share their axes Q (for laws whose trial stress is linear in the strain that is no loss of generality), so that
-/// each update can be repeated in the axes, where principal stresses can be read off: there they are compared with the yield
-/// surface, written anew in this file.
+/// A million random states of every law, of random parameters: 2 dimensions, 50 soils, 10,000 points each. Stress and
+/// strain of a point share their axes Q (for laws whose trial stress is linear in the strain that is no loss of
+/// generality), so that each update can be repeated in the axes, where principal stresses can be read off: there they
+/// are compared with the yield surface, written anew in this file.
 #include <gtest/gtest.h>
 
 #include "drawn.h"
@@ -18,7 +18,7 @@ struct Update {
   Triple start, strain, trial, end;
   const double *before, *after;  ///< history
   Surroundings around;
-  double one;  ///< 1 for Hencky's laws, else 0: they find strain beside 1, so that its round-off is that of 1
+  double one;      ///< 1 for Hencky's laws, else 0: they find strain beside 1, so that its round-off is that of 1
   double largest;  ///< stress, and round-off, that goes with it: per cents of the moduli [Pa]
 };
 
@@ -33,7 +33,8 @@ Triple strained(const OneLaw &law, const Triple &s, const Triple &e) {
 }
 template <class OneLaw>
 Triple elastic_part(const OneLaw &law, const Triple &s) {
-  return (s.array() - mean(s)).matrix() / (2 * law.shear_modulus()) + Triple::Constant(mean(s) / (3 * law.bulk_modulus()));
+  return (s.array() - mean(s)).matrix() / (2 * law.shear_modulus()) +
+         Triple::Constant(mean(s) / (3 * law.bulk_modulus()));
 }
 
 /// How far the end is from what the law admits, over the stresses of the update.
@@ -60,7 +61,8 @@ double miss(const MohrCoulomb &law, const Update &u) {
 double miss(const DruckerPrager &law, const Update &u) {
   auto m = law.strength(u.before[0], u.around);
   if (law.softens()) {
-    const double f = shear(u.trial) + m.eta * mean(u.trial) - m.limit, slip = std::max(0., f) / (law.G + law.K * m.eta * m.eta_bar);
+    const double f = shear(u.trial) + m.eta * mean(u.trial) - m.limit,
+                 slip = std::max(0., f) / (law.G + law.K * m.eta * m.eta_bar);
     const bool torn = mean(u.trial) - law.K * m.eta_bar * slip >= m.apex;
     const double plastic = (torn ? shear(u.trial) / law.G : slip) / std::sqrt(3.);
     m = law.strength(u.before[0] + plastic, u.around);
@@ -73,19 +75,24 @@ double miss(const DruckerPrager &law, const Update &u) {
 double miss(const Newtonian &law, const Update &u, double yield_stress = 0) {
   const double rate = std::sqrt(3.) * (u.after[0] - u.before[0]) / u.around.time_step;
   const double tau = shear(u.trial) > yield_stress ? yield_stress + law.viscosity * rate : shear(u.trial);
-  return (std::abs(mean(u.end) - std::min(0., mean(u.trial))) + std::abs(shear(u.end) - tau)) / (magnitude(u) + yield_stress);
+  return (std::abs(mean(u.end) - std::min(0., mean(u.trial))) + std::abs(shear(u.end) - tau)) /
+         (magnitude(u) + yield_stress);
 }
-double miss(const Bingham &law, const Update &u) { return miss(static_cast<const Newtonian &>(law), u, law.yield_stress); }
+double miss(const Bingham &law, const Update &u) {
+  return miss(static_cast<const Newtonian &>(law), u, law.yield_stress);
+}
 
 /// No tension, and tau = mu(I) p where it flows.
 double miss(const MuI &law, const Update &u) {
-  const double pressure = std::max(0., -mean(u.trial)), rate = std::sqrt(3.) * (u.after[0] - u.before[0]) / u.around.time_step;
+  const double pressure = std::max(0., -mean(u.trial)),
+               rate = std::sqrt(3.) * (u.after[0] - u.before[0]) / u.around.time_step;
   const double I = rate * law.grain_size * std::sqrt(law.solid_density / pressure);
   const double mu = law.static_friction + (law.limiting_friction - law.static_friction) * I / (I + law.inertial_number);
   const bool flows = shear(u.trial) > law.static_friction * pressure;
   const double tau = pressure == 0 ? 0 : flows ? mu * pressure : shear(u.trial);
   // what the rate is read from is a loss of stress, over G dt: its round-off counts by the slope of tau over that
-  const double slope = (law.limiting_friction - law.static_friction) * std::sqrt(pressure) / (law.G * u.around.time_step * law.rate);
+  const double slope =
+      (law.limiting_friction - law.static_friction) * std::sqrt(pressure) / (law.G * u.around.time_step * law.rate);
   return (std::abs(mean(u.end) + pressure) + std::abs(shear(u.end) - tau) / (1 + slope)) / magnitude(u);
 }
 
@@ -104,14 +111,17 @@ double loss(const IsotropicElastic &law, const Update &u) {
   return u.end.dot(plastic) / (magnitude(u) * (u.strain.norm() + elastic_part(law, u.trial).norm() + u.one) + 1e-300);
 }
 /// Counted from -attraction the plastic work is p sqrt(deps_v^2 + M^2 deps_q^2) (Roscoe & Burland 1968): it cannot be
-/// negative. The stress itself, counted from 0, may do a little less where a soil whose p_c has fallen below 2 a bears tension.
+/// negative. The stress itself, counted from 0, may do a little less where a soil whose p_c has fallen below 2 a bears
+/// tension.
 double loss(const CamClay &law, const Update &u) {
   const double p = law.attraction - mean(u.end), q = std::sqrt(3.) * shear(u.end);
   const double volume = u.before[1] - u.after[1], sheared = u.after[0] - u.before[0];
   if (p <= 1.1e-3 * law.attraction) return 0;
-  const double closed = p * std::hypot(volume, law.M * sheared), whole = std::hypot(p, q) * (std::hypot(volume, sheared) + 1e-6);
+  const double closed = p * std::hypot(volume, law.M * sheared),
+               whole = std::hypot(p, q) * (std::hypot(volume, sheared) + 1e-6);
   const bool was_torn = law.attraction - mean(u.start) < 0.1 * law.attraction;
-  EXPECT_NEAR((p * volume + q * sheared) / whole, closed / whole, was_torn ? 1e-3 : 1e-6);  // what twelve Newton steps leave
+  EXPECT_NEAR((p * volume + q * sheared) / whole, closed / whole,
+              was_torn ? 1e-3 : 1e-6);  // what twelve Newton steps leave
   return (p * volume + q * sheared) / whole;
 }
 
@@ -136,7 +146,8 @@ void examine(const OneLaw &soil, Random &random, Worst &worst) {
   law.prepare();
   Points<dim> points(law, n, size), in_axes(law, n, size);
   const int memory = history_size(points.law);
-  const double strong = std::is_same_v<OneLaw, CamClay> ? 1e6 : 0.03 * shear_modulus(points.law);  // an elastic strain of per cents
+  const double strong =
+      std::is_same_v<OneLaw, CamClay> ? 1e6 : 0.03 * shear_modulus(points.law);  // an elastic strain of per cents
   std::vector<Matrix> Q;
   for (int k = 0; k < directions; ++k) Q.push_back(random.rotation<dim>());
   const auto fields = history_fields(points.law);
@@ -166,8 +177,15 @@ void examine(const OneLaw &soil, Random &random, Worst &worst) {
   points.update(), in_axes.update();
   for (int i = 0; i < n; ++i) {
     const auto &s = in_axes.stress[i], &e = in_axes.increment[i].strain;
-    Update u{{start[i][0], start[i][1], start[i][2]}, {e[0], e[1], e[2]}, {}, {s[0], s[1], s[2]}, &before[i * memory],
-             &in_axes.history[i * memory], {size, in_axes.suction[i], time_step}, is_hencky<OneLaw> ? 1. : 0., 0.03 * law.bulk_modulus()};
+    Update u{{start[i][0], start[i][1], start[i][2]},
+             {e[0], e[1], e[2]},
+             {},
+             {s[0], s[1], s[2]},
+             &before[i * memory],
+             &in_axes.history[i * memory],
+             {size, in_axes.suction[i], time_step},
+             is_hencky<OneLaw> ? 1. : 0.,
+             0.03 * law.bulk_modulus()};
     double J = 1;
     if constexpr (is_hencky<OneLaw>)
       J = std::exp(u.after[memory - 1]), u.start *= std::exp(u.before[memory - 1]), u.end *= J;
@@ -175,8 +193,10 @@ void examine(const OneLaw &soil, Random &random, Worst &worst) {
     worst.miss = std::max(worst.miss, miss(law, u));
     worst.loss = std::max(worst.loss, -loss(law, u));
     const Matrix &q = Q[i % directions];
-    const double whole = std::max(magnitude(u) / J, matrix<dim>(s).norm()) + (std::is_same_v<OneLaw, CamClay> ? 1e3 : 0);
-    worst.turned = std::max(worst.turned, (q * matrix<dim>(s) * q.transpose() - matrix<dim>(points.stress[i])).norm() / whole);
+    const double whole =
+        std::max(magnitude(u) / J, matrix<dim>(s).norm()) + (std::is_same_v<OneLaw, CamClay> ? 1e3 : 0);
+    worst.turned =
+        std::max(worst.turned, (q * matrix<dim>(s) * q.transpose() - matrix<dim>(points.stress[i])).norm() / whole);
     for (int k = 3; k < stress_size<dim>; ++k) worst.turned = std::max(worst.turned, std::abs(s[k]) / whole);
   }
 }
@@ -197,7 +217,8 @@ TYPED_TEST(RandomStates, end_where_the_law_says) {
   EXPECT_LT(worst.miss, 1e-12);
   EXPECT_LT(worst.turned, 1e-11);
   EXPECT_LT(worst.loss, 1e-14);
-  std::printf("%-22s million states: surface %.1e, axes %.1e, work won %.1e\n", TypeParam::name, worst.miss, worst.turned, worst.loss);
+  std::printf("%-22s million states: surface %.1e, axes %.1e, work won %.1e\n", TypeParam::name, worst.miss,
+              worst.turned, worst.loss);
 }
 
 /// Strains from 1e-8 to 10 %, many steps, with rotation, under suction: no stress or history stops being a number.

@@ -40,7 +40,8 @@ std::vector<double> remainders(const Points<dim> &from, const std::vector<Compon
   std::vector<double> all(n);
   for (std::size_t i = 0; i < n; ++i)
     all[i] = (column<dim>(moved.stress[i]) - column<dim>(base.stress[i]) - h * tangent[i] * column<dim>(direction[i]))
-                 .norm() / scale;
+                 .norm() /
+             scale;
   return all;
 }
 
@@ -79,10 +80,10 @@ TYPED_TEST(TangentOf, leaves_a_remainder_of_second_order) {
 }
 
 /// Trial stresses with two or three equal principal values, and values 1e-4 to 1e-14 apart; three equal ones are in
-/// compression: at a spherical trial beyond its apex a softening law has a kink, since it softens with a norm of strain.
-/// Spherical stress of any sign is a kink of soil without strength, whose values are therefore always apart. A spherical
-/// strain keeps equal values equal and leads away from the kink that Cam-clay has where torn soil, or soil beyond its
-/// p_c, keeps its volume.
+/// compression: at a spherical trial beyond its apex a softening law has a kink, since it softens with a norm of
+/// strain. Spherical stress of any sign is a kink of soil without strength, whose values are therefore always apart. A
+/// spherical strain keeps equal values equal and leads away from the kink that Cam-clay has where torn soil, or soil
+/// beyond its p_c, keeps its volume.
 TYPED_TEST(TangentOf, bears_equal_and_nearly_equal_principal_stresses) {
   for_all<TypeParam>([]<int dim>(Dim<dim>, const Law &law) {
     Random random;
@@ -154,9 +155,9 @@ TEST(Tangent, of_fluids_is_symmetric) {
   }
 }
 
-/// Hyperelasticity has a potential: the derivative of the Kirchhoff stress by the strain is symmetric, at no strain that
-/// is J d sigma + tau (x) I. At a finite strain ln U is not conjugate to the turned stress, and symmetry is lost. Flow as
-/// well, if it is associated, here at a strain of 1e-9 beyond the cone.
+/// Hyperelasticity has a potential: the derivative of the Kirchhoff stress by the strain is symmetric, at no strain
+/// that is J d sigma + tau (x) I. At a finite strain ln U is not conjugate to the turned stress, and symmetry is lost.
+/// Flow as well, if it is associated, here at a strain of 1e-9 beyond the cone.
 TEST(Tangent, of_hencky_is_symmetric_for_the_kirchhoff_stress) {
   HenckyDruckerPrager cone = examples<HenckyDruckerPrager>()[0];
   cone.cohesion = 5e3, cone.dilation_angle = cone.friction_angle;
@@ -255,7 +256,8 @@ TEST(Tangent, leaves_a_remainder_of_second_order_on_edges_and_apex) {
       if (law.tension_cutoff >= 0) wanted.insert(wanted.end(), {"cut-off plane", "cut-off line", "cut-off and face"});
       for (const std::string &where : wanted) EXPECT_GT(count[where].first, 50) << where << (hencky ? ", Hencky" : "");
       for (const auto &[where, counted] : count)
-        EXPECT_LE(counted.second, 2 + 0.02 * counted.first) << where << (hencky ? ", Hencky" : "") << " of " << counted.first;
+        EXPECT_LE(counted.second, 2 + 0.02 * counted.first)
+            << where << (hencky ? ", Hencky" : "") << " of " << counted.first;
     }
   }
 }

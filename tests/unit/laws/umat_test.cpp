@@ -11,9 +11,15 @@ namespace {
 
 /// Props of mohr_coulomb.f90.
 std::vector<double> props_of(const MohrCoulomb &m, bool tangent = false) {
-  return {m.young_modulus, m.poisson_ratio, m.cohesion, m.friction_angle, m.dilation_angle,
+  return {m.young_modulus,
+          m.poisson_ratio,
+          m.cohesion,
+          m.friction_angle,
+          m.dilation_angle,
           m.residual_cohesion < 0 ? m.cohesion : m.residual_cohesion,
-          m.residual_friction_angle < 0 ? m.friction_angle : m.residual_friction_angle, m.shape_factor, tangent ? 1. : 0.};
+          m.residual_friction_angle < 0 ? m.friction_angle : m.residual_friction_angle,
+          m.shape_factor,
+          tangent ? 1. : 0.};
 }
 
 template <int dim>
@@ -78,7 +84,8 @@ TEST(Umat, goes_through_the_triaxial_test) {
   const MohrCoulomb law = mohr_coulomb(5e3, 35, 5);
   ElementTest test;
   test.name = "claim", test.cell_pressure = 50e3, test.strain = {0.05};
-  const auto built_in = drive(law, test), own = drive(umat("mohr_coulomb", props_of(law), {"plastic_strain", "plastic_volume"}), test);
+  const auto built_in = drive(law, test),
+             own = drive(umat("mohr_coulomb", props_of(law), {"plastic_strain", "plastic_volume"}), test);
   for (const int k : {50, 100, 200}) EXPECT_NEAR(own[k].deviator(), built_in[k].deviator(), 1e-3);
   EXPECT_NEAR(-own.back().stress[1], 203.7e3, 0.05e3);
 }

@@ -95,8 +95,8 @@ TEST_F(TalusMesh, RefinesBoxesOfTheSectionAndOfTheCommandLine) {
 TEST_F(TalusMesh, CutsTheThicknessIntoRegions) {
   const std::string source = write("s.csv", "outline,0,0\noutline,4,0\noutline,4,2\noutline,0,2\nregion_clay,1,1\n");
   for (const std::string layers : {"1", "0"}) {
-    const Answer answer = run(source + " --size 0.8 --dimension 3 --thickness 6 --cuts 1 3 --layers " + layers + " -o " +
-                              in_folder("m.msh"));
+    const Answer answer = run(source + " --size 0.8 --dimension 3 --thickness 6 --cuts 1 3 --layers " + layers +
+                              " -o " + in_folder("m.msh"));
     EXPECT_EQ(answer.status, 0) << answer.text;
     for (const auto &[region, volume] : {std::pair("clay_1: ", "8 m3"), {"clay_2: ", "16 m3"}, {"clay_3: ", "24 m3"}}) {
       const std::size_t at = answer.text.find(region);
@@ -117,9 +117,8 @@ TEST_F(TalusMesh, ComplainsAboutBadInputWithStatus2) {
   const std::string box = TALUS_SECTIONS "box.csv";
   for (const std::string wrong :
        {" --size 0", " --size -1", " --size 2", " --size 1e-9", " --size big", "", " --size 1 --dimension 4",
-        " --size 1 --refine 0 0 1 1 0", " --size 1 --thickness -1", " --size 1 --layers -1",
-        " --size 1 --cuts 0.5", " --size 1 --dimension 3 --thickness 1 --cuts 0.6 0.4",
-        " --size 1 --dimension 3 --thickness 1 --cuts 1"})
+        " --size 1 --refine 0 0 1 1 0", " --size 1 --thickness -1", " --size 1 --layers -1", " --size 1 --cuts 0.5",
+        " --size 1 --dimension 3 --thickness 1 --cuts 0.6 0.4", " --size 1 --dimension 3 --thickness 1 --cuts 1"})
     EXPECT_EQ(run(box + out + wrong).status, 2) << wrong;
   EXPECT_EQ(run(box + " --size 1 -o " + in_folder("m.vtk")).status, 2);
   EXPECT_FALSE(std::filesystem::exists(in_folder("m.msh")));

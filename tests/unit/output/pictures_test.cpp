@@ -85,7 +85,8 @@ TEST(Pictures, show_stress_paths_and_the_water_ledger) {
   RunHeader header = small_header();
   header.scene = frictional_scene;
   RunFile run(MPI_COMM_WORLD, dir, header, small_mesh());
-  History history(MPI_COMM_WORLD, dir + "/history.csv", {"crest_x_m", "crest_y_m", "water_kg", "water_out_kg", "water_given_kg", "water_error_kg"});
+  History history(MPI_COMM_WORLD, dir + "/history.csv",
+                  {"crest_x_m", "crest_y_m", "water_kg", "water_out_kg", "water_given_kg", "water_error_kg"});
   for (int n = 0; n < 3; ++n) {
     run.write(small_snapshot(n, n));
     history.row(n, n, "slide", {0.5, 0.4, 100. - n, 1. * n, 0, 1e-14 * n});
@@ -93,7 +94,8 @@ TEST(Pictures, show_stress_paths_and_the_water_ledger) {
   if (world_rank()) return;
   ASSERT_TRUE(draw_pictures(dir));
   EXPECT_EQ(content(dir + "/pictures/strength.csv").substr(0, 40), "body,state,suction_Pa,slope,intercept_Pa");
-  for (const char *name : {"stress_paths.png", "mobilised_friction.png", "water_ledger.png"}) EXPECT_EQ(content(dir + "/pictures/" + name).substr(1, 3), "PNG") << name;
+  for (const char *name : {"stress_paths.png", "mobilised_friction.png", "water_ledger.png"})
+    EXPECT_EQ(content(dir + "/pictures/" + name).substr(1, 3), "PNG") << name;
 }
 
 TEST(Pictures, never_fail_a_run) {

@@ -1,4 +1,5 @@
-// Retention curves and relative permeabilities: what their sources print, what all have in common, and how near the tables are.
+// Retention curves and relative permeabilities: what their sources print, what all have in common, and how near the
+// tables are.
 #include <gtest/gtest.h>
 
 #include "fixtures.h"
@@ -17,7 +18,8 @@ TEST(Curves, mualem_conductivity_is_van_genuchtens) {
   // van Genuchten (1980), eq. (9): K_r over head with n = 2 (m = 1/2)
   const double h = 1.7, m = 0.5, n = 2;
   const double wet = std::pow(1 + std::pow(h, n), -m);
-  const double expected = std::pow(1 - std::pow(h, n - 1) * std::pow(1 + std::pow(h, n), -m), 2) / std::pow(1 + std::pow(h, n), m / 2);
+  const double expected =
+      std::pow(1 - std::pow(h, n - 1) * std::pow(1 + std::pow(h, n), -m), 2) / std::pow(1 + std::pow(h, n), m / 2);
   EXPECT_NEAR(VanGenuchtenMualem{m}.liquid({wet, 1 - wet, h}), expected, 1e-14);
 }
 
@@ -27,11 +29,13 @@ TEST(Curves, retention_falls_and_its_slope_and_inverse_are_its_own) {
     const Retention &curve = soil.retention();
     double last = 1;
     for (double s = 10; s < 3e5; s *= 1.07) {
-      const double S = saturation(curve, s), residual = residual_saturation(curve), wet = (S - residual) / (1 - residual);
+      const double S = saturation(curve, s), residual = residual_saturation(curve),
+                   wet = (S - residual) / (1 - residual);
       if (wet < 1e-6) break;
       EXPECT_LE(S, last);
       last = S;
-      EXPECT_NEAR(saturation_slope(curve, s), (saturation(curve, s * (1 + 1e-5)) - saturation(curve, s * (1 - 1e-5))) / (2e-5 * s), 2e-5 * S / s)
+      EXPECT_NEAR(saturation_slope(curve, s),
+                  (saturation(curve, s * (1 + 1e-5)) - saturation(curve, s * (1 - 1e-5))) / (2e-5 * s), 2e-5 * S / s)
           << text << s;
       if (wet < 1 - 1e-4) {
         EXPECT_NEAR(suction_at(curve, wet, 1 - wet), s, 1e-8 * s) << text;
@@ -42,10 +46,12 @@ TEST(Curves, retention_falls_and_its_slope_and_inverse_are_its_own) {
 }
 
 TEST(Curves, tables_follow_the_curves) {
-  // far below what anyone measures; measured points join with a jump of curvature, which one interval of the table smooths
+  // far below what anyone measures; measured points join with a jump of curvature, which one interval of the table
+  // smooths
   for (const std::string &text : soils) {
     const SoilPores soil = soil_of(text);
-    const double range = soil.largest_gas_share(), near = std::holds_alternative<TabulatedRetention>(soil.retention()) ? 1e-5 : 2e-6;
+    const double range = soil.largest_gas_share(),
+                 near = std::holds_alternative<TabulatedRetention>(soil.retention()) ? 1e-5 : 2e-6;
     for (double dry = 1e-9; dry < 1; dry += 1.37e-3 * dry + 1e-9) {
       const double wet = 1 - dry, suction = suction_at(soil.retention(), wet, dry);
       const Wetness w{wet, dry, suction};
@@ -59,8 +65,9 @@ TEST(Curves, tables_follow_the_curves) {
 
 TEST(Curves, relative_permeabilities_end_at_one_and_nothing) {
   const Wetness full{1, 0, 0}, empty{1e-12, 1 - 1e-12, 1e12};
-  for (const RelativePermeability &curve : {RelativePermeability(VanGenuchtenMualem{0.3}), RelativePermeability(Hillel{}),
-                                            RelativePermeability(BrooksCoreyPermeability{2}), RelativePermeability(GardnerPermeability{1e4})}) {
+  for (const RelativePermeability &curve :
+       {RelativePermeability(VanGenuchtenMualem{0.3}), RelativePermeability(Hillel{}),
+        RelativePermeability(BrooksCoreyPermeability{2}), RelativePermeability(GardnerPermeability{1e4})}) {
     EXPECT_NEAR(liquid_permeability(curve, full), 1, 1e-12);
     EXPECT_NEAR(liquid_permeability(curve, empty), 0, 1e-4);
     EXPECT_NEAR(gas_permeability(curve, full), 0, 1e-12);

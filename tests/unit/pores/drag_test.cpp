@@ -1,9 +1,9 @@
 // Drag at a node: momentum, limits, and the exact decay to first order.
+#include "physics/pores/drag.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "physics/pores/drag.h"
 
 namespace talus {
 namespace {

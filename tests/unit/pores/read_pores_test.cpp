@@ -38,7 +38,8 @@ TEST(ReadPores, refuses_curves_that_are_none) {
   expect(table + "suctions = [0, 1e3]\nsaturations = [1]\n", {"as many"});
   expect("[retention]\ncurve = \"van_genuchten\"\nreference_suction = 1e3\nshape = 1.5\n", {"shape", "0.95"});
   expect("[retention]\ncurve = \"van_genuchten\"\nreference_suction = \"1 m\"\nshape = 0.5\n", {"reference_suction"});
-  expect("[retention]\ncurve = \"van_genuchten\"\nreference_suction = 1e3\nshape = 0.5\nresidual_saturation = 1.2\n", {"residual_saturation", "0.9"});
+  expect("[retention]\ncurve = \"van_genuchten\"\nreference_suction = 1e3\nshape = 0.5\nresidual_saturation = 1.2\n",
+         {"residual_saturation", "0.9"});
   expect("[retention]\ncurve = \"van_gnuchten\"\n", {"did you mean `van_genuchten`"});
 }
 

@@ -26,7 +26,8 @@ Solved unsaturated_pressure(const SoilPores &soil, const Liquid &liquid, double 
   gas_share = p.gas_share[0];
   return {{p.liquid[0], p.gas[0]}, p.iterations[0]};
 }
-Solved three_phase_pressure(const SoilPores &soil, const Liquid &liquid, const PoreGas &gas, double content, double gas_content, double &gas_share) {
+Solved three_phase_pressure(const SoilPores &soil, const Liquid &liquid, const PoreGas &gas, double content,
+                            double gas_content, double &gas_share) {
   PoreLanes<1> p{{content}, {gas_content}, {gas_share}, {}, {}, {}};
   three_phase_pressures(soil, liquid, gas, p);
   gas_share = p.gas_share[0];
@@ -41,7 +42,8 @@ TEST(Storage, liquids_invert_their_density) {
     for (double p : {-1e5, 0., 3e6}) {
       EXPECT_NEAR(liquid.pressure_at(liquid.density_at(p)), p, 1e-6);
       const double rho = liquid.density_at(p);
-      EXPECT_NEAR(liquid.density_slope(rho), (liquid.density_at(p + 10) - liquid.density_at(p - 10)) / 20, 1e-7 * rho / 2e7);
+      EXPECT_NEAR(liquid.density_slope(rho), (liquid.density_at(p + 10) - liquid.density_at(p - 10)) / 20,
+                  1e-7 * rho / 2e7);
     }
   }
 }
@@ -73,11 +75,13 @@ TEST(Storage, three_phases_hold_both_contents) {
   for (const std::string &text : soils) {
     const SoilPores soil = soil_of(text);
     for (int k = 0; k < 2000; ++k) {
-      const double y = residual_gas + (soil.largest_gas_share() - residual_gas) * std::pow(wide(random), k % 5 + 1) * 0.98;
+      const double y =
+          residual_gas + (soil.largest_gas_share() - residual_gas) * std::pow(wide(random), k % 5 + 1) * 0.98;
       const double pg = 1e5 * (wide(random) - 0.5), pl = pg - soil.suction(y);
       if (pl < -0.9 * liquid.bulk_modulus) continue;
       double share = wide(random);
-      const PorePressures p = three_phase_pressure(soil, liquid, gas, (1 - y) * liquid.density_at(pl), y * gas.density_at(pg), share);
+      const PorePressures p =
+          three_phase_pressure(soil, liquid, gas, (1 - y) * liquid.density_at(pl), y * gas.density_at(pg), share);
       EXPECT_NEAR(share, y, 2e-6 * y) << text;
       EXPECT_NEAR(p.gas, pg, 0.5 + 1e-5 * soil.suction(y)) << text << y;
       EXPECT_NEAR(p.liquid, pl, 0.5 + 1e-5 * soil.suction(y)) << text << y;
@@ -97,7 +101,8 @@ TEST(Storage, a_lane_does_not_depend_on_the_others) {
       for (int k = 0; k < 200; ++k) {
         PoreLanes<8> one, two;
         for (int i = 0; i < 8; ++i) {
-          const double y = 1.2 * std::pow(wide(random), 4) - 0.01;  // also saturated pores, and drier ones than the residual water allows
+          const double y = 1.2 * std::pow(wide(random), 4) -
+                           0.01;  // also saturated pores, and drier ones than the residual water allows
           one.liquid_content[i] = two.liquid_content[i] = std::max(1., 1000 * (1 - y));
           one.gas_content[i] = two.gas_content[i] = std::max(residual_gas, y) * gas.density;
           one.gas_share[i] = two.gas_share[i] = std::clamp(y, 0., 1.);
@@ -106,7 +111,8 @@ TEST(Storage, a_lane_does_not_depend_on_the_others) {
         for (int i = 0; i < 8; ++i) {
           const double content = one.liquid_content[i];
           double share = std::clamp(1 - content / 1000, 0., 1.), other = share;
-          const Solved p = unsaturated_pressure(soil, liquid, content, share), q = three_phase_pressure(soil, liquid, gas, content, two.gas_content[i], other);
+          const Solved p = unsaturated_pressure(soil, liquid, content, share),
+                       q = three_phase_pressure(soil, liquid, gas, content, two.gas_content[i], other);
           EXPECT_NEAR(one.gas_share[i], share, 1e-12) << text << content;
           EXPECT_NEAR(one.liquid[i], p.liquid, 1e-9 * (1e8 + std::abs(p.liquid))) << text << content;
           EXPECT_NEAR(two.gas_share[i], other, 1e-12) << text << content;
@@ -148,7 +154,8 @@ TEST(Storage, passes_through_saturation_without_a_jump) {
       const double q = three_phase_pressure(soil, liquid, gas, content, 2e-4 * gas.density, trapped).liquid;
       (k <= n ? up : down).push_back(p);
       if (k) {
-        EXPECT_LT(std::abs(p - last), 1.2 * liquid.bulk_modulus * 1.2e-3 / n) << text << content;  // never stiffer than the liquid
+        EXPECT_LT(std::abs(p - last), 1.2 * liquid.bulk_modulus * 1.2e-3 / n)
+            << text << content;  // never stiffer than the liquid
         EXPECT_LT(std::abs(q - last_trapped), 1.2 * liquid.bulk_modulus * 1.2e-3 / n) << text << content;
       }
       last = p, last_trapped = q;

@@ -344,7 +344,8 @@ TEST(Elasticity, NeedsExactlyTwoConstants) {
 TEST(Elasticity, RefusesUnstablePairs) {
   const auto refusal = [](const std::string &text) { return complaint([&] { read_elastic(text); }); };
   EXPECT_TRUE(contains(refusal("young_modulus = 1e6\nshear_modulus = 1e5"), "give Poisson's ratio 4"));
-  EXPECT_TRUE(contains(refusal("young_modulus = 1e6\npoisson_ratio = 0.5"), "line 2: poisson_ratio = 0.5 (Poisson's ratio nu) must lie above -1 and below 0.5"));
+  EXPECT_TRUE(contains(refusal("young_modulus = 1e6\npoisson_ratio = 0.5"),
+                       "line 2: poisson_ratio = 0.5 (Poisson's ratio nu) must lie above -1 and below 0.5"));
   EXPECT_TRUE(contains(refusal("shear_modulus = 1e6\npoisson_ratio = -1"), "must lie above -1 and below 0.5"));
   EXPECT_TRUE(contains(refusal("young_modulus = 0\npoisson_ratio = 0.3"), "must be a number from"));
 }

@@ -15,7 +15,8 @@ double error_with(ArkodeSettings settings) {
   Arkode integrator(settings);
   run_to(integrator, motion, 2, 10);
   // x = cos t + (4/3) sin(t / 2) - (2/3) sin t
-  const double t = 10, x = std::cos(t) + 4. / 3 * std::sin(t / 2) - 2. / 3 * std::sin(t), v = -std::sin(t) + 2. / 3 * (std::cos(t / 2) - std::cos(t));
+  const double t = 10, x = std::cos(t) + 4. / 3 * std::sin(t / 2) - 2. / 3 * std::sin(t),
+               v = -std::sin(t) + 2. / 3 * (std::cos(t / 2) - std::cos(t));
   return std::hypot(motion.place[0] - x, motion.speed[0] - v);
 }
 
@@ -44,7 +45,8 @@ TEST(Arkode, error_follows_the_tolerance) {
   }
 }
 
-/// Energy of a chain of 20 masses in its fastest mode after 400 steps of `share` of the stability limit, over the initial.
+/// Energy of a chain of 20 masses in its fastest mode after 400 steps of `share` of the stability limit, over the
+/// initial.
 double growth(int order, double share) {
   Springs motion(20, 1);
   for (int i = 0; i < 20; ++i) motion.speed[i] = std::sin(M_PI * 20 * (i + 1) / 21);

@@ -1,4 +1,5 @@
-// The two Euler methods on masses and springs: first order both, but only the one that updates velocity first keeps the energy.
+// The two Euler methods on masses and springs: first order both, but only the one that updates velocity first keeps the
+// energy.
 #include <gtest/gtest.h>
 
 #include "solvers/integrators.h"
@@ -18,7 +19,9 @@ double error_at(double step) {
 }
 
 TEST(Euler, is_of_first_order) { EXPECT_NEAR(error_at<EulerSettings>(0.01) / error_at<EulerSettings>(0.005), 2, 0.05); }
-TEST(ForwardEuler, is_of_first_order) { EXPECT_NEAR(error_at<ForwardEulerSettings>(0.01) / error_at<ForwardEulerSettings>(0.005), 2, 0.05); }
+TEST(ForwardEuler, is_of_first_order) {
+  EXPECT_NEAR(error_at<ForwardEulerSettings>(0.01) / error_at<ForwardEulerSettings>(0.005), 2, 0.05);
+}
 
 /// Largest energy over the initial in 1000 periods of omega = 1.
 template <class Settings>

@@ -1,5 +1,6 @@
 #pragma once
-/// What motions without soil share: places and velocities, kept as soil keeps them: they live in the accepted state, displacement counts from there.
+/// What motions without soil share: places and velocities, kept as soil keeps them: they live in the accepted state,
+/// displacement counts from there.
 #include <algorithm>
 #include <vector>
 

@@ -1,13 +1,15 @@
 // PETSc's Runge-Kutta methods behind the Motion interface, on masses and springs.
+#include "solvers/petsc_ts.h"
+
 #include <gtest/gtest.h>
 
-#include "solvers/petsc_ts.h"
 #include "springs.h"
 
 namespace talus {
 namespace {
 
-constexpr std::pair<RungeKutta, int> methods[] = {{RungeKutta::rk3, 3}, {RungeKutta::rk4, 4}, {RungeKutta::rk5, 5}, {RungeKutta::rk8, 8}};
+constexpr std::pair<RungeKutta, int> methods[] = {
+    {RungeKutta::rk3, 3}, {RungeKutta::rk4, 4}, {RungeKutta::rk5, 5}, {RungeKutta::rk8, 8}};
 
 double error_with(RungeKutta method, double step) {
   Springs motion(1, 0.5);
@@ -17,14 +19,16 @@ double error_with(RungeKutta method, double step) {
   settings.method = method, settings.step = step;
   PetscTs integrator(settings);
   run_to(integrator, motion, 2, 10);
-  const double t = 10, x = std::cos(t) + 4. / 3 * std::sin(t / 2) - 2. / 3 * std::sin(t), v = -std::sin(t) + 2. / 3 * (std::cos(t / 2) - std::cos(t));
+  const double t = 10, x = std::cos(t) + 4. / 3 * std::sin(t / 2) - 2. / 3 * std::sin(t),
+               v = -std::sin(t) + 2. / 3 * (std::cos(t / 2) - std::cos(t));
   return std::hypot(motion.place[0] - x, motion.speed[0] - v);
 }
 
 TEST(PetscTs, has_the_order_of_its_method) {
   for (const auto &[method, order] : methods) {
     const double step = order == 8 ? 1 : 0.2;
-    EXPECT_NEAR(std::log2(error_with(method, step) / error_with(method, step / 4)) / 2, order, 0.3) << "order " << order;
+    EXPECT_NEAR(std::log2(error_with(method, step) / error_with(method, step / 4)) / 2, order, 0.3)
+        << "order " << order;
   }
 }
 

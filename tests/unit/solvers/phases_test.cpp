@@ -1,4 +1,5 @@
-// Integrators that take phases apart: drag as an implicit partition, and two clocks, on a chain of grains and water whose motion is known.
+// Integrators that take phases apart: drag as an implicit partition, and two clocks, on a chain of grains and water
+// whose motion is known.
 #include <gtest/gtest.h>
 
 #include "solvers/critical_step.h"
@@ -35,8 +36,8 @@ TEST(ImEx, is_of_third_order) {
   EXPECT_NEAR(std::log2(errors[0] / errors[2]) / 2, 3, 0.25);
 }
 
-// Explicitly a step could not exceed 2 / d, d = drag (1 / m_s + 1 / m_l): 5e-9 s at the last one. The phases start at different velocities,
-// which drag ends within the first step.
+// Explicitly a step could not exceed 2 / d, d = drag (1 / m_s + 1 / m_l): 5e-9 s at the last one. The phases start at
+// different velocities, which drag ends within the first step.
 TEST(ImEx, drag_however_stiff_does_not_limit_the_step) {
   for (const double drag : {1e2, 1e4, 1e8}) {
     WetSprings motion(1, 4, drag);
@@ -46,7 +47,8 @@ TEST(ImEx, drag_however_stiff_does_not_limit_the_step) {
     const Eigen::VectorXd exact = motion.exact(end);
     Arkode integrator(settings);
     const int steps = run_to(integrator, motion, critical, end);
-    EXPECT_LE(steps, std::ceil(end / (settings.rule().share * critical)) + 3) << drag;  // the first steps grow from a tenth
+    EXPECT_LE(steps, std::ceil(end / (settings.rule().share * critical)) + 3)
+        << drag;  // the first steps grow from a tenth
     EXPECT_EQ(integrator.statistics().rejections, 0);
     EXPECT_LT(motion.error(exact), 0.02) << drag;
   }
@@ -82,7 +84,8 @@ double speed_after(double share, double pores, double drag) {
 
 TEST(ImEx, is_stable_up_to_its_limit_for_any_drag) {
   for (const double pores : {0.1, 4., 1e3})
-    for (const double drag : {0., 1e-2, 1., 1e2, 1e5}) EXPECT_LT(speed_after(1, pores, drag), 10) << "pores " << pores << ", drag " << drag;
+    for (const double drag : {0., 1e-2, 1., 1e2, 1e5})
+      EXPECT_LT(speed_after(1, pores, drag), 10) << "pores " << pores << ", drag " << drag;
   EXPECT_GT(speed_after(1.03, 4, 0), 1e2);
 }
 
@@ -122,7 +125,8 @@ TEST(Euler, with_explicit_drag_holds_up_to_the_step_of_both_limits) {
       DraggedFirst motion(1, 4, drag);
       for (int i = 0; i < motion.size(); ++i) motion.speed[i] = i % 3 - 1;
       EulerSettings settings;
-      settings.step = share * with_explicit_drag(2 / motion.largest_frequency(), drag * (1 / WetSprings::grains + 1 / WetSprings::water));
+      settings.step = share * with_explicit_drag(2 / motion.largest_frequency(),
+                                                 drag * (1 / WetSprings::grains + 1 / WetSprings::water));
       Euler integrator(settings);
       run_to(integrator, motion, 1, 2000 * settings.step);
       double largest = 0;

@@ -1,12 +1,12 @@
 #pragma once
-/// A motion without soil for the tests of integrators: masses on a line between walls, held by springs, with a given force. Like soil
-/// it keeps what it accepted: places live in the accepted state, displacement counts from there.
+/// A motion without soil for the tests of integrators: masses on a line between walls, held by springs, with a given
+/// force. Like soil it keeps what it accepted: places live in the accepted state, displacement counts from there.
 #include <cmath>
 #include <functional>
 #include <vector>
 
-#include "solvers/integrator.h"
 #include "given_places.h"
+#include "solvers/integrator.h"
 
 namespace talus {
 
@@ -25,7 +25,8 @@ class Springs : public GivenPlaces {
   }
   double energy() const {
     double sum = 0, before = 0;
-    for (size_t i = 0; i < place.size(); ++i) sum += speed[i] * speed[i] / 2 + stiffness_ / 2 * (place[i] - before) * (place[i] - before), before = place[i];
+    for (size_t i = 0; i < place.size(); ++i)
+      sum += speed[i] * speed[i] / 2 + stiffness_ / 2 * (place[i] - before) * (place[i] - before), before = place[i];
     return sum + stiffness_ / 2 * before * before;
   }
 

@@ -1,16 +1,15 @@
 #pragma once
-/// A motion without soil for integrators that take phases apart: a chain of nodes that carry grains and water, between a wall and a free end.
-/// Skeleton springs hold the grains, the water in each cell resists (1 - n) strain of the grains + n strain of the water, and the two drag at
-/// one another. Linear, so its solution is known.
+/// A motion without soil for integrators that take phases apart: a chain of nodes that carry grains and water, between
+/// a wall and a free end. Skeleton springs hold the grains, the water in each cell resists (1 - n) strain of the grains
+/// + n strain of the water, and the two drag at one another. Linear, so its solution is known.
 #include <Eigen/Dense>
-#include <unsupported/Eigen/MatrixFunctions>
-
 #include <cmath>
+#include <unsupported/Eigen/MatrixFunctions>
 #include <vector>
 
+#include "given_places.h"
 #include "physics/pores/drag.h"
 #include "solvers/integrator.h"
-#include "given_places.h"
 
 namespace talus {
 
@@ -19,15 +18,16 @@ class WetSprings : public GivenPlaces {
   static constexpr int count = 8;
   static constexpr double porosity = 0.4, grains = 0.6, water = 0.4;  ///< masses of a node [kg]
 
-  /// Stiffness of skeleton and pore water [N/m]; drag [kg/s]; velocity of the water at the start over that of the grains.
-  WetSprings(double skeleton, double pores, double drag, double water_velocity = 0.5) : GivenPlaces(2 * count), skeleton_(skeleton), pores_(pores), drag_(drag) {
-    for (int i = 0; i < count; ++i) speed[i] = std::sin(M_PI / 2 * (i + 1) / count), speed[count + i] = water_velocity * speed[i];
+  /// Stiffness of skeleton and pore water [N/m]; drag [kg/s]; velocity of the water at the start over that of the
+  /// grains.
+  WetSprings(double skeleton, double pores, double drag, double water_velocity = 0.5)
+      : GivenPlaces(2 * count), skeleton_(skeleton), pores_(pores), drag_(drag) {
+    for (int i = 0; i < count; ++i)
+      speed[i] = std::sin(M_PI / 2 * (i + 1) / count), speed[count + i] = water_velocity * speed[i];
   }
 
   /// Largest frequency without drag [1/s].
-  double largest_frequency() const {
-    return std::sqrt(matrix(0).eigenvalues().cwiseAbs().maxCoeff());
-  }
+  double largest_frequency() const { return std::sqrt(matrix(0).eigenvalues().cwiseAbs().maxCoeff()); }
   /// (u, v) at time t from the present state.
   Eigen::VectorXd exact(double t) const {
     const int n = 2 * count;
@@ -39,7 +39,9 @@ class WetSprings : public GivenPlaces {
     return (rates * t).exp() * start;
   }
   /// Largest difference of the present velocities to those.
-  double error(const Eigen::VectorXd &state) const { return (Eigen::Map<const Eigen::VectorXd>(speed.data(), 2 * count) - state.tail(2 * count)).cwiseAbs().maxCoeff(); }
+  double error(const Eigen::VectorXd &state) const {
+    return (Eigen::Map<const Eigen::VectorXd>(speed.data(), 2 * count) - state.tail(2 * count)).cwiseAbs().maxCoeff();
+  }
   /// Momentum of both phases [kg m/s].
   double momentum() const {
     double sum = 0;
@@ -47,7 +49,9 @@ class WetSprings : public GivenPlaces {
     return sum;
   }
 
-  PetscErrorCode acceleration(double, const double *u, const double *, double *a) override { return force(u, a, true, true); }
+  PetscErrorCode acceleration(double, const double *u, const double *, double *a) override {
+    return force(u, a, true, true);
+  }
   PetscErrorCode slow_rates(double, const double *u, const double *, double *du, double *dv) override {
     std::fill_n(du, size(), 0.);
     return force(u, dv, true, false);
@@ -73,7 +77,9 @@ class WetSprings : public GivenPlaces {
  private:
   PetscErrorCode force(const double *u, double *a, bool of_skeleton, bool of_pores) const {
     std::fill_n(a, size(), 0.);
-    const auto at = [&](int i, int phase) { return i < 0 ? 0 : place[phase * count + i] + (u ? u[phase * count + i] : 0); };
+    const auto at = [&](int i, int phase) {
+      return i < 0 ? 0 : place[phase * count + i] + (u ? u[phase * count + i] : 0);
+    };
     for (int cell = 0; cell < count; ++cell) {  // between node cell - 1, which is the wall for the first, and node cell
       const double solid = at(cell, 0) - at(cell - 1, 0), fluid = at(cell, 1) - at(cell - 1, 1);
       const double push = of_pores ? pores_ * ((1 - porosity) * solid + porosity * fluid) : 0;
@@ -90,7 +96,9 @@ class WetSprings : public GivenPlaces {
   Eigen::MatrixXd matrix(int which) const {
     Eigen::MatrixXd m = Eigen::MatrixXd::Zero(2 * count, 2 * count);
     if (which == 1) {
-      for (int i = 0; i < count; ++i) m(i, i) = drag_ / grains, m(i, count + i) = -drag_ / grains, m(count + i, count + i) = drag_ / water, m(count + i, i) = -drag_ / water;
+      for (int i = 0; i < count; ++i)
+        m(i, i) = drag_ / grains, m(i, count + i) = -drag_ / grains, m(count + i, count + i) = drag_ / water,
+             m(count + i, i) = -drag_ / water;
       return m;
     }
     WetSprings probe(skeleton_, pores_, 0);

@@ -19,7 +19,10 @@ using test::sum;
 template <int dim>
 struct Filled {
   Filled(int n, double length)
-      : file(BoxMesh(dim, n)), mesh(BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.name(), 0, {})), grid(mesh), nonlocal(mesh, length, 0, 1) {
+      : file(BoxMesh(dim, n)),
+        mesh(BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.name(), 0, {})),
+        grid(mesh),
+        nonlocal(mesh, length, 0, 1) {
     for (int c = 0; c < mesh.cell_count(); ++c) {
       cell.push_back(grid.enter_cell(c)), volume.push_back(mesh.volume[c]), strain.push_back(0);
       Vec<dim> centre{};

@@ -1,8 +1,8 @@
 #pragma once
 /// Triaxial compression of normally consolidated modified Cam-clay. With P = p' + a, eta = q / P and Lambda = (lambda -
-/// kappa) / lambda, undrained P_0 / P = (1 + (eta / M)^2)^Lambda; drained P = 3 P_0 / (3 - eta) and v = v_0 - lambda ln(P
-/// / P_0) - (lambda - kappa) ln(1 + (eta / M)^2) (Muir Wood 1990, ch. 5). Shear strain, from the flow rule d eps_q / d
-/// eps_v = 2 eta / (M^2 - eta^2) along these paths, in README.md.
+/// kappa) / lambda, undrained P_0 / P = (1 + (eta / M)^2)^Lambda; drained P = 3 P_0 / (3 - eta) and v = v_0 - lambda
+/// ln(P / P_0) - (lambda - kappa) ln(1 + (eta / M)^2) (Muir Wood 1990, ch. 5). Shear strain, from the flow rule d eps_q
+/// / d eps_v = 2 eta / (M^2 - eta^2) along these paths, in README.md.
 #include <cmath>
 
 #include "commands/rung.h"
@@ -43,11 +43,14 @@ inline void cam_clay_paths(Rung &rung) {
     const ElementState &s = drained[k];
     const double eta = eta_of(s), P = 3 * P0 / (3 - eta);
     rung.compare(name("drained p' [Pa]", target), P - a, s.mean_pressure(), 1e-8);
-    rung.compare(name("drained v", target), v0 - lambda * std::log(P / P0) - (lambda - kappa) * std::log1p(eta * eta / (M * M)), v_of(s), 1e-8);
-    const double A = 6 / (M * M - 9), B = 1 / (3 - M), C = -1 / (3 + M);  // of 2 eta / ((3 - eta)(M^2 - eta^2)) in partial fractions
+    rung.compare(name("drained v", target),
+                 v0 - lambda * std::log(P / P0) - (lambda - kappa) * std::log1p(eta * eta / (M * M)), v_of(s), 1e-8);
+    const double A = 6 / (M * M - 9), B = 1 / (3 - M),
+                 C = -1 / (3 + M);  // of 2 eta / ((3 - eta)(M^2 - eta^2)) in partial fractions
     const double along = -A * std::log(1 - eta / 3) - B * std::log(1 - eta / M) + C * std::log1p(eta / M);
     const double plastic = (lambda - kappa) * (along + 2 / M * (std::atanh(eta / M) - std::atan(eta / M)));
-    rung.compare(name("drained integral v d eps_q", target), plastic - 3 * kappa / three_G_over_K * std::log(1 - eta / 3), sheared, 0.005);
+    rung.compare(name("drained integral v d eps_q", target),
+                 plastic - 3 * kappa / three_G_over_K * std::log(1 - eta / 3), sheared, 0.005);
   }
 }
 

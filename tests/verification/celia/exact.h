@@ -1,6 +1,6 @@
 #pragma once
-/// Celia, Bouloutas & Zarba (1990): head -1000 cm in the soil and -75 cm on top. Depth of head -500 cm and inflow after 6 h, computed on 1600 cells of a column of
-/// 1 m; the front has not come near the base of this one.
+/// Celia, Bouloutas & Zarba (1990): head -1000 cm in the soil and -75 cm on top. Depth of head -500 cm and inflow after
+/// 6 h, computed on 1600 cells of a column of 1 m; the front has not come near the base of this one.
 #include <algorithm>
 #include <cmath>
 
@@ -11,10 +11,12 @@ namespace talus::rungs {
 
 inline void celia(Rung &rung) {
   constexpr double width = 0.0125, height = 0.4;
-  const auto infiltrate = [&](const std::string &what, int dimension, double size, double tolerance, std::vector<std::string> overrides = {}) {
+  const auto infiltrate = [&](const std::string &what, int dimension, double size, double tolerance,
+                              std::vector<std::string> overrides = {}) {
     const double area = dimension == 3 ? width * width : width;
     overrides.push_back("mesh.size=" + number(size));
-    if (dimension == 3) overrides.push_back("body.soil.stress=[\"0\", \"-17769 * (0.4 - y)\", \"0\", \"0\", \"0\", \"0\"]");
+    if (dimension == 3)
+      overrides.push_back("body.soil.stress=[\"0\", \"-17769 * (0.4 - y)\", \"0\", \"0\", \"0\", \"0\"]");
     const Run run = rung.run(in_dimension(dimension, overrides));
     auto cells = cell_means(run.end, "suction", dimension);
     std::sort(cells.begin(), cells.end(), [](const auto &a, const auto &b) { return a.y > b.y; });
@@ -37,7 +39,8 @@ inline void celia(Rung &rung) {
   infiltrate("", 2, 0.003125, 0.01);
   infiltrate("", 3, 0.0125, 0.0425);
   infiltrate("all in motion, raised 4,000-fold, ", 2, 0.0125, 0.0425,
-             {"stage.0.duration=1e-6", "stage.1.duration=5.4", "body.soil.hydraulic_conductivity=0.3688", "output.history_interval=0.2"});
+             {"stage.0.duration=1e-6", "stage.1.duration=5.4", "body.soil.hydraulic_conductivity=0.3688",
+              "output.history_interval=0.2"});
 }
 
 }  // namespace talus::rungs

@@ -1,6 +1,7 @@
 #pragma once
-/// Terzaghi's consolidation as in ../terzaghi, at 1e-9 m/s: T = 1 is 11.6 days. Water of 2.2 GPa takes its storage into c_v and p_0. The
-/// settlement is that of the skeleton's share of the load: H / E_c (q - mean p) after the load, whose undrained part is (q - p_0) H / E_c.
+/// Terzaghi's consolidation as in ../terzaghi, at 1e-9 m/s: T = 1 is 11.6 days. Water of 2.2 GPa takes its storage into
+/// c_v and p_0. The settlement is that of the skeleton's share of the load: H / E_c (q - mean p) after the load, whose
+/// undrained part is (q - p_0) H / E_c.
 #include "commands/rung.h"
 #include "tests/verification/terzaghi/exact.h"
 
@@ -14,9 +15,11 @@ inline void fem_consolidation(Rung &rung) {
     for (const double T : {0.1, 0.5, 1.}) {
       if (dimension == 3 && T != 0.5 && !rung.longer()) continue;
       const Run run = rung.run(in_dimension(dimension, {"stage.0.duration=" + number(T / c_v)}));
-      const auto p = component(run.end, "pore_pressure"), y = component(run.end, "position", 1), u = component(run.end, "displacement", 1);
+      const auto p = component(run.end, "pore_pressure"), y = component(run.end, "position", 1),
+                 u = component(run.end, "displacement", 1);
       double largest = 0, settled = 0, mean = 0;
-      for (size_t i = 0; i < p.size(); ++i) largest = std::max(largest, std::abs(p[i] / p0 - terzaghi_pressure(1 - y[i], T)));
+      for (size_t i = 0; i < p.size(); ++i)
+        largest = std::max(largest, std::abs(p[i] / p0 - terzaghi_pressure(1 - y[i], T)));
       for (int m = 0; m < 400; ++m) {
         const double M = (2 * m + 1) * M_PI / 2;
         mean += 2 / (M * M) * std::exp(-M * M * T);

@@ -1,6 +1,7 @@
 #pragma once
-/// Elastic slope under gravity: no closed form. The finer mesh stands for the exact answer of the coarser one, plane strain for that of a slice of
-/// tetrahedra. The mean settlement, over the mass, is the work of the weight: the discrete one is never above the exact one.
+/// Elastic slope under gravity: no closed form. The finer mesh stands for the exact answer of the coarser one, plane
+/// strain for that of a slice of tetrahedra. The mean settlement, over the mass, is the work of the weight: the
+/// discrete one is never above the exact one.
 #include "commands/rung.h"
 
 namespace talus::rungs {

@@ -1,6 +1,7 @@
 #pragma once
-/// Celia, Bouloutas & Zarba (1990), Water Resour. Res. 26(7), 1483-1496, with the parameters of their fig. 5: depth at which the head is -500 cm
-/// and the water that came in, computed on 1600 cells (an independent computation, converged).
+/// Celia, Bouloutas & Zarba (1990), Water Resour. Res. 26(7), 1483-1496, with the parameters of their fig. 5: depth at
+/// which the head is -500 cm and the water that came in, computed on 1600 cells (an independent computation,
+/// converged).
 #include <algorithm>
 #include <cmath>
 
@@ -20,7 +21,8 @@ inline void fem_infiltration(Rung &rung) {
     double front = 1;
     for (size_t k = 1; k < order.size() && front == 1; ++k) {
       const double above = p[order[k - 1]] + 5 * gamma, below = p[order[k]] + 5 * gamma;
-      if (below <= 0 && above > 0) front = 1 - (y[order[k]] + (y[order[k - 1]] - y[order[k]]) * below / (below - above));
+      if (below <= 0 && above > 0)
+        front = 1 - (y[order[k]] + (y[order[k - 1]] - y[order[k]]) * below / (below - above));
     }
     const auto time = run.history.column("time_s"), inflow = run.history.column("top_inflow_m3_s");
     double water = 0;

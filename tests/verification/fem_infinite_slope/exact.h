@@ -1,10 +1,11 @@
 #pragma once
-/// Infinite slope at an angle b, failing along its base at the vertical depth z: F = c / (gamma z sin b cos b) + tan(phi) / tan(b). Soil with
-/// psi = phi that slips along the base has a stress whose circle touches the yield line there,
+/// Infinite slope at an angle b, failing along its base at the vertical depth z: F = c / (gamma z sin b cos b) +
+/// tan(phi) / tan(b). Soil with psi = phi that slips along the base has a stress whose circle touches the yield line
+/// there,
 ///     sigma_along = sigma_n (1 + 2 tan^2 phi_F) + 2 c_F tan phi_F,    c_F = c / F, tan phi_F = tan phi / F.
-/// That stress, falling linearly to nothing at the surface, is in equilibrium and inside the yield surface everywhere (it is convex): a piece
-/// whose ends carry it is as safe as the whole slope. With psi = 0 soil that slips along a plane has its largest shear stress there (Davis 1968):
-/// tau = sigma_n sin phi_F + c_F cos phi_F, which is less.
+/// That stress, falling linearly to nothing at the surface, is in equilibrium and inside the yield surface everywhere
+/// (it is convex): a piece whose ends carry it is as safe as the whole slope. With psi = 0 soil that slips along a
+/// plane has its largest shear stress there (Davis 1968): tau = sigma_n sin phi_F + c_F cos phi_F, which is less.
 #include <cmath>
 
 #include "commands/rung.h"
@@ -12,7 +13,8 @@
 namespace talus::rungs {
 
 inline void fem_infinite_slope(Rung &rung) {
-  constexpr double degree = M_PI / 180, gamma = 20e3, thickness = 1, share = 0.125;  // c over gamma z, as 5 kPa over 20 kN/m3 and 2 m
+  constexpr double degree = M_PI / 180, gamma = 20e3, thickness = 1,
+                   share = 0.125;  // c over gamma z, as 5 kPa over 20 kN/m3 and 2 m
   for (const auto &[slope, phi] : {std::pair{20., 30.}, {30., 20.}}) {
     if (slope == 30 && !rung.longer()) break;
     const double b = slope * degree, depth = thickness / std::cos(b), cohesion = share * gamma * depth;
@@ -24,9 +26,12 @@ inline void fem_infinite_slope(Rung &rung) {
       return "=[\"" + number(-side * along) + " * (1 - y)\", \"" + number(side * shear) + " * (1 - y)\"]";
     };
     const auto factor = [&](const std::string &dilation) {
-      return rung.factor_of_safety({"gravity=[" + number(10 * std::sin(b)) + ", " + number(-10 * std::cos(b)) + "]", "body.soil.cohesion=" + number(cohesion),
-                                    "body.soil.friction_angle=" + number(phi), "body.soil.dilation_angle=" + dilation,
-                                    "boundary.left.traction" + traction(-1), "boundary.right.traction" + traction(1)}).value();
+      return rung
+          .factor_of_safety({"gravity=[" + number(10 * std::sin(b)) + ", " + number(-10 * std::cos(b)) + "]",
+                             "body.soil.cohesion=" + number(cohesion), "body.soil.friction_angle=" + number(phi),
+                             "body.soil.dilation_angle=" + dilation, "boundary.left.traction" + traction(-1),
+                             "boundary.right.traction" + traction(1)})
+          .value();
     };
     const std::string name = "slope of " + number(slope) + " deg, phi = " + number(phi) + " deg";
     rung.compare(name + ", psi = phi", exact, factor(number(phi)), 0.03, 1);

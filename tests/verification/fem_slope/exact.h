@@ -1,11 +1,14 @@
 #pragma once
-/// Factor of safety 1.38 of example 1 of Griffiths & Lane (1999) by Bishop & Morgenstern's charts; finite elements in steps of 0.05: 1.40.
+/// Factor of safety 1.38 of example 1 of Griffiths & Lane (1999) by Bishop & Morgenstern's charts; finite elements in
+/// steps of 0.05: 1.40.
 #include "commands/rung.h"
 
 namespace talus::rungs {
 
 inline void fem_slope(Rung &rung) {
-  const auto factor = [&](const std::vector<std::string> &overrides) { return rung.factor_of_safety(overrides).value(); };
+  const auto factor = [&](const std::vector<std::string> &overrides) {
+    return rung.factor_of_safety(overrides).value();
+  };
   rung.compare("psi = phi, factor of safety", 1.38, factor({}), 0.03, 1);
   rung.compare("psi = 0, factor of safety", 1.38, factor({"body.soil.dilation_angle=0"}), 0.05, 1);
   if (rung.longer()) rung.compare("psi = phi, cells of 0.6 m", 1.38, factor({"mesh.size=0.6"}), 0.03, 1);

@@ -37,7 +37,8 @@ inline void incline_block(Rung &rung) {
       return speed(slide_run(friction, adhesion, duration, damping));
     };
     // from 0.2 s on: until the shear stress at the base has built up, friction is less than it could be
-    const auto measured = [&](const std::string &friction, double adhesion, double from, double to, double damping = 0) {
+    const auto measured = [&](const std::string &friction, double adhesion, double from, double to,
+                              double damping = 0) {
       return (slide(friction, adhesion, to, damping) - slide(friction, adhesion, from, damping)) / (to - from);
     };
     const std::string drop = "[[0, 28], [0.7, 28], [0.700001, 15]]", of_driving = ", of g sin beta";
@@ -60,12 +61,14 @@ inline void incline_block(Rung &rung) {
     const auto mass = component(run.end, "mass"), way = component(run.end, "displacement");
     double sum = 0, total = 0;
     for (size_t i = 0; i < mass.size(); ++i) sum += mass[i] * way[i], total += mass[i];
-    const double friction = run.history.column("work_base_J").back(), gravity = run.history.column("work_gravity_J").back();
+    const double friction = run.history.column("work_base_J").back(),
+                 gravity = run.history.column("work_gravity_J").back();
     const double width = total / 1000;  // 1 m in the plane, the slice's thickness in 3D
-    rung.compare(space + "work of friction over its way [N]", -mass_per_area * width * g * std::cos(beta) * std::tan(20 * degree),
-                 friction / (sum / total), 0.01);
+    rung.compare(space + "work of friction over its way [N]",
+                 -mass_per_area * width * g * std::cos(beta) * std::tan(20 * degree), friction / (sum / total), 0.01);
     rung.compare(space + "work of gravity over its way [N]", total * driving, gravity / (sum / total), 0.01);
-    rung.compare(space + "energy not accounted for, of the work of friction", 0, run.history.column("dissipated_J").back() / friction, 0.02, 1);
+    rung.compare(space + "energy not accounted for, of the work of friction", 0,
+                 run.history.column("dissipated_J").back() / friction, 0.02, 1);
     rung.report(space + "a, phi_b 20 deg, local damping 0.1" + of_driving, 0.9 * acceleration(20, 0) / driving,
                 measured("20", 0, 0.2, 1.5, 0.1) / driving, 1);
   }

@@ -18,23 +18,30 @@ inline void laboratory(Rung &rung) {
     }
   };
   for (const Soil soil : {Soil{35, 5}, {47, 3}, {30, 3}, {40, 1}}) {
-    const std::string of = " Mohr-Coulomb, phi " + std::to_string(soil.phi) + " deg, c " + std::to_string(soil.cohesion) + " kPa";
-    rung.compare("compression sigma_1 [Pa]," + of, soil.strength(50e3), -rung.element_test("compression", soil.keys()).back().stress[1], 1e-9);
+    const std::string of =
+        " Mohr-Coulomb, phi " + std::to_string(soil.phi) + " deg, c " + std::to_string(soil.cohesion) + " kPa";
+    rung.compare("compression sigma_1 [Pa]," + of, soil.strength(50e3),
+                 -rung.element_test("compression", soil.keys()).back().stress[1], 1e-9);
   }
   const Soil sand{35, 5};
-  rung.compare("biaxial sigma_1 [Pa], Mohr-Coulomb", sand.strength(50e3), -rung.element_test("biaxial", sand.keys()).back().stress[1], 1e-9);
+  rung.compare("biaxial sigma_1 [Pa], Mohr-Coulomb", sand.strength(50e3),
+               -rung.element_test("biaxial", sand.keys()).back().stress[1], 1e-9);
   const double axial = -rung.element_test("extension", sand.keys()).back().stress[1];
   rung.compare("extension sigma_1 [Pa], Mohr-Coulomb", 100e3, sand.strength(axial), 1e-9);
-  // without dilation p' stays, but for the 1e-8 of its volume that a step of 2.5e-4 loses to the midpoint rule, theory (3.4)
+  // without dilation p' stays, but for the 1e-8 of its volume that a step of 2.5e-4 loses to the midpoint rule, theory
+  // (3.4)
   const double sine = std::sin(35 * degree), cosine = std::cos(35 * degree);
   rung.compare("undrained q [Pa], Mohr-Coulomb", 6 * (5e3 * cosine + 100e3 * sine) / (3 - sine),
                rung.element_test("undrained", sand.keys()).back().deviator(), 1e-6);
 
-  // a plane that slips under an infinite slope, at constant stress across it: tan phi only if it dilates as much (Davis 1968)
+  // a plane that slips under an infinite slope, at constant stress across it: tan phi only if it dilates as much (Davis
+  // 1968)
   for (const int psi : {0, 15, 35}) {
     const double slip = 1 - sine * std::sin(psi * degree);
-    const ElementState state = rung.element_test("plane", {"material.law=mohr_coulomb", "material.friction_angle=35", "material.cohesion=5000",
-                                                           "material.dilation_angle=" + std::to_string(psi), "material.young_modulus=2e9"}).back();
+    const ElementState state =
+        rung.element_test("plane", {"material.law=mohr_coulomb", "material.friction_angle=35", "material.cohesion=5000",
+                                    "material.dilation_angle=" + std::to_string(psi), "material.young_modulus=2e9"})
+            .back();
     rung.compare("shear stress of a slipping plane [Pa], Mohr-Coulomb, psi " + std::to_string(psi) + " deg",
                  (100e3 * sine + 5e3 * cosine) * std::cos(psi * degree) / slip, state.stress[3], 1e-3);
   }
@@ -43,9 +50,11 @@ inline void laboratory(Rung &rung) {
   const auto oedometer = rung.element_test("oedometer");
   for (const int leg : {1, 2, 3}) {
     const double strain = std::vector<double>{0.02, 0.01, 0.04}[leg - 1];
-    rung.compare("oedometer sigma_y [Pa], elastic, to " + number(100 * strain) + " %", 50e3 + M * strain, -oedometer[200 * leg].stress[1], 1e-8);
+    rung.compare("oedometer sigma_y [Pa], elastic, to " + number(100 * strain) + " %", 50e3 + M * strain,
+                 -oedometer[200 * leg].stress[1], 1e-8);
   }
-  rung.compare("isotropic p [Pa], elastic", 50e3 + 0.03 * K, rung.element_test("isotropic").back().mean_pressure(), 1e-8);
+  rung.compare("isotropic p [Pa], elastic", 50e3 + 0.03 * K, rung.element_test("isotropic").back().mean_pressure(),
+               1e-8);
   const ElementState end = rung.element_test("skempton").back();
   rung.compare("dp'/dp = 1 - B, elastic", 0.1, (end.mean_pressure() - 100e3) / (end.deviator() / 3), 1e-7);
 }

@@ -14,11 +14,13 @@ inline void loaded_face(Rung &rung) {
     const Run run = rung.run(overrides);
     rung.compare("2D " + what + ": way of the face [m]", std::exp(-q / modulus) - 1,
                  run.history.column(face + "_displacement_y_m").back(), 0.02);
-    rung.compare("2D " + what + ": force on the base [N]", q * width, run.history.column("base_force_y_N").back(), 0.01);
+    rung.compare("2D " + what + ": force on the base [N]", q * width, run.history.column("base_force_y_N").back(),
+                 0.01);
   };
   check("pressure", "load", {});
-  check("dead load", "dead", {"boundary.load.pressure=0", "boundary.dead.group=load", "boundary.dead.kind=traction",
-                              "boundary.dead.traction=[\"0\", \"-20e3 * min(1, t / 0.5)\"]"});
+  check("dead load", "dead",
+        {"boundary.load.pressure=0", "boundary.dead.group=load", "boundary.dead.kind=traction",
+         "boundary.dead.traction=[\"0\", \"-20e3 * min(1, t / 0.5)\"]"});
 }
 
 }  // namespace talus::rungs

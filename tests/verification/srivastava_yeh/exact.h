@@ -1,6 +1,6 @@
 #pragma once
-/// Srivastava & Yeh (1991): conductivity over height and time in a soil of Gardner's kind between a water table and a flux that rises from q_A to
-/// q_B, in z = alpha y, t = alpha K_s t / (theta_s - theta_r), L = alpha H.
+/// Srivastava & Yeh (1991): conductivity over height and time in a soil of Gardner's kind between a water table and a
+/// flux that rises from q_A to q_B, in z = alpha y, t = alpha K_s t / (theta_s - theta_r), L = alpha H.
 #include <algorithm>
 #include <cmath>
 
@@ -28,16 +28,20 @@ inline void srivastava_yeh(Rung &rung) {
   const auto infiltrate = [&](int dimension, double t) {
     const double seconds = t * porosity / (alpha * K_s);
     std::vector<std::string> overrides{"stage.0.duration=" + number(seconds)};
-    if (dimension == 3) overrides.push_back("body.soil.stress=[\"0\", \"-10 * (1630 * (0.5 - y) + 18 * exp(-20 * y))\", \"0\", \"0\", \"0\", \"0\"]");
+    if (dimension == 3)
+      overrides.push_back(
+          "body.soil.stress=[\"0\", \"-10 * (1630 * (0.5 - y) + 18 * exp(-20 * y))\", \"0\", \"0\", \"0\", \"0\"]");
     const Run run = rung.run(in_dimension(dimension, overrides));
     double square = 0, total = 0;
     for (const CellMeans &cell : cell_means(run.end, "suction", dimension)) {
-      const double error = std::exp(-cell.value / decay) - srivastava_yeh_conductivity(alpha * cell.y, t, alpha * height, 0.1, 0.9);
+      const double error =
+          std::exp(-cell.value / decay) - srivastava_yeh_conductivity(alpha * cell.y, t, alpha * height, 0.1, 0.9);
       square += error * error, ++total;
     }
     const std::string name = name_of(dimension) + " t* = " + number(t);
     rung.compare(name + ", rms error of K / K_s", 0, std::sqrt(square / total), 0.01, 1);
-    rung.compare(name + ", water error over water", 0, run.history.column("water_error_kg").back(), 1e-10, run.history.column("water_kg").front());
+    rung.compare(name + ", water error over water", 0, run.history.column("water_error_kg").back(), 1e-10,
+                 run.history.column("water_kg").front());
   };
   infiltrate(2, 0.5);
   infiltrate(2, 2);

@@ -1,6 +1,7 @@
 // The forms that others take and that are there to show where they fail, in the time loop.
-// Explicit drag: the step that the program states for it is the one of the closed form for saturated soil, it holds, and a little more fails where drag sets it;
-// with implicit drag the same soil keeps the step without drag. Pressure by its rate: water is lost near saturation, and pressure scatters.
+// Explicit drag: the step that the program states for it is the one of the closed form for saturated soil, it holds,
+// and a little more fails where drag sets it; with implicit drag the same soil keeps the step without drag. Pressure by
+// its rate: water is lost near saturation, and pressure scatters.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,9 +17,11 @@ namespace {
 
 struct Layer {
   explicit Layer(std::vector<std::string> overrides)
-      : scene(read_scene(TALUS_TERZAGHI, with(std::move(overrides)))), simulation(make_simulation(PETSC_COMM_WORLD, scene, options())) {}
+      : scene(read_scene(TALUS_TERZAGHI, with(std::move(overrides)))),
+        simulation(make_simulation(PETSC_COMM_WORLD, scene, options())) {}
   static std::vector<std::string> with(std::vector<std::string> overrides) {
-    overrides.insert(overrides.end(), {"mesh.size=0.15", "water.bulk_modulus=20e6", "water.compression=exponential", "output.interval=0"});
+    overrides.insert(overrides.end(), {"mesh.size=0.15", "water.bulk_modulus=20e6", "water.compression=exponential",
+                                       "output.interval=0"});
     return overrides;
   }
   static RunOptions options() {
@@ -48,8 +51,10 @@ TEST(ExplicitDrag, limits_the_step_as_the_closed_form_says_and_implicit_drag_doe
   const double free = Layer({}).simulation->critical_step();
   for (const char *permeability : {"1e-8", "1e-11", "1e-14"}) {
     const std::string k = std::string("body.soil.permeability=") + permeability;
-    const double rate = n * ((1 - n) * grains + n * water) * viscosity / ((1 - n) * grains * water * std::stod(permeability));
-    EXPECT_NEAR(Layer({k, "water.drag=explicit"}).simulation->critical_step() / with_explicit_drag(free, rate), 1, 1e-4) << k;  // water is denser under pressure, by 5e-5
+    const double rate =
+        n * ((1 - n) * grains + n * water) * viscosity / ((1 - n) * grains * water * std::stod(permeability));
+    EXPECT_NEAR(Layer({k, "water.drag=explicit"}).simulation->critical_step() / with_explicit_drag(free, rate), 1, 1e-4)
+        << k;  // water is denser under pressure, by 5e-5
     EXPECT_EQ(Layer({k}).simulation->critical_step(), free) << k;
   }
 }
@@ -68,9 +73,16 @@ TEST(ExplicitDrag, holds_at_its_step_and_fails_beyond_it_where_drag_sets_it) {
 
 // The rate is that of the present saturation: dry soil hardly conducts.
 TEST(ExplicitDrag, shortens_the_step_further_in_unsaturated_soil) {
-  const std::vector<std::string> dry = {"phases=unsaturated", "water.suction=50e3", "body.soil.retention.curve=van_genuchten", "body.soil.retention.reference_suction=10e3",
-                                        "body.soil.retention.shape=0.5", "body.soil.relative_permeability.curve=van_genuchten_mualem",
-                                        "body.soil.relative_permeability.shape=0.5", "water.table=[[0, -1], [1, -1]]", "water.excess=0", "body.soil.permeability=1e-12",
+  const std::vector<std::string> dry = {"phases=unsaturated",
+                                        "water.suction=50e3",
+                                        "body.soil.retention.curve=van_genuchten",
+                                        "body.soil.retention.reference_suction=10e3",
+                                        "body.soil.retention.shape=0.5",
+                                        "body.soil.relative_permeability.curve=van_genuchten_mualem",
+                                        "body.soil.relative_permeability.shape=0.5",
+                                        "water.table=[[0, -1], [1, -1]]",
+                                        "water.excess=0",
+                                        "body.soil.permeability=1e-12",
                                         "water.drag=explicit"};
   std::vector<std::string> wet = dry;
   wet[1] = "water.suction=1e3";
@@ -82,13 +94,16 @@ TEST(ExplicitDrag, shortens_the_step_further_in_unsaturated_soil) {
 /// A column under rain that fills its top cells, with particles as points and a remap every step.
 struct Wetting {
   explicit Wetting(const char *storage) {
-    Scene scene = read_scene(TALUS_WETTING, {"mesh.size=0.1", "stage.0.duration=0.3", "output.interval=0", "output.history_interval=0.01", "transfer.pore_smoothing=none",
-                                             "transfer.integration=particle", "transfer.average_stress=false", "transfer.locking=none", "transfer.remap_interval=0",
-                                             "transfer.relaxation=0", std::string("water.storage=") + storage});
+    Scene scene = read_scene(
+        TALUS_WETTING, {"mesh.size=0.1", "stage.0.duration=0.3", "output.interval=0", "output.history_interval=0.01",
+                        "transfer.pore_smoothing=none", "transfer.integration=particle",
+                        "transfer.average_stress=false", "transfer.locking=none", "transfer.remap_interval=0",
+                        "transfer.relaxation=0", std::string("water.storage=") + storage});
     const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, Layer::options());
     simulation->run();
     const HistoryTable &history = simulation->history();
-    stored = history.column("water_kg").front(), gained = history.column("water_kg").back() - stored, error = history.column("water_error_kg").back();
+    stored = history.column("water_kg").front(), gained = history.column("water_kg").back() - stored,
+    error = history.column("water_error_kg").back();
     for (const Column &column : simulation->snapshot().columns)
       if (column.name == "pore_pressure") lowest = *std::min_element(column.values.begin(), column.values.end());
   }

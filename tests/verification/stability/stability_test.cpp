@@ -1,6 +1,6 @@
-// Each integrator at and around its own stability limit, on a bar of tetrahedra: the step beyond which energy grows is that which omega_max of
-// the filled mesh, by power iteration on the motion itself, foretells. With TALUS_STABILITY_CSV = FILE, energies over time are written there
-// (docs/gallery/integrators/stability.py).
+// Each integrator at and around its own stability limit, on a bar of tetrahedra: the step beyond which energy grows is
+// that which omega_max of the filled mesh, by power iteration on the motion itself, foretells. With TALUS_STABILITY_CSV
+// = FILE, energies over time are written there (docs/gallery/integrators/stability.py).
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -13,7 +13,8 @@
 namespace talus {
 namespace {
 
-const std::string bar = std::string("phases = \"dry\"\ndimension = 3\ngravity = 0\n[mesh]\nsection = \"") + TALUS_MESHES + R"(/bar.csv"
+const std::string bar =
+    std::string("phases = \"dry\"\ndimension = 3\ngravity = 0\n[mesh]\nsection = \"") + TALUS_MESHES + R"(/bar.csv"
 size = 0.05
 thickness = 0.1
 layers = 0
@@ -69,7 +70,7 @@ struct Bar : Soil<3> {
 
 struct Kind {
   const char *name;
-  double limit;                                       ///< omega h
+  double limit;                                             ///< omega h
   std::function<std::unique_ptr<Integrator>(double)> make;  ///< with a fixed step [s]
 };
 
@@ -92,7 +93,8 @@ std::vector<Kind> kinds() {
   return all;
 }
 
-/// Energy after each step over the first, of a bar that starts in its fastest mode; ends when it has grown a thousandfold.
+/// Energy after each step over the first, of a bar that starts in its fastest mode; ends when it has grown a
+/// thousandfold.
 std::vector<double> energies(const Kind &kind, double step, int steps, const std::vector<double> &mode) {
   Bar bar;
   double *v = bar.motion->velocity();
@@ -107,8 +109,9 @@ std::vector<double> energies(const Kind &kind, double step, int steps, const std
   return all;
 }
 
-// Patches soften what the iteration of the program, which leaves them out, takes for the stiffness: it may be faster, by what that adds to the fastest
-// mode; and power iteration is below what it tends to, by 1 % or 2 after 60 turns. Warm starts go on from there.
+// Patches soften what the iteration of the program, which leaves them out, takes for the stiffness: it may be faster,
+// by what that adds to the fastest mode; and power iteration is below what it tends to, by 1 % or 2 after 60 turns.
+// Warm starts go on from there.
 TEST(Stability, frequency_of_the_mesh_is_found_by_the_iteration_of_the_program) {
   Bar bar;
   std::vector<double> mode;
@@ -137,7 +140,8 @@ TEST(Stability, limits_are_those_of_the_fastest_mode_within_5_percent) {
   EXPECT_GE(2 / omega, safe * (1 - 1e-9)) << "the bound that the program steps by is safe";
   for (const Kind &kind : kinds()) {
     double low = 0.9, high = 1.1;
-    const double growth = std::string(kind.name) == "euler" ? 4 : 1.0005;  // euler sees velocity half a step late, and its energy swings
+    const double growth =
+        std::string(kind.name) == "euler" ? 4 : 1.0005;  // euler sees velocity half a step late, and its energy swings
     const auto grows = [&](double share) {
       const auto e = energies(kind, share * kind.limit / omega, 400, mode);
       return e.back() > growth * e.front();
@@ -154,7 +158,8 @@ TEST(Stability, limits_are_those_of_the_fastest_mode_within_5_percent) {
     for (const Kind &kind : kinds())
       for (const double share : {0.5, 0.7, 0.9, 0.97, 1.03, 1.1, 1.2}) {
         const auto e = energies(kind, share * kind.limit / omega, 300, mode);
-        for (size_t i = 0; i < e.size(); ++i) file << kind.name << "," << share << "," << i + 1 << "," << e[i] / e[0] << "\n";
+        for (size_t i = 0; i < e.size(); ++i)
+          file << kind.name << "," << share << "," << i + 1 << "," << e[i] / e[0] << "\n";
       }
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
-/// Still water, 2 m above the crest of a slope: p = rho_l g (level - y) everywhere, and grains as heavy as water leave the skeleton without stress, so that nothing may move.
+/// Still water, 2 m above the crest of a slope: p = rho_l g (level - y) everywhere, and grains as heavy as water leave
+/// the skeleton without stress, so that nothing may move.
 #include <algorithm>
 #include <cmath>
 
@@ -26,19 +27,25 @@ inline void submerged_slope(Rung &rung) {
       for (const double v : component(run.end, "velocity", d)) speed = std::max(speed, std::abs(v));
     }
     const auto put = [&](const std::string &quantity, double value, double at_rest, double settling, double scale) {
-      claim == Claim::none ? rung.report(name + ", " + quantity, 0, value, scale) : rung.compare(name + ", " + quantity, 0, value, claim == Claim::at_rest ? at_rest : settling, scale);
+      claim == Claim::none
+          ? rung.report(name + ", " + quantity, 0, value, scale)
+          : rung.compare(name + ", " + quantity, 0, value, claim == Claim::at_rest ? at_rest : settling, scale);
     };
-    // at rest: round-off of pressures of 80 kPa, 1e-11 Pa, on 20 MPa; settling: residual gas that must find its pressure
+    // at rest: round-off of pressures of 80 kPa, 1e-11 Pa, on 20 MPa; settling: residual gas that must find its
+    // pressure
     put("largest displacement over height", moved, 1e-9, 1e-5, height);
     put("rms error of pressure over weight of the water", std::sqrt(square / count), 1e-6, 2e-3, unit_weight * height);
     put("largest speed [m/s]", speed, 1e-10, 1e-4, 1);
-    rung.report(name + ", largest error of pressure in a cell over weight of the water", 0, largest, unit_weight * height);
-    rung.compare(name + ", water error over water", 0, run.history.column("water_error_kg").back(), 1e-10, run.history.column("water_kg").front());
+    rung.report(name + ", largest error of pressure in a cell over weight of the water", 0, largest,
+                unit_weight * height);
+    rung.compare(name + ", water error over water", 0, run.history.column("water_error_kg").back(), 1e-10,
+                 run.history.column("water_kg").front());
   };
   rest("2D saturated", 2, {}, Claim::at_rest);
   rest("2D unsaturated", 2, {"phases=unsaturated"}, Claim::at_rest);
   rest("2D three-phase", 2, {"phases=three-phase"}, Claim::settles);
-  rest("2D, surface cuts cells", 2, {"body.soil.displacement=[\"0\", \"-0.02 * y\"]", "boundary.water.group=free_surface"}, Claim::none);
+  rest("2D, surface cuts cells", 2,
+       {"body.soil.displacement=[\"0\", \"-0.02 * y\"]", "boundary.water.group=free_surface"}, Claim::none);
   if (!rung.longer()) return;
   rest("3D saturated", 3, {}, Claim::at_rest);
   rest("2D saturated, cells of 0.25 m", 2, {"mesh.size=0.25"}, Claim::at_rest);

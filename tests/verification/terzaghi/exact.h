@@ -1,6 +1,6 @@
 #pragma once
-/// Terzaghi's consolidation, drained at the top: p / p_0 = sum (2 / M) sin(M Z) exp(-M^2 T), M = (2m + 1) pi / 2, Z depth below the top over H,
-/// T = c_v t / H^2. A liquid that gives way takes its storage into both p_0 and c_v.
+/// Terzaghi's consolidation, drained at the top: p / p_0 = sum (2 / M) sin(M Z) exp(-M^2 T), M = (2m + 1) pi / 2, Z
+/// depth below the top over H, T = c_v t / H^2. A liquid that gives way takes its storage into both p_0 and c_v.
 #include <algorithm>
 #include <cmath>
 
@@ -23,9 +23,11 @@ inline void terzaghi(Rung &rung) {
   constexpr double p0 = load * (bulk / porosity) / (modulus + bulk / porosity);
   const auto consolidate = [&](int dimension, double k, double T) {
     const double c_v = k / viscosity / (1 / modulus + porosity / bulk);
-    const std::string stress = std::string("body.soil.stress=[0, \"-1000 * 10 / 260\", 0, 0") + (dimension == 3 ? ", 0, 0]" : "]");
-    const Run run = rung.run(in_dimension(dimension, {stress, "body.soil.permeability=" + number(k), "stage.0.duration=" + number(T / c_v),
-                                                      "output.history_interval=" + number(T / c_v / 20)}));
+    const std::string stress =
+        std::string("body.soil.stress=[0, \"-1000 * 10 / 260\", 0, 0") + (dimension == 3 ? ", 0, 0]" : "]");
+    const Run run = rung.run(
+        in_dimension(dimension, {stress, "body.soil.permeability=" + number(k), "stage.0.duration=" + number(T / c_v),
+                                 "output.history_interval=" + number(T / c_v / 20)}));
     double largest = 0, square = 0, count = 0;
     for (const CellMeans &cell : cell_means(run.end, "pore_pressure", dimension)) {
       const double error = cell.value / p0 - terzaghi_pressure(1 - cell.y, T);
@@ -35,7 +37,8 @@ inline void terzaghi(Rung &rung) {
     rung.compare(name + ", rms error of p / p0", 0, std::sqrt(square / count), 0.01, 1);
     rung.report(name + ", largest error of p / p0", 0, largest, 1);
     const double water = run.history.column("water_kg").front();
-    rung.compare(name + ", water stored less initial, in and out", 0, run.history.column("water_error_kg").back(), 1e-10, water);
+    rung.compare(name + ", water stored less initial, in and out", 0, run.history.column("water_error_kg").back(),
+                 1e-10, water);
   };
   for (const double T : {0.1, 0.5, 1.}) consolidate(2, 1e-10, T);
   consolidate(2, 1e-12, 0.01);

@@ -1,6 +1,7 @@
 #pragma once
-/// Two waves in a saturated column: a load runs down with water and skeleton together at c_1, behind it at c_2 the skeleton against
-/// the water. The stresses at one place and time are those of two independent computations of the linear problem, converged.
+/// Two waves in a saturated column: a load runs down with water and skeleton together at c_1, behind it at c_2 the
+/// skeleton against the water. The stresses at one place and time are those of two independent computations of the
+/// linear problem, converged.
 #include <cmath>
 
 #include "commands/rung.h"
@@ -10,9 +11,11 @@ namespace talus::rungs {
 inline void two_waves(Rung &rung) {
   constexpr double height = 0.40014, share = 0.01;  // of the load of 2 kPa, so that the problem is the linear one
   const auto wave = [&](int dimension, bool ponded, double size, double load, double tolerance, bool claimed) {
-    const Run run = rung.run(in_dimension(dimension, {"mesh.size=" + number(size), "mesh.thickness=" + number(size), "boundary.load.pressure=" + number(load),
-                                                      "boundary.drain.pressure=" + number(ponded ? load : 0)}));
-    const auto y = component(run.end, "position", 1), stress = component(run.end, "stress", 1), pressure = component(run.end, "pore_pressure");
+    const Run run = rung.run(in_dimension(
+        dimension, {"mesh.size=" + number(size), "mesh.thickness=" + number(size),
+                    "boundary.load.pressure=" + number(load), "boundary.drain.pressure=" + number(ponded ? load : 0)}));
+    const auto y = component(run.end, "position", 1), stress = component(run.end, "stress", 1),
+               pressure = component(run.end, "pore_pressure");
     // linear through what lies around the height
     double weight = 0, sigma = 0, p = 0;
     constexpr double reach = 0.015;
@@ -21,9 +24,11 @@ inline void two_waves(Rung &rung) {
       weight += w, sigma += w * stress[i], p += w * pressure[i];
     }
     const double scale = 2000 / load / weight;
-    const std::string name = name_of(dimension) + ", cells of " + number(size * 1e3) + " mm, " + (load < 2000 ? "" : "full load, ") + (ponded ? "pressure on top" : "drained top");
+    const std::string name = name_of(dimension) + ", cells of " + number(size * 1e3) + " mm, " +
+                             (load < 2000 ? "" : "full load, ") + (ponded ? "pressure on top" : "drained top");
     const auto put = [&](const std::string &quantity, double exact, double value) {
-      claimed ? rung.compare(name + quantity, exact, value, tolerance, 2000) : rung.report(name + quantity, exact, value, 2000);
+      claimed ? rung.compare(name + quantity, exact, value, tolerance, 2000)
+              : rung.report(name + quantity, exact, value, 2000);
     };
     put(", effective stress [Pa]", ponded ? -734 : -1267, scale * sigma);
     if (!ponded) put(", pore pressure [Pa]", 734, scale * p);

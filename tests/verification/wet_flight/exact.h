@@ -1,5 +1,6 @@
 #pragma once
-/// Free flight: boundaries follow the surface of the soil wherever it is, so nothing passes it and pressures stay what they were.
+/// Free flight: boundaries follow the surface of the soil wherever it is, so nothing passes it and pressures stay what
+/// they were.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -26,9 +27,11 @@ inline void wet_flight(Rung &rung) {
       const double mass = run.history.column(fluid + "_kg").front();
       const double lost = std::abs(run.history.column(fluid + "_out_kg").back());
       rung.compare(name + ", " + fluid + " lost over " + fluid, 0, lost, 1e-6, mass);
-      rung.compare(name + ", " + fluid + " error over " + fluid, 0, std::abs(run.history.column(fluid + "_error_kg").back()), 1e-10, mass);
+      rung.compare(name + ", " + fluid + " error over " + fluid, 0,
+                   std::abs(run.history.column(fluid + "_error_kg").back()), 1e-10, mass);
     }
-    // The surface is nowhere deeper than the cell it cuts and the one below, and along the block's sides but where a cell at a corner holds a bit of it
+    // The surface is nowhere deeper than the cell it cuts and the one below, and along the block's sides but where a
+    // cell at a corner holds a bit of it
     const auto flags = component(run.end, "surface");
     std::vector<double> depth(flags.size(), 1e300);
     for (int d = 0; d < dimension && d < 2; ++d) {
