@@ -17,6 +17,9 @@ inline constexpr double small_increment = 1e-2;
 template <int dim>
 bool decompose(const Square<dim> &g, Increment<dim> &increment);
 
+/// The same in 3D by the polar decomposition, for increments of any size.
+bool decompose_exactly(const Square<3> &g, Increment<3> &increment);
+
 /// ln(1 + x), by its series where the library's function would cost more than the rest of a cell.
 inline double log1p_small(double x) {
   return std::abs(x) < 1e-3 ? x * (1 - x * (1. / 2 - x * (1. / 3 - x * (1. / 4 - x / 5)))) : std::log1p(x);
@@ -73,17 +76,7 @@ inline bool decompose<3>(const Square<3> &g, Increment<3> &out) {
                     k * (wx * wz / 2 - wy), k * (wy * wz / 2 + wx), e + k * wz * wz / 2};
     return true;
   }
-  const Square<3> f = Square<3>::Identity() + g;
-  if (!(f.determinant() > 0)) return false;
-  const Eigen::SelfAdjointEigenSolver<Square<3>> eigen(f.transpose() * f);
-  const ColumnVector<3> stretch = eigen.eigenvalues().cwiseSqrt();
-  const Square<3> &axes = eigen.eigenvectors();
-  const Square<3> log_u = axes * stretch.array().log().matrix().asDiagonal() * axes.transpose();
-  const Square<3> r = f * axes * stretch.cwiseInverse().asDiagonal() * axes.transpose();
-  out.strain = {log_u(0, 0), log_u(1, 1), log_u(2, 2), log_u(0, 1), log_u(1, 2), log_u(0, 2)};
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) out.rotation[3 * i + j] = r(i, j);
-  return true;
+  return decompose_exactly(g, out);
 }
 
 template <int dim>

@@ -140,7 +140,7 @@ PetscErrorCode SoilMotion<dim, Phases>::deform(double t, const Vec<dim> *u, bool
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::accept(double t, const double *u, const double *v) {
   PetscFunctionBeginUser;
-  if (transfer_.velocity == Velocity::flip) own_share_ = relaxed(t);
+  own_share_ = relaxed(t);
   if (v != velocity_[0].data())
     std::copy_n(reinterpret_cast<const Vec<dim> *>(v), grid_.node_count() * velocity_fields<Phases>, velocity_.begin());
   PetscCall(deform(t, reinterpret_cast<const Vec<dim> *>(u), false));

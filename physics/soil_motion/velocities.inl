@@ -85,11 +85,11 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
   }
   if (relaxes()) {
     PetscCall(back_and_forth(velocity, mapped));
-    const double share = 1 - std::exp(-gamma / relaxation_time_);
+    const double share = 1 - std::exp(-gamma / relaxation_time_), own = relaxed(t + gamma);
     for (int i = 0; i < nodes; ++i)
       for (int d = 0; d < dim; ++d) {
         velocity[i][d] += share * (mapped[i][d] - velocity[i][d]);
-        mapped[i][d] += mapped_start_[i][d];
+        mapped[i][d] += own * mapped_start_[i][d];
       }
     constrain(t, velocity);
   } else {  // the same sum, mapped once
@@ -116,10 +116,11 @@ PetscErrorCode SoilMotion<dim, Phases>::rates(double t, const double *u, const d
   constrain(t, held);
   if (relaxes()) {
     PetscCall(back_and_forth(held, mapped));
+    const double own = relaxed(t);
     for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) {
         change[i][d] -= (held[i][d] - mapped[i][d]) / relaxation_time_;
-        mapped[i][d] += mapped_start_[i][d];
+        mapped[i][d] += own * mapped_start_[i][d];
       }
   } else {  // the same sum, mapped once
     for (int i = 0; i < all; ++i)
