@@ -83,7 +83,7 @@ class SoilMotion final : public Motion {
 
   /// The state between two steps, also in the middle of a Lagrangian part, so that it does not matter to a run where it
   /// was kept. After the bodies; collective.
-  PetscErrorCode keep(Archive &archive);
+  PetscErrorCode serialize(Archive &archive);
 
   Loading<dim> loading;
   /// Largest displacement of a node of this rank since the last remap, over its mean edge.

@@ -237,9 +237,9 @@ StepRule ArkodeSettings::rule() const {
 std::unique_ptr<Integrator> ArkodeSettings::make() const { return std::make_unique<Arkode>(*this); }
 
 void Arkode::restart() { memory_->others = true; }
-void Arkode::keep(Archive &archive) {
-  Integrator::keep(archive);
-  archive.keep("arkode", memory_->wanted);
+void Arkode::serialize(Archive &archive) {
+  Integrator::serialize(archive);
+  archive.serialize("arkode", memory_->wanted);
 }
 
 std::string Arkode::obstacle() const { return memory_->obstacle; }

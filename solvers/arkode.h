@@ -53,7 +53,7 @@ class Arkode final : public Integrator {
   ~Arkode() override;
   PetscErrorCode advance(Motion &motion, double t, const StepBounds &bounds, double *taken) override;
   void restart() override;
-  void keep(Archive &archive) override;
+  void serialize(Archive &archive) override;
   std::string obstacle() const override;
   int obstructing_component() const override;
 

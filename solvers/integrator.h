@@ -56,7 +56,7 @@ class Integrator {
   /// The nodes or the loads are others than at the end of the last step: after a remap, between stages.
   virtual void restart() {}
   /// What the next step depends on beside the motion, such as an adapted step size; for checkpoints.
-  virtual void keep(Archive &archive) { archive.keep("integrator", statistics_); }
+  virtual void serialize(Archive &archive) { archive.serialize("integrator", statistics_); }
   /// Why no further step is possible, the same on all ranks; empty while it is.
   virtual std::string obstacle() const { return ""; }
   /// Component of the velocity of this rank that stands in the way, -1: none on this rank.

@@ -304,16 +304,16 @@ PetscErrorCode Conditions<dim>::take_impulses(MPI_Comm comm, std::vector<Vec<dim
 }
 
 template <int dim>
-PetscErrorCode Conditions<dim>::keep(Archive &archive, FilledGrid<dim> &grid,
-                                     const std::vector<std::array<double, 2>> &impedance,
-                                     const std::vector<double> &filling) {
+PetscErrorCode Conditions<dim>::serialize(Archive &archive, FilledGrid<dim> &grid,
+                                          const std::vector<std::array<double, 2>> &impedance,
+                                          const std::vector<double> &filling) {
   PetscFunctionBeginUser;
-  archive.keep("supports", held_, frozen_);
+  archive.serialize("supports", held_, frozen_);
   if (archive.reading()) PetscCall(begin(grid, impedance, filling));
-  archive.keep("boundaries", impulse_, work_);
+  archive.serialize("boundaries", impulse_, work_);
   for (auto &contacts : contacts_)
-    for (Contact &c : contacts) archive.keep("contact", c.capacity, c.since_pressed);
-  for (ActiveContact &c : active_contacts_) archive.keep("contact now", c.force, c.presses, c.sticks);
+    for (Contact &c : contacts) archive.serialize("contact", c.capacity, c.since_pressed);
+  for (ActiveContact &c : active_contacts_) archive.serialize("contact now", c.force, c.presses, c.sticks);
   PetscFunctionReturn(0);
 }
 

@@ -60,8 +60,8 @@ class Conditions {
   SurfaceLoads<dim> &surface_loads() { return surface_loads_; }
   /// What `begin` does not find out anew: how contacts press and slide, frozen reactions, impulses and work. Reading
   /// begins. Collective.
-  PetscErrorCode keep(Archive &archive, FilledGrid<dim> &grid, const std::vector<std::array<double, 2>> &impedance,
-                      const std::vector<double> &filling);
+  PetscErrorCode serialize(Archive &archive, FilledGrid<dim> &grid, const std::vector<std::array<double, 2>> &impedance,
+                           const std::vector<double> &filling);
 
   const std::vector<Source> &sources() const { return sources_; }
   bool has_dashpots() const { return !dashpots_.empty(); }

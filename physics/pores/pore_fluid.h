@@ -125,7 +125,7 @@ class PoreFluid {
   const std::vector<Vec<dim>> &surface() const { return surface_; }
   /// Its first moment in depth below the node, where open water rests on it [m3].
   const std::vector<Vec<dim>> &surface_moment() const { return moment_; }
-  void keep(Archive &archive);
+  void serialize(Archive &archive);
 
   bool given = false;  ///< pressures follow [water] instead of the fluids' motion
   double given_ramp = 1;

@@ -106,13 +106,13 @@ PoreReport PoreFluid<dim, Phases>::report(int body, int point, int cell, bool su
 }
 
 template <int dim, class Phases>
-void PoreFluid<dim, Phases>::keep(Archive &archive) {
+void PoreFluid<dim, Phases>::serialize(Archive &archive) {
   for (PorePoints &points : points_) {
-    archive.keep("pores", points.count, points.grains, points.share, points.suction, points.pressure);
-    for (int a = 0; a < fluids; ++a) archive.keep("fluid", points.mass[a]);
+    archive.serialize("pores", points.count, points.grains, points.share, points.suction, points.pressure);
+    for (int a = 0; a < fluids; ++a) archive.serialize("fluid", points.mass[a]);
   }
-  archive.keep("fluids", cells_, nodes_, surface_, moment_, mean_, reference_, rows_, grain_mass_, body_of_node_, out_,
-               given_mass_);
+  archive.serialize("fluids", cells_, nodes_, surface_, moment_, mean_, reference_, rows_, grain_mass_, body_of_node_,
+                    out_, given_mass_);
 }
 
 template <int dim, class Phases>

@@ -102,28 +102,28 @@ void SoilMotion<dim, Phases>::state(int b, int i, double *stress, double *histor
 }
 
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::keep(Archive &archive) {
+PetscErrorCode SoilMotion<dim, Phases>::serialize(Archive &archive) {
   PetscFunctionBeginUser;
-  grid_.keep(archive);
-  archive.keep("nodes", start_velocity_, velocity_, mapped_start_, extra_mass_);
-  archive.keep("cells", particle_volume_, weight_, blend_, filling_, slenderness_, impedance_);
+  grid_.serialize(archive);
+  archive.serialize("nodes", start_velocity_, velocity_, mapped_start_, extra_mass_);
+  archive.serialize("cells", particle_volume_, weight_, blend_, filling_, slenderness_, impedance_);
   for (size_t b = 0; b < bodies_.size(); ++b) {
     PointSet &p = points_[b];
-    archive.keep("points", p.count, p.own_cell, p.own_stress, p.own_history, p.own_volume, p.own_limit, p.start_history,
-                 p.start_volume, p.of_cell);
+    archive.serialize("points", p.count, p.own_cell, p.own_stress, p.own_history, p.own_volume, p.own_limit,
+                      p.start_history, p.start_volume, p.of_cell);
     attach(b);
-    if (nonlocal_[b]) nonlocal_[b]->keep(archive);
+    if (nonlocal_[b]) nonlocal_[b]->serialize(archive);
   }
-  archive.keep("motion", work_.gravity, work_.imposed, work_.damping, gathered_, remap_time_, accepted_time_,
-               own_share_, moved_, smallest_ratio_, step_ratio_, speed_squared_, sample_time_, last_pressure_time_,
-               water_moved_);
+  archive.serialize("motion", work_.gravity, work_.imposed, work_.damping, gathered_, remap_time_, accepted_time_,
+                    own_share_, moved_, smallest_ratio_, step_ratio_, speed_squared_, sample_time_, last_pressure_time_,
+                    water_moved_);
   if constexpr (Phases::given)
-    for (Sample &sample : sample_) archive.keep("pressure", sample.gradient, sample.value, sample.nodal);
-  archive.keep("fastest mode", mode_);
-  PetscCall(conditions_.keep(archive, grid_, impedance_, filling_));
+    for (Sample &sample : sample_) archive.serialize("pressure", sample.gradient, sample.value, sample.nodal);
+  archive.serialize("fastest mode", mode_);
+  PetscCall(conditions_.serialize(archive, grid_, impedance_, filling_));
   if (archive.reading()) conditions_.surface_loads().begin(bodies_, grid_);
   if constexpr (Phases::liquid) {
-    fluid_.keep(archive);
+    fluid_.serialize(archive);
     before_ = velocity_;
     if (archive.reading())
       PetscCall(pore_conditions_.begin(grid_, filling_, fluid_.surface(), fluid_.surface_moment()));

@@ -1,7 +1,7 @@
 #pragma once
-/// The state of a run on one rank as a row of named blocks of bytes, for checkpoints. Each room lists once what it
-/// keeps, in a member `keep(Archive &)` that serves writing and reading alike, so that the two cannot differ. Bytes are
-/// as this machine stores them.
+/// The state of a run on one rank as a row of named blocks of bytes, for checkpoints. Each module lists once what it
+/// stores, in a member `serialize(Archive &)` that serves writing and reading alike, so that the two cannot differ.
+/// Bytes are as this machine stores them.
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
@@ -14,9 +14,9 @@ namespace talus {
 
 class Archive {
  public:
-  /// Takes down what is kept.
+  /// Stores what is serialized into it.
   Archive() = default;
-  /// Gives back what `bytes` hold.
+  /// Restores what `bytes` hold.
   explicit Archive(std::string bytes) : bytes_(std::move(bytes)), reading_(true) {}
 
   bool reading() const { return reading_; }
@@ -25,16 +25,16 @@ class Archive {
   /// Numbers, plain structs, texts, and vectors of plain structs, which get their size back; all under one name.
   /// Reading throws std::runtime_error where the archive holds something else.
   template <class... T>
-  void keep(const char *name, T &...values) {
+  void serialize(const char *name, T &...values) {
     std::string found = name;
     text(found);
     if (found != name) throw std::runtime_error("it holds `" + found.substr(0, 40) + "` where `" + name + "` belongs");
     (one(values), ...);
   }
   /// Plain numbers of which the reader knows how many there are.
-  void keep_bytes(const char *name, void *values, std::size_t size) {
+  void serialize_bytes(const char *name, void *values, std::size_t size) {
     std::size_t stored = size;
-    keep(name, stored);
+    serialize(name, stored);
     if (stored != size) throw std::runtime_error("`" + std::string(name) + "` has another size");
     block(values, size);
   }
@@ -42,12 +42,12 @@ class Archive {
  private:
   template <class T>
   void one(T &value) {
-    static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>, "only plain values can be kept");
+    static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>, "only plain values can be stored");
     block(&value, sizeof value);
   }
   template <class T>
   void one(std::vector<T> &values) {
-    static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>, "only plain values can be kept");
+    static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>, "only plain values can be stored");
     resize(values, sizeof(T));
     block(values.data(), values.size() * sizeof(T));
   }

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr const char *first_line = "Talus checkpoint 1\n";
 
-std::string door_file(const std::string &dir) { return dir + "/checkpoint/door"; }
+std::string header_file(const std::string &dir) { return dir + "/checkpoint/header"; }
 
 std::string state_name(long long number, int rank) {
   char name[64];
@@ -51,8 +51,9 @@ std::string load(const std::string &path) {
   return file;
 }
 
-void keep(Archive &archive, CheckpointDoor &door) {
-  archive.keep("door", door.program, door.scene, door.time, door.step, door.number, door.stage, door.ranks);
+void serialize(Archive &archive, CheckpointHeader &header) {
+  archive.serialize("header", header.program, header.scene, header.time, header.step, header.number, header.stage,
+                    header.ranks);
 }
 
 /// Removes the states of this rank but one.
@@ -77,41 +78,41 @@ void together_or_refuse(MPI_Comm comm, Work &&work) {
 
 }  // namespace
 
-void write_checkpoint(MPI_Comm comm, const std::string &dir, CheckpointDoor door, const Archive &state) {
+void write_checkpoint(MPI_Comm comm, const std::string &dir, CheckpointHeader header, const Archive &state) {
   const int rank = rank_in(comm);
-  check_mpi(MPI_Comm_size(comm, &door.ranks), "counting ranks");
+  check_mpi(MPI_Comm_size(comm, &header.ranks), "counting ranks");
   on_first_rank(comm, [&] { make_folder(dir + "/checkpoint"); });
-  const std::string path = dir + "/checkpoint/" + state_name(door.number, rank);
+  const std::string path = dir + "/checkpoint/" + state_name(header.number, rank);
   try {
     together(comm, [&] { save(path, state.bytes()); });
     on_first_rank(comm, [&] {
       Archive archive;
-      keep(archive, door);
-      save(door_file(dir), archive.bytes());
+      serialize(archive, header);
+      save(header_file(dir), archive.bytes());
     });
   } catch (...) {
     std::error_code ignored;
     fs::remove(path, ignored);  // leaves room on a full disk
     throw;
   }
-  together(comm, [&] { remove_others(dir, rank, door.number); });
+  together(comm, [&] { remove_others(dir, rank, header.number); });
 }
 
-CheckpointDoor read_checkpoint_door(MPI_Comm comm, const std::string &dir) {
-  CheckpointDoor door;
+CheckpointHeader read_checkpoint_header(MPI_Comm comm, const std::string &dir) {
+  CheckpointHeader header;
   together_or_refuse(comm, [&] {
-    if (!fs::exists(door_file(dir)))
+    if (!fs::exists(header_file(dir)))
       throw std::runtime_error(dir + " holds no checkpoint; run the scene without --resume");
-    Archive archive(load(door_file(dir)));
-    keep(archive, door);
+    Archive archive(load(header_file(dir)));
+    serialize(archive, header);
   });
-  return door;
+  return header;
 }
 
-Archive read_checkpoint(MPI_Comm comm, const std::string &dir, const CheckpointDoor &door) {
+Archive read_checkpoint(MPI_Comm comm, const std::string &dir, const CheckpointHeader &header) {
   Archive archive;
   together_or_refuse(comm,
-                     [&] { archive = Archive(load(dir + "/checkpoint/" + state_name(door.number, rank_in(comm)))); });
+                     [&] { archive = Archive(load(dir + "/checkpoint/" + state_name(header.number, rank_in(comm)))); });
   return archive;
 }
 

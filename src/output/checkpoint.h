@@ -1,6 +1,6 @@
 #pragma once
-/// Checkpoints of a run: DIR/checkpoint/NUMBER.RANK holds the state of a rank, DIR/checkpoint/door says which number
-/// counts and which run it belongs to. Every file appears whole, the door last and older states go after it, so a run
+/// Checkpoints of a run: DIR/checkpoint/NUMBER.RANK holds the state of a rank, DIR/checkpoint/header says which number
+/// counts and which run it belongs to. Every file appears whole, the header last and older states go after it, so a run
 /// that dies at any moment, or a full disk, leaves a checkpoint from which it can go on. All functions are collective
 /// over `comm` and fail alike on all ranks.
 #include <mpi.h>
@@ -11,7 +11,7 @@
 
 namespace talus {
 
-struct CheckpointDoor {
+struct CheckpointHeader {
   std::string program;  ///< name and version of the program
   std::string scene;    ///< values of the scene as run
   double time = 0;      ///< simulated [s]
@@ -22,13 +22,13 @@ struct CheckpointDoor {
 
 /// Replaces the checkpoint of the run in `dir`. Throws std::runtime_error with path and cause; the one before then
 /// stays.
-void write_checkpoint(MPI_Comm comm, const std::string &dir, CheckpointDoor door, const Archive &state);
+void write_checkpoint(MPI_Comm comm, const std::string &dir, CheckpointHeader header, const Archive &state);
 
-/// The door of the checkpoint in `dir`. Throws std::invalid_argument if there is none, it is damaged, or of another
+/// The header of the checkpoint in `dir`. Throws std::invalid_argument if there is none, it is damaged, or of another
 /// version.
-CheckpointDoor read_checkpoint_door(MPI_Comm comm, const std::string &dir);
+CheckpointHeader read_checkpoint_header(MPI_Comm comm, const std::string &dir);
 
-/// The state of this rank behind that door. Throws std::invalid_argument if it is missing or damaged.
-Archive read_checkpoint(MPI_Comm comm, const std::string &dir, const CheckpointDoor &door);
+/// The state of this rank behind that header. Throws std::invalid_argument if it is missing or damaged.
+Archive read_checkpoint(MPI_Comm comm, const std::string &dir, const CheckpointHeader &header);
 
 }  // namespace talus

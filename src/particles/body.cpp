@@ -175,17 +175,17 @@ PetscErrorCode Body<dim>::migrate(const std::vector<std::pair<int, int>> &leaver
 }
 
 template <int dim>
-PetscErrorCode Body<dim>::keep(Archive &archive) {
+PetscErrorCode Body<dim>::serialize(Archive &archive) {
   PetscFunctionBeginUser;
   PetscInt count = arrays_.count;
-  archive.keep("particles", count);
+  archive.serialize("particles", count);
   if (archive.reading()) PetscCall(resize(count));
   PetscCall(give_back());
   for (const FieldSpec &f : field_specs<dim>(history_count_, affine_, fluids_, face_count_)) {
     void *values;
     PetscCall(DMSwarmGetField(swarm_, f.name, nullptr, nullptr, &values));
     const size_t size = f.type == PETSC_INT ? sizeof(PetscInt) : sizeof(double);
-    archive.keep_bytes(f.name, values, size * f.components * count);
+    archive.serialize_bytes(f.name, values, size * f.components * count);
     PetscCall(DMSwarmRestoreField(swarm_, f.name, nullptr, nullptr, &values));
   }
   PetscCall(borrow());

@@ -77,7 +77,7 @@ class Body {
   /// particles are the last ones: `first_arrival` is the index of the first.
   PetscErrorCode migrate(const std::vector<std::pair<int, int>> &leavers, int *first_arrival);
   /// All particles of this rank, with every field that is registered.
-  PetscErrorCode keep(Archive &archive);
+  PetscErrorCode serialize(Archive &archive);
 
  private:
   PetscErrorCode borrow();     ///< takes the arrays out of the swarm ...

@@ -1,5 +1,5 @@
-// Checkpoints and how a run goes on from one: all that the answer depends on, wherever between two steps it is kept, so
-// that neither a checkpoint nor an interruption changes the answer; included only where it is instantiated
+// Checkpoints and how a run goes on from one: all that the answer depends on, wherever between two steps it is saved,
+// so that neither a checkpoint nor an interruption changes the answer; included only where it is instantiated
 // (src/variants).
 #include <algorithm>
 
@@ -14,16 +14,16 @@ namespace talus {
 
 /// The state of this rank; the scene gives the rest. Collective.
 template <int dim, class Phases>
-PetscErrorCode Simulation<dim, Phases>::keep(Archive &archive) {
+PetscErrorCode Simulation<dim, Phases>::serialize(Archive &archive) {
   PetscFunctionBeginUser;
-  archive.keep("clock", time_, load_time_, last_step_, steps_, remaps_, since_sort_, critical_step_, shrink_,
-               omega_max_, omega_step_, remap_due_, hold_loads_);
-  archive.keep("stage", stage_);
-  archive.keep("results", last_row_step_, last_row_time_, last_snapshot_time_, impulse_time_, first_ledger_,
-               first_energy_);
-  for (const auto &body : bodies_) PetscCall(body->keep(archive));
-  PetscCall(motion_->keep(archive));
-  integrator_->keep(archive);
+  archive.serialize("clock", time_, load_time_, last_step_, steps_, remaps_, since_sort_, critical_step_, shrink_,
+                    omega_max_, omega_step_, remap_due_, hold_loads_);
+  archive.serialize("stage", stage_);
+  archive.serialize("results", last_row_step_, last_row_time_, last_snapshot_time_, impulse_time_, first_ledger_,
+                    first_energy_);
+  for (const auto &body : bodies_) PetscCall(body->serialize(archive));
+  PetscCall(motion_->serialize(archive));
+  integrator_->serialize(archive);
   PetscFunctionReturn(0);
 }
 
@@ -36,16 +36,16 @@ unsigned long long Simulation<dim, Phases>::mesh_fingerprint() const {
 }
 
 template <int dim, class Phases>
-CheckpointDoor Simulation<dim, Phases>::door() const {
-  CheckpointDoor door{std::string("Talus ") + version,
-                      scene_.root ? scene_.root->values() : "",
-                      time_,
-                      steps_,
-                      checkpoints_ + 1,
-                      stage_.number,
-                      0};
-  MPI_Comm_size(comm_, &door.ranks);
-  return door;
+CheckpointHeader Simulation<dim, Phases>::header() const {
+  CheckpointHeader header{std::string("Talus ") + version,
+                          scene_.root ? scene_.root->values() : "",
+                          time_,
+                          steps_,
+                          checkpoints_ + 1,
+                          stage_.number,
+                          0};
+  MPI_Comm_size(comm_, &header.ranks);
+  return header;
 }
 
 template <int dim, class Phases>
@@ -53,16 +53,16 @@ void Simulation<dim, Phases>::write_checkpoint() {
   if (!results_) return;
   Archive archive;
   unsigned long long mesh = mesh_fingerprint();
-  archive.keep("mesh", mesh);
-  require(keep(archive));
-  talus::write_checkpoint(comm_, options_.directory, door(), archive);
+  archive.serialize("mesh", mesh);
+  require(serialize(archive));
+  talus::write_checkpoint(comm_, options_.directory, header(), archive);
   ++checkpoints_, checkpoint_time_ = time_;
 }
 
 /// Only what the state does not depend on may differ: results, and how long stages last that have not ended.
 template <int dim, class Phases>
-void Simulation<dim, Phases>::check_door(const CheckpointDoor &found) const {
-  const CheckpointDoor mine = door();
+void Simulation<dim, Phases>::check_header(const CheckpointHeader &found) const {
+  const CheckpointHeader mine = header();
   const std::string refusal = "the run in " + options_.directory + " cannot be resumed: ";
   if (found.program != mine.program)
     throw SceneError(refusal + "it is one of " + found.program + ", this is " + mine.program);
@@ -85,16 +85,16 @@ void Simulation<dim, Phases>::check_door(const CheckpointDoor &found) const {
 template <int dim, class Phases>
 void Simulation<dim, Phases>::resume_results() {
   name_columns();
-  const CheckpointDoor found = read_checkpoint_door(comm_, options_.directory);
-  check_door(found);
+  const CheckpointHeader found = read_checkpoint_header(comm_, options_.directory);
+  check_header(found);
   Archive archive = read_checkpoint(comm_, options_.directory, found);
   const std::string refusal = "the run in " + options_.directory + " cannot be resumed: ";
   unsigned long long mesh = 0;
-  archive.keep("mesh", mesh);
+  archive.serialize("mesh", mesh);
   int differs = mesh != mesh_fingerprint();
   MPI_Allreduce(MPI_IN_PLACE, &differs, 1, MPI_INT, MPI_MAX, comm_);
   if (differs) throw SceneError(refusal + "its mesh was another one; has the section or mesh file changed?");
-  require(keep(archive));
+  require(serialize(archive));
   checkpoints_ = found.number, checkpoint_time_ = found.time;
   RunFile file = RunFile::append(comm_, options_.directory, last_snapshot_time_);
   History rows = History::append(comm_, options_.directory + "/history.csv",

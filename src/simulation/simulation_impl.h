@@ -132,10 +132,10 @@ class Simulation final : public AnySimulation {
   void write_snapshot();
   void write_history();
   void write_checkpoint();
-  CheckpointDoor door() const;
-  void check_door(const CheckpointDoor &found) const;
+  CheckpointHeader header() const;
+  void check_header(const CheckpointHeader &found) const;
   unsigned long long mesh_fingerprint() const;
-  PetscErrorCode keep(Archive &archive);
+  PetscErrorCode serialize(Archive &archive);
   void note(const std::string &text);
   void note_steps();
   int find(Followed &point);

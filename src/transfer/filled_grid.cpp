@@ -65,10 +65,10 @@ PetscErrorCode FilledGrid<dim>::sum(double *values, int width) {
 }
 
 template <int dim>
-void FilledGrid<dim>::keep(Archive &archive) {
+void FilledGrid<dim>::serialize(Archive &archive) {
   if (archive.reading()) clear();
-  archive.keep("grid", node_count_, cell_count_, mesh_node, mass, position, mesh_cell, shape, mass_matrix, nodal_share,
-               size, patch);
+  archive.serialize("grid", node_count_, cell_count_, mesh_node, mass, position, mesh_cell, shape, mass_matrix,
+                    nodal_share, size, patch);
   for (int i = 0; i < node_count(); ++i) compact_node_[mesh_node[i]] = i;
   for (int c = 0; c < cell_count(); ++c) compact_cell_[mesh_cell[c]] = c;
 }

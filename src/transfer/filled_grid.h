@@ -49,7 +49,7 @@ class FilledGrid {
   /// Adds up `width` doubles per compact node over the ranks that share the node; collective.
   PetscErrorCode sum(double *values, int width);
   /// Nodes and cells with what they carry.
-  void keep(Archive &archive);
+  void serialize(Archive &archive);
 
   int node_count() const { return node_count_; }
   int cell_count() const { return cell_count_; }

@@ -188,8 +188,8 @@ void NonlocalStrain<dim>::restore(const PointSet &points, double *history) const
 }
 
 template <int dim>
-void NonlocalStrain<dim>::keep(Archive &archive) {
-  archive.keep("nonlocal strain", volume_, gradient_, mass_, over_diagonal_, average_, excess_, own_, seen_);
+void NonlocalStrain<dim>::serialize(Archive &archive) {
+  archive.serialize("nonlocal strain", volume_, gradient_, mass_, over_diagonal_, average_, excess_, own_, seen_);
 }
 
 template class NonlocalStrain<2>;

@@ -205,8 +205,8 @@ TEST_F(EndedRun, IsNotResumedFromADamagedCheckpoint) {
   expect_refused(run({"--resume"}), {name + " is no checkpoint"});
   std::filesystem::remove(folder_ / name);
   expect_refused(run({"--resume"}), {"cannot read " + name});
-  folder_.write("results/checkpoint/door", "?");
-  expect_refused(run({"--resume"}), {"results/checkpoint/door is no checkpoint"});
+  folder_.write("results/checkpoint/header", "?");
+  expect_refused(run({"--resume"}), {"results/checkpoint/header is no checkpoint"});
   std::filesystem::remove_all(folder_ / "results/checkpoint");
   expect_refused(run({"--resume"}), {"results holds no checkpoint"});
 }
