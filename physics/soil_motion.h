@@ -11,8 +11,8 @@
 #include "physics/kinematics.h"
 #include "physics/laws/update_stress.h"
 #include "physics/motion.h"
-#include "physics/pore_pressure.h"
 #include "physics/pores/pore_fluid.h"
+#include "physics/prescribed_pressure.h"
 #include "transfer/nonlocal_strain.h"
 #include "transfer/transfer.h"
 
@@ -107,7 +107,7 @@ class SoilMotion final : public Motion {
   /// Stress [stress_size], history and volume of a particle within the Lagrangian part.
   void state(int body, int particle, double *stress, double *history, double *volume) const;
   /// Given pore pressure at a place [Pa].
-  double pore_pressure(const Vec<dim> &x) const requires Phases::given {
+  double pore_pressure(const Vec<dim> &x) const requires Phases::prescribed {
     return loading.ramp * pressure_(x, loading.time);
   }
   /// Pore pressures, suction and saturation of a particle within the Lagrangian part.
@@ -141,7 +141,7 @@ class SoilMotion final : public Motion {
   void forget();
   void attach(size_t body);
   PetscErrorCode finish_gather(double t);
-  PetscErrorCode gather_pore_water() requires Phases::given;
+  PetscErrorCode gather_pore_water() requires Phases::prescribed;
   PetscErrorCode total_force(double load_time, double ramp, bool trial);
   void measure_impedance();
   void set_weights(const std::vector<double> &nodal_volume);
@@ -156,8 +156,8 @@ class SoilMotion final : public Motion {
   PetscErrorCode internal_force(bool trial);
   void add_body_forces(double t);
   void add_up_work(const Vec<dim> *u);
-  PetscErrorCode add_pore_pressure(double load_time, double ramp, bool trial) requires Phases::given;
-  void sample_pressure(double t) requires Phases::given;
+  PetscErrorCode add_pore_pressure(double load_time, double ramp, bool trial) requires Phases::prescribed;
+  void sample_pressure(double t) requires Phases::prescribed;
   std::array<double, 2> sample_shares(double t, double ramp) const;
   const double *find_suction(size_t body);
   /// Does velocity relax between remaps? Otherwise only remaps relax it.
@@ -172,7 +172,7 @@ class SoilMotion final : public Motion {
   std::vector<std::unique_ptr<Body<dim>>> &bodies_;
   Conditions<dim> &conditions_;
   const Transfer &transfer_;
-  GivenPressure<dim> pressure_;
+  PrescribedPressure<dim> pressure_;
   double relaxation_time_, total_mass_, smallest_mass_;
   FilledGrid<dim> grid_, next_grid_;
   std::vector<PointSet> points_, next_points_;
@@ -190,7 +190,7 @@ class SoilMotion final : public Motion {
   std::vector<Vec<dim>> imposed_;    ///< force of body accelerations and pore pressure, of this rank [N]
   std::vector<Vec<dim>> held_back_;  ///< force of local damping in the last evaluation [N]
   WorkDone work_;
-  bool imposes_ = Phases::given;
+  bool imposes_ = Phases::prescribed;
   // cells
   std::vector<double> particle_volume_, weight_, blend_, volume_strain_;
   std::vector<double> filling_;      ///< integration volume over cell volume at the remap
@@ -211,7 +211,7 @@ class SoilMotion final : public Motion {
     std::vector<Vec<dim>> gradient;
     std::vector<double> value, nodal, suction;
   };
-  [[no_unique_address]] If<Phases::given, std::array<Sample, 2>> sample_;
+  [[no_unique_address]] If<Phases::prescribed, std::array<Sample, 2>> sample_;
   double sample_time_[2] = {0, 0}, last_pressure_time_ = 0;
   bool water_moved_ = false;      ///< since pore water was counted
   bool suction_matters_ = false;  ///< a law reads it: pressure below zero is suction, not stress

@@ -45,7 +45,7 @@ SoilMotion<dim, Phases>::SoilMotion(const BackgroundMesh<dim> &mesh, std::vector
   held_back_.assign(nodes, Vec<dim>{});
   update_.velocity.assign(nodes, Quad{}), update_.displacement.assign(nodes, Quad{});
   for (int a = 0; a < fluids; ++a) update_.fluid[a].assign(nodes, Quad{});
-  if (Phases::given) extra_mass_.assign(nodes, 0);
+  if (Phases::prescribed) extra_mass_.assign(nodes, 0);
   for (auto *field : {&particle_volume_, &weight_, &blend_, &filling_, &volume_strain_, &slenderness_})
     field->assign(cells, 0);
   increment_.resize(cells), cell_stress_.resize(cells), impedance_.resize(cells);
@@ -76,8 +76,8 @@ SoilMotion<dim, Phases>::SoilMotion(const BackgroundMesh<dim> &mesh, std::vector
 
 #include "physics/soil_motion/deformation.inl"
 #include "physics/soil_motion/forces.inl"
-#include "physics/soil_motion/given_pressure.inl"
 #include "physics/soil_motion/largest_frequency.inl"
+#include "physics/soil_motion/prescribed_pressure.inl"
 #include "physics/soil_motion/remap.inl"
 #include "physics/soil_motion/reports.inl"
 #include "physics/soil_motion/velocities.inl"

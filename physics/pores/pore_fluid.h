@@ -11,20 +11,20 @@
 
 #include "base/phases.h"
 #include "physics/boundary/pore_conditions.h"
-#include "physics/pore_pressure.h"
 #include "physics/pores/drag.h"
 #include "physics/pores/fluids.h"
 #include "physics/pores/soil_pores.h"
 #include "physics/pores/storage.h"
+#include "physics/prescribed_pressure.h"
 #include "transfer/transfer.h"
 
 namespace talus {
 
 /// Fluid masses of all ranks, for the ledger [kg].
 struct FluidLedger {
-  double stored = 0;  ///< now
-  double out = 0;     ///< left through boundaries since the start, less what entered
-  double given = 0;   ///< put in where pressures were given, less what was taken out
+  double stored = 0;      ///< now
+  double out = 0;         ///< left through boundaries since the start, less what entered
+  double prescribed = 0;  ///< put in where pressures are prescribed, less what was taken out
 };
 
 /// What a particle's pores hold.
@@ -48,7 +48,7 @@ class PoreFluid {
   /// Fills them to the pressures of `liquid`(cell, place) [Pa].
   void fill(const std::function<double(int, const Vec<dim> &)> &liquid);
   /// Pressure at a place by [water] [Pa]; negative above the water table where pores may dry.
-  double given_pressure(const Vec<dim> &x, double t) const;
+  double prescribed_pressure(const Vec<dim> &x, double t) const;
 
   // Where cells and nodes stand, as SoilMotion has them.
   struct Frame {
@@ -127,8 +127,8 @@ class PoreFluid {
   const std::vector<Vec<dim>> &surface_moment() const { return moment_; }
   void serialize(Archive &archive);
 
-  bool given = false;  ///< pressures follow [water] instead of the fluids' motion
-  double given_ramp = 1;
+  bool prescribed = false;  ///< pressures follow [water] instead of the fluids' motion
+  double prescribed_ramp = 1;
 
  private:
   struct PorePoints {  // room for a point in every cell or for all particles; the first `count` count
@@ -178,7 +178,7 @@ class PoreFluid {
     talus::store<dim>(area.data(), node.geometry);
     return area;
   }
-  double given_gas_pressure(const Vec<dim> &x) const;
+  double prescribed_gas_pressure(const Vec<dim> &x) const;
   std::array<double, 3> contents(const SoilPores &soil, double pressure, double gas_pressure) const;
   double unit_weight(const Frame &frame) const {
     double square = 0;
@@ -224,7 +224,7 @@ class PoreFluid {
   Liquid liquid_;
   [[no_unique_address]] If<Phases::gas, PoreGas> gas_;
   std::vector<SoilPores> soils_;
-  GivenPressure<dim> pressure_;
+  PrescribedPressure<dim> pressure_;
   bool bishop_, smoothing_, explicit_drag_, by_rate_;
 
   std::vector<PorePoints> points_, next_points_, trial_;
@@ -240,9 +240,9 @@ class PoreFluid {
   std::vector<std::array<Quad, dim>> impulse_[fluids];  ///< of a cell [component][vertex]: sum m_s N v_a [kg m/s]
   std::vector<std::array<Quad, fluids>> momentum_;      ///< of a node: m_a v_a [kg m/s], m_a in the last lane
   Array divergence_[fluids], smooth_[fluids], head_, nodal_head_, nodal_;
-  Array beyond_;  ///< conductivity of the liquid beyond a face with a given pressure [node]; 0 elsewhere
+  Array beyond_;  ///< conductivity of the liquid beyond a face with a prescribed pressure [node]; 0 elsewhere
   std::vector<int> body_of_node_;  ///< one of the bodies around it
-  double out_[fluids] = {}, given_mass_[fluids] = {};
+  double out_[fluids] = {}, prescribed_mass_[fluids] = {};
 };
 
 }  // namespace talus

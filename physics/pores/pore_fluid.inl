@@ -43,7 +43,7 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
 // ---- what pores hold at first ----
 
 template <int dim, class Phases>
-double PoreFluid<dim, Phases>::given_pressure(const Vec<dim> &x, double t) const {
+double PoreFluid<dim, Phases>::prescribed_pressure(const Vec<dim> &x, double t) const {
   double p = pressure_(x, t);
   if constexpr (Phases::suction)
     if (!pressure_.below_table(x, t))
@@ -53,7 +53,7 @@ double PoreFluid<dim, Phases>::given_pressure(const Vec<dim> &x, double t) const
 }
 
 template <int dim, class Phases>
-double PoreFluid<dim, Phases>::given_gas_pressure(const Vec<dim> &x) const {
+double PoreFluid<dim, Phases>::prescribed_gas_pressure(const Vec<dim> &x) const {
   if constexpr (Phases::gas) return scene_.gas.pressure(x[0], x[1], dim == 3 ? x[dim - 1] : 0, 0);
   return 0;
 }
@@ -76,7 +76,7 @@ std::array<double, 3> PoreFluid<dim, Phases>::contents(const SoilPores &soil, do
 
 template <int dim, class Phases>
 void PoreFluid<dim, Phases>::fill(double t) {
-  fill([&](int, const Vec<dim> &x) { return given_pressure(x, t); });
+  fill([&](int, const Vec<dim> &x) { return prescribed_pressure(x, t); });
 }
 
 template <int dim, class Phases>
@@ -85,7 +85,8 @@ void PoreFluid<dim, Phases>::fill(const std::function<double(int, const Vec<dim>
     const ParticleArrays<dim> &p = bodies_[b]->particles();
     const double grain_density = bodies_[b]->source().grain_density;
     for (int i = 0; i < p.count; ++i) {
-      const auto content = contents(soils_[b], liquid(p.cell[i], p.position[i]), given_gas_pressure(p.position[i]));
+      const auto content =
+          contents(soils_[b], liquid(p.cell[i], p.position[i]), prescribed_gas_pressure(p.position[i]));
       for (int a = 0; a < fluids; ++a) {
         p.fluid_mass[a][i] = content[a] * (p.volume[i] - p.mass[i] / grain_density);
         p.fluid_velocity[a][i] = p.velocity[i];
@@ -112,7 +113,7 @@ void PoreFluid<dim, Phases>::serialize(Archive &archive) {
     for (int a = 0; a < fluids; ++a) archive.serialize("fluid", points.mass[a]);
   }
   archive.serialize("fluids", cells_, nodes_, surface_, moment_, mean_, reference_, rows_, grain_mass_, body_of_node_,
-                    out_, given_mass_);
+                    out_, prescribed_mass_);
 }
 
 template <int dim, class Phases>
@@ -126,7 +127,7 @@ PetscErrorCode PoreFluid<dim, Phases>::ledger(bool gathered, FluidLedger *sums) 
       else
         for (int i = 0; i < bodies_[b]->particles().count; ++i) mine[3 * a] += bodies_[b]->particles().fluid_mass[a][i];
     }
-  for (int a = 0; a < fluids; ++a) mine[3 * a + 1] = out_[a], mine[3 * a + 2] = given_mass_[a];
+  for (int a = 0; a < fluids; ++a) mine[3 * a + 1] = out_[a], mine[3 * a + 2] = prescribed_mass_[a];
   PetscCallMPI(MPI_Allreduce(mine, all, 3 * fluids, MPI_DOUBLE, MPI_SUM, mesh_.comm()));
   for (int a = 0; a < fluids; ++a) sums[a] = {all[3 * a], all[3 * a + 1], all[3 * a + 2]};
   PetscFunctionReturn(0);

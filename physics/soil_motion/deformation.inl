@@ -166,7 +166,7 @@ void SoilMotion<dim, Phases>::add_up_work(const Vec<dim> *u) {
   Vec<dim> weighted{};
   for (int i = 0; i < grid_.node_count(); ++i) {
     if (!mesh_.owned[grid_.mesh_node[i]]) continue;
-    const double m = grid_.mass[i] + (Phases::given ? extra_mass_[i] : 0);
+    const double m = grid_.mass[i] + (Phases::prescribed ? extra_mass_[i] : 0);
     for (int d = 0; d < dim; ++d) weighted[d] += m * u[i][d];
     if (loading.damping > 0)
       for (int d = 0; d < dim; ++d) work_.damping -= held_back_[i][d] * u[i][d];

@@ -86,14 +86,14 @@ PetscErrorCode SoilMotion<dim, Phases>::total_force(double load_time, double ram
     const int nodes = grid_.node_count();
     std::copy_n(force_.begin(), nodes, imposed_.begin());
     add_body_forces(load_time);
-    if constexpr (Phases::given) PetscCall(add_pore_pressure(load_time, ramp, trial));
+    if constexpr (Phases::prescribed) PetscCall(add_pore_pressure(load_time, ramp, trial));
     for (int i = 0; i < nodes; ++i)
       for (int d = 0; d < dim; ++d) imposed_[i][d] = force_[i][d] - imposed_[i][d];
   }
   PetscCall(grid_.sum(force_[0].data(), dim));
   conditions_.add_reactions(force_.data());
   for (int i = 0; i < grid_.node_count(); ++i) {
-    const double m = grid_.mass[i] + (Phases::given ? extra_mass_[i] : 0);
+    const double m = grid_.mass[i] + (Phases::prescribed ? extra_mass_[i] : 0);
     for (int d = 0; d < dim; ++d) force_[i][d] += m * (ramp * loading.gravity[d]);
   }
   if constexpr (Phases::liquid) fluid_.add_to_mixture(pore_frame(trial), pore_conditions_, force_.data());

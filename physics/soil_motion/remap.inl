@@ -57,7 +57,7 @@ PetscErrorCode SoilMotion<dim, Phases>::settle() {
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::begin(double t) {
   PetscFunctionBeginUser;
-  if constexpr (Phases::liquid) fluid_.given = !loading.pore_flow, fluid_.given_ramp = loading.ramp;
+  if constexpr (Phases::liquid) fluid_.prescribed = !loading.pore_flow, fluid_.prescribed_ramp = loading.ramp;
   if (gathered_) PetscFunctionReturn(0);
   if (!movers_) std::fill(start_velocity_.begin(), start_velocity_.end(), Vec<dim>{});
   with_transfer(transfer_, [&]<bool averaged, bool apic>() { gather<averaged, apic>(); });
@@ -109,7 +109,7 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double) {
     for (int i = 0; i < nodes * velocity_fields<Phases>; ++i)
       for (int d = 0; d < dim; ++d) mapped_start_[i][d] = start_velocity_[i][d] - mapped_start_[i][d];
   }
-  if constexpr (Phases::given) {
+  if constexpr (Phases::prescribed) {
     PetscCall(gather_pore_water());
     sample_time_[1] = -std::numeric_limits<double>::infinity();
   }

@@ -117,7 +117,7 @@ PetscErrorCode SoilMotion<dim, Phases>::serialize(Archive &archive) {
   archive.serialize("motion", work_.gravity, work_.imposed, work_.damping, gathered_, remap_time_, accepted_time_,
                     own_share_, moved_, smallest_ratio_, step_ratio_, speed_squared_, sample_time_, last_pressure_time_,
                     water_moved_);
-  if constexpr (Phases::given)
+  if constexpr (Phases::prescribed)
     for (Sample &sample : sample_) archive.serialize("pressure", sample.gradient, sample.value, sample.nodal);
   archive.serialize("fastest mode", mode_);
   PetscCall(conditions_.serialize(archive, grid_, impedance_, filling_));

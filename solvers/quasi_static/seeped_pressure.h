@@ -1,6 +1,6 @@
 #pragma once
-/// Pore pressure that seepage has left in a `drained` scene, as a function of place (physics/pore_pressure.h): linear
-/// in the cells through which water flowed. Every rank knows all of it, since particles wander.
+/// Pore pressure that seepage has left in a `drained` scene, as a function of place (physics/prescribed_pressure.h):
+/// linear in the cells through which water flowed. Every rank knows all of it, since particles wander.
 #include <string>
 #include <vector>
 

@@ -5,27 +5,27 @@
 
 namespace talus {
 
-// pressure: pore pressure acts on the total stress; given: that pressure is a function of place and time;
+// pressure: pore pressure acts on the total stress; prescribed: that pressure is a function of place and time;
 // liquid, gas: the fluid moves on its own; suction: the saturation may be below 1
 struct Dry {
   static constexpr const char *name = "dry";
-  static constexpr bool pressure = false, given = false, liquid = false, gas = false, suction = false;
+  static constexpr bool pressure = false, prescribed = false, liquid = false, gas = false, suction = false;
 };
 struct Drained {
   static constexpr const char *name = "drained";
-  static constexpr bool pressure = true, given = true, liquid = false, gas = false, suction = false;
+  static constexpr bool pressure = true, prescribed = true, liquid = false, gas = false, suction = false;
 };
 struct Saturated {
   static constexpr const char *name = "saturated";
-  static constexpr bool pressure = true, given = false, liquid = true, gas = false, suction = false;
+  static constexpr bool pressure = true, prescribed = false, liquid = true, gas = false, suction = false;
 };
 struct Unsaturated {  // gas at rest at atmospheric pressure
   static constexpr const char *name = "unsaturated";
-  static constexpr bool pressure = true, given = false, liquid = true, gas = false, suction = true;
+  static constexpr bool pressure = true, prescribed = false, liquid = true, gas = false, suction = true;
 };
 struct ThreePhase {
   static constexpr const char *name = "three-phase";
-  static constexpr bool pressure = true, given = false, liquid = true, gas = true, suction = true;
+  static constexpr bool pressure = true, prescribed = false, liquid = true, gas = true, suction = true;
 };
 /// Velocity fields at the nodes: of the solid and of the fluids that move on their own.
 template <class Phases>

@@ -34,7 +34,7 @@ void Simulation<dim, Phases>::check_bodies() const {
     if (other >= 0)
       scene_.complain(path + ".region",
                       "fills cells that body." + scene_.body[other].name + " fills too; give each cell to one body");
-    if (!Phases::given && !Phases::suction && reads_suction(laws_[b]))
+    if (!Phases::prescribed && !Phases::suction && reads_suction(laws_[b]))
       scene_.complain(path + ".law", std::string("takes strength from suction, and `phases = \"") + Phases::name +
                                          "\"` has none; model the water (`phases = \"drained\"` and a [water] excess "
                                          "below zero), or leave out the "

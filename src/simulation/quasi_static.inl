@@ -18,7 +18,7 @@ void Simulation<dim, Phases>::make_statics() {
   SoilData<dim> data;
   data.density = [this](const BodySource &source, const Vec<dim> &x, double t) { return soil_density(source, x, t); };
   data.open_water_load = scene_.water.open_water_load;
-  if constexpr (Phases::given) {
+  if constexpr (Phases::prescribed) {
     data.pressure = [this](const Vec<dim> &x, double t) { return pressure_(x, t); };
     if (flow_stages()) {
       const bool dries =
@@ -55,9 +55,10 @@ PetscErrorCode Simulation<dim, Phases>::activate() {
   PetscFunctionBeginUser;
   PetscCall(statics_->activate(present_));
   if constexpr (Phases::liquid)
-    PetscCall(flow_->activate(statics_->soil().active(),
-                              [this](const Vec<dim> &x) { return motion_->fluid().given_pressure(x, load_time_); }));
-  if constexpr (Phases::given)
+    PetscCall(flow_->activate(statics_->soil().active(), [this](const Vec<dim> &x) {
+      return motion_->fluid().prescribed_pressure(x, load_time_);
+    }));
+  if constexpr (Phases::prescribed)
     if (flow_)
       PetscCall(flow_->activate(statics_->soil().active(), [this](const Vec<dim> &x) {
         const Function &suction = scene_.water.suction;
@@ -166,7 +167,7 @@ void Simulation<dim, Phases>::run_quasi_static(const Stage &stage) {
   const auto load_at = [&](double s) { return hold_loads_ ? begin_load : begin_load + s * stage.duration; };
   const auto done = [&](double s) {
     time_ = begin + s * stage.duration, load_time_ = load_at(s), ++steps_;
-    if (Phases::given && water_flows(stage.kind)) take_seeped<dim>(*flow_, laws_, scene_.water);
+    if (Phases::prescribed && water_flows(stage.kind)) take_seeped<dim>(*flow_, laws_, scene_.water);
     to_particles();
     if (results_) results_->progress.step(time_, steps_, particle_count_);
     write_history();
@@ -211,7 +212,7 @@ void Simulation<dim, Phases>::run_quasi_static(const Stage &stage) {
     text << "; unbalanced force ratio of the particles that take it over " << sums.unbalanced / sums.applied;
   note(text.str());
   stage_.met = true;
-  if (Phases::given && water_flows(stage.kind) && results_)  // for a run that is resumed behind this stage
+  if (Phases::prescribed && water_flows(stage.kind) && results_)  // for a run that is resumed behind this stage
     take_seeped<dim>(*flow_, laws_, scene_.water)->save(comm_, seeped_file(options_.directory));
   write_checkpoint();
   if (stage.reset_displacement) statics_->soil().reset_displacement(), reset_displacement();
@@ -328,7 +329,7 @@ Snapshot Simulation<dim, Phases>::gauss_points() const {
       const double shear = Invariants<dim>(strain).q * std::sqrt(4. / 3);
       put(p.position[q].data(), dim), put(u.data(), dim), put(&p.stress[q * stress_size<dim>], stress_size<dim>);
       put(&p.volume[q], 1), put(&mass, 1), put(&shear, 1);
-      if (Phases::given) {
+      if (Phases::prescribed) {
         const double pressure = pressure_(p.position[q], load_time_);
         put(&pressure, 1);
       }
@@ -437,7 +438,7 @@ void Simulation<dim, Phases>::start_stress() {
         if (to > from) weight -= block.density * scene_.gravity[1] * (to - from), top = std::max(top, x[1] + to);
       }
       double pressure = 0;
-      if constexpr (Phases::given) {
+      if constexpr (Phases::prescribed) {
         Vec<dim> surface = x;
         surface[1] = top;
         pressure = pressure_(x, load_time_);

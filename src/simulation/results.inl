@@ -126,7 +126,7 @@ Snapshot Simulation<dim, Phases>::snapshot() {
       for (int d = 0; d < dim; ++d) u[d] = x[d] - p.reference[i][d];
       put(x.data(), dim), put(u.data(), dim), put(v.data(), dim), put(stress, stress_size<dim>), put(&volume, 1),
           put(&p.mass[i], 1);
-      if constexpr (Phases::given) {
+      if constexpr (Phases::prescribed) {
         const double pressure = motion_->pore_pressure(x);
         put(&pressure, 1);
       }
@@ -172,7 +172,7 @@ void Simulation<dim, Phases>::write_history() {
     if (i >= 0) {
       motion_->present(*bodies_[point.body], i, &x, &v);
       displacement = (map<dim>(x) - map<dim>(bodies_[point.body]->particles().reference[i])).norm();
-      if constexpr (Phases::given) pressure = motion_->pore_pressure(x);
+      if constexpr (Phases::prescribed) pressure = motion_->pore_pressure(x);
       if constexpr (Phases::liquid) pores = motion_->pores(*bodies_[point.body], i), pressure = pores.liquid;
     }
     mine.insert(mine.end(), x.begin(), x.end());
@@ -201,10 +201,10 @@ void Simulation<dim, Phases>::write_history() {
     FluidLedger fluids[velocity_fields<Phases> - 1];
     require(motion_->fluid_ledger(fluids));
     if (first_ledger_.empty())
-      for (const FluidLedger &fluid : fluids) first_ledger_.push_back(fluid.stored + fluid.out - fluid.given);
+      for (const FluidLedger &fluid : fluids) first_ledger_.push_back(fluid.stored + fluid.out - fluid.prescribed);
     for (int a = 0; a + 1 < velocity_fields<Phases>; ++a) {
-      const double error = fluids[a].stored + fluids[a].out - fluids[a].given - first_ledger_[a];
-      row.insert(row.end(), {fluids[a].stored, fluids[a].out, fluids[a].given, error});
+      const double error = fluids[a].stored + fluids[a].out - fluids[a].prescribed - first_ledger_[a];
+      row.insert(row.end(), {fluids[a].stored, fluids[a].out, fluids[a].prescribed, error});
     }
   }
   if (flow_stages()) {

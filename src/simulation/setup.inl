@@ -93,7 +93,7 @@ double Simulation<dim, Phases>::soil_density(const BodySource &source, const Vec
   if (source.density > 0 && !Phases::liquid) return source.density;
   double density = (1 - source.porosity) *
                    source.grain_density;  // where fluids move on their own, particles' mass is that of the grains
-  if constexpr (Phases::given)
+  if constexpr (Phases::prescribed)
     density += source.porosity * scene_.water.density * (pressure_.below_table(x, t) ? 1 : source.saturation);
   return density;
 }

@@ -151,7 +151,7 @@ class Simulation final : public AnySimulation {
   IntegratorSettings integrator_settings_;
   std::unique_ptr<Integrator> integrator_;
   BackgroundMesh<dim> mesh_;
-  GivenPressure<dim> pressure_;
+  PrescribedPressure<dim> pressure_;
   std::vector<std::unique_ptr<Body<dim>>> bodies_;
   Conditions<dim> conditions_;
   std::unique_ptr<SoilMotion<dim, Phases>> motion_;

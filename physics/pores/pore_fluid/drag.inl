@@ -14,10 +14,10 @@ NodalFluid PoreFluid<dim, Phases>::at_node(int i, int a, double beyond) const {
   const NodePores &node = nodes_[i];
   const double mass = node.mass(a), whole = node.whole(a);
   if (!(whole > 0)) return {0, 0, 0};
-  constexpr double closed = 1e30;  // [1/s]: where pressures are given, fluids go with the grains
+  constexpr double closed = 1e30;  // [1/s]: where pressures are prescribed, fluids go with the grains
   double conductivity = node.conductivity(a) / node.volume();
   if (beyond > 0) conductivity = (conductivity + beyond) / 2;  // as if there were one more cell, beyond the face
-  const double resistance = given ? closed * whole : mass / whole * node.volume() / std::max(conductivity, 1e-300);
+  const double resistance = prescribed ? closed * whole : mass / whole * node.volume() / std::max(conductivity, 1e-300);
   return {mass, whole, resistance};
 }
 
@@ -25,7 +25,7 @@ NodalFluid PoreFluid<dim, Phases>::at_node(int i, int a, double beyond) const {
 template <int dim, class Phases>
 NodalFluid PoreFluid<dim, Phases>::over_step(int i, int a) const {
   const NodalFluid at = at_node(i, a);
-  return explicit_drag_ && !given ? NodalFluid{at.mass, at.whole_mass, 0} : at;
+  return explicit_drag_ && !prescribed ? NodalFluid{at.mass, at.whole_mass, 0} : at;
 }
 
 /// Each fluid against the skeleton; together they are no faster than their sum. Pores that may be dry beyond a face
@@ -33,7 +33,7 @@ NodalFluid PoreFluid<dim, Phases>::over_step(int i, int a) const {
 template <int dim, class Phases>
 double PoreFluid<dim, Phases>::drag_rate(const FilledGrid<dim> &grid) const {
   double largest = 0;
-  for (int i = 0; i < grid.node_count() && !given; ++i) {
+  for (int i = 0; i < grid.node_count() && !prescribed; ++i) {
     double rate = 0;
     for (int a = 0; a < fluids; ++a) {
       const NodalFluid at = at_node(i, a, 0);

@@ -51,7 +51,7 @@ PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<di
   PetscCall(grid.sum(nodal_.data(), width));
   for (int i = 0; i < grid.node_count(); ++i) {
     const double *node = &nodal_[i * width], rho = node[0] > 0 ? node[1] / node[0] : gas_.density;
-    const double density = given ? 0 : pore_share(i) * rho / (1 + node[2]);
+    const double density = prescribed ? 0 : pore_share(i) * rho / (1 + node[2]);
     for (int d = 0; d < dim; ++d) flux_[1][i][d] *= density;
   }
   PetscFunctionReturn(0);
@@ -70,7 +70,7 @@ PetscErrorCode PoreFluid<dim, Phases>::flow(const Frame &frame, const PoreCondit
         for (int d = 0; d < dim; ++d) gap_[i][d] = area[d] / nodes_[i].volume();
       });
   for (int i = 0; i < nodes; ++i) {
-    const double density = given ? 0 : nodes_[i].volume() > 0 ? nodes_[i].mass(0) / nodes_[i].volume() : 0;
+    const double density = prescribed ? 0 : nodes_[i].volume() > 0 ? nodes_[i].mass(0) / nodes_[i].volume() : 0;
     for (int d = 0; d < dim; ++d) flux_[0][i][d] = density * (u[nodes + i][d] - u[i][d]);
   }
   if constexpr (Phases::gas) PetscCall(gas_flux(frame, u + 2 * nodes, u));
@@ -121,10 +121,10 @@ PetscErrorCode PoreFluid<dim, Phases>::give_around(const Frame &frame, Array &di
       nodal_[i * 2] += frame.particle_volume[c], nodal_[i * 2 + 1] += beyond_particles(frame, c) * divergence[c];
   PetscCall(frame.grid.sum(nodal_.data(), 2));
   for (int c = 0; c < cells; ++c) {
-    double given = 0;
-    for (int i : frame.shape[c].node) given += nodal_[i * 2 + 1] / nodal_[i * 2];
-    divergence[c] =
-        (frame.weight[c] - beyond_particles(frame, c)) * divergence[c] + frame.particle_volume[c] / (dim + 1) * given;
+    double from_nodes = 0;
+    for (int i : frame.shape[c].node) from_nodes += nodal_[i * 2 + 1] / nodal_[i * 2];
+    divergence[c] = (frame.weight[c] - beyond_particles(frame, c)) * divergence[c] +
+                    frame.particle_volume[c] / (dim + 1) * from_nodes;
   }
   PetscFunctionReturn(0);
 }

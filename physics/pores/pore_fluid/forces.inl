@@ -22,7 +22,7 @@ void PoreFluid<dim, Phases>::add_to_mixture(const Frame &frame, const PoreCondit
                        });
 }
 
-/// Conductivity of the liquid where it has a given pressure, in the soil at a node [m2/(Pa s)].
+/// Conductivity of the liquid where it has a prescribed pressure, in the soil at a node [m2/(Pa s)].
 template <int dim, class Phases>
 double PoreFluid<dim, Phases>::conductivity_beyond(int node, const NodePores &at, double pressure) const {
   double relative = 1;
@@ -74,7 +74,7 @@ PetscErrorCode PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreCondi
     conditions.gas_pressures(frame.time, frame.grid, [&](int i, double p, const Vec<dim> &area) {
       for (int d = 0; d < dim; ++d) acceleration[nodes + i][d] -= p * area[d] / at[i].whole(1);
     });
-  for (int i = 0; i < nodes && explicit_drag_ && !given; ++i)
+  for (int i = 0; i < nodes && explicit_drag_ && !prescribed; ++i)
     for (int a = 0; a < fluids; ++a) {
       const double rate = drag_number(1, at_node(i, a));
       for (int d = 0; d < dim; ++d)

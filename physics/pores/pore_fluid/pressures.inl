@@ -25,7 +25,7 @@ Vec<dim> PoreFluid<dim, Phases>::place(const Frame &frame, int c, const std::arr
   return x;
 }
 
-/// Fills the points to the given pressures, where fluids do not move.
+/// Fills the points to the prescribed pressures, where fluids do not move.
 template <int dim, class Phases>
 void PoreFluid<dim, Phases>::hold(const Frame &frame) {
   for (size_t b = 0; b < bodies_.size(); ++b) {
@@ -34,10 +34,10 @@ void PoreFluid<dim, Phases>::hold(const Frame &frame) {
       const int c = frame.points[b].cell[q];
       const Vec<dim> x = place(frame, c, mean_[c]);
       const double pores = pore_volume(frame.volume[b][q], points_[b].grains[q]);
-      const auto content =
-          contents(soils_[b], given_ramp * given_pressure(x, frame.time), given_ramp * given_gas_pressure(x));
+      const auto content = contents(soils_[b], prescribed_ramp * prescribed_pressure(x, frame.time),
+                                    prescribed_ramp * prescribed_gas_pressure(x));
       for (int a = 0; a < fluids; ++a) {
-        if (!frame.trial) given_mass_[a] += content[a] * pores - points.mass[a][q];
+        if (!frame.trial) prescribed_mass_[a] += content[a] * pores - points.mass[a][q];
         points.mass[a][q] = content[a] * pores;
       }
       points.share[q] = content[2];
@@ -52,7 +52,7 @@ void PoreFluid<dim, Phases>::solve(const Frame &frame) {
   std::vector<CellPores> &cells = frame.trial ? trial_cells_ : cells_;
   if (frame.trial) cells.resize(cells_.size());
   std::fill_n(cells.begin(), frame.grid.cell_count(), CellPores{});
-  if (given) hold(frame);
+  if (prescribed) hold(frame);
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const PorePoints &accepted = points_[b];
     PorePoints &points = frame.trial ? trial_[b] : points_[b];

@@ -1,5 +1,5 @@
 #pragma once
-/// Pore pressure as a given function of place and time: hydrostatic below a water table whose level moves, plus an
+/// Pore pressure as a prescribed function of place and time: hydrostatic below a water table whose level moves, plus an
 /// excess (phase model `drained`); what seepage has found stands in place of both where water flowed. Pressure is
 /// positive in compression.
 #include <cmath>
@@ -10,10 +10,10 @@
 namespace talus {
 
 template <int dim>
-class GivenPressure {
+class PrescribedPressure {
  public:
-  /// `weight` is the magnitude of gravity along -y [m/s2].
-  GivenPressure(const Water &water, double gravity) : water_(&water), unit_weight_(water.density * gravity) {}
+  /// `gravity` is its magnitude along -y [m/s2].
+  PrescribedPressure(const Water &water, double gravity) : water_(&water), unit_weight_(water.density * gravity) {}
 
   /// Elevation of the water table at x [m].
   double table(double x, double t) const {

@@ -7,7 +7,7 @@
 namespace talus {
 
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::gather_pore_water() requires Phases::given {
+PetscErrorCode SoilMotion<dim, Phases>::gather_pore_water() requires Phases::prescribed {
   PetscFunctionBeginUser;
   water_moved_ = false;
   std::fill_n(extra_mass_.begin(), grid_.node_count(), 0.);
@@ -33,7 +33,7 @@ PetscErrorCode SoilMotion<dim, Phases>::gather_pore_water() requires Phases::giv
 template <int dim, class Phases>
 const double *SoilMotion<dim, Phases>::find_suction(size_t b) {
   if (!reads_suction(bodies_[b]->law())) return nullptr;
-  if constexpr (Phases::given) {
+  if constexpr (Phases::prescribed) {
     sample_pressure(loading.time);
     const auto [early, late] = sample_shares(loading.time, loading.ramp);
     const PointSet &p = points_[b];
@@ -48,7 +48,7 @@ const double *SoilMotion<dim, Phases>::find_suction(size_t b) {
 
 /// Samples the given pressure at the nodes now and a few steps ahead; in between it is linear in time.
 template <int dim, class Phases>
-void SoilMotion<dim, Phases>::sample_pressure(double t) requires Phases::given {
+void SoilMotion<dim, Phases>::sample_pressure(double t) requires Phases::prescribed {
   constexpr double steps_ahead = 16;
   if (t >= sample_time_[0] && t <= sample_time_[1]) return;
   const double step = last_pressure_time_ < t ? t - last_pressure_time_ : 1e-6 * (1 + std::abs(t));
@@ -96,7 +96,7 @@ std::array<double, 2> SoilMotion<dim, Phases>::sample_shares(double t, double ra
 /// weight on the face without knowing where the face is; without it, as a part of the stress, theory (2.8), (2.9).
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::add_pore_pressure(double load_time, double ramp,
-                                                          bool trial) requires Phases::given {
+                                                          bool trial) requires Phases::prescribed {
   PetscFunctionBeginUser;
   if (!trial) {  // a step that looks ahead sees the line go on
     sample_pressure(load_time), last_pressure_time_ = load_time;
