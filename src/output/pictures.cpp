@@ -11,6 +11,7 @@
 #include <filesystem>
 
 #include "base/child_environment.h"
+#include "base/version.h"
 #include "output/strength.h"
 
 namespace talus {
@@ -40,6 +41,8 @@ bool draw(const char *name, const std::string &dir, const std::vector<std::strin
 
   pid_t child;
   auto environment = environment_without_mpi();
+  std::string drawn_by = std::string("TALUS_PROGRAM=") + program;
+  environment.insert(environment.begin(), drawn_by.data());
   if (const int error = posix_spawn(&child, TALUS_PYTHON, nullptr, nullptr, arguments.data(), environment.data()))
     return warn(dir, std::string("cannot start " TALUS_PYTHON ": ") + std::strerror(error));
   int status = 0;

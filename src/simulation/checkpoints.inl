@@ -37,13 +37,8 @@ unsigned long long Simulation<dim, Phases>::mesh_fingerprint() const {
 
 template <int dim, class Phases>
 CheckpointHeader Simulation<dim, Phases>::header() const {
-  CheckpointHeader header{std::string("Talus ") + version,
-                          scene_.root ? scene_.root->values() : "",
-                          time_,
-                          steps_,
-                          checkpoints_ + 1,
-                          stage_.number,
-                          0};
+  CheckpointHeader header{
+      program, scene_.root ? scene_.root->values() : "", time_, steps_, checkpoints_ + 1, stage_.number, 0};
   MPI_Comm_size(comm_, &header.ranks);
   return header;
 }

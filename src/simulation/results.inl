@@ -45,7 +45,7 @@ template <int dim, class Phases>
 void Simulation<dim, Phases>::open_results() {
   name_columns();
   if (options_.directory.empty()) return;
-  RunHeader header{scene_.title, std::string("Talus ") + version, scene_.source, {}};
+  RunHeader header{scene_.title, program, scene_.source, {}};
   for (const auto &body : bodies_) header.bodies.push_back(body->name());
   MeshPicture picture;
   picture.dimension = dim;

@@ -1,5 +1,9 @@
 """How the pictures of Talus look: type, colours, units of a size that reads well."""
 
+import os
+import pathlib
+import re
+
 import matplotlib
 
 matplotlib.use("Agg")
@@ -68,8 +72,19 @@ def at_time(time, last):
     return f"t = {time:.{digits}f} s"
 
 
-def save(figure, path):
+def program():
+    """Name and version of the program that draws, "Talus 0.1.0". The program passes them on when it starts a script; a script of the source
+    tree that is started alone reads them from CMakeLists.txt."""
+    if "TALUS_PROGRAM" in os.environ:
+        return os.environ["TALUS_PROGRAM"]
+    root = pathlib.Path(__file__).resolve().parents[3]
+    return "Talus " + re.search(r"project\(Talus VERSION (\S+)", (root / "CMakeLists.txt").read_text()).group(1)
+
+
+def save(figure, path, **options):
+    """Writes a figure as PNG, whose metadata say in "Software" which program drew it, and closes it. `options` are those of matplotlib's
+    savefig, such as dpi. Returns the path."""
     path.parent.mkdir(exist_ok=True)
-    figure.savefig(path)
+    figure.savefig(path, metadata={"Software": f"{program()}, Matplotlib {matplotlib.__version__}"}, **options)
     plt.close(figure)
     return path

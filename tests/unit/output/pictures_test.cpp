@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/version.h"
 #include "fixtures.h"
 #include "output/history.h"
 #include "output/strength.h"
@@ -96,6 +97,17 @@ TEST(Pictures, show_stress_paths_and_the_water_ledger) {
   EXPECT_EQ(content(dir + "/pictures/strength.csv").substr(0, 40), "body,state,suction_Pa,slope,intercept_Pa");
   for (const char *name : {"stress_paths.png", "mobilised_friction.png", "water_ledger.png"})
     EXPECT_EQ(content(dir + "/pictures/" + name).substr(1, 3), "PNG") << name;
+}
+
+TEST(Pictures, name_the_program_that_drew_them) {
+  const SharedFolder folder;
+  const std::string dir = folder / "run";
+  RunFile run(MPI_COMM_WORLD, dir, small_header(), small_mesh());
+  run.write(small_snapshot(1, 1));
+  if (world_rank()) return;
+  ASSERT_TRUE(draw_pictures(dir, {{"displacement"}, {}, false}));
+  const std::string chunk = std::string("Software") + '\0' + program + ",";  // of PNG's type tEXt
+  EXPECT_NE(content(dir + "/pictures/displacement.png").find(chunk), std::string::npos);
 }
 
 TEST(Pictures, never_fail_a_run) {
