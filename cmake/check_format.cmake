@@ -1,0 +1,11 @@
+# Fails where a C++ source differs from what clang-format makes of it: cmake -DCLANG_FORMAT=... -DROOT=... -P check_format.cmake
+set(sources)
+foreach(folder src meshes physics solvers tests docs)
+  file(GLOB_RECURSE found ${ROOT}/${folder}/*.h ${ROOT}/${folder}/*.cpp ${ROOT}/${folder}/*.inl)
+  list(APPEND sources ${found})
+endforeach()
+execute_process(COMMAND ${CLANG_FORMAT} --dry-run --Werror ${sources} ERROR_VARIABLE differences RESULT_VARIABLE status)
+if(NOT status EQUAL 0)
+  string(SUBSTRING "${differences}" 0 4000 differences)
+  message(FATAL_ERROR "${differences}\nformat these files with `clang-format -i FILE` (version 14, the one of Debian 12)")
+endif()
