@@ -27,7 +27,7 @@ function(collect_rooms target rooms outside)
   set(${outside} ${${outside}} PARENT_SCOPE)
 endfunction()
 
-collect_rooms(talus_kernel component_rooms component_links)
+collect_rooms(talus_simulation component_rooms component_links)
 foreach(link IN LISTS component_links)
   if(NOT link IN_LIST known_outside)
     message(FATAL_ERROR "a room links ${link}: add it to cmake/install.cmake and cmake/TalusConfig.cmake.in, so that hosts find it")

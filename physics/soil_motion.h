@@ -7,10 +7,10 @@
 #include <memory>
 
 #include "base/phases.h"
+#include "physics/any_soil_motion.h"
 #include "physics/boundary/conditions.h"
 #include "physics/kinematics.h"
 #include "physics/laws/update_stress.h"
-#include "physics/motion.h"
 #include "physics/pores/pore_fluid.h"
 #include "physics/prescribed_pressure.h"
 #include "transfer/nonlocal_strain.h"
@@ -18,43 +18,10 @@
 
 namespace talus {
 
-/// What acts on the soil at a time: set by the time loop, read by the motion.
-template <int dim>
-struct Loading {
-  Vec<dim> gravity{};     ///< once the ramp of the stage is over [m/s2]
-  double ramp = 1;        ///< of the stage: gravity and with it pore pressure grow from 0 to 1
-  double time = 0;        ///< time that functions of the scene see [s]
-  double set_at = 0;      ///< time of the run at which ramp and time are these [s]; a step looks ahead from there:
-  double ramp_rate = 0;   ///< [1/s]
-  double time_rate = 1;   ///< 0 in a stage that holds loads
-  double damping = 0;     ///< local damping factor
-  bool pore_flow = true;  ///< pore fluids move; otherwise their pressures are given
-  bool softening = true;  ///< plastic strain is remembered; otherwise soil keeps the strength it has
-
-  double ramp_at(double t) const { return std::min(1., ramp + ramp_rate * (t - set_at)); }
-  double time_at(double t) const { return time + time_rate * (t - set_at); }
-};
-
-/// Sums over all ranks, for the ledger and the stop criteria.
-struct Balance {
-  double unbalanced = 0, applied = 0;  ///< sums of nodal force magnitudes [N]
-  double kinetic = 0, strain = 0;      ///< [J]
-};
-
-/// What has been done to the soil since the start, docs/theory (6.6); of this rank, beside the work of boundaries
-/// (Conditions::work) [J].
-struct WorkDone {
-  double gravity = 0;
-  double imposed = 0;  ///< by body accelerations and given pore pressure
-  double damping = 0;  ///< by local damping: negative
-};
-
 template <int dim, class Phases>
-class SoilMotion final : public Motion {
+class SoilMotion final : public AnySoilMotion<dim> {
  public:
-  SoilMotion(const BackgroundMesh<dim> &mesh, std::vector<std::unique_ptr<Body<dim>>> &bodies,
-             Conditions<dim> &conditions, const Scene &scene, double relaxation_time, double total_mass,
-             long long particles, double gravity);
+  explicit SoilMotion(const MotionParts<dim> &parts);
 
   PetscErrorCode begin(double t) override;
   PetscErrorCode acceleration(double t, const double *u, const double *v, double *a) override;
@@ -72,68 +39,63 @@ class SoilMotion final : public Motion {
   int size() const override { return grid_.node_count() * dim * velocity_fields<Phases>; }
   double *velocity() override { return velocity_.empty() ? nullptr : velocity_[0].data(); }
 
-  /// Pore pressures of the state that a step has left, where no remap comes first. Collective.
-  PetscErrorCode settle();
-  /// Hands particles what the nodes learned and frees the grid; the particles in `movers[body]` have left their cells.
-  PetscErrorCode release(double t, std::vector<std::vector<int>> &movers);
-  /// The same when `begin` follows as soon as the movers have found their new cells: particles that stay are gathered
-  /// in the same sweep, `begin` adds what `movers` lists by then. In between particles have their places, but no stress
-  /// and no fluids.
-  PetscErrorCode release_to_next(double t, std::vector<std::vector<int>> &movers);
-
-  /// The state between two steps, also in the middle of a Lagrangian part, so that it does not matter to a run where it
-  /// was kept. After the bodies; collective.
-  PetscErrorCode serialize(Archive &archive);
-
-  Loading<dim> loading;
-  /// Largest displacement of a node of this rank since the last remap, over its mean edge.
-  double moved() const { return moved_; }
-  /// Smallest cell volume of this rank over its volume in the mesh.
-  double smallest_volume_ratio() const { return smallest_ratio_; }
-  /// How much the critical step has shrunk with the cells of this rank since the last remap (at most 1).
-  double step_ratio() const { return step_ratio_; }
-  /// Largest nodal speed squared of this rank; NaN when a node has no finite velocity.
-  double speed_squared() const { return speed_squared_; }
-  bool gathered() const { return gathered_; }
-  const FilledGrid<dim> &grid() const { return grid_; }
-  const std::vector<PointSet> &points() const { return points_; }
-  /// Place of a node without a finite velocity on this rank; false when there is none.
-  bool find_broken(Vec<dim> *where) const;
-  /// Place and cause of the first call in which a law of this rank went wrong; false when there is none.
-  bool find_trouble(Vec<dim> *where, std::string *cause) const;
-
-  /// Position and velocity of a particle within the Lagrangian part.
-  void present(const Body<dim> &body, int particle, Vec<dim> *position, Vec<dim> *velocity) const;
-  /// Stress [stress_size], history and volume of a particle within the Lagrangian part.
-  void state(int body, int particle, double *stress, double *history, double *volume) const;
-  /// Given pore pressure at a place [Pa].
-  double pore_pressure(const Vec<dim> &x) const requires Phases::prescribed {
-    return loading.ramp * pressure_(x, loading.time);
+  using AnySoilMotion<dim>::loading;
+  PetscErrorCode settle() override;
+  PetscErrorCode release(double t, std::vector<std::vector<int>> &movers) override;
+  PetscErrorCode release_to_next(double t, std::vector<std::vector<int>> &movers) override;
+  PetscErrorCode serialize(Archive &archive) override;
+  double moved() const override { return moved_; }
+  double smallest_volume_ratio() const override { return smallest_ratio_; }
+  double step_ratio() const override { return step_ratio_; }
+  double speed_squared() const override { return speed_squared_; }
+  bool gathered() const override { return gathered_; }
+  const FilledGrid<dim> &grid() const override { return grid_; }
+  const std::vector<PointSet> &points() const override { return points_; }
+  bool find_broken(Vec<dim> *where) const override;
+  bool find_trouble(Vec<dim> *where, std::string *cause) const override;
+  void present(const Body<dim> &body, int particle, Vec<dim> *position, Vec<dim> *velocity) const override;
+  void state(int body, int particle, double *stress, double *history, double *volume) const override;
+  const WorkDone &work() const override { return work_; }
+  PetscErrorCode freeze_reactions(double t) override;
+  PetscErrorCode balance(double t, Balance *sums) override;
+  double pore_pressure([[maybe_unused]] const Vec<dim> &x) const override {
+    if constexpr (Phases::prescribed) return loading.ramp * pressure_(x, loading.time);
+    return 0;
   }
-  /// Pore pressures, suction and saturation of a particle within the Lagrangian part.
-  PoreReport pores(const Body<dim> &body, int particle) const requires Phases::liquid;
-  /// Masses of liquid and gas of all ranks; collective.
-  PetscErrorCode fluid_ledger(FluidLedger *sums) requires Phases::liquid { return fluid_.ledger(gathered_, sums); }
-  /// Of explicit drag, on this rank [1/s].
-  double drag_rate() const requires Phases::liquid { return fluid_.drag_rate(grid_); }
-  const PoreFluid<dim, Phases> &fluid() const requires Phases::liquid { return fluid_; }
-  PetscErrorCode setup_pores(bool fill) requires Phases::liquid;
-  const WorkDone &work() const { return work_; }
-  /// Keeps what supports bear that stand in for dashpots. Collective.
-  PetscErrorCode freeze_reactions(double t);
-  /// Fills the pores of the particles, which must have been released, to the pressures of `liquid`(cell, place) [Pa].
-  void fill_pores(const std::function<double(int, const Vec<dim> &)> &liquid) requires Phases::liquid {
-    fluid_.fill(liquid);
+  PoreReport pores([[maybe_unused]] const Body<dim> &body, [[maybe_unused]] int particle) const override {
+    if constexpr (Phases::liquid) return pore_report(body, particle);
+    return {};
   }
-  /// Sums of the present state; collective.
-  PetscErrorCode balance(double t, Balance *sums);
-  /// Largest frequency of elastic motion of the filled mesh [1/s] by power iteration, which comes from below,
-  /// docs/theory (5.7). Goes on from the mode that it found last. After `begin`; collective.
-  PetscErrorCode largest_frequency(int iterations, double *omega) requires(!Phases::liquid);
+  PetscErrorCode fluid_ledger([[maybe_unused]] FluidLedger *sums) override {
+    if constexpr (Phases::liquid) return fluid_.ledger(gathered_, sums);
+    return 0;
+  }
+  double drag_rate() const override {
+    if constexpr (Phases::liquid) return fluid_.drag_rate(grid_);
+    return 0;
+  }
+  double initial_pressure([[maybe_unused]] const Vec<dim> &x, [[maybe_unused]] double t) const override {
+    if constexpr (Phases::liquid) return fluid_.prescribed_pressure(x, t);
+    return 0;
+  }
+  PetscErrorCode setup_pores([[maybe_unused]] bool fill) override {
+    if constexpr (Phases::liquid) return start_pores(fill);
+    return 0;
+  }
+  void fill_pores([[maybe_unused]] const std::function<double(int, const Vec<dim> &)> &liquid) override {
+    if constexpr (Phases::liquid) fluid_.fill(liquid);
+  }
+  PetscErrorCode largest_frequency([[maybe_unused]] int iterations, [[maybe_unused]] double *omega) override {
+    if constexpr (!Phases::liquid) return iterate_to_largest_frequency(iterations, omega);
+    return 0;
+  }
 
  private:
   static constexpr int components = stress_size<dim>, fluids = velocity_fields<Phases> - 1;
 
+  PoreReport pore_report(const Body<dim> &body, int particle) const requires Phases::liquid;
+  PetscErrorCode start_pores(bool fill) requires Phases::liquid;
+  PetscErrorCode iterate_to_largest_frequency(int iterations, double *omega) requires(!Phases::liquid);
   template <bool averaged, bool apic>
   void gather();
   double relaxed(double t) const;

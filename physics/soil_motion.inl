@@ -18,22 +18,22 @@ double stored_energy(const Law &law, const double *stress) {
 }
 
 template <int dim, class Phases>
-SoilMotion<dim, Phases>::SoilMotion(const BackgroundMesh<dim> &mesh, std::vector<std::unique_ptr<Body<dim>>> &bodies,
-                                    Conditions<dim> &conditions, const Scene &scene, double relaxation_time,
-                                    double total_mass, long long particles, double gravity)
-    : mesh_(mesh),
-      bodies_(bodies),
-      conditions_(conditions),
-      transfer_(scene.transfer),
-      pressure_(scene.water, gravity),
-      relaxation_time_(relaxation_time),
-      total_mass_(total_mass),
-      smallest_mass_(1e-6 * total_mass / static_cast<double>(particles)),
-      grid_(mesh),
-      next_grid_(mesh),
-      points_(bodies.size()),
-      next_points_(bodies.size()),
-      fluid_(mesh, bodies, scene) {
+SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
+    : mesh_(parts.mesh),
+      bodies_(parts.bodies),
+      conditions_(parts.conditions),
+      transfer_(parts.scene.transfer),
+      pressure_(parts.scene.water, parts.gravity),
+      relaxation_time_(parts.relaxation_time),
+      total_mass_(parts.total_mass),
+      smallest_mass_(1e-6 * parts.total_mass / static_cast<double>(parts.particles)),
+      grid_(parts.mesh),
+      next_grid_(parts.mesh),
+      points_(parts.bodies.size()),
+      next_points_(parts.bodies.size()),
+      fluid_(parts.mesh, parts.bodies, parts.scene) {
+  const BackgroundMesh<dim> &mesh = parts.mesh;
+  const auto &bodies = parts.bodies;
   const int nodes = mesh.node_count(), cells = mesh.cell_count();
   force_.assign(nodes, Vec<dim>{});
   for (auto *field : {&start_velocity_, &velocity_, &mapped_start_, &scratch_})

@@ -22,26 +22,9 @@ std::vector<double> HistoryTable::column(const std::string &name) const {
 
 namespace {
 
-template <int dim>
-std::unique_ptr<AnySimulation> make_in(MPI_Comm comm, Scene &scene, const RunOptions &options,
-                                       const std::string &mesh) {
-  switch (scene.phases) {
-    case PhaseModel::dry:
-      return std::make_unique<Simulation<dim, Dry>>(comm, scene, options, mesh);
-    case PhaseModel::drained:
-      return std::make_unique<Simulation<dim, Drained>>(comm, scene, options, mesh);
-    case PhaseModel::saturated:
-      return std::make_unique<Simulation<dim, Saturated>>(comm, scene, options, mesh);
-    case PhaseModel::unsaturated:
-      return std::make_unique<Simulation<dim, Unsaturated>>(comm, scene, options, mesh);
-    case PhaseModel::three_phase:
-      return std::make_unique<Simulation<dim, ThreePhase>>(comm, scene, options, mesh);
-  }
-  throw std::logic_error("phase model without a kernel");
-}
-
 std::unique_ptr<AnySimulation> make(MPI_Comm comm, Scene &scene, const RunOptions &options, const std::string &mesh) {
-  return scene.dimension == 2 ? make_in<2>(comm, scene, options, mesh) : make_in<3>(comm, scene, options, mesh);
+  if (scene.dimension == 2) return std::make_unique<Simulation<2>>(comm, scene, options, mesh);
+  return std::make_unique<Simulation<3>>(comm, scene, options, mesh);
 }
 
 /// Boundaries of pore water in a drained scene belong to its seepage stages alone: the motion takes the pressure that

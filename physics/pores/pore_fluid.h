@@ -13,27 +13,13 @@
 #include "physics/boundary/pore_conditions.h"
 #include "physics/pores/drag.h"
 #include "physics/pores/fluids.h"
+#include "physics/pores/pore_report.h"
 #include "physics/pores/soil_pores.h"
 #include "physics/pores/storage.h"
 #include "physics/prescribed_pressure.h"
 #include "transfer/transfer.h"
 
 namespace talus {
-
-/// Fluid masses of all ranks, for the ledger [kg].
-struct FluidLedger {
-  double stored = 0;      ///< now
-  double out = 0;         ///< left through boundaries since the start, less what entered
-  double prescribed = 0;  ///< put in where pressures are prescribed, less what was taken out
-};
-
-/// What a particle's pores hold.
-struct PoreReport {
-  double liquid, gas;  ///< pressures, smoothed where soil is nearly saturated [Pa]
-  double suction;      ///< [Pa]
-  double saturation;   ///< S_l [-]
-  bool surface;        ///< its cell has a side through which fluids may pass
-};
 
 template <int dim, class Phases>
 class PoreFluid {

@@ -28,7 +28,8 @@ double SoilMotion<dim, Phases>::elastic_force(const Vec<dim> *x, Vec<dim> *force
 }
 
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::largest_frequency(int iterations, double *omega) requires(!Phases::liquid) {
+PetscErrorCode SoilMotion<dim, Phases>::iterate_to_largest_frequency(int iterations,
+                                                                     double *omega) requires(!Phases::liquid) {
   PetscFunctionBeginUser;
   const int nodes = grid_.node_count(), cells = grid_.cell_count();
   if (elasticity_.empty()) {

@@ -51,7 +51,7 @@ typename PoreFluid<dim, Phases>::Frame SoilMotion<dim, Phases>::pore_frame(bool 
 }
 
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::setup_pores(bool fill) requires Phases::liquid {
+PetscErrorCode SoilMotion<dim, Phases>::start_pores(bool fill) requires Phases::liquid {
   PetscFunctionBeginUser;
   PetscCall(pore_conditions_.setup(mesh_, conditions_.sources(), Phases::suction));
   if (fill) fluid_.fill(0);
@@ -59,7 +59,7 @@ PetscErrorCode SoilMotion<dim, Phases>::setup_pores(bool fill) requires Phases::
 }
 
 template <int dim, class Phases>
-PoreReport SoilMotion<dim, Phases>::pores(const Body<dim> &body, int i) const requires Phases::liquid {
+PoreReport SoilMotion<dim, Phases>::pore_report(const Body<dim> &body, int i) const requires Phases::liquid {
   int b = 0;
   while (bodies_[b].get() != &body) ++b;
   const int mesh_cell = body.particles().cell[i], cell = grid_.find_cell(mesh_cell);

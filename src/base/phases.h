@@ -31,6 +31,16 @@ struct ThreePhase {
 template <class Phases>
 inline constexpr int velocity_fields = 1 + Phases::liquid + Phases::gas;
 
+/// The same traits as values, for code that is compiled once for all phase models.
+struct PhaseTraits {
+  const char *name;
+  bool pressure, prescribed, liquid, gas, suction;
+  int fluids() const { return liquid + gas; }  ///< that move on their own
+};
+template <class Phases>
+inline constexpr PhaseTraits traits_of = {Phases::name,   Phases::pressure, Phases::prescribed,
+                                          Phases::liquid, Phases::gas,      Phases::suction};
+
 template <class State>
 struct Absent {  // a distinct empty type per state, so it costs no bytes
   template <class... Arguments>

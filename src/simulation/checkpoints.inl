@@ -1,6 +1,5 @@
 // Checkpoints and how a run goes on from one: all that the answer depends on, wherever between two steps it is saved,
-// so that neither a checkpoint nor an interruption changes the answer; included only where it is instantiated
-// (src/variants).
+// so that neither a checkpoint nor an interruption changes the answer.
 #include <algorithm>
 
 #include "base/version.h"
@@ -13,8 +12,8 @@
 namespace talus {
 
 /// The state of this rank; the scene gives the rest. Collective.
-template <int dim, class Phases>
-PetscErrorCode Simulation<dim, Phases>::serialize(Archive &archive) {
+template <int dim>
+PetscErrorCode Simulation<dim>::serialize(Archive &archive) {
   PetscFunctionBeginUser;
   archive.serialize("clock", time_, load_time_, last_step_, steps_, remaps_, since_sort_, critical_step_, shrink_,
                     omega_max_, omega_step_, remap_due_, hold_loads_);
@@ -28,23 +27,23 @@ PetscErrorCode Simulation<dim, Phases>::serialize(Archive &archive) {
 }
 
 /// Tells meshes and partitions apart.
-template <int dim, class Phases>
-unsigned long long Simulation<dim, Phases>::mesh_fingerprint() const {
+template <int dim>
+unsigned long long Simulation<dim>::mesh_fingerprint() const {
   unsigned long long sum = fingerprint(mesh_.position.data(), mesh_.position.size() * sizeof(Vec<dim>));
   for (const Cell<dim> &cell : mesh_.cells) sum = fingerprint(cell.node.data(), sizeof cell.node, sum);
   return fingerprint(mesh_.global_cell.data(), mesh_.global_cell.size() * sizeof(long long), sum);
 }
 
-template <int dim, class Phases>
-CheckpointHeader Simulation<dim, Phases>::header() const {
+template <int dim>
+CheckpointHeader Simulation<dim>::header() const {
   CheckpointHeader header{
       program, scene_.root ? scene_.root->values() : "", time_, steps_, checkpoints_ + 1, stage_.number, 0};
   MPI_Comm_size(comm_, &header.ranks);
   return header;
 }
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::write_checkpoint() {
+template <int dim>
+void Simulation<dim>::write_checkpoint() {
   if (!results_) return;
   Archive archive;
   unsigned long long mesh = mesh_fingerprint();
@@ -55,8 +54,8 @@ void Simulation<dim, Phases>::write_checkpoint() {
 }
 
 /// Only what the state does not depend on may differ: results, and how long stages last that have not ended.
-template <int dim, class Phases>
-void Simulation<dim, Phases>::check_header(const CheckpointHeader &found) const {
+template <int dim>
+void Simulation<dim>::check_header(const CheckpointHeader &found) const {
   const CheckpointHeader mine = header();
   const std::string refusal = "the run in " + options_.directory + " cannot be resumed: ";
   if (found.program != mine.program)
@@ -77,8 +76,8 @@ void Simulation<dim, Phases>::check_header(const CheckpointHeader &found) const 
                      std::to_string(mine.ranks) + "; give -n " + std::to_string(found.ranks));
 }
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::resume_results() {
+template <int dim>
+void Simulation<dim>::resume_results() {
   name_columns();
   const CheckpointHeader found = read_checkpoint_header(comm_, options_.directory);
   check_header(found);

@@ -8,8 +8,8 @@
 
 namespace talus {
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::check_bodies() const {
+template <int dim>
+void Simulation<dim>::check_bodies() const {
   const auto check_lattice = [&](const std::string &path, int count) {
     if (lattice<dim>(count).empty())
       scene_.complain(path + ".particles_per_cell",
@@ -34,8 +34,8 @@ void Simulation<dim, Phases>::check_bodies() const {
     if (other >= 0)
       scene_.complain(path + ".region",
                       "fills cells that body." + scene_.body[other].name + " fills too; give each cell to one body");
-    if (!Phases::prescribed && !Phases::suction && reads_suction(laws_[b]))
-      scene_.complain(path + ".law", std::string("takes strength from suction, and `phases = \"") + Phases::name +
+    if (!phases_.prescribed && !phases_.suction && reads_suction(laws_[b]))
+      scene_.complain(path + ".law", std::string("takes strength from suction, and `phases = \"") + phases_.name +
                                          "\"` has none; model the water (`phases = \"drained\"` and a [water] excess "
                                          "below zero), or leave out the "
                                          "keys suction_...");
@@ -45,8 +45,8 @@ void Simulation<dim, Phases>::check_bodies() const {
   }
 }
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::check_boundaries(const std::vector<typename Conditions<dim>::Source> &sources) const {
+template <int dim>
+void Simulation<dim>::check_boundaries(const std::vector<typename Conditions<dim>::Source> &sources) const {
   const bool quasi_static =
       std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &stage) { return is_static(stage.kind); });
   for (const auto &source : sources) {
@@ -55,11 +55,11 @@ void Simulation<dim, Phases>::check_boundaries(const std::vector<typename Condit
       if (!mesh_.has_group(group) && !(concerns_water(source.kind) && group == free_surface))
         scene_.complain(path + ".group", "must name groups of facets; the mesh has no \"" + group + "\"; " +
                                              suggestion(group, mesh_.group_names()));
-    if (concerns_water(source.kind) && !Phases::liquid)
-      scene_.complain(path, std::string("is a boundary of moving pore water, but phases = \"") + Phases::name +
+    if (concerns_water(source.kind) && !phases_.liquid)
+      scene_.complain(path, std::string("is a boundary of moving pore water, but phases = \"") + phases_.name +
                                 "\" has none; set phases = \"saturated\", \"unsaturated\" or \"three-phase\"");
-    if (concerns_gas(source.kind) && !Phases::gas)
-      scene_.complain(path + ".kind", std::string("is a boundary of moving pore gas, but phases = \"") + Phases::name +
+    if (concerns_gas(source.kind) && !phases_.gas)
+      scene_.complain(path + ".kind", std::string("is a boundary of moving pore gas, but phases = \"") + phases_.name +
                                           "\" has none; set phases = \"three-phase\"");
     const auto check_vector = [&](const char *key, const std::vector<Function> &value) {
       if (!value.empty() && value.size() != dim)
@@ -79,8 +79,8 @@ void Simulation<dim, Phases>::check_boundaries(const std::vector<typename Condit
 }
 
 /// What the functions of place made of a body's particles. Collective.
-template <int dim, class Phases>
-void Simulation<dim, Phases>::check_seeded(const Body<dim> &body, const std::string &path) const {
+template <int dim>
+void Simulation<dim>::check_seeded(const Body<dim> &body, const std::string &path) const {
   const ParticleArrays<dim> &p = body.particles();
   const auto check = [&](const char *key, auto &&finite) {
     int bad = 0;
@@ -97,8 +97,8 @@ void Simulation<dim, Phases>::check_seeded(const Body<dim> &body, const std::str
 }
 
 /// A fixed step that the first state already forbids is bad input; one that a later state forbids ends the run.
-template <int dim, class Phases>
-void Simulation<dim, Phases>::check_step() {
+template <int dim>
+void Simulation<dim>::check_step() {
   const StepRule rule = step_rule(integrator_settings_);
   if (rule.fixed == 0) return;
   double critical =
@@ -113,8 +113,8 @@ void Simulation<dim, Phases>::check_step() {
 }
 
 /// A picture that nobody can draw is refused before the run, not missed after it.
-template <int dim, class Phases>
-void Simulation<dim, Phases>::check_pictures() {
+template <int dim>
+void Simulation<dim>::check_pictures() {
   if (scene_.output.picture.empty()) return;
   const Snapshot state = snapshot();
   std::vector<std::string> known;

@@ -1,10 +1,10 @@
-// Fields at the nodes for host programs; included only where it is instantiated (src/variants).
+// Fields at the nodes for host programs.
 #include "simulation/simulation_impl.h"
 
 namespace talus {
 
-template <int dim, class Phases>
-std::vector<Vec<dim>> Simulation<dim, Phases>::nodal_displacement() {
+template <int dim>
+std::vector<Vec<dim>> Simulation<dim>::nodal_displacement() {
   // up to the last remap the mean of the particles around a node, weighted as their velocity is; since then the node's
   // own way
   std::vector<Vec<dim>> u(mesh_.node_count(), Vec<dim>{});
@@ -27,9 +27,8 @@ std::vector<Vec<dim>> Simulation<dim, Phases>::nodal_displacement() {
   return u;
 }
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::nodal_field(const std::string &name,
-                                          const std::function<void(PetscInt, const double *)> &put) {
+template <int dim>
+void Simulation<dim>::nodal_field(const std::string &name, const std::function<void(PetscInt, const double *)> &put) {
   const bool displacement = name == "displacement";
   if (!displacement && name != "velocity")
     throw std::invalid_argument("no nodal field " + name + "; there are velocity and displacement");

@@ -9,10 +9,10 @@ namespace talus {
 
 /// Time steps by what each misses, docs/theory/seepage.md section 3: implicit Euler against the line through the last
 /// two states.
-template <int dim, class Phases>
-void Simulation<dim, Phases>::follow_water(const Stage &stage, const std::function<double(double)> &load_at,
-                                           const std::function<void(double)> &done, double *share, StepOutcome *outcome,
-                                           int *iterations) {
+template <int dim>
+void Simulation<dim>::follow_water(const Stage &stage, const std::function<double(double)> &load_at,
+                                   const std::function<void(double)> &done, double *share, StepOutcome *outcome,
+                                   int *iterations) {
   constexpr double first = 1e-4, growth = 2, shrinkage = 0.2, safety = 0.9, steady_growth = 4, longest_steady = 1e9,
                    still = 1e-7;
   const bool soil_moves = stage.kind == StageKind::consolidation;
@@ -77,9 +77,9 @@ void Simulation<dim, Phases>::follow_water(const Stage &stage, const std::functi
 }
 
 /// Particles take the water of the nodes.
-template <int dim, class Phases>
-void Simulation<dim, Phases>::fill_pores() {
-  if constexpr (Phases::liquid) {
+template <int dim>
+void Simulation<dim>::fill_pores() {
+  if (phases_.liquid) {
     motion_->fill_pores(
         [this](int cell, const Vec<dim> &x) { return flow_->pressure_at(cell, barycentric(mesh_.cells[cell], x)); });
     first_ledger_.clear();
@@ -87,9 +87,9 @@ void Simulation<dim, Phases>::fill_pores() {
 }
 
 /// Nodes take the mean of the particles around them, weighted by volume and shape function.
-template <int dim, class Phases>
-void Simulation<dim, Phases>::pressure_from_particles() {
-  if constexpr (Phases::liquid) {
+template <int dim>
+void Simulation<dim>::pressure_from_particles() {
+  if (phases_.liquid) {
     require(motion_->begin(time_));
     std::vector<double> sum(flow_->nodes().count(), 0), weight = sum;
     for (const auto &body : bodies_) {

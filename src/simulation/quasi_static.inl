@@ -13,12 +13,12 @@
 
 namespace talus {
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::make_statics() {
+template <int dim>
+void Simulation<dim>::make_statics() {
   SoilData<dim> data;
   data.density = [this](const BodySource &source, const Vec<dim> &x, double t) { return soil_density(source, x, t); };
   data.open_water_load = scene_.water.open_water_load;
-  if constexpr (Phases::prescribed) {
+  if (phases_.prescribed) {
     data.pressure = [this](const Vec<dim> &x, double t) { return pressure_(x, t); };
     if (flow_stages()) {
       const bool dries =
@@ -35,8 +35,8 @@ void Simulation<dim, Phases>::make_statics() {
       flow_ = std::make_unique<PoreFlow<dim>>(mesh_, scene_, conditions_.sources(), dries, water);
     }
   }
-  if constexpr (Phases::liquid) {
-    flow_ = std::make_unique<PoreFlow<dim>>(mesh_, scene_, conditions_.sources(), Phases::suction);
+  if (phases_.liquid) {
+    flow_ = std::make_unique<PoreFlow<dim>>(mesh_, scene_, conditions_.sources(), phases_.suction);
     data.flow = flow_.get();
   }
   statics_ = std::make_unique<QuasiStatic<dim>>(mesh_, scene_, laws_, conditions_.sources(), data);
@@ -50,15 +50,14 @@ void Simulation<dim, Phases>::make_statics() {
   }
 }
 
-template <int dim, class Phases>
-PetscErrorCode Simulation<dim, Phases>::activate() {
+template <int dim>
+PetscErrorCode Simulation<dim>::activate() {
   PetscFunctionBeginUser;
   PetscCall(statics_->activate(present_));
-  if constexpr (Phases::liquid)
-    PetscCall(flow_->activate(statics_->soil().active(), [this](const Vec<dim> &x) {
-      return motion_->fluid().prescribed_pressure(x, load_time_);
-    }));
-  if constexpr (Phases::prescribed)
+  if (phases_.liquid)
+    PetscCall(flow_->activate(statics_->soil().active(),
+                              [this](const Vec<dim> &x) { return motion_->initial_pressure(x, load_time_); }));
+  if (phases_.prescribed)
     if (flow_)
       PetscCall(flow_->activate(statics_->soil().active(), [this](const Vec<dim> &x) {
         const Function &suction = scene_.water.suction;
@@ -80,8 +79,8 @@ std::shared_ptr<SeepedPressure<dim>> take_seeped(const PoreFlow<dim> &flow, cons
   return found;
 }
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::count_particles() {
+template <int dim>
+void Simulation<dim>::count_particles() {
   double mine[2]{}, all[2];
   for (const auto &body : bodies_) {
     const ParticleArrays<dim> &p = body->particles();
@@ -92,8 +91,8 @@ void Simulation<dim, Phases>::count_particles() {
 }
 
 /// Bodies that come and go: their particles do too.
-template <int dim, class Phases>
-void Simulation<dim, Phases>::choose_bodies(const Stage &stage) {
+template <int dim>
+void Simulation<dim>::choose_bodies(const Stage &stage) {
   if (motion_->gathered()) require(release(false));
   int stride = 1;
   for (const BodySource &source : scene_.body) {
@@ -117,8 +116,8 @@ void Simulation<dim, Phases>::choose_bodies(const Stage &stage) {
   count_particles();
 }
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::run_quasi_static(const Stage &stage) {
+template <int dim>
+void Simulation<dim>::run_quasi_static(const Stage &stage) {
   if (stage_.met) {  // a resumed run has it behind it
     if (stage.reset_displacement) reset_displacement();
     return;
@@ -167,7 +166,7 @@ void Simulation<dim, Phases>::run_quasi_static(const Stage &stage) {
   const auto load_at = [&](double s) { return hold_loads_ ? begin_load : begin_load + s * stage.duration; };
   const auto done = [&](double s) {
     time_ = begin + s * stage.duration, load_time_ = load_at(s), ++steps_;
-    if (Phases::prescribed && water_flows(stage.kind)) take_seeped<dim>(*flow_, laws_, scene_.water);
+    if (phases_.prescribed && water_flows(stage.kind)) take_seeped<dim>(*flow_, laws_, scene_.water);
     to_particles();
     if (results_) results_->progress.step(time_, steps_, particle_count_);
     write_history();
@@ -212,7 +211,7 @@ void Simulation<dim, Phases>::run_quasi_static(const Stage &stage) {
     text << "; unbalanced force ratio of the particles that take it over " << sums.unbalanced / sums.applied;
   note(text.str());
   stage_.met = true;
-  if (Phases::prescribed && water_flows(stage.kind) && results_)  // for a run that is resumed behind this stage
+  if (phases_.prescribed && water_flows(stage.kind) && results_)  // for a run that is resumed behind this stage
     take_seeped<dim>(*flow_, laws_, scene_.water)->save(comm_, seeped_file(options_.directory));
   write_checkpoint();
   if (stage.reset_displacement) statics_->soil().reset_displacement(), reset_displacement();
@@ -222,8 +221,8 @@ void Simulation<dim, Phases>::run_quasi_static(const Stage &stage) {
 
 /// Particles stay where they are and take stress and history; the displacement moves the place it is counted from.
 /// Stress is linear between the Gauss points of a cell.
-template <int dim, class Phases>
-void Simulation<dim, Phases>::to_particles() {
+template <int dim>
+void Simulation<dim>::to_particles() {
   if (motion_->gathered()) require(release(false));
   const int per_cell = statics_->soil().points_per_cell();
   const double near = per_cell > 1 ? statics_->soil().rule().point[0][0] : 1,
@@ -260,8 +259,8 @@ void Simulation<dim, Phases>::to_particles() {
 
 /// The other way after a dynamic stage: Gauss points take the mean of the particles in their cell, weighted by volume;
 /// cells that have none keep what they had.
-template <int dim, class Phases>
-void Simulation<dim, Phases>::to_gauss_points() {
+template <int dim>
+void Simulation<dim>::to_gauss_points() {
   pressure_from_particles();
   if (motion_->gathered()) require(release(false));
   for (size_t b = 0; b < bodies_.size(); ++b) {
@@ -285,8 +284,8 @@ void Simulation<dim, Phases>::to_gauss_points() {
   }
 }
 
-template <int dim, class Phases>
-Snapshot Simulation<dim, Phases>::gauss_points() const {
+template <int dim>
+Snapshot Simulation<dim>::gauss_points() const {
   Snapshot s;
   s.time = time_, s.step = steps_, s.stage = stage_name_;
   const auto column = [&](const char *name, const char *unit, const char *meaning, int components) {
@@ -294,13 +293,13 @@ Snapshot Simulation<dim, Phases>::gauss_points() const {
   };
   column("position", "m", "place of the Gauss point", dim);
   column("displacement", "m", "displacement since the start or the last reset", dim);
-  column("stress", "Pa", Phases::pressure ? "effective stress, positive in tension" : "stress, positive in tension",
+  column("stress", "Pa", phases_.pressure ? "effective stress, positive in tension" : "stress, positive in tension",
          stress_size<dim>);
   column("volume", "m3", "volume of the Gauss point", 1);
   column("mass", "kg", "mass of the Gauss point", 1);
   column("shear_strain", "-", "sqrt(2/3 e : e) of the deviator e of strain, since displacement was last reset", 1);
-  if (Phases::pressure) column("pore_pressure", "Pa", "pore pressure, positive in compression", 1);
-  if (Phases::suction) column("saturation", "-", "degree of saturation", 1);
+  if (phases_.pressure) column("pore_pressure", "Pa", "pore pressure, positive in compression", 1);
+  if (phases_.suction) column("saturation", "-", "degree of saturation", 1);
   const size_t first_history = s.columns.size();
   for (const auto &body : bodies_)
     for (const HistoryField &field : history_fields(body->law()))
@@ -325,18 +324,18 @@ Snapshot Simulation<dim, Phases>::gauss_points() const {
       std::copy_n(&p.total_strain[q * stress_size<dim>], stress_size<dim>, &strain.xx);
       const Barycentric<dim> &l = statics_->soil().rule().point[place];
       const double mass = p.volume[q] * (soil_density(scene_.body[b], p.position[q], load_time_) +
-                                         (Phases::liquid ? flow_->water_density(p.cell[q], l) : 0));
+                                         (phases_.liquid ? flow_->water_density(p.cell[q], l) : 0));
       const double shear = Invariants<dim>(strain).q * std::sqrt(4. / 3);
       put(p.position[q].data(), dim), put(u.data(), dim), put(&p.stress[q * stress_size<dim>], stress_size<dim>);
       put(&p.volume[q], 1), put(&mass, 1), put(&shear, 1);
-      if (Phases::prescribed) {
+      if (phases_.prescribed) {
         const double pressure = pressure_(p.position[q], load_time_);
         put(&pressure, 1);
       }
-      if constexpr (Phases::liquid) {
+      if (phases_.liquid) {
         const double pressure = flow_->pressure_at(p.cell[q], l), saturation = flow_->saturation(p.cell[q], l);
         put(&pressure, 1);
-        if (Phases::suction) put(&saturation, 1);
+        if (phases_.suction) put(&saturation, 1);
       }
       for (size_t c = first_history; c < s.columns.size(); ++c) {
         double value = std::numeric_limits<double>::quiet_NaN();
@@ -367,8 +366,8 @@ inline double earth_pressure_at_rest(const BodySource &source, const Law &law) {
 
 /// Vertical stress by the weight of soil and open water above, lateral stress k0 times its effective part. Every rank
 /// sees all cells.
-template <int dim, class Phases>
-void Simulation<dim, Phases>::start_stress() {
+template <int dim>
+void Simulation<dim>::start_stress() {
   struct Block {
     std::array<Vec<dim>, dim + 1> corner;
     double density, low, high;  // extent along x
@@ -387,7 +386,7 @@ void Simulation<dim, Phases>::start_stress() {
     block.density = soil_density(scene_.body[b], centre, load_time_);
     Barycentric<dim> middle;
     middle.fill(1. / (dim + 1));
-    if constexpr (Phases::liquid) block.density += flow_->water_density(c, middle);
+    if (phases_.liquid) block.density += flow_->water_density(c, middle);
     mine.push_back(block);
   }
   int ranks;
@@ -438,13 +437,13 @@ void Simulation<dim, Phases>::start_stress() {
         if (to > from) weight -= block.density * scene_.gravity[1] * (to - from), top = std::max(top, x[1] + to);
       }
       double pressure = 0;
-      if constexpr (Phases::prescribed) {
+      if (phases_.prescribed) {
         Vec<dim> surface = x;
         surface[1] = top;
         pressure = pressure_(x, load_time_);
         if (scene_.water.open_water_load) weight += pressure_(surface, load_time_);
       }
-      if constexpr (Phases::liquid)
+      if (phases_.liquid)
         pressure = flow_->stress_pressure(points.cell[q],
                                           statics_->soil().rule().point[q % statics_->soil().points_per_cell()]);
       double *stress = &points.stress[q * stress_size<dim>];
@@ -456,8 +455,8 @@ void Simulation<dim, Phases>::start_stress() {
 
 // ---- strength reduction ----
 
-template <int dim, class Phases>
-FactorOfSafety Simulation<dim, Phases>::factor_of_safety() {
+template <int dim>
+FactorOfSafety Simulation<dim>::factor_of_safety() {
   constexpr double least_factor = 0.1;
   for (size_t k = 0; k < scene_.stage.size(); ++k)
     if (!is_static(scene_.stage[k].kind))

@@ -1,10 +1,10 @@
-// What a simulation says about its bodies before it runs; included only where it is instantiated (src/variants).
+// What a simulation says about its bodies before it runs.
 #include "simulation/simulation_impl.h"
 
 namespace talus {
 
-template <int dim, class Phases>
-std::vector<BodyReport> Simulation<dim, Phases>::bodies() {
+template <int dim>
+std::vector<BodyReport> Simulation<dim>::bodies() {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::vector<BodyReport> reports;
   for (size_t b = 0; b < bodies_.size(); ++b) {

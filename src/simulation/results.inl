@@ -1,4 +1,4 @@
-// What a run tells: snapshots, history, notes, and why it ended; included only where it is instantiated (src/variants).
+// What a run tells: snapshots, history, notes, and why it ended.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -9,22 +9,22 @@
 
 namespace talus {
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::name_columns() {
+template <int dim>
+void Simulation<dim>::name_columns() {
   const char axis[] = "xyz";
   history_.names = {"time_s", "step"};
   for (const Followed &point : points_) {
     for (int d = 0; d < dim; ++d) history_.names.push_back(point.name + "_" + axis[d] + "_m");
     history_.names.push_back(point.name + "_displacement_m");
     history_.names.push_back(point.name + "_velocity_m_s");
-    if (Phases::pressure) history_.names.push_back(point.name + "_pore_pressure_Pa");
-    if (Phases::gas) history_.names.push_back(point.name + "_gas_pressure_Pa");
-    if (Phases::suction)
+    if (phases_.pressure) history_.names.push_back(point.name + "_pore_pressure_Pa");
+    if (phases_.gas) history_.names.push_back(point.name + "_gas_pressure_Pa");
+    if (phases_.suction)
       history_.names.push_back(point.name + "_suction_Pa"), history_.names.push_back(point.name + "_saturation");
   }
   for (const char *name : {"kinetic_J", "strain_J", "potential_J", "mass_kg", "particles", "load_time_s"})
     history_.names.push_back(name);
-  for (int a = 0; a + 1 < velocity_fields<Phases>; ++a)
+  for (int a = 0; a < phases_.fluids(); ++a)
     for (const char *name : {"_kg", "_out_kg", "_given_kg", "_error_kg"})
       history_.names.push_back(std::string(a ? "gas" : "water") + name);
   if (flow_stages())
@@ -41,8 +41,8 @@ void Simulation<dim, Phases>::name_columns() {
     history_.names.push_back(name);
 }
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::open_results() {
+template <int dim>
+void Simulation<dim>::open_results() {
   name_columns();
   if (options_.directory.empty()) return;
   RunHeader header{scene_.title, program, scene_.source, {}};
@@ -59,16 +59,16 @@ void Simulation<dim, Phases>::open_results() {
 }
 
 /// Time at which the run ends at the latest [s].
-template <int dim, class Phases>
-double Simulation<dim, Phases>::longest_duration() const {
+template <int dim>
+double Simulation<dim>::longest_duration() const {
   return std::accumulate(scene_.stage.begin(), scene_.stage.end(), 0.,
                          [](double s, const Stage &stage) { return s + stage.duration; });
 }
 
-template <int dim, class Phases>
-Snapshot Simulation<dim, Phases>::snapshot() {
+template <int dim>
+Snapshot Simulation<dim>::snapshot() {
   if (options_.gauss_points && in_statics_) return gauss_points();
-  if constexpr (Phases::liquid) require(motion_->begin(time_));  // pressures follow from what cells hold
+  if (phases_.liquid) require(motion_->begin(time_));  // pressures follow from what cells hold
   Snapshot s;
   s.time = time_, s.step = steps_, s.stage = stage_name_;
   const StepStatistics &sums = integrator_->statistics();
@@ -87,16 +87,16 @@ Snapshot Simulation<dim, Phases>::snapshot() {
   column("position", "m", "place of the particle", dim);
   column("displacement", "m", "displacement since the start or the last reset", dim);
   column("velocity", "m/s", "velocity of the soil skeleton", dim);
-  column("stress", "Pa", Phases::pressure ? "effective stress, positive in tension" : "stress, positive in tension",
+  column("stress", "Pa", phases_.pressure ? "effective stress, positive in tension" : "stress, positive in tension",
          stress_size<dim>);
   column("volume", "m3", "volume of the particle", 1);
   column("mass", "kg", "mass of the particle", 1);
-  if (Phases::pressure) column("pore_pressure", "Pa", "pore pressure, positive in compression", 1);
-  if (Phases::gas) column("gas_pressure", "Pa", "gauge pressure of the pore gas", 1);
-  if (Phases::suction)
+  if (phases_.pressure) column("pore_pressure", "Pa", "pore pressure, positive in compression", 1);
+  if (phases_.gas) column("gas_pressure", "Pa", "gauge pressure of the pore gas", 1);
+  if (phases_.suction)
     column("suction", "Pa", "gas less liquid pressure, where positive", 1),
         column("saturation", "-", "degree of saturation", 1);
-  if (Phases::liquid)
+  if (phases_.liquid)
     column("porosity", "-", "porosity", 1), column("surface", "-",
                                                    "1 in cells with a side through which fluids may pass, named or the "
                                                    "soil's surface where it is now; 0 elsewhere",
@@ -126,15 +126,15 @@ Snapshot Simulation<dim, Phases>::snapshot() {
       for (int d = 0; d < dim; ++d) u[d] = x[d] - p.reference[i][d];
       put(x.data(), dim), put(u.data(), dim), put(v.data(), dim), put(stress, stress_size<dim>), put(&volume, 1),
           put(&p.mass[i], 1);
-      if constexpr (Phases::prescribed) {
+      if (phases_.prescribed) {
         const double pressure = motion_->pore_pressure(x);
         put(&pressure, 1);
       }
-      if constexpr (Phases::liquid) {
+      if (phases_.liquid) {
         const PoreReport pores = motion_->pores(*bodies_[b], i);
         put(&pores.liquid, 1);
-        if (Phases::gas) put(&pores.gas, 1);
-        if (Phases::suction) put(&pores.suction, 1), put(&pores.saturation, 1);
+        if (phases_.gas) put(&pores.gas, 1);
+        if (phases_.suction) put(&pores.suction, 1), put(&pores.saturation, 1);
         const double porosity = 1 - p.mass[i] / (bodies_[b]->source().grain_density * volume);
         put(&porosity, 1);
         const double surface = pores.surface;
@@ -151,15 +151,15 @@ Snapshot Simulation<dim, Phases>::snapshot() {
   return s;
 }
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::write_snapshot() {
+template <int dim>
+void Simulation<dim>::write_snapshot() {
   if (!results_ || results_->file.last_step() == steps_) return;
   results_->file.write(snapshot());
   last_snapshot_time_ = time_;
 }
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::write_history() {
+template <int dim>
+void Simulation<dim>::write_history() {
   require(motion_->begin(time_));
   if (last_row_step_ == steps_) return;
   last_row_step_ = steps_, last_row_time_ = time_;
@@ -168,18 +168,18 @@ void Simulation<dim, Phases>::write_history() {
     const int i = find(point);
     Vec<dim> x{}, v{};
     double displacement = 0, pressure = 0;
-    [[maybe_unused]] If<Phases::liquid, PoreReport> pores{};
+    PoreReport pores;
     if (i >= 0) {
       motion_->present(*bodies_[point.body], i, &x, &v);
       displacement = (map<dim>(x) - map<dim>(bodies_[point.body]->particles().reference[i])).norm();
-      if constexpr (Phases::prescribed) pressure = motion_->pore_pressure(x);
-      if constexpr (Phases::liquid) pores = motion_->pores(*bodies_[point.body], i), pressure = pores.liquid;
+      if (phases_.prescribed) pressure = motion_->pore_pressure(x);
+      if (phases_.liquid) pores = motion_->pores(*bodies_[point.body], i), pressure = pores.liquid;
     }
     mine.insert(mine.end(), x.begin(), x.end());
     mine.push_back(displacement), mine.push_back(map<dim>(v).norm());
-    if (Phases::pressure) mine.push_back(pressure);
-    if constexpr (Phases::gas) mine.push_back(pores.gas);
-    if constexpr (Phases::suction) mine.push_back(pores.suction), mine.push_back(pores.saturation);
+    if (phases_.pressure) mine.push_back(pressure);
+    if (phases_.gas) mine.push_back(pores.gas);
+    if (phases_.suction) mine.push_back(pores.suction), mine.push_back(pores.saturation);
   }
   double potential = 0;
   for (const auto &body : bodies_) {
@@ -197,12 +197,13 @@ void Simulation<dim, Phases>::write_history() {
   require(motion_->balance(time_, &sums));
   row.insert(row.end() - 1, {sums.kinetic, sums.strain});
   row.push_back(total_mass_), row.push_back(static_cast<double>(particle_count_)), row.push_back(load_time_);
-  if constexpr (Phases::liquid) {
-    FluidLedger fluids[velocity_fields<Phases> - 1];
+  if (phases_.liquid) {
+    FluidLedger fluids[2];
     require(motion_->fluid_ledger(fluids));
     if (first_ledger_.empty())
-      for (const FluidLedger &fluid : fluids) first_ledger_.push_back(fluid.stored + fluid.out - fluid.prescribed);
-    for (int a = 0; a + 1 < velocity_fields<Phases>; ++a) {
+      for (int a = 0; a < phases_.fluids(); ++a)
+        first_ledger_.push_back(fluids[a].stored + fluids[a].out - fluids[a].prescribed);
+    for (int a = 0; a < phases_.fluids(); ++a) {
       const double error = fluids[a].stored + fluids[a].out - fluids[a].prescribed - first_ledger_[a];
       row.insert(row.end(), {fluids[a].stored, fluids[a].out, fluids[a].prescribed, error});
     }
@@ -236,8 +237,8 @@ void Simulation<dim, Phases>::write_history() {
     results_->history.row(time_, steps_, stage_name_.empty() ? "start" : stage_name_, {row.begin() + 2, row.end()});
 }
 
-template <int dim, class Phases>
-int Simulation<dim, Phases>::find(Followed &point) {
+template <int dim>
+int Simulation<dim>::find(Followed &point) {
   const ParticleArrays<dim> &p = bodies_[point.body]->particles();
   if (point.index >= 0 && point.index < p.count && p.id[point.index] == point.id) return point.index;
   point.index = -1;
@@ -246,15 +247,15 @@ int Simulation<dim, Phases>::find(Followed &point) {
   return point.index;
 }
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::note(const std::string &text) {
+template <int dim>
+void Simulation<dim>::note(const std::string &text) {
   events_.push_back({time_, load_time_, stage_name_, text});
   if (results_) results_->progress.note(text);
 }
 
 /// "(x, y) m" of the lowest rank that has a place to name, empty if none has. Collective.
-template <int dim, class Phases>
-std::string Simulation<dim, Phases>::place_of(bool mine, const Vec<dim> &where) const {
+template <int dim>
+std::string Simulation<dim>::place_of(bool mine, const Vec<dim> &where) const {
   int rank, ranks;
   MPI_Comm_rank(comm_, &rank), MPI_Comm_size(comm_, &ranks);
   int first = mine ? rank : ranks;
@@ -267,8 +268,8 @@ std::string Simulation<dim, Phases>::place_of(bool mine, const Vec<dim> &where) 
   return text.str() + ") m";
 }
 
-template <int dim, class Phases>
-std::string Simulation<dim, Phases>::text_of(bool mine, std::string text) const {
+template <int dim>
+std::string Simulation<dim>::text_of(bool mine, std::string text) const {
   int rank, ranks, size = static_cast<int>(text.size());
   MPI_Comm_rank(comm_, &rank), MPI_Comm_size(comm_, &ranks);
   int first = mine ? rank : ranks;
@@ -280,8 +281,8 @@ std::string Simulation<dim, Phases>::text_of(bool mine, std::string text) const 
   return text;
 }
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::fail(const std::string &text) {
+template <int dim>
+void Simulation<dim>::fail(const std::string &text) {
   std::ostringstream message;
   message.precision(8);
   message << text << " (t = " << time_ << " s, step " << steps_ << ", stage " << stage_name_ << ")";

@@ -1,5 +1,4 @@
-// From the scene to the first state: mesh, bodies, boundaries, followed points; included only where it is instantiated
-// (src/variants).
+// From the scene to the first state: mesh, bodies, boundaries, followed points.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -9,11 +8,11 @@
 
 namespace talus {
 
-template <int dim, class Phases>
-Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOptions &options,
-                                    const std::string &mesh_file)
+template <int dim>
+Simulation<dim>::Simulation(MPI_Comm comm, Scene &scene, const RunOptions &options, const std::string &mesh_file)
     : comm_(comm),
       scene_(scene),
+      phases_(phase_traits(scene.phases)),
       options_(options),
       pressure_(scene.water, std::hypot(scene.gravity[0], scene.gravity[1])) {
   for (BodySource &body : scene.body) {
@@ -24,24 +23,24 @@ Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOption
       scene.complain("body." + body.name + ".averaging_length",
                      "needs a law that remembers a plastic_strain, not " + std::string(law_name(laws_.back())));
     if (body.particles_per_cell == 0) body.particles_per_cell = dim == 2 ? 3 : 4;
-    if (Phases::liquid && body.volume_cap < 0)
+    if (phases_.liquid && body.volume_cap < 0)
       body.volume_cap = 0;  // pressure follows volume: a cap would pump it up, pores.md section 4
   }
   std::vector<typename Conditions<dim>::Source> sources;
   for (BoundarySource &b : scene.boundary) sources.push_back({b.name, b.group, read_boundary(b.kind)});
-  integrator_settings_ = read_integrator(scene.integrator, Phases::liquid);
+  integrator_settings_ = read_integrator(scene.integrator, phases_.liquid);
   integrator_ = make_integrator(integrator_settings_);
   const bool by_euler = std::holds_alternative<EulerSettings>(integrator_settings_);
-  if (explicit_drag() && !(Phases::liquid && by_euler))
+  if (explicit_drag() && !(phases_.liquid && by_euler))
     scene.complain("water.drag",
                    std::string("can be \"explicit\" only ") +
-                       (Phases::liquid ? "with integrator.kind = \"euler\": the others take drag over a step"
+                       (phases_.liquid ? "with integrator.kind = \"euler\": the others take drag over a step"
                                        : "where pore fluids move") +
                        "; leave it out");
-  if (scene.water.storage == PoreStorage::rate && !(Phases::suction && !Phases::gas && by_euler))
+  if (scene.water.storage == PoreStorage::rate && !(phases_.suction && !phases_.gas && by_euler))
     scene.complain("water.storage",
                    "can be \"rate\" only with phases = \"unsaturated\" and integrator.kind = \"euler\"; leave it out");
-  if constexpr (Phases::liquid) {
+  if (phases_.liquid) {
     if (const std::string problem = drag_problem(integrator_settings_); !problem.empty())
       scene.complain("integrator.kind", "must be \"euler\", or \"arkode\" of order 3, where pore fluids move: " +
                                             problem + "; or take phases = \"dry\" or \"drained\"");
@@ -49,7 +48,7 @@ Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOption
       scene.complain(
           "integrator.omega_max",
           "must be \"cells\" where pore fluids move: power iteration knows the elastic waves of the skeleton alone");
-    for (size_t k = 0; k < scene.stage.size() && Phases::gas; ++k)
+    for (size_t k = 0; k < scene.stage.size() && phases_.gas; ++k)
       if (is_static(scene.stage[k].kind))
         scene.complain("stage." + std::to_string(k) + ".kind",
                        "must be \"dynamic\" where gas moves; quasi-static stages take any other phases");
@@ -88,18 +87,18 @@ Simulation<dim, Phases>::Simulation(MPI_Comm comm, Scene &scene, const RunOption
   check_pictures();
 }
 
-template <int dim, class Phases>
-double Simulation<dim, Phases>::soil_density(const BodySource &source, const Vec<dim> &x, double t) const {
-  if (source.density > 0 && !Phases::liquid) return source.density;
+template <int dim>
+double Simulation<dim>::soil_density(const BodySource &source, const Vec<dim> &x, double t) const {
+  if (source.density > 0 && !phases_.liquid) return source.density;
   double density = (1 - source.porosity) *
                    source.grain_density;  // where fluids move on their own, particles' mass is that of the grains
-  if constexpr (Phases::prescribed)
+  if (phases_.prescribed)
     density += source.porosity * scene_.water.density * (pressure_.below_table(x, t) ? 1 : source.saturation);
   return density;
 }
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::seed_bodies() {
+template <int dim>
+void Simulation<dim>::seed_bodies() {
   int stride = 1;
   for (const BodySource &source : scene_.body) {
     stride = std::max(stride, source.particles_per_cell);
@@ -117,8 +116,8 @@ void Simulation<dim, Phases>::seed_bodies() {
     const BodySource &source = scene_.body[b];
     bodies_.push_back(std::make_unique<Body<dim>>());
     Body<dim> &body = *bodies_.back();
-    require(body.create(comm_, source, laws_[b], scene_.transfer.velocity == Velocity::apic,
-                        velocity_fields<Phases> - 1, loads.face_count()));
+    require(body.create(comm_, source, laws_[b], scene_.transfer.velocity == Velocity::apic, phases_.fluids(),
+                        loads.face_count()));
     seed<dim>(body, mesh_, stride, [&](const Vec<dim> &x) { return soil_density(source, x, 0); });
     loads.seed(body, mesh_);
     double sums[2] = {static_cast<double>(body.particles().count), 0}, totals[2];
@@ -131,8 +130,8 @@ void Simulation<dim, Phases>::seed_bodies() {
     const double density = soil_density(source, Vec<dim>{}, 0);
     wave_speed = std::max(wave_speed, std::sqrt(constrained_modulus(body.law()) / density));
     PoreStiffness pores{source.porosity, {}};
-    if constexpr (Phases::liquid) pores.fluids.push_back({scene_.water.density, scene_.water.bulk_modulus});
-    if constexpr (Phases::gas) pores.fluids.push_back({scene_.gas.density, scene_.gas.bulk_modulus});
+    if (phases_.liquid) pores.fluids.push_back({scene_.water.density, scene_.water.bulk_modulus});
+    if (phases_.gas) pores.fluids.push_back({scene_.gas.density, scene_.gas.bulk_modulus});
     critical_.emplace_back(mesh_, body.law(), density, pores);
     if (!source.displacement.empty())
       for (int i = 0; i < body.particles().count; ++i) movers_[b].push_back(i);
@@ -150,14 +149,13 @@ void Simulation<dim, Phases>::seed_bodies() {
   const double relaxation = scene_.transfer.relaxation * mesh_.report().smallest_altitude / wave_speed;
   constexpr double friction_delay = 10;  // in units of altitude over wave speed, docs/theory (6.2)
   conditions_.set_friction_delay(friction_delay * mesh_.report().smallest_altitude / wave_speed);
-  motion_ =
-      std::make_unique<SoilMotion<dim, Phases>>(mesh_, bodies_, conditions_, scene_, relaxation, total_mass_,
-                                                particle_count_, std::hypot(scene_.gravity[0], scene_.gravity[1]));
-  if constexpr (Phases::liquid) require(motion_->setup_pores(true));
+  motion_ = make_soil_motion(MotionParts<dim>{mesh_, bodies_, conditions_, scene_, relaxation, total_mass_,
+                                              particle_count_, std::hypot(scene_.gravity[0], scene_.gravity[1])});
+  require(motion_->setup_pores(true));
 }
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::follow_points() {
+template <int dim>
+void Simulation<dim>::follow_points() {
   for (const OutputPoint &wanted : scene_.output.point) {
     Followed point{wanted.name};
     double nearest = std::numeric_limits<double>::infinity();

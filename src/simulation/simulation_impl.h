@@ -1,5 +1,5 @@
 #pragma once
-/// The time loop, docs/theory section 5; instantiated in src/variants only.
+/// The time loop, docs/theory section 5; compiled once per dimension.
 #include <petsctime.h>
 
 #include <algorithm>
@@ -11,7 +11,9 @@
 #include "output/pictures.h"
 #include "output/progress.h"
 #include "output/snapshots.h"
-#include "physics/soil_motion.h"
+#include "physics/any_soil_motion.h"
+#include "physics/phase_models.h"
+#include "physics/prescribed_pressure.h"
 #include "simulation.h"
 #include "solvers/critical_step.h"
 #include "solvers/integrators.h"
@@ -33,7 +35,7 @@ inline std::string rounded(double value) {
   return text.str();
 }
 
-template <int dim, class Phases>
+template <int dim>
 class Simulation final : public AnySimulation {
  public:
   Simulation(MPI_Comm comm, Scene &scene, const RunOptions &options, const std::string &mesh_file);
@@ -146,6 +148,7 @@ class Simulation final : public AnySimulation {
 
   MPI_Comm comm_;
   Scene &scene_;
+  const PhaseTraits phases_;
   RunOptions options_;
   std::vector<Law> laws_;
   IntegratorSettings integrator_settings_;
@@ -154,7 +157,7 @@ class Simulation final : public AnySimulation {
   PrescribedPressure<dim> pressure_;
   std::vector<std::unique_ptr<Body<dim>>> bodies_;
   Conditions<dim> conditions_;
-  std::unique_ptr<SoilMotion<dim, Phases>> motion_;
+  std::unique_ptr<AnySoilMotion<dim>> motion_;
   std::vector<CriticalStep<dim>> critical_;
   std::vector<std::vector<int>> movers_;
   std::vector<Followed> points_;

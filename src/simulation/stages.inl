@@ -1,4 +1,4 @@
-// Stages: what loads them, how long they last, what ends them; included only where it is instantiated (src/variants).
+// Stages: what loads them, how long they last, what ends them.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,8 +19,8 @@ inline double next_time(double begin, double interval, double now) {
   return begin + k * interval;
 }
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::run() {
+template <int dim>
+void Simulation<dim>::run() {
   options_.resume ? resume_results() : open_results();
   try {
     if (stage_.number < 0) {
@@ -48,8 +48,8 @@ void Simulation<dim, Phases>::run() {
 }
 
 /// What the integrator did, for the log.
-template <int dim, class Phases>
-void Simulation<dim, Phases>::note_steps() {
+template <int dim>
+void Simulation<dim>::note_steps() {
   const StepStatistics &s = integrator_->statistics();
   if (s.steps == 0) return;  // nothing but equilibria
   const std::pair<long long, const char *> bounds[] = {
@@ -64,8 +64,8 @@ void Simulation<dim, Phases>::note_steps() {
   note(text.str());
 }
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::set_loading(const Stage &stage, double stage_time) {
+template <int dim>
+void Simulation<dim>::set_loading(const Stage &stage, double stage_time) {
   const double ramp = stage.gravity_ramp > 0 ? std::min(1., stage_time / stage.gravity_ramp) : 1;
   for (int d = 0; d < dim; ++d) motion_->loading.gravity[d] = scene_.gravity[d];
   motion_->loading.ramp = ramp;
@@ -80,8 +80,8 @@ void Simulation<dim, Phases>::set_loading(const Stage &stage, double stage_time)
 }
 
 /// Changes between dashpots and the supports that stand in for them; what these bore stays on as a dead load.
-template <int dim, class Phases>
-PetscErrorCode Simulation<dim, Phases>::hold_supports(bool held) {
+template <int dim>
+PetscErrorCode Simulation<dim>::hold_supports(bool held) {
   PetscFunctionBeginUser;
   if (held == conditions_.held() || !conditions_.has_dashpots()) PetscFunctionReturn(0);
   if (motion_->gathered()) PetscCall(release(false));
@@ -93,16 +93,16 @@ PetscErrorCode Simulation<dim, Phases>::hold_supports(bool held) {
   PetscFunctionReturn(0);
 }
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::start_stage() {
+template <int dim>
+void Simulation<dim>::start_stage() {
   const int number = stage_.number + 1;
   stage_ = StageState{};
   stage_.number = number, stage_.begin = time_;
   omega_step_ = -1;
 }
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::run_stage() {
+template <int dim>
+void Simulation<dim>::run_stage() {
   const Stage &stage = scene_.stage[stage_.number];
   if (is_static(stage.kind)) return run_quasi_static(stage);
   in_statics_ = false, moved_since_statics_ = true;
@@ -154,8 +154,8 @@ void Simulation<dim, Phases>::run_stage() {
   if (stage.reset_displacement) reset_displacement();
 }
 
-template <int dim, class Phases>
-bool Simulation<dim, Phases>::stage_ends(const Stage &stage, double stage_time, const Verdict &verdict) {
+template <int dim>
+bool Simulation<dim>::stage_ends(const Stage &stage, double stage_time, const Verdict &verdict) {
   constexpr int steps_between_checks = 25, checks_of_rest = 8;
   switch (stage.until) {
     case StopWhen::duration:
@@ -209,8 +209,8 @@ bool Simulation<dim, Phases>::stage_ends(const Stage &stage, double stage_time, 
   return false;
 }
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::reset_displacement() {
+template <int dim>
+void Simulation<dim>::reset_displacement() {
   if (motion_->gathered()) require(release(false));
   for (const auto &body : bodies_) {
     const ParticleArrays<dim> &p = body->particles();
@@ -219,7 +219,7 @@ void Simulation<dim, Phases>::reset_displacement() {
     const auto fields = history_fields(body->law());
     for (size_t k = 0; k < fields.size(); ++k)
       for (int i = 0; !fields[k].kept && i < p.count; ++i) p.history[i * fields.size() + k] = 0;
-    for (int a = 0; a + 1 < velocity_fields<Phases>; ++a) std::fill_n(p.fluid_velocity[a], p.count, Vec<dim>{});
+    for (int a = 0; a < phases_.fluids(); ++a) std::fill_n(p.fluid_velocity[a], p.count, Vec<dim>{});
   }
   critical_step_ = 0, shrink_ = 1;
   integrator_->restart();

@@ -1,5 +1,5 @@
 // One step after another: its length, the step itself, what all ranks agree on after it, the remap; docs/theory section
-// 5; included only where it is instantiated (src/variants).
+// 5.
 #include <algorithm>
 #include <cmath>
 
@@ -7,8 +7,8 @@
 
 namespace talus {
 
-template <int dim, class Phases>
-double Simulation<dim, Phases>::single_step() {
+template <int dim>
+double Simulation<dim>::single_step() {
   if (stage_name_.empty()) stage_name_ = scene_.stage.front().name;
   set_loading(scene_.stage.front(), time_);
   require(motion_->begin(time_));
@@ -20,8 +20,8 @@ double Simulation<dim, Phases>::single_step() {
   return last_step_;
 }
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::advance_to(double t) {
+template <int dim>
+void Simulation<dim>::advance_to(double t) {
   while (time_ < t * (1 - 1e-12)) {
     set_loading(scene_.stage.front(), time_);
     require(motion_->begin(time_));
@@ -33,8 +33,8 @@ void Simulation<dim, Phases>::advance_to(double t) {
   }
 }
 
-template <int dim, class Phases>
-double Simulation<dim, Phases>::critical_step() {
+template <int dim>
+double Simulation<dim>::critical_step() {
   require(motion_->begin(time_));
   double local = std::numeric_limits<double>::infinity(), step;
   for (size_t b = 0; b < bodies_.size(); ++b) {
@@ -45,7 +45,7 @@ double Simulation<dim, Phases>::critical_step() {
         local = std::min(local, critical_[b](motion_->grid().mesh_cell[last = points.cell[q]]));
   }
   MPI_Allreduce(&local, &step, 1, MPI_DOUBLE, MPI_MIN, comm_);
-  if constexpr (!Phases::liquid)
+  if (!phases_.liquid)
     if (step_rule(integrator_settings_).bound == FrequencyBound::mesh) {
       constexpr int first = 60, further = 6,
                     apart = 8;  // iterations; steps between two estimates where remaps come thick and fast
@@ -56,7 +56,7 @@ double Simulation<dim, Phases>::critical_step() {
       }
       step = std::max(step, 2 / omega_max_);
     }
-  if constexpr (Phases::liquid)
+  if (phases_.liquid)
     if (explicit_drag()) {
       double mine = motion_->drag_rate(), rate;
       MPI_Allreduce(&mine, &rate, 1, MPI_DOUBLE, MPI_MAX, comm_);
@@ -65,8 +65,8 @@ double Simulation<dim, Phases>::critical_step() {
   return step;
 }
 
-template <int dim, class Phases>
-PetscErrorCode Simulation<dim, Phases>::step(double until) {
+template <int dim>
+PetscErrorCode Simulation<dim>::step(double until) {
   PetscFunctionBeginUser;
   if (critical_step_ == 0 || explicit_drag())
     critical_step_ = critical_step();  // drag follows saturation from step to step
@@ -95,8 +95,8 @@ PetscErrorCode Simulation<dim, Phases>::step(double until) {
 }
 
 /// "particle 12 of body.sand" of this rank, the nearest to a place.
-template <int dim, class Phases>
-std::string Simulation<dim, Phases>::nearest_particle(const Vec<dim> &where) const {
+template <int dim>
+std::string Simulation<dim>::nearest_particle(const Vec<dim> &where) const {
   double nearest = std::numeric_limits<double>::infinity();
   std::string found = "no particle";
   for (const auto &body : bodies_)
@@ -110,8 +110,8 @@ std::string Simulation<dim, Phases>::nearest_particle(const Vec<dim> &where) con
   return found;
 }
 
-template <int dim, class Phases>
-typename Simulation<dim, Phases>::Verdict Simulation<dim, Phases>::agree() {
+template <int dim>
+typename Simulation<dim>::Verdict Simulation<dim>::agree() {
   double mine[7] = {motion_->moved(),
                     1 / motion_->step_ratio(),
                     motion_->speed_squared(),
@@ -139,8 +139,8 @@ typename Simulation<dim, Phases>::Verdict Simulation<dim, Phases>::agree() {
   return verdict;
 }
 
-template <int dim, class Phases>
-void Simulation<dim, Phases>::refuse(const Verdict &verdict) {
+template <int dim>
+void Simulation<dim>::refuse(const Verdict &verdict) {
   if (verdict.broken) {
     Vec<dim> where{};
     std::string cause;
@@ -155,8 +155,8 @@ void Simulation<dim, Phases>::refuse(const Verdict &verdict) {
 }
 
 /// The checkpoint comes first: what a run writes because it is interrupted must not be in the way when it goes on.
-template <int dim, class Phases>
-void Simulation<dim, Phases>::heed_interrupt(const Verdict &verdict) {
+template <int dim>
+void Simulation<dim>::heed_interrupt(const Verdict &verdict) {
   if (!verdict.interrupted) return;
   write_checkpoint();
   write_history();
@@ -165,8 +165,8 @@ void Simulation<dim, Phases>::heed_interrupt(const Verdict &verdict) {
 }
 
 /// Hands the particles what the nodes learned and walks them to their cells.
-template <int dim, class Phases>
-PetscErrorCode Simulation<dim, Phases>::release(bool to_next) {
+template <int dim>
+PetscErrorCode Simulation<dim>::release(bool to_next) {
   PetscFunctionBeginUser;
   PetscLogDouble start, middle, end;
   PetscCall(PetscTime(&start));
@@ -186,8 +186,8 @@ PetscErrorCode Simulation<dim, Phases>::release(bool to_next) {
   PetscFunctionReturn(0);
 }
 
-template <int dim, class Phases>
-PetscErrorCode Simulation<dim, Phases>::remap() {
+template <int dim>
+PetscErrorCode Simulation<dim>::remap() {
   PetscFunctionBeginUser;
   PetscLogDouble start, end;
   constexpr int remaps_between_sorts = 20;
@@ -208,8 +208,8 @@ PetscErrorCode Simulation<dim, Phases>::remap() {
   PetscFunctionReturn(0);
 }
 
-template <int dim, class Phases>
-PetscErrorCode Simulation<dim, Phases>::check_conservation() {
+template <int dim>
+PetscErrorCode Simulation<dim>::check_conservation() {
   PetscFunctionBeginUser;
   double mine[2]{}, all[2];
   for (const auto &body : bodies_) {

@@ -28,7 +28,8 @@ struct Soil {
     double mass = 0;
     for (int i = 0; i < particles().count; ++i) mass += particles().mass[i];
     MPI_Allreduce(MPI_IN_PLACE, &mass, 1, MPI_DOUBLE, MPI_SUM, mesh.comm());
-    motion = std::make_unique<SoilMotion<dim, Dry>>(mesh, bodies, conditions, scene, relaxation_time, mass, 1000, 9.81);
+    motion = std::make_unique<SoilMotion<dim, Dry>>(
+        MotionParts<dim>{mesh, bodies, conditions, scene, relaxation_time, mass, 1000, 9.81});
     motion->loading.gravity[1] = scene.gravity[1];
   }
   const ParticleArrays<dim> &particles() const { return bodies[0]->particles(); }

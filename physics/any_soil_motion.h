@@ -1,0 +1,132 @@
+#pragma once
+/// The motion of the soil as the run sees it, whatever fills the pores: what SoilMotion (soil_motion.h) is compiled for
+/// once per phase model, behind one interface per dimension. Virtual calls are per step or per output, never in a loop
+/// of the kernel.
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/archive.h"
+#include "physics/boundary/conditions.h"
+#include "physics/motion.h"
+#include "physics/pores/pore_report.h"
+#include "scene/scene.h"
+#include "transfer/transfer.h"
+
+namespace talus {
+
+/// What acts on the soil at a time: set by the time loop, read by the motion.
+template <int dim>
+struct Loading {
+  Vec<dim> gravity{};     ///< once the ramp of the stage is over [m/s2]
+  double ramp = 1;        ///< of the stage: gravity and with it pore pressure grow from 0 to 1
+  double time = 0;        ///< time that functions of the scene see [s]
+  double set_at = 0;      ///< time of the run at which ramp and time are these [s]; a step looks ahead from there:
+  double ramp_rate = 0;   ///< [1/s]
+  double time_rate = 1;   ///< 0 in a stage that holds loads
+  double damping = 0;     ///< local damping factor
+  bool pore_flow = true;  ///< pore fluids move; otherwise their pressures are prescribed
+  bool softening = true;  ///< plastic strain is remembered; otherwise soil keeps the strength it has
+
+  double ramp_at(double t) const { return std::min(1., ramp + ramp_rate * (t - set_at)); }
+  double time_at(double t) const { return time + time_rate * (t - set_at); }
+};
+
+/// Sums over all ranks, for the ledger and the stop criteria.
+struct Balance {
+  double unbalanced = 0, applied = 0;  ///< sums of nodal force magnitudes [N]
+  double kinetic = 0, strain = 0;      ///< [J]
+};
+
+/// What has been done to the soil since the start, docs/theory (6.6); of this rank, beside the work of boundaries
+/// (Conditions::work) [J].
+struct WorkDone {
+  double gravity = 0;
+  double imposed = 0;  ///< by body accelerations and prescribed pore pressure
+  double damping = 0;  ///< by local damping: negative
+};
+
+template <int dim>
+class AnySoilMotion : public Motion {
+ public:
+  /// Pore pressures of the state that a step has left, where no remap comes first. Collective.
+  virtual PetscErrorCode settle() = 0;
+  /// Hands particles what the nodes learned and frees the grid; the particles in `movers[body]` have left their cells.
+  virtual PetscErrorCode release(double t, std::vector<std::vector<int>> &movers) = 0;
+  /// The same when `begin` follows as soon as the movers have found their new cells: particles that stay are gathered
+  /// in the same sweep, `begin` adds what `movers` lists by then. In between particles have their places, but no stress
+  /// and no fluids.
+  virtual PetscErrorCode release_to_next(double t, std::vector<std::vector<int>> &movers) = 0;
+
+  /// The state between two steps, also in the middle of a Lagrangian part, so that it does not matter to a run where it
+  /// was saved. After the bodies; collective.
+  virtual PetscErrorCode serialize(Archive &archive) = 0;
+
+  Loading<dim> loading;
+  /// Largest displacement of a node of this rank since the last remap, over its mean edge.
+  virtual double moved() const = 0;
+  /// Smallest cell volume of this rank over its volume in the mesh.
+  virtual double smallest_volume_ratio() const = 0;
+  /// How much the critical step has shrunk with the cells of this rank since the last remap (at most 1).
+  virtual double step_ratio() const = 0;
+  /// Largest nodal speed squared of this rank; NaN when a node has no finite velocity.
+  virtual double speed_squared() const = 0;
+  virtual bool gathered() const = 0;
+  virtual const FilledGrid<dim> &grid() const = 0;
+  virtual const std::vector<PointSet> &points() const = 0;
+  /// Place of a node without a finite velocity on this rank; false when there is none.
+  virtual bool find_broken(Vec<dim> *where) const = 0;
+  /// Place and cause of the first call in which a law of this rank went wrong; false when there is none.
+  virtual bool find_trouble(Vec<dim> *where, std::string *cause) const = 0;
+
+  /// Position and velocity of a particle within the Lagrangian part.
+  virtual void present(const Body<dim> &body, int particle, Vec<dim> *position, Vec<dim> *velocity) const = 0;
+  /// Stress [stress_size], history and volume of a particle within the Lagrangian part.
+  virtual void state(int body, int particle, double *stress, double *history, double *volume) const = 0;
+  virtual const WorkDone &work() const = 0;
+  /// Keeps what supports bear that stand in for dashpots. Collective.
+  virtual PetscErrorCode freeze_reactions(double t) = 0;
+  /// Sums of the present state; collective.
+  virtual PetscErrorCode balance(double t, Balance *sums) = 0;
+
+  // What only some phase models have; the others answer with nothing.
+
+  /// Prescribed pore pressure at a place [Pa]: by [water] and the ramp in drained scenes.
+  virtual double pore_pressure(const Vec<dim> &x) const = 0;
+  /// Pore pressures, suction and saturation of a particle within the Lagrangian part, where fluids move.
+  virtual PoreReport pores(const Body<dim> &body, int particle) const = 0;
+  /// Masses of each fluid that moves, of all ranks; collective.
+  virtual PetscErrorCode fluid_ledger(FluidLedger *sums) = 0;
+  /// Of explicit drag, on this rank [1/s].
+  virtual double drag_rate() const = 0;
+  /// Pressure of the liquid that [water] asks for at a place, where it moves [Pa].
+  virtual double initial_pressure(const Vec<dim> &x, double t) const = 0;
+  /// Prepares the pores of the particles once they are seeded; with `fill` to the pressures that [water] asks for.
+  virtual PetscErrorCode setup_pores(bool fill) = 0;
+  /// Fills the pores of the particles, which must have been released, to the pressures of `liquid`(cell, place) [Pa].
+  virtual void fill_pores(const std::function<double(int, const Vec<dim> &)> &liquid) = 0;
+  /// Largest frequency of elastic motion of the filled mesh [1/s] by power iteration, which comes from below,
+  /// docs/theory (5.7); not where fluids move. Goes on from the mode that it found last. After `begin`; collective.
+  virtual PetscErrorCode largest_frequency(int iterations, double *omega) = 0;
+};
+
+/// What a motion is made of. The references must outlive it.
+template <int dim>
+struct MotionParts {
+  const BackgroundMesh<dim> &mesh;
+  std::vector<std::unique_ptr<Body<dim>>> &bodies;
+  Conditions<dim> &conditions;
+  const Scene &scene;
+  double relaxation_time;  ///< [s]
+  double total_mass;       ///< of the particles of all ranks [kg]
+  long long particles;     ///< of all ranks
+  double gravity;          ///< magnitude along -y [m/s2]
+};
+
+/// The motion for the scene's phase model (src/variants).
+template <int dim>
+std::unique_ptr<AnySoilMotion<dim>> make_soil_motion(const MotionParts<dim> &parts);
+
+}  // namespace talus

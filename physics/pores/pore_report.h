@@ -1,0 +1,21 @@
+#pragma once
+/// What is told about the fluids in the pores, whatever phases move.
+
+namespace talus {
+
+/// Fluid masses of all ranks, for the ledger [kg].
+struct FluidLedger {
+  double stored = 0;      ///< now
+  double out = 0;         ///< left through boundaries since the start, less what entered
+  double prescribed = 0;  ///< put in where pressures are prescribed, less what was taken out
+};
+
+/// What a particle's pores hold.
+struct PoreReport {
+  double liquid = 0, gas = 0;  ///< pressures, smoothed where soil is nearly saturated [Pa]
+  double suction = 0;          ///< [Pa]
+  double saturation = 0;       ///< S_l [-]
+  bool surface = false;        ///< its cell has a side through which fluids may pass
+};
+
+}  // namespace talus
