@@ -25,19 +25,19 @@ struct ArkodeSettings {
   template <class Visitor>
   void fields(Visitor &&v) {
     v.integer("order", order, Range{2, 5},
-              "order of the Runge-Kutta method, 3 where pore fluids move; its embedded method, one order lower, tells "
-              "the error");
+              "order of the Runge-Kutta method, 3 where pore fluids move; its embedded method, one order lower, "
+              "estimates the error");
     v.number("velocity_tolerance", velocity_tolerance, metre_per_second, Range{1e-12, 1e3},
-             "error of the velocity that one step may make, root mean square over the soil's mass");
+             "allowed error of the velocity in one step, mass-weighted root mean square");
     v.number("displacement_tolerance", displacement_tolerance, metre, Range{1e-15, 1e3},
-             "error of the displacement that one step may make, root mean square over the soil's mass");
+             "allowed error of the displacement in one step, mass-weighted root mean square");
     v.number("fraction", fraction, one, Range{0.001, 1},
-             "largest step over the order's own stability limit: 2, 1.73, 2.83, 1.0 over omega_max for orders 2 to 5, "
-             "1.56 where pore fluids move");
+             "ratio of the largest step to the stability limit of the method: 2, 1.73, 2.83, 1.0 over omega_max for "
+             "orders 2 to 5, 1.56 where pore fluids move");
     frequency_bound(v, bound);
-    v.number("step", step, second, Range{0, 1e9}, "fixed time step without error control; 0 follows the tolerances");
+    v.number("step", step, second, Range{0, 1e9}, "fixed time step without error control; 0: steps by the tolerances");
     v.number("floor", floor, one, Range{1e-12, 1},
-             "shortest step over the critical step 2 / omega_max; a run that needs a shorter one stops");
+             "smallest ratio of the step to the critical step 2 / omega_max; a run that needs a shorter step ends");
   }
   StepRule rule() const;
   /// What is wrong with these settings where phases drag at one another; empty: nothing.

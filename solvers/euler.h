@@ -21,12 +21,12 @@ struct EulerSettings {
   std::unique_ptr<Integrator> make() const;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.number("step", step, second, Range{0, 1e9}, "fixed time step; 0 takes a fraction of the critical step");
+    v.number("step", step, second, Range{0, 1e9}, "fixed time step; 0: a fraction of the critical step");
     v.number("fraction", fraction, one, Range{0.001, 1},
-             "time step over the critical step 2 / omega_max, recomputed as the run goes");
+             "ratio of the time step to the critical step 2 / omega_max, which is recomputed during the run");
     v.number(
         "limit", limit, one, Range{1, 1e12},
-        "fixed step over the critical step beyond which a run is refused; more than 1 is there to show how runs fail");
+        "largest allowed ratio of a fixed step to the critical step; values above 1 are for studies of instability");
     frequency_bound(v, bound);
   }
 };

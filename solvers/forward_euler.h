@@ -16,9 +16,10 @@ struct ForwardEulerSettings {
   double fraction = 0.1;  ///< of the critical step 2 / omega_max [-]
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.number("step", step, second, Range{0, 1e9}, "fixed time step; 0 takes a fraction of the critical step");
-    v.number("fraction", fraction, one, Range{0.001, 1},
-             "time step over the critical step 2 / omega_max; waves grow at any fraction, slowly at small ones");
+    v.number("step", step, second, Range{0, 1e9}, "fixed time step; 0: a fraction of the critical step");
+    v.number(
+        "fraction", fraction, one, Range{0.001, 1},
+        "ratio of the time step to the critical step 2 / omega_max; waves grow at any fraction, slowly at small ones");
   }
   StepRule rule() const { return {step, fraction, 1}; }
   std::string drag_problem() const { return "would amplify the waves of the pores"; }

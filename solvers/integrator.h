@@ -33,9 +33,10 @@ struct StepRule {
 /// The key by which a scene chooses.
 template <class Visitor>
 void frequency_bound(Visitor &&v, FrequencyBound &bound) {
-  v.choice("omega_max", bound, {{"cells", FrequencyBound::cells}, {"mesh", FrequencyBound::mesh}},
-           "largest frequency, from the fastest filled cell by itself or from the whole filled mesh, by power "
-           "iteration at remaps: longer steps, above all on tetrahedra; not where pore fluids move");
+  v.choice(
+      "omega_max", bound, {{"cells", FrequencyBound::cells}, {"mesh", FrequencyBound::mesh}},
+      "largest frequency: that of the fastest filled cell alone, or that of the whole filled mesh by power iteration "
+      "at remaps, which allows longer steps, above all on tetrahedra; mesh is not available where pore fluids move");
 }
 
 /// Sums since the start of a run.

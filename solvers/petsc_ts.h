@@ -24,12 +24,12 @@ struct PetscTsSettings {
   void fields(Visitor &&v) {
     v.choice("method", method,
              {{"rk3", RungeKutta::rk3}, {"rk4", RungeKutta::rk4}, {"rk5", RungeKutta::rk5}, {"rk8", RungeKutta::rk8}},
-             "explicit Runge-Kutta method of PETSc: Kutta's of orders 3 and 4, Bogacki and Shampine's of order 5, "
-             "Verner's of order 8");
+             "explicit Runge-Kutta method of PETSc: by Kutta (orders 3 and 4), Bogacki and Shampine (order 5), Verner "
+             "(order 8)");
     v.number("step", step, second, Range{0, 1e9},
-             "fixed time step; 0 takes a fraction of the method's stability limit");
+             "fixed time step; 0: a fraction of the stability limit of the method");
     v.number("fraction", fraction, one, Range{0.001, 1},
-             "time step over the method's own stability limit: 1.73, 2.83, 1.66, 2.59 over omega_max");
+             "ratio of the time step to the stability limit of the method: 1.73, 2.83, 1.66, 2.59 over omega_max");
   }
   StepRule rule() const;
   std::string drag_problem() const { return "takes no drag implicitly"; }

@@ -12,7 +12,8 @@ namespace {
 
 /// Runs the chosen command; owned PETSc objects die in here, before PetscFinalize.
 int perform(int argc, char **argv, bool speaks) {
-  CLI::App app{"Talus: landslides by the material point method, from the first creep to the last metre of run-out"};
+  CLI::App app{
+      "Talus: simulation of landslides by the material point method, from initial stress to the end of the run-out"};
   app.set_version_flag("--version", std::string("talus ") + talus::version);
   app.require_subcommand(1);
   std::map<CLI::App *, talus::Action> actions;

@@ -13,7 +13,7 @@ struct Flux {
   template <class Visitor>
   void fields(Visitor &&v) {
     v.function("inflow", inflow, metre_per_second, {-1e3, 1e3},
-               "volume of liquid that enters per area and time, function of x, y, z, t; negative when it leaves");
+               "volume of liquid that enters per area and time, function of x, y, z, t; negative for outflow");
   }
   double forced(double x, double y, double z, double t) const { return inflow(x, y, z, t); }
 };

@@ -8,7 +8,7 @@ namespace talus {
 /// other load by it.
 struct GivenGasPressure {
   static constexpr const char *name = "gas_pressure";
-  static constexpr const char *meaning = "pressure of the gas beyond the face; liquid may leave, not enter";
+  static constexpr const char *meaning = "pressure of the gas beyond the face; liquid may leave but not enter";
   static constexpr bool water = true;
   Function pressure = 0.0;
   template <class Visitor>

@@ -10,7 +10,8 @@ namespace talus {
 /// face.
 struct Head {
   static constexpr const char *name = "head";
-  static constexpr const char *meaning = "open water up to a level, which rests on the face; above it a seepage face";
+  static constexpr const char *meaning =
+      "open water up to a level, whose weight acts on the face; above the level a seepage face";
   static constexpr bool water = true;
   Function level = 0.0;
   template <class Visitor>

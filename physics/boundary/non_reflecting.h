@@ -16,8 +16,8 @@ struct NonReflecting {
   template <class Visitor>
   void fields(Visitor &&v) {
     v.choice("support", support, {{"roller", Support::roller}, {"fixed", Support::fixed}, {"none", Support::none}},
-             "what holds the face in quasi-static stages and in those that hold_loads; the reaction it bears at their "
-             "end stays on as a dead load");
+             "support of the face in quasi-static stages and in stages with hold_loads = true; its reaction at their "
+             "end acts as a dead load from then on");
   }
 
   static constexpr bool while_loads_are_held = true;

@@ -16,7 +16,7 @@ struct PrescribedVelocity {
   template <class Visitor>
   void fields(Visitor &&v) {
     v.functions("velocity", velocity, metre_per_second, "velocity, one function of x, y, z, t per component");
-    v.flag("smooth", smooth, "prescribe only the component across the face");
+    v.flag("smooth", smooth, "prescribe only the component normal to the face");
   }
   std::string problem() const { return velocity.empty() ? "velocity must be given, one function per component" : ""; }
 

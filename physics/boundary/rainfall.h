@@ -8,7 +8,8 @@ namespace talus {
 /// above zero. Without rain this is a seepage face.
 struct Rainfall {
   static constexpr const char *name = "rainfall";
-  static constexpr const char *meaning = "rain that ponds at zero pressure; without rain a seepage face";
+  static constexpr const char *meaning =
+      "rain, of which the excess runs off at zero pressure; without rain a seepage face";
   static constexpr bool water = true;
   Function intensity = 0.0;
   template <class Visitor>

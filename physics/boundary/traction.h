@@ -20,7 +20,7 @@ struct Traction {
     v.functions("traction", traction, pascal,
                 "force per undeformed area, one function of the undeformed x, y, z and of t per component");
     v.function("pressure", pressure, pascal, {-1e12, 1e12},
-               "pressure against the face as it is now, function of x, y, z, t");
+               "pressure normal to the deformed face, function of x, y, z, t");
   }
   std::string problem() const {
     return traction.empty() == !pressure.given() ? "give either traction or pressure" : "";

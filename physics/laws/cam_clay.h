@@ -45,9 +45,9 @@ struct CamClay {
     v.number("poisson_ratio", poisson_ratio, one, Range{0, 0.49}, "Poisson's ratio nu");
     v.number("void_ratio", void_ratio, one, Range{0.01, 20}, "void ratio e at the start");
     v.number("preconsolidation_pressure", preconsolidation_pressure, pascal, Range{1, 1e9},
-             "largest mean effective stress the soil has borne, at the start");
+             "largest past mean effective stress, at the start");
     v.number("attraction", attraction, pascal, Range{1e-3, 1e7},
-             "mean tension the soil can bear; gives it stiffness where it bears no stress");
+             "mean tension that the soil can carry; it gives the soil a stiffness at zero stress");
   }
   std::string problem() const {
     if (compression_slope > swelling_slope) return "";

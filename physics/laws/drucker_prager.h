@@ -29,7 +29,7 @@ struct DruckerPrager : IsotropicElastic, FrictionalStrength {
          {"inner", Cone::inner},
          {"compromise", Cone::compromise},
          {"plane_strain", Cone::plane_strain}},
-        "which Mohr-Coulomb strength the cone takes: triaxial compression, extension, their mean, or plane strain");
+        "Mohr-Coulomb strength that the cone matches: triaxial compression, extension, their mean, or plane strain");
   }
 
   bool cohesionless() const { return cohesion == 0; }

@@ -41,7 +41,7 @@ struct Control {
                        : "angle of shear since the start; t runs from 0 to 1");
     for (int i = 0; i < 6; ++i)
       v.function(stress_keys[i], stress[i], pascal, Range{-1e12, 1e12},
-                 "total stress, positive in tension, in place of the strain");
+                 "total stress, positive in tension, instead of the strain");
   }
   std::string problem() const;
   bool given() const;
@@ -67,42 +67,42 @@ struct ElementTest {
 
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.choice("type", type,
-             {{"triaxial_compression", TestType::triaxial_compression},
-              {"triaxial_extension", TestType::triaxial_extension},
-              {"biaxial", TestType::biaxial},
-              {"oedometer", TestType::oedometer},
-              {"simple_shear", TestType::simple_shear},
-              {"isotropic_compression", TestType::isotropic_compression},
-              {"controlled", TestType::controlled}},
-             "kind of test; y is the axis of the sample, biaxial holds z; controlled takes the table control");
+    v.choice(
+        "type", type,
+        {{"triaxial_compression", TestType::triaxial_compression},
+         {"triaxial_extension", TestType::triaxial_extension},
+         {"biaxial", TestType::biaxial},
+         {"oedometer", TestType::oedometer},
+         {"simple_shear", TestType::simple_shear},
+         {"isotropic_compression", TestType::isotropic_compression},
+         {"controlled", TestType::controlled}},
+        "kind of test; y is the axis of the sample; biaxial has no strain along z; controlled uses the table control");
     v.number("cell_pressure", cell_pressure, pascal, Range{0, 1e10},
-             "effective pressure at the start, which then stays on the sides (simple shear: on the top)");
+             "effective pressure at the start, which remains constant on the sides (simple shear: on the top)");
     v.point("stress", stress, pascal,
-            "effective stress at the start in place of cell_pressure: xx, yy, zz, and xy, yz, xz if they are not 0; "
+            "effective stress at the start, instead of cell_pressure: xx, yy, zz, and xy, yz, xz if they are not 0; "
             "positive in tension");
     v.point("strain", strain, one,
-            "natural strain that is driven, positive in the direction of the test: shortening, lengthening "
-            "(extension), gamma, loss of "
-            "volume (isotropic); a list turns at each of its values");
+            "prescribed natural strain, positive in the direction of the test: shortening, lengthening (extension), "
+            "gamma, loss of volume (isotropic); with a list the strain goes from each value to the next");
     v.integer("steps", steps, Range{1, 1000000}, "steps to each value of strain");
     v.flag("undrained", undrained, "water cannot leave the sample");
     v.number("skempton_b", skempton_b, one, Range{1e-6, 1},
-             "undrained: rise of pore pressure over rise of mean total stress while the soil is elastic; 1: the sample "
-             "keeps its volume");
+             "undrained: ratio of the increments of pore pressure and mean total stress while the soil is elastic; 1: "
+             "the volume of the sample is constant");
     v.number("pore_stiffness", pore_stiffness, pascal, Range{0, 1e15},
-             "undrained: K_l / n, in place of skempton_b; 0 is not given");
+             "undrained: K_l / n, instead of skempton_b; 0: not used");
     v.number("pore_pressure", pore_pressure, pascal, Range{-1e10, 1e10}, "pore pressure at the start");
-    v.number("void_ratio", void_ratio, one, Range{0, 100}, "void ratio at the start; 0 is not known");
+    v.number("void_ratio", void_ratio, one, Range{0, 100}, "void ratio at the start; 0: unknown");
     v.number("element_size", element_size, metre, Range{0, 1e5},
-             "element size h that a softening law with a reference_size sees; 0: shape_factor holds as it is");
+             "element size h for a softening law with a reference_size; 0: shape_factor is not scaled");
     v.function("suction", suction, pascal, Range{0, 1e10},
-               "suction that a law with suction_cohesion or suction_friction_rate reads, as a function of t, which "
-               "runs from 0 to 1 in "
-               "the test; none is 0");
+               "suction for a law with suction_cohesion or suction_friction_rate, as a function of t, which runs from "
+               "0 to 1 in the test; default: 0");
     v.number("duration", duration, second, Range{0, 1e12},
-             "time in which strain goes from each of its values to the next; fluids and mu_i need it");
-    v.table("control", control, "controlled: what is prescribed; a component that is not named keeps its strain");
+             "time in which the strain goes from each of its values to the next; fluids and mu_i need it");
+    v.table("control", control,
+            "controlled: prescribed components; the strain of a component that is not named is constant");
   }
   std::string problem() const;
 };
@@ -113,7 +113,7 @@ struct SoilFile {
     DeferredTable law;
     template <class Visitor>
     void fields(Visitor &&v) {
-      v.deferred("law", law, "soil model; its parameters stand in the same table, as in [body.NAME]");
+      v.deferred("law", law, "soil law; its parameters are keys of the same table, as in [body.NAME]");
     }
   };
   std::string title;
@@ -123,7 +123,7 @@ struct SoilFile {
   void fields(Visitor &&v) {
     v.text("title", title, "one line that says what the file shows");
     v.table("material", material, "soil that is tested by `talus soil`");
-    v.named("test", test, "tests of the soil, [test.NAME]; for the soil of a scene they are given by --set");
+    v.named("test", test, "tests of the soil, [test.NAME]; for the soil of a scene, define them by --set");
   }
 };
 

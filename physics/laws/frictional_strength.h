@@ -26,17 +26,17 @@ struct FrictionalStrength {
     v.number("friction_angle", friction_angle, degree, Range{0, 70},
              "friction angle phi, at its peak if the soil softens");
     v.number("dilation_angle", dilation_angle, degree, Range{0, 70},
-             "dilation angle psi; held at phi where phi falls below it");
+             "dilation angle psi; limited to phi where phi falls below it");
     v.number("residual_cohesion", residual_cohesion, pascal, Range{-1, 1e9},
-             "cohesion at large strain; negative is the peak");
+             "cohesion at large strain; negative: the peak value");
     v.number("residual_friction_angle", residual_friction_angle, degree, Range{-1, 70},
-             "friction angle at large strain; negative is the peak");
+             "friction angle at large strain; negative: the peak value");
     v.number("residual_dilation_angle", residual_dilation_angle, degree, Range{-1, 70},
-             "dilation angle at large strain; negative is the peak");
+             "dilation angle at large strain; negative: the peak value");
     v.number("shape_factor", shape_factor, one, Range{0, 1e6}, "eta: strength falls with exp(-eta plastic_strain)");
     v.number("reference_size", reference_size, metre, Range{0, 1e4},
-             "element size that shape_factor belongs to; in cells of size h it is scaled by h / reference_size; 0 is "
-             "no scaling");
+             "element size to which shape_factor belongs; in cells of size h it is multiplied by h / reference_size; "
+             "0: no scaling");
   }
 
   std::string problem() const {

@@ -64,7 +64,7 @@ struct HenckyElastic : Hencky<LinearElastic> {
 };
 struct HenckyDruckerPrager : Hencky<DruckerPrager> {
   static constexpr const char *name = "hencky_drucker_prager";
-  static constexpr const char *meaning = "drucker_prager around Hencky's hyperelasticity";
+  static constexpr const char *meaning = "drucker_prager with Hencky's hyperelasticity";
 
   template <class Use>
   void as_case(Use use) const {
@@ -73,7 +73,7 @@ struct HenckyDruckerPrager : Hencky<DruckerPrager> {
 };
 struct HenckyMohrCoulomb : Hencky<MohrCoulomb> {
   static constexpr const char *name = "hencky_mohr_coulomb";
-  static constexpr const char *meaning = "mohr_coulomb around Hencky's hyperelasticity";
+  static constexpr const char *meaning = "mohr_coulomb with Hencky's hyperelasticity";
 
   template <class Use>
   void as_case(Use use) const {

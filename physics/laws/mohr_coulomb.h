@@ -32,13 +32,13 @@ struct MohrCoulomb : IsotropicElastic, FrictionalStrength {
     IsotropicElastic::fields(v);
     FrictionalStrength::fields(v);
     v.number("tension_cutoff", tension_cutoff, pascal, Range{-1, 1e9},
-             "largest tension; negative is none but the apex");
+             "tensile strength; negative: no cut-off below the apex");
     v.number("suction_cohesion", suction_cohesion, pascal, Range{0, 1e9},
-             "most that suction adds to the cohesion: c = c' + suction_cohesion (1 - exp(-suction_cohesion_rate s))");
+             "largest increase of cohesion by suction: c = c' + suction_cohesion (1 - exp(-suction_cohesion_rate s))");
     v.number("suction_cohesion_rate", suction_cohesion_rate, per_pascal, Range{0, 1e-4},
-             "rate at which cohesion grows with suction, per pressure, such as \"0.0007 1/kPa\"");
+             "rate of the increase of cohesion with suction, per pressure, such as \"0.0007 1/kPa\"");
     v.number("suction_friction_rate", suction_friction_rate, degree_per_pascal, Range{0, 1e-2},
-             "growth of the friction angle with suction, such as \"0.0001 deg/kPa\"; phi stops at 80 degrees");
+             "increase of the friction angle per suction, such as \"0.0001 deg/kPa\"; phi is at most 80 degrees");
   }
 
   std::string problem() const {

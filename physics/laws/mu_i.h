@@ -28,9 +28,11 @@ struct MuI : IsotropicElastic {
   void fields(Visitor &&v) {
     IsotropicElastic::fields(v);
     v.number("static_friction", static_friction, one, Range{0, 2},
-             "mu_s: shear stress over pressure where flow begins");
-    v.number("limiting_friction", limiting_friction, one, Range{0, 4}, "mu_2: shear stress over pressure of fast flow");
-    v.number("inertial_number", inertial_number, one, Range{1e-6, 1e3}, "I_0: inertial number of the mean friction");
+             "mu_s: ratio of shear stress to pressure at which flow begins");
+    v.number("limiting_friction", limiting_friction, one, Range{0, 4},
+             "mu_2: ratio of shear stress to pressure in fast flow");
+    v.number("inertial_number", inertial_number, one, Range{1e-6, 1e3},
+             "I_0: inertial number at which friction is the mean of mu_s and mu_2");
     v.number("grain_size", grain_size, metre, Range{1e-7, 10}, "diameter of the grains");
     v.number("solid_density", solid_density, kilogram_per_cubic_metre, Range{100, 1e4}, "density of the grains in I");
   }

@@ -30,12 +30,14 @@ struct Umat : IsotropicElastic {
   void fields(Visitor &&v) {
     IsotropicElastic::fields(v);
     v.path("library", library, "shared library with the UMAT, relative to this file");
-    v.text("subroutine", subroutine, "its symbol; umat_ is what gfortran makes of SUBROUTINE UMAT");
-    v.quantities("props", props, "PROPS: numbers, or quantities, which arrive in SI and radians");
-    v.integer("nstatv", nstatv, Range{-1, 1000}, "NSTATV, number of state variables; -1 is as many as `state` names");
+    v.text("subroutine", subroutine,
+           "symbol of the subroutine in the library; gfortran gives SUBROUTINE UMAT the symbol umat_");
+    v.quantities("props", props, "PROPS: numbers, or quantities, which the UMAT receives in SI units and radians");
+    v.integer("nstatv", nstatv, Range{-1, 1000},
+              "NSTATV, number of state variables; -1: the number of names in `state`");
     v.texts("state", state,
-            "names of the state variables in results; plastic_strain is drawn like that of other laws; those without a "
-            "name are state_N");
+            "names of the state variables in results; plastic_strain is drawn as for other laws; variables without a "
+            "name are called state_N");
   }
 
   /// Loads the library.

@@ -257,12 +257,12 @@ int bench(const BenchArguments &arguments) {
 Action add_bench(CLI::App &app) {
   auto arguments = std::make_shared<BenchArguments>();
   CLI::App *command = app.add_subcommand("bench",
-                                         "particle-updates per second and core by dimension, phase model, law and "
-                                         "transfer; wall time per simulated second of two scenes");
+                                         "measure particle updates per second and core by dimension, phase model, law "
+                                         "and transfer, and the wall time per simulated second of two scenes");
   command->add_flag("--json", arguments->json, "one JSON document on standard output");
   command->add_option("--steps", arguments->steps, "steps of each case")->check(CLI::Range(10, 100000));
   command->add_option("--only", arguments->only,
-                      "cases whose line contains this, such as \"3 dry mohr\", or \"laws alone\"");
+                      "only the cases whose line contains this text, such as \"3 dry mohr\", or \"laws alone\"");
   return [arguments] { return bench(*arguments); };
 }
 

@@ -140,7 +140,7 @@ void print_scales(const Needs &n) {
   }
   for (const BodyNeeds &b : n.bodies)
     if (b.softening > 0)
-      line("", "strength of %s falls with plastic strain at %.2g of 2 G in cells of %.3g m", b.body.name.c_str(),
+      line("", "strength of %s decreases with plastic strain at %.2g of 2 G in cells of %.3g m", b.body.name.c_str(),
            b.softening, b.body.cell_size);
   const Drainage &d = n.drainage;
   if (d.time == 0) return;
@@ -245,7 +245,8 @@ int check(const CheckArguments &arguments) {
 
 Action add_check(CLI::App &app) {
   auto arguments = std::make_shared<CheckArguments>();
-  CLI::App *command = app.add_subcommand("check", "what a scene costs and needs, without running it, and advice");
+  CLI::App *command =
+      app.add_subcommand("check", "estimate cost and memory of a scene without running it, and give advice");
   command->add_option("SCENE", arguments->scene, "scene file (.toml) or the name of a gallery scene")->required();
   command->add_option("--set", arguments->set, "override a key of the scene: key.path=value")->take_all();
   command->add_flag("--json", arguments->json, "one JSON document on standard output");

@@ -144,7 +144,7 @@ void run_all(const CompareArguments &arguments, std::vector<Trial> &trials) {
   size_t next = 0, done = std::count_if(trials.begin(), trials.end(), [](const Trial &t) { return t.done; });
   const size_t before = done;
   const Clock::time_point begin = Clock::now();
-  if (before) std::fprintf(stderr, "%zu of %zu runs are there already\n", before, trials.size());
+  if (before) std::fprintf(stderr, "%zu of %zu runs were completed before\n", before, trials.size());
   while (done < trials.size() || !running.empty()) {
     for (; next < trials.size() && static_cast<int>(running.size()) < arguments.jobs && !interrupted; ++next)
       if (!trials[next].done) running[start(arguments, trials[next])] = {&trials[next], Clock::now()};
@@ -172,7 +172,7 @@ void run_all(const CompareArguments &arguments, std::vector<Trial> &trials) {
                  trial.series.c_str(), joined(trial.overrides).c_str(), trial.failed ? "FAILED" : "done", trial.wall,
                  left);
   }
-  if (interrupted) throw std::runtime_error("interrupted; the same command goes on where it stopped");
+  if (interrupted) throw std::runtime_error("interrupted; the same command continues with the missing runs");
 }
 
 /// Steps, evaluations and rejections out of the last note of run.log; they stay 0 if the run did not come so far.
@@ -248,7 +248,7 @@ int compare(CompareArguments arguments) {
   if (arguments.jobs == 0) arguments.jobs = std::max(1u, std::thread::hardware_concurrency());
   const Measure measure = parse_measure(arguments.measure);
   if (!arguments.exact.empty() && !arguments.reference.empty())
-    throw SceneError("--exact and --reference both say what is true: give one of them");
+    throw SceneError("--exact and --reference both define the true value: give one of them");
   if (!arguments.exact.empty() && !std::isfinite(number_of(arguments.exact)))
     throw SceneError("--exact " + arguments.exact + " must be a number");
   std::vector<Trial> trials = matrix(arguments);
@@ -283,7 +283,7 @@ int compare(CompareArguments arguments) {
 Action add_compare(CLI::App &app) {
   auto arguments = std::make_shared<CompareArguments>();
   CLI::App *command =
-      app.add_subcommand("compare", "run a scene in many variants: error against time, table and chart");
+      app.add_subcommand("compare", "run a scene in many variants: table and chart of error against processor time");
   command->add_option("SCENE", arguments->scene, "scene file (.toml) or the name of a gallery scene")->required();
   command
       ->add_option("--series", arguments->series,
@@ -293,7 +293,7 @@ Action add_compare(CLI::App &app) {
       ->take_all();
   command
       ->add_option("--measure", arguments->measure,
-                   "what is compared: a column of history.csv at the end, COLUMN@TIME, or max:COLUMN")
+                   "compared quantity: a column of history.csv at the end, COLUMN@TIME, or max:COLUMN")
       ->required();
   command->add_option("--exact", arguments->exact,
                       "the true value; without it the series that converges best is extrapolated");

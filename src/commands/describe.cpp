@@ -15,7 +15,7 @@ namespace talus {
 
 Action add_describe(CLI::App &app) {
   auto key = std::make_shared<std::string>();
-  CLI::App *command = app.add_subcommand("describe", "every key of a scene: meaning, unit, default, range");
+  CLI::App *command = app.add_subcommand("describe", "describe every key of a scene: meaning, unit, default, range");
   command->add_option("KEY", *key, "a key, a table or a kind, such as body.density, stage or mohr_coulomb");
   return [key] {
     Describer describer;

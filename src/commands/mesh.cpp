@@ -87,22 +87,24 @@ int make_mesh(const MeshArguments &arguments) {
 Action add_mesh(CLI::App &app) {
   auto arguments = std::make_shared<MeshArguments>();
   CLI::App *command =
-      app.add_subcommand("mesh", "section to mesh file, with a report on quality and the critical step it implies");
+      app.add_subcommand("mesh", "make a mesh file of a section, with a report on its quality and critical step");
   command->add_option("SOURCE", arguments->source, "section CSV")->required();
   command->add_option("-o,--output", arguments->file, "mesh file to write (.msh)")->required();
   command->add_option("--size", arguments->size, "cell size, such as 0.5 or \"50 cm\"")->required();
   command->add_option("--dimension", arguments->dimension, "2: triangles, 3: tetrahedra (default 2)");
-  command->add_option("--thickness", arguments->thickness, "of a 3D slice (default one cell size)");
-  command->add_option("--layers", arguments->layers, "of elements over the thickness; 0: free tetrahedra (default 1)");
-  command->add_option("--cuts", arguments->cuts, "z that part the thickness into regions ending in _1, _2, ...");
+  command->add_option("--thickness", arguments->thickness, "thickness of a 3D slice (default: one cell size)");
+  command->add_option("--layers", arguments->layers,
+                      "element layers over the thickness; 0: unstructured tetrahedra (default 1)");
+  command->add_option("--cuts", arguments->cuts,
+                      "z values that divide the thickness into regions with the endings _1, _2, ...");
   command->add_option("--refine", arguments->boxes, "x0 y0 x1 y1 h: cells of size h in a box; may be repeated")
       ->type_size(5)
       ->expected(-1);
-  command->add_option("--format", arguments->format, "of the mesh file: 2.2 or 4.1 (default 4.1)");
+  command->add_option("--format", arguments->format, "format of the mesh file: 2.2 or 4.1 (default 4.1)");
   command->add_option("--young-modulus", arguments->young_modulus,
-                      "of the soil, for the critical step (default 10 MPa)");
-  command->add_option("--poisson-ratio", arguments->poisson_ratio, "of the soil (default 0.3)");
-  command->add_option("--density", arguments->density, "of the soil (default 2000 kg/m3)");
+                      "Young's modulus of the soil, for the critical step (default 10 MPa)");
+  command->add_option("--poisson-ratio", arguments->poisson_ratio, "Poisson's ratio of the soil (default 0.3)");
+  command->add_option("--density", arguments->density, "density of the soil (default 2000 kg/m3)");
   return [arguments] {
     int rank, status = 0;
     MPI_Comm_rank(PETSC_COMM_WORLD, &rank);

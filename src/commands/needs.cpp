@@ -171,22 +171,22 @@ class Adviser {
     const int fewest = b.body.fewest_per_cell;
     const bool plane = scene_.dimension == 2;
     if (fewest >= (plane ? 3 : 4)) return;
-    const std::string wanted = plane ? "three or more a triangle" : "four or more a tetrahedron";
+    const std::string wanted = plane ? "three or more per triangle" : "four or more per tetrahedron";
     if (fewest == 1)
-      say("One particle a cell in " + b.body.name + " is useless: stress was " +
-          (plane ? "10 % wrong at rest and 23 % in motion, against 1.2 % and 5 % with three" : "13 to 18 % wrong") +
+      say("One particle per cell in " + b.body.name + " is too few: the error of stress was " +
+          (plane ? "10 % at rest and 23 % in motion, compared with 1.2 % and 5 % with three" : "13 to 18 %") +
           "; take " + wanted + ".");
     else
-      say(std::to_string(fewest) + " particles a cell in " + b.body.name + " are few where cells empty; take " +
-          wanted + ".");
+      say(std::to_string(fewest) + " particles per cell in " + b.body.name +
+          " are few where cells lose particles; take " + wanted + ".");
   }
 
   void locking(const BodyNeeds &b) {
     const double K = bulk_modulus(b.law), G = shear_modulus(b.law), nu = (3 * K - 2 * G) / (2 * (3 * K + G));
     if (nu > 0.45 && scene_.transfer.locking == Locking::none)
       say("Poisson's ratio " + digits(nu) + " in " + b.body.name +
-          " locks linear cells (a footing carried 45 % too much at 0.49); take "
-          "transfer.locking = \"patches\".");
+          " makes linear cells lock (the load of a footing was 45 % too high at 0.49); take transfer.locking = "
+          "\"patches\".");
   }
 
   void softening(const BodyNeeds &b) {
@@ -194,25 +194,26 @@ class Adviser {
     if (b.averaging_length > 0) return;  // bands are wider than a cell, and cells do not snap back alone
     if (unscaled(b.law))
       say(b.body.name +
-          " softens without a reference_size: bands are one cell wide, so the answer depends on the mesh; give the "
-          "element size that shape_factor belongs to, or an averaging_length.");
+          " softens without a reference_size: shear bands are one cell wide, so the result depends on the mesh; give "
+          "the element size to which shape_factor belongs, or an averaging_length.");
     constexpr double snap_back =
         0.87;  // sqrt(3) / 2: strength of simple shear falls as fast as elastic strain gives way
     if (b.softening > snap_back / 2)
-      say("Strength of " + b.body.name + " falls with plastic strain at " + digits(b.softening, 2) +
+      say("Strength of " + b.body.name + " decreases with plastic strain at " + digits(b.softening, 2) +
           " of 2 G in cells of " + digits(b.body.cell_size) + " m, " +
           (b.softening > snap_back ? "above the " : "near the ") + digits(snap_back) +
-          " at which a sheared cell snaps back and fails at once; take smaller cells with a reference_size, or a "
-          "smaller shape_factor.");
+          " at which a sheared cell snaps back and loses its strength at once; take smaller cells with a "
+          "reference_size, or a smaller shape_factor.");
   }
 
   void stiffness() {
     const LayerNeeds &layer = needs_.layer;
     if (layer.gravity_strain > 0.1)
-      say("The soil's weight strains it by " + digits(100 * layer.gravity_strain) +
-          " %: what falls its height strikes at " +
+      say("The weight of the soil strains it by " + digits(100 * layer.gravity_strain) +
+          " %: soil that falls by its height arrives at " +
           digits(100 * scales::fall_speed(layer.height, needs_.gravity) / layer.wave_speed) +
-          " % of the wave speed and bounces; a stiffer soil costs steps with the root of its stiffness.");
+          " % of the wave speed and bounces; with a stiffer soil the number of steps increases with the root of the "
+          "stiffness.");
   }
 
   void start() {
@@ -221,9 +222,8 @@ class Adviser {
     const bool stressed =
         std::all_of(scene_.body.begin(), scene_.body.end(), [](const auto &b) { return !b.stress.empty(); });
     if (!stressed && first.gravity_ramp == 0 && first.damping == 0)
-      say("Gravity sets in at once on soil without stress, which swings to twice the strain at rest; give "
-          "body.NAME.stress, or a first stage "
-          "with gravity_ramp = " +
+      say("Gravity is applied at once to soil without stress, which oscillates up to twice the static strain; give "
+          "body.NAME.stress, or a first stage with gravity_ramp = " +
           digits(20 * needs_.layer.transit, 1) + " s (20 wave transits) and damping.");
   }
 
@@ -238,10 +238,9 @@ class Adviser {
     const double K = bulk_modulus(b.law), G = shear_modulus(b.law), nu = (3 * K - 2 * G) / (2 * (3 * K + G));
     if (std::sin(soil->friction_angle) >= 1 - 2 * nu || soil->friction_angle == 0) return;
     say("Elastic ground of " + b.body.name +
-        " at rest presses sideways with nu / (1 - nu) = " + digits(nu / (1 - nu), 2) +
-        ", too little to stand at its friction angle but for cohesion: much of it yields under its weight alone, and "
-        "Newton's iterations may stall; take "
-        "initial_stress = \"k0\", or poisson_ratio above " +
+        " at rest has the lateral stress ratio nu / (1 - nu) = " + digits(nu / (1 - nu), 2) +
+        ", less than its friction angle requires without cohesion: much of it yields under its weight alone, and "
+        "Newton's iterations may stall; take initial_stress = \"k0\", or poisson_ratio above " +
         digits((1 - std::sin(soil->friction_angle)) / 2, 2) + " (sin phi > 1 - 2 nu).");
   }
 
@@ -249,7 +248,7 @@ class Adviser {
     if (is_static(stage.kind)) return;
     if (stage.until == StopWhen::equilibrium && stage.damping == 0)
       say("Stage " + stage.name +
-          " waits for equilibrium without damping: waves hardly fade; damping = 0.7 comes to rest soonest.");
+          " waits for equilibrium without damping, so waves hardly decay; damping = 0.7 is the fastest way to rest.");
     if (stage.until == StopWhen::equilibrium && stage.duration < 20 * needs_.layer.transit)
       say("Stage " + stage.name + " lasts " + digits(stage.duration / needs_.layer.transit) +
           " wave transits, too short for equilibrium; give it " + digits(50 * needs_.layer.transit, 1) + " s or more.");
@@ -258,15 +257,15 @@ class Adviser {
   void step() {
     if (needs_.fixed_step && needs_.step < 0.3 * needs_.critical_step)
       say("The fixed step is " + digits(needs_.step / needs_.critical_step, 2) +
-          " of the critical one; without integrator.step it would be 0.6 of it.");
+          " of the critical step; without integrator.step it would be 0.6 of it.");
     const BodyReport &b = needs_.slowest_body().body;
     if (b.critical_step > 0.4 * b.mean_critical_step) return;
     std::string at = std::string("(") + digits(b.slowest_cell[0]) + ", " + digits(b.slowest_cell[1]) +
                      (scene_.dimension == 3 ? ", " + digits(b.slowest_cell[2]) : "") + ") m";
     for (std::size_t i = 0; i < scene_.mesh.refine.size(); ++i)
       if (inside(scene_.mesh.refine[i], b.slowest_cell)) at += ", in mesh.refine." + std::to_string(i) + ",";
-    say("Small cells at " + at + " dictate the step: it is " + digits(b.critical_step / b.mean_critical_step, 2) +
-        " of what the cells of " + b.name + " allow on average.");
+    say("Small cells at " + at + " determine the step: it is " + digits(b.critical_step / b.mean_critical_step, 2) +
+        " of the mean critical step of the cells of " + b.name + ".");
   }
 
   bool inside(const RefineBox &box, const std::array<double, 3> &x) const {
@@ -278,21 +277,21 @@ class Adviser {
   void transfer() {
     const Transfer &t = scene_.transfer;
     if (t.remap_interval == 0)
-      say("A remap at every step costs twice the time or more and adds crossing noise; transfer.remap_interval = 0.1 "
-          "is the default.");
+      say("A remap in every step costs twice the time or more and adds cell-crossing noise; transfer.remap_interval = "
+          "0.1 is the default.");
     if (t.velocity == Velocity::apic)
-      say("APIC on simplices broke every run with a free surface; it pays where soil fills its cells and stays in "
-          "them.");
+      say("APIC on simplices was unstable in every run with a free surface; use it only where soil fills its cells and "
+          "stays in them.");
     if (t.integration == Integration::particle || t.integration == Integration::mixed)
-      say("Integration by particle volumes was four to nine times less accurate than \"blended\" where soil crosses "
+      say("Integration by particle volumes was four to nine times less accurate than \"blended\" where particles cross "
           "cells.");
     if (needs_.mesh.smallest_quality < 0.2)
       say("The worst cell has a quality of " + digits(needs_.mesh.smallest_quality) +
-          "; below 0.2 it costs steps and accuracy.");
+          "; a quality below 0.2 reduces the step and the accuracy.");
     constexpr long long few = 5000;
     if (needs_.ranks > 1 && needs_.particles() / needs_.ranks < few)
       say("A rank has " + std::to_string(needs_.particles() / needs_.ranks) + " particles; below " +
-          std::to_string(few) + " messages take longer than the work that they share.");
+          std::to_string(few) + " communication takes longer than the computation it shares.");
   }
 
   void dimension() {
@@ -302,7 +301,7 @@ class Adviser {
     constexpr double per_particle_in_cell = 2.8;
     double cells = 0;
     for (const BodyNeeds &b : needs_.bodies) cells += static_cast<double>(b.body.cells);
-    say("A slice of one element gives the answer of plane strain on triangles at about " +
+    say("A slice of one element gives the result of plane strain on triangles at about " +
         digits(per_particle_in_cell * static_cast<double>(needs_.particles()) / cells, 2) +
         " times the cost; set dimension = 2.");
   }
@@ -312,16 +311,16 @@ class Adviser {
     if (d.time == 0) return;
     const std::string bounds = std::string("k above ") + digits(d.drained_above, 1) + " m/s", time = spoken(d.time);
     if (scene_.phases == PhaseModel::drained)
-      say("A given pore pressure is right where soil drains in the " + time + " of the stages, " + bounds +
-          " (less in proportion where a stage stands for a longer time). Below " + digits(d.undrained_below, 1) +
-          " m/s failure is undrained: take total-stress strengths; in between pore pressure has to be computed.");
+      say("A prescribed pore pressure is right where soil drains in the " + time + " of the stages, " + bounds +
+          " (less in proportion where a stage represents a longer time). Below " + digits(d.undrained_below, 1) +
+          " m/s failure is undrained: use total-stress strengths; in between pore pressure has to be computed.");
     else if (fluids_move(scene_.phases))
-      say("Pore water that moves is needed for k between " + digits(d.undrained_below, 1) +
+      say("Moving pore water is needed for k between " + digits(d.undrained_below, 1) +
           " m/s, below which soil stays undrained in the " + time + " of the stages, and " +
-          digits(d.drained_above, 1) + " m/s, above which phases = \"drained\" gives the same for less.");
+          digits(d.drained_above, 1) + " m/s, above which phases = \"drained\" gives the same result at lower cost.");
     else
-      say("Dry is right for soil without water, or with total-stress strengths; with water in its pores the soil would "
-          "stay drained in " +
+      say("phases = \"dry\" is right for soil without water, or with total-stress strengths; with water in its pores "
+          "the soil would be drained in " +
           time + " for " + bounds + " and undrained below " + digits(d.undrained_below, 1) + " m/s.");
   }
 

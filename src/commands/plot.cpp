@@ -14,14 +14,14 @@ Action add_plot(CLI::App &app) {
     PictureChoice choice;
   };
   auto arguments = std::make_shared<Arguments>();
-  CLI::App *command = app.add_subcommand("plot", "pictures and report of a run");
+  CLI::App *command = app.add_subcommand("plot", "draw pictures of a run and write its report");
   command->add_option("DIR", arguments->directory, "folder of the results")->required();
   command->add_option(
       "--fields", arguments->choice.fields,
-      "columns to draw: a vector by its size, a tensor by its mean, or one component, such as stress_xy");
+      "fields to draw: a vector by its magnitude, a tensor by its mean, or one component, such as stress_xy");
   command->add_option("--times", arguments->choice.times, "times to draw [s]: the nearest snapshots")
       ->check(CLI::Number);
-  command->add_flag("--log", arguments->choice.logarithmic, "plastic strain on a logarithmic scale");
+  command->add_flag("--log", arguments->choice.logarithmic, "draw plastic strain on a logarithmic scale");
   return [arguments] {
     if (!std::filesystem::is_regular_file(std::filesystem::path(arguments->directory) / "run.h5"))
       throw SceneError(arguments->directory + " holds no results of a run: there is no run.h5");

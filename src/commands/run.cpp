@@ -47,7 +47,7 @@ Action add_run(CLI::App &app) {
   command->add_option("-o,--output", arguments->directory, "folder of the results (default results/NAME)");
   command->add_option("--set", arguments->set, "override a key of the scene: key.path=value")->take_all();
   command->add_flag("--resume", arguments->resume,
-                    "go on with the run in that folder from its last checkpoint, on as many ranks as before");
+                    "continue the run in that folder from its last checkpoint, on the same number of ranks");
   command->add_flag("--no-pictures", arguments->no_pictures, "do not draw pictures at the end");
   return [arguments] { return run(*arguments); };
 }

@@ -125,7 +125,7 @@ int test_soil(const SoilArguments &arguments) {
     names.push_back(test.name);
   }
   const bool drawn = !arguments.no_pictures && draw_element_tests(dir, names, job.title);
-  std::printf("results are in %s: %sone CSV a test\n", dir.c_str(), drawn ? "soil.png, " : "");
+  std::printf("results are in %s: %sone CSV file per test\n", dir.c_str(), drawn ? "soil.png, " : "");
   return 0;
 }
 
@@ -133,8 +133,8 @@ int test_soil(const SoilArguments &arguments) {
 
 Action add_soil(CLI::App &app) {
   auto arguments = std::make_shared<SoilArguments>();
-  CLI::App *command =
-      app.add_subcommand("soil", "element tests of a soil: triaxial, biaxial, oedometer, shear; CSV and plot");
+  CLI::App *command = app.add_subcommand(
+      "soil", "run element tests of a soil: triaxial, biaxial, oedometer, shear; write CSV files and a plot");
   command->add_option("FILE", arguments->file, "file with [material] and [test.NAME], or a scene")->required();
   command->add_option("--body", arguments->body, "soil of the scene");
   command->add_option("-o,--output", arguments->directory, "folder of the results (default results/soil-NAME)");

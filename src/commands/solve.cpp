@@ -61,7 +61,7 @@ int solve(const SolveArguments &arguments) {
 Action add_solve(CLI::App &app) {
   auto arguments = std::make_shared<SolveArguments>();
   CLI::App *command =
-      app.add_subcommand("solve", "quasi-static stages of a scene by finite elements; factor of safety");
+      app.add_subcommand("solve", "solve the quasi-static stages of a scene by finite elements; factor of safety");
   command->add_option("SCENE", arguments->scene, "scene file (.toml) or the name of a gallery scene")->required();
   command->add_option("-o,--output", arguments->directory, "folder of the results (default results/NAME)");
   command->add_option("--set", arguments->set, "override a key of the scene: key.path=value")->take_all();

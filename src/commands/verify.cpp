@@ -140,11 +140,12 @@ int verify(const VerifyArguments &arguments) {
 
 Action add_verify(CLI::App &app) {
   auto arguments = std::make_shared<VerifyArguments>();
-  CLI::App *command = app.add_subcommand("verify", "cases with an exact answer: computed, error, tolerance");
+  CLI::App *command =
+      app.add_subcommand("verify", "run cases with an exact solution: computed value, error, tolerance");
   command->add_option("CASE", arguments->cases, "names of cases (default: all)");
-  command->add_flag("--json", arguments->json, "print the claims as one JSON document");
-  command->add_flag("--list", arguments->list, "name the cases and what they show");
-  command->add_flag("--long", arguments->longer, "with the finer studies, which take minutes");
+  command->add_flag("--json", arguments->json, "print the results as one JSON document");
+  command->add_flag("--list", arguments->list, "list the cases with their descriptions");
+  command->add_flag("--long", arguments->longer, "include the finer studies, which take minutes");
   return [arguments] { return verify(*arguments); };
 }
 

@@ -136,7 +136,7 @@ void Describer::list(const char *key, const std::vector<Struct> &, const char *m
 template <class Variant>
 void describe_one_of(Describer &describer, const std::string &path, const char *key) {
   const auto describe = [&]<class Kind>(std::type_identity<Kind>) {
-    std::string meaning = "chooses the keys of this block";
+    std::string meaning = "selects the keys of this block";
     if constexpr (requires { Kind::meaning; }) meaning = Kind::meaning;
     const std::string quoted = std::string("\"") + Kind::name + "\"";
     const Describer::Key chooser{path + "." + key, quoted, "", meaning};

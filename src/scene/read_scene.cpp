@@ -52,13 +52,12 @@ class Checks {
     if (gravity.empty()) gravity.assign(scene_.dimension, 0);
     if (gravity.size() == 1) {
       const double g = gravity[0];
-      if (g < 0) reader_.complain("gravity", "must not be negative: a single number acts down the y axis");
+      if (g < 0) reader_.complain("gravity", "must not be negative: a single number acts along -y");
       gravity.assign(scene_.dimension, 0);
       gravity[1] = -g;
     }
     if (gravity.size() != static_cast<std::size_t>(scene_.dimension))
-      reader_.complain("gravity",
-                       "must be one number, which acts down the y axis, or have " + dimension() + " components");
+      reader_.complain("gravity", "must be one number, which acts along -y, or have " + dimension() + " components");
   }
 
   void body(const BodySource &body) const {
@@ -133,18 +132,19 @@ class Checks {
     const bool drained = scene_.phases == PhaseModel::drained;
     if (water_flows(stage.kind) && scene_.phases != PhaseModel::saturated && scene_.phases != PhaseModel::unsaturated &&
         !(drained && stage.kind == StageKind::seepage))
-      reader_.complain(path + ".kind", "needs pore water that moves: set phases = \"saturated\" or \"unsaturated\"" +
-                                           std::string(stage.kind == StageKind::seepage
-                                                           ? " (or \"drained\", whose pressure then is what seeps in)"
-                                                           : "") +
-                                           ", not \"" + phases() + "\"");
+      reader_.complain(path + ".kind",
+                       "needs pore water that moves: set phases = \"saturated\" or \"unsaturated\"" +
+                           std::string(stage.kind == StageKind::seepage
+                                           ? " (or \"drained\", whose pressure is then computed by seepage)"
+                                           : "") +
+                           ", not \"" + phases() + "\"");
     if (drained && water_flows(stage.kind) && !(scene_.water.excess.constant() && scene_.water.excess(0) == 0))
-      reader_.complain(
-          "water.excess",
-          "has no place beside seepage, which finds the pressure: give pressures, heads or fluxes at [boundary.NAME]");
+      reader_.complain("water.excess",
+                       "cannot be combined with seepage, which computes the pressure: give pressures, heads or fluxes "
+                       "at [boundary.NAME]");
     if (stage.kind == StageKind::consolidation && scene_.quasi_static.elements != Elements::quadratic)
       reader_.complain("quasi_static.elements",
-                       "must be \"quadratic\" for consolidation: displacement of first order beside pressure of first "
+                       "must be \"quadratic\" for consolidation: displacement of first order with pressure of first "
                        "order is not stable");
     if (stage.kind == StageKind::consolidation && scene_.quasi_static.linear_solver == LinearSolver::iterative)
       reader_.complain(
@@ -164,7 +164,7 @@ class Checks {
     std::vector<std::string> points;
     for (const OutputPoint &point : scene_.output.point) points.push_back(point.name);
     if (points.empty())
-      reader_.complain(path, "ends by failure of a point, but there is none: add [output.point.NAME]");
+      reader_.complain(path, "ends by failure of a point, but the scene has no points: add [output.point.NAME]");
     if (std::find(points.begin(), points.end(), stage.failure_point) == points.end())
       reader_.complain(path + ".failure_point",
                        "must name a point of [output.point.NAME]; " + suggestion(stage.failure_point, points));

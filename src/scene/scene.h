@@ -53,9 +53,9 @@ struct MeshSource {
     v.number("size", size, metre, Range{0, 1e5}, "cell size of a mesh made from a section");
     v.number("thickness", thickness, metre, Range{0, 1e5},
              "thickness of a 3D body cut from a section; 0 is one cell size");
-    v.integer("layers", layers, Range{0, 1000}, "element layers over the thickness; 0 gives free tetrahedra");
+    v.integer("layers", layers, Range{0, 1000}, "element layers over the thickness; 0 gives unstructured tetrahedra");
     v.point("cuts", cuts, metre,
-            "ascending z that part the thickness: regions are then named region_1, region_2, ... along z");
+            "ascending z that divide the thickness: regions are then named region_1, region_2, ... along z");
     v.list("refine", refine, "boxes with smaller cells");
   }
 };
@@ -69,7 +69,7 @@ struct DenseBox {
     v.point("from", from, metre, "corner of the box with the smallest coordinates");
     v.point("to", to, metre, "corner of the box with the largest coordinates");
     v.integer("particles_per_cell", particles_per_cell, Range{1, 1000},
-              "particles seeded in a cell whose centre is in the box");
+              "particles per cell at the start, in cells whose centre is in the box");
   }
 };
 
@@ -113,33 +113,34 @@ struct BodySource {
     v.number("hydraulic_conductivity", hydraulic_conductivity, metre_per_second, Range{0, 1e3},
              "hydraulic conductivity k rho_w g / mu_w; or give permeability");
     v.number("gas_permeability", gas_permeability, square_metre, Range{0, 1e-3},
-             "intrinsic permeability for the gas; 0 takes that for the liquid");
+             "intrinsic permeability for the gas; 0: the same as for the liquid");
     v.choice("permeability_change", permeability_change,
              {{"none", PermeabilityChange::none},
               {"kozeny_carman", PermeabilityChange::kozeny_carman},
               {"grain_share", PermeabilityChange::grain_share}},
-             "how permeability follows porosity n: not, as n^3 / (1 - n)^2, or as 1 / (1 - n)^2");
+             "dependence of permeability on porosity n: none, n^3 / (1 - n)^2, or 1 / (1 - n)^2");
     v.deferred_table("retention", retention, "degree of saturation over suction");
     v.deferred_table("relative_permeability", relative_permeability, "permeability over degree of saturation");
     v.integer("particles_per_cell", particles_per_cell, Range{0, 1000},
-              "particles seeded in a cell; 0 is 3 in a triangle, 4 in a tetrahedron");
+              "particles per cell at the start; 0: 3 in a triangle, 4 in a tetrahedron");
     v.number("k0", k0, one, Range{0, 10},
-             "lateral over vertical effective stress at rest, for stages with initial_stress = \"k0\"; 0 is 1 - "
+             "ratio of lateral to vertical effective stress at rest, for stages with initial_stress = \"k0\"; 0: 1 - "
              "sin(friction_angle)");
     v.number("volume_cap", volume_cap, one, Range{-1, 100},
-             "largest particle volume over its initial volume; 0 is no cap; -1 caps cohesionless laws at 1");
+             "largest ratio of the volume of a particle to its initial volume; 0: no cap; -1: a cap of 1 for "
+             "cohesionless laws");
     v.number("averaging_length", averaging_length, metre, Range{0, 1e4},
-             "softening by the plastic strain averaged over this length l, as if bands were 2 l wide; 0 is no average; "
-             "l should not be below the cell size");
+             "nonlocal softening: plastic strain is averaged over this length l, with 2 l in place of the cell size; "
+             "0: no averaging; l should not be below the cell size");
     v.functions("velocity", velocity, metre_per_second, "initial velocity, one function of x, y, z per component");
     v.functions("displacement", displacement, metre,
                 "initial displacement, one function of the undeformed x, y, z per component");
     v.functions("stress", stress, pascal,
                 "initial stress xx, yy, zz, xy (in 3D also yz, xz), functions of the undeformed x, y, z");
     v.functions("body_acceleration", body_acceleration, metre_per_second_squared,
-                "acceleration beside gravity, functions of the undeformed x, y, z and of t");
+                "acceleration in addition to gravity, functions of the undeformed x, y, z and of t");
     v.list("dense", dense, "boxes with more particles per cell");
-    v.deferred("law", law, "soil model; its parameters stand in the same table");
+    v.deferred("law", law, "soil law; its parameters are keys of the same table");
   }
 };
 
@@ -149,9 +150,8 @@ struct BoundarySource {
   DeferredTable kind;              ///< "kind" and its parameters, read by physics/boundary
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.texts("group", group,
-            "name (or list of names) of the physical groups of facets; default is the table's own name");
-    v.deferred("kind", kind, "kind of boundary; its parameters stand in the same table");
+    v.texts("group", group, "name (or list of names) of the physical groups of facets; default: the name of the table");
+    v.deferred("kind", kind, "kind of boundary; its parameters are keys of the same table");
   }
 };
 
@@ -184,24 +184,27 @@ struct Water {
     v.number("bulk_modulus", bulk_modulus, pascal, Range{1e3, 1e11}, "bulk modulus K_l of the pore water");
     v.number("viscosity", viscosity, pascal_second, Range{1e-8, 1e3}, "dynamic viscosity of the pore water");
     v.choice("compression", compression, {{"linear", Compression::linear}, {"exponential", Compression::exponential}},
-             "density over pressure P: rho_0 (1 + P / K_l) or rho_0 exp(P / K_l)");
+             "density as a function of pressure P: rho_0 (1 + P / K_l) or rho_0 exp(P / K_l)");
     v.choice("stress", stress, {{"net", PoreStress::net}, {"bishop", PoreStress::bishop}},
-             "what pores take off the total stress: the larger of the pressures of liquid and gas, or their mean "
-             "weighted by saturation");
+             "stress pressure (total minus effective stress): the larger of the pressures of liquid and gas, or their "
+             "mean weighted by saturation");
     v.choice("drag", drag, {{"implicit", PoreDrag::over_step}, {"explicit", PoreDrag::at_start}},
-             "drag between soil and pore fluids: over a step, or from the velocities at its start, which is there to "
-             "show how low permeability then limits the step; explicit only with integrator.kind = \"euler\"");
-    v.choice("storage", storage, {{"mass", PoreStorage::mass}, {"rate", PoreStorage::rate}},
-             "what pressure follows from: the mass that pores hold, or its own rate by the stiffness of the moment; "
-             "the latter loses water near saturation and is there to show so, only with phases = \"unsaturated\"");
+             "drag between soil and pore fluids: integrated implicitly over a step, or explicitly from the velocities "
+             "at its start; explicit is for comparison (low permeability limits the step) and needs integrator.kind = "
+             "\"euler\"");
+    v.choice(
+        "storage", storage, {{"mass", PoreStorage::mass}, {"rate", PoreStorage::rate}},
+        "computation of pore pressure: from the mass of water in the pores, or by its rate from the present storage "
+        "coefficient; rate is for comparison (it loses water near saturation) and needs phases = \"unsaturated\"");
     v.function("suction", suction, pascal, Range{0, 1e9},
-               "initial suction above the water table, function of x, y, z; without it suction is hydrostatic");
+               "initial suction above the water table, function of x, y, z; default: hydrostatic");
     v.points("table", table, metre, "water table: polyline of points [x, elevation]; pressure is hydrostatic below it");
     v.function("level", level, metre, Range{-1e4, 1e4}, "rise of the whole water table, function of t");
-    v.function(
-        "excess", excess, pascal, Range{-1e9, 1e9},
-        "excess over the hydrostatic pressure, function of x, y, z, t and `table` (elevation of the water table at x)");
-    v.flag("open_water_load", open_water_load, "open water above the ground rests on submerged faces");
+    v.function("excess", excess, pascal, Range{-1e9, 1e9},
+               "excess pressure, added to the hydrostatic pressure, function of x, y, z, t and `table` (elevation of "
+               "the water table at x)");
+    v.flag("open_water_load", open_water_load,
+           "the weight of open water above the ground acts on the submerged ground");
   }
 };
 
@@ -218,7 +221,7 @@ struct Gas {
     v.number("density", density, kilogram_per_cubic_metre, Range{1e-6, 1e3},
              "density of the pore gas at atmospheric pressure");
     v.number("bulk_modulus", bulk_modulus, pascal, Range{1, 1e9},
-             "bulk modulus K_g; the atmospheric pressure stands for an ideal gas");
+             "bulk modulus K_g; for an ideal gas it is the atmospheric pressure");
     v.number("viscosity", viscosity, pascal_second, Range{1e-9, 1e3}, "dynamic viscosity of the pore gas");
     v.function("pressure", pressure, pascal, Range{-1e6, 1e9},
                "initial gauge pressure of the gas above the water table, function of x, y, z");
@@ -266,47 +269,51 @@ struct Stage {
               {"quasi_static", StageKind::quasi_static},
               {"seepage", StageKind::seepage},
               {"consolidation", StageKind::consolidation}},
-             "motion by the material point method, or by finite elements: equilibrium, flow of pore water through soil "
-             "at rest, or both together in time");
+             "motion by the material point method, or by finite elements: static equilibrium, flow of pore water "
+             "through soil at rest, or consolidation (both in time)");
     v.number("duration", duration, second, Range{0, 1e9}, "longest duration of the stage");
     v.choice("until", until,
              {{"duration", StopWhen::duration},
               {"equilibrium", StopWhen::equilibrium},
               {"rest", StopWhen::rest},
               {"failure", StopWhen::failure}},
-             "what ends the stage before its duration");
+             "criterion that ends the stage before its duration");
     v.number("damping", damping, one, Range{0, 0.99}, "local (Cundall) damping factor");
     v.number("gravity_ramp", gravity_ramp, second, Range{0, 1e9},
-             "time over which gravity, and pore pressure with it, grows linearly from 0");
-    v.number("force_ratio", force_ratio, one, Range{0, 1}, "equilibrium: unbalanced over applied nodal force");
-    v.number("energy_ratio", energy_ratio, one, Range{0, 1}, "equilibrium: kinetic over elastic strain energy");
+             "time in which gravity and pore pressure increase linearly from 0");
+    v.number("force_ratio", force_ratio, one, Range{0, 1},
+             "equilibrium: largest ratio of unbalanced to applied nodal forces");
+    v.number("energy_ratio", energy_ratio, one, Range{0, 1},
+             "equilibrium: largest ratio of kinetic to elastic strain energy");
     v.number("rest_speed", rest_speed, metre_per_second, Range{0, 1e6},
-             "rest: the root mean square speed of all soil stays below this");
-    v.text("failure_point", failure_point, "failure: name of the output point that is watched");
-    v.number("failure_speed", failure_speed, metre_per_second, Range{0, 1e6}, "failure: the point's speed passes this");
-    v.number("failure_time", failure_time, second, Range{0, 1e9}, "failure: and keeps rising for this long");
-    v.flag("pore_flow", pore_flow,
-           "pore fluids move; without it pore pressures are those of [water], with the ramp, as for building up "
-           "initial stress");
+             "rest: the root mean square speed of all soil remains below this value");
+    v.text("failure_point", failure_point, "failure: name of the output point whose speed is tested");
+    v.number("failure_speed", failure_speed, metre_per_second, Range{0, 1e6},
+             "failure: speed that the point must exceed");
+    v.number("failure_time", failure_time, second, Range{0, 1e9},
+             "failure: time for which the speed of the point must then increase");
+    v.flag(
+        "pore_flow", pore_flow,
+        "pore fluids move; if false, pore pressures are those of [water], scaled by the ramp, as for initial stress");
     v.flag(
         "softening", softening,
-        "soil remembers plastic strain; without it soil keeps the strength it has, as for building up initial stress");
+        "plastic strain is recorded and softens the soil; if false, strength does not change, as for initial stress");
     v.flag("hold_loads", hold_loads,
-           "functions of time stand still: their t counts only stages that do not hold loads");
+           "functions of time stand still: their t advances only in stages with hold_loads = false");
     v.flag("reset_displacement", reset_displacement,
-           "zero displacement, velocity and plastic strain when the stage ends");
-    v.integer("load_steps", load_steps, Range{1, 10000},
-              "quasi-static: steps in which loads come; halved where Newton's iterations fail");
+           "set displacement, velocity and plastic strain to zero at the end of the stage");
+    v.integer(
+        "load_steps", load_steps, Range{1, 10000},
+        "quasi-static: number of steps in which loads are applied; a step is halved where Newton's iterations fail");
     v.choice("initial_stress", initial_stress, {{"kept", InitialStress::kept}, {"k0", InitialStress::k0}},
-             "quasi-static: stress the stage starts from: as it is, or vertical stress by the weight above and k0 "
-             "times it sideways");
-    v.texts("add", add, "quasi-static: bodies that come with this stage; until then they are not there");
-    v.texts("remove", remove, "quasi-static: bodies that go with this stage");
-    v.choice("when_lost", when_lost, {{"stop", WhenLost::stop}, {"next_stage", WhenLost::go_on}},
-             "quasi-static: what follows when there is no equilibrium under the loads: the end with status 1, or the "
-             "next stage");
-    v.flag("steady", steady,
-           "seepage: the flow that the loads at the end of the stage keep up, however long it takes to come about");
+             "quasi-static: stress at the start of the stage: the present stress, or vertical stress from the weight "
+             "above and k0 times it laterally");
+    v.texts("add", add, "quasi-static: bodies that this stage adds; they are absent before it");
+    v.texts("remove", remove, "quasi-static: bodies that this stage removes");
+    v.choice(
+        "when_lost", when_lost, {{"stop", WhenLost::stop}, {"next_stage", WhenLost::go_on}},
+        "quasi-static: if there is no equilibrium under the loads, end with status 1 or continue with the next stage");
+    v.flag("steady", steady, "seepage: compute the steady flow under the loads at the end of the stage");
   }
 };
 
@@ -331,26 +338,27 @@ struct Transfer {
   template <class Visitor>
   void fields(Visitor &&v) {
     v.choice("velocity", velocity, {{"flip", Velocity::flip}, {"pic", Velocity::pic}, {"apic", Velocity::apic}},
-             "velocity a particle takes from the nodes");
-    v.number("relaxation", relaxation, one, Range{0, 1e9},
-             "time constant of the relaxation of FLIP to PIC over smallest altitude / wave speed; 0 is none");
-    v.number("pic_fraction", pic_fraction, one, Range{0, 1}, "PIC share at each remap, beside the relaxation");
+             "how particles take their velocity from the nodes");
+    v.number(
+        "relaxation", relaxation, one, Range{0, 1e9},
+        "time constant of the relaxation of FLIP to PIC, in units of smallest altitude / wave speed; 0: no relaxation");
+    v.number("pic_fraction", pic_fraction, one, Range{0, 1}, "PIC share at each remap, in addition to the relaxation");
     v.choice("integration", integration,
              {{"blended", Integration::blended},
               {"particle", Integration::particle},
               {"mixed", Integration::mixed},
               {"cell", Integration::cell}},
-             "volume by which a cell's stress is integrated");
+             "integration volume of a cell");
     v.number("filling", filling, one, Range{0, 1}, "mixed integration: filling above which a cell counts as full");
     v.flag("average_stress", average_stress, "one stress per cell and body, averaged at each remap");
     v.choice("locking", locking, {{"patches", Locking::patches}, {"none", Locking::none}, {"nodal", Locking::nodal}},
              "cure of volumetric locking");
     v.integer("patch_size", patch_size, Range{0, 64},
-              "cells of a patch; 0 is 2 triangles, 8 tetrahedra, 4 in a one-element slice");
+              "cells per patch; 0: 2 triangles, 8 tetrahedra, 4 tetrahedra in a one-element slice");
     v.choice("pore_smoothing", pore_smoothing, {{"nodal", PoreSmoothing::nodal}, {"none", PoreSmoothing::none}},
-             "smoothing of pore pressures and fluid volumes among saturated cells, over their nodes");
+             "smoothing of pore pressures and fluid volumes of saturated cells through their nodes");
     v.number("remap_interval", remap_interval, one, Range{0, 0.3},
-             "remap when a node of a filled cell has moved this share of its mean edge; 0 is every step");
+             "remap when a node of a filled cell has moved by this share of its mean edge; 0: remap in every step");
   }
 };
 
@@ -370,20 +378,23 @@ struct QuasiStaticSource {
   void fields(Visitor &&v) {
     v.choice("elements", elements,
              {{"quadratic", Elements::quadratic}, {"linear", Elements::linear}, {"patches", Elements::patches}},
-             "displacement of second or first order, or of first order with the patches against locking that the "
-             "motion of particles has");
-    v.number("tolerance", tolerance, one, Range{1e-14, 1e-2},
-             "Newton's iterations end when the out-of-balance force over the size of the forces is below this");
-    v.integer("iterations", iterations, Range{1, 1000}, "most iterations in a load step; then it is halved");
+             "displacement of second order, of first order, or of first order with the patches against locking that "
+             "the motion of particles uses");
+    v.number(
+        "tolerance", tolerance, one, Range{1e-14, 1e-2},
+        "Newton's iterations end when the ratio of the out-of-balance force to the applied forces is below this value");
+    v.integer("iterations", iterations, Range{1, 1000},
+              "largest number of iterations in a load step, after which the step is halved");
     v.number("smallest_step", smallest_step, one, Range{1e-9, 1},
-             "share of a stage's loads below which a step is not halved: equilibrium is lost");
+             "smallest step, as a share of the loads of the stage; equilibrium is lost if a smaller one is needed");
     v.choice("linear_solver", linear_solver,
              {{"automatic", LinearSolver::automatic},
               {"direct", LinearSolver::direct},
               {"iterative", LinearSolver::iterative}},
-             "LU (MUMPS), or GMRES with algebraic multigrid (GAMG); by size if automatic");
+             "direct: LU (MUMPS); iterative: GMRES with algebraic multigrid (GAMG); automatic: chosen by the number of "
+             "unknowns");
     v.number("step_error", step_error, one, Range{1e-8, 1},
-             "seepage and consolidation: what a step may miss by its length, of pressure over the largest change so "
+             "seepage and consolidation: allowed error of a time step, of pressure relative to its largest change so "
              "far, and of saturation");
   }
 };
@@ -394,7 +405,7 @@ struct OutputPoint {
   std::vector<double> position;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.point("position", position, metre, "place whose nearest particle is followed");
+    v.point("position", position, metre, "position at the start; the nearest particle is tracked");
   }
 };
 
@@ -408,17 +419,17 @@ struct Output {
   template <class Visitor>
   void fields(Visitor &&v) {
     v.number("interval", interval, second, Range{0, 1e9},
-             "time between snapshots; 0 writes at the start and end of stages only");
+             "time between snapshots; 0: only at the start and end of stages");
     v.number("history_interval", history_interval, second, Range{0, 1e9},
-             "time between lines of history.csv; 0 is a 200th of the longest stage");
+             "time between lines of history.csv; 0: a 200th of the longest stage");
     v.number("checkpoint_interval", checkpoint_interval, second, Range{0, 1e9},
-             "time between checkpoints, from which --resume goes on; 0 writes one with every snapshot; the answer does "
-             "not depend on them");
+             "time between checkpoints, from which --resume continues; 0: one with every snapshot; results do not "
+             "depend on them");
     v.named("point", point, "points whose history is written, [output.point.NAME]");
     v.texts("picture", picture,
-            "fields that are drawn: a vector by its size, a tensor by its mean, or one component such as stress_xy; "
-            "none: displacement, plastic_strain, velocity, pore_pressure, suction, saturation, surface as far as there "
-            "are, and mobilised_friction of frictional soil");
+            "fields that are drawn: a vector by its magnitude, a tensor by its mean, or one component such as "
+            "stress_xy; default: those of displacement, plastic_strain, velocity, pore_pressure, suction, saturation "
+            "and surface that exist, and mobilised_friction of frictional soil");
   }
 };
 
@@ -454,7 +465,7 @@ struct Scene {
              "phase model");
     v.integer("dimension", dimension, Range{2, 3}, "2: plane strain on triangles, 3: tetrahedra");
     v.point("gravity", gravity, metre_per_second_squared,
-            "acceleration of gravity, one component per dimension; one number acts down the y axis");
+            "acceleration of gravity, one component per dimension; a single number acts along -y");
     v.table("mesh", mesh, "background mesh");
     v.named("body", body, "soils, [body.NAME]");
     v.named("boundary", boundary, "conditions on named groups of facets, [boundary.NAME]");
@@ -464,7 +475,7 @@ struct Scene {
     v.deferred_table("integrator", integrator, "time integration");
     v.table("transfer", transfer, "exchange between particles and nodes");
     v.table("quasi_static", quasi_static, "finite elements of quasi-static stages");
-    v.table("output", output, "what is written");
+    v.table("output", output, "results that are written");
   }
 
   /// For what only mesh or soil can tell is wrong: throws the SceneError of TableReader::complain, with the key's place

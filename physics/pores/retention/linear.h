@@ -10,14 +10,14 @@ namespace talus {
 /// every water content has one suction.
 struct LinearRetention : ResidualWater {
   static constexpr const char *name = "linear";
-  static constexpr const char *meaning = "saturation falls linearly with suction, exponentially below 2 %";
+  static constexpr const char *meaning = "saturation decreases linearly with suction, exponentially below 2 %";
   static constexpr double tail = 0.02;
   double drying_suction = required;  ///< s_d [Pa]
   template <class Visitor>
   void fields(Visitor &&v) {
     ResidualWater::fields(v);
     v.number("drying_suction", drying_suction, pascal, Range{1, 1e9},
-             "suction at which the line meets zero effective saturation");
+             "suction at which the line reaches zero effective saturation");
   }
 
   double effective(double s) const {

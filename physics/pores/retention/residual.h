@@ -10,7 +10,7 @@ struct ResidualWater {
   template <class Visitor>
   void fields(Visitor &&v) {
     v.number("residual_saturation", residual_saturation, one, Range{0, 0.9},
-             "degree of saturation that suction does not fall below");
+             "residual degree of saturation at large suction");
   }
 };
 

@@ -17,8 +17,8 @@ struct TabulatedRetention {
   std::vector<double> suctions, saturations;  ///< [Pa], [-]
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.point("suctions", suctions, pascal, "suctions of the measured points, rising from the first, which is saturated");
-    v.point("saturations", saturations, one, "degrees of saturation at those suctions, falling from 1");
+    v.point("suctions", suctions, pascal, "suctions of the measured points, increasing; the first point is saturated");
+    v.point("saturations", saturations, one, "degrees of saturation at these suctions, decreasing from 1");
   }
   std::string problem() const {
     if (suctions.size() < 2 || suctions.size() != saturations.size())

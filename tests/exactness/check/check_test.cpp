@@ -43,7 +43,7 @@ TEST(Check, KnowsStagesByFiniteElements) {
   const Folder folder;
   const Ending ending = check(folder, {"stage.0.kind=quasi_static"});
   EXPECT_EQ(number(ending, "run_time_s"), 0);
-  EXPECT_FALSE(ending.says("Gravity sets in at once")) << ending.output;
+  EXPECT_FALSE(ending.says("Gravity is applied at once")) << ending.output;
 }
 
 TEST(Check, TellsThatARunBreaksOffAtOnce) {
@@ -91,7 +91,7 @@ struct Case {
 void PrintTo(const Case &one, std::ostream *out) { *out << one.name; }
 
 const Case cases[] = {
-    {"one_particle", {"body.sand.particles_per_cell=1"}, "One particle a cell in sand is useless"},
+    {"one_particle", {"body.sand.particles_per_cell=1"}, "One particle per cell in sand is too few"},
     {"locking", {"body.sand.poisson_ratio=0.48", "transfer.locking=none"}, "locks linear cells"},
     {"softening",
      {"body.sand.residual_friction_angle=20", "body.sand.shape_factor=10"},
@@ -99,21 +99,21 @@ const Case cases[] = {
     {"snap_back",
      {"body.sand.residual_friction_angle=20", "body.sand.shape_factor=5000", "body.sand.reference_size=0.25"},
      "snaps back"},
-    {"soft_soil", {"body.sand.young_modulus=2e4"}, "The soil's weight strains it by"},
-    {"gravity_at_once", {}, "Gravity sets in at once"},
+    {"soft_soil", {"body.sand.young_modulus=2e4"}, "The weight of the soil strains it by"},
+    {"gravity_at_once", {}, "Gravity is applied at once"},
     {"equilibrium_without_damping", {"stage.0.until=equilibrium"}, "waits for equilibrium without damping"},
     {"equilibrium_too_soon", {"stage.0.until=equilibrium", "stage.0.duration=0.1"}, "too short for equilibrium"},
     {"timid_step", {"integrator.step=1e-5"}, "of the critical one"},
     {"small_cells",
      {"mesh.refine=[{from = [0, 0], to = [0.1, 0.1], size = 0.02}]"},
      "in mesh.refine.0, dictate the step"},
-    {"remap_every_step", {"transfer.remap_interval=0"}, "A remap at every step costs"},
+    {"remap_every_step", {"transfer.remap_interval=0"}, "A remap in every step costs"},
     {"apic", {"transfer.velocity=apic"}, "APIC on simplices"},
     {"slice", {"dimension=3", "boundary.front.kind=roller", "boundary.back.kind=roller"}, "A slice of one element"},
     {"ground_that_yields_at_rest",
      {"stage.0.kind=quasi_static", "body.sand.poisson_ratio=0.2"},
      "poisson_ratio above 0.25 (sin phi > 1 - 2 nu)"},
-    {"dry", {}, "Dry is right for soil without water"},
+    {"dry", {}, "phases = \"dry\" is right for soil without water"},
 };
 
 class Advice : public testing::TestWithParam<Case> {};

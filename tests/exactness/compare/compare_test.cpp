@@ -108,12 +108,12 @@ TEST_F(Compare, GoesOnWhereItStopped) {
     program.signal(SIGINT);
     const Ending ending = program.end();
     EXPECT_EQ(ending.status, 1) << ending.output;
-    EXPECT_TRUE(ending.says("the same command goes on where it stopped")) << ending.output;
+    EXPECT_TRUE(ending.says("the same command continues with the missing runs")) << ending.output;
   }
   const auto written = std::filesystem::last_write_time(folder_ / "out/run001/history.csv");
   const Ending ending = compare(matrix);
   EXPECT_EQ(ending.status, 0) << ending.output;
-  EXPECT_TRUE(ending.says(" of 4 runs are there already")) << ending.output;
+  EXPECT_TRUE(ending.says(" of 4 runs were completed before")) << ending.output;
   EXPECT_EQ(std::filesystem::last_write_time(folder_ / "out/run001/history.csv"), written);
   EXPECT_EQ(table(folder_, "out/compare.csv").size(), 4u);
   std::vector<std::string> others = matrix;
