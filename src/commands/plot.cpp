@@ -24,7 +24,7 @@ Action add_plot(CLI::App &app) {
   command->add_flag("--log", arguments->choice.logarithmic, "draw plastic strain on a logarithmic scale");
   return [arguments] {
     if (!std::filesystem::is_regular_file(std::filesystem::path(arguments->directory) / "run.h5"))
-      throw SceneError(arguments->directory + " holds no results of a run: there is no run.h5");
+      throw SceneError(arguments->directory + " contains no results of a run: there is no run.h5");
     int rank;
     MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
     return rank || draw_pictures(arguments->directory, arguments->choice) ? 0 : 1;

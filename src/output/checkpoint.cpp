@@ -102,7 +102,7 @@ CheckpointHeader read_checkpoint_header(MPI_Comm comm, const std::string &dir) {
   CheckpointHeader header;
   together_or_refuse(comm, [&] {
     if (!fs::exists(header_file(dir)))
-      throw std::runtime_error(dir + " holds no checkpoint; run the scene without --resume");
+      throw std::runtime_error(dir + " contains no checkpoint; run the scene without --resume");
     Archive archive(load(header_file(dir)));
     serialize(archive, header);
   });

@@ -28,7 +28,7 @@ def draw(folder, fields=None, times=None, log=False):
     report's path."""
     results = Results(folder)
     if not results.snapshots:
-        raise ValueError(f"{folder} holds no snapshots")
+        raise ValueError(f"{folder} contains no snapshots")
     first = results.snapshots[0]
     for field in fields or ():
         if first.scalar(field) is None:

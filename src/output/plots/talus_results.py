@@ -161,7 +161,7 @@ class Results:
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
         if not (self.folder / "run.h5").exists():
-            raise FileNotFoundError(f"{self.folder} holds no run.h5")
+            raise FileNotFoundError(f"{self.folder} contains no run.h5")
         self._file = h5py.File(self.folder / "run.h5", "r")
         self.title = self._file.attrs["title"] or self.folder.resolve().name
         self.program = self._file.attrs["program"]

@@ -361,7 +361,7 @@ const WrongWords wrong_words[] = {
      {"mesh", "section.csv", "-o", "out.msh", "--size", "1", "--young-modulus", "2 m"},
      {"--young-modulus 2 m"}},
     {"wrong_unit_for_a_cell_size", {"mesh", "section.csv", "-o", "out.msh", "--size", "1 s"}, {"--size 1 s"}},
-    {"nothing_to_resume", {"run", "scene.toml", "-o", "results", "--resume"}, {"results holds no checkpoint"}},
+    {"nothing_to_resume", {"run", "scene.toml", "-o", "results", "--resume"}, {"results contains no checkpoint"}},
     {"soil_that_is_not_there", {"soil", "scene.toml", "--body", "clay"}, {"--body clay", "known are sand"}},
     {"unknown_key_of_a_test",
      {"soil", "scene.toml", "--set", "test.a.stran=0.1"},
@@ -392,7 +392,7 @@ const WrongWords wrong_words[] = {
     {"steady_motion",
      {"run", "scene.toml", "--set", "stage.0.steady=true"},
      {"stage.0.steady", "set kind = \"seepage\""}},
-    {"no_results_to_plot", {"plot", "nowhere"}, {"nowhere holds no results"}},
+    {"no_results_to_plot", {"plot", "nowhere"}, {"nowhere contains no results"}},
 };
 
 /// A drained scene with a seepage stage, and what does not go with it.

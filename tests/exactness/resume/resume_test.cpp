@@ -208,7 +208,7 @@ TEST_F(EndedRun, IsNotResumedFromADamagedCheckpoint) {
   folder_.write("results/checkpoint/header", "?");
   expect_refused(run({"--resume"}), {"results/checkpoint/header is no checkpoint"});
   std::filesystem::remove_all(folder_ / "results/checkpoint");
-  expect_refused(run({"--resume"}), {"results holds no checkpoint"});
+  expect_refused(run({"--resume"}), {"results contains no checkpoint"});
 }
 
 TEST_F(EndedRun, OutlivesAFullDisk) {
