@@ -63,8 +63,7 @@ def draw_profile(results, path):
     axes.legend(loc="upper right", fontsize=8, handlelength=2.2, bbox_to_anchor=(1.0, 1.02))
     axes.text(0.985, 0.30, f"profile off by {numbers['profile'] * MILLIMETRE:.1f} mm in the mean", transform=axes.transAxes,
               ha="right", color=style.SOFT, size=8)
-    figure.savefig(path)
-    plt.close(figure)
+    style.save(figure, path)
 
 
 def draw_sequence(results, path):
@@ -88,8 +87,7 @@ def draw_sequence(results, path):
     place = figure.add_axes((0.93, 0.2, 0.014, 0.6))
     figure.colorbar(picture, cax=place, extend="max").outline.set_visible(False)
     place.set_title("|v| [m/s]", size=8.5, loc="left", pad=8)
-    figure.savefig(path)
-    plt.close(figure)
+    style.save(figure, path)
 
 
 def tell(name, numbers):

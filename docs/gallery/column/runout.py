@@ -187,8 +187,7 @@ def draw(series, path):
         axis.set_ticks(ticks, [f"{tick:g}" for tick in ticks])
         axis.set_minor_locator(plt.NullLocator())
     axes.legend(loc="lower right", fontsize=8)
-    figure.savefig(path)
-    plt.close(figure)
+    style.save(figure, path)
 
 
 if __name__ == "__main__":

@@ -168,7 +168,7 @@ def draw_locking(plt, style):
         axes.set_yticks([3, 3.5, 4], ["1", "0.5", "0"])
     panels[0].set_ylabel("depth / b")
     below.colorbar(drawn, ax=panels, shrink=0.8, extend="both")
-    figure.savefig(HERE / "locking.png")
+    style.save(figure, HERE / "locking.png")
 
 
 # Crossing -----------------------------------------------------------------------------------------------------------------
@@ -238,7 +238,7 @@ def draw_crossing(plt, style):
     axes.minorticks_off()
     axes.plot([], [], ":", color=style.SOFT, label="not averaged")
     axes.legend(fontsize=8, loc="upper right", handlelength=2.2, ncol=2)
-    figure.savefig(HERE / "crossing.png")
+    style.save(figure, HERE / "crossing.png")
 
 
 # Noise --------------------------------------------------------------------------------------------------------------------
@@ -307,7 +307,7 @@ def draw_noise(plt, style):
     axes.set_yticks([-k for k in range(len(names))], names)
     axes.grid(axis="x", color=style.FAINT, lw=0.5)
     axes.legend(fontsize=8, loc="lower right")
-    figure.savefig(HERE / "noise.png")
+    style.save(figure, HERE / "noise.png")
 
 
 def figure(_):

@@ -98,7 +98,7 @@ def runs(talus):
 
 
 def figure(_):
-    from talus_style import LINES, plt
+    from talus_style import LINES, plt, save
     rows = list(csv.DictReader(open(HERE / "errors.csv")))
     fig, axes = plt.subplots(2, 2, figsize=(8, 6), sharex=True)
     for column, soil in enumerate(SOILS):
@@ -116,7 +116,7 @@ def figure(_):
         ax.set_xlabel("cell size, m")
     fig.tight_layout(rect=(0, 0.07, 1, 1))
     fig.legend(*axes[0, 0].get_legend_handles_labels(), loc="lower center", ncols=4, fontsize=7.5)
-    fig.savefig(HERE / "errors.png", dpi=110)
+    save(fig, HERE / "errors.png", dpi=110)
 
 
 if __name__ == "__main__":

@@ -47,9 +47,8 @@ def run(talus):
 
 
 def figure(_):
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
+    import talus_style as style
+    from talus_style import plt
     rows = list(csv.DictReader(open(TABLE)))
     figure, axes = plt.subplots(2, 2, figsize=(7.6, 6.0), layout="constrained", sharex=True)
     for column, eta in zip(axes.T, ETAS):
@@ -65,7 +64,7 @@ def figure(_):
     axes[1, 0].legend(frameon=False)
     for one in axes.flat:
         one.spines[["top", "right"]].set_visible(False)
-    figure.savefig(study.HERE / "sizes.png", dpi=110)
+    style.save(figure, study.HERE / "sizes.png", dpi=110)
 
 
 if __name__ == "__main__":

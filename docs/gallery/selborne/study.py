@@ -14,6 +14,7 @@ import tempfile
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "src/output/plots"))
 GROUND = "(x < 18 ? 15 : x < 36 ? 15 - (x - 18) / 2 : 6)"
 VERTICAL = f"-(2200 - 1000) * 9.81 * ({GROUND} - y)"
 
@@ -148,9 +149,8 @@ def pictures(talus):
 
 
 def figure(_):
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
+    import talus_style as style
+    from talus_style import plt
     rows = list(csv.DictReader(open(HERE / "brittleness.csv")))
     figure, axes = plt.subplots(figsize=(7.2, 4.2), layout="constrained")
     for k0, colour in zip(("gravity", "0.7", "1.0", "1.5"), ("#404040", "#3b6fb6", "#c8553d", "#7a4fa3")):
@@ -164,7 +164,7 @@ def figure(_):
     axes.minorticks_off()
     axes.legend(frameon=False)
     axes.spines[["top", "right"]].set_visible(False)
-    figure.savefig(HERE / "brittleness.png", dpi=130)
+    style.save(figure, HERE / "brittleness.png", dpi=130)
 
     rows = list(csv.DictReader(open(HERE / "meshes.csv")))
     figure, (left, right) = plt.subplots(1, 2, figsize=(7.2, 3.4), layout="constrained")
@@ -178,7 +178,7 @@ def figure(_):
     left.legend(frameon=False)
     for axes in (left, right):
         axes.spines[["top", "right"]].set_visible(False)
-    figure.savefig(HERE / "meshes.png", dpi=130)
+    style.save(figure, HERE / "meshes.png", dpi=130)
 
 
 if __name__ == "__main__":

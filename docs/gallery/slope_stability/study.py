@@ -65,7 +65,7 @@ def slopes(talus):
 
 
 def figure(talus):
-    from talus_style import MAPS, plt
+    from talus_style import MAPS, plt, save
     lower, _, _, position, strain = factor(talus, "GL-1", 0.75, True)
     fig, ax = plt.subplots(figsize=(6.4, 2.6))
     dots = ax.scatter(*position.T, c=strain / np.quantile(strain, 0.995), s=3, linewidths=0, cmap=MAPS["plastic_strain"], vmin=0, vmax=1)
@@ -74,7 +74,7 @@ def figure(talus):
     ax.set_xlabel("x, m"), ax.set_ylabel("y, m")
     fig.colorbar(dots, ax=ax, label="shear strain over its 99.5 % quantile", shrink=0.9)
     fig.tight_layout()
-    fig.savefig(HERE / "mechanism.png", dpi=110)
+    save(fig, HERE / "mechanism.png", dpi=110)
 
 
 if __name__ == "__main__":

@@ -112,7 +112,7 @@ class History:
             if name != "stage":
                 self.columns[name] = np.array([float(row[k]) for row in rows])
         self.time = self.columns.pop("time_s")
-        self.columns.pop("step", None)
+        self.step = self.columns.pop("step", None)
         self.stage = [row[header.index("stage")] for row in rows] if "stage" in header else [""] * len(rows)
 
     def groups(self):

@@ -1,0 +1,163 @@
+"""What the pages of the gallery state of a run: one function a measure, under the name by which a numbers.toml asks for it.
+
+Each takes the results of the run (talus_results.Results) and the keys that the line of numbers.toml gives besides, and returns one number
+in SI units. A page may have measures of its own in a file measures.py beside its numbers.toml, written alike.
+"""
+
+import re
+
+import numpy as np
+
+MEASURES = {}
+
+
+def measure(function):
+    MEASURES[function.__name__] = function
+    return function
+
+
+def log(results):
+    return (results.folder / "run.log").read_text(errors="replace")
+
+
+def at(results, time):
+    """The snapshot nearest to a time [s]; the last one for None."""
+    return results.snapshots[-1] if time is None else min(results.snapshots, key=lambda each: abs(each.time - time))
+
+
+# ---- cost ----
+
+@measure
+def steps(results):
+    """Time steps of the motion."""
+    return results.history.step[-1]
+
+
+@measure
+def particles(results):
+    """Particles at the end."""
+    return results.history.columns["particles"][-1]
+
+
+@measure
+def particle_updates(results):
+    """Steps times particles: the work of the motion."""
+    return steps(results) * particles(results)
+
+
+# ---- failure ----
+
+def failure(results):
+    """Time of failure and load time at failure [s]: when the watched point passed its speed. Raises LookupError where nothing failed."""
+    found = re.search(r"failure at (\S+) s \(loads at t = (\S+) s\)", log(results))
+    if not found:
+        raise LookupError("nothing failed")
+    return float(found[1]), float(found[2])
+
+
+@measure
+def time_of_failure(results):
+    """Time at which the watched point passed its speed and kept accelerating [s]."""
+    return failure(results)[0]
+
+
+@measure
+def load_time_of_failure(results):
+    """What the clock of the loads showed then [s]."""
+    return failure(results)[1]
+
+
+@measure
+def factor_of_safety(results):
+    """What `talus solve --factor-of-safety` printed: the middle of its bracket."""
+    return float(re.search(r"factor of safety ([\d.]+)", (results.folder / "printed.txt").read_text())[1])
+
+
+@measure
+def share_of_loads(results, stage):
+    """Share of a quasi-static stage's loads beyond which there was no equilibrium; 1 if there was one to the end."""
+    found = re.search(rf"no equilibrium beyond (\S+) % of the loads of stage {stage}\b", log(results))
+    return float(found[1]) / 100 if found else 1.0
+
+
+# ---- motion ----
+
+@measure
+def displacement(results, point, stage=None):
+    """Displacement of a tracked point at the end of the run, or of a stage [m]."""
+    history = results.history
+    last = max(k for k, name in enumerate(history.stage) if stage in (None, name))
+    return history.columns[f"{point}_displacement_m"][last]
+
+
+@measure
+def largest_speed(results, point):
+    """Largest speed of a tracked point in the rows of the history [m/s]."""
+    return results.history.columns[f"{point}_velocity_m_s"].max()
+
+
+@measure
+def end_time(results):
+    """Time at which the run ended [s]."""
+    return results.history.time[-1]
+
+
+@measure
+def front(results, share=0.995):
+    """The x behind which this share of the mass lies at the end [m]."""
+    x, mass = results.snapshots[-1].position()[:, 0], results.snapshots[-1].column("mass").values[:, 0]
+    order = np.argsort(x)
+    return x[order][np.searchsorted(np.cumsum(mass[order]), share * mass.sum())]
+
+
+@measure
+def end_of_stage(results, stage):
+    """Time at which a stage ended [s]."""
+    return max(time for time, name in zip(results.history.time, results.history.stage) if name == stage)
+
+
+@measure
+def largest_x_moved(results, by=1.0, beyond=0.0):
+    """How far beyond an x soil that has moved by more than `by` is at the end [m]."""
+    last = results.snapshots[-1]
+    return last.position()[last.scalar("displacement")[0] > by, 0].max() - beyond
+
+
+@measure
+def share_moved(results, by=1.0):
+    """Share of the particles that have moved by more than `by` at the end."""
+    return (results.snapshots[-1].scalar("displacement")[0] > by).mean()
+
+
+@measure
+def largest_displacement_near(results, place, within, at_snapshot=0):
+    """Largest displacement at the end of soil that was within this distance of a place in an early snapshot [m]."""
+    start, last = results.snapshots[at_snapshot].position(), results.snapshots[-1]
+    near = np.linalg.norm(start[:, : len(place)] - place, axis=1) < within
+    return last.scalar("displacement")[0][near].max()
+
+
+# ---- fields ----
+
+@measure
+def largest(results, field, time=None):
+    """Largest value of a field over the particles, at a time or at the end."""
+    return at(results, time).scalar(field)[0].max()
+
+
+@measure
+def mean(results, field, time=None):
+    """Mean of a field over the particles, at a time or at the end."""
+    return at(results, time).scalar(field)[0].mean()
+
+
+@measure
+def largest_in_history(results, column):
+    """Largest magnitude in a column of history.csv."""
+    return np.abs(results.history.columns[column]).max()
+
+
+@measure
+def last_in_history(results, column):
+    """Last value of a column of history.csv."""
+    return results.history.columns[column][-1]
