@@ -413,7 +413,7 @@ TEST(Seepage, OfDrainedSoilIsChecked) {
                                      "[output]", "[quasi_static]\nlinear_solver = \"iterative\"\n[output]"),
                              {"quasi_static.linear_solver", "must not be \"iterative\" for consolidation"}},
                             {changed(wet, "[water]", "[water]\nexcess = \"10 kPa\""),
-                             {"water.excess", "has no place beside seepage", "[boundary.NAME]"}},
+                             {"water.excess", "cannot be combined with seepage", "[boundary.NAME]"}},
                             {changed(wet, "permeability = 1e-10", ""),
                              {"body.sand", "needs permeability [m2] or hydraulic_conductivity [m/s]"}},
                             {wet + "[boundary.pond]\nkind = \"head\"\nlevel = 0.4\n",

@@ -92,7 +92,7 @@ void PrintTo(const Case &one, std::ostream *out) { *out << one.name; }
 
 const Case cases[] = {
     {"one_particle", {"body.sand.particles_per_cell=1"}, "One particle per cell in sand is too few"},
-    {"locking", {"body.sand.poisson_ratio=0.48", "transfer.locking=none"}, "locks linear cells"},
+    {"locking", {"body.sand.poisson_ratio=0.48", "transfer.locking=none"}, "makes linear cells lock"},
     {"softening",
      {"body.sand.residual_friction_angle=20", "body.sand.shape_factor=10"},
      "softens without a reference_size"},
@@ -103,17 +103,17 @@ const Case cases[] = {
     {"gravity_at_once", {}, "Gravity is applied at once"},
     {"equilibrium_without_damping", {"stage.0.until=equilibrium"}, "waits for equilibrium without damping"},
     {"equilibrium_too_soon", {"stage.0.until=equilibrium", "stage.0.duration=0.1"}, "too short for equilibrium"},
-    {"timid_step", {"integrator.step=1e-5"}, "of the critical one"},
+    {"timid_step", {"integrator.step=1e-5"}, "of the critical step; without"},
     {"small_cells",
      {"mesh.refine=[{from = [0, 0], to = [0.1, 0.1], size = 0.02}]"},
-     "in mesh.refine.0, dictate the step"},
+     "in mesh.refine.0, determine the step"},
     {"remap_every_step", {"transfer.remap_interval=0"}, "A remap in every step costs"},
     {"apic", {"transfer.velocity=apic"}, "APIC on simplices"},
     {"slice", {"dimension=3", "boundary.front.kind=roller", "boundary.back.kind=roller"}, "A slice of one element"},
     {"ground_that_yields_at_rest",
      {"stage.0.kind=quasi_static", "body.sand.poisson_ratio=0.2"},
      "poisson_ratio above 0.25 (sin phi > 1 - 2 nu)"},
-    {"dry", {}, "phases = \"dry\" is right for soil without water"},
+    {"dry", {}, "is right for soil without water"},
 };
 
 class Advice : public testing::TestWithParam<Case> {};

@@ -174,7 +174,7 @@ TEST(ReadScene, ChecksOneKeyAgainstAnother) {
        {"stage.0.until=failure"},
        "slope.toml line 15: stage.0.failure_point must name a point of [output.point.NAME]"},
       {dry, {"stage.0.until=failure", "stage.0.failure_point=crets"}, "did you mean `crest`?"},
-      {drained, {"stage.0.until=failure"}, "there is none: add [output.point.NAME]"},
+      {drained, {"stage.0.until=failure"}, "the scene has no points: add [output.point.NAME]"},
   };
   for (const auto &[text, overrides, expected] : table)
     EXPECT_TRUE(contains(refusal(text, overrides), expected)) << expected << "\n" << refusal(text, overrides);
