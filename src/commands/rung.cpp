@@ -57,6 +57,10 @@ Run Rung::run(const std::vector<std::string> &overrides) {
   run.end = of_all_ranks(simulation->snapshot());
   run.history = simulation->history(), run.events = simulation->events();
   run.steps = simulation->steps(), run.remaps = simulation->remaps();
+  simulation->nodal_field("velocity", [&](PetscInt, const double *v) {
+    for (int d = 0; d < scene.dimension; ++d) run.nodal_speed = std::max(run.nodal_speed, std::abs(v[d]));
+  });
+  MPI_Allreduce(MPI_IN_PLACE, &run.nodal_speed, 1, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD);
   wall_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return run;
 }

@@ -16,6 +16,7 @@ struct Run {
   std::vector<Event> events;
   Snapshot start, end;
   long long steps = 0, remaps = 0;
+  double nodal_speed = 0;  ///< largest component of the velocity of a node at the end [m/s]
 };
 
 /// A number of the results beside the exact one.

@@ -4,6 +4,7 @@
 #include "commands/rung.h"
 #include "tests/convergence/fem_manufactured/exact.h"
 #include "tests/convergence/manufactured/exact.h"
+#include "tests/verification/at_rest/exact.h"
 #include "tests/verification/cam_clay_paths/exact.h"
 #include "tests/verification/celia/exact.h"
 #include "tests/verification/closed_box/exact.h"
@@ -59,6 +60,7 @@ inline constexpr LadderEntry ladder[] = {
      rungs::dynamic_oedometer},
     {"gravity_column", "verification", "column under its own weight, stiff and with cells crossed",
      rungs::gravity_column},
+    {"at_rest", "verification", "column that comes to rest at nodes, at particles and in its energy", rungs::at_rest},
     {"k0_column", "verification", "lateral stress at rest, by gravity and as an initial state that stays",
      rungs::k0_column},
     {"elastic_bar", "verification", "period, amplitude and energy of an elastic bar over ten periods",
