@@ -12,6 +12,7 @@
 #include "physics/boundary/conditions.h"
 #include "physics/motion.h"
 #include "physics/pores/pore_report.h"
+#include "physics/prescribed_pressure.h"
 #include "scene/scene.h"
 #include "transfer/transfer.h"
 
@@ -119,10 +120,10 @@ struct MotionParts {
   std::vector<std::unique_ptr<Body<dim>>> &bodies;
   Conditions<dim> &conditions;
   const Scene &scene;
-  double relaxation_time;  ///< [s]
-  double total_mass;       ///< of the particles of all ranks [kg]
-  long long particles;     ///< of all ranks
-  double gravity;          ///< magnitude along -y [m/s2]
+  const PrescribedPressure<dim> &pressure;  ///< of drained soil
+  double relaxation_time;                   ///< [s]
+  double total_mass;                        ///< of the particles of all ranks [kg]
+  long long particles;                      ///< of all ranks
 };
 
 /// The motion for the scene's phase model (src/variants).

@@ -3,6 +3,8 @@
 /// excess (phase model `drained`); what seepage has found stands in place of both where water flowed. Pressure is
 /// positive in compression.
 #include <cmath>
+#include <functional>
+#include <utility>
 
 #include "base/vec.h"
 #include "scene/scene.h"
@@ -42,14 +44,17 @@ class PrescribedPressure {
     return water_->table.empty() ? 0 : std::max(0., unit_weight_ * (x[1] - table(x[0], t)));
   }
   /// May pores have filled or dried since the start?
-  bool moves() const { return water_->seeped || (!water_->table.empty() && !water_->level.constant()); }
+  bool moves() const { return seeped_ || (!water_->table.empty() && !water_->level.constant()); }
+  /// From now on the pressure is that of `seeped` [Pa], but where that is not a number; null: that of [water] again.
+  void take(std::function<double(const double *)> seeped) { seeped_ = std::move(seeped); }
   bool open_water_load() const { return water_->open_water_load; }
   double density() const { return water_->density; }
 
  private:
-  double seeped(const Vec<dim> &x) const { return water_->seeped ? water_->seeped(x.data()) : NAN; }
+  double seeped(const Vec<dim> &x) const { return seeped_ ? seeped_(x.data()) : NAN; }
 
   const Water *water_;
+  std::function<double(const double *)> seeped_;
   double unit_weight_;
 };
 

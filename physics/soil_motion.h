@@ -134,7 +134,7 @@ class SoilMotion final : public AnySoilMotion<dim> {
   std::vector<std::unique_ptr<Body<dim>>> &bodies_;
   Conditions<dim> &conditions_;
   const Transfer &transfer_;
-  PrescribedPressure<dim> pressure_;
+  const PrescribedPressure<dim> &pressure_;
   double relaxation_time_, total_mass_, smallest_mass_;
   FilledGrid<dim> grid_, next_grid_;
   std::vector<PointSet> points_, next_points_;

@@ -23,7 +23,7 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
       bodies_(parts.bodies),
       conditions_(parts.conditions),
       transfer_(parts.scene.transfer),
-      pressure_(parts.scene.water, parts.gravity),
+      pressure_(parts.pressure),
       relaxation_time_(parts.relaxation_time),
       total_mass_(parts.total_mass),
       smallest_mass_(1e-6 * parts.total_mass / static_cast<double>(parts.particles)),

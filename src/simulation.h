@@ -100,7 +100,7 @@ class AnySimulation {
 
 /// Builds a simulation; collective over `comm`. The scene must outlive it. Throws std::invalid_argument for bad input,
 /// the same on all ranks.
-std::unique_ptr<AnySimulation> make_simulation(MPI_Comm comm, Scene &scene, const RunOptions &options);
+std::unique_ptr<AnySimulation> make_simulation(MPI_Comm comm, const Scene &scene, const RunOptions &options);
 
 /// Set by signal handlers: the run writes a checkpoint and a snapshot and ends with RunError.
 extern volatile int interrupted;

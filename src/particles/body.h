@@ -94,6 +94,12 @@ class Body {
   std::vector<char> scratch_;
 };
 
+/// Particles in a cell of the body where no box asks for others.
+template <int dim>
+int particles_per_cell(const BodySource &source) {
+  return source.particles_per_cell > 0 ? source.particles_per_cell : dim == 2 ? 3 : 4;
+}
+
 /// Fills `body` with particles on barycentric lattices in the cells of its regions: equal volumes that add up to the
 /// cell's, mass from density, initial velocity, displacement and stress from the scene. `mass_density(x)` is the total
 /// density at a place. Throws std::invalid_argument for an empty region or a number of particles that has no lattice.

@@ -120,7 +120,7 @@ void seed(Body<dim> &body, const BackgroundMesh<dim> &mesh, int id_stride,
     Vec<dim> centre{};
     for (int node : mesh.cells[cell].node)
       for (int d = 0; d < dim; ++d) centre[d] += mesh.position[node][d] / (dim + 1);
-    int n = source.particles_per_cell;
+    int n = particles_per_cell<dim>(source);
     for (const DenseBox &box : source.dense)
       if (inside<dim>(box, centre)) n = box.particles_per_cell;
     auto &points = lattices[n];

@@ -175,8 +175,6 @@ struct Water {
   Function level = 0.0;                           ///< added to the elevation of the table, function of t [m]
   Function excess = 0.0;        ///< added to the hydrostatic pressure, function of x, y, z, t and `table` [Pa]
   bool open_water_load = true;  ///< open water above the ground rests on submerged faces
-  std::function<double(const double *)>
-      seeped;  ///< pressure that seepage has left at a place, not a number outside its soil [Pa]; not a key
   template <class Visitor>
   void fields(Visitor &&v) {
     given = true;
@@ -444,8 +442,6 @@ struct Scene {
   MeshSource mesh;
   std::vector<BodySource> body;
   std::vector<BoundarySource> boundary;
-  std::vector<BoundarySource> seepage_boundary;  ///< of pore water in a drained scene: its seepage stages know them,
-                                                 ///< the motion does not; not a key
   Water water;
   Gas gas;
   std::vector<Stage> stage;

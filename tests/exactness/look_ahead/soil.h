@@ -12,11 +12,10 @@ namespace talus {
 template <int dim>
 struct Soil {
   Soil(const std::string &text, double relaxation_time)
-      : scene(parse_scene(text, "soil")), file(PETSC_COMM_WORLD, scene) {
+      : scene(parse_scene(text, "soil")), pressure(scene.water, 9.81), file(PETSC_COMM_WORLD, scene) {
     BodySource &source = scene.body[0];
     mesh =
         BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.path(), scene.transfer.patch_size, {{source.region[0], 5.}});
-    if (source.particles_per_cell == 0) source.particles_per_cell = dim == 2 ? 3 : 4;
     bodies.push_back(std::make_unique<Body<dim>>());
     EXPECT_EQ(bodies[0]->create(mesh.comm(), source, read_law(source.law), false, 0, 0), 0);
     seed<dim>(*bodies[0], mesh, 8, [&](const Vec<dim> &) { return source.density; });
@@ -29,12 +28,13 @@ struct Soil {
     for (int i = 0; i < particles().count; ++i) mass += particles().mass[i];
     MPI_Allreduce(MPI_IN_PLACE, &mass, 1, MPI_DOUBLE, MPI_SUM, mesh.comm());
     motion = std::make_unique<SoilMotion<dim, Dry>>(
-        MotionParts<dim>{mesh, bodies, conditions, scene, relaxation_time, mass, 1000, 9.81});
+        MotionParts<dim>{mesh, bodies, conditions, scene, pressure, relaxation_time, mass, 1000});
     motion->loading.gravity[1] = scene.gravity[1];
   }
   const ParticleArrays<dim> &particles() const { return bodies[0]->particles(); }
 
   Scene scene;
+  PrescribedPressure<dim> pressure;
   MeshFile file;
   BackgroundMesh<dim> mesh;
   std::vector<std::unique_ptr<Body<dim>>> bodies;

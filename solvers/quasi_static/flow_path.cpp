@@ -1,0 +1,82 @@
+#include "solvers/quasi_static/flow_path.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+
+/// The error of a step is what its end misses of the line through the last two states.
+template <int dim>
+PetscErrorCode follow_flow(MPI_Comm comm, QuasiStatic<dim> *soil, PoreFlow<dim> &flow,
+                           const QuasiStaticSource &settings, const FlowPath &path, double *share, StepOutcome *outcome,
+                           int *iterations) {
+  PetscFunctionBeginUser;
+  constexpr double first = 1e-4, growth = 2, shrinkage = 0.2, safety = 0.9, steady_growth = 4, longest_steady = 1e9,
+                   still = 1e-7;
+  FlowStep<dim> step_of_flow(soil, flow, settings);
+  PetscCall(step_of_flow.setup());
+  const int count = flow.nodes().count();
+  std::vector<FlowMeasure> before(count), now(count), rate(count), start(count);
+  const auto measure = [&](std::vector<FlowMeasure> &of) {
+    for (int i = 0; i < count; ++i) of[i] = flow.measure(i);
+  };
+  measure(start), before = start;
+  const double longest = path.steady ? longest_steady * path.duration : path.duration / path.load_steps;
+  double step = std::min(longest, std::max(first * path.duration, soil ? step_of_flow.shortest_step() : 0)), last = 0,
+         range = 0;
+  int known = 0;  // steps behind: the first takes what is put on at once, so that the line starts with the second
+  *share = 0, *iterations = 0;
+  while (*share < 1) {
+    double to = path.steady ? 1 : *share + step / path.duration;
+    if (to > 1 - 1e-9) to = 1;
+    const double dt = path.steady ? step : (to - *share) * path.duration;
+    PetscCall(
+        step_of_flow.solve(path.load_at(to), path.steady ? 0 : path.load_at(to) - path.load_at(*share), dt, outcome));
+    *iterations += outcome->iterations;
+    double error[2]{};  // of the step, and the largest change of pressure so far
+    if (outcome->converged) {
+      measure(now);
+      for (int i = 0; i < count; ++i) {
+        error[1] = std::max(error[1], std::abs(now[i].pressure - start[i].pressure));
+        if (known < 2) continue;
+        const double weight = dt / (dt + last);
+        error[0] =
+            std::max({error[0], weight * std::abs(now[i].pressure - before[i].pressure - dt * rate[i].pressure) / range,
+                      weight * std::abs(now[i].saturation - before[i].saturation - dt * rate[i].saturation)});
+      }
+      MPI_Allreduce(MPI_IN_PLACE, error, 2, MPI_DOUBLE, MPI_MAX, comm);
+      range = std::max({range, error[1], 1e-300});
+    }
+    const double least = settings.smallest_step * first * path.duration;
+    if (!outcome->converged || (!path.steady && error[0] > 2 * settings.step_error && dt > 10 * least)) {
+      if (dt / 4 < least) PetscFunctionReturn(0);
+      step = outcome->converged ? dt * std::max(shrinkage, safety * std::sqrt(settings.step_error / error[0])) : dt / 4;
+      continue;
+    }
+    const double stored = flow.stored();
+    PetscCall(step_of_flow.commit(path.softening));
+    for (int i = 0; i < count; ++i)
+      rate[i] = {(now[i].pressure - before[i].pressure) / dt, (now[i].saturation - before[i].saturation) / dt};
+    before = now, last = dt, ++known;
+    if (path.steady) {  // what is still stored must be nothing beside what flows
+      double flows = 0, stores = stored / dt;
+      for (double q : flow.inflow()) flows += std::abs(q);
+      MPI_Allreduce(MPI_IN_PLACE, &stores, 1, MPI_DOUBLE, MPI_SUM, comm);
+      if (stores <= still * flows || step >= longest) *share = 1, path.done(1);
+      step = std::min(longest, steady_growth * step);
+      continue;
+    }
+    *share = to;
+    path.done(to);
+    const double wish = known < 2 ? 1 : error[0] > 0 ? safety * std::sqrt(settings.step_error / error[0]) : growth;
+    step = std::min(longest, dt * std::clamp(wish, shrinkage, growth));
+  }
+  PetscFunctionReturn(0);
+}
+
+template PetscErrorCode follow_flow(MPI_Comm, QuasiStatic<2> *, PoreFlow<2> &, const QuasiStaticSource &,
+                                    const FlowPath &, double *, StepOutcome *, int *);
+template PetscErrorCode follow_flow(MPI_Comm, QuasiStatic<3> *, PoreFlow<3> &, const QuasiStaticSource &,
+                                    const FlowPath &, double *, StepOutcome *, int *);
+
+}  // namespace talus

@@ -1,0 +1,27 @@
+#pragma once
+/// Steps of seepage and consolidation in time, docs/theory/seepage.md section 3: implicit Euler, each step as long as
+/// its error allows.
+#include <functional>
+
+#include "solvers/quasi_static/flow_step.h"
+
+namespace talus {
+
+/// What a path of flow is to do.
+struct FlowPath {
+  double duration;                              ///< [s]
+  bool steady;                                  ///< the flow that the loads at the end keep up
+  int load_steps;                               ///< at least so many
+  bool softening;                               ///< soil remembers plastic strain
+  std::function<double(double share)> load_at;  ///< load time at a share of the path [s]
+  std::function<void(double share)> done;       ///< told after each step
+};
+
+/// Carries the flow, and with it the equilibrium of `soil` unless it is null (soil at rest), from share 0 towards 1.
+/// Returns the outcome of the last step and, in `share`, how far it came. Collective over `comm`.
+template <int dim>
+PetscErrorCode follow_flow(MPI_Comm comm, QuasiStatic<dim> *soil, PoreFlow<dim> &flow,
+                           const QuasiStaticSource &settings, const FlowPath &path, double *share, StepOutcome *outcome,
+                           int *iterations);
+
+}  // namespace talus

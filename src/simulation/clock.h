@@ -1,0 +1,20 @@
+#pragma once
+/// Where a run stands.
+#include <string>
+
+#include "base/archive.h"
+
+namespace talus {
+
+struct Clock {
+  double time = 0;          ///< since the start of the run [s]
+  double load_time = 0;     ///< what functions of the scene see as t [s]
+  double last_step = 0;     ///< [s]
+  long long steps = 0;      ///< since the start of the run
+  bool hold_loads = false;  ///< the load time stands still
+  std::string stage;        ///< name of the present stage; empty before the first
+
+  void serialize(Archive &archive) { archive.serialize("clock", time, load_time, last_step, steps, hold_loads); }
+};
+
+}  // namespace talus

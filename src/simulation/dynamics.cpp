@@ -1,0 +1,204 @@
+#include "simulation/dynamics.h"
+
+#include <petsctime.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/reader.h"
+
+namespace talus {
+
+IntegratorSettings choose_integrator(const Scene &scene) {
+  const PhaseTraits phases = phase_traits(scene.phases);
+  DeferredTable table = scene.integrator;
+  const IntegratorSettings settings = read_integrator(table, phases.liquid);
+  const bool by_euler = std::holds_alternative<EulerSettings>(settings);
+  if (scene.water.drag == PoreDrag::at_start && !(phases.liquid && by_euler))
+    scene.complain("water.drag",
+                   std::string("can be \"explicit\" only ") +
+                       (phases.liquid ? "with integrator.kind = \"euler\": the others take drag over a step"
+                                      : "where pore fluids move") +
+                       "; leave it out");
+  if (scene.water.storage == PoreStorage::rate && !(phases.suction && !phases.gas && by_euler))
+    scene.complain("water.storage",
+                   "can be \"rate\" only with phases = \"unsaturated\" and integrator.kind = \"euler\"; leave it out");
+  if (!phases.liquid) return settings;
+  if (const std::string problem = drag_problem(settings); !problem.empty())
+    scene.complain("integrator.kind", "must be \"euler\", or \"arkode\" of order 3, where pore fluids move: " +
+                                          problem + "; or take phases = \"dry\" or \"drained\"");
+  if (step_rule(settings).bound == FrequencyBound::mesh)
+    scene.complain(
+        "integrator.omega_max",
+        "must be \"cells\" where pore fluids move: power iteration knows the elastic waves of the skeleton alone");
+  for (size_t k = 0; k < scene.stage.size() && phases.gas; ++k)
+    if (is_static(scene.stage[k].kind))
+      scene.complain("stage." + std::to_string(k) + ".kind",
+                     "must be \"dynamic\" where gas moves; quasi-static stages take any other phases");
+  return settings;
+}
+
+template <int dim>
+Dynamics<dim>::Dynamics(World<dim> &world, Clock &clock, const IntegratorSettings &settings)
+    : world_(world), clock_(clock), settings_(settings), integrator_(make_integrator(settings)) {
+  check_fixed_step();
+}
+
+/// A fixed step that the first state already forbids is bad input; one that a later state forbids ends the run.
+template <int dim>
+void Dynamics<dim>::check_fixed_step() {
+  const StepRule rule = step_rule(settings_);
+  if (rule.fixed == 0) return;
+  double critical =
+      rule.bound == FrequencyBound::mesh || explicit_drag() ? critical_step() : std::numeric_limits<double>::infinity();
+  if (std::isinf(critical))
+    for (const BodyReport &body : world_.report()) critical = std::min(critical, body.critical_step);
+  if (rule.fixed > rule.limit * critical)
+    world_.scene.complain("integrator.step", "must not exceed the critical step of " + rounded(rule.limit * critical) +
+                                                 " s (" + rounded(2 * rule.limit) + " / omega_max of the filled cells" +
+                                                 (explicit_drag() ? ", less for explicit drag" : "") +
+                                                 "); take a smaller step, a coarser mesh, or leave step out");
+}
+
+template <int dim>
+void Dynamics<dim>::set_loading(const Stage &stage, double stage_time) {
+  world_.set_loading(stage, stage_time, clock_);
+  clock_.hold_loads = stage.hold_loads;
+}
+
+template <int dim>
+Verdict Dynamics<dim>::cycle(double until) {
+  require(world_.motion->begin(clock_.time));
+  require(step(until));
+  const Verdict verdict = agree();
+  if (verdict.broken) refuse_broken();
+  require(remap_due_ ? remap() : world_.motion->settle());
+  return verdict;
+}
+
+/// What holds until particles are released does not hold any more.
+template <int dim>
+void Dynamics<dim>::notice_release() {
+  if (known_releases_ == world_.releases()) return;
+  known_releases_ = world_.releases();
+  critical_step_ = 0, shrink_ = 1;
+  integrator_->restart();
+}
+
+template <int dim>
+double Dynamics<dim>::critical_step() {
+  double step = world_.critical_step_of_cells(clock_.time);
+  if (step_rule(settings_).bound == FrequencyBound::mesh) {
+    constexpr int first = 60, further = 6,
+                  apart = 8;  // iterations; steps between two estimates where remaps come thick and fast
+    const bool anew = omega_step_ < 0;
+    if (anew || clock_.steps >= omega_step_ + apart) {
+      require(world_.motion->largest_frequency(anew ? first : further, &omega_max_));
+      omega_step_ = clock_.steps;
+    }
+    step = std::max(step, 2 / omega_max_);
+  }
+  if (explicit_drag()) {
+    double mine = world_.motion->drag_rate(), rate;
+    MPI_Allreduce(&mine, &rate, 1, MPI_DOUBLE, MPI_MAX, world_.comm);
+    step = with_explicit_drag(step, rate);
+  }
+  return step;
+}
+
+template <int dim>
+PetscErrorCode Dynamics<dim>::step(double until) {
+  PetscFunctionBeginUser;
+  notice_release();
+  if (critical_step_ == 0 || explicit_drag())
+    critical_step_ = critical_step();  // drag follows saturation from step to step
+  const StepRule rule = step_rule(settings_);
+  if (rule.fixed > rule.limit * critical_step_)
+    throw RunFailure("the soil has come to cells with a critical step of " + rounded(rule.limit * critical_step_) +
+                     " s, but integrator.step = " + rounded(rule.fixed) + " s; take a smaller step, or leave it out");
+  PetscLogDouble start, end;
+  double step = 0;
+  PetscCall(PetscTime(&start));
+  PetscCall(integrator_->advance(*world_.motion, clock_.time, {critical_step_ * shrink_, until}, &step));
+  PetscCall(PetscTime(&end));
+  if (const std::string cause = integrator_->obstacle(); !cause.empty()) {
+    const FilledGrid<dim> &grid = world_.motion->grid();
+    const int component = integrator_->obstructing_component();
+    const bool mine = component >= 0;
+    const Vec<dim> where = mine ? grid.position[component / dim % grid.node_count()] : Vec<dim>{};
+    const std::string particle = text_of_first(world_.comm, mine, mine ? world_.nearest_particle(where) : "");
+    throw RunFailure(cause + "; it is largest near " + place_of_first<dim>(world_.comm, mine, where) + ", at " +
+                     particle);
+  }
+  world_.breakdown.step += end - start;
+  clock_.time += step, clock_.last_step = step;
+  if (!clock_.hold_loads) clock_.load_time += step;
+  ++clock_.steps;
+  remap_due_ = world_.scene.transfer.remap_interval == 0;
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+Verdict Dynamics<dim>::agree() {
+  const AnySoilMotion<dim> &motion = *world_.motion;
+  double mine[6] = {motion.moved(),
+                    1 / motion.step_ratio(),
+                    watch ? watch() : -1,
+                    motion.smallest_volume_ratio() <= 0.2 ? 1. : 0.,
+                    !(motion.speed_squared() < 1e300) ? 1. : 0.,
+                    interrupted ? 1. : 0.};
+  for (const auto &body : world_.bodies)
+    if (!law_trouble(body->law()).text.empty()) mine[4] = 1;
+  double all[6];
+  MPI_Allreduce(mine, all, 6, MPI_DOUBLE, MPI_MAX, world_.comm);
+  const Verdict verdict{all[0], all[1], all[2], all[3] > 0, all[4] > 0, all[5] > 0};
+  shrink_ = 1 / verdict.shrink;
+  if (verdict.moved > world_.scene.transfer.remap_interval || verdict.inverted) remap_due_ = true;
+  return verdict;
+}
+
+template <int dim>
+void Dynamics<dim>::refuse_broken() {
+  Vec<dim> where{};
+  std::string cause;
+  const bool refused = world_.motion->find_trouble(&where, &cause);
+  const std::string place = place_of_first<dim>(world_.comm, refused, where);
+  if (!place.empty()) throw RunFailure("near " + place + ", " + text_of_first(world_.comm, refused, cause));
+  const bool mine = world_.motion->find_broken(&where);
+  throw RunFailure("the velocity is not finite near " + place_of_first<dim>(world_.comm, mine, where) +
+                   "; look at the loads there; a smaller integrator.fraction, a volume_cap or transfer.remap_interval "
+                   "= 0 may help");
+}
+
+template <int dim>
+PetscErrorCode Dynamics<dim>::remap() {
+  PetscFunctionBeginUser;
+  PetscLogDouble start, end;
+  constexpr int remaps_between_sorts = 20;
+  const bool sorting = ++since_sort_ >= remaps_between_sorts;
+  PetscCall(world_.release(clock_.time, !sorting));
+  ++remaps_;
+  if (sorting) {
+    PetscCall(world_.sort());
+    since_sort_ = 0;
+  }
+  PetscCall(world_.check_conservation());
+  PetscCall(PetscTime(&start));
+  PetscCall(world_.motion->begin(clock_.time));
+  PetscCall(PetscTime(&end));
+  world_.breakdown.gather += end - start;
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+void Dynamics<dim>::serialize(Archive &archive) {
+  notice_release();
+  archive.serialize("dynamics", remaps_, since_sort_, critical_step_, shrink_, omega_max_, omega_step_, remap_due_);
+  integrator_->serialize(archive);
+  known_releases_ = world_.releases();
+}
+
+template class Dynamics<2>;
+template class Dynamics<3>;
+
+}  // namespace talus

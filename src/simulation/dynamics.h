@@ -1,0 +1,70 @@
+#pragma once
+/// Motion in time: an integrator, the clock and one cycle of steps, docs/theory section 5.
+#include <functional>
+#include <memory>
+
+#include "simulation/world.h"
+#include "solvers/integrators.h"
+
+namespace talus {
+
+/// What all ranks learn from one another after a step.
+struct Verdict {
+  double moved = 0;          ///< largest displacement of a node since the last remap, over its mean edge
+  double shrink = 1;         ///< largest factor by which cells have cut the critical step since then
+  double watched_speed = 0;  ///< largest value of Dynamics::watch
+  bool inverted = false;     ///< a cell is nearly empty
+  bool broken = false;       ///< a velocity or a law has failed
+  bool interrupted = false;  ///< a signal asks the run to end
+};
+
+/// The integrator that a scene asks for. Throws SceneError where the phase model does not go with it.
+IntegratorSettings choose_integrator(const Scene &scene);
+
+template <int dim>
+class Dynamics {
+ public:
+  /// Throws SceneError for a fixed step that the first state already forbids. The references must outlive it.
+  /// Collective.
+  Dynamics(World<dim> &world, Clock &clock, const IntegratorSettings &settings);
+
+  /// A stage begins: the fastest motion of the mesh is estimated anew.
+  void begin_stage() { omega_step_ = -1; }
+  /// The loads are others than at the end of the last step.
+  void restart() { integrator_->restart(); }
+  /// What acts on the soil from now on, `stage_time` after the begin of the stage.
+  void set_loading(const Stage &stage, double stage_time);
+  /// One step, that does not pass the time `until`, and the remap if it is due. Throws RunFailure. Collective.
+  Verdict cycle(double until);
+  /// Largest stable step of the present state [s]. Collective.
+  double critical_step();
+
+  bool fixed_step() const { return step_rule(settings_).fixed > 0; }
+  long long remaps() const { return remaps_; }
+  const StepStatistics &statistics() const { return integrator_->statistics(); }
+  void serialize(Archive &archive);
+
+  /// Looked at after each step, before a remap: a speed [m/s] that a stage watches, -1 where it is not on this rank.
+  std::function<double()> watch;
+
+ private:
+  void check_fixed_step();
+  bool explicit_drag() const { return world_.scene.water.drag == PoreDrag::at_start; }
+  void notice_release();
+  PetscErrorCode step(double until);
+  Verdict agree();
+  void refuse_broken();
+  PetscErrorCode remap();
+
+  World<dim> &world_;
+  Clock &clock_;
+  const IntegratorSettings settings_;
+  std::unique_ptr<Integrator> integrator_;
+  double critical_step_ = 0;  ///< at the last remap; 0: not known [s]
+  double shrink_ = 1;         ///< of the critical step since then
+  double omega_max_ = 0;      ///< of the filled mesh, at step omega_step_ [1/s]
+  long long omega_step_ = -1, remaps_ = 0, since_sort_ = 0, known_releases_ = 0;
+  bool remap_due_ = false;
+};
+
+}  // namespace talus

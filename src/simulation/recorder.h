@@ -1,0 +1,95 @@
+#pragma once
+/// What a run tells: rows of history.csv, snapshots, notes, checkpoints, and why it ended. It reads the world and the
+/// clock and changes nothing that the answer depends on.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "output/checkpoint.h"
+#include "output/history.h"
+#include "output/progress.h"
+#include "output/snapshots.h"
+#include "simulation/dynamics.h"
+#include "simulation/statics.h"
+#include "simulation/tracked_points.h"
+
+namespace talus {
+
+/// What results are made from.
+template <int dim>
+struct Sources {
+  World<dim> &world;
+  const Clock &clock;
+  const Dynamics<dim> &dynamics;
+  Statics<dim> &statics;
+  TrackedPoints<dim> &points;
+};
+
+template <int dim>
+class Recorder {
+ public:
+  /// Throws SceneError where the scene asks for pictures that nobody can draw. Collective.
+  Recorder(const Sources<dim> &of, const RunOptions &options);
+
+  /// Opens the files of a new run, or those of the run that was read from a checkpoint.
+  void open();
+  void append();
+  /// Ends the files and draws the pictures.
+  void close();
+  bool writes() const { return results_ != nullptr; }  ///< files, not only the table in memory
+
+  void begin_stage(const std::string &name);
+  void progress();  ///< after each step
+  /// A row of the history, or a snapshot, of the present state; none twice for the same step. Collective.
+  void write_history();
+  void write_snapshot();
+  /// The state as it would be written. Collective.
+  Snapshot snapshot();
+  /// Says what happened, now or at other times.
+  void note(const std::string &text);
+  void note(const std::string &text, double time, double load_time);
+  /// Ends the run: throws RunError with the cause, where the run stood and what is left of it.
+  [[noreturn]] void fail(const std::string &cause);
+
+  /// Fluid masses count from the next row on: pores have been filled anew.
+  void recount_fluids() { first_ledger_.clear(); }
+  /// The run starts again from its begin.
+  void start_again() { last_row_step_ = -1; }
+
+  CheckpointHeader checkpoint_header(int stage) const;
+  void write_checkpoint(int stage, const Archive &state);
+  /// Reads the header of the run in the directory and refuses a run that this one cannot go on with. Collective.
+  CheckpointHeader check_checkpoint() const;
+  void take_checkpoint(const CheckpointHeader &found) { checkpoints_ = found.number, checkpoint_time_ = found.time; }
+  void serialize(Archive &archive);
+
+  const HistoryTable &history() const { return history_; }
+  const std::vector<Event> &events() const { return events_; }
+
+ private:
+  struct Files {
+    RunFile file;
+    History history;
+    Progress progress;
+  };
+  void check_pictures();
+  void name_columns();
+  void note_steps();
+  double longest_duration() const;
+  Snapshot particles();
+
+  const Sources<dim> of_;
+  const Scene &scene_;
+  const PhaseTraits phases_;
+  const RunOptions &options_;
+  HistoryTable history_;
+  std::vector<Event> events_;
+  std::unique_ptr<Files> results_;
+  std::vector<double> first_ledger_;  ///< fluid masses at the start [kg]
+  double first_energy_ = 0;           ///< [J]
+  double impulse_time_ = 0;           ///< since when forces are means [s]
+  long long last_row_step_ = -1, checkpoints_ = 0;
+  double last_row_time_ = -1, last_snapshot_time_ = -1, checkpoint_time_ = -1;  ///< [s]
+};
+
+}  // namespace talus

@@ -1,0 +1,105 @@
+// The parts of a run, and its checkpoints: all that the answer depends on, wherever between two steps it is saved, so
+// that neither a checkpoint nor an interruption changes the answer.
+#include "simulation/run.h"
+
+#include <filesystem>
+
+#include "scene/reader.h"
+
+namespace talus {
+
+template <int dim>
+Run<dim>::Run(MPI_Comm comm, const Scene &of, const RunOptions &with, const std::string &mesh_file)
+    : scene(of),
+      options(with),
+      integrator(choose_integrator(of)),
+      world(comm, of, with.plex, mesh_file),
+      points(world),
+      dynamics((world.take_out_later_bodies(), world), clock, integrator),
+      statics(world, clock),
+      recorder({world, clock, dynamics, statics, points}, options) {}
+
+template <int dim>
+void Run<dim>::begin_next_stage() {
+  progress = StageProgress{progress.number + 1, clock.time};
+  stop = make_stop_criterion<dim>(stage());
+  dynamics.begin_stage();
+}
+
+template <int dim>
+void Run<dim>::start_again() {
+  clock.time = clock.load_time = 0, clock.steps = 0;
+  progress = StageProgress{};
+  recorder.start_again();
+  statics.forget();
+}
+
+template <int dim>
+Balance Run<dim>::balance() {
+  Balance sums;
+  require(world.motion->begin(clock.time));
+  require(world.motion->balance(clock.time, &sums));
+  return sums;
+}
+
+template <int dim>
+void Run<dim>::hand_to_particles() {
+  statics.to_particles();
+  if (world.phases.liquid) recorder.recount_fluids();
+}
+
+/// The state of this rank; the scene gives the rest. Collective.
+template <int dim>
+PetscErrorCode Run<dim>::serialize(Archive &archive) {
+  PetscFunctionBeginUser;
+  clock.serialize(archive);
+  archive.serialize("stage", progress);
+  if (archive.reading()) stop = make_stop_criterion<dim>(stage());
+  stop->serialize(archive);
+  recorder.serialize(archive);
+  PetscCall(world.serialize(archive));
+  dynamics.serialize(archive);
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+void Run<dim>::write_checkpoint() {
+  if (!recorder.writes()) return;
+  Archive archive;
+  unsigned long long mesh = world.mesh_fingerprint();
+  archive.serialize("mesh", mesh);
+  require(serialize(archive));
+  recorder.write_checkpoint(progress.number, archive);
+}
+
+template <int dim>
+void Run<dim>::resume() {
+  const CheckpointHeader found = recorder.check_checkpoint();
+  Archive archive = read_checkpoint(world.comm, options.directory, found);
+  if (has_flow_stages(scene) && world.phases.prescribed) statics.recall_seeped_pressure(options.directory);
+  unsigned long long mesh = 0;
+  archive.serialize("mesh", mesh);
+  int differs = mesh != world.mesh_fingerprint();
+  MPI_Allreduce(MPI_IN_PLACE, &differs, 1, MPI_INT, MPI_MAX, world.comm);
+  if (differs)
+    throw SceneError("the run in " + options.directory +
+                     " cannot be resumed: its mesh was another one; has the section or mesh file changed?");
+  require(serialize(archive));
+  recorder.take_checkpoint(found);
+  recorder.append();
+}
+
+/// The checkpoint comes first: what a run writes because it is interrupted must not be in the way when it goes on.
+template <int dim>
+void Run<dim>::heed(const Verdict &verdict) {
+  if (!verdict.interrupted) return;
+  write_checkpoint();
+  recorder.write_history();
+  recorder.write_snapshot();
+  throw RunFailure("interrupted");
+}
+
+template struct Run<2>;
+template struct Run<3>;
+
+}  // namespace talus

@@ -1,0 +1,55 @@
+#pragma once
+/// The parts of a run, which its stages act on, and how far it is. None of the parts knows this one.
+#include "simulation/recorder.h"
+#include "simulation/stops/stop_criterion.h"
+
+namespace talus {
+
+/// How far the present stage is.
+struct StageProgress {
+  int number = -1;    ///< -1: before the first
+  double begin = 0;   ///< [s]
+  bool met = false;   ///< its stop criterion is met, or its path followed
+  bool told = false;  ///< it was said how it ended
+};
+
+template <int dim>
+struct Run {
+  /// Throws SceneError for a scene that does not fit its mesh or its phase model. The scene must outlive the run.
+  /// Collective.
+  Run(MPI_Comm comm, const Scene &scene, const RunOptions &options, const std::string &mesh_file);
+
+  const Stage &stage() const { return scene.stage[progress.number]; }
+  bool last_stage() const { return progress.number + 1 == static_cast<int>(scene.stage.size()); }
+  void begin_next_stage();
+  /// Before its first stage again.
+  void start_again();
+  /// Sums of the present state. Collective.
+  Balance balance();
+
+  /// Particles take over the state of the finite elements.
+  void hand_to_particles();
+
+  void write_checkpoint();
+  /// Goes on from the checkpoint in the directory. Throws std::invalid_argument where that cannot be. Collective.
+  void resume();
+  /// Ends the run with checkpoint, history and snapshot if a signal has asked for it.
+  void heed(const Verdict &verdict);
+
+  const Scene &scene;
+  const RunOptions options;
+  const IntegratorSettings integrator;
+  Clock clock;
+  World<dim> world;
+  TrackedPoints<dim> points;
+  Dynamics<dim> dynamics;
+  Statics<dim> statics;
+  Recorder<dim> recorder;
+  StageProgress progress;
+  std::unique_ptr<StopCriterion<dim>> stop;  ///< of the present stage
+
+ private:
+  PetscErrorCode serialize(Archive &archive);
+};
+
+}  // namespace talus

@@ -1,0 +1,78 @@
+#include "simulation/simulation_impl.h"
+
+#include "simulation/stages/stage_runner.h"
+
+namespace talus {
+
+template <int dim>
+void Simulation<dim>::run() {
+  if (run_.options.resume)
+    run_.resume();
+  else
+    run_.recorder.open();
+  told([&] {
+    if (run_.progress.number < 0) begin();
+    run_stages();
+  });
+  run_.recorder.close();
+}
+
+/// What is written of the state at the start.
+template <int dim>
+void Simulation<dim>::begin() {
+  run_.recorder.write_history();
+  if (run_.options.gauss_points && is_static(run_.scene.stage.front().kind)) run_.statics.prepare();
+  run_.recorder.write_snapshot();
+  run_.begin_next_stage();
+  run_.write_checkpoint();
+}
+
+template <int dim>
+void Simulation<dim>::run_stages() {
+  while (true) {
+    make_stage_runner(run_)->run();
+    if (run_.last_stage()) return;
+    run_.begin_next_stage();
+  }
+}
+
+/// One step under the loads of the first stage.
+template <int dim>
+void Simulation<dim>::step_until(double t) {
+  told([&] {
+    run_.dynamics.set_loading(run_.scene.stage.front(), run_.clock.time);
+    run_.heed(run_.dynamics.cycle(t));
+  });
+}
+
+template <int dim>
+void Simulation<dim>::advance_to(double t) {
+  while (run_.clock.time < t * (1 - 1e-12)) step_until(t);
+}
+
+template <int dim>
+double Simulation<dim>::single_step() {
+  if (run_.clock.stage.empty()) run_.clock.stage = run_.scene.stage.front().name;
+  step_until(std::numeric_limits<double>::max());
+  return run_.clock.last_step;
+}
+
+template <int dim>
+void Simulation<dim>::nodal_field(const std::string &name, const std::function<void(PetscInt, const double *)> &put) {
+  const bool displacement = name == "displacement";
+  if (!displacement && name != "velocity")
+    throw std::invalid_argument("no nodal field " + name + "; there are velocity and displacement");
+  World<dim> &world = run_.world;
+  require(world.motion->begin(run_.clock.time));
+  std::vector<Vec<dim>> u;
+  if (displacement) u = world.nodal_displacement();
+  const FilledGrid<dim> &grid = world.motion->grid();
+  for (int i = 0; i < grid.node_count(); ++i)
+    put(world.mesh.plex_vertex[grid.mesh_node[i]],
+        displacement ? u[grid.mesh_node[i]].data() : world.motion->velocity() + i * dim);
+}
+
+template class Simulation<2>;
+template class Simulation<3>;
+
+}  // namespace talus

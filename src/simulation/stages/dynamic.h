@@ -1,0 +1,95 @@
+#pragma once
+/// Motion by the material point method until the stop criterion is met or the duration is over.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "simulation/stages/stage_runner.h"
+
+namespace talus {
+
+template <int dim>
+class DynamicStage final : public StageRunner<dim> {
+ public:
+  explicit DynamicStage(Run<dim> &run) : run_(run), stage_(run.stage()) {}
+
+  void run() override {
+    begin();
+    while (!run_.progress.met && !reached(end(), run_.clock.time)) advance();
+    finish();
+  }
+
+ private:
+  /// Is the time t there, but for round-off?
+  static bool reached(double t, double now) { return now >= t * (1 - 1e-12); }
+  /// The first of the times begin + k interval that is still to come; never for interval 0.
+  static double next_time(double begin, double interval, double now) {
+    if (interval == 0) return std::numeric_limits<double>::infinity();
+    double k = std::max(1., std::floor((now - begin) / interval));
+    while (reached(begin + k * interval, now)) ++k;
+    return begin + k * interval;
+  }
+  double end() const { return run_.progress.begin + stage_.duration; }
+
+  void begin() {
+    run_.statics.leave();
+    require(run_.world.fix_dashpots(stage_.hold_loads, run_.clock.time));
+    run_.clock.stage = stage_.name;
+    run_.recorder.begin_stage(stage_.name);
+    run_.dynamics.restart();
+    const std::string point = run_.stop->watched_point();
+    run_.dynamics.watch = nullptr;
+    if (!point.empty()) run_.dynamics.watch = [&points = run_.points, point] { return points.speed(point); };
+    double longest = 0;
+    for (const Stage &s : run_.scene.stage) longest = std::max(longest, s.duration);
+    const Output &output = run_.scene.output;
+    history_interval_ = output.history_interval > 0 ? output.history_interval : longest / 200;
+    checkpoint_interval_ = output.checkpoint_interval > 0 ? output.checkpoint_interval : output.interval;
+    set_loading();
+  }
+  void set_loading() { run_.dynamics.set_loading(stage_, run_.clock.time - run_.progress.begin); }
+
+  /// One step and what is written after it.
+  void advance() {
+    const double begin = run_.progress.begin, &now = run_.clock.time;
+    const double row = next_time(begin, history_interval_, now),
+                 snapshot = next_time(begin, run_.scene.output.interval, now),
+                 checkpoint = next_time(begin, checkpoint_interval_, now);
+    set_loading();
+    const Verdict verdict = run_.dynamics.cycle(run_.dynamics.fixed_step() ? end() : std::min({end(), row, snapshot}));
+    run_.recorder.progress();
+    if (reached(row, now)) run_.recorder.write_history();
+    if (reached(snapshot, now) && !reached(end(), now)) run_.recorder.write_snapshot();
+    run_.progress.met = run_.stop->met(run_, verdict);
+    run_.progress.told = false;
+    if (reached(checkpoint, now) && !reached(end(), now)) run_.write_checkpoint();
+    run_.heed(verdict);
+  }
+
+  void finish() {
+    if (!run_.progress.met && !run_.progress.told && run_.stop->early()) note_unmet();
+    run_.progress.told = true;
+    run_.recorder.write_history();
+    run_.recorder.write_snapshot();
+    run_.write_checkpoint();
+    if (stage_.reset_displacement) run_.world.reset_displacement(run_.clock.time);
+  }
+
+  void note_unmet() {
+    const Balance sums = run_.balance();
+    std::ostringstream text;
+    text.precision(3);
+    text << "stage " << stage_.name << " reached its duration of " << stage_.duration
+         << " s before its stop criterion was met: unbalanced force ratio " << sums.unbalanced / sums.applied
+         << ", kinetic over strain energy " << sums.kinetic / sums.strain << ", rms speed "
+         << std::sqrt(2 * sums.kinetic / run_.world.total_mass) << " m/s";
+    run_.recorder.note(text.str());
+  }
+
+  Run<dim> &run_;
+  const Stage &stage_;
+  double history_interval_ = 0, checkpoint_interval_ = 0;  ///< [s]
+};
+
+}  // namespace talus

@@ -1,0 +1,24 @@
+#pragma once
+/// Flow of pore water through soil at rest.
+#include "simulation/stages/flow_stage.h"
+
+namespace talus {
+
+template <int dim>
+class SeepageStage final : public FlowStage<dim> {
+ public:
+  using FlowStage<dim>::FlowStage;
+
+ private:
+  using typename StaticStage<dim>::Path;
+  bool soil_moves() const override { return false; }
+  void describe(const Path &path, std::ostream &text) override {
+    text << "stage " << this->stage_.name
+         << (this->stage_.steady ? " has found the flow that lasts: " : " has followed the water: ") << path.iterations
+         << " iterations";
+    for (const auto &[name, inflow] : this->run_.statics.flow().own_inflow())
+      text << "; " << inflow << " m3/s enter at " << name;
+  }
+};
+
+}  // namespace talus

@@ -1,0 +1,114 @@
+#pragma once
+/// What stages by finite elements have in common: they follow a path of loads in shares of their duration, hand each
+/// state to the particles, and say how the path ended.
+#include <cmath>
+#include <sstream>
+
+#include "scene/reader.h"
+#include "simulation/stages/stage_runner.h"
+
+namespace talus {
+
+template <int dim>
+class StaticStage : public StageRunner<dim> {
+ public:
+  explicit StaticStage(Run<dim> &run) : run_(run), stage_(run.stage()) {}
+
+  void run() final {
+    if (!run_.progress.met) {  // a resumed run has it behind it
+      begin();
+      follow(path_);
+      finish();
+    }
+    if (!stage_.reset_displacement) return;
+    if (run_.statics.made()) run_.statics.problem().soil().reset_displacement();
+    run_.world.reset_displacement(run_.clock.time);
+  }
+
+ protected:
+  /// How far the path of loads was followed.
+  struct Path {
+    double share = 0;  ///< of the stage
+    StepOutcome last;
+    int iterations = 0;
+  };
+  /// Do supports have to hold the soil?
+  virtual bool soil_moves() const { return true; }
+  /// Does the flow set the pressure in drained soil?
+  virtual bool water_flows() const { return false; }
+  /// Solves for one state after another and calls `done` after each.
+  virtual void follow(Path &path) = 0;
+  /// Says what the end of the path is.
+  virtual void describe(const Path &path, std::ostream &text) = 0;
+
+  double load_at(double share) const { return stage_.hold_loads ? begin_load_ : begin_load_ + share * stage_.duration; }
+  /// A state has been found: particles take it over, and results are written as they come due.
+  void done(double share) {
+    Clock &clock = run_.clock;
+    clock.time = begin_ + share * stage_.duration, clock.load_time = load_at(share), ++clock.steps;
+    if (sets_pressure()) run_.statics.take_seeped_pressure();
+    run_.hand_to_particles();
+    run_.recorder.progress();
+    run_.recorder.write_history();
+    const double interval = run_.scene.output.interval, elapsed = share * stage_.duration;
+    if (interval > 0 && share < 1 && elapsed >= snapshots_ * interval * (1 - 1e-9))
+      run_.recorder.write_snapshot(), snapshots_ = std::floor(elapsed / interval * (1 + 1e-9)) + 1;
+    int stop = interrupted;
+    MPI_Allreduce(MPI_IN_PLACE, &stop, 1, MPI_INT, MPI_MAX, run_.world.comm);
+    if (!stop) return;
+    run_.recorder.write_snapshot();
+    throw RunFailure("interrupted");
+  }
+
+  void describe_equilibrium(const Path &path, std::ostream &text) {
+    QuasiStatic<dim> &problem = run_.statics.problem();
+    text << "stage " << stage_.name << " is in equilibrium: " << problem.unknowns() << " unknowns, " << path.iterations
+         << " iterations (" << (problem.direct() ? "LU" : "GMRES and multigrid") << "), largest displacement "
+         << problem.soil().largest_displacement() << " m";
+  }
+
+  Run<dim> &run_;
+  const Stage &stage_;
+
+ private:
+  bool sets_pressure() const { return run_.world.phases.prescribed && water_flows(); }
+
+  void begin() {
+    if (run_.options.resume && !run_.statics.made() && run_.progress.number > 0)
+      throw SceneError("the run in " + run_.options.directory +
+                       " cannot be resumed before a quasi-static stage; start it anew");
+    run_.clock.stage = stage_.name, run_.clock.hold_loads = stage_.hold_loads;
+    run_.recorder.begin_stage(stage_.name);
+    run_.statics.begin_stage(stage_, soil_moves());
+    begin_ = run_.clock.time, begin_load_ = run_.clock.load_time;
+  }
+
+  void finish() {
+    run_.recorder.write_snapshot();
+    std::ostringstream text;
+    text.precision(3);
+    if (path_.share < 1) {
+      text << "no equilibrium beyond " << 100 * path_.share << " % of the loads of stage " << stage_.name << ": "
+           << (path_.last.singular ? "the stiffness became singular" : "Newton's iterations did not converge") << " ("
+           << path_.last.iterations << " iterations, out-of-balance force " << path_.last.residual
+           << " of the forces, largest step of a node " << path_.last.largest << " m)";
+      if (stage_.when_lost == WhenLost::stop) throw RunFailure(text.str());
+    } else {
+      describe(path_, text);
+    }
+    run_.dynamics.set_loading(stage_, 0);
+    const Balance sums = run_.balance();
+    if (sums.applied > 0)
+      text << "; unbalanced force ratio of the particles that take it over " << sums.unbalanced / sums.applied;
+    run_.recorder.note(text.str());
+    run_.progress.met = true;
+    if (sets_pressure() && run_.recorder.writes()) run_.statics.save_seeped_pressure(run_.options.directory);
+    run_.write_checkpoint();
+  }
+
+  Path path_;
+  double begin_ = 0, begin_load_ = 0;  ///< [s]
+  double snapshots_ = 1;               ///< number of the next
+};
+
+}  // namespace talus

@@ -1,0 +1,312 @@
+#include "simulation/statics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numeric>
+
+#include "scene/reader.h"
+#include "scene/words.h"
+
+namespace talus {
+
+template <int dim>
+void Statics<dim>::make() {
+  SoilData<dim> data;
+  data.density = [this](const BodySource &source, const Vec<dim> &x, double t) {
+    return world_.soil_density(source, x, t);
+  };
+  data.open_water_load = world_.scene.water.open_water_load;
+  if (world_.phases.prescribed) {
+    data.pressure = [this](const Vec<dim> &x, double t) { return world_.pressure(x, t); };
+    if (has_flow_stages(world_.scene)) {
+      const bool dries = std::any_of(world_.scene.body.begin(), world_.scene.body.end(),
+                                     [](const BodySource &b) { return b.retention.reader; });
+      for (const auto &source : world_.seepage_sources)
+        for (const std::string &group : source.groups)
+          if (!world_.mesh.has_group(group) && group != free_surface)
+            world_.scene.complain("boundary." + source.name + ".group",
+                                  "must name groups of facets; the mesh has no \"" + group + "\"; " +
+                                      suggestion(group, world_.mesh.group_names()));
+      world_.pressure.take(nullptr);
+      flow_ = std::make_unique<PoreFlow<dim>>(world_.mesh, world_.scene, world_.conditions.sources(), dries,
+                                              world_.seepage_sources);
+    }
+  }
+  if (world_.phases.liquid) {
+    flow_ =
+        std::make_unique<PoreFlow<dim>>(world_.mesh, world_.scene, world_.conditions.sources(), world_.phases.suction);
+    data.flow = flow_.get();
+  }
+  problem_ =
+      std::make_unique<QuasiStatic<dim>>(world_.mesh, world_.scene, world_.laws, world_.conditions.sources(), data);
+  for (size_t b = 0; b < world_.bodies.size(); ++b) {
+    GaussPoints<dim> &p = problem_->soil().points()[b];
+    const std::vector<Function> &given = world_.scene.body[b].stress;
+    for (int q = 0; q < p.count() && !given.empty(); ++q)
+      for (int k = 0; k < stress_size<dim>; ++k)
+        p.stress[q * stress_size<dim> + k] =
+            given[k](p.position[q][0], p.position[q][1], dim == 3 ? p.position[q][dim - 1] : 0, 0);
+  }
+}
+
+template <int dim>
+PetscErrorCode Statics<dim>::activate() {
+  PetscFunctionBeginUser;
+  PetscCall(problem_->activate(world_.present));
+  if (world_.phases.liquid)
+    PetscCall(flow_->activate(problem_->soil().active(), [this](const Vec<dim> &x) {
+      return world_.motion->initial_pressure(x, clock_.load_time);
+    }));
+  if (world_.phases.prescribed)
+    if (flow_)
+      PetscCall(flow_->activate(problem_->soil().active(), [this](const Vec<dim> &x) {
+        const Function &suction = world_.scene.water.suction;
+        const double above = suction.given() ? suction(x[0], x[1], dim == 3 ? x[dim - 1] : 0, clock_.load_time)
+                                             : world_.pressure.above_table(x, clock_.load_time);
+        return world_.pressure(x, clock_.load_time) - (world_.pressure.below_table(x, clock_.load_time) ? 0 : above);
+      }));
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+void Statics<dim>::prepare() {
+  make();
+  require(activate());
+  current_ = true;
+}
+
+template <int dim>
+void Statics<dim>::begin_stage(const Stage &stage, bool soil_moves) {
+  if (!problem_)
+    make();
+  else if (moved_since_)
+    to_gauss_points();
+  world_.choose_bodies(stage, clock_);
+  choose_laws(stage);
+  require(activate());
+  require(world_.fix_dashpots(true, clock_.time));
+  current_ = true, moved_since_ = false;
+  check_supports(soil_moves);
+  if (stage.initial_stress == InitialStress::k0) start_stress();
+  require(problem_->begin_path(clock_.load_time));
+}
+
+template <int dim>
+void Statics<dim>::choose_laws(const Stage &stage) {
+  for (size_t b = 0; b < world_.laws.size(); ++b) {
+    GaussPoints<dim> &points = problem_->soil().points()[b];
+    points.law = with_reduced_strength(world_.laws[b], strength_factor);
+    // steps are large here: strength would fall within one, though it is not remembered
+    int sheared = std::any_of(points.history.begin(), points.history.end(), [](double h) { return h != 0; });
+    MPI_Allreduce(MPI_IN_PLACE, &sheared, 1, MPI_INT, MPI_MAX, world_.comm);
+    if (!stage.softening && !sheared) points.law = without_softening(points.law);
+  }
+}
+
+template <int dim>
+void Statics<dim>::check_supports(bool soil_moves) const {
+  std::string freedom;
+  require(problem_->find_freedom(&freedom));
+  if (!freedom.empty() && soil_moves)
+    throw RunFailure("the supports leave soil free to move as a whole: " + freedom +
+                     "; hold it by fixed or roller boundaries");
+  if (world_.scene.quasi_static.elements != Elements::quadratic && !world_.mesh.report().one_element_slice) {
+    std::vector<char> thin;
+    require(problem_->find_thin_bodies(&thin));
+    for (size_t b = 0; b < thin.size(); ++b)
+      if (thin[b])
+        throw RunFailure(
+            "body." + world_.scene.body[b].name +
+            " is one element across, which elements of first order cannot resolve; refine the mesh there, or set "
+            "quasi_static.elements = \"quadratic\"");
+  }
+}
+
+template <int dim>
+void Statics<dim>::take_seeped_pressure() {
+  const bool suction =  // laws that read it see it, others take it for none
+      std::any_of(world_.laws.begin(), world_.laws.end(), [](const Law &law) { return reads_suction(law); });
+  seeped_ = std::make_shared<SeepedPressure<dim>>(*flow_, suction);
+  world_.pressure.take([found = seeped_](const double *x) { return (*found)(x); });
+}
+
+template <int dim>
+void Statics<dim>::save_seeped_pressure(const std::string &directory) {
+  take_seeped_pressure();
+  seeped_->save(world_.comm, seeped_file(directory));
+}
+
+template <int dim>
+void Statics<dim>::recall_seeped_pressure(const std::string &directory) {
+  if (!std::filesystem::exists(seeped_file(directory))) return;
+  seeped_ = std::make_shared<SeepedPressure<dim>>(seeped_file(directory));
+  world_.pressure.take([found = seeped_](const double *x) { return (*found)(x); });
+}
+
+template <int dim>
+std::vector<double> Statics<dim>::inflow() const {
+  if (flow_ && current_) return flow_->inflow();
+  return std::vector<double>(world_.conditions.sources().size(), 0);
+}
+
+template <int dim>
+void Statics<dim>::to_particles() {
+  if (world_.motion->gathered()) require(world_.release(clock_.time));
+  const int per_cell = problem_->soil().points_per_cell();
+  const double near = per_cell > 1 ? problem_->soil().rule().point[0][0] : 1,
+               far = per_cell > 1 ? problem_->soil().rule().point[0][1] : 0;
+  for (size_t b = 0; b < world_.bodies.size(); ++b) {
+    const ParticleArrays<dim> &p = world_.bodies[b]->particles();
+    const GaussPoints<dim> &points = problem_->soil().points()[b];
+    const int memory = world_.bodies[b]->history_count();
+    for (int i = 0; i < p.count; ++i) {
+      const int cell = p.cell[i], first = problem_->soil().first_point(cell);
+      const Barycentric<dim> l = barycentric(world_.mesh.cells[cell], p.position[i]);
+      std::array<double, dim + 1> weight{};
+      for (int a = 0; a < per_cell; ++a) weight[a] = per_cell > 1 ? (l[a] - far) / (near - far) : 1;
+      const auto value = [&](const std::vector<double> &field, int width, int k) {
+        double sum = 0;
+        for (int a = 0; a < per_cell; ++a) sum += weight[a] * field[(first + a) * width + k];
+        return sum;
+      };
+      for (int k = 0; k < stress_size<dim>; ++k)
+        p.stress[i * stress_size<dim> + k] = value(points.stress, stress_size<dim>, k);
+      for (int k = 0; k < memory; ++k) {  // not beyond what the points have: strength must not grow
+        double low = points.history[first * memory + k], high = low;
+        for (int a = 1; a < per_cell; ++a)
+          low = std::min(low, points.history[(first + a) * memory + k]),
+          high = std::max(high, points.history[(first + a) * memory + k]);
+        p.history[i * memory + k] = std::clamp(value(points.history, memory, k), low, high);
+      }
+      const Vec<dim> u = problem_->soil().displacement(cell, l);
+      for (int d = 0; d < dim; ++d) p.reference[i][d] = p.position[i][d] - u[d], p.velocity[i][d] = 0;
+    }
+  }
+  if (world_.phases.liquid)
+    world_.motion->fill_pores([this](int cell, const Vec<dim> &x) {
+      return flow_->pressure_at(cell, barycentric(world_.mesh.cells[cell], x));
+    });
+}
+
+/// The other way after a dynamic stage: Gauss points take the mean of the particles in their cell, weighted by volume;
+/// cells that have none keep what they had.
+template <int dim>
+void Statics<dim>::to_gauss_points() {
+  pressure_from_particles();
+  if (world_.motion->gathered()) require(world_.release(clock_.time));
+  for (size_t b = 0; b < world_.bodies.size(); ++b) {
+    const ParticleArrays<dim> &p = world_.bodies[b]->particles();
+    GaussPoints<dim> &points = problem_->soil().points()[b];
+    const int memory = world_.bodies[b]->history_count(), width = stress_size<dim> + memory;
+    std::vector<double> sums(static_cast<size_t>(world_.mesh.cell_count()) * width, 0),
+        volume(world_.mesh.cell_count(), 0);
+    for (int i = 0; i < p.count; ++i) {
+      double *s = &sums[static_cast<size_t>(p.cell[i]) * width];
+      volume[p.cell[i]] += p.volume[i];
+      for (int k = 0; k < stress_size<dim>; ++k) s[k] += p.volume[i] * p.stress[i * stress_size<dim> + k];
+      for (int k = 0; k < memory; ++k) s[stress_size<dim> + k] += p.volume[i] * p.history[i * memory + k];
+    }
+    for (int q = 0; q < points.count(); ++q) {
+      const int cell = points.cell[q];
+      if (volume[cell] == 0) continue;
+      const double *s = &sums[static_cast<size_t>(cell) * width];
+      for (int k = 0; k < stress_size<dim>; ++k) points.stress[q * stress_size<dim> + k] = s[k] / volume[cell];
+      for (int k = 0; k < memory; ++k) points.history[q * memory + k] = s[stress_size<dim> + k] / volume[cell];
+    }
+  }
+}
+
+/// Nodes take the mean of the particles around them, weighted by volume and shape function.
+template <int dim>
+void Statics<dim>::pressure_from_particles() {
+  if (world_.phases.liquid) {
+    require(world_.motion->begin(clock_.time));
+    std::vector<double> sum(flow_->nodes().count(), 0), weight = sum;
+    for (const auto &body : world_.bodies) {
+      const ParticleArrays<dim> &p = body->particles();
+      for (int i = 0; i < p.count; ++i) {
+        if (!flow_->active(p.cell[i])) continue;
+        const Barycentric<dim> l = barycentric(world_.mesh.cells[p.cell[i]], p.position[i]);
+        for (int a = 0; a <= dim; ++a) {
+          const int node = flow_->nodes().of_cell(p.cell[i])[a];
+          weight[node] += p.volume[i] * l[a], sum[node] += p.volume[i] * l[a] * world_.motion->pores(*body, i).liquid;
+        }
+      }
+    }
+    require(flow_->nodes().sum(sum));
+    require(flow_->nodes().sum(weight));
+    for (size_t i = 0; i < sum.size(); ++i)
+      if (weight[i] > 0) flow_->accepted[i] = flow_->pressure[i] = sum[i] / weight[i];
+  }
+}
+
+template <int dim>
+Snapshot Statics<dim>::gauss_points() const {
+  Snapshot s;
+  s.time = clock_.time, s.step = clock_.steps, s.stage = clock_.stage;
+  const auto column = [&](const char *name, const char *unit, const char *meaning, int components) {
+    s.columns.push_back({name, unit, meaning, components, {}});
+  };
+  column("position", "m", "place of the Gauss point", dim);
+  column("displacement", "m", "displacement since the start or the last reset", dim);
+  column("stress", "Pa",
+         world_.phases.pressure ? "effective stress, positive in tension" : "stress, positive in tension",
+         stress_size<dim>);
+  column("volume", "m3", "volume of the Gauss point", 1);
+  column("mass", "kg", "mass of the Gauss point", 1);
+  column("shear_strain", "-", "sqrt(2/3 e : e) of the deviator e of strain, since displacement was last reset", 1);
+  if (world_.phases.pressure) column("pore_pressure", "Pa", "pore pressure, positive in compression", 1);
+  if (world_.phases.suction) column("saturation", "-", "degree of saturation", 1);
+  const size_t first_history = s.columns.size();
+  for (const auto &body : world_.bodies)
+    for (const HistoryField &field : history_fields(body->law()))
+      if (std::none_of(s.columns.begin(), s.columns.end(), [&](const auto &c) { return c.name == field.name; }))
+        column(field.name, field.unit.name, field.meaning, 1);
+  const int per_cell = problem_->soil().points_per_cell();
+  for (size_t b = 0; b < world_.bodies.size(); ++b) {
+    const GaussPoints<dim> &p = problem_->soil().points()[b];
+    if (!p.present) continue;
+    const auto fields = history_fields(world_.bodies[b]->law());
+    const int memory = static_cast<int>(fields.size());
+    for (int q = 0; q < p.count(); ++q) {
+      const int place = (q - problem_->soil().first_point(p.cell[q]));
+      s.id.push_back(world_.mesh.global_cell[p.cell[q]] * per_cell + place), s.body.push_back(static_cast<int>(b));
+      size_t k = 0;
+      const auto put = [&](const double *values, int count) {
+        s.columns[k].values.insert(s.columns[k].values.end(), values, values + count);
+        ++k;
+      };
+      const Vec<dim> u = problem_->soil().displacement(p.cell[q], problem_->soil().rule().point[place]);
+      Stress<dim> strain;
+      std::copy_n(&p.total_strain[q * stress_size<dim>], stress_size<dim>, &strain.xx);
+      const Barycentric<dim> &l = problem_->soil().rule().point[place];
+      const double mass = p.volume[q] * (world_.soil_density(world_.scene.body[b], p.position[q], clock_.load_time) +
+                                         (world_.phases.liquid ? flow_->water_density(p.cell[q], l) : 0));
+      const double shear = Invariants<dim>(strain).q * std::sqrt(4. / 3);
+      put(p.position[q].data(), dim), put(u.data(), dim), put(&p.stress[q * stress_size<dim>], stress_size<dim>);
+      put(&p.volume[q], 1), put(&mass, 1), put(&shear, 1);
+      if (world_.phases.prescribed) {
+        const double pressure = world_.pressure(p.position[q], clock_.load_time);
+        put(&pressure, 1);
+      }
+      if (world_.phases.liquid) {
+        const double pressure = flow_->pressure_at(p.cell[q], l), saturation = flow_->saturation(p.cell[q], l);
+        put(&pressure, 1);
+        if (world_.phases.suction) put(&saturation, 1);
+      }
+      for (size_t c = first_history; c < s.columns.size(); ++c) {
+        double value = std::numeric_limits<double>::quiet_NaN();
+        for (int h = 0; h < memory; ++h)
+          if (s.columns[c].name == fields[h].name) value = p.history[q * memory + h];
+        s.columns[c].values.push_back(value);
+      }
+    }
+  }
+  return s;
+}
+
+template class Statics<2>;
+template class Statics<3>;
+
+}  // namespace talus

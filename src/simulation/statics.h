@@ -1,0 +1,69 @@
+#pragma once
+/// Equilibrium, seepage and consolidation by finite elements on the world's mesh, laws and boundaries, and what they
+/// hand to the particles and take from them, docs/theory/finite_elements.md and seepage.md.
+#include <memory>
+#include <utility>
+
+#include "output/results.h"
+#include "simulation/world.h"
+#include "solvers/quasi_static/seeped_pressure.h"
+#include "solvers/quasi_static/strength_reduction.h"
+
+namespace talus {
+
+template <int dim>
+class Statics {
+ public:
+  /// The references must outlive it. Nothing is built before the first quasi-static stage.
+  Statics(World<dim> &world, const Clock &clock) : world_(world), clock_(clock) {}
+  Statics(const Statics &) = delete;
+
+  /// Builds the problem with the bodies that are there now, without solving anything; for results at the start.
+  void prepare();
+  /// Brings state, bodies, laws and supports to those of a stage. `soil_moves`: supports have to hold the soil. Throws
+  /// RunFailure. Collective.
+  void begin_stage(const Stage &stage, bool soil_moves);
+  /// The motion has the soil from now on: results are those of the particles.
+  void leave() { current_ = false, moved_since_ = true; }
+  /// The problem is built anew with the next stage.
+  void forget() { current_ = false, problem_.reset(); }
+
+  /// Particles stay where they are and take stress, history and pore water; the displacement moves the place it is
+  /// counted from. Stress is linear between the Gauss points of a cell.
+  void to_particles();
+  /// From now on the pressure of a drained scene is what the flow has found.
+  void take_seeped_pressure();
+  /// Saves it, for a run that is resumed behind this stage, and takes it back. Collective.
+  void save_seeped_pressure(const std::string &directory);
+  void recall_seeped_pressure(const std::string &directory);
+
+  bool made() const { return problem_ != nullptr; }
+  bool current() const { return current_; }  ///< the last state is one of finite elements
+  QuasiStatic<dim> &problem() { return *problem_; }
+  PoreFlow<dim> &flow() { return *flow_; }
+  /// Columns of the Gauss points, in place of particles.
+  Snapshot gauss_points() const;
+  /// Volume per time that enters through each boundary of the motion [m3/s]; none while the motion has the soil.
+  /// Collective.
+  std::vector<double> inflow() const;
+
+  double strength_factor = 1;  ///< by which stages divide strength
+
+ private:
+  void make();
+  PetscErrorCode activate();
+  void choose_laws(const Stage &stage);
+  void check_supports(bool soil_moves) const;
+  void start_stress();  // initial_stress.cpp
+  void to_gauss_points();
+  void pressure_from_particles();
+
+  World<dim> &world_;
+  const Clock &clock_;
+  std::unique_ptr<PoreFlow<dim>> flow_;  ///< where pore fluids move
+  std::unique_ptr<QuasiStatic<dim>> problem_;
+  std::shared_ptr<SeepedPressure<dim>> seeped_;
+  bool current_ = false, moved_since_ = false;
+};
+
+}  // namespace talus

@@ -1,0 +1,29 @@
+#pragma once
+/// Once gravity is whole: out-of-balance forces are small against the applied ones, and kinetic energy against strain
+/// energy.
+#include "simulation/run.h"
+
+namespace talus {
+
+template <int dim>
+class StopAtEquilibrium final : public StopCriterion<dim> {
+ public:
+  explicit StopAtEquilibrium(const Stage &stage) : stage_(stage) {}
+
+  bool met(Run<dim> &run, const Verdict &) override {
+    constexpr int steps_between_checks = 25;
+    if (run.clock.steps % steps_between_checks || run.clock.time - run.progress.begin < stage_.gravity_ramp)
+      return false;
+    const Balance sums = run.balance();
+    if (sums.unbalanced > stage_.force_ratio * sums.applied || sums.kinetic > stage_.energy_ratio * sums.strain)
+      return false;
+    run.recorder.note("stage " + stage_.name + " is in equilibrium: unbalanced force ratio " +
+                      std::to_string(sums.unbalanced / sums.applied));
+    return true;
+  }
+
+ private:
+  const Stage &stage_;
+};
+
+}  // namespace talus

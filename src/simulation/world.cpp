@@ -1,0 +1,410 @@
+// From the scene to the first state: mesh, bodies, boundaries; and what happens to the bodies as a whole.
+#include "simulation/world.h"
+
+#include <petsctime.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "scene/reader.h"
+
+namespace talus {
+
+template <int dim>
+World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &mesh_file)
+    : scene(of),
+      phases(phase_traits(of.phases)),
+      comm(world),
+      pressure(of.water, std::hypot(of.gravity[0], of.gravity[1])) {
+  read_laws();
+  std::vector<Source> sources = read_sources();
+  read_mesh(plex, mesh_file);
+  check_bodies();
+  check_boundaries(sources);
+  require(conditions.setup(mesh, std::move(sources)));
+  conditions.hold(scene.stage.front().hold_loads);
+  seed_bodies();
+  set_loading(scene.stage.front(), 0, Clock{});  // under which the first state is gathered
+}
+
+template <int dim>
+void World<dim>::read_laws() {
+  for (const BodySource &body : scene.body) {
+    laws.push_back(read_law(body.law));
+    const std::string problem = law_problem(laws.back(), dim);
+    if (!problem.empty()) scene.complain("body." + body.name, "cannot be used: " + problem);
+    if (body.averaging_length > 0 && plastic_strain_field(laws.back()) < 0)
+      scene.complain("body." + body.name + ".averaging_length",
+                     "needs a law that remembers a plastic_strain, not " + std::string(law_name(laws.back())));
+  }
+}
+
+/// Boundaries of pore water in a drained scene belong to its seepage stages alone: the motion takes the pressure that
+/// they find.
+template <int dim>
+std::vector<typename World<dim>::Source> World<dim>::read_sources() {
+  std::vector<Source> sources;
+  const bool apart = phases.prescribed && has_flow_stages(scene);
+  for (const BoundarySource &b : scene.boundary) {
+    DeferredTable table = b.kind;
+    const Boundary kind = read_boundary(table);
+    const bool seeps = apart && concerns_water(kind) && !concerns_gas(kind);
+    (seeps ? seepage_sources : sources).push_back({b.name, b.group, kind});
+  }
+  return sources;
+}
+
+template <int dim>
+void World<dim>::read_mesh(DM plex, const std::string &mesh_file) {
+  std::vector<std::pair<std::string, double>> weights;
+  for (const BodySource &body : scene.body)
+    for (const std::string &region : body.region) weights.emplace_back(region, particles_per_cell<dim>(body) + 1);
+  if (plex)
+    mesh = BackgroundMesh<dim>::adopt(plex, scene.transfer.patch_size);
+  else
+    try {
+      mesh = BackgroundMesh<dim>::read(comm, mesh_file, scene.transfer.patch_size, weights);
+    } catch (const std::invalid_argument &error) {
+      scene.complain(scene.mesh.file.empty() ? "mesh.section" : "mesh.file",
+                     std::string("cannot serve: ") + error.what());
+    }
+  comm = mesh.comm();
+}
+
+template <int dim>
+double World<dim>::soil_density(const BodySource &source, const Vec<dim> &x, double t) const {
+  if (source.density > 0 && !phases.liquid) return source.density;
+  double density = (1 - source.porosity) *
+                   source.grain_density;  // where fluids move on their own, particles' mass is that of the grains
+  if (phases.prescribed)
+    density += source.porosity * scene.water.density * (pressure.below_table(x, t) ? 1 : source.saturation);
+  return density;
+}
+
+/// Numbers of particles in a cell are below it, whatever boxes and stages add.
+template <int dim>
+int World<dim>::id_stride() const {
+  int stride = 1;
+  for (const BodySource &source : scene.body) {
+    stride = std::max(stride, particles_per_cell<dim>(source));
+    for (const DenseBox &box : source.dense) stride = std::max(stride, box.particles_per_cell);
+  }
+  return stride;
+}
+
+template <int dim>
+void World<dim>::seed_bodies() {
+  const int stride = id_stride();
+  double wave_speed = 0;
+  std::vector<char> filled(mesh.cell_count(), 0);
+  for (const BodySource &source : scene.body)
+    for (const std::string &region : source.region)
+      for (int cell : mesh.region(region)) filled[cell] = 1;
+  SurfaceLoads<dim> &loads = conditions.surface_loads();
+  require(loads.share(mesh, filled));
+  movers_.resize(scene.body.size());
+  for (size_t b = 0; b < scene.body.size(); ++b) {
+    const BodySource &source = scene.body[b];
+    bodies.push_back(std::make_unique<Body<dim>>());
+    Body<dim> &body = *bodies.back();
+    require(body.create(comm, source, laws[b], scene.transfer.velocity == Velocity::apic, phases.fluids(),
+                        loads.face_count()));
+    seed<dim>(body, mesh, stride, [&](const Vec<dim> &x) { return soil_density(source, x, 0); });
+    loads.seed(body, mesh);
+    double sums[2] = {static_cast<double>(body.particles().count), 0}, totals[2];
+    sums[1] = std::accumulate(body.particles().mass, body.particles().mass + body.particles().count, 0.);
+    MPI_Allreduce(sums, totals, 2, MPI_DOUBLE, MPI_SUM, comm);
+    const std::string path = "body." + source.name;
+    if (totals[0] == 0) scene.complain(path, "is empty: its regions have no cells");
+    check_seeded(body, path);
+    particle_count += static_cast<long long>(totals[0]), total_mass += totals[1];
+    const double density = soil_density(source, Vec<dim>{}, 0);
+    wave_speed = std::max(wave_speed, std::sqrt(constrained_modulus(body.law()) / density));
+    PoreStiffness pores{source.porosity, {}};
+    if (phases.liquid) pores.fluids.push_back({scene.water.density, scene.water.bulk_modulus});
+    if (phases.gas) pores.fluids.push_back({scene.gas.density, scene.gas.bulk_modulus});
+    critical_.emplace_back(mesh, body.law(), density, pores);
+    if (!source.displacement.empty())
+      for (int i = 0; i < body.particles().count; ++i) movers_[b].push_back(i);
+    bool lost = false;
+    Vec<dim> where{};
+    require(relocate<dim>(body, mesh, movers_[b], &lost, &where));
+    const std::string outside = place_of_first<dim>(comm, lost, where);
+    if (!outside.empty()) scene.complain(path + ".displacement", "takes particles out of the mesh near " + outside);
+    require(body.sort(mesh.cell_count()));
+  }
+  const int idle = loads.find_idle(comm, bodies);
+  if (idle >= 0)
+    scene.complain("boundary." + conditions.sources()[idle].name + ".kind",
+                   "is a load on a face without soil behind it at the start; name a group on the surface of a body");
+  const double relaxation = scene.transfer.relaxation * mesh.report().smallest_altitude / wave_speed;
+  constexpr double friction_delay = 10;  // in units of altitude over wave speed, docs/theory (6.2)
+  conditions.set_friction_delay(friction_delay * mesh.report().smallest_altitude / wave_speed);
+  motion = make_soil_motion(
+      MotionParts<dim>{mesh, bodies, conditions, scene, pressure, relaxation, total_mass, particle_count});
+  require(motion->setup_pores(true));
+}
+
+template <int dim>
+void World<dim>::take_out_later_bodies() {
+  present.assign(scene.body.size(), 1);
+  for (const Stage &stage : scene.stage)
+    for (size_t b = 0; b < scene.body.size(); ++b)
+      if (std::count(stage.add.begin(), stage.add.end(), scene.body[b].name)) present[b] = 0;
+  if (!std::count(present.begin(), present.end(), 0)) return;
+  for (size_t b = 0; b < scene.body.size(); ++b)
+    if (!present[b]) require(bodies[b]->resize(0));
+  count_particles();
+}
+
+template <int dim>
+void World<dim>::count_particles() {
+  double mine[2]{}, all[2];
+  for (const auto &body : bodies) {
+    const ParticleArrays<dim> &p = body->particles();
+    mine[0] += p.count, mine[1] += std::accumulate(p.mass, p.mass + p.count, 0.);
+  }
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, comm);
+  particle_count = static_cast<long long>(all[0]), total_mass = all[1];
+}
+
+/// Bodies that come and go: their particles do too.
+template <int dim>
+void World<dim>::choose_bodies(const Stage &stage, const Clock &clock) {
+  if (motion->gathered()) require(release(clock.time));
+  const int stride = id_stride();
+  for (size_t b = 0; b < bodies.size(); ++b) {
+    const std::string &name = scene.body[b].name;
+    if (std::count(stage.add.begin(), stage.add.end(), name) && !present[b]) {
+      present[b] = 1;
+      seed<dim>(*bodies[b], mesh, stride,
+                [&](const Vec<dim> &x) { return soil_density(scene.body[b], x, clock.load_time); });
+      conditions.surface_loads().seed(*bodies[b], mesh);
+      require(bodies[b]->sort(mesh.cell_count()));
+    }
+    if (std::count(stage.remove.begin(), stage.remove.end(), name) && present[b]) {
+      present[b] = 0;
+      require(bodies[b]->resize(0));
+    }
+  }
+  count_particles();
+}
+
+template <int dim>
+void World<dim>::set_loading(const Stage &stage, double stage_time, const Clock &clock) {
+  const double ramp = stage.gravity_ramp > 0 ? std::min(1., stage_time / stage.gravity_ramp) : 1;
+  for (int d = 0; d < dim; ++d) motion->loading.gravity[d] = scene.gravity[d];
+  motion->loading.ramp = ramp;
+  motion->loading.ramp_rate = ramp < 1 ? 1 / stage.gravity_ramp : 0;
+  motion->loading.set_at = clock.time;
+  motion->loading.time_rate = stage.hold_loads ? 0 : 1;
+  motion->loading.time = clock.load_time;
+  motion->loading.damping = stage.damping;
+  motion->loading.softening = stage.softening;
+  motion->loading.pore_flow = stage.pore_flow;
+}
+
+/// Changes between dashpots and the supports that stand in for them; what these bore stays on as a dead load.
+template <int dim>
+PetscErrorCode World<dim>::fix_dashpots(bool fixed, double time) {
+  PetscFunctionBeginUser;
+  if (fixed == conditions.held() || !conditions.has_dashpots()) PetscFunctionReturn(0);
+  if (motion->gathered()) PetscCall(release(time));
+  if (!fixed) {
+    PetscCall(motion->freeze_reactions(time));
+    PetscCall(release(time));
+  }
+  conditions.hold(fixed);
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode World<dim>::release(double time, bool to_next) {
+  PetscFunctionBeginUser;
+  PetscLogDouble start, middle, end;
+  PetscCall(PetscTime(&start));
+  for (auto &list : movers_) list.clear();
+  PetscCall(to_next ? motion->release_to_next(time, movers_) : motion->release(time, movers_));
+  PetscCall(PetscTime(&middle));
+  bool lost = false;
+  Vec<dim> where{};
+  for (size_t b = 0; b < bodies.size(); ++b) PetscCall(relocate<dim>(*bodies[b], mesh, movers_[b], &lost, &where));
+  ++releases_;
+  PetscCall(PetscTime(&end));
+  breakdown.release += middle - start, breakdown.relocate += end - middle;
+  const std::string outside = place_of_first<dim>(comm, lost, where);
+  if (!outside.empty())
+    throw RunFailure("a particle left the mesh near " + outside +
+                     "; add free space there, or a boundary that keeps soil in");
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode World<dim>::sort() {
+  PetscFunctionBeginUser;
+  PetscLogDouble start, end;
+  PetscCall(PetscTime(&start));
+  for (auto &body : bodies) PetscCall(body->sort(mesh.cell_count()));
+  PetscCall(PetscTime(&end));
+  breakdown.relocate += end - start;
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode World<dim>::check_conservation() const {
+  PetscFunctionBeginUser;
+  double mine[2]{}, all[2];
+  for (const auto &body : bodies) {
+    const ParticleArrays<dim> &p = body->particles();
+    mine[0] += p.count;
+    double mass = 0;
+#pragma omp simd reduction(+ : mass)
+    for (int i = 0; i < p.count; ++i) mass += p.mass[i];
+    mine[1] += mass;
+  }
+  PetscCallMPI(MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, comm));
+  if (all[0] != static_cast<double>(particle_count) || std::abs(all[1] - total_mass) > 1e-12 * total_mass)
+    throw RunFailure("particles were lost or doubled: " + std::to_string(static_cast<long long>(all[0])) + " of " +
+                     std::to_string(particle_count) + " are left");
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+void World<dim>::reset_displacement(double time) {
+  if (motion->gathered()) require(release(time));
+  for (const auto &body : bodies) {
+    const ParticleArrays<dim> &p = body->particles();
+    std::copy_n(p.position, p.count, p.reference);
+    std::fill_n(p.velocity, p.count, Vec<dim>{});
+    const auto fields = history_fields(body->law());
+    for (size_t k = 0; k < fields.size(); ++k)
+      for (int i = 0; !fields[k].kept && i < p.count; ++i) p.history[i * fields.size() + k] = 0;
+    for (int a = 0; a < phases.fluids(); ++a) std::fill_n(p.fluid_velocity[a], p.count, Vec<dim>{});
+  }
+}
+
+template <int dim>
+double World<dim>::critical_step_of_cells(double time) {
+  require(motion->begin(time));
+  double local = std::numeric_limits<double>::infinity(), step;
+  for (size_t b = 0; b < bodies.size(); ++b) {
+    const PointSet &points = motion->points()[b];
+    int last = -1;
+    for (int q = 0; q < points.count; ++q)
+      if (points.cell[q] != last)
+        local = std::min(local, critical_[b](motion->grid().mesh_cell[last = points.cell[q]]));
+  }
+  MPI_Allreduce(&local, &step, 1, MPI_DOUBLE, MPI_MIN, comm);
+  return step;
+}
+
+template <int dim>
+std::vector<BodyReport> World<dim>::report() {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::vector<BodyReport> reports;
+  for (size_t b = 0; b < bodies.size(); ++b) {
+    const ParticleArrays<dim> &p = bodies[b]->particles();
+    BodyReport report{bodies[b]->name()};
+    double sums[6]{};             // particles, cells, mass, volume, steps and sizes of cells
+    std::array<double, 7> least;  // particles in a cell, lowest and highest corner
+    least.fill(infinity);
+    struct {
+      double step;
+      int rank;
+    } mine{infinity, 0}, slowest;
+    std::array<double, 3> place{};
+    for (int i = 0; i < p.count;) {
+      const Cell<dim> &cell = mesh.cells[p.cell[i]];
+      const int first = i;
+      for (; i < p.count && p.cell[i] == p.cell[first]; ++i) sums[2] += p.mass[i], sums[3] += p.volume[i];
+      const double step = critical_[b](p.cell[first]), volume = mesh.volume[p.cell[first]];
+      sums[0] += i - first, sums[1] += 1, sums[4] += step, sums[5] += std::pow(volume, 1. / dim);
+      least[0] = std::min<double>(least[0], i - first);
+      Vec<dim> centre{};
+      for (int node : cell.node)
+        for (int d = 0; d < dim; ++d) {
+          const double x = mesh.position[node][d];
+          least[1 + d] = std::min(least[1 + d], x), least[4 + d] = std::min(least[4 + d], -x),
+                    centre[d] += x / (dim + 1);
+        }
+      if (step < mine.step) mine.step = step, std::copy_n(centre.begin(), dim, place.begin());
+    }
+    MPI_Comm_rank(comm, &mine.rank);
+    MPI_Allreduce(MPI_IN_PLACE, sums, 6, MPI_DOUBLE, MPI_SUM, comm);
+    MPI_Allreduce(MPI_IN_PLACE, least.data(), 7, MPI_DOUBLE, MPI_MIN, comm);
+    MPI_Allreduce(&mine, &slowest, 1, MPI_DOUBLE_INT, MPI_MINLOC, comm);
+    MPI_Bcast(place.data(), 3, MPI_DOUBLE, slowest.rank, comm);
+    report.particles = static_cast<long long>(sums[0]), report.cells = static_cast<long long>(sums[1]);
+    report.mass = sums[2], report.volume = sums[3];
+    report.fewest_per_cell = static_cast<int>(least[0]);
+    for (int d = 0; d < dim; ++d) report.low[d] = least[1 + d], report.high[d] = -least[4 + d];
+    report.critical_step = slowest.step, report.slowest_cell = place;
+    report.mean_critical_step = sums[4] / sums[1];
+    // the side of a regular simplex of the mean size: sqrt(4 A / sqrt 3), (6 sqrt 2 V)^(1/3), as softening takes it
+    report.cell_size = sums[5] / sums[1] * (dim == 2 ? std::sqrt(4 / std::sqrt(3.)) : std::cbrt(6 * std::sqrt(2.)));
+    reports.push_back(report);
+  }
+  return reports;
+}
+
+/// "particle 12 of body.sand" of this rank, the nearest to a place.
+template <int dim>
+std::string World<dim>::nearest_particle(const Vec<dim> &where) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  std::string found = "no particle";
+  for (const auto &body : bodies)
+    for (int i = 0; i < body->particles().count; ++i) {
+      Vec<dim> x, v;
+      motion->present(*body, i, &x, &v);
+      const double distance = (map<dim>(x) - map<dim>(where)).norm();
+      if (distance < nearest)
+        nearest = distance, found = "particle " + std::to_string(body->particles().id[i]) + " of body." + body->name();
+    }
+  return found;
+}
+
+template <int dim>
+std::vector<Vec<dim>> World<dim>::nodal_displacement() {
+  // up to the last remap the mean of the particles around a node, weighted as their velocity is; since then the node's
+  // own way
+  std::vector<Vec<dim>> u(mesh.node_count(), Vec<dim>{});
+  for (const auto &body : bodies) {
+    const ParticleArrays<dim> &p = body->particles();
+    for (int i = 0; i < p.count; ++i) {
+      const Cell<dim> &cell = mesh.cells[p.cell[i]];
+      const auto n = barycentric(cell, p.position[i]);
+      for (int k = 0; k <= dim; ++k)
+        for (int d = 0; d < dim; ++d) u[cell.node[k]][d] += n[k] * p.mass[i] * (p.position[i][d] - p.reference[i][d]);
+    }
+  }
+  require(mesh.halo.sum(u.empty() ? nullptr : u[0].data(), dim));
+  const FilledGrid<dim> &grid = motion->grid();
+  for (int i = 0; i < grid.node_count(); ++i)
+    for (int d = 0; d < dim; ++d) {
+      double &value = u[grid.mesh_node[i]][d];
+      value = value / grid.mass[i] + grid.position[i][d] - mesh.position[grid.mesh_node[i]][d];
+    }
+  return u;
+}
+
+/// Tells meshes and partitions apart.
+template <int dim>
+unsigned long long World<dim>::mesh_fingerprint() const {
+  unsigned long long sum = fingerprint(mesh.position.data(), mesh.position.size() * sizeof(Vec<dim>));
+  for (const Cell<dim> &cell : mesh.cells) sum = fingerprint(cell.node.data(), sizeof cell.node, sum);
+  return fingerprint(mesh.global_cell.data(), mesh.global_cell.size() * sizeof(long long), sum);
+}
+
+template <int dim>
+PetscErrorCode World<dim>::serialize(Archive &archive) {
+  PetscFunctionBeginUser;
+  for (const auto &body : bodies) PetscCall(body->serialize(archive));
+  PetscCall(motion->serialize(archive));
+  PetscFunctionReturn(0);
+}
+
+template class World<2>;
+template class World<3>;
+
+}  // namespace talus

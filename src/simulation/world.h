@@ -1,0 +1,102 @@
+#pragma once
+/// What a scene is made of once it is built: mesh, bodies, laws, boundaries and the motion of the soil. It has no clock
+/// and no files: times are handed in.
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "physics/any_soil_motion.h"
+#include "physics/phase_models.h"
+#include "physics/prescribed_pressure.h"
+#include "simulation.h"
+#include "simulation/clock.h"
+#include "simulation/failure.h"
+#include "solvers/critical_step.h"
+
+namespace talus {
+
+template <int dim>
+class World {
+ public:
+  using Source = typename Conditions<dim>::Source;
+
+  /// Reads the mesh from `mesh_file`, or takes that of a host program. Throws SceneError where the scene does not fit
+  /// it. The scene must outlive the world. Collective.
+  World(MPI_Comm world, const Scene &of, DM plex, const std::string &mesh_file);
+  World(const World &) = delete;  // its parts know each other's place
+
+  /// Bodies that a stage adds are seeded, and so checked, but not there at the start: takes them out.
+  void take_out_later_bodies();
+  /// What acts on the soil from now on, `stage_time` after the begin of the stage.
+  void set_loading(const Stage &stage, double stage_time, const Clock &clock);
+  /// Density of the soil as a body at a place; where fluids move on their own, that of the grains alone [kg/m3].
+  double soil_density(const BodySource &source, const Vec<dim> &x, double load_time) const;
+
+  /// Hands the nodal update to the particles and walks them to their cells; with `to_next` the grid is filled again at
+  /// once. Throws RunFailure when a particle leaves the mesh. Collective.
+  PetscErrorCode release(double time, bool to_next = false);
+  /// How often particles were released: who keeps something that holds until then compares.
+  long long releases() const { return releases_; }
+  /// Orders particles by cell.
+  PetscErrorCode sort();
+  /// Throws RunFailure where particles or mass were lost. Collective.
+  PetscErrorCode check_conservation() const;
+  /// Changes between dashpots and the supports that stand in for them; what these bear stays on as a dead load.
+  PetscErrorCode fix_dashpots(bool fixed, double time);
+  /// Bodies come and go, and their particles with them.
+  void choose_bodies(const Stage &stage, const Clock &clock);
+  /// Displacements, velocities and plastic strain are zero from now on.
+  void reset_displacement(double time);
+
+  /// The least over the filled cells, by the elastic waves in each cell alone [s]. Collective.
+  double critical_step_of_cells(double time);
+  /// One report per body. Collective.
+  std::vector<BodyReport> report();
+  /// Tells meshes and partitions apart.
+  unsigned long long mesh_fingerprint() const;
+  /// Position of a particle of this rank and its number, the nearest to a place, in words.
+  std::string nearest_particle(const Vec<dim> &where) const;
+  /// Of mesh nodes [m]; only nodes of the filled grid have one. Collective.
+  std::vector<Vec<dim>> nodal_displacement();
+  /// Bodies, motion and boundaries. Collective.
+  PetscErrorCode serialize(Archive &archive);
+
+  const Scene &scene;
+  const PhaseTraits phases;
+  std::vector<Law> laws;                ///< of the bodies
+  std::vector<Source> seepage_sources;  ///< boundaries of pore water in a drained scene: its seepage stages know them,
+                                        ///< the motion does not
+  BackgroundMesh<dim> mesh;
+  MPI_Comm comm;
+  PrescribedPressure<dim> pressure;  ///< of drained scenes
+  std::vector<std::unique_ptr<Body<dim>>> bodies;
+  std::vector<char> present;  ///< bodies that are there now
+  Conditions<dim> conditions;
+  std::unique_ptr<AnySoilMotion<dim>> motion;
+  long long particle_count = 0;  ///< of all ranks
+  double total_mass = 0;         ///< of all ranks [kg]
+  Breakdown breakdown;           ///< where the time of steps and remaps went
+
+ private:
+  void read_laws();
+  std::vector<Source> read_sources();
+  void read_mesh(DM plex, const std::string &mesh_file);
+  void check_bodies() const;                                        // world_checks.cpp
+  void check_boundaries(const std::vector<Source> &) const;         // world_checks.cpp
+  void check_seeded(const Body<dim> &, const std::string &) const;  // world_checks.cpp
+  int id_stride() const;
+  void seed_bodies();
+  void count_particles();
+
+  std::vector<CriticalStep<dim>> critical_;
+  std::vector<std::vector<int>> movers_;
+  long long releases_ = 0;
+};
+
+/// Do seepage or consolidation stages let pore water flow?
+inline bool has_flow_stages(const Scene &scene) {
+  return std::any_of(scene.stage.begin(), scene.stage.end(), [](const Stage &s) { return water_flows(s.kind); });
+}
+
+}  // namespace talus

@@ -1,0 +1,106 @@
+// What only mesh, soil or particles can tell is wrong with a scene: complaints before the first step.
+#include <algorithm>
+#include <cmath>
+
+#include "scene/reader.h"
+#include "scene/words.h"
+#include "simulation/world.h"
+
+namespace talus {
+
+template <int dim>
+void World<dim>::check_bodies() const {
+  const auto check_lattice = [&](const std::string &path, int count) {
+    if (lattice<dim>(count).empty())
+      scene.complain(path + ".particles_per_cell",
+                     std::string("has no lattice of that many points; take ") +
+                         (dim == 2 ? "1, 3, 4, 6, 9, 10, 12, 15 or 16" : "1, 4, 8, 10 or 20"));
+  };
+  std::vector<int> owner(mesh.cell_count(), -1);
+  for (int b = 0; b < static_cast<int>(scene.body.size()); ++b) {
+    const BodySource &body = scene.body[b];
+    const std::string path = "body." + body.name;
+    int other = -1;
+    for (const std::string &region : body.region) {
+      if (!mesh.has_region(region))
+        scene.complain(path + ".region", "must name groups of cells; the mesh has no \"" + region + "\"; " +
+                                             suggestion(region, mesh.region_names()));
+      for (int cell : mesh.region(region)) {
+        if (owner[cell] >= 0 && owner[cell] != b) other = owner[cell];
+        owner[cell] = b;
+      }
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &other, 1, MPI_INT, MPI_MAX, comm);
+    if (other >= 0)
+      scene.complain(path + ".region",
+                     "fills cells that body." + scene.body[other].name + " fills too; give each cell to one body");
+    if (!phases.prescribed && !phases.suction && reads_suction(laws[b]))
+      scene.complain(path + ".law", std::string("takes strength from suction, and `phases = \"") + phases.name +
+                                        "\"` has none; model the water (`phases = \"drained\"` and a [water] excess "
+                                        "below zero), or leave out the "
+                                        "keys suction_...");
+    check_lattice(path, particles_per_cell<dim>(body));
+    for (size_t k = 0; k < body.dense.size(); ++k)
+      check_lattice(path + ".dense." + std::to_string(k), body.dense[k].particles_per_cell);
+  }
+}
+
+template <int dim>
+void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
+  const bool quasi_static =
+      std::any_of(scene.stage.begin(), scene.stage.end(), [](const Stage &stage) { return is_static(stage.kind); });
+  for (const auto &source : sources) {
+    const std::string path = "boundary." + source.name;
+    for (const std::string &group : source.groups)
+      if (!mesh.has_group(group) && !(concerns_water(source.kind) && group == free_surface))
+        scene.complain(path + ".group", "must name groups of facets; the mesh has no \"" + group + "\"; " +
+                                            suggestion(group, mesh.group_names()));
+    if (concerns_water(source.kind) && !phases.liquid)
+      scene.complain(path, std::string("is a boundary of moving pore water, but phases = \"") + phases.name +
+                               "\" has none; set phases = \"saturated\", \"unsaturated\" or \"three-phase\"");
+    if (concerns_gas(source.kind) && !phases.gas)
+      scene.complain(path + ".kind", std::string("is a boundary of moving pore gas, but phases = \"") + phases.name +
+                                         "\" has none; set phases = \"three-phase\"");
+    const auto check_vector = [&](const char *key, const std::vector<Function> &value) {
+      if (!value.empty() && value.size() != dim)
+        scene.complain(path + "." + key, "must have " + std::to_string(dim) + " components");
+    };
+    const bool has_static_form = std::visit(
+        [](const auto &kind) {
+          return requires { kind.template directions<dim>(Vec<dim>{}); }
+          || requires { kind.template load<dim>(Vec<dim>{}, Vec<dim>{}, 0.); };
+        },
+        source.kind);
+    if (quasi_static && !has_static_form && !concerns_water(source.kind))
+      scene.complain(path + ".kind", "has no quasi-static form; take fixed, roller, velocity or traction");
+    if (const auto *moved = std::get_if<PrescribedVelocity>(&source.kind)) check_vector("velocity", moved->velocity);
+    if (const auto *loaded = std::get_if<Traction>(&source.kind)) check_vector("traction", loaded->traction);
+  }
+}
+
+/// What the functions of place made of a body's particles. Collective.
+template <int dim>
+void World<dim>::check_seeded(const Body<dim> &body, const std::string &path) const {
+  const ParticleArrays<dim> &p = body.particles();
+  const auto check = [&](const char *key, auto &&finite) {
+    int bad = 0;
+    while (bad < p.count && finite(bad)) ++bad;
+    const std::string where = place_of_first<dim>(comm, bad < p.count, bad < p.count ? p.reference[bad] : Vec<dim>{});
+    if (!where.empty()) scene.complain(path + "." + key, "is no number at " + where);
+  };
+  const auto all_finite = [](const double *x, int count) {
+    return std::all_of(x, x + count, [](double value) { return std::isfinite(value); });
+  };
+  check("velocity", [&](int i) { return all_finite(p.velocity[i].data(), dim); });
+  check("stress", [&](int i) { return all_finite(p.stress + i * stress_size<dim>, stress_size<dim>); });
+  check("displacement", [&](int i) { return all_finite(p.position[i].data(), dim) && p.volume[i] > 0; });
+}
+
+template void World<2>::check_bodies() const;
+template void World<3>::check_bodies() const;
+template void World<2>::check_boundaries(const std::vector<Source> &) const;
+template void World<3>::check_boundaries(const std::vector<Source> &) const;
+template void World<2>::check_seeded(const Body<2> &, const std::string &) const;
+template void World<3>::check_seeded(const Body<3> &, const std::string &) const;
+
+}  // namespace talus
