@@ -13,23 +13,24 @@
 #include "physics/motion.h"
 #include "physics/pores/pore_report.h"
 #include "physics/prescribed_pressure.h"
+#include "physics/soil_motion/work_ledger.h"
 #include "scene/scene.h"
 #include "transfer/transfer.h"
 
 namespace talus {
 
-/// What acts on the soil at a time: set by the time loop, read by the motion.
+/// Loading of the soil, set by the time loop before each step and read by the motion.
 template <int dim>
 struct Loading {
   Vec<dim> gravity{};     ///< once the ramp of the stage is over [m/s2]
   double ramp = 1;        ///< of the stage: gravity and with it pore pressure grow from 0 to 1
-  double time = 0;        ///< time that functions of the scene see [s]
-  double set_at = 0;      ///< time of the run at which ramp and time are these [s]; a step looks ahead from there:
+  double time = 0;        ///< load time: the t of the scene's functions [s]
+  double set_at = 0;      ///< time of the run at which ramp and load time have these values [s], and their rates:
   double ramp_rate = 0;   ///< [1/s]
   double time_rate = 1;   ///< 0 in a stage that holds loads
   double damping = 0;     ///< local damping factor
   bool pore_flow = true;  ///< pore fluids move; otherwise their pressures are prescribed
-  bool softening = true;  ///< plastic strain is remembered; otherwise soil keeps the strength it has
+  bool softening = true;  ///< plastic strain is recorded; otherwise soil keeps the strength it has
 
   double ramp_at(double t) const { return std::min(1., ramp + ramp_rate * (t - set_at)); }
   double time_at(double t) const { return time + time_rate * (t - set_at); }
@@ -41,28 +42,21 @@ struct Balance {
   double kinetic = 0, strain = 0;      ///< [J]
 };
 
-/// What has been done to the soil since the start, docs/theory (6.6); of this rank, beside the work of boundaries
-/// (Conditions::work) [J].
-struct WorkDone {
-  double gravity = 0;
-  double imposed = 0;  ///< by body accelerations and prescribed pore pressure
-  double damping = 0;  ///< by local damping: negative
-};
-
 template <int dim>
 class AnySoilMotion : public Motion {
  public:
-  /// Pore pressures of the state that a step has left, where no remap comes first. Collective.
-  virtual PetscErrorCode settle() = 0;
-  /// Hands particles what the nodes learned and frees the grid; the particles in `movers[body]` have left their cells.
-  virtual PetscErrorCode release(double t, std::vector<std::vector<int>> &movers) = 0;
-  /// The same when `begin` follows as soon as the movers have found their new cells: particles that stay are gathered
-  /// in the same sweep, `begin` adds what `movers` lists by then. In between particles have their places, but no stress
-  /// and no fluids.
-  virtual PetscErrorCode release_to_next(double t, std::vector<std::vector<int>> &movers) = 0;
+  /// Pore pressures of the state that a step ending at t has left, where no remap comes first. Collective.
+  virtual PetscErrorCode update_pore_pressures(double t) = 0;
+  /// Ends the Lagrangian part: moves the particles by what the nodes received since the last remap, and clears the
+  /// grid. The particles in `movers[body]` have left their cells.
+  virtual PetscErrorCode update_particles(double t, std::vector<std::vector<int>> &movers) = 0;
+  /// The same when `begin` follows as soon as the movers have found their new cells: particles that stay in their cell
+  /// are gathered in the same sweep, `begin` adds what `movers` lists by then. In between particles have their places,
+  /// but no stress and no fluids.
+  virtual PetscErrorCode update_particles_and_gather(double t, std::vector<std::vector<int>> &movers) = 0;
 
-  /// The state between two steps, also in the middle of a Lagrangian part, so that it does not matter to a run where it
-  /// was saved. After the bodies; collective.
+  /// Saves or loads the state between two steps, also in the middle of a Lagrangian part, so that it does not matter
+  /// to a run where it was saved. After the bodies; collective.
   virtual PetscErrorCode serialize(Archive &archive) = 0;
 
   Loading<dim> loading;
@@ -87,7 +81,7 @@ class AnySoilMotion : public Motion {
   /// Stress [stress_size], history and volume of a particle within the Lagrangian part.
   virtual void state(int body, int particle, double *stress, double *history, double *volume) const = 0;
   virtual const WorkDone &work() const = 0;
-  /// Keeps what supports bear that stand in for dashpots. Collective.
+  /// Freezes the reactions of supports that stand in for dashpots. Collective.
   virtual PetscErrorCode freeze_reactions(double t) = 0;
   /// Sums of the present state; collective.
   virtual PetscErrorCode balance(double t, Balance *sums) = 0;
@@ -106,7 +100,7 @@ class AnySoilMotion : public Motion {
   virtual double initial_pressure(const Vec<dim> &x, double t) const = 0;
   /// Prepares the pores of the particles once they are seeded; with `fill` to the pressures that [water] asks for.
   virtual PetscErrorCode setup_pores(bool fill) = 0;
-  /// Fills the pores of the particles, which must have been released, to the pressures of `liquid`(cell, place) [Pa].
+  /// Fills the pores of the particles, which must be off the grid, to the pressures of `liquid`(cell, place) [Pa].
   virtual void fill_pores(const std::function<double(int, const Vec<dim> &)> &liquid) = 0;
   /// Largest frequency of elastic motion of the filled mesh [1/s] by power iteration, which comes from below,
   /// docs/theory (5.7); not where fluids move. Goes on from the mode that it found last. After `begin`; collective.

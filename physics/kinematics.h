@@ -63,7 +63,8 @@ inline bool decompose<3>(const Square<3> &g, Increment<3> &out) {
     const double wx = (h(2, 1) - h(1, 2)) / 2, wy = (h(0, 2) - h(2, 0)) / 2, wz = (h(1, 0) - h(0, 1)) / 2;
     const double xx = h(0, 0), yy = h(1, 1), zz = h(2, 2), xy = (h(0, 1) + h(1, 0)) / 2, yz = (h(1, 2) + h(2, 1)) / 2,
                  xz = (h(0, 2) + h(2, 0)) / 2;
-    // sym h is seen half way: e - (w e - e w) / 2 is what it was at the start, where R takes it from
+    // sym h = e is the strain half way through the rotation; e - (w e - e w) / 2 is that at its start, to which R
+    // applies
     out.strain = {xx + wz * xy - wy * xz,
                   yy - wz * xy + wx * yz,
                   zz + wy * xz - wx * yz,

@@ -1,7 +1,8 @@
 #pragma once
 /// The right-hand side of the material point method on simplices, docs/theory sections 2 to 4: stress and volume live
 /// at stress points, gradients at cells, momentum at nodes. One class for plane strain and 3D and for every phase
-/// model.
+/// model. The folder soil_motion/ holds its parts: the two states of the soil, the velocities of the nodes, prescribed
+/// pore water, the work done, the fastest mode.
 #include <algorithm>
 #include <limits>
 #include <memory>
@@ -12,7 +13,11 @@
 #include "physics/kinematics.h"
 #include "physics/laws/update_stress.h"
 #include "physics/pores/pore_fluid.h"
-#include "physics/prescribed_pressure.h"
+#include "physics/soil_motion/fastest_mode.h"
+#include "physics/soil_motion/nodal_velocities.h"
+#include "physics/soil_motion/prescribed_pore_water.h"
+#include "physics/soil_motion/soil_state.h"
+#include "physics/soil_motion/work_ledger.h"
 #include "transfer/nonlocal_strain.h"
 #include "transfer/transfer.h"
 
@@ -25,24 +30,26 @@ class SoilMotion final : public AnySoilMotion<dim> {
 
   PetscErrorCode begin(double t) override;
   PetscErrorCode acceleration(double t, const double *u, const double *v, double *a) override;
-  PetscErrorCode drag(double t, double gamma, double *v) override;
-  PetscErrorCode resist(double t, double gamma, double *v) override;
-  PetscErrorCode hold(double t, double gamma, double *v) override;
+  PetscErrorCode rates(double t, const double *u, const double *v, double *du, double *dv) override;
+  PetscErrorCode apply_boundaries_and_drag(double t, double gamma, double *v) override;
+  PetscErrorCode apply_drag(double t, double gamma, double *v) override;
+  PetscErrorCode apply_boundaries(double t, double gamma, double *v) override;
   PetscErrorCode map_back(double t, double gamma, double *v, double *w) override;
   PetscErrorCode accept(double t, const double *u, const double *v) override;
-  PetscErrorCode rates(double t, const double *u, const double *v, double *du, double *dv) override;
-  double seen_square(const double *x) const override;
   bool inverted() const override { return inverted_; }
-  int capacity() const override { return static_cast<int>(velocity_.size()) * dim; }
+  int size() const override { return grid_.node_count() * dim * fields; }
+  int capacity() const override { return static_cast<int>(velocities_.now.size()) * dim; }
+  double *velocity() override { return velocities_.now.empty() ? nullptr : velocities_.now[0].data(); }
+  double seen_square(const double *x) const override {
+    return talus::seen_square<dim, fields>(grid_, reinterpret_cast<const Vec<dim> *>(x));
+  }
   double mass() const override { return total_mass_; }
   MPI_Comm comm() const override { return mesh_.comm(); }
-  int size() const override { return grid_.node_count() * dim * velocity_fields<Phases>; }
-  double *velocity() override { return velocity_.empty() ? nullptr : velocity_[0].data(); }
 
   using AnySoilMotion<dim>::loading;
-  PetscErrorCode settle() override;
-  PetscErrorCode release(double t, std::vector<std::vector<int>> &movers) override;
-  PetscErrorCode release_to_next(double t, std::vector<std::vector<int>> &movers) override;
+  PetscErrorCode update_pore_pressures(double t) override;
+  PetscErrorCode update_particles(double t, std::vector<std::vector<int>> &movers) override;
+  PetscErrorCode update_particles_and_gather(double t, std::vector<std::vector<int>> &movers) override;
   PetscErrorCode serialize(Archive &archive) override;
   double moved() const override { return moved_; }
   double smallest_volume_ratio() const override { return smallest_ratio_; }
@@ -55,11 +62,11 @@ class SoilMotion final : public AnySoilMotion<dim> {
   bool find_trouble(Vec<dim> *where, std::string *cause) const override;
   void present(const Body<dim> &body, int particle, Vec<dim> *position, Vec<dim> *velocity) const override;
   void state(int body, int particle, double *stress, double *history, double *volume) const override;
-  const WorkDone &work() const override { return work_; }
+  const WorkDone &work() const override { return work_.done(); }
   PetscErrorCode freeze_reactions(double t) override;
   PetscErrorCode balance(double t, Balance *sums) override;
   double pore_pressure([[maybe_unused]] const Vec<dim> &x) const override {
-    if constexpr (Phases::prescribed) return loading.ramp * pressure_(x, loading.time);
+    if constexpr (Phases::prescribed) return loading.ramp * water_.pressure()(x, loading.time);
     return 0;
   }
   PoreReport pores([[maybe_unused]] const Body<dim> &body, [[maybe_unused]] int particle) const override {
@@ -86,113 +93,104 @@ class SoilMotion final : public AnySoilMotion<dim> {
     if constexpr (Phases::liquid) fluid_.fill(liquid);
   }
   PetscErrorCode largest_frequency([[maybe_unused]] int iterations, [[maybe_unused]] double *omega) override {
-    if constexpr (!Phases::liquid) return iterate_to_largest_frequency(iterations, omega);
+    if constexpr (!Phases::liquid) return fastest_mode_.find(grid_, accepted_, bodies_, points_, iterations, omega);
     return 0;
   }
 
  private:
-  static constexpr int components = stress_size<dim>, fluids = velocity_fields<Phases> - 1;
+  static constexpr int components = stress_size<dim>, fields = velocity_fields<Phases>, fluids = fields - 1;
+  using Velocities = NodalVelocities<dim, fields>;
+  using State = SoilState<dim>;
 
   PoreReport pore_report(const Body<dim> &body, int particle) const requires Phases::liquid;
   PetscErrorCode start_pores(bool fill) requires Phases::liquid;
-  PetscErrorCode iterate_to_largest_frequency(int iterations, double *omega) requires(!Phases::liquid);
+  // particles to nodes and back
   template <bool averaged, bool apic>
   void gather();
-  double relaxed(double t) const;
-  PetscErrorCode end(double t, double *flip);
-  void forget();
-  void attach(size_t body);
   PetscErrorCode finish_gather(double t);
-  PetscErrorCode gather_pore_water() requires Phases::prescribed;
-  PetscErrorCode total_force(double load_time, double ramp, bool trial);
+  void refer_to_points(size_t body);
   void measure_impedance();
   void set_weights(const std::vector<double> &nodal_volume);
-  PetscErrorCode deform(double t, const Vec<dim> *u, bool trial);
+  void admit_mean_stress();
+  double prepare_update(double t);
+  Lagrangian<dim> end_of_part(size_t body, double share, const Pores<dim> &pores) {
+    return {.grid = grid_,
+            .nodes = update_,
+            .flip = share,
+            .affine = affine_.data(),
+            .points = points_[body],
+            .pores = pores,
+            .change = change_.data()};
+  }
+  void clear_grid();
+  // deformation
+  PetscErrorCode deform(double t, const Vec<dim> *u, State &to);
+  void deform_cells(const Vec<dim> *u, State &to);
   PetscErrorCode smooth_volume_strain(const Shape<dim> *shape);
-  const double *seen_history(size_t body) {
+  void update_points(double t, size_t body, State &to);
+  const double *history_seen_by_law(size_t body) {
     return nonlocal_[body] ? nonlocal_[body]->averaged(points_[body]) : points_[body].history;
   }
   const double *softening_size(size_t body) const {
     return nonlocal_[body] ? nonlocal_[body]->size() : grid_.size.data();
   }
-  PetscErrorCode internal_force(bool trial);
-  void add_body_forces(double t);
-  void add_up_work(const Vec<dim> *u);
-  PetscErrorCode add_pore_pressure(double load_time, double ramp, bool trial) requires Phases::prescribed;
-  void sample_pressure(double t) requires Phases::prescribed;
-  std::array<double, 2> sample_shares(double t, double ramp) const;
   const double *find_suction(size_t body);
-  /// Does velocity relax between remaps? Otherwise only remaps relax it.
-  bool relaxes() const { return transfer_.remap_interval > 0 && relaxation_time_ > 0; }
-  typename Conditions<dim>::Pores contact(double gamma);
-  PetscErrorCode back_and_forth(const Vec<dim> *in, Vec<dim> *out);
-  double elastic_force(const Vec<dim> *x, Vec<dim> *force) const;
+  bool is_trial(const State &state) const { return &state != &accepted_; }
+  // forces
+  void internal_force(const State &state);
+  void add_body_forces(double load_time);
+  PetscErrorCode total_force(double t, const State &state);
+  const double *extra_mass() const {
+    if constexpr (Phases::prescribed) return water_.extra_mass().data();
+    return nullptr;
+  }
+  // velocities
+  typename Conditions<dim>::Pores contact(double t, double gamma);
   void constrain(double t, Vec<dim> *v);
-  typename PoreFluid<dim, Phases>::Frame pore_frame(bool trial) requires Phases::liquid;
+  typename PoreFluid<dim, Phases>::Frame pore_frame(double t, const State &state) requires Phases::liquid;
 
   const BackgroundMesh<dim> &mesh_;
   std::vector<std::unique_ptr<Body<dim>>> &bodies_;
   Conditions<dim> &conditions_;
   const Transfer &transfer_;
-  const PrescribedPressure<dim> &pressure_;
-  double relaxation_time_, total_mass_, smallest_mass_;
+  double total_mass_, smallest_mass_;
   FilledGrid<dim> grid_, next_grid_;
   std::vector<PointSet> points_, next_points_;
   std::vector<std::unique_ptr<NonlocalStrain<dim>>>
       nonlocal_;  ///< per body; null: the law softens by the strain of its point
-  const std::vector<std::vector<int>> *movers_ = nullptr;  ///< when all but these are gathered
+  AcceptedState<dim> accepted_;
+  TrialState<dim> trial_;
+  Velocities velocities_;
+  [[no_unique_address]] If<Phases::prescribed, PrescribedPoreWater<dim>> water_;
+  WorkLedger<dim> work_;
+  [[no_unique_address]] If<!Phases::liquid, FastestMode<dim>> fastest_mode_;
 
   // nodes
-  std::vector<Vec<dim>> start_velocity_, velocity_, force_, scratch_, trial_position_;
-  std::vector<Vec<dim>>
-      mapped_start_;           ///< start velocity less its own mapping to particles and back, where it relaxes [m/s]
-  std::vector<double> nodal_;  ///< room for sums over ranks
-  std::vector<double> extra_mass_;  ///< pore water gained since seeding, weighs but is not inert [kg]
-  NodalUpdate update_;
-  std::vector<Vec<dim>> imposed_;    ///< force of body accelerations and pore pressure, of this rank [N]
-  std::vector<Vec<dim>> held_back_;  ///< force of local damping in the last evaluation [N]
-  WorkDone work_;
-  bool imposes_ = Phases::prescribed;
+  std::vector<Vec<dim>> force_;    ///< [N]
+  std::vector<Vec<dim>> scratch_;  ///< [field][node], for velocities or forces
+  std::vector<double> nodal_;      ///< scratch for sums over ranks
   // cells
-  std::vector<double> particle_volume_, weight_, blend_, volume_strain_;
-  std::vector<double> filling_;      ///< integration volume over cell volume at the remap
-  std::vector<double> slenderness_;  ///< sum of squared shape-function gradients at the remap [1/m2]
+  std::vector<double> blend_;          ///< b of docs/theory (4.4)
+  std::vector<double> filling_;        ///< integration volume over cell volume at the remap
+  std::vector<double> slenderness_;    ///< sum of squared shape-function gradients at the remap [1/m2]
+  std::vector<double> volume_strain_;  ///< of the step under way
   std::vector<Increment<dim>> increment_;
-  std::vector<std::array<double, components>> cell_stress_;
-  std::vector<std::array<double, 2>> impedance_;
+  std::vector<std::array<double, components>> cell_stress_;  ///< [Pa]
+  std::vector<std::array<double, 2>> impedance_;             ///< rho c_p, rho c_s [kg/(m2 s)]
   std::vector<double> patch_weight_, patch_sum_;
-  std::vector<double> affine_;
-  std::vector<double> change_;     ///< what the points of one body pass on to its particles
-  std::vector<double> forgotten_;  ///< history that a stage without softening does not keep
-  // the trial state of integrators that look ahead
-  std::vector<Shape<dim>> trial_shape_;
-  std::vector<double> trial_particle_volume_, trial_weight_;
-  std::vector<std::vector<double>> trial_stress_, trial_history_, trial_volume_;
-  // given pore pressure, sampled now and then and linear in between
-  struct Sample {
-    std::vector<Vec<dim>> gradient;
-    std::vector<double> value, nodal, suction;
-  };
-  [[no_unique_address]] If<Phases::prescribed, std::array<Sample, 2>> sample_;
-  double sample_time_[2] = {0, 0}, last_pressure_time_ = 0;
-  bool water_moved_ = false;      ///< since pore water was counted
-  bool suction_matters_ = false;  ///< a law reads it: pressure below zero is suction, not stress
-  std::vector<double> suction_;   ///< at the stress points of one body [Pa]
-  // the fastest mode, where a scene asks for it
-  std::vector<Vec<dim>> mode_;  ///< of mesh nodes
-  std::vector<Vec<dim>> wave_, wave_force_;
-  std::vector<std::array<double, 2>> elasticity_;  ///< Lame's constant and shear modulus of cells [Pa]
+  std::vector<double> forgotten_;  ///< history of the points of one body that a stage without softening discards
+  // remap
+  const std::vector<std::vector<int>> *movers_ = nullptr;  ///< set while all particles but these are gathered
+  NodalUpdate update_;
+  std::vector<double> affine_;  ///< [cell][dim * dim] velocity gradients of APIC [1/s]
+  std::vector<double> change_;  ///< Lagrangian::change
   // fluids that move
   [[no_unique_address]] If<Phases::liquid, PoreFluid<dim, Phases>> fluid_;
   [[no_unique_address]] If<Phases::liquid, PoreConditions<dim>> pore_conditions_;
-  [[no_unique_address]] If<Phases::liquid, std::vector<Vec<dim>>>
-      before_;  ///< velocities of all phases before the step [m/s]
-  [[no_unique_address]] If<Phases::liquid, std::vector<const double *>> point_volume_;
   [[no_unique_address]] If<Phases::liquid, std::vector<double>> pore_strain_;  ///< volume strain of the pores in cells
 
   bool gathered_ = false, inverted_ = false;
-  double remap_time_ = 0, accepted_time_ = 0, own_share_ = 1, moved_ = 0, smallest_ratio_ = 1, step_ratio_ = 1,
-         speed_squared_ = 0;
+  double accepted_time_ = 0, moved_ = 0, smallest_ratio_ = 1, step_ratio_ = 1, speed_squared_ = 0;
 };
 
 }  // namespace talus

@@ -23,35 +23,32 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
       bodies_(parts.bodies),
       conditions_(parts.conditions),
       transfer_(parts.scene.transfer),
-      pressure_(parts.pressure),
-      relaxation_time_(parts.relaxation_time),
       total_mass_(parts.total_mass),
       smallest_mass_(1e-6 * parts.total_mass / static_cast<double>(parts.particles)),
       grid_(parts.mesh),
       next_grid_(parts.mesh),
       points_(parts.bodies.size()),
       next_points_(parts.bodies.size()),
+      accepted_(parts.mesh.cell_count(), parts.bodies.size()),
+      velocities_(parts.mesh.node_count(), parts.relaxation_time, parts.scene.transfer.remap_interval > 0),
+      water_(parts.mesh, parts.bodies, parts.pressure),
+      work_(parts.mesh.node_count(),
+            Phases::prescribed ||
+                std::any_of(parts.bodies.begin(), parts.bodies.end(),
+                            [](const auto &body) { return !body->source().body_acceleration.empty(); })),
+      fastest_mode_(parts.mesh, smallest_mass_),
       fluid_(parts.mesh, parts.bodies, parts.scene) {
   const BackgroundMesh<dim> &mesh = parts.mesh;
   const auto &bodies = parts.bodies;
   const int nodes = mesh.node_count(), cells = mesh.cell_count();
-  force_.assign(nodes, Vec<dim>{});
-  for (auto *field : {&start_velocity_, &velocity_, &mapped_start_, &scratch_})
-    field->assign(nodes * velocity_fields<Phases>, Vec<dim>{});
-  if constexpr (Phases::liquid)
-    pore_strain_.resize(cells), before_.resize(velocity_.size()), point_volume_.resize(bodies.size());
-  for (const auto &body : bodies) imposes_ = imposes_ || !body->source().body_acceleration.empty();
-  if (imposes_) imposed_.assign(nodes, Vec<dim>{});
-  held_back_.assign(nodes, Vec<dim>{});
+  force_.resize(nodes), scratch_.resize(nodes * fields);
+  if constexpr (Phases::liquid) pore_strain_.resize(cells);
   update_.velocity.assign(nodes, Quad{}), update_.displacement.assign(nodes, Quad{});
   for (int a = 0; a < fluids; ++a) update_.fluid[a].assign(nodes, Quad{});
-  if (Phases::prescribed) extra_mass_.assign(nodes, 0);
-  for (auto *field : {&particle_volume_, &weight_, &blend_, &filling_, &volume_strain_, &slenderness_})
-    field->assign(cells, 0);
+  for (auto *field : {&blend_, &filling_, &volume_strain_, &slenderness_}) field->assign(cells, 0);
   increment_.resize(cells), cell_stress_.resize(cells), impedance_.resize(cells);
   patch_weight_.assign(mesh.patch_count, 0), patch_sum_.assign(mesh.patch_count, 0);
   nodal_.assign(static_cast<size_t>(nodes) * (dim + 2), 0);
-  for (const auto &body : bodies) suction_matters_ = suction_matters_ || reads_suction(body->law());
   for (const auto &body : bodies) {
     const double length = body->source().averaging_length;
     nonlocal_.push_back(length > 0 ? std::make_unique<NonlocalStrain<dim>>(
@@ -76,8 +73,6 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
 
 #include "physics/soil_motion/deformation.inl"
 #include "physics/soil_motion/forces.inl"
-#include "physics/soil_motion/largest_frequency.inl"
-#include "physics/soil_motion/prescribed_pressure.inl"
 #include "physics/soil_motion/remap.inl"
 #include "physics/soil_motion/reports.inl"
 #include "physics/soil_motion/velocities.inl"

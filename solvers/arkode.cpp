@@ -44,7 +44,7 @@ struct Tables {
 void set_tables(const ArkodeSettings &settings, Tables &tables) {
   if (settings.drag) {
     double c[] = {0, 1. / 2, 2. / 3, 1. / 2, 1},
-           embedded[] = {0, 2, -3. / 4, -1. / 2, 1. / 4};  // of order 2, and it forgets what drag ends at once
+           embedded[] = {0, 2, -3. / 4, -1. / 2, 1. / 4};  // of order 2; damps stiff drag completely
     double a[] = {0, 0, 0,      0,       0,      1. / 2, 0, 0,      0,      0,      11. / 18, 1. / 18, 0,
                   0, 0, 5. / 6, -5. / 6, 1. / 2, 0,      0, 1. / 4, 7. / 4, 3. / 4, -7. / 4,  0};
     double implicit[] = {0, 0, 0, 0,       0,      0,      1. / 2, 0, 0,      0,       0,      1. / 6, 1. / 2,
@@ -134,7 +134,7 @@ int Arkode::Memory::solve_drag(SUNNonlinearSolver, N_Vector, N_Vector change, N_
     return SUN_NLS_MEM_NULL;
   Memory &m = *static_cast<Memory *>(self);
   N_VLinearSum(1, predicted, 1, known, change);
-  m.failure = m.space.motion->resist(t, gamma, velocity_of(change));
+  m.failure = m.space.motion->apply_drag(t, gamma, velocity_of(change));
   N_VLinearSum(1, change, -1, predicted, change);
   return m.failure ? SUN_NLS_EXT_FAIL : SUN_NLS_SUCCESS;
 }
@@ -144,7 +144,9 @@ int Arkode::Memory::solve_drag(SUNNonlinearSolver, N_Vector, N_Vector change, N_
 int Arkode::Memory::accept(double t, N_Vector y, void *self) {
   Memory &m = *static_cast<Memory *>(self);
   Motion &motion = *m.space.motion;
-  m.failure = m.drag ? motion.hold(t, t - m.started, velocity_of(y)) : motion.drag(t, t - m.started, velocity_of(y));
+  const double step = t - m.started;
+  m.failure = m.drag ? motion.apply_boundaries(t, step, velocity_of(y))
+                     : motion.apply_boundaries_and_drag(t, step, velocity_of(y));
   if (!m.failure) m.failure = motion.accept(t, displacement_of(y), velocity_of(y));
   std::fill_n(displacement_of(y), motion.size(), 0.);
   m.fresh = true;

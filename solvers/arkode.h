@@ -1,27 +1,25 @@
 #pragma once
 /// Explicit Runge-Kutta of orders 2 to 5 with embedded error control on the nodal state (u, v), by SUNDIALS ARKODE
-/// (Reynolds et al. 2023), docs/theory/integrators.md. Stages look ahead from the accepted history; only a step that
-/// passed its error test is accepted. Where phases drag at one another: an implicit-explicit method of order 3 whose
-/// implicit part is that drag, solved node by node.
+/// (Reynolds et al. 2023), docs/theory/integrators.md. Stages evaluate trial states of the accepted history; only a
+/// step that passed its error test is accepted. Where phases drag at one another: an implicit-explicit method of order
+/// 3 whose implicit part is that drag, solved node by node.
 #include <memory>
 #include <string>
 
-#include "base/units.h"
 #include "solvers/integrator.h"
 
 namespace talus {
 
 /// Keys of [integrator] with kind = "arkode".
-struct ArkodeSettings {
+struct ArkodeSettings : StepKeys {
   static constexpr const char *name = "arkode";
   int order = 3;
   double velocity_tolerance = 1e-3;      ///< of one step [m/s]
   double displacement_tolerance = 1e-5;  ///< of one step [m]
-  double fraction = 0.8;                 ///< of the order's stability limit [-]
-  double step = 0;                       ///< fixed step without error control [s]; 0: by the tolerances
   double floor = 1e-4;                   ///< of the critical step: a run that needs less stops [-]
   FrequencyBound bound = FrequencyBound::cells;
-  bool drag = false;  ///< between phases; of the motion, not a key
+  bool drag = false;  ///< the motion has drag between phases; not a key
+  ArkodeSettings() : StepKeys(0.8) {}
   template <class Visitor>
   void fields(Visitor &&v) {
     v.integer("order", order, Range{2, 5},
@@ -31,11 +29,10 @@ struct ArkodeSettings {
              "allowed error of the velocity in one step, mass-weighted root mean square");
     v.number("displacement_tolerance", displacement_tolerance, metre, Range{1e-15, 1e3},
              "allowed error of the displacement in one step, mass-weighted root mean square");
-    v.number("fraction", fraction, one, Range{0.001, 1},
-             "ratio of the largest step to the stability limit of the method: 2, 1.73, 2.83, 1.0 over omega_max for "
-             "orders 2 to 5, 1.56 where pore fluids move");
+    step_fields(v, "fixed time step without error control; 0: steps by the tolerances",
+                "ratio of the largest step to the stability limit of the method: 2, 1.73, 2.83, 1.0 over omega_max for "
+                "orders 2 to 5, 1.56 where pore fluids move");
     frequency_bound(v, bound);
-    v.number("step", step, second, Range{0, 1e9}, "fixed time step without error control; 0: steps by the tolerances");
     v.number("floor", floor, one, Range{1e-12, 1},
              "smallest ratio of the step to the critical step 2 / omega_max; a run that needs a shorter step ends");
   }

@@ -4,26 +4,23 @@
 #include <memory>
 #include <vector>
 
-#include "base/units.h"
 #include "solvers/integrator.h"
 
 namespace talus {
 
 /// Keys of [integrator] with kind = "euler".
-struct EulerSettings {
+struct EulerSettings : StepKeys {
   static constexpr const char *name = "euler";
-  double step = 0;        ///< fixed step [s]; 0: a fraction of the critical step
-  double fraction = 0.6;  ///< of the critical step 2 / omega_max [-]
-  double limit = 1;       ///< fixed step over the critical one beyond which no run starts [-]
+  double limit = 1;  ///< fixed step over the critical step beyond which no run starts [-]
   FrequencyBound bound = FrequencyBound::cells;
+  EulerSettings() : StepKeys(0.6) {}
   StepRule rule() const { return {step, fraction, limit, bound}; }
-  std::string drag_problem() const { return ""; }  ///< implicit in every step
+  std::string drag_problem() const { return ""; }  ///< drag is implicit in every step
   std::unique_ptr<Integrator> make() const;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.number("step", step, second, Range{0, 1e9}, "fixed time step; 0: a fraction of the critical step");
-    v.number("fraction", fraction, one, Range{0.001, 1},
-             "ratio of the time step to the critical step 2 / omega_max, which is recomputed during the run");
+    step_fields(v, "fixed time step; 0: a fraction of the critical step",
+                "ratio of the time step to the critical step 2 / omega_max, which is recomputed during the run");
     v.number(
         "limit", limit, one, Range{1, 1e12},
         "largest allowed ratio of a fixed step to the critical step; values above 1 are for studies of instability");

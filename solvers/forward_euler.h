@@ -4,21 +4,18 @@
 #include <memory>
 #include <vector>
 
-#include "base/units.h"
 #include "solvers/integrator.h"
 
 namespace talus {
 
 /// Keys of [integrator] with kind = "forward-euler".
-struct ForwardEulerSettings {
+struct ForwardEulerSettings : StepKeys {
   static constexpr const char *name = "forward-euler";
-  double step = 0;        ///< fixed step [s]; 0: a fraction of the critical step
-  double fraction = 0.1;  ///< of the critical step 2 / omega_max [-]
+  ForwardEulerSettings() : StepKeys(0.1) {}
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.number("step", step, second, Range{0, 1e9}, "fixed time step; 0: a fraction of the critical step");
-    v.number(
-        "fraction", fraction, one, Range{0.001, 1},
+    step_fields(
+        v, "fixed time step; 0: a fraction of the critical step",
         "ratio of the time step to the critical step 2 / omega_max; waves grow at any fraction, slowly at small ones");
   }
   StepRule rule() const { return {step, fraction, 1}; }

@@ -1,11 +1,12 @@
 #pragma once
-/// The plug of the time loop: one step of any integrator over any motion.
+/// The interface of the time loop: one step of any integrator over any motion.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include "base/archive.h"
+#include "base/units.h"
 #include "physics/motion.h"
 
 namespace talus {
@@ -30,7 +31,7 @@ struct StepRule {
   FrequencyBound bound = FrequencyBound::cells;
 };
 
-/// The key by which a scene chooses.
+/// The key `omega_max`, by which a scene chooses the bound.
 template <class Visitor>
 void frequency_bound(Visitor &&v, FrequencyBound &bound) {
   v.choice(
@@ -38,6 +39,20 @@ void frequency_bound(Visitor &&v, FrequencyBound &bound) {
       "largest frequency: that of the fastest filled cell alone, or that of the whole filled mesh by power iteration "
       "at remaps, which allows longer steps, above all on tetrahedra; mesh is not available where pore fluids move");
 }
+
+/// The keys `step` and `fraction` of [integrator], which every kind has.
+struct StepKeys {
+  double step = 0;  ///< fixed step [s]; 0: chosen as the run goes
+  double fraction;  ///< largest step over the limit of the kind [-]
+  explicit StepKeys(double by_default) : fraction(by_default) {}
+
+ protected:
+  template <class Visitor>
+  void step_fields(Visitor &&v, const char *step_meaning, const char *fraction_meaning) {
+    v.number("step", step, second, Range{0, 1e9}, step_meaning);
+    v.number("fraction", fraction, one, Range{0.001, 1}, fraction_meaning);
+  }
+};
 
 /// Sums since the start of a run.
 struct StepStatistics {
@@ -54,21 +69,23 @@ class Integrator {
   virtual ~Integrator() = default;
   /// Takes one step from t and says how long it was [s]; it does not pass `bounds.until`.
   virtual PetscErrorCode advance(Motion &motion, double t, const StepBounds &bounds, double *taken) = 0;
-  /// The nodes or the loads are others than at the end of the last step: after a remap, between stages.
+  /// To be called when nodes or loads have changed since the last step: after a remap, between stages.
   virtual void restart() {}
-  /// What the next step depends on beside the motion, such as an adapted step size; for checkpoints.
+  /// Saves or loads what the next step depends on beside the motion, such as an adapted step size.
   virtual void serialize(Archive &archive) { archive.serialize("integrator", statistics_); }
-  /// Why no further step is possible, the same on all ranks; empty while it is.
+  /// Why no further step is possible, the same on all ranks; empty while one is.
   virtual std::string obstacle() const { return ""; }
-  /// Component of the velocity of this rank that stands in the way, -1: none on this rank.
+  /// Component of the velocity on this rank whose error is the obstacle, -1: it is on another rank.
   virtual int obstructing_component() const { return -1; }
 
   const StepStatistics &statistics() const { return statistics_; }
 
  protected:
   enum class Bound { error, stability, schedule };
-  /// Of a step that no error bounds, with `left` to go at its start.
+  /// What bounded a step that no error bounded, with `left` to go at its start.
   static Bound bounded_by(double left, double step) { return left > 2 * step ? Bound::stability : Bound::schedule; }
+  /// Length of a step that no error bounds [s].
+  static double step_length(const StepRule &rule, double t, const StepBounds &bounds);
   void count(double step, Bound bound) {
     ++statistics_.steps;
     ++(bound == Bound::error       ? statistics_.by_error
@@ -80,11 +97,16 @@ class Integrator {
   StepStatistics statistics_;
 };
 
-/// A little less than `step`, so that whole steps end at `left`; a fixed step is only cut at the end.
+/// A little less than `step`, so that the last of equal steps ends at `left`; a fixed step is only cut at the end.
 inline double even_step(double step, double left, bool fixed) {
   const double count = std::ceil(left / step * (1 - 1e-9));
   if ((fixed && count > 1) || count > 1e6) return step;
   return left / std::max(1., count);
+}
+
+inline double Integrator::step_length(const StepRule &rule, double t, const StepBounds &bounds) {
+  const bool fixed = rule.fixed > 0;
+  return even_step(fixed ? rule.fixed : rule.share * bounds.critical, bounds.until - t, fixed);
 }
 
 }  // namespace talus

@@ -1,8 +1,8 @@
 #pragma once
-/// The state (u, v) of a motion as an N_Vector_Petsc of SUNDIALS with a norm of its own: as long on each rank as its
-/// mesh allows, of which the nodes that hold soil now are used, and nobody looks at the rest. So remaps change no
-/// vector, and no step allocates. Shared nodes stand on each rank that has them, equal to the bit; algebra is local,
-/// and only norms are summed over ranks. docs/theory/integrators.md, section 3.
+/// The state (u, v) of a motion as an N_Vector_Petsc of SUNDIALS with a norm of its own: on each rank it has an
+/// entry for every node of the mesh, of which only those of the nodes that hold soil are used. So remaps change no
+/// vector, and no step allocates. A node that ranks share has an entry on each of them, equal to the bit; algebra is
+/// local, and only norms are summed over ranks. docs/theory/integrators.md, section 3.
 #include <petscsys.h>
 #include <sundials/sundials_nvector.h>
 

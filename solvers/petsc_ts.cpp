@@ -53,9 +53,7 @@ std::unique_ptr<Integrator> PetscTsSettings::make() const { return std::make_uni
 PetscErrorCode PetscTs::advance(Motion &motion, double t, const StepBounds &bounds, double *taken) {
   PetscFunctionBeginUser;
   Memory &m = *memory_;
-  const bool fixed = settings_.step > 0;
-  const double left = bounds.until - t,
-               step = even_step(fixed ? settings_.step : settings_.rule().share * bounds.critical, left, fixed);
+  const double step = step_length(settings_.rule(), t, bounds);
   const int size = motion.size();
   m.motion = &motion, m.fresh = true;
   if (!m.stepper) {
@@ -83,12 +81,12 @@ PetscErrorCode PetscTs::advance(Motion &motion, double t, const StepBounds &boun
   PetscCall(TSRestartStep(m.stepper));  // boundaries have changed the velocity since the last stage
   PetscCall(TSStep(m.stepper));
   PetscCall(VecGetArray(m.state, &y));
-  PetscCall(motion.drag(t + step, step, y + size));
+  PetscCall(motion.apply_boundaries_and_drag(t + step, step, y + size));
   PetscCall(motion.accept(t + step, y, y + size));
   PetscCall(VecRestoreArray(m.state, &y));
   *taken = step;
   statistics_.evaluations += std::exchange(m.evaluations, 0);
-  count(step, bounded_by(left, step));
+  count(step, bounded_by(bounds.until - t, step));
   PetscFunctionReturn(0);
 }
 

@@ -6,19 +6,16 @@
 
 namespace talus {
 
-/// Forces of the stress of the accepted or the trial state on the nodes of this rank, theory (3.6).
+/// Forces of the stress of a state on the nodes of this rank, theory (3.6).
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::internal_force(bool trial) {
-  PetscFunctionBeginUser;
+void SoilMotion<dim, Phases>::internal_force(const State &state) {
   const int cells = grid_.cell_count();
-  const Shape<dim> *shape = trial ? trial_shape_.data() : grid_.shape.data();
-  const double *particle_volume = trial ? trial_particle_volume_.data() : particle_volume_.data();
-  const double *weight = trial ? trial_weight_.data() : weight_.data();
+  const Shape<dim> *shape = state.shape;
+  const double *particle_volume = state.particle_volume.data(), *weight = state.weight.data();
   std::fill_n(cell_stress_.begin(), cells, std::array<double, components>{});
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const PointSet &p = points_[b];
-    const double *stress = trial ? trial_stress_[b].data() : p.stress,
-                 *volume = trial ? trial_volume_[b].data() : p.volume;
+    const double *stress = state.stress[b], *volume = state.volume[b];
     for (int q = 0; q < p.count; ++q) {
       auto &sum = cell_stress_[p.cell[q]];
       const double share = volume[q] / particle_volume[p.cell[q]];
@@ -54,57 +51,66 @@ PetscErrorCode SoilMotion<dim, Phases>::internal_force(bool trial) {
     }
     for (int d = 0; d < dim; ++d) force_[shape[c].node[0]][d] += first[d];
   }
-  PetscFunctionReturn(0);
 }
 
-/// Accelerations that the scene gives per particle, beside gravity.
+/// Adds the forces of the bodies' `body_acceleration`, theory (3.5).
 template <int dim, class Phases>
-void SoilMotion<dim, Phases>::add_body_forces(double t) {
+void SoilMotion<dim, Phases>::add_body_forces(double load_time) {
   for (const auto &body : bodies_) {
-    const auto &given = body->source().body_acceleration;
-    if (given.empty()) continue;
+    const auto &acceleration = body->source().body_acceleration;
+    if (acceleration.empty()) continue;
     const ParticleArrays<dim> &p = body->particles();
     for (int i = 0; i < p.count; ++i) {
       const auto n = barycentric(mesh_.cells[p.cell[i]], p.position[i]);
       const auto &node = grid_.shape[grid_.find_cell(p.cell[i])].node;
       const Vec<dim> &X = p.reference[i];
       for (int d = 0; d < dim; ++d) {
-        const double f = p.mass[i] * given[d](X[0], X[1], dim == 3 ? X[dim - 1] : 0, t);
+        const double f = p.mass[i] * acceleration[d](X[0], X[1], dim == 3 ? X[dim - 1] : 0, load_time);
         for (int k = 0; k <= dim; ++k) force_[node[k]][d] += n[k] * f;
       }
     }
   }
 }
 
+/// Forces on the mixture at the nodes in a state at time t, theory (3.5), into `force_`. Collective.
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::total_force(double load_time, double ramp, bool trial) {
+PetscErrorCode SoilMotion<dim, Phases>::total_force(double t, const State &state) {
   PetscFunctionBeginUser;
-  PetscCall(internal_force(trial));
-  conditions_.surface_loads().add(load_time, grid_, trial ? trial_position_.data() : grid_.position.data(),
-                                  force_.data());
-  if (imposes_) {
-    const int nodes = grid_.node_count();
-    std::copy_n(force_.begin(), nodes, imposed_.begin());
+  const int nodes = grid_.node_count();
+  const double load_time = loading.time_at(t), ramp = loading.ramp_at(t);
+  internal_force(state);
+  conditions_.surface_loads().add(load_time, grid_, state.position, force_.data());
+  if (work_.imposes()) {
+    work_.before_imposed(force_.data(), nodes);
     add_body_forces(load_time);
-    if constexpr (Phases::prescribed) PetscCall(add_pore_pressure(load_time, ramp, trial));
-    for (int i = 0; i < nodes; ++i)
-      for (int d = 0; d < dim; ++d) imposed_[i][d] = force_[i][d] - imposed_[i][d];
+    if constexpr (Phases::prescribed) {
+      if (!is_trial(state)) PetscCall(water_.advance_to(load_time, grid_, blend_.data()));
+      water_.add_force(grid_, state, load_time, ramp, force_.data());
+    }
+    work_.after_imposed(force_.data(), nodes);
   }
   PetscCall(grid_.sum(force_[0].data(), dim));
   conditions_.add_reactions(force_.data());
-  for (int i = 0; i < grid_.node_count(); ++i) {
-    const double m = grid_.mass[i] + (Phases::prescribed ? extra_mass_[i] : 0);
+  const double *extra = extra_mass();
+  for (int i = 0; i < nodes; ++i) {
+    const double m = grid_.mass[i] + (extra ? extra[i] : 0);
     for (int d = 0; d < dim; ++d) force_[i][d] += m * (ramp * loading.gravity[d]);
   }
-  if constexpr (Phases::liquid) fluid_.add_to_mixture(pore_frame(trial), pore_conditions_, force_.data());
+  if constexpr (Phases::liquid) fluid_.add_to_mixture(pore_frame(t, state), pore_conditions_, force_.data());
   PetscFunctionReturn(0);
 }
 
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::acceleration(double t, const double *u, const double *v, double *a) {
   PetscFunctionBeginUser;
-  if (u) PetscCall(deform(t, reinterpret_cast<const Vec<dim> *>(u), true));
-  PetscCall(total_force(loading.time_at(t), loading.ramp_at(t), u != nullptr));
+  if (u) {
+    trial_.make_room(grid_, bodies_.size());
+    for (size_t b = 0; b < bodies_.size(); ++b)
+      trial_.make_room(b, points_[b].count, static_cast<int>(bodies_[b]->history_count()));
+    PetscCall(deform(t, reinterpret_cast<const Vec<dim> *>(u), trial_));
+  }
+  const State &state = u ? static_cast<const State &>(trial_) : accepted_;
+  PetscCall(total_force(t, state));
   const Vec<dim> *unbalanced = force_.data();
   if (loading.damping > 0) {  // what supports take up is not out of balance: damping must not change their reactions
     std::copy_n(force_.begin(), grid_.node_count(), scratch_.begin());
@@ -112,7 +118,7 @@ PetscErrorCode SoilMotion<dim, Phases>::acceleration(double t, const double *u, 
     unbalanced = scratch_.data();
   }
   if constexpr (Phases::liquid)
-    PetscCall(fluid_.drive(pore_frame(u != nullptr), pore_conditions_, force_.data(),
+    PetscCall(fluid_.drive(pore_frame(t, state), pore_conditions_, force_.data(),
                            reinterpret_cast<Vec<dim> *>(a) + grid_.node_count(),
                            reinterpret_cast<const Vec<dim> *>(v)));
   for (int i = 0; i < grid_.node_count(); ++i) {
@@ -121,7 +127,7 @@ PetscErrorCode SoilMotion<dim, Phases>::acceleration(double t, const double *u, 
       const double rest = unbalanced[i][d], power = rest * v[i * dim + d];
       const double held_back = loading.damping * rest * ((power > 0) - (power < 0));
       a[i * dim + d] = inverse * (force_[i][d] - held_back);
-      if (loading.damping > 0) held_back_[i][d] = held_back;
+      if (loading.damping > 0) work_.damping(i)[d] = held_back;
     }
   }
   PetscFunctionReturn(0);

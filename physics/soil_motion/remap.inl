@@ -26,17 +26,19 @@ void SoilMotion<dim, Phases>::gather() {
     if (!averaged) points.own_cell.resize(std::max<size_t>(points.own_cell.size(), p.count));
     Pores<dim> pores;
     if constexpr (Phases::liquid) pores = fluid_.pores(b);
-    to_nodes<dim, averaged, apic, fluids>(*bodies_[b], grid_, start_velocity_.data(), points, pores,
+    to_nodes<dim, averaged, apic, fluids>(*bodies_[b], grid_, velocities_.momentum.data(), points, pores,
                                           movers_ ? &(*movers_)[b] : nullptr);
     if (!averaged) points.count = p.count;
-    attach(b);
+    refer_to_points(b);
   }
+  accepted_.refer_to(grid_);
   movers_ = nullptr;
 }
 
-/// Shows the kernel where stress is: at points of their own or at the particles.
+/// Lets the points of a body, and with them the accepted state, refer to where stress is: with averaged stress in
+/// arrays of their own, otherwise in those of the particles.
 template <int dim, class Phases>
-void SoilMotion<dim, Phases>::attach(size_t b) {
+void SoilMotion<dim, Phases>::refer_to_points(size_t b) {
   PointSet &points = points_[b];
   const ParticleArrays<dim> &p = bodies_[b]->particles();
   const bool own = transfer_.average_stress;
@@ -45,12 +47,13 @@ void SoilMotion<dim, Phases>::attach(size_t b) {
   points.history = own ? points.own_history.data() : p.history;
   points.volume = own ? points.own_volume.data() : p.volume,
   points.limit = own ? points.own_limit.data() : p.initial_volume;
+  accepted_.refer_to(points, b);
 }
 
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::settle() {
+PetscErrorCode SoilMotion<dim, Phases>::update_pore_pressures(double t) {
   PetscFunctionBeginUser;
-  if constexpr (Phases::liquid) PetscCall(fluid_.store(pore_frame(false)));
+  if constexpr (Phases::liquid) PetscCall(fluid_.store(pore_frame(t, accepted_)));
   PetscFunctionReturn(0);
 }
 
@@ -59,19 +62,24 @@ PetscErrorCode SoilMotion<dim, Phases>::begin(double t) {
   PetscFunctionBeginUser;
   if constexpr (Phases::liquid) fluid_.prescribed = !loading.pore_flow, fluid_.prescribed_ramp = loading.ramp;
   if (gathered_) PetscFunctionReturn(0);
-  if (!movers_) std::fill(start_velocity_.begin(), start_velocity_.end(), Vec<dim>{});
+  if (!movers_) std::fill(velocities_.momentum.begin(), velocities_.momentum.end(), Vec<dim>{});
   with_transfer(transfer_, [&]<bool averaged, bool apic>() { gather<averaged, apic>(); });
   grid_.complete();
   PetscCall(finish_gather(t));
-  gathered_ = true, remap_time_ = accepted_time_ = t, own_share_ = 1, moved_ = 0, smallest_ratio_ = 1, step_ratio_ = 1;
+  velocities_.remap_time = t, velocities_.own_share = 1;
+  gathered_ = true, accepted_time_ = t, moved_ = 0, smallest_ratio_ = 1, step_ratio_ = 1;
   PetscFunctionReturn(0);
 }
 
+/// Nodal masses and velocities from the sums over particles, then all that depends on which cells hold soil.
+/// Collective.
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double) {
+PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double t) {
   PetscFunctionBeginUser;
   constexpr int width = dim + 2;  // mass, momentum, volume
   const int nodes = grid_.node_count(), cells = grid_.cell_count();
+  const double load_time = loading.time_at(t);
+  std::vector<Vec<dim>> &start = velocities_.start, &now = velocities_.now;
   std::fill_n(nodal_.begin(), nodes * width, 0.);
   for (int c = 0; c < cells; ++c) {
     const auto &matrix = grid_.mass_matrix[c];
@@ -84,50 +92,66 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double) {
     }
   }
   for (int i = 0; i < nodes; ++i)
-    for (int d = 0; d < dim; ++d) nodal_[i * width + 1 + d] = start_velocity_[i][d];
+    for (int d = 0; d < dim; ++d) nodal_[i * width + 1 + d] = velocities_.momentum[i][d];
   PetscCall(grid_.sum(nodal_.data(), width));
   for (int i = 0; i < nodes; ++i) {
     const double m = grid_.mass[i] = nodal_[i * width];
-    for (int d = 0; d < dim; ++d) start_velocity_[i][d] = m > 0 ? nodal_[i * width + 1 + d] / m : 0;
+    for (int d = 0; d < dim; ++d) start[i][d] = m > 0 ? nodal_[i * width + 1 + d] / m : 0;
     if (!(m > 0)) grid_.mass[i] = std::numeric_limits<double>::min();  // no particle sees this node
   }
   set_weights(nodal_);
   if (conditions_.has_dashpots()) measure_impedance();
-  for (int c = 0; c < cells; ++c) filling_[c] = weight_[c] / grid_.shape[c].volume;
+  for (int c = 0; c < cells; ++c) filling_[c] = accepted_.weight[c] / grid_.shape[c].volume;
   PetscCall(conditions_.begin(grid_, impedance_, filling_));
   conditions_.surface_loads().begin(bodies_, grid_);
-  conditions_.constrain(loading.time, grid_, start_velocity_.data(), false);
-  std::copy_n(start_velocity_.begin(), nodes, velocity_.begin());
+  conditions_.constrain(load_time, grid_, start.data(), false);
+  std::copy_n(start.begin(), nodes, now.begin());
   if constexpr (Phases::liquid) {
-    PetscCall(
-        fluid_.gather(pore_frame(false), pore_conditions_, filling_, start_velocity_.data(), velocity_.data() + nodes));
-    std::copy_n(velocity_.begin() + nodes, nodes * (velocity_fields<Phases> - 1), start_velocity_.begin() + nodes);
-    std::copy_n(velocity_.begin(), nodes * velocity_fields<Phases>, before_.begin());
+    PetscCall(fluid_.gather(pore_frame(t, accepted_), pore_conditions_, filling_, start.data(), now.data() + nodes));
+    std::copy_n(now.begin() + nodes, nodes * fluids, start.begin() + nodes);
+    std::copy_n(now.begin(), nodes * fields, velocities_.before_step.begin());
   }
-  if (relaxes()) {
-    PetscCall(back_and_forth(start_velocity_.data(), mapped_start_.data()));
-    for (int i = 0; i < nodes * velocity_fields<Phases>; ++i)
-      for (int d = 0; d < dim; ++d) mapped_start_[i][d] = start_velocity_[i][d] - mapped_start_[i][d];
-  }
-  if constexpr (Phases::prescribed) {
-    PetscCall(gather_pore_water());
-    sample_time_[1] = -std::numeric_limits<double>::infinity();
-  }
+  PetscCall(velocities_.find_unmapped_start(grid_));
+  if constexpr (Phases::prescribed) PetscCall(water_.begin(grid_, load_time));
   for (size_t b = 0; b < bodies_.size(); ++b)
     if (nonlocal_[b]) PetscCall(nonlocal_[b]->begin(grid_, points_[b]));
-  if (transfer_.average_stress)
-    for (size_t b = 0; b < bodies_.size(); ++b) {
-      if (!strength_varies(bodies_[b]->law()))
-        continue;  // the mean of admissible stresses is admissible where strength is uniform
-      const PointSet &p = points_[b];
-      admit_stress<dim>(bodies_[b]->law(), {p.count, p.stress, seen_history(b), p.stress, p.history, p.cell,
-                                            increment_.data(), softening_size(b), find_suction(b)});
-      if (nonlocal_[b]) nonlocal_[b]->restore(p, p.history);
-    }
+  if (transfer_.average_stress) admit_mean_stress();
   PetscFunctionReturn(0);
 }
 
-/// What the cells are made of: rho c_p and rho c_s, weighted by volume.
+/// Returns mean stresses to the yield surface, theory section 4.3. Where strength is uniform the mean of admissible
+/// stresses is admissible.
+template <int dim, class Phases>
+void SoilMotion<dim, Phases>::admit_mean_stress() {
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    if (!strength_varies(bodies_[b]->law())) continue;
+    const PointSet &p = points_[b];
+    admit_stress<dim>(bodies_[b]->law(), {.count = p.count,
+                                          .stress_in = p.stress,
+                                          .history_in = history_seen_by_law(b),
+                                          .stress_out = p.stress,
+                                          .history_out = p.history,
+                                          .cell = p.cell,
+                                          .increment = increment_.data(),
+                                          .size = softening_size(b),
+                                          .suction = find_suction(b)});
+    if (nonlocal_[b]) nonlocal_[b]->restore(p, p.history);
+  }
+}
+
+/// Suction at the stress points of a body at the start of the step under way, or null where its law reads none.
+template <int dim, class Phases>
+const double *SoilMotion<dim, Phases>::find_suction(size_t b) {
+  if (!reads_suction(bodies_[b]->law())) return nullptr;
+  if constexpr (Phases::prescribed)
+    return water_.suction(grid_, blend_.data(), points_[b], loading.time, loading.ramp);
+  else if constexpr (Phases::suction)
+    return fluid_.suction(static_cast<int>(b));
+  else
+    return nullptr;  // the scene reader refuses such laws where there is no suction
+}
+
+/// Impedances rho c_p and rho c_s of the cells, means over their points weighted by volume.
 template <int dim, class Phases>
 void SoilMotion<dim, Phases>::measure_impedance() {
   for (int c = 0; c < grid_.cell_count(); ++c) impedance_[c] = {0, 0};
@@ -137,7 +161,8 @@ void SoilMotion<dim, Phases>::measure_impedance() {
       const int c = points_[b].cell[q];
       double m = 0;
       for (int k = 0; k < simplex_pairs<dim>; ++k) m += (k <= dim ? 1 : 2) * grid_.mass_matrix[c][k];
-      const double density = m / particle_volume_[c], share = points_[b].volume[q] / particle_volume_[c];
+      const double density = m / accepted_.particle_volume[c],
+                   share = points_[b].volume[q] / accepted_.particle_volume[c];
       impedance_[c][0] += share * std::sqrt(density * wave), impedance_[c][1] += share * std::sqrt(density * shear);
     }
   }
@@ -169,31 +194,25 @@ void SoilMotion<dim, Phases>::set_weights(const std::vector<double> &nodal) {
         blend = 0;
         break;
     }
-    particle_volume_[c] = volume;
-    weight_[c] = volume + blend * (grid_.shape[c].volume - volume);
+    accepted_.particle_volume[c] = volume;
+    accepted_.weight[c] = volume + blend * (grid_.shape[c].volume - volume);
     slenderness_[c] = 0;
     for (const auto &g : grid_.shape[c].gradient)
       for (double x : g) slenderness_[c] += x * x;
   }
 }
 
-/// Share of its own velocity, which no node needs to feel, that a particle has kept since the remap, theory (4.11).
+/// Prepares what particles read of the nodes at the end t of a Lagrangian part; returns the share of their own velocity
+/// that particles keep, theory (4.11).
 template <int dim, class Phases>
-double SoilMotion<dim, Phases>::relaxed(double t) const {
-  return relaxation_time_ > 0 ? std::exp(-(t - remap_time_) / relaxation_time_) : 1;
-}
-
-/// What the nodes learned, as particles read it; the share of their own velocity that particles keep.
-template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::end(double t, double *share) {
-  PetscFunctionBeginUser;
-  PetscCall(conditions_.surface_loads().end(grid_, weight_));
-  const double flip = *share = transfer_.velocity == Velocity::flip ? relaxed(t) * (1 - transfer_.pic_fraction) : 0;
+double SoilMotion<dim, Phases>::prepare_update(double t) {
+  const bool flip = transfer_.velocity == Velocity::flip;
+  const double share = flip ? velocities_.own_share_at(t) * (1 - transfer_.pic_fraction) : 0;
+  const std::vector<Vec<dim>> &now = velocities_.now, &start = velocities_.start;
   for (int i = 0; i < grid_.node_count(); ++i) {
-    const Vec<dim> &v = velocity_[i], &v0 = start_velocity_[i], &x = grid_.position[i],
-                   &X = mesh_.position[grid_.mesh_node[i]];
+    const Vec<dim> &v = now[i], &v0 = start[i], &x = grid_.position[i], &X = mesh_.position[grid_.mesh_node[i]];
     for (int d = 0; d < dim; ++d) {
-      update_.velocity[i][d] = v[d] - flip * v0[d];
+      update_.velocity[i][d] = v[d] - share * v0[d];
       update_.displacement[i][d] = x[d] - X[d];
     }
   }
@@ -204,19 +223,18 @@ PetscErrorCode SoilMotion<dim, Phases>::end(double t, double *share) {
         for (int j = 0; j < dim; ++j) {
           double g = 0;
           for (int k = 0; k < dim; ++k)
-            g += (velocity_[grid_.shape[c].node[k + 1]][i] - velocity_[grid_.shape[c].node[0]][i]) *
+            g += (now[grid_.shape[c].node[k + 1]][i] - now[grid_.shape[c].node[0]][i]) *
                  mesh_.cells[grid_.mesh_cell[c]].gradient[k][j];
           affine_[(c * dim + i) * dim + j] = g;
         }
   }
-  if constexpr (Phases::liquid)
-    fluid_.hand_over(grid_.node_count(), velocity_.data() + grid_.node_count(),
-                     start_velocity_.data() + grid_.node_count(), flip, update_);
-  PetscFunctionReturn(0);
+  const int nodes = grid_.node_count();
+  if constexpr (Phases::liquid) fluid_.hand_over(nodes, now.data() + nodes, start.data() + nodes, share, update_);
+  return share;
 }
 
 template <int dim, class Phases>
-void SoilMotion<dim, Phases>::forget() {
+void SoilMotion<dim, Phases>::clear_grid() {
   for (PointSet &points : points_) {
     for (int c = 0; c < grid_.cell_count(); ++c) points.of_cell[grid_.mesh_cell[c]] = -1;
     points.count = 0;
@@ -226,75 +244,39 @@ void SoilMotion<dim, Phases>::forget() {
 }
 
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::release(double t, std::vector<std::vector<int>> &movers) {
+PetscErrorCode SoilMotion<dim, Phases>::update_particles(double t, std::vector<std::vector<int>> &movers) {
   PetscFunctionBeginUser;
-  double flip;
-  PetscCall(end(t, &flip));
+  PetscCall(conditions_.surface_loads().end(grid_, accepted_.weight));
+  const double share = prepare_update(t);
   with_transfer(transfer_, [&]<bool averaged, bool apic>() {
     for (size_t b = 0; b < bodies_.size(); ++b) {
       Pores<dim> pores;
       if constexpr (Phases::liquid) pores = fluid_.pores(b);
-      to_particles<dim, averaged, apic, fluids>(
-          *bodies_[b], {grid_, update_, flip, affine_.data(), points_[b], pores, change_.data()}, movers[b]);
+      to_particles<dim, averaged, apic, fluids>(*bodies_[b], end_of_part(b, share, pores), movers[b]);
     }
   });
-  forget();
+  clear_grid();
   PetscFunctionReturn(0);
 }
 
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::release_to_next(double t, std::vector<std::vector<int>> &movers) {
+PetscErrorCode SoilMotion<dim, Phases>::update_particles_and_gather(double t, std::vector<std::vector<int>> &movers) {
   PetscFunctionBeginUser;
-  double flip;
-  PetscCall(end(t, &flip));
-  std::fill(start_velocity_.begin(), start_velocity_.end(), Vec<dim>{});
+  PetscCall(conditions_.surface_loads().end(grid_, accepted_.weight));
+  const double share = prepare_update(t);
+  std::fill(velocities_.momentum.begin(), velocities_.momentum.end(), Vec<dim>{});
   with_transfer(transfer_, [&]<bool averaged, bool apic>() {
     for (size_t b = 0; b < bodies_.size(); ++b) {
       Pores<dim> pores, next;
       if constexpr (Phases::liquid) pores = fluid_.pores(b), next = fluid_.next_pores(b);
-      to_next_nodes<dim, averaged, apic, fluids>(
-          *bodies_[b], {grid_, update_, flip, affine_.data(), points_[b], pores, change_.data()}, next_grid_,
-          start_velocity_.data(), next_points_[b], next, movers[b]);
+      to_next_nodes<dim, averaged, apic, fluids>(*bodies_[b], end_of_part(b, share, pores), next_grid_,
+                                                 velocities_.momentum.data(), next_points_[b], next, movers[b]);
     }
   });
-  forget();
+  clear_grid();
   std::swap(grid_, next_grid_), std::swap(points_, next_points_);
   if constexpr (Phases::liquid) fluid_.turn();
   movers_ = &movers;
-  PetscFunctionReturn(0);
-}
-
-/// Nodes to particles and back at frozen positions, out = M^-1 M^c in, of the velocities of all phases: the operator
-/// form of MUSL, theory (4.9).
-template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::back_and_forth(const Vec<dim> *in, Vec<dim> *out) {
-  PetscFunctionBeginUser;
-  const int nodes = grid_.node_count(), cells = grid_.cell_count();
-  std::fill_n(out, nodes * velocity_fields<Phases>, Vec<dim>{});
-  for (int c = 0; c < cells; ++c) {
-    const auto &node = grid_.shape[c].node;
-    const auto &matrix = grid_.mass_matrix[c];
-    for (int first = 0; first < nodes * velocity_fields<Phases>; first += nodes) {
-      Quad v[dim + 1], sum[dim + 1];
-#pragma GCC unroll 8
-      for (int k = 0; k <= dim; ++k) v[k] = load<dim>(in[first + node[k]].data()), sum[k] = quad(matrix[k]) * v[k];
-#pragma GCC unroll 8
-      for (int k = 0, pair = dim + 1; k <= dim; ++k)
-#pragma GCC unroll 8
-        for (int l = k + 1; l <= dim; ++l, ++pair)
-          sum[k] += quad(matrix[pair]) * v[l], sum[l] += quad(matrix[pair]) * v[k];
-#pragma GCC unroll 8
-      for (int k = 0; k <= dim; ++k) {
-        double *x = out[first + node[k]].data();
-        store<dim>(x, load<dim>(x) + sum[k]);
-      }
-    }
-  }
-  for (int f = 0; f < velocity_fields<Phases>; ++f) {
-    PetscCall(grid_.sum(out[f * nodes].data(), dim));
-    for (int i = 0; i < nodes; ++i)
-      for (int d = 0; d < dim; ++d) out[f * nodes + i][d] /= grid_.mass[i];
-  }
   PetscFunctionReturn(0);
 }
 

@@ -11,7 +11,7 @@ template <int dim, class Phases>
 bool SoilMotion<dim, Phases>::find_broken(Vec<dim> *where) const {
   for (int i = 0; i < grid_.node_count(); ++i)
     for (int d = 0; d < dim; ++d)
-      if (!(std::abs(velocity_[i][d]) < 1e149)) {  // its square has no room
+      if (!(std::abs(velocities_.now[i][d]) < 1e149)) {  // its square has no room
         *where = mesh_.position[grid_.mesh_node[i]];
         return true;
       }
@@ -31,23 +31,24 @@ bool SoilMotion<dim, Phases>::find_trouble(Vec<dim> *where, std::string *cause) 
   return false;
 }
 
+/// Where the fluids find a state of the soil at time t.
 template <int dim, class Phases>
-typename PoreFluid<dim, Phases>::Frame SoilMotion<dim, Phases>::pore_frame(bool trial) requires Phases::liquid {
-  for (size_t b = 0; b < bodies_.size(); ++b) point_volume_[b] = trial ? trial_volume_[b].data() : points_[b].volume;
+typename PoreFluid<dim, Phases>::Frame SoilMotion<dim, Phases>::pore_frame(double t,
+                                                                           const State &state) requires Phases::liquid {
   Vec<dim> gravity = loading.gravity;
-  for (double &g : gravity) g *= loading.ramp;
-  return {grid_,
-          trial ? trial_shape_.data() : grid_.shape.data(),
-          trial ? trial_position_.data() : grid_.position.data(),
-          trial ? trial_weight_.data() : weight_.data(),
-          points_,
-          point_volume_.data(),
-          trial ? trial_particle_volume_.data() : particle_volume_.data(),
-          blend_.data(),
-          gravity,
-          loading.time,
-          transfer_.average_stress,
-          trial};
+  for (double &g : gravity) g *= loading.ramp_at(t);
+  return {.grid = grid_,
+          .shape = state.shape,
+          .position = state.position,
+          .weight = state.weight.data(),
+          .points = points_,
+          .volume = state.volume.data(),
+          .particle_volume = state.particle_volume.data(),
+          .blend = blend_.data(),
+          .gravity = gravity,
+          .time = loading.time_at(t),
+          .averaged = transfer_.average_stress,
+          .trial = is_trial(state)};
 }
 
 template <int dim, class Phases>
@@ -76,11 +77,11 @@ void SoilMotion<dim, Phases>::present(const Body<dim> &body, int i, Vec<dim> *po
   if (!gathered_) return;
   const auto n = barycentric(mesh_.cells[p.cell[i]], p.position[i]);
   const auto &node = grid_.shape[grid_.find_cell(p.cell[i])].node;
-  for (double &component : *velocity) component *= own_share_;  // as a remap would find it now
+  for (double &component : *velocity) component *= velocities_.own_share;  // as a remap would find it now
   for (int k = 0; k <= dim; ++k)
     for (int d = 0; d < dim; ++d) {
       (*position)[d] += n[k] * (grid_.position[node[k]][d] - mesh_.position[grid_.mesh_node[node[k]]][d]);
-      (*velocity)[d] += n[k] * (velocity_[node[k]][d] - own_share_ * start_velocity_[node[k]][d]);
+      (*velocity)[d] += n[k] * (velocities_.now[node[k]][d] - velocities_.own_share * velocities_.start[node[k]][d]);
     }
 }
 
@@ -105,26 +106,26 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::serialize(Archive &archive) {
   PetscFunctionBeginUser;
   grid_.serialize(archive);
-  archive.serialize("nodes", start_velocity_, velocity_, mapped_start_, extra_mass_);
-  archive.serialize("cells", particle_volume_, weight_, blend_, filling_, slenderness_, impedance_);
+  archive.serialize("nodes", velocities_.start, velocities_.now, velocities_.unmapped_start, velocities_.remap_time,
+                    velocities_.own_share);
+  archive.serialize("cells", accepted_.particle_volume, accepted_.weight, blend_, filling_, slenderness_, impedance_);
   for (size_t b = 0; b < bodies_.size(); ++b) {
     PointSet &p = points_[b];
     archive.serialize("points", p.count, p.own_cell, p.own_stress, p.own_history, p.own_volume, p.own_limit,
                       p.start_history, p.start_volume, p.of_cell);
-    attach(b);
+    refer_to_points(b);
     if (nonlocal_[b]) nonlocal_[b]->serialize(archive);
   }
-  archive.serialize("motion", work_.gravity, work_.imposed, work_.damping, gathered_, remap_time_, accepted_time_,
-                    own_share_, moved_, smallest_ratio_, step_ratio_, speed_squared_, sample_time_, last_pressure_time_,
-                    water_moved_);
-  if constexpr (Phases::prescribed)
-    for (Sample &sample : sample_) archive.serialize("pressure", sample.gradient, sample.value, sample.nodal);
-  archive.serialize("fastest mode", mode_);
+  accepted_.refer_to(grid_);
+  archive.serialize("motion", gathered_, accepted_time_, moved_, smallest_ratio_, step_ratio_, speed_squared_);
+  work_.serialize(archive);
+  if constexpr (Phases::prescribed) water_.serialize(archive);
+  if constexpr (!Phases::liquid) fastest_mode_.serialize(archive);
   PetscCall(conditions_.serialize(archive, grid_, impedance_, filling_));
   if (archive.reading()) conditions_.surface_loads().begin(bodies_, grid_);
   if constexpr (Phases::liquid) {
     fluid_.serialize(archive);
-    before_ = velocity_;
+    velocities_.before_step = velocities_.now;
     if (archive.reading())
       PetscCall(pore_conditions_.begin(grid_, filling_, fluid_.surface(), fluid_.surface_moment()));
   }
@@ -135,9 +136,9 @@ template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::balance(double, Balance *sums) {
   PetscFunctionBeginUser;
   double local[4]{}, total[4];
-  PetscCall(total_force(loading.time, loading.ramp, false));
+  PetscCall(total_force(loading.set_at, accepted_));
   std::copy_n(force_.begin(), grid_.node_count(), scratch_.begin());
-  conditions_.project(grid_, velocity_.data(), scratch_.data());
+  conditions_.project(grid_, velocities_.now.data(), scratch_.data());
   const auto magnitude = [](const Vec<dim> &x) {
     double s = 0;
     for (double c : x) s += c * c;

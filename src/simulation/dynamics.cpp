@@ -72,7 +72,7 @@ Verdict Dynamics<dim>::cycle(double until) {
   require(step(until));
   const Verdict verdict = agree();
   if (verdict.broken) refuse_broken();
-  require(remap_due_ ? remap() : world_.motion->settle());
+  require(remap_due_ ? remap() : world_.motion->update_pore_pressures(clock_.time));
   return verdict;
 }
 

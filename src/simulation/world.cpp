@@ -225,7 +225,7 @@ PetscErrorCode World<dim>::release(double time, bool to_next) {
   PetscLogDouble start, middle, end;
   PetscCall(PetscTime(&start));
   for (auto &list : movers_) list.clear();
-  PetscCall(to_next ? motion->release_to_next(time, movers_) : motion->release(time, movers_));
+  PetscCall(to_next ? motion->update_particles_and_gather(time, movers_) : motion->update_particles(time, movers_));
   PetscCall(PetscTime(&middle));
   bool lost = false;
   Vec<dim> where{};

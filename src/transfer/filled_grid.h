@@ -28,7 +28,7 @@ class FilledGrid {
  public:
   explicit FilledGrid(const BackgroundMesh<dim> &mesh);
 
-  /// Forgets all nodes and cells.
+  /// Removes all nodes and cells.
   void clear();
   /// Compact number of a mesh cell, which is the last one on first use: its sums over particles are then to be set.
   [[gnu::always_inline]] int enter_cell(int cell) {
@@ -48,7 +48,7 @@ class FilledGrid {
   void complete();
   /// Adds up `width` doubles per compact node over the ranks that share the node; collective.
   PetscErrorCode sum(double *values, int width);
-  /// Nodes and cells with what they carry.
+  /// Saves or loads nodes and cells with their fields.
   void serialize(Archive &archive);
 
   int node_count() const { return node_count_; }

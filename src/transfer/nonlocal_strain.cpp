@@ -104,7 +104,7 @@ PetscErrorCode NonlocalStrain<dim>::begin(FilledGrid<dim> &grid, const PointSet 
 }
 
 template <int dim>
-PetscErrorCode NonlocalStrain<dim>::follow(FilledGrid<dim> &grid, const PointSet &points) {
+PetscErrorCode NonlocalStrain<dim>::update(FilledGrid<dim> &grid, const PointSet &points) {
   PetscFunctionBeginUser;
   PetscCall(load(grid, points));
   PetscCall(iterate(grid, iterations_to(0.5)));

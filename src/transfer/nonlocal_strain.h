@@ -23,7 +23,7 @@ class NonlocalStrain {
   /// At a remap: takes volumes and shapes of the cells, and solves to 1e-8. Collective.
   PetscErrorCode begin(FilledGrid<dim> &grid, const PointSet &points);
   /// After an accepted step: what is left of the error, and of the step's change, is halved at least. Collective.
-  PetscErrorCode follow(FilledGrid<dim> &grid, const PointSet &points);
+  PetscErrorCode update(FilledGrid<dim> &grid, const PointSet &points);
 
   /// History of the points with the average in place of their own plastic strain.
   const double *averaged(const PointSet &points);

@@ -1,17 +1,17 @@
 #pragma once
-/// A run of particles of one cell on their way to and from the nodes: what the cell knows stays in registers, nodes are
-/// touched once.
+/// A run is a sequence of particles of one cell. On their way to and from the nodes the quantities of the cell stay in
+/// registers, and each node is touched once.
 #include <algorithm>
 
 #include "transfer/transfer.h"
 
 namespace talus {
 
-/// Values of a history that a run keeps in registers; the rest takes loops of its own.
+/// Values of a history that a run holds in registers; further ones have loops of their own.
 inline constexpr int unrolled_history = 4;
 
-/// Particles that a run takes at a time: what calls functions waits for the end of such a part, so that sums stay in
-/// registers.
+/// Particles that a run processes at a time. Work that calls functions is done after each such part, so that sums stay
+/// in registers.
 inline constexpr int run_part = 32;
 
 /// Instantiates `one(dim, averaged, apic, fluids)` for all that scenes may ask for.
@@ -22,21 +22,21 @@ inline constexpr int run_part = 32;
   one(dim, true, true, fluids) one(dim, true, false, fluids) one(dim, false, true, fluids) \
       one(dim, false, false, fluids)
 
-/// What points pass on to their particles, with averaged stress: the factor of volumes, the contents of pores [kg/m3],
-/// gains of history. Side by side, for a sweep over particles reads and writes as many arrays as the caches can
-/// foresee.
+/// Changes of the stress points that their particles take over, with averaged stress: factor of the volume, contents of
+/// the pores [kg/m3], gains of history. They stand side by side, because the sweep over particles already reads and
+/// writes as many arrays as the caches can prefetch.
 template <int fluids, int dim>
 void collect_changes(const PointSet &points, const Pores<dim> &pores, int history_count, double *change) {
   for (int q = 0; q < points.count; ++q) {
     *change++ = points.volume[q] / points.start_volume[q];
-    // a cell's fluid fills its pores evenly, so that a particle that moves on takes its pressure along
+    // the fluid of a cell fills its pores evenly, so a particle that leaves the cell takes the pressure along
     for (int a = 0; a < fluids; ++a) *change++ = pores.mass[a][q] / (points.volume[q] - pores.grains[q]);
     for (int h = q * history_count; h < (q + 1) * history_count; ++h)
       *change++ = points.history[h] - points.start_history[h];
   }
 }
 
-/// Gives particles of one cell what the nodes learned since the last remap.
+/// Updates particles of one cell by what the nodes received since the last remap.
 template <int dim, bool averaged, bool apic, int fluids>
 class RunFromNodes {
  public:

@@ -17,7 +17,7 @@ struct PointSet {
   // owned when stress is averaged; else only `own_cell` is used
   std::vector<int> own_cell;
   std::vector<double> own_stress, own_history, own_volume, own_limit;
-  std::vector<double> start_history, start_volume;  ///< at the remap: what particles gain is the difference
+  std::vector<double> start_history, start_volume;  ///< at the remap; particles gain the difference
   std::vector<int> of_cell;                         ///< [mesh cells] point of a cell, -1: none
 
   /// The point of a mesh cell, which is the last one on first use: its sums are then to be set.

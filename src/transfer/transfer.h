@@ -33,8 +33,8 @@ struct BarycentricMap {
   Quad origin, constant, column[dim];
 };
 
-/// Pores of one body on the way between particles and nodes, docs/theory/pores.md section 4: arrays of PoreFluid.
-/// Nothing of it is read or written where no fluid moves.
+/// Pores of one body in the sweeps between particles and nodes, docs/theory/pores.md section 4: arrays of PoreFluid.
+/// They are neither read nor written where no fluid moves.
 template <int dim>
 struct Pores {
   double *grains = nullptr;  ///< [points] volume of the grains, with averaged stress [m3]
@@ -51,14 +51,14 @@ template <int dim, bool averaged, bool apic, int fluids>
 void to_nodes(const Body<dim> &body, FilledGrid<dim> &grid, Vec<dim> *momentum, PointSet &points,
               const Pores<dim> &pores, const std::vector<int> *only);
 
-/// Nodal fields that particles read at a remap, four lanes wide, by compact node.
+/// Nodal fields from which particles are updated at a remap, four lanes wide, by compact node.
 struct NodalUpdate {
-  std::vector<Quad> velocity;      ///< a (v - v0) + (1 - a) v: what is added to a times the particle's own velocity
+  std::vector<Quad> velocity;      ///< v - a v0, to which a times the particle's velocity is added, docs/theory (4.11)
   std::vector<Quad> displacement;  ///< since the last remap
   std::vector<Quad> fluid[2];      ///< as `velocity`, of liquid and gas
 };
 
-/// A Lagrangian part at its end: where particles take from what the nodes learned since the last remap.
+/// End of a Lagrangian part: the fields from which particles are updated.
 template <int dim>
 struct Lagrangian {
   const FilledGrid<dim> &grid;
@@ -67,7 +67,7 @@ struct Lagrangian {
   const double *affine;  ///< [compact cells][dim * dim] velocity gradients of APIC [1/s], unused otherwise
   const PointSet &points;
   const Pores<dim> &pores;
-  double *change;  ///< [points][1 + fluids + history] room for what points pass on to particles
+  double *change;  ///< [points][1 + fluids + history] scratch: changes of the points that particles take over
 };
 
 /// Brings the particles of one body to the end of a Lagrangian part. Particles outside their cell are listed in

@@ -39,7 +39,7 @@ class ParticleState final : public Motion {
     std::fill_n(dv + p_.count * dim, nodes_ * dim, 0.);
     return 0;
   }
-  PetscErrorCode drag(double, double, double *) override { return 0; }
+  PetscErrorCode apply_boundaries_and_drag(double, double, double *) override { return 0; }
   PetscErrorCode map_back(double, double, double *, double *) override { return PETSC_ERR_SUP; }
   PetscErrorCode accept(double t, const double *u, const double *v) override {
     std::copy_n(v, size(), velocity_.begin());

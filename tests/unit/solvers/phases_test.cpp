@@ -1,10 +1,8 @@
-// Integrators that take phases apart: drag as an implicit partition, and two clocks, on a chain of grains and water
-// whose motion is known.
+// Integrators that treat drag between phases implicitly, on a chain of grains and water whose motion is known.
 #include <gtest/gtest.h>
 
 #include "solvers/critical_step.h"
 #include "solvers/integrators.h"
-#include "solvers/multirate.h"
 #include "springs.h"
 #include "wet_springs.h"
 
@@ -147,51 +145,6 @@ TEST(IntegratorSettings, that_cannot_follow_drag_say_so) {
   EXPECT_NE(drag_problem(fourth).find("order = 4"), std::string::npos);
   EXPECT_NE(drag_problem(ForwardEulerSettings{}), "");
   EXPECT_NE(drag_problem(PetscTsSettings{}), "");
-}
-
-// ---- two clocks: pore water a hundred times as stiff as the skeleton, no drag ----
-
-struct Clocks {
-  double error;
-  long long slow, fast;
-};
-Clocks two_clocks(double step, int substeps) {
-  WetSprings motion(1, 100, 0);
-  const Eigen::VectorXd exact = motion.exact(end);
-  Multirate integrator({step, substeps});
-  run_to(integrator, motion, 2 / motion.largest_frequency(), end);
-  return {motion.error(exact), integrator.slow_evaluations(), integrator.statistics().evaluations};
-}
-
-TEST(Multirate, is_of_third_order) {
-  Clocks runs[3];
-  for (int k = 0; k < 3; ++k) runs[k] = two_clocks(0.1 / (1 << k), 10);
-  EXPECT_NEAR(std::log2(runs[0].error / runs[2].error) / 2, 3, 0.25);
-}
-
-TEST(Multirate, asks_for_slow_rates_more_rarely_than_one_clock) {
-  const Clocks two = two_clocks(0.1, 10);
-  WetSprings motion(1, 100, 0);
-  const Eigen::VectorXd exact = motion.exact(end);
-  ArkodeSettings settings;
-  settings.order = 3, settings.step = 0.01;  // the step of the fast clock
-  Arkode one(settings);
-  run_to(one, motion, 2 / motion.largest_frequency(), end);
-  RecordProperty("slow_evaluations", std::to_string(two.slow));
-  RecordProperty("error_two_clocks", std::to_string(two.error));
-  RecordProperty("error_one_clock", std::to_string(motion.error(exact)));
-  EXPECT_LE(10 * two.slow, one.statistics().evaluations);
-  EXPECT_LT(two.error, 4 * motion.error(exact));
-  EXPECT_GT(two.fast, one.statistics().evaluations / 2);  // the fast ones are as many as ever
-}
-
-TEST(Multirate, without_a_slow_part_is_its_fast_method) {
-  Springs motion(1, 0.5);
-  motion.place = {1};
-  Multirate integrator({0.1, 10});
-  run_to(integrator, motion, 2, 5);
-  EXPECT_NEAR(motion.place[0], std::cos(5), 1e-5);
-  EXPECT_EQ(motion.accepted, 50);
 }
 
 }  // namespace

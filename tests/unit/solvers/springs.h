@@ -37,7 +37,7 @@ class Springs : public GivenPlaces {
     for (int i = 0; i < n; ++i) a[i] = stiffness_ * (at(i - 1) - 2 * at(i) + at(i + 1)) + force(t);
     return 0;
   }
-  PetscErrorCode drag(double, double, double *) override { return 0; }
+  PetscErrorCode apply_boundaries_and_drag(double, double, double *) override { return 0; }
   double seen_square(const double *x) const override {
     double sum = 0;
     for (int i = 0; i < size(); ++i) sum += x[i] * x[i];

@@ -1,6 +1,7 @@
 #pragma once
-/// A motion without soil for integrators that take phases apart: a chain of nodes that carry grains and water, between
-/// a wall and a free end. Skeleton springs hold the grains, the water in each cell resists (1 - n) strain of the grains
+/// A motion without soil for integrators that treat drag between phases implicitly: a chain of nodes that carry grains
+/// and water, between a wall and a free end. Skeleton springs hold the grains, the water in each cell resists (1 - n)
+/// strain of the grains
 /// + n strain of the water, and the two drag at one another. Linear, so its solution is known.
 #include <Eigen/Dense>
 #include <cmath>
@@ -49,24 +50,16 @@ class WetSprings : public GivenPlaces {
     return sum;
   }
 
-  PetscErrorCode acceleration(double, const double *u, const double *, double *a) override {
-    return force(u, a, true, true);
+  PetscErrorCode acceleration(double, const double *u, const double *, double *a) override { return force(u, a); }
+  PetscErrorCode apply_boundaries_and_drag(double t, double gamma, double *v) override {
+    return apply_drag(t, gamma, v);
   }
-  PetscErrorCode slow_rates(double, const double *u, const double *, double *du, double *dv) override {
-    std::fill_n(du, size(), 0.);
-    return force(u, dv, true, false);
-  }
-  PetscErrorCode fast_rates(double, const double *u, const double *v, double *du, double *dv) override {
-    std::copy_n(v, size(), du);
-    return force(u, dv, false, true);
-  }
-  PetscErrorCode drag(double t, double gamma, double *v) override { return resist(t, gamma, v); }
-  PetscErrorCode resist(double, double gamma, double *v) override {
+  PetscErrorCode apply_drag(double, double gamma, double *v) override {
     const NodalFluid node{water, water, drag_};
     for (int i = 0; i < count; ++i) resolve_drag<1>(gamma, grains, v[i], &node, v + count + i);
     return 0;
   }
-  PetscErrorCode hold(double, double, double *) override { return 0; }
+  PetscErrorCode apply_boundaries(double, double, double *) override { return 0; }
   double seen_square(const double *x) const override {
     double sum = 0;
     for (int i = 0; i < size(); ++i) sum += x[i] * x[i] / 2;
@@ -75,15 +68,15 @@ class WetSprings : public GivenPlaces {
   double mass() const override { return count; }
 
  private:
-  PetscErrorCode force(const double *u, double *a, bool of_skeleton, bool of_pores) const {
+  PetscErrorCode force(const double *u, double *a) const {
     std::fill_n(a, size(), 0.);
     const auto at = [&](int i, int phase) {
       return i < 0 ? 0 : place[phase * count + i] + (u ? u[phase * count + i] : 0);
     };
     for (int cell = 0; cell < count; ++cell) {  // between node cell - 1, which is the wall for the first, and node cell
       const double solid = at(cell, 0) - at(cell - 1, 0), fluid = at(cell, 1) - at(cell - 1, 1);
-      const double push = of_pores ? pores_ * ((1 - porosity) * solid + porosity * fluid) : 0;
-      const double forces[] = {(of_skeleton ? skeleton_ * solid : 0) + (1 - porosity) * push, porosity * push};
+      const double push = pores_ * ((1 - porosity) * solid + porosity * fluid);
+      const double forces[] = {skeleton_ * solid + (1 - porosity) * push, porosity * push};
       for (int phase : {0, 1}) {
         const double share = forces[phase] / (phase ? water : grains);
         a[phase * count + cell] -= share;
@@ -106,7 +99,7 @@ class WetSprings : public GivenPlaces {
     for (int j = 0; j < 2 * count; ++j) {
       std::fill(unit.begin(), unit.end(), 0.);
       unit[j] = 1;
-      probe.force(unit.data(), a.data(), true, true);
+      probe.force(unit.data(), a.data());
       for (int i = 0; i < 2 * count; ++i) m(i, j) = -a[i];
     }
     return m;

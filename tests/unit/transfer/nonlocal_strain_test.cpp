@@ -106,7 +106,7 @@ TEST(NonlocalStrain, follows_a_change_and_halves_what_is_left_of_it) {
   const auto wanted = aim.averages();
   double left = distance(std::vector<double>(wanted.size(), 0.), wanted, box.volume);
   for (int step = 0; step < 10; ++step) {
-    EXPECT_EQ(box.nonlocal.follow(box.grid, box.points), 0);
+    EXPECT_EQ(box.nonlocal.update(box.grid, box.points), 0);
     const double now = distance(box.averages(), wanted, box.volume);
     EXPECT_LT(now, 0.55 * left);
     left = now;

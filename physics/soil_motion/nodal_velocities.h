@@ -1,0 +1,55 @@
+#pragma once
+/// Velocities of the nodes of one Lagrangian part, of the solid and behind it of the fluids that move: [field][node],
+/// where `fields` is their number. docs/theory sections 4.6 and 4.7.
+#include <cmath>
+#include <vector>
+
+#include "base/phases.h"
+#include "transfer/mass_matrix.h"
+
+namespace talus {
+
+template <int dim, int fields>
+struct NodalVelocities {
+  using Field = std::vector<Vec<dim>>;
+
+  /// `relaxation_time` is tau of docs/theory (4.10) [s], 0: none; `between_remaps`: nodes relax in each step.
+  NodalVelocities(int nodes, double relaxation_time, bool between_remaps)
+      : momentum(nodes),
+        start(nodes * fields),
+        now(nodes * fields),
+        unmapped_start(nodes * fields),
+        before_step(nodes * fields),
+        relaxation_time(relaxation_time),
+        relaxes(between_remaps && relaxation_time > 0) {}
+
+  Field momentum;        ///< of the solid on this rank, [node], filled while particles are gathered [kg m/s]
+  Field start;           ///< v^0, what particles have in common with the nodes; particles keep the rest [m/s]
+  Field now;             ///< v [m/s]
+  Field unmapped_start;  ///< (I - S) v^0, where nodes relax in each step [m/s]
+  [[no_unique_address]] If<(fields > 1), Field> before_step;  ///< v at the start of a step, where fluids move [m/s]
+
+  double relaxation_time;  ///< tau [s]
+  bool relaxes;            ///< nodes relax in each step; otherwise only a remap relaxes
+  double remap_time = 0;   ///< [s]
+  double own_share = 1;    ///< own_share_at of the accepted state
+
+  /// Share of its own velocity, which the nodes did not receive, that a particle has kept at time t: a of docs/theory
+  /// (4.10a).
+  double own_share_at(double t) const {
+    return relaxation_time > 0 ? std::exp(-(t - remap_time) / relaxation_time) : 1;
+  }
+  /// Share by which nodes relax in a step [s], docs/theory (4.10).
+  double relaxed_in(double step) const { return 1 - std::exp(-step / relaxation_time); }
+  /// Once `start` is known: what of it mapping to particles and back loses. Collective.
+  PetscErrorCode find_unmapped_start(FilledGrid<dim> &grid) {
+    PetscFunctionBeginUser;
+    if (!relaxes) PetscFunctionReturn(0);
+    PetscCall((to_particles_and_back<dim, fields>(grid, start.data(), unmapped_start.data())));
+    for (int i = 0; i < grid.node_count() * fields; ++i)
+      for (int d = 0; d < dim; ++d) unmapped_start[i][d] = start[i][d] - unmapped_start[i][d];
+    PetscFunctionReturn(0);
+  }
+};
+
+}  // namespace talus

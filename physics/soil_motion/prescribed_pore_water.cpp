@@ -1,0 +1,146 @@
+#include "physics/soil_motion/prescribed_pore_water.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "meshes/locate.h"
+#include "physics/laws/laws.h"
+
+namespace talus {
+
+template <int dim>
+PrescribedPoreWater<dim>::PrescribedPoreWater(const BackgroundMesh<dim> &mesh, const Bodies &bodies,
+                                              const PrescribedPressure<dim> &pressure)
+    : mesh_(mesh), bodies_(bodies), pressure_(pressure), extra_mass_(mesh.node_count(), 0) {
+  for (const auto &body : bodies) suction_matters_ = suction_matters_ || reads_suction(body->law());
+}
+
+template <int dim>
+PetscErrorCode PrescribedPoreWater<dim>::begin(FilledGrid<dim> &grid, double time) {
+  PetscFunctionBeginUser;
+  PetscCall(measure(grid, time));
+  sample_time_[1] = -std::numeric_limits<double>::infinity();
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode PrescribedPoreWater<dim>::advance_to(double time, FilledGrid<dim> &grid, const double *blend) {
+  PetscFunctionBeginUser;
+  sample(time, grid, blend), last_time_ = time;
+  if (table_moves_) PetscCall(measure(grid, time));
+  PetscFunctionReturn(0);
+}
+
+/// Mass by docs/theory (2.2) where a particle was at the last remap, less the particle's own.
+template <int dim>
+PetscErrorCode PrescribedPoreWater<dim>::measure(FilledGrid<dim> &grid, double time) {
+  PetscFunctionBeginUser;
+  table_moves_ = false;
+  std::fill_n(extra_mass_.begin(), grid.node_count(), 0.);
+  for (const auto &body : bodies_) {
+    const BodySource &source = body->source();
+    const ParticleArrays<dim> &p = body->particles();
+    for (int i = 0; i < p.count; ++i) {
+      const double dry = source.grain_density * (1 - source.porosity);
+      const double saturation = pressure_.below_table(p.position[i], time) ? 1 : source.saturation;
+      const double extra = (dry + source.porosity * saturation * pressure_.density()) * p.initial_volume[i] - p.mass[i];
+      if (std::abs(extra) <= 1e-12 * p.mass[i]) continue;
+      const auto n = barycentric(mesh_.cells[p.cell[i]], p.position[i]);
+      const auto &node = grid.shape[grid.find_cell(p.cell[i])].node;
+      for (int k = 0; k <= dim; ++k) extra_mass_[node[k]] += n[k] * extra;
+    }
+  }
+  PetscCall(grid.sum(extra_mass_.data(), 1));
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+void PrescribedPoreWater<dim>::sample(double time, const FilledGrid<dim> &grid, const double *blend) {
+  constexpr double steps_ahead = 16;
+  if (time >= sample_time_[0] && time <= sample_time_[1]) return;
+  const double step = last_time_ < time ? time - last_time_ : 1e-6 * (1 + std::abs(time));
+  sample_time_[0] = time, sample_time_[1] = time + steps_ahead * step;
+  table_moves_ = pressure_.moves();
+  for (int k = 0; k < 2; ++k) {
+    Sample &sample = sample_[k];
+    sample.gradient.resize(mesh_.cell_count()), sample.value.resize(mesh_.cell_count()),
+        sample.nodal.resize(mesh_.node_count());
+    for (int i = 0; i < grid.node_count(); ++i)
+      sample.nodal[i] = pressure_(mesh_.position[grid.mesh_node[i]], sample_time_[k]);
+    if (suction_matters_) {
+      sample.suction.resize(mesh_.cell_count());
+      for (int c = 0; c < grid.cell_count(); ++c) {
+        sample.suction[c] = 0;
+        for (int i : grid.shape[c].node) sample.suction[c] += std::max(0., -sample.nodal[i]) / (dim + 1);
+      }
+      for (int i = 0; i < grid.node_count(); ++i) sample.nodal[i] = std::max(0., sample.nodal[i]);
+    }
+    for (int c = 0; c < grid.cell_count(); ++c) {
+      const auto &node = grid.shape[c].node;
+      const Cell<dim> &cell = mesh_.cells[grid.mesh_cell[c]];
+      Vec<dim> gradient{};
+      double value = 0;
+      for (int a = 0; a < dim; ++a)
+        for (int d = 0; d < dim; ++d)
+          gradient[d] += (sample.nodal[node[a + 1]] - sample.nodal[node[0]]) * cell.gradient[a][d];
+      double volume = 0;
+      for (int a = 0; a <= dim; ++a) volume += grid.nodal_share[c][a];
+      for (int a = 0; a <= dim; ++a)
+        value += sample.nodal[node[a]] * (blend[c] / (dim + 1) + (1 - blend[c]) * grid.nodal_share[c][a] / volume);
+      sample.gradient[c] = gradient, sample.value[c] = value;
+    }
+  }
+}
+
+/// Weights of the two samples at a time, times the ramp. A trial state beyond the later one sees the line go on.
+template <int dim>
+std::array<double, 2> PrescribedPoreWater<dim>::shares(double time, double ramp) const {
+  const double late = ramp * (time - sample_time_[0]) / (sample_time_[1] - sample_time_[0]);
+  return {ramp - late, late};
+}
+
+template <int dim>
+void PrescribedPoreWater<dim>::add_force(const FilledGrid<dim> &grid, const SoilState<dim> &state, double time,
+                                         double ramp, Vec<dim> *force) const {
+  const auto [early, late] = shares(time, ramp);
+  for (int c = 0; c < grid.cell_count(); ++c) {
+    const Shape<dim> &shape = state.shape[c];
+    const auto &node = shape.node;
+    if (pressure_.open_water_load()) {
+      for (int k = 0; k <= dim; ++k)
+        for (int d = 0; d < dim; ++d)
+          force[node[k]][d] -=
+              grid.nodal_share[c][k] * (early * sample_[0].gradient[c][d] + late * sample_[1].gradient[c][d]);
+    } else {
+      const double push = state.weight[c] * (early * sample_[0].value[c] + late * sample_[1].value[c]);
+      for (int k = 0; k < dim; ++k)
+        for (int d = 0; d < dim; ++d) {
+          force[node[k + 1]][d] += push * shape.gradient[k][d];
+          force[node[0]][d] -= push * shape.gradient[k][d];
+        }
+    }
+  }
+}
+
+template <int dim>
+const double *PrescribedPoreWater<dim>::suction(const FilledGrid<dim> &grid, const double *blend,
+                                                const PointSet &points, double time, double ramp) {
+  sample(time, grid, blend);
+  const auto [early, late] = shares(time, ramp);
+  suction_.resize(std::max<size_t>(suction_.size(), points.count));
+  for (int q = 0; q < points.count; ++q)
+    suction_[q] = early * sample_[0].suction[points.cell[q]] + late * sample_[1].suction[points.cell[q]];
+  return suction_.data();
+}
+
+template <int dim>
+void PrescribedPoreWater<dim>::serialize(Archive &archive) {
+  archive.serialize("pore water", extra_mass_, sample_time_, last_time_, table_moves_);
+  for (Sample &sample : sample_)
+    archive.serialize("pore pressure", sample.gradient, sample.value, sample.nodal, sample.suction);
+}
+
+template class PrescribedPoreWater<2>;
+template class PrescribedPoreWater<3>;
+
+}  // namespace talus
