@@ -1,13 +1,9 @@
 #include "physics/boundary/boundary.h"
 
-#include "scene/reader.h"
+#include "physics/boundary/kinds.h"
 
 namespace talus {
 
-Boundary read_boundary(DeferredTable &table) {
-  Boundary boundary;
-  read_one_of(table, "kind", boundary);
-  return boundary;
-}
+Boundary read_boundary(const DeferredTable &table) { return read_boundary_of<BoundaryKinds>(table); }
 
 }  // namespace talus

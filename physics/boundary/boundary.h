@@ -1,59 +1,139 @@
 #pragma once
-/// The list of boundary kinds: one line to add one. A kind says what it prescribes through the members it has:
-/// `directions` (and `value`) prescribe velocities, always or `while_loads_are_held`, `load` is a traction;
-/// conditions.h acts on them. Kinds with `water` concern the pore fluids and leave the soil alone: `outside` is the
-/// pressure beyond the face, `supply` what may enter there, `forced` what must, `gas_outside` the pressure of the gas
-/// beyond; pore_conditions.h acts on them.
-#include <variant>
+/// A boundary of a scene, whatever its kind: what the kind states (kind.h) and the functions that go with it.
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "physics/boundary/fixed.h"
-#include "physics/boundary/flux.h"
-#include "physics/boundary/friction.h"
-#include "physics/boundary/gas_pressure.h"
-#include "physics/boundary/head.h"
-#include "physics/boundary/impermeable.h"
-#include "physics/boundary/non_reflecting.h"
-#include "physics/boundary/pore_pressure.h"
-#include "physics/boundary/prescribed_velocity.h"
-#include "physics/boundary/rainfall.h"
-#include "physics/boundary/roller.h"
-#include "physics/boundary/suction.h"
-#include "physics/boundary/traction.h"
+#include "base/units.h"
+#include "physics/boundary/kind.h"
 #include "scene/deferred.h"
+#include "scene/function.h"
 
 namespace talus {
 
-using Boundary = std::variant<Fixed, Roller, PrescribedVelocity, Traction, Friction, NonReflecting, GivenPorePressure,
-                              GivenSuction, Head, Flux, Impermeable, Rainfall, GivenGasPressure>;
+/// What a boundary does to the skeleton, as kind.h says; empty where the kind does not do it.
+template <int dim>
+struct SoilFunctions {
+  std::function<std::vector<Vec<dim>>(const Vec<dim> &normal)> directions;
+  std::function<double(const Vec<dim> &direction, const Vec<dim> &x, double t)> speed;
+  std::function<Vec<dim>(const Vec<dim> &normal, const Vec<dim> &x, double t)> load;
+  std::function<Square<dim>(const std::array<double, 2> &impedance, const Vec<dim> &normal)> dashpot;
+};
+
+class Boundary {
+ public:
+  template <class Kind>
+  requires(!std::same_as<Kind, Boundary>) Boundary(Kind kind);  // NOLINT: every kind is a boundary
+
+  OnSoil in_motion, quasi_static;
+  OnWater water;
+  OnGas gas;
+  int precedence = 2;       ///< of a support
+  bool follows = false;     ///< of a load
+  bool open_water = false;  ///< of a pressure or seepage
+  /// Keys and numbers of components of the vectors that the scene gives as functions; each must have one per dimension.
+  std::vector<std::pair<std::string, int>> vectors;
+
+  template <int dim>
+  const SoilFunctions<dim> &on_soil() const {
+    if constexpr (dim == 2)
+      return on_soil_2d_;
+    else
+      return on_soil_3d_;
+  }
+  std::function<double(double t)> friction_coefficient, adhesion;
+  std::function<double(double x, double y, double z, double t, double unit_weight)> outside;
+  std::function<double(double x, double y, double z, double t)> supply, inflow, gas_outside;
+
+  /// Does it concern the pore fluids only?
+  bool fluids_only() const { return in_motion == OnSoil::none && quasi_static == OnSoil::none; }
+  /// Does it support the skeleton only in quasi-static stages and those that hold loads, in place of its dashpots?
+  bool stands_in() const { return quasi_static == OnSoil::support && in_motion != OnSoil::support; }
+  /// Do the pore fluids have a face of its own here, neither a wall nor the surface of the soil?
+  bool fluid_face() const { return water != OnWater::wall && water != OnWater::surface; }
+
+ private:
+  struct FindVectors;
+  template <int dim, class Kind>
+  static SoilFunctions<dim> functions_of(const std::shared_ptr<const Kind> &kind);
+
+  SoilFunctions<2> on_soil_2d_;
+  SoilFunctions<3> on_soil_3d_;
+};
 
 /// Does the kind concern the pore fluids only?
-inline bool concerns_water(const Boundary &kind) {
-  return std::visit(
-      [](const auto &one) {
-        return requires { one.water; };
-      },
-      kind);
-}
-
-/// Does it prescribe its directions in quasi-static stages and those that hold loads only, as a support that stands in
-/// for something else?
-inline bool holds_loads(const Boundary &kind) {
-  return std::visit(
-      [](const auto &one) {
-        return requires { one.while_loads_are_held; };
-      },
-      kind);
-}
-
+inline bool concerns_water(const Boundary &kind) { return kind.fluids_only(); }
 /// Does it need a gas that moves?
-inline bool concerns_gas(const Boundary &kind) {
-  return std::visit(
-      [](const auto &one) {
-        return requires { one.gas_outside(0., 0., 0., 0.); };
-      },
-      kind);
+inline bool concerns_gas(const Boundary &kind) { return kind.gas == OnGas::pressure; }
+
+/// Reads the kind that the table names, out of the list in kinds.h. Throws SceneError.
+Boundary read_boundary(const DeferredTable &table);
+
+// ---- templates ----
+
+/// Visits the fields of a kind for its vectors of functions.
+struct Boundary::FindVectors {
+  std::vector<std::pair<std::string, int>> &found;
+  void functions(const char *key, const std::vector<Function> &value, Unit, const char *) {
+    if (!value.empty()) found.emplace_back(key, static_cast<int>(value.size()));
+  }
+  void function(const char *, Function &, Unit, Range, const char *) {}
+  void number(const char *, double &, Unit, Range, const char *) {}
+  void flag(const char *, bool &, const char *) {}
+  template <class Enum>
+  void choice(const char *, Enum &, std::initializer_list<std::pair<const char *, std::type_identity_t<Enum>>>,
+              const char *) {}
+};
+
+template <int dim, class Kind>
+SoilFunctions<dim> Boundary::functions_of(const std::shared_ptr<const Kind> &kind) {
+  SoilFunctions<dim> on_soil;
+  if constexpr (member::directions<Kind>)
+    on_soil.directions = [kind](const Vec<dim> &n) { return kind->template directions<dim>(n); };
+  if constexpr (member::speed<Kind>)
+    on_soil.speed = [kind](const Vec<dim> &direction, const Vec<dim> &x, double t) {
+      return kind->template speed<dim>(direction, x, t);
+    };
+  if constexpr (member::load<Kind>)
+    on_soil.load = [kind](const Vec<dim> &n, const Vec<dim> &x, double t) { return kind->template load<dim>(n, x, t); };
+  if constexpr (member::dashpot<Kind>)
+    on_soil.dashpot = [kind](const std::array<double, 2> &impedance, const Vec<dim> &n) {
+      return kind->template dashpot<dim>(impedance, n);
+    };
+  return on_soil;
 }
 
-Boundary read_boundary(DeferredTable &table);
+template <class Kind>
+requires(!std::same_as<Kind, Boundary>) Boundary::Boundary(Kind given)
+    : in_motion(Kind::in_motion), quasi_static(Kind::quasi_static), water(Kind::water), gas(Kind::gas) {
+  static_assert(StatesSoil<Kind>, "a boundary kind states what it does to the skeleton: in_motion and quasi_static");
+  static_assert(StatesWater<Kind>, "a boundary kind states what it does to the pore liquid: water");
+  static_assert(StatesGas<Kind>, "a boundary kind states what it does to the pore gas: gas");
+  static_assert(PossibleOnSoil<Kind>, "no stage can act on the skeleton as this kind states");
+  static_assert(PossibleOnFluids<Kind>, "a wall, and the surface of the soil, act on liquid and gas alike");
+  static_assert(CompleteOnSoil<Kind>, "members are missing or never asked for: see OnSoil in kind.h");
+  static_assert(CompleteOnFluids<Kind>, "members are missing or never asked for: see OnWater and OnGas in kind.h");
+  given.fields(FindVectors{vectors});
+  const auto kind = std::make_shared<const Kind>(std::move(given));
+  on_soil_2d_ = functions_of<2>(kind), on_soil_3d_ = functions_of<3>(kind);
+  if constexpr (member::precedence<Kind>) precedence = Kind::precedence;
+  if constexpr (member::follows<Kind>) follows = kind->follows();
+  if constexpr (member::open_water<Kind>) open_water = Kind::open_water;
+  if constexpr (member::friction_coefficient<Kind>)
+    friction_coefficient = [kind](double t) { return kind->friction_coefficient(t); };
+  if constexpr (member::adhesion<Kind>) adhesion = [kind](double t) { return kind->adhesion(t); };
+  if constexpr (member::outside<Kind>)
+    outside = [kind](double x, double y, double z, double t, double unit_weight) {
+      return kind->outside(x, y, z, t, unit_weight);
+    };
+  if constexpr (member::supply<Kind>)
+    supply = [kind](double x, double y, double z, double t) { return kind->supply(x, y, z, t); };
+  if constexpr (member::inflow<Kind>)
+    inflow = [kind](double x, double y, double z, double t) { return kind->inflow(x, y, z, t); };
+  if constexpr (member::gas_outside<Kind>)
+    gas_outside = [kind](double x, double y, double z, double t) { return kind->gas_outside(x, y, z, t); };
+}
 
 }  // namespace talus

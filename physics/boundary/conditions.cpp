@@ -59,18 +59,18 @@ PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vect
   first_contact_of_node_.assign(mesh.node_count(), -1);
   std::vector<NodeNormal<dim>> normals;
   for (int s = 0; s < static_cast<int>(sources_.size()); ++s) {
-    if (concerns_water(sources_[s].kind)) continue;
+    const Boundary &kind = sources_[s].kind;
+    if (kind.fluids_only()) continue;
     std::vector<Facet<dim>> facets;
     for (const std::string &group : sources_[s].groups) {
       const auto more = mesh.facets(group);
       facets.insert(facets.end(), more.begin(), more.end());
     }
-    const Boundary &kind = sources_[s].kind;
-    if (const auto *load = std::get_if<Traction>(&kind)) {
-      surface_loads_.add_face(s, *load, std::move(facets));
+    if (kind.in_motion == OnSoil::load) {
+      surface_loads_.add_face(s, kind, std::move(facets));
     } else {
-      if (std::holds_alternative<NonReflecting>(kind)) dashpots_.emplace_back(s, facets);
-      if (std::holds_alternative<Friction>(kind)) bases_.emplace_back(s, facets);
+      if (kind.in_motion == OnSoil::dashpot) dashpots_.emplace_back(s, facets);
+      if (kind.in_motion == OnSoil::contact) bases_.emplace_back(s, facets);
       for (const Facet<dim> &f : facets)
         for (int node : f.node) normals.push_back({s, node, mesh.position[node], f.normal, f.area / dim});
     }
@@ -79,21 +79,18 @@ PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vect
   // an order that does not depend on the partition, so that all ranks build the same constraints
   std::stable_sort(normals.begin(), normals.end(), [&](const NodeNormal<dim> &a, const NodeNormal<dim> &b) {
     const auto key = [&](const NodeNormal<dim> &n) {
-      return std::make_tuple(priority(sources_[n.source].kind), n.source, n.normal, n.area);
+      return std::make_tuple(sources_[n.source].kind.precedence, n.source, n.normal, n.area);
     };
     return key(a) < key(b);
   });
-  for (const NodeNormal<dim> &n : normals)
-    std::visit(
-        [&](const auto &kind) {
-          if constexpr (requires { kind.template directions<dim>(n.normal); })
-            for (const Vec<dim> &direction : kind.template directions<dim>(n.normal))
-              for (int held = holds_loads(sources_[n.source].kind); held < 2; ++held)
-                add_direction(prescribed_[held], n.node, n.source, direction);
-          else
-            add_contact(n.node, n.source, n.normal, n.area);
-        },
-        sources_[n.source].kind);
+  for (const NodeNormal<dim> &n : normals) {
+    const Boundary &kind = sources_[n.source].kind;
+    if (kind.in_motion == OnSoil::contact) add_contact(n.node, n.source, n.normal, n.area);
+    if (const auto &directions = kind.template on_soil<dim>().directions)
+      for (const Vec<dim> &direction : directions(n.normal))
+        for (int held = kind.stands_in(); held < 2; ++held)
+          add_direction(prescribed_[held], n.node, n.source, direction);
+  }
   size_t contacts = 0;
   for (const auto &of_node : contacts_) contacts += of_node.size();
   size_t reactions = dim * prescribed_[1].entry.size() + contacts;
@@ -145,17 +142,16 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
   if (!dashpots_.empty() && !held_) {
     constexpr int width = dim * dim;
     for (const auto &[source, facets] : dashpots_) {
+      const auto &dashpot = sources_[source].kind.template on_soil<dim>().dashpot;
       nodal_.assign(static_cast<size_t>(nodes) * width, 0);
       for (const Facet<dim> &f : facets) {
         const int cell = grid.find_cell(f.cell);
         if (cell < 0) continue;
+        const Square<dim> matrix = dashpot(impedance[cell], f.normal);
         for (int node : f.node)
           for (int i = 0; i < dim; ++i)
             for (int j = 0; j < dim; ++j)
-              nodal_[grid.find_node(node) * width + i * dim + j] +=
-                  f.area / dim *
-                  ((impedance[cell][0] - impedance[cell][1]) * f.normal[i] * f.normal[j] +
-                   (i == j ? impedance[cell][1] : 0));
+              nodal_[grid.find_node(node) * width + i * dim + j] += f.area / dim * matrix(i, j);
       }
       PetscCall(grid.sum(nodal_.data(), width));
       for (int i = 0; i < nodes; ++i) {
@@ -173,7 +169,7 @@ void Conditions<dim>::freeze_reactions(const FilledGrid<dim> &grid, const Vec<di
   for (const ActivePrescribed &p : active_prescribed_)
     for (int k = 0; k < p.condition->count; ++k) {
       const int source = p.condition->source[k];
-      if (!std::holds_alternative<NonReflecting>(sources_[source].kind)) continue;
+      if (!sources_[source].kind.stands_in()) continue;
       Reaction r{grid.mesh_node[p.node], source, {}};
       add<dim>(r.value, -dot<dim>(force[p.node], p.condition->direction[k]), p.condition->direction[k]);
       frozen_.push_back(r);
@@ -195,14 +191,8 @@ void Conditions<dim>::follow(const Vec<dim> *u) {
 
 template <int dim>
 double Conditions<dim>::target(const Prescribed &c, int k, const Vec<dim> &x, double t) const {
-  return std::visit(
-      [&](const auto &kind) -> double {
-        if constexpr (requires { kind.template value<dim>(c.direction[k], x, t); })
-          return kind.template value<dim>(c.direction[k], x, t);
-        else
-          return 0;
-      },
-      sources_[c.source[k]].kind);
+  const auto &speed = sources_[c.source[k]].kind.template on_soil<dim>().speed;
+  return speed ? speed(c.direction[k], x, t) : 0;
 }
 
 template <int dim>
@@ -263,13 +253,13 @@ void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &gri
     const Vec<dim> before = v[c.node], &n = c.contact->normal;
     const Square<dim> mass = mass_of(c.node);
     const double into = dot<dim>(before, n);
-    const Friction &base = std::get<Friction>(sources_[c.contact->source].kind);
+    const Boundary &base = sources_[c.contact->source].kind;
     Vec<dim> slip = before;
     add<dim>(slip, -into, n);
     c.presses = into > 0;
     Contact &contact = *c.contact;
     contact.since_pressed = c.presses ? 0 : contact.since_pressed + gamma;
-    const double slope = std::tan(base.friction_angle(t));
+    const double slope = base.friction_coefficient(t);
     if (c.presses) contact.capacity += slope * map<dim>(n).dot(mass * map<dim>(n)) * into;
     if (pores.thrust) contact.capacity -= slope * gamma * pores.thrust(c.node, n);
     const double forgotten = answer * contact.capacity, rubbing = std::max(0., forgotten),

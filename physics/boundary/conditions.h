@@ -65,7 +65,7 @@ class Conditions {
 
   const std::vector<Source> &sources() const { return sources_; }
   bool has_dashpots() const { return !dashpots_.empty(); }
-  bool loads(int source) const { return std::holds_alternative<Traction>(sources_[source].kind); }
+  bool loads(int source) const { return sources_[source].kind.in_motion == OnSoil::load; }
   /// Impulse on the soil by each boundary since the last call, per source [N s]; collective.
   PetscErrorCode take_impulses(MPI_Comm comm, std::vector<Vec<dim>> &impulse);
 

@@ -1,22 +1,21 @@
 #pragma once
-#include <vector>
-
-#include "base/vec.h"
+#include "physics/boundary/kind.h"
 
 namespace talus {
 
 /// No motion.
 struct Fixed {
   static constexpr const char *name = "fixed";
+  static constexpr OnSoil in_motion = OnSoil::support, quasi_static = OnSoil::support;
+  static constexpr OnWater water = OnWater::wall;
+  static constexpr OnGas gas = OnGas::wall;
+  static constexpr int precedence = 1;
   template <class Visitor>
   void fields(Visitor &&) {}
 
-  /// Directions in which a facet with normal n prescribes the velocity.
   template <int dim>
   std::vector<Vec<dim>> directions(const Vec<dim> &) const {
-    std::vector<Vec<dim>> axes(dim, Vec<dim>{});
-    for (int d = 0; d < dim; ++d) axes[d][d] = 1;
-    return axes;
+    return all_axes<dim>();
   }
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 #include "base/units.h"
+#include "physics/boundary/kind.h"
 #include "scene/function.h"
 
 namespace talus {
@@ -8,14 +9,15 @@ namespace talus {
 struct Flux {
   static constexpr const char *name = "flux";
   static constexpr const char *meaning = "liquid pumped through the face";
-  static constexpr bool water = true;
+  static constexpr OnSoil in_motion = OnSoil::none, quasi_static = OnSoil::none;
+  static constexpr OnWater water = OnWater::flux;
+  static constexpr OnGas gas = OnGas::atmosphere;
   Function inflow = 0.0;
   template <class Visitor>
   void fields(Visitor &&v) {
     v.function("inflow", inflow, metre_per_second, {-1e3, 1e3},
                "volume of liquid that enters per area and time, function of x, y, z, t; negative for outflow");
   }
-  double forced(double x, double y, double z, double t) const { return inflow(x, y, z, t); }
 };
 
 }  // namespace talus

@@ -1,5 +1,8 @@
 #pragma once
+#include <cmath>
+
 #include "base/units.h"
+#include "physics/boundary/kind.h"
 #include "scene/function.h"
 
 namespace talus {
@@ -9,6 +12,9 @@ namespace talus {
 /// distorts the contact just where shearing starts.
 struct Friction {
   static constexpr const char *name = "friction";
+  static constexpr OnSoil in_motion = OnSoil::contact, quasi_static = OnSoil::refused;
+  static constexpr OnWater water = OnWater::wall;
+  static constexpr OnGas gas = OnGas::wall;
   Function friction_angle = 0.0;
   Function adhesion = 0.0;
   template <class Visitor>
@@ -16,6 +22,7 @@ struct Friction {
     v.function("friction_angle", friction_angle, degree, {0, 89}, "friction angle phi_b of the base, function of t");
     v.function("adhesion", adhesion, pascal, {0, 1e9}, "adhesion of the base, function of t");
   }
+  double friction_coefficient(double t) const { return std::tan(friction_angle(t)); }
 };
 
 }  // namespace talus

@@ -1,15 +1,18 @@
 #pragma once
 #include "base/units.h"
+#include "physics/boundary/kind.h"
 #include "scene/function.h"
 
 namespace talus {
 
 /// The gas beyond the face has this gauge pressure; it moves in and out freely, liquid only out. The face carries no
 /// other load by it.
-struct GivenGasPressure {
+struct PrescribedGasPressure {
   static constexpr const char *name = "gas_pressure";
   static constexpr const char *meaning = "pressure of the gas beyond the face; liquid may leave but not enter";
-  static constexpr bool water = true;
+  static constexpr OnSoil in_motion = OnSoil::none, quasi_static = OnSoil::none;
+  static constexpr OnWater water = OnWater::outflow;
+  static constexpr OnGas gas = OnGas::pressure;
   Function pressure = 0.0;
   template <class Visitor>
   void fields(Visitor &&v) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "base/units.h"
+#include "physics/boundary/kind.h"
 #include "scene/function.h"
 
 namespace talus {
@@ -12,7 +13,10 @@ struct Head {
   static constexpr const char *name = "head";
   static constexpr const char *meaning =
       "open water up to a level, whose weight acts on the face; above the level a seepage face";
-  static constexpr bool water = true;
+  static constexpr OnSoil in_motion = OnSoil::none, quasi_static = OnSoil::none;
+  static constexpr OnWater water = OnWater::seepage;
+  static constexpr OnGas gas = OnGas::atmosphere;
+  static constexpr bool open_water = true;
   Function level = 0.0;
   template <class Visitor>
   void fields(Visitor &&v) {
@@ -21,9 +25,7 @@ struct Head {
   double outside(double, double y, double, double t, double unit_weight) const {
     return std::max(0., unit_weight * (level(t) - y));
   }
-  double load(double pressure) const { return pressure; }
-  static constexpr bool deepens = true;  ///< below its level pressure grows with depth by the weight of the water
-  /// Volume that may enter per area and time where the face is dry [m/s].
+  /// Nothing enters where the face is dry.
   double supply(double, double, double, double) const { return 0; }
 };
 

@@ -1,12 +1,15 @@
 #pragma once
+#include "physics/boundary/kind.h"
 
 namespace talus {
 
-/// No fluid passes. Faces that hold the soil (fixed, roller, velocity, friction) are impermeable without being told so.
+/// No fluid passes. Faces that support the soil (fixed, roller, velocity, friction) state the same of themselves.
 struct Impermeable {
   static constexpr const char *name = "impermeable";
   static constexpr const char *meaning = "no fluid passes";
-  static constexpr bool water = true;
+  static constexpr OnSoil in_motion = OnSoil::none, quasi_static = OnSoil::none;
+  static constexpr OnWater water = OnWater::wall;
+  static constexpr OnGas gas = OnGas::wall;
   template <class Visitor>
   void fields(Visitor &&) {}
 };

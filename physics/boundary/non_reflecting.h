@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "base/units.h"
-#include "base/vec.h"
+#include "physics/boundary/kind.h"
 
 namespace talus {
 
@@ -11,6 +11,10 @@ namespace talus {
 /// them, and the reaction it bore at their end acts on as a dead load.
 struct NonReflecting {
   static constexpr const char *name = "non_reflecting";
+  static constexpr OnSoil in_motion = OnSoil::dashpot, quasi_static = OnSoil::support;
+  static constexpr OnWater water = OnWater::surface;
+  static constexpr OnGas gas = OnGas::surface;
+  static constexpr int precedence = 2;
   enum class Support { roller, fixed, none };
   Support support = Support::roller;
   template <class Visitor>
@@ -20,15 +24,21 @@ struct NonReflecting {
              "end acts as a dead load from then on");
   }
 
-  static constexpr bool while_loads_are_held = true;
-  /// Directions in which a facet with normal n is held while loads are.
+  /// Of the support that stands in for the dashpots.
   template <int dim>
   std::vector<Vec<dim>> directions(const Vec<dim> &normal) const {
     if (support == Support::none) return {};
     if (support == Support::roller) return {normal};
-    std::vector<Vec<dim>> axes(dim, Vec<dim>{});
-    for (int d = 0; d < dim; ++d) axes[d][d] = 1;
-    return axes;
+    return all_axes<dim>();
+  }
+  /// rho c_p n n + rho c_s (1 - n n)
+  template <int dim>
+  Square<dim> dashpot(const std::array<double, 2> &impedance, const Vec<dim> &n) const {
+    Square<dim> matrix;
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j)
+        matrix(i, j) = (impedance[0] - impedance[1]) * n[i] * n[j] + (i == j ? impedance[1] : 0);
+    return matrix;
   }
 };
 

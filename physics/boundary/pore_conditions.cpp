@@ -14,7 +14,7 @@ PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const
   std::set<std::pair<int, int>> open;  // facets with water beyond
   std::vector<NodeNormal<dim>> normals;
   for (int s = 0; s < static_cast<int>(sources.size()); ++s) {
-    if (!concerns_water(sources[s].kind) || std::holds_alternative<Impermeable>(sources[s].kind)) continue;
+    if (!sources[s].kind.fluid_face()) continue;
     groups_.emplace_back(s, std::vector<Facet<dim>>{});
     for (const std::string &group : sources[s].groups) {
       if (group == free_surface) {
@@ -25,11 +25,7 @@ PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const
     }
   }
   for (int s = 0; s < static_cast<int>(sources.size()); ++s) {
-    const Boundary &kind = sources[s].kind;
-    const bool holds =
-        std::holds_alternative<Impermeable>(kind) || !(concerns_water(kind) || std::holds_alternative<Traction>(kind) ||
-                                                       std::holds_alternative<NonReflecting>(kind));
-    if (!holds) continue;
+    if (sources[s].kind.water != OnWater::wall) continue;
     for (const std::string &group : sources[s].groups)
       for (const Facet<dim> &f : mesh.facets(group))
         if (!open.count({f.cell, f.face}))

@@ -26,13 +26,7 @@ class PoreConditions {
   /// `sealed`: a surface without a boundary lets water out, not in. Collective.
   PetscErrorCode setup(const BackgroundMesh<dim> &mesh, const std::vector<Source> &sources, bool sealed);
   /// Is there open water on the free surface, so that `begin` needs its moments?
-  bool open_water() const {
-    return rain_ != atmosphere && std::visit(
-                                      [](const auto &kind) {
-                                        return requires { kind.deepens; };
-                                      },
-                                      (*sources_)[rain_].kind);
-  }
+  bool open_water() const { return rain_ != atmosphere && (*sources_)[rain_].kind.open_water; }
   /// Picks nodes and faces of the filled grid; `surface` [node] is the sum of w grad N over all cells [m2], `moment`
   /// [node] that area's first moment in depth below the node [m3], theory (5.2), which only open water asks for.
   /// Collective.
@@ -45,20 +39,15 @@ class PoreConditions {
   void pressures(double t, const FilledGrid<dim> &grid, double unit_weight, Put &&put) const {
     for (const Face &f : faces_) {
       if (f.source < 0) continue;
+      const Boundary &kind = (*sources_)[f.source].kind;
+      if (!kind.outside) continue;
       const Vec<dim> &x = grid.position[f.node];
-      std::visit(
-          [&](const auto &kind) {
-            if constexpr (requires { kind.load(0.); }) {
-              const double p = kind.outside(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t, unit_weight);
-              double growth = 0;
-              if constexpr (requires { kind.deepens; }) growth = p > 0 ? unit_weight : 0;
-              Vec<dim> push, load;
-              for (int d = 0; d < dim; ++d)
-                push[d] = p * f.area[d] + growth * f.moment[d], load[d] = kind.load(push[d]);
-              put(f.node, p, push, load);
-            }
-          },
-          (*sources_)[f.source].kind);
+      const double p = kind.outside(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t, unit_weight);
+      const double growth = kind.open_water && p > 0 ? unit_weight : 0;
+      Vec<dim> push, load{};
+      for (int d = 0; d < dim; ++d) push[d] = p * f.area[d] + growth * f.moment[d];
+      if (kind.open_water) load = push;
+      put(f.node, p, push, load);
     }
   }
   /// Calls put(node, P, area) for every face with a given gas pressure P beyond it [Pa]; beyond the others it is the
@@ -68,12 +57,8 @@ class PoreConditions {
     for (const Face &f : faces_) {
       if (f.source < 0) continue;
       const Vec<dim> &x = grid.position[f.node];
-      std::visit(
-          [&](const auto &kind) {
-            if constexpr (requires { kind.gas_outside(0., 0., 0., 0.); })
-              put(f.node, kind.gas_outside(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t), f.area);
-          },
-          (*sources_)[f.source].kind);
+      if (const auto &pressure = (*sources_)[f.source].kind.gas_outside)
+        put(f.node, pressure(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t), f.area);
     }
   }
   /// Calls put(node, area) for every gap; `surface(node)` is the sum of w grad N now, of which named faces and walls
@@ -98,14 +83,11 @@ class PoreConditions {
       } else {
         const Vec<dim> &x = grid.position[f.node];
         const double z = dim == 3 ? x[dim - 1] : 0;
-        std::visit(
-            [&](const auto &kind) {
-              if constexpr (requires { kind.supply(0., 0., 0., 0.); })
-                if (kind.outside(x[0], x[1], z, t, unit_weight) <= 0) least = -kind.supply(x[0], x[1], z, t);
-              if constexpr (requires { kind.gas_outside(0., 0., 0., 0.); }) least = 0;
-              if constexpr (requires { kind.forced(0., 0., 0., 0.); }) least = most = -kind.forced(x[0], x[1], z, t);
-            },
-            (*sources_)[f.source].kind);
+        const Boundary &kind = (*sources_)[f.source].kind;
+        if (kind.water == OnWater::outflow) least = 0;
+        if (kind.water == OnWater::flux) least = most = -kind.inflow(x[0], x[1], z, t);
+        if (kind.water == OnWater::seepage && kind.outside(x[0], x[1], z, t, unit_weight) <= 0)
+          least = -kind.supply(x[0], x[1], z, t);
       }
       if (least == -1e300) continue;
       const LiquidAtNode at = liquid_at(f.node);

@@ -4,17 +4,12 @@
 #include <array>
 #include <cmath>
 
-#include "physics/boundary/boundary.h"
+#include "base/vec.h"
 
 namespace talus {
 
 inline constexpr double least_angle_sine =
     0.05233595624294384;  // of 3 degrees: facets of one curved face share a direction within this
-
-/// Plates that move come first, then what is fixed, then rollers: a node where they meet follows the strongest.
-inline int priority(const Boundary &kind) {
-  return std::holds_alternative<PrescribedVelocity>(kind) ? 0 : std::holds_alternative<Fixed>(kind) ? 1 : 2;
-}
 
 template <int dim>
 struct PrescribedDirections {

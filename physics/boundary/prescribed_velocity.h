@@ -2,15 +2,19 @@
 #include <vector>
 
 #include "base/units.h"
-#include "base/vec.h"
+#include "physics/boundary/kind.h"
 #include "scene/function.h"
 
 namespace talus {
 
-/// Velocity given as a function of place and time: the whole vector (a rough plate), or its part across the face (a
-/// smooth one).
+/// Velocity prescribed as a function of place and time: the whole vector (a rough plate), or its component across the
+/// face (a smooth one).
 struct PrescribedVelocity {
   static constexpr const char *name = "velocity";
+  static constexpr OnSoil in_motion = OnSoil::support, quasi_static = OnSoil::support;
+  static constexpr OnWater water = OnWater::wall;
+  static constexpr OnGas gas = OnGas::wall;
+  static constexpr int precedence = 0;
   std::vector<Function> velocity;
   bool smooth = false;
   template <class Visitor>
@@ -23,12 +27,10 @@ struct PrescribedVelocity {
   template <int dim>
   std::vector<Vec<dim>> directions(const Vec<dim> &normal) const {
     if (smooth) return {normal};
-    std::vector<Vec<dim>> axes(dim, Vec<dim>{});
-    for (int d = 0; d < dim; ++d) axes[d][d] = 1;
-    return axes;
+    return all_axes<dim>();
   }
   template <int dim>
-  double value(const Vec<dim> &direction, const Vec<dim> &x, double t) const {
+  double speed(const Vec<dim> &direction, const Vec<dim> &x, double t) const {
     double sum = 0;
     for (int d = 0; d < dim; ++d) sum += direction[d] * velocity[d](x[0], x[1], dim == 3 ? x[2] : 0, t);
     return sum;

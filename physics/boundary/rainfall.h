@@ -1,5 +1,6 @@
 #pragma once
 #include "base/units.h"
+#include "physics/boundary/kind.h"
 #include "scene/function.h"
 
 namespace talus {
@@ -10,7 +11,10 @@ struct Rainfall {
   static constexpr const char *name = "rainfall";
   static constexpr const char *meaning =
       "rain, of which the excess runs off at zero pressure; without rain a seepage face";
-  static constexpr bool water = true;
+  static constexpr OnSoil in_motion = OnSoil::none, quasi_static = OnSoil::none;
+  static constexpr OnWater water = OnWater::seepage;
+  static constexpr OnGas gas = OnGas::atmosphere;
+  static constexpr bool open_water = false;
   Function intensity = 0.0;
   template <class Visitor>
   void fields(Visitor &&v) {
@@ -18,7 +22,6 @@ struct Rainfall {
                "rain, volume per area of the face and time, function of x, y, z, t");
   }
   double outside(double, double, double, double, double) const { return 0; }
-  double load(double) const { return 0; }
   double supply(double x, double y, double z, double t) const { return intensity(x, y, z, t); }
 };
 

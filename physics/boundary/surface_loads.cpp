@@ -160,15 +160,15 @@ void SurfaceLoads<dim>::begin(const std::vector<std::unique_ptr<Body<dim>>> &bod
 template <int dim>
 void SurfaceLoads<dim>::add(double t, const FilledGrid<dim> &grid, const Vec<dim> *position, Vec<dim> *force) {
   for (Active &a : active_) {
-    const Traction &load = faces_[a.face].load;
-    if (load.follows()) {
+    const Face &face = faces_[a.face];
+    if (face.follows) {
       Vec<dim> x{}, normal;
       for (int k = 0; k <= dim; ++k)
         for (int d = 0; d < dim; ++d) x[d] += a.coordinate[k] * position[a.node[k]][d];
       normal = carried_normal<dim>(deformation<dim>(grid.mesh().cells[a.mesh_cell], a.node, position), a.piece->normal);
-      a.force = load.template load<dim>(normal, x, t);
+      a.force = face.load(normal, x, t);
     } else {
-      a.force = load.template load<dim>({}, a.piece->place, t);
+      a.force = face.load({}, a.piece->place, t);
     }
     for (double &component : a.force) component *= a.piece->area;
     for (int k = 0; k <= dim; ++k)

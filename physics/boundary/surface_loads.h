@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "particles/body.h"
-#include "physics/boundary/traction.h"
+#include "physics/boundary/boundary.h"
 #include "transfer/filled_grid.h"
 
 namespace talus {
@@ -16,8 +16,8 @@ template <int dim>
 class SurfaceLoads {
  public:
   /// A face that `load` acts on: its facets that have soil behind them at the start.
-  void add_face(int source, const Traction &load, std::vector<Facet<dim>> facets) {
-    faces_.push_back({source, load, std::move(facets)});
+  void add_face(int source, const Boundary &load, std::vector<Facet<dim>> facets) {
+    faces_.push_back({source, load.follows, load.on_soil<dim>().load, std::move(facets)});
   }
   int face_count() const { return static_cast<int>(faces_.size()); }
 
@@ -46,7 +46,8 @@ class SurfaceLoads {
  private:
   struct Face {
     int source;
-    Traction load;
+    bool follows;  ///< the load is one on the face as it is now
+    std::function<Vec<dim>(const Vec<dim> &normal, const Vec<dim> &x, double t)> load;  ///< [Pa]
     std::vector<Facet<dim>> facets;
     std::vector<double> share{};
   };

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "base/units.h"
-#include "base/vec.h"
+#include "physics/boundary/kind.h"
 #include "scene/function.h"
 
 namespace talus {
@@ -13,6 +13,9 @@ namespace talus {
 /// docs/theory (6.4), (6.5).
 struct Traction {
   static constexpr const char *name = "traction";
+  static constexpr OnSoil in_motion = OnSoil::load, quasi_static = OnSoil::load;
+  static constexpr OnWater water = OnWater::surface;
+  static constexpr OnGas gas = OnGas::surface;
   std::vector<Function> traction;
   Function pressure;
   template <class Visitor>

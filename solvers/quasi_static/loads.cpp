@@ -9,8 +9,7 @@ void Loads<dim>::activate() {
   facets_.clear();
   const BackgroundMesh<dim> &mesh = soil_.mesh();
   for (size_t s = 0; s < sources_.size(); ++s) {
-    if (!std::holds_alternative<Traction>(sources_[s].kind) && !std::holds_alternative<Head>(sources_[s].kind))
-      continue;
+    if (sources_[s].kind.quasi_static != OnSoil::load && !sources_[s].kind.open_water) continue;
     for (const std::string &group : sources_[s].groups)
       for (const Facet<dim> &facet : mesh.has_group(group) ? mesh.facets(group) : std::vector<Facet<dim>>{}) {
         if (!soil_.active(facet.cell)) continue;
@@ -101,10 +100,12 @@ void Loads<dim>::force(double t, std::vector<double> &force) const {
 template <int dim>
 Vec<dim> Loads<dim>::traction_of(const LoadedFacet &load, const Vec<dim> &x, double t) const {
   const Boundary &kind = sources_[load.source].kind;
-  if (const auto *given = std::get_if<Traction>(&kind)) return given->template load<dim>(load.facet.normal, x, t);
-  Vec<dim> traction = load.facet.normal;
-  for (double &component : traction)
-    component *= -std::get<Head>(kind).outside(x[0], x[1], 0, t, data_.flow->unit_weight());
+  Vec<dim> traction{};
+  if (kind.quasi_static == OnSoil::load) traction = kind.template on_soil<dim>().load(load.facet.normal, x, t);
+  if (kind.open_water) {
+    const double pressure = kind.outside(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t, data_.flow->unit_weight());
+    for (int d = 0; d < dim; ++d) traction[d] -= pressure * load.facet.normal[d];
+  }
   return traction;
 }
 

@@ -90,32 +90,25 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
   };
   const auto put_source = [&](const Facet<dim> &facet, int s) {
     const Boundary &kind = sources_[s].kind;
-    const bool pressed = std::visit(
-        [](const auto &one) {
-          return requires { one.load(0.); };
-        },
-        kind);
+    const bool seeps = kind.water == OnWater::seepage;
     put(facet, s,
-        !pressed                                 ? -1
-        : std::holds_alternative<Rainfall>(kind) ? 1
-        : std::holds_alternative<Head>(kind)     ? 2
-                                                 : 3,
-        std::holds_alternative<Flux>(kind) || std::holds_alternative<Rainfall>(kind));
+        kind.water == OnWater::pressure ? 3
+        : seeps && kind.open_water      ? 2
+        : seeps                         ? 1
+                                        : -1,
+        seeps || kind.water == OnWater::flux);
   };
   int rain = atmosphere;
   for (int s = 0; s < static_cast<int>(sources_.size()); ++s) {
     const Boundary &kind = sources_[s].kind;
-    const bool holds =
-        std::holds_alternative<Impermeable>(kind) || !(concerns_water(kind) || std::holds_alternative<Traction>(kind) ||
-                                                       std::holds_alternative<NonReflecting>(kind));
-    if (!holds && !concerns_water(kind)) continue;
+    if (kind.water == OnWater::surface) continue;
     for (const std::string &group : sources_[s].groups) {
-      if (concerns_water(kind) && group == free_surface) rain = s;
+      if (kind.fluids_only() && group == free_surface) rain = s;
       if (!mesh_.has_group(group)) continue;
       for (const Facet<dim> &f : mesh_.facets(group)) {
         if (!active_[f.cell] || soil_across(mesh_.cells[f.cell].neighbour[f.face])) continue;
         taken.emplace(f.cell, f.face);
-        if (!holds) put_source(f, s);
+        if (kind.water != OnWater::wall) put_source(f, s);
       }
     }
   }
@@ -150,14 +143,7 @@ template <int dim>
 double PoreFlow<dim>::outside(int node, double t) const {
   if (pressed_[node] < 0) return 0;
   const Vec<dim> &x = nodes_.position[node];
-  return std::visit(
-      [&](const auto &kind) {
-        if constexpr (requires { kind.load(0.); })
-          return kind.outside(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t, unit_weight());
-        else
-          return 0.;
-      },
-      sources_[pressed_[node]].kind);
+  return sources_[pressed_[node]].kind.outside(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t, unit_weight());
 }
 
 template <int dim>
@@ -221,8 +207,8 @@ template <int dim>
 double PoreFlow<dim>::inflow_at(const Supply &supply, double t) const {
   const Vec<dim> &x = nodes_.position[supply.node];
   const double z = dim == 3 ? x[dim - 1] : 0;
-  if (const auto *flux = std::get_if<Flux>(&sources_[supply.source].kind)) return flux->forced(x[0], x[1], z, t);
-  return std::get<Rainfall>(sources_[supply.source].kind).supply(x[0], x[1], z, t);
+  const Boundary &kind = sources_[supply.source].kind;
+  return kind.water == OnWater::flux ? kind.inflow(x[0], x[1], z, t) : kind.supply(x[0], x[1], z, t);
 }
 
 /// Gradients of the shape functions 0..dim.

@@ -50,19 +50,17 @@ PetscErrorCode Supports<dim>::setup(const BackgroundMesh<dim> &mesh, const Eleme
   PetscFunctionBeginUser;
   sources_ = &sources;
   std::vector<Wanted<dim>> mine;
-  for (int s = 0; s < static_cast<int>(sources.size()); ++s)
-    std::visit(
-        [&](const auto &kind) {
-          if constexpr (requires(Vec<dim> n) { kind.template directions<dim>(n); })
-            for (const std::string &group : sources[s].groups)
-              for (const Facet<dim> &facet : mesh.facets(group)) {
-                if (!active[facet.cell]) continue;
-                for (int node : nodes.of_facet(facet.cell, facet.face))
-                  for (const Vec<dim> &direction : kind.template directions<dim>(facet.normal))
-                    mine.push_back({priority(sources[s].kind), s, nodes.global()[node], direction});
-              }
-        },
-        sources[s].kind);
+  for (int s = 0; s < static_cast<int>(sources.size()); ++s) {
+    const Boundary &kind = sources[s].kind;
+    if (kind.quasi_static != OnSoil::support) continue;
+    for (const std::string &group : sources[s].groups)
+      for (const Facet<dim> &facet : mesh.facets(group)) {
+        if (!active[facet.cell]) continue;
+        for (int node : nodes.of_facet(facet.cell, facet.face))
+          for (const Vec<dim> &direction : kind.template on_soil<dim>().directions(facet.normal))
+            mine.push_back({kind.precedence, s, nodes.global()[node], direction});
+      }
+  }
 
   // a facet may lie on one rank and its nodes on others too: every rank hears of all
   int ranks;
@@ -80,7 +78,7 @@ PetscErrorCode Supports<dim>::setup(const BackgroundMesh<dim> &mesh, const Eleme
   for (int i = 0; i < nodes.count(); ++i) local[nodes.global()[i]] = i;
   of_node_.assign(nodes.count(), -1), supports_.clear(), moves_ = false;
   for (const Wanted<dim> &w : all) {
-    moves_ |= std::holds_alternative<PrescribedVelocity>(sources[w.source].kind);
+    moves_ |= static_cast<bool>(sources[w.source].kind.template on_soil<dim>().speed);
     const auto found = local.find(w.global);
     if (found == local.end()) continue;
     int &index = of_node_[found->second];
@@ -93,14 +91,14 @@ PetscErrorCode Supports<dim>::setup(const BackgroundMesh<dim> &mesh, const Eleme
 
 template <int dim>
 Vec<dim> Supports<dim>::increment(int node, const Vec<dim> &x, double from, double to) const {
-  Vec<dim> given{}, in_frame{};
+  Vec<dim> prescribed{}, in_frame{};
   const Support<dim> &s = *at(node);
   for (int k = 0; k < s.count; ++k) {
-    const auto *plate = std::get_if<PrescribedVelocity>(&(*sources_)[s.source[k]].kind);
-    const double travel = plate ? plate->template value<dim>(s.direction[k], x, (from + to) / 2) * (to - from) : 0;
-    for (int d = 0; d < dim; ++d) given[d] += travel * s.direction[k][d];
+    const auto &speed = (*sources_)[s.source[k]].kind.template on_soil<dim>().speed;
+    const double travel = speed ? speed(s.direction[k], x, (from + to) / 2) * (to - from) : 0;
+    for (int d = 0; d < dim; ++d) prescribed[d] += travel * s.direction[k][d];
   }
-  map<dim>(in_frame) = s.frame * map<dim>(given);
+  map<dim>(in_frame) = s.frame * map<dim>(prescribed);
   for (int d = 0; d < dim; ++d)
     if (!s.held[d]) in_frame[d] = 0;
   return in_frame;

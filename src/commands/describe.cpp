@@ -3,7 +3,7 @@
 #include <iostream>
 
 #include "commands/commands.h"
-#include "physics/boundary/boundary.h"
+#include "physics/boundary/kinds.h"
 #include "physics/laws/element_test.h"
 #include "physics/laws/laws.h"
 #include "physics/pores/permeability.h"
@@ -23,7 +23,7 @@ Action add_describe(CLI::App &app) {
     describe_one_of<Law>(describer, "body.NAME", "law");
     describe_one_of<Retention>(describer, "body.NAME.retention", "curve");
     describe_one_of<RelativePermeability>(describer, "body.NAME.relative_permeability", "curve");
-    describe_one_of<Boundary>(describer, "boundary.NAME", "kind");
+    describe_one_of<BoundaryKinds>(describer, "boundary.NAME", "kind");
     describe_one_of<IntegratorSettings>(describer, "integrator", "kind");
     describer.add({"File of `talus soil`", "", "A material and its tests.", "", {}}, SoilFile{});
     int rank;

@@ -61,20 +61,10 @@ void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
     if (concerns_gas(source.kind) && !phases.gas)
       scene.complain(path + ".kind", std::string("is a boundary of moving pore gas, but phases = \"") + phases.name +
                                          "\" has none; set phases = \"three-phase\"");
-    const auto check_vector = [&](const char *key, const std::vector<Function> &value) {
-      if (!value.empty() && value.size() != dim)
-        scene.complain(path + "." + key, "must have " + std::to_string(dim) + " components");
-    };
-    const bool has_static_form = std::visit(
-        [](const auto &kind) {
-          return requires { kind.template directions<dim>(Vec<dim>{}); }
-          || requires { kind.template load<dim>(Vec<dim>{}, Vec<dim>{}, 0.); };
-        },
-        source.kind);
-    if (quasi_static && !has_static_form && !concerns_water(source.kind))
+    if (quasi_static && source.kind.quasi_static == OnSoil::refused)
       scene.complain(path + ".kind", "has no quasi-static form; take fixed, roller, velocity or traction");
-    if (const auto *moved = std::get_if<PrescribedVelocity>(&source.kind)) check_vector("velocity", moved->velocity);
-    if (const auto *loaded = std::get_if<Traction>(&source.kind)) check_vector("traction", loaded->traction);
+    for (const auto &[key, components] : source.kind.vectors)
+      if (components != dim) scene.complain(path + "." + key, "must have " + std::to_string(dim) + " components");
   }
 }
 

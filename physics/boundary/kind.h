@@ -1,0 +1,184 @@
+#pragma once
+/// What a boundary kind states about itself. A kind is a struct with a `name`, its parameters in `fields`, and four
+/// statements, none of which may be left out:
+///
+///     static constexpr OnSoil in_motion = ...;     // what it does to the skeleton in dynamic stages
+///     static constexpr OnSoil quasi_static = ...;  // the same in quasi-static stages
+///     static constexpr OnWater water = ...;        // what it does to the pore liquid
+///     static constexpr OnGas gas = ...;            // what it does to the pore gas
+///
+/// Each statement asks for the members that are named beside it; everything that acts on a boundary (Conditions,
+/// PoreConditions, SurfaceLoads, and the finite elements of solvers/quasi_static) asks these statements and never for a
+/// kind by its name. A missing statement, a missing member, and a member that no statement asks for do not compile.
+#include <array>
+#include <concepts>
+#include <vector>
+
+#include "base/vec.h"
+
+namespace talus {
+
+/// What a boundary does to the soil's skeleton.
+enum class OnSoil {
+  none,     ///< nothing
+  support,  ///< prescribes the velocity in some directions: `precedence`, `directions`, and `speed` where they move
+  contact,  ///< a rigid base that soil does not enter and rubs against: `friction_coefficient`, `adhesion`
+  load,     ///< a force per area: `load`, `follows`
+  dashpot,  ///< a force per area that grows with the velocity: `dashpot`; a support may stand in for it
+  refused   ///< it cannot act there: the scene is refused
+};
+
+/// What a boundary does to the liquid in the pores.
+enum class OnWater {
+  surface,   ///< what acts on the surface of the soil acts here too: the atmosphere, or the kind of `free_surface`
+  wall,      ///< no liquid passes
+  pressure,  ///< the liquid beyond has the pressure `outside` and moves in and out freely: `open_water`
+  seepage,   ///< the same, but where `outside` is not above zero no more than `supply` enters: `open_water`
+  flux,      ///< the volume `inflow` enters per area and time
+  outflow    ///< liquid may leave and does not enter
+};
+
+/// What a boundary does to the gas in the pores.
+enum class OnGas {
+  surface,     ///< what acts on the surface of the soil acts here too
+  wall,        ///< no gas passes
+  atmosphere,  ///< gas moves in and out freely, beyond the face is the atmosphere
+  pressure     ///< gas moves in and out freely, beyond the face it has the pressure `gas_outside`
+};
+
+/// The members of a kind that its statements ask for.
+namespace member {
+
+/// `directions<dim>(n)`: unit vectors along which a facet of outer normal n prescribes the velocity.
+template <class Kind>
+concept directions = requires(const Kind &kind) {
+  kind.template directions<2>(Vec<2>{}).begin();
+};
+/// `precedence`: where supports meet at a node, those with the smallest number count first, and the others only in what
+/// they add: 0 for plates that move, 1 for nodes that are fixed, 2 for rollers.
+template <class Kind>
+concept precedence = requires {
+  { Kind::precedence } -> std::convertible_to<int>;
+};
+/// `speed<dim>(direction, x, t)`: prescribed velocity along one of the directions [m/s]; without it they stand still.
+template <class Kind>
+concept speed = requires(const Kind &kind) {
+  { kind.template speed<2>(Vec<2>{}, Vec<2>{}, 0.) } -> std::same_as<double>;
+};
+/// `load<dim>(n, x, t)`: force per area on a face of outer normal n at x [Pa].
+template <class Kind>
+concept load = requires(const Kind &kind) {
+  { kind.template load<2>(Vec<2>{}, Vec<2>{}, 0.) } -> std::same_as<Vec<2>>;
+};
+/// `follows()`: is the load one per area of the face as it is now, where it is now (true), or per undeformed area at
+/// the undeformed place (false)?
+template <class Kind>
+concept follows = requires(const Kind &kind) {
+  { kind.follows() } -> std::same_as<bool>;
+};
+/// `friction_coefficient(t)`: largest shear stress over normal stress on the base.
+template <class Kind>
+concept friction_coefficient = requires(const Kind &kind) {
+  { kind.friction_coefficient(0.) } -> std::same_as<double>;
+};
+/// `adhesion(t)`: shear stress that the base bears without normal stress [Pa].
+template <class Kind>
+concept adhesion = requires(const Kind &kind) {
+  { kind.adhesion(0.) } -> std::same_as<double>;
+};
+/// `dashpot<dim>({rho c_p, rho c_s}, n)`: force per area and velocity, a symmetric matrix, in soil of these impedances
+/// behind a facet of normal n [kg/(m2 s)].
+template <class Kind>
+concept dashpot = requires(const Kind &kind) {
+  { kind.template dashpot<2>(std::array<double, 2>{}, Vec<2>{}) } -> std::same_as<Square<2>>;
+};
+/// `outside(x, y, z, t, unit_weight)`: pressure of the liquid beyond the face [Pa], which weighs `unit_weight` [N/m3].
+template <class Kind>
+concept outside = requires(const Kind &kind) {
+  { kind.outside(0., 0., 0., 0., 0.) } -> std::same_as<double>;
+};
+/// `open_water`: the liquid beyond is water that rests on the face with its weight, so that its pressure grows with
+/// depth and loads the skeleton.
+template <class Kind>
+concept open_water = requires {
+  { Kind::open_water } -> std::convertible_to<bool>;
+};
+/// `supply(x, y, z, t)`: volume of liquid that may enter per area and time [m/s].
+template <class Kind>
+concept supply = requires(const Kind &kind) {
+  { kind.supply(0., 0., 0., 0.) } -> std::same_as<double>;
+};
+/// `inflow(x, y, z, t)`: volume of liquid that enters per area and time [m/s].
+template <class Kind>
+concept inflow = requires(const Kind &kind) {
+  { kind.inflow(0., 0., 0., 0.) } -> std::same_as<double>;
+};
+/// `gas_outside(x, y, z, t)`: gauge pressure of the gas beyond the face [Pa].
+template <class Kind>
+concept gas_outside = requires(const Kind &kind) {
+  { kind.gas_outside(0., 0., 0., 0.) } -> std::same_as<double>;
+};
+
+}  // namespace member
+
+template <class Kind>
+concept StatesSoil = requires {
+  { Kind::in_motion } -> std::convertible_to<OnSoil>;
+  { Kind::quasi_static } -> std::convertible_to<OnSoil>;
+};
+template <class Kind>
+concept StatesWater = requires {
+  { Kind::water } -> std::convertible_to<OnWater>;
+};
+template <class Kind>
+concept StatesGas = requires {
+  { Kind::gas } -> std::convertible_to<OnGas>;
+};
+
+/// Does the kind act so on the skeleton in any stage?
+template <StatesSoil Kind>
+constexpr bool acts(OnSoil action) {
+  return Kind::in_motion == action || Kind::quasi_static == action;
+}
+
+/// Stages can act as the kind states: all of them on supports and loads; a support may stand in for a dashpot.
+template <class Kind>
+concept PossibleOnSoil = StatesSoil<Kind> && Kind::in_motion != OnSoil::refused &&Kind::quasi_static !=
+                             OnSoil::contact &&Kind::quasi_static != OnSoil::dashpot &&
+                         (Kind::quasi_static != OnSoil::support || Kind::in_motion == OnSoil::support ||
+                          Kind::in_motion == OnSoil::dashpot);
+/// A wall stops both fluids, and the surface of the soil acts on both. (A face that stops the liquid alone has an
+/// inflow of zero.)
+template <class Kind>
+concept PossibleOnFluids = StatesWater<Kind> && StatesGas<Kind> &&
+                               (Kind::water == OnWater::wall) == (Kind::gas == OnGas::wall) &&
+                           (Kind::water == OnWater::surface) == (Kind::gas == OnGas::surface);
+
+/// The kind has the members that its statements about the skeleton ask for, and no others.
+template <class Kind>
+concept CompleteOnSoil = StatesSoil<Kind> && member::directions<Kind>
+== acts<Kind>(OnSoil::support) && member::precedence<Kind> == acts<Kind>(OnSoil::support) &&
+    (!member::speed<Kind> || acts<Kind>(OnSoil::support)) && member::load<Kind> == acts<Kind>(OnSoil::load) &&
+    member::follows<Kind> == acts<Kind>(OnSoil::load) &&
+    member::friction_coefficient<Kind> == acts<Kind>(OnSoil::contact) &&
+    member::adhesion<Kind> == acts<Kind>(OnSoil::contact) && member::dashpot<Kind> == acts<Kind>(OnSoil::dashpot);
+/// The same for its statements about the pore fluids.
+template <class Kind>
+concept CompleteOnFluids = StatesWater<Kind> && StatesGas<Kind> && member::outside<Kind>
+== (Kind::water == OnWater::pressure || Kind::water == OnWater::seepage) &&
+    member::open_water<Kind> == member::outside<Kind> &&member::supply<Kind> == (Kind::water == OnWater::seepage) &&
+    member::inflow<Kind> == (Kind::water == OnWater::flux) &&
+    member::gas_outside<Kind> == (Kind::gas == OnGas::pressure);
+
+template <class Kind>
+concept BoundaryKind = PossibleOnSoil<Kind> && PossibleOnFluids<Kind> && CompleteOnSoil<Kind> && CompleteOnFluids<Kind>;
+
+/// The unit vectors of all axes, for kinds that prescribe the whole velocity.
+template <int dim>
+std::vector<Vec<dim>> all_axes() {
+  std::vector<Vec<dim>> axes(dim, Vec<dim>{});
+  for (int d = 0; d < dim; ++d) axes[d][d] = 1;
+  return axes;
+}
+
+}  // namespace talus
