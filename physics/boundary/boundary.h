@@ -49,7 +49,7 @@ class Boundary {
 
   /// Does it concern the pore fluids only?
   bool fluids_only() const { return in_motion == OnSoil::none && quasi_static == OnSoil::none; }
-  /// Does it support the skeleton only in quasi-static stages and those that hold loads, in place of its dashpots?
+  /// Does it support the skeleton only in quasi-static stages and those that freeze loads, in place of its dashpots?
   bool stands_in() const { return quasi_static == OnSoil::support && in_motion != OnSoil::support; }
   /// Do the pore fluids have a face of its own here, neither a wall nor the surface of the soil?
   bool fluid_face() const { return water != OnWater::wall && water != OnWater::surface; }
@@ -106,7 +106,7 @@ SoilFunctions<dim> Boundary::functions_of(const std::shared_ptr<const Kind> &kin
 }
 
 template <class Kind>
-requires(!std::same_as<Kind, Boundary>) Boundary::Boundary(Kind given)
+requires(!std::same_as<Kind, Boundary>) Boundary::Boundary(Kind of)
     : in_motion(Kind::in_motion), quasi_static(Kind::quasi_static), water(Kind::water), gas(Kind::gas) {
   static_assert(StatesSoil<Kind>, "a boundary kind states what it does to the skeleton: in_motion and quasi_static");
   static_assert(StatesWater<Kind>, "a boundary kind states what it does to the pore liquid: water");
@@ -115,8 +115,8 @@ requires(!std::same_as<Kind, Boundary>) Boundary::Boundary(Kind given)
   static_assert(PossibleOnFluids<Kind>, "a wall, and the surface of the soil, act on liquid and gas alike");
   static_assert(CompleteOnSoil<Kind>, "members are missing or never asked for: see OnSoil in kind.h");
   static_assert(CompleteOnFluids<Kind>, "members are missing or never asked for: see OnWater and OnGas in kind.h");
-  given.fields(FindVectors{vectors});
-  const auto kind = std::make_shared<const Kind>(std::move(given));
+  of.fields(FindVectors{vectors});
+  const auto kind = std::make_shared<const Kind>(std::move(of));
   on_soil_2d_ = functions_of<2>(kind), on_soil_3d_ = functions_of<3>(kind);
   if constexpr (member::precedence<Kind>) precedence = Kind::precedence;
   if constexpr (member::follows<Kind>) follows = kind->follows();

@@ -76,7 +76,7 @@ PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vect
     }
   }
   PetscCall(complete_normals(mesh, normals));
-  // an order that does not depend on the partition, so that all ranks build the same constraints
+  // the order must not depend on the partition, so that all ranks build the same constraints
   std::stable_sort(normals.begin(), normals.end(), [&](const NodeNormal<dim> &a, const NodeNormal<dim> &b) {
     const auto key = [&](const NodeNormal<dim> &n) {
       return std::make_tuple(sources_[n.source].kind.precedence, n.source, n.normal, n.area);
@@ -88,8 +88,7 @@ PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vect
     if (kind.in_motion == OnSoil::contact) add_contact(n.node, n.source, n.normal, n.area);
     if (const auto &directions = kind.template on_soil<dim>().directions)
       for (const Vec<dim> &direction : directions(n.normal))
-        for (int held = kind.stands_in(); held < 2; ++held)
-          add_direction(prescribed_[held], n.node, n.source, direction);
+        for (int set = kind.stands_in(); set < 2; ++set) add_direction(prescribed_[set], n.node, n.source, direction);
   }
   size_t contacts = 0;
   for (const auto &of_node : contacts_) contacts += of_node.size();
@@ -121,7 +120,7 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
     for (auto &of_node : contacts_)
       for (Contact &c : of_node)
         if (grid.find_node(c.node) < 0)
-          c.capacity = 0, c.since_pressed = never;  // whoever comes here later has not pressed yet
+          c.capacity = 0, c.since_pressed = never;  // soil that arrives here later has not pressed yet
     nodal_.assign(nodes, 0);
     for (const auto &[source, facets] : bases_)
       for (const Facet<dim> &f : facets) {
@@ -248,7 +247,7 @@ void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &gri
     map<dim>(v[d.node]) = system.inverse() * (mass * map<dim>(before));
     account(d.node, d.source, before);
   }
-  const double answer = friction_delay_ > 0 ? 1 - std::exp(-gamma / friction_delay_) : 1;
+  const double adapted = friction_delay_ > 0 ? 1 - std::exp(-gamma / friction_delay_) : 1;
   for (ActiveContact &c : active_contacts_) {
     const Vec<dim> before = v[c.node], &n = c.contact->normal;
     const Square<dim> mass = mass_of(c.node);
@@ -262,14 +261,14 @@ void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &gri
     const double slope = base.friction_coefficient(t);
     if (c.presses) contact.capacity += slope * map<dim>(n).dot(mass * map<dim>(n)) * into;
     if (pores.thrust) contact.capacity -= slope * gamma * pores.thrust(c.node, n);
-    const double forgotten = answer * contact.capacity, rubbing = std::max(0., forgotten),
+    const double forgotten = adapted * contact.capacity, rubbing = std::max(0., forgotten),
                  speed = std::sqrt(dot<dim>(slip, slip));
     const double m = speed > 0 ? map<dim>(slip).dot(mass * map<dim>(slip)) / (speed * speed) : 0;
-    const double hold = rubbing + (contact.since_pressed <= friction_delay_ ? base.adhesion(t) * c.area * gamma : 0);
-    contact.capacity -= forgotten, c.force = hold / gamma, c.sticks = m * speed <= hold;
+    const double most = rubbing + (contact.since_pressed <= friction_delay_ ? base.adhesion(t) * c.area * gamma : 0);
+    contact.capacity -= forgotten, c.force = most / gamma, c.sticks = m * speed <= most;
     v[c.node] = {};
     if (!c.presses) add<dim>(v[c.node], into, n);
-    if (!c.sticks) add<dim>(v[c.node], 1 - hold / (m * speed), slip);
+    if (!c.sticks) add<dim>(v[c.node], 1 - most / (m * speed), slip);
     account(c.node, c.contact->source, before);
   }
   for (const ActivePrescribed &p : active_prescribed_)

@@ -1,6 +1,7 @@
 #pragma once
-/// What the boundaries of a scene do to nodes, docs/theory section 6: prescribed directions are orthonormalised per
-/// node once; contacts keep one constraint per facet normal; loads and dashpots act where facets have soil behind them.
+/// The action of the boundaries of a scene on the skeleton at the nodes, docs/theory section 6. Prescribed directions
+/// are orthonormalised per node once. A contact has one constraint per facet normal at a node. Loads and dashpots act
+/// where facets have soil behind them.
 #include <functional>
 #include <string>
 #include <vector>
@@ -28,38 +29,41 @@ class Conditions {
   PetscErrorCode begin(FilledGrid<dim> &grid, const std::vector<std::array<double, 2>> &impedance,
                        const std::vector<double> &filling);
 
-  /// In stages that hold loads, supports stand in for dashpots; counts from the next `begin`.
+  /// In stages that freeze loads (`hold_loads`), supports stand in for dashpots. Takes effect at the next `begin`.
   void hold(bool held) { held_ = held; }
   bool held() const { return held_; }
-  /// Keeps what those supports bear against the nodal forces (summed over ranks) as a dead load.
+  /// Stores the reactions of those supports to the nodal forces (summed over ranks) as a dead load.
   void freeze_reactions(const FilledGrid<dim> &grid, const Vec<dim> *force);
   /// Adds the frozen reactions to nodal forces summed over ranks.
   void add_reactions(Vec<dim> *force) const;
 
-  /// Imposes prescribed velocities and keeps nodes from entering a base; sticking nodes of the last `resolve` stay.
+  /// Imposes prescribed velocities and keeps nodes from entering a base. With `sticking`, nodes that stuck in the last
+  /// `resolve` do not slide.
   void constrain(double t, const FilledGrid<dim> &grid, Vec<dim> *v, bool sticking) const;
-  /// Removes from an acceleration or force the part that supports take up, where nodes rest on them.
+  /// Subtracts from nodal forces the forces of dashpots and friction at velocities `v`, and the parts that supports and
+  /// bases bear.
   void project(const FilledGrid<dim> &grid, const Vec<dim> *v, Vec<dim> *force) const;
-  /// What fluids in the pores add to contact at a node; empty without them.
+  /// The part of the pore fluids in contact at a node; empty where fluids do not move.
   struct Pores {
-    std::function<Square<dim>(int node)> inertia;  ///< against what holds the node, in place of the grid's mass [kg]
+    std::function<Square<dim>(int node)> inertia;  ///< of the node against supports, in place of the grid's mass [kg]
     std::function<double(int node, const Vec<dim> &normal)>
-        thrust;  ///< with which they press on a base, and which grains do not rub with [N]
+        thrust;  ///< force of the pores on a base, which takes no part in friction [N]
   };
-  /// Implicit in a step gamma: dashpots, contact with friction, prescribed velocities. Sums up the reactions.
+  /// Applies dashpots, contact with friction and prescribed velocities, implicitly over a step gamma, and sums up the
+  /// reactions.
   void resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Pores &pores = {});
 
-  /// Sums up the work of boundaries in an accepted step with nodal displacements `u`.
+  /// Adds the work of the boundaries in an accepted step with nodal displacements `u`.
   void follow(const Vec<dim> *u);
   /// Work of each source on the soil, on this rank [J].
   const std::vector<double> &work() const { return work_; }
 
-  /// Time over which friction follows the normal force [s].
+  /// Time over which friction adapts to the normal force, docs/theory (6.2) [s].
   void set_friction_delay(double delay) { friction_delay_ = delay; }
 
   SurfaceLoads<dim> &surface_loads() { return surface_loads_; }
-  /// What `begin` does not find out anew: how contacts press and slide, frozen reactions, impulses and work. Reading
-  /// begins. Collective.
+  /// Saves or loads the state that `begin` cannot find again: the state of contacts, frozen reactions, impulses and
+  /// work. Loading calls `begin`. Collective.
   PetscErrorCode serialize(Archive &archive, FilledGrid<dim> &grid, const std::vector<std::array<double, 2>> &impedance,
                            const std::vector<double> &filling);
 
@@ -75,8 +79,8 @@ class Conditions {
     int node, source;  // mesh node
     Vec<dim> normal;
     double area;
-    double capacity;       // friction impulse owed to the normal impulses of the recent past [N s]
-    double since_pressed;  // [s]
+    double capacity;       // friction impulse that normal impulses of the recent past still allow [N s]
+    double since_pressed;  // time since the node last pressed on the base [s]
   };
   struct ActivePrescribed {
     int node;  // compact
@@ -107,7 +111,7 @@ class Conditions {
 
   std::vector<Source> sources_;
   std::vector<int> first_contact_of_node_;
-  std::array<PrescribedSet, 2> prescribed_;  ///< with dashpots; with the supports that stand in for them
+  std::array<PrescribedSet, 2> prescribed_;  ///< directions beside dashpots; with the supports that stand in for them
   std::vector<std::vector<Contact>> contacts_;
   std::vector<std::pair<int, std::vector<Facet<dim>>>> dashpots_, bases_;
   std::vector<ActivePrescribed> active_prescribed_;

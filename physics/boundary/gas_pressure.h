@@ -5,8 +5,8 @@
 
 namespace talus {
 
-/// The gas beyond the face has this gauge pressure; it moves in and out freely, liquid only out. The face carries no
-/// other load by it.
+/// The gas beyond the face has this gauge pressure and moves in and out freely; liquid only leaves. The pressure does
+/// not load the skeleton.
 struct PrescribedGasPressure {
   static constexpr const char *name = "gas_pressure";
   static constexpr const char *meaning = "pressure of the gas beyond the face; liquid may leave but not enter";

@@ -7,8 +7,8 @@
 
 namespace talus {
 
-/// Open water up to a level: hydrostatic pressure on the face below it, with the water's weight; above it a seepage
-/// face.
+/// Open water up to a level: below it the face bears the hydrostatic pressure of the water, above it the face is a
+/// seepage face.
 struct Head {
   static constexpr const char *name = "head";
   static constexpr const char *meaning =

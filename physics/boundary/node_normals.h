@@ -1,5 +1,5 @@
 #pragma once
-/// Facets as their nodes see them, the same on all ranks.
+/// Facets of boundaries listed by their nodes, the same on all ranks.
 #include <algorithm>
 #include <map>
 #include <vector>
@@ -17,7 +17,7 @@ struct NodeNormal {
 };
 
 /// Adds the facets of other ranks at nodes that this rank shares with them: facets of a shared node may lie on one rank
-/// only. Every rank tells its own, and finds nodes by their exact position. Collective.
+/// only. Every rank sends its own, and receivers find the node by its exact position. Collective.
 template <int dim>
 PetscErrorCode complete_normals(const BackgroundMesh<dim> &mesh, std::vector<NodeNormal<dim>> &normals) {
   PetscFunctionBeginUser;

@@ -6,9 +6,9 @@
 
 namespace talus {
 
-/// Dashpots that swallow waves arriving straight at the face: rho c_p across it, rho c_s along it (Lysmer & Kuhlemeyer
-/// 1969). Dashpots carry no load at rest: in quasi-static stages and in those that hold loads a support stands in for
-/// them, and the reaction it bore at their end acts on as a dead load.
+/// Dashpots that absorb waves arriving at a right angle to the face: rho c_p across it, rho c_s along it (Lysmer &
+/// Kuhlemeyer 1969). Dashpots bear no load at rest. In quasi-static stages and in those that freeze loads
+/// (`hold_loads`) a support stands in for them, and its reaction at the end of the stage remains as a dead load.
 struct NonReflecting {
   static constexpr const char *name = "non_reflecting";
   static constexpr OnSoil in_motion = OnSoil::dashpot, quasi_static = OnSoil::support;

@@ -11,7 +11,7 @@ PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const
                                           bool sealed) {
   PetscFunctionBeginUser;
   sources_ = &sources, sealed_ = sealed;
-  std::set<std::pair<int, int>> open;  // facets with water beyond
+  std::set<std::pair<int, int>> open;  // facets with a face of the fluids
   std::vector<NodeNormal<dim>> normals;
   for (int s = 0; s < static_cast<int>(sources.size()); ++s) {
     if (!sources[s].kind.fluid_face()) continue;
@@ -101,8 +101,8 @@ PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vect
   gaps_.clear(), gap_cells_.clear();
   for (int i = 0; i < nodes; ++i) {
     const Vec<dim> rest = open_area(grid, i, surface[i]);
-    // of an edge or its square: less is a gap between particles; the nodes of a one-element slice have a quarter of a
-    // square
+    // share of an edge or of its square: a smaller area is a gap between particles; nodes of a one-element slice have a
+    // quarter of a square
     constexpr double least = dim == 2 ? 0.3 : 0.3 * 0.3, nothing = 1e-10;
     at_gap_[i] = 0;
     if (large(i, rest, least))
@@ -116,7 +116,8 @@ PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vect
   PetscFunctionReturn(0);
 }
 
-/// What is left of something at a node beside the share of named faces and across the normals of walls.
+/// An area vector (or its moment) at a node without the part of named faces and without its components along the
+/// normals of walls.
 template <int dim>
 Vec<dim> PoreConditions<dim>::open_part(const FilledGrid<dim> &grid, int node, const Vec<dim> &whole,
                                         const Vec<dim> &taken) const {

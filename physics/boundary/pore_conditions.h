@@ -1,8 +1,9 @@
 #pragma once
-/// What boundaries do to the pore fluids, docs/theory/pores.md section 5. Faces that hold the soil, and `impermeable`
-/// ones, let no fluid pass. Everywhere else the atmosphere's pressure acts, on the soil's surface where it is now: the
-/// sum of w grad N at a node is the surface's area vector there. Where it is small there is a gap between particles,
-/// beyond which is what is beside it. The group name `free_surface` in a scene stands for that surface.
+/// The action of boundaries on the pore fluids, docs/theory/pores.md section 5, as their kinds state it (kind.h). Walls
+/// let no fluid pass, faces have a pressure or a flux beyond them. Everywhere else the atmosphere acts on the surface
+/// of the soil, where that is now: the sum of w grad N at a node is the area vector of the surface there. Where it is
+/// small there is a gap between particles: the pressure beyond it is that of the neighbouring cells. The group name
+/// `free_surface` in a scene stands for the surface of the soil.
 #include <string>
 #include <vector>
 
@@ -14,7 +15,7 @@ namespace talus {
 
 inline constexpr const char *free_surface = "free_surface";
 
-/// What a node has of the liquid, for boundaries that limit its flux.
+/// The liquid at a node, for boundaries that limit its flux.
 struct LiquidAtNode {
   double mass, volume;  ///< m_l [kg], V [m3]
 };
@@ -23,7 +24,7 @@ template <int dim>
 class PoreConditions {
  public:
   using Source = typename Conditions<dim>::Source;
-  /// `sealed`: a surface without a boundary lets water out, not in. Collective.
+  /// `sealed`: the surface of the soil, where no boundary acts on it, lets water out and not in. Collective.
   PetscErrorCode setup(const BackgroundMesh<dim> &mesh, const std::vector<Source> &sources, bool sealed);
   /// Is there open water on the free surface, so that `begin` needs its moments?
   bool open_water() const { return rain_ != atmosphere && (*sources_)[rain_].kind.open_water; }
@@ -33,8 +34,8 @@ class PoreConditions {
   PetscErrorCode begin(FilledGrid<dim> &grid, const std::vector<double> &filling, const std::vector<Vec<dim>> &surface,
                        const std::vector<Vec<dim>> &moment);
 
-  /// Calls put(node, P, push, load) for every face with a pressure P beyond it [Pa]: `push` is what that does to the
-  /// node along the outer normal, `load` the part that the skeleton bears [N].
+  /// Calls put(node, P, push, load) for every face with a pressure P beyond it [Pa]: `push` is the force of that
+  /// pressure on the node, positive along the outer normal, and `load` the part of it that the skeleton bears [N].
   template <class Put>
   void pressures(double t, const FilledGrid<dim> &grid, double unit_weight, Put &&put) const {
     for (const Face &f : faces_) {
@@ -50,8 +51,8 @@ class PoreConditions {
       put(f.node, p, push, load);
     }
   }
-  /// Calls put(node, P, area) for every face with a given gas pressure P beyond it [Pa]; beyond the others it is the
-  /// atmosphere's.
+  /// Calls put(node, P, area) for every face with a prescribed gas pressure P beyond it [Pa]. Beyond the others is the
+  /// atmosphere.
   template <class Put>
   void gas_pressures(double t, const FilledGrid<dim> &grid, Put &&put) const {
     for (const Face &f : faces_) {
@@ -61,8 +62,8 @@ class PoreConditions {
         put(f.node, pressure(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t), f.area);
     }
   }
-  /// Calls put(node, area) for every gap; `surface(node)` is the sum of w grad N now, of which named faces and walls
-  /// take their share [m2].
+  /// Calls put(node, area) for every gap: `area` is the sum of w grad N now, `surface(node)`, without the parts of
+  /// named faces and walls [m2].
   template <class Surface, class Put>
   void gaps(const FilledGrid<dim> &grid, Surface &&surface, Put &&put) const {
     for (const int node : gaps_) put(node, open_area(grid, node, surface(node)));
@@ -101,7 +102,7 @@ class PoreConditions {
     for (const ActiveWall &w : active_walls_)
       for (int k = 0; k < w.wall->count; ++k) wall(w.node, w.wall->direction[k]);
   }
-  /// Calls wall(n) for those of one node.
+  /// Calls wall(n) for those normals at one node.
   template <class Put>
   void walls_at(const FilledGrid<dim> &grid, int node, Put &&wall) const {
     const int index = wall_of_node_[grid.mesh_node[node]];

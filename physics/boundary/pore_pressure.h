@@ -5,8 +5,8 @@
 
 namespace talus {
 
-/// The liquid beyond the face has this pressure; it moves in and out freely. A negative one is a suction. The face
-/// carries no other load by it.
+/// The liquid beyond the face has this pressure and moves in and out freely; a negative pressure is a suction. The
+/// pressure does not load the skeleton.
 struct PrescribedPorePressure {
   static constexpr const char *name = "pore_pressure";
   static constexpr const char *meaning = "pressure of the liquid beyond the face";

@@ -1,6 +1,6 @@
 #pragma once
-/// The directions in which boundaries prescribe the motion of a node, orthonormal: what comes first counts, what a
-/// later one adds is kept.
+/// The directions in which boundaries prescribe the motion of a node, orthonormal. The first direction counts as it is,
+/// a later one by its component across those before it.
 #include <array>
 #include <cmath>
 
@@ -16,7 +16,8 @@ struct PrescribedDirections {
   int count = 0;
   std::array<Vec<dim>, dim> direction;  ///< orthonormal
   std::array<int, dim> source;          ///< boundary of each direction
-  /// Takes what a unit vector has beyond the directions that are there, if it is more than round-off of the same face.
+  /// Adds the component of a unit vector across the present directions, unless it is as small as between facets of one
+  /// curved face.
   void add(const Vec<dim> &wanted, int of) {
     ColumnVector<dim> rest = map<dim>(wanted);
     for (int k = 0; k < count; ++k) rest -= rest.dot(map<dim>(direction[k])) * map<dim>(direction[k]);

@@ -5,8 +5,8 @@
 
 namespace talus {
 
-/// Rain: the soil takes it as long as it can at zero pressure and sheds the rest; water leaves where its pressure is
-/// above zero. Without rain this is a seepage face.
+/// Rain: all of it enters as long as the pressure at the face stays below zero; at zero pressure the rest runs off.
+/// Water leaves where its pressure is above zero. Without rain this is a seepage face.
 struct Rainfall {
   static constexpr const char *name = "rainfall";
   static constexpr const char *meaning =

@@ -85,9 +85,9 @@ void SurfaceLoads<dim>::seed(Body<dim> &body, const BackgroundMesh<dim> &mesh) c
         int host = found->second;
         double nearest = 1e300;
         for (int i = host; i < p.count && p.cell[i] == f.cell; ++i) {
-          const SurfacePiece<dim> &held = p.surface[i * faces + k];
-          const bool around_a_corner =
-              held.area > 0 && map<dim>(held.normal).dot(map<dim>(f.normal)) < 0.999;  // one mean place would not do
+          const SurfacePiece<dim> &present = p.surface[i * faces + k];
+          const bool around_a_corner = present.area > 0 && map<dim>(present.normal).dot(map<dim>(f.normal)) <
+                                                               0.999;  // one mean place would not do
           const double distance =
               (map<dim>(p.reference[i]) - map<dim>(place)).squaredNorm() + (around_a_corner ? 1e100 : 0);
           if (distance < nearest * (1 - 1e-9)) nearest = distance, host = i;
@@ -132,7 +132,7 @@ int SurfaceLoads<dim>::find_idle(MPI_Comm comm, const std::vector<std::unique_pt
 
 template <int dim>
 void SurfaceLoads<dim>::begin(const std::vector<std::unique_ptr<Body<dim>>> &bodies, const FilledGrid<dim> &grid) {
-  constexpr double farthest = -1;  // a piece farther out than this is drawn in: its soil has come apart
+  constexpr double farthest = -1;  // a piece farther out has lost its soil, which has come apart: it is drawn in
   const int faces = face_count();
   active_.clear();
   if (!faces) return;

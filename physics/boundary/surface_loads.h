@@ -21,10 +21,10 @@ class SurfaceLoads {
   }
   int face_count() const { return static_cast<int>(faces_.size()); }
 
-  /// Takes the share of each facet that a side carries: all, or half where soil is on both sides. `filled` [local
-  /// cells]. Collective.
+  /// Finds the share of each facet that the soil on one side carries: all, or half where soil is on both sides.
+  /// `filled` [local cells]. Collective.
   PetscErrorCode share(const BackgroundMesh<dim> &mesh, const std::vector<char> &filled);
-  /// Hands the pieces in a freshly seeded body's cells to the nearest of its particles.
+  /// Gives the pieces in the cells of a freshly seeded body to the nearest of its particles.
   void seed(Body<dim> &body, const BackgroundMesh<dim> &mesh) const;
   /// First source without any soil behind its face, -1: none. Collective.
   int find_idle(MPI_Comm comm, const std::vector<std::unique_ptr<Body<dim>>> &bodies) const;
@@ -35,9 +35,9 @@ class SurfaceLoads {
   void add(double t, const FilledGrid<dim> &grid, const Vec<dim> *position, Vec<dim> *force);
   /// Adds the work of the loads last added in a step with nodal displacements `u`, by source [J].
   void add_work(const Vec<dim> *u, std::vector<double> &work) const;
-  /// Lets the pieces follow the soil to the end of a Lagrangian part, before the particles do: with the mean
-  /// deformation around them, weighted by the integration volumes `weight` [cell], since cells that are filled in part
-  /// tilt at random, and a face whose pieces tilt loses load. Collective.
+  /// Moves and turns the pieces with the soil at the end of a Lagrangian part, before the particles move: with the mean
+  /// deformation of the cells around them, weighted by the integration volumes `weight` [cell]. Cells that are filled
+  /// in part rotate at random, and a face whose pieces rotate loses load. Collective.
   PetscErrorCode end(FilledGrid<dim> &grid, const std::vector<double> &weight);
   /// Mean displacement of each face since the undeformed state [m], weighted by undeformed area, into `mean[source]`.
   /// Collective.

@@ -15,17 +15,17 @@ inline double drag_number(double gamma, const NodalFluid &at) {
 
 /// Over a step gamma [s], for one velocity component: `solid` and `fluid` go from their values without drag to those
 /// with it. Momentum is conserved to round-off; where the drag is large all move together, where it vanishes nothing
-/// changes. `held`: the solid is held by a support, which takes the drag on it.
+/// changes. `supported`: a support prescribes the velocity of the solid and takes the drag on it.
 template <int fluids>
 inline void resolve_drag(double gamma, double solid_mass, double &solid, const NodalFluid *node, double *fluid,
-                         bool held = false) {
+                         bool supported = false) {
   double factor[fluids], momentum = solid_mass * solid, mass = solid_mass;
   for (int a = 0; a < fluids; ++a) {
     const double d = drag_number(gamma, node[a]);
     factor[a] = d / (1 + d);
     momentum += node[a].mass * factor[a] * fluid[a], mass += node[a].mass * factor[a];
   }
-  if (!held) solid = momentum / mass;
+  if (!supported) solid = momentum / mass;
   for (int a = 0; a < fluids; ++a) fluid[a] += factor[a] * (solid - fluid[a]);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What fills the pores, docs/theory/pores.md (1.2), (1.3). Pressures are gauge: 0 is the atmosphere's.
+/// The fluids in the pores, docs/theory/pores.md (1.2), (1.3). Pressures are gauge: 0 is the atmosphere's.
 #include <cmath>
 
 #include "scene/scene.h"
@@ -17,7 +17,7 @@ struct Liquid {
   double viscosity;     ///< mu_l [Pa s]
   bool exponential;     ///< rho_l0 exp(P / K_l), else rho_l0 (1 + P / K_l)
 
-  /// One of the two laws (1.2), for loops that must not ask which.
+  /// One of the two laws (1.2), for loops that must not branch on it.
   template <bool exponential>
   struct Law {
     double density, bulk_modulus;

@@ -11,8 +11,8 @@
 
 namespace talus {
 
-/// `functions` of `columns` values each, one behind the other: which of them a look-up reads is part of its address, so
-/// that loops over many look-ups vectorise.
+/// `functions` of `columns` values each, one behind the other: the number of the function is part of the address of a
+/// look-up, so that loops over many look-ups vectorise.
 template <int columns, int functions>
 class OctaveTable {
  public:

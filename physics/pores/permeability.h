@@ -1,6 +1,6 @@
 #pragma once
-/// How well fluids pass the pores: the list of relative permeabilities (one line to add one; a plain struct with
-/// `liquid(w)` and `gas(w)` from 0 to 1), and how the intrinsic permeability follows porosity.
+/// Permeability of the pores to liquid and gas: the list of relative permeabilities (one line to add one; a plain
+/// struct with `liquid(w)` and `gas(w)` from 0 to 1), and how the intrinsic permeability follows porosity.
 #include <cmath>
 #include <variant>
 

@@ -1,10 +1,11 @@
 #pragma once
 /// The fluid part of the motion, docs/theory/pores.md: liquid and, in three phases, gas. Stress points of the soil are
-/// pore points too: each holds masses of fluid, from which its pressures follow. SoilMotion calls, in the order of a
-/// step:
+/// pore points too: each has masses of the fluids, and its pressures are functions of these masses. SoilMotion calls,
+/// in the order of a step:
 ///   gather -> [add_to_mixture -> drive -> resist -> follow -> flow -> smooth_flow -> exchange -> store] ... ->
 ///   hand_over
-/// Particles give and take in the sweeps of the soil (transfer/), between `hand_over` and `gather`.
+/// Particles receive from the nodes and give to them in the sweeps of the soil (transfer/), between `hand_over` and
+/// `gather`.
 #include <functional>
 #include <memory>
 #include <vector>
@@ -36,7 +37,7 @@ class PoreFluid {
   /// Pressure at a place by [water] [Pa]; negative above the water table where pores may dry.
   double prescribed_pressure(const Vec<dim> &x, double t) const;
 
-  // Where cells and nodes stand, as SoilMotion has them.
+  // Cells and nodes in a state of the motion, accepted or trial.
   struct Frame {
     FilledGrid<dim> &grid;
     const Shape<dim> *shape;   ///< [cell]
@@ -51,52 +52,55 @@ class PoreFluid {
     bool averaged, trial;
   };
 
-  /// The pores of the points of a body as they are, and as they will be in the Lagrangian part to come, for the sweeps
-  /// of the soil.
-  Pores<dim> pores(int body) { return show(points_, body); }
-  Pores<dim> next_pores(int body) { return show(next_points_, body); }
-  /// The next ones become those that are.
+  /// The pores of the points of a body now, and those that are being gathered for the next Lagrangian part, for the
+  /// sweeps of the soil.
+  Pores<dim> pores(int body) { return pores_of(points_, body); }
+  Pores<dim> next_pores(int body) { return pores_of(next_points_, body); }
+  /// The gathered points take the place of the present ones.
   void turn() { std::swap(points_, next_points_); }
-  /// Once the particles of all bodies have been added to points and cells: `velocity` [fluids][nodes] receives the
-  /// nodes'.
+  /// Completes the nodes once the particles of all bodies have been added to points and cells: their pressures, the
+  /// boundaries, and the velocities of the fluids, which go to `velocity` [fluids][nodes].
   PetscErrorCode gather(const Frame &frame, PoreConditions<dim> &conditions, const Array &filling,
                         const Vec<dim> *solid, Vec<dim> *velocity);
-  /// What particles read of the nodes in `update`, before they move. Velocities changed from `start`, both
-  /// [fluids][nodes]; `flip` is the share of their own velocity that particles keep.
+  /// Writes into `update` what particles read of the nodes before they move. `velocity` are those at the end, `start`
+  /// those at the start, both [fluids][nodes]; `flip` is the share of its own velocity that a particle retains.
   void hand_over(int nodes, const Vec<dim> *velocity, const Vec<dim> *start, double flip, NodalUpdate &update) const;
 
-  /// Adds what fluids do to the mixture at a node: pressure and weight.
+  /// Adds the pressure and the weight of the fluids to the forces on the mixture at the nodes.
   void add_to_mixture(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force) const;
-  /// Accelerations of the fluids [fluids][nodes], and less them what is left of the mixture's force for the solid:
-  /// without drag, or with that of `velocity` [1 + fluids][nodes] where drag is explicit.
+  /// Finds the accelerations of the fluids [fluids][nodes] and subtracts their inertia from the force on the mixture,
+  /// which leaves the force on the solid. Drag is not among the forces, except where it is explicit: then it is that of
+  /// `velocity` [1 + fluids][nodes].
   PetscErrorCode drive(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force,
                        Vec<dim> *acceleration, const Vec<dim> *velocity);
-  /// Velocity of the solid after implicit drag over `step` and what limits the fluids at boundaries, from those of all
-  /// without it.
+  /// Changes the velocity of the solid by implicit drag over `step` and by the boundaries that limit the fluids.
+  /// `solid` and `fluid` enter without drag; the fluids' velocities change in `follow`.
   void resist(double step, const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *solid,
               const Vec<dim> *fluid) const;
-  /// Inertia of the node against a support of the solid, after `resist` over `step` [kg].
+  /// Inertia of a node against a support of the solid, once drag has acted over `step` [kg].
   Square<dim> inertia(double step, const FilledGrid<dim> &grid, const PoreConditions<dim> &conditions, int node) const;
   /// Force with which the pores press on a wall of outer normal n at a node, docs/theory/pores.md (5.3) [N].
   double thrust(const Vec<dim> &gravity, int node, const Vec<dim> &n) const;
-  /// The fluids' after it, the solid now being where supports want it; then boundaries.
+  /// Changes the velocities of the fluids by the same drag. `solid` is the velocity that supports and contact have left
+  /// the solid. Boundaries of the fluids act last.
   void follow(double step, const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid,
               Vec<dim> *fluid) const;
+  /// Brings the velocities of the fluids within the limits that boundaries and walls set.
   void constrain(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid,
                  Vec<dim> *fluid) const;
 
-  /// Divergence of the fluids' fluxes over displacements u = [1 + fluids][nodes] from the accepted state, in cells.
-  /// `frame` is that of the accepted state but for `trial`. Collective.
+  /// Finds the divergence of the mass fluxes in cells, over displacements u [1 + fluids][nodes] from the accepted
+  /// state. `frame` is the accepted one; its `trial` alone tells whether the step is one. Collective.
   PetscErrorCode flow(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *u);
-  /// Smooths them together with the volume strain of the cells, which becomes that of the pores.
+  /// Smooths the divergence together with the volume strain of the cells, which becomes that of the pores. Collective.
   PetscErrorCode smooth_flow(const Frame &frame, Array &volume_strain);
-  /// Takes it from the points, whose volumes are now those at the end.
+  /// Subtracts the divergence from the masses of the points. `frame` has the volumes at the end.
   void exchange(const Frame &frame);
-  /// Pressures from masses, forces at cells and nodes from pressures. Not needed where particles are released first.
-  /// Collective.
+  /// Finds the pressures of the points from their masses, and the sums over cells and nodes that the forces are made
+  /// of. It may be left out before particles are released. Collective.
   PetscErrorCode store(const Frame &frame);
 
-  /// At the points of a body [Pa].
+  /// Suction at the points of a body [Pa].
   const double *suction(int body) const requires Phases::suction { return points_[body].suction.data(); }
   PoreReport report(int body, int point, int cell, bool surface) const;
   const SoilPores &soil(int body) const { return soils_[body]; }
@@ -117,15 +121,15 @@ class PoreFluid {
   double prescribed_ramp = 1;
 
  private:
-  struct PorePoints {  // room for a point in every cell or for all particles; the first `count` count
+  struct PorePoints {  // sized for a point in every cell or for all particles; only the first `count` are in use
     int count = 0;
     Array grains;        ///< V_s [m3]
     Array mass[fluids];  ///< [kg]
     Array share;         ///< S_g
     Array suction;       ///< [Pa]
-    Array pressure;      ///< of the liquid, kept only where it follows its rate [Pa]
+    Array pressure;      ///< of the liquid, stored only where it is integrated by its rate [Pa]
 
-    void room(int points) {
+    void reserve(int points) {
       if (points <= static_cast<int>(grains.size())) return;
       grains.resize(points), share.resize(points), suction.resize(points);
       for (Array &m : mass) m.resize(points);
@@ -134,10 +138,10 @@ class PoreFluid {
   struct CellPores {
     double pressure[fluids], smooth[fluids];  ///< [Pa]
     double conductivity[fluids];              ///< k k_r / mu [m2/(Pa s)]
-    double saturated;                         ///< conductivity of the liquid were the pores full of it [m2/(Pa s)]
+    double saturated;                         ///< conductivity of the liquid in pores full of it [m2/(Pa s)]
     double density[fluids], mass[fluids];     ///< [kg/m3], [kg]
     double saturation;
-    double mixture;  ///< what the pores take off the total stress [Pa]
+    double mixture;  ///< pressure of the pores in the total stress [Pa]
   };
   static constexpr int last = 3, mixture = Phases::suction ? fluids : 0;  ///< lane; pressure that acts on the skeleton
   struct NodePores {                                                      // sums over cells and ranks
@@ -153,12 +157,12 @@ class PoreFluid {
   };
   static constexpr int node_width = sizeof(NodePores) / sizeof(double);
 
-  /// Weight of a fluid at a node over that of its mass: the liquid weighs as if it were not compressed, which a
-  /// softened one would be, and still water in it is exactly hydrostatic.
-  double weighs(const NodePores &node, int a) const {
+  /// Weight of a fluid at a node over the weight of its mass. The liquid weighs as if it were not compressed: a
+  /// softened liquid would be compressed too much, and still water is hydrostatic to round-off this way.
+  double weight_factor(const NodePores &node, int a) const {
     return a == 0 && node.whole(0) > 0 ? liquid_.density * node.volume() / node.whole(0) : 1;
   }
-  Pores<dim> show(std::vector<PorePoints> &points, int body);
+  Pores<dim> pores_of(std::vector<PorePoints> &points, int body);
   static Vec<dim> surface_at(const NodePores &node) {
     Vec<dim> area;
     talus::store<dim>(area.data(), node.geometry);
@@ -174,16 +178,16 @@ class PoreFluid {
   PetscErrorCode gas_flux(const Frame &frame, const Vec<dim> *gas, const Vec<dim> *solid) requires Phases::gas;
   static double pore_volume(double volume, double grains) { return std::max(volume - grains, 1e-6 * volume); }
   PetscErrorCode find_moment(const Frame &frame);
-  void hold(const Frame &frame);
-  void solve(const Frame &frame);
-  void keep_pressures(const Frame &frame);
-  void follow_rates(const Frame &frame);
+  void set_prescribed_pressures(const Frame &frame);
+  void find_pressures(const Frame &frame);
+  void save_pressures(const Frame &frame);
+  void set_masses_by_rate(const Frame &frame);
   template <class Limit>
   void limits(const Frame &frame, const PoreConditions<dim> &conditions, Limit &&limit) const;
-  PetscErrorCode give_around(const Frame &frame, Array &divergence) requires Phases::suction;
-  PetscErrorCode see_around(const Frame &frame, Array &pressure) requires Phases::suction;
-  /// Volume of a cell that stands for more, or less, than its particles have; 0 where smoothing evens out [m3].
-  double beyond_particles(const Frame &frame, int c) const {
+  PetscErrorCode share_divergence(const Frame &frame, Array &divergence) requires Phases::suction;
+  PetscErrorCode share_pressure(const Frame &frame, Array &pressure) requires Phases::suction;
+  /// Integration volume of a cell minus the volume of its particles; 0 where smoothing evens pressures out [m3].
+  double volume_beyond_particles(const Frame &frame, int c) const {
     return smoothed(c) ? 0 : frame.weight[c] - frame.particle_volume[c];
   }
   double gas_density() const {
@@ -218,15 +222,15 @@ class PoreFluid {
   std::vector<NodePores> nodes_, trial_nodes_;
   std::vector<Vec<dim>> flux_[fluids], surface_, moment_;
   std::vector<Vec<dim>> gap_;  ///< of a node: area vector of the gap over the volume of its cells [1/m]; 0 elsewhere
-  Array shut_[fluids];         ///< of a node: what a gap would let through over that volume [kg/(m3 s)]
+  Array gap_flux_[fluids];     ///< of a node: mass flux through the gap were it open, over that volume [kg/(m3 s)]
   std::vector<std::array<double, dim + 1>> mean_,
-      reference_;  ///< of a cell: where its particles are in the mean, and where its pressure counts
+      reference_;  ///< of a cell: mean place of its particles, and the place at which it has its pressure
   std::vector<std::array<double, dim + 1>> rows_;       ///< sums over rows of the solid's mass matrices [kg]
   Array grain_mass_;                                    ///< of a cell [kg]
   std::vector<std::array<Quad, dim>> impulse_[fluids];  ///< of a cell [component][vertex]: sum m_s N v_a [kg m/s]
   std::vector<std::array<Quad, fluids>> momentum_;      ///< of a node: m_a v_a [kg m/s], m_a in the last lane
   Array divergence_[fluids], smooth_[fluids], head_, nodal_head_, nodal_;
-  Array beyond_;  ///< conductivity of the liquid beyond a face with a prescribed pressure [node]; 0 elsewhere
+  Array beyond_;  ///< conductivity of the soil beyond a face with a prescribed pressure [node]; 0 elsewhere
   std::vector<int> body_of_node_;  ///< one of the bodies around it
   double out_[fluids] = {}, prescribed_mass_[fluids] = {};
 };

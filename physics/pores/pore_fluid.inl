@@ -32,15 +32,15 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
   nodal_head_.resize(nodes), momentum_.resize(nodes), surface_.resize(nodes), moment_.resize(nodes), gap_.resize(nodes),
       beyond_.assign(nodes, 0), body_of_node_.assign(nodes, 0);
   for (int a = 0; a < fluids; ++a)
-    flux_[a].resize(nodes), shut_[a].resize(nodes), impulse_[a].resize(cells), divergence_[a].resize(cells),
+    flux_[a].resize(nodes), gap_flux_[a].resize(nodes), impulse_[a].resize(cells), divergence_[a].resize(cells),
         smooth_[a].resize(cells);
   nodal_.resize(4 * nodes);
   for (auto *all : {&points_, &next_points_})
     for (size_t b = 0; b < bodies.size(); ++b)
-      (*all)[b].room(scene.transfer.average_stress ? static_cast<int>(cells) : bodies[b]->particles().count);
+      (*all)[b].reserve(scene.transfer.average_stress ? static_cast<int>(cells) : bodies[b]->particles().count);
 }
 
-// ---- what pores hold at first ----
+// ---- first state ----
 
 template <int dim, class Phases>
 double PoreFluid<dim, Phases>::prescribed_pressure(const Vec<dim> &x, double t) const {
@@ -58,14 +58,14 @@ double PoreFluid<dim, Phases>::prescribed_gas_pressure(const Vec<dim> &x) const 
   return 0;
 }
 
-/// Masses per pore volume [kg/m3] and gas share at a liquid pressure under the atmosphere; free gas, and liquid with
-/// it, has more by `gas_pressure`.
+/// Masses of liquid and gas per pore volume [kg/m3] and gas share, at a liquid pressure that is counted from the
+/// pressure of the gas. Free gas, and the liquid with it, has the gauge pressure `gas_pressure`.
 template <int dim, class Phases>
 std::array<double, 3> PoreFluid<dim, Phases>::contents(const SoilPores &soil, double pressure,
                                                        double gas_pressure) const {
   double share = 0, gas = 0;
   if constexpr (Phases::suction) share = pressure < 0 ? 1 - talus::saturation(soil.retention(), -pressure) : 0;
-  if constexpr (Phases::gas) {  // below the water table what is left of the gas is in equilibrium with the water
+  if constexpr (Phases::gas) {  // below the water table the residual gas is in equilibrium with the water
     const bool trapped = share < residual_gas;
     share = std::max(share, residual_gas);
     gas = share * gas_.density_at(trapped ? std::max(0., pressure + soil.suction(share)) : gas_pressure);

@@ -1,5 +1,5 @@
 #pragma once
-/// What is told about the fluids in the pores, whatever phases move.
+/// Reports about the fluids in the pores, the same for all phase models.
 
 namespace talus {
 
@@ -10,7 +10,7 @@ struct FluidLedger {
   double prescribed = 0;  ///< put in where pressures are prescribed, less what was taken out
 };
 
-/// What a particle's pores hold.
+/// State of the pores of a particle.
 struct PoreReport {
   double liquid = 0, gas = 0;  ///< pressures, smoothed where soil is nearly saturated [Pa]
   double suction = 0;          ///< [Pa]

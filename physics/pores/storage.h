@@ -1,7 +1,7 @@
 #pragma once
-/// Pressures that follow from what the pores hold, docs/theory/pores.md section 3. Water and gas are stored as mass per
-/// pore volume, so they are conserved however large a step; Newton's iteration, bracketed, from the gas share of the
-/// last step.
+/// Pressures as functions of the masses in the pores, docs/theory/pores.md section 3. Water and gas are stored as mass
+/// per pore volume, so they are conserved however large a step; Newton's iteration, bracketed, from the gas share of
+/// the last step.
 #include <algorithm>
 #include <cmath>
 
@@ -17,8 +17,8 @@ struct PorePressures {
 /// Gas share below which soil counts as saturated: the pressure of its gas means nothing then [-].
 inline constexpr double residual_gas = 1e-4;
 
-/// A few points side by side, so that their iterations run in vector registers. A lane does not depend on what the
-/// others hold.
+/// A few points side by side, so that their iterations run in vector registers. A lane does not depend on the
+/// others.
 template <int lanes>
 struct PoreLanes {
   double liquid_content[lanes], gas_content[lanes];  ///< m_a / (n V) [kg/m3]

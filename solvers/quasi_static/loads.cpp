@@ -96,7 +96,7 @@ void Loads<dim>::force(double t, std::vector<double> &force) const {
     }
 }
 
-/// Of a load, or of open water [Pa].
+/// Force per area of a boundary that loads, and of open water [Pa].
 template <int dim>
 Vec<dim> Loads<dim>::traction_of(const LoadedFacet &load, const Vec<dim> &x, double t) const {
   const Boundary &kind = sources_[load.source].kind;

@@ -1,6 +1,6 @@
 #pragma once
-/// What loads the soil of a quasi-static problem: weight, pore pressure, body accelerations, tractions and open water
-/// on faces.
+/// Loads on the soil of a quasi-static problem: weight, pore pressure, body accelerations, and the loads and the open
+/// water that boundaries put on faces.
 #include "physics/boundary/conditions.h"
 #include "solvers/quasi_static/soil_elements.h"
 
@@ -21,7 +21,7 @@ class Loads {
         facet_rule_(load_quadrature<dim - 1>()) {}
   /// Finds the loaded faces of the soil that is active now.
   void activate();
-  /// On local nodes at time t, this rank's part [N].
+  /// Forces on local nodes at time t, this rank's part [N].
   void force(double t, std::vector<double> &force) const;
   /// Mean displacement of each loaded face, by source [m]. Collective.
   PetscErrorCode mean_displacement(std::vector<Vec<dim>> &face) const;
@@ -30,7 +30,7 @@ class Loads {
   struct LoadedFacet {
     Facet<dim> facet;
     int source;
-    double share;  ///< of its force that falls to this cell: half of it where soil stands on both sides
+    double share;  ///< of its force that acts on this cell: half where soil is on both sides
     std::vector<int> node;
   };
   double pore_pressure(const Vec<dim> &x, double t) const;

@@ -41,7 +41,7 @@ double PoreFlow<dim>::unit_weight() const {
   return liquid_.density * std::sqrt(square);
 }
 
-// ---- what there is ----
+// ---- cells and boundaries ----
 
 template <int dim>
 PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
@@ -60,7 +60,7 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
   for (int c = 0; c < mesh_.cell_count(); ++c)
     for (int a = 0; a <= dim && active_[c]; ++a) body_of_node_[nodes_.of_cell(c)[a]] = body_of_[c];
 
-  // is the soil across a face of another rank there?
+  // ranks tell each other their cells: is there soil across a face of the partition?
   int ranks, mine = mesh_.cell_count();
   PetscCallMPI(MPI_Comm_size(nodes_.comm(), &ranks));
   std::vector<int> counts(ranks), starts(ranks + 1, 0);
@@ -81,7 +81,7 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
   supplies_.clear();
   const int count =
       static_cast<int>(sources_.size()) +
-      1;  // ranks of what stands beyond a node, where several do: given pressures, open water, rain, the atmosphere
+      1;  // order in which boundaries count where several meet at a node: pressures, open water, rain, the atmosphere
   const auto put = [&](const Facet<dim> &facet, int source, int rank, bool supplied) {
     for (int node : nodes_.of_facet(facet.cell, facet.face)) {
       if (rank >= 0) beyond[node] = std::max<PetscInt>(beyond[node], rank * count + source + 1);
@@ -152,9 +152,9 @@ void PoreFlow<dim>::begin(double t) {
   for (int i = 0; i < nodes_.count(); ++i) {
     if (pressed_[i] == none) continue;
     const double p = outside(i, t);
-    fixed_[i] = !may_close_[i] || p > 0 || open_[i];  // below open water the pressure is the water's
+    fixed_[i] = !may_close_[i] || p > 0 || open_[i];  // below open water the pressure is that of the water
     if (fixed_[i]) pressure[i] = p;
-    if (p > 0) open_[i] = 1;  // when the water falls it seeps here at first
+    if (p > 0) open_[i] = 1;  // once the water level has fallen below the node, water seeps out here at first
   }
 }
 
@@ -167,7 +167,7 @@ bool PoreFlow<dim>::update_seepage(const std::vector<double> &rest) {
   for (int i = 0; i < nodes_.count(); ++i) {
     if (!may_close_[i]) continue;
     if (fixed_[i] && pressure[i] == 0 && rest[i] > 0)
-      fixed_[i] = open_[i] = 0, changed = 1;  // it would draw in more than there is
+      fixed_[i] = open_[i] = 0, changed = 1;  // the node would draw in more than the supply
     else if (!fixed_[i] && pressure[i] > 1e-9 * scale)
       fixed_[i] = open_[i] = 1, pressure[i] = 0, changed = 1;
   }
@@ -175,7 +175,7 @@ bool PoreFlow<dim>::update_seepage(const std::vector<double> &rest) {
   return changed;
 }
 
-// ---- what pores hold and pass ----
+// ---- storage and flow ----
 
 template <int dim>
 double PoreFlow<dim>::saturation_of(int body, double p) const {
@@ -335,7 +335,7 @@ std::vector<std::pair<std::string, double>> PoreFlow<dim>::own_inflow() const {
   return own;
 }
 
-// ---- what soil feels ----
+// ---- pressures and masses for the soil ----
 
 template <int dim>
 double PoreFlow<dim>::pressure_at(int cell, const Barycentric<dim> &l) const {

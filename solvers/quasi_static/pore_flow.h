@@ -1,7 +1,7 @@
 #pragma once
 /// Flow of pore water through soil by finite elements of first order on the active cells, docs/theory/seepage.md:
 /// Darcy's law with the retention curves and permeabilities of the scene, storage lumped at the nodes and conserved as
-/// mass. What its boundaries mean is what they mean for the motion of the fluids (physics/boundary/pore_conditions.h).
+/// mass. Boundaries act as their kinds state (physics/boundary/kind.h), as in the motion of the fluids.
 #include <functional>
 
 #include "physics/boundary/pore_conditions.h"
@@ -11,7 +11,7 @@
 
 namespace talus {
 
-/// What steps are judged by at a node: the pressure that soil feels [Pa], and the saturation.
+/// The values at a node that the step control looks at: the pressure in the total stress [Pa], and the saturation.
 struct FlowMeasure {
   double pressure, saturation;
 };
@@ -26,10 +26,10 @@ std::vector<int> bodies_of_cells(const BackgroundMesh<dim> &mesh, const Scene &s
   return body;
 }
 
-/// Sizes of the terms of a balance that must cancel, and the rows of the balance, both of local nodes.
+/// The water balance of local nodes: its residual, and the size of the terms that must cancel.
 struct WaterBalance {
   std::vector<double>
-      rest;  ///< water that a node's share of the soil takes up and passes on in the step, less what flows in [m3]
+      rest;  ///< water that the soil of a node stores and passes on in the step, minus the water that flows in [m3]
   std::vector<double> size;  ///< the same with all terms positive [m3]
 };
 
@@ -37,31 +37,30 @@ template <int dim>
 class PoreFlow {
  public:
   using Source = typename Conditions<dim>::Source;
-  /// `suction`: pores may dry; else they stay full whatever the pressure. `more` are boundaries of the water that no
-  /// one else knows. The references must outlive it.
+  /// `suction`: pores may dry; otherwise they stay full at any pressure. `more` are boundaries of the water in addition
+  /// to those that the motion has too. The references must outlive it.
   PoreFlow(const BackgroundMesh<dim> &mesh, const Scene &scene, const std::vector<Source> &sources, bool suction,
            const std::vector<Source> &more = {});
 
-  /// Cells through which water flows. Nodes keep their pressure; those that were not there before take `fresh`(x).
-  /// Collective.
+  /// Sets the cells through which water flows. Nodes retain their pressure, new ones take `fresh`(x). Collective.
   PetscErrorCode activate(const std::vector<char> &active, const std::function<double(const Vec<dim> &)> &fresh);
 
-  /// Before a step that ends at the loads of time t: pressures that boundaries give, in `pressure` too. Unknown is what
-  /// is not `fixed`.
+  /// Begins a step that ends at the loads of time t: finds the nodes whose pressure boundaries prescribe (`fixed`) and
+  /// writes it into `pressure`. The pressures of the other nodes are unknown.
   void begin(double t);
-  /// Balance of a step dt from the accepted pressures to `pressure`, without what the soil's volume strain takes.
+  /// Balance of a step dt from the accepted pressures to `pressure`, without the volume strain of the soil.
   void balance(double t, double dt, WaterBalance *balance) const;
   /// Adds its derivative to the rows and columns of nodes that are not fixed.
   PetscErrorCode tangent(double dt, Mat matrix) const;
-  /// Seepage faces: nodes under pressure are opened, those that would draw in more than is supplied are closed. `rest`
-  /// is the balance of the solved step, summed over ranks. True, on all ranks alike, if any changed.
+  /// Seepage faces: opens nodes that are under pressure, and closes those that would draw in more than the supply.
+  /// `rest` is the balance of the solved step, summed over ranks. True, on all ranks alike, if any changed.
   bool update_seepage(const std::vector<double> &rest);
   /// Accepts `pressure`, and the water that crossed the boundaries.
   void commit(double t, double dt, const std::vector<double> &rest);
 
   // Fields of the present trial state, linear between the vertices of a cell.
   double pressure_at(int cell, const Barycentric<dim> &l) const;
-  /// What the pores take off the total stress [Pa], docs/theory/pores.md (4.2), and its derivative with pressure.
+  /// Pressure of the pores in the total stress [Pa], docs/theory/pores.md (4.2), and its derivative with pressure.
   double stress_pressure(int cell, const Barycentric<dim> &l) const;
   double stress_pressure_slope(int cell, const Barycentric<dim> &l) const;
   double saturation(int cell, const Barycentric<dim> &l) const;
@@ -80,11 +79,12 @@ class PoreFlow {
   const Liquid &liquid() const { return liquid_; }
   /// Weight of the water [N/m3].
   double unit_weight() const;
-  /// Volume of water that this rank's pores have taken up or given off since the accepted state, all of one sign [m3].
+  /// Sum of the volumes of water that the pores of this rank have gained or lost since the accepted state, without
+  /// signs [m3].
   double stored() const;
-  /// Volume per time that enters through each boundary in the last step [m3/s], by source. Collective.
+  /// Volume of water per time that entered through each boundary in the last step [m3/s], by source. Collective.
   std::vector<double> inflow() const;
-  /// The same, of the boundaries that no one else knows, by their names. Collective.
+  /// The same of the boundaries that only the flow has, by their names. Collective.
   std::vector<std::pair<std::string, double>> own_inflow() const;
   int cell_count() const { return mesh_.cell_count(); }
 
@@ -92,7 +92,7 @@ class PoreFlow {
   std::vector<double> accepted;  ///< at the start of the step [Pa]
 
  private:
-  struct Supply {  ///< what may or must flow in at a node of a face
+  struct Supply {  ///< a boundary that supplies water at a node of a face
     int node, source;
     double area;
   };
@@ -108,7 +108,7 @@ class PoreFlow {
   const BackgroundMesh<dim> &mesh_;
   const Scene &scene_;
   std::vector<Source> sources_;
-  std::size_t shared_sources_;  ///< so many stand first
+  std::size_t shared_sources_;  ///< number of those that the motion has too, which come first
   std::vector<int> body_of_;
   bool suction_, bishop_;
   Liquid liquid_;
@@ -119,9 +119,9 @@ class PoreFlow {
   ElementNodes<dim> nodes_;
   std::vector<double> pressure_of_point_;  ///< accepted, by point of the DMPlex; NaN where water never was
   static constexpr int atmosphere = -1, none = -2;
-  std::vector<int> pressed_;        ///< of nodes: source whose pressure stands beyond, the atmosphere, or none
-  std::vector<char> may_close_;     ///< 1 where water leaves but does not enter beyond what is supplied
-  std::vector<char> open_, fixed_;  ///< seepage nodes at the pressure beyond; nodes whose pressure is known
+  std::vector<int> pressed_;        ///< of nodes: source of the pressure beyond the face, the atmosphere, or none
+  std::vector<char> may_close_;     ///< 1 at seepage faces, where water leaves and no more than the supply enters
+  std::vector<char> open_, fixed_;  ///< seepage nodes that have the pressure beyond; nodes whose pressure is known
   std::vector<Supply> supplies_;
   std::vector<double> inflow_;  ///< by source, of this rank [m3/s]
 };

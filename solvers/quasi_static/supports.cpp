@@ -62,7 +62,7 @@ PetscErrorCode Supports<dim>::setup(const BackgroundMesh<dim> &mesh, const Eleme
       }
   }
 
-  // a facet may lie on one rank and its nodes on others too: every rank hears of all
+  // a facet lies on one rank and its nodes may lie on others too: every rank receives the directions of all
   int ranks;
   PetscCallMPI(MPI_Comm_size(nodes.comm(), &ranks));
   std::vector<int> counts(ranks), starts(ranks + 1, 0);

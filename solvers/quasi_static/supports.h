@@ -1,6 +1,6 @@
 #pragma once
-/// Prescribed directions at the nodes of the finite elements, from the boundaries of the scene (`fixed`, `roller`,
-/// `velocity`). A node whose directions are not axes has a frame of its own: its first rows are the prescribed
+/// Prescribed directions at the nodes of the finite elements, from the boundaries of the scene that support soil in
+/// quasi-static stages. A node whose directions are not axes has a frame of its own: its first rows are the prescribed
 /// directions.
 #include <vector>
 
@@ -12,7 +12,7 @@ namespace talus {
 
 template <int dim>
 struct Support : PrescribedDirections<dim> {
-  Square<dim> frame;           ///< rows: unit vectors of the node's own unknowns
+  Square<dim> frame;           ///< its rows are the unit vectors of the node's unknowns
   std::array<char, dim> held;  ///< 1 where that unknown is prescribed
   bool turned = false;         ///< the frame is not the identity
 };

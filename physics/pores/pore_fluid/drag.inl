@@ -1,4 +1,4 @@
-// Drag, and what boundaries do to velocities; theory of pores, (4.6), section 5; included only where PoreFluid is
+// Drag, and the action of boundaries on velocities; theory of pores, (4.6), section 5; included only where PoreFluid is
 // instantiated.
 #include <algorithm>
 #include <cmath>
@@ -14,22 +14,22 @@ NodalFluid PoreFluid<dim, Phases>::at_node(int i, int a, double beyond) const {
   const NodePores &node = nodes_[i];
   const double mass = node.mass(a), whole = node.whole(a);
   if (!(whole > 0)) return {0, 0, 0};
-  constexpr double closed = 1e30;  // [1/s]: where pressures are prescribed, fluids go with the grains
+  constexpr double closed = 1e30;  // [1/s]: where pressures are prescribed, fluids move with the grains
   double conductivity = node.conductivity(a) / node.volume();
-  if (beyond > 0) conductivity = (conductivity + beyond) / 2;  // as if there were one more cell, beyond the face
+  if (beyond > 0) conductivity = (conductivity + beyond) / 2;  // the mean with one more cell, beyond the face
   const double resistance = prescribed ? closed * whole : mass / whole * node.volume() / std::max(conductivity, 1e-300);
   return {mass, whole, resistance};
 }
 
-/// What drag over a step sees of it: nothing to resist where drag is explicit and so one of the forces.
+/// The same for implicit drag over a step: no resistance where drag is explicit, since it is one of the forces then.
 template <int dim, class Phases>
 NodalFluid PoreFluid<dim, Phases>::over_step(int i, int a) const {
   const NodalFluid at = at_node(i, a);
   return explicit_drag_ && !prescribed ? NodalFluid{at.mass, at.whole_mass, 0} : at;
 }
 
-/// Each fluid against the skeleton; together they are no faster than their sum. Pores that may be dry beyond a face
-/// count there with half the conductivity.
+/// Sum of the rates of each fluid against the skeleton, which bounds the rate of all together. Soil beyond a face may
+/// be dry: half the conductivity counts there.
 template <int dim, class Phases>
 double PoreFluid<dim, Phases>::drag_rate(const FilledGrid<dim> &grid) const {
   double largest = 0;
@@ -44,12 +44,12 @@ double PoreFluid<dim, Phases>::drag_rate(const FilledGrid<dim> &grid) const {
   return largest;
 }
 
-/// Shortest change of a number that brings it between two others.
+/// Smallest change of x that brings it between low and high.
 inline double into(double x, double low, double high) { return std::clamp(x, low, high) - x; }
 
-/// Where a face or a wall holds a fluid back, that acts on the skeleton too: they share what momentum they have along
-/// its normal. A surface that lets no water in bears its suction so, and a wall that holds the skeleton bears the
-/// weight of the water, theory (4.6a).
+/// A face or wall that stops a fluid acts on the skeleton too: fluid and skeleton share their momentum along its
+/// normal. In this way a surface that lets no water in bears the suction, and a wall that supports the skeleton bears
+/// the weight of the water, theory (4.6a).
 template <int dim, class Phases>
 void PoreFluid<dim, Phases>::resist(double step, const Frame &frame, const PoreConditions<dim> &conditions,
                                     Vec<dim> *solid, const Vec<dim> *fluid) const {
@@ -78,8 +78,8 @@ void PoreFluid<dim, Phases>::resist(double step, const Frame &frame, const PoreC
   conditions.walls([&](int i, const Vec<dim> &n) { share(i, n, fluids, 0, 0); });
 }
 
-/// What a support at a node holds: the skeleton, all of a fluid along the normals of walls, elsewhere what drag takes
-/// along in a step [kg].
+/// A support stops the skeleton, all of a fluid along the normals of walls, and in other directions the part of a fluid
+/// that drag takes along in a step [kg].
 template <int dim, class Phases>
 Square<dim> PoreFluid<dim, Phases>::inertia(double step, const FilledGrid<dim> &grid,
                                             const PoreConditions<dim> &conditions, int i) const {
@@ -89,13 +89,14 @@ Square<dim> PoreFluid<dim, Phases>::inertia(double step, const FilledGrid<dim> &
     const double free = at.mass / (1 + drag_number(step, at));
     dragged += at.mass - free, rest += free;
   }
-  Square<dim> held = dragged * Square<dim>::Identity();
-  conditions.walls_at(grid, i, [&](const Vec<dim> &n) { held += rest * map<dim>(n) * map<dim>(n).transpose(); });
-  return held;
+  Square<dim> inertia = dragged * Square<dim>::Identity();
+  conditions.walls_at(grid, i, [&](const Vec<dim> &n) { inertia += rest * map<dim>(n) * map<dim>(n).transpose(); });
+  return inertia;
 }
 
-/// The sum of w p grad N is the pressure on the wall less its gradient over the cells beside it; along a wall's normal
-/// that is the liquid's weight.
+/// The sum of w p grad N extrapolates the pressure of the cells to the wall without its gradient. Along the normal of a
+/// wall that gradient is the weight of the liquid, which is added. It is left out where the pressure is negative
+/// (suction).
 template <int dim, class Phases>
 double PoreFluid<dim, Phases>::thrust(const Vec<dim> &gravity, int i, const Vec<dim> &n) const {
   double push = 0, weight = 0;
@@ -112,9 +113,9 @@ void PoreFluid<dim, Phases>::follow(double step, const Frame &frame, const PoreC
     NodalFluid at[fluids];
     for (int a = 0; a < fluids; ++a) at[a] = over_step(i, a);
     for (int d = 0; d < dim; ++d) {
-      double v[fluids], held = solid[i][d];
+      double v[fluids], supported = solid[i][d];
       for (int a = 0; a < fluids; ++a) v[a] = fluid[a * nodes + i][d];
-      resolve_drag<fluids>(step, frame.grid.mass[i], held, at, v, true);
+      resolve_drag<fluids>(step, frame.grid.mass[i], supported, at, v, true);
       for (int a = 0; a < fluids; ++a) fluid[a * nodes + i][d] = v[a];
     }
   }
@@ -136,7 +137,7 @@ template <int dim, class Phases>
 void PoreFluid<dim, Phases>::constrain(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid,
                                        Vec<dim> *fluid) const {
   const int nodes = frame.grid.node_count();
-  const auto hold = [&](int i, const Vec<dim> &n, int count, double low, double high) {
+  const auto bring_within = [&](int i, const Vec<dim> &n, int count, double low, double high) {
     for (int a = 0; a < count; ++a) {
       Vec<dim> &v = fluid[a * nodes + i];
       double out = 0;
@@ -145,8 +146,9 @@ void PoreFluid<dim, Phases>::constrain(const Frame &frame, const PoreConditions<
       for (int d = 0; d < dim; ++d) v[d] += change * n[d];
     }
   };
-  limits(frame, conditions, [&](int i, const Vec<dim> &n, double low, double high) { hold(i, n, 1, low, high); });
-  conditions.walls([&](int i, const Vec<dim> &n) { hold(i, n, fluids, 0, 0); });
+  limits(frame, conditions,
+         [&](int i, const Vec<dim> &n, double low, double high) { bring_within(i, n, 1, low, high); });
+  conditions.walls([&](int i, const Vec<dim> &n) { bring_within(i, n, fluids, 0, 0); });
 }
 
 }  // namespace talus

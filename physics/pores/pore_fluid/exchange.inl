@@ -1,4 +1,4 @@
-// What flows between cells; theory of pores, (4.7) to (4.9); included only where PoreFluid is instantiated.
+// Mass fluxes between cells; theory of pores, (4.7) to (4.9); included only where PoreFluid is instantiated.
 #include <algorithm>
 #include <cmath>
 
@@ -6,15 +6,15 @@
 
 namespace talus {
 
-/// Gas takes the density of where it comes from, and none leaves soil whose gas is down to its residue, theory (4.9).
-/// Collective.
+/// Gas flows with the density of the cells that it comes from, and none leaves cells that have only their residual gas,
+/// theory (4.9). Collective.
 template <int dim, class Phases>
 PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<dim> *gas,
                                                 const Vec<dim> *solid) requires Phases::gas {
   PetscFunctionBeginUser;
   constexpr int
       width = 4,
-      share = 3;  // of a node: volume taken, mass taken, what holds gas back; share of the gas that is in the pores
+      share = 3;  // of a node: volume taken, mass taken, resistance of residual gas; share of the gas in the pores
   constexpr double empty = 1e-30;
   FilledGrid<dim> &grid = frame.grid;
   const auto pore_share = [&](int i) { return nodes_[i].whole(1) > 0 ? nodes_[i].mass(1) / nodes_[i].whole(1) : 0; };
@@ -42,10 +42,11 @@ PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<di
     const double open = std::clamp(
         std::min(free / residual_gas * (1 - cell.saturation), free * cell.mass[1] / (2 * out * cell.density[1])), empty,
         1.);
-    const double held = 1 / open - 1;
-    for (int k = 0; k <= dim; ++k) {  // without branches: which nodes take is as good as random
+    const double resistance = 1 / open - 1;
+    for (int k = 0; k <= dim; ++k) {  // without branches: no processor predicts which nodes take
       double *node = &nodal_[shape.node[k] * width];
-      talus::store<4>(node, load<4>(node) + Quad{takes[k], takes[k] * cell.density[1], takes[k] > 0 ? held : 0, 0});
+      talus::store<4>(node,
+                      load<4>(node) + Quad{takes[k], takes[k] * cell.density[1], takes[k] > 0 ? resistance : 0, 0});
     }
   }
   PetscCall(grid.sum(nodal_.data(), width));
@@ -76,10 +77,11 @@ PetscErrorCode PoreFluid<dim, Phases>::flow(const Frame &frame, const PoreCondit
   if constexpr (Phases::gas) PetscCall(gas_flux(frame, u + 2 * nodes, u));
   for (int a = 0; a < fluids; ++a)
     for (int i = 0; i < nodes; ++i) {
-      double out = 0, shut = 0;
-      for (int d = 0; d < dim; ++d) out += flux_[a][i][d] * nodes_[i].geometry[d], shut += flux_[a][i][d] * gap_[i][d];
-      shut_[a][i] = shut;
-      if (!frame.trial && mesh_.owned[grid.mesh_node[i]]) out_[a] += out - shut * nodes_[i].volume();
+      double out = 0, gap_flux = 0;
+      for (int d = 0; d < dim; ++d)
+        out += flux_[a][i][d] * nodes_[i].geometry[d], gap_flux += flux_[a][i][d] * gap_[i][d];
+      gap_flux_[a][i] = gap_flux;
+      if (!frame.trial && mesh_.owned[grid.mesh_node[i]]) out_[a] += out - gap_flux * nodes_[i].volume();
     }
   for (int c = 0; c < cells; ++c) {
     const Shape<dim> &shape = grid.shape[c];
@@ -92,7 +94,7 @@ PetscErrorCode PoreFluid<dim, Phases>::flow(const Frame &frame, const PoreCondit
     }
   }
   for (const auto &[i, c, k] : conditions.gap_cells())
-    for (int a = 0; a < fluids; ++a) divergence_[a][c] -= reference_[c][k] * shut_[a][i];
+    for (int a = 0; a < fluids; ++a) divergence_[a][c] -= reference_[c][k] * gap_flux_[a][i];
   PetscFunctionReturn(0);
 }
 
@@ -104,35 +106,36 @@ PetscErrorCode PoreFluid<dim, Phases>::smooth_flow(const Frame &frame, Array &vo
   const int cells = frame.grid.cell_count();
   for (int a = Phases::suction; a < fluids; ++a)
     for (int c = 0; c < cells; ++c) divergence_[a][c] *= frame.weight[c];
-  if constexpr (Phases::suction) PetscCall(give_around(frame, divergence_[0]));
+  if constexpr (Phases::suction) PetscCall(share_divergence(frame, divergence_[0]));
   PetscFunctionReturn(0);
 }
 
-/// A cell takes up liquid as its particles' volume tells, and what its own volume tells beyond that goes to the cells
-/// around in proportion to theirs, theory (4.8a): where particles are spread unevenly over the cells of a front,
-/// contents stay even. Collective.
+/// A cell takes up the liquid that belongs to the volume of its particles. The rest, which belongs to its integration
+/// volume beyond that, is distributed over the cells around it in proportion to their particle volumes, theory (4.8a):
+/// so contents stay even where particles are spread unevenly over the cells of a front. Collective.
 template <int dim, class Phases>
-PetscErrorCode PoreFluid<dim, Phases>::give_around(const Frame &frame, Array &divergence) requires Phases::suction {
+PetscErrorCode PoreFluid<dim, Phases>::share_divergence(const Frame &frame,
+                                                        Array &divergence) requires Phases::suction {
   PetscFunctionBeginUser;
   const int cells = frame.grid.cell_count();
   std::fill_n(nodal_.begin(), frame.grid.node_count() * 2, 0.);
   for (int c = 0; c < cells; ++c)
     for (int i : frame.shape[c].node)
-      nodal_[i * 2] += frame.particle_volume[c], nodal_[i * 2 + 1] += beyond_particles(frame, c) * divergence[c];
+      nodal_[i * 2] += frame.particle_volume[c], nodal_[i * 2 + 1] += volume_beyond_particles(frame, c) * divergence[c];
   PetscCall(frame.grid.sum(nodal_.data(), 2));
   for (int c = 0; c < cells; ++c) {
     double from_nodes = 0;
     for (int i : frame.shape[c].node) from_nodes += nodal_[i * 2 + 1] / nodal_[i * 2];
-    divergence[c] = (frame.weight[c] - beyond_particles(frame, c)) * divergence[c] +
+    divergence[c] = (frame.weight[c] - volume_beyond_particles(frame, c)) * divergence[c] +
                     frame.particle_volume[c] / (dim + 1) * from_nodes;
   }
   PetscFunctionReturn(0);
 }
 
-/// The adjoint: a cell presses with the pressure of its particles as far as their volume goes, beyond that with that
-/// around it. Collective.
+/// The adjoint of share_divergence: a cell has the pressure of its particles over their volume, and the pressure of the
+/// cells around it over the rest of its integration volume. Collective.
 template <int dim, class Phases>
-PetscErrorCode PoreFluid<dim, Phases>::see_around(const Frame &frame, Array &pressure) requires Phases::suction {
+PetscErrorCode PoreFluid<dim, Phases>::share_pressure(const Frame &frame, Array &pressure) requires Phases::suction {
   PetscFunctionBeginUser;
   const int cells = frame.grid.cell_count();
   std::fill_n(nodal_.begin(), frame.grid.node_count() * 2, 0.);
@@ -143,7 +146,7 @@ PetscErrorCode PoreFluid<dim, Phases>::see_around(const Frame &frame, Array &pre
   for (int c = 0; c < cells; ++c) {
     double around = 0;
     for (int i : frame.shape[c].node) around += nodal_[i * 2 + 1] / nodal_[i * 2] / (dim + 1);
-    pressure[c] += beyond_particles(frame, c) / frame.weight[c] * (around - pressure[c]);
+    pressure[c] += volume_beyond_particles(frame, c) / frame.weight[c] * (around - pressure[c]);
   }
   PetscFunctionReturn(0);
 }
@@ -154,20 +157,20 @@ void PoreFluid<dim, Phases>::exchange(const Frame &frame) {
     const PorePoints &from = points_[b];
     PorePoints &to = frame.trial ? trial_[b] : points_[b];
     const PointSet &set = frame.points[b];
-    if (frame.trial) to.room(set.count), std::copy_n(from.share.begin(), set.count, to.share.begin());
+    if (frame.trial) to.reserve(set.count), std::copy_n(from.share.begin(), set.count, to.share.begin());
     for (int q = 0; q < set.count; ++q) {
       const double part = frame.volume[b][q] / frame.particle_volume[set.cell[q]];
       for (int a = 0; a < fluids; ++a) to.mass[a][q] = from.mass[a][q] - part * divergence_[a][set.cell[q]];
     }
   }
-  if (by_rate_) follow_rates(frame);
+  if (by_rate_) set_masses_by_rate(frame);
 }
 
-// The naive form, theory (3.5): pressures go on at their rate from those of the last step, and what the curve then
-// gives takes the place of the masses.
+// The naive form of storage, theory (3.5): pressures are integrated by their rate from those of the last step, and the
+// masses are replaced by what the retention curve gives for them.
 
 template <int dim, class Phases>
-void PoreFluid<dim, Phases>::keep_pressures(const Frame &frame) {
+void PoreFluid<dim, Phases>::save_pressures(const Frame &frame) {
   for (size_t b = 0; b < bodies_.size(); ++b) {
     PorePoints &points = points_[b];
     points.pressure.resize(points.grains.size());
@@ -180,7 +183,7 @@ void PoreFluid<dim, Phases>::keep_pressures(const Frame &frame) {
 }
 
 template <int dim, class Phases>
-void PoreFluid<dim, Phases>::follow_rates(const Frame &frame) {
+void PoreFluid<dim, Phases>::set_masses_by_rate(const Frame &frame) {
   for (size_t b = 0; b < bodies_.size(); ++b) {
     PorePoints &points = points_[b];
     for (int q = 0; q < frame.points[b].count; ++q) {

@@ -14,7 +14,7 @@ void PoreFluid<dim, Phases>::add_to_mixture(const Frame &frame, const PoreCondit
   for (int i = 0; i < frame.grid.node_count(); ++i)
     for (int d = 0; d < dim; ++d) {
       force[i][d] += at[i].push[mixture][d];
-      for (int a = 0; a < fluids; ++a) force[i][d] += at[i].mass(a) * weighs(at[i], a) * frame.gravity[d];
+      for (int a = 0; a < fluids; ++a) force[i][d] += at[i].mass(a) * weight_factor(at[i], a) * frame.gravity[d];
     }
   conditions.pressures(frame.time, frame.grid, unit_weight(frame),
                        [&](int i, double, const Vec<dim> &, const Vec<dim> &load) {
@@ -22,7 +22,7 @@ void PoreFluid<dim, Phases>::add_to_mixture(const Frame &frame, const PoreCondit
                        });
 }
 
-/// Conductivity of the liquid where it has a prescribed pressure, in the soil at a node [m2/(Pa s)].
+/// Conductivity that the soil at a node has at the pressure prescribed beyond its face [m2/(Pa s)].
 template <int dim, class Phases>
 double PoreFluid<dim, Phases>::conductivity_beyond(int node, const NodePores &at, double pressure) const {
   double relative = 1;
@@ -44,9 +44,11 @@ PetscErrorCode PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreCondi
     for (int i = 0; i < nodes; ++i) {
       const double whole = at[i].whole(a), scale = whole > 0 ? 1 / whole : 0;
       for (int d = 0; d < dim; ++d)
-        acceleration[a * nodes + i][d] = whole > 0 ? at[i].push[a][d] * scale + weighs(at[i], a) * frame.gravity[d] : 0;
+        acceleration[a * nodes + i][d] =
+            whole > 0 ? at[i].push[a][d] * scale + weight_factor(at[i], a) * frame.gravity[d] : 0;
     }
-  // beyond a gap is the pressure of the cells around it, brought to the node with the weight of the fluid
+  // a gap between particles: the pressure beyond it is that of the neighbouring cells, extrapolated to the node with
+  // the weight of the fluid
   const std::vector<CellPores> &pores = frame.trial ? trial_cells_ : cells_;
   std::fill_n(nodal_.begin(), nodes * fluids, 0.);
   for (const auto &[i, c, k] : conditions.gap_cells()) {

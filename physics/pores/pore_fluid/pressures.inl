@@ -1,4 +1,4 @@
-// Pressures from masses, and what cells and nodes make of them; theory of pores, (3.1) to (3.3), (4.2), (4.3); included
+// Pressures from masses, and their sums over cells and nodes; theory of pores, (3.1) to (3.3), (4.2), (4.3); included
 // only where PoreFluid is instantiated.
 #include <algorithm>
 #include <cmath>
@@ -25,9 +25,9 @@ Vec<dim> PoreFluid<dim, Phases>::place(const Frame &frame, int c, const std::arr
   return x;
 }
 
-/// Fills the points to the prescribed pressures, where fluids do not move.
+/// Gives the points the masses that belong to the prescribed pressures, in stages in which fluids do not move.
 template <int dim, class Phases>
-void PoreFluid<dim, Phases>::hold(const Frame &frame) {
+void PoreFluid<dim, Phases>::set_prescribed_pressures(const Frame &frame) {
   for (size_t b = 0; b < bodies_.size(); ++b) {
     PorePoints &points = frame.trial ? trial_[b] : points_[b];
     for (int q = 0; q < frame.points[b].count; ++q) {
@@ -45,14 +45,14 @@ void PoreFluid<dim, Phases>::hold(const Frame &frame) {
   }
 }
 
-/// Pressures of points from their masses, and what cells make of them, theory (3.1)-(3.3), (4.2).
+/// Pressures of points from their masses, and their means over cells, theory (3.1)-(3.3), (4.2).
 template <int dim, class Phases>
-void PoreFluid<dim, Phases>::solve(const Frame &frame) {
+void PoreFluid<dim, Phases>::find_pressures(const Frame &frame) {
   constexpr int lanes = 8;
   std::vector<CellPores> &cells = frame.trial ? trial_cells_ : cells_;
   if (frame.trial) cells.resize(cells_.size());
   std::fill_n(cells.begin(), frame.grid.cell_count(), CellPores{});
-  if (prescribed) hold(frame);
+  if (prescribed) set_prescribed_pressures(frame);
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const PorePoints &accepted = points_[b];
     PorePoints &points = frame.trial ? trial_[b] : points_[b];
@@ -145,8 +145,8 @@ template <int dim, class Phases>
 PetscErrorCode PoreFluid<dim, Phases>::store(const Frame &frame) {
   PetscFunctionBeginUser;
   const int nodes = frame.grid.node_count(), cells = frame.grid.cell_count();
-  solve(frame);
-  if (by_rate_) keep_pressures(frame);
+  find_pressures(frame);
+  if (by_rate_) save_pressures(frame);
   std::vector<CellPores> &pores = frame.trial ? trial_cells_ : cells_;
   for (int i = 0; i < nodes; ++i) {
     nodal_head_[i] = 0;
@@ -159,12 +159,12 @@ PetscErrorCode PoreFluid<dim, Phases>::store(const Frame &frame) {
   };
   std::array<double *, fluids> fields;
   for (int a = 0; a < fluids; ++a) fields[a] = smooth_[a].data();
-  for (int c = 0; c < cells; ++c) {  // of the liquid, and of the mixture where that is something else
+  for (int c = 0; c < cells; ++c) {  // of the liquid, and of the mixture where its pressure is another one
     const double weight = liquid_.density * (head_[c] = head(c, mean_[c]));
     smooth_[0][c] = pores[c].pressure[0] - weight;
     if constexpr (Phases::gas) smooth_[1][c] = mixture_pressure(pores[c].pressure, pores[c].saturation) - weight;
   }
-  if constexpr (Phases::suction) PetscCall(see_around(frame, smooth_[0]));
+  if constexpr (Phases::suction) PetscCall(share_pressure(frame, smooth_[0]));
   PetscCall(smooth<fluids>(frame, fields));
   std::vector<NodePores> &at = frame.trial ? trial_nodes_ : nodes_;
   if (frame.trial) at.resize(nodes_.size());
@@ -180,7 +180,7 @@ PetscErrorCode PoreFluid<dim, Phases>::store(const Frame &frame) {
       own[a] = cell.pressure[a] + (a ? gas_density() : liquid_.density) * (here - head_[c]);
     cell.mixture = mixture_pressure(smoothed(c) ? cell.smooth : own, cell.saturation);
     if constexpr (Phases::gas)
-      if (smoothed(c)) {  // the gas keeps its suction against the liquid: what smoothing takes must not draw gas
+      if (smoothed(c)) {  // suction stays what it was: a pressure that smoothing has changed must not draw gas
         cell.smooth[1] += smooth_[0][c] + liquid_.density * head_[c] - cell.pressure[0];
         cell.mixture = smooth_[1][c] + liquid_.density * here;
       }

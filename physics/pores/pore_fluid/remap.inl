@@ -7,7 +7,7 @@
 namespace talus {
 
 template <int dim, class Phases>
-Pores<dim> PoreFluid<dim, Phases>::show(std::vector<PorePoints> &points, int b) {
+Pores<dim> PoreFluid<dim, Phases>::pores_of(std::vector<PorePoints> &points, int b) {
   Pores<dim> pores{points[b].grains.data(), {}, {}, 1 / bodies_[b]->source().grain_density};
   for (int a = 0; a < fluids; ++a) pores.mass[a] = points[b].mass[a].data(), pores.impulse[a] = impulse_[a].data();
   return pores;
@@ -42,7 +42,7 @@ PetscErrorCode PoreFluid<dim, Phases>::gather(const Frame &frame, PoreConditions
   PetscFunctionBeginUser;
   FilledGrid<dim> &grid = frame.grid;
   const int nodes = grid.node_count(), cells = grid.cell_count();
-  Array *const mass = smooth_;  // of the fluids in a cell [kg]; nothing is smoothed yet
+  Array *const mass = smooth_;  // of the fluids in a cell [kg], in an array that smoothing uses later
   for (int a = 0; a < fluids; ++a) std::fill_n(mass[a].begin(), cells, 0.);
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const ParticleArrays<dim> &p = bodies_[b]->particles();
@@ -51,7 +51,7 @@ PetscErrorCode PoreFluid<dim, Phases>::gather(const Frame &frame, PoreConditions
     points.count = set.count;
     if (!frame.averaged) {  // particles are the points
       const double over_density = 1 / bodies_[b]->source().grain_density;
-      points.room(set.count);
+      points.reserve(set.count);
       for (int i = 0; i < p.count; ++i) {
         points.grains[i] = p.mass[i] * over_density;
         for (int a = 0; a < fluids; ++a) points.mass[a][i] = p.fluid_mass[a][i];
