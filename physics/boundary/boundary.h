@@ -1,5 +1,5 @@
 #pragma once
-/// A boundary of a scene, whatever its kind: what the kind states (kind.h) and the functions that go with it.
+/// A boundary of a scene, whatever its kind: the statements of the kind (kind.h) and the functions that they ask for.
 #include <functional>
 #include <memory>
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace talus {
 
-/// What a boundary does to the skeleton, as kind.h says; empty where the kind does not do it.
+/// The functions of a boundary that act on the skeleton, as in kind.h; empty where the kind has none.
 template <int dim>
 struct SoilFunctions {
   std::function<std::vector<Vec<dim>>(const Vec<dim> &normal)> directions;

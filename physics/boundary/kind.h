@@ -7,9 +7,10 @@
 ///     static constexpr OnWater water = ...;        // what it does to the pore liquid
 ///     static constexpr OnGas gas = ...;            // what it does to the pore gas
 ///
-/// Each statement asks for the members that are named beside it; everything that acts on a boundary (Conditions,
-/// PoreConditions, SurfaceLoads, and the finite elements of solvers/quasi_static) asks these statements and never for a
-/// kind by its name. A missing statement, a missing member, and a member that no statement asks for do not compile.
+/// Each value of a statement asks for the members that are named beside it below. All code that applies boundaries
+/// (Conditions, PoreConditions, SurfaceLoads, and the finite elements of solvers/quasi_static) reads these statements
+/// and never asks for a kind by its name. A missing statement, a missing member, and a member that no statement asks
+/// for do not compile.
 #include <array>
 #include <concepts>
 #include <vector>
@@ -22,15 +23,15 @@ namespace talus {
 enum class OnSoil {
   none,     ///< nothing
   support,  ///< prescribes the velocity in some directions: `precedence`, `directions`, and `speed` where they move
-  contact,  ///< a rigid base that soil does not enter and rubs against: `friction_coefficient`, `adhesion`
-  load,     ///< a force per area: `load`, `follows`
-  dashpot,  ///< a force per area that grows with the velocity: `dashpot`; a support may stand in for it
-  refused   ///< it cannot act there: the scene is refused
+  contact,  ///< is a rigid base, which soil does not enter and which rubs: `friction_coefficient`, `adhesion`
+  load,     ///< exerts a force per area: `load`, `follows`
+  dashpot,  ///< exerts a force per area against the velocity: `dashpot`; a support may stand in for it
+  refused   ///< cannot act in such stages, and a scene that has one is refused
 };
 
 /// What a boundary does to the liquid in the pores.
 enum class OnWater {
-  surface,   ///< what acts on the surface of the soil acts here too: the atmosphere, or the kind of `free_surface`
+  surface,   ///< none of its own: the face is part of the soil's surface (atmosphere, or the kind on `free_surface`)
   wall,      ///< no liquid passes
   pressure,  ///< the liquid beyond has the pressure `outside` and moves in and out freely: `open_water`
   seepage,   ///< the same, but where `outside` is not above zero no more than `supply` enters: `open_water`
@@ -40,7 +41,7 @@ enum class OnWater {
 
 /// What a boundary does to the gas in the pores.
 enum class OnGas {
-  surface,     ///< what acts on the surface of the soil acts here too
+  surface,     ///< none of its own: the face is part of the soil's surface
   wall,        ///< no gas passes
   atmosphere,  ///< gas moves in and out freely, beyond the face is the atmosphere
   pressure     ///< gas moves in and out freely, beyond the face it has the pressure `gas_outside`
@@ -135,43 +136,59 @@ concept StatesGas = requires {
   { Kind::gas } -> std::convertible_to<OnGas>;
 };
 
-/// Does the kind act so on the skeleton in any stage?
+/// Can the program act on the skeleton as the kind states? Contact and dashpots act in motion only. A support acts in
+/// all stages, or stands in for a dashpot.
 template <StatesSoil Kind>
-constexpr bool acts(OnSoil action) {
-  return Kind::in_motion == action || Kind::quasi_static == action;
+constexpr bool possible_on_soil() {
+  constexpr OnSoil moving = Kind::in_motion, still = Kind::quasi_static;
+  const bool stands_in = still == OnSoil::support && moving != OnSoil::support;
+  return moving != OnSoil::refused && still != OnSoil::contact && still != OnSoil::dashpot &&
+         (!stands_in || moving == OnSoil::dashpot);
+}
+/// Does the kind have the members that its statements about the skeleton ask for, and no others?
+template <StatesSoil Kind>
+constexpr bool complete_on_soil() {
+  constexpr auto acts = [](OnSoil action) { return Kind::in_motion == action || Kind::quasi_static == action; };
+  constexpr auto has_all = [](bool asked, auto... present) { return ((present == asked) && ...); };
+  const bool moves = member::speed<Kind>;
+  return has_all(acts(OnSoil::support), member::directions<Kind>, member::precedence<Kind>) &&
+         (!moves || acts(OnSoil::support)) &&
+         has_all(acts(OnSoil::contact), member::friction_coefficient<Kind>, member::adhesion<Kind>) &&
+         has_all(acts(OnSoil::load), member::load<Kind>, member::follows<Kind>) &&
+         has_all(acts(OnSoil::dashpot), member::dashpot<Kind>);
+}
+/// Can the program act on the fluids as the kind states? A wall stops both fluids, and the surface of the soil acts on
+/// both. (A face that stops the liquid alone has an inflow of zero.)
+template <class Kind>
+requires StatesWater<Kind> && StatesGas<Kind>
+constexpr bool possible_on_fluids() {
+  constexpr bool wall[] = {Kind::water == OnWater::wall, Kind::gas == OnGas::wall};
+  constexpr bool surface[] = {Kind::water == OnWater::surface, Kind::gas == OnGas::surface};
+  return wall[0] == wall[1] && surface[0] == surface[1];
+}
+/// Does the kind have the members that its statements about the fluids ask for, and no others?
+template <class Kind>
+requires StatesWater<Kind> && StatesGas<Kind>
+constexpr bool complete_on_fluids() {
+  constexpr OnWater water = Kind::water;
+  constexpr auto has_all = [](bool asked, auto... present) { return ((present == asked) && ...); };
+  const bool pressure = water == OnWater::pressure || water == OnWater::seepage;
+  return has_all(pressure, member::outside<Kind>, member::open_water<Kind>) &&
+         has_all(water == OnWater::seepage, member::supply<Kind>) &&
+         has_all(water == OnWater::flux, member::inflow<Kind>) &&
+         has_all(Kind::gas == OnGas::pressure, member::gas_outside<Kind>);
 }
 
-/// Stages can act as the kind states: all of them on supports and loads; a support may stand in for a dashpot.
 template <class Kind>
-concept PossibleOnSoil = StatesSoil<Kind> && Kind::in_motion != OnSoil::refused &&Kind::quasi_static !=
-                             OnSoil::contact &&Kind::quasi_static != OnSoil::dashpot &&
-                         (Kind::quasi_static != OnSoil::support || Kind::in_motion == OnSoil::support ||
-                          Kind::in_motion == OnSoil::dashpot);
-/// A wall stops both fluids, and the surface of the soil acts on both. (A face that stops the liquid alone has an
-/// inflow of zero.)
+concept PossibleOnSoil = possible_on_soil<Kind>();
 template <class Kind>
-concept PossibleOnFluids = StatesWater<Kind> && StatesGas<Kind> &&
-                               (Kind::water == OnWater::wall) == (Kind::gas == OnGas::wall) &&
-                           (Kind::water == OnWater::surface) == (Kind::gas == OnGas::surface);
-
-/// The kind has the members that its statements about the skeleton ask for, and no others.
+concept CompleteOnSoil = complete_on_soil<Kind>();
 template <class Kind>
-concept CompleteOnSoil = StatesSoil<Kind> && member::directions<Kind>
-== acts<Kind>(OnSoil::support) && member::precedence<Kind> == acts<Kind>(OnSoil::support) &&
-    (!member::speed<Kind> || acts<Kind>(OnSoil::support)) && member::load<Kind> == acts<Kind>(OnSoil::load) &&
-    member::follows<Kind> == acts<Kind>(OnSoil::load) &&
-    member::friction_coefficient<Kind> == acts<Kind>(OnSoil::contact) &&
-    member::adhesion<Kind> == acts<Kind>(OnSoil::contact) && member::dashpot<Kind> == acts<Kind>(OnSoil::dashpot);
-/// The same for its statements about the pore fluids.
+concept PossibleOnFluids = possible_on_fluids<Kind>();
 template <class Kind>
-concept CompleteOnFluids = StatesWater<Kind> && StatesGas<Kind> && member::outside<Kind>
-== (Kind::water == OnWater::pressure || Kind::water == OnWater::seepage) &&
-    member::open_water<Kind> == member::outside<Kind> &&member::supply<Kind> == (Kind::water == OnWater::seepage) &&
-    member::inflow<Kind> == (Kind::water == OnWater::flux) &&
-    member::gas_outside<Kind> == (Kind::gas == OnGas::pressure);
-
+concept CompleteOnFluids = complete_on_fluids<Kind>();
 template <class Kind>
-concept BoundaryKind = PossibleOnSoil<Kind> && PossibleOnFluids<Kind> && CompleteOnSoil<Kind> && CompleteOnFluids<Kind>;
+concept BoundaryKind = PossibleOnSoil<Kind> && CompleteOnSoil<Kind> && PossibleOnFluids<Kind> && CompleteOnFluids<Kind>;
 
 /// The unit vectors of all axes, for kinds that prescribe the whole velocity.
 template <int dim>
