@@ -23,6 +23,15 @@ TEST(Curves, mualem_conductivity_is_van_genuchtens) {
   EXPECT_NEAR(VanGenuchtenMualem{m}.liquid({wet, 1 - wet, h}), expected, 1e-14);
 }
 
+TEST(Curves, brooks_coreys_permeabilities_have_their_exponents) {
+  // Brooks & Corey (1964), eqs. (14), (15): (2 + 3 l) / l = 4 and (2 + l) / l = 2 of l = 2; 3.5 and 1.5 of l = 4
+  const Wetness half{0.5, 0.5, 0};
+  EXPECT_NEAR(BrooksCoreyPermeability{2}.liquid(half), 1. / 16, 1e-15);
+  EXPECT_NEAR(BrooksCoreyPermeability{2}.gas(half), 3. / 16, 1e-15);
+  EXPECT_NEAR(BrooksCoreyPermeability{4}.liquid(half), std::sqrt(0.5) / 8, 1e-15);
+  EXPECT_NEAR(BrooksCoreyPermeability{4}.gas(half), (1 - std::sqrt(0.5) / 2) / 4, 1e-15);
+}
+
 TEST(Curves, retention_falls_and_its_slope_and_inverse_are_its_own) {
   for (const std::string &text : soils) {
     const SoilPores soil = soil_of(text);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -128,6 +129,24 @@ TEST(NonlocalStrain, gives_back_what_the_law_adds) {
     else
       EXPECT_NEAR(made[q], own[q] + 0.01, 1e-15);
   }
+}
+
+/// Strain on a line is spread as exp(-|x| / l) / (2 l): it has the peak of a band of the width 2 l, which is what
+/// softening takes for the size of a cell.
+TEST(NonlocalStrain, has_a_band_of_twice_the_length) {
+  constexpr double length = 0.1;
+  const int n = 64;
+  Filled<2> box(n, length);
+  box.set([](const Vec<2> &x) { return x[0] > 0.5 && x[0] < 0.5 + 1. / n ? 1 : 0.; });
+  EXPECT_EQ(box.nonlocal.begin(box.grid, box.points), 0);
+  const auto average = box.averages();
+  double total = 0, peak = 0;
+  for (std::size_t q = 0; q < average.size(); ++q)
+    total += box.volume[q] * box.strain[q], peak = std::max(peak, average[q]);
+  MPI_Allreduce(MPI_IN_PLACE, &peak, 1, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD);
+  // the sides of the square are 5 l away and reflect exp(-10); cells of l / 6 miss a few percent of the peak
+  EXPECT_NEAR(sum(total) / peak, 2 * length, 0.1 * length);
+  for (int c = 0; c < box.mesh.cell_count(); ++c) EXPECT_EQ(box.nonlocal.size()[c], 2 * length);
 }
 
 }  // namespace
