@@ -3,8 +3,8 @@
 
 namespace talus {
 
-/// Bingham fluid: rests below its yield stress, and flows above it with tau = tau_y + mu gamma_dot (Bingham 1922). What
-/// rests is elastic, so no regularised viscosity is needed: the two branches meet exactly at tau_y.
+/// Bingham fluid: at rest below its yield stress, flowing above it with tau = tau_y + mu gamma_dot (Bingham 1922). At
+/// rest it is elastic, so no regularised viscosity is needed: the two branches meet exactly at tau_y.
 struct Bingham : Newtonian {
   static constexpr const char *name = "bingham";
   static constexpr const char *meaning = "viscous fluid with a yield stress: mud, debris";

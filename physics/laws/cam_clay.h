@@ -15,7 +15,7 @@ namespace talus {
 /// nu) / (1 + nu), K = v p / kappa; yield at q^2 = M^2 p (p_c - p), associated flow; hardening dv^p = -(lambda - kappa)
 /// dp_c / p_c. Volume changes are integrated exactly, so that v + kappa ln p + (lambda - kappa) ln p_c never changes;
 /// flow is implicit (Borja & Lee 1990, Comput. Methods Appl. Mech. Eng. 78), solved for t = q / (M p): below 1 on the
-/// wet side of critical state, above it on the dry side. Whatever is found lies on the ellipse.
+/// wet side of critical state, above it on the dry side. The result always lies on the ellipse.
 struct CamClay {
   static constexpr const char *name = "cam_clay";
   static constexpr const char *meaning = "modified Cam-clay";
@@ -26,6 +26,9 @@ struct CamClay {
       {"consolidation", one, "ln of the preconsolidation pressure over its initial one", true},
   }};
   using History = std::array<double, history.size()>;
+
+  static constexpr const char *no_reduction =
+      "has a strength that follows from its preconsolidation pressure, in place of a cohesion and a friction angle";
 
   double compression_slope = required;          ///< lambda [-]
   double swelling_slope = required;             ///< kappa [-]
@@ -125,7 +128,7 @@ struct CamClay {
         w = newton >= low ? kept : middle;
       };
       [&]<int... k>(std::integer_sequence<int, k...>) __attribute__((always_inline)) { (narrow(k), ...); }
-      (std::make_integer_sequence<int, 12>());  // written out: a loop would keep the points from going side by side
+      (std::make_integer_sequence<int, 12>());  // written out: a loop here would not be vectorised over points
       return w;
     }
   };

@@ -7,7 +7,7 @@ namespace talus {
 
 enum class Cone { outer, inner, compromise, plane_strain };
 
-/// Non-associated Drucker-Prager cone sqrt(J2) + eta p = xi c around an elastic inside, with softening.
+/// Non-associated Drucker-Prager cone sqrt(J2) + eta p = xi c, elastic within it, with softening.
 /// Sources: de Souza Neto, Peric & Owen (2008), sec. 6.4.4 (cones through the outer or inner edges of the Mohr-Coulomb
 /// pyramid and the plane-strain match), sec. 8.3 (return to cone and apex, exact); Zienkiewicz et al. (1978), Numerical
 /// methods in offshore engineering, ch. 12 (compromise: the mean of outer and inner).
@@ -72,7 +72,7 @@ struct DruckerPrager : IsotropicElastic, FrictionalStrength {
   void as_case(Use use) const;
 };
 
-/// The cone of soil that softens or does not.
+/// The cone compiled with or without softening.
 template <bool softening>
 struct DruckerPragerCase : DruckerPrager {
   Strength<> peak;
@@ -84,8 +84,8 @@ struct DruckerPragerCase : DruckerPrager {
     over_stiffness = 1 / (G + K * peak.eta_bar * peak.eta);
   }
 
-  /// Brings an elastic trial stress back to the cone. The strength is that after the plastic strain which the strength
-  /// at the start would cause, as in MohrCoulomb.
+  /// Returns an elastic trial stress to the cone. The strength is that after the plastic strain which the strength at
+  /// the start of the step would cause, as in MohrCoulomb.
   template <int dim, class Number>
   [[gnu::always_inline]] void correct(Stress<dim, Number> &s, History &history, const Surroundings &around) const {
     auto &[plastic_strain, plastic_volume] = history;

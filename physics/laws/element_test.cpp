@@ -70,31 +70,31 @@ class Driver {
   Step prescribed(double driven) const {
     Step step;
     auto &of = step.of;
-    const auto hold = [&](int i) { of[i] = {true, start_[i]}; };
+    const auto keep_stress = [&](int i) { of[i] = {true, start_[i]}; };
     const auto strain = [&](int i, double value) { of[i].value = value; };
     // a round sample stays round: softening soil would choose one side to bulge at, by round-off
-    const auto hold_sides = [&] {
-      hold(0);
+    const auto keep_side_stress = [&] {
+      keep_stress(0);
       if (start_[0] == start_[2])
         of[2].as_xx = true;
       else
-        hold(2);
+        keep_stress(2);
     };
     switch (test_.type) {
       case TestType::triaxial_compression:
-        strain(1, -driven), hold_sides();
+        strain(1, -driven), keep_side_stress();
         break;
       case TestType::triaxial_extension:
-        strain(1, driven), hold_sides();
+        strain(1, driven), keep_side_stress();
         break;
       case TestType::biaxial:
-        strain(1, -driven), hold(0);
+        strain(1, -driven), keep_stress(0);
         break;
       case TestType::oedometer:
         strain(1, -driven);
         break;
       case TestType::simple_shear:
-        strain(3, driven), hold(1);
+        strain(3, driven), keep_stress(1);
         break;
       case TestType::isotropic_compression:
         for (int i = 0; i < 3; ++i) strain(i, -driven / 3);
@@ -132,9 +132,9 @@ class Driver {
   Unknowns residual(const ElementState &next, const Unknowns &x, const Step &step) const {
     Unknowns r;
     for (int i = 0; i < 6; ++i) {
-      const Prescribed &given = step.of[i];
-      const double strain = given.as_xx ? next.strain[0] : given.value;
-      r[i] = given.stress ? total(next, i) - given.value : K_ * (next.strain[i] - strain);
+      const Prescribed &one = step.of[i];
+      const double strain = one.as_xx ? next.strain[0] : one.value;
+      r[i] = one.stress ? total(next, i) - one.value : K_ * (next.strain[i] - strain);
     }
     r[6] = K_ * (test_.undrained ? compliance_ * K_ * x[6] + x[0] + x[1] + x[2] : x[6]);
     return r;

@@ -1,7 +1,7 @@
 #pragma once
 /// One point of a law in the laboratory: the tests of `talus soil`. The point sees neither inertia nor a mesh. Each
-/// component of its deformation is given, or the total stress that belongs to it is; what is not given follows by
-/// Newton's method. Without drainage the pore fluid adds its own equation, docs/theory/laws/element_tests.md.
+/// component of its deformation is prescribed, or else its total stress is; the rest follows by Newton's method.
+/// Without drainage the pore fluid adds its own equation, docs/theory/laws/element_tests.md.
 #include <array>
 #include <span>
 #include <stdexcept>
@@ -47,13 +47,13 @@ struct Control {
   bool given() const;
 };
 
-/// The axis of a sample is y; x and z are its sides, z the one that plane strain holds.
+/// The axis of a sample is y. x and z are its sides; in plane strain z does not strain.
 struct ElementTest {
   std::string name;  ///< the table's own name, [test.NAME]
   TestType type = TestType::triaxial_compression;
-  double cell_pressure = 100e3;  ///< effective, at the start; stays on the sides (simple shear: on the top) [Pa]
+  double cell_pressure = 100e3;  ///< effective, at the start; constant on the sides (simple shear: on the top) [Pa]
   std::vector<double> stress;    ///< effective, at the start, instead: xx, yy, zz, xy, yz, xz, positive in tension [Pa]
-  std::vector<double> strain = {0.1};  ///< what is driven, in the direction of the test; then where it turns [-]
+  std::vector<double> strain = {0.1};  ///< prescribed in the direction of the test: the end of each leg [-]
   int steps = 200;                     ///< of each leg
   bool undrained = false;
   double skempton_b = 1;      ///< undrained: pressure rise over rise of the mean total stress, elastic [-]
@@ -143,11 +143,11 @@ struct ElementState {
   double compression() const { return -(strain[0] + strain[1] + strain[2]); }  ///< loss of volume, natural [-]
 };
 
-/// Throws std::invalid_argument for a test with a suction that the law does not read, or without the duration that it
-/// needs.
+/// Throws std::invalid_argument for a test with a suction that the law does not read, or without the duration that the
+/// law needs.
 void refuse_unsuitable(const Law &law, const ElementTest &test);
 
-/// Walks the point through the test; the first state is the start. Throws ElementTestError where no stress answers the
+/// Takes the point through the test; the first state is the start. Throws ElementTestError where no stress fits the
 /// prescribed deformation, and std::invalid_argument like refuse_unsuitable.
 std::vector<ElementState> drive(const Law &law, const ElementTest &test);
 

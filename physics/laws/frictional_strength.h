@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <string>
 
 #include "physics/laws/lanes.h"
@@ -8,8 +9,8 @@
 
 namespace talus {
 
-/// Cohesion, friction and dilation, which may fade with plastic strain: the strength of the frictional laws. Source of
-/// the softening: Alonso, Yerro & Pinyol (2015), eqs. (18), (19).
+/// Cohesion, friction and dilation, which may decrease with plastic strain: the strength of the frictional laws. Source
+/// of the softening: Alonso, Yerro & Pinyol (2015), eqs. (18), (19).
 struct FrictionalStrength {
   double cohesion = required;                   ///< c, peak [Pa]
   double friction_angle = required;             ///< phi, peak [rad]
@@ -57,6 +58,16 @@ struct FrictionalStrength {
 
   bool softens() const { return shape_factor > 0; }
 
+  /// Divides c and tan(phi), of peak and residual, by `factor`; psi is at most the reduced phi.
+  /// docs/theory/finite_elements.md (5.1).
+  void reduce_strength(double factor) {
+    const auto reduce_angle = [factor](double &phi) { phi = std::atan(std::tan(phi) / factor); };
+    cohesion /= factor, reduce_angle(friction_angle);
+    if (residual_cohesion > 0) residual_cohesion /= factor;
+    if (residual_friction_angle > 0) reduce_angle(residual_friction_angle);
+    dilation_angle = std::min(dilation_angle, friction_angle);
+  }
+
   // Set by prepare().
   double residual_c = 0, residual_phi = 0;               ///< [Pa], [rad]
   double sin_psi_peak = 0, sin_psi_residual = 0;         ///< [-]
@@ -75,7 +86,7 @@ struct FrictionalStrength {
   struct Faded {
     Number c, phi, sin_psi;  ///< [Pa], [rad], [-]; psi may exceed phi
   };
-  /// What a plastic strain has left. sin psi fades as c and phi do.
+  /// Strength that is left after a plastic strain. sin psi decreases as c and phi do.
   template <class Number>
   [[gnu::always_inline]] Faded<Number> faded(const Number &plastic_strain, const Surroundings &around) const {
     const double scale = around.size * over_size, eta = scale > 0 ? shape_factor * scale : shape_factor;

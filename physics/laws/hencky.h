@@ -8,10 +8,11 @@
 
 namespace talus {
 
-/// A law with a hyperelastic inside: the Kirchhoff stress is tau = C : 1/2 ln b_e (Hencky), b_e the elastic left
-/// Cauchy-Green tensor, which a step carries to dF b_e dF^T; sigma = tau / J. Since the law is isotropic, b_e follows
-/// from tau, and J is all that history keeps. The return map acts on tau, by exponential map the small-strain one (de
-/// Souza Neto, Peric & Owen 2008, sec. 14.4). docs/theory/laws/hencky.md says how it differs from the update of (2.5).
+/// A law that is hyperelastic within its yield surface: the Kirchhoff stress is tau = C : 1/2 ln b_e (Hencky), b_e the
+/// elastic left Cauchy-Green tensor, which a step carries to dF b_e dF^T; sigma = tau / J. Since the law is isotropic,
+/// b_e follows from tau, and history needs J alone. The return map acts on tau, by exponential map the small-strain one
+/// (de Souza Neto, Peric & Owen 2008, sec. 14.4). docs/theory/laws/hencky.md says how it differs from the update of
+/// (2.5).
 template <class Base>
 struct Hencky : Base {
   static constexpr auto history = [] {

@@ -1,5 +1,5 @@
 #pragma once
-/// Linear isotropic elasticity: the inside of a law that brings nothing else.
+/// Linear isotropic elasticity, which every law has within its yield surface unless it brings its own.
 #include "physics/laws/stress.h"
 #include "scene/scene.h"
 

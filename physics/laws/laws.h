@@ -2,23 +2,25 @@
 /// The soil models. A law is a plain struct. To add one: its file, one word in `Law`, and in tests/unit/laws its
 /// examples and claims. What a law has:
 /// - `name`, `meaning`: how scenes call it, and what it is
-/// - `history`, `History`: fields it remembers of a point, and their values
+/// - `history`, `History`: its internal variables at a point (names, units, meanings), and their values
 /// - `fields(visitor)`: its parameters, for reader and descriptions; `problem()`: what is wrong between them, or ""
-/// - `prepare()`: derives what follows from the parameters alone, once per update of all points
-/// - `reads_suction()`: does its strength follow `Surroundings::suction`?
-/// - `takes_suction`: the same of the compiled case
+/// - `prepare()`: derives constants from the parameters, once per update of all points
+/// - `reads_suction()`: does its strength depend on `Surroundings::suction`?
+/// - `takes_suction`: the same, of the compiled case
 /// - `rate_dependent`: does its stress depend on the time that a strain takes?
-/// - `as_case(use)`: where the law is compiled in several cases, calls `use` with the one that serves its parameters
+/// - `as_case(use)`: where the law is compiled in several cases, calls `use` with the one that fits its parameters
 /// - `trial(s, e, around)`: adds the elastic stress of a strain increment (IsotropicElastic's, unless the law has its
 /// own)
-/// - `advance(s, e, history, around)`: in place of trial and correct, where a law does not part them
-/// - `correct(s, history, around)`: brings the trial back to what the law admits; leaves admissible stress alone
+/// - `advance(s, e, history, around)`: in place of `trial` and `correct`, where a law does both in one
+/// - `correct(s, history, around)`: returns the trial stress to the yield surface; does not change admissible stress
+/// - `reduce_strength(factor)`: divides its strength, for factors of safety; a law that cannot has `no_reduction`, the
+/// reason that completes "law umat ...", and a law without any limit of strength also has `never_fails`
 /// - `bulk_modulus()`, `shear_modulus()`, `elastic_energy(s)`, `cohesionless()`, `strength_varies()`
 /// `trial` and `correct` are templates over the number type too: a run with Duals (dual.h) gives the consistent
 /// tangent. History takes values only (`value_of`).
 ///
-/// They run in a loop over points that must vectorise: straight-line code; choices as `?:` between
-/// values that are already there; comparisons not joined by && or &. The exception is `Umat`, which is called point by
+/// They run in a loop over points that must vectorise: straight-line code; choices as `?:` between values that are
+/// computed before; comparisons not joined by && or &. The exception is `Umat`, which is called point by
 /// point.
 #include <span>
 #include <string_view>
@@ -46,13 +48,13 @@ Law read_law(const DeferredTable &table);
 inline const char *law_name(const Law &law) {
   return std::visit([](const auto &one) { return one.name; }, law);
 }
-/// Names, units and meanings of what the law remembers of a point.
+/// Names, units and meanings of the internal variables of the law at a point.
 inline std::span<const HistoryField> history_fields(const Law &law) {
   return std::visit([](const auto &one) { return std::span<const HistoryField>(one.history); }, law);
 }
 inline int history_size(const Law &law) { return static_cast<int>(history_fields(law).size()); }
 
-/// Must the phase model bring suction?
+/// Does the law need a phase model with suction?
 inline bool reads_suction(const Law &law) {
   return std::visit([](const auto &one) { return one.reads_suction(); }, law);
 }
@@ -60,7 +62,7 @@ inline bool reads_suction(const Law &law) {
 inline bool rate_dependent(const Law &law) {
   return std::visit([](const auto &one) { return one.rate_dependent; }, law);
 }
-/// Place of the plastic strain that softening reads among the history fields; -1 where there is none.
+/// Index among the history fields of the plastic strain that softening reads; -1 where there is none.
 inline int plastic_strain_field(const Law &law) {
   const auto fields = history_fields(law);
   for (std::size_t h = 0; h < fields.size(); ++h)
@@ -78,7 +80,7 @@ inline double constrained_modulus(const Law &law) {  ///< K + 4/3 G, of the elas
   return bulk_modulus(law) + 4 * shear_modulus(law) / 3;
 }
 
-/// What is wrong with a law in a dimension that its parameters alone do not show, or "".
+/// What is wrong with a law in a dimension, beyond what its parameters alone show, or "".
 inline std::string law_problem(const Law &law, int dim) {
   const Umat *umat = std::get_if<Umat>(&law);
   return umat ? umat->problem_in(dim) : "";
@@ -89,14 +91,48 @@ inline Umat::Trouble law_trouble(const Law &law) {
   return umat ? umat->trouble() : Umat::Trouble{};
 }
 
-/// Does soil of this law open without resistance? Then volume that particles gain by opening gaps is not the soil's.
+/// Does soil of this law open without resistance? Then the volume that its particles gain by opening is that of gaps.
 inline bool cohesionless(const Law &law) {
   return std::visit([](const auto &one) { return one.cohesionless(); }, law);
 }
 
-/// Does strength differ from point to point? Then averaged stress may lie outside the mean strength.
+/// Does strength differ from point to point? Then averaged stress may lie outside the yield surface of the mean
+/// history.
 inline bool strength_varies(const Law &law) {
   return std::visit([](const auto &one) { return one.strength_varies(); }, law);
+}
+
+/// Why a factor of safety cannot reduce the strength of this law, as the end of a sentence that begins with its name;
+/// "" where it can.
+inline const char *no_strength_reduction(const Law &law) {
+  return std::visit(
+      [](const auto &one) {
+        if constexpr (requires { one.no_reduction; })
+          return one.no_reduction;
+        else
+          return "";
+      },
+      law);
+}
+/// Has the law no limit of strength? Its soil may stand beside soil whose strength is reduced.
+inline bool never_fails(const Law &law) {
+  return std::visit(
+      [](const auto &one) {
+        return requires { one.never_fails; };
+      },
+      law);
+}
+/// The law with its strength divided by `factor`; a law without strength to reduce as it is.
+inline Law with_reduced_strength(const Law &law, double factor) {
+  return std::visit(
+      [factor](auto one) -> Law {
+        static_assert(
+            requires { one.reduce_strength(factor); } != requires { one.no_reduction; },
+            "a law has reduce_strength(factor) or the reason no_reduction");
+        if constexpr (requires { one.reduce_strength(factor); }) one.reduce_strength(factor);
+        return one;
+      },
+      law);
 }
 
 /// Elastic energy per volume [J/m3].

@@ -11,6 +11,9 @@ struct LinearElastic : IsotropicElastic {
   static constexpr std::array<HistoryField, 0> history{};
   using History = std::array<double, history.size()>;
 
+  static constexpr bool never_fails = true;
+  static constexpr const char *no_reduction = "is elastic and never fails";
+
   bool cohesionless() const { return false; }
 
   template <int dim, class Number>

@@ -51,9 +51,16 @@ struct MohrCoulomb : IsotropicElastic, FrictionalStrength {
   bool reads_suction() const { return suction_cohesion > 0 || suction_friction_rate > 0; }
   bool strength_varies() const { return softens() || reads_suction(); }
 
+  /// Also divides the tension cut-off and what suction adds to the cohesion; suction_friction_rate stays.
+  void reduce_strength(double factor) {
+    FrictionalStrength::reduce_strength(factor);
+    suction_cohesion /= factor;
+    if (tension_cutoff > 0) tension_cutoff /= factor;
+  }
+
   // Of the parameters alone, set by prepare().
-  double cutoff = 0;                                  ///< [Pa]
-  double plane_drag = 0, line_drag = 0;               ///< stress that opening takes off the others [-]
+  double cutoff = 0;                     ///< [Pa]
+  double plane_drag = 0, line_drag = 0;  ///< share of a stress relieved by opening that the others lose [-]
   static constexpr double steepest = 80 * degree.si;  ///< of phi with suction [rad]
   void prepare() {
     IsotropicElastic::prepare();
@@ -139,12 +146,13 @@ struct MohrCoulomb : IsotropicElastic, FrictionalStrength {
     return sqrt(d12 * d12 + d23 * d23 + d31 * d31) * (0.47140452079103168 / (2 * G));  // sqrt(2) / 3
   }
 
-  /// Calls `use` with this law as the simplest of its cases: what a soil does not do costs its particles nothing.
+  /// Calls `use` with this law as the simplest of its cases, so that softening and suction cost time only in soil that
+  /// has them.
   template <class Use>
   void as_case(Use use) const;
 };
 
-/// Mohr-Coulomb of soil that softens or does not, and reads suction or does not.
+/// Mohr-Coulomb compiled with or without softening, and with or without suction.
 template <bool softening, bool with_suction>
 struct MohrCoulombCase : MohrCoulomb {
   static constexpr bool takes_suction = with_suction;
@@ -155,9 +163,9 @@ struct MohrCoulombCase : MohrCoulomb {
     peak = strength(0., Surroundings{0});
   }
 
-  /// Brings an elastic trial stress back to the surface. The strength is that after the plastic strain which the
-  /// strength at the start would cause: first order in the step, and behind the strain that results by only
-  /// (softening slope / 2 G) of what the strength at the start would be.
+  /// Returns an elastic trial stress to the yield surface. The strength is that after the plastic strain which the
+  /// strength at the start of the step would cause. This is of first order in the step; its error is (softening slope /
+  /// 2 G) times the error that the strength at the start would give.
   template <int dim, class Number>
   [[gnu::always_inline]] void correct(Stress<dim, Number> &stress, History &history, const Surroundings &around) const {
     auto &[plastic_strain, plastic_volume] = history;

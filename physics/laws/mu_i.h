@@ -17,6 +17,8 @@ struct MuI : IsotropicElastic {
   static constexpr auto history = plastic_strains;
   using History = std::array<double, history.size()>;
   static constexpr bool rate_dependent = true;
+  static constexpr const char *no_reduction =
+      "has a friction that depends on the rate of strain, which is zero in equilibrium";
 
   double static_friction = required;    ///< mu_s, tau / p at rest [-]
   double limiting_friction = required;  ///< mu_2, tau / p of fast flow [-]

@@ -15,6 +15,7 @@ struct Newtonian : IsotropicElastic {
   static constexpr auto history = plastic_strains;
   using History = std::array<double, history.size()>;
   static constexpr bool rate_dependent = true;
+  static constexpr const char *no_reduction = "is a fluid, whose shear stress depends on the rate of strain";
 
   double viscosity = required;  ///< mu [Pa s]
 
@@ -24,9 +25,9 @@ struct Newtonian : IsotropicElastic {
     v.number("viscosity", viscosity, pascal_second, Range{1e-9, 1e15}, "dynamic viscosity mu");
   }
 
-  bool cohesionless() const { return true; }  // it opens without resistance
+  bool cohesionless() const { return true; }  // a fluid opens without resistance
 
-  /// Lets the shear stress above `threshold` flow for the step; a fluid bears no tension.
+  /// Viscous flow during the step, driven by the shear stress above `threshold` [Pa]. Tension is removed.
   template <int dim, class Number>
   [[gnu::always_inline]] void flow(Stress<dim, Number> &s, History &history, const Surroundings &around,
                                    double threshold) const {

@@ -1,7 +1,7 @@
 #pragma once
-/// Principal stresses, and the way back from changed ones, without eigenvectors: a stress with the same axes is a
-/// polynomial of the old stress, written with divided differences. Straight-line code that vectorises; to round-off
-/// also where principal values are equal or nearly so. `correct` of an isotropic law needs no more.
+/// Principal stresses, and the stress that belongs to changed ones, without eigenvectors: a stress with the same axes
+/// is a polynomial of the old stress, written with divided differences. Straight-line code that vectorises; to
+/// round-off also where principal values are equal or nearly so. `correct` of an isotropic law needs no more.
 #include "physics/laws/stress.h"
 
 namespace talus {
@@ -13,7 +13,7 @@ struct Principal {
 };
 
 /// Slope of the change between two principal values; isotropic returns only ever bring them closer: 0 <= slope <= 1.
-/// Holding it there keeps the quotient of two round-offs, at equal values, harmless.
+/// The bounds keep the quotient of two round-off errors, at equal values, harmless.
 [[gnu::always_inline]] inline double divided_difference(double change, double gap) {
   const double slope = change / (gap > 1e-200 ? gap : 1e-200), positive = slope > 0 ? slope : 0;
   return positive < 1 ? positive : 1;

@@ -26,7 +26,7 @@ using Strain = Stress<dim, Number>;  ///< the same shape; tensor components, not
 
 using std::sqrt;  // of doubles; a Dual brings its own
 
-/// What history keeps of a number: its value.
+/// The value of a number, which is what history stores.
 inline double value_of(double x) { return x; }
 
 /// Mean stress and deviator s - p I, with q = sqrt(J2) its norm over sqrt(2) [Pa].
@@ -55,7 +55,7 @@ struct Invariants {
 
 /// Deformation since the accepted state, one per cell that holds particles: dF = R U.
 /// `strain` is ln U (tensor components, not engineering shear), its trace already replaced by the patch mean against
-/// locking; it includes zz in plane strain. It acts before R turns the point: s = R (s_0 + C : ln U) R^T. `rotation` is
+/// locking; it includes zz in plane strain. It acts before the rotation R: s = R (s_0 + C : ln U) R^T. `rotation` is
 /// R: in 2D {cos, sin} of [cos -sin; sin cos], in 3D row-major.
 template <int dim>
 struct Increment {
@@ -63,7 +63,7 @@ struct Increment {
   std::array<double, dim == 2 ? 2 : 9> rotation;
 };
 
-/// What a law may know of the place beside stress and history.
+/// What a law may read at a point beside stress and history.
 struct Surroundings {
   double size;           ///< element size h: sqrt(4 A / sqrt 3) of a triangle, (6 sqrt 2 V)^(1/3) of a tetrahedron [m],
                          ///< docs/theory (2.7)

@@ -23,7 +23,7 @@ using Subroutine = void (*)(double *stress, double *statev, double *ddsdde, doub
                             const int *npt, const int *layer, const int *kspt, const int *kstep, const int *kinc,
                             std::size_t cmname_length);
 
-constexpr int guards = 16;  ///< numbers behind STATEV that a UMAT has no business with
+constexpr int guards = 16;  ///< numbers behind STATEV, which show a UMAT that writes beyond its state variables
 constexpr double untouched = 0x1.234p-567;
 constexpr int abaqus_order[6] = {0, 1, 2, 3, 5, 4};  ///< 12, 13, 23 out of xy, yz, xz
 constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
@@ -39,7 +39,7 @@ std::string list(const double *values, int count) {
 struct Umat::Loaded {
   void *handle = nullptr;
   Subroutine subroutine = nullptr;
-  std::vector<double> statev, props;  ///< room of the arguments
+  std::vector<double> statev, props;  ///< memory of the arguments
   std::vector<std::string> names;     ///< that `history` points to
   Trouble trouble;
   ~Loaded() {
@@ -68,7 +68,7 @@ std::string Umat::problem() {
   loaded_->props = props;
   loaded_->props.resize(std::max<std::size_t>(1, props.size()));
   for (int i = static_cast<int>(state.size()); i < nstatv; ++i) state.push_back("state_" + std::to_string(i + 1));
-  // copies of this law point to the names of this one: they must not move, so the library's record keeps them
+  // copies of this law point to these names, which must not move: the record that the copies share stores them
   history.clear();
   loaded_->names.assign(state.begin(), state.end());
   for (const std::string &word : loaded_->names) history.push_back({word.c_str(), one, "state variable of the UMAT"});

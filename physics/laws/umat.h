@@ -14,10 +14,11 @@ namespace talus {
 /// what. Stress order of Abaqus, 11, 22, 33, 12, 13, 23, shear strain as the angle, stress and strain positive in
 /// tension.
 ///
-/// It is called point by point, so it does not go through the blocks of the other laws.
+/// It is called point by point, not in the blocks of the other laws.
 struct Umat : IsotropicElastic {
   static constexpr const char *name = "umat";
   static constexpr const char *meaning = "law of your own: an Abaqus-style UMAT in a shared library";
+  static constexpr const char *no_reduction = "keeps its strength in PROPS, which only the UMAT understands";
 
   std::string library;                ///< path
   std::string subroutine = "umat_";   ///< symbol; gfortran's name of UMAT

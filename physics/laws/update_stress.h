@@ -19,7 +19,7 @@ struct StressPoints {
   const double *size;                ///< per filled cell, Surroundings::size
   const double *suction = nullptr;   ///< [count] Surroundings::suction; null where there is none
   double time_step = 0;              ///< Surroundings::time_step
-  double time = 0;                   ///< at the start of the step [s]; only a UMAT learns it
+  double time = 0;                   ///< at the start of the step [s]; only a UMAT reads it
 };
 
 template <int dim>

@@ -50,7 +50,8 @@ struct Block {
           std::memcpy(value[first + k], &row, sizeof row);
         }
       }
-    asm("" : "+m"(value));  // the compiler must not trace single lanes back to here: it would peel them off the loop
+    // the compiler must not trace single lanes back to here: it would take them out of the vector loop
+    asm("" : "+m"(value));
   }
   void store(int lane, double *to) const {
     for (std::size_t k = 0; k < size; ++k) to[k] = value[k][lane];
@@ -110,7 +111,7 @@ template <int dim, class Number, class OneLaw>
   return s;
 }
 
-/// `lanes` points on their way through one law.
+/// `lanes` points that go through one law together.
 template <int dim, class OneLaw>
 struct PointBlock {
   Block<stress_size<dim>> stress, strain;

@@ -5,28 +5,6 @@
 
 namespace talus {
 
-Law with_reduced_strength(const Law &law, double factor) {
-  return std::visit(
-      [&](auto one) -> Law {
-        const auto angle = [&](double phi) { return std::atan(std::tan(phi) / factor); };
-        if constexpr (requires { one.cohesion; }) one.cohesion /= factor;
-        if constexpr (requires { one.suction_cohesion; }) one.suction_cohesion /= factor;
-        if constexpr (requires { one.tension_cutoff; })
-          if (one.tension_cutoff > 0) one.tension_cutoff /= factor;
-        if constexpr (requires { one.residual_cohesion; })
-          if (one.residual_cohesion > 0) one.residual_cohesion /= factor;
-        if constexpr (requires { one.residual_friction_angle; })
-          if (one.residual_friction_angle > 0) one.residual_friction_angle = angle(one.residual_friction_angle);
-        if constexpr (requires { one.friction_angle; }) {
-          one.friction_angle = angle(one.friction_angle);
-          if constexpr (requires { one.dilation_angle; })
-            one.dilation_angle = std::min(one.dilation_angle, one.friction_angle);
-        }
-        return one;
-      },
-      law);
-}
-
 Law without_softening(const Law &law) {
   return std::visit(
       [](auto one) -> Law {

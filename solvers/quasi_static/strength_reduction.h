@@ -9,10 +9,6 @@
 
 namespace talus {
 
-/// The law with c and tan(phi) divided by `factor`, of peak and residual strength; psi is held at the reduced phi where
-/// that falls below it. A law without strength stays as it is.
-Law with_reduced_strength(const Law &law, double factor);
-
 /// The law at its peak strength for good: for stages whose soil does not soften.
 Law without_softening(const Law &law);
 
