@@ -27,7 +27,7 @@ std::string state_name(long long number, int rank) {
   return name;
 }
 
-/// With a line that says what the file is, and a fingerprint by which damage is seen.
+/// Writes `content` behind a line that says what the file is and a fingerprint that shows damage.
 void save(const std::string &path, const std::string &content) {
   const auto sum = fingerprint(content.data(), content.size());
   std::string file = first_line;
@@ -56,7 +56,7 @@ void serialize(Archive &archive, CheckpointHeader &header) {
                     header.ranks);
 }
 
-/// Removes the states of this rank but one.
+/// Removes all states of this rank except that of `number`.
 void remove_others(const std::string &dir, int rank, long long number) {
   std::vector<fs::path> old;
   const std::string mine = fs::path(state_name(number, rank)).extension();
@@ -66,7 +66,7 @@ void remove_others(const std::string &dir, int rank, long long number) {
   for (const auto &file : old) fs::remove(file);
 }
 
-/// `together` for what a user can mend: bad input.
+/// `together` for bad input: failures are std::invalid_argument.
 template <class Work>
 void together_or_refuse(MPI_Comm comm, Work &&work) {
   try {
@@ -92,7 +92,7 @@ void write_checkpoint(MPI_Comm comm, const std::string &dir, CheckpointHeader he
     });
   } catch (...) {
     std::error_code ignored;
-    fs::remove(path, ignored);  // leaves room on a full disk
+    fs::remove(path, ignored);  // frees space on a full disk
     throw;
   }
   together(comm, [&] { remove_others(dir, rank, header.number); });

@@ -1,8 +1,8 @@
 #pragma once
-/// HDF5 files, written whole and read back. A file is built in memory and reaches the disk through replace_file,
-/// because HDF5 1.10 is not safe on a full disk: it updates group tables in place, a failed H5Fclose leaves an
-/// identifier behind that crashes the program when MPI ends, and with four ranks Open MPI's collective writes reported
-/// success for data that were lost (measured with RLIMIT_FSIZE and a full tmpfs).
+/// HDF5 files, written whole and read back. A file is built in memory and written by replace_file, because HDF5 1.10 is
+/// not safe on a full disk: it updates group tables in place; a failed H5Fclose leaves an identifier behind that
+/// crashes the program when MPI ends; and on four ranks Open MPI's collective writes reported success for data that
+/// were lost (measured with RLIMIT_FSIZE and a full tmpfs).
 #include <hdf5.h>
 
 #include <string>
@@ -16,7 +16,7 @@ template <herr_t (*close)(hid_t)>
 class H5Owned {
  public:
   H5Owned() = default;
-  /// Throws std::runtime_error with `what` and HDF5's own words if `id` is a failed call's.
+  /// Throws std::runtime_error with `what` and HDF5's message if `id` is that of a failed call.
   H5Owned(hid_t id, const std::string &what);
   H5Owned(H5Owned &&other) noexcept : id_(std::exchange(other.id_, H5I_INVALID_HID)) {}
   H5Owned &operator=(H5Owned &&other) noexcept {
@@ -39,7 +39,7 @@ using H5Attribute = H5Owned<H5Aclose>;
 using H5Type = H5Owned<H5Tclose>;
 using H5Properties = H5Owned<H5Pclose>;
 
-/// Throws std::runtime_error with `what` and HDF5's own words if `status` is a failed call's.
+/// Throws std::runtime_error with `what` and HDF5's message if `status` is that of a failed call.
 void check_hdf5(long long status, const std::string &what);
 
 /// Silences HDF5's printing of errors in a scope: they are reported as exceptions.
@@ -67,9 +67,9 @@ class Hdf5Builder {
   void attribute(const std::string &object, const char *name, double value);
   void attribute(const std::string &object, const char *name, long long value);
   void attribute(const std::string &object, const char *name, const std::string &text);
-  /// `name` shows the content of another file, given relative to this one.
+  /// Makes `name` a link to the content of another file, whose path is relative to this one.
   void link(const std::string &name, const std::string &file);
-  /// Brings the file to the disk, whole or not at all: std::runtime_error with path and cause.
+  /// Writes the file to the disk, whole or not at all. Throws std::runtime_error with path and cause.
   void save() const;
 
  private:

@@ -15,7 +15,7 @@ namespace talus {
 namespace {
 
 constexpr int digits = 12;           // of every number
-constexpr double round_off = 1e-11;  // that writing a time in so many digits may add to it
+constexpr double round_off = 1e-11;  // relative, of a time written in so many digits
 
 std::string header(const std::vector<std::string> &names) {
   std::string line = "time_s,step,stage";
@@ -32,17 +32,17 @@ std::string quoted(const std::string &text) {
 }
 
 /// The header and the complete lines up to `time`.
-std::string kept_lines(const std::string &path, const std::vector<std::string> &names, double time) {
+std::string lines_until(const std::string &path, const std::vector<std::string> &names, double time) {
   std::ifstream file(path);
   if (!file) throw std::runtime_error("cannot read " + path + ": " + std::strerror(errno));
-  std::string line, kept;
+  std::string line, lines;
   if (!std::getline(file, line) || line != header(names))
     throw std::runtime_error(path + " has other columns than this run: start the run in another folder");
   do {
     if (file.eof()) break;  // no line end: the run died while it wrote this line
-    kept += line + "\n";
+    lines += line + "\n";
   } while (std::getline(file, line) && std::strtod(line.c_str(), nullptr) <= time + round_off * std::abs(time));
-  return kept;
+  return lines;
 }
 
 }  // namespace
@@ -56,7 +56,7 @@ History History::append(MPI_Comm comm, const std::string &path, const std::vecto
   History history(comm, path);
   history.columns_ = names.size();
   on_first_rank(comm, [&] {
-    history.open_with(std::filesystem::exists(path) ? kept_lines(path, names, time) : header(names) + "\n");
+    history.open_with(std::filesystem::exists(path) ? lines_until(path, names, time) : header(names) + "\n");
   });
   return history;
 }

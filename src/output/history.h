@@ -1,5 +1,5 @@
 #pragma once
-/// history.csv: numbers over time, one line each, readable while the run goes on.
+/// history.csv: quantities over time, one line per time. The file can be read while the run goes on.
 #include <mpi.h>
 
 #include <fstream>
@@ -8,16 +8,16 @@
 
 namespace talus {
 
-/// Columns are time_s, step, stage and then the caller's, whose names end in their units ("crest_displacement_m").
-/// Every function is collective over `comm`; rank 0 writes. Failures throw std::runtime_error with path and cause on
-/// all ranks.
+/// The columns are time_s, step, stage and those of the caller, whose names end in their units
+/// ("crest_displacement_m"). Every function is collective over `comm`; rank 0 writes. Failures throw std::runtime_error
+/// with path and cause on all ranks.
 class History {
  public:
   /// Starts the file anew.
   History(MPI_Comm comm, const std::string &path, const std::vector<std::string> &names);
 
-  /// Goes on with the file of an earlier run, without its lines later than `time` [s] or cut off by the end of that
-  /// run. A missing file is started; other columns than `names` are refused.
+  /// Continues the file of an earlier run. Lines later than `time` [s] and a last line that was cut off are dropped. A
+  /// missing file is started; a file with other columns than `names` is refused.
   static History append(MPI_Comm comm, const std::string &path, const std::vector<std::string> &names, double time);
 
   /// Adds a line and brings it to the file; `values` are rank 0's, one per name, in their order.

@@ -5,7 +5,7 @@
 
 namespace talus {
 
-/// What to draw; empty lists are the script's choice.
+/// What to draw. An empty list leaves the choice to the script.
 struct PictureChoice {
   std::vector<std::string> fields;  ///< columns of the snapshots
   std::vector<std::string> times;   ///< [s], the nearest snapshots
@@ -13,13 +13,13 @@ struct PictureChoice {
 };
 
 /// Draws DIR/pictures/*.png and DIR/report.html from the results in `dir`; call it on one rank. Pictures never fail a
-/// run: false, after a warning on standard error, if it went wrong.
+/// run: if drawing fails, a warning goes to standard error and the answer is false.
 bool draw_pictures(const std::string &dir, const PictureChoice &choice = {});
 
-/// Draws DIR/compare.png from DIR/compare.csv; otherwise the same.
+/// Draws DIR/compare.png from DIR/compare.csv, with the same answer.
 bool draw_comparison(const std::string &dir);
 
-/// Draws DIR/soil.png from the CSV files of element tests in `dir`; otherwise the same.
+/// Draws DIR/soil.png from the CSV files of element tests in `dir`, with the same answer.
 bool draw_element_tests(const std::string &dir, const std::vector<std::string> &tests, const std::string &title);
 
 }  // namespace talus

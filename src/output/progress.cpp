@@ -53,14 +53,14 @@ std::string duration(double seconds) {
 
 Progress::Progress(MPI_Comm comm, const std::string &log_path, double total, bool append, std::FILE *screen,
                    std::function<double()> clock)
-    : speaks_(rank_in(comm) == 0), total_(total), screen_(screen), clock_(std::move(clock)) {
+    : prints_(rank_in(comm) == 0), total_(total), screen_(screen), clock_(std::move(clock)) {
   on_first_rank(comm, [&] {
     log_.open(log_path, append ? std::ios::app : std::ios::trunc);
     if (!log_) throw std::runtime_error("cannot write " + log_path + ": " + std::strerror(errno));
     terminal_ = isatty(fileno(screen_));
-    looked_at_ = shown_at_ = clock_();
-    next_show_ = shown_at_ + (terminal_ ? terminal_interval : first_line);
-    next_log_ = shown_at_ + first_line;
+    looked_at_ = printed_at_ = clock_();
+    next_print_ = printed_at_ + (terminal_ ? terminal_interval : first_line);
+    next_log_ = printed_at_ + first_line;
   });
 }
 
@@ -69,7 +69,7 @@ Progress::~Progress() {
 }
 
 void Progress::stage(const std::string &name) {
-  if (!speaks_) return;
+  if (!prints_) return;
   stage_ = name;
   log("stage " + name);
 }
@@ -81,32 +81,32 @@ void Progress::look_at_clock() {
   steps_between_looks_ = std::clamp(std::llround(std::min(steps, 1e9)), 1LL, most_steps);
   until_clock_ = steps_between_looks_;
   looked_at_ = clock;
-  if (clock < next_show_ && clock < next_log_) return;
+  if (clock < next_print_ && clock < next_log_) return;
   const std::string line = describe(clock);
-  if (clock >= next_show_) {
-    show(line);
-    next_show_ = clock + (terminal_ ? terminal_interval : plain_interval);
+  if (clock >= next_print_) {
+    print(line);
+    next_print_ = clock + (terminal_ ? terminal_interval : plain_interval);
   }
   if (clock >= next_log_) {
     log(line);
     next_log_ = clock + log_interval;
   }
-  shown_ = now_, shown_at_ = clock;
+  printed_ = now_, printed_at_ = clock;
 }
 
 /// Rate and remaining time are those of the interval since the last line.
 std::string Progress::describe(double clock) const {
-  const double elapsed = clock - shown_at_, advanced = now_.time - shown_.time;
+  const double elapsed = clock - printed_at_, advanced = now_.time - printed_.time;
   char times[96];
   std::snprintf(times, sizeof times, "  t = %.4g / %.4g s  step %lld", now_.time, total_, now_.step);
   std::string line = stage_ + times;
   if (elapsed <= 0 || advanced <= 0) return line;
-  line += "  " + short_number((now_.updates - shown_.updates) / elapsed) + " particle-updates/s";
+  line += "  " + short_number((now_.updates - printed_.updates) / elapsed) + " particle-updates/s";
   if (now_.time < total_) line += "  at most " + duration((total_ - now_.time) / advanced * elapsed) + " left";
   return line;
 }
 
-void Progress::show(const std::string &line) {
+void Progress::print(const std::string &line) {
   if (terminal_)
     std::fprintf(screen_, "\r%s\033[K", line.c_str());
   else
@@ -116,7 +116,7 @@ void Progress::show(const std::string &line) {
 }
 
 void Progress::note(const std::string &text) {
-  if (!speaks_) return;
+  if (!prints_) return;
   if (line_open_) std::fputs("\r\033[K", screen_);
   std::fprintf(screen_, "%s\n", text.c_str());
   std::fflush(screen_);
@@ -125,13 +125,13 @@ void Progress::note(const std::string &text) {
 }
 
 void Progress::failure(const std::string &text) {
-  if (speaks_) log(text);
+  if (prints_) log(text);
 }
 
 void Progress::finish() {
-  if (!speaks_) return;
+  if (!prints_) return;
   const std::string line = describe(clock_());
-  show(line);
+  print(line);
   if (line_open_) std::fputc('\n', screen_);
   line_open_ = false;
   log(line);

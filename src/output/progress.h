@@ -1,5 +1,5 @@
 #pragma once
-/// Tells on the screen and in run.log how far a run is. Only rank 0 speaks; on other ranks every call returns at once.
+/// Progress of a run on the screen and in run.log. Only rank 0 prints; on other ranks every call returns at once.
 #include <mpi.h>
 
 #include <cstdio>
@@ -10,13 +10,13 @@
 namespace talus {
 
 /// On a terminal: one line that overwrites itself twice a second. Elsewhere (a pipe, a batch job): a line after 2 s and
-/// then every 10 s. run.log: a line after 2 s, then one a minute, with the time of day. Made to be called every step:
+/// then every 10 s. run.log: a line after 2 s, then one a minute, with the time of day. It may be called every step:
 /// the clock is read about ten times a second only.
 class Progress {
  public:
-  /// Collective. `total` is the simulated time at which the run ends at the latest [s]; the log is gone on with if
-  /// `append`. Throws std::runtime_error on all ranks if `log_path` cannot be written. `screen` and `clock` [s] are for
-  /// tests.
+  /// Collective. `total` is the simulated time at which the run ends at the latest [s]; `append`
+  /// continues an existing log. Throws std::runtime_error on all ranks if `log_path` cannot be written. `screen` and
+  /// `clock` [s] are for tests.
   Progress(MPI_Comm comm, const std::string &log_path, double total, bool append = false, std::FILE *screen = stderr,
            std::function<double()> clock = MPI_Wtime);
   Progress(const Progress &) = delete;
@@ -26,9 +26,9 @@ class Progress {
   /// A stage begins.
   void stage(const std::string &name);
 
-  /// A step is done: simulated time [s], number of the step, particles that it moved (of all ranks).
+  /// A step is done: simulated time [s], number of the step, and the number of particles (of all ranks) that it moved.
   void step(double time, long long number, long long particles) {
-    if (!speaks_) return;
+    if (!prints_) return;
     now_ = {time, number, now_.updates + static_cast<double>(particles)};
     if (--until_clock_ <= 0) look_at_clock();
   }
@@ -36,10 +36,10 @@ class Progress {
   /// A line of its own, on the screen and in the log.
   void note(const std::string &text);
 
-  /// The last line of a run that failed, in the log alone: the screen hears it from whoever catches the error.
+  /// The last line of a run that failed, in the log alone: whoever catches the error prints it on the screen.
   void failure(const std::string &text);
 
-  /// The last state, so that screen and log end with it.
+  /// Prints the last state.
   void finish();
 
  private:
@@ -50,21 +50,21 @@ class Progress {
   };
   void look_at_clock();
   std::string describe(double clock) const;
-  void show(const std::string &line);
+  void print(const std::string &line);
   void log(const std::string &line);
 
-  bool speaks_, terminal_ = false;
+  bool prints_, terminal_ = false;
   double total_;
   std::FILE *screen_;
   std::function<double()> clock_;
   std::ofstream log_;
   std::string stage_;
-  State now_, shown_;    ///< at the last step, at the last line shown
-  double shown_at_ = 0;  ///< clock at the last line shown [s]
-  double next_show_ = 0, next_log_ = 0;
+  State now_, printed_;    ///< at the last step, at the last line printed
+  double printed_at_ = 0;  ///< clock at the last line printed [s]
+  double next_print_ = 0, next_log_ = 0;
   double looked_at_ = 0;  ///< clock when it was last read [s]
   long long steps_between_looks_ = 1, until_clock_ = 1;
-  bool line_open_ = false;  ///< the terminal's cursor stands in a progress line
+  bool line_open_ = false;  ///< the terminal's cursor is in a progress line
 };
 
 }  // namespace talus

@@ -1,5 +1,5 @@
 #pragma once
-/// What the time loop hands to the writers: columns of particle values of this rank. Writers are collective over
+/// Columns of particle values of this rank, which the time loop passes to the writers. Writers are collective over
 /// `comm`.
 #include <petscsys.h>
 
@@ -24,11 +24,11 @@ struct Snapshot {
   std::string stage;
   std::vector<long long> id;
   std::vector<int> body;                                ///< index into the run's body names
-  std::vector<Column> columns;                          ///< "position" (components = dim) is always there
-  std::vector<std::pair<std::string, double>> numbers;  ///< of the run so far, such as evaluations of the forces
+  std::vector<Column> columns;                          ///< among them always "position" (components = dim)
+  std::vector<std::pair<std::string, double>> numbers;  ///< counts of the run so far, such as evaluations of the forces
 };
 
-/// The background mesh as written once; gathered over ranks by the writer.
+/// The background mesh, which is written once. The writer gathers it over the ranks.
 struct MeshPicture {
   int dimension = 2;
   std::vector<double> position;      ///< [nodes][dim], local nodes

@@ -74,7 +74,7 @@ Snapshot gathered(MPI_Comm comm, const Snapshot &local) {
   return all;
 }
 
-/// All cells on rank 0. Nodes that ranks share are there once per rank: for a picture that does no harm.
+/// All cells on rank 0. Nodes that ranks share appear once per rank, which does no harm in a picture.
 MeshPicture gathered(MPI_Comm comm, const MeshPicture &local) {
   long long nodes = static_cast<long long>(local.position.size()) / local.dimension, before = 0;
   check_mpi(MPI_Exscan(&nodes, &before, 1, MPI_LONG_LONG, MPI_SUM, comm), "numbering nodes");
@@ -112,7 +112,7 @@ std::string data_item(const std::string &file, const std::string &name, unsigned
 }
 
 /// ParaView itself names six components xx, yy, zz, xy, yz, xz, but not four.
-std::string shown_name(const std::string &name, int components) {
+std::string paraview_name(const std::string &name, int components) {
   return components == 4 ? name + " (" + join(component_names(4)) + ")" : name;
 }
 
@@ -138,7 +138,7 @@ RunFile::RunFile(MPI_Comm comm, const std::string &dir, const RunHeader &header,
     file.attribute("node_position", "unit", std::string("m"));
     file.dataset("cell_node", mesh.cell_node, mesh.dimension + 1);
     file.save();
-    write_doors();  // before the old snapshots go, so that no link ever leads nowhere
+    write_index();  // before the old snapshots are removed, so that no link ever leads nowhere
     remove_snapshots(dir_ + "/run");
   });
 }
@@ -146,21 +146,22 @@ RunFile::RunFile(MPI_Comm comm, const std::string &dir, const RunHeader &header,
 RunFile RunFile::append(MPI_Comm comm, const std::string &dir, double time) {
   RunFile run(comm, dir);
   on_first_rank(comm, [&] {
-    const Hdf5Reader door(dir + "/run.h5");
-    run.header_ = {door.text("/", "title"), door.text("/", "program"), door.texts("scene").at(0), door.texts("bodies")};
+    const Hdf5Reader index(dir + "/run.h5");
+    run.header_ = {index.text("/", "title"), index.text("/", "program"), index.texts("scene").at(0),
+                   index.texts("bodies")};
     const Hdf5Reader mesh(dir + "/" + mesh_file);
     run.dimension_ = static_cast<int>(mesh.integer("/", "dimension"));
     run.nodes_ = mesh.shape("node_position").at(0);
     run.cells_ = mesh.shape("cell_node").at(0);
     std::vector<std::string> later;
-    for (const auto &number : door.names("snapshots")) {
+    for (const auto &number : index.names("snapshots")) {
       const Entry entry = run.read_entry(number);
       if (entry.time <= time)
         run.entries_.push_back(entry);
       else
         later.push_back(number);
     }
-    run.write_doors();
+    run.write_index();
     for (const auto &number : later) std::filesystem::remove(dir + "/" + run.snapshot_file(number));
   });
   run.share_last_step();
@@ -173,7 +174,7 @@ void RunFile::write(const Snapshot &local) {
   on_first_rank(comm_, [&] {
     entries_.push_back(write_file(all, numbered(entries_.size())));
     try {
-      write_doors();
+      write_index();
     } catch (...) {
       entries_.pop_back();
       throw;
@@ -215,8 +216,8 @@ void RunFile::share_last_step() {
   check_mpi(MPI_Bcast(&last_step_, 1, MPI_LONG_LONG, 0, comm_), "sharing the last step");
 }
 
-/// run.h5 and run.xdmf, anew: they hold no particle data, so that this stays cheap.
-void RunFile::write_doors() const {
+/// Writes run.h5 and run.xdmf anew. They hold no particle data, so this is cheap.
+void RunFile::write_index() const {
   Hdf5Builder file(dir_ + "/run.h5");
   file.attribute("/", "title", header_.title);
   file.attribute("/", "program", header_.program);
@@ -229,7 +230,8 @@ void RunFile::write_doors() const {
   replace_file(dir_ + "/run.xdmf", xdmf());
 }
 
-/// Each time holds two blocks, particles and background mesh: every reader of XDMF keeps the mesh in view then.
+/// Each time has two blocks, particles and background mesh, because not every reader of XDMF shows a mesh that is
+/// stated once.
 std::string RunFile::xdmf() const {
   std::ostringstream text;
   text.precision(17);
@@ -259,8 +261,8 @@ std::string RunFile::xdmf_particles(const Entry &entry) const {
       text += xdmf_attribute(name, "Scalar", data);
     else if (components <= 3)
       text += xdmf_attribute(name, "Vector", data);
-    else  // ParaView's readers differ in what they make of a Tensor6; numbers they hand on as they are
-      text += xdmf_attribute(shown_name(name, components), "Matrix", data);
+    else  // as a matrix, because ParaView's readers interpret the type Tensor6 differently
+      text += xdmf_attribute(paraview_name(name, components), "Matrix", data);
   }
   return text + "      </Grid>\n";
 }

@@ -1,8 +1,8 @@
 #pragma once
 /// The results of a run, for ParaView and for scripts:
 ///
-///     DIR/run.h5        the door: scene, program version, body names, and links `/mesh` and `/snapshots/000012`
-///     DIR/run/*.h5      behind it: `mesh.h5` and one file per snapshot
+///     DIR/run.h5        index: scene, program version, body names, and links `/mesh` and `/snapshots/000012`
+///     DIR/run/*.h5      what the links lead to: `mesh.h5` and one file per snapshot
 ///     DIR/run.xdmf      what ParaView opens: particles and background mesh over time
 ///
 /// Through the links run.h5 reads like one file (`h5py.File("run.h5")["snapshots/000012/stress"]`). A snapshot has the
@@ -10,7 +10,7 @@
 /// steps_bounded_by_error, steps_bounded_by_stability, steps_bounded_by_outputs, shortest_step_s, longest_step_s); `id`
 /// [particles][1] in increasing order; `body` [particles][1], an index into
 /// `/bodies`; and one [particles][components] dataset per column, with the attributes unit, meaning and components ("xx
-/// yy zz xy"). All numbers are double or 64-bit integers, whatever the number of ranks the file is the same.
+/// yy zz xy"). All numbers are doubles or 64-bit integers. The file does not depend on the number of ranks.
 ///
 /// Every file appears by renaming a complete one, so a run that dies, or a full disk, leaves all earlier snapshots
 /// readable (hdf5_file.h says why HDF5 alone does not give that). The price: rank 0 holds one snapshot of all particles
@@ -24,7 +24,7 @@
 
 namespace talus {
 
-/// What a run says about itself.
+/// Attributes of the whole run.
 struct RunHeader {
   std::string title;
   std::string program;              ///< name and version of the program
@@ -40,10 +40,10 @@ class RunFile {
   /// removed.
   RunFile(MPI_Comm comm, const std::string &dir, const RunHeader &header, const MeshPicture &local_mesh);
 
-  /// Goes on with the results of an earlier run: header and mesh are kept, snapshots later than `time` [s] are removed.
+  /// Continues the results of an earlier run: header and mesh stay, snapshots later than `time` [s] are removed.
   static RunFile append(MPI_Comm comm, const std::string &dir, double time);
 
-  /// Adds a snapshot. Ranks without particles hand over columns without values.
+  /// Adds a snapshot. Ranks without particles pass columns without values.
   void write(const Snapshot &local);
 
   /// Step of the last snapshot; -1 if there is none.
@@ -54,7 +54,7 @@ class RunFile {
     std::string name;
     int components;
   };
-  struct Entry {  ///< what the door and ParaView need to know of a snapshot
+  struct Entry {  ///< of the index and of the XDMF file: one snapshot
     std::string number;
     double time;
     long long step;
@@ -66,7 +66,7 @@ class RunFile {
   std::string snapshot_file(const std::string &number) const { return "run/" + number + ".h5"; }
   Entry write_file(const Snapshot &all, const std::string &number) const;
   Entry read_entry(const std::string &number) const;
-  void write_doors() const;
+  void write_index() const;
   std::string xdmf() const;
   std::string xdmf_mesh() const;
   std::string xdmf_particles(const Entry &entry) const;

@@ -11,7 +11,7 @@
 namespace talus {
 namespace {
 
-/// The line of a law under these circumstances; false where it has none.
+/// The line of a law after that plastic strain and at that suction; false where the law has none.
 template <class OneLaw>
 bool find_line(OneLaw law, double plastic_strain, double suction, double *slope, double *intercept) {
   if constexpr (requires { law.strength(0., Surroundings{1}).twice_c_cos_phi; }) {
@@ -31,7 +31,7 @@ bool find_line(OneLaw law, double plastic_strain, double suction, double *slope,
 }  // namespace
 
 std::vector<StrengthLine> strength_lines(const std::string &scene) {
-  constexpr double all = 1e9;  // of plastic strain: what is left is the residual
+  constexpr double endless = 1e9;  // plastic strain after which the residual strength is left
   std::vector<StrengthLine> lines;
   for (const BodySource &body : parse_scene(scene, "scene").body) {
     const Law law = read_law(body.law);
@@ -50,7 +50,9 @@ std::vector<StrengthLine> strength_lines(const std::string &scene) {
       for (const double suction : suctions) {
         StrengthLine line{body.name, residual, suction, 0, 0};
         const bool found = std::visit(
-            [&](const auto &one) { return find_line(one, residual ? all : 0, suction, &line.slope, &line.intercept); },
+            [&](const auto &one) {
+              return find_line(one, residual ? endless : 0, suction, &line.slope, &line.intercept);
+            },
             law);
         if (found && (softens || !residual)) lines.push_back(line);
       }

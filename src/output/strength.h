@@ -5,8 +5,8 @@
 
 namespace talus {
 
-/// What a soil bears in triaxial compression: q = slope p + intercept, p the mean effective stress, positive in
-/// compression.
+/// Strength of a soil in triaxial compression: q = slope p + intercept, where p is the mean effective stress, positive
+/// in compression.
 struct StrengthLine {
   std::string body;
   bool residual;     ///< after any amount of plastic strain; else the peak
@@ -15,9 +15,9 @@ struct StrengthLine {
   double intercept;  ///< [Pa]
 };
 
-/// Lines of the Mohr-Coulomb and Drucker-Prager soils of a scene's text: the peak and, where soil softens, the
-/// residual; without suction and, where strength follows it, at suctions of 1, 2, 5, 10 ... kPa up to 1 MPa. Throws
-/// like the reader.
+/// Lines of the Mohr-Coulomb and Drucker-Prager soils in the text of a scene: the peak and, where soil softens, the
+/// residual strength; at no suction and, where strength depends on suction, at 1, 2, 5, 10 ... kPa up to 1 MPa. Throws
+/// what the reader of scenes throws.
 std::vector<StrengthLine> strength_lines(const std::string &scene);
 
 /// Writes DIR/pictures/strength.csv (body,state,suction_Pa,slope,intercept_Pa) for the run in `dir`; nothing where no

@@ -1,5 +1,6 @@
 #pragma once
-/// Failures that all ranks learn of: no rank goes on into a collective call that another has left by an exception.
+/// Failures that reach all ranks, so that no rank waits in a collective call that another rank has left by an
+/// exception.
 #include <mpi.h>
 
 #include <exception>
@@ -20,9 +21,9 @@ inline int rank_in(MPI_Comm comm) {
   return rank;
 }
 
-/// Collective. Does `work` on every rank (it may differ from rank to rank but holds no collective call that a failure
-/// would leave half done) and, if it failed anywhere, throws std::runtime_error on all ranks with the cause of the
-/// first that failed.
+/// Collective. Does `work` on every rank and, if it failed anywhere, throws std::runtime_error on all ranks with the
+/// cause on the first rank that failed. `work` may differ from rank to rank but must not contain a collective call
+/// that a failure would interrupt.
 template <class Work>
 void together(MPI_Comm comm, Work &&work) {
   std::string cause;
@@ -35,12 +36,12 @@ void together(MPI_Comm comm, Work &&work) {
   int size, first = 0;
   check_mpi(MPI_Comm_size(comm, &size), "counting ranks");
   const int mine = ok ? size : rank_in(comm);
-  check_mpi(MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, comm), "comparing notes");
+  check_mpi(MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, comm), "comparing success");
   if (first == size) return;
   int length = static_cast<int>(cause.size());
-  check_mpi(MPI_Bcast(&length, 1, MPI_INT, first, comm), "telling the cause of a failure");
+  check_mpi(MPI_Bcast(&length, 1, MPI_INT, first, comm), "sending the cause of a failure");
   cause.resize(length);
-  check_mpi(MPI_Bcast(cause.data(), length, MPI_CHAR, first, comm), "telling the cause of a failure");
+  check_mpi(MPI_Bcast(cause.data(), length, MPI_CHAR, first, comm), "sending the cause of a failure");
   throw std::runtime_error(cause);
 }
 

@@ -13,7 +13,7 @@ struct FieldSpec {
 };
 constexpr const char *fluid_mass[] = {"liquid_mass", "gas_mass"},
                      *fluid_velocity[] = {"liquid_velocity", "gas_velocity"};
-constexpr int spare = 64;  // each removal zeroes the whole spare room of a swarm: keep it small
+constexpr int spare = 64;  // particles; small, because each removal from a swarm zeroes all its spare memory
 
 template <int dim>
 std::vector<FieldSpec> field_specs(int history_count, bool affine, int fluids, int faces) {

@@ -1,6 +1,6 @@
 #pragma once
-/// The particles of one soil, in a DMSwarm of their own: a law then runs over one array without looking at body
-/// numbers, and a body carries the history fields of its own law only.
+/// The particles of one soil, in a DMSwarm of their own. So a law runs over one array without looking at body numbers,
+/// and a body has the history fields of its own law only.
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -17,7 +17,7 @@
 
 namespace talus {
 
-/// What a particle carries of a loaded face (physics/boundary/surface_loads.h).
+/// The piece of a loaded face that a particle carries (physics/boundary/surface_loads.h).
 template <int dim>
 struct SurfacePiece {
   Vec<dim> offset{};  ///< from the particle to the piece [m]
@@ -54,14 +54,15 @@ class Body {
   /// Registers the fields; `affine` adds the velocity gradient of APIC; `fluids` 1 the liquid, 2 liquid and gas;
   /// `faces` is the number of loaded faces.
   PetscErrorCode create(MPI_Comm comm, const BodySource &source, Law law, bool affine, int fluids, int faces);
-  /// Makes room for `count` particles, not yet filled.
+  /// Allocates `count` particles. Their fields have no values yet.
   PetscErrorCode resize(PetscInt count);
 
   const BodySource &source() const { return *source_; }
   const std::string &name() const { return source_->name; }
   const Law &law() const { return law_; }
   int history_count() const { return history_count_; }
-  /// Largest volume of a point with initial volume `initial`: the cap, grown by the soil's own plastic expansion [m3].
+  /// Largest volume of a point whose initial volume is `initial` [m3]: the cap times e^(plastic expansion), where the
+  /// law dilates.
   double volume_limit(double initial, const double *history) const {
     if (!capped()) return volume_cap_;
     const double expansion = expansion_field_ < 0 ? 0 : history[expansion_field_];
@@ -71,7 +72,7 @@ class Body {
   bool capped() const { return volume_cap_ != std::numeric_limits<double>::infinity(); }
   const ParticleArrays<dim> &particles() const { return arrays_; }
 
-  /// Orders the particles by cell, which keeps runs of one cell together in memory.
+  /// Orders the particles by cell, so that those of one cell are neighbours in memory.
   PetscErrorCode sort(int cell_count);
   /// Sends each leaver (particle, rank) away; collective, also for ranks without leavers. Afterwards the arrived
   /// particles are the last ones: `first_arrival` is the index of the first.
@@ -80,8 +81,8 @@ class Body {
   PetscErrorCode serialize(Archive &archive);
 
  private:
-  PetscErrorCode borrow();     ///< takes the arrays out of the swarm ...
-  PetscErrorCode give_back();  ///< ... and returns them, as every change of size asks for
+  PetscErrorCode borrow();     ///< takes the arrays from the swarm
+  PetscErrorCode give_back();  ///< returns them to the swarm, which every change of its size requires
 
   const BodySource *source_ = nullptr;
   Law law_;
