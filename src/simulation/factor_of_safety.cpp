@@ -6,6 +6,21 @@
 
 namespace talus {
 
+/// Refuses laws whose strength cannot be divided. Soil that never fails may stand beside soil that does.
+template <int dim>
+void check_strength(const World<dim> &world, Recorder<dim> &recorder) {
+  const bool some_fail = std::ranges::any_of(world.laws, [](const Law &law) { return !never_fails(law); });
+  for (size_t b = 0; b < world.laws.size(); ++b) {
+    const std::string body = "body." + world.scene.body[b].name, law = law_name(world.laws[b]);
+    const std::string reason = no_strength_reduction(world.laws[b]);
+    if (reason.empty()) continue;
+    if (!never_fails(world.laws[b]) || !some_fail)
+      world.scene.complain(body + ".law", "must have a strength that a factor of safety can divide, but " + law + " " +
+                                              reason + "; take mohr_coulomb or drucker_prager");
+    recorder.note("the strength of " + body + " is not reduced: " + law + " " + reason);
+  }
+}
+
 template <int dim>
 FactorOfSafety Simulation<dim>::factor_of_safety() {
   constexpr double least_factor = 0.1;
@@ -13,6 +28,7 @@ FactorOfSafety Simulation<dim>::factor_of_safety() {
   for (size_t k = 0; k < scene.stage.size(); ++k)
     if (!is_static(scene.stage[k].kind))
       scene.complain("stage." + std::to_string(k) + ".kind", "must be \"quasi_static\" for a factor of safety");
+  check_strength(run_.world, run_.recorder);
   for (double &factor = run_.statics.strength_factor;; factor /= 2) {
     try {
       if (run_.clock.steps == 0) run();
