@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <numeric>
+#include <optional>
 #include <sstream>
 
 #include "base/version.h"
@@ -12,6 +13,7 @@
 #include "scene/changes.h"
 #include "scene/reader.h"
 #include "scene/words.h"
+#include "simulation/output_fields.h"
 #include "solvers/quasi_static/seeped_pressure.h"
 
 namespace talus {
@@ -77,13 +79,13 @@ double Recorder<dim>::longest_duration() const {
 template <int dim>
 void Recorder<dim>::check_pictures() {
   if (scene_.output.picture.empty()) return;
-  const Snapshot state = snapshot();
+  const auto fields = output_fields<ParticleState<dim>>(phases_, of_.world.bodies);
   std::vector<std::string> known;
-  for (const Column &column : state.columns)
-    if (column.name != "position") known.push_back(column.name);
+  for (const auto &field : fields.list())
+    if (field.name != "position") known.push_back(field.name);
   for (const std::string &field : scene_.output.picture) {
-    const bool drawn = std::any_of(state.columns.begin(), state.columns.end(), [&](const Column &column) {
-      return field == column.name || (column.components > 1 && field.rfind(column.name + "_", 0) == 0);
+    const bool drawn = std::ranges::any_of(fields.list(), [&](const auto &one) {
+      return field == one.name || (one.components > 1 && field.rfind(one.name + "_", 0) == 0);
     });
     if (!drawn)
       scene_.complain("output.picture",
@@ -150,34 +152,33 @@ void Recorder<dim>::fail(const std::string &cause) {
 
 template <int dim>
 void Recorder<dim>::name_columns() {
-  const char axis[] = "xyz";
-  history_.names = {"time_s", "step"};
-  for (const auto &point : of_.points.all()) {
-    for (int d = 0; d < dim; ++d) history_.names.push_back(point.name + "_" + axis[d] + "_m");
-    history_.names.push_back(point.name + "_displacement_m");
-    history_.names.push_back(point.name + "_velocity_m_s");
-    if (phases_.pressure) history_.names.push_back(point.name + "_pore_pressure_Pa");
-    if (phases_.gas) history_.names.push_back(point.name + "_gas_pressure_Pa");
-    if (phases_.suction)
-      history_.names.push_back(point.name + "_suction_Pa"), history_.names.push_back(point.name + "_saturation");
+  history_.names = {history_column("time", "s"), "step"};
+  const auto fields = output_fields<ParticleState<dim>>(phases_, of_.world.bodies);
+  for (const auto &point : of_.points.all())
+    for (const std::string &name : fields.tracked_names(point.name)) history_.names.push_back(name);
+  run_row().visit([&](const std::string &quantity, const char *unit, double) {
+    history_.names.push_back(history_column(quantity, unit));
+  });
+}
+
+/// A row of the history with what needs no sum over ranks.
+template <int dim>
+RunRow<dim> Recorder<dim>::run_row() const {
+  const World<dim> &world = of_.world;
+  RunRow<dim> row;
+  row.mass = world.total_mass, row.particles = static_cast<double>(world.particle_count);
+  row.load_time = of_.clock.load_time;
+  row.fluids.resize(phases_.fluids());
+  for (size_t s = 0; s < world.conditions.sources().size(); ++s) {
+    const auto &source = world.conditions.sources()[s];
+    row.boundaries.push_back({source.name,
+                              world.conditions.loads(static_cast<int>(s)),
+                              has_flow_stages(scene_) && concerns_water(source.kind),
+                              {},
+                              0,
+                              0});
   }
-  for (const char *name : {"kinetic_J", "strain_J", "potential_J", "mass_kg", "particles", "load_time_s"})
-    history_.names.push_back(name);
-  for (int a = 0; a < phases_.fluids(); ++a)
-    for (const char *name : {"_kg", "_out_kg", "_given_kg", "_error_kg"})
-      history_.names.push_back(std::string(a ? "gas" : "water") + name);
-  if (has_flow_stages(scene_))
-    for (const auto &source : of_.world.conditions.sources())
-      if (concerns_water(source.kind)) history_.names.push_back(source.name + "_inflow_m3_s");
-  // a loaded face shows how far it went, every other boundary the force by which it holds the soil
-  for (size_t s = 0; s < of_.world.conditions.sources().size(); ++s)
-    for (int d = 0; d < dim; ++d)
-      history_.names.push_back(of_.world.conditions.sources()[s].name +
-                               (of_.world.conditions.loads(static_cast<int>(s)) ? "_displacement_" : "_force_") +
-                               axis[d] + (of_.world.conditions.loads(static_cast<int>(s)) ? "_m" : "_N"));
-  for (const auto &source : of_.world.conditions.sources()) history_.names.push_back("work_" + source.name + "_J");
-  for (const char *name : {"work_gravity_J", "work_imposed_J", "work_damping_J", "dissipated_J"})
-    history_.names.push_back(name);
+  return row;
 }
 
 template <int dim>
@@ -186,22 +187,12 @@ void Recorder<dim>::write_history() {
   if (last_row_step_ == of_.clock.steps) return;
   last_row_step_ = of_.clock.steps, last_row_time_ = of_.clock.time;
   std::vector<double> mine, row;
+  const auto fields = output_fields<ParticleState<dim>>(phases_, of_.world.bodies);
   for (auto &point : of_.points.all()) {
-    const int i = of_.points.find(point);
-    Vec<dim> x{}, v{};
-    double displacement = 0, pressure = 0;
-    PoreReport pores;
-    if (i >= 0) {
-      of_.world.motion->present(*of_.world.bodies[point.body], i, &x, &v);
-      displacement = (map<dim>(x) - map<dim>(of_.world.bodies[point.body]->particles().reference[i])).norm();
-      if (phases_.prescribed) pressure = of_.world.motion->pore_pressure(x);
-      if (phases_.liquid) pores = of_.world.motion->pores(*of_.world.bodies[point.body], i), pressure = pores.liquid;
-    }
-    mine.insert(mine.end(), x.begin(), x.end());
-    mine.push_back(displacement), mine.push_back(map<dim>(v).norm());
-    if (phases_.pressure) mine.push_back(pressure);
-    if (phases_.gas) mine.push_back(pores.gas);
-    if (phases_.suction) mine.push_back(pores.suction), mine.push_back(pores.saturation);
+    std::optional<ParticleState<dim>> state;
+    if (const int i = of_.points.find(point); i >= 0)
+      state.emplace(phases_, *of_.world.motion, *of_.world.bodies[point.body], point.body, i);
+    fields.append_tracked(state ? &*state : nullptr, mine);
   }
   double potential = 0;
   for (const auto &body : of_.world.bodies) {
@@ -215,46 +206,37 @@ void Recorder<dim>::write_history() {
   mine.push_back(potential);
   row.resize(mine.size());
   MPI_Allreduce(mine.data(), row.data(), static_cast<int>(mine.size()), MPI_DOUBLE, MPI_SUM, of_.world.comm);
-  Balance sums;
-  require(of_.world.motion->balance(of_.clock.time, &sums));
-  row.insert(row.end() - 1, {sums.kinetic, sums.strain});
-  row.push_back(of_.world.total_mass), row.push_back(static_cast<double>(of_.world.particle_count)),
-      row.push_back(of_.clock.load_time);
+  RunRow<dim> run = run_row();
+  run.potential = row.back(), row.pop_back();
+  require(of_.world.motion->balance(of_.clock.time, &run.balance));
   if (phases_.liquid) {
-    FluidLedger fluids[2];
-    require(of_.world.motion->fluid_ledger(fluids));
+    require(of_.world.motion->fluid_ledger(run.fluids.data()));
     if (first_ledger_.empty())
-      for (int a = 0; a < phases_.fluids(); ++a)
-        first_ledger_.push_back(fluids[a].stored + fluids[a].out - fluids[a].prescribed);
-    for (int a = 0; a < phases_.fluids(); ++a) {
-      const double error = fluids[a].stored + fluids[a].out - fluids[a].prescribed - first_ledger_[a];
-      row.insert(row.end(), {fluids[a].stored, fluids[a].out, fluids[a].prescribed, error});
-    }
+      for (const FluidLedger &fluid : run.fluids) first_ledger_.push_back(fluid.stored + fluid.out - fluid.prescribed);
+    run.first_fluid = first_ledger_;
   }
   if (has_flow_stages(scene_)) {
     const std::vector<double> inflow = of_.statics.inflow();
-    for (size_t s = 0; s < inflow.size(); ++s)
-      if (concerns_water(of_.world.conditions.sources()[s].kind)) row.push_back(inflow[s]);
+    for (size_t s = 0; s < inflow.size(); ++s) run.boundaries[s].water = inflow[s];
   }
-  std::vector<Vec<dim>> impulses, faces(of_.world.conditions.sources().size());
+  std::vector<Vec<dim>> impulses, faces(run.boundaries.size());
   require(of_.world.conditions.take_impulses(of_.world.comm, impulses));
   require(of_.world.conditions.surface_loads().mean_displacements(of_.world.motion->grid(), faces));
   if (of_.statics.current()) require(of_.statics.problem().boundary_forces(of_.clock.load_time, impulses, faces));
   const double elapsed = of_.statics.current() ? 1 : of_.clock.time - impulse_time_;
   for (size_t s = 0; s < impulses.size(); ++s)
     for (int d = 0; d < dim; ++d)
-      row.push_back(of_.world.conditions.loads(static_cast<int>(s)) ? faces[s][d]
-                    : elapsed > 0                                   ? impulses[s][d] / elapsed
-                                                                    : 0);
+      run.boundaries[s].value[d] = run.boundaries[s].loads ? faces[s][d] : elapsed > 0 ? impulses[s][d] / elapsed : 0;
   impulse_time_ = of_.clock.time;
   std::vector<double> work = of_.world.conditions.work();
   const WorkDone &done = of_.world.motion->work();
   work.insert(work.end(), {done.gravity, done.imposed, done.damping});
   MPI_Allreduce(MPI_IN_PLACE, work.data(), static_cast<int>(work.size()), MPI_DOUBLE, MPI_SUM, of_.world.comm);
-  const double held = sums.kinetic + sums.strain;
-  if (of_.clock.time == 0) first_energy_ = held;
-  row.insert(row.end(), work.begin(), work.end());
-  row.push_back(first_energy_ + std::accumulate(work.begin(), work.end(), 0.) - held);
+  for (size_t s = 0; s < run.boundaries.size(); ++s) run.boundaries[s].work = work[s];
+  run.work = {work.end()[-3], work.end()[-2], work.end()[-1]};
+  if (of_.clock.time == 0) first_energy_ = run.balance.kinetic + run.balance.strain;
+  run.first_energy = first_energy_;
+  run.visit([&](const std::string &, const char *, double value) { row.push_back(value); });
   row.insert(row.begin(), {of_.clock.time, static_cast<double>(of_.clock.steps)});
   history_.rows.push_back(row);
   if (results_)
@@ -284,71 +266,14 @@ Snapshot Recorder<dim>::particles() {
     s.numbers.emplace_back(name, static_cast<double>(value));
   s.numbers.emplace_back("shortest_step_s", sums.steps ? sums.shortest : 0);
   s.numbers.emplace_back("longest_step_s", sums.longest);
-  const auto column = [&](const char *name, const char *unit, const char *meaning, int components) {
-    s.columns.push_back({name, unit, meaning, components, {}});
-  };
-  column("position", "m", "place of the particle", dim);
-  column("displacement", "m", "displacement since the start or the last reset", dim);
-  column("velocity", "m/s", "velocity of the soil skeleton", dim);
-  column("stress", "Pa", phases_.pressure ? "effective stress, positive in tension" : "stress, positive in tension",
-         stress_size<dim>);
-  column("volume", "m3", "volume of the particle", 1);
-  column("mass", "kg", "mass of the particle", 1);
-  if (phases_.pressure) column("pore_pressure", "Pa", "pore pressure, positive in compression", 1);
-  if (phases_.gas) column("gas_pressure", "Pa", "gauge pressure of the pore gas", 1);
-  if (phases_.suction)
-    column("suction", "Pa", "gas less liquid pressure, where positive", 1),
-        column("saturation", "-", "degree of saturation", 1);
-  if (phases_.liquid)
-    column("porosity", "-", "porosity", 1), column("surface", "-",
-                                                   "1 in cells with a side through which fluids may pass, named or the "
-                                                   "soil's surface where it is now; 0 elsewhere",
-                                                   1);
-  const size_t first_history = s.columns.size();
-  for (const auto &body : of_.world.bodies)
-    for (const HistoryField &field : history_fields(body->law()))
-      if (std::none_of(s.columns.begin(), s.columns.end(), [&](const auto &c) { return c.name == field.name; }))
-        column(field.name, field.unit.name, field.meaning, 1);
-  std::vector<double> history(16);
-  double stress[stress_size<dim>];
-  for (size_t b = 0; b < of_.world.bodies.size(); ++b) {
-    const ParticleArrays<dim> &p = of_.world.bodies[b]->particles();
-    const auto fields = history_fields(of_.world.bodies[b]->law());
+  const auto &bodies = of_.world.bodies;
+  const auto fields = output_fields<ParticleState<dim>>(phases_, bodies);
+  s.columns = fields.columns();
+  for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
+    const ParticleArrays<dim> &p = bodies[b]->particles();
     for (int i = 0; i < p.count; ++i) {
-      Vec<dim> x, v;
-      double volume;
-      of_.world.motion->present(*of_.world.bodies[b], i, &x, &v);
-      of_.world.motion->state(static_cast<int>(b), i, stress, history.data(), &volume);
-      s.id.push_back(p.id[i]), s.body.push_back(static_cast<int>(b));
-      size_t k = 0;
-      const auto put = [&](const double *values, int count) {
-        s.columns[k].values.insert(s.columns[k].values.end(), values, values + count);
-        ++k;
-      };
-      Vec<dim> u;
-      for (int d = 0; d < dim; ++d) u[d] = x[d] - p.reference[i][d];
-      put(x.data(), dim), put(u.data(), dim), put(v.data(), dim), put(stress, stress_size<dim>), put(&volume, 1),
-          put(&p.mass[i], 1);
-      if (phases_.prescribed) {
-        const double pressure = of_.world.motion->pore_pressure(x);
-        put(&pressure, 1);
-      }
-      if (phases_.liquid) {
-        const PoreReport pores = of_.world.motion->pores(*of_.world.bodies[b], i);
-        put(&pores.liquid, 1);
-        if (phases_.gas) put(&pores.gas, 1);
-        if (phases_.suction) put(&pores.suction, 1), put(&pores.saturation, 1);
-        const double porosity = 1 - p.mass[i] / (of_.world.bodies[b]->source().grain_density * volume);
-        put(&porosity, 1);
-        const double surface = pores.surface;
-        put(&surface, 1);
-      }
-      for (size_t c = first_history; c < s.columns.size(); ++c) {
-        double value = std::numeric_limits<double>::quiet_NaN();
-        for (size_t h = 0; h < fields.size(); ++h)
-          if (s.columns[c].name == fields[h].name) value = history[h];
-        s.columns[c].values.push_back(value);
-      }
+      s.id.push_back(p.id[i]), s.body.push_back(b);
+      fields.append(ParticleState<dim>(phases_, *of_.world.motion, *bodies[b], b, i), s.columns);
     }
   }
   return s;

@@ -15,6 +15,9 @@
 
 namespace talus {
 
+template <int dim>
+struct RunRow;
+
 /// What results are made from.
 template <int dim>
 struct Sources {
@@ -74,6 +77,7 @@ class Recorder {
   };
   void check_pictures();
   void name_columns();
+  RunRow<dim> run_row() const;
   void note_steps();
   double longest_duration() const;
   Snapshot particles();

@@ -7,6 +7,7 @@
 
 #include "scene/reader.h"
 #include "scene/words.h"
+#include "simulation/output_fields.h"
 
 namespace talus {
 
@@ -245,62 +246,31 @@ template <int dim>
 Snapshot Statics<dim>::gauss_points() const {
   Snapshot s;
   s.time = clock_.time, s.step = clock_.steps, s.stage = clock_.stage;
-  const auto column = [&](const char *name, const char *unit, const char *meaning, int components) {
-    s.columns.push_back({name, unit, meaning, components, {}});
-  };
-  column("position", "m", "place of the Gauss point", dim);
-  column("displacement", "m", "displacement since the start or the last reset", dim);
-  column("stress", "Pa",
-         world_.phases.pressure ? "effective stress, positive in tension" : "stress, positive in tension",
-         stress_size<dim>);
-  column("volume", "m3", "volume of the Gauss point", 1);
-  column("mass", "kg", "mass of the Gauss point", 1);
-  column("shear_strain", "-", "sqrt(2/3 e : e) of the deviator e of strain, since displacement was last reset", 1);
-  if (world_.phases.pressure) column("pore_pressure", "Pa", "pore pressure, positive in compression", 1);
-  if (world_.phases.suction) column("saturation", "-", "degree of saturation", 1);
-  const size_t first_history = s.columns.size();
-  for (const auto &body : world_.bodies)
-    for (const HistoryField &field : history_fields(body->law()))
-      if (std::none_of(s.columns.begin(), s.columns.end(), [&](const auto &c) { return c.name == field.name; }))
-        column(field.name, field.unit.name, field.meaning, 1);
-  const int per_cell = problem_->soil().points_per_cell();
-  for (size_t b = 0; b < world_.bodies.size(); ++b) {
-    const GaussPoints<dim> &p = problem_->soil().points()[b];
+  const auto fields = output_fields<GaussPointState<dim>>(world_.phases, world_.bodies);
+  s.columns = fields.columns();
+  const SoilElements<dim> &soil = problem_->soil();
+  const int per_cell = soil.points_per_cell();
+  for (int b = 0; b < static_cast<int>(world_.bodies.size()); ++b) {
+    const GaussPoints<dim> &p = soil.points()[b];
     if (!p.present) continue;
-    const auto fields = history_fields(world_.bodies[b]->law());
-    const int memory = static_cast<int>(fields.size());
     for (int q = 0; q < p.count(); ++q) {
-      const int place = (q - problem_->soil().first_point(p.cell[q]));
-      s.id.push_back(world_.mesh.global_cell[p.cell[q]] * per_cell + place), s.body.push_back(static_cast<int>(b));
-      size_t k = 0;
-      const auto put = [&](const double *values, int count) {
-        s.columns[k].values.insert(s.columns[k].values.end(), values, values + count);
-        ++k;
-      };
-      const Vec<dim> u = problem_->soil().displacement(p.cell[q], problem_->soil().rule().point[place]);
+      const int cell = p.cell[q], place = q - soil.first_point(cell);
+      const Barycentric<dim> &l = soil.rule().point[place];
+      s.id.push_back(world_.mesh.global_cell[cell] * per_cell + place), s.body.push_back(b);
+      GaussPointState<dim> point;
+      point.body = b, point.position = p.position[q], point.displacement = soil.displacement(cell, l);
+      std::copy_n(&p.stress[q * stress_size<dim>], stress_size<dim>, point.stress.begin());
+      point.volume = p.volume[q];
+      point.mass = p.volume[q] * (world_.soil_density(world_.scene.body[b], p.position[q], clock_.load_time) +
+                                  (world_.phases.liquid ? flow_->water_density(cell, l) : 0));
       Stress<dim> strain;
       std::copy_n(&p.total_strain[q * stress_size<dim>], stress_size<dim>, &strain.xx);
-      const Barycentric<dim> &l = problem_->soil().rule().point[place];
-      const double mass = p.volume[q] * (world_.soil_density(world_.scene.body[b], p.position[q], clock_.load_time) +
-                                         (world_.phases.liquid ? flow_->water_density(p.cell[q], l) : 0));
-      const double shear = Invariants<dim>(strain).q * std::sqrt(4. / 3);
-      put(p.position[q].data(), dim), put(u.data(), dim), put(&p.stress[q * stress_size<dim>], stress_size<dim>);
-      put(&p.volume[q], 1), put(&mass, 1), put(&shear, 1);
-      if (world_.phases.prescribed) {
-        const double pressure = world_.pressure(p.position[q], clock_.load_time);
-        put(&pressure, 1);
-      }
-      if (world_.phases.liquid) {
-        const double pressure = flow_->pressure_at(p.cell[q], l), saturation = flow_->saturation(p.cell[q], l);
-        put(&pressure, 1);
-        if (world_.phases.suction) put(&saturation, 1);
-      }
-      for (size_t c = first_history; c < s.columns.size(); ++c) {
-        double value = std::numeric_limits<double>::quiet_NaN();
-        for (int h = 0; h < memory; ++h)
-          if (s.columns[c].name == fields[h].name) value = p.history[q * memory + h];
-        s.columns[c].values.push_back(value);
-      }
+      point.shear_strain = Invariants<dim>(strain).q * std::sqrt(4. / 3);
+      if (world_.phases.prescribed) point.pore_pressure = world_.pressure(p.position[q], clock_.load_time);
+      if (world_.phases.liquid)
+        point.pore_pressure = flow_->pressure_at(cell, l), point.saturation = flow_->saturation(cell, l);
+      point.history = p.history.data() + static_cast<size_t>(q) * world_.bodies[b]->history_count();
+      fields.append(point, s.columns);
     }
   }
   return s;

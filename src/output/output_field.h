@@ -1,0 +1,103 @@
+#pragma once
+/// Fields of points (particles, Gauss points) in results: every field is one entry that holds its name, unit, meaning,
+/// number of components and where its value comes from. Snapshots and the columns of tracked points in history.csv are
+/// made from the same entries.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "output/results.h"
+
+namespace talus {
+
+/// Name of a column of history.csv: quantity and unit, "crest_velocity" and "m/s" give "crest_velocity_m_s".
+inline std::string history_column(const std::string &quantity, std::string unit) {
+  if (unit == "-") return quantity;
+  std::replace(unit.begin(), unit.end(), '/', '_');
+  return quantity + "_" + unit;
+}
+
+/// What history.csv holds of a field for each tracked point.
+enum class Tracked { no, value, magnitude, coordinates };
+
+/// One field of a `Point`.
+template <class Point>
+struct OutputField {
+  std::string name, unit, meaning;
+  int components = 1;
+  Tracked tracked = Tracked::no;
+  std::function<void(const Point &, double *values)> get;  ///< writes `components` numbers
+};
+
+/// A list of fields in the order of the results.
+template <class Point>
+class OutputFields {
+ public:
+  /// `value(point)` is a double or a std::array of doubles, whose length is the number of components.
+  template <class Value>
+  void add(std::string name, std::string unit, std::string meaning, Tracked tracked, Value value) {
+    using Type = std::decay_t<std::invoke_result_t<Value, const Point &>>;
+    OutputField<Point> field{std::move(name), std::move(unit), std::move(meaning), 1, tracked, {}};
+    if constexpr (std::is_arithmetic_v<Type>) {
+      field.get = [value](const Point &p, double *values) { *values = value(p); };
+    } else {
+      field.components = static_cast<int>(std::tuple_size_v<Type>);
+      field.get = [value](const Point &p, double *values) { std::ranges::copy(value(p), values); };
+    }
+    list_.push_back(std::move(field));
+  }
+
+  const std::vector<OutputField<Point>> &list() const { return list_; }
+
+  /// The columns of a snapshot without points.
+  std::vector<Column> columns() const {
+    std::vector<Column> columns;
+    for (const auto &field : list_) columns.push_back({field.name, field.unit, field.meaning, field.components, {}});
+    return columns;
+  }
+  /// Adds a point to the columns, which are those of `columns()`.
+  void append(const Point &point, std::vector<Column> &columns) const {
+    for (std::size_t k = 0; k < list_.size(); ++k) {
+      auto &values = columns[k].values;
+      values.resize(values.size() + list_[k].components);
+      list_[k].get(point, &values[values.size() - list_[k].components]);
+    }
+  }
+
+  /// Names of the columns of history.csv for a tracked point.
+  std::vector<std::string> tracked_names(const std::string &point) const {
+    std::vector<std::string> names;
+    for (const auto &field : list_)
+      if (field.tracked == Tracked::coordinates)
+        for (int d = 0; d < field.components; ++d) names.push_back(history_column(point + "_" + "xyz"[d], field.unit));
+      else if (field.tracked != Tracked::no)
+        names.push_back(history_column(point + "_" + field.name, field.unit));
+    return names;
+  }
+  /// Appends the values of these columns: zeros where `point` is null, so that sums over ranks are those of the rank
+  /// that has the point.
+  void append_tracked(const Point *point, std::vector<double> &row) const {
+    for (const auto &field : list_) {
+      if (field.tracked == Tracked::no) continue;
+      std::vector<double> values(field.components, 0.);
+      if (point) field.get(*point, values.data());
+      if (field.tracked != Tracked::magnitude) {
+        row.insert(row.end(), values.begin(), values.end());
+        continue;
+      }
+      double square = 0;
+      for (const double value : values) square += value * value;
+      row.push_back(std::sqrt(square));
+    }
+  }
+
+ private:
+  std::vector<OutputField<Point>> list_;
+};
+
+}  // namespace talus

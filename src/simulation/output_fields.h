@@ -1,0 +1,185 @@
+#pragma once
+/// The list of what results hold: fields of particles and Gauss points, and columns of history.csv. Whoever adds one
+/// adds an entry here, behind a condition where a phase model or a kind of point does not have it.
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/phases.h"
+#include "output/output_field.h"
+#include "physics/any_soil_motion.h"
+
+namespace talus {
+
+/// A particle as results show it, also within the Lagrangian part of a step.
+template <int dim>
+struct ParticleState {
+  static constexpr int dimension = dim;
+  static constexpr const char *noun = "particle";
+  int body = 0;
+  Vec<dim> position{}, displacement{}, velocity{};          ///< [m], [m], [m/s]
+  std::array<double, stress_size<dim>> stress{};            ///< [Pa]
+  double volume = 0, mass = 0;                              ///< [m3], [kg]
+  double pore_pressure = 0, gas_pressure = 0, suction = 0;  ///< [Pa]
+  double saturation = 0, porosity = 0;
+  bool surface = false;         ///< fluids may pass through a side of its cell
+  std::vector<double> history;  ///< internal variables of the body's law
+
+  ParticleState() = default;
+  /// Particle `i` of `source`, the body number `b`.
+  ParticleState(const PhaseTraits &phases, const AnySoilMotion<dim> &motion, const Body<dim> &source, int b, int i)
+      : body(b), history(source.history_count()) {
+    const ParticleArrays<dim> &p = source.particles();
+    motion.present(source, i, &position, &velocity);
+    motion.state(b, i, stress.data(), history.data(), &volume);
+    for (int d = 0; d < dim; ++d) displacement[d] = position[d] - p.reference[i][d];
+    mass = p.mass[i];
+    if (phases.prescribed) pore_pressure = motion.pore_pressure(position);
+    if (phases.liquid) {
+      const PoreReport pores = motion.pores(source, i);
+      pore_pressure = pores.liquid, gas_pressure = pores.gas, suction = pores.suction, saturation = pores.saturation;
+      surface = pores.surface;
+      porosity = 1 - mass / (source.source().grain_density * volume);
+    }
+  }
+};
+
+/// A Gauss point of a quasi-static stage as results show it.
+template <int dim>
+struct GaussPointState {
+  static constexpr int dimension = dim;
+  static constexpr const char *noun = "Gauss point";
+  int body = 0;
+  Vec<dim> position{}, displacement{};            ///< [m]
+  std::array<double, stress_size<dim>> stress{};  ///< [Pa]
+  double volume = 0, mass = 0;                    ///< [m3], [kg]
+  double shear_strain = 0;
+  double pore_pressure = 0, saturation = 0;  ///< [Pa], [-]
+  const double *history = nullptr;           ///< internal variables of the body's law
+};
+
+/// The fields of particles (`Point` is a ParticleState) or Gauss points (GaussPointState).
+template <class Point>
+OutputFields<Point> output_fields(const PhaseTraits &phases,
+                                  const std::vector<std::unique_ptr<Body<Point::dimension>>> &bodies) {
+  constexpr bool particles = requires(Point p) { p.velocity; };
+  const std::string of_point = std::string(" of the ") + Point::noun;
+  OutputFields<Point> fields;
+  fields.add("position", "m", "place" + of_point, Tracked::coordinates, [](const Point &p) { return p.position; });
+  fields.add("displacement", "m", "displacement since the start or the last reset", Tracked::magnitude,
+             [](const Point &p) { return p.displacement; });
+  if constexpr (particles)
+    fields.add("velocity", "m/s", "velocity of the soil skeleton", Tracked::magnitude,
+               [](const Point &p) { return p.velocity; });
+  fields.add("stress", "Pa", phases.pressure ? "effective stress, positive in tension" : "stress, positive in tension",
+             Tracked::no, [](const Point &p) { return p.stress; });
+  fields.add("volume", "m3", "volume" + of_point, Tracked::no, [](const Point &p) { return p.volume; });
+  fields.add("mass", "kg", "mass" + of_point, Tracked::no, [](const Point &p) { return p.mass; });
+  if constexpr (!particles)
+    fields.add("shear_strain", "-", "sqrt(2/3 e : e) of the deviator e of strain, since displacement was last reset",
+               Tracked::no, [](const Point &p) { return p.shear_strain; });
+  if (phases.pressure)
+    fields.add("pore_pressure", "Pa", "pore pressure, positive in compression", Tracked::value,
+               [](const Point &p) { return p.pore_pressure; });
+  if constexpr (particles) {
+    if (phases.gas)
+      fields.add("gas_pressure", "Pa", "gauge pressure of the pore gas", Tracked::value,
+                 [](const Point &p) { return p.gas_pressure; });
+    if (phases.suction)
+      fields.add("suction", "Pa", "gas less liquid pressure, where positive", Tracked::value,
+                 [](const Point &p) { return p.suction; });
+  }
+  if (phases.suction)
+    fields.add("saturation", "-", "degree of saturation", Tracked::value, [](const Point &p) { return p.saturation; });
+  if constexpr (particles)
+    if (phases.liquid) {
+      fields.add("porosity", "-", "porosity", Tracked::no, [](const Point &p) { return p.porosity; });
+      fields.add("surface", "-",
+                 "1 in cells with a side through which fluids may pass, named or the soil's surface where it is now; 0 "
+                 "elsewhere",
+                 Tracked::no, [](const Point &p) { return p.surface; });
+    }
+  // The internal variables of the laws. A body whose law does not have a variable shows NaN there.
+  for (const auto &body : bodies)
+    for (const HistoryField &variable : history_fields(body->law())) {
+      const std::string name = variable.name;
+      if (std::ranges::any_of(fields.list(), [&](const auto &field) { return field.name == name; })) continue;
+      std::vector<int> index(bodies.size(), -1);  // of the variable in each body's history
+      for (std::size_t b = 0; b < bodies.size(); ++b) {
+        const auto own = history_fields(bodies[b]->law());
+        for (std::size_t k = 0; k < own.size(); ++k)
+          if (own[k].name == name) index[b] = static_cast<int>(k);
+      }
+      fields.add(name, variable.unit.name, variable.meaning, Tracked::no, [index](const Point &p) {
+        return index[p.body] < 0 ? std::numeric_limits<double>::quiet_NaN() : p.history[index[p.body]];
+      });
+    }
+  return fields;
+}
+
+/// A boundary in history.csv.
+template <int dim>
+struct BoundaryRow {
+  std::string name;
+  bool loads = false;  ///< it loads the soil: the mean displacement of its faces is shown, otherwise the force by which
+                       ///< it supports the soil
+  bool inflow = false;  ///< the water that enters through it is shown
+  Vec<dim> value{};     ///< displacement [m] or force [N]
+  double water = 0;     ///< entering [m3/s]
+  double work = 0;      ///< done on the soil since the start [J]
+};
+
+/// The whole run in a row of history.csv: sums over all ranks.
+template <int dim>
+struct RunRow {
+  Balance balance;
+  double potential = 0;     ///< energy in gravity [J]
+  double mass = 0;          ///< of the particles [kg]
+  double particles = 0;     ///< their number
+  double load_time = 0;     ///< time that functions of the scene see [s]
+  double first_energy = 0;  ///< kinetic and strain energy at the start [J]
+  WorkDone work;
+  std::vector<FluidLedger> fluids;  ///< that move on their own: water, then gas
+  std::vector<double> first_fluid;  ///< their masses at the start [kg]
+  std::vector<BoundaryRow<dim>> boundaries;
+
+  /// Calls column(quantity, unit, value) for each column, in the order of the file.
+  template <class Visitor>
+  void visit(Visitor &&column) const {
+    using std::string;
+    column(string("kinetic"), "J", balance.kinetic);
+    column(string("strain"), "J", balance.strain);
+    column(string("potential"), "J", potential);
+    column(string("mass"), "kg", mass);
+    column(string("particles"), "-", particles);
+    column(string("load_time"), "s", load_time);
+    for (std::size_t a = 0; a < fluids.size(); ++a) {
+      const string fluid = a ? "gas" : "water";
+      const double first = a < first_fluid.size() ? first_fluid[a] : 0;
+      column(fluid, "kg", fluids[a].stored);
+      column(fluid + "_out", "kg", fluids[a].out);
+      column(fluid + "_given", "kg", fluids[a].prescribed);
+      column(fluid + "_error", "kg", fluids[a].stored + fluids[a].out - fluids[a].prescribed - first);
+    }
+    for (const auto &b : boundaries)
+      if (b.inflow) column(b.name + "_inflow", "m3/s", b.water);
+    for (const auto &b : boundaries)
+      for (int d = 0; d < dim; ++d)
+        column(b.name + (b.loads ? "_displacement_" : "_force_") + "xyz"[d], b.loads ? "m" : "N", b.value[d]);
+    double done = 0;
+    const auto work_column = [&](const string &by, double joules) {
+      column("work_" + by, "J", joules);
+      done += joules;
+    };
+    for (const auto &b : boundaries) work_column(b.name, b.work);
+    work_column("gravity", work.gravity);
+    work_column("imposed", work.imposed);
+    work_column("damping", work.damping);
+    column(string("dissipated"), "J", first_energy + done - (balance.kinetic + balance.strain));
+  }
+};
+
+}  // namespace talus

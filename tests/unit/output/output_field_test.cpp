@@ -1,0 +1,137 @@
+// Claims of output/output_field.h and simulation/output_fields.h.
+#include "output/output_field.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "simulation/output_fields.h"
+
+namespace talus {
+namespace {
+
+struct Point {
+  std::array<double, 2> place, speed;
+  double pressure;
+};
+
+OutputFields<Point> three_fields() {
+  OutputFields<Point> fields;
+  fields.add("place", "m", "where it is", Tracked::coordinates, [](const Point &p) { return p.place; });
+  fields.add("speed", "m/s", "how fast it moves", Tracked::magnitude, [](const Point &p) { return p.speed; });
+  fields.add("pressure", "Pa", "of the water", Tracked::value, [](const Point &p) { return p.pressure; });
+  fields.add("wet", "-", "1 under pressure", Tracked::no, [](const Point &p) { return p.pressure > 0; });
+  return fields;
+}
+
+TEST(OutputFields, fill_the_columns_of_a_snapshot) {
+  const auto fields = three_fields();
+  auto columns = fields.columns();
+  fields.append({{1, 2}, {3, 4}, 5}, columns);
+  fields.append({{6, 7}, {8, 9}, -1}, columns);
+  ASSERT_EQ(columns.size(), 4u);
+  EXPECT_EQ(columns[1].name, "speed");
+  EXPECT_EQ(columns[1].unit, "m/s");
+  EXPECT_EQ(columns[1].meaning, "how fast it moves");
+  EXPECT_EQ(columns[1].components, 2);
+  EXPECT_EQ(columns[2].components, 1);
+  EXPECT_EQ(columns[0].values, (std::vector<double>{1, 2, 6, 7}));
+  EXPECT_EQ(columns[1].values, (std::vector<double>{3, 4, 8, 9}));
+  EXPECT_EQ(columns[2].values, (std::vector<double>{5, -1}));
+  EXPECT_EQ(columns[3].values, (std::vector<double>{1, 0}));
+}
+
+TEST(OutputFields, name_and_fill_the_history_of_a_tracked_point) {
+  const auto fields = three_fields();
+  EXPECT_EQ(fields.tracked_names("crest"),
+            (std::vector<std::string>{"crest_x_m", "crest_y_m", "crest_speed_m_s", "crest_pressure_Pa"}));
+  const Point point{{1, 2}, {3, 4}, 5};
+  std::vector<double> row{-1};
+  fields.append_tracked(&point, row);
+  EXPECT_EQ(row, (std::vector<double>{-1, 1, 2, 5, 5}));
+  fields.append_tracked(nullptr, row);  // on another rank
+  EXPECT_EQ(row, (std::vector<double>{-1, 1, 2, 5, 5, 0, 0, 0, 0}));
+}
+
+using Names = std::vector<std::string>;
+
+template <class Point>
+Names names_of(const PhaseTraits &phases) {
+  Names names;
+  for (const auto &field : output_fields<Point>(phases, {}).list()) names.push_back(field.name);
+  return names;
+}
+
+TEST(OutputFields, exist_where_the_phase_model_has_them) {
+  EXPECT_EQ(names_of<ParticleState<2>>(traits_of<Dry>),
+            (Names{"position", "displacement", "velocity", "stress", "volume", "mass"}));
+  EXPECT_EQ(names_of<ParticleState<3>>(traits_of<Drained>),
+            (Names{"position", "displacement", "velocity", "stress", "volume", "mass", "pore_pressure"}));
+  EXPECT_EQ(names_of<ParticleState<2>>(traits_of<ThreePhase>),
+            (Names{"position", "displacement", "velocity", "stress", "volume", "mass", "pore_pressure", "gas_pressure",
+                   "suction", "saturation", "porosity", "surface"}));
+  EXPECT_EQ(
+      names_of<GaussPointState<2>>(traits_of<Unsaturated>),
+      (Names{"position", "displacement", "stress", "volume", "mass", "shear_strain", "pore_pressure", "saturation"}));
+}
+
+TEST(OutputFields, of_laws_are_not_a_number_where_a_body_has_another_law) {
+  BodySource source;
+  std::vector<std::unique_ptr<Body<2>>> bodies(2);
+  for (auto &body : bodies) body = std::make_unique<Body<2>>();
+  ASSERT_EQ(bodies[0]->create(MPI_COMM_SELF, source, MohrCoulomb{}, false, 0, 0), 0);
+  ASSERT_EQ(bodies[1]->create(MPI_COMM_SELF, source, LinearElastic{}, false, 0, 0), 0);
+  const auto fields = output_fields<GaussPointState<2>>(traits_of<Dry>, bodies);
+  auto columns = fields.columns();
+  const double history[] = {0.25, 0.5};
+  GaussPointState<2> point;
+  point.history = history;
+  for (point.body = 0; point.body < 2; ++point.body) fields.append(point, columns);
+  ASSERT_EQ(columns.back().name, "plastic_volume");
+  EXPECT_EQ(columns.back().values[0], 0.5);
+  EXPECT_TRUE(std::isnan(columns.back().values[1]));
+}
+
+TEST(RunRow, names_what_it_holds_and_closes_its_ledgers) {
+  RunRow<2> row;
+  row.balance.kinetic = 1, row.balance.strain = 2, row.first_energy = 30;
+  row.work = {4, 5, -6};
+  row.fluids = {{100, 7, 2}}, row.first_fluid = {104};
+  row.boundaries = {{"base", false, true, {8, 9}, 10, 11}, {"footing", true, false, {12, 13}, 0, 14}};
+  Names names;
+  std::map<std::string, double> value;
+  row.visit([&](const std::string &quantity, const char *unit, double number) {
+    names.push_back(history_column(quantity, unit));
+    value[names.back()] = number;
+  });
+  EXPECT_EQ(names, (Names{"kinetic_J",
+                          "strain_J",
+                          "potential_J",
+                          "mass_kg",
+                          "particles",
+                          "load_time_s",
+                          "water_kg",
+                          "water_out_kg",
+                          "water_given_kg",
+                          "water_error_kg",
+                          "base_inflow_m3_s",
+                          "base_force_x_N",
+                          "base_force_y_N",
+                          "footing_displacement_x_m",
+                          "footing_displacement_y_m",
+                          "work_base_J",
+                          "work_footing_J",
+                          "work_gravity_J",
+                          "work_imposed_J",
+                          "work_damping_J",
+                          "dissipated_J"}));
+  EXPECT_EQ(value["water_error_kg"], 100 + 7 - 2 - 104);  // stored, and gone, and not put in, since the start
+  EXPECT_EQ(value["base_inflow_m3_s"], 10);
+  EXPECT_EQ(value["base_force_y_N"], 9);
+  EXPECT_EQ(value["footing_displacement_x_m"], 12);
+  EXPECT_EQ(value["dissipated_J"], 30 + 11 + 14 + 4 + 5 - 6 - (1 + 2));  // energy at the start, work, energy now
+}
+
+}  // namespace
+}  // namespace talus
