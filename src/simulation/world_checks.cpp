@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/boundary/pore_conditions.h"
 #include "scene/reader.h"
 #include "scene/words.h"
 #include "simulation/world.h"
