@@ -4,8 +4,10 @@
 #include <filesystem>
 #include <sstream>
 
+#include "commands/case_page.h"
 #include "commands/commands.h"
 #include "commands/rungs.h"
+#include "output/script.h"
 #include "scene/reader.h"
 #include "scene/words.h"
 
@@ -13,12 +15,13 @@ namespace talus {
 namespace {
 
 struct VerifyArguments {
-  std::vector<std::string> cases;
-  bool json = false, list = false, longer = false;
+  std::vector<std::string> cases, only;
+  bool json = false, list = false, longer = false, gallery = false, pages = false, write = false;
 };
 
 struct Outcome {
   const LadderEntry *entry;
+  std::string page;  ///< README.md beside the scene
   std::vector<Checked> quantities;
   std::string error;  ///< why it ended before its last quantity
 
@@ -54,8 +57,9 @@ std::vector<const LadderEntry *> choose(const std::vector<std::string> &names) {
 }
 
 Outcome climb(const LadderEntry &entry, bool longer) {
-  Rung rung(scene_of(entry), longer);
-  Outcome outcome{&entry, {}, ""};
+  const std::string scene = scene_of(entry);
+  Rung rung(scene, longer);
+  Outcome outcome{&entry, std::filesystem::path(scene).replace_filename("README.md"), {}, ""};
   try {
     entry.check(rung);
   } catch (const RunError &error) {
@@ -113,9 +117,35 @@ void print_json(const std::vector<Outcome> &outcomes) {
   std::printf("\n]}\n");
 }
 
+/// Writes the table of the case's page, or says what of it is not what was computed; true if the page is in step.
+bool put_in_step(const Outcome &outcome, const VerifyArguments &arguments) {
+  if (arguments.write) {
+    write_case_page(outcome.page, arguments.longer, outcome.quantities);
+    return true;
+  }
+  const std::string difference = difference_from_page(outcome.page, arguments.longer, outcome.quantities);
+  if (!difference.empty())
+    std::fprintf(stderr, "talus: %s: %s; `./talus verify %s%s --write` makes its table anew\n", outcome.page.c_str(),
+                 difference.c_str(), outcome.entry->name, arguments.longer ? " --long" : "");
+  return difference.empty();
+}
+
+/// The numbers of the gallery: a script reruns the scenes behind them and compares.
+int verify_gallery(const VerifyArguments &arguments) {
+  std::vector<std::string> words{TALUS_GALLERY, std::filesystem::read_symlink("/proc/self/exe")};
+  words.insert(words.end(), arguments.cases.begin(), arguments.cases.end());
+  if (arguments.longer) words.push_back("--long");
+  if (arguments.write) words.push_back("--write");
+  if (arguments.pages) words.push_back("--pages");
+  if (arguments.list) words.push_back("--list");
+  for (const std::string &name : arguments.only) words.insert(words.end(), {"--only", name});
+  return run_script("talus_numbers.py", words);
+}
+
 int verify(const VerifyArguments &arguments) {
   int rank;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  if (arguments.gallery) return rank == 0 ? verify_gallery(arguments) : 0;
   const auto chosen = choose(arguments.cases);
   if (arguments.list) {
     if (rank == 0)
@@ -133,7 +163,10 @@ int verify(const VerifyArguments &arguments) {
       std::fprintf(stderr, "talus: %s: %s\n", entry->name, outcomes.back().error.c_str());
   }
   if (rank == 0 && arguments.json) print_json(outcomes);
-  return std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome &o) { return o.holds(); }) ? 0 : 1;
+  bool good = std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome &o) { return o.holds(); });
+  if (rank == 0 && (arguments.pages || arguments.write))
+    for (const Outcome &outcome : outcomes) good = outcome.holds() && put_in_step(outcome, arguments) && good;
+  return good ? 0 : 1;
 }
 
 }  // namespace
@@ -146,6 +179,16 @@ Action add_verify(CLI::App &app) {
   command->add_flag("--json", arguments->json, "print the results as one JSON document");
   command->add_flag("--list", arguments->list, "list the cases with their descriptions");
   command->add_flag("--long", arguments->longer, "include the finer studies, which take minutes");
+  command->add_flag("--gallery", arguments->gallery,
+                    "instead of cases, the numbers that pages of the gallery state: reruns their scenes and compares; "
+                    "CASE is then the name of a page");
+  command->add_option("--only", arguments->only, "with --gallery, only this run or study of numbers.toml")
+      ->take_all()
+      ->allow_extra_args(false);
+  command->add_flag("--pages", arguments->pages,
+                    "compare the tables of the pages too; with --gallery compare them alone and run nothing");
+  command->add_flag("--write", arguments->write,
+                    "write what is computed into the tables of the pages (and, with --gallery, into numbers.toml)");
   return [arguments] { return verify(*arguments); };
 }
 

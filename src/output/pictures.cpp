@@ -1,30 +1,14 @@
 #include "output/pictures.h"
 
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <exception>
-#include <filesystem>
+#include <stdexcept>
 
-#include "base/child_environment.h"
-#include "base/version.h"
+#include "output/script.h"
 #include "output/strength.h"
 
 namespace talus {
 namespace {
-
-/// A script of the source tree this program was built in, else the one installed beside the program.
-std::string script(const char *name) {
-  const std::filesystem::path source = std::filesystem::path(TALUS_PLOTS) / name;
-  if (std::filesystem::exists(source)) return source;
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  return program.parent_path().parent_path() / "share/talus/plots" / name;
-}
 
 bool warn(const std::string &dir, const std::string &cause) {
   std::fprintf(stderr, "warning: no pictures of %s: %s\n", dir.c_str(), cause.c_str());
@@ -33,23 +17,13 @@ bool warn(const std::string &dir, const std::string &cause) {
 
 /// Runs a script on the results in `dir`.
 bool draw(const char *name, const std::string &dir, const std::vector<std::string> &options) {
-  std::vector<std::string> words{TALUS_PYTHON, "-B", script(name), dir};  // -B: no caches among the sources
-  words.insert(words.end(), options.begin(), options.end());
-  std::vector<char *> arguments;
-  for (auto &word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-
-  pid_t child;
-  auto environment = environment_without_mpi();
-  std::string drawn_by = std::string("TALUS_PROGRAM=") + program;
-  environment.insert(environment.begin(), drawn_by.data());
-  if (const int error = posix_spawn(&child, TALUS_PYTHON, nullptr, nullptr, arguments.data(), environment.data()))
-    return warn(dir, std::string("cannot start " TALUS_PYTHON ": ") + std::strerror(error));
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0)
-    if (errno != EINTR) return warn(dir, std::strerror(errno));
-  if (!WIFEXITED(status) || WEXITSTATUS(status)) return warn(dir, words[2] + " failed");
-  return true;
+  std::vector<std::string> arguments{dir};
+  arguments.insert(arguments.end(), options.begin(), options.end());
+  try {
+    return run_script(name, arguments) == 0 || warn(dir, std::string(name) + " failed");
+  } catch (const std::runtime_error &error) {
+    return warn(dir, error.what());
+  }
 }
 
 }  // namespace

@@ -1,0 +1,48 @@
+#include "output/script.h"
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+
+#include "base/child_environment.h"
+#include "base/version.h"
+
+namespace talus {
+namespace {
+
+std::string place_of(const std::string &name) {
+  const std::filesystem::path source = std::filesystem::path(TALUS_PLOTS) / name;
+  if (std::filesystem::exists(source)) return source;
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  return program.parent_path().parent_path() / "share/talus/plots" / name;
+}
+
+}  // namespace
+
+int run_script(const std::string &name, const std::vector<std::string> &arguments) {
+  std::vector<std::string> words{TALUS_PYTHON, "-B", place_of(name)};  // -B: no caches among the sources
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char *> pointers;
+  for (auto &word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+
+  pid_t child;
+  auto environment = environment_without_mpi();
+  std::string drawn_by = std::string("TALUS_PROGRAM=") + program;
+  environment.insert(environment.begin(), drawn_by.data());
+  if (const int error = posix_spawn(&child, TALUS_PYTHON, nullptr, nullptr, pointers.data(), environment.data()))
+    throw std::runtime_error(std::string("cannot start " TALUS_PYTHON ": ") + std::strerror(error));
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) throw std::runtime_error(std::strerror(errno));
+  if (!WIFEXITED(status)) throw std::runtime_error(words[2] + " was ended by a signal");
+  return WEXITSTATUS(status);
+}
+
+}  // namespace talus

@@ -1,0 +1,13 @@
+#pragma once
+/// Starts the Python scripts of src/output/plots: pictures, reports, and the numbers of the pages.
+#include <string>
+#include <vector>
+
+namespace talus {
+
+/// Runs a script of the source tree this program was built in, else the one installed beside the program, and waits for
+/// its end. The script finds the name and version of the program in its environment variable TALUS_PROGRAM. Returns its
+/// exit status; throws std::runtime_error where it cannot be started or ends by a signal.
+int run_script(const std::string &name, const std::vector<std::string> &arguments);
+
+}  // namespace talus
