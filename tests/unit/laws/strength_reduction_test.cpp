@@ -71,7 +71,8 @@ void expect_factor(const OneLaw &law, double plastic_strain, double c, double ph
 
 template <class OneLaw>
 class FrictionReduction : public ::testing::Test {};
-TYPED_TEST_SUITE(FrictionReduction, (::testing::Types<MohrCoulomb, HenckyMohrCoulomb>));
+using FrictionalLaws = ::testing::Types<MohrCoulomb, HenckyMohrCoulomb>;
+TYPED_TEST_SUITE(FrictionReduction, FrictionalLaws);
 
 TYPED_TEST(FrictionReduction, gives_the_factor_of_safety_by_which_strength_was_divided) {
   constexpr double c = 20e3, residual_c = 8e3, phi = 30 * degree.si, residual_phi = 20 * degree.si;
