@@ -96,7 +96,7 @@ class Page:
         tables = {}
         if stated.get("run"):
             tables["numbers"] = table_of_runs(stated["run"], self.name)
-        if any("file" in study for study in stated.get("study", {}).values()):
+        if stated.get("study"):
             tables["studies"] = table_of_studies(stated["study"])
         for name, study in stated.get("study", {}).items():
             for wanted in study.get("tables", []):
@@ -191,8 +191,9 @@ def table_of_runs(runs, page):
 def table_of_studies(studies):
     lines = ["| study | command | gives | repeated with the present program |", "|---|---|---|---|"]
     for study in studies.values():
-        if "file" in study:
-            lines.append(f"| {study['about']} | `{study['command']}` | [{study['file']}]({study['file']}) | {'no: ' + study['unchecked'] if 'unchecked' in study else 'yes'} |")
+        command = f"`{study['command']}`" if "command" in study else "`talus run`"
+        gives = f"[{study['file']}]({study['file']})" if "file" in study else "pictures"
+        lines.append(f"| {study['about']} | {command} | {gives} | {'no: ' + study['unchecked'] if 'unchecked' in study else 'yes'} |")
     return lines
 
 
@@ -338,7 +339,8 @@ def pages_of(gallery, names):
     folders = {folder.name: folder for folder in [*sorted(gallery.iterdir()), gallery.parent / "guide"] if (folder / "numbers.toml").exists()}
     unknown = [name for name in names if name not in folders]
     if unknown:
-        sys.exit(f"talus: no page {', '.join(unknown)} states numbers; there are {', '.join(folders)}")
+        print(f"talus: no page {', '.join(unknown)} states numbers; there are {', '.join(folders)}", file=sys.stderr)
+        sys.exit(2)
     return [Page(folders[name]) for name in names or folders]
 
 
