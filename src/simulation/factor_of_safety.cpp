@@ -8,16 +8,14 @@ namespace talus {
 
 /// Refuses laws whose strength cannot be divided. Soil that never fails may stand beside soil that does.
 template <int dim>
-void check_strength(const World<dim> &world, Recorder<dim> &recorder) {
+void check_strength(const World<dim> &world) {
   const bool some_fail = std::ranges::any_of(world.laws, [](const Law &law) { return !never_fails(law); });
   for (size_t b = 0; b < world.laws.size(); ++b) {
-    const std::string body = "body." + world.scene.body[b].name, law = law_name(world.laws[b]);
-    const std::string reason = no_strength_reduction(world.laws[b]);
-    if (reason.empty()) continue;
-    if (!never_fails(world.laws[b]) || !some_fail)
-      world.scene.complain(body + ".law", "must have a strength that a factor of safety can divide, but " + law + " " +
-                                              reason + "; take mohr_coulomb or drucker_prager");
-    recorder.note("the strength of " + body + " is not reduced: " + law + " " + reason);
+    const std::string law = law_name(world.laws[b]), reason = no_strength_reduction(world.laws[b]);
+    if (!reason.empty() && (!never_fails(world.laws[b]) || !some_fail))
+      world.scene.complain("body." + world.scene.body[b].name + ".law",
+                           "must have a strength that a factor of safety can divide, but " + law + " " + reason +
+                               "; take mohr_coulomb or drucker_prager");
   }
 }
 
@@ -28,7 +26,7 @@ FactorOfSafety Simulation<dim>::factor_of_safety() {
   for (size_t k = 0; k < scene.stage.size(); ++k)
     if (!is_static(scene.stage[k].kind))
       scene.complain("stage." + std::to_string(k) + ".kind", "must be \"quasi_static\" for a factor of safety");
-  check_strength(run_.world, run_.recorder);
+  check_strength(run_.world);
   for (double &factor = run_.statics.strength_factor;; factor /= 2) {
     try {
       if (run_.clock.steps == 0) run();
@@ -61,6 +59,10 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
     if (table) std::fprintf(table, "factor,stable,iterations,residual,displacement_m,reason\n");
   }
   run_.clock.stage = "strength reduction";
+  for (size_t b = 0; b < world.laws.size(); ++b)
+    if (never_fails(world.laws[b]))
+      run_.recorder.note("the strength of body." + run_.scene.body[b].name +
+                         " is not reduced: " + law_name(world.laws[b]) + " " + no_strength_reduction(world.laws[b]));
   require(talus::reduce_strength<dim>(
       run_.statics.problem(), world.laws, run_.statics.strength_factor, run_.clock.load_time, run_.clock.time,
       0.1 * extent, 0.01,

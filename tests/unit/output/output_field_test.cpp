@@ -59,7 +59,8 @@ using Names = std::vector<std::string>;
 template <class Point>
 Names names_of(const PhaseTraits &phases) {
   Names names;
-  for (const auto &field : output_fields<Point>(phases, {}).list()) names.push_back(field.name);
+  const auto fields = output_fields<Point>(phases, {});
+  for (const auto &field : fields.list()) names.push_back(field.name);
   return names;
 }
 
