@@ -12,12 +12,12 @@
 namespace talus {
 namespace {
 
-/// Two cells, all nodes of which move as prescribed: the shear strain is 2 %, five times that of yield.
+/// Four cells whose outer nodes move as prescribed: the shear strain is 2 %, five times that of yield.
 const std::string block = R"(
 phases = "drained"
 [mesh]
 section = "box.csv"
-size = 2
+size = 1
 [body.soil]
 region = "soil"
 porosity = 0.3
