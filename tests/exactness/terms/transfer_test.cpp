@@ -19,7 +19,7 @@ void velocities_are_mapped_back_and_relax() {
     expect_equal<dim>(box.from_motion({motion.velocity(), motion.velocity() + motion.size()}), exact.start, 1, "(4.2)");
     const Nodes<dim> v = box.field(1, 7);
     std::vector<double> relaxed = box.to_motion(v), mapped(relaxed.size());
-    ASSERT_EQ(motion.map_back(now, step, relaxed.data(), mapped.data()), 0);
+    ASSERT_EQ(motion.map_back(now + step, step, relaxed.data(), mapped.data()), 0);
     const double a = tau > 0 ? std::exp(-(now + step) / tau) : 1, share = tau > 0 ? 1 - std::exp(-step / tau) : 0;
     const Nodes<dim> Sv = exact.back_and_forth(v), Sv0 = exact.back_and_forth(exact.start);
     Nodes<dim> w = Sv, left = v;
