@@ -106,6 +106,7 @@ TALUS_IN_2D_AND_3D(Deformation, integration_volumes_follow_the_motion)
 template <int dim>
 void volumes_are_capped() {
   Box<dim> box("volume_cap = 1.05\n", "", 0, false);
+  constexpr double midpoint_rule = 1e-7;  // (3.4) in 3D: g^3 / 12 in each direction for stretches 1 + g, g = 0.0066
   SoilMotion<dim, Dry> &motion = *box.soil.motion;
   ASSERT_EQ(motion.begin(0), 0);
   for (const auto &[growth, limit] : {std::pair{1.02, 1.02}, {1.04, 1.05}}) {  // in turn, in all directions
@@ -117,7 +118,7 @@ void volumes_are_capped() {
     for (int p = 0; p < box.soil.particles().count; ++p) {
       double stress[6], volume;
       motion.state(0, p, stress, nullptr, &volume);
-      EXPECT_NEAR(volume / box.soil.particles().initial_volume[p], limit, 1e-9);
+      EXPECT_NEAR(volume / box.soil.particles().initial_volume[p], limit, dim == 3 ? midpoint_rule : 1e-9);
     }
   }
 }
