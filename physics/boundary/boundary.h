@@ -49,6 +49,10 @@ class Boundary {
 
   /// Does it concern the pore fluids only?
   bool fluids_only() const { return in_motion == OnSoil::none && quasi_static == OnSoil::none; }
+  /// Does liquid enter or leave by it, so that its inflow is recorded?
+  bool has_inflow() const { return fluids_only() || fluid_face(); }
+  /// Does it need a gas that moves?
+  bool needs_gas() const { return gas == OnGas::pressure; }
   /// Does it support the skeleton only in quasi-static stages and those that freeze loads, in place of its dashpots?
   bool stands_in() const { return quasi_static == OnSoil::support && in_motion != OnSoil::support; }
   /// Do the pore fluids have a face of its own here, neither a wall nor the surface of the soil?
@@ -62,11 +66,6 @@ class Boundary {
   SoilFunctions<2> on_soil_2d_;
   SoilFunctions<3> on_soil_3d_;
 };
-
-/// Does the kind concern the pore fluids only?
-inline bool concerns_water(const Boundary &kind) { return kind.fluids_only(); }
-/// Does it need a gas that moves?
-inline bool concerns_gas(const Boundary &kind) { return kind.gas == OnGas::pressure; }
 
 /// Reads the kind that the table names, out of the list in kinds.h. Throws SceneError.
 Boundary read_boundary(const DeferredTable &table);

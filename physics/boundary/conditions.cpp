@@ -110,12 +110,13 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
   counted_.resize(nodes);
   for (int i = 0; i < nodes; ++i) {
     counted_[i] = mesh.owned[grid.mesh_node[i]];
-    const PrescribedSet &set = prescribed_[held_];
+    const PrescribedSet &set = prescribed_[stand_ins_];
     const int index = set.of_node[grid.mesh_node[i]];
     if (index >= 0) active_prescribed_.push_back({i, &set.entry[index]});
   }
   for (const Reaction &r : frozen_)
-    if (!held_ && grid.find_node(r.node) >= 0) active_frozen_.push_back({grid.find_node(r.node), r.source, r.value});
+    if (!stand_ins_ && grid.find_node(r.node) >= 0)
+      active_frozen_.push_back({grid.find_node(r.node), r.source, r.value});
   if (!bases_.empty()) {
     for (auto &of_node : contacts_)
       for (Contact &c : of_node)
@@ -138,7 +139,7 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
         active_contacts_.push_back({i, &c, nodal_[i] * c.area / total, 0, false, false});
     }
   }
-  if (!dashpots_.empty() && !held_) {
+  if (!dashpots_.empty() && !stand_ins_) {
     constexpr int width = dim * dim;
     for (const auto &[source, facets] : dashpots_) {
       const auto &dashpot = sources_[source].kind.template on_soil<dim>().dashpot;
@@ -181,7 +182,7 @@ void Conditions<dim>::add_reactions(Vec<dim> *force) const {
 }
 
 template <int dim>
-void Conditions<dim>::follow(const Vec<dim> *u) {
+void Conditions<dim>::add_work(const Vec<dim> *u) {
   for (const Reaction &r : impulses_) work_[r.source] += dot<dim>(r.value, u[r.node]) / resolved_step_;
   for (const Reaction &r : active_frozen_)
     if (counted_[r.node]) work_[r.source] += dot<dim>(r.value, u[r.node]);
@@ -297,7 +298,7 @@ PetscErrorCode Conditions<dim>::serialize(Archive &archive, FilledGrid<dim> &gri
                                           const std::vector<std::array<double, 2>> &impedance,
                                           const std::vector<double> &filling) {
   PetscFunctionBeginUser;
-  archive.serialize("supports", held_, frozen_);
+  archive.serialize("supports", stand_ins_, frozen_);
   if (archive.reading()) PetscCall(begin(grid, impedance, filling));
   archive.serialize("boundaries", impulse_, work_);
   for (auto &contacts : contacts_)

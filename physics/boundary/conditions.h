@@ -30,8 +30,8 @@ class Conditions {
                        const std::vector<double> &filling);
 
   /// In stages that freeze loads (`hold_loads`), supports stand in for dashpots. Takes effect at the next `begin`.
-  void hold(bool held) { held_ = held; }
-  bool held() const { return held_; }
+  void use_stand_ins(bool use) { stand_ins_ = use; }
+  bool uses_stand_ins() const { return stand_ins_; }
   /// Stores the reactions of those supports to the nodal forces (summed over ranks) as a dead load.
   void freeze_reactions(const FilledGrid<dim> &grid, const Vec<dim> *force);
   /// Adds the frozen reactions to nodal forces summed over ranks.
@@ -54,7 +54,7 @@ class Conditions {
   void resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Pores &pores = {});
 
   /// Adds the work of the boundaries in an accepted step with nodal displacements `u`.
-  void follow(const Vec<dim> *u);
+  void add_work(const Vec<dim> *u);
   /// Work of each source on the soil, on this rank [J].
   const std::vector<double> &work() const { return work_; }
 
@@ -119,7 +119,7 @@ class Conditions {
   std::vector<Dashpot> active_dashpots_;
   std::vector<double> nodal_;
   double friction_delay_ = 0, resolved_step_ = 0;
-  bool held_ = false;
+  bool stand_ins_ = false;
   std::vector<Reaction> frozen_, active_frozen_, impulses_;  ///< by mesh node; by compact node; of the last `resolve`
   std::vector<double> work_;
   std::vector<Vec<dim>> impulse_;

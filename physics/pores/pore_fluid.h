@@ -2,9 +2,9 @@
 /// The fluid part of the motion, docs/theory/pores.md: liquid and, in three phases, gas. Stress points of the soil are
 /// pore points too: each has masses of the fluids, and its pressures are functions of these masses. SoilMotion calls,
 /// in the order of a step:
-///   gather -> [add_to_mixture -> drive -> resist -> follow -> flow -> smooth_flow -> exchange -> store] ... ->
-///   hand_over
-/// Particles receive from the nodes and give to them in the sweeps of the soil (transfer/), between `hand_over` and
+///   gather -> [add_to_mixture -> find_accelerations -> apply_drag_to_solid -> apply_drag_to_fluids -> find_divergence
+///   -> smooth_divergence -> change_masses -> update_pressures] ... -> write_update
+/// Particles receive from the nodes and give to them in the sweeps of the soil (transfer/), between `write_update` and
 /// `gather`.
 #include <functional>
 #include <memory>
@@ -57,48 +57,48 @@ class PoreFluid {
   Pores<dim> pores(int body) { return pores_of(points_, body); }
   Pores<dim> next_pores(int body) { return pores_of(next_points_, body); }
   /// The gathered points take the place of the present ones.
-  void turn() { std::swap(points_, next_points_); }
+  void swap_points() { std::swap(points_, next_points_); }
   /// Completes the nodes once the particles of all bodies have been added to points and cells: their pressures, the
   /// boundaries, and the velocities of the fluids, which go to `velocity` [fluids][nodes].
   PetscErrorCode gather(const Frame &frame, PoreConditions<dim> &conditions, const Array &filling,
                         const Vec<dim> *solid, Vec<dim> *velocity);
   /// Writes into `update` what particles read of the nodes before they move. `velocity` are those at the end, `start`
   /// those at the start, both [fluids][nodes]; `flip` is the share of its own velocity that a particle retains.
-  void hand_over(int nodes, const Vec<dim> *velocity, const Vec<dim> *start, double flip, NodalUpdate &update) const;
+  void write_update(int nodes, const Vec<dim> *velocity, const Vec<dim> *start, double flip, NodalUpdate &update) const;
 
   /// Adds the pressure and the weight of the fluids to the forces on the mixture at the nodes.
   void add_to_mixture(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force) const;
   /// Finds the accelerations of the fluids [fluids][nodes] and subtracts their inertia from the force on the mixture,
   /// which leaves the force on the solid. Drag is not among the forces, except where it is explicit: then it is that of
   /// `velocity` [1 + fluids][nodes].
-  PetscErrorCode drive(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force,
-                       Vec<dim> *acceleration, const Vec<dim> *velocity);
+  PetscErrorCode find_accelerations(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force,
+                                    Vec<dim> *acceleration, const Vec<dim> *velocity);
   /// Changes the velocity of the solid by implicit drag over `step` and by the boundaries that limit the fluids.
-  /// `solid` and `fluid` enter without drag; the fluids' velocities change in `follow`.
-  void resist(double step, const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *solid,
-              const Vec<dim> *fluid) const;
+  /// `solid` and `fluid` enter without drag; the fluids' velocities change in `apply_drag_to_fluids`.
+  void apply_drag_to_solid(double step, const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *solid,
+                           const Vec<dim> *fluid) const;
   /// Inertia of a node against a support of the solid, once drag has acted over `step` [kg].
   Square<dim> inertia(double step, const FilledGrid<dim> &grid, const PoreConditions<dim> &conditions, int node) const;
   /// Force with which the pores press on a wall of outer normal n at a node, docs/theory/pores.md (5.3) [N].
   double thrust(const Vec<dim> &gravity, int node, const Vec<dim> &n) const;
   /// Changes the velocities of the fluids by the same drag. `solid` is the velocity that supports and contact have left
   /// the solid. Boundaries of the fluids act last.
-  void follow(double step, const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid,
-              Vec<dim> *fluid) const;
+  void apply_drag_to_fluids(double step, const Frame &frame, const PoreConditions<dim> &conditions,
+                            const Vec<dim> *solid, Vec<dim> *fluid) const;
   /// Brings the velocities of the fluids within the limits that boundaries and walls set.
   void constrain(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid,
                  Vec<dim> *fluid) const;
 
   /// Finds the divergence of the mass fluxes in cells, over displacements u [1 + fluids][nodes] from the accepted
   /// state. `frame` is the accepted one; its `trial` alone tells whether the step is one. Collective.
-  PetscErrorCode flow(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *u);
+  PetscErrorCode find_divergence(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *u);
   /// Smooths the divergence together with the volume strain of the cells, which becomes that of the pores. Collective.
-  PetscErrorCode smooth_flow(const Frame &frame, Array &volume_strain);
+  PetscErrorCode smooth_divergence(const Frame &frame, Array &volume_strain);
   /// Subtracts the divergence from the masses of the points. `frame` has the volumes at the end.
-  void exchange(const Frame &frame);
+  void change_masses(const Frame &frame);
   /// Finds the pressures of the points from their masses, and the sums over cells and nodes that the forces are made
   /// of. It may be left out before particles are released. Collective.
-  PetscErrorCode store(const Frame &frame);
+  PetscErrorCode update_pressures(const Frame &frame);
 
   /// Suction at the points of a body [Pa].
   const double *suction(int body) const requires Phases::suction { return points_[body].suction.data(); }

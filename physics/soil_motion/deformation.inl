@@ -126,13 +126,13 @@ PetscErrorCode SoilMotion<dim, Phases>::deform(double t, const Vec<dim> *u, Stat
   if constexpr (Phases::liquid) {
     auto accepted = pore_frame(t, accepted_);
     accepted.trial = trial;
-    PetscCall(fluid_.flow(accepted, pore_conditions_, u));
+    PetscCall(fluid_.find_divergence(accepted, pore_conditions_, u));
   }
   deform_cells(u, to);
   if constexpr (Phases::liquid) std::copy_n(volume_strain_.begin(), cells, pore_strain_.begin());
   PetscCall(smooth_volume_strain(to.shape));
   if constexpr (Phases::liquid) {  // the pores' volume follows the smoothing of their pressure
-    PetscCall(fluid_.smooth_flow(pore_frame(t, accepted_), pore_strain_));
+    PetscCall(fluid_.smooth_divergence(pore_frame(t, accepted_), pore_strain_));
     std::copy_n(pore_strain_.begin(), cells, volume_strain_.begin());
   }
   std::fill_n(to.particle_volume.begin(), cells, 0.);
@@ -143,8 +143,8 @@ PetscErrorCode SoilMotion<dim, Phases>::deform(double t, const Vec<dim> *u, Stat
     for (size_t b = 0; b < bodies_.size(); ++b)
       if (nonlocal_[b]) PetscCall(nonlocal_[b]->update(grid_, points_[b]));
   if constexpr (Phases::liquid) {
-    fluid_.exchange(pore_frame(t, to));
-    if (trial) PetscCall(fluid_.store(pore_frame(t, to)));
+    fluid_.change_masses(pore_frame(t, to));
+    if (trial) PetscCall(fluid_.update_pressures(pore_frame(t, to)));
   }
   PetscFunctionReturn(0);
 }
@@ -159,7 +159,7 @@ PetscErrorCode SoilMotion<dim, Phases>::accept(double t, const double *u, const 
     std::copy_n(reinterpret_cast<const Vec<dim> *>(v), grid_.node_count() * fields, velocity.begin());
   PetscCall(deform(t, displacement, accepted_));
   accepted_time_ = t;
-  conditions_.follow(displacement);
+  conditions_.add_work(displacement);
   Vec<dim> gravity = loading.gravity;
   for (double &g : gravity) g *= loading.ramp;
   work_.add(grid_, displacement, gravity, extra_mass(), loading.damping > 0);

@@ -118,9 +118,9 @@ PetscErrorCode SoilMotion<dim, Phases>::acceleration(double t, const double *u, 
     unbalanced = scratch_.data();
   }
   if constexpr (Phases::liquid)
-    PetscCall(fluid_.drive(pore_frame(t, state), pore_conditions_, force_.data(),
-                           reinterpret_cast<Vec<dim> *>(a) + grid_.node_count(),
-                           reinterpret_cast<const Vec<dim> *>(v)));
+    PetscCall(fluid_.find_accelerations(pore_frame(t, state), pore_conditions_, force_.data(),
+                                        reinterpret_cast<Vec<dim> *>(a) + grid_.node_count(),
+                                        reinterpret_cast<const Vec<dim> *>(v)));
   for (int i = 0; i < grid_.node_count(); ++i) {
     const double inverse = grid_.mass[i] > smallest_mass_ ? 1 / grid_.mass[i] : 0;  // a lighter node is carried along
     for (int d = 0; d < dim; ++d) {

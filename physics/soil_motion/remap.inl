@@ -53,7 +53,7 @@ void SoilMotion<dim, Phases>::refer_to_points(size_t b) {
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::update_pore_pressures(double t) {
   PetscFunctionBeginUser;
-  if constexpr (Phases::liquid) PetscCall(fluid_.store(pore_frame(t, accepted_)));
+  if constexpr (Phases::liquid) PetscCall(fluid_.update_pressures(pore_frame(t, accepted_)));
   PetscFunctionReturn(0);
 }
 
@@ -229,7 +229,7 @@ double SoilMotion<dim, Phases>::prepare_update(double t) {
         }
   }
   const int nodes = grid_.node_count();
-  if constexpr (Phases::liquid) fluid_.hand_over(nodes, now.data() + nodes, start.data() + nodes, share, update_);
+  if constexpr (Phases::liquid) fluid_.write_update(nodes, now.data() + nodes, start.data() + nodes, share, update_);
   return share;
 }
 
@@ -275,7 +275,7 @@ PetscErrorCode SoilMotion<dim, Phases>::update_particles_and_gather(double t, st
   });
   clear_grid();
   std::swap(grid_, next_grid_), std::swap(points_, next_points_);
-  if constexpr (Phases::liquid) fluid_.turn();
+  if constexpr (Phases::liquid) fluid_.swap_points();
   movers_ = &movers;
   PetscFunctionReturn(0);
 }

@@ -22,10 +22,12 @@ PetscErrorCode SoilMotion<dim, Phases>::apply_boundaries_and_drag(double t, doub
   PetscFunctionBeginUser;
   Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v);
   if constexpr (Phases::liquid)
-    fluid_.resist(gamma, pore_frame(t, accepted_), pore_conditions_, velocity, velocity + grid_.node_count());
+    fluid_.apply_drag_to_solid(gamma, pore_frame(t, accepted_), pore_conditions_, velocity,
+                               velocity + grid_.node_count());
   conditions_.resolve(loading.time_at(t), gamma, grid_, velocity, contact(t, gamma));
   if constexpr (Phases::liquid)
-    fluid_.follow(gamma, pore_frame(t, accepted_), pore_conditions_, velocity, velocity + grid_.node_count());
+    fluid_.apply_drag_to_fluids(gamma, pore_frame(t, accepted_), pore_conditions_, velocity,
+                                velocity + grid_.node_count());
   PetscFunctionReturn(0);
 }
 
@@ -36,10 +38,10 @@ PetscErrorCode SoilMotion<dim, Phases>::apply_drag(double t, double gamma, doubl
   if constexpr (Phases::liquid) {
     const int nodes = grid_.node_count();
     Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v), *supported = scratch_.data();
-    fluid_.resist(gamma, pore_frame(t, accepted_), pore_conditions_, velocity, velocity + nodes);
+    fluid_.apply_drag_to_solid(gamma, pore_frame(t, accepted_), pore_conditions_, velocity, velocity + nodes);
     std::copy_n(velocity, nodes, supported);
     conditions_.constrain(loading.time_at(t), grid_, supported, true);
-    fluid_.follow(gamma, pore_frame(t, accepted_), pore_conditions_, supported, velocity + nodes);
+    fluid_.apply_drag_to_fluids(gamma, pore_frame(t, accepted_), pore_conditions_, supported, velocity + nodes);
   }
   PetscFunctionReturn(0);
 }

@@ -173,7 +173,7 @@ RunRow<dim> Recorder<dim>::run_row() const {
     const auto &source = world.conditions.sources()[s];
     row.boundaries.push_back({source.name,
                               world.conditions.loads(static_cast<int>(s)),
-                              has_flow_stages(scene_) && concerns_water(source.kind),
+                              has_flow_stages(scene_) && source.kind.has_inflow(),
                               {},
                               0,
                               0});

@@ -23,7 +23,7 @@ World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &m
   check_bodies();
   check_boundaries(sources);
   require(conditions.setup(mesh, std::move(sources)));
-  conditions.hold(scene.stage.front().hold_loads);
+  conditions.use_stand_ins(scene.stage.front().hold_loads);
   seed_bodies();
   set_loading(scene.stage.front(), 0, Clock{});  // under which the first state is gathered
 }
@@ -47,9 +47,8 @@ std::vector<typename World<dim>::Source> World<dim>::read_sources() {
   std::vector<Source> sources;
   const bool apart = phases.prescribed && has_flow_stages(scene);
   for (const BoundarySource &b : scene.boundary) {
-    DeferredTable table = b.kind;
-    const Boundary kind = read_boundary(table);
-    const bool seeps = apart && concerns_water(kind) && !concerns_gas(kind);
+    const Boundary kind = read_boundary(b.kind);
+    const bool seeps = apart && kind.fluids_only() && !kind.needs_gas();
     (seeps ? seepage_sources : sources).push_back({b.name, b.group, kind});
   }
   return sources;
@@ -209,13 +208,13 @@ void World<dim>::set_loading(const Stage &stage, double stage_time, const Clock 
 template <int dim>
 PetscErrorCode World<dim>::fix_dashpots(bool fixed, double time) {
   PetscFunctionBeginUser;
-  if (fixed == conditions.held() || !conditions.has_dashpots()) PetscFunctionReturn(0);
+  if (fixed == conditions.uses_stand_ins() || !conditions.has_dashpots()) PetscFunctionReturn(0);
   if (motion->gathered()) PetscCall(release(time));
   if (!fixed) {
     PetscCall(motion->freeze_reactions(time));
     PetscCall(release(time));
   }
-  conditions.hold(fixed);
+  conditions.use_stand_ins(fixed);
   PetscFunctionReturn(0);
 }
 

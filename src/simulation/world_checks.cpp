@@ -53,13 +53,13 @@ void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
   for (const auto &source : sources) {
     const std::string path = "boundary." + source.name;
     for (const std::string &group : source.groups)
-      if (!mesh.has_group(group) && !(concerns_water(source.kind) && group == free_surface))
+      if (!mesh.has_group(group) && !(source.kind.fluids_only() && group == free_surface))
         scene.complain(path + ".group", "must name groups of facets; the mesh has no \"" + group + "\"; " +
                                             suggestion(group, mesh.group_names()));
-    if (concerns_water(source.kind) && !phases.liquid)
+    if (source.kind.fluids_only() && !phases.liquid)
       scene.complain(path, std::string("is a boundary of moving pore water, but phases = \"") + phases.name +
                                "\" has none; set phases = \"saturated\", \"unsaturated\" or \"three-phase\"");
-    if (concerns_gas(source.kind) && !phases.gas)
+    if (source.kind.needs_gas() && !phases.gas)
       scene.complain(path + ".kind", std::string("is a boundary of moving pore gas, but phases = \"") + phases.name +
                                          "\" has none; set phases = \"three-phase\"");
     if (quasi_static && source.kind.quasi_static == OnSoil::refused)

@@ -51,8 +51,8 @@ inline double into(double x, double low, double high) { return std::clamp(x, low
 /// normal. In this way a surface that lets no water in bears the suction, and a wall that supports the skeleton bears
 /// the weight of the water, theory (4.6a).
 template <int dim, class Phases>
-void PoreFluid<dim, Phases>::resist(double step, const Frame &frame, const PoreConditions<dim> &conditions,
-                                    Vec<dim> *solid, const Vec<dim> *fluid) const {
+void PoreFluid<dim, Phases>::apply_drag_to_solid(double step, const Frame &frame, const PoreConditions<dim> &conditions,
+                                                 Vec<dim> *solid, const Vec<dim> *fluid) const {
   const FilledGrid<dim> &grid = frame.grid;
   const int nodes = grid.node_count();
   for (int i = 0; i < nodes; ++i) {
@@ -106,8 +106,9 @@ double PoreFluid<dim, Phases>::thrust(const Vec<dim> &gravity, int i, const Vec<
 }
 
 template <int dim, class Phases>
-void PoreFluid<dim, Phases>::follow(double step, const Frame &frame, const PoreConditions<dim> &conditions,
-                                    const Vec<dim> *solid, Vec<dim> *fluid) const {
+void PoreFluid<dim, Phases>::apply_drag_to_fluids(double step, const Frame &frame,
+                                                  const PoreConditions<dim> &conditions, const Vec<dim> *solid,
+                                                  Vec<dim> *fluid) const {
   const int nodes = frame.grid.node_count();
   for (int i = 0; i < nodes; ++i) {
     NodalFluid at[fluids];

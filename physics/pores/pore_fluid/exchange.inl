@@ -59,8 +59,8 @@ PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<di
 }
 
 template <int dim, class Phases>
-PetscErrorCode PoreFluid<dim, Phases>::flow(const Frame &frame, const PoreConditions<dim> &conditions,
-                                            const Vec<dim> *u) {
+PetscErrorCode PoreFluid<dim, Phases>::find_divergence(const Frame &frame, const PoreConditions<dim> &conditions,
+                                                       const Vec<dim> *u) {
   PetscFunctionBeginUser;
   const FilledGrid<dim> &grid = frame.grid;
   const int nodes = grid.node_count(), cells = grid.cell_count();
@@ -99,7 +99,7 @@ PetscErrorCode PoreFluid<dim, Phases>::flow(const Frame &frame, const PoreCondit
 }
 
 template <int dim, class Phases>
-PetscErrorCode PoreFluid<dim, Phases>::smooth_flow(const Frame &frame, Array &volume_strain) {
+PetscErrorCode PoreFluid<dim, Phases>::smooth_divergence(const Frame &frame, Array &volume_strain) {
   PetscFunctionBeginUser;
   PetscCall(smooth<2>(
       frame, {volume_strain.data(), divergence_[0].data()}));  // gas moves by its own pressure, which is not smoothed
@@ -152,7 +152,7 @@ PetscErrorCode PoreFluid<dim, Phases>::share_pressure(const Frame &frame, Array 
 }
 
 template <int dim, class Phases>
-void PoreFluid<dim, Phases>::exchange(const Frame &frame) {
+void PoreFluid<dim, Phases>::change_masses(const Frame &frame) {
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const PorePoints &from = points_[b];
     PorePoints &to = frame.trial ? trial_[b] : points_[b];

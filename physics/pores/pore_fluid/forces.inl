@@ -34,8 +34,9 @@ double PoreFluid<dim, Phases>::conductivity_beyond(int node, const NodePores &at
 }
 
 template <int dim, class Phases>
-PetscErrorCode PoreFluid<dim, Phases>::drive(const Frame &frame, const PoreConditions<dim> &conditions, Vec<dim> *force,
-                                             Vec<dim> *acceleration, const Vec<dim> *velocity) {
+PetscErrorCode PoreFluid<dim, Phases>::find_accelerations(const Frame &frame, const PoreConditions<dim> &conditions,
+                                                          Vec<dim> *force, Vec<dim> *acceleration,
+                                                          const Vec<dim> *velocity) {
   PetscFunctionBeginUser;
   const std::vector<NodePores> &at = frame.trial ? trial_nodes_ : nodes_;
   const int nodes = frame.grid.node_count();

@@ -142,7 +142,7 @@ PetscErrorCode PoreFluid<dim, Phases>::smooth(const Frame &frame, const std::arr
 }
 
 template <int dim, class Phases>
-PetscErrorCode PoreFluid<dim, Phases>::store(const Frame &frame) {
+PetscErrorCode PoreFluid<dim, Phases>::update_pressures(const Frame &frame) {
   PetscFunctionBeginUser;
   const int nodes = frame.grid.node_count(), cells = frame.grid.cell_count();
   find_pressures(frame);

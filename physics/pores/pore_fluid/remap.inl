@@ -102,7 +102,7 @@ PetscErrorCode PoreFluid<dim, Phases>::gather(const Frame &frame, PoreConditions
       for (int d = 0; d < dim; ++d)
         velocity[a * nodes + i][d] = momentum[last] > 0 ? momentum[d] / momentum[last] : solid[i][d];
     }
-  PetscCall(store(frame));
+  PetscCall(update_pressures(frame));
   for (int i = 0; i < nodes; ++i) talus::store<dim>(surface_[i].data(), nodes_[i].geometry);
   if (conditions.open_water()) PetscCall(find_moment(frame));
   PetscCall(conditions.begin(grid, filling, surface_, moment_));
@@ -111,8 +111,8 @@ PetscErrorCode PoreFluid<dim, Phases>::gather(const Frame &frame, PoreConditions
 }
 
 template <int dim, class Phases>
-void PoreFluid<dim, Phases>::hand_over(int nodes, const Vec<dim> *velocity, const Vec<dim> *start, double flip,
-                                       NodalUpdate &update) const {
+void PoreFluid<dim, Phases>::write_update(int nodes, const Vec<dim> *velocity, const Vec<dim> *start, double flip,
+                                          NodalUpdate &update) const {
   for (int a = 0; a < fluids; ++a)
     for (int i = 0; i < nodes; ++i) {
       const int n = a * nodes + i;

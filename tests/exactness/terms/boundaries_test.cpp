@@ -96,9 +96,9 @@ void reactions_of_supports_stay_on() {
   Box<dim> box("", "[boundary.base]\nkind = \"non_reflecting\"\n");
   SoilMotion<dim, Dry> &motion = *box.soil.motion;
   Conditions<dim> &conditions = box.soil.conditions;
-  conditions.hold(true);
+  conditions.use_stand_ins(true);
   ASSERT_EQ(motion.freeze_reactions(0), 0);
-  conditions.hold(false);
+  conditions.use_stand_ins(false);
   std::vector<std::vector<int>> movers(1);
   ASSERT_EQ(motion.update_particles(0, movers), 0);
   Equations<dim> exact(box.soil);
