@@ -1,6 +1,6 @@
 #pragma once
-/// A motion of soil of its own, beside the time loop, for tests that drive it by hand: one dry body out of the text of
-/// a scene.
+/// A motion of soil of its own, beside the time loop, for tests that drive it by hand: one body out of the text of a
+/// scene. Drained soil is saturated.
 #include <gtest/gtest.h>
 
 #include "mesh_source.h"
@@ -9,7 +9,7 @@
 
 namespace talus {
 
-template <int dim>
+template <int dim, class Phases = Dry>
 struct Soil {
   Soil(const std::string &text, double relaxation_time)
       : scene(parse_scene(text, "soil")), file(PETSC_COMM_WORLD, scene) {
@@ -17,18 +17,24 @@ struct Soil {
     mesh =
         BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.path(), scene.transfer.patch_size, {{source.region[0], 5.}});
     if (source.particles_per_cell == 0) source.particles_per_cell = dim == 2 ? 3 : 4;
-    bodies.push_back(std::make_unique<Body<dim>>());
-    EXPECT_EQ(bodies[0]->create(mesh.comm(), source, read_law(source.law), false, 0, 0), 0);
-    seed<dim>(*bodies[0], mesh, 8, [&](const Vec<dim> &) { return source.density; });
-    EXPECT_EQ(bodies[0]->sort(mesh.cell_count()), 0);
     std::vector<typename Conditions<dim>::Source> sources;
     for (BoundarySource &b : scene.boundary)
       sources.push_back({b.name, b.group.empty() ? std::vector{b.name} : b.group, read_boundary(b.kind)});
     EXPECT_EQ(conditions.setup(mesh, std::move(sources)), 0);
+    SurfaceLoads<dim> &loads = conditions.surface_loads();
+    EXPECT_EQ(loads.share(mesh, std::vector<char>(mesh.cell_count(), 1)), 0);
+    bodies.push_back(std::make_unique<Body<dim>>());
+    EXPECT_EQ(bodies[0]->create(mesh.comm(), source, read_law(source.law), false, 0, loads.face_count()), 0);
+    const double density = source.density > 0
+                               ? source.density
+                               : (1 - source.porosity) * source.grain_density + source.porosity * scene.water.density;
+    seed<dim>(*bodies[0], mesh, 8, [&](const Vec<dim> &) { return density; });
+    loads.seed(*bodies[0], mesh);
+    EXPECT_EQ(bodies[0]->sort(mesh.cell_count()), 0);
     double mass = 0;
     for (int i = 0; i < particles().count; ++i) mass += particles().mass[i];
     MPI_Allreduce(MPI_IN_PLACE, &mass, 1, MPI_DOUBLE, MPI_SUM, mesh.comm());
-    motion = std::make_unique<SoilMotion<dim, Dry>>(
+    motion = std::make_unique<SoilMotion<dim, Phases>>(
         MotionParts<dim>{mesh, bodies, conditions, scene, relaxation_time, mass, 1000, 9.81});
     motion->loading.gravity[1] = scene.gravity[1];
   }
@@ -39,7 +45,7 @@ struct Soil {
   BackgroundMesh<dim> mesh;
   std::vector<std::unique_ptr<Body<dim>>> bodies;
   Conditions<dim> conditions;
-  std::unique_ptr<SoilMotion<dim, Dry>> motion;
+  std::unique_ptr<SoilMotion<dim, Phases>> motion;
 };
 
 }  // namespace talus

@@ -1,0 +1,86 @@
+// From particles to nodes and back: docs/theory (4.2), (4.9) to (4.12).
+#include "equations.h"
+
+namespace talus {
+namespace {
+
+template <int dim>
+using Nodes = typename Equations<dim>::Nodes;
+
+/// What is mapped back, and how nodes relax, with and without a time constant (4.9), (4.10).
+template <int dim>
+void velocities_are_mapped_back_and_relax() {
+  constexpr double step = 0.03, now = 0.07;
+  for (const double tau : {0., 0.2}) {
+    Box<dim> box("", "", tau);
+    Equations<dim> exact(box.soil);
+    SoilMotion<dim, Dry> &motion = *box.soil.motion;
+    ASSERT_EQ(motion.begin(0), 0);
+    expect_equal<dim>(box.from_motion({motion.velocity(), motion.velocity() + motion.size()}), exact.start, 1, "(4.2)");
+    const Nodes<dim> v = box.field(1, 7);
+    std::vector<double> relaxed = box.to_motion(v), mapped(relaxed.size());
+    ASSERT_EQ(motion.map_back(now, step, relaxed.data(), mapped.data()), 0);
+    const double a = tau > 0 ? std::exp(-(now + step) / tau) : 1, share = tau > 0 ? 1 - std::exp(-step / tau) : 0;
+    const Nodes<dim> Sv = exact.back_and_forth(v), Sv0 = exact.back_and_forth(exact.start);
+    Nodes<dim> w = Sv, left = v;
+    for (int i = 0; i < exact.nodes; ++i) w[i] += a * (exact.start[i] - Sv0[i]), left[i] -= share * (v[i] - Sv[i]);
+    expect_equal<dim>(box.from_motion(mapped), w, 1, "(4.9)");
+    expect_equal<dim>(box.from_motion(relaxed), left, 1, "(4.10)");
+    // the rates that other integrators see
+    std::vector<double> du(relaxed.size()), dv(relaxed.size()), at = box.to_motion(v), bare(relaxed.size());
+    ASSERT_EQ(motion.acceleration(now, nullptr, at.data(), bare.data()), 0);
+    ASSERT_EQ(motion.rates(now, nullptr, at.data(), du.data(), dv.data()), 0);
+    const double earlier = tau > 0 ? std::exp(-now / tau) : 1;
+    Nodes<dim> rate = Sv, change = box.from_motion(bare);
+    for (int i = 0; i < exact.nodes; ++i) {
+      rate[i] += earlier * (exact.start[i] - Sv0[i]);
+      if (tau > 0) change[i] -= (v[i] - Sv[i]) / tau;
+    }
+    expect_equal<dim>(box.from_motion(du), rate, 1, "rate of places");
+    expect_equal<dim>(box.from_motion(dv), change, 100, "rate of velocities");
+    double seen = 0;
+    for (int p = 0; p < exact.particles.count; ++p) seen += exact.particles.mass[p] * exact.at(p, v).squaredNorm();
+    EXPECT_NEAR(motion.seen_square(at.data()), seen, 1e-11 * seen);
+  }
+}
+TALUS_IN_2D_AND_3D(Transfer, velocities_are_mapped_back_and_relax)
+
+/// What particles take from the nodes at a remap (4.11), (4.12), and what results show before it (4.10a).
+template <int dim>
+void particles_take_the_change_of_the_nodes() {
+  constexpr double tau = 0.2, time = 0.05;
+  for (const auto &[transfer, kept] : {std::pair{"", std::exp(-time / tau)},
+                                       {"pic_fraction = 0.25", 0.75 * std::exp(-time / tau)},
+                                       {"velocity = \"pic\"", 0.}}) {
+    Box<dim> box("", std::string("[transfer]\n") + transfer + "\n", tau);
+    Equations<dim> exact(box.soil);
+    SoilMotion<dim, Dry> &motion = *box.soil.motion;
+    ASSERT_EQ(motion.begin(0), 0);
+    const Nodes<dim> v = box.field(1, 8), u = box.field(1e-3, 9);
+    const std::vector<double> velocity = box.to_motion(v), way = box.to_motion(u);
+    ASSERT_EQ(motion.accept(time, way.data(), velocity.data()), 0);
+    Nodes<dim> shown, wanted, places, taken, gone, shown_places;
+    const double a = std::exp(-time / tau);
+    for (int p = 0; p < exact.particles.count; ++p) {
+      Vec<dim> x, s;
+      motion.present(*box.soil.bodies[0], p, &x, &s);
+      shown.push_back(map<dim>(s)), shown_places.push_back(map<dim>(x));
+      const ColumnVector<dim> own = exact.velocity[p] - exact.at(p, exact.start);
+      wanted.push_back(exact.at(p, v) + a * own), taken.push_back(exact.at(p, v) + kept * own);
+      places.push_back(exact.position[p] + exact.at(p, u));
+    }
+    expect_equal<dim>(shown, wanted, 1, "(4.10a)");
+    expect_equal<dim>(shown_places, places, 1, "places shown");
+    std::vector<std::vector<int>> movers(1);
+    ASSERT_EQ(motion.release(time, movers), 0);
+    Nodes<dim> found;
+    for (int p = 0; p < exact.particles.count; ++p)
+      found.push_back(map<dim>(exact.particles.velocity[p])), gone.push_back(map<dim>(exact.particles.position[p]));
+    expect_equal<dim>(found, taken, 1, "(4.11)");
+    expect_equal<dim>(gone, places, 1, "(4.12)");
+  }
+}
+TALUS_IN_2D_AND_3D(Transfer, particles_take_the_change_of_the_nodes)
+
+}  // namespace
+}  // namespace talus
