@@ -150,7 +150,9 @@ void friction_follows_the_normal_impulses_of_the_last_moments() {
     if (box.on("base", i)) v[i] *= 1e-4, v[i][1] = -3;
   const Nodes<dim> stuck = after_boundaries(box, step, v);
   for (int i = 0; i < exact.nodes; ++i)
-    if (box.on("base", i)) EXPECT_LT(stuck[i].norm(), 1e-14);
+    if (box.on("base", i)) {
+      EXPECT_LT(stuck[i].norm(), 1e-14);
+    }
 }
 TALUS_IN_2D_AND_3D(Boundaries, friction_follows_the_normal_impulses_of_the_last_moments)
 

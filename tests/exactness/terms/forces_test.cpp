@@ -96,7 +96,9 @@ void loads_act_on_the_face() {
     for (int i = 0; i < exact.nodes; ++i) {
       force[i] *= exact.mass[i], sum += force[i];
       for (int k = 0; k < 2; ++k) moment[k] += exact.place[i][0] * force[i][k];
-      if (!box.on("top", i) && exact.place[i][1] < 0.3) EXPECT_LT(force[i].norm(), 1e-9) << "far from the face";
+      if (!box.on("top", i) && exact.place[i][1] < 0.3) {
+        EXPECT_LT(force[i].norm(), 1e-9) << "far from the face";
+      }
     }
     const bool traction = load[0] == 't';
     const double along = traction ? 300 : 0, across = traction ? 500 : -700;
