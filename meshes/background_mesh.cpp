@@ -28,7 +28,7 @@ bool is_one_element_slice(MPI_Comm comm, const std::vector<Vec<dim>> &position) 
 
 /// Sizes that lock neither nor soften (docs/theory, section on locking).
 template <int dim>
-int default_patch_size(bool slice) {
+int patch_size(bool slice) {
   return dim == 2 ? 2 : slice ? 4 : 8;
 }
 
@@ -140,7 +140,7 @@ PetscErrorCode cell_numbers(DM plex, std::vector<PetscInt> &number) {
 }  // namespace
 
 template <int dim>
-BackgroundMesh<dim> BackgroundMesh<dim>::read(MPI_Comm comm, const std::string &file, int patch_size,
+BackgroundMesh<dim> BackgroundMesh<dim>::read(MPI_Comm comm, const std::string &file,
                                               const std::vector<std::pair<std::string, double>> &region_weight) {
   int rank;
   MPI_Comm_rank(comm, &rank);
@@ -159,8 +159,8 @@ BackgroundMesh<dim> BackgroundMesh<dim>::read(MPI_Comm comm, const std::string &
   require(read_regions(mesh.plex_, regions));
   agree(comm, complaint_about_cells(file, cells, regions, Names::required));
 
-  if (patch_size == 0) patch_size = default_patch_size<dim>(is_one_element_slice<dim>(comm, cells.position));
-  const auto patch = make_patches<dim>(cells.node, cells.neighbour, regions.combination, patch_size);
+  const int size = patch_size<dim>(is_one_element_slice<dim>(comm, cells.position));
+  const auto patch = make_patches<dim>(cells.node, cells.neighbour, regions.combination, size);
   std::vector<PetscInt> number, patch_of;
   require(distribute_patches(mesh.plex_, cells, patch, weights_of(regions, region_weight), number, patch_of));
   require(mesh.flatten(cells, number, patch_of));
@@ -168,7 +168,7 @@ BackgroundMesh<dim> BackgroundMesh<dim>::read(MPI_Comm comm, const std::string &
 }
 
 template <int dim>
-BackgroundMesh<dim> BackgroundMesh<dim>::adopt(DM plex, int patch_size) {
+BackgroundMesh<dim> BackgroundMesh<dim>::adopt(DM plex) {
   const MPI_Comm comm = PetscObjectComm((PetscObject)plex);
   agree(comm, complaint_about_plex(plex, dim));
   BackgroundMesh mesh;
@@ -180,8 +180,8 @@ BackgroundMesh<dim> BackgroundMesh<dim>::adopt(DM plex, int patch_size) {
   require(read_regions(plex, regions));
   agree(comm, complaint_about_cells("the DMPlex of the host program", cells, regions, Names::optional));
 
-  if (patch_size == 0) patch_size = default_patch_size<dim>(is_one_element_slice<dim>(comm, cells.position));
-  const auto patch = make_patches<dim>(cells.node, cells.neighbour, regions.combination, patch_size);
+  const int size = patch_size<dim>(is_one_element_slice<dim>(comm, cells.position));
+  const auto patch = make_patches<dim>(cells.node, cells.neighbour, regions.combination, size);
   std::vector<PetscInt> number;
   require(cell_numbers(plex, number));
   require(mesh.flatten(cells, number, std::vector<PetscInt>(patch.begin(), patch.end())));

@@ -45,15 +45,15 @@ class BackgroundMesh {
  public:
   /// Reads a Gmsh file on rank 0, checks it, cuts patches, distributes it. `region_weight` gives the weight of a cell
   /// from the names of its regions (particles it will hold plus one; the largest counts, 1 without any); patches of
-  /// `patch_size` cells (0: the default of the dimension and of slices) stay on one rank and do not depend on the
-  /// number of ranks. Collective. Throws std::invalid_argument (the same on all ranks) for a file that cannot be read,
-  /// a wrong dimension, cells of zero volume or that overlap, and cells in no named group.
-  static BackgroundMesh read(MPI_Comm comm, const std::string &file, int patch_size,
+  /// cells, theory 4.5, stay on one rank and do not depend on the number of ranks. Collective. Throws
+  /// std::invalid_argument (the same on all ranks) for a file that cannot be read, a wrong dimension, cells of zero
+  /// volume or that overlap, and cells in no named group.
+  static BackgroundMesh read(MPI_Comm comm, const std::string &file,
                              const std::vector<std::pair<std::string, double>> &region_weight);
   /// Takes a distributed DMPlex of a host program (a reference is kept). Labels with a physical name are regions and
   /// groups; patches are cut within each rank, `global_cell` is DMPlex's cell numbering. Collective; throws as `read`
   /// does.
-  static BackgroundMesh adopt(DM plex, int patch_size);
+  static BackgroundMesh adopt(DM plex);
 
   int cell_count() const { return static_cast<int>(cells.size()); }
   int node_count() const { return static_cast<int>(position.size()); }

@@ -105,7 +105,7 @@ class SoilMotion final : public AnySoilMotion<dim> {
   PoreReport pore_report(const Body<dim> &body, int particle) const requires Phases::liquid;
   PetscErrorCode start_pores(bool fill) requires Phases::liquid;
   // particles to nodes and back
-  template <bool averaged, bool apic>
+  template <bool averaged>
   void gather();
   PetscErrorCode finish_gather(double t);
   void refer_to_points(size_t body);
@@ -117,7 +117,6 @@ class SoilMotion final : public AnySoilMotion<dim> {
     return {.grid = grid_,
             .nodes = update_,
             .flip = share,
-            .affine = affine_.data(),
             .points = points_[body],
             .pores = pores,
             .change = change_.data()};
@@ -182,7 +181,6 @@ class SoilMotion final : public AnySoilMotion<dim> {
   // remap
   const std::vector<std::vector<int>> *movers_ = nullptr;  ///< set while all particles but these are gathered
   NodalUpdate update_;
-  std::vector<double> affine_;  ///< [cell][dim * dim] velocity gradients of APIC [1/s]
   std::vector<double> change_;  ///< Lagrangian::change
   // fluids that move
   [[no_unique_address]] If<Phases::liquid, PoreFluid<dim, Phases>> fluid_;

@@ -6,19 +6,15 @@
 
 namespace talus {
 
-/// Calls f<averaged, apic>() as the scene's transfer asks for.
+/// Calls f<averaged>() as the scene's transfer asks for.
 template <class F>
 void with_transfer(const Transfer &transfer, F &&f) {
-  const bool apic = transfer.velocity == Velocity::apic;
-  if (transfer.average_stress)
-    apic ? f.template operator()<true, true>() : f.template operator()<true, false>();
-  else
-    apic ? f.template operator()<false, true>() : f.template operator()<false, false>();
+  transfer.average_stress ? f.template operator()<true>() : f.template operator()<false>();
 }
 
 /// Adds the particles, or those that are still missing, to the grid.
 template <int dim, class Phases>
-template <bool averaged, bool apic>
+template <bool averaged>
 void SoilMotion<dim, Phases>::gather() {
   for (size_t b = 0; b < bodies_.size(); ++b) {
     PointSet &points = points_[b];
@@ -26,8 +22,8 @@ void SoilMotion<dim, Phases>::gather() {
     if (!averaged) points.own_cell.resize(std::max<size_t>(points.own_cell.size(), p.count));
     Pores<dim> pores;
     if constexpr (Phases::liquid) pores = fluid_.pores(b);
-    to_nodes<dim, averaged, apic, fluids>(*bodies_[b], grid_, velocities_.momentum.data(), points, pores,
-                                          movers_ ? &(*movers_)[b] : nullptr);
+    to_nodes<dim, averaged, fluids>(*bodies_[b], grid_, velocities_.momentum.data(), points, pores,
+                                    movers_ ? &(*movers_)[b] : nullptr);
     if (!averaged) points.count = p.count;
     refer_to_points(b);
   }
@@ -63,7 +59,7 @@ PetscErrorCode SoilMotion<dim, Phases>::begin(double t) {
   if constexpr (Phases::liquid) fluid_.prescribed = !loading.pore_flow, fluid_.prescribed_ramp = loading.ramp;
   if (gathered_) PetscFunctionReturn(0);
   if (!movers_) std::fill(velocities_.momentum.begin(), velocities_.momentum.end(), Vec<dim>{});
-  with_transfer(transfer_, [&]<bool averaged, bool apic>() { gather<averaged, apic>(); });
+  with_transfer(transfer_, [&]<bool averaged>() { gather<averaged>(); });
   grid_.complete();
   PetscCall(finish_gather(t));
   velocities_.remap_time = t, velocities_.own_share = 1;
@@ -173,7 +169,7 @@ void SoilMotion<dim, Phases>::measure_impedance() {
 template <int dim, class Phases>
 void SoilMotion<dim, Phases>::set_weights(const std::vector<double> &nodal) {
   constexpr int width = dim + 2;
-  constexpr double ramp_start = dim == 2 ? 0.7 : 0.6, ramp_length = 0.2;
+  constexpr double ramp_start = dim == 2 ? 0.7 : 0.6, ramp_length = 0.2, full = 0.9;
   for (int c = 0; c < grid_.cell_count(); ++c) {
     const auto &node = grid_.shape[c].node;
     double volume = 0, filling = 1e300;
@@ -185,7 +181,7 @@ void SoilMotion<dim, Phases>::set_weights(const std::vector<double> &nodal) {
         blend = std::clamp((filling - ramp_start) / ramp_length, 0., 1.);
         break;
       case Integration::mixed:
-        blend = filling > 0.5 && volume > transfer_.filling * grid_.shape[c].volume;
+        blend = filling > 0.5 && volume > full * grid_.shape[c].volume;
         break;
       case Integration::cell:
         blend = filling > 0.5;
@@ -216,18 +212,6 @@ double SoilMotion<dim, Phases>::prepare_update(double t) {
       update_.displacement[i][d] = x[d] - X[d];
     }
   }
-  if (transfer_.velocity == Velocity::apic) {
-    affine_.resize(static_cast<size_t>(mesh_.cell_count()) * dim * dim);
-    for (int c = 0; c < grid_.cell_count(); ++c)
-      for (int i = 0; i < dim; ++i)
-        for (int j = 0; j < dim; ++j) {
-          double g = 0;
-          for (int k = 0; k < dim; ++k)
-            g += (now[grid_.shape[c].node[k + 1]][i] - now[grid_.shape[c].node[0]][i]) *
-                 mesh_.cells[grid_.mesh_cell[c]].gradient[k][j];
-          affine_[(c * dim + i) * dim + j] = g;
-        }
-  }
   const int nodes = grid_.node_count();
   if constexpr (Phases::liquid) fluid_.write_update(nodes, now.data() + nodes, start.data() + nodes, share, update_);
   return share;
@@ -248,11 +232,11 @@ PetscErrorCode SoilMotion<dim, Phases>::update_particles(double t, std::vector<s
   PetscFunctionBeginUser;
   PetscCall(conditions_.surface_loads().end(grid_, accepted_.weight));
   const double share = prepare_update(t);
-  with_transfer(transfer_, [&]<bool averaged, bool apic>() {
+  with_transfer(transfer_, [&]<bool averaged>() {
     for (size_t b = 0; b < bodies_.size(); ++b) {
       Pores<dim> pores;
       if constexpr (Phases::liquid) pores = fluid_.pores(b);
-      to_particles<dim, averaged, apic, fluids>(*bodies_[b], end_of_part(b, share, pores), movers[b]);
+      to_particles<dim, averaged, fluids>(*bodies_[b], end_of_part(b, share, pores), movers[b]);
     }
   });
   clear_grid();
@@ -265,12 +249,12 @@ PetscErrorCode SoilMotion<dim, Phases>::update_particles_and_gather(double t, st
   PetscCall(conditions_.surface_loads().end(grid_, accepted_.weight));
   const double share = prepare_update(t);
   std::fill(velocities_.momentum.begin(), velocities_.momentum.end(), Vec<dim>{});
-  with_transfer(transfer_, [&]<bool averaged, bool apic>() {
+  with_transfer(transfer_, [&]<bool averaged>() {
     for (size_t b = 0; b < bodies_.size(); ++b) {
       Pores<dim> pores, next;
       if constexpr (Phases::liquid) pores = fluid_.pores(b), next = fluid_.next_pores(b);
-      to_next_nodes<dim, averaged, apic, fluids>(*bodies_[b], end_of_part(b, share, pores), next_grid_,
-                                                 velocities_.momentum.data(), next_points_[b], next, movers[b]);
+      to_next_nodes<dim, averaged, fluids>(*bodies_[b], end_of_part(b, share, pores), next_grid_,
+                                           velocities_.momentum.data(), next_points_[b], next, movers[b]);
     }
   });
   clear_grid();

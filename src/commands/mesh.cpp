@@ -50,7 +50,7 @@ std::vector<std::string> options_of(const MeshArguments &a) {
 
 template <int dim>
 void report_step(const MeshArguments &arguments, const LinearElastic &soil, double density) {
-  const auto mesh = BackgroundMesh<dim>::read(PETSC_COMM_SELF, arguments.file, 0, {});
+  const auto mesh = BackgroundMesh<dim>::read(PETSC_COMM_SELF, arguments.file, {});
   const Law law = soil;
   CriticalStep<dim> critical(mesh, law, density);
   int slowest = 0;

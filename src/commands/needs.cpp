@@ -279,9 +279,6 @@ class Adviser {
     if (t.remap_interval == 0)
       say("A remap in every step costs twice the time or more and adds cell-crossing noise; transfer.remap_interval = "
           "0.1 is the default.");
-    if (t.velocity == Velocity::apic)
-      say("APIC on simplices was unstable in every run with a free surface; use it only where soil fills its cells and "
-          "stays in them.");
     if (t.integration == Integration::particle || t.integration == Integration::mixed)
       say("Integration by particle volumes was four to nine times less accurate than \"blended\" where particles cross "
           "cells.");

@@ -16,7 +16,7 @@ constexpr const char *fluid_mass[] = {"liquid_mass", "gas_mass"},
 constexpr int spare = 64;  // particles; small, because each removal from a swarm zeroes all its spare memory
 
 template <int dim>
-std::vector<FieldSpec> field_specs(int history_count, bool affine, int fluids, int faces) {
+std::vector<FieldSpec> field_specs(int history_count, int fluids, int faces) {
   std::vector<FieldSpec> specs{{"position", dim, PETSC_DOUBLE},
                                {"velocity", dim, PETSC_DOUBLE},
                                {"reference", dim, PETSC_DOUBLE},
@@ -27,7 +27,6 @@ std::vector<FieldSpec> field_specs(int history_count, bool affine, int fluids, i
                                {"cell", 1, PETSC_INT},
                                {"id", 1, PETSC_INT}};
   if (history_count) specs.push_back({"history", history_count, PETSC_DOUBLE});
-  if (affine) specs.push_back({"affine", dim * dim, PETSC_DOUBLE});
   for (int a = 0; a < fluids; ++a)
     specs.push_back({fluid_mass[a], 1, PETSC_DOUBLE}), specs.push_back({fluid_velocity[a], dim, PETSC_DOUBLE});
   if (faces)
@@ -50,10 +49,9 @@ bool dilates(const Law &law) {
 }  // namespace
 
 template <int dim>
-PetscErrorCode Body<dim>::create(MPI_Comm comm, const BodySource &source, Law law, bool affine, int fluids, int faces) {
+PetscErrorCode Body<dim>::create(MPI_Comm comm, const BodySource &source, Law law, int fluids, int faces) {
   PetscFunctionBeginUser;
-  source_ = &source, law_ = std::move(law), history_count_ = history_size(law_), affine_ = affine, fluids_ = fluids,
-  face_count_ = faces;
+  source_ = &source, law_ = std::move(law), history_count_ = history_size(law_), fluids_ = fluids, face_count_ = faces;
   // where fluids move pressure follows volume: a cap would pump it up, pores.md section 4
   const bool capped = source.volume_cap > 0 || (source.volume_cap < 0 && fluids == 0 && cohesionless(law_));
   volume_cap_ = !capped ? std::numeric_limits<double>::infinity() : source.volume_cap > 0 ? source.volume_cap : 1;
@@ -64,7 +62,7 @@ PetscErrorCode Body<dim>::create(MPI_Comm comm, const BodySource &source, Law la
   PetscCall(DMSetDimension(swarm_, dim));
   PetscCall(DMSwarmSetType(swarm_, DMSWARM_BASIC));
   PetscCall(DMSwarmInitializeFieldRegister(swarm_));
-  for (const FieldSpec &f : field_specs<dim>(history_count_, affine, fluids, faces))
+  for (const FieldSpec &f : field_specs<dim>(history_count_, fluids, faces))
     PetscCall(DMSwarmRegisterPetscDatatypeField(swarm_, f.name, f.components, f.type));
   PetscCall(DMSwarmFinalizeFieldRegister(swarm_));
   PetscFunctionReturn(0);
@@ -97,9 +95,8 @@ PetscErrorCode Body<dim>::borrow() {
   PetscCall(take("stress", arrays_.stress));
   PetscCall(take("cell", arrays_.cell));
   PetscCall(take("id", arrays_.id));
-  arrays_.history = arrays_.affine = nullptr, arrays_.surface = nullptr;
+  arrays_.history = nullptr, arrays_.surface = nullptr;
   if (history_count_) PetscCall(take("history", arrays_.history));
-  if (affine_) PetscCall(take("affine", arrays_.affine));
   for (int a = 0; a < 2; ++a) {
     arrays_.fluid_mass[a] = nullptr, arrays_.fluid_velocity[a] = nullptr;
     if (a >= fluids_) continue;
@@ -115,7 +112,7 @@ template <int dim>
 PetscErrorCode Body<dim>::give_back() {
   PetscFunctionBeginUser;
   if (!borrowed_) PetscFunctionReturn(0);
-  for (const FieldSpec &f : field_specs<dim>(history_count_, affine_, fluids_, face_count_)) {
+  for (const FieldSpec &f : field_specs<dim>(history_count_, fluids_, face_count_)) {
     void *array = nullptr;
     PetscCall(DMSwarmRestoreField(swarm_, f.name, nullptr, nullptr, &array));
   }
@@ -146,7 +143,6 @@ PetscErrorCode Body<dim>::sort(int cell_count) {
   permute(arrays_.initial_volume, sizeof(double));
   permute(arrays_.stress, sizeof(double) * stress_size<dim>);
   permute(arrays_.history, sizeof(double) * history_count_);
-  permute(arrays_.affine, sizeof(double) * dim * dim);
   for (int a = 0; a < fluids_; ++a)
     permute(arrays_.fluid_mass[a], sizeof(double)), permute(arrays_.fluid_velocity[a], sizeof(Vec<dim>));
   permute(arrays_.surface, sizeof(SurfacePiece<dim>) * face_count_);
@@ -182,7 +178,7 @@ PetscErrorCode Body<dim>::serialize(Archive &archive) {
   archive.serialize("particles", count);
   if (archive.reading()) PetscCall(resize(count));
   PetscCall(give_back());
-  for (const FieldSpec &f : field_specs<dim>(history_count_, affine_, fluids_, face_count_)) {
+  for (const FieldSpec &f : field_specs<dim>(history_count_, fluids_, face_count_)) {
     void *values;
     PetscCall(DMSwarmGetField(swarm_, f.name, nullptr, nullptr, &values));
     const size_t size = f.type == PETSC_INT ? sizeof(PetscInt) : sizeof(double);

@@ -40,7 +40,6 @@ struct ParticleArrays {
   double *initial_volume;  ///< V_p0 [m3]
   double *stress;          ///< [stress_size] Cauchy effective stress [Pa]
   double *history;         ///< [history_size(law)] internal variables of the law
-  double *affine;          ///< [dim * dim] velocity gradient carried by APIC [1/s]; null otherwise
   double *fluid_mass[2];   ///< of liquid and gas in the pores [kg]; null where the phase model has none
   Vec<dim> *fluid_velocity[2];  ///< their velocities [m/s]; null likewise
   SurfacePiece<dim> *surface;   ///< [loaded faces] pieces of them; null when the scene has none
@@ -51,9 +50,8 @@ struct ParticleArrays {
 template <int dim>
 class Body {
  public:
-  /// Registers the fields; `affine` adds the velocity gradient of APIC; `fluids` 1 the liquid, 2 liquid and gas;
-  /// `faces` is the number of loaded faces.
-  PetscErrorCode create(MPI_Comm comm, const BodySource &source, Law law, bool affine, int fluids, int faces);
+  /// Registers the fields; `fluids` is 0, 1 (the liquid) or 2 (liquid and gas), `faces` the number of loaded faces.
+  PetscErrorCode create(MPI_Comm comm, const BodySource &source, Law law, int fluids, int faces);
   /// Allocates `count` particles. Their fields have no values yet.
   PetscErrorCode resize(PetscInt count);
 
@@ -88,7 +86,7 @@ class Body {
   Law law_;
   int history_count_ = 0, expansion_field_ = -1, fluids_ = 0, face_count_ = 0;
   double volume_cap_ = 0;
-  bool affine_ = false, borrowed_ = false;
+  bool borrowed_ = false;
   Dm swarm_;
   ParticleArrays<dim> arrays_;
   std::vector<int> start_, order_;

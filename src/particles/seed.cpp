@@ -155,18 +155,6 @@ void seed(Body<dim> &body, const BackgroundMesh<dim> &mesh, int id_stride,
       for (int s = 0; s < stress_size<dim>; ++s)
         p.stress[i * stress_size<dim> + s] = source.stress.empty() ? 0 : value<dim>(source.stress[s], x);
       for (int h = 0; h < body.history_count(); ++h) p.history[i * body.history_count() + h] = 0;
-      if (p.affine) {
-        const double h = 1e-5 * mesh.mean_edge[mesh.cells[cell].node[0]];
-        for (int d = 0; d < dim; ++d)
-          for (int e = 0; e < dim; ++e) {
-            Vec<dim> a = x, b = x;
-            a[e] -= h, b[e] += h;
-            p.affine[(i * dim + d) * dim + e] =
-                source.velocity.empty()
-                    ? 0
-                    : (value<dim>(source.velocity[d], b) - value<dim>(source.velocity[d], a)) / (2 * h);
-          }
-      }
       if (!source.displacement.empty()) {
         p.volume[i] *=
             displacement_gradient<dim>(source.displacement, x, 1e-5 * mesh.mean_edge[mesh.cells[cell].node[0]])

@@ -315,7 +315,7 @@ struct Stage {
   }
 };
 
-enum class Velocity { flip, pic, apic };
+enum class Velocity { flip, pic };
 enum class Integration { blended, particle, mixed, cell };
 enum class Locking { patches, none, nodal };
 enum class PoreSmoothing { nodal, none };
@@ -327,15 +327,13 @@ struct Transfer {
       400;  ///< FLIP relaxes to PIC with this time constant, in units of smallest altitude over wave speed; 0: never
   double pic_fraction = 0;  ///< PIC share per remap, beside the relaxation [-]
   Integration integration = Integration::blended;
-  double filling = 0.9;        ///< mixed: a cell filled beyond this counts as full [-]
   bool average_stress = true;  ///< one stress per cell and body, averaged at each remap
   Locking locking = Locking::patches;
-  int patch_size = 0;  ///< cells; 0: 2 triangles, 8 tetrahedra, 4 in a one-element slice
   PoreSmoothing pore_smoothing = PoreSmoothing::nodal;  ///< against the noise of equal-order elements in saturated soil
   double remap_interval = 0.1;  ///< remap when a node has moved this share of its mean edge; 0: every step
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.choice("velocity", velocity, {{"flip", Velocity::flip}, {"pic", Velocity::pic}, {"apic", Velocity::apic}},
+    v.choice("velocity", velocity, {{"flip", Velocity::flip}, {"pic", Velocity::pic}},
              "how particles take their velocity from the nodes");
     v.number(
         "relaxation", relaxation, one, Range{0, 1e9},
@@ -347,12 +345,9 @@ struct Transfer {
               {"mixed", Integration::mixed},
               {"cell", Integration::cell}},
              "integration volume of a cell");
-    v.number("filling", filling, one, Range{0, 1}, "mixed integration: filling above which a cell counts as full");
     v.flag("average_stress", average_stress, "one stress per cell and body, averaged at each remap");
     v.choice("locking", locking, {{"patches", Locking::patches}, {"none", Locking::none}, {"nodal", Locking::nodal}},
              "cure of volumetric locking");
-    v.integer("patch_size", patch_size, Range{0, 64},
-              "cells per patch; 0: 2 triangles, 8 tetrahedra, 4 tetrahedra in a one-element slice");
     v.choice("pore_smoothing", pore_smoothing, {{"nodal", PoreSmoothing::nodal}, {"none", PoreSmoothing::none}},
              "smoothing of pore pressures and fluid volumes of saturated cells through their nodes");
     v.number("remap_interval", remap_interval, one, Range{0, 0.3},

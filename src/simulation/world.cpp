@@ -60,10 +60,10 @@ void World<dim>::read_mesh(DM plex, const std::string &mesh_file) {
   for (const BodySource &body : scene.body)
     for (const std::string &region : body.region) weights.emplace_back(region, particles_per_cell<dim>(body) + 1);
   if (plex)
-    mesh = BackgroundMesh<dim>::adopt(plex, scene.transfer.patch_size);
+    mesh = BackgroundMesh<dim>::adopt(plex);
   else
     try {
-      mesh = BackgroundMesh<dim>::read(comm, mesh_file, scene.transfer.patch_size, weights);
+      mesh = BackgroundMesh<dim>::read(comm, mesh_file, weights);
     } catch (const std::invalid_argument &error) {
       scene.complain(scene.mesh.file.empty() ? "mesh.section" : "mesh.file",
                      std::string("cannot serve: ") + error.what());
@@ -107,8 +107,7 @@ void World<dim>::seed_bodies() {
     const BodySource &source = scene.body[b];
     bodies.push_back(std::make_unique<Body<dim>>());
     Body<dim> &body = *bodies.back();
-    require(body.create(comm, source, laws[b], scene.transfer.velocity == Velocity::apic, phases.fluids(),
-                        loads.face_count()));
+    require(body.create(comm, source, laws[b], phases.fluids(), loads.face_count()));
     seed<dim>(body, mesh, stride, [&](const Vec<dim> &x) { return soil_density(source, x, 0); });
     loads.seed(body, mesh);
     double sums[2] = {static_cast<double>(body.particles().count), 0}, totals[2];

@@ -14,13 +14,11 @@ inline constexpr int unrolled_history = 4;
 /// in registers.
 inline constexpr int run_part = 32;
 
-/// Instantiates `one(dim, averaged, apic, fluids)` for all that scenes may ask for.
+/// Instantiates `one(dim, averaged, fluids)` for all that scenes may ask for.
 #define TALUS_EACH_TRANSFER(one) TALUS_EACH_PHASES(one, 2) TALUS_EACH_PHASES(one, 3)
 #define TALUS_EACH_PHASES(one, dim) \
   TALUS_EACH_KIND(one, dim, 0) TALUS_EACH_KIND(one, dim, 1) TALUS_EACH_KIND(one, dim, 2)
-#define TALUS_EACH_KIND(one, dim, fluids)                                                  \
-  one(dim, true, true, fluids) one(dim, true, false, fluids) one(dim, false, true, fluids) \
-      one(dim, false, false, fluids)
+#define TALUS_EACH_KIND(one, dim, fluids) one(dim, true, fluids) one(dim, false, fluids)
 
 /// Changes of the stress points that their particles take over, with averaged stress: factor of the volume, contents of
 /// the pores [kg/m3], gains of history. They stand side by side, because the sweep over particles already reads and
@@ -37,7 +35,7 @@ void collect_changes(const PointSet &points, const Pores<dim> &pores, int histor
 }
 
 /// Updates particles of one cell by what the nodes received since the last remap.
-template <int dim, bool averaged, bool apic, int fluids>
+template <int dim, bool averaged, int fluids>
 class RunFromNodes {
  public:
   static constexpr int vertices = dim + 1, components = stress_size<dim>;
@@ -55,7 +53,6 @@ class RunFromNodes {
 #pragma GCC unroll 2
       for (int a = 0; a < fluids; ++a) fluid_velocity_[a][k] = from.nodes.fluid[a][from.grid.shape[cell].node[k]];
     }
-    if constexpr (apic) affine_ = &from.affine[cell * dim * dim];
     for (int a = 0; a < fluids; ++a) point_mass_[a] = from.pores.mass[a];
     if constexpr (averaged) {
       const int point = from.points.of_cell[mesh_cell], count = body.history_count();
@@ -102,8 +99,6 @@ class RunFromNodes {
       if (body_.capped())
         p.volume[i] = std::min(p.volume[i], body_.volume_limit(p.initial_volume[i], p.history + i * count));
     }
-    if constexpr (apic)
-      for (int k = 0; k < dim * dim; ++k) p.affine[i * dim * dim + k] = affine_[k];
     return {coordinates(x), pores};
   }
   /// Values of the history that `move` leaves for later, of particles first to last - 1.
@@ -133,12 +128,12 @@ class RunFromNodes {
   const double over_density_;
   const double *point_mass_[fluids ? fluids : 1]{};
   Quad velocity_[vertices], displacement_[vertices], fluid_velocity_[fluids ? fluids : 1][vertices];
-  const double *affine_ = nullptr, *gain_ = nullptr;
+  const double *gain_ = nullptr;
   double growth_ = 1, first_gain_[unrolled_history]{};
 };
 
 /// Adds particles of one cell to the grid, which their cell enters with them.
-template <int dim, bool averaged, bool apic, int fluids>
+template <int dim, bool averaged, int fluids>
 class RunToNodes {
  public:
   static constexpr int vertices = dim + 1, components = stress_size<dim>;
@@ -155,18 +150,7 @@ class RunToNodes {
     for (int k = 0; k < vertices; ++k) mass_[k] += quad(n[k]) * mn;
 #pragma GCC unroll 8
     for (int d = 0; d < dim; ++d) {
-      Quad v = quad(p.velocity[i][d]);
-      if constexpr (apic) {  // velocity the affine field has at each vertex
-        const double *c = &p.affine[(i * dim + d) * dim];
-        const auto &node = grid_.mesh().cells[mesh_cell_].node;
-        for (int e = 0; e < dim; ++e) {
-          Quad x{};
-#pragma GCC unroll 8
-          for (int k = 0; k < vertices; ++k) x[k] = grid_.mesh().position[node[k]][e];
-          v += quad(c[e]) * (x - quad(p.position[i][e]));
-        }
-      }
-      momentum_[d] += v * mn;
+      momentum_[d] += quad(p.velocity[i][d]) * mn;
     }
     share_ += quad(p.volume[i]) * n;
 #pragma GCC unroll 2

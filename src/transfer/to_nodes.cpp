@@ -3,14 +3,14 @@
 namespace talus {
 namespace {
 
-template <int dim, bool averaged, bool apic, int fluids, class Index>
+template <int dim, bool averaged, int fluids, class Index>
 void gather(const Body<dim> &body, FilledGrid<dim> &grid, Vec<dim> *momentum, PointSet &points, const Pores<dim> &pores,
             int count, Index index) {
   const ParticleArrays<dim> &p = body.particles();
   for (int j = 0; j < count;) {
     const int mesh_cell = p.cell[index(j)];
     const BarycentricMap<dim> coordinates(grid.mesh().cells[mesh_cell]);
-    RunToNodes<dim, averaged, apic, fluids> run(body, grid, points, pores, mesh_cell);
+    RunToNodes<dim, averaged, fluids> run(body, grid, points, pores, mesh_cell);
     const int first = j;
     for (; j < count && p.cell[index(j)] == mesh_cell; ++j) {
       run.add(index(j), coordinates(load<dim>(p.position[index(j)].data())));
@@ -24,24 +24,23 @@ void gather(const Body<dim> &body, FilledGrid<dim> &grid, Vec<dim> *momentum, Po
 
 }  // namespace
 
-template <int dim, bool averaged, bool apic, int fluids>
+template <int dim, bool averaged, int fluids>
 void to_nodes(const Body<dim> &body, FilledGrid<dim> &grid, Vec<dim> *momentum, PointSet &points,
               const Pores<dim> &pores, const std::vector<int> *only) {
   if (only)
-    gather<dim, averaged, apic, fluids>(body, grid, momentum, points, pores, static_cast<int>(only->size()),
-                                        [only](int j) { return (*only)[j]; });
+    gather<dim, averaged, fluids>(body, grid, momentum, points, pores, static_cast<int>(only->size()),
+                                  [only](int j) { return (*only)[j]; });
   else
-    gather<dim, averaged, apic, fluids>(body, grid, momentum, points, pores, body.particles().count,
-                                        [](int j) { return j; });
+    gather<dim, averaged, fluids>(body, grid, momentum, points, pores, body.particles().count, [](int j) { return j; });
   if constexpr (averaged)
     points.start(stress_size<dim>, body.history_count());
   else
     for (int i = 0; i < body.particles().count; ++i) points.own_cell[i] = grid.find_cell(body.particles().cell[i]);
 }
 
-#define TALUS_TO_NODES(dim, averaged, apic, fluids)                                                                 \
-  template void to_nodes<dim, averaged, apic, fluids>(const Body<dim> &, FilledGrid<dim> &, Vec<dim> *, PointSet &, \
-                                                      const Pores<dim> &, const std::vector<int> *);
+#define TALUS_TO_NODES(dim, averaged, fluids)                                                                 \
+  template void to_nodes<dim, averaged, fluids>(const Body<dim> &, FilledGrid<dim> &, Vec<dim> *, PointSet &, \
+                                                const Pores<dim> &, const std::vector<int> *);
 TALUS_EACH_TRANSFER(TALUS_TO_NODES)
 
 }  // namespace talus

@@ -4,13 +4,13 @@
 
 namespace talus {
 
-template <int dim, bool averaged, bool apic, int fluids>
+template <int dim, bool averaged, int fluids>
 void to_particles(Body<dim> &body, const Lagrangian<dim> &from, std::vector<int> &movers) {
   const ParticleArrays<dim> &p = body.particles();
   if constexpr (averaged) collect_changes<fluids>(from.points, from.pores, body.history_count(), from.change);
   for (int i = 0; i < p.count;) {
     const int mesh_cell = p.cell[i], first = i;
-    const RunFromNodes<dim, averaged, apic, fluids> run(body, from, mesh_cell);
+    const RunFromNodes<dim, averaged, fluids> run(body, from, mesh_cell);
     for (; i < p.count && p.cell[i] == mesh_cell; ++i) {
       const auto moved = run.move(i);
       if (!none_negative(moved.coordinates)) movers.push_back(i);
@@ -20,15 +20,15 @@ void to_particles(Body<dim> &body, const Lagrangian<dim> &from, std::vector<int>
   }
 }
 
-template <int dim, bool averaged, bool apic, int fluids>
+template <int dim, bool averaged, int fluids>
 void to_next_nodes(Body<dim> &body, const Lagrangian<dim> &from, FilledGrid<dim> &grid, Vec<dim> *momentum,
                    PointSet &points, const Pores<dim> &pores, std::vector<int> &movers) {
   const ParticleArrays<dim> &p = body.particles();
   if constexpr (averaged) collect_changes<fluids>(from.points, from.pores, body.history_count(), from.change);
   for (int i = 0; i < p.count;) {
     const int mesh_cell = p.cell[i], first = i;
-    const RunFromNodes<dim, averaged, apic, fluids> old(body, from, mesh_cell);
-    RunToNodes<dim, averaged, apic, fluids> next(body, grid, points, pores, mesh_cell);
+    const RunFromNodes<dim, averaged, fluids> old(body, from, mesh_cell);
+    RunToNodes<dim, averaged, fluids> next(body, grid, points, pores, mesh_cell);
     while (i < p.count && p.cell[i] == mesh_cell) {
       int leaving[run_part], left = 0;
       double pores_left[run_part];
@@ -97,11 +97,10 @@ PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::v
   PetscFunctionReturn(0);
 }
 
-#define TALUS_TO_PARTICLES(dim, averaged, apic, fluids)                                                              \
-  template void to_particles<dim, averaged, apic, fluids>(Body<dim> &, const Lagrangian<dim> &, std::vector<int> &); \
-  template void to_next_nodes<dim, averaged, apic, fluids>(Body<dim> &, const Lagrangian<dim> &, FilledGrid<dim> &,  \
-                                                           Vec<dim> *, PointSet &, const Pores<dim> &,               \
-                                                           std::vector<int> &);
+#define TALUS_TO_PARTICLES(dim, averaged, fluids)                                                              \
+  template void to_particles<dim, averaged, fluids>(Body<dim> &, const Lagrangian<dim> &, std::vector<int> &); \
+  template void to_next_nodes<dim, averaged, fluids>(Body<dim> &, const Lagrangian<dim> &, FilledGrid<dim> &,  \
+                                                     Vec<dim> *, PointSet &, const Pores<dim> &, std::vector<int> &);
 TALUS_EACH_TRANSFER(TALUS_TO_PARTICLES)
 template PetscErrorCode relocate<2>(Body<2> &, const BackgroundMesh<2> &, std::vector<int> &, bool *, Vec<2> *);
 template PetscErrorCode relocate<3>(Body<3> &, const BackgroundMesh<3> &, std::vector<int> &, bool *, Vec<3> *);

@@ -47,7 +47,7 @@ struct Pores {
 /// Adds the particles of one body to the grid: mass matrices, momentum, volumes, the `fluids` in its pores and, with
 /// averaged stress, the stress points; those listed in `only`, or all. `momentum` [compact nodes][dim] has room for
 /// every node of the local mesh.
-template <int dim, bool averaged, bool apic, int fluids>
+template <int dim, bool averaged, int fluids>
 void to_nodes(const Body<dim> &body, FilledGrid<dim> &grid, Vec<dim> *momentum, PointSet &points,
               const Pores<dim> &pores, const std::vector<int> *only);
 
@@ -63,8 +63,7 @@ template <int dim>
 struct Lagrangian {
   const FilledGrid<dim> &grid;
   const NodalUpdate &nodes;
-  double flip;           ///< the share a of their own velocity that particles keep
-  const double *affine;  ///< [compact cells][dim * dim] velocity gradients of APIC [1/s], unused otherwise
+  double flip;  ///< the share a of their own velocity that particles keep
   const PointSet &points;
   const Pores<dim> &pores;
   double *change;  ///< [points][1 + fluids + history] scratch: changes of the points that particles take over
@@ -72,12 +71,12 @@ struct Lagrangian {
 
 /// Brings the particles of one body to the end of a Lagrangian part. Particles outside their cell are listed in
 /// `movers`.
-template <int dim, bool averaged, bool apic, int fluids>
+template <int dim, bool averaged, int fluids>
 void to_particles(Body<dim> &body, const Lagrangian<dim> &from, std::vector<int> &movers);
 
 /// The same, and adds those that stay in their cell to the next grid in one sweep; the movers are still to be added.
 /// With averaged stress a particle that stays keeps its stress and its fluids in the stress point only.
-template <int dim, bool averaged, bool apic, int fluids>
+template <int dim, bool averaged, int fluids>
 void to_next_nodes(Body<dim> &body, const Lagrangian<dim> &from, FilledGrid<dim> &grid, Vec<dim> *momentum,
                    PointSet &points, const Pores<dim> &pores, std::vector<int> &movers);
 

@@ -246,8 +246,7 @@ def draw_crossing(plt, style):
 TRANSFERS = {"particle volumes": ["transfer.integration=particle", "transfer.average_stress=false", "transfer.relaxation=0"],
              "stress not averaged": ["transfer.average_stress=false", "transfer.relaxation=0"],
              "relaxation 0": ["transfer.relaxation=0"], "relaxation 400": [],
-             "PIC share 0.01": ["transfer.relaxation=0", "transfer.pic_fraction=0.01"],
-             "APIC": ["transfer.velocity=apic", "transfer.relaxation=0"]}
+             "PIC share 0.01": ["transfer.relaxation=0", "transfer.pic_fraction=0.01"]}
 SPEED, PERIOD = 0.1, 0.4
 
 
@@ -282,7 +281,7 @@ def noise(talus):
 def draw_noise(plt, style):
     rows, curves = read("noise.csv"), read("noise_curves.csv")
     figure, panels = plt.subplots(1, 3, figsize=(8.6, 3.4), layout="constrained", gridspec_kw={"width_ratios": (1.2, 1.2, 1)})
-    colours = dict(zip(TRANSFERS, (style.LINES[1], style.SOFT, style.LINES[5], style.ACCENT, style.LINES[2], style.LINES[4])))
+    colours = dict(zip(TRANSFERS, (style.LINES[1], style.SOFT, style.LINES[5], style.ACCENT, style.LINES[2])))
     for axes, interval, title in zip(panels, ("0", "0.1"), ("remap in every step", "remap interval 0.1 (default)")):
         for name, colour in colours.items():
             mine = [r for r in curves if (r["transfer"], r["remap_interval"]) == (name, interval)]
@@ -301,9 +300,6 @@ def draw_noise(plt, style):
     for marker, colour, label in (("o", "white", "every step"), ("s", style.SOFT, "interval 0.1")):
         axes.plot([], [], marker, color=style.SOFT, mfc=colour, label=label)
     axes.set(xscale="log", title="roughness of velocity / V", ylim=(-len(names) + 0.4, 0.6))
-    broken = [k for k, name in enumerate(names) if all(r["broke"] for r in rows if r["transfer"] == name)]
-    for k in broken:
-        axes.text(0.06, -k, "breaks off", color=colours[names[k]], size=8.5, va="center", transform=axes.get_yaxis_transform())
     axes.set_yticks([-k for k in range(len(names))], names)
     axes.grid(axis="x", color=style.FAINT, lw=0.5)
     axes.legend(fontsize=8, loc="lower right")

@@ -81,7 +81,7 @@ def momentum(folder):
 def spin(talus):
     """Angular momentum of the spinning block after two turns over the initial."""
     rows = []
-    transfers = {"default": [], "flip": ["transfer.relaxation=0"], "pic": ["transfer.velocity=pic"], "apic": ["transfer.velocity=apic"]}
+    transfers = {"default": [], "flip": ["transfer.relaxation=0"], "pic": ["transfer.velocity=pic"]}
     for how, transfer in transfers.items():
         for kind, overrides in KINDS.items():
             name = f"spin {how} {kind}"

@@ -108,7 +108,6 @@ const Case cases[] = {
      {"mesh.refine=[{from = [0, 0], to = [0.1, 0.1], size = 0.02}]"},
      "in mesh.refine.0, determine the step"},
     {"remap_every_step", {"transfer.remap_interval=0"}, "A remap in every step costs"},
-    {"apic", {"transfer.velocity=apic"}, "APIC on simplices"},
     {"slice", {"dimension=3", "boundary.front.kind=roller", "boundary.back.kind=roller"}, "A slice of one element"},
     {"ground_that_yields_at_rest",
      {"stage.0.kind=quasi_static", "body.sand.poisson_ratio=0.2"},

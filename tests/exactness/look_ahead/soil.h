@@ -1,6 +1,6 @@
 #pragma once
 /// A motion of soil of its own, beside the time loop, for tests that drive it by hand: one body out of the text of a
-/// scene. Drained soil is saturated.
+/// scene. The pores of drained soil are full; where fluids move on their own, particles have the mass of the grains.
 #include <gtest/gtest.h>
 
 #include "mesh_source.h"
@@ -14,8 +14,7 @@ struct Soil {
   Soil(const std::string &text, double relaxation_time)
       : scene(parse_scene(text, "soil")), pressure(scene.water, 9.81), file(PETSC_COMM_WORLD, scene) {
     const BodySource &source = scene.body[0];
-    mesh =
-        BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.path(), scene.transfer.patch_size, {{source.region[0], 5.}});
+    mesh = BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.path(), {{source.region[0], 5.}});
     std::vector<typename Conditions<dim>::Source> sources;
     for (const BoundarySource &b : scene.boundary)
       sources.push_back({b.name, b.group.empty() ? std::vector{b.name} : b.group, read_boundary(b.kind)});
@@ -23,10 +22,11 @@ struct Soil {
     SurfaceLoads<dim> &loads = conditions.surface_loads();
     EXPECT_EQ(loads.share(mesh, std::vector<char>(mesh.cell_count(), 1)), 0);
     bodies.push_back(std::make_unique<Body<dim>>());
-    EXPECT_EQ(bodies[0]->create(mesh.comm(), source, read_law(source.law), false, 0, loads.face_count()), 0);
-    const double density = source.density > 0
-                               ? source.density
-                               : (1 - source.porosity) * source.grain_density + source.porosity * scene.water.density;
+    EXPECT_EQ(
+        bodies[0]->create(mesh.comm(), source, read_law(source.law), traits_of<Phases>.fluids(), loads.face_count()),
+        0);
+    const double water = Phases::liquid ? 0 : source.porosity * scene.water.density;
+    const double density = source.density > 0 ? source.density : (1 - source.porosity) * source.grain_density + water;
     seed<dim>(*bodies[0], mesh, 8, [&](const Vec<dim> &) { return density; });
     loads.seed(*bodies[0], mesh);
     EXPECT_EQ(bodies[0]->sort(mesh.cell_count()), 0);
@@ -36,6 +36,7 @@ struct Soil {
     motion = std::make_unique<SoilMotion<dim, Phases>>(
         MotionParts<dim>{mesh, bodies, conditions, scene, pressure, relaxation_time, mass, 1000});
     motion->loading.gravity[1] = scene.gravity[1];
+    EXPECT_EQ(motion->setup_pores(true), 0);
   }
   const ParticleArrays<dim> &particles() const { return bodies[0]->particles(); }
 

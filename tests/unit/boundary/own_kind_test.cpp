@@ -150,7 +150,7 @@ struct Square1m {
   explicit Square1m(std::vector<Source> of)
       : scene(parse_host_scene(text, "square")),
         file(BoxMesh(2, 4)),
-        mesh(BackgroundMesh<2>::read(PETSC_COMM_WORLD, file.name(), 0, {})),
+        mesh(BackgroundMesh<2>::read(PETSC_COMM_WORLD, file.name(), {})),
         sources(std::move(of)),
         grid(mesh),
         filling(mesh.cell_count(), 1.),
@@ -262,7 +262,7 @@ TEST(OwnBoundary, LoadsTheParticlesBehindIt) {
   SurfaceLoads<2> &loads = soil.conditions.surface_loads();
   BodySource &source = soil.scene.body[0];
   source.particles_per_cell = 3;
-  ASSERT_EQ(bodies[0]->create(soil.mesh.comm(), source, read_law(source.law), false, 0, loads.face_count()), 0);
+  ASSERT_EQ(bodies[0]->create(soil.mesh.comm(), source, read_law(source.law), 0, loads.face_count()), 0);
   seed<2>(*bodies[0], soil.mesh, 8, [](const Vec<2> &) { return 1600.; });
   ASSERT_EQ(loads.share(soil.mesh, std::vector<char>(soil.mesh.cell_count(), 1)), 0);
   loads.seed(*bodies[0], soil.mesh);

@@ -21,7 +21,7 @@ class MeshOnRanks : public ::testing::Test {
   static constexpr int dim = Dimension::value;
   static constexpr int n = dim == 2 ? 12 : 6;
   SharedFile file{BoxMesh(dim, n)};
-  BackgroundMesh<dim> mesh = BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.name(), 0, {{"lower", 5}});
+  BackgroundMesh<dim> mesh = BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.name(), {{"lower", 5}});
 
   /// All ranks' values of one number per cell, by global cell.
   std::vector<long long> gathered(const std::function<long long(int)> &value) const {
@@ -155,7 +155,7 @@ TYPED_TEST(MeshOnRanks, PatchesStayInARegionAndOnARankWhateverTheRanks) {
   for (int c = 0; c < mesh.cell_count(); ++c)
     lowest[mesh.patch[c]] = std::min(lowest[mesh.patch[c]], mesh.global_cell[c]);
   const auto together = this->gathered([&](int c) { return lowest[mesh.patch[c]]; });
-  const auto alone = BackgroundMesh<dim>::read(PETSC_COMM_SELF, this->file.name(), 0, {});
+  const auto alone = BackgroundMesh<dim>::read(PETSC_COMM_SELF, this->file.name(), {});
   std::map<int, long long> name;
   for (int c = 0; c < alone.cell_count(); ++c) {
     const auto at = name.try_emplace(alone.patch[c], alone.global_cell[c]).first;
@@ -176,7 +176,7 @@ TYPED_TEST(MeshOnRanks, WeightsOfRegionsBalanceTheRanks) {
 
 TYPED_TEST(MeshOnRanks, MeanEdgesDoNotDependOnTheRanks) {
   constexpr int dim = TestFixture::dim;
-  const auto alone = BackgroundMesh<dim>::read(PETSC_COMM_SELF, this->file.name(), 0, {});
+  const auto alone = BackgroundMesh<dim>::read(PETSC_COMM_SELF, this->file.name(), {});
   std::map<Vec<dim>, double> expected;
   for (int i = 0; i < alone.node_count(); ++i) expected[alone.position[i]] = alone.mean_edge[i];
   for (int i = 0; i < this->mesh.node_count(); ++i)
@@ -196,17 +196,17 @@ TYPED_TEST(MeshOnRanks, ReportCountsCellsAndNodesOnce) {
 
 TYPED_TEST(MeshOnRanks, AHostsPlexIsAdopted) {
   constexpr int dim = TestFixture::dim;
-  const auto adopted = BackgroundMesh<dim>::adopt(this->mesh.plex(), 0);
+  const auto adopted = BackgroundMesh<dim>::adopt(this->mesh.plex());
   EXPECT_EQ(adopted.cell_count(), this->mesh.cell_count());
   EXPECT_EQ(adopted.region("lower"), this->mesh.region("lower"));
   EXPECT_EQ(adopted.facets("middle").size(), this->mesh.facets("middle").size());
   EXPECT_EQ(adopted.position, this->mesh.position);
-  EXPECT_THROW(BackgroundMesh<5 - dim>::adopt(this->mesh.plex(), 0), std::invalid_argument);
+  EXPECT_THROW(BackgroundMesh<5 - dim>::adopt(this->mesh.plex()), std::invalid_argument);
 }
 
 TEST(MeshOnRanksOfACoarseCube, IsASliceWithPatchesOfFour) {
   const SharedFile file{BoxMesh(3, 1)};
-  const auto mesh = BackgroundMesh<3>::read(PETSC_COMM_WORLD, file.name(), 0, {});
+  const auto mesh = BackgroundMesh<3>::read(PETSC_COMM_WORLD, file.name(), {});
   EXPECT_TRUE(mesh.report().one_element_slice);
   EXPECT_EQ(sum(mesh.cell_count()), 6);  // some ranks hold no cell at all
 }

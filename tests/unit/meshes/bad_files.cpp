@@ -14,7 +14,7 @@ template <int dim>
 std::string complaint(const std::string &file) {
   std::string text;
   try {
-    (void)BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file, 0, {});
+    (void)BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file, {});
   } catch (const std::invalid_argument &error) {
     text = error.what();
   }

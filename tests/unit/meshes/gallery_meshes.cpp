@@ -25,7 +25,7 @@ class GalleryFile : public SharedFile {
 
 template <int dim>
 BackgroundMesh<dim> read(const SharedFile &file) {
-  return BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.name(), 0, {});
+  return BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.name(), {});
 }
 
 template <int dim>

@@ -30,7 +30,7 @@ std::vector<double> records(const BackgroundMesh<3> &mesh, int rank, int width) 
 
 TEST(Halo, SumsAreRightAndTheSameToTheBitOnAllRanks) {
   const SharedFile file{BoxMesh(3, 6)};
-  auto mesh = BackgroundMesh<3>::read(PETSC_COMM_WORLD, file.name(), 0, {});
+  auto mesh = BackgroundMesh<3>::read(PETSC_COMM_WORLD, file.name(), {});
   int rank, size;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   MPI_Comm_size(PETSC_COMM_WORLD, &size);
@@ -74,7 +74,7 @@ TEST(Halo, SumsAreRightAndTheSameToTheBitOnAllRanks) {
 
 TEST(Halo, EveryNodeIsOwnedOnce) {
   const SharedFile file{BoxMesh(3, 5)};
-  auto mesh = BackgroundMesh<3>::read(PETSC_COMM_WORLD, file.name(), 0, {});
+  auto mesh = BackgroundMesh<3>::read(PETSC_COMM_WORLD, file.name(), {});
   std::vector<double> owners(mesh.owned.begin(), mesh.owned.end());
   ASSERT_EQ(mesh.halo.sum(owners.data(), 1), 0);
   for (double count : owners) EXPECT_EQ(count, 1);

@@ -21,7 +21,7 @@ bool holds(const BackgroundMesh<dim> &mesh, int cell, const Point<dim> &x) {
 template <int dim>
 void walk_between_random_points() {
   const SharedFile file{BoxMesh(dim, dim == 2 ? 20 : 8)};
-  const auto mesh = BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.name(), 0, {});
+  const auto mesh = BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.name(), {});
   int rank, size;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   MPI_Comm_size(PETSC_COMM_WORLD, &size);
@@ -68,7 +68,7 @@ TEST(Walk, ReachesTheCellOfEveryPointOverPartitionFacesIn3D) { walk_between_rand
 
 TEST(Walk, PutsPointsBeyondTheBoundaryBackInside) {
   const SharedFile file{BoxMesh(3, 4)};
-  const auto mesh = BackgroundMesh<3>::read(PETSC_COMM_SELF, file.name(), 0, {});
+  const auto mesh = BackgroundMesh<3>::read(PETSC_COMM_SELF, file.name(), {});
   for (const Vec<3> &outside : {Vec<3>{0.3, -0.1, 0.4}, Vec<3>{1.2, 0.5, 0.5}, Vec<3>{-0.1, 1.2, 2}}) {
     Vec<3> x = outside;
     const Located found = walk(mesh, 0, x);
@@ -84,7 +84,7 @@ TEST(Walk, PutsPointsBeyondTheBoundaryBackInside) {
 
 TEST(Walk, StaysWhereThePointIs) {
   const SharedFile file{BoxMesh(2, 4)};
-  const auto mesh = BackgroundMesh<2>::read(PETSC_COMM_SELF, file.name(), 0, {});
+  const auto mesh = BackgroundMesh<2>::read(PETSC_COMM_SELF, file.name(), {});
   for (int c = 0; c < mesh.cell_count(); ++c) {
     Vec<2> x{};
     for (int i : mesh.cells[c].node)

@@ -81,8 +81,8 @@ TEST(OutputFields, of_laws_are_not_a_number_where_a_body_has_another_law) {
   BodySource source;
   std::vector<std::unique_ptr<Body<2>>> bodies(2);
   for (auto &body : bodies) body = std::make_unique<Body<2>>();
-  ASSERT_EQ(bodies[0]->create(MPI_COMM_SELF, source, MohrCoulomb{}, false, 0, 0), 0);
-  ASSERT_EQ(bodies[1]->create(MPI_COMM_SELF, source, LinearElastic{}, false, 0, 0), 0);
+  ASSERT_EQ(bodies[0]->create(MPI_COMM_SELF, source, MohrCoulomb{}, 0, 0), 0);
+  ASSERT_EQ(bodies[1]->create(MPI_COMM_SELF, source, LinearElastic{}, 0, 0), 0);
   const auto fields = output_fields<GaussPointState<2>>(traits_of<Dry>, bodies);
   auto columns = fields.columns();
   const double history[] = {0.25, 0.5};

@@ -22,7 +22,7 @@ double limit(const Law &law, double plastic_volume, double volume_cap = -1) {
   BodySource source;
   source.volume_cap = volume_cap;
   Body<2> body;
-  EXPECT_EQ(body.create(PETSC_COMM_SELF, source, law, false, 0, 0), 0);
+  EXPECT_EQ(body.create(PETSC_COMM_SELF, source, law, 0, 0), 0);
   std::vector<double> history(history_size(law), 0.7);
   for (std::size_t h = 0; h < history.size(); ++h)
     if (std::string(history_fields(law)[h].name) == "plastic_volume") history[h] = plastic_volume;

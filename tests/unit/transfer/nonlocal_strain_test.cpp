@@ -21,7 +21,7 @@ template <int dim>
 struct Filled {
   Filled(int n, double length)
       : file(BoxMesh(dim, n)),
-        mesh(BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.name(), 0, {})),
+        mesh(BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.name(), {})),
         grid(mesh),
         nonlocal(mesh, length, 0, 1) {
     for (int c = 0; c < mesh.cell_count(); ++c) {

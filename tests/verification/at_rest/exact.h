@@ -35,8 +35,7 @@ inline void at_rest(Rung &rung) {
   claim("2D, default relaxation", in_dimension(2, lasting(400, {})));
   claim("3D", in_dimension(
                   3, lasting(40, {"body.soil.velocity=['0.5*sin(91*x+17*y+57*z)', '0.5*cos(73*y-29*x+57*z)', '0']"})));
-  for (const std::string transfer : {"pic", "apic"})
-    claim("2D, " + transfer, in_dimension(2, lasting(40, {"transfer.velocity=" + transfer})));
+  claim("2D, pic", in_dimension(2, lasting(40, {"transfer.velocity=pic"})));
   claim("2D, arkode", in_dimension(2, lasting(40, {"integrator.kind=arkode"})));
   claim("2D, forward-euler", in_dimension(2, lasting(40, {"integrator.kind=forward-euler"})));
   claim("2D, saturated",

@@ -22,22 +22,19 @@ inline void spinning_block(Rung &rung) {
     return sum;
   };
   const double speed = 5 * 0.25;  // of the middle of a face [m/s]
-  for (const auto &[name, transfer] : {std::pair{"default", "transfer.velocity=flip"},
-                                       {"flip", "transfer.relaxation=0"},
-                                       {"apic", "transfer.velocity=apic"}}) {
-    try {
-      const Run run = rung.run({transfer});
-      const Momentum start = measure(run.start), end = measure(run.end);
-      const std::string which = std::string(name) + ": ";
-      rung.compare(which + "change of linear momentum over m V", 0,
-                   std::abs(end.momentum - start.momentum) / (start.mass * speed), 1e-11, 1);
-      rung.compare(which + "drift of the centre of mass over the width", 0,
-                   std::hypot(end.x - start.x, end.y - start.y) / 0.5, 1e-11, 1);
-      rung.report(which + "angular momentum after two turns over the initial", 1, end.spin / start.spin);
-    } catch (const RunError &) {  // known of APIC at free surfaces
-      rung.report(std::string(name) + ": angular momentum after two turns over the initial (broke off)", 1, NAN);
-    }
-  }
+  const auto claim = [&](const std::string &which, const std::vector<std::string> &overrides, double loss) {
+    const Run run = rung.run(overrides);
+    const Momentum start = measure(run.start), end = measure(run.end);
+    rung.compare(which + ": change of linear momentum over m V", 0,
+                 std::abs(end.momentum - start.momentum) / (start.mass * speed), 1e-11, 1);
+    rung.compare(which + ": drift of the centre of mass over the width", 0,
+                 std::hypot(end.x - start.x, end.y - start.y) / 0.5, 1e-11, 1);
+    rung.compare(which + ": angular momentum after two turns over the initial", 1, end.spin / start.spin, loss);
+  };
+  // tolerances of what is lost: README.md
+  claim("default", {}, 0.3);
+  claim("flip", {"transfer.relaxation=0"}, 0.12);
+  claim("flip, half the cell size", {"transfer.relaxation=0", "mesh.size=0.025"}, 0.035);
 }
 
 }  // namespace talus::rungs
