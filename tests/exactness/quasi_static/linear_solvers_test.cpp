@@ -1,0 +1,98 @@
+// The same equilibrium on any number of ranks and by any linear solver.
+#include "solved.h"
+
+namespace talus {
+namespace {
+
+/// Linear solver and number of ranks change nothing but round-off, in plastic soil either.
+TEST(QuasiStatic, slope_is_the_same_on_all_ranks_and_by_both_solvers) {
+  const std::string text = R"(gravity = 10
+[mesh]
+section = "selborne.csv"
+size = 3
+[body.soil]
+region = ["weathered", "unweathered"]
+density = 2000
+law = "mohr_coulomb"
+young_modulus = "10 MPa"
+poisson_ratio = 0.3
+cohesion = "14 kPa"
+friction_angle = 20
+[boundary.base]
+group = ["base", "recharge_base"]
+kind = "fixed"
+[boundary.sides]
+group = ["left", "recharge_side", "right"]
+kind = "roller"
+[[stage]]
+name = "gravity"
+kind = "quasi_static"
+duration = 1
+load_steps = 3
+[quasi_static]
+tolerance = 1e-11
+)";
+  int rank, ranks;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank), MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  Solved whole;
+  for (int r = 0; r < ranks; ++r) {  // one after the other: they share the file of the mesh
+    if (r == rank) whole = solve(text, {}, PETSC_COMM_SELF);
+    MPI_Barrier(PETSC_COMM_WORLD);
+  }
+  std::map<long long, size_t> place;
+  for (size_t i = 0; i < whole.points.id.size(); ++i) place[whole.points.id[i]] = i;
+  EXPECT_GT(
+      *std::max_element(whole.column("plastic_strain").values.begin(), whole.column("plastic_strain").values.end()),
+      1e-4);
+  for (const char *solver : {"direct", "iterative"}) {
+    const Solved shared = solve(text, {"quasi_static.linear_solver=" + std::string(solver)});
+    EXPECT_LT(largest(shared, 2,
+                      [&](size_t p, int k) {
+                        return (shared.value("displacement", p, k) -
+                                whole.value("displacement", place.at(shared.points.id[p]), k)) /
+                               0.1;
+                      }),
+              1e-8)
+        << solver;
+  }
+}
+
+/// What a scene says to PETSc while it lives.
+struct Options {
+  explicit Options(const char *text) { PetscOptionsInsertString(nullptr, text); }
+  ~Options() { PetscOptionsClear(nullptr); }
+};
+
+/// A body too large for LU goes by multigrid, and the log says so; PETSc's options have the last word.
+TEST(QuasiStatic, linear_solver_follows_size_and_options) {
+  int ranks;
+  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  const std::string column =
+      "gravity = 10\n" + block +
+      "[boundary.walls]\ngroup = [\"base\", \"left\", \"right\", \"front\", \"back\"]\nkind = \"roller\"\n";
+  const double modulus = 10e6 * 0.7 / (1.3 * 0.4);
+  const auto settles = [&](const Solved &solved) {
+    return largest(solved, 1, [&](size_t p, int) {
+      const double y = solved.value("position", p, 1);
+      return (solved.value("displacement", p, 1) + 2e4 / modulus * (y - y * y / 2)) / (2e4 / modulus);
+    });
+  };
+  const Solved small = solve(column, in_3d);
+  EXPECT_NE(small.events.at(0).text.find("(LU)"), std::string::npos) << small.events[0].text;
+  for (const char *options : {"-talus_ksp_type cg -talus_pc_type hypre -talus_ksp_rtol 1e-12",
+                              "-talus_ksp_type gmres -talus_pc_type gamg -talus_ksp_rtol 1e-12"}) {
+    const Options given(options);
+    EXPECT_LT(settles(solve(column, in_3d)), 1e-8) << options;  // the tolerance of Newton
+  }
+  {
+    const Options given("-talus_ksp_type richardson -talus_pc_type none -talus_ksp_max_it 1");
+    EXPECT_THROW(solve(column, in_3d), RunError) << "a solver that cannot";
+  }
+  if (ranks > 1) return;  // once is enough for so large a body
+  const Solved large = solve(column, {"dimension=3", "mesh.thickness=1", "mesh.layers=0", "mesh.size=0.08"});
+  EXPECT_NE(large.events.at(0).text.find("(GMRES and multigrid)"), std::string::npos) << large.events[0].text;
+  EXPECT_LT(settles(large), 1e-7);  // ten times the tolerance of Newton and GMRES
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,171 @@
+// Seepage and consolidation where the answer is known.
+#include "solved.h"
+
+namespace talus {
+namespace {
+
+const std::string wet_block = R"(
+gravity = 10
+phases = "saturated"
+[mesh]
+section = "box.csv"
+size = 0.3
+[water]
+table = [[0, 0.5]]
+bulk_modulus = "100 GPa"
+[body.soil]
+region = "soil"
+porosity = 0.3
+grain_density = 2600
+permeability = 1e-12
+law = "linear_elastic"
+young_modulus = "10 MPa"
+poisson_ratio = 0.3
+[boundary.walls]
+group = ["base", "left", "right"]
+kind = "roller"
+)";
+
+/// Full pores, open to the atmosphere above: whatever the pressure was, it becomes that of water at rest, and no force
+/// acts on particles that take it over but their weight under water.
+TEST(Water, comes_to_rest_and_stays) {
+  const std::string text = wet_block +
+                           "[[stage]]\nname = \"water\"\nkind = \"seepage\"\nsteady = true\nduration = 1\n"
+                           "[[stage]]\nname = \"soil\"\nkind = \"quasi_static\"\nduration = 1\n";
+  for (const int dim : {2, 3}) {
+    const Solved solved = solve(text, std::vector<std::string>{"quasi_static.tolerance=1e-8"} +
+                                          (dim == 3 ? in_3d + std::vector<std::string>{"boundary.front.kind=roller",
+                                                                                       "boundary.back.kind=roller"}
+                                                    : std::vector<std::string>{}));
+    EXPECT_LT(largest(solved, 1,
+                      [&](size_t p, int) {
+                        return solved.value("pore_pressure", p) / 1e4 - (1 - solved.value("position", p, 1));
+                      }),
+              1e-6);  // a hundred times the tolerance, which is above the round-off of so slow a flux, 4e-10
+    const double weight = 10 * (0.7 * 2600 - 0.7 * 1000);  // of the grains less that of the water they displace
+    EXPECT_LT(largest(solved, 1,
+                      [&](size_t p, int) {
+                        return solved.value("stress", p, 1) / weight + (1 - solved.value("position", p, 1));
+                      }),
+              1e-6);
+  }
+}
+
+/// In a drained scene seepage finds the pressure of the stages after it: through a confined block it falls linearly,
+/// soil bears its gradient as in a saturated scene, and particles that take over keep still.
+TEST(Water, seeps_through_drained_soil) {
+  const std::string text =
+      wet_block +
+      "[boundary.in]\ngroup = \"left\"\nkind = \"pore_pressure\"\npressure = 8e3\n[boundary.out]\ngroup = "
+      "\"right\"\nkind = \"pore_pressure\"\n"
+      "[boundary.lid]\ngroup = [\"base\", \"surface\"]\nkind = \"impermeable\"\n"
+      "[[stage]]\nname = \"water\"\nkind = \"seepage\"\nsteady = true\nduration = 1\n"
+      "[[stage]]\nname = \"soil\"\nkind = \"quasi_static\"\nduration = 1\nreset_displacement = true\n";
+  const std::vector<std::string> keys{"phases=drained",
+                                      "gravity=0",
+                                      "water.table=[]",
+                                      "water.open_water_load=false",
+                                      "quasi_static.elements=patches",
+                                      "quasi_static.tolerance=1e-8",
+                                      "boundary.walls.kind=fixed",
+                                      "boundary.walls.group=base"};
+  for (const int dim : {2, 3}) {
+    const Solved drained =
+        solve(text, keys + (dim == 3 ? in_3d +
+                                           std::vector<std::string>{
+                                               "boundary.lid.group=[\"base\", \"surface\", \"front\", \"back\"]"}
+                                     : std::vector<std::string>{}));
+    EXPECT_LT(largest(drained, 1,
+                      [&](size_t p, int) {
+                        return drained.value("pore_pressure", p) / 8e3 - (1 - drained.value("position", p, 0));
+                      }),
+              1e-9)
+        << dim;
+  }
+  const Solved iterative = solve(text, keys + std::vector<std::string>{"quasi_static.linear_solver=iterative"});
+  EXPECT_LT(largest(iterative, 1,
+                    [&](size_t p, int) {
+                      return iterative.value("pore_pressure", p) / 8e3 - (1 - iterative.value("position", p, 0));
+                    }),
+            1e-7);  // ten times Newton's tolerance
+  const std::vector<std::string> fine =
+      keys + std::vector<std::string>{"quasi_static.elements=quadratic"};  // patches average pressure in another way
+  const Solved given = solve(text, fine), moving = solve(text, fine + std::vector<std::string>{"phases=saturated"});
+  EXPECT_LT(
+      largest(given, 4,
+              [&](size_t p, int k) { return (given.value("stress", p, k) - moving.value("stress", p, k)) / 8e3; }),
+      1e-6);
+  EXPECT_GT(largest(given, 1, [&](size_t p, int) { return given.value("stress", p, 0) / 8e3; }), 0.1);
+  const Solved moved =
+      solve(text + "[[stage]]\nname = \"rest\"\nduration = 0.5\n[output.point.top]\nposition = [0.5, 1]\n", keys);
+  const auto way = moved.history.column("top_displacement_m");
+  EXPECT_LT(*std::max_element(way.end() - 50, way.end()), 1e-9);
+}
+
+/// Water that rises by seepage makes a drained column lighter: effective stress follows the table where it stands, in
+/// static stages and at the particles.
+TEST(Water, rises_in_drained_soil) {
+  const std::string text =
+      wet_block +
+      "[body.soil.retention]\ncurve = \"van_genuchten\"\nreference_suction = \"1 kPa\"\nshape = 0.5\n"
+      "[body.soil.relative_permeability]\ncurve = \"van_genuchten_mualem\"\nshape = 0.5\n"
+      "[boundary.well]\ngroup = \"base\"\nkind = \"pore_pressure\"\npressure = \"min(9e3, 4e3 + t)\"\n"
+      "[[stage]]\nname = \"before\"\nkind = \"quasi_static\"\nduration = 1\nhold_loads = true\n"
+      "[[stage]]\nname = \"rise\"\nkind = \"seepage\"\nduration = 1e6\n"
+      "[[stage]]\nname = \"after\"\nkind = \"quasi_static\"\nduration = 1\nhold_loads = true\nreset_displacement = "
+      "true\n"
+      "[[stage]]\nname = \"rest\"\nduration = 0.5\n[output.point.foot]\nposition = [0.5, "
+      "0.02]\n[output.point.top]\nposition = [0.5, 1]\n";
+  const std::vector<std::string> keys{"phases=drained", "water.table=[[0, 0.4]]", "output.history_interval=0.005",
+                                      "quasi_static.elements=patches", "quasi_static.tolerance=1e-8"};
+  Scene scene = parse_scene(text, meshes + "/scene.toml", keys);
+  RunOptions options;
+  options.pictures = options.screen = false;
+  const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+  simulation->run();
+  const auto pressure = simulation->history().column("foot_pore_pressure_Pa"),
+             way = simulation->history().column("top_displacement_m");
+  EXPECT_NEAR(pressure.front(), 4e3, 1e3);  // the point is near the base, not at it
+  EXPECT_NEAR(pressure.back() - pressure.front(), 5e3,
+              5e3 * 1e-3);  // hydrostatic at last: time is a thousand times that of the flow
+  EXPECT_LT(*std::max_element(way.end() - 50, way.end()), 1e-7);
+}
+
+/// What consolidation has pressed out when it is over is what the soil has lost in volume.
+TEST(Water, leaves_as_the_soil_settles) {
+  const std::string text = wet_block +
+                           "[boundary.surface]\nkind = \"traction\"\npressure = \"1 kPa\"\n[boundary.drain]\ngroup = "
+                           "\"surface\"\nkind = \"pore_pressure\"\n"
+                           "[[stage]]\nname = \"press\"\nkind = \"consolidation\"\nduration = 500\n";
+  const Solved solved = solve(text, {"gravity=0", "water.table=[]"});
+  const auto time = solved.history.column("time_s"), inflow = solved.history.column("drain_inflow_m3_s"),
+             way = solved.history.column("surface_displacement_y_m");
+  double water = 0;
+  for (size_t i = 1; i < time.size(); ++i) water += (time[i] - time[i - 1]) * inflow[i];
+  EXPECT_LT(way.back(), -1e-5);
+  EXPECT_NEAR(water, way.back(), 1e-6 * std::abs(way.back()));
+}
+
+/// A linear pressure passes from nodes to particles as it is.
+TEST(Water, is_handed_to_particles) {
+  Scene scene = parse_scene(wet_block +
+                                "[boundary.top]\ngroup = \"surface\"\nkind = \"pore_pressure\"\npressure = 7e3\n"
+                                "[[stage]]\nname = \"water\"\nkind = \"seepage\"\nsteady = true\nduration = 1\n",
+                            meshes + "/scene.toml", {"water.bulk_modulus=2.2e9"});
+  RunOptions options;
+  options.pictures = options.screen = false;
+  const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+  simulation->run();
+  const Snapshot end = simulation->snapshot();
+  std::map<long long, std::array<double, 2>> cells;  // sums over the three particles of a cell
+  Solved particles{end, simulation->history(), simulation->events()};
+  for (size_t i = 0; i < end.id.size(); ++i) {
+    auto &cell = cells[end.id[i] / 3];
+    cell[0] += particles.value("pore_pressure", i) / 3,
+        cell[1] += (7e3 + 1e4 * (1 - particles.value("position", i, 1))) / 3;
+  }
+  for (const auto &[id, cell] : cells) EXPECT_NEAR(cell[0], cell[1], 1e-5 * cell[1]);
+}
+
+}  // namespace
+}  // namespace talus
