@@ -164,8 +164,8 @@ struct Box {
     }
   }
   std::string scene(const std::string &more_body, const std::string &more) const {
-    return std::string("phases = \"") + (Phases::pressure ? "drained" : "dry") +
-           "\"\ndimension = " + std::to_string(dim) + "\ngravity = 0\n[mesh]\nfile = \"" + file.name() +
+    return std::string("phases = \"") + Phases::name + "\"\ndimension = " + std::to_string(dim) +
+           "\ngravity = 0\n[mesh]\nfile = \"" + file.name() +
            "\"\n[body.soil]\nregion = [\"lower\", \"upper\"]\nlaw = \"linear_elastic\"\nyoung_modulus = 1e6\n"
            "poisson_ratio = 0.3\n" +
            (Phases::pressure ? "porosity = 0.4\ngrain_density = 2500\n" : "density = 2000\n") + more_body +

@@ -1,0 +1,210 @@
+#pragma once
+/// The equations of docs/theory/pores.md for a liquid as they stand there, summed up cell by cell and node by node:
+/// what the program has to give on a few cells whose pores are full, or hold gas at rest. Numbers in brackets are those
+/// of that page. On one rank, in soil of one body with averaged stress.
+#include "equations.h"
+
+namespace talus {
+
+constexpr double porosity = 0.4, grain_density = 2500, water_density = 1000, water_bulk = 2e7;
+constexpr double full_conductivity = 1e-9 / 1e-3;  ///< k_0 / mu_l [m2/(Pa s)]
+
+/// The box of equations.h with pores whose contents look drawn. Where they may hold gas, the pores of one cell in three
+/// are full, and the others hold liquid to between 0.4 and 0.8.
+template <int dim, class Phases>
+struct WetBox : Box<dim, Phases> {
+  explicit WetBox(const std::string &more = "", double relaxation_time = 0)
+      : Box<dim, Phases>(std::string("permeability = 1e-9\n") +
+                             (Phases::suction ? "[body.soil.retention]\ncurve = \"van_genuchten\"\nreference_suction = "
+                                                "1e4\nshape = 0.5\n[body.soil.relative_permeability]\ncurve = "
+                                                "\"hillel\"\n"
+                                              : ""),
+                         more, relaxation_time) {
+    const ParticleArrays<dim> &p = this->soil.particles();
+    for (int i = 0; i < p.count; ++i) {
+      p.mass[i] *= 0.7;
+      const double pores = p.volume[i] - p.mass[i] / grain_density;
+      const bool full = !Phases::suction || p.cell[i] % 3 == 0;
+      p.fluid_mass[0][i] = full ? water_density * (1 + (2e4 + 1e4 * drawn(i, 30)) / water_bulk) * pores
+                                : water_density * (0.6 + 0.2 * drawn(i, 30)) * pores;
+      for (int d = 0; d < dim; ++d) p.fluid_velocity[0][i][d] = drawn(i, 40 + d);
+    }
+    this->soil.motion->loading.gravity = Vec<dim>{1, -9.81};
+  }
+};
+
+/// A scene's [water] of the bulk modulus above.
+inline std::string water(const std::string &more = "") { return "[water]\nbulk_modulus = 2e7\n" + more; }
+
+template <int dim, class Phases>
+struct PoreEquations : Equations<dim, Phases> {
+  using Base = Equations<dim, Phases>;
+  using V = typename Base::V;
+  using Nodes = typename Base::Nodes;
+  using Corners = Eigen::Matrix<double, dim + 1, 1>;
+  static constexpr double curve_pressure = 1e4;
+
+  /// `smooths`: pressures are smoothed through nodes; `bishop`: the pores act by the mean of their pressures;
+  /// `pressed`: a group of facets beyond which the liquid has the pressure `beyond`, or none.
+  PoreEquations(const Soil<dim, Phases> &soil, bool smooths, bool bishop, const char *pressed = nullptr,
+                double beyond = 0)
+      : Base(soil), smooths(smooths) {
+    for (int d = 0; d < dim; ++d) g[d] = soil.motion->loading.gravity[d];
+    std::vector<double> grains(this->cells, 0), pressure;
+    liquid.assign(this->cells, 0), row.assign(this->cells, Corners::Zero());
+    for (int p = 0; p < this->particles.count; ++p) {
+      const int c = this->particles.cell[p];
+      grains[c] += this->particles.mass[p], liquid[c] += this->particles.fluid_mass[0][p];
+      row[c] += this->particles.mass[p] * this->N[p];
+    }
+    for (int c = 0; c < this->cells; ++c) {
+      const double content = liquid[c] / (this->particle_volume[c] - grains[c] / grain_density);
+      saturation.push_back(saturation_of(content));
+      density.push_back(content / saturation[c]);
+      pressure.push_back(water_bulk * (density[c] / water_density - 1));  // (3.1), (3.2)
+      const Corners mean = this->share[c] / this->particle_volume[c];
+      reference.push_back(mean + this->blend[c] * (Corners::Constant(1. / (dim + 1)) - mean));
+      head.push_back(water_density * g.dot(point(c, reference[c])));
+      own.push_back(pressure[c] + head[c] - water_density * g.dot(point(c, mean)));
+      smooth.push_back(pressure[c] - water_density * g.dot(point(c, mean)));
+    }
+    if (Phases::suction) share_pressure(smooth);
+    smooth = smoothed(smooth);
+    for (int c = 0; c < this->cells; ++c) {
+      smooth[c] += head[c];  // (4.3)
+      const double p = full(c) ? smooth[c] : own[c];
+      acting.push_back(!Phases::suction ? p : bishop ? saturation[c] * p : std::max(0., p));  // (4.2)
+    }
+    for (auto *x : {&volume, &mass, &whole, &conductivity, &saturated}) x->assign(this->nodes, 0);
+    for (auto *x : {&area, &push, &thrust, &taken, &gap}) x->assign(this->nodes, V::Zero());
+    for (int c = 0; c < this->cells; ++c)
+      for (int k = 0; k <= dim; ++k) {
+        const int i = this->mesh.cells[c].node[k];
+        const double part = this->weight[c] * reference[c][k];
+        const V gradient = this->weight[c] * this->shape[c].gradient.row(k).transpose();
+        volume[i] += part, whole[i] += part * density[c];
+        conductivity[i] += part * full_conductivity * std::pow(saturation[c], 3);  // (2.1)
+        saturated[i] += part * full_conductivity;
+        mass[i] += liquid[c] / row[c].sum() * row[c][k];
+        area[i] += gradient, push[i] += smooth[c] * gradient, thrust[i] += acting[c] * gradient;
+      }
+    if (pressed)
+      for (const Facet<dim> &f : this->mesh.facets(pressed))
+        for (int i : f.node)
+          taken[i] +=
+              std::min(1., this->weight[f.cell] / this->shape[f.cell].volume) * f.area / dim * map<dim>(f.normal);
+    for (int i = 0; i < this->nodes; ++i) {
+      conductivity[i] /= volume[i], saturated[i] /= volume[i];
+      const V rest = area[i] - taken[i];
+      const double edge = this->mesh.mean_edge[i];
+      if (rest.norm() < (dim == 2 ? 0.3 * edge : 0.09 * edge * edge)) gap[i] = rest;
+      if (taken[i].norm() > 0) {  // the mean with the soil as it is beyond the face
+        const double s = Phases::suction ? std::max(0., -beyond) : 0;
+        conductivity[i] = (conductivity[i] + saturated[i] * std::pow(effective(s), 3)) / 2;
+      }
+    }
+    this->beyond = beyond;
+  }
+
+  static double effective(double suction) { return 1 / std::sqrt(1 + std::pow(suction / curve_pressure, 2)); }
+  /// S of S rho(-s(S)) = content (3.2); 1 in full pores (3.1).
+  static double saturation_of(double content) {
+    if (!Phases::suction || content >= water_density) return 1;
+    double low = 0, high = 1e6;
+    for (int i = 0; i < 200; ++i) {
+      const double s = (low + high) / 2;
+      (effective(s) * water_density * (1 - s / water_bulk) > content ? low : high) = s;
+    }
+    return effective(low);
+  }
+  bool full(int c) const { return saturation[c] >= 0.99; }
+  V point(int c, const Corners &n) const {
+    V x = V::Zero();
+    for (int k = 0; k <= dim; ++k) x += n[k] * this->place[this->mesh.cells[c].node[k]];
+    return x;
+  }
+  /// A f of (4.3): means over the full cells of a node, then over the nodes of a full cell.
+  std::vector<double> smoothed(std::vector<double> f) const {
+    if (!smooths) return f;
+    std::vector<double> sum(this->nodes, 0), all(this->nodes, 0);
+    for (int c = 0; c < this->cells; ++c)
+      for (int i : this->mesh.cells[c].node)
+        if (full(c)) sum[i] += this->weight[c] * f[c], all[i] += this->weight[c];
+    for (int c = 0; c < this->cells; ++c) {
+      if (!full(c)) continue;
+      f[c] = 0;
+      for (int i : this->mesh.cells[c].node) f[c] += sum[i] / all[i] / (dim + 1);
+    }
+    return f;
+  }
+  /// W - V of (4.8a), in cells that are not full.
+  double beyond_particles(int c) const { return full(c) ? 0 : this->weight[c] - this->particle_volume[c]; }
+  /// The adjoint of (4.8a), on pressures.
+  void share_pressure(std::vector<double> &p) const {
+    std::vector<double> sum(this->nodes, 0), all(this->nodes, 0);
+    for (int c = 0; c < this->cells; ++c)
+      for (int i : this->mesh.cells[c].node)
+        sum[i] += this->particle_volume[c] * p[c], all[i] += this->particle_volume[c];
+    for (int c = 0; c < this->cells; ++c) {
+      double around = 0;
+      for (int i : this->mesh.cells[c].node) around += sum[i] / all[i] / (dim + 1);
+      p[c] += beyond_particles(c) / this->weight[c] * (around - p[c]);
+    }
+  }
+  /// Q / M of (4.6), the rate of drag [1/s].
+  double drag(int i) const { return mass[i] * volume[i] / (whole[i] * conductivity[i]) / whole[i]; }
+
+  /// Accelerations of skeleton and liquid (4.4), (4.5), with explicit drag (4.6b) of the velocities given.
+  std::array<Nodes, 2> accelerations(const std::array<Nodes, 2> *velocity = nullptr) const {
+    Nodes force = this->internal_force(this->stress, true), of_liquid(this->nodes);
+    for (int i = 0; i < this->nodes; ++i) {
+      const double heavier = water_density * volume[i] / whole[i];  // omega
+      of_liquid[i] = push[i] / whole[i] + heavier * g - beyond * taken[i] / whole[i];
+      force[i] += thrust[i] + (this->Base::mass[i] + heavier * mass[i]) * g;
+    }
+    for (int c = 0; c < this->cells; ++c)  // (5.1): no force of a gap
+      for (int k = 0; k <= dim; ++k) {
+        const int i = this->mesh.cells[c].node[k];
+        const double at_node = smooth[c] + water_density * g.dot(this->place[i] - point(c, reference[c]));
+        of_liquid[i] -= this->weight[c] * reference[c][k] * at_node / volume[i] / whole[i] * gap[i];
+      }
+    for (int i = 0; i < this->nodes; ++i) {
+      if (velocity) of_liquid[i] -= drag(i) * ((*velocity)[1][i] - (*velocity)[0][i]);
+      force[i] = (force[i] - mass[i] * of_liquid[i]) / this->Base::mass[i];
+    }
+    return {force, of_liquid};
+  }
+
+  bool smooths;
+  double beyond = 0;
+  V g = V::Zero();
+  std::vector<double> liquid, saturation, density, head, own, smooth, acting;  ///< of cells
+  std::vector<Corners> reference, row;                                         ///< of cells
+  std::vector<double> volume, mass, whole, conductivity, saturated;  ///< of nodes: V, m, M, k, k of full pores
+  Nodes area, push, thrust, taken, gap;                              ///< of nodes: G and its parts, forces
+};
+
+/// Velocities of skeleton and liquid as the motion numbers nodes, and back.
+template <int dim, class Phases>
+std::vector<double> to_motion(const Box<dim, Phases> &box,
+                              const std::array<typename Equations<dim, Phases>::Nodes, 2> &x) {
+  std::vector<double> all(box.soil.motion->size());
+  for (int a = 0; a < 2; ++a)
+    for (int i = 0; i < box.soil.mesh.node_count(); ++i)
+      for (int d = 0; d < dim; ++d)
+        all[(a * box.soil.mesh.node_count() + box.soil.motion->grid().find_node(i)) * dim + d] = x[a][i][d];
+  return all;
+}
+template <int dim, class Phases>
+std::array<typename Equations<dim, Phases>::Nodes, 2> both_from_motion(const Box<dim, Phases> &box, const double *x) {
+  const int nodes = box.soil.mesh.node_count();
+  std::array<typename Equations<dim, Phases>::Nodes, 2> all;
+  for (int a = 0; a < 2; ++a) {
+    all[a].resize(nodes);
+    for (int i = 0; i < nodes; ++i)
+      for (int d = 0; d < dim; ++d) all[a][i][d] = x[(a * nodes + box.soil.motion->grid().find_node(i)) * dim + d];
+  }
+  return all;
+}
+
+}  // namespace talus
