@@ -139,9 +139,12 @@ void print_scales(const Needs &n) {
          scales::fall_speed(layer.height, n.gravity) / layer.wave_speed);
   }
   for (const BodyNeeds &b : n.bodies)
-    if (b.softening > 0)
-      line("", "strength of %s decreases with plastic strain at %.2g of 2 G in cells of %.3g m", b.body.name.c_str(),
-           b.softening, b.body.cell_size);
+    if (b.softening.slope > 0)
+      line("",
+           "strength of %s decreases with plastic strain at %.2g of 2 G %s %.3g m; a slip surface of %.3g m spreads",
+           b.body.name.c_str(), b.softening.slope,
+           b.averaging_length > 0 ? "in bands of twice the averaging_length," : "in cells of",
+           b.averaging_length > 0 ? 2 * b.averaging_length : b.body.cell_size, b.softening.critical_length);
   const Drainage &d = n.drainage;
   if (d.time == 0) return;
   line("drainage", "in %s: drained (T = c_v t / L2 > %g) for k above %.1g m/s, undrained (T < %g) for k below %.1g m/s",
@@ -176,7 +179,8 @@ void print_json(const Scene &scene, const Needs &n, const std::vector<std::strin
         .add("shear_wave_speed_m_s", b.shear_speed)
         .add("cell_size_m", b.body.cell_size)
         .add("critical_step_s", b.body.critical_step)
-        .add("softening_slope_over_2G", b.softening)
+        .add("softening_slope_over_2G", b.softening.slope)
+        .add("critical_slip_length_m", b.softening.critical_length)
         .str();
   };
   const auto stage = [](const StageNeeds &s) {

@@ -16,6 +16,7 @@ Action add_soil(CLI::App &app);
 Action add_plot(CLI::App &app);
 Action add_bench(CLI::App &app);
 Action add_compare(CLI::App &app);
+Action add_converge(CLI::App &app);
 Action add_verify(CLI::App &app);
 Action add_describe(CLI::App &app);
 

@@ -28,24 +28,6 @@ double size_of(const std::vector<double> &v) {
   return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.));
 }
 
-/// Slope of strength over plastic strain at its steepest, over 2 G, where the mean stress is `pressure`.
-double softening(const Law &law, double cell_size, double pressure) {
-  return std::visit(
-      [&](auto one) -> double {
-        if constexpr (requires { one.softens(); }) {
-          if (!one.softens()) return 0;
-          one.prepare();
-          const double scale = one.reference_size > 0 ? cell_size / one.reference_size : 1;
-          const double drop = one.cohesion * std::cos(one.friction_angle) -
-                              one.residual_c * std::cos(one.residual_phi) +
-                              pressure * (std::sin(one.friction_angle) - std::sin(one.residual_phi));
-          return one.shape_factor * scale * drop / (2 * one.shear_modulus());
-        }
-        return 0;
-      },
-      law);
-}
-
 /// Does softening depend on the size of the cells?
 bool unscaled(const Law &law) {
   return std::visit(
@@ -63,18 +45,6 @@ BodyNeeds needs_of(const BodyReport &report, const BodySource &source) {
   b.wave_speed = std::sqrt(constrained_modulus(b.law) / b.density);
   b.shear_speed = std::sqrt(shear_modulus(b.law) / b.density);
   return b;
-}
-
-/// How far a point lies below the top of all soil, times |gravity| [m2/s2].
-double head_above(const Scene &scene, const std::array<double, 3> &x, const std::vector<BodyNeeds> &bodies) {
-  double head = 0;
-  for (int d = 0; d < scene.dimension; ++d) {
-    double top = -std::numeric_limits<double>::infinity();  // against gravity
-    for (const BodyNeeds &b : bodies)
-      top = std::max(top, -scene.gravity[d] * (scene.gravity[d] < 0 ? b.body.high[d] : b.body.low[d]));
-    head += top + scene.gravity[d] * x[d];
-  }
-  return head;
 }
 
 LayerNeeds layer_of(const Scene &scene, const std::vector<BodyNeeds> &bodies, double gravity) {
@@ -153,6 +123,7 @@ class Adviser {
   std::vector<std::string> all() {
     if (!needs_.burst_failure.empty()) say("The run breaks off in its first steps: " + needs_.burst_failure + ".");
     for (const BodyNeeds &b : needs_.bodies) particles(b), locking(b), softening(b), yielding_ground(b);
+    for (const std::string &sentence : needs_.brittle) say(sentence);
     stiffness();
     start();
     for (std::size_t i = 0; i < scene_.stage.size(); ++i) stage(scene_.stage[i]);
@@ -190,7 +161,8 @@ class Adviser {
   }
 
   void softening(const BodyNeeds &b) {
-    if (b.softening == 0) return;
+    const double slope = b.softening.slope;
+    if (slope == 0) return;
     if (b.averaging_length > 0) return;  // bands are wider than a cell, and cells do not snap back alone
     if (unscaled(b.law))
       say(b.body.name +
@@ -198,10 +170,10 @@ class Adviser {
           "the element size to which shape_factor belongs, or an averaging_length.");
     constexpr double snap_back =
         0.87;  // sqrt(3) / 2: strength of simple shear falls as fast as elastic strain gives way
-    if (b.softening > snap_back / 2)
-      say("Strength of " + b.body.name + " decreases with plastic strain at " + digits(b.softening, 2) +
+    if (slope > snap_back / 2)
+      say("Strength of " + b.body.name + " decreases with plastic strain at " + digits(slope, 2) +
           " of 2 G in cells of " + digits(b.body.cell_size) + " m, " +
-          (b.softening > snap_back ? "above the " : "near the ") + digits(snap_back) +
+          (slope > snap_back ? "above the " : "near the ") + digits(snap_back) +
           " at which a sheared cell snaps back and loses its strength at once; take smaller cells with a "
           "reference_size, or a smaller shape_factor.");
   }
@@ -377,11 +349,11 @@ Needs find_needs(Scene &scene) {
     if (reports[b].critical_step < reports[needs.slowest].critical_step) needs.slowest = static_cast<int>(b);
   }
   needs.layer = layer_of(scene, needs.bodies, needs.gravity);
-  for (BodyNeeds &b : needs.bodies) {
-    std::array<double, 3> middle;
-    for (int d = 0; d < 3; ++d) middle[d] = (b.body.low[d] + b.body.high[d]) / 2;
-    b.softening = softening(b.law, b.body.cell_size, b.density * head_above(scene, middle, needs.bodies));
-  }
+  std::vector<Law> laws;
+  for (const BodyNeeds &b : needs.bodies) laws.push_back(b.law);
+  const std::vector<Softening> softening = softening_of(scene, laws, reports);
+  for (std::size_t b = 0; b < reports.size(); ++b) needs.bodies[b].softening = softening[b];
+  needs.brittle = brittle_soils(scene, laws, reports);
   const StepRule rule = step_rule(read_integrator(scene.integrator, fluids_move(scene.phases)));
   needs.critical_step = rule.bound == FrequencyBound::mesh || scene.water.drag == PoreDrag::at_start
                             ? simulation->critical_step()

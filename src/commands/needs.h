@@ -5,6 +5,7 @@
 
 #include "physics/laws/laws.h"
 #include "simulation.h"
+#include "simulation/softening.h"
 #include "solvers/integrators.h"
 
 namespace talus {
@@ -15,8 +16,7 @@ struct BodyNeeds {
   double density = 0;                      ///< mean [kg/m3]
   double wave_speed = 0, shear_speed = 0;  ///< elastic, c_p and c_s [m/s]
   double averaging_length = 0;             ///< of the plastic strain that softens [m]; 0: none
-  double softening =
-      0;  ///< slope at which strength falls with plastic strain, over 2 G [-]; 0: the soil does not soften
+  Softening softening;
 };
 
 /// All bodies taken for one layer, as high as they reach together.
@@ -49,18 +49,19 @@ struct Needs {
   std::vector<BodyNeeds> bodies;
   LayerNeeds layer;
   std::vector<StageNeeds> stages;
-  Drainage drainage;            ///< time = 0 without gravity
-  double gravity;               ///< [m/s2]
-  int slowest;                  ///< body that sets the critical step
-  double critical_step;         ///< [s]
-  double altitude_rule;         ///< smallest altitude over the largest wave speed [s]
-  double step;                  ///< taken [s]
-  bool fixed_step;              ///< given by the scene
-  int burst_steps = 0;          ///< timed
-  double seconds_per_step = 0;  ///< of wall time
-  std::string burst_failure;    ///< why the burst broke off; empty if it did not
-  double memory;                ///< resident after the burst, over all ranks [B]
-  double results;               ///< snapshots on disk [B]
+  std::vector<std::string> brittle;  ///< sentences on soils that soften fast for the height of the ground
+  Drainage drainage;                 ///< time = 0 without gravity
+  double gravity;                    ///< [m/s2]
+  int slowest;                       ///< body that sets the critical step
+  double critical_step;              ///< [s]
+  double altitude_rule;              ///< smallest altitude over the largest wave speed [s]
+  double step;                       ///< taken [s]
+  bool fixed_step;                   ///< given by the scene
+  int burst_steps = 0;               ///< timed
+  double seconds_per_step = 0;       ///< of wall time
+  std::string burst_failure;         ///< why the burst broke off; empty if it did not
+  double memory;                     ///< resident after the burst, over all ranks [B]
+  double results;                    ///< snapshots on disk [B]
   int snapshots, ranks;
 
   double run_time() const;  ///< of all stages at their longest [s]

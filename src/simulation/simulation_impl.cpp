@@ -1,5 +1,6 @@
 #include "simulation/simulation_impl.h"
 
+#include "simulation/softening.h"
 #include "simulation/stages/stage_runner.h"
 
 namespace talus {
@@ -20,6 +21,8 @@ void Simulation<dim>::run() {
 /// What is written of the state at the start.
 template <int dim>
 void Simulation<dim>::begin() {
+  for (const std::string &sentence : brittle_soils(run_.scene, run_.world.laws, run_.world.report()))
+    run_.recorder.note("warning: " + sentence);
   run_.recorder.write_history();
   if (run_.options.gauss_points && is_static(run_.scene.stage.front().kind)) run_.statics.prepare();
   run_.recorder.write_snapshot();

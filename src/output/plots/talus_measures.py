@@ -137,6 +137,42 @@ def largest_displacement_near(results, place, within, at_snapshot=0):
     return last.scalar("displacement")[0][near].max()
 
 
+@measure
+def largest_share_displacement(results, share=0.999):
+    """The displacement that this share of the mass has at most at the end [m]: the largest, without single particles."""
+    last = results.snapshots[-1]
+    moved, mass = last.scalar("displacement")[0], last.column("mass").values[:, 0]
+    order = np.argsort(moved)
+    return float(moved[order][np.searchsorted(np.cumsum(mass[order]), share * mass.sum())])
+
+
+def slide(results, share=0.1):
+    """The soil that has moved by more than a tenth of the largest displacement at the end: its travel distance, which is the level distance from
+    its rear at the start to its front at the end along the mean direction of its motion [m], its volume [m3, or m3/m], the largest depth of its
+    lower face below the ground, and the x of this depth [m], both in the undeformed section. Depth and place are known to the spacing of particles. Snapshots without `displacement` or `volume` raise KeyError."""
+    last = results.snapshots[-1]
+    moved = last.column("displacement").values
+    size = np.linalg.norm(moved, axis=1)
+    inside = size > share * largest_share_displacement(results)
+    up = results.up_axis()
+    level = [axis for axis in range(moved.shape[1]) if axis != up]
+    mean = moved[inside][:, level].mean(axis=0)
+    along = mean / np.linalg.norm(mean) if np.linalg.norm(mean) > 0 else np.eye(len(level))[0]
+    end = last.position()
+    start = end - moved
+    travel = (end[inside][:, level] @ along).max() - (start[inside][:, level] @ along).min()
+    volume = last.column("volume").values[:, 0]
+    column = np.floor(start[:, level] / (volume.mean() ** (1 / moved.shape[1]) * 1.5)).astype(int)
+    _, number = np.unique(column, axis=0, return_inverse=True)
+    number = number.reshape(-1)
+    ground, base = np.full(number.max() + 1, -np.inf), np.full(number.max() + 1, np.inf)
+    np.maximum.at(ground, number, start[:, up])
+    np.minimum.at(base, number[inside], start[inside, up])
+    deepest = int(np.argmax(ground - base))
+    place = start[number == deepest, level[0]].mean()
+    return float(travel), float(volume[inside].sum()), float(ground[deepest] - base[deepest]), float(place)
+
+
 # ---- fields ----
 
 @measure

@@ -310,8 +310,8 @@ def check_study(page, name, study, talus, write):
             if subprocess.run(command, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE if command[0] == talus else None).returncode:
                 print("  FAIL: a command failed")
                 return False
-        for name, source in study.get("copy", {}).items():
-            shutil.copy(f"{runs}/{source}", here / name)
+        for picture, source in study.get("copy", {}).items():
+            shutil.copy(f"{runs}/{source}", here / picture)
         if write:
             page.mark_checked(f"study.{name}")
             print(f"  written in {time.time() - start:.0f} s")

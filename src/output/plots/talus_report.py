@@ -31,11 +31,12 @@ def write_report(results, sections, histories):
     parts = [
         header(results),
         cards(key_results(results)),
+        warnings(results),
         summary(results),
         section("Sections", "".join(field_block(*one) for one in sections)),
         section("Histories", grid(histories)),
         folded("Scene as run", results.scene_text),
-        folded("Last lines of the log", "\n".join(results.log_lines(LOG_LINES)), is_open=True),
+        folded("Last lines of the log", "\n".join(results.log_lines()[-LOG_LINES:]), is_open=True),
     ]
     page = PAGE.format(title=html.escape(results.title), css=css, body="".join(parts), foot=html.escape(results.program))
     path = results.folder / "report.html"
@@ -49,6 +50,12 @@ def header(results):
              f"{thousands(last.step)} steps to t = {last.time:.4g} s"]
     return (f'<header><p class="kicker">Talus · report of a run</p><h1>{html.escape(results.title)}</h1>'
             f"<p>{' · '.join(html.escape(str(fact)) for fact in facts)}</p></header>\n")
+
+
+def warnings(results):
+    """What the run warned of in its log, each sentence once."""
+    found = dict.fromkeys(line.split("  warning: ", 1)[1] for line in results.log_lines() if "  warning: " in line)
+    return section("Warnings", "".join(f"<p>{html.escape(sentence)}</p>" for sentence in found))
 
 
 def key_results(results):

@@ -181,10 +181,10 @@ class Results:
         _, first, number = np.unique(np.round(position / (1e-9 * size)), axis=0, return_index=True, return_inverse=True)
         return position[first], number.reshape(-1)[cells]
 
-    def log_lines(self, count):
-        """The last lines of run.log."""
+    def log_lines(self):
+        """The lines of run.log."""
         path = self.folder / "run.log"
-        return path.read_text(errors="replace").splitlines()[-count:] if path.exists() else []
+        return path.read_text(errors="replace").splitlines() if path.exists() else []
 
     def up_axis(self):
         """The axis that gravity acts along: y unless the scene says otherwise."""

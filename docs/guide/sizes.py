@@ -1,0 +1,38 @@
+#!/usr/bin/python3
+"""Do the cells decide? `sizes.py TALUS FOLDER` runs `talus converge` on the slope of the guide, as it is and with brittle softening, with eight
+cell sizes; writes sizes.csv beside itself, and FOLDER/three/converge.png with the three default sizes."""
+
+import csv
+import pathlib
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).parent
+SIZES = (0.8, 0.6, 0.5, 0.45, 0.4, 0.35, 0.3, 0.25)  # [m]
+BRITTLE = 100  # shape factor; the scene has 30
+
+
+def converge(talus, folder, *options):
+    """The rows of converge.csv. Status 1 is the verdict that the cells decide something."""
+    ended = subprocess.run([talus, "converge", HERE / "slope.toml", "-o", folder, *options], stdin=subprocess.DEVNULL)
+    if ended.returncode not in (0, 1):
+        sys.exit("talus converge failed")
+    with open(folder / "converge.csv", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def main():
+    talus, folder = sys.argv[1], pathlib.Path(sys.argv[2])
+    values = ["--values", ",".join(map(str, SIZES)), "--no-plot"]
+    converge(talus, folder / "three")
+    with open(HERE / "sizes.csv", "w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(["softening", "size_m", "load_time_s", "crest_m", "travel_m", "fails"])
+        for name, factor in (("shape_factor 30", 30), (f"shape_factor {BRITTLE}", BRITTLE)):
+            for row in converge(talus, folder / str(factor), *values, "--set", f"body.clay.shape_factor={factor}"):
+                numbers = [f"{float(row[key]):.3f}" if row[key] else "" for key in ("load_time_of_failure_s", "crest_displacement_m", "travel_distance_m")]
+                writer.writerow([name, row["value"], *numbers, row["fails"]])
+
+
+if __name__ == "__main__":
+    main()

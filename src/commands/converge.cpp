@@ -1,0 +1,176 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "commands/commands.h"
+#include "commands/comparison.h"
+#include "commands/gallery.h"
+#include "commands/trials.h"
+#include "output/script.h"
+#include "scene/quantity.h"
+#include "scene/reader.h"
+#include "scene/scene.h"
+#include "solvers/integrators.h"
+
+namespace talus {
+namespace {
+
+namespace fs = std::filesystem;
+
+enum class Refined { cells, steps, particles };
+
+struct ConvergeArguments {
+  std::string scene, directory;
+  Refined refined = Refined::cells;
+  std::vector<double> values;
+  std::vector<std::string> set;
+  double within = 5;  ///< [%]
+  int jobs = 0;
+  bool no_plot = false;
+};
+
+/// The keys that are refined together, at their values in the scene, and the refinement.
+struct Refinement {
+  std::map<std::string, double> keys;
+  std::vector<double> values;  ///< of the first key, from coarse to fine
+  std::string unit;            ///< of the values
+};
+
+Refinement cells_of(const Scene &scene, const std::vector<double> &values) {
+  const MeshSource &mesh = scene.mesh;
+  if (mesh.section.empty())
+    throw SceneError(
+        "converge --by cells needs a scene with mesh.section, whose cells it can make anew; the mesh file " +
+        mesh.file + " stays as it is: run the scene with meshes of your own, and compare the runs");
+  Refinement r{{{"mesh.size", mesh.size}}, values, "m"};
+  for (std::size_t i = 0; i < mesh.refine.size(); ++i)
+    r.keys["mesh.refine." + std::to_string(i) + ".size"] = mesh.refine[i].size;
+  if (values.empty()) r.values = {mesh.size * std::sqrt(2.), mesh.size, mesh.size / std::sqrt(2.)};
+  return r;
+}
+
+Refinement steps_of(const Scene &scene, const std::vector<double> &values) {
+  DeferredTable table = scene.integrator;
+  const IntegratorSettings settings = read_integrator(table, fluids_move(scene.phases));
+  Refinement r{{}, values, ""};
+  double at_most = 0;
+  if (const auto *controlled = std::get_if<ArkodeSettings>(&settings))
+    r.keys["integrator.velocity_tolerance"] = at_most = controlled->velocity_tolerance, r.unit = "m/s";
+  else if (const StepRule rule = step_rule(settings); rule.fixed > 0)
+    r.keys["integrator.step"] = at_most = rule.fixed, r.unit = "s";
+  else
+    r.keys["integrator.fraction"] = at_most = rule.share;
+  // the scene's own step is the largest, as larger ones may be unstable
+  if (values.empty()) r.values = {at_most, at_most / std::sqrt(2.), at_most / 2};
+  return r;
+}
+
+Refinement particles_of(const Scene &scene, const std::vector<double> &values) {
+  Refinement r{{}, values, ""};
+  for (const BodySource &body : scene.body) r.keys["body." + body.name + ".particles_per_cell"] = 1;
+  if (values.empty())
+    r.values = scene.dimension == 2 ? std::vector<double>{3., 6., 12.} : std::vector<double>{4., 8., 20.};
+  return r;
+}
+
+Refinement refinement_of(const Scene &scene, const ConvergeArguments &arguments) {
+  Refinement r = arguments.refined == Refined::cells   ? cells_of(scene, arguments.values)
+                 : arguments.refined == Refined::steps ? steps_of(scene, arguments.values)
+                                                       : particles_of(scene, arguments.values);
+  std::sort(r.values.begin(), r.values.end());
+  if (arguments.refined != Refined::particles) std::reverse(r.values.begin(), r.values.end());
+  if (std::adjacent_find(r.values.begin(), r.values.end()) != r.values.end() || r.values.size() < 3)
+    throw SceneError(
+        "converge --values needs three different values or more: two cannot show whether a result settles");
+  return r;
+}
+
+/// Four digits, so that sizes read well in tables and names.
+double rounded(double value) {
+  const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) - 3);
+  return unit < 1 ? std::round(value / unit) / std::round(1 / unit) : std::round(value);
+}
+
+std::vector<Trial> trials_of(const Refinement &r, const std::string &directory) {
+  std::vector<Trial> trials;
+  const double own = r.keys.count("mesh.size") ? r.keys.at("mesh.size") : r.keys.begin()->second;
+  for (const double value : r.values) {
+    Trial trial;
+    for (const auto &[key, start] : r.keys)
+      trial.overrides.push_back(key + "=" + shortest(rounded(start * value / own)));
+    trial.folder = (fs::path(directory) / ("run_" + shortest(rounded(value)))).string();
+    trials.push_back(trial);
+  }
+  return trials;
+}
+
+/// What the script needs to know of the runs.
+void write_runs(const std::string &path, const Refinement &r, const std::vector<Trial> &trials) {
+  std::ofstream file(path);
+  file << "value,unit,overrides,folder,processor_s,wall_s,failure\n";
+  for (std::size_t i = 0; i < trials.size(); ++i)
+    file << shortest(rounded(r.values[i])) << "," << r.unit << ",\"" << joined(trials[i].overrides) << "\","
+         << fs::path(trials[i].folder).filename().string() << "," << trials[i].cpu << "," << trials[i].wall << ",\""
+         << trials[i].cause << "\"\n";
+}
+
+int converge(ConvergeArguments arguments) {
+  require_one_rank("converge");
+  arguments.scene = find_scene(arguments.scene);
+  const Scene scene = read_scene(arguments.scene, arguments.set);
+  if (arguments.directory.empty())
+    arguments.directory = "results/converge_" + fs::path(arguments.scene).parent_path().filename().string();
+  const Refinement refinement = refinement_of(scene, arguments);
+  std::vector<Trial> trials = trials_of(refinement, arguments.directory);
+  std::vector<Trial *> pointers;
+  for (Trial &trial : trials) pointers.push_back(&trial);
+  run_trials({arguments.scene, arguments.set, arguments.jobs}, pointers);
+  write_runs(arguments.directory + "/runs.csv", refinement, trials);
+  const char *refined[] = {"cells", "steps", "particles"};
+  std::vector<std::string> words{arguments.directory, "--by", refined[static_cast<int>(arguments.refined)], "--within",
+                                 shortest(arguments.within / 100)};
+  if (arguments.no_plot) words.push_back("--no-plot");
+  const int status = run_script("talus_converge.py", words);
+  std::fprintf(stderr, "tables%s are in %s\n", arguments.no_plot ? "" : " and picture", arguments.directory.c_str());
+  return status;
+}
+
+}  // namespace
+
+Action add_converge(CLI::App &app) {
+  auto arguments = std::make_shared<ConvergeArguments>();
+  CLI::App *command = app.add_subcommand(
+      "converge", "run a scene with several cell sizes: do the cells decide whether, when and how far it slides?");
+  command->add_option("SCENE", arguments->scene, "scene file (.toml) or the name of a gallery scene")->required();
+  const std::map<std::string, Refined> names{
+      {"cells", Refined::cells}, {"steps", Refined::steps}, {"particles", Refined::particles}};
+  command->add_option("--by", arguments->refined, "what is refined: cells (mesh.size), steps, particles (per cell)")
+      ->transform(CLI::CheckedTransformer(names))
+      ->default_str("cells");
+  command
+      ->add_option(
+          "--values", arguments->values,
+          "three or more sizes [m], shares of the critical step, or numbers per cell, with commas between them "
+          "(default: the scene's size times 1.414, 1, 0.707; its step times 1, 0.707, 0.5; 3, 6, 12 particles "
+          "per triangle or 4, 8, 20 per tetrahedron)")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--within", arguments->within,
+                   "results that differ by no more than this share of the finest run's count as equal [%] (default 5)")
+      ->check(CLI::Range(0.01, 100.));
+  command->add_option("--set", arguments->set, "override a key in all runs: key.path=value")
+      ->take_all()
+      ->allow_extra_args(false);
+  command->add_option("-o,--output", arguments->directory,
+                      "folder of runs, converge.csv, converge.json and converge.png (default results/converge_NAME)");
+  command->add_option("-j,--jobs", arguments->jobs, "runs at the same time (default: one per core)")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("--no-plot", arguments->no_plot, "do not draw the picture");
+  return [arguments] { return converge(*arguments); };
+}
+
+}  // namespace talus

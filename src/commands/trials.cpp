@@ -1,0 +1,157 @@
+#include "commands/trials.h"
+
+#include <fcntl.h>
+#include <petscsys.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <thread>
+
+#include "base/child_environment.h"
+#include "scene/reader.h"
+#include "simulation.h"
+
+namespace talus {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string contents(const std::string &path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+/// What a run depends on: DIR/trial begins with it. The number stands for the texts of scene and mesh.
+std::string description(const TrialPlan &plan, const Trial &trial) {
+  std::vector<std::string> all = plan.set;
+  all.insert(all.end(), trial.overrides.begin(), trial.overrides.end());
+  const Scene scene = read_scene(plan.scene, all);
+  const std::string mesh = scene.mesh.file.empty() ? scene.mesh.section : scene.mesh.file;
+  return plan.scene + "\n" + joined(all) + "\n" +
+         std::to_string(std::hash<std::string>{}(scene.source + contents(mesh))) + "\n";
+}
+
+bool resume(const std::string &described, Trial &trial) {
+  std::ifstream file(trial.folder + "/trial");
+  std::string text, line;
+  for (int i = 0; i < 3 && std::getline(file, line); ++i) text += line + "\n";
+  if (text != described || !(file >> trial.failed >> trial.cpu >> trial.wall)) return false;
+  std::getline(file, line), std::getline(file, trial.cause);
+  return trial.done = true;
+}
+
+void remember(const std::string &described, const Trial &trial) {
+  std::ofstream(trial.folder + "/trial") << described << trial.failed << " " << trial.cpu << " " << trial.wall << "\n"
+                                         << trial.cause << "\n";
+}
+
+pid_t start(const TrialPlan &plan, const Trial &trial) {
+  fs::create_directories(trial.folder);
+  std::vector<std::string> words{"talus", "run", plan.scene, "-o", trial.folder, "--no-pictures"};
+  std::vector<std::string> overrides = plan.set;
+  overrides.insert(overrides.end(), trial.overrides.begin(), trial.overrides.end());
+  if (!overrides.empty()) words.push_back("--set"), words.insert(words.end(), overrides.begin(), overrides.end());
+  std::vector<char *> argv;
+  for (auto &word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 2, (trial.folder + "/screen").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  auto environment = environment_without_mpi();
+  pid_t child = -1;
+  const int error = posix_spawn(&child, "/proc/self/exe", &actions, nullptr, argv.data(), environment.data());
+  posix_spawn_file_actions_destroy(&actions);
+  if (error) throw std::runtime_error(std::string("cannot start a run: ") + std::strerror(error));
+  return child;
+}
+
+std::string last_line(const std::string &path) {
+  std::ifstream file(path);
+  std::string line, last;
+  while (std::getline(file, line))
+    if (!line.empty()) last = line;
+  return last;
+}
+
+void on_signal(int) { interrupted = 1; }
+
+/// Runs what is not done yet.
+void run_missing(const TrialPlan &plan, const std::vector<Trial *> &trials, const std::vector<std::string> &described) {
+  using Clock = std::chrono::steady_clock;
+  const auto seconds_since = [](Clock::time_point t) {
+    return std::chrono::duration<double>(Clock::now() - t).count();
+  };
+  const int jobs = plan.jobs ? plan.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  std::map<pid_t, std::pair<size_t, Clock::time_point>> running;
+  size_t next = 0, done = std::count_if(trials.begin(), trials.end(), [](const Trial *t) { return t->done; });
+  const size_t before = done;
+  const Clock::time_point begin = Clock::now();
+  if (before) std::fprintf(stderr, "%zu of %zu runs were completed before\n", before, trials.size());
+  while (done < trials.size() || !running.empty()) {
+    for (; next < trials.size() && static_cast<int>(running.size()) < jobs && !interrupted; ++next)
+      if (!trials[next]->done) running[start(plan, *trials[next])] = {next, Clock::now()};
+    if (running.empty()) break;
+    int status = 0;
+    rusage usage{};
+    const pid_t child = wait4(-1, &status, 0, &usage);
+    if (child < 0 && errno == EINTR) continue;
+    const auto found = running.find(child);
+    if (found == running.end()) continue;
+    const auto [number, began] = found->second;
+    Trial &trial = *trials[number];
+    trial.wall = seconds_since(began);
+    trial.cpu =
+        usage.ru_utime.tv_sec + usage.ru_stime.tv_sec + 1e-6 * (usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+    running.erase(found);
+    trial.done = true, ++done;
+    trial.failed = !WIFEXITED(status) || WEXITSTATUS(status) != 0;
+    if (trial.failed) trial.cause = last_line(trial.folder + "/screen");
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 2)
+      throw SceneError(trial.cause.substr(trial.cause.rfind("talus: ", 0) == 0 ? 7 : 0));
+    if (!interrupted) remember(described[number], trial);
+    const double left =
+        seconds_since(begin) / static_cast<double>(done - before) * static_cast<double>(trials.size() - done);
+    std::fprintf(stderr, "%zu of %zu: %s %s %s in %.3g s; about %.0f s left\n", done, trials.size(),
+                 trial.label.c_str(), joined(trial.overrides).c_str(), trial.failed ? "FAILED" : "done", trial.wall,
+                 left);
+  }
+  if (interrupted) throw std::runtime_error("interrupted; the same command continues with the missing runs");
+}
+
+}  // namespace
+
+std::string joined(const std::vector<std::string> &words) {
+  std::string text;
+  for (const std::string &word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+void run_trials(const TrialPlan &plan, const std::vector<Trial *> &trials) {
+  std::vector<std::string> described;
+  for (Trial *trial : trials) described.push_back(description(plan, *trial)), resume(described.back(), *trial);
+  std::signal(SIGINT, on_signal);
+  run_missing(plan, trials, described);
+}
+
+void require_one_rank(const std::string &command) {
+  int ranks;
+  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  if (ranks > 1)
+    throw SceneError("`talus " + command + "` starts its runs itself: call it on one rank, and give --jobs");
+}
+
+}  // namespace talus

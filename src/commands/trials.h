@@ -1,0 +1,38 @@
+#pragma once
+/// Runs of one scene with different overrides, each a process of its own, several at a time; for commands that compare
+/// runs. A run that was completed before is not repeated.
+#include <string>
+#include <vector>
+
+namespace talus {
+
+/// One run and its cost.
+struct Trial {
+  std::string label;                   ///< for progress lines
+  std::vector<std::string> overrides;  ///< key.path=value, in addition to those of all runs
+  std::string folder;                  ///< of its results
+  bool done = false, failed = false;   ///< failed: it ended with an error
+  std::string cause;                   ///< the last message of a run that failed
+  double cpu = 0, wall = 0;            ///< of the whole process, meshing included [s]
+};
+
+/// What all runs have in common.
+struct TrialPlan {
+  std::string scene;             ///< file
+  std::vector<std::string> set;  ///< overrides
+  int jobs = 0;                  ///< runs at the same time; 0: one per core
+};
+
+/// Words with a space between them.
+std::string joined(const std::vector<std::string> &words);
+
+/// Reads the scene of every run, which refuses bad keys before anything runs (SceneError), marks the runs whose folder
+/// has the results of the same scene, mesh and overrides as done, and runs the others, `jobs` at a time. A progress
+/// line per run goes to standard error. Throws SceneError where a run is refused, and std::runtime_error after an
+/// interrupt; called again, it continues with the missing runs.
+void run_trials(const TrialPlan &plan, const std::vector<Trial *> &trials);
+
+/// Refuses to start on several ranks (SceneError): the runs are processes of their own.
+void require_one_rank(const std::string &command);
+
+}  // namespace talus

@@ -1,0 +1,207 @@
+"""Judges the runs of `talus converge`: do cells (or steps, or particles) decide whether a slope fails, at which load, and how far it slides?
+
+Reads DIR/runs.csv, from the coarsest to the finest run, and the results that it names. Writes DIR/converge.csv, DIR/converge.json and
+DIR/converge.png, and prints a table and a verdict. Exit status: 0 if the refined quantity decides nothing, 1 if it decides something or a run
+broke off, as `talus verify` ends with 1 where a number does not hold.
+"""
+
+import argparse
+import csv
+import json
+import pathlib
+import sys
+
+from talus_measures import failure, largest_share_displacement, particles, slide, steps
+from talus_results import Results
+from talus_sections import BELOW, BESIDE, FOOT, HEAD, LEFT, RIGHT, TITLE, WIDTH, Colours, Painter, plt
+import talus_style as style
+
+THINGS = {"cells": "cell size", "steps": "time step", "particles": "number of particles per cell"}
+REMEDY = {
+    "cells": "Look at `talus check` for softening that is too brittle for these cells; give the soil an averaging_length, or take smaller "
+             "cells and look again. Until then rely on none of these numbers more than on their scatter",
+    "steps": "Take smaller steps and look again",
+    "particles": "Take more particles per cell and look again",
+}
+
+
+# ---- what a run says ----
+
+def outcome(results, cell):
+    """The numbers of one run; `cell` [m] is the size of its cells. None where there is nothing to say. A slope fails if the watched point of a
+    stage did, or if soil moved by more than a cell, also in a later stage."""
+    try:
+        failed_at = failure(results)[1]
+    except LookupError:
+        failed_at = None
+    moved = largest_share_displacement(results)
+    row = {"fails": failed_at is not None or moved > cell, "load_time_of_failure_s": failed_at, "largest_displacement_m": moved}
+    history = results.history
+    for name in history.points(0) if history else {}:
+        row[f"{name}_displacement_m"] = float(history.columns[f"{name}_displacement_m"][-1])
+    travel, volume, depth, place = slide(results) if moved > cell else (None, None, None, None)
+    row |= {"travel_distance_m": travel, "volume_of_slide_m3": volume, "depth_of_slide_m": depth, "deepest_at_x_m": place}
+    return row | {"steps": int(steps(results)), "particles": int(particles(results)), "cell_m": cell}
+
+
+def cell_size(results):
+    """Side of the regular triangle or tetrahedron of the mean size of all cells [m]."""
+    node, cell = results.mesh()
+    size = style.np.abs(style.np.linalg.det(node[cell[:, 1:]] - node[cell[:, :1]])).mean()
+    return float((2 * size / 3**0.5) ** 0.5 if cell.shape[1] == 3 else (2**0.5 * size) ** (1 / 3))
+
+
+# ---- the verdict ----
+
+def spread(values):
+    """Largest less least value, over the finest run's."""
+    return (max(values) - min(values)) / abs(values[-1]) if values[-1] else 0.0
+
+
+def settles(values, within, least=0.0):
+    """Whether refinement still changes a quantity: "equal" if all runs agree, "settles" if the changes decrease by half or more from each
+    refinement to the next and the last one is within the tolerance, else "open". Differences up to `least` count as none."""
+    allowed = max(within * abs(values[-1]), least)
+    if max(values) - min(values) <= allowed:
+        return "equal"
+    changes = [abs(b - a) for a, b in zip(values, values[1:])]
+    shrinking = all(2 * after <= before for before, after in zip(changes, changes[1:]))
+    return "settles" if shrinking and changes[-1] <= allowed else "open"
+
+
+def in_words(row, by):
+    return f"{row['value']:g} m" if by == "cells" else f"{row['value']:g}{' ' + row['unit'] if row['unit'] else ''}"
+
+
+def judge(rows, by, within):
+    """([sentence], whether the refined quantity decides something). `rows` from coarse to fine."""
+    thing = THINGS[by]
+    broken = [row for row in rows if row["failure"]]
+    rows = [row for row in rows if not row["failure"]]
+    sentences = [f"The run with {in_words(row, by)} broke off: {row['failure']}." for row in broken]
+    if len(rows) < 3:
+        return sentences + ["Fewer than three runs came to their end, so that nothing can be said."], True
+    standing, failing = [r for r in rows if not r["fails"]], [r for r in rows if r["fails"]]
+    if standing and failing:
+        names = [", ".join(in_words(row, by) for row in some) for some in (failing, standing)]
+        sentences.append(f"The slope fails with {names[0]} and stands with {names[1]}: the {thing} decides whether it fails.")
+        return sentences + [REMEDY[by] + "."], True
+    sentences.append(f"The slope {'fails' if failing else 'stands'} in all {len(rows)} runs.")
+    points = [key for key in rows[-1] if key.endswith("_displacement_m") and key != "largest_displacement_m"]
+    cell = max(row["cell_m"] for row in rows)
+    decides = bool(broken)
+    asked = [("load_time_of_failure_s", "The load time at failure", "s", 0.0), ("largest_displacement_m", "The largest displacement", "m", 0.0)]
+    asked += [(key, f"The displacement of {style.words(key[: -len('_displacement_m')])}", "m", 0.0) for key in points]
+    # rear, front and slip surface are known to a cell
+    asked += [("travel_distance_m", "The travel distance, from the rear of the slide to its front,", "m", cell), ("volume_of_slide_m3", "The volume of the slide", "m³", 0.0),
+              ("depth_of_slide_m", "The depth of the slip surface", "m", cell)]
+    for key, name, unit, least in asked:
+        values = [row.get(key) for row in rows]
+        if any(value is None for value in values):
+            continue
+        state = settles(values, within, least)
+        factor, unit = style.readable_unit(max(map(abs, values)), unit)
+        known = f" or one cell of {cell:.2g} m" if least and within * abs(values[-1]) < least else ""
+        text = (f"{name} is {factor * min(values):.3g} to {factor * max(values):.3g} {unit}, {100 * spread(values):.2g} % apart: ")
+        if state == "equal":
+            text += f"the {thing} does not decide it within {100 * within:g} %{known}."
+        elif state == "settles":
+            last = abs(values[-1] - values[-2])
+            text += f"it settles, and the last refinement changes it by {100 * last / abs(values[-1]):.2g} %"
+            text += f", less than one cell of {cell:.2g} m." if last > within * abs(values[-1]) else "."
+        else:
+            text += f"the {thing} decides it."
+            decides = True
+        sentences.append(text)
+    return sentences + ([REMEDY[by] + "."] if decides else []), decides
+
+
+# ---- tables and picture ----
+
+COLUMNS = (("load_time_of_failure_s", "failure at t [s]"), ("largest_displacement_m", "largest u [m]"), ("travel_distance_m", "travel [m]"),
+           ("volume_of_slide_m3", "volume [m3]"), ("depth_of_slide_m", "depth [m]"), ("deepest_at_x_m", "at x [m]"), ("steps", "steps"),
+           ("wall_s", "run time [s]"))
+
+
+def print_table(rows, by):
+    print(f"{by:>10} {'':>7} " + " ".join(f"{title:>16}" for _, title in COLUMNS))
+    for row in rows:
+        if row["failure"]:
+            print(f"{row['value']:>10g} broke off: {row['failure']}")
+            continue
+        shown = [f"{row[key]:>16,d}" if isinstance(row[key], int) else f"{'-' if row[key] is None else format(row[key], '.4g'):>16}" for key, _ in COLUMNS]
+        print(f"{row['value']:>10g} {'fails' if row['fails'] else 'stands':>7} " + " ".join(shown))
+
+
+def write_tables(rows, sentences, decides, by, within, folder):
+    names = list(dict.fromkeys(key for row in rows for key in row))
+    with open(folder / "converge.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, names, restval="")
+        writer.writeheader()
+        writer.writerows(rows)
+    page = {"by": by, "within": within, "decides": decides, "verdict": sentences, "runs": rows}
+    (folder / "converge.json").write_text(json.dumps(page, indent=1) + "\n")
+
+
+def draw(results, rows, by, path):
+    """Displacement and plastic strain at the end of all runs, side by side on the same scales."""
+    painters = [Painter(one, [one.snapshots[-1]]) for one in results]
+    lasts = [one.snapshots[-1] for one in results]
+    fields = [field for field in ("displacement", "plastic_strain") if all(last.scalar(field) is not None for last in lasts)]
+    low = style.np.min([painter.corners[0][0] for painter in painters], axis=0)
+    high = style.np.max([painter.corners[0][1] for painter in painters], axis=0)
+    for painter in painters:
+        painter.corners[0] = (low, high)
+    columns = len(results)
+    wide = (WIDTH - LEFT - RIGHT - BESIDE * (columns - 1)) / columns
+    tall = wide * (high[1] - low[1]) / (high[0] - low[0])
+    height = HEAD + len(fields) * (TITLE + tall + BELOW) + FOOT
+    figure = plt.figure(figsize=(WIDTH, height))
+    for n, field in enumerate(fields):
+        colours = Colours(field, lasts)
+        top = height - HEAD - TITLE - n * (TITLE + tall + BELOW)
+        for k, (painter, last, row) in enumerate(zip(painters, lasts, rows)):
+            left = LEFT + k * (wide + BESIDE)
+            axes = figure.add_axes([left / WIDTH, (top - tall) / height, wide / WIDTH, tall / height])
+            painter._panel(axes, last, field, 0, colours, False)
+            load = row["load_time_of_failure_s"]
+            how = "stands" if not row["fails"] else "fails" if load is None else f"fails at t = {load:.3g} s"
+            axes.set_title(f"{in_words(row, by)}: {how}" if n == 0 else "", loc="left", pad=5)
+            if n == len(fields) - 1:
+                axes.set_xlabel("x [m]")
+        bar = figure.add_axes([1 - (RIGHT - 0.22) / WIDTH, (top - tall) / height, 0.15 / WIDTH, tall / height])
+        figure.colorbar(plt.cm.ScalarMappable(colours.norm, colours.map), cax=bar, extend="max" if colours.beyond else "neither")
+        bar.set_title(f"{style.SYMBOL[field]} {colours.unit}".strip(), fontsize=9, pad=6)
+    figure.text(LEFT / WIDTH, 1 - 0.2 / height, f"At the end, by {THINGS[by]}", fontsize=13, fontweight="bold", va="center")
+    figure.text(1 - 0.25 / WIDTH, 1 - 0.2 / height, results[0].title, fontsize=9, color=style.SOFT, va="center", ha="right")
+    return style.save(figure, path)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=pathlib.Path, metavar="DIR")
+    parser.add_argument("--by", choices=THINGS, required=True)
+    parser.add_argument("--within", type=float, required=True, help="differences up to this share count as none")
+    parser.add_argument("--no-plot", action="store_true")
+    given = parser.parse_args()
+    with open(given.folder / "runs.csv", newline="") as file:
+        runs = list(csv.DictReader(file))
+    rows, ended = [], []
+    for run in runs:
+        row = {"value": float(run["value"]), "unit": run["unit"], "overrides": run["overrides"], "wall_s": float(run["wall_s"]),
+               "processor_s": float(run["processor_s"]), "failure": run["failure"]}
+        if not row["failure"]:
+            ended.append(Results(given.folder / run["folder"]))
+            row |= outcome(ended[-1], cell_size(ended[-1]))
+        rows.append(row)
+    sentences, decides = judge(rows, given.by, given.within)
+    print_table(rows, given.by)
+    print("\n" + "\n".join(sentences))
+    write_tables(rows, sentences, decides, given.by, given.within, given.folder)
+    if ended and not given.no_plot:
+        draw(ended, [row for row in rows if not row["failure"]], given.by, given.folder / "converge.png")
+    return 1 if decides else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,55 @@
+"""The verdict of `talus converge` on numbers: argument 1 is the folder of the scripts."""
+
+import sys
+import unittest
+
+sys.path.insert(0, sys.argv.pop(1))
+from talus_converge import judge, settles  # noqa: E402
+
+
+def rows(**columns):
+    """Runs with cells of 0.4, 0.2 and 0.1 m that fail, with these quantities."""
+    runs = [{"value": size, "unit": "m", "failure": "", "fails": True, "cell_m": size, "largest_displacement_m": 2.0} for size in (0.4, 0.2, 0.1)]
+    for key, values in columns.items():
+        for run, value in zip(runs, values):
+            run[key] = value
+    return runs
+
+
+class Verdicts(unittest.TestCase):
+    def test_equal_within_the_tolerance_counts_from_largest_to_least(self):
+        self.assertEqual(settles([1.02, 0.98, 1.0], 0.05), "equal")
+        self.assertEqual(settles([0.97, 1.03, 1.0, 1.03, 1.0], 0.05), "open")  # each within 3 % of the finest, but 6 % apart
+
+    def test_a_sequence_settles_only_if_its_changes_halve(self):
+        self.assertEqual(settles([1.2, 1.04, 1.0], 0.05), "settles")
+        self.assertEqual(settles([1.08, 1.0, 1.049], 0.05), "open")  # the last change is small enough, but not half of the first
+        self.assertEqual(settles([1.5, 1.2, 1.06, 1.0], 0.05), "open")  # halves, but changes by 6 % at last
+
+    def test_a_place_is_known_to_a_cell(self):
+        self.assertEqual(settles([3.4, 3.0, 3.2], 0.05, least=0.4), "equal")
+        self.assertEqual(settles([3.5, 3.0, 3.45], 0.05, least=0.4), "open")
+
+    def test_that_some_fail_and_some_stand_is_the_verdict(self):
+        sentences, decides = judge(rows(fails=[True, False, True]), "cells", 0.05)
+        self.assertTrue(decides)
+        self.assertEqual(sentences[0], "The slope fails with 0.4 m, 0.1 m and stands with 0.2 m: the cell size decides whether it fails.")
+
+    def test_the_load_may_be_settled_while_the_run_out_is_not(self):
+        runs = rows(load_time_of_failure_s=[13.2, 13.4, 13.3], crest_displacement_m=[6.0, 4.0, 5.0])
+        sentences, decides = judge(runs, "cells", 0.05)
+        self.assertTrue(decides)
+        self.assertIn("The load time at failure is 13.2 to 13.4 s, 1.5 % apart: the cell size does not decide it within 5 %.", sentences)
+        self.assertIn("The displacement of crest is 4 to 6 m, 40 % apart: the cell size decides it.", sentences)
+        self.assertFalse(judge(rows(load_time_of_failure_s=[13.2, 13.4, 13.3]), "cells", 0.05)[1])
+
+    def test_a_run_that_broke_off_is_no_agreement(self):
+        runs = rows() + [{"value": 0.05, "unit": "m", "failure": "a particle left the mesh"}]
+        sentences, decides = judge(runs, "cells", 0.05)
+        self.assertTrue(decides)
+        self.assertEqual(sentences[0], "The run with 0.05 m broke off: a particle left the mesh.")
+        self.assertTrue(judge(rows()[:2], "cells", 0.05)[1])  # two runs show nothing
+
+
+if __name__ == "__main__":
+    unittest.main()
