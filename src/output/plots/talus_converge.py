@@ -19,7 +19,7 @@ import talus_style as style
 THINGS = {"cells": "cell size", "steps": "time step", "particles": "number of particles per cell"}
 REMEDY = {
     "cells": "Look at `talus check` for softening that is too brittle for these cells; give the soil an averaging_length, or take smaller "
-             "cells and look again. Until then rely on none of these numbers more than on their scatter",
+             "cells and look again. Until then their scatter is the error of these numbers",
     "steps": "Take smaller steps and look again",
     "particles": "Take more particles per cell and look again",
 }
