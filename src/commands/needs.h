@@ -16,7 +16,7 @@ struct BodyNeeds {
   double density = 0;                      ///< mean [kg/m3]
   double wave_speed = 0, shear_speed = 0;  ///< elastic, c_p and c_s [m/s]
   double averaging_length = 0;             ///< of the plastic strain that softens [m]; 0: none
-  Softening softening;
+  Softening softening = {};
 };
 
 /// All bodies taken for one layer, as high as they reach together.

@@ -28,9 +28,9 @@ std::vector<Softening> softening_of(const Scene &scene, const std::vector<Law> &
 /// A sentence for each body whose critical length is less than 1.5 times the height of all soil. Slip surfaces of
 /// slopes are that long or longer. Where the critical length exceeds them, a surface loses strength along all its
 /// length before the slope falls, and the load at failure hardly depends on the mesh. Where it is less, a slope falls
-/// from one place inside it, at a load that depends on the cells and on the initial stress. Measured on the slope of
-/// the guide, eight cell sizes between 0.25 and 0.8 m: loads at failure are 6 % apart where the critical length is
-/// twice the height, 19 % at 1.3, and 63 % at 0.8.
+/// from one place inside it, at a load that depends on the cells and on the initial stress. docs/theory/README.md,
+/// below (2.12): loads at failure with seven cell sizes are 4 % apart where the critical length is twice the height,
+/// 19 % at 1.3, and 67 % at 0.8.
 std::vector<std::string> brittle_soils(const Scene &scene, const std::vector<Law> &laws,
                                        const std::vector<BodyReport> &bodies);
 

@@ -28,8 +28,8 @@ REMEDY = {
 # ---- what a run says ----
 
 def outcome(results, cell):
-    """The numbers of one run; `cell` [m] is the size of its cells. None where there is nothing to say. A slope fails if the watched point of a
-    stage did, or if soil moved by more than a cell, also in a later stage."""
+    """The numbers of one run; None where there is nothing to say. A slope fails if the watched point of a stage did, or if soil moved by more than
+    `cell` [m], the largest cell size of all runs, also in a later stage."""
     try:
         failed_at = failure(results)[1]
     except LookupError:
@@ -41,7 +41,7 @@ def outcome(results, cell):
         row[f"{name}_displacement_m"] = float(history.columns[f"{name}_displacement_m"][-1])
     travel, volume, depth, place = slide(results) if moved > cell else (None, None, None, None)
     row |= {"travel_distance_m": travel, "volume_of_slide_m3": volume, "depth_of_slide_m": depth, "deepest_at_x_m": place}
-    return row | {"steps": int(steps(results)), "particles": int(particles(results)), "cell_m": cell}
+    return row | {"steps": int(steps(results)), "particles": int(particles(results)), "cell_m": cell_size(results)}
 
 
 def cell_size(results):
@@ -53,9 +53,10 @@ def cell_size(results):
 
 # ---- the verdict ----
 
-def spread(values):
-    """Largest less least value, over the finest run's."""
-    return (max(values) - min(values)) / abs(values[-1]) if values[-1] else 0.0
+def percent(difference, values):
+    """A difference as a share of the finest run's value, "12 %"; round-off is 0."""
+    share = 100 * difference / abs(values[-1]) if values[-1] else 0.0
+    return f"{share:.2g} %" if share >= 0.01 else "0 %"
 
 
 def settles(values, within, least=0.0):
@@ -82,7 +83,7 @@ def judge(rows, by, within):
     if len(rows) < 3:
         return sentences + ["Fewer than three runs came to their end, so that nothing can be said."], True
     standing, failing = [r for r in rows if not r["fails"]], [r for r in rows if r["fails"]]
-    if standing and failing:
+    if standing and failing and settles([row["largest_displacement_m"] for row in rows], within) != "equal":
         names = [", ".join(in_words(row, by) for row in some) for some in (failing, standing)]
         sentences.append(f"The slope fails with {names[0]} and stands with {names[1]}: the {thing} decides whether it fails.")
         return sentences + [REMEDY[by] + "."], True
@@ -102,12 +103,12 @@ def judge(rows, by, within):
         state = settles(values, within, least)
         factor, unit = style.readable_unit(max(map(abs, values)), unit)
         known = f" or one cell of {cell:.2g} m" if least and within * abs(values[-1]) < least else ""
-        text = (f"{name} is {factor * min(values):.3g} to {factor * max(values):.3g} {unit}, {100 * spread(values):.2g} % apart: ")
+        text = (f"{name} is {factor * min(values):.3g} to {factor * max(values):.3g} {unit}, {percent(max(values) - min(values), values)} apart: ")
         if state == "equal":
             text += f"the {thing} does not decide it within {100 * within:g} %{known}."
         elif state == "settles":
             last = abs(values[-1] - values[-2])
-            text += f"it settles, and the last refinement changes it by {100 * last / abs(values[-1]):.2g} %"
+            text += f"it settles, and the last refinement changes it by {percent(last, values)}"
             text += f", less than one cell of {cell:.2g} m." if last > within * abs(values[-1]) else "."
         else:
             text += f"the {thing} decides it."
@@ -192,8 +193,10 @@ def main():
                "processor_s": float(run["processor_s"]), "failure": run["failure"]}
         if not row["failure"]:
             ended.append(Results(given.folder / run["folder"]))
-            row |= outcome(ended[-1], cell_size(ended[-1]))
         rows.append(row)
+    largest = max(map(cell_size, ended), default=0.0)
+    for row, one in zip([row for row in rows if not row["failure"]], ended):
+        row |= outcome(one, largest)
     sentences, decides = judge(rows, given.by, given.within)
     print_table(rows, given.by)
     print("\n" + "\n".join(sentences))

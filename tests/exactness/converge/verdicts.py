@@ -31,9 +31,14 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(settles([3.5, 3.0, 3.45], 0.05, least=0.4), "open")
 
     def test_that_some_fail_and_some_stand_is_the_verdict(self):
-        sentences, decides = judge(rows(fails=[True, False, True]), "cells", 0.05)
+        runs = rows(fails=[True, False, True], largest_displacement_m=[2.0, 0.01, 2.1])
+        sentences, decides = judge(runs, "cells", 0.05)
         self.assertTrue(decides)
         self.assertEqual(sentences[0], "The slope fails with 0.4 m, 0.1 m and stands with 0.2 m: the cell size decides whether it fails.")
+
+    def test_equal_displacements_do_not_divide_runs_into_failing_and_standing(self):
+        runs = rows(fails=[True, False, True], largest_displacement_m=[0.401, 0.399, 0.402])  # about the size of a cell
+        self.assertFalse(judge(runs, "cells", 0.05)[1])
 
     def test_the_load_may_be_settled_while_the_run_out_is_not(self):
         runs = rows(load_time_of_failure_s=[13.2, 13.4, 13.3], crest_displacement_m=[6.0, 4.0, 5.0])
