@@ -73,7 +73,7 @@ TEST_F(Converge, RefinesStepsAndParticlesToo) {
 TEST_F(Converge, ContinuesAndRunsAnotherSceneAnew) {
   folder_.write("scene.toml", gliding("4"));
   {
-    Program program(folder_, words({"--no-plot", "-j", "1"}));
+    Program program(folder_, words({"--no-plot"}));
     ASSERT_TRUE(program.wait_for(folder_ / "out/run_0.3536/trial"));
     program.signal(SIGINT);
     EXPECT_EQ(program.end().status, 1);
