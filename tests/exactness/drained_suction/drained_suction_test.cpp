@@ -38,20 +38,23 @@ name = "shear"
 duration = 0.1
 )";
 
-void expect_shear_stress(double expected, const std::vector<std::string> &overrides) {
+/// Stress of the particles at the end, four components each [Pa].
+std::vector<double> stress_after(const std::vector<std::string> &overrides) {
   Scene scene = parse_scene(block, std::string(TALUS_MESHES) + "/scene.toml", overrides);
   RunOptions options;
   options.pictures = options.screen = false;
   const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
   simulation->run();
   const Snapshot end = simulation->snapshot();
-  const Column &stress =
-      *std::find_if(end.columns.begin(), end.columns.end(), [](const Column &c) { return c.name == "stress"; });
-  ASSERT_GT(end.id.size(), 0u);
-  for (std::size_t i = 0; i < end.id.size(); ++i) {
-    const double *s = &stress.values[4 * i];
-    EXPECT_NEAR(std::hypot((s[0] - s[1]) / 2, s[3]), expected, 1e-9 * expected);
-  }
+  EXPECT_GT(end.id.size(), 0u);
+  return std::find_if(end.columns.begin(), end.columns.end(), [](const Column &c) { return c.name == "stress"; })
+      ->values;
+}
+
+void expect_shear_stress(double expected, const std::vector<std::string> &overrides) {
+  const std::vector<double> stress = stress_after(overrides);
+  for (std::size_t i = 0; i < stress.size(); i += 4)
+    EXPECT_NEAR(std::hypot((stress[i] - stress[i + 1]) / 2, stress[i + 3]), expected, 1e-9 * expected);
 }
 
 constexpr double cohesion = 2e3;  // [Pa]
@@ -69,6 +72,23 @@ TEST(DrainedSuction, adds_cohesion_in_equilibrium) {
 TEST(DrainedSuction, is_none_where_pressure_is_above_zero) {
   expect_shear_stress(cohesion, {"water.excess=50000"});
   expect_shear_stress(cohesion, {"stage.0.kind=quasi_static", "water.excess=50000"});
+}
+
+/// Suction that differs from place to place pulls at nothing; pressure above zero pushes.
+TEST(DrainedSuction, is_no_stress) {
+  for (const char *open : {"true", "false"})
+    for (const char *sign : {"-", ""}) {
+      const std::vector<double> stress =
+          stress_after({"boundary.all.velocity=[0, 0]", std::string("water.excess=") + sign + "50000 * y",
+                        std::string("water.open_water_load=") + open});
+      double largest = 0;
+      for (const double s : stress) largest = std::max(largest, std::abs(s));
+      if (*sign) {
+        EXPECT_EQ(largest, 0) << open;
+      } else {
+        EXPECT_GT(largest, 100) << open;
+      }
+    }
 }
 
 }  // namespace

@@ -84,6 +84,36 @@ TEST(QuasiStatic, column_under_its_weight) {
   }
 }
 
+/// Cells of a patch share their volumetric strain, theory of finite elements (2.1), and with it the mean stress of
+/// elastic soil: each value occurs at more than one point. (Their forces would be the same without.)
+TEST(QuasiStatic, cells_of_a_patch_share_their_mean_stress) {
+  for (const int dim : {2, 3}) {
+    const Solved solved = solve(
+        "gravity = 10\n" + block + "[boundary.base]\nkind = \"fixed\"\n",
+        (dim == 3 ? in_3d : std::vector<std::string>{}) + std::vector<std::string>{"quasi_static.elements=patches"});
+    std::vector<double> mean;
+    for (size_t i = 0; i < solved.points.id.size(); ++i)
+      mean.push_back(solved.value("stress", i, 0) + solved.value("stress", i, 1) + solved.value("stress", i, 2));
+    std::sort(mean.begin(), mean.end());
+    int alone = 0;
+    for (size_t i = 0; i < mean.size(); ++i)
+      alone += (i == 0 || mean[i] - mean[i - 1] > 1e-6) && (i + 1 == mean.size() || mean[i + 1] - mean[i] > 1e-6);
+    EXPECT_LT(alone, 0.2 * static_cast<double>(mean.size())) << dim;  // cells that no neighbour was left for
+  }
+}
+
+/// A body acceleration acts on elements as weight does.
+TEST(QuasiStatic, body_acceleration_is_a_weight) {
+  const Solved solved =
+      solve("gravity = 0\n" + block + "[boundary.walls]\ngroup = [\"base\", \"left\", \"right\"]\nkind = \"roller\"\n",
+            {"body.soil.body_acceleration=[0, -10]"});
+  EXPECT_LT(largest(solved, 1,
+                    [&](size_t p, int) {
+                      return (solved.value("stress", p, 1) + 2000 * 10 * (1 - solved.value("position", p, 1))) / 20e3;
+                    }),
+            1e-12);
+}
+
 /// Level ground starts at rest with any k0, and stays there.
 TEST(QuasiStatic, ground_at_rest_does_not_move) {
   const std::string text =

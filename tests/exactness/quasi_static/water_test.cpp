@@ -51,6 +51,86 @@ TEST(Water, comes_to_rest_and_stays) {
   }
 }
 
+/// Rain that the ground can take passes through full pores at its own rate: pressure falls by what Darcy's law leaves
+/// of the weight of the water, and as much leaves below.
+TEST(Water, passes_through_at_the_rate_of_the_rain) {
+  constexpr double rain = 5e-6, weight = 1e4, conductivity = 1e-12 / 1e-3;
+  const std::string text = wet_block +
+                           "[boundary.rain]\ngroup = \"surface\"\nkind = \"flux\"\ninflow = 5e-6\n"
+                           "[boundary.well]\ngroup = \"base\"\nkind = \"pore_pressure\"\npressure = 7e3\n"
+                           "[[stage]]\nname = \"water\"\nkind = \"seepage\"\nsteady = true\nduration = 1\n";
+  for (const int dim : {2, 3}) {
+    const Solved solved =
+        solve(text, std::vector<std::string>{"quasi_static.tolerance=1e-8"} +
+                        (dim == 3 ? in_3d + std::vector<std::string>{"boundary.sides.group=[\"front\", \"back\"]",
+                                                                     "boundary.sides.kind=roller"}
+                                  : std::vector<std::string>{}));
+    EXPECT_LT(largest(solved, 1,
+                      [&](size_t p, int) {
+                        const double y = solved.value("position", p, 1);
+                        return (solved.value("pore_pressure", p) - 7e3 + (weight - rain / conductivity) * y) / 7e3;
+                      }),
+              1e-6)
+        << dim;  // a hundred times the tolerance, as above
+    EXPECT_NEAR(solved.history.column("rain_inflow_m3_s").back(), rain, 1e-6 * rain);
+    EXPECT_NEAR(solved.history.column("well_inflow_m3_s").back(), -rain, 1e-5 * rain);
+  }
+}
+
+/// A seepage face lets water out and draws none in, theory of seepage (4.1): wet ground above a low water table hangs
+/// on it by suction.
+TEST(Water, is_not_drawn_from_the_air) {
+  const std::string text =
+      wet_block +
+      "[body.soil.retention]\ncurve = \"van_genuchten\"\nreference_suction = \"10 kPa\"\nshape = 0.5\n"
+      "[body.soil.relative_permeability]\ncurve = \"hillel\"\n"
+      "[boundary.well]\ngroup = \"base\"\nkind = \"pore_pressure\"\npressure = -5e3\n"
+      "[[stage]]\nname = \"water\"\nkind = \"seepage\"\nsteady = true\nduration = 1e5\n";
+  const Solved solved = solve(text, {"phases=unsaturated", "water.table=[[0, 1]]", "quasi_static.tolerance=1e-8"});
+  EXPECT_LT(largest(solved, 1,
+                    [&](size_t p, int) {
+                      return (solved.value("pore_pressure", p) + 5e3 + 1e4 * solved.value("position", p, 1)) / 1e4;
+                    }),
+            1e-5);  // a thousand times the tolerance, since dry soil conducts a sixth of what full soil does
+}
+
+/// A lake presses on its bed as much as its water presses in the pores: effective stress is the weight under water,
+/// however deep the lake.
+TEST(Water, of_a_lake_rests_on_the_ground) {
+  const std::string text = wet_block +
+                           "[boundary.lake]\ngroup = \"surface\"\nkind = \"head\"\nlevel = 4\n"
+                           "[[stage]]\nname = \"water\"\nkind = \"seepage\"\nsteady = true\nduration = 1\n"
+                           "[[stage]]\nname = \"soil\"\nkind = \"quasi_static\"\nduration = 1\n";
+  const Solved solved = solve(text, {"quasi_static.tolerance=1e-8"});
+  const double weight = 10 * (0.7 * 2600 - 0.7 * 1000);
+  EXPECT_LT(largest(solved, 1,
+                    [&](size_t p, int) {
+                      return solved.value("stress", p, 1) / weight + (1 - solved.value("position", p, 1));
+                    }),
+            1e-5);  // of 30 kPa of water above, at 1e-6 as where water comes to rest
+}
+
+/// Suction is no stress in net stress; in Bishop's it acts with the degree of saturation.
+TEST(Water, that_is_sucked_acts_as_the_stress_variable_says) {
+  const std::string text = wet_block +
+                           "[body.soil.retention]\ncurve = \"van_genuchten\"\nreference_suction = 1\nshape = 0.5\n"
+                           "residual_saturation = 0.5\n[body.soil.relative_permeability]\ncurve = \"constant\"\n"
+                           "[[stage]]\nname = \"soil\"\nkind = \"quasi_static\"\nduration = 1\n";
+  const double weight = 10 * (0.7 * 2600 + 0.3 * 0.5 * 1000);
+  for (const bool bishop : {false, true}) {
+    const Solved solved = solve(text, {"phases=unsaturated", "water.table=[[0, -2]]",
+                                       std::string("water.stress=") + (bishop ? "bishop" : "net")});
+    EXPECT_LT(largest(solved, 1,
+                      [&](size_t p, int) {
+                        const double y = solved.value("position", p, 1);
+                        return (solved.value("stress", p, 1) + weight * (1 - y) + (bishop ? 0.5 * 1e4 * (2 + y) : 0)) /
+                               weight;
+                      }),
+              1e-3)  // a suction of 20 kPa leaves 2.5e-5 above the residual saturation; of the water's weight 1 / 13
+        << bishop;
+  }
+}
+
 /// In a drained scene seepage finds the pressure of the stages after it: through a confined block it falls linearly,
 /// soil bears its gradient as in a saturated scene, and particles that take over keep still.
 TEST(Water, seeps_through_drained_soil) {
@@ -144,6 +224,25 @@ TEST(Water, leaves_as_the_soil_settles) {
   for (size_t i = 1; i < time.size(); ++i) water += (time[i] - time[i - 1]) * inflow[i];
   EXPECT_LT(way.back(), -1e-5);
   EXPECT_NEAR(water, way.back(), 1e-6 * std::abs(way.back()));
+}
+
+/// The error of a step is of second order in its length, theory of seepage (3.1): a quarter of the permitted error
+/// takes twice as many steps.
+TEST(Water, takes_steps_by_the_root_of_their_error) {
+  int ranks;
+  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  if (ranks > 1) return;  // once is enough for so many steps
+  const std::string text = wet_block +
+                           "[boundary.surface]\nkind = \"traction\"\npressure = \"1 kPa\"\n[boundary.drain]\ngroup = "
+                           "\"surface\"\nkind = \"pore_pressure\"\n"
+                           "[[stage]]\nname = \"press\"\nkind = \"consolidation\"\nduration = 500\n";
+  const auto steps = [&](const char *error) {
+    return solve(text, {"gravity=0", "water.table=[]", std::string("quasi_static.step_error=") + error})
+        .history.column("time_s")
+        .size();
+  };
+  const double ratio = static_cast<double>(steps("2.5e-4")) / static_cast<double>(steps("1e-3"));
+  EXPECT_NEAR(ratio, 2, 0.3);  // 1.86: the first steps, of 1e-4 of the duration, are the same ones
 }
 
 /// A linear pressure passes from nodes to particles as it is.

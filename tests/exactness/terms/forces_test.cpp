@@ -62,6 +62,40 @@ void local_damping_resists_the_motion_component_by_component() {
 }
 TALUS_IN_2D_AND_3D(Forces, local_damping_resists_the_motion_component_by_component)
 
+/// A node lighter than a millionth of a particle takes no force, a heavier one does (3.7).
+template <int dim>
+void light_nodes_are_not_accelerated() {
+  for (const double near : {1e-10, 1e-4}) {  // Soil takes a particle for a thousandth of its mass
+    Box<dim> box;
+    const ParticleArrays<dim> &p = box.soil.particles();
+    int corner = 0;
+    for (int i = 0; i < box.soil.mesh.node_count(); ++i)
+      if (map<dim>(box.soil.mesh.position[i]).norm() < 1e-12) corner = i;
+    for (int k = 0; k < p.count; ++k) {  // all particles around the corner come to lie almost on the opposite side
+      const Cell<dim> &cell = box.soil.mesh.cells[p.cell[k]];
+      auto n = barycentric(cell, p.position[k]);
+      const auto found = std::find(cell.node.begin(), cell.node.end(), corner);
+      if (found == cell.node.end()) continue;
+      const double before = n[found - cell.node.begin()];
+      Vec<dim> x{};
+      for (int j = 0; j <= dim; ++j) {
+        n[j] = cell.node[j] == corner ? near : n[j] * (1 - near) / (1 - before);
+        for (int d = 0; d < dim; ++d) x[d] += n[j] * box.soil.mesh.position[cell.node[j]][d];
+      }
+      p.position[k] = x;
+    }
+    Equations<dim> exact(box.soil);
+    ASSERT_EQ(box.soil.motion->begin(0), 0);
+    Nodes<dim> wanted = exact.internal_force(exact.stress, true);
+    for (int i = 0; i < exact.nodes; ++i) wanted[i] /= exact.mass[i];
+    EXPECT_GT(wanted[corner].norm(), 1e3) << "a force is there";
+    if (near < 1e-8) wanted[corner].setZero();
+    const Nodes<dim> found = acceleration(box, box.field(1, 0));
+    expect_equal<dim>({found[corner]}, {wanted[corner]}, 1e7, "at the corner");
+  }
+}
+TALUS_IN_2D_AND_3D(Forces, light_nodes_are_not_accelerated)
+
 /// Blends of the alternatives to (4.4): by the volume of particles, of cells, and of cells that are full.
 template <int dim>
 void integration_volumes_are_those_that_the_scene_asks_for() {

@@ -144,5 +144,25 @@ void traction_is_a_dead_load() {
 }
 TALUS_IN_2D_AND_3D(Loads, traction_is_a_dead_load)
 
+/// A face between two soils is loaded once, half by each of them.
+template <int dim>
+void face_between_soils_is_loaded_once() {
+  const std::string third = dim == 3 ? ", 0" : "";
+  Box<dim> box("", "[boundary.middle]\nkind = \"traction\"\ntraction = [300, -500" + third + "]\n", 0, false);
+  Equations<dim> exact(box.soil);
+  ASSERT_EQ(box.soil.motion->begin(0), 0);
+  std::vector<double> a(box.soil.motion->size());
+  ASSERT_EQ(box.soil.motion->acceleration(0, nullptr, box.to_motion(box.field(1, 0)).data(), a.data()), 0);
+  const Nodes<dim> found = box.from_motion(a);
+  ColumnVector<dim> sum = ColumnVector<dim>::Zero();
+  for (int i = 0; i < exact.nodes; ++i) sum += exact.mass[i] * found[i];
+  double area = 0;  // of the facets, which the mesh lists with the cells on either side
+  for (const Facet<dim> &f : box.soil.mesh.facets("middle")) area += f.area / 2;
+  EXPECT_GE(area, 1 - 1e-12);
+  EXPECT_NEAR(sum[0], 300 * area, 1e-9);
+  EXPECT_NEAR(sum[1], -500 * area, 1e-9);
+}
+TALUS_IN_2D_AND_3D(Loads, face_between_soils_is_loaded_once)
+
 }  // namespace
 }  // namespace talus

@@ -1,4 +1,4 @@
-// Pore water that moves: docs/theory/pores.md (2.1), (3.1), (3.2), (4.2) to (4.8a), (5.1), on a few cells.
+// Pore water and gas that move: docs/theory/pores.md (2.1), (3.1) to (3.3), (4.2) to (4.8a), (5.1), on a few cells.
 #include "physics/pores/pore_fluid.inl"  // emits what libraries have only inline
 #include "pore_equations.h"
 
@@ -18,17 +18,26 @@ constexpr double curves = Phases::suction ? 1e6 : 1;
 
 template <int dim, class Phases>
 using Nodes = typename Equations<dim, Phases>::Nodes;
+template <int dim, class Phases>
+using Fields = typename PoreEquations<dim, Phases>::Fields;
 
 template <int dim, class Phases>
-void expect_equal(const std::array<Nodes<dim, Phases>, 2> &found, const std::array<Nodes<dim, Phases>, 2> &wanted,
-                  double scale, const std::string &what) {
-  talus::expect_equal<dim>(found[0], wanted[0], scale, what + ", skeleton");
-  talus::expect_equal<dim>(found[1], wanted[1], scale, what + ", liquid");
+void expect_equal(const Fields<dim, Phases> &found, const Fields<dim, Phases> &wanted, double scale,
+                  const std::string &what) {
+  const char *phase[] = {", skeleton", ", liquid", ", gas"};
+  for (std::size_t a = 0; a < found.size(); ++a) talus::expect_equal<dim>(found[a], wanted[a], scale, what + phase[a]);
+}
+/// Velocities of all phases that look drawn.
+template <int dim, class Phases>
+Fields<dim, Phases> fields(const Box<dim, Phases> &box, double size, int number) {
+  Fields<dim, Phases> all;
+  for (auto &one : all) one = box.field(size, number++);
+  return all;
 }
 
-/// Pressure, weight and inertia of both phases, with a pressure beyond the top and without.
+/// Pressure, weight and inertia of all phases, with a pressure beyond the top and without.
 template <int dim, class Phases>
-void pressure_and_weight_accelerate_both_phases() {
+void pressure_and_weight_accelerate_the_phases() {
   for (const bool smooths : {true, false})
     for (const bool bishop : {false, true})
       for (const bool pressed : {false, true}) {
@@ -37,31 +46,42 @@ void pressure_and_weight_accelerate_both_phases() {
                                 (pressed ? "[boundary.top]\nkind = \"pore_pressure\"\npressure = 5e3\n" : ""));
         const PoreEquations<dim, Phases> exact(box.soil, smooths, bishop, pressed ? "top" : nullptr, 5e3);
         ASSERT_EQ(box.soil.motion->begin(0), 0);
-        const std::array<Nodes<dim, Phases>, 2> v{box.field(1, 1), box.field(1, 2)};
+        const Fields<dim, Phases> v = fields(box, 1, 1);
         std::vector<double> a(box.soil.motion->size());
         ASSERT_EQ(box.soil.motion->acceleration(0, nullptr, to_motion(box, v).data(), a.data()), 0);
-        expect_equal<dim, Phases>(both_from_motion(box, a.data()), exact.accelerations(), 1000 * curves<Phases>,
+        expect_equal<dim, Phases>(all_from_motion(box, a.data()), exact.accelerations(), 1000 * curves<Phases>,
                                   std::string(smooths ? "smoothed" : "as they are") + (bishop ? ", bishop" : "") +
                                       (pressed ? ", pressed" : ""));
       }
 }
-TALUS_IN_FULL_AND_OPEN_PORES(pressure_and_weight_accelerate_both_phases)
+TALUS_IN_FULL_AND_OPEN_PORES(pressure_and_weight_accelerate_the_phases)
+TEST(Pores, pressure_and_weight_accelerate_all_three_phases_2d) {
+  pressure_and_weight_accelerate_the_phases<2, ThreePhase>();
+}
+TEST(Pores, pressure_and_weight_accelerate_all_three_phases_3d) {
+  pressure_and_weight_accelerate_the_phases<3, ThreePhase>();
+}
 
-/// Explicit drag is one of the forces (4.6b).
+/// Explicit drag is one of the forces (4.6b), with more conductivity beside a face with a prescribed pressure.
 template <int dim, class Phases>
 void explicit_drag_is_a_force() {
-  WetBox<dim, Phases> box(water("drag = \"explicit\"\n"));
-  const PoreEquations<dim, Phases> exact(box.soil, true, false);
-  ASSERT_EQ(box.soil.motion->begin(0), 0);
-  const std::array<Nodes<dim, Phases>, 2> v{box.field(1, 1), box.field(1, 2)};
-  std::vector<double> a(box.soil.motion->size());
-  ASSERT_EQ(box.soil.motion->acceleration(0, nullptr, to_motion(box, v).data(), a.data()), 0);
-  expect_equal<dim, Phases>(both_from_motion(box, a.data()), exact.accelerations(&v), 1e4 * curves<Phases>, "(4.6b)");
-  double rate = 0;  // (6.1a), by which explicit drag limits the step
-  for (int i = 0; i < exact.nodes; ++i)
-    rate = std::max(
-        rate, (Phases::suction ? 2 : 1) * exact.drag(i) * (1 + exact.mass[i] / exact.Equations<dim, Phases>::mass[i]));
-  EXPECT_NEAR(box.soil.motion->drag_rate() / rate, 1, 1e-11 * curves<Phases>) << "(6.1a)";
+  for (const double pressure : {0., 5e3, -5e3}) {
+    if (pressure < 0 && !Phases::suction) continue;
+    WetBox<dim, Phases> box(
+        water("drag = \"explicit\"\n") +
+        (pressure ? "[boundary.top]\nkind = \"pore_pressure\"\npressure = " + std::to_string(pressure) + "\n" : ""));
+    const PoreEquations<dim, Phases> exact(box.soil, true, false, pressure ? "top" : nullptr, pressure);
+    ASSERT_EQ(box.soil.motion->begin(0), 0);
+    const Fields<dim, Phases> v = fields(box, 1, 1);
+    std::vector<double> a(box.soil.motion->size());
+    ASSERT_EQ(box.soil.motion->acceleration(0, nullptr, to_motion(box, v).data(), a.data()), 0);
+    expect_equal<dim, Phases>(all_from_motion(box, a.data()), exact.accelerations(&v), 1e4 * curves<Phases>, "(4.6b)");
+    double rate = 0;  // (6.1a), by which explicit drag limits the step
+    for (int i = 0; i < exact.nodes; ++i)
+      rate = std::max(rate, (Phases::suction ? 2 : 1) * exact.drag(i, exact.conductivity[i]) *
+                                (1 + exact.mass[i] / exact.Equations<dim, Phases>::mass[i]));
+    EXPECT_NEAR(box.soil.motion->drag_rate() / rate, 1, 1e-11 * curves<Phases>) << "(6.1a)";
+  }
 }
 TALUS_IN_FULL_AND_OPEN_PORES(explicit_drag_is_a_force)
 
@@ -73,7 +93,7 @@ void drag_brings_phases_together() {
     WetBox<dim, Saturated> box(water() + (pressed ? "[boundary.top]\nkind = \"pore_pressure\"\npressure = 5e3\n" : ""));
     const PoreEquations<dim, Saturated> exact(box.soil, true, false, pressed ? "top" : nullptr, 5e3);
     ASSERT_EQ(box.soil.motion->begin(0), 0);
-    const std::array<Nodes<dim, Saturated>, 2> v{box.field(1, 1), box.field(1, 2)};
+    const Fields<dim, Saturated> v = fields(box, 1, 1);
     std::vector<double> x = to_motion(box, v);
     ASSERT_EQ(box.soil.motion->apply_boundaries_and_drag(0, step, x.data()), 0);
     auto wanted = v;
@@ -84,7 +104,7 @@ void drag_brings_phases_together() {
       wanted[0][i] = (m * v[0][i] + part * v[1][i]) / (m + part);
       wanted[1][i] = (v[1][i] + d * wanted[0][i]) / (1 + d);
     }
-    expect_equal<dim, Saturated>(both_from_motion(box, x.data()), wanted, 1, pressed ? "(4.6), pressed" : "(4.6)");
+    expect_equal<dim, Saturated>(all_from_motion(box, x.data()), wanted, 1, pressed ? "(4.6), pressed" : "(4.6)");
   }
 }
 TALUS_IN_2D_AND_3D(Pores, drag_brings_phases_together)
@@ -99,7 +119,7 @@ void faces_that_limit_the_flux_act_on_both_phases() {
                                                : "[boundary.top]\nkind = \"flux\"\ninflow = 0.3\n"));
     const PoreEquations<dim, Saturated> exact(box.soil, true, false, nullptr);
     ASSERT_EQ(box.soil.motion->begin(0), 0);
-    const std::array<Nodes<dim, Saturated>, 2> v{box.field(1, 1), box.field(1, 2)};
+    const Fields<dim, Saturated> v = fields(box, 1, 1);
     std::vector<double> x = to_motion(box, v);
     ASSERT_EQ(box.soil.motion->apply_boundaries_and_drag(0, step, x.data()), 0);
     auto wanted = v;
@@ -113,7 +133,7 @@ void faces_that_limit_the_flux_act_on_both_phases() {
       wanted[1][i] = (v[1][i] + d * wanted[0][i]) / (1 + d);
       if (box.on("top", i)) wanted[1][i][1] = wanted[0][i][1] + limit;
     }
-    expect_equal<dim, Saturated>(both_from_motion(box, x.data()), wanted, 1, wall ? "wall" : "flux");
+    expect_equal<dim, Saturated>(all_from_motion(box, x.data()), wanted, 1, wall ? "wall" : "flux");
   }
 }
 TALUS_IN_2D_AND_3D(Pores, faces_that_limit_the_flux_act_on_both_phases)
@@ -124,7 +144,7 @@ void supports_stop_skeleton_and_water() {
   WetBox<dim, Saturated> box(water() + "[boundary.base]\nkind = \"roller\"\n");
   const PoreEquations<dim, Saturated> exact(box.soil, true, false);
   ASSERT_EQ(box.soil.motion->begin(0), 0);
-  const std::array<Nodes<dim, Saturated>, 2> v{box.field(1, 1), box.field(1, 2)};
+  const Fields<dim, Saturated> v = fields(box, 1, 1);
   std::vector<double> x = to_motion(box, v);
   std::vector<Vec<dim>> impulse;
   ASSERT_EQ(box.soil.conditions.take_impulses(PETSC_COMM_WORLD, impulse), 0);
@@ -134,7 +154,7 @@ void supports_stop_skeleton_and_water() {
   for (int i = 0; i < exact.nodes; ++i)
     if (box.on("base", i)) wanted -= exact.Equations<dim, Saturated>::mass[i] * v[0][i][1] + exact.mass[i] * v[1][i][1];
   EXPECT_NEAR(impulse[0][1], wanted, 1e-9);
-  const auto after = both_from_motion(box, x.data());
+  const auto after = all_from_motion(box, x.data());
   for (int i = 0; i < exact.nodes; ++i)
     if (box.on("base", i)) {
       EXPECT_LT(std::abs(after[0][i][1]) + std::abs(after[1][i][1]), 1e-12);
@@ -151,7 +171,7 @@ void velocities_of_both_phases_are_mapped_back() {
     const PoreEquations<dim, Saturated> exact(box.soil, true, false);
     SoilMotion<dim, Saturated> &motion = *box.soil.motion;
     ASSERT_EQ(motion.begin(0), 0);
-    const auto start = both_from_motion(box, motion.velocity());
+    const auto start = all_from_motion(box, motion.velocity());
     Nodes<dim, Saturated> liquid(exact.nodes, ColumnVector<dim>::Zero());
     for (int p = 0; p < exact.particles.count; ++p) {
       const int c = exact.particles.cell[p];
@@ -161,9 +181,9 @@ void velocities_of_both_phases_are_mapped_back() {
     }
     for (int i = 0; i < exact.nodes; ++i) liquid[i] /= exact.mass[i];
     expect_equal<dim, Saturated>(start, {exact.start, liquid}, 1, "gathered");
-    std::array<Nodes<dim, Saturated>, 2> before = start;
+    Fields<dim, Saturated> before = start;
     for (const int number : {1, 3}) {  // the mapped velocity of a step is where the next one starts
-      const std::array<Nodes<dim, Saturated>, 2> v{box.field(1, number), box.field(1, number + 1)};
+      const Fields<dim, Saturated> v = fields(box, 1, number);
       std::vector<double> x = to_motion(box, v), mapped(x.size());
       ASSERT_EQ(motion.map_back(step, step, x.data(), mapped.data()), 0);
       const double kept = tau > 0 ? std::exp(-step / tau) : 1;
@@ -173,8 +193,8 @@ void velocities_of_both_phases_are_mapped_back() {
         wanted[a] = exact.back_and_forth(wanted[a]);
         for (int i = 0; i < exact.nodes; ++i) wanted[a][i] += kept * before[a][i];
       }
-      expect_equal<dim, Saturated>(both_from_motion(box, mapped.data()), wanted, 1, "mapped");
-      expect_equal<dim, Saturated>(both_from_motion(box, x.data()), wanted, 1, "velocity of the nodes");
+      expect_equal<dim, Saturated>(all_from_motion(box, mapped.data()), wanted, 1, "mapped");
+      expect_equal<dim, Saturated>(all_from_motion(box, x.data()), wanted, 1, "velocity of the nodes");
       before = wanted;
     }
   }
@@ -190,7 +210,7 @@ void volumes_and_masses_follow_the_motion() {
     const PoreEquations<dim, Phases> exact(box.soil, smooths, false);
     SoilMotion<dim, Phases> &motion = *box.soil.motion;
     ASSERT_EQ(motion.begin(0), 0);
-    const std::array<Nodes<dim, Phases>, 2> u{box.field(1e-3, 1), box.field(1e-3, 2)};
+    const Fields<dim, Phases> u = fields(box, 1e-3, 1);
     const std::vector<double> way = to_motion(box, u), v(way.size(), 0.),
                               volume_before = exact.Equations<dim, Phases>::volume;
     std::vector<double> theta, divergence;

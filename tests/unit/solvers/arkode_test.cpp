@@ -1,6 +1,8 @@
 // ARKODE behind the Motion interface, on masses and springs whose motion is known.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "solvers/integrators.h"
 #include "springs.h"
 
@@ -42,6 +44,31 @@ TEST(Arkode, error_follows_the_tolerance) {
       EXPECT_LT(error, last);
       last = error;
     }
+  }
+}
+
+/// The error of the embedded method, of order p, is of order p + 1 in the step. Where it is the same all along (the
+/// (p + 1)-th derivative of the velocity is constant), the step that meets the tolerance is found from a single other
+/// one.
+TEST(Arkode, finds_the_step_of_its_tolerance_at_once) {
+  for (const int order : {3, 4}) {
+    Springs motion(1, 0);
+    motion.force = [&](double t) { return std::pow(t, order - 1); };
+    ArkodeSettings settings;
+    settings.order = order, settings.velocity_tolerance = 1e-4, settings.displacement_tolerance = 1e3;
+    Arkode integrator(settings);
+    double t = 0, steps[12];
+    for (double &taken : steps) {
+      ASSERT_EQ(integrator.advance(motion, t, {1e3, 1e6}, &taken), 0);
+      t += taken;
+    }
+    const int first = static_cast<int>(std::find_if(steps, steps + 11,
+                                                    [&](double &h) {
+                                                      return (&h)[1] < 4.9 * h;  // steps grow fivefold at most
+                                                    }) -
+                                       steps);
+    ASSERT_LT(first, 9);
+    EXPECT_NEAR(steps[first + 1] / steps[11], 1, 1e-3) << "order " << order;
   }
 }
 
