@@ -1,25 +1,48 @@
 #pragma once
-/// Result of a strength reduction.
+/// Result of a strength reduction, docs/theory/finite_elements.md section 5.
+#include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace talus {
 
-/// One trial: strength divided by `factor`.
-struct StrengthTrial {
-  double factor;
-  bool stable;          ///< equilibrium was found
-  int iterations;       ///< of Newton, over the load steps of the trial
-  double residual;      ///< out-of-balance force over the size of the forces where the trial ended [-]
-  double displacement;  ///< largest displacement of a node since strength was first changed [m]
-  std::string reason;   ///< why it counts as failure; empty if stable
+/// What soil does whose strength was divided by the factor of a trial.
+enum class TrialOutcome {
+  equilibrium,  ///< it carries its loads
+  mechanism,    ///< it moves without bound under its loads
+  undecided     ///< the iterations found neither
 };
 
-/// Strength divided by `lower` has an equilibrium, divided by `upper` it has none.
-struct FactorOfSafety {
+/// One trial: strength divided by `factor`.
+struct StrengthTrial {
+  double factor = 0;
+  TrialOutcome outcome = TrialOutcome::undecided;
+  bool dilating = false;    ///< with psi = phi, for the upper end of the spread; else with the soil's own psi
+  int iterations = 0;       ///< linear systems that were solved
+  double residual = 0;      ///< out-of-balance force over the size of the forces where the trial ended [-]
+  double displacement = 0;  ///< largest displacement of a node since strength was first changed [m]
+  double surplus = 0;       ///< of a mechanism: share of the work of the loads that the soil does not take up [-]
+  double wall_seconds = 0;
+  /// Largest displacement [m] and out-of-balance force [-] after each iteration.
+  std::vector<std::pair<double, double>> curve;
+};
+
+/// Strength divided by `lower` has an equilibrium, divided by `upper` a mechanism. `decided` is false if trials between
+/// the two were undecided, so that the bracket is wider than was asked for.
+struct FactorBracket {
   double lower = 0, upper = 0;
-  std::vector<StrengthTrial> trials;
+  bool decided = true;
   double value() const { return (lower + upper) / 2; }
+};
+
+struct FactorOfSafety : FactorBracket {
+  bool davis = false;                    ///< some soil has psi < phi: its strength is that of Davis (1968)
+  FactorBracket dilating;                ///< of the same soil with psi = phi, if `davis`
+  std::vector<std::string> lost_stages;  ///< stages before it that found no equilibrium
+  double moving_volume = 0;              ///< of soil that the mechanism moves [m3], in 2D per metre of thickness
+  std::vector<std::array<double, 2>> slip_surface;  ///< 2D: where the mechanism shears most, along x [m]
+  std::vector<StrengthTrial> trials;
 };
 
 }  // namespace talus

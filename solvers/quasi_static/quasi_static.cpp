@@ -85,15 +85,17 @@ PetscErrorCode QuasiStatic<dim>::residual(::Vec x, ::Vec f) {
   PetscFunctionReturn(0);
 }
 
-/// The tangent at the trial state. `lift` receives what `motion` (local nodes, in their frames) does to the free rows.
+/// `lift` receives what `motion` (local nodes, in their frames) does to the free rows.
 template <int dim>
-PetscErrorCode QuasiStatic<dim>::stiffness(const std::vector<double> *motion, std::vector<double> *lift) {
+PetscErrorCode QuasiStatic<dim>::stiffness(double plastic, double elastic, const std::vector<double> *motion,
+                                           std::vector<double> *lift) {
   PetscFunctionBeginUser;
   PetscCall(MatZeroEntries(matrix_));
   if (lift) lift->assign(static_cast<size_t>(soil_.nodes().count()) * dim, 0);
-  PetscCall(soil_.each_stiffness([&](const int *node, int count, typename SoilElements<dim>::Stiffness &element) {
-    return unknowns_.add(matrix_, node, count, element, motion, lift);
-  }));
+  PetscCall(soil_.each_stiffness(plastic, elastic,
+                                 [&](const int *node, int count, typename SoilElements<dim>::Stiffness &element) {
+                                   return unknowns_.add(matrix_, node, count, element, motion, lift);
+                                 }));
   PetscCall(unknowns_.finish(matrix_, stiffness_scale_));
   PetscFunctionReturn(0);
 }
@@ -109,7 +111,7 @@ PetscErrorCode QuasiStatic<dim>::snes_jacobian(SNES, ::Vec, Mat, Mat, void *prob
 }
 
 template <int dim>
-PetscErrorCode QuasiStatic<dim>::snes_converged(SNES solver, PetscInt iteration, PetscReal, PetscReal, PetscReal norm,
+PetscErrorCode QuasiStatic<dim>::snes_converged(SNES, PetscInt iteration, PetscReal, PetscReal, PetscReal norm,
                                                 SNESConvergedReason *reason, void *context) {
   PetscFunctionBeginUser;
   QuasiStatic &problem = *static_cast<QuasiStatic *>(context);
@@ -119,13 +121,8 @@ PetscErrorCode QuasiStatic<dim>::snes_converged(SNES solver, PetscInt iteration,
     *reason = SNES_DIVERGED_FNORM_NAN;
   else if (norm <= problem.scene_.quasi_static.tolerance * problem.force_scale_)
     *reason = SNES_CONVERGED_FNORM_RELATIVE;
-  else if (problem.blow_up > 0 && iteration > 0) {
-    ::Vec x;
-    double largest;
-    PetscCall(SNESGetSolution(solver, &x));
-    PetscCall(VecNorm(x, NORM_INFINITY, &largest));
-    if (largest > problem.blow_up) problem.blown_up_ = true, *reason = SNES_DIVERGED_DTOL;
-  }
+  else if (problem.stop_asked && problem.stop_asked())
+    problem.stopped_ = true, *reason = SNES_DIVERGED_DTOL;
   PetscFunctionReturn(0);
 }
 
@@ -147,7 +144,7 @@ template <int dim>
 PetscErrorCode QuasiStatic<dim>::prepare(double share, double load_time, double time, double dt, ::Vec x) {
   std::vector<double> external, motion;
   PetscFunctionBeginUser;
-  blown_up_ = false, scale_open_ = true;
+  stopped_ = false, scale_open_ = true;
   soil_.find_suction(load_time);
   loads_.force(load_time, external);
   PetscCall(soil_.nodes().add_to_global(external, target_));
@@ -172,23 +169,32 @@ template <int dim>
 PetscErrorCode QuasiStatic<dim>::start_with_motion(const std::vector<double> &motion, ::Vec x) {
   std::vector<double> lift;
   double *value;
-  KSP ksp;
-  KSPConvergedReason linear;
+  bool solved;
   PetscFunctionBeginUser;
-  PetscCall(SNESGetKSP(solver_, &ksp));
   PetscCall(residual(x, f_));
-  PetscCall(stiffness(&motion, &lift));
+  PetscCall(stiffness(1, 0, &motion, &lift));
   PetscCall(soil_.nodes().add_to_global(lift, lifted_));
   PetscCall(VecGetArray(lifted_, &value));
   unknowns_.each_held([&](PetscInt k) { value[k] = 0; });
   PetscCall(VecRestoreArray(lifted_, &value));
   PetscCall(VecAYPX(lifted_, -1, f_));
   PetscCall(VecAXPY(lifted_, -2, f_));  // -(f + lift)
-  PetscCall(KSPSetOperators(ksp, matrix_, matrix_));
-  PetscCall(KSPSolve(ksp, lifted_, x));
-  PetscCall(KSPGetConvergedReason(ksp, &linear));
-  if (linear < 0) PetscCall(VecZeroEntries(x));
+  PetscCall(solve_linear(lifted_, x, &solved));
+  if (!solved) PetscCall(VecZeroEntries(x));
   unknowns_.set_motion(motion);
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode QuasiStatic<dim>::solve_linear(::Vec b, ::Vec x, bool *solved) {
+  KSP ksp;
+  KSPConvergedReason reason;
+  PetscFunctionBeginUser;
+  PetscCall(SNESGetKSP(solver_, &ksp));
+  PetscCall(KSPSetOperators(ksp, matrix_, matrix_));
+  PetscCall(KSPSolve(ksp, b, x));
+  PetscCall(KSPGetConvergedReason(ksp, &reason));
+  *solved = reason > 0;
   PetscFunctionReturn(0);
 }
 
@@ -207,7 +213,7 @@ PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double 
   PetscCall(VecNorm(x_, NORM_INFINITY, &outcome->largest));
   outcome->iterations = static_cast<int>(iterations);
   outcome->residual /= force_scale_ > 0 ? force_scale_ : 1;
-  outcome->converged = reason > 0, outcome->blown_up = blown_up_,
+  outcome->converged = reason > 0, outcome->stopped = stopped_,
   outcome->singular = reason == SNES_DIVERGED_LINEAR_SOLVE;
   if (outcome->converged)
     PetscCall(commit(x_, softening));

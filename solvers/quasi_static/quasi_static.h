@@ -4,6 +4,7 @@
 /// unknown in unknowns.h. One class for plane strain and 3D.
 #include <petscsnes.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,8 +23,8 @@ struct StepOutcome {
   int iterations = 0;
   double residual = 0;    ///< out-of-balance force over the size of the forces
   double largest = 0;     ///< largest displacement of a node in the step [m]
-  bool blown_up = false;  ///< it passed the limit of displacement
   bool singular = false;  ///< the linear system had no solution
+  bool stopped = false;   ///< somebody asked the program to stop
 };
 
 template <int dim>
@@ -57,7 +58,13 @@ class QuasiStatic {
   /// acceptance of what was found.
   PetscErrorCode prepare(double share, double load_time, double time, double dt, ::Vec x);
   PetscErrorCode residual(::Vec x, ::Vec f);
-  PetscErrorCode tangent() { return stiffness(nullptr, nullptr); }
+  PetscErrorCode tangent() { return stiffness(1, 0); }
+  /// Puts `plastic` times the tangent of the laws at the trial state plus `elastic` times the elastic stiffness into
+  /// `matrix`.
+  PetscErrorCode stiffness(double plastic, double elastic) { return stiffness(plastic, elastic, nullptr, nullptr); }
+  /// Solves `matrix` x = b; `solved` is false where the matrix is singular.
+  PetscErrorCode solve_linear(::Vec b, ::Vec x, bool *solved);
+  ::Vec loads() const { return target_; }  ///< nodal forces that the soil has to carry after `prepare` [N]
   PetscErrorCode commit(::Vec x, bool softening);
   Mat matrix() const { return matrix_; }
   double force_scale() const { return force_scale_; }  ///< what forces are small against [N]
@@ -72,12 +79,13 @@ class QuasiStatic {
   long long unknowns() const { return unknowns_.count(); }
   bool direct() const { return direct_; }  ///< the linear solver
 
-  double blow_up = 0;  ///< largest displacement in a step that is not taken for failure [m]; 0: none
+  std::function<bool()> stop_asked;  ///< ends iterations when it is true; collective; may be empty
 
  private:
   PetscErrorCode make_solver();
   PetscErrorCode start_with_motion(const std::vector<double> &motion, ::Vec x);
-  PetscErrorCode stiffness(const std::vector<double> *motion, std::vector<double> *lift);
+  PetscErrorCode stiffness(double plastic, double elastic, const std::vector<double> *motion,
+                           std::vector<double> *lift);
   static PetscErrorCode snes_function(SNES, ::Vec, ::Vec, void *);
   static PetscErrorCode snes_jacobian(SNES, ::Vec, Mat, Mat, void *);
   static PetscErrorCode snes_converged(SNES, PetscInt, PetscReal, PetscReal, PetscReal, SNESConvergedReason *, void *);
@@ -95,7 +103,7 @@ class QuasiStatic {
   double force_scale_ = 0,
          stiffness_scale_ = 1;  // sizes of the forces before the first iteration [N] and of stiffness [Pa]
   bool scale_open_ = true;
-  bool direct_ = true, blown_up_ = false;
+  bool direct_ = true, stopped_ = false;
 };
 
 }  // namespace talus

@@ -46,6 +46,15 @@ Operator<dim> strain_operator(const Vec<dim> &g, const Vec<dim> *mean, double en
   return b;
 }
 
+/// d stress / d strain of isotropic elasticity, components as update_stress_with_tangent has them.
+template <int dim>
+Eigen::Matrix<double, stress_size<dim>, stress_size<dim>, Eigen::RowMajor> elastic_tangent(double bulk, double shear) {
+  Eigen::Matrix<double, stress_size<dim>, stress_size<dim>, Eigen::RowMajor> c;
+  c.setIdentity(), c *= 2 * shear;
+  c.template topLeftCorner<3, 3>().array() += bulk - 2 * shear / 3;
+  return c;
+}
+
 }  // namespace
 
 template <int dim>
@@ -228,7 +237,7 @@ void SoilElements<dim>::internal_force(std::vector<double> &force, bool trial) c
 
 template <int dim>
 PetscErrorCode SoilElements<dim>::each_stiffness(
-    const std::function<PetscErrorCode(const int *, int, Stiffness &)> &put) {
+    double plastic, double elastic, const std::function<PetscErrorCode(const int *, int, Stiffness &)> &put) {
   PetscFunctionBeginUser;
   using Tangent = Eigen::Matrix<double, components, components, Eigen::RowMajor>;
   std::vector<std::vector<double>> tangent(points_.size());
@@ -237,6 +246,12 @@ PetscErrorCode SoilElements<dim>::each_stiffness(
     if (!p.present) continue;
     tangent[b].resize(static_cast<size_t>(p.count()) * components * components);
     update_stress_with_tangent<dim>(p.law, p.trial(), tangent[b].data());
+    if (plastic == 1 && elastic == 0) continue;
+    const Tangent unyielding = elastic * elastic_tangent<dim>(bulk_modulus(p.law), shear_modulus(p.law));
+    for (int q = 0; q < p.count(); ++q) {
+      Eigen::Map<Tangent> c(&tangent[b][static_cast<size_t>(q) * components * components]);
+      c = plastic * c + unyielding;
+    }
   }
   Stiffness element;
   std::vector<Operator<dim>> left, right;

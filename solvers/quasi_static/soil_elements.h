@@ -73,8 +73,10 @@ class SoilElements {
   void deform(const std::vector<double> &u);
   /// Forces of the stresses on local nodes, this rank's part, in the trial or the committed state [N].
   void internal_force(std::vector<double> &force, bool trial) const;
-  /// Calls put(nodes, their number, stiffness) for each element at the trial state.
-  PetscErrorCode each_stiffness(const std::function<PetscErrorCode(const int *, int, Stiffness &)> &put);
+  /// Calls put(nodes, their number, stiffness) for each element: `plastic` times that of the laws at the trial state
+  /// plus `elastic` times that of elastic soil.
+  PetscErrorCode each_stiffness(double plastic, double elastic,
+                                const std::function<PetscErrorCode(const int *, int, Stiffness &)> &put);
   /// Calls visit(nodes, their number) for each element.
   PetscErrorCode each_element(const std::function<PetscErrorCode(const int *, int)> &visit) const;
   /// Accepts the trial state that `u` led to.

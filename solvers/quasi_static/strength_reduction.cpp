@@ -1,7 +1,11 @@
 #include "solvers/quasi_static/strength_reduction.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+
+#include "solvers/quasi_static/limit_state.h"
+#include "solvers/quasi_static/slip_surface.h"
 
 namespace talus {
 
@@ -12,6 +16,58 @@ Law without_softening(const Law &law) {
         return one;
       },
       law);
+}
+
+namespace {
+
+// Plastic strain of soil that softens is counted in this unit during trials, and its shape factor in the inverse: the
+// product, from which strength follows, is that of the stages, and what trials add to it is nothing.
+constexpr double unit_of_plastic_strain = 1e-9;
+
+/// Multiplies the plastic strain of softening soil at all points.
+template <int dim>
+void scale_plastic_strain(SoilElements<dim> &soil, double factor) {
+  for (GaussPoints<dim> &p : soil.points()) {
+    const int field = plastic_strain_field(p.law), size = history_size(p.law);
+    for (int q = 0; field >= 0 && q < p.count(); ++q) p.history[q * size + field] *= factor;
+  }
+}
+
+}  // namespace
+
+bool non_associated(const Law &law) {
+  return std::visit(
+      [](const auto &one) {
+        if constexpr (requires { one.friction_angle; })
+          return one.dilation_angle < one.friction_angle;
+        else
+          return false;
+      },
+      law);
+}
+
+Law strength_of_trial(const Law &law, double factor, bool dilating) {
+  const auto slip_strength = [dilating](double phi, double psi) {
+    return dilating ? 1 : std::cos(psi) * std::cos(phi) / (1 - std::sin(psi) * std::sin(phi));
+  };
+  return std::visit(
+      [&](auto one) -> Law {
+        if constexpr (requires { one.friction_angle; }) {
+          one.FrictionalStrength::prepare();  // residual values that are not given are those of the peak
+          const double peak = slip_strength(one.friction_angle, one.dilation_angle),
+                       residual =
+                           slip_strength(one.residual_phi, std::min(one.residual_phi, std::asin(one.sin_psi_residual)));
+          if (one.softens())
+            one.residual_cohesion = residual * one.residual_c,
+            one.residual_friction_angle = std::atan(residual * std::tan(one.residual_phi)),
+            one.residual_dilation_angle = one.residual_friction_angle;
+          one.cohesion *= peak, one.friction_angle = std::atan(peak * std::tan(one.friction_angle));
+          one.dilation_angle = one.friction_angle, one.shape_factor *= unit_of_plastic_strain;
+          if constexpr (requires { one.suction_cohesion; }) one.suction_cohesion *= peak;
+        }
+        return one;
+      },
+      with_reduced_strength(law, factor));
 }
 
 PetscErrorCode follow_path(double step, double smallest,
@@ -26,6 +82,7 @@ PetscErrorCode follow_path(double step, double smallest,
     const double to = *share + step > 1 - 1e-9 ? 1 : *share + step;
     PetscCall(advance(*share, to, outcome));
     *iterations += outcome->iterations;
+    if (outcome->stopped) PetscFunctionReturn(0);
     if (!outcome->converged) {
       if (step / 2 < smallest) PetscFunctionReturn(0);
       step /= 2;
@@ -38,51 +95,143 @@ PetscErrorCode follow_path(double step, double smallest,
   PetscFunctionReturn(0);
 }
 
+namespace {
+
+/// One search for a bracket.
 template <int dim>
-PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law> &laws, double factor, double load_time,
-                               double time, double blow_up, double resolution,
-                               const std::function<void(const StrengthTrial &)> &tell, FactorOfSafety *result) {
-  constexpr double first_step = 0.2, smallest_share = 1. / 16, largest_factor = 20;
-  PetscFunctionBeginUser;
-  *result = {factor, 0, {}};
-  problem.soil().reset_displacement();
-  auto stable = problem.soil().save();
-  while (result->upper == 0 ? result->lower < largest_factor : result->upper - result->lower > resolution) {
-    const double trial = result->upper > 0 ? (result->lower + result->upper) / 2 : result->lower + first_step;
-    problem.soil().restore(stable);
-    for (size_t b = 0; b < laws.size(); ++b) problem.soil().points()[b].law = with_reduced_strength(laws[b], trial);
-    problem.soil().admit();
-    PetscCall(problem.begin_path(load_time));
-    problem.blow_up = blow_up;
-    double share;
-    StepOutcome outcome;
-    int iterations;
-    PetscCall(follow_path(
-        1, smallest_share,
-        [&](double, double to, StepOutcome *o) { return problem.advance(to, load_time, time, 0, true, o); },
-        [](double, const StepOutcome &) {}, &share, &outcome, &iterations));
-    problem.blow_up = 0;
-    const double displacement = problem.soil().largest_displacement();
-    StrengthTrial t{trial, outcome.converged, iterations, outcome.residual, displacement, ""};
-    if (t.stable && displacement > blow_up) t.stable = false;
-    if (!t.stable)
-      t.reason = outcome.blown_up || outcome.converged ? "displacement passed its limit"
-                 : outcome.singular                    ? "stiffness became singular"
-                                                       : "Newton's iterations did not converge";
-    if (t.stable)
-      result->lower = trial, stable = problem.soil().save();
-    else
-      result->upper = trial;
-    result->trials.push_back(t);
-    tell(t);
+class Reduction {
+ public:
+  Reduction(QuasiStatic<dim> &problem, const std::vector<Law> &laws, const ReductionSettings &settings, bool dilating,
+            LimitState<dim> &limit, std::vector<StrengthTrial> &trials)
+      : problem_(problem), laws_(laws), settings_(settings), dilating_(dilating), limit_(limit), trials_(trials) {}
+
+  /// Brackets the factor; the first trial divides strength by `first`. Leaves the problem in the state of the largest
+  /// factor with an equilibrium.
+  PetscErrorCode bracket(double first, FactorBracket *result, bool *interrupted) {
+    constexpr double stride = 1.25;  // of the factor until it is bracketed
+    PetscFunctionBeginUser;
+    start_ = stable_ = problem_.soil().save();
+    FactorBracket &b = *result;
+    b = {};
+    for (double factor = first;;) {
+      TrialOutcome outcome;
+      PetscCall(attempt(factor, &outcome, interrupted));
+      if (*interrupted) break;
+      if (outcome == TrialOutcome::equilibrium)
+        b.lower = std::max(b.lower, factor);
+      else if (outcome == TrialOutcome::mechanism)
+        b.upper = b.upper > 0 ? std::min(b.upper, factor) : factor;
+      else
+        least_open_ = open() ? std::min(least_open_, factor) : factor, most_open_ = std::max(most_open_, factor);
+      if (b.upper > 0 && b.lower > b.upper) b.lower = b.upper;  // both within the tolerance of equilibrium
+      factor = next(b, stride);
+      if (factor == 0) break;
+    }
+    b.decided = !open();
+    problem_.soil().restore(stable_);
+    PetscFunctionReturn(0);
   }
-  problem.soil().restore(stable);
+
+ private:
+  bool open() const { return most_open_ > 0; }
+  static bool narrow(double low, double high) { return high - low <= bracket_width * high; }
+
+  /// The factor of the next trial; 0 if there is none.
+  double next(const FactorBracket &b, double stride) {
+    // undecided trials outside of the bracket do not matter any more
+    if (open() && (most_open_ <= b.lower || (b.upper > 0 && least_open_ >= b.upper))) least_open_ = most_open_ = 0;
+    const double above = open() ? most_open_ : b.lower, below = open() ? least_open_ : b.upper;
+    if (b.upper == 0) {
+      const double top = std::max(above, b.lower) * stride;
+      return top < largest_factor ? top : 0;
+    }
+    if (b.lower == 0) {
+      const double bottom = below / stride;
+      return bottom > smallest_factor ? bottom : 0;
+    }
+    if (!narrow(b.lower, below)) return std::sqrt(b.lower * below);
+    if (open() && !narrow(above, b.upper)) return std::sqrt(above * b.upper);
+    return 0;
+  }
+
+  PetscErrorCode attempt(double factor, TrialOutcome *outcome, bool *interrupted) {
+    PetscFunctionBeginUser;
+    const auto begin = std::chrono::steady_clock::now();
+    SoilElements<dim> &soil = problem_.soil();
+    StrengthTrial trial;
+    trial.factor = factor, trial.dilating = dilating_;
+    for (const auto *state : {&stable_, &start_}) {  // from the first state too, where the last one leads nowhere
+      if (state == &start_ && !any_stable_) break;   // they are the same
+      soil.restore(*state);
+      for (size_t b = 0; b < laws_.size(); ++b) soil.points()[b].law = strength_of_trial(laws_[b], factor, dilating_);
+      LimitSearch found;
+      PetscCall(limit_.search(&found));
+      trial.iterations += found.iterations, trial.residual = found.residual, trial.surplus = found.surplus;
+      trial.curve = std::move(found.curve);
+      *interrupted = found.verdict == LimitVerdict::interrupted;
+      if (*interrupted) PetscFunctionReturn(0);
+      if (found.verdict != LimitVerdict::undecided) {
+        const bool stands = found.verdict == LimitVerdict::equilibrium;
+        trial.outcome = stands ? TrialOutcome::equilibrium : TrialOutcome::mechanism;
+        trial.displacement = stands ? soil.largest_displacement() : found.displacement;
+        if (stands) stable_ = soil.save(), any_stable_ = true;
+        break;
+      }
+      trial.displacement = found.displacement;
+    }
+    trial.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    *outcome = trial.outcome;
+    trials_.push_back(trial);
+    settings_.tell(trial);
+    PetscFunctionReturn(0);
+  }
+
+  QuasiStatic<dim> &problem_;
+  const std::vector<Law> &laws_;
+  const ReductionSettings &settings_;
+  bool dilating_;
+  LimitState<dim> &limit_;
+  std::vector<StrengthTrial> &trials_;
+  typename SoilElements<dim>::State start_, stable_;
+  bool any_stable_ = false;
+  double least_open_ = 0, most_open_ = 0;  ///< factors of undecided trials in the bracket; 0 if there are none
+};
+
+}  // namespace
+
+template <int dim>
+PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law> &laws,
+                               const ReductionSettings &settings, FactorOfSafety *result, bool *interrupted) {
+  PetscFunctionBeginUser;
+  *result = {}, *interrupted = false;
+  result->davis = std::any_of(laws.begin(), laws.end(), non_associated);
+  std::vector<std::vector<double>> history;  // displacement counts from here, strength as it is
+  for (const GaussPoints<dim> &p : problem.soil().points()) history.push_back(p.history);
+  problem.soil().reset_displacement();
+  for (size_t b = 0; b < history.size(); ++b) problem.soil().points()[b].history = history[b];
+  scale_plastic_strain(problem.soil(), 1 / unit_of_plastic_strain);
+  LimitState<dim> limit(problem);
+  PetscCall(limit.setup(settings.load_time, settings.time));
+  Reduction<dim> own(problem, laws, settings, !result->davis, limit, result->trials);
+  PetscCall(own.bracket(1, result, interrupted));
+  if (*interrupted || result->lower == 0 || result->upper == 0) PetscFunctionReturn(0);
+  const auto stable = problem.soil().save();
+  PetscCall(limit.move_along(settings.shown_displacement));
+  find_slip_surface(problem.soil(), result);
+  const auto moved = problem.soil().save();
+  if (result->davis) {
+    problem.soil().restore(stable);
+    Reduction<dim> dilating(problem, laws, settings, true, limit, result->trials);
+    PetscCall(dilating.bracket(result->upper, &result->dilating, interrupted));
+    problem.soil().restore(moved);
+  }
+  scale_plastic_strain(problem.soil(), unit_of_plastic_strain);
   PetscFunctionReturn(0);
 }
 
-template PetscErrorCode reduce_strength(QuasiStatic<2> &, const std::vector<Law> &, double, double, double, double,
-                                        double, const std::function<void(const StrengthTrial &)> &, FactorOfSafety *);
-template PetscErrorCode reduce_strength(QuasiStatic<3> &, const std::vector<Law> &, double, double, double, double,
-                                        double, const std::function<void(const StrengthTrial &)> &, FactorOfSafety *);
+template PetscErrorCode reduce_strength(QuasiStatic<2> &, const std::vector<Law> &, const ReductionSettings &,
+                                        FactorOfSafety *, bool *);
+template PetscErrorCode reduce_strength(QuasiStatic<3> &, const std::vector<Law> &, const ReductionSettings &,
+                                        FactorOfSafety *, bool *);
 
 }  // namespace talus

@@ -12,6 +12,16 @@ namespace talus {
 /// The law at its peak strength for good: for stages whose soil does not soften.
 Law without_softening(const Law &law);
 
+/// Has the law a friction angle above its dilation angle?
+bool non_associated(const Law &law);
+
+/// The law with its strength divided by `factor` and then with associated flow (psi = phi), which makes its limit load
+/// unique. With `dilating` cohesion and friction stay as they are. Else soil with psi < phi gets the strength that it
+/// has along a plane on which it slips (Davis 1968): c and tan(phi) times
+/// cos(psi) cos(phi) / (1 - sin(psi) sin(phi)). Soil that softens has the strength that its accepted plastic strain has
+/// left it, counted in a unit in which a trial adds nothing.
+Law strength_of_trial(const Law &law, double factor, bool dilating);
+
 /// Carries a path from share 0 to 1 in load steps of at most `step`, halved where they fail and doubled after quick
 /// ones; `done` is told of each. Returns the outcome of the last step and, in `share`, how far it came.
 PetscErrorCode follow_path(double step, double smallest,
@@ -19,13 +29,21 @@ PetscErrorCode follow_path(double step, double smallest,
                            const std::function<void(double share, const StepOutcome &)> &done, double *share,
                            StepOutcome *outcome, int *iterations);
 
-/// Bisection from a state that is in equilibrium with strength divided by `factor`. Each trial starts from the last
-/// stable state; it fails if Newton's iterations do not converge down to a sixteenth of the change of strength, or if a
-/// node moves more than `blow_up` since the start. Ends when the bracket is narrower than `resolution`, or, without an
-/// upper end, beyond a factor of 20.
+/// What a strength reduction needs of its surroundings.
+struct ReductionSettings {
+  double load_time = 0, time = 0;  ///< of the loads and of prescribed motions [s]
+  double shown_displacement = 0;   ///< largest displacement to which the mechanism is scaled at the end [m]
+  std::function<void(const StrengthTrial &)> tell;  ///< after each trial
+};
+
+/// Brackets the factor from the present state of the problem by equilibria and mechanisms, until the bracket is
+/// narrower than `bracket_width` of the factor, and if some soil has psi < phi a second time with psi = phi. The
+/// problem is left in the state of the largest factor that has an equilibrium, moved along the mechanism so far that it
+/// shows. `result` has lower = 0 if nothing stands at `smallest_factor`, and upper = 0 if nothing fails at
+/// `largest_factor`. `interrupted` is set if the search was stopped.
 template <int dim>
-PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law> &laws, double factor, double load_time,
-                               double time, double blow_up, double resolution,
-                               const std::function<void(const StrengthTrial &)> &tell, FactorOfSafety *result);
+PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law> &laws,
+                               const ReductionSettings &settings, FactorOfSafety *result, bool *interrupted);
+constexpr double bracket_width = 0.005, smallest_factor = 0.02, largest_factor = 20;
 
 }  // namespace talus

@@ -1,8 +1,10 @@
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 
 #include "commands/commands.h"
 #include "commands/gallery.h"
+#include "commands/json.h"
 #include "output/pictures.h"
 #include "scene/reader.h"
 #include "simulation.h"
@@ -13,12 +15,91 @@ namespace {
 struct SolveArguments {
   std::string scene, directory;
   std::vector<std::string> set;
-  bool no_pictures = false, factor_of_safety = false;
+  bool no_pictures = false, factor_of_safety = false, json = false;
 };
+
+constexpr int undecided_status = 3;  // of the program: the factor is known no better than a wide bracket
 
 void on_signal(int) { interrupted = 1; }
 
+std::string to_json(const FactorBracket &bracket) {
+  return json::Object()
+      .add("decided", bracket.decided ? "true" : "false")
+      .add("value", bracket.decided ? json::number(bracket.value()) : "null")
+      .add("equilibrium", bracket.lower)
+      .add("mechanism", bracket.upper)
+      .str();
+}
+
+const char *name_of(TrialOutcome outcome) {
+  switch (outcome) {
+    case TrialOutcome::equilibrium:
+      return "equilibrium";
+    case TrialOutcome::mechanism:
+      return "mechanism";
+    case TrialOutcome::undecided:
+      return "undecided";
+  }
+  return "";
+}
+
+std::string to_json(const FactorOfSafety &factor) {
+  const auto trial = [](const StrengthTrial &t) {
+    return json::Object()
+        .add("factor", t.factor)
+        .add("psi_is_phi", t.dilating ? "true" : "false")
+        .add("outcome", json::text(name_of(t.outcome)))
+        .add("iterations", t.iterations)
+        .add("residual", t.residual)
+        .add("displacement_m", t.displacement)
+        .add("surplus_of_work", t.surplus)
+        .add("wall_s", t.wall_seconds)
+        .str();
+  };
+  const auto point = [](const std::array<double, 2> &x) {
+    return "[" + json::number(x[0]) + ", " + json::number(x[1]) + "]";
+  };
+  return json::Object()
+      .add("factor_of_safety", to_json(static_cast<const FactorBracket &>(factor)))
+      .add("flow", json::text(factor.davis ? "davis" : "associated"))
+      .add("with_psi_equal_phi", factor.davis ? to_json(factor.dilating) : "null")
+      .add("stages_without_equilibrium", json::array(factor.lost_stages, json::text))
+      .add("moving_volume_m3", factor.moving_volume)
+      .add("slip_surface_m", json::array(factor.slip_surface, point))
+      .add("trials", json::array(factor.trials, trial))
+      .str();
+}
+
+std::string in_words(const FactorBracket &b) {
+  char text[200];
+  if (b.decided)
+    std::snprintf(text, sizeof text, "%.3f: equilibrium with strength divided by %.4g, a mechanism by %.4g", b.value(),
+                  b.lower, b.upper);
+  else
+    std::snprintf(text, sizeof text,
+                  "between %.4g and %.4g: equilibrium with strength divided by %.4g, a mechanism by %.4g, and between "
+                  "the two trials that found neither",
+                  b.lower, b.upper, b.lower, b.upper);
+  return text;
+}
+
+void print(const FactorOfSafety &factor) {
+  std::printf("factor of safety %s\n", in_words(factor).c_str());
+  if (factor.davis)
+    std::printf(
+        "This is the factor with the strength of Davis (1968), because psi < phi. With psi = phi, which limit "
+        "equilibrium assumes, the factor of safety is %s\n",
+        in_words(factor.dilating).c_str());
+  for (const std::string &stage : factor.lost_stages)
+    std::printf(
+        "WARNING: stage %s found no equilibrium; the factor does not depend on it, but displacement and stress "
+        "of that stage are not those of this soil.\n",
+        stage.c_str());
+}
+
 int solve(const SolveArguments &arguments) {
+  if (arguments.json && !arguments.factor_of_safety)
+    throw std::invalid_argument("--json writes the factor of safety: give --factor-of-safety too");
   const std::string file = find_scene(arguments.scene);
   Scene scene = read_scene(file, arguments.set);
   const auto dynamic = [](const Stage &stage) { return stage.kind == StageKind::dynamic; };
@@ -36,11 +117,15 @@ int solve(const SolveArguments &arguments) {
   const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
   int rank;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  int status = 0;
   if (arguments.factor_of_safety) {
     const FactorOfSafety factor = simulation->factor_of_safety();
-    if (rank == 0)
-      std::printf("factor of safety %.3f: equilibrium with strength divided by %.4g, none by %.4g\n", factor.value(),
-                  factor.lower, factor.upper);
+    if (!factor.decided || (factor.davis && !factor.dilating.decided)) status = undecided_status;
+    if (rank == 0) {
+      const std::string document = to_json(factor) + "\n";
+      std::ofstream(options.directory + "/factor_of_safety.json") << document;
+      arguments.json ? static_cast<void>(std::fputs(document.c_str(), stdout)) : print(factor);
+    }
   } else {
     simulation->run();
   }
@@ -53,7 +138,7 @@ int solve(const SolveArguments &arguments) {
   if (rank == 0)
     std::fprintf(stderr, "results are in %s: %srun.xdmf for ParaView\n", options.directory.c_str(),
                  arguments.no_pictures ? "" : "report.html to read, ");
-  return 0;
+  return status;
 }
 
 }  // namespace
@@ -66,7 +151,9 @@ Action add_solve(CLI::App &app) {
   command->add_option("-o,--output", arguments->directory, "folder of the results (default results/NAME)");
   command->add_option("--set", arguments->set, "override a key of the scene: key.path=value")->take_all();
   command->add_flag("--factor-of-safety", arguments->factor_of_safety,
-                    "reduce strength after the stages until equilibrium is lost");
+                    "reduce strength after the stages until the soil fails; status 3 if the factor is known only as a "
+                    "wide bracket");
+  command->add_flag("--json", arguments->json, "print the factor of safety as one JSON document");
   command->add_flag("--no-pictures", arguments->no_pictures, "do not draw pictures at the end");
   return [arguments] { return solve(*arguments); };
 }

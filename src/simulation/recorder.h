@@ -56,8 +56,6 @@ class Recorder {
 
   /// Fluid masses count from the next row on: pores have been filled anew.
   void recount_fluids() { first_ledger_.clear(); }
-  /// The run starts again from its begin.
-  void start_again() { last_row_step_ = -1; }
 
   CheckpointHeader checkpoint_header(int stage) const;
   void write_checkpoint(int stage, const Archive &state);

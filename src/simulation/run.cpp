@@ -27,14 +27,6 @@ void Run<dim>::begin_next_stage() {
 }
 
 template <int dim>
-void Run<dim>::start_again() {
-  clock.time = clock.load_time = 0, clock.steps = 0;
-  progress = StageProgress{};
-  recorder.start_again();
-  statics.forget();
-}
-
-template <int dim>
 Balance Run<dim>::balance() {
   Balance sums;
   require(world.motion->begin(clock.time));

@@ -22,8 +22,6 @@ struct Run {
   const Stage &stage() const { return scene.stage[progress.number]; }
   bool last_stage() const { return progress.number + 1 == static_cast<int>(scene.stage.size()); }
   void begin_next_stage();
-  /// Before its first stage again.
-  void start_again();
   /// Sums of the present state. Collective.
   Balance balance();
 

@@ -41,6 +41,11 @@ void Statics<dim>::make() {
   }
   problem_ =
       std::make_unique<QuasiStatic<dim>>(world_.mesh, world_.scene, world_.laws, world_.conditions.sources(), data);
+  problem_->stop_asked = [comm = world_.comm] {
+    int stop = interrupted;
+    MPI_Allreduce(MPI_IN_PLACE, &stop, 1, MPI_INT, MPI_MAX, comm);
+    return stop != 0;
+  };
   for (size_t b = 0; b < world_.bodies.size(); ++b) {
     GaussPoints<dim> &p = problem_->soil().points()[b];
     const std::vector<Function> &given = world_.scene.body[b].stress;
@@ -97,7 +102,7 @@ template <int dim>
 void Statics<dim>::choose_laws(const Stage &stage) {
   for (size_t b = 0; b < world_.laws.size(); ++b) {
     GaussPoints<dim> &points = problem_->soil().points()[b];
-    points.law = with_reduced_strength(world_.laws[b], strength_factor);
+    points.law = world_.laws[b];
     // steps are large here: strength would fall within one, though it is not remembered
     int sheared = std::any_of(points.history.begin(), points.history.end(), [](double h) { return h != 0; });
     MPI_Allreduce(MPI_IN_PLACE, &sheared, 1, MPI_INT, MPI_MAX, world_.comm);

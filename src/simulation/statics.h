@@ -25,8 +25,6 @@ class Statics {
   void begin_stage(const Stage &stage, bool soil_moves);
   /// The motion has the soil from now on: results are those of the particles.
   void leave() { current_ = false, moved_since_ = true; }
-  /// The problem is built anew with the next stage.
-  void forget() { current_ = false, problem_.reset(); }
 
   /// Particles stay where they are and take stress, history and pore water; the displacement moves the place it is
   /// counted from. Stress is linear between the Gauss points of a cell.
@@ -47,7 +45,10 @@ class Statics {
   /// Collective.
   std::vector<double> inflow() const;
 
-  double strength_factor = 1;  ///< by which stages divide strength
+  /// A factor of safety is wanted. It does not depend on the stress from which its search starts: stages give up early,
+  /// and the run goes on from where they lose equilibrium.
+  bool for_factor = false;
+  std::vector<std::string> lost_stages;  ///< names of these stages
 
  private:
   void make();

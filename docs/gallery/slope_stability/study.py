@@ -1,84 +1,99 @@
 #!/usr/bin/python3
-"""Factors of safety of the published slopes, by finite elements with strength reduction.
+"""Factors of safety of the slopes of this page, by finite elements with strength reduction.
 
-    study.py TALUS [slopes|figure ...]
+    study.py TALUS [slopes|meshes|figure ...]
 
-TALUS is the program (build/release/bin/talus). `slopes` writes factors.csv beside this file, `figure` draws mechanism.png.
+TALUS is the program (build/release/bin/talus). `slopes` writes factors.csv and `meshes` meshes.csv beside this file, `figure` draws mechanism.png.
 """
 import csv
-import re
+import json
+import shutil
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
 
-import numpy as np
-
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[2] / "src/output/plots"))
+sys.path.insert(0, str(HERE))
+import limit_equilibrium
 
 GRAVITY = 9.81
-POISSON = 0.4  # so that elastic ground, at rest with nu / (1 - nu), does not yield everywhere: sin(phi) > 1 - 2 nu at the reduced strength too
 # section, c [kPa], phi [deg], gamma [kN/m3], cell sizes [m], published factor; sources in README.md
-SLOPES = {
-    "ACADS-1a": ("acads_1a.csv", 3, 19.6, 20, (1.5, 0.75), 0.99),
-    "AT-1": ("arai_tagyo.csv", 41.65, 15, 18.82, (2, 1), 1.41),
-    "GL-1": ("griffiths_lane_1.csv", 14.9626, 20, 19.6359, (1.5, 0.75), 1.38),
-    "GL-2": ("griffiths_lane_2.csv", 14.9626, 20, 19.6359, (2, 1), 1.38),
+PUBLISHED = {
+    "ACADS-1a": ("acads_1a.csv", 3, 19.6, 20, (1.5, 0.75), "0.99"),
+    "AT-1": ("arai_tagyo.csv", 41.65, 15, 18.82, (2, 1), "1.41"),
+    "GL-1": ("griffiths_lane_1.csv", 14.9626, 20, 19.6359, (1.5, 0.75), "1.38"),
+    "GL-2": ("griffiths_lane_2.csv", 14.9626, 20, 19.6359, (2, 1), "1.38"),
 }
+OWN = {"weak seam": ("weak_seam.toml", (1, 0.5)), "layered": ("layered.toml", (1, 0.5))}
+GUIDE_SIZES = (0.8, 0.6, 0.5, 0.4, 0.35)
 
 
-def factor(talus, name, size, associated):
-    """(lower, upper, seconds, points) of one slope: the bracket, and position, shear strain of the Gauss points of the last stable state."""
-    from talus_results import Results
-    section, cohesion, phi, gamma, _, _ = SLOPES[name]
-    overrides = [f"mesh.section={section}", f"mesh.size={size}", f"body.soil.density={1000 * gamma / GRAVITY}", f"body.soil.cohesion={1000 * cohesion}",
-                 f"body.soil.friction_angle={phi}", f"body.soil.dilation_angle={phi if associated else 0}", f"body.soil.poisson_ratio={POISSON}"]
-    if name != "GL-1":
-        overrides += ["boundary.right.kind=roller"]
+def solve(talus, scene, overrides, keep=None):
+    """The answer of one run as --json gives it, and its time [s]; the pictures go into the folder `keep`."""
     with tempfile.TemporaryDirectory() as folder:
         start = time.time()
-        done = subprocess.run([talus, "solve", HERE / "scene.toml", "--factor-of-safety", "--no-pictures", "-o", folder, "--set", *overrides],
-                              capture_output=True, text=True)
-        if done.returncode:
-            raise RuntimeError(f"{name}: {done.stderr}")
-        lower, upper = (float(x) for x in re.search(r"divided by (\S+), none by (\S+)", done.stdout).groups())
-        last = Results(folder).snapshots[-1]
-        return lower, upper, time.time() - start, last.position(), last.column("shear_strain").values[:, 0]
+        command = [talus, "solve", HERE / scene, "--factor-of-safety", "--json", "-o", folder, "--set", *overrides]
+        done = subprocess.run(command if keep else [*command[:4], "--no-pictures", *command[4:]], capture_output=True, text=True)
+        if done.returncode not in (0, 3):
+            raise RuntimeError(f"{scene}: {done.stderr}")
+        if keep:
+            shutil.copy(Path(folder) / "pictures/factor_mechanism.png", keep / "mechanism.png")
+        return json.loads(done.stdout), time.time() - start
+
+
+def overrides_of(name):
+    section, cohesion, phi, gamma, _, _ = PUBLISHED[name]
+    sides = [] if name == "GL-1" else ["boundary.right.kind=roller"]
+    return [f"mesh.section={section}", f"body.soil.density={1000 * gamma / GRAVITY}", f"body.soil.cohesion={1000 * cohesion}",
+            f"body.soil.friction_angle={phi}", *sides]
+
+
+def rows_of(answer, seconds, **facts):
+    """One row for psi = 0 and one for psi = phi."""
+    for psi, bracket in (("0", answer["factor_of_safety"]), ("phi", answer["with_psi_equal_phi"])):
+        value = f"{bracket['value']:.3f}" if bracket["decided"] else f"{bracket['equilibrium']:.3f} to {bracket['mechanism']:.3f}"
+        spent = sum(trial["wall_s"] for trial in answer["trials"] if trial["psi_is_phi"] == (psi == "phi"))
+        yield {**facts, "psi": psi, "lower": f"{bracket['equilibrium']:.4f}", "upper": f"{bracket['mechanism']:.4f}", "factor": value,
+               "trials_s": f"{spent:.1f}", "run_s": f"{seconds:.1f}"}
+
+
+def write(name, rows):
+    with open(HERE / name, "w", newline="") as out:
+        writer = csv.DictWriter(out, rows[0].keys())
+        writer.writeheader()
+        writer.writerows(rows)
 
 
 def slopes(talus):
     rows = []
-    cases = [(name, associated, size) for k in (0, 1) for name in SLOPES for associated in (True, False) for size in SLOPES[name][4][k:k + 1]]
-    for name, associated, size in cases:
-        published = SLOPES[name][5]
-        lower, upper, seconds, _, _ = factor(talus, name, size, associated)
-        rows.append({"slope": name, "psi": "phi" if associated else "0", "size_m": size, "lower": f"{lower:.4g}", "upper": f"{upper:.4g}",
-                     "factor": f"{(lower + upper) / 2:.3f}", "published": published, "difference": f"{(lower + upper) / 2 - published:+.3f}",
-                     "wall_s": f"{seconds:.1f}"})
-        print(rows[-1], flush=True)
-        with open(HERE / "factors.csv", "w", newline="") as out:
-            writer = csv.DictWriter(out, rows[0].keys())
-            writer.writeheader()
-            writer.writerows(rows)
+    cases = [(name, "scene.toml", overrides_of(name), sizes, published) for name, (*_, sizes, published) in PUBLISHED.items()]
+    cases += [(name, scene, [], sizes, "") for name, (scene, sizes) in OWN.items()]
+    for name, scene, overrides, sizes, published in cases:
+        spencer, davis = (f"{limit_equilibrium.least(limit_equilibrium.SLOPES[name], davis)[0]:.3f}" for davis in (False, True))
+        for size in sizes:
+            answer, seconds = solve(talus, scene, [*overrides, f"mesh.size={size}"])
+            rows += rows_of(answer, seconds, slope=name, published=published, spencer=spencer, spencer_davis=davis, size_m=size)
+            print(*rows[-2:], sep="\n", flush=True)
+            write("factors.csv", rows)
+
+
+def meshes(talus):
+    rows = []
+    for size in GUIDE_SIZES:
+        answer, seconds = solve(talus, "guide_slope.toml", [f"mesh.size={size}"])
+        rows += rows_of(answer, seconds, size_m=size)
+        print(*rows[-2:], sep="\n", flush=True)
+        write("meshes.csv", rows)
 
 
 def figure(talus):
-    from talus_style import MAPS, plt, save
-    lower, _, _, position, strain = factor(talus, "GL-1", 0.75, True)
-    fig, ax = plt.subplots(figsize=(6.4, 2.6))
-    dots = ax.scatter(*position.T, c=strain / np.quantile(strain, 0.995), s=3, linewidths=0, cmap=MAPS["plastic_strain"], vmin=0, vmax=1)
-    ax.set_aspect("equal")
-    ax.set_title(f"GL-1, psi = phi, cells of 0.75 m: strength divided by {lower:.3f}", loc="left")
-    ax.set_xlabel("x, m"), ax.set_ylabel("y, m")
-    fig.colorbar(dots, ax=ax, label="shear strain over its 99.5 % quantile", shrink=0.9)
-    fig.tight_layout()
-    save(fig, HERE / "mechanism.png", dpi=110)
+    solve(talus, "scene.toml", [*overrides_of("GL-1"), "mesh.size=0.75"], keep=HERE)
 
 
 if __name__ == "__main__":
     if len(sys.argv) < 2:
         sys.exit(__doc__)
-    for study in sys.argv[2:] or ["slopes", "figure"]:
-        {"slopes": slopes, "figure": figure}[study](sys.argv[1])
+    for study in sys.argv[2:] or ["slopes", "meshes", "figure"]:
+        {"slopes": slopes, "meshes": meshes, "figure": figure}[study](sys.argv[1])

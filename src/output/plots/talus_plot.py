@@ -4,6 +4,7 @@
 import argparse
 import sys
 
+from talus_factor import draw_factor
 from talus_histories import draw_histories
 from talus_paths import draw_stress_paths, strength_of
 from talus_report import write_report
@@ -36,7 +37,8 @@ def draw(folder, fields=None, times=None, log=False):
     pictures = results.folder / "pictures"
     usual = (*FIELDS, *(DERIVED if strength_of(pictures) else ()))
     sections = draw_sections(results, fields or usual, times, pictures, log)
-    return write_report(results, sections, draw_histories(results, pictures) + draw_stress_paths(results, pictures))
+    curves = draw_histories(results, pictures) + draw_stress_paths(results, pictures)
+    return write_report(results, sections, curves, draw_factor(results, pictures))
 
 
 def main():

@@ -7,6 +7,7 @@ import pathlib
 import numpy as np
 
 import talus_style as style
+from talus_factor import factor_lines, read_factor
 
 LOG_LINES = 25
 PAGE = """<!doctype html>
@@ -25,13 +26,14 @@ PAGE = """<!doctype html>
 """
 
 
-def write_report(results, sections, histories):
-    """`sections` [(field, large picture, sheet of times)], `histories` [(quantity, picture)] -> path of the page."""
+def write_report(results, sections, histories, factor=()):
+    """`sections` [(field, large picture, sheet of times)], `histories` and `factor` [(quantity, picture)] -> path of the page."""
     css = (pathlib.Path(__file__).parent / "report.css").read_text()
     parts = [
         header(results),
         cards(key_results(results)),
         warnings(results),
+        section("Factor of safety", factor_block(read_factor(results), factor)),
         summary(results),
         section("Sections", "".join(field_block(*one) for one in sections)),
         section("Histories", grid(histories)),
@@ -179,6 +181,13 @@ def section(name, content):
 def field_block(field, large, over_time):
     name = style.capital(style.words(field))
     return f'<div class="field">{picture(large, name)}{picture(over_time, f"{name} over time")}</div>'
+
+
+def factor_block(factor, pictures):
+    """The factor of safety in sentences, and its pictures."""
+    if factor is None:
+        return ""
+    return "".join(f"<p>{html.escape(line)}</p>" for line in factor_lines(factor)) + grid(pictures)
 
 
 def grid(histories):

@@ -87,12 +87,18 @@ class StaticStage : public StageRunner<dim> {
     run_.recorder.write_snapshot();
     std::ostringstream text;
     text.precision(3);
+    if (path_.last.stopped) throw RunFailure("interrupted");
     if (path_.share < 1) {
       text << "no equilibrium beyond " << 100 * path_.share << " % of the loads of stage " << stage_.name << ": "
            << (path_.last.singular ? "the stiffness became singular" : "Newton's iterations did not converge") << " ("
            << path_.last.iterations << " iterations, out-of-balance force " << path_.last.residual
            << " of the forces, largest step of a node " << path_.last.largest << " m)";
-      if (stage_.when_lost == WhenLost::stop) throw RunFailure(text.str());
+      const bool goes_on = run_.statics.for_factor && !water_flows();
+      if (stage_.when_lost == WhenLost::stop && !goes_on) throw RunFailure(text.str());
+      if (goes_on) {
+        run_.statics.lost_stages.push_back(stage_.name);
+        run_.clock.time = begin_ + stage_.duration, run_.clock.load_time = load_at(1);
+      }
     } else {
       describe(path_, text);
     }

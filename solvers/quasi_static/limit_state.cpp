@@ -1,0 +1,177 @@
+#include "solvers/quasi_static/limit_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+namespace {
+
+// Out-of-balance force over the size of the forces at which soil is in equilibrium. A slide of a hundredth of the soil
+// then misses a thousandth of its own weight, a fifth of the width of the bracket of a factor of safety.
+constexpr double small_residual = 1e-5;
+// A mechanism has moved by this much more than elastic soil under the same loads, and while the prop became ten times
+// softer its force has decreased by less than a quarter. The force on soil in equilibrium would be a tenth.
+constexpr double far = 10, lasting = 0.75;
+// Stiffness of the prop over that of elastic soil. With the last one, soil that has moved by 10,000 times the elastic
+// displacement is still in equilibrium.
+constexpr double first_prop = 1e-2, last_prop = 1e-9;
+constexpr int most_iterations = 200, most_per_prop = 40;
+
+}  // namespace
+
+template <int dim>
+PetscErrorCode LimitState<dim>::setup(double load_time, double time) {
+  bool solved;
+  PetscFunctionBeginUser;
+  load_time_ = load_time, time_ = time;
+  for (Vector *v : {&x_, &trial_, &direction_, &force_, &of_prop_, &start_, &mechanism_})
+    PetscCall(problem_.soil().nodes().global_vector(*v));
+  PetscCall(problem_.prepare(1, load_time, time, 0, x_));
+  PetscCall(problem_.stiffness(0, 1));
+  PetscCall(MatDuplicate(problem_.matrix(), MAT_COPY_VALUES, elastic_.create()));
+  PetscCall(problem_.solve_linear(problem_.loads(), direction_, &solved));
+  PetscCall(VecNorm(direction_, NORM_INFINITY, &elastic_displacement_));
+  PetscFunctionReturn(0);
+}
+
+/// Out-of-balance force at displacement x, loads minus forces of soil and prop, in force_.
+template <int dim>
+PetscErrorCode LimitState<dim>::evaluate(::Vec x) {
+  PetscFunctionBeginUser;
+  PetscCall(problem_.residual(x, force_));
+  PetscCall(MatMult(elastic_, x, of_prop_));
+  PetscCall(VecScale(of_prop_, prop_));
+  PetscCall(VecAXPY(force_, 1, of_prop_));
+  PetscCall(VecScale(force_, -1));
+  PetscCall(VecNorm(force_, NORM_2, &residual_));
+  PetscCall(VecNorm(of_prop_, NORM_2, &prop_force_));
+  PetscFunctionReturn(0);
+}
+
+/// Goes along the direction to where the out-of-balance force does little more work on it, which is near the least
+/// energy on this line. Leaves the end in x_ and its force in force_.
+template <int dim>
+PetscErrorCode LimitState<dim>::line_search(double slope, double *step) {
+  constexpr double enough = 0.3;  // of the slope at the start, up or down: near enough to the least energy
+  constexpr int most_evaluations = 15;
+  double low = 0, at_low = slope, high = 0, at_high = 0;
+  PetscFunctionBeginUser;
+  *step = 1;
+  for (int k = 0; k < most_evaluations; ++k) {
+    double work;
+    PetscCall(VecWAXPY(trial_, *step, direction_, x_));
+    PetscCall(evaluate(trial_));
+    PetscCall(VecDot(force_, direction_, &work));
+    if (std::abs(work) <= enough * slope) break;
+    if (work > 0) {
+      low = *step, at_low = work;
+    } else {
+      high = *step, at_high = std::isfinite(work) ? work : -1e3 * slope;
+    }
+    if (high == 0) {
+      *step *= 2;
+    } else {
+      const double middle = low + (high - low) * at_low / (at_low - at_high);
+      *step = std::clamp(middle, low + 0.1 * (high - low), low + 0.9 * (high - low));
+    }
+  }
+  PetscCall(VecCopy(trial_, x_));
+  PetscFunctionReturn(0);
+}
+
+/// Newton's iterations for the propped soil, until what is out of balance is small against the force of the prop or
+/// altogether.
+template <int dim>
+PetscErrorCode LimitState<dim>::settle(int most, LimitSearch *result, bool *settled) {
+  double slope, step;
+  bool solved;
+  PetscFunctionBeginUser;
+  *settled = false;
+  PetscCall(evaluate(x_));
+  for (int k = 0;; ++k) {
+    const double scale = problem_.force_scale();
+    *settled = residual_ <= std::max(0.05 * prop_force_, 0.5 * small_residual * scale);
+    if (*settled || k == most || stop_asked()) PetscFunctionReturn(0);
+    PetscCall(problem_.stiffness(1, prop_));
+    PetscCall(problem_.solve_linear(force_, direction_, &solved));
+    ++result->iterations;
+    if (!solved) PetscFunctionReturn(0);
+    PetscCall(VecDot(force_, direction_, &slope));
+    if (!(slope > 0)) PetscFunctionReturn(0);
+    PetscCall(line_search(slope, &step));
+    if (getenv("TALUS_TRACE")) {
+      double size;
+      PetscCall(VecNorm(x_, NORM_INFINITY, &size));
+      printf("  %3d prop %.1e slope %.3e step %.3e residual %.3e prop force %.3e displacement %.3e\n",
+             result->iterations, prop_, slope, step, residual_ / problem_.force_scale(),
+             prop_force_ / problem_.force_scale(), size / elastic_displacement_);
+    }
+  }
+}
+
+template <int dim>
+PetscErrorCode LimitState<dim>::search(LimitSearch *result) {
+  bool settled;
+  PetscFunctionBeginUser;
+  *result = {};
+  PetscCall(problem_.prepare(1, load_time_, time_, 0, x_));
+  prop_ = first_prop;
+  PetscCall(evaluate(x_));
+  problem_.close_scale();
+  double last_force = 0, last_prop_tried = 0;  // of the stiffer prop before
+  for (double reduction = 10;;) {
+    PetscCall(VecCopy(x_, start_));  // where this prop begins
+    PetscCall(settle(std::min(most_per_prop, most_iterations - result->iterations), result, &settled));
+    if (stop_asked()) {
+      result->verdict = LimitVerdict::interrupted;
+      break;
+    }
+    const double scale = problem_.force_scale(), force = prop_force_ / scale;
+    PetscCall(VecNorm(x_, NORM_INFINITY, &result->displacement));
+    result->residual = force + residual_ / scale;
+    if (settled) result->curve.emplace_back(result->displacement, force);
+    if (settled && result->residual <= small_residual) {
+      result->verdict = LimitVerdict::equilibrium;
+      PetscCall(problem_.commit(x_, false));
+      break;
+    }
+    const double decades = last_force > 0 ? std::log10(last_prop_tried / prop_) : 0;
+    if (settled && decades > 0 && result->displacement > far * elastic_displacement_ &&
+        force > std::pow(lasting, decades) * last_force) {
+      double on_prop, of_loads;
+      PetscCall(VecDot(of_prop_, x_, &on_prop));
+      PetscCall(VecDot(problem_.loads(), x_, &of_loads));
+      result->verdict = LimitVerdict::mechanism, result->surplus = on_prop / of_loads;
+      PetscCall(VecCopy(x_, mechanism_));
+      break;
+    }
+    if (result->iterations >= most_iterations) break;
+    if (settled) {  // a prop that soil in equilibrium leans on less and less can be taken away faster
+      const bool unloads = decades > 0 && force < std::pow(0.3, decades) * last_force;
+      reduction = unloads ? std::min(100 * reduction, 1e3) : std::min(reduction * reduction, 10.);
+      last_force = force, last_prop_tried = prop_;
+    } else {  // a smaller change of the prop
+      if (reduction < 1.5 || last_force == 0) break;
+      PetscCall(VecCopy(start_, x_));
+      prop_ = last_prop_tried, reduction = std::sqrt(reduction);
+    }
+    if (prop_ <= last_prop) break;
+    prop_ = std::max(prop_ / reduction, last_prop);
+  }
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode LimitState<dim>::move_along(double size) {
+  double largest;
+  PetscFunctionBeginUser;
+  PetscCall(VecNorm(mechanism_, NORM_INFINITY, &largest));
+  PetscCall(VecScale(mechanism_, size / largest));
+  PetscCall(problem_.commit(mechanism_, false));
+  PetscFunctionReturn(0);
+}
+
+template class LimitState<2>;
+template class LimitState<3>;
+
+}  // namespace talus

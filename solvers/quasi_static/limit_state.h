@@ -1,0 +1,61 @@
+#pragma once
+/// Can soil carry its loads? A search for equilibrium that also recognises failure, docs/theory/finite_elements.md
+/// section 5. The soil is propped by an elastic solid of the same shape with a small share alpha of its elastic
+/// stiffness, which makes every load bearable, and alpha is reduced step by step. Soil in equilibrium unloads the prop:
+/// its force goes to zero with alpha. Soil that fails leans on it: displacement grows as 1 / alpha, and the force of
+/// the prop stays. For associated flow (psi = phi) the propped soil minimises a convex energy, so that one of the two
+/// must happen and the iterations find which.
+#include <utility>
+#include <vector>
+
+#include "solvers/quasi_static/quasi_static.h"
+
+namespace talus {
+
+enum class LimitVerdict { equilibrium, mechanism, undecided, interrupted };
+
+/// How a search ended.
+struct LimitSearch {
+  LimitVerdict verdict = LimitVerdict::undecided;
+  int iterations = 0;       ///< linear systems that were solved
+  double residual = 0;      ///< out-of-balance force without the prop over the size of the forces at the end [-]
+  double displacement = 0;  ///< largest displacement of a node during the search [m]
+  double surplus = 0;       ///< of a mechanism: share of the work of the loads that the prop takes up [-]
+  /// Largest displacement [m] and force of the prop over that of the loads [-] for each stiffness of the prop: the
+  /// load-displacement curve.
+  std::vector<std::pair<double, double>> curve;
+};
+
+template <int dim>
+class LimitState {
+ public:
+  /// Bodies and loads must not change while it exists; strength may.
+  explicit LimitState(QuasiStatic<dim> &problem) : problem_(problem) {}
+
+  /// Prepares searches under the loads of `load_time`: finds the displacement of elastic soil, to which displacements
+  /// are compared. Collective.
+  PetscErrorCode setup(double load_time, double time);
+  /// Searches from the state of the problem. An equilibrium is committed (with the history of the laws unchanged); in
+  /// every other case the problem keeps its state. Collective.
+  PetscErrorCode search(LimitSearch *result);
+  /// Moves the soil along the mechanism that was found last, so far that its largest displacement is `size` [m].
+  /// Collective.
+  PetscErrorCode move_along(double size);
+  double elastic_displacement() const { return elastic_displacement_; }  ///< of a node at most [m]
+
+ private:
+  bool stop_asked() const { return problem_.stop_asked && problem_.stop_asked(); }
+  PetscErrorCode evaluate(::Vec x);
+  PetscErrorCode settle(int most_iterations, LimitSearch *result, bool *settled);
+  PetscErrorCode line_search(double slope, double *step);
+
+  QuasiStatic<dim> &problem_;
+  double load_time_ = 0, time_ = 0, elastic_displacement_ = 0;
+  double prop_ = 0;        ///< alpha: stiffness of the prop over the elastic stiffness [-]
+  double residual_ = 0;    ///< size of the out-of-balance force of the propped soil [N]
+  double prop_force_ = 0;  ///< size of the force of the prop [N]
+  Matrix elastic_;         ///< elastic stiffness
+  Vector x_, trial_, direction_, force_, of_prop_, start_, mechanism_;
+};
+
+}  // namespace talus

@@ -1,0 +1,87 @@
+"""Pictures of a factor of safety: the mechanism with its slip surface, and displacement against the factor."""
+
+import json
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import talus_style as style
+
+BRIGHT = 0.97  # share of the soil that shears less than the end of the colour scale
+
+
+def read_factor(results):
+    """factor_of_safety.json of the run; None where none was asked for."""
+    path = results.folder / "factor_of_safety.json"
+    return json.loads(path.read_text()) if path.exists() else None
+
+
+def in_words(bracket):
+    """'1.234 (equilibrium at 1.231, mechanism at 1.237)'; a bracket that is not decided has no number."""
+    ends = f"equilibrium at {bracket['equilibrium']:.4g}, mechanism at {bracket['mechanism']:.4g}"
+    number = f"{bracket['value']:.3f}" if bracket["decided"] else f"between {bracket['equilibrium']:.3f} and {bracket['mechanism']:.3f}"
+    return f"{number} ({ends})"
+
+
+def factor_lines(factor):
+    """Sentences for the report: the factor, what it assumes, and what was done to the strength."""
+    lines = [f"Factor of safety {in_words(factor['factor_of_safety'])}."]
+    if factor["with_psi_equal_phi"]:
+        lines.append("Some soil has psi < phi: the factor is that of the strength of Davis (1968). "
+                     f"With psi = phi, as limit equilibrium assumes, it is {in_words(factor['with_psi_equal_phi'])}.")
+    if not factor["factor_of_safety"]["decided"]:
+        lines.append("Trials between the two ends found neither an equilibrium nor a mechanism, so there is no number.")
+    for stage in factor["stages_without_equilibrium"]:
+        lines.append(f"Warning: stage {stage} found no equilibrium. The factor does not depend on it; displacement and stress of that "
+                     "stage are not those of this soil.")
+    return lines
+
+
+def draw_factor(results, folder):
+    """factor_mechanism.png (plane strain) and factor_displacement.png. Returns [(what, path)]."""
+    factor = read_factor(results)
+    if factor is None:
+        return []
+    headline = f"Factor of safety {in_words(factor['factor_of_safety'])}"
+    pictures = [("displacement against factor", draw_displacement(factor, headline, folder / "factor_displacement.png"))]
+    if factor["slip_surface_m"] and results.snapshots[-1].position().shape[1] == 2:
+        pictures.insert(0, ("mechanism and slip surface", draw_mechanism(results, factor, headline, folder / "factor_mechanism.png")))
+    return pictures
+
+
+def draw_mechanism(results, factor, headline, path):
+    """Shear strain of the mechanism, which is scaled so that it shows, and the slip surface."""
+    last = results.snapshots[-1]
+    position = last.position()
+    strain = last.scalar("shear_strain")[0]
+    figure, axes = plt.subplots(figsize=(9, 4.2))
+    order = np.argsort(strain)
+    dots = axes.scatter(*position[order].T, c=strain[order] / max(np.quantile(strain, BRIGHT), 1e-300), s=7, linewidths=0,
+                        cmap=style.colours_of("plastic_strain"), vmin=0, vmax=1)
+    axes.plot(*np.array(factor["slip_surface_m"]).T, color=style.INK, lw=1.2, ls=(0, (4, 2)), label="slip surface")
+    axes.set_aspect("equal")
+    axes.set_xlabel("x [m]"), axes.set_ylabel("y [m]")
+    axes.set_title(headline, loc="left")
+    axes.legend(loc="best")
+    figure.colorbar(dots, ax=axes, label=f"shear strain over its {100 * BRIGHT:.0f} % quantile", shrink=0.8)
+    figure.tight_layout()
+    return style.save(figure, path)
+
+
+def draw_displacement(factor, headline, path):
+    """Largest displacement of the trials in equilibrium, and lines at the factors for which it grows without bound."""
+    figure, axes = plt.subplots(figsize=(7.6, 3.7))
+    for dilating, colour, name in ((False, style.LINES[0], "psi < phi"), (True, style.LINES[1], "psi = phi")):
+        trials = [t for t in factor["trials"] if t["psi_is_phi"] == dilating]
+        stable = sorted((t["factor"], t["displacement_m"]) for t in trials if t["outcome"] == "equilibrium")
+        if stable:
+            axes.plot(*np.array(stable).T, "o-", color=colour, ms=4, label=f"equilibrium, {name}")
+        for k, failed in enumerate(sorted(t["factor"] for t in trials if t["outcome"] == "mechanism")):
+            axes.axvline(failed, color=colour, lw=0.8, ls=":", label=f"mechanism, {name}" if k == 0 else None)
+        for k, open_one in enumerate(sorted(t["factor"] for t in trials if t["outcome"] == "undecided")):
+            axes.axvline(open_one, color=style.ACCENT, ls="--", lw=0.8, label="undecided" if k == 0 else None)
+    axes.set_xlabel("factor by which strength is divided"), axes.set_ylabel("largest displacement [m]")
+    axes.set_title(headline, loc="left")
+    axes.legend(loc="best", fontsize="small")
+    figure.tight_layout()
+    return style.save(figure, path)

@@ -1,0 +1,151 @@
+// Claims of docs/theory/finite_elements.md section 5: what a factor of safety does not depend on, that it is bracketed
+// by an equilibrium and a mechanism, and that neither a slope that does not stand nor a stage without equilibrium ends
+// the search. A bracket is 0.5 % wide, so two that hold the same factor have middles within 0.5 %.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/reader.h"
+#include "simulation.h"
+#include "solvers/quasi_static/strength_reduction.h"
+
+namespace talus {
+namespace {
+
+using Overrides = std::vector<std::string>;
+constexpr double same = 0.005;
+
+FactorOfSafety factor_of(const std::string &file, const Overrides &overrides = {}) {
+  Scene scene = read_scene(std::string(TALUS_SLOPES) + "/" + file, overrides);
+  RunOptions options;
+  options.pictures = options.screen = false;
+  return make_simulation(PETSC_COMM_WORLD, scene, options)->factor_of_safety();
+}
+
+Overrides operator+(Overrides a, const Overrides &b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+const Overrides coarse{"mesh.size=2.5"};
+
+/// Every bracket has an equilibrium at its lower end and a mechanism at its upper end among the trials.
+void expect_bracketed(const FactorOfSafety &factor) {
+  EXPECT_TRUE(factor.decided);
+  EXPECT_LE(factor.upper / factor.lower, 1 + 1.01 * bracket_width / (1 - bracket_width));
+  const auto has = [&](double at, TrialOutcome outcome) {
+    return std::any_of(factor.trials.begin(), factor.trials.end(),
+                       [&](const StrengthTrial &t) { return t.factor == at && t.outcome == outcome; });
+  };
+  EXPECT_TRUE(has(factor.lower, TrialOutcome::equilibrium));
+  EXPECT_TRUE(has(factor.upper, TrialOutcome::mechanism));
+}
+
+/// The limit load of soil with associated flow depends neither on elasticity nor on initial stress; with psi < phi the
+/// trials are associated too. The values of nu are on both sides of that at which level ground yields: sin(phi) = 1 - 2
+/// nu at nu = 0.33.
+TEST(FactorOfSafety, depends_neither_on_elasticity_nor_on_initial_stress) {
+  for (const char *psi : {"body.soil.dilation_angle=0", "body.soil.dilation_angle=20"}) {
+    const FactorOfSafety first = factor_of("scene.toml", coarse + Overrides{psi});
+    expect_bracketed(first);
+    EXPECT_EQ(first.davis, psi == std::string("body.soil.dilation_angle=0"));
+    for (const Overrides &change : {Overrides{"body.soil.poisson_ratio=0.45"},
+                                    {"body.soil.poisson_ratio=0.1"},
+                                    {"body.soil.young_modulus=1e6"},
+                                    {"stage.0.initial_stress=k0"}}) {
+      const FactorOfSafety other = factor_of("scene.toml", coarse + Overrides{psi} + change);
+      EXPECT_NEAR(other.value() / first.value(), 1, same) << psi << " " << change[0];
+    }
+  }
+}
+
+/// Soil with half of the strength has half of the factor, though it does not stand; with twice of it, twice the factor.
+TEST(FactorOfSafety, is_proportional_to_strength) {
+  const Overrides flow{"body.soil.dilation_angle=20"};
+  const double whole = factor_of("scene.toml", coarse + flow).value();
+  for (const double share : {0.5, 2.}) {
+    const double phi = std::atan(share * std::tan(20 * degree.si)) / degree.si;
+    const FactorOfSafety part =
+        factor_of("scene.toml", coarse + Overrides{"body.soil.cohesion=" + std::to_string(share * 14962.6),
+                                                   "body.soil.friction_angle=" + std::to_string(phi),
+                                                   "body.soil.dilation_angle=" + std::to_string(phi)});
+    expect_bracketed(part);
+    EXPECT_NEAR(part.value() / whole, share, same * share) << share;
+    EXPECT_EQ(part.lost_stages.empty(), share > 1);  // half of the strength does not carry the weight of the slope
+  }
+}
+
+/// Soil with psi < phi has the factor of associated soil with the strength of Davis (1968); it is less than that with
+/// psi = phi, which is the other end of the spread.
+TEST(FactorOfSafety, with_less_dilation_is_that_of_davis) {
+  const FactorOfSafety none = factor_of("scene.toml", coarse + Overrides{"body.soil.dilation_angle=0"}),
+                       full = factor_of("scene.toml", coarse + Overrides{"body.soil.dilation_angle=20"});
+  EXPECT_NEAR(none.dilating.value() / full.value(), 1, same);
+  EXPECT_LT(none.upper, none.dilating.lower);
+  // strength of soil with psi = phi that has the factor 1 by itself if it is that of the failed slope
+  const double F = none.value(), reduced = std::atan(std::tan(20 * degree.si) / F), share = std::cos(reduced);
+  const double phi = std::atan(share * std::tan(reduced)) / degree.si;
+  const FactorOfSafety one =
+      factor_of("scene.toml", coarse + Overrides{"body.soil.cohesion=" + std::to_string(14962.6 / F * share),
+                                                 "body.soil.friction_angle=" + std::to_string(phi),
+                                                 "body.soil.dilation_angle=" + std::to_string(phi)});
+  EXPECT_NEAR(one.value(), 1, same);
+}
+
+/// A thin weak seam, and sand without cohesion, both with psi = 0: Newton's iterations stall in the gravity stage of
+/// the sand. Limit equilibrium with the same strength (docs/gallery/slope_stability/limit_equilibrium.py) gives 1.289
+/// and 1.247; coarse elements are stiffer by up to 6 %.
+TEST(FactorOfSafety, of_weak_seam_and_sand_without_dilation_is_found) {
+  const FactorOfSafety seam = factor_of("weak_seam.toml", {"mesh.size=2"});
+  expect_bracketed(seam);
+  EXPECT_NEAR(seam.value() / 1.289, 1.02, 0.04);
+  const FactorOfSafety layers = factor_of("layered.toml", {"mesh.size=2"});
+  expect_bracketed(layers);
+  EXPECT_NEAR(layers.value() / 1.247, 1.02, 0.04);
+  ASSERT_FALSE(seam.slip_surface.empty());
+  double lowest = 1e300;
+  for (const auto &[x, y] : seam.slip_surface) lowest = std::min(lowest, y);
+  EXPECT_GT(lowest, -1.4) << "it does not cut the rock";
+  EXPECT_LT(lowest, -1) << "it follows the seam";
+}
+
+/// Soil that would soften keeps its peak strength in trials if it has not sheared.
+TEST(FactorOfSafety, trials_take_no_strength_from_soil_that_softens) {
+  const Overrides held{"stage.0.softening=false", "body.soil.dilation_angle=20"};
+  const double hard = factor_of("scene.toml", coarse + held).value();
+  const double soft =
+      factor_of("scene.toml", coarse + held +
+                                  Overrides{"body.soil.residual_cohesion=1e3", "body.soil.residual_friction_angle=10",
+                                            "body.soil.residual_dilation_angle=10", "body.soil.shape_factor=50"})
+          .value();
+  EXPECT_NEAR(soft / hard, 1, same);
+}
+
+/// What the curve of each trial says: the force of the prop vanishes in equilibrium and remains with a mechanism.
+TEST(FactorOfSafety, curves_show_equilibrium_and_mechanism) {
+  const FactorOfSafety factor = factor_of("scene.toml", coarse);
+  for (const StrengthTrial &t : factor.trials) {
+    ASSERT_FALSE(t.curve.empty());
+    if (t.outcome == TrialOutcome::equilibrium) {
+      EXPECT_LT(t.curve.back().second, 1e-5) << t.factor;
+    } else {
+      ASSERT_GE(t.curve.size(), 2u);
+      const auto &[moved, force] = t.curve.back();
+      const auto &[moved_before, force_before] = t.curve[t.curve.size() - 2];
+      EXPECT_GT(moved, 1.5 * moved_before) << t.factor;
+      EXPECT_GT(force, 0.1 * force_before) << t.factor;
+      EXPECT_GT(t.surplus, 0);
+    }
+  }
+}
+
+/// A signal ends the search, in a stage or in a trial.
+TEST(FactorOfSafety, ends_when_interrupted) {
+  interrupted = 1;
+  EXPECT_THROW(factor_of("scene.toml", coarse), RunError);
+  interrupted = 0;
+}
+
+}  // namespace
+}  // namespace talus
