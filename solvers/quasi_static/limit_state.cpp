@@ -99,13 +99,6 @@ PetscErrorCode LimitState<dim>::settle(int most, LimitSearch *result, bool *sett
     PetscCall(VecDot(force_, direction_, &slope));
     if (!(slope > 0)) PetscFunctionReturn(0);
     PetscCall(line_search(slope, &step));
-    if (getenv("TALUS_TRACE")) {
-      double size;
-      PetscCall(VecNorm(x_, NORM_INFINITY, &size));
-      printf("  %3d prop %.1e slope %.3e step %.3e residual %.3e prop force %.3e displacement %.3e\n",
-             result->iterations, prop_, slope, step, residual_ / problem_.force_scale(),
-             prop_force_ / problem_.force_scale(), size / elastic_displacement_);
-    }
   }
 }
 

@@ -7,8 +7,7 @@ namespace talus {
 
 /// Finds both in soil whose last accepted increment was a mechanism. The moving volume is that of the Gauss points that
 /// move by more than a tenth of the largest displacement. The slip surface, in plane strain only, has one point for
-/// each strip of the soil of the width of an element: the Gauss point that shears most; strips in which nothing shears
-/// by more than a tenth of the most have none. Collective.
+/// each strip of the soil of the width of an element in which soil moves: the Gauss point that shears most. Collective.
 template <int dim>
 void find_slip_surface(const SoilElements<dim> &soil, FactorOfSafety *result);
 
