@@ -7,11 +7,11 @@ TALUS is the program (build/release/bin/talus). `slopes` writes factors.csv and 
 """
 import csv
 import json
+import resource
 import shutil
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -31,16 +31,16 @@ GUIDE_SIZES = (0.8, 0.6, 0.5, 0.4, 0.35)
 
 
 def solve(talus, scene, overrides, keep=None):
-    """The answer of one run as --json gives it, and its time [s]; the pictures go into the folder `keep`."""
+    """The answer of one run as --json gives it, and its processor time [s]; the pictures go into the folder `keep`."""
     with tempfile.TemporaryDirectory() as folder:
-        start = time.time()
+        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
         command = [talus, "solve", HERE / scene, "--factor-of-safety", "--json", "-o", folder, "--set", *overrides]
         done = subprocess.run(command if keep else [*command[:4], "--no-pictures", *command[4:]], capture_output=True, text=True)
         if done.returncode not in (0, 3):
             raise RuntimeError(f"{scene}: {done.stderr}")
         if keep:
             shutil.copy(Path(folder) / "pictures/factor_mechanism.png", keep / "mechanism.png")
-        return json.loads(done.stdout), time.time() - start
+        return json.loads(done.stdout), resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
 
 
 def overrides_of(name):
@@ -54,9 +54,9 @@ def rows_of(answer, seconds, **facts):
     """One row for psi = 0 and one for psi = phi."""
     for psi, bracket in (("0", answer["factor_of_safety"]), ("phi", answer["with_psi_equal_phi"])):
         value = f"{bracket['value']:.3f}" if bracket["decided"] else f"{bracket['equilibrium']:.3f} to {bracket['mechanism']:.3f}"
-        spent = sum(trial["wall_s"] for trial in answer["trials"] if trial["psi_is_phi"] == (psi == "phi"))
+        iterations = sum(trial["iterations"] for trial in answer["trials"] if trial["psi_is_phi"] == (psi == "phi"))
         yield {**facts, "psi": psi, "lower": f"{bracket['equilibrium']:.4f}", "upper": f"{bracket['mechanism']:.4f}", "factor": value,
-               "trials_s": f"{spent:.1f}", "run_s": f"{seconds:.1f}"}
+               "iterations": iterations, "cpu_s": f"{seconds:.1f}"}
 
 
 def write(name, rows):

@@ -1,7 +1,7 @@
 #pragma once
 /// Factor of safety 1.38 of example 1 of Griffiths & Lane (1999) by Bishop & Morgenstern's charts; finite elements in
-/// steps of 0.05: 1.40. With psi = 0 the strength is that of Davis (1968), c and tan(phi) times the cosine of the reduced
-/// phi, with which Spencer's method gives 1.327 (docs/gallery/slope_stability/limit_equilibrium.py --davis).
+/// steps of 0.05: 1.40. With psi = 0 the strength is that of Davis (1968), c and tan(phi) times the cosine of the
+/// reduced phi, with which Spencer's method gives 1.327 (docs/gallery/slope_stability/limit_equilibrium.py --davis).
 #include "commands/rung.h"
 
 namespace talus::rungs {
