@@ -285,11 +285,11 @@ struct Stage {
              "equilibrium: largest ratio of kinetic to elastic strain energy");
     v.number("rest_speed", rest_speed, metre_per_second, Range{0, 1e6},
              "rest: the root mean square speed of all soil remains below this value");
-    v.text("failure_point", failure_point, "failure: name of the output point whose speed is tested");
+    v.text("failure_point", failure_point, "failure: name of the output point whose velocity is tested");
     v.number("failure_speed", failure_speed, metre_per_second, Range{0, 1e6},
-             "failure: speed that the point must exceed");
+             "failure: speed that the mean velocity of the point in a tenth of failure_time must exceed");
     v.number("failure_time", failure_time, second, Range{0, 1e9},
-             "failure: time for which the speed of the point must then increase");
+             "failure: the mean velocity of the point must then increase from each tenth of this time to the next");
     v.flag(
         "pore_flow", pore_flow,
         "pore fluids move; if false, pore pressures are those of [water], scaled by the ramp, as for initial stress");
@@ -398,7 +398,10 @@ struct OutputPoint {
   std::vector<double> position;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.point("position", position, metre, "position at the start; the nearest particle is tracked");
+    v.point("position", position, metre,
+            "position at the start, in the soil or at its surface; the nearest particle is tracked, stages by finite "
+            "elements show "
+            "the place itself");
   }
 };
 

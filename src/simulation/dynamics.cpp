@@ -141,17 +141,22 @@ PetscErrorCode Dynamics<dim>::step(double until) {
 template <int dim>
 Verdict Dynamics<dim>::agree() {
   const AnySoilMotion<dim> &motion = *world_.motion;
-  double mine[6] = {motion.moved(),
+  constexpr double elsewhere = std::numeric_limits<double>::lowest();
+  Vec<3> watched{};
+  if (watch && !watch(&watched)) watched.fill(elsewhere);
+  double mine[8] = {motion.moved(),
                     1 / motion.step_ratio(),
-                    watch ? watch() : -1,
                     motion.smallest_volume_ratio() <= 0.2 ? 1. : 0.,
                     !(motion.speed_squared() < 1e300) ? 1. : 0.,
-                    interrupted ? 1. : 0.};
+                    interrupted ? 1. : 0.,
+                    watched[0],
+                    watched[1],
+                    watched[2]};
   for (const auto &body : world_.bodies)
-    if (!law_trouble(body->law()).text.empty()) mine[4] = 1;
-  double all[6];
-  MPI_Allreduce(mine, all, 6, MPI_DOUBLE, MPI_MAX, world_.comm);
-  const Verdict verdict{all[0], all[1], all[2], all[3] > 0, all[4] > 0, all[5] > 0};
+    if (!law_trouble(body->law()).text.empty()) mine[3] = 1;
+  double all[8];
+  MPI_Allreduce(mine, all, 8, MPI_DOUBLE, MPI_MAX, world_.comm);
+  const Verdict verdict{all[0], all[1], {all[5], all[6], all[7]}, all[2] > 0, all[3] > 0, all[4] > 0};
   shrink_ = 1 / verdict.shrink;
   if (verdict.moved > world_.scene.transfer.remap_interval || verdict.inverted) remap_due_ = true;
   return verdict;

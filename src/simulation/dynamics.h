@@ -10,12 +10,12 @@ namespace talus {
 
 /// What all ranks learn from one another after a step.
 struct Verdict {
-  double moved = 0;          ///< largest displacement of a node since the last remap, over its mean edge
-  double shrink = 1;         ///< largest factor by which cells have cut the critical step since then
-  double watched_speed = 0;  ///< largest value of Dynamics::watch
-  bool inverted = false;     ///< a cell is nearly empty
-  bool broken = false;       ///< a velocity or a law has failed
-  bool interrupted = false;  ///< a signal asks the run to end
+  double moved = 0;           ///< largest displacement of a node since the last remap, over its mean edge
+  double shrink = 1;          ///< largest factor by which cells have cut the critical step since then
+  Vec<3> watched_velocity{};  ///< what Dynamics::watch found [m/s]
+  bool inverted = false;      ///< a cell is nearly empty
+  bool broken = false;        ///< a velocity or a law has failed
+  bool interrupted = false;   ///< a signal asks the run to end
 };
 
 /// The integrator that a scene asks for. Throws SceneError where the phase model does not go with it.
@@ -44,8 +44,9 @@ class Dynamics {
   const StepStatistics &statistics() const { return integrator_->statistics(); }
   void serialize(Archive &archive);
 
-  /// Looked at after each step, before a remap: a speed [m/s] that a stage watches, -1 where it is not on this rank.
-  std::function<double()> watch;
+  /// Looked at after each step, before a remap: the velocity [m/s] of a point that a stage watches. Says whether the
+  /// point is on this rank.
+  std::function<bool(Vec<3> *velocity)> watch;
 
  private:
   void check_fixed_step();

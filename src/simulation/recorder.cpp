@@ -190,7 +190,9 @@ void Recorder<dim>::write_history() {
   const auto fields = output_fields<ParticleState<dim>>(phases_, of_.world.bodies);
   for (auto &point : of_.points.all()) {
     std::optional<ParticleState<dim>> state;
-    if (const int i = of_.points.find(point); i >= 0)
+    if (of_.statics.current())
+      state = of_.statics.state_at(point.place);
+    else if (const int i = of_.points.find(point); i >= 0)
       state.emplace(phases_, *of_.world.motion, *of_.world.bodies[point.body], point.body, i);
     fields.append_tracked(state ? &*state : nullptr, mine);
   }

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <numeric>
 
 #include "scene/reader.h"
 #include "scene/words.h"
-#include "simulation/output_fields.h"
 
 namespace talus {
 
@@ -156,35 +156,42 @@ std::vector<double> Statics<dim>::inflow() const {
   return std::vector<double>(world_.conditions.sources().size(), 0);
 }
 
+/// Stress is linear between the Gauss points of a cell; history too, but not beyond what the points have: strength must
+/// not grow.
+template <int dim>
+void Statics<dim>::interpolate(int cell, const Barycentric<dim> &l, double *stress, double *history) const {
+  const SoilElements<dim> &soil = problem_->soil();
+  const int per_cell = soil.points_per_cell(), first = soil.first_point(cell), body = soil.body_of(cell);
+  const double near = per_cell > 1 ? soil.rule().point[0][0] : 1, far = per_cell > 1 ? soil.rule().point[0][1] : 0;
+  std::array<double, dim + 1> weight{};
+  for (int a = 0; a < per_cell; ++a) weight[a] = per_cell > 1 ? (l[a] - far) / (near - far) : 1;
+  const GaussPoints<dim> &points = soil.points()[body];
+  const auto value = [&](const std::vector<double> &field, int width, int k) {
+    double sum = 0;
+    for (int a = 0; a < per_cell; ++a) sum += weight[a] * field[(first + a) * width + k];
+    return sum;
+  };
+  for (int k = 0; k < stress_size<dim>; ++k) stress[k] = value(points.stress, stress_size<dim>, k);
+  const int memory = world_.bodies[body]->history_count();
+  for (int k = 0; k < memory; ++k) {
+    double low = points.history[first * memory + k], high = low;
+    for (int a = 1; a < per_cell; ++a)
+      low = std::min(low, points.history[(first + a) * memory + k]),
+      high = std::max(high, points.history[(first + a) * memory + k]);
+    history[k] = std::clamp(value(points.history, memory, k), low, high);
+  }
+}
+
 template <int dim>
 void Statics<dim>::to_particles() {
   if (world_.motion->gathered()) require(world_.release(clock_.time));
-  const int per_cell = problem_->soil().points_per_cell();
-  const double near = per_cell > 1 ? problem_->soil().rule().point[0][0] : 1,
-               far = per_cell > 1 ? problem_->soil().rule().point[0][1] : 0;
   for (size_t b = 0; b < world_.bodies.size(); ++b) {
     const ParticleArrays<dim> &p = world_.bodies[b]->particles();
-    const GaussPoints<dim> &points = problem_->soil().points()[b];
     const int memory = world_.bodies[b]->history_count();
     for (int i = 0; i < p.count; ++i) {
-      const int cell = p.cell[i], first = problem_->soil().first_point(cell);
+      const int cell = p.cell[i];
       const Barycentric<dim> l = barycentric(world_.mesh.cells[cell], p.position[i]);
-      std::array<double, dim + 1> weight{};
-      for (int a = 0; a < per_cell; ++a) weight[a] = per_cell > 1 ? (l[a] - far) / (near - far) : 1;
-      const auto value = [&](const std::vector<double> &field, int width, int k) {
-        double sum = 0;
-        for (int a = 0; a < per_cell; ++a) sum += weight[a] * field[(first + a) * width + k];
-        return sum;
-      };
-      for (int k = 0; k < stress_size<dim>; ++k)
-        p.stress[i * stress_size<dim> + k] = value(points.stress, stress_size<dim>, k);
-      for (int k = 0; k < memory; ++k) {  // not beyond what the points have: strength must not grow
-        double low = points.history[first * memory + k], high = low;
-        for (int a = 1; a < per_cell; ++a)
-          low = std::min(low, points.history[(first + a) * memory + k]),
-          high = std::max(high, points.history[(first + a) * memory + k]);
-        p.history[i * memory + k] = std::clamp(value(points.history, memory, k), low, high);
-      }
+      interpolate(cell, l, &p.stress[i * stress_size<dim>], p.history + i * memory);
       const Vec<dim> u = problem_->soil().displacement(cell, l);
       for (int d = 0; d < dim; ++d) p.reference[i][d] = p.position[i][d] - u[d], p.velocity[i][d] = 0;
     }
@@ -193,6 +200,50 @@ void Statics<dim>::to_particles() {
     world_.motion->fill_pores([this](int cell, const Vec<dim> &x) {
       return flow_->pressure_at(cell, barycentric(world_.mesh.cells[cell], x));
     });
+}
+
+/// The active cell that holds x, or the one that x is least beyond; the same whatever the partition. -1 where another
+/// rank has it. Collective.
+template <int dim>
+int Statics<dim>::cell_at(const Vec<dim> &x) const {
+  constexpr double round_off = 1e-9;
+  double least = std::numeric_limits<double>::lowest();  // of the barycentric coordinates in the best cell, zero inside
+  long long mine = std::numeric_limits<long long>::max();
+  int best = -1;
+  for (int cell = 0; cell < world_.mesh.cell_count(); ++cell) {
+    if (!problem_->soil().active(cell)) continue;
+    const Barycentric<dim> l = barycentric(world_.mesh.cells[cell], x);
+    const double lowest = *std::min_element(l.begin(), l.end()), within = lowest > -round_off ? 0 : lowest;
+    if (within > least || (within == least && world_.mesh.global_cell[cell] < mine))
+      least = within, mine = world_.mesh.global_cell[cell], best = cell;
+  }
+  double largest;
+  MPI_Allreduce(&least, &largest, 1, MPI_DOUBLE, MPI_MAX, world_.comm);
+  if (least < largest - round_off) mine = std::numeric_limits<long long>::max();
+  long long winner;
+  MPI_Allreduce(&mine, &winner, 1, MPI_LONG_LONG, MPI_MIN, world_.comm);
+  return best >= 0 && mine == winner ? best : -1;
+}
+
+template <int dim>
+std::optional<ParticleState<dim>> Statics<dim>::state_at(const Vec<dim> &x) const {
+  const int cell = cell_at(x);
+  if (cell < 0) return std::nullopt;
+  Barycentric<dim> l = barycentric(world_.mesh.cells[cell], x);
+  double sum = 0;
+  for (double &coordinate : l) sum += coordinate = std::max(coordinate, 0.);
+  for (double &coordinate : l) coordinate /= sum;
+  ParticleState<dim> state;
+  state.body = problem_->soil().body_of(cell), state.position = x;
+  state.displacement = problem_->soil().displacement(cell, l);
+  state.history.resize(world_.bodies[state.body]->history_count());
+  interpolate(cell, l, state.stress.data(), state.history.data());
+  if (world_.phases.prescribed) state.pore_pressure = world_.pressure(x, clock_.load_time);
+  if (world_.phases.liquid) {
+    state.pore_pressure = flow_->pressure_at(cell, l), state.saturation = flow_->saturation(cell, l);
+    state.suction = std::max(0., -state.pore_pressure);
+  }
+  return state;
 }
 
 /// The other way after a dynamic stage: Gauss points take the mean of the particles in their cell, weighted by volume;

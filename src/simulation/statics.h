@@ -2,9 +2,11 @@
 /// Equilibrium, seepage and consolidation by finite elements on the world's mesh, laws and boundaries, and what they
 /// hand to the particles and take from them, docs/theory/finite_elements.md and seepage.md.
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "output/results.h"
+#include "simulation/output_fields.h"
 #include "simulation/world.h"
 #include "solvers/quasi_static/seeped_pressure.h"
 #include "solvers/quasi_static/strength_reduction.h"
@@ -41,6 +43,10 @@ class Statics {
   PoreFlow<dim> &flow() { return *flow_; }
   /// Columns of the Gauss points, in place of particles.
   Snapshot gauss_points() const;
+  /// The state at a place in the soil, or at the nearest place of the soil if it is outside: displacement by the shape
+  /// functions, stress and history between the Gauss points of the cell; at rest. None where another rank has it.
+  /// Collective.
+  std::optional<ParticleState<dim>> state_at(const Vec<dim> &x) const;
   /// Volume per time that enters through each boundary of the motion [m3/s]; none while the motion has the soil.
   /// Collective.
   std::vector<double> inflow() const;
@@ -58,6 +64,8 @@ class Statics {
   void start_stress();  // initial_stress.cpp
   void to_gauss_points();
   void pressure_from_particles();
+  int cell_at(const Vec<dim> &x) const;
+  void interpolate(int cell, const Barycentric<dim> &l, double *stress, double *history) const;
 
   World<dim> &world_;
   const Clock &clock_;

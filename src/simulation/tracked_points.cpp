@@ -1,6 +1,10 @@
 #include "simulation/tracked_points.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+
+#include "scene/reader.h"
 
 namespace talus {
 
@@ -8,7 +12,8 @@ template <int dim>
 TrackedPoints<dim>::TrackedPoints(const World<dim> &world) : world_(world) {
   for (const OutputPoint &wanted : world_.scene.output.point) {
     Point point{wanted.name};
-    double nearest = std::numeric_limits<double>::infinity();
+    std::copy_n(wanted.position.begin(), dim, point.place.begin());
+    double nearest = std::numeric_limits<double>::infinity(), cell_size = 0;
     for (size_t b = 0; b < world_.bodies.size(); ++b) {
       const ParticleArrays<dim> &p = world_.bodies[b]->particles();
       for (int i = 0; i < p.count; ++i) {
@@ -16,13 +21,15 @@ TrackedPoints<dim>::TrackedPoints(const World<dim> &world) : world_(world) {
         for (int d = 0; d < dim; ++d)
           distance += (p.position[i][d] - wanted.position[d]) * (p.position[i][d] - wanted.position[d]);
         if (distance < nearest * (1 - 1e-9) || (distance <= nearest * (1 + 1e-9) && p.id[i] < point.id))
-          nearest = distance, point.body = static_cast<int>(b), point.id = p.id[i];
+          nearest = distance, point.body = static_cast<int>(b), point.id = p.id[i],
+          cell_size = std::pow(world_.mesh.volume[p.cell[i]], 1. / dim);
       }
     }
     // the same particle whatever the partition: nearest, then smallest number
     double best;
     MPI_Allreduce(&nearest, &best, 1, MPI_DOUBLE, MPI_MIN, world_.comm);
     const bool candidate = nearest <= best * (1 + 1e-9);
+    refuse_far(wanted.name, std::sqrt(best), candidate ? cell_size : 0);
     long long id = candidate ? point.id : std::numeric_limits<long long>::max(), winner;
     MPI_Allreduce(&id, &winner, 1, MPI_LONG_LONG, MPI_MIN, world_.comm);
     int body = candidate && point.id == winner ? point.body : -1;
@@ -30,6 +37,17 @@ TrackedPoints<dim>::TrackedPoints(const World<dim> &world) : world_(world) {
     point.id = static_cast<PetscInt>(winner), point.body = body;
     points_.push_back(point);
   }
+}
+
+/// A point of the soil is never further from a particle than its cell is wide.
+template <int dim>
+void TrackedPoints<dim>::refuse_far(const std::string &name, double distance, double cell_size) const {
+  MPI_Allreduce(MPI_IN_PLACE, &cell_size, 1, MPI_DOUBLE, MPI_MAX, world_.comm);
+  constexpr double cells = 2;
+  if (distance <= cells * cell_size) return;
+  world_.scene.complain("output.point." + name + ".position",
+                        "must be in the soil or at its surface; the nearest particle is " + rounded(distance) +
+                            " m away, in a cell of " + rounded(cell_size) + " m");
 }
 
 template <int dim>
@@ -43,16 +61,18 @@ int TrackedPoints<dim>::find(Point &point) const {
 }
 
 template <int dim>
-double TrackedPoints<dim>::speed(const std::string &name) {
+bool TrackedPoints<dim>::velocity(const std::string &name, Vec<3> *v) {
   for (Point &point : points_)
     if (point.name == name) {
       const int i = find(point);
       if (i < 0) continue;
-      Vec<dim> x, v;
-      world_.motion->present(*world_.bodies[point.body], i, &x, &v);
-      return map<dim>(v).norm();
+      Vec<dim> x, mine;
+      world_.motion->present(*world_.bodies[point.body], i, &x, &mine);
+      v->fill(0);
+      std::copy(mine.begin(), mine.end(), v->begin());
+      return true;
     }
-  return -1;
+  return false;
 }
 
 template class TrackedPoints<2>;

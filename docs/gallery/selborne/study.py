@@ -127,11 +127,9 @@ def excavation(talus):
     for k0 in (None, 1.0, 1.5, 2.0):
         for eta in (0, 50, 500):
             if k0 is None:
-                text = variant(0.7, 2, None, eta)
-                # half of the usual time of watching: a vibration that slows the crest for one of its tenths starts it anew
-                result = run(talus, text.replace('failure_point = "crest"', 'failure_point = "crest"\nfailure_time = "0.5 s"'), slide=False)
+                result = run(talus, variant(0.7, 2, None, eta), slide=False)
             else:
-                result = run(talus, dug(k0, eta).replace('failure_point = "crest"', 'failure_point = "crest"\nfailure_time = "0.5 s"'))
+                result = run(talus, dug(k0, eta))
                 if result["excess_kPa"] != "":  # its first second of load time is the excavation
                     result["excess_kPa"] -= 2
             rows.append({"k0": "gravity" if k0 is None else k0, "eta": eta, **result})

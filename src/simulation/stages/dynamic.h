@@ -40,7 +40,8 @@ class DynamicStage final : public StageRunner<dim> {
     run_.dynamics.restart();
     const std::string point = run_.stop->watched_point();
     run_.dynamics.watch = nullptr;
-    if (!point.empty()) run_.dynamics.watch = [&points = run_.points, point] { return points.speed(point); };
+    if (!point.empty())
+      run_.dynamics.watch = [&points = run_.points, point](Vec<3> *v) { return points.velocity(point, v); };
     double longest = 0;
     for (const Stage &s : run_.scene.stage) longest = std::max(longest, s.duration);
     const Output &output = run_.scene.output;
@@ -57,7 +58,7 @@ class DynamicStage final : public StageRunner<dim> {
                  snapshot = next_time(begin, run_.scene.output.interval, now),
                  checkpoint = next_time(begin, checkpoint_interval_, now);
     set_loading();
-    const Verdict verdict = run_.dynamics.cycle(run_.dynamics.fixed_step() ? end() : std::min({end(), row, snapshot}));
+    const Verdict verdict = run_.dynamics.cycle(run_.dynamics.fixed_step() ? end() : std::min(end(), snapshot));
     run_.recorder.progress();
     if (reached(row, now)) run_.recorder.write_history();
     if (reached(snapshot, now) && !reached(end(), now)) run_.recorder.write_snapshot();
