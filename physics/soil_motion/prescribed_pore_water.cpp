@@ -39,6 +39,7 @@ PetscErrorCode PrescribedPoreWater<dim>::measure(FilledGrid<dim> &grid, double t
   std::fill_n(extra_mass_.begin(), grid.node_count(), 0.);
   for (const auto &body : bodies_) {
     const BodySource &source = body->source();
+    if (source.density > 0) continue;  // the same above and below the water table
     const ParticleArrays<dim> &p = body->particles();
     for (int i = 0; i < p.count; ++i) {
       const double dry = source.grain_density * (1 - source.porosity);

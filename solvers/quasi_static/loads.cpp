@@ -38,8 +38,6 @@ void Loads<dim>::add_volume(int c, double t, std::vector<double> &force) const {
   const auto add = [&](int a, double scale, const Vec<dim> &v) {
     for (int d = 0; d < dim; ++d) force[node[a] * dim + d] += scale * v[d];
   };
-  Vec<dim> gravity;
-  std::copy_n(scene_.gravity.begin(), dim, gravity.begin());
   std::array<double, dim + 1> pressure{};  // at the vertices, linear between them as in the motion of particles
   Vec<dim> slope{};
   const auto of_l = barycentric_gradients<dim>(mesh.cells[c]);
@@ -58,7 +56,7 @@ void Loads<dim>::add_volume(int c, double t, std::vector<double> &force) const {
     double here = 0;
     for (int a = 0; a <= dim; ++a) here += rule.point[q][a] * pressure[a];
     for (int a = 0; a < per_cell; ++a) {
-      add(a, density * volume * shape[a], gravity);
+      add(a, density * volume * shape[a], acceleration);
       if (!data_.pressure) continue;
       data_.open_water_load ? add(a, -volume * shape[a], slope) : add(a, volume * here, gradient[a]);
     }

@@ -18,13 +18,17 @@ class Loads {
         sources_(sources),
         data_(data),
         rule_(load_quadrature<dim>()),
-        facet_rule_(load_quadrature<dim - 1>()) {}
+        facet_rule_(load_quadrature<dim - 1>()) {
+    std::copy_n(scene.gravity.begin(), dim, acceleration.begin());
+  }
   /// Finds the loaded faces of the soil that is active now.
   void activate();
   /// Forces on local nodes at time t, this rank's part [N].
   void force(double t, std::vector<double> &force) const;
   /// Mean displacement of each loaded face, by source [m]. Collective.
   PetscErrorCode mean_displacement(std::vector<Vec<dim>> &face) const;
+
+  Vec<dim> acceleration;  ///< gravity, and the pseudo-static inertia of an earthquake [m/s2]
 
  private:
   struct LoadedFacet {

@@ -20,6 +20,7 @@ inline constexpr Unit degree{"deg", 3.14159265358979323846 / 180, {0, 0, 0, 1}};
 inline constexpr Unit metre_per_second{"m/s", 1, {0, 1, -1, 0}};
 inline constexpr Unit metre_per_second_squared{"m/s2", 1, {0, 1, -2, 0}};
 inline constexpr Unit kilogram_per_cubic_metre{"kg/m3", 1, {1, -3, 0, 0}};
+inline constexpr Unit newton_per_cubic_metre{"N/m3", 1, {1, -2, -2, 0}};
 inline constexpr Unit square_metre{"m2", 1, {0, 2, 0, 0}};
 inline constexpr Unit per_pascal{"1/Pa", 1, {-1, 1, 2, 0}};
 inline constexpr Unit degree_per_pascal{"deg/Pa", degree.si, {-1, 1, 2, 1}};

@@ -24,10 +24,6 @@ std::string digits(double value, int count = 3) {
   return text.str();
 }
 
-double size_of(const std::vector<double> &v) {
-  return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.));
-}
-
 /// Does softening depend on the size of the cells?
 bool unscaled(const Law &law) {
   return std::visit(
@@ -340,7 +336,7 @@ Needs find_needs(Scene &scene) {
   const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
   Needs needs{};
   needs.mesh = simulation->mesh_report();
-  needs.gravity = size_of(scene.gravity);
+  needs.gravity = scene.gravity_size();
   double fastest = 0;
   const auto reports = simulation->bodies();
   for (std::size_t b = 0; b < reports.size(); ++b) {

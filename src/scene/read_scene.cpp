@@ -1,5 +1,7 @@
 /// Reading a scene as a whole, and what its keys demand of one another.
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 #include "scene/quantity.h"
 #include "scene/reader.h"
@@ -21,7 +23,7 @@ class Checks {
     if (scene_.stage.empty()) reader_.complain("stage", "is missing; add a table [[stage]] with its duration");
     mesh();
     gravity();
-    for (BodySource &body : scene_.body) this->body(body);
+    for (BodySource &body : scene_.body) unit_weight("body." + body.name, body), this->body(body);
     for (BoundarySource &boundary : scene_.boundary)
       if (boundary.group.empty()) boundary.group = {boundary.name};
     water();
@@ -60,6 +62,44 @@ class Checks {
       reader_.complain("gravity", "must be one number, which acts along -y, or have " + dimension() + " components");
   }
 
+  /// Density, or porosity and grain density, that follow from unit weights.
+  void unit_weight(const std::string &path, BodySource &body) const {
+    const double above = body.unit_weight, below = body.saturated_unit_weight, water = scene_.water.density;
+    if (above == 0 && below == 0) return;
+    const char *given = above > 0 ? ".unit_weight" : ".saturated_unit_weight";
+    const double g = scene_.gravity_size();
+    if (g == 0)
+      reader_.complain(path + given, "cannot be used without gravity; give gravity, or density in place of it");
+    if (body.density > 0 || body.grain_density > 0)
+      reader_.complain(path + given, "is a second weight beside density or grain_density: give one of them");
+    if (fluids_move(scene_.phases)) {
+      if (above > 0)
+        reader_.complain(path + given, "does not say how wet the soil is, and pore fluids move (phases = \"" +
+                                           phases() + "\"): give saturated_unit_weight and porosity");
+      body.grain_density = (below / g - body.porosity * water) / (1 - body.porosity);
+      if (body.grain_density <= 0)
+        reader_.complain(path + given, "must exceed the weight of the water in the pores, porosity times " +
+                                           shortest(water * g) + " N/m3");
+      return;
+    }
+    if (below == 0) {
+      body.density = above / g;
+      return;
+    }
+    if (scene_.phases == PhaseModel::dry)
+      reader_.complain(path + ".saturated_unit_weight",
+                       "has no effect, since phases = \"dry\" has no water table; give unit_weight");
+    if (above == 0 || body.porosity > 0)
+      reader_.complain(path + ".saturated_unit_weight",
+                       above == 0 ? "needs unit_weight beside it, that of the soil above the water table"
+                                  : "defines the pores with unit_weight; leave porosity out");
+    body.porosity = (below - above) / (g * water);
+    if (!(body.porosity >= 0 && body.porosity < 1))
+      reader_.complain(path + ".saturated_unit_weight",
+                       "must exceed unit_weight by 0 to " + shortest(water * g) + " N/m3, the unit weight of water");
+    body.grain_density = above / (g * (1 - body.porosity));
+  }
+
   void body(const BodySource &body) const {
     const std::string path = "body." + body.name;
     if (body.region.empty())
@@ -82,17 +122,17 @@ class Checks {
 
   void weight(const std::string &path, const BodySource &body) const {
     const bool grains = body.porosity > 0 && body.grain_density > 0;
-    if (scene_.phases != PhaseModel::dry && !grains)
-      reader_.complain(
-          path, "needs porosity and grain_density, since the scene has pore water (phases = \"" + phases() + "\")");
     const bool seeps = scene_.phases == PhaseModel::drained &&
                        std::any_of(scene_.stage.begin(), scene_.stage.end(),
                                    [](const Stage &stage) { return stage.kind == StageKind::seepage; });
+    if ((fluids_move(scene_.phases) || seeps) && !grains)
+      reader_.complain(path,
+                       "needs porosity and grain_density, since pore water moves (phases = \"" + phases() + "\")");
     if (fluids_move(scene_.phases) || seeps) pores(path, body);
     if (body.density > 0 && body.grain_density > 0)
       reader_.complain(path + ".density", "is given twice: give density, or porosity and grain_density");
     if (!(body.density > 0) && !grains)
-      reader_.complain(path, "needs a weight: give density, or porosity and grain_density");
+      reader_.complain(path, "needs a weight: give unit_weight, density, or porosity and grain_density");
   }
 
   void pores(const std::string &path, const BodySource &body) const {
@@ -150,6 +190,15 @@ class Checks {
       reader_.complain(
           "quasi_static.linear_solver",
           "must not be \"iterative\" for consolidation: its matrix is indefinite and is factorised; leave it out");
+    if (!stage.seismic_coefficient.empty()) {
+      components(path + ".seismic_coefficient", stage.seismic_coefficient.size(), scene_.dimension, "components");
+      if (water_flows(stage.kind))
+        reader_.complain(path + ".seismic_coefficient",
+                         "belongs to dynamic and quasi_static stages, not to those in which pore water flows");
+      for (const double k : stage.seismic_coefficient)
+        if (!(std::abs(k) <= 10))
+          reader_.complain(path + ".seismic_coefficient", "must have components from -10 to 10, parts of gravity");
+    }
     if (stage.steady && stage.kind != StageKind::seepage)
       reader_.complain(path + ".steady", "belongs to seepage: set kind = \"seepage\"");
     if (is_static(stage.kind)) {
@@ -224,6 +273,17 @@ Scene parse(const std::string &text, const std::string &file, const std::vector<
 }
 
 }  // namespace
+
+double Scene::gravity_size() const {
+  return std::sqrt(std::inner_product(gravity.begin(), gravity.end(), gravity.begin(), 0.));
+}
+
+std::vector<double> Scene::acceleration_in(const Stage &one) const {
+  std::vector<double> acceleration = gravity;
+  for (std::size_t d = 0; d < one.seismic_coefficient.size(); ++d)
+    acceleration[d] += gravity_size() * one.seismic_coefficient[d];
+  return acceleration;
+}
 
 void Scene::complain(const std::string &key_path, const std::string &sentence) const {
   if (root) root->complain(key_path, sentence);

@@ -78,7 +78,9 @@ enum class PermeabilityChange { none, kozeny_carman, grain_share };
 struct BodySource {
   std::string name;                   ///< the table's own name, [body.NAME]
   std::vector<std::string> region;    ///< physical groups of cells
-  double density = 0;                 ///< total density of a dry body [kg/m3]; or porosity and grain_density
+  double unit_weight = 0;             ///< total, above the water table if it differs below it [N/m3]; gives density
+  double saturated_unit_weight = 0;   ///< total, below the water table [N/m3]; gives grain_density
+  double density = 0;                 ///< total density [kg/m3]; or porosity and grain_density
   double porosity = 0;                ///< [-]
   double grain_density = 0;           ///< [kg/m3]
   double saturation = 0;              ///< of the pores above the water table [-]
@@ -103,7 +105,12 @@ struct BodySource {
     v.texts("region", region,
             "name (or list of names) of the physical groups of cells that the body fills at the start");
     v.number("density", density, kilogram_per_cubic_metre, Range{1e-3, 1e5},
-             "total density of a dry body; or give porosity and grain_density");
+             "total density, above and below the water table; or give unit_weight, or porosity and grain_density");
+    v.number("unit_weight", unit_weight, newton_per_cubic_metre, Range{1e-2, 1e6},
+             "total unit weight, in place of density; with saturated_unit_weight that above the water table");
+    v.number("saturated_unit_weight", saturated_unit_weight, newton_per_cubic_metre, Range{1e-2, 1e6},
+             "total unit weight of saturated soil: below the water table, with unit_weight above it; where pore fluids "
+             "move, with porosity and in place of grain_density");
     v.number("porosity", porosity, one, Range{0, 0.99}, "porosity n");
     v.number("grain_density", grain_density, kilogram_per_cubic_metre, Range{1, 1e5},
              "density of the solid grains rho_s");
@@ -258,7 +265,8 @@ struct Stage {
   InitialStress initial_stress = InitialStress::kept;
   std::vector<std::string> add, remove;  ///< bodies that come and go with the stage
   WhenLost when_lost = WhenLost::stop;
-  bool steady = false;  ///< seepage: the flow that the loads at the stage's end keep up
+  bool steady = false;                      ///< seepage: the flow that the loads at the stage's end keep up
+  std::vector<double> seismic_coefficient;  ///< pseudo-static inertia over weight, by axis [-]; empty: none
   template <class Visitor>
   void fields(Visitor &&v) {
     v.text("name", name, "name of the stage in logs and results");
@@ -277,6 +285,9 @@ struct Stage {
               {"failure", StopWhen::failure}},
              "criterion that ends the stage before its duration");
     v.number("damping", damping, one, Range{0, 0.99}, "local (Cundall) damping factor");
+    v.point("seismic_coefficient", seismic_coefficient, one,
+            "pseudo-static earthquake: inertia force over weight, one component per dimension, positive along the "
+            "axes, such as [0.15, 0]; it acts on soil and pore water, and the water table stays where it is");
     v.number("gravity_ramp", gravity_ramp, second, Range{0, 1e9},
              "time in which gravity and pore pressure increase linearly from 0");
     v.number("force_ratio", force_ratio, one, Range{0, 1},
@@ -471,6 +482,10 @@ struct Scene {
     v.table("quasi_static", quasi_static, "finite elements of quasi-static stages");
     v.table("output", output, "results that are written");
   }
+
+  double gravity_size() const;  ///< magnitude of gravity [m/s2]
+  /// Gravity and the pseudo-static acceleration of a stage, one component per dimension [m/s2].
+  std::vector<double> acceleration_in(const Stage &one) const;
 
   /// For what only mesh or soil can tell is wrong: throws the SceneError of TableReader::complain, with the key's place
   /// in the file.

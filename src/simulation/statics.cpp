@@ -95,6 +95,7 @@ void Statics<dim>::begin_stage(const Stage &stage, bool soil_moves) {
   current_ = true, moved_since_ = false;
   check_supports(soil_moves);
   if (stage.initial_stress == InitialStress::k0) start_stress();
+  problem_->set_acceleration(world_.scene.acceleration_in(stage));
   require(problem_->begin_path(clock_.load_time));
 }
 

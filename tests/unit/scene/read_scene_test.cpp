@@ -47,6 +47,21 @@ table = [[0, 1], [10, 2]]
 duration = 1
 )";
 
+const std::string with_unit_weights = R"(phases = "drained"
+gravity = 10
+[mesh]
+section = "slope.csv"
+size = 1
+[body.clay]
+region = "hill"
+unit_weight = "18 kN/m3"
+saturated_unit_weight = "20 kN/m3"
+[water]
+table = [[0, 1], [10, 2]]
+[[stage]]
+duration = 1
+)";
+
 std::string refusal(const std::string &text, const std::vector<std::string> &overrides = {}) {
   return complaint([&] { parse_scene(text, "slope.toml", overrides); });
 }
@@ -143,12 +158,25 @@ TEST(ReadScene, ChecksOneKeyAgainstAnother) {
       {dry, {"body.sand.density=0.01", "body.sand.grain_density=2650", "body.sand.porosity=0.3"}, "is given twice"},
       {dry,
        {"body.clay={region=\"a\"}"},
-       "--set: body.clay needs a weight: give density, or porosity and grain_density"},
+       "--set: body.clay needs a weight: give unit_weight, density, or porosity and grain_density"},
       {dry, {"body.clay={region=\"a\", porosity=0.3}"}, "body.clay needs a weight"},
       {dry, {"body.sand.dense=[{from=[0, 0], to=[1, 1]}]"}, "body.sand.dense.0 needs particles_per_cell"},
       {dry, {"mesh.refine=[{from=[0, 0], to=[1, 0], size=1}]"}, "mesh.refine.0.to = [1, 0] must lie beyond `from`"},
       {dry, {"mesh.refine=[{from=[0], to=[1, 0], size=1}]"}, "mesh.refine.0.from = [0] must have 2 coordinates, not 1"},
-      {dry, {"phases=drained"}, "slope.toml line 7: body.sand needs porosity and grain_density"},
+      {drained, {"body.clay.unit_weight=19 kN/m3", "gravity=10"}, "unit_weight = \"19 kN/m3\" is a second weight"},
+      {dry, {"body.clay={region=\"a\", unit_weight=19000}", "gravity=0"}, "cannot be used without gravity"},
+      {dry,
+       {"body.clay={region=\"a\", unit_weight=19000, saturated_unit_weight=20000}"},
+       "saturated_unit_weight = 20000 has no effect, since phases = \"dry\""},
+      {with_unit_weights,
+       {"body.clay.unit_weight=21 kN/m3"},
+       "saturated_unit_weight = \"20 kN/m3\" must exceed unit_weight by 0 to 10000 N/m3"},
+      {with_unit_weights, {"body.clay.porosity=0.3"}, "leave porosity out"},
+      {with_unit_weights,
+       {"phases=saturated", "body.clay.permeability=1e-12"},
+       "give saturated_unit_weight and porosity"},
+      {dry, {"stage.0.seismic_coefficient=[0.1]"}, "stage.0.seismic_coefficient = [0.1] must have 2 components, not 1"},
+      {dry, {"stage.0.seismic_coefficient=[0.1, 11]"}, "must have components from -10 to 10"},
       {drained,
        {"phases=saturated"},
        "needs permeability [m2] or hydraulic_conductivity [m/s], since pore water moves"},
@@ -187,6 +215,31 @@ TEST(ReadScene, NeedsWaterInADrainedScene) {
   EXPECT_EQ(refusal(text),
             "slope.toml line 1: phases = \"drained\" needs pore water: add a table [water] with its table of "
             "points [x, elevation]");
+}
+
+TEST(ReadScene, TakesUnitWeightsForDensities) {
+  const std::string one =
+      "gravity = 10\n[mesh]\nfile = 'a'\n[body.a]\nregion = 'a'\nunit_weight = '19 kN/m3'\n"
+      "[[stage]]\nduration = 1\n";
+  EXPECT_DOUBLE_EQ(parse_scene(one, "a.toml", {}).body[0].density, 1900);
+  const BodySource two = parse_scene(with_unit_weights, "a.toml", {}).body[0];  // 18 above, 20 below the water table
+  EXPECT_DOUBLE_EQ((1 - two.porosity) * two.grain_density, 1800);
+  EXPECT_DOUBLE_EQ((1 - two.porosity) * two.grain_density + two.porosity * 1000, 2000);
+  EXPECT_EQ(two.saturation, 0);
+  const std::string moving =
+      "phases = 'saturated'\n[body.a]\nregion = 'a'\nsaturated_unit_weight = '20 kN/m3'\n"
+      "porosity = 0.4\npermeability = 1e-12\n[water]\n";
+  const std::string rest = "[mesh]\nfile = 'a'\n[[stage]]\nduration = 1\n";
+  const BodySource wet = parse_scene("gravity = 10\n" + moving + rest, "a.toml", {}).body[0];
+  EXPECT_DOUBLE_EQ(0.6 * wet.grain_density + 0.4 * 1000, 2000);
+  EXPECT_TRUE(contains(refusal("gravity = 10\n" + moving + rest, {"body.a.saturated_unit_weight=3 kN/m3"}),
+                       "must exceed the weight of the water in the pores, porosity times 10000 N/m3"));
+}
+
+TEST(ReadScene, AddsAnEarthquakeToGravity) {
+  const Scene scene = parse_scene(dry, "slope.toml", {"gravity=[3, -4]", "stage.0.seismic_coefficient=[0.2, -0.1]"});
+  EXPECT_EQ(scene.acceleration_in(scene.stage[0]), (std::vector<double>{3 + 5 * 0.2, -4 - 5 * 0.1}));
+  EXPECT_EQ(scene.acceleration_in(Stage{}), (std::vector<double>{3, -4}));
 }
 
 TEST(ReadScene, TakesAFailureStageThatWatchesAnOutputPoint) {

@@ -19,29 +19,39 @@ inline void fem_infinite_slope(Rung &rung) {
     if (slope == 30 && !rung.longer()) break;
     const double b = slope * degree, depth = thickness / std::cos(b), cohesion = share * gamma * depth;
     const double exact = cohesion / (gamma * depth * std::sin(b) * std::cos(b)) + std::tan(phi * degree) / std::tan(b);
-    const double tangent = std::tan(phi * degree) / exact;
+    const double friction = std::tan(phi * degree);
     const double normal = gamma * thickness * std::cos(b), shear = gamma * thickness * std::sin(b);  // at the base
-    const double along = normal * (1 + 2 * tangent * tangent) + 2 * cohesion / exact * tangent;
-    const auto traction = [&](double side) {
-      return "=[\"" + number(-side * along) + " * (1 - y)\", \"" + number(side * shear) + " * (1 - y)\"]";
-    };
-    const auto factor = [&](const std::string &dilation) {
+    // With its ends under the stress of a slope of factor F, whose base carries sigma and tau; an earthquake of k pulls
+    // horizontally, which has components along and normal to the slope.
+    const auto factor = [&](double F, double sigma, double tau, double dilation, double k) {
+      const double along = sigma * (1 + 2 * std::pow(friction / F, 2)) + 2 * cohesion / F * friction / F;
+      const auto traction = [&](double side) {
+        return "=[\"" + number(-side * along) + " * (1 - y)\", \"" + number(side * tau) + " * (1 - y)\"]";
+      };
       return rung
-          .factor_of_safety({"gravity=[" + number(10 * std::sin(b)) + ", " + number(-10 * std::cos(b)) + "]",
-                             "body.soil.cohesion=" + number(cohesion), "body.soil.friction_angle=" + number(phi),
-                             "body.soil.dilation_angle=" + dilation, "boundary.left.traction" + traction(-1),
-                             "boundary.right.traction" + traction(1)})
+          .factor_of_safety(
+              {"gravity=[" + number(10 * std::sin(b)) + ", " + number(-10 * std::cos(b)) + "]",
+               "body.soil.cohesion=" + number(cohesion), "body.soil.friction_angle=" + number(phi),
+               "body.soil.dilation_angle=" + number(dilation), "boundary.left.traction" + traction(-1),
+               "boundary.right.traction" + traction(1),
+               "stage.0.seismic_coefficient=[" + number(k * std::cos(b)) + ", " + number(k * std::sin(b)) + "]"})
           .value();
     };
     const std::string name = "slope of " + number(slope) + " deg, phi = " + number(phi) + " deg";
-    rung.compare(name + ", psi = phi", exact, factor(number(phi)), 0.03, 1);
+    rung.compare(name + ", psi = phi", exact, factor(exact, normal, shear, phi, 0), 0.03, 1);
+    if (slope == 20) {  // the earthquake makes gravity larger and tilts it by atan k
+      const double k = 0.15, tilted = b + std::atan(k), weight = gamma * thickness * std::hypot(1, k);
+      const double sigma = weight * std::cos(tilted), tau = weight * std::sin(tilted);
+      const double shaken = (cohesion + sigma * friction) / tau;
+      rung.compare(name + ", psi = phi, earthquake of 0.15 g", shaken, factor(shaken, sigma, tau, phi, k), 0.03, 1);
+    }
     if (!rung.longer()) continue;
     double low = 0.1, high = exact;  // shear = normal sin phi_F + c_F cos phi_F
     for (int halving = 0; halving < 60; ++halving) {
       const double F = (low + high) / 2, reduced = std::atan(std::tan(phi * degree) / F);
       (normal * std::sin(reduced) + cohesion / F * std::cos(reduced) > shear ? low : high) = F;
     }
-    rung.compare(name + ", psi = 0, by Davis", low, factor("0"), 0.05, 1);
+    rung.compare(name + ", psi = 0, by Davis", low, factor(exact, normal, shear, 0, 0), 0.05, 1);
   }
 }
 
