@@ -370,6 +370,18 @@ double PoreFlow<dim>::water_density(int cell, const Barycentric<dim> &l) const {
   return soils_[body_of_[cell]].porosity() * saturation_of(body_of_[cell], p) * liquid_.density_at(p);
 }
 
+template <int dim>
+std::vector<double> PoreFlow<dim>::pressure_of_cells(bool suction) const {
+  std::vector<double> cells;
+  for (int c = 0; c < cell_count(); ++c)
+    for (int a = 0; a <= dim && active_[c]; ++a) {
+      const int node = nodes_.of_cell(c)[a];
+      cells.insert(cells.end(), nodes_.position[node].begin(), nodes_.position[node].end());
+      cells.push_back(suction ? accepted[node] : std::max(0., accepted[node]));
+    }
+  return cells;
+}
+
 template class PoreFlow<2>;
 template class PoreFlow<3>;
 

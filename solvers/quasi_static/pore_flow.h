@@ -87,6 +87,9 @@ class PoreFlow {
   /// The same of the boundaries that only the flow has, by their names. Collective.
   std::vector<std::pair<std::string, double>> own_inflow() const;
   int cell_count() const { return mesh_.cell_count(); }
+  /// Coordinates [m] and accepted pressure [Pa] of the vertices of active cells, one after another; without `suction`
+  /// zero in place of pressures below zero.
+  std::vector<double> pressure_of_cells(bool suction) const;
 
   std::vector<double> pressure;  ///< trial, of local nodes [Pa]
   std::vector<double> accepted;  ///< at the start of the step [Pa]

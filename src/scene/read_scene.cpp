@@ -110,6 +110,7 @@ class Checks {
     functions(path + ".stress", body.stress, scene_.dimension == 2 ? 4 : 6);
     for (std::size_t i = 0; i < body.dense.size(); ++i) dense(path + ".dense." + std::to_string(i), body.dense[i]);
     weight(path, body);
+    if (body.pore_pressure_ratio > 0) ratio(path + ".pore_pressure_ratio", body);
     if (body.permeability > 0 && body.hydraulic_conductivity > 0)
       reader_.complain(path + ".permeability", "is given twice: give permeability or hydraulic_conductivity");
   }
@@ -133,6 +134,17 @@ class Checks {
       reader_.complain(path + ".density", "is given twice: give density, or porosity and grain_density");
     if (!(body.density > 0) && !grains)
       reader_.complain(path, "needs a weight: give unit_weight, density, or porosity and grain_density");
+  }
+
+  void ratio(const std::string &key, const BodySource &body) const {
+    const auto flows = [](const Stage &stage) { return water_flows(stage.kind); };
+    if (scene_.phases != PhaseModel::drained || std::any_of(scene_.stage.begin(), scene_.stage.end(), flows))
+      reader_.complain(key, "prescribes the pore pressure, which needs phases = \"drained\" and no seepage stage");
+    if (body.density == 0)
+      reader_.complain(key,
+                       "needs a weight that does not depend on a water table: give unit_weight or density, without "
+                       "saturated_unit_weight, porosity and grain_density");
+    if (!(scene_.gravity[1] < 0)) reader_.complain(key, "needs gravity along -y");
   }
 
   void pores(const std::string &path, const BodySource &body) const {

@@ -84,6 +84,7 @@ struct BodySource {
   double porosity = 0;                ///< [-]
   double grain_density = 0;           ///< [kg/m3]
   double saturation = 0;              ///< of the pores above the water table [-]
+  double pore_pressure_ratio = 0;     ///< r_u: pore pressure over the weight of the soil above [-]
   double permeability = 0;            ///< intrinsic, k [m2]; or hydraulic_conductivity
   double hydraulic_conductivity = 0;  ///< k rho_w g / mu_w [m/s]
   double gas_permeability = 0;        ///< intrinsic, of the gas [m2]; 0: that of the liquid
@@ -115,6 +116,9 @@ struct BodySource {
     v.number("grain_density", grain_density, kilogram_per_cubic_metre, Range{1, 1e5},
              "density of the solid grains rho_s");
     v.number("saturation", saturation, one, Range{0, 1}, "degree of saturation above the water table");
+    v.number("pore_pressure_ratio", pore_pressure_ratio, one, Range{0, 1},
+             "r_u: pore pressure over the weight per area of the soil above, as it lies at the start, in place of that "
+             "of [water]; needs phases = \"drained\" and unit_weight");
     v.number("permeability", permeability, square_metre, Range{0, 1e-3},
              "intrinsic permeability k; or give hydraulic_conductivity");
     v.number("hydraulic_conductivity", hydraulic_conductivity, metre_per_second, Range{0, 1e3},

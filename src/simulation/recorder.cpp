@@ -10,11 +10,11 @@
 #include "base/version.h"
 #include "output/pictures.h"
 #include "output/together.h"
+#include "physics/cell_pressure.h"
 #include "scene/changes.h"
 #include "scene/reader.h"
 #include "scene/words.h"
 #include "simulation/output_fields.h"
-#include "solvers/quasi_static/seeped_pressure.h"
 
 namespace talus {
 

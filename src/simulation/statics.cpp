@@ -134,7 +134,7 @@ template <int dim>
 void Statics<dim>::take_seeped_pressure() {
   const bool suction =  // laws that read it see it, others take it for none
       std::any_of(world_.laws.begin(), world_.laws.end(), [](const Law &law) { return reads_suction(law); });
-  seeped_ = std::make_shared<SeepedPressure<dim>>(*flow_, suction);
+  seeped_ = std::make_shared<CellPressure<dim>>(world_.comm, flow_->pressure_of_cells(suction));
   world_.pressure.take([found = seeped_](const double *x) { return (*found)(x); });
 }
 
@@ -147,7 +147,7 @@ void Statics<dim>::save_seeped_pressure(const std::string &directory) {
 template <int dim>
 void Statics<dim>::recall_seeped_pressure(const std::string &directory) {
   if (!std::filesystem::exists(seeped_file(directory))) return;
-  seeped_ = std::make_shared<SeepedPressure<dim>>(seeped_file(directory));
+  seeped_ = std::make_shared<CellPressure<dim>>(seeped_file(directory));
   world_.pressure.take([found = seeped_](const double *x) { return (*found)(x); });
 }
 

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "output/results.h"
+#include "physics/cell_pressure.h"
 #include "simulation/output_fields.h"
 #include "simulation/world.h"
-#include "solvers/quasi_static/seeped_pressure.h"
 #include "solvers/quasi_static/strength_reduction.h"
 
 namespace talus {
@@ -71,7 +71,7 @@ class Statics {
   const Clock &clock_;
   std::unique_ptr<PoreFlow<dim>> flow_;  ///< where pore fluids move
   std::unique_ptr<QuasiStatic<dim>> problem_;
-  std::shared_ptr<SeepedPressure<dim>> seeped_;
+  std::shared_ptr<CellPressure<dim>> seeped_;
   bool current_ = false, moved_since_ = false;
 };
 

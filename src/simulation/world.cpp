@@ -24,6 +24,7 @@ World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &m
   check_boundaries(sources);
   require(conditions.setup(mesh, std::move(sources)));
   conditions.use_stand_ins(scene.stage.front().hold_loads);
+  set_pore_pressure_ratios();
   seed_bodies();
   set_loading(scene.stage.front(), 0, Clock{});  // under which the first state is gathered
 }
@@ -79,6 +80,46 @@ double World<dim>::soil_density(const BodySource &source, const Vec<dim> &x, dou
   if (phases.prescribed)
     density += source.porosity * scene.water.density * (pressure.below_table(x, t) ? 1 : source.saturation);
   return density;
+}
+
+template <int dim>
+typename Overburden<dim>::Block World<dim>::block_of(const BodySource &source, int cell, double water,
+                                                     double load_time) const {
+  typename Overburden<dim>::Block block;
+  Vec<dim> centre{};
+  for (int a = 0; a <= dim; ++a) {
+    block.corner[a] = mesh.position[mesh.cells[cell].node[a]];
+    for (int d = 0; d < dim; ++d) centre[d] += block.corner[a][d] / (dim + 1);
+  }
+  block.unit_weight = -scene.gravity[1] * (soil_density(source, centre, load_time) + water);
+  return block;
+}
+
+/// In bodies with a pore pressure ratio r_u the pressure is r_u times the weight of the soil above, as it lies at the
+/// start (Bishop and Morgenstern 1960), linear in cells.
+template <int dim>
+void World<dim>::set_pore_pressure_ratios() {
+  if (std::none_of(scene.body.begin(), scene.body.end(), [](const BodySource &b) { return b.pore_pressure_ratio > 0; }))
+    return;
+  std::vector<typename Overburden<dim>::Block> blocks;
+  for (const BodySource &source : scene.body)
+    for (const std::string &region : source.region)
+      for (const int cell : mesh.region(region)) blocks.push_back(block_of(source, cell, 0, 0));
+  const Overburden<dim> overburden(comm, blocks);
+  std::vector<double> cells;
+  for (const BodySource &source : scene.body)
+    for (const std::string &region : source.region) {
+      if (source.pore_pressure_ratio == 0) continue;
+      for (const int cell : mesh.region(region))
+        for (const int node : mesh.cells[cell].node) {
+          const Vec<dim> &x = mesh.position[node];
+          double top;
+          cells.insert(cells.end(), x.begin(), x.end());
+          cells.push_back(source.pore_pressure_ratio * overburden.above(x, &top));
+        }
+    }
+  auto field = std::make_shared<CellPressure<dim>>(comm, cells);
+  pressure.take([field](const double *x) { return (*field)(x); });
 }
 
 /// Numbers of particles in a cell are below it, whatever boxes and stages add.

@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "physics/any_soil_motion.h"
+#include "physics/cell_pressure.h"
 #include "physics/phase_models.h"
 #include "physics/prescribed_pressure.h"
 #include "simulation.h"
 #include "simulation/clock.h"
 #include "simulation/failure.h"
+#include "simulation/overburden.h"
 #include "solvers/critical_step.h"
 
 namespace talus {
@@ -32,6 +34,9 @@ class World {
   void set_loading(const Stage &stage, double stage_time, const Clock &clock);
   /// Density of the soil as a body at a place; where fluids move on their own, that of the grains alone [kg/m3].
   double soil_density(const BodySource &source, const Vec<dim> &x, double load_time) const;
+
+  /// A cell of a body with its unit weight; `water` is the density of pore water that the body's own does not contain.
+  typename Overburden<dim>::Block block_of(const BodySource &source, int cell, double water, double load_time) const;
 
   /// Hands the nodal update to the particles and walks them to their cells; with `to_next` the grid is filled again at
   /// once. Throws RunFailure when a particle leaves the mesh. Collective.
@@ -86,6 +91,7 @@ class World {
   void check_boundaries(const std::vector<Source> &) const;         // world_checks.cpp
   void check_seeded(const Body<dim> &, const std::string &) const;  // world_checks.cpp
   int id_stride() const;
+  void set_pore_pressure_ratios();
   void seed_bodies();
   void count_particles();
 

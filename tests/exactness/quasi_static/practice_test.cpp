@@ -86,5 +86,45 @@ TEST(Practice, unit_weights_give_the_weight_above_and_below_the_water_table) {
               18e3 * 0.6 + 20e3 * 0.4 - uplift, 300);
 }
 
+/// A pore pressure ratio gives that share of the weight above, here of two layers whose interface is at 0.5 m.
+TEST(Practice, pore_pressure_is_a_share_of_the_weight_above) {
+  const std::string text = R"(
+gravity = 10
+phases = "drained"
+[mesh]
+section = "layers.csv"
+size = 0.2
+[water]
+[body.upper]
+region = "upper"
+unit_weight = "16 kN/m3"
+pore_pressure_ratio = 0.3
+law = "linear_elastic"
+young_modulus = "10 MPa"
+poisson_ratio = 0.3
+[body.lower]
+region = "lower"
+unit_weight = "20 kN/m3"
+pore_pressure_ratio = 0.3
+law = "linear_elastic"
+young_modulus = "10 MPa"
+poisson_ratio = 0.3
+[boundary.walls]
+group = ["base", "left", "right"]
+kind = "roller"
+[[stage]]
+kind = "quasi_static"
+duration = 1
+initial_stress = "k0"
+)";
+  const Solved solved = solve(text, {"mesh.section=" + std::string(TALUS_LAYERS)});
+  const auto total = [&](size_t q) {
+    const double y = solved.value("position", q, 1);
+    return 16e3 * std::min(1 - y, 0.5) + 20e3 * std::max(0.5 - y, 0.);
+  };
+  EXPECT_LT(largest(solved, 1, [&](size_t q, int) { return solved.value("pore_pressure", q) - 0.3 * total(q); }), 1e-6);
+  EXPECT_LT(largest(solved, 1, [&](size_t q, int) { return solved.value("stress", q, 1) + 0.7 * total(q); }), 1e-6);
+}
+
 }  // namespace
 }  // namespace talus

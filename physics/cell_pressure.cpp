@@ -1,4 +1,4 @@
-#include "solvers/quasi_static/seeped_pressure.h"
+#include "physics/cell_pressure.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,27 +11,19 @@
 namespace talus {
 
 template <int dim>
-SeepedPressure<dim>::SeepedPressure(const PoreFlow<dim> &flow, bool suction) {
-  std::vector<double> mine;
-  const ElementNodes<dim> &nodes = flow.nodes();
-  for (int c = 0; c < flow.cell_count(); ++c)
-    for (int a = 0; a <= dim && flow.active(c); ++a) {
-      const int node = nodes.of_cell(c)[a];
-      mine.insert(mine.end(), nodes.position[node].begin(), nodes.position[node].end());
-      mine.push_back(suction ? flow.accepted[node] : std::max(0., flow.accepted[node]));
-    }
+CellPressure<dim>::CellPressure(MPI_Comm comm, const std::vector<double> &mine) {
   int ranks, count = static_cast<int>(mine.size());
-  MPI_Comm_size(nodes.comm(), &ranks);
+  MPI_Comm_size(comm, &ranks);
   std::vector<int> counts(ranks), starts(ranks + 1, 0);
-  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, nodes.comm());
+  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
   std::partial_sum(counts.begin(), counts.end(), starts.begin() + 1);
   cells_.resize(starts[ranks]);
-  MPI_Allgatherv(mine.data(), count, MPI_DOUBLE, cells_.data(), counts.data(), starts.data(), MPI_DOUBLE, nodes.comm());
+  MPI_Allgatherv(mine.data(), count, MPI_DOUBLE, cells_.data(), counts.data(), starts.data(), MPI_DOUBLE, comm);
   sort_into_bins();
 }
 
 template <int dim>
-SeepedPressure<dim>::SeepedPressure(const std::string &file) {
+CellPressure<dim>::CellPressure(const std::string &file) {
   std::ifstream in(file);
   std::string line;
   std::getline(in, line);  // names of the columns
@@ -45,7 +37,7 @@ SeepedPressure<dim>::SeepedPressure(const std::string &file) {
 }
 
 template <int dim>
-void SeepedPressure<dim>::save(MPI_Comm comm, const std::string &file) const {
+void CellPressure<dim>::save(MPI_Comm comm, const std::string &file) const {
   int rank, failed = 0;
   MPI_Comm_rank(comm, &rank);
   if (rank == 0) {
@@ -64,7 +56,7 @@ void SeepedPressure<dim>::save(MPI_Comm comm, const std::string &file) const {
 }
 
 template <int dim>
-void SeepedPressure<dim>::sort_into_bins() {
+void CellPressure<dim>::sort_into_bins() {
   const int count = static_cast<int>(cells_.size() / width);
   Vec<dim> high;
   low_.fill(1e300), high.fill(-1e300);
@@ -106,7 +98,7 @@ void SeepedPressure<dim>::sort_into_bins() {
 }
 
 template <int dim>
-double SeepedPressure<dim>::operator()(const double *x) const {
+double CellPressure<dim>::operator()(const double *x) const {
   constexpr double edge = 1e-9;  // of a barycentric coordinate: round-off on faces
   int bin = 0;
   for (int d = 0; d < dim; ++d) {
@@ -131,7 +123,7 @@ double SeepedPressure<dim>::operator()(const double *x) const {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-template class SeepedPressure<2>;
-template class SeepedPressure<3>;
+template class CellPressure<2>;
+template class CellPressure<3>;
 
 }  // namespace talus

@@ -1,10 +1,13 @@
 #pragma once
-/// Pore pressure that seepage has left in a `drained` scene, as a function of place (physics/prescribed_pressure.h):
-/// linear in the cells through which water flowed. Every rank knows all of it, since particles wander.
+/// Pore pressure of a `drained` scene as a function of place (prescribed_pressure.h), linear in cells: what seepage has
+/// left there, or a share of the overburden. Every rank knows all of it, since particles wander.
+#include <petscsys.h>
+
+#include <array>
 #include <string>
 #include <vector>
 
-#include "solvers/quasi_static/pore_flow.h"
+#include "base/vec.h"
 
 namespace talus {
 
@@ -12,17 +15,17 @@ namespace talus {
 inline std::string seeped_file(const std::string &directory) { return directory + "/pore_pressure.csv"; }
 
 template <int dim>
-class SeepedPressure {
+class CellPressure {
  public:
-  /// The accepted pressures of a flow; with `suction` those below zero too, else zero in their place. Collective.
-  SeepedPressure(const PoreFlow<dim> &flow, bool suction);
+  /// From the cells of this rank: for each vertex of each cell its coordinates [m] and pressure [Pa]. Collective.
+  CellPressure(MPI_Comm comm, const std::vector<double> &mine);
   /// As `save` wrote it. Throws std::runtime_error if the file cannot be read.
-  explicit SeepedPressure(const std::string &file);
+  explicit CellPressure(const std::string &file);
   /// One line for each cell: coordinates and pressure of its vertices. Throws std::runtime_error, on all ranks, if it
   /// cannot be written. Collective.
   void save(MPI_Comm comm, const std::string &file) const;
 
-  /// Pressure at a place x [dim]; not a number where no water flowed [Pa].
+  /// Pressure at a place x [dim]; not a number outside the cells [Pa].
   double operator()(const double *x) const;
 
  private:

@@ -1,0 +1,34 @@
+#pragma once
+/// Weight of the soil above a place: the total vertical stress of level strata, without arching. Vertical is y.
+#include <array>
+#include <vector>
+
+#include "base/vec.h"
+#include "petscsys.h"
+
+namespace talus {
+
+template <int dim>
+class Overburden {
+ public:
+  /// A simplex of soil.
+  struct Block {
+    std::array<Vec<dim>, dim + 1> corner;
+    double unit_weight;  ///< total [N/m3]
+  };
+  /// From the blocks of this rank; every rank sees all of them. Collective.
+  Overburden(MPI_Comm comm, const std::vector<Block> &mine);
+
+  /// Weight per area of the soil on the vertical above x [Pa]. `top` receives the elevation of its upper end, that of x
+  /// where no soil is above it [m].
+  double above(const Vec<dim> &x, double *top) const;
+
+ private:
+  int strip_of(double x) const;
+
+  std::vector<Block> blocks_;
+  std::vector<std::vector<int>> in_strip_;  ///< blocks that reach into a strip of x
+  double low_ = 0, high_ = 0;               ///< of x [m]
+};
+
+}  // namespace talus
