@@ -24,7 +24,7 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
       conditions_(parts.conditions),
       transfer_(parts.scene.transfer),
       total_mass_(parts.total_mass),
-      smallest_mass_(1e-6 * parts.total_mass / static_cast<double>(parts.particles)),
+      smallest_mass_(1e-12 * parts.total_mass / static_cast<double>(parts.particles)),
       grid_(parts.mesh),
       next_grid_(parts.mesh),
       points_(parts.bodies.size()),

@@ -31,7 +31,7 @@ class Owned {
   Object object_ = nullptr;
 };
 using Dm = Owned<DM, DMDestroy>;
-using Vector = Owned<Vec, VecDestroy>;
+using Vector = Owned<::Vec, VecDestroy>;
 
 /// Borrows a swarm field as an array of T, one per local particle; given back at scope exit.
 template <class T>
