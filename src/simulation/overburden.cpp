@@ -16,17 +16,14 @@ Overburden<dim>::Overburden(MPI_Comm comm, const std::vector<Block> &mine) {
   std::partial_sum(counts.begin(), counts.end(), starts.begin() + 1);
   blocks_.resize(starts[ranks] / sizeof(Block));
   MPI_Allgatherv(mine.data(), bytes, MPI_BYTE, blocks_.data(), counts.data(), starts.data(), MPI_BYTE, comm);
-  const auto extent = [](const Block &block) {
-    double low = block.corner[0][0], high = low;
-    for (const Vec<dim> &corner : block.corner) low = std::min(low, corner[0]), high = std::max(high, corner[0]);
-    return std::pair{low, high};
-  };
-  low_ = 1e300, high_ = -1e300;
+  low_.fill(1e300), high_.fill(-1e300);
   for (const Block &block : blocks_)
-    low_ = std::min(low_, extent(block).first), high_ = std::max(high_, extent(block).second);
+    for (const Vec<dim> &corner : block.corner)
+      for (int d = 0; d < dim; ++d) low_[d] = std::min(low_[d], corner[d]), high_[d] = std::max(high_[d], corner[d]);
   in_strip_.resize(std::max(1, static_cast<int>(std::sqrt(static_cast<double>(blocks_.size())))));
   for (size_t k = 0; k < blocks_.size(); ++k) {
-    const auto [from, to] = extent(blocks_[k]);
+    double from = 1e300, to = -1e300;
+    for (const Vec<dim> &corner : blocks_[k].corner) from = std::min(from, corner[0]), to = std::max(to, corner[0]);
     for (int s = strip_of(from); s <= strip_of(to); ++s) in_strip_[s].push_back(static_cast<int>(k));
   }
 }
@@ -34,12 +31,17 @@ Overburden<dim>::Overburden(MPI_Comm comm, const std::vector<Block> &mine) {
 template <int dim>
 int Overburden<dim>::strip_of(double x) const {
   const int strips = static_cast<int>(in_strip_.size());
-  return std::clamp(static_cast<int>((x - low_) / (high_ - low_) * strips), 0, strips - 1);
+  return std::clamp(static_cast<int>((x - low_[0]) / (high_[0] - low_[0]) * strips), 0, strips - 1);
 }
 
 /// The part of the vertical through x that lies in a simplex and above x: barycentric coordinates are linear along it.
+/// A vertical along a face would count the blocks on both sides, so it stands a billionth of the width beside x.
 template <int dim>
-double Overburden<dim>::above(const Vec<dim> &x, double *top) const {
+double Overburden<dim>::above(const Vec<dim> &place, double *top) const {
+  constexpr double aside = 1e-9;
+  Vec<dim> x = place;
+  for (int d = 0; d < dim; ++d)
+    if (d != 1) x[d] += aside * (high_[d] - low_[d]) * (2 * x[d] > low_[d] + high_[d] ? -1 : 1);
   double weight = 0;
   *top = x[1];
   for (const int k : in_strip_[strip_of(x[0])]) {

@@ -28,7 +28,7 @@ class Overburden {
 
   std::vector<Block> blocks_;
   std::vector<std::vector<int>> in_strip_;  ///< blocks that reach into a strip of x
-  double low_ = 0, high_ = 0;               ///< of x [m]
+  Vec<dim> low_{}, high_{};                 ///< of the blocks [m]
 };
 
 }  // namespace talus

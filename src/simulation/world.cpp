@@ -110,13 +110,21 @@ void World<dim>::set_pore_pressure_ratios() {
   for (const BodySource &source : scene.body)
     for (const std::string &region : source.region) {
       if (source.pore_pressure_ratio == 0) continue;
-      for (const int cell : mesh.region(region))
+      for (const int cell : mesh.region(region)) {
+        Vec<dim> centre{};
+        for (const int node : mesh.cells[cell].node)
+          for (int d = 0; d < dim; ++d) centre[d] += mesh.position[node][d] / (dim + 1);
         for (const int node : mesh.cells[cell].node) {
           const Vec<dim> &x = mesh.position[node];
+          constexpr double aside = 1e-7;  // into the cell, since soil may end at x
+          Vec<dim> near = x;
+          for (int d = 0; d < dim; ++d)
+            if (d != 1) near[d] += aside * (centre[d] - x[d]);
           double top;
           cells.insert(cells.end(), x.begin(), x.end());
-          cells.push_back(source.pore_pressure_ratio * overburden.above(x, &top));
+          cells.push_back(source.pore_pressure_ratio * overburden.above(near, &top));
         }
+      }
     }
   auto field = std::make_shared<CellPressure<dim>>(comm, cells);
   pressure.take([field](const double *x) { return (*field)(x); });
