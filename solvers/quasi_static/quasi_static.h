@@ -49,7 +49,7 @@ class QuasiStatic {
   /// Bodies without a vertex inside: one element across. Collective.
   PetscErrorCode find_thin_bodies(std::vector<char> *thin) const;  // freedom.cpp
   /// Gravity, and what else pulls on all mass along the next paths [m/s2].
-  void set_acceleration(const std::vector<double> &of) { std::copy_n(of.begin(), dim, loads_.acceleration.begin()); }
+  void set_acceleration(const std::array<double, 3> &of) { std::copy_n(of.begin(), dim, loads_.acceleration.begin()); }
   /// Begins a path from the present state at `load_time`: what is out of balance there is released along the path.
   PetscErrorCode begin_path(double load_time);
   /// Solves for the state at `share` of the path, with loads of `load_time`; prescribed motion acts over (time, time +

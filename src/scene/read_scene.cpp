@@ -290,8 +290,9 @@ double Scene::gravity_size() const {
   return std::sqrt(std::inner_product(gravity.begin(), gravity.end(), gravity.begin(), 0.));
 }
 
-std::vector<double> Scene::acceleration_in(const Stage &one) const {
-  std::vector<double> acceleration = gravity;
+std::array<double, 3> Scene::acceleration_in(const Stage &one) const {
+  std::array<double, 3> acceleration{};
+  std::copy(gravity.begin(), gravity.end(), acceleration.begin());
   for (std::size_t d = 0; d < one.seismic_coefficient.size(); ++d)
     acceleration[d] += gravity_size() * one.seismic_coefficient[d];
   return acceleration;

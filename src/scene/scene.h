@@ -2,6 +2,7 @@
 /// The scene as plain structs: SI units, radians, defaults; no PETSc, no TOML. `fields` names every key once; the
 /// reader, `talus describe`, the header of results and the test that every key is documented all visit it
 /// (docs/guide/scene.md).
+#include <array>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -488,8 +489,8 @@ struct Scene {
   }
 
   double gravity_size() const;  ///< magnitude of gravity [m/s2]
-  /// Gravity and the pseudo-static acceleration of a stage, one component per dimension [m/s2].
-  std::vector<double> acceleration_in(const Stage &one) const;
+  /// Gravity and the pseudo-static acceleration of a stage, zero beyond the dimension [m/s2].
+  std::array<double, 3> acceleration_in(const Stage &one) const;
 
   /// For what only mesh or soil can tell is wrong: throws the SceneError of TableReader::complain, with the key's place
   /// in the file.

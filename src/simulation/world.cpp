@@ -241,7 +241,7 @@ void World<dim>::choose_bodies(const Stage &stage, const Clock &clock) {
 template <int dim>
 void World<dim>::set_loading(const Stage &stage, double stage_time, const Clock &clock) {
   const double ramp = stage.gravity_ramp > 0 ? std::min(1., stage_time / stage.gravity_ramp) : 1;
-  const std::vector<double> acceleration = scene.acceleration_in(stage);
+  const std::array<double, 3> acceleration = scene.acceleration_in(stage);
   std::copy_n(acceleration.begin(), dim, motion->loading.gravity.begin());
   motion->loading.ramp = ramp;
   motion->loading.ramp_rate = ramp < 1 ? 1 / stage.gravity_ramp : 0;

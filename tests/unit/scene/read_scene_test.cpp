@@ -242,8 +242,8 @@ TEST(ReadScene, TakesUnitWeightsForDensities) {
 
 TEST(ReadScene, AddsAnEarthquakeToGravity) {
   const Scene scene = parse_scene(dry, "slope.toml", {"gravity=[3, -4]", "stage.0.seismic_coefficient=[0.2, -0.1]"});
-  EXPECT_EQ(scene.acceleration_in(scene.stage[0]), (std::vector<double>{3 + 5 * 0.2, -4 - 5 * 0.1}));
-  EXPECT_EQ(scene.acceleration_in(Stage{}), (std::vector<double>{3, -4}));
+  EXPECT_EQ(scene.acceleration_in(scene.stage[0]), (std::array<double, 3>{3 + 5 * 0.2, -4 - 5 * 0.1, 0}));
+  EXPECT_EQ(scene.acceleration_in(Stage{}), (std::array<double, 3>{3, -4, 0}));
 }
 
 TEST(ReadScene, TakesAFailureStageThatWatchesAnOutputPoint) {
