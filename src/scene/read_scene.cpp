@@ -68,6 +68,9 @@ class Checks {
     if (above == 0 && below == 0) return;
     const char *given = above > 0 ? ".unit_weight" : ".saturated_unit_weight";
     const double g = scene_.gravity_size();
+    for (const auto &[key, value] : {std::pair{".unit_weight", above}, {".saturated_unit_weight", below}})
+      if (value != 0 && !(value >= 1e3 && value <= 1e5))
+        reader_.complain(path + key, "must be from 1000 to 100000 N/m3; soil weighs 14 to 24 kN/m3 (\"18 kN/m3\")");
     if (g == 0)
       reader_.complain(path + given, "cannot be used without gravity; give gravity, or density in place of it");
     if (body.density > 0 || body.grain_density > 0)
@@ -144,7 +147,10 @@ class Checks {
       reader_.complain(key,
                        "needs a weight that does not depend on a water table: give unit_weight or density, without "
                        "saturated_unit_weight, porosity and grain_density");
-    if (!(scene_.gravity[1] < 0)) reader_.complain(key, "needs gravity along -y");
+    if (-scene_.gravity[1] < (1 - 1e-12) * scene_.gravity_size() || scene_.gravity_size() == 0)
+      reader_.complain(key,
+                       "needs gravity along -y, since it counts the soil above along y; prescribe the pressure by "
+                       "water.excess where the axes are inclined");
   }
 
   void pores(const std::string &path, const BodySource &body) const {
@@ -164,7 +170,9 @@ class Checks {
   void water() const {
     const bool drained = scene_.phases == PhaseModel::drained, dry = scene_.phases == PhaseModel::dry;
     if (drained && !scene_.water.given)
-      reader_.complain("phases", "needs pore water: add a table [water] with its table of points [x, elevation]");
+      reader_.complain(
+          "phases",
+          "needs pore water: add a table [water] with its table of points [x, elevation], or an empty one for none");
     if (scene_.gas.given && scene_.phases != PhaseModel::three_phase)
       reader_.complain("gas", "has no effect, since phases = \"" + phases() +
                                   "\" has no gas that moves; set phases = \"three-phase\"");
@@ -208,8 +216,8 @@ class Checks {
         reader_.complain(path + ".seismic_coefficient",
                          "belongs to dynamic and quasi_static stages, not to those in which pore water flows");
       for (const double k : stage.seismic_coefficient)
-        if (!(std::abs(k) <= 10))
-          reader_.complain(path + ".seismic_coefficient", "must have components from -10 to 10, parts of gravity");
+        if (!(std::abs(k) <= 2))
+          reader_.complain(path + ".seismic_coefficient", "must have components from -2 to 2, parts of gravity");
     }
     if (stage.steady && stage.kind != StageKind::seepage)
       reader_.complain(path + ".steady", "belongs to seepage: set kind = \"seepage\"");

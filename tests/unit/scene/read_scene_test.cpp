@@ -62,6 +62,19 @@ table = [[0, 1], [10, 2]]
 duration = 1
 )";
 
+const std::string with_tilted_gravity = R"(phases = "drained"
+gravity = [3.4, -9.2]
+[mesh]
+file = "slope.msh"
+[body.clay]
+region = "hill"
+unit_weight = "18 kN/m3"
+pore_pressure_ratio = 0.2
+[water]
+[[stage]]
+duration = 1
+)";
+
 std::string refusal(const std::string &text, const std::vector<std::string> &overrides = {}) {
   return complaint([&] { parse_scene(text, "slope.toml", overrides); });
 }
@@ -175,12 +188,16 @@ TEST(ReadScene, ChecksOneKeyAgainstAnother) {
       {with_unit_weights,
        {"body.clay.pore_pressure_ratio=0.3"},
        "needs a weight that does not depend on a water table"},
+      {dry,
+       {"body.clay={region=\"a\", unit_weight=18}"},
+       "must be from 1000 to 100000 N/m3; soil weighs 14 to 24 kN/m3"},
+      {with_tilted_gravity, {}, "needs gravity along -y, since it counts the soil above along y"},
       {dry, {"body.sand.pore_pressure_ratio=0.3"}, "needs phases = \"drained\" and no seepage stage"},
       {with_unit_weights,
        {"phases=saturated", "body.clay.permeability=1e-12"},
        "give saturated_unit_weight and porosity"},
       {dry, {"stage.0.seismic_coefficient=[0.1]"}, "stage.0.seismic_coefficient = [0.1] must have 2 components, not 1"},
-      {dry, {"stage.0.seismic_coefficient=[0.1, 11]"}, "must have components from -10 to 10"},
+      {dry, {"stage.0.seismic_coefficient=[0.1, 15]"}, "must have components from -2 to 2"},
       {drained,
        {"phases=saturated"},
        "needs permeability [m2] or hydraulic_conductivity [m/s], since pore water moves"},
@@ -218,7 +235,7 @@ TEST(ReadScene, NeedsWaterInADrainedScene) {
       "2650\n[[stage]]\nduration = 1\n";
   EXPECT_EQ(refusal(text),
             "slope.toml line 1: phases = \"drained\" needs pore water: add a table [water] with its table of "
-            "points [x, elevation]");
+            "points [x, elevation], or an empty one for none");
 }
 
 TEST(ReadScene, TakesUnitWeightsForDensities) {
