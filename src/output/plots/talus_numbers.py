@@ -389,8 +389,10 @@ def main():
                 if name in given.only if given.only else given.long:
                     holds = check_study(page, name, study, given.talus, given.write) and holds
         holds = put_in_step(page, given.write) and holds
-    if not given.pages and not given.list:
-        print(f"{'all numbers hold' if holds else 'not all numbers hold'}; {time.time() - start:.0f} s")
+    if given.pages and holds:
+        print(f"the tables of the pages in {given.gallery} are in step")
+    elif not given.pages and not given.list:
+        print(f"{'all numbers hold' if holds else 'not all numbers hold'} that the pages in {given.gallery} state; {time.time() - start:.0f} s")
     return 0 if holds else 1
 
 
