@@ -43,8 +43,8 @@ class PrescribedPressure {
   double above_table(const Vec<dim> &x, double t) const {
     return water_->table.empty() ? 0 : std::max(0., unit_weight_ * (x[1] - table(x[0], t)));
   }
-  /// May pores have filled or dried since the start?
-  bool moves() const { return seeped_ || (!water_->table.empty() && !water_->level.constant()); }
+  /// May pores fill or dry while the soil moves? What seepage has found stands still then.
+  bool moves() const { return !water_->table.empty() && !water_->level.constant(); }
   /// From now on the pressure is that of `seeped` [Pa], but where that is not a number; null: that of [water] again.
   void take(std::function<double(const double *)> seeped) { seeped_ = std::move(seeped); }
   bool open_water_load() const { return water_->open_water_load; }

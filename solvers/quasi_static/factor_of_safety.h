@@ -13,6 +13,17 @@ enum class TrialOutcome {
   mechanism,    ///< it moves without bound under its loads
   undecided     ///< the iterations found neither
 };
+inline const char *name_of(TrialOutcome outcome) {
+  switch (outcome) {
+    case TrialOutcome::equilibrium:
+      return "equilibrium";
+    case TrialOutcome::mechanism:
+      return "mechanism";
+    case TrialOutcome::undecided:
+      return "undecided";
+  }
+  return "";
+}
 
 /// One trial: strength divided by `factor`.
 struct StrengthTrial {

@@ -31,18 +31,6 @@ std::string to_json(const FactorBracket &bracket) {
       .str();
 }
 
-const char *name_of(TrialOutcome outcome) {
-  switch (outcome) {
-    case TrialOutcome::equilibrium:
-      return "equilibrium";
-    case TrialOutcome::mechanism:
-      return "mechanism";
-    case TrialOutcome::undecided:
-      return "undecided";
-  }
-  return "";
-}
-
 std::string to_json(const FactorOfSafety &factor) {
   const auto trial = [](const StrengthTrial &t) {
     return json::Object()

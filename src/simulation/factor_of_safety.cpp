@@ -65,17 +65,6 @@ std::string bracket_in_words(const FactorBracket &b) {
          ", a mechanism with " + rounded(b.upper) + ")";
 }
 
-const char *in_words(TrialOutcome outcome) {
-  switch (outcome) {
-    case TrialOutcome::equilibrium:
-      return "equilibrium";
-    case TrialOutcome::mechanism:
-      return "mechanism";
-    default:
-      return "undecided";
-  }
-}
-
 /// One table of the trials and one of their load-displacement curves.
 struct TrialTables {
   explicit TrialTables(const std::string &directory) {
@@ -94,7 +83,7 @@ struct TrialTables {
     ++count;
     if (trials)
       std::fprintf(trials, "%.6g,%s,%s,%d,%.3g,%.6g,%.3g,%.3g\n", t.factor, t.dilating ? "phi" : "own",
-                   in_words(t.outcome), t.iterations, t.residual, t.displacement, t.surplus, t.wall_seconds),
+                   name_of(t.outcome), t.iterations, t.residual, t.displacement, t.surplus, t.wall_seconds),
           std::fflush(trials);
     for (size_t k = 0; curves && k < t.curve.size(); ++k)
       std::fprintf(curves, "%d,%.6g,%zu,%.6g,%.3g\n", count, t.factor, k, t.curve[k].first, t.curve[k].second);
@@ -130,7 +119,7 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   settings.shown_displacement = 0.01 * extent;
   settings.tell = [&](const StrengthTrial &t) {
     std::string text = "strength divided by " + rounded(t.factor) + (t.dilating ? ", psi = phi" : "") + ": " +
-                       in_words(t.outcome) + ", " + std::to_string(t.iterations) + " iterations, ";
+                       name_of(t.outcome) + ", " + std::to_string(t.iterations) + " iterations, ";
     if (t.outcome == TrialOutcome::mechanism)
       text += "displacement grows without bound, and " + rounded(100 * t.surplus) +
               " % of the work of the loads finds no resistance";

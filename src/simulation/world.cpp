@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "scene/reader.h"
+#include "solvers/quasi_static/pore_flow.h"
 
 namespace talus {
 
@@ -101,31 +102,30 @@ template <int dim>
 void World<dim>::set_pore_pressure_ratios() {
   if (std::none_of(scene.body.begin(), scene.body.end(), [](const BodySource &b) { return b.pore_pressure_ratio > 0; }))
     return;
+  const std::vector<int> body_of = bodies_of_cells(mesh, scene);
+  const std::vector<char> there = present_at_start();
   std::vector<typename Overburden<dim>::Block> blocks;
-  for (const BodySource &source : scene.body)
-    for (const std::string &region : source.region)
-      for (const int cell : mesh.region(region)) blocks.push_back(block_of(source, cell, 0, 0));
+  for (int c = 0; c < mesh.cell_count(); ++c)
+    if (body_of[c] >= 0 && there[body_of[c]]) blocks.push_back(block_of(scene.body[body_of[c]], c, 0, 0));
   const Overburden<dim> overburden(comm, blocks);
   std::vector<double> cells;
-  for (const BodySource &source : scene.body)
-    for (const std::string &region : source.region) {
-      if (source.pore_pressure_ratio == 0) continue;
-      for (const int cell : mesh.region(region)) {
-        Vec<dim> centre{};
-        for (const int node : mesh.cells[cell].node)
-          for (int d = 0; d < dim; ++d) centre[d] += mesh.position[node][d] / (dim + 1);
-        for (const int node : mesh.cells[cell].node) {
-          const Vec<dim> &x = mesh.position[node];
-          constexpr double aside = 1e-7;  // into the cell, since soil may end at x
-          Vec<dim> near = x;
-          for (int d = 0; d < dim; ++d)
-            if (d != 1) near[d] += aside * (centre[d] - x[d]);
-          double top;
-          cells.insert(cells.end(), x.begin(), x.end());
-          cells.push_back(source.pore_pressure_ratio * overburden.above(near, &top));
-        }
-      }
+  for (int c = 0; c < mesh.cell_count(); ++c) {
+    const double ratio = body_of[c] >= 0 ? scene.body[body_of[c]].pore_pressure_ratio : 0;
+    if (ratio == 0) continue;
+    Vec<dim> centre{};
+    for (const int node : mesh.cells[c].node)
+      for (int d = 0; d < dim; ++d) centre[d] += mesh.position[node][d] / (dim + 1);
+    for (const int node : mesh.cells[c].node) {
+      const Vec<dim> &x = mesh.position[node];
+      constexpr double aside = 1e-7;  // into the cell, since soil may end at x
+      Vec<dim> near = x;
+      for (int d = 0; d < dim; ++d)
+        if (d != 1) near[d] += aside * (centre[d] - x[d]);
+      double top;
+      cells.insert(cells.end(), x.begin(), x.end());
+      cells.push_back(ratio * overburden.above(near, &top));
     }
+  }
   auto field = std::make_shared<CellPressure<dim>>(comm, cells);
   pressure.take([field](const double *x) { return (*field)(x); });
 }
@@ -194,11 +194,17 @@ void World<dim>::seed_bodies() {
 }
 
 template <int dim>
-void World<dim>::take_out_later_bodies() {
-  present.assign(scene.body.size(), 1);
+std::vector<char> World<dim>::present_at_start() const {
+  std::vector<char> there(scene.body.size(), 1);
   for (const Stage &stage : scene.stage)
     for (size_t b = 0; b < scene.body.size(); ++b)
-      if (std::count(stage.add.begin(), stage.add.end(), scene.body[b].name)) present[b] = 0;
+      if (std::count(stage.add.begin(), stage.add.end(), scene.body[b].name)) there[b] = 0;
+  return there;
+}
+
+template <int dim>
+void World<dim>::take_out_later_bodies() {
+  present = present_at_start();
   if (!std::count(present.begin(), present.end(), 0)) return;
   for (size_t b = 0; b < scene.body.size(); ++b)
     if (!present[b]) require(bodies[b]->resize(0));

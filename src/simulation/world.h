@@ -91,6 +91,7 @@ class World {
   void check_boundaries(const std::vector<Source> &) const;         // world_checks.cpp
   void check_seeded(const Body<dim> &, const std::string &) const;  // world_checks.cpp
   int id_stride() const;
+  std::vector<char> present_at_start() const;  // bodies that no stage adds
   void set_pore_pressure_ratios();
   void seed_bodies();
   void count_particles();

@@ -4,16 +4,7 @@
 namespace talus {
 namespace {
 
-const std::string walls = R"(
-gravity = 10
-[mesh]
-section = "box.csv"
-size = 0.3
-[body.soil]
-region = "soil"
-law = "linear_elastic"
-young_modulus = "10 MPa"
-poisson_ratio = 0.3
+const std::string walls = "gravity = 10\n" + box + R"(
 [boundary.base]
 kind = "roller"
 [boundary.left]

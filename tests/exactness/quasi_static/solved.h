@@ -49,16 +49,19 @@ double largest(const Solved &solved, int components, Error &&error) {
   return most;
 }
 
-inline const std::string block = R"(
+/// A unit square of elastic soil without weight; keys of the soil may follow.
+inline const std::string box = R"(
 [mesh]
 section = "box.csv"
 size = 0.3
 [body.soil]
 region = "soil"
-density = 2000
 law = "linear_elastic"
 young_modulus = "10 MPa"
 poisson_ratio = 0.3
+)";
+inline const std::string block = box + R"(
+density = 2000
 [[stage]]
 name = "load"
 kind = "quasi_static"

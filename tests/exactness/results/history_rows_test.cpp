@@ -1,34 +1,12 @@
 // Rows of history.csv: output points in stages by finite elements are the places that the scene gives, and rows do not
 // change the steps of the motion.
-#include <gtest/gtest.h>
-
-#include "scene/reader.h"
-#include "simulation.h"
+#include "../quasi_static/solved.h"
 
 namespace talus {
 namespace {
 
-std::unique_ptr<AnySimulation> solved(const std::string &text, const std::vector<std::string> &overrides) {
-  static std::vector<std::unique_ptr<Scene>> scenes;  // a simulation refers to its scene
-  scenes.push_back(std::make_unique<Scene>(parse_scene(text, std::string(TALUS_MESHES) + "/scene.toml", overrides)));
-  RunOptions options;
-  options.pictures = options.screen = false;
-  auto simulation = make_simulation(PETSC_COMM_WORLD, *scenes.back(), options);
-  simulation->run();
-  return simulation;
-}
-
-const std::string column = R"(
-gravity = 10
-[mesh]
-section = "box.csv"
-size = 0.3
-[body.soil]
-region = "soil"
+const std::string column = "gravity = 10\n" + box + R"(
 density = 2000
-law = "linear_elastic"
-young_modulus = "10 MPa"
-poisson_ratio = 0.3
 [boundary.walls]
 group = ["base", "left", "right"]
 kind = "roller"
@@ -44,7 +22,7 @@ TEST(HistoryRows, static_stages_show_the_place_itself) {
   std::string text = column + "[[stage]]\nkind = \"quasi_static\"\nduration = 1\n";
   for (size_t i = 0; i < points.size(); ++i)
     text += "[output.point.p" + std::to_string(i) + "]\nposition = " + points[i].first + "\n";
-  const HistoryTable history = solved(text, {})->history();
+  const HistoryTable history = solve(text).history;
   for (size_t i = 0; i < points.size(); ++i) {
     const std::string name = "p" + std::to_string(i);
     const double y = points[i].second, exact = weight / modulus * (y - y * y / 2);
@@ -58,8 +36,8 @@ TEST(HistoryRows, static_stages_show_the_place_itself) {
 /// are.
 TEST(HistoryRows, do_not_shorten_steps) {
   const std::string text = column + "[output.point.top]\nposition = [0.5, 1]\n[[stage]]\nduration = 0.1\n";
-  const auto few = solved(text, {"output.history_interval=0.1"}), many = solved(text, {"output.history_interval=7e-4"});
-  const HistoryTable a = few->history(), b = many->history();
+  const HistoryTable a = solve(text, {"output.history_interval=0.1"}).history,
+                     b = solve(text, {"output.history_interval=7e-4"}).history;
   EXPECT_EQ(a.rows.size(), 2u) << "start and end";
   EXPECT_GT(b.rows.size(), 20u);
   EXPECT_EQ(a.column("step").back(), b.column("step").back());

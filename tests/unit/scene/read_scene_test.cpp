@@ -55,22 +55,8 @@ size = 1
 [body.clay]
 region = "hill"
 unit_weight = "18 kN/m3"
-saturated_unit_weight = "20 kN/m3"
 [water]
 table = [[0, 1], [10, 2]]
-[[stage]]
-duration = 1
-)";
-
-const std::string with_tilted_gravity = R"(phases = "drained"
-gravity = [3.4, -9.2]
-[mesh]
-file = "slope.msh"
-[body.clay]
-region = "hill"
-unit_weight = "18 kN/m3"
-pore_pressure_ratio = 0.2
-[water]
 [[stage]]
 duration = 1
 )";
@@ -182,16 +168,18 @@ TEST(ReadScene, ChecksOneKeyAgainstAnother) {
        {"body.clay={region=\"a\", unit_weight=19000, saturated_unit_weight=20000}"},
        "saturated_unit_weight = 20000 has no effect, since phases = \"dry\""},
       {with_unit_weights,
-       {"body.clay.unit_weight=21 kN/m3"},
+       {"body.clay.unit_weight=21 kN/m3", "body.clay.saturated_unit_weight=20 kN/m3"},
        "saturated_unit_weight = \"20 kN/m3\" must exceed unit_weight by 0 to 10000 N/m3"},
-      {with_unit_weights, {"body.clay.porosity=0.3"}, "leave porosity out"},
+      {with_unit_weights, {"body.clay.porosity=0.3", "body.clay.saturated_unit_weight=20 kN/m3"}, "leave porosity out"},
       {with_unit_weights,
-       {"body.clay.pore_pressure_ratio=0.3"},
+       {"body.clay.pore_pressure_ratio=0.3", "body.clay.saturated_unit_weight=20 kN/m3"},
        "needs a weight that does not depend on a water table"},
       {dry,
        {"body.clay={region=\"a\", unit_weight=18}"},
        "must be from 1000 to 100000 N/m3; soil weighs 14 to 24 kN/m3"},
-      {with_tilted_gravity, {}, "needs gravity along -y, since it counts the soil above along y"},
+      {with_unit_weights,
+       {"body.clay.pore_pressure_ratio=0.2", "gravity=[3.4, -9.2]"},
+       "needs gravity along -y, since it counts the soil above along y"},
       {dry, {"body.sand.pore_pressure_ratio=0.3"}, "needs phases = \"drained\" and no seepage stage"},
       {with_unit_weights,
        {"phases=saturated", "body.clay.permeability=1e-12"},
@@ -243,7 +231,8 @@ TEST(ReadScene, TakesUnitWeightsForDensities) {
       "gravity = 10\n[mesh]\nfile = 'a'\n[body.a]\nregion = 'a'\nunit_weight = '19 kN/m3'\n"
       "[[stage]]\nduration = 1\n";
   EXPECT_DOUBLE_EQ(parse_scene(one, "a.toml", {}).body[0].density, 1900);
-  const BodySource two = parse_scene(with_unit_weights, "a.toml", {}).body[0];  // 18 above, 20 below the water table
+  const BodySource two = parse_scene(with_unit_weights, "a.toml", {"body.clay.saturated_unit_weight=20 kN/m3"})
+                             .body[0];  // 18 above, 20 below the water table
   EXPECT_DOUBLE_EQ((1 - two.porosity) * two.grain_density, 1800);
   EXPECT_DOUBLE_EQ((1 - two.porosity) * two.grain_density + two.porosity * 1000, 2000);
   EXPECT_EQ(two.saturation, 0);
