@@ -75,18 +75,18 @@ def in_words(row, by):
 
 
 def judge(rows, by, within):
-    """([sentence], whether the refined quantity decides something). `rows` from coarse to fine."""
-    thing = THINGS[by]
+    """([sentence], whether the refined quantity decides something, [what it does to each quantity]). `rows` from coarse to fine."""
+    thing, judged = THINGS[by], []
     broken = [row for row in rows if row["failure"]]
     rows = [row for row in rows if not row["failure"]]
     sentences = [f"The run with {in_words(row, by)} broke off: {row['failure']}." for row in broken]
     if len(rows) < 3:
-        return sentences + ["Fewer than three runs came to their end, so that nothing can be said."], True
+        return sentences + ["Fewer than three runs came to their end, so that nothing can be said."], True, judged
     standing, failing = [r for r in rows if not r["fails"]], [r for r in rows if r["fails"]]
     if standing and failing and settles([row["largest_displacement_m"] for row in rows], within) != "equal":
         names = [", ".join(in_words(row, by) for row in some) for some in (failing, standing)]
         sentences.append(f"The slope fails with {names[0]} and stands with {names[1]}: the {thing} decides whether it fails.")
-        return sentences + [REMEDY[by] + "."], True
+        return sentences + [REMEDY[by] + "."], True, judged
     sentences.append(f"The slope {'fails' if failing else 'stands'} in all {len(rows)} runs.")
     points = [key for key in rows[-1] if key.endswith("_displacement_m") and key != "largest_displacement_m"]
     cell = max(row["cell_m"] for row in rows)
@@ -101,6 +101,7 @@ def judge(rows, by, within):
         if any(value is None for value in values):
             continue
         state = settles(values, within, least)
+        judged.append({"quantity": key, "values": values, "state": state})
         factor, unit = style.readable_unit(max(map(abs, values)), unit)
         known = f" or one cell of {cell:.2g} m" if least and within * abs(values[-1]) < least else ""
         text = (f"{name} is {factor * min(values):.3g} to {factor * max(values):.3g} {unit}, {percent(max(values) - min(values), values)} apart: ")
@@ -114,7 +115,7 @@ def judge(rows, by, within):
             text += f"the {thing} decides it."
             decides = True
         sentences.append(text)
-    return sentences + ([REMEDY[by] + "."] if decides else []), decides
+    return sentences + ([REMEDY[by] + "."] if decides else []), decides, judged
 
 
 # ---- tables and picture ----
@@ -134,13 +135,13 @@ def print_table(rows, by):
         print(f"{row['value']:>10g} {'fails' if row['fails'] else 'stands':>7} " + " ".join(shown))
 
 
-def write_tables(rows, sentences, decides, by, within, folder):
+def write_tables(rows, sentences, judged, decides, by, within, folder):
     names = list(dict.fromkeys(key for row in rows for key in row))
     with open(folder / "converge.csv", "w", newline="") as file:
         writer = csv.DictWriter(file, names, restval="")
         writer.writeheader()
         writer.writerows(rows)
-    page = {"by": by, "within": within, "decides": decides, "verdict": sentences, "runs": rows}
+    page = {"by": by, "within": within, "decides": decides, "verdict": sentences, "quantities": judged, "runs": rows}
     (folder / "converge.json").write_text(json.dumps(page, indent=1) + "\n")
 
 
@@ -197,10 +198,10 @@ def main():
     largest = max(map(cell_size, ended), default=0.0)
     for row, one in zip([row for row in rows if not row["failure"]], ended):
         row |= outcome(one, largest)
-    sentences, decides = judge(rows, given.by, given.within)
+    sentences, decides, judged = judge(rows, given.by, given.within)
     print_table(rows, given.by)
     print("\n" + "\n".join(sentences))
-    write_tables(rows, sentences, decides, given.by, given.within, given.folder)
+    write_tables(rows, sentences, judged, decides, given.by, given.within, given.folder)
     if ended and not given.no_plot:
         draw(ended, [row for row in rows if not row["failure"]], given.by, given.folder / "converge.png")
     return 1 if decides else 0

@@ -30,7 +30,8 @@ there:
     file = "sizes.csv"               # compared row by row in the columns below, by relative tolerances
     compare = {crest_m = 0.05}
     because = "..."
-    tables = [{name = "crest", rows = ["eta"], column = "size_m", value = "crest_m", digits = 1}]   # tables of the page, made from the file
+    tables = [{name = "crest", rows = ["eta"], column = "size_m", value = "crest_m", digits = 1}]   # tables of the page, made from the file;
+                                     # digits may be "as written" there
 
 The tables stand in README.md between the lines `<!-- numbers -->`, `<!-- studies -->` (a list of them) or `<!-- sizes: crest -->` (a table of a
 study), and `<!-- end -->`.
@@ -217,6 +218,8 @@ def table_of_study(path, wanted, study):
         except (TypeError, ValueError):
             return text or wanted.get("missing", "-")
         digits = wanted.get("digits", 3)
+        if digits == "as written":
+            return text
         return f"{number:.{digits}f}" if "." in text or "e" in text else f"{int(number):,}"
 
     titles = [wanted.get("titles", {}).get(head, head) for head in heads]
@@ -299,7 +302,7 @@ def check_study(page, name, study, talus, write):
                 (root / part).symlink_to(page.folder.parents[2] / part)
             (root / "CMakeLists.txt").symlink_to(page.folder.parents[2] / "CMakeLists.txt")
             for other in page.folder.parent.iterdir():
-                if other.is_dir() and other.name != page.name:
+                if other.name != page.name:
                     (here.parent / other.name).symlink_to(other)
             (here / study["file"]).unlink()
         commands = [[talus, "run", here / study["scene"], "-o", runs]] if "scene" in study else []

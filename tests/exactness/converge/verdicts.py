@@ -32,7 +32,7 @@ class Verdicts(unittest.TestCase):
 
     def test_that_some_fail_and_some_stand_is_the_verdict(self):
         runs = rows(fails=[True, False, True], largest_displacement_m=[2.0, 0.01, 2.1])
-        sentences, decides = judge(runs, "cells", 0.05)
+        sentences, decides, _ = judge(runs, "cells", 0.05)
         self.assertTrue(decides)
         self.assertEqual(sentences[0], "The slope fails with 0.4 m, 0.1 m and stands with 0.2 m: the cell size decides whether it fails.")
 
@@ -42,15 +42,17 @@ class Verdicts(unittest.TestCase):
 
     def test_the_load_may_be_settled_while_the_run_out_is_not(self):
         runs = rows(load_time_of_failure_s=[13.2, 13.4, 13.3], crest_displacement_m=[6.0, 4.0, 5.0])
-        sentences, decides = judge(runs, "cells", 0.05)
+        sentences, decides, judged = judge(runs, "cells", 0.05)
         self.assertTrue(decides)
         self.assertIn("The load time at failure is 13.2 to 13.4 s, 1.5 % apart: the cell size does not decide it within 5 %.", sentences)
         self.assertIn("The displacement of crest is 4 to 6 m, 40 % apart: the cell size decides it.", sentences)
+        self.assertEqual([(one["quantity"], one["state"]) for one in judged],
+                         [("load_time_of_failure_s", "equal"), ("largest_displacement_m", "equal"), ("crest_displacement_m", "open")])
         self.assertFalse(judge(rows(load_time_of_failure_s=[13.2, 13.4, 13.3]), "cells", 0.05)[1])
 
     def test_a_run_that_broke_off_is_no_agreement(self):
         runs = rows() + [{"value": 0.05, "unit": "m", "failure": "a particle left the mesh"}]
-        sentences, decides = judge(runs, "cells", 0.05)
+        sentences, decides, _ = judge(runs, "cells", 0.05)
         self.assertTrue(decides)
         self.assertEqual(sentences[0], "The run with 0.05 m broke off: a particle left the mesh.")
         self.assertTrue(judge(rows()[:2], "cells", 0.05)[1])  # two runs show nothing
