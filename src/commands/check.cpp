@@ -141,7 +141,8 @@ void print_scales(const Needs &n) {
   for (const BodyNeeds &b : n.bodies)
     if (b.softening.slope > 0)
       line("",
-           "strength of %s decreases with plastic strain at %.2g of 2 G %s %.3g m; a slip surface of %.3g m spreads",
+           "softening of %s: strength falls with plastic strain at %.2g of 2 G %s %.3g m; a slip surface longer than "
+           "%.3g m spreads without more load",
            b.body.name.c_str(), b.softening.slope,
            b.averaging_length > 0 ? "in bands of twice the averaging_length," : "in cells of",
            b.averaging_length > 0 ? 2 * b.averaging_length : b.body.cell_size, b.softening.critical_length);

@@ -102,7 +102,7 @@ std::string Progress::describe(double clock) const {
   std::string line = stage_ + times;
   if (elapsed <= 0 || advanced <= 0) return line;
   line += "  " + short_number((now_.updates - printed_.updates) / elapsed) + " particle-updates/s";
-  if (now_.time < total_) line += "  at most " + duration((total_ - now_.time) / advanced * elapsed) + " left";
+  if (now_.time < total_ && !finished_) line += "  at most " + duration((total_ - now_.time) / advanced * elapsed) + " left";
   return line;
 }
 
@@ -130,6 +130,7 @@ void Progress::failure(const std::string &text) {
 
 void Progress::finish() {
   if (!prints_) return;
+  finished_ = true;
   const std::string line = describe(clock_());
   print(line);
   if (line_open_) std::fputc('\n', screen_);

@@ -53,7 +53,7 @@ class Progress {
   void print(const std::string &line);
   void log(const std::string &line);
 
-  bool prints_, terminal_ = false;
+  bool prints_, terminal_ = false, finished_ = false;
   double total_;
   std::FILE *screen_;
   std::function<double()> clock_;

@@ -33,7 +33,7 @@ class Snapshot:
         self._group = group
         self.time = float(group.attrs["time"])
         self.step = int(group.attrs["step"])
-        self.stage = group.attrs["stage"]
+        self.stage = group.attrs["stage"] or "start"
 
     def __contains__(self, name):
         return name in self._group
@@ -84,11 +84,12 @@ def full(stress):
 
 def mobilised_friction(stress):
     """Angle at whose tangent through the origin Mohr's circle of the (effective) stress lies, asin((s1 - s3) / -(s1 + s3)) [deg]: with
-    cohesion it may exceed the friction angle, and it is 90 where there is tension or no stress."""
+    cohesion it may exceed the friction angle. It is 90 where there is tension, and 0 where there is no stress."""
     principal = np.linalg.eigvalsh(full(stress))
     least, most = principal[:, 0], principal[:, 2]
     pressure = -(least + most)
     share = np.where((pressure > 0) & (most <= 0), (most - least) / np.where(pressure > 0, pressure, 1), 1)
+    share[np.abs(principal).max(axis=1) <= 1e-12 * np.abs(principal).max(initial=0)] = 0
     return np.degrees(np.arcsin(np.clip(share, 0, 1)))
 
 

@@ -52,6 +52,8 @@ TEST(Progress, tells_rate_and_remaining_time_now_and_then) {
   EXPECT_NE(said.screen.find("at most 2 h 46 min left"), std::string::npos) << said.screen;
   EXPECT_NE(said.screen.find("the slope failed\n"), std::string::npos);
   EXPECT_EQ(lines_of(said.log), 4) << said.log;  // the stage, at 2 s, the note, the end
+  EXPECT_EQ(said.log.substr(said.log.find("the slope failed")).find("left"), std::string::npos)
+      << "after the end nothing is left";
 }
 
 TEST(Progress, reads_the_clock_seldom) {
