@@ -40,6 +40,8 @@ struct Loading {
 struct Balance {
   double unbalanced = 0, applied = 0;  ///< sums of nodal force magnitudes [N]
   double kinetic = 0, strain = 0;      ///< [J]
+  /// Unbalanced over applied force; 0 where no force acts at all [-].
+  double ratio() const { return unbalanced == 0 ? 0 : unbalanced / applied; }
 };
 
 template <int dim>

@@ -9,6 +9,7 @@
 
 #include "commands/scales.h"
 #include "physics/pores/hyperbolicity.h"
+#include "simulation/unlikely.h"
 
 namespace talus {
 namespace {
@@ -119,6 +120,7 @@ class Adviser {
   std::vector<std::string> all() {
     if (!needs_.burst_failure.empty()) say("The run breaks off in its first steps: " + needs_.burst_failure + ".");
     for (const BodyNeeds &b : needs_.bodies) particles(b), locking(b), softening(b), yielding_ground(b);
+    for (const std::string &sentence : needs_.unlikely) say(sentence);
     for (const std::string &sentence : needs_.brittle) say(sentence);
     stiffness();
     start();
@@ -350,6 +352,7 @@ Needs find_needs(Scene &scene) {
   const std::vector<Softening> softening = softening_of(scene, laws, reports);
   for (std::size_t b = 0; b < reports.size(); ++b) needs.bodies[b].softening = softening[b];
   needs.brittle = brittle_soils(scene, laws, reports);
+  needs.unlikely = unlikely_values(scene, laws);
   const StepRule rule = step_rule(read_integrator(scene.integrator, fluids_move(scene.phases)));
   needs.critical_step = rule.bound == FrequencyBound::mesh || scene.water.drag == PoreDrag::at_start
                             ? simulation->critical_step()

@@ -49,19 +49,20 @@ struct Needs {
   std::vector<BodyNeeds> bodies;
   LayerNeeds layer;
   std::vector<StageNeeds> stages;
-  std::vector<std::string> brittle;  ///< sentences on soils that soften fast for the height of the ground
-  Drainage drainage;                 ///< time = 0 without gravity
-  double gravity;                    ///< [m/s2]
-  int slowest;                       ///< body that sets the critical step
-  double critical_step;              ///< [s]
-  double altitude_rule;              ///< smallest altitude over the largest wave speed [s]
-  double step;                       ///< taken [s]
-  bool fixed_step;                   ///< given by the scene
-  int burst_steps = 0;               ///< timed
-  double seconds_per_step = 0;       ///< of wall time
-  std::string burst_failure;         ///< why the burst broke off; empty if it did not
-  double memory;                     ///< resident after the burst, over all ranks [B]
-  double results;                    ///< snapshots on disk [B]
+  std::vector<std::string> unlikely;  ///< sentences on values that hardly any soil has
+  std::vector<std::string> brittle;   ///< sentences on soils that soften fast for the height of the ground
+  Drainage drainage;                  ///< time = 0 without gravity
+  double gravity;                     ///< [m/s2]
+  int slowest;                        ///< body that sets the critical step
+  double critical_step;               ///< [s]
+  double altitude_rule;               ///< smallest altitude over the largest wave speed [s]
+  double step;                        ///< taken [s]
+  bool fixed_step;                    ///< given by the scene
+  int burst_steps = 0;                ///< timed
+  double seconds_per_step = 0;        ///< of wall time
+  std::string burst_failure;          ///< why the burst broke off; empty if it did not
+  double memory;                      ///< resident after the burst, over all ranks [B]
+  double results;                     ///< snapshots on disk [B]
   int snapshots, ranks;
 
   double run_time() const;  ///< of all stages at their longest [s]

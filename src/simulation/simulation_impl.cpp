@@ -2,6 +2,7 @@
 
 #include "simulation/softening.h"
 #include "simulation/stages/stage_runner.h"
+#include "simulation/unlikely.h"
 
 namespace talus {
 
@@ -22,6 +23,8 @@ void Simulation<dim>::run() {
 template <int dim>
 void Simulation<dim>::begin() {
   for (const std::string &sentence : brittle_soils(run_.scene, run_.world.laws, run_.world.report()))
+    run_.recorder.note("warning: " + sentence);
+  for (const std::string &sentence : unlikely_values(run_.scene, run_.world.laws))
     run_.recorder.note("warning: " + sentence);
   run_.recorder.write_history();
   if (run_.options.gauss_points && is_static(run_.scene.stage.front().kind)) run_.statics.prepare();

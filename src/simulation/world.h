@@ -89,6 +89,7 @@ class World {
   void read_mesh(DM plex, const std::string &mesh_file);
   void check_bodies() const;                                        // world_checks.cpp
   void check_boundaries(const std::vector<Source> &) const;         // world_checks.cpp
+  void check_something_acts(const std::vector<Source> &) const;     // world_checks.cpp
   void check_seeded(const Body<dim> &, const std::string &) const;  // world_checks.cpp
   int id_stride() const;
   std::vector<char> present_at_start() const;  // bodies that no stage adds

@@ -46,8 +46,26 @@ void World<dim>::check_bodies() const {
   }
 }
 
+/// Soil on which nothing acts is at rest from the start, which nobody wants to know.
+template <int dim>
+void World<dim>::check_something_acts(const std::vector<Source> &sources) const {
+  const bool moved = std::ranges::any_of(scene.body, [](const BodySource &b) {
+    return !b.velocity.empty() || !b.displacement.empty() || !b.stress.empty() || !b.body_acceleration.empty();
+  });
+  const bool pushed = std::ranges::any_of(sources, [](const Source &source) {
+    return source.kind.in_motion == OnSoil::load || source.kind.template on_soil<dim>().speed ||
+           source.kind.fluid_face();
+  });
+  if (moved || pushed || scene.gravity_size() > 0 || scene.water.given || scene.gas.given) return;
+  for (size_t k = 0; k < scene.stage.size(); ++k)
+    if (scene.stage[k].until == StopWhen::equilibrium || scene.stage[k].until == StopWhen::rest)
+      scene.complain("stage." + std::to_string(k) + ".until",
+                     "waits for soil on which nothing acts: give gravity, or a boundary that loads or moves the soil");
+}
+
 template <int dim>
 void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
+  check_something_acts(sources);
   const bool quasi_static =
       std::any_of(scene.stage.begin(), scene.stage.end(), [](const Stage &stage) { return is_static(stage.kind); });
   for (const auto &source : sources) {

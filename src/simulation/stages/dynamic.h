@@ -82,7 +82,7 @@ class DynamicStage final : public StageRunner<dim> {
     std::ostringstream text;
     text.precision(3);
     text << "stage " << stage_.name << " reached its duration of " << stage_.duration
-         << " s before its stop criterion was met: unbalanced force ratio " << sums.unbalanced / sums.applied
+         << " s before its stop criterion was met: unbalanced force ratio " << sums.ratio()
          << ", kinetic over strain energy " << sums.kinetic / sums.strain << ", rms speed "
          << std::sqrt(2 * sums.kinetic / run_.world.total_mass) << " m/s";
     run_.recorder.note(text.str());

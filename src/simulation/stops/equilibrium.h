@@ -15,10 +15,11 @@ class StopAtEquilibrium final : public StopCriterion<dim> {
     if (run.clock.steps % steps_between_checks || run.clock.time - run.progress.begin < stage_.gravity_ramp)
       return false;
     const Balance sums = run.balance();
-    if (sums.unbalanced > stage_.force_ratio * sums.applied || sums.kinetic > stage_.energy_ratio * sums.strain)
-      return false;
+    const bool balanced = sums.unbalanced <= stage_.force_ratio * sums.applied,
+               quiet = sums.kinetic <= stage_.energy_ratio * sums.strain;
+    if (!balanced || !quiet) return false;
     run.recorder.note("stage " + stage_.name + " is in equilibrium: unbalanced force ratio " +
-                      std::to_string(sums.unbalanced / sums.applied));
+                      std::to_string(sums.ratio()));
     return true;
   }
 

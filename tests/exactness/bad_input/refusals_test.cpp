@@ -438,6 +438,18 @@ TEST(Seepage, OfDrainedSoilIsChecked) {
   }
 }
 
+/// Without anything that acts, soil would be "in equilibrium" or "at rest" at once.
+TEST(Stage, ThatWaitsNeedsSomethingToWaitFor) {
+  const Folder folder;
+  folder.write("scene.toml", good_scene), folder.write("section.csv", good_section);
+  for (const char *until : {"equilibrium", "rest"}) {
+    const Ending ending = talus(
+        folder, {"run", "scene.toml", "--no-pictures", "--set", "gravity=0", std::string("stage.0.until=") + until});
+    EXPECT_EQ(ending.status, 2) << ending.output;
+    EXPECT_TRUE(ending.says("waits for soil on which nothing acts: give gravity")) << ending.output;
+  }
+}
+
 TEST(RightArguments, HaveUnits) {
   const Folder folder;
   folder.write("section.csv", good_section);

@@ -53,6 +53,16 @@ TEST(Check, TellsThatARunBreaksOffAtOnce) {
   EXPECT_TRUE(ending.says("The run breaks off in its first steps: the velocity is not finite near (")) << ending.output;
 }
 
+/// A number without a unit counts in the unit of its key, which is not always the one that its writer had in mind.
+TEST(Check, DoubtsValuesThatNoSoilHas) {
+  const Folder folder;
+  EXPECT_FALSE(check(folder, {"body.sand.cohesion=7 kPa"}).says("hardly any soil has"));
+  EXPECT_TRUE(check(folder, {"body.sand.cohesion=7"}).says("body.sand.cohesion is 7 Pa, which hardly any soil has"));
+  EXPECT_TRUE(check(folder, {"body.sand.friction_angle=0.47"}).says("body.sand.friction_angle is 0.47 deg"));
+  EXPECT_TRUE(check(folder, {"body.sand.young_modulus=20"}).says("body.sand.young_modulus is 20 Pa"));
+  EXPECT_TRUE(check(folder, {"body.sand.density=1.9"}).says("Is it in t/m3?"));
+}
+
 TEST(Check, FindsTheSameOnTwoRanks) {
   const Folder folder;
   const Ending one = check(folder, {}), two = check(folder, {}, 2);
