@@ -95,9 +95,9 @@ PetscErrorCode LimitState<dim>::settle(int most, LimitSearch *result, bool *sett
     PetscCall(problem_.stiffness(1, prop_));
     PetscCall(problem_.solve_linear(force_, direction_, &solved));
     ++result->iterations;
-    if (!solved) PetscFunctionReturn(0);
+    // where an iterative solver gave up, a direction that leads down will do: the search along it finds how far
     PetscCall(VecDot(force_, direction_, &slope));
-    if (!(slope > 0)) PetscFunctionReturn(0);
+    if (!(slope > 0 && std::isfinite(slope))) PetscFunctionReturn(0);
     PetscCall(line_search(slope, &step));
   }
 }

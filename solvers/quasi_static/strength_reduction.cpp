@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "solvers/quasi_static/bracket.h"
 #include "solvers/quasi_static/limit_state.h"
 #include "solvers/quasi_static/slip_surface.h"
 
@@ -108,52 +109,17 @@ class Reduction {
   /// Brackets the factor; the first trial divides strength by `first`. Leaves the problem in the state of the largest
   /// factor with an equilibrium.
   PetscErrorCode bracket(double first, FactorBracket *result, bool *interrupted) {
-    constexpr double stride = 1.25;  // of the factor until it is bracketed
     PetscFunctionBeginUser;
     start_ = stable_ = problem_.soil().save();
-    FactorBracket &b = *result;
-    b = {};
-    for (double factor = first;;) {
-      TrialOutcome outcome;
-      PetscCall(attempt(factor, &outcome, interrupted));
-      if (*interrupted) break;
-      if (outcome == TrialOutcome::equilibrium)
-        b.lower = std::max(b.lower, factor);
-      else if (outcome == TrialOutcome::mechanism)
-        b.upper = b.upper > 0 ? std::min(b.upper, factor) : factor;
-      else
-        least_open_ = open() ? std::min(least_open_, factor) : factor, most_open_ = std::max(most_open_, factor);
-      if (b.upper > 0 && b.lower > b.upper) b.lower = b.upper;  // both within the tolerance of equilibrium
-      factor = next(b, stride);
-      if (factor == 0) break;
-    }
-    b.decided = !open();
+    const TryFactor attempt = [this](double factor, TrialOutcome *outcome, bool *stopped) {
+      return this->attempt(factor, outcome, stopped);
+    };
+    PetscCall(bracket_factor(first, attempt, result, interrupted));
     problem_.soil().restore(stable_);
     PetscFunctionReturn(0);
   }
 
  private:
-  bool open() const { return most_open_ > 0; }
-  static bool narrow(double low, double high) { return high - low <= bracket_width * high; }
-
-  /// The factor of the next trial; 0 if there is none.
-  double next(const FactorBracket &b, double stride) {
-    // undecided trials outside of the bracket do not matter any more
-    if (open() && (most_open_ <= b.lower || (b.upper > 0 && least_open_ >= b.upper))) least_open_ = most_open_ = 0;
-    const double above = open() ? most_open_ : b.lower, below = open() ? least_open_ : b.upper;
-    if (b.upper == 0) {
-      const double top = std::max(above, b.lower) * stride;
-      return top < largest_factor ? top : 0;
-    }
-    if (b.lower == 0) {
-      const double bottom = below / stride;
-      return bottom > smallest_factor ? bottom : 0;
-    }
-    if (!narrow(b.lower, below)) return std::sqrt(b.lower * below);
-    if (open() && !narrow(above, b.upper)) return std::sqrt(above * b.upper);
-    return 0;
-  }
-
   PetscErrorCode attempt(double factor, TrialOutcome *outcome, bool *interrupted) {
     PetscFunctionBeginUser;
     const auto begin = std::chrono::steady_clock::now();
@@ -194,7 +160,6 @@ class Reduction {
   std::vector<StrengthTrial> &trials_;
   typename SoilElements<dim>::State start_, stable_;
   bool any_stable_ = false;
-  double least_open_ = 0, most_open_ = 0;  ///< factors of undecided trials in the bracket; 0 if there are none
 };
 
 }  // namespace

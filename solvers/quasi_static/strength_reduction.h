@@ -39,11 +39,9 @@ struct ReductionSettings {
 /// Brackets the factor from the present state of the problem by equilibria and mechanisms, until the bracket is
 /// narrower than `bracket_width` of the factor, and if some soil has psi < phi a second time with psi = phi. The
 /// problem is left in the state of the largest factor that has an equilibrium, moved along the mechanism so far that it
-/// shows. `result` has lower = 0 if nothing stands at `smallest_factor`, and upper = 0 if nothing fails at
-/// `largest_factor`. `interrupted` is set if the search was stopped.
+/// shows. A bracket may be open on one side, see bracket.h. `interrupted` is set if the search was stopped.
 template <int dim>
 PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law> &laws,
                                const ReductionSettings &settings, FactorOfSafety *result, bool *interrupted);
-constexpr double bracket_width = 0.005, smallest_factor = 0.02, largest_factor = 20;
 
 }  // namespace talus

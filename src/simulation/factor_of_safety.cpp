@@ -65,6 +65,21 @@ std::string bracket_in_words(const FactorBracket &b) {
          ", a mechanism with " + rounded(b.upper) + ")";
 }
 
+/// Why a bracket has one end, or none.
+std::string why_open(const FactorBracket &b) {
+  if (b.decided && b.lower == 0)
+    return "even with its strength divided by " + rounded(b.upper) + " the soil does not stand";
+  if (b.decided)
+    return "strength divided by " + rounded(b.lower) + " still has an equilibrium: there is nothing to fail";
+  const std::string found =
+      b.lower > 0   ? "an equilibrium with strength divided by " + rounded(b.lower) + ", but no mechanism"
+      : b.upper > 0 ? "a mechanism with strength divided by " + rounded(b.upper) + ", but no equilibrium"
+                    : "neither an equilibrium nor a mechanism";
+  return "the trials found " + found +
+         ": the iterations of the others led nowhere, and there is no factor of safety; factor_of_safety.csv lists "
+         "them. Take quasi_static.linear_solver = \"direct\" or another mesh";
+}
+
 /// One table of the trials and one of their load-displacement curves.
 struct TrialTables {
   explicit TrialTables(const std::string &directory) {
@@ -131,11 +146,7 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   require(talus::reduce_strength<dim>(run_.statics.problem(), world.laws, settings, &result, &stopped));
   result.lost_stages = run_.statics.lost_stages;
   if (stopped) throw RunFailure("interrupted");
-  if (result.lower == 0)
-    throw RunFailure("even with its strength divided by " + rounded(result.upper) + " the soil does not stand");
-  if (result.upper == 0)
-    throw RunFailure("strength divided by " + rounded(result.lower) +
-                     " still has an equilibrium: there is nothing to fail");
+  if (result.lower == 0 || result.upper == 0) throw RunFailure(why_open(result));
   run_.recorder.note("factor of safety " + bracket_in_words(result) + "; the mechanism moves " +
                      rounded(result.moving_volume) + (dim == 2 ? " m3 of soil per metre" : " m3 of soil"));
   if (result.davis)

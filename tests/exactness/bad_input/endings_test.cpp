@@ -133,6 +133,41 @@ TEST_F(RunThatEnds, BecauseALayerIsOneElementThick) {
          1);
 }
 
+/// Trials near the factor remain undecided where the linear solver gives up early: the answer is a range, in words, as
+/// JSON and by the exit status. The factor that the direct solver finds lies within.
+TEST_F(RunThatEnds, WithARangeForTheFactorOfSafety) {
+  folder_.write("scene.toml", changed(changed(good_scene, "name = \"fall\"", "kind = \"quasi_static\""),
+                                      "cohesion = 0\nfriction_angle = 30", "cohesion = \"4 kPa\"\nfriction_angle = 0"));
+  const std::vector<std::string> solve =
+      talus_words({"solve", "scene.toml", "--factor-of-safety", "-o", "results", "--no-pictures"});
+  const auto with = [&](const std::vector<std::string> &before, const std::vector<std::string> &after) {
+    std::vector<std::string> words = before;
+    words.insert(words.end(), solve.begin(), solve.end());
+    words.insert(words.end(), after.begin(), after.end());
+    return Program(folder_, words).end();
+  };
+  const Ending exact = with({}, {});
+  EXPECT_EQ(exact.status, 0) << exact.output;
+  EXPECT_EQ(exact.count("between"), 0) << exact.output;
+  std::filesystem::rename(folder_ / "results/factor_of_safety.json", folder_ / "exact.json");
+
+  const Ending range =
+      with({"env", "PETSC_OPTIONS=-talus_ksp_max_it 6"}, {"--set", "quasi_static.linear_solver=iterative"});
+  EXPECT_EQ(range.status, 3) << range.output;
+  EXPECT_TRUE(range.says(": undecided, ")) << range.output;
+  EXPECT_TRUE(range.says("and between the two trials that found neither")) << range.output;
+  const Ending read =
+      Program(folder_, {PYTHON, "-c",
+                        "import json\nexact, range = (json.load(open(f))['factor_of_safety'] for f in "
+                        "('exact.json', 'results/factor_of_safety.json'))\n"
+                        "print('decided', exact['decided'], range['decided'], range['value'])\n"
+                        "print('holds', range['equilibrium'] <= exact['value'] <= range['mechanism'])\n"
+                        "print('wide', range['mechanism'] - range['equilibrium'] > 0.005 * range['mechanism'])\n"})
+          .end();
+  for (const char *words : {"decided True False None", "holds True", "wide True"})
+    EXPECT_TRUE(read.says(words)) << words << "\n" << read.output;
+}
+
 TEST_F(RunThatEnds, BecauseResultsHaveNoPlace) {
   expect(Program(folder_, run(good_scene, 1, "scene.toml/results")).end(), {"scene.toml/results", "Not a directory"},
          0);

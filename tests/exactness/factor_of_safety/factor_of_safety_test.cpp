@@ -8,7 +8,7 @@
 
 #include "scene/reader.h"
 #include "simulation.h"
-#include "solvers/quasi_static/strength_reduction.h"
+#include "solvers/quasi_static/bracket.h"
 
 namespace talus {
 namespace {
@@ -140,11 +140,18 @@ TEST(FactorOfSafety, curves_show_equilibrium_and_mechanism) {
   }
 }
 
-/// A signal ends the search, in a stage or in a trial.
+/// A signal ends the search, in a stage or in the first trial after the stages.
 TEST(FactorOfSafety, ends_when_interrupted) {
+  Scene scene = read_scene(std::string(TALUS_SLOPES) + "/scene.toml", coarse);
+  RunOptions options;
+  options.pictures = options.screen = false;
+  const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+  simulation->run();
   interrupted = 1;
   EXPECT_THROW(factor_of("scene.toml", coarse), RunError);
+  EXPECT_THROW(simulation->factor_of_safety(), RunError);
   interrupted = 0;
+  for (const Event &event : simulation->events()) EXPECT_EQ(event.text.find("strength divided by"), std::string::npos);
 }
 
 }  // namespace

@@ -1,0 +1,21 @@
+#pragma once
+/// The search for a factor of safety: which strength to try next, docs/theory/finite_elements.md section 5.
+#include <petscsys.h>
+
+#include <functional>
+
+#include "solvers/quasi_static/factor_of_safety.h"
+
+namespace talus {
+
+/// One trial: what soil does whose strength is divided by `factor`; `interrupted` ends the search.
+using TryFactor = std::function<PetscErrorCode(double factor, TrialOutcome *outcome, bool *interrupted)>;
+
+/// Brackets the factor by an equilibrium and a mechanism until the bracket is narrower than `bracket_width` of the
+/// factor; the first trial divides strength by `first`. Trials that are undecided leave the bracket wider, then
+/// `decided` is false. `result` has lower = 0 if no trial down to `smallest_factor` found an equilibrium, and upper = 0
+/// if none up to `largest_factor` found a mechanism.
+PetscErrorCode bracket_factor(double first, const TryFactor &attempt, FactorBracket *result, bool *interrupted);
+constexpr double bracket_width = 0.005, smallest_factor = 0.02, largest_factor = 20;
+
+}  // namespace talus

@@ -1,0 +1,193 @@
+// Limit loads of a few cells that are known: a weightless block between a smooth base and a smooth wall, under a
+// pressure q on its top. Its stress is uniform, which the elements hold exactly. It fails at
+// q = 2 c tan(45 deg + phi / 2), so that the only errors are the width of the bracket and what counts as equilibrium,
+// 1e-5 of the loads; 1e-4 of the factor is allowed.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/reader.h"
+#include "simulation.h"
+#include "solvers/quasi_static/bracket.h"
+
+namespace talus {
+namespace {
+
+using Overrides = std::vector<std::string>;
+
+constexpr double q = 10e3, E = 10e6, nu = 0.3;
+const std::string block = R"(
+[mesh]
+section = "box.csv"
+size = 0.25
+[body.soil]
+region = "soil"
+density = 2000
+law = "mohr_coulomb"
+young_modulus = 10e6
+poisson_ratio = 0.3
+cohesion = 14e3
+friction_angle = 0
+[boundary.base]
+kind = "roller"
+[boundary.left]
+kind = "roller"
+[boundary.surface]
+kind = "traction"
+pressure = 10e3
+[[stage]]
+name = "load"
+kind = "quasi_static"
+duration = 1
+)";
+
+FactorOfSafety factor_of(const Overrides &overrides) {
+  Scene scene = parse_scene(block, std::string(TALUS_MESHES) + "/scene.toml", overrides);
+  RunOptions options;
+  options.pictures = options.screen = false;
+  return make_simulation(PETSC_COMM_WORLD, scene, options)->factor_of_safety();
+}
+
+/// Pressure that the block bears with c and tan(phi) divided by F; with `davis` both times cos(phi_F) besides, the
+/// strength of Davis (1968) for psi = 0.
+double limit_of(double c, double phi, double F, bool davis) {
+  const double reduced = std::atan(std::tan(phi) / F), share = davis ? std::cos(reduced) : 1,
+               angle = std::atan(share * std::tan(reduced));
+  return 2 * c / F * share * std::tan(M_PI / 4 + angle / 2);
+}
+
+/// The factor at which the block bears q, by bisection.
+double exact_factor(double c, double phi, bool davis) {
+  double low = 0.01, high = 100;
+  for (int k = 0; k < 100; ++k) {
+    const double middle = std::sqrt(low * high);
+    (limit_of(c, phi, middle, davis) > q ? low : high) = middle;
+  }
+  return low;
+}
+
+void expect_holds(const FactorBracket &b, double exact) {
+  EXPECT_TRUE(b.decided);
+  EXPECT_LE(b.upper - b.lower, 1.0001 * bracket_width * b.upper);
+  EXPECT_LE(b.lower, exact * (1 + 1e-4));
+  EXPECT_GE(b.upper, exact * (1 - 1e-4));
+}
+
+TEST(Block, has_its_exact_factor_with_and_without_dilation) {
+  for (const double c : {3e3, 14e3})
+    for (const double phi : {0., 30.}) {
+      const Overrides soil{"body.soil.cohesion=" + std::to_string(c),
+                           "body.soil.friction_angle=" + std::to_string(phi)};
+      Overrides dilating = soil;
+      dilating.push_back("body.soil.dilation_angle=" + std::to_string(phi));
+      const FactorOfSafety none = factor_of(soil), full = factor_of(dilating);
+      EXPECT_EQ(none.davis, phi > 0);
+      EXPECT_FALSE(full.davis);
+      const double angle = phi * degree.si;
+      expect_holds(none, exact_factor(c, angle, true));
+      expect_holds(full, exact_factor(c, angle, false));
+      if (none.davis) expect_holds(none.dilating, exact_factor(c, angle, false));
+    }
+}
+
+/// What each trial found: out of balance by at most 1e-5 of the loads in equilibrium; else a displacement of at least
+/// ten times that of elastic soil, q / E' over a height of 1 m, and a prop that carries what the soil does not,
+/// 1 - F_exact / F of the load, to the 5 % of the force of the prop that may be out of balance.
+TEST(Block, leans_on_the_prop_with_what_it_cannot_carry) {
+  const double exact = 2 * 14e3 / q, elastic = q * (1 - nu * nu) / E;
+  const FactorOfSafety factor = factor_of({});
+  for (const StrengthTrial &t : factor.trials) {
+    ASSERT_NE(t.outcome, TrialOutcome::undecided);
+    if (t.outcome == TrialOutcome::equilibrium) {
+      EXPECT_LE(t.residual, 1e-5);
+      EXPECT_LT(t.displacement, 2 * elastic);
+      continue;
+    }
+    const double surplus = 1 - exact / t.factor;
+    EXPECT_GT(t.displacement, 10 * elastic) << t.factor;
+    EXPECT_NEAR(t.surplus, surplus, 0.05 * surplus + 1e-4) << t.factor;
+  }
+}
+
+/// The mechanism stretches all of the block: displacement is in proportion to the distance from its corner, so that
+/// less than a tenth of the largest, sqrt(2), moves a quarter of a circle of 0.141 m. Gauss points stand for 0.01 m2.
+TEST(Block, moves_as_a_whole) {
+  const FactorOfSafety factor = factor_of({});
+  EXPECT_NEAR(factor.moving_volume, 1 - M_PI / 4 * 0.02, 0.02);
+}
+
+/// A vertical cut of undrained clay slips on a plane at 45 degrees through its foot, within a cell of 0.25 m. No
+/// mechanism is said to lack more resistance than it does: 1 - F_exact / F of the load at most.
+TEST(Block, cut_slips_through_its_foot) {
+  const FactorOfSafety cut =
+      factor_of({"gravity=10", "boundary.surface.pressure=0", "boundary.base.kind=fixed", "body.soil.cohesion=8e3"});
+  EXPECT_TRUE(cut.decided);
+  for (const StrengthTrial &t : cut.trials) {
+    if (t.outcome == TrialOutcome::equilibrium) continue;
+    EXPECT_LE(t.surplus, 1.05 * (1 - cut.lower / t.factor)) << t.factor;
+  }
+  // 3.776 c / (rho g h) = 1.51 (Pastor et al. 2000); four cells over the height are stiffer by up to 10 %
+  EXPECT_NEAR(cut.value(), 1.05 * 3.776 * 8e3 / 20e3, 0.05 * 1.51);
+  ASSERT_GE(cut.slip_surface.size(), 4u);
+  for (const auto &[x, y] : cut.slip_surface) EXPECT_NEAR(x + y, 1, 0.25);
+  EXPECT_GT(cut.moving_volume, 0.5) << "the wedge";
+  EXPECT_LT(cut.moving_volume, 0.5 + 0.25 * std::sqrt(2.)) << "and a cell on its slip plane";
+}
+
+/// A slice of tetrahedra between smooth ends has the factor of plane strain, within 3 %: its triangles are those of the
+/// section, its tetrahedra a little stiffer. Rough ends hold it.
+TEST(Block, slice_in_three_dimensions_has_the_factor_of_plane_strain) {
+  const Overrides cut{"gravity=10",
+                      "boundary.surface.pressure=0",
+                      "boundary.base.kind=fixed",
+                      "body.soil.cohesion=5e3",
+                      "body.soil.friction_angle=20",
+                      "body.soil.dilation_angle=20"};
+  const auto slice = [&](const std::string &ends) {
+    Overrides words = cut;
+    words.insert(words.end(), {"dimension=3", "mesh.thickness=0.25", "mesh.layers=1",
+                               "boundary.ends.group=[\"front\",\"back\"]", "boundary.ends.kind=" + ends});
+    return factor_of(words);
+  };
+  const FactorOfSafety plane = factor_of(cut), smooth = slice("roller");
+  EXPECT_TRUE(smooth.decided);
+  EXPECT_NEAR(smooth.value() / plane.value(), 1, 0.03);
+  EXPECT_NEAR(smooth.moving_volume / (0.25 * plane.moving_volume), 1, 0.1);
+  EXPECT_GT(slice("fixed").lower, 1.5 * plane.upper);
+}
+
+/// Clay that leans on a soft elastic wall moves by far more than elastic clay and yet stands at any strength: large
+/// displacement is no mechanism.
+TEST(Block, stands_at_any_strength_before_an_elastic_wall) {
+  try {
+    factor_of({"mesh.section=" + std::string(TALUS_WALL), "gravity=10", "boundary.surface.pressure=0",
+               "body.soil.cohesion=8e3", "body.wall.region=wall", "body.wall.density=1", "body.wall.law=linear_elastic",
+               "body.wall.young_modulus=2e4", "body.wall.poisson_ratio=0", "boundary.right.kind=roller"});
+    ADD_FAILURE() << "a mechanism";
+  } catch (const RunError &error) {
+    EXPECT_NE(std::string(error.what()).find("still has an equilibrium: there is nothing to fail"), std::string::npos)
+        << error.what();
+  }
+}
+
+/// A linear solver that gives up, here for want of iterations, leaves trials undecided: their factors are no answer.
+struct FewIterations {
+  explicit FewIterations(int most) { PetscOptionsSetValue(nullptr, "-talus_ksp_max_it", std::to_string(most).c_str()); }
+  ~FewIterations() { PetscOptionsClearValue(nullptr, "-talus_ksp_max_it"); }
+};
+
+TEST(Block, has_no_factor_where_trials_lead_nowhere) {
+  const FewIterations none(1);
+  try {
+    factor_of({"quasi_static.linear_solver=iterative", "gravity=10"});
+    ADD_FAILURE() << "a factor without a trial";
+  } catch (const RunError &error) {
+    EXPECT_NE(std::string(error.what()).find(", but no mechanism: the iterations of the others led nowhere"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace talus
