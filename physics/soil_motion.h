@@ -108,6 +108,7 @@ class SoilMotion final : public AnySoilMotion<dim> {
   template <bool averaged>
   void gather();
   PetscErrorCode finish_gather(double t);
+  void average_shares(size_t body);
   void refer_to_points(size_t body);
   void measure_impedance();
   void set_weights(const std::vector<double> &nodal_volume);

@@ -62,6 +62,8 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
       if (!transfer_.average_stress) continue;
       points.own_cell.resize(cells), points.own_volume.resize(cells), points.own_limit.resize(cells),
           points.start_volume.resize(cells);
+      if (reads_shares(bodies[b]->law()))
+        points.own_cohesion_share.resize(cells), points.own_friction_share.resize(cells);
       points.own_stress.resize(static_cast<size_t>(cells) * components);
       points.own_history.resize(static_cast<size_t>(cells) * bodies[b]->history_count());
       points.start_history.resize(points.own_history.size());

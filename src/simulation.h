@@ -12,6 +12,7 @@
 
 #include "meshes/mesh_report.h"
 #include "output/results.h"
+#include "physics/laws/strength_range.h"
 #include "scene/scene.h"
 #include "solvers/quasi_static/factor_of_safety.h"
 
@@ -62,6 +63,7 @@ struct BodyReport {
   double cell_size = 0;                              ///< side of the regular simplex of the mean size of its cells [m]
   double critical_step = 0, mean_critical_step = 0;  ///< least and mean over its cells [s]
   std::array<double, 3> slowest_cell{};              ///< centroid of the cell with the least [m]
+  StrengthRange strength;                            ///< over the places of the body at the start
 };
 
 class AnySimulation {

@@ -33,7 +33,7 @@ struct DruckerPrager : IsotropicElastic, FrictionalStrength {
   }
 
   bool cohesionless() const { return cohesion == 0; }
-  bool strength_varies() const { return softens(); }
+  bool strength_varies() const { return FrictionalStrength::strength_varies(); }
 
   // Of the parameters alone, set by prepare().
   double of_outer = 0, of_inner = 0, of_plane_strain = 0;  ///< weights of the cones in steepness()
@@ -57,10 +57,10 @@ struct DruckerPrager : IsotropicElastic, FrictionalStrength {
     Number limit;         ///< xi c [Pa]
     Number apex;          ///< mean stress there [Pa]
   };
-  /// After a plastic strain.
+  /// After a plastic strain, with the shares of the place.
   template <class Number>
   [[gnu::always_inline]] Strength<Number> strength(const Number &plastic_strain, const Surroundings &around) const {
-    const auto now = faded(plastic_strain, around);
+    const auto now = faded<true>(plastic_strain, around);
     const Number sin_phi = sine(now.phi), c_cos_phi = now.c * sine(right_angle - now.phi);
     const Number sin_psi = now.sin_psi < sin_phi ? now.sin_psi : sin_phi;
     const Number steep = steepness(sin_phi), quotient = c_cos_phi / sin_phi;
@@ -72,9 +72,10 @@ struct DruckerPrager : IsotropicElastic, FrictionalStrength {
   void as_case(Use use) const;
 };
 
-/// The cone compiled with or without softening.
-template <bool softening>
+/// The cone compiled with one strength for all points, or with that of each point: its plastic strain and its place.
+template <bool varies>
 struct DruckerPragerCase : DruckerPrager {
+  static constexpr bool by_place = varies;
   Strength<> peak;
   double over_stiffness = 0;  ///< slip per excess of f at the peak [1/Pa]
 
@@ -100,7 +101,7 @@ struct DruckerPragerCase : DruckerPrager {
     };
     const double shearing = 1 / (std::sqrt(3.) * G);  // plastic strain per loss of q
     End end;
-    if constexpr (softening) {
+    if constexpr (varies) {
       const auto after = [&](const Number &strain) __attribute__((always_inline)) {
         const Strength<Number> m = strength(strain, around);
         return end_of(m, 1 / (G + K * m.eta_bar * m.eta));
@@ -118,7 +119,7 @@ struct DruckerPragerCase : DruckerPrager {
 
 template <class Use>
 void DruckerPrager::as_case(Use use) const {
-  softens() ? use(DruckerPragerCase<true>{*this, {}}) : use(DruckerPragerCase<false>{*this, {}});
+  strength_varies() ? use(DruckerPragerCase<true>{*this, {}}) : use(DruckerPragerCase<false>{*this, {}});
 }
 
 }  // namespace talus

@@ -257,6 +257,10 @@ double ElementState::deviator() const {
 void refuse_unsuitable(const Law &law, const ElementTest &test) {
   const std::string of = "test." + test.name + ": the law " + law_name(law);
   if (test.suction.given() && !reads_suction(law)) throw std::invalid_argument(of + " takes no strength from suction");
+  if (reads_shares(law))
+    throw std::invalid_argument(of +
+                                " has a strength that is a function of place, and a sample has no place; give numbers "
+                                "for cohesion and friction_angle");
   if (test.duration == 0 && rate_dependent(law))
     throw std::invalid_argument(of + " flows with time; give the test a duration, such as \"1 s\"");
 }

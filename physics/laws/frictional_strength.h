@@ -11,9 +11,14 @@ namespace talus {
 
 /// Cohesion, friction and dilation, which may decrease with plastic strain: the strength of the frictional laws. Source
 /// of the softening: Alonso, Yerro & Pinyol (2015), eqs. (18), (19).
+///
+/// With `reads_shares` a point has the shares Surroundings::cohesion of c and Surroundings::friction of phi, peak and
+/// residual alike. A scene that gives c or phi as a function of the place sets it and leaves NaN in the function's
+/// place, which strength_by_place.h replaces by the function's largest value; others may set it too.
 struct FrictionalStrength {
   double cohesion = required;                   ///< c, peak [Pa]
   double friction_angle = required;             ///< phi, peak [rad]
+  bool reads_shares = false;                    ///< c and phi of a point are shares of these
   double dilation_angle = 0;                    ///< psi, never above the current phi [rad]
   double residual_cohesion = -1;                ///< [Pa]; negative: the peak
   double residual_friction_angle = -degree.si;  ///< [rad]; negative: the peak
@@ -23,9 +28,10 @@ struct FrictionalStrength {
 
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.number("cohesion", cohesion, pascal, Range{0, 1e9}, "cohesion c, at its peak if the soil softens");
-    v.number("friction_angle", friction_angle, degree, Range{0, 70},
-             "friction angle phi, at its peak if the soil softens");
+    v.by_place("cohesion", cohesion, reads_shares, pascal, Range{0, 1e9},
+               "cohesion c, at its peak if the soil softens");
+    v.by_place("friction_angle", friction_angle, reads_shares, degree, Range{0, 70},
+               "friction angle phi, at its peak if the soil softens");
     v.number("dilation_angle", dilation_angle, degree, Range{0, 70},
              "dilation angle psi; limited to phi where phi falls below it. Take psi = phi for a factor of safety to "
              "compare with limit equilibrium; with psi < phi it is smaller");
@@ -46,6 +52,12 @@ struct FrictionalStrength {
       return std::string(key) + " must not exceed " + limit + ", " + shortest(std::round(1e6 * value / unit.si) / 1e6) +
              " " + unit.name;
     };
+    if ((std::isnan(cohesion) && residual_cohesion > 0) || (std::isnan(friction_angle) && residual_friction_angle > 0))
+      return std::string(std::isnan(cohesion) && residual_cohesion > 0 ? "residual_cohesion"
+                                                                       : "residual_friction_angle") +
+             " must be 0, or negative (the peak), where the peak is a function of place: one number is no residual "
+             "value "
+             "of many peaks";
     if (dilation_angle > friction_angle) return above("dilation_angle", "friction_angle", friction_angle, degree);
     if (residual_cohesion > cohesion) return above("residual_cohesion", "cohesion", cohesion, pascal);
     if (residual_friction_angle > friction_angle)
@@ -58,6 +70,7 @@ struct FrictionalStrength {
   }
 
   bool softens() const { return shape_factor > 0; }
+  bool strength_varies() const { return softens() || reads_shares; }
 
   /// Divides c and tan(phi), of peak and residual, by `factor`; psi is at most the reduced phi.
   /// docs/theory/finite_elements.md (5.1).
@@ -66,6 +79,14 @@ struct FrictionalStrength {
     cohesion /= factor, reduce_angle(friction_angle);
     if (residual_cohesion > 0) residual_cohesion /= factor;
     if (residual_friction_angle > 0) reduce_angle(residual_friction_angle);
+    dilation_angle = std::min(dilation_angle, friction_angle);
+  }
+
+  /// The strength of a place that has these shares of c and phi, as a strength of its own.
+  void take_shares(double of_cohesion, double of_friction) {
+    cohesion *= of_cohesion, friction_angle *= of_friction;
+    if (residual_cohesion > 0) residual_cohesion *= of_cohesion;
+    if (residual_friction_angle > 0) residual_friction_angle *= of_friction;
     dilation_angle = std::min(dilation_angle, friction_angle);
   }
 
@@ -87,13 +108,17 @@ struct FrictionalStrength {
   struct Faded {
     Number c, phi, sin_psi;  ///< [Pa], [rad], [-]; psi may exceed phi
   };
-  /// Strength that is left after a plastic strain. sin psi decreases as c and phi do.
-  template <class Number>
+  /// Strength that is left after a plastic strain, at a point that has the shares of its place if `by_place`. sin psi
+  /// decreases as c and phi do.
+  template <bool by_place, class Number>
   [[gnu::always_inline]] Faded<Number> faded(const Number &plastic_strain, const Surroundings &around) const {
     const double scale = around.size * over_size, eta = scale > 0 ? shape_factor * scale : shape_factor;
     const Number left = exponential(-eta * plastic_strain);  // of the way from residual to peak
-    return {residual_c + (cohesion - residual_c) * left, residual_phi + (friction_angle - residual_phi) * left,
-            sin_psi_residual + (sin_psi_peak - sin_psi_residual) * left};
+    Faded<Number> now{residual_c + (cohesion - residual_c) * left,
+                      residual_phi + (friction_angle - residual_phi) * left,
+                      sin_psi_residual + (sin_psi_peak - sin_psi_residual) * left};
+    if constexpr (by_place) now.c *= around.cohesion, now.phi *= around.friction;
+    return now;
   }
 };
 

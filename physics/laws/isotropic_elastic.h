@@ -19,7 +19,7 @@ struct IsotropicElastic {
   }
 
   // A law that differs hides these.
-  static constexpr bool takes_suction = false, rate_dependent = false;
+  static constexpr bool by_place = false, rate_dependent = false;
   bool reads_suction() const { return false; }
   bool strength_varies() const { return false; }
 

@@ -6,7 +6,8 @@
 /// - `fields(visitor)`: its parameters, for reader and descriptions; `problem()`: what is wrong between them, or ""
 /// - `prepare()`: derives constants from the parameters, once per update of all points
 /// - `reads_suction()`: does its strength depend on `Surroundings::suction`?
-/// - `takes_suction`: the same, of the compiled case
+/// - `reads_shares`: do c and phi of a point follow from the shares in its `Surroundings`? Absent: never
+/// - `by_place`: does the compiled case read suction and shares of its `Surroundings`?
 /// - `rate_dependent`: does its stress depend on the time that a strain takes?
 /// - `as_case(use)`: where the law is compiled in several cases, calls `use` with the one that fits its parameters
 /// - `trial(s, e, around)`: adds the elastic stress of a strain increment (IsotropicElastic's, unless the law has its
@@ -100,6 +101,18 @@ inline bool cohesionless(const Law &law) {
 /// history.
 inline bool strength_varies(const Law &law) {
   return std::visit([](const auto &one) { return one.strength_varies(); }, law);
+}
+
+/// Do c and phi of a point follow from the shares in its surroundings?
+inline bool reads_shares(const Law &law) {
+  return std::visit(
+      [](const auto &one) {
+        if constexpr (requires { one.reads_shares; })
+          return one.reads_shares;
+        else
+          return false;
+      },
+      law);
 }
 
 /// Why a factor of safety cannot reduce the strength of this law, as the end of a sentence that begins with its name;

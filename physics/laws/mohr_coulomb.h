@@ -49,7 +49,7 @@ struct MohrCoulomb : IsotropicElastic, FrictionalStrength {
 
   bool cohesionless() const { return cohesion == 0 && suction_cohesion == 0; }
   bool reads_suction() const { return suction_cohesion > 0 || suction_friction_rate > 0; }
-  bool strength_varies() const { return softens() || reads_suction(); }
+  bool strength_varies() const { return FrictionalStrength::strength_varies() || reads_suction(); }
 
   /// Also divides the tension cut-off and what suction adds to the cohesion; suction_friction_rate stays.
   void reduce_strength(double factor) {
@@ -80,11 +80,11 @@ struct MohrCoulomb : IsotropicElastic, FrictionalStrength {
     }
   };
 
-  /// After a plastic strain, under the suction of the place.
-  template <class Number, bool with_suction = true>
+  /// After a plastic strain, with the suction and the shares of the place.
+  template <class Number, bool with_surroundings = true>
   [[gnu::always_inline]] Strength<Number> strength(const Number &plastic_strain, const Surroundings &around) const {
-    auto [c, phi, sin_psi] = faded(plastic_strain, around);
-    if constexpr (with_suction) {
+    auto [c, phi, sin_psi] = faded<with_surroundings>(plastic_strain, around);
+    if constexpr (with_surroundings) {
       c += suction_cohesion * (1 - exponential(-suction_cohesion_rate * around.suction));
       phi += suction_friction_rate * around.suction;
       phi = phi < steepest ? phi : steepest;
@@ -146,16 +146,16 @@ struct MohrCoulomb : IsotropicElastic, FrictionalStrength {
     return sqrt(d12 * d12 + d23 * d23 + d31 * d31) * (0.47140452079103168 / (2 * G));  // sqrt(2) / 3
   }
 
-  /// Calls `use` with this law as the simplest of its cases, so that softening and suction cost time only in soil that
-  /// has them.
+  /// Calls `use` with this law as the simplest of its cases, so that softening, suction and strength that varies with
+  /// place cost time only in soil that has them.
   template <class Use>
   void as_case(Use use) const;
 };
 
-/// Mohr-Coulomb compiled with or without softening, and with or without suction.
-template <bool softening, bool with_suction>
+/// Mohr-Coulomb compiled with or without softening, and with or without what surrounds the point: suction and shares.
+template <bool softening, bool with_surroundings>
 struct MohrCoulombCase : MohrCoulomb {
-  static constexpr bool takes_suction = with_suction;
+  static constexpr bool by_place = with_surroundings;
   Strength<> peak;
 
   void prepare() {
@@ -177,10 +177,10 @@ struct MohrCoulombCase : MohrCoulomb {
       return Principal<Value>{trial.s1 - end.s1, trial.s2 - end.s2, trial.s3 - end.s3};
     };
     Strength<Value> now{peak.sin_phi, peak.sin_psi, peak.twice_c_cos_phi, peak.tension};
-    if constexpr (softening || with_suction) now = strength<Value, with_suction>(Value(plastic_strain), around);
+    if constexpr (softening || by_place) now = strength<Value, by_place>(Value(plastic_strain), around);
     if constexpr (softening) {
       const Value predicted = plastic_strain + shearing(change(now));
-      now = strength<Value, with_suction>(predicted, around);
+      now = strength<Value, by_place>(predicted, around);
     }
     const Principal<Value> taken = change(now);
     axes.subtract(taken, stress);
@@ -191,7 +191,7 @@ struct MohrCoulombCase : MohrCoulomb {
 
 template <class Use>
 void MohrCoulomb::as_case(Use use) const {
-  if (reads_suction())
+  if (reads_suction() || reads_shares)
     softens() ? use(MohrCoulombCase<true, true>{*this, {}}) : use(MohrCoulombCase<false, true>{*this, {}});
   else
     softens() ? use(MohrCoulombCase<true, false>{*this, {}}) : use(MohrCoulombCase<false, false>{*this, {}});

@@ -69,6 +69,7 @@ struct Surroundings {
                          ///< docs/theory (2.7)
   double suction = 0;    ///< s = P_g - P_l where positive, else 0 [Pa]
   double time_step = 0;  ///< over which the strain came about [s]; 0: at once, or no strain
+  double cohesion = 1, friction = 1;  ///< share of the law's c and phi that the place has [-]
 };
 
 }  // namespace talus

@@ -18,16 +18,17 @@ struct StressPoints {
   const Increment<dim> *increment;   ///< per filled cell
   const double *size;                ///< per filled cell, Surroundings::size
   const double *suction = nullptr;   ///< [count] Surroundings::suction; null where there is none
-  double time_step = 0;              ///< Surroundings::time_step
-  double time = 0;                   ///< at the start of the step [s]; only a UMAT reads it
+  const double *cohesion_share = nullptr, *friction_share = nullptr;  ///< [count] Surroundings' shares; null: 1
+  double time_step = 0;                                               ///< Surroundings::time_step
+  double time = 0;  ///< at the start of the step [s]; only a UMAT reads it
 };
 
 template <int dim>
 void update_stress(const Law &law, const StressPoints<dim> &points);
 
 /// The same update, and its consistent tangent: `tangent` [count][stress_size<dim>][stress_size<dim>] gets
-/// d stress_out[i] / d strain[j], row-major, at fixed rotation, history_in, suction and time step [Pa]. Components are
-/// those of the tensors in stored order, and a shear strain stands for the two equal components of its tensor: the
+/// d stress_out[i] / d strain[j], row-major, at fixed rotation, history_in, surroundings and time step [Pa]. Components
+/// are those of the tensors in stored order, and a shear strain stands for the two equal components of its tensor: the
 /// derivative along xy is that along (e_x e_y + e_y e_x), which is twice what an engineering shear strain would give.
 /// Exact to round-off for the algorithm that `update_stress` runs, softening included; on a boundary between two
 /// branches of the law, of the one that is taken. Not for the particle loop: some microseconds a point.

@@ -118,7 +118,7 @@ struct PointBlock {
   Block<std::tuple_size_v<decltype(Increment<dim>::rotation)>> rotation;
   Block<OneLaw::history.size()> history;
   Block<1> element_size;
-  Block<OneLaw::takes_suction> suction;
+  Block<OneLaw::by_place> suction, cohesion, friction;
 
   /// One call is the whole body of the loop: what lived in the loop itself would be kept in memory, and the loop stay
   /// scalar.
@@ -127,7 +127,9 @@ struct PointBlock {
     auto s = take<Stress<dim>>(stress, i);
     auto h = take<typename OneLaw::History>(history, i);
     Surroundings around{element_size.value[0][i], 0, time_step};
-    if constexpr (OneLaw::takes_suction) around.suction = suction.value[0][i];
+    if constexpr (OneLaw::by_place)
+      around.suction = suction.value[0][i], around.cohesion = cohesion.value[0][i],
+      around.friction = friction.value[0][i];
     if constexpr (strained) {
       s = strained_by(law, s, take<Strain<dim>>(strain, i), h, around);
       s = rotated(s, take<decltype(Increment<dim>::rotation)>(rotation, i));
@@ -158,19 +160,23 @@ template <bool strained, int dim, class OneLaw>
 void correct_all(OneLaw law, const StressPoints<dim> &points) {
   constexpr int size = stress_size<dim>, memory = static_cast<int>(OneLaw::history.size());
   law.prepare();
-  const double time_step = points.time_step, no_suction = 0;
+  const double time_step = points.time_step, no_suction = 0, whole = 1;
   PointBlock<dim, OneLaw> block;
 
   for (int first = 0; first < points.count; first += lanes) {
     const int filled = std::min(lanes, points.count - first);
     const double *stress[lanes], *history[lanes], *strain[lanes], *rotation[lanes], *element_size[lanes],
-        *suction[lanes];
+        *suction[lanes], *cohesion[lanes], *friction[lanes];
     for (int i = 0; i < lanes; ++i) {
       const int p = first + std::min(i, filled - 1);  // the last block repeats its last point
       stress[i] = points.stress_in + p * size;
       history[i] = points.history_in + p * memory;
       element_size[i] = points.size + points.cell[p];
-      if constexpr (OneLaw::takes_suction) suction[i] = points.suction ? points.suction + p : &no_suction;
+      if constexpr (OneLaw::by_place) {
+        suction[i] = points.suction ? points.suction + p : &no_suction;
+        cohesion[i] = points.cohesion_share ? points.cohesion_share + p : &whole;
+        friction[i] = points.friction_share ? points.friction_share + p : &whole;
+      }
       if constexpr (strained) {
         strain[i] = points.increment[points.cell[p]].strain.data();
         rotation[i] = points.increment[points.cell[p]].rotation.data();
@@ -179,7 +185,8 @@ void correct_all(OneLaw law, const StressPoints<dim> &points) {
     block.stress.load(stress);
     block.history.load(history);
     block.element_size.load(element_size);
-    if constexpr (OneLaw::takes_suction) block.suction.load(suction);
+    if constexpr (OneLaw::by_place)
+      block.suction.load(suction), block.cohesion.load(cohesion), block.friction.load(friction);
     if constexpr (strained) block.strain.load(strain), block.rotation.load(rotation);
 #pragma omp simd
     for (int i = 0; i < lanes; ++i) block.template correct<strained>(law, time_step, i);
@@ -206,7 +213,9 @@ void differentiate_all(OneLaw law, const StressPoints<dim> &points, double *tang
       stress[k] = points.stress_in[p * size + k], strain[k] = increment.strain[k];
       strain[k].slope[k] = 1;
     }
-    const Surroundings around{points.size[points.cell[p]], points.suction ? points.suction[p] : 0, points.time_step};
+    const Surroundings around{points.size[points.cell[p]], points.suction ? points.suction[p] : 0, points.time_step,
+                              points.cohesion_share ? points.cohesion_share[p] : 1,
+                              points.friction_share ? points.friction_share[p] : 1};
     const auto s = rotated(strained_by<dim>(law, std::bit_cast<Stress<dim, Number>>(stress),
                                             std::bit_cast<Strain<dim, Number>>(strain), history, around),
                            increment.rotation);

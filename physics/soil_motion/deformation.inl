@@ -99,6 +99,8 @@ void SoilMotion<dim, Phases>::update_points(double t, size_t b, State &to) {
                                   .increment = increment_.data(),
                                   .size = softening_size(b),
                                   .suction = find_suction(b),
+                                  .cohesion_share = p.cohesion_share,
+                                  .friction_share = p.friction_share,
                                   .time_step = t - accepted_time_,
                                   .time = accepted_time_});
   if (nonlocal_[b]) nonlocal_[b]->restore(p, history);

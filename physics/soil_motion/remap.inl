@@ -25,6 +25,7 @@ void SoilMotion<dim, Phases>::gather() {
     to_nodes<dim, averaged, fluids>(*bodies_[b], grid_, velocities_.momentum.data(), points, pores,
                                     movers_ ? &(*movers_)[b] : nullptr);
     if (!averaged) points.count = p.count;
+    if (averaged && reads_shares(bodies_[b]->law())) average_shares(b);
     refer_to_points(b);
   }
   accepted_.refer_to(grid_);
@@ -43,7 +44,26 @@ void SoilMotion<dim, Phases>::refer_to_points(size_t b) {
   points.history = own ? points.own_history.data() : p.history;
   points.volume = own ? points.own_volume.data() : p.volume,
   points.limit = own ? points.own_limit.data() : p.initial_volume;
+  if (p.cohesion_share) {
+    points.cohesion_share = own ? points.own_cohesion_share.data() : p.cohesion_share;
+    points.friction_share = own ? points.own_friction_share.data() : p.friction_share;
+  }
   accepted_.refer_to(points, b);
+}
+
+/// Shares of strength at the stress points of a body: means of those of the particles, weighted by volume.
+template <int dim, class Phases>
+void SoilMotion<dim, Phases>::average_shares(size_t b) {
+  PointSet &points = points_[b];
+  const ParticleArrays<dim> &p = bodies_[b]->particles();
+  std::fill_n(points.own_cohesion_share.begin(), points.count, 0.);
+  std::fill_n(points.own_friction_share.begin(), points.count, 0.);
+  for (int i = 0; i < p.count; ++i) {
+    const int q = points.of_cell[p.cell[i]];
+    const double weight = p.volume[i] / points.own_volume[q];
+    points.own_cohesion_share[q] += weight * p.cohesion_share[i];
+    points.own_friction_share[q] += weight * p.friction_share[i];
+  }
 }
 
 template <int dim, class Phases>
@@ -130,7 +150,9 @@ void SoilMotion<dim, Phases>::admit_mean_stress() {
                                           .cell = p.cell,
                                           .increment = increment_.data(),
                                           .size = softening_size(b),
-                                          .suction = find_suction(b)});
+                                          .suction = find_suction(b),
+                                          .cohesion_share = p.cohesion_share,
+                                          .friction_share = p.friction_share});
     if (nonlocal_[b]) nonlocal_[b]->restore(p, p.history);
   }
 }

@@ -112,7 +112,7 @@ PetscErrorCode SoilMotion<dim, Phases>::serialize(Archive &archive) {
   for (size_t b = 0; b < bodies_.size(); ++b) {
     PointSet &p = points_[b];
     archive.serialize("points", p.count, p.own_cell, p.own_stress, p.own_history, p.own_volume, p.own_limit,
-                      p.start_history, p.start_volume, p.of_cell);
+                      p.own_cohesion_share, p.own_friction_share, p.start_history, p.start_volume, p.of_cell);
     refer_to_points(b);
     if (nonlocal_[b]) nonlocal_[b]->serialize(archive);
   }

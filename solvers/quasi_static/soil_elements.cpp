@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "physics/laws/strength_by_place.h"
+
 namespace talus {
 namespace {
 
@@ -69,6 +71,15 @@ SoilElements<dim>::SoilElements(const BackgroundMesh<dim> &mesh, const Scene &sc
   for (const Law &law : laws)
     points_.emplace_back().law = law, suction_matters_ = suction_matters_ || reads_suction(law);
   place_points();
+  for (size_t b = 0; b < laws.size(); ++b) {
+    GaussPoints<dim> &p = points_[b];
+    const StrengthByPlace strength(scene.body[b].law, p.law);
+    for (int q = 0; strength.given() && q < p.count(); ++q) {
+      const Vec<dim> &x = p.position[q];
+      const auto shares = strength.shares(p.law, x[0], x[1], dim == 3 ? x[dim - 1] : 0);
+      p.cohesion_share.push_back(shares.cohesion), p.friction_share.push_back(shares.friction);
+    }
+  }
 }
 
 template <int dim>
@@ -311,9 +322,11 @@ void SoilElements<dim>::reset_displacement() {
 
 template <int dim>
 void SoilElements<dim>::admit() {
-  for (GaussPoints<dim> &p : points_)
-    admit_stress<dim>(p.law, {p.count(), p.stress.data(), p.history.data(), p.stress.data(), p.history.data(),
-                              p.number.data(), p.increment.data(), p.size.data(), p.trial().suction});
+  for (GaussPoints<dim> &p : points_) {
+    StressPoints<dim> present = p.trial();
+    present.stress_out = p.stress.data(), present.history_out = p.history.data();
+    admit_stress<dim>(p.law, present);
+  }
 }
 
 template <int dim>

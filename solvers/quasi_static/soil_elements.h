@@ -36,21 +36,25 @@ struct GaussPoints {
   std::vector<double> total_strain;     ///< since displacement was last reset [stress_size]
   std::vector<double> trial_stress, trial_history;
   std::vector<Increment<dim>> increment;
-  std::vector<int> number;      ///< 0, 1, ...: each point has an increment of its own
-  std::vector<double> size;     ///< element size of softening laws [m]
-  std::vector<double> suction;  ///< at the loads of the step, for laws that read it [Pa]
+  std::vector<int> number;                             ///< 0, 1, ...: each point has an increment of its own
+  std::vector<double> size;                            ///< element size of softening laws [m]
+  std::vector<double> suction;                         ///< at the loads of the step, for laws that read it [Pa]
+  std::vector<double> cohesion_share, friction_share;  ///< of the law's c and phi, for laws that read them; empty: 1
   int count() const { return static_cast<int>(cell.size()); }
   /// From the converged state to the trial one by `increment`.
   StressPoints<dim> trial() {
-    return {count(),
-            stress.data(),
-            history.data(),
-            trial_stress.data(),
-            trial_history.data(),
-            number.data(),
-            increment.data(),
-            size.data(),
-            suction.empty() ? nullptr : suction.data()};
+    const auto or_null = [](const std::vector<double> &values) { return values.empty() ? nullptr : values.data(); };
+    return {.count = count(),
+            .stress_in = stress.data(),
+            .history_in = history.data(),
+            .stress_out = trial_stress.data(),
+            .history_out = trial_history.data(),
+            .cell = number.data(),
+            .increment = increment.data(),
+            .size = size.data(),
+            .suction = or_null(suction),
+            .cohesion_share = or_null(cohesion_share),
+            .friction_share = or_null(friction_share)};
   }
 };
 

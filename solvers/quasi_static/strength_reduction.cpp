@@ -71,6 +71,19 @@ Law strength_of_trial(const Law &law, double factor, bool dilating) {
       with_reduced_strength(law, factor));
 }
 
+StrengthShares shares_of_trial(const Law &law, const StrengthShares &own, double factor, bool dilating) {
+  const Law at_place = std::visit(
+      [&](auto one) -> Law {
+        if constexpr (requires { one.reads_shares; }) one.take_shares(own.cohesion, own.friction);
+        return one;
+      },
+      law);
+  const StrengthRange largest = strength_of(strength_of_trial(law, factor, dilating)),
+                      here = strength_of(strength_of_trial(at_place, factor, dilating));
+  const auto share = [](double part, double whole) { return whole > 0 ? part / whole : 1; };
+  return {share(here.cohesion[0], largest.cohesion[0]), share(here.friction_angle[0], largest.friction_angle[0])};
+}
+
 PetscErrorCode follow_path(double step, double smallest,
                            const std::function<PetscErrorCode(double, double, StepOutcome *)> &advance,
                            const std::function<void(double, const StepOutcome &)> &done, double *share,
@@ -102,9 +115,16 @@ namespace {
 template <int dim>
 class Reduction {
  public:
-  Reduction(QuasiStatic<dim> &problem, const std::vector<Law> &laws, const ReductionSettings &settings, bool dilating,
-            LimitState<dim> &limit, std::vector<StrengthTrial> &trials)
-      : problem_(problem), laws_(laws), settings_(settings), dilating_(dilating), limit_(limit), trials_(trials) {}
+  Reduction(QuasiStatic<dim> &problem, const std::vector<Law> &laws,
+            const std::vector<std::vector<StrengthShares>> &own_shares, const ReductionSettings &settings,
+            bool dilating, LimitState<dim> &limit, std::vector<StrengthTrial> &trials)
+      : problem_(problem),
+        laws_(laws),
+        own_shares_(own_shares),
+        settings_(settings),
+        dilating_(dilating),
+        limit_(limit),
+        trials_(trials) {}
 
   /// Brackets the factor; the first trial divides strength by `first`. Leaves the problem in the state of the largest
   /// factor with an equilibrium.
@@ -129,7 +149,7 @@ class Reduction {
     for (const auto *state : {&stable_, &start_}) {  // from the first state too, where the last one leads nowhere
       if (state == &start_ && !any_stable_) break;   // they are the same
       soil.restore(*state);
-      for (size_t b = 0; b < laws_.size(); ++b) soil.points()[b].law = strength_of_trial(laws_[b], factor, dilating_);
+      for (size_t b = 0; b < laws_.size(); ++b) divide_strength(soil.points()[b], laws_[b], own_shares_[b], factor);
       LimitSearch found;
       PetscCall(limit_.search(&found));
       trial.iterations += found.iterations, trial.residual = found.residual, trial.surplus = found.surplus;
@@ -152,8 +172,18 @@ class Reduction {
     PetscFunctionReturn(0);
   }
 
+  /// Gives points with `own` shares of the law's strength that of a trial.
+  void divide_strength(GaussPoints<dim> &p, const Law &law, const std::vector<StrengthShares> &own, double factor) {
+    p.law = strength_of_trial(law, factor, dilating_);
+    for (size_t q = 0; q < own.size(); ++q) {
+      const StrengthShares shares = shares_of_trial(law, own[q], factor, dilating_);
+      p.cohesion_share[q] = shares.cohesion, p.friction_share[q] = shares.friction;
+    }
+  }
+
   QuasiStatic<dim> &problem_;
   const std::vector<Law> &laws_;
+  const std::vector<std::vector<StrengthShares>> &own_shares_;
   const ReductionSettings &settings_;
   bool dilating_;
   LimitState<dim> &limit_;
@@ -175,9 +205,14 @@ PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law>
   problem.soil().reset_displacement();
   for (size_t b = 0; b < history.size(); ++b) problem.soil().points()[b].history = history[b];
   scale_plastic_strain(problem.soil(), 1 / unit_of_plastic_strain);
+  std::vector<std::vector<StrengthShares>> own_shares;  // [body][point], empty where the law is the same everywhere
+  for (const GaussPoints<dim> &p : problem.soil().points()) {
+    std::vector<StrengthShares> &own = own_shares.emplace_back(p.cohesion_share.size());
+    for (size_t q = 0; q < own.size(); ++q) own[q] = {p.cohesion_share[q], p.friction_share[q]};
+  }
   LimitState<dim> limit(problem);
   PetscCall(limit.setup(settings.load_time, settings.time));
-  Reduction<dim> own(problem, laws, settings, !result->davis, limit, result->trials);
+  Reduction<dim> own(problem, laws, own_shares, settings, !result->davis, limit, result->trials);
   PetscCall(own.bracket(1, result, interrupted));
   if (*interrupted || result->lower == 0 || result->upper == 0) PetscFunctionReturn(0);
   const auto stable = problem.soil().save();
@@ -186,7 +221,7 @@ PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law>
   const auto moved = problem.soil().save();
   if (result->davis) {
     problem.soil().restore(stable);
-    Reduction<dim> dilating(problem, laws, settings, true, limit, result->trials);
+    Reduction<dim> dilating(problem, laws, own_shares, settings, true, limit, result->trials);
     PetscCall(dilating.bracket(result->upper, &result->dilating, interrupted));
     problem.soil().restore(moved);
   }

@@ -4,6 +4,7 @@
 /// Docs/theory/finite_elements.md, section 5.
 #include <functional>
 
+#include "physics/laws/strength_by_place.h"
 #include "solvers/quasi_static/factor_of_safety.h"
 #include "solvers/quasi_static/quasi_static.h"
 
@@ -21,6 +22,11 @@ bool non_associated(const Law &law);
 /// cos(psi) cos(phi) / (1 - sin(psi) sin(phi)). Soil that softens has the strength that its accepted plastic strain has
 /// left it, counted in a unit in which a trial adds nothing.
 Law strength_of_trial(const Law &law, double factor, bool dilating);
+
+/// Shares that points with the shares `own` of the law's strength have of `strength_of_trial(law, ...)`: they get the
+/// strength of a trial of soil whose own strength is that of their place. Exact for c and phi at their peak; what
+/// suction adds, and residual values, are reduced as where the law's c and phi are largest.
+StrengthShares shares_of_trial(const Law &law, const StrengthShares &own, double factor, bool dilating);
 
 /// Carries a path from share 0 to 1 in load steps of at most `step`, halved where they fail and doubled after quick
 /// ones; `done` is told of each. Returns the outcome of the last step and, in `share`, how far it came.

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "commands/scales.h"
+#include "physics/laws/strength_by_place.h"
 #include "physics/pores/hyperbolicity.h"
 #include "simulation/unlikely.h"
 
@@ -37,6 +38,7 @@ bool unscaled(const Law &law) {
 
 BodyNeeds needs_of(const BodyReport &report, const BodySource &source) {
   BodyNeeds b{report, read_law(source.law)};
+  take_largest(b.law, report.strength);
   b.averaging_length = source.averaging_length;
   b.density = report.mass / report.volume;
   b.wave_speed = std::sqrt(constrained_modulus(b.law) / b.density);
@@ -203,15 +205,15 @@ class Adviser {
     const bool by_weight = std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &s) {
       return s.kind == StageKind::quasi_static && s.initial_stress == InitialStress::kept;
     });
-    const auto *soil = std::get_if<MohrCoulomb>(&b.law);
-    if (!by_weight || !soil || needs_.gravity == 0) return;
+    if (!by_weight || !std::holds_alternative<MohrCoulomb>(b.law) || needs_.gravity == 0) return;
+    const double phi = b.body.strength.friction_angle[0];  // the least asks for most
     const double K = bulk_modulus(b.law), G = shear_modulus(b.law), nu = (3 * K - 2 * G) / (2 * (3 * K + G));
-    if (std::sin(soil->friction_angle) >= 1 - 2 * nu || soil->friction_angle == 0) return;
+    if (std::sin(phi) >= 1 - 2 * nu || phi == 0) return;
     say("Elastic ground of " + b.body.name +
         " at rest has the lateral stress ratio nu / (1 - nu) = " + digits(nu / (1 - nu), 2) +
         ", less than its friction angle requires without cohesion: much of it yields under its weight alone, and "
         "Newton's iterations may stall; take initial_stress = \"k0\", or poisson_ratio above " +
-        digits((1 - std::sin(soil->friction_angle)) / 2, 2) + " (sin phi > 1 - 2 nu).");
+        digits((1 - std::sin(phi)) / 2, 2) + " (sin phi > 1 - 2 nu).");
   }
 
   void stage(const Stage &stage) {

@@ -162,6 +162,16 @@ std::vector<std::string> Hdf5Reader::texts(const std::string &dataset) const {
   return texts;
 }
 
+std::vector<double> Hdf5Reader::numbers(const std::string &dataset) const {
+  const std::string what = "cannot read " + dataset + " in " + path_;
+  const H5Dataset set(H5Dopen2(file_, dataset.c_str(), H5P_DEFAULT), what);
+  hsize_t count = 1;
+  for (const hsize_t extent : shape(dataset)) count *= extent;
+  std::vector<double> values(count);
+  if (count) check_hdf5(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), what);
+  return values;
+}
+
 H5Attribute Hdf5Reader::attribute(const std::string &object, const char *name) const {
   return {H5Aopen_by_name(file_, object.c_str(), name, H5P_DEFAULT, H5P_DEFAULT),
           "cannot read attribute " + std::string(name) + " in " + path_};

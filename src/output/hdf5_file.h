@@ -88,6 +88,7 @@ class Hdf5Reader {
   std::vector<std::string> names(const std::string &group) const;  ///< of the links in a group, in alphabetical order
   std::vector<hsize_t> shape(const std::string &dataset) const;
   std::vector<std::string> texts(const std::string &dataset) const;
+  std::vector<double> numbers(const std::string &dataset) const;  ///< row by row
   double number(const std::string &object, const char *attribute) const;
   long long integer(const std::string &object, const char *attribute) const;
   std::string text(const std::string &object, const char *attribute) const;

@@ -16,7 +16,7 @@ constexpr const char *fluid_mass[] = {"liquid_mass", "gas_mass"},
 constexpr int spare = 64;  // particles; small, because each removal from a swarm zeroes all its spare memory
 
 template <int dim>
-std::vector<FieldSpec> field_specs(int history_count, int fluids, int faces) {
+std::vector<FieldSpec> field_specs(const Law &law, int fluids, int faces) {
   std::vector<FieldSpec> specs{{"position", dim, PETSC_DOUBLE},
                                {"velocity", dim, PETSC_DOUBLE},
                                {"reference", dim, PETSC_DOUBLE},
@@ -26,7 +26,9 @@ std::vector<FieldSpec> field_specs(int history_count, int fluids, int faces) {
                                {"stress", stress_size<dim>, PETSC_DOUBLE},
                                {"cell", 1, PETSC_INT},
                                {"id", 1, PETSC_INT}};
-  if (history_count) specs.push_back({"history", history_count, PETSC_DOUBLE});
+  if (history_size(law)) specs.push_back({"history", history_size(law), PETSC_DOUBLE});
+  if (reads_shares(law))
+    specs.push_back({"cohesion_share", 1, PETSC_DOUBLE}), specs.push_back({"friction_share", 1, PETSC_DOUBLE});
   for (int a = 0; a < fluids; ++a)
     specs.push_back({fluid_mass[a], 1, PETSC_DOUBLE}), specs.push_back({fluid_velocity[a], dim, PETSC_DOUBLE});
   if (faces)
@@ -62,7 +64,7 @@ PetscErrorCode Body<dim>::create(MPI_Comm comm, const BodySource &source, Law la
   PetscCall(DMSetDimension(swarm_, dim));
   PetscCall(DMSwarmSetType(swarm_, DMSWARM_BASIC));
   PetscCall(DMSwarmInitializeFieldRegister(swarm_));
-  for (const FieldSpec &f : field_specs<dim>(history_count_, fluids, faces))
+  for (const FieldSpec &f : field_specs<dim>(law_, fluids, faces))
     PetscCall(DMSwarmRegisterPetscDatatypeField(swarm_, f.name, f.components, f.type));
   PetscCall(DMSwarmFinalizeFieldRegister(swarm_));
   PetscFunctionReturn(0);
@@ -95,7 +97,11 @@ PetscErrorCode Body<dim>::borrow() {
   PetscCall(take("stress", arrays_.stress));
   PetscCall(take("cell", arrays_.cell));
   PetscCall(take("id", arrays_.id));
-  arrays_.history = nullptr, arrays_.surface = nullptr;
+  arrays_.history = nullptr, arrays_.surface = nullptr, arrays_.cohesion_share = arrays_.friction_share = nullptr;
+  if (reads_shares(law_))
+    for (const auto &[name, array] :
+         {std::pair{"cohesion_share", &arrays_.cohesion_share}, {"friction_share", &arrays_.friction_share}})
+      PetscCall(take(name, *array));
   if (history_count_) PetscCall(take("history", arrays_.history));
   for (int a = 0; a < 2; ++a) {
     arrays_.fluid_mass[a] = nullptr, arrays_.fluid_velocity[a] = nullptr;
@@ -112,7 +118,7 @@ template <int dim>
 PetscErrorCode Body<dim>::give_back() {
   PetscFunctionBeginUser;
   if (!borrowed_) PetscFunctionReturn(0);
-  for (const FieldSpec &f : field_specs<dim>(history_count_, fluids_, face_count_)) {
+  for (const FieldSpec &f : field_specs<dim>(law_, fluids_, face_count_)) {
     void *array = nullptr;
     PetscCall(DMSwarmRestoreField(swarm_, f.name, nullptr, nullptr, &array));
   }
@@ -143,6 +149,8 @@ PetscErrorCode Body<dim>::sort(int cell_count) {
   permute(arrays_.initial_volume, sizeof(double));
   permute(arrays_.stress, sizeof(double) * stress_size<dim>);
   permute(arrays_.history, sizeof(double) * history_count_);
+  permute(arrays_.cohesion_share, sizeof(double));
+  permute(arrays_.friction_share, sizeof(double));
   for (int a = 0; a < fluids_; ++a)
     permute(arrays_.fluid_mass[a], sizeof(double)), permute(arrays_.fluid_velocity[a], sizeof(Vec<dim>));
   permute(arrays_.surface, sizeof(SurfacePiece<dim>) * face_count_);
@@ -178,7 +186,7 @@ PetscErrorCode Body<dim>::serialize(Archive &archive) {
   archive.serialize("particles", count);
   if (archive.reading()) PetscCall(resize(count));
   PetscCall(give_back());
-  for (const FieldSpec &f : field_specs<dim>(history_count_, fluids_, face_count_)) {
+  for (const FieldSpec &f : field_specs<dim>(law_, fluids_, face_count_)) {
     void *values;
     PetscCall(DMSwarmGetField(swarm_, f.name, nullptr, nullptr, &values));
     const size_t size = f.type == PETSC_INT ? sizeof(PetscInt) : sizeof(double);

@@ -40,7 +40,8 @@ struct ParticleArrays {
   double *initial_volume;  ///< V_p0 [m3]
   double *stress;          ///< [stress_size] Cauchy effective stress [Pa]
   double *history;         ///< [history_size(law)] internal variables of the law
-  double *fluid_mass[2];   ///< of liquid and gas in the pores [kg]; null where the phase model has none
+  double *cohesion_share, *friction_share;  ///< of the law's c and phi [-]; null where the law reads none
+  double *fluid_mass[2];        ///< of liquid and gas in the pores [kg]; null where the phase model has none
   Vec<dim> *fluid_velocity[2];  ///< their velocities [m/s]; null likewise
   SurfacePiece<dim> *surface;   ///< [loaded faces] pieces of them; null when the scene has none
   PetscInt *cell;               ///< local cell

@@ -5,6 +5,7 @@
 
 #include "meshes/locate.h"
 #include "particles/body.h"
+#include "physics/laws/strength_by_place.h"
 
 namespace talus {
 namespace {
@@ -139,6 +140,7 @@ void seed(Body<dim> &body, const BackgroundMesh<dim> &mesh, int id_stride,
   PetscCallVoid(body.resize(count));
 
   const ParticleArrays<dim> &p = body.particles();
+  const StrengthByPlace strength(source.law, body.law());
   int i = 0;
   for (int cell : cells) {
     const auto &points = points_in(cell);
@@ -155,6 +157,10 @@ void seed(Body<dim> &body, const BackgroundMesh<dim> &mesh, int id_stride,
       for (int s = 0; s < stress_size<dim>; ++s)
         p.stress[i * stress_size<dim> + s] = source.stress.empty() ? 0 : value<dim>(source.stress[s], x);
       for (int h = 0; h < body.history_count(); ++h) p.history[i * body.history_count() + h] = 0;
+      if (p.cohesion_share) {
+        const auto shares = strength.shares(body.law(), x[0], x[1], dim == 3 ? x[dim - 1] : 0);
+        p.cohesion_share[i] = shares.cohesion, p.friction_share[i] = shares.friction;
+      }
       if (!source.displacement.empty()) {
         p.volume[i] *=
             displacement_gradient<dim>(source.displacement, x, 1e-5 * mesh.mean_edge[mesh.cells[cell].node[0]])

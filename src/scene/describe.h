@@ -47,6 +47,7 @@ class Describer {
   // The visitor.
 
   void number(const char *key, double value, Unit unit, Range range, const char *meaning);
+  void by_place(const char *key, double value, bool varies, Unit unit, Range range, const char *meaning);
   void integer(const char *key, int value, Range range, const char *meaning);
   void flag(const char *key, bool value, const char *meaning);
   void text(const char *key, const std::string &value, const char *meaning);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <system_error>
 
@@ -80,6 +81,19 @@ void TableReader::number(const char *key, double &value, Unit unit, Range range,
     value = given->number(unit, range) * unit.si;
   else if (std::isnan(value))
     complain("", std::string("needs ") + key + " (" + meaning + "), " + number_in(range, unit) + misspelt(key));
+}
+
+void TableReader::by_place(const char *key, double &value, bool &varies, Unit unit, Range range, const char *meaning) {
+  const auto given = find(key, meaning);
+  if (given && given->place_function(unit, range).given())
+    value = std::numeric_limits<double>::quiet_NaN(), varies = true;
+  else
+    number(key, value, unit, range, meaning);
+}
+
+Function TableReader::function_of_place(const char *key, Unit unit, Range range, const char *meaning) {
+  const auto given = find(key, meaning);
+  return given ? given->place_function(unit, range) : Function();
 }
 
 void TableReader::integer(const char *key, int &value, Range range, const char *meaning) {

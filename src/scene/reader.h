@@ -51,6 +51,9 @@ class TableReader {
 
   /// An initial value of NaN (`required`) makes the key a required one. The range is in the key's unit.
   void number(const char *key, double &value, Unit unit, Range range, const char *meaning);
+  /// A number, or an expression of the undeformed place x, y, z: then `varies` is set and the value NaN. The expression
+  /// is that of `function_of_place`. An initial value of NaN makes the key a required one.
+  void by_place(const char *key, double &value, bool &varies, Unit unit, Range range, const char *meaning);
   void integer(const char *key, int &value, Range range, const char *meaning);
   void flag(const char *key, bool &value, const char *meaning);
   void text(const char *key, std::string &value, const char *meaning);
@@ -70,6 +73,8 @@ class TableReader {
   void function(const char *key, Function &value, Unit unit, Range range, const char *meaning);
   /// A list of functions; a single one gives a vector of size 1.
   void functions(const char *key, std::vector<Function> &value, Unit unit, const char *meaning);
+  /// The expression of the place at a key that `by_place` reads; not given where the key has a number, or is absent.
+  Function function_of_place(const char *key, Unit unit, Range range, const char *meaning);
   /// Exactly two of young_modulus, poisson_ratio, shear_modulus, bulk_modulus.
   void elasticity(double &young_modulus, double &poisson_ratio);
   template <class Struct>

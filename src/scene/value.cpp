@@ -102,6 +102,16 @@ Function TableReader::Value::function(Unit unit, Range range) const {
   return expression(expected, unit.si);
 }
 
+Function TableReader::Value::place_function(Unit unit, Range range) const {
+  const std::string expected = number_in(range, unit) + ", or an expression of x, y, z";
+  if (node_->is_array()) must_be(expected);
+  if (is_number() || looks_like_quantity(string(expected))) return {};
+  const Function function = expression(expected, unit.si);
+  for (const char *other : {"t", "table"})
+    if (function.uses(other)) must_be(expected, std::string("it cannot depend on ") + other);
+  return function;
+}
+
 Function TableReader::Value::named_function() const {
   const std::string expected = "a list of [t, value] points or an expression of t";
   if (node_->is_array()) return table(expected, [](const Value &element) { return element.any_quantity(); });

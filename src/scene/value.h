@@ -40,6 +40,8 @@ class TableReader::Value {
   std::vector<Value> elements_or_self() const;
   std::vector<double> point(Unit unit) const;
   Function function(Unit unit, Range range) const;
+  /// An expression of the place; not given where the value is a number or a quantity, or of another kind.
+  Function place_function(Unit unit, Range range) const;
   /// A function of [functions]: of t alone, its values in any unit.
   Function named_function() const;
   /// A number or a quantity of any unit, in SI.

@@ -28,14 +28,7 @@ void note_yielding_ground(const World<dim> &world, Recorder<dim> &recorder) {
     const BodySource &body = world.scene.body[b];
     const double K = bulk_modulus(world.laws[b]), G = shear_modulus(world.laws[b]),
                  nu = (3 * K - 2 * G) / (6 * K + 2 * G);
-    const double phi = std::visit(
-        [](const auto &law) {
-          if constexpr (requires { law.friction_angle; })
-            return law.friction_angle;
-          else
-            return 0.;
-        },
-        world.laws[b]);
+    const double phi = world.strength[b].friction_angle[0];  // the least asks for most
     if (phi > 0 && std::sin(phi) < 1 - 2 * nu)
       recorder.note("body." + body.name + " yields under its own weight even where it is level: with poisson_ratio " +
                     rounded(nu) + " its lateral stress is " + rounded(nu / (1 - nu)) +

@@ -8,13 +8,14 @@
 namespace talus {
 namespace {
 
-/// k0 of a body: its own, else Jaky's 1 - sin(phi) of the friction angle, else that of elastic soil held at its sides.
-double earth_pressure_at_rest(const BodySource &source, const Law &law) {
+/// k0 of a body: its own, else Jaky's 1 - sin(phi) of the friction angle, of which the place has a share, else that of
+/// elastic soil held at its sides.
+double earth_pressure_at_rest(const BodySource &source, const Law &law, double friction_share) {
   if (source.k0 > 0) return source.k0;
   return std::visit(
-      [](const auto &one) {
+      [friction_share](const auto &one) {
         if constexpr (requires { one.friction_angle; })
-          return 1 - std::sin(one.friction_angle);
+          return 1 - std::sin(friction_share * one.friction_angle);
         else
           return (3 * one.bulk_modulus() - 2 * one.shear_modulus()) /
                  (3 * one.bulk_modulus() + 4 * one.shear_modulus());
@@ -41,7 +42,6 @@ void Statics<dim>::start_stress() {
   for (size_t b = 0; b < world_.bodies.size(); ++b) {
     GaussPoints<dim> &points = problem_->soil().points()[b];
     if (!world_.present[b]) continue;
-    const double k0 = earth_pressure_at_rest(world_.scene.body[b], world_.laws[b]);
     for (int q = 0; q < points.count(); ++q) {
       const Vec<dim> &x = points.position[q];
       Vec<dim> surface = x;
@@ -53,6 +53,8 @@ void Statics<dim>::start_stress() {
       if (world_.phases.liquid)
         pressure = flow_->stress_pressure(points.cell[q],
                                           problem_->soil().rule().point[q % problem_->soil().points_per_cell()]);
+      const double k0 = earth_pressure_at_rest(world_.scene.body[b], world_.laws[b],
+                                               points.friction_share.empty() ? 1 : points.friction_share[q]);
       double *stress = &points.stress[q * stress_size<dim>];
       std::fill_n(stress, stress_size<dim>, 0.);
       stress[1] = pressure - weight, stress[0] = stress[2] = k0 * stress[1];

@@ -11,6 +11,7 @@
 #include "base/phases.h"
 #include "output/output_field.h"
 #include "physics/any_soil_motion.h"
+#include "physics/laws/strength_by_place.h"
 
 namespace talus {
 
@@ -26,6 +27,7 @@ struct ParticleState {
   double pore_pressure = 0, gas_pressure = 0, suction = 0;  ///< [Pa]
   double saturation = 0, porosity = 0;
   bool surface = false;         ///< fluids may pass through a side of its cell
+  StrengthShares strength;      ///< of the body's law
   std::vector<double> history;  ///< internal variables of the body's law
 
   ParticleState() = default;
@@ -37,6 +39,7 @@ struct ParticleState {
     motion.state(b, i, stress.data(), history.data(), &volume);
     for (int d = 0; d < dim; ++d) displacement[d] = position[d] - p.reference[i][d];
     mass = p.mass[i];
+    if (p.cohesion_share) strength = {p.cohesion_share[i], p.friction_share[i]};
     if (phases.prescribed) pore_pressure = motion.pore_pressure(position);
     if (phases.liquid) {
       const PoreReport pores = motion.pores(source, i);
@@ -58,6 +61,7 @@ struct GaussPointState {
   double volume = 0, mass = 0;                    ///< [m3], [kg]
   double shear_strain = 0;
   double pore_pressure = 0, saturation = 0;  ///< [Pa], [-]
+  StrengthShares strength;                   ///< of the body's law
   const double *history = nullptr;           ///< internal variables of the body's law
 };
 
@@ -66,6 +70,7 @@ template <class Point>
 OutputFields<Point> output_fields(const PhaseTraits &phases,
                                   const std::vector<std::unique_ptr<Body<Point::dimension>>> &bodies) {
   constexpr bool particles = requires(Point p) { p.velocity; };
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const std::string of_point = std::string(" of the ") + Point::noun;
   OutputFields<Point> fields;
   fields.add("position", "m", "place" + of_point, Tracked::coordinates, [](const Point &p) { return p.position; });
@@ -102,6 +107,17 @@ OutputFields<Point> output_fields(const PhaseTraits &phases,
                  "elsewhere",
                  Tracked::no, [](const Point &p) { return p.surface; });
     }
+  if (std::ranges::any_of(bodies, [](const auto &body) { return reads_shares(body->law()); })) {
+    std::vector<StrengthRange> of_body;
+    for (const auto &body : bodies)
+      of_body.push_back(no_strength_reduction(body->law())[0] ? StrengthRange{{nan, nan}, {nan, nan}}
+                                                              : strength_of(body->law()));
+    fields.add("cohesion", "Pa", "cohesion of the place, at its peak if the soil softens", Tracked::no,
+               [of_body](const Point &p) { return of_body[p.body].cohesion[1] * p.strength.cohesion; });
+    fields.add(
+        "friction_angle", "deg", "friction angle of the place, at its peak if the soil softens", Tracked::no,
+        [of_body](const Point &p) { return of_body[p.body].friction_angle[1] / degree.si * p.strength.friction; });
+  }
   // The internal variables of the laws. A body whose law does not have a variable shows NaN there.
   for (const auto &body : bodies)
     for (const HistoryField &variable : history_fields(body->law())) {
@@ -113,9 +129,8 @@ OutputFields<Point> output_fields(const PhaseTraits &phases,
         for (std::size_t k = 0; k < own.size(); ++k)
           if (own[k].name == name) index[b] = static_cast<int>(k);
       }
-      fields.add(name, variable.unit.name, variable.meaning, Tracked::no, [index](const Point &p) {
-        return index[p.body] < 0 ? std::numeric_limits<double>::quiet_NaN() : p.history[index[p.body]];
-      });
+      fields.add(name, variable.unit.name, variable.meaning, Tracked::no,
+                 [index](const Point &p) { return index[p.body] < 0 ? nan : p.history[index[p.body]]; });
     }
   return fields;
 }

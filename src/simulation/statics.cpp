@@ -323,6 +323,7 @@ Snapshot Statics<dim>::gauss_points() const {
       Stress<dim> strain;
       std::copy_n(&p.total_strain[q * stress_size<dim>], stress_size<dim>, &strain.xx);
       point.shear_strain = Invariants<dim>(strain).q * std::sqrt(4. / 3);
+      if (!p.cohesion_share.empty()) point.strength = {p.cohesion_share[q], p.friction_share[q]};
       if (world_.phases.prescribed) point.pore_pressure = world_.pressure(p.position[q], clock_.load_time);
       if (world_.phases.liquid)
         point.pore_pressure = flow_->pressure_at(cell, l), point.saturation = flow_->saturation(cell, l);

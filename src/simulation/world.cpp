@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "scene/reader.h"
@@ -22,6 +23,7 @@ World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &m
   std::vector<Source> sources = read_sources();
   read_mesh(plex, mesh_file);
   check_bodies();
+  find_strengths();
   check_boundaries(sources);
   require(conditions.setup(mesh, std::move(sources)));
   conditions.use_stand_ins(scene.stage.front().hold_loads);
@@ -39,6 +41,53 @@ void World<dim>::read_laws() {
     if (body.averaging_length > 0 && plastic_strain_field(laws.back()) < 0)
       scene.complain("body." + body.name + ".averaging_length",
                      "needs a law that remembers a plastic_strain, not " + std::string(law_name(laws.back())));
+  }
+}
+
+/// Least and largest strength of each body over the places where particles and Gauss points may lie; laws that a
+/// function of place gives their strength take the largest. Complains where a value is none. Collective.
+template <int dim>
+void World<dim>::find_strengths() {
+  const std::vector<int> body_of = bodies_of_cells(mesh, scene);
+  for (size_t b = 0; b < laws.size(); ++b) {
+    const BodySource &source = scene.body[b];
+    const std::string path = "body." + source.name;
+    StrengthRange range = strength_of(laws[b]);
+    const StrengthByPlace functions(source.law, laws[b]);
+    if (functions.given()) {
+      std::vector<Barycentric<dim>> places;
+      const auto add = [&](const std::vector<Barycentric<dim>> &more) {
+        places.insert(places.end(), more.begin(), more.end());
+      };
+      for (const int order : {1, 2}) add(stress_quadrature<dim>(order).point);
+      add(lattice<dim>(particles_per_cell<dim>(source)));
+      for (const DenseBox &box : source.dense) add(lattice<dim>(box.particles_per_cell));
+      StrengthByPlace::Trouble trouble;
+      Vec<dim> where{};
+      for (int c = 0; c < mesh.cell_count() && trouble.key.empty(); ++c)
+        for (size_t k = 0; body_of[c] == static_cast<int>(b) && k < places.size() && trouble.key.empty(); ++k) {
+          where = place_in(mesh, c, places[k]);
+          const double z = dim == 3 ? where[dim - 1] : 0;
+          trouble = functions.trouble(where[0], where[1], z);
+          functions.widen(range, where[0], where[1], z);
+        }
+      const bool bad = !trouble.key.empty();
+      const std::string key = text_of_first(comm, bad, trouble.key),
+                        sentence = text_of_first(comm, bad, trouble.sentence),
+                        place = place_of_first<dim>(comm, bad, where);
+      if (!key.empty()) scene.complain(path + "." + key, sentence + place);
+      double ends[4] = {-range.cohesion[0], range.cohesion[1], -range.friction_angle[0], range.friction_angle[1]};
+      for (double &end : ends)
+        if (std::isnan(end)) end = std::numeric_limits<double>::lowest();  // no cell on this rank
+      MPI_Allreduce(MPI_IN_PLACE, ends, 4, MPI_DOUBLE, MPI_MAX, comm);
+      range = {{-ends[0], ends[1]}, {-ends[2], ends[3]}};
+      const bool empty = ends[0] == std::numeric_limits<double>::lowest();  // which seed_bodies() refuses
+      const std::string problem = empty ? "" : take_largest(laws[b], range);
+      const size_t key_ends = problem.find(' ');
+      if (!problem.empty())
+        scene.complain(path + "." + problem.substr(0, key_ends), problem.substr(key_ends + 1) + ", its largest value");
+    }
+    strength.push_back(range);
   }
 }
 
@@ -359,7 +408,8 @@ std::vector<BodyReport> World<dim>::report() {
   std::vector<BodyReport> reports;
   for (size_t b = 0; b < bodies.size(); ++b) {
     const ParticleArrays<dim> &p = bodies[b]->particles();
-    BodyReport report{bodies[b]->name()};
+    BodyReport report;
+    report.name = bodies[b]->name();
     double sums[6]{};             // particles, cells, mass, volume, steps and sizes of cells
     std::array<double, 7> least;  // particles in a cell, lowest and highest corner
     least.fill(infinity);
@@ -397,6 +447,7 @@ std::vector<BodyReport> World<dim>::report() {
     report.mean_critical_step = sums[4] / sums[1];
     // the side of a regular simplex of the mean size: sqrt(4 A / sqrt 3), (6 sqrt 2 V)^(1/3), as softening takes it
     report.cell_size = sums[5] / sums[1] * (dim == 2 ? std::sqrt(4 / std::sqrt(3.)) : std::cbrt(6 * std::sqrt(2.)));
+    report.strength = strength[b];
     reports.push_back(report);
   }
   return reports;

@@ -8,6 +8,7 @@
 
 #include "physics/any_soil_motion.h"
 #include "physics/cell_pressure.h"
+#include "physics/laws/strength_by_place.h"
 #include "physics/phase_models.h"
 #include "physics/prescribed_pressure.h"
 #include "simulation.h"
@@ -70,6 +71,7 @@ class World {
   const Scene &scene;
   const PhaseTraits phases;
   std::vector<Law> laws;                ///< of the bodies
+  std::vector<StrengthRange> strength;  ///< of the bodies, at their places
   std::vector<Source> seepage_sources;  ///< boundaries of pore water in a drained scene: its seepage stages know them,
                                         ///< the motion does not
   BackgroundMesh<dim> mesh;
@@ -85,6 +87,7 @@ class World {
 
  private:
   void read_laws();
+  void find_strengths();
   std::vector<Source> read_sources();
   void read_mesh(DM plex, const std::string &mesh_file);
   void check_bodies() const;                                        // world_checks.cpp

@@ -13,10 +13,11 @@ struct PointSet {
   double *history = nullptr;      ///< [count][history]
   double *volume = nullptr;       ///< [count] [m3]
   const double *limit = nullptr;  ///< [count] V_p0: the volume cap is a multiple of it [m3]
+  const double *cohesion_share = nullptr, *friction_share = nullptr;  ///< [count] null where the law reads none
 
   // owned when stress is averaged; else only `own_cell` is used
   std::vector<int> own_cell;
-  std::vector<double> own_stress, own_history, own_volume, own_limit;
+  std::vector<double> own_stress, own_history, own_volume, own_limit, own_cohesion_share, own_friction_share;
   std::vector<double> start_history, start_volume;  ///< at the remap; particles gain the difference
   std::vector<int> of_cell;                         ///< [mesh cells] point of a cell, -1: none
 

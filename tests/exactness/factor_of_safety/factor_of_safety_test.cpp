@@ -9,6 +9,7 @@
 #include "scene/reader.h"
 #include "simulation.h"
 #include "solvers/quasi_static/bracket.h"
+#include "solvers/quasi_static/strength_reduction.h"
 
 namespace talus {
 namespace {
@@ -108,6 +109,71 @@ TEST(FactorOfSafety, of_weak_seam_and_sand_without_dilation_is_found) {
   for (const auto &[x, y] : seam.slip_surface) lowest = std::min(lowest, y);
   EXPECT_GT(lowest, -1.4) << "it does not cut the rock";
   EXPECT_LT(lowest, -1) << "it follows the seam";
+}
+
+/// Factor of a circle in clay (phi = 0) of the strength c0 + g (depth below the crest), in the slope of
+/// griffiths_lane_2.csv: moments of strength and weight about its centre (Gibson & Morgenstern 1962, Geotechnique 12).
+double factor_of_circle(double x, double y, double radius, double c0, double g) {
+  constexpr double weight = 2001.6 * 9.81, top = 15.24, crest = 18.288, toe = 48.768, base = -7.62;
+  constexpr int columns = 1000;
+  const double left = std::max(0., x - radius), width = (std::min(79.248, x + radius) - left) / columns;
+  double resisting = 0, driving = 0;
+  for (int k = 0; k < columns; ++k) {
+    const double at = left + (k + 0.5) * width, height = std::sqrt(radius * radius - (at - x) * (at - x));
+    const double bottom = y - height, ground = top * std::clamp((toe - at) / (toe - crest), 0., 1.);
+    if (bottom > ground) continue;
+    if (bottom < base) return 1e9;
+    resisting += (c0 + g * (top - bottom)) * width * radius / height * radius;
+    driving += weight * (ground - bottom) * (x - at) * width;
+  }
+  return driving > 0 ? resisting / driving : 1e9;
+}
+
+/// A slope in clay whose strength grows with depth: its factor is that of the worst circle, which is an upper bound.
+/// Elements of 2 m are stiffer than the soil by 1 to 2 %, as with uniform strength.
+TEST(FactorOfSafety, of_clay_whose_strength_grows_with_depth_is_that_of_the_worst_circle) {
+  for (const auto &[c0, g] : {std::pair{10e3, 2e3}, {0., 3e3}}) {
+    double least = 1e9;
+    for (double x = 24; x < 50; x += 1)
+      for (double y = 20; y < 50; y += 1)
+        for (double radius = 10; radius < 58; radius += 0.5)
+          least = std::min(least, factor_of_circle(x, y, radius, c0, g));
+    const FactorOfSafety found = factor_of(
+        "scene.toml", {"mesh.section=griffiths_lane_2.csv", "mesh.size=2", "body.soil.friction_angle=0",
+                       "body.soil.cohesion=" + std::to_string(c0) + " + " + std::to_string(g) + " * (15.24 - y)"});
+    expect_bracketed(found);
+    EXPECT_NEAR(found.value() / least, 1.01, 0.02) << c0;
+  }
+}
+
+/// A vertical cut in clay whose strength is g times the depth: F = 2 g / gamma, exactly. The stress sigma_v = gamma z,
+/// sigma_h = 0 yields at F everywhere, and so does a plane at 45 degrees through any point of the face.
+TEST(FactorOfSafety, of_a_vertical_cut_whose_strength_is_proportional_to_depth_is_exact) {
+  const FactorOfSafety found = factor_of("../../../tests/verification/fem_vertical_cut/scene.toml",
+                                         {"mesh.size=0.25", "mesh.refine=[]", "body.soil.cohesion=10e3 * (1 - y)"});
+  expect_bracketed(found);
+  EXPECT_NEAR(found.value(), 1, 0.01);
+}
+
+/// Points that have a share of the law's strength get in a trial what soil of their strength gets: c and tan(phi)
+/// divided, and with psi < phi the strength of Davis.
+TEST(FactorOfSafety, divides_the_strength_of_each_place) {
+  for (const double psi : {0., 10., 30.})
+    for (const bool dilating : {false, true}) {
+      MohrCoulomb whole;
+      whole.young_modulus = 1e7, whole.poisson_ratio = 0.3, whole.reads_shares = true;
+      whole.cohesion = 20e3, whole.friction_angle = 35 * degree.si, whole.dilation_angle = psi * degree.si;
+      MohrCoulomb part = whole;
+      part.cohesion = 0.3 * 20e3, part.friction_angle = 0.6 * 35 * degree.si;
+      part.dilation_angle = std::min(part.friction_angle, whole.dilation_angle);
+      const StrengthRange of_law = strength_of(strength_of_trial(whole, 1.7, dilating)),
+                          of_part = strength_of(strength_of_trial(part, 1.7, dilating));
+      const StrengthShares shares = shares_of_trial(whole, {0.3, 0.6}, 1.7, dilating);
+      EXPECT_NEAR(shares.cohesion * of_law.cohesion[0], of_part.cohesion[0], 1e-9);
+      EXPECT_NEAR(shares.friction * of_law.friction_angle[0], of_part.friction_angle[0], 1e-14);
+      if (!dilating) continue;
+      EXPECT_NEAR(std::tan(shares.friction * of_law.friction_angle[0]), std::tan(0.6 * 35 * degree.si) / 1.7, 1e-14);
+    }
 }
 
 /// Soil that would soften keeps its peak strength in trials if it has not sheared.

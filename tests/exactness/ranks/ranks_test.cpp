@@ -82,6 +82,10 @@ TEST(Ranks, column_collapse_is_the_same_with_a_remap_in_every_step) {
 TEST(Ranks, slope_that_softens_by_averaged_strain_is_the_same) {
   expect_the_same(slope, {"body.weathered.averaging_length=1.5"});
 }
+TEST(Ranks, slope_whose_strength_varies_with_place_is_the_same) {
+  expect_the_same(slope, {"body.weathered.cohesion=1e3 + 100 * x", "body.weathered.friction_angle=24 - 0.2 * y",
+                          "body.weathered.residual_cohesion=0", "body.unweathered.cohesion=5e3 + 300 * (14 - y)"});
+}
 TEST(Ranks, column_collapse_is_the_same_with_particle_stress) {
   expect_the_same(column, {"mesh.size=0.01", "transfer.average_stress=false", "transfer.locking=nodal"});
 }

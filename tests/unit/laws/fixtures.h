@@ -70,6 +70,8 @@ struct Points {
             increment.data(),
             element_size.data(),
             suction.data(),
+            nullptr,
+            nullptr,
             1e-3};
   }
   void update() { update_stress<dim>(law, view()); }
