@@ -35,6 +35,7 @@ MODELS = {
     "three-phase": ["phases=three-phase", "water.stress=bishop", *SUCTION],
 }
 LATERAL = "-9.81 * 990 * (0.1 - y) * 0.3 / 0.7"  # of the scene, in six components
+PARTICLES = "body.sand.particles_per_cell=8"  # in a tetrahedron
 STRESS = f'body.sand.stress=["{LATERAL}", "-9.81 * 990 * (0.1 - y)", "{LATERAL}", "0 * x", "0 * x", "0 * x"]'
 TIMES = (0, 0.1, 0.2, 0.4, 1.0)  # of the sequence [s]
 
@@ -57,7 +58,8 @@ def run(talus, model, dimension, folder):
     scene.write_text(scene_of(model))
     words = list(MODELS[model])
     if dimension == 3:
-        words += ["dimension=3", "mesh.thickness=0.01", "boundary.front.kind=roller", "boundary.back.kind=roller", "output.point.corner.position=[0.2, 0.1, 0]"]
+        words += ["dimension=3", PARTICLES, "mesh.thickness=0.01", "boundary.front.kind=roller", "boundary.back.kind=roller",
+                  "output.point.corner.position=[0.2, 0.1, 0]"]
         words.append(STRESS)
     words += ["mesh.size=0.01"]
     results = folder / f"{model}{dimension}"
@@ -83,7 +85,7 @@ def study(talus, dimensions):
 
 
 BLOCK = ["dimension=3", "mesh.size=0.016", "mesh.thickness=0.3", "mesh.layers=0", "mesh.cuts=[0.1]", "body.sand.region=bars_1", "boundary.front.kind=roller", "boundary.back.kind=roller",
-         "output.point.corner.position=[0.2, 0.1, 0.1]", STRESS]
+         "output.point.corner.position=[0.2, 0.1, 0.1]", PARTICLES, STRESS]
 
 
 def block(talus, folder):

@@ -2,7 +2,7 @@
 """Studies of the Selborne scene: triangles against a one-element slice on three meshes, load at failure against brittleness and initial
 stress, and the quasi-static limit without softening.
 
-    study.py TALUS [pictures|meshes|brittleness|excavation|limit|figure ...]
+    study.py TALUS [pictures|meshes|brittleness|particles|excavation|limit|figure ...]
 
 TALUS is the program (build/release/bin/talus). `pictures` runs the scene itself; each study writes a CSV beside this file; `figure` draws both from the CSVs.
 """
@@ -85,6 +85,17 @@ def brittleness(talus):
             rows.append({"k0": "gravity" if k0 is None else k0, "eta": eta, **run(talus, variant(0.7, 2, k0, eta), slide=False)})
             print(rows[-1], flush=True)
             write("brittleness.csv", rows)
+
+
+def particles(talus):
+    """Load at failure over the number of particles per cell, on the mesh of the scene, for three softenings."""
+    rows = []
+    for eta, counts in ((500, (3, 4, 6, 9, 10, 12, 16)), (200, (3, 12)), (100, (3, 12))):
+        for count in counts:
+            text = variant(0.45, eta=eta).replace("shape_factor", f"particles_per_cell = {count}\nshape_factor")
+            rows.append({"eta": eta, "particles_per_cell": count, **run(talus, text, slide=False)})
+            print(rows[-1], flush=True)
+            write("particles.csv", rows)
 
 
 def dug(k0, eta):
@@ -183,4 +194,4 @@ if __name__ == "__main__":
     if len(sys.argv) < 2:
         sys.exit(__doc__)
     for name in sys.argv[2:] or ("pictures", "meshes", "brittleness", "figure"):
-        {"pictures": pictures, "meshes": meshes, "brittleness": brittleness, "excavation": excavation, "limit": limit, "figure": figure}[name](sys.argv[1])
+        {"pictures": pictures, "meshes": meshes, "brittleness": brittleness, "particles": particles, "excavation": excavation, "limit": limit, "figure": figure}[name](sys.argv[1])

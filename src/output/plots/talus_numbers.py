@@ -304,6 +304,8 @@ def check_study(page, name, study, talus, write):
             for other in page.folder.parent.iterdir():
                 if other.name != page.name:
                     (here.parent / other.name).symlink_to(other)
+        before = (here / study["file"]).read_bytes() if "file" in study and (here / study["file"]).exists() else None
+        if before is not None:  # a script that goes on where it was stopped would keep every row
             (here / study["file"]).unlink()
         commands = [[talus, "run", here / study["scene"], "-o", runs]] if "scene" in study else []
         if "command" in study:
@@ -312,6 +314,8 @@ def check_study(page, name, study, talus, write):
         for command in commands:
             if subprocess.run(command, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE if command[0] == talus else None).returncode:
                 print("  FAIL: a command failed")
+                if before is not None:
+                    (here / study["file"]).write_bytes(before)
                 return False
         for picture, source in study.get("copy", {}).items():
             shutil.copy(f"{runs}/{source}", here / picture)
