@@ -233,6 +233,7 @@ VARIANTS = {
     "pressures as they are": ["transfer.pore_smoothing=none"],
     "volumes of particles, remap every step, no cure": UNCURED,
     "the same, pressure by its rate": BY_RATE,
+    "defaults, pressure by its rate": ["water.storage=rate"],
     "defaults, soil settled by 1 mm before": ['body.soil.displacement=["0", "-0.001 * y"]'],
     "defaults, slice of tetrahedra": [*IN_3D, "mesh.thickness=0.05"],
     "defaults, tetrahedra of 7.5 cm, 15 cm thick": [*IN_3D, "mesh.thickness=0.15", "mesh.layers=0", "mesh.size=0.075"],
