@@ -77,6 +77,10 @@ inline double bulk_modulus(const Law &law) {  ///< K [Pa]
 inline double shear_modulus(const Law &law) {  ///< G [Pa]
   return std::visit([](const auto &one) { return one.shear_modulus(); }, law);
 }
+inline double poisson_ratio(const Law &law) {  ///< nu [-]
+  const double K = bulk_modulus(law), G = shear_modulus(law);
+  return (3 * K - 2 * G) / (2 * (3 * K + G));
+}
 inline double constrained_modulus(const Law &law) {  ///< K + 4/3 G, of the elastic wave [Pa]
   return bulk_modulus(law) + 4 * shear_modulus(law) / 3;
 }

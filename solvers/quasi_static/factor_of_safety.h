@@ -27,6 +27,7 @@ inline const char *name_of(TrialOutcome outcome) {
 
 /// One trial: strength divided by `factor`.
 struct StrengthTrial {
+  int search = 1;  ///< 1: for the critical mechanism; then one for each time that soil was held at its strength
   double factor = 0;
   TrialOutcome outcome = TrialOutcome::undecided;
   bool dilating = false;    ///< with psi = phi, for the upper end of the spread; else with the soil's own psi
@@ -47,12 +48,20 @@ struct FactorBracket {
   double value() const { return (lower + upper) / 2; }
 };
 
-struct FactorOfSafety : FactorBracket {
+/// A motion by which soil fails, and the factor of safety at which it does.
+struct Mechanism : FactorBracket {
+  FactorBracket dilating;               ///< of the same soil with psi = phi, if FactorOfSafety::davis
+  double moving_volume = 0;             ///< of the soil that moves [m3], in 2D per metre of thickness
+  std::array<double, 3> low{}, high{};  ///< corners of the box around it [m]
+  double of_critical = 1;               ///< share of the soil of the critical mechanism that it moves too [-]
+  std::vector<std::array<double, 2>> slip_surface;  ///< 2D: where it shears most, along x [m]
+};
+
+/// The critical mechanism, with the least factor, and those that were searched for besides.
+struct FactorOfSafety : Mechanism {
   bool davis = false;                    ///< some soil has psi < phi: its strength is that of Davis (1968)
-  FactorBracket dilating;                ///< of the same soil with psi = phi, if `davis`
+  std::vector<Mechanism> further;        ///< with larger factors, in the order in which they were found
   std::vector<std::string> lost_stages;  ///< stages before it that found no equilibrium
-  double moving_volume = 0;              ///< of soil that the mechanism moves [m3], in 2D per metre of thickness
-  std::vector<std::array<double, 2>> slip_surface;  ///< 2D: where the mechanism shears most, along x [m]
   std::vector<StrengthTrial> trials;
 };
 

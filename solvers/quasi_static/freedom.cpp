@@ -4,6 +4,7 @@
 #include <map>
 #include <sstream>
 
+#include "solvers/quasi_static/pieces.h"
 #include "solvers/quasi_static/quasi_static.h"
 #include "solvers/quasi_static/rigid_motions.h"
 
@@ -28,38 +29,17 @@ PetscErrorCode QuasiStatic<dim>::find_freedom(std::string *freedom) const {
   PetscFunctionBeginUser;
   // pieces of soil: nodes that cells join, named by the largest global number in them
   std::vector<PetscInt> piece = nodes.global();
-  for (int changed = 1; changed;) {
-    changed = 0;
-    for (bool again = true; again;) {
-      again = false;
-      PetscCall(soil_.each_element([&](const int *node, int count) -> PetscErrorCode {
-        PetscInt largest = -1;
-        for (int k = 0; k < count; ++k) largest = std::max(largest, piece[node[k]]);
-        for (int k = 0; k < count; ++k)
-          if (piece[node[k]] < largest) piece[node[k]] = largest, again = true, changed = 1;
-        return 0;
-      }));
-    }
-    PetscCall(nodes.maximum(piece));
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_MAX, nodes.comm()));
-  }
-  std::vector<PetscInt> mine, names;
+  PetscCall(spread_labels<dim>(
+      nodes, [&](const auto &visit) { return soil_.each_element(visit); }, piece));
+  std::vector<PetscInt> mine;
   for (int i = 0; i < nodes.count(); ++i)
     if (nodes.global()[i] == piece[i] && nodes.owned[i]) mine.push_back(piece[i]);
-  int ranks, count = static_cast<int>(mine.size());
-  PetscCallMPI(MPI_Comm_size(nodes.comm(), &ranks));
-  std::vector<int> counts(ranks), starts(ranks + 1, 0);
-  PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, nodes.comm()));
-  for (int r = 0; r < ranks; ++r) starts[r + 1] = starts[r] + counts[r];
-  names.resize(starts[ranks]);
-  PetscCallMPI(
-      MPI_Allgatherv(mine.data(), count, MPIU_INT, names.data(), counts.data(), starts.data(), MPIU_INT, nodes.comm()));
   std::map<PetscInt, size_t> number;
-  for (size_t k = 0; k < names.size(); ++k) number[names[k]] = k;
+  PetscCall(number_labels(nodes.comm(), mine, &number));
 
   // centre and size of each piece, then what the supports hold of its rigid modes
   constexpr int width = dim + 2 + modes * modes;
-  std::vector<double> sums(names.size() * width, 0);
+  std::vector<double> sums(number.size() * width, 0);
   const auto add_up = [&]() {
     return MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, nodes.comm());
   };
@@ -71,9 +51,9 @@ PetscErrorCode QuasiStatic<dim>::find_freedom(std::string *freedom) const {
       s[1 + d] += nodes.position[i][d], s[1 + dim] += nodes.position[i][d] * nodes.position[i][d];
   }
   PetscCallMPI(add_up());
-  std::vector<Vec<dim>> centre(names.size());
-  std::vector<double> radius(names.size());
-  for (size_t k = 0; k < names.size(); ++k) {
+  std::vector<Vec<dim>> centre(number.size());
+  std::vector<double> radius(number.size());
+  for (size_t k = 0; k < number.size(); ++k) {
     double *s = &sums[k * width], square = s[1 + dim] / s[0];
     for (int d = 0; d < dim; ++d) centre[k][d] = s[1 + d] / s[0], square -= centre[k][d] * centre[k][d];
     radius[k] = std::sqrt(std::max(square, 1e-300));
@@ -96,7 +76,7 @@ PetscErrorCode QuasiStatic<dim>::find_freedom(std::string *freedom) const {
   }
   PetscCallMPI(add_up());
   std::ostringstream text;
-  for (size_t k = 0; k < names.size(); ++k) {
+  for (size_t k = 0; k < number.size(); ++k) {
     const Eigen::SelfAdjointEigenSolver<Square<modes>> eigen(Eigen::Map<const Square<modes>>(&sums[k * width]));
     if (eigen.eigenvalues()[0] > 1e-8 * std::max(1., eigen.eigenvalues()[modes - 1])) continue;
     text << (text.tellp() > 0 ? "; " : "") << "the piece around (";

@@ -6,7 +6,7 @@
 
 #include "solvers/quasi_static/bracket.h"
 #include "solvers/quasi_static/limit_state.h"
-#include "solvers/quasi_static/slip_surface.h"
+#include "solvers/quasi_static/trial_strength.h"
 
 namespace talus {
 
@@ -17,71 +17,6 @@ Law without_softening(const Law &law) {
         return one;
       },
       law);
-}
-
-namespace {
-
-// Plastic strain of soil that softens is counted in this unit during trials, and its shape factor in the inverse: the
-// product, from which strength follows, is that of the stages, and what trials add to it is nothing.
-constexpr double unit_of_plastic_strain = 1e-9;
-
-/// Multiplies the plastic strain of softening soil at all points.
-template <int dim>
-void scale_plastic_strain(SoilElements<dim> &soil, double factor) {
-  for (GaussPoints<dim> &p : soil.points()) {
-    const int field = plastic_strain_field(p.law), size = history_size(p.law);
-    for (int q = 0; field >= 0 && q < p.count(); ++q) p.history[q * size + field] *= factor;
-  }
-}
-
-}  // namespace
-
-bool non_associated(const Law &law) {
-  return std::visit(
-      [](const auto &one) {
-        if constexpr (requires { one.friction_angle; })
-          return one.dilation_angle < one.friction_angle;
-        else
-          return false;
-      },
-      law);
-}
-
-Law strength_of_trial(const Law &law, double factor, bool dilating) {
-  const auto slip_strength = [dilating](double phi, double psi) {
-    return dilating ? 1 : std::cos(psi) * std::cos(phi) / (1 - std::sin(psi) * std::sin(phi));
-  };
-  return std::visit(
-      [&](auto one) -> Law {
-        if constexpr (requires { one.friction_angle; }) {
-          one.FrictionalStrength::prepare();  // residual values that are not given are those of the peak
-          const double peak = slip_strength(one.friction_angle, one.dilation_angle),
-                       residual =
-                           slip_strength(one.residual_phi, std::min(one.residual_phi, std::asin(one.sin_psi_residual)));
-          if (one.softens())
-            one.residual_cohesion = residual * one.residual_c,
-            one.residual_friction_angle = std::atan(residual * std::tan(one.residual_phi)),
-            one.residual_dilation_angle = one.residual_friction_angle;
-          one.cohesion *= peak, one.friction_angle = std::atan(peak * std::tan(one.friction_angle));
-          one.dilation_angle = one.friction_angle, one.shape_factor *= unit_of_plastic_strain;
-          if constexpr (requires { one.suction_cohesion; }) one.suction_cohesion *= peak;
-        }
-        return one;
-      },
-      with_reduced_strength(law, factor));
-}
-
-StrengthShares shares_of_trial(const Law &law, const StrengthShares &own, double factor, bool dilating) {
-  const Law at_place = std::visit(
-      [&](auto one) -> Law {
-        if constexpr (requires { one.reads_shares; }) one.take_shares(own.cohesion, own.friction);
-        return one;
-      },
-      law);
-  const StrengthRange largest = strength_of(strength_of_trial(law, factor, dilating)),
-                      here = strength_of(strength_of_trial(at_place, factor, dilating));
-  const auto share = [](double part, double whole) { return whole > 0 ? part / whole : 1; };
-  return {share(here.cohesion[0], largest.cohesion[0]), share(here.friction_angle[0], largest.friction_angle[0])};
 }
 
 PetscErrorCode follow_path(double step, double smallest,
@@ -115,14 +50,13 @@ namespace {
 template <int dim>
 class Reduction {
  public:
-  Reduction(QuasiStatic<dim> &problem, const std::vector<Law> &laws,
-            const std::vector<std::vector<StrengthShares>> &own_shares, const ReductionSettings &settings,
-            bool dilating, LimitState<dim> &limit, std::vector<StrengthTrial> &trials)
+  Reduction(QuasiStatic<dim> &problem, TrialStrength<dim> &strength, const ReductionSettings<dim> &settings,
+            bool dilating, int search, LimitState<dim> &limit, std::vector<StrengthTrial> &trials)
       : problem_(problem),
-        laws_(laws),
-        own_shares_(own_shares),
+        strength_(strength),
         settings_(settings),
         dilating_(dilating),
+        search_(search),
         limit_(limit),
         trials_(trials) {}
 
@@ -145,11 +79,11 @@ class Reduction {
     const auto begin = std::chrono::steady_clock::now();
     SoilElements<dim> &soil = problem_.soil();
     StrengthTrial trial;
-    trial.factor = factor, trial.dilating = dilating_;
+    trial.search = search_, trial.factor = factor, trial.dilating = dilating_;
     for (const auto *state : {&stable_, &start_}) {  // from the first state too, where the last one leads nowhere
       if (state == &start_ && !any_stable_) break;   // they are the same
       soil.restore(*state);
-      for (size_t b = 0; b < laws_.size(); ++b) divide_strength(soil.points()[b], laws_[b], own_shares_[b], factor);
+      strength_.set(factor, dilating_);
       LimitSearch found;
       PetscCall(limit_.search(&found));
       trial.iterations += found.iterations, trial.residual = found.residual, trial.surplus = found.surplus;
@@ -172,31 +106,124 @@ class Reduction {
     PetscFunctionReturn(0);
   }
 
-  /// Gives points with `own` shares of the law's strength that of a trial.
-  void divide_strength(GaussPoints<dim> &p, const Law &law, const std::vector<StrengthShares> &own, double factor) {
-    p.law = strength_of_trial(law, factor, dilating_);
-    for (size_t q = 0; q < own.size(); ++q) {
-      const StrengthShares shares = shares_of_trial(law, own[q], factor, dilating_);
-      p.cohesion_share[q] = shares.cohesion, p.friction_share[q] = shares.friction;
-    }
-  }
-
   QuasiStatic<dim> &problem_;
-  const std::vector<Law> &laws_;
-  const std::vector<std::vector<StrengthShares>> &own_shares_;
-  const ReductionSettings &settings_;
+  TrialStrength<dim> &strength_;
+  const ReductionSettings<dim> &settings_;
   bool dilating_;
+  int search_;
   LimitState<dim> &limit_;
   std::vector<StrengthTrial> &trials_;
   typename SoilElements<dim>::State start_, stable_;
   bool any_stable_ = false;
 };
 
+/// Mechanisms one after the other.
+template <int dim>
+class MechanismSearch {
+ public:
+  MechanismSearch(QuasiStatic<dim> &problem, TrialStrength<dim> &strength, const ReductionSettings<dim> &settings,
+                  FactorOfSafety *result)
+      : problem_(problem), strength_(strength), settings_(settings), result_(*result), limit_(problem) {}
+
+  PetscErrorCode run(bool *interrupted) {
+    constexpr int most_searches = 20;
+    PetscFunctionBeginUser;
+    PetscCall(limit_.setup(settings_.load_time, settings_.time));
+    State shown;  // the critical mechanism
+    double first = 1;
+    for (int search = 1; search <= most_searches; ++search) {
+      FactorBracket bracket;
+      PetscCall(reduction(!result_.davis, search).bracket(first, &bracket, interrupted));
+      if (*interrupted) PetscFunctionReturn(0);
+      if (bracket.lower == 0 || bracket.upper == 0) {
+        if (search == 1) static_cast<FactorBracket &>(result_) = bracket;
+        break;
+      }
+      const State stable = problem_.soil().save();
+      PetscCall(limit_.move_along(settings_.shown_displacement));
+      if (search == 1) shown = problem_.soil().save();
+      std::vector<Mechanism> fresh;
+      bool grown;
+      PetscCall(take_pieces(bracket, &fresh, &grown));
+      problem_.soil().restore(stable);
+      if (result_.davis && !fresh.empty()) {
+        FactorBracket dilating;
+        PetscCall(reduction(true, search).bracket(bracket.upper, &dilating, interrupted));
+        if (*interrupted) PetscFunctionReturn(0);
+        for (Mechanism &one : fresh) one.dilating = dilating;
+        problem_.soil().restore(stable);
+      }
+      for (Mechanism &one : fresh) {
+        if (count_ == 0)
+          static_cast<Mechanism &>(result_) = one;
+        else
+          result_.further.push_back(one);
+        if (++count_ == settings_.mechanisms) break;
+      }
+      if (count_ == settings_.mechanisms || !grown) break;
+      for (const CellSet &cells : held_) strength_.hold(cells, std::min(1., result_.lower / 2));
+      first = bracket.upper;
+    }
+    if (count_ > 0) problem_.soil().restore(shown);
+    PetscFunctionReturn(0);
+  }
+
+ private:
+  using State = typename SoilElements<dim>::State;
+  Reduction<dim> reduction(bool dilating, int search) {
+    return {problem_, strength_, settings_, dilating, search, limit_, result_.trials};
+  }
+
+  /// Sorts the pieces of soil that move now into new mechanisms and shoulders of those that were found before. `grown`
+  /// says whether there is more soil to hold than before.
+  PetscErrorCode take_pieces(const FactorBracket &bracket, std::vector<Mechanism> *fresh, bool *grown) {
+    constexpr double alike = 0.5, margin = 0.2;
+    std::vector<CellSet> pieces;
+    PetscFunctionBeginUser;
+    const SoilElements<dim> &soil = problem_.soil();
+    PetscCall(moving_pieces(soil, &pieces));
+    *grown = false;
+    for (const CellSet &piece : pieces) {
+      double most = 0;
+      size_t like = moved_.size();
+      for (size_t k = 0; k < held_.size(); ++k) {
+        double beside;
+        PetscCall(shear_beside(soil, piece, held_[k], &beside));
+        if (beside > most) most = beside, like = k;
+      }
+      if (most < alike) {
+        Mechanism &one = fresh->emplace_back();
+        static_cast<FactorBracket &>(one) = bracket;
+        describe_motion(soil, piece, &one);
+        if (!moved_.empty()) one.of_critical = volume_of(soil, both(moved_[0], piece)) / volume_of(soil, moved_[0]);
+        like = moved_.size();
+        moved_.push_back(piece), held_.emplace_back(piece.size(), 0);
+      } else {
+        settings_.tell_shoulder(bracket, static_cast<int>(like) + 1, most);
+        moved_[like] = either(moved_[like], piece);
+      }
+      CellSet held = moved_[like];
+      PetscCall(grow_by(soil, margin * std::pow(volume_of(soil, held), 1. / dim), &held));
+      *grown = *grown || volume_of(soil, held) > volume_of(soil, held_[like]);
+      held_[like] = held;
+    }
+    PetscFunctionReturn(0);
+  }
+
+  QuasiStatic<dim> &problem_;
+  TrialStrength<dim> &strength_;
+  const ReductionSettings<dim> &settings_;
+  FactorOfSafety &result_;
+  LimitState<dim> limit_;
+  int count_ = 0;
+  std::vector<CellSet> moved_, held_;  ///< by each mechanism with its shoulders, and the soil held for it
+};
+
 }  // namespace
 
 template <int dim>
 PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law> &laws,
-                               const ReductionSettings &settings, FactorOfSafety *result, bool *interrupted) {
+                               const ReductionSettings<dim> &settings, FactorOfSafety *result, bool *interrupted) {
   PetscFunctionBeginUser;
   *result = {}, *interrupted = false;
   result->davis = std::any_of(laws.begin(), laws.end(), non_associated);
@@ -204,34 +231,16 @@ PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law>
   for (const GaussPoints<dim> &p : problem.soil().points()) history.push_back(p.history);
   problem.soil().reset_displacement();
   for (size_t b = 0; b < history.size(); ++b) problem.soil().points()[b].history = history[b];
-  scale_plastic_strain(problem.soil(), 1 / unit_of_plastic_strain);
-  std::vector<std::vector<StrengthShares>> own_shares;  // [body][point], empty where the law is the same everywhere
-  for (const GaussPoints<dim> &p : problem.soil().points()) {
-    std::vector<StrengthShares> &own = own_shares.emplace_back(p.cohesion_share.size());
-    for (size_t q = 0; q < own.size(); ++q) own[q] = {p.cohesion_share[q], p.friction_share[q]};
-  }
-  LimitState<dim> limit(problem);
-  PetscCall(limit.setup(settings.load_time, settings.time));
-  Reduction<dim> own(problem, laws, own_shares, settings, !result->davis, limit, result->trials);
-  PetscCall(own.bracket(1, result, interrupted));
-  if (*interrupted || result->lower == 0 || result->upper == 0) PetscFunctionReturn(0);
-  const auto stable = problem.soil().save();
-  PetscCall(limit.move_along(settings.shown_displacement));
-  find_slip_surface(problem.soil(), result);
-  const auto moved = problem.soil().save();
-  if (result->davis) {
-    problem.soil().restore(stable);
-    Reduction<dim> dilating(problem, laws, own_shares, settings, true, limit, result->trials);
-    PetscCall(dilating.bracket(result->upper, &result->dilating, interrupted));
-    problem.soil().restore(moved);
-  }
-  scale_plastic_strain(problem.soil(), unit_of_plastic_strain);
+  TrialStrength<dim> strength(problem.soil(), laws);
+  if (settings.divided) settings.tell_confined(strength.confine(settings.divided));
+  PetscCall(MechanismSearch<dim>(problem, strength, settings, result).run(interrupted));
+  strength.restore();
   PetscFunctionReturn(0);
 }
 
-template PetscErrorCode reduce_strength(QuasiStatic<2> &, const std::vector<Law> &, const ReductionSettings &,
+template PetscErrorCode reduce_strength(QuasiStatic<2> &, const std::vector<Law> &, const ReductionSettings<2> &,
                                         FactorOfSafety *, bool *);
-template PetscErrorCode reduce_strength(QuasiStatic<3> &, const std::vector<Law> &, const ReductionSettings &,
+template PetscErrorCode reduce_strength(QuasiStatic<3> &, const std::vector<Law> &, const ReductionSettings<3> &,
                                         FactorOfSafety *, bool *);
 
 }  // namespace talus

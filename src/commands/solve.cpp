@@ -31,9 +31,34 @@ std::string to_json(const FactorBracket &bracket) {
       .str();
 }
 
+std::string to_json(const Mechanism &mechanism, bool davis) {
+  const auto point = [](const auto &x) {
+    std::string text;
+    for (const double coordinate : x) text += (text.empty() ? "" : ", ") + json::number(coordinate);
+    return "[" + text + "]";
+  };
+  return json::Object()
+      .add("factor_of_safety", to_json(static_cast<const FactorBracket &>(mechanism)))
+      .add("with_psi_equal_phi", davis ? to_json(mechanism.dilating) : "null")
+      .add("moving_volume_m3", mechanism.moving_volume)
+      .add("low_m", point(mechanism.low))
+      .add("high_m", point(mechanism.high))
+      .add("share_of_critical_soil", mechanism.of_critical)
+      .add("slip_surface_m", json::array(mechanism.slip_surface, point))
+      .str();
+}
+
+/// The critical mechanism, then the others.
+std::vector<Mechanism> mechanisms_of(const FactorOfSafety &factor) {
+  std::vector<Mechanism> all{factor};
+  all.insert(all.end(), factor.further.begin(), factor.further.end());
+  return all;
+}
+
 std::string to_json(const FactorOfSafety &factor) {
   const auto trial = [](const StrengthTrial &t) {
     return json::Object()
+        .add("search", t.search)
         .add("factor", t.factor)
         .add("psi_is_phi", t.dilating ? "true" : "false")
         .add("outcome", json::text(name_of(t.outcome)))
@@ -44,16 +69,13 @@ std::string to_json(const FactorOfSafety &factor) {
         .add("wall_s", t.wall_seconds)
         .str();
   };
-  const auto point = [](const std::array<double, 2> &x) {
-    return "[" + json::number(x[0]) + ", " + json::number(x[1]) + "]";
-  };
+  const auto mechanism = [&](const Mechanism &m) { return to_json(m, factor.davis); };
   return json::Object()
       .add("factor_of_safety", to_json(static_cast<const FactorBracket &>(factor)))
       .add("flow", json::text(factor.davis ? "davis" : "associated"))
       .add("with_psi_equal_phi", factor.davis ? to_json(factor.dilating) : "null")
       .add("stages_without_equilibrium", json::array(factor.lost_stages, json::text))
-      .add("moving_volume_m3", factor.moving_volume)
-      .add("slip_surface_m", json::array(factor.slip_surface, point))
+      .add("mechanisms", json::array(mechanisms_of(factor), mechanism))
       .add("trials", json::array(factor.trials, trial))
       .str();
 }
@@ -78,6 +100,12 @@ void print(const FactorOfSafety &factor) {
         "This is the factor with the strength of Davis (1968), because psi < phi. With psi = phi, which limit "
         "equilibrium assumes, the factor of safety is %s\n",
         in_words(factor.dilating).c_str());
+  for (size_t k = 0; k < factor.further.size(); ++k) {
+    const Mechanism &m = factor.further[k];
+    std::printf("mechanism %zu, from x = %.4g to %.4g m, which moves %.3g %% of the soil of mechanism 1: %s\n", k + 2,
+                m.low[0], m.high[0], 100 * m.of_critical, in_words(m).c_str());
+    if (factor.davis) std::printf("With psi = phi it is %s\n", in_words(m.dilating).c_str());
+  }
   for (const std::string &stage : factor.lost_stages)
     std::printf(
         "WARNING: stage %s found no equilibrium; the factor does not depend on it, but displacement and stress "
@@ -108,7 +136,8 @@ int solve(const SolveArguments &arguments) {
   int status = 0;
   if (arguments.factor_of_safety) {
     const FactorOfSafety factor = simulation->factor_of_safety();
-    if (!factor.decided || (factor.davis && !factor.dilating.decided)) status = undecided_status;
+    for (const Mechanism &m : mechanisms_of(factor))
+      if (!m.decided || (factor.davis && !m.dilating.decided)) status = undecided_status;
     if (rank == 0) {
       const std::string document = to_json(factor) + "\n";
       std::ofstream(options.directory + "/factor_of_safety.json") << document;

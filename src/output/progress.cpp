@@ -102,7 +102,8 @@ std::string Progress::describe(double clock) const {
   std::string line = stage_ + times;
   if (elapsed <= 0 || advanced <= 0) return line;
   line += "  " + short_number((now_.updates - printed_.updates) / elapsed) + " particle-updates/s";
-  if (now_.time < total_ && !finished_) line += "  at most " + duration((total_ - now_.time) / advanced * elapsed) + " left";
+  if (now_.time < total_ && !finished_)
+    line += "  at most " + duration((total_ - now_.time) / advanced * elapsed) + " left";
   return line;
 }
 

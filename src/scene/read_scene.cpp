@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include "scene/quantity.h"
 #include "scene/reader.h"
@@ -30,6 +31,7 @@ class Checks {
     for (const OutputPoint &point : scene_.output.point)
       components("output.point." + point.name + ".position", point.position.size(), scene_.dimension, "coordinates");
     for (std::size_t i = 0; i < scene_.stage.size(); ++i) stage(scene_.stage[i], "stage." + std::to_string(i));
+    factor_of_safety();
   }
 
  private:
@@ -185,6 +187,26 @@ class Checks {
       if (i > 0 && table[i][0] <= table[i - 1][0])
         reader_.complain(path, "must lie to the right of the point before it: sort the points by x");
     }
+  }
+
+  void factor_of_safety() const {
+    const FactorSource &search = scene_.factor_of_safety;
+    for (const auto &[key, points, least] :
+         {std::tuple{"within", &search.within, std::size_t(3)}, {"along", &search.along, std::size_t(2)}}) {
+      const std::string path = std::string("factor_of_safety.") + key;
+      if (!points->empty() && points->size() < least)
+        reader_.complain(path, "must have at least " + std::to_string(least) + " points [x, y]");
+      for (std::size_t i = 0; i < points->size(); ++i)
+        if ((*points)[i].size() != 2)
+          reader_.complain(
+              path + "." + std::to_string(i),
+              "must have 2 coordinates, [x, y]" + std::string(scene_.dimension == 3 ? ": it holds for all z" : ""));
+      for (std::size_t i = 1; i < points->size(); ++i)
+        if ((*points)[i] == (*points)[i - 1])
+          reader_.complain(path + "." + std::to_string(i), "must not be the point before it again");
+    }
+    if (search.width > 0 && search.along.empty())
+      reader_.complain("factor_of_safety.width", "has no effect without the line factor_of_safety.along");
   }
 
   void stage(const Stage &stage, const std::string &path) const {

@@ -408,6 +408,27 @@ struct QuasiStaticSource {
   }
 };
 
+/// Where `talus solve --factor-of-safety` divides strength, and how many mechanisms it searches for.
+struct FactorSource {
+  std::vector<std::vector<double>> within;  ///< polygon x, y [m]; empty: everywhere
+  std::vector<std::vector<double>> along;   ///< line x, y [m]; empty: everywhere
+  double width = 0;                         ///< of the band along the line [m]; 0: two cells
+  int mechanisms = 1;
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.points("within", within, metre,
+             "polygon of points [x, y] to which the search is confined: strength is divided inside it, elsewhere soil "
+             "keeps its strength; in 3D for all z");
+    v.points("along", along, metre,
+             "line of points [x, y] along which soil may slip: strength is divided in a band on it, elsewhere soil "
+             "keeps its strength; in 3D for all z");
+    v.number("width", width, metre, Range{0, 1e5}, "width of the band on the line `along`; 0: two cells");
+    v.integer("mechanisms", mechanisms, Range{1, 10},
+              "number of mechanisms that are searched for: the one with the least factor, then those with the next "
+              "larger factors that move other soil");
+  }
+};
+
 /// A point whose history is written.
 struct OutputPoint {
   std::string name;  ///< the table's own name, [output.point.NAME]
@@ -462,6 +483,7 @@ struct Scene {
   DeferredTable integrator;  ///< [integrator], read by solvers/
   Transfer transfer;
   QuasiStaticSource quasi_static;
+  FactorSource factor_of_safety;
   Output output;
   template <class Visitor>
   void fields(Visitor &&v) {
@@ -485,6 +507,7 @@ struct Scene {
     v.deferred_table("integrator", integrator, "time integration");
     v.table("transfer", transfer, "exchange between particles and nodes");
     v.table("quasi_static", quasi_static, "finite elements of quasi-static stages");
+    v.table("factor_of_safety", factor_of_safety, "search for the factor of safety");
     v.table("output", output, "results that are written");
   }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "simulation/search_region.h"
 #include "simulation/simulation_impl.h"
 
 namespace talus {
@@ -26,8 +27,7 @@ template <int dim>
 void note_yielding_ground(const World<dim> &world, Recorder<dim> &recorder) {
   for (size_t b = 0; b < world.laws.size(); ++b) {
     const BodySource &body = world.scene.body[b];
-    const double K = bulk_modulus(world.laws[b]), G = shear_modulus(world.laws[b]),
-                 nu = (3 * K - 2 * G) / (6 * K + 2 * G);
+    const double nu = poisson_ratio(world.laws[b]);
     const double phi = world.strength[b].friction_angle[0];  // the least asks for most
     if (phi > 0 && std::sin(phi) < 1 - 2 * nu)
       recorder.note("body." + body.name + " yields under its own weight even where it is level: with poisson_ratio " +
@@ -58,12 +58,20 @@ std::string bracket_in_words(const FactorBracket &b) {
          ", a mechanism with " + rounded(b.upper) + ")";
 }
 
-/// Why a bracket has one end, or none.
-std::string why_open(const FactorBracket &b) {
+/// Volume and place of the soil that moves.
+std::string motion_in_words(const Mechanism &m, int dim) {
+  return "moves " + rounded(m.moving_volume) + (dim == 2 ? " m3 of soil per metre" : " m3 of soil") +
+         " from x = " + rounded(m.low[0]) + " to " + rounded(m.high[0]) + " m";
+}
+
+/// Why a bracket has one end, or none; `confined` to a part of the soil.
+std::string why_open(const FactorBracket &b, bool confined) {
+  const char *where = confined ? " inside factor_of_safety.within and along" : "";
   if (b.decided && b.lower == 0)
-    return "even with its strength divided by " + rounded(b.upper) + " the soil does not stand";
+    return "even with its strength divided by " + rounded(b.upper) + where + " the soil does not stand" +
+           (confined ? ": soil outside may fail, which keeps its strength" : "");
   if (b.decided)
-    return "strength divided by " + rounded(b.lower) + " still has an equilibrium: there is nothing to fail";
+    return "strength divided by " + rounded(b.lower) + where + " still has an equilibrium: there is nothing to fail";
   const std::string found =
       b.lower > 0   ? "an equilibrium with strength divided by " + rounded(b.lower) + ", but no mechanism"
       : b.upper > 0 ? "a mechanism with strength divided by " + rounded(b.upper) + ", but no equilibrium"
@@ -73,31 +81,44 @@ std::string why_open(const FactorBracket &b) {
          "them. Take quasi_static.linear_solver = \"direct\" or another mesh";
 }
 
-/// One table of the trials and one of their load-displacement curves.
-struct TrialTables {
-  explicit TrialTables(const std::string &directory) {
+/// Tables of the trials, of their load-displacement curves, and of the slip surfaces that were found.
+class FactorTables {
+ public:
+  explicit FactorTables(const std::string &directory) {
     if (directory.empty()) return;
-    trials = std::fopen((directory + "/factor_of_safety.csv").c_str(), "w");
-    curves = std::fopen((directory + "/factor_of_safety_curves.csv").c_str(), "w");
-    if (trials) std::fprintf(trials, "factor,psi,outcome,iterations,residual,displacement_m,surplus_of_work,wall_s\n");
-    if (curves) std::fprintf(curves, "trial,factor,iteration,displacement_m,residual\n");
+    const std::string name = directory + "/factor_of_safety";
+    trials_ = std::fopen((name + ".csv").c_str(), "w");
+    curves_ = std::fopen((name + "_curves.csv").c_str(), "w");
+    surfaces_ = std::fopen((name + "_slip_surfaces.csv").c_str(), "w");
+    if (trials_)
+      std::fprintf(trials_, "factor,psi,outcome,iterations,residual,displacement_m,surplus_of_work,wall_s,search\n");
+    if (curves_) std::fprintf(curves_, "trial,factor,iteration,displacement_m,residual\n");
+    if (surfaces_) std::fprintf(surfaces_, "mechanism,equilibrium,failure,x_m,y_m\n");
   }
-  TrialTables(const TrialTables &) = delete;
-  ~TrialTables() {
-    if (trials) std::fclose(trials);
-    if (curves) std::fclose(curves);
+  FactorTables(const FactorTables &) = delete;
+  ~FactorTables() {
+    for (std::FILE *file : {trials_, curves_, surfaces_})
+      if (file) std::fclose(file);
   }
   void add(const StrengthTrial &t) {
-    ++count;
-    if (trials)
-      std::fprintf(trials, "%.6g,%s,%s,%d,%.3g,%.6g,%.3g,%.3g\n", t.factor, t.dilating ? "phi" : "own",
-                   name_of(t.outcome), t.iterations, t.residual, t.displacement, t.surplus, t.wall_seconds),
-          std::fflush(trials);
-    for (size_t k = 0; curves && k < t.curve.size(); ++k)
-      std::fprintf(curves, "%d,%.6g,%zu,%.6g,%.3g\n", count, t.factor, k, t.curve[k].first, t.curve[k].second);
+    ++trial_count_;
+    if (trials_)
+      std::fprintf(trials_, "%.6g,%s,%s,%d,%.3g,%.6g,%.3g,%.3g,%d\n", t.factor, t.dilating ? "phi" : "own",
+                   name_of(t.outcome), t.iterations, t.residual, t.displacement, t.surplus, t.wall_seconds, t.search),
+          std::fflush(trials_);
+    for (size_t k = 0; curves_ && k < t.curve.size(); ++k)
+      std::fprintf(curves_, "%d,%.6g,%zu,%.6g,%.3g\n", trial_count_, t.factor, k, t.curve[k].first, t.curve[k].second);
   }
-  std::FILE *trials = nullptr, *curves = nullptr;
-  int count = 0;
+  void add(const Mechanism &m) {
+    ++mechanism_count_;
+    for (size_t k = 0; surfaces_ && k < m.slip_surface.size(); ++k)
+      std::fprintf(surfaces_, "%d,%.6g,%.6g,%.6g,%.6g\n", mechanism_count_, m.lower, m.upper, m.slip_surface[k][0],
+                   m.slip_surface[k][1]);
+  }
+
+ private:
+  std::FILE *trials_ = nullptr, *curves_ = nullptr, *surfaces_ = nullptr;
+  int trial_count_ = 0, mechanism_count_ = 0;
 };
 
 }  // namespace
@@ -114,7 +135,7 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   for (int d = 0; d < dim; ++d) extent = std::max(extent, high[d] - low[d]);
   int rank;
   MPI_Comm_rank(world.comm, &rank);
-  TrialTables tables(rank == 0 ? run_.options.directory : "");
+  FactorTables tables(rank == 0 ? run_.options.directory : "");
   run_.clock.stage = "strength reduction";
   for (size_t b = 0; b < world.laws.size(); ++b)
     if (never_fails(world.laws[b]))
@@ -122,9 +143,25 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
                          " is not reduced: " + law_name(world.laws[b]) + " " + no_strength_reduction(world.laws[b]));
   note_yielding_ground(world, run_.recorder);
   bool stopped = false;
-  ReductionSettings settings;
+  const SearchRegion region(run_.scene.factor_of_safety);
+  ReductionSettings<dim> settings;
   settings.load_time = run_.clock.load_time, settings.time = run_.clock.time;
-  settings.shown_displacement = 0.01 * extent;
+  settings.shown_displacement = 0.01 * extent, settings.mechanisms = run_.scene.factor_of_safety.mechanisms;
+  if (!region.everywhere())
+    settings.divided = [&](const Vec<dim> &x, double size) { return region.holds(x[0], x[1], size); };
+  settings.tell_confined = [&](double share) {
+    if (share == 0)
+      run_.scene.complain(
+          std::string("factor_of_safety.") + (run_.scene.factor_of_safety.within.empty() ? "along" : "within"),
+          "must lie in the soil; it holds none");
+    run_.recorder.note("the search is confined to " + rounded(100 * share) +
+                       " % of the soil; elsewhere soil keeps its strength");
+  };
+  settings.tell_shoulder = [&](const FactorBracket &b, int of, double beside) {
+    run_.recorder.note("strength divided by " + rounded(b.upper) + " moves the shoulder of mechanism " +
+                       std::to_string(of) + " (" + rounded(100 * beside) +
+                       " % of its shear is beside the soil that is held): it is held too");
+  };
   settings.tell = [&](const StrengthTrial &t) {
     std::string text = "strength divided by " + rounded(t.factor) + (t.dilating ? ", psi = phi" : "") + ": " +
                        name_of(t.outcome) + ", " + std::to_string(t.iterations) + " iterations, ";
@@ -139,14 +176,25 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   require(talus::reduce_strength<dim>(run_.statics.problem(), world.laws, settings, &result, &stopped));
   result.lost_stages = run_.statics.lost_stages;
   if (stopped) throw RunFailure("interrupted");
-  if (result.lower == 0 || result.upper == 0) throw RunFailure(why_open(result));
-  run_.recorder.note("factor of safety " + bracket_in_words(result) + "; the mechanism moves " +
-                     rounded(result.moving_volume) + (dim == 2 ? " m3 of soil per metre" : " m3 of soil"));
+  if (result.lower == 0 || result.upper == 0) throw RunFailure(why_open(result, !region.everywhere()));
+  run_.recorder.note("factor of safety " + bracket_in_words(result) + "; the mechanism " +
+                     motion_in_words(result, dim));
+  tables.add(result);
   if (result.davis)
     run_.recorder.note(
         "psi < phi: this is the factor of soil with the strength of Davis (1968) on its slip surface; with "
         "psi = phi, as limit equilibrium assumes, it is " +
         bracket_in_words(result.dilating));
+  for (size_t k = 0; k < result.further.size(); ++k) {
+    const Mechanism &m = result.further[k];
+    run_.recorder.note("mechanism " + std::to_string(k + 2) + ": factor of safety " + bracket_in_words(m) +
+                       (result.davis ? ", with psi = phi " + bracket_in_words(m.dilating) : "") + "; it " +
+                       motion_in_words(m, dim) + ", and " + rounded(100 * m.of_critical) +
+                       " % of the soil of mechanism 1");
+    tables.add(m);
+  }
+  if (static_cast<int>(result.further.size()) + 1 < settings.mechanisms)
+    run_.recorder.note("no further mechanism was found: the rest of the soil stands while that of those found is held");
   for (const std::string &stage : result.lost_stages)
     run_.recorder.note("WARNING: stage " + stage +
                        " found no equilibrium, so the search for the factor began out of balance; the factor does not "

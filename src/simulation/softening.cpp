@@ -23,11 +23,6 @@ std::array<double, 2> heads(const Scene &scene, const std::vector<BodyReport> &b
   return ends;
 }
 
-double poisson_ratio(const Law &law) {
-  const double K = bulk_modulus(law), G = shear_modulus(law);
-  return (3 * K - 2 * G) / (2 * (3 * K + G));
-}
-
 /// Slope of strength over plastic strain at its steepest, over 2 G, in a band of width `size` [m] at a mean stress
 /// [Pa].
 double slope_of(const Law &law, double size, double pressure) {

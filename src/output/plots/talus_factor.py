@@ -16,11 +16,14 @@ def read_factor(results):
     return json.loads(path.read_text()) if path.exists() else None
 
 
+def short(bracket):
+    """'1.234'; a bracket that is not decided has no number."""
+    return f"{bracket['value']:.3f}" if bracket["decided"] else f"between {bracket['equilibrium']:.3f} and {bracket['mechanism']:.3f}"
+
+
 def in_words(bracket):
-    """'1.234 (equilibrium at 1.231, mechanism at 1.237)'; a bracket that is not decided has no number."""
-    ends = f"equilibrium at {bracket['equilibrium']:.4g}, mechanism at {bracket['mechanism']:.4g}"
-    number = f"{bracket['value']:.3f}" if bracket["decided"] else f"between {bracket['equilibrium']:.3f} and {bracket['mechanism']:.3f}"
-    return f"{number} ({ends})"
+    """'1.234 (equilibrium at 1.231, mechanism at 1.237)'."""
+    return f"{short(bracket)} (equilibrium at {bracket['equilibrium']:.4g}, mechanism at {bracket['mechanism']:.4g})"
 
 
 def factor_lines(factor):
@@ -29,6 +32,10 @@ def factor_lines(factor):
     if factor["with_psi_equal_phi"]:
         lines.append("Some soil has psi < phi: the factor is that of the strength of Davis (1968). "
                      f"With psi = phi, as limit equilibrium assumes, it is {in_words(factor['with_psi_equal_phi'])}.")
+    for number, mechanism in enumerate(factor["mechanisms"][1:], 2):
+        lines.append(f"Mechanism {number}, from x = {mechanism['low_m'][0]:.4g} to {mechanism['high_m'][0]:.4g} m, which moves "
+                     f"{100 * mechanism['share_of_critical_soil']:.0f} % of the soil of mechanism 1 too: "
+                     f"{in_words(mechanism['factor_of_safety'])}.")
     if not factor["factor_of_safety"]["decided"]:
         lines.append("Trials between the two ends found neither an equilibrium nor a mechanism, so there is no number.")
     for stage in factor["stages_without_equilibrium"]:
@@ -44,7 +51,7 @@ def draw_factor(results, folder):
         return []
     headline = f"Factor of safety {in_words(factor['factor_of_safety'])}"
     pictures = [("displacement against factor", draw_displacement(factor, headline, folder / "factor_displacement.png"))]
-    if factor["slip_surface_m"] and results.snapshots[-1].position().shape[1] == 2:
+    if factor["mechanisms"][0]["slip_surface_m"] and results.snapshots[-1].position().shape[1] == 2:
         pictures.insert(0, ("mechanism and slip surface", draw_mechanism(results, factor, headline, folder / "factor_mechanism.png")))
     return pictures
 
@@ -58,7 +65,11 @@ def draw_mechanism(results, factor, headline, path):
     order = np.argsort(strain)
     dots = axes.scatter(*position[order].T, c=strain[order] / max(np.quantile(strain, BRIGHT), 1e-300), s=7, linewidths=0,
                         cmap=style.colours_of("plastic_strain"), vmin=0, vmax=1)
-    axes.plot(*np.array(factor["slip_surface_m"]).T, color=style.INK, lw=1.2, ls=(0, (4, 2)), label="slip surface")
+    several = len(factor["mechanisms"]) > 1
+    for number, mechanism in enumerate(factor["mechanisms"], 1):
+        label = f"slip surface {number}: {short(mechanism['factor_of_safety'])}" if several else "slip surface"
+        axes.plot(*np.array(mechanism["slip_surface_m"]).T, color=style.INK if number == 1 else style.LINES[(number - 2) % len(style.LINES)],
+                  lw=1.2, ls=(0, (4, 2)), label=label)
     axes.set_aspect("equal")
     axes.set_xlabel("x [m]"), axes.set_ylabel("y [m]")
     axes.set_title(headline, loc="left")
@@ -72,7 +83,7 @@ def draw_displacement(factor, headline, path):
     """Largest displacement of the trials in equilibrium, and lines at the factors for which it grows without bound."""
     figure, axes = plt.subplots(figsize=(7.6, 3.7))
     for dilating, colour, name in ((False, style.LINES[0], "psi < phi"), (True, style.LINES[1], "psi = phi")):
-        trials = [t for t in factor["trials"] if t["psi_is_phi"] == dilating]
+        trials = [t for t in factor["trials"] if t["psi_is_phi"] == dilating and t["search"] == 1]
         stable = sorted((t["factor"], t["displacement_m"]) for t in trials if t["outcome"] == "equilibrium")
         if stable:
             axes.plot(*np.array(stable).T, "o-", color=colour, ms=4, label=f"equilibrium, {name}")

@@ -68,9 +68,10 @@ def load_time_of_failure(results):
 
 
 @measure
-def factor_of_safety(results):
-    """What `talus solve --factor-of-safety` printed: the middle of its bracket."""
-    return float(re.search(r"factor of safety ([\d.]+)", (results.folder / "printed.txt").read_text())[1])
+def factor_of_safety(results, mechanism=1):
+    """What `talus solve --factor-of-safety` printed: the middle of its bracket, of the critical mechanism or a further one."""
+    before = "factor of safety" if mechanism == 1 else rf"mechanism {mechanism}, .*:"
+    return float(re.search(rf"{before} ([\d.]+)", (results.folder / "printed.txt").read_text())[1])
 
 
 @measure

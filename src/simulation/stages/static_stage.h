@@ -104,8 +104,7 @@ class StaticStage : public StageRunner<dim> {
     }
     run_.dynamics.set_loading(stage_, 0);
     const Balance sums = run_.balance();
-    if (sums.applied > 0)
-      text << "; unbalanced force ratio of the particles that take it over " << sums.ratio();
+    if (sums.applied > 0) text << "; unbalanced force ratio of the particles that take it over " << sums.ratio();
     run_.recorder.note(text.str());
     run_.progress.met = true;
     if (sets_pressure() && run_.recorder.writes()) run_.statics.save_seeped_pressure(run_.options.directory);

@@ -9,7 +9,7 @@
 #include "scene/reader.h"
 #include "simulation.h"
 #include "solvers/quasi_static/bracket.h"
-#include "solvers/quasi_static/strength_reduction.h"
+#include "solvers/quasi_static/trial_strength.h"
 
 namespace talus {
 namespace {
@@ -155,24 +155,19 @@ TEST(FactorOfSafety, of_a_vertical_cut_whose_strength_is_proportional_to_depth_i
   EXPECT_NEAR(found.value(), 1, 0.01);
 }
 
-/// Points that have a share of the law's strength get in a trial what soil of their strength gets: c and tan(phi)
-/// divided, and with psi < phi the strength of Davis.
-TEST(FactorOfSafety, divides_the_strength_of_each_place) {
-  for (const double psi : {0., 10., 30.})
+/// c and tan(phi) are divided, psi is at most the reduced phi; with psi < phi both are multiplied by the share of
+/// Davis, and flow is associated.
+TEST(FactorOfSafety, divides_the_strength_of_a_point) {
+  constexpr double c = 20e3, phi = 35 * degree.si, factor = 1.7;
+  const double reduced = std::atan(std::tan(phi) / factor);
+  for (const double psi : {0., 10 * degree.si, reduced, phi})
     for (const bool dilating : {false, true}) {
-      MohrCoulomb whole;
-      whole.young_modulus = 1e7, whole.poisson_ratio = 0.3, whole.reads_shares = true;
-      whole.cohesion = 20e3, whole.friction_angle = 35 * degree.si, whole.dilation_angle = psi * degree.si;
-      MohrCoulomb part = whole;
-      part.cohesion = 0.3 * 20e3, part.friction_angle = 0.6 * 35 * degree.si;
-      part.dilation_angle = std::min(part.friction_angle, whole.dilation_angle);
-      const StrengthRange of_law = strength_of(strength_of_trial(whole, 1.7, dilating)),
-                          of_part = strength_of(strength_of_trial(part, 1.7, dilating));
-      const StrengthShares shares = shares_of_trial(whole, {0.3, 0.6}, 1.7, dilating);
-      EXPECT_NEAR(shares.cohesion * of_law.cohesion[0], of_part.cohesion[0], 1e-9);
-      EXPECT_NEAR(shares.friction * of_law.friction_angle[0], of_part.friction_angle[0], 1e-14);
-      if (!dilating) continue;
-      EXPECT_NEAR(std::tan(shares.friction * of_law.friction_angle[0]), std::tan(0.6 * 35 * degree.si) / 1.7, 1e-14);
+      const FrictionalPoint found = strength_of_trial({c, phi, psi}, factor, dilating);
+      const double flow = std::min(psi, reduced);
+      const double share = dilating ? 1 : std::cos(flow) * std::cos(reduced) / (1 - std::sin(flow) * std::sin(reduced));
+      EXPECT_NEAR(found.c, share * c / factor, 1e-9);
+      EXPECT_NEAR(std::tan(found.phi), share * std::tan(phi) / factor, 1e-14);
+      EXPECT_EQ(found.psi, found.phi);
     }
 }
 
@@ -186,6 +181,52 @@ TEST(FactorOfSafety, trials_take_no_strength_from_soil_that_softens) {
                                             "body.soil.residual_dilation_angle=10", "body.soil.shape_factor=50"})
           .value();
   EXPECT_NEAR(soft / hard, 1, same);
+}
+
+const Overrides one_mechanism{"factor_of_safety.mechanisms=1"};
+
+/// Both flanks of an embankment come out in one run, with the factors that each has by itself. Between them the search
+/// meets shoulders of the first slide, which are not sold as others. A polygon around the other flank gives its factor.
+TEST(FactorOfSafety, names_the_mechanisms_of_both_flanks) {
+  const auto alone = [](const char *section) {
+    return factor_of("embankment.toml",
+                     one_mechanism + Overrides{"mesh.section=" + std::string(TALUS_HALVES) + section});
+  };
+  const FactorOfSafety steep = alone("/embankment_left.csv"), gentle = alone("/embankment_right.csv"),
+                       two = factor_of("embankment.toml");
+  EXPECT_NEAR(two.value() / steep.value(), 1, same);
+  ASSERT_EQ(two.further.size(), 1u);
+  EXPECT_NEAR(two.further[0].value() / gentle.value(), 1, same);
+  EXPECT_LT(two.high[0], 25) << "the slide of the steep flank ends on the crest";
+  EXPECT_GT(two.further[0].low[0], 25) << "so does that of the gentle one";
+  EXPECT_EQ(two.further[0].of_critical, 0);
+  EXPECT_NEAR(two.further[0].moving_volume / gentle.moving_volume, 1, 0.2);
+  ASSERT_GE(two.further[0].slip_surface.size(), 5u);
+
+  const FactorOfSafety inside = factor_of(
+      "embankment.toml", one_mechanism + Overrides{"factor_of_safety.within=[[25, 0], [56, 0], [56, 9], [25, 9]]"});
+  EXPECT_NEAR(inside.value() / gentle.value(), 1, same);
+  EXPECT_GT(inside.low[0], 25);
+}
+
+/// Soil that slips along a circle has the factor of this circle by limit equilibrium
+/// (docs/gallery/slope_stability/limit_equilibrium.py: Spencer 2.084). A band of two elements, which cannot slip on a
+/// line, is stronger, by up to 6 %.
+TEST(FactorOfSafety, along_a_circle_is_that_of_limit_equilibrium) {
+  const FactorOfSafety circle = factor_of(
+      "embankment.toml",
+      one_mechanism +
+          Overrides{"factor_of_safety.along=[[26, 9], [28, 6.663], [30, 4.93], [32, 3.611], [34, 2.614], [36, 1.885], "
+                    "[38, 1.395], [40, 1.124], [42, 1.064], [44, 1.213], [46, 1.575], [48, 2.163], [50, 3]]"});
+  expect_bracketed(circle);
+  EXPECT_NEAR(circle.value() / 2.084, 1.03, 0.03);
+}
+
+/// A line through the strong soil above a weak seam gives more than the seam.
+TEST(FactorOfSafety, along_a_line_above_a_weak_seam_is_larger) {
+  const Overrides line{"mesh.size=2", "factor_of_safety.width=2",
+                       "factor_of_safety.along=[[10, 10], [16, 2], [30, 1], [35, 0]]"};
+  EXPECT_GT(factor_of("weak_seam.toml", line).lower, 1.2 * factor_of("weak_seam.toml", {"mesh.size=2"}).upper);
 }
 
 /// What the curve of each trial says: the force of the prop vanishes in equilibrium and remains with a mechanism.

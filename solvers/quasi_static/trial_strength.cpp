@@ -1,0 +1,130 @@
+#include "solvers/quasi_static/trial_strength.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+namespace {
+
+/// Calls visit(law) with the law if it has cohesion and friction.
+template <class AnyLaw, class Visit>
+void if_frictional(AnyLaw &law, const Visit &visit) {
+  std::visit(
+      [&](auto &one) {
+        if constexpr (requires { one.friction_angle; }) visit(one);
+      },
+      law);
+}
+
+/// With the tensile strength and what suction adds to c divided by `factor`, the latter also times what slip without
+/// dilation leaves of it; c and phi come from the shares of the points, and psi = phi.
+Law law_of_trial(const Law &law, double factor, bool dilating) {
+  Law trial = with_reduced_strength(law, factor);
+  if_frictional(trial, [&](auto &one) {
+    using OneLaw = std::decay_t<decltype(one)>;
+    const OneLaw &own = std::get<OneLaw>(law);
+    if constexpr (requires { one.suction_cohesion; }) {
+      const FrictionalPoint peak{1, own.friction_angle, own.dilation_angle};
+      one.suction_cohesion = own.suction_cohesion * strength_of_trial(peak, factor, dilating).c;
+    }
+    one.cohesion = own.cohesion, one.friction_angle = own.friction_angle, one.reads_shares = true;
+    one.dilation_angle = FrictionalStrength::right_angle;  // that is phi, which it cannot exceed
+    one.residual_cohesion = one.residual_friction_angle = one.residual_dilation_angle = -1, one.shape_factor = 0;
+  });
+  return trial;
+}
+
+}  // namespace
+
+bool non_associated(const Law &law) {
+  bool found = false;
+  if_frictional(law, [&](const auto &one) { found = one.dilation_angle < one.friction_angle; });
+  return found;
+}
+
+FrictionalPoint strength_of_trial(const FrictionalPoint &own, double factor, bool dilating) {
+  FrictionalStrength divided;
+  divided.cohesion = own.c, divided.friction_angle = own.phi, divided.dilation_angle = own.psi;
+  divided.reduce_strength(factor);
+  const double phi = divided.friction_angle, psi = divided.dilation_angle;
+  const double beta = dilating ? 1 : std::cos(psi) * std::cos(phi) / (1 - std::sin(psi) * std::sin(phi));
+  const double reduced = std::atan(beta * std::tan(phi));
+  return {beta * divided.cohesion, reduced, reduced};
+}
+
+template <int dim>
+TrialStrength<dim>::TrialStrength(SoilElements<dim> &soil, const std::vector<Law> &laws) : soil_(soil), laws_(laws) {
+  for (size_t b = 0; b < laws.size(); ++b) {
+    const GaussPoints<dim> &p = soil.points()[b];
+    OfBody &body = bodies_.emplace_back();
+    body.law = p.law, body.cohesion_share = p.cohesion_share, body.friction_share = p.friction_share;
+    body.divisor.assign(p.count(), 0);
+    if_frictional(laws[b], [&](auto law) {
+      law.prepare();
+      const int field = plastic_strain_field(laws[b]), size = history_size(laws[b]);
+      for (int q = 0; q < p.count(); ++q) {
+        Surroundings around{p.size[q]};
+        if (!p.cohesion_share.empty()) around.cohesion = p.cohesion_share[q];
+        if (!p.friction_share.empty()) around.friction = p.friction_share[q];
+        const auto now = law.template faded<true>(p.history[q * size + field], around);
+        body.own.push_back({now.c, now.phi, std::asin(std::min(now.sin_psi, std::sin(now.phi)))});
+      }
+    });
+  }
+}
+
+template <int dim>
+void TrialStrength<dim>::restore() {
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    GaussPoints<dim> &p = soil_.points()[b];
+    p.law = bodies_[b].law;
+    p.cohesion_share = bodies_[b].cohesion_share, p.friction_share = bodies_[b].friction_share;
+  }
+}
+
+template <int dim>
+double TrialStrength<dim>::confine(const std::function<bool(const Vec<dim> &, double)> &divided) {
+  double volume[2] = {0, 0};  // where it is divided, and all
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    const GaussPoints<dim> &p = soil_.points()[b];
+    for (int q = 0; p.present && q < p.count(); ++q) {
+      const bool here = divided(p.position[q], p.size[q]);
+      bodies_[b].divisor[q] = here ? 0 : 1;
+      volume[0] += here ? p.volume[q] : 0, volume[1] += p.volume[q];
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, volume, 2, MPI_DOUBLE, MPI_SUM, soil_.nodes().comm());
+  return volume[0] / volume[1];
+}
+
+template <int dim>
+void TrialStrength<dim>::hold(const CellSet &cells, double divisor) {
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    const GaussPoints<dim> &p = soil_.points()[b];
+    for (int q = 0; q < p.count(); ++q)
+      if (cells[p.cell[q]]) bodies_[b].divisor[q] = divisor;
+  }
+}
+
+template <int dim>
+void TrialStrength<dim>::set(double factor, bool dilating) {
+  for (size_t b = 0; b < bodies_.size(); ++b) {
+    GaussPoints<dim> &p = soil_.points()[b];
+    const OfBody &body = bodies_[b];
+    p.law = law_of_trial(laws_[b], factor, dilating);
+    if_frictional(laws_[b], [&](const auto &law) {
+      const auto share = [](double part, double whole) { return whole > 0 ? part / whole : 1; };
+      p.cohesion_share.resize(p.count()), p.friction_share.resize(p.count());
+      for (int q = 0; q < p.count(); ++q) {
+        const FrictionalPoint now =
+            strength_of_trial(body.own[q], body.divisor[q] > 0 ? body.divisor[q] : factor, dilating);
+        p.cohesion_share[q] = share(now.c, law.cohesion), p.friction_share[q] = share(now.phi, law.friction_angle);
+      }
+    });
+  }
+}
+
+template class TrialStrength<2>;
+template class TrialStrength<3>;
+
+}  // namespace talus

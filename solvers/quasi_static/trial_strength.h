@@ -1,0 +1,53 @@
+#pragma once
+/// Strength of the Gauss points in the trials of a factor of safety, docs/theory/finite_elements.md (5.1), (5.2).
+#include <functional>
+
+#include "solvers/quasi_static/moving_soil.h"
+#include "solvers/quasi_static/soil_elements.h"
+
+namespace talus {
+
+/// c [Pa], phi and psi [rad] of soil at a point.
+struct FrictionalPoint {
+  double c, phi, psi;
+};
+
+/// This strength divided by `factor` and then with associated flow (psi = phi), which makes the limit load unique. With
+/// `dilating` cohesion and friction are those of (5.1). Else soil with psi < phi gets the strength that it has along a
+/// plane on which it slips (Davis 1968), (5.2).
+FrictionalPoint strength_of_trial(const FrictionalPoint &own, double factor, bool dilating);
+
+/// Has the law a friction angle above its dilation angle?
+bool non_associated(const Law &law);
+
+/// While it exists the soil has the strength of trials: each point that which its place and its plastic strain left it,
+/// divided by the factor of the trial or by a number of its own. Trials do not soften soil. What suction adds to the
+/// cohesion, and tensile strength, are divided alike in all of a body.
+template <int dim>
+class TrialStrength {
+ public:
+  /// Takes the present strength as the soil's own. `laws` are those of the bodies; both must outlive it.
+  TrialStrength(SoilElements<dim> &soil, const std::vector<Law> &laws);
+  /// Gives the soil its own strength back.
+  void restore();
+
+  /// Strength is divided by the factor of the trial only where `divided(place, element size)`; elsewhere it is the
+  /// soil's own. Returns the share of the soil where it is divided. Collective.
+  double confine(const std::function<bool(const Vec<dim> &, double)> &divided);
+  /// Strength of these cells is divided by `divisor` in all trials from now on.
+  void hold(const CellSet &cells, double divisor);
+  void set(double factor, bool dilating);
+
+ private:
+  struct OfBody {
+    std::vector<FrictionalPoint> own;  ///< of points; none where the law has no such strength
+    std::vector<double> divisor;       ///< of points; 0: that of the trial
+    Law law;                           ///< with which the points came, and their shares
+    std::vector<double> cohesion_share, friction_share;
+  };
+  SoilElements<dim> &soil_;
+  const std::vector<Law> &laws_;
+  std::vector<OfBody> bodies_;
+};
+
+}  // namespace talus

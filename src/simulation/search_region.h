@@ -1,0 +1,24 @@
+#pragma once
+/// The part of the soil whose strength is divided in a search for the factor of safety.
+#include <vector>
+
+#include "base/vec.h"
+#include "scene/scene.h"
+
+namespace talus {
+
+class SearchRegion {
+ public:
+  explicit SearchRegion(const FactorSource &search);
+  /// Is it all of the soil?
+  bool everywhere() const { return polygon_.empty() && line_.empty(); }
+  /// Is a point in it, in an element of this size [m]? The polygon and the band hold for all z; with both a point has
+  /// to be in both.
+  bool holds(double x, double y, double size) const;
+
+ private:
+  std::vector<Vec<2>> polygon_, line_;
+  double width_;  ///< of the band on the line [m]; 0: two cells
+};
+
+}  // namespace talus
