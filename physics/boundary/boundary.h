@@ -75,10 +75,10 @@ Boundary read_boundary(const DeferredTable &table);
 /// Visits the fields of a kind for its vectors of functions.
 struct Boundary::FindVectors {
   std::vector<std::pair<std::string, int>> &found;
-  void functions(const char *key, const std::vector<Function> &value, Unit, const char *) {
+  void functions(const char *key, const std::vector<Function> &value, Unit, const char *, const char *) {
     if (!value.empty()) found.emplace_back(key, static_cast<int>(value.size()));
   }
-  void function(const char *, Function &, Unit, Range, const char *) {}
+  void function(const char *, Function &, Unit, Range, const char *, const char *) {}
   void number(const char *, double &, Unit, Range, const char *) {}
   void flag(const char *, bool &, const char *) {}
   template <class Enum>

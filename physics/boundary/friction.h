@@ -19,8 +19,9 @@ struct Friction {
   Function adhesion = 0.0;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.function("friction_angle", friction_angle, degree, {0, 89}, "friction angle phi_b of the base, function of t");
-    v.function("adhesion", adhesion, pascal, {0, 1e9}, "adhesion of the base, function of t");
+    v.function("friction_angle", friction_angle, degree, {0, 89}, of::time,
+               "friction angle phi_b of the base, function of t");
+    v.function("adhesion", adhesion, pascal, {0, 1e9}, of::time, "adhesion of the base, function of t");
   }
   double friction_coefficient(double t) const { return std::tan(friction_angle(t)); }
 };

@@ -20,7 +20,7 @@ struct Head {
   Function level = 0.0;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.function("level", level, metre, {-1e5, 1e5}, "elevation y of the water level, function of t");
+    v.function("level", level, metre, {-1e5, 1e5}, of::time, "elevation y of the water level, function of t");
   }
   double outside(double, double y, double, double t, double unit_weight) const {
     return std::max(0., unit_weight * (level(t) - y));

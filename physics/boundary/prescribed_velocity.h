@@ -19,7 +19,8 @@ struct PrescribedVelocity {
   bool smooth = false;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.functions("velocity", velocity, metre_per_second, "velocity, one function of x, y, z, t per component");
+    v.functions("velocity", velocity, metre_per_second, of::place_and_time,
+                "velocity, one function of x, y, z, t per component");
     v.flag("smooth", smooth, "prescribe only the component normal to the face");
   }
   std::string problem() const { return velocity.empty() ? "velocity must be given, one function per component" : ""; }

@@ -18,7 +18,7 @@ struct Rainfall {
   Function intensity = 0.0;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.function("intensity", intensity, metre_per_second, {0, 1e3},
+    v.function("intensity", intensity, metre_per_second, {0, 1e3}, of::place_and_time,
                "rain, volume per area of the face and time, function of x, y, z, t");
   }
   double outside(double, double, double, double, double) const { return 0; }

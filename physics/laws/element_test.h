@@ -36,11 +36,11 @@ struct Control {
   template <class Visitor>
   void fields(Visitor &&v) {
     for (int i = 0; i < 6; ++i)
-      v.function(strain_keys[i], strain[i], one, Range{-10, 10},
+      v.function(strain_keys[i], strain[i], one, Range{-10, 10}, of::time,
                  i < 3 ? "natural strain since the start; t runs from 0 to 1"
                        : "angle of shear since the start; t runs from 0 to 1");
     for (int i = 0; i < 6; ++i)
-      v.function(stress_keys[i], stress[i], pascal, Range{-1e12, 1e12},
+      v.function(stress_keys[i], stress[i], pascal, Range{-1e12, 1e12}, of::time,
                  "total stress, positive in tension, instead of the strain");
   }
   std::string problem() const;
@@ -96,7 +96,7 @@ struct ElementTest {
     v.number("void_ratio", void_ratio, one, Range{0, 100}, "void ratio at the start; 0: unknown");
     v.number("element_size", element_size, metre, Range{0, 1e5},
              "element size h for a softening law with a reference_size; 0: shape_factor is not scaled");
-    v.function("suction", suction, pascal, Range{0, 1e10},
+    v.function("suction", suction, pascal, Range{0, 1e10}, of::time,
                "suction for a law with suction_cohesion or suction_friction_rate, as a function of t, which runs from "
                "0 to 1 in the test; default: 0");
     v.number("duration", duration, second, Range{0, 1e12},

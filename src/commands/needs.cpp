@@ -122,6 +122,10 @@ class Adviser {
   std::vector<std::string> all() {
     if (!needs_.burst_failure.empty()) say("The run breaks off in its first steps: " + needs_.burst_failure + ".");
     for (const BodyNeeds &b : needs_.bodies) particles(b), locking(b), softening(b), yielding_ground(b);
+    if (!needs_.function_fault.empty())
+      say(needs_.function_fault +
+          ". A run ends where it needs such a value; the function was tried all over the soil and "
+          "the stages.");
     for (const std::string &sentence : needs_.unlikely) say(sentence);
     for (const std::string &sentence : needs_.brittle) say(sentence);
     stiffness();
@@ -322,6 +326,29 @@ class Adviser {
   std::vector<std::string> advice_;
 };
 
+/// Tries each function of the scene over the stages, and over a box around the soil if it knows the place. Those whose
+/// value their key does not admit remember it.
+void sample_functions(const Scene &scene, const std::vector<BodyReport> &bodies) {
+  constexpr int times = 100, places = 4;  // intervals
+  double end = 0;
+  for (const Stage &stage : scene.stage)
+    if (!stage.hold_loads) end += stage.duration;
+  std::array<double, 3> low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+  for (const BodyReport &body : bodies)
+    for (int d = 0; d < 3; ++d) low[d] = std::min(low[d], body.low[d]), high[d] = std::max(high[d], body.high[d]);
+  scene.root->each_expression([&](const Function &function) {
+    const auto intervals = [&](const char *variable, int most) { return function.uses(variable) ? most : 0; };
+    const int n[3] = {intervals("x", places), intervals("y", places), intervals("z", places)};
+    const int last = intervals("t", times);
+    const auto at = [&](int d, int i) { return low[d] + (high[d] - low[d]) * i / std::max(1, n[d]); };
+    for (int k = 0; k <= last; ++k)
+      for (int a = 0; a <= n[0]; ++a)
+        for (int b = 0; b <= n[1]; ++b)
+          for (int c = 0; c <= n[2]; ++c)
+            (void)function(at(0, a), at(1, b), at(2, c), end * k / std::max(1, last), high[1]);
+  });
+}
+
 }  // namespace
 
 double Needs::run_time() const {
@@ -355,6 +382,8 @@ Needs find_needs(Scene &scene) {
   for (std::size_t b = 0; b < reports.size(); ++b) needs.bodies[b].softening = softening[b];
   needs.brittle = brittle_soils(scene, laws, reports);
   needs.unlikely = unlikely_values(scene, laws);
+  sample_functions(scene, reports);
+  needs.function_fault = scene.function_fault();
   const StepRule rule = step_rule(read_integrator(scene.integrator, fluids_move(scene.phases)));
   needs.critical_step = rule.bound == FrequencyBound::mesh || scene.water.drag == PoreDrag::at_start
                             ? simulation->critical_step()

@@ -49,6 +49,7 @@ struct Needs {
   std::vector<BodyNeeds> bodies;
   LayerNeeds layer;
   std::vector<StageNeeds> stages;
+  std::string function_fault;         ///< a value of a function that its key does not admit, as a sentence
   std::vector<std::string> unlikely;  ///< sentences on values that hardly any soil has
   std::vector<std::string> brittle;   ///< sentences on soils that soften fast for the height of the ground
   Drainage drainage;                  ///< time = 0 without gravity

@@ -161,13 +161,15 @@ void Describer::points(const char *key, const std::vector<std::vector<double>> &
   line(key, number_in(unit) + ", list of points", initial, meaning);
 }
 
-void Describer::function(const char *key, const Function &value, Unit unit, Range range, const char *meaning) {
-  line(key, number_in(unit) + ", " + from_to(range) + ", function", value.constant() ? rounded(value(0) / unit.si) : "",
-       meaning);
+void Describer::function(const char *key, const Function &value, Unit unit, Range range, const char *variables,
+                         const char *meaning) {
+  line(key, number_in(unit) + ", " + from_to(range) + ", function of " + variables,
+       value.constant() ? rounded(value(0) / unit.si) : "", meaning);
 }
 
-void Describer::functions(const char *key, const std::vector<Function> &, Unit unit, const char *meaning) {
-  line(key, number_in(unit) + ", list of functions", "", meaning);
+void Describer::functions(const char *key, const std::vector<Function> &, Unit unit, const char *variables,
+                          const char *meaning) {
+  line(key, number_in(unit) + ", list of functions of " + variables, "", meaning);
 }
 
 void Describer::elasticity(double, double) {

@@ -59,8 +59,10 @@ class Describer {
               std::initializer_list<std::pair<const char *, std::type_identity_t<Enum>>> choices, const char *meaning);
   void point(const char *key, const std::vector<double> &value, Unit unit, const char *meaning);
   void points(const char *key, const std::vector<std::vector<double>> &value, Unit unit, const char *meaning);
-  void function(const char *key, const Function &value, Unit unit, Range range, const char *meaning);
-  void functions(const char *key, const std::vector<Function> &value, Unit unit, const char *meaning);
+  void function(const char *key, const Function &value, Unit unit, Range range, const char *variables,
+                const char *meaning);
+  void functions(const char *key, const std::vector<Function> &value, Unit unit, const char *variables,
+                 const char *meaning);
   void elasticity(double young_modulus, double poisson_ratio);
   template <class Struct>
   void table(const char *key, const Struct &value, const char *meaning);

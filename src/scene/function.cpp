@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
 namespace talus {
@@ -32,7 +33,11 @@ struct Function::Expression {
 
   mu::Parser parser;
   NamedFunctions functions;
+  /// Keeps the first value that its key does not admit.
+  void report(double value) const;
+
   std::set<std::string> used;
+  std::shared_ptr<const FunctionLimits> limits;
   double scale;
   double x = 0, y = 0, z = 0, t = 0, table = 0;
 };
@@ -62,6 +67,22 @@ std::string message(const mu::Parser::exception_type &error, const NamedFunction
 
 }  // namespace
 
+void Function::Expression::report(double value) const {
+  if (!limits->fault.empty()) return;
+  std::ostringstream text;
+  text.precision(6);
+  text << limits->key << " must be " << limits->expected << "; it is ";
+  if (std::isnan(value))
+    text << "no number at ";
+  else
+    text << value / limits->si << limits->unit << " at ";
+  const char *comma = "";
+  for (const auto &[name, at] : {std::pair{"x", x}, {"y", y}, {"z", z}, {"table", table}})
+    if (used.contains(name)) text << comma << name << " = " << at << " m", comma = ", ";
+  text << comma << "t = " << t << " s";
+  limits->fault = text.str();
+}
+
 Function::Function(double value) : given_(true), value_(value) {}
 
 Function::Function(std::vector<double> times, std::vector<double> values)
@@ -88,7 +109,14 @@ double Function::operator()(double x, double y, double z, double t, double table
   if (!expression_) return value_;
   Expression &e = *expression_;
   e.x = x, e.y = y, e.z = z, e.t = t, e.table = table;
-  return e.scale * e.parser.Eval();
+  const double value = e.scale * e.parser.Eval();
+  const bool admissible = !e.limits || (value >= e.limits->low && value <= e.limits->high);  // false also for NaN
+  if (!admissible) e.report(value);
+  return value;
+}
+
+void Function::limit(std::shared_ptr<const FunctionLimits> limits) {
+  if (expression_) expression_->limits = std::move(limits);
 }
 
 double Function::interpolate(double t) const {

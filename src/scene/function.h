@@ -10,6 +10,23 @@ namespace talus {
 class Function;
 using NamedFunctions = std::map<std::string, Function>;  ///< the scene's [functions] of t
 
+/// Variables that a key gives its function.
+namespace of {
+inline constexpr const char *time = "t", *place = "x, y, z", *place_and_time = "x, y, z, t",
+                            *place_time_and_table = "x, y, z, t, table";
+}  // namespace of
+
+/// What a key admits as values of its function, and the first value that it did not. A function is evaluated deep
+/// inside a step and on single ranks, where nothing can be thrown; the run asks for `fault` where all ranks can agree.
+struct FunctionLimits {
+  std::string key;              ///< place in the file, key and text, as complaints begin
+  std::string expected;         ///< "a number from 0 to 70 deg"
+  std::string unit;             ///< of the key, for messages
+  double low = 0, high = 0;     ///< SI
+  double si = 1;                ///< SI value of the unit
+  mutable std::string fault{};  ///< a sentence; empty: every value so far was admissible
+};
+
 /// Value of a function at x, y, z [m], t [s]; `table` is the elevation of the water table at x where a scene key offers
 /// it. Copies share one parsed expression; evaluation allocates nothing. Not for use by several threads at once.
 class Function {
@@ -31,6 +48,10 @@ class Function {
 
   double operator()(double x, double y, double z, double t, double table = 0) const;
   double operator()(double t) const { return (*this)(0, 0, 0, t); }
+
+  /// From now on values are held against these limits; numbers and tables, whose values the reader has checked, need
+  /// none.
+  void limit(std::shared_ptr<const FunctionLimits> limits);
 
  private:
   struct Expression;

@@ -328,6 +328,8 @@ std::array<double, 3> Scene::acceleration_in(const Stage &one) const {
   return acceleration;
 }
 
+std::string Scene::function_fault() const { return root ? root->function_fault() : ""; }
+
 void Scene::complain(const std::string &key_path, const std::string &sentence) const {
   if (root) root->complain(key_path, sentence);
   throw SceneError(key_path + " " + sentence);  // a scene that a program filled in itself

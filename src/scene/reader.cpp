@@ -167,15 +167,28 @@ void TableReader::points(const char *key, std::vector<std::vector<double>> &valu
   }
 }
 
-void TableReader::function(const char *key, Function &value, Unit unit, Range range, const char *meaning) {
-  if (const auto given = find(key, meaning)) value = given->function(unit, range);
+void TableReader::function(const char *key, Function &value, Unit unit, Range range, const char *variables,
+                           const char *meaning) {
+  if (const auto given = find(key, meaning)) value = given->function(unit, range, variables);
 }
 
-void TableReader::functions(const char *key, std::vector<Function> &value, Unit unit, const char *meaning) {
+std::string TableReader::function_fault() const {
+  for (const auto &[function, limits] : document_->expressions)
+    if (!limits->fault.empty()) return limits->fault;
+  return "";
+}
+
+void TableReader::each_expression(const std::function<void(const Function &)> &visit) const {
+  for (const auto &[function, limits] : document_->expressions) visit(function);
+}
+
+void TableReader::functions(const char *key, std::vector<Function> &value, Unit unit, const char *variables,
+                            const char *meaning) {
   const auto given = find(key, meaning);
   if (!given) return;
   value.clear();
-  for (const Value &component : given->elements_or_self()) value.push_back(component.function(unit, unbounded));
+  for (const Value &component : given->elements_or_self())
+    value.push_back(component.function(unit, unbounded, variables));
 }
 
 void TableReader::elasticity(double &young_modulus, double &poisson_ratio) {

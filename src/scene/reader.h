@@ -6,6 +6,7 @@
 /// a unit; what is stored is SI and radians. Keys that no field claims are refused. Every complaint is a `SceneError`
 /// that names the file, the line, the key, the value, what is allowed and what the key means.
 #include <concepts>
+#include <functional>
 #include <initializer_list>
 #include <memory>
 #include <optional>
@@ -70,9 +71,10 @@ class TableReader {
   void point(const char *key, std::vector<double> &value, Unit unit, const char *meaning);
   void points(const char *key, std::vector<std::vector<double>> &value, Unit unit, const char *meaning);
   /// A quantity, a list of [t, value] points, or an expression; numbers and tables are checked against the range.
-  void function(const char *key, Function &value, Unit unit, Range range, const char *meaning);
+  /// `variables` are those that the function may name, as in namespace `of`; its values are checked as they are used.
+  void function(const char *key, Function &value, Unit unit, Range range, const char *variables, const char *meaning);
   /// A list of functions; a single one gives a vector of size 1.
-  void functions(const char *key, std::vector<Function> &value, Unit unit, const char *meaning);
+  void functions(const char *key, std::vector<Function> &value, Unit unit, const char *variables, const char *meaning);
   /// The expression of the place at a key that `by_place` reads; not given where the key has a number, or is absent.
   Function function_of_place(const char *key, Unit unit, Range range, const char *meaning);
   /// Exactly two of young_modulus, poisson_ratio, shear_modulus, bulk_modulus.
@@ -98,6 +100,12 @@ class TableReader {
   /// empty: the table itself), at its place in the file or, if it is not there, at the nearest enclosing table's.
   /// The sentence goes on from the key: "must name a point".
   [[noreturn]] void complain(const std::string &key_path, const std::string &sentence) const;
+
+  /// The first value of a function that its key does not admit, as a sentence with key, line, place and time; empty if
+  /// there was none.
+  std::string function_fault() const;
+  /// Calls visit for each function of the file that is an expression.
+  void each_expression(const std::function<void(const Function &)> &visit) const;
 
   /// The whole file with overrides applied, as TOML without its comments.
   std::string values() const;

@@ -144,12 +144,13 @@ struct BodySource {
     v.number("averaging_length", averaging_length, metre, Range{0, 1e4},
              "nonlocal softening: plastic strain is averaged over this length l, with 2 l in place of the cell size; "
              "0: no averaging; l should not be below the cell size");
-    v.functions("velocity", velocity, metre_per_second, "initial velocity, one function of x, y, z per component");
-    v.functions("displacement", displacement, metre,
+    v.functions("velocity", velocity, metre_per_second, of::place,
+                "initial velocity, one function of x, y, z per component");
+    v.functions("displacement", displacement, metre, of::place,
                 "initial displacement, one function of the undeformed x, y, z per component");
-    v.functions("stress", stress, pascal,
+    v.functions("stress", stress, pascal, of::place,
                 "initial stress xx, yy, zz, xy (in 3D also yz, xz), functions of the undeformed x, y, z");
-    v.functions("body_acceleration", body_acceleration, metre_per_second_squared,
+    v.functions("body_acceleration", body_acceleration, metre_per_second_squared, of::place_and_time,
                 "acceleration in addition to gravity, functions of the undeformed x, y, z and of t");
     v.list("dense", dense, "boxes with more particles per cell");
     v.deferred("law", law, "soil law; its parameters are keys of the same table");
@@ -206,11 +207,11 @@ struct Water {
         "storage", storage, {{"mass", PoreStorage::mass}, {"rate", PoreStorage::rate}},
         "computation of pore pressure: from the mass of water in the pores, or by its rate from the present storage "
         "coefficient; rate is for comparison (it loses water near saturation) and needs phases = \"unsaturated\"");
-    v.function("suction", suction, pascal, Range{0, 1e9},
+    v.function("suction", suction, pascal, Range{0, 1e9}, of::place,
                "initial suction above the water table, function of x, y, z; default: hydrostatic");
     v.points("table", table, metre, "water table: polyline of points [x, elevation]; pressure is hydrostatic below it");
-    v.function("level", level, metre, Range{-1e4, 1e4}, "rise of the whole water table, function of t");
-    v.function("excess", excess, pascal, Range{-1e9, 1e9},
+    v.function("level", level, metre, Range{-1e4, 1e4}, of::time, "rise of the whole water table, function of t");
+    v.function("excess", excess, pascal, Range{-1e9, 1e9}, of::place_time_and_table,
                "excess pressure, added to the hydrostatic pressure, function of x, y, z, t and `table` (elevation of "
                "the water table at x)");
     v.flag("open_water_load", open_water_load,
@@ -233,7 +234,7 @@ struct Gas {
     v.number("bulk_modulus", bulk_modulus, pascal, Range{1, 1e9},
              "bulk modulus K_g; for an ideal gas it is the atmospheric pressure");
     v.number("viscosity", viscosity, pascal_second, Range{1e-9, 1e3}, "dynamic viscosity of the pore gas");
-    v.function("pressure", pressure, pascal, Range{-1e6, 1e9},
+    v.function("pressure", pressure, pascal, Range{-1e6, 1e9}, of::place,
                "initial gauge pressure of the gas above the water table, function of x, y, z");
   }
 };
@@ -512,6 +513,8 @@ struct Scene {
   }
 
   double gravity_size() const;  ///< magnitude of gravity [m/s2]
+  /// The first value of a function that its key does not admit, on this rank; empty if there was none.
+  std::string function_fault() const;
   /// Gravity and the pseudo-static acceleration of a stage, zero beyond the dimension [m/s2].
   std::array<double, 3> acceleration_in(const Stage &one) const;
 

@@ -1,6 +1,8 @@
 #include "scene/value.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "scene/quantity.h"
 #include "scene/toml_nodes.h"
@@ -94,21 +96,37 @@ Function TableReader::Value::expression(const std::string &expected, double scal
   }
 }
 
-Function TableReader::Value::function(Unit unit, Range range) const {
-  const std::string expected = number_in(range, unit) + ", a list of [t, value] points or an expression of x, y, z, t";
+Function TableReader::Value::function(Unit unit, Range range, const char *variables) const {
+  const bool of_time = std::string_view(variables).find('t') != std::string_view::npos;
+  const std::string expected = number_in(range, unit) + (of_time ? ", a list of [t, value] points" : "") +
+                               " or an expression of " + variables;
   const auto value = [&](const Value &element) { return element.number(unit, range) * unit.si; };
-  if (node_->is_array()) return table(expected, value);
+  if (node_->is_array() && of_time) return table(expected, value);
   if (is_number() || looks_like_quantity(string(expected))) return value(*this);
-  return expression(expected, unit.si);
+  return limited_expression(expected, unit, range, variables);
 }
 
 Function TableReader::Value::place_function(Unit unit, Range range) const {
-  const std::string expected = number_in(range, unit) + ", or an expression of x, y, z";
+  const std::string expected = number_in(range, unit) + ", or an expression of " + of::place;
   if (node_->is_array()) must_be(expected);
   if (is_number() || looks_like_quantity(string(expected))) return {};
-  const Function function = expression(expected, unit.si);
-  for (const char *other : {"t", "table"})
-    if (function.uses(other)) must_be(expected, std::string("it cannot depend on ") + other);
+  return limited_expression(expected, unit, range, of::place);
+}
+
+Function TableReader::Value::limited_expression(const std::string &expected, Unit unit, Range range,
+                                                const char *variables) const {
+  Function function = expression(expected, unit.si);
+  const std::string known = std::string(", ") + variables + ",";
+  for (const std::string name : {"x", "y", "z", "t", "table"})
+    if (function.uses(name) && known.find(" " + name + ",") == std::string::npos)
+      must_be(expected, "it cannot depend on " + name);
+  constexpr double largest = std::numeric_limits<double>::max();
+  const std::string in = unit.dimension == Dimension{} ? "" : std::string(" ") + unit.name;
+  const auto limits = std::make_shared<const FunctionLimits>(FunctionLimits{
+      place(document_->file, *node_, false) + ": " + path_ + written(*node_), number_in(range, unit), in,
+      std::max(-largest, range.low * unit.si), std::min(largest, range.high * unit.si), unit.si});
+  function.limit(limits);
+  document_->expressions.emplace_back(function, limits);
   return function;
 }
 

@@ -20,6 +20,7 @@ struct TableReader::Document {
   std::string file;
   toml::table root;
   NamedFunctions functions;
+  mutable std::vector<std::pair<Function, std::shared_ptr<const FunctionLimits>>> expressions;  ///< of all keys
 };
 
 /// One value of the file and what complaints say about it.
@@ -39,7 +40,8 @@ class TableReader::Value {
   /// A list's elements, or the value itself.
   std::vector<Value> elements_or_self() const;
   std::vector<double> point(Unit unit) const;
-  Function function(Unit unit, Range range) const;
+  /// `variables` are those that the key gives its function, as in namespace `of`.
+  Function function(Unit unit, Range range, const char *variables) const;
   /// An expression of the place; not given where the value is a number or a quantity, or of another kind.
   Function place_function(Unit unit, Range range) const;
   /// A function of [functions]: of t alone, its values in any unit.
@@ -52,6 +54,8 @@ class TableReader::Value {
   template <class ReadValue>
   Function table(const std::string &expected, const ReadValue &read_value) const;
   Function expression(const std::string &expected, double scale) const;
+  /// An expression whose values are held against the range of the key as they are used.
+  Function limited_expression(const std::string &expected, Unit unit, Range range, const char *variables) const;
 
   const Document *document_;
   const toml::node *node_;

@@ -154,6 +154,7 @@ Verdict Dynamics<dim>::agree() {
                     watched[2]};
   for (const auto &body : world_.bodies)
     if (!law_trouble(body->law()).text.empty()) mine[3] = 1;
+  if (!world_.scene.function_fault().empty()) mine[3] = 1;
   double all[8];
   MPI_Allreduce(mine, all, 8, MPI_DOUBLE, MPI_MAX, world_.comm);
   const Verdict verdict{all[0], all[1], {all[5], all[6], all[7]}, all[2] > 0, all[3] > 0, all[4] > 0};
@@ -164,6 +165,7 @@ Verdict Dynamics<dim>::agree() {
 
 template <int dim>
 void Dynamics<dim>::refuse_broken() {
+  if (const std::string fault = world_.function_fault(); !fault.empty()) throw RunFailure(fault);
   Vec<dim> where{};
   std::string cause;
   const bool refused = world_.motion->find_trouble(&where, &cause);

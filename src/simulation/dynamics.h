@@ -14,7 +14,7 @@ struct Verdict {
   double shrink = 1;          ///< largest factor by which cells have cut the critical step since then
   Vec<3> watched_velocity{};  ///< what Dynamics::watch found [m/s]
   bool inverted = false;      ///< a cell is nearly empty
-  bool broken = false;        ///< a velocity or a law has failed
+  bool broken = false;        ///< a velocity, a law or a function has failed
   bool interrupted = false;   ///< a signal asks the run to end
 };
 

@@ -30,6 +30,13 @@ World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &m
   set_pore_pressure_ratios();
   seed_bodies();
   set_loading(scene.stage.front(), 0, Clock{});  // under which the first state is gathered
+  if (const std::string fault = function_fault(); !fault.empty()) throw SceneError(fault);
+}
+
+template <int dim>
+std::string World<dim>::function_fault() const {
+  const std::string mine = scene.function_fault();
+  return text_of_first(comm, !mine.empty(), mine);
 }
 
 template <int dim>

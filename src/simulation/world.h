@@ -59,6 +59,8 @@ class World {
   double critical_step_of_cells(double time);
   /// One report per body. Collective.
   std::vector<BodyReport> report();
+  /// The first value of a function that its key does not admit, as a sentence; empty if there was none. Collective.
+  std::string function_fault() const;
   /// Tells meshes and partitions apart.
   unsigned long long mesh_fingerprint() const;
   /// Position of a particle of this rank and its number, the nearest to a place, in words.

@@ -47,6 +47,7 @@ class StaticStage : public StageRunner<dim> {
     Clock &clock = run_.clock;
     clock.time = begin_ + share * stage_.duration, clock.load_time = load_at(share), ++clock.steps;
     if (sets_pressure()) run_.statics.take_seeped_pressure();
+    refuse_bad_functions();
     run_.hand_to_particles();
     run_.recorder.progress();
     run_.recorder.write_history();
@@ -83,7 +84,12 @@ class StaticStage : public StageRunner<dim> {
     begin_ = run_.clock.time, begin_load_ = run_.clock.load_time;
   }
 
+  void refuse_bad_functions() const {
+    if (const std::string fault = run_.world.function_fault(); !fault.empty()) throw RunFailure(fault);
+  }
+
   void finish() {
+    refuse_bad_functions();  // loads that are no numbers have no equilibrium
     run_.recorder.write_snapshot();
     std::ostringstream text;
     text.precision(3);

@@ -492,6 +492,50 @@ TEST(Seepage, OfDrainedSoilIsChecked) {
   }
 }
 
+/// Functions are held against the range of their key where they are used: at the start that is bad input, later it ends
+/// the run, with all that was computed until then.
+TEST(Functions, AreCheckedAsTheyAreUsed) {
+  const Folder folder;
+  folder.write("section.csv", good_section);
+  const std::string wet = changed(changed(good_scene, dry_part, WET_PART), "gravity", "phases = \"drained\"\ngravity");
+  struct Spoiled {
+    std::string scene;
+    int status, ranks;
+    std::vector<std::string> words;
+  };
+  const std::string still = changed(wet, "name = \"fall\"", "name = \"load\"\nkind = \"quasi_static\"");
+  const std::string rubbed = "[boundary.base]\nkind = \"friction\"\nfriction_angle = \"";
+  const auto base = [&](const std::string &angle) {
+    return changed(good_scene, "[boundary.base]\nkind = \"fixed\"", rubbed + angle + "\"");
+  };
+  for (const auto &[scene, status, ranks, words] : std::vector<Spoiled>{
+           {changed(wet, "[water]", "[water]\nlevel = \"sqrt(-1 - t)\""),
+            2,
+            1,
+            {"water.level", "no number at t = 0 s"}},
+           {changed(wet, "[water]", "[water]\nlevel = \"sqrt(0.03 - t)\""),
+            1,
+            2,
+            {"water.level", "no number at t = 0.03"}},
+           {changed(still, "[water]", "[water]\nlevel = \"sqrt(0.03 - t)\""),
+            1,
+            1,
+            {"water.level", "no number at t = 0.0"}},
+           {changed(wet, "[water]", "[water]\nlevel = \"x\""), 2, 1, {"water.level", "does not know x"}},
+           {base("100 + 0*t"), 2, 1, {"boundary.base.friction_angle", "0 to 89 deg; it is 100 deg at t = 0 s"}},
+           {base("20 - 1000*t"), 1, 2, {"boundary.base.friction_angle", "0 to 89 deg; it is -"}},
+           {changed(good_scene, "density = 2000", "density = 2000\nbody_acceleration = [\"1/(t - t)\", \"0\"]"),
+            2,
+            1,
+            {"body.sand.body_acceleration", "a number in m/s2"}}}) {
+    folder.write("scene.toml", scene);
+    const Ending ending = talus(folder, {"run", "scene.toml", "--no-pictures"}, ranks);
+    EXPECT_EQ(ending.status, status) << ending.output;
+    for (const std::string &word : words) EXPECT_TRUE(ending.says(word)) << word << "\n" << ending.output;
+    std::filesystem::remove_all(folder / "results");
+  }
+}
+
 /// Without anything that acts, soil would be "in equilibrium" or "at rest" at once.
 TEST(Stage, ThatWaitsNeedsSomethingToWaitFor) {
   const Folder folder;

@@ -53,6 +53,14 @@ TEST(Check, TellsThatARunBreaksOffAtOnce) {
   EXPECT_TRUE(ending.says("The run breaks off in its first steps: the velocity is not finite near (")) << ending.output;
 }
 
+TEST(Check, TriesFunctionsOverStagesAndPlaces) {
+  const Folder folder;
+  const std::string belt = "boundary.base={kind='velocity', velocity=['0', '";
+  EXPECT_FALSE(check(folder, {belt + "sqrt(0.06 - t)']}"}).says("A run ends where"));
+  EXPECT_TRUE(check(folder, {belt + "sqrt(0.04 - t)']}"}).says("no number at t = 0.0405 s. A run ends where"));
+  EXPECT_TRUE(check(folder, {belt + "sqrt(0.7 - x)']}"}).says("A run ends where"));
+}
+
 /// A number without a unit counts in the unit of its key, which is not always the one that its writer had in mind.
 TEST(Check, DoubtsValuesThatNoSoilHas) {
   const Folder folder;

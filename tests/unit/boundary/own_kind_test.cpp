@@ -66,7 +66,7 @@ struct Conveyor {
   std::vector<Function> rates{0.25, 0.5, 0.75};
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.functions("rates", rates, metre_per_second, "rates of the belt");
+    v.functions("rates", rates, metre_per_second, of::place_and_time, "rates of the belt");
   }
   template <int dim>
   std::vector<Vec<dim>> directions(const Vec<dim> &) const {

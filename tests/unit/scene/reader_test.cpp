@@ -54,9 +54,9 @@ struct Toy {
     v.choice("colour", colour, {{"red", Colour::red}, {"green", Colour::green}}, "colour of it");
     v.point("place", place, metre, "place of it");
     v.points("line", line, metre, "line through it");
-    v.function("load", load, pascal, Range{-1e6, 1e6}, "load on it");
-    v.function("angle", angle, degree, Range{-90, 90}, "angle of it");
-    v.functions("velocity", velocity, metre_per_second, "velocity of it");
+    v.function("load", load, pascal, Range{-1e6, 1e6}, of::place_and_time, "load on it");
+    v.function("angle", angle, degree, Range{-90, 90}, of::time, "angle of it");
+    v.functions("velocity", velocity, metre_per_second, of::place, "velocity of it");
     v.table("grain", grain, "grain of it");
     v.named("sort", sort, "sorts of it");
     v.list("layer", layer, "layers of it");
@@ -245,6 +245,35 @@ TEST(TableReader, ChecksNumbersAndTablesOfAFunctionAgainstItsRange) {
   EXPECT_TRUE(contains(refusal("load = '2 MPa'"), "must be a number from -1e6 to 1e6 Pa"));
   EXPECT_TRUE(contains(refusal("load = [[0, 0],\n[1, 2e6]]"), "toy.toml line 2: load.1.1 = 2e6"));
   EXPECT_TRUE(contains(refusal("load = [[0, 0], [0, 1]]"), "the times of a table must rise"));
+}
+
+TEST(TableReader, RefusesVariablesThatAKeyDoesNotKnow) {
+  EXPECT_TRUE(
+      contains(refusal("count = 1\nangle = 'x + t'"),
+               "toy.toml line 2: angle = \"x + t\" (angle of it) must be a number from -90 to 90 deg, a list of "
+               "[t, value] points or an expression of t; it does not know x"));
+  EXPECT_TRUE(contains(refusal("velocity = ['t', '0']"), "an expression of x, y, z; it does not know t"));
+  EXPECT_TRUE(contains(refusal("velocity = [[[0, 1], [1, 2]]]"), "must be a number in m/s or an expression"));
+  EXPECT_TRUE(contains(refusal("load = 'table'"), "it does not know table"));
+}
+
+TEST(TableReader, KeepsTheFirstValueOfAFunctionThatItsKeyDoesNotAdmit) {
+  const auto after = [](const std::string &text, auto &&evaluate) {
+    Toy toy;
+    TableReader reader = TableReader::from_text(text, "toy.toml");
+    reader.fill(toy);
+    evaluate(toy);
+    return reader.function_fault();
+  };
+  EXPECT_EQ(after("angle = '100 * t'", [](const Toy &toy) { toy.angle(0.9), toy.angle(-0.9); }), "");
+  EXPECT_EQ(after("count = 1\nangle = '100 * t'", [](const Toy &toy) { toy.angle(0.5), toy.angle(1), toy.angle(2); }),
+            "toy.toml line 2: angle = \"100 * t\" must be a number from -90 to 90 deg; it is 100 deg at t = 1 s");
+  EXPECT_EQ(
+      after("load = 'sqrt(x - t)'", [](const Toy &toy) { toy.load(2, 7, 0, 3); }),
+      "toy.toml line 1: load = \"sqrt(x - t)\" must be a number from -1e6 to 1e6 Pa; it is no number at x = 2 m, t = "
+      "3 s");
+  EXPECT_TRUE(
+      contains(after("velocity = ['0', '1/y']", [](const Toy &toy) { toy.velocity[1](2, 0, 0, 0); }), "it is inf"));
 }
 
 TEST(TableReader, RefusesABadExpressionAtItsLine) {
