@@ -331,8 +331,8 @@ class Adviser {
   std::vector<std::string> advice_;
 };
 
-/// Tries each function of the scene over the stages, and over a box around the soil if it knows the place. Those whose
-/// value their key does not admit remember it.
+/// Tries each function of time over the stages, and over a box around the soil if it knows the place too. Those whose
+/// value their key does not admit remember it. Functions of the place alone have been used where they are needed.
 void sample_functions(const Scene &scene, const std::vector<BodyReport> &bodies) {
   constexpr int times = 100, places = 4;  // intervals
   double end = 0;
@@ -345,6 +345,7 @@ void sample_functions(const Scene &scene, const std::vector<BodyReport> &bodies)
     const auto intervals = [&](const char *variable, int most) { return function.uses(variable) ? most : 0; };
     const int n[3] = {intervals("x", places), intervals("y", places), intervals("z", places)};
     const int last = intervals("t", times);
+    if (last == 0) return;
     const auto at = [&](int d, int i) { return low[d] + (high[d] - low[d]) * i / std::max(1, n[d]); };
     for (int k = 0; k <= last; ++k)
       for (int a = 0; a <= n[0]; ++a)

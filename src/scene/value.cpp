@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "scene/quantity.h"
 #include "scene/toml_nodes.h"
@@ -98,8 +99,8 @@ Function TableReader::Value::expression(const std::string &expected, double scal
 
 Function TableReader::Value::function(Unit unit, Range range, const char *variables) const {
   const bool of_time = std::string_view(variables).find('t') != std::string_view::npos;
-  const std::string expected = number_in(range, unit) + (of_time ? ", a list of [t, value] points" : "") +
-                               " or an expression of " + variables;
+  const std::string expected =
+      number_in(range, unit) + (of_time ? ", a list of [t, value] points" : "") + " or an expression of " + variables;
   const auto value = [&](const Value &element) { return element.number(unit, range) * unit.si; };
   if (node_->is_array() && of_time) return table(expected, value);
   if (is_number() || looks_like_quantity(string(expected))) return value(*this);
@@ -122,9 +123,9 @@ Function TableReader::Value::limited_expression(const std::string &expected, Uni
       must_be(expected, "it cannot depend on " + name);
   constexpr double largest = std::numeric_limits<double>::max();
   const std::string in = unit.dimension == Dimension{} ? "" : std::string(" ") + unit.name;
-  const auto limits = std::make_shared<const FunctionLimits>(FunctionLimits{
-      place(document_->file, *node_, false) + ": " + path_ + written(*node_), number_in(range, unit), in,
-      std::max(-largest, range.low * unit.si), std::min(largest, range.high * unit.si), unit.si});
+  const auto limits = std::make_shared<const FunctionLimits>(
+      FunctionLimits{place(document_->file, *node_, false) + ": " + path_ + written(*node_), number_in(range, unit), in,
+                     std::max(-largest, range.low * unit.si), std::min(largest, range.high * unit.si), unit.si});
   function.limit(limits);
   document_->expressions.emplace_back(function, limits);
   return function;

@@ -521,7 +521,7 @@ TEST(Functions, AreCheckedAsTheyAreUsed) {
             1,
             1,
             {"water.level", "no number at t = 0.0"}},
-           {changed(wet, "[water]", "[water]\nlevel = \"x\""), 2, 1, {"water.level", "does not know x"}},
+           {changed(wet, "[water]", "[water]\nlevel = \"x\""), 2, 1, {"water.level", "cannot depend on x"}},
            {base("100 + 0*t"), 2, 1, {"boundary.base.friction_angle", "0 to 89 deg; it is 100 deg at t = 0 s"}},
            {base("20 - 1000*t"), 1, 2, {"boundary.base.friction_angle", "0 to 89 deg; it is -"}},
            {changed(good_scene, "density = 2000", "density = 2000\nbody_acceleration = [\"1/(t - t)\", \"0\"]"),

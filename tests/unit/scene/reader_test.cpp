@@ -251,10 +251,10 @@ TEST(TableReader, RefusesVariablesThatAKeyDoesNotKnow) {
   EXPECT_TRUE(
       contains(refusal("count = 1\nangle = 'x + t'"),
                "toy.toml line 2: angle = \"x + t\" (angle of it) must be a number from -90 to 90 deg, a list of "
-               "[t, value] points or an expression of t; it does not know x"));
-  EXPECT_TRUE(contains(refusal("velocity = ['t', '0']"), "an expression of x, y, z; it does not know t"));
+               "[t, value] points or an expression of t; it cannot depend on x"));
+  EXPECT_TRUE(contains(refusal("velocity = ['t', '0']"), "an expression of x, y, z; it cannot depend on t"));
   EXPECT_TRUE(contains(refusal("velocity = [[[0, 1], [1, 2]]]"), "must be a number in m/s or an expression"));
-  EXPECT_TRUE(contains(refusal("load = 'table'"), "it does not know table"));
+  EXPECT_TRUE(contains(refusal("load = 'table'"), "it cannot depend on table"));
 }
 
 TEST(TableReader, KeepsTheFirstValueOfAFunctionThatItsKeyDoesNotAdmit) {
