@@ -10,6 +10,7 @@
 #include "commands/scales.h"
 #include "physics/laws/strength_by_place.h"
 #include "physics/pores/hyperbolicity.h"
+#include "scene/reader.h"
 #include "simulation/unlikely.h"
 
 namespace talus {
