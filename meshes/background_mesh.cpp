@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
 
+#include "meshes/complaints.h"
 #include "meshes/gmsh_file.h"
 #include "meshes/partition.h"
 #include "meshes/patches.h"
 #include "meshes/plex.h"
 #include "meshes/simplex.h"
+#include "meshes/soundness.h"
 
 namespace talus {
 namespace {
@@ -145,19 +148,24 @@ BackgroundMesh<dim> BackgroundMesh<dim>::read(MPI_Comm comm, const std::string &
   int rank;
   MPI_Comm_rank(comm, &rank);
   std::string complaint;
-  GmshFile source;
-  source.name = file;
-  if (rank == 0) complaint = complaint_about_file(source, dim);
+  GmshMesh source;
+  try {
+    if (rank == 0) source = read_gmsh(file, dim);
+  } catch (const std::invalid_argument &error) {
+    complaint = error.what();
+  }
   agree(comm, complaint);
-  MPI_Bcast(&source.binary, 1, MPI_INT, 0, comm);
 
   BackgroundMesh mesh;
   Simplices<dim> cells;
   Regions regions;
-  require(open_gmsh(comm, source, true, mesh.plex_.create()));
+  require(make_plex(comm, dim, source, mesh.plex_.create(), complaint));
+  agree(comm, complaint.empty() ? "" : file + ": " + complaint);
+  source = {};
   require(read_simplices(mesh.plex_, cells));
   require(read_regions(mesh.plex_, regions));
   agree(comm, complaint_about_cells(file, cells, regions, Names::required));
+  if (rank == 0) mesh.remarks_ = mesh_remarks(cells, regions);
 
   const int size = patch_size<dim>(is_one_element_slice<dim>(comm, cells.position));
   const auto patch = make_patches<dim>(cells.node, cells.neighbour, regions.combination, size);
@@ -250,6 +258,7 @@ MeshReport BackgroundMesh<dim>::report() const {
   report.smallest_altitude = smallest[0], report.smallest_quality = smallest[1];
   report.mean_quality = quality / static_cast<double>(std::max(1LL, report.cells));
   report.one_element_slice = is_one_element_slice<dim>(comm(), position);
+  report.remarks = remarks_;
   return report;
 }
 

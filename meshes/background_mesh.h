@@ -94,7 +94,7 @@ class BackgroundMesh {
   PetscInt first_plex_cell_ = 0;
   std::vector<int> flat_cell_;                             // of a plex cell, counted from the first
   std::vector<std::array<PetscInt, dim + 1>> plex_facet_;  // DMPlex point of the face opposite to vertex k of a cell
-  std::vector<std::string> region_names_, group_names_;
+  std::vector<std::string> region_names_, group_names_, remarks_;
 };
 
 }  // namespace talus

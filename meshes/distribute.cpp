@@ -1,60 +1,66 @@
 #include <petscpartitioner.h>
-#include <petscviewer.h>
 
 #include <algorithm>
 #include <numeric>
 
+#include "meshes/gmsh_file.h"
 #include "meshes/plex.h"
 
 namespace talus {
 namespace {
 
-using Options = Owned<PetscOptions, PetscOptionsDestroy>;
-using Viewer = Owned<PetscViewer, PetscViewerDestroy>;
-
-/// Labels named by physical groups from PETSc's numbered ones. (PETSc's own named labels take the entity of an element
-/// of format 2 for a second group.)
-PetscErrorCode name_groups(DM plex, const std::vector<PhysicalName> &groups) {
-  PetscInt dimension;
+/// The facet with these nodes, or -1.
+PetscErrorCode facet_of_nodes(DM plex, int nodes, const PetscInt *node, PetscInt *facet) {
+  PetscInt count, first, end;
+  const PetscInt *join;
   PetscFunctionBeginUser;
-  PetscCall(DMGetDimension(plex, &dimension));
-  for (const PhysicalName &group : groups) {
-    IS stratum;
-    const PetscInt *point;
-    PetscInt size;
-    if (group.dimension != dimension && group.dimension != dimension - 1) continue;
-    const char *numbered = group.dimension == dimension ? "Cell Sets" : "Face Sets";
-    PetscCall(DMGetStratumIS(plex, numbered, group.tag, &stratum));
-    if (!stratum) continue;
-    PetscCall(ISGetLocalSize(stratum, &size));
-    PetscCall(ISGetIndices(stratum, &point));
-    for (PetscInt i = 0; i < size; ++i) PetscCall(DMSetLabelValue(plex, group.name.c_str(), point[i], 1));
-    PetscCall(ISRestoreIndices(stratum, &point));
-    PetscCall(ISDestroy(&stratum));
-  }
+  PetscCall(DMPlexGetFullJoin(plex, nodes, node, &count, &join));
+  PetscCall(DMPlexGetHeightStratum(plex, 1, &first, &end));
+  *facet = count == 1 && first <= join[0] && join[0] < end ? join[0] : -1;
+  PetscCall(DMPlexRestoreJoin(plex, nodes, node, &count, &join));
+  PetscFunctionReturn(0);
+}
+
+/// Labels with the names of the groups of cells and facets.
+PetscErrorCode name_groups(DM plex, const GmshMesh &mesh, std::string &complaint) {
+  const int nodes = mesh.dimension;
+  PetscInt first, end;
+  PetscFunctionBeginUser;
+  for (const auto &[name, cells] : mesh.regions)
+    for (int cell : cells) PetscCall(DMSetLabelValue(plex, name.c_str(), cell, 1));
+  PetscCall(DMPlexGetDepthStratum(plex, 0, &first, &end));
+  for (const auto &[name, facets] : mesh.groups)
+    for (int f : facets) {
+      std::array<PetscInt, 3> node;
+      PetscInt point;
+      bool of_cells = true;
+      for (int k = 0; k < nodes; ++k) {
+        of_cells &= mesh.facets[nodes * f + k] >= 0;
+        node[k] = first + mesh.facets[nodes * f + k];
+      }
+      if (of_cells) PetscCall(facet_of_nodes(plex, nodes, node.data(), &point));
+      if (!of_cells || point < 0) {
+        complaint = "element " + std::to_string(mesh.facet_number[f]) + " of the group '" + name +
+                    "' is not the side of a cell; remesh, so that cells end at the group";
+        PetscFunctionReturn(0);
+      }
+      PetscCall(DMSetLabelValue(plex, name.c_str(), point, 1));
+    }
   PetscFunctionReturn(0);
 }
 
 }  // namespace
 
-PetscErrorCode open_gmsh(MPI_Comm comm, const GmshFile &file, bool interpolate, DM *plex) {
-  Options options;
-  Viewer viewer;
+PetscErrorCode make_plex(MPI_Comm comm, int dimension, const GmshMesh &mesh, DM *plex, std::string &complaint) {
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsCreate(options.create()));
-  // in format 2 the further tags of an element are the numbers of its entity and partitions, not of groups
-  PetscCall(PetscOptionsSetValue(options, "-dm_plex_gmsh_multiple_tags", file.entities ? "true" : "false"));
-  PetscCall(PetscOptionsSetValue(options, "-dm_plex_gmsh_highorder", "false"));
-  PetscCall(PetscOptionsSetValue(options, "-dm_plex_gmsh_periodic", "false"));
-  PetscCall(PetscViewerCreate(comm, viewer.create()));
-  PetscCall(PetscViewerSetType(viewer, file.binary ? PETSCVIEWERBINARY : PETSCVIEWERASCII));
-  PetscCall(PetscViewerFileSetMode(viewer, FILE_MODE_READ));
-  PetscCall(PetscObjectSetOptions((PetscObject)(PetscViewer)viewer, options));
-  if (file.binary) PetscCall(PetscViewerBinarySetSkipInfo(viewer, PETSC_TRUE));
-  PetscCall(PetscViewerFileSetName(viewer, file.name.c_str()));
-  PetscCall(DMPlexCreateGmsh(comm, viewer, interpolate ? PETSC_TRUE : PETSC_FALSE, plex));
-  PetscCall(PetscObjectSetOptions((PetscObject)(PetscViewer)viewer, nullptr));
-  if (interpolate) PetscCall(name_groups(*plex, file.groups));
+  const int corners = dimension + 1;
+  std::vector<PetscInt> cells(mesh.cells.begin(), mesh.cells.end());
+  // DMPlex stores tetrahedra with their sides turned outward
+  for (std::size_t c = 0; dimension == 3 && c < cells.size(); c += 4) std::swap(cells[c], cells[c + 1]);
+  PetscCall(DMPlexCreateFromCellListPetsc(comm, dimension, static_cast<PetscInt>(cells.size() / corners),
+                                          static_cast<PetscInt>(mesh.position.size() / dimension), corners, PETSC_TRUE,
+                                          cells.data(), dimension, mesh.position.data(), plex));
+  PetscCall(name_groups(*plex, mesh, complaint));
   PetscFunctionReturn(0);
 }
 

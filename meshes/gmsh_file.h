@@ -1,30 +1,27 @@
 #pragma once
-/// Complaints about mesh files and meshes: what is wrong, where, and what to do. An empty text is no complaint.
-#include <mpi.h>
-
+/// Reader of Gmsh files, format 2.2 or 4.1, text or binary.
+#include <array>
 #include <string>
-
-#include "meshes/plex.h"
+#include <utility>
+#include <vector>
 
 namespace talus {
 
-/// Looks through a Gmsh file before PETSc does, whose own reader would abort. Serial; fills in what it finds.
-std::string complaint_about_file(GmshFile &file, int dimension);
+/// A mesh of simplices as a Gmsh file describes it; nodes, cells and facets in the order of the file. Nodes of no cell
+/// are left out, and so are the nodes on the edges of elements of higher order.
+struct GmshMesh {
+  int dimension = 0;
+  std::vector<double> position;                                   ///< of nodes, `dimension` numbers each [m]
+  std::vector<int> cells;                                         ///< `dimension` + 1 nodes each
+  std::vector<int> facets;                                        ///< `dimension` nodes each
+  std::vector<long long> facet_number;                            ///< of the element in the file
+  std::vector<std::pair<std::string, std::vector<int>>> regions;  ///< named groups: their cells
+  std::vector<std::pair<std::string, std::vector<int>>> groups;   ///< named groups: their facets
+};
 
-/// Cells of no volume, cells that overlap, and, where each has to have a name, cells in no region. Serial; `source`
-/// names the mesh.
-enum class Names { required, optional };
-template <int dim>
-std::string complaint_about_cells(const std::string &source, const Simplices<dim> &cells, const Regions &regions,
-                                  Names names);
-
-/// A host's DMPlex that cannot serve: wrong dimension, an overlap, no faces, cells that are not simplices. Local.
-std::string complaint_about_plex(DM plex, int dimension);
-
-/// Throws std::invalid_argument on every rank with the complaint of the lowest rank that has one. Collective.
-void agree(MPI_Comm comm, const std::string &complaint);
-
-/// Throws std::runtime_error for a PETSc error.
-void require(PetscErrorCode error);
+/// Reads a mesh of dimension 2 or 3. Serial. Throws std::invalid_argument with the file, the place in it, the fault and
+/// what to do: damaged files, elements that name absent nodes, cells that are no simplices, a 2D mesh that is not
+/// plane, groups without names or with names that DMPlex needs.
+GmshMesh read_gmsh(const std::string &file, int dimension);
 
 }  // namespace talus

@@ -1,5 +1,7 @@
 #pragma once
 /// A background mesh in numbers, over all ranks.
+#include <string>
+#include <vector>
 
 namespace talus {
 
@@ -8,6 +10,7 @@ struct MeshReport {
   double smallest_altitude;               ///< [m]
   double smallest_quality, mean_quality;  ///< inscribed over circumscribed radius times dim, 1 is regular
   bool one_element_slice;                 ///< 3D, every node lies on one of two parallel planes z = const
+  std::vector<std::string> remarks;       ///< sentences about what may be meant but rarely is, on rank 0
 };
 
 }  // namespace talus

@@ -1,6 +1,6 @@
 #pragma once
-/// What Talus asks of a DMPlex of simplices: its cells as plain arrays, its named groups, opening a Gmsh file,
-/// distribution.
+/// What Talus asks of a DMPlex of simplices: its cells as plain arrays, its named groups, making one of a
+/// Gmsh file, distribution.
 #include <petscdmplex.h>
 #include <petscsf.h>
 
@@ -49,19 +49,10 @@ PetscErrorCode names_at_height(DM plex, int height, std::vector<std::string> &na
 PetscErrorCode points_at_height(DM plex, const std::string &label, int height, std::vector<PetscInt> &points);
 bool is_reserved_label(const std::string &name);
 
-struct PhysicalName {
-  int dimension, tag;
-  std::string name;
-};
-struct GmshFile {
-  std::string name;
-  int binary = 0;                    ///< numbers are not text
-  int entities = 0;                  ///< format 4: elements belong to entities, which may be in several groups
-  std::vector<PhysicalName> groups;  ///< known on rank 0
-};
-/// Opens a Gmsh file with a label for each physical name of cells and facets. All cells are on rank 0. Options of the
-/// caller's database are neither read nor changed.
-PetscErrorCode open_gmsh(MPI_Comm comm, const GmshFile &file, bool interpolate, DM *plex);
+/// A mesh with a label for each named group of cells and facets; all of it is on rank 0, where `mesh` is filled in. The
+/// complaint, on rank 0, is about a facet that no cell has; empty without one. Collective.
+struct GmshMesh;
+PetscErrorCode make_plex(MPI_Comm comm, int dimension, const GmshMesh &mesh, DM *plex, std::string &complaint);
 
 /// Sends each cell of rank 0 to `rank_of_cell`. `migration` leads from points there to local points. On one rank
 /// nothing moves: `distributed` and `migration` stay null.

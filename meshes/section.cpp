@@ -1,11 +1,13 @@
 #include "meshes/section.h"
 
-#include <fstream>
+#include <algorithm>
+#include <cctype>
 #include <map>
 #include <sstream>
 #include <stdexcept>
 
 #include "meshes/polygon.h"
+#include "meshes/spreadsheet.h"
 
 namespace talus {
 namespace {
@@ -14,17 +16,10 @@ namespace {
   throw std::invalid_argument(file + " line " + std::to_string(line) + ": " + text);
 }
 
-std::string trimmed(const std::string &text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
-bool is_number(const std::string &text, double &value) {
-  std::istringstream in(text);
-  return (in >> value) && std::isfinite(value) && in.peek() == std::istringstream::traits_type::eof();
-}
-
 bool starts_with(const std::string &text, const std::string &start) { return text.rfind(start, 0) == 0; }
+
+constexpr std::size_t most_points =
+    5000;  // more than cells can follow, and more than a quick check of crossings allows
 
 struct Row {
   std::string part;
@@ -32,25 +27,29 @@ struct Row {
   int line;
 };
 
-std::vector<Row> read_rows(const std::string &file) {
-  std::ifstream in(file);
-  if (!in || in.peek() == std::ifstream::traits_type::eof())
-    throw std::invalid_argument(file + ": cannot be read or is empty; check the path and its permissions");
+bool is_header(std::vector<std::string> cells) {
+  for (std::string &cell : cells)
+    std::transform(cell.begin(), cell.end(), cell.begin(), [](unsigned char c) { return std::tolower(c); });
+  return cells == std::vector<std::string>{"part", "x", "y"};
+}
+
+std::vector<Row> rows_of(const Spreadsheet &sheet, const std::string &file) {
   std::vector<Row> rows;
-  std::string text;
-  for (int line = 1; std::getline(in, text); ++line) {
-    text = trimmed(text.substr(0, text.find('#')));
-    if (text.empty()) continue;
-    std::vector<std::string> cells;
-    std::istringstream split(text);
-    for (std::string cell; std::getline(split, cell, ',');) cells.push_back(trimmed(cell));
-    if (cells == std::vector<std::string>{"part", "x", "y"}) continue;
+  for (const auto &[cells, line] : sheet.rows) {
+    if (is_header(cells)) continue;
     Row row{cells[0], {}, line};
-    if (cells.size() != 3 || row.part.empty() || !is_number(cells[1], row.numbers[0]) ||
-        !is_number(cells[2], row.numbers[1]))
+    if (cells.size() != 3 || row.part.empty() || !sheet.number(cells[1], row.numbers[0]) ||
+        !sheet.number(cells[2], row.numbers[1])) {
+      std::string text;
+      for (const std::string &cell : cells) text += (text.empty() ? "" : ",") + cell;
       complain(file, line, "'" + text + "' must be a row part,x,y with two numbers in metres");
+    }
     rows.push_back(row);
   }
+  if (rows.size() > most_points)
+    complain(file, rows.back().line,
+             "the section has " + std::to_string(rows.size()) + " points, more than the " +
+                 std::to_string(most_points) + " that are taken; leave out points that are closer than cells are wide");
   return rows;
 }
 
@@ -59,7 +58,8 @@ class Reader {
   explicit Reader(const std::string &file) { section_.file = file; }
 
   Section read() {
-    for (const Row &row : read_rows(section_.file)) take(row);
+    sheet_ = read_spreadsheet(section_.file);
+    for (const Row &row : rows_of(sheet_, section_.file)) take(row);
     for (const auto &[number, polyline] : interfaces_) section_.interfaces.push_back(polyline);
     for (const auto &[name, polyline] : boundaries_) section_.boundaries.push_back(polyline);
     for (const auto &[part, rows] : boxes_) add_boxes(part, rows);
@@ -68,6 +68,7 @@ class Reader {
 
  private:
   Section section_;
+  Spreadsheet sheet_;
   std::map<int, Polyline> interfaces_;
   std::map<std::string, Polyline> boundaries_;
   std::map<std::string, std::vector<Row>> boxes_;
@@ -88,7 +89,7 @@ class Reader {
     double number;
     if (row.part == "outline") {
       append(section_.outline, row.part, row);
-    } else if (starts_with(row.part, "interface") && is_number(row.part.substr(9), number) &&
+    } else if (starts_with(row.part, "interface") && sheet_.number(row.part.substr(9), number) &&
                number == std::floor(number)) {
       append(interfaces_[static_cast<int>(number)], row.part, row);
     } else if (starts_with(row.part, "b_")) {
@@ -112,7 +113,7 @@ class Reader {
 
   void add_boxes(const std::string &part, const std::vector<Row> &rows) {
     double size;
-    if (!is_number(part.substr(7), size) || size <= 0)
+    if (!sheet_.number(part.substr(7), size) || size <= 0)
       complain(section_.file, rows[0].line, "'" + part + "' must be refine_SIZE with a cell size above 0 m");
     if (rows.size() % 2)
       complain(section_.file, rows.back().line,
@@ -165,7 +166,7 @@ void check_outline(const Section &section, double tolerance) {
 
 /// Some piece of the polyline lies inside the domain, or, for boundaries, on its edge. Pieces are cut finely.
 bool reaches(const Polyline &polyline, const std::vector<Vec<2>> &domain, bool edge_counts, double tolerance) {
-  constexpr int pieces = 1000;
+  const int pieces = static_cast<int>(std::max<std::size_t>(1, 1000 / polyline.points.size()));
   for (std::size_t i = 0; i + 1 < polyline.points.size(); ++i)
     for (int k = 0; k < pieces; ++k) {
       const Vec<2> &a = polyline.points[i], &b = polyline.points[i + 1];
@@ -177,14 +178,79 @@ bool reaches(const Polyline &polyline, const std::vector<Vec<2>> &domain, bool e
   return false;
 }
 
+/// A ray upward crosses the interface an odd number of times from below it; its ends go on horizontally for ever.
+bool is_below(const Polyline &polyline, const Vec<2> &x, double extent) {
+  const auto crossed = [&](const Vec<2> &a, const Vec<2> &b) {
+    return (a[0] <= x[0]) != (b[0] <= x[0]) && a[1] + (x[0] - a[0]) / (b[0] - a[0]) * (b[1] - a[1]) > x[1];
+  };
+  const auto &p = polyline.points;
+  const bool rightward = p.front()[0] <= p.back()[0];
+  const double far = 1e3 * (extent + std::abs(x[0]) + std::abs(p.front()[0]) + std::abs(p.back()[0]));
+  bool below = crossed({rightward ? -far : far, p.front()[1]}, p.front());
+  for (std::size_t i = 0; i + 1 < p.size(); ++i) below ^= crossed(p[i], p[i + 1]);
+  return below ^ crossed(p.back(), {rightward ? far : -far, p.back()[1]});
+}
+
+/// A point on a polyline, and the piece that begins there or before it.
+struct Station {
+  Vec<2> point;
+  std::size_t piece;
+};
+
+double distance(const Vec<2> &a, const Vec<2> &b) { return std::hypot(a[0] - b[0], a[1] - b[1]); }
+
+/// The points of `line` and those of `other` that lie on it, in order.
+std::vector<Station> stations_along(const Polyline &line, const Polyline &other, double tolerance) {
+  std::vector<Station> stations;
+  for (std::size_t k = 0; k + 1 < line.points.size(); ++k) {
+    const Vec<2> &a = line.points[k], &b = line.points[k + 1];
+    stations.push_back({a, k});
+    const auto first = static_cast<std::ptrdiff_t>(stations.size());
+    for (const Vec<2> &x : other.points)
+      if (distance_to_segment(a, b, x) <= tolerance && distance(a, x) > tolerance && distance(b, x) > tolerance)
+        stations.push_back({x, k});
+    std::sort(stations.begin() + first, stations.end(),
+              [&](const Station &s, const Station &t) { return distance(a, s.point) < distance(a, t.point); });
+  }
+  stations.push_back({line.points.back(), line.points.size() - 2});
+  return stations;
+}
+
+/// Where `line` touches `other`, not at an end of that one, and goes on at its other side; nothing without such a
+/// place.
+std::optional<Station> passage(const Polyline &line, const Polyline &other, double extent, double tolerance) {
+  const std::vector<Station> stations = stations_along(line, other, tolerance);
+  std::optional<bool> below;
+  for (std::size_t s = 0; s + 1 < stations.size(); ++s) {
+    const Vec<2> &a = stations[s].point, &b = stations[s + 1].point, middle{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2};
+    if (is_on(other, middle, tolerance)) continue;
+    const bool now = is_below(other, middle, extent);
+    if (below && now != *below && is_on(other, a, tolerance) &&
+        std::min(distance(a, other.points.front()), distance(a, other.points.back())) > tolerance)
+      return stations[s];
+    below = now;
+  }
+  return std::nullopt;
+}
+
+/// The piece of a polyline that a point lies on.
+std::size_t piece_at(const Polyline &line, const Vec<2> &x) {
+  std::size_t nearest = 0;
+  for (std::size_t k = 1; k + 1 < line.points.size(); ++k)
+    if (distance_to_segment(line.points[k], line.points[k + 1], x) <
+        distance_to_segment(line.points[nearest], line.points[nearest + 1], x))
+      nearest = k;
+  return nearest;
+}
+
 void check_polyline(const Section &section, const Polyline &polyline, const std::string &what, bool edge_counts,
-                    double tolerance) {
+                    const std::vector<Vec<2>> &domain, double tolerance) {
   if (polyline.points.size() < 2) complain(section.file, polyline.lines.back(), what + " needs at least 2 points");
   for (std::size_t i = 1; i < polyline.points.size(); ++i)
     if (std::hypot(polyline.points[i][0] - polyline.points[i - 1][0],
                    polyline.points[i][1] - polyline.points[i - 1][1]) <= tolerance)
       complain(section.file, polyline.lines[i], what + " repeats its last point; leave it out");
-  if (!reaches(polyline, section.domain(), edge_counts, tolerance))
+  if (!reaches(polyline, domain, edge_counts, tolerance))
     complain(section.file, polyline.lines[0],
              what + " lies outside the outline" + (edge_counts ? "" : " or only on it") + "; move it into the section");
 }
@@ -193,12 +259,13 @@ void check(const Section &section) {
   double extent = section.outline.points.empty() ? 0 : section.largest_extent();
   const double tolerance = 1e-9 * extent;
   check_outline(section, tolerance);
+  const std::vector<Vec<2>> domain = section.domain();
   for (const Polyline &p : section.interfaces)
-    check_polyline(section, p, "the interface '" + p.part + "'", false, tolerance);
+    check_polyline(section, p, "the interface '" + p.part + "'", false, domain, tolerance);
   for (const Polyline &p : section.boundaries)
-    check_polyline(section, p, "the boundary 'b_" + p.part + "'", true, tolerance);
+    check_polyline(section, p, "the boundary 'b_" + p.part + "'", true, domain, tolerance);
   for (const Seed &seed : section.seeds)
-    if (!is_inside(section.domain(), seed.point))
+    if (!is_inside(domain, seed.point))
       complain(section.file, seed.line, "the seed of region '" + seed.name + "' lies outside the section");
 }
 
@@ -238,19 +305,7 @@ double Section::area() const { return std::abs(signed_area(domain())); }
 std::string Section::layer_at(const Vec<2> &x) const {
   if (has_free_space && !is_inside(outline.points, x)) return "air";
   int layer = 0;
-  for (const Polyline &polyline : interfaces) {
-    // a ray upward crosses the interface an odd number of times from below it; the ends go on horizontally for ever
-    const auto crossed = [&](const Vec<2> &a, const Vec<2> &b) {
-      return (a[0] <= x[0]) != (b[0] <= x[0]) && a[1] + (x[0] - a[0]) / (b[0] - a[0]) * (b[1] - a[1]) > x[1];
-    };
-    const auto &p = polyline.points;
-    const bool rightward = p.front()[0] <= p.back()[0];
-    const double far = 1e3 * (largest_extent() + std::abs(x[0]) + std::abs(p.front()[0]) + std::abs(p.back()[0]));
-    bool below = crossed({rightward ? -far : far, p.front()[1]}, p.front());
-    for (std::size_t i = 0; i + 1 < p.size(); ++i) below ^= crossed(p[i], p[i + 1]);
-    below ^= crossed(p.back(), {rightward ? far : -far, p.back()[1]});
-    layer += below;
-  }
+  for (const Polyline &polyline : interfaces) layer += is_below(polyline, x, largest_extent());
   return "layer" + std::to_string(layer);
 }
 
@@ -258,6 +313,32 @@ Section read_section(const std::string &file) {
   Section section = Reader(file).read();
   check(section);
   return section;
+}
+
+std::optional<Crossing> crossing_interfaces(const Section &section) {
+  const auto opposite = [](double a, double b) { return (a > 0 && b < 0) || (a < 0 && b > 0); };
+  const auto &lines = section.interfaces;
+  const double extent = section.largest_extent(), tolerance = 1e-9 * extent;
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      for (std::size_t k = 0; k + 1 < lines[i].points.size(); ++k)
+        for (std::size_t l = 0; l + 1 < lines[j].points.size(); ++l) {
+          const Vec<2> &a = lines[i].points[k], &b = lines[i].points[k + 1], &c = lines[j].points[l],
+                       &d = lines[j].points[l + 1];
+          const double at_a = cross(c, d, a), at_b = cross(c, d, b);
+          if (!opposite(at_a, at_b) || !opposite(cross(a, b, c), cross(a, b, d))) continue;
+          const double t = at_a / (at_a - at_b);
+          return Crossing{&lines[j],
+                          &lines[i],
+                          {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])},
+                          lines[j].lines[l],
+                          lines[i].lines[k]};
+        }
+      if (const auto at = passage(lines[i], lines[j], extent, tolerance))
+        return Crossing{&lines[j], &lines[i], at->point, lines[j].lines[piece_at(lines[j], at->point)],
+                        lines[i].lines[at->piece]};
+    }
+  return std::nullopt;
 }
 
 bool is_on(const Polyline &line, const Vec<2> &x, double tolerance) {

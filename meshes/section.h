@@ -11,6 +11,7 @@
 ///   free_space,HEIGHT,EXTRA   for an outline of soil only: adds free space, region `air`, to HEIGHT above the highest
 ///   point, and
 ///                     EXTRA beyond the right end (beyond the left end where negative)
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,15 @@ struct Section {
 /// Reads and checks a section. Throws std::invalid_argument with file and line for rows that are malformed or unknown,
 /// fewer than three points, repeated points, an outline that crosses itself, and parts that lie outside.
 Section read_section(const std::string &file);
+
+/// Two interfaces that go through one another, so that counting those above a point says nothing about its layer.
+struct Crossing {
+  const Polyline *first, *second;
+  Vec<2> place;                 ///< [m]
+  int first_line, second_line;  ///< of the file, where the pieces that cross begin
+};
+/// Interfaces that only touch, or share a stretch, do not cross.
+std::optional<Crossing> crossing_interfaces(const Section &section);
 
 /// A point is within `tolerance` [m] of a polyline.
 bool is_on(const Polyline &line, const Vec<2> &x, double tolerance);

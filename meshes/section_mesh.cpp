@@ -173,6 +173,21 @@ class SectionModel {
                                     "' in line " + std::to_string(at->second->line) + "; part them by an interface");
       pieces_.at(tag).name = seed.name;
     }
+    if (const auto crossing = crossing_interfaces(section_)) require_seeds(*crossing, seeded);
+  }
+
+  /// Where interfaces cross, layers cannot be told by counting: each piece of soil needs a name of its own.
+  void require_seeds(const Crossing &crossing, const std::map<int, const Seed *> &seeded) const {
+    for (const auto &[tag, piece] : pieces_) {
+      if (seeded.count(tag) || piece.name == "air") continue;
+      const Vec<2> at = centre(piece.triangles[0]);
+      std::ostringstream text;
+      text << section_.file << " line " << crossing.second_line << ": '" << crossing.second->part << "' crosses '"
+           << crossing.first->part << "' of line " << crossing.first_line << " near (" << crossing.place[0] << ", "
+           << crossing.place[1] << "), so layers cannot be counted; end one at the other, or name every piece of soil "
+           << "by a row region_NAME,x,y (there is none in the piece around (" << at[0] << ", " << at[1] << "))";
+      throw std::invalid_argument(text.str());
+    }
   }
 
   /// The piece whose triangles come nearest to holding a point.

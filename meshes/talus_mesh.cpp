@@ -24,6 +24,30 @@ struct Request {
 
 [[noreturn]] void complain(const std::string &text) { throw std::invalid_argument(text); }
 
+/// Cells of one size over an area: triangles, tetrahedra in layers, or free ones through the thickness.
+double cells_over(double area, double size, const MeshOptions &o) {
+  const double triangles = area / (0.43 * size * size);
+  if (o.dimension == 2) return triangles;
+  const double thickness = o.thickness > 0 ? o.thickness : o.size;
+  return 3 * triangles *
+         (o.layers > 0 ? o.layers * (static_cast<double>(o.cuts.size()) + 1) : std::max(1., thickness / size));
+}
+
+/// The whole section in cells of --size and, beside these, its boxes in theirs as far as they lie in it.
+double estimated_cells(const Section &section, const MeshOptions &o) {
+  double cells = cells_over(section.area(), o.size, o);
+  Vec<2> low = section.outline.points[0], high = low;
+  for (const Vec<2> &x : section.domain())
+    for (int d = 0; d < 2; ++d) low[d] = std::min(low[d], x[d]), high[d] = std::max(high[d], x[d]);
+  for (const std::vector<RefinedBox> *boxes : {&section.boxes, &o.boxes})
+    for (const RefinedBox &box : *boxes) {
+      double area = 1;
+      for (int d = 0; d < 2; ++d) area *= std::max(0., std::min(box.to[d], high[d]) - std::max(box.from[d], low[d]));
+      if (box.size < o.size) cells += cells_over(std::min(area, section.area()), box.size, o);
+    }
+  return cells;
+}
+
 void check(const Request &request, const Section &section) {
   const MeshOptions &o = request.options;
   const double extent = section.largest_extent();
@@ -34,18 +58,20 @@ void check(const Request &request, const Section &section) {
          << " m; take a smaller size";
     complain(text.str());
   }
-  const int layers = std::max(1, o.layers);
-  const double per_layer = section.area() / (0.43 * o.size * o.size);
-  if (per_layer * (o.dimension == 3 ? 3. * layers * (o.cuts.size() + 1) : 1) > most_cells)
-    complain("--size " + std::to_string(o.size) + " m would give more than 1e8 cells; take a larger size");
+  for (const RefinedBox &box : o.boxes)
+    if (!(box.size > 0)) complain("--refine x0 y0 x1 y1 h needs a cell size h above 0 m");
+  if (const double cells = estimated_cells(section, o); cells > most_cells) {
+    std::ostringstream text;
+    text << "the cell sizes would give about " << cells << " cells, more than " << most_cells
+         << "; take a larger --size, or larger cells in the boxes of --refine and refine_SIZE";
+    complain(text.str());
+  }
   if (o.thickness < 0) complain("--thickness must be above 0 m");
   if (o.layers < 0) complain("--layers must be 1 or more, or 0 for free tetrahedra");
   if (!o.cuts.empty() && o.dimension == 2) complain("--cuts part the thickness of a 3D body; give --dimension 3");
   for (std::size_t i = 0; i < o.cuts.size(); ++i)
     if (!(o.cuts[i] > (i ? o.cuts[i - 1] : 0) && o.cuts[i] < o.thickness))
       complain("--cuts must ascend between 0 and the thickness of " + std::to_string(o.thickness) + " m");
-  for (const RefinedBox &box : o.boxes)
-    if (!(box.size > 0)) complain("--refine x0 y0 x1 y1 h needs a cell size h above 0 m");
 }
 
 /// Measure of a simplex: length, area or volume.

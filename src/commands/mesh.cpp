@@ -68,7 +68,9 @@ void report_step(const MeshArguments &arguments, const LinearElastic &soil, doub
     for (int node : mesh.cells[slowest].node) centre += mesh.position[node][d] / (dim + 1);
     std::printf("%s%.4g", d ? ", " : "", centre);
   }
-  std::printf(") m; smallest altitude over wave speed is %.4g s\n", mesh.report().smallest_altitude / speed);
+  const MeshReport report = mesh.report();
+  std::printf(") m; smallest altitude over wave speed is %.4g s\n", report.smallest_altitude / speed);
+  for (const std::string &remark : report.remarks) std::printf("warning: %s\n", remark.c_str());
 }
 
 int make_mesh(const MeshArguments &arguments) {

@@ -55,7 +55,45 @@ TEST(BadFile, ATruncatedOrDamagedFileIsRefusedQuietly) {
   const std::string head = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"soil\"\n$EndPhysicalNames\n";
   expect_words(complaint_about_text(head + "$Nodes\n1\n1 0 0 0\n"), {"ends early"});
   expect_words(complaint_about_text(head + "$Nodes\n3\n1 0 0 0\nfour\n$EndNodes\n$Elements\n0\n$EndElements\n"),
-               {"PETSc cannot read it"});
+               {"line 11", "'four' stands where a number belongs", "save it again"});
+  expect_words(complaint_about_text(head + "$Nodes\n900000000\n1 0 0 0\n$EndNodes\n"),
+               {"line 9", "900000000 entries are announced"});
+}
+
+TEST(BadFile, AnElementMustNameNodesThatAreThere) {
+  BoxMesh absent(2, 2), twice(3, 2);
+  absent.cell[3][1] = 99;
+  expect_words(complaint<2>(absent), {"names the node 100, which is not in the file", "save it again"});
+  twice.cell[3][1] = twice.cell[3][2];
+  expect_words(complaint<3>(twice), {"names the node ", " twice", "save it again"});
+}
+
+TEST(BadFile, ANodeMayBeThereOnce) {
+  const std::string head = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"soil\"\n$EndPhysicalNames\n";
+  expect_words(complaint_about_text(head + "$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n2 5 5 5\n$EndNodes\n"
+                                           "$Elements\n1\n1 4 2 1 1 1 2 3 4\n$EndElements\n"),
+               {"node 2 is there twice"});
+}
+
+TEST(BadFile, APlaneMeshHasOneZ) {
+  BoxMesh mesh(2, 2);
+  for (auto &x : mesh.node) x[2] = 5;
+  EXPECT_EQ(complaint<2>(mesh), "");
+  mesh.node[4][2] = 5.01;
+  expect_words(complaint<2>(mesh), {"is not plane", "z = 5 m at (0, 0)", "z = 5.01 m at (", "y upward"});
+}
+
+TEST(BadFile, AGroupIsMadeOfSidesOfCells) {
+  BoxMesh mesh(2, 2);
+  mesh.facet[0] = {mesh.number(0, 0, 0), mesh.number(2, 2, 0)};
+  expect_words(complaint<2>(mesh), {"element 1 of the group 'base' is not the side of a cell", "remesh"});
+}
+
+TEST(BadFile, PartsThatLieInOnePlaceAreNamed) {
+  BoxMesh plane(2, 4), space(3, 2);
+  plane.part_upper_half(0.05, -0.1), space.part_upper_half(0.05, -0.1);
+  expect_words(complaint<2>(plane), {"overlaps cell ", "in lower", "in upper", "BooleanFragments"});
+  expect_words(complaint<3>(space), {"overlaps cell ", "in lower", "in upper", "BooleanFragments"});
 }
 
 TEST(BadFile, TheDimensionMustFit) {
@@ -96,6 +134,119 @@ TEST(BadFile, ANameThatDMPlexNeedsIsRefused) {
   expect_words(complaint_about_text("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"depth\"\n"
                                     "$EndPhysicalNames\n$Nodes\n0\n$EndNodes\n$Elements\n0\n$EndElements\n"),
                {"'depth'", "rename"});
+}
+
+std::vector<std::string> remarks(const BoxMesh &box) {
+  const SharedFile file(box);
+  return box.dim == 2 ? BackgroundMesh<2>::read(PETSC_COMM_WORLD, file.name(), {}).report().remarks
+                      : BackgroundMesh<3>::read(PETSC_COMM_WORLD, file.name(), {}).report().remarks;
+}
+
+/// Claims about remarks, which only the first rank has.
+void expect_remark(const BoxMesh &box, const std::vector<std::string> &words) {
+  const std::vector<std::string> found = remarks(box);
+  int rank;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  if (rank) return;
+  ASSERT_EQ(found.size(), 1u);
+  expect_words(found[0], words);
+}
+
+TEST(MeshRemark, ASoundMeshHasNone) {
+  EXPECT_TRUE(remarks(BoxMesh(2, 4)).empty());
+  EXPECT_TRUE(remarks(BoxMesh(3, 4)).empty());
+}
+
+TEST(MeshRemark, NodesThatWereNotMergedAreACrack) {
+  BoxMesh plane(2, 4), space(3, 2);
+  plane.part_upper_half(0, 0), space.part_upper_half(0, 0);
+  expect_remark(plane, {"8 sides of cells from (0, 0.5) m to (1, 0.5) m", "in lower", "in upper", "Merge the nodes"});
+  expect_remark(space, {"16 sides of cells from (0, 0.5, 0) m to (1, 0.5, 1) m", "no particle can pass"});
+}
+
+TEST(MeshRemark, SidesThatMeetOthersInTheirMiddleAreACrack) {
+  BoxMesh mesh(2, 4);
+  mesh.part_upper_half(0.125, 1e-5);
+  expect_remark(mesh, {"7 sides of cells from (0, 0.5) m to (1, 0.5) m", "cracked there"});
+}
+
+TEST(MeshRemark, APartWithoutNeighboursIsNamed) {
+  BoxMesh mesh(2, 4);
+  mesh.part_upper_half(0, 0.5);
+  expect_remark(mesh, {"2 parts that share no side", "of 16 cells at (", "in upper"});
+}
+
+TEST(MeshRemark, ASliverIsNamed) {
+  BoxMesh mesh(2, 2);
+  mesh.node[mesh.number(1, 1, 0)][1] = 0.02;
+  expect_remark(mesh, {"quality below 0.2", "the worst has", "in lower"});
+}
+
+TEST(MeshRemark, ATinyEdgeIsNamed) {
+  BoxMesh mesh(2, 4);
+  mesh.node[mesh.number(2, 2, 0)] = mesh.node[mesh.number(2, 1, 0)];
+  mesh.node[mesh.number(2, 2, 0)][1] += 1e-3;
+  const std::vector<std::string> found = remarks(mesh);
+  int rank;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  if (rank) return;
+  ASSERT_EQ(found.size(), 2u);  // it makes slivers too
+  expect_words(found[1], {"shortest edge measures 0.001 m", "determines the step"});
+}
+
+TEST(GmshFile, AllFormsGiveTheSameMesh) {
+  for (int dim : {2, 3}) {
+    const BoxMesh box(dim, 4);
+    std::vector<std::vector<double>> numbers;
+    for (const bool is_new : {false, true})
+      for (const bool binary : {false, true}) {
+        const SharedFile file([&](const std::string &name) { box.write(name, {is_new, binary}); });
+        const auto take = [&](const auto &mesh) {
+          auto &all = numbers.emplace_back();
+          for (const auto &x : mesh.position) all.insert(all.end(), x.begin(), x.end());
+          for (const auto &cell : mesh.cells) all.insert(all.end(), cell.node.begin(), cell.node.end());
+          for (const char *group : {"base", "top", "middle"})
+            for (const auto &facet : mesh.facets(group)) all.insert(all.end(), {1. * facet.cell, 1. * facet.face});
+          for (const char *region : {"lower", "upper"}) all.push_back(static_cast<double>(mesh.region(region).size()));
+        };
+        dim == 2 ? take(BackgroundMesh<2>::read(PETSC_COMM_WORLD, file.name(), {}))
+                 : take(BackgroundMesh<3>::read(PETSC_COMM_WORLD, file.name(), {}));
+      }
+    for (const auto &of_form : numbers) EXPECT_EQ(of_form, numbers[0]);
+  }
+}
+
+/// A damaged file is refused with a text, or read as another mesh that is sound; nothing else may happen.
+template <int dim>
+bool is_refused(const std::string &content) {
+  const SharedFile file([&](const std::string &name) { std::ofstream(name, std::ios::binary) << content; });
+  const std::string text = complaint<dim>(file.name());
+  EXPECT_TRUE(text.empty() || text.find(".msh") != std::string::npos) << text;
+  return !text.empty();
+}
+
+TEST(GmshFile, EveryTruncationAndFlippedBitIsRefusedOrRead) {
+  int ranks;
+  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  const std::size_t trials = ranks == 1 ? 400 : 20;  // of each kind and form; reading is the first rank's work
+  for (int dim : {2, 3})
+    for (const bool is_new : {false, true})
+      for (const bool binary : {false, true}) {
+        const std::string sound = BoxMesh(dim, 2).content({is_new, binary});
+        const auto refused = [&](const std::string &content) {
+          return dim == 2 ? is_refused<2>(content) : is_refused<3>(content);
+        };
+        EXPECT_FALSE(refused(sound));
+        const std::size_t complete = sound.size() - std::string("$EndElements\n").size();
+        int read = 0;
+        for (std::size_t i = 0; i < trials; ++i) {
+          EXPECT_TRUE(refused(sound.substr(0, i * complete / trials))) << "cut at " << i * complete / trials;
+          std::string flipped = sound;
+          flipped[i * 7919 % sound.size()] ^= static_cast<char>(1 << i % 8);
+          read += !refused(flipped);
+        }
+        EXPECT_LT(read, static_cast<int>(trials));
+      }
 }
 
 }  // namespace

@@ -76,6 +76,62 @@ TEST(Section, RefinedBoxesTakeTwoRows) {
   EXPECT_EQ(s.boxes[0].to, (Vec<2>{3, 2}));
 }
 
+TEST(Section, IsReadAsSpreadsheetsSaveIt) {
+  const Section plain = section_of(square + "interface0,0,1.5\ninterface0,4,1.5\nrefine_0.25,1,1\nrefine_0.25,3,2\n");
+  const std::string forms[] = {
+      "\xef\xbb\xbfPart,X,Y\r\noutline,0,0\r\noutline,4,0\r\noutline,4,3\r\noutline,0,3\r\ninterface0,0,1.5\r\n"
+      "interface0,4,1.5\r\nrefine_0.25,1,1\r\nrefine_0.25,3,2\r\n,,\r\n",
+      "PART;X;Y\noutline;0;0\noutline;4,0;0\noutline;4;3\noutline;0;3,0\ninterface0;0;1,5\ninterface0;4;1.5\n"
+      "refine_0,25;1;1\nrefine_0,25;3;2\n;;\n",
+      "\"part\",\"x\",\"y\"\n\"outline\",\"0\",\"0\"\noutline,4,0,,\n outline , 4 , 3 # corner, right\noutline,0,+3\n"
+      "interface0,0,15e-1\n\ninterface0,4,1.5\nrefine_0.25,1,1\nrefine_0.25,3,2",
+      "part\tx\ty\routline\t0\t0\routline\t4\t0\routline\t4\t3\routline\t0\t3\rinterface0\t0\t1,5\rinterface0\t4\t1,5\r"
+      "refine_0,25\t1\t1\rrefine_0,25\t3\t2\r"};
+  for (const std::string &form : forms) {
+    const Section s = section_of(form);
+    EXPECT_EQ(s.outline.points, plain.outline.points) << form;
+    ASSERT_EQ(s.interfaces.size(), 1u) << form;
+    EXPECT_EQ(s.interfaces[0].points, plain.interfaces[0].points) << form;
+    ASSERT_EQ(s.boxes.size(), 1u) << form;
+    EXPECT_EQ(s.boxes[0].size, 0.25) << form;
+  }
+}
+
+TEST(BadSection, NumbersAreNotGuessed) {
+  expect_words(complaint("outline,0,0\noutline,\"4,5\",0\n"), {"line 2", "two numbers"});  // thousands, or a fraction
+  expect_words(complaint("outline;0;0\noutline;1.234,5;0\n"), {"line 2", "two numbers"});
+  expect_words(complaint(square + "outline,nan,1\n"), {"line 6", "two numbers"});
+  expect_words(complaint(square + "outline,1,2,3\n"), {"line 6", "part,x,y"});
+  expect_words(complaint(std::string("\xff\xfep\0a\0r\0t\0", 10)), {"UTF-8"});
+}
+
+TEST(BadSection, ALongListOfPointsIsRefusedAtOnce) {
+  std::string rows;
+  for (int i = 0; i < 100000; ++i) rows += "outline," + std::to_string(i) + ",0\n";
+  expect_words(complaint(rows), {"has 100000 points", "5000", "leave out points"});
+}
+
+TEST(Section, CrossingInterfacesAreFound) {
+  const std::string level = square + "interface0,0,2\ninterface0,4,2\n";
+  const auto crossing = [](const std::string &content) { return crossing_interfaces(section_of(content)).has_value(); };
+  EXPECT_FALSE(crossing(level + "interface1,0,1\ninterface1,4,1\n"));
+  EXPECT_FALSE(crossing(level + "interface1,0,1\ninterface1,2,2\ninterface1,4,1\n"));                  // touches
+  EXPECT_FALSE(crossing(level + "interface1,0,1\ninterface1,1,2\ninterface1,3,2\ninterface1,4,1\n"));  // runs along
+  EXPECT_FALSE(crossing(level + "interface1,2,1\ninterface1,2,2\n"));                                  // ends there
+  EXPECT_FALSE(
+      crossing(square + "interface0,0,2\ninterface0,2,2\ninterface1,2,0.5\ninterface1,2,2\ninterface1,2,2.5\n"));
+  EXPECT_TRUE(crossing(level + "interface1,0,1\ninterface1,2,2\ninterface1,4,2.5\n"));  // at its own point
+  EXPECT_TRUE(crossing(level + "interface1,0,1\ninterface1,1,2\ninterface1,3,2\ninterface1,4,2.5\n"));
+  const std::string bent = square + "interface0,0,2\ninterface0,2,2\ninterface0,4,2.2\n";
+  EXPECT_TRUE(crossing(bent + "interface1,0,1\ninterface1,4,3\n"));  // at a point of the other
+  const Section s = section_of(level + "interface1,0,1\ninterface1,4,3\n");
+  const auto found = crossing_interfaces(s);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->place, (Vec<2>{2, 2}));
+  EXPECT_EQ(found->first_line, 6);
+  EXPECT_EQ(found->second_line, 8);
+}
+
 TEST(BadSection, NamesTheLine) {
   expect_words(complaint(square + "outline,1\n"), {"line 6", "part,x,y"});
   expect_words(complaint(square + "outline,1,two\n"), {"line 6", "two numbers"});

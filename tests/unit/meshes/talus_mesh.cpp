@@ -75,6 +75,28 @@ TEST_F(TalusMesh, HasNodesAtTheEndsOfANamedBoundary) {
   expect_words(answer, {"group footing: 2 facets, 1 m", "m\n", "group surface"});
 }
 
+TEST_F(TalusMesh, RefusesInterfacesThatCrossUnlessEveryPieceHasAName) {
+  const std::string crossed =
+      "outline,0,0\noutline,4,0\noutline,4,2\noutline,0,2\ninterface0,0,0.5\ninterface0,4,1.5\n"
+      "interface1,0,1.5\ninterface1,4,0.5\nregion_a,2,1.8\nregion_b,2,0.2\nregion_c,0.5,1\n";
+  const std::string options = " --size 0.5 -o " + in_folder("m.msh");
+  const Answer refused = run(write("s.csv", crossed) + options);
+  EXPECT_EQ(refused.status, 2);
+  expect_words(refused, {"s.csv line 7: 'interface1' crosses 'interface0' of line 5 near (2, 1)", "region_NAME,x,y"});
+  EXPECT_EQ(run(write("s.csv", crossed + "region_d,3.5,1\n") + options).status, 0);
+}
+
+TEST_F(TalusMesh, CountsTheCellsOfBoxesBeforeItMakesThem) {
+  const std::string square = "outline,0,0\noutline,4,0\noutline,4,2\noutline,0,2\n";
+  const std::string options = " --size 0.5 -o " + in_folder("m.msh");
+  const Answer of_section = run(write("s.csv", square + "refine_0.00001,1,1\nrefine_0.00001,2,2\n") + options);
+  EXPECT_EQ(of_section.status, 2);
+  expect_words(of_section, {"about 2.3", "more than 1e+08", "larger cells in the boxes"});
+  const Answer of_options = run(write("s.csv", square) + options + " --refine 1 1 2 2 1e-5");
+  EXPECT_EQ(of_options.status, 2);
+  EXPECT_EQ(run(write("s.csv", square) + options + " --refine 5 5 6 6 1e-5").status, 0);  // outside the section
+}
+
 TEST_F(TalusMesh, TakesABoundaryThatEndsInsideTheSection) {
   const std::string square = "outline,0,0\noutline,4,0\noutline,4,2\noutline,0,2\n";
   const std::string source = write("s.csv", square + "b_slip,1,1\nb_slip,3,1\n");

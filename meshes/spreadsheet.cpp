@@ -1,0 +1,99 @@
+#include "meshes/spreadsheet.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+namespace talus {
+namespace {
+
+std::string trimmed(const std::string &text) {
+  const auto first = text.find_first_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+/// The first of these characters outside quotes, `#` ending the search; `fallback` without one.
+char first_outside_quotes(const std::string &line, const std::string &wanted, char fallback) {
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"') quoted = !quoted;
+    if (!quoted && c == '#') break;
+    if (!quoted && wanted.find(c) != std::string::npos) return c;
+  }
+  return fallback;
+}
+
+/// Semicolons part cells wherever there are any, since commas may then be decimal ones.
+char separator_of(const std::vector<std::string> &lines) {
+  for (const char *wanted : {";", "\t"})
+    for (const std::string &line : lines)
+      if (first_outside_quotes(line, wanted, ',') == *wanted) return *wanted;
+  return ',';
+}
+
+std::vector<std::string> cells_of(const std::string &line, char separator) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"')
+      cells.back() += line[++i];  // a doubled quote stands for one
+    else if (c == '"')
+      quoted = !quoted;
+    else if (c == separator && !quoted)
+      cells.emplace_back();
+    else if (c == '#' && !quoted)
+      break;
+    else
+      cells.back() += c;
+  }
+  for (std::string &cell : cells) cell = trimmed(cell);
+  while (!cells.empty() && cells.back().empty()) cells.pop_back();
+  return cells;
+}
+
+std::vector<std::string> lines_of(const std::string &text) {
+  std::vector<std::string> lines(1);
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\r' && i + 1 < text.size() && text[i + 1] == '\n') continue;
+    if (text[i] == '\n' || text[i] == '\r')
+      lines.emplace_back();
+    else
+      lines.back() += text[i];
+  }
+  return lines;
+}
+
+}  // namespace
+
+bool Spreadsheet::number(const std::string &cell, double &value) const {
+  std::string text = cell;
+  if (decimal_comma && std::count(text.begin(), text.end(), ',') == 1 && text.find('.') == std::string::npos)
+    std::replace(text.begin(), text.end(), ',', '.');
+  const char *begin = text.data() + text.starts_with('+'), *end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(begin, end, value);
+  return error == std::errc() && at == end && std::isfinite(value);
+}
+
+Spreadsheet read_spreadsheet(const std::string &file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in || in.peek() == std::ifstream::traits_type::eof())
+    throw std::invalid_argument(file + ": cannot be read or is empty; check the path and its permissions");
+  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
+  if (text.find('\0') != std::string::npos || text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
+    throw std::invalid_argument(file + ": is no text in UTF-8; save the table as \"CSV UTF-8\"");
+  const std::vector<std::string> lines = lines_of(text);
+  const char separator = separator_of(lines);
+  Spreadsheet sheet;
+  sheet.decimal_comma = separator != ',';
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    if (auto cells = cells_of(lines[i], separator); !cells.empty())
+      sheet.rows.push_back({std::move(cells), static_cast<int>(i) + 1});
+  return sheet;
+}
+
+}  // namespace talus
