@@ -1,9 +1,15 @@
 /// The program `talus`: commands, and how errors become exit statuses (0 success, 2 bad input, 1 anything else).
 #include <petscsys.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
 #include <map>
 #include <stdexcept>
+#include <system_error>
 
 #include "base/version.h"
 #include "commands/commands.h"
@@ -42,9 +48,27 @@ int perform(int argc, char **argv, bool speaks) {
   return 0;
 }
 
+/// MPI starts with files in the folder for temporary ones, and says little where it cannot write them.
+bool can_write_temporary_files() {
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+  std::string name = folder / "talus-XXXXXX";
+  const int file = error ? -1 : mkstemp(name.data());
+  const std::string page(4096, ' ');
+  const ssize_t size = file >= 0 ? write(file, page.data(), page.size()) : -1;
+  const bool written = size == static_cast<ssize_t>(page.size());
+  const int cause = error ? error.value() : size >= 0 ? ENOSPC : errno;
+  if (file >= 0) close(file), unlink(name.c_str());
+  if (!written)
+    std::fprintf(stderr, "talus: cannot write temporary files in %s: %s; set TMPDIR to a folder with room\n",
+                 error ? std::getenv("TMPDIR") : folder.c_str(), std::strerror(cause));
+  return written;
+}
+
 }  // namespace
 
 int main(int argc, char **argv) {
+  if (!can_write_temporary_files()) return 1;
   // everything behind a lone "--" is PETSc's
   int own = argc;
   for (int i = 1; i < argc; ++i)

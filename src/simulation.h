@@ -27,6 +27,7 @@ class RunError : public std::runtime_error {
 struct RunOptions {
   std::string directory;  ///< of the results; empty: nothing is written
   bool resume = false;    ///< go on from the checkpoint in the directory
+  bool replace = false;   ///< results of another run in the directory are given up
   bool pictures = true;   ///< draw them when the run ends
   bool screen = true;     ///< progress line
   bool gauss_points =

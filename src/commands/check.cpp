@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "commands/commands.h"
+#include "commands/foreign_code.h"
 #include "commands/gallery.h"
 #include "commands/json.h"
 #include "commands/needs.h"
@@ -16,7 +17,7 @@ namespace {
 struct CheckArguments {
   std::string scene;
   std::vector<std::string> set;
-  bool json = false;
+  bool json = false, no_umat = false;
 };
 
 constexpr int label_width = 10, page_width = 110;
@@ -99,7 +100,7 @@ void print_costs(const Scene &scene, const Needs &n) {
     line("", "%-16s %-14s %10lld %8lld %5d %10.4g %8.3g %8.3g %12.3g", b.body.name.c_str(), law_name(b.law),
          b.body.particles, b.body.cells, b.body.fewest_per_cell, b.body.mass, b.wave_speed, b.shear_speed,
          b.body.critical_step);
-  line("memory", "%s resident; snapshots take about %s (%d)", spoken_bytes(n.memory).c_str(),
+  line("memory", "%s resident; snapshots take about %s (%lld)", spoken_bytes(n.memory).c_str(),
        spoken_bytes(n.results).c_str(), n.snapshots);
   const BodyReport &slowest = n.slowest_body().body;
   if (n.critical_step > slowest.critical_step)
@@ -224,7 +225,7 @@ void print_json(const Scene &scene, const Needs &n, const std::vector<std::strin
       .add("seconds_per_step", n.seconds_per_step)
       .add("run_time_s", n.run_time())
       .add("memory_B", n.memory)
-      .add("snapshots", n.snapshots)
+      .add("snapshots", static_cast<double>(n.snapshots))
       .add("snapshots_B", n.results)
       .add("drainage", Object()
                            .add("time_s", n.drainage.time)
@@ -238,6 +239,7 @@ void print_json(const Scene &scene, const Needs &n, const std::vector<std::strin
 
 int check(const CheckArguments &arguments) {
   Scene scene = read_scene(find_scene(arguments.scene), arguments.set);
+  if (arguments.no_umat) refuse_umat(scene);
   const Needs needs = find_needs(scene);
   const std::vector<std::string> advice = advise(scene, needs);
   int rank;
@@ -254,6 +256,7 @@ Action add_check(CLI::App &app) {
       app.add_subcommand("check", "estimate cost and memory of a scene without running it, and give advice");
   command->add_option("SCENE", arguments->scene, "scene file (.toml) or the name of a gallery scene")->required();
   command->add_option("--set", arguments->set, "override a key of the scene: key.path=value")->take_all();
+  command->add_flag("--no-umat", arguments->no_umat, "refuse laws that load a library: for scenes of strangers");
   command->add_flag("--json", arguments->json, "one JSON document on standard output");
   return [arguments] { return check(*arguments); };
 }

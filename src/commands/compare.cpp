@@ -125,8 +125,7 @@ int compare(CompareArguments arguments) {
   require_one_rank("compare");
   arguments.scene = find_scene(arguments.scene);
   read_scene(arguments.scene, arguments.set);
-  if (arguments.directory.empty())
-    arguments.directory = "results/compare_" + fs::path(arguments.scene).parent_path().filename().string();
+  if (arguments.directory.empty()) arguments.directory = "results/compare_" + short_name(arguments.scene);
   const Measure measure = parse_measure(arguments.measure);
   if (!arguments.exact.empty() && !arguments.reference.empty())
     throw SceneError("--exact and --reference both define the true value: give one of them");

@@ -102,12 +102,24 @@ inline Measure parse_measure(const std::string &text) {
   return m;
 }
 
+/// A cell of a CSV file without its quotes.
+inline std::string unquoted(const std::string &cell) {
+  if (cell.size() < 2 || cell.front() != '"' || cell.back() != '"') return cell;
+  std::string text;
+  for (std::size_t i = 1; i + 1 < cell.size(); ++i) {
+    text += cell[i];
+    if (cell[i] == '"') ++i;  // a doubled quote stands for one
+  }
+  return text;
+}
+
 /// The measure of a history.csv, linear between its lines. Throws SceneError for a column it lacks.
 inline double value_of(const std::string &path, const Measure &measure) {
   std::ifstream file(path);
   std::string line;
   std::getline(file, line);
-  const std::vector<std::string> names = pieces(line, ',');
+  std::vector<std::string> names = pieces(line, ',');
+  for (std::string &name : names) name = unquoted(name);
   const auto found = std::find(names.begin(), names.end(), measure.column);
   if (found == names.end())
     throw SceneError("--measure: " + path + " has no column " + measure.column + "; it has " + line);

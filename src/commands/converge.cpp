@@ -121,8 +121,7 @@ int converge(ConvergeArguments arguments) {
   require_one_rank("converge");
   arguments.scene = find_scene(arguments.scene);
   const Scene scene = read_scene(arguments.scene, arguments.set);
-  if (arguments.directory.empty())
-    arguments.directory = "results/converge_" + fs::path(arguments.scene).parent_path().filename().string();
+  if (arguments.directory.empty()) arguments.directory = "results/converge_" + short_name(arguments.scene);
   const Refinement refinement = refinement_of(scene, arguments);
   std::vector<Trial> trials = trials_of(refinement, arguments.directory);
   std::vector<Trial *> pointers;

@@ -1,7 +1,11 @@
 #include "commands/gallery.h"
 
+#include <cctype>
+#include <cstring>
 #include <filesystem>
+#include <sstream>
 
+#include "base/archive.h"
 #include "scene/reader.h"
 
 namespace talus {
@@ -29,6 +33,25 @@ std::string find_scene(const std::string &name) {
       if (fs::is_regular_file(entry.path() / "scene.toml"))
         known += (known.empty() ? "" : ", ") + entry.path().filename().string();
   throw SceneError(name + " is neither a file nor a gallery scene (" + known + ")");
+}
+
+std::string short_name(const std::string &scene_file) {
+  const std::filesystem::path path = std::filesystem::absolute(scene_file);
+  return path.stem() == "scene" ? path.parent_path().filename() : path.stem();
+}
+
+std::string default_results(const std::string &scene_file, const std::vector<std::string> &set) {
+  constexpr std::size_t longest = 120;  // characters; file systems end at 255 bytes
+  std::string name = short_name(scene_file), overrides;
+  for (const std::string &one : set) overrides += "_" + one;
+  for (char &c : overrides)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && !std::strchr("._=+-", c)) c = '-';
+  if (overrides.size() > longest) {
+    std::ostringstream number;  // tells apart what was cut off
+    number << std::hex << fingerprint(overrides.data(), overrides.size());
+    overrides = overrides.substr(0, longest) + "_" + number.str();
+  }
+  return "results/" + name + overrides;
 }
 
 }  // namespace talus

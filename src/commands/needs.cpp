@@ -7,6 +7,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "commands/foreign_code.h"
 #include "commands/scales.h"
 #include "physics/laws/strength_by_place.h"
 #include "physics/pores/hyperbolicity.h"
@@ -121,7 +122,12 @@ class Adviser {
   Adviser(const Scene &scene, const Needs &needs) : scene_(scene), needs_(needs) {}
 
   std::vector<std::string> all() {
+    for (const std::string &body : bodies_with_umat(scene_))
+      say("body." + body +
+          " runs the library of its UMAT, which can do whatever a program can: take such a scene only from people "
+          "whom you would trust with a program, or check and run it with --no-umat, which refuses it.");
     if (!needs_.burst_failure.empty()) say("The run breaks off in its first steps: " + needs_.burst_failure + ".");
+    for (const std::string &remark : needs_.mesh.remarks) say(remark);
     for (const BodyNeeds &b : needs_.bodies) particles(b), locking(b), softening(b), yielding_ground(b);
     if (!needs_.function_fault.empty())
       say(needs_.function_fault +
@@ -264,9 +270,6 @@ class Adviser {
     if (t.integration == Integration::particle || t.integration == Integration::mixed)
       say("Integration by particle volumes was four to nine times less accurate than \"blended\" where particles cross "
           "cells.");
-    if (needs_.mesh.smallest_quality < 0.2)
-      say("The worst cell has a quality of " + digits(needs_.mesh.smallest_quality) +
-          "; a quality below 0.2 reduces the step and the accuracy.");
     constexpr long long few = 5000;
     if (needs_.ranks > 1 && needs_.particles() / needs_.ranks < few)
       say("A rank has " + std::to_string(needs_.particles() / needs_.ranks) + " particles; below " +
@@ -410,9 +413,9 @@ Needs find_needs(Scene &scene) {
     needs.stages.push_back(
         {stage.name, stage.duration, steps, steps * needs.seconds_per_step, stage.duration / needs.layer.transit});
     needs.snapshots +=
-        scene.output.interval > 0 ? static_cast<int>(std::ceil(stage.duration / scene.output.interval)) : 1;
+        scene.output.interval > 0 ? static_cast<long long>(std::ceil(stage.duration / scene.output.interval)) : 1;
   }
-  needs.results *= needs.snapshots;
+  needs.results *= static_cast<double>(needs.snapshots);
   needs.drainage = drainage_of(scene, needs);
   return needs;
 }

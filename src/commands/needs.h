@@ -64,7 +64,8 @@ struct Needs {
   std::string burst_failure;          ///< why the burst broke off; empty if it did not
   double memory;                      ///< resident after the burst, over all ranks [B]
   double results;                     ///< snapshots on disk [B]
-  int snapshots, ranks;
+  long long snapshots;
+  int ranks;
 
   double run_time() const;  ///< of all stages at their longest [s]
   long long particles() const;

@@ -1,7 +1,7 @@
 #include <csignal>
-#include <filesystem>
 
 #include "commands/commands.h"
+#include "commands/foreign_code.h"
 #include "commands/gallery.h"
 #include "scene/reader.h"
 #include "simulation.h"
@@ -12,20 +12,20 @@ namespace {
 struct RunArguments {
   std::string scene, directory;
   std::vector<std::string> set;
-  bool no_pictures = false, resume = false;
+  bool no_pictures = false, no_umat = false, resume = false, force = false;
 };
 
 void on_signal(int) { interrupted = 1; }
 
 int run(const RunArguments &arguments) {
-  Scene scene = read_scene(find_scene(arguments.scene), arguments.set);
+  const std::string file = find_scene(arguments.scene);
+  Scene scene = read_scene(file, arguments.set);
+  if (arguments.no_umat) refuse_umat(scene);
   RunOptions options;
-  options.directory =
-      arguments.directory.empty()
-          ? "results/" + std::filesystem::path(find_scene(arguments.scene)).parent_path().filename().string()
-          : arguments.directory;
+  options.directory = arguments.directory.empty() ? default_results(file, arguments.set) : arguments.directory;
   options.pictures = !arguments.no_pictures;
   options.resume = arguments.resume;
+  options.replace = arguments.force;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error of writing, not the end
@@ -44,10 +44,14 @@ Action add_run(CLI::App &app) {
   auto arguments = std::make_shared<RunArguments>();
   CLI::App *command = app.add_subcommand("run", "run a scene and draw its pictures");
   command->add_option("SCENE", arguments->scene, "scene file (.toml) or the name of a gallery scene")->required();
-  command->add_option("-o,--output", arguments->directory, "folder of the results (default results/NAME)");
+  command->add_option("-o,--output", arguments->directory,
+                      "folder of the results (default results/NAME, with what --set changes)");
   command->add_option("--set", arguments->set, "override a key of the scene: key.path=value")->take_all();
-  command->add_flag("--resume", arguments->resume,
-                    "continue the run in that folder from its last checkpoint, on the same number of ranks");
+  command->add_flag("--no-umat", arguments->no_umat, "refuse laws that load a library: for scenes of strangers");
+  CLI::Option *resume =
+      command->add_flag("--resume", arguments->resume,
+                        "continue the run in that folder from its last checkpoint, on the same number of ranks");
+  command->add_flag("--force", arguments->force, "replace the results of another run in that folder")->excludes(resume);
   command->add_flag("--no-pictures", arguments->no_pictures, "do not draw pictures at the end");
   return [arguments] { return run(*arguments); };
 }

@@ -107,8 +107,7 @@ int test_soil(const SoilArguments &arguments) {
   const std::string file = find_scene(arguments.file);
   const TableReader root = TableReader::from_file(file, arguments.set);
   const Job job = root.has("body") ? from_scene(file, arguments) : from_soil_file(root, arguments);
-  const std::filesystem::path path(file);
-  const std::string name = (path.stem() == "scene" ? path.parent_path().filename() : path.stem()).string();
+  const std::string name = short_name(file);
   const std::string dir = arguments.directory.empty() ? "results/soil-" + name : arguments.directory;
   const std::string problem = law_problem(job.law, 3);
   if (!problem.empty()) throw SceneError(file + ": the law cannot be used: " + problem);
@@ -126,7 +125,7 @@ int test_soil(const SoilArguments &arguments) {
   }
   const bool drawn = !arguments.no_pictures && draw_element_tests(dir, names, job.title);
   std::printf("results are in %s: %sone CSV file per test\n", dir.c_str(), drawn ? "soil.png, " : "");
-  return 0;
+  return drawn || arguments.no_pictures ? 0 : 1;
 }
 
 }  // namespace

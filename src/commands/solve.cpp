@@ -1,8 +1,8 @@
 #include <csignal>
-#include <filesystem>
 #include <fstream>
 
 #include "commands/commands.h"
+#include "commands/foreign_code.h"
 #include "commands/gallery.h"
 #include "commands/json.h"
 #include "output/pictures.h"
@@ -15,7 +15,7 @@ namespace {
 struct SolveArguments {
   std::string scene, directory;
   std::vector<std::string> set;
-  bool no_pictures = false, factor_of_safety = false, json = false;
+  bool no_pictures = false, no_umat = false, factor_of_safety = false, json = false, force = false;
 };
 
 constexpr int undecided_status = 3;  // of the program: the factor is known no better than a wide bracket
@@ -118,14 +118,14 @@ int solve(const SolveArguments &arguments) {
     throw std::invalid_argument("--json writes the factor of safety: give --factor-of-safety too");
   const std::string file = find_scene(arguments.scene);
   Scene scene = read_scene(file, arguments.set);
+  if (arguments.no_umat) refuse_umat(scene);
   const auto dynamic = [](const Stage &stage) { return stage.kind == StageKind::dynamic; };
   std::erase_if(scene.stage, dynamic);
   if (scene.stage.empty())
     scene.complain("stage", "has no quasi-static stage to solve; set its kind = \"quasi_static\"");
   RunOptions options;
-  options.directory = arguments.directory.empty()
-                          ? "results/" + std::filesystem::path(file).parent_path().filename().string()
-                          : arguments.directory;
+  options.directory = arguments.directory.empty() ? default_results(file, arguments.set) : arguments.directory;
+  options.replace = arguments.force;
   options.pictures = false, options.gauss_points = true;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
@@ -150,7 +150,7 @@ int solve(const SolveArguments &arguments) {
     PictureChoice choice;
     choice.fields = {"displacement", "shear_strain"};
     if (scene.phases != PhaseModel::dry) choice.fields.push_back("pore_pressure");
-    draw_pictures(options.directory, choice);
+    if (!draw_pictures(options.directory, choice)) throw std::runtime_error(without_pictures(options.directory));
   }
   if (rank == 0)
     std::fprintf(stderr, "results are in %s: %srun.xdmf for ParaView\n", options.directory.c_str(),
@@ -165,12 +165,15 @@ Action add_solve(CLI::App &app) {
   CLI::App *command =
       app.add_subcommand("solve", "solve the quasi-static stages of a scene by finite elements; factor of safety");
   command->add_option("SCENE", arguments->scene, "scene file (.toml) or the name of a gallery scene")->required();
-  command->add_option("-o,--output", arguments->directory, "folder of the results (default results/NAME)");
+  command->add_option("-o,--output", arguments->directory,
+                      "folder of the results (default results/NAME, with what --set changes)");
   command->add_option("--set", arguments->set, "override a key of the scene: key.path=value")->take_all();
+  command->add_flag("--no-umat", arguments->no_umat, "refuse laws that load a library: for scenes of strangers");
   command->add_flag("--factor-of-safety", arguments->factor_of_safety,
                     "reduce strength after the stages until the soil fails; status 3 if the factor is known only as a "
                     "wide bracket");
   command->add_flag("--json", arguments->json, "print the factor of safety as one JSON document");
+  command->add_flag("--force", arguments->force, "replace the results of another run in that folder");
   command->add_flag("--no-pictures", arguments->no_pictures, "do not draw pictures at the end");
   return [arguments] { return solve(*arguments); };
 }

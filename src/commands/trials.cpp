@@ -60,7 +60,7 @@ void remember(const std::string &described, const Trial &trial) {
 
 pid_t start(const TrialPlan &plan, const Trial &trial) {
   fs::create_directories(trial.folder);
-  std::vector<std::string> words{"talus", "run", plan.scene, "-o", trial.folder, "--no-pictures"};
+  std::vector<std::string> words{"talus", "run", plan.scene, "-o", trial.folder, "--no-pictures", "--force"};
   std::vector<std::string> overrides = plan.set;
   overrides.insert(overrides.end(), trial.overrides.begin(), trial.overrides.end());
   if (!overrides.empty()) words.push_back("--set"), words.insert(words.end(), overrides.begin(), overrides.end());

@@ -102,7 +102,8 @@ CheckpointHeader read_checkpoint_header(MPI_Comm comm, const std::string &dir) {
   CheckpointHeader header;
   together_or_refuse(comm, [&] {
     if (!fs::exists(header_file(dir)))
-      throw std::runtime_error(dir + " contains no checkpoint; run the scene without --resume");
+      throw std::runtime_error(dir + " contains no checkpoint; run the scene without --resume" +
+                               (fs::exists(dir + "/history.csv") ? ", with --force to replace what is there" : ""));
     Archive archive(load(header_file(dir)));
     serialize(archive, header);
   });

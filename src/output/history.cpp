@@ -17,18 +17,18 @@ namespace {
 constexpr int digits = 12;           // of every number
 constexpr double round_off = 1e-11;  // relative, of a time written in so many digits
 
-std::string header(const std::vector<std::string> &names) {
-  std::string line = "time_s,step,stage";
-  for (const auto &name : names) line += "," + name;
-  return line;
-}
-
 /// A text as one field of a CSV line.
 std::string quoted(const std::string &text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string field = "\"";
   for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
   return field + "\"";
+}
+
+std::string header(const std::vector<std::string> &names) {
+  std::string line = "time_s,step,stage";
+  for (const auto &name : names) line += "," + quoted(name);
+  return line;
 }
 
 /// The header and the complete lines up to `time`.

@@ -42,6 +42,11 @@ bool draw_pictures(const std::string &dir, const PictureChoice &choice) {
   return draw("talus_plot.py", dir, options);
 }
 
+std::string without_pictures(const std::string &dir) {
+  return "the results in " + dir + " are complete, but have no pictures and no report; talus plot " + dir +
+         " draws them, and --no-pictures does without them";
+}
+
 bool draw_comparison(const std::string &dir) { return draw("talus_compare.py", dir, {}); }
 
 bool draw_element_tests(const std::string &dir, const std::vector<std::string> &tests, const std::string &title) {

@@ -12,9 +12,12 @@ struct PictureChoice {
   bool logarithmic = false;         ///< scale of plastic strain
 };
 
-/// Draws DIR/pictures/*.png and DIR/report.html from the results in `dir`; call it on one rank. Pictures never fail a
-/// run: if drawing fails, a warning goes to standard error and the answer is false.
+/// Draws DIR/pictures/*.png and DIR/report.html from the results in `dir`; call it on one rank. If drawing fails, a
+/// warning with the cause goes to standard error and the answer is false.
 bool draw_pictures(const std::string &dir, const PictureChoice &choice = {});
+
+/// What a run says that ends without its pictures, although its results are complete.
+std::string without_pictures(const std::string &dir);
 
 /// Draws DIR/compare.png from DIR/compare.csv, with the same answer.
 bool draw_comparison(const std::string &dir);

@@ -89,11 +89,17 @@ bool is_snapshot(const std::filesystem::path &file) {
   return file.extension() == ".h5" && name.find_first_not_of("0123456789") == std::string::npos;
 }
 
-void remove_snapshots(const std::string &folder) {
-  std::vector<std::filesystem::path> old;
+/// Of the snapshots in a folder, ascending.
+std::vector<std::string> numbers_of_snapshots(const std::string &folder) {
+  std::vector<std::string> numbers;
   for (const auto &file : std::filesystem::directory_iterator(folder))
-    if (is_snapshot(file.path())) old.push_back(file.path());
-  for (const auto &file : old) std::filesystem::remove(file);
+    if (is_snapshot(file.path())) numbers.push_back(file.path().stem());
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
+}
+
+void remove_snapshots(const std::string &folder) {
+  for (const std::string &number : numbers_of_snapshots(folder)) std::filesystem::remove(folder + "/" + number + ".h5");
 }
 
 std::string numbered(std::size_t count) {
@@ -125,7 +131,36 @@ std::string xdmf_attribute(const std::string &name, const char *type, const std:
 
 RunFile::RunFile(MPI_Comm comm, const std::string &dir, const RunHeader &header, const MeshPicture &local_mesh)
     : RunFile(comm, dir) {
-  const MeshPicture mesh = gathered(comm, local_mesh);
+  begin(header, local_mesh, [&] {
+    write_index();  // before the old snapshots are removed, so that no link ever leads nowhere
+    remove_snapshots(dir_ + "/run");
+  });
+}
+
+RunFile RunFile::append(MPI_Comm comm, const std::string &dir, const RunHeader &header, const MeshPicture &local_mesh,
+                        double time) {
+  RunFile run(comm, dir);
+  run.begin(header, local_mesh, [&] {
+    std::vector<std::string> later;
+    for (const std::string &number : numbers_of_snapshots(dir + "/run")) try {
+        const Entry entry = run.read_entry(number);
+        if (entry.time <= time)
+          run.entries_.push_back(entry);
+        else
+          later.push_back(number);
+      } catch (const std::runtime_error &error) {
+        run.damaged_.push_back(error.what());
+      }
+    run.write_index();
+    for (const auto &number : later) std::filesystem::remove(dir + "/" + run.snapshot_file(number));
+  });
+  run.share_last_step();
+  return run;
+}
+
+/// Writes the mesh, then does what `rest` says on the first rank.
+void RunFile::begin(const RunHeader &header, const MeshPicture &local_mesh, const std::function<void()> &rest) {
+  const MeshPicture mesh = gathered(comm_, local_mesh);
   on_first_rank(comm_, [&] {
     header_ = header;
     dimension_ = mesh.dimension;
@@ -138,41 +173,15 @@ RunFile::RunFile(MPI_Comm comm, const std::string &dir, const RunHeader &header,
     file.attribute("node_position", "unit", std::string("m"));
     file.dataset("cell_node", mesh.cell_node, mesh.dimension + 1);
     file.save();
-    write_index();  // before the old snapshots are removed, so that no link ever leads nowhere
-    remove_snapshots(dir_ + "/run");
+    rest();
   });
-}
-
-RunFile RunFile::append(MPI_Comm comm, const std::string &dir, double time) {
-  RunFile run(comm, dir);
-  on_first_rank(comm, [&] {
-    const Hdf5Reader index(dir + "/run.h5");
-    run.header_ = {index.text("/", "title"), index.text("/", "program"), index.texts("scene").at(0),
-                   index.texts("bodies")};
-    const Hdf5Reader mesh(dir + "/" + mesh_file);
-    run.dimension_ = static_cast<int>(mesh.integer("/", "dimension"));
-    run.nodes_ = mesh.shape("node_position").at(0);
-    run.cells_ = mesh.shape("cell_node").at(0);
-    std::vector<std::string> later;
-    for (const auto &number : index.names("snapshots")) {
-      const Entry entry = run.read_entry(number);
-      if (entry.time <= time)
-        run.entries_.push_back(entry);
-      else
-        later.push_back(number);
-    }
-    run.write_index();
-    for (const auto &number : later) std::filesystem::remove(dir + "/" + run.snapshot_file(number));
-  });
-  run.share_last_step();
-  return run;
 }
 
 void RunFile::write(const Snapshot &local) {
   together(comm_, [&] { check_lengths(local); });
   const Snapshot all = gathered(comm_, local);
   on_first_rank(comm_, [&] {
-    entries_.push_back(write_file(all, numbered(entries_.size())));
+    entries_.push_back(write_file(all, numbered(next_number())));
     try {
       write_index();
     } catch (...) {
@@ -182,6 +191,9 @@ void RunFile::write(const Snapshot &local) {
   });
   last_step_ = local.step;
 }
+
+/// Behind the last snapshot; a damaged one in between keeps its number.
+std::size_t RunFile::next_number() const { return entries_.empty() ? 0 : std::stoul(entries_.back().number) + 1; }
 
 RunFile::Entry RunFile::write_file(const Snapshot &all, const std::string &number) const {
   Entry entry{number, all.time, all.step, all.id.size(), {}};

@@ -17,6 +17,7 @@
 /// while it is written.
 #include <mpi.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -40,14 +41,18 @@ class RunFile {
   /// removed.
   RunFile(MPI_Comm comm, const std::string &dir, const RunHeader &header, const MeshPicture &local_mesh);
 
-  /// Continues the results of an earlier run: header and mesh stay, snapshots later than `time` [s] are removed.
-  static RunFile append(MPI_Comm comm, const std::string &dir, double time);
+  /// Continues the results of an earlier run of the same scene: index and mesh are written anew, snapshots later than
+  /// `time` [s] are removed, damaged ones are left where they are but not in the index.
+  static RunFile append(MPI_Comm comm, const std::string &dir, const RunHeader &header, const MeshPicture &local_mesh,
+                        double time);
 
   /// Adds a snapshot. Ranks without particles pass columns without values.
   void write(const Snapshot &local);
 
   /// Step of the last snapshot; -1 if there is none.
   long long last_step() const { return last_step_; }
+  /// What is wrong with the snapshots that `append` left out, on rank 0.
+  const std::vector<std::string> &damaged() const { return damaged_; }
 
  private:
   struct Shape {
@@ -63,6 +68,8 @@ class RunFile {
   };
 
   RunFile(MPI_Comm comm, const std::string &dir) : comm_(comm), dir_(dir) {}
+  void begin(const RunHeader &header, const MeshPicture &local_mesh, const std::function<void()> &rest);
+  std::size_t next_number() const;
   std::string snapshot_file(const std::string &number) const { return "run/" + number + ".h5"; }
   Entry write_file(const Snapshot &all, const std::string &number) const;
   Entry read_entry(const std::string &number) const;
@@ -80,6 +87,7 @@ class RunFile {
   int dimension_ = 2;
   unsigned long long nodes_ = 0, cells_ = 0;
   std::vector<Entry> entries_;
+  std::vector<std::string> damaged_;
 };
 
 }  // namespace talus

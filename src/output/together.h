@@ -21,15 +21,18 @@ inline int rank_in(MPI_Comm comm) {
   return rank;
 }
 
-/// Collective. Does `work` on every rank and, if it failed anywhere, throws std::runtime_error on all ranks with the
-/// cause on the first rank that failed. `work` may differ from rank to rank but must not contain a collective call
-/// that a failure would interrupt.
+/// Collective. Does `work` on every rank and, if it failed anywhere, throws on all ranks with the cause on the first
+/// rank that failed: std::invalid_argument if it threw that there, else std::runtime_error. `work` may differ from rank
+/// to rank but must not contain a collective call that a failure would interrupt.
 template <class Work>
 void together(MPI_Comm comm, Work &&work) {
   std::string cause;
   bool ok = true;
+  int refused = 0;
   try {
     work();
+  } catch (const std::invalid_argument &error) {
+    cause = error.what(), ok = false, refused = 1;
   } catch (const std::exception &error) {
     cause = error.what(), ok = false;
   }
@@ -42,6 +45,8 @@ void together(MPI_Comm comm, Work &&work) {
   check_mpi(MPI_Bcast(&length, 1, MPI_INT, first, comm), "sending the cause of a failure");
   cause.resize(length);
   check_mpi(MPI_Bcast(cause.data(), length, MPI_CHAR, first, comm), "sending the cause of a failure");
+  check_mpi(MPI_Bcast(&refused, 1, MPI_INT, first, comm), "sending the cause of a failure");
+  if (refused) throw std::invalid_argument(cause);
   throw std::runtime_error(cause);
 }
 

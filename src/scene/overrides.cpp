@@ -17,6 +17,8 @@ toml::table parse_override(const std::string &text) {
     if (table.size() == 1) return table;
   } catch (const toml::parse_error &) {  // a bare word is a string
   }
+  if (has_control_characters(text))
+    throw SceneError("--set: \"" + text + "\" is no value of TOML, and a text without quotes is a single line");
   std::ostringstream quoted;
   quoted << "value = " << toml::value<std::string>(text);
   return toml::parse(quoted.str(), override_place);

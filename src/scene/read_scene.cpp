@@ -210,6 +210,8 @@ class Checks {
   }
 
   void stage(const Stage &stage, const std::string &path) const {
+    if (has_control_characters(stage.name))
+      reader_.complain(path + ".name", "must be a name without line breaks and other control characters");
     bodies_of(stage, path);
     const bool drained = scene_.phases == PhaseModel::drained;
     if (water_flows(stage.kind) && scene_.phases != PhaseModel::saturated && scene_.phases != PhaseModel::unsaturated &&
@@ -308,7 +310,10 @@ Scene parse(const std::string &text, const std::string &file, const std::vector<
   reader.fill(scene);
   Checks(scene, reader, host_mesh).all();
   scene.file = file;
-  for (const std::string &one : overrides) scene.source += "# --set " + one + "\n";
+  for (std::string one : overrides) {
+    std::replace(one.begin(), one.end(), '\n', ' ');  // a comment ends with its line
+    scene.source += "# --set " + one + "\n";
+  }
   scene.source += text;
   scene.root = std::make_shared<TableReader>(reader);
   return scene;

@@ -274,6 +274,8 @@ std::optional<std::vector<std::pair<std::string, TableReader>>> TableReader::nam
     if (!node->is_table())
       Value(*document_, *node, path, meaning)
           .must_be("a table with a name of your choice, [" + path_to(key) + ".NAME]");
+    if (has_control_characters(name))
+      Value(*document_, *node, path, meaning).must_be("named without line breaks and other control characters");
     tables.emplace_back(name, TableReader(document_, node->as_table(), path));
   }
   return tables;

@@ -1,6 +1,7 @@
 #include "scene/words.h"
 
 #include <algorithm>
+#include <cctype>
 #include <sstream>
 
 namespace talus {
@@ -35,6 +36,10 @@ std::vector<std::string> split(const std::string &path) {
   std::istringstream stream(path);
   for (std::string word; std::getline(stream, word, '.');) words.push_back(word);
   return words;
+}
+
+bool has_control_characters(const std::string &name) {
+  return std::any_of(name.begin(), name.end(), [](unsigned char c) { return std::iscntrl(c); });
 }
 
 std::string join(const std::vector<std::string> &words) {

@@ -16,6 +16,9 @@ std::string nearest(const std::string &word, const std::vector<std::string> &can
 /// Words of a dotted path.
 std::vector<std::string> split(const std::string &path);
 
+/// Line breaks and the like, which have no place in names.
+bool has_control_characters(const std::string &name);
+
 /// "a, b, c"
 std::string join(const std::vector<std::string> &words);
 

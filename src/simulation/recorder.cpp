@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <sstream>
@@ -22,6 +23,7 @@ template <int dim>
 Recorder<dim>::Recorder(const Sources<dim> &of, const RunOptions &options)
     : of_(of), scene_(of.world.scene), phases_(of.world.phases), options_(options) {
   check_pictures();
+  check_intervals();
 }
 
 // ---- files ----
@@ -30,32 +32,50 @@ template <int dim>
 void Recorder<dim>::open() {
   name_columns();
   if (options_.directory.empty()) return;
+  auto folder = std::make_unique<ResultsFolder>(of_.world.comm, options_.directory,
+                                                options_.replace ? FolderUse::replace : FolderUse::start);
   int rank;
   MPI_Comm_rank(of_.world.comm, &rank);
   if (rank == 0 && has_flow_stages(scene_) && phases_.prescribed)
     std::filesystem::remove(seeped_file(options_.directory));  // of a run that was here before
+  RunFile file(of_.world.comm, options_.directory, header(), mesh_picture());
+  History rows(of_.world.comm, options_.directory + "/history.csv", {history_.names.begin() + 2, history_.names.end()});
+  results_.reset(new Files{std::move(folder), std::move(file), std::move(rows),
+                           Progress(of_.world.comm, options_.directory + "/run.log", longest_duration())});
+}
+
+template <int dim>
+RunHeader Recorder<dim>::header() const {
   RunHeader header{scene_.title, program, scene_.source, {}};
   for (const auto &body : of_.world.bodies) header.bodies.push_back(body->name());
+  return header;
+}
+
+template <int dim>
+MeshPicture Recorder<dim>::mesh_picture() const {
   MeshPicture picture;
   picture.dimension = dim;
   for (const Vec<dim> &x : of_.world.mesh.position) picture.position.insert(picture.position.end(), x.begin(), x.end());
   for (const Cell<dim> &cell : of_.world.mesh.cells)
     picture.cell_node.insert(picture.cell_node.end(), cell.node.begin(), cell.node.end());
-  RunFile file(of_.world.comm, options_.directory, header, picture);
-  History rows(of_.world.comm, options_.directory + "/history.csv", {history_.names.begin() + 2, history_.names.end()});
-  results_.reset(new Files{std::move(file), std::move(rows),
-                           Progress(of_.world.comm, options_.directory + "/run.log", longest_duration())});
+  return picture;
 }
 
 template <int dim>
-void Recorder<dim>::append() {
+void Recorder<dim>::append(std::unique_ptr<ResultsFolder> folder) {
   name_columns();
-  RunFile file = RunFile::append(of_.world.comm, options_.directory, last_snapshot_time_);
-  History rows = History::append(of_.world.comm, options_.directory + "/history.csv",
-                                 {history_.names.begin() + 2, history_.names.end()}, last_row_time_);
-  results_.reset(new Files{std::move(file), std::move(rows),
+  const std::string table = options_.directory + "/history.csv";
+  const bool has_table = std::filesystem::exists(table);
+  RunFile file = RunFile::append(of_.world.comm, options_.directory, header(), mesh_picture(), last_snapshot_time_);
+  const std::vector<std::string> damaged = file.damaged();
+  History rows =
+      History::append(of_.world.comm, table, {history_.names.begin() + 2, history_.names.end()}, last_row_time_);
+  results_.reset(new Files{std::move(folder), std::move(file), std::move(rows),
                            Progress(of_.world.comm, options_.directory + "/run.log", longest_duration(), true)});
   results_->progress.note("resumed at t = " + rounded(of_.clock.time) + " s, step " + std::to_string(of_.clock.steps));
+  if (!has_table) results_->progress.note("warning: history.csv was missing; it begins here");
+  for (const std::string &one : damaged)
+    results_->progress.note("warning: a damaged snapshot is left out of run.h5 and run.xdmf: " + one);
 }
 
 template <int dim>
@@ -63,9 +83,12 @@ void Recorder<dim>::close() {
   if (!results_) return;
   note_steps();
   results_->progress.finish();
-  int rank;
+  if (!options_.pictures) return;
+  int rank, drawn = 1;
   MPI_Comm_rank(of_.world.comm, &rank);
-  if (rank == 0 && options_.pictures) draw_pictures(options_.directory, {.fields = scene_.output.picture, .times = {}});
+  if (rank == 0) drawn = draw_pictures(options_.directory, {.fields = scene_.output.picture, .times = {}});
+  MPI_Bcast(&drawn, 1, MPI_INT, 0, of_.world.comm);
+  if (!drawn) throw RunError(without_pictures(options_.directory));
 }
 
 /// Time at which the run ends at the latest [s].
@@ -91,6 +114,22 @@ void Recorder<dim>::check_pictures() {
       scene_.complain("output.picture",
                       "names \"" + field + "\", which this run does not have; " + suggestion(field, known));
   }
+}
+
+/// Results closer than a thousandth of a step are no results, and steps that reached each of them would go on for ever.
+template <int dim>
+void Recorder<dim>::check_intervals() {
+  double step = std::numeric_limits<double>::infinity();
+  for (const BodyReport &body : of_.world.report()) step = std::min(step, body.critical_step);
+  if (std::isinf(step)) return;  // all soil comes later
+  const double least = step / 1000;
+  const Output &output = scene_.output;
+  for (const auto &[key, interval] : {std::pair{"output.interval", output.interval},
+                                      {"output.history_interval", output.history_interval},
+                                      {"output.checkpoint_interval", output.checkpoint_interval}})
+    if (interval > 0 && interval < least)
+      scene_.complain(key, "must be 0, or " + rounded(least) + " s or more: the critical step is " + rounded(step) +
+                               " s, and nothing new happens in a thousandth of it");
 }
 
 // ---- what happens ----

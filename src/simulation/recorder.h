@@ -8,6 +8,7 @@
 #include "output/checkpoint.h"
 #include "output/history.h"
 #include "output/progress.h"
+#include "output/results_folder.h"
 #include "output/snapshots.h"
 #include "simulation/dynamics.h"
 #include "simulation/statics.h"
@@ -31,13 +32,14 @@ struct Sources {
 template <int dim>
 class Recorder {
  public:
-  /// Throws SceneError where the scene asks for pictures that nobody can draw. Collective.
+  /// Throws SceneError where the scene asks for pictures that nobody can draw, or for results at times that lie closer
+  /// than steps. Collective.
   Recorder(const Sources<dim> &of, const RunOptions &options);
 
   /// Opens the files of a new run, or those of the run that was read from a checkpoint.
   void open();
-  void append();
-  /// Ends the files and draws the pictures.
+  void append(std::unique_ptr<ResultsFolder> folder);
+  /// Ends the files and draws the pictures. Throws RunError if these cannot be drawn.
   void close();
   bool writes() const { return results_ != nullptr; }  ///< files, not only the table in memory
 
@@ -69,11 +71,15 @@ class Recorder {
 
  private:
   struct Files {
+    std::unique_ptr<ResultsFolder> folder;  ///< locked while the run lasts
     RunFile file;
     History history;
     Progress progress;
   };
   void check_pictures();
+  void check_intervals();
+  RunHeader header() const;
+  MeshPicture mesh_picture() const;
   void name_columns();
   RunRow<dim> run_row() const;
   void note_steps();

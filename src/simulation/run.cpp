@@ -67,6 +67,7 @@ void Run<dim>::write_checkpoint() {
 template <int dim>
 void Run<dim>::resume() {
   const CheckpointHeader found = recorder.check_checkpoint();
+  auto folder = std::make_unique<ResultsFolder>(world.comm, options.directory, FolderUse::resume);
   Archive archive = read_checkpoint(world.comm, options.directory, found);
   if (has_flow_stages(scene) && world.phases.prescribed) statics.recall_seeped_pressure(options.directory);
   unsigned long long mesh = 0;
@@ -78,7 +79,7 @@ void Run<dim>::resume() {
                      " cannot be resumed: its mesh was another one; has the section or mesh file changed?");
   require(serialize(archive));
   recorder.take_checkpoint(found);
-  recorder.append();
+  recorder.append(std::move(folder));
 }
 
 /// The checkpoint comes first: what a run writes because it is interrupted must not be in the way when it goes on.

@@ -6,10 +6,24 @@
 #include <limits>
 #include <numeric>
 
+#include "physics/pores/soil_pores.h"
 #include "scene/reader.h"
 #include "scene/words.h"
 
 namespace talus {
+
+template <int dim>
+Statics<dim>::Statics(World<dim> &world, const Clock &clock) : world_(world), clock_(clock) {
+  if (!world.phases.prescribed || !has_flow_stages(world.scene)) return;
+  for (const auto &source : world.seepage_sources)
+    for (const std::string &group : source.groups)
+      if (!world.mesh.has_group(group) && group != free_surface)
+        world.scene.complain("boundary." + source.name + ".group", "must name groups of facets; the mesh has no \"" +
+                                                                       group + "\"; " +
+                                                                       suggestion(group, world.mesh.group_names()));
+  for (const BodySource &body : world.scene.body)  // curves that the motion of drained soil does without
+    (void)SoilPores(body, world.scene.water.density, world.scene.water.viscosity);
+}
 
 template <int dim>
 void Statics<dim>::make() {
@@ -23,12 +37,6 @@ void Statics<dim>::make() {
     if (has_flow_stages(world_.scene)) {
       const bool dries = std::any_of(world_.scene.body.begin(), world_.scene.body.end(),
                                      [](const BodySource &b) { return b.retention.reader; });
-      for (const auto &source : world_.seepage_sources)
-        for (const std::string &group : source.groups)
-          if (!world_.mesh.has_group(group) && group != free_surface)
-            world_.scene.complain("boundary." + source.name + ".group",
-                                  "must name groups of facets; the mesh has no \"" + group + "\"; " +
-                                      suggestion(group, world_.mesh.group_names()));
       world_.pressure.take(nullptr);
       flow_ = std::make_unique<PoreFlow<dim>>(world_.mesh, world_.scene, world_.conditions.sources(), dries,
                                               world_.seepage_sources);

@@ -16,8 +16,9 @@ namespace talus {
 template <int dim>
 class Statics {
  public:
-  /// The references must outlive it. Nothing is built before the first quasi-static stage.
-  Statics(World<dim> &world, const Clock &clock) : world_(world), clock_(clock) {}
+  /// The references must outlive it. Nothing is built before the first quasi-static stage, but what the scene says
+  /// about seepage is read: throws SceneError where it cannot be used.
+  Statics(World<dim> &world, const Clock &clock);
   Statics(const Statics &) = delete;
 
   /// Builds the problem with the bodies that are there now, without solving anything; for results at the start.

@@ -35,7 +35,7 @@ def run(talus, dimension, size, ranks):
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "scene.toml"
         path.write_text(scene(dimension, size))
-        command = [talus, "run", path, "-o", f"{folder}/run", "--no-pictures"]
+        command = [talus, "run", path, "-o", f"{folder}/run", "--no-pictures", "--force"]
         if ranks > 1:
             command = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks)] + command
         start = time.time()
@@ -64,7 +64,7 @@ def runs(talus):
 
 def pictures(talus):
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run([talus, "run", HERE / "scene.toml", "-o", folder], check=True)
+        subprocess.run([talus, "run", HERE / "scene.toml", "-o", folder, "--force"], check=True)
         for source, name in (("displacement_large", "bowl"), ("plastic_strain_large", "bands")):
             shutil.copy(f"{folder}/pictures/{source}.png", HERE / f"{name}.png")
 

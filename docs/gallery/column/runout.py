@@ -121,7 +121,7 @@ def run_all(folder, program):
             here = folder / f"friction{friction}_{'no_slip' if base_friction is None else f'base{base_friction}'}_cell{cell * WIDTH:g}" / f"a{aspect:g}"
             if not (here / "done").exists():
                 write_scene(here, aspect, friction, base_friction, cell)
-                done = subprocess.run([program, "run", str(here / "scene.toml"), "-o", str(here), "--no-pictures"],
+                done = subprocess.run([program, "run", str(here / "scene.toml"), "-o", str(here), "--no-pictures", "--force"],
                                       capture_output=True, text=True)
                 if done.returncode:
                     print(f"{series}, a = {aspect:g}: {done.stderr.strip().splitlines()[-1]}", file=sys.stderr)

@@ -28,7 +28,7 @@ class Run:
     def __init__(self, talus, scene, overrides):
         with tempfile.TemporaryDirectory() as folder:
             start = time.time()
-            done = subprocess.run([talus, "run", HERE / scene, "-o", folder, "--no-pictures", "--set", *overrides], capture_output=True, text=True)
+            done = subprocess.run([talus, "run", HERE / scene, "-o", folder, "--no-pictures", "--force", "--set", *overrides], capture_output=True, text=True)
             self.wall = time.time() - start
             self.broke = next((line.split("; ")[0] for line in done.stderr.splitlines() if line.startswith("talus:")), "stopped") if done.returncode else ""
             rows = list(csv.DictReader(open(f"{folder}/history.csv"))) if Path(f"{folder}/history.csv").exists() else []

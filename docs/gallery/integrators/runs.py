@@ -28,7 +28,7 @@ def run(talus, scene, name, overrides):
     """Rows of history.csv (None if the run failed), processor seconds, evaluations of the forces."""
     folder = RUNS / name.replace(" ", "_")
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    done = subprocess.run([str(talus), "run", str(scene), "-o", str(folder), "--no-pictures", *(["--set", *overrides] if overrides else [])], capture_output=True, text=True)
+    done = subprocess.run([str(talus), "run", str(scene), "-o", str(folder), "--no-pictures", "--force", *(["--set", *overrides] if overrides else [])], capture_output=True, text=True)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     if not (folder / "history.csv").exists():
         raise SystemExit(done.stderr)

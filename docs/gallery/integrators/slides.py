@@ -42,7 +42,7 @@ CASES = {
 def run(talus, name):
     scene, ranks, overrides = CASES[name]
     folder = RUNS / name.replace(", ", "_").replace(" ", "_")
-    words = ["mpiexec", "--allow-run-as-root", "-n", ranks, talus, "run", HERE.parent / scene / "scene.toml", "-o", folder, "--no-pictures", "--set",
+    words = ["mpiexec", "--allow-run-as-root", "-n", ranks, talus, "run", HERE.parent / scene / "scene.toml", "-o", folder, "--no-pictures", "--force", "--set",
              "output.interval=0", *overrides]
     start = time.time()
     done = subprocess.run([str(w) for w in words], capture_output=True, text=True)

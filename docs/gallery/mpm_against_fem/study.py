@@ -40,7 +40,7 @@ def run(talus, command, overrides):
     from talus_results import Results
     with tempfile.TemporaryDirectory() as folder:
         start = time.time()
-        done = subprocess.run([talus, command, HERE / "scene.toml", "--no-pictures", "-o", folder, "--set", *overrides], capture_output=True, text=True)
+        done = subprocess.run([talus, command, HERE / "scene.toml", "--no-pictures", "--force", "-o", folder, "--set", *overrides], capture_output=True, text=True)
         if done.returncode:
             return None
         results = Results(folder)

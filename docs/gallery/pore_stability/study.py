@@ -54,7 +54,7 @@ def options(words):
 
 def run(talus, scene, words, folder):
     """Results, or None when the run failed."""
-    end = subprocess.run([talus, "run", scene, "-o", folder, "--no-pictures", *options(words)], capture_output=True, text=True)
+    end = subprocess.run([talus, "run", scene, "-o", folder, "--no-pictures", "--force", *options(words)], capture_output=True, text=True)
     return Results(folder) if end.returncode == 0 else None
 
 

@@ -64,7 +64,7 @@ def run(talus, model, dimension, folder):
     words += ["mesh.size=0.01"]
     results = folder / f"{model}{dimension}"
     start = time.time()
-    subprocess.run([talus, "run", scene, "-o", results, "--no-pictures", *(w for word in words for w in ("--set", word))], capture_output=True)
+    subprocess.run([talus, "run", scene, "-o", results, "--no-pictures", "--force", *(w for word in words for w in ("--set", word))], capture_output=True)
     seconds = time.time() - start
     snapshots = Results(results).snapshots
     return seconds, [(s.time, front(s)) for s in snapshots], snapshots[-1].step
@@ -91,7 +91,7 @@ BLOCK = ["dimension=3", "mesh.size=0.016", "mesh.thickness=0.3", "mesh.layers=0"
 def block(talus, folder):
     scene = folder.parent / "block.toml"
     scene.write_text(scene_of("saturated"))
-    subprocess.run([talus, "run", scene, "-o", folder, "--no-pictures", *(w for word in BLOCK for w in ("--set", word))], check=True)
+    subprocess.run([talus, "run", scene, "-o", folder, "--no-pictures", "--force", *(w for word in BLOCK for w in ("--set", word))], check=True)
     draw_block(folder)
 
 

@@ -48,7 +48,7 @@ def run(talus, text, slide=True):
         scene = Path(folder) / "scene.toml"
         scene.write_text(text)
         arguments = [] if slide else ["--set", "stage.slide.duration=0.01"]
-        done = subprocess.run([talus, "run", scene, "-o", f"{folder}/run", "--no-pictures", *arguments], capture_output=True, text=True)
+        done = subprocess.run([talus, "run", scene, "-o", f"{folder}/run", "--no-pictures", "--force", *arguments], capture_output=True, text=True)
         log = Path(f"{folder}/run/run.log").read_text()
         rows = list(csv.DictReader(open(f"{folder}/run/history.csv")))
     failure = re.search(r"failure at ([\d.]+) s \(loads at t = ([\d.]+) s\)", log)
@@ -125,7 +125,7 @@ def limit(talus):
                 text = re.sub(r"^(friction_angle = )(.*)$", r"\1\2\ndilation_angle = \2", text, flags=re.M)
             with tempfile.TemporaryDirectory() as folder:
                 (Path(folder) / "scene.toml").write_text(text)
-                done = subprocess.run([talus, "solve", f"{folder}/scene.toml", "-o", f"{folder}/run", "--no-pictures"], capture_output=True, text=True)
+                done = subprocess.run([talus, "solve", f"{folder}/scene.toml", "-o", f"{folder}/run", "--no-pictures", "--force"], capture_output=True, text=True)
             lost = re.search(r"no equilibrium beyond ([\d.e+-]+) % of the loads of stage recharge", done.stdout + done.stderr)
             rows.append({"elements": elements, "flow": flow, "k0": "gravity" if k0 is None else k0, "excess_kPa": round(1.2 * float(lost[1]), 1) if lost else ""})
             print(rows[-1], flush=True)
@@ -151,7 +151,7 @@ def excavation(talus):
 def pictures(talus):
     import shutil
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run([talus, "run", HERE / "scene.toml", "-o", folder], check=True)
+        subprocess.run([talus, "run", HERE / "scene.toml", "-o", folder, "--force"], check=True)
         for source, name in (("plastic_strain", "slide"), ("history_displacement", "displacement"), ("history_velocity", "velocity"),
                              ("displacement_large", "run_out")):
             shutil.copy(f"{folder}/pictures/{source}.png", HERE / f"{name}.png")

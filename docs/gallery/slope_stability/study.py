@@ -34,7 +34,7 @@ def solve(talus, scene, overrides, keep=None):
     """The answer of one run as --json gives it, and its processor time [s]; the pictures go into the folder `keep`."""
     with tempfile.TemporaryDirectory() as folder:
         before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-        command = [talus, "solve", HERE / scene, "--factor-of-safety", "--json", "-o", folder, "--set", *overrides]
+        command = [talus, "solve", HERE / scene, "--factor-of-safety", "--json", "--force", "-o", folder, "--set", *overrides]
         done = subprocess.run(command if keep else [*command[:4], "--no-pictures", *command[4:]], capture_output=True, text=True)
         if done.returncode not in (0, 3):
             raise RuntimeError(f"{scene}: {done.stderr}")

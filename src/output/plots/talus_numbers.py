@@ -236,7 +236,7 @@ def table_of_study(path, wanted, study):
 def launch(talus, run, page, folder):
     """Runs the scene of a run into `folder`; returns its results."""
     command = run.get("command", "run")
-    words = [talus, "run" if command == "run" else "solve", str(page.folder / run["scene"]), "-o", str(folder / "run"), "--no-pictures"]
+    words = [talus, "run" if command == "run" else "solve", str(page.folder / run["scene"]), "-o", str(folder / "run"), "--no-pictures", "--force"]
     words += ["--factor-of-safety"] if command == "factor_of_safety" else []
     for override in run.get("set", []):
         words += ["--set", override]
@@ -307,7 +307,7 @@ def check_study(page, name, study, talus, write):
         before = (here / study["file"]).read_bytes() if "file" in study and (here / study["file"]).exists() else None
         if before is not None:  # a script that goes on where it was stopped would keep every row
             (here / study["file"]).unlink()
-        commands = [[talus, "run", here / study["scene"], "-o", runs]] if "scene" in study else []
+        commands = [[talus, "run", here / study["scene"], "-o", runs, "--force"]] if "scene" in study else []
         if "command" in study:
             script, *words = study["command"].split()
             commands.append([sys.executable, "-B", here / script, *[{"TALUS": talus, "FOLDER": runs}.get(word, word) for word in words]])

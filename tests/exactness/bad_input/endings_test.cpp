@@ -34,7 +34,7 @@ class RunThatEnds : public testing::Test {
 
   std::vector<std::string> run(const std::string &scene, int ranks = 1, const std::string &results = "results") {
     folder_.write("scene.toml", scene);
-    return talus_words({"run", "scene.toml", "-o", results, "--no-pictures"}, ranks);
+    return talus_words({"run", "scene.toml", "-o", results, "--no-pictures", "--force"}, ranks);
   }
   /// Status 1 and one message with these words; snapshots written before can be read.
   void expect(const Ending &ending, const std::vector<std::string> &words, int least_snapshots) {
@@ -97,7 +97,7 @@ TEST_F(RunThatEnds, BecauseSoilHasNoSupport) {
   const std::string scene = changed(changed(good_scene, "kind = \"fixed\"", "kind = \"roller\""), "name = \"fall\"",
                                     "kind = \"quasi_static\"");
   folder_.write("scene.toml", changed(scene, "[boundary.left]\nkind = \"roller\"\n", ""));
-  expect(Program(folder_, talus_words({"solve", "scene.toml", "-o", "results", "--no-pictures"})).end(),
+  expect(Program(folder_, talus_words({"solve", "scene.toml", "-o", "results", "--no-pictures", "--force"})).end(),
          {"free to move as a whole", "can move along x", "snapshots up to step 0"}, 1);
 }
 
@@ -108,7 +108,7 @@ TEST_F(RunThatEnds, BecauseSoilDoesNotStand) {
   for (const char *cohesion :
        {"0", "\"1 kPa\""}) {  // at once, or under a part of the weight: the last state that had an equilibrium is kept
     folder_.write("scene.toml", changed(solved, "cohesion = 0", "cohesion = " + std::string(cohesion)));
-    expect(Program(folder_, talus_words({"solve", "scene.toml", "-o", "results", "--no-pictures"})).end(),
+    expect(Program(folder_, talus_words({"solve", "scene.toml", "-o", "results", "--no-pictures", "--force"})).end(),
            {"no equilibrium beyond", "% of the loads", "stage weight", "snapshots up to step", "are in results"},
            *cohesion == '0' ? 1 : 3);
   }
@@ -127,7 +127,7 @@ TEST_F(RunThatEnds, BecauseALayerIsOneElementThick) {
   const std::string scene = changed(changed(good_scene, "name = \"fall\"", "kind = \"quasi_static\""), "[output]",
                                     "[quasi_static]\nelements = \"linear\"\n[output]");
   folder_.write("scene.toml", scene);
-  expect(Program(folder_, talus_words({"solve", "scene.toml", "-o", "results", "--no-pictures"})).end(),
+  expect(Program(folder_, talus_words({"solve", "scene.toml", "-o", "results", "--no-pictures", "--force"})).end(),
          {"body.sand is one element across", "refine the mesh there, or set quasi_static.elements = \"quadratic\"",
           "snapshots up to step 0"},
          1);
@@ -139,7 +139,7 @@ TEST_F(RunThatEnds, WithARangeForTheFactorOfSafety) {
   folder_.write("scene.toml", changed(changed(good_scene, "name = \"fall\"", "kind = \"quasi_static\""),
                                       "cohesion = 0\nfriction_angle = 30", "cohesion = \"4 kPa\"\nfriction_angle = 0"));
   const std::vector<std::string> solve =
-      talus_words({"solve", "scene.toml", "--factor-of-safety", "-o", "results", "--no-pictures"});
+      talus_words({"solve", "scene.toml", "--factor-of-safety", "-o", "results", "--no-pictures", "--force"});
   const auto with = [&](const std::vector<std::string> &before, const std::vector<std::string> &after) {
     std::vector<std::string> words = before;
     words.insert(words.end(), solve.begin(), solve.end());

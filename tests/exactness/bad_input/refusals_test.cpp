@@ -202,6 +202,27 @@ const Fault faults[] = {
      "duration = 0.05\nuntil = \"stop\"",
      {"scene.toml line 21", "stage.0.until", "equilibrium"}},
     {"missing_parameter", "scene.toml", "cohesion = 0\n", "", {"body.sand", "needs cohesion"}},
+    {"name_with_a_line_break",
+     "scene.toml",
+     "[boundary.left]",
+     "[boundary.\"le\\nft\"]\ngroup = \"left\"",
+     {"scene.toml line 16", "named without line breaks"}},
+    {"stage_with_a_line_break",
+     "scene.toml",
+     "name = \"fall\"",
+     "name = \"fa\\nll\"",
+     {"scene.toml line 19", "stage.0.name", "without line breaks"}},
+    {"interval_of_nothing",
+     "scene.toml",
+     "interval = 0.01",
+     "interval = 1e-300",
+     {"scene.toml line 22", "output.interval = 1e-300 must be 0, or ", "critical step"}},
+    {"interval_of_nothing_on_two_ranks",
+     "scene.toml",
+     "interval = 0.01",
+     "interval = 0.01\nhistory_interval = 1e-300",
+     {"scene.toml line 23", "output.history_interval = 1e-300 must be 0, or "},
+     2},
     {"no_region", "scene.toml", "region = \"sand\"", "region = []", {"body.sand", "needs region"}},
     // what the mesh has
     {"region_not_there",
@@ -341,6 +362,11 @@ const Fault faults[] = {
      "outline,2,1\noutline,0,1",
      "outline,0,1\noutline,2,1",
      {"scene.toml line 4", "section.csv", "outline", "cross"}},
+    {"interfaces_that_cross",
+     "section.csv",
+     "interface0,0,0.5",
+     "interface1,0.5,0\ninterface1,0.6,1\ninterface0,0,0.5",
+     {"scene.toml line 4", "section.csv line 6: 'interface1' crosses 'interface0' of line 8 near (0.55, 0.5)"}},
     {"malformed_row", "section.csv", "outline,2,1", "outline,2,one", {"scene.toml line 4", "section.csv line 4"}},
     {"cells_larger_than_the_section",
      "scene.toml",
@@ -367,6 +393,29 @@ const Fault faults[] = {
      "2\n1 1 \"base\"\n2 2 \"sand\"",
      "3\n1 1 \"base\"\n2 2 \"clay\"\n2 3 \"sand\"",
      {"scene.toml line 7", "body.sand.region", "known are clay"}},
+    {"element_without_its_node",
+     "mesh.msh",
+     "1 3 4\n$EndElements",
+     "1 3 5\n$EndElements",
+     {"scene.toml line 4", "mesh.msh: element 3 names the node 5, which is not in the file"}},
+    {"element_without_its_node_on_two_ranks",
+     "mesh.msh",
+     "1 3 4\n$EndElements",
+     "1 3 5\n$EndElements",
+     {"scene.toml line 4", "mesh.msh: element 3 names the node 5, which is not in the file"},
+     2},
+    {"mesh_that_is_not_plane", "mesh.msh", "3 1 1 0", "3 1 1 0.1", {"scene.toml line 4", "mesh.msh", "is not plane"}},
+    {"group_beside_the_cells",
+     "mesh.msh",
+     "1 1 2 1 1 1 2",
+     "1 1 2 1 1 2 4",
+     {"scene.toml line 4", "mesh.msh: element 1 of the group 'base' is not the side of a cell"}},
+    {"parts_in_one_place",
+     "mesh.msh",
+     "4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes\n$Elements\n3\n1 1 2 1 1 1 2\n2 2 2 2 1 1 2 3",
+     "7\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0.2 0.3 0\n6 2 0 0\n7 2 1 0\n$EndNodes\n$Elements\n3\n1 1 2 1 1 1 3\n2 "
+     "2 2 2 1 5 6 7",
+     {"scene.toml line 4", "mesh.msh: cell 0", "overlaps cell 1", "parts of the mesh lie in one place"}},
     {"cell_without_area", "mesh.msh", "3 1 1 0", "3 2 0 0", {"scene.toml line 4", "mesh.msh", "no area"}},
 };
 
@@ -384,13 +433,16 @@ TEST_P(BadInput, IsRefused) {
   const Folder folder;
   folder.write("scene.toml", scene), folder.write("section.csv", section), folder.write("mesh.msh", mesh);
 
-  const Ending ending = talus(folder, {"run", "scene.toml", "-o", "results"}, fault.ranks);
-  EXPECT_EQ(ending.status, 2);
-  for (const std::string &words : fault.words) EXPECT_TRUE(ending.says(words)) << words;
-  EXPECT_EQ(ending.count("talus: "), 1) << "one message";
-  EXPECT_FALSE(ending.says("PETSC ERROR"));
-  EXPECT_FALSE(std::filesystem::exists(folder / "results"));
-  if (HasFailure()) ADD_FAILURE() << ending.output;
+  for (const std::vector<std::string> &command :
+       {std::vector<std::string>{"run", "scene.toml", "-o", "results"}, {"check", "scene.toml"}}) {
+    const Ending ending = talus(folder, command, fault.ranks);
+    EXPECT_EQ(ending.status, 2);
+    for (const std::string &words : fault.words) EXPECT_TRUE(ending.says(words)) << words;
+    EXPECT_EQ(ending.count("talus: "), 1) << "one message";
+    EXPECT_FALSE(ending.says("PETSC ERROR"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "results"));
+    if (HasFailure()) ADD_FAILURE() << command[0] << ": " << ending.output;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BadInput, testing::ValuesIn(faults), [](const auto &fault) { return fault.param.name; });
@@ -418,6 +470,16 @@ const WrongWords wrong_words[] = {
     {"check_of_a_bad_scene",
      {"check", "scene.toml", "--set", "body.sand.region=clay"},
      {"--set: body.sand.region = \"clay\"", "known are air, sand"}},
+    {"override_of_two_lines",
+     {"run", "scene.toml", "--set", "gravity=9.81\ntitle = \"x\""},
+     {"--set", "no value of TOML", "single line"}},
+    {"resume_and_force", {"run", "scene.toml", "--resume", "--force"}, {"--force", "excludes", "--resume"}},
+    {"umat_of_a_stranger",
+     {"run", "scene.toml", "--no-umat", "--set", "body.sand.law=umat"},
+     {"body.sand.law", "must not be a UMAT with --no-umat"}},
+    {"umat_of_a_stranger_to_check",
+     {"check", "scene.toml", "--no-umat", "--set", "body.sand.law=umat"},
+     {"body.sand.law", "must not be a UMAT with --no-umat"}},
     {"unknown_key_to_describe", {"describe", "densty"}, {"did you mean `density`?"}},
     {"section_to_mesh_not_there",
      {"mesh", "nosection.csv", "-o", "out.msh", "--size", "1"},
@@ -481,14 +543,21 @@ TEST(Seepage, OfDrainedSoilIsChecked) {
                              {"water.excess", "cannot be combined with seepage", "[boundary.NAME]"}},
                             {changed(wet, "permeability = 1e-10", ""),
                              {"body.sand", "needs permeability [m2] or hydraulic_conductivity [m/s]"}},
+                            {wet + "[body.sand.retention]\ncurve = \"van_genuchten\"\nreference_suction = -1\n",
+                             {"body.sand.retention.reference_suction = -1"}},
+                            {wet + "[body.sand.retention]\ncurve = \"gardner\"\ndecay_suction = 1e4\n"
+                                   "[body.sand.relative_permeability]\ncurve = \"cubick\"\n",
+                             {"body.sand.relative_permeability.curve = \"cubick\""}},
                             {wet + "[boundary.pond]\nkind = \"head\"\nlevel = 0.4\n",
                              {"boundary.pond.group", "the mesh has no \"pond\""}},
                             {wet + "[boundary.air]\ngroup = \"free_surface\"\nkind = \"gas_pressure\"\n",
                              {"boundary.air", "phases = \"drained\" has none"}}}) {
     folder.write("scene.toml", scene);
-    const Ending ending = talus(folder, {"solve", "scene.toml", "--no-pictures"});
-    EXPECT_EQ(ending.status, 2) << ending.output;
-    for (const std::string &word : words) EXPECT_TRUE(ending.says(word)) << word << ending.output;
+    for (const char *command : {"solve", "check"}) {
+      const Ending ending = talus(folder, {command, "scene.toml"});
+      EXPECT_EQ(ending.status, 2) << command << ending.output;
+      for (const std::string &word : words) EXPECT_TRUE(ending.says(word)) << command << word << ending.output;
+    }
   }
 }
 

@@ -32,6 +32,15 @@ TEST(History, quotes_stage_names_that_need_it) {
   EXPECT_EQ(content(folder / "history.csv"), "time_s,step,stage\n1,2,\"dig, then \"\"wait\"\"\"\n");
 }
 
+TEST(History, quotes_names_with_commas) {
+  const SharedFolder folder;
+  const std::string path = folder / "history.csv";
+  { History(MPI_COMM_WORLD, path, {"a, \"b\"_m"}).row(1, 2, "s", {3}); }
+  History::append(MPI_COMM_WORLD, path, {"a, \"b\"_m"}, 5);
+  if (world_rank()) return;
+  EXPECT_EQ(content(path), "time_s,step,stage,\"a, \"\"b\"\"_m\"\n1,2,s,3\n");
+}
+
 TEST(History, of_a_resumed_run_drops_what_came_later) {
   const SharedFolder folder;
   const std::string path = folder / "history.csv";

@@ -180,7 +180,7 @@ TEST(Snapshots, of_a_resumed_run_follow_those_before_its_start) {
     RunFile run(MPI_COMM_WORLD, dir, small_header(), small_mesh());
     for (int n = 0; n < 4; ++n) run.write(small_snapshot(0.1 * n, n));
   }
-  RunFile resumed = RunFile::append(MPI_COMM_WORLD, dir, 0.1);
+  RunFile resumed = RunFile::append(MPI_COMM_WORLD, dir, small_header(), small_mesh(), 0.1);
   EXPECT_EQ(resumed.last_step(), 1);
   resumed.write(small_snapshot(0.15, 2));
   if (world_rank()) return;
@@ -216,11 +216,29 @@ TEST(Snapshots, complain_on_all_ranks_about_a_folder_that_cannot_be) {
   EXPECT_TRUE(agreed(said));
 }
 
-TEST(Snapshots, complain_about_results_that_are_not_there) {
+TEST(Snapshots, that_are_damaged_are_left_out_when_a_run_is_resumed) {
   const SharedFolder folder;
-  const std::string said = complaint([&] { RunFile::append(MPI_COMM_WORLD, folder / "none", 1); });
-  EXPECT_NE(said.find("none/run.h5"), std::string::npos) << said;
-  EXPECT_TRUE(agreed(said));
+  const std::string dir = folder / "run";
+  {
+    RunFile run(MPI_COMM_WORLD, dir, small_header(), small_mesh());
+    for (int n = 0; n < 3; ++n) run.write(small_snapshot(0.1 * n, n));
+  }
+  if (world_rank() == 0) {
+    std::ofstream(dir + "/run.h5") << "no index";
+    std::ofstream(dir + "/run/mesh.h5") << "no mesh";
+    std::filesystem::resize_file(dir + "/run/000001.h5", 1000);
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  RunFile resumed = RunFile::append(MPI_COMM_WORLD, dir, small_header(), small_mesh(), 0.2);
+  EXPECT_EQ(resumed.last_step(), 2);
+  resumed.write(small_snapshot(0.3, 3));
+  if (world_rank()) return;
+  ASSERT_EQ(resumed.damaged().size(), 1u);
+  EXPECT_NE(resumed.damaged()[0].find("run/000001.h5"), std::string::npos) << resumed.damaged()[0];
+  EXPECT_EQ(snapshots_in(dir), 3u);
+  expect_snapshot(dir, "000000", 0);
+  expect_snapshot(dir, "000003", 0.3);
+  EXPECT_EQ(times_in(content(dir + "/run.xdmf")), (Times{{"000000", 0}, {"000002", 0.2}, {"000003", 0.3}}));
 }
 
 TEST(Snapshots, complain_about_columns_that_do_not_fit) {

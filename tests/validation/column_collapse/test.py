@@ -19,7 +19,7 @@ import runout  # noqa: E402
 def run(program, scene, folder, *overrides):
     """Runs a scene, without pictures; returns its results."""
     settings = [part for override in overrides for part in ("--set", override)]
-    subprocess.run([program, "run", str(scene), "-o", str(folder), "--no-pictures", *settings], check=True)
+    subprocess.run([program, "run", str(scene), "-o", str(folder), "--no-pictures", "--force", *settings], check=True)
     return measures.Results(folder)
 
 

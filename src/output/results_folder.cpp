@@ -1,0 +1,51 @@
+#include "output/results_folder.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+
+#include "output/replace_file.h"
+#include "output/together.h"
+
+namespace talus {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Opens and locks a file that stays there, empty. A file system without locks lets all runs pass.
+int lock(const std::string &path) {
+  const std::string file = path + "/.lock";
+  const int lock = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (lock < 0) throw std::runtime_error("cannot write " + file + ": " + std::strerror(errno));
+  if (::flock(lock, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return lock;
+  ::close(lock);
+  throw std::invalid_argument("another run is writing into " + path +
+                              "; wait for its end, or choose another folder with -o");
+}
+
+}  // namespace
+
+ResultsFolder::ResultsFolder(MPI_Comm comm, const std::string &path, FolderUse use) {
+  on_first_rank(comm, [&] {
+    make_folder(path);
+    lock_ = lock(path);
+    if (use == FolderUse::resume) return;
+    const bool used = fs::exists(path + "/run.h5") || fs::exists(path + "/history.csv");
+    if (used && use == FolderUse::start)
+      throw std::invalid_argument(path + " holds the results of a run" +
+                                  (fs::exists(path + "/checkpoint/header") ? " (--resume goes on with it)" : "") +
+                                  "; choose another folder with -o, or give --force to replace them");
+    fs::remove_all(path + "/checkpoint");
+  });
+}
+
+ResultsFolder::~ResultsFolder() {
+  if (lock_ >= 0) ::close(lock_);
+}
+
+}  // namespace talus

@@ -1,0 +1,121 @@
+// Folders of results: one run at a time, nothing replaced unasked, nothing lost when files are damaged.
+#include <gtest/gtest.h>
+
+#include "scene.h"
+
+namespace talus {
+namespace {
+
+class Results : public testing::Test {
+ protected:
+  Results() { folder_.write("section.csv", good_section), folder_.write("scene.toml", good_scene); }
+
+  std::vector<std::string> run(const std::vector<std::string> &more, int ranks = 1) const {
+    std::vector<std::string> words{"run", "scene.toml", "-o", "results", "--no-pictures"};
+    words.insert(words.end(), more.begin(), more.end());
+    return talus_words(words, ranks);
+  }
+  Ending end_of(const std::vector<std::string> &more, int ranks = 1) const {
+    return Program(folder_, run(more, ranks)).end();
+  }
+  void expect(const Ending &ending, int status, const std::vector<std::string> &words) const {
+    EXPECT_EQ(ending.status, status);
+    for (const std::string &word : words) EXPECT_TRUE(ending.says(word)) << word;
+    if (HasFailure()) ADD_FAILURE() << ending.output;
+  }
+  std::string content(const std::string &file) const {
+    std::ostringstream text;
+    text << std::ifstream(folder_ / file).rdbuf();
+    return text.str();
+  }
+  /// One that no run has written yet.
+  std::string later_snapshot() const {
+    int count = 0;
+    for ([[maybe_unused]] const auto &file : std::filesystem::directory_iterator(folder_ / "results/run")) ++count;
+    char name[32];
+    std::snprintf(name, sizeof name, "results/run/%06d.h5", count + 2);
+    return folder_ / name;
+  }
+  void damage(const std::string &file) const { folder_.write(file, "not what it was"); }
+
+  const Folder folder_;
+  const std::vector<std::string> endless_{"--set", "stage.0.duration=1000"};
+};
+
+TEST_F(Results, AreNotReplacedUnasked) {
+  expect(end_of({}), 0, {"results are in results"});
+  const std::string history = content("results/history.csv");
+  for (int ranks : {1, 2})
+    expect(end_of({"--set", "gravity=1"}, ranks), 2, {"results holds the results of a run", "--resume", "--force"});
+  EXPECT_EQ(content("results/history.csv"), history);
+  expect(end_of({"--force", "--set", "gravity=1"}), 0, {"results are in results"});
+  EXPECT_NE(content("results/history.csv"), history);
+}
+
+TEST_F(Results, AreOfOneRunAtATime) {
+  Program first(folder_, run(endless_));
+  ASSERT_TRUE(first.wait_for(folder_ / "results/run/000002.h5")) << first.end().output;
+  for (const char *word : {"--force", "--resume"})
+    expect(end_of({word, "--set", "stage.0.duration=1000"}), 2, {"another run is writing into results", "-o"});
+  first.signal(SIGKILL);
+  first.end();
+  const std::string next = later_snapshot();
+  Program resumed(folder_, run({"--resume", "--set", "stage.0.duration=1000"}));  // a dead run locks nothing
+  EXPECT_TRUE(resumed.wait_for(next)) << resumed.end().output;
+  resumed.signal(SIGINT);
+  expect(resumed.end(), 1, {"interrupted"});
+}
+
+TEST_F(Results, OfARunThatDiedAtOnceAreNotResumedFromAnOlderOne) {
+  expect(end_of({}), 0, {});
+  std::filesystem::create_directory(folder_ / "results/run/mesh.h5.part");  // in the way of the first file
+  expect(end_of({"--force"}), 1, {"cannot write results/run/mesh.h5"});
+  expect(end_of({"--resume"}), 2, {"results contains no checkpoint", "--force"});
+}
+
+TEST_F(Results, HaveAFolderThatHeedsOverrides) {
+  folder_.write("slope.toml", good_scene);
+  const Ending ending =
+      talus(folder_, {"run", "slope.toml", "--no-pictures", "--set", "gravity=5 m/s2", "output.interval=0.02"});
+  expect(ending, 0, {"results are in results/slope_gravity=5-m-s2_output.interval=0.02"});
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "results/slope_gravity=5-m-s2_output.interval=0.02/run.h5"));
+}
+
+TEST_F(Results, GoOnBehindDamagedFiles) {
+  Program first(folder_, run(endless_));
+  ASSERT_TRUE(first.wait_for(folder_ / "results/run/000004.h5")) << first.end().output;
+  first.signal(SIGINT);
+  first.end();
+  damage("results/run.h5"), damage("results/run/000001.h5");
+  std::filesystem::remove(folder_ / "results/history.csv");
+  const std::string next = later_snapshot();
+  Program resumed(folder_, run({"--resume", "--set", "stage.0.duration=1000"}));
+  EXPECT_TRUE(resumed.wait_for(next)) << resumed.end().output;
+  resumed.signal(SIGINT);
+  expect(resumed.end(), 1,
+         {"warning: history.csv was missing", "warning: a damaged snapshot is left out", "run/000001.h5"});
+  const Ending read = Program(folder_, {PYTHON, "-c",
+                                        "import h5py\nrun = h5py.File('results/run.h5')['snapshots']\n"
+                                        "print('read', *[n for n in run if run[n].attrs['step'] >= 0])"})
+                          .end();
+  expect(read, 0, {"read 000000 000002 000003 000004"});
+}
+
+TEST_F(Results, ThatGetNoPicturesSaySo) {
+  const Ending ending =
+      Program(folder_, {"env", "PYTHONHOME=/nowhere", TALUS, "run", "scene.toml", "-o", "results"}).end();
+  expect(ending, 1, {"the results in results are complete, but have no pictures", "talus plot results"});
+  EXPECT_FALSE(ending.says("report.html to read"));
+}
+
+TEST(Start, NeedsRoomForTemporaryFiles) {
+  const Folder folder;
+  folder.write("file", "");
+  const Ending ending = Program(folder, {"env", "TMPDIR=" + folder / "file", TALUS, "describe"}).end();
+  EXPECT_EQ(ending.status, 1);
+  EXPECT_TRUE(ending.says("cannot write temporary files in " + folder / "file")) << ending.output;
+  EXPECT_TRUE(ending.says("set TMPDIR")) << ending.output;
+}
+
+}  // namespace
+}  // namespace talus
