@@ -90,8 +90,9 @@ class AnySoilMotion : public Motion {
 
   // What only some phase models have; the others answer with nothing.
 
-  /// Prescribed pore pressure at a place [Pa]: by [water] and the ramp in drained scenes.
-  virtual double pore_pressure(const Vec<dim> &x) const = 0;
+  /// Prescribed pore pressure at a place of a mesh cell [Pa]: by [water] or water of the soil's own, and the ramp, in
+  /// drained scenes.
+  virtual double pore_pressure(int cell, const Vec<dim> &x) const = 0;
   /// Pore pressures, suction and saturation of a particle within the Lagrangian part, where fluids move.
   virtual PoreReport pores(const Body<dim> &body, int particle) const = 0;
   /// Masses of each fluid that moves, of all ranks; collective.

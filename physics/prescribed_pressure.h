@@ -1,25 +1,71 @@
 #pragma once
 /// Pore pressure as a prescribed function of place and time: hydrostatic below a water table whose level moves, plus an
-/// excess (phase model `drained`); what seepage has found stands in place of both where water flowed. Pressure is
-/// positive in compression.
+/// excess (phase model `drained`). A soil may have water of its own in the region that it fills at the start: a water
+/// table, or a share of the overburden. What seepage has found stands in place of [water] where water flowed. Pressure
+/// is positive in compression.
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <utility>
+#include <vector>
 
 #include "base/vec.h"
 #include "scene/scene.h"
 
 namespace talus {
 
+/// Whose water: a number of a body, or that of the [water] table, which also stands above the ground.
+inline constexpr int common_water = -1;
+
 template <int dim>
 class PrescribedPressure {
  public:
   /// `gravity` is its magnitude along -y [m/s2].
-  PrescribedPressure(const Water &water, double gravity) : water_(&water), unit_weight_(water.density * gravity) {}
+  PrescribedPressure(const Scene &scene, double gravity)
+      : water_(&scene.water), unit_weight_(scene.water.density * gravity), ratio_(scene.body.size()) {
+    for (const BodySource &body : scene.body) table_of_.push_back(&body.water_table);
+  }
 
+  /// Says which soil fills each cell of this rank at the start; common_water where none does.
+  void set_regions(std::vector<int> soil_of_cell) { soil_of_cell_ = std::move(soil_of_cell); }
+  int soil_of(int cell) const { return soil_of_cell_[cell]; }
+
+  bool below_table(const Vec<dim> &x, double t, int soil) const {
+    const double p = found(x, soil);
+    return std::isnan(p) ? x[1] < table(x[0], t, soil) : p > 0;
+  }
+  /// Pore pressure at x [Pa].
+  double operator()(const Vec<dim> &x, double t, int soil) const {
+    const double elevation = table(x[0], t, soil), p = found(x, soil);
+    if (!std::isnan(p)) return p;
+    return std::max(0., unit_weight_ * (elevation - x[1])) +
+           water_->excess(x[0], x[1], dim == 3 ? x[2] : 0, t, elevation);
+  }
+  /// Hydrostatic suction at x above the common water table; 0 without one [Pa].
+  double above_table(const Vec<dim> &x, double t) const {
+    return water_->table.empty() ? 0 : std::max(0., unit_weight_ * (x[1] - table(x[0], t, common_water)));
+  }
+  /// Has the soil water of its own? Its pressure may then jump at the soil's border.
+  bool apart(int soil) const { return soil >= 0 && (!table_of_[soil]->empty() || ratio_[soil]); }
+  /// May pores fill or dry while the soil moves? What seepage has found stands still then.
+  bool moves() const {
+    const auto given = [](const auto *table) { return !table->empty(); };
+    return (!water_->table.empty() || std::any_of(table_of_.begin(), table_of_.end(), given)) &&
+           !water_->level.constant();
+  }
+  /// From now on the common pressure is that of `seeped` [Pa], but where that is not a number; null: that of [water]
+  /// again.
+  void take(std::function<double(const double *)> seeped) { seeped_ = std::move(seeped); }
+  /// The pressure of this soil is that of `ratio` [Pa], but where that is not a number.
+  void take_of(int soil, std::function<double(const double *)> ratio) { ratio_[soil] = std::move(ratio); }
+  bool open_water_load() const { return water_->open_water_load; }
+  double density() const { return water_->density; }
+
+ private:
+  using Table = std::vector<std::vector<double>>;
   /// Elevation of the water table at x [m].
-  double table(double x, double t) const {
-    const auto &points = water_->table;
+  double table(double x, double t, int soil) const {
+    const Table &points = soil >= 0 && !table_of_[soil]->empty() ? *table_of_[soil] : water_->table;
     if (points.empty()) return -1e300;
     size_t k = 1;
     while (k + 1 < points.size() && points[k][0] < x) ++k;
@@ -28,34 +74,19 @@ class PrescribedPressure {
     const double s = std::clamp((x - points[k - 1][0]) / (points[k][0] - points[k - 1][0]), 0., 1.);
     return points[k - 1][1] + s * (points[k][1] - points[k - 1][1]) + level;
   }
-  bool below_table(const Vec<dim> &x, double t) const {
-    const double p = seeped(x);
-    return std::isnan(p) ? x[1] < table(x[0], t) : p > 0;
+  /// What is not given by a table; no number where there is none.
+  double found(const Vec<dim> &x, int soil) const {
+    if (soil >= 0 && ratio_[soil]) return ratio_[soil](x.data());
+    const bool own = soil >= 0 && !table_of_[soil]->empty();
+    return seeped_ && !own ? seeped_(x.data()) : NAN;
   }
-  /// Pore pressure at x [Pa].
-  double operator()(const Vec<dim> &x, double t) const {
-    const double elevation = table(x[0], t), p = seeped(x);
-    if (!std::isnan(p)) return p;
-    return std::max(0., unit_weight_ * (elevation - x[1])) +
-           water_->excess(x[0], x[1], dim == 3 ? x[2] : 0, t, elevation);
-  }
-  /// Hydrostatic suction at x above the water table; 0 without one [Pa].
-  double above_table(const Vec<dim> &x, double t) const {
-    return water_->table.empty() ? 0 : std::max(0., unit_weight_ * (x[1] - table(x[0], t)));
-  }
-  /// May pores fill or dry while the soil moves? What seepage has found stands still then.
-  bool moves() const { return !water_->table.empty() && !water_->level.constant(); }
-  /// From now on the pressure is that of `seeped` [Pa], but where that is not a number; null: that of [water] again.
-  void take(std::function<double(const double *)> seeped) { seeped_ = std::move(seeped); }
-  bool open_water_load() const { return water_->open_water_load; }
-  double density() const { return water_->density; }
-
- private:
-  double seeped(const Vec<dim> &x) const { return seeped_ ? seeped_(x.data()) : NAN; }
 
   const Water *water_;
   std::function<double(const double *)> seeped_;
   double unit_weight_;
+  std::vector<int> soil_of_cell_;
+  std::vector<const Table *> table_of_;                       ///< [body]
+  std::vector<std::function<double(const double *)>> ratio_;  ///< [body]
 };
 
 }  // namespace talus

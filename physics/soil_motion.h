@@ -65,8 +65,9 @@ class SoilMotion final : public AnySoilMotion<dim> {
   const WorkDone &work() const override { return work_.done(); }
   PetscErrorCode freeze_reactions(double t) override;
   PetscErrorCode balance(double t, Balance *sums) override;
-  double pore_pressure([[maybe_unused]] const Vec<dim> &x) const override {
-    if constexpr (Phases::prescribed) return loading.ramp * water_.pressure()(x, loading.time);
+  double pore_pressure([[maybe_unused]] int cell, [[maybe_unused]] const Vec<dim> &x) const override {
+    if constexpr (Phases::prescribed)
+      return loading.ramp * water_.pressure()(x, loading.time, water_.pressure().soil_of(cell));
     return 0;
   }
   PoreReport pores([[maybe_unused]] const Body<dim> &body, [[maybe_unused]] int particle) const override {

@@ -53,6 +53,9 @@ struct Block {
     // the compiler must not trace single lanes back to here: it would take them out of the vector loop
     asm("" : "+m"(value));
   }
+  void fill(double number) {
+    for (auto &row : value) std::fill_n(row, lanes, number);
+  }
   void store(int lane, double *to) const {
     for (std::size_t k = 0; k < size; ++k) to[k] = value[k][lane];
   }
@@ -160,8 +163,9 @@ template <bool strained, int dim, class OneLaw>
 void correct_all(OneLaw law, const StressPoints<dim> &points) {
   constexpr int size = stress_size<dim>, memory = static_cast<int>(OneLaw::history.size());
   law.prepare();
-  const double time_step = points.time_step, no_suction = 0, whole = 1;
+  const double time_step = points.time_step, no_suction = 0;
   PointBlock<dim, OneLaw> block;
+  if constexpr (OneLaw::by_place) block.cohesion.fill(1), block.friction.fill(1);
 
   for (int first = 0; first < points.count; first += lanes) {
     const int filled = std::min(lanes, points.count - first);
@@ -174,8 +178,8 @@ void correct_all(OneLaw law, const StressPoints<dim> &points) {
       element_size[i] = points.size + points.cell[p];
       if constexpr (OneLaw::by_place) {
         suction[i] = points.suction ? points.suction + p : &no_suction;
-        cohesion[i] = points.cohesion_share ? points.cohesion_share + p : &whole;
-        friction[i] = points.friction_share ? points.friction_share + p : &whole;
+        if (points.cohesion_share) cohesion[i] = points.cohesion_share + p;
+        if (points.friction_share) friction[i] = points.friction_share + p;
       }
       if constexpr (strained) {
         strain[i] = points.increment[points.cell[p]].strain.data();
@@ -185,8 +189,11 @@ void correct_all(OneLaw law, const StressPoints<dim> &points) {
     block.stress.load(stress);
     block.history.load(history);
     block.element_size.load(element_size);
-    if constexpr (OneLaw::by_place)
-      block.suction.load(suction), block.cohesion.load(cohesion), block.friction.load(friction);
+    if constexpr (OneLaw::by_place) {
+      block.suction.load(suction);
+      if (points.cohesion_share) block.cohesion.load(cohesion);
+      if (points.friction_share) block.friction.load(friction);
+    }
     if constexpr (strained) block.strain.load(strain), block.rotation.load(rotation);
 #pragma omp simd
     for (int i = 0; i < lanes; ++i) block.template correct<strained>(law, time_step, i);

@@ -14,7 +14,7 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
       scene_(scene),
       liquid_(scene.water),
       gas_(scene.gas),
-      pressure_(scene.water, std::hypot(scene.gravity[0], scene.gravity[1])),
+      pressure_(scene, std::hypot(scene.gravity[0], scene.gravity[1])),
       bishop_(scene.water.stress == PoreStress::bishop),
       smoothing_(scene.transfer.pore_smoothing == PoreSmoothing::nodal),
       explicit_drag_(scene.water.drag == PoreDrag::at_start),
@@ -44,9 +44,9 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
 
 template <int dim, class Phases>
 double PoreFluid<dim, Phases>::prescribed_pressure(const Vec<dim> &x, double t) const {
-  double p = pressure_(x, t);
+  double p = pressure_(x, t, common_water);
   if constexpr (Phases::suction)
-    if (!pressure_.below_table(x, t))
+    if (!pressure_.below_table(x, t, common_water))
       p -= scene_.water.suction.given() ? scene_.water.suction(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t)
                                         : pressure_.above_table(x, t);
   return p;

@@ -13,6 +13,7 @@ PrescribedPoreWater<dim>::PrescribedPoreWater(const BackgroundMesh<dim> &mesh, c
                                               const PrescribedPressure<dim> &pressure)
     : mesh_(mesh), bodies_(bodies), pressure_(pressure), extra_mass_(mesh.node_count(), 0) {
   for (const auto &body : bodies) suction_matters_ = suction_matters_ || reads_suction(body->law());
+  for (int b = 0; b < static_cast<int>(bodies.size()); ++b) apart_ = apart_ || pressure.apart(b);
 }
 
 template <int dim>
@@ -43,7 +44,8 @@ PetscErrorCode PrescribedPoreWater<dim>::measure(FilledGrid<dim> &grid, double t
     const ParticleArrays<dim> &p = body->particles();
     for (int i = 0; i < p.count; ++i) {
       const double dry = source.grain_density * (1 - source.porosity);
-      const double saturation = pressure_.below_table(p.position[i], time) ? 1 : source.saturation;
+      const double saturation =
+          pressure_.below_table(p.position[i], time, pressure_.soil_of(p.cell[i])) ? 1 : source.saturation;
       const double extra = (dry + source.porosity * saturation * pressure_.density()) * p.initial_volume[i] - p.mass[i];
       if (std::abs(extra) <= 1e-12 * p.mass[i]) continue;
       const auto n = barycentric(mesh_.cells[p.cell[i]], p.position[i]);
@@ -53,6 +55,14 @@ PetscErrorCode PrescribedPoreWater<dim>::measure(FilledGrid<dim> &grid, double t
   }
   PetscCall(grid.sum(extra_mass_.data(), 1));
   PetscFunctionReturn(0);
+}
+
+/// Weight of vertex a in the mean of a linear function over the soil in a cell.
+template <int dim>
+double vertex_weight(const FilledGrid<dim> &grid, const double *blend, int c, int a) {
+  double volume = 0;
+  for (int k = 0; k <= dim; ++k) volume += grid.nodal_share[c][k];
+  return blend[c] / (dim + 1) + (1 - blend[c]) * grid.nodal_share[c][a] / volume;
 }
 
 template <int dim>
@@ -67,15 +77,28 @@ void PrescribedPoreWater<dim>::sample(double time, const FilledGrid<dim> &grid, 
     sample.gradient.resize(mesh_.cell_count()), sample.value.resize(mesh_.cell_count()),
         sample.nodal.resize(mesh_.node_count());
     for (int i = 0; i < grid.node_count(); ++i)
-      sample.nodal[i] = pressure_(mesh_.position[grid.mesh_node[i]], sample_time_[k]);
+      sample.nodal[i] = pressure_(mesh_.position[grid.mesh_node[i]], sample_time_[k], common_water);
+    const auto in_cell = [&](int c, int node) {  // of the soil's own water
+      const int soil = pressure_.soil_of(grid.mesh_cell[c]);
+      return pressure_.apart(soil) ? pressure_(mesh_.position[grid.mesh_node[node]], sample_time_[k], soil)
+                                   : sample.nodal[node];
+    };
     if (suction_matters_) {
       sample.suction.resize(mesh_.cell_count());
       for (int c = 0; c < grid.cell_count(); ++c) {
         sample.suction[c] = 0;
-        for (int i : grid.shape[c].node) sample.suction[c] += std::max(0., -sample.nodal[i]) / (dim + 1);
+        for (int i : grid.shape[c].node) sample.suction[c] += std::max(0., -in_cell(c, i)) / (dim + 1);
       }
-      for (int i = 0; i < grid.node_count(); ++i) sample.nodal[i] = std::max(0., sample.nodal[i]);
     }
+    const auto stress_part = [this](double p) { return suction_matters_ ? std::max(0., p) : p; };
+    if (apart_) sample.jump.assign(mesh_.cell_count(), 0);
+    for (int c = 0; apart_ && c < grid.cell_count(); ++c)
+      for (int a = 0; a <= dim; ++a) {
+        const int i = grid.shape[c].node[a];
+        sample.jump[c] +=
+            vertex_weight(grid, blend, c, a) * (stress_part(in_cell(c, i)) - stress_part(sample.nodal[i]));
+      }
+    for (int i = 0; i < grid.node_count(); ++i) sample.nodal[i] = stress_part(sample.nodal[i]);
     for (int c = 0; c < grid.cell_count(); ++c) {
       const auto &node = grid.shape[c].node;
       const Cell<dim> &cell = mesh_.cells[grid.mesh_cell[c]];
@@ -84,10 +107,7 @@ void PrescribedPoreWater<dim>::sample(double time, const FilledGrid<dim> &grid, 
       for (int a = 0; a < dim; ++a)
         for (int d = 0; d < dim; ++d)
           gradient[d] += (sample.nodal[node[a + 1]] - sample.nodal[node[0]]) * cell.gradient[a][d];
-      double volume = 0;
-      for (int a = 0; a <= dim; ++a) volume += grid.nodal_share[c][a];
-      for (int a = 0; a <= dim; ++a)
-        value += sample.nodal[node[a]] * (blend[c] / (dim + 1) + (1 - blend[c]) * grid.nodal_share[c][a] / volume);
+      for (int a = 0; a <= dim; ++a) value += sample.nodal[node[a]] * vertex_weight(grid, blend, c, a);
       sample.gradient[c] = gradient, sample.value[c] = value;
     }
   }
@@ -107,19 +127,22 @@ void PrescribedPoreWater<dim>::add_force(const FilledGrid<dim> &grid, const Soil
   for (int c = 0; c < grid.cell_count(); ++c) {
     const Shape<dim> &shape = state.shape[c];
     const auto &node = shape.node;
+    double stress = apart_ ? early * sample_[0].jump[c] + late * sample_[1].jump[c] : 0;
     if (pressure_.open_water_load()) {
       for (int k = 0; k <= dim; ++k)
         for (int d = 0; d < dim; ++d)
           force[node[k]][d] -=
               grid.nodal_share[c][k] * (early * sample_[0].gradient[c][d] + late * sample_[1].gradient[c][d]);
+      if (stress == 0) continue;
     } else {
-      const double push = state.weight[c] * (early * sample_[0].value[c] + late * sample_[1].value[c]);
-      for (int k = 0; k < dim; ++k)
-        for (int d = 0; d < dim; ++d) {
-          force[node[k + 1]][d] += push * shape.gradient[k][d];
-          force[node[0]][d] -= push * shape.gradient[k][d];
-        }
+      stress += early * sample_[0].value[c] + late * sample_[1].value[c];
     }
+    const double push = state.weight[c] * stress;
+    for (int k = 0; k < dim; ++k)
+      for (int d = 0; d < dim; ++d) {
+        force[node[k + 1]][d] += push * shape.gradient[k][d];
+        force[node[0]][d] -= push * shape.gradient[k][d];
+      }
   }
 }
 
@@ -138,7 +161,7 @@ template <int dim>
 void PrescribedPoreWater<dim>::serialize(Archive &archive) {
   archive.serialize("pore water", extra_mass_, sample_time_, last_time_, table_moves_);
   for (Sample &sample : sample_)
-    archive.serialize("pore pressure", sample.gradient, sample.value, sample.nodal, sample.suction);
+    archive.serialize("pore pressure", sample.gradient, sample.value, sample.nodal, sample.suction, sample.jump);
 }
 
 template class PrescribedPoreWater<2>;

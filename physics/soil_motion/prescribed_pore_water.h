@@ -31,7 +31,8 @@ class PrescribedPoreWater {
 
   /// Adds the force of the pressure at `time`, times `ramp`, on the nodes of this rank [N]. With open water on
   /// submerged faces it is the body force -grad p, which contains the weight of the water on a face without knowing
-  /// where the face is; otherwise the pressure is a part of the stress.
+  /// where the face is; otherwise the pressure is a part of the stress. So is, in any case, the difference that water
+  /// of the soil's own makes: it may jump at the soil's border, across which total stress is continuous.
   void add_force(const FilledGrid<dim> &grid, const SoilState<dim> &state, double time, double ramp,
                  Vec<dim> *force) const;
   /// Suction at the stress points of a body [Pa].
@@ -48,7 +49,8 @@ class PrescribedPoreWater {
   struct Sample {
     std::vector<Vec<dim>> gradient;      ///< [cell] [Pa/m]
     std::vector<double> value, suction;  ///< [cell] [Pa]
-    std::vector<double> nodal;           ///< [node] [Pa]
+    std::vector<double> nodal;           ///< [node] of the common water [Pa]
+    std::vector<double> jump;            ///< [cell] how far the mean of the soil's own water is above it [Pa]
   };
   PetscErrorCode measure(FilledGrid<dim> &grid, double time);
   void sample(double time, const FilledGrid<dim> &grid, const double *blend);
@@ -61,6 +63,7 @@ class PrescribedPoreWater {
   double sample_time_[2] = {0, 0};
   double last_time_ = 0;          ///< of the last accepted state [s]
   bool table_moves_ = false;      ///< pores may have filled or dried since they were measured
+  bool apart_ = false;            ///< some soil has water of its own
   bool suction_matters_ = false;  ///< a law reads it: pressure below zero is suction, not stress
   std::vector<double> extra_mass_;
   std::vector<double> suction_;  ///< room for the points of one body [Pa]

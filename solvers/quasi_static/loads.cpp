@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "physics/prescribed_pressure.h"
+
 namespace talus {
 
 template <int dim>
@@ -21,12 +23,14 @@ void Loads<dim>::activate() {
 }
 
 template <int dim>
-double Loads<dim>::pore_pressure(const Vec<dim> &x, double t) const {
-  const double p = data_.pressure(x, t);
+double Loads<dim>::pore_pressure(const Vec<dim> &x, double t, int soil) const {
+  const double p = data_.pressure(x, t, soil);
   return soil_.suction_matters() ? std::max(0., p) : p;
 }
 
-/// Weight, pore pressure and body acceleration of a cell.
+/// Weight, pore pressure and body acceleration of a cell. With open water on submerged faces the common water acts by
+/// -grad p, otherwise as a part of the stress. So does, in any case, the difference that water of the soil's own makes:
+/// it may jump at the soil's border, across which total stress is continuous.
 template <int dim>
 void Loads<dim>::add_volume(int c, double t, std::vector<double> &force) const {
   const BackgroundMesh<dim> &mesh = soil_.mesh();
@@ -38,13 +42,19 @@ void Loads<dim>::add_volume(int c, double t, std::vector<double> &force) const {
   const auto add = [&](int a, double scale, const Vec<dim> &v) {
     for (int d = 0; d < dim; ++d) force[node[a] * dim + d] += scale * v[d];
   };
-  std::array<double, dim + 1> pressure{};  // at the vertices, linear between them as in the motion of particles
+  std::array<double, dim + 1> stress{};  // at the vertices, linear between them as in the motion of particles
   Vec<dim> slope{};
   const auto of_l = barycentric_gradients<dim>(mesh.cells[c]);
+  const int soil = soil_.body_of(c);
+  const bool apart = data_.pressure && data_.apart(soil),
+             in_stress = data_.pressure && (apart || !data_.open_water_load);
   if (data_.pressure)
     for (int a = 0; a <= dim; ++a) {
-      pressure[a] = pore_pressure(mesh.position[mesh.cells[c].node[a]], t);
-      for (int d = 0; d < dim; ++d) slope[d] += pressure[a] * of_l[a][d];
+      const Vec<dim> &x = mesh.position[mesh.cells[c].node[a]];
+      const double common = pore_pressure(x, t, common_water);
+      if (apart) stress[a] = pore_pressure(x, t, soil) - common;
+      if (!data_.open_water_load) stress[a] += common;
+      for (int d = 0; d < dim && data_.open_water_load; ++d) slope[d] += common * of_l[a][d];
     }
   const Quadrature<dim> &rule = soil_.rule();
   for (size_t q = 0; q < rule.point.size(); ++q) {
@@ -52,13 +62,13 @@ void Loads<dim>::add_volume(int c, double t, std::vector<double> &force) const {
     double density = data_.density(source, place_in(mesh, c, rule.point[q]), t);
     if (data_.flow) density += data_.flow->water_density(c, rule.point[q]);
     shape_functions<dim>(order, rule.point[q], shape.data());
-    if (data_.pressure && !data_.open_water_load) shape_gradients<dim>(order, rule.point[q], of_l, gradient.data());
+    if (in_stress) shape_gradients<dim>(order, rule.point[q], of_l, gradient.data());
     double here = 0;
-    for (int a = 0; a <= dim; ++a) here += rule.point[q][a] * pressure[a];
+    for (int a = 0; a <= dim; ++a) here += rule.point[q][a] * stress[a];
     for (int a = 0; a < per_cell; ++a) {
       add(a, density * volume * shape[a], acceleration);
-      if (!data_.pressure) continue;
-      data_.open_water_load ? add(a, -volume * shape[a], slope) : add(a, volume * here, gradient[a]);
+      if (data_.pressure && data_.open_water_load) add(a, -volume * shape[a], slope);
+      if (in_stress) add(a, volume * here, gradient[a]);
     }
   }
   if (source.body_acceleration.empty()) return;

@@ -37,7 +37,7 @@ class Loads {
     double share;  ///< of its force that acts on this cell: half where soil is on both sides
     std::vector<int> node;
   };
-  double pore_pressure(const Vec<dim> &x, double t) const;
+  double pore_pressure(const Vec<dim> &x, double t, int soil) const;
   Vec<dim> traction_of(const LoadedFacet &load, const Vec<dim> &x, double t) const;
   void add_volume(int cell, double t, std::vector<double> &force) const;
 

@@ -205,7 +205,8 @@ void SoilElements<dim>::deform(const std::vector<double> &u) {
 template <int dim>
 void SoilElements<dim>::find_suction(double t) {
   if (!suction_matters_) return;
-  for (GaussPoints<dim> &p : points_) {
+  for (int b = 0; b < static_cast<int>(points_.size()); ++b) {
+    GaussPoints<dim> &p = points_[b];
     if (!p.present || !reads_suction(p.law)) continue;
     p.suction.assign(p.count(), 0);
     for (int q = 0; q < p.count() && data_.flow; ++q)
@@ -213,7 +214,7 @@ void SoilElements<dim>::find_suction(double t) {
     for (int q = 0; q < p.count() && data_.pressure; ++q)
       for (int a = 0; a <= dim; ++a)
         p.suction[q] += rule_.point[q % points_per_cell()][a] *
-                        std::max(0., -data_.pressure(mesh_.position[mesh_.cells[p.cell[q]].node[a]], t));
+                        std::max(0., -data_.pressure(mesh_.position[mesh_.cells[p.cell[q]].node[a]], t, b));
   }
 }
 

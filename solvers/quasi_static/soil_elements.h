@@ -17,8 +17,11 @@ template <int dim>
 struct SoilData {
   /// Total density of a body at a place and time of the loads [kg/m3].
   std::function<double(const BodySource &, const Vec<dim> &, double)> density;
-  /// Pore pressure at a place and time of the loads [Pa]; empty where the scene has none.
-  std::function<double(const Vec<dim> &, double)> pressure;
+  /// Pore pressure at a place and time of the loads, of a body or of the common water [Pa]; empty where the scene has
+  /// none.
+  std::function<double(const Vec<dim> &, double, int soil)> pressure;
+  /// Has a body water of its own, whose pressure may jump at its border?
+  std::function<bool(int soil)> apart;
   bool open_water_load = true;
   /// Water whose pressure and weight the soil carries instead, where it flows; else null.
   const PoreFlow<dim> *flow = nullptr;

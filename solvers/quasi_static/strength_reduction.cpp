@@ -232,6 +232,8 @@ PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law>
   problem.soil().reset_displacement();
   for (size_t b = 0; b < history.size(); ++b) problem.soil().points()[b].history = history[b];
   TrialStrength<dim> strength(problem.soil(), laws);
+  for (size_t b = 0; b < settings.kept.size(); ++b)
+    if (settings.kept[b]) strength.keep(b);
   if (settings.divided) settings.tell_confined(strength.confine(settings.divided));
   PetscCall(MechanismSearch<dim>(problem, strength, settings, result).run(interrupted));
   strength.restore();

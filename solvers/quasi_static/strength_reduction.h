@@ -23,6 +23,7 @@ PetscErrorCode follow_path(double step, double smallest,
 template <int dim>
 struct ReductionSettings {
   double load_time = 0, time = 0;  ///< of the loads and of prescribed motions [s]
+  std::vector<char> kept;          ///< [body] its strength is not divided; empty: all are
   double shown_displacement = 0;   ///< largest displacement to which the mechanism is scaled at the end [m]
   int mechanisms = 1;              ///< that are searched for
   /// Is strength divided at this place, in an element of this size [m]? Empty: everywhere.

@@ -83,12 +83,18 @@ void TrialStrength<dim>::restore() {
 }
 
 template <int dim>
+void TrialStrength<dim>::keep(size_t body) {
+  bodies_[body].kept = true;
+  std::fill(bodies_[body].divisor.begin(), bodies_[body].divisor.end(), 1.);
+}
+
+template <int dim>
 double TrialStrength<dim>::confine(const std::function<bool(const Vec<dim> &, double)> &divided) {
   double volume[2] = {0, 0};  // where it is divided, and all
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const GaussPoints<dim> &p = soil_.points()[b];
     for (int q = 0; p.present && q < p.count(); ++q) {
-      const bool here = divided(p.position[q], p.size[q]);
+      const bool here = !bodies_[b].kept && divided(p.position[q], p.size[q]);
       bodies_[b].divisor[q] = here ? 0 : 1;
       volume[0] += here ? p.volume[q] : 0, volume[1] += p.volume[q];
     }
@@ -111,7 +117,7 @@ void TrialStrength<dim>::set(double factor, bool dilating) {
   for (size_t b = 0; b < bodies_.size(); ++b) {
     GaussPoints<dim> &p = soil_.points()[b];
     const OfBody &body = bodies_[b];
-    p.law = law_of_trial(laws_[b], factor, dilating);
+    p.law = law_of_trial(laws_[b], body.kept ? 1 : factor, dilating);
     if_frictional(laws_[b], [&](const auto &law) {
       const auto share = [](double part, double whole) { return whole > 0 ? part / whole : 1; };
       p.cohesion_share.resize(p.count()), p.friction_share.resize(p.count());

@@ -31,6 +31,8 @@ class TrialStrength {
   /// Gives the soil its own strength back.
   void restore();
 
+  /// Strength of this body is its own in all trials.
+  void keep(size_t body);
   /// Strength is divided by the factor of the trial only where `divided(place, element size)`; elsewhere it is the
   /// soil's own. Returns the share of the soil where it is divided. Collective.
   double confine(const std::function<bool(const Vec<dim> &, double)> &divided);
@@ -42,6 +44,7 @@ class TrialStrength {
   struct OfBody {
     std::vector<FrictionalPoint> own;  ///< of points; none where the law has no such strength
     std::vector<double> divisor;       ///< of points; 0: that of the trial
+    bool kept = false;                 ///< no trial divides its strength
     Law law;                           ///< with which the points came, and their shares
     std::vector<double> cohesion_share, friction_share;
   };

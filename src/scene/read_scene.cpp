@@ -116,6 +116,7 @@ class Checks {
     for (std::size_t i = 0; i < body.dense.size(); ++i) dense(path + ".dense." + std::to_string(i), body.dense[i]);
     weight(path, body);
     if (body.pore_pressure_ratio > 0) ratio(path + ".pore_pressure_ratio", body);
+    if (!body.water_table.empty()) water_table(path + ".water_table", body);
     if (body.permeability > 0 && body.hydraulic_conductivity > 0)
       reader_.complain(path + ".permeability", "is given twice: give permeability or hydraulic_conductivity");
   }
@@ -141,10 +142,31 @@ class Checks {
       reader_.complain(path, "needs a weight: give unit_weight, density, or porosity and grain_density");
   }
 
-  void ratio(const std::string &key, const BodySource &body) const {
+  void prescribed_pressure(const std::string &key) const {
     const auto flows = [](const Stage &stage) { return water_flows(stage.kind); };
     if (scene_.phases != PhaseModel::drained || std::any_of(scene_.stage.begin(), scene_.stage.end(), flows))
       reader_.complain(key, "prescribes the pore pressure, which needs phases = \"drained\" and no seepage stage");
+  }
+
+  /// Points of a water table, sorted by x.
+  void table(const std::string &key, const std::vector<std::vector<double>> &points) const {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const std::string path = key + "." + std::to_string(i);
+      components(path, points[i].size(), 2, "coordinates, [x, elevation]");
+      if (i > 0 && points[i][0] <= points[i - 1][0])
+        reader_.complain(path, "must lie to the right of the point before it: sort the points by x");
+    }
+  }
+
+  void water_table(const std::string &key, const BodySource &body) const {
+    prescribed_pressure(key);
+    table(key, body.water_table);
+    if (body.pore_pressure_ratio > 0)
+      reader_.complain(key, "is a second pore pressure beside pore_pressure_ratio: give one of them");
+  }
+
+  void ratio(const std::string &key, const BodySource &body) const {
+    prescribed_pressure(key);
     if (body.density == 0)
       reader_.complain(key,
                        "needs a weight that does not depend on a water table: give unit_weight or density, without "
@@ -180,13 +202,7 @@ class Checks {
                                   "\" has no gas that moves; set phases = \"three-phase\"");
     if (dry && scene_.water.given)
       reader_.complain("water", "has no effect, since phases = \"dry\" has no pore water; set phases = \"drained\"");
-    const std::vector<std::vector<double>> &table = scene_.water.table;
-    for (std::size_t i = 0; i < table.size(); ++i) {
-      const std::string path = "water.table." + std::to_string(i);
-      components(path, table[i].size(), 2, "coordinates, [x, elevation]");
-      if (i > 0 && table[i][0] <= table[i - 1][0])
-        reader_.complain(path, "must lie to the right of the point before it: sort the points by x");
-    }
+    table("water.table", scene_.water.table);
   }
 
   void factor_of_safety() const {

@@ -77,18 +77,20 @@ struct DenseBox {
 enum class PermeabilityChange { none, kozeny_carman, grain_share };
 
 struct BodySource {
-  std::string name;                   ///< the table's own name, [body.NAME]
-  std::vector<std::string> region;    ///< physical groups of cells
-  double unit_weight = 0;             ///< total, above the water table if it differs below it [N/m3]; gives density
-  double saturated_unit_weight = 0;   ///< total, below the water table [N/m3]; gives grain_density
-  double density = 0;                 ///< total density [kg/m3]; or porosity and grain_density
-  double porosity = 0;                ///< [-]
-  double grain_density = 0;           ///< [kg/m3]
-  double saturation = 0;              ///< of the pores above the water table [-]
-  double pore_pressure_ratio = 0;     ///< r_u: pore pressure over the weight of the soil above [-]
-  double permeability = 0;            ///< intrinsic, k [m2]; or hydraulic_conductivity
-  double hydraulic_conductivity = 0;  ///< k rho_w g / mu_w [m/s]
-  double gas_permeability = 0;        ///< intrinsic, of the gas [m2]; 0: that of the liquid
+  std::string name;                  ///< the table's own name, [body.NAME]
+  std::vector<std::string> region;   ///< physical groups of cells
+  double unit_weight = 0;            ///< total, above the water table if it differs below it [N/m3]; gives density
+  double saturated_unit_weight = 0;  ///< total, below the water table [N/m3]; gives grain_density
+  double density = 0;                ///< total density [kg/m3]; or porosity and grain_density
+  double porosity = 0;               ///< [-]
+  double grain_density = 0;          ///< [kg/m3]
+  double saturation = 0;             ///< of the pores above the water table [-]
+  double pore_pressure_ratio = 0;    ///< r_u: pore pressure over the weight of the soil above [-]
+  std::vector<std::vector<double>> water_table;  ///< of its own, polyline x, elevation [m]
+  bool reduce_strength = true;                   ///< by a factor of safety
+  double permeability = 0;                       ///< intrinsic, k [m2]; or hydraulic_conductivity
+  double hydraulic_conductivity = 0;             ///< k rho_w g / mu_w [m/s]
+  double gas_permeability = 0;                   ///< intrinsic, of the gas [m2]; 0: that of the liquid
   PermeabilityChange permeability_change = PermeabilityChange::none;  ///< with porosity
   DeferredTable retention;                                            ///< [body.NAME.retention], read by physics/pores
   DeferredTable relative_permeability;                                ///< [body.NAME.relative_permeability], likewise
@@ -120,6 +122,14 @@ struct BodySource {
     v.number("pore_pressure_ratio", pore_pressure_ratio, one, Range{0, 1},
              "r_u: pore pressure over the weight per area of the soil above, as it lies at the start, in place of that "
              "of [water]; needs phases = \"drained\" and unit_weight");
+    v.points(
+        "water_table", water_table, metre,
+        "water table or piezometric line of this soil: polyline of points [x, elevation] in place of water.table in "
+        "the regions that the body fills at the start; water.level and water.excess apply to it; the pressure may "
+        "jump at the border of these regions; needs phases = \"drained\"");
+    v.flag(
+        "reduce_strength", reduce_strength,
+        "a factor of safety divides the strength of this body; false: it keeps its strength, as rock or a structure");
     v.number("permeability", permeability, square_metre, Range{0, 1e-3},
              "intrinsic permeability k; or give hydraulic_conductivity");
     v.number("hydraulic_conductivity", hydraulic_conductivity, metre_per_second, Range{0, 1e3},

@@ -8,10 +8,16 @@
 
 namespace talus {
 
-/// Refuses laws whose strength cannot be divided. Soil that never fails may stand beside soil that does.
+/// Refuses laws whose strength cannot be divided. Soil that never fails, and soil that keeps its strength, may stand
+/// beside soil that does not.
 template <int dim>
 void check_strength(const World<dim> &world) {
-  const bool some_fail = std::ranges::any_of(world.laws, [](const Law &law) { return !never_fails(law); });
+  bool some_fail = false;
+  for (size_t b = 0; b < world.laws.size(); ++b)
+    some_fail = some_fail || (!never_fails(world.laws[b]) && world.scene.body[b].reduce_strength);
+  if (!some_fail && !std::ranges::all_of(world.laws, never_fails))
+    world.scene.complain("body",
+                         "has no soil whose strength a factor of safety divides: set reduce_strength = true in one");
   for (size_t b = 0; b < world.laws.size(); ++b) {
     const std::string law = law_name(world.laws[b]), reason = no_strength_reduction(world.laws[b]);
     if (!reason.empty() && (!never_fails(world.laws[b]) || !some_fail))
@@ -138,7 +144,10 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   FactorTables tables(rank == 0 ? run_.options.directory : "");
   run_.clock.stage = "strength reduction";
   for (size_t b = 0; b < world.laws.size(); ++b)
-    if (never_fails(world.laws[b]))
+    if (!run_.scene.body[b].reduce_strength)
+      run_.recorder.note("the strength of body." + run_.scene.body[b].name +
+                         " is not reduced: reduce_strength = false");
+    else if (never_fails(world.laws[b]))
       run_.recorder.note("the strength of body." + run_.scene.body[b].name +
                          " is not reduced: " + law_name(world.laws[b]) + " " + no_strength_reduction(world.laws[b]));
   note_yielding_ground(world, run_.recorder);
@@ -162,6 +171,7 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
                        std::to_string(of) + " (" + rounded(100 * beside) +
                        " % of its shear is beside the soil that is held): it is held too");
   };
+  for (const BodySource &body : run_.scene.body) settings.kept.push_back(!body.reduce_strength);
   settings.tell = [&](const StrengthTrial &t) {
     std::string text = "strength divided by " + rounded(t.factor) + (t.dilating ? ", psi = phi" : "") + ": " +
                        name_of(t.outcome) + ", " + std::to_string(t.iterations) + " iterations, ";

@@ -47,8 +47,8 @@ void Statics<dim>::start_stress() {
       Vec<dim> surface = x;
       double weight = overburden.above(x, &surface[1]), pressure = 0;
       if (world_.phases.prescribed) {
-        pressure = world_.pressure(x, clock_.load_time);
-        if (world_.scene.water.open_water_load) weight += world_.pressure(surface, clock_.load_time);
+        pressure = world_.pressure(x, clock_.load_time, static_cast<int>(b));
+        if (world_.scene.water.open_water_load) weight += world_.pressure(surface, clock_.load_time, common_water);
       }
       if (world_.phases.liquid)
         pressure = flow_->stress_pressure(points.cell[q],

@@ -40,7 +40,7 @@ struct ParticleState {
     for (int d = 0; d < dim; ++d) displacement[d] = position[d] - p.reference[i][d];
     mass = p.mass[i];
     if (p.cohesion_share) strength = {p.cohesion_share[i], p.friction_share[i]};
-    if (phases.prescribed) pore_pressure = motion.pore_pressure(position);
+    if (phases.prescribed) pore_pressure = motion.pore_pressure(p.cell[i], position);
     if (phases.liquid) {
       const PoreReport pores = motion.pores(source, i);
       pore_pressure = pores.liquid, gas_pressure = pores.gas, suction = pores.suction, saturation = pores.saturation;

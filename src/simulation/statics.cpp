@@ -33,7 +33,8 @@ void Statics<dim>::make() {
   };
   data.open_water_load = world_.scene.water.open_water_load;
   if (world_.phases.prescribed) {
-    data.pressure = [this](const Vec<dim> &x, double t) { return world_.pressure(x, t); };
+    data.pressure = [this](const Vec<dim> &x, double t, int soil) { return world_.pressure(x, t, soil); };
+    data.apart = [this](int soil) { return world_.pressure.apart(soil); };
     if (has_flow_stages(world_.scene)) {
       const bool dries = std::any_of(world_.scene.body.begin(), world_.scene.body.end(),
                                      [](const BodySource &b) { return b.retention.reader; });
@@ -78,7 +79,8 @@ PetscErrorCode Statics<dim>::activate() {
         const Function &suction = world_.scene.water.suction;
         const double above = suction.given() ? suction(x[0], x[1], dim == 3 ? x[dim - 1] : 0, clock_.load_time)
                                              : world_.pressure.above_table(x, clock_.load_time);
-        return world_.pressure(x, clock_.load_time) - (world_.pressure.below_table(x, clock_.load_time) ? 0 : above);
+        return world_.pressure(x, clock_.load_time, common_water) -
+               (world_.pressure.below_table(x, clock_.load_time, common_water) ? 0 : above);
       }));
   PetscFunctionReturn(0);
 }
@@ -247,7 +249,7 @@ std::optional<ParticleState<dim>> Statics<dim>::state_at(const Vec<dim> &x) cons
   state.displacement = problem_->soil().displacement(cell, l);
   state.history.resize(world_.bodies[state.body]->history_count());
   interpolate(cell, l, state.stress.data(), state.history.data());
-  if (world_.phases.prescribed) state.pore_pressure = world_.pressure(x, clock_.load_time);
+  if (world_.phases.prescribed) state.pore_pressure = world_.pressure(x, clock_.load_time, state.body);
   if (world_.phases.liquid) {
     state.pore_pressure = flow_->pressure_at(cell, l), state.saturation = flow_->saturation(cell, l);
     state.suction = std::max(0., -state.pore_pressure);
@@ -332,7 +334,7 @@ Snapshot Statics<dim>::gauss_points() const {
       std::copy_n(&p.total_strain[q * stress_size<dim>], stress_size<dim>, &strain.xx);
       point.shear_strain = Invariants<dim>(strain).q * std::sqrt(4. / 3);
       if (!p.cohesion_share.empty()) point.strength = {p.cohesion_share[q], p.friction_share[q]};
-      if (world_.phases.prescribed) point.pore_pressure = world_.pressure(p.position[q], clock_.load_time);
+      if (world_.phases.prescribed) point.pore_pressure = world_.pressure(p.position[q], clock_.load_time, b);
       if (world_.phases.liquid)
         point.pore_pressure = flow_->pressure_at(cell, l), point.saturation = flow_->saturation(cell, l);
       point.history = p.history.data() + static_cast<size_t>(q) * world_.bodies[b]->history_count();

@@ -15,10 +15,7 @@ namespace talus {
 
 template <int dim>
 World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &mesh_file)
-    : scene(of),
-      phases(phase_traits(of.phases)),
-      comm(world),
-      pressure(of.water, std::hypot(of.gravity[0], of.gravity[1])) {
+    : scene(of), phases(phase_traits(of.phases)), comm(world), pressure(of, std::hypot(of.gravity[0], of.gravity[1])) {
   read_laws();
   std::vector<Source> sources = read_sources();
   read_mesh(plex, mesh_file);
@@ -27,6 +24,7 @@ World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &m
   check_boundaries(sources);
   require(conditions.setup(mesh, std::move(sources)));
   conditions.use_stand_ins(scene.stage.front().hold_loads);
+  pressure.set_regions(bodies_of_cells(mesh, scene));
   set_pore_pressure_ratios();
   seed_bodies();
   set_loading(scene.stage.front(), 0, Clock{});  // under which the first state is gathered
@@ -132,10 +130,11 @@ void World<dim>::read_mesh(DM plex, const std::string &mesh_file) {
 template <int dim>
 double World<dim>::soil_density(const BodySource &source, const Vec<dim> &x, double t) const {
   if (source.density > 0 && !phases.liquid) return source.density;
+  const int soil = static_cast<int>(&source - scene.body.data());
   double density = (1 - source.porosity) *
                    source.grain_density;  // where fluids move on their own, particles' mass is that of the grains
   if (phases.prescribed)
-    density += source.porosity * scene.water.density * (pressure.below_table(x, t) ? 1 : source.saturation);
+    density += source.porosity * scene.water.density * (pressure.below_table(x, t, soil) ? 1 : source.saturation);
   return density;
 }
 
@@ -164,26 +163,29 @@ void World<dim>::set_pore_pressure_ratios() {
   for (int c = 0; c < mesh.cell_count(); ++c)
     if (body_of[c] >= 0 && there[body_of[c]]) blocks.push_back(block_of(scene.body[body_of[c]], c, 0, 0));
   const Overburden<dim> overburden(comm, blocks);
-  std::vector<double> cells;
-  for (int c = 0; c < mesh.cell_count(); ++c) {
-    const double ratio = body_of[c] >= 0 ? scene.body[body_of[c]].pore_pressure_ratio : 0;
+  for (int b = 0; b < static_cast<int>(scene.body.size()); ++b) {
+    const double ratio = scene.body[b].pore_pressure_ratio;
     if (ratio == 0) continue;
-    Vec<dim> centre{};
-    for (const int node : mesh.cells[c].node)
-      for (int d = 0; d < dim; ++d) centre[d] += mesh.position[node][d] / (dim + 1);
-    for (const int node : mesh.cells[c].node) {
-      const Vec<dim> &x = mesh.position[node];
-      constexpr double aside = 1e-7;  // into the cell, since soil may end at x
-      Vec<dim> near = x;
-      for (int d = 0; d < dim; ++d)
-        if (d != 1) near[d] += aside * (centre[d] - x[d]);
-      double top;
-      cells.insert(cells.end(), x.begin(), x.end());
-      cells.push_back(ratio * overburden.above(near, &top));
+    std::vector<double> cells;
+    for (int c = 0; c < mesh.cell_count(); ++c) {
+      if (body_of[c] != b) continue;
+      Vec<dim> centre{};
+      for (const int node : mesh.cells[c].node)
+        for (int d = 0; d < dim; ++d) centre[d] += mesh.position[node][d] / (dim + 1);
+      for (const int node : mesh.cells[c].node) {
+        const Vec<dim> &x = mesh.position[node];
+        constexpr double aside = 1e-7;  // into the cell, since soil may end at x
+        Vec<dim> near = x;
+        for (int d = 0; d < dim; ++d)
+          if (d != 1) near[d] += aside * (centre[d] - x[d]);
+        double top;
+        cells.insert(cells.end(), x.begin(), x.end());
+        cells.push_back(ratio * overburden.above(near, &top));
+      }
     }
+    auto field = std::make_shared<CellPressure<dim>>(comm, cells);
+    pressure.take_of(b, [field](const double *x) { return (*field)(x); });
   }
-  auto field = std::make_shared<CellPressure<dim>>(comm, cells);
-  pressure.take([field](const double *x) { return (*field)(x); });
 }
 
 /// Numbers of particles in a cell are below it, whatever boxes and stages add.

@@ -171,6 +171,59 @@ TEST(FactorOfSafety, divides_the_strength_of_a_point) {
     }
 }
 
+/// A block of rock on a thin weak seam before a tension crack, dry and with water: the planar wedge of Hoek & Bray
+/// (1981), F = [c A + (W cos b - U - V sin b) tan phi] / (W sin b + V cos b). The slip surface is the middle of the
+/// seam; the row of elements in which it shears makes F 1 % too small or large. With psi = 0 c and tan phi are those of
+/// Davis.
+TEST(FactorOfSafety, of_a_wedge_before_a_tension_crack_is_that_of_hoek_and_bray) {
+  const double b = 30 * degree.si, c = 20e3, phi = 30 * degree.si, area = 10 / std::cos(b), bottom = 0.1 + 5.7735;
+  const double weight = 25e3 * 42.5325;  // of the rock and of half of the seam
+  for (const double level : {0., 7.5, 9.}) {
+    const double deep = std::max(0., level - bottom), v = 10e3 * deep * deep / 2, u = 10e3 * deep * area / 2;
+    const double normal = weight * std::cos(b) - u - v * std::sin(b), shear = weight * std::sin(b) + v * std::cos(b);
+    const double exact = (c * area + normal * std::tan(phi)) / shear;
+    Overrides water{"body.seam.water_table=[[0, 0.1], [10, " + std::to_string(level) + "]]",
+                    "boundary.crack.pressure=1e4 * max(0, " + std::to_string(level) + " - y)"};
+    if (level == 0) water = {"body.seam.water_table=[[0, -10]]", "boundary.crack.pressure=0"};
+    EXPECT_NEAR(factor_of("../../guide/wedge.toml", water).value() / exact, 1, 0.015) << level;
+    if (level != 9) continue;
+    double davis = exact;
+    for (int k = 0; k < 100; ++k) davis = exact * std::cos(std::atan(std::tan(phi) / davis));
+    const FactorOfSafety flat = factor_of("../../guide/wedge.toml", water + Overrides{"body.seam.dilation_angle=0"});
+    EXPECT_NEAR(flat.value() / davis, 1, 0.015);
+    EXPECT_NEAR(flat.dilating.value() / exact, 1, 0.015);
+  }
+}
+
+/// A vertical cut in clay with phi = 0 fails at gamma H / c = 3.776; without tensile strength at 2 (Drucker & Prager
+/// 1952: sigma_v = gamma z and sigma_h = 0 are admissible up to there). The slab that breaks off is as thin as the
+/// cells allow, so F is too large by about the width of a cell over twice the height; so it is with tensile strength in
+/// cells so large.
+TEST(FactorOfSafety, of_a_cut_without_tensile_strength_is_half) {
+  const Overrides cut{"mesh.size=0.25", "mesh.refine=[]", "body.soil.cohesion=10e3"};
+  const std::string file = "../../../tests/verification/fem_vertical_cut/scene.toml";
+  const double whole = factor_of(file, cut).value(),
+               open = factor_of(file, cut + Overrides{"body.soil.tension_cutoff=0"}).value();
+  EXPECT_GT(whole, 3.776 / 2);
+  EXPECT_LT(whole, 3.776 / 2 * (1 + 0.25 / 2));
+  EXPECT_GT(open, 0.997);
+  EXPECT_LT(open, 1 + 0.25 / 2);
+}
+
+/// The rock of the wedge as soil of its own strength, of which no factor is taken: what fails is the seam, as beside
+/// elastic rock. A scene in which nothing is left to divide is refused.
+TEST(FactorOfSafety, leaves_soil_that_keeps_its_strength) {
+  const Overrides seam_kept{"body.seam.reduce_strength=false"};
+  const Overrides rock{"body.rock.law=mohr_coulomb",      "body.rock.cohesion=60e3",
+                       "body.rock.friction_angle=40",     "body.rock.dilation_angle=40",
+                       "body.rock.reduce_strength=false", "boundary.crack.pressure=0",
+                       "body.seam.water_table=[[0, -10]]"};
+  const double dry =
+      factor_of("../../guide/wedge.toml", {"boundary.crack.pressure=0", "body.seam.water_table=[[0, -10]]"}).value();
+  EXPECT_NEAR(factor_of("../../guide/wedge.toml", rock).value() / dry, 1, 0.01);
+  EXPECT_THROW(factor_of("../../guide/wedge.toml", seam_kept), std::invalid_argument);
+}
+
 /// Soil that would soften keeps its peak strength in trials if it has not sheared.
 TEST(FactorOfSafety, trials_take_no_strength_from_soil_that_softens) {
   const Overrides held{"stage.0.softening=false", "body.soil.dilation_angle=20"};

@@ -12,9 +12,10 @@ namespace talus {
 template <int dim, class Phases = Dry>
 struct Soil {
   Soil(const std::string &text, double relaxation_time)
-      : scene(parse_scene(text, "soil")), pressure(scene.water, 9.81), file(PETSC_COMM_WORLD, scene) {
+      : scene(parse_scene(text, "soil")), pressure(scene, 9.81), file(PETSC_COMM_WORLD, scene) {
     const BodySource &source = scene.body[0];
     mesh = BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.path(), {{source.region[0], 5.}});
+    pressure.set_regions(std::vector<int>(mesh.cell_count(), 0));
     std::vector<typename Conditions<dim>::Source> sources;
     for (const BoundarySource &b : scene.boundary)
       sources.push_back({b.name, b.group.empty() ? std::vector{b.name} : b.group, read_boundary(b.kind)});

@@ -272,5 +272,130 @@ duration = 1
   EXPECT_NEAR(found / exact, 1, 0.015) << found;
 }
 
+// ---- a water table per soil ----
+
+/// Level ground of two layers, each with water of its own: perched, artesian, or none.
+const std::string two_waters = R"(
+gravity = 10
+phases = "drained"
+[mesh]
+section = "layers.csv"
+size = 0.2
+[water]
+[body.upper]
+region = "upper"
+unit_weight = "18 kN/m3"
+law = "mohr_coulomb"
+young_modulus = "10 MPa"
+poisson_ratio = 0.3
+cohesion = "20 kPa"
+friction_angle = 20
+[body.lower]
+region = "lower"
+unit_weight = "20 kN/m3"
+law = "linear_elastic"
+young_modulus = "5 MPa"
+poisson_ratio = 0.3
+[boundary.walls]
+group = ["base", "left", "right"]
+kind = "roller"
+[[stage]]
+kind = "quasi_static"
+duration = 1
+reset_displacement = true
+)";
+struct Waters {
+  const char *upper, *lower, *common;
+  double upper_at, lower_at;  ///< elevation of the tables; so low that there is none
+};
+constexpr double no_water = -100;
+/// Tables at or beyond the borders of the layers, so that elements hold the pressure exactly; `common` is [water].
+const Waters waters[] = {
+    {"[[0, 1]]", "[[0, 1.3]]", "", 1, 1.3},               // perched above artesian water
+    {"[[0, 1]]", "[[0, -1]]", "", 1, no_water},           // perched above drained soil
+    {"", "[[0, 1.2], [1, 1.2]]", "", no_water, 1.2},      // an artesian aquifer alone
+    {"", "[[0, 1.2]]", "[[0, 1]]", 1, 1.2},               // beside the table of [water]
+    {"[[0, 0.4]]", "", "[[0, 2], [1, 2]]", no_water, 2},  // drained under open water of 1 m depth
+};
+std::vector<std::string> keys_of(const Waters &w) {
+  std::vector<std::string> keys{"mesh.section=" + std::string(TALUS_LAYERS)};
+  if (*w.upper) keys.push_back(std::string("body.upper.water_table=") + w.upper);
+  if (*w.lower) keys.push_back(std::string("body.lower.water_table=") + w.lower);
+  if (*w.common) keys.push_back(std::string("water.table=") + w.common);
+  return keys;
+}
+double pressure_at(double table, double y) { return 10e3 * std::max(0., table - y); }
+
+/// Total stress is that of the weights and of open water, pore pressure that of the layer's own water, and effective
+/// stress what is left: at every Gauss point, whether the stage begins with earth pressure at rest or without stress,
+/// and after the tables have risen.
+TEST(Practice, each_soil_has_its_own_water) {
+  for (const Waters &w : waters)
+    for (const std::string start : {"k0", "kept"})
+      for (const double rise : {0., 0.25}) {
+        if (rise > 0 && w.lower_at == no_water) continue;
+        const Solved solved = solve(two_waters, keys_of(w) + std::vector<std::string>{"stage.0.initial_stress=" + start,
+                                                                                      "water.level=[[0, 0], [1, " +
+                                                                                          std::to_string(rise) + "]]"});
+        const bool open = *w.common && w.upper_at == no_water;
+        const auto pores = [&](size_t q) {
+          const double y = solved.value("position", q, 1);
+          if (y > 0.5) return w.upper_at == no_water ? 0 : pressure_at(w.upper_at + rise, y);
+          return w.lower_at == no_water ? 0 : pressure_at(w.lower_at + rise, y);
+        };
+        if (rise > 0 && w.upper_at == no_water && *w.upper) continue;  // its table rises into the layer
+        const double on_top = *w.common ? pressure_at((open ? 2 : 1) + rise, 1) : 0;
+        SCOPED_TRACE(std::string(w.upper) + w.lower + w.common + start);
+        EXPECT_LT(largest(solved, 1, [&](size_t q, int) { return solved.value("pore_pressure", q) - pores(q); }), 1e-8);
+        EXPECT_LT(largest(solved, 1,
+                          [&](size_t q, int) {
+                            const double y = solved.value("position", q, 1),
+                                         total = on_top + 18e3 * std::min(1 - y, 0.5) + 20e3 * std::max(0.5 - y, 0.);
+                            return solved.value("stress", q, 1) + total - pores(q);
+                          }),
+                  1e-6);
+      }
+}
+
+/// Soil at rest stays at rest when its motion begins, and has the same effective stress in the mean of each layer.
+TEST(Practice, soil_with_its_own_water_stays_at_rest) {
+  for (const Waters &w : waters) {
+    Scene scene = parse_scene(
+        two_waters + "[[stage]]\nduration = 0.02\n", meshes + "/scene.toml",
+        keys_of(w) + std::vector<std::string>{"quasi_static.elements=patches", "quasi_static.tolerance=1e-12"});
+    RunOptions options;
+    options.pictures = options.screen = false;
+    const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+    simulation->run();
+    const Solved solved{simulation->snapshot(), simulation->history(), simulation->events()};
+    SCOPED_TRACE(std::string(w.upper) + w.lower + w.common);
+    EXPECT_LT(largest(solved, 2, [&](size_t q, int k) { return solved.value("displacement", q, k); }), 1e-11);
+    double sums[4]{};  // stress and volume of the layers
+    for (size_t q = 0; q < solved.points.id.size(); ++q) {
+      const int b = solved.points.body[q];
+      sums[b] += solved.value("volume", q) * solved.value("stress", q, 1), sums[2 + b] += solved.value("volume", q);
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+    const double open = *w.common ? pressure_at(w.upper_at == no_water ? 2 : 1, 1) : 0;
+    const double upper = w.upper_at == no_water ? 0 : pressure_at(w.upper_at, 0.75),
+                 lower = w.lower_at == no_water ? 0 : pressure_at(w.lower_at, 0.25);
+    EXPECT_NEAR(sums[0] / sums[2], -(open + 18e3 * 0.25) + upper, 1e-4);
+    EXPECT_NEAR(sums[1] / sums[3], -(open + 18e3 * 0.5 + 20e3 * 0.25) + lower, 1e-4);
+  }
+}
+
+/// Two soils with different pore pressure ratios: each has its own up to the interface.
+TEST(Practice, pore_pressure_ratios_differ_from_soil_to_soil) {
+  const Solved solved = solve(two_waters, {"mesh.section=" + std::string(TALUS_LAYERS),
+                                           "body.upper.pore_pressure_ratio=0.2", "body.lower.pore_pressure_ratio=0.5"});
+  EXPECT_LT(largest(solved, 1,
+                    [&](size_t q, int) {
+                      const double y = solved.value("position", q, 1),
+                                   total = 18e3 * std::min(1 - y, 0.5) + 20e3 * std::max(0.5 - y, 0.);
+                      return solved.value("stress", q, 1) + (y > 0.5 ? 0.8 : 0.5) * total;
+                    }),
+            1e-6);
+}
+
 }  // namespace
 }  // namespace talus
