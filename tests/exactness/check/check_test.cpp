@@ -58,7 +58,8 @@ TEST(Check, TriesFunctionsOverStagesAndPlaces) {
   const std::string belt = "boundary.base={kind='velocity', velocity=['0', '";
   EXPECT_FALSE(check(folder, {belt + "sqrt(0.06 - t)']}"}).says("A run ends where"));
   EXPECT_TRUE(check(folder, {belt + "sqrt(0.04 - t)']}"}).says("no number at t = 0.0405 s. A run ends where"));
-  EXPECT_TRUE(check(folder, {belt + "sqrt(0.7 - x)']}"}).says("A run ends where"));
+  EXPECT_TRUE(check(folder, {belt + "sqrt(0.7 - x)']}"})
+                  .says("breaks off in its first steps: --set: boundary.base.velocity.1"));
 }
 
 /// A number without a unit counts in the unit of its key, which is not always the one that its writer had in mind.
