@@ -392,8 +392,6 @@ Needs find_needs(Scene &scene) {
   for (std::size_t b = 0; b < reports.size(); ++b) needs.bodies[b].softening = softening[b];
   needs.brittle = brittle_soils(scene, laws, reports);
   needs.unlikely = unlikely_values(scene, laws);
-  sample_functions(scene, reports);
-  needs.function_fault = scene.function_fault();
   const StepRule rule = step_rule(read_integrator(scene.integrator, fluids_move(scene.phases)));
   needs.critical_step = rule.bound == FrequencyBound::mesh || scene.water.drag == PoreDrag::at_start
                             ? simulation->critical_step()
@@ -403,6 +401,10 @@ Needs find_needs(Scene &scene) {
   needs.step = needs.fixed_step ? rule.fixed : rule.share * needs.critical_step;
   MPI_Comm_size(PETSC_COMM_WORLD, &needs.ranks);
   burst(*simulation, needs);
+  if (scene.function_fault().empty()) {  // else the burst has broken off by it
+    sample_functions(scene, reports);
+    needs.function_fault = scene.function_fault();
+  }
   needs.snapshots = 1;
   for (const Stage &stage : scene.stage) {
     if (is_static(stage.kind)) {  // by finite elements: no waves, no steps of the motion

@@ -94,6 +94,10 @@ class Checks {
     if (scene_.phases == PhaseModel::dry)
       reader_.complain(path + ".saturated_unit_weight",
                        "has no effect, since phases = \"dry\" has no water table; give unit_weight");
+    if (above == below && body.porosity == 0) {  // pores fill and dry without a change of weight
+      body.density = above / g;
+      return;
+    }
     if (above == 0 || body.porosity > 0)
       reader_.complain(path + ".saturated_unit_weight",
                        above == 0 ? "needs unit_weight beside it, that of the soil above the water table"
@@ -220,9 +224,24 @@ class Checks {
       for (std::size_t i = 1; i < points->size(); ++i)
         if ((*points)[i] == (*points)[i - 1])
           reader_.complain(path + "." + std::to_string(i), "must not be the point before it again");
+      uncrossed(path, *points, points == &search.within);
     }
     if (search.width > 0 && search.along.empty())
       reader_.complain("factor_of_safety.width", "has no effect without the line factor_of_safety.along");
+  }
+
+  /// A polygon (closed) or a line whose sides do not cross one another.
+  void uncrossed(const std::string &path, const std::vector<std::vector<double>> &points, bool closed) const {
+    const std::size_t corners = points.size(), sides = closed ? corners : corners - (corners > 0);
+    const auto side_of = [&](std::size_t a, std::size_t b, std::size_t c) {
+      const std::vector<double> &p = points[a % corners], &q = points[b % corners], &r = points[c % corners];
+      return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+    };
+    for (std::size_t i = 0; i < sides; ++i)
+      for (std::size_t k = i + 1; k < sides; ++k)
+        if (side_of(i, i + 1, k) * side_of(i, i + 1, k + 1) < 0 && side_of(k, k + 1, i) * side_of(k, k + 1, i + 1) < 0)
+          reader_.complain(path, "must not cross itself, as its sides from points " + std::to_string(i) + " and " +
+                                     std::to_string(k) + " do: give the points in their order along it");
   }
 
   void stage(const Stage &stage, const std::string &path) const {

@@ -83,7 +83,7 @@ class DynamicStage final : public StageRunner<dim> {
     text.precision(3);
     text << "stage " << stage_.name << " reached its duration of " << stage_.duration
          << " s before its stop criterion was met: unbalanced force ratio " << sums.ratio()
-         << ", kinetic over strain energy " << sums.kinetic / sums.strain << ", rms speed "
+         << ", kinetic over strain energy " << (sums.kinetic > 0 ? sums.kinetic / sums.strain : 0) << ", rms speed "
          << std::sqrt(2 * sums.kinetic / run_.world.total_mass) << " m/s";
     run_.recorder.note(text.str());
   }

@@ -133,6 +133,21 @@ TEST_F(RunThatEnds, BecauseALayerIsOneElementThick) {
          1);
 }
 
+/// Elements of first order lock, and their factors are too large: they are never those of a factor of safety.
+TEST_F(RunThatEnds, WithTheFactorOfElementsOfSecondOrder) {
+  folder_.write("scene.toml", changed(changed(good_scene, "name = \"fall\"", "kind = \"quasi_static\""),
+                                      "cohesion = 0\nfriction_angle = 30", "cohesion = \"4 kPa\"\nfriction_angle = 0"));
+  const auto factor = [&](const std::vector<std::string> &set) {
+    std::vector<std::string> words{"solve", "scene.toml", "--factor-of-safety", "--no-pictures", "--force"};
+    words.insert(words.end(), set.begin(), set.end());
+    const Ending ending = talus(folder_, words);
+    EXPECT_EQ(ending.status, 0) << ending.output;
+    const std::size_t at = ending.output.find("factor of safety ", ending.output.rfind("\nfactor of safety"));
+    return ending.output.substr(at, ending.output.find(':', at) - at);
+  };
+  EXPECT_EQ(factor({"--set", "quasi_static.elements=patches"}), factor({}));
+}
+
 /// Trials near the factor remain undecided where the linear solver gives up early: the answer is a range, in words, as
 /// JSON and by the exit status. The factor that the direct solver finds lies within.
 TEST_F(RunThatEnds, WithARangeForTheFactorOfSafety) {

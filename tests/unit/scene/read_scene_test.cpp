@@ -171,6 +171,10 @@ TEST(ReadScene, ChecksOneKeyAgainstAnother) {
        {"body.clay.unit_weight=21 kN/m3", "body.clay.saturated_unit_weight=20 kN/m3"},
        "saturated_unit_weight = \"20 kN/m3\" must exceed unit_weight by 0 to 10000 N/m3"},
       {with_unit_weights, {"body.clay.porosity=0.3", "body.clay.saturated_unit_weight=20 kN/m3"}, "leave porosity out"},
+      {dry,
+       {"factor_of_safety.within=[[0, 0], [4, 3], [4, 0], [0, 3]]"},
+       "factor_of_safety.within = [[0, 0], [4, 3], [4, 0], [0, 3]] must not cross itself, as its sides from points 0 "
+       "and 2"},
       {with_unit_weights,
        {"body.clay.pore_pressure_ratio=0.3", "body.clay.saturated_unit_weight=20 kN/m3"},
        "needs a weight that does not depend on a water table"},
@@ -235,6 +239,8 @@ TEST(ReadScene, TakesUnitWeightsForDensities) {
                              .body[0];  // 18 above, 20 below the water table
   EXPECT_DOUBLE_EQ((1 - two.porosity) * two.grain_density, 1800);
   EXPECT_DOUBLE_EQ((1 - two.porosity) * two.grain_density + two.porosity * 1000, 2000);
+  EXPECT_DOUBLE_EQ(
+      parse_scene(with_unit_weights, "a.toml", {"body.clay.saturated_unit_weight=18 kN/m3"}).body[0].density, 1800);
   EXPECT_EQ(two.saturation, 0);
   const std::string moving =
       "phases = 'saturated'\n[body.a]\nregion = 'a'\nsaturated_unit_weight = '20 kN/m3'\n"
