@@ -134,6 +134,8 @@ class Adviser {
           ". A run ends where it needs such a value; the function was tried all over the soil and "
           "the stages.");
     for (const std::string &sentence : needs_.unlikely) say(sentence);
+    if (!scene_.root->has("gravity"))
+      say("The scene gives no gravity, so that soil has no weight; gravity = 0 says that this is meant.");
     for (const std::string &sentence : needs_.brittle) say(sentence);
     stiffness();
     start();

@@ -1,7 +1,6 @@
 #include "simulation/unlikely.h"
 
 #include "base/units.h"
-#include "scene/reader.h"
 #include "simulation/failure.h"
 
 namespace talus {
@@ -21,8 +20,6 @@ struct Doubt {
 std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<Law> &laws) {
   constexpr double none = 1e300;
   std::vector<std::string> sentences;
-  if (scene.root && !scene.root->has("gravity"))
-    sentences.push_back("The scene gives no gravity, so that soil has no weight; gravity = 0 says that this is meant.");
   for (std::size_t b = 0; b < laws.size(); ++b) {
     const BodySource &body = scene.body[b];
     std::vector<Doubt> doubts{
