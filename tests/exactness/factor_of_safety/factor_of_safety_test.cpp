@@ -221,6 +221,11 @@ TEST(FactorOfSafety, leaves_soil_that_keeps_its_strength) {
   const double dry =
       factor_of("../../guide/wedge.toml", {"boundary.crack.pressure=0", "body.seam.water_table=[[0, -10]]"}).value();
   EXPECT_NEAR(factor_of("../../guide/wedge.toml", rock).value() / dry, 1, 0.01);
+  // rock so weak that it fails before the seam if its strength is divided too: 1.10 against 1.28
+  const Overrides weak{"body.rock.cohesion=20e3", "body.rock.friction_angle=30", "body.rock.dilation_angle=30"};
+  EXPECT_GT(
+      factor_of("../../guide/wedge.toml", rock + weak).value(),
+      1.1 * factor_of("../../guide/wedge.toml", rock + weak + Overrides{"body.rock.reduce_strength=true"}).value());
   EXPECT_THROW(factor_of("../../guide/wedge.toml", seam_kept), std::invalid_argument);
 }
 
