@@ -161,11 +161,13 @@ BackgroundMesh<dim> BackgroundMesh<dim>::read(MPI_Comm comm, const std::string &
   Regions regions;
   require(make_plex(comm, dim, source, mesh.plex_.create(), complaint));
   agree(comm, complaint.empty() ? "" : file + ": " + complaint);
+  const std::string remark = std::move(source.remark);
   source = {};
   require(read_simplices(mesh.plex_, cells));
   require(read_regions(mesh.plex_, regions));
   agree(comm, complaint_about_cells(file, cells, regions, Names::required));
   if (rank == 0) mesh.remarks_ = mesh_remarks(cells, regions);
+  if (!remark.empty()) mesh.remarks_.push_back(remark);
 
   const int size = patch_size<dim>(is_one_element_slice<dim>(comm, cells.position));
   const auto patch = make_patches<dim>(cells.node, cells.neighbour, regions.combination, size);

@@ -29,6 +29,8 @@ struct ElementType {
   int number, dimension, corners, nodes;
   const char *name;
   bool is_simplex() const { return corners == dimension + 1; }
+  /// Nodes on each edge of a simplex: they follow the corners, edge by edge.
+  int nodes_of_edge() const { return (nodes - corners) / (corners * (corners - 1) / 2); }
 };
 constexpr ElementType element_types[] = {
     {1, 1, 2, 2, "line"},           {2, 2, 3, 3, "triangle"},      {3, 2, 4, 4, "quadrilateral"},
@@ -39,6 +41,16 @@ constexpr ElementType element_types[] = {
     {16, 2, 4, 8, "quadrilateral"}, {17, 3, 8, 20, "hexahedron"},  {18, 3, 6, 15, "prism"},
     {19, 3, 5, 13, "pyramid"},      {21, 2, 3, 10, "triangle"},    {26, 1, 2, 4, "line"},
     {29, 3, 4, 20, "tetrahedron"}};
+constexpr int most_nodes = 27;  // of an element
+
+/// Edges of a triangle (the first three) and of a tetrahedron in the order of Gmsh: corners.
+constexpr int edges[6][2] = {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 2}, {3, 1}};
+
+/// Edges of cells become straight. A node that is further from the straight edge than this part of its length is
+/// refused: an arc that rises by a twentieth cuts off (2/3) / 20 of the edge squared, a thirteenth of a regular
+/// triangle. The straight mesh would be another one than the file describes; with less it is as good as any straight
+/// mesh.
+constexpr double largest_rise = 0.05;
 
 /// The bytes of a file, read number by number; whatever is not there as it should be is a complaint with its place.
 class Source {
@@ -181,6 +193,11 @@ struct Elements {
   std::vector<long long> number;
   std::vector<std::array<long long, 4>> node;  ///< numbers of the file
   std::vector<int> groups;                     ///< which list of physical groups
+};
+
+/// A node on an edge of a cell of higher order, and the ends of the edge: numbers of the file.
+struct EdgeNode {
+  long long cell, node, ends[2];
 };
 
 class Reader {
@@ -353,11 +370,19 @@ class Reader {
     if (type.dimension == dimension_ && !type.is_simplex())
       in_.complain("element " + std::to_string(number) + " is a " + type.name + ", but Talus takes " +
                    (dimension_ == 2 ? "triangles" : "tetrahedra") + " only; mesh without recombination");
-    std::array<long long, 4> node{};
-    for (int k = 0; k < type.nodes; ++k)
-      if (const long long n = next_node(); k < 4) node[k] = n;
+    std::array<long long, most_nodes> all;
+    for (int k = 0; k < type.nodes; ++k) all[k] = next_node();
     if (type.dimension != dimension_ && type.dimension != dimension_ - 1) return;
     if (!type.is_simplex()) return;
+    std::array<long long, 4> node{};
+    std::copy_n(all.begin(), type.corners, node.begin());
+    if (type.dimension == dimension_ && type.nodes > type.corners) {
+      ++curvable_;
+      for (int k = 0; k < type.corners * (type.corners - 1) / 2 * type.nodes_of_edge(); ++k) {
+        const auto &[a, b] = edges[k / type.nodes_of_edge()];
+        edge_nodes_.push_back({number, all[type.corners + k], {node[a], node[b]}});
+      }
+    }
     Elements &to = type.dimension == dimension_ ? cells_ : facets_;
     to.number.push_back(number), to.node.push_back(node), to.groups.push_back(groups);
   }
@@ -427,7 +452,49 @@ class Reader {
     places(cells_, dimension_ + 1, mesh_.cells);
     places(facets_, dimension_, mesh_.facets);
     mesh_.facet_number = facets_.number;
+    check_edges();
     keep_nodes_of_cells();
+  }
+
+  /// Cells of higher order are taken by their corners, which loses nothing where their edges are straight.
+  void check_edges() {
+    if (curvable_ == 0) return;
+    double largest = 0;
+    for (const EdgeNode &one : edge_nodes_) {
+      const int at = find(one.node);
+      if (at < 0)
+        in_.complain_at_large("element " + std::to_string(one.cell) + " names the node " + std::to_string(one.node) +
+                              ", which is not in the file" + save_again);
+      double along = 0, length = 0, square = 0;
+      for (int d = 0; d < 3; ++d) {
+        const double start = place_[3 * find(one.ends[0]) + d], edge = place_[3 * find(one.ends[1]) + d] - start,
+                     x = place_[3 * at + d] - start;
+        along += x * edge, length += edge * edge, square += x * x;
+      }
+      const double rise = std::sqrt(std::max(0., square - along * along / length) / length);
+      largest = std::max(largest, rise);
+      if (rise > largest_rise) complain_about_edge(one, place_.data() + 3 * at, rise);
+    }
+    std::ostringstream text;
+    text.precision(2);
+    text << curvable_ << (curvable_ == 1 ? " cell is" : " cells are")
+         << " of second or higher order and taken by the corners, since cells of Talus have straight sides; ";
+    if (largest > 1e-6)
+      text << "nodes lie up to " << largest << " of the edge beside it, which is lost.";
+    else
+      text << "all edges are straight, so nothing is lost.";
+    mesh_.remark = text.str();
+  }
+
+  [[noreturn]] void complain_about_edge(const EdgeNode &one, const double *x, double rise) const {
+    std::ostringstream text;
+    text.precision(4);
+    text << "element " << one.cell << " has a curved edge: node " << one.node << " at (" << x[0] << ", " << x[1];
+    if (dimension_ == 3) text << ", " << x[2];
+    text << ") m lies " << rise << " of the edge beside it, and cells of Talus have straight sides; mesh it in first "
+         << "order (Mesh.ElementOrder = 1), with smaller cells where the side is curved (up to " << largest_rise
+         << " of the edge is taken as straight)";
+    in_.complain_at_large(text.str());
   }
 
   void keep_nodes_of_cells() {
@@ -487,6 +554,8 @@ class Reader {
   std::vector<std::pair<long long, int>> node_number_;  // number in the file, place in `place_`; ascending in the end
   std::vector<double> place_;                           // 3 coordinates of each node [m]
   Elements cells_, facets_;
+  std::vector<EdgeNode> edge_nodes_;
+  long long curvable_ = 0;  // cells of higher order
   GmshMesh mesh_;
 };
 

@@ -1,21 +1,11 @@
 // Implementation of SoilMotion; included only where it is instantiated (src/variants).
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "physics/pores/pore_fluid.inl"
 #include "physics/soil_motion.h"
 
 namespace talus {
-
-/// Elastic energy per volume of a stress as stored.
-template <int dim>
-double stored_energy(const Law &law, const double *stress) {
-  Stress<dim> s;
-  static_assert(sizeof s == stress_size<dim> * sizeof(double));
-  std::memcpy(&s, stress, sizeof s);
-  return elastic_energy<dim>(law, s);
-}
 
 template <int dim, class Phases>
 SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)

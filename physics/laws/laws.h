@@ -23,6 +23,7 @@
 /// They run in a loop over points that must vectorise: straight-line code; choices as `?:` between values that are
 /// computed before; comparisons not joined by && or &. The exception is `Umat`, which is called point by
 /// point.
+#include <cstring>
 #include <span>
 #include <string_view>
 #include <variant>
@@ -156,6 +157,14 @@ inline Law with_reduced_strength(const Law &law, double factor) {
 template <int dim>
 double elastic_energy(const Law &law, const Stress<dim> &stress) {
   return std::visit([&](const auto &one) { return one.elastic_energy(stress); }, law);
+}
+/// The same of a stress as stored, [stress_size] [Pa].
+template <int dim>
+double stored_energy(const Law &law, const double *stress) {
+  Stress<dim> s;
+  static_assert(sizeof s == stress_size<dim> * sizeof(double));
+  std::memcpy(&s, stress, sizeof s);
+  return elastic_energy<dim>(law, s);
 }
 
 }  // namespace talus

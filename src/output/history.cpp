@@ -8,6 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "output/csv.h"
 #include "output/replace_file.h"
 #include "output/together.h"
 
@@ -17,17 +18,9 @@ namespace {
 constexpr int digits = 12;           // of every number
 constexpr double round_off = 1e-11;  // relative, of a time written in so many digits
 
-/// A text as one field of a CSV line.
-std::string quoted(const std::string &text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string field = "\"";
-  for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return field + "\"";
-}
-
 std::string header(const std::vector<std::string> &names) {
   std::string line = "time_s,step,stage";
-  for (const auto &name : names) line += "," + quoted(name);
+  for (const auto &name : names) line += ',', line += csv_field(name);
   return line;
 }
 
@@ -74,7 +67,7 @@ void History::row(double time, long long step, const std::string &stage, const s
                                std::to_string(columns_) + " columns");
     std::ostringstream line;
     line.precision(digits);
-    line << time << "," << step << "," << quoted(stage);
+    line << time << "," << step << "," << csv_field(stage);
     for (const double value : values) line << "," << value;
     file_ << line.str() << std::endl;
     if (!file_) throw std::runtime_error("cannot write " + path_ + ": " + std::strerror(errno));

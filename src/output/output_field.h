@@ -15,10 +15,12 @@
 
 namespace talus {
 
-/// Name of a column of history.csv: quantity and unit, "crest_velocity" and "m/s" give "crest_velocity_m_s".
+/// Name of a column of history.csv: quantity and unit, "crest_velocity" and "m/s" give "crest_velocity_m_s", and "kg
+/// m/s" is written "kg_m_s".
 inline std::string history_column(const std::string &quantity, std::string unit) {
   if (unit == "-") return quantity;
-  std::replace(unit.begin(), unit.end(), '/', '_');
+  std::ranges::replace_if(
+      unit, [](char c) { return c == '/' || c == ' '; }, '_');
   return quantity + "_" + unit;
 }
 

@@ -134,6 +134,28 @@ PetscErrorCode Body<dim>::sort(int cell_count) {
   for (int p = 0; p < count; ++p) ++start_[arrays_.cell[p] + 1];
   for (int c = 0; c < cell_count; ++c) start_[c + 1] += start_[c];
   for (int p = 0; p < count; ++p) order_[p] = start_[arrays_.cell[p]]++;  // counting sort: stable, so results repeat
+  rearrange();
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode Body<dim>::remove(const std::vector<int> &which) {
+  PetscFunctionBeginUser;
+  const int count = arrays_.count, kept = count - static_cast<int>(which.size());
+  order_.resize(count);
+  int gone = 0;
+  for (int p = 0; p < count; ++p) {
+    const bool goes = gone < static_cast<int>(which.size()) && which[gone] == p;
+    order_[p] = goes ? kept + gone++ : p - gone;
+  }
+  rearrange();
+  PetscCall(resize(kept));
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+void Body<dim>::rearrange() {
+  const int count = arrays_.count;
   const auto permute = [&](void *array, size_t bytes) {
     if (!array) return;
     scratch_.resize(std::max(scratch_.size(), bytes * count));
@@ -156,7 +178,6 @@ PetscErrorCode Body<dim>::sort(int cell_count) {
   permute(arrays_.surface, sizeof(SurfacePiece<dim>) * face_count_);
   permute(arrays_.cell, sizeof(PetscInt));
   permute(arrays_.id, sizeof(PetscInt));
-  PetscFunctionReturn(0);
 }
 
 template <int dim>

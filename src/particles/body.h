@@ -53,7 +53,7 @@ class Body {
  public:
   /// Registers the fields; `fluids` is 0, 1 (the liquid) or 2 (liquid and gas), `faces` the number of loaded faces.
   PetscErrorCode create(MPI_Comm comm, const BodySource &source, Law law, int fluids, int faces);
-  /// Allocates `count` particles. Their fields have no values yet.
+  /// Makes room for `count` particles. The first ones keep their values, new ones have none yet.
   PetscErrorCode resize(PetscInt count);
 
   const BodySource &source() const { return *source_; }
@@ -73,6 +73,8 @@ class Body {
 
   /// Orders the particles by cell, so that those of one cell are neighbours in memory.
   PetscErrorCode sort(int cell_count);
+  /// Takes out the particles `which` (ascending); the others keep their order. For this rank alone.
+  PetscErrorCode remove(const std::vector<int> &which);
   /// Sends each leaver (particle, rank) away; collective, also for ranks without leavers. Afterwards the arrived
   /// particles are the last ones: `first_arrival` is the index of the first.
   PetscErrorCode migrate(const std::vector<std::pair<int, int>> &leavers, int *first_arrival);
@@ -82,6 +84,7 @@ class Body {
  private:
   PetscErrorCode borrow();     ///< takes the arrays from the swarm
   PetscErrorCode give_back();  ///< returns them to the swarm, which every change of its size requires
+  void rearrange();            ///< particle p goes to order_[p]
 
   const BodySource *source_ = nullptr;
   Law law_;

@@ -121,6 +121,10 @@ class Checks {
     weight(path, body);
     if (body.pore_pressure_ratio > 0) ratio(path + ".pore_pressure_ratio", body);
     if (!body.water_table.empty()) water_table(path + ".water_table", body);
+    if (body.relative_permeability.reader && !body.retention.reader)
+      reader_.complain(path + ".relative_permeability",
+                       "has no effect without a retention curve, from which the degree of saturation follows: add [" +
+                           path + ".retention] with curve, or leave [" + path + ".relative_permeability] out");
     if (body.permeability > 0 && body.hydraulic_conductivity > 0)
       reader_.complain(path + ".permeability", "is given twice: give permeability or hydraulic_conductivity");
   }

@@ -161,7 +161,9 @@ void TableReader::points(const char *key, std::vector<std::vector<double>> &valu
   const auto given = find(key, meaning);
   if (!given) return;
   value.clear();
-  for (const Value &row : given->elements("a list of points")) {
+  const std::vector<Value> rows = given->elements("a list of points");
+  if (rows.empty()) given->must_be("a list with at least one point; leave it out for none");
+  for (const Value &row : rows) {
     if (!row.node().is_array()) row.must_be("a point, a list of coordinates");
     value.push_back(row.point(unit));
   }

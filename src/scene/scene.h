@@ -39,6 +39,8 @@ struct RefineBox {
   }
 };
 
+enum class WhenOutside { stop, remove };
+
 struct MeshSource {
   std::string file;          ///< Gmsh .msh, 2.2 or 4.1, with physical groups
   std::string section;       ///< section CSV, meshed by talus-mesh
@@ -47,6 +49,7 @@ struct MeshSource {
   int layers = 1;            ///< element layers over the thickness; 0: free tetrahedra
   std::vector<double> cuts;  ///< z at which regions of a 3D body from a section are parted [m]
   std::vector<RefineBox> refine;
+  WhenOutside leaving_particles = WhenOutside::stop;  ///< particles that leave the mesh
   template <class Visitor>
   void fields(Visitor &&v) {
     v.text("file", file, "Gmsh mesh file (.msh, format 2.2 or 4.1) with physical groups, relative to the scene");
@@ -58,6 +61,9 @@ struct MeshSource {
     v.point("cuts", cuts, metre,
             "ascending z that divide the thickness: regions are then named region_1, region_2, ... along z");
     v.list("refine", refine, "boxes with smaller cells");
+    v.choice("leaving_particles", leaving_particles, {{"stop", WhenOutside::stop}, {"remove", WhenOutside::remove}},
+             "what becomes of particles that leave the mesh: the run ends with the place, or they are taken out of the "
+             "simulation and entered in escaped.csv; may be changed with --resume");
   }
 };
 

@@ -157,6 +157,10 @@ Verdict Dynamics<dim>::agree() {
   if (!world_.scene.function_fault().empty()) mine[3] = 1;
   double all[8];
   MPI_Allreduce(mine, all, 8, MPI_DOUBLE, MPI_MAX, world_.comm);
+  if (watch && all[5] == elsewhere)
+    throw RunFailure(
+        "the particle that this stage watches for failure has left the mesh; watch another place (failure_point), or "
+        "end the stage by its duration");
   const Verdict verdict{all[0], all[1], {all[5], all[6], all[7]}, all[2] > 0, all[3] > 0, all[4] > 0};
   shrink_ = 1 / verdict.shrink;
   if (verdict.moved > world_.scene.transfer.remap_interval || verdict.inverted) remap_due_ = true;

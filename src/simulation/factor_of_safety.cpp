@@ -18,6 +18,20 @@ void check_strength(const World<dim> &world) {
   if (!some_fail && !std::ranges::all_of(world.laws, never_fails))
     world.scene.complain("body",
                          "has no soil whose strength a factor of safety divides: set reduce_strength = true in one");
+  const auto is_divided = [&](size_t b) {
+    return *no_strength_reduction(world.laws[b]) == 0 && world.scene.body[b].reduce_strength;
+  };
+  std::vector<size_t> without;  // bodies whose strength is nothing
+  size_t divided = 0;
+  for (size_t b = 0; b < world.laws.size(); ++b) {
+    const StrengthRange &range = world.strength[b];
+    divided += is_divided(b);
+    if (is_divided(b) && range.cohesion[1] == 0 && range.friction_angle[1] == 0 && !reads_suction(world.laws[b]))
+      without.push_back(b);
+  }
+  if (!without.empty() && without.size() == divided)
+    world.scene.complain("body." + world.scene.body[without[0]].name,
+                         "has no strength that a factor of safety could divide: its cohesion and friction angle are 0");
   for (size_t b = 0; b < world.laws.size(); ++b) {
     const std::string law = law_name(world.laws[b]), reason = no_strength_reduction(world.laws[b]);
     if (!reason.empty() && (!never_fails(world.laws[b]) || !some_fail))

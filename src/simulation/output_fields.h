@@ -10,6 +10,7 @@
 
 #include "base/phases.h"
 #include "output/output_field.h"
+#include "particles/escaped_particles.h"
 #include "physics/any_soil_motion.h"
 #include "physics/laws/strength_by_place.h"
 
@@ -156,9 +157,10 @@ struct RunRow {
   double particles = 0;     ///< their number
   double load_time = 0;     ///< time that functions of the scene see [s]
   double first_energy = 0;  ///< kinetic and strain energy at the start [J]
+  EscapedSums escaped;      ///< what left the mesh and was taken out
   WorkDone work;
   std::vector<FluidLedger> fluids;  ///< that move on their own: water, then gas
-  std::vector<double> first_fluid;  ///< their masses at the start [kg]
+  std::vector<double> first_fluid;  ///< their masses at the start, those that had left by then among them [kg]
   std::vector<BoundaryRow<dim>> boundaries;
 
   /// Calls column(quantity, unit, value) for each column, in the order of the file.
@@ -171,13 +173,18 @@ struct RunRow {
     column(string("mass"), "kg", mass);
     column(string("particles"), "-", particles);
     column(string("load_time"), "s", load_time);
+    column(string("escaped_particles"), "-", escaped.particles);
+    column(string("escaped_mass"), "kg", escaped.mass);
+    for (int d = 0; d < dim; ++d) column(string("escaped_momentum_") + "xyz"[d], "kg m/s", escaped.momentum[d]);
+    column(string("escaped_energy"), "J", escaped.energy);
     for (std::size_t a = 0; a < fluids.size(); ++a) {
       const string fluid = a ? "gas" : "water";
       const double first = a < first_fluid.size() ? first_fluid[a] : 0;
       column(fluid, "kg", fluids[a].stored);
       column(fluid + "_out", "kg", fluids[a].out);
       column(fluid + "_given", "kg", fluids[a].prescribed);
-      column(fluid + "_error", "kg", fluids[a].stored + fluids[a].out - fluids[a].prescribed - first);
+      column(fluid + "_escaped", "kg", escaped.fluid_mass[a]);
+      column(fluid + "_error", "kg", owned(a) - first);
     }
     for (const auto &b : boundaries)
       if (b.inflow) column(b.name + "_inflow", "m3/s", b.water);
@@ -193,7 +200,11 @@ struct RunRow {
     work_column("gravity", work.gravity);
     work_column("imposed", work.imposed);
     work_column("damping", work.damping);
-    column(string("dissipated"), "J", first_energy + done - (balance.kinetic + balance.strain));
+    column(string("dissipated"), "J", first_energy + done - (balance.kinetic + balance.strain + escaped.energy));
+  }
+  /// Mass of a fluid that the boundaries do not account for: it stays what it is [kg].
+  double owned(std::size_t a) const {
+    return fluids[a].stored + fluids[a].out - fluids[a].prescribed + escaped.fluid_mass[a];
   }
 };
 

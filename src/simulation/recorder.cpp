@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "base/version.h"
+#include "output/escaped_table.h"
 #include "output/pictures.h"
 #include "output/together.h"
 #include "physics/cell_pressure.h"
@@ -42,6 +43,7 @@ void Recorder<dim>::open() {
   History rows(of_.world.comm, options_.directory + "/history.csv", {history_.names.begin() + 2, history_.names.end()});
   results_.reset(new Files{std::move(folder), std::move(file), std::move(rows),
                            Progress(of_.world.comm, options_.directory + "/run.log", longest_duration())});
+  write_escaped();  // in place of that of a run that was here before
 }
 
 template <int dim>
@@ -73,9 +75,11 @@ void Recorder<dim>::append(std::unique_ptr<ResultsFolder> folder) {
   results_.reset(new Files{std::move(folder), std::move(file), std::move(rows),
                            Progress(of_.world.comm, options_.directory + "/run.log", longest_duration(), true)});
   results_->progress.note("resumed at t = " + rounded(of_.clock.time) + " s, step " + std::to_string(of_.clock.steps));
+  for (const std::string &key : changed_) results_->progress.note("since then the scene has another " + key);
   if (!has_table) results_->progress.note("warning: history.csv was missing; it begins here");
   for (const std::string &one : damaged)
     results_->progress.note("warning: a damaged snapshot is left out of run.h5 and run.xdmf: " + one);
+  write_escaped();
 }
 
 template <int dim>
@@ -142,6 +146,7 @@ void Recorder<dim>::begin_stage(const std::string &name) {
 template <int dim>
 void Recorder<dim>::progress() {
   if (results_) results_->progress.step(of_.clock.time, of_.clock.steps, of_.world.particle_count);
+  if (told_escaped_ == 0) note_escaped();
 }
 
 template <int dim>
@@ -153,6 +158,52 @@ template <int dim>
 void Recorder<dim>::note(const std::string &text, double time, double load_time) {
   events_.push_back({time, load_time, of_.clock.stage, text});
   if (results_) results_->progress.note(text);
+}
+
+/// Says what has left the mesh so far, if more has left than was told. Collective.
+template <int dim>
+void Recorder<dim>::note_escaped() {
+  const EscapedSums &sums = of_.world.escaped.sums();
+  if (sums.particles == told_escaped_) return;
+  std::ostringstream text;
+  text.precision(6);
+  if (told_escaped_ == 0) {
+    const auto &mine = of_.world.escaped.of_this_rank();
+    const bool any = !mine.empty();
+    text << "particles leave the mesh, the first near "
+         << place_of_first<dim>(of_.world.comm, any, any ? mine.front().position : Vec<dim>{})
+         << ", and are taken out; ";
+  }
+  text << "so far " << sums.particles << (sums.particles == 1 ? " has" : " have") << " left: mass " << sums.mass
+       << " kg";
+  for (int a = 0; a < phases_.fluids(); ++a) text << (a ? ", gas " : ", water ") << sums.fluid_mass[a] << " kg";
+  text << ", momentum (";
+  for (int d = 0; d < dim; ++d) text << (d ? ", " : "") << sums.momentum[d];
+  text << ") kg m/s";
+  if (of_.world.particle_count == 0) text << "; no soil is left";
+  told_escaped_ = sums.particles;
+  note(text.str());
+}
+
+/// escaped.csv, whenever it does not hold all particles that have left. Collective.
+template <int dim>
+void Recorder<dim>::write_escaped() {
+  const EscapedParticles<dim> &escaped = of_.world.escaped;
+  if (written_escaped_ == escaped.sums().particles) return;
+  EscapedTable table;
+  table.names = {history_column("time", "s"), "id", "body", history_column("mass", "kg")};
+  for (int a = 0; a < phases_.fluids(); ++a) table.names.push_back(history_column(a ? "gas" : "water", "kg"));
+  for (const auto &[name, unit] : {std::pair{"", "m"}, {"velocity_", "m/s"}, {"momentum_", "kg m/s"}})
+    for (int d = 0; d < dim; ++d) table.names.push_back(history_column(std::string(name) + "xyz"[d], unit));
+  for (const EscapedParticle<dim> &one : escaped.of_this_rank()) {
+    table.values.insert(table.values.end(),
+                        {one.time, static_cast<double>(one.id), static_cast<double>(one.body), one.mass});
+    table.values.insert(table.values.end(), one.fluid_mass, one.fluid_mass + phases_.fluids());
+    for (const Vec<dim> *x : {&one.position, &one.velocity, &one.momentum})
+      table.values.insert(table.values.end(), x->begin(), x->end());
+  }
+  write_escaped_table(of_.world.comm, options_.directory + "/escaped.csv", header().bodies, table);
+  written_escaped_ = escaped.sums().particles;
 }
 
 /// What the integrator did, for the log.
@@ -207,6 +258,7 @@ RunRow<dim> Recorder<dim>::run_row() const {
   RunRow<dim> row;
   row.mass = world.total_mass, row.particles = static_cast<double>(world.particle_count);
   row.load_time = of_.clock.load_time;
+  row.escaped = world.escaped.sums();
   row.fluids.resize(phases_.fluids());
   for (size_t s = 0; s < world.conditions.sources().size(); ++s) {
     const auto &source = world.conditions.sources()[s];
@@ -227,6 +279,7 @@ void Recorder<dim>::write_history() {
   last_row_step_ = of_.clock.steps, last_row_time_ = of_.clock.time;
   std::vector<double> mine, row;
   const auto fields = output_fields<ParticleState<dim>>(phases_, of_.world.bodies);
+  std::vector<double> there;  // is a point on this rank?
   for (auto &point : of_.points.all()) {
     std::optional<ParticleState<dim>> state;
     if (of_.statics.current())
@@ -234,7 +287,10 @@ void Recorder<dim>::write_history() {
     else if (const int i = of_.points.find(point); i >= 0)
       state.emplace(phases_, *of_.world.motion, *of_.world.bodies[point.body], point.body, i);
     fields.append_tracked(state ? &*state : nullptr, mine);
+    there.push_back(state ? 1 : 0);
   }
+  const std::size_t point_columns = mine.size();
+  mine.insert(mine.end(), there.begin(), there.end());
   double potential = 0;
   for (const auto &body : of_.world.bodies) {
     const ParticleArrays<dim> &p = body->particles();
@@ -248,12 +304,19 @@ void Recorder<dim>::write_history() {
   row.resize(mine.size());
   MPI_Allreduce(mine.data(), row.data(), static_cast<int>(mine.size()), MPI_DOUBLE, MPI_SUM, of_.world.comm);
   RunRow<dim> run = run_row();
-  run.potential = row.back(), row.pop_back();
+  run.potential = row.back();
+  for (std::size_t i = 0; i < there.size(); ++i) {  // a point whose particle is gone has no values
+    const std::size_t width = point_columns / there.size();
+    if (row[point_columns + i] == 0)
+      std::fill_n(row.begin() + static_cast<std::ptrdiff_t>(i * width), width,
+                  std::numeric_limits<double>::quiet_NaN());
+  }
+  row.resize(point_columns);
   require(of_.world.motion->balance(of_.clock.time, &run.balance));
   if (phases_.liquid) {
     require(of_.world.motion->fluid_ledger(run.fluids.data()));
     if (first_ledger_.empty())
-      for (const FluidLedger &fluid : run.fluids) first_ledger_.push_back(fluid.stored + fluid.out - fluid.prescribed);
+      for (std::size_t a = 0; a < run.fluids.size(); ++a) first_ledger_.push_back(run.owned(a));
     run.first_fluid = first_ledger_;
   }
   if (has_flow_stages(scene_)) {
@@ -322,7 +385,10 @@ Snapshot Recorder<dim>::particles() {
 
 template <int dim>
 void Recorder<dim>::write_snapshot() {
-  if (!results_ || results_->file.last_step() == of_.clock.steps) return;
+  note_escaped();
+  if (!results_) return;
+  write_escaped();
+  if (results_->file.last_step() == of_.clock.steps) return;
   results_->file.write(snapshot());
   last_snapshot_time_ = of_.clock.time;
 }
@@ -343,24 +409,37 @@ void Recorder<dim>::write_checkpoint(int stage, const Archive &state) {
   ++checkpoints_, checkpoint_time_ = of_.clock.time;
 }
 
-/// Only what the state does not depend on may differ: results, and how long stages last that have not ended.
+/// Why a key of the scene must be what it was: what the saved state has from it.
+std::string tie_of(const std::string &table) {
+  if (table == "mesh") return "particles, stresses and contacts in the checkpoint belong to the cells of the mesh";
+  if (table == "boundary") return "the checkpoint holds reactions, contacts and work of the boundaries as they were";
+  return "the saved state has come about with it";
+}
+
+/// Only what the saved state does not depend on may differ: results, what becomes of particles that leave the mesh (up
+/// to the checkpoint either none has left, or they have been taken out), the search for factors of safety, and how long
+/// stages last that have not ended.
 template <int dim>
-CheckpointHeader Recorder<dim>::check_checkpoint() const {
+CheckpointHeader Recorder<dim>::check_checkpoint() {
   const CheckpointHeader found = read_checkpoint_header(of_.world.comm, options_.directory),
                          mine = checkpoint_header(-1);
   const std::string refusal = "the run in " + options_.directory + " cannot be resumed: ";
   if (found.program != mine.program)
     throw SceneError(refusal + "it is one of " + found.program + ", this is " + mine.program);
-  for (const std::string &path : changed_keys(found.scene, mine.scene)) {
+  changed_ = changed_keys(found.scene, mine.scene);
+  for (const std::string &path : changed_) {
     const std::vector<std::string> words = split(path);
     const bool listed = words.size() > 1 && words[0] == "stage";
     const int stage = listed ? std::stoi(words[1]) : 0;
-    const bool result = words[0] == "title" || (words[0] == "output" && words.size() > 1 && words[1] != "point");
+    const bool result = words[0] == "title" || words[0] == "factor_of_safety" || path == "mesh.leaving_particles" ||
+                        (words[0] == "output" && words.size() > 1 && words[1] != "point");
     const bool to_come = listed && (stage > found.stage || (stage == found.stage && words.back() == "duration"));
     if (!result && !to_come)
-      scene_.complain(path, "is not what it was when the run in " + options_.directory +
-                                " began; with --resume only [output] without its points, the duration of the present "
-                                "stage and the stages after it may change");
+      scene_.complain(path, "is not what it was when the run in " + options_.directory + " began, and " +
+                                tie_of(words[0]) +
+                                "; with --resume only title, [output] without its points, [factor_of_safety], "
+                                "mesh.leaving_particles, the duration of the present stage and the stages after it "
+                                "may change");
   }
   if (found.ranks != mine.ranks)
     throw SceneError(refusal + "it ran on " + std::to_string(found.ranks) + " ranks, not " +
@@ -371,7 +450,7 @@ CheckpointHeader Recorder<dim>::check_checkpoint() const {
 template <int dim>
 void Recorder<dim>::serialize(Archive &archive) {
   archive.serialize("results", last_row_step_, last_row_time_, last_snapshot_time_, impulse_time_, first_ledger_,
-                    first_energy_);
+                    first_energy_, told_escaped_);
 }
 
 template class Recorder<2>;

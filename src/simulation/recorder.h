@@ -61,8 +61,9 @@ class Recorder {
 
   CheckpointHeader checkpoint_header(int stage) const;
   void write_checkpoint(int stage, const Archive &state);
-  /// Reads the header of the run in the directory and refuses a run that this one cannot go on with. Collective.
-  CheckpointHeader check_checkpoint() const;
+  /// Reads the header of the run in the directory and refuses a run that this one cannot go on with; notes which keys
+  /// have changed. Collective.
+  CheckpointHeader check_checkpoint();
   void take_checkpoint(const CheckpointHeader &found) { checkpoints_ = found.number, checkpoint_time_ = found.time; }
   void serialize(Archive &archive);
 
@@ -83,6 +84,8 @@ class Recorder {
   void name_columns();
   RunRow<dim> run_row() const;
   void note_steps();
+  void note_escaped();
+  void write_escaped();
   double longest_duration() const;
   Snapshot particles();
 
@@ -96,6 +99,9 @@ class Recorder {
   std::vector<double> first_ledger_;  ///< fluid masses at the start [kg]
   double first_energy_ = 0;           ///< [J]
   double impulse_time_ = 0;           ///< since when forces are means [s]
+  std::vector<std::string> changed_;  ///< keys of the scene that are others than before the run was resumed
+  double told_escaped_ = 0;           ///< particles that had left when the log last said so
+  double written_escaped_ = -1;       ///< particles in escaped.csv; -1: not known
   long long last_row_step_ = -1, checkpoints_ = 0;
   double last_row_time_ = -1, last_snapshot_time_ = -1, checkpoint_time_ = -1;  ///< [s]
 };

@@ -44,6 +44,17 @@ double slope_of(const Law &law, double size, double pressure) {
 
 }  // namespace
 
+bool softens(const Law &law) {
+  return std::visit(
+      [](const auto &one) {
+        if constexpr (requires { one.softens(); })
+          return one.softens();
+        else
+          return false;
+      },
+      law);
+}
+
 double critical_slip_length(double slope, double poisson_ratio, double size) {
   constexpr double universal = 1.158;  // Uenishi & Rice (2003), eq. (13): of an elastic plane
   return universal * std::sqrt(3.) * size / (2 * (1 - poisson_ratio) * slope);

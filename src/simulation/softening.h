@@ -8,6 +8,9 @@
 
 namespace talus {
 
+/// Does plastic strain take strength from the soil?
+bool softens(const Law &law);
+
 /// Softening of one body, in the middle of its height.
 struct Softening {
   double slope = 0;            ///< of strength over plastic strain at its steepest, over 2 G [-]; 0: no softening

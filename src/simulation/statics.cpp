@@ -9,6 +9,7 @@
 #include "physics/pores/soil_pores.h"
 #include "scene/reader.h"
 #include "scene/words.h"
+#include "simulation/softening.h"
 
 namespace talus {
 
@@ -119,6 +120,19 @@ void Statics<dim>::choose_laws(const Stage &stage) {
     MPI_Allreduce(MPI_IN_PLACE, &sheared, 1, MPI_INT, MPI_MAX, world_.comm);
     if (!stage.softening && !sheared) points.law = without_softening(points.law);
   }
+}
+
+template <int dim>
+bool Statics<dim>::has_softened() const {
+  int softened = 0;
+  for (size_t b = 0; b < world_.laws.size(); ++b) {
+    const GaussPoints<dim> &points = problem_->soil().points()[b];
+    if (!points.present || !softens(points.law)) continue;
+    const int width = world_.bodies[b]->history_count(), field = plastic_strain_field(points.law);
+    for (int q = 0; q < points.count(); ++q) softened |= points.history[q * width + field] > 0;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &softened, 1, MPI_INT, MPI_MAX, world_.comm);
+  return softened != 0;
 }
 
 template <int dim>

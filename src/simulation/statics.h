@@ -38,6 +38,9 @@ class Statics {
   void save_seeped_pressure(const std::string &directory);
   void recall_seeped_pressure(const std::string &directory);
 
+  /// Has plastic strain taken strength from some soil in the stages so far? Collective.
+  bool has_softened() const;
+
   bool made() const { return problem_ != nullptr; }
   bool current() const { return current_; }  ///< the last state is one of finite elements
   QuasiStatic<dim> &problem() { return *problem_; }

@@ -209,7 +209,7 @@ void World<dim>::seed_bodies() {
       for (int cell : mesh.region(region)) filled[cell] = 1;
   SurfaceLoads<dim> &loads = conditions.surface_loads();
   require(loads.share(mesh, filled));
-  movers_.resize(scene.body.size());
+  movers_.resize(scene.body.size()), outside_.resize(scene.body.size());
   for (size_t b = 0; b < scene.body.size(); ++b) {
     const BodySource &source = scene.body[b];
     bodies.push_back(std::make_unique<Body<dim>>());
@@ -232,10 +232,10 @@ void World<dim>::seed_bodies() {
     critical_.emplace_back(mesh, body.law(), density, pores);
     if (!source.displacement.empty())
       for (int i = 0; i < body.particles().count; ++i) movers_[b].push_back(i);
-    bool lost = false;
-    Vec<dim> where{};
-    require(relocate<dim>(body, mesh, movers_[b], &lost, &where));
-    const std::string outside = place_of_first<dim>(comm, lost, where);
+    require(relocate<dim>(body, mesh, movers_[b], outside_[b]));
+    const bool lost = !outside_[b].empty();
+    const std::string outside =
+        place_of_first<dim>(comm, lost, lost ? body.particles().position[outside_[b][0]] : Vec<dim>{});
     if (!outside.empty()) scene.complain(path + ".displacement", "takes particles out of the mesh near " + outside);
     require(body.sort(mesh.cell_count()));
   }
@@ -339,16 +339,45 @@ PetscErrorCode World<dim>::release(double time, bool to_next) {
   for (auto &list : movers_) list.clear();
   PetscCall(to_next ? motion->update_particles_and_gather(time, movers_) : motion->update_particles(time, movers_));
   PetscCall(PetscTime(&middle));
-  bool lost = false;
-  Vec<dim> where{};
-  for (size_t b = 0; b < bodies.size(); ++b) PetscCall(relocate<dim>(*bodies[b], mesh, movers_[b], &lost, &where));
+  int lost = 0;
+  for (size_t b = 0; b < bodies.size(); ++b) {
+    PetscCall(relocate<dim>(*bodies[b], mesh, movers_[b], outside_[b]));
+    lost |= !outside_[b].empty();
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &lost, 1, MPI_INT, MPI_MAX, comm));
+  if (lost) PetscCall(take_out(time));
   ++releases_;
   PetscCall(PetscTime(&end));
   breakdown.release += middle - start, breakdown.relocate += end - middle;
-  const std::string outside = place_of_first<dim>(comm, lost, where);
-  if (!outside.empty())
-    throw RunFailure("a particle left the mesh near " + outside +
-                     "; add free space there, or a boundary that keeps soil in");
+  PetscFunctionReturn(0);
+}
+
+/// Particles that left the mesh: out of the bodies and into the ledger, or the end of the run.
+template <int dim>
+PetscErrorCode World<dim>::take_out(double time) {
+  PetscFunctionBeginUser;
+  if (scene.mesh.leaving_particles == WhenOutside::stop) {
+    size_t b = 0;
+    while (b < bodies.size() && outside_[b].empty()) ++b;
+    const bool mine = b < bodies.size();
+    const std::string place =
+        place_of_first<dim>(comm, mine, mine ? bodies[b]->particles().position[outside_[b][0]] : Vec<dim>{});
+    throw RunFailure("a particle left the mesh near " + place +
+                     "; add free space there, or a boundary that keeps soil in, or set mesh.leaving_particles = "
+                     "\"remove\", which takes out what leaves (also with --resume)");
+  }
+  for (size_t b = 0; b < bodies.size(); ++b) {
+    const std::vector<int> &gone = outside_[b];
+    escaped.enter(*bodies[b], static_cast<int>(b), gone, time);
+    size_t before = 0;  // of those that are gone
+    for (int &i : movers_[b]) {
+      while (before < gone.size() && gone[before] < i) ++before;
+      i -= static_cast<int>(before);
+    }
+    if (!gone.empty()) PetscCall(bodies[b]->remove(gone));
+  }
+  const EscapedSums now = escaped.settle(comm);
+  particle_count -= static_cast<long long>(now.particles), total_mass -= now.mass;
   PetscFunctionReturn(0);
 }
 
@@ -376,9 +405,10 @@ PetscErrorCode World<dim>::check_conservation() const {
     mine[1] += mass;
   }
   PetscCallMPI(MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, comm));
-  if (all[0] != static_cast<double>(particle_count) || std::abs(all[1] - total_mass) > 1e-12 * total_mass)
-    throw RunFailure("particles were lost or doubled: " + std::to_string(static_cast<long long>(all[0])) + " of " +
-                     std::to_string(particle_count) + " are left");
+  const double round_off = 1e-12 * (total_mass + escaped.sums().mass);
+  if (all[0] != static_cast<double>(particle_count) || std::abs(all[1] - total_mass) > round_off)
+    throw RunFailure("particles were lost or doubled: " + std::to_string(static_cast<long long>(all[0])) +
+                     " are there, and there should be " + std::to_string(particle_count));
   PetscFunctionReturn(0);
 }
 
@@ -513,6 +543,8 @@ unsigned long long World<dim>::mesh_fingerprint() const {
 template <int dim>
 PetscErrorCode World<dim>::serialize(Archive &archive) {
   PetscFunctionBeginUser;
+  archive.serialize("world", present, particle_count, total_mass);
+  escaped.serialize(archive);
   for (const auto &body : bodies) PetscCall(body->serialize(archive));
   PetscCall(motion->serialize(archive));
   PetscFunctionReturn(0);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "particles/escaped_particles.h"
 #include "physics/any_soil_motion.h"
 #include "physics/cell_pressure.h"
 #include "physics/laws/strength_by_place.h"
@@ -40,7 +41,7 @@ class World {
   typename Overburden<dim>::Block block_of(const BodySource &source, int cell, double water, double load_time) const;
 
   /// Hands the nodal update to the particles and walks them to their cells; with `to_next` the grid is filled again at
-  /// once. Throws RunFailure when a particle leaves the mesh. Collective.
+  /// once. Particles that leave the mesh are taken out, or a RunFailure says where, as the scene asks. Collective.
   PetscErrorCode release(double time, bool to_next = false);
   /// How often particles were released: who keeps something that holds until then compares.
   long long releases() const { return releases_; }
@@ -83,9 +84,10 @@ class World {
   std::vector<char> present;  ///< bodies that are there now
   Conditions<dim> conditions;
   std::unique_ptr<AnySoilMotion<dim>> motion;
-  long long particle_count = 0;  ///< of all ranks
-  double total_mass = 0;         ///< of all ranks [kg]
-  Breakdown breakdown;           ///< where the time of steps and remaps went
+  long long particle_count = 0;   ///< of all ranks
+  double total_mass = 0;          ///< of all ranks [kg]
+  EscapedParticles<dim> escaped;  ///< particles that were taken out because they left the mesh
+  Breakdown breakdown;            ///< where the time of steps and remaps went
 
  private:
   void read_laws();
@@ -101,9 +103,11 @@ class World {
   void set_pore_pressure_ratios();
   void seed_bodies();
   void count_particles();
+  PetscErrorCode take_out(double time);
 
   std::vector<CriticalStep<dim>> critical_;
-  std::vector<std::vector<int>> movers_;
+  std::vector<std::vector<int>> movers_;   ///< [body] particles that left their cells at the last release ...
+  std::vector<std::vector<int>> outside_;  ///< ... and those of them that left the mesh
   long long releases_ = 0;
 };
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "transfer/runs.h"
 
@@ -54,9 +55,10 @@ void to_next_nodes(Body<dim> &body, const Lagrangian<dim> &from, FilledGrid<dim>
 }
 
 template <int dim>
-PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::vector<int> &movers, bool *lost,
-                        Vec<dim> *where) {
+PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::vector<int> &movers,
+                        std::vector<int> &outside) {
   PetscFunctionBeginUser;
+  constexpr PetscInt no_cell = std::numeric_limits<PetscInt>::min();  // outlives a migration, as complements do
   std::vector<std::pair<int, int>>
       leavers;  // allocated only when particles change rank, as the swarm's own buffers are
   const bool alone = mesh.partition_faces.empty();
@@ -71,8 +73,7 @@ PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::v
     for (; first < movers.size(); ++first) {
       const int i = movers[first];
       const Located at = walk(mesh, p.cell[i], p.position[i]);
-      if (at.outside && !*lost) *lost = true, *where = p.position[i];
-      p.cell[i] = ~at.cell;
+      p.cell[i] = at.outside ? no_cell : ~at.cell;
       if (at.partition_face >= 0) {
         const PartitionFace &face = mesh.partition_faces[at.partition_face];
         p.cell[i] = face.cell;  // the walk goes on there
@@ -93,7 +94,14 @@ PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::v
     for (int i = 0; i < p.count; ++i)
       if (p.cell[i] < 0) movers.push_back(i);
   }
-  for (int i : movers) p.cell[i] = ~p.cell[i];
+  outside.clear();
+  size_t inside = 0;
+  for (const int i : movers)
+    if (p.cell[i] == no_cell)
+      outside.push_back(i);
+    else
+      p.cell[i] = ~p.cell[i], movers[inside++] = i;
+  movers.resize(inside);
   PetscFunctionReturn(0);
 }
 
@@ -102,7 +110,7 @@ PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::v
   template void to_next_nodes<dim, averaged, fluids>(Body<dim> &, const Lagrangian<dim> &, FilledGrid<dim> &,  \
                                                      Vec<dim> *, PointSet &, const Pores<dim> &, std::vector<int> &);
 TALUS_EACH_TRANSFER(TALUS_TO_PARTICLES)
-template PetscErrorCode relocate<2>(Body<2> &, const BackgroundMesh<2> &, std::vector<int> &, bool *, Vec<2> *);
-template PetscErrorCode relocate<3>(Body<3> &, const BackgroundMesh<3> &, std::vector<int> &, bool *, Vec<3> *);
+template PetscErrorCode relocate<2>(Body<2> &, const BackgroundMesh<2> &, std::vector<int> &, std::vector<int> &);
+template PetscErrorCode relocate<3>(Body<3> &, const BackgroundMesh<3> &, std::vector<int> &, std::vector<int> &);
 
 }  // namespace talus

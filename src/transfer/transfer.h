@@ -81,10 +81,10 @@ void to_next_nodes(Body<dim> &body, const Lagrangian<dim> &from, FilledGrid<dim>
                    PointSet &points, const Pores<dim> &pores, std::vector<int> &movers);
 
 /// Walks the listed particles of a body to their new cells and sends those that leave the rank; collective. Afterwards
-/// `movers` lists the walkers that are on this rank. `lost` is set and `where` the position of a particle that left the
-/// mesh, if any did.
+/// `movers` lists the walkers that are on this rank and have a cell, and `outside` those that left the mesh, both
+/// ascending. A particle outside lies at the boundary of the mesh where it left, and has no cell.
 template <int dim>
-PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::vector<int> &movers, bool *lost,
-                        Vec<dim> *where);
+PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::vector<int> &movers,
+                        std::vector<int> &outside);
 
 }  // namespace talus

@@ -5,6 +5,7 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 import talus_style as style
+from talus_results import ESCAPED
 
 PLACES = ("x", "y", "z")  # coordinates of points: the pictures show them better
 
@@ -50,6 +51,8 @@ def draw_energy(history, lines, title, path):
 def draw_ledger(history, quantity, lines, title, path):
     """What has been gained, what has come in through boundaries and what was given, and below the error of the sum."""
     gains = {"gained": lines["stored"] - lines["stored"][0], "came in": -lines["out"], "was given": lines["given"]}
+    if ESCAPED in lines:
+        gains["left with soil"] = lines[ESCAPED]
     gains = {name: values for name, values in gains.items() if np.ptp(values) > 0}
     figure, (upper, lower) = plt.subplots(2, 1, sharex=True, figsize=(7.6, 4.9), gridspec_kw={"height_ratios": [3, 1.4]})
     plot_lines(upper, history, gains or {"gained": 0 * history.time}, "kg", "mass")

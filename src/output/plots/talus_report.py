@@ -78,11 +78,15 @@ def key_results(results):
     speed = top_speed(results)
     if speed:
         found.append(("Largest velocity", quantity(speed[0], "m/s"), f"{speed[2]}, t = {speed[1]:.4g} s"))
-    if "plastic_strain" in last:
+    if "plastic_strain" in last and len(last.position()):
         found.append(("Largest plastic strain", f"{last.column('plastic_strain').values.max():.3g}", "at the end"))
     mass = results.history.columns.get("mass_kg") if results.history else None
+    gone = results.history.columns.get("escaped_mass_kg", 0 * mass) if mass is not None else None
+    if results.escaped and len(results.escaped.time):
+        note = f"{thousands(len(results.escaped.time))} particles, from t = {results.escaped.time[0]:.4g} s on"
+        found.append(("Left the mesh", quantity(results.escaped.columns["mass_kg"].sum() / 1e3, per_metre("t", results)), note))
     if mass is not None and len(mass) and mass[0]:
-        lost = (mass[-1] - mass[0]) / mass[0]
+        lost = (mass[-1] + gone[-1] - mass[0]) / mass[0]
         end = quantity(mass[-1] / 1e3, per_metre("t", results))
         found.append(("Mass ledger", "closed" if abs(lost) < 1e-12 else f"{lost:+.1e}", f"{end} at the end"))
     return found
@@ -97,9 +101,9 @@ def top_speed(results):
             best = max(best or (0,), (float(speed), snapshot.time, "of all particles"))
     if results.history:
         for name, values in results.history.groups().get(("velocity", "m/s"), {}).items():
-            if len(values):
-                when = float(results.history.time[values.argmax()])
-                best = max(best or (0,), (float(values.max()), when, f"at {style.words(name)}"))
+            if np.isfinite(values).any():  # none where the point has no soil
+                when = float(results.history.time[np.nanargmax(values)])
+                best = max(best or (0,), (float(np.nanmax(values)), when, f"at {style.words(name)}"))
     return best if best and best[0] > 0 else None
 
 

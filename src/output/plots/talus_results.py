@@ -9,9 +9,10 @@ import h5py
 import numpy as np
 
 # ending of a history column -> unit
-UNITS = {"m_s2": "m/s²", "m_s": "m/s", "m": "m", "m3": "m³", "J": "J", "W": "W", "Pa": "Pa", "N": "N", "kg": "kg", "s": "s"}
+UNITS = {"kg_m_s": "kg m/s", "m_s2": "m/s²", "m_s": "m/s", "m": "m", "m3": "m³", "J": "J", "W": "W", "Pa": "Pa", "N": "N", "kg": "kg", "s": "s"}
 # words that may stand before the unit: what is left is the name of a point
 QUANTITIES = ("displacement", "velocity", "acceleration", "pore_pressure", "gas_pressure", "pressure", "suction", "saturation", "plastic_strain", "x", "y", "z")
+ESCAPED = "escaped"  # in columns of what left the mesh
 FLUIDS = ("water", "gas")  # whose ledgers history.csv holds
 DERIVED = ("mobilised_friction",)  # fields that follow from the columns
 
@@ -143,6 +144,8 @@ def split_name(name):
     """'crest_displacement_m' -> ('crest', 'displacement', 'm'); 'kinetic_J' -> ('kinetic', 'energy', 'J')."""
     unit = next((ending for ending in UNITS if name.endswith("_" + ending)), None)
     stem = name[: -len(unit) - 1] if unit else name
+    if stem.startswith(ESCAPED + "_"):
+        return stem.removeprefix(ESCAPED + "_"), "left the mesh", UNITS.get(unit, "")
     if unit == "J":
         return stem, "energy", "J"
     fluid, _, part = stem.partition("_")
@@ -154,6 +157,18 @@ def split_name(name):
         if stem.endswith("_" + quantity):
             return stem[: -len(quantity) - 1], quantity, UNITS.get(unit, "")
     return "", stem, UNITS.get(unit, "")
+
+
+class Escaped:
+    """escaped.csv: the particles that left the mesh, in the order of time."""
+
+    def __init__(self, path):
+        with open(path, newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.body = [row["body"] for row in rows]
+        self.columns = {name: np.array([float(row[name]) for row in rows]) for name in (rows[0] if rows else ()) if name != "body"}
+        self.time = self.columns.get("time_s", np.zeros(0))
+        self.position = np.column_stack([self.columns[f"{axis}_m"] for axis in "xyz" if f"{axis}_m" in self.columns] or [self.time])
 
 
 class Results:
@@ -172,6 +187,8 @@ class Results:
         self.snapshots = [Snapshot(group) for group in self._file["snapshots"].values()]
         path = self.folder / "history.csv"
         self.history = History(path) if path.exists() else None
+        path = self.folder / "escaped.csv"
+        self.escaped = Escaped(path) if path.exists() else None
 
     def mesh(self):
         """Nodes [n, dim] and cells [m, dim + 1] of the background mesh; nodes that ranks shared are one again."""

@@ -78,8 +78,9 @@ def spacing_of(results):
 
 
 def chosen_snapshots(results, times=None, count=6):
-    """Snapshots nearest to `times`; else first, last and some between, half by time and half by how far things moved."""
-    snapshots = results.snapshots
+    """Snapshots nearest to `times`; else first, last and some between, half by time and half by how far things moved. Of those that have
+    soil: all of it may have left the mesh."""
+    snapshots = [snapshot for snapshot in results.snapshots if len(snapshot.ids())]
     at = np.array([snapshot.time for snapshot in snapshots])
     if times:
         return [snapshots[k] for k in sorted({int(np.abs(at - time).argmin()) for time in times})]
@@ -130,11 +131,14 @@ class Painter:
         self.corners = [self._limits(view) for view in self.views]
         self.outlines = [self._outline(view, corners) for view, corners in zip(self.views, self.corners)]
         self._tiles = {}
+        self.marks_escaped = False
 
     def _limits(self, view):
         """Corners of what is seen at all times, with room for the edge of the soil [m]."""
         snapshots = [self.results.snapshots[0], *self.snapshots]
         points = np.concatenate([view.seen(snapshot.position()) for snapshot in snapshots])
+        if self.results.escaped:
+            points = np.concatenate([points, view.flat(self.results.escaped.position)])
         low, high = points.min(axis=0), points.max(axis=0)
         margin = 0.012 * (high - low) + 2 * self.spacing
         return low - margin, high + margin
@@ -213,6 +217,7 @@ class Painter:
             axes.plot(*line.T, color=style.INK, linestyle=DOTTED, linewidth=1.1, path_effects=[HALO])
         for line in between:
             axes.plot(*line.T, color=style.SOFT, linestyle=DOTTED, linewidth=0.8, path_effects=[HALO])
+        self._mark_escaped(axes, self.views[k], snapshot.time)
         if named_points:
             self._mark_points(axes, self.views[k], snapshot.time)
         axes.set_xlim(low[0], high[0])
@@ -225,12 +230,21 @@ class Painter:
         """The named points of history.csv, where they are at a time."""
         history = self.results.history
         for name, place in (history.points(time) if history else {}).items():
-            if len(place) <= max(view.across, view.up):
+            if len(place) <= max(view.across, view.up) or not np.isfinite(place).all():
                 continue
             at = (place[view.across], place[view.up])
             axes.plot(*at, "o", markersize=5, markerfacecolor="white", markeredgecolor=style.INK, markeredgewidth=1.0)
             axes.annotate(style.words(name), at, xytext=(6, 6), textcoords="offset points", fontsize=8.5,
                           bbox={"boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": "none", "alpha": 0.8})
+
+    def _mark_escaped(self, axes, view, time):
+        """The places where particles have left the mesh up to a time."""
+        escaped = self.results.escaped
+        if escaped is None or not (escaped.time <= time).any():
+            return
+        place = view.flat(escaped.position[escaped.time <= time])
+        axes.plot(*place.T, "x", markersize=3.5, markeredgewidth=0.8, color=style.INK, clip_on=False)
+        self.marks_escaped = True
 
     def _frame_sheet(self, figure, field, colours):
         """Headline, colour bar, and what the dotted line is."""
@@ -247,7 +261,8 @@ class Painter:
         figure.text(LEFT / WIDTH, 1 - 0.24 / height, headline, fontsize=13, fontweight="bold", va="center")
         right = 1 - 0.25 / WIDTH
         figure.text(right, 1 - 0.24 / height, self.results.title, fontsize=9, color=style.SOFT, va="center", ha="right")
-        figure.text(right, 0.16 / height, "dotted: outline at the start", fontsize=7.5, color=style.SOFT, ha="right")
+        legend = "dotted: outline at the start" + ("; crosses: particles left the mesh here" if self.marks_escaped else "")
+        figure.text(right, 0.16 / height, legend, fontsize=7.5, color=style.SOFT, ha="right")
 
 
 def draw_sections(results, fields, times, folder, log=False):

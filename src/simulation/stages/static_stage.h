@@ -99,7 +99,15 @@ class StaticStage : public StageRunner<dim> {
            << (path_.last.singular ? "the stiffness became singular" : "Newton's iterations did not converge") << " ("
            << path_.last.iterations << " iterations, out-of-balance force " << path_.last.residual
            << " of the forces, largest step of a node " << path_.last.largest << " m)";
+      const bool softened = stage_.softening && soil_moves() && run_.statics.has_softened();
+      if (softened)
+        text << "; its soil softens, and beyond its peak there may be no equilibrium that stays near: motion goes on "
+                "from here (when_lost = \"next_stage\" and a dynamic stage), and softening = false keeps the strength";
       const bool goes_on = run_.statics.for_factor && !water_flows();
+      if (goes_on && softened)
+        throw RunFailure(text.str() +
+                         "; there is no factor of safety, since the strength that is left depends on how "
+                         "far the loads came: with softening = false it is that of the peak strength");
       if (stage_.when_lost == WhenLost::stop && !goes_on) throw RunFailure(text.str());
       if (goes_on) {
         run_.statics.lost_stages.push_back(stage_.name);

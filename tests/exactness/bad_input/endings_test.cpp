@@ -56,7 +56,9 @@ class RunThatEnds : public testing::Test {
 
 TEST_F(RunThatEnds, BecauseAParticleLeftTheMesh) {
   expect(Program(folder_, run(thrown_)).end(),
-         {"left the mesh near (2, 0.", "t = 0.0", "stage fall", "snapshots up to step", "are in results"}, 3);
+         {"left the mesh near (2, 0.", "mesh.leaving_particles = \"remove\"", "t = 0.0", "stage fall",
+          "snapshots up to step", "are in results"},
+         3);
 }
 
 TEST_F(RunThatEnds, BecauseAParticleLeftTheMeshOnTwoRanks) {

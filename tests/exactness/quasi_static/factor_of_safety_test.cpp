@@ -37,6 +37,80 @@ TEST(FactorOfSafety, refuses_laws_without_strength_to_divide) {
   }
 }
 
+/// Soil whose cohesion and friction angle are zero has nothing to divide; beside other soil it may stand.
+TEST(FactorOfSafety, refuses_soil_without_strength) {
+  try {
+    reduce("gravity = 10\n" + block + "[boundary.base]\nkind = \"fixed\"\n",
+           {"body.soil.law=mohr_coulomb", "body.soil.cohesion=0", "body.soil.friction_angle=0"});
+    ADD_FAILURE();
+  } catch (const std::invalid_argument &error) {
+    EXPECT_NE(std::string(error.what()).find("body.soil has no strength that a factor of safety could divide"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+/// A clay that softens and loses its equilibrium on the way: how much strength is left depends on the load steps, so
+/// there is a reason and no factor. With its peak strength it has one, 3.77 c / (rho g h) and a few per cent for the
+/// coarse elements.
+TEST(FactorOfSafety, is_none_where_softening_has_lost_the_equilibrium) {
+  const std::string cut =
+      "gravity = 10\n" + block + "[boundary.base]\nkind = \"fixed\"\n[boundary.left]\nkind = \"roller\"\n";
+  const std::vector<std::string> soft{"body.soil.law=mohr_coulomb", "body.soil.cohesion=6e3",
+                                      "body.soil.friction_angle=0", "body.soil.residual_cohesion=1e3",
+                                      "body.soil.shape_factor=200", "stage.0.load_steps=5"};
+  try {
+    reduce(cut, soft);
+    ADD_FAILURE() << "a factor";
+  } catch (const RunError &error) {
+    for (const char *words : {"no equilibrium beyond", "its soil softens", "there is no factor of safety"})
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+  }
+  const double peak = reduce(cut, soft + std::vector<std::string>{"stage.0.softening=false"}).factor.value();
+  EXPECT_GT(peak, 3.77 * 6 / 20);
+  EXPECT_LT(peak, 1.15 * 3.77 * 6 / 20);
+}
+
+/// The same in a stage without a factor: the reason names the softening.
+TEST(QuasiStatic, softening_that_loses_the_equilibrium_is_named) {
+  try {
+    solve("gravity = 10\n" + block + "[boundary.base]\nkind = \"fixed\"\n[boundary.left]\nkind = \"roller\"\n",
+          {"body.soil.law=mohr_coulomb", "body.soil.cohesion=6e3", "body.soil.friction_angle=0",
+           "body.soil.residual_cohesion=1e3", "body.soil.shape_factor=200", "stage.0.load_steps=5"});
+    ADD_FAILURE();
+  } catch (const RunError &error) {
+    for (const char *words : {"no equilibrium beyond", "its soil softens", "softening = false keeps the strength"})
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+  }
+}
+
+/// A block in the air: no boundary, or a load only, holds nothing, in a stage of equilibrium, for a factor of safety
+/// and in consolidation.
+TEST(QuasiStatic, soil_in_the_air_is_refused) {
+  const std::string air =
+      "gravity = 10\n[mesh]\nsection = \"flight.csv\"\nsize = 0.3\n[body.soil]\nregion = \"block\"\n"
+      "porosity = 0.4\ngrain_density = 2650\nlaw = \"mohr_coulomb\"\nyoung_modulus = \"10 MPa\"\n"
+      "poisson_ratio = 0.3\ncohesion = 1e4\nfriction_angle = 0\n"
+      "[[stage]]\nkind = \"quasi_static\"\nduration = 1\n";
+  const auto expect_reason = [](const auto &act) {
+    try {
+      act();
+      ADD_FAILURE();
+    } catch (const RunError &error) {
+      const std::string said = error.what();
+      EXPECT_NE(said.find("the supports leave soil free to move as a whole: the piece around (0.7"), std::string::npos)
+          << said;
+      EXPECT_NE(said.find("hold it by fixed or roller boundaries"), std::string::npos) << said;
+    }
+  };
+  expect_reason([&] { solve(air); });
+  expect_reason([&] { reduce(air); });
+  expect_reason([&] {
+    solve(air,
+          {"phases=saturated", "stage.0.kind=consolidation", "body.soil.permeability=1e-10", "water.bulk_modulus=1e7"});
+  });
+}
+
 /// A cut of clay on elastic rock: the clay fails, and the log says that the rock was left as it is.
 TEST(FactorOfSafety, leaves_elastic_soil_beside_other_soil_as_it_is) {
   const std::string layer = "density = 2000\nyoung_modulus = \"10 MPa\"\npoisson_ratio = 0.3\n";

@@ -143,7 +143,6 @@ TEST(Water, seeps_through_drained_soil) {
       "[[stage]]\nname = \"soil\"\nkind = \"quasi_static\"\nduration = 1\nreset_displacement = true\n";
   const std::vector<std::string> keys{"phases=drained",
                                       "gravity=0",
-                                      "water.table=[]",
                                       "water.open_water_load=false",
                                       "quasi_static.elements=patches",
                                       "quasi_static.tolerance=1e-8",
@@ -217,7 +216,7 @@ TEST(Water, leaves_as_the_soil_settles) {
                            "[boundary.surface]\nkind = \"traction\"\npressure = \"1 kPa\"\n[boundary.drain]\ngroup = "
                            "\"surface\"\nkind = \"pore_pressure\"\n"
                            "[[stage]]\nname = \"press\"\nkind = \"consolidation\"\nduration = 500\n";
-  const Solved solved = solve(text, {"gravity=0", "water.table=[]"});
+  const Solved solved = solve(text, {"gravity=0"});
   const auto time = solved.history.column("time_s"), inflow = solved.history.column("drain_inflow_m3_s"),
              way = solved.history.column("surface_displacement_y_m");
   double water = 0;
@@ -237,9 +236,7 @@ TEST(Water, takes_steps_by_the_root_of_their_error) {
                            "\"surface\"\nkind = \"pore_pressure\"\n"
                            "[[stage]]\nname = \"press\"\nkind = \"consolidation\"\nduration = 500\n";
   const auto steps = [&](const char *error) {
-    return solve(text, {"gravity=0", "water.table=[]", std::string("quasi_static.step_error=") + error})
-        .history.column("time_s")
-        .size();
+    return solve(text, {"gravity=0", std::string("quasi_static.step_error=") + error}).history.column("time_s").size();
   };
   const double ratio = static_cast<double>(steps("2.5e-4")) / static_cast<double>(steps("1e-3"));
   EXPECT_NEAR(ratio, 2, 0.3);  // 1.86: the first steps, of 1e-4 of the duration, are the same ones

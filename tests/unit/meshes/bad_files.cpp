@@ -170,6 +170,52 @@ TEST(MeshRemark, SidesThatMeetOthersInTheirMiddleAreACrack) {
   expect_remark(mesh, {"7 sides of cells from (0, 0.5) m to (1, 0.5) m", "cracked there"});
 }
 
+/// Two triangles or one tetrahedron of second order in a file; the node on the edge from (0, 0) to (1, 0) lies at y =
+/// `rise`.
+std::string second_order(int dim, double rise) {
+  const std::string y = std::to_string(rise);
+  if (dim == 2)
+    return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 1 \"soil\"\n$EndPhysicalNames\n$Nodes\n9\n"
+           "1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0.5 " +
+           y +
+           " 0\n6 1 0.5 0\n7 0.5 0.5 0\n8 0.5 1 0\n9 0 0.5 0\n$EndNodes\n$Elements\n2\n"
+           "1 9 2 1 1 1 2 3 5 6 7\n2 9 2 1 1 1 3 4 7 8 9\n$EndElements\n";
+  return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"soil\"\n$EndPhysicalNames\n$Nodes\n10\n"
+         "1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 0.5 " +
+         y +
+         " 0\n6 0.5 0.5 0\n7 0 0.5 0\n8 0 0 0.5\n9 0 0.5 0.5\n10 0.5 0 0.5\n$EndNodes\n$Elements\n1\n"
+         "7 11 2 1 1 1 2 3 4 5 6 7 8 9 10\n$EndElements\n";
+}
+
+template <int dim>
+std::vector<std::string> remarks_of_text(const std::string &content) {
+  const SharedFile file([&](const std::string &name) { std::ofstream(name) << content; });
+  return BackgroundMesh<dim>::read(PETSC_COMM_SELF, file.name(), {}).report().remarks;
+}
+
+TEST(MeshRemark, CellsOfSecondOrderAreTakenByTheirCorners) {
+  const auto expect_last = [](const std::vector<std::string> &found, const std::vector<std::string> &words) {
+    ASSERT_FALSE(found.empty());
+    expect_words(found.back(), words);
+  };
+  expect_last(remarks_of_text<2>(second_order(2, 0)), {"2 cells are of second or higher order", "nothing is lost"});
+  expect_last(remarks_of_text<3>(second_order(3, 0)), {"1 cell is of second or higher order", "nothing is lost"});
+  expect_last(remarks_of_text<2>(second_order(2, -0.04)), {"up to 0.04 of the edge beside it", "is lost"});
+  expect_last(remarks_of_text<3>(second_order(3, -0.04)), {"up to 0.04 of the edge beside it"});
+}
+
+/// The order of nodes on edges is that of Gmsh: with another one straight elements would have bent edges.
+TEST(BadFile, CellsWithCurvedEdgesAreRefused) {
+  const auto about = [](int dim, double rise) {
+    const SharedFile file([&](const std::string &name) { std::ofstream(name) << second_order(dim, rise); });
+    return dim == 2 ? complaint<2>(file.name()) : complaint<3>(file.name());
+  };
+  expect_words(about(2, -0.06), {"element 1 has a curved edge", "node 5 at (0.5, -0.06) m lies 0.06 of the edge",
+                                 "Mesh.ElementOrder = 1"});
+  expect_words(about(3, 0.06), {"element 7 has a curved edge", "node 5 at (0.5, 0.06, 0) m lies 0.06 of the edge"});
+  EXPECT_EQ(about(2, 0.04), "");
+}
+
 TEST(MeshRemark, APartWithoutNeighboursIsNamed) {
   BoxMesh mesh(2, 4);
   mesh.part_upper_half(0, 0.5);

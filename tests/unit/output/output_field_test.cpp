@@ -98,6 +98,7 @@ TEST(RunRow, names_what_it_holds_and_closes_its_ledgers) {
   RunRow<2> row;
   row.balance.kinetic = 1, row.balance.strain = 2, row.first_energy = 30;
   row.work = {4, 5, -6};
+  row.escaped = {.particles = 3, .mass = 50, .fluid_mass = {6, 0}, .momentum = {70, -80}, .energy = 9};
   row.fluids = {{100, 7, 2}}, row.first_fluid = {104};
   row.boundaries = {{"base", false, true, {8, 9}, 10, 11}, {"footing", true, false, {12, 13}, 0, 14}};
   Names names;
@@ -112,9 +113,15 @@ TEST(RunRow, names_what_it_holds_and_closes_its_ledgers) {
                           "mass_kg",
                           "particles",
                           "load_time_s",
+                          "escaped_particles",
+                          "escaped_mass_kg",
+                          "escaped_momentum_x_kg_m_s",
+                          "escaped_momentum_y_kg_m_s",
+                          "escaped_energy_J",
                           "water_kg",
                           "water_out_kg",
                           "water_given_kg",
+                          "water_escaped_kg",
                           "water_error_kg",
                           "base_inflow_m3_s",
                           "base_force_x_N",
@@ -127,11 +134,13 @@ TEST(RunRow, names_what_it_holds_and_closes_its_ledgers) {
                           "work_imposed_J",
                           "work_damping_J",
                           "dissipated_J"}));
-  EXPECT_EQ(value["water_error_kg"], 100 + 7 - 2 - 104);  // stored, and gone, and not put in, since the start
+  EXPECT_EQ(value["water_error_kg"], 100 + 7 - 2 + 6 - 104);  // stored, and gone, and not put in, since the start
+  EXPECT_EQ(value["escaped_momentum_y_kg_m_s"], -80);
   EXPECT_EQ(value["base_inflow_m3_s"], 10);
   EXPECT_EQ(value["base_force_y_N"], 9);
   EXPECT_EQ(value["footing_displacement_x_m"], 12);
-  EXPECT_EQ(value["dissipated_J"], 30 + 11 + 14 + 4 + 5 - 6 - (1 + 2));  // energy at the start, work, energy now
+  // energy at the start, work, energy now and that of what has left
+  EXPECT_EQ(value["dissipated_J"], 30 + 11 + 14 + 4 + 5 - 6 - (1 + 2 + 9));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Claims of particles/body.h about the volume that particles may take.
+// Claims of particles/body.h: the volume that particles may take, and particles that are taken out.
 #include "particles/body.h"
 
 #include <gtest/gtest.h>
@@ -50,6 +50,44 @@ TEST(VolumeLimit, rises_with_dilation) {
 TEST(VolumeLimit, does_not_rise_with_gaps) {
   EXPECT_EQ(limit(soil(0, 0), 0.3), initial);
   EXPECT_EQ(limit(MuI{}, 0.3), initial);
+}
+
+/// Those that stay keep their order and all their fields; numbers and positions tell them apart.
+TEST(Body, loses_the_particles_that_are_taken_out_and_no_others) {
+  BodySource source;
+  Body<2> body;
+  constexpr int count = 500;  // more than the spare room of a swarm
+  ASSERT_EQ(body.create(PETSC_COMM_SELF, source, soil(1e3, 5), 1, 0), 0);
+  ASSERT_EQ(body.resize(count), 0);
+  const auto fill = [&](int i) {
+    const ParticleArrays<2> &p = body.particles();
+    p.id[i] = 1000 + i, p.cell[i] = i, p.mass[i] = i, p.volume[i] = 2 * i, p.position[i] = {3. * i, 4. * i};
+    p.fluid_mass[0][i] = 5 * i, p.fluid_velocity[0][i] = {6. * i, 7. * i};
+    for (int k = 0; k < stress_size<2>; ++k) p.stress[i * stress_size<2> + k] = 8 * i + k;
+    for (int h = 0; h < body.history_count(); ++h) p.history[i * body.history_count() + h] = 9 * i + h;
+  };
+  for (int i = 0; i < count; ++i) fill(i);
+  std::vector<int> gone, kept;
+  for (int i = 0; i < count; ++i) (i == 0 || i == count - 1 || i % 3 == 1 ? gone : kept).push_back(i);
+  ASSERT_EQ(body.remove(gone), 0);
+  const ParticleArrays<2> &p = body.particles();
+  ASSERT_EQ(p.count, static_cast<int>(kept.size()));
+  for (int j = 0; j < p.count; ++j) {
+    const int i = kept[j];
+    EXPECT_EQ(p.id[j], 1000 + i);
+    EXPECT_EQ(p.cell[j], i);
+    EXPECT_EQ(p.mass[j], i);
+    EXPECT_EQ(p.volume[j], 2 * i);
+    EXPECT_EQ(p.position[j], (Vec<2>{3. * i, 4. * i}));
+    EXPECT_EQ(p.fluid_mass[0][j], 5 * i);
+    EXPECT_EQ(p.fluid_velocity[0][j], (Vec<2>{6. * i, 7. * i}));
+    EXPECT_EQ(p.stress[j * stress_size<2> + 3], 8 * i + 3);
+    EXPECT_EQ(p.history[j * body.history_count()], 9 * i);
+  }
+  std::vector<int> all(p.count);
+  for (int j = 0; j < p.count; ++j) all[j] = j;
+  ASSERT_EQ(body.remove(all), 0);
+  EXPECT_EQ(body.particles().count, 0);
 }
 
 }  // namespace

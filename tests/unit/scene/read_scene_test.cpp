@@ -210,6 +210,12 @@ TEST(ReadScene, ChecksOneKeyAgainstAnother) {
       {drained,
        {"water.table=[[1, 0, 3]]"},
        "water.table.0 = [1, 0, 3] must have 2 coordinates, [x, elevation], not 3"},
+      {drained, {"water.table=[]"}, "must be a list with at least one point; leave it out for none"},
+      {drained,
+       {"body.clay.relative_permeability.curve=cubic"},
+       "has no effect without a retention curve, from which the degree of saturation follows: add "
+       "[body.clay.retention] with curve, or leave [body.clay.relative_permeability] out"},
+      {dry, {"mesh.leaving_particles=go"}, "mesh.leaving_particles = \"go\" must be \"stop\" or \"remove\""},
       {dry, {"output.point.crest.position=[1]"}, "output.point.crest.position = [1] must have 2 coordinates, not 1"},
       {dry,
        {"stage.0.until=failure"},
