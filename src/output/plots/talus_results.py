@@ -145,7 +145,8 @@ def split_name(name):
     unit = next((ending for ending in UNITS if name.endswith("_" + ending)), None)
     stem = name[: -len(unit) - 1] if unit else name
     if stem.startswith(ESCAPED + "_"):
-        return stem.removeprefix(ESCAPED + "_"), "left the mesh", UNITS.get(unit, "")
+        quantity, _, axis = stem.rpartition("_")  # escaped_momentum_x
+        return (axis, quantity, UNITS[unit]) if axis in ("x", "y", "z") else ("", stem, UNITS.get(unit, ""))
     if unit == "J":
         return stem, "energy", "J"
     fluid, _, part = stem.partition("_")

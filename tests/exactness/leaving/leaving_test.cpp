@@ -9,8 +9,8 @@
 namespace talus {
 namespace {
 
-/// An elastic block that flies to the right at 12 m/s, shaking, through free space: its front reaches the side at x = 3 m after
-/// 0.17 s, its back after 0.21 s.
+/// An elastic block that flies to the right at 12 m/s, shaking, through free space: its front reaches the side at x = 3
+/// m after 0.17 s, its back after 0.21 s.
 const std::string shot = R"(gravity = 0
 [mesh]
 section = ")" TALUS_MESHES R"(/flight.csv"

@@ -215,7 +215,7 @@ TEST(ReadScene, ChecksOneKeyAgainstAnother) {
        {"body.clay.relative_permeability.curve=cubic"},
        "has no effect without a retention curve, from which the degree of saturation follows: add "
        "[body.clay.retention] with curve, or leave [body.clay.relative_permeability] out"},
-      {dry, {"mesh.leaving_particles=go"}, "mesh.leaving_particles = \"go\" must be \"stop\" or \"remove\""},
+      {dry, {"mesh.leaving_particles=go"}, "may be changed with --resume) must be one of stop, remove"},
       {dry, {"output.point.crest.position=[1]"}, "output.point.crest.position = [1] must have 2 coordinates, not 1"},
       {dry,
        {"stage.0.until=failure"},
