@@ -6,12 +6,12 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <map>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
 
+#include "base/read_file.h"
 #include "meshes/plex.h"
 
 namespace talus {
@@ -56,10 +56,12 @@ constexpr double largest_rise = 0.05;
 class Source {
  public:
   explicit Source(const std::string &file) : file_(file) {
-    std::ifstream in(file, std::ios::binary);
-    if (in && in.peek() != std::ifstream::traits_type::eof())
-      text_.assign(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
-    if (text_.empty()) complain_at_large("cannot be read or is empty; check the path and its permissions");
+    try {
+      text_ = read_file(file);
+    } catch (const std::system_error &error) {
+      complain_at_large("cannot be read (" + error.code().message() + "); check the path and its permissions");
+    }
+    if (text_.empty()) complain_at_large("is empty" + std::string(save_again));
   }
 
   bool binary = false;  ///< numbers between `set_form` and the end of a section are not text
@@ -115,6 +117,8 @@ class Source {
     if (!binary) return static_cast<int>(in_range(parsed<long long>(), INT32_MIN, INT32_MAX));
     return raw<std::int32_t>();
   }
+  /// A tag without its sign.
+  int unsigned_tag() { return static_cast<int>(in_range(std::abs(static_cast<long long>(integer())), 0, INT32_MAX)); }
   /// An integer of format 4.1 that counts or numbers.
   long long size() {
     if (!binary) return in_range(parsed<long long>(), 0, INT64_MAX);
@@ -284,7 +288,7 @@ class Reader {
         const int tag = in_.integer();
         for (int k = 0; k < (dimension ? 6 : 3); ++k) (void)in_.any_real();
         std::vector<int> groups(in_.count(in_.size(), in_.in_text(4)));
-        for (int &group : groups) group = std::abs(in_.integer());  // the sign is an orientation
+        for (int &group : groups) group = in_.unsigned_tag();  // the sign is an orientation
         entities_[{dimension, tag}] = list_of(groups);
         if (dimension == 0) continue;
         for (std::size_t parts = in_.count(in_.size(), in_.in_text(4)); parts > 0; --parts) (void)in_.integer();

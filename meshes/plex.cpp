@@ -137,12 +137,6 @@ PetscErrorCode read_simplices(DM plex, Simplices<dim> &s) {
   PetscFunctionReturn(0);
 }
 
-bool is_reserved_label(const std::string &name) {
-  static const std::set<std::string> reserved{"depth",     "celltype",  "dim",         "ghost",    "marker",
-                                              "Cell Sets", "Face Sets", "Vertex Sets", "Edge Sets"};
-  return reserved.count(name) > 0;
-}
-
 PetscErrorCode points_at_height(DM plex, const std::string &name, int height, std::vector<PetscInt> &points) {
   DMLabel label;
   IS values;

@@ -90,7 +90,7 @@ class Reader {
     if (row.part == "outline") {
       append(section_.outline, row.part, row);
     } else if (starts_with(row.part, "interface") && sheet_.number(row.part.substr(9), number) &&
-               number == std::floor(number)) {
+               number == std::floor(number) && std::abs(number) <= most_points) {
       append(interfaces_[static_cast<int>(number)], row.part, row);
     } else if (starts_with(row.part, "b_")) {
       const std::string name = name_in(row, "b_");
@@ -101,6 +101,8 @@ class Reader {
       boxes_[row.part].push_back(row);
     } else if (row.part == "free_space") {
       if (row.numbers[0] <= 0) complain(section_.file, row.line, "the height of the free space must be above 0 m");
+      if (section_.has_free_space)
+        complain(section_.file, row.line, "a section has one row of free_space, this is a second");
       section_.has_free_space = true;
       section_.free_height = row.numbers[0], section_.free_extra = row.numbers[1];
     } else {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
+
+#include "base/read_file.h"
 
 namespace talus {
 namespace {
@@ -79,10 +79,14 @@ bool Spreadsheet::number(const std::string &cell, double &value) const {
 }
 
 Spreadsheet read_spreadsheet(const std::string &file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || in.peek() == std::ifstream::traits_type::eof())
-    throw std::invalid_argument(file + ": cannot be read or is empty; check the path and its permissions");
-  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  std::string text;
+  try {
+    text = read_file(file);
+  } catch (const std::system_error &error) {
+    throw std::invalid_argument(file + ": cannot be read (" + error.code().message() +
+                                "); check the path and its permissions");
+  }
+  if (text.empty()) throw std::invalid_argument(file + ": is empty; save the table as CSV again");
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
   if (text.find('\0') != std::string::npos || text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
     throw std::invalid_argument(file + ": is no text in UTF-8; save the table as \"CSV UTF-8\"");

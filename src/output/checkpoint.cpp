@@ -1,14 +1,13 @@
 #include "output/checkpoint.h"
 
-#include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
 
+#include "base/read_file.h"
 #include "output/replace_file.h"
 #include "output/together.h"
 
@@ -36,13 +35,10 @@ void save(const std::string &path, const std::string &content) {
 }
 
 std::string load(const std::string &path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw std::runtime_error("cannot read " + path + ": " + std::strerror(errno));
-  std::string file(fs::file_size(path), '\0');
-  stream.read(file.data(), static_cast<std::streamsize>(file.size()));
+  std::string file = read_file(path);
   unsigned long long sum;
   const std::size_t head = std::strlen(first_line) + sizeof sum;
-  if (!stream || file.size() < head || file.compare(0, head - sizeof sum, first_line))
+  if (file.size() < head || file.compare(0, head - sizeof sum, first_line))
     throw std::runtime_error(path + " is no checkpoint of this version of Talus");
   std::memcpy(&sum, file.data() + head - sizeof sum, sizeof sum);
   file.erase(0, head);

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "base/read_file.h"
 #include "output/csv.h"
 #include "output/replace_file.h"
 #include "output/together.h"
@@ -26,8 +27,7 @@ std::string header(const std::vector<std::string> &names) {
 
 /// The header and the complete lines up to `time`.
 std::string lines_until(const std::string &path, const std::vector<std::string> &names, double time) {
-  std::ifstream file(path);
-  if (!file) throw std::runtime_error("cannot read " + path + ": " + std::strerror(errno));
+  std::istringstream file(read_file(path));
   std::string line, lines;
   if (!std::getline(file, line) || line != header(names))
     throw std::runtime_error(path + " has other columns than this run: start the run in another folder");

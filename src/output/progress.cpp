@@ -53,7 +53,12 @@ std::string duration(double seconds) {
 
 Progress::Progress(MPI_Comm comm, const std::string &log_path, double total, bool append, std::FILE *screen,
                    std::function<double()> clock)
-    : prints_(rank_in(comm) == 0), total_(total), screen_(screen), clock_(std::move(clock)) {
+    : comm_(comm),
+      log_path_(log_path),
+      prints_(rank_in(comm) == 0),
+      total_(total),
+      screen_(screen),
+      clock_(std::move(clock)) {
   on_first_rank(comm, [&] {
     log_.open(log_path, append ? std::ios::app : std::ios::trunc);
     if (!log_) throw std::runtime_error("cannot write " + log_path + ": " + std::strerror(errno));
@@ -130,15 +135,26 @@ void Progress::failure(const std::string &text) {
 }
 
 void Progress::finish() {
-  if (!prints_) return;
-  finished_ = true;
-  const std::string line = describe(clock_());
-  print(line);
-  if (line_open_) std::fputc('\n', screen_);
-  line_open_ = false;
-  log(line);
+  on_first_rank(comm_, [&] {
+    finished_ = true;
+    const std::string line = describe(clock_());
+    print(line);
+    if (line_open_) std::fputc('\n', screen_);
+    line_open_ = false;
+    log(line);
+    if (!lost_.empty())
+      throw std::runtime_error("the results are complete, but " + log_path_ + " lacks lines: " + lost_);
+  });
 }
 
-void Progress::log(const std::string &line) { log_ << time_of_day() << "  " << line << std::endl; }
+void Progress::log(const std::string &line) {
+  log_ << time_of_day() << "  " << line << std::endl;
+  if (log_) return;
+  if (lost_.empty()) {
+    lost_ = std::strerror(errno);
+    std::fprintf(screen_, "warning: cannot write %s: %s; the run goes on\n", log_path_.c_str(), lost_.c_str());
+  }
+  log_.clear();  // the next line may find room again
+}
 
 }  // namespace talus

@@ -11,7 +11,8 @@ namespace talus {
 
 /// On a terminal: one line that overwrites itself twice a second. Elsewhere (a pipe, a batch job): a line after 2 s and
 /// then every 10 s. run.log: a line after 2 s, then one a minute, with the time of day. It may be called every step:
-/// the clock is read about ten times a second only.
+/// the clock is read about ten times a second only. A line of run.log that cannot be written does not end the run: the
+/// screen shows a warning, and `finish` fails.
 class Progress {
  public:
   /// Collective. `total` is the simulated time at which the run ends at the latest [s]; `append`
@@ -39,7 +40,7 @@ class Progress {
   /// The last line of a run that failed, in the log alone: whoever catches the error prints it on the screen.
   void failure(const std::string &text);
 
-  /// Prints the last state.
+  /// Prints the last state. Collective. Throws std::runtime_error on all ranks if lines are missing in run.log.
   void finish();
 
  private:
@@ -53,6 +54,8 @@ class Progress {
   void print(const std::string &line);
   void log(const std::string &line);
 
+  MPI_Comm comm_;
+  std::string log_path_, lost_;  ///< `lost_`: why the first of the lines that run.log lacks was not written, or ""
   bool prints_, terminal_ = false, finished_ = false;
   double total_;
   std::FILE *screen_;

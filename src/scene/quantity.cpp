@@ -124,7 +124,9 @@ class UnitText {
   Measure factor() {
     skip_blanks();
     if (take("(")) {
+      if (++depth_ > deepest) throw std::invalid_argument("parentheses are nested too deeply in the unit");
       const Measure inner = product();
+      --depth_;
       if (!take(")")) throw std::invalid_argument("a parenthesis is not closed in the unit");
       return power_of(inner, exponent());
     }
@@ -174,7 +176,9 @@ class UnitText {
     }
   }
 
+  static constexpr int deepest = 20;  // of parentheses: each takes room on the stack
   std::string_view rest_;
+  int depth_ = 0;
 };
 
 std::string_view trim(std::string_view text) {

@@ -47,6 +47,9 @@ class Checks {
                                                  : "has two sources: give either file or section");
     if (!mesh.section.empty() && !(mesh.size > 0))
       reader_.complain("mesh.size", "must be a cell size above 0 m, since the mesh is made from a section");
+    if (!mesh.file.empty() && !mesh.refine.empty())
+      reader_.complain("mesh.refine",
+                       "has no effect on a mesh from a file: refine it where it is made, or give a section");
     for (std::size_t i = 0; i < mesh.refine.size(); ++i)
       box("mesh.refine." + std::to_string(i), mesh.refine[i].from, mesh.refine[i].to);
   }
@@ -278,6 +281,8 @@ class Checks {
       if (water_flows(stage.kind))
         reader_.complain(path + ".seismic_coefficient",
                          "belongs to dynamic and quasi_static stages, not to those in which pore water flows");
+      if (scene_.gravity_size() == 0)
+        reader_.complain(path + ".seismic_coefficient", "is a part of gravity, and the scene has none: give gravity");
       for (const double k : stage.seismic_coefficient)
         if (!(std::abs(k) <= 2))
           reader_.complain(path + ".seismic_coefficient", "must have components from -2 to 2, parts of gravity");
@@ -289,8 +294,12 @@ class Checks {
       if (stage.until != StopWhen::duration) reader_.complain(path + ".until", no);
       if (stage.damping > 0) reader_.complain(path + ".damping", no);
       if (stage.gravity_ramp > 0) reader_.complain(path + ".gravity_ramp", no);
-    } else if (stage.initial_stress == InitialStress::k0) {
-      reader_.complain(path + ".initial_stress", "belongs to quasi-static stages: set kind = \"quasi_static\"");
+    } else {
+      const Stage usual;
+      for (const auto &[key, given] : {std::pair{".initial_stress", stage.initial_stress != usual.initial_stress},
+                                       {".load_steps", stage.load_steps != usual.load_steps},
+                                       {".when_lost", stage.when_lost != usual.when_lost}})
+        if (given) reader_.complain(path + key, "belongs to quasi-static stages: set kind = \"quasi_static\"");
     }
     if (stage.until != StopWhen::failure) return;
     std::vector<std::string> points;

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <sstream>
 #include <system_error>
 
+#include "base/read_file.h"
 #include "scene/overrides.h"
 #include "scene/quantity.h"
 #include "scene/toml_nodes.h"
@@ -67,11 +66,11 @@ std::string TableReader::values() const {
 
 std::string read_text(const std::string &file) {
   if (std::filesystem::is_directory(file)) throw SceneError("cannot read " + file + ": it is a directory");
-  std::ifstream stream(file);
-  if (!stream) throw SceneError("cannot read " + file + ": " + std::generic_category().message(errno));
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
+  try {
+    return read_file(file);
+  } catch (const std::system_error &error) {
+    throw SceneError(error.what());
+  }
 }
 
 // ---- the visitor ----

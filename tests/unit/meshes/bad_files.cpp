@@ -40,6 +40,16 @@ void expect_words(const std::string &text, const std::vector<std::string> &words
 
 TEST(BadFile, AMissingFileIsNamed) { expect_words(complaint<2>("no/such.msh"), {"no/such.msh", "cannot be read"}); }
 
+TEST(BadFile, AFileThatCannotBeReadIsNamed) {  // it can be opened, but not read at address 0
+  expect_words(complaint<2>("/proc/self/mem"), {"/proc/self/mem: cannot be read (Input/output error)"});
+}
+
+TEST(BadFile, ATagHasAPositiveCounterpart) {
+  const std::string head = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"soil\"\n$EndPhysicalNames\n";
+  expect_words(complaint_about_text(head + "$Entities\n1 0 0 0\n1 0 0 0 1 -2147483648\n$EndEntities\n"),
+               {"the number 2147483648 is out of its range"});
+}
+
 TEST(BadFile, GarbageIsNotAMesh) {
   expect_words(complaint_about_text("these are\nnot the numbers\n"), {"not a Gmsh mesh", "$MeshFormat"});
   expect_words(complaint_about_text(""), {"empty"});

@@ -36,6 +36,16 @@ void expect_words(const std::string &text, const std::vector<std::string> &words
   for (const std::string &word : words) EXPECT_NE(text.find(word), std::string::npos) << word << " is not in: " << text;
 }
 
+TEST(Section, SaysThatReadingFailedHalfWay) {
+  std::string text;
+  try {
+    (void)read_section("/proc/self/mem");  // can be opened, but not read at address 0
+  } catch (const std::invalid_argument &error) {
+    text = error.what();
+  }
+  expect_words(text, {"/proc/self/mem: cannot be read (Input/output error)", "check the path"});
+}
+
 const std::string square = "part,x,y\noutline,0,0\noutline,4,0 # right\noutline,4,3\noutline,0,3\n";
 
 TEST(Section, LayersCountInterfacesAbove) {

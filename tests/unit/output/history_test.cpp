@@ -65,6 +65,11 @@ TEST(History, drops_a_line_that_was_cut_off) {
   EXPECT_EQ(content(path), "time_s,step,stage,a_m\n0,0,s,1\n");
 }
 
+/// Rows that cannot be read are not rows that were never written: the table stays as it is.
+TEST(History, is_not_cut_where_reading_fails) {
+  EXPECT_THROW(History::append(MPI_COMM_WORLD, "/proc/self/mem", {"a_m"}, 5), std::runtime_error);
+}
+
 TEST(History, is_started_where_there_is_none) {
   const SharedFolder folder;
   History::append(MPI_COMM_WORLD, folder / "history.csv", {"a_m"}, 5);

@@ -70,5 +70,29 @@ TEST(Progress, complains_about_a_log_that_cannot_be) {
   EXPECT_THROW(Progress(MPI_COMM_WORLD, folder / "missing/run.log", 1), std::runtime_error);
 }
 
+/// A full disk: the run goes on, but does not end as if nothing were missing.
+TEST(Progress, complains_at_the_end_about_lines_that_were_lost) {
+  const SharedFolder folder;
+  std::FILE *screen = std::fopen((folder / ("screen" + std::to_string(world_rank()))).c_str(), "w+");
+  {
+    Progress progress(MPI_COMM_WORLD, "/dev/full", 1, false, screen);
+    progress.stage("slide");
+    progress.note("the slope failed");
+    try {
+      progress.finish();
+      ADD_FAILURE() << "no complaint";
+    } catch (const std::runtime_error &error) {
+      EXPECT_NE(std::string(error.what()).find("/dev/full lacks lines: No space left"), std::string::npos)
+          << error.what();
+    }
+  }
+  std::fclose(screen);
+  const std::string said = content(folder / ("screen" + std::to_string(world_rank())));
+  if (world_rank() == 0) {
+    EXPECT_EQ(lines_of(said.substr(0, said.find("the slope failed"))), 1) << said;
+    EXPECT_NE(said.find("warning: cannot write /dev/full: No space left"), std::string::npos) << said;
+  }
+}
+
 }  // namespace
 }  // namespace talus

@@ -75,6 +75,12 @@ TEST(Quantity, RefusesWhatIsNoQuantity) {
     EXPECT_NE(complaint([&] { (void)parse_quantity(text); }), "") << text;
 }
 
+TEST(Quantity, RefusesParenthesesWithoutEnd) {  // each of them takes room on the stack
+  EXPECT_EQ(in_unit("1 " + std::string(20, '(') + "Pa" + std::string(20, ')'), pascal), 1);
+  EXPECT_TRUE(
+      contains(complaint([] { (void)in_unit("1 " + std::string(1000000, '('), pascal); }), "nested too deeply"));
+}
+
 TEST(Quantity, RefusesAnotherDimension) {
   EXPECT_EQ(complaint([] { (void)in_unit("5 m", pascal); }), "its unit must measure the same as Pa");
   EXPECT_EQ(complaint([] { (void)in_unit("5 m", one); }), "it is a number without a unit");

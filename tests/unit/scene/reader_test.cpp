@@ -230,6 +230,12 @@ TEST(TableReader, SaysWhichFileCannotBeRead) {
 
 // ---- functions ----
 
+/// Reading the memory of a process from address 0 is an input/output error, though the file can be opened.
+TEST(TableReader, SaysThatReadingFailedHalfWay) {
+  EXPECT_TRUE(
+      contains(complaint([] { (void)read_text("/proc/self/mem"); }), "cannot read /proc/self/mem: Input/output"));
+}
+
 TEST(TableReader, ReadsAFunctionAsQuantityTableOrExpression) {
   EXPECT_EQ(read("load = '5 kPa'").load(0), 5e3);
   EXPECT_EQ(read("load = [[0, 0], ['1 min', '2 kPa']]").load(30), 1e3);
