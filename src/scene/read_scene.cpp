@@ -47,11 +47,11 @@ class Checks {
                                                  : "has two sources: give either file or section");
     if (!mesh.section.empty() && !(mesh.size > 0))
       reader_.complain("mesh.size", "must be a cell size above 0 m, since the mesh is made from a section");
-    if (!mesh.file.empty() && !mesh.refine.empty())
-      reader_.complain("mesh.refine",
-                       "has no effect on a mesh from a file: refine it where it is made, or give a section");
     for (std::size_t i = 0; i < mesh.refine.size(); ++i)
       box("mesh.refine." + std::to_string(i), mesh.refine[i].from, mesh.refine[i].to);
+    if (!mesh.file.empty() && !mesh.refine.empty())
+      reader_.complain("mesh.refine.0",
+                       "has no effect on a mesh from a file: refine it where it is made, or give a section");
   }
 
   void gravity() {

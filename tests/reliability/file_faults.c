@@ -53,7 +53,7 @@ static const char *path_of(int file, char *buffer, size_t size) {
   char link[64];
   snprintf(link, sizeof link, "/proc/self/fd/%d", file);
   const ssize_t length = readlink(link, buffer, size - 1);
-  if (length < 0) return NULL;
+  if (length <= 0 || *buffer != '/') return NULL; /* a pipe or a socket has no path */
   buffer[length] = 0;
   return buffer;
 }
