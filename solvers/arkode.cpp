@@ -250,14 +250,16 @@ int Arkode::obstructing_component() const { return memory_->component; }
 PetscErrorCode Arkode::advance(Motion &motion, double t, const StepBounds &bounds, double *taken) {
   PetscFunctionBeginUser;
   Memory &m = *memory_;
-  const bool fixed = settings_.step > 0, first = !m.solver;
-  if (first) PetscCall(m.create(settings_, motion, t));
+  const bool fixed = settings_.step > 0;
+  if (!m.solver) PetscCall(m.create(settings_, motion, t));
   if (m.others) {
     std::fill_n(displacement_of(m.state), motion.size(), 0.);
     std::copy_n(motion.velocity(), motion.size(), velocity_of(m.state));
     m.fresh = true, m.others = false;
-    PetscCheck(ARKStepReset(m.solver, t, m.state) == 0, motion.comm(), PETSC_ERR_LIB, "ARKStepReset");
   }
+  // Each step begins from what a checkpoint knows: ARKODE's own time and step differ from these by round-off, which a
+  // resumed run would not have.
+  PetscCheck(ARKStepReset(m.solver, t, m.state) == 0, motion.comm(), PETSC_ERR_LIB, "ARKStepReset");
   m.largest = settings_.rule().share * bounds.critical, m.started = t;
   if (m.wanted == 0) m.wanted = 0.1 * m.largest;
   const double wanted = m.wanted,
@@ -267,7 +269,7 @@ PetscErrorCode Arkode::advance(Motion &motion, double t, const StepBounds &bound
   if (fixed) {
     bad |= ARKStepSetFixedStep(m.solver, step);
   } else {
-    if (first) bad |= ARKStepSetInitStep(m.solver, step);
+    bad |= ARKStepSetInitStep(m.solver, step);
     bad |= ARKStepSetMinStep(m.solver, std::min(floor, 0.5 * step));
   }
   bad |= ARKStepSetStopTime(m.solver, t + step);

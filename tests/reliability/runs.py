@@ -68,8 +68,8 @@ point.tip.position = [1, 0.5]
 """
 
 # Steps are short where the soil contains water: so are its runs.
-SHORT = ["stage.0.duration=0.006", "stage.1.duration=0.024", "output.interval=0.006", "output.history_interval=0.001",
-         "output.checkpoint_interval=0.0023"]
+SHORT = ["stage.0.duration=0.002", "stage.1.duration=0.006", "output.interval=0.002", "output.history_interval=0.0004",
+         "output.checkpoint_interval=0.0007"]
 PORES = [*SHORT, "water.bulk_modulus=1e7", "water.table=[[0, 0.2], [2, 0.2]]", "body.sand.retention.curve=van_genuchten",
          "body.sand.retention.reference_suction=5e3", "body.sand.retention.shape=0.5",
          "body.sand.relative_permeability.curve=van_genuchten_mualem", "body.sand.relative_permeability.shape=0.5"]
@@ -115,7 +115,7 @@ def on_ranks(command, ranks, environment=None, at=0):
     for rank in range(ranks):
         parts += [":"] if rank else []
         parts += ["-n", "1", *(special if rank == at else []), *command]
-    return ["mpirun", "--allow-run-as-root", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", *parts]
+    return ["mpirun", "--allow-run-as-root", "--oversubscribe", *parts]
 
 
 def run_words(results, overrides, resume):

@@ -58,6 +58,8 @@ const Variant variants[] = {
      with_pores({"phases=unsaturated", "water.storage=rate", "water.drag=explicit", "boundary.rain.kind=rainfall",
                  "boundary.rain.group=free_surface", "boundary.rain.intensity=0.01"})},
     {"with_a_fixed_step", {"integrator.step=2e-4"}},
+    {"by_arkode", {"integrator.kind=arkode"}, 1, SIGKILL},
+    {"by_arkode_with_moving_water", with_pores({"phases=unsaturated", "integrator.kind=arkode"})},
     {"with_steps_by_the_frequency_of_the_mesh", {"integrator.omega_max=mesh"}},
     {"in_3d",
      {"dimension=3", "mesh.thickness=0.25", "boundary.front.kind=roller", "boundary.back.kind=roller",
