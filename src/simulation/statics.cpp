@@ -123,16 +123,16 @@ void Statics<dim>::choose_laws(const Stage &stage) {
 }
 
 template <int dim>
-bool Statics<dim>::has_softened() const {
-  int softened = 0;
+double Statics<dim>::softening_strain() const {
+  double sum = 0;
   for (size_t b = 0; b < world_.laws.size(); ++b) {
     const GaussPoints<dim> &points = problem_->soil().points()[b];
     if (!points.present || !softens(points.law)) continue;
     const int width = world_.bodies[b]->history_count(), field = plastic_strain_field(points.law);
-    for (int q = 0; q < points.count(); ++q) softened |= points.history[q * width + field] > 0;
+    for (int q = 0; q < points.count(); ++q) sum += points.history[q * width + field];
   }
-  MPI_Allreduce(MPI_IN_PLACE, &softened, 1, MPI_INT, MPI_MAX, world_.comm);
-  return softened != 0;
+  MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, world_.comm);
+  return sum;
 }
 
 template <int dim>

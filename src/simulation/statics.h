@@ -38,8 +38,8 @@ class Statics {
   void save_seeped_pressure(const std::string &directory);
   void recall_seeped_pressure(const std::string &directory);
 
-  /// Has plastic strain taken strength from some soil in the stages so far? Collective.
-  bool has_softened() const;
+  /// Sum over the Gauss points of the plastic strain that takes strength from soil. Collective.
+  double softening_strain() const;
 
   bool made() const { return problem_ != nullptr; }
   bool current() const { return current_; }  ///< the last state is one of finite elements

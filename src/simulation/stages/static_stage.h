@@ -81,6 +81,7 @@ class StaticStage : public StageRunner<dim> {
     run_.clock.stage = stage_.name, run_.clock.hold_loads = stage_.hold_loads;
     run_.recorder.begin_stage(stage_.name);
     run_.statics.begin_stage(stage_, soil_moves());
+    begin_strain_ = run_.statics.softening_strain();
     begin_ = run_.clock.time, begin_load_ = run_.clock.load_time;
   }
 
@@ -99,7 +100,7 @@ class StaticStage : public StageRunner<dim> {
            << (path_.last.singular ? "the stiffness became singular" : "Newton's iterations did not converge") << " ("
            << path_.last.iterations << " iterations, out-of-balance force " << path_.last.residual
            << " of the forces, largest step of a node " << path_.last.largest << " m)";
-      const bool softened = stage_.softening && soil_moves() && run_.statics.has_softened();
+      const bool softened = soil_moves() && run_.statics.softening_strain() > begin_strain_;
       if (softened)
         text << "; its soil softens, and beyond its peak there may be no equilibrium that stays near: motion goes on "
                 "from here (when_lost = \"next_stage\" and a dynamic stage), and softening = false keeps the strength";
@@ -127,6 +128,7 @@ class StaticStage : public StageRunner<dim> {
 
   Path path_;
   double begin_ = 0, begin_load_ = 0;  ///< [s]
+  double begin_strain_ = 0;            ///< Statics::softening_strain
   double snapshots_ = 1;               ///< number of the next
 };
 
