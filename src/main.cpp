@@ -16,8 +16,23 @@
 
 namespace {
 
+/// Errors reach all ranks alike. Where one rank fails alone, such as by a file that only it cannot read, the others
+/// would wait for it for ever: a rank that failed waits for them to fail too, and otherwise ends all.
+void end_together(MPI_Comm failures, int rank, const char *cause, int status) {
+  constexpr double patience = 10;  // [s]; ranks that fail alike do so within milliseconds
+  MPI_Request all;
+  MPI_Ibarrier(failures, &all);
+  int here = 0;
+  for (const double begin = MPI_Wtime(); !here && MPI_Wtime() - begin < patience; usleep(1000))
+    MPI_Test(&all, &here, MPI_STATUS_IGNORE);
+  if (here) return;
+  std::fprintf(stderr, "talus: rank %d alone: %s\n", rank, cause);
+  MPI_Abort(failures, status);
+}
+
 /// Runs the chosen command; owned PETSc objects die in here, before PetscFinalize.
-int perform(int argc, char **argv, bool speaks) {
+int perform(int argc, char **argv, MPI_Comm failures, int rank) {
+  const bool speaks = rank == 0;
   CLI::App app{
       "Talus: simulation of landslides by the material point method, from initial stress to the end of the run-out"};
   app.set_version_flag("--version", std::string("talus ") + talus::version);
@@ -40,9 +55,11 @@ int perform(int argc, char **argv, bool speaks) {
     for (CLI::App *chosen : app.get_subcommands()) return actions.at(chosen)();
   } catch (const std::invalid_argument &error) {
     if (speaks) std::fprintf(stderr, "talus: %s\n", error.what());
+    end_together(failures, rank, error.what(), 2);
     return 2;
   } catch (const std::exception &error) {
     if (speaks) std::fprintf(stderr, "talus: %s\n", error.what());
+    end_together(failures, rank, error.what(), 1);
     return 1;
   }
   return 0;
@@ -81,7 +98,10 @@ int main(int argc, char **argv) {
   if (PetscInitialize(&petsc_count, &petsc_argv, nullptr, nullptr)) return 1;
   int rank;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  const int status = perform(own, argv, rank == 0);
+  MPI_Comm failures;  // of its own, so that its messages are not taken for others
+  MPI_Comm_dup(PETSC_COMM_WORLD, &failures);
+  const int status = perform(own, argv, failures, rank);
+  MPI_Comm_free(&failures);
   if (PetscFinalize()) return 1;
   return status;
 }

@@ -192,6 +192,18 @@ TEST_F(RunThatEnds, BecauseResultsHaveNoPlace) {
   expect(Program(folder_, run(good_scene, 2, "scene.toml/results")).end(), {"scene.toml/results"}, 0);
 }
 
+/// The second rank cannot read its scene; the first would wait for it in the first exchange.
+TEST_F(RunThatEnds, BecauseOneRankFailsAlone) {
+  folder_.write("scene.toml", good_scene), folder_.write("other.toml", "[mesh");
+  const auto started = std::chrono::steady_clock::now();
+  const Ending ending = Program(folder_, {MPIEXEC, "--allow-run-as-root", "--oversubscribe", "-n", "1", TALUS, "check",
+                                          "scene.toml", ":", "-n", "1", TALUS, "check", "other.toml"})
+                            .end();
+  EXPECT_EQ(ending.status, 2) << ending.output;
+  EXPECT_TRUE(ending.says("talus: rank 1 alone: other.toml line 1")) << ending.output;
+  EXPECT_LT(std::chrono::steady_clock::now() - started, std::chrono::seconds(100));
+}
+
 TEST_F(RunThatEnds, BecauseTheDiskIsFull) {
   Program program(folder_, run(endless_));
   ASSERT_TRUE(program.wait_for(folder_ / "results/run/000003.h5")) << program.end().output;
