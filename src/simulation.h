@@ -25,11 +25,12 @@ class RunError : public std::runtime_error {
 };
 
 struct RunOptions {
-  std::string directory;  ///< of the results; empty: nothing is written
-  bool resume = false;    ///< go on from the checkpoint in the directory
-  bool replace = false;   ///< results of another run in the directory are given up
-  bool pictures = true;   ///< draw them when the run ends
-  bool screen = true;     ///< progress line
+  std::string directory;    ///< of the results; empty: nothing is written
+  bool resume = false;      ///< go on from the checkpoint in the directory
+  bool replace = false;     ///< results of another run in the directory are given up
+  bool checkpoints = true;  ///< write them, so that the run can be resumed
+  bool pictures = true;     ///< draw them when the run ends
+  bool screen = true;       ///< progress line
   bool gauss_points =
       false;          ///< snapshots of quasi-static stages hold Gauss points, not the particles they are handed to
   DM plex = nullptr;  ///< mesh of a host program, instead of the scene's

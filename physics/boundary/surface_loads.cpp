@@ -38,30 +38,54 @@ Square<dim> deformation(const Cell<dim> &cell, const std::array<int, dim + 1> &n
   return f;
 }
 
+/// Looks across facets into the cells of a set, also those of other ranks.
+template <int dim>
+class CellsBeyond {
+ public:
+  /// `set` [local cells]. Collective.
+  CellsBeyond(const BackgroundMesh<dim> &mesh, const std::vector<char> &set) : mesh_(mesh), set_(set) {
+    int ranks, count = mesh.cell_count();
+    MPI_Comm_size(mesh.comm(), &ranks);
+    std::vector<int> counts(ranks);
+    starts_.assign(ranks + 1, 0);
+    MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, mesh.comm());
+    for (int r = 0; r < ranks; ++r) starts_[r + 1] = starts_[r] + counts[r];
+    all_.resize(starts_[ranks]);
+    MPI_Allgatherv(set.data(), count, MPI_CHAR, all_.data(), counts.data(), starts_.data(), MPI_CHAR, mesh.comm());
+  }
+  /// Is the cell on the other side of a facet in the set?
+  bool operator()(const Facet<dim> &f) const {
+    const int across = mesh_.cells[f.cell].neighbour[f.face];
+    if (across >= boundary) return across >= 0 && set_[across];
+    const PartitionFace &other = mesh_.partition_faces[-2 - across];
+    return all_[starts_[other.rank] + other.cell];
+  }
+
+ private:
+  const BackgroundMesh<dim> &mesh_;
+  const std::vector<char> &set_;
+  std::vector<int> starts_;
+  std::vector<char> all_;
+};
+
 }  // namespace
 
 template <int dim>
-PetscErrorCode SurfaceLoads<dim>::share(const BackgroundMesh<dim> &mesh, const std::vector<char> &filled) {
-  PetscFunctionBeginUser;
-  int ranks, count = mesh.cell_count();
-  PetscCallMPI(MPI_Comm_size(mesh.comm(), &ranks));
-  std::vector<int> counts(ranks), starts(ranks + 1, 0);
-  PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, mesh.comm()));
-  for (int r = 0; r < ranks; ++r) starts[r + 1] = starts[r] + counts[r];
-  std::vector<char> all(starts[ranks]);
-  PetscCallMPI(
-      MPI_Allgatherv(filled.data(), count, MPI_CHAR, all.data(), counts.data(), starts.data(), MPI_CHAR, mesh.comm()));
+void SurfaceLoads<dim>::share(const BackgroundMesh<dim> &mesh, const std::vector<char> &filled) {
+  const CellsBeyond<dim> beyond(mesh, filled);
   for (Face &face : faces_)
-    for (const Facet<dim> &f : face.facets) {
-      const int across = mesh.cells[f.cell].neighbour[f.face];
-      bool both = across >= 0 && filled[across];
-      if (across < boundary) {
-        const PartitionFace &other = mesh.partition_faces[-2 - across];
-        both = all[starts[other.rank] + other.cell];
-      }
-      face.share.push_back(both ? 0.5 : 1);
-    }
-  PetscFunctionReturn(0);
+    for (const Facet<dim> &f : face.facets) face.share.push_back(beyond(f) ? 0.5 : 1);
+}
+
+template <int dim>
+int SurfaceLoads<dim>::find_cancelled(const BackgroundMesh<dim> &mesh, const std::vector<char> &soil) const {
+  const CellsBeyond<dim> beyond(mesh, soil);
+  std::vector<int> open(face_count(), 0);  // facets that bear their load, or may come to bear it
+  for (int k = 0; k < face_count(); ++k)
+    for (const Facet<dim> &f : faces_[k].facets) open[k] += !faces_[k].follows || !soil[f.cell] || !beyond(f);
+  if (face_count()) MPI_Allreduce(MPI_IN_PLACE, open.data(), face_count(), MPI_INT, MPI_SUM, mesh.comm());
+  const auto found = std::find(open.begin(), open.end(), 0);
+  return found == open.end() ? -1 : faces_[found - open.begin()].source;
 }
 
 template <int dim>

@@ -23,7 +23,10 @@ class SurfaceLoads {
 
   /// Finds the share of each facet that the soil on one side carries: all, or half where soil is on both sides.
   /// `filled` [local cells]. Collective.
-  PetscErrorCode share(const BackgroundMesh<dim> &mesh, const std::vector<char> &filled);
+  void share(const BackgroundMesh<dim> &mesh, const std::vector<char> &filled);
+  /// First source whose load is normal to its face and has `soil` [local cells] on both sides of all of it, so that it
+  /// cancels; -1: none. Collective.
+  int find_cancelled(const BackgroundMesh<dim> &mesh, const std::vector<char> &soil) const;
   /// Gives the pieces in the cells of a freshly seeded body to the nearest of its particles.
   void seed(Body<dim> &body, const BackgroundMesh<dim> &mesh) const;
   /// First source without any soil behind its face, -1: none. Collective.

@@ -64,8 +64,8 @@ SoilElements<dim>::SoilElements(const BackgroundMesh<dim> &mesh, const Scene &sc
                                 const SoilData<dim> &data)
     : mesh_(mesh),
       data_(data),
-      order_(scene.quasi_static.elements == Elements::quadratic ? 2 : 1),
-      patches_(scene.quasi_static.elements == Elements::patches),
+      order_(data.elements == Elements::quadratic ? 2 : 1),
+      patches_(data.elements == Elements::patches),
       rule_(stress_quadrature<dim>(order_)),
       body_of_(bodies_of_cells(mesh, scene)) {
   for (const Law &law : laws)

@@ -15,6 +15,7 @@ namespace talus {
 /// What the problem takes from the rest of the program.
 template <int dim>
 struct SoilData {
+  Elements elements = Elements::quadratic;
   /// Total density of a body at a place and time of the loads [kg/m3].
   std::function<double(const BodySource &, const Vec<dim> &, double)> density;
   /// Pore pressure at a place and time of the loads, of a body or of the common water [Pa]; empty where the scene has

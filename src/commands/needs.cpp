@@ -133,7 +133,7 @@ class Adviser {
       say(needs_.function_fault +
           ". A run ends where it needs such a value; the function was tried all over the soil and "
           "the stages.");
-    for (const std::string &sentence : needs_.unlikely) say(sentence);
+    for (const std::string &sentence : needs_.unlikely) say(sentence + (sentence.ends_with('?') ? "" : "."));
     if (!scene_.root->has("gravity"))
       say("The scene gives no gravity, so that soil has no weight; gravity = 0 says that this is meant.");
     for (const std::string &sentence : needs_.brittle) say(sentence);
@@ -227,11 +227,13 @@ class Adviser {
     const double phi = b.body.strength.friction_angle[0];  // the least asks for most
     const double K = bulk_modulus(b.law), G = shear_modulus(b.law), nu = (3 * K - 2 * G) / (2 * (3 * K + G));
     if (std::sin(phi) >= 1 - 2 * nu || phi == 0) return;
+    const double enough = (1 - std::sin(phi)) / 2;
+    constexpr double locks = 0.45;
     say("Elastic ground of " + b.body.name +
         " at rest has the lateral stress ratio nu / (1 - nu) = " + digits(nu / (1 - nu), 2) +
         ", less than its friction angle requires without cohesion: much of it yields under its weight alone, and "
-        "Newton's iterations may stall; take initial_stress = \"k0\", or poisson_ratio above " +
-        digits((1 - std::sin(phi)) / 2, 2) + " (sin phi > 1 - 2 nu).");
+        "Newton's iterations may stall; take initial_stress = \"k0\"" +
+        (enough < locks ? ", or poisson_ratio above " + digits(enough, 2) + " (sin phi > 1 - 2 nu)." : "."));
   }
 
   void stage(const Stage &stage) {
@@ -394,6 +396,8 @@ Needs find_needs(Scene &scene) {
   for (std::size_t b = 0; b < reports.size(); ++b) needs.bodies[b].softening = softening[b];
   needs.brittle = brittle_soils(scene, laws, reports);
   needs.unlikely = unlikely_values(scene, laws);
+  for (const auto &more : {unlikely_surroundings(scene, reports), coarse_cells(scene, reports)})
+    needs.unlikely.insert(needs.unlikely.end(), more.begin(), more.end());
   const StepRule rule = step_rule(read_integrator(scene.integrator, fluids_move(scene.phases)));
   needs.critical_step = rule.bound == FrequencyBound::mesh || scene.water.drag == PoreDrag::at_start
                             ? simulation->critical_step()

@@ -123,19 +123,10 @@ int solve(const SolveArguments &arguments) {
   std::erase_if(scene.stage, dynamic);
   if (scene.stage.empty())
     scene.complain("stage", "has no quasi-static stage to solve; set its kind = \"quasi_static\"");
-  if (arguments.factor_of_safety && scene.quasi_static.elements != Elements::quadratic) {
-    scene.quasi_static.elements = Elements::quadratic;
-    int rank;
-    MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-    if (rank == 0)
-      std::fprintf(stderr,
-                   "the factor of safety is computed with elements of second order: those of first order, which "
-                   "the scene sets (quasi_static.elements), give factors that are 13 to 34 %% too large\n");
-  }
   RunOptions options;
   options.directory = arguments.directory.empty() ? default_results(file, arguments.set) : arguments.directory;
   options.replace = arguments.force;
-  options.pictures = false, options.gauss_points = true;
+  options.pictures = options.checkpoints = false, options.gauss_points = true;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error of writing, not the end

@@ -34,6 +34,9 @@ class Progress {
     if (--until_clock_ <= 0) look_at_clock();
   }
 
+  /// The run goes on from here.
+  void resume(double time, long long number) { now_ = printed_ = {time, number, 0}; }
+
   /// A line of its own, on the screen and in the log.
   void note(const std::string &text);
 

@@ -32,6 +32,8 @@ int lock(const std::string &path) {
 
 ResultsFolder::ResultsFolder(MPI_Comm comm, const std::string &path, FolderUse use) {
   on_first_rank(comm, [&] {
+    if (fs::exists(path) && !fs::is_directory(path))
+      throw std::invalid_argument(path + " is a file, and results need a folder: choose another one with -o");
     make_folder(path);
     lock_ = lock(path);
     if (use == FolderUse::resume) return;

@@ -57,12 +57,13 @@ bool assigns(const std::string &text) {
   return false;
 }
 
-/// muParser's message; for what it did not recognise, the names that it would have.
+/// muParser's message; for what it did not recognise, the names that it would have beside the variables, which the key
+/// decides on.
 std::string message(const mu::Parser::exception_type &error, const NamedFunctions &functions) {
-  std::string names = "x, y, z, t, table, pi";
+  std::string names = "pi";
   for (const auto &[name, function] : functions) names += ", " + name + "()";
   const bool unknown = error.GetCode() == mu::ecUNASSIGNABLE_TOKEN || error.GetCode() == mu::ecUNEXPECTED_PARENS;
-  return error.GetMsg() + (unknown ? " Names of the scene are " + names : "");
+  return error.GetMsg() + (unknown ? " It may also name " + names : "");
 }
 
 }  // namespace

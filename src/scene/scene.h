@@ -82,6 +82,8 @@ struct DenseBox {
 
 enum class PermeabilityChange { none, kozeny_carman, grain_share };
 
+inline constexpr Range weight_of_soil{1e3, 1e5};  ///< of unit weights [N/m3]
+
 struct BodySource {
   std::string name;                  ///< the table's own name, [body.NAME]
   std::vector<std::string> region;   ///< physical groups of cells
@@ -116,10 +118,13 @@ struct BodySource {
             "name (or list of names) of the physical groups of cells that the body fills at the start");
     v.number("density", density, kilogram_per_cubic_metre, Range{1e-3, 1e5},
              "total density, above and below the water table; or give unit_weight, or porosity and grain_density");
-    v.number("unit_weight", unit_weight, newton_per_cubic_metre, Range{1e-2, 1e6},
-             "total unit weight, in place of density; with saturated_unit_weight that above the water table");
-    v.number("saturated_unit_weight", saturated_unit_weight, newton_per_cubic_metre, Range{1e-2, 1e6},
-             "total unit weight of saturated soil: below the water table, with unit_weight above it; where pore fluids "
+    v.number(
+        "unit_weight", unit_weight, newton_per_cubic_metre, weight_of_soil,
+        "total unit weight, of soil mostly 14 to 24 kN/m3, in place of density; with saturated_unit_weight that above "
+        "the water table");
+    v.number("saturated_unit_weight", saturated_unit_weight, newton_per_cubic_metre, weight_of_soil,
+             "total unit weight of saturated soil, mostly 16 to 24 kN/m3: below the water table, with unit_weight "
+             "above it; where pore fluids "
              "move, with porosity and in place of grain_density");
     v.number("porosity", porosity, one, Range{0, 0.99}, "porosity n");
     v.number("grain_density", grain_density, kilogram_per_cubic_metre, Range{1, 1e5},
@@ -291,7 +296,7 @@ struct Stage {
   std::vector<double> seismic_coefficient;  ///< pseudo-static inertia over weight, by axis [-]; empty: none
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.text("name", name, "name of the stage in logs and results");
+    v.text("name", name, "name of the stage in logs and results; default: its number, from 0");
     v.choice("kind", kind,
              {{"dynamic", StageKind::dynamic},
               {"quasi_static", StageKind::quasi_static},

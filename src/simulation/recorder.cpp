@@ -74,6 +74,7 @@ void Recorder<dim>::append(std::unique_ptr<ResultsFolder> folder) {
       History::append(of_.world.comm, table, {history_.names.begin() + 2, history_.names.end()}, last_row_time_);
   results_.reset(new Files{std::move(folder), std::move(file), std::move(rows),
                            Progress(of_.world.comm, options_.directory + "/run.log", longest_duration(), true)});
+  results_->progress.resume(of_.clock.time, of_.clock.steps);
   results_->progress.note("resumed at t = " + rounded(of_.clock.time) + " s, step " + std::to_string(of_.clock.steps));
   for (const std::string &key : changed_) results_->progress.note("since then the scene has another " + key);
   if (!has_table) results_->progress.note("warning: history.csv was missing; it begins here");
@@ -442,8 +443,8 @@ CheckpointHeader Recorder<dim>::check_checkpoint() {
                                 "may change");
   }
   if (found.ranks != mine.ranks)
-    throw SceneError(refusal + "it ran on " + std::to_string(found.ranks) + " ranks, not " +
-                     std::to_string(mine.ranks) + "; give -n " + std::to_string(found.ranks));
+    throw SceneError(refusal + "it ran with -n " + std::to_string(found.ranks) + ", not with -n " +
+                     std::to_string(mine.ranks) + "; its state is parted among the ranks");
   return found;
 }
 

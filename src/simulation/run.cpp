@@ -56,7 +56,7 @@ PetscErrorCode Run<dim>::serialize(Archive &archive) {
 
 template <int dim>
 void Run<dim>::write_checkpoint() {
-  if (!recorder.writes()) return;
+  if (!recorder.writes() || !options.checkpoints) return;
   Archive archive;
   unsigned long long mesh = world.mesh_fingerprint();
   archive.serialize("mesh", mesh);

@@ -27,6 +27,8 @@ void Simulation<dim>::begin() {
     run_.recorder.note("warning: " + sentence);
   for (const std::string &sentence : unlikely_values(run_.scene, run_.world.laws))
     run_.recorder.note("warning: " + sentence);
+  for (const std::string &sentence : unlikely_surroundings(run_.scene, run_.world.report()))
+    run_.recorder.note("warning: " + sentence);
   run_.recorder.write_history();
   if (run_.options.gauss_points && is_static(run_.scene.stage.front().kind)) run_.statics.prepare();
   run_.recorder.write_snapshot();

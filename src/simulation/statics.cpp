@@ -29,6 +29,7 @@ Statics<dim>::Statics(World<dim> &world, const Clock &clock) : world_(world), cl
 template <int dim>
 void Statics<dim>::make() {
   SoilData<dim> data;
+  data.elements = elements();
   data.density = [this](const BodySource &source, const Vec<dim> &x, double t) {
     return world_.soil_density(source, x, t);
   };
@@ -142,7 +143,7 @@ void Statics<dim>::check_supports(bool soil_moves) const {
   if (!freedom.empty() && soil_moves)
     throw RunFailure("the supports leave soil free to move as a whole: " + freedom +
                      "; hold it by fixed or roller boundaries");
-  if (world_.scene.quasi_static.elements != Elements::quadratic && !world_.mesh.report().one_element_slice) {
+  if (elements() != Elements::quadratic && !world_.mesh.report().one_element_slice) {
     std::vector<char> thin;
     require(problem_->find_thin_bodies(&thin));
     for (size_t b = 0; b < thin.size(); ++b)

@@ -58,6 +58,8 @@ class Statics {
   /// A factor of safety is wanted. It does not depend on the stress from which its search starts: stages give up early,
   /// and the run goes on from where they lose equilibrium.
   bool for_factor = false;
+  /// Elements of first order make factors too large: a factor of safety has always those of second order.
+  Elements elements() const { return for_factor ? Elements::quadratic : world_.scene.quasi_static.elements; }
   std::vector<std::string> lost_stages;  ///< names of these stages
 
  private:

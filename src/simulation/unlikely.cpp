@@ -1,5 +1,9 @@
 #include "simulation/unlikely.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "base/units.h"
 #include "simulation/failure.h"
 
@@ -15,7 +19,87 @@ struct Doubt {
   const char *meant;   ///< unit or key
 };
 
+constexpr const char *axes = "xyz";
+
+/// The box around the cells of all bodies that are there.
+struct Extent {
+  std::array<double, 3> low, high;
+  double of(int d) const { return high[d] - low[d]; }
+};
+
+Extent extent_of(const std::vector<BodyReport> &bodies) {
+  constexpr double far = std::numeric_limits<double>::infinity();
+  Extent box{{far, far, far}, {-far, -far, -far}};
+  for (const BodyReport &b : bodies)
+    for (int d = 0; d < 3 && b.particles > 0; ++d)
+      box.low[d] = std::min(box.low[d], b.low[d]), box.high[d] = std::max(box.high[d], b.high[d]);
+  return box;
+}
+
+/// The axis to which gravity is nearest.
+int nearest_axis(const Scene &scene) {
+  const auto less = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  return static_cast<int>(std::max_element(scene.gravity.begin(), scene.gravity.end(), less) - scene.gravity.begin());
+}
+
+/// The water table of [water], which lies level beyond its ends.
+void doubt_table(const Scene &scene, const Extent &soil, std::vector<std::string> &sentences) {
+  const auto &table = scene.water.table;
+  if (table.empty()) return;
+  const double height = soil.of(1);
+  if (table.size() > 1 && (table.front()[0] >= soil.high[0] || table.back()[0] <= soil.low[0]))
+    sentences.push_back("water.table runs from x = " + rounded(table.front()[0]) + " to " + rounded(table.back()[0]) +
+                        " m, beside the soil, which lies from " + rounded(soil.low[0]) + " to " +
+                        rounded(soil.high[0]) + " m: the water there is level with the end of the table");
+  const auto lower = [](const auto &a, const auto &b) { return a[1] < b[1]; };
+  const auto [least, most] = std::minmax_element(table.begin(), table.end(), lower);
+  const double level = scene.water.level(0, 0, 0, 0);
+  if ((*least)[1] + level > soil.high[1] + 2 * height)
+    sentences.push_back("water.table stands " + rounded((*least)[1] + level - soil.high[1]) +
+                        " m or more above the top of the soil, which is " + rounded(height) +
+                        " m high: all of it lies deep under open water. Is this meant?");
+  if (!scene.water.level.depends_on_time() && scene.phases == PhaseModel::drained && (*most)[1] + level <= soil.low[1])
+    sentences.push_back("water.table lies below all soil (its highest point is at y = " + rounded((*most)[1] + level) +
+                        " m, the lowest soil at " + rounded(soil.low[1]) + " m): it gives no pore pressure");
+}
+
 }  // namespace
+
+std::vector<std::string> unlikely_surroundings(const Scene &scene, const std::vector<BodyReport> &bodies) {
+  constexpr double highest = 5000, lowest = 0.01;  // [m], from mountains to experiments on a table
+  std::vector<std::string> sentences;
+  if (scene.gravity_size() == 0) return sentences;
+  const Extent soil = extent_of(bodies);
+  const int down = nearest_axis(scene);
+  if (down != 1 || scene.gravity[1] > 0)
+    sentences.push_back(std::string("gravity points along ") + (scene.gravity[down] > 0 ? "+" : "-") + axes[down] +
+                        ", and not down along -y, which is the direction in which sections and water tables count "
+                        "elevations. Is this meant?");
+  const double height = soil.of(down);
+  if (height < 0) return sentences;  // a later stage adds all soil
+  if (height > highest)
+    sentences.push_back("The soil is " + rounded(height) +
+                        " m high; coordinates count in metres. Is the mesh in millimetres or feet?");
+  if (height < lowest)
+    sentences.push_back("The soil is " + rounded(height) +
+                        " m high; coordinates count in metres. Is the mesh in kilometres?");
+  doubt_table(scene, soil, sentences);
+  return sentences;
+}
+
+std::vector<std::string> coarse_cells(const Scene &scene, const std::vector<BodyReport> &bodies) {
+  constexpr double few = 4;  // over the height: not even a slip surface fits in
+  std::vector<std::string> sentences;
+  if (scene.gravity_size() == 0) return sentences;
+  const double height = extent_of(bodies).of(nearest_axis(scene));
+  for (const BodyReport &b : bodies)
+    if (b.particles > 0 && height < few * b.cell_size)
+      sentences.push_back("The soil is " + rounded(height) + " m high, and the cells of " + b.name + " measure " +
+                          rounded(b.cell_size) + " m: fewer than " + rounded(few) +
+                          " cells over the height resolve neither stress nor slip surface. Take smaller cells "
+                          "(mesh.size)");
+  return sentences;
+}
 
 std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<Law> &laws) {
   constexpr double none = 1e300;
@@ -25,6 +109,8 @@ std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<L
     std::vector<Doubt> doubts{
         {"density", body.density, kilogram_per_cubic_metre, 100, 10e3, "t/m3"},
         {"grain_density", body.grain_density, kilogram_per_cubic_metre, 500, 10e3, "t/m3"},
+        {"unit_weight", body.unit_weight, newton_per_cubic_metre, 5e3, 60e3, "kg/m3 (key density)"},
+        {"saturated_unit_weight", body.saturated_unit_weight, newton_per_cubic_metre, 8e3, 60e3, "kg/m3"},
         {"permeability", body.permeability, square_metre, 0, 1e-6, "m/s (key hydraulic_conductivity)"},
     };
     std::visit(
@@ -35,6 +121,13 @@ std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<L
             doubts.push_back({"cohesion", law.cohesion, pascal, 20, none, "kPa"});
             doubts.push_back({"friction_angle", law.friction_angle, degree, 2 * degree.si, none, "radians"});
           }
+          if constexpr (requires { law.tension_cutoff; })
+            if (const double apex = law.cohesion / std::tan(law.friction_angle);
+                law.tension_cutoff > 0 && law.friction_angle > 0 && law.tension_cutoff >= apex)
+              sentences.push_back("body." + body.name + ".tension_cutoff is " + rounded(law.tension_cutoff) +
+                                  " Pa and has no effect: soil with this cohesion and friction angle bears no more "
+                                  "tension than cohesion / tan(friction_angle) = " +
+                                  rounded(apex) + " Pa");
         },
         laws[b]);
     for (const Doubt &one : doubts)

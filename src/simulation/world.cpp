@@ -203,12 +203,12 @@ template <int dim>
 void World<dim>::seed_bodies() {
   const int stride = id_stride();
   double wave_speed = 0;
-  std::vector<char> filled(mesh.cell_count(), 0);
+  std::vector<char> filled(mesh.cell_count(), 0), always(filled);  // at some time, from the start to the end
   for (const BodySource &source : scene.body)
     for (const std::string &region : source.region)
-      for (int cell : mesh.region(region)) filled[cell] = 1;
+      for (int cell : mesh.region(region)) filled[cell] = 1, always[cell] = !comes_or_goes(source);
   SurfaceLoads<dim> &loads = conditions.surface_loads();
-  require(loads.share(mesh, filled));
+  loads.share(mesh, filled);
   movers_.resize(scene.body.size()), outside_.resize(scene.body.size());
   for (size_t b = 0; b < scene.body.size(); ++b) {
     const BodySource &source = scene.body[b];
@@ -243,12 +243,25 @@ void World<dim>::seed_bodies() {
   if (idle >= 0)
     scene.complain("boundary." + conditions.sources()[idle].name + ".kind",
                    "is a load on a face without soil behind it at the start; name a group on the surface of a body");
+  const int cancelled = loads.find_cancelled(mesh, always);
+  if (cancelled >= 0)
+    scene.complain("boundary." + conditions.sources()[cancelled].name + ".kind",
+                   "is a pressure on a face inside the soil, where it cancels: it pushes with the same force on both "
+                   "sides. Draw a crack as a gap in the outline of the section, and name a wall of it");
   const double relaxation = scene.transfer.relaxation * mesh.report().smallest_altitude / wave_speed;
   constexpr double friction_delay = 10;  // in units of altitude over wave speed, docs/theory (6.2)
   conditions.set_friction_delay(friction_delay * mesh.report().smallest_altitude / wave_speed);
   motion = make_soil_motion(
       MotionParts<dim>{mesh, bodies, conditions, scene, pressure, relaxation, total_mass, particle_count});
   require(motion->setup_pores(true));
+}
+
+/// Does a stage add or remove the body?
+template <int dim>
+bool World<dim>::comes_or_goes(const BodySource &body) const {
+  return std::ranges::any_of(scene.stage, [&](const Stage &stage) {
+    return std::ranges::count(stage.add, body.name) || std::ranges::count(stage.remove, body.name);
+  });
 }
 
 template <int dim>

@@ -99,6 +99,7 @@ class World {
   void check_something_acts(const std::vector<Source> &) const;     // world_checks.cpp
   void check_seeded(const Body<dim> &, const std::string &) const;  // world_checks.cpp
   int id_stride() const;
+  bool comes_or_goes(const BodySource &) const;
   std::vector<char> present_at_start() const;  // bodies that no stage adds
   void set_pore_pressure_ratios();
   void seed_bodies();

@@ -72,6 +72,63 @@ TEST(Check, DoubtsValuesThatNoSoilHas) {
   EXPECT_TRUE(check(folder, {"body.sand.density=1.9"}).says("Is it in t/m3?"));
 }
 
+TEST(Check, DoubtsWhatFitsTheSoilBadly) {
+  const Folder folder;
+  const auto says = [&](const std::vector<std::string> &overrides, const std::string &text) {
+    const Ending ending = check(folder, overrides);
+    EXPECT_EQ(ending.status, 0) << ending.output;
+    return ending.says(text);
+  };
+  const std::string drained = "phases=drained", few = "fewer than 4 cells over the height";
+  EXPECT_FALSE(says({"mesh.size=0.12"}, few));
+  EXPECT_TRUE(says({"mesh.size=0.3"}, few));
+  EXPECT_FALSE(says({}, "gravity points along"));
+  EXPECT_FALSE(says({"gravity=[4, -9]"}, "gravity points along"));
+  EXPECT_TRUE(says({"gravity=[9, -4]"}, "gravity points along +x, and not down along -y"));
+  EXPECT_TRUE(says({"gravity=[0, 9.81]"}, "gravity points along +y"));
+  EXPECT_FALSE(says({"body.sand.tension_cutoff=1e3", "body.sand.cohesion=1e3"}, "has no effect"));
+  EXPECT_TRUE(
+      says({"body.sand.tension_cutoff=1e4", "body.sand.cohesion=1e3"}, "tension_cutoff is 1e+04 Pa and has no effect"));
+  EXPECT_FALSE(says({drained, "water.table=[[0, 0.4], [2, 0.2]]"}, "water.table"));
+  EXPECT_TRUE(says({drained, "water.table=[[0, 1000]]"}, "stands 999.5 m or more above the top of the soil"));
+  EXPECT_TRUE(says({drained, "water.table=[[-9, 0.4], [-8, 0.2]]"}, "runs from x = -9 to -8 m, beside the soil"));
+  EXPECT_TRUE(says({drained, "water.table=[[0, -1]]"}, "it gives no pore pressure"));
+  EXPECT_FALSE(says({drained, "water.table=[[0, -1]]", "water.level=t"}, "it gives no pore pressure"));
+  folder.write("scene.toml", changed(good_scene, "density = 2000", "unit_weight = 1900"));
+  folder.write("section.csv", good_section);
+  EXPECT_TRUE(talus(folder, {"check", "scene.toml"}).says("unit_weight is 1900 N/m3")) << "kg/m3";
+  folder.write("mm.csv", "part,x,y\noutline,0,0\noutline,20e3,0\noutline,20e3,10e3\noutline,0,10e3\nregion_sand,5,5\n");
+  EXPECT_TRUE(talus(folder, {"check", "scene.toml", "--set", "mesh.section=mm.csv", "--set", "mesh.size=1000"})
+                  .says("Is the mesh in millimetres"));
+}
+
+/// A pressure pushes both sides of a line in the soil with the same force. Where soil comes or goes it does not.
+TEST(Check, RefusesAPressureInsideTheSoil) {
+  const Folder folder;
+  const std::string crack = good_section + "b_crack,0.5,0.25\nb_crack,0.5,0.5\n";
+  const std::string load = "[boundary.crack]\nkind = \"traction\"\n";
+  const auto end_with = [&](const std::string &keys, const std::string &section) {
+    folder.write("section.csv", section), folder.write("scene.toml", good_scene + load + keys);
+    return talus(folder, {"check", "scene.toml"});
+  };
+  for (const int ranks : {1, 2}) {
+    (void)end_with("pressure = 1e3\n", crack);
+    const Ending refused = talus(folder, {"check", "scene.toml"}, ranks);
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_TRUE(refused.says("boundary.crack.kind = \"traction\" is a pressure on a face inside the soil"))
+        << refused.output;
+  }
+  EXPECT_EQ(end_with("traction = [1e3, 0]\n", crack).status, 0) << "an anchor";
+  const std::string longer = good_section + "b_crack,0.5,0.5\nb_crack,1,0.5\nb_crack,1,0.25\n";
+  EXPECT_EQ(end_with("pressure = 1e3\n", longer).status, 0) << "the surface";
+  const std::string later =
+      "[body.fill]\nregion = \"fill\"\ndensity = 2000\nlaw = \"linear_elastic\"\n"
+      "young_modulus = 1e6\npoisson_ratio = 0.3\n[[stage]]\nkind = \"quasi_static\"\n"
+      "duration = 1\nadd = [\"fill\"]\n";
+  const std::string filled = changed(longer, "region_air,1.5,0.5", "region_fill,1.5,0.5");
+  EXPECT_EQ(end_with("pressure = 1e3\n" + later, filled).status, 0) << "fill that comes later";
+}
+
 TEST(Check, FindsTheSameOnTwoRanks) {
   const Folder folder;
   const Ending one = check(folder, {}), two = check(folder, {}, 2);

@@ -111,6 +111,25 @@ TEST(Block, leans_on_the_prop_with_what_it_cannot_carry) {
   }
 }
 
+/// A factor is always one of elements of second order, also where a host program asks for it; what has been solved by
+/// others cannot be gone on from.
+TEST(Block, has_a_factor_of_second_order_elements_whatever_the_scene_sets) {
+  const Overrides cut{"gravity=10", "boundary.surface.pressure=0", "boundary.base.kind=fixed",
+                      "body.soil.cohesion=8e3"};
+  const FactorOfSafety second = factor_of(cut);
+  for (const char *elements : {"patches", "linear"}) {
+    Overrides words = cut;
+    words.push_back(std::string("quasi_static.elements=") + elements);
+    EXPECT_EQ(factor_of(words).value(), second.value()) << elements;
+  }
+  Scene scene = parse_scene(block, std::string(TALUS_MESHES) + "/scene.toml", {"quasi_static.elements=patches"});
+  RunOptions options;
+  options.pictures = options.screen = false;
+  const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+  simulation->run();
+  EXPECT_THROW(simulation->factor_of_safety(), RunError);
+}
+
 /// The mechanism stretches all of the block: displacement is in proportion to the distance from its corner, so that
 /// less than a tenth of the largest, sqrt(2), moves a quarter of a circle of 0.141 m. Gauss points stand for 0.01 m2.
 TEST(Block, moves_as_a_whole) {

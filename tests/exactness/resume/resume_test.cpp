@@ -179,7 +179,9 @@ class EndedRun : public testing::Test {
 
 TEST_F(EndedRun, GoesOnWithALongerStage) {
   const std::string history = content("results/history.csv");
-  EXPECT_EQ(run({"--resume"}).status, 0) << "nothing is left to do";
+  const Ending nothing_left = run({"--resume"});
+  EXPECT_EQ(nothing_left.status, 0);
+  EXPECT_TRUE(nothing_left.says("t = 0.05 / 0.05 s")) << nothing_left.output;
   EXPECT_EQ(content("results/history.csv"), history);
   const Ending ending = run({"--resume", "--set", "stage.0.duration=0.08", "--set", "output.interval=0.02"});
   EXPECT_EQ(ending.status, 0) << ending.output;
@@ -198,7 +200,9 @@ TEST_F(EndedRun, IsNotResumedWithAnotherMesh) {
   expect_refused(run({"--resume"}), {"mesh"});
 }
 
-TEST_F(EndedRun, IsNotResumedOnOtherRanks) { expect_refused(run({"--resume"}, 2), {"it ran on 1 ranks, not 2"}); }
+TEST_F(EndedRun, IsNotResumedOnOtherRanks) {
+  expect_refused(run({"--resume"}, 2), {"it ran with -n 1, not with -n 2"});
+}
 
 TEST_F(EndedRun, IsNotResumedFromADamagedCheckpoint) {
   const std::string name = state(), whole = content(name);

@@ -181,8 +181,8 @@ void examine(const OneLaw &soil, Random &random, Worst &worst) {
              {e[0], e[1], e[2]},
              {},
              {s[0], s[1], s[2]},
-             &before[i * memory],
-             &in_axes.history[i * memory],
+             before.data() + i * memory,
+             in_axes.history.data() + i * memory,
              {size, in_axes.suction[i], time_step},
              is_hencky<OneLaw> ? 1. : 0.,
              0.03 * law.bulk_modulus()};
