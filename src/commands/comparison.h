@@ -144,9 +144,10 @@ struct Reference {
 };
 
 /// Limit of values refined by a parameter that goes to zero, from the three finest: Richardson's extrapolation with the
-/// order that they show, if they converge at one between 0.5 and 8; otherwise the finest value, as uncertain as the
-/// last two refinements changed it. A refinement that changed nothing, such as a tolerance where stability rules, is
-/// none.
+/// order that they show, if they converge at one between 0.5 and 8, and if above 2.5 a fourth run, where there is one,
+/// lies on the same way (a high order is otherwise a coincidence of the last two runs); otherwise the finest value, as
+/// uncertain as the last two refinements changed it. A refinement that changed nothing, such as a tolerance where
+/// stability rules, is none.
 inline Reference extrapolate(std::vector<std::pair<double, double>> refined) {
   std::erase_if(refined, [](const auto &p) { return !std::isfinite(p.first) || !std::isfinite(p.second); });
   std::sort(refined.rbegin(), refined.rend());
@@ -163,7 +164,9 @@ inline Reference extrapolate(std::vector<std::pair<double, double>> refined) {
     uncertain = std::max(uncertain, std::abs(before));
     if (change * before > 0 && std::abs(r1 - r2) < 0.05 * r1) {
       const double order = std::log(before / change) / std::log(r1);
-      if (order > 0.5 && order < 8) {
+      const double earlier = refined.size() > 3 ? refined[3].second - refined[2].second : before;
+      const bool by_chance = order > 2.5 && !(earlier * before > 0 && std::abs(earlier) >= std::abs(before));
+      if (order > 0.5 && order < 8 && !by_chance) {
         const double rest = change / (std::pow(r1, order) - 1);
         std::ostringstream text;
         text.precision(2);

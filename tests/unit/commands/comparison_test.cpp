@@ -54,6 +54,10 @@ TEST(Comparison, without_convergence_the_finest_run_is_as_uncertain_as_its_last_
   EXPECT_EQ(idle.value, 5);
   EXPECT_NEAR(idle.uncertainty, 0.2, 1e-12);
   EXPECT_TRUE(std::isinf(extrapolate({{0.1, 5}, {0.2, 5}}).uncertainty));
+  const Reference chance =  // order 5 in the last three runs, but the fourth turns back
+      extrapolate({{0.05, 12.0638}, {0.1, 12.0541}, {0.2, 11.7065}, {0.4, 11.7174}});
+  EXPECT_EQ(chance.value, 12.0638);
+  EXPECT_NEAR(chance.uncertainty, 0.3476, 1e-12);
 }
 
 TEST(Comparison, measures_are_read_off_a_history) {
