@@ -157,7 +157,7 @@ template <int dim>
 void Body<dim>::rearrange() {
   const int count = arrays_.count;
   const auto permute = [&](void *array, size_t bytes) {
-    if (!array) return;
+    if (!array || count == 0) return;
     scratch_.resize(std::max(scratch_.size(), bytes * count));
     const char *from = static_cast<const char *>(array);
     for (int p = 0; p < count; ++p) std::memcpy(&scratch_[bytes * order_[p]], from + bytes * p, bytes);
