@@ -232,9 +232,11 @@ struct Water {
                "initial suction above the water table, function of x, y, z; default: hydrostatic");
     v.points("table", table, metre, "water table: polyline of points [x, elevation]; pressure is hydrostatic below it");
     v.function("level", level, metre, Range{-1e4, 1e4}, of::time, "rise of the whole water table, function of t");
-    v.function("excess", excess, pascal, Range{-1e9, 1e9}, of::place_time_and_table,
-               "excess pressure, added to the hydrostatic pressure, function of x, y, z, t and `table` (elevation of "
-               "the water table at x)");
+    v.function(
+        "excess", excess, pascal, Range{-1e9, 1e9}, of::place_time_and_table,
+        "excess pressure, added to the hydrostatic pressure, function of x, y, z, t and `table` (elevation of "
+        "the water table at x); where it does not vanish at the surface of the soil it loads the surface too, so "
+        "that a uniform excess has no effect");
     v.flag("open_water_load", open_water_load,
            "the weight of open water above the ground acts on the submerged ground");
   }

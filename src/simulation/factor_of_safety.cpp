@@ -94,6 +94,36 @@ std::string motion_in_words(const Mechanism &m, int dim) {
          " from x = " + rounded(m.low[0]) + " to " + rounded(m.high[0]) + " m";
 }
 
+/// Mean size of the cells in a box, as the side of a regular simplex [m]; 0: there are none. Collective.
+template <int dim>
+double cell_size_in(const World<dim> &world, const Mechanism &box) {
+  double sums[2]{}, all[2];
+  for (int c = 0; c < world.mesh.cell_count(); ++c) {
+    bool inside = true;
+    for (int d = 0; d < dim; ++d) {
+      double middle = 0;
+      for (const int node : world.mesh.cells[c].node) middle += world.mesh.position[node][d] / (dim + 1);
+      inside = inside && box.low[d] <= middle && middle <= box.high[d];
+    }
+    if (inside) ++sums[0], sums[1] += world.mesh.volume[c];
+  }
+  MPI_Allreduce(sums, all, 2, MPI_DOUBLE, MPI_SUM, world.comm);
+  if (all[0] == 0) return 0;
+  return dim == 2 ? std::sqrt(4 / std::sqrt(3.) * all[1] / all[0]) : std::cbrt(6 * std::sqrt(2.) * all[1] / all[0]);
+}
+
+/// A doubt about a mechanism that is few cells high; empty if it is not.
+template <int dim>
+std::string too_few_cells(const World<dim> &world, const Mechanism &m) {
+  constexpr double enough = 10;  // with 8 cells factors were 2 % too large, with 4.5 cells 5 %
+  const double height = m.high[1] - m.low[1], size = cell_size_in(world, m);
+  if (size == 0 || height >= enough * size) return "";
+  return "warning: the mechanism from x = " + rounded(m.low[0]) + " to " + rounded(m.high[0]) + " m is " +
+         rounded(height) + " m high, and its cells measure " + rounded(size) +
+         " m: the factor of a mechanism of fewer than " + rounded(enough) +
+         " cells is some per cent too large. Take smaller cells there ([[mesh.refine]]) and compare";
+}
+
 /// Why a bracket has one end, or none; `confined` to a part of the soil.
 std::string why_open(const FactorBracket &b, bool confined) {
   const char *where = confined ? " inside factor_of_safety.within and along" : "";
@@ -211,9 +241,13 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   result.lost_stages = run_.statics.lost_stages;
   if (stopped) throw RunFailure("interrupted");
   if (result.lower == 0 || result.upper == 0) throw RunFailure(why_open(result, !region.everywhere()));
+  const auto doubt = [&](const Mechanism &m) {
+    if (const std::string sentence = too_few_cells(world, m); !sentence.empty()) run_.recorder.note(sentence);
+  };
   run_.recorder.note("factor of safety " + bracket_in_words(result) + "; the mechanism " +
                      motion_in_words(result, dim));
   tables.add(result);
+  doubt(result);
   if (result.davis)
     run_.recorder.note(
         "psi < phi: this is the factor of soil with the strength of Davis (1968) on its slip surface; with "
@@ -226,6 +260,7 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
                        motion_in_words(m, dim) + ", and " + rounded(100 * m.of_critical) +
                        " % of the soil of mechanism 1");
     tables.add(m);
+    doubt(m);
   }
   if (static_cast<int>(result.further.size()) + 1 < settings.mechanisms)
     run_.recorder.note("no further mechanism was found: the rest of the soil stands while that of those found is held");

@@ -66,9 +66,16 @@ void doubt_table(const Scene &scene, const Extent &soil, std::vector<std::string
 }  // namespace
 
 std::vector<std::string> unlikely_surroundings(const Scene &scene, const std::vector<BodyReport> &bodies) {
-  constexpr double highest = 5000, lowest = 0.01;  // [m], from mountains to experiments on a table
+  constexpr double highest = 5000, lowest = 0.01;       // [m], from mountains to experiments on a table
+  constexpr double centrifuge = 3000, asteroid = 1e-3;  // [m/s2]
   std::vector<std::string> sentences;
-  if (scene.gravity_size() == 0) return sentences;
+  const double g = scene.gravity_size();
+  if (g == 0) return sentences;
+  if (g < asteroid || g > centrifuge)
+    sentences.push_back("gravity is " + rounded(g) + " m/s2; that of the earth is 9.81 m/s2. Is it in mm/s2?");
+  if (scene.water.given && (scene.water.density < 500 || scene.water.density > 3000))
+    sentences.push_back("water.density is " + rounded(scene.water.density) +
+                        " kg/m3, which hardly any water has; a number without a unit counts in kg/m3. Is it in t/m3?");
   const Extent soil = extent_of(bodies);
   const int down = nearest_axis(scene);
   if (down != 1 || scene.gravity[1] > 0)

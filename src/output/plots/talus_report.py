@@ -64,17 +64,18 @@ def key_results(results):
     """[(what, number, note)] that a reader wants first."""
     first, last = results.snapshots[0], results.snapshots[-1]
     found = [("Particles", thousands(len(last.position())), ", ".join(results.bodies))]
+    without = ", without the soil that left the mesh" if results.escaped and len(results.escaped.time) else ""
     if "displacement" in last and len(last.position()):
         vector = last.column("displacement").values
         size = np.linalg.norm(vector, axis=1)
         up = results.up_axis()
         level, rise = np.abs(np.delete(vector, up, axis=1)).max(), np.abs(vector[:, up]).max()
         parts = f"{quantity(level, 'm')} level, {quantity(rise, 'm')} up or down"
-        found.append(("Largest displacement", quantity(size.max(), "m"), parts))
+        found.append(("Largest displacement", quantity(size.max(), "m"), parts + without))
         if "volume" in last:
             volume = last.column("volume").values[size > 0.1 * size.max(), 0].sum()
             volume = quantity(volume, per_metre("m³", results))
-            found.append(("Sliding volume", volume, "moved more than a tenth of the largest"))
+            found.append(("Sliding volume", volume, "moved more than a tenth of the largest" + without))
     speed = top_speed(results)
     if speed:
         found.append(("Largest velocity", quantity(speed[0], "m/s"), f"{speed[2]}, t = {speed[1]:.4g} s"))

@@ -91,6 +91,10 @@ TEST(Check, DoubtsWhatFitsTheSoilBadly) {
       says({"body.sand.tension_cutoff=1e4", "body.sand.cohesion=1e3"}, "tension_cutoff is 1e+04 Pa and has no effect"));
   EXPECT_FALSE(says({drained, "water.table=[[0, 0.4], [2, 0.2]]"}, "water.table"));
   EXPECT_TRUE(says({drained, "water.table=[[0, 1000]]"}, "stands 999.5 m or more above the top of the soil"));
+  EXPECT_TRUE(says({drained, "water.table=[[0, 1e5], [2, 1e3]]"}, "breaks off in its first steps"))
+      << "a state that has broken off is not looked at";
+  EXPECT_TRUE(says({drained, "water.table=[[0, 0.4]]", "water.density=1"}, "Is it in t/m3?"));
+  EXPECT_TRUE(says({"gravity=9810"}, "Is it in mm/s2?"));
   EXPECT_TRUE(says({drained, "water.table=[[-9, 0.4], [-8, 0.2]]"}, "runs from x = -9 to -8 m, beside the soil"));
   EXPECT_TRUE(says({drained, "water.table=[[0, -1]]"}, "it gives no pore pressure"));
   EXPECT_FALSE(says({drained, "water.table=[[0, -1]]", "water.level=t"}, "it gives no pore pressure"));
