@@ -111,6 +111,24 @@ TEST(Block, leans_on_the_prop_with_what_it_cannot_carry) {
   }
 }
 
+/// A mechanism that is few cells high has too large a factor, which the run says.
+TEST(Block, is_doubted_where_it_is_few_cells_high) {
+  const auto doubted = [](const std::string &size) {
+    Scene scene = parse_scene(block, std::string(TALUS_MESHES) + "/scene.toml",
+                              {"gravity=10", "boundary.surface.pressure=0", "boundary.base.kind=fixed",
+                               "body.soil.cohesion=8e3", "mesh.size=" + size});
+    RunOptions options;
+    options.pictures = options.screen = false;
+    const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+    (void)simulation->factor_of_safety();
+    return std::ranges::any_of(simulation->events(), [](const Event &event) {
+      return event.text.find("is some per cent too large. Take smaller cells there") != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(doubted("0.25"));
+  EXPECT_FALSE(doubted("0.08"));
+}
+
 /// A factor is always one of elements of second order, also where a host program asks for it; what has been solved by
 /// others cannot be gone on from.
 TEST(Block, has_a_factor_of_second_order_elements_whatever_the_scene_sets) {
