@@ -15,22 +15,25 @@ std::string trimmed(const std::string &text) {
   return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-/// The first of these characters outside quotes, `#` ending the search; `fallback` without one.
-char first_outside_quotes(const std::string &line, const std::string &wanted, char fallback) {
+/// Does the character stand in a line outside quotes, before a `#`?
+bool stands_in(const std::string &line, char wanted) {
   bool quoted = false;
   for (const char c : line) {
     if (c == '"') quoted = !quoted;
     if (!quoted && c == '#') break;
-    if (!quoted && wanted.find(c) != std::string::npos) return c;
+    if (!quoted && c == wanted) return true;
   }
-  return fallback;
+  return false;
 }
 
-/// Semicolons part cells wherever there are any, since commas may then be decimal ones.
+/// Semicolons or tabs part cells where they stand in as many lines as commas, which may then be decimal ones. A stray
+/// one in a line of a table with commas is the fault of that line alone.
 char separator_of(const std::vector<std::string> &lines) {
-  for (const char *wanted : {";", "\t"})
-    for (const std::string &line : lines)
-      if (first_outside_quotes(line, wanted, ',') == *wanted) return *wanted;
+  const auto lines_with = [&](char wanted) {
+    return std::ranges::count_if(lines, [=](const std::string &line) { return stands_in(line, wanted); });
+  };
+  for (const char wanted : {';', '\t'})
+    if (lines_with(wanted) > 0 && lines_with(wanted) >= lines_with(',')) return wanted;
   return ',';
 }
 

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <numeric>
 #include <sstream>
-#include <stdexcept>
 
 namespace talus {
 
@@ -23,36 +21,16 @@ CellPressure<dim>::CellPressure(MPI_Comm comm, const std::vector<double> &mine) 
 }
 
 template <int dim>
-CellPressure<dim>::CellPressure(const std::string &file) {
-  std::ifstream in(file);
-  std::string line;
-  std::getline(in, line);  // names of the columns
-  while (std::getline(in, line)) {
-    std::istringstream row(line);
-    for (std::string number; std::getline(row, number, ',');) cells_.push_back(std::stod(number));
+std::string CellPressure<dim>::table() const {
+  std::ostringstream text;
+  text.precision(std::numeric_limits<double>::max_digits10);
+  const char *axis[] = {"x", "y", "z"};
+  for (int a = 0; a <= dim; ++a) {
+    for (int d = 0; d < dim; ++d) text << axis[d] << a << "_m,";
+    text << "pore_pressure" << a << "_Pa" << (a < dim ? "," : "\n");
   }
-  if (!in.eof() || cells_.empty() || cells_.size() % width)
-    throw std::runtime_error("cannot read the pore pressures in " + file);
-  sort_into_bins();
-}
-
-template <int dim>
-void CellPressure<dim>::save(MPI_Comm comm, const std::string &file) const {
-  int rank, failed = 0;
-  MPI_Comm_rank(comm, &rank);
-  if (rank == 0) {
-    std::ofstream out(file);
-    out.precision(17);
-    const char *axis[] = {"x", "y", "z"};
-    for (int a = 0; a <= dim; ++a) {
-      for (int d = 0; d < dim; ++d) out << axis[d] << a << "_m,";
-      out << "pore_pressure" << a << "_Pa" << (a < dim ? "," : "\n");
-    }
-    for (size_t k = 0; k < cells_.size(); ++k) out << cells_[k] << ((k + 1) % width ? "," : "\n");
-    failed = !out.flush();
-  }
-  MPI_Bcast(&failed, 1, MPI_INT, 0, comm);
-  if (failed) throw std::runtime_error("cannot write " + file);
+  for (size_t k = 0; k < cells_.size(); ++k) text << cells_[k] << ((k + 1) % width ? "," : "\n");
+  return text.str();
 }
 
 template <int dim>

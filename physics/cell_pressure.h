@@ -11,19 +11,15 @@
 
 namespace talus {
 
-/// Where a drained run keeps the pore pressure that its last seepage left.
-inline std::string seeped_file(const std::string &directory) { return directory + "/pore_pressure.csv"; }
-
 template <int dim>
 class CellPressure {
  public:
   /// From the cells of this rank: for each vertex of each cell its coordinates [m] and pressure [Pa]. Collective.
   CellPressure(MPI_Comm comm, const std::vector<double> &mine);
-  /// As `save` wrote it. Throws std::runtime_error if the file cannot be read.
-  explicit CellPressure(const std::string &file);
-  /// One line for each cell: coordinates and pressure of its vertices. Throws std::runtime_error, on all ranks, if it
-  /// cannot be written. Collective.
-  void save(MPI_Comm comm, const std::string &file) const;
+  /// Has no rank a cell?
+  bool empty() const { return cells_.empty(); }
+  /// Comma-separated values with a line for each cell: coordinates and pressure of its vertices.
+  std::string table() const;
 
   /// Pressure at a place x [dim]; not a number outside the cells [Pa].
   double operator()(const double *x) const;

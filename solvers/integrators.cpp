@@ -4,9 +4,26 @@
 
 namespace talus {
 
+namespace {
+
+/// Refuses keys that a fixed step leaves without effect, and those that only a fixed step has.
+void refuse_idle_keys(const TableReader &table, bool fixed) {
+  const auto refuse = [&](const char *key, const std::string &why) {
+    if (table.has(key)) table.complain(key, "has no effect " + why);
+  };
+  if (fixed)
+    for (const char *key : {"fraction", "velocity_tolerance", "displacement_tolerance", "floor"})
+      refuse(key, "beside a fixed step: leave it out, or leave `step` out");
+  else
+    refuse("limit", "without a fixed step: give `step`, or leave it out");
+}
+
+}  // namespace
+
 IntegratorSettings read_integrator(DeferredTable &table, bool drag) {
   IntegratorSettings settings;
   read_one_of(table, "kind", settings);
+  if (table.reader) refuse_idle_keys(*table.reader, step_rule(settings).fixed > 0);
   if (auto *arkode = std::get_if<ArkodeSettings>(&settings)) arkode->drag = drag;
   return settings;
 }

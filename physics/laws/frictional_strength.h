@@ -66,6 +66,12 @@ struct FrictionalStrength {
       return above("residual_dilation_angle", "dilation_angle", dilation_angle, degree);
     if ((residual_cohesion >= 0 || residual_friction_angle >= 0 || residual_dilation_angle >= 0) && shape_factor == 0)
       return "a residual strength needs a shape_factor above 0, the rate at which it is reached";
+    if (shape_factor > 0 && residual_cohesion < 0 && residual_friction_angle < 0 && residual_dilation_angle < 0)
+      return "shape_factor must have a residual strength beside it, to which the soil softens: give residual_cohesion, "
+             "residual_friction_angle or residual_dilation_angle, or leave it out";
+    if (reference_size > 0 && shape_factor == 0)
+      return "reference_size must have a shape_factor beside it, which it scales; leave it out for soil that does not "
+             "soften";
     return "";
   }
 

@@ -57,7 +57,7 @@ Refinement steps_of(const Scene &scene, const std::vector<double> &values) {
   const IntegratorSettings settings = read_integrator(table, fluids_move(scene.phases));
   Refinement r{{}, values, ""};
   double at_most = 0;
-  if (const auto *controlled = std::get_if<ArkodeSettings>(&settings))
+  if (const auto *controlled = std::get_if<ArkodeSettings>(&settings); controlled && controlled->step == 0)
     r.keys["integrator.velocity_tolerance"] = at_most = controlled->velocity_tolerance, r.unit = "m/s";
   else if (const StepRule rule = step_rule(settings); rule.fixed > 0)
     r.keys["integrator.step"] = at_most = rule.fixed, r.unit = "s";

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char *first_line = "Talus checkpoint 2\n";
+constexpr const char *first_line = "Talus checkpoint 3\n";
 
 std::string header_file(const std::string &dir) { return dir + "/checkpoint/header"; }
 

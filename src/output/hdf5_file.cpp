@@ -1,5 +1,8 @@
 #include "output/hdf5_file.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <stdexcept>
 
 #include "output/replace_file.h"
@@ -126,6 +129,18 @@ void Hdf5Builder::save() const {
 
 Hdf5Reader::Hdf5Reader(const std::string &path)
     : path_(path), file_(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "cannot open " + path) {}
+
+/// Where the system cannot close a file, H5Fclose fails and keeps the identifier of memory that it has freed, through
+/// which HDF5 crashes the program when MPI ends. So what HDF5 closes is a descriptor of /dev/null: dup2 has closed the
+/// file, and drops its error.
+Hdf5Reader::~Hdf5Reader() {
+  int *descriptor = nullptr;
+  if (H5Fget_vfd_handle(file_, H5P_DEFAULT, reinterpret_cast<void **>(&descriptor)) < 0) return;
+  const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  if (nothing < 0) return;
+  (void)::dup2(nothing, *descriptor);
+  ::close(nothing);
+}
 
 std::vector<std::string> Hdf5Reader::names(const std::string &group) const {
   std::vector<std::string> found;

@@ -85,6 +85,10 @@ class Hdf5Builder {
 class Hdf5Reader {
  public:
   explicit Hdf5Reader(const std::string &path);
+  Hdf5Reader(const Hdf5Reader &) = delete;
+  Hdf5Reader &operator=(const Hdf5Reader &) = delete;
+  /// Closes the file; an error of the system is passed over, since nothing is lost of a file that was only read.
+  ~Hdf5Reader();
   std::vector<std::string> names(const std::string &group) const;  ///< of the links in a group, in alphabetical order
   std::vector<hsize_t> shape(const std::string &dataset) const;
   std::vector<std::string> texts(const std::string &dataset) const;

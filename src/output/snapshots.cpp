@@ -102,10 +102,19 @@ void remove_snapshots(const std::string &folder) {
   for (const std::string &number : numbers_of_snapshots(folder)) std::filesystem::remove(folder + "/" + number + ".h5");
 }
 
-std::string numbered(std::size_t count) {
+std::string numbered(long long count) {
   char text[24];
-  std::snprintf(text, sizeof text, "%06zu", count);
+  std::snprintf(text, sizeof text, "%06lld", count);
   return text;
+}
+
+/// Gives the file of a snapshot a name that says that it cannot be read, and returns that name.
+std::string set_aside(const std::string &folder, const std::string &number) {
+  std::string name = number + ".unreadable.h5";
+  for (int k = 2; std::filesystem::exists(folder + "/" + name); ++k)
+    name = number + ".unreadable." + std::to_string(k) + ".h5";
+  std::filesystem::rename(folder + "/" + number + ".h5", folder + "/" + name);
+  return name;
 }
 
 /// An XDMF reference to a dataset of rows.
@@ -138,21 +147,32 @@ RunFile::RunFile(MPI_Comm comm, const std::string &dir, const RunHeader &header,
 }
 
 RunFile RunFile::append(MPI_Comm comm, const std::string &dir, const RunHeader &header, const MeshPicture &local_mesh,
-                        double time) {
+                        long long count) {
   RunFile run(comm, dir);
+  run.count_ = count;
   run.begin(header, local_mesh, [&] {
     std::vector<std::string> later;
-    for (const std::string &number : numbers_of_snapshots(dir + "/run")) try {
+    std::vector<std::pair<std::string, std::string>> unreadable;  // of the later ones, with the cause
+    for (const std::string &number : numbers_of_snapshots(dir + "/run")) {
+      const bool is_later = std::stoll(number) >= count;
+      try {
         const Entry entry = run.read_entry(number);
-        if (entry.time <= time)
-          run.entries_.push_back(entry);
-        else
+        if (is_later)
           later.push_back(number);
+        else
+          run.entries_.push_back(entry);
       } catch (const std::runtime_error &error) {
-        run.damaged_.push_back(error.what());
+        if (is_later)
+          unreadable.emplace_back(number, error.what());
+        else
+          run.damaged_.push_back(std::string("a damaged snapshot is left out of run.h5 and run.xdmf: ") + error.what());
       }
+    }
     run.write_index();
     for (const auto &number : later) std::filesystem::remove(dir + "/" + run.snapshot_file(number));
+    for (const auto &[number, cause] : unreadable)
+      run.damaged_.push_back("a damaged snapshot, which the run now writes again, is kept as run/" +
+                             set_aside(dir + "/run", number) + ": " + cause);
   });
   run.share_last_step();
   return run;
@@ -181,7 +201,7 @@ void RunFile::write(const Snapshot &local) {
   together(comm_, [&] { check_lengths(local); });
   const Snapshot all = gathered(comm_, local);
   on_first_rank(comm_, [&] {
-    entries_.push_back(write_file(all, numbered(next_number())));
+    entries_.push_back(write_file(all, numbered(count_)));
     try {
       write_index();
     } catch (...) {
@@ -189,11 +209,8 @@ void RunFile::write(const Snapshot &local) {
       throw;
     }
   });
-  last_step_ = local.step;
+  last_step_ = local.step, ++count_;
 }
-
-/// Behind the last snapshot; a damaged one in between keeps its number.
-std::size_t RunFile::next_number() const { return entries_.empty() ? 0 : std::stoul(entries_.back().number) + 1; }
 
 RunFile::Entry RunFile::write_file(const Snapshot &all, const std::string &number) const {
   Entry entry{number, all.time, all.step, all.id.size(), {}};

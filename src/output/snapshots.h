@@ -41,17 +41,21 @@ class RunFile {
   /// removed.
   RunFile(MPI_Comm comm, const std::string &dir, const RunHeader &header, const MeshPicture &local_mesh);
 
-  /// Continues the results of an earlier run of the same scene: index and mesh are written anew, snapshots later than
-  /// `time` [s] are removed, damaged ones are left where they are but not in the index.
+  /// Continues the results of an earlier run of the same scene behind its first `count` snapshots: index and mesh are
+  /// written anew, later snapshots are removed. Of snapshots that cannot be read no file is lost: one of the first
+  /// `count` stays where it is, without an entry in the index; the file of a later one, which the run writes again, is
+  /// renamed to `run/NUMBER.unreadable.h5`.
   static RunFile append(MPI_Comm comm, const std::string &dir, const RunHeader &header, const MeshPicture &local_mesh,
-                        double time);
+                        long long count);
 
   /// Adds a snapshot. Ranks without particles pass columns without values.
   void write(const Snapshot &local);
 
   /// Step of the last snapshot; -1 if there is none.
   long long last_step() const { return last_step_; }
-  /// What is wrong with the snapshots that `append` left out, on rank 0.
+  /// Number of snapshots of the run so far, with those that cannot be read: the number of the next one.
+  long long count() const { return count_; }
+  /// Which snapshots `append` could not read, why, and what became of their files; a sentence each, on rank 0.
   const std::vector<std::string> &damaged() const { return damaged_; }
 
  private:
@@ -69,7 +73,6 @@ class RunFile {
 
   RunFile(MPI_Comm comm, const std::string &dir) : comm_(comm), dir_(dir) {}
   void begin(const RunHeader &header, const MeshPicture &local_mesh, const std::function<void()> &rest);
-  std::size_t next_number() const;
   std::string snapshot_file(const std::string &number) const { return "run/" + number + ".h5"; }
   Entry write_file(const Snapshot &all, const std::string &number) const;
   Entry read_entry(const std::string &number) const;
@@ -81,7 +84,7 @@ class RunFile {
 
   MPI_Comm comm_;
   std::string dir_;
-  long long last_step_ = -1;
+  long long last_step_ = -1, count_ = 0;
   // on rank 0 only:
   RunHeader header_;
   int dimension_ = 2;

@@ -34,6 +34,21 @@ toml::node *put(toml::node &parent, const std::string &word, toml::table holder)
   });
 }
 
+/// Says that a list has no such entry, and which it has; that a value has no entries at all.
+std::string no_entry(const toml::node &parent, const std::string &word) {
+  const std::string no = "the scene has no such entry `" + word + "`";
+  const toml::array *list = parent.as_array();
+  if (!list) return no + ", since what stands before it is a value";
+  if (list->empty()) return no + ": the list is empty";
+  std::vector<std::string> names;
+  for (const toml::node &entry : *list)
+    if (entry.is_table())
+      if (const auto name = (*entry.as_table())["name"].value<std::string>()) names.push_back(*name);
+  const std::string last = std::to_string(list->size() - 1);
+  return no + "; there are " + (names.empty() ? "" : join(names) + ", or by number ") + "0" +
+         (last == "0" ? "" : " to " + last);
+}
+
 }  // namespace
 
 void apply_override(toml::table &root, const std::string &text) {
@@ -47,7 +62,7 @@ void apply_override(toml::table &root, const std::string &text) {
     const bool last = i + 1 == words.size();
     toml::node *next = last ? nullptr : child(*node, words[i]);
     if (!next) next = put(*node, words[i], parse_override(last ? text.substr(equals + 1) : "{}"));
-    if (!next) throw SceneError("--set " + path + ": the scene has no such entry `" + words[i] + "`");
+    if (!next) throw SceneError("--set " + path + ": " + no_entry(*node, words[i]));
     node = next;
   }
 }

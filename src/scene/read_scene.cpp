@@ -34,6 +34,7 @@ class Checks {
       if (scene_.stage[i].name.empty()) scene_.stage[i].name = std::to_string(i);
       stage(scene_.stage[i], "stage." + std::to_string(i));
     }
+    bodies_that_come_and_go();
     factor_of_safety();
   }
 
@@ -52,9 +53,14 @@ class Checks {
       reader_.complain("mesh.size", "must be a cell size above 0 m, since the mesh is made from a section");
     for (std::size_t i = 0; i < mesh.refine.size(); ++i)
       box("mesh.refine." + std::to_string(i), mesh.refine[i].from, mesh.refine[i].to);
-    if (!mesh.file.empty() && !mesh.refine.empty())
-      reader_.complain("mesh.refine.0",
-                       "has no effect on a mesh from a file: refine it where it is made, or give a section");
+    if (mesh.file.empty()) return;
+    for (const auto &[key, given] : {std::pair{"mesh.refine.0", !mesh.refine.empty()},
+                                     {"mesh.size", mesh.size > 0},
+                                     {"mesh.thickness", mesh.thickness > 0},
+                                     {"mesh.cuts", !mesh.cuts.empty()}})
+      if (given)
+        reader_.complain(key,
+                         "has no effect on a mesh from a file: change the mesh where it is made, or give a section");
   }
 
   void gravity() {
@@ -217,6 +223,21 @@ class Checks {
     if (dry && scene_.water.given)
       reader_.complain("water", "has no effect, since phases = \"dry\" has no pore water; set phases = \"drained\"");
     table("water.table", scene_.water.table);
+    const bool seeps = std::any_of(scene_.stage.begin(), scene_.stage.end(),
+                                   [](const Stage &stage) { return water_flows(stage.kind); });
+    if (scene_.water.suction.given() && scene_.phases == PhaseModel::saturated)
+      reader_.complain("water.suction",
+                       "has no effect, since phases = \"saturated\" keeps all pores full of water under pressure; set "
+                       "phases = \"unsaturated\", or leave it out");
+    if (scene_.water.suction.given() && drained && !seeps)
+      reader_.complain("water.suction",
+                       "has no effect in a drained scene without a seepage stage: give suction as water.excess below "
+                       "zero, or leave it out");
+    const bool has_table =
+        !scene_.water.table.empty() ||
+        std::any_of(scene_.body.begin(), scene_.body.end(), [](const BodySource &b) { return !b.water_table.empty(); });
+    if (!has_table && !(scene_.water.level.constant() && scene_.water.level(0) == 0))
+      reader_.complain("water.level", "has no effect without a water table, which it raises: give water.table");
     if (!scene_.water.table.empty() && -scene_.gravity[1] < scene_.gravity_size() / 2)
       reader_.complain("gravity",
                        "must point down, along -y, since water.table gives elevations along y: turn the mesh, or "
@@ -312,6 +333,7 @@ class Checks {
                                        {".when_lost", stage.when_lost != usual.when_lost}})
         if (given) reader_.complain(path + key, "belongs to quasi-static stages: set kind = \"quasi_static\"");
     }
+    criterion(stage, path);
     if (stage.until != StopWhen::failure) return;
     std::vector<std::string> points;
     for (const OutputPoint &point : scene_.output.point) points.push_back(point.name);
@@ -320,6 +342,43 @@ class Checks {
     if (std::find(points.begin(), points.end(), stage.failure_point) == points.end())
       reader_.complain(path + ".failure_point",
                        "must name a point of [output.point.NAME]; " + suggestion(stage.failure_point, points));
+  }
+
+  /// Keys of a criterion that the stage does not have.
+  void criterion(const Stage &stage, const std::string &path) const {
+    const Stage usual;
+    using enum StopWhen;
+    for (const auto &[key, given, until, name] :
+         {std::tuple{".force_ratio", stage.force_ratio != usual.force_ratio, equilibrium, "equilibrium"},
+          {".energy_ratio", stage.energy_ratio != usual.energy_ratio, equilibrium, "equilibrium"},
+          {".rest_speed", stage.rest_speed != usual.rest_speed, rest, "rest"},
+          {".failure_point", stage.failure_point != usual.failure_point, failure, "failure"},
+          {".failure_speed", stage.failure_speed != usual.failure_speed, failure, "failure"},
+          {".failure_time", stage.failure_time != usual.failure_time, failure, "failure"}})
+      if (given && stage.until != until)
+        reader_.complain(path + key, std::string("has no effect without until = \"") + name +
+                                         "\": give that criterion to the stage, or leave the key out");
+  }
+
+  /// A stage adds bodies that are not there, and removes bodies that are. A body that some stage adds is absent before.
+  void bodies_that_come_and_go() const {
+    std::vector<std::string> absent;
+    for (const Stage &stage : scene_.stage) absent.insert(absent.end(), stage.add.begin(), stage.add.end());
+    for (std::size_t i = 0; i < scene_.stage.size(); ++i) {
+      const std::string path = "stage." + std::to_string(i);
+      for (const std::string &name : scene_.stage[i].add) {
+        if (std::find(absent.begin(), absent.end(), name) == absent.end())
+          reader_.complain(path + ".add", "adds body." + name + ", which is there already: leave it out");
+        std::erase(absent, name);
+      }
+      for (const std::string &name : scene_.stage[i].remove) {
+        if (std::find(absent.begin(), absent.end(), name) != absent.end())
+          reader_.complain(path + ".remove", "removes body." + name +
+                                                 ", which is not there: leave it out (a body that a stage adds is "
+                                                 "absent before that stage)");
+        absent.push_back(name);
+      }
+    }
   }
 
   /// Bodies that come and go with a stage.

@@ -1,5 +1,7 @@
 #include "scene/reader.h"
 
+#include <muParser.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -21,8 +23,8 @@ namespace {
 bool is_function_name(const std::string &name) {
   const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
   const bool variable = name == "x" || name == "y" || name == "z" || name == "t" || name == "table" || name == "pi";
-  return !variable && !name.empty() && !std::isdigit((unsigned char)name[0]) &&
-         std::all_of(name.begin(), name.end(), fits);
+  return !variable && !mu::Parser().GetFunDef().contains(name) && !name.empty() &&
+         !std::isdigit((unsigned char)name[0]) && std::all_of(name.begin(), name.end(), fits);
 }
 
 }  // namespace
@@ -51,7 +53,10 @@ TableReader TableReader::from_text(const std::string &text, const std::string &n
     if (!functions->node().is_table()) functions->must_be("a table, [functions]");
     for (const auto &[key, node] : in_file_order(*functions->node().as_table())) {
       const Value value(*document, *node, "functions." + key, meaning);
-      if (!is_function_name(key)) value.must_be("named by letters, digits and _, other than x, y, z, t, table, pi");
+      if (!is_function_name(key))
+        value.must_be(
+            "named by letters, digits and _, other than x, y, z, t, table, pi and the functions that expressions "
+            "have of themselves, such as sin or min");
       document->functions[key] = value.named_function();
     }
   }

@@ -12,7 +12,6 @@
 #include "output/escaped_table.h"
 #include "output/pictures.h"
 #include "output/together.h"
-#include "physics/cell_pressure.h"
 #include "scene/changes.h"
 #include "scene/reader.h"
 #include "scene/words.h"
@@ -35,10 +34,7 @@ void Recorder<dim>::open() {
   if (options_.directory.empty()) return;
   auto folder = std::make_unique<ResultsFolder>(of_.world.comm, options_.directory,
                                                 options_.replace ? FolderUse::replace : FolderUse::start);
-  int rank;
-  MPI_Comm_rank(of_.world.comm, &rank);
-  if (rank == 0 && has_flow_stages(scene_) && phases_.prescribed)
-    std::filesystem::remove(seeped_file(options_.directory));  // of a run that was here before
+  of_.statics.save_seeped_pressure(options_.directory);  // in place of that of a run that was here before
   RunFile file(of_.world.comm, options_.directory, header(), mesh_picture());
   History rows(of_.world.comm, options_.directory + "/history.csv", {history_.names.begin() + 2, history_.names.end()});
   results_.reset(new Files{std::move(folder), std::move(file), std::move(rows),
@@ -68,7 +64,7 @@ void Recorder<dim>::append(std::unique_ptr<ResultsFolder> folder) {
   name_columns();
   const std::string table = options_.directory + "/history.csv";
   const bool has_table = std::filesystem::exists(table);
-  RunFile file = RunFile::append(of_.world.comm, options_.directory, header(), mesh_picture(), last_snapshot_time_);
+  RunFile file = RunFile::append(of_.world.comm, options_.directory, header(), mesh_picture(), snapshots_);
   const std::vector<std::string> damaged = file.damaged();
   History rows =
       History::append(of_.world.comm, table, {history_.names.begin() + 2, history_.names.end()}, last_row_time_);
@@ -78,9 +74,9 @@ void Recorder<dim>::append(std::unique_ptr<ResultsFolder> folder) {
   results_->progress.note("resumed at t = " + rounded(of_.clock.time) + " s, step " + std::to_string(of_.clock.steps));
   for (const std::string &key : changed_) results_->progress.note("since then the scene has another " + key);
   if (!has_table) results_->progress.note("warning: history.csv was missing; it begins here");
-  for (const std::string &one : damaged)
-    results_->progress.note("warning: a damaged snapshot is left out of run.h5 and run.xdmf: " + one);
+  for (const std::string &one : damaged) results_->progress.note("warning: " + one);
   write_escaped();
+  of_.statics.save_seeped_pressure(options_.directory);
 }
 
 template <int dim>
@@ -227,7 +223,7 @@ void Recorder<dim>::note_steps() {
 template <int dim>
 void Recorder<dim>::fail(const std::string &cause) {
   std::ostringstream message;
-  message.precision(8);
+  message.precision(12);  // the time as history.csv has it
   message << cause << " (t = " << of_.clock.time << " s, step " << of_.clock.steps << ", stage " << of_.clock.stage
           << ")";
   if (results_) message << "; snapshots up to step " << results_->file.last_step() << " are in " << options_.directory;
@@ -391,7 +387,7 @@ void Recorder<dim>::write_snapshot() {
   write_escaped();
   if (results_->file.last_step() == of_.clock.steps) return;
   results_->file.write(snapshot());
-  last_snapshot_time_ = of_.clock.time;
+  snapshots_ = results_->file.count();
 }
 
 // ---- checkpoints ----
@@ -450,8 +446,8 @@ CheckpointHeader Recorder<dim>::check_checkpoint() {
 
 template <int dim>
 void Recorder<dim>::serialize(Archive &archive) {
-  archive.serialize("results", last_row_step_, last_row_time_, last_snapshot_time_, impulse_time_, first_ledger_,
-                    first_energy_, told_escaped_);
+  archive.serialize("results", last_row_step_, last_row_time_, snapshots_, impulse_time_, first_ledger_, first_energy_,
+                    told_escaped_);
 }
 
 template class Recorder<2>;

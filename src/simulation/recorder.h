@@ -103,7 +103,8 @@ class Recorder {
   double told_escaped_ = 0;           ///< particles that had left when the log last said so
   double written_escaped_ = -1;       ///< particles in escaped.csv; -1: not known
   long long last_row_step_ = -1, checkpoints_ = 0;
-  double last_row_time_ = -1, last_snapshot_time_ = -1, checkpoint_time_ = -1;  ///< [s]
+  long long snapshots_ = 0;                           ///< that the run has written
+  double last_row_time_ = -1, checkpoint_time_ = -1;  ///< [s]
 };
 
 }  // namespace talus

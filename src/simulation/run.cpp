@@ -49,6 +49,7 @@ PetscErrorCode Run<dim>::serialize(Archive &archive) {
   if (archive.reading()) stop = make_stop_criterion<dim>(stage());
   stop->serialize(archive);
   recorder.serialize(archive);
+  statics.serialize(archive);
   PetscCall(world.serialize(archive));
   dynamics.serialize(archive);
   PetscFunctionReturn(0);
@@ -69,7 +70,6 @@ void Run<dim>::resume() {
   const CheckpointHeader found = recorder.check_checkpoint();
   auto folder = std::make_unique<ResultsFolder>(world.comm, options.directory, FolderUse::resume);
   Archive archive = read_checkpoint(world.comm, options.directory, found);
-  if (has_flow_stages(scene) && world.phases.prescribed) statics.recall_seeped_pressure(options.directory);
   unsigned long long mesh = 0;
   archive.serialize("mesh", mesh);
   int differs = mesh != world.mesh_fingerprint();

@@ -14,7 +14,10 @@ void Simulation<dim>::run() {
     run_.recorder.open();
   told([&] {
     if (run_.progress.number < 0) begin();
+    const long long before = run_.clock.steps;
     run_stages();
+    if (run_.options.resume && run_.clock.steps == before)
+      run_.recorder.note("nothing was left to do: the run had reached its end before it was resumed");
   });
   run_.recorder.close();
 }

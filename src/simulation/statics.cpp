@@ -6,6 +6,8 @@
 #include <limits>
 #include <numeric>
 
+#include "output/replace_file.h"
+#include "output/together.h"
 #include "physics/pores/soil_pores.h"
 #include "scene/reader.h"
 #include "scene/words.h"
@@ -159,21 +161,34 @@ template <int dim>
 void Statics<dim>::take_seeped_pressure() {
   const bool suction =  // laws that read it see it, others take it for none
       std::any_of(world_.laws.begin(), world_.laws.end(), [](const Law &law) { return reads_suction(law); });
-  seeped_ = std::make_shared<CellPressure<dim>>(world_.comm, flow_->pressure_of_cells(suction));
-  world_.pressure.take([found = seeped_](const double *x) { return (*found)(x); });
+  seeped_cells_ = flow_->pressure_of_cells(suction);
+  use_seeped_pressure();
+}
+
+/// Where no rank has a cell with such a pressure, there was no seepage yet.
+template <int dim>
+void Statics<dim>::use_seeped_pressure() {
+  const auto found = std::make_shared<const CellPressure<dim>>(world_.comm, seeped_cells_);
+  if (found->empty()) return;
+  seeped_ = found;
+  world_.pressure.take([found](const double *x) { return (*found)(x); });
 }
 
 template <int dim>
-void Statics<dim>::save_seeped_pressure(const std::string &directory) {
-  take_seeped_pressure();
-  seeped_->save(world_.comm, seeped_file(directory));
+void Statics<dim>::save_seeped_pressure(const std::string &directory) const {
+  const std::string file = directory + "/pore_pressure.csv";
+  on_first_rank(world_.comm, [&] {
+    if (seeped_)
+      replace_file(file, seeped_->table());
+    else
+      std::filesystem::remove(file);
+  });
 }
 
 template <int dim>
-void Statics<dim>::recall_seeped_pressure(const std::string &directory) {
-  if (!std::filesystem::exists(seeped_file(directory))) return;
-  seeped_ = std::make_shared<CellPressure<dim>>(seeped_file(directory));
-  world_.pressure.take([found = seeped_](const double *x) { return (*found)(x); });
+void Statics<dim>::serialize(Archive &archive) {
+  archive.serialize("seepage", seeped_cells_);
+  if (archive.reading()) use_seeped_pressure();
 }
 
 template <int dim>

@@ -34,9 +34,11 @@ class Statics {
   void to_particles();
   /// From now on the pressure of a drained scene is what the flow has found.
   void take_seeped_pressure();
-  /// Saves it, for a run that is resumed behind this stage, and takes it back. Collective.
-  void save_seeped_pressure(const std::string &directory);
-  void recall_seeped_pressure(const std::string &directory);
+  /// Replaces pore_pressure.csv by what the last seepage has found, or removes it if there was none. Collective.
+  void save_seeped_pressure(const std::string &directory) const;
+  /// What the state of a run has from it: the pressure that the last seepage left in the cells of this rank.
+  /// Collective.
+  void serialize(Archive &archive);
 
   /// Sum over the Gauss points of the plastic strain that takes strength from soil. Collective.
   double softening_strain() const;
@@ -70,6 +72,7 @@ class Statics {
   void start_stress();  // initial_stress.cpp
   void to_gauss_points();
   void pressure_from_particles();
+  void use_seeped_pressure();
   int cell_at(const Vec<dim> &x) const;
   void interpolate(int cell, const Barycentric<dim> &l, double *stress, double *history) const;
 
@@ -77,7 +80,8 @@ class Statics {
   const Clock &clock_;
   std::unique_ptr<PoreFlow<dim>> flow_;  ///< where pore fluids move
   std::unique_ptr<QuasiStatic<dim>> problem_;
-  std::shared_ptr<CellPressure<dim>> seeped_;
+  std::vector<double> seeped_cells_;  ///< of this rank, as CellPressure takes them
+  std::shared_ptr<const CellPressure<dim>> seeped_;
   bool current_ = false, moved_since_ = false;
 };
 

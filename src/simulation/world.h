@@ -97,6 +97,8 @@ class World {
   void check_bodies() const;                                        // world_checks.cpp
   void check_boundaries(const std::vector<Source> &) const;         // world_checks.cpp
   void check_something_acts(const std::vector<Source> &) const;     // world_checks.cpp
+  void check_boxes() const;                                         // world_checks.cpp
+  void check_one_of_two(const std::vector<Source> &) const;         // world_checks.cpp
   void check_seeded(const Body<dim> &, const std::string &) const;  // world_checks.cpp
   int id_stride() const;
   bool comes_or_goes(const BodySource &) const;

@@ -1,8 +1,10 @@
 // What only mesh, soil or particles can tell is wrong with a scene: complaints before the first step.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "physics/boundary/pore_conditions.h"
+#include "physics/boundary/prescribed_directions.h"
 #include "scene/reader.h"
 #include "scene/words.h"
 #include "simulation/world.h"
@@ -44,6 +46,49 @@ void World<dim>::check_bodies() const {
     for (size_t k = 0; k < body.dense.size(); ++k)
       check_lattice(path + ".dense." + std::to_string(k), body.dense[k].particles_per_cell);
   }
+  check_boxes();
+}
+
+/// Boxes in which there is nothing.
+template <int dim>
+void World<dim>::check_boxes() const {
+  const auto refuse_empty = [&](const std::string &path, int found, const std::string &why) {
+    MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, comm);
+    if (!found) scene.complain(path, why);
+  };
+  for (size_t k = 0; k < scene.mesh.refine.size(); ++k) {
+    const RefineBox &box = scene.mesh.refine[k];
+    int found = 0;  // cells are refined by x and y, for all z
+    for (const Cell<dim> &cell : mesh.cells) {
+      bool overlaps = true;
+      for (int d = 0; d < 2; ++d) {
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (const int node : cell.node)
+          low = std::min(low, mesh.position[node][d]), high = std::max(high, mesh.position[node][d]);
+        overlaps = overlaps && low < box.to[d] && high > box.from[d];
+      }
+      found |= overlaps;
+    }
+    refuse_empty("mesh.refine." + std::to_string(k), found,
+                 "is a box in which the mesh has no cell: move it into the section, or leave it out");
+  }
+  for (const BodySource &body : scene.body)
+    for (size_t k = 0; k < body.dense.size(); ++k) {
+      int found = 0;
+      for (const std::string &region : body.region)
+        for (const int c : mesh.region(region)) {
+          bool inside = true;
+          for (int d = 0; d < dim; ++d) {
+            double centre = 0;
+            for (const int node : mesh.cells[c].node) centre += mesh.position[node][d] / (dim + 1);
+            inside = inside && body.dense[k].from[d] <= centre && centre <= body.dense[k].to[d];
+          }
+          found |= inside;
+        }
+      refuse_empty("body." + body.name + ".dense." + std::to_string(k), found,
+                   "is a box in which no cell of the body has its centre: move it into the body, make it larger than a "
+                   "cell, or leave it out");
+    }
 }
 
 /// Soil on which nothing acts is at rest from the start, which nobody wants to know.
@@ -61,6 +106,47 @@ void World<dim>::check_something_acts(const std::vector<Source> &sources) const 
     if (scene.stage[k].until == StopWhen::equilibrium || scene.stage[k].until == StopWhen::rest)
       scene.complain("stage." + std::to_string(k) + ".until",
                      "waits for soil on which nothing acts: give gravity, or a boundary that loads or moves the soil");
+}
+
+/// Boundaries of which one has no effect, since another one decides on the same group. Loads on one group add up; a
+/// support and a boundary of the pores stand side by side.
+template <int dim>
+void World<dim>::check_one_of_two(const std::vector<Source> &sources) const {
+  const auto refuse = [&](const Source &one, const std::string &what, const std::string &group, const Source &other) {
+    scene.complain("boundary." + one.name + ".kind", what + " group \"" + group + "\", where boundary." + other.name +
+                                                         " does so too: leave one of the two out, or give each a "
+                                                         "group of its own");
+  };
+  for (size_t s = 0; s < sources.size(); ++s)
+    for (size_t other = 0; other < sources.size(); ++other) {
+      const Boundary &mine = sources[s].kind, &others = sources[other].kind;
+      const auto directions = mine.template on_soil<dim>().directions;
+      const auto of_other = others.template on_soil<dim>().directions;
+      for (const std::string &group : sources[s].groups) {
+        if (other == s || !std::count(sources[other].groups.begin(), sources[other].groups.end(), group)) continue;
+        if (other < s && mine.fluid_face() && others.fluid_face() && mine.needs_gas() == others.needs_gas())
+          refuse(sources[s], "decides on the pore fluids at", group, sources[other]);
+        if (!mesh.has_group(group)) continue;  // such as free_surface
+        int clash = 0, held = 0;               // the same direction twice; all directions by the other
+        for (const Facet<dim> &facet : mesh.facets(group)) {
+          PrescribedDirections<dim> prescribed;
+          int wanted = 0;
+          if (of_other)
+            for (const Vec<dim> &direction : of_other(facet.normal)) prescribed.add(direction, 0), ++wanted;
+          held |= prescribed.count == dim;
+          if (directions)
+            for (const Vec<dim> &direction : directions(facet.normal)) prescribed.add(direction, 1), ++wanted;
+          clash |= directions && of_other && prescribed.count < wanted;
+        }
+        int found[] = {clash, held};
+        MPI_Allreduce(MPI_IN_PLACE, found, 2, MPI_INT, MPI_MAX, comm);
+        if (other < s && found[0]) refuse(sources[s], "prescribes the motion of", group, sources[other]);
+        if (found[1] && !directions && !mine.fluids_only())
+          scene.complain("boundary." + sources[s].name + ".kind",
+                         "has no effect on group \"" + group + "\", which boundary." + sources[other].name +
+                             " holds in all directions: leave one of the two out, or give each a group of its own");
+      }
+    }
 }
 
 template <int dim>
@@ -85,6 +171,8 @@ void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
     for (const auto &[key, components] : source.kind.vectors)
       if (components != dim) scene.complain(path + "." + key, "must have " + std::to_string(dim) + " components");
   }
+  check_one_of_two(sources);
+  check_one_of_two(seepage_sources);
 }
 
 /// What the functions of place made of a body's particles. Collective.

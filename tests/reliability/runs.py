@@ -81,6 +81,9 @@ MODELS = {  # overrides of the scene
     "saturated": [*SHORT, "phases=saturated", "water.bulk_modulus=1e7"],
     "unsaturated": ["phases=unsaturated", *PORES, *RAIN],
     "three-phase": ["phases=three-phase", *PORES],
+    "seepage": ["phases=drained", "water.table=[[0, 0.3], [2, 0.1]]", "stage.0.kind=seepage", "stage.0.steady=true", "stage.0.damping=0",
+                "stage.0.reset_displacement=false", "boundary.base={kind='fixed'}",
+                "boundary.pond={kind='head', group='left', level=0.4}"],
 }
 INTEGRATORS = {"euler": [], "arkode": ["integrator.kind=arkode"]}
 
@@ -187,7 +190,7 @@ def readable(folder, results):
 
 
 def compare(folder, one, other):
-    """history.csv and the states in the checkpoint byte for byte, snapshots value by value. The number of a checkpoint counts those
+    """history.csv, pore_pressure.csv of seepage and the states in the checkpoint byte for byte, snapshots value by value. The number of a checkpoint counts those
     that were written, of which an interruption repeats or spares some: it is not compared."""
     a, b = folder / one, folder / other
     states = [{path.suffix: path.read_bytes() for path in (which / "checkpoint").iterdir() if path.name[0].isdigit()} for which in (a, b)]
@@ -198,6 +201,9 @@ def compare(folder, one, other):
             raise Wrong(f"the state of rank {rank[1:]} in the checkpoint differs from that of the run without interruption")
     if (a / "history.csv").read_bytes() != (b / "history.csv").read_bytes():
         raise Wrong("history.csv differs from that of the run without interruption")
+    pressures = [(which / "pore_pressure.csv").read_bytes() if (which / "pore_pressure.csv").exists() else None for which in (a, b)]
+    if pressures[0] != pressures[1]:
+        raise Wrong("pore_pressure.csv differs from that of the run without interruption")
     mine, whole = snapshots(folder, other), snapshots(folder, one)
     if mine.keys() != whole.keys():
         raise Wrong(f"the snapshots are {sorted(mine)}, not {sorted(whole)}")

@@ -122,6 +122,7 @@ class StaticStage : public StageRunner<dim> {
     if (sums.applied > 0) text << "; unbalanced force ratio of the particles that take it over " << sums.ratio();
     run_.recorder.note(text.str());
     run_.progress.met = true;
+    if (sets_pressure()) run_.statics.take_seeped_pressure();
     if (sets_pressure() && run_.recorder.writes()) run_.statics.save_seeped_pressure(run_.options.directory);
     run_.write_checkpoint();
   }

@@ -111,7 +111,8 @@ TEST_P(Resumed, IsTheSameToTheBit) {
 INSTANTIATE_TEST_SUITE_P(All, Resumed, testing::ValuesIn(variants),
                          [](const auto &variant) { return variant.param.name; });
 
-/// Pressures that seepage has found are there again when a drained run goes on behind it.
+/// Pressures that seepage has found are there again when a drained run goes on behind it, whatever has become of the
+/// file that shows them.
 TEST(ResumedBehindSeepage, KnowsItsPressures) {
   const Folder folder;
   folder.write("section.csv", good_section);
@@ -130,12 +131,15 @@ TEST(ResumedBehindSeepage, KnowsItsPressures) {
     const Ending ending = talus(folder, words);
     EXPECT_EQ(ending.status, 0) << ending.output;
   };
-  run("whole", "0.02", false), run("resumed", "0.01", false), run("resumed", "0.02", true);
+  run("whole", "0.02", false), run("resumed", "0.01", false);
+  folder.write("resumed/pore_pressure.csv", "damaged");
+  run("resumed", "0.02", true);
   const Ending ending = Program(folder, {PYTHON, "-c", R"(
 import h5py, numpy
 ends = [max(h5py.File(name + '/run.h5')['snapshots'].values(), key=lambda s: s.attrs['time']) for name in ('whole', 'resumed')]
 for field in ends[0]: assert numpy.array_equal(ends[0][field][...], ends[1][field][...]), field
 assert ends[0]['pore_pressure'][...].max() > 2e3
+assert open('whole/pore_pressure.csv').read() == open('resumed/pore_pressure.csv').read()
 print('the same')
 )"})
                             .end();
@@ -182,9 +186,11 @@ TEST_F(EndedRun, GoesOnWithALongerStage) {
   const Ending nothing_left = run({"--resume"});
   EXPECT_EQ(nothing_left.status, 0);
   EXPECT_TRUE(nothing_left.says("t = 0.05 / 0.05 s")) << nothing_left.output;
+  EXPECT_TRUE(nothing_left.says("nothing was left to do: the run had reached its end")) << nothing_left.output;
   EXPECT_EQ(content("results/history.csv"), history);
   const Ending ending = run({"--resume", "--set", "stage.0.duration=0.08", "--set", "output.interval=0.02"});
   EXPECT_EQ(ending.status, 0) << ending.output;
+  EXPECT_FALSE(ending.says("nothing was left to do")) << ending.output;
   const std::string longer = content("results/history.csv");
   EXPECT_EQ(longer.compare(0, history.size(), history), 0);
   EXPECT_NE(longer.find("\n0.08,"), std::string::npos);
@@ -220,6 +226,19 @@ TEST_F(EndedRun, IsNotResumedFromADamagedCheckpoint) {
   expect_refused(run({"--resume"}), {"results/checkpoint/header is no checkpoint"});
   std::filesystem::remove_all(folder_ / "results/checkpoint");
   expect_refused(run({"--resume"}), {"results contains no checkpoint"});
+}
+
+/// A snapshot that the disk does not give back is named, and its file stays.
+TEST_F(EndedRun, KeepsALastSnapshotThatCannotBeRead) {
+  folder_.write("results/run/000005.h5", "damaged");
+  const Ending ending = run({"--resume", "--set", "stage.0.duration=0.08"});
+  EXPECT_EQ(ending.status, 0) << ending.output;
+  EXPECT_TRUE(
+      ending.says("warning: a damaged snapshot is left out of run.h5 and run.xdmf: cannot open "
+                  "results/run/000005.h5"))
+      << ending.output;
+  EXPECT_EQ(content("results/run/000005.h5"), "damaged");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "results/run/000008.h5"));
 }
 
 TEST_F(EndedRun, OutlivesAFullDisk) {

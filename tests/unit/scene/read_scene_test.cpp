@@ -66,12 +66,12 @@ std::string refusal(const std::string &text, const std::vector<std::string> &ove
 }
 
 TEST(ReadScene, ComplainsAtAKeysPlaceAfterReadingToo) {
-  const Scene scene = parse_scene(dry, "slope.toml", {"mesh.size=0.5"});
+  const Scene scene = parse_scene(dry, "slope.toml", {"output.interval=0.5"});
   const int line =
       1 + static_cast<int>(std::count(dry.begin(), dry.begin() + static_cast<int>(dry.find("region =")), '\n'));
   EXPECT_EQ(complaint([&] { scene.complain("body.sand.region", "is empty"); }),
             "slope.toml line " + std::to_string(line) + ": body.sand.region = \"hill\" is empty");
-  EXPECT_EQ(complaint([&] { scene.complain("mesh.size", "is large"); }), "--set: mesh.size = 0.5 is large");
+  EXPECT_EQ(complaint([&] { scene.complain("output.interval", "is large"); }), "--set: output.interval = 0.5 is large");
 }
 
 TEST(ReadScene, ReadsADryScene) {
@@ -114,7 +114,8 @@ TEST(ReadScene, KeepsTheTextAsItWasRun) {
 TEST(ReadScene, OverridesStagesByPositionAndByName) {
   EXPECT_EQ(parse_scene(dry, "slope.toml", {"stage.0.duration=3"}).stage[0].duration, 3);
   EXPECT_EQ(parse_scene(dry, "slope.toml", {"stage.creep.duration=1 h"}).stage[0].duration, 3600);
-  EXPECT_EQ(refusal(dry, {"stage.crep.duration=3"}), "--set stage.crep.duration: the scene has no such entry `crep`");
+  EXPECT_EQ(refusal(dry, {"stage.crep.duration=3"}),
+            "--set stage.crep.duration: the scene has no such entry `crep`; there are creep, or by number 0");
 }
 
 TEST(ReadScene, ReadsFiles) {

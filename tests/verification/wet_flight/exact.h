@@ -12,6 +12,7 @@ namespace talus::rungs {
 inline void wet_flight(Rung &rung) {
   const auto fly = [&](int dimension, const std::string &phases, const std::vector<std::string> &more) {
     std::vector<std::string> overrides{"phases=" + phases};
+    if (phases != "saturated") overrides.push_back("water.suction=2 kPa");
     if (dimension == 3) overrides.push_back("body.block.velocity=[\"1.5\", \"0.75\", \"0\"]");
     overrides.insert(overrides.end(), more.begin(), more.end());
     const Run run = rung.run(in_dimension(dimension, overrides));
