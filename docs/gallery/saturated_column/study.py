@@ -149,14 +149,15 @@ def draw_sequence(folder):
     results = Results(folder)
     figure, grid = plt.subplots(len(TIMES), 1, figsize=(7.2, 6.4), sharex=True)
     figure.subplots_adjust(left=0.07, right=0.88, bottom=0.07, top=0.97, hspace=0.25)
-    frame = Frame((0, 0), (0.5, 0.11), 900)
-    for axes, t in zip(grid, TIMES):
-        snapshot = min(results.snapshots, key=lambda each: abs(each.time - t))
+    snapshots = [min(results.snapshots, key=lambda each: abs(each.time - t)) for t in TIMES]
+    right = 0.05 * np.ceil(max(each.position()[:, 0].max() for each in snapshots) / 0.05)  # the farthest grain is seen
+    frame = Frame((0, 0), (right, 0.11), 900)
+    for axes, snapshot in zip(grid, snapshots):
         owner = tiles(snapshot.position()[:, :2], spacing_of(results), frame)
         values = snapshot.scalar("pore_pressure")[0]
         picture = axes.imshow(np.ma.array(values[np.maximum(owner, 0)], mask=owner < 0), origin="lower", extent=frame.extent(), interpolation="nearest",
                               cmap="RdBu_r", vmin=-1000, vmax=1000)
-        axes.set(xlim=(0, 0.5), ylim=(0, 0.11), aspect="equal")
+        axes.set(xlim=(0, right), ylim=(0, 0.11), aspect="equal")
         axes.set_title(style.at_time(snapshot.time, 1), loc="left", pad=3)
     grid[-1].set_xlabel("distance from the wall [m]")
     place = figure.add_axes((0.91, 0.3, 0.016, 0.4))
