@@ -56,8 +56,7 @@ struct FrictionalStrength {
       return std::string(std::isnan(cohesion) && residual_cohesion > 0 ? "residual_cohesion"
                                                                        : "residual_friction_angle") +
              " must be 0, or negative (the peak), where the peak is a function of place: one number is no residual "
-             "value "
-             "of many peaks";
+             "value of many peaks";
     if (dilation_angle > friction_angle) return above("dilation_angle", "friction_angle", friction_angle, degree);
     if (residual_cohesion > cohesion) return above("residual_cohesion", "cohesion", cohesion, pascal);
     if (residual_friction_angle > friction_angle)

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <string_view>
 
-#include "scene/quantity.h"
 #include "scene/reader.h"
 
 namespace talus {
@@ -25,8 +24,8 @@ struct StrengthByPlace::Reader {
   TableReader reader;
   StrengthByPlace &strength;
   void by_place(const char *key, double, bool, Unit unit, Range range, const char *meaning) {
-    Key &one = std::string_view(key) == "cohesion" ? strength.cohesion_ : strength.friction_angle_;
-    one = {key, unit, range, reader.function_of_place(key, unit, range, meaning)};
+    Function &one = std::string_view(key) == "cohesion" ? strength.cohesion_ : strength.friction_angle_;
+    one = reader.function_of_place(key, unit, range, meaning);
   }
   void number(const char *, double, Unit, Range, const char *) {}
 };
@@ -40,35 +39,20 @@ StrengthByPlace::StrengthByPlace(const DeferredTable &body, const Law &law) {
 StrengthShares StrengthByPlace::shares(const Law &law, double x, double y, double z) const {
   StrengthShares found;
   with_strength(law, [&](const auto &one) {
-    if (cohesion_.of.given() && one.cohesion > 0) found.cohesion = cohesion_.of(x, y, z, 0) / one.cohesion;
-    if (friction_angle_.of.given() && one.friction_angle > 0)
-      found.friction = friction_angle_.of(x, y, z, 0) / one.friction_angle;
+    if (cohesion_.given() && one.cohesion > 0) found.cohesion = cohesion_(x, y, z, 0) / one.cohesion;
+    if (friction_angle_.given() && one.friction_angle > 0)
+      found.friction = friction_angle_(x, y, z, 0) / one.friction_angle;
   });
   return found;
 }
 
 void StrengthByPlace::widen(StrengthRange &range, double x, double y, double z) const {
-  const auto take = [&](const Key &key, std::array<double, 2> &of) {
-    if (!key.of.given()) return;
-    const double value = key.of(x, y, z, 0);
+  const auto take = [&](const Function &value_at, std::array<double, 2> &of) {
+    if (!value_at.given()) return;
+    const double value = value_at(x, y, z, 0);
     of = {std::fmin(of[0], value), std::fmax(of[1], value)};  // NaN: no place so far
   };
   take(cohesion_, range.cohesion), take(friction_angle_, range.friction_angle);
-}
-
-StrengthByPlace::Trouble StrengthByPlace::trouble(double x, double y, double z) const {
-  for (const Key &key : {cohesion_, friction_angle_}) {
-    if (!key.of.given()) continue;
-    const double value = key.of(x, y, z, 0);
-    if (value >= key.range.low * key.unit.si && value <= key.range.high * key.unit.si) continue;
-    return {key.name,
-            "must be a number from " + shortest(key.range.low) + " to " + shortest(key.range.high) + " " +
-                key.unit.name + " in the whole body, and is " +
-                (!std::isfinite(value) ? "no number"
-                                       : shortest(std::round(value / key.unit.si * 1e6) / 1e6) + " " + key.unit.name) +
-                " at "};
-  }
-  return {};
 }
 
 StrengthRange strength_of(const Law &law) {

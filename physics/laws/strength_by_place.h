@@ -15,33 +15,22 @@ struct StrengthShares {
   double cohesion = 1, friction = 1;
 };
 
-/// The functions that the law in the table of a body has in place of numbers.
+/// The functions that the law in the table of a body has in place of numbers. Values that their keys do not admit are
+/// faults of the scene (`Scene::function_fault`).
 class StrengthByPlace {
  public:
   StrengthByPlace(const DeferredTable &body, const Law &law);
 
-  bool given() const { return cohesion_.of.given() || friction_angle_.of.given(); }
+  bool given() const { return cohesion_.given() || friction_angle_.given(); }
   /// Of a law that holds the largest values.
   StrengthShares shares(const Law &law, double x, double y, double z) const;
   /// Widens `range`, which begins with NaN, to the values at a place.
   void widen(StrengthRange &range, double x, double y, double z) const;
 
-  struct Trouble {
-    std::string key, sentence;  ///< the sentence goes on from the key; empty: no trouble
-  };
-  /// What is wrong with the values at a place: outside of the range of their key, or no number.
-  Trouble trouble(double x, double y, double z) const;
-
  private:
-  struct Key {
-    const char *name = nullptr;
-    Unit unit = one;
-    Range range{};
-    Function of;  ///< not given: the law's number
-  };
   /// Visits the keys of a strength.
   struct Reader;
-  Key cohesion_, friction_angle_;
+  Function cohesion_, friction_angle_;  ///< not given: the law's number
 };
 
 /// c and phi of a law's numbers: NaN in place of functions.

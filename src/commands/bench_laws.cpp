@@ -63,18 +63,16 @@ double time_of(const Law &law, bool with_tangent) {
     increment[i].rotation = {};
     for (int d = 0; d < (dim == 2 ? 1 : 3); ++d) increment[i].rotation[4 * d] = 1;
   }
-  const StressPoints<dim> points{count,
-                                 stress.data(),
-                                 history.data(),
-                                 stress_out.data(),
-                                 history_out.data(),
-                                 cell.data(),
-                                 increment.data(),
-                                 element_size.data(),
-                                 suction.data(),
-                                 nullptr,
-                                 nullptr,
-                                 1e-3};
+  const StressPoints<dim> points{.count = count,
+                                 .stress_in = stress.data(),
+                                 .history_in = history.data(),
+                                 .stress_out = stress_out.data(),
+                                 .history_out = history_out.data(),
+                                 .cell = cell.data(),
+                                 .increment = increment.data(),
+                                 .size = element_size.data(),
+                                 .suction = suction.data(),
+                                 .time_step = 1e-3};
   double best = 1e30;
   for (int round = 0; round < rounds; ++round) {
     PetscLogDouble start, end;

@@ -67,20 +67,12 @@ void World<dim>::find_strengths() {
       for (const int order : {1, 2}) add(stress_quadrature<dim>(order).point);
       add(lattice<dim>(particles_per_cell<dim>(source)));
       for (const DenseBox &box : source.dense) add(lattice<dim>(box.particles_per_cell));
-      StrengthByPlace::Trouble trouble;
-      Vec<dim> where{};
-      for (int c = 0; c < mesh.cell_count() && trouble.key.empty(); ++c)
-        for (size_t k = 0; body_of[c] == static_cast<int>(b) && k < places.size() && trouble.key.empty(); ++k) {
-          where = place_in(mesh, c, places[k]);
-          const double z = dim == 3 ? where[dim - 1] : 0;
-          trouble = functions.trouble(where[0], where[1], z);
-          functions.widen(range, where[0], where[1], z);
+      for (int c = 0; c < mesh.cell_count(); ++c)
+        for (size_t k = 0; body_of[c] == static_cast<int>(b) && k < places.size(); ++k) {
+          const Vec<dim> where = place_in(mesh, c, places[k]);
+          functions.widen(range, where[0], where[1], dim == 3 ? where[dim - 1] : 0);
         }
-      const bool bad = !trouble.key.empty();
-      const std::string key = text_of_first(comm, bad, trouble.key),
-                        sentence = text_of_first(comm, bad, trouble.sentence),
-                        place = place_of_first<dim>(comm, bad, where);
-      if (!key.empty()) scene.complain(path + "." + key, sentence + place);
+      if (const std::string fault = function_fault(); !fault.empty()) throw SceneError(fault);
       double ends[4] = {-range.cohesion[0], range.cohesion[1], -range.friction_angle[0], range.friction_angle[1]};
       for (double &end : ends)
         if (std::isnan(end)) end = std::numeric_limits<double>::lowest();  // no cell on this rank

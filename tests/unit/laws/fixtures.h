@@ -61,18 +61,16 @@ struct Points {
       increment[i].rotation = {R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2)};
   }
   StressPoints<dim> view() {
-    return {static_cast<int>(stress.size()),
-            stress[0].data(),
-            history.data(),
-            stress[0].data(),
-            history.data(),
-            cell.data(),
-            increment.data(),
-            element_size.data(),
-            suction.data(),
-            nullptr,
-            nullptr,
-            1e-3};
+    return {.count = static_cast<int>(stress.size()),
+            .stress_in = stress[0].data(),
+            .history_in = history.data(),
+            .stress_out = stress[0].data(),
+            .history_out = history.data(),
+            .cell = cell.data(),
+            .increment = increment.data(),
+            .size = element_size.data(),
+            .suction = suction.data(),
+            .time_step = 1e-3};
   }
   void update() { update_stress<dim>(law, view()); }
   void admit() {

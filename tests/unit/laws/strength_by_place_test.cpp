@@ -105,25 +105,29 @@ TEST(StrengthByPlace, is_read_from_expressions) {
   EXPECT_NEAR(std::get<MohrCoulomb>(law).friction_angle, 30 * degree.si, 1e-15);
   EXPECT_DOUBLE_EQ(strength.shares(law, 3, 6, 0).cohesion, 26. / 29);
   EXPECT_EQ(strength.shares(law, 3, 6, 0).friction, 1);
-  EXPECT_EQ(strength.trouble(0, 0, 0).key, "");
-  EXPECT_EQ(strength.trouble(0, 30, 0).key, "cohesion");
   const DeferredTable numbers = table("law = \"drucker_prager\"\ncohesion = \"20 kPa\"\nfriction_angle = 30\n");
   EXPECT_FALSE(reads_shares(read_law(numbers)));
   EXPECT_FALSE(StrengthByPlace(numbers, read_law(numbers)).given());
 }
 
-/// Values outside of the range of the key, and what is no number, are found where they are; 70 degrees are allowed.
+/// Values outside of the range of the key, and what is no number, are faults that name their place; 70 degrees are
+/// allowed.
 TEST(StrengthByPlace, is_checked_at_its_places) {
-  const DeferredTable body =
-      table("law = \"hencky_drucker_prager\"\ncohesion = \"1 / (x != 3)\"\nfriction_angle = \"x * 10\"\n");
-  const StrengthByPlace strength(body, read_law(body));
-  EXPECT_EQ(strength.trouble(7, 0, 0).key, "");
-  EXPECT_EQ(strength.trouble(3, 0, 0).key, "cohesion");
-  EXPECT_NE(strength.trouble(3, 0, 0).sentence.find("is no number at"), std::string::npos);
-  EXPECT_EQ(strength.trouble(8, 0, 0).key, "friction_angle");
-  EXPECT_NE(strength.trouble(8, 0, 0).sentence.find("from 0 to 70 deg in the whole body, and is 80 deg at"),
-            std::string::npos);
-  EXPECT_EQ(strength.trouble(-1, 0, 0).key, "friction_angle");
+  const auto fault_at = [](double x) {
+    const DeferredTable body =
+        table("law = \"hencky_drucker_prager\"\ncohesion = \"1 / (x != 3)\"\nfriction_angle = \"x * 10\"\n");
+    const StrengthByPlace strength(body, read_law(body));
+    StrengthRange range = strength_of(read_law(body));
+    strength.widen(range, x, 0, 0);
+    return body.reader->function_fault();
+  };
+  const auto says = [&](double x, const char *words) { return fault_at(x).find(words) != std::string::npos; };
+  EXPECT_EQ(fault_at(7), "");
+  EXPECT_TRUE(says(3, "cohesion = \"1 / (x != 3)\" must be a number from 0 to 1e9 Pa; it is no number at x = 3 m"))
+      << fault_at(3);
+  EXPECT_TRUE(says(8, "friction_angle = \"x * 10\" must be a number from 0 to 70 deg; it is 80 deg at x = 8 m"))
+      << fault_at(8);
+  EXPECT_TRUE(says(-1, "it is -10 deg at x = -1 m")) << fault_at(-1);
 }
 
 std::string complaint(const std::string &keys) {
