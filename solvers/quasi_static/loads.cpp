@@ -85,13 +85,14 @@ void Loads<dim>::add_volume(int c, double t, std::vector<double> &force) const {
 }
 
 template <int dim>
-void Loads<dim>::force(double t, std::vector<double> &force) const {
+void Loads<dim>::force(double t, std::vector<double> &force, const std::function<bool(int cell)> &counts) const {
   const ElementNodes<dim> &nodes = soil_.nodes();
   force.assign(static_cast<size_t>(nodes.count()) * dim, 0);
   for (int c = 0; c < soil_.mesh().cell_count(); ++c)
-    if (soil_.active(c)) add_volume(c, t, force);
+    if (soil_.active(c) && (!counts || counts(c))) add_volume(c, t, force);
   std::array<double, element_nodes<dim>(2)> shape;
-  for (const LoadedFacet &load : facets_)
+  for (const LoadedFacet &load : facets_) {
+    if (counts && !counts(load.facet.cell)) continue;
     for (size_t q = 0; q < facet_rule_.point.size(); ++q) {
       Vec<dim> x{};
       for (int a = 0; a < dim; ++a)
@@ -102,6 +103,7 @@ void Loads<dim>::force(double t, std::vector<double> &force) const {
       for (size_t a = 0; a < load.node.size(); ++a)
         for (int d = 0; d < dim; ++d) force[load.node[a] * dim + d] += area * shape[a] * traction[d];
     }
+  }
 }
 
 /// Force per area of a boundary that loads, and of open water [Pa].

@@ -1,6 +1,9 @@
 #pragma once
 /// Loads on the soil of a quasi-static problem: weight, pore pressure, body accelerations, and the loads and the open
 /// water that boundaries put on faces.
+#include <functional>
+#include <vector>
+
 #include "physics/boundary/conditions.h"
 #include "solvers/quasi_static/soil_elements.h"
 
@@ -23,8 +26,8 @@ class Loads {
   }
   /// Finds the loaded faces of the soil that is active now.
   void activate();
-  /// Forces on local nodes at time t, this rank's part [N].
-  void force(double t, std::vector<double> &force) const;
+  /// Forces on local nodes at time t, this rank's part [N]; of all active cells or of those that `counts` names.
+  void force(double t, std::vector<double> &force, const std::function<bool(int cell)> &counts = {}) const;
   /// Mean displacement of each loaded face, by source [m]. Collective.
   PetscErrorCode mean_displacement(std::vector<Vec<dim>> &face) const;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace talus {
 
@@ -134,7 +135,10 @@ PetscErrorCode QuasiStatic<dim>::begin_path(double load_time) {
   PetscFunctionBeginUser;
   soil_.internal_force(internal, false);
   loads_.force(load_time, external);
-  for (size_t i = 0; i < external.size(); ++i) external[i] -= internal[i];
+  const Vec<dim> now = std::exchange(loads_.acceleration, borne_acceleration_);
+  loads_.force(load_time, unborne_, [this](int cell) { return soil_.stressed(cell); });
+  loads_.acceleration = now, share_ = 0;
+  for (size_t i = 0; i < external.size(); ++i) unborne_[i] = external[i] - unborne_[i], external[i] -= internal[i];
   PetscCall(soil_.nodes().add_to_global(external, out_of_balance_));
   PetscCall(unknowns_.turn(out_of_balance_, true));
   PetscFunctionReturn(0);
@@ -144,7 +148,7 @@ template <int dim>
 PetscErrorCode QuasiStatic<dim>::prepare(double share, double load_time, double time, double dt, ::Vec x) {
   std::vector<double> external, motion;
   PetscFunctionBeginUser;
-  stopped_ = false, scale_open_ = true;
+  stopped_ = false, scale_open_ = true, trial_share_ = share;
   soil_.find_suction(load_time);
   loads_.force(load_time, external);
   PetscCall(soil_.nodes().add_to_global(external, target_));
@@ -228,6 +232,7 @@ PetscErrorCode QuasiStatic<dim>::commit(::Vec x, bool softening) {
   PetscFunctionBeginUser;
   PetscCall(unknowns_.displacement_of(x, true, u));
   soil_.commit(u, softening);
+  share_ = trial_share_, borne_acceleration_ = loads_.acceleration;
   PetscFunctionReturn(0);
 }
 
@@ -242,6 +247,7 @@ PetscErrorCode QuasiStatic<dim>::boundary_forces(double load_time, std::vector<V
   soil_.internal_force(reaction, false);
   loads_.force(load_time, external);
   for (size_t i = 0; i < reaction.size(); ++i) reaction[i] -= external[i];
+  for (size_t i = 0; share_ < 1 && i < reaction.size(); ++i) reaction[i] += (1 - share_) * unborne_[i];
   PetscCall(nodes.sum(reaction));
   force.assign(sources_.size(), Vec<dim>{});
   for (int i = 0; i < nodes.count(); ++i) {

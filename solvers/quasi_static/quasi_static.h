@@ -39,7 +39,8 @@ class QuasiStatic {
         data_(std::move(data)),
         soil_(mesh, scene, laws, data_),
         loads_(soil_, scene, sources, data_),
-        unknowns_(soil_, supports_) {}
+        unknowns_(soil_, supports_),
+        borne_acceleration_(loads_.acceleration) {}
   QuasiStatic(const QuasiStatic &) = delete;  // its parts know each other's place
 
   /// Takes these bodies (by their place in the scene) into the problem and leaves out the others. Collective.
@@ -76,7 +77,8 @@ class QuasiStatic {
   const SoilElements<dim> &soil() const { return soil_; }
   const Supports<dim> &supports() const { return supports_; }
   /// Force of each boundary on the soil [N] and mean displacement of each loaded face [m], at the last converged state.
-  /// Collective.
+  /// On the way along a path the loads that the soil did not bear at its begin count by the share of the path, as they
+  /// do in the equilibrium. Collective.
   PetscErrorCode boundary_forces(double load_time, std::vector<Vec<dim>> &force, std::vector<Vec<dim>> &face) const;
   long long unknowns() const { return unknowns_.count(); }
   bool direct() const { return direct_; }  ///< the linear solver
@@ -103,7 +105,10 @@ class QuasiStatic {
   NonlinearSolver solver_;
   Vector x_, f_, out_of_balance_, target_, lifted_;
   double force_scale_ = 0,
-         stiffness_scale_ = 1;  // sizes of the forces before the first iteration [N] and of stiffness [Pa]
+         stiffness_scale_ = 1;          // sizes of the forces before the first iteration [N] and of stiffness [Pa]
+  double share_ = 1, trial_share_ = 1;  ///< of the path, at the converged state and at the one that is being solved
+  std::vector<double> unborne_;         ///< [local nodes][dim] loads at the begin of the path that come along it [N]
+  Vec<dim> borne_acceleration_;         ///< under which the soil was at the last converged state [m/s2]
   bool scale_open_ = true;
   bool direct_ = true, stopped_ = false;
 };

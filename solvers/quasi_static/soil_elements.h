@@ -3,6 +3,7 @@
 /// docs/theory/finite_elements.md section 2: Gauss points with stress and history, which go through the laws' own
 /// stress update; what nodal displacement makes of them; internal forces and element stiffness. Strains are small:
 /// geometry is that of the mesh.
+#include <algorithm>
 #include <functional>
 
 #include "physics/laws/update_stress.h"
@@ -108,6 +109,11 @@ class SoilElements {
   bool active(int cell) const { return active_[cell]; }
   const std::vector<char> &active() const { return active_; }
   int body_of(int cell) const { return body_of_[cell]; }
+  /// Has the cell, which is active, stress at the last converged state? Soil without stress bears no loads yet.
+  bool stressed(int cell) const {
+    const auto first = points_[body_of_[cell]].stress.begin() + first_point_[cell] * components;
+    return std::any_of(first, first + points_per_cell() * components, [](double s) { return s != 0; });
+  }
   /// First point of a cell in its body; -1 if the body is not there.
   int first_point(int cell) const { return first_point_[cell]; }
   const Quadrature<dim> &rule() const { return rule_; }

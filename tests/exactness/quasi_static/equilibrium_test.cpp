@@ -46,6 +46,22 @@ TEST(QuasiStatic, patch_test) {
     }
 }
 
+/// Along a path the loads come by shares, at the nodes that a support holds as inside: soil without stress gets its
+/// weight by shares, soil that bears it keeps it, and an upward earthquake of 0.2 takes it off by shares again.
+TEST(QuasiStatic, boundaries_bear_the_share_of_the_path) {
+  std::string text = "gravity = 10\n" + box + "density = 2000\n[boundary.base]\nkind = \"fixed\"\n";
+  for (const char *keys : {"name = \"weight\"\n", "name = \"rest\"\n", "seismic_coefficient = [0, 0.2]\n"})
+    text += std::string("[[stage]]\nkind = \"quasi_static\"\nduration = 1\nload_steps = 4\n") + keys;
+  const Solved solved = solve(text);
+  const std::vector<double> time = solved.history.column("time_s"), force = solved.history.column("base_force_y_N");
+  constexpr double weight = 2000 * 10;  // of the unit square
+  ASSERT_EQ(time.size(), 13u);
+  for (size_t k = 1; k < time.size(); ++k) {
+    const double share = time[k] < 1 ? time[k] : time[k] < 2 ? 1 : 1 - 0.2 * (time[k] - 2);
+    EXPECT_NEAR(force[k] / weight, share, 1e-9) << time[k];  // round-off of a linear solve, far above 1e-12
+  }
+}
+
 /// The same on faces that are not axes, held by oblique rollers: a block that is pressed uniformly.
 TEST(QuasiStatic, pressure_between_rollers) {
   for (const int dim : {2, 3}) {
