@@ -14,6 +14,15 @@
 
 namespace talus {
 
+/// Elevation of a polyline of points [x, elevation] at x, level beyond its ends [m].
+inline double elevation_of(const std::vector<std::vector<double>> &points, double x) {
+  if (points.size() == 1) return points[0][1];
+  size_t k = 1;
+  while (k + 1 < points.size() && points[k][0] < x) ++k;
+  const double s = std::clamp((x - points[k - 1][0]) / (points[k][0] - points[k - 1][0]), 0., 1.);
+  return points[k - 1][1] + s * (points[k][1] - points[k - 1][1]);
+}
+
 /// Whose water: a number of a body, or that of the [water] table, which also stands above the ground.
 inline constexpr int common_water = -1;
 
@@ -66,13 +75,7 @@ class PrescribedPressure {
   /// Elevation of the water table at x [m].
   double table(double x, double t, int soil) const {
     const Table &points = soil >= 0 && !table_of_[soil]->empty() ? *table_of_[soil] : water_->table;
-    if (points.empty()) return -1e300;
-    size_t k = 1;
-    while (k + 1 < points.size() && points[k][0] < x) ++k;
-    const double level = water_->level(t);
-    if (points.size() == 1) return points[0][1] + level;
-    const double s = std::clamp((x - points[k - 1][0]) / (points[k][0] - points[k - 1][0]), 0., 1.);
-    return points[k - 1][1] + s * (points[k][1] - points[k - 1][1]) + level;
+    return points.empty() ? -1e300 : elevation_of(points, x) + water_->level(t);
   }
   /// What is not given by a table; no number where there is none.
   double found(const Vec<dim> &x, int soil) const {

@@ -13,6 +13,8 @@
 
 #include "base/version.h"
 #include "commands/commands.h"
+#include "output/pictures.h"
+#include "simulation.h"
 
 namespace {
 
@@ -57,6 +59,11 @@ int perform(int argc, char **argv, MPI_Comm failures, int rank) {
     if (speaks) std::fprintf(stderr, "talus: %s\n", error.what());
     end_together(failures, rank, error.what(), 2);
     return 2;
+  } catch (const talus::BrokenOff &error) {
+    if (speaks) std::fprintf(stderr, "talus: %s\n", error.what());
+    end_together(failures, rank, error.what(), 1);
+    if (speaks) (void)talus::draw_pictures(error.results, {.fields = error.fields, .times = {}});  // no rank waits now
+    return 1;
   } catch (const std::exception &error) {
     if (speaks) std::fprintf(stderr, "talus: %s\n", error.what());
     end_together(failures, rank, error.what(), 1);

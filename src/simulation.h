@@ -8,6 +8,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "meshes/mesh_report.h"
@@ -24,12 +25,21 @@ class RunError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The same, of a run that has left snapshots from which pictures and a report can be drawn.
+class BrokenOff : public RunError {
+ public:
+  BrokenOff(const std::string &cause, std::string folder, std::vector<std::string> wanted)
+      : RunError(cause), results(std::move(folder)), fields(std::move(wanted)) {}
+  std::string results;              ///< their folder
+  std::vector<std::string> fields;  ///< that the scene wants drawn; empty: the usual ones
+};
+
 struct RunOptions {
   std::string directory;    ///< of the results; empty: nothing is written
   bool resume = false;      ///< go on from the checkpoint in the directory
   bool replace = false;     ///< results of another run in the directory are given up
   bool checkpoints = true;  ///< write them, so that the run can be resumed
-  bool pictures = true;     ///< draw them when the run ends
+  bool pictures = true;     ///< draw them when the run ends; if it breaks off, who catches BrokenOff draws them
   bool screen = true;       ///< progress line
   bool gauss_points =
       false;          ///< snapshots of quasi-static stages hold Gauss points, not the particles they are handed to
@@ -68,6 +78,17 @@ struct BodyReport {
   StrengthRange strength;                            ///< over the places of the body at the start
 };
 
+/// A face of the soil at the start: beyond it is no soil.
+struct SoilFace {
+  std::array<std::array<double, 3>, 3> corner{};  ///< one per dimension [m]
+  std::array<double, 3> normal{};                 ///< unit vector, out of the soil
+  double area = 0;                                ///< [m2], in 2D per metre of thickness [m]
+  int body = 0;                                   ///< number of the body behind it
+  bool ends_mesh = false;                         ///< no cell beyond either
+  bool held = false;                              ///< by a support, a rigid base or a dashpot
+  bool conditioned = false;                       ///< held or loaded: a boundary says what is there
+};
+
 class AnySimulation {
  public:
   virtual ~AnySimulation() = default;
@@ -88,7 +109,9 @@ class AnySimulation {
   virtual double critical_step() = 0;            ///< of the present state, over all ranks [s]
   virtual MeshReport mesh_report() const = 0;    ///< collective
   virtual std::vector<BodyReport> bodies() = 0;  ///< collective
-  virtual Snapshot snapshot() = 0;               ///< particles of this rank
+  /// Surface of the soil at the start, of all ranks. Collective.
+  virtual std::vector<SoilFace> surface() const = 0;
+  virtual Snapshot snapshot() = 0;  ///< particles of this rank
   virtual const HistoryTable &history() const = 0;
   virtual const std::vector<Event> &events() const = 0;
   virtual const Breakdown &breakdown() const = 0;

@@ -395,8 +395,8 @@ Needs find_needs(Scene &scene) {
   const std::vector<Softening> softening = softening_of(scene, laws, reports);
   for (std::size_t b = 0; b < reports.size(); ++b) needs.bodies[b].softening = softening[b];
   needs.brittle = brittle_soils(scene, laws, reports);
-  needs.unlikely = unlikely_values(scene, laws);
-  for (const auto &more : {unlikely_surroundings(scene, reports), coarse_cells(scene, reports)})
+  needs.unlikely = unlikely_values(scene, laws, reports);
+  for (const auto &more : {unlikely_surroundings(scene, reports, simulation->surface()), coarse_cells(scene, reports)})
     needs.unlikely.insert(needs.unlikely.end(), more.begin(), more.end());
   const StepRule rule = step_rule(read_integrator(scene.integrator, fluids_move(scene.phases)));
   needs.critical_step = rule.bound == FrequencyBound::mesh || scene.water.drag == PoreDrag::at_start

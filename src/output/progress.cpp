@@ -131,7 +131,7 @@ void Progress::note(const std::string &text) {
 }
 
 void Progress::failure(const std::string &text) {
-  if (prints_) log(text);
+  if (prints_) log("the run broke off: " + text);
 }
 
 void Progress::finish() {

@@ -231,6 +231,9 @@ void Recorder<dim>::fail(const std::string &cause) {
   if (results_) {
     note_steps();
     results_->progress.failure(message.str());
+    if (options_.pictures && !interrupted && results_->file.last_step() >= 0)
+      throw BrokenOff(message.str() + "; report.html there shows how far it came", options_.directory,
+                      scene_.output.picture);
   }
   throw RunError(message.str());
 }

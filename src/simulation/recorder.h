@@ -53,7 +53,8 @@ class Recorder {
   /// Says what happened, now or at other times.
   void note(const std::string &text);
   void note(const std::string &text, double time, double load_time);
-  /// Ends the run: throws RunError with the cause, where the run stood and what is left of it.
+  /// Ends the run: throws RunError with the cause, where the run stood and what is left of it; BrokenOff if pictures of
+  /// that are wanted.
   [[noreturn]] void fail(const std::string &cause);
 
   /// Fluid masses count from the next row on: pores have been filled anew.

@@ -23,6 +23,7 @@ class Simulation final : public AnySimulation {
   double critical_step() override { return run_.dynamics.critical_step(); }
   MeshReport mesh_report() const override { return run_.world.mesh.report(); }
   std::vector<BodyReport> bodies() override { return run_.world.report(); }
+  std::vector<SoilFace> surface() const override { return run_.world.surface(); }
   Snapshot snapshot() override { return run_.recorder.snapshot(); }
   const HistoryTable &history() const override { return run_.recorder.history(); }
   const std::vector<Event> &events() const override { return run_.recorder.events(); }

@@ -2,9 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
 
 #include "base/units.h"
+#include "physics/prescribed_pressure.h"
 #include "simulation/failure.h"
 
 namespace talus {
@@ -20,6 +25,7 @@ struct Doubt {
 };
 
 constexpr const char *axes = "xyz";
+constexpr double least_cohesion = 20;  ///< [Pa]; less is doubted whatever the height
 
 /// The box around the cells of all bodies that are there.
 struct Extent {
@@ -63,9 +69,220 @@ void doubt_table(const Scene &scene, const Extent &soil, std::vector<std::string
                         " m, the lowest soil at " + rounded(soil.low[1]) + " m): it gives no pore pressure");
 }
 
+// ---- open water ----
+
+/// Elevations that water.level adds to tables in the course of the stages [m]. An expression is asked for the start
+/// alone: a value that its key does not admit would end the run, also one that never comes so far.
+std::vector<double> levels_of(const Scene &scene) {
+  constexpr int intervals = 50;
+  double end = 0;
+  for (const Stage &stage : scene.stage)
+    if (!stage.hold_loads) end += stage.duration;
+  const Function &level = scene.water.level;
+  std::vector<double> levels{level(0)};
+  for (int k = 1; k <= intervals && level.depends_on_time() && !level.uses("t"); ++k)
+    levels.push_back(level(end * k / intervals));
+  return levels;
+}
+
+/// May water stand on the face? Not on what faces down, and not where a support is.
+bool may_be_flooded(const SoilFace &face) { return !face.held && face.normal[1] > -1e-6; }
+
+/// Ground under water that hangs together.
+struct Pond {
+  double west, east;       ///< its ends [m]
+  double lowest, highest;  ///< surface of the water [m]
+  double depth;            ///< greatest [m]
+  void widen(double x, double surface, double ground) {
+    west = std::min(west, x), east = std::max(east, x);
+    lowest = std::min(lowest, surface), highest = std::max(highest, surface);
+    depth = std::max(depth, surface - ground);
+  }
+};
+
+/// The ponds that stand on the surface of the soil where water rises to `elevation(x)`; less than `film` deep counts as
+/// dry.
+std::vector<Pond> ponds_of(const std::vector<SoilFace> &surface, int dimension, double film,
+                           const std::function<double(double)> &elevation) {
+  std::map<std::array<double, 3>, int> number;  // of the corners under water
+  std::vector<int> joined;                      // a corner of the same pond with a smaller number, or itself
+  const auto first = [&](int corner) {
+    while (joined[corner] != corner) corner = joined[corner] = joined[joined[corner]];
+    return corner;
+  };
+  for (const SoilFace &face : surface) {
+    int before = -1;
+    for (int a = 0; a < dimension && may_be_flooded(face); ++a) {
+      const auto &x = face.corner[a];
+      if (elevation(x[0]) - x[1] <= film) continue;
+      const auto [entry, added] = number.try_emplace(x, static_cast<int>(joined.size()));
+      if (added) joined.push_back(entry->second);
+      if (before >= 0) joined[first(entry->second)] = first(before);
+      before = entry->second;
+    }
+  }
+  std::map<int, Pond> ponds;
+  for (const auto &[x, corner] : number) {
+    const double level = elevation(x[0]);
+    ponds.try_emplace(first(corner), Pond{x[0], x[0], level, level, 0}).first->second.widen(x[0], level, x[1]);
+  }
+  std::vector<Pond> list;
+  for (const auto &[corner, pond] : ponds) list.push_back(pond);
+  return list;
+}
+
+constexpr double visible = 0.01;  // of the height of the soil: what no table follows the ground more closely than
+
+/// Open water rests on the ground with its weight, so that a table that stands above the ground has to be level there.
+void doubt_ponds(const Scene &scene, double height, const std::vector<SoilFace> &surface,
+                 std::vector<std::string> &sentences) {
+  const auto &table = scene.water.table;
+  if (table.size() < 2) return;
+  std::optional<Pond> worst;
+  const auto fall = [](const Pond &pond) { return pond.highest - pond.lowest; };
+  for (const double level : levels_of(scene))
+    for (const Pond &pond :
+         ponds_of(surface, scene.dimension, visible * height, [&](double x) { return elevation_of(table, x) + level; }))
+      if (!worst || fall(pond) > fall(*worst)) worst = pond;
+  if (!worst || fall(*worst) <= visible * height) return;
+  sentences.push_back(
+      "water.table stands up to " + rounded(worst->depth) + " m above the ground from x = " + rounded(worst->west) +
+      " to " + rounded(worst->east) + " m and is not level there: it lies between y = " + rounded(worst->lowest) +
+      " and " + rounded(worst->highest) +
+      " m. Open water is level, and the program puts its weight on the ground, so that forces and factors of safety "
+      "are those of no real water. Cut the table at the ground, and give each pond one elevation; where the table "
+      "stands for a head (artesian pressure under the ground), set water.open_water_load = false, and no open water "
+      "loads the ground");
+}
+
+/// The water table of one soil gives pore pressure and no open water: above the free surface of this soil nothing
+/// bears against it.
+void doubt_own_tables(const Scene &scene, double height, const std::vector<SoilFace> &surface,
+                      std::vector<std::string> &sentences) {
+  const std::vector<double> levels = levels_of(scene);
+  for (std::size_t b = 0; b < scene.body.size(); ++b) {
+    const auto &own = scene.body[b].water_table;
+    if (own.empty()) continue;
+    std::optional<Pond> over;
+    // a steep face that a seam ends at is no ground: the water in the seam leaves it there, or a crack has its pressure
+    const auto ground = [&](const SoilFace &face) {
+      return face.body == static_cast<int>(b) && !face.conditioned && face.normal[1] > 0.1;
+    };
+    for (const SoilFace &face : surface)
+      for (int a = 0; a < scene.dimension && ground(face); ++a)
+        for (const double level : levels) {
+          const auto &x = face.corner[a];
+          const double head = elevation_of(own, x[0]) + level;
+          const double open =
+              scene.water.table.empty() ? x[1] : std::max(x[1], elevation_of(scene.water.table, x[0]) + level);
+          if (head - open <= visible * height) continue;
+          if (!over) over = Pond{x[0], x[0], head, head, 0};
+          over->widen(x[0], head, open);
+        }
+    if (!over) continue;
+    sentences.push_back("body." + scene.body[b].name + ".water_table stands up to " + rounded(over->depth) +
+                        " m above the free surface of this soil and the open water on it, from x = " +
+                        rounded(over->west) + " to " + rounded(over->east) +
+                        " m: it gives pore pressure in the soil only, and no open water bears against that pressure, "
+                        "so that the soil there is lifted. Cut it at the ground, and give a pond by water.table; where "
+                        "it stands for a head (artesian pressure), water.open_water_load = false says so");
+  }
+}
+
+// ---- ends of the mesh ----
+
+/// A range of coordinates along an axis.
+struct Span {
+  double from = std::numeric_limits<double>::infinity(), to = -from;
+  void widen(double x) { from = std::min(from, x), to = std::max(to, x); }
+  std::string text() const { return rounded(from) + (to > from ? " to " + rounded(to) : "") + " m"; }
+};
+
+/// Where equilibrium is asked for, soil that ends with the mesh is mostly cut off there and goes on in nature.
+void doubt_ends(const Scene &scene, const Extent &soil, int down, const std::vector<SoilFace> &surface,
+                std::vector<std::string> &sentences) {
+  constexpr double thin = 0.1;  // of the height of the soil: a layer that comes to light there decides little
+  const auto asks = [](const Stage &stage) {
+    return stage.kind == StageKind::quasi_static || stage.kind == StageKind::consolidation ||
+           (stage.kind == StageKind::dynamic && stage.until == StopWhen::equilibrium);
+  };
+  if (std::none_of(scene.stage.begin(), scene.stage.end(), asks)) return;
+  for (int d = 0; d < scene.dimension; ++d)
+    for (const double sign : {-1., 1.}) {
+      if (d == down) continue;
+      const double end = sign < 0 ? soil.low[d] : soil.high[d], near = 1e-6 * soil.of(d);
+      double all = 0, free = 0;
+      Span span;
+      for (const SoilFace &face : surface) {
+        const auto beside = [&](int a) { return std::abs(face.corner[a][d] - end) > near; };
+        if (!face.ends_mesh || sign * face.normal[d] < 0.9 || beside(0) || beside(1)) continue;
+        all += face.area;
+        if (face.conditioned) continue;
+        free += face.area;
+        for (int a = 0; a < scene.dimension; ++a) span.widen(face.corner[a][down]);
+      }
+      if (2 * free <= all || span.to - span.from < thin * soil.of(down)) continue;
+      const std::string zero = scene.dimension == 2 ? "[0, 0]" : "[0, 0, 0]";
+      sentences.push_back(std::string("The soil ends with the mesh at ") + axes[d] + " = " + rounded(end) +
+                          " m, and no boundary names its face there, " + axes[down] + " = " + span.text() +
+                          ": it is free to move outwards, as no soil that goes on there would be, and may fail first. "
+                          "Give it kind = \"roller\" or \"fixed\"; kind = \"traction\" with traction = " +
+                          zero + " says that it is a free face");
+    }
+}
+
+/// Soil whose lowest faces end with the mesh and have no support hangs on its sides, or falls out of the mesh.
+void doubt_base(const Scene &scene, const Extent &soil, int down, const std::vector<SoilFace> &surface,
+                std::vector<std::string> &sentences) {
+  const auto moves = [](const Stage &stage) { return stage.kind != StageKind::seepage; };
+  if (std::none_of(scene.stage.begin(), scene.stage.end(), moves)) return;
+  constexpr int strips = 64;  // per level axis: a face is one of the lowest where none in its strip lies deeper
+  const double sign = scene.gravity[down] > 0 ? 1 : -1;
+  const int across = down == 0 ? 1 : 0, along = scene.dimension == 2 ? across : 3 - down - across;
+  const auto strip = [&](int axis, double x) {
+    return std::clamp(static_cast<int>((x - soil.low[axis]) / soil.of(axis) * strips), 0, strips - 1);
+  };
+  const auto bounds = [&](const SoilFace &face, int axis) {
+    Span span;
+    for (int a = 0; a < scene.dimension; ++a) span.widen(face.corner[a][axis]);
+    return span;
+  };
+  const auto depth = [&](const SoilFace &face) {
+    const Span span = bounds(face, down);
+    return sign > 0 ? span.to : -span.from;
+  };
+  const auto faces_down = [&](const SoilFace &face) { return sign * face.normal[down] > 0.3; };
+  std::vector<double> deepest(strips * strips, -std::numeric_limits<double>::infinity());
+  for (const SoilFace &face : surface) {
+    const Span x = bounds(face, across), z = bounds(face, along);
+    for (int i = strip(across, x.from); faces_down(face) && i <= strip(across, x.to); ++i)
+      for (int k = strip(along, z.from); k <= strip(along, z.to); ++k)
+        deepest[i * strips + k] = std::max(deepest[i * strips + k], depth(face));
+  }
+  double all = 0, free = 0;
+  Span where, elevation;
+  for (const SoilFace &face : surface) {
+    if (!faces_down(face)) continue;
+    const Span x = bounds(face, across), z = bounds(face, along), y = bounds(face, down);
+    const double deep = deepest[strip(across, (x.from + x.to) / 2) * strips + strip(along, (z.from + z.to) / 2)];
+    if (depth(face) < deep - (y.to - y.from) - std::max(soil.of(across), soil.of(along)) / strips) continue;
+    const double area = face.area * sign * face.normal[down];
+    all += area;
+    if (face.held || !face.ends_mesh) continue;
+    free += area;
+    where.widen(x.from), where.widen(x.to), elevation.widen(y.from), elevation.widen(y.to);
+  }
+  if (2 * free <= all) return;
+  sentences.push_back(std::string("Nothing holds the soil from below: its lowest faces, ") + axes[across] + " = " +
+                      where.text() + " at " + axes[down] + " = " + elevation.text() +
+                      ", end with the mesh, and no boundary with a support names them, so that the soil hangs on its "
+                      "sides or falls out of the mesh. Give them kind = \"fixed\" or \"roller\"");
+}
+
 }  // namespace
 
-std::vector<std::string> unlikely_surroundings(const Scene &scene, const std::vector<BodyReport> &bodies) {
+std::vector<std::string> unlikely_surroundings(const Scene &scene, const std::vector<BodyReport> &bodies,
+                                               const std::vector<SoilFace> &surface) {
   constexpr double highest = 5000, lowest = 0.01;       // [m], from mountains to experiments on a table
   constexpr double centrifuge = 3000, asteroid = 1e-3;  // [m/s2]
   std::vector<std::string> sentences;
@@ -91,6 +308,12 @@ std::vector<std::string> unlikely_surroundings(const Scene &scene, const std::ve
     sentences.push_back("The soil is " + rounded(height) +
                         " m high; coordinates count in metres. Is the mesh in kilometres?");
   doubt_table(scene, soil, sentences);
+  if (scene.phases == PhaseModel::drained && scene.water.open_water_load) {
+    doubt_ponds(scene, soil.of(1), surface, sentences);
+    doubt_own_tables(scene, soil.of(1), surface, sentences);
+  }
+  doubt_ends(scene, soil, down, surface, sentences);
+  doubt_base(scene, soil, down, surface, sentences);
   return sentences;
 }
 
@@ -108,9 +331,48 @@ std::vector<std::string> coarse_cells(const Scene &scene, const std::vector<Body
   return sentences;
 }
 
-std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<Law> &laws) {
+namespace {
+
+/// Strength and stiffness that make no sense for soil as high as this, though some other soil may have them.
+void doubt_for_height(const BodySource &source, const BodyReport &body, const Law &law, double weight,
+                      std::vector<std::string> &sentences) {
+  // c over the weight per area of the soil: below, c does not decide whether anything stands; above, all does
+  constexpr double no_effect = 1e-3, stands_always = 100;
+  constexpr double sand = 30 * degree.si;  // which is often given a trace of cohesion
+  constexpr double rock = 1e6;             // [Pa]
+  constexpr double fast = 2500;            // [m/s], waves in sound rock; dry soil has 150 to 1000
+  const double c = body.strength.cohesion[1], phi = body.strength.friction_angle[1];
+  const bool frictional = std::visit(
+      [](const auto &one) {
+        return requires { one.friction_angle; };
+      },
+      law);
+  if (!frictional) return;
+  if (c >= least_cohesion && c < no_effect * weight && phi < sand)
+    sentences.push_back("body." + source.name + ".cohesion is " + rounded(c) + " Pa, " + rounded(c / weight) +
+                        " of the weight of the soil, " + rounded(weight / 1e3) +
+                        " kPa over its height: it decides nothing, and clays with a friction angle of " +
+                        rounded(phi / degree.si) + " deg have 1 to 50 kPa. Is it in kPa?");
+  if (c > stands_always * weight && source.reduce_strength)
+    sentences.push_back("body." + source.name + ".cohesion is " + rounded(c) + " Pa, " + rounded(c / weight) +
+                        " times the weight of the soil, " + rounded(weight / 1e3) +
+                        " kPa over its height: such soil stands in any shape. Is it a unit too large? For rock or a "
+                        "structure, reduce_strength = false says that a factor of safety does not concern it");
+  const double speed = std::sqrt(constrained_modulus(law) * body.volume / body.mass);
+  if (speed > fast && c < rock)
+    sentences.push_back("The stiffness of body." + source.name + " gives waves a speed of " + rounded(speed) +
+                        " m/s, as in sound rock, and its cohesion of " + rounded(c / 1e3) +
+                        " kPa is that of soil, in which they have 150 to 1000 m/s. Is young_modulus a unit too "
+                        "large? Soils have 1 MPa to 1 GPa");
+}
+
+}  // namespace
+
+std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<Law> &laws,
+                                         const std::vector<BodyReport> &bodies) {
   constexpr double none = 1e300;
   std::vector<std::string> sentences;
+  const double height = extent_of(bodies).of(nearest_axis(scene));
   for (std::size_t b = 0; b < laws.size(); ++b) {
     const BodySource &body = scene.body[b];
     std::vector<Doubt> doubts{
@@ -125,7 +387,7 @@ std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<L
           if constexpr (requires { law.young_modulus; })
             doubts.push_back({"young_modulus", law.young_modulus, pascal, 5e3, none, "kPa or MPa"});
           if constexpr (requires { law.friction_angle; }) {
-            doubts.push_back({"cohesion", law.cohesion, pascal, 20, none, "kPa"});
+            doubts.push_back({"cohesion", law.cohesion, pascal, least_cohesion, none, "kPa"});
             doubts.push_back({"friction_angle", law.friction_angle, degree, 2 * degree.si, none, "radians"});
           }
           if constexpr (requires { law.tension_cutoff; })
@@ -137,6 +399,9 @@ std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<L
                                   rounded(apex) + " Pa");
         },
         laws[b]);
+    if (bodies[b].particles > 0 && scene.gravity_size() > 0)
+      doubt_for_height(body, bodies[b], laws[b], bodies[b].mass / bodies[b].volume * scene.gravity_size() * height,
+                       sentences);
     for (const Doubt &one : doubts)
       if (one.value > 0 && (one.value < one.least || one.value > one.most))
         sentences.push_back("body." + body.name + "." + one.key + " is " + rounded(one.value / one.unit.si) + " " +

@@ -60,6 +60,8 @@ class World {
   double critical_step_of_cells(double time);
   /// One report per body. Collective.
   std::vector<BodyReport> report();
+  /// Faces of the bodies that are there at the start beyond which there is no soil, of all ranks. Collective.
+  std::vector<SoilFace> surface() const;  // soil_surface.cpp
   /// The first value of a function that its key does not admit, as a sentence; empty if there was none. Collective.
   std::string function_fault() const;
   /// Tells meshes and partitions apart.

@@ -37,6 +37,7 @@ def draw_curves(history, quantity, unit, lines, title, path):
 
 def draw_energy(history, lines, title, path):
     """All energies, and below them the kinetic one alone: it is the smallest and tells most."""
+    lines = {name: values for name, values in lines.items() if name != f"{ESCAPED}_energy" or values.any()}
     kinetic = {name: values for name, values in lines.items() if "kinetic" in name}
     if not kinetic or len(lines) == len(kinetic):
         return draw_curves(history, "energy", "J", lines, title, path)

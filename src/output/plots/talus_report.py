@@ -10,6 +10,7 @@ import talus_style as style
 from talus_factor import factor_lines, read_factor
 
 LOG_LINES = 25
+ROUNDED = 5e-12  # relative error of a number with the 12 digits of history.csv
 PAGE = """<!doctype html>
 <html lang="en">
 <head>
@@ -50,8 +51,10 @@ def header(results):
     last = results.snapshots[-1]
     facts = [results.scene.get("phases", "dry"), f"{results.snapshots[0].position().shape[1]}D", results.program,
              f"{thousands(last.step)} steps to t = {last.time:.4g} s"]
+    cause = results.broke_off()
+    ending = f'<p class="ending"><strong>The run broke off:</strong> {html.escape(cause)}</p>' if cause else ""
     return (f'<header><p class="kicker">Talus · report of a run</p><h1>{html.escape(results.title)}</h1>'
-            f"<p>{' · '.join(html.escape(str(fact)) for fact in facts)}</p></header>\n")
+            f"<p>{' · '.join(html.escape(str(fact)) for fact in facts)}</p>{ending}</header>\n")
 
 
 def warnings(results):
@@ -87,9 +90,12 @@ def key_results(results):
         note = f"{thousands(len(results.escaped.time))} particles, from t = {results.escaped.time[0]:.4g} s on"
         found.append(("Left the mesh", quantity(results.escaped.columns["mass_kg"].sum() / 1e3, per_metre("t", results)), note))
     if mass is not None and len(mass) and mass[0]:
-        lost = (mass[-1] + gone[-1] - mass[0]) / mass[0]
+        lost = mass[-1] + gone[-1] - mass[0]
         end = quantity(mass[-1] / 1e3, per_metre("t", results))
-        found.append(("Mass ledger", "closed" if abs(lost) < 1e-12 else f"{lost:+.1e}", f"{end} at the end"))
+        closed = abs(lost) <= ROUNDED * (mass[0] + mass[-1] + gone[-1])
+        error = f"{lost:+.1e} {per_metre('kg', results)}"
+        share = "" if closed else f"; {abs(lost) / mass[0]:.1e} of the mass at the start has {'appeared' if lost > 0 else 'vanished'}"
+        found.append(("Mass ledger", "closed" if closed else error, f"{end} at the end{share}"))
     return found
 
 

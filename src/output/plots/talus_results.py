@@ -13,6 +13,7 @@ UNITS = {"kg_m_s": "kg m/s", "m_s2": "m/s²", "m_s": "m/s", "m": "m", "m3": "m³
 # words that may stand before the unit: what is left is the name of a point
 QUANTITIES = ("displacement", "velocity", "acceleration", "pore_pressure", "gas_pressure", "pressure", "suction", "saturation", "plastic_strain", "x", "y", "z")
 ESCAPED = "escaped"  # in columns of what left the mesh
+BROKE_OFF = "the run broke off: "  # in the log, before the cause
 FLUIDS = ("water", "gas")  # whose ledgers history.csv holds
 DERIVED = ("mobilised_friction",)  # fields that follow from the columns
 
@@ -144,11 +145,11 @@ def split_name(name):
     """'crest_displacement_m' -> ('crest', 'displacement', 'm'); 'kinetic_J' -> ('kinetic', 'energy', 'J')."""
     unit = next((ending for ending in UNITS if name.endswith("_" + ending)), None)
     stem = name[: -len(unit) - 1] if unit else name
+    if unit == "J":
+        return stem, "energy", "J"
     if stem.startswith(ESCAPED + "_"):
         quantity, _, axis = stem.rpartition("_")  # escaped_momentum_x
         return (axis, quantity, UNITS[unit]) if axis in ("x", "y", "z") else ("", stem, UNITS.get(unit, ""))
-    if unit == "J":
-        return stem, "energy", "J"
     fluid, _, part = stem.partition("_")
     if unit == "kg" and fluid in FLUIDS:
         return part or "stored", fluid + "_ledger", "kg"
@@ -204,6 +205,16 @@ class Results:
         """The lines of run.log."""
         path = self.folder / "run.log"
         return path.read_text(errors="replace").splitlines() if path.exists() else []
+
+    def broke_off(self):
+        """Why and where the run ended early; empty if it came to its end, or goes on."""
+        for line in reversed(self.log_lines()):
+            text = line.partition("  ")[2]
+            if text.startswith("resumed at "):
+                break
+            if text.startswith(BROKE_OFF):
+                return text[len(BROKE_OFF):]
+        return ""
 
     def up_axis(self):
         """The axis that gravity acts along: y unless the scene says otherwise."""

@@ -9,10 +9,11 @@ from matplotlib.ticker import MaxNLocator
 import talus_style as style
 from talus_tiles import Frame, outline_of_cells, outline_of_points, tiles
 
-WIDTH, LEFT, RIGHT, HEAD, TITLE, FOOT = 12.0, 0.62, 1.0, 0.42, 0.3, 0.62  # of a sheet [inch]
+WIDTH, LEFT, RIGHT, HEAD, TITLE, FOOT = 12.0, 0.62, 1.0, 0.42, 0.3, 0.75  # of a sheet [inch]
 BESIDE, BELOW, STACKED = 0.5, 0.38, 0.55  # between blocks, and between the views of one block [inch]
 DOTTED, HALO = (0, (1, 1.6)), withStroke(linewidth=2, foreground="#ffffffaa")  # seen on pale and on dark soil
 OUTLINE_PIXELS = 900
+APART = 0.1  # crosses of particles that left the mesh [inch]
 
 
 class View:
@@ -131,7 +132,7 @@ class Painter:
         self.corners = [self._limits(view) for view in self.views]
         self.outlines = [self._outline(view, corners) for view, corners in zip(self.views, self.corners)]
         self._tiles = {}
-        self.marks_escaped = False
+        self.marked_escaped = 0
 
     def _limits(self, view):
         """Corners of what is seen at all times, with room for the edge of the soil [m]."""
@@ -217,7 +218,7 @@ class Painter:
             axes.plot(*line.T, color=style.INK, linestyle=DOTTED, linewidth=1.1, path_effects=[HALO])
         for line in between:
             axes.plot(*line.T, color=style.SOFT, linestyle=DOTTED, linewidth=0.8, path_effects=[HALO])
-        self._mark_escaped(axes, self.views[k], snapshot.time)
+        self._mark_escaped(axes, self.views[k], snapshot.time, (high[0] - low[0]) / inches)
         if named_points:
             self._mark_points(axes, self.views[k], snapshot.time)
         axes.set_xlim(low[0], high[0])
@@ -237,14 +238,16 @@ class Painter:
             axes.annotate(style.words(name), at, xytext=(6, 6), textcoords="offset points", fontsize=8.5,
                           bbox={"boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": "none", "alpha": 0.8})
 
-    def _mark_escaped(self, axes, view, time):
-        """The places where particles have left the mesh up to a time."""
+    def _mark_escaped(self, axes, view, time, metres):
+        """Where particles have left the mesh up to a time: one cross for all that left at about the same place. An inch of the picture is so many
+        `metres`."""
         escaped = self.results.escaped
         if escaped is None or not (escaped.time <= time).any():
             return
         place = view.flat(escaped.position[escaped.time <= time])
-        axes.plot(*place.T, "x", markersize=3.5, markeredgewidth=0.8, color=style.INK, clip_on=False)
-        self.marks_escaped = True
+        _, first = np.unique(np.floor(place / (APART * metres)), axis=0, return_index=True)
+        axes.plot(*place[first].T, "x", markersize=3, markeredgewidth=0.7, color=style.INK, alpha=0.6)
+        self.marked_escaped = max(self.marked_escaped, len(place))
 
     def _frame_sheet(self, figure, field, colours):
         """Headline, colour bar, and what the dotted line is."""
@@ -261,7 +264,7 @@ class Painter:
         figure.text(LEFT / WIDTH, 1 - 0.24 / height, headline, fontsize=13, fontweight="bold", va="center")
         right = 1 - 0.25 / WIDTH
         figure.text(right, 1 - 0.24 / height, self.results.title, fontsize=9, color=style.SOFT, va="center", ha="right")
-        legend = "dotted: outline at the start" + ("; crosses: particles left the mesh here" if self.marks_escaped else "")
+        legend = "dotted: outline at the start" + (f"; crosses: {self.marked_escaped} particles left the mesh here" if self.marked_escaped else "")
         figure.text(right, 0.16 / height, legend, fontsize=7.5, color=style.SOFT, ha="right")
 
 

@@ -54,6 +54,21 @@ class RunThatEnds : public testing::Test {
                                        "interval = 0.05\nhistory_interval = 0.05");
 };
 
+/// The report is made from what there is, on two ranks too, and the status stays 1.
+TEST_F(RunThatEnds, WithAReportThatSaysHow) {
+  folder_.write("scene.toml", thrown_);
+  for (const int ranks : {1, 2}) {
+    const Ending ending = talus(
+        folder_, {"run", "scene.toml", "-o", "results", "--force", "--set", "output.picture=['velocity']"}, ranks);
+    EXPECT_EQ(ending.status, 1);
+    EXPECT_TRUE(ending.says("report.html there shows how far it came")) << ending.output;
+    std::ostringstream report;
+    report << std::ifstream(folder_ / "results/report.html").rdbuf();
+    EXPECT_NE(report.str().find("The run broke off:</strong> a particle left the mesh near (2, 0."), std::string::npos);
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "results/pictures/velocity.png"));
+  }
+}
+
 TEST_F(RunThatEnds, BecauseAParticleLeftTheMesh) {
   expect(Program(folder_, run(thrown_)).end(),
          {"left the mesh near (2, 0.", "mesh.leaving_particles = \"remove\"", "t = 0.0", "stage fall",

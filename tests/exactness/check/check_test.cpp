@@ -106,6 +106,114 @@ TEST(Check, DoubtsWhatFitsTheSoilBadly) {
                   .says("Is the mesh in millimetres"));
 }
 
+/// Open water is level and has a weight. The ground is level at y = 0.5 m up to x = 1 m, where it falls to 0 m at once.
+TEST(Check, DoubtsOpenWaterThatIsNotLevel) {
+  const Folder folder;
+  const auto advice = [&](std::vector<std::string> overrides, int ranks = 1) {
+    overrides.emplace_back("phases=drained");
+    const Ending ending = check(folder, overrides, ranks);
+    EXPECT_EQ(ending.status, 0) << ending.output;
+    return ending;
+  };
+  const std::string sloping = "water.table=[[0, 0.9], [1, 0.6]]";
+  for (const int ranks : {1, 2}) {
+    const Ending ending = advice({sloping}, ranks);
+    EXPECT_TRUE(
+        ending.says("water.table stands up to 0.6 m above the ground from x = 0 to 1 m and is not level there: "
+                    "it lies between y = 0.6 and 0.9 m"))
+        << ending.output;
+  }
+  const char *doubt = "is not level there";
+  EXPECT_FALSE(advice({"water.table=[[0, 0.9], [1, 0.9]]"}).says(doubt)) << "a pond";
+  for (const int ranks : {1, 2})
+    EXPECT_FALSE(advice({"water.table=[[0, 0.5], [1, 0]]"}, ranks).says(doubt)) << "water in the soil";
+  EXPECT_FALSE(advice({"water.table=[[0, 0.502], [1, 0.49]]"}).says(doubt)) << "a film";
+  EXPECT_FALSE(advice({sloping, "water.open_water_load=false"}).says(doubt)) << "a head";
+  EXPECT_FALSE(advice({"water.table=[[0, 0.4], [1, 0.1]]"}).says(doubt));
+  EXPECT_TRUE(advice({"water.table=[[0, 0.4], [1, 0.1]]", "water.level=[[0, 0], [0.05, 0.5]]"}).says(doubt))
+      << "a table that rises above the ground";
+  EXPECT_FALSE(advice({"water.table=[[0, 0.9], [0.1, 0.9], [0.2, 0.4], [0.8, 0.4], [0.9, 0.7], [1, 0.7]]"}).says(doubt))
+      << "two ponds, of which each is level";
+}
+
+TEST(Check, DoubtsWaterTablesOfASoilAboveItsGround) {
+  const Folder folder;
+  folder.write("top.csv", good_section + "b_top,0,0.5\nb_top,1,0.5\n");
+  const auto advice = [&](std::vector<std::string> overrides) {
+    overrides.insert(overrides.end(), {"phases=drained", "water.density=1000", "mesh.section=top.csv"});
+    const Ending ending = check(folder, overrides);
+    EXPECT_EQ(ending.status, 0) << ending.output;
+    return ending;
+  };
+  const std::string own = "body.sand.water_table=[[0, 0.8], [1, 0.6]]";
+  const char *doubt = "body.sand.water_table stands up to ";
+  const Ending ending = advice({own});
+  EXPECT_TRUE(ending.says(std::string(doubt) +
+                          "0.3 m above the free surface of this soil and the open water on it, from x = 0 to 1 m"))
+      << ending.output;
+  EXPECT_FALSE(advice({own, "water.table=[[0, 0.8], [1, 0.8]]"}).says(doubt)) << "under a pond as high";
+  EXPECT_FALSE(advice({"body.sand.water_table=[[0, 0.4], [1, 0]]"}).says(doubt));
+  EXPECT_FALSE(advice({"body.sand.water_table=[[0, 0.5], [1, 0.3]]"}).says(doubt)) << "water leaves at the steep face";
+  EXPECT_FALSE(advice({own, "water.open_water_load=false"}).says(doubt)) << "a head";
+  EXPECT_FALSE(advice({own, "boundary.top={kind='traction', pressure=3e3}"}).says(doubt)) << "a load bears against it";
+}
+
+/// Equilibrium of soil that ends with the mesh depends on what holds it there.
+TEST(Check, DoubtsMissingSupports) {
+  const Folder folder;
+  const auto advice = [&](const std::vector<std::string> &overrides, int ranks = 1) {
+    const Ending ending = check(folder, overrides, ranks);
+    EXPECT_EQ(ending.status, 0) << ending.output;
+    return ending;
+  };
+  const std::string still = "stage.0.kind=quasi_static";
+  const char *left = "The soil ends with the mesh at x = 0 m, and no boundary names its face there, y = 0 to 0.5 m",
+             *right = "The soil ends with the mesh at x = 1 m", *below = "Nothing holds the soil from below";
+  const std::string elsewhere = "boundary.left.group=base", side = "boundary.base={kind='fixed', group='left'}";
+  for (const int ranks : {1, 2}) EXPECT_TRUE(advice({still, elsewhere}, ranks).says(left));
+  EXPECT_TRUE(advice({"stage.0.until=equilibrium", elsewhere}).says(left));
+  EXPECT_FALSE(advice({elsewhere}).says(left)) << "run-out";
+  EXPECT_FALSE(advice({still}).says(left));
+  EXPECT_FALSE(advice({still}).says(right)) << "the mesh goes on beyond this face";
+  EXPECT_FALSE(advice({still, "boundary.left={kind='traction', traction=[0, 0]}"}).says(left)) << "said to be free";
+  EXPECT_FALSE(advice({}).says(below));
+  for (const int ranks : {1, 2})
+    EXPECT_TRUE(advice({side}, ranks).says(std::string(below) + ": its lowest faces, x = 0 to 1 m at y = 0 m"));
+  EXPECT_FALSE(advice({"boundary.base={kind='friction', friction_angle=20}"}).says(below));
+  folder.write("scene.toml", changed(good_scene, "density = 2000",
+                                     "porosity = 0.4\ngrain_density = 2650\nhydraulic_conductivity = 1e-5"));
+  const Ending seepage = talus(folder, {"check", "scene.toml", "--json", "--set", "phases=drained", "--set",
+                                        "stage.0.kind=seepage", "--set", "water.table=[[0, 0.4]]", "--set", elsewhere});
+  EXPECT_EQ(seepage.status, 0) << seepage.output;
+  EXPECT_FALSE(seepage.says(left)) << "soil at rest";
+}
+
+/// The height of the soil is 0.5 m, its weight 2000 9.81 0.5 Pa = 9.81 kPa: c / (gamma H) is doubted below 0.001, 9.81
+/// Pa, which is doubted at any height, and above 100. At 20 m the former is 392 Pa.
+TEST(Check, DoubtsStrengthThatMakesNoSenseForItsHeight) {
+  const Folder folder;
+  const auto says = [&](const std::vector<std::string> &overrides, const char *text) {
+    return check(folder, overrides).says(text);
+  };
+  EXPECT_FALSE(says({"body.sand.cohesion=0.9e6"}, "stands in any shape"));
+  EXPECT_TRUE(says({"body.sand.cohesion=1e6"}, "times the weight of the soil, 9.81 kPa over its height"));
+  EXPECT_FALSE(says({"body.sand.cohesion=1e6", "body.sand.reduce_strength=false"}, "stands in any shape"));
+  EXPECT_FALSE(says({"body.sand.young_modulus=5e9"}, "gives waves a speed of"));
+  EXPECT_TRUE(says({"body.sand.young_modulus=50e9"}, "The stiffness of body.sand gives waves a speed of 5801 m/s"));
+  EXPECT_FALSE(says({"body.sand.young_modulus=50e9", "body.sand.cohesion=2e6", "body.sand.reduce_strength=false"},
+                    "gives waves a speed of"))
+      << "rock";
+  folder.write("high.csv", "part,x,y\noutline,0,0\noutline,20,0\noutline,20,20\noutline,0,20\nregion_sand,5,5\n");
+  const auto high = [&](const std::vector<std::string> &overrides) {
+    std::vector<std::string> all{"mesh.section=high.csv", "mesh.size=4"};
+    all.insert(all.end(), overrides.begin(), overrides.end());
+    return says(all, "it decides nothing");
+  };
+  EXPECT_TRUE(high({"body.sand.cohesion=32.6", "body.sand.friction_angle=20"}));
+  EXPECT_FALSE(high({"body.sand.cohesion=400", "body.sand.friction_angle=20"}));
+  EXPECT_FALSE(high({"body.sand.cohesion=100", "body.sand.friction_angle=33"})) << "sand with a trace of cohesion";
+}
+
 /// A pressure pushes both sides of a line in the soil with the same force. Where soil comes or goes it does not.
 TEST(Check, RefusesAPressureInsideTheSoil) {
   const Folder folder;

@@ -2,6 +2,8 @@
 #include "output/pictures.h"
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <stdexcept>
 
 #include "base/version.h"
@@ -97,6 +99,45 @@ TEST(Pictures, show_stress_paths_and_the_water_ledger) {
   EXPECT_EQ(content(dir + "/pictures/strength.csv").substr(0, 40), "body,state,suction_Pa,slope,intercept_Pa");
   for (const char *name : {"stress_paths.png", "mobilised_friction.png", "water_ledger.png"})
     EXPECT_EQ(content(dir + "/pictures/" + name).substr(1, 3), "PNG") << name;
+}
+
+/// A run that broke off says so on top of its report, unless it was resumed.
+TEST(Pictures, and_report_tell_how_a_run_broke_off) {
+  const SharedFolder folder;
+  const std::string dir = folder / "run";
+  RunFile run(MPI_COMM_WORLD, dir, small_header(), small_mesh());
+  run.write(small_snapshot(1, 1));
+  if (world_rank()) return;
+  const auto top_of_report = [&] {
+    EXPECT_TRUE(draw_pictures(dir, {{"displacement"}, {}, false}));
+    const std::string report = content(dir + "/report.html");
+    return report.substr(report.find("<header>"), report.find("</header>") - report.find("<header>"));
+  };
+  std::ofstream log(dir + "/run.log");
+  log << "12:00:00  stage slide\n12:00:01  the run broke off: a particle left the mesh near (3, 1) m\n" << std::flush;
+  EXPECT_NE(top_of_report().find("a particle left the mesh near (3, 1) m"), std::string::npos);
+  log << "12:01:00  resumed at t = 1 s, step 9\n" << std::flush;
+  EXPECT_EQ(top_of_report().find("broke off"), std::string::npos);
+}
+
+/// What particles took away is one of the energies, and round-off of the table is no error of the ledger.
+TEST(Pictures, and_report_count_what_left_the_mesh) {
+  const SharedFolder folder;
+  const std::string dir = folder / "run";
+  RunFile run(MPI_COMM_WORLD, dir, small_header(), small_mesh());
+  run.write(small_snapshot(1, 1));
+  if (world_rank()) return;
+  const auto mass_ledger = [&](double lost) {
+    History history(MPI_COMM_SELF, dir + "/history.csv",
+                    {"kinetic_J", "escaped_energy_J", "mass_kg", "escaped_mass_kg"});
+    history.row(0, 0, "slide", {1, 0, 1000, 0}), history.row(1, 1, "slide", {2, 3, 900 - lost, 100});
+    EXPECT_TRUE(draw_pictures(dir, {{"displacement"}, {}, false}));
+    const std::string report = content(dir + "/report.html");
+    return report.substr(report.find("Mass ledger"), 120);
+  };
+  EXPECT_NE(mass_ledger(1e-9).find("closed"), std::string::npos);
+  EXPECT_NE(mass_ledger(2).find("-2.0e+00 kg/m"), std::string::npos) << mass_ledger(2);
+  EXPECT_FALSE(std::filesystem::exists(dir + "/pictures/history_escaped_energy.png")) << "it is in energy.png";
 }
 
 TEST(Pictures, name_the_program_that_drew_them) {

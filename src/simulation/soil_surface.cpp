@@ -1,0 +1,84 @@
+// The surface of the soil at the start, as the doubts about a scene look at it.
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <type_traits>
+
+#include "simulation/world.h"
+#include "solvers/quasi_static/element_nodes.h"
+#include "solvers/quasi_static/pore_flow.h"
+
+namespace talus {
+namespace {
+
+using Corners = std::array<std::array<double, 3>, 3>;
+
+/// The faces of all ranks, one rank's after the other's. Collective.
+std::vector<SoilFace> gathered(MPI_Comm comm, const std::vector<SoilFace> &mine) {
+  static_assert(std::is_trivially_copyable_v<SoilFace>);
+  int ranks;
+  MPI_Comm_size(comm, &ranks);
+  std::vector<int> counts(ranks), starts(ranks + 1, 0);
+  const int bytes = static_cast<int>(mine.size() * sizeof(SoilFace));
+  MPI_Allgather(&bytes, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
+  std::partial_sum(counts.begin(), counts.end(), starts.begin() + 1);
+  std::vector<SoilFace> all(starts[ranks] / sizeof(SoilFace));
+  MPI_Allgatherv(mine.data(), bytes, MPI_BYTE, all.data(), counts.data(), starts.data(), MPI_BYTE, comm);
+  return all;
+}
+
+Corners sorted(Corners corner) {
+  std::sort(corner.begin(), corner.end());
+  return corner;
+}
+
+}  // namespace
+
+template <int dim>
+std::vector<SoilFace> World<dim>::surface() const {
+  const std::vector<int> body_of = bodies_of_cells(mesh, scene);
+  const std::vector<char> there = present_at_start();
+  const auto has_soil = [&](int cell) { return body_of[cell] >= 0 && there[body_of[cell]]; };
+  std::map<std::pair<int, int>, bool> given;  // by cell and face: does a boundary there hold the soil?
+  for (const std::vector<Source> *sources : {&conditions.sources(), &seepage_sources})
+    for (const Source &source : *sources) {
+      if (source.kind.fluids_only() && !source.kind.open_water) continue;
+      const bool holds = !source.kind.fluids_only() && source.kind.in_motion != OnSoil::load;
+      for (const std::string &group : source.groups)
+        for (const Facet<dim> &facet : mesh.has_group(group) ? mesh.facets(group) : std::vector<Facet<dim>>{})
+          given[{facet.cell, facet.face}] |= holds;
+    }
+  std::vector<SoilFace> mine, inside;  // `inside`: on faces between ranks
+  for (int c = 0; c < mesh.cell_count(); ++c) {
+    if (!has_soil(c)) continue;
+    const auto gradient = barycentric_gradients<dim>(mesh.cells[c]);
+    for (int k = 0; k <= dim; ++k) {
+      const int beyond = mesh.cells[c].neighbour[k];
+      if (beyond >= 0 && has_soil(beyond)) continue;
+      SoilFace face;
+      face.body = body_of[c], face.ends_mesh = beyond == boundary;
+      const double size = map<dim>(gradient[k]).norm();
+      face.area = dim * mesh.volume[c] * size;
+      for (int a = 0, n = 0; a <= dim; ++a)
+        if (a != k) std::copy_n(mesh.position[mesh.cells[c].node[a]].begin(), dim, face.corner[n++].begin());
+      for (int d = 0; d < dim; ++d) face.normal[d] = -gradient[k][d] / size;
+      const auto found = given.find({c, k});
+      face.conditioned = found != given.end();
+      face.held = face.conditioned && found->second;
+      (beyond < boundary ? inside : mine).push_back(face);
+    }
+  }
+  // a face between ranks that both sides have is inside the soil
+  inside = gathered(comm, inside);
+  std::map<Corners, int> sides;
+  for (const SoilFace &face : inside) ++sides[sorted(face.corner)];
+  std::vector<SoilFace> all = gathered(comm, mine);
+  for (const SoilFace &face : inside)
+    if (sides[sorted(face.corner)] == 1) all.push_back(face);
+  return all;
+}
+
+template std::vector<SoilFace> World<2>::surface() const;
+template std::vector<SoilFace> World<3>::surface() const;
+
+}  // namespace talus
