@@ -73,7 +73,7 @@ void Function::Expression::report(double value) const {
   std::ostringstream text;
   text.precision(6);
   text << limits->key << " must be " << limits->expected << "; it is ";
-  if (!std::isfinite(value))
+  if (std::isnan(value))
     text << "no number at ";
   else
     text << value / limits->si << limits->unit << " at ";

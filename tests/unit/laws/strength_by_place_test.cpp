@@ -123,7 +123,7 @@ TEST(StrengthByPlace, is_checked_at_its_places) {
   };
   const auto says = [&](double x, const char *words) { return fault_at(x).find(words) != std::string::npos; };
   EXPECT_EQ(fault_at(7), "");
-  EXPECT_TRUE(says(3, "cohesion = \"1 / (x != 3)\" must be a number from 0 to 1e9 Pa; it is no number at x = 3 m"))
+  EXPECT_TRUE(says(3, "cohesion = \"1 / (x != 3)\" must be a number from 0 to 1e9 Pa; it is inf Pa at x = 3 m"))
       << fault_at(3);
   EXPECT_TRUE(says(8, "friction_angle = \"x * 10\" must be a number from 0 to 70 deg; it is 80 deg at x = 8 m"))
       << fault_at(8);
