@@ -67,6 +67,15 @@ struct DruckerPrager : IsotropicElastic, FrictionalStrength {
     return {steep * sin_phi, steepness(sin_psi) * sin_psi, steep * c_cos_phi, sin_phi > 0 ? quotient : unlimited};
   }
 
+  /// Share of the present strength that a stress takes; 1 at the yield surface [-].
+  template <int dim>
+  double share_of_strength(const Stress<dim> &stress, double plastic_strain, const Surroundings &around) const {
+    const Strength<> m = strength(plastic_strain, around);
+    const Invariants<dim> s(stress);
+    const double limit = m.limit - m.eta * s.p;
+    return limit > 0 ? s.q / limit : 1;
+  }
+
   /// Calls `use` with this law as the simpler of its cases.
   template <class Use>
   void as_case(Use use) const;

@@ -113,17 +113,26 @@ struct FrictionalStrength {
   struct Faded {
     Number c, phi, sin_psi;  ///< [Pa], [rad], [-]; psi may exceed phi
   };
+  /// Share of the way from residual to peak strength that is left after a plastic strain [-].
+  template <class Number>
+  [[gnu::always_inline]] Number share_left(const Number &plastic_strain, const Surroundings &around) const {
+    const double scale = around.size * over_size, eta = scale > 0 ? shape_factor * scale : shape_factor;
+    return exponential(-eta * plastic_strain);
+  }
   /// Strength that is left after a plastic strain, at a point that has the shares of its place if `by_place`. sin psi
   /// decreases as c and phi do.
   template <bool by_place, class Number>
   [[gnu::always_inline]] Faded<Number> faded(const Number &plastic_strain, const Surroundings &around) const {
-    const double scale = around.size * over_size, eta = scale > 0 ? shape_factor * scale : shape_factor;
-    const Number left = exponential(-eta * plastic_strain);  // of the way from residual to peak
+    const Number left = share_left(plastic_strain, around);
     Faded<Number> now{residual_c + (cohesion - residual_c) * left,
                       residual_phi + (friction_angle - residual_phi) * left,
                       sin_psi_residual + (sin_psi_peak - sin_psi_residual) * left};
     if constexpr (by_place) now.c *= around.cohesion, now.phi *= around.friction;
     return now;
+  }
+  /// What results show of it.
+  Faded<double> present(double plastic_strain, const Surroundings &around) const {
+    return faded<true>(plastic_strain, around);
   }
 };
 

@@ -81,17 +81,35 @@ struct MohrCoulomb : IsotropicElastic, FrictionalStrength {
   };
 
   /// After a plastic strain, with the suction and the shares of the place.
+  template <bool with_surroundings, class Number>
+  [[gnu::always_inline]] Faded<Number> wetted(const Number &plastic_strain, const Surroundings &around) const {
+    Faded<Number> now = faded<with_surroundings>(plastic_strain, around);
+    if constexpr (with_surroundings) {
+      now.c += suction_cohesion * (1 - exponential(-suction_cohesion_rate * around.suction));
+      now.phi += suction_friction_rate * around.suction;
+      now.phi = now.phi < steepest ? now.phi : steepest;
+    }
+    return now;
+  }
+  Faded<double> present(double plastic_strain, const Surroundings &around) const {
+    return wetted<true>(plastic_strain, around);
+  }
   template <class Number, bool with_surroundings = true>
   [[gnu::always_inline]] Strength<Number> strength(const Number &plastic_strain, const Surroundings &around) const {
-    auto [c, phi, sin_psi] = faded<with_surroundings>(plastic_strain, around);
-    if constexpr (with_surroundings) {
-      c += suction_cohesion * (1 - exponential(-suction_cohesion_rate * around.suction));
-      phi += suction_friction_rate * around.suction;
-      phi = phi < steepest ? phi : steepest;
-    }
+    const auto [c, phi, sin_psi] = wetted<with_surroundings>(plastic_strain, around);
     const Number sin_phi = sine(phi), c_cos_phi = c * sine(right_angle - phi);
     const Number quotient = c_cos_phi / sin_phi, apex = sin_phi > 0 ? quotient : unlimited;
     return {sin_phi, sin_psi < sin_phi ? sin_psi : sin_phi, 2 * c_cos_phi, cutoff < apex ? cutoff : apex};
+  }
+
+  /// Share of the present strength that a stress takes; 1 at the yield surface, the tension cut-off among it [-].
+  template <int dim>
+  double share_of_strength(const Stress<dim> &stress, double plastic_strain, const Surroundings &around) const {
+    const Strength<> m = strength(plastic_strain, around);
+    const Principal<> s = PrincipalAxes<dim>(stress).values();
+    constexpr double round_off = 1e-6;
+    if (m.tension - s.s1 <= round_off * (std::abs(s.s1) + std::abs(s.s3))) return 1;
+    return (s.s1 - s.s3) / (m.twice_c_cos_phi - m.sin_phi * (s.s1 + s.s3));
   }
 
   /// The principal stresses that plastic flow leaves of an elastic trial.

@@ -60,16 +60,20 @@ void History::open_with(const std::string &content) {
   if (!file_) throw std::runtime_error("cannot write " + path_ + ": " + std::strerror(errno));
 }
 
-void History::row(double time, long long step, const std::string &stage, const std::vector<double> &values) {
+void History::rows(double time, long long step, const std::string &stage,
+                   const std::vector<std::vector<double>> &lines) {
   on_first_rank(comm_, [&] {
-    if (values.size() != columns_)
-      throw std::runtime_error(path_ + ": " + std::to_string(values.size()) + " values for " +
-                               std::to_string(columns_) + " columns");
-    std::ostringstream line;
-    line.precision(digits);
-    line << time << "," << step << "," << csv_field(stage);
-    for (const double value : values) line << "," << value;
-    file_ << line.str() << std::endl;
+    std::ostringstream text;
+    text.precision(digits);
+    for (const std::vector<double> &values : lines) {
+      if (values.size() != columns_)
+        throw std::runtime_error(path_ + ": " + std::to_string(values.size()) + " values for " +
+                                 std::to_string(columns_) + " columns");
+      text << time << "," << step << "," << csv_field(stage);
+      for (const double value : values) text << "," << value;
+      text << "\n";
+    }
+    file_ << text.str() << std::flush;
     if (!file_) throw std::runtime_error("cannot write " + path_ + ": " + std::strerror(errno));
   });
 }

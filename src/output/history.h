@@ -21,7 +21,11 @@ class History {
   static History append(MPI_Comm comm, const std::string &path, const std::vector<std::string> &names, double time);
 
   /// Adds a line and brings it to the file; `values` are rank 0's, one per name, in their order.
-  void row(double time, long long step, const std::string &stage, const std::vector<double> &values);
+  void row(double time, long long step, const std::string &stage, const std::vector<double> &values) {
+    rows(time, step, stage, {values});
+  }
+  /// Several lines of the same time.
+  void rows(double time, long long step, const std::string &stage, const std::vector<std::vector<double>> &lines);
 
  private:
   History(MPI_Comm comm, const std::string &path) : comm_(comm), path_(path) {}

@@ -24,8 +24,9 @@ inline std::string history_column(const std::string &quantity, std::string unit)
   return quantity + "_" + unit;
 }
 
-/// What history.csv holds of a field for each tracked point.
-enum class Tracked { no, value, magnitude, coordinates };
+/// What history.csv holds of a field for each tracked point: nothing, its value, the magnitude of a vector, the
+/// components of the position, which are named x, y and z, or the components of a tensor.
+enum class Tracked { no, value, magnitude, coordinates, components };
 
 /// One field of a `Point`.
 template <class Point>
@@ -71,14 +72,17 @@ class OutputFields {
     }
   }
 
-  /// Names of the columns of history.csv for a tracked point.
-  std::vector<std::string> tracked_names(const std::string &point) const {
+  /// Names of the columns of history.csv for a tracked point; they begin with `prefix`.
+  std::vector<std::string> tracked_names(const std::string &prefix) const {
     std::vector<std::string> names;
     for (const auto &field : list_)
       if (field.tracked == Tracked::coordinates)
-        for (int d = 0; d < field.components; ++d) names.push_back(history_column(point + "_" + "xyz"[d], field.unit));
+        for (int d = 0; d < field.components; ++d) names.push_back(history_column(prefix + "xyz"[d], field.unit));
+      else if (field.tracked == Tracked::components)
+        for (const std::string &component : component_names(field.components))
+          names.push_back(history_column(prefix + field.name + "_" + component, field.unit));
       else if (field.tracked != Tracked::no)
-        names.push_back(history_column(point + "_" + field.name, field.unit));
+        names.push_back(history_column(prefix + field.name, field.unit));
     return names;
   }
   /// Appends the values of these columns: zeros where `point` is null, so that sums over ranks are those of the rank

@@ -3,6 +3,7 @@
 /// `comm`.
 #include <petscsys.h>
 
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,24 @@ struct Column {
   int components = 1;  ///< 1, 2, 3 (vector), 4 or 6 (symmetric tensor xx, yy, zz, xy(, yz, xz))
   std::vector<double> values;
 };
+
+/// Names of the components of a field that has so many: none of a scalar. Throws std::invalid_argument for a number of
+/// components that no field has.
+inline std::vector<std::string> component_names(int components) {
+  switch (components) {
+    case 1:
+      return {};
+    case 2:
+      return {"x", "y"};
+    case 3:
+      return {"x", "y", "z"};
+    case 4:
+      return {"xx", "yy", "zz", "xy"};
+    case 6:
+      return {"xx", "yy", "zz", "xy", "yz", "xz"};
+  }
+  throw std::invalid_argument("a column has 1, 2, 3, 4 or 6 components, not " + std::to_string(components));
+}
 
 /// One state of the run. `id` is the particle's number, the same whatever the partition; columns have one row per local
 /// particle.

@@ -17,22 +17,6 @@ namespace {
 
 constexpr const char *mesh_file = "run/mesh.h5";
 
-std::vector<std::string> component_names(int components) {
-  switch (components) {
-    case 1:
-      return {};
-    case 2:
-      return {"x", "y"};
-    case 3:
-      return {"x", "y", "z"};
-    case 4:
-      return {"xx", "yy", "zz", "xy"};
-    case 6:
-      return {"xx", "yy", "zz", "xy", "yz", "xz"};
-  }
-  throw std::invalid_argument("a column has 1, 2, 3, 4 or 6 components, not " + std::to_string(components));
-}
-
 std::string join(const std::vector<std::string> &words) {
   std::string text;
   for (const auto &word : words) text += (text.empty() ? "" : " ") + word;

@@ -30,6 +30,7 @@ class Checks {
     water();
     for (const OutputPoint &point : scene_.output.point)
       components("output.point." + point.name + ".position", point.position.size(), scene_.dimension, "coordinates");
+    for (const OutputLine &line : scene_.output.line) followed_line(line);
     for (std::size_t i = 0; i < scene_.stage.size(); ++i) {
       if (scene_.stage[i].name.empty()) scene_.stage[i].name = std::to_string(i);
       stage(scene_.stage[i], "stage." + std::to_string(i));
@@ -39,6 +40,28 @@ class Checks {
   }
 
  private:
+  void followed_line(const OutputLine &line) const {
+    const std::string path = "output.line." + line.name;
+    if (line.name.find('/') != std::string::npos)
+      reader_.complain(path, "must have a name without /, since its file is line_NAME.csv");
+    for (const auto &point : line.points)
+      components(path + ".points", point.size(), scene_.dimension, "coordinates in each point");
+    double length = 0;
+    for (std::size_t i = 1; i < line.points.size(); ++i) {
+      double square = 0;
+      for (std::size_t d = 0; d < line.points[i].size(); ++d)
+        square += std::pow(line.points[i][d] - line.points[i - 1][d], 2);
+      length += std::sqrt(square);
+    }
+    if (length == 0) reader_.complain(path + ".points", "must be two or more different points");
+    constexpr double most = 1e4;
+    if (line.spacing > 0 && length > most * line.spacing)
+      reader_.complain(path + ".spacing", "must be at least " + shortest(length / most) + " m: the line is " +
+                                              shortest(length) + " m long, and has at most 10000 places");
+    if (line.spacing > length)
+      reader_.complain(path + ".spacing", "must not exceed the length of the line, " + shortest(length) + " m");
+  }
+
   void mesh() const {
     const MeshSource &mesh = scene_.mesh;
     if (host_mesh_) {

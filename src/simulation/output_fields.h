@@ -3,6 +3,8 @@
 /// adds an entry here, behind a condition where a phase model or a kind of point does not have it.
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <string>
@@ -12,6 +14,7 @@
 #include "output/output_field.h"
 #include "particles/escaped_particles.h"
 #include "physics/any_soil_motion.h"
+#include "physics/laws/present_strength.h"
 #include "physics/laws/strength_by_place.h"
 
 namespace talus {
@@ -28,6 +31,7 @@ struct ParticleState {
   double pore_pressure = 0, gas_pressure = 0, suction = 0;  ///< [Pa]
   double saturation = 0, porosity = 0;
   bool surface = false;         ///< fluids may pass through a side of its cell
+  double size = 0;              ///< element size of its cell [m]
   StrengthShares strength;      ///< of the body's law
   std::vector<double> history;  ///< internal variables of the body's law
 
@@ -40,6 +44,7 @@ struct ParticleState {
     motion.state(b, i, stress.data(), history.data(), &volume);
     for (int d = 0; d < dim; ++d) displacement[d] = position[d] - p.reference[i][d];
     mass = p.mass[i];
+    size = element_size<dim>(motion.grid().mesh().volume[p.cell[i]]);
     if (p.cohesion_share) strength = {p.cohesion_share[i], p.friction_share[i]};
     if (phases.prescribed) pore_pressure = motion.pore_pressure(p.cell[i], position);
     if (phases.liquid) {
@@ -61,10 +66,50 @@ struct GaussPointState {
   std::array<double, stress_size<dim>> stress{};  ///< [Pa]
   double volume = 0, mass = 0;                    ///< [m3], [kg]
   double shear_strain = 0;
-  double pore_pressure = 0, saturation = 0;  ///< [Pa], [-]
-  StrengthShares strength;                   ///< of the body's law
-  const double *history = nullptr;           ///< internal variables of the body's law
+  double pore_pressure = 0, suction = 0;  ///< [Pa]
+  double saturation = 0;                  ///< [-]
+  double size = 0;                        ///< element size of its cell [m]
+  StrengthShares strength;                ///< of the body's law
+  const double *history = nullptr;        ///< internal variables of the body's law
 };
+
+template <class Point>
+Invariants<Point::dimension> invariants_of(const Point &p) {
+  Stress<Point::dimension> stress;
+  std::memcpy(&stress, p.stress.data(), sizeof stress);
+  return Invariants<Point::dimension>(stress);
+}
+
+/// Adds what follows from the stress of frictional soil; nothing where no soil is frictional.
+template <class Point>
+void add_mobilised_strength(OutputFields<Point> &fields,
+                            const std::vector<std::unique_ptr<Body<Point::dimension>>> &bodies) {
+  struct Soil {
+    PresentStrength strength;
+    double band;  ///< width of the bands in which it softens, where that is not the size of the cell [m]
+  };
+  auto soils = std::make_shared<std::vector<Soil>>();
+  for (const auto &body : bodies) soils->push_back({PresentStrength(body->law()), 2 * body->source().averaging_length});
+  if (std::ranges::none_of(*soils, [](const Soil &soil) { return soil.strength.known(); })) return;
+  const auto mobilised = [soils](const Point &p) -> std::array<double, 2> {
+    const Soil &soil = (*soils)[p.body];
+    if (!soil.strength.known()) return {std::nan(""), std::nan("")};
+    Stress<Point::dimension> stress;
+    std::memcpy(&stress, p.stress.data(), sizeof stress);
+    const Surroundings around{.size = soil.band > 0 ? soil.band : p.size,
+                              .suction = p.suction,
+                              .cohesion = p.strength.cohesion,
+                              .friction = p.strength.friction};
+    const Mobilised found = soil.strength(stress, &p.history[0], around);
+    return {found.friction_angle / degree.si, static_cast<double>(found.state)};
+  };
+  fields.add("mobilised_friction", "deg",
+             "friction angle that the stress mobilises with the present cohesion c and friction angle phi: sin = (s1 - "
+             "s3) / (2 c cot(phi) - s1 - s3)",
+             Tracked::value, [mobilised](const Point &p) { return mobilised(p)[0]; });
+  fields.add("state", "-", "strength of the point: 0 elastic, 1 peak, 2 softening, 3 residual", Tracked::value,
+             [mobilised](const Point &p) { return mobilised(p)[1]; });
+}
 
 /// The fields of particles (`Point` is a ParticleState) or Gauss points (GaussPointState).
 template <class Point>
@@ -81,7 +126,13 @@ OutputFields<Point> output_fields(const PhaseTraits &phases,
     fields.add("velocity", "m/s", "velocity of the soil skeleton", Tracked::magnitude,
                [](const Point &p) { return p.velocity; });
   fields.add("stress", "Pa", phases.pressure ? "effective stress, positive in tension" : "stress, positive in tension",
-             Tracked::no, [](const Point &p) { return p.stress; });
+             Tracked::components, [](const Point &p) { return p.stress; });
+  fields.add("mean_pressure", "Pa",
+             phases.pressure ? "p', mean effective stress, positive in compression"
+                             : "p, mean stress, positive in compression",
+             Tracked::value, [](const Point &p) { return -invariants_of(p).p; });
+  fields.add("deviator", "Pa", "q = sqrt(3/2 s : s) of the deviator s of stress", Tracked::value,
+             [](const Point &p) { return std::sqrt(3.) * invariants_of(p).q; });
   fields.add("volume", "m3", "volume" + of_point, Tracked::no, [](const Point &p) { return p.volume; });
   fields.add("mass", "kg", "mass" + of_point, Tracked::no, [](const Point &p) { return p.mass; });
   if constexpr (!particles)
@@ -119,6 +170,7 @@ OutputFields<Point> output_fields(const PhaseTraits &phases,
         "friction_angle", "deg", "friction angle of the place, at its peak if the soil softens", Tracked::no,
         [of_body](const Point &p) { return of_body[p.body].friction_angle[1] / degree.si * p.strength.friction; });
   }
+  add_mobilised_strength(fields, bodies);
   // The internal variables of the laws. A body whose law does not have a variable shows NaN there.
   for (const auto &body : bodies)
     for (const HistoryField &variable : history_fields(body->law())) {
@@ -130,7 +182,7 @@ OutputFields<Point> output_fields(const PhaseTraits &phases,
         for (std::size_t k = 0; k < own.size(); ++k)
           if (own[k].name == name) index[b] = static_cast<int>(k);
       }
-      fields.add(name, variable.unit.name, variable.meaning, Tracked::no,
+      fields.add(name, variable.unit.name, variable.meaning, name == "plastic_strain" ? Tracked::value : Tracked::no,
                  [index](const Point &p) { return index[p.body] < 0 ? nan : p.history[index[p.body]]; });
     }
   return fields;

@@ -21,7 +21,7 @@ namespace talus {
 
 template <int dim>
 Recorder<dim>::Recorder(const Sources<dim> &of, const RunOptions &options)
-    : of_(of), scene_(of.world.scene), phases_(of.world.phases), options_(options) {
+    : of_(of), scene_(of.world.scene), phases_(of.world.phases), options_(options), point_rows_(of.world, of.points) {
   check_pictures();
   check_intervals();
 }
@@ -39,6 +39,7 @@ void Recorder<dim>::open() {
   History rows(of_.world.comm, options_.directory + "/history.csv", {history_.names.begin() + 2, history_.names.end()});
   results_.reset(new Files{std::move(folder), std::move(file), std::move(rows),
                            Progress(of_.world.comm, options_.directory + "/run.log", longest_duration())});
+  of_.lines.open(options_.directory);
   write_escaped();  // in place of that of a run that was here before
 }
 
@@ -70,6 +71,7 @@ void Recorder<dim>::append(std::unique_ptr<ResultsFolder> folder) {
       History::append(of_.world.comm, table, {history_.names.begin() + 2, history_.names.end()}, last_row_time_);
   results_.reset(new Files{std::move(folder), std::move(file), std::move(rows),
                            Progress(of_.world.comm, options_.directory + "/run.log", longest_duration(), true)});
+  of_.lines.append(options_.directory, last_row_time_);
   results_->progress.resume(of_.clock.time, of_.clock.steps);
   results_->progress.note("resumed at t = " + rounded(of_.clock.time) + " s, step " + std::to_string(of_.clock.steps));
   for (const std::string &key : changed_) results_->progress.note("since then the scene has another " + key);
@@ -243,9 +245,8 @@ void Recorder<dim>::fail(const std::string &cause) {
 template <int dim>
 void Recorder<dim>::name_columns() {
   history_.names = {history_column("time", "s"), "step"};
-  const auto fields = output_fields<ParticleState<dim>>(phases_, of_.world.bodies);
   for (const auto &point : of_.points.all())
-    for (const std::string &name : fields.tracked_names(point.name)) history_.names.push_back(name);
+    for (const std::string &name : point_rows_.names(point.name + "_")) history_.names.push_back(name);
   run_row().visit([&](const std::string &quantity, const char *unit, double) {
     history_.names.push_back(history_column(quantity, unit));
   });
@@ -276,21 +277,9 @@ template <int dim>
 void Recorder<dim>::write_history() {
   require(of_.world.motion->begin(of_.clock.time));
   if (last_row_step_ == of_.clock.steps) return;
+  std::vector<double> row = point_rows_.at(of_.clock.time, of_.statics);
+  of_.lines.write(of_.clock, of_.statics);
   last_row_step_ = of_.clock.steps, last_row_time_ = of_.clock.time;
-  std::vector<double> mine, row;
-  const auto fields = output_fields<ParticleState<dim>>(phases_, of_.world.bodies);
-  std::vector<double> there;  // is a point on this rank?
-  for (auto &point : of_.points.all()) {
-    std::optional<ParticleState<dim>> state;
-    if (of_.statics.current())
-      state = of_.statics.state_at(point.place);
-    else if (const int i = of_.points.find(point); i >= 0)
-      state.emplace(phases_, *of_.world.motion, *of_.world.bodies[point.body], point.body, i);
-    fields.append_tracked(state ? &*state : nullptr, mine);
-    there.push_back(state ? 1 : 0);
-  }
-  const std::size_t point_columns = mine.size();
-  mine.insert(mine.end(), there.begin(), there.end());
   double potential = 0;
   for (const auto &body : of_.world.bodies) {
     const ParticleArrays<dim> &p = body->particles();
@@ -300,18 +289,8 @@ void Recorder<dim>::write_history() {
       for (int d = 0; d < dim; ++d) potential -= p.mass[i] * scene_.gravity[d] * x[d];
     }
   }
-  mine.push_back(potential);
-  row.resize(mine.size());
-  MPI_Allreduce(mine.data(), row.data(), static_cast<int>(mine.size()), MPI_DOUBLE, MPI_SUM, of_.world.comm);
   RunRow<dim> run = run_row();
-  run.potential = row.back();
-  for (std::size_t i = 0; i < there.size(); ++i) {  // a point whose particle is gone has no values
-    const std::size_t width = point_columns / there.size();
-    if (row[point_columns + i] == 0)
-      std::fill_n(row.begin() + static_cast<std::ptrdiff_t>(i * width), width,
-                  std::numeric_limits<double>::quiet_NaN());
-  }
-  row.resize(point_columns);
+  MPI_Allreduce(&potential, &run.potential, 1, MPI_DOUBLE, MPI_SUM, of_.world.comm);
   require(of_.world.motion->balance(of_.clock.time, &run.balance));
   if (phases_.liquid) {
     require(of_.world.motion->fluid_ledger(run.fluids.data()));
@@ -451,6 +430,8 @@ template <int dim>
 void Recorder<dim>::serialize(Archive &archive) {
   archive.serialize("results", last_row_step_, last_row_time_, snapshots_, impulse_time_, first_ledger_, first_energy_,
                     told_escaped_);
+  point_rows_.serialize(archive);
+  of_.lines.serialize(archive);
 }
 
 template class Recorder<2>;

@@ -11,6 +11,7 @@
 #include "output/results_folder.h"
 #include "output/snapshots.h"
 #include "simulation/dynamics.h"
+#include "simulation/followed_lines.h"
 #include "simulation/statics.h"
 #include "simulation/tracked_points.h"
 
@@ -27,6 +28,7 @@ struct Sources {
   const Dynamics<dim> &dynamics;
   Statics<dim> &statics;
   TrackedPoints<dim> &points;
+  FollowedLines<dim> &lines;
 };
 
 template <int dim>
@@ -100,6 +102,7 @@ class Recorder {
   std::vector<double> first_ledger_;  ///< fluid masses at the start [kg]
   double first_energy_ = 0;           ///< [J]
   double impulse_time_ = 0;           ///< since when forces are means [s]
+  PointRows<dim> point_rows_;
   std::vector<std::string> changed_;  ///< keys of the scene that are others than before the run was resumed
   double told_escaped_ = 0;           ///< particles that had left when the log last said so
   double written_escaped_ = -1;       ///< particles in escaped.csv; -1: not known

@@ -15,9 +15,10 @@ Run<dim>::Run(MPI_Comm comm, const Scene &of, const RunOptions &with, const std:
       integrator(choose_integrator(of)),
       world(comm, of, with.plex, mesh_file),
       points(world),
+      lines(world),
       dynamics((world.take_out_later_bodies(), world), clock, integrator),
       statics(world, clock),
-      recorder({world, clock, dynamics, statics, points}, options) {}
+      recorder({world, clock, dynamics, statics, points, lines}, options) {}
 
 template <int dim>
 void Run<dim>::begin_next_stage() {

@@ -40,6 +40,7 @@ struct Run {
   Clock clock;
   World<dim> world;
   TrackedPoints<dim> points;
+  FollowedLines<dim> lines;
   Dynamics<dim> dynamics;
   Statics<dim> statics;
   Recorder<dim> recorder;

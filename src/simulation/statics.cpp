@@ -284,6 +284,10 @@ std::optional<ParticleState<dim>> Statics<dim>::state_at(const Vec<dim> &x) cons
     state.pore_pressure = flow_->pressure_at(cell, l), state.saturation = flow_->saturation(cell, l);
     state.suction = std::max(0., -state.pore_pressure);
   }
+  state.size = element_size<dim>(world_.mesh.volume[cell]);
+  const Law &law = world_.bodies[state.body]->law();
+  state.strength =
+      StrengthByPlace(world_.scene.body[state.body].law, law).shares(law, x[0], x[1], dim == 3 ? x[dim - 1] : 0);
   return state;
 }
 
@@ -366,7 +370,9 @@ Snapshot Statics<dim>::gauss_points() const {
       if (!p.cohesion_share.empty()) point.strength = {p.cohesion_share[q], p.friction_share[q]};
       if (world_.phases.prescribed) point.pore_pressure = world_.pressure(p.position[q], clock_.load_time, b);
       if (world_.phases.liquid)
-        point.pore_pressure = flow_->pressure_at(cell, l), point.saturation = flow_->saturation(cell, l);
+        point.pore_pressure = flow_->pressure_at(cell, l), point.saturation = flow_->saturation(cell, l),
+        point.suction = std::max(0., -point.pore_pressure);
+      point.size = element_size<dim>(world_.mesh.volume[cell]);
       point.history = p.history.data() + static_cast<size_t>(q) * world_.bodies[b]->history_count();
       fields.append(point, s.columns);
     }

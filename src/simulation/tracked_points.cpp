@@ -11,43 +11,50 @@ namespace talus {
 template <int dim>
 TrackedPoints<dim>::TrackedPoints(const World<dim> &world) : world_(world) {
   for (const OutputPoint &wanted : world_.scene.output.point) {
-    Point point{wanted.name};
-    std::copy_n(wanted.position.begin(), dim, point.place.begin());
-    double nearest = std::numeric_limits<double>::infinity(), cell_size = 0;
-    for (size_t b = 0; b < world_.bodies.size(); ++b) {
-      const ParticleArrays<dim> &p = world_.bodies[b]->particles();
-      for (int i = 0; i < p.count; ++i) {
-        double distance = 0;
-        for (int d = 0; d < dim; ++d)
-          distance += (p.position[i][d] - wanted.position[d]) * (p.position[i][d] - wanted.position[d]);
-        if (distance < nearest * (1 - 1e-9) || (distance <= nearest * (1 + 1e-9) && p.id[i] < point.id))
-          nearest = distance, point.body = static_cast<int>(b), point.id = p.id[i],
-          cell_size = std::pow(world_.mesh.volume[p.cell[i]], 1. / dim);
-      }
-    }
-    // the same particle whatever the partition: nearest, then smallest number
-    double best;
-    MPI_Allreduce(&nearest, &best, 1, MPI_DOUBLE, MPI_MIN, world_.comm);
-    const bool candidate = nearest <= best * (1 + 1e-9);
-    refuse_far(wanted.name, std::sqrt(best), candidate ? cell_size : 0);
-    long long id = candidate ? point.id : std::numeric_limits<long long>::max(), winner;
-    MPI_Allreduce(&id, &winner, 1, MPI_LONG_LONG, MPI_MIN, world_.comm);
-    int body = candidate && point.id == winner ? point.body : -1;
-    MPI_Allreduce(MPI_IN_PLACE, &body, 1, MPI_INT, MPI_MAX, world_.comm);
-    point.id = static_cast<PetscInt>(winner), point.body = body;
-    points_.push_back(point);
+    Vec<dim> place;
+    std::copy_n(wanted.position.begin(), dim, place.begin());
+    const Found found = nearest_particle(wanted.name, place);
+    if (!found.in_soil())
+      world_.scene.complain("output.point." + wanted.name + ".position",
+                            "must be in the soil or at its surface; the nearest particle is " +
+                                rounded(found.distance) + " m away, in a cell of " + rounded(found.cell_size) + " m");
+    points_.push_back(found.point);
   }
 }
 
-/// A point of the soil is never further from a particle than its cell is wide.
 template <int dim>
-void TrackedPoints<dim>::refuse_far(const std::string &name, double distance, double cell_size) const {
+TrackedPoints<dim>::TrackedPoints(const World<dim> &world, const std::vector<Vec<dim>> &places) : world_(world) {
+  for (const Vec<dim> &place : places)
+    if (const Found found = nearest_particle("", place); found.in_soil()) points_.push_back(found.point);
+}
+
+/// The same particle whatever the partition: nearest, then smallest number.
+template <int dim>
+typename TrackedPoints<dim>::Found TrackedPoints<dim>::nearest_particle(const std::string &name,
+                                                                        const Vec<dim> &place) const {
+  Point point{name, place};
+  double nearest = std::numeric_limits<double>::infinity(), cell_size = 0;
+  for (size_t b = 0; b < world_.bodies.size(); ++b) {
+    const ParticleArrays<dim> &p = world_.bodies[b]->particles();
+    for (int i = 0; i < p.count; ++i) {
+      double distance = 0;
+      for (int d = 0; d < dim; ++d) distance += (p.position[i][d] - place[d]) * (p.position[i][d] - place[d]);
+      if (distance < nearest * (1 - 1e-9) || (distance <= nearest * (1 + 1e-9) && p.id[i] < point.id))
+        nearest = distance, point.body = static_cast<int>(b), point.id = p.id[i],
+        cell_size = std::pow(world_.mesh.volume[p.cell[i]], 1. / dim);
+    }
+  }
+  double best;
+  MPI_Allreduce(&nearest, &best, 1, MPI_DOUBLE, MPI_MIN, world_.comm);
+  const bool candidate = nearest <= best * (1 + 1e-9);
+  if (!candidate) cell_size = 0;
   MPI_Allreduce(MPI_IN_PLACE, &cell_size, 1, MPI_DOUBLE, MPI_MAX, world_.comm);
-  constexpr double cells = 2;
-  if (distance <= cells * cell_size) return;
-  world_.scene.complain("output.point." + name + ".position",
-                        "must be in the soil or at its surface; the nearest particle is " + rounded(distance) +
-                            " m away, in a cell of " + rounded(cell_size) + " m");
+  long long id = candidate ? point.id : std::numeric_limits<long long>::max(), winner;
+  MPI_Allreduce(&id, &winner, 1, MPI_LONG_LONG, MPI_MIN, world_.comm);
+  point.body = candidate && point.id == winner ? point.body : -1;
+  MPI_Allreduce(MPI_IN_PLACE, &point.body, 1, MPI_INT, MPI_MAX, world_.comm);
+  point.id = static_cast<PetscInt>(winner);
+  return {point, std::sqrt(best), cell_size};
 }
 
 template <int dim>

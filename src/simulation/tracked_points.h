@@ -1,6 +1,6 @@
 #pragma once
 /// Named points of the scene's output: in motion the particle that was nearest at the start, wherever it goes; in
-/// stages by finite elements the place itself.
+/// stages by finite elements the place itself. So are the places along lines.
 #include <string>
 #include <vector>
 
@@ -18,8 +18,10 @@ class TrackedPoints {
     PetscInt id = -1;  ///< of its particle
     int index = -1;    ///< of its particle on this rank when it was last found
   };
-  /// Throws SceneError for a point that is not near any soil. Collective.
+  /// The points of the scene's output. Throws SceneError for one that is not near any soil. Collective.
   explicit TrackedPoints(const World<dim> &world);
+  /// Points without names at these places; those that are not near any soil are left out. Collective.
+  TrackedPoints(const World<dim> &world, const std::vector<Vec<dim>> &places);
 
   std::vector<Point> &all() { return points_; }
   const std::vector<Point> &all() const { return points_; }
@@ -29,7 +31,13 @@ class TrackedPoints {
   bool velocity(const std::string &name, Vec<3> *v);
 
  private:
-  void refuse_far(const std::string &name, double distance, double cell_size) const;
+  struct Found {
+    Point point;
+    double distance, cell_size;  ///< of its particle, and of the particle's cell [m]
+    /// A point of the soil is never further from a particle than its cell is wide.
+    bool in_soil() const { return distance <= 2 * cell_size; }
+  };
+  Found nearest_particle(const std::string &name, const Vec<dim> &place) const;
 
   const World<dim> &world_;
   std::vector<Point> points_;

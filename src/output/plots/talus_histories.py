@@ -7,7 +7,8 @@ from matplotlib.ticker import MaxNLocator
 import talus_style as style
 from talus_results import ESCAPED
 
-PLACES = ("x", "y", "z")  # coordinates of points: the pictures show them better
+# coordinates, stress and state of points: sections and stress paths show them better
+ELSEWHERE = ("x", "y", "z", "mean_pressure", "deviator", "mobilised_friction", "state")
 
 
 def draw_histories(results, folder):
@@ -17,7 +18,7 @@ def draw_histories(results, folder):
         return []
     pictures = []
     for (quantity, unit), lines in history.groups().items():
-        if quantity in PLACES or all(np.ptp(values) <= 1e-9 * np.abs(values).max() for values in lines.values()):
+        if quantity in ELSEWHERE or quantity.startswith("stress_") or not any(changes(values) for values in lines.values()):
             continue
         if quantity == "energy":
             pictures.append((quantity, draw_energy(history, lines, results.title, folder / "energy.png")))
@@ -27,6 +28,12 @@ def draw_histories(results, folder):
             path = folder / f"history_{quantity}.png"
             pictures.append((quantity, draw_curves(history, quantity, unit, lines, results.title, path)))
     return pictures
+
+
+def changes(values):
+    """Does a column vary? What is not known counts as nothing."""
+    known = values[np.isfinite(values)]
+    return known.size > 0 and np.ptp(known) > 1e-9 * np.abs(known).max()
 
 
 def draw_curves(history, quantity, unit, lines, title, path):

@@ -6,12 +6,13 @@ import sys
 
 from talus_factor import draw_factor
 from talus_histories import draw_histories
-from talus_paths import draw_stress_paths, strength_of
+from talus_lines import draw_lines
+from talus_paths import draw_stress_paths
 from talus_report import write_report
-from talus_results import DERIVED, Results
+from talus_results import Results
 from talus_sections import draw_sections
 
-FIELDS = ("displacement", "plastic_strain", "velocity", "pore_pressure", "suction", "saturation", "surface")
+FIELDS = ("displacement", "plastic_strain", "velocity", "pore_pressure", "suction", "saturation", "surface", "mobilised_friction", "state")
 
 
 def arguments():
@@ -25,20 +26,27 @@ def arguments():
 
 
 def draw(folder, fields=None, times=None, log=False):
-    """Draws everything; without `fields`, those of FIELDS that the run has, and mobilised friction of frictional soils. Returns the
-    report's path."""
+    """Draws everything; without `fields`, those of FIELDS that the run has, of which the state of strength only where strength was lost. Returns
+    the report's path."""
     results = Results(folder)
     if not results.snapshots:
         raise ValueError(f"{folder} contains no snapshots")
     first = results.snapshots[0]
     for field in fields or ():
         if first.scalar(field) is None:
-            raise ValueError(f"{folder} has no field {field}; it has {', '.join((*first.names(), *DERIVED))}")
+            raise ValueError(f"{folder} has no field {field}; it has {', '.join(first.names())}")
     pictures = results.folder / "pictures"
-    usual = (*FIELDS, *(DERIVED if strength_of(pictures) else ()))
+    usual = [field for field in FIELDS if field != "state" or lost_strength(results)]
     sections = draw_sections(results, fields or usual, times, pictures, log)
     curves = draw_histories(results, pictures) + draw_stress_paths(results, pictures)
+    curves += draw_lines(results, pictures, times)
     return write_report(results, sections, curves, draw_factor(results, pictures))
+
+
+def lost_strength(results):
+    """Has any soil softened? The state is then 2 or 3 somewhere."""
+    last = results.snapshots[-1].scalar("state")
+    return last is not None and bool((last[0] > 1).any())
 
 
 def main():

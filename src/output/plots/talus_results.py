@@ -9,13 +9,13 @@ import h5py
 import numpy as np
 
 # ending of a history column -> unit
-UNITS = {"kg_m_s": "kg m/s", "m_s2": "m/s²", "m_s": "m/s", "m": "m", "m3": "m³", "J": "J", "W": "W", "Pa": "Pa", "N": "N", "kg": "kg", "s": "s"}
+UNITS = {"kg_m_s": "kg m/s", "m_s2": "m/s²", "m_s": "m/s", "m": "m", "m3": "m³", "J": "J", "W": "W", "Pa": "Pa", "N": "N", "kg": "kg", "s": "s", "deg": "deg"}
 # words that may stand before the unit: what is left is the name of a point
-QUANTITIES = ("displacement", "velocity", "acceleration", "pore_pressure", "gas_pressure", "pressure", "suction", "saturation", "plastic_strain", "x", "y", "z")
+QUANTITIES = ("displacement", "velocity", "acceleration", "mean_pressure", "deviator", "pore_pressure", "gas_pressure", "pressure", "suction", "saturation",
+              "plastic_strain", "mobilised_friction", "state", *(f"stress_{axes}" for axes in ("xx", "yy", "zz", "xy", "yz", "xz")), "x", "y", "z")
 ESCAPED = "escaped"  # in columns of what left the mesh
 BROKE_OFF = "the run broke off: "  # in the log, before the cause
 FLUIDS = ("water", "gas")  # whose ledgers history.csv holds
-DERIVED = ("mobilised_friction",)  # fields that follow from the columns
 
 
 class Column:
@@ -58,10 +58,7 @@ class Snapshot:
 
     def scalar(self, name):
         """A field as one number a particle, with its unit; None if there is no such field. Of a vector it is the
-        magnitude, of a tensor the mean of the diagonal, or one component: `stress_xy`. `mobilised_friction` follows from
-        the stress."""
-        if name == "mobilised_friction" and "stress" in self._group:
-            return mobilised_friction(self._group["stress"][...]), "deg"
+        magnitude, of a tensor the mean of the diagonal, or one component: `stress_xy`."""
         if name in self._group:
             column = self.column(name)
             count = column.values.shape[1]
@@ -76,31 +73,6 @@ class Snapshot:
             if component in column.components:
                 return column.values[:, column.components.index(component)], column.unit
         return None
-
-
-def full(stress):
-    """Columns xx, yy, zz, xy(, yz, xz) as matrices [particles, 3, 3]."""
-    xx, yy, zz, xy, yz, xz = (*stress.T, *[np.zeros(len(stress))] * (6 - stress.shape[1]))
-    return np.moveaxis(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]), 2, 0)
-
-
-def mobilised_friction(stress):
-    """Angle at whose tangent through the origin Mohr's circle of the (effective) stress lies, asin((s1 - s3) / -(s1 + s3)) [deg]: with
-    cohesion it may exceed the friction angle. It is 90 where there is tension, and 0 where there is no stress."""
-    principal = np.linalg.eigvalsh(full(stress))
-    least, most = principal[:, 0], principal[:, 2]
-    pressure = -(least + most)
-    share = np.where((pressure > 0) & (most <= 0), (most - least) / np.where(pressure > 0, pressure, 1), 1)
-    share[np.abs(principal).max(axis=1) <= 1e-12 * np.abs(principal).max(initial=0)] = 0
-    return np.degrees(np.arcsin(np.clip(share, 0, 1)))
-
-
-def invariants(stress):
-    """Mean pressure, positive in compression, and deviator q = sqrt(3/2 s : s) of stress columns."""
-    whole = full(stress)
-    mean = np.trace(whole, axis1=1, axis2=2) / 3
-    rest = whole - mean[:, None, None] * np.eye(3)
-    return -mean, np.sqrt(1.5 * (rest**2).sum(axis=(1, 2)))
 
 
 class History:

@@ -111,6 +111,9 @@ class Colours:
         low, high = -rounded_up(-min(low, 0.0) * self.factor), rounded_up(max(high, 0.0) * self.factor)
         if low == high:
             high = 1.0
+        if field == "state":
+            low, high = -0.5, len(style.STATES) - 0.5
+        self.names = style.STATES if field == "state" else ()
         self.beyond = len(values) > 0 and values.max() * self.factor > high
         self.norm = LogNorm(1e-3 * high, high, clip=True) if log and low == 0 else Normalize(low, high)
 
@@ -170,7 +173,8 @@ class Painter:
 
     def large(self, field, colours, path):
         """The time that says most: the last, unless the field had faded by then."""
-        tops = [np.percentile(snapshot.scalar(field)[0], 99) for snapshot in self.snapshots]
+        values = [snapshot.scalar(field)[0] for snapshot in self.snapshots]
+        tops = [np.percentile(known, 99) if (known := one[np.isfinite(one)]).size else 0.0 for one in values]
         best = self.snapshots[-1] if tops[-1] >= 0.8 * max(tops) else self.snapshots[int(np.argmax(tops))]
         return self._sheet(field, colours, path, [best], 1, named_points=True)
 
@@ -259,6 +263,8 @@ class Painter:
         scale = plt.cm.ScalarMappable(colours.norm, colours.map)
         figure.colorbar(scale, cax=bar, extend="max" if colours.beyond else "neither")
         bar.tick_params(length=2)
+        if colours.names:
+            bar.set_yticks(range(len(colours.names)), colours.names, rotation=90, va="center")
         bar.set_title(colours.unit, fontsize=9, pad=6)
         headline = "  ".join(filter(None, (style.capital(style.words(field)), style.SYMBOL.get(field))))
         figure.text(LEFT / WIDTH, 1 - 0.24 / height, headline, fontsize=13, fontweight="bold", va="center")

@@ -9,7 +9,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.colors import LinearSegmentedColormap, ListedColormap
 
 INK, SOFT, FAINT, ACCENT = "#1f2933", "#616e7c", "#cbd2d9", "#0b7285"
 LINES = ("#0b7285", "#d9480f", "#5f3dc4", "#2b8a3e", "#c2255c", "#e67700", "#1864ab", "#495057")
@@ -31,10 +31,13 @@ def part_of(name, low, high):
     return LinearSegmentedColormap.from_list(f"{name}_part", plt.get_cmap(name)(np.linspace(low, high, 256)))
 
 
+STATES = ("elastic", "peak", "softening", "residual")  # values 0, 1, 2, 3 of the field state
+STATE_COLOURS = ("#eef1f4", "#ffd43b", "#f76707", "#c92a2a")
 # of even steps in lightness; strain and pressure start pale, so that the eye goes to where there is some
 MAPS = {"displacement": plt.get_cmap("viridis"), "velocity": plt.get_cmap("plasma"),
         "plastic_strain": part_of("magma_r", 0.03, 0.95), "pore_pressure": part_of("YlGnBu", 0.08, 1.0),
-        "suction": part_of("YlOrBr", 0.03, 0.95), "saturation": plt.get_cmap("YlGnBu"), "mobilised_friction": part_of("magma_r", 0.03, 0.95)}
+        "suction": part_of("YlOrBr", 0.03, 0.95), "saturation": plt.get_cmap("YlGnBu"), "mobilised_friction": part_of("magma_r", 0.03, 0.95),
+        "state": ListedColormap(STATE_COLOURS)}
 SYMBOL = {"displacement": "|u|", "velocity": "|v|", "plastic_strain": "εₚ", "pore_pressure": "p", "suction": "s", "saturation": "S", "mobilised_friction": "φₘ"}
 
 

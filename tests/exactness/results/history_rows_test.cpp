@@ -1,5 +1,9 @@
 // Rows of history.csv: output points in stages by finite elements are the places that the scene gives, and rows do not
 // change the steps of the motion.
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
 #include "../quasi_static/solved.h"
 
 namespace talus {
@@ -32,6 +36,46 @@ TEST(HistoryRows, static_stages_show_the_place_itself) {
   }
 }
 
+/// Under its weight the column has sigma_yy = -gamma (1 - y) and nu / (1 - nu) of it sideways, which rows show by
+/// components, mean pressure, deviator and the friction that they mobilise.
+TEST(HistoryRows, show_the_stress_of_a_point) {
+  const std::string text = column +
+                           "[[stage]]\nkind = \"quasi_static\"\nduration = 1\n"
+                           "[output.point.p]\nposition = [0.37, 0.61]\n";
+  const HistoryTable history =
+      solve(text, {"body.soil.law=mohr_coulomb", "body.soil.cohesion=20000", "body.soil.friction_angle=30"}).history;
+  const double vertical = -2000 * 10 * (1 - 0.61), level = 0.3 / 0.7 * vertical, tolerance = 1e-8;
+  const auto last = [&](const std::string &name) { return history.column("p_" + name).back() / -vertical; };
+  EXPECT_NEAR(last("stress_xx_Pa"), -0.3 / 0.7, tolerance);
+  EXPECT_NEAR(last("stress_yy_Pa"), -1, tolerance);
+  EXPECT_NEAR(last("stress_zz_Pa"), -0.3 / 0.7, tolerance);
+  EXPECT_NEAR(last("stress_xy_Pa"), 0, tolerance);
+  EXPECT_NEAR(last("mean_pressure_Pa"), (1 + 2 * 0.3 / 0.7) / 3, tolerance);
+  EXPECT_NEAR(last("deviator_Pa"), 1 - 0.3 / 0.7, tolerance);
+  const double sine = (level - vertical) / (2 * 20e3 * std::sqrt(3.) - level - vertical);
+  EXPECT_NEAR(history.column("p_mobilised_friction_deg").back(), std::asin(sine) * 180 / M_PI, 1e-6);
+  EXPECT_EQ(history.column("p_state").back(), 0);
+  EXPECT_EQ(history.column("p_plastic_strain").back(), 0);
+}
+
+/// Until the wave from the base arrives, after 12 ms, the top of a column falls freely; the acceleration of a row is
+/// the change of velocity since the row before over the time between them.
+TEST(HistoryRows, show_the_mean_acceleration_since_the_row_before) {
+  const HistoryTable history = solve(column + "[output.point.top]\nposition = [0.5, 1]\n[[stage]]\nduration = 0.1\n",
+                                     {"output.history_interval=0.002"})
+                                   .history;
+  const std::vector<double> a = history.column("top_acceleration_m_s2"), v = history.column("top_velocity_m_s"),
+                            t = history.column("time_s");
+  EXPECT_EQ(a[0], 0);
+  for (size_t i = 1; t[i] < 0.004; ++i) EXPECT_NEAR(a[i], 10, 0.01) << t[i];
+  int rising = 0;
+  for (size_t i = 1; i < t.size(); ++i) {
+    EXPECT_GE(a[i] * (t[i] - t[i - 1]), std::abs(v[i] - v[i - 1]) * (1 - 1e-12)) << t[i];
+    rising += v[i] > v[i - 1];
+  }
+  EXPECT_GT(rising, 5);
+}
+
 /// Rows come with the first step that reaches their time, and the motion is the same to the last bit however many there
 /// are.
 TEST(HistoryRows, do_not_shorten_steps) {
@@ -49,6 +93,104 @@ TEST(HistoryRows, do_not_shorten_steps) {
     EXPECT_LT(times[i] - due, 1.01 * step) << i;
     EXPECT_GT(due, times[i - 1]) << i;
   }
+}
+
+/// Columns of line_NAME.csv that a run of the scene leaves in a folder of its own.
+struct FollowedLine {
+  std::map<std::string, std::vector<double>> columns;
+  std::vector<std::string> stages;
+
+  FollowedLine(const std::string &text, const std::string &name, const std::vector<std::string> &overrides = {}) {
+    int rank;
+    MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+    std::string folder = std::filesystem::temp_directory_path() / ("talus_line_" + std::to_string(::getpid()));
+    unsigned long length = folder.size();
+    MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG, 0, PETSC_COMM_WORLD);
+    folder.resize(length);
+    MPI_Bcast(folder.data(), static_cast<int>(length), MPI_CHAR, 0, PETSC_COMM_WORLD);
+    Scene scene = parse_scene(text, meshes + "/scene.toml", overrides);
+    RunOptions options;
+    options.pictures = options.screen = false, options.directory = folder;
+    make_simulation(PETSC_COMM_WORLD, scene, options)->run();
+    MPI_Barrier(PETSC_COMM_WORLD);
+    std::ifstream file(folder + "/line_" + name + ".csv");
+    std::string line, cell;
+    std::getline(file, line);
+    std::vector<std::string> names;
+    for (std::istringstream header(line); std::getline(header, cell, ',');) names.push_back(cell);
+    while (std::getline(file, line)) {
+      std::istringstream row(line);
+      for (const std::string &column : names) {
+        std::getline(row, cell, ',');
+        if (column == "stage")
+          stages.push_back(cell);
+        else
+          columns[column].push_back(std::strtod(cell.c_str(), nullptr));
+      }
+    }
+    MPI_Barrier(PETSC_COMM_WORLD);
+    if (rank == 0) std::filesystem::remove_all(folder);
+  }
+};
+
+/// A line in a static stage shows its own places: those of equal distances through its points, of which the ones above
+/// the soil are left out, with the displacement and the stress of a column under its weight.
+TEST(FollowedLines, show_the_places_along_them) {
+  const FollowedLine line(column +
+                              "[[stage]]\nkind = \"quasi_static\"\nduration = 1\n"
+                              "[output.line.down]\npoints = [[0.4, 3], [0.4, 0.5], [0.8, 0.2]]\nspacing = 0.1\n",
+                          "down");
+  const double weight = 2000 * 10, modulus = 10e6 * 0.7 / (1.3 * 0.4);
+  int rows = 0;
+  for (size_t i = 0; i < line.stages.size(); ++i) {
+    if (line.stages[i] == "start") continue;
+    const double s = line.columns.at("distance_m")[i], x = line.columns.at("x_m")[i], y = line.columns.at("y_m")[i];
+    EXPECT_NEAR(std::remainder(s, 0.1), 0, 1e-9);
+    EXPECT_NEAR(x, s < 2.5 ? 0.4 : 0.4 + 0.8 * (s - 2.5), 1e-9) << s;
+    EXPECT_NEAR(y, s < 2.5 ? 3 - s : 0.5 - 0.6 * (s - 2.5), 1e-9) << s;
+    if (y > 1 || line.columns.at("time_s")[i] < 1) continue;  // a little above the soil, or not the end
+    EXPECT_NEAR(line.columns.at("displacement_m")[i], weight / modulus * (y - y * y / 2), 1e-9 * weight / modulus);
+    EXPECT_NEAR(line.columns.at("stress_yy_Pa")[i], -weight * (1 - y), 1e-7 * weight) << y;
+    ++rows;
+  }
+  EXPECT_EQ(rows, 11);  // six in the upper piece and five in the lower one
+}
+
+/// In motion a line is its particles: they fall with the body, at the times of the history, each time all of them.
+TEST(FollowedLines, move_with_the_soil) {
+  const FollowedLine line(column +
+                              "[output.line.level]\npoints = [[0.1, 0.9], [0.9, 0.9]]\nspacing = 0.2\n"
+                              "[[stage]]\nduration = 0.01\n[output]\nhistory_interval = 0.002\n",
+                          "level");
+  const auto &time = line.columns.at("time_s"), &y = line.columns.at("y_m"), &step = line.columns.at("step");
+  ASSERT_EQ(time.size() % 5, 0u);
+  ASSERT_GE(time.size() / 5, 5u);
+  for (size_t i = 5; i < time.size(); ++i) {
+    EXPECT_EQ(time[i], time[i - i % 5]);
+    const double fall = 5 * time[i] * time[i] * (1 + 1 / step[i]);  // of Euler's steps
+    if (time[i] < 0.004) EXPECT_NEAR(y[i] - y[i % 5], -fall, 1e-3 * fall) << time[i];
+  }
+}
+
+TEST(FollowedLines, are_refused_where_they_are_none) {
+  const std::string text = column + "[[stage]]\nduration = 0.01\n";
+  const auto why = [&](const std::vector<std::string> &overrides) -> std::string {
+    try {
+      solve(text, overrides);
+    } catch (const SceneError &error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(why({"output.line.a.points=[[5, 5], [6, 6]]"}).find("must be a line in the soil; of 40 places"),
+            std::string::npos);
+  EXPECT_NE(why({"output.line.a.points=[[0.5, 0.5]]"}).find("must be two or more different points"), std::string::npos);
+  EXPECT_NE(why({"output.line.a.points=[[0.5, 0.5], [0.5, 0.5]]"}).find("two or more"), std::string::npos);
+  EXPECT_NE(why({"output.line.a.points=[[0.5, 0.5, 0], [0.5, 0.9, 0]]"}).find("coordinates"), std::string::npos);
+  EXPECT_NE(why({"output.line.a.points=[[0.5, 0.5], [0.5, 0.9]]", "output.line.a.spacing=1"}).find("must not exceed"),
+            std::string::npos);
+  EXPECT_NE(why({"output.line.a.points=[[0.5, 0.5], [0.5, 0.9]]", "output.line.a.spacing=1e-5"}).find("at least"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ const std::string falling_scene = changed(
             "cohesion = \"1 kPa\"\nfriction_angle = 30\nresidual_cohesion = 0\nshape_factor = 20"),
     "[[stage]]\nname = \"fall\"\nduration = 0.05\n[output]\n",
     "[[stage]]\nname = \"settle\"\nduration = 0.02\ndamping = 0.5\nreset_displacement = true\n"
-    "[[stage]]\nname = \"fall\"\nduration = 1000\n[output]\nhistory_interval = 0.003\npoint.tip.position = [1, 0.5]\n");
+    "[[stage]]\nname = \"fall\"\nduration = 1000\n[output]\nhistory_interval = 0.003\npoint.tip.position = [1, 0.5]\n"
+    "line.down.points = [[1, 0.5], [1, 0.1]]\nline.down.spacing = 0.1\n");
 
 struct Variant {
   const char *name;
@@ -63,7 +64,7 @@ const Variant variants[] = {
     {"with_steps_by_the_frequency_of_the_mesh", {"integrator.omega_max=mesh"}},
     {"in_3d",
      {"dimension=3", "mesh.thickness=0.25", "boundary.front.kind=roller", "boundary.back.kind=roller",
-      "output.point.tip.position=[1, 0.5, 0]"}},
+      "output.point.tip.position=[1, 0.5, 0]", "output.line.down.points=[[1, 0.5, 0.1], [1, 0.1, 0.1]]"}},
 };
 
 class Resumed : public testing::TestWithParam<Variant> {
@@ -84,7 +85,8 @@ class Resumed : public testing::TestWithParam<Variant> {
   const Folder folder_;
 };
 
-/// The first snapshots value by value, and the lines of history.csv up to them character by character.
+/// The first snapshots value by value, and the rows of history.csv and of a followed line up to them character by
+/// character.
 const char *comparison = R"(
 import h5py, numpy
 runs = [h5py.File(name + '/run.h5')['snapshots'] for name in ('whole', 'resumed')]
@@ -92,11 +94,12 @@ for number in [f'{k:06d}' for k in range(24)]:
     a, b = (run[number] for run in runs)
     assert a.attrs['step'] == b.attrs['step'] and a.attrs['time'] == b.attrs['time'], number
     assert a.keys() == b.keys()
-    for field in a: assert numpy.array_equal(a[field][...], b[field][...]), f'{number} {field}'
-rows = [[line for line in open(name + '/history.csv')] for name in ('whole', 'resumed')]
+    for field in a: assert numpy.array_equal(a[field][...], b[field][...], equal_nan=True), f'{number} {field}'
 end = runs[0]['000023'].attrs['time']
-kept = [[line for line in some[1:] if float(line.split(',')[0]) <= end] for some in rows]
-assert kept[0] == kept[1] and len(kept[0]) > 15, 'history'
+for file in ('history.csv', 'line_down.csv'):
+    rows = [[line for line in open(f'{name}/{file}')] for name in ('whole', 'resumed')]
+    kept = [[line for line in some[1:] if float(line.split(',')[0]) <= end] for some in rows]
+    assert kept[0] == kept[1] and len(kept[0]) > 15, file
 print('the same')
 )";
 

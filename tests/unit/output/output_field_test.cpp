@@ -14,6 +14,7 @@ namespace {
 struct Point {
   std::array<double, 2> place, speed;
   double pressure;
+  std::array<double, 4> stress{6, 7, 8, 9};
 };
 
 OutputFields<Point> three_fields() {
@@ -21,6 +22,7 @@ OutputFields<Point> three_fields() {
   fields.add("place", "m", "where it is", Tracked::coordinates, [](const Point &p) { return p.place; });
   fields.add("speed", "m/s", "how fast it moves", Tracked::magnitude, [](const Point &p) { return p.speed; });
   fields.add("pressure", "Pa", "of the water", Tracked::value, [](const Point &p) { return p.pressure; });
+  fields.add("stress", "Pa", "in the soil", Tracked::components, [](const Point &p) { return p.stress; });
   fields.add("wet", "-", "1 under pressure", Tracked::no, [](const Point &p) { return p.pressure > 0; });
   return fields;
 }
@@ -30,7 +32,7 @@ TEST(OutputFields, fill_the_columns_of_a_snapshot) {
   auto columns = fields.columns();
   fields.append({{1, 2}, {3, 4}, 5}, columns);
   fields.append({{6, 7}, {8, 9}, -1}, columns);
-  ASSERT_EQ(columns.size(), 4u);
+  ASSERT_EQ(columns.size(), 5u);
   EXPECT_EQ(columns[1].name, "speed");
   EXPECT_EQ(columns[1].unit, "m/s");
   EXPECT_EQ(columns[1].meaning, "how fast it moves");
@@ -39,19 +41,22 @@ TEST(OutputFields, fill_the_columns_of_a_snapshot) {
   EXPECT_EQ(columns[0].values, (std::vector<double>{1, 2, 6, 7}));
   EXPECT_EQ(columns[1].values, (std::vector<double>{3, 4, 8, 9}));
   EXPECT_EQ(columns[2].values, (std::vector<double>{5, -1}));
-  EXPECT_EQ(columns[3].values, (std::vector<double>{1, 0}));
+  EXPECT_EQ(columns[3].values, (std::vector<double>{6, 7, 8, 9, 6, 7, 8, 9}));
+  EXPECT_EQ(columns[4].values, (std::vector<double>{1, 0}));
 }
 
 TEST(OutputFields, name_and_fill_the_history_of_a_tracked_point) {
   const auto fields = three_fields();
-  EXPECT_EQ(fields.tracked_names("crest"),
-            (std::vector<std::string>{"crest_x_m", "crest_y_m", "crest_speed_m_s", "crest_pressure_Pa"}));
+  EXPECT_EQ(
+      fields.tracked_names("crest_"),
+      (std::vector<std::string>{"crest_x_m", "crest_y_m", "crest_speed_m_s", "crest_pressure_Pa", "crest_stress_xx_Pa",
+                                "crest_stress_yy_Pa", "crest_stress_zz_Pa", "crest_stress_xy_Pa"}));
   const Point point{{1, 2}, {3, 4}, 5};
   std::vector<double> row{-1};
   fields.append_tracked(&point, row);
-  EXPECT_EQ(row, (std::vector<double>{-1, 1, 2, 5, 5}));
+  EXPECT_EQ(row, (std::vector<double>{-1, 1, 2, 5, 5, 6, 7, 8, 9}));
   fields.append_tracked(nullptr, row);  // on another rank
-  EXPECT_EQ(row, (std::vector<double>{-1, 1, 2, 5, 5, 0, 0, 0, 0}));
+  EXPECT_EQ(row, (std::vector<double>{-1, 1, 2, 5, 5, 6, 7, 8, 9, 0, 0, 0, 0, 0, 0, 0, 0}));
 }
 
 using Names = std::vector<std::string>;
@@ -66,15 +71,16 @@ Names names_of(const PhaseTraits &phases) {
 
 TEST(OutputFields, exist_where_the_phase_model_has_them) {
   EXPECT_EQ(names_of<ParticleState<2>>(traits_of<Dry>),
-            (Names{"position", "displacement", "velocity", "stress", "volume", "mass"}));
+            (Names{"position", "displacement", "velocity", "stress", "mean_pressure", "deviator", "volume", "mass"}));
   EXPECT_EQ(names_of<ParticleState<3>>(traits_of<Drained>),
-            (Names{"position", "displacement", "velocity", "stress", "volume", "mass", "pore_pressure"}));
+            (Names{"position", "displacement", "velocity", "stress", "mean_pressure", "deviator", "volume", "mass",
+                   "pore_pressure"}));
   EXPECT_EQ(names_of<ParticleState<2>>(traits_of<ThreePhase>),
-            (Names{"position", "displacement", "velocity", "stress", "volume", "mass", "pore_pressure", "gas_pressure",
-                   "suction", "saturation", "porosity", "surface"}));
-  EXPECT_EQ(
-      names_of<GaussPointState<2>>(traits_of<Unsaturated>),
-      (Names{"position", "displacement", "stress", "volume", "mass", "shear_strain", "pore_pressure", "saturation"}));
+            (Names{"position", "displacement", "velocity", "stress", "mean_pressure", "deviator", "volume", "mass",
+                   "pore_pressure", "gas_pressure", "suction", "saturation", "porosity", "surface"}));
+  EXPECT_EQ(names_of<GaussPointState<2>>(traits_of<Unsaturated>),
+            (Names{"position", "displacement", "stress", "mean_pressure", "deviator", "volume", "mass", "shear_strain",
+                   "pore_pressure", "saturation"}));
 }
 
 TEST(OutputFields, of_laws_are_not_a_number_where_a_body_has_another_law) {

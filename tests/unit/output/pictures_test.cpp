@@ -89,15 +89,24 @@ TEST(Pictures, show_stress_paths_and_the_water_ledger) {
   header.scene = frictional_scene;
   RunFile run(MPI_COMM_WORLD, dir, header, small_mesh());
   History history(MPI_COMM_WORLD, dir + "/history.csv",
-                  {"crest_x_m", "crest_y_m", "water_kg", "water_out_kg", "water_given_kg", "water_error_kg"});
+                  {"crest_x_m", "crest_y_m", "crest_mean_pressure_Pa", "crest_deviator_Pa",
+                   "crest_mobilised_friction_deg", "water_kg", "water_out_kg", "water_given_kg", "water_error_kg"});
   for (int n = 0; n < 3; ++n) {
-    run.write(small_snapshot(n, n));
-    history.row(n, n, "slide", {0.5, 0.4, 100. - n, 1. * n, 0, 1e-14 * n});
+    Snapshot snapshot = small_snapshot(n, n);
+    Column friction{"mobilised_friction", "deg", "mobilised friction", 1, {}};
+    Column state{"state", "-", "state", 1, {}};
+    for (const long long id : snapshot.id) {  // some without stress, and some that have softened
+      friction.values.push_back(id ? 0.1 * static_cast<double>(id) : std::nan(""));
+      state.values.push_back(static_cast<double>(id % 4));
+    }
+    snapshot.columns.push_back(friction), snapshot.columns.push_back(state);
+    run.write(snapshot);
+    history.row(n, n, "slide", {0.5, 0.4, 5e3 * n, 4e3 * n, 10. * n, 100. - n, 1. * n, 0, 1e-14 * n});
   }
   if (world_rank()) return;
   ASSERT_TRUE(draw_pictures(dir));
   EXPECT_EQ(content(dir + "/pictures/strength.csv").substr(0, 40), "body,state,suction_Pa,slope,intercept_Pa");
-  for (const char *name : {"stress_paths.png", "mobilised_friction.png", "water_ledger.png"})
+  for (const char *name : {"stress_paths.png", "mobilised_friction.png", "state.png", "water_ledger.png"})
     EXPECT_EQ(content(dir + "/pictures/" + name).substr(1, 3), "PNG") << name;
 }
 

@@ -1,0 +1,64 @@
+#include "physics/laws/present_strength.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "physics/laws/principal.h"
+
+namespace talus {
+namespace {
+
+constexpr double at_yield = 0.99;    // of the strength
+constexpr double almost_all = 0.95;  // of the fall from peak to residual strength that is still to come
+
+template <class OneLaw>
+constexpr bool is_frictional = requires(OneLaw law) {
+  law.reads_shares;
+};
+
+}  // namespace
+
+PresentStrength::PresentStrength(const Law &law) : law_(law), plastic_strain_(plastic_strain_field(law)) {
+  known_ = std::visit(
+      [](auto &one) {
+        if constexpr (is_frictional<decltype(one)>) one.prepare();
+        return is_frictional<decltype(one)>;
+      },
+      law_);
+}
+
+template <int dim>
+Mobilised PresentStrength::operator()(const Stress<dim> &stress, const double *history,
+                                      const Surroundings &around) const {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  return std::visit(
+      [&](const auto &one) -> Mobilised {
+        if constexpr (is_frictional<decltype(one)>) {
+          const double plastic_strain = history[plastic_strain_];
+          const auto now = one.present(plastic_strain, around);
+          const Principal<double> s = PrincipalAxes<dim, double>(stress).values();
+          const double apex = 2 * now.c / std::tan(now.phi), depth = apex - (s.s1 + s.s3), circle = s.s1 - s.s3;
+          const double scale = apex + std::abs(s.s1) + std::abs(s.s3);
+          double angle = std::asin(std::clamp(circle / depth, 0., 1.));
+          if (now.phi <= 0 || scale == 0)
+            angle = nan;
+          else if (depth <= 1e-9 * scale)
+            angle = now.phi;  // the apex itself
+          const double left = one.share_left(plastic_strain, around);
+          const bool softens = one.softens();
+          if (softens && left <= 1 - almost_all) return {angle, StrengthState::residual};
+          if (softens && left < almost_all) return {angle, StrengthState::softening};
+          return {angle, one.share_of_strength(stress, plastic_strain, around) < at_yield ? StrengthState::elastic
+                                                                                          : StrengthState::peak};
+        } else {
+          return {nan, StrengthState::elastic};
+        }
+      },
+      law_);
+}
+
+template Mobilised PresentStrength::operator()<2>(const Stress<2> &, const double *, const Surroundings &) const;
+template Mobilised PresentStrength::operator()<3>(const Stress<3> &, const double *, const Surroundings &) const;
+
+}  // namespace talus

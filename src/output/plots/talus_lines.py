@@ -1,0 +1,155 @@
+"""Lines that were followed with the soil, line_NAME.csv: what they show at some times, and their average strength over time."""
+
+import csv
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import talus_style as style
+from talus_measures import failure
+
+COUNT = 6  # times that a picture shows
+UPRIGHT = 0.2  # a line whose width is less than this share of its height is drawn over elevation, as inclinometers are
+SPAN = plt.get_cmap("viridis")
+
+
+class Line:
+    """line_NAME.csv: columns [times, places]."""
+
+    def __init__(self, path):
+        self.name = path.stem[len("line_"):]
+        with open(path, newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.stage = [row["stage"] for row in rows]
+        times = np.array([float(row["time_s"]) for row in rows])
+        starts = np.flatnonzero(np.diff(times, prepend=-np.inf))
+        places = int(np.diff(np.append(starts, len(times))).min()) if len(times) else 0
+        self.columns = {}
+        for name in rows[0] if rows else ():
+            if name not in ("time_s", "step", "stage"):
+                values = np.array([float(row[name]) for row in rows])
+                self.columns[name] = np.array([values[start:start + places] for start in starts])
+        self.time, self.stage = times[starts], [self.stage[start] for start in starts]
+
+    def moved(self):
+        """How far each place has come from where it was at the beginning [m], by axis: [times, places, axes]."""
+        places = np.stack([self.columns[f"{axis}_m"] for axis in "xyz" if f"{axis}_m" in self.columns], axis=2)
+        return places - places[0]
+
+    def means(self):
+        """Averages along the line over time, and the shares of its places that are in each state."""
+        found = {"displacement_m": np.nanmean(np.linalg.norm(self.moved(), axis=2), axis=1)}
+        for name in ("mobilised_friction_deg", "mean_pressure_Pa", "deviator_Pa", "pore_pressure_Pa", "plastic_strain"):
+            if name in self.columns:
+                found["mean_" + name] = mean(self.columns[name])
+        if "state" in self.columns:
+            for number, state in enumerate(style.STATES):
+                found[f"share_{state}"] = np.mean(self.columns["state"] == number, axis=1)
+        return found
+
+
+def mean(values):
+    """Mean over the places that have a value; NaN where none has."""
+    known = np.isfinite(values)
+    return np.where(known.any(axis=1), np.where(known, values, 0).sum(axis=1) / np.maximum(known.sum(axis=1), 1), np.nan)
+
+
+def dimensionless(results, times):
+    """t* = t / T of Alonso, Yerro & Pinyol (2015): time since the stage that failed began over the time until it failed; None if none did."""
+    try:
+        failed = failure(results)[0]
+    except LookupError:
+        return None
+    stage = max((start for start, _ in results.history.stage_starts() if start < failed), default=0.0)
+    return (times - stage) / (failed - stage)
+
+
+def chosen(line, times=None):
+    """Rows that are shown: those nearest to `times`, else first, last and some between, half by time and half by how far the line moved."""
+    if times:
+        return sorted({int(np.abs(line.time - time).argmin()) for time in times})
+    travel = np.concatenate([[0], np.abs(np.diff(line.means()["displacement_m"])).cumsum()])
+    pace = sum((part / part[-1] for part in (line.time - line.time[0], travel) if part[-1] > 0), np.zeros(len(line.time)))
+    return sorted({int(np.abs(pace - share).argmin()) for share in np.linspace(0, pace[-1], COUNT)})
+
+
+def draw_lines(results, folder, times=None):
+    """line_NAME.png and NAME's averages, line_NAME_mean.csv, of each followed line. Returns [("line NAME", path)]."""
+    pictures = []
+    for path in sorted(results.folder.glob("line_*.csv")):
+        line = Line(path)
+        if len(line.time) < 2:
+            continue
+        folder.mkdir(exist_ok=True)
+        write_means(results, line, folder / f"{path.stem}_mean.csv")
+        pictures.append((f"line {line.name}", draw_line(results, line, folder / f"{path.stem}.png", times)))
+    return pictures
+
+
+def write_means(results, line, path):
+    columns = {"time_s": line.time} | line.means()
+    relative = dimensionless(results, line.time)
+    if relative is not None:
+        columns["time_over_time_to_failure"] = relative
+    with open(path, "w", newline="") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(columns)
+        rows.writerows([f"{value:.7g}" for value in row] for row in zip(*columns.values()))
+
+
+def draw_line(results, line, path, times):
+    rows = chosen(line, times)
+    frictional = "mobilised_friction_deg" in line.columns and np.isfinite(line.columns["mobilised_friction_deg"]).any()
+    figure, axes = plt.subplots(1, 3 if frictional else 1, figsize=(13.2 if frictional else 6.0, 4.3), squeeze=False)
+    moved, start = line.moved(), [line.columns[f"{axis}_m"][0] for axis in "xyz" if f"{axis}_m" in line.columns]
+    up = results.up_axis()
+    level = np.linalg.norm([np.ptp(x) for axis, x in enumerate(start) if axis != up])
+    upright = level < UPRIGHT * np.ptp(start[up])
+    where = start[up] if upright else line.columns["distance_m"][0]
+    size = np.linalg.norm(np.delete(moved, up, axis=2) if upright else moved, axis=2)
+    factor, unit = style.readable_unit(np.nanmax(size), "m")
+    for k, row in enumerate(rows):
+        colour = SPAN(k / max(1, len(rows) - 1) * 0.92)
+        label = f"{style.at_time(line.time[row], line.time[-1])}  {line.stage[row]}"
+        show(axes[0, 0], where, factor * size[row], upright, color=colour, lw=1.4, label=label)
+        if frictional:
+            show(axes[0, 1], where, line.columns["mobilised_friction_deg"][row], upright, color=colour, lw=1.0)
+            mark_states(axes[0, 1], where, line, row, upright)
+    along = "elevation [m]" if upright else "distance along the line [m]"
+    name(axes[0, 0], along, style.with_unit("level displacement" if upright else "displacement", unit), upright)
+    axes[0, 0].legend(fontsize=7.5)
+    if frictional:
+        name(axes[0, 1], along, "mobilised friction angle [deg]", upright)
+        axes[0, 1].set_title("white elastic, yellow peak, orange softening, red residual", loc="left", fontsize=7.5, color=style.SOFT)
+        draw_mean(results, line, axes[0, 2])
+    figure.suptitle(style.capital(style.words(line.name)), x=0.05, ha="left", fontsize=12, fontweight="bold")
+    figure.tight_layout()
+    return style.save(figure, path)
+
+
+def show(axes, where, values, upright, **options):
+    axes.plot(*((values, where) if upright else (where, values)), **options)
+
+
+def mark_states(axes, where, line, row, upright):
+    state = line.columns["state"][row]
+    known = np.isfinite(state)
+    colours = [("white", *style.STATE_COLOURS[1:])[int(number)] for number in state[known]]
+    x, y = where[known], line.columns["mobilised_friction_deg"][row][known]
+    axes.scatter(*((y, x) if upright else (x, y)), c=colours, s=14, edgecolors=style.INK, linewidths=0.4, zorder=3)
+
+
+def name(axes, along, what, upright):
+    axes.set(xlabel=what, ylabel=along) if upright else axes.set(xlabel=along, ylabel=what)
+
+
+def draw_mean(results, line, axes):
+    """Average mobilised friction over time, with t* above it where something failed."""
+    relative = dimensionless(results, line.time)
+    axes.plot(line.time, line.means()["mean_mobilised_friction_deg"], color=style.ACCENT, lw=1.4)
+    axes.set(xlabel="time [s]", ylabel="mean mobilised friction angle [deg]")
+    axes.set_ylim(bottom=0)
+    if relative is not None:
+        start, scale = np.interp(0, relative, line.time), np.ptp(line.time) / np.ptp(relative)
+        above = axes.secondary_xaxis("top", functions=(lambda t: (t - start) / scale, lambda r: start + scale * r))
+        above.set_xlabel("t* = time / time to failure", fontsize=8)
