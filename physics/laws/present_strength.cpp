@@ -41,16 +41,18 @@ Mobilised PresentStrength::operator()(const Stress<dim> &stress, const double *h
           const double apex = 2 * now.c / std::tan(now.phi), depth = apex - (s.s1 + s.s3), circle = s.s1 - s.s3;
           const double scale = apex + std::abs(s.s1) + std::abs(s.s3);
           double angle = std::asin(std::clamp(circle / depth, 0., 1.));
-          if (now.phi <= 0 || scale == 0)
+          if (now.phi <= 0)
             angle = nan;
+          else if (scale == 0)
+            angle = 0;
           else if (depth <= 1e-9 * scale)
             angle = now.phi;  // the apex itself
           const double left = one.share_left(plastic_strain, around);
           const bool softens = one.softens();
           if (softens && left <= 1 - almost_all) return {angle, StrengthState::residual};
           if (softens && left < almost_all) return {angle, StrengthState::softening};
-          return {angle, one.share_of_strength(stress, plastic_strain, around) < at_yield ? StrengthState::elastic
-                                                                                          : StrengthState::peak};
+          const bool yields = scale > 0 && one.share_of_strength(stress, plastic_strain, around) >= at_yield;
+          return {angle, yields ? StrengthState::peak : StrengthState::elastic};
         } else {
           return {nan, StrengthState::elastic};
         }

@@ -15,7 +15,7 @@ enum class StrengthState {
 
 /// Friction angle of a point that its stress mobilises, and the state of its strength.
 struct Mobilised {
-  double friction_angle;  ///< [rad]; NaN without stress and cohesion, and where the soil has no friction
+  double friction_angle;  ///< [rad]; 0 without stress, NaN where the soil has no friction
   StrengthState state;
 };
 

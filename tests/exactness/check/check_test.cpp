@@ -169,7 +169,7 @@ TEST(Check, DoubtsMissingSupports) {
   const std::string still = "stage.0.kind=quasi_static";
   const char *left = "The soil ends with the mesh at x = 0 m, and no boundary names its face there, y = 0 to 0.5 m",
              *right = "The soil ends with the mesh at x = 1 m", *below = "Nothing holds the soil from below";
-  const std::string elsewhere = "boundary.left.group=base", side = "boundary.base={kind='fixed', group='left'}";
+  const std::string elsewhere = "boundary.left.group=right", side = "boundary.base={kind='fixed', group='right'}";
   for (const int ranks : {1, 2}) EXPECT_TRUE(advice({still, elsewhere}, ranks).says(left));
   EXPECT_TRUE(advice({"stage.0.until=equilibrium", elsewhere}).says(left));
   EXPECT_FALSE(advice({elsewhere}).says(left)) << "run-out";

@@ -117,7 +117,8 @@ TEST(PresentStrength, has_limits_where_the_angle_has_none) {
   EXPECT_NEAR(of(soil, {apex, apex, apex, 0}).friction_angle / degree.si, 30, 1e-6);  // the whole of it, not 0 / 0
   EXPECT_EQ(of(soil, {0, 0, 0, 0}).friction_angle, 0);
   soil.cohesion = soil.residual_cohesion = 0;
-  EXPECT_TRUE(std::isnan(of(soil, {0, 0, 0, 0}).friction_angle));
+  EXPECT_EQ(of(soil, {0, 0, 0, 0}).friction_angle, 0);
+  EXPECT_EQ(of(soil, {0, 0, 0, 0}).state, StrengthState::elastic) << "sand without stress";
   soil.cohesion = 10e3, soil.friction_angle = soil.residual_friction_angle = 0;
   EXPECT_TRUE(std::isnan(of(soil, {-1e3, -9e3, -5e3, 0}).friction_angle));
   EXPECT_EQ(of(soil, {-1e3, -9e3, -5e3, 0}).state, StrengthState::elastic);
