@@ -10,6 +10,7 @@
 #include "commands/gallery.h"
 #include "commands/trials.h"
 #include "output/pictures.h"
+#include "output/script.h"
 #include "scene/reader.h"
 #include "scene/scene.h"
 
@@ -121,12 +122,34 @@ void print(const std::vector<Variant> &trials, const std::string &measure, const
   }
 }
 
+/// Outcomes of each run against the last key of its series: whether and when it fails, how far and how fast it moves.
+int sweep(const CompareArguments &arguments, const std::vector<Variant> &trials) {
+  std::ofstream file(arguments.directory + "/runs.csv");
+  file << "series,overrides,key,value,folder,processor_s,wall_s,failure\n";
+  for (const Variant &t : trials) {
+    const std::string last = t.overrides.empty() ? "=" : t.overrides.back();
+    const size_t at = last.find('=');
+    file << t.label << ",\"" << joined(t.overrides) << "\"," << last.substr(0, at) << ",\""
+         << unquoted(last.substr(at + 1)) << "\"," << fs::path(t.folder).filename().string() << "," << t.cpu << ","
+         << t.wall << ",\"" << t.cause << "\"\n";
+  }
+  if (!file.flush()) throw std::runtime_error("cannot write " + arguments.directory + "/runs.csv");
+  std::vector<std::string> words{arguments.directory};
+  if (arguments.no_plot) words.push_back("--no-plot");
+  const int status = run_script("talus_sweep.py", words);
+  std::fprintf(stderr, "sweep.csv%s in %s\n", arguments.no_plot ? " is" : " and sweep.png are",
+               arguments.directory.c_str());
+  return status;
+}
+
 int compare(CompareArguments arguments) {
   require_one_rank("compare");
   arguments.scene = find_scene(arguments.scene);
   read_scene(arguments.scene, arguments.set);
   if (arguments.directory.empty()) arguments.directory = "results/compare_" + short_name(arguments.scene);
-  const Measure measure = parse_measure(arguments.measure);
+  if (arguments.measure.empty() && !(arguments.exact.empty() && arguments.reference.empty()))
+    throw SceneError("--exact and --reference belong to a --measure: name the column of history.csv that is compared");
+  const Measure measure = arguments.measure.empty() ? Measure{} : parse_measure(arguments.measure);
   if (!arguments.exact.empty() && !arguments.reference.empty())
     throw SceneError("--exact and --reference both define the true value: give one of them");
   if (!arguments.exact.empty() && !std::isfinite(number_of(arguments.exact)))
@@ -135,6 +158,7 @@ int compare(CompareArguments arguments) {
   std::vector<Trial *> pointers;
   for (Variant &trial : trials) pointers.push_back(&trial);
   run_trials({arguments.scene, arguments.set, arguments.jobs}, pointers);
+  if (arguments.measure.empty()) return sweep(arguments, trials);
   for (Variant &trial : trials)
     if (!trial.failed) trial.value = value_of(trial.folder + "/history.csv", measure), read_counts(trial);
   const Reference reference = reference_of(arguments, trials);
@@ -157,8 +181,8 @@ int compare(CompareArguments arguments) {
 
 Action add_compare(CLI::App &app) {
   auto arguments = std::make_shared<CompareArguments>();
-  CLI::App *command =
-      app.add_subcommand("compare", "run a scene in many variants: table and chart of error against processor time");
+  CLI::App *command = app.add_subcommand(
+      "compare", "run a scene in many variants: outcomes against a key, or error against processor time");
   command->add_option("SCENE", arguments->scene, "scene file (.toml) or the name of a gallery scene")->required();
   command
       ->add_option("--series", arguments->series,
@@ -166,10 +190,10 @@ Action add_compare(CLI::App &app) {
                    "last key count as its refinement")
       ->required()
       ->take_all();
-  command
-      ->add_option("--measure", arguments->measure,
-                   "compared quantity: a column of history.csv at the end, COLUMN@TIME, or max:COLUMN")
-      ->required();
+  command->add_option(
+      "--measure", arguments->measure,
+      "quantity whose error is charted against processor time: a column of history.csv at the end, "
+      "COLUMN@TIME, or max:COLUMN; without it the outcomes of all runs are charted against the last key");
   command->add_option("--exact", arguments->exact,
                       "the true value; without it the series that converges best is extrapolated");
   command->add_option("--reference", arguments->reference,
@@ -177,7 +201,7 @@ Action add_compare(CLI::App &app) {
                       "stage.0.kind=quasi_static\"");
   command->add_option("--set", arguments->set, "override a key in all runs: key.path=value")->take_all();
   command->add_option("-o,--output", arguments->directory,
-                      "folder of runs, compare.csv and compare.png (default results/compare_NAME)");
+                      "folder of runs, tables and charts (default results/compare_NAME)");
   command->add_option("-j,--jobs", arguments->jobs, "runs at the same time (default: one per core)")
       ->check(CLI::Range(1, 1024));
   command->add_flag("--no-plot", arguments->no_plot, "do not draw the chart");

@@ -162,5 +162,27 @@ TEST_F(Compare, RefusesWhatItCannotRun) {
   }
 }
 
+/// Without a measure the outcomes of all runs stand against the last key: a faster body goes further.
+TEST_F(Compare, ChartsOutcomesAgainstAKey) {
+  const auto sweep = [&](const std::vector<std::string> &more) {
+    std::vector<std::string> all{
+        "compare", "scene.toml", "-o",       "sweep",
+        "-j",      "2",          "--series", "down: body.sand.velocity=[\"0\", \"0\"],[\"0\", \"-0.5 m/s\"]"};
+    all.insert(all.end(), more.begin(), more.end());
+    return Program(folder_, talus_words(all)).end();
+  };
+  const Ending ending = sweep({});
+  EXPECT_EQ(ending.status, 0) << ending.output;
+  EXPECT_TRUE(ending.says("sweep.csv and sweep.png are in sweep")) << ending.output;
+  const auto rows = table(folder_, "sweep/sweep.csv");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].at("key"), "body.sand.velocity");
+  EXPECT_EQ(rows[0].at("fails"), "False");
+  EXPECT_GT(number(rows[1], "largest_displacement_m"), number(rows[0], "largest_displacement_m"));
+  EXPECT_GT(number(rows[1], "corner_largest_speed_m_s"), 0.4);
+  EXPECT_TRUE(sweep({"--no-plot"}).says("2 of 2 runs were completed before")) << "goes on where it was stopped";
+  EXPECT_TRUE(sweep({"--exact", "1"}).says("--exact and --reference belong to a --measure"));
+}
+
 }  // namespace
 }  // namespace talus

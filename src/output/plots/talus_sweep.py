@@ -1,0 +1,137 @@
+"""Outcomes of the runs of `talus compare` against the key that it varies: does the slope fail, under which load, how far and how fast does it move?
+
+Reads DIR/runs.csv and the results that it names. Writes DIR/sweep.csv and DIR/sweep.png and prints the table. Exit status: 1 if a run broke off.
+"""
+
+import argparse
+import csv
+import pathlib
+import sys
+
+import numpy as np
+
+from talus_converge import cell_size, outcome
+from talus_results import Results
+import talus_style as style
+from talus_style import plt
+
+LEFT_OUT = ("cell_m", "deepest_at_x_m")  # outcomes that no chart shows
+TITLES = {"load_time_of_failure_s": "time t of the loads at failure [s]", "travel_distance_m": "travel distance [m]",
+          "volume_of_slide_m3": "volume of the slide [m³]", "depth_of_slide_m": "depth of the slip surface [m]"}
+
+
+def number(text):
+    """The number of a value such as "4.7 kPa"; None of a word."""
+    try:
+        return float(text.split()[0])
+    except (ValueError, IndexError):
+        return None
+
+
+def outcomes(folder, runs):
+    """The runs with what they came to; a run that broke off has none."""
+    ended = {run["folder"]: Results(folder / run["folder"]) for run in runs if not run["failure"]}
+    largest = max(map(cell_size, ended.values()), default=0.0)
+    rows = []
+    for run in runs:
+        row = {key: run[key] for key in ("series", "overrides", "key", "value", "processor_s", "wall_s", "failure")}
+        if run["folder"] in ended:
+            results = ended[run["folder"]]
+            row |= {key: value for key, value in outcome(results, largest).items() if key != "cell_m"}
+            for name, speed in (results.history.groups().get(("velocity", "m/s"), {}) if results.history else {}).items():
+                row[f"{name}_largest_speed_m_s"] = float(np.nanmax(speed)) if np.isfinite(speed).any() else None
+        rows.append(row)
+    return rows
+
+
+def charted(rows):
+    """The outcomes that differ between runs, those of the same kind together: [(title, {label: column})]."""
+    names = [key for key in dict.fromkeys(key for row in rows for key in row)
+             if key not in LEFT_OUT and any(isinstance(row.get(key), float) for row in rows)]
+    points = {"displacement at the end [m]": "_displacement_m", "largest speed [m/s]": "_largest_speed_m_s"}
+    charts = []
+    for name in names:
+        kind = next((title for title, ending in points.items() if name.endswith(ending)), None)
+        if kind is None:
+            charts.append((TITLES.get(name, style.words(name)), {"": name}))
+        elif any(title == kind for title, _ in charts):
+            next(lines for title, lines in charts if title == kind)[style.words(name[: -len(points[kind])])] = name
+        else:
+            charts.append((kind, {style.words(name[: -len(points[kind])]): name}))
+    return charts
+
+
+def draw(rows, path):
+    charts = charted(rows)
+    columns = min(3, len(charts))
+    lines = -(-len(charts) // columns)
+    figure, axes = plt.subplots(lines, columns, figsize=(3.9 * columns, 3.1 * lines), squeeze=False, layout="constrained")
+    numbers = [number(row["value"]) for row in rows]
+    words = list(dict.fromkeys(row["value"] for row in rows))
+    numeric = None not in numbers
+    place = numbers if numeric else [words.index(row["value"]) for row in rows]
+    series = list(dict.fromkeys(row["series"] for row in rows))
+    for one in axes.flat[len(charts):]:
+        one.remove()
+    for one, (title, of) in zip(axes.flat, charts):
+        for k, (label, column) in enumerate(of.items()):
+            for n, name in enumerate(series):
+                known = sorted((place[i], row[column], row.get("fails")) for i, row in enumerate(rows) if row["series"] == name and row.get(column) is not None)
+                if not known:
+                    continue
+                x, y, fails = zip(*known)
+                colour = style.LINES[(k if len(of) > 1 else n) % len(style.LINES)]
+                legend = ", ".join(filter(None, (label, name if len(series) > 1 else "")))
+                one.plot(x, y, ("-", "--", ":", "-.")[n % 4 if len(of) > 1 else 0], color=colour, lw=1.1, label=legend)
+                for a, b, failed in known:
+                    one.plot(a, b, "o", color=colour, ms=4.5, mfc=colour if failed else "white")
+        if any(any(each) for each in (of, series[1:])):
+            one.legend(fontsize=7.5)
+        one.set(xlabel=axis_title(rows), ylabel=title)
+        one.set_ylim(bottom=min(0, one.get_ylim()[0]))
+        if numeric and min(place) > 0 and max(place) > 20 * min(place):
+            one.set_xscale("log")
+        if not numeric:
+            one.set_xticks(range(len(words)), words)
+    figure.suptitle("full: the slope fails, open: it stands", x=0.01, ha="left", fontsize=8.5, color=style.SOFT)
+    return style.save(figure, path)
+
+
+def axis_title(rows):
+    keys = list(dict.fromkeys(row["key"] for row in rows))
+    units = {" ".join(row["value"].split()[1:]) for row in rows}
+    return style.with_unit(keys[0] if len(keys) == 1 else "last key", units.pop() if len(units) == 1 else "")
+
+
+def print_table(rows):
+    columns = ["fails", *(column for _, of in charted(rows) for column in of.values())]
+    print(f"{'series':14} {'value':>12} " + " ".join(f"{column[:26]:>26}" for column in columns))
+    for row in rows:
+        if row["failure"]:
+            print(f"{row['series']:14} {row['value']:>12} broke off: {row['failure']}")
+            continue
+        shown = ["yes" if row["fails"] else "no", *("-" if row.get(column) is None else f"{row[column]:.4g}" for column in columns[1:])]
+        print(f"{row['series']:14} {row['value']:>12} " + " ".join(f"{value:>26}" for value in shown))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=pathlib.Path, metavar="DIR")
+    parser.add_argument("--no-plot", action="store_true")
+    given = parser.parse_args()
+    with open(given.folder / "runs.csv", newline="") as file:
+        rows = outcomes(given.folder, list(csv.DictReader(file)))
+    print_table(rows)
+    names = list(dict.fromkeys(key for row in rows for key in row))
+    with open(given.folder / "sweep.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, names, restval="", lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    ended = [row for row in rows if not row["failure"]]
+    if ended and not given.no_plot:
+        draw(ended, given.folder / "sweep.png")
+    return 1 if len(ended) < len(rows) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
