@@ -22,6 +22,10 @@ Action add_plot(CLI::App &app) {
   command->add_option("--times", arguments->choice.times, "times to draw [s]: the nearest snapshots")
       ->check(CLI::Number);
   command->add_flag("--log", arguments->choice.logarithmic, "draw plastic strain on a logarithmic scale");
+  command->add_flag(
+      "--slip-surface", arguments->choice.slip_surface,
+      "find the slip surface, the line of largest plastic strain, at the first of the times or at failure, "
+      "and print it as [output.line.NAME] takes it");
   return [arguments] {
     if (!std::filesystem::is_regular_file(std::filesystem::path(arguments->directory) / "run.h5"))
       throw SceneError(arguments->directory + " contains no results of a run: there is no run.h5");

@@ -35,6 +35,7 @@ bool draw_pictures(const std::string &dir, const PictureChoice &choice) {
   if (!choice.times.empty()) options.push_back("--times");
   options.insert(options.end(), choice.times.begin(), choice.times.end());
   if (choice.logarithmic) options.push_back("--log");
+  if (choice.slip_surface) options.push_back("--slip-surface");
   try {
     write_strength(dir);
   } catch (const std::exception &) {  // stress paths are then drawn without envelopes

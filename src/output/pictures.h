@@ -10,6 +10,7 @@ struct PictureChoice {
   std::vector<std::string> fields;  ///< columns of the snapshots
   std::vector<std::string> times;   ///< [s], the nearest snapshots
   bool logarithmic = false;         ///< scale of plastic strain
+  bool slip_surface = false;        ///< finds it, in plane strain
 };
 
 /// Draws DIR/pictures/*.png and DIR/report.html from the results in `dir`; call it on one rank. If drawing fails, a

@@ -11,6 +11,7 @@ from talus_paths import draw_stress_paths
 from talus_report import write_report
 from talus_results import Results
 from talus_sections import draw_sections
+from talus_slip import draw_slip_surface
 
 FIELDS = ("displacement", "plastic_strain", "velocity", "pore_pressure", "suction", "saturation", "surface", "mobilised_friction", "state")
 
@@ -22,10 +23,11 @@ def arguments():
                         help="columns to draw; a vector by its size, a tensor by its mean, or one component: stress_xy")
     parser.add_argument("--times", nargs="+", type=float, metavar="T", help="times to draw [s], the nearest snapshots")
     parser.add_argument("--log", action="store_true", help="plastic strain on a logarithmic scale")
+    parser.add_argument("--slip-surface", action="store_true", help="find the slip surface, at the first of the times or at failure")
     return parser.parse_args()
 
 
-def draw(folder, fields=None, times=None, log=False):
+def draw(folder, fields=None, times=None, log=False, slip_surface=False):
     """Draws everything; without `fields`, those of FIELDS that the run has, of which the state of strength only where strength was lost. Returns
     the report's path."""
     results = Results(folder)
@@ -40,6 +42,8 @@ def draw(folder, fields=None, times=None, log=False):
     sections = draw_sections(results, fields or usual, times, pictures, log)
     curves = draw_histories(results, pictures) + draw_stress_paths(results, pictures)
     curves += draw_lines(results, pictures, times)
+    if slip_surface:
+        curves += draw_slip_surface(results, pictures, times[0] if times else None)
     return write_report(results, sections, curves, draw_factor(results, pictures))
 
 
@@ -52,7 +56,7 @@ def lost_strength(results):
 def main():
     given = arguments()
     try:
-        draw(given.folder, given.fields, given.times, given.log)
+        draw(given.folder, given.fields, given.times, given.log, given.slip_surface)
     except (OSError, ValueError) as error:
         sys.exit(f"talus_plot: {error}")
 

@@ -118,7 +118,7 @@ TEST(Pictures, and_report_tell_how_a_run_broke_off) {
   run.write(small_snapshot(1, 1));
   if (world_rank()) return;
   const auto top_of_report = [&] {
-    EXPECT_TRUE(draw_pictures(dir, {{"displacement"}, {}, false}));
+    EXPECT_TRUE(draw_pictures(dir, {{"displacement"}, {}}));
     const std::string report = content(dir + "/report.html");
     return report.substr(report.find("<header>"), report.find("</header>") - report.find("<header>"));
   };
@@ -140,7 +140,7 @@ TEST(Pictures, and_report_count_what_left_the_mesh) {
     History history(MPI_COMM_SELF, dir + "/history.csv",
                     {"kinetic_J", "escaped_energy_J", "mass_kg", "escaped_mass_kg"});
     history.row(0, 0, "slide", {1, 0, 1000, 0}), history.row(1, 1, "slide", {2, 3, 900 - lost, 100});
-    EXPECT_TRUE(draw_pictures(dir, {{"displacement"}, {}, false}));
+    EXPECT_TRUE(draw_pictures(dir, {{"displacement"}, {}}));
     const std::string report = content(dir + "/report.html");
     return report.substr(report.find("Mass ledger"), 120);
   };
@@ -149,13 +149,47 @@ TEST(Pictures, and_report_count_what_left_the_mesh) {
   EXPECT_FALSE(std::filesystem::exists(dir + "/pictures/history_escaped_energy.png")) << "it is in energy.png";
 }
 
+/// A band of plastic strain two rows high that descends by one row in five columns: the line passes through its middle,
+/// at the places that the soil had at the start.
+TEST(Pictures, find_the_slip_surface) {
+  const SharedFolder folder;
+  const std::string dir = folder / "run";
+  RunFile run(MPI_COMM_WORLD, dir, small_header(), small_mesh());
+  for (int n = 0; n < 2; ++n) {
+    Snapshot snapshot = small_snapshot(30 * n, n);
+    for (Column &column : snapshot.columns)
+      if (column.name == "plastic_strain")
+        for (size_t i = 0; i < snapshot.id.size(); ++i) {
+          const long long row = snapshot.id[i] / 20, middle = 6 - snapshot.id[i] % 20 / 5;
+          column.values[i] = n * (row == middle || row == middle + 1 ? 0.5 : 0.01);
+        }
+    run.write(snapshot);
+  }
+  if (world_rank()) return;
+  PictureChoice choice;
+  choice.fields = {"displacement"}, choice.slip_surface = true;
+  ASSERT_TRUE(draw_pictures(dir, choice));
+  std::istringstream table(content(dir + "/pictures/slip_surface.csv"));
+  std::string line;
+  std::getline(table, line);
+  EXPECT_EQ(line, "x_m,elevation_m");
+  int points = 0;
+  while (std::getline(table, line)) {
+    const double x = std::stod(line), y = std::stod(line.substr(line.find(',') + 1));
+    EXPECT_NEAR(y, 0.65 - 0.1 * std::floor(x / 0.5 + 1e-9), 0.1) << x;
+    ++points;
+  }
+  EXPECT_GE(points, 8);
+  EXPECT_EQ(content(dir + "/pictures/slip_surface.png").substr(1, 3), "PNG");
+}
+
 TEST(Pictures, name_the_program_that_drew_them) {
   const SharedFolder folder;
   const std::string dir = folder / "run";
   RunFile run(MPI_COMM_WORLD, dir, small_header(), small_mesh());
   run.write(small_snapshot(1, 1));
   if (world_rank()) return;
-  ASSERT_TRUE(draw_pictures(dir, {{"displacement"}, {}, false}));
+  ASSERT_TRUE(draw_pictures(dir, {{"displacement"}, {}}));
   const std::string chunk = std::string("Software") + '\0' + program + ",";  // of PNG's type tEXt
   EXPECT_NE(content(dir + "/pictures/displacement.png").find(chunk), std::string::npos);
 }

@@ -1,0 +1,75 @@
+"""The slip surface of a run in plane strain or a slice: the line of largest plastic strain, where its soil was at the start."""
+
+import csv
+
+import numpy as np
+
+import talus_style as style
+from talus_measures import at, failure
+from talus_sections import spacing_of
+from talus_style import plt
+
+LEAST = 0.2  # of the largest plastic strain: soil with less is no part of the surface
+GAP = 3  # columns without strain that may lie within the surface
+COLUMN = 2  # width of a column, in distances of neighbouring particles
+
+
+def slip_surface(results, time=None):
+    """Points [n, 2] of the surface in the undeformed section, from left to right, and the snapshot that shows it: the one nearest to `time`, else to
+    the failure, else the last. In each column of soil the surface passes through the centre of the larger half of the strain. Raises ValueError
+    where there is none."""
+    if time is None:
+        try:
+            time = failure(results)[0]
+        except LookupError:
+            pass
+    snapshot, first = at(results, time), results.snapshots[0]
+    if "plastic_strain" not in snapshot:
+        raise ValueError(f"{results.folder} has no field plastic_strain, whose band is the slip surface")
+    kept = np.isin(snapshot.ids(), first.ids())
+    up = results.up_axis()
+    across = max((axis for axis in range(first.position().shape[1]) if axis != up), key=lambda axis: np.ptp(first.position()[:, axis]))
+    place = first.position()[np.searchsorted(first.ids(), snapshot.ids()[kept])][:, [across, up]]
+    strain = np.nan_to_num(snapshot.scalar("plastic_strain")[0][kept])
+    top = np.percentile(strain, 99.8)
+    if top <= 0:
+        raise ValueError(f"no soil of {results.folder} has plastic strain at t = {snapshot.time:g} s; name another time with --times")
+    column = np.floor(place[:, 0] / (COLUMN * spacing_of(results))).astype(int)
+    points = {}
+    for number in np.unique(column):
+        mine = column == number
+        if strain[mine].max() > LEAST * top:
+            weight = np.where(strain[mine] > 0.5 * strain[mine].max(), strain[mine], 0)
+            points[number] = np.average(place[mine], axis=0, weights=weight)
+    numbers = np.array(sorted(points))
+    pieces = np.split(numbers, np.flatnonzero(np.diff(numbers) > GAP) + 1)
+    longest = max(pieces, key=len)
+    if len(longest) < 3:
+        raise ValueError(f"plastic strain of {results.folder} forms no surface at t = {snapshot.time:g} s; name another time with --times")
+    return smoothed(np.array([points[number] for number in longest])), snapshot, place, strain
+
+
+def smoothed(line):
+    """Elevations as medians of three neighbours, so that one column beside the band does not kink it."""
+    inner = np.median([line[:-2, 1], line[1:-1, 1], line[2:, 1]], axis=0)
+    return np.column_stack([line[:, 0], np.concatenate([line[:1, 1], inner, line[-1:, 1]])])
+
+
+def draw_slip_surface(results, folder, time=None):
+    """slip_surface.csv and slip_surface.png; prints the line as [output.line.NAME] takes it."""
+    line, snapshot, place, strain = slip_surface(results, time)
+    folder.mkdir(exist_ok=True)
+    with open(folder / "slip_surface.csv", "w", newline="") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(("x_m", "elevation_m"))
+        rows.writerows([f"{value:.6g}" for value in point] for point in line)
+    figure, axes = plt.subplots(figsize=(9.0, 1.2 + 8.0 * np.ptp(place[:, 1]) / np.ptp(place[:, 0])), layout="constrained")
+    shown = axes.scatter(*place.T, c=strain, s=3, cmap=style.colours_of("plastic_strain"), vmax=np.percentile(strain, 99.8), linewidths=0)
+    axes.plot(*line.T, color=style.ACCENT, lw=2)
+    axes.set(aspect="equal", xlabel="x [m]", ylabel="elevation [m]")
+    axes.set_title(f"slip surface in the undeformed section; plastic strain at {style.at_time(snapshot.time, results.snapshots[-1].time)}", loc="left")
+    figure.colorbar(shown, ax=axes, shrink=0.8)
+    style.save(figure, folder / "slip_surface.png")
+    if results.snapshots[0].position().shape[1] == 2:
+        print("[output.line.slip_surface]\npoints = [" + ", ".join(f"[{x:.4g}, {y:.4g}]" for x, y in line) + "]")
+    return [("slip surface", folder / "slip_surface.png")]
