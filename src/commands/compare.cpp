@@ -9,6 +9,7 @@
 #include "commands/comparison.h"
 #include "commands/gallery.h"
 #include "commands/trials.h"
+#include "output/csv.h"
 #include "output/pictures.h"
 #include "output/script.h"
 #include "scene/reader.h"
@@ -129,9 +130,9 @@ int sweep(const CompareArguments &arguments, const std::vector<Variant> &trials)
   for (const Variant &t : trials) {
     const std::string last = t.overrides.empty() ? "=" : t.overrides.back();
     const size_t at = last.find('=');
-    file << t.label << ",\"" << joined(t.overrides) << "\"," << last.substr(0, at) << ",\""
-         << unquoted(last.substr(at + 1)) << "\"," << fs::path(t.folder).filename().string() << "," << t.cpu << ","
-         << t.wall << ",\"" << t.cause << "\"\n";
+    file << csv_field(t.label) << "," << csv_field(joined(t.overrides)) << "," << last.substr(0, at) << ","
+         << csv_field(unquoted(last.substr(at + 1))) << "," << fs::path(t.folder).filename().string() << "," << t.cpu
+         << "," << t.wall << "," << csv_field(t.cause) << "\n";
   }
   if (!file.flush()) throw std::runtime_error("cannot write " + arguments.directory + "/runs.csv");
   std::vector<std::string> words{arguments.directory};

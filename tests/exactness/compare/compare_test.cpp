@@ -177,6 +177,7 @@ TEST_F(Compare, ChartsOutcomesAgainstAKey) {
   const auto rows = table(folder_, "sweep/sweep.csv");
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0].at("key"), "body.sand.velocity");
+  EXPECT_EQ(rows[1].at("value"), "[0, -0.5 m/s]");
   EXPECT_EQ(rows[0].at("fails"), "False");
   EXPECT_GT(number(rows[1], "largest_displacement_m"), number(rows[0], "largest_displacement_m"));
   EXPECT_GT(number(rows[1], "corner_largest_speed_m_s"), 0.4);
