@@ -103,9 +103,9 @@ void write_csv(const std::string &path, const std::vector<Variant> &trials) {
   for (const Variant &t : trials) {
     const bool beaten = std::any_of(trials.begin(), trials.end(),
                                     [&](const Variant &o) { return !o.failed && o.cpu < t.cpu && o.error < t.error; });
-    file << t.label << ",\"" << joined(t.overrides) << "\"," << t.parameter << "," << t.value << "," << t.error << ","
-         << t.cpu << "," << t.wall << "," << t.steps << "," << t.evaluations << "," << t.rejections << ","
-         << (!t.failed && std::isfinite(t.error) && !beaten) << ",\"" << t.cause << "\"\n";
+    file << csv_field(t.label) << "," << csv_field(joined(t.overrides)) << "," << t.parameter << "," << t.value << ","
+         << t.error << "," << t.cpu << "," << t.wall << "," << t.steps << "," << t.evaluations << "," << t.rejections
+         << "," << (!t.failed && std::isfinite(t.error) && !beaten) << "," << csv_field(t.cause) << "\n";
   }
 }
 

@@ -9,6 +9,7 @@
 #include "commands/comparison.h"
 #include "commands/gallery.h"
 #include "commands/trials.h"
+#include "output/csv.h"
 #include "output/script.h"
 #include "scene/quantity.h"
 #include "scene/reader.h"
@@ -112,9 +113,9 @@ void write_runs(const std::string &path, const Refinement &r, const std::vector<
   std::ofstream file(path);
   file << "value,unit,overrides,folder,processor_s,wall_s,failure\n";
   for (std::size_t i = 0; i < trials.size(); ++i)
-    file << shortest(rounded(r.values[i])) << "," << r.unit << ",\"" << joined(trials[i].overrides) << "\","
-         << fs::path(trials[i].folder).filename().string() << "," << trials[i].cpu << "," << trials[i].wall << ",\""
-         << trials[i].cause << "\"\n";
+    file << shortest(rounded(r.values[i])) << "," << r.unit << "," << csv_field(joined(trials[i].overrides)) << ","
+         << fs::path(trials[i].folder).filename().string() << "," << trials[i].cpu << "," << trials[i].wall << ","
+         << csv_field(trials[i].cause) << "\n";
 }
 
 int converge(ConvergeArguments arguments) {
