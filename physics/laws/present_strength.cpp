@@ -10,6 +10,8 @@ namespace talus {
 namespace {
 
 constexpr double at_yield = 0.99;    // of the strength
+constexpr double near_apex = 1e-5;   // of stress and c cot(phi): closer to the apex the angle is one of round-off
+constexpr double round_off = 1e-9;   // of the stiffness: less is no stress
 constexpr double almost_all = 0.95;  // of the fall from peak to residual strength that is still to come
 
 template <class OneLaw>
@@ -40,18 +42,19 @@ Mobilised PresentStrength::operator()(const Stress<dim> &stress, const double *h
           const Principal<double> s = PrincipalAxes<dim, double>(stress).values();
           const double apex = 2 * now.c / std::tan(now.phi), depth = apex - (s.s1 + s.s3), circle = s.s1 - s.s3;
           const double scale = apex + std::abs(s.s1) + std::abs(s.s3);
+          const double none = round_off * one.shear_modulus();
           double angle = std::asin(std::clamp(circle / depth, 0., 1.));
           if (now.phi <= 0)
             angle = nan;
-          else if (scale == 0)
+          else if (scale <= none)
             angle = 0;
-          else if (depth <= 1e-9 * scale)
+          else if (depth <= near_apex * scale)
             angle = now.phi;  // the apex itself
           const double left = one.share_left(plastic_strain, around);
           const bool softens = one.softens();
           if (softens && left <= 1 - almost_all) return {angle, StrengthState::residual};
           if (softens && left < almost_all) return {angle, StrengthState::softening};
-          const bool yields = scale > 0 && one.share_of_strength(stress, plastic_strain, around) >= at_yield;
+          const bool yields = scale > none && one.share_of_strength(stress, plastic_strain, around) >= at_yield;
           return {angle, yields ? StrengthState::peak : StrengthState::elastic};
         } else {
           return {nan, StrengthState::elastic};

@@ -25,16 +25,18 @@ std::string header(const std::vector<std::string> &names) {
   return line;
 }
 
-/// The header and the complete lines up to `time`.
-std::string lines_until(const std::string &path, const std::vector<std::string> &names, double time) {
+/// The header and the complete lines up to `time`; `gap` tells that the last of them is older.
+std::string lines_until(const std::string &path, const std::vector<std::string> &names, double time, bool *gap) {
   std::istringstream file(read_file(path));
   std::string line, lines;
   if (!std::getline(file, line) || line != header(names))
     throw std::runtime_error(path + " has other columns than this run: start the run in another folder");
+  double last = -1;
   do {
     if (file.eof()) break;  // no line end: the run died while it wrote this line
-    lines += line + "\n";
+    lines += line + "\n", last = std::strtod(line.c_str(), nullptr);
   } while (std::getline(file, line) && std::strtod(line.c_str(), nullptr) <= time + round_off * std::abs(time));
+  *gap = time >= 0 && last < time - round_off * std::abs(time);
   return lines;
 }
 
@@ -49,7 +51,9 @@ History History::append(MPI_Comm comm, const std::string &path, const std::vecto
   History history(comm, path);
   history.columns_ = names.size();
   on_first_rank(comm, [&] {
-    history.open_with(std::filesystem::exists(path) ? lines_until(path, names, time) : header(names) + "\n");
+    const bool exists = std::filesystem::exists(path);
+    history.gap_ = !exists;
+    history.open_with(exists ? lines_until(path, names, time, &history.gap_) : header(names) + "\n");
   });
   return history;
 }

@@ -20,6 +20,9 @@ class History {
   /// missing file is started; a file with other columns than `names` is refused.
   static History append(MPI_Comm comm, const std::string &path, const std::vector<std::string> &names, double time);
 
+  /// Does the file that `append` found lack the line of `time`, on rank 0? Lines before it may be missing then.
+  bool has_gap() const { return gap_; }
+
   /// Adds a line and brings it to the file; `values` are rank 0's, one per name, in their order.
   void row(double time, long long step, const std::string &stage, const std::vector<double> &values) {
     rows(time, step, stage, {values});
@@ -35,6 +38,7 @@ class History {
   std::string path_;
   std::size_t columns_ = 0;  ///< after time, step and stage
   std::ofstream file_;       ///< open on rank 0
+  bool gap_ = false;
 };
 
 }  // namespace talus

@@ -24,9 +24,9 @@ inline std::string history_column(const std::string &quantity, std::string unit)
   return quantity + "_" + unit;
 }
 
-/// What history.csv holds of a field for each tracked point: nothing, its value, the magnitude of a vector, the
-/// components of the position, which are named x, y and z, or the components of a tensor.
-enum class Tracked { no, value, magnitude, coordinates, components };
+/// What history.csv holds of a field for each tracked point: nothing, its value, the magnitude of a vector, this and
+/// its components, the components of the position, which are named x, y and z, or the components of a tensor.
+enum class Tracked { no, value, magnitude, vector, coordinates, components };
 
 /// One field of a `Point`.
 template <class Point>
@@ -78,11 +78,12 @@ class OutputFields {
     for (const auto &field : list_)
       if (field.tracked == Tracked::coordinates)
         for (int d = 0; d < field.components; ++d) names.push_back(history_column(prefix + "xyz"[d], field.unit));
-      else if (field.tracked == Tracked::components)
-        for (const std::string &component : component_names(field.components))
-          names.push_back(history_column(prefix + field.name + "_" + component, field.unit));
-      else if (field.tracked != Tracked::no)
-        names.push_back(history_column(prefix + field.name, field.unit));
+      else if (field.tracked != Tracked::no) {
+        if (field.tracked != Tracked::components) names.push_back(history_column(prefix + field.name, field.unit));
+        if (field.tracked == Tracked::components || field.tracked == Tracked::vector)
+          for (const std::string &component : component_names(field.components))
+            names.push_back(history_column(prefix + field.name + "_" + component, field.unit));
+      }
     return names;
   }
   /// Appends the values of these columns: zeros where `point` is null, so that sums over ranks are those of the rank
@@ -92,13 +93,12 @@ class OutputFields {
       if (field.tracked == Tracked::no) continue;
       std::vector<double> values(field.components, 0.);
       if (point) field.get(*point, values.data());
-      if (field.tracked != Tracked::magnitude) {
-        row.insert(row.end(), values.begin(), values.end());
-        continue;
+      if (field.tracked == Tracked::magnitude || field.tracked == Tracked::vector) {
+        double square = 0;
+        for (const double value : values) square += value * value;
+        row.push_back(std::sqrt(square));
       }
-      double square = 0;
-      for (const double value : values) square += value * value;
-      row.push_back(std::sqrt(square));
+      if (field.tracked != Tracked::magnitude) row.insert(row.end(), values.begin(), values.end());
     }
   }
 

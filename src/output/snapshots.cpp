@@ -235,6 +235,7 @@ void RunFile::write_index() const {
   file.attribute("/", "title", header_.title);
   file.attribute("/", "program", header_.program);
   file.dataset("scene", {header_.scene});
+  file.dataset("values", {header_.values});
   file.dataset("bodies", header_.bodies);
   file.link("mesh", mesh_file);
   file.group("snapshots");

@@ -29,7 +29,8 @@ namespace talus {
 struct RunHeader {
   std::string title;
   std::string program;              ///< name and version of the program
-  std::string scene;                ///< text of the scene as run, overrides applied
+  std::string scene;                ///< text of the scene as read, with a line for each override
+  std::string values;               ///< the scene with its overrides applied, as TOML
   std::vector<std::string> bodies;  ///< names; Snapshot::body counts in this list
 };
 

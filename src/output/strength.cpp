@@ -100,7 +100,7 @@ std::vector<StrengthLine> strength_lines(const std::string &scene, const std::ve
 
 void write_strength(const std::string &dir) {
   const Hdf5Reader run(dir + "/run.h5");
-  const auto lines = strength_lines(run.texts("scene").at(0), ranges_in(run));
+  const auto lines = strength_lines(run.texts("values").at(0), ranges_in(run));
   if (lines.empty()) return;
   std::ostringstream text;
   text.precision(12);

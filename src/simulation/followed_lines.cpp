@@ -54,6 +54,7 @@ template <int dim>
 FollowedLines<dim>::Line::Line(const World<dim> &world, const OutputLine &of)
     : name(of.name), places(world, places_of(places_along<dim>(of))), rows(world, places) {
   const auto along = places_along<dim>(of);
+  wanted = along.size();
   const auto &in_soil = places.all();
   if (in_soil.size() < 2)
     world.scene.complain("output.line." + name + ".points", "must be a line in the soil; of " +
@@ -100,6 +101,32 @@ void FollowedLines<dim>::write(const Clock &clock, const Statics<dim> &statics) 
     }
     line.file->rows(clock.time, clock.steps, clock.stage.empty() ? "start" : clock.stage, rows);
   }
+}
+
+template <int dim>
+std::vector<std::string> FollowedLines<dim>::left_out() const {
+  std::vector<std::string> sentences;
+  for (const Line &line : lines_) {
+    const auto &in_soil = line.places.all();
+    std::size_t shared = 0;
+    for (std::size_t i = 1; i < in_soil.size(); ++i) shared += in_soil[i].id == in_soil[i - 1].id;
+    const std::string name = "output.line." + line.name + ": ", all = std::to_string(line.wanted);
+    if (in_soil.size() < line.wanted)
+      sentences.push_back(name + std::to_string(in_soil.size()) + " of " + all +
+                          " places along it are in soil and are followed");
+    if (shared > 0)
+      sentences.push_back(name + std::to_string(shared) + " of " + all +
+                          " places have the same particle as their neighbour: a larger spacing loses nothing");
+  }
+  return sentences;
+}
+
+template <int dim>
+std::vector<std::string> FollowedLines<dim>::with_gaps() const {
+  std::vector<std::string> names;
+  for (const Line &line : lines_)
+    if (line.file && line.file->has_gap()) names.push_back(line.name);
+  return names;
 }
 
 template <int dim>

@@ -24,6 +24,11 @@ class FollowedLines {
   void write(const Clock &clock, const Statics<dim> &statics);
   void serialize(Archive &archive);
 
+  /// A sentence for each line of which places are not in soil, or share a particle.
+  std::vector<std::string> left_out() const;
+  /// Names of the lines whose files `append` did not find whole; on rank 0.
+  std::vector<std::string> with_gaps() const;
+
  private:
   struct Line {
     Line(const World<dim> &world, const OutputLine &of);
@@ -33,6 +38,7 @@ class FollowedLines {
     std::string name;
     TrackedPoints<dim> places;
     PointRows<dim> rows;
+    std::size_t wanted;             ///< places along the line, in soil and beside it
     std::vector<double> distance;   ///< of each place from the beginning of the line, at the start [m]
     std::unique_ptr<History> file;  ///< null: not written
   };

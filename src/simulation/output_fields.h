@@ -120,7 +120,7 @@ OutputFields<Point> output_fields(const PhaseTraits &phases,
   const std::string of_point = std::string(" of the ") + Point::noun;
   OutputFields<Point> fields;
   fields.add("position", "m", "place" + of_point, Tracked::coordinates, [](const Point &p) { return p.position; });
-  fields.add("displacement", "m", "displacement since the start or the last reset", Tracked::magnitude,
+  fields.add("displacement", "m", "displacement since the start or the last reset", Tracked::vector,
              [](const Point &p) { return p.displacement; });
   if constexpr (particles)
     fields.add("velocity", "m/s", "velocity of the soil skeleton", Tracked::magnitude,

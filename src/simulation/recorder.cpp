@@ -40,12 +40,13 @@ void Recorder<dim>::open() {
   results_.reset(new Files{std::move(folder), std::move(file), std::move(rows),
                            Progress(of_.world.comm, options_.directory + "/run.log", longest_duration())});
   of_.lines.open(options_.directory);
+  for (const std::string &sentence : of_.lines.left_out()) results_->progress.note(sentence);
   write_escaped();  // in place of that of a run that was here before
 }
 
 template <int dim>
 RunHeader Recorder<dim>::header() const {
-  RunHeader header{scene_.title, program, scene_.source, {}};
+  RunHeader header{scene_.title, program, scene_.source, scene_.root ? scene_.root->values() : scene_.source, {}};
   for (const auto &body : of_.world.bodies) header.bodies.push_back(body->name());
   return header;
 }
@@ -75,7 +76,12 @@ void Recorder<dim>::append(std::unique_ptr<ResultsFolder> folder) {
   results_->progress.resume(of_.clock.time, of_.clock.steps);
   results_->progress.note("resumed at t = " + rounded(of_.clock.time) + " s, step " + std::to_string(of_.clock.steps));
   for (const std::string &key : changed_) results_->progress.note("since then the scene has another " + key);
-  if (!has_table) results_->progress.note("warning: history.csv was missing; it begins here");
+  if (!has_table)
+    results_->progress.note("warning: history.csv was missing; it begins here");
+  else if (results_->history.has_gap())
+    results_->progress.note("warning: history.csv was damaged; rows before this time are missing");
+  for (const std::string &line : of_.lines.with_gaps())
+    results_->progress.note("warning: line_" + line + ".csv was missing or damaged; rows before this time are missing");
   for (const std::string &one : damaged) results_->progress.note("warning: " + one);
   write_escaped();
   of_.statics.save_seeped_pressure(options_.directory);
@@ -418,7 +424,7 @@ CheckpointHeader Recorder<dim>::check_checkpoint() {
                                 tie_of(words[0]) +
                                 "; with --resume only title, [output] without its points, [factor_of_safety], "
                                 "mesh.leaving_particles, the duration of the present stage and the stages after it "
-                                "may change");
+                                "may change (repeat the --set of that run)");
   }
   if (found.ranks != mine.ranks)
     throw SceneError(refusal + "it ran with -n " + std::to_string(found.ranks) + ", not with -n " +

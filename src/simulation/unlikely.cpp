@@ -358,6 +358,12 @@ void doubt_for_height(const BodySource &source, const BodyReport &body, const La
                         " times the weight of the soil, " + rounded(weight / 1e3) +
                         " kPa over its height: such soil stands in any shape. Is it a unit too large? For rock or a "
                         "structure, reduce_strength = false says that a factor of safety does not concern it");
+  const double young = 9 * bulk_modulus(law) * shear_modulus(law) / (3 * bulk_modulus(law) + shear_modulus(law));
+  constexpr double stiffer = 5;  // soils and rocks have 50 to 1000
+  if (c > 0 && young < stiffer * c && source.reduce_strength)
+    sentences.push_back("The stiffness of body." + source.name + ", young_modulus = " + rounded(young / 1e6) +
+                        " MPa, is " + rounded(young / c) + " times its cohesion of " + rounded(c / 1e3) +
+                        " kPa: soils and rocks have 50 to 1000 times. Is one of the two in another unit?");
   const double speed = std::sqrt(constrained_modulus(law) * body.volume / body.mass);
   if (speed > fast && c < rock)
     sentences.push_back("The stiffness of body." + source.name + " gives waves a speed of " + rounded(speed) +

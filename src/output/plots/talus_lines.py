@@ -32,13 +32,12 @@ class Line:
         self.time, self.stage = times[starts], [self.stage[start] for start in starts]
 
     def moved(self):
-        """How far each place has come from where it was at the beginning [m], by axis: [times, places, axes]."""
-        places = np.stack([self.columns[f"{axis}_m"] for axis in "xyz" if f"{axis}_m" in self.columns], axis=2)
-        return places - places[0]
+        """Displacement of each place since the start or the last reset [m], by axis: [times, places, axes]."""
+        return np.stack([self.columns[f"displacement_{axis}_m"] for axis in "xyz" if f"displacement_{axis}_m" in self.columns], axis=2)
 
     def means(self):
         """Averages along the line over time, and the shares of its places that are in each state."""
-        found = {"displacement_m": np.nanmean(np.linalg.norm(self.moved(), axis=2), axis=1)}
+        found = {"displacement_m": mean(self.columns["displacement_m"])}
         for name in ("mobilised_friction_deg", "mean_pressure_Pa", "deviator_Pa", "pore_pressure_Pa", "plastic_strain"):
             if name in self.columns:
                 found["mean_" + name] = mean(self.columns[name])
@@ -60,8 +59,10 @@ def dimensionless(results, times):
         failed = failure(results)[0]
     except LookupError:
         return None
-    stage = max((start for start, _ in results.history.stage_starts() if start < failed), default=0.0)
-    return (times - stage) / (failed - stage)
+    history = results.history
+    first = [k for k, name in enumerate(history.stage) if k and name != history.stage[k - 1] and history.time[k - 1] < failed]
+    begin = history.time[first[-1] - 1] if first else 0.0  # the last row of the stage before is that of its end
+    return (times - begin) / (failed - begin)
 
 
 def chosen(line, times=None):

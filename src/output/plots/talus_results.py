@@ -12,7 +12,7 @@ import numpy as np
 UNITS = {"kg_m_s": "kg m/s", "m_s2": "m/s²", "m_s": "m/s", "m": "m", "m3": "m³", "J": "J", "W": "W", "Pa": "Pa", "N": "N", "kg": "kg", "s": "s", "deg": "deg"}
 # words that may stand before the unit: what is left is the name of a point
 QUANTITIES = ("displacement", "velocity", "acceleration", "mean_pressure", "deviator", "pore_pressure", "gas_pressure", "pressure", "suction", "saturation",
-              "plastic_strain", "mobilised_friction", "state", *(f"stress_{axes}" for axes in ("xx", "yy", "zz", "xy", "yz", "xz")), "x", "y", "z")
+              "plastic_strain", "mobilised_friction", "state", "displacement_x", "displacement_y", "displacement_z", *(f"stress_{axes}" for axes in ("xx", "yy", "zz", "xy", "yz", "xz")), "x", "y", "z")
 ESCAPED = "escaped"  # in columns of what left the mesh
 BROKE_OFF = "the run broke off: "  # in the log, before the cause
 FLUIDS = ("water", "gas")  # whose ledgers history.csv holds
@@ -102,7 +102,7 @@ class History:
         """Where the named points are at a time [s]: {name: coordinates}."""
         places = {}
         for name in self.columns:
-            if name.endswith("_x_m") and len(self.time):
+            if name.endswith("_x_m") and not name.endswith("_displacement_x_m") and len(self.time):
                 point = name[: -len("_x_m")]
                 axes = [self.columns[f"{point}_{axis}_m"] for axis in "xyz" if f"{point}_{axis}_m" in self.columns]
                 places[point] = np.array([np.interp(time, self.time, axis) for axis in axes])
@@ -157,7 +157,7 @@ class Results:
         self.program = self._file.attrs["program"]
         self.scene_text = self._file["scene"].asstr()[0]
         self.bodies = list(self._file["bodies"].asstr()[...])
-        self.scene = parsed(self.scene_text)
+        self.scene = parsed(self._file["values"].asstr()[0] if "values" in self._file else self.scene_text)  # with its overrides
         self.snapshots = [Snapshot(group) for group in self._file["snapshots"].values()]
         path = self.folder / "history.csv"
         self.history = History(path) if path.exists() else None

@@ -284,6 +284,8 @@ def draw_sections(results, fields, times, folder, log=False):
     for field in fields:
         if any(snapshot.scalar(field) is None for snapshot in painter.snapshots):
             continue
+        if not any(np.isfinite(snapshot.scalar(field)[0]).any() for snapshot in painter.snapshots):
+            continue  # such as the mobilised friction of soil without friction
         colours = Colours(field, painter.snapshots, log and field == "plastic_strain")
         pictures.append((field, painter.large(field, colours, folder / f"{field}_large.png"),
                          painter.over_time(field, colours, folder / f"{field}.png")))

@@ -21,7 +21,7 @@ def slip_surface(results, time=None):
     if time is None:
         try:
             time = failure(results)[0]
-        except LookupError:
+        except (LookupError, OSError):
             pass
     snapshot, first = at(results, time), results.snapshots[0]
     if "plastic_strain" not in snapshot:

@@ -198,6 +198,9 @@ TEST(Check, DoubtsStrengthThatMakesNoSenseForItsHeight) {
   EXPECT_FALSE(says({"body.sand.cohesion=0.9e6"}, "stands in any shape"));
   EXPECT_TRUE(says({"body.sand.cohesion=1e6"}, "times the weight of the soil, 9.81 kPa over its height"));
   EXPECT_FALSE(says({"body.sand.cohesion=1e6", "body.sand.reduce_strength=false"}, "stands in any shape"));
+  EXPECT_TRUE(says({"body.sand.cohesion=0.3e6"},
+                   "The stiffness of body.sand, young_modulus = 1 MPa, is 3.333 times its cohesion"));
+  EXPECT_FALSE(says({"body.sand.cohesion=0.1e6"}, "times its cohesion"));
   EXPECT_FALSE(says({"body.sand.young_modulus=5e9"}, "gives waves a speed of"));
   EXPECT_TRUE(says({"body.sand.young_modulus=50e9"}, "The stiffness of body.sand gives waves a speed of 5801 m/s"));
   EXPECT_FALSE(says({"body.sand.young_modulus=50e9", "body.sand.cohesion=2e6", "body.sand.reduce_strength=false"},

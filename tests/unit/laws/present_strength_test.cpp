@@ -119,6 +119,8 @@ TEST(PresentStrength, has_limits_where_the_angle_has_none) {
   soil.cohesion = soil.residual_cohesion = 0;
   EXPECT_EQ(of(soil, {0, 0, 0, 0}).friction_angle, 0);
   EXPECT_EQ(of(soil, {0, 0, 0, 0}).state, StrengthState::elastic) << "sand without stress";
+  EXPECT_EQ(of(soil, {-1e-13, -7e-13, -3e-13, 2e-13}).friction_angle, 0) << "nor with round-off of stress";
+  EXPECT_GT(of(soil, {-1, -1.5, -1.2, 0}).friction_angle, 0);
   soil.cohesion = 10e3, soil.friction_angle = soil.residual_friction_angle = 0;
   EXPECT_TRUE(std::isnan(of(soil, {-1e3, -9e3, -5e3, 0}).friction_angle));
   EXPECT_EQ(of(soil, {-1e3, -9e3, -5e3, 0}).state, StrengthState::elastic);

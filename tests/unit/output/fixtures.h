@@ -59,7 +59,8 @@ inline std::string content(const std::string &path) {
 }
 
 inline RunHeader small_header() {
-  return {"a small slope", "Talus test", "title = \"a small slope\"\n", {"sand", "clay"}};
+  return {
+      "a small slope", "Talus test", "title = \"a small slope\"\n", "title = \"a small slope\"\n", {"sand", "clay"}};
 }
 
 /// Two triangles per rank.

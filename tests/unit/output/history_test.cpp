@@ -65,6 +65,26 @@ TEST(History, drops_a_line_that_was_cut_off) {
   EXPECT_EQ(content(path), "time_s,step,stage,a_m\n0,0,s,1\n");
 }
 
+/// A run knows the time of its last row; a table that ends before it has lost rows.
+TEST(History, tells_that_rows_are_missing) {
+  const SharedFolder folder;
+  const std::string path = folder / "history.csv";
+  const auto gap_at = [&](double time) {
+    write_four_rows(path);
+    MPI_Barrier(MPI_COMM_WORLD);
+    const bool gap = History::append(MPI_COMM_WORLD, path, names, time).has_gap();
+    MPI_Barrier(MPI_COMM_WORLD);
+    return gap;
+  };
+  const bool whole = gap_at(0.1 * 3), later = gap_at(0.2), cut = gap_at(0.4);
+  const bool none = History::append(MPI_COMM_WORLD, folder / "none.csv", names, 0.1).has_gap();
+  if (world_rank()) return;
+  EXPECT_FALSE(whole);
+  EXPECT_FALSE(later) << "rows after the checkpoint do not matter";
+  EXPECT_TRUE(cut);
+  EXPECT_TRUE(none);
+}
+
 /// Rows that cannot be read are not rows that were never written: the table stays as it is.
 TEST(History, is_not_cut_where_reading_fails) {
   EXPECT_THROW(History::append(MPI_COMM_WORLD, "/proc/self/mem", {"a_m"}, 5), std::runtime_error);

@@ -23,6 +23,7 @@ OutputFields<Point> three_fields() {
   fields.add("speed", "m/s", "how fast it moves", Tracked::magnitude, [](const Point &p) { return p.speed; });
   fields.add("pressure", "Pa", "of the water", Tracked::value, [](const Point &p) { return p.pressure; });
   fields.add("stress", "Pa", "in the soil", Tracked::components, [](const Point &p) { return p.stress; });
+  fields.add("way", "m", "where it went", Tracked::vector, [](const Point &p) { return p.speed; });
   fields.add("wet", "-", "1 under pressure", Tracked::no, [](const Point &p) { return p.pressure > 0; });
   return fields;
 }
@@ -32,7 +33,7 @@ TEST(OutputFields, fill_the_columns_of_a_snapshot) {
   auto columns = fields.columns();
   fields.append({{1, 2}, {3, 4}, 5}, columns);
   fields.append({{6, 7}, {8, 9}, -1}, columns);
-  ASSERT_EQ(columns.size(), 5u);
+  ASSERT_EQ(columns.size(), 6u);
   EXPECT_EQ(columns[1].name, "speed");
   EXPECT_EQ(columns[1].unit, "m/s");
   EXPECT_EQ(columns[1].meaning, "how fast it moves");
@@ -42,21 +43,21 @@ TEST(OutputFields, fill_the_columns_of_a_snapshot) {
   EXPECT_EQ(columns[1].values, (std::vector<double>{3, 4, 8, 9}));
   EXPECT_EQ(columns[2].values, (std::vector<double>{5, -1}));
   EXPECT_EQ(columns[3].values, (std::vector<double>{6, 7, 8, 9, 6, 7, 8, 9}));
-  EXPECT_EQ(columns[4].values, (std::vector<double>{1, 0}));
+  EXPECT_EQ(columns[5].values, (std::vector<double>{1, 0}));
 }
 
 TEST(OutputFields, name_and_fill_the_history_of_a_tracked_point) {
   const auto fields = three_fields();
-  EXPECT_EQ(
-      fields.tracked_names("crest_"),
-      (std::vector<std::string>{"crest_x_m", "crest_y_m", "crest_speed_m_s", "crest_pressure_Pa", "crest_stress_xx_Pa",
-                                "crest_stress_yy_Pa", "crest_stress_zz_Pa", "crest_stress_xy_Pa"}));
+  EXPECT_EQ(fields.tracked_names("crest_"),
+            (std::vector<std::string>{"crest_x_m", "crest_y_m", "crest_speed_m_s", "crest_pressure_Pa",
+                                      "crest_stress_xx_Pa", "crest_stress_yy_Pa", "crest_stress_zz_Pa",
+                                      "crest_stress_xy_Pa", "crest_way_m", "crest_way_x_m", "crest_way_y_m"}));
   const Point point{{1, 2}, {3, 4}, 5};
   std::vector<double> row{-1};
   fields.append_tracked(&point, row);
-  EXPECT_EQ(row, (std::vector<double>{-1, 1, 2, 5, 5, 6, 7, 8, 9}));
+  EXPECT_EQ(row, (std::vector<double>{-1, 1, 2, 5, 5, 6, 7, 8, 9, 5, 3, 4}));
   fields.append_tracked(nullptr, row);  // on another rank
-  EXPECT_EQ(row, (std::vector<double>{-1, 1, 2, 5, 5, 6, 7, 8, 9, 0, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(row, (std::vector<double>{-1, 1, 2, 5, 5, 6, 7, 8, 9, 5, 3, 4, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
 }
 
 using Names = std::vector<std::string>;

@@ -86,7 +86,7 @@ TEST(Pictures, show_stress_paths_and_the_water_ledger) {
   const SharedFolder folder;
   const std::string dir = folder / "run";
   RunHeader header = small_header();
-  header.scene = frictional_scene;
+  header.values = frictional_scene;  // the text as read may have other values than the overrides of the run
   RunFile run(MPI_COMM_WORLD, dir, header, small_mesh());
   History history(MPI_COMM_WORLD, dir + "/history.csv",
                   {"crest_x_m", "crest_y_m", "crest_mean_pressure_Pa", "crest_deviator_Pa",
