@@ -88,7 +88,8 @@ def draw(rows, path):
         if any(any(each) for each in (of, series[1:])):
             one.legend(fontsize=7.5)
         one.set(xlabel=axis_title(rows), ylabel=title)
-        one.set_ylim(bottom=min(0, one.get_ylim()[0]))
+        low, high = one.get_ylim()
+        one.set_ylim(min(0, low), high + 0.06 * (high - min(0, low)))
         if numeric and min(place) > 0 and max(place) > 20 * min(place):
             one.set_xscale("log")
         if not numeric:
