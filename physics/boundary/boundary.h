@@ -43,9 +43,9 @@ class Boundary {
     else
       return on_soil_3d_;
   }
-  std::function<double(double t)> friction_coefficient, adhesion;
   std::function<double(double x, double y, double z, double t, double unit_weight)> outside;
-  std::function<double(double x, double y, double z, double t)> supply, inflow, gas_outside;
+  std::function<double(double x, double y, double z, double t)> friction_coefficient, adhesion, supply, inflow,
+      gas_outside;
 
   /// Does it concern the pore fluids only?
   bool fluids_only() const { return in_motion == OnSoil::none && quasi_static == OnSoil::none; }
@@ -121,8 +121,11 @@ requires(!std::same_as<Kind, Boundary>) Boundary::Boundary(Kind of)
   if constexpr (member::follows<Kind>) follows = kind->follows();
   if constexpr (member::open_water<Kind>) open_water = Kind::open_water;
   if constexpr (member::friction_coefficient<Kind>)
-    friction_coefficient = [kind](double t) { return kind->friction_coefficient(t); };
-  if constexpr (member::adhesion<Kind>) adhesion = [kind](double t) { return kind->adhesion(t); };
+    friction_coefficient = [kind](double x, double y, double z, double t) {
+      return kind->friction_coefficient(x, y, z, t);
+    };
+  if constexpr (member::adhesion<Kind>)
+    adhesion = [kind](double x, double y, double z, double t) { return kind->adhesion(x, y, z, t); };
   if constexpr (member::outside<Kind>)
     outside = [kind](double x, double y, double z, double t, double unit_weight) {
       return kind->outside(x, y, z, t, unit_weight);

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
+#include "base/gather.h"
 #include "physics/boundary/node_normals.h"
 
 namespace talus {
 namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
-const double same_direction =
-    std::sqrt(1 - least_angle_sine * least_angle_sine);  // facets of one curved face share a contact within this
 
 template <int dim>
 double dot(const Vec<dim> &a, const Vec<dim> &b) {
@@ -46,7 +46,7 @@ void Conditions<dim>::add_contact(int node, int source, const Vec<dim> &normal, 
       c.area += area;
       return;
     }
-  contacts_[index].push_back({node, source, normal, area, 0, never});
+  contacts_[index].push_back({node, source, normal, area, 0, never, false});
 }
 
 template <int dim>
@@ -136,7 +136,7 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
       double total = 0;
       for (const Contact &c : contacts_[index]) total += c.area;
       for (Contact &c : contacts_[index])
-        active_contacts_.push_back({i, &c, nodal_[i] * c.area / total, 0, false, false});
+        active_contacts_.push_back({i, &c, nodal_[i] * c.area / total, 0, c.rests, c.rests});
     }
   }
   if (!dashpots_.empty() && !stand_ins_) {
@@ -158,6 +158,31 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
         const Square<dim> matrix = Eigen::Map<const Square<dim>>(&nodal_[i * width]);
         if (matrix.trace() > 0) active_dashpots_.push_back({i, source, matrix});
       }
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode Conditions<dim>::set_normal_forces(const BackgroundMesh<dim> &mesh, std::vector<NormalForce> forces,
+                                                  double t) {
+  PetscFunctionBeginUser;
+  if (bases_.empty()) PetscFunctionReturn(0);
+  PetscCall(gather_from_all(mesh.comm(), forces));
+  std::map<Vec<dim>, std::vector<Contact> *> at;
+  for (auto &of_node : contacts_) {
+    for (Contact &c : of_node) c.capacity = 0, c.since_pressed = never, c.rests = false;
+    at[mesh.position[of_node.front().node]] = &of_node;
+  }
+  for (const NormalForce &f : forces) {
+    const auto found = at.find(f.position);
+    if (found == at.end()) continue;
+    for (Contact &c : *found->second) {
+      if (c.source != f.source || dot<dim>(c.normal, f.normal) < same_direction) continue;
+      const Vec<dim> &x = f.position;
+      c.capacity += f.force * friction_delay_ *
+                    sources_[f.source].kind.friction_coefficient(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t);
+      c.since_pressed = 0, c.rests = true;
     }
   }
   PetscFunctionReturn(0);
@@ -258,14 +283,17 @@ void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &gri
     add<dim>(slip, -into, n);
     c.presses = into > 0;
     Contact &contact = *c.contact;
+    contact.rests = false;
     contact.since_pressed = c.presses ? 0 : contact.since_pressed + gamma;
-    const double slope = base.friction_coefficient(t);
+    const Vec<dim> &x = grid.position[c.node];
+    const double z = dim == 3 ? x[dim - 1] : 0, slope = base.friction_coefficient(x[0], x[1], z, t);
     if (c.presses) contact.capacity += slope * map<dim>(n).dot(mass * map<dim>(n)) * into;
     if (pores.thrust) contact.capacity -= slope * gamma * pores.thrust(c.node, n);
     const double forgotten = adapted * contact.capacity, rubbing = std::max(0., forgotten),
                  speed = std::sqrt(dot<dim>(slip, slip));
     const double m = speed > 0 ? map<dim>(slip).dot(mass * map<dim>(slip)) / (speed * speed) : 0;
-    const double most = rubbing + (contact.since_pressed <= friction_delay_ ? base.adhesion(t) * c.area * gamma : 0);
+    const bool adheres = contact.since_pressed <= friction_delay_;
+    const double most = rubbing + (adheres ? base.adhesion(x[0], x[1], z, t) * c.area * gamma : 0);
     contact.capacity -= forgotten, c.force = most / gamma, c.sticks = m * speed <= most;
     v[c.node] = {};
     if (!c.presses) add<dim>(v[c.node], into, n);
@@ -302,7 +330,7 @@ PetscErrorCode Conditions<dim>::serialize(Archive &archive, FilledGrid<dim> &gri
   if (archive.reading()) PetscCall(begin(grid, impedance, filling));
   archive.serialize("boundaries", impulse_, work_);
   for (auto &contacts : contacts_)
-    for (Contact &c : contacts) archive.serialize("contact", c.capacity, c.since_pressed);
+    for (Contact &c : contacts) archive.serialize("contact", c.capacity, c.since_pressed, c.rests);
   for (ActiveContact &c : active_contacts_) archive.serialize("contact now", c.force, c.presses, c.sticks);
   PetscFunctionReturn(0);
 }

@@ -58,6 +58,16 @@ class Conditions {
   /// Work of each source on the soil, on this rank [J].
   const std::vector<double> &work() const { return work_; }
 
+  /// A force by which soil presses on a base at a vertex of the mesh.
+  struct NormalForce {
+    int source;
+    Vec<dim> position, normal;  ///< [m]; of the base, pointing out of the soil
+    double force;               ///< [N]
+  };
+  /// Bases are pressed on by these forces of this rank and of the others since long, so that friction has adapted to
+  /// them at time t, and by no others. Collective.
+  PetscErrorCode set_normal_forces(const BackgroundMesh<dim> &mesh, std::vector<NormalForce> forces, double t);
+
   /// Time over which friction adapts to the normal force, docs/theory (6.2) [s].
   void set_friction_delay(double delay) { friction_delay_ = delay; }
 
@@ -81,6 +91,7 @@ class Conditions {
     double area;
     double capacity;       // friction impulse that normal impulses of the recent past still allow [N s]
     double since_pressed;  // time since the node last pressed on the base [s]
+    bool rests;            // in equilibrium as finite elements have found it, until the next `resolve`
   };
   struct ActivePrescribed {
     int node;  // compact

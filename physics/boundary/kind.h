@@ -77,15 +77,15 @@ template <class Kind>
 concept follows = requires(const Kind &kind) {
   { kind.follows() } -> std::same_as<bool>;
 };
-/// `friction_coefficient(t)`: largest shear stress over normal stress on the base.
+/// `friction_coefficient(x, y, z, t)`: largest shear stress over normal stress on the base.
 template <class Kind>
 concept friction_coefficient = requires(const Kind &kind) {
-  { kind.friction_coefficient(0.) } -> std::same_as<double>;
+  { kind.friction_coefficient(0., 0., 0., 0.) } -> std::same_as<double>;
 };
-/// `adhesion(t)`: shear stress that the base bears without normal stress [Pa].
+/// `adhesion(x, y, z, t)`: shear stress that the base bears without normal stress [Pa].
 template <class Kind>
 concept adhesion = requires(const Kind &kind) {
-  { kind.adhesion(0.) } -> std::same_as<double>;
+  { kind.adhesion(0., 0., 0., 0.) } -> std::same_as<double>;
 };
 /// `dashpot<dim>({rho c_p, rho c_s}, n)`: force per area and velocity, a symmetric matrix, in soil of these impedances
 /// behind a facet of normal n [kg/(m2 s)].
@@ -136,14 +136,14 @@ concept StatesGas = requires {
   { Kind::gas } -> std::convertible_to<OnGas>;
 };
 
-/// Can the program act on the skeleton as the kind states? Contact and dashpots act in motion only. A support acts in
-/// all stages, or stands in for a dashpot.
+/// Can the program act on the skeleton as the kind states? Dashpots act in motion only, and a contact acts in motion if
+/// it acts at all. A support acts in all stages, or stands in for a dashpot.
 template <StatesSoil Kind>
 constexpr bool possible_on_soil() {
   constexpr OnSoil moving = Kind::in_motion, still = Kind::quasi_static;
   const bool stands_in = still == OnSoil::support && moving != OnSoil::support;
-  return moving != OnSoil::refused && still != OnSoil::contact && still != OnSoil::dashpot &&
-         (!stands_in || moving == OnSoil::dashpot);
+  return moving != OnSoil::refused && (still != OnSoil::contact || moving == OnSoil::contact) &&
+         still != OnSoil::dashpot && (!stands_in || moving == OnSoil::dashpot);
 }
 /// Does the kind have the members that its statements about the skeleton ask for, and no others?
 template <StatesSoil Kind>

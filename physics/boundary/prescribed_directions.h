@@ -10,6 +10,7 @@ namespace talus {
 
 inline constexpr double least_angle_sine =
     0.05233595624294384;  // of 3 degrees: facets of one curved face share a direction within this
+inline const double same_direction = std::sqrt(1 - least_angle_sine * least_angle_sine);  ///< their cosine
 
 template <int dim>
 struct PrescribedDirections {

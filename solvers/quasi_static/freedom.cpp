@@ -23,7 +23,7 @@ std::string describe(const ColumnVector<rigid_modes<dim>> &mode) {
 }  // namespace
 
 template <int dim>
-PetscErrorCode QuasiStatic<dim>::find_freedom(std::string *freedom) const {
+PetscErrorCode QuasiStatic<dim>::find_freedom(double load_time, std::string *freedom) {
   constexpr int modes = rigid_modes<dim>;
   const ElementNodes<dim> &nodes = soil_.nodes();
   PetscFunctionBeginUser;
@@ -59,21 +59,22 @@ PetscErrorCode QuasiStatic<dim>::find_freedom(std::string *freedom) const {
     radius[k] = std::sqrt(std::max(square, 1e-300));
   }
   std::fill(sums.begin(), sums.end(), 0.);
-  for (int i = 0; i < nodes.count(); ++i) {
-    const Support<dim> *support = nodes.owned[i] ? supports_.at(i) : nullptr;
-    if (!support) continue;
+  const auto hold = [&](int i, const Vec<dim> &direction) {
     const size_t k = number.at(piece[i]);
     Vec<dim> r;
     for (int d = 0; d < dim; ++d) r[d] = (nodes.position[i][d] - centre[k][d]) / radius[k];
-    for (int c = 0; c < support->count; ++c) {
-      ColumnVector<modes> row;
-      for (int m = 0; m < modes; ++m) {
-        const Vec<dim> v = rigid_motion<dim>(m, r);
-        row[m] = map<dim>(v).dot(map<dim>(support->direction[c]));
-      }
-      Eigen::Map<Square<modes>>(&sums[k * width]) += row * row.transpose();
+    ColumnVector<modes> row;
+    for (int m = 0; m < modes; ++m) {
+      const Vec<dim> v = rigid_motion<dim>(m, r);
+      row[m] = map<dim>(v).dot(map<dim>(direction));
     }
-  }
+    Eigen::Map<Square<modes>>(&sums[k * width]) += row * row.transpose();
+  };
+  for (int i = 0; i < nodes.count(); ++i)
+    if (const Support<dim> *support = nodes.owned[i] ? supports_.at(i) : nullptr)
+      for (int c = 0; c < support->count; ++c) hold(i, support->direction[c]);
+  bases_.set_strength(load_time);
+  bases_.each_hold(hold);
   PetscCallMPI(add_up());
   std::ostringstream text;
   for (size_t k = 0; k < number.size(); ++k) {
@@ -118,7 +119,7 @@ PetscErrorCode QuasiStatic<dim>::find_thin_bodies(std::vector<char> *thin) const
 
 template PetscErrorCode QuasiStatic<2>::find_thin_bodies(std::vector<char> *) const;
 template PetscErrorCode QuasiStatic<3>::find_thin_bodies(std::vector<char> *) const;
-template PetscErrorCode QuasiStatic<2>::find_freedom(std::string *) const;
-template PetscErrorCode QuasiStatic<3>::find_freedom(std::string *) const;
+template PetscErrorCode QuasiStatic<2>::find_freedom(double, std::string *);
+template PetscErrorCode QuasiStatic<3>::find_freedom(double, std::string *);
 
 }  // namespace talus

@@ -11,6 +11,7 @@ PetscErrorCode QuasiStatic<dim>::activate(const std::vector<char> &present) {
   PetscFunctionBeginUser;
   PetscCall(soil_.activate(present));
   PetscCall(supports_.setup(soil_.mesh(), soil_.nodes(), soil_.active(), sources_));
+  PetscCall(bases_.activate());
   loads_.activate();
   PetscCall(unknowns_.setup());
   for (auto *v : {&x_, &f_, &out_of_balance_, &target_, &lifted_}) PetscCall(soil_.nodes().global_vector(*v));
@@ -22,7 +23,7 @@ PetscErrorCode QuasiStatic<dim>::activate(const std::vector<char> &present) {
 /// Direct up to a size at which its fill is still cheap, else GMRES with algebraic multigrid; PETSc's options change
 /// all of it.
 template <int dim>
-PetscErrorCode QuasiStatic<dim>::make_solver() {
+PetscErrorCode QuasiStatic<dim>::make_solver(SNESLineSearchType line_search) {
   KSP ksp;
   PC pc;
   Mat factor;
@@ -38,7 +39,7 @@ PetscErrorCode QuasiStatic<dim>::make_solver() {
   PetscCall(SNESSetJacobian(solver_, matrix_, matrix_, snes_jacobian, this));
   PetscCall(SNESSetType(solver_, SNESNEWTONLS));
   PetscCall(SNESGetLineSearch(solver_, &search));
-  PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHCP));
+  PetscCall(SNESLineSearchSetType(search, line_search));
   PetscCall(SNESSetTolerances(solver_, 0, settings.tolerance, 0, settings.iterations, PETSC_MAX_INT));
   PetscCall(SNESSetConvergenceTest(solver_, snes_converged, this, nullptr));
   PetscCall(SNESGetKSP(solver_, &ksp));
@@ -73,6 +74,7 @@ PetscErrorCode QuasiStatic<dim>::residual(::Vec x, ::Vec f) {
   PetscCall(unknowns_.displacement_of(x, true, u));
   soil_.deform(u);
   soil_.internal_force(force, true);
+  bases_.add_trial_force(u, force);
   PetscCall(soil_.nodes().add_to_global(force, f));
   PetscCall(VecNorm(f, NORM_2, &size));
   if (scale_open_) force_scale_ = std::max(force_scale_, size);
@@ -93,10 +95,11 @@ PetscErrorCode QuasiStatic<dim>::stiffness(double plastic, double elastic, const
   PetscFunctionBeginUser;
   PetscCall(MatZeroEntries(matrix_));
   if (lift) lift->assign(static_cast<size_t>(soil_.nodes().count()) * dim, 0);
-  PetscCall(soil_.each_stiffness(plastic, elastic,
-                                 [&](const int *node, int count, typename SoilElements<dim>::Stiffness &element) {
-                                   return unknowns_.add(matrix_, node, count, element, motion, lift);
-                                 }));
+  const auto put = [&](const int *node, int count, typename SoilElements<dim>::Stiffness &element) {
+    return unknowns_.add(matrix_, node, count, element, motion, lift);
+  };
+  PetscCall(soil_.each_stiffness(plastic, elastic, put));
+  PetscCall(bases_.each_stiffness(plastic, elastic, put));
   PetscCall(unknowns_.finish(matrix_, stiffness_scale_));
   PetscFunctionReturn(0);
 }
@@ -134,6 +137,7 @@ PetscErrorCode QuasiStatic<dim>::begin_path(double load_time) {
   std::vector<double> internal, external;
   PetscFunctionBeginUser;
   soil_.internal_force(internal, false);
+  bases_.add_force(internal);
   loads_.force(load_time, external);
   const Vec<dim> now = std::exchange(loads_.acceleration, borne_acceleration_);
   loads_.force(load_time, unborne_, [this](int cell) { return soil_.stressed(cell); });
@@ -150,6 +154,7 @@ PetscErrorCode QuasiStatic<dim>::prepare(double share, double load_time, double 
   PetscFunctionBeginUser;
   stopped_ = false, scale_open_ = true, trial_share_ = share;
   soil_.find_suction(load_time);
+  bases_.set_strength(load_time);
   loads_.force(load_time, external);
   PetscCall(soil_.nodes().add_to_global(external, target_));
   PetscCall(VecNorm(target_, NORM_2, &force_scale_));
@@ -209,9 +214,14 @@ PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double 
   PetscInt iterations;
   PetscFunctionBeginUser;
   *outcome = {};
-  PetscCall(prepare(share, load_time, time, dt, x_));
-  PetscCall(SNESSolve(solver_, nullptr, x_));
-  PetscCall(SNESGetConvergedReason(solver_, &reason));
+  bool again = false;  // with a search for the smallest residual: sliding has no energy whose critical point there is
+  for (;; again = true) {
+    if (again) PetscCall(make_solver(SNESLINESEARCHBT));
+    PetscCall(prepare(share, load_time, time, dt, x_));
+    PetscCall(SNESSolve(solver_, nullptr, x_));
+    PetscCall(SNESGetConvergedReason(solver_, &reason));
+    if (reason > 0 || again || stopped_ || !bases_.any()) break;
+  }
   PetscCall(SNESGetIterationNumber(solver_, &iterations));
   PetscCall(SNESGetFunctionNorm(solver_, &outcome->residual));
   PetscCall(VecNorm(x_, NORM_INFINITY, &outcome->largest));
@@ -219,10 +229,10 @@ PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double 
   outcome->residual /= force_scale_ > 0 ? force_scale_ : 1;
   outcome->converged = reason > 0, outcome->stopped = stopped_,
   outcome->singular = reason == SNES_DIVERGED_LINEAR_SOLVE;
-  if (outcome->converged)
-    PetscCall(commit(x_, softening));
-  else
-    PetscCall(make_solver());  // neither MUMPS nor the line search recovers from numbers that ran away
+  if (outcome->converged) PetscCall(commit(x_, softening));
+  // neither MUMPS nor the line search recovers from numbers that ran away, and the next step begins with the first
+  // search
+  if (!outcome->converged || again) PetscCall(make_solver());
   PetscFunctionReturn(0);
 }
 
@@ -231,7 +241,7 @@ PetscErrorCode QuasiStatic<dim>::commit(::Vec x, bool softening) {
   std::vector<double> u;
   PetscFunctionBeginUser;
   PetscCall(unknowns_.displacement_of(x, true, u));
-  soil_.commit(u, softening);
+  soil_.commit(u, softening), bases_.commit(u);
   share_ = trial_share_, borne_acceleration_ = loads_.acceleration;
   PetscFunctionReturn(0);
 }
@@ -245,11 +255,12 @@ PetscErrorCode QuasiStatic<dim>::boundary_forces(double load_time, std::vector<V
   PetscFunctionBeginUser;
   const ElementNodes<dim> &nodes = soil_.nodes();
   soil_.internal_force(reaction, false);
+  force.assign(sources_.size(), Vec<dim>{});
+  bases_.add_force(reaction, &force);
   loads_.force(load_time, external);
   for (size_t i = 0; i < reaction.size(); ++i) reaction[i] -= external[i];
   for (size_t i = 0; share_ < 1 && i < reaction.size(); ++i) reaction[i] += (1 - share_) * unborne_[i];
   PetscCall(nodes.sum(reaction));
-  force.assign(sources_.size(), Vec<dim>{});
   for (int i = 0; i < nodes.count(); ++i) {
     const Support<dim> *s = nodes.owned[i] ? supports_.at(i) : nullptr;
     for (int k = 0; s && k < s->count; ++k) {

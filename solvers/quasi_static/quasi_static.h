@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "solvers/quasi_static/base_contact.h"
 #include "solvers/quasi_static/loads.h"
 #include "solvers/quasi_static/soil_elements.h"
 #include "solvers/quasi_static/unknowns.h"
@@ -39,14 +40,16 @@ class QuasiStatic {
         data_(std::move(data)),
         soil_(mesh, scene, laws, data_),
         loads_(soil_, scene, sources, data_),
+        bases_(soil_, sources),
         unknowns_(soil_, supports_),
         borne_acceleration_(loads_.acceleration) {}
   QuasiStatic(const QuasiStatic &) = delete;  // its parts know each other's place
 
   /// Takes these bodies (by their place in the scene) into the problem and leaves out the others. Collective.
   PetscErrorCode activate(const std::vector<char> &present);
-  /// Rigid motions that the supports leave to some piece of soil, in words; empty if there are none. Collective.
-  PetscErrorCode find_freedom(std::string *freedom) const;  // freedom.cpp
+  /// Rigid motions that supports, and bases with their strength at `load_time`, leave to some piece of soil, in words;
+  /// empty if there are none. Collective.
+  PetscErrorCode find_freedom(double load_time, std::string *freedom);  // freedom.cpp
   /// Bodies without a vertex inside: one element across. Collective.
   PetscErrorCode find_thin_bodies(std::vector<char> *thin) const;  // freedom.cpp
   /// Gravity, and what else pulls on all mass along the next paths [m/s2].
@@ -76,6 +79,14 @@ class QuasiStatic {
   SoilElements<dim> &soil() { return soil_; }
   const SoilElements<dim> &soil() const { return soil_; }
   const Supports<dim> &supports() const { return supports_; }
+  BaseContact<dim> &bases() { return bases_; }
+  /// A state of the soil and of its bases to come back to.
+  struct State {
+    typename SoilElements<dim>::State soil;
+    typename BaseContact<dim>::State bases;
+  };
+  State save() const { return {soil_.save(), bases_.save()}; }
+  void restore(const State &state) { soil_.restore(state.soil), bases_.restore(state.bases); }
   /// Force of each boundary on the soil [N] and mean displacement of each loaded face [m], at the last converged state.
   /// On the way along a path the loads that the soil did not bear at its begin count by the share of the path, as they
   /// do in the equilibrium. Collective.
@@ -86,7 +97,7 @@ class QuasiStatic {
   std::function<bool()> stop_asked;  ///< ends iterations when it is true; collective; may be empty
 
  private:
-  PetscErrorCode make_solver();
+  PetscErrorCode make_solver(SNESLineSearchType line_search = SNESLINESEARCHCP);
   PetscErrorCode start_with_motion(const std::vector<double> &motion, ::Vec x);
   PetscErrorCode stiffness(double plastic, double elastic, const std::vector<double> *motion,
                            std::vector<double> *lift);
@@ -100,6 +111,7 @@ class QuasiStatic {
   SoilElements<dim> soil_;
   Loads<dim> loads_;
   Supports<dim> supports_;
+  BaseContact<dim> bases_;
   Unknowns<dim> unknowns_;
   Matrix matrix_;
   NonlinearSolver solver_;

@@ -64,12 +64,12 @@ class Reduction {
   /// factor with an equilibrium.
   PetscErrorCode bracket(double first, FactorBracket *result, bool *interrupted) {
     PetscFunctionBeginUser;
-    start_ = stable_ = problem_.soil().save();
+    start_ = stable_ = problem_.save();
     const TryFactor attempt = [this](double factor, TrialOutcome *outcome, bool *stopped) {
       return this->attempt(factor, outcome, stopped);
     };
     PetscCall(bracket_factor(first, attempt, result, interrupted));
-    problem_.soil().restore(stable_);
+    problem_.restore(stable_);
     PetscFunctionReturn(0);
   }
 
@@ -82,7 +82,7 @@ class Reduction {
     trial.search = search_, trial.factor = factor, trial.dilating = dilating_;
     for (const auto *state : {&stable_, &start_}) {  // from the first state too, where the last one leads nowhere
       if (state == &start_ && !any_stable_) break;   // they are the same
-      soil.restore(*state);
+      problem_.restore(*state);
       strength_.set(factor, dilating_);
       LimitSearch found;
       PetscCall(limit_.search(&found));
@@ -94,7 +94,7 @@ class Reduction {
         const bool stands = found.verdict == LimitVerdict::equilibrium;
         trial.outcome = stands ? TrialOutcome::equilibrium : TrialOutcome::mechanism;
         trial.displacement = stands ? soil.largest_displacement() : found.displacement;
-        if (stands) stable_ = soil.save(), any_stable_ = true;
+        if (stands) stable_ = problem_.save(), any_stable_ = true;
         break;
       }
       trial.displacement = found.displacement;
@@ -113,7 +113,7 @@ class Reduction {
   int search_;
   LimitState<dim> &limit_;
   std::vector<StrengthTrial> &trials_;
-  typename SoilElements<dim>::State start_, stable_;
+  typename QuasiStatic<dim>::State start_, stable_;
   bool any_stable_ = false;
 };
 
@@ -139,19 +139,19 @@ class MechanismSearch {
         if (search == 1) static_cast<FactorBracket &>(result_) = bracket;
         break;
       }
-      const State stable = problem_.soil().save();
+      const State stable = problem_.save();
       PetscCall(limit_.move_along(settings_.shown_displacement));
-      if (search == 1) shown = problem_.soil().save();
+      if (search == 1) shown = problem_.save();
       std::vector<Mechanism> fresh;
       bool grown;
       PetscCall(take_pieces(bracket, &fresh, &grown));
-      problem_.soil().restore(stable);
+      problem_.restore(stable);
       if (result_.davis && !fresh.empty()) {
         FactorBracket dilating;
         PetscCall(reduction(true, search).bracket(bracket.upper, &dilating, interrupted));
         if (*interrupted) PetscFunctionReturn(0);
         for (Mechanism &one : fresh) one.dilating = dilating;
-        problem_.soil().restore(stable);
+        problem_.restore(stable);
       }
       for (Mechanism &one : fresh) {
         if (count_ == 0)
@@ -161,15 +161,15 @@ class MechanismSearch {
         if (++count_ == settings_.mechanisms) break;
       }
       if (count_ == settings_.mechanisms || !grown) break;
-      for (const CellSet &cells : held_) strength_.hold(cells, std::min(1., result_.lower / 2));
+      for (const CellSet &cells : held_) PetscCall(strength_.hold(cells, std::min(1., result_.lower / 2)));
       first = bracket.upper;
     }
-    if (count_ > 0) problem_.soil().restore(shown);
+    if (count_ > 0) problem_.restore(shown);
     PetscFunctionReturn(0);
   }
 
  private:
-  using State = typename SoilElements<dim>::State;
+  using State = typename QuasiStatic<dim>::State;
   Reduction<dim> reduction(bool dilating, int search) {
     return {problem_, strength_, settings_, dilating, search, limit_, result_.trials};
   }
@@ -231,7 +231,7 @@ PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law>
   for (const GaussPoints<dim> &p : problem.soil().points()) history.push_back(p.history);
   problem.soil().reset_displacement();
   for (size_t b = 0; b < history.size(); ++b) problem.soil().points()[b].history = history[b];
-  TrialStrength<dim> strength(problem.soil(), laws);
+  TrialStrength<dim> strength(problem.soil(), problem.bases(), laws);
   for (size_t b = 0; b < settings.kept.size(); ++b)
     if (settings.kept[b]) strength.keep(b);
   if (settings.divided) settings.tell_confined(strength.confine(settings.divided));

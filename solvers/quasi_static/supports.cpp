@@ -4,6 +4,8 @@
 #include <map>
 #include <tuple>
 
+#include "base/gather.h"
+
 namespace talus {
 namespace {
 
@@ -49,7 +51,7 @@ PetscErrorCode Supports<dim>::setup(const BackgroundMesh<dim> &mesh, const Eleme
                                     const std::vector<char> &active, const std::vector<Source> &sources) {
   PetscFunctionBeginUser;
   sources_ = &sources;
-  std::vector<Wanted<dim>> mine;
+  std::vector<Wanted<dim>> all;
   for (int s = 0; s < static_cast<int>(sources.size()); ++s) {
     const Boundary &kind = sources[s].kind;
     if (kind.quasi_static != OnSoil::support) continue;
@@ -58,20 +60,12 @@ PetscErrorCode Supports<dim>::setup(const BackgroundMesh<dim> &mesh, const Eleme
         if (!active[facet.cell]) continue;
         for (int node : nodes.of_facet(facet.cell, facet.face))
           for (const Vec<dim> &direction : kind.template on_soil<dim>().directions(facet.normal))
-            mine.push_back({kind.precedence, s, nodes.global()[node], direction});
+            all.push_back({kind.precedence, s, nodes.global()[node], direction});
       }
   }
 
   // a facet lies on one rank and its nodes may lie on others too: every rank receives the directions of all
-  int ranks;
-  PetscCallMPI(MPI_Comm_size(nodes.comm(), &ranks));
-  std::vector<int> counts(ranks), starts(ranks + 1, 0);
-  const int bytes = static_cast<int>(mine.size() * sizeof(Wanted<dim>));
-  PetscCallMPI(MPI_Allgather(&bytes, 1, MPI_INT, counts.data(), 1, MPI_INT, nodes.comm()));
-  for (int r = 0; r < ranks; ++r) starts[r + 1] = starts[r] + counts[r];
-  std::vector<Wanted<dim>> all(starts[ranks] / sizeof(Wanted<dim>));
-  PetscCallMPI(
-      MPI_Allgatherv(mine.data(), bytes, MPI_BYTE, all.data(), counts.data(), starts.data(), MPI_BYTE, nodes.comm()));
+  PetscCall(gather_from_all(nodes.comm(), all));
   std::sort(all.begin(), all.end(), [](const Wanted<dim> &a, const Wanted<dim> &b) { return a.key() < b.key(); });
 
   std::map<PetscInt, int> local;

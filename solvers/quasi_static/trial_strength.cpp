@@ -53,7 +53,8 @@ FrictionalPoint strength_of_trial(const FrictionalPoint &own, double factor, boo
 }
 
 template <int dim>
-TrialStrength<dim>::TrialStrength(SoilElements<dim> &soil, const std::vector<Law> &laws) : soil_(soil), laws_(laws) {
+TrialStrength<dim>::TrialStrength(SoilElements<dim> &soil, BaseContact<dim> &bases, const std::vector<Law> &laws)
+    : soil_(soil), bases_(bases), laws_(laws) {
   for (size_t b = 0; b < laws.size(); ++b) {
     const GaussPoints<dim> &p = soil.points()[b];
     OfBody &body = bodies_.emplace_back();
@@ -75,6 +76,7 @@ TrialStrength<dim>::TrialStrength(SoilElements<dim> &soil, const std::vector<Law
 
 template <int dim>
 void TrialStrength<dim>::restore() {
+  bases_.let_go();
   for (size_t b = 0; b < bodies_.size(); ++b) {
     GaussPoints<dim> &p = soil_.points()[b];
     p.law = bodies_[b].law;
@@ -90,6 +92,7 @@ void TrialStrength<dim>::keep(size_t body) {
 
 template <int dim>
 double TrialStrength<dim>::confine(const std::function<bool(const Vec<dim> &, double)> &divided) {
+  bases_.confine(divided);
   double volume[2] = {0, 0};  // where it is divided, and all
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const GaussPoints<dim> &p = soil_.points()[b];
@@ -104,16 +107,20 @@ double TrialStrength<dim>::confine(const std::function<bool(const Vec<dim> &, do
 }
 
 template <int dim>
-void TrialStrength<dim>::hold(const CellSet &cells, double divisor) {
+PetscErrorCode TrialStrength<dim>::hold(const CellSet &cells, double divisor) {
+  PetscFunctionBeginUser;
+  PetscCall(bases_.hold(cells, divisor));
   for (size_t b = 0; b < bodies_.size(); ++b) {
     const GaussPoints<dim> &p = soil_.points()[b];
     for (int q = 0; q < p.count(); ++q)
       if (cells[p.cell[q]]) bodies_[b].divisor[q] = divisor;
   }
+  PetscFunctionReturn(0);
 }
 
 template <int dim>
 void TrialStrength<dim>::set(double factor, bool dilating) {
+  bases_.set_trial(factor);
   for (size_t b = 0; b < bodies_.size(); ++b) {
     GaussPoints<dim> &p = soil_.points()[b];
     const OfBody &body = bodies_[b];

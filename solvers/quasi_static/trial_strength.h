@@ -2,6 +2,7 @@
 /// Strength of the Gauss points in the trials of a factor of safety, docs/theory/finite_elements.md (5.1), (5.2).
 #include <functional>
 
+#include "solvers/quasi_static/base_contact.h"
 #include "solvers/quasi_static/moving_soil.h"
 #include "solvers/quasi_static/soil_elements.h"
 
@@ -21,14 +22,14 @@ FrictionalPoint strength_of_trial(const FrictionalPoint &own, double factor, boo
 bool non_associated(const Law &law);
 
 /// While it exists the soil has the strength of trials: each point that which its place and its plastic strain left it,
-/// divided by the factor of the trial or by a number of its own. Trials do not soften soil. What suction adds to the
-/// cohesion, and tensile strength, are divided alike in all of a body.
+/// divided by the factor of the trial or by a number of its own, and so have the bases. Trials do not soften soil. What
+/// suction adds to the cohesion, and tensile strength, are divided alike in all of a body.
 template <int dim>
 class TrialStrength {
  public:
-  /// Takes the present strength as the soil's own. `laws` are those of the bodies; both must outlive it.
-  TrialStrength(SoilElements<dim> &soil, const std::vector<Law> &laws);
-  /// Gives the soil its own strength back.
+  /// Takes the present strength as the soil's own. `laws` are those of the bodies; all three must outlive it.
+  TrialStrength(SoilElements<dim> &soil, BaseContact<dim> &bases, const std::vector<Law> &laws);
+  /// Gives soil and bases their own strength back.
   void restore();
 
   /// Strength of this body is its own in all trials.
@@ -36,8 +37,9 @@ class TrialStrength {
   /// Strength is divided by the factor of the trial only where `divided(place, element size)`; elsewhere it is the
   /// soil's own. Returns the share of the soil where it is divided. Collective.
   double confine(const std::function<bool(const Vec<dim> &, double)> &divided);
-  /// Strength of these cells is divided by `divisor` in all trials from now on.
-  void hold(const CellSet &cells, double divisor);
+  /// Strength of these cells, and of the bases under them, is divided by `divisor` in all trials from now on.
+  /// Collective.
+  PetscErrorCode hold(const CellSet &cells, double divisor);
   void set(double factor, bool dilating);
 
  private:
@@ -49,6 +51,7 @@ class TrialStrength {
     std::vector<double> cohesion_share, friction_share;
   };
   SoilElements<dim> &soil_;
+  BaseContact<dim> &bases_;
   const std::vector<Law> &laws_;
   std::vector<OfBody> bodies_;
 };

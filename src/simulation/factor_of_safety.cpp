@@ -65,6 +65,12 @@ FactorOfSafety Simulation<dim>::factor_of_safety() {
     if (!is_static(scene.stage[k].kind))
       scene.complain("stage." + std::to_string(k) + ".kind", "must be \"quasi_static\" for a factor of safety");
   check_strength(run_.world);
+  if constexpr (dim == 3)
+    for (const auto &source : run_.world.conditions.sources())
+      if (source.kind.quasi_static == OnSoil::contact)
+        scene.complain("boundary." + source.name + ".kind",
+                       "leaves no factor of safety in 3D, which needs elements of second order: the corners of their "
+                       "facets bear nothing on a base; take fixed or roller, or a section in plane strain");
   const Elements asked = scene.quasi_static.elements;
   if (run_.statics.made() && asked != Elements::quadratic)
     throw RunError(

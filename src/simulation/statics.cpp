@@ -141,10 +141,10 @@ double Statics<dim>::softening_strain() const {
 template <int dim>
 void Statics<dim>::check_supports(bool soil_moves) const {
   std::string freedom;
-  require(problem_->find_freedom(&freedom));
+  require(problem_->find_freedom(clock_.load_time, &freedom));
   if (!freedom.empty() && soil_moves)
     throw RunFailure("the supports leave soil free to move as a whole: " + freedom +
-                     "; hold it by fixed or roller boundaries");
+                     "; hold it by fixed or roller boundaries, or by a base with friction");
   if (elements() != Elements::quadratic && !world_.mesh.report().one_element_slice) {
     std::vector<char> thin;
     require(problem_->find_thin_bodies(&thin));
@@ -237,6 +237,7 @@ void Statics<dim>::to_particles() {
       for (int d = 0; d < dim; ++d) p.reference[i][d] = p.position[i][d] - u[d], p.velocity[i][d] = 0;
     }
   }
+  require(world_.conditions.set_normal_forces(world_.mesh, problem_->bases().normal_forces(), clock_.load_time));
   if (world_.phases.liquid)
     world_.motion->fill_pores([this](int cell, const Vec<dim> &x) {
       return flow_->pressure_at(cell, barycentric(world_.mesh.cells[cell], x));
@@ -295,6 +296,7 @@ std::optional<ParticleState<dim>> Statics<dim>::state_at(const Vec<dim> &x) cons
 /// cells that have none keep what they had.
 template <int dim>
 void Statics<dim>::to_gauss_points() {
+  problem_->bases().release();
   pressure_from_particles();
   if (world_.motion->gathered()) require(world_.release(clock_.time));
   for (size_t b = 0; b < world_.bodies.size(); ++b) {

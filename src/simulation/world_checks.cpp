@@ -149,6 +149,18 @@ void World<dim>::check_one_of_two(const std::vector<Source> &sources) const {
     }
 }
 
+/// Refuses bases that finite elements cannot rest on.
+template <int dim>
+void World<dim>::check_quasi_static_base(const std::string &path) const {
+  if (phases.liquid)
+    scene.complain(path + ".kind", std::string("has no quasi-static form where pore fluids move (phases = \"") +
+                                       phases.name + "\"): take roller or fixed, or a dynamic stage");
+  if (dim == 3 && scene.quasi_static.elements == Elements::quadratic)
+    scene.complain("quasi_static.elements",
+                   "must be \"patches\" or \"linear\" in 3D with " + path +
+                       ", a base with friction: the corners of facets of second order bear nothing");
+}
+
 template <int dim>
 void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
   check_something_acts(sources);
@@ -168,6 +180,12 @@ void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
                                          "\" has none; set phases = \"three-phase\"");
     if (quasi_static && source.kind.quasi_static == OnSoil::refused)
       scene.complain(path + ".kind", "has no quasi-static form; take fixed, roller, velocity or traction");
+    if (quasi_static && source.kind.quasi_static == OnSoil::contact) check_quasi_static_base(path);
+    if (source.kind.in_motion == OnSoil::contact && phases.prescribed && !scene.water.open_water_load)
+      scene.complain(path + ".kind",
+                     "rubs with effective stress, which it does not know with water.open_water_load = false; leave "
+                     "open_water_load at true, and where no open water shall rest on a face let the water table of the "
+                     "soil come down to it");
     for (const auto &[key, components] : source.kind.vectors)
       if (components != dim) scene.complain(path + "." + key, "must have " + std::to_string(dim) + " components");
   }

@@ -33,8 +33,8 @@ struct PorousStone {
   void fields(Visitor &&v) {
     v.number("friction", friction, one, {0, 1}, "coefficient of friction");
   }
-  double friction_coefficient(double) const { return friction; }
-  double adhesion(double) const { return 2; }
+  double friction_coefficient(double, double, double, double) const { return friction; }
+  double adhesion(double, double, double, double) const { return 2; }
   double outside(double x, double, double, double t, double) const { return 3000 + 100 * x + 10 * t; }
 };
 
@@ -204,7 +204,7 @@ TEST(OwnBoundary, IsReadByAListThatNamesIt) {
   using Kinds = std::variant<Fixed, PorousStone>;
   const Boundary read = read_boundary_of<Kinds>(scene.boundary[0].kind);
   EXPECT_EQ(read.in_motion, OnSoil::contact);
-  EXPECT_EQ(read.friction_coefficient(0), 0.75);
+  EXPECT_EQ(read.friction_coefficient(0, 0, 0, 0), 0.75);
   EXPECT_THROW(read_boundary(scene.boundary[0].kind), SceneError);  // the list of the house does not have it
 }
 

@@ -1,0 +1,254 @@
+#include "solvers/quasi_static/base_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "base/gather.h"
+#include "physics/laws/update_stress.h"
+
+namespace talus {
+namespace {
+
+// Stiffness of the springs over that of the elements on the base: soil sinks into the base by a hundredth of what the
+// elements on it are compressed, and sticks with a hundredth of their shear.
+constexpr double stiffer = 100;
+
+/// A facet of a base at one of its nodes, as ranks tell each other.
+template <int dim>
+struct Touch {
+  PetscInt global;
+  int source;
+  Vec<dim> normal;
+  double area, stiffness, size;
+  std::array<Vec<dim>, 2> ends;
+  auto key() const { return std::make_tuple(global, source, normal, area, stiffness); }
+};
+
+}  // namespace
+
+template <int dim>
+BaseForce<dim> force_on_base(const Vec<dim> &spring, const Vec<dim> &normal, double friction, double adhesion,
+                             bool dilating) {
+  BaseForce<dim> f{{}, Square<dim>::Zero(), true, false};
+  const ColumnVector<dim> s = map<dim>(spring), n = map<dim>(normal);
+  const double pressing = s.dot(n);
+  const ColumnVector<dim> along = s - pressing * n;
+  const double shear = along.norm();
+  const ColumnVector<dim> t = shear > 0 ? ColumnVector<dim>(along / shear) : ColumnVector<dim>::Zero();
+  const Square<dim> of_normal = n * n.transpose(), of_slip = t * t.transpose(),
+                    across = Square<dim>::Identity() - of_normal - of_slip;
+  if (pressing < 0 && !dilating) {
+    f.presses = false;
+    return f;
+  }
+  if (pressing >= 0 && shear <= adhesion + friction * pressing) {
+    f.borne = spring, f.tangent.setIdentity();
+    return f;
+  }
+  f.slides = true;
+  if (!dilating) {
+    const double most = adhesion + friction * pressing;
+    map<dim>(f.borne) = pressing * n + most * t;
+    f.tangent = of_normal + friction * t * n.transpose() + most / shear * across;
+    return f;
+  }
+  const double onto = 1 / (1 + friction * friction), left = onto * (pressing + friction * (shear - adhesion));
+  if (left > 0 && shear > adhesion) {
+    const double most = adhesion + friction * left;
+    const ColumnVector<dim> generator = n + friction * t;
+    map<dim>(f.borne) = left * n + most * t;
+    f.tangent = onto * generator * generator.transpose() + most / shear * across;
+    return f;
+  }
+  f.presses = false, f.slides = shear > adhesion;  // it opens: adhesion is all that acts along it
+  const double most = std::min(shear, adhesion);
+  map<dim>(f.borne) = most * t;
+  f.tangent = f.slides ? Square<dim>(most / shear * across) : Square<dim>(across + of_slip);
+  return f;
+}
+
+template <int dim>
+PetscErrorCode BaseContact<dim>::activate() {
+  PetscFunctionBeginUser;
+  const BackgroundMesh<dim> &mesh = soil_.mesh();
+  const ElementNodes<dim> &nodes = soil_.nodes();
+  const Quadrature<dim - 1> rule = load_quadrature<dim - 1>();
+  std::array<double, element_nodes<dim>(2)> shape;
+  std::vector<Touch<dim>> all;
+  for (int s = 0; s < static_cast<int>(sources_.size()); ++s) {
+    if (sources_[s].kind.quasi_static != OnSoil::contact) continue;
+    for (const std::string &group : sources_[s].groups)
+      for (const Facet<dim> &facet : mesh.facets(group)) {
+        if (!soil_.active(facet.cell)) continue;
+        const std::vector<int> node = nodes.of_facet(facet.cell, facet.face);
+        std::vector<double> share(node.size(), 0);
+        for (size_t q = 0; q < rule.point.size(); ++q) {
+          shape_functions<dim - 1>(nodes.order(), rule.point[q], shape.data());
+          for (size_t a = 0; a < node.size(); ++a) share[a] += rule.weight[q] * shape[a];
+        }
+        const double height = dim * mesh.volume[facet.cell] / facet.area;
+        const double modulus = constrained_modulus(soil_.points()[soil_.body_of(facet.cell)].law);
+        for (size_t a = 0; a < node.size(); ++a) {
+          std::array<Vec<dim>, 2> ends{nodes.position[node[a]], nodes.position[node[a]]};
+          if (a >= dim) {
+            const auto [first, second] = simplex_edges<dim - 1>[a - dim];
+            ends = {nodes.position[node[first]], nodes.position[node[second]]};
+          }
+          const double area = share[a] * facet.area;
+          all.push_back({nodes.global()[node[a]], s, facet.normal, area, area * modulus / height,
+                         element_size<dim>(mesh.volume[facet.cell]), ends});
+        }
+      }
+  }
+
+  // a facet lies on one rank, and its node may belong to another
+  PetscCall(gather_from_all(nodes.comm(), all));
+  std::sort(all.begin(), all.end(), [](const Touch<dim> &a, const Touch<dim> &b) { return a.key() < b.key(); });
+
+  std::map<PetscInt, int> local;
+  for (int i = 0; i < nodes.count(); ++i)
+    if (nodes.owned[i]) local[nodes.global()[i]] = i;
+  const std::vector<Point> before = std::exchange(points_, {});
+  for (const Touch<dim> &touch : all) {
+    const auto found = local.find(touch.global);
+    if (found == local.end()) continue;
+    const auto same = std::find_if(points_.begin(), points_.end(), [&](const Point &p) {
+      return p.node == found->second && p.source == touch.source &&
+             map<dim>(p.normal).dot(map<dim>(touch.normal)) > same_direction;
+    });
+    if (same == points_.end()) {
+      points_.push_back(
+          {found->second, touch.source, touch.normal, touch.area, touch.stiffness, touch.size, touch.ends});
+      continue;
+    }
+    map<dim>(same->normal) =
+        (same->area * map<dim>(same->normal) + touch.area * map<dim>(touch.normal)).normalized().eval();
+    same->area += touch.area, same->stiffness += touch.stiffness, same->size = std::max(same->size, touch.size);
+  }
+  for (Point &p : points_)
+    for (const Point &old : before)
+      if (point_[old.node] == nodes.point[p.node] && old.source == p.source &&
+          map<dim>(old.normal).dot(map<dim>(p.normal)) > same_direction)
+        p.spring = p.trial = old.spring;
+  point_ = nodes.point;
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+void BaseContact<dim>::set_strength(double t) {
+  for (Point &p : points_) {
+    const Vec<dim> &x = soil_.nodes().position[p.node];
+    const Boundary &base = sources_[p.source].kind;
+    const double z = dim == 3 ? x[dim - 1] : 0;
+    p.friction = base.friction_coefficient(x[0], x[1], z, t), p.adhesion = p.area * base.adhesion(x[0], x[1], z, t);
+  }
+}
+
+template <int dim>
+void BaseContact<dim>::release() {
+  for (Point &p : points_) p.spring = p.trial = {};
+}
+
+template <int dim>
+BaseForce<dim> BaseContact<dim>::borne(const Point &p, const Vec<dim> &spring) const {
+  const double divisor = factor_ > 0 && p.divisor > 0 ? p.divisor : factor_ > 0 ? factor_ : 1;
+  return force_on_base<dim>(spring, p.normal, p.friction / divisor, p.adhesion / divisor, factor_ > 0);
+}
+
+template <int dim>
+void BaseContact<dim>::add_trial_force(const std::vector<double> &u, std::vector<double> &force) {
+  for (Point &p : points_) {
+    for (int d = 0; d < dim; ++d) p.trial[d] = p.spring[d] + stiffer * p.stiffness * u[p.node * dim + d];
+    const BaseForce<dim> f = borne(p, p.trial);
+    for (int d = 0; d < dim; ++d) force[p.node * dim + d] += f.borne[d];
+  }
+}
+
+template <int dim>
+void BaseContact<dim>::add_force(std::vector<double> &force, std::vector<Vec<dim>> *of_source) const {
+  for (const Point &p : points_) {
+    const double pressing = map<dim>(p.spring).dot(map<dim>(p.normal));
+    for (int d = 0; d < dim; ++d) {
+      const double f = p.spring[d] - std::min(0., pressing) * p.normal[d];
+      force[p.node * dim + d] += f;
+      if (of_source) (*of_source)[p.source][d] -= f;
+    }
+  }
+}
+
+template <int dim>
+PetscErrorCode BaseContact<dim>::each_stiffness(double plastic, double elastic, const Put &put) const {
+  PetscFunctionBeginUser;
+  typename SoilElements<dim>::Stiffness block;
+  for (const Point &p : points_) {
+    block = p.stiffness * (plastic * stiffer * borne(p, p.trial).tangent + elastic * Square<dim>::Identity());
+    PetscCall(put(&p.node, 1, block));
+  }
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+void BaseContact<dim>::commit(const std::vector<double> &u) {
+  for (Point &p : points_) {
+    for (int d = 0; d < dim; ++d) p.trial[d] = p.spring[d] + stiffer * p.stiffness * u[p.node * dim + d];
+    const BaseForce<dim> f = borne(p, p.trial);
+    const double opening = f.presses ? 0 : std::min(0., map<dim>(p.trial).dot(map<dim>(p.normal)));
+    for (int d = 0; d < dim; ++d) p.spring[d] = f.borne[d] + opening * p.normal[d];
+  }
+}
+
+template <int dim>
+typename BaseContact<dim>::State BaseContact<dim>::save() const {
+  State state;
+  for (const Point &p : points_) state.push_back(p.spring);
+  return state;
+}
+
+template <int dim>
+void BaseContact<dim>::restore(const State &state) {
+  for (size_t k = 0; k < points_.size(); ++k) points_[k].spring = points_[k].trial = state[k];
+}
+
+template <int dim>
+void BaseContact<dim>::confine(const std::function<bool(const Vec<dim> &, double)> &divided) {
+  for (Point &p : points_) p.divisor = divided(soil_.nodes().position[p.node], p.size) ? 0 : 1;
+}
+
+template <int dim>
+PetscErrorCode BaseContact<dim>::hold(const CellSet &cells, double divisor) {
+  PetscFunctionBeginUser;
+  const ElementNodes<dim> &nodes = soil_.nodes();
+  std::vector<PetscInt> held(nodes.count(), 0);
+  for (size_t c = 0; c < cells.size(); ++c)
+    for (int a = 0; cells[c] && a < element_nodes<dim>(nodes.order()); ++a)
+      held[nodes.of_cell(static_cast<int>(c))[a]] = 1;
+  PetscCall(nodes.maximum(held));
+  for (Point &p : points_)
+    if (held[p.node]) p.divisor = divisor;
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+void BaseContact<dim>::let_go() {
+  factor_ = 0;
+  for (Point &p : points_) p.divisor = 0;
+}
+
+template <int dim>
+std::vector<typename BaseContact<dim>::NormalForce> BaseContact<dim>::normal_forces() const {
+  std::vector<NormalForce> forces;
+  for (const Point &p : points_)
+    if (const double pressing = map<dim>(p.spring).dot(map<dim>(p.normal)); pressing > 0)
+      for (const Vec<dim> &end : p.ends) forces.push_back({p.source, end, p.normal, pressing / 2});
+  return forces;
+}
+
+template BaseForce<2> force_on_base<2>(const Vec<2> &, const Vec<2> &, double, double, bool);
+template BaseForce<3> force_on_base<3>(const Vec<3> &, const Vec<3> &, double, double, bool);
+template class BaseContact<2>;
+template class BaseContact<3>;
+
+}  // namespace talus

@@ -1,0 +1,184 @@
+// Bases with friction in quasi-static stages: blocks on a plane and a wedge in a groove whose forces and limits are
+// those of rigid bodies. Resultant forces are exact whatever the elements and the springs of the contact are, to
+// Newton's tolerance; limits are found to the smallest step of the loads, 1e-3 of them.
+#include "solvers/quasi_static/base_contact.h"
+
+#include "solved.h"
+
+namespace talus {
+namespace {
+
+using Keys = std::vector<std::string>;
+
+const double degree = M_PI / 180;
+const Keys sharp{"quasi_static.tolerance=1e-10"};
+
+/// A block of 2000 kg on the base y = 0, under gravity of 10 m/s2 that is tilted by `dip`.
+std::string block_on_plane(double dip, const std::string &further = "") {
+  std::ostringstream text;
+  text.precision(17);
+  text << "gravity = [" << 10 * std::sin(dip) << ", " << -10 * std::cos(dip) << "]\n"
+       << box << "density = 2000\n[boundary.base]\nkind = \"friction\"\nfriction_angle = 20\n"
+       << "[[stage]]\nname = \"weight\"\nkind = \"quasi_static\"\nduration = 1\nhold_loads = true\n"
+       << further;
+  return text.str();
+}
+const std::string push =
+    "[boundary.left]\nkind = \"traction\"\npressure = \"20e3 * t\"\n"
+    "[[stage]]\nname = \"push\"\nkind = \"quasi_static\"\nduration = 1\nload_steps = 10\nwhen_lost = \"next_stage\"\n"
+    "[[stage]]\nname = \"fall\"\nduration = 1e-5\n";
+
+/// Load time at which equilibrium ended.
+double end_of_equilibrium(const Solved &solved) {
+  for (const Event &event : solved.events)
+    if (event.text.find("no equilibrium beyond") != std::string::npos) return event.load_time;
+  return -1;
+}
+
+TEST(BaseContact, bears_the_weight_of_a_block_that_sticks) {
+  for (const char *elements : {"quadratic", "linear", "patches"}) {
+    const Solved solved =
+        solve(block_on_plane(15 * degree), sharp + Keys{std::string("quasi_static.elements=") + elements});
+    EXPECT_NEAR(solved.history.column("base_force_x_N").back(), -20e3 * std::sin(15 * degree), 1e-4) << elements;
+    EXPECT_NEAR(solved.history.column("base_force_y_N").back(), 20e3 * std::cos(15 * degree), 1e-4) << elements;
+  }
+}
+
+TEST(BaseContact, bears_a_block_in_3d) {
+  const Solved solved = solve(
+      block_on_plane(15 * degree),
+      sharp + in_3d + Keys{"gravity=[2.588190451025207, -9.659258262890683, 0]", "quasi_static.elements=patches"});
+  EXPECT_NEAR(solved.history.column("base_force_x_N").back(), -20e3 * std::sin(15 * degree), 1e-4);
+  EXPECT_NEAR(solved.history.column("base_force_y_N").back(), 20e3 * std::cos(15 * degree), 1e-4);
+}
+
+/// Steeper than the friction angle nothing stands; the program says so instead of an answer.
+TEST(BaseContact, lets_a_block_slide) {
+  EXPECT_NO_THROW(solve(block_on_plane(19.5 * degree)));
+  EXPECT_THROW(solve(block_on_plane(20.5 * degree)), std::exception);
+}
+
+/// A push of H = W tan(phi) moves the block; beyond phi = 45 degrees it turns over instead, where H / 2 = W / 2.
+TEST(BaseContact, gives_way_to_a_push) {
+  const Solved slides = solve(block_on_plane(0, push));
+  EXPECT_NEAR(end_of_equilibrium(slides), std::tan(20 * degree), 2e-3);
+  const Solved turns =
+      solve(block_on_plane(0, push), {"boundary.base.friction_angle=60", "boundary.left.pressure=25e3 * t"});
+  EXPECT_NEAR(end_of_equilibrium(turns), 20. / 25, 2e-3);
+}
+
+/// Adhesion that grows along the base: its resultant is 10 kN, which the shares of the nodes sum up exactly.
+TEST(BaseContact, takes_its_strength_by_place_and_time) {
+  const Solved slides = solve(block_on_plane(0, push), {"gravity=40", "boundary.base.friction_angle=0",
+                                                        "boundary.base.adhesion=20e3 * x * (0.5 + 0.2 * t)"});
+  EXPECT_NEAR(end_of_equilibrium(slides), 5. / 18, 2e-3);  // 20 t = 10 (0.5 + 0.2 t)
+}
+
+std::string groove(const std::string &further = "") {
+  return "gravity = 10\n[mesh]\nsection = \"" TALUS_GROOVE
+         "\"\nsize = 0.3\n[body.soil]\nregion = \"soil\"\ndensity = 1000\nlaw = \"mohr_coulomb\"\nyoung_modulus = 1e7\n"
+         "poisson_ratio = 0.3\ncohesion = 1e7\nfriction_angle = 0\nbody_acceleration = [\"7 * t\", \"0\"]\n"
+         "[boundary.left_plane]\nkind = \"friction\"\nfriction_angle = 0\n[boundary.right_plane]\nkind = \"friction\"\n"
+         "friction_angle = 0\n[[stage]]\nname = \"weight\"\nkind = \"quasi_static\"\nduration = 1\nhold_loads = "
+         "true\n" +
+         further;
+}
+const double weight = 1e4 * (1.7320508075688774 + 1.1917535925942100) / 2;
+const Keys rough{"boundary.left_plane.friction_angle=10", "boundary.right_plane.friction_angle=10"};
+
+/// Between smooth planes both forces follow from equilibrium.
+TEST(BaseContact, bears_a_wedge_in_a_groove) {
+  const Solved solved = solve(groove(), sharp);
+  const double left = weight * std::sin(30 * degree) / std::sin(70 * degree),
+               right = weight * std::sin(40 * degree) / std::sin(70 * degree);
+  EXPECT_NEAR(solved.history.column("left_plane_force_x_N").back(), left * std::sin(40 * degree), 1e-4);
+  EXPECT_NEAR(solved.history.column("left_plane_force_y_N").back(), left * std::cos(40 * degree), 1e-4);
+  EXPECT_NEAR(solved.history.column("right_plane_force_x_N").back(), -right * std::sin(30 * degree), 1e-4);
+  EXPECT_NEAR(solved.history.column("right_plane_force_y_N").back(), right * std::cos(30 * degree), 1e-4);
+}
+
+/// A wedge that is accelerated to the right lifts off the left plane and moves up the right one at tan(30 + phi) of its
+/// weight.
+TEST(BaseContact, lifts_a_wedge_out_of_a_groove) {
+  const Solved solved = solve(groove("[[stage]]\nname = \"push\"\nkind = \"quasi_static\"\nduration = 2\nload_steps = "
+                                     "10\nwhen_lost = \"next_stage\"\n[[stage]]\nname = \"fall\"\nduration = 1e-5\n"),
+                              rough);
+  EXPECT_NEAR(end_of_equilibrium(solved), std::tan(40 * degree) / 0.7, 2 * 2e-3);
+  const auto left = solved.history.column("left_plane_force_x_N");
+  EXPECT_NEAR(*std::min_element(left.begin(), left.end()), 0, 1e-6) << "it has left this plane before it slides";
+}
+
+FactorOfSafety factor_of(const std::string &text, const Keys &keys) {
+  Scene scene = parse_scene(text, meshes + "/scene.toml", keys);
+  RunOptions options;
+  options.pictures = options.screen = false;
+  return make_simulation(PETSC_COMM_WORLD, scene, options)->factor_of_safety();
+}
+void expect_holds(const FactorBracket &bracket, double exact) {
+  EXPECT_TRUE(bracket.decided);
+  EXPECT_LT(bracket.lower, exact * (1 + 1e-3));
+  EXPECT_GT(bracket.upper, exact * (1 - 1e-3));
+  EXPECT_LT(bracket.upper, 1.01 * bracket.lower);
+}
+
+/// tan(phi) / tan(dip), and with adhesion c A / (W sin(dip)) more; the soil itself is far from its strength.
+TEST(BaseContact, leaves_the_factor_of_a_block) {
+  const Keys strong{"body.soil.law=mohr_coulomb", "body.soil.cohesion=1e7", "body.soil.friction_angle=0"};
+  expect_holds(factor_of(block_on_plane(15 * degree), strong), std::tan(20 * degree) / std::tan(15 * degree));
+  expect_holds(factor_of(block_on_plane(15 * degree), strong + Keys{"boundary.base.adhesion=2000"}),
+               std::tan(20 * degree) / std::tan(15 * degree) + 2e3 / (20e3 * std::sin(15 * degree)));
+}
+/// k = tan(30 + phi_F), the friction of both planes divided alike.
+TEST(BaseContact, leaves_the_factor_of_a_wedge) {
+  const std::string text = groove("[[stage]]\nname = \"push\"\nkind = \"quasi_static\"\nduration = 1\n");
+  expect_holds(factor_of(text, rough), std::tan(10 * degree) / std::tan(std::atan(0.7) - 30 * degree));
+}
+
+/// Friction goes on as it was when motion begins. It would else have to build up over the delay of (6.2), in which the
+/// block gets a speed of g sin(dip) times the delay, 0.004 m/s here.
+TEST(BaseContact, goes_on_in_motion) {
+  const Solved solved =
+      solve(block_on_plane(15 * degree, "reset_displacement = true\n[[stage]]\nname = \"rest\"\nduration = 0.1\n"),
+            sharp + Keys{"quasi_static.elements=patches", "body.soil.poisson_ratio=0"});
+  const double most = largest(solved, 2, [&](size_t p, int k) { return solved.value("velocity", p, k); });
+  EXPECT_LT(most, 4e-4);
+}
+
+// ---- the law of the contact -----------------------------------------------------------------------------------------
+
+/// Its tangent is the derivative of the force, in every case that the law distinguishes.
+TEST(BaseContact, has_a_consistent_tangent) {
+  const Vec<3> n{0, 0.6, 0.8};
+  for (const bool dilating : {false, true})
+    for (const double adhesion : {0., 0.3})
+      for (const Vec<3> &spring : {Vec<3>{0.1, 0.6, 0.8}, Vec<3>{2, 0.6, 0.8}, Vec<3>{0.2, -0.6, -0.8},
+                                   Vec<3>{2, -0.6, -0.7}, Vec<3>{1, 0.9, 0.1}}) {
+        const BaseForce<3> f = force_on_base<3>(spring, n, 0.4, adhesion, dilating);
+        for (int k = 0; k < 3; ++k) {
+          constexpr double step = 1e-6;
+          Vec<3> more = spring, less = spring;
+          more[k] += step, less[k] -= step;
+          const BaseForce<3> high = force_on_base<3>(more, n, 0.4, adhesion, dilating),
+                             low = force_on_base<3>(less, n, 0.4, adhesion, dilating);
+          for (int d = 0; d < 3; ++d) EXPECT_NEAR(f.tangent(d, k), (high.borne[d] - low.borne[d]) / (2 * step), 1e-8);
+        }
+      }
+}
+
+/// What it bears presses, and rubs with no more than friction and adhesion.
+TEST(BaseContact, bears_what_coulomb_admits) {
+  const Vec<2> n{0, -1};
+  for (const bool dilating : {false, true})
+    for (double x = -2; x <= 2; x += 0.25)
+      for (double y = -2; y <= 2; y += 0.25) {
+        const BaseForce<2> f = force_on_base<2>({x, y}, n, 0.5, 0.25, dilating);
+        EXPECT_GE(-f.borne[1], 0);
+        EXPECT_LE(std::abs(f.borne[0]), 0.25 - 0.5 * f.borne[1] + 1e-12);
+        if (!dilating) {
+          EXPECT_EQ(f.borne[1], std::min(0., y)) << "slip without dilation leaves the normal force";
+        }
+      }
+}
+
+}  // namespace
+}  // namespace talus
