@@ -31,6 +31,7 @@ CASES = (
     ("damping of the water stage 0.1", ["stage.1.damping=0.1"]),
     ("opposite slope keeps 12 degrees", ["boundary.bed.friction_angle=x > 1255 ? 12 : phi_b(t)"]),
     ("hardly any softening, eta 1", ["body.rock.shape_factor=1"]),
+    ("no water on the toe", ["water.level=0", "water.excess=1000 * 9.81 * max(0, 640 + hw(t) * min(1, max(0, (1115.6 - x) / 150)) - y)"]),
 )
 
 
