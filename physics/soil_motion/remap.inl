@@ -111,9 +111,9 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double t) {
     for (int d = 0; d < dim; ++d) nodal_[i * width + 1 + d] = velocities_.momentum[i][d];
   PetscCall(grid_.sum(nodal_.data(), width));
   for (int i = 0; i < nodes; ++i) {
-    const double m = grid_.mass[i] = nodal_[i * width];
-    for (int d = 0; d < dim; ++d) start[i][d] = m > 0 ? nodal_[i * width + 1 + d] / m : 0;
-    if (!(m > 0)) grid_.mass[i] = std::numeric_limits<double>::min();  // no particle sees this node
+    // A particle that round-off puts outside its cell gives a node a negative mass; no particle sees a node without any.
+    const double m = grid_.mass[i] = std::max(nodal_[i * width], smallest_mass_);
+    for (int d = 0; d < dim; ++d) start[i][d] = nodal_[i * width + 1 + d] / m;
   }
   set_weights(nodal_);
   if (conditions_.has_dashpots()) measure_impedance();
