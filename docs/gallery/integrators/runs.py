@@ -108,7 +108,7 @@ def cost(talus):
     """Processor time per evaluation of the forces, arkode over euler, less what a run of no time takes; in turns, five times, and the least of each counts."""
     rows = []
     scenes = {"column": (HERE.parent / "column/scene.toml", ["stage.0.duration=0.3"], ["stage.0.duration=1e-6"]),
-              "Selborne": (HERE.parent / "selborne/scene.toml", ["mesh.size=0.9", "stage.recharge.duration=2", "stage.slide.duration=0"],
+              "Selborne": (HERE.parent / "selborne_hydrostatic/scene.toml", ["mesh.size=0.9", "stage.recharge.duration=2", "stage.slide.duration=0"],
                            ["mesh.size=0.9", "stage.gravity.duration=1e-6", "stage.recharge.duration=1e-6", "stage.slide.duration=0"])}
     for scene, (path, overrides, nothing) in scenes.items():
         least, count = {}, {}
@@ -126,7 +126,7 @@ def bound(talus):
     """Steps by the fastest cell and by the frequency of the whole filled mesh: how many, how long they take, and what comes out."""
     from slides import COLUMN3D
     scenes = {"column 2D": ("column", "corner_x_m", ["mesh.size=0.01"]), "column 3D": ("column", "corner_x_m", ["mesh.size=0.02", "mesh.layers=0", "mesh.thickness=0.06", *COLUMN3D]),
-              "Selborne 2D": ("selborne", "crest_displacement_m", ["mesh.size=0.9"]), "bowl": ("bowl", "crest_displacement_m", [])}
+              "Selborne 2D": ("selborne_hydrostatic", "crest_displacement_m", ["mesh.size=0.9"]), "bowl": ("bowl", "crest_displacement_m", [])}
     rows = []
     for scene, (folder, column, overrides) in scenes.items():
         for of in ("cells", "mesh"):

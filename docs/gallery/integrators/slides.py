@@ -32,10 +32,10 @@ CASES = {
     "column slice, arkode 3": ("column", 2, ["mesh.size=0.01", *COLUMN3D, *arkode(3)]),
     "column 3D, euler": ("column", 2, ["mesh.size=0.02", "mesh.layers=0", "mesh.thickness=0.06", *COLUMN3D]),
     **{f"column 3D, arkode {k}": ("column", 2, ["mesh.size=0.02", "mesh.layers=0", "mesh.thickness=0.06", *COLUMN3D, *arkode(k)]) for k in (3, 4)},
-    "Selborne 2D, euler": ("selborne", 2, ["mesh.size=0.9"]),
-    **{f"Selborne 2D, arkode {k}": ("selborne", 2, ["mesh.size=0.9", *arkode(k)]) for k in (2, 3, 4, 5)},
-    "Selborne slice, euler": ("selborne", 2, ["mesh.size=0.9", *SELBORNE3D]),
-    "Selborne slice, arkode 4": ("selborne", 2, ["mesh.size=0.9", *SELBORNE3D, *arkode(4)]),
+    "Selborne 2D, euler": ("selborne_hydrostatic", 2, ["mesh.size=0.9"]),
+    **{f"Selborne 2D, arkode {k}": ("selborne_hydrostatic", 2, ["mesh.size=0.9", *arkode(k)]) for k in (2, 3, 4, 5)},
+    "Selborne slice, euler": ("selborne_hydrostatic", 2, ["mesh.size=0.9", *SELBORNE3D]),
+    "Selborne slice, arkode 4": ("selborne_hydrostatic", 2, ["mesh.size=0.9", *SELBORNE3D, *arkode(4)]),
 }
 
 

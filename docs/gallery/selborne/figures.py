@@ -1,0 +1,131 @@
+"""The pictures of this page, from a run of the scene and from the tables that study.py writes."""
+import csv
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+import talus_style as style
+from talus_lines import Line, dimensionless
+from talus_results import Results
+from talus_style import plt
+
+HERE = Path(__file__).resolve().parent
+COPIED = {"plastic_strain": "slide", "displacement_large": "run_out"}
+POINTS = ("crest", "upper", "lower", "toe")
+NEAR_FAILURE = (0.97, 1.06)  # t* that the figures of the failure show
+
+
+def draw(talus, folder=None):
+    """Runs the scene, or reads the results in `folder`, and draws all."""
+    with tempfile.TemporaryDirectory() as made:
+        if folder is None:
+            folder = made
+            subprocess.run([talus, "run", HERE / "scene.toml", "-o", folder, "--force"], check=True)
+        results = Results(folder)
+        for source, name in COPIED.items():
+            shutil.copy(f"{folder}/pictures/{source}.png", HERE / f"{name}.png")
+        history = {name: np.array([float(row[name]) for row in rows]) for rows in [list(csv.DictReader(open(f"{folder}/history.csv")))]
+                   for name in rows[0] if name != "stage"}
+        relative = dimensionless(results, history["time_s"])
+        draw_motion(history, relative)
+        draw_strength(Line(Path(folder) / "line_slip_surface.csv"), results)
+        draw_paths(history, relative)
+        draw_inclinometers([Line(path) for path in sorted(Path(folder).glob("line_I*.csv"))], results)
+    draw_tables()
+
+
+def draw_motion(history, relative):
+    figure, axes = plt.subplots(1, 3, figsize=(11.5, 3.4), layout="constrained")
+    for point, colour in zip(POINTS, style.LINES):
+        for axis, (name, factor) in zip(axes, (("displacement_m", 1), ("velocity_m_s", 1), ("acceleration_m_s2", 1 / 9.81))):
+            axis.plot(relative, factor * history[f"{point}_{name}"], color=colour, lw=1.2, label=point)
+    for axis, title in zip(axes, ("displacement [m]", "speed [m/s]", "acceleration [g]")):
+        axis.set(xlabel="t* = t / time of failure", title=title, xlim=(0.95, 1.25), ylim=(0, None))
+    axes[2].set_ylim(0, 0.4)
+    axes[0].legend(fontsize=8)
+    style.save(figure, HERE / "motion.png", dpi=130)
+
+
+def draw_strength(line, results):
+    relative = dimensionless(results, line.time)
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 4.0), layout="constrained")
+    along = line.columns["distance_m"][0]
+    for k, t in enumerate((0.02, 0.8, 0.97, 0.99, 1.0, 1.02)):
+        row = int(np.nanargmin(np.abs(relative - t)))
+        mobilised = np.sin(np.radians(line.columns["mobilised_friction_deg"][row]))
+        left.plot(along, mobilised, color=plt.get_cmap("viridis")(k / 5.5), lw=1.1, label=f"t* = {relative[row]:.3f}")
+        left.scatter(along, mobilised, s=16, edgecolors=style.INK, linewidths=0.4, zorder=3,
+                     c=[style.STATE_COLOURS[int(state)] if np.isfinite(state) else "white" for state in line.columns["state"][row]])
+    left.set(xlabel="distance along the slip surface, from its rear [m]", title="mobilised friction sin φ' (paper's fig. 11)", ylim=(0, 1))
+    left.legend(fontsize=8)
+    means = line.means()
+    right.plot(relative, means["mean_mobilised_friction_deg"], color=style.INK, label="mean mobilised friction [deg]")
+    shares = right.twinx()
+    for state, colour in zip(style.STATES[1:], style.STATE_COLOURS[1:]):
+        shares.plot(relative, 100 * means[f"share_{state}"], color=colour, lw=1.2, label=f"{state}")
+    right.set(xlabel="t* = t / time of failure", title="mean along the slip surface (fig. 12), and states of its soil", xlim=NEAR_FAILURE, ylim=(0, None))
+    right.set_ylabel("mean mobilised friction [deg]")
+    shares.set(ylabel="share of the slip surface [%]", ylim=(0, 100))
+    shares.legend(fontsize=8, loc="center right")
+    style.save(figure, HERE / "strength.png", dpi=130)
+
+
+def draw_paths(history, relative):
+    figure, axes = plt.subplots(1, 2, figsize=(9.5, 3.8), layout="constrained")
+    shown = relative >= 0
+    for axis, point in zip(axes, ("P2", "below_toe")):
+        p, q = (history[f"{point}_{name}_Pa"][shown] / 1e3 for name in ("mean_pressure", "deviator"))
+        failed = relative[shown] >= 1
+        axis.plot(p[~failed], q[~failed], color=style.LINES[0], lw=1.3, label="before failure")
+        axis.plot(p[failed], q[failed], color=style.LINES[1], lw=0.9, label="slide")
+        for letter, k in (("A", 0), ("B", int(np.argmax(failed))), ("C", -1)):
+            axis.annotate(letter, (p[k], q[k]), xytext=(4, 4), textcoords="offset points", fontweight="bold")
+        for strength, angle, cohesion, dash in (("peak", 24.5, 13, "--"), ("residual", 13.5, 4.7, ":")) if point == "P2" else (("peak", 26, 25, "--"), ("residual", 15, 1, ":")):
+            s, c = np.sin(np.radians(angle)), np.cos(np.radians(angle))
+            along = np.linspace(0, max(1, p.max()), 2)
+            axis.plot(along, 6 * (s * along + cohesion * c) / (3 - s), dash, color=style.SOFT, lw=0.9, label=f"{strength}, triaxial compression")
+        axis.set(xlabel="mean effective stress p' [kPa]", ylabel="deviator q [kPa]", title=point.replace("_", " "), ylim=(0, None))
+    axes[0].legend(fontsize=7.5)
+    style.save(figure, HERE / "paths.png", dpi=130)
+
+
+def draw_inclinometers(lines, results):
+    figure, axes = plt.subplots(1, len(lines), figsize=(11.5, 3.8), layout="constrained", sharey=True)
+    for axis, line in zip(axes, lines):
+        relative = dimensionless(results, line.time)
+        start = int(np.nanargmin(np.abs(relative)))
+        for t, colour in ((0.9, style.LINES[0]), (0.98, style.LINES[4]), (0.998, style.LINES[1])):
+            row = int(np.nanargmin(np.abs(relative - t)))
+            moved = 1e3 * (line.columns["displacement_x_m"][row] - line.columns["displacement_x_m"][start])
+            axis.plot(moved, line.columns["y_m"][0], color=colour, lw=1.3, label=f"t* = {relative[row]:.3f}")
+        axis.set(title=f"{line.name}, x = {line.columns['x_m'][0].mean():.0f} m", xlabel="level displacement [mm]")
+    axes[0].set_ylabel("elevation [m]")
+    axes[0].legend(fontsize=8)
+    style.save(figure, HERE / "inclinometers.png", dpi=130)
+
+
+def table(name):
+    path = HERE / f"{name}.csv"
+    return [row for row in csv.DictReader(open(path)) if row["crest_m"]] if path.exists() else []
+
+
+def draw_tables():
+    figure, (cells, load, residual) = plt.subplots(1, 3, figsize=(11.5, 3.5), layout="constrained")
+    for kind, marker in (("nonlocal", "o-"), ("of the cell", "s--")):
+        rows = [row for row in table("cells") if row["run"].startswith(kind)]
+        size = [float(row["run"].split(",")[1].split()[0]) for row in rows]
+        cells.plot(size, [float(row["crest_m"]) for row in rows], marker, ms=4, label=kind)
+        load.plot(size, [float(row["pressure_kPa"]) for row in rows], marker, ms=4, label=kind)
+    cells.axhline(4, color="0.6", lw=1, ls=":")
+    cells.text(1.4, 4.05, "paper", ha="right", color="0.4", fontsize=8)
+    load.axhspan(105, 112, color="0.92")
+    cells.set(xlabel="cell size [m]", title="displacement of the crest [m]", ylim=(0, None))
+    load.set(xlabel="cell size [m]", title="base pressure at failure [kPa]", ylim=(0, 130))
+    cells.legend(fontsize=8, title="softening", title_fontsize=8)
+    rows = table("residual")
+    residual.plot([float(row["run"].split()[0]) for row in rows], [float(row["crest_m"]) for row in rows], "o-", ms=4)
+    residual.set(xlabel="residual cohesion of the weathered clay [kPa]", title="displacement of the crest [m]", ylim=(0, None))
+    style.save(figure, HERE / "sensitivity.png", dpi=130)
