@@ -13,7 +13,7 @@ from talus_results import Results
 from talus_style import plt
 
 HERE = Path(__file__).resolve().parent
-COPIED = {"plastic_strain": "slide", "displacement_large": "run_out"}
+COPIED = {"plastic_strain_large": "slide", "displacement_large": "run_out"}
 POINTS = ("crest", "upper", "lower", "toe")
 NEAR_FAILURE = (0.97, 1.06)  # t* that the figures of the failure show
 
