@@ -111,7 +111,8 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double t) {
     for (int d = 0; d < dim; ++d) nodal_[i * width + 1 + d] = velocities_.momentum[i][d];
   PetscCall(grid_.sum(nodal_.data(), width));
   for (int i = 0; i < nodes; ++i) {
-    // A particle that round-off puts outside its cell gives a node a negative mass; no particle sees a node without any.
+    // A particle that round-off puts outside its cell gives a node a negative mass; no particle sees a node without
+    // any.
     const double m = grid_.mass[i] = std::max(nodal_[i * width], smallest_mass_);
     for (int d = 0; d < dim; ++d) start[i][d] = nodal_[i * width + 1 + d] / m;
   }

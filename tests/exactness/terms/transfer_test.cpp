@@ -84,9 +84,9 @@ void particles_take_the_change_of_the_nodes() {
 }
 TALUS_IN_2D_AND_3D(Transfer, particles_take_the_change_of_the_nodes)
 
-/// A particle on a side of its cell may lie beyond it by round-off, and its share of the opposite node is then negative.
-/// Where that node has no other particle, its velocity stays within that of the soil: it was momentum over the smallest
-/// number, 1e290 m/s.
+/// A particle on a side of its cell may lie beyond it by round-off, and its share of the opposite node is then
+/// negative. Where that node has no other particle, its velocity stays within that of the soil: it was momentum over
+/// the smallest number, 1e290 m/s.
 template <int dim>
 void round_off_of_a_place_gives_a_node_without_mass_no_velocity() {
   Box<dim> box;
