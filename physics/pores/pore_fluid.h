@@ -92,6 +92,9 @@ class PoreFluid {
   /// Finds the divergence of the mass fluxes in cells, over displacements u [1 + fluids][nodes] from the accepted
   /// state. `frame` is the accepted one; its `trial` alone tells whether the step is one. Collective.
   PetscErrorCode find_divergence(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *u);
+  /// Is the cell among those over which pressures, volume strain of the pores and fluxes are smoothed? Those are the
+  /// cells of patches in which all pores are nearly full, in the accepted state, theory (4.3).
+  bool smoothed(int c) const { return !Phases::suction || cells_[c].smoothed; }
   /// Smooths the divergence together with the volume strain of the cells, which becomes that of the pores. Collective.
   PetscErrorCode smooth_divergence(const Frame &frame, Array &volume_strain);
   /// Subtracts the divergence from the masses of the points. `frame` has the volumes at the end.
@@ -142,6 +145,7 @@ class PoreFluid {
     double density[fluids], mass[fluids];     ///< [kg/m3], [kg]
     double saturation;
     double mixture;  ///< pressure of the pores in the total stress [Pa]
+    bool smoothed;   ///< the pores of all cells of its patch are nearly full
   };
   static constexpr int last = 3, mixture = Phases::suction ? fluids : 0;  ///< lane; pressure that acts on the skeleton
   struct NodePores {                                                      // sums over cells and ranks
@@ -155,6 +159,11 @@ class PoreFluid {
     double whole(int a) const { return amount[2 * a + 1]; }
     double conductivity(int a) const { return push[a][last]; }
   };
+  struct PatchPores {  // sums over the cells of a patch
+    double weight, pressure, head, liquid;
+    int open;  ///< number of cells whose pores are not nearly full
+  };
+  static constexpr double nearly_full = 0.99;  ///< degree of saturation
   static constexpr int node_width = sizeof(NodePores) / sizeof(double);
 
   /// Weight of a fluid at a node over the weight of its mass. The liquid weighs as if it were not compressed: a
@@ -180,15 +189,17 @@ class PoreFluid {
   PetscErrorCode find_moment(const Frame &frame);
   void set_prescribed_pressures(const Frame &frame);
   void find_pressures(const Frame &frame);
+  void find_smoothed(const Frame &frame) requires Phases::suction;
+  void average_over_patches(const Frame &frame, std::vector<CellPores> &pores) requires Phases::suction;
   void save_pressures(const Frame &frame);
   void set_masses_by_rate(const Frame &frame);
   template <class Limit>
   void limits(const Frame &frame, const PoreConditions<dim> &conditions, Limit &&limit) const;
   PetscErrorCode share_divergence(const Frame &frame, Array &divergence) requires Phases::suction;
   PetscErrorCode share_pressure(const Frame &frame, Array &pressure) requires Phases::suction;
-  /// Integration volume of a cell minus the volume of its particles; 0 where smoothing evens pressures out [m3].
+  /// Integration volume of a cell minus the volume of its particles; 0 in nearly full cells [m3].
   double volume_beyond_particles(const Frame &frame, int c) const {
-    return smoothed(c) ? 0 : frame.weight[c] - frame.particle_volume[c];
+    return cells_[c].saturation >= nearly_full ? 0 : frame.weight[c] - frame.particle_volume[c];
   }
   double gas_density() const {
     if constexpr (Phases::gas) return gas_.density;
@@ -197,11 +208,6 @@ class PoreFluid {
   template <int count>
   PetscErrorCode smooth(const Frame &frame, const std::array<double *, count> &fields);
   Vec<dim> place(const Frame &frame, int cell, const std::array<double, dim + 1> &barycentric) const;
-  /// Is the cell among those over which pressures are smoothed?
-  bool smoothed(int c) const {
-    constexpr double nearly_saturated = 0.99;
-    return !Phases::suction || cells_[c].saturation >= nearly_saturated;
-  }
   NodalFluid at_node(int node, int a, double beyond) const;
   NodalFluid at_node(int node, int a) const { return at_node(node, a, a ? 0 : beyond_[node]); }
   NodalFluid over_step(int node, int a) const;
@@ -215,11 +221,12 @@ class PoreFluid {
   [[no_unique_address]] If<Phases::gas, PoreGas> gas_;
   std::vector<SoilPores> soils_;
   PrescribedPressure<dim> pressure_;
-  bool bishop_, smoothing_, explicit_drag_, by_rate_;
+  bool bishop_, smoothing_, patches_, explicit_drag_, by_rate_;
 
   std::vector<PorePoints> points_, next_points_, trial_;
   std::vector<CellPores> cells_, trial_cells_;
   std::vector<NodePores> nodes_, trial_nodes_;
+  std::vector<PatchPores> patch_pores_;
   std::vector<Vec<dim>> flux_[fluids], surface_, moment_;
   std::vector<Vec<dim>> gap_;  ///< of a node: area vector of the gap over the volume of its cells [1/m]; 0 elsewhere
   Array gap_flux_[fluids];     ///< of a node: mass flux through the gap were it open, over that volume [kg/(m3 s)]

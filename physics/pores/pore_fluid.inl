@@ -17,6 +17,7 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
       pressure_(scene, std::hypot(scene.gravity[0], scene.gravity[1])),
       bishop_(scene.water.stress == PoreStress::bishop),
       smoothing_(scene.transfer.pore_smoothing == PoreSmoothing::nodal),
+      patches_(scene.transfer.locking == Locking::patches),
       explicit_drag_(scene.water.drag == PoreDrag::at_start),
       by_rate_(scene.water.storage == PoreStorage::rate),
       points_(bodies.size()),
@@ -35,6 +36,7 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
     flux_[a].resize(nodes), gap_flux_[a].resize(nodes), impulse_[a].resize(cells), divergence_[a].resize(cells),
         smooth_[a].resize(cells);
   nodal_.resize(4 * nodes);
+  if constexpr (Phases::suction) patch_pores_.resize(mesh.patch_count);
   for (auto *all : {&points_, &next_points_})
     for (size_t b = 0; b < bodies.size(); ++b)
       (*all)[b].reserve(scene.transfer.average_stress ? static_cast<int>(cells) : bodies[b]->particles().count);

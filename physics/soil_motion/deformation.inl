@@ -134,6 +134,9 @@ PetscErrorCode SoilMotion<dim, Phases>::deform(double t, const Vec<dim> *u, Stat
   if constexpr (Phases::liquid) std::copy_n(volume_strain_.begin(), cells, pore_strain_.begin());
   PetscCall(smooth_volume_strain(to.shape));
   if constexpr (Phases::liquid) {  // the pores' volume follows the smoothing of their pressure
+    // where it is not smoothed, it follows the skeleton: nothing would resist a difference of the two, which would grow
+    for (int c = 0; c < cells; ++c)
+      if (!fluid_.smoothed(c)) pore_strain_[c] = volume_strain_[c];
     PetscCall(fluid_.smooth_divergence(pore_frame(t, accepted_), pore_strain_));
     std::copy_n(pore_strain_.begin(), cells, volume_strain_.begin());
   }

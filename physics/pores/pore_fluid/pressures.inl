@@ -107,6 +107,50 @@ void PoreFluid<dim, Phases>::find_pressures(const Frame &frame) {
   }
 }
 
+/// Finds the cells of patches in which all pores are nearly full; without patches, the cells with such pores.
+template <int dim, class Phases>
+void PoreFluid<dim, Phases>::find_smoothed(const Frame &frame) requires Phases::suction {
+  const int cells = frame.grid.cell_count();
+  for (int c = 0; c < cells; ++c) cells_[c].smoothed = cells_[c].saturation >= nearly_full;
+  if (!patches_) return;
+  const int *patch = frame.grid.patch.data();
+  for (int c = 0; c < cells; ++c) patch_pores_[patch[c]].open = 0;
+  for (int c = 0; c < cells; ++c) patch_pores_[patch[c]].open += !cells_[c].smoothed;
+  for (int c = 0; c < cells; ++c) cells_[c].smoothed = patch_pores_[patch[c]].open == 0;
+}
+
+/// In patches that are not smoothed, the pressure that acts on the skeleton is the mean over the patch, and the weight
+/// of the liquid between the middle of the patch and the cell, theory (4.3a): the adjoint of the volume strain that
+/// these pores share with the skeleton.
+template <int dim, class Phases>
+void PoreFluid<dim, Phases>::average_over_patches(const Frame &frame,
+                                                  std::vector<CellPores> &pores) requires Phases::suction {
+  const int cells = frame.grid.cell_count();
+  const int *patch = frame.grid.patch.data();
+  const auto head = [&](int c) {  // g . x of the place at which the cell has its pressure
+    double sum = 0;
+    for (int k = 0; k <= dim; ++k) sum += reference_[c][k] * nodal_head_[frame.shape[c].node[k]];
+    return sum;
+  };
+  for (int c = 0; c < cells; ++c) {
+    PatchPores &sum = patch_pores_[patch[c]];
+    sum.weight = sum.pressure = sum.head = sum.liquid = 0;
+  }
+  for (int c = 0; c < cells; ++c) {
+    if (smoothed(c)) continue;
+    const double w = frame.weight[c], wet = pores[c].saturation;
+    PatchPores &sum = patch_pores_[patch[c]];
+    sum.weight += w, sum.pressure += w * pores[c].mixture, sum.head += w * head(c);
+    sum.liquid += w * (bishop_ ? wet : wet >= nearly_full && pores[c].mixture > 0);
+  }
+  for (int c = 0; c < cells; ++c) {
+    if (smoothed(c)) continue;
+    const PatchPores &sum = patch_pores_[patch[c]];
+    const double scale = 1 / sum.weight;
+    pores[c].mixture = scale * (sum.pressure + sum.liquid * liquid_.density * (head(c) - scale * sum.head));
+  }
+}
+
 /// Cell to node to cell, weighted, among nearly saturated cells: conservative and its own adjoint, theory (4.3).
 /// Collective.
 template <int dim, class Phases>
@@ -147,6 +191,8 @@ PetscErrorCode PoreFluid<dim, Phases>::update_pressures(const Frame &frame) {
   const int nodes = frame.grid.node_count(), cells = frame.grid.cell_count();
   find_pressures(frame);
   if (by_rate_) save_pressures(frame);
+  if constexpr (Phases::suction)
+    if (!frame.trial) find_smoothed(frame);
   std::vector<CellPores> &pores = frame.trial ? trial_cells_ : cells_;
   for (int i = 0; i < nodes; ++i) {
     nodal_head_[i] = 0;
@@ -166,13 +212,9 @@ PetscErrorCode PoreFluid<dim, Phases>::update_pressures(const Frame &frame) {
   }
   if constexpr (Phases::suction) PetscCall(share_pressure(frame, smooth_[0]));
   PetscCall(smooth<fluids>(frame, fields));
-  std::vector<NodePores> &at = frame.trial ? trial_nodes_ : nodes_;
-  if (frame.trial) at.resize(nodes_.size());
-  std::fill_n(at.begin(), nodes, NodePores{});
   for (int c = 0; c < cells; ++c) {
     CellPores &cell = pores[c];
-    const Shape<dim> &shape = frame.shape[c];
-    const double w = frame.weight[c], here = head(c, reference_[c]), scale = 1 / grain_mass_[c];
+    const double here = head(c, reference_[c]);
     cell.smooth[0] = smooth_[0][c] + liquid_.density * here;
     if constexpr (Phases::gas) cell.smooth[1] = cell.pressure[1] + gas_.density * (here - head_[c]);
     double own[fluids];
@@ -184,6 +226,16 @@ PetscErrorCode PoreFluid<dim, Phases>::update_pressures(const Frame &frame) {
         cell.smooth[1] += smooth_[0][c] + liquid_.density * head_[c] - cell.pressure[0];
         cell.mixture = smooth_[1][c] + liquid_.density * here;
       }
+  }
+  if constexpr (Phases::suction)
+    if (patches_) average_over_patches(frame, pores);
+  std::vector<NodePores> &at = frame.trial ? trial_nodes_ : nodes_;
+  if (frame.trial) at.resize(nodes_.size());
+  std::fill_n(at.begin(), nodes, NodePores{});
+  for (int c = 0; c < cells; ++c) {
+    const CellPores &cell = pores[c];
+    const Shape<dim> &shape = frame.shape[c];
+    const double w = frame.weight[c], scale = 1 / grain_mass_[c];
     Quad push[sizeof(NodePores::push) / sizeof(Quad)], amount{};
     push[mixture] = quad(cell.mixture), push[mixture][last] = cell.saturated;
     for (int a = 0; a < fluids; ++a) {

@@ -10,8 +10,8 @@ constexpr double porosity = 0.4, grain_density = 2500, water_density = 1000, wat
 constexpr double air_density = 1.2, air_bulk = 101325;  ///< what a scene has without a table [gas]
 constexpr double full_conductivity = 1e-9 / 1e-3;       ///< k_0 / mu_l [m2/(Pa s)]
 
-/// The box of equations.h with pores whose contents look drawn. Where they may hold gas, the pores of one cell in three
-/// are full, and the others hold liquid to between 0.4 and 0.8.
+/// The box of equations.h with pores whose contents look drawn. Where they may hold gas, the pores of one patch in two
+/// and of one cell in three of the others are full, and the rest hold liquid to between 0.4 and 0.8.
 template <int dim, class Phases>
 struct WetBox : Box<dim, Phases> {
   explicit WetBox(const std::string &more = "", double relaxation_time = 0)
@@ -25,7 +25,7 @@ struct WetBox : Box<dim, Phases> {
     for (int i = 0; i < p.count; ++i) {
       p.mass[i] *= 0.7;
       const double pores = p.volume[i] - p.mass[i] / grain_density;
-      const bool full = !Phases::suction || p.cell[i] % 3 == 0;
+      const bool full = !Phases::suction || this->soil.mesh.patch[p.cell[i]] % 2 == 0 || p.cell[i] % 3 == 0;
       const double wet = full ? 1 : 0.6 + 0.2 * drawn(i, 30);
       p.fluid_mass[0][i] = wet * water_density * (full ? 1 + (2e4 + 1e4 * drawn(i, 30)) / water_bulk : 1) * pores;
       if constexpr (Phases::gas) {  // a little gas in full pores too; its pressure is a few kPa
@@ -87,6 +87,7 @@ struct PoreEquations : Equations<dim, Phases> {
       smooth.push_back(pressure[c] - water_density * at_mean);
       weighed.push_back(acts(pressure[c], air_pressure[c], saturation[c]) - water_density * at_mean);
     }
+    if (Phases::suction) average_over_open_patches(acting, bishop);  // (4.3a)
     const std::vector<double> before = smooth;
     if (Phases::suction) share_pressure(smooth);
     smooth = smoothed(smooth), weighed = smoothed(weighed);
@@ -151,7 +152,12 @@ struct PoreEquations : Equations<dim, Phases> {
     }
     return 1 - low;
   }
-  bool full(int c) const { return saturation[c] >= 0.99; }
+  /// Are the pores of all cells of its patch full, so that (4.3) smooths there?
+  bool full(int c) const {
+    for (int other = 0; other < this->cells; ++other)
+      if (this->mesh.patch[other] == this->mesh.patch[c] && saturation[other] < 0.99) return false;
+    return true;
+  }
   V point(int c, const Corners &n) const {
     V x = V::Zero();
     for (int k = 0; k <= dim; ++k) x += n[k] * this->place[this->mesh.cells[c].node[k]];
@@ -171,8 +177,27 @@ struct PoreEquations : Equations<dim, Phases> {
     }
     return f;
   }
+  /// (4.3a): pressures that act on the skeleton, and the weight of the liquid, as means over patches that are not full.
+  void average_over_open_patches(std::vector<double> &p, bool bishop) const {
+    std::vector<double> wet;
+    for (int c = 0; c < this->cells; ++c) wet.push_back(bishop ? saturation[c] : saturation[c] >= 0.99 && p[c] > 0);
+    const auto mean = this->over_patches(p, this->weight), share = this->over_patches(wet, this->weight),
+               middle = this->over_patches(head, this->weight);
+    for (int c = 0; c < this->cells; ++c)
+      if (!full(c)) p[c] = mean[c] + share[c] * (head[c] - middle[c]);
+  }
+  /// Volume strain of the pores (4.7): smoothed where they are full, elsewhere that of the skeleton.
+  std::vector<double> of_pores(const std::vector<double> &strain) const {
+    std::vector<double> pores = smoothed(strain);
+    const auto skeleton = this->over_patches(strain, this->weight);
+    for (int c = 0; c < this->cells; ++c)
+      if (!full(c)) pores[c] = skeleton[c];
+    return pores;
+  }
   /// W - V of (4.8a), in cells that are not full.
-  double beyond_particles(int c) const { return full(c) ? 0 : this->weight[c] - this->particle_volume[c]; }
+  double beyond_particles(int c) const {
+    return saturation[c] >= 0.99 ? 0 : this->weight[c] - this->particle_volume[c];
+  }
   /// The adjoint of (4.8a), on pressures.
   void share_pressure(std::vector<double> &p) const {
     std::vector<double> sum(this->nodes, 0), all(this->nodes, 0);

@@ -226,7 +226,7 @@ void volumes_and_masses_follow_the_motion() {
       }
       theta.push_back(std::log(F.determinant())), divergence.push_back(out);
     }
-    theta = exact.smoothed(theta), divergence = exact.smoothed(divergence);
+    theta = exact.of_pores(theta), divergence = exact.smoothed(divergence);
     std::vector<double> lost(exact.cells), around(exact.nodes, 0), room(exact.nodes, 0), total(exact.cells, 0);
     for (int c = 0; c < exact.cells; ++c)
       for (int i : exact.mesh.cells[c].node)
