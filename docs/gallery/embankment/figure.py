@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Draws wetting and sliding of the embankment from a run of its scene, and takes its stress paths:  figure.py DIR
-States what the README compares of a run, on triangles or in a slice:                                figure.py DIR --numbers"""
+"""Draws a run of the embankment as figures 29 to 34 of Alonso, Yerro & Pinyol (2015) show theirs:  figure.py DIR
+rain.png is figure 29, points.png figures 30, 31, 33 and 34, paths.png figure 32."""
 
 import argparse
 import pathlib
@@ -19,56 +19,62 @@ from talus_results import Results  # noqa: E402
 from talus_sections import spacing_of  # noqa: E402
 from talus_tiles import Frame, tiles  # noqa: E402
 
-TIMES = (18, 43, 83)  # [s]
-PRESSED = (13, 18, 23, 26, 29, 32, 43, 60, 83)  # at which pressures are stated [s]
-TOE, MIDDLE = 30, (22.2, 10)  # [m]
+TIMES = (18, 33, 63)  # [s]
+RIGHT, TOP = 50, 16  # [m]
+POINTS = ("S1", "D1", "S2", "D2")
+SOLID, WATER, GAS, POROSITY = 9.8e6, 20e6, 101325.0, 0.35  # bulk moduli of skeleton, water and gas [Pa] in figure 34
 
 
-def draw(results, path):
-    figure, grid = plt.subplots(len(TIMES), 2, figsize=(8.6, 5.7), sharex=True, sharey=True)
+def draw_section(results, path):
+    figure, grid = plt.subplots(len(TIMES), 2, figsize=(8.6, 5.2), sharex=True, sharey=True)
     figure.subplots_adjust(left=0.05, right=0.98, bottom=0.16, top=0.95, hspace=0.25, wspace=0.06)
-    frame = Frame((0, 0), (45, 16), 900)
+    frame = Frame((0, 0), (RIGHT, TOP), 900)
     for line, t in zip(grid, TIMES):
         snapshot = min(results.snapshots, key=lambda each: abs(each.time - t))
         owner = tiles(snapshot.position()[:, :2], spacing_of(results), frame)
-        for axes, field, colours in zip(line, ("saturation", "displacement"), ({"cmap": "YlGnBu", "vmin": 0.5, "vmax": 1}, {"cmap": "viridis", "vmin": 0, "vmax": 6})):
-            values = snapshot.scalar(field)[0]
+        fields = (("suction", 1e-3, {"cmap": "YlOrBr", "vmin": 0, "vmax": 100}), ("displacement", 1, {"cmap": "viridis", "vmin": 0, "vmax": 6}))
+        for axes, (field, factor, colours) in zip(line, fields):
+            values = factor * snapshot.scalar(field)[0]
             picture = axes.imshow(np.ma.array(values[np.maximum(owner, 0)], mask=owner < 0), origin="lower", extent=frame.extent(), interpolation="nearest", **colours)
-            axes.set(xlim=(0, 45), ylim=(0, 16), aspect="equal")
+            axes.set(xlim=(0, RIGHT), ylim=(0, TOP), aspect="equal")
             axes.set_title(style.at_time(snapshot.time, TIMES[-1]), loc="left", pad=3)
             if t == TIMES[-1]:
                 place = figure.add_axes((axes.get_position().x0 + 0.08, 0.06, 0.3, 0.018))
-                figure.colorbar(picture, cax=place, orientation="horizontal", extend="max" if field == "displacement" else "neither").outline.set_visible(False)
-                place.set_title("displacement [m]" if field == "displacement" else "degree of saturation", size=8.5, loc="left", pad=4)
+                figure.colorbar(picture, cax=place, orientation="horizontal", extend="max").outline.set_visible(False)
+                place.set_title("displacement [m]" if field == "displacement" else "suction [kPa]", size=8.5, loc="left", pad=4)
     style.save(figure, path)
 
 
-def state_numbers(results):
-    water = results.history.columns["water_error_kg"], results.history.columns["water_kg"]
-    print(f"ledger of water: error over water {np.abs(water[0]).max() / water[1][0]:.1e}")
-    for t in PRESSED:
-        snapshot = min(results.snapshots, key=lambda each: abs(each.time - t))
-        p, share = (snapshot.column(name).values[:, 0] for name in ("pore_pressure", "saturation"))
-        full = share > 0.999
-        print(f"{t} s: mean saturation {share.mean():.4f}; largest pressure {p.max() / 1e3:.0f} kPa, of full cells {p[full].max() / 1e3 if full.any() else 0:.0f} kPa; "
-              f"{(p[share < 0.99] > 5e3).sum()} particles above 5 kPa below S = 0.99; largest displacement {snapshot.scalar('displacement')[0].max():.3f} m")
-    start, last = results.snapshots[min(3, len(results.snapshots) - 1)].position(), results.snapshots[-1]
-    moved, level = last.scalar("displacement")[0], last.column("displacement").values[:, 0]
-    middle = np.flatnonzero(np.linalg.norm(start[:, :2] - MIDDLE, axis=1) < 1.2)
-    most = middle[moved[middle].argmax()]
-    print(f"end: {100 * (moved > 1).mean():.1f} % of the soil moved more than 1 m, to {last.position()[moved > 1, 0].max() - TOE:.1f} m beyond the toe; at mid-height {moved[most]:.1f} m, {level[most]:.1f} m of it level")
+def draw_points(results, path):
+    columns, time = results.history.columns, results.history.time
+    panels = (("suction_Pa", 1e-3, "suction [kPa] (30)"), ("saturation", 1, "degree of saturation (30, 33b)"), ("displacement_m", 1, "displacement [m] (31)"),
+              ("velocity_m_s", 1, "velocity [m/s] (31)"), ("acceleration_m_s2", 1, "acceleration [m/s²] (31)"), ("deviator_Pa", 1e-3, "deviator q [kPa] (33a)"))
+    figure, grid = plt.subplots(4, 2, figsize=(8.6, 9.2))
+    for axes, (quantity, factor, title) in zip(grid.flat, panels):
+        for colour, point in zip(style.LINES, POINTS):
+            axes.plot(time, factor * columns[f"{point}_{quantity}"], lw=1.0, color=colour, label=point)
+        axes.set(xlim=(time[0], time[-1]), ylim=(0, None), xlabel="time [s]")
+        axes.set_title(title, loc="left")
+    grid.flat[0].legend(fontsize=8)
+    wet = np.linspace(0.9, 1, 2001)
+    grid.flat[6].semilogy(wet, (SOLID + 1 / (POROSITY * wet / WATER + POROSITY * (1 - wet) / GAS)) / 1e6, color=style.INK)
+    grid.flat[6].set(xlim=(0.9, 1), xlabel="degree of saturation")
+    grid.flat[6].set_title("bulk modulus of the mixture, (21) of the paper [MPa] (34)", loc="left")
+    full = [columns[f"{point}_saturation"] > 0.99 for point in POINTS]
+    for colour, point, near in zip(style.LINES, POINTS, full):
+        grid.flat[7].plot(time[near], 1e-3 * columns[f"{point}_pore_pressure_Pa"][near], ".", ms=2.5, color=colour)
+    grid.flat[7].set(xlim=(time[0], time[-1]), xlabel="time [s]")
+    grid.flat[7].set_title("pore pressure where S > 0.99 [kPa]", loc="left")
+    figure.tight_layout()
+    style.save(figure, path)
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", metavar="DIR", type=pathlib.Path, help="results of a run")
-    parser.add_argument("--numbers", action="store_true", help="print, draw nothing")
-    given = parser.parse_args()
-    results = Results(given.folder)
-    if given.numbers:
-        state_numbers(results)
-        sys.exit()
-    draw(results, HERE / "rain.png")
+    results = Results(parser.parse_args().folder)
+    draw_section(results, HERE / "rain.png")
     plt.rcParams["savefig.dpi"] = 120
+    draw_points(results, HERE / "points.png")
     [(_, paths)] = draw_stress_paths(results, results.folder / "pictures")
     shutil.copy(paths, HERE / "paths.png")
