@@ -18,23 +18,42 @@ POINTS = ("crest", "upper", "lower", "toe")
 NEAR_FAILURE = (0.97, 1.06)  # t* that the figures of the failure show
 
 
-def draw(talus, folder=None):
-    """Runs the scene, or reads the results in `folder`, and draws all."""
+def draw(talus, folder=None, saturated=None):
+    """Runs both scenes, or reads the results in `folder` and `saturated`, and draws all."""
     with tempfile.TemporaryDirectory() as made:
         if folder is None:
             folder = made
             subprocess.run([talus, "run", HERE / "scene.toml", "-o", folder, "--force"], check=True)
+        if saturated is None:
+            saturated = f"{made}/saturated"
+            subprocess.run([talus, "run", HERE / "saturated.toml", "-o", saturated, "--force", "--no-pictures"], check=True)
+        draw_pressures(*history_of(saturated))
         results = Results(folder)
         for source, name in COPIED.items():
             shutil.copy(f"{folder}/pictures/{source}.png", HERE / f"{name}.png")
-        history = {name: np.array([float(row[name]) for row in rows]) for rows in [list(csv.DictReader(open(f"{folder}/history.csv")))]
-                   for name in rows[0] if name != "stage"}
-        relative = dimensionless(results, history["time_s"])
+        history, relative = history_of(folder)
         draw_motion(history, relative)
         draw_strength(Line(Path(folder) / "line_slip_surface.csv"), results)
         draw_paths(history, relative)
         draw_inclinometers([Line(path) for path in sorted(Path(folder).glob("line_I*.csv"))], results)
     draw_tables()
+
+
+def history_of(folder):
+    """Columns of history.csv, and t* of its rows."""
+    rows = list(csv.DictReader(open(f"{folder}/history.csv")))
+    history = {name: np.array([float(row[name]) for row in rows]) for name in rows[0] if name != "stage"}
+    return history, dimensionless(Results(folder), history["time_s"])
+
+
+def draw_pressures(history, relative):
+    figure, axis = plt.subplots(figsize=(7.5, 3.6), layout="constrained")
+    for point, name, colour in (("base", "at the base, (10, 0)", 0), ("P2", "P2, on the contact (17, 8.5)", 1), ("below_toe", "below the toe (36, 2)", 2)):
+        axis.plot(relative, history[f"{point}_pore_pressure_Pa"] / 1e3, color=style.LINES[colour], lw=1.1, label=name)
+    axis.axvline(1, color="0.6", lw=1, ls=":")
+    axis.set(xlabel="t* = t / time of failure", title="pore pressure where water moves [kPa] (paper's fig. 6)", xlim=(0, None))
+    axis.legend(fontsize=8, loc="upper left")
+    style.save(figure, HERE / "pressures.png", dpi=130)
 
 
 def draw_motion(history, relative):
