@@ -180,5 +180,19 @@ TEST(BaseContact, bears_what_coulomb_admits) {
       }
 }
 
+/// Where slip dilates, no admissible force is closer to that of the spring: the way to each of them leads away from it.
+TEST(BaseContact, bears_the_closest_force_where_slip_dilates) {
+  const Vec<2> n{0, -1};
+  for (double x = -2; x <= 2; x += 0.25)
+    for (double y = -2; y <= 2; y += 0.25) {
+      const Vec<2> borne = force_on_base<2>({x, y}, n, 0.5, 0.25, true).borne;
+      for (double pressing = 0; pressing <= 2; pressing += 0.25)
+        for (const double share : {-1., 0., 1.}) {
+          const double along = share * (0.25 + 0.5 * pressing);
+          EXPECT_LE((x - borne[0]) * (along - borne[0]) + (y - borne[1]) * (-pressing - borne[1]), 1e-12);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace talus
