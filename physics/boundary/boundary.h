@@ -2,6 +2,7 @@
 /// A boundary of a scene, whatever its kind: the statements of the kind (kind.h) and the functions that they ask for.
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,6 +34,7 @@ class Boundary {
   int precedence = 2;       ///< of a support
   bool follows = false;     ///< of a load
   bool open_water = false;  ///< of a pressure or seepage
+  bool remembers = false;   ///< of a contact: what it bears depends on how far soil has slipped on it
   /// Keys and numbers of components of the vectors that the scene gives as functions; each must have one per dimension.
   std::vector<std::pair<std::string, int>> vectors;
 
@@ -44,8 +46,9 @@ class Boundary {
       return on_soil_3d_;
   }
   std::function<double(double x, double y, double z, double t, double unit_weight)> outside;
-  std::function<double(double x, double y, double z, double t)> friction_coefficient, adhesion, supply, inflow,
-      gas_outside;
+  std::function<double(double x, double y, double z, double t)> supply, inflow, gas_outside;
+  std::function<double(double x, double y, double z, double t, double slip)> friction_coefficient, adhesion;
+  std::optional<ShearZone> shear_zone;  ///< of a contact that rubbing heats
 
   /// Does it concern the pore fluids only?
   bool fluids_only() const { return in_motion == OnSoil::none && quasi_static == OnSoil::none; }
@@ -121,11 +124,13 @@ requires(!std::same_as<Kind, Boundary>) Boundary::Boundary(Kind of)
   if constexpr (member::follows<Kind>) follows = kind->follows();
   if constexpr (member::open_water<Kind>) open_water = Kind::open_water;
   if constexpr (member::friction_coefficient<Kind>)
-    friction_coefficient = [kind](double x, double y, double z, double t) {
-      return kind->friction_coefficient(x, y, z, t);
+    friction_coefficient = [kind](double x, double y, double z, double t, double slip) {
+      return kind->friction_coefficient(x, y, z, t, slip);
     };
   if constexpr (member::adhesion<Kind>)
-    adhesion = [kind](double x, double y, double z, double t) { return kind->adhesion(x, y, z, t); };
+    adhesion = [kind](double x, double y, double z, double t, double slip) { return kind->adhesion(x, y, z, t, slip); };
+  if constexpr (member::depends_on_slip<Kind>) remembers = kind->depends_on_slip();
+  if constexpr (member::shear_zone<Kind>) shear_zone = kind->shear_zone(), remembers = true;
   if constexpr (member::outside<Kind>)
     outside = [kind](double x, double y, double z, double t, double unit_weight) {
       return kind->outside(x, y, z, t, unit_weight);

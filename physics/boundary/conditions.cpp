@@ -46,7 +46,7 @@ void Conditions<dim>::add_contact(int node, int source, const Vec<dim> &normal, 
       c.area += area;
       return;
     }
-  contacts_[index].push_back({node, source, normal, area, 0, never, false});
+  contacts_[index].push_back({node, source, normal, area, 0, never, false, 0, -1, false});
 }
 
 template <int dim>
@@ -90,6 +90,14 @@ PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vect
       for (const Vec<dim> &direction : directions(n.normal))
         for (int set = kind.stands_in(); set < 2; ++set) add_direction(prescribed_[set], n.node, n.source, direction);
   }
+  zone_grids_.resize(sources_.size()), rubbed_.assign(sources_.size(), {0, 0});
+  for (size_t s = 0; s < sources_.size(); ++s)
+    if (sources_[s].kind.shear_zone) zone_grids_[s] = std::make_unique<ShearZoneGrid>(*sources_[s].kind.shear_zone);
+  int zone_values = 0;
+  for (auto &of_node : contacts_)
+    for (Contact &c : of_node)
+      if (zone_grids_[c.source]) c.zone = zone_values, zone_values += grid_of(c).size(), zoned_.push_back(&c);
+  zone_state_.assign(zone_values, 0);
   size_t contacts = 0;
   for (const auto &of_node : contacts_) contacts += of_node.size();
   size_t reactions = dim * prescribed_[1].entry.size() + contacts;
@@ -136,7 +144,7 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
       double total = 0;
       for (const Contact &c : contacts_[index]) total += c.area;
       for (Contact &c : contacts_[index])
-        active_contacts_.push_back({i, &c, nodal_[i] * c.area / total, 0, c.rests, c.rests});
+        active_contacts_.push_back({i, &c, nodal_[i] * c.area / total, 0, c.rests, c.rests, {}});
     }
   }
   if (!dashpots_.empty() && !stand_ins_) {
@@ -181,7 +189,7 @@ PetscErrorCode Conditions<dim>::set_normal_forces(const BackgroundMesh<dim> &mes
       if (c.source != f.source || dot<dim>(c.normal, f.normal) < same_direction) continue;
       const Vec<dim> &x = f.position;
       c.capacity += f.force * friction_delay_ *
-                    sources_[f.source].kind.friction_coefficient(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t);
+                    sources_[f.source].kind.friction_coefficient(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t, c.slip);
       c.since_pressed = 0, c.rests = true;
     }
   }
@@ -212,6 +220,88 @@ void Conditions<dim>::add_work(const Vec<dim> *u) {
   for (const Reaction &r : active_frozen_)
     if (counted_[r.node]) work_[r.source] += dot<dim>(r.value, u[r.node]);
   surface_loads_.add_work(u, work_);
+  for (ActiveContact &c : active_contacts_)
+    if (remembers_ && sources_[c.contact->source].kind.remembers) add_slip(c, u[c.node]);
+}
+
+/// Slip is the way of a node along the base while it touches it; the work of friction on this way becomes heat.
+template <int dim>
+void Conditions<dim>::add_slip(ActiveContact &c, const Vec<dim> &u) {
+  Contact &contact = *c.contact;
+  if (contact.since_pressed > friction_delay_) return;
+  Vec<dim> along = u;
+  add<dim>(along, -dot<dim>(along, contact.normal), contact.normal);
+  contact.slip += std::sqrt(dot<dim>(along, along));
+  const double work = -dot<dim>(c.rubbed, u) / resolved_step_;
+  if (contact.zone < 0 || c.area <= 0 || work == 0) return;
+  grid_of(contact).add_heat(work / c.area, zone_of(contact));
+  contact.warm = true;
+}
+
+/// Heat and excess pressure spread in all shear zones, those that soil has left among them.
+template <int dim>
+void Conditions<dim>::spread_heat(double gamma) {
+  for (const auto &grid : zone_grids_)
+    if (grid) grid->set_step(gamma);
+  for (Contact *c : zoned_)
+    if (c->warm) grid_of(*c).spread(zone_of(*c));
+}
+
+/// Friction impulse that excess pressure leaves of `rubbing` beside the impulse of adhesion, docs/theory (6.11):
+/// implicit in the pressure that the heat of this step brings, at the speed of slip before friction.
+template <int dim>
+double Conditions<dim>::left_by_pressure(const ActiveContact &c, double rubbing, double adhering, double slope,
+                                         double gamma, double speed) {
+  const Contact &contact = *c.contact;
+  if (contact.zone < 0 || c.area <= 0) return rubbing;
+  const ShearZoneGrid &grid = grid_of(contact);
+  const double taken = slope * gamma * c.area * (contact.warm ? grid.pressure(zone_of(contact)) : 0);
+  const double heating = remembers_ ? slope * gamma * speed * grid.pressure_per_heat() : 0;
+  return std::max(0., (rubbing - taken - heating * adhering) / (1 + heating));
+}
+
+template <int dim>
+void Conditions<dim>::forget_slip() {
+  for (auto &of_node : contacts_)
+    for (Contact &c : of_node) c.slip = 0, c.warm = false;
+  std::fill(zone_state_.begin(), zone_state_.end(), 0);
+}
+
+template <int dim>
+PetscErrorCode Conditions<dim>::take_bases(MPI_Comm comm, std::vector<BaseReport> &reports) {
+  PetscFunctionBeginUser;
+  enum { area, slip, temperature, pressure, heat, friction, normal, sums };
+  const int sources = static_cast<int>(sources_.size());
+  reports.assign(sources, {});
+  if (std::none_of(sources_.begin(), sources_.end(), [](const Source &s) { return s.kind.remembers; }))
+    PetscFunctionReturn(0);
+  std::vector<double> sum(sums * sources, 0), hottest(sources, 0);
+  for (int s = 0; s < sources; ++s) std::copy_n(rubbed_[s].begin(), 2, &sum[s * sums + friction]);
+  std::fill(rubbed_.begin(), rubbed_.end(), std::array<double, 2>{});
+  for (const ActiveContact &c : active_contacts_) {
+    const Contact &contact = *c.contact;
+    if (!counted_[c.node] || contact.since_pressed > friction_delay_) continue;
+    double *of = &sum[contact.source * sums];
+    of[area] += c.area, of[slip] += c.area * contact.slip;
+    if (!contact.warm) continue;
+    const double rise = grid_of(contact).temperature(zone_of(contact));
+    of[temperature] += c.area * rise, of[pressure] += c.area * grid_of(contact).pressure(zone_of(contact));
+    of[heat] += c.area * grid_of(contact).heat(zone_of(contact));
+    hottest[contact.source] = std::max(hottest[contact.source], rise);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum.data(), sums * sources, MPI_DOUBLE, MPI_SUM, comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, hottest.data(), sources, MPI_DOUBLE, MPI_MAX, comm));
+  const auto ratio = [](double a, double b) { return b > 0 ? a / b : 0; };
+  for (int s = 0; s < sources; ++s) {
+    const double *of = &sum[s * sums];
+    reports[s] = {.slip = ratio(of[slip], of[area]),
+                  .friction = ratio(of[friction], of[normal]),
+                  .temperature = ratio(of[temperature], of[area]),
+                  .hottest = hottest[s],
+                  .pressure = ratio(of[pressure], of[area]),
+                  .heat = of[heat]};
+  }
+  PetscFunctionReturn(0);
 }
 
 template <int dim>
@@ -273,6 +363,7 @@ void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &gri
     map<dim>(v[d.node]) = system.inverse() * (mass * map<dim>(before));
     account(d.node, d.source, before);
   }
+  spread_heat(gamma);
   const double adapted = friction_delay_ > 0 ? 1 - std::exp(-gamma / friction_delay_) : 1;
   for (ActiveContact &c : active_contacts_) {
     const Vec<dim> before = v[c.node], &n = c.contact->normal;
@@ -286,19 +377,27 @@ void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &gri
     contact.rests = false;
     contact.since_pressed = c.presses ? 0 : contact.since_pressed + gamma;
     const Vec<dim> &x = grid.position[c.node];
-    const double z = dim == 3 ? x[dim - 1] : 0, slope = base.friction_coefficient(x[0], x[1], z, t);
+    const double z = dim == 3 ? x[dim - 1] : 0, slipped = contact.slip,
+                 slope = base.friction_coefficient(x[0], x[1], z, t, slipped);
     if (c.presses) contact.capacity += slope * map<dim>(n).dot(mass * map<dim>(n)) * into;
     if (pores.thrust) contact.capacity -= slope * gamma * pores.thrust(c.node, n);
-    const double forgotten = adapted * contact.capacity, rubbing = std::max(0., forgotten),
-                 speed = std::sqrt(dot<dim>(slip, slip));
+    const double forgotten = adapted * contact.capacity, speed = std::sqrt(dot<dim>(slip, slip));
     const double m = speed > 0 ? map<dim>(slip).dot(mass * map<dim>(slip)) / (speed * speed) : 0;
     const bool adheres = contact.since_pressed <= friction_delay_;
-    const double most = rubbing + (adheres ? base.adhesion(x[0], x[1], z, t) * c.area * gamma : 0);
+    const double adhering = adheres ? base.adhesion(x[0], x[1], z, t, slipped) * c.area * gamma : 0;
+    const double rubbing = left_by_pressure(c, std::max(0., forgotten), adhering, slope, gamma, speed);
+    const double most = rubbing + adhering;
     contact.capacity -= forgotten, c.force = most / gamma, c.sticks = m * speed <= most;
     v[c.node] = {};
     if (!c.presses) add<dim>(v[c.node], into, n);
     if (!c.sticks) add<dim>(v[c.node], 1 - most / (m * speed), slip);
     account(c.node, c.contact->source, before);
+    if (!base.remembers) continue;
+    const double share = c.sticks ? 1 : most / (m * speed);
+    c.rubbed = {}, add<dim>(c.rubbed, -share * m, slip);
+    if (!counted_[c.node]) continue;
+    rubbed_[contact.source][0] += share * m * speed;
+    if (c.presses) rubbed_[contact.source][1] += map<dim>(n).dot(mass * map<dim>(n)) * into;
   }
   for (const ActivePrescribed &p : active_prescribed_)
     for (int k = 0; k < p.condition->count; ++k) {
@@ -330,7 +429,8 @@ PetscErrorCode Conditions<dim>::serialize(Archive &archive, FilledGrid<dim> &gri
   if (archive.reading()) PetscCall(begin(grid, impedance, filling));
   archive.serialize("boundaries", impulse_, work_);
   for (auto &contacts : contacts_)
-    for (Contact &c : contacts) archive.serialize("contact", c.capacity, c.since_pressed, c.rests);
+    for (Contact &c : contacts) archive.serialize("contact", c.capacity, c.since_pressed, c.rests, c.slip, c.warm);
+  archive.serialize("shear zones", zone_state_, rubbed_);
   for (ActiveContact &c : active_contacts_) archive.serialize("contact now", c.force, c.presses, c.sticks);
   PetscFunctionReturn(0);
 }

@@ -3,6 +3,7 @@
 /// are orthonormalised per node once. A contact has one constraint per facet normal at a node. Loads and dashpots act
 /// where facets have soil behind them.
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -53,7 +54,7 @@ class Conditions {
   /// reactions.
   void resolve(double t, double gamma, const FilledGrid<dim> &grid, Vec<dim> *v, const Pores &pores = {});
 
-  /// Adds the work of the boundaries in an accepted step with nodal displacements `u`.
+  /// Adds the work of the boundaries in an accepted step with nodal displacements `u`, and what bases remember of it.
   void add_work(const Vec<dim> *u);
   /// Work of each source on the soil, on this rank [J].
   const std::vector<double> &work() const { return work_; }
@@ -71,6 +72,11 @@ class Conditions {
   /// Time over which friction adapts to the normal force, docs/theory (6.2) [s].
   void set_friction_delay(double delay) { friction_delay_ = delay; }
 
+  /// Do slip and heat of bases count from now on? Otherwise bases keep the strength that they have.
+  void remember_slip(bool remember) { remembers_ = remember; }
+  /// All bases are fresh and cold again.
+  void forget_slip();
+
   SurfaceLoads<dim> &surface_loads() { return surface_loads_; }
   /// Saves or loads the state that `begin` cannot find again: the state of contacts, frozen reactions, impulses and
   /// work. Loading calls `begin`. Collective.
@@ -80,6 +86,16 @@ class Conditions {
   const std::vector<Source> &sources() const { return sources_; }
   bool has_dashpots() const { return !dashpots_.empty(); }
   bool loads(int source) const { return sources_[source].kind.in_motion == OnSoil::load; }
+  /// A base as the soil finds it that touches it now: means over its area, per source.
+  struct BaseReport {
+    double slip = 0;                      ///< [m]
+    double friction = 0;                  ///< sum of friction over sum of normal forces since the last call
+    double temperature = 0, hottest = 0;  ///< rise in the shear zone, its mean and that of the hottest place [K]
+    double pressure = 0;                  ///< excess pressure in the shear zone [Pa]
+    double heat = 0;                      ///< that friction has left in and beside the shear zone, in all [J]
+  };
+  /// Collective.
+  PetscErrorCode take_bases(MPI_Comm comm, std::vector<BaseReport> &reports);
   /// Impulse on the soil by each boundary since the last call, per source [N s]; collective.
   PetscErrorCode take_impulses(MPI_Comm comm, std::vector<Vec<dim>> &impulse);
 
@@ -92,6 +108,9 @@ class Conditions {
     double capacity;       // friction impulse that normal impulses of the recent past still allow [N s]
     double since_pressed;  // time since the node last pressed on the base [s]
     bool rests;            // in equilibrium as finite elements have found it, until the next `resolve`
+    double slip;           // along the base since the start [m]
+    int zone;              // place of its shear zone in zone_state_; -1: none
+    bool warm;             // the shear zone has been heated
   };
   struct ActivePrescribed {
     int node;  // compact
@@ -103,6 +122,7 @@ class Conditions {
     double area;           // with soil behind it [m2]
     double force;          // friction against sliding in the last `resolve` [N]
     bool presses, sticks;  // in the last `resolve`
+    Vec<dim> rubbed;       // impulse of friction in the last `resolve` [N s]
   };
   struct Dashpot {
     int node, source;
@@ -118,6 +138,12 @@ class Conditions {
   };
   void add_direction(PrescribedSet &set, int node, int source, const Vec<dim> &direction);
   void add_contact(int node, int source, const Vec<dim> &normal, double area);
+  ShearZoneGrid &grid_of(const Contact &c) { return *zone_grids_[c.source]; }
+  double *zone_of(const Contact &c) { return &zone_state_[c.zone]; }
+  void spread_heat(double gamma);
+  double left_by_pressure(const ActiveContact &c, double rubbing, double adhering, double slope, double gamma,
+                          double speed);
+  void add_slip(ActiveContact &c, const Vec<dim> &u);
   double target(const Prescribed &c, int k, const Vec<dim> &x, double t) const;
 
   std::vector<Source> sources_;
@@ -130,7 +156,11 @@ class Conditions {
   std::vector<Dashpot> active_dashpots_;
   std::vector<double> nodal_;
   double friction_delay_ = 0, resolved_step_ = 0;
-  bool stand_ins_ = false;
+  bool stand_ins_ = false, remembers_ = true;
+  std::vector<std::unique_ptr<ShearZoneGrid>> zone_grids_;   ///< of each source; null: no shear zone
+  std::vector<Contact *> zoned_;                             ///< contacts that have one
+  std::vector<double> zone_state_;                           ///< of all of them
+  std::vector<std::array<double, 2>> rubbed_;                ///< impulses since the last report: friction, normal [N s]
   std::vector<Reaction> frozen_, active_frozen_, impulses_;  ///< by mesh node; by compact node; of the last `resolve`
   std::vector<double> work_;
   std::vector<Vec<dim>> impulse_;

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "physics/boundary/shear_zone.h"
 
 namespace talus {
 
@@ -23,7 +24,8 @@ namespace talus {
 enum class OnSoil {
   none,     ///< nothing
   support,  ///< prescribes the velocity in some directions: `precedence`, `directions`, and `speed` where they move
-  contact,  ///< is a rigid base, which soil does not enter and which rubs: `friction_coefficient`, `adhesion`
+  contact,  ///< is a rigid base, which soil does not enter and which rubs: `friction_coefficient`, `adhesion`, and
+            ///< `shear_zone` where rubbing heats it
   load,     ///< exerts a force per area: `load`, `follows`
   dashpot,  ///< exerts a force per area against the velocity: `dashpot`; a support may stand in for it
   refused   ///< cannot act in such stages, and a scene that has one is refused
@@ -77,15 +79,27 @@ template <class Kind>
 concept follows = requires(const Kind &kind) {
   { kind.follows() } -> std::same_as<bool>;
 };
-/// `friction_coefficient(x, y, z, t)`: largest shear stress over normal stress on the base.
+/// `friction_coefficient(x, y, z, t, slip)`: largest shear stress over effective normal stress on the base at a place
+/// that has slipped by `slip` [m].
 template <class Kind>
 concept friction_coefficient = requires(const Kind &kind) {
-  { kind.friction_coefficient(0., 0., 0., 0.) } -> std::same_as<double>;
+  { kind.friction_coefficient(0., 0., 0., 0., 0.) } -> std::same_as<double>;
 };
-/// `adhesion(x, y, z, t)`: shear stress that the base bears without normal stress [Pa].
+/// `adhesion(x, y, z, t, slip)`: shear stress that the base bears without normal stress [Pa].
 template <class Kind>
 concept adhesion = requires(const Kind &kind) {
-  { kind.adhesion(0., 0., 0., 0.) } -> std::same_as<double>;
+  { kind.adhesion(0., 0., 0., 0., 0.) } -> std::same_as<double>;
+};
+/// `depends_on_slip()`: do friction or adhesion change with slip? Without it they do not.
+template <class Kind>
+concept depends_on_slip = requires(const Kind &kind) {
+  { kind.depends_on_slip() } -> std::same_as<bool>;
+};
+/// `shear_zone()`: the zone that friction heats, whose excess pore pressure lowers friction; without it the base stays
+/// cold.
+template <class Kind>
+concept shear_zone = requires(const Kind &kind) {
+  { kind.shear_zone() } -> std::convertible_to<const ShearZone &>;
 };
 /// `dashpot<dim>({rho c_p, rho c_s}, n)`: force per area and velocity, a symmetric matrix, in soil of these impedances
 /// behind a facet of normal n [kg/(m2 s)].
@@ -150,9 +164,9 @@ template <StatesSoil Kind>
 constexpr bool complete_on_soil() {
   constexpr auto acts = [](OnSoil action) { return Kind::in_motion == action || Kind::quasi_static == action; };
   constexpr auto has_all = [](bool asked, auto... present) { return ((present == asked) && ...); };
-  const bool moves = member::speed<Kind>;
+  const bool moves = member::speed<Kind>, remembers = member::depends_on_slip<Kind> || member::shear_zone<Kind>;
   return has_all(acts(OnSoil::support), member::directions<Kind>, member::precedence<Kind>) &&
-         (!moves || acts(OnSoil::support)) &&
+         (!moves || acts(OnSoil::support)) && (!remembers || acts(OnSoil::contact)) &&
          has_all(acts(OnSoil::contact), member::friction_coefficient<Kind>, member::adhesion<Kind>) &&
          has_all(acts(OnSoil::load), member::load<Kind>, member::follows<Kind>) &&
          has_all(acts(OnSoil::dashpot), member::dashpot<Kind>);

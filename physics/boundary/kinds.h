@@ -8,6 +8,7 @@
 #include "physics/boundary/friction.h"
 #include "physics/boundary/gas_pressure.h"
 #include "physics/boundary/head.h"
+#include "physics/boundary/heated_friction.h"
 #include "physics/boundary/impermeable.h"
 #include "physics/boundary/non_reflecting.h"
 #include "physics/boundary/pore_pressure.h"
@@ -21,8 +22,8 @@
 namespace talus {
 
 using BoundaryKinds =
-    std::variant<Fixed, Roller, PrescribedVelocity, Traction, Friction, NonReflecting, PrescribedPorePressure,
-                 PrescribedSuction, Head, Flux, Impermeable, Rainfall, PrescribedGasPressure>;
+    std::variant<Fixed, Roller, PrescribedVelocity, Traction, Friction, HeatedFriction, NonReflecting,
+                 PrescribedPorePressure, PrescribedSuction, Head, Flux, Impermeable, Rainfall, PrescribedGasPressure>;
 
 /// Reads the kind that the table names, out of a list of kinds. Throws SceneError.
 template <class Kinds>

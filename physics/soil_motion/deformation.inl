@@ -112,8 +112,8 @@ void SoilMotion<dim, Phases>::update_points(double t, size_t b, State &to) {
   }
   for (int q = 0; q < p.count; ++q) {
     const int c = p.cell[q];
-    volume[q] = std::min(p.volume[q] * exp_small(volume_strain_[c]),
-                         body.volume_limit(p.limit[q], history + q * body.history_count()));
+    volume[q] = body.admissible_volume(p.volume[q] * exp_small(volume_strain_[c]), p.limit[q],
+                                       history + q * body.history_count());
     to.particle_volume[c] += volume[q];
   }
 }

@@ -143,7 +143,9 @@ void BaseContact<dim>::set_strength(double t) {
     const Vec<dim> &x = soil_.nodes().position[p.node];
     const Boundary &base = sources_[p.source].kind;
     const double z = dim == 3 ? x[dim - 1] : 0;
-    p.friction = base.friction_coefficient(x[0], x[1], z, t), p.adhesion = p.area * base.adhesion(x[0], x[1], z, t);
+    constexpr double fresh = 0;  // slip: that of motion comes later
+    p.friction = base.friction_coefficient(x[0], x[1], z, t, fresh);
+    p.adhesion = p.area * base.adhesion(x[0], x[1], z, t, fresh);
   }
 }
 

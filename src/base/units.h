@@ -1,10 +1,10 @@
 #pragma once
-/// Units of scene quantities: a name, its factor to SI, and its dimension as exponents of kg, m, s (and angle).
+/// Units of scene quantities: a name, its factor to SI, and its dimension as exponents of kg, m, s (and angle, K).
 
 namespace talus {
 
 struct Dimension {
-  int mass = 0, length = 0, time = 0, angle = 0;
+  int mass = 0, length = 0, time = 0, angle = 0, temperature = 0;
   constexpr bool operator==(const Dimension &) const = default;
 };
 struct Unit {
@@ -25,6 +25,9 @@ inline constexpr Unit square_metre{"m2", 1, {0, 2, 0, 0}};
 inline constexpr Unit per_pascal{"1/Pa", 1, {-1, 1, 2, 0}};
 inline constexpr Unit degree_per_pascal{"deg/Pa", degree.si, {-1, 1, 2, 1}};
 inline constexpr Unit pascal_second{"Pa s", 1, {1, -1, -1, 0}};
+inline constexpr Unit joule_per_cubic_metre_kelvin{"J/(m3 K)", 1, {1, -1, -2, 0, -1}};
+inline constexpr Unit watt_per_metre_kelvin{"W/(m K)", 1, {1, 1, -3, 0, -1}};
+inline constexpr Unit pascal_per_kelvin{"Pa/K", 1, {1, -1, -2, 0, -1}};
 
 /// Allowed values of a scene key, in the unit the key is stated in.
 struct Range {

@@ -147,6 +147,11 @@ void print_scales(const Needs &n) {
            b.body.name.c_str(), b.softening.slope,
            b.averaging_length > 0 ? "in bands of twice the averaging_length," : "in cells of",
            b.averaging_length > 0 ? 2 * b.averaging_length : b.body.cell_size, b.softening.critical_length);
+  for (const HeatedBaseNeeds &b : n.heated_bases)
+    line("",
+         "base %s: friction falls to 1/e over a slip of %.3g m if undrained; in %s heat moves %.2g mm, pressure %.2g "
+         "mm",
+         b.name.c_str(), b.weakening_slip, spoken(b.time).c_str(), 1e3 * b.heat_way, 1e3 * b.water_way);
   const Drainage &d = n.drainage;
   if (d.time == 0) return;
   line("drainage", "in %s: drained (T = c_v t / L2 > %g) for k above %.1g m/s, undrained (T < %g) for k below %.1g m/s",

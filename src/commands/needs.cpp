@@ -9,6 +9,7 @@
 
 #include "commands/foreign_code.h"
 #include "commands/scales.h"
+#include "physics/boundary/boundary.h"
 #include "physics/laws/strength_by_place.h"
 #include "physics/pores/hyperbolicity.h"
 #include "scene/reader.h"
@@ -115,6 +116,25 @@ Drainage drainage_of(const Scene &scene, const Needs &needs) {
   return d;
 }
 
+std::vector<HeatedBaseNeeds> heated_bases_of(const Scene &scene, const Needs &needs) {
+  double time = 0;
+  for (const Stage &stage : scene.stage)
+    if (!is_static(stage.kind)) time += stage.duration;
+  const BodyReport &soil = needs.bodies.front().body;
+  double middle[3];
+  for (int d = 0; d < 3; ++d) middle[d] = (soil.low[d] + soil.high[d]) / 2;
+  std::vector<HeatedBaseNeeds> bases;
+  for (const BoundarySource &source : scene.boundary) {
+    const Boundary kind = read_boundary(source.kind);
+    if (!kind.shear_zone) continue;
+    const auto way = [&](double diffusivity) { return std::sqrt(4 * diffusivity * time); };
+    bases.push_back({source.name,
+                     kind.shear_zone->weakening_slip(kind.friction_coefficient(middle[0], middle[1], middle[2], 0, 0)),
+                     way(kind.shear_zone->thermal_diffusivity()), way(kind.shear_zone->hydraulic_diffusivity()), time});
+  }
+  return bases;
+}
+
 // ---- advice ----
 
 class Adviser {
@@ -140,6 +160,7 @@ class Adviser {
     stiffness();
     start();
     for (std::size_t i = 0; i < scene_.stage.size(); ++i) stage(scene_.stage[i]);
+    bases();
     step();
     transfer();
     dimension();
@@ -244,6 +265,20 @@ class Adviser {
     if (stage.until == StopWhen::equilibrium && stage.duration < 20 * needs_.layer.transit)
       say("Stage " + stage.name + " lasts " + digits(stage.duration / needs_.layer.transit) +
           " wave transits, too short for equilibrium; give it " + digits(50 * needs_.layer.transit, 1) + " s or more.");
+  }
+
+  /// Bases whose friction depends on slip or heat, in stages that do not let them slip for good.
+  void bases() {
+    for (const BoundarySource &source : scene_.boundary) {
+      if (!read_boundary(source.kind).remembers) continue;
+      for (const Stage &stage : scene_.stage)
+        if (is_static(stage.kind) && stage.kind != StageKind::seepage)
+          say("Stage " + stage.name + " takes boundary." + source.name +
+              " at a slip of 0 and cold: finite elements do not follow its slip.");
+        else if (!is_static(stage.kind) && stage.gravity_ramp > 0 && stage.softening)
+          say("Stage " + stage.name + " builds up the stress while boundary." + source.name +
+              " counts slip and heat; softening = false keeps it fresh and cold until the loads come.");
+    }
   }
 
   void step() {
@@ -352,14 +387,16 @@ void sample_functions(const Scene &scene, const std::vector<BodyReport> &bodies)
   scene.root->each_expression([&](const Function &function) {
     const auto intervals = [&](const char *variable, int most) { return function.uses(variable) ? most : 0; };
     const int n[3] = {intervals("x", places), intervals("y", places), intervals("z", places)};
-    const int last = intervals("t", times);
-    if (last == 0) return;
+    const int last = intervals("t", times), slips = intervals("slip", places);
+    if (last == 0 && slips == 0) return;
     const auto at = [&](int d, int i) { return low[d] + (high[d] - low[d]) * i / std::max(1, n[d]); };
     for (int k = 0; k <= last; ++k)
       for (int a = 0; a <= n[0]; ++a)
         for (int b = 0; b <= n[1]; ++b)
           for (int c = 0; c <= n[2]; ++c)
-            (void)function(at(0, a), at(1, b), at(2, c), end * k / std::max(1, last), high[1]);
+            for (int s = 0; s <= slips; ++s)  // up to the width of the soil, most of them small
+              (void)function(at(0, a), at(1, b), at(2, c), end * k / std::max(1, last), high[1],
+                             s > 0 ? (high[0] - low[0]) * std::pow(0.1, places - s) : 0);
   });
 }
 
@@ -424,6 +461,7 @@ Needs find_needs(Scene &scene) {
         scene.output.interval > 0 ? static_cast<long long>(std::ceil(stage.duration / scene.output.interval)) : 1;
   }
   needs.results *= static_cast<double>(needs.snapshots);
+  needs.heated_bases = heated_bases_of(scene, needs);
   needs.drainage = drainage_of(scene, needs);
   return needs;
 }

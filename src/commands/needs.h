@@ -30,6 +30,14 @@ struct LayerNeeds {
   double settlement = 0;      ///< of its top under its weight [m]
 };
 
+/// A base that sliding heats.
+struct HeatedBaseNeeds {
+  std::string name;
+  double weakening_slip;       ///< over which friction falls to 1/e, undrained and without conduction [m]
+  double heat_way, water_way;  ///< sqrt(4 a t) of temperature and pressure in all motion [m]
+  double time;                 ///< of all motion [s]
+};
+
 struct StageNeeds {
   std::string name;
   double duration;  ///< longest [s]
@@ -52,18 +60,19 @@ struct Needs {
   std::string function_fault;         ///< a value of a function that its key does not admit, as a sentence
   std::vector<std::string> unlikely;  ///< sentences on values that hardly any soil has
   std::vector<std::string> brittle;   ///< sentences on soils that soften fast for the height of the ground
-  Drainage drainage;                  ///< time = 0 without gravity
-  double gravity;                     ///< [m/s2]
-  int slowest;                        ///< body that sets the critical step
-  double critical_step;               ///< [s]
-  double altitude_rule;               ///< smallest altitude over the largest wave speed [s]
-  double step;                        ///< taken [s]
-  bool fixed_step;                    ///< given by the scene
-  int burst_steps = 0;                ///< timed
-  double seconds_per_step = 0;        ///< of wall time
-  std::string burst_failure;          ///< why the burst broke off; empty if it did not
-  double memory;                      ///< resident after the burst, over all ranks [B]
-  double results;                     ///< snapshots on disk [B]
+  std::vector<HeatedBaseNeeds> heated_bases;
+  Drainage drainage;            ///< time = 0 without gravity
+  double gravity;               ///< [m/s2]
+  int slowest;                  ///< body that sets the critical step
+  double critical_step;         ///< [s]
+  double altitude_rule;         ///< smallest altitude over the largest wave speed [s]
+  double step;                  ///< taken [s]
+  bool fixed_step;              ///< given by the scene
+  int burst_steps = 0;          ///< timed
+  double seconds_per_step = 0;  ///< of wall time
+  std::string burst_failure;    ///< why the burst broke off; empty if it did not
+  double memory;                ///< resident after the burst, over all ranks [B]
+  double results;               ///< snapshots on disk [B]
   long long snapshots;
   int ranks;
 

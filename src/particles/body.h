@@ -1,6 +1,7 @@
 #pragma once
 /// The particles of one soil, in a DMSwarm of their own. So a law runs over one array without looking at body numbers,
 /// and a body has the history fields of its own law only.
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -48,6 +49,9 @@ struct ParticleArrays {
   PetscInt *id;                 ///< number that does not depend on the partition
 };
 
+/// Least volume of a particle whose volume is capped, as a share of its initial volume: 1/e, theory (3.9).
+inline constexpr double smallest_volume_share = 0.36787944117144233;
+
 template <int dim>
 class Body {
  public:
@@ -60,12 +64,13 @@ class Body {
   const std::string &name() const { return source_->name; }
   const Law &law() const { return law_; }
   int history_count() const { return history_count_; }
-  /// Largest volume of a point whose initial volume is `initial` [m3]: the cap times e^(plastic expansion), where the
-  /// law dilates.
-  double volume_limit(double initial, const double *history) const {
-    if (!capped()) return volume_cap_;
+  /// The volume closest to `volume` that a point may have whose initial volume is `initial` [m3], theory (3.9): at most
+  /// the cap times e^(plastic expansion), where the law dilates, and at least 1/e of the initial volume.
+  double admissible_volume(double volume, double initial, const double *history) const {
+    if (!capped()) return volume;
     const double expansion = expansion_field_ < 0 ? 0 : history[expansion_field_];
-    return volume_cap_ * initial * (expansion > 0 ? exponential(expansion) : 1);
+    const double largest = volume_cap_ * initial * (expansion > 0 ? exponential(expansion) : 1);
+    return std::min(std::max(volume, smallest_volume_share * initial), largest);
   }
   /// Is the volume of a particle limited?
   bool capped() const { return volume_cap_ != std::numeric_limits<double>::infinity(); }

@@ -19,6 +19,7 @@ struct Function::Expression {
     parser.DefineVar("z", &z);
     parser.DefineVar("t", &t);
     parser.DefineVar("table", &table);
+    parser.DefineVar("slip", &slip);
     parser.DefineConst("pi", std::numbers::pi);
     for (auto &[name, function] : functions) parser.DefineFunUserData(name, call, &function);
     parser.SetExpr(text);
@@ -39,7 +40,7 @@ struct Function::Expression {
   std::set<std::string> used;
   std::shared_ptr<const FunctionLimits> limits;
   double scale;
-  double x = 0, y = 0, z = 0, t = 0, table = 0;
+  double x = 0, y = 0, z = 0, t = 0, table = 0, slip = 0;
 };
 
 namespace {
@@ -78,7 +79,7 @@ void Function::Expression::report(double value) const {
   else
     text << value / limits->si << limits->unit << " at ";
   const char *comma = "";
-  for (const auto &[name, at] : {std::pair{"x", x}, {"y", y}, {"z", z}, {"table", table}})
+  for (const auto &[name, at] : {std::pair{"x", x}, {"y", y}, {"z", z}, {"table", table}, {"slip", slip}})
     if (used.contains(name)) text << comma << name << " = " << at << " m", comma = ", ";
   text << comma << "t = " << t << " s";
   limits->fault = text.str();
@@ -105,11 +106,11 @@ Function::Function(const std::string &expression, double scale, const NamedFunct
 
 bool Function::uses(const std::string &variable) const { return expression_ && expression_->used.contains(variable); }
 
-double Function::operator()(double x, double y, double z, double t, double table) const {
+double Function::operator()(double x, double y, double z, double t, double table, double slip) const {
   if (!times_.empty()) return interpolate(t);
   if (!expression_) return value_;
   Expression &e = *expression_;
-  e.x = x, e.y = y, e.z = z, e.t = t, e.table = table;
+  e.x = x, e.y = y, e.z = z, e.t = t, e.table = table, e.slip = slip;
   const double value = e.scale * e.parser.Eval();
   const bool admissible = !e.limits || (value >= e.limits->low && value <= e.limits->high);  // false also for NaN
   if (!admissible) e.report(value);

@@ -13,7 +13,7 @@ using NamedFunctions = std::map<std::string, Function>;  ///< the scene's [funct
 /// Variables that a key gives its function.
 namespace of {
 inline constexpr const char *time = "t", *place = "x, y, z", *place_and_time = "x, y, z, t",
-                            *place_time_and_table = "x, y, z, t, table";
+                            *place_time_and_table = "x, y, z, t, table", *place_time_and_slip = "x, y, z, t, slip";
 }  // namespace of
 
 /// What a key admits as values of its function, and the first value that it did not. A function is evaluated deep
@@ -27,8 +27,9 @@ struct FunctionLimits {
   mutable std::string fault{};  ///< a sentence; empty: every value so far was admissible
 };
 
-/// Value of a function at x, y, z [m], t [s]; `table` is the elevation of the water table at x where a scene key offers
-/// it. Copies share one parsed expression; evaluation allocates nothing. Not for use by several threads at once.
+/// Value of a function at x, y, z [m], t [s]; where a scene key offers them, `table` is the elevation of the water
+/// table at x and `slip` the accumulated slip of a base [m]. Copies share one parsed expression; evaluation allocates
+/// nothing. Not for use by several threads at once.
 class Function {
  public:
   Function() = default;    ///< not set
@@ -37,16 +38,16 @@ class Function {
   /// value.
   Function(std::vector<double> times, std::vector<double> values);
   /// `scale` times the expression. Throws std::invalid_argument with muParser's message when the text is no expression
-  /// of x, y, z, t, table, pi and the named functions, each of which is called with one argument.
+  /// of x, y, z, t, table, slip, pi and the named functions, each of which is called with one argument.
   Function(const std::string &expression, double scale, const NamedFunctions &functions = {});
 
   bool given() const { return given_; }
   bool constant() const { return given_ && !expression_ && times_.empty(); }
   bool depends_on_time() const { return !times_.empty() || uses("t"); }
-  /// Does the expression name this variable: x, y, z, t or table?
+  /// Does the expression name this variable: x, y, z, t, table or slip?
   bool uses(const std::string &variable) const;
 
-  double operator()(double x, double y, double z, double t, double table = 0) const;
+  double operator()(double x, double y, double z, double t, double table = 0, double slip = 0) const;
   double operator()(double t) const { return (*this)(0, 0, 0, t); }
 
   /// From now on values are held against these limits; numbers and tables, whose values the reader has checked, need

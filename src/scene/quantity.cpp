@@ -34,6 +34,7 @@ constexpr NamedUnit named_units[] = {
     {"atm", 101325, pressure, false},
     {"J", 1, energy, true},
     {"W", 1, power, true},
+    {"K", 1, {0, 0, 0, 0, 1}, false},
     {"Hz", 1, {0, 0, -1, 0}, true},
     {"l", 1e-3, {0, 3, 0, 0}, true},
     {"L", 1e-3, {0, 3, 0, 0}, true},
@@ -68,7 +69,8 @@ struct Measure {
 
 Measure operator*(const Measure &a, const Measure &b) {
   const Dimension &p = a.dimension, &q = b.dimension;
-  return {a.si * b.si, {p.mass + q.mass, p.length + q.length, p.time + q.time, p.angle + q.angle}};
+  return {a.si * b.si,
+          {p.mass + q.mass, p.length + q.length, p.time + q.time, p.angle + q.angle, p.temperature + q.temperature}};
 }
 
 /// By repeated products and one quotient, so that (1e-2)^-2 is exactly 1e4.
@@ -76,7 +78,8 @@ Measure power_of(const Measure &a, int exponent) {
   const Dimension &d = a.dimension;
   double si = 1;
   for (int i = 0; i < std::abs(exponent); ++i) si *= a.si;
-  return {exponent < 0 ? 1 / si : si, {d.mass * exponent, d.length * exponent, d.time * exponent, d.angle * exponent}};
+  return {exponent < 0 ? 1 / si : si,
+          {d.mass * exponent, d.length * exponent, d.time * exponent, d.angle * exponent, d.temperature * exponent}};
 }
 
 std::optional<Measure> find_unit(std::string_view name) {

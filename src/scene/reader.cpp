@@ -22,7 +22,8 @@ namespace {
 
 bool is_function_name(const std::string &name) {
   const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
-  const bool variable = name == "x" || name == "y" || name == "z" || name == "t" || name == "table" || name == "pi";
+  const bool variable =
+      name == "x" || name == "y" || name == "z" || name == "t" || name == "table" || name == "slip" || name == "pi";
   return !variable && !mu::Parser().GetFunDef().contains(name) && !name.empty() &&
          !std::isdigit((unsigned char)name[0]) && std::all_of(name.begin(), name.end(), fits);
 }

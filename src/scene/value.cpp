@@ -118,7 +118,7 @@ Function TableReader::Value::limited_expression(const std::string &expected, Uni
                                                 const char *variables) const {
   Function function = expression(expected, unit.si);
   const std::string known = std::string(", ") + variables + ",";
-  for (const std::string name : {"x", "y", "z", "t", "table"})
+  for (const std::string name : {"x", "y", "z", "t", "table", "slip"})
     if (function.uses(name) && known.find(" " + name + ",") == std::string::npos)
       must_be(expected, "it cannot depend on " + name);
   constexpr double largest = std::numeric_limits<double>::max();
@@ -136,7 +136,7 @@ Function TableReader::Value::named_function() const {
   if (node_->is_array()) return table(expected, [](const Value &element) { return element.any_quantity(); });
   if (is_number() || looks_like_quantity(string(expected))) return any_quantity();
   const Function function = expression(expected, 1);
-  for (const char *place : {"x", "y", "z", "table"})
+  for (const char *place : {"x", "y", "z", "table", "slip"})
     if (function.uses(place)) must_be(expected, std::string("a named function cannot depend on ") + place);
   return function;
 }

@@ -194,10 +194,12 @@ struct BoundaryRow {
   std::string name;
   bool loads = false;  ///< it loads the soil: the mean displacement of its faces is shown, otherwise the force by which
                        ///< it supports the soil
-  bool inflow = false;  ///< the water that enters through it is shown
-  Vec<dim> value{};     ///< displacement [m] or force [N]
-  double water = 0;     ///< entering [m3/s]
-  double work = 0;      ///< done on the soil since the start [J]
+  bool inflow = false;                    ///< the water that enters through it is shown
+  bool remembers = false, heats = false;  ///< a base: its slip is shown; and the heat of its shear zone
+  Vec<dim> value{};                       ///< displacement [m] or force [N]
+  double water = 0;                       ///< entering [m3/s]
+  double work = 0;                        ///< done on the soil since the start [J]
+  typename Conditions<dim>::BaseReport base{};
 };
 
 /// The whole run in a row of history.csv: sums over all ranks.
@@ -243,6 +245,14 @@ struct RunRow {
     for (const auto &b : boundaries)
       for (int d = 0; d < dim; ++d)
         column(b.name + (b.loads ? "_displacement_" : "_force_") + "xyz"[d], b.loads ? "m" : "N", b.value[d]);
+    for (const auto &b : boundaries) {
+      if (b.remembers) column(b.name + "_slip", "m", b.base.slip), column(b.name + "_friction", "-", b.base.friction);
+      if (!b.heats) continue;
+      column(b.name + "_temperature", "K", b.base.temperature);
+      column(b.name + "_hottest", "K", b.base.hottest);
+      column(b.name + "_excess_pressure", "Pa", b.base.pressure);
+      column(b.name + "_heat", "J", b.base.heat);
+    }
     double done = 0;
     const auto work_column = [&](const string &by, double joules) {
       column("work_" + by, "J", joules);

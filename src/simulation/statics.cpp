@@ -98,10 +98,8 @@ void Statics<dim>::prepare() {
 
 template <int dim>
 void Statics<dim>::begin_stage(const Stage &stage, bool soil_moves) {
-  if (!problem_)
-    make();
-  else if (moved_since_)
-    to_gauss_points();
+  if (!problem_) prepare();
+  if (moved_since_) to_gauss_points();
   world_.choose_bodies(stage, clock_);
   choose_laws(stage);
   require(activate());
@@ -299,6 +297,7 @@ void Statics<dim>::to_gauss_points() {
   problem_->bases().release();
   pressure_from_particles();
   if (world_.motion->gathered()) require(world_.release(clock_.time));
+  check_places();
   for (size_t b = 0; b < world_.bodies.size(); ++b) {
     const ParticleArrays<dim> &p = world_.bodies[b]->particles();
     GaussPoints<dim> &points = problem_->soil().points()[b];
@@ -319,6 +318,25 @@ void Statics<dim>::to_gauss_points() {
       for (int k = 0; k < memory; ++k) points.history[q * memory + k] = s[stress_size<dim> + k] / volume[cell];
     }
   }
+}
+
+/// Finite elements have soil in the cells of its region alone.
+template <int dim>
+void Statics<dim>::check_places() const {
+  std::string body;
+  Vec<dim> where{};
+  for (size_t b = 0; b < world_.bodies.size() && body.empty(); ++b) {
+    const ParticleArrays<dim> &p = world_.bodies[b]->particles();
+    for (int i = 0; i < p.count && body.empty(); ++i)
+      if (problem_->soil().body_of(p.cell[i]) != static_cast<int>(b))
+        body = world_.scene.body[b].name, where = p.position[i];
+  }
+  const std::string place = place_of_first<dim>(world_.comm, !body.empty(), where);
+  if (!place.empty())
+    throw RunFailure("body." + text_of_first(world_.comm, !body.empty(), body) + " has soil at " + place +
+                     ", outside of its region: finite elements compute soil at its place at the start, so a stage of "
+                     "theirs can follow a motion only as long as the soil stays in its region; leave the stage out, or "
+                     "end the motion earlier");
 }
 
 /// Nodes take the mean of the particles around them, weighted by volume and shape function.

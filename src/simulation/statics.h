@@ -71,6 +71,7 @@ class Statics {
   void check_supports(bool soil_moves) const;
   void start_stress();  // initial_stress.cpp
   void to_gauss_points();
+  void check_places() const;
   void pressure_from_particles();
   void use_seeped_pressure();
   int cell_at(const Vec<dim> &x) const;

@@ -9,6 +9,8 @@
 #include <optional>
 
 #include "base/units.h"
+#include "physics/boundary/boundary.h"
+#include "physics/boundary/pore_conditions.h"
 #include "physics/prescribed_pressure.h"
 #include "simulation/failure.h"
 
@@ -189,6 +191,37 @@ void doubt_own_tables(const Scene &scene, double height, const std::vector<SoilF
   }
 }
 
+// ---- seepage ----
+
+/// The first stage of seepage, or the end of the stages.
+std::vector<Stage>::const_iterator first_seepage(const Scene &scene) {
+  return std::find_if(scene.stage.begin(), scene.stage.end(),
+                      [](const Stage &stage) { return stage.kind == StageKind::seepage; });
+}
+
+/// Pressure rises under ground that lets no water out, where none stands that would bear against it.
+void doubt_sealed_ground(const Scene &scene, std::vector<std::string> &sentences) {
+  if (first_seepage(scene) == scene.stage.end()) return;
+  for (const BoundarySource &boundary : scene.boundary)
+    if (std::count(boundary.group.begin(), boundary.group.end(), free_surface) &&
+        read_boundary(boundary.kind).water == OnWater::wall)
+      sentences.push_back("boundary." + boundary.name +
+                          " lets no water through the ground, so that pore pressure may rise there, and "
+                          "water.open_water_load = true takes this pressure for the load of water on the ground: it "
+                          "would not weaken the soil. Set water.open_water_load = false, or let water out with kind = "
+                          "\"rainfall\" and intensity = 0");
+}
+
+/// The suction of drained soil is where its seepage begins, and no stage before that sees it.
+void doubt_early_suction(const Scene &scene, std::vector<std::string> &sentences) {
+  const auto first = first_seepage(scene);
+  if (scene.water.suction.given() && first != scene.stage.end() && first != scene.stage.begin())
+    sentences.push_back("water.suction acts from the first stage of seepage on, " + first->name +
+                        ": the soil of stage " + scene.stage.front().name +
+                        " has none. If its strength depends on suction, put a stage of seepage with hold_loads = true "
+                        "before it");
+}
+
 // ---- ends of the mesh ----
 
 /// A range of coordinates along an axis.
@@ -308,9 +341,11 @@ std::vector<std::string> unlikely_surroundings(const Scene &scene, const std::ve
     sentences.push_back("The soil is " + rounded(height) +
                         " m high; coordinates count in metres. Is the mesh in kilometres?");
   doubt_table(scene, soil, sentences);
+  if (scene.phases == PhaseModel::drained) doubt_early_suction(scene, sentences);
   if (scene.phases == PhaseModel::drained && scene.water.open_water_load) {
     doubt_ponds(scene, soil.of(1), surface, sentences);
     doubt_own_tables(scene, soil.of(1), surface, sentences);
+    doubt_sealed_ground(scene, sentences);
   }
   doubt_ends(scene, soil, down, surface, sentences);
   doubt_base(scene, soil, down, surface, sentences);

@@ -319,6 +319,7 @@ void World<dim>::set_loading(const Stage &stage, double stage_time, const Clock 
   motion->loading.time = clock.load_time;
   motion->loading.damping = stage.damping;
   motion->loading.softening = stage.softening;
+  conditions.remember_slip(stage.softening);
   motion->loading.pore_flow = stage.pore_flow;
 }
 
@@ -420,6 +421,7 @@ PetscErrorCode World<dim>::check_conservation() const {
 template <int dim>
 void World<dim>::reset_displacement(double time) {
   if (motion->gathered()) require(release(time));
+  conditions.forget_slip();
   for (const auto &body : bodies) {
     const ParticleArrays<dim> &p = body->particles();
     std::copy_n(p.position, p.count, p.reference);

@@ -161,6 +161,21 @@ void World<dim>::check_quasi_static_base(const std::string &path) const {
                        ", a base with friction: the corners of facets of second order bear nothing");
 }
 
+/// Refuses quasi-static stages on a base that an earlier motion has changed: finite elements take it fresh and cold.
+template <int dim>
+void World<dim>::check_fresh_base(const std::string &path) const {
+  const Stage *changes = nullptr;
+  for (const Stage &stage : scene.stage) {
+    if (stage.kind == StageKind::dynamic && stage.softening) changes = &stage;
+    if (stage.reset_displacement) changes = nullptr;
+    if (changes && is_static(stage.kind) && stage.kind != StageKind::seepage)
+      scene.complain(path + ".kind", "depends on the slip of the base, which finite elements do not know: stage " +
+                                         stage.name + " cannot follow the motion of stage " + changes->name +
+                                         "; put it before, set softening = false or reset_displacement = true there, "
+                                         "or take friction that does not depend on slip");
+  }
+}
+
 template <int dim>
 void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
   check_something_acts(sources);
@@ -181,6 +196,7 @@ void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
     if (quasi_static && source.kind.quasi_static == OnSoil::refused)
       scene.complain(path + ".kind", "has no quasi-static form; take fixed, roller, velocity or traction");
     if (quasi_static && source.kind.quasi_static == OnSoil::contact) check_quasi_static_base(path);
+    if (quasi_static && source.kind.remembers) check_fresh_base(path);
     if (source.kind.in_motion == OnSoil::contact && phases.prescribed && !scene.water.open_water_load)
       scene.complain(path + ".kind",
                      "rubs with effective stress, which it does not know with water.open_water_load = false; leave "

@@ -97,7 +97,7 @@ class RunFromNodes {
       p.volume[i] *= growth_;
       if constexpr (fluids > 0) pores = p.volume[i] - p.mass[i] * over_density_;
       if (body_.capped())
-        p.volume[i] = std::min(p.volume[i], body_.volume_limit(p.initial_volume[i], p.history + i * count));
+        p.volume[i] = body_.admissible_volume(p.volume[i], p.initial_volume[i], p.history + i * count);
     }
     return {coordinates(x), pores};
   }

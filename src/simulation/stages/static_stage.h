@@ -96,10 +96,14 @@ class StaticStage : public StageRunner<dim> {
     text.precision(3);
     if (path_.last.stopped) throw RunFailure("interrupted");
     if (path_.share < 1) {
-      text << "no equilibrium beyond " << 100 * path_.share << " % of the loads of stage " << stage_.name << ": "
+      text << (soil_moves() ? "no equilibrium beyond " : "no flow was found beyond ") << 100 * path_.share
+           << " % of the " << (soil_moves() ? "loads" : "duration") << " of stage " << stage_.name << ": "
            << (path_.last.singular ? "the stiffness became singular" : "Newton's iterations did not converge") << " ("
-           << path_.last.iterations << " iterations, out-of-balance force " << path_.last.residual
-           << " of the forces, largest step of a node " << path_.last.largest << " m)";
+           << path_.last.iterations << " iterations";
+      if (!water_flows())
+        text << ", out-of-balance force " << path_.last.residual << " of the forces, largest step of a node "
+             << path_.last.largest << " m";
+      text << ")";
       const bool softened = soil_moves() && run_.statics.softening_strain() > begin_strain_;
       if (softened)
         text << "; its soil softens, and beyond its peak there may be no equilibrium that stays near: motion goes on "

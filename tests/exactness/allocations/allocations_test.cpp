@@ -79,6 +79,23 @@ TEST(Allocations, none_during_remaps_of_a_collapsing_column) {
   EXPECT_EQ(c.in_remaps, 0);
 }
 
+TEST(Allocations, none_on_a_base_that_heats_itself) {
+  std::vector<std::string> heated{"mesh.size=0.01",
+                                  "boundary.base.kind=heated_friction",
+                                  "boundary.base.friction_angle=10 + 10 * exp(-slip / 0.01)",
+                                  "boundary.base.thickness=1e-4",
+                                  "boundary.base.hydraulic_conductivity=1e-9",
+                                  "boundary.base.storage=1e-8",
+                                  "boundary.base.thermal_pressurisation=1e5"};
+  const Count between = count(column, heated, 400, 100);
+  EXPECT_GT(between.steps, 50);
+  EXPECT_EQ(between.in_steps, 0);
+  heated.emplace_back("transfer.remap_interval=0");
+  const Count during = count(column, heated, 4000, 100);
+  EXPECT_EQ(during.remaps, 100);
+  EXPECT_EQ(during.in_remaps, 0);
+}
+
 TEST(Allocations, none_in_steps_and_remaps_under_error_control) {
   const Count c = count(column, {"mesh.size=0.01", "integrator.kind=arkode"}, 1500, 200);
   EXPECT_GT(c.steps, 50);

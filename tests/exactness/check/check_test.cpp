@@ -62,6 +62,17 @@ TEST(Check, TriesFunctionsOverStagesAndPlaces) {
                   .says("breaks off in its first steps: --set: boundary.base.velocity.1"));
 }
 
+TEST(Check, SaysHowStagesTakeABaseThatRemembersSlip) {
+  const Folder folder;
+  const std::string weakens = "boundary.base={kind='friction', friction_angle='30 - slip'}";
+  EXPECT_FALSE(check(folder, {weakens}).says("boundary.base"));
+  EXPECT_TRUE(check(folder, {weakens, "stage.0.kind=quasi_static"})
+                  .says("Stage fall takes boundary.base at a slip of 0 and cold"));
+  EXPECT_TRUE(check(folder, {weakens, "stage.0.gravity_ramp=0.01"}).says("counts slip and heat; softening = false"));
+  EXPECT_TRUE(check(folder, {"boundary.base={kind='friction', friction_angle='30 - 100 * slip'}"})
+                  .says("must be a number from 0 to 89 deg; it is -70 deg at slip = 1 m"));
+}
+
 /// A number without a unit counts in the unit of its key, which is not always the one that its writer had in mind.
 TEST(Check, DoubtsValuesThatNoSoilHas) {
   const Folder folder;
@@ -156,6 +167,40 @@ TEST(Check, DoubtsWaterTablesOfASoilAboveItsGround) {
   EXPECT_FALSE(advice({"body.sand.water_table=[[0, 0.5], [1, 0.3]]"}).says(doubt)) << "water leaves at the steep face";
   EXPECT_FALSE(advice({own, "water.open_water_load=false"}).says(doubt)) << "a head";
   EXPECT_FALSE(advice({own, "boundary.top={kind='traction', pressure=3e3}"}).says(doubt)) << "a load bears against it";
+}
+
+/// Pressure at the surface of the soil counts as the load of open water. Under sealed ground there is none.
+TEST(Check, DoubtsSeepageUnderSealedGround) {
+  const Folder folder;
+  folder.write("section.csv", good_section);
+  folder.write("scene.toml",
+               changed(good_scene, "density = 2000", "porosity = 0.3\ngrain_density = 2650\npermeability = 1e-12"));
+  const auto advice = [&](const std::vector<std::string> &overrides) {
+    std::vector<std::string> words{"check",          "scene.toml", "--set",
+                                   "phases=drained", "--set",      "water.table=[[0, 0.3], [1, 0.1]]"};
+    for (const std::string &one : overrides) words.insert(words.end(), {"--set", one});
+    const Ending ending = talus(folder, words);
+    EXPECT_EQ(ending.status, 0) << ending.output;
+    return ending;
+  };
+  const std::string seepage = "stage.0.kind=seepage",
+                    sealed = "boundary.ground={kind='impermeable', group='free_surface'}";
+  const char *doubt = "boundary.ground lets no water through the ground";
+  EXPECT_TRUE(advice({seepage, sealed}).says(doubt));
+  EXPECT_FALSE(advice({seepage, sealed, "water.open_water_load=false"}).says(doubt));
+  const std::string second = "[[stage]]\nname = \"rain\"\nkind = \"seepage\"\nduration = 1\n",
+                    dries =
+                        "[body.sand.retention]\ncurve = \"van_genuchten\"\nreference_suction = 1e4\nshape = 0.5\n"
+                        "[body.sand.relative_permeability]\ncurve = \"van_genuchten_mualem\"\nshape = 0.5\n";
+  folder.write("scene.toml",
+               changed(good_scene, "density = 2000", "porosity = 0.3\ngrain_density = 2650\npermeability = 1e-12") +
+                   dries + second);
+  const char *early = "water.suction acts from the first stage of seepage on, rain";
+  EXPECT_TRUE(advice({"water.suction=5e4"}).says(early));
+  EXPECT_FALSE(advice({"water.suction=5e4", seepage}).says(early));
+  EXPECT_FALSE(advice({}).says(early));
+  EXPECT_FALSE(advice({seepage, "boundary.ground={kind='impermeable', group='right'}"}).says(doubt)) << "a side";
+  EXPECT_FALSE(advice({seepage, "boundary.ground={kind='rainfall', group='free_surface', intensity=0}"}).says(doubt));
 }
 
 /// Equilibrium of soil that ends with the mesh depends on what holds it there.

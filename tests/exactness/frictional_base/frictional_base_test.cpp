@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "scene/reader.h"
 #include "simulation.h"
@@ -10,6 +11,7 @@
 namespace talus {
 namespace {
 
+const std::string block = std::string(TALUS_VERIFICATION) + "/incline_block/scene.toml";
 const std::string column = std::string(TALUS_GALLERY) + "/column/scene.toml";
 constexpr double height = 0.1;
 
@@ -41,6 +43,35 @@ TEST(FrictionalBase, column_comes_to_rest_on_it_in_3d) {
   expect_rest({"mesh.size=0.0125", "dimension=3", "boundary.front.kind=roller", "boundary.back.kind=roller",
                "output.point.corner.position=[0.2, 0.1, 0.006]",
                "body.bars.stress=[" + k0 + ", \"-9.81 * 2650 * (0.1 - y)\", " + k0 + ", \"0\", \"0\", \"0\"]"});
+}
+
+/// Slip is the way of the block while the stage records it, and none after a reset; the heat of the base is the work of
+/// friction. The block of 1 m covers new places as it slides on, so the mean slip below it falls behind its way by half
+/// of its square. Where it begins and ends is known to a cell of 0.1 m. The work that is left behind with the tail is
+/// less than s / 2 of it, since friction presses the front down.
+TEST(FrictionalBase, remembers_slip_and_heat_where_the_stage_says_so) {
+  const auto at_end = [](const std::string &keys, const char *column) {
+    Scene scene = read_scene(
+        block, {"boundary.base.kind=heated_friction", "boundary.base.thickness=0.01", "boundary.base.storage=1e-9",
+                "boundary.base.hydraulic_conductivity=1e-11", "boundary.base.thermal_pressurisation=1e3",
+                "stage=[{name='first', duration=0.2, " + keys + "}, {name='second', duration=0.4}]"});
+    RunOptions options;
+    options.pictures = options.screen = false;
+    const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+    simulation->run();
+    return simulation->history().column(column).back();
+  };
+  const double way = at_end("softening=true", "base_slip_m"), half = at_end("softening=false", "base_slip_m"),
+               again = at_end("reset_displacement=true", "base_slip_m");
+  const double acceleration = 0.5 * 9.81 - std::tan(M_PI / 9) * std::sqrt(0.75) * 9.81;
+  const auto mean = [](double s) { return s - s * s / 2; };
+  EXPECT_NEAR(way, mean(acceleration * 0.18), 0.1 * acceleration * 0.18);
+  EXPECT_NEAR(half, mean(acceleration * 0.16), 0.1 * acceleration * 0.16);
+  EXPECT_NEAR(again, mean(acceleration * 0.08), 0.1 * acceleration * 0.08);  // the reset stops the block
+  const double heat = at_end("softening=true", "base_heat_J"), work = at_end("softening=true", "work_base_J");
+  EXPECT_GT(heat, -work * (1 - acceleration * 0.18 / 2));
+  EXPECT_LT(heat, -work * 1.05);
+  EXPECT_NEAR(at_end("softening=false", "base_friction"), std::tan(M_PI / 9), 0.02);
 }
 
 }  // namespace

@@ -62,8 +62,8 @@ def closes(folder, everything):
             assert np.abs(own - left[f"momentum_{axis}_kg_m_s"]).max() <= 1e-15 * np.abs(own).max(), "momentum of one"
     # no force acts from outside along x and y: momentum in the mesh and in the ledger is that of the start, where water
     # has the velocity of the soil and the same share of each particle. Water that passes the surface of the soil takes
-    # its momentum along, at up to 20 m/s. In unsaturated soil 22 m/s times the water that passes is lost: most likely the
-    # limits of its flux, which are imposed on gathered velocities without a reaction on the skeleton, take the rest
+    # its momentum along, at up to 20 m/s. In unsaturated soil 22 m/s times the water that passes is lost, and
+    # the cause of the rest is not known, theory of pores, section 7
     if everything or "water_kg" not in left:
         passed = 25 * np.abs(history["water_out_kg"]).max() if "water_kg" in left else 0
         assert passed < 1e-3 * 12 * full_mass, "little water passes the surface"

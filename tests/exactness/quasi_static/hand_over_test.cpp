@@ -21,15 +21,44 @@ TEST(QuasiStatic, motion_takes_over_where_equilibrium_is_lost) {
   EXPECT_GT(speed.back(), 0);
 }
 
+/// Largest displacement since the last reset, as a share of that by gravity, about 1 mm.
+double moved(const std::string &text) {
+  const Solved solved = solve(text, {"quasi_static.elements=patches", "quasi_static.tolerance=1e-12"});
+  return largest(solved, 2, [&](size_t p, int k) { return solved.value("displacement", p, k) / 1e-3; });
+}
+
 /// Particles to Gauss points and back: what rests is still in equilibrium.
 TEST(QuasiStatic, stress_comes_back_from_particles) {
   const std::string text =
       "gravity = 10\n" + block +
       "reset_displacement = true\n[boundary.base]\nkind = \"fixed\"\n[[stage]]\nname = \"rest\"\nduration = 0.05\n"
       "[[stage]]\nname = \"again\"\nkind = \"quasi_static\"\nduration = 1\n";
-  const Solved solved = solve(text, {"quasi_static.elements=patches", "quasi_static.tolerance=1e-12"});
-  EXPECT_LT(largest(solved, 2, [&](size_t p, int k) { return solved.value("displacement", p, k) / 1e-3; }),
-            1e-9);  // of what gravity moved it
+  EXPECT_LT(moved(text), 1e-9);
+}
+
+/// The same where the motion comes first: it has brought the weight, and finite elements find nothing to move.
+TEST(QuasiStatic, stress_comes_from_a_motion_that_was_first) {
+  const std::string text =
+      "gravity = 10\n" + box +
+      "density = 2000\n[boundary.base]\nkind = \"fixed\"\n[[stage]]\nname = \"settle\"\nduration = 2\ndamping = 0.7\n"
+      "reset_displacement = true\n[[stage]]\nname = \"again\"\nkind = \"quasi_static\"\nduration = 1\n";
+  EXPECT_LT(moved(text), 1e-3);  // the motion has come to rest by far more
+}
+
+/// Finite elements have no cells where soil has flown to.
+TEST(QuasiStatic, soil_that_has_left_its_region_is_refused) {
+  const std::string text =
+      "gravity = 0\n[mesh]\nsection = \"flight.csv\"\nsize = 0.15\n[body.block]\nregion = \"block\"\n"
+      "density = 2000\nlaw = \"linear_elastic\"\nyoung_modulus = \"10 MPa\"\npoisson_ratio = 0.3\n"
+      "velocity = [\"12\", \"0\"]\n[[stage]]\nname = \"flight\"\nduration = 0.05\n"
+      "[[stage]]\nname = \"stand\"\nkind = \"quasi_static\"\nduration = 1\n";
+  try {
+    solve(text);
+    FAIL() << "soil outside of its region";
+  } catch (const RunError &failure) {
+    EXPECT_NE(std::string(failure.what()).find("body.block has soil at ("), std::string::npos) << failure.what();
+    EXPECT_NE(std::string(failure.what()).find("outside of its region"), std::string::npos) << failure.what();
+  }
 }
 
 /// What a stage hands over does not depend on ranks: stress of the particles, and the motion that goes on from it.

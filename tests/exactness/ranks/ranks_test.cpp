@@ -76,6 +76,12 @@ const std::string column = std::string(TALUS_GALLERY) + "/column/scene.toml",
                   box = std::string(TALUS_EXACTNESS) + "/../verification/closed_box/scene.toml";
 
 TEST(Ranks, column_collapse_is_the_same) { expect_the_same(column, {"mesh.size=0.01"}); }
+TEST(Ranks, column_collapse_is_the_same_on_a_base_that_heats_itself) {
+  expect_the_same(column, {"mesh.size=0.01", "boundary.base.kind=heated_friction",
+                           "boundary.base.friction_angle=10 + 10 * exp(-slip / 0.01)", "boundary.base.thickness=1e-4",
+                           "boundary.base.hydraulic_conductivity=1e-9", "boundary.base.storage=1e-8",
+                           "boundary.base.thermal_pressurisation=1e5", "boundary.base.heat_capacity=1e6"});
+}
 TEST(Ranks, column_collapse_is_the_same_with_a_remap_in_every_step) {
   expect_the_same(column, {"mesh.size=0.01", "transfer.remap_interval=0"});
 }

@@ -37,6 +37,13 @@ std::vector<std::string> with_pores(std::vector<std::string> set) {
   return set;
 }
 
+/// A base that loses half of its friction to heat within a few centimetres.
+const std::vector<std::string> heated_base{
+    "boundary.base.kind=heated_friction", "boundary.base.friction_angle=30",
+    "boundary.base.thickness=1e-3",       "boundary.base.hydraulic_conductivity=1e-9",
+    "boundary.base.storage=1e-8",         "boundary.base.thermal_pressurisation=1e5",
+    "boundary.base.heat_capacity=1e6"};
+
 const Variant variants[] = {
     {"dry", {}},
     {"dry_when_killed", {}, 1, SIGKILL},
@@ -44,6 +51,16 @@ const Variant variants[] = {
     {"dry_on_two_ranks", {}, 2, SIGTERM},
     {"dry_with_particle_stress_and_pic",
      {"transfer.average_stress=false", "transfer.locking=nodal", "transfer.velocity=pic"}},
+    {"on_a_base_that_slip_weakens",
+     {"boundary.base.friction_angle=10 + 20 * exp(-slip / 0.1)", "stage.settle.softening=false"}},
+    {"on_a_base_that_heats_itself", heated_base},
+    {"on_a_base_that_heats_itself_on_two_ranks", heated_base, 2, SIGKILL},
+    {"on_a_base_that_heats_itself_by_arkode",
+     [] {
+       std::vector<std::string> set = heated_base;
+       set.push_back("integrator.kind=arkode");
+       return set;
+     }()},
     {"with_strength_by_place",
      {"body.sand.cohesion=1e3 + 500 * x", "body.sand.friction_angle=30 - 4 * y", "transfer.remap_interval=0.05"}},
     {"with_strength_by_place_at_particles_on_two_ranks",

@@ -3,20 +3,16 @@
 // side y = 0 of length 1; expected values are exact, so errors are round-off of a few operations.
 #include <gtest/gtest.h>
 
-#include "../meshes/box_mesh.h"
-#include "physics/boundary/conditions.h"
 #include "physics/boundary/kinds.h"
 #include "physics/boundary/pore_conditions.h"
-#include "scene/reader.h"
 #include "solvers/quasi_static/loads.h"
 #include "solvers/quasi_static/pore_flow.h"
 #include "solvers/quasi_static/supports.h"
+#include "square.h"
 
 namespace talus {
 namespace {
 
-using test::BoxMesh;
-using test::SharedFile;
 using test::sum;
 
 constexpr double round_off = 1e-12;
@@ -33,8 +29,8 @@ struct PorousStone {
   void fields(Visitor &&v) {
     v.number("friction", friction, one, {0, 1}, "coefficient of friction");
   }
-  double friction_coefficient(double, double, double, double) const { return friction; }
-  double adhesion(double, double, double, double) const { return 2; }
+  double friction_coefficient(double, double, double, double, double) const { return friction; }
+  double adhesion(double, double, double, double, double) const { return 2; }
   double outside(double x, double, double, double t, double) const { return 3000 + 100 * x + 10 * t; }
 };
 
@@ -143,68 +139,13 @@ static_assert(!PossibleOnFluids<StopsTheLiquidAlone> && !BoundaryKind<StopsTheLi
 
 // ---- what the parts of the program make of it ----
 
-/// One saturated body in the unit square, all of whose cells are filled; every node has a mass of 1 kg.
-struct Square1m {
-  using Source = Conditions<2>::Source;
-
-  explicit Square1m(std::vector<Source> of)
-      : scene(parse_host_scene(text, "square")),
-        file(BoxMesh(2, 4)),
-        mesh(BackgroundMesh<2>::read(PETSC_COMM_WORLD, file.name(), {})),
-        sources(std::move(of)),
-        grid(mesh),
-        filling(mesh.cell_count(), 1.),
-        impedance(mesh.cell_count(), {1e3, 1e2}) {
-    EXPECT_EQ(conditions.setup(mesh, sources), 0);
-    for (int c = 0; c < mesh.cell_count(); ++c) grid.enter_cell(c);
-    grid.complete();
-    for (int i = 0; i < grid.node_count(); ++i) grid.mass[i] = 1;
-    EXPECT_EQ(conditions.begin(grid, impedance, filling), 0);
-  }
-  bool at_base(int node) const { return grid.position[node][1] == 0; }
-  double base_nodes() const {
-    double count = 0;
-    for (int i = 0; i < grid.node_count(); ++i) count += at_base(i) && mesh.owned[grid.mesh_node[i]];
-    return sum(count);
-  }
-  Vec<2> impulse() {
-    std::vector<Vec<2>> all;
-    EXPECT_EQ(conditions.take_impulses(PETSC_COMM_WORLD, all), 0);
-    return all[0];
-  }
-
-  static constexpr const char *text = R"(
-phases = "saturated"
-gravity = 0
-[body.soil]
-region = ["lower", "upper"]
-porosity = 0.4
-grain_density = 2650
-hydraulic_conductivity = "1e-3 m/s"
-law = "linear_elastic"
-young_modulus = "10 MPa"
-poisson_ratio = 0.25
-[[stage]]
-name = "only"
-duration = 1
-)";
-  Scene scene;
-  SharedFile file;
-  BackgroundMesh<2> mesh;
-  std::vector<Source> sources;
-  Conditions<2> conditions;
-  FilledGrid<2> grid;
-  std::vector<double> filling;
-  std::vector<std::array<double, 2>> impedance;
-};
-
 TEST(OwnBoundary, IsReadByAListThatNamesIt) {
   Scene scene =
       parse_host_scene(std::string(Square1m::text) + "[boundary.base]\nkind = 'porous_stone'\nfriction = 0.75", "own");
   using Kinds = std::variant<Fixed, PorousStone>;
   const Boundary read = read_boundary_of<Kinds>(scene.boundary[0].kind);
   EXPECT_EQ(read.in_motion, OnSoil::contact);
-  EXPECT_EQ(read.friction_coefficient(0, 0, 0, 0), 0.75);
+  EXPECT_EQ(read.friction_coefficient(0, 0, 0, 0, 0), 0.75);
   EXPECT_THROW(read_boundary(scene.boundary[0].kind), SceneError);  // the list of the house does not have it
 }
 

@@ -107,7 +107,16 @@ TEST(RunRow, names_what_it_holds_and_closes_its_ledgers) {
   row.work = {4, 5, -6};
   row.escaped = {.particles = 3, .mass = 50, .fluid_mass = {6, 0}, .momentum = {70, -80}, .energy = 9};
   row.fluids = {{100, 7, 2}}, row.first_fluid = {104};
-  row.boundaries = {{"base", false, true, {8, 9}, 10, 11}, {"footing", true, false, {12, 13}, 0, 14}};
+  const Conditions<2>::BaseReport base{.slip = 15, .friction = 16, .temperature = 17, .hottest = 18, .pressure = 19};
+  row.boundaries = {{.name = "base",
+                     .inflow = true,
+                     .remembers = true,
+                     .heats = true,
+                     .value = {8, 9},
+                     .water = 10,
+                     .work = 11,
+                     .base = base},
+                    {.name = "footing", .loads = true, .value = {12, 13}, .work = 14}};
   Names names;
   std::map<std::string, double> value;
   row.visit([&](const std::string &quantity, const char *unit, double number) {
@@ -135,6 +144,12 @@ TEST(RunRow, names_what_it_holds_and_closes_its_ledgers) {
                           "base_force_y_N",
                           "footing_displacement_x_m",
                           "footing_displacement_y_m",
+                          "base_slip_m",
+                          "base_friction",
+                          "base_temperature_K",
+                          "base_hottest_K",
+                          "base_excess_pressure_Pa",
+                          "base_heat_J",
                           "work_base_J",
                           "work_footing_J",
                           "work_gravity_J",
@@ -146,6 +161,8 @@ TEST(RunRow, names_what_it_holds_and_closes_its_ledgers) {
   EXPECT_EQ(value["base_inflow_m3_s"], 10);
   EXPECT_EQ(value["base_force_y_N"], 9);
   EXPECT_EQ(value["footing_displacement_x_m"], 12);
+  EXPECT_EQ(value["base_friction"], 16);
+  EXPECT_EQ(value["base_excess_pressure_Pa"], 19);
   // energy at the start, work, energy now and that of what has left
   EXPECT_EQ(value["dissipated_J"], 30 + 11 + 14 + 4 + 5 - 6 - (1 + 2 + 9));
 }

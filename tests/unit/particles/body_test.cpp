@@ -17,8 +17,8 @@ MohrCoulomb soil(double cohesion, double dilation_degrees) {
 
 constexpr double initial = 2;  // volume [m3]
 
-/// The limit of a particle after a plastic expansion.
-double limit(const Law &law, double plastic_volume, double volume_cap = -1) {
+/// The volume of a particle that deformation would give a `volume`, after a plastic expansion.
+double admitted(double volume, const Law &law, double plastic_volume, double volume_cap = -1) {
   BodySource source;
   source.volume_cap = volume_cap;
   Body<2> body;
@@ -26,7 +26,12 @@ double limit(const Law &law, double plastic_volume, double volume_cap = -1) {
   std::vector<double> history(history_size(law), 0.7);
   for (std::size_t h = 0; h < history.size(); ++h)
     if (std::string(history_fields(law)[h].name) == "plastic_volume") history[h] = plastic_volume;
-  return body.volume_limit(initial, history.data());
+  return body.admissible_volume(volume, initial, history.data());
+}
+
+/// The largest volume of a particle after a plastic expansion.
+double limit(const Law &law, double plastic_volume, double volume_cap = -1) {
+  return admitted(std::numeric_limits<double>::infinity(), law, plastic_volume, volume_cap);
 }
 
 TEST(VolumeLimit, is_the_initial_volume_of_cohesionless_soil) {
@@ -50,6 +55,15 @@ TEST(VolumeLimit, rises_with_dilation) {
 TEST(VolumeLimit, does_not_rise_with_gaps) {
   EXPECT_EQ(limit(soil(0, 0), 0.3), initial);
   EXPECT_EQ(limit(MuI{}, 0.3), initial);
+}
+
+/// The force p V of a law whose pressure is K ln(V_0 / V) is largest at V_0 / e: below, soil would resist less the more
+/// it is compressed.
+TEST(VolumeLimit, keeps_the_volume_at_which_force_is_largest) {
+  EXPECT_NEAR(admitted(1e-9, soil(0, 0), 0), initial / std::exp(1.), 1e-15 * initial);
+  EXPECT_NEAR(admitted(1e-9, soil(0, 10), 0.3), initial / std::exp(1.), 1e-15 * initial);
+  EXPECT_EQ(admitted(0.4 * initial, soil(0, 0), 0), 0.4 * initial);
+  EXPECT_EQ(admitted(1e-9, soil(1e3, 0), 0), 1e-9) << "no limits where there is no cap";
 }
 
 /// Those that stay keep their order and all their fields; numbers and positions tell them apart.

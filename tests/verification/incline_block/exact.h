@@ -1,11 +1,44 @@
 #pragma once
 /// Block on a plane inclined by beta: a = g (sin beta - tan phi_b cos beta) - c A / m while it slides, at rest when
-/// this is negative. A friction angle that drops at t1 gives two constant accelerations.
+/// this is negative. A friction angle that drops at t1 gives two constant accelerations. Friction that depends on the
+/// slip of the base at a place, or on its heat, is integrated over the places that the block covers, docs/theory (6.7).
 #include <cmath>
+#include <functional>
+#include <vector>
 
 #include "commands/rung.h"
 
 namespace talus::rungs {
+
+/// Mean acceleration between two times of a rigid block that slides from rest over places which remember it. At a place
+/// friction is a (normal stress) - b; `a` and `b` depend on its slip and on its excess pressure p over the mean normal
+/// stress, `rate` is dp / dslip. Friction at the base and inertia at half the height tilt the normal stress: linear
+/// along the base, its middle shifted by friction over normal force times half the height.
+struct RememberingBase {
+  std::function<double(double slip)> a;
+  std::function<double(double p)> b;
+  std::function<double(double normal, double p)> rate;
+
+  double mean_acceleration(double along, double across, double t0, double t1) const {
+    constexpr double step = 5e-4, width = 0.005, length = 1, height = 0.5;
+    std::vector<double> slip(1000, 0), p(1000, 0);
+    double s = 0, v = 0, v0 = 0;
+    for (int n = 0; n < std::lround(t1 / step); ++n) {
+      if (n == std::lround(t0 / step)) v0 = v;
+      double sum_a = 0, tilt_a = 0, sum_b = 0;
+      int count = 0;
+      const auto each = [&](auto &&visit) {
+        for (int i = 0; i < 1000; ++i)
+          if (const double xi = ((i + 0.5) * width - s) / length; xi > 0 && xi < 1) visit(i, xi - 0.5);
+      };
+      each([&](int i, double xi) { sum_a += a(slip[i]), tilt_a += a(slip[i]) * xi, sum_b += b(p[i]), ++count; });
+      const double ratio = (sum_a - sum_b) / (count - 6 * height / length * tilt_a), tilt = 6 * height / length * ratio;
+      v += step * (along - across * ratio), s += step * v;
+      each([&](int i, double xi) { slip[i] += step * v, p[i] += step * v * rate(1 + tilt * xi, p[i]); });
+    }
+    return (v - v0) / (t1 - t0);
+  }
+};
 
 inline void incline_block(Rung &rung) {
   constexpr double g = 9.81, degree = 3.14159265358979323846 / 180, beta = 30 * degree, driving = g / 2,
@@ -22,10 +55,12 @@ inline void incline_block(Rung &rung) {
   };
   for (const int dimension : {2, 3}) {
     const std::string space = name_of(dimension) + " ";
+    std::vector<std::string> more;  // overrides
     const auto slide_run = [&](const std::string &friction, double adhesion, double duration, double damping) {
       std::vector<std::string> overrides{"boundary.base.friction_angle=" + friction,
                                          "boundary.base.adhesion=" + number(adhesion),
                                          "stage.0.duration=" + number(duration), "stage.0.damping=" + number(damping)};
+      overrides.insert(overrides.end(), more.begin(), more.end());
       if (dimension == 3)
         overrides.insert(
             overrides.end(),
@@ -56,6 +91,32 @@ inline void incline_block(Rung &rung) {
                  measured("20", 1000, 0.2, 1.5) / driving, 0.01, 1);
     rung.compare(space + "a, adhesion 3 kPa" + of_driving, acceleration(0, 3000) / driving,
                  measured("0", 3000, 0.2, 1.5) / driving, 0.01, 1);
+    if (dimension == 2) {
+      constexpr double cold = 0.45, decay = 0.4;
+      const double along = g * std::sin(beta), across = g * std::cos(beta);
+      const auto none = [](auto...) { return 0.; };
+      const RememberingBase weakens{[](double slip) { return 0.4 - 0.2 * slip; }, none, none};
+      const std::string fine = "mesh.size=0.05";  // the rims of the block are known to a cell
+      more = {fine};
+      rung.compare(space + "a, tan phi_b = 0.4 - 0.2 slip" + of_driving,
+                   weakens.mean_acceleration(along, across, 0.2, 1.2) / driving,
+                   measured("180 / pi * atan(0.4 - 0.2 * slip)", 0, 0.2, 1.2) / driving, 0.02, 1);
+      // undrained and adiabatic
+      const RememberingBase heats{[](double) { return cold; }, [](double p) { return cold * p; },
+                                  [](double normal, double p) { return (normal - p) / decay; }};
+      more = {fine,
+              "boundary.base.kind=heated_friction",
+              "boundary.base.thickness=0.01",
+              "boundary.base.heat_capacity=2.7e6",
+              "boundary.base.thermal_conductivity=0",
+              "boundary.base.hydraulic_conductivity=0",
+              "boundary.base.storage=1e-9",
+              "boundary.base.thermal_pressurisation=" + number(2.7e6 * 0.01 / (cold * decay))};
+      rung.compare(space + "a, heated base, tan phi_b = 0.45, L* = 0.4 m" + of_driving,
+                   heats.mean_acceleration(along, across, 0.2, 1.2) / driving,
+                   measured("180 / pi * atan(0.45)", 0, 0.2, 1.2) / driving, 0.02, 1);
+      more.clear();
+    }
     // ledger: friction and gravity along the way of the block's middle; the rest is what vibrations took
     const Run run = slide_run("20", 0, 1.5, 0);
     const auto mass = component(run.end, "mass"), way = component(run.end, "displacement");
