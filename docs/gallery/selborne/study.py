@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Studies of the Selborne scene: what each number that the paper does not give does to the answer, and the figures of the page.
 
-    study.py TALUS [cells|softening|residual|initial|steps|model|figures ...]
+    study.py TALUS [cells|softening|residual|initial|excavation|steps|model|days|figures ...]
 
 TALUS is the program (build/release/bin/talus). Each study adds to NAME.csv beside this file the runs that are not in it yet; `figures` runs the scene
 itself and draws the pictures of the page from it and from the tables.
@@ -32,7 +32,9 @@ def softening(eta=500, reference=1.4, length=1):
     return both("shape_factor", eta) + both("reference_size", reference) + both("averaging_length", length)
 
 
-# name of a study: {name of a run: overrides}
+HELD = "functions.h=[[0, 5.6], [5, 5.6], [25.37, 11.07], [1000, 11.07]]"  # the load at failure of the scene, no more
+
+# name of a study: {name of a run: overrides, or (scene, overrides)}
 STUDIES = {
     "cells": {f"{kind}, {size} m": [f"mesh.size={size}", *keys]
               for kind, keys in (("nonlocal", []), ("of the cell", softening(length=0) + both("reference_size", 0.7)))
@@ -40,8 +42,12 @@ STUDIES = {
     "softening": {"as the scene": [], "averaging_length 0.7 m": softening(length=0.7), "averaging_length 1.4 m": softening(length=1.4),
                   "reference_size 0.7 m": softening(reference=0.7), "reference_size 2.8 m": softening(reference=2.8),
                   "shape_factor 400": softening(eta=400)},
-    "residual": {f"{c} kPa": [f"body.weathered.residual_cohesion={c} kPa"] for c in (1, 2, 4.7, 7, 10)},
+    "residual": {**{f"{c} kPa": [f"body.weathered.residual_cohesion={c} kPa"] for c in (1, 2, 4.7, 7, 10)},
+                 **{f"{c} kPa, table held at 11.07 m": [f"body.weathered.residual_cohesion={c} kPa", HELD, "stage.recharge.duration=40"] for c in (4.7, 7, 10)},
+                 **{f"unweathered clay {c} kPa": [f"body.unweathered.residual_cohesion={c} kPa"] for c in (0, 0.5, 2, 4.7)}},
     "initial": {"gravity switched on": [], **{f"K0 = {k0}": k0 for k0 in (0.5, 1.0, 1.5, 2.0)}},
+    "excavation": {f"K0 = {k0}, eta {eta}": ("excavation.toml", [*(f"body.{body}.k0={k0}" for body in ("weathered", "unweathered", "cut")), *both("shape_factor", eta)])
+                   for eta in (500, 50) for k0 in (0.5, 1.0, 1.5, 2.0)},
     "steps": {**{f"step {f} of the critical": [f"integrator.fraction={f}"] for f in (0.3, 0.6, 0.9)},
               **{f"{n} particles per cell": both("particles_per_cell", n) for n in (3, 6, 12)}},
     "model": {"locking left in": ["transfer.locking=none"], "damping 0": ["stage.recharge.damping=0", "stage.slide.damping=0"],
@@ -53,11 +59,18 @@ STUDIES = {
 }
 
 
+def scene_text(name):
+    """A scene of this folder without pictures and lines."""
+    text = (HERE / name).read_text().replace("../../../meshes", str(HERE.parents[2] / "meshes"))
+    text = re.sub(r"^interval = .*$", "interval = 0", text, flags=re.M)
+    return re.sub(r"^\[output\.line.*\n(points.*\n)?", "", text, flags=re.M)
+
+
 def scene(overrides):
     """Text of a scene and the overrides of its run; a number stands for K0 or, as 3, for a slice."""
-    text = (HERE / "scene.toml").read_text().replace("../../../meshes", str(HERE.parents[2] / "meshes"))
-    text = re.sub(r"^interval = .*$", "interval = 0", text, flags=re.M)
-    text = re.sub(r"^\[output\.line.*\n(points.*\n)?", "", text, flags=re.M)
+    if isinstance(overrides, tuple):
+        return scene_text(overrides[0]), overrides[1]
+    text = scene_text("scene.toml")
     if overrides == 3:
         text = re.sub(r"^position = \[(.*)\]", r"position = [\1, 0.5]", text, flags=re.M).replace("dimension = 2", "dimension = 3")
         text = text.replace("[boundary.left]", '[boundary.sides]\ngroup = ["front", "back"]\nkind = "roller"\n[boundary.left]')
@@ -108,6 +121,49 @@ def outcomes(log, rows, text, keys):
             "steps": int(rows[-1]["step"]), "particles": int(float(rows[-1]["particles"]))}
 
 
+def coupled():
+    """Text of days.toml with consolidation of the whole time in place of seepage and equilibrium in turn, until equilibrium is lost."""
+    text = scene_text("days.toml").replace('phases = "drained"', 'phases = "saturated"')
+    text = re.sub(r"^(saturation = |bulk_modulus = ).*\n", "", text, flags=re.M)
+    text = re.sub(r"(?s)\[\[stage\]\]\nname = \"months\".*?\[output\]", '[[stage]]\nname = "months"\nkind = "consolidation"\nduration = "364 days"\n\n[output]', text)
+    return text
+
+
+def until_lost():
+    """Text of days.toml without motion, with equilibrium every week for two years."""
+    text = scene_text("days.toml")
+    pairs = [f'[[stage]]\nname = "week_{n}"\nkind = "seepage"\nduration = "7 days"\n[[stage]]\nname = "stands_{n}"\nkind = "quasi_static"\nduration = 1\nhold_loads = true\n'
+             for n in range(1, 105)]
+    text = re.sub(r"^h = .*$", 'h = [[0, 5.6], ["784 days", 28]]', text, flags=re.M)
+    return re.sub(r"(?s)\[\[stage\]\]\nname = \"months\".*?\[quasi_static\]", "\n".join(pairs) + "\n[quasi_static]", text)
+
+
+DAYS = {**{f"{size} m": (until_lost, [f"mesh.size={size}"]) for size in (1.4, 1.0, 0.7)},
+        **{f"coupled, {size} m": (coupled, [f"mesh.size={size}"]) for size in (1.4, 1.0, 0.7)},
+        **{f"permeability {k} m/s": (until_lost, both("hydraulic_conductivity", f"{k} m/s")) for k in ("1e-10", "1e-9", "3e-9", "3e-8", "1e-7")},
+        **{f"storage of the skeleton times {f}": (until_lost, [f"water.bulk_modulus={5.9 / f} MPa"]) for f in (0.5, 2)},
+        "ground sealed, coupled, 1.0 m": (coupled, ["mesh.size=1", "boundary.ground.kind=impermeable"])}
+
+
+def endure(talus, variant):
+    """Days of recharge, at the rate of the scene, until finite elements find no equilibrium, and the pressures then."""
+    make, keys = variant
+    text = make()
+    if "boundary.ground.kind=impermeable" in keys:
+        text, keys = text.replace('kind = "rainfall"\nintensity = 0', 'kind = "impermeable"'), keys[:1]
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "scene.toml").write_text(text)
+        words = [word for key in keys for word in ("--set", key)]
+        done = subprocess.run([talus, "run", f"{folder}/scene.toml", "-o", f"{folder}/run", "--no-pictures", "--force", *words], capture_output=True, text=True)
+        rows = list(csv.DictReader(open(f"{folder}/run/history.csv")))
+        if done.returncode and "no equilibrium beyond" not in done.stderr:
+            raise SystemExit(done.stderr[-600:])
+    last = rows[-1]
+    return {"ended": "no equilibrium" if done.returncode else "stands", "days": round(float(last["time_s"]) / 86400), "base_kPa": float(last["base_pore_pressure_Pa"]) / 1e3,
+            "P2_kPa": float(last["P2_pore_pressure_Pa"]) / 1e3, "below_toe_kPa": float(last["below_toe_pore_pressure_Pa"]) / 1e3,
+            "crest_mm": 1e3 * float(last["crest_displacement_m"])}
+
+
 def study(talus, name):
     path = HERE / f"{name}.csv"
     rows = list(csv.DictReader(open(path))) if path.exists() else []
@@ -115,13 +171,15 @@ def study(talus, name):
     for label, overrides in STUDIES[name].items():
         if label in done:
             continue
-        rows.append({"run": label, **run(talus, overrides)})
+        rows.append({"run": label, **(endure if name == "days" else run)(talus, overrides)})
         print(rows[-1], flush=True)
         with open(path, "w", newline="") as out:
             writer = csv.DictWriter(out, rows[0].keys())
             writer.writeheader()
             writer.writerows(rows)
 
+
+STUDIES["days"] = DAYS
 
 if __name__ == "__main__":
     if len(sys.argv) < 2:
