@@ -2,7 +2,6 @@
 """Draws the Vaiont slide from a run of its scene:  figure.py DIR [DIR_OF_5_DEGREES]"""
 
 import argparse
-import csv
 import pathlib
 import sys
 
@@ -13,22 +12,21 @@ sys.path.insert(0, str(HERE.parents[2] / "src/output/plots"))
 sys.path.insert(0, str(HERE))
 
 import matplotlib.pyplot as plt  # noqa: E402
+import measures  # noqa: E402
 import talus_style as style  # noqa: E402
-from measures import levels  # noqa: E402
 from talus_results import Results  # noqa: E402
 from talus_sections import spacing_of  # noqa: E402
 from talus_tiles import Frame, tiles  # noqa: E402
 
 BASE = np.array([(-150, 1149), (0, 1040), (550.6, 640), (1255, 640), (1755, 1030)])
 PER_SECOND = 4  # rows of the history
-LOADS = (0, 40, 50, 60, 80, 85, 90, 95, 100, 110)  # load times of the frames [s]
+LOADS = (0, 20, 30, 40, 60, 150, 155, 160, 170, 180)  # load times of the frames [s]
+SCALES = ((0, 0.002), (30, 0.02), (150, 0.3), (180, 1))  # plastic strain up to these load times is shown up to that value
+SPANS = ((0, 20), (20, 30), (30, 40), (40, 50), (50, 60), (60, 70), (70, 80))  # load times between which the plane is looked for [s]
 
 
-def at_load(results, t):
-    """The snapshot of a load time; the last of the gravity stage for 0."""
-    rows = np.array(results.history.stage) == "water"
-    begin = results.history.time[rows][0] - results.history.columns["load_time_s"][rows][0]
-    return min(results.snapshots, key=lambda each: abs(each.time - begin - t))
+def level_at(results, t):
+    return np.interp(t, *np.array(results.scene["functions"]["hw"], float).T)
 
 
 def draw_frames(results, path):
@@ -36,70 +34,99 @@ def draw_frames(results, path):
     figure.subplots_adjust(left=0.06, right=0.98, bottom=0.09, top=0.97, hspace=0.22, wspace=0.05)
     frame = Frame((-150, 600), (1755, 1150), 900)
     for axes, t in zip(grid.flat, LOADS):
-        snapshot = at_load(results, t)
+        snapshot = measures.at_load(results, t)
         owner = tiles(snapshot.position()[:, :2], spacing_of(results), frame)
         values = snapshot.scalar("plastic_strain")[0]
+        place, (_, top) = next((k, scale) for k, scale in enumerate(SCALES) if t <= scale[0])
         picture = axes.imshow(np.ma.array(values[np.maximum(owner, 0)], mask=owner < 0), origin="lower", extent=frame.extent(),
-                              interpolation="nearest", cmap="viridis", vmin=0, vmax=0.05 if t <= 60 else 1)
+                              interpolation="nearest", cmap="viridis", vmin=0, vmax=top)
         axes.plot(*BASE.T, color="black", linewidth=1)
         axes.set(xlim=(-150, 1755), ylim=(600, 1150), aspect="equal")
-        level = np.interp(t, *np.array(results.scene["functions"]["hw"], float).T)
         base = np.interp(t, *np.array(results.scene["functions"]["phi_b"], float).T)
-        axes.set_title(f"t = {t} s, water {level:.0f} m, base {base:.0f}°", loc="left", pad=3, size=8.5)
-        if t in (60, 110):
-            place = figure.add_axes((0.1 if t == 60 else 0.58, 0.045, 0.34, 0.01))
-            figure.colorbar(picture, cax=place, orientation="horizontal", extend="max").outline.set_visible(False)
-            place.set_title(f"plastic strain, t {'up to' if t == 60 else 'beyond'} 60 s", size=8.5, loc="left", pad=4)
+        axes.set_title(f"t = {t} s, water {level_at(results, t):.0f} m, base {base:.0f}°", loc="left", pad=3, size=8.5)
+        if t == SCALES[place][0]:
+            bar = figure.add_axes((0.07 + 0.235 * place, 0.045, 0.19, 0.01))
+            figure.colorbar(picture, cax=bar, orientation="horizontal", extend="max").outline.set_visible(False)
+            bar.tick_params(labelsize=7.5), bar.locator_params(nbins=4)
+            bar.set_title("plastic strain at t = 0" if t == 0 else f"up to t = {t} s", size=8.5, loc="left", pad=4)
     style.save(figure, path)
 
 
 def draw_motion(results, softer, path):
     figure, (rise, slide) = plt.subplots(1, 2, figsize=(9.2, 3.4))
     figure.subplots_adjust(left=0.07, right=0.98, bottom=0.15, top=0.93, wspace=0.22)
-    history = results.history
-    stage, way, speed = np.array(history.stage), history.columns["P0_displacement_x_m"], history.columns["P0_velocity_m_s"]
-    wet = stage == "water"
-    rise.plot(levels(results)[wet], way[wet], label="Talus")
-    rise.plot([53], [8.5], "o", color="black", label="Alonso, Yerro & Pinyol (2015)")
-    rise.set(xlabel="water above the horizontal plane [m]", ylabel="horizontal displacement of P0 [m]")
-    rise.legend(frameon=False)
+    wet = np.array(results.history.stage) == "water"
+    load = results.history.columns["load_time_s"][wet]
+    for point, label, line in (("m10", "middle of the lower part (10)", "-"), ("P0", "P0, at the edge of the front", ":")):
+        rise.plot(load, np.linalg.norm(measures.way(results, point), axis=0)[wet], line, label=label)
+    rise.plot([np.interp(53, *np.array(results.scene["functions"]["hw"], float).T[::-1])], [8.5], "o", color="black", label="Alonso, Yerro & Pinyol (2015)")
+    rise.set(xlabel="load time [s]", ylabel="displacement [m]", xlim=(0, load[-1]))
+    rise.legend(frameon=False, loc="lower right", fontsize=8)
+    for level in (30, 53, 57, 60):
+        t = np.interp(level, *np.array(results.scene["functions"]["hw"], float).T[::-1])
+        rise.axvline(t, color="grey", linewidth=0.7, linestyle=":")
+        rise.annotate(f"{level}", (t, 1.01), xycoords=("data", "axes fraction"), ha="center", va="bottom", size=8)
+    rise.annotate("m of water", (70, 1.01), xycoords=("data", "axes fraction"), va="bottom", size=8)
     for run, label, colour in ((results, "base 0°", "C0"), (softer, "base 5°", "C1")):
         if run is None:
             continue
         rows = np.array(run.history.stage) == "slide"
-        slide.plot(run.history.columns["P0_displacement_x_m"][rows], run.history.columns["P0_velocity_m_s"][rows], color=colour, label=label)
-    slide.plot([490], [0], "o", color="black"), slide.axhline(25, color="black", linewidth=0.7, linestyle=":")
+        slide.plot(measures.way(run, "m10")[0, rows], measures.mean_speed(run, "m10")[rows], color=colour, label=label + ", middle")
+        slide.plot(measures.way(run, "P0")[0, rows], run.history.columns["P0_velocity_m_s"][rows], color=colour, linestyle=":", label=label + ", P0")
+    slide.plot([490], [0], "o", color="black"), slide.plot([225, 560], [25, 25], color="black", linewidth=0.7, linestyle=":")
     slide.annotate("paper, base 0°: 25 m/s, 490 m", (490, 25), ha="right", va="bottom", size=8.5)
-    slide.set(xlabel="horizontal displacement of P0 [m]", ylabel="speed of P0 [m/s]", xlim=(0, 510), ylim=(0, 28))
-    slide.legend(frameon=False, loc="lower center")
+    slide.set(xlabel="horizontal displacement [m]", ylabel="speed [m/s]", xlim=(0, 560), ylim=(0, 28))
+    slide.legend(frameon=False, loc="upper left", fontsize=7.5)
     style.save(figure, path)
 
 
-def draw_friction(results, path):
-    figure, (along, points) = plt.subplots(1, 2, figsize=(9.2, 3.6))
-    figure.subplots_adjust(left=0.07, right=0.9, bottom=0.15, top=0.93, wspace=0.22)
-    with open(results.folder / "line_plane.csv", newline="") as file:
-        rows = list(csv.DictReader(file))
-    times = np.array([float(row["time_s"]) for row in rows])
-    begin = results.history.time[np.array(results.history.stage) == "gravity"][-1]
-    for t, colour in zip((0, 20, 40, 50, 60, 80), plt.get_cmap("viridis")(np.linspace(0, 0.9, 6))):
-        nearest = times[np.abs(times - begin - t).argmin()]
-        now = [row for row in rows if float(row["time_s"]) == nearest]
-        along.plot([float(row["mobilised_friction_deg"]) for row in now], [float(row["distance_m"]) for row in now], color=colour,
-                   label=f"{np.interp(t, *np.array(results.scene['functions']['hw'], float).T):.0f} m" + (" later" if t == 80 else ""))
-    along.set(xlabel="mobilised friction [deg]", ylabel="distance from the kink [m]", xlim=(0, 45))
-    along.legend(frameon=False, title="water")
+def along_plane(results, snapshot, angle, height, half_width=15.0):
+    """Mobilised friction along a plane through the kink [deg]: the mean over the rock within `half_width` of it, in steps of its length [m]."""
+    direction = np.array([-np.cos(np.radians(angle)), np.sin(np.radians(angle))])
+    away = snapshot.position()[:, :2] - measures.KINK
+    near = np.abs(away @ [direction[1], -direction[0]]) < half_width
+    step = np.digitize((away @ direction)[near], height) - 1
+    friction, volume = snapshot.scalar("mobilised_friction")[0][near], snapshot.column("volume").values[near, 0]
+    return [np.average(friction[step == k], weights=volume[step == k]) if (step == k).any() else np.nan for k in range(len(height) - 1)]
+
+
+def draw_plane(results, path):
+    """Mobilised friction along the plane over load time, and how the plane turns."""
+    figure, (map_, turn) = plt.subplots(1, 2, figsize=(9.2, 3.6), width_ratios=(1.15, 1))
+    figure.subplots_adjust(left=0.07, right=0.98, bottom=0.15, top=0.9, wspace=0.25)
+    loads, height = np.arange(0, 81, 2.0), np.arange(0, 246, 17.5)
+    middle, strain = [sum(span) / 2 for span in SPANS], [measures.plane_of_strain(results, *span)[0] for span in SPANS]
+    friction = np.array([along_plane(results, measures.at_load(results, t), np.interp(t, middle, strain), height) for t in loads]).T
+    picture = map_.pcolormesh(np.append(loads - 1, loads[-1] + 1), height, friction, cmap="viridis", vmin=20, vmax=42)
+    for level in (30, 53, 57, 60):
+        t = np.interp(level, *np.array(results.scene["functions"]["hw"], float).T[::-1])
+        map_.axvline(t, color="white", linewidth=0.7, linestyle=":")
+        map_.annotate(f"{level} m", (t, 247), ha="center", va="bottom", size=8, annotation_clip=False)
+    map_.set(xlabel="load time [s]", ylabel="distance from the kink along the plane [m]", xlim=(0, 80), ylim=(0, 245))
+    figure.colorbar(picture, ax=map_, extend="both", label="mobilised friction [deg]").outline.set_visible(False)
+    turn.plot(middle, [measures.plane_of_motion(results, *span) for span in SPANS], "o-", label="from the velocities of both parts")
+    turn.plot(middle, strain, "s--", label="line through the growing plastic strain")
+    turn.axhline(108, color="black", linewidth=0.7, linestyle=":"), turn.annotate("bisector", (1, 108.5), size=8.5)
+    turn.axhline(90, color="grey", linewidth=0.7, linestyle=":"), turn.annotate("vertical", (1, 90.5), size=8.5, color="grey")
+    turn.set(xlabel="load time [s]", ylabel="inclination from the horizontal, uphill side [deg]", xlim=(0, 80), ylim=(75, 115))
+    turn.legend(frameon=False, loc="lower right", fontsize=8)
+    style.save(figure, path)
+
+
+def draw_points(results, path):
+    """Mobilised friction of thirteen points in the slide."""
+    figure, points = plt.subplots(figsize=(9.2, 3.2))
+    figure.subplots_adjust(left=0.07, right=0.9, bottom=0.17, top=0.95)
     history = results.history
     moving = np.array(history.stage) == "slide"
     for k in range(1, 14):
         angle = np.nan_to_num(history.columns[f"m{k}_mobilised_friction_deg"][moving])
         points.plot((history.time[moving] - history.time[moving][0])[PER_SECOND - 1:], np.convolve(angle, np.ones(PER_SECOND) / PER_SECOND, "valid"),
                     color=plt.get_cmap("turbo")(k / 14), linewidth=1.1, label=str(k))
-    points.set(xlabel="time since the base lost its friction [s]", ylabel="mobilised friction of 13 points [deg]", ylim=(0, 45))
+    points.set(xlabel="time since the base lost its friction [s]", ylabel="mobilised friction [deg]", ylim=(0, 45))
     points.legend(frameon=False, loc="center left", bbox_to_anchor=(1, 0.5), fontsize=8)
-    for axes in (along, points):
-        for angle in (36, 42):
-            (axes.axvline if axes is along else axes.axhline)(angle, color="grey", linewidth=0.6, linestyle=":")
+    for angle in (36, 42):
+        points.axhline(angle, color="grey", linewidth=0.6, linestyle=":")
     style.save(figure, path)
 
 
@@ -111,4 +138,5 @@ if __name__ == "__main__":
     run, softer = Results(arguments.run), Results(arguments.softer) if arguments.softer else None
     draw_frames(run, HERE / "frames.png")
     draw_motion(run, softer, HERE / "motion.png")
-    draw_friction(run, HERE / "friction.png")
+    draw_plane(run, HERE / "plane.png")
+    draw_points(run, HERE / "friction.png")

@@ -3,11 +3,12 @@
 With names of cases only these are run, and the rows of the others stay as they are."""
 
 import csv
+import math
 import pathlib
 import subprocess
 import sys
 import tempfile
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, as_completed
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "src/output/plots"))
@@ -16,36 +17,73 @@ sys.path.insert(0, str(HERE))
 import measures  # noqa: E402
 from talus_results import Results  # noqa: E402
 
+def times(factor):
+    """The scene with its water `factor` times as slow, and as long a time to come to rest at 60 m."""
+    t = [factor * each for each in (20, 40, 50, 60)]
+    end = t[-1] + 90
+    return [f"functions.hw=[[0, 0], [{t[0]}, 30], [{t[1]}, 53], [{t[2]}, 57], [{t[3]}, 60]]",
+            f"functions.phi_b=[[0, 12], [{end}, 12], [{end + 1}, 0]]", f"stage.water.duration={end}"]
+
+
+def strength(factor):
+    """All strength times a factor."""
+    angle = lambda degrees: f"{math.degrees(math.atan(factor * math.tan(math.radians(degrees)))):.4f}"
+    return [f"body.rock.cohesion={factor * 300e3}", f"body.rock.friction_angle={angle(42)}", f"body.rock.residual_friction_angle={angle(36)}",
+            f"functions.phi_b=[[0, {angle(12)}], [150, {angle(12)}], [151, 0]]"]
+
+
 CASES = (
     ("as the scene", []),
     ("cells of 15 m", ["mesh.size=15"]),
     ("cells of 12 m", ["mesh.size=12"]),
-    ("eta halved", ["body.rock.shape_factor=75"]),
-    ("eta doubled", ["body.rock.shape_factor=300"]),
+    ("cells of 10 m", ["mesh.size=10"]),
+    ("snapshots twice as often: other round-off", ["output.interval=1"]),
+    ("softening of the cell, 20 m", ["body.rock.averaging_length=0"]),
+    ("softening of the cell, 15 m", ["body.rock.averaging_length=0", "mesh.size=15"]),
+    ("softening of the cell, 12 m", ["body.rock.averaging_length=0", "mesh.size=12"]),
+    ("averaging_length 40 m", ["body.rock.averaging_length=40"]),
+    ("averaging_length 10 m, cells of 10 m", ["body.rock.averaging_length=10", "mesh.size=10"]),
+    ("reference_size halved (or eta doubled)", ["body.rock.reference_size=12"]),
+    ("reference_size doubled (or eta halved)", ["body.rock.reference_size=48"]),
+    ("hardly any softening, eta 1", ["body.rock.shape_factor=1"]),
+    ("all strength 1 % lower", strength(0.99)),
+    ("all strength 1 % higher", strength(1.01)),
+    ("gravity does not soften the rock", ["stage.gravity.softening=false", "stage.settle.softening=false"]),
     ("residual cohesion 75 kPa", ["body.rock.residual_cohesion=75e3"]),
     ("residual cohesion 150 kPa", ["body.rock.residual_cohesion=150e3"]),
     ("E 2.5 GPa", ["body.rock.young_modulus=2.5e9"]),
     ("E 10 GPa", ["body.rock.young_modulus=1e10"]),
     ("E 5 MPa, as printed", ["body.rock.young_modulus=5e6"]),
-    ("damping of the water stage 0", ["stage.1.damping=0"]),
-    ("damping of the water stage 0.1", ["stage.1.damping=0.1"]),
+    ("Poisson's ratio 0.165", ["body.rock.poisson_ratio=0.165"]),
+    ("Poisson's ratio 0.45", ["body.rock.poisson_ratio=0.45"]),
+    ("dilation angle 5 degrees, residual 0", ["body.rock.dilation_angle=5", "body.rock.residual_dilation_angle=0"]),
+    ("dilation angle 10 degrees, residual 0", ["body.rock.dilation_angle=10", "body.rock.residual_dilation_angle=0"]),
+    ("water rises in half the time", times(0.5)),
+    ("water rises in twice the time", times(2)),
+    ("damping of the water stage 0.01", ["stage.water.damping=0.01"]),
+    ("damping of the water stage 0.05", ["stage.water.damping=0.05"]),
     ("opposite slope keeps 12 degrees", ["boundary.bed.friction_angle=x > 1255 ? 12 : phi_b(t)"]),
-    ("hardly any softening, eta 1", ["body.rock.shape_factor=1"]),
     ("no water on the toe", ["water.level=0", "water.excess=1000 * 9.81 * max(0, 640 + hw(t) * min(1, max(0, (1115.6 - x) / 150)) - y)"]),
 )
 
 
-COLUMNS = ("case", "ended", "at_30_m", "at_53_m", "at_60_m", "water_m_s", "slide_m_s", "run_out_m")
+COLUMNS = ("case", "ended", "failure_m", "at_30_m", "at_53_m", "at_60_m", "rest_m", "water_m_s", "P0_m", "slide_m_s", "run_out_m")
 
 
 def run(talus, name, changes, folder):
     """One row: what the case gave, or that it broke off."""
-    out = pathlib.Path(folder) / name.replace(" ", "_").replace(",", "")
-    subprocess.run([talus, "run", HERE / "scene.toml", "-o", out, "--set", "mesh.size=20", *changes], stdout=subprocess.DEVNULL, check=False)
+    out = pathlib.Path(folder) / "".join(letter for letter in name if letter.isalnum())
+    command = [talus, "run", HERE / "scene.toml", "-o", out, "--no-pictures", "--set", "mesh.size=20", *changes]
+    subprocess.run(command, stdout=subprocess.DEVNULL, check=False)
     results = Results(out)
     row = {"case": name, "ended": "broke off" if results.broke_off() else "completed"}
-    row |= {f"at_{level}_m": f"{measures.displacement_at_level(results, 'P0', level):.2f}" for level in (30, 53, 60)}
-    row |= {f"{stage}_m_s": f"{measures.speed_in_stage(results, 'P0', stage):.2f}" for stage in ("water", "slide")}
+    level = measures.level_of_failure(results, "m10")
+    row["failure_m"] = f"{level:.0f}" if level == level else "none"
+    row |= {f"at_{level}_m": f"{measures.displacement_at_level(results, 'm10', level):.2f}" for level in (30, 53, 60)}
+    row["rest_m"] = f"{measures.displacement_before_slide(results, 'm10'):.1f}"
+    row["water_m_s"] = f"{measures.mean_speed_in_stage(results, 'm10', 'water'):.2f}"
+    row["P0_m"] = f"{measures.displacement_before_slide(results, 'P0'):.1f}"
+    row["slide_m_s"] = f"{measures.speed_in_stage(results, 'P0', 'slide'):.2f}"
     return row | {"run_out_m": f"{measures.run_out(results, 'P0'):.1f}"}
 
 
@@ -56,8 +94,10 @@ if __name__ == "__main__":
         with open(table, newline="") as file:
             rows = {row["case"]: row for row in csv.DictReader(file)}
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(2) as pool:
-        cases = [case for case in CASES if not wanted or case[0] in wanted]
-        rows |= {row["case"]: row for row in pool.map(lambda case: run(sys.argv[1], *case, folder), cases)}
-    with open(table, "w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        writer.writeheader(), writer.writerows(rows[name] for name, _ in CASES if name in rows)
+        jobs = [pool.submit(run, sys.argv[1], *case, folder) for case in CASES if not wanted or case[0] in wanted]
+        for job in as_completed(jobs):
+            row = job.result()
+            rows[row["case"]] = row
+            with open(table, "w", newline="") as file:
+                writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+                writer.writeheader(), writer.writerows(rows[name] for name, _ in CASES if name in rows)
