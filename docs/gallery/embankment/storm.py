@@ -1,0 +1,67 @@
+#!/usr/bin/python3
+"""When the slope of storm.toml loses its equilibrium, looked at every six hours for a week, and how far it then slides:  storm.py TALUS FOLDER
+Runs into FOLDER and writes storm.csv."""
+
+import csv
+import pathlib
+import re
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+RUNS = {
+    "the scene: cells of 1 m": (),
+    "cells of 0.7 m": ("mesh.size=0.7",),
+    "cells of 0.5 m": ("mesh.size=0.5",),
+    "permeability 0.75e-13 m2 (1.5e-13)": ("body.soil.permeability=0.75e-13",),
+    "permeability 3e-13 m2": ("body.soil.permeability=3e-13",),
+    "shape of the curves 0.3 (0.35)": ("body.soil.retention.shape=0.3", "body.soil.relative_permeability.shape=0.3"),
+    "shape of the curves 0.4": ("body.soil.retention.shape=0.4", "body.soil.relative_permeability.shape=0.4"),
+    "strength from suction 7.5 kPa (15)": ("body.soil.suction_cohesion=7.5e3",),
+    "strength from suction 30 kPa": ("body.soil.suction_cohesion=30e3",),
+}
+
+
+def every_six_hours(text):
+    """The scene without motion, with equilibrium every six hours of a week."""
+    pairs = [f'[[stage]]\nname = "hour_{h}"\nkind = "seepage"\nduration = "6 h"\n[[stage]]\nname = "stands_{h}"\nkind = "quasi_static"\nduration = 1\nhold_loads = true\n'
+             for h in range(6, 169, 6)]
+    return re.sub(r'(?s)\[\[stage\]\]\nname = "first_day".*?\[quasi_static\]', lambda _: "\n".join(pairs) + "\n[quasi_static]", text)
+
+
+def run(talus, scene, out, keys):
+    words = [word for key in keys for word in ("--set", key)]
+    return subprocess.run([talus, "run", scene, "-o", out, "--no-pictures", "--force", *words], capture_output=True, text=True)
+
+
+def row_of(talus, folder, name, keys):
+    text = (HERE / "storm.toml").read_text().replace("../../../meshes", str(HERE.parents[2] / "meshes"))
+    text = re.sub(r"^interval = .*$", "interval = 0", text, flags=re.M)
+    (folder / "scene.toml").write_text(text)
+    (folder / "stands.toml").write_text(every_six_hours(text))
+    done = run(talus, folder / "stands.toml", folder / "stands", keys)
+    lost = re.search(r"of the loads of stage stands_(\d+)", done.stderr)
+    if done.returncode and not lost:
+        raise SystemExit(done.stderr[-600:])
+    row = {"run": name, "lost_h": lost[1] if lost else "stands"}
+    if not lost or int(lost[1]) > 72:
+        return row
+    done = run(talus, folder / "scene.toml", folder / "slide", keys)
+    if done.returncode:
+        raise SystemExit(done.stderr[-600:])
+    rows = list(csv.DictReader(open(folder / "slide/history.csv")))
+    return row | {f"{point}_m": f"{float(rows[-1][f'{point}_displacement_m']):.2f}" for point in ("S1", "S2", "D1", "D2")} | {
+        "speed_m_s": f"{max(float(r['S2_velocity_m_s']) for r in rows):.2f}"}
+
+
+if __name__ == "__main__":
+    talus, folder = sys.argv[1], pathlib.Path(sys.argv[2])
+    folder.mkdir(parents=True, exist_ok=True)
+    table = []
+    for name, keys in RUNS.items():
+        table.append(row_of(talus, folder, name, keys))
+        print(table[-1], flush=True)
+    with open(HERE / "storm.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, ["run", "lost_h", "S1_m", "S2_m", "D1_m", "D2_m", "speed_m_s"], restval="")
+        writer.writeheader()
+        writer.writerows(table)
