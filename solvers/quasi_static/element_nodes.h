@@ -10,8 +10,6 @@
 
 namespace talus {
 
-using Matrix = Owned<Mat, MatDestroy>;
-
 /// Gradients of all barycentric coordinates of a cell [1/m].
 template <int dim>
 std::array<Vec<dim>, dim + 1> barycentric_gradients(const Cell<dim> &cell) {

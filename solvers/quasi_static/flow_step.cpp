@@ -6,25 +6,6 @@
 namespace talus {
 namespace {
 
-/// A matrix with room for what `fill` puts into it.
-template <class Fill>
-PetscErrorCode make_sparse(MPI_Comm comm, PetscInt rows, PetscInt columns, Matrix &matrix, Fill &&fill) {
-  Matrix pattern;
-  PetscFunctionBeginUser;
-  PetscCall(MatCreate(comm, pattern.create()));
-  PetscCall(MatSetSizes(pattern, rows, columns, PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetType(pattern, MATPREALLOCATOR));
-  PetscCall(MatSetUp(pattern));
-  PetscCall(fill(pattern));
-  PetscCall(MatAssemblyBegin(pattern, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(pattern, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatCreate(comm, matrix.create()));
-  PetscCall(MatSetSizes(matrix, rows, columns, PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetType(matrix, MATAIJ));
-  PetscCall(MatPreallocatorPreallocate(pattern, PETSC_TRUE, matrix));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode assemble(Mat matrix) {
   PetscFunctionBeginUser;
   PetscCall(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
@@ -67,12 +48,13 @@ PetscErrorCode FlowStep<dim>::setup() {
     PetscCall(soil_->soil().nodes().global_vector(force_));
     PetscCall(VecGetLocalSize(u_, &rows_u_));
   }
-  PetscCall(make_sparse(comm, rows_p_, rows_p_, flow_matrix_, [&](Mat pattern) { return flow_.tangent(1, pattern); }));
+  PetscCall(make_sparse(
+      comm, rows_p_, rows_p_, 1, [&](Mat pattern) { return flow_.tangent(1, pattern); }, flow_matrix_));
   PetscCall(VecCreateMPI(comm, rows_u_ + rows_p_, PETSC_DETERMINE, x_.create()));
   PetscCall(VecDuplicate(x_, f_.create()));
   if (soil_) {
     const auto rectangle = [&](PetscInt rows, PetscInt columns, Matrix &matrix, bool by_water) {
-      return make_sparse(comm, rows, columns, matrix, [&](Mat pattern) -> PetscErrorCode {
+      const auto fill = [&](Mat pattern) -> PetscErrorCode {
         PetscFunctionBeginUser;
         const double zeros[element_nodes<dim>(2) * dim * (dim + 1)]{};
         PetscInt u[element_nodes<dim>(2) * dim], p[dim + 1];
@@ -88,7 +70,8 @@ PetscErrorCode FlowStep<dim>::setup() {
             PetscCall(MatSetValues(pattern, count * dim, u, dim + 1, p, zeros, ADD_VALUES));
         }
         PetscFunctionReturn(0);
-      });
+      };
+      return make_sparse(comm, rows, columns, 1, fill, matrix);
     };
     PetscCall(rectangle(rows_u_, rows_p_, press_, false));
     PetscCall(rectangle(rows_p_, rows_u_, squeeze_, true));
@@ -111,7 +94,6 @@ PetscErrorCode FlowStep<dim>::make_solver() {
   PetscInt unknowns;
   KSP ksp;
   PC pc;
-  Mat factor;
   SNESLineSearch search;
   PetscFunctionBeginUser;
   const Mat matrix = soil_ ? static_cast<Mat>(matrix_) : static_cast<Mat>(flow_matrix_);
@@ -129,13 +111,7 @@ PetscErrorCode FlowStep<dim>::make_solver() {
   PetscCall(VecGetSize(x_, &unknowns));
   if (soil_ || settings_.linear_solver == LinearSolver::direct ||
       (settings_.linear_solver == LinearSolver::automatic && unknowns <= largest_direct)) {
-    PetscCall(KSPSetType(ksp, KSPPREONLY));
-    PetscCall(PCSetType(pc, PCLU));
-    PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-    PetscCall(KSPSetOperators(ksp, matrix, matrix));
-    PetscCall(PCFactorSetUpMatSolverType(pc));
-    PetscCall(PCFactorGetMatrix(pc, &factor));
-    PetscCall(MatMumpsSetIcntl(factor, 14, 100));
+    PetscCall(solve_by_lu(ksp, matrix));
   } else {
     PetscCall(KSPSetType(ksp, KSPGMRES));
     PetscCall(KSPSetTolerances(ksp, 1e-8, PETSC_DEFAULT, PETSC_DEFAULT, 1000));

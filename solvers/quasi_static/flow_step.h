@@ -2,6 +2,7 @@
 /// Implicit steps of pore water in soil: seepage through soil at rest, or consolidation, in which the soil's
 /// equilibrium and the balance of its water are solved together (u-p: displacement of second order, pressure of first),
 /// docs/theory/seepage.md.
+#include "solvers/quasi_static/linear_system.h"
 #include "solvers/quasi_static/pore_flow.h"
 #include "solvers/quasi_static/quasi_static.h"
 

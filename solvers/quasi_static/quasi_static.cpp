@@ -26,7 +26,6 @@ template <int dim>
 PetscErrorCode QuasiStatic<dim>::make_solver(SNESLineSearchType line_search) {
   KSP ksp;
   PC pc;
-  Mat factor;
   SNESLineSearch search;
   constexpr long long largest_direct = dim == 2 ? 400000 : 40000;  // unknowns
   const QuasiStaticSource &settings = scene_.quasi_static;
@@ -45,13 +44,7 @@ PetscErrorCode QuasiStatic<dim>::make_solver(SNESLineSearchType line_search) {
   PetscCall(SNESGetKSP(solver_, &ksp));
   PetscCall(KSPGetPC(ksp, &pc));
   if (direct_) {
-    PetscCall(KSPSetType(ksp, KSPPREONLY));
-    PetscCall(PCSetType(pc, PCLU));
-    PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-    PetscCall(KSPSetOperators(ksp, matrix_, matrix_));
-    PetscCall(PCFactorSetUpMatSolverType(pc));
-    PetscCall(PCFactorGetMatrix(pc, &factor));
-    PetscCall(MatMumpsSetIcntl(factor, 14, 100));  // room for pivots, in per cent: tangents at failure ask for many
+    PetscCall(solve_by_lu(ksp, matrix_));
   } else {
     PetscCall(KSPSetType(ksp, KSPFGMRES));
     PetscCall(KSPGMRESSetRestart(ksp, 100));

@@ -92,33 +92,20 @@ void Unknowns<dim>::set_motion(const std::vector<double> &motion) {
 
 template <int dim>
 PetscErrorCode Unknowns<dim>::make_matrix(Matrix &matrix) const {
-  Matrix pattern;
   PetscFunctionBeginUser;
   const PetscInt rows = static_cast<PetscInt>(owned_.size()) * dim;
-  const auto shape = [&](Mat m, MatType type) -> PetscErrorCode {
-    PetscFunctionBeginUser;
-    PetscCall(MatSetSizes(m, rows, rows, PETSC_DETERMINE, PETSC_DETERMINE));
-    PetscCall(MatSetBlockSize(m, dim));
-    PetscCall(MatSetType(m, type));
-    PetscFunctionReturn(0);
-  };
-  PetscCall(MatCreate(soil_.nodes().comm(), pattern.create()));
-  PetscCall(shape(pattern, MATPREALLOCATOR));
-  PetscCall(MatSetUp(pattern));
   std::vector<PetscInt> block;
   std::vector<double> zeros;
-  PetscCall(soil_.each_element([&](const int *node, int count) -> PetscErrorCode {
-    PetscFunctionBeginUser;
-    block.resize(count), zeros.resize(static_cast<size_t>(count) * count * dim * dim, 0);
-    for (int a = 0; a < count; ++a) block[a] = soil_.nodes().global()[node[a]];
-    PetscCall(MatSetValuesBlocked(pattern, count, block.data(), count, block.data(), zeros.data(), INSERT_VALUES));
-    PetscFunctionReturn(0);
-  }));
-  PetscCall(MatAssemblyBegin(pattern, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(pattern, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatCreate(soil_.nodes().comm(), matrix.create()));
-  PetscCall(shape(matrix, MATAIJ));
-  PetscCall(MatPreallocatorPreallocate(pattern, PETSC_TRUE, matrix));
+  const auto fill = [&](Mat pattern) {
+    return soil_.each_element([&](const int *node, int count) -> PetscErrorCode {
+      PetscFunctionBeginUser;
+      block.resize(count), zeros.resize(static_cast<size_t>(count) * count * dim * dim, 0);
+      for (int a = 0; a < count; ++a) block[a] = soil_.nodes().global()[node[a]];
+      PetscCall(MatSetValuesBlocked(pattern, count, block.data(), count, block.data(), zeros.data(), INSERT_VALUES));
+      PetscFunctionReturn(0);
+    });
+  };
+  PetscCall(make_sparse(soil_.nodes().comm(), rows, rows, dim, fill, matrix));
   PetscFunctionReturn(0);
 }
 

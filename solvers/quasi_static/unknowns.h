@@ -1,6 +1,7 @@
 #pragma once
 /// The unknowns of a quasi-static problem: increments of nodal displacement, each node's in the frame of its support,
 /// and the matrices that act on them.
+#include "solvers/quasi_static/linear_system.h"
 #include "solvers/quasi_static/soil_elements.h"
 #include "solvers/quasi_static/supports.h"
 

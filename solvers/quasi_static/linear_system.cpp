@@ -1,0 +1,186 @@
+#include "solvers/quasi_static/linear_system.h"
+
+#include <memory>
+
+namespace talus {
+namespace {
+
+PetscErrorCode use_mumps(KSP ksp, Mat matrix) {
+  PC pc;
+  Mat factor;
+  PetscFunctionBeginUser;
+  PetscCall(KSPSetType(ksp, KSPPREONLY));
+  PetscCall(KSPSetOperators(ksp, matrix, matrix));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, PCLU));
+  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(PCFactorSetUpMatSolverType(pc));
+  PetscCall(PCFactorGetMatrix(pc, &factor));
+  PetscCall(MatMumpsSetIcntl(factor, 14, 100));  // room for pivots, in per cent: tangents at failure ask for many
+  PetscFunctionReturn(0);
+}
+
+/// A system of all ranks that the first of them gathers and solves. PETSc's PCTELESCOPE does the same, but only the
+/// first rank learns there that a matrix is singular, and the others wait for it.
+class GatheredSystem {
+ public:
+  GatheredSystem() = default;
+  GatheredSystem(const GatheredSystem &) = delete;
+  GatheredSystem &operator=(const GatheredSystem &) = delete;
+  ~GatheredSystem() {
+    if (matrix_) (void)MatDestroySubMatrices(1, &matrix_);
+  }
+
+  static PetscErrorCode set_up(PC pc) {
+    GatheredSystem *system;
+    PetscFunctionBeginUser;
+    PetscCall(PCShellGetContext(pc, &system));
+    PetscCall(system->factor(pc));
+    PetscFunctionReturn(0);
+  }
+  static PetscErrorCode apply(PC pc, ::Vec b, ::Vec x) {
+    GatheredSystem *system;
+    PetscFunctionBeginUser;
+    PetscCall(PCShellGetContext(pc, &system));
+    PetscCall(system->solve(pc, b, x));
+    PetscFunctionReturn(0);
+  }
+  static PetscErrorCode destroy(PC pc) {
+    GatheredSystem *system;
+    PetscFunctionBeginUser;
+    PetscCall(PCShellGetContext(pc, &system));
+    delete system;
+    PetscFunctionReturn(0);
+  }
+
+ private:
+  PetscErrorCode gather(Mat spread, bool *new_pattern);
+  PetscErrorCode factor(PC pc);
+  PetscErrorCode solve(PC pc, ::Vec b, ::Vec x);
+  PetscErrorCode tell_failure(PC pc) const;
+
+  PetscObjectState pattern_ = 0;   ///< of the matrix that was gathered last
+  Mat *matrix_ = nullptr;          ///< one matrix, empty on all ranks but the first
+  Owned<KSP, KSPDestroy> solver_;  ///< on the first rank only
+  Owned<VecScatter, VecScatterDestroy> to_first_;
+  Vector gathered_, solution_;  ///< empty on all ranks but the first
+};
+
+PetscErrorCode GatheredSystem::gather(Mat spread, bool *new_pattern) {
+  PetscObjectState pattern;
+  PetscFunctionBeginUser;
+  PetscCall(MatGetNonzeroState(spread, &pattern));
+  *new_pattern = !matrix_ || pattern != pattern_;
+  pattern_ = pattern;
+  if (*new_pattern && matrix_) PetscCall(MatDestroySubMatrices(1, &matrix_));
+  int rank;
+  PetscInt size;
+  Owned<IS, ISDestroy> all;
+  PetscCallMPI(MPI_Comm_rank(PetscObjectComm(reinterpret_cast<PetscObject>(spread)), &rank));
+  PetscCall(MatGetSize(spread, &size, nullptr));
+  PetscCall(ISCreateStride(PETSC_COMM_SELF, rank == 0 ? size : 0, 0, 1, all.create()));
+  const IS rows = all;
+  PetscCall(
+      MatCreateSubMatrices(spread, 1, &rows, &rows, *new_pattern ? MAT_INITIAL_MATRIX : MAT_REUSE_MATRIX, &matrix_));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GatheredSystem::factor(PC pc) {
+  Mat spread;
+  int rank;
+  const char *prefix;
+  bool new_pattern;
+  PetscFunctionBeginUser;
+  PetscCall(PCGetOperators(pc, nullptr, &spread));
+  PetscCall(gather(spread, &new_pattern));
+  PetscCallMPI(MPI_Comm_rank(PetscObjectComm(reinterpret_cast<PetscObject>(pc)), &rank));
+  if (rank == 0) {
+    if (new_pattern) {
+      PetscCall(KSPCreate(PETSC_COMM_SELF, solver_.create()));
+      PetscCall(PCGetOptionsPrefix(pc, &prefix));
+      PetscCall(KSPSetOptionsPrefix(solver_, prefix));
+      PetscCall(KSPAppendOptionsPrefix(solver_, "gathered_"));
+      PetscCall(use_mumps(solver_, matrix_[0]));
+      PetscCall(KSPSetFromOptions(solver_));
+    }
+    PetscCall(KSPSetOperators(solver_, matrix_[0], matrix_[0]));
+    PetscCall(KSPSetUp(solver_));
+  }
+  PetscCall(tell_failure(pc));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GatheredSystem::solve(PC pc, ::Vec b, ::Vec x) {
+  PetscFunctionBeginUser;
+  if (!to_first_) {
+    PetscCall(VecScatterCreateToZero(b, to_first_.create(), gathered_.create()));
+    PetscCall(VecDuplicate(gathered_, solution_.create()));
+  }
+  PetscCall(VecScatterBegin(to_first_, b, gathered_, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterEnd(to_first_, b, gathered_, INSERT_VALUES, SCATTER_FORWARD));
+  if (solver_) PetscCall(KSPSolve(solver_, gathered_, solution_));
+  PetscCall(VecScatterBegin(to_first_, solution_, x, INSERT_VALUES, SCATTER_REVERSE));
+  PetscCall(VecScatterEnd(to_first_, solution_, x, INSERT_VALUES, SCATTER_REVERSE));
+  PetscCall(tell_failure(pc));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GatheredSystem::tell_failure(PC pc) const {
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  PetscFunctionBeginUser;
+  if (solver_) PetscCall(KSPGetConvergedReason(solver_, &reason));
+  int failed = reason < 0;
+  PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, PetscObjectComm(reinterpret_cast<PetscObject>(pc))));
+  PetscCall(PCSetFailedReason(pc, failed ? PC_SUBPC_ERROR : PC_NOERROR));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace
+
+PetscErrorCode make_sparse(MPI_Comm comm, PetscInt rows, PetscInt columns, PetscInt block,
+                           const std::function<PetscErrorCode(Mat)> &fill, Matrix &matrix) {
+  Matrix pattern;
+  PetscFunctionBeginUser;
+  // sums of what other ranks send: in their order, not in that of its arrival
+  PetscCall(PetscOptionsSetValue(nullptr, "-matstash_legacy", "true"));
+  PetscCall(PetscOptionsSetValue(nullptr, "-matstash_reproduce", "true"));
+  const auto shape = [&](Mat m, MatType type) -> PetscErrorCode {
+    PetscFunctionBeginUser;
+    PetscCall(MatSetSizes(m, rows, columns, PETSC_DETERMINE, PETSC_DETERMINE));
+    PetscCall(MatSetBlockSize(m, block));
+    PetscCall(MatSetType(m, type));
+    PetscFunctionReturn(0);
+  };
+  PetscCall(MatCreate(comm, pattern.create()));
+  PetscCall(shape(pattern, MATPREALLOCATOR));
+  PetscCall(MatSetUp(pattern));
+  PetscCall(fill(pattern));
+  PetscCall(MatAssemblyBegin(pattern, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(pattern, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatCreate(comm, matrix.create()));
+  PetscCall(shape(matrix, MATAIJ));
+  PetscCall(MatPreallocatorPreallocate(pattern, PETSC_TRUE, matrix));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode solve_by_lu(KSP ksp, Mat matrix) {
+  PC pc;
+  int ranks;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(PetscObjectComm(reinterpret_cast<PetscObject>(matrix)), &ranks));
+  if (ranks == 1) {
+    PetscCall(use_mumps(ksp, matrix));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(KSPSetType(ksp, KSPPREONLY));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, PCSHELL));
+  PetscCall(PCShellSetName(pc, "LU (MUMPS) on the first rank"));
+  PetscCall(PCShellSetContext(pc, new GatheredSystem));
+  PetscCall(PCShellSetSetUp(pc, GatheredSystem::set_up));
+  PetscCall(PCShellSetApply(pc, GatheredSystem::apply));
+  PetscCall(PCShellSetDestroy(pc, GatheredSystem::destroy));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace talus
