@@ -4,16 +4,6 @@
 #include <cmath>
 
 namespace talus {
-namespace {
-
-PetscErrorCode assemble(Mat matrix) {
-  PetscFunctionBeginUser;
-  PetscCall(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
-  PetscFunctionReturn(0);
-}
-
-}  // namespace
 
 /// Calls put(cell, Gauss point, places of the cell, its volume, gradients of the displacement's shape functions).
 template <int dim>
@@ -48,13 +38,12 @@ PetscErrorCode FlowStep<dim>::setup() {
     PetscCall(soil_->soil().nodes().global_vector(force_));
     PetscCall(VecGetLocalSize(u_, &rows_u_));
   }
-  PetscCall(make_sparse(
-      comm, rows_p_, rows_p_, 1, [&](Mat pattern) { return flow_.tangent(1, pattern); }, flow_matrix_));
+  PetscCall(flow_matrix_.make(comm, rows_p_, rows_p_, 1, [&] { return flow_.tangent(1, flow_matrix_); }));
   PetscCall(VecCreateMPI(comm, rows_u_ + rows_p_, PETSC_DETERMINE, x_.create()));
   PetscCall(VecDuplicate(x_, f_.create()));
   if (soil_) {
-    const auto rectangle = [&](PetscInt rows, PetscInt columns, Matrix &matrix, bool by_water) {
-      const auto fill = [&](Mat pattern) -> PetscErrorCode {
+    const auto rectangle = [&](PetscInt rows, PetscInt columns, SparseMatrix &matrix, bool by_water) {
+      const auto fill = [&]() -> PetscErrorCode {
         PetscFunctionBeginUser;
         const double zeros[element_nodes<dim>(2) * dim * (dim + 1)]{};
         PetscInt u[element_nodes<dim>(2) * dim], p[dim + 1];
@@ -65,20 +54,17 @@ PetscErrorCode FlowStep<dim>::setup() {
             u[a] = soil_->soil().nodes().global()[soil_->soil().nodes().of_cell(c)[a / dim]] * dim + a % dim;
           for (int b = 0; b <= dim; ++b) p[b] = nodes.global()[nodes.of_cell(c)[b]];
           if (by_water)
-            PetscCall(MatSetValues(pattern, dim + 1, p, count * dim, u, zeros, ADD_VALUES));
+            PetscCall(matrix.add(dim + 1, p, count * dim, u, zeros));
           else
-            PetscCall(MatSetValues(pattern, count * dim, u, dim + 1, p, zeros, ADD_VALUES));
+            PetscCall(matrix.add(count * dim, u, dim + 1, p, zeros));
         }
         PetscFunctionReturn(0);
       };
-      return make_sparse(comm, rows, columns, 1, fill, matrix);
+      return matrix.make(comm, rows, columns, 1, fill);
     };
     PetscCall(rectangle(rows_u_, rows_p_, press_, false));
     PetscCall(rectangle(rows_p_, rows_u_, squeeze_, true));
-    for (Mat m : {static_cast<Mat>(press_), static_cast<Mat>(squeeze_), static_cast<Mat>(flow_matrix_)})
-      PetscCall(assemble(m));
     Mat blocks[4] = {soil_->matrix(), press_, squeeze_, flow_matrix_};
-    PetscCall(assemble(blocks[0]));
     PetscCall(MatCreateNest(comm, 2, nullptr, 2, nullptr, blocks, blocks_.create()));
     PetscCall(MatConvert(blocks_, MATAIJ, MAT_INITIAL_MATRIX, matrix_.create()));
   }
@@ -155,12 +141,9 @@ PetscErrorCode FlowStep<dim>::residual(::Vec x, ::Vec f) {
   WaterBalance balance;
   flow_.balance(load_time_, dt_, &balance);
   if (soil_) PetscCall(volume_strain(balance.rest, balance.size));
-  if (scale_open_) {
-    double size;
-    PetscCall(flow_.nodes().add_to_global(balance.size, water_));
-    PetscCall(VecNorm(water_, NORM_2, &size));
-    water_scale_ = std::max(water_scale_, size);
-  }
+  PetscCall(flow_.nodes().add_to_global(balance.size, water_));
+  PetscCall(VecNorm(water_, NORM_2, &water_moved_));
+  if (scale_open_) water_scale_ = std::max(water_scale_, water_moved_);
   PetscCall(flow_.nodes().add_to_global(balance.rest, water_));
   PetscCall(flow_.nodes().to_local(water_, rest_));
   PetscCall(VecGetArray(water_, &rest));
@@ -175,8 +158,8 @@ PetscErrorCode FlowStep<dim>::residual(::Vec x, ::Vec f) {
 template <int dim>
 PetscErrorCode FlowStep<dim>::couple() {
   PetscFunctionBeginUser;
-  PetscCall(MatZeroEntries(press_));
-  PetscCall(MatZeroEntries(squeeze_));
+  PetscCall(press_.clear());
+  PetscCall(squeeze_.clear());
   const ElementNodes<dim> &soil = soil_->soil().nodes(), &water = flow_.nodes();
   const int count = element_nodes<dim>(soil.order());
   PetscErrorCode error = 0;
@@ -197,21 +180,21 @@ PetscErrorCode FlowStep<dim>::couple() {
                                            room[(b * count + a) * dim + d] = filled * l[b] * g[d];
       }
     }
-    if (!error) error = MatSetValues(press_, count * dim, u, dim + 1, p, push, ADD_VALUES);
-    if (!error) error = MatSetValues(squeeze_, dim + 1, p, count * dim, u, room, ADD_VALUES);
+    if (!error) error = press_.add(count * dim, u, dim + 1, p, push);
+    if (!error) error = squeeze_.add(dim + 1, p, count * dim, u, room);
   });
   PetscCall(error);
-  PetscCall(assemble(press_));
-  PetscCall(assemble(squeeze_));
+  PetscCall(press_.finish());
+  PetscCall(squeeze_.finish());
   PetscFunctionReturn(0);
 }
 
 template <int dim>
 PetscErrorCode FlowStep<dim>::jacobian(Mat matrix) {
   PetscFunctionBeginUser;
-  PetscCall(MatZeroEntries(flow_matrix_));
+  PetscCall(flow_matrix_.clear());
   PetscCall(flow_.tangent(dt_, flow_matrix_));
-  PetscCall(assemble(flow_matrix_));
+  PetscCall(flow_matrix_.finish());
   if (!soil_) PetscFunctionReturn(0);
   PetscCall(soil_->tangent());
   PetscCall(couple());
@@ -249,9 +232,12 @@ PetscErrorCode FlowStep<dim>::snes_converged(SNES solver, PetscInt iteration, Pe
   PetscCall(VecRestoreArrayRead(f, &value));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, step.flow_.nodes().comm()));
   const double tolerance = step.settings_.tolerance, forces = step.soil_ ? step.soil_->force_scale() : 0;
+  // water that does not move before the soil does is measured by what the soil moves, once its forces are in balance
+  const double water = step.soil_ ? std::max(step.water_scale_, step.water_moved_) : step.water_scale_;
+  step.balanced_ = std::sqrt(sums[0]) <= tolerance * forces && std::sqrt(sums[1]) <= tolerance * water;
   if (!std::isfinite(norm))
     *reason = SNES_DIVERGED_FNORM_NAN;
-  else if (std::sqrt(sums[0]) <= tolerance * forces && std::sqrt(sums[1]) <= tolerance * step.water_scale_)
+  else if (step.balanced_)
     *reason = SNES_CONVERGED_FNORM_RELATIVE;
   PetscFunctionReturn(0);
 }
@@ -277,20 +263,20 @@ PetscErrorCode FlowStep<dim>::solve(double load_time, double travel, double dt, 
     PetscCall(VecGetArray(x_, &value));
     for (PetscInt row = 0; row < rows_p_; ++row) value[rows_u_ + row] = flow_.pressure[owned_[row]];
     PetscCall(VecRestoreArray(x_, &value));
-    scale_open_ = true;
+    scale_open_ = true, balanced_ = false;
     PetscCall(SNESSolve(solver_, nullptr, x_));
     PetscCall(SNESGetConvergedReason(solver_, &reason));
     PetscCall(SNESGetIterationNumber(solver_, &iterations));
     outcome->iterations += static_cast<int>(iterations);
-    if (reason <= 0) break;
+    if (!balanced_) break;
     PetscCall(residual(x_, f_));  // the state that counts, not the last that the line search tried
     if (!flow_.update_seepage(rest_)) break;
     if (change == most_changes) {
-      reason = SNES_DIVERGED_MAX_IT;
+      balanced_ = false;
       break;
     }
   }
-  outcome->converged = reason > 0, outcome->singular = reason == SNES_DIVERGED_LINEAR_SOLVE;
+  outcome->converged = balanced_, outcome->singular = reason == SNES_DIVERGED_LINEAR_SOLVE;
   if (!outcome->converged) PetscCall(make_solver());
   PetscFunctionReturn(0);
 }

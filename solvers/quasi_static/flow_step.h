@@ -40,12 +40,16 @@ class FlowStep {
   const QuasiStaticSource &settings_;
   PetscInt rows_u_ = 0, rows_p_ = 0;
   Vector x_, f_, u_, force_, p_, water_;
-  Matrix flow_matrix_, press_, squeeze_, blocks_, matrix_;
+  SparseMatrix flow_matrix_, press_, squeeze_;
+  Matrix blocks_, matrix_;
   NonlinearSolver solver_;
   std::vector<double> rest_;     ///< water balance of the last residual, of local nodes [m3]
   std::vector<PetscInt> owned_;  ///< local pressure nodes in the order of their rows
-  double load_time_ = 0, dt_ = 0, water_scale_ = 0;
+  double load_time_ = 0, dt_ = 0;
+  double water_scale_ = 0;  ///< size of the terms of the balance of water before the first iteration [m3]
+  double water_moved_ = 0;  ///< that of the last evaluation [m3]
   bool scale_open_ = true;
+  bool balanced_ = false;  ///< the last iterate, as for equilibrium alone
 };
 
 }  // namespace talus

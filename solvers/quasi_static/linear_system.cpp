@@ -1,6 +1,7 @@
 #include "solvers/quasi_static/linear_system.h"
 
-#include <memory>
+#include <algorithm>
+#include <utility>
 
 namespace talus {
 namespace {
@@ -137,29 +138,82 @@ PetscErrorCode GatheredSystem::tell_failure(PC pc) const {
 
 }  // namespace
 
-PetscErrorCode make_sparse(MPI_Comm comm, PetscInt rows, PetscInt columns, PetscInt block,
-                           const std::function<PetscErrorCode(Mat)> &fill, Matrix &matrix) {
-  Matrix pattern;
+PetscErrorCode SparseMatrix::make(MPI_Comm comm, PetscInt rows, PetscInt columns, PetscInt block,
+                                  const std::function<PetscErrorCode()> &fill) {
   PetscFunctionBeginUser;
-  // sums of what other ranks send: in their order, not in that of its arrival
-  PetscCall(PetscOptionsSetValue(nullptr, "-matstash_legacy", "true"));
-  PetscCall(PetscOptionsSetValue(nullptr, "-matstash_reproduce", "true"));
-  const auto shape = [&](Mat m, MatType type) -> PetscErrorCode {
+  const auto create = [&](MatType type) -> PetscErrorCode {
     PetscFunctionBeginUser;
-    PetscCall(MatSetSizes(m, rows, columns, PETSC_DETERMINE, PETSC_DETERMINE));
-    PetscCall(MatSetBlockSize(m, block));
-    PetscCall(MatSetType(m, type));
+    PetscCall(MatCreate(comm, matrix_.create()));
+    PetscCall(MatSetSizes(matrix_, rows, columns, PETSC_DETERMINE, PETSC_DETERMINE));
+    PetscCall(MatSetBlockSize(matrix_, block));
+    PetscCall(MatSetType(matrix_, type));
     PetscFunctionReturn(0);
   };
-  PetscCall(MatCreate(comm, pattern.create()));
-  PetscCall(shape(pattern, MATPREALLOCATOR));
-  PetscCall(MatSetUp(pattern));
-  PetscCall(fill(pattern));
-  PetscCall(MatAssemblyBegin(pattern, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(pattern, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatCreate(comm, matrix.create()));
-  PetscCall(shape(matrix, MATAIJ));
-  PetscCall(MatPreallocatorPreallocate(pattern, PETSC_TRUE, matrix));
+  PetscCall(create(MATPREALLOCATOR));
+  PetscCall(MatSetUp(matrix_));
+  PetscCall(MatGetOwnershipRange(matrix_, &first_, &end_));
+  PetscCall(fill());
+  PetscCall(finish());
+  const Matrix pattern = std::move(matrix_);
+  PetscCall(create(MATAIJ));
+  PetscCall(MatPreallocatorPreallocate(pattern, PETSC_TRUE, matrix_));
+  PetscCall(MatSetOption(matrix_, MAT_IGNORE_OFF_PROC_ENTRIES, PETSC_TRUE));
+  PetscCall(finish());
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SparseMatrix::add(PetscInt rows, const PetscInt *row, PetscInt columns, const PetscInt *column,
+                                 const double *value) {
+  PetscFunctionBeginUser;
+  bool any_here = false;
+  for (PetscInt i = 0; i < rows; ++i) {
+    const bool here = row[i] >= first_ && row[i] < end_;
+    any_here |= here;
+    for (PetscInt j = 0; j < columns && row[i] >= 0 && !here; ++j)
+      if (column[j] >= 0) elsewhere_.push_back({row[i], column[j], value[i * columns + j]});
+  }
+  if (any_here) PetscCall(MatSetValues(matrix_, rows, row, columns, column, value, ADD_VALUES));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SparseMatrix::finish() {
+  PetscFunctionBeginUser;
+  std::stable_sort(elsewhere_.begin(), elsewhere_.end(), [](const Entry &a, const Entry &b) {
+    return std::make_pair(a.row, a.column) < std::make_pair(b.row, b.column);
+  });
+  std::vector<Entry> sums;
+  for (const Entry &e : elsewhere_) {
+    if (sums.empty() || sums.back().row != e.row || sums.back().column != e.column)
+      sums.push_back(e);
+    else
+      sums.back().value += e.value;
+  }
+  elsewhere_.clear();
+  PetscCall(send(sums));
+  for (const Entry &e : sums) PetscCall(MatSetValue(matrix_, e.row, e.column, e.value, ADD_VALUES));
+  PetscCall(MatAssemblyBegin(matrix_, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(matrix_, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+/// Replaces entries, sorted by their rows, by those that other ranks have for the rows of this one, in the order of the
+/// ranks.
+PetscErrorCode SparseMatrix::send(std::vector<Entry> &entries) const {
+  int ranks;
+  const PetscInt *range;
+  PetscFunctionBeginUser;
+  const MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(static_cast<Mat>(matrix_)));
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  PetscCall(MatGetOwnershipRanges(matrix_, &range));
+  std::vector<int> sent(ranks, 0), received(ranks), to(ranks + 1, 0), from(ranks + 1, 0);
+  for (const Entry &e : entries)
+    sent[std::upper_bound(range, range + ranks + 1, e.row) - range - 1] += static_cast<int>(sizeof(Entry));
+  PetscCallMPI(MPI_Alltoall(sent.data(), 1, MPI_INT, received.data(), 1, MPI_INT, comm));
+  for (int r = 0; r < ranks; ++r) to[r + 1] = to[r] + sent[r], from[r + 1] = from[r] + received[r];
+  std::vector<Entry> mine(from[ranks] / sizeof(Entry));
+  PetscCallMPI(MPI_Alltoallv(entries.data(), sent.data(), to.data(), MPI_BYTE, mine.data(), received.data(),
+                             from.data(), MPI_BYTE, comm));
+  entries.swap(mine);
   PetscFunctionReturn(0);
 }
 

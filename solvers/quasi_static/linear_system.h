@@ -3,6 +3,7 @@
 #include <petscksp.h>
 
 #include <functional>
+#include <vector>
 
 #include "base/owned.h"
 
@@ -10,10 +11,32 @@ namespace talus {
 
 using Matrix = Owned<Mat, MatDestroy>;
 
-/// A matrix of `rows` by `columns` entries on this rank, in blocks of `block`, with room for all that `fill` puts into
-/// the pattern it is given. What several ranks add to one entry is summed in the order of the ranks. Collective.
-PetscErrorCode make_sparse(MPI_Comm comm, PetscInt rows, PetscInt columns, PetscInt block,
-                           const std::function<PetscErrorCode(Mat)> &fill, Matrix &matrix);
+/// A matrix that is summed up from entries of all ranks. PETSc adds what other ranks send in the order in which it
+/// arrives; here it is added in the order of the ranks, so that the last digits are the same in every run.
+class SparseMatrix {
+ public:
+  /// A matrix of `rows` by `columns` entries on this rank, in blocks of `block`, with room for all entries that `fill`
+  /// adds to it. Collective.
+  PetscErrorCode make(MPI_Comm comm, PetscInt rows, PetscInt columns, PetscInt block,
+                      const std::function<PetscErrorCode()> &fill);
+  PetscErrorCode clear() { return MatZeroEntries(matrix_); }
+  /// Adds a dense block, `value` by rows; rows and columns with negative numbers are left out.
+  PetscErrorCode add(PetscInt rows, const PetscInt *row, PetscInt columns, const PetscInt *column, const double *value);
+  PetscErrorCode finish();  ///< sums up what was added since `clear`; collective
+
+  operator Mat() const { return matrix_; }
+
+ private:
+  struct Entry {
+    PetscInt row, column;
+    double value;
+  };
+  PetscErrorCode send(std::vector<Entry> &entries) const;
+
+  Matrix matrix_;
+  PetscInt first_ = 0, end_ = 0;  ///< rows of this rank
+  std::vector<Entry> elsewhere_;  ///< in rows of other ranks
+};
 
 /// Lets `ksp` solve systems of `matrix` by LU (MUMPS). A matrix that is spread over several ranks is gathered and
 /// solved on the first of them: MUMPS on several ranks adds what they send in the order in which it arrives, so that

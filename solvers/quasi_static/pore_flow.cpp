@@ -256,7 +256,7 @@ void PoreFlow<dim>::balance(double t, double dt, WaterBalance *balance) const {
 }
 
 template <int dim>
-PetscErrorCode PoreFlow<dim>::tangent(double dt, Mat matrix) const {
+PetscErrorCode PoreFlow<dim>::tangent(double dt, SparseMatrix &matrix) const {
   PetscFunctionBeginUser;
   double largest = 0;
   for (int c = 0; c < mesh_.cell_count(); ++c) {
@@ -288,12 +288,11 @@ PetscErrorCode PoreFlow<dim>::tangent(double dt, Mat matrix) const {
       entry[a * (dim + 2)] += mesh_.volume[c] / (dim + 1) * content_slope(body, pressure[node[a]]);
       largest = std::max(largest, std::abs(entry[a * (dim + 2)]));
     }
-    PetscCall(MatSetValues(matrix, dim + 1, row, dim + 1, row, entry, ADD_VALUES));
+    PetscCall(matrix.add(dim + 1, row, dim + 1, row, entry));
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, nodes_.comm()));
   for (int i = 0; i < nodes_.count(); ++i)
-    if (fixed_[i] && nodes_.owned[i])
-      PetscCall(MatSetValue(matrix, nodes_.global()[i], nodes_.global()[i], largest, ADD_VALUES));
+    if (fixed_[i] && nodes_.owned[i]) PetscCall(matrix.add(1, &nodes_.global()[i], 1, &nodes_.global()[i], &largest));
   PetscFunctionReturn(0);
 }
 

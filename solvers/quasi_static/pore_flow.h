@@ -8,6 +8,7 @@
 #include "physics/pores/fluids.h"
 #include "physics/pores/soil_pores.h"
 #include "solvers/quasi_static/element_nodes.h"
+#include "solvers/quasi_static/linear_system.h"
 
 namespace talus {
 
@@ -51,7 +52,7 @@ class PoreFlow {
   /// Balance of a step dt from the accepted pressures to `pressure`, without the volume strain of the soil.
   void balance(double t, double dt, WaterBalance *balance) const;
   /// Adds its derivative to the rows and columns of nodes that are not fixed.
-  PetscErrorCode tangent(double dt, Mat matrix) const;
+  PetscErrorCode tangent(double dt, SparseMatrix &matrix) const;
   /// Seepage faces: opens nodes that are under pressure, and closes those that would draw in more than the supply.
   /// `rest` is the balance of the solved step, summed over ranks. True, on all ranks alike, if any changed.
   bool update_seepage(const std::vector<double> &rest);

@@ -86,7 +86,7 @@ template <int dim>
 PetscErrorCode QuasiStatic<dim>::stiffness(double plastic, double elastic, const std::vector<double> *motion,
                                            std::vector<double> *lift) {
   PetscFunctionBeginUser;
-  PetscCall(MatZeroEntries(matrix_));
+  PetscCall(matrix_.clear());
   if (lift) lift->assign(static_cast<size_t>(soil_.nodes().count()) * dim, 0);
   const auto put = [&](const int *node, int count, typename SoilElements<dim>::Stiffness &element) {
     return unknowns_.add(matrix_, node, count, element, motion, lift);
@@ -113,10 +113,11 @@ PetscErrorCode QuasiStatic<dim>::snes_converged(SNES, PetscInt iteration, PetscR
   PetscFunctionBeginUser;
   QuasiStatic &problem = *static_cast<QuasiStatic *>(context);
   *reason = SNES_CONVERGED_ITERATING;
+  problem.balanced_ = norm <= problem.scene_.quasi_static.tolerance * problem.force_scale_;
   if (iteration == 0) problem.scale_open_ = false;  // an iterate that goes astray must not widen what counts as small
   if (!std::isfinite(norm))
     *reason = SNES_DIVERGED_FNORM_NAN;
-  else if (norm <= problem.scene_.quasi_static.tolerance * problem.force_scale_)
+  else if (problem.balanced_)
     *reason = SNES_CONVERGED_FNORM_RELATIVE;
   else if (problem.stop_asked && problem.stop_asked())
     problem.stopped_ = true, *reason = SNES_DIVERGED_DTOL;
@@ -145,7 +146,7 @@ template <int dim>
 PetscErrorCode QuasiStatic<dim>::prepare(double share, double load_time, double time, double dt, ::Vec x) {
   std::vector<double> external, motion;
   PetscFunctionBeginUser;
-  stopped_ = false, scale_open_ = true, trial_share_ = share;
+  stopped_ = balanced_ = false, scale_open_ = true, trial_share_ = share;
   soil_.find_suction(load_time);
   bases_.set_strength(load_time);
   loads_.force(load_time, external);
@@ -213,15 +214,14 @@ PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double 
     PetscCall(prepare(share, load_time, time, dt, x_));
     PetscCall(SNESSolve(solver_, nullptr, x_));
     PetscCall(SNESGetConvergedReason(solver_, &reason));
-    if (reason > 0 || again || stopped_ || !bases_.any()) break;
+    if (balanced_ || again || stopped_ || !bases_.any()) break;
   }
   PetscCall(SNESGetIterationNumber(solver_, &iterations));
   PetscCall(SNESGetFunctionNorm(solver_, &outcome->residual));
   PetscCall(VecNorm(x_, NORM_INFINITY, &outcome->largest));
   outcome->iterations = static_cast<int>(iterations);
   outcome->residual /= force_scale_ > 0 ? force_scale_ : 1;
-  outcome->converged = reason > 0, outcome->stopped = stopped_,
-  outcome->singular = reason == SNES_DIVERGED_LINEAR_SOLVE;
+  outcome->converged = balanced_, outcome->stopped = stopped_, outcome->singular = reason == SNES_DIVERGED_LINEAR_SOLVE;
   if (outcome->converged) PetscCall(commit(x_, softening));
   // neither MUMPS nor the line search recovers from numbers that ran away, and the next step begins with the first
   // search

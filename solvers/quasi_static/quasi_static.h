@@ -113,7 +113,7 @@ class QuasiStatic {
   Supports<dim> supports_;
   BaseContact<dim> bases_;
   Unknowns<dim> unknowns_;
-  Matrix matrix_;
+  SparseMatrix matrix_;
   NonlinearSolver solver_;
   Vector x_, f_, out_of_balance_, target_, lifted_;
   double force_scale_ = 0,
@@ -122,6 +122,9 @@ class QuasiStatic {
   std::vector<double> unborne_;         ///< [local nodes][dim] loads at the begin of the path that come along it [N]
   Vec<dim> borne_acceleration_;         ///< under which the soil was at the last converged state [m/s2]
   bool scale_open_ = true;
+  /// Whether the last iterate is in equilibrium. PETSc's reason is not enough: its search for a critical point calls an
+  /// iterate that went astray converged where force and step are perpendicular.
+  bool balanced_ = false;
   bool direct_ = true, stopped_ = false;
 };
 

@@ -91,32 +91,38 @@ void Unknowns<dim>::set_motion(const std::vector<double> &motion) {
 // ---- matrices ----
 
 template <int dim>
-PetscErrorCode Unknowns<dim>::make_matrix(Matrix &matrix) const {
+PetscErrorCode Unknowns<dim>::make_matrix(SparseMatrix &matrix) const {
   PetscFunctionBeginUser;
   const PetscInt rows = static_cast<PetscInt>(owned_.size()) * dim;
-  std::vector<PetscInt> block;
+  std::vector<PetscInt> row;
   std::vector<double> zeros;
-  const auto fill = [&](Mat pattern) {
+  const auto fill = [&] {
     return soil_.each_element([&](const int *node, int count) -> PetscErrorCode {
       PetscFunctionBeginUser;
-      block.resize(count), zeros.resize(static_cast<size_t>(count) * count * dim * dim, 0);
-      for (int a = 0; a < count; ++a) block[a] = soil_.nodes().global()[node[a]];
-      PetscCall(MatSetValuesBlocked(pattern, count, block.data(), count, block.data(), zeros.data(), INSERT_VALUES));
+      rows_of(node, count, row);
+      zeros.resize(row.size() * row.size(), 0);
+      PetscCall(matrix.add(count * dim, row.data(), count * dim, row.data(), zeros.data()));
       PetscFunctionReturn(0);
     });
   };
-  PetscCall(make_sparse(soil_.nodes().comm(), rows, rows, dim, fill, matrix));
+  PetscCall(matrix.make(soil_.nodes().comm(), rows, rows, dim, fill));
   PetscFunctionReturn(0);
 }
 
 template <int dim>
-PetscErrorCode Unknowns<dim>::add(Mat matrix, const int *node, int count,
+void Unknowns<dim>::rows_of(const int *node, int count, std::vector<PetscInt> &row) const {
+  row.resize(static_cast<size_t>(count) * dim);
+  for (int k = 0; k < count * dim; ++k) row[k] = soil_.nodes().global()[node[k / dim]] * dim + k % dim;
+}
+
+template <int dim>
+PetscErrorCode Unknowns<dim>::add(SparseMatrix &matrix, const int *node, int count,
                                   typename SoilElements<dim>::Stiffness &element, const std::vector<double> *motion,
                                   std::vector<double> *lift) const {
   PetscFunctionBeginUser;
-  std::vector<PetscInt> block(count);
+  std::vector<PetscInt> row;
+  rows_of(node, count, row);
   for (int a = 0; a < count; ++a) {
-    block[a] = soil_.nodes().global()[node[a]];
     const Support<dim> *s = supports_.at(node[a]);
     if (!s || !s->turned) continue;
     element.middleRows(a * dim, dim) = (s->frame * element.middleRows(a * dim, dim)).eval();
@@ -132,21 +138,20 @@ PetscErrorCode Unknowns<dim>::add(Mat matrix, const int *node, int count,
                 (*lift)[node[b] * dim + e] += element(b * dim + e, a * dim + d) * (*motion)[node[a] * dim + d];
           element.row(a * dim + d).setZero(), element.col(a * dim + d).setZero();
         }
-  PetscCall(MatSetValuesBlocked(matrix, count, block.data(), count, block.data(), element.data(), ADD_VALUES));
+  PetscCall(matrix.add(count * dim, row.data(), count * dim, row.data(), element.data()));
   PetscFunctionReturn(0);
 }
 
 template <int dim>
-PetscErrorCode Unknowns<dim>::finish(Mat matrix, double diagonal) const {
+PetscErrorCode Unknowns<dim>::finish(SparseMatrix &matrix, double diagonal) const {
   PetscFunctionBeginUser;
   PetscInt first;
   PetscCall(MatGetOwnershipRange(matrix, &first, nullptr));
   for (PetscInt row : supported_)
     for (int d = 0; d < dim; ++d)
-      if (supports_.at(owned_[row])->held[d])
-        PetscCall(MatSetValue(matrix, first + row * dim + d, first + row * dim + d, diagonal, ADD_VALUES));
-  PetscCall(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+      if (const PetscInt k = first + row * dim + d; supports_.at(owned_[row])->held[d])
+        PetscCall(matrix.add(1, &k, 1, &k, &diagonal));
+  PetscCall(matrix.finish());
   PetscFunctionReturn(0);
 }
 

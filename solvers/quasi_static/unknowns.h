@@ -16,7 +16,7 @@ class Unknowns {
   PetscErrorCode setup();
   long long count() const { return count_; }  ///< on all ranks
   /// An empty matrix with room for the stiffness. Collective.
-  PetscErrorCode make_matrix(Matrix &matrix) const;
+  PetscErrorCode make_matrix(SparseMatrix &matrix) const;
   /// Tells a matrix the rigid motions, for multigrid: zero where motion is prescribed. Collective.
   PetscErrorCode tell_rigid_motions(Mat matrix) const;
 
@@ -34,10 +34,10 @@ class Unknowns {
   PetscErrorCode displacement_of(::Vec x, bool with_motion, std::vector<double> &u) const;
   /// Puts the stiffness of an element into `matrix`. `lift` receives what `motion` (local nodes, in their frames) does
   /// to the free rows.
-  PetscErrorCode add(Mat matrix, const int *node, int count, typename SoilElements<dim>::Stiffness &element,
+  PetscErrorCode add(SparseMatrix &matrix, const int *node, int count, typename SoilElements<dim>::Stiffness &element,
                      const std::vector<double> *motion, std::vector<double> *lift) const;
   /// Diagonal of prescribed components, then assembly. Collective.
-  PetscErrorCode finish(Mat matrix, double diagonal) const;
+  PetscErrorCode finish(SparseMatrix &matrix, double diagonal) const;
 
   /// Prescribed increments of local nodes over (time, time + dt) in their frames; false if nothing moves on any rank.
   /// Collective.
@@ -46,6 +46,8 @@ class Unknowns {
   void set_motion(const std::vector<double> &motion);
 
  private:
+  void rows_of(const int *node, int count, std::vector<PetscInt> &row) const;
+
   const SoilElements<dim> &soil_;
   const Supports<dim> &supports_;
   std::vector<PetscInt> owned_, supported_;  // local nodes in the order of their rows; rows with a support
