@@ -1,8 +1,8 @@
 #pragma once
 /// Pore pressure as a prescribed function of place and time: hydrostatic below a water table whose level moves, plus an
-/// excess (phase model `drained`). A soil may have water of its own in the region that it fills at the start: a water
-/// table, or a share of the overburden. What seepage has found stands in place of [water] where water flowed. Pressure
-/// is positive in compression.
+/// excess (phase model `drained`); and how full of water the pores are, on which the weight depends. A soil may have
+/// water of its own in the region that it fills at the start: a water table, or a share of the overburden. What seepage
+/// has found stands in place of [water] where water flowed. Pressure is positive in compression.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -54,6 +54,13 @@ class PrescribedPressure {
   double above_table(const Vec<dim> &x, double t) const {
     return water_->table.empty() ? 0 : std::max(0., unit_weight_ * (x[1] - table(x[0], t, common_water)));
   }
+  /// Degree of saturation of a soil at x, where `soil` is whose water it has: full below the table; above it what
+  /// seepage has left by the retention curve, or else what the body says [-].
+  double saturation(const BodySource &body, const Vec<dim> &x, double t, int soil) const {
+    if (below_table(x, t, soil)) return 1;
+    const double drained = seeped_saturation_ ? seeped_saturation_(body, x.data()) : NAN;
+    return std::isnan(drained) ? body.saturation : drained;
+  }
   /// Has the soil water of its own? Its pressure may then jump at the soil's border.
   bool apart(int soil) const { return soil >= 0 && (!table_of_[soil]->empty() || ratio_[soil]); }
   /// May pores fill or dry while the soil moves? What seepage has found stands still then.
@@ -62,9 +69,13 @@ class PrescribedPressure {
     return (!water_->table.empty() || std::any_of(table_of_.begin(), table_of_.end(), given)) &&
            !water_->level.constant();
   }
-  /// From now on the common pressure is that of `seeped` [Pa], but where that is not a number; null: that of [water]
-  /// again.
-  void take(std::function<double(const double *)> seeped) { seeped_ = std::move(seeped); }
+  /// Degree of saturation of a body's soil at a place [-]; not a number where that is not known.
+  using Saturation = std::function<double(const BodySource &, const double *)>;
+  /// From now on the common pressure is that of `seeped` [Pa], but where that is not a number, and the saturation above
+  /// the water table that of `saturation`; null: those of [water] and of the bodies again.
+  void take(std::function<double(const double *)> seeped, Saturation saturation) {
+    seeped_ = std::move(seeped), seeped_saturation_ = std::move(saturation);
+  }
   /// The pressure of this soil is that of `ratio` [Pa], but where that is not a number.
   void take_of(int soil, std::function<double(const double *)> ratio) { ratio_[soil] = std::move(ratio); }
   bool open_water_load() const { return water_->open_water_load; }
@@ -86,6 +97,7 @@ class PrescribedPressure {
 
   const Water *water_;
   std::function<double(const double *)> seeped_;
+  Saturation seeped_saturation_;
   double unit_weight_;
   std::vector<int> soil_of_cell_;
   std::vector<const Table *> table_of_;                       ///< [body]

@@ -44,8 +44,7 @@ PetscErrorCode PrescribedPoreWater<dim>::measure(FilledGrid<dim> &grid, double t
     const ParticleArrays<dim> &p = body->particles();
     for (int i = 0; i < p.count; ++i) {
       const double dry = source.grain_density * (1 - source.porosity);
-      const double saturation =
-          pressure_.below_table(p.position[i], time, pressure_.soil_of(p.cell[i])) ? 1 : source.saturation;
+      const double saturation = pressure_.saturation(source, p.position[i], time, pressure_.soil_of(p.cell[i]));
       const double extra = (dry + source.porosity * saturation * pressure_.density()) * p.initial_volume[i] - p.mass[i];
       if (std::abs(extra) <= 1e-12 * p.mass[i]) continue;
       const auto n = barycentric(mesh_.cells[p.cell[i]], p.position[i]);

@@ -215,6 +215,13 @@ void BaseContact<dim>::restore(const State &state) {
 }
 
 template <int dim>
+void BaseContact<dim>::serialize(Archive &archive) {
+  State state = save();
+  archive.serialize("bases", state);
+  restore(state);
+}
+
+template <int dim>
 void BaseContact<dim>::confine(const std::function<bool(const Vec<dim> &, double)> &divided) {
   for (Point &p : points_) p.divisor = divided(soil_.nodes().position[p.node], p.size) ? 0 : 1;
 }

@@ -5,6 +5,7 @@
 /// carry the force; what friction cannot bear of it is taken off.
 #include <vector>
 
+#include "base/archive.h"
 #include "physics/boundary/conditions.h"
 #include "solvers/quasi_static/moving_soil.h"
 #include "solvers/quasi_static/soil_elements.h"
@@ -63,6 +64,7 @@ class BaseContact {
 
   State save() const;
   void restore(const State &state);
+  void serialize(Archive &archive);  ///< the same in a checkpoint
 
   /// From now on friction and adhesion are divided by `factor` and slip dilates, for trials of a factor of safety; 0:
   /// the base is as the scene says.

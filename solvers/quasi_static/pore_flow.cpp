@@ -370,13 +370,13 @@ double PoreFlow<dim>::water_density(int cell, const Barycentric<dim> &l) const {
 }
 
 template <int dim>
-std::vector<double> PoreFlow<dim>::pressure_of_cells(bool suction) const {
+std::vector<double> PoreFlow<dim>::pressure_of_cells() const {
   std::vector<double> cells;
   for (int c = 0; c < cell_count(); ++c)
     for (int a = 0; a <= dim && active_[c]; ++a) {
       const int node = nodes_.of_cell(c)[a];
       cells.insert(cells.end(), nodes_.position[node].begin(), nodes_.position[node].end());
-      cells.push_back(suction ? accepted[node] : std::max(0., accepted[node]));
+      cells.push_back(accepted[node]);
     }
   return cells;
 }

@@ -4,6 +4,7 @@
 /// mass. Boundaries act as their kinds state (physics/boundary/kind.h), as in the motion of the fluids.
 #include <functional>
 
+#include "base/archive.h"
 #include "physics/boundary/pore_conditions.h"
 #include "physics/pores/fluids.h"
 #include "physics/pores/soil_pores.h"
@@ -88,9 +89,13 @@ class PoreFlow {
   /// The same of the boundaries that only the flow has, by their names. Collective.
   std::vector<std::pair<std::string, double>> own_inflow() const;
   int cell_count() const { return mesh_.cell_count(); }
-  /// Coordinates [m] and accepted pressure [Pa] of the vertices of active cells, one after another; without `suction`
-  /// zero in place of pressures below zero.
-  std::vector<double> pressure_of_cells(bool suction) const;
+  /// Coordinates [m] and accepted pressure [Pa] of the vertices of active cells, one after another.
+  std::vector<double> pressure_of_cells() const;
+
+  /// The state in a checkpoint, between two steps.
+  void serialize(Archive &archive) {
+    archive.serialize("flow", accepted, pressure, pressure_of_point_, open_, inflow_);
+  }
 
   std::vector<double> pressure;  ///< trial, of local nodes [Pa]
   std::vector<double> accepted;  ///< at the start of the step [Pa]

@@ -239,6 +239,13 @@ PetscErrorCode QuasiStatic<dim>::commit(::Vec x, bool softening) {
   PetscFunctionReturn(0);
 }
 
+template <int dim>
+void QuasiStatic<dim>::serialize(Archive &archive) {
+  soil_.serialize(archive);
+  bases_.serialize(archive);
+  archive.serialize("path", share_, unborne_, borne_acceleration_);
+}
+
 // ---- what it found ----
 
 template <int dim>

@@ -87,6 +87,8 @@ class QuasiStatic {
   };
   State save() const { return {soil_.save(), bases_.save()}; }
   void restore(const State &state) { soil_.restore(state.soil), bases_.restore(state.bases); }
+  /// The state in a checkpoint, between two paths.
+  void serialize(Archive &archive);
   /// Force of each boundary on the soil [N] and mean displacement of each loaded face [m], at the last converged state.
   /// On the way along a path the loads that the soil did not bear at its begin count by the share of the path, as they
   /// do in the equilibrium. Collective.

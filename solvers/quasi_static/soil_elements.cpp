@@ -322,6 +322,12 @@ void SoilElements<dim>::reset_displacement() {
 }
 
 template <int dim>
+void SoilElements<dim>::serialize(Archive &archive) {
+  archive.serialize("elements", displacement_, displacement_of_point_);
+  for (GaussPoints<dim> &p : points_) archive.serialize("Gauss points", p.stress, p.history, p.total_strain);
+}
+
+template <int dim>
 void SoilElements<dim>::admit() {
   for (GaussPoints<dim> &p : points_) {
     StressPoints<dim> present = p.trial();

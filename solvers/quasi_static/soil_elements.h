@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "base/archive.h"
 #include "physics/laws/update_stress.h"
 #include "scene/scene.h"
 #include "solvers/quasi_static/element_nodes.h"
@@ -101,6 +102,8 @@ class SoilElements {
   };
   State save() const { return {points_, displacement_}; }
   void restore(const State &state) { points_ = state.points, displacement_ = state.displacement; }
+  /// The state in a checkpoint, between two paths.
+  void serialize(Archive &archive);
 
   std::vector<GaussPoints<dim>> &points() { return points_; }
   const std::vector<GaussPoints<dim>> &points() const { return points_; }

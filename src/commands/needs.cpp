@@ -104,6 +104,7 @@ Drainage drainage_of(const Scene &scene, const Needs &needs) {
   for (std::size_t i = 0; i < needs.stages.size(); ++i)
     if (!is_static(scene.stage[i].kind)) d.time += needs.stages[i].duration;
   if (d.time == 0) return d;
+  for (const Stage &stage : scene.stage) d.computed |= water_flows(stage.kind);
   const double water_weight = scene.water.density * needs.gravity;
   const auto bound = [&](double factor) {
     return scales::conductivity_at(factor, needs.layer.modulus, water_weight, d.time, needs.layer.height);
@@ -202,6 +203,12 @@ class Adviser {
   void softening(const BodyNeeds &b) {
     const double slope = b.softening.slope;
     if (slope == 0) return;
+    if (b.averaging_length > 0 && b.averaging_length < b.body.cell_size)
+      say("The averaging_length of " + b.body.name + ", " + digits(b.averaging_length) +
+          " m, is less than its cells of " + digits(b.body.cell_size) +
+          " m: the average then hardly reaches the next cell, and bands are as wide as cells are; take cells of at "
+          "most "
+          "this length.");
     if (b.averaging_length > 0) return;  // bands are wider than a cell, and cells do not snap back alone
     if (unscaled(b.law))
       say(b.body.name +
@@ -331,7 +338,10 @@ class Adviser {
     const Drainage &d = needs_.drainage;
     if (d.time == 0) return;
     const std::string bounds = std::string("k above ") + digits(d.drained_above, 1) + " m/s", time = spoken(d.time);
-    if (scene_.phases == PhaseModel::drained)
+    if (scene_.phases == PhaseModel::drained && needs_.drainage.computed)
+      say("The water stands still while the soil moves: that is right where soil drains in the " + time +
+          " of the dynamic stages, " + bounds + ".");
+    else if (scene_.phases == PhaseModel::drained)
       say("A prescribed pore pressure is right where soil drains in the " + time + " of the stages, " + bounds +
           " (less in proportion where a stage represents a longer time). Below " + digits(d.undrained_below, 1) +
           " m/s failure is undrained: use total-stress strengths; in between pore pressure has to be computed.");

@@ -50,6 +50,7 @@ struct StageNeeds {
 struct Drainage {
   double time = 0, undrained_below = 0, drained_above = 0;
   double drag_relaxation = 0;  ///< at the upper bound [s]; 0 where no porosity is known
+  bool computed = false;       ///< stages of seepage find the pore pressure
 };
 
 struct Needs {

@@ -50,8 +50,8 @@ PetscErrorCode Run<dim>::serialize(Archive &archive) {
   if (archive.reading()) stop = make_stop_criterion<dim>(stage());
   stop->serialize(archive);
   recorder.serialize(archive);
-  statics.serialize(archive);
   PetscCall(world.serialize(archive));
+  statics.serialize(archive);
   dynamics.serialize(archive);
   PetscFunctionReturn(0);
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <limits>
 #include <numeric>
+#include <sstream>
 
 #include "output/replace_file.h"
 #include "output/together.h"
@@ -42,7 +43,7 @@ void Statics<dim>::make() {
     if (has_flow_stages(world_.scene)) {
       const bool dries = std::any_of(world_.scene.body.begin(), world_.scene.body.end(),
                                      [](const BodySource &b) { return b.retention.reader; });
-      world_.pressure.take(nullptr);
+      world_.pressure.take(nullptr, nullptr);
       flow_ = std::make_unique<PoreFlow<dim>>(world_.mesh, world_.scene, world_.conditions.sources(), dries,
                                               world_.seepage_sources);
     }
@@ -157,19 +158,35 @@ void Statics<dim>::check_supports(bool soil_moves) const {
 
 template <int dim>
 void Statics<dim>::take_seeped_pressure() {
-  const bool suction =  // laws that read it see it, others take it for none
-      std::any_of(world_.laws.begin(), world_.laws.end(), [](const Law &law) { return reads_suction(law); });
-  seeped_cells_ = flow_->pressure_of_cells(suction);
+  seeped_cells_ = flow_->pressure_of_cells();
   use_seeped_pressure();
 }
 
-/// Where no rank has a cell with such a pressure, there was no seepage yet.
+/// Laws that read suction see it, others take pressure below zero for none; by the retention curve it determines the
+/// weight of the soil. Where no rank has a cell with a pressure, there was no seepage yet.
 template <int dim>
 void Statics<dim>::use_seeped_pressure() {
   const auto found = std::make_shared<const CellPressure<dim>>(world_.comm, seeped_cells_);
   if (found->empty()) return;
   seeped_ = found;
-  world_.pressure.take([found](const double *x) { return (*found)(x); });
+  const bool suction =
+      std::any_of(world_.laws.begin(), world_.laws.end(), [](const Law &law) { return reads_suction(law); });
+  auto felt = found;
+  if (!suction) {
+    std::vector<double> cells = seeped_cells_;
+    for (size_t k = dim; k < cells.size(); k += dim + 1) cells[k] = std::max(0., cells[k]);
+    felt = std::make_shared<const CellPressure<dim>>(world_.comm, cells);
+  }
+  std::vector<SoilPores> pores;
+  for (const BodySource &body : world_.scene.body)  // all of them have a curve, or none
+    if (body.retention.reader) pores.emplace_back(body, world_.scene.water.density, world_.scene.water.viscosity);
+  typename PrescribedPressure<dim>::Saturation saturation;
+  if (!pores.empty())
+    saturation = [found, pores, first = world_.scene.body.data()](const BodySource &body, const double *x) {
+      const double p = (*found)(x);
+      return std::isnan(p) ? p : talus::saturation(pores[&body - first].retention(), std::max(0., -p));
+    };
+  world_.pressure.take([felt](const double *x) { return (*felt)(x); }, saturation);
 }
 
 template <int dim>
@@ -185,7 +202,24 @@ void Statics<dim>::save_seeped_pressure(const std::string &directory) const {
 
 template <int dim>
 void Statics<dim>::serialize(Archive &archive) {
-  archive.serialize("seepage", seeped_cells_);
+  bool begun = made();
+  archive.serialize("statics", begun, current_, moved_since_, seeped_cells_);
+  std::string lost;
+  for (const std::string &name : lost_stages) lost += name + '\n';
+  archive.serialize("lost stages", lost);
+  if (archive.reading()) {
+    std::istringstream names(lost);
+    lost_stages.clear();
+    for (std::string name; std::getline(names, name);) lost_stages.push_back(name);
+    if (begun) {
+      make();
+      require(activate());
+    }
+  }
+  if (begun) {
+    problem_->serialize(archive);
+    if (flow_) flow_->serialize(archive);
+  }
   if (archive.reading()) use_seeped_pressure();
 }
 

@@ -36,8 +36,8 @@ class Statics {
   void take_seeped_pressure();
   /// Replaces pore_pressure.csv by what the last seepage has found, or removes it if there was none. Collective.
   void save_seeped_pressure(const std::string &directory) const;
-  /// What the state of a run has from it: the pressure that the last seepage left in the cells of this rank.
-  /// Collective.
+  /// What the state of a run has from it, after that of the world: Gauss points and nodes, and the pressure that the
+  /// last seepage left in the cells of this rank. Collective.
   void serialize(Archive &archive);
 
   /// Sum over the Gauss points of the plastic strain that takes strength from soil. Collective.

@@ -125,8 +125,7 @@ double World<dim>::soil_density(const BodySource &source, const Vec<dim> &x, dou
   const int soil = static_cast<int>(&source - scene.body.data());
   double density = (1 - source.porosity) *
                    source.grain_density;  // where fluids move on their own, particles' mass is that of the grains
-  if (phases.prescribed)
-    density += source.porosity * scene.water.density * (pressure.below_table(x, t, soil) ? 1 : source.saturation);
+  if (phases.prescribed) density += source.porosity * scene.water.density * pressure.saturation(source, x, t, soil);
   return density;
 }
 

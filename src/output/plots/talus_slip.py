@@ -1,6 +1,7 @@
 """The slip surface of a run in plane strain or a slice: the line of largest plastic strain, where its soil was at the start."""
 
 import csv
+import sys
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from talus_style import plt
 LEAST = 0.2  # of the largest plastic strain: soil with less is no part of the surface
 GAP = 3  # columns without strain that may lie within the surface
 COLUMN = 2  # width of a column, in distances of neighbouring particles
+NEAR = 0.15  # of the height of the soil: a line that ends deeper below the ground has not come out
 
 
 def slip_surface(results, time=None):
@@ -49,6 +51,13 @@ def slip_surface(results, time=None):
     return smoothed(np.array([points[number] for number in longest])), snapshot, place, strain
 
 
+def buried_ends(line, place):
+    """Those of the words left and right at which the line ends inside the soil, further below the ground than a share NEAR of the soil's height."""
+    reach = max(np.ptp(line[:, 0]) / len(line), np.ptp(place[:, 0]) / 200)
+    ground = [place[np.abs(place[:, 0] - x) <= reach, 1].max(initial=y) for x, y in (line[0], line[-1])]
+    return [side for side, level, (_, y) in zip(("left", "right"), ground, (line[0], line[-1])) if level - y > NEAR * np.ptp(place[:, 1])]
+
+
 def smoothed(line):
     """Elevations as medians of three neighbours, so that one column beside the band does not kink it."""
     inner = np.median([line[:-2, 1], line[1:-1, 1], line[2:, 1]], axis=0)
@@ -70,6 +79,9 @@ def draw_slip_surface(results, folder, time=None):
     axes.set_title(f"slip surface in the undeformed section; plastic strain at {style.at_time(snapshot.time, results.snapshots[-1].time)}", loc="left")
     figure.colorbar(shown, ax=axes, shrink=0.8)
     style.save(figure, folder / "slip_surface.png")
+    if buried := buried_ends(line, place):
+        print(f"talus: the line ends inside the soil on the {' and on the '.join(buried)}: at t = {snapshot.time:g} s the plastic strain that is more than "
+              f"{LEAST:g} of the largest forms no surface from ground to ground; a later time (--times) may show the whole one", file=sys.stderr)
     if results.snapshots[0].position().shape[1] == 2:
         print("[output.line.slip_surface]\npoints = [" + ", ".join(f"[{x:.4g}, {y:.4g}]" for x, y in line) + "]")
     return [("slip surface", folder / "slip_surface.png")]

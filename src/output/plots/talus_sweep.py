@@ -16,7 +16,7 @@ import talus_style as style
 from talus_style import plt
 
 LEFT_OUT = ("cell_m", "deepest_at_x_m")  # outcomes that no chart shows
-TITLES = {"load_time_of_failure_s": "time t of the loads at failure [s]", "travel_distance_m": "travel distance [m]",
+TITLES = {"load_time_of_failure_s": "time t of the loads at failure [s]", "travel_distance_m": "travel distance, rear of the slide to its front [m]",
           "volume_of_slide_m3": "volume of the slide [m³]", "depth_of_slide_m": "depth of the slip surface [m]"}
 
 

@@ -75,9 +75,6 @@ class StaticStage : public StageRunner<dim> {
   bool sets_pressure() const { return run_.world.phases.prescribed && water_flows(); }
 
   void begin() {
-    if (run_.options.resume && !run_.statics.made() && run_.progress.number > 0)
-      throw SceneError("the run in " + run_.options.directory +
-                       " cannot be resumed before a quasi-static stage; start it anew");
     run_.clock.stage = stage_.name, run_.clock.hold_loads = stage_.hold_loads;
     run_.recorder.begin_stage(stage_.name);
     run_.statics.begin_stage(stage_, soil_moves());
@@ -100,9 +97,11 @@ class StaticStage : public StageRunner<dim> {
            << " % of the " << (soil_moves() ? "loads" : "duration") << " of stage " << stage_.name << ": "
            << (path_.last.singular ? "the stiffness became singular" : "Newton's iterations did not converge") << " ("
            << path_.last.iterations << " iterations";
-      if (!water_flows())
-        text << ", out-of-balance force " << path_.last.residual << " of the forces, largest step of a node "
-             << path_.last.largest << " m";
+      if (!water_flows()) text << ", out-of-balance force " << path_.last.residual << " of the forces";
+      if (!water_flows() && path_.last.largest < ran_away)
+        text << ", largest step of a node " << path_.last.largest << " m";
+      else if (!water_flows())
+        text << ", and the displacement ran away";
       text << ")";
       const bool softened = soil_moves() && run_.statics.softening_strain() > begin_strain_;
       if (softened)
@@ -131,6 +130,7 @@ class StaticStage : public StageRunner<dim> {
     run_.write_checkpoint();
   }
 
+  static constexpr double ran_away = 1000;  ///< displacement of a step that is none of soil [m]
   Path path_;
   double begin_ = 0, begin_load_ = 0;  ///< [s]
   double begin_strain_ = 0;            ///< Statics::softening_strain

@@ -210,6 +210,25 @@ TEST(Water, rises_in_drained_soil) {
   EXPECT_LT(*std::max_element(way.end() - 50, way.end()), 1e-7);
 }
 
+/// Soil above the water weighs what its retention curve holds at the suction that seepage has found: 10 kPa at the top,
+/// where a linear curve to 20 kPa leaves half. Particles at rest on a base under them press it with the same weight.
+TEST(Water, weighs_what_the_retention_curve_holds) {
+  const std::string text = wet_block +
+                           "[body.soil.retention]\ncurve = \"linear\"\ndrying_suction = 20e3\n"
+                           "[body.soil.relative_permeability]\ncurve = \"constant\"\n"
+                           "[boundary.well]\ngroup = \"base\"\nkind = \"pore_pressure\"\npressure = 0\n"
+                           "[[stage]]\nname = \"water\"\nkind = \"seepage\"\nsteady = true\nduration = 1\n"
+                           "[[stage]]\nname = \"soil\"\nkind = \"quasi_static\"\nduration = 1\n"
+                           "[[stage]]\nname = \"still\"\nduration = 0.2\ndamping = 0.5\n";
+  const Solved solved = solve(text, {"phases=drained", "water.table=[[0, 0]]"});
+  const double moist = 10 * (0.7 * 2600 + 0.75 * 0.3 * 1000);
+  const std::vector<double> time = solved.history.column("time_s"), force = solved.history.column("walls_force_y_N");
+  const size_t elements = std::find(time.begin(), time.end(), 2.) - time.begin();
+  ASSERT_LT(elements, time.size());
+  EXPECT_NEAR(force[elements] / moist, 1, 1e-6);
+  EXPECT_NEAR(force.back() / moist, 1, 0.02);  // of three particles in a cell; without the water it would be 0.89
+}
+
 const std::string pressed =
     "[boundary.surface]\nkind = \"traction\"\npressure = \"1 kPa\"\n[boundary.drain]\ngroup = "
     "\"surface\"\nkind = \"pore_pressure\"\n"

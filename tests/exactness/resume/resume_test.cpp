@@ -166,6 +166,80 @@ print('the same')
   EXPECT_TRUE(ending.says("the same")) << ending.output;
 }
 
+/// Stages one after another; the run is ended behind each of them, and resumed with the others.
+struct Chain {
+  const char *name;
+  std::vector<std::string> set, stages;
+  int ranks = 1;
+};
+
+void PrintTo(const Chain &chain, std::ostream *out) { *out << chain.name; }
+
+std::string stage(const std::string &name, const std::string &kind, const std::string &more) {
+  return "[[stage]]\nname = \"" + name + "\"\nkind = \"" + kind + "\"\n" + more;
+}
+
+/// Sand that softens, with water that comes in from the left.
+const std::string wet_scene =
+    changed(changed(changed(good_scene, "density = 2000", "porosity = 0.3\ngrain_density = 2650\npermeability = 1e-12"),
+                    "cohesion = 0\nfriction_angle = 30",
+                    "cohesion = \"3 kPa\"\nresidual_cohesion = \"2 kPa\"\nshape_factor = 50\nfriction_angle = 20"),
+            "[[stage]]\nname = \"fall\"\nduration = 0.05\n",
+            "[boundary.well]\ngroup = \"left\"\nkind = \"pore_pressure\"\npressure = \"1e3 + 20 * t\"\n"
+            "[water]\ntable = [[0, 0.1]]\n");
+
+const Chain chains[] = {
+    {"of_seepage_and_equilibrium",
+     {"phases=drained", "boundary.base.kind=friction", "boundary.base.friction_angle=25", "boundary.base.adhesion=1e3"},
+     {stage("wet", "seepage", "duration = 40\n"), stage("stands", "quasi_static", "duration = 1\nload_steps = 2\n"),
+      stage("wetter", "seepage", "duration = 40\n"),
+      stage("stands_still", "quasi_static", "duration = 1\nreset_displacement = true\n"),
+      stage("moves", "dynamic", "duration = 0.02\n"), stage("wettest", "seepage", "duration = 40\n"),
+      stage("rests", "quasi_static", "duration = 1\n")}},
+    {"of_consolidation_on_two_ranks",
+     {"phases=saturated", "water.bulk_modulus=1e7"},
+     {stage("weight", "consolidation", "duration = 40\ninitial_stress = \"k0\"\n"),
+      stage("more", "consolidation", "duration = 40\n"), stage("moves", "dynamic", "duration = 0.01\n"),
+      stage("rests", "consolidation", "duration = 20\n")},
+     2},
+};
+
+class ResumedBehindElements : public testing::TestWithParam<Chain> {};
+
+TEST_P(ResumedBehindElements, IsTheSameToTheBit) {
+  const Chain &chain = GetParam();
+  const Folder folder;
+  folder.write("section.csv", good_section);
+  const auto run = [&](const std::string &results, size_t stages, bool resume) {
+    std::string text = wet_scene;
+    for (size_t k = 0; k < stages; ++k) text += chain.stages[k];
+    folder.write("scene.toml", text);
+    std::vector<std::string> words{"run", "scene.toml", "-o", results, "--no-pictures"};
+    for (const std::string &key : chain.set) words.insert(words.end(), {"--set", key});
+    if (resume) words.push_back("--resume");
+    const Ending ending = talus(folder, words, chain.ranks);
+    EXPECT_EQ(ending.status, 0) << ending.output;
+  };
+  run("whole", chain.stages.size(), false);
+  for (size_t ended = 1; ended < chain.stages.size(); ++ended) {
+    run("resumed", ended, false);
+    run("resumed", chain.stages.size(), true);
+    const Ending ending = Program(folder, {PYTHON, "-c", R"(
+import h5py, numpy
+ends = [max(h5py.File(name + '/run.h5')['snapshots'].values(), key=lambda s: s.attrs['time']) for name in ('whole', 'resumed')]
+for field in ends[0]: assert numpy.array_equal(ends[0][field][...], ends[1][field][...], equal_nan=True), field
+assert open('whole/history.csv').read() == open('resumed/history.csv').read()
+print('the same')
+)"})
+                              .end();
+    EXPECT_TRUE(ending.says("the same")) << "behind stage " << ended << ": " << ending.output;
+    std::filesystem::remove_all(folder / "resumed");
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ResumedBehindElements, testing::ValuesIn(chains),
+                         [](const auto &chain) { return chain.param.name; });
+
 /// A short run that has ended.
 class EndedRun : public testing::Test {
  protected:
