@@ -13,7 +13,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 PICTURE = ROOT / "docs" / "architecture.png"
-HIDDEN = {"talus_flags"}  # compiler flags, which every library links
+HIDDEN = {"talus_flags", "talus_precompiled"}  # compiler flags and headers of other libraries, which every library has
 
 
 def read_targets():
