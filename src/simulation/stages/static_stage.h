@@ -1,7 +1,9 @@
 #pragma once
 /// What stages by finite elements have in common: they follow a path of loads in shares of their duration, hand each
 /// state to the particles, and say how the path ended.
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "scene/reader.h"
@@ -86,6 +88,25 @@ class StaticStage : public StageRunner<dim> {
     if (const std::string fault = run_.world.function_fault(); !fault.empty()) throw RunFailure(fault);
   }
 
+  /// A base of small strains lets soil slide any way at no cost, until its force has found a place where it holds.
+  void refuse_soil_that_slid_away() const {
+    if (!soil_moves()) return;
+    double low[dim], high[dim], square = 0;
+    std::fill_n(low, dim, std::numeric_limits<double>::max()), std::fill_n(high, dim, -low[0]);
+    for (const Vec<dim> &x : run_.world.mesh.position)
+      for (int d = 0; d < dim; ++d) low[d] = std::min(low[d], x[d]), high[d] = std::max(high[d], x[d]);
+    MPI_Allreduce(MPI_IN_PLACE, low, dim, MPI_DOUBLE, MPI_MIN, run_.world.comm);
+    MPI_Allreduce(MPI_IN_PLACE, high, dim, MPI_DOUBLE, MPI_MAX, run_.world.comm);
+    for (int d = 0; d < dim; ++d) square += (high[d] - low[d]) * (high[d] - low[d]);
+    const double moved = run_.statics.problem().soil().largest_displacement();
+    if (moved <= std::sqrt(square)) return;
+    std::ostringstream text;
+    text.precision(3);
+    text << "stage " << stage_.name << " has no equilibrium: the one that was found has moved the soil by " << moved
+         << " m, further than the mesh is long, so it has slid or fallen; let it move in a dynamic stage";
+    throw RunFailure(text.str());
+  }
+
   void finish() {
     refuse_bad_functions();  // loads that are no numbers have no equilibrium
     run_.recorder.write_snapshot();
@@ -118,6 +139,7 @@ class StaticStage : public StageRunner<dim> {
         run_.clock.time = begin_ + stage_.duration, run_.clock.load_time = load_at(1);
       }
     } else {
+      refuse_soil_that_slid_away();
       describe(path_, text);
     }
     run_.dynamics.set_loading(stage_, 0);

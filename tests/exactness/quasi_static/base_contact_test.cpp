@@ -58,6 +58,16 @@ TEST(BaseContact, lets_a_block_slide) {
   EXPECT_THROW(solve(block_on_plane(20.5 * degree)), std::exception);
 }
 
+/// Soil that has moved further than the mesh is long has no equilibrium, whatever the forces of small strains say: here
+/// it is pressed into its base; on a base of two friction angles it slides until its weight rests on the rough part.
+TEST(BaseContact, finds_no_equilibrium_far_away) {
+  const std::string text = "gravity = 10\n" + box +
+                           "density = 2000\n[boundary.base]\nkind = \"fixed\"\n"
+                           "[[stage]]\nname = \"weight\"\nkind = \"quasi_static\"\nduration = 1\n";
+  EXPECT_NO_THROW(solve(text, {"body.soil.young_modulus=1e5"}));  // it settles by a tenth of its height
+  EXPECT_THROW(solve(text, {"body.soil.young_modulus=1e3"}), RunError);
+}
+
 /// A push of H = W tan(phi) moves the block; beyond phi = 45 degrees it turns over instead, where H / 2 = W / 2.
 TEST(BaseContact, gives_way_to_a_push) {
   const Solved slides = solve(block_on_plane(0, push));
