@@ -30,43 +30,29 @@ struct Touch {
 }  // namespace
 
 template <int dim>
-BaseForce<dim> force_on_base(const Vec<dim> &spring, const Vec<dim> &normal, double friction, double adhesion,
-                             bool dilating) {
-  BaseForce<dim> f{{}, Square<dim>::Zero(), true, false};
+BaseForce<dim> force_at_given_friction(const Vec<dim> &spring, const Vec<dim> &normal, double most) {
   const ColumnVector<dim> s = map<dim>(spring), n = map<dim>(normal);
   const double pressing = s.dot(n);
   const ColumnVector<dim> along = s - pressing * n;
   const double shear = along.norm();
-  const ColumnVector<dim> t = shear > 0 ? ColumnVector<dim>(along / shear) : ColumnVector<dim>::Zero();
-  const Square<dim> of_normal = n * n.transpose(), of_slip = t * t.transpose(),
-                    across = Square<dim>::Identity() - of_normal - of_slip;
-  if (pressing < 0 && !dilating) {
-    f.presses = false;
-    return f;
-  }
-  if (pressing >= 0 && shear <= adhesion + friction * pressing) {
-    f.borne = spring, f.tangent.setIdentity();
-    return f;
-  }
-  f.slides = true;
-  if (!dilating) {
-    const double most = adhesion + friction * pressing;
-    map<dim>(f.borne) = pressing * n + most * t;
-    f.tangent = of_normal + friction * t * n.transpose() + most / shear * across;
-    return f;
-  }
-  const double onto = 1 / (1 + friction * friction), left = onto * (pressing + friction * (shear - adhesion));
-  if (left > 0 && shear > adhesion) {
-    const double most = adhesion + friction * left;
-    const ColumnVector<dim> generator = n + friction * t;
-    map<dim>(f.borne) = left * n + most * t;
-    f.tangent = onto * generator * generator.transpose() + most / shear * across;
-    return f;
-  }
-  f.presses = false, f.slides = shear > adhesion;  // it opens: adhesion is all that acts along it
-  const double most = std::min(shear, adhesion);
-  map<dim>(f.borne) = most * t;
-  f.tangent = f.slides ? Square<dim>(most / shear * across) : Square<dim>(across + of_slip);
+  BaseForce<dim> f;
+  f.presses = pressing >= 0, f.slides = shear > most;
+  const double borne = f.slides ? most / shear : 1;  // of the shear
+  const ColumnVector<dim> t = f.slides ? ColumnVector<dim>(along / shear) : ColumnVector<dim>::Zero();
+  const Square<dim> of_normal = n * n.transpose();
+  map<dim>(f.borne) = std::max(0., pressing) * n + borne * along;
+  f.tangent = borne * (Square<dim>::Identity() - of_normal - t * t.transpose());
+  if (f.presses) f.tangent += of_normal;
+  return f;
+}
+
+template <int dim>
+BaseForce<dim> force_on_base(const Vec<dim> &spring, const Vec<dim> &normal, double friction, double adhesion) {
+  const ColumnVector<dim> s = map<dim>(spring), n = map<dim>(normal);
+  const double pressing = s.dot(n);
+  if (pressing < 0) return {{}, Square<dim>::Zero(), false, false};
+  BaseForce<dim> f = force_at_given_friction<dim>(spring, normal, adhesion + friction * pressing);
+  if (f.slides) f.tangent += friction * (s - pressing * n).normalized() * n.transpose();
   return f;
 }
 
@@ -156,8 +142,23 @@ void BaseContact<dim>::release() {
 
 template <int dim>
 BaseForce<dim> BaseContact<dim>::borne(const Point &p, const Vec<dim> &spring) const {
-  const double divisor = factor_ > 0 && p.divisor > 0 ? p.divisor : factor_ > 0 ? factor_ : 1;
-  return force_on_base<dim>(spring, p.normal, p.friction / divisor, p.adhesion / divisor, factor_ > 0);
+  if (factor_ == 0) return force_on_base<dim>(spring, p.normal, p.friction, p.adhesion);
+  const double divisor = p.divisor > 0 ? p.divisor : factor_;
+  return force_at_given_friction<dim>(spring, p.normal, (p.adhesion + p.friction * p.pressing) / divisor);
+}
+
+template <int dim>
+PetscErrorCode BaseContact<dim>::follow_normal_forces(double *change) {
+  double sums[2]{};  // of changes, and of all
+  PetscFunctionBeginUser;
+  for (Point &p : points_) {
+    const double pressing = std::max(0., map<dim>(p.trial).dot(map<dim>(p.normal)));
+    sums[0] += p.friction * std::abs(pressing - p.pressing), sums[1] += p.adhesion + p.friction * pressing;
+    p.pressing = pressing;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, soil_.nodes().comm()));
+  *change = sums[0] > 0 ? sums[0] / sums[1] : 0;
+  PetscFunctionReturn(0);
 }
 
 template <int dim>
@@ -255,8 +256,10 @@ std::vector<typename BaseContact<dim>::NormalForce> BaseContact<dim>::normal_for
   return forces;
 }
 
-template BaseForce<2> force_on_base<2>(const Vec<2> &, const Vec<2> &, double, double, bool);
-template BaseForce<3> force_on_base<3>(const Vec<3> &, const Vec<3> &, double, double, bool);
+template BaseForce<2> force_at_given_friction<2>(const Vec<2> &, const Vec<2> &, double);
+template BaseForce<3> force_at_given_friction<3>(const Vec<3> &, const Vec<3> &, double);
+template BaseForce<2> force_on_base<2>(const Vec<2> &, const Vec<2> &, double, double);
+template BaseForce<3> force_on_base<3>(const Vec<3> &, const Vec<3> &, double, double);
 template class BaseContact<2>;
 template class BaseContact<3>;
 

@@ -21,12 +21,15 @@ struct BaseForce {
   bool presses, slides;  ///< in contact; at the limit of friction
 };
 
-/// `friction` is the tangent of the friction angle, `adhesion` the force that the base bears along itself without
-/// normal force [N]. With `dilating` slip opens the contact by the friction angle (the closest point of the admissible
-/// forces); else slip leaves the normal force as it is, and a base that nothing presses on bears nothing.
+/// Coulomb's law. `friction` is the tangent of the friction angle, `adhesion` the force that the base bears along
+/// itself without normal force [N]. Slip leaves the normal force as it is, and a base that nothing presses on bears
+/// nothing.
 template <int dim>
-BaseForce<dim> force_on_base(const Vec<dim> &spring, const Vec<dim> &n, double friction, double adhesion,
-                             bool dilating);
+BaseForce<dim> force_on_base(const Vec<dim> &spring, const Vec<dim> &n, double friction, double adhesion);
+/// The same with a friction of `most` [N] whatever presses on the base, as in the trials of a factor of safety: the
+/// closest of the admissible forces, which has an energy.
+template <int dim>
+BaseForce<dim> force_at_given_friction(const Vec<dim> &spring, const Vec<dim> &n, double most);
 
 template <int dim>
 class BaseContact {
@@ -66,9 +69,12 @@ class BaseContact {
   void restore(const State &state);
   void serialize(Archive &archive);  ///< the same in a checkpoint
 
-  /// From now on friction and adhesion are divided by `factor` and slip dilates, for trials of a factor of safety; 0:
-  /// the base is as the scene says.
+  /// From now on friction and adhesion are divided by `factor`, for trials of a factor of safety, and friction is that
+  /// of given normal forces; 0: the base is as the scene says.
   void set_trial(double factor) { factor_ = factor; }
+  /// The normal forces of the trial state give the friction of trials from now on. `change`: by how much that changes
+  /// the friction of all bases, over this friction [-]. Collective.
+  PetscErrorCode follow_normal_forces(double *change);
   /// Trials divide the strength of the base only where `divided(place, element size)`.
   void confine(const std::function<bool(const Vec<dim> &, double)> &divided);
   /// Trials divide it under these cells by `divisor`. Collective.
@@ -100,6 +106,7 @@ class BaseContact {
     Vec<dim> spring{}, trial{};         ///< at the last converged state and at the trial one [N]
     double friction = 0, adhesion = 0;  ///< at the loads: tan phi_b [-], force [N]
     double divisor = 0;                 ///< in trials; 0: that of the trial
+    double pressing = 0;                ///< normal force that gives the friction of trials [N]
   };
   static Vec<dim> axis(int d) {
     Vec<dim> unit{};

@@ -16,6 +16,9 @@ constexpr double far = 10, lasting = 0.75;
 // displacement is still in equilibrium.
 constexpr double first_prop = 1e-2, last_prop = 1e-9;
 constexpr int most_iterations = 200, most_per_prop = 40;
+// Change of the friction of bases over all of it at which their friction is that of their normal force: a fifth of the
+// width of the bracket of a factor of safety.
+constexpr double small_change = 1e-3;
 
 }  // namespace
 
@@ -102,6 +105,24 @@ PetscErrorCode LimitState<dim>::settle(int most, LimitSearch *result, bool *sett
   }
 }
 
+/// The same, with the friction that bases have under their present normal forces: a sequence of searches for the least
+/// energy, each with the friction of the one before.
+template <int dim>
+PetscErrorCode LimitState<dim>::settle_on_bases(int most, LimitSearch *result, bool *settled) {
+  constexpr int most_changes = 20;
+  PetscFunctionBeginUser;
+  const int last = result->iterations + most;
+  for (int k = 0; k < most_changes; ++k) {
+    double change;
+    PetscCall(settle(last - result->iterations, result, settled));
+    if (!*settled || stop_asked()) PetscFunctionReturn(0);
+    PetscCall(problem_.bases().follow_normal_forces(&change));
+    if (change <= small_change) PetscFunctionReturn(0);
+  }
+  *settled = false;
+  PetscFunctionReturn(0);
+}
+
 template <int dim>
 PetscErrorCode LimitState<dim>::search(LimitSearch *result) {
   bool settled;
@@ -111,10 +132,12 @@ PetscErrorCode LimitState<dim>::search(LimitSearch *result) {
   prop_ = first_prop;
   PetscCall(evaluate(x_));
   problem_.close_scale();
+  double change;
+  PetscCall(problem_.bases().follow_normal_forces(&change));
   double last_force = 0, last_prop_tried = 0;  // of the stiffer prop before
   for (double reduction = 10;;) {
     PetscCall(VecCopy(x_, start_));  // where this prop begins
-    PetscCall(settle(std::min(most_per_prop, most_iterations - result->iterations), result, &settled));
+    PetscCall(settle_on_bases(std::min(most_per_prop, most_iterations - result->iterations), result, &settled));
     if (stop_asked()) {
       result->verdict = LimitVerdict::interrupted;
       break;

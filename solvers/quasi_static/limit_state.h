@@ -47,6 +47,7 @@ class LimitState {
   bool stop_asked() const { return problem_.stop_asked && problem_.stop_asked(); }
   PetscErrorCode evaluate(::Vec x);
   PetscErrorCode settle(int most_iterations, LimitSearch *result, bool *settled);
+  PetscErrorCode settle_on_bases(int most_iterations, LimitSearch *result, bool *settled);
   PetscErrorCode line_search(double slope, double *step);
 
   QuasiStatic<dim> &problem_;

@@ -9,10 +9,11 @@
 namespace talus {
 
 /// Refuses laws whose strength cannot be divided. Soil that never fails, and soil that keeps its strength, may stand
-/// beside soil that does not.
+/// beside soil that does not, or on a base with friction.
 template <int dim>
 void check_strength(const World<dim> &world) {
-  bool some_fail = false;
+  bool some_fail = std::ranges::any_of(world.conditions.sources(),
+                                       [](const auto &source) { return source.kind.quasi_static == OnSoil::contact; });
   for (size_t b = 0; b < world.laws.size(); ++b)
     some_fail = some_fail || (!never_fails(world.laws[b]) && world.scene.body[b].reduce_strength);
   if (!some_fail && !std::ranges::all_of(world.laws, never_fails))

@@ -138,6 +138,20 @@ TEST(BaseContact, leaves_the_factor_of_a_block) {
   expect_holds(factor_of(block_on_plane(15 * degree), strong + Keys{"boundary.base.adhesion=2000"}),
                std::tan(20 * degree) / std::tan(15 * degree) + 2e3 / (20e3 * std::sin(15 * degree)));
 }
+TEST(BaseContact, leaves_the_factor_of_a_block_that_never_fails) {
+  expect_holds(factor_of(block_on_plane(15 * degree), {}), std::tan(20 * degree) / std::tan(15 * degree));
+}
+/// Friction that grows linearly along the base is, in sum, that at the point where the normal force acts: half the
+/// height times tan(dip) downhill of the middle, by the moments of the block. It does not matter how it spreads.
+TEST(BaseContact, leaves_the_factor_of_a_base_whose_friction_varies) {
+  const double dip = 15 * degree, at = 0.5 * std::tan(dip);
+  for (const double slope : {0.5, -0.5}) {  // of tan(phi) along x
+    std::ostringstream angle;
+    angle << "boundary.base.friction_angle=atan(0.6 + " << slope << " * (x - 0.5)) * 180 / pi";
+    const Keys keys{"body.soil.law=mohr_coulomb", "body.soil.cohesion=1e7", "body.soil.friction_angle=0", angle.str()};
+    expect_holds(factor_of(block_on_plane(dip), keys), (0.6 + slope * at) / std::tan(dip));
+  }
+}
 /// k = tan(30 + phi_F), the friction of both planes divided alike.
 TEST(BaseContact, leaves_the_factor_of_a_wedge) {
   const std::string text = groove("[[stage]]\nname = \"push\"\nkind = \"quasi_static\"\nduration = 1\n");
@@ -156,51 +170,50 @@ TEST(BaseContact, goes_on_in_motion) {
 
 // ---- the law of the contact -----------------------------------------------------------------------------------------
 
-/// Its tangent is the derivative of the force, in every case that the law distinguishes.
+/// Tangents are the derivative of the force, in every case that the laws distinguish.
 TEST(BaseContact, has_a_consistent_tangent) {
   const Vec<3> n{0, 0.6, 0.8};
-  for (const bool dilating : {false, true})
-    for (const double adhesion : {0., 0.3})
+  for (const bool given : {false, true})
+    for (const double adhesion : {0., 0.3}) {
+      const auto force = [&](const Vec<3> &spring) {
+        return given ? force_at_given_friction<3>(spring, n, adhesion) : force_on_base<3>(spring, n, 0.4, adhesion);
+      };
       for (const Vec<3> &spring : {Vec<3>{0.1, 0.6, 0.8}, Vec<3>{2, 0.6, 0.8}, Vec<3>{0.2, -0.6, -0.8},
                                    Vec<3>{2, -0.6, -0.7}, Vec<3>{1, 0.9, 0.1}}) {
-        const BaseForce<3> f = force_on_base<3>(spring, n, 0.4, adhesion, dilating);
+        const BaseForce<3> f = force(spring);
         for (int k = 0; k < 3; ++k) {
           constexpr double step = 1e-6;
           Vec<3> more = spring, less = spring;
           more[k] += step, less[k] -= step;
-          const BaseForce<3> high = force_on_base<3>(more, n, 0.4, adhesion, dilating),
-                             low = force_on_base<3>(less, n, 0.4, adhesion, dilating);
+          const BaseForce<3> high = force(more), low = force(less);
           for (int d = 0; d < 3; ++d) EXPECT_NEAR(f.tangent(d, k), (high.borne[d] - low.borne[d]) / (2 * step), 1e-8);
         }
       }
+    }
 }
 
-/// What it bears presses, and rubs with no more than friction and adhesion.
+/// What it bears presses, and rubs with no more than friction and adhesion; slip leaves the normal force as it is.
 TEST(BaseContact, bears_what_coulomb_admits) {
-  const Vec<2> n{0, -1};
-  for (const bool dilating : {false, true})
-    for (double x = -2; x <= 2; x += 0.25)
-      for (double y = -2; y <= 2; y += 0.25) {
-        const BaseForce<2> f = force_on_base<2>({x, y}, n, 0.5, 0.25, dilating);
-        EXPECT_GE(-f.borne[1], 0);
-        EXPECT_LE(std::abs(f.borne[0]), 0.25 - 0.5 * f.borne[1] + 1e-12);
-        if (!dilating) {
-          EXPECT_EQ(f.borne[1], std::min(0., y)) << "slip without dilation leaves the normal force";
-        }
-      }
-}
-
-/// Where slip dilates, no admissible force is closer to that of the spring: the way to each of them leads away from it.
-TEST(BaseContact, bears_the_closest_force_where_slip_dilates) {
   const Vec<2> n{0, -1};
   for (double x = -2; x <= 2; x += 0.25)
     for (double y = -2; y <= 2; y += 0.25) {
-      const Vec<2> borne = force_on_base<2>({x, y}, n, 0.5, 0.25, true).borne;
+      const BaseForce<2> f = force_on_base<2>({x, y}, n, 0.5, 0.25);
+      EXPECT_EQ(f.borne[1], std::min(0., y));
+      EXPECT_LE(std::abs(f.borne[0]), 0.25 - 0.5 * f.borne[1] + 1e-12);
+    }
+}
+
+/// Where friction is given, no admissible force is closer to that of the spring: the way to each of them leads away
+/// from it.
+TEST(BaseContact, bears_the_closest_force_where_friction_is_given) {
+  const Vec<2> n{0, -1};
+  constexpr double most = 0.75;
+  for (double x = -2; x <= 2; x += 0.25)
+    for (double y = -2; y <= 2; y += 0.25) {
+      const Vec<2> borne = force_at_given_friction<2>({x, y}, n, most).borne;
       for (double pressing = 0; pressing <= 2; pressing += 0.25)
-        for (const double share : {-1., 0., 1.}) {
-          const double along = share * (0.25 + 0.5 * pressing);
-          EXPECT_LE((x - borne[0]) * (along - borne[0]) + (y - borne[1]) * (-pressing - borne[1]), 1e-12);
-        }
+        for (const double share : {-1., 0., 1.})
+          EXPECT_LE((x - borne[0]) * (share * most - borne[0]) + (y - borne[1]) * (-pressing - borne[1]), 1e-12);
     }
 }
 
