@@ -128,7 +128,7 @@ void Describer::number(const char *key, double value, Unit unit, Range range, co
 
 void Describer::by_place(const char *key, double value, bool, Unit unit, Range range, const char *meaning) {
   line(key, number_in(unit) + ", " + from_to(range) + ", function of place",
-       std::isnan(value) ? "required" : rounded(value / unit.si), meaning);
+       std::isnan(value) ? "required" : rounded(value / unit.si), meaning, unit);
 }
 
 void Describer::integer(const char *key, int value, Range range, const char *meaning) {

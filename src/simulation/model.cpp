@@ -35,13 +35,13 @@ std::array<Vec<dim>, 3> sorted(std::array<Vec<dim>, 3> corner) {
   return corner;
 }
 
-/// The pieces of all ranks on the first one, in an order that does not depend on their number; of facets that two cells
-/// share the one with soil behind it.
+/// The pieces in an order that does not depend on the number of ranks; of facets that two cells share the one with soil
+/// behind it.
 template <int dim>
-std::vector<Piece<dim>> gathered(MPI_Comm comm, const std::vector<Piece<dim>> &mine) {
+std::vector<Piece<dim>> in_order(const std::vector<Piece<dim>> &pieces) {
   const auto key = [](const Piece<dim> &piece) { return std::pair(piece.source, sorted<dim>(piece.corner)); };
   std::map<std::pair<int, std::array<Vec<dim>, 3>>, Piece<dim>> found;
-  for (const Piece<dim> &piece : gather(comm, mine)) {
+  for (const Piece<dim> &piece : pieces) {
     const auto [at, is_new] = found.emplace(key(piece), piece);
     if (!is_new && std::pair(piece.body, piece.normal) > std::pair(at->second.body, at->second.normal))
       at->second = piece;
@@ -49,6 +49,12 @@ std::vector<Piece<dim>> gathered(MPI_Comm comm, const std::vector<Piece<dim>> &m
   std::vector<Piece<dim>> all;
   for (const auto &[place, piece] : found) all.push_back(piece);
   return all;
+}
+
+/// The pieces of all ranks, on the first one.
+template <int dim>
+std::vector<Piece<dim>> gathered(MPI_Comm comm, const std::vector<Piece<dim>> &mine) {
+  return in_order(gather(comm, mine));
 }
 
 std::string json_of(const std::vector<double> &values) {
@@ -220,6 +226,7 @@ class Model {
         if (!taken.contains(sorted<dim>(piece.corner))) all.push_back(piece);
       }
     }
+    all = in_order(all);
     std::vector<std::size_t> number(sources.size());
     std::size_t next = 0;
     for (std::size_t &s : number) s = next++;

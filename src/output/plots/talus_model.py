@@ -24,11 +24,12 @@ WIDTH, MARGIN, LINE = 12.0, 0.45, 0.19  # of the picture, its edges and a line o
 SYMBOL = 0.11  # size of a boundary's symbol [inch]
 GROUND = ("#e8d5b0", "#c9b18b", "#d9c9a3", "#b7a58a", "#e3c196", "#cdbfae", "#bfae7e", "#d6b8a0")  # of the soils
 EARTH, WATER, LOAD, BASE, PLATE, GAS = style.INK, "#1971c2", "#c92a2a", "#a0410d", "#5f3dc4", "#862e9c"
+UNBROKEN = "\u00a0"  # a blank at which no line ends
 WHITE = withStroke(linewidth=2.2, foreground="white")
 # parameters of soils that the legend has, by key
-PARAMETERS = {"unit_weight": "γ", "saturated_unit_weight": "γ_sat", "density": "ρ", "porosity": "n", "grain_density": "ρ_s", "young_modulus": "E",
+PARAMETERS = {"unit_weight": "γ", "saturated_unit_weight": "γₛₐₜ", "density": "ρ", "porosity": "n", "grain_density": "ρₛ", "young_modulus": "E",
               "shear_modulus": "G", "bulk_modulus": "K", "poisson_ratio": "ν", "cohesion": "c", "friction_angle": "φ", "dilation_angle": "ψ",
-              "residual_cohesion": "c_r", "residual_friction_angle": "φ_r", "hydraulic_conductivity": "k", "permeability": "k"}
+              "residual_cohesion": "cᵣ", "residual_friction_angle": "φᵣ", "hydraulic_conductivity": "k", "permeability": "k"}
 # what a boundary does to the soil: words, colour, symbol in perspective
 ON_SOIL = {"fixed": ("fixed", EARTH, "s"), "roller": ("roller", EARTH, "o"), "base": ("base with friction", BASE, "X"),
            "load": ("load", LOAD, "v"), "velocity": ("moving plate", PLATE, "D"), "dashpot": ("non-reflecting", GAS, "P")}
@@ -50,6 +51,9 @@ class Model:
         self.normal = np.array([cell["normal"] for cell in self.data["cells"]]).reshape(-1, self.dimension)  # of the faces in 3D
         self.body = np.array([cell["body"] for cell in self.data["cells"]], int)
         self.boundaries = [Boundary(one, self.dimension) for one in self.data["boundaries"]]
+        if self.dimension == 3:  # symbols alone do not tell boundaries apart
+            for k, boundary in enumerate(self.boundaries):
+                boundary.colour = style.LINES[k % len(style.LINES)]
         self.stages = self.data["stages"]
 
     def colour(self, body):
@@ -59,7 +63,7 @@ class Model:
         """Law and main parameters of a soil."""
         given = self.scene.get("body", {}).get(name, {})
         law = given.get("law", "")
-        values = [f"{symbol} = {self.keys.text('body.NAME', law, key, given[key])}" for key, symbol in PARAMETERS.items() if key in given]
+        values = [f"{symbol} = {self.keys.text('body.NAME', law, key, given[key])}".replace(" ", UNBROKEN) for key, symbol in PARAMETERS.items() if key in given]
         return f"{style.words(law)}: {', '.join(values)}"
 
     def water_lines(self):
@@ -90,12 +94,10 @@ class Boundary:
         self.corners = np.array([face["corners"] for face in faces]).reshape(-1, dimension, dimension)
         self.normal = np.array([face["normal"] for face in faces]).reshape(-1, dimension)
         self.vector = np.array([face["vector"] for face in faces]).reshape(-1, dimension)
+        self.colour = ON_SOIL[self.soil][1] if self.soil in ON_SOIL else GAS if self.gas == "pressure" else WATER
         if self.soil in ("load", "none"):  # act on soil only
             keep = self.has_soil
             self.corners, self.normal, self.vector, self.has_soil = self.corners[keep], self.normal[keep], self.vector[keep], self.has_soil[keep]
-
-    def colour(self):
-        return ON_SOIL[self.soil][1] if self.soil in ON_SOIL else GAS if self.gas == "pressure" else WATER
 
     def marker(self):
         return ON_SOIL[self.soil][2] if self.soil in ON_SOIL else "."
@@ -116,7 +118,8 @@ class Boundary:
 
     def line(self):
         values = self.at_start()
-        return f"{self.name}: {self.what()}" + (f", {values}" if values else "")
+        told = values.startswith(self.what()) or (values and self.soil == "load")
+        return f"{self.name}: {values if told else ', '.join(filter(None, (self.what(), values)))}"
 
 
 # ---- stages ----
@@ -131,8 +134,8 @@ def stage_rows(model):
 
 
 def ending(stage):
-    if stage["kind"] != "dynamic":
-        return "next stage where equilibrium is lost" if stage["when_lost"] == "next_stage" else "its solution"
+    if stage["when_lost"] == "next_stage":
+        return "duration, or loss of equilibrium"
     if stage["until"] == "failure":
         return f"failure of {stage['failure_point']}, from {quantity(stage['failure_speed'], 'm/s')}"
     if stage["until"] == "rest":
@@ -157,9 +160,9 @@ def actions(stage, model):
     if standing:
         said.append("on the soil: " + ", ".join(standing))
     if stage["changes"]:
-        said.append("changing with time: " + ", ".join(style.words(one) for one in stage["changes"]))
+        said.append("changing with time: " + ", ".join(style.words(one.replace(".", " ")) for one in stage["changes"]))
     elif stage["hold_loads"]:
-        said.append("time of the loads stands still")
+        said.append("functions of time stand still")
     if stage["initial_stress"] == "k0":
         said.append("stress at the start by k0")
     for key, verb in (("add", "adds"), ("remove", "removes")):
@@ -225,18 +228,18 @@ class Symbols:
         if boundary.soil not in ON_SOIL:
             self.water(boundary, points, normals, under)
         elif boundary.soil in ("fixed", "base"):
-            self.axes.plot(*points.T, color=boundary.colour(), lw=1.6, **under)
-            self.hatch(points, normals, boundary.colour())
+            self.axes.plot(*points.T, color=boundary.colour, lw=1.6, **under)
+            self.hatch(points, normals, boundary.colour)
         elif boundary.soil == "roller":
-            self.axes.plot(*points.T, color=boundary.colour(), lw=1.0, **under)
+            self.axes.plot(*points.T, color=boundary.colour, lw=1.0, **under)
             at, n, _ = along(points, normals, 1.9 * self.size)
             for centre in at + 0.42 * self.size * n:
-                self.axes.add_patch(style.plt.Circle(centre, 0.38 * self.size, fc="white", ec=boundary.colour(), lw=0.8, zorder=6))
+                self.axes.add_patch(style.plt.Circle(centre, 0.38 * self.size, fc="white", ec=boundary.colour, lw=0.8, zorder=6))
         elif boundary.soil == "dashpot":
-            self.axes.plot(*points.T, color=boundary.colour(), lw=1.0, **under)
-            self.dashpots(points, normals, boundary.colour())
+            self.axes.plot(*points.T, color=boundary.colour, lw=1.0, **under)
+            self.dashpots(points, normals, boundary.colour)
         else:
-            self.axes.plot(*points.T, color=boundary.colour(), lw=1.0, **under)
+            self.axes.plot(*points.T, color=boundary.colour, lw=1.0, **under)
             self.arrows(boundary, points, normals, np.zeros_like(normals) if vectors is None else vectors)
 
     def lines(self, pieces, colour, width=0.8):
@@ -265,11 +268,11 @@ class Symbols:
         for start, way in zip(begin, length):
             if np.hypot(*way) > 0.05 * self.size:
                 self.axes.annotate("", start + way, start, zorder=6, annotation_clip=False,
-                                   arrowprops={"arrowstyle": "-|>,head_width=0.14,head_length=0.28", "color": boundary.colour(), "lw": 0.9, "shrinkA": 0,
+                                   arrowprops={"arrowstyle": "-|>,head_width=0.14,head_length=0.28", "color": boundary.colour, "lw": 0.9, "shrinkA": 0,
                                                "shrinkB": 0, "linestyle": "-" if largest else ":"})
 
     def water(self, boundary, points, normals, under):
-        colour = boundary.colour()
+        colour = boundary.colour
         if boundary.water == "wall":
             self.axes.plot(*points.T, color=style.SOFT, lw=3.0, **under)
             return
@@ -296,7 +299,10 @@ class Sheet:
     def __init__(self, model, view_height):
         self.soils = [(k, name, textwrap.wrap(model.soil_line(name), 84)) for k, name in enumerate(model.bodies)]
         self.boundaries = [(one, textwrap.wrap(one.line(), 78)) for one in model.boundaries]
-        self.stages = [(row[0], textwrap.wrap(f"{row[1]}, at most {row[2]}, ends with {row[3]}: {row[4]}", 150)) for row in stage_rows(model)[1:]]
+        self.stages = []
+        for name, kind, longest, end, acting in stage_rows(model)[1:]:
+            lasts = longest if end == "duration" else f"at most {longest}, ends with {end}"
+            self.stages.append((name, textwrap.wrap(f"{kind}, {lasts}: {acting}", 150)))
         left = sum(1 + len(lines) for _, _, lines in self.soils) + 2 * bool(notes(model)) + len(notes(model))
         legend = 1.5 + max(left, sum(len(lines) for _, lines in self.boundaries))
         stages = 1.5 + sum(len(lines) for _, lines in self.stages)
@@ -331,10 +337,12 @@ class Sheet:
         for boundary, lines in self.boundaries:
             left = WIDTH / 2 + 0.5
             if model.dimension == 2:
-                line, down = np.array([[left, y - 0.02], [left + 0.5, y - 0.02]]), np.array([[0.0, 1.0]])
-                symbols.draw(boundary, line, down, np.array([[0.0, -0.6]]) * np.linalg.norm(boundary.vector, axis=1).max(initial=0))
+                arrows = boundary.soil in ("load", "velocity")  # above the line, the other symbols below it; y points down here
+                line = np.array([[left, y], [left + 0.5, y]]) + (0, 0.06 if arrows else -0.03)
+                down = np.array([[0.0, -1.0 if arrows else 1.0]])
+                symbols.draw(boundary, line, down, np.array([[0.0, 0.5]]) * np.linalg.norm(boundary.vector, axis=1).max(initial=0))
             else:
-                page.plot(left + 0.25, y, boundary.marker(), color=boundary.colour(), ms=6, mfc="none" if boundary.marker() == "o" else None)
+                page.plot(left + 0.25, y, boundary.marker(), color=boundary.colour, ms=6, mfc="none" if boundary.marker() == "o" else None)
             y = self.paragraph(page, left + 0.62, y, lines)
         y = self.heading(page, MARGIN, self.legend_height + 0.5 * LINE, "Stages")
         for k, (name, lines) in enumerate(self.stages):
@@ -378,13 +386,13 @@ def draw_model(model, path):
 def section(model):
     """The section in plane strain."""
     low, high = model.corners.min(axis=(0, 1)), model.corners.max(axis=(0, 1))
-    pad = 0.75  # for symbols and dimensions [inch]
+    pad, above, scale = 0.85, 0.5, 0.65  # for symbols and dimensions, and for the scales beside and below the axes [inch]
     extent = high - low
-    metres = max(extent[0] / (WIDTH - 2 * MARGIN - 2 * pad - 0.3), extent[1] / 6.0)  # per inch
-    sheet = Sheet(model, extent[1] / metres + 2 * pad + 0.45)
-    width = extent[0] / metres + 2 * pad
-    axes = sheet.axes((WIDTH - width) / 2, sheet.view_top, width, extent[1] / metres + 2 * pad)
-    axes.set(xlim=(low[0] - pad * metres, high[0] + pad * metres), ylim=(low[1] - pad * metres, high[1] + pad * metres), aspect="equal",
+    metres = max(extent[0] / (WIDTH - 2 * MARGIN - 2 * pad - scale), extent[1] / 6.0)  # per inch
+    width, height = extent[0] / metres + 2 * pad, extent[1] / metres + pad + above
+    sheet = Sheet(model, height + scale - 0.2)
+    axes = sheet.axes((WIDTH - width + scale) / 2, sheet.view_top, width, height)
+    axes.set(xlim=(low[0] - pad * metres, high[0] + pad * metres), ylim=(low[1] - pad * metres, high[1] + above * metres), aspect="equal",
              xlabel="x [m]", ylabel="y [m]")
     for body in range(len(model.bodies)):
         cells = model.corners[model.body == body]
@@ -392,7 +400,8 @@ def section(model):
         axes.add_collection(PolyCollection(cells, fc=model.colour(body), ec="#8d7b5c", lw=np.clip(0.35 / max(fine, 0.3), 0.05, 0.45), zorder=2,
                                            hatch=None if model.there[body] else "///", alpha=1 if model.there[body] else 0.5), autolim=False)
         axes.add_collection(LineCollection(outline(cells), colors="#6b5a3c", linewidths=0.9, zorder=3), autolim=False)
-        name_body(axes, cells, model.bodies[body])
+        name_body(axes, cells, model.bodies[body], weight="bold", fontsize=10)
+    name_body(axes, model.corners[model.body < 0], "free space", color=style.SOFT, fontsize=9)
     axes.add_collection(LineCollection(outline(model.corners), colors=style.FAINT, linewidths=0.8, zorder=1), autolim=False)
     symbols = Symbols(axes, SYMBOL * metres)
     for boundary in model.boundaries:
@@ -405,7 +414,7 @@ def section(model):
             if boundary.soil in ("base", "load", "velocity"):
                 label(axes, boundary, points, normals, symbols.size)
         if boundary.level is not None and len(facets):
-            outer_level(axes, symbols, boundary, low, high)
+            outer_level(symbols, boundary)
     water(axes, model, symbols, low, high)
     named_points(axes, model, lambda x: np.asarray(x, float)[..., :2], symbols.size)
     dimensions(axes, model, low, high, metres)
@@ -423,7 +432,7 @@ def outline(cells):
     return edges[first[count == 1]]
 
 
-def name_body(axes, cells, name):
+def name_body(axes, cells, name, **look):
     if not len(cells):
         return
     centres = cells.mean(axis=1)
@@ -431,7 +440,7 @@ def name_body(axes, cells, name):
     area = np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
     middle = (centres * area[:, None]).sum(axis=0) / area.sum()
     at = centres[np.argmin(((centres - middle) ** 2).sum(axis=1))]  # which lies in the body
-    axes.text(*at, name, ha="center", va="center", fontsize=10, weight="bold", zorder=8, path_effects=[WHITE])
+    axes.text(*at, name, ha="center", va="center", zorder=8, path_effects=[WHITE], **look)
 
 
 def label(axes, boundary, points, normals, size):
@@ -442,15 +451,15 @@ def label(axes, boundary, points, normals, size):
     text = boundary.at_start().replace("friction angle", "φ =").replace(" at the start, changes with time", " at the start")
     away = 4.6 if boundary.soil == "load" else 1.8
     x, y = at[0] + away * size * n[0]
-    axes.text(x, y, text, fontsize=8, color=boundary.colour(), zorder=9, path_effects=[WHITE], ha="left" if n[0][0] > 0.5 else "right" if n[0][0] < -0.5 else "center",
+    axes.text(x, y, text, fontsize=8, color=boundary.colour, zorder=9, path_effects=[WHITE], ha="left" if n[0][0] > 0.5 else "right" if n[0][0] < -0.5 else "center",
               va="bottom" if n[0][1] > 0.5 else "top" if n[0][1] < -0.5 else "center")
 
 
-def outer_level(axes, symbols, boundary, low, high):
+def outer_level(symbols, boundary):
     """A water level outside the faces that it wets: on the side where there is room."""
     middle, side = boundary.corners.mean(axis=(0, 1)), boundary.normal.mean(axis=0)
-    x = middle[0] + 2.6 * symbols.size * (1 if side[0] >= 0 else -1)
-    symbols.lines([[(x - 2 * symbols.size, boundary.level), (x + 2 * symbols.size, boundary.level)]], WATER, 1.4)
+    x = middle[0] + 2 * symbols.size * (1 if side[0] >= 0 else -1)
+    symbols.lines([[(x - 1.3 * symbols.size, boundary.level), (x + 1.3 * symbols.size, boundary.level)]], WATER, 1.4)
     symbols.level(x, boundary.level)
 
 
@@ -486,13 +495,13 @@ def dimensions(axes, model, low, high, metres):
     soil = model.corners[np.isin(model.body, np.flatnonzero(model.there))]
     soil = soil if len(soil) else model.corners
     first, last = soil.min(axis=(0, 1)), soil.max(axis=(0, 1))
-    away = 0.36 * metres
+    away = 0.44 * metres
     spans = [((first[0], low[1] - away), (last[0], low[1] - away))]
     if last[0] - first[0] < 0.999 * (high[0] - low[0]):
-        spans.append(((low[0], low[1] - 1.75 * away), (high[0], low[1] - 1.75 * away)))
+        spans.append(((low[0], low[1] - 1.6 * away), (high[0], low[1] - 1.6 * away)))
     spans.append(((high[0] + away, first[1]), (high[0] + away, last[1])))
     if last[1] - first[1] < 0.999 * (high[1] - low[1]):
-        spans.append(((high[0] + 1.75 * away, low[1]), (high[0] + 1.75 * away, high[1])))
+        spans.append(((high[0] + 1.6 * away, low[1]), (high[0] + 1.6 * away, high[1])))
     for begin, end in spans:
         dimension(axes, np.array(begin), np.array(end))
 
@@ -511,7 +520,7 @@ class Camera:
     """Central projection onto a plane. `towards` points from the middle of the soil to the eye; `up` is up."""
 
     def __init__(self, low, high, towards, up):
-        self.middle, size = (low + high) / 2, np.linalg.norm(high - low)
+        self.up, self.middle, size = up, (low + high) / 2, np.linalg.norm(high - low)
         forward = -np.asarray(towards) / np.linalg.norm(towards)
         self.right = np.cross(forward, up) / np.linalg.norm(np.cross(forward, up))
         self.top, self.forward = np.cross(self.right, forward), forward
@@ -539,7 +548,7 @@ def perspectives(model):
     across = np.eye(3)[np.flatnonzero(up == 0)]  # the level axes
     views = [Camera(low, high, 0.55 * across[0] + 0.75 * across[1] + 0.5 * up, up), Camera(low, high, -0.55 * across[0] - 0.75 * across[1] - 0.5 * up, up)]
     box = np.array([[(low, high)[i][0], (low, high)[j][1], (low, high)[k][2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
-    widths, gap = (7.0, 3.9), 0.2  # of the two views [inch]
+    widths, gap = (6.4, 4.5), 0.2  # of the two views [inch]
     flat = [camera.flat(box) for camera in views]
     scale = [max(np.ptp(points[:, 0]) / (width - 1.0), np.ptp(points[:, 1]) / 4.6) for points, width in zip(flat, widths)]  # metres per inch
     height = max(np.ptp(points[:, 1]) / one for points, one in zip(flat, scale)) + 1.0
@@ -551,7 +560,7 @@ def perspectives(model):
         axes.set(xlim=middle[0] + np.array([-0.5, 0.5]) * width * scale[k], ylim=middle[1] + np.array([-0.5, 0.5]) * height * scale[k])
         axes.axis("off")
         view(axes, model, camera, scale[k], (low, high), main=k == 0)
-        axes.set_title(("from above", "from below, seen from behind")[k], loc="left", fontsize=8.5, color=style.SOFT, y=0.97)
+        axes.set_title(("from above", "from below, seen from behind")[k], loc="left", fontsize=8.5, color=style.SOFT, y=0.92)
         left += width + gap
     return sheet
 
@@ -571,12 +580,12 @@ def view(axes, model, camera, metres, extent, main):
         at = camera.flat(middle[seen])
         _, first = np.unique(np.floor(at / (0.26 * metres)).astype(int), axis=0, return_index=True)  # not all: one in a quarter of an inch
         hollow = {"mfc": "white"} if boundary.marker() == "o" else {}
-        axes.plot(*at[first].T, boundary.marker(), color=boundary.colour(), ms=4.2, mew=0.8, ls="none", zorder=4, **hollow)
+        axes.plot(*at[first].T, boundary.marker(), color=boundary.colour, ms=4.2, mew=0.8, ls="none", zorder=4, **hollow)
         largest = np.linalg.norm(boundary.vector, axis=1).max(initial=0)
         for k in np.flatnonzero(seen)[first] if largest else ():
             way = 0.4 * metres * boundary.vector[k] / largest
             start = middle[k] - way if boundary.soil == "load" else middle[k]
-            axes.annotate("", camera.flat(start + way), camera.flat(start), zorder=5, arrowprops={"arrowstyle": "-|>", "color": boundary.colour(), "lw": 0.8, "shrinkA": 0, "shrinkB": 0})
+            axes.annotate("", camera.flat(start + way), camera.flat(start), zorder=5, arrowprops={"arrowstyle": "-|>", "color": boundary.colour, "lw": 0.8, "shrinkA": 0, "shrinkB": 0})
     low, high = extent
     if main:
         front = high[2] if camera.eye[2] > camera.middle[2] else low[2]
@@ -590,7 +599,7 @@ def view(axes, model, camera, metres, extent, main):
 
 
 def edges(axes, camera, low, high, metres):
-    """The three dimensions of the soil, each beside that edge of its box that lies lowest in the picture."""
+    """The three dimensions of the soil, each beside that edge of its box that lies lowest in the picture, or furthest right."""
     middle = camera.flat((low + high) / 2)
     for axis in range(3):
         others = [one for one in range(3) if one != axis]
@@ -602,7 +611,7 @@ def edges(axes, camera, low, high, metres):
                 end = begin.copy()
                 end[axis] = high[axis]
                 ends.append(camera.flat([begin, end]))
-        lowest = min(ends, key=lambda edge: edge[:, 1].mean() if np.ptp(edge[:, 0]) > 0.05 * metres else -edge[:, 0].mean())
+        lowest = min(ends, key=lambda edge: -edge[:, 0].mean() if camera.up[axis] else edge[:, 1].mean())
         away = lowest.mean(axis=0) - middle
         lowest = lowest + 0.28 * metres * away / np.linalg.norm(away)
         axes.annotate("", *lowest, zorder=9, annotation_clip=False, arrowprops={"arrowstyle": "<->", "color": style.SOFT, "lw": 0.8, "shrinkA": 0, "shrinkB": 0})

@@ -8,7 +8,7 @@ ENTRIES = 6  # of a list that are written out
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 UNIT = re.compile(r"[A-Za-zµ°%][\w/^*.()²³µ°% -]*$")
 SHOWN = (("m2", "m²"), ("m3", "m³"), ("s2", "s²"), ("deg", "°"))  # how units are written
-TIMES = ((86400, "d"), (3600, "h"), (60, "min"))
+TIMES = ((86400, 86400, "d"), (3600, 3600, "h"), (120, 60, "min"))  # from so many seconds on
 
 
 class Keys:
@@ -85,8 +85,8 @@ def span(low, high, unit):
 
 def duration(seconds):
     """'40 s', '30 d'"""
-    for size, name in TIMES:
-        if seconds >= 2 * size:
+    for least, size, name in TIMES:
+        if seconds >= least:
             return f"{seconds / size:.4g} {name}"
     return f"{seconds:.4g} s"
 
