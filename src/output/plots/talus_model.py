@@ -22,7 +22,7 @@ from talus_units import Keys, duration, quantity, span
 
 WIDTH, MARGIN, LINE = 12.0, 0.45, 0.19  # of the picture, its edges and a line of its text [inch]
 SYMBOL = 0.11  # size of a boundary's symbol [inch]
-GROUND = ("#e8d5b0", "#c9b18b", "#d9c9a3", "#b7a58a", "#e3c196", "#cdbfae", "#bfae7e", "#d6b8a0")  # of the soils
+GROUND = ("#e8d5b0", "#c2a278", "#b9bfa4", "#a9a29a", "#e0b88a", "#d5cfc9", "#a8895f", "#d8c774")  # of the soils
 EARTH, WATER, LOAD, BASE, PLATE, GAS = style.INK, "#1971c2", "#c92a2a", "#a0410d", "#5f3dc4", "#862e9c"
 UNBROKEN = "\u00a0"  # a blank at which no line ends
 WHITE = withStroke(linewidth=2.2, foreground="white")
@@ -297,7 +297,7 @@ class Sheet:
     """The page: a title, the view, the legend and the stages below it. Sizes in inches; heights count from the top."""
 
     def __init__(self, model, view_height):
-        self.soils = [(k, name, textwrap.wrap(model.soil_line(name), 84)) for k, name in enumerate(model.bodies)]
+        self.soils = [(k, name, textwrap.wrap(model.soil_line(name), 92)) for k, name in enumerate(model.bodies)]
         self.boundaries = [(one, textwrap.wrap(one.line(), 78)) for one in model.boundaries]
         self.stages = []
         for name, kind, longest, end, acting in stage_rows(model)[1:]:
@@ -373,7 +373,7 @@ def notes(model):
     for key in ("suction", "excess"):
         if key in water:
             said.append(f"{key}: {model.keys.text('water', '', key, water[key])}")
-    return [line for text in said for line in textwrap.wrap(text, 84)]
+    return [line for text in said for line in textwrap.wrap(text, 98)]
 
 
 def draw_model(model, path):
@@ -544,7 +544,8 @@ def perspectives(model):
     """From above in front, and from below behind."""
     low, high = model.corners.min(axis=(0, 1)), model.corners.max(axis=(0, 1))
     gravity = np.array(model.data["gravity"] if np.any(model.data["gravity"]) else [0, -1, 0], float)
-    up = -np.round(gravity / np.linalg.norm(gravity))
+    steepest = np.abs(gravity).argmax()
+    up = -np.sign(gravity[steepest]) * np.eye(3)[steepest]
     across = np.eye(3)[np.flatnonzero(up == 0)]  # the level axes
     views = [Camera(low, high, 0.55 * across[0] + 0.75 * across[1] + 0.5 * up, up), Camera(low, high, -0.55 * across[0] - 0.75 * across[1] - 0.5 * up, up)]
     box = np.array([[(low, high)[i][0], (low, high)[j][1], (low, high)[k][2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])

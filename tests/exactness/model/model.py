@@ -10,7 +10,7 @@ import unittest
 
 import numpy as np
 
-PLOTS, MPIRUN, TALUS = sys.argv.pop(), sys.argv.pop(), sys.argv.pop()
+TALUS, MPIRUN, PLOTS = sys.argv.pop(1), sys.argv.pop(1), sys.argv.pop(1)
 sys.path.insert(0, PLOTS)
 from talus_model import Model, chains, outline, stage_rows  # noqa: E402
 from talus_units import duration, span, text_of  # noqa: E402
