@@ -310,7 +310,7 @@ class Sheet:
         self.view_top = 0.55
         self.height = self.view_top + view_height + self.legend_height + self.stages_height + 0.35
         self.figure = style.plt.figure(figsize=(WIDTH, self.height))
-        self.figure.text(MARGIN / WIDTH, 1 - 0.22 / self.height, model.title or "Model", fontsize=12, weight="bold", va="center")
+        self.figure.text(MARGIN / WIDTH, 1 - 0.22 / self.height, textwrap.shorten(model.title or "Model", 120, placeholder=" …"), fontsize=12, weight="bold", va="center")
         kind = "plane strain" if model.dimension == 2 else "3D"
         self.figure.text(MARGIN / WIDTH, 1 - 0.42 / self.height, f"{model.data['phases']}, {kind}; the model at the start", fontsize=9, color=style.SOFT, va="center")
         self.view_height = view_height
@@ -378,9 +378,10 @@ def notes(model):
 
 def draw_model(model, path):
     """Draws the picture as PNG and returns its path. `model` is a Model."""
-    sheet = section(model) if model.dimension == 2 else perspectives(model)
-    sheet.words(model)
-    return style.save(sheet.figure, path)
+    with style.plt.rc_context({"text.parse_math": False}):  # a scene may write $ in its names
+        sheet = section(model) if model.dimension == 2 else perspectives(model)
+        sheet.words(model)
+        return style.save(sheet.figure, path)
 
 
 def section(model):
@@ -396,8 +397,8 @@ def section(model):
              xlabel="x [m]", ylabel="y [m]")
     for body in range(len(model.bodies)):
         cells = model.corners[model.body == body]
-        fine = np.sqrt(len(model.corners)) / (WIDTH * 25)  # cells to a fiftieth of an inch
-        axes.add_collection(PolyCollection(cells, fc=model.colour(body), ec="#8d7b5c", lw=np.clip(0.35 / max(fine, 0.3), 0.05, 0.45), zorder=2,
+        edge = np.linalg.norm(cells[:, 1] - cells[:, 0], axis=1).mean() / metres if len(cells) else 1  # [inch]
+        axes.add_collection(PolyCollection(cells, fc=model.colour(body), ec="#8d7b5c", lw=np.clip(5 * edge, 0.04, 0.45), zorder=2,
                                            hatch=None if model.there[body] else "///", alpha=1 if model.there[body] else 0.5), autolim=False)
         axes.add_collection(LineCollection(outline(cells), colors="#6b5a3c", linewidths=0.9, zorder=3), autolim=False)
         name_body(axes, cells, model.bodies[body], weight="bold", fontsize=10)
