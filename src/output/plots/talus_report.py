@@ -8,7 +8,8 @@ import numpy as np
 
 import talus_style as style
 from talus_factor import factor_lines, read_factor
-from talus_model import draw_model, read_model, stage_rows
+from talus_model import draw_model
+from talus_modelled import read_model, stage_rows
 from talus_units import Keys
 
 LOG_LINES = 25

@@ -12,7 +12,9 @@ import numpy as np
 
 TALUS, MPIRUN, PLOTS = sys.argv.pop(1), sys.argv.pop(1), sys.argv.pop(1)
 sys.path.insert(0, PLOTS)
-from talus_model import Model, chains, outline, stage_rows  # noqa: E402
+from talus_model import outline  # noqa: E402
+from talus_modelled import Model, stage_rows  # noqa: E402
+from talus_symbols import chains  # noqa: E402
 from talus_units import duration, span, text_of  # noqa: E402
 
 SECTION = """part,x,y
