@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "output/json.h"
@@ -100,6 +101,14 @@ struct Fields {
   }
 };
 
+/// 0, 1, ... for each entry of a list.
+template <class List>
+std::vector<std::size_t> numbers_of(const List &list) {
+  std::vector<std::size_t> numbers(list.size());
+  std::iota(numbers.begin(), numbers.end(), 0);
+  return numbers;
+}
+
 /// Units by path of the table, kind ("": all kinds) and key.
 std::string units() {
   const Describer known = scene_keys();
@@ -122,11 +131,10 @@ template <int dim>
 class Model {
  public:
   explicit Model(const World<dim> &world)
-      : world_(world), scene_(world.scene), body_of_(bodies_of_cells(world.mesh, world.scene)) {
-    for (const BodySource &body : scene_.body)
-      there_.push_back(std::ranges::none_of(
-          scene_.stage, [&](const Stage &stage) { return std::ranges::count(stage.add, body.name) > 0; }));
-  }
+      : world_(world),
+        scene_(world.scene),
+        body_of_(bodies_of_cells(world.mesh, world.scene)),
+        there_(world.present_at_start()) {}
 
   std::string document() {
     surface_ = world_.surface();
@@ -160,11 +168,7 @@ class Model {
   bool has_soil(int cell) const { return body_of_[cell] >= 0 && there_[body_of_[cell]]; }
 
   std::string bodies() const {
-    Object all;
-    std::vector<std::size_t> number(scene_.body.size());
-    std::size_t next = 0;
-    for (std::size_t &b : number) b = next++;
-    return json::array(number, [&](std::size_t b) {
+    return json::array(numbers_of(scene_.body), [&](std::size_t b) {
       return Object().add("name", json::text(scene_.body[b].name)).add("there", json_of(bool(there_[b]))).str();
     });
   }
@@ -227,10 +231,7 @@ class Model {
       }
     }
     all = in_order(all);
-    std::vector<std::size_t> number(sources.size());
-    std::size_t next = 0;
-    for (std::size_t &s : number) s = next++;
-    return json::array(number, [&](std::size_t s) {
+    return json::array(numbers_of(sources), [&](std::size_t s) {
       std::vector<Piece<dim>> faces;
       for (const Piece<dim> &piece : all)
         if (piece.source == static_cast<int>(s)) faces.push_back(piece);
@@ -238,73 +239,12 @@ class Model {
     });
   }
 
-  std::string boundary(const Source &source, const std::vector<Piece<dim>> &faces) const {
-    const Boundary &kind = source.kind;
-    const auto &on_soil = kind.template on_soil<dim>();
-    const OnSoil action = kind.in_motion != OnSoil::none ? kind.in_motion : kind.quasi_static;
-    constexpr const char *water[] = {"surface", "wall", "pressure", "seepage", "flux", "outflow"};
-    constexpr const char *gas[] = {"surface", "wall", "atmosphere", "pressure"};
-    Values values;
-    double level = std::numeric_limits<double>::quiet_NaN();
-    const std::string drawn = json::array(faces, [&](const Piece<dim> &face) {
-      Vec<dim> centre{}, vector{};
-      for (int a = 0; a < dim; ++a)
-        for (int d = 0; d < dim; ++d) centre[d] += face.corner[a][d] / dim;
-      if (face.body >= 0) {  // functions need not be defined where there is no soil
-        const double x = centre[0], y = centre[1], z = dim == 3 ? centre[dim - 1] : 0;
-        if (action == OnSoil::load) {
-          vector = on_soil.load(face.normal, centre, 0);
-          double along = 0, square = 0;
-          for (int d = 0; d < dim; ++d) along -= vector[d] * face.normal[d], square += vector[d] * vector[d];
-          values.add(kind.follows ? "pressure" : "traction", "Pa", kind.follows ? along : std::sqrt(square));
-        }
-        if (action == OnSoil::support && on_soil.speed) {
-          double square = 0;
-          for (const Vec<dim> &direction : on_soil.directions(face.normal)) {
-            const double speed = on_soil.speed(direction, centre, 0);
-            for (int d = 0; d < dim; ++d) vector[d] += speed * direction[d];
-          }
-          for (const double component : vector) square += component * component;
-          values.add("velocity", "m/s", std::sqrt(square));
-        }
-        if (kind.friction_coefficient)
-          values.add("friction angle", "deg", std::atan(kind.friction_coefficient(x, y, z, 0, 0)) / degree.si);
-        if (kind.adhesion) values.add("adhesion", "Pa", kind.adhesion(x, y, z, 0, 0));
-        if (kind.outside) {
-          const double weight = scene_.water.density * scene_.gravity_size(), p = kind.outside(x, y, z, 0, weight);
-          if (kind.open_water && weight > 0 && p > 0) level = std::fmax(level, y + p / weight);
-          values.add(p < 0 ? "suction" : "pore pressure", "Pa", std::abs(p));
-        }
-        if (kind.supply && !kind.open_water) values.add("supply", "m/s", kind.supply(x, y, z, 0));
-        if (kind.inflow) values.add("inflow", "m/s", kind.inflow(x, y, z, 0));
-        if (kind.gas_outside) values.add("gas pressure", "Pa", kind.gas_outside(x, y, z, 0));
-      }
-      return Object()
-          .add("corners", corners(face, dim))
-          .add("normal", json_of<dim>(face.normal))
-          .add("soil", json_of(face.body >= 0))
-          .add("vector", json_of<dim>(vector))
-          .str();
-    });
-    return Object()
-        .add("name", json::text(source.name))
-        .add("groups", json_of(source.groups))
-        .add("soil", json::text(action_on_soil(action, on_soil)))
-        .add("water", json::text(water[static_cast<int>(kind.water)]))
-        .add("gas", json::text(gas[static_cast<int>(kind.gas)]))
-        .add("changes", json_of(kind.changes))
-        .add("values", values.str())
-        .add("level", level)
-        .add("faces", drawn)
-        .str();
-  }
-
   /// Least and largest value of what a boundary prescribes.
   class Values {
    public:
     void add(const std::string &name, const char *unit, double value) {
       if (!std::isfinite(value)) return;
-      const auto [at, is_new] = found_.emplace(name, Range2{unit, value, value});
+      const auto [at, is_new] = found_.emplace(name, Span{unit, value, value});
       at->second.low = std::min(at->second.low, value), at->second.high = std::max(at->second.high, value);
     }
     std::string str() const {
@@ -319,12 +259,86 @@ class Model {
     }
 
    private:
-    struct Range2 {
+    struct Span {
       const char *unit;
       double low, high;
     };
-    std::map<std::string, Range2> found_;
+    std::map<std::string, Span> found_;
   };
+
+  std::string boundary(const Source &source, const std::vector<Piece<dim>> &faces) const {
+    const Boundary &kind = source.kind;
+    const OnSoil action = kind.in_motion != OnSoil::none ? kind.in_motion : kind.quasi_static;
+    constexpr const char *water[] = {"surface", "wall", "pressure", "seepage", "flux", "outflow"};
+    constexpr const char *gas[] = {"surface", "wall", "atmosphere", "pressure"};
+    Values values;
+    double level = std::numeric_limits<double>::quiet_NaN();
+    const std::string drawn = json::array(faces, [&](const Piece<dim> &face) {
+      Vec<dim> centre{}, vector{};
+      for (int a = 0; a < dim; ++a)
+        for (int d = 0; d < dim; ++d) centre[d] += face.corner[a][d] / dim;
+      if (face.body >= 0) {  // functions need not be defined where there is no soil
+        vector = exerted(kind, action, face, centre, values);
+        level = std::fmax(level, look_at_pores(kind, centre, values));
+      }
+      return Object()
+          .add("corners", corners(face, dim))
+          .add("normal", json_of<dim>(face.normal))
+          .add("soil", json_of(face.body >= 0))
+          .add("vector", json_of<dim>(vector))
+          .str();
+    });
+    return Object()
+        .add("name", json::text(source.name))
+        .add("groups", json_of(source.groups))
+        .add("soil", json::text(action_on_soil(action, kind.template on_soil<dim>())))
+        .add("water", json::text(water[static_cast<int>(kind.water)]))
+        .add("gas", json::text(gas[static_cast<int>(kind.gas)]))
+        .add("changes", json_of(kind.changes))
+        .add("values", values.str())
+        .add("level", level)
+        .add("faces", drawn)
+        .str();
+  }
+
+  /// Load [Pa] or velocity [m/s] in the middle of a face at the start; `values` takes what the boundary prescribes
+  /// there.
+  static Vec<dim> exerted(const Boundary &kind, OnSoil action, const Piece<dim> &face, const Vec<dim> &centre,
+                          Values &values) {
+    const auto &on_soil = kind.template on_soil<dim>();
+    const double x = centre[0], y = centre[1], z = dim == 3 ? centre[dim - 1] : 0;
+    Vec<dim> vector{};
+    if (action == OnSoil::load) vector = on_soil.load(face.normal, centre, 0);
+    if (action == OnSoil::support && on_soil.speed)
+      for (const Vec<dim> &direction : on_soil.directions(face.normal)) {
+        const double speed = on_soil.speed(direction, centre, 0);
+        for (int d = 0; d < dim; ++d) vector[d] += speed * direction[d];
+      }
+    double inwards = 0, square = 0;
+    for (int d = 0; d < dim; ++d) inwards -= vector[d] * face.normal[d], square += vector[d] * vector[d];
+    if (action == OnSoil::load)
+      kind.follows ? values.add("pressure", "Pa", inwards) : values.add("traction", "Pa", std::sqrt(square));
+    if (action == OnSoil::support && on_soil.speed) values.add("velocity", "m/s", std::sqrt(square));
+    if (kind.friction_coefficient)
+      values.add("friction angle", "deg", std::atan(kind.friction_coefficient(x, y, z, 0, 0)) / degree.si);
+    if (kind.adhesion) values.add("adhesion", "Pa", kind.adhesion(x, y, z, 0, 0));
+    return vector;
+  }
+
+  /// The same for the pores; the level of open water [m], not a number where there is none.
+  double look_at_pores(const Boundary &kind, const Vec<dim> &centre, Values &values) const {
+    const double x = centre[0], y = centre[1], z = dim == 3 ? centre[dim - 1] : 0;
+    double level = std::numeric_limits<double>::quiet_NaN();
+    if (kind.outside) {
+      const double weight = scene_.water.density * scene_.gravity_size(), p = kind.outside(x, y, z, 0, weight);
+      if (kind.open_water && weight > 0 && p > 0) level = y + p / weight;
+      values.add(p < 0 ? "suction" : "pore pressure", "Pa", std::abs(p));
+    }
+    if (kind.supply && !kind.open_water) values.add("supply", "m/s", kind.supply(x, y, z, 0));
+    if (kind.inflow) values.add("inflow", "m/s", kind.inflow(x, y, z, 0));
+    if (kind.gas_outside) values.add("gas pressure", "Pa", kind.gas_outside(x, y, z, 0));
+    return level;
+  }
 
   static const char *action_on_soil(OnSoil action, const SoilFunctions<dim> &functions) {
     Vec<dim> up{};
@@ -420,7 +434,7 @@ class Model {
   const World<dim> &world_;
   const Scene &scene_;
   const std::vector<int> body_of_;  ///< [cell]
-  std::vector<char> there_;         ///< [body] from the start
+  const std::vector<char> there_;   ///< [body] from the start
   std::vector<SoilFace> surface_;
 };
 
