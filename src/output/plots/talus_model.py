@@ -25,7 +25,10 @@ WIDTH, MARGIN, LINE = 12.0, 0.45, 0.19  # of the picture, its edges and a line o
 def draw_model(model, path):
     """Draws the picture as PNG and returns its path. `model` is a Model."""
     with plt.rc_context({"text.parse_math": False}):  # a scene may write $ in its names
-        sheet = section(model) if model.dimension == 2 else perspectives(model)
+        if not len(model.corners):  # in 3D, where all soil comes later
+            sheet = Sheet(model, 0.0)
+        else:
+            sheet = section(model) if model.dimension == 2 else perspectives(model)
         sheet.words()
         return style.save(sheet.figure, path)
 

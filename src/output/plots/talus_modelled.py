@@ -95,15 +95,16 @@ class Boundary:
 
     def at_start(self):
         """Its values at the start, in words; empty if it has none."""
-        said = [f"{one['name']} {span(one['low'], one['high'], one['unit'])}" for one in self.values if self.soil != "base" or one["high"] or len(self.values) == 1
-                or one["name"] == "friction angle"]
+        said = [f"{one['name']} {span(one['low'], one['high'], one['unit'])}" for one in self.values if one["name"] != "adhesion" or one["high"]]
         if self.level is not None:
             said = [f"water level {quantity(self.level, 'm')}"]
-        return ", ".join(said) + (" at the start, changes with time" if self.changes else "")
+        if not self.changes:
+            return ", ".join(said)
+        return ", ".join(said) + " at the start, changes with time" if said else "changes with time"
 
     def line(self):
         values = self.at_start()
-        told = values.startswith(self.what()) or (values and self.soil == "load")
+        told = values.startswith(self.what()) or (self.values and self.soil == "load")
         return f"{self.name}: {values if told else ', '.join(filter(None, (self.what(), values)))}"
 
 

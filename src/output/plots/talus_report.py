@@ -13,6 +13,10 @@ from talus_modelled import read_model, stage_rows
 from talus_units import Keys
 
 LOG_LINES = 25
+WATER_KEYS = ("porosity", "saturation", "pore_pressure_ratio", "water_table", "permeability", "hydraulic_conductivity", "gas_permeability", "permeability_change",
+              "retention", "relative_permeability")  # of soils
+WATER_MODES = {"drained": "pore pressure is prescribed", "saturated": "pore water moves", "unsaturated": "pore water moves, gas at rest",
+               "three-phase": "pore water and gas move"}
 ROUNDED = 5e-12  # relative error of a number with the 12 digits of history.csv
 PAGE = """<!doctype html>
 <html lang="en">
@@ -148,12 +152,6 @@ def model_block(results, model):
         return ""
     drawn = draw_model(model, results.folder / "pictures" / "model.png")
     return f'<div class="field">{picture(drawn, "Model at the start")}</div><div class="tables">{lined_table("Stages", stage_rows(model))}</div>'
-
-
-WATER_KEYS = ("porosity", "saturation", "pore_pressure_ratio", "water_table", "permeability", "hydraulic_conductivity", "gas_permeability", "permeability_change",
-              "retention", "relative_permeability")  # of soils
-WATER_MODES = {"drained": "pore pressure is prescribed", "saturated": "pore water moves", "unsaturated": "pore water moves, gas at rest",
-               "three-phase": "pore water and gas move"}
 
 
 def summary(results, model):

@@ -80,6 +80,8 @@ position = [1, 0.5]
 points = [[0.5, 0.5], [0.5, 0]]
 spacing = 0.25
 """
+RELATIVE = "body.sand.relative_permeability={curve='van_genuchten_mualem', shape=0.5}"
+FILL = ("stage=[{name='fill', kind='quasi_static', add=['sand'], duration=1}]", "boundary.base={kind='fixed'}", "body.sand.cohesion=1 MPa")
 SOLID = ("dimension=3", "mesh.thickness=0.5", "mesh.layers=0", "output.point.corner.position=[1, 0.5, 0.2]", "output.line.pile.points=[[0.5, 0.5, 0.2], [0.5, 0, 0.2]]",
          "boundary.sides={kind='roller', group=['front', 'back']}")
 
@@ -197,6 +199,20 @@ class Variants(unittest.TestCase):
         self.assertAlmostEqual(area(base.corners[base.has_soil]).sum(), 0.5)
 
 
+    def test_soil_that_a_stage_adds_is_not_there(self):
+        model = Model(self.folder.model(*FILL))
+        self.assertEqual(model.there, [False])
+        self.assertIn("adds sand", stage_rows(model)[1][-1])
+        self.assertEqual([one.line() for one in model.boundaries if one.name == "top"], ["top: load, changes with time"])
+
+    def test_water_that_has_seeped_stays(self):
+        stages = "stage=[{name='seeps', kind='seepage', duration=1, steady=true}, {name='moves', duration=0.001}]"
+        rows = stage_rows(Model(self.folder.model(stages, "boundary.behind={kind='head', group='left', level=0.4}", RELATIVE)))
+        self.assertEqual(rows[1][1:], ("seepage, steady", "1 s", "duration", "gravity 9.81 m/s²; water seeps, soil at rest; on the soil: top; "
+                                       "changing with time: boundary top, water level"))
+        self.assertIn("pore pressure of the seepage before", rows[2][-1])
+
+
 class Pictures(unittest.TestCase):
     def setUp(self):
         self.folder = Folder()
@@ -207,7 +223,7 @@ class Pictures(unittest.TestCase):
 
     def test_are_drawn(self):
         for ranks, words, name, overrides in ((1, ["--picture"], "block_model.png", ()), (2, ["--picture", "two.png"], "two.png", ()),
-                                              (1, ["--picture", "solid.png"], "solid.png", SOLID)):
+                                              (1, ["--picture", "solid.png"], "solid.png", SOLID), (1, ["--picture", "fill.png"], "fill.png", SOLID + FILL)):
             status, said = self.check(*words, ranks=ranks, overrides=overrides)
             self.assertEqual(status, 0, said)
             self.assertIn(f"the picture of the model is {name}", said)
