@@ -52,9 +52,11 @@ class Sheet:
         self.view_top = 0.55
         self.height = self.view_top + view_height + self.legend_height + self.stages_height + 0.35
         self.figure = plt.figure(figsize=(WIDTH, self.height))
-        self.figure.text(MARGIN / WIDTH, 1 - 0.22 / self.height, textwrap.shorten(model.title or "Model", 120, placeholder=" …"), fontsize=12, weight="bold", va="center")
+        title = textwrap.shorten(model.title or "Model", 120, placeholder=" …")
+        self.figure.text(MARGIN / WIDTH, 1 - 0.22 / self.height, title, fontsize=12, weight="bold", va="center")
         kind = "plane strain" if model.dimension == 2 else "3D"
-        self.figure.text(MARGIN / WIDTH, 1 - 0.42 / self.height, f"{model.data['phases']}, {kind}; the model at the start", fontsize=9, color=style.SOFT, va="center")
+        subtitle = f"{model.data['phases']}, {kind}; the model at the start"
+        self.figure.text(MARGIN / WIDTH, 1 - 0.42 / self.height, subtitle, fontsize=9, color=style.SOFT, va="center")
 
     def axes(self, left, top, width, height):
         return self.figure.add_axes((left / WIDTH, 1 - (top + height) / self.height, width / WIDTH, height / self.height))
@@ -134,8 +136,8 @@ def section(model):
         axes.add_collection(PolyCollection(cells, fc=model.colour(body), ec="#8d7b5c", lw=np.clip(5 * edge, 0.04, 0.45), zorder=2,
                                            hatch=None if model.there[body] else "///", alpha=1 if model.there[body] else 0.5), autolim=False)
         axes.add_collection(LineCollection(outline(cells), colors="#6b5a3c", linewidths=0.9, zorder=3), autolim=False)
-        name_body(axes, cells, model.bodies[body], weight="bold", fontsize=10)
-    name_body(axes, model.corners[model.body < 0], "free space", color=style.SOFT, fontsize=9)
+        name_body(axes, model, cells, model.bodies[body], metres, weight="bold", fontsize=10)
+    name_body(axes, model, model.corners[model.body < 0], "free space", metres, color=style.SOFT, fontsize=9)
     axes.add_collection(LineCollection(outline(model.corners), colors=style.FAINT, linewidths=0.8, zorder=1), autolim=False)
     symbols = Symbols(axes, SYMBOL * metres)
     for boundary in model.boundaries:
@@ -166,14 +168,18 @@ def outline(cells):
     return edges[first[count == 1]]
 
 
-def name_body(axes, cells, name, **look):
+def name_body(axes, model, cells, name, metres, **look):
+    """Writes a name into the middle of some cells, where there is no named point near."""
     if not len(cells):
         return
     centres = cells.mean(axis=1)
     a, b = cells[:, 1] - cells[:, 0], cells[:, 2] - cells[:, 0]
     area = np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
     middle = (centres * area[:, None]).sum(axis=0) / area.sum()
-    at = centres[np.argmin(((centres - middle) ** 2).sum(axis=1))]  # which lies in the body
+    away = ((centres - middle) ** 2).sum(axis=1)
+    for point in model.data["points"]:
+        away[(np.abs(centres - point["position"]) < (0.5 * metres, 0.25 * metres)).all(axis=1)] += np.inf
+    at = centres[np.argmin(away)]  # which lies in the body
     axes.text(*at, name, ha="center", va="center", zorder=8, path_effects=[WHITE], **look)
 
 

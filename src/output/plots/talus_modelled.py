@@ -170,7 +170,8 @@ def notes(model):
     water = model.scene.get("water", {})
     said = []
     if model.data["water"]["tables"]:
-        said.append("blue line: water table at the start" + (", rises and falls: level = " + model.keys.text("water", "", "level", water["level"]) if "level" in water else ""))
+        level = ", rises and falls: level = " + model.keys.text("water", "", "level", water["level"]) if "level" in water else ""
+        said.append("blue line: water table at the start" + level)
     if model.data["water"]["line"]:
         said.append("dashed blue line: where the pore pressure at the start ends in the soil")
     for key in ("suction", "excess"):

@@ -10,7 +10,7 @@ import talus_style as style
 from talus_factor import factor_lines, read_factor
 from talus_model import draw_model
 from talus_modelled import read_model, stage_rows
-from talus_units import Keys
+from talus_units import Keys, text_of
 
 LOG_LINES = 25
 WATER_KEYS = ("porosity", "saturation", "pore_pressure_ratio", "water_table", "permeability", "hydraulic_conductivity", "gas_permeability", "permeability_change",
@@ -162,6 +162,9 @@ def summary(results, model):
     tables = [table("Soils", [{"body": name, **{key: text for key, text in row.items() if key not in inside}} for name, row in bodies.items()]),
               table("Boundaries", boundary_rows(scene, keys, model)),
               table("Water", water_rows(scene, keys, bodies))]
+    functions = [(name, text_of(value, over_time=True)) for name, value in scene.get("functions", {}).items()]
+    if functions:
+        tables.append(lined_table("Functions of time", [("function", "value")] + functions))
     if model is None:
         tables.insert(1, table("Stages", [keys.row("stage.N", stage) for stage in scene.get("stage", [])]))
     general = keys.row("", {key: scene[key] for key in ("phases", "dimension", "gravity") if key in scene})

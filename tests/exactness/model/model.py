@@ -61,7 +61,9 @@ kind = "traction"
 pressure = [[0, 1000], [1, 2000]]
 [water]
 table = [[0, 0.3], [2, 0.1]]
-level = "0.05 + 0.01 * t"
+level = "0.05 + rise(t)"
+[functions]
+rise = [[0, 0], [10, "10 cm"]]
 [[stage]]
 name = "rest"
 duration = 0.005
@@ -82,7 +84,8 @@ spacing = 0.25
 """
 RELATIVE = "body.sand.relative_permeability={curve='van_genuchten_mualem', shape=0.5}"
 FILL = ("stage=[{name='fill', kind='quasi_static', add=['sand'], duration=1}]", "boundary.base={kind='fixed'}", "body.sand.cohesion=1 MPa")
-SOLID = ("dimension=3", "mesh.thickness=0.5", "mesh.layers=0", "output.point.corner.position=[1, 0.5, 0.2]", "output.line.pile.points=[[0.5, 0.5, 0.2], [0.5, 0, 0.2]]",
+SOLID = ("dimension=3", "mesh.thickness=0.5", "mesh.layers=0", "output.point.corner.position=[1, 0.5, 0.2]",
+         "output.line.pile.points=[[0.5, 0.5, 0.2], [0.5, 0, 0.2]]",
          "boundary.sides={kind='roller', group=['front', 'back']}")
 
 
@@ -170,7 +173,8 @@ class InPlaneStrain(unittest.TestCase):
         self.assertEqual(self.model.data["lines"], [{"name": "pile", "points": [[0.5, 0.5], [0.5, 0]]}])
 
     def test_soils_have_their_parameters_with_units(self):
-        self.assertEqual(self.model.soil_line("sand").replace("\u00a0", " "), "mohr coulomb: n = 0.4, ρₛ = 2650 kg/m³, E = 1 MPa, ν = 0.3, c = 1 kPa, φ = 30°, k = 1e-5 m/s")
+        line = self.model.soil_line("sand").replace("\u00a0", " ")
+        self.assertEqual(line, "mohr coulomb: n = 0.4, ρₛ = 2650 kg/m³, E = 1 MPa, ν = 0.3, c = 1 kPa, φ = 30°, k = 1e-5 m/s")
 
 
 class Variants(unittest.TestCase):
@@ -185,7 +189,8 @@ class Variants(unittest.TestCase):
         np.testing.assert_allclose(pieces[..., 1], 0.31 - 0.2 * pieces[..., 0], atol=1e-8)
 
     def test_free_surface_is_what_no_other_boundary_has(self):
-        model = Model(self.folder.model("phases='saturated'", "water={}", "boundary.base={kind='fixed'}", "boundary.rain={kind='pore_pressure', group='free_surface', pressure=0}"))
+        model = Model(self.folder.model("phases='saturated'", "water={}", "boundary.base={kind='fixed'}",
+                                        "boundary.rain={kind='pore_pressure', group='free_surface', pressure=0}"))
         rain, = [one for one in model.boundaries if one.name == "rain"]
         self.assertAlmostEqual(length(rain.corners), 1.5)  # top and right side
 
@@ -254,15 +259,19 @@ class Pictures(unittest.TestCase):
         self.assertLess(report.index('alt="Model at the start"'), report.index('alt="Displacement"'))
         for cells in ("<th>young modulus</th><td>1 MPa</td>", "<th>pressure</th><td>–</td><td>–</td><td>1 kPa at 0 s, 2 kPa at 1 s</td>",
                       "<th>at the start</th><td>friction angle 21.25 to 28.75°</td><td>–</td><td>pressure 1 kPa at the start, changes with time</td>",
-                      "<th>mode</th><td>drained: pore pressure is prescribed</td>", "<th>table</th><td>(0, 0.3), (2, 0.1) m</td>", "<th>level</th><td>0.05 + 0.01 * t [m]</td>",
+                      "<th>mode</th><td>drained: pore pressure is prescribed</td>", "<th>table</th><td>(0, 0.3), (2, 0.1) m</td>",
+                      "<th>level</th><td>0.05 + rise(t) [m]</td>",
+                      "<td>rise</td><td>0 at 0 s, 10 cm at 10 s</td>",
                       "<th>retention</th><td>–</td><td>van_genuchten, reference suction 20 kPa, shape 0.5</td>", "<td>rest</td><td>dynamic, euler</td>"):
             self.assertIn(cells, report)
 
 
 class Words(unittest.TestCase):
     def test_numbers_get_the_unit_of_their_key(self):
-        for said, value, unit in (("13 kPa", 13000, "Pa"), ("30°", 30, "deg"), ("9.81 m/s²", "9.81", "m/s2"), ("20 MPa", "20 MPa", "Pa"), ("18 kN/m³", "18 kN/m3", "N/m3"),
-                                  ("0.3", 0.3, ""), ("phi(t) [°]", "phi(t)", "deg"), ("2 * t [Pa]", "2 * t", "Pa"), ("5e-06 °/Pa", 5e-6, "deg/Pa"), ("true", True, ""),
+        for said, value, unit in (("13 kPa", 13000, "Pa"), ("30°", 30, "deg"), ("9.81 m/s²", "9.81", "m/s2"), ("20 MPa", "20 MPa", "Pa"),
+                                  ("18 kN/m³", "18 kN/m3", "N/m3"), ("0.3", 0.3, ""), ("phi(t) [°]", "phi(t)", "deg"), ("2 * t [Pa]", "2 * t", "Pa"),
+                                  ("5e-06 °/Pa", 5e-6, "deg/Pa"),
+                                  ("true", True, ""),
                                   ("(0, 9.81) m/s²", [0, 9.81], "m/s2"), ("a, b", ["a", "b"], "")):
             self.assertEqual(text_of(value, unit), said)
 
