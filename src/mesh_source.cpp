@@ -66,19 +66,6 @@ std::string beside_scene(const Scene &scene, const std::string &path) {
   return p.is_absolute() ? path : (std::filesystem::path(scene.file).parent_path() / p).lexically_normal().string();
 }
 
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
-}
-
-bool TemporaryFolder::make() {
-  std::error_code error;
-  std::string path = (std::filesystem::temp_directory_path(error) / "talus-XXXXXX").string();
-  if (error || !mkdtemp(path.data())) return false;
-  path_ = path;
-  return true;
-}
-
 MeshFile::MeshFile(MPI_Comm comm, const Scene &scene) {
   const MeshSource &source = scene.mesh;
   if (!source.file.empty()) {

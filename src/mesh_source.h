@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/temporary_folder.h"
 #include "scene/scene.h"
 
 namespace talus {
@@ -15,21 +16,6 @@ struct MeshRun {
   std::string output;
 };
 MeshRun run_talus_mesh(const std::vector<std::string> &arguments);
-
-/// A folder for temporary files, removed with all that is in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder() = default;
-  TemporaryFolder(const TemporaryFolder &) = delete;
-  TemporaryFolder &operator=(const TemporaryFolder &) = delete;
-  ~TemporaryFolder();
-  /// Makes the folder; false if that fails.
-  bool make();
-  const std::string &path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 /// The .msh file of a scene, for rank 0 to read: its own, or one made from its section that goes with this object.
 class MeshFile {

@@ -111,6 +111,8 @@ class AnySimulation {
   virtual std::vector<BodyReport> bodies() = 0;  ///< collective
   /// Surface of the soil at the start, of all ranks. Collective.
   virtual std::vector<SoilFace> surface() const = 0;
+  /// What the scene models, for pictures (simulation/model.h); on the first rank. Collective.
+  virtual std::string model() const = 0;
   virtual Snapshot snapshot() = 0;  ///< particles of this rank
   virtual const HistoryTable &history() const = 0;
   virtual const std::vector<Event> &events() const = 0;

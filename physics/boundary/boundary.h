@@ -35,6 +35,7 @@ class Boundary {
   bool follows = false;     ///< of a load
   bool open_water = false;  ///< of a pressure or seepage
   bool remembers = false;   ///< of a contact: what it bears depends on how far soil has slipped on it
+  bool changes = false;     ///< with time: one of the functions that the scene gives does
   /// Keys and numbers of components of the vectors that the scene gives as functions; each must have one per dimension.
   std::vector<std::pair<std::string, int>> vectors;
 
@@ -62,7 +63,7 @@ class Boundary {
   bool fluid_face() const { return water != OnWater::wall && water != OnWater::surface; }
 
  private:
-  struct FindVectors;
+  struct FindFunctions;
   template <int dim, class Kind>
   static SoilFunctions<dim> functions_of(const std::shared_ptr<const Kind> &kind);
 
@@ -75,13 +76,17 @@ Boundary read_boundary(const DeferredTable &table);
 
 // ---- templates ----
 
-/// Visits the fields of a kind for its vectors of functions.
-struct Boundary::FindVectors {
-  std::vector<std::pair<std::string, int>> &found;
+/// Visits the fields of a kind for its functions: which are vectors, and does one depend on time?
+struct Boundary::FindFunctions {
+  std::vector<std::pair<std::string, int>> &vectors;
+  bool &changes;
   void functions(const char *key, const std::vector<Function> &value, Unit, const char *, const char *) {
-    if (!value.empty()) found.emplace_back(key, static_cast<int>(value.size()));
+    if (!value.empty()) vectors.emplace_back(key, static_cast<int>(value.size()));
+    for (const Function &component : value) changes |= component.depends_on_time();
   }
-  void function(const char *, Function &, Unit, Range, const char *, const char *) {}
+  void function(const char *, const Function &value, Unit, Range, const char *, const char *) {
+    changes |= value.depends_on_time();
+  }
   void number(const char *, double &, Unit, Range, const char *) {}
   void flag(const char *, bool &, const char *) {}
   template <class Enum>
@@ -117,7 +122,7 @@ requires(!std::same_as<Kind, Boundary>) Boundary::Boundary(Kind of)
   static_assert(PossibleOnFluids<Kind>, "a wall, and the surface of the soil, act on liquid and gas alike");
   static_assert(CompleteOnSoil<Kind>, "members are missing or never asked for: see OnSoil in kind.h");
   static_assert(CompleteOnFluids<Kind>, "members are missing or never asked for: see OnWater and OnGas in kind.h");
-  of.fields(FindVectors{vectors});
+  of.fields(FindFunctions{vectors, changes});
   const auto kind = std::make_shared<const Kind>(std::move(of));
   on_soil_2d_ = functions_of<2>(kind), on_soil_3d_ = functions_of<3>(kind);
   if constexpr (member::precedence<Kind>) precedence = Kind::precedence;

@@ -6,9 +6,10 @@
 #include "commands/commands.h"
 #include "commands/foreign_code.h"
 #include "commands/gallery.h"
-#include "commands/json.h"
 #include "commands/needs.h"
 #include "commands/scales.h"
+#include "output/json.h"
+#include "output/pictures.h"
 #include "scene/reader.h"
 
 namespace talus {
@@ -18,6 +19,8 @@ struct CheckArguments {
   std::string scene;
   std::vector<std::string> set;
   bool json = false, no_umat = false;
+  bool draws = false;   ///< a picture
+  std::string picture;  ///< file; empty: named after the scene
 };
 
 constexpr int label_width = 10, page_width = 110;
@@ -242,14 +245,29 @@ void print_json(const Scene &scene, const Needs &n, const std::vector<std::strin
   std::printf("%s\n", page.str().c_str());
 }
 
+/// The file of the picture. A wrong name is refused before the work.
+std::string picture_of(const CheckArguments &arguments, const std::string &scene_file) {
+  if (arguments.picture.empty()) return short_name(scene_file) + "_model.png";
+  if (std::filesystem::path(arguments.picture).extension() != ".png")
+    throw SceneError("--picture " + arguments.picture + " must be the name of a PNG file, such as " +
+                     short_name(scene_file) + "_model.png");
+  return arguments.picture;
+}
+
 int check(const CheckArguments &arguments) {
-  Scene scene = read_scene(find_scene(arguments.scene), arguments.set);
+  const std::string file = find_scene(arguments.scene), picture = picture_of(arguments, file);
+  Scene scene = read_scene(file, arguments.set);
   if (arguments.no_umat) refuse_umat(scene);
   const Needs needs = find_needs(scene);
   const std::vector<std::string> advice = advise(scene, needs);
   int rank;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  if (rank == 0) arguments.json ? print_json(scene, needs, advice) : print_page(scene, needs, advice);
+  if (rank) return 0;  // mpirun ends with the status of the first rank, if that is not 0
+  arguments.json ? print_json(scene, needs, advice) : print_page(scene, needs, advice);
+  std::fflush(stdout);
+  if (!arguments.draws) return 0;
+  if (!draw_model(needs.model, picture)) return 1;
+  std::fprintf(stderr, "the picture of the model is %s\n", picture.c_str());
   return 0;
 }
 
@@ -262,8 +280,18 @@ Action add_check(CLI::App &app) {
   command->add_option("SCENE", arguments->scene, "scene file (.toml) or the name of a gallery scene")->required();
   command->add_option("--set", arguments->set, "override a key of the scene: key.path=value")->take_all();
   command->add_flag("--no-umat", arguments->no_umat, "refuse laws that load a library: for scenes of strangers");
+  CLI::Option *picture =
+      command
+          ->add_option(
+              "--picture", arguments->picture,
+              "draw what is modelled: soils, mesh, boundaries, loads, water, points, dimensions and stages; PNG "
+              "file (default NAME_model.png)")
+          ->expected(0, 1);
   command->add_flag("--json", arguments->json, "one JSON document on standard output");
-  return [arguments] { return check(*arguments); };
+  return [arguments, picture] {
+    arguments->draws = picture->count() > 0;
+    return check(*arguments);
+  };
 }
 
 }  // namespace talus

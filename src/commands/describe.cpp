@@ -1,15 +1,10 @@
-#include "scene/describe.h"
+#include <petscsys.h>
 
 #include <iostream>
 
 #include "commands/commands.h"
-#include "physics/boundary/kinds.h"
 #include "physics/laws/element_test.h"
-#include "physics/laws/laws.h"
-#include "physics/pores/permeability.h"
-#include "physics/pores/retention.h"
-#include "scene/scene.h"
-#include "solvers/integrators.h"
+#include "simulation/scene_keys.h"
 
 namespace talus {
 
@@ -18,13 +13,7 @@ Action add_describe(CLI::App &app) {
   CLI::App *command = app.add_subcommand("describe", "describe every key of a scene: meaning, unit, default, range");
   command->add_option("KEY", *key, "a key, a table or a kind, such as body.density, stage or mohr_coulomb");
   return [key] {
-    Describer describer;
-    describe_scene(describer);
-    describe_one_of<Law>(describer, "body.NAME", "law");
-    describe_one_of<Retention>(describer, "body.NAME.retention", "curve");
-    describe_one_of<RelativePermeability>(describer, "body.NAME.relative_permeability", "curve");
-    describe_one_of<BoundaryKinds>(describer, "boundary.NAME", "kind");
-    describe_one_of<IntegratorSettings>(describer, "integrator", "kind");
+    Describer describer = scene_keys();
     describer.add({"File of `talus soil`", "", "A material and its tests.", "", {}}, SoilFile{});
     int rank;
     MPI_Comm_rank(PETSC_COMM_WORLD, &rank);

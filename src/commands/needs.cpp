@@ -427,6 +427,7 @@ Needs find_needs(Scene &scene) {
   options.pictures = options.screen = false;
   const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
   Needs needs{};
+  needs.model = simulation->model();
   needs.mesh = simulation->mesh_report();
   needs.gravity = scene.gravity_size();
   double fastest = 0;

@@ -54,6 +54,7 @@ struct Drainage {
 };
 
 struct Needs {
+  std::string model;  ///< what the scene models, for its picture; on the first rank
   MeshReport mesh;
   std::vector<BodyNeeds> bodies;
   LayerNeeds layer;

@@ -4,7 +4,7 @@
 #include "commands/commands.h"
 #include "commands/foreign_code.h"
 #include "commands/gallery.h"
-#include "commands/json.h"
+#include "output/json.h"
 #include "output/pictures.h"
 #include "scene/reader.h"
 #include "simulation.h"

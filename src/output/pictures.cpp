@@ -4,14 +4,16 @@
 #include <exception>
 #include <stdexcept>
 
+#include "base/temporary_folder.h"
+#include "output/replace_file.h"
 #include "output/script.h"
 #include "output/strength.h"
 
 namespace talus {
 namespace {
 
-bool warn(const std::string &dir, const std::string &cause) {
-  std::fprintf(stderr, "warning: no pictures of %s: %s\n", dir.c_str(), cause.c_str());
+bool warn(const std::string &what, const std::string &cause) {
+  std::fprintf(stderr, "warning: no %s: %s\n", what.c_str(), cause.c_str());
   return false;
 }
 
@@ -20,9 +22,9 @@ bool draw(const char *name, const std::string &dir, const std::vector<std::strin
   std::vector<std::string> arguments{dir};
   arguments.insert(arguments.end(), options.begin(), options.end());
   try {
-    return run_script(name, arguments) == 0 || warn(dir, std::string(name) + " failed");
+    return run_script(name, arguments) == 0 || warn("pictures of " + dir, std::string(name) + " failed");
   } catch (const std::runtime_error &error) {
-    return warn(dir, error.what());
+    return warn("pictures of " + dir, error.what());
   }
 }
 
@@ -46,6 +48,19 @@ bool draw_pictures(const std::string &dir, const PictureChoice &choice) {
 std::string without_pictures(const std::string &dir) {
   return "the results in " + dir + " are complete, but have no pictures and no report; talus plot " + dir +
          " draws them, and --no-pictures does without them";
+}
+
+bool draw_model(const std::string &model, const std::string &picture) {
+  const std::string what = "picture " + picture;
+  try {
+    TemporaryFolder folder;
+    if (!folder.make()) return warn(what, "cannot make a temporary folder");
+    const std::string file = folder.path() + "/model.json";
+    replace_file(file, model);
+    return run_script("talus_model.py", {file, picture}) == 0 || warn(what, "talus_model.py failed");
+  } catch (const std::runtime_error &error) {
+    return warn(what, error.what());
+  }
 }
 
 bool draw_comparison(const std::string &dir) { return draw("talus_compare.py", dir, {}); }

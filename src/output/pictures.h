@@ -17,6 +17,10 @@ struct PictureChoice {
 /// warning with the cause goes to standard error and the answer is false.
 bool draw_pictures(const std::string &dir, const PictureChoice &choice = {});
 
+/// Draws what a scene models, from the JSON document of AnySimulation::model(), as `picture`, a PNG file, with the same
+/// answer.
+bool draw_model(const std::string &model, const std::string &picture);
+
 /// What a run says that ends without its pictures, although its results are complete.
 std::string without_pictures(const std::string &dir);
 

@@ -24,6 +24,8 @@ bool plain(Unit unit) { return unit.dimension == Dimension{}; }
 
 std::string number_in(Unit unit) { return plain(unit) ? "number" : unit.name; }
 
+bool has_time(const char *variables) { return std::string(variables).find('t') != std::string::npos; }
+
 std::string from_to(Range range) { return rounded(range.low) + " to " + rounded(range.high); }
 
 std::string coordinates(const std::vector<double> &point, Unit unit) {
@@ -113,18 +115,20 @@ std::string Describer::path_to(const std::string &key) const {
   return path.empty() ? key : path + "." + key;
 }
 
-void Describer::line(const char *key, std::string allowed, std::string initial, const char *meaning) {
-  blocks_[current_].keys.push_back({path_to(key), std::move(allowed), std::move(initial), meaning});
+void Describer::line(const char *key, std::string allowed, std::string initial, const char *meaning, Unit unit,
+                     bool over_time) {
+  blocks_[current_].keys.push_back(
+      {path_to(key), std::move(allowed), std::move(initial), meaning, plain(unit) ? "" : unit.name, over_time});
 }
 
 void Describer::number(const char *key, double value, Unit unit, Range range, const char *meaning) {
-  line(key, number_in(unit) + ", " + from_to(range), std::isnan(value) ? "required" : rounded(value / unit.si),
-       meaning);
+  line(key, number_in(unit) + ", " + from_to(range), std::isnan(value) ? "required" : rounded(value / unit.si), meaning,
+       unit);
 }
 
 void Describer::by_place(const char *key, double value, bool, Unit unit, Range range, const char *meaning) {
   line(key, number_in(unit) + ", " + from_to(range) + ", function of place",
-       std::isnan(value) ? "required" : rounded(value / unit.si), meaning);
+       std::isnan(value) ? "required" : rounded(value / unit.si), meaning, unit);
 }
 
 void Describer::integer(const char *key, int value, Range range, const char *meaning) {
@@ -152,31 +156,31 @@ void Describer::texts(const char *key, const std::vector<std::string> &value, co
 }
 
 void Describer::point(const char *key, const std::vector<double> &value, Unit unit, const char *meaning) {
-  line(key, number_in(unit) + ", list", coordinates(value, unit), meaning);
+  line(key, number_in(unit) + ", list", coordinates(value, unit), meaning, unit);
 }
 
 void Describer::points(const char *key, const std::vector<std::vector<double>> &value, Unit unit, const char *meaning) {
   std::string initial;
   for (const std::vector<double> &point : value) initial += (initial.empty() ? "" : ", ") + coordinates(point, unit);
-  line(key, number_in(unit) + ", list of points", initial, meaning);
+  line(key, number_in(unit) + ", list of points", initial, meaning, unit);
 }
 
 void Describer::function(const char *key, const Function &value, Unit unit, Range range, const char *variables,
                          const char *meaning) {
   line(key, number_in(unit) + ", " + from_to(range) + ", function of " + variables,
-       value.constant() ? rounded(value(0) / unit.si) : "", meaning);
+       value.constant() ? rounded(value(0) / unit.si) : "", meaning, unit, has_time(variables));
 }
 
 void Describer::functions(const char *key, const std::vector<Function> &, Unit unit, const char *variables,
                           const char *meaning) {
-  line(key, number_in(unit) + ", list of functions of " + variables, "", meaning);
+  line(key, number_in(unit) + ", list of functions of " + variables, "", meaning, unit, has_time(variables));
 }
 
 void Describer::elasticity(double, double) {
-  line("young_modulus", "Pa, above 0", "two of four", "Young's modulus E");
+  line("young_modulus", "Pa, above 0", "two of four", "Young's modulus E", pascal);
   line("poisson_ratio", "number, between -1 and 0.5", "two of four", "Poisson's ratio nu");
-  line("shear_modulus", "Pa, above 0", "two of four", "shear modulus G");
-  line("bulk_modulus", "Pa, above 0", "two of four", "bulk modulus K");
+  line("shear_modulus", "Pa, above 0", "two of four", "shear modulus G", pascal);
+  line("bulk_modulus", "Pa, above 0", "two of four", "bulk modulus K", pascal);
 }
 
 void Describer::deferred(const char *key, const DeferredTable &, const char *meaning) {

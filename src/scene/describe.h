@@ -23,6 +23,8 @@ class Describer {
     std::string allowed;  ///< unit and range, or choices
     std::string initial;  ///< default in the key's unit, `required`, or empty
     std::string meaning;
+    std::string unit{};      ///< of numbers without one; empty where they have none
+    bool over_time = false;  ///< a list at this key is one of points [t, value]
   };
   struct Block {
     std::string title;  ///< [body.NAME], [[stage]]
@@ -75,7 +77,8 @@ class Describer {
 
  private:
   std::string path_to(const std::string &key) const;
-  void line(const char *key, std::string allowed, std::string initial, const char *meaning);
+  void line(const char *key, std::string allowed, std::string initial, const char *meaning, Unit unit = one,
+            bool over_time = false);
 
   std::vector<Block> blocks_;
   std::size_t current_ = 0;  ///< block that takes the visited keys

@@ -11,10 +11,12 @@
 #include "base/version.h"
 #include "output/escaped_table.h"
 #include "output/pictures.h"
+#include "output/replace_file.h"
 #include "output/together.h"
 #include "scene/changes.h"
 #include "scene/reader.h"
 #include "scene/words.h"
+#include "simulation/model.h"
 #include "simulation/output_fields.h"
 
 namespace talus {
@@ -39,6 +41,7 @@ void Recorder<dim>::open() {
   History rows(of_.world.comm, options_.directory + "/history.csv", {history_.names.begin() + 2, history_.names.end()});
   results_.reset(new Files{std::move(folder), std::move(file), std::move(rows),
                            Progress(of_.world.comm, options_.directory + "/run.log", longest_duration())});
+  write_model();
   of_.lines.open(options_.directory);
   for (const std::string &sentence : of_.lines.left_out()) results_->progress.note(sentence);
   write_escaped();  // in place of that of a run that was here before
@@ -61,6 +64,13 @@ MeshPicture Recorder<dim>::mesh_picture() const {
   return picture;
 }
 
+/// What the first picture of the report shows. Collective.
+template <int dim>
+void Recorder<dim>::write_model() const {
+  const std::string model = model_of(of_.world);
+  on_first_rank(of_.world.comm, [&] { replace_file(options_.directory + "/run/model.json", model); });
+}
+
 template <int dim>
 void Recorder<dim>::append(std::unique_ptr<ResultsFolder> folder) {
   name_columns();
@@ -72,6 +82,7 @@ void Recorder<dim>::append(std::unique_ptr<ResultsFolder> folder) {
       History::append(of_.world.comm, table, {history_.names.begin() + 2, history_.names.end()}, last_row_time_);
   results_.reset(new Files{std::move(folder), std::move(file), std::move(rows),
                            Progress(of_.world.comm, options_.directory + "/run.log", longest_duration(), true)});
+  write_model();
   of_.lines.append(options_.directory, last_row_time_);
   results_->progress.resume(of_.clock.time, of_.clock.steps);
   results_->progress.note("resumed at t = " + rounded(of_.clock.time) + " s, step " + std::to_string(of_.clock.steps));

@@ -84,6 +84,7 @@ class Recorder {
   void check_intervals();
   RunHeader header() const;
   MeshPicture mesh_picture() const;
+  void write_model() const;
   void name_columns();
   RunRow<dim> run_row() const;
   void note_steps();

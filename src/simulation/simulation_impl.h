@@ -1,5 +1,6 @@
 #pragma once
 /// A simulation of one dimension: its run, stage by stage, and what a host program asks of it.
+#include "simulation/model.h"
 #include "simulation/run.h"
 
 namespace talus {
@@ -24,6 +25,7 @@ class Simulation final : public AnySimulation {
   MeshReport mesh_report() const override { return run_.world.mesh.report(); }
   std::vector<BodyReport> bodies() override { return run_.world.report(); }
   std::vector<SoilFace> surface() const override { return run_.world.surface(); }
+  std::string model() const override { return model_of(run_.world); }
   Snapshot snapshot() override { return run_.recorder.snapshot(); }
   const HistoryTable &history() const override { return run_.recorder.history(); }
   const std::vector<Event> &events() const override { return run_.recorder.events(); }

@@ -30,6 +30,8 @@ class World {
   World(MPI_Comm world, const Scene &of, DM plex, const std::string &mesh_file);
   World(const World &) = delete;  // its parts know each other's place
 
+  /// Bodies that no stage adds.
+  std::vector<char> present_at_start() const;
   /// Bodies that a stage adds are seeded, and so checked, but not there at the start: takes them out.
   void take_out_later_bodies();
   /// What acts on the soil from now on, `stage_time` after the begin of the stage.
@@ -106,7 +108,6 @@ class World {
   void check_seeded(const Body<dim> &, const std::string &) const;  // world_checks.cpp
   int id_stride() const;
   bool comes_or_goes(const BodySource &) const;
-  std::vector<char> present_at_start() const;  // bodies that no stage adds
   void set_pore_pressure_ratios();
   void seed_bodies();
   void count_particles();

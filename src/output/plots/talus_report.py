@@ -8,8 +8,15 @@ import numpy as np
 
 import talus_style as style
 from talus_factor import factor_lines, read_factor
+from talus_model import draw_model
+from talus_modelled import read_model, stage_rows
+from talus_units import Keys, text_of
 
 LOG_LINES = 25
+WATER_KEYS = ("porosity", "saturation", "pore_pressure_ratio", "water_table", "permeability", "hydraulic_conductivity", "gas_permeability", "permeability_change",
+              "retention", "relative_permeability")  # of soils
+WATER_MODES = {"drained": "pore pressure is prescribed", "saturated": "pore water moves", "unsaturated": "pore water moves, gas at rest",
+               "three-phase": "pore water and gas move"}
 ROUNDED = 5e-12  # relative error of a number with the 12 digits of history.csv
 PAGE = """<!doctype html>
 <html lang="en">
@@ -30,12 +37,14 @@ PAGE = """<!doctype html>
 def write_report(results, sections, histories, factor=()):
     """`sections` [(field, large picture, sheet of times)], `histories` and `factor` [(quantity, picture)] -> path of the page."""
     css = (pathlib.Path(__file__).parent / "report.css").read_text()
+    model = read_model(results.folder)
     parts = [
         header(results),
         cards(key_results(results)),
         warnings(results),
+        section("Model", model_block(results, model)),
         section("Factor of safety", factor_block(read_factor(results), factor)),
-        summary(results),
+        summary(results, model),
         section("Sections", "".join(field_block(*one) for one in sections)),
         section("Histories", grid(histories)),
         folded("Scene as run", results.scene_text),
@@ -137,39 +146,58 @@ def cards(numbers):
     return f'<section class="cards">{boxes}</section>\n'
 
 
-def summary(results):
-    """Soils and stages as the scene gives them."""
-    scene = results.scene
-    tables = [table("Soils", named_rows("body", scene)),
-              table("Stages", [flat(stage) for stage in scene.get("stage", [])]),
-              table("Boundaries", named_rows("boundary", scene))]
-    general = {key: text_of(scene[key]) for key in ("phases", "dimension", "gravity") if key in scene}
-    general |= {f"mesh {key}": text_of(value) for key, value in scene.get("mesh", {}).items() if key != "refine"}
-    general |= {f"integrator {key}": text_of(value) for key, value in scene.get("integrator", {}).items()}
+def model_block(results, model):
+    """What was modelled: its picture, and a table of the stages with what acts in each."""
+    if model is None:
+        return ""
+    drawn = draw_model(model, results.folder / "pictures" / "model.png")
+    return f'<div class="field">{picture(drawn, "Model at the start")}</div><div class="tables">{lined_table("Stages", stage_rows(model))}</div>'
+
+
+def summary(results, model):
+    """Soils, boundaries and water as the scene gives them, with their units."""
+    scene, keys = results.scene, model.keys if model else Keys()
+    bodies = {name: keys.row("body.NAME", values, "law") for name, values in scene.get("body", {}).items()}
+    inside = {style.words(key) for key in ("retention", "relative_permeability")}
+    tables = [table("Soils", [{"body": name, **{key: text for key, text in row.items() if key not in inside}} for name, row in bodies.items()]),
+              table("Boundaries", boundary_rows(scene, keys, model)),
+              table("Water", water_rows(scene, keys, bodies))]
+    functions = [(name, text_of(value, over_time=True)) for name, value in scene.get("functions", {}).items()]
+    if functions:
+        tables.append(lined_table("Functions of time", [("function", "value")] + functions))
+    if model is None:
+        tables.insert(1, table("Stages", [keys.row("stage.N", stage) for stage in scene.get("stage", [])]))
+    general = keys.row("", {key: scene[key] for key in ("phases", "dimension", "gravity") if key in scene})
+    general |= {f"mesh {key}": text for key, text in keys.row("mesh", scene.get("mesh", {})).items() if key != "refine"}
+    general |= {f"integrator {key}": text for key, text in keys.row("integrator", scene.get("integrator", {}), "kind").items()}
     entry = "<tr><th>{}</th><td>{}</td></tr>"
     rows = "".join(entry.format(html.escape(key), html.escape(value)) for key, value in general.items())
     if not rows and not any(tables):
         return ""
-    model = f"<div><h3>Model</h3><table>{rows}</table></div>"
-    return section("Scene", f'<div class="tables">{model}{"".join(tables)}</div>')
+    general = f"<div><h3>General</h3><table>{rows}</table></div>"
+    return section("Scene", f'<div class="tables">{general}{"".join(tables)}</div>')
 
 
-def named_rows(kind, scene):
-    """The tables [KIND.NAME] of the scene."""
-    return [{kind: name, **flat(values)} for name, values in scene.get(kind, {}).items()]
+def boundary_rows(scene, keys, model):
+    """The boundaries as the scene gives them, and what the program makes of them at the start."""
+    found = {one.name: one for one in model.boundaries} if model else {}
+    rows = []
+    for name, values in scene.get("boundary", {}).items():
+        row = {"boundary": name, "group": name, **keys.row("boundary.NAME", values, "kind")}
+        if name in found:
+            row["at the start"] = found[name].at_start() or "–"
+        rows.append(row)
+    return rows
 
 
-def flat(values):
-    """The entries of a table of the scene that fit into a cell."""
-    return {style.words(key): text_of(value) for key, value in values.items() if not isinstance(value, dict)}
-
-
-def text_of(value):
-    if isinstance(value, list):
-        if any(isinstance(one, (list, dict)) for one in value):
-            return f"{len(value)} entries"
-        return ", ".join(text_of(one) for one in value)
-    return str(value).lower() if isinstance(value, bool) else str(value)
+def water_rows(scene, keys, bodies):
+    """The pore water: how it is modelled, and what the soils have to do with it."""
+    phases = scene.get("phases", "dry")
+    if phases == "dry":
+        return []
+    common = {"water in": "all soils", "mode": f"{phases}: {WATER_MODES[phases]}", **keys.row("water", scene.get("water", {}))}
+    wanted = [style.words(key) for key in WATER_KEYS]
+    return [common] + [{"water in": name, **{key: row[key] for key in wanted if key in row}} for name, row in bodies.items()]
 
 
 def table(name, rows):
@@ -183,6 +211,12 @@ def table(name, rows):
         cells = "".join(f"<{tag}>{html.escape(row.get(key, '–'))}</{tag}>" for row in rows)
         lines.append(f"<tr><th>{html.escape(key)}</th>{cells}</tr>")
     return f"<div><h3>{name}</h3><table>{''.join(lines)}</table></div>"
+
+
+def lined_table(name, rows):
+    """Rows of texts, the first of them the names of the columns."""
+    head, *rest = ["".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in row) for tag, row in [("th", rows[0])] + [("td", row) for row in rows[1:]]]
+    return f"<div><h3>{name}</h3><table><tr>{head}</tr>{''.join(f'<tr>{row}</tr>' for row in rest)}</table></div>"
 
 
 def section(name, content):

@@ -30,6 +30,17 @@ inline std::string text(const std::string &words) {
   return quoted.str();
 }
 
+/// A text that keeps its line breaks and tabs.
+inline std::string lines(const std::string &words) {
+  std::string all;
+  std::istringstream stream(words);
+  for (std::string one; std::getline(stream, one);) {
+    const std::string quoted = text(one);
+    all += quoted.substr(1, quoted.size() - 2) + "\\n";
+  }
+  return '"' + all + '"';
+}
+
 /// An object built member by member.
 class Object {
  public:

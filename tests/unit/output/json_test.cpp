@@ -1,5 +1,5 @@
-// Claims of commands/json.h.
-#include "commands/json.h"
+// Claims of output/json.h.
+#include "output/json.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,180 @@
+"""What a scene models, from the document that the program makes of it (src/simulation/model.h): in numbers, and in words."""
+
+import json
+import tomllib
+
+import numpy as np
+
+import talus_style as style
+from talus_units import Keys, duration, quantity, span
+
+GROUND = ("#e8d5b0", "#c2a278", "#b9bfa4", "#a9a29a", "#e0b88a", "#d5cfc9", "#a8895f", "#d8c774")  # of the soils
+EARTH, WATER, LOAD, BASE, PLATE, GAS = style.INK, "#1971c2", "#c92a2a", "#a0410d", "#5f3dc4", "#862e9c"
+UNBROKEN = "\u00a0"  # a blank at which no line ends
+# parameters of soils that the legend has, by key
+PARAMETERS = {"unit_weight": "γ", "saturated_unit_weight": "γₛₐₜ", "density": "ρ", "porosity": "n", "grain_density": "ρₛ", "young_modulus": "E",
+              "shear_modulus": "G", "bulk_modulus": "K", "poisson_ratio": "ν", "cohesion": "c", "friction_angle": "φ", "dilation_angle": "ψ",
+              "residual_cohesion": "cᵣ", "residual_friction_angle": "φᵣ", "hydraulic_conductivity": "k", "permeability": "k"}
+# what a boundary does to the soil: words, colour, symbol in perspective
+ON_SOIL = {"fixed": ("fixed", EARTH, "s"), "roller": ("roller", EARTH, "o"), "base": ("base with friction", BASE, "X"),
+           "load": ("load", LOAD, "v"), "velocity": ("moving plate", PLATE, "D"), "dashpot": ("non-reflecting", GAS, "P")}
+ON_WATER = {"wall": "no flow", "pressure": "pore pressure", "seepage": "water level, above it a seepage face", "flux": "inflow", "outflow": "outflow"}
+
+
+class Model:
+    """The document of the program: see src/simulation/model.h."""
+
+    def __init__(self, text):
+        self.data = json.loads(text)
+        self.title = self.data["title"]
+        self.dimension = self.data["dimension"]
+        self.scene = tomllib.loads(self.data["scene"])
+        self.keys = Keys(self.data["keys"])
+        self.bodies = [body["name"] for body in self.data["bodies"]]
+        self.there = [body["there"] for body in self.data["bodies"]]
+        self.corners = np.array([cell["corners"] for cell in self.data["cells"]]).reshape(-1, 3, self.dimension)
+        self.normal = np.array([cell["normal"] for cell in self.data["cells"]]).reshape(-1, self.dimension)  # of the faces in 3D
+        self.body = np.array([cell["body"] for cell in self.data["cells"]], int)
+        self.boundaries = [Boundary(one, self.dimension) for one in self.data["boundaries"]]
+        if self.dimension == 3:  # symbols alone do not tell boundaries apart
+            for k, boundary in enumerate(self.boundaries):
+                boundary.colour = style.LINES[k % len(style.LINES)]
+        self.stages = self.data["stages"]
+
+    def colour(self, body):
+        return GROUND[body % len(GROUND)]
+
+    def soil_line(self, name):
+        """Law and main parameters of a soil."""
+        given = self.scene.get("body", {}).get(name, {})
+        law = given.get("law", "")
+        values = [f"{symbol} = {self.keys.text('body.NAME', law, key, given[key])}".replace(" ", UNBROKEN) for key, symbol in PARAMETERS.items() if key in given]
+        return f"{style.words(law)}: {', '.join(values)}"
+
+    def water_lines(self):
+        """Polylines of the water tables at the start, level beyond their ends, over the width of the model: [(body, points)]."""
+        left, right = self.corners[..., 0].min(), self.corners[..., 0].max()
+        lines = []
+        for table in self.data["water"]["tables"]:
+            points = np.array(table["points"])
+            x = np.unique(np.concatenate([[left, right], points[(points[:, 0] > left) & (points[:, 0] < right), 0]]))
+            lines.append((table["body"], np.column_stack([x, np.interp(x, points[:, 0], points[:, 1])])))
+        return lines
+
+
+def read_model(folder):
+    """The model of a run, or None where the run has left no document of it."""
+    path = folder / "run" / "model.json"
+    return Model(path.read_text()) if path.exists() else None
+
+
+class Boundary:
+    """A boundary with its faces: corners [faces, dim, dim], normals and vectors (load or velocity) [faces, dim]."""
+
+    def __init__(self, data, dimension):
+        self.name, self.soil, self.water, self.gas = data["name"], data["soil"], data["water"], data["gas"]
+        self.groups, self.values, self.changes, self.level = data["groups"], data["values"], data["changes"], data["level"]
+        faces = data["faces"]
+        self.has_soil = np.array([face["soil"] for face in faces], bool)
+        self.corners = np.array([face["corners"] for face in faces]).reshape(-1, dimension, dimension)
+        self.normal = np.array([face["normal"] for face in faces]).reshape(-1, dimension)
+        self.vector = np.array([face["vector"] for face in faces]).reshape(-1, dimension)
+        self.colour = ON_SOIL[self.soil][1] if self.soil in ON_SOIL else GAS if self.gas == "pressure" else WATER
+        if self.soil in ("load", "none"):  # act on soil only
+            keep = self.has_soil
+            self.corners, self.normal, self.vector, self.has_soil = self.corners[keep], self.normal[keep], self.vector[keep], self.has_soil[keep]
+
+    def marker(self):
+        return ON_SOIL[self.soil][2] if self.soil in ON_SOIL else "."
+
+    def what(self):
+        """What it does, in words."""
+        if self.soil in ON_SOIL:
+            return ON_SOIL[self.soil][0]
+        return "gas pressure" if self.gas == "pressure" else ON_WATER.get(self.water, "no effect")
+
+    def at_start(self):
+        """Its values at the start, in words; empty if it has none."""
+        said = [f"{one['name']} {span(one['low'], one['high'], one['unit'])}" for one in self.values if one["name"] != "adhesion" or one["high"]]
+        if self.level is not None:
+            said = [f"water level {quantity(self.level, 'm')}"]
+        if not self.changes:
+            return ", ".join(said)
+        return ", ".join(said) + " at the start, changes with time" if said else "changes with time"
+
+    def line(self):
+        values = self.at_start()
+        told = values.startswith(self.what()) or (self.values and self.soil == "load")
+        return f"{self.name}: {values if told else ', '.join(filter(None, (self.what(), values)))}"
+
+
+SEEPING = {"seepage": "water seeps, soil at rest", "consolidation": "water seeps, soil consolidates"}  # kinds of stages
+
+
+def stage_rows(model):
+    """What a table of the stages says: the names of its columns, then a row for each stage."""
+    rows = [("stage", "kind", "at most", "ends with", "what acts")]
+    for number, stage in enumerate(model.stages):
+        kind = style.words(stage["kind"]) + (f", {stage['integrator']}" if stage["kind"] == "dynamic" else ", steady" if stage["steady"] else "")
+        rows.append((stage["name"], kind, duration(stage["duration"]), ending(stage), "; ".join(actions(model, number))))
+    return rows
+
+
+def ending(stage):
+    if stage["when_lost"] == "next_stage":
+        return "duration, or loss of equilibrium"
+    if stage["until"] == "failure":
+        return f"failure of {stage['failure_point']}, from {quantity(stage['failure_speed'], 'm/s')}"
+    if stage["until"] == "rest":
+        return f"rest, below {quantity(stage['rest_speed'], 'm/s')}"
+    return stage["until"]
+
+
+def actions(model, number):
+    """What acts in a stage, in words."""
+    said, stage = [], model.stages[number]
+    size = float(np.linalg.norm(model.data["gravity"]))
+    if size:
+        said.append(f"gravity {quantity(size, 'm/s2')}" + (f", growing from 0 in {duration(stage['gravity_ramp'])}" if stage["gravity_ramp"] else ""))
+    if stage["seismic_coefficient"]:
+        said.append(f"pseudo-static inertia of ({', '.join(f'{k:g}' for k in stage['seismic_coefficient'])}) times the weight")
+    phases = model.data["phases"]
+    if phases == "drained":
+        seeped = any(before["kind"] in SEEPING for before in model.stages[:number])
+        said.append(SEEPING.get(stage["kind"], "pore pressure of the seepage before" if seeped else "prescribed pore pressure"))
+    elif phases != "dry":
+        said.append("pore fluids move" if stage["pore_flow"] else "pore pressure of the start")
+    standing = [one.name for one in model.boundaries if one.soil in ("load", "velocity")]
+    if standing:
+        said.append("on the soil: " + ", ".join(standing))
+    if stage["changes"]:
+        said.append("changing with time: " + ", ".join(style.words(one.replace(".", " ")) for one in stage["changes"]))
+    elif stage["hold_loads"]:
+        said.append("functions of time stand still")
+    if stage["initial_stress"] == "k0":
+        said.append("stress at the start by k0")
+    for key, verb in (("add", "adds"), ("remove", "removes")):
+        if stage[key]:
+            said.append(f"{verb} {', '.join(stage[key])}")
+    if stage["kind"] == "dynamic":
+        said.append(f"damping {stage['damping']:g}" if stage["damping"] else "no damping")
+    if not stage["softening"]:
+        said.append("soil keeps its strength")
+    if stage["reset_displacement"]:
+        said.append("displacement set to 0 at its end")
+    return said
+
+
+def notes(model):
+    """Sentences on the water."""
+    water = model.scene.get("water", {})
+    said = []
+    if model.data["water"]["tables"]:
+        level = ", rises and falls: level = " + model.keys.text("water", "", "level", water["level"]) if "level" in water else ""
+        said.append("blue line: water table at the start" + level)
+    if model.data["water"]["line"]:
+        said.append("dashed blue line: where the pore pressure at the start ends in the soil")
+    for key in ("suction", "excess"):
+        if key in water:
+            said.append(f"{key}: {model.keys.text('water', '', key, water[key])}")
+    return said

@@ -1,0 +1,128 @@
+"""Perspective views of what a scene models in 3D."""
+
+import numpy as np
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import to_rgb
+
+import talus_style as style
+from talus_modelled import WATER
+from talus_symbols import SYMBOL, Symbols, named_points
+from talus_units import quantity
+
+
+class Camera:
+    """Central projection onto a plane. `towards` points from the middle of the soil to the eye; `up` is up."""
+
+    def __init__(self, low, high, towards, up):
+        self.up, self.middle, size = up, (low + high) / 2, np.linalg.norm(high - low)
+        forward = -np.asarray(towards) / np.linalg.norm(towards)
+        self.right = np.cross(forward, up) / np.linalg.norm(np.cross(forward, up))
+        self.top, self.forward = np.cross(self.right, forward), forward
+        self.distance = 2.6 * size
+        self.eye = self.middle - self.distance * forward
+
+    def flat(self, points):
+        """Points [..., 3] on the picture [..., 2], in metres at the middle of the soil."""
+        from_eye = np.asarray(points, float) - self.eye
+        shrink = self.distance / (from_eye @ self.forward)
+        return np.stack([from_eye @ self.right * shrink, from_eye @ self.top * shrink], axis=-1)
+
+    def sees(self, centres, normals):
+        return ((self.eye - centres) * normals).sum(axis=-1) > 0
+
+    def depth(self, points):
+        return (np.asarray(points) - self.eye) @ self.forward
+
+
+class Views:
+    """The soil from above in front, and from below behind."""
+
+    SHOWN = (("from above", 6.4), ("from below, seen from behind", 4.5))  # what they are called, and their widths [inch]
+    TALLEST, ROOM = 4.6, 1.0  # of the soil in a view, and beside it for dimensions [inch]
+
+    def __init__(self, model):
+        self.model = model
+        self.low, self.high = model.corners.min(axis=(0, 1)), model.corners.max(axis=(0, 1))
+        gravity = np.array(model.data["gravity"] if np.any(model.data["gravity"]) else [0, -1, 0], float)
+        steepest = np.abs(gravity).argmax()
+        up = -np.sign(gravity[steepest]) * np.eye(3)[steepest]
+        level = np.eye(3)[np.flatnonzero(up == 0)]
+        towards = 0.55 * level[0] + 0.75 * level[1] + 0.5 * up
+        self.cameras = [Camera(self.low, self.high, side * towards, up) for side in (1, -1)]
+        corners = np.stack(np.meshgrid(*zip(self.low, self.high)), axis=-1).reshape(-1, 3)  # of the box around the soil
+        boxes = [camera.flat(corners) for camera in self.cameras]
+        self.middles = [(box.min(axis=0) + box.max(axis=0)) / 2 for box in boxes]
+        sizes = [np.ptp(box, axis=0) for box in boxes]
+        self.metres = [max(size[0] / (width - self.ROOM), size[1] / self.TALLEST) for size, (_, width) in zip(sizes, self.SHOWN)]  # per inch
+        self.height = max(size[1] / metres for size, metres in zip(sizes, self.metres)) + self.ROOM  # [inch]
+
+    def draw(self, axes, number):
+        """Draws one of the views into axes of its width and of the common height."""
+        camera, metres, middle = self.cameras[number], self.metres[number], self.middles[number]
+        half = np.array([self.SHOWN[number][1], self.height]) * metres / 2
+        axes.set(xlim=(middle[0] - half[0], middle[0] + half[0]), ylim=(middle[1] - half[1], middle[1] + half[1]))
+        axes.axis("off")
+        self.faces(axes, camera)
+        for boundary in self.model.boundaries:
+            symbols_of(axes, boundary, camera, metres)
+        if number == 0:
+            self.water(axes, camera, metres)
+            named_points(axes, self.model, camera.flat)
+        edges(axes, camera, self.low, self.high, metres)
+
+    def faces(self, axes, camera):
+        """The faces of the soil that the camera sees, the furthest first."""
+        model = self.model
+        centres = model.corners.mean(axis=1)
+        order = np.argsort(-camera.depth(centres))
+        order = order[camera.sees(centres, model.normal)[order]]
+        light = camera.right * -0.35 + camera.top * 0.8 - camera.forward * 0.5
+        shade = 0.72 + 0.28 * np.clip(model.normal @ light, 0, 1)
+        colours = np.array([to_rgb(model.colour(body)) for body in model.body]) * shade[:, None]
+        thin = np.clip(40 / np.sqrt(len(model.corners)), 0.08, 0.4)
+        axes.add_collection(PolyCollection(camera.flat(model.corners[order]), fc=colours[order], ec="#8d7b5c", lw=thin, zorder=2), autolim=False)
+
+    def water(self, axes, camera, metres):
+        """The water tables on the side of the soil that faces the camera; a table is a line of x and y."""
+        front = self.high[2] if camera.eye[2] > camera.middle[2] else self.low[2]
+        for _, points in self.model.water_lines():
+            line = camera.flat(np.column_stack([points, np.full(len(points), front)]))
+            axes.plot(*line.T, color=WATER, lw=1.6, zorder=6)
+            Symbols(axes, SYMBOL * metres).level(*(0.88 * line[0] + 0.12 * line[1]))
+
+
+def symbols_of(axes, boundary, camera, metres):
+    """The symbol of a boundary on some of its faces that the camera sees, and arrows of what it exerts there."""
+    middle = boundary.corners.mean(axis=1)
+    seen = np.flatnonzero(camera.sees(middle, boundary.normal) & boundary.has_soil)
+    _, first = np.unique(np.floor(camera.flat(middle[seen]) / (0.26 * metres)).astype(int), axis=0, return_index=True)  # one in a quarter of an inch
+    some = seen[first]
+    hollow = {"mfc": "white"} if boundary.marker() == "o" else {}
+    axes.plot(*camera.flat(middle[some]).T, boundary.marker(), color=boundary.colour, ms=4.2, mew=0.8, ls="none", zorder=4, **hollow)
+    largest = np.linalg.norm(boundary.vector, axis=1).max(initial=0)
+    for k in some if largest else ():
+        way = 0.4 * metres * boundary.vector[k] / largest
+        start = middle[k] - way if boundary.soil == "load" else middle[k]
+        axes.annotate("", camera.flat(start + way), camera.flat(start), zorder=5,
+                      arrowprops={"arrowstyle": "-|>", "color": boundary.colour, "lw": 0.8, "shrinkA": 0, "shrinkB": 0})
+
+
+def edges(axes, camera, low, high, metres):
+    """The three dimensions of the soil, each beside that edge of its box that lies lowest in the picture, or furthest right."""
+    middle = camera.flat((low + high) / 2)
+    for axis in range(3):
+        others = [one for one in range(3) if one != axis]
+        ends = []
+        for i in (0, 1):
+            for j in (0, 1):
+                begin = np.array((low, high)[0], float)
+                begin[others[0]], begin[others[1]] = (low, high)[i][others[0]], (low, high)[j][others[1]]
+                end = begin.copy()
+                end[axis] = high[axis]
+                ends.append(camera.flat([begin, end]))
+        lowest = min(ends, key=lambda edge: -edge[:, 0].mean() if camera.up[axis] else edge[:, 1].mean())
+        away = lowest.mean(axis=0) - middle
+        lowest = lowest + 0.28 * metres * away / np.linalg.norm(away)
+        axes.annotate("", *lowest, zorder=9, annotation_clip=False, arrowprops={"arrowstyle": "<->", "color": style.SOFT, "lw": 0.8, "shrinkA": 0, "shrinkB": 0})
+        axes.text(*lowest.mean(axis=0), f"{'xyz'[axis]}: {quantity(float(f'{high[axis] - low[axis]:.4g}'), 'm')}", ha="center", va="center", fontsize=8, zorder=10,
+                  bbox={"fc": "white", "ec": "none", "pad": 1.2})

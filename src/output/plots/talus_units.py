@@ -1,0 +1,103 @@
+"""Values of a scene in words, with their units."""
+
+import re
+
+import talus_style as style
+
+ENTRIES = 6  # of a list that are written out
+NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+UNIT = re.compile(r"[A-Za-zµ°%][\w/^*.()²³µ°% -]*$")
+SHOWN = (("m2", "m²"), ("m3", "m³"), ("s2", "s²"), ("deg", "°"))  # how units are written
+TIMES = ((86400, 86400, "d"), (3600, 3600, "h"), (120, 60, "min"))  # from so many seconds on
+
+
+class Keys:
+    """Units of the keys of a scene: {path of the table: {kind, or "" for all kinds: {key: {"unit": ..., "over_time": ...}}}}, as the program
+    hands them over. Without them values are shown as they are written."""
+
+    def __init__(self, keys=None):
+        self._keys = keys or {}
+
+    def text(self, path, kind, key, value):
+        """The value of a key in words; `path` is that of its table, such as body.NAME, and `kind` names its law, kind or curve."""
+        table = self._keys.get(path, {})
+        about = table.get("", {}).get(key) or table.get(kind, {}).get(key) or {}
+        return text_of(value, about.get("unit", ""), about.get("over_time", False))
+
+    def row(self, path, values, kind_key=""):
+        """{key in words: value in words} of a table of the scene; a table inside it on one line."""
+        kind = values.get(kind_key, "")
+        row = {}
+        for key, value in values.items():
+            if isinstance(value, dict):
+                inside = self.row(f"{path}.{key}", value, "curve")
+                row[style.words(key)] = ", ".join(text if one == "curve" else f"{one} {text}" for one, text in inside.items())
+            else:
+                row[style.words(key)] = self.text(path, kind, key, value)
+        return row
+
+
+def text_of(value, unit="", over_time=False):
+    """A value of a scene in words: 13000 in Pa as '13 kPa', [[0, 12], [150, 0]] of degrees over time as '12° at 0 s, 0° at 150 s'. Texts that
+    are quantities stay as they are; expressions get the unit of their values in brackets."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, (int, float)):
+        return quantity(value, unit)
+    if isinstance(value, list):
+        return list_of(value, unit, over_time)
+    if not unit or not isinstance(value, str):
+        return str(value)
+    number = NUMBER.match(value.strip())
+    rest = value.strip()[number.end():].strip() if number else ""
+    if number and not rest:
+        return quantity(float(value), unit)
+    return shown(value) if number and UNIT.match(rest) else f"{value} [{shown(unit)}]"
+
+
+def list_of(values, unit, over_time):
+    if any(isinstance(one, dict) for one in values):
+        return f"{len(values)} entries"
+    if not values or not isinstance(values[0], list):
+        numbers = all(isinstance(one, (int, float)) for one in values)
+        return with_shown(f"({', '.join(f'{one:g}' for one in values)})", unit) if numbers and unit else ", ".join(text_of(one, unit) for one in values)
+    pairs = all(isinstance(one, list) and len(one) == 2 and not isinstance(one[0], list) for one in values)
+    if over_time and not pairs:  # a list of functions
+        return "; ".join(text_of(one, unit, over_time) for one in values)
+    say = (lambda one: f"{text_of(one[1], unit)} at {text_of(one[0], 's')}") if over_time else (lambda one: f"({', '.join(str(x) for x in one)})")
+    few = values if len(values) <= ENTRIES else [values[0], values[-1]]
+    text = " to ".join(map(say, few)) + f" in {len(values)} points" if few is not values else ", ".join(map(say, few))
+    return text if over_time else with_shown(text, unit)
+
+
+def quantity(value, unit):
+    """A number in a unit in which it reads well."""
+    factor, unit = style.readable_unit(abs(value), unit)
+    return with_shown(f"{factor * value:.6g}", unit)
+
+
+def span(low, high, unit):
+    """'12°', or '0 to 12°' where the two differ."""
+    factor, unit = style.readable_unit(max(abs(low), abs(high)), unit)
+    low, high = f"{factor * low:.4g}", f"{factor * high:.4g}"
+    return with_shown(high if low == high else f"{low} to {high}", unit)
+
+
+def duration(seconds):
+    """'40 s', '30 d'"""
+    for least, size, name in TIMES:
+        if seconds >= least:
+            return f"{seconds / size:.4g} {name}"
+    return f"{seconds:.4g} s"
+
+
+def with_shown(number, unit):
+    unit = shown(unit)
+    return f"{number}{unit}" if unit == "°" else f"{number} {unit}".rstrip()
+
+
+def shown(unit):
+    """m/s2 as m/s²"""
+    for plain, pretty in SHOWN:
+        unit = re.sub(rf"(?<![A-Za-z]){plain}\b" if plain == "deg" else rf"{plain}\b", pretty, unit)
+    return unit

@@ -1,0 +1,451 @@
+#include "simulation/model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "output/json.h"
+#include "output/together.h"
+#include "scene/reader.h"
+#include "simulation/dynamics.h"
+#include "simulation/scene_keys.h"
+#include "solvers/quasi_static/pore_flow.h"
+
+namespace talus {
+namespace {
+
+using json::Object;
+
+constexpr int free_space = -1;
+
+/// A cell in plane strain, a facet, or a piece of a line.
+template <int dim>
+struct Piece {
+  std::array<Vec<dim>, 3> corner{};  ///< [m]; a facet in plane strain and a piece of a line have two
+  Vec<dim> normal{};                 ///< of a facet, out of the soil where there is some
+  int body = free_space;
+  int source = 0;  ///< of a facet: number of its boundary
+};
+
+template <int dim>
+std::array<Vec<dim>, 3> sorted(std::array<Vec<dim>, 3> corner) {
+  std::sort(corner.begin(), corner.end());
+  return corner;
+}
+
+/// The pieces in an order that does not depend on the number of ranks; of facets that two cells share the one with soil
+/// behind it.
+template <int dim>
+std::vector<Piece<dim>> in_order(const std::vector<Piece<dim>> &pieces) {
+  const auto key = [](const Piece<dim> &piece) { return std::pair(piece.source, sorted<dim>(piece.corner)); };
+  std::map<std::pair<int, std::array<Vec<dim>, 3>>, Piece<dim>> found;
+  for (const Piece<dim> &piece : pieces) {
+    const auto [at, is_new] = found.emplace(key(piece), piece);
+    if (!is_new && std::pair(piece.body, piece.normal) > std::pair(at->second.body, at->second.normal))
+      at->second = piece;
+  }
+  std::vector<Piece<dim>> all;
+  for (const auto &[place, piece] : found) all.push_back(piece);
+  return all;
+}
+
+/// The pieces of all ranks, on the first one.
+template <int dim>
+std::vector<Piece<dim>> gathered(MPI_Comm comm, const std::vector<Piece<dim>> &mine) {
+  return in_order(gather(comm, mine));
+}
+
+std::string json_of(const std::vector<double> &values) {
+  std::string list;
+  for (const double value : values) list += (list.empty() ? "" : ", ") + json::number(value);
+  return "[" + list + "]";
+}
+
+template <int dim>
+std::string json_of(const Vec<dim> &x) {
+  return json_of(std::vector<double>(x.begin(), x.end()));
+}
+
+std::string json_of(const std::vector<std::string> &words) { return json::array(words, json::text); }
+
+std::string json_of(const std::vector<std::vector<double>> &points) {
+  return json::array(points, [](const std::vector<double> &point) { return json_of(point); });
+}
+
+template <int dim>
+std::string corners(const Piece<dim> &piece, int count) {
+  const std::vector<Vec<dim>> all(piece.corner.begin(), piece.corner.begin() + count);
+  return json::array(all, [](const Vec<dim> &x) { return json_of<dim>(x); });
+}
+
+const char *json_of(bool yes) { return yes ? "true" : "false"; }
+
+/// Writes the fields of a struct, with the defaults that the scene has not changed, in SI.
+struct Fields {
+  Object object;
+
+  void number(const char *key, double value, Unit, Range, const char *) { object.add(key, value); }
+  void integer(const char *key, int value, Range, const char *) { object.add(key, value); }
+  void flag(const char *key, bool value, const char *) { object.add(key, json_of(value)); }
+  void text(const char *key, const std::string &value, const char *) { object.add(key, json::text(value)); }
+  void texts(const char *key, const std::vector<std::string> &value, const char *) { object.add(key, json_of(value)); }
+  void point(const char *key, const std::vector<double> &value, Unit, const char *) { object.add(key, json_of(value)); }
+  template <class Enum>
+  void choice(const char *key, Enum value,
+              std::initializer_list<std::pair<const char *, std::type_identity_t<Enum>>> choices, const char *) {
+    for (const auto &[name, meant] : choices)
+      if (meant == value) object.add(key, json::text(name));
+  }
+};
+
+/// 0, 1, ... for each entry of a list.
+template <class List>
+std::vector<std::size_t> numbers_of(const List &list) {
+  std::vector<std::size_t> numbers(list.size());
+  std::iota(numbers.begin(), numbers.end(), 0);
+  return numbers;
+}
+
+/// Units by path of the table, kind ("": all kinds) and key.
+std::string units() {
+  const Describer known = scene_keys();
+  std::map<std::string, Object> tables;
+  for (const Describer::Block &block : known.blocks()) {
+    Object keys;
+    for (const Describer::Key &key : block.keys)
+      if (!key.unit.empty() || key.over_time)
+        keys.add(key.path.substr(key.path.rfind('.') + 1),
+                 Object().add("unit", json::text(key.unit)).add("over_time", json_of(key.over_time)).str());
+    tables[block.path].add(block.kind, keys.str());
+  }
+  Object all;
+  for (const auto &[path, kinds] : tables) all.add(path, kinds.str());
+  return all.str();
+}
+
+/// Makes the document; each part of it is collective.
+template <int dim>
+class Model {
+ public:
+  explicit Model(const World<dim> &world)
+      : world_(world),
+        scene_(world.scene),
+        body_of_(bodies_of_cells(world.mesh, world.scene)),
+        there_(world.present_at_start()) {}
+
+  std::string document() {
+    surface_ = world_.surface();
+    Object all;
+    all.add("title", json::text(scene_.title))
+        .add("dimension", dim)
+        .add("phases", json::text(name_of(scene_.phases)))
+        .add("gravity", json_of(scene_.gravity))
+        .add("scene", json::lines(scene_.root ? scene_.root->values() : scene_.source))
+        .add("keys", units())
+        .add("bodies", bodies())
+        .add("cells", cells())
+        .add("boundaries", boundaries())
+        .add("water", Object().add("tables", water_tables()).add("line", line_of_no_pressure()).str())
+        .add("stages", json::array(scene_.stage, [&](Stage stage) { return stage_of(stage); }))
+        .add("points",
+             json::array(
+                 scene_.output.point,
+                 [](const OutputPoint &point) {
+                   return Object().add("name", json::text(point.name)).add("position", json_of(point.position)).str();
+                 }))
+        .add("lines", json::array(scene_.output.line, [](const OutputLine &line) {
+               return Object().add("name", json::text(line.name)).add("points", json_of(line.points)).str();
+             }));
+    return rank_in(world_.comm) == 0 ? all.str() : "";
+  }
+
+ private:
+  using Source = typename World<dim>::Source;
+
+  bool has_soil(int cell) const { return body_of_[cell] >= 0 && there_[body_of_[cell]]; }
+
+  std::string bodies() const {
+    return json::array(numbers_of(scene_.body), [&](std::size_t b) {
+      return Object().add("name", json::text(scene_.body[b].name)).add("there", json_of(bool(there_[b]))).str();
+    });
+  }
+
+  std::string cells() const {
+    std::vector<Piece<dim>> mine;
+    if constexpr (dim == 2) {
+      for (int c = 0; c < world_.mesh.cell_count(); ++c) {
+        Piece<dim> cell;
+        for (int a = 0; a < 3; ++a) cell.corner[a] = world_.mesh.position[world_.mesh.cells[c].node[a]];
+        cell.body = body_of_[c];
+        mine.push_back(cell);
+      }
+    } else if (rank_in(world_.comm) == 0) {  // has the surface of all ranks
+      for (const SoilFace &face : surface_) mine.push_back(piece_of(face));
+    }
+    return json::array(gathered(world_.comm, mine), [](const Piece<dim> &cell) {
+      return Object()
+          .add("corners", corners(cell, 3))
+          .add("normal", json_of<dim>(cell.normal))
+          .add("body", cell.body)
+          .str();
+    });
+  }
+
+  static Piece<dim> piece_of(const SoilFace &face) {
+    Piece<dim> piece;
+    for (int a = 0; a < dim; ++a) std::copy_n(face.corner[a].begin(), dim, piece.corner[a].begin());
+    std::copy_n(face.normal.begin(), dim, piece.normal.begin());
+    piece.body = face.body;
+    return piece;
+  }
+
+  std::string boundaries() const {
+    std::vector<const Source *> sources;
+    for (const std::vector<Source> *some : {&world_.conditions.sources(), &world_.seepage_sources})
+      for (const Source &source : *some) sources.push_back(&source);
+    std::vector<Piece<dim>> mine;
+    for (std::size_t s = 0; s < sources.size(); ++s)
+      for (const std::string &group : sources[s]->groups) {
+        if (!world_.mesh.has_group(group)) continue;  // such as free_surface
+        for (const Facet<dim> &facet : world_.mesh.facets(group)) {
+          Piece<dim> piece;
+          for (int a = 0; a < dim; ++a) piece.corner[a] = world_.mesh.position[facet.node[a]];
+          piece.normal = facet.normal, piece.source = static_cast<int>(s);
+          if (has_soil(facet.cell)) piece.body = body_of_[facet.cell];
+          mine.push_back(piece);
+        }
+      }
+    std::vector<Piece<dim>> all = gathered(world_.comm, mine);
+    std::set<std::array<Vec<dim>, 3>> taken;  // by boundaries that have a say about the water
+    for (const Piece<dim> &piece : all)
+      if (sources[piece.source]->kind.water != OnWater::surface) taken.insert(sorted<dim>(piece.corner));
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+      if (rank_in(world_.comm) || !std::ranges::count(sources[s]->groups, std::string(free_surface))) continue;
+      for (const SoilFace &face : surface_) {
+        Piece<dim> piece = piece_of(face);
+        piece.source = static_cast<int>(s);
+        if (!taken.contains(sorted<dim>(piece.corner))) all.push_back(piece);
+      }
+    }
+    all = in_order(all);
+    return json::array(numbers_of(sources), [&](std::size_t s) {
+      std::vector<Piece<dim>> faces;
+      for (const Piece<dim> &piece : all)
+        if (piece.source == static_cast<int>(s)) faces.push_back(piece);
+      return boundary(*sources[s], faces);
+    });
+  }
+
+  /// Least and largest value of what a boundary prescribes.
+  class Values {
+   public:
+    void add(const std::string &name, const char *unit, double value) {
+      if (!std::isfinite(value)) return;
+      const auto [at, is_new] = found_.emplace(name, Span{unit, value, value});
+      at->second.low = std::min(at->second.low, value), at->second.high = std::max(at->second.high, value);
+    }
+    std::string str() const {
+      return json::array(found_, [](const auto &one) {
+        return Object()
+            .add("name", json::text(one.first))
+            .add("unit", json::text(one.second.unit))
+            .add("low", one.second.low)
+            .add("high", one.second.high)
+            .str();
+      });
+    }
+
+   private:
+    struct Span {
+      const char *unit;
+      double low, high;
+    };
+    std::map<std::string, Span> found_;
+  };
+
+  std::string boundary(const Source &source, const std::vector<Piece<dim>> &faces) const {
+    const Boundary &kind = source.kind;
+    const OnSoil action = kind.in_motion != OnSoil::none ? kind.in_motion : kind.quasi_static;
+    constexpr const char *water[] = {"surface", "wall", "pressure", "seepage", "flux", "outflow"};
+    constexpr const char *gas[] = {"surface", "wall", "atmosphere", "pressure"};
+    Values values;
+    double level = std::numeric_limits<double>::quiet_NaN();
+    const std::string drawn = json::array(faces, [&](const Piece<dim> &face) {
+      Vec<dim> centre{}, vector{};
+      for (int a = 0; a < dim; ++a)
+        for (int d = 0; d < dim; ++d) centre[d] += face.corner[a][d] / dim;
+      if (face.body >= 0) {  // functions need not be defined where there is no soil
+        vector = exerted(kind, action, face, centre, values);
+        level = std::fmax(level, look_at_pores(kind, centre, values));
+      }
+      return Object()
+          .add("corners", corners(face, dim))
+          .add("normal", json_of<dim>(face.normal))
+          .add("soil", json_of(face.body >= 0))
+          .add("vector", json_of<dim>(vector))
+          .str();
+    });
+    return Object()
+        .add("name", json::text(source.name))
+        .add("groups", json_of(source.groups))
+        .add("soil", json::text(action_on_soil(action, kind.template on_soil<dim>())))
+        .add("water", json::text(water[static_cast<int>(kind.water)]))
+        .add("gas", json::text(gas[static_cast<int>(kind.gas)]))
+        .add("changes", json_of(kind.changes))
+        .add("values", values.str())
+        .add("level", level)
+        .add("faces", drawn)
+        .str();
+  }
+
+  /// Load [Pa] or velocity [m/s] in the middle of a face at the start; `values` takes what the boundary prescribes
+  /// there.
+  static Vec<dim> exerted(const Boundary &kind, OnSoil action, const Piece<dim> &face, const Vec<dim> &centre,
+                          Values &values) {
+    const auto &on_soil = kind.template on_soil<dim>();
+    const double x = centre[0], y = centre[1], z = dim == 3 ? centre[dim - 1] : 0;
+    Vec<dim> vector{};
+    if (action == OnSoil::load) vector = on_soil.load(face.normal, centre, 0);
+    if (action == OnSoil::support && on_soil.speed)
+      for (const Vec<dim> &direction : on_soil.directions(face.normal)) {
+        const double speed = on_soil.speed(direction, centre, 0);
+        for (int d = 0; d < dim; ++d) vector[d] += speed * direction[d];
+      }
+    double inwards = 0, square = 0;
+    for (int d = 0; d < dim; ++d) inwards -= vector[d] * face.normal[d], square += vector[d] * vector[d];
+    if (action == OnSoil::load)
+      kind.follows ? values.add("pressure", "Pa", inwards) : values.add("traction", "Pa", std::sqrt(square));
+    if (action == OnSoil::support && on_soil.speed) values.add("velocity", "m/s", std::sqrt(square));
+    if (kind.friction_coefficient)
+      values.add("friction angle", "deg", std::atan(kind.friction_coefficient(x, y, z, 0, 0)) / degree.si);
+    if (kind.adhesion) values.add("adhesion", "Pa", kind.adhesion(x, y, z, 0, 0));
+    return vector;
+  }
+
+  /// The same for the pores; the level of open water [m], not a number where there is none.
+  double look_at_pores(const Boundary &kind, const Vec<dim> &centre, Values &values) const {
+    const double x = centre[0], y = centre[1], z = dim == 3 ? centre[dim - 1] : 0;
+    double level = std::numeric_limits<double>::quiet_NaN();
+    if (kind.outside) {
+      const double weight = scene_.water.density * scene_.gravity_size(), p = kind.outside(x, y, z, 0, weight);
+      if (kind.open_water && weight > 0 && p > 0) level = y + p / weight;
+      values.add(p < 0 ? "suction" : "pore pressure", "Pa", std::abs(p));
+    }
+    if (kind.supply && !kind.open_water) values.add("supply", "m/s", kind.supply(x, y, z, 0));
+    if (kind.inflow) values.add("inflow", "m/s", kind.inflow(x, y, z, 0));
+    if (kind.gas_outside) values.add("gas pressure", "Pa", kind.gas_outside(x, y, z, 0));
+    return level;
+  }
+
+  static const char *action_on_soil(OnSoil action, const SoilFunctions<dim> &functions) {
+    Vec<dim> up{};
+    up[1] = 1;
+    switch (action) {
+      case OnSoil::none:
+      case OnSoil::refused:
+        return "none";
+      case OnSoil::support:
+        return functions.speed ? "velocity" : functions.directions(up).size() == dim ? "fixed" : "roller";
+      case OnSoil::contact:
+        return "base";
+      case OnSoil::load:
+        return "load";
+      case OnSoil::dashpot:
+        return "dashpot";
+    }
+    return "none";
+  }
+
+  /// The common water table, and those of bodies that have one of their own.
+  std::string water_tables() const {
+    struct Table {
+      std::string body;
+      const std::vector<std::vector<double>> *points;
+    };
+    std::vector<Table> tables;
+    if (!scene_.water.table.empty()) tables.push_back({"", &scene_.water.table});
+    for (const BodySource &body : scene_.body)
+      if (!body.water_table.empty()) tables.push_back({body.name, &body.water_table});
+    const double rise = tables.empty() ? 0 : scene_.water.level(0);
+    return json::array(tables, [&](const Table &table) {
+      std::vector<std::vector<double>> points = *table.points;
+      for (std::vector<double> &point : points) point[1] += rise;
+      return Object().add("body", json::text(table.body)).add("points", json_of(points)).str();
+    });
+  }
+
+  /// Where the prescribed pore pressure ends in the soil, if it is not only that of a water table; in plane strain.
+  std::string line_of_no_pressure() const {
+    std::vector<Piece<dim>> mine;
+    const Function &excess = scene_.water.excess;
+    const bool by_ratio =
+        std::ranges::any_of(scene_.body, [](const BodySource &body) { return body.pore_pressure_ratio > 0; });
+    const bool told = by_ratio || !excess.constant() || excess(0) != 0;
+    for (int c = 0; dim == 2 && world_.phases.prescribed && told && c < world_.mesh.cell_count(); ++c) {
+      if (!has_soil(c)) continue;
+      const int soil = world_.pressure.soil_of(c);
+      const auto wet = [&](const Vec<dim> &x) { return world_.pressure(x, 0, soil) > 0; };
+      const auto &node = world_.mesh.cells[c].node;
+      Piece<dim> piece;
+      int ends = 0;
+      for (int a = 0; a < 3; ++a) {
+        Vec<dim> inside = world_.mesh.position[node[a]], outside = world_.mesh.position[node[(a + 1) % 3]];
+        if (wet(inside) == wet(outside)) continue;
+        if (!wet(inside)) std::swap(inside, outside);
+        constexpr int halvings = 30;  // to a billionth of the edge
+        for (int i = 0; i < halvings; ++i) {
+          Vec<dim> middle;
+          for (int d = 0; d < dim; ++d) middle[d] = (inside[d] + outside[d]) / 2;
+          (wet(middle) ? inside : outside) = middle;
+        }
+        piece.corner[ends++] = inside;
+      }
+      if (ends == 2) mine.push_back(piece);
+    }
+    return json::array(gathered(world_.comm, mine), [](const Piece<dim> &piece) { return corners(piece, 2); });
+  }
+
+  std::string stage_of(Stage &stage) const {
+    Fields fields;
+    stage.fields(fields);
+    const std::array<double, 3> acceleration = scene_.acceleration_in(stage);
+    std::vector<std::string> changes;
+    if (!stage.hold_loads) {
+      for (const std::vector<Source> *sources : {&world_.conditions.sources(), &world_.seepage_sources})
+        for (const Source &source : *sources)
+          if (source.kind.changes) changes.push_back("boundary." + source.name);
+      if (scene_.water.level.depends_on_time()) changes.push_back("water.level");
+      if (scene_.water.excess.depends_on_time()) changes.push_back("water.excess");
+      for (const BodySource &body : scene_.body)
+        if (std::ranges::any_of(body.body_acceleration, &Function::depends_on_time))
+          changes.push_back("body." + body.name + ".body_acceleration");
+    }
+    return fields.object
+        .add("acceleration", json_of(std::vector<double>(acceleration.begin(), acceleration.begin() + dim)))
+        .add("integrator",
+             json::text(std::visit([](const auto &settings) { return settings.name; }, choose_integrator(scene_))))
+        .add("changes", json_of(changes))
+        .str();
+  }
+
+  const World<dim> &world_;
+  const Scene &scene_;
+  const std::vector<int> body_of_;  ///< [cell]
+  const std::vector<char> there_;   ///< [body] from the start
+  std::vector<SoilFace> surface_;
+};
+
+}  // namespace
+
+template <int dim>
+std::string model_of(const World<dim> &world) {
+  return Model<dim>(world).document();
+}
+
+template std::string model_of(const World<2> &world);
+template std::string model_of(const World<3> &world);
+
+}  // namespace talus

@@ -1,0 +1,22 @@
+#include "simulation/scene_keys.h"
+
+#include "physics/boundary/kinds.h"
+#include "physics/laws/laws.h"
+#include "physics/pores/permeability.h"
+#include "physics/pores/retention.h"
+#include "solvers/integrators.h"
+
+namespace talus {
+
+Describer scene_keys() {
+  Describer keys;
+  describe_scene(keys);
+  describe_one_of<Law>(keys, "body.NAME", "law");
+  describe_one_of<Retention>(keys, "body.NAME.retention", "curve");
+  describe_one_of<RelativePermeability>(keys, "body.NAME.relative_permeability", "curve");
+  describe_one_of<BoundaryKinds>(keys, "boundary.NAME", "kind");
+  describe_one_of<IntegratorSettings>(keys, "integrator", "kind");
+  return keys;
+}
+
+}  // namespace talus
