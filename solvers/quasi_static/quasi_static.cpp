@@ -208,13 +208,13 @@ PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double 
   PetscInt iterations;
   PetscFunctionBeginUser;
   *outcome = {};
-  bool again = false;  // with a search for the smallest residual: not all steps have an energy with a critical point
+  bool again = false;  // with a search for the smallest residual: sliding has no energy whose critical point there is
   for (;; again = true) {
     if (again) PetscCall(make_solver(SNESLINESEARCHBT));
     PetscCall(prepare(share, load_time, time, dt, x_));
     PetscCall(SNESSolve(solver_, nullptr, x_));
     PetscCall(SNESGetConvergedReason(solver_, &reason));
-    if (balanced_ || again || stopped_) break;
+    if (balanced_ || again || stopped_ || !bases_.any()) break;
   }
   PetscCall(SNESGetIterationNumber(solver_, &iterations));
   PetscCall(SNESGetFunctionNorm(solver_, &outcome->residual));
