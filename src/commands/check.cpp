@@ -258,7 +258,7 @@ int check(const CheckArguments &arguments) {
   const std::string file = find_scene(arguments.scene), picture = picture_of(arguments, file);
   Scene scene = read_scene(file, arguments.set);
   if (arguments.no_umat) refuse_umat(scene);
-  const Needs needs = find_needs(scene);
+  const Needs needs = find_needs(scene, arguments.draws);
   const std::vector<std::string> advice = advise(scene, needs);
   int rank;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);

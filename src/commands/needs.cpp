@@ -422,12 +422,12 @@ long long Needs::particles() const {
                          [](long long sum, const auto &b) { return sum + b.body.particles; });
 }
 
-Needs find_needs(Scene &scene) {
+Needs find_needs(Scene &scene, bool with_model) {
   RunOptions options;
   options.pictures = options.screen = false;
   const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
   Needs needs{};
-  needs.model = simulation->model();
+  if (with_model) needs.model = simulation->model();
   needs.mesh = simulation->mesh_report();
   needs.gravity = scene.gravity_size();
   double fastest = 0;

@@ -54,7 +54,7 @@ struct Drainage {
 };
 
 struct Needs {
-  std::string model;  ///< what the scene models, for its picture; on the first rank
+  std::string model;  ///< what the scene models, for its picture; on the first rank, if asked for
   MeshReport mesh;
   std::vector<BodyNeeds> bodies;
   LayerNeeds layer;
@@ -83,8 +83,9 @@ struct Needs {
   const BodyNeeds &slowest_body() const { return bodies[slowest]; }
 };
 
-/// Makes the simulation of a scene and takes a burst of steps with it. Collective. Throws as make_simulation does.
-Needs find_needs(Scene &scene);
+/// Makes the simulation of a scene and takes a burst of steps with it; `with_model` also asks for what its picture
+/// shows. Collective. Throws as make_simulation does.
+Needs find_needs(Scene &scene, bool with_model);
 
 /// Plain sentences, the most important first.
 std::vector<std::string> advise(const Scene &scene, const Needs &needs);
