@@ -208,13 +208,13 @@ PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double 
   PetscInt iterations;
   PetscFunctionBeginUser;
   *outcome = {};
-  bool again = false;  // with a search for the smallest residual: sliding has no energy whose critical point there is
+  bool again = false;  // with a search for the smallest residual, where there is no energy whose critical point to find
   for (;; again = true) {
     if (again) PetscCall(make_solver(SNESLINESEARCHBT));
     PetscCall(prepare(share, load_time, time, dt, x_));
     PetscCall(SNESSolve(solver_, nullptr, x_));
     PetscCall(SNESGetConvergedReason(solver_, &reason));
-    if (balanced_ || again || stopped_ || !bases_.any()) break;
+    if (balanced_ || again || stopped_) break;
   }
   PetscCall(SNESGetIterationNumber(solver_, &iterations));
   PetscCall(SNESGetFunctionNorm(solver_, &outcome->residual));
