@@ -15,6 +15,9 @@ namespace {
 // An edge between two facets is a true one where the mean normals of the boundary on its two sides, each over
 // `edge_reach` facets, differ by more than this [degrees], and the two facets themselves by more than 0.6 times that.
 constexpr double edge_angle = 12, edge_reach = 3;
+// Facets around a node and its neighbours that differ by less than this are a plane as it was drawn, which stays as it
+// is: the cosine of 0.1 degrees.
+const double same_plane = std::cos(0.1 * M_PI / 180);
 // Passes of the smoothing of normals along a patch; each averages over the facets at a node.
 constexpr int normal_smoothings = 4;
 
@@ -51,6 +54,7 @@ class Tiling {
     int source, place;
     double area;
     Vec<dim> normal;
+    bool plane = true;
   };
   /// Of all places, ascending.
   const std::vector<Patch> &patches() const { return patches_; }
@@ -156,12 +160,19 @@ class Tiling {
         map<dim>(patch.normal) += tiles_[t].area * normal(t);
       }
     for (Patch &patch : patches_) map<dim>(patch.normal).normalize();
+    for (int t = 0; t < count(); ++t)
+      for (const int p : patch_[t])
+        for (const int q : patch_[t]) {
+          const Patch &of_node = patches_[p], &near = patches_[q];
+          patches_[p].plane &= map<dim>(of_node.normal).dot(map<dim>(near.normal)) > same_plane &&
+                               map<dim>(near.normal).dot(normal(t)) > same_plane;
+        }
   }
   static int corner(const std::array<int, dim> &places, int place) {
     return static_cast<int>(std::find(places.begin(), places.end(), place) - places.begin());
   }
 
-  /// Every patch takes the mean of the facets at its node, and a facet the mean of its nodes.
+  /// Every patch on relief takes the mean of the facets at its node, and a facet the mean of its nodes.
   void smooth() {
     std::vector<Column> sum(patches_.size(), Column::Zero());
     for (int t = 0; t < count(); ++t) {
@@ -169,7 +180,8 @@ class Tiling {
       for (const int p : patch_[t]) mean += map<dim>(patches_[p].normal);
       for (const int p : patch_[t]) sum[p] += tiles_[t].area * mean;
     }
-    for (size_t p = 0; p < patches_.size(); ++p) map<dim>(patches_[p].normal) = sum[p].normalized();
+    for (size_t p = 0; p < patches_.size(); ++p)
+      if (!patches_[p].plane) map<dim>(patches_[p].normal) = sum[p].normalized();
   }
   /// Relief beside a true edge may divide one side of it. Patches of a node that an edge does not part are one.
   void merge() {
