@@ -1,7 +1,7 @@
 #pragma once
 /// The action of the boundaries of a scene on the skeleton at the nodes, docs/theory section 6. Prescribed directions
-/// are orthonormalised per node once. A contact has one constraint per patch of facets at a node. Loads and dashpots act
-/// where facets have soil behind them.
+/// are orthonormalised per node once. A contact has one constraint per patch of facets at a node. Loads and dashpots
+/// act where facets have soil behind them.
 #include <functional>
 #include <memory>
 #include <string>
