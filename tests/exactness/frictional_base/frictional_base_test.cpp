@@ -1,6 +1,7 @@
 // A granular column runs out over a base with friction and comes to rest. Its front is one particle thick: contact must
 // not lift what lies on the base (docs/theory, section 6), so nothing is ever above the column's first height.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -82,8 +83,11 @@ class RoughSection {
  public:
   static constexpr double size = 0.125, roughness = 0.007;  // [m]
   RoughSection() {
+    int process = static_cast<int>(getpid());  // of rank 0: other runs of the test have files of their own
+    MPI_Bcast(&process, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+    name_ = std::string(P_tmpdir) + "/talus_rough_section_" + std::to_string(process) + ".csv";
     if (rank() == 0) {
-      std::ofstream out(name());
+      std::ofstream out(name_);
       out << "part,x,y\n";
       write_base(out, "outline");
       out << "outline,8,1\noutline,0,1\ninterface0,0.5,0\ninterface0,0.5,0.5\ninterface0,1.5,0.5\ninterface0,1.5,0\n"
@@ -94,13 +98,9 @@ class RoughSection {
   }
   ~RoughSection() {
     MPI_Barrier(PETSC_COMM_WORLD);
-    if (rank() == 0) std::remove(name().c_str());
+    if (rank() == 0) std::remove(name_.c_str());
   }
-  static std::string name() {
-    int ranks;
-    MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
-    return std::string(P_tmpdir) + "/talus_rough_section_" + std::to_string(ranks) + ".csv";
-  }
+  const std::string &name() const { return name_; }
 
  private:
   static int rank() {
@@ -116,6 +116,8 @@ class RoughSection {
       out << part << "," << i * size << "," << (level ? 0 : roughness * ((seed >> 8) / double(1 << 23) - 1)) << "\n";
     }
   }
+
+  std::string name_;
 };
 
 struct Slid {
