@@ -155,7 +155,7 @@ Slid slide_on_relief(const std::vector<std::string> &more) {
   return {after - before, lowest, std::atan2(along, across) * 180 / M_PI};
 }
 
-/// A base with relief is a plane in the mean: the block neither climbs from facet to facet, 94 mm where each facet was
+/// A base with relief is a plane in the mean: the block neither climbs from facet to facet, 84 mm where each facet was
 /// a constraint of its own, nor is it slowed down.
 TEST(FrictionalBase, elastic_block_slides_along_relief) {
   const Slid slid = slide_on_relief({});
