@@ -241,6 +241,12 @@ std::vector<Facet<dim>> BackgroundMesh<dim>::facets(const std::string &group) co
 }
 
 template <int dim>
+void BackgroundMesh<dim>::close(const std::string &group) {
+  closed.resize(cells.size(), 0);
+  for (const Facet<dim> &f : facets(group)) closed[f.cell] = static_cast<char>(closed[f.cell] | 1 << f.face);
+}
+
+template <int dim>
 MeshReport BackgroundMesh<dim>::report() const {
   MeshReport report{};
   double smallest[2] = {std::numeric_limits<double>::max(), 1}, quality = 0;

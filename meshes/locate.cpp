@@ -22,12 +22,14 @@ int sides_beyond(const std::array<double, dim + 1> &n, std::array<int, dim + 1> 
 
 template <int dim>
 Located put_inside(const BackgroundMesh<dim> &mesh, int cell, std::array<double, dim + 1> n, Point<dim> &x) {
+  const auto farthest = std::min_element(n.begin(), n.end()) - n.begin();
+  const bool closed = !mesh.closed.empty() && (mesh.closed[cell] >> farthest & 1);
   double sum = 0;
   for (double &one : n) sum += one = std::max(one, 1e-9);
   x = {};
   for (int k = 0; k <= dim; ++k)
     for (int d = 0; d < dim; ++d) x[d] += n[k] / sum * mesh.position[mesh.cells[cell].node[k]][d];
-  return {.cell = cell, .outside = true};
+  return {.cell = cell, .outside = !closed};
 }
 
 }  // namespace

@@ -59,6 +59,10 @@ class Boundary {
   bool needs_gas() const { return gas == OnGas::pressure; }
   /// Does it support the skeleton only in quasi-static stages and those that freeze loads, in place of its dashpots?
   bool stands_in() const { return quasi_static == OnSoil::support && in_motion != OnSoil::support; }
+  /// Does soil stay inside the mesh here? Where facets are rough, a particle would else leave between their nodes.
+  bool keeps_soil_inside() const {
+    return in_motion == OnSoil::contact || (in_motion == OnSoil::support && !on_soil<2>().speed);
+  }
   /// Do the pore fluids have a face of its own here, neither a wall nor the surface of the soil?
   bool fluid_face() const { return water != OnWater::wall && water != OnWater::surface; }
 

@@ -57,7 +57,7 @@ PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vect
   work_.assign(sources_.size(), 0);
   for (PrescribedSet &set : prescribed_) set.of_node.assign(mesh.node_count(), -1);
   first_contact_of_node_.assign(mesh.node_count(), -1);
-  std::vector<NodeNormal<dim>> normals;
+  std::vector<SourceFacets<dim>> faces;
   for (int s = 0; s < static_cast<int>(sources_.size()); ++s) {
     const Boundary &kind = sources_[s].kind;
     if (kind.fluids_only()) continue;
@@ -71,11 +71,11 @@ PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vect
     } else {
       if (kind.in_motion == OnSoil::dashpot) dashpots_.emplace_back(s, facets);
       if (kind.in_motion == OnSoil::contact) bases_.emplace_back(s, facets);
-      for (const Facet<dim> &f : facets)
-        for (int node : f.node) normals.push_back({s, node, mesh.position[node], f.normal, f.area / dim});
+      faces.push_back({s, std::move(facets)});
     }
   }
-  PetscCall(complete_normals(mesh, normals));
+  std::vector<NodeNormal<dim>> normals;
+  PetscCall(find_node_normals(mesh, faces, normals));
   // the order must not depend on the partition, so that all ranks build the same constraints
   std::stable_sort(normals.begin(), normals.end(), [&](const NodeNormal<dim> &a, const NodeNormal<dim> &b) {
     const auto key = [&](const NodeNormal<dim> &n) {
@@ -185,13 +185,16 @@ PetscErrorCode Conditions<dim>::set_normal_forces(const BackgroundMesh<dim> &mes
   for (const NormalForce &f : forces) {
     const auto found = at.find(f.position);
     if (found == at.end()) continue;
-    for (Contact &c : *found->second) {
-      if (c.source != f.source || dot<dim>(c.normal, f.normal) < same_direction) continue;
-      const Vec<dim> &x = f.position;
-      c.capacity += f.force * friction_delay_ *
-                    sources_[f.source].kind.friction_coefficient(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t, c.slip);
-      c.since_pressed = 0, c.rests = true;
-    }
+    Contact *nearest = nullptr;  // finite elements know facets, and a contact is a patch of them
+    for (Contact &c : *found->second)
+      if (c.source == f.source && (!nearest || dot<dim>(c.normal, f.normal) > dot<dim>(nearest->normal, f.normal)))
+        nearest = &c;
+    if (!nearest) continue;
+    const Vec<dim> &x = f.position;
+    nearest->capacity +=
+        f.force * friction_delay_ *
+        sources_[f.source].kind.friction_coefficient(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t, nearest->slip);
+    nearest->since_pressed = 0, nearest->rests = true;
   }
   PetscFunctionReturn(0);
 }

@@ -1,7 +1,7 @@
 #pragma once
 /// The action of the boundaries of a scene on the skeleton at the nodes, docs/theory section 6. Prescribed directions
-/// are orthonormalised per node once. A contact has one constraint per facet normal at a node. Loads and dashpots act
-/// where facets have soil behind them.
+/// are orthonormalised per node once. A contact has one constraint per patch of facets at a node. Loads and dashpots
+/// act where facets have soil behind them.
 #include <functional>
 #include <memory>
 #include <string>
@@ -101,7 +101,7 @@ class Conditions {
 
  private:
   using Prescribed = PrescribedDirections<dim>;
-  struct Contact {     // one facet normal of a base at a node
+  struct Contact {     // one patch of a base at a node
     int node, source;  // mesh node
     Vec<dim> normal;
     double area;

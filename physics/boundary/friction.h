@@ -9,8 +9,8 @@ namespace talus {
 
 /// Contact with a rigid base: no penetration, free to separate, Coulomb friction and adhesion against sliding,
 /// docs/theory (6.1), (6.2) and finite_elements.md section 2.1. Friction and adhesion may change with the slip of the
-/// base at the place, theory (6.7). At a kink every facet normal is a constraint of its own, since one averaged normal
-/// distorts the contact just where shearing starts.
+/// base at the place, theory (6.7). At a true edge each side is a constraint of its own, since one averaged normal
+/// distorts the contact just where shearing starts; relief has one normal (node_normals.h).
 struct Friction {
   static constexpr const char *name = "friction";
   static constexpr OnSoil in_motion = OnSoil::contact, quasi_static = OnSoil::contact;

@@ -4,6 +4,8 @@
 #include <set>
 #include <tuple>
 
+#include "physics/boundary/node_normals.h"
+
 namespace talus {
 
 template <int dim>
@@ -12,7 +14,7 @@ PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const
   PetscFunctionBeginUser;
   sources_ = &sources, sealed_ = sealed;
   std::set<std::pair<int, int>> open;  // facets with a face of the fluids
-  std::vector<NodeNormal<dim>> normals;
+  std::vector<SourceFacets<dim>> walls;
   for (int s = 0; s < static_cast<int>(sources.size()); ++s) {
     if (!sources[s].kind.fluid_face()) continue;
     groups_.emplace_back(s, std::vector<Facet<dim>>{});
@@ -26,12 +28,13 @@ PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const
   }
   for (int s = 0; s < static_cast<int>(sources.size()); ++s) {
     if (sources[s].kind.water != OnWater::wall) continue;
+    walls.push_back({s, {}});
     for (const std::string &group : sources[s].groups)
       for (const Facet<dim> &f : mesh.facets(group))
-        if (!open.count({f.cell, f.face}))
-          for (int node : f.node) normals.push_back({s, node, mesh.position[node], f.normal, f.area / dim});
+        if (!open.count({f.cell, f.face})) walls.back().facets.push_back(f);
   }
-  PetscCall(complete_normals(mesh, normals));
+  std::vector<NodeNormal<dim>> normals;
+  PetscCall(find_node_normals(mesh, walls, normals));
   std::stable_sort(normals.begin(), normals.end(), [](const auto &a, const auto &b) {
     return std::tie(a.source, a.normal, a.area) < std::tie(b.source, b.normal, b.area);
   });

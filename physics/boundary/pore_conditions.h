@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "physics/boundary/conditions.h"
-#include "physics/boundary/node_normals.h"
 #include "physics/boundary/prescribed_directions.h"
 
 namespace talus {

@@ -3,7 +3,7 @@
 
 namespace talus {
 
-/// No motion across the face; also on oblique faces, one direction per facet normal.
+/// No motion across the face; also on oblique faces, one direction per patch (node_normals.h).
 struct Roller {
   static constexpr const char *name = "roller";
   static constexpr OnSoil in_motion = OnSoil::support, quasi_static = OnSoil::support;

@@ -1,9 +1,12 @@
 // A granular column runs out over a base with friction and comes to rest. Its front is one particle thick: contact must
 // not lift what lies on the base (docs/theory, section 6), so nothing is ever above the column's first height.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <fstream>
 
 #include "scene/reader.h"
 #include "simulation.h"
@@ -72,6 +75,99 @@ TEST(FrictionalBase, remembers_slip_and_heat_where_the_stage_says_so) {
   EXPECT_GT(heat, -work * (1 - acceleration * 0.18 / 2));
   EXPECT_LT(heat, -work * 1.05);
   EXPECT_NEAR(at_end("softening=false", "base_friction"), std::tan(M_PI / 9), 0.02);
+}
+
+/// The section of incline_block whose base has relief: its nodes, one cell apart, are up to 7 mm above or below the
+/// mean plane, so that neighbouring facets differ by up to 12 degrees. The file is removed at the end.
+class RoughSection {
+ public:
+  static constexpr double size = 0.125, roughness = 0.007;  // [m]
+  RoughSection() {
+    int process = static_cast<int>(getpid());  // of rank 0: other runs of the test have files of their own
+    MPI_Bcast(&process, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+    name_ = std::string(P_tmpdir) + "/talus_rough_section_" + std::to_string(process) + ".csv";
+    if (rank() == 0) {
+      std::ofstream out(name_);
+      out << "part,x,y\n";
+      write_base(out, "outline");
+      out << "outline,8,1\noutline,0,1\ninterface0,0.5,0\ninterface0,0.5,0.5\ninterface0,1.5,0.5\ninterface0,1.5,0\n"
+             "region_block,1,0.25\nregion_air,4,0.5\n";
+      write_base(out, "b_base");
+    }
+    MPI_Barrier(PETSC_COMM_WORLD);
+  }
+  ~RoughSection() {
+    MPI_Barrier(PETSC_COMM_WORLD);
+    if (rank() == 0) std::remove(name_.c_str());
+  }
+  const std::string &name() const { return name_; }
+
+ private:
+  static int rank() {
+    int rank;
+    MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+    return rank;
+  }
+  static void write_base(std::ostream &out, const char *part) {
+    unsigned seed = 1;
+    for (int i = 0; i <= 64; ++i) {
+      seed = seed * 1664525u + 1013904223u;
+      const bool level = i == 0 || i == 4 || i == 12 || i == 64;  // the ends, and those of the block
+      out << part << "," << i * size << "," << (level ? 0 : roughness * ((seed >> 8) / double(1 << 23) - 1)) << "\n";
+    }
+  }
+
+  std::string name_;
+};
+
+struct Slid {
+  double rise, lowest, friction_angle;  ///< of the middle, height of the lowest particle [m]; effective [degrees]
+};
+/// The block slides by 2 m.
+Slid slide_on_relief(const std::vector<std::string> &more) {
+  const RoughSection section;
+  std::vector<std::string> overrides{"mesh.section=" + section.name(), "mesh.size=0.125", "output.interval=0"};
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  Scene scene = read_scene(block, overrides);
+  RunOptions options;
+  options.pictures = options.screen = false;
+  const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+  const auto heights = [&] {  // mean and least of the particles
+    const Snapshot now = simulation->snapshot();
+    const Column &position = now.columns.front();
+    double sums[] = {0, static_cast<double>(now.id.size())}, least = 1e9;
+    for (size_t i = 0; i < now.id.size(); ++i) {
+      const double y = position.values[i * position.components + 1];
+      sums[0] += y, least = std::min(least, y);
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+    MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_DOUBLE, MPI_MIN, PETSC_COMM_WORLD);
+    return std::pair(sums[0] / sums[1], least);
+  };
+  const double before = heights().first;
+  simulation->run();  // ends with an error if a particle leaves the mesh
+  const auto [after, lowest] = heights();
+  const auto time = simulation->history().column("time_s"), x = simulation->history().column("base_force_x_N"),
+             y = simulation->history().column("base_force_y_N");
+  double along = 0, across = 0;
+  for (size_t i = 1; i < time.size(); ++i)
+    if (time[i - 1] > 0.2) along -= x[i] * (time[i] - time[i - 1]), across += y[i] * (time[i] - time[i - 1]);
+  return {after - before, lowest, std::atan2(along, across) * 180 / M_PI};
+}
+
+/// A base with relief is a plane in the mean: the block neither climbs from facet to facet, 84 mm where each facet was
+/// a constraint of its own, nor is it slowed down.
+TEST(FrictionalBase, elastic_block_slides_along_relief) {
+  const Slid slid = slide_on_relief({});
+  EXPECT_NEAR(slid.rise, 0, RoughSection::roughness);
+  EXPECT_NEAR(slid.friction_angle, 20, 0.5);
+}
+/// The lowest particle stays within a quarter of a cell.
+TEST(FrictionalBase, soil_that_yields_stays_on_relief) {
+  const Slid slid = slide_on_relief({"body.block.law=mohr_coulomb", "body.block.friction_angle=35",
+                                     "body.block.cohesion=20e3", "body.block.poisson_ratio=0.3"});
+  EXPECT_LT(slid.lowest, 0.25 * RoughSection::size);
+  EXPECT_NEAR(slid.friction_angle, 20, 0.5);
 }
 
 }  // namespace

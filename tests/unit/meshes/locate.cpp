@@ -82,6 +82,19 @@ TEST(Walk, PutsPointsBeyondTheBoundaryBackInside) {
   }
 }
 
+/// Through a closed face, here y = 0, no point leaves; through the others it does.
+TEST(Walk, KeepsPointsInsideClosedFaces) {
+  const SharedFile file{BoxMesh(3, 4)};
+  auto mesh = BackgroundMesh<3>::read(PETSC_COMM_SELF, file.name(), {});
+  mesh.close("base");
+  Vec<3> below{0.3, -0.01, 0.4}, above{0.3, 1.01, 0.4};
+  const Located found = walk(mesh, 0, below);
+  EXPECT_FALSE(found.outside);
+  EXPECT_TRUE(holds(mesh, found.cell, below));
+  EXPECT_NEAR(below[1], 0, 1e-8);
+  EXPECT_TRUE(walk(mesh, 0, above).outside);
+}
+
 TEST(Walk, StaysWhereThePointIs) {
   const SharedFile file{BoxMesh(2, 4)};
   const auto mesh = BackgroundMesh<2>::read(PETSC_COMM_SELF, file.name(), {});
