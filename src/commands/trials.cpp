@@ -125,9 +125,10 @@ void run_missing(const TrialPlan &plan, const std::vector<Trial *> &trials, cons
     if (!interrupted) remember(described[number], trial);
     const double left =
         seconds_since(begin) / static_cast<double>(done - before) * static_cast<double>(trials.size() - done);
-    std::fprintf(stderr, "%zu of %zu: %s %s %s in %.3g s; about %.0f s left\n", done, trials.size(),
-                 trial.label.c_str(), joined(trial.overrides).c_str(), trial.failed ? "FAILED" : "done", trial.wall,
-                 left);
+    std::fprintf(stderr, "%zu of %zu: %s %s %s in %.3g s", done, trials.size(), trial.label.c_str(),
+                 joined(trial.overrides).c_str(), trial.failed ? "FAILED" : "done", trial.wall);
+    if (done < trials.size()) std::fprintf(stderr, "; about %.0f s left", left);
+    std::fputc('\n', stderr);
   }
   if (interrupted) throw std::runtime_error("interrupted; the same command continues with the missing runs");
 }
