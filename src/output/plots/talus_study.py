@@ -11,6 +11,7 @@ import json
 import math
 import pathlib
 import sys
+import textwrap
 
 import numpy as np
 
@@ -62,8 +63,8 @@ def state(row, criterion):
     if value is None and criterion["outcome"] == "factor_of_safety":
         ends = {(end < limit) == below for end in (row["factor_with_equilibrium"], row["factor_with_mechanism"])}
         return UNKNOWN if len(ends) > 1 else MET if ends.pop() else NOT_MET
-    if value is None:  # of what did not happen: no failure, no slide
-        value = 0.0 if criterion["outcome"] in NO_SLIDE else math.nan
+    if value is None:  # the load time of a failure that did not happen
+        return NOT_MET
     return MET if (value < limit if below else value > limit) else NOT_MET
 
 
@@ -144,7 +145,7 @@ def draw_scatter(rows, variables, shown, criteria, path):
             if not v["numeric"]:
                 one.set_xticks(range(len(words)), words)
             one.set_xlabel(style.with_unit(style.words(v["name"]), v["unit"]))
-        line[0].set_ylabel(title_of(outcome))
+        line[0].set_ylabel(textwrap.fill(title_of(outcome), 28))
     if criteria:
         figure.suptitle("orange: the criterion is met", x=0.01, ha="left", fontsize=8.5, color=style.SOFT)
     return style.save(figure, path)
@@ -153,8 +154,7 @@ def draw_scatter(rows, variables, shown, criteria, path):
 def draw_exceedance(rows, shown, criteria, confidence, path):
     figure, axes = plt.subplots(1, len(shown), figsize=(4.4 * len(shown), 3.3), squeeze=False, layout="constrained")
     for one, outcome in zip(axes.flat, shown):
-        values = np.sort([float(row[outcome] if row.get(outcome) is not None else 0.0) for row in rows
-                          if not row["failure"] and (row.get(outcome) is not None or outcome in NO_SLIDE)])
+        values = np.sort([float(row[outcome]) for row in rows if row.get(outcome) is not None])
         n = len(values)
         above = np.arange(n, -1, -1)  # of n values, before the first, between them, behind the last
         x = np.concatenate([[values[0] - 0.03 * np.ptp(values)], values])
@@ -183,6 +183,7 @@ def main():
     with open(given.folder / "runs.csv", newline="") as file:
         rows = outcomes(given.folder, list(csv.DictReader(file)))
     for row in rows:
+        row |= {name: 0.0 for name in NO_SLIDE if name in row and row[name] is None}
         row |= {measure: None if row["failure"] else float(row[measure]) for measure in design["measures"]}
         row |= {f"meets_{criterion['name']}": {MET: "yes", NOT_MET: "no", UNKNOWN: ""}[state(row, criterion)] for criterion in design["criteria"]}
     names = list(dict.fromkeys(key for row in rows for key in row))
