@@ -2,6 +2,7 @@
 #include <petscsys.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -9,11 +10,14 @@
 #include <filesystem>
 #include <map>
 #include <stdexcept>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include "base/version.h"
 #include "commands/commands.h"
 #include "output/pictures.h"
+#include "scene/words.h"
 #include "simulation.h"
 
 namespace {
@@ -32,6 +36,15 @@ void end_together(MPI_Comm failures, int rank, const char *cause, int status) {
   MPI_Abort(failures, status);
 }
 
+/// The commands of the program, and those that the launcher adds.
+std::vector<std::string> command_names(const CLI::App &app) {
+  std::vector<std::string> names;
+  for (const CLI::App *command : app.get_subcommands([](const CLI::App *) { return true; }))
+    names.push_back(command->get_name());
+  if (const char *launchers = std::getenv("TALUS_LAUNCHER_COMMANDS")) names.push_back(launchers);
+  return names;
+}
+
 /// Runs the chosen command; owned PETSc objects die in here, before PetscFinalize.
 int perform(int argc, char **argv, MPI_Comm failures, int rank) {
   const bool speaks = rank == 0;
@@ -40,9 +53,9 @@ int perform(int argc, char **argv, MPI_Comm failures, int rank) {
   app.set_version_flag("--version", std::string("talus ") + talus::version);
   app.require_subcommand(1);
   std::map<CLI::App *, talus::Action> actions;
-  for (auto add :
-       {talus::add_run, talus::add_solve, talus::add_mesh, talus::add_check, talus::add_soil, talus::add_plot,
-        talus::add_bench, talus::add_compare, talus::add_converge, talus::add_verify, talus::add_describe}) {
+  for (auto add : {talus::add_run, talus::add_solve, talus::add_mesh, talus::add_check, talus::add_soil,
+                   talus::add_plot, talus::add_bench, talus::add_compare, talus::add_converge, talus::add_study,
+                   talus::add_verify, talus::add_describe}) {
     const auto before = app.get_subcommands({}).size();
     const talus::Action action = add(app);
     actions[app.get_subcommands({})[before]] = action;
@@ -51,7 +64,12 @@ int perform(int argc, char **argv, MPI_Comm failures, int rank) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError &error) {
     if (!speaks) return error.get_exit_code() ? 2 : 0;
-    return app.exit(error) ? 2 : 0;
+    const std::vector<std::string> names = command_names(app);
+    const std::string word = argc > 1 ? argv[1] : "";
+    if (word.empty() || word[0] == '-' || std::find(names.begin(), names.end(), word) != names.end())
+      return app.exit(error) ? 2 : 0;
+    std::fprintf(stderr, "talus: %s is no command; %s\n", word.c_str(), talus::suggestion(word, names).c_str());
+    return 2;
   }
   try {
     for (CLI::App *chosen : app.get_subcommands()) return actions.at(chosen)();

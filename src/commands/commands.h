@@ -8,6 +8,9 @@ namespace talus {
 
 using Action = std::function<int()>;
 
+/// Exit status of solve where the factor of safety is known no better than a wide bracket.
+inline constexpr int undecided_status = 3;
+
 Action add_run(CLI::App &app);
 Action add_solve(CLI::App &app);
 Action add_mesh(CLI::App &app);
@@ -17,6 +20,7 @@ Action add_plot(CLI::App &app);
 Action add_bench(CLI::App &app);
 Action add_compare(CLI::App &app);
 Action add_converge(CLI::App &app);
+Action add_study(CLI::App &app);
 Action add_verify(CLI::App &app);
 Action add_describe(CLI::App &app);
 

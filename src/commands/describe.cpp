@@ -3,7 +3,9 @@
 #include <iostream>
 
 #include "commands/commands.h"
+#include "commands/study_file.h"
 #include "physics/laws/element_test.h"
+#include "scene/materials.h"
 #include "simulation/scene_keys.h"
 
 namespace talus {
@@ -15,6 +17,10 @@ Action add_describe(CLI::App &app) {
   return [key] {
     Describer describer = scene_keys();
     describer.add({"File of `talus soil`", "", "A material and its tests.", "", {}}, SoilFile{});
+    describer.add({"File of `talus study`", "", "A scene, the keys that vary, and what counts as failure.", "", {}},
+                  StudyFile{});
+    describe_one_of<Variation>(describer, "variable.NAME", "kind");
+    describe_materials(describer);
     int rank;
     MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
     std::ostringstream nowhere;

@@ -18,8 +18,6 @@ struct SolveArguments {
   bool no_pictures = false, no_umat = false, factor_of_safety = false, json = false, force = false;
 };
 
-constexpr int undecided_status = 3;  // of the program: the factor is known no better than a wide bracket
-
 void on_signal(int) { interrupted = 1; }
 
 std::string to_json(const FactorBracket &bracket) {

@@ -20,6 +20,7 @@
 #include <thread>
 
 #include "base/child_environment.h"
+#include "commands/commands.h"
 #include "scene/reader.h"
 #include "simulation.h"
 
@@ -40,14 +41,17 @@ std::string description(const TrialPlan &plan, const Trial &trial) {
   all.insert(all.end(), trial.overrides.begin(), trial.overrides.end());
   const Scene scene = read_scene(plan.scene, all);
   const std::string mesh = scene.mesh.file.empty() ? scene.mesh.section : scene.mesh.file;
-  return plan.scene + "\n" + joined(all) + "\n" +
+  return joined(plan.command) + " " + plan.scene + "\n" + joined(all) + "\n" +
          std::to_string(std::hash<std::string>{}(scene.source + contents(mesh))) + "\n";
 }
 
-bool resume(const std::string &described, Trial &trial) {
+bool resume(const TrialPlan &plan, const std::string &described, Trial &trial) {
   std::ifstream file(trial.folder + "/trial");
   std::string text, line;
   for (int i = 0; i < 3 && std::getline(file, line); ++i) text += line + "\n";
+  if (!plan.replace && !text.empty() && text != described)
+    throw SceneError(trial.folder + " holds a run with another scene or other values (" + joined(trial.overrides) +
+                     " is to run there); choose another folder with -o, or give --force to replace it");
   if (text != described || !(file >> trial.failed >> trial.cpu >> trial.wall)) return false;
   std::getline(file, line), std::getline(file, trial.cause);
   return trial.done = true;
@@ -60,7 +64,9 @@ void remember(const std::string &described, const Trial &trial) {
 
 pid_t start(const TrialPlan &plan, const Trial &trial) {
   fs::create_directories(trial.folder);
-  std::vector<std::string> words{"talus", "run", plan.scene, "-o", trial.folder, "--no-pictures", "--force"};
+  std::vector<std::string> words{"talus"};
+  words.insert(words.end(), plan.command.begin(), plan.command.end());
+  words.insert(words.end(), {plan.scene, "-o", trial.folder, "--no-pictures", "--force"});
   std::vector<std::string> overrides = plan.set;
   overrides.insert(overrides.end(), trial.overrides.begin(), trial.overrides.end());
   if (!overrides.empty()) words.push_back("--set"), words.insert(words.end(), overrides.begin(), overrides.end());
@@ -101,14 +107,18 @@ void run_missing(const TrialPlan &plan, const std::vector<Trial *> &trials, cons
   const size_t before = done;
   const Clock::time_point begin = Clock::now();
   if (before) std::fprintf(stderr, "%zu of %zu runs were completed before\n", before, trials.size());
+  bool told = false;
   while (done < trials.size() || !running.empty()) {
+    if (interrupted && !told)
+      for (const auto &[child, run] : running) kill(child, SIGTERM);
+    told = interrupted;
     for (; next < trials.size() && static_cast<int>(running.size()) < jobs && !interrupted; ++next)
       if (!trials[next]->done) running[start(plan, *trials[next])] = {next, Clock::now()};
     if (running.empty()) break;
     int status = 0;
     rusage usage{};
-    const pid_t child = wait4(-1, &status, 0, &usage);
-    if (child < 0 && errno == EINTR) continue;
+    const pid_t child = wait4(-1, &status, WNOHANG, &usage);  // a signal may arrive at any time
+    if (child == 0) usleep(10000);
     const auto found = running.find(child);
     if (found == running.end()) continue;
     const auto [number, began] = found->second;
@@ -117,19 +127,21 @@ void run_missing(const TrialPlan &plan, const std::vector<Trial *> &trials, cons
     trial.cpu =
         usage.ru_utime.tv_sec + usage.ru_stime.tv_sec + 1e-6 * (usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
     running.erase(found);
+    trial.failed = !WIFEXITED(status) || (WEXITSTATUS(status) != 0 && WEXITSTATUS(status) != undecided_status);
+    if (trial.failed && interrupted) continue;  // it may have been ended by the signal: it is run again
     trial.done = true, ++done;
-    trial.failed = !WIFEXITED(status) || WEXITSTATUS(status) != 0;
     if (trial.failed) trial.cause = last_line(trial.folder + "/screen");
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 2)
+    if (plan.refusal_ends && WIFEXITED(status) && WEXITSTATUS(status) == 2)
       throw SceneError(trial.cause.substr(trial.cause.rfind("talus: ", 0) == 0 ? 7 : 0));
-    if (!interrupted) remember(described[number], trial);
+    remember(described[number], trial);
     const double left =
         seconds_since(begin) / static_cast<double>(done - before) * static_cast<double>(trials.size() - done);
-    std::fprintf(stderr, "%zu of %zu: %s %s %s in %.3g s; about %.0f s left\n", done, trials.size(),
-                 trial.label.c_str(), joined(trial.overrides).c_str(), trial.failed ? "FAILED" : "done", trial.wall,
-                 left);
+    std::fprintf(stderr, "%zu of %zu: %s %s %s in %.3g s", done, trials.size(), trial.label.c_str(),
+                 joined(trial.overrides).c_str(), trial.failed ? "FAILED" : "done", trial.wall);
+    if (done < trials.size()) std::fprintf(stderr, "; about %.0f s left", left);
+    std::fputc('\n', stderr);
   }
-  if (interrupted) throw std::runtime_error("interrupted; the same command continues with the missing runs");
+  if (done < trials.size()) throw Interrupted("interrupted; the same command continues with the missing runs");
 }
 
 }  // namespace
@@ -142,8 +154,9 @@ std::string joined(const std::vector<std::string> &words) {
 
 void run_trials(const TrialPlan &plan, const std::vector<Trial *> &trials) {
   std::vector<std::string> described;
-  for (Trial *trial : trials) described.push_back(description(plan, *trial)), resume(described.back(), *trial);
+  for (Trial *trial : trials) described.push_back(description(plan, *trial)), resume(plan, described.back(), *trial);
   std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
   run_missing(plan, trials, described);
 }
 

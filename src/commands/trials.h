@@ -1,6 +1,7 @@
 #pragma once
 /// Runs of one scene with different overrides, each a process of its own, several at a time; for commands that compare
 /// runs. A run that was completed before is not repeated.
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -18,9 +19,18 @@ struct Trial {
 
 /// What all runs have in common.
 struct TrialPlan {
-  std::string scene;             ///< file
-  std::vector<std::string> set;  ///< overrides
-  int jobs = 0;                  ///< runs at the same time; 0: one per core
+  std::string scene;                        ///< file
+  std::vector<std::string> set;             ///< overrides
+  int jobs = 0;                             ///< runs at the same time; 0: one per core
+  std::vector<std::string> command{"run"};  ///< of each run, with its options
+  bool replace = true;                      ///< runs of another plan in the same folders; else they are refused
+  bool refusal_ends = true;                 ///< a run that is refused as bad input ends all; else it is one that failed
+};
+
+/// The user ended the runs before all were done.
+class Interrupted : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
 };
 
 /// Words with a space between them.
@@ -28,8 +38,8 @@ std::string joined(const std::vector<std::string> &words);
 
 /// Reads the scene of every run, which refuses bad keys before anything runs (SceneError), marks the runs whose folder
 /// has the results of the same scene, mesh and overrides as done, and runs the others, `jobs` at a time. A progress
-/// line per run goes to standard error. Throws SceneError where a run is refused, and std::runtime_error after an
-/// interrupt; called again, it continues with the missing runs.
+/// line per run goes to standard error. Throws SceneError where a run is refused, and Interrupted after SIGINT or
+/// SIGTERM, which end the runs under way too; called again, it continues with the missing runs.
 void run_trials(const TrialPlan &plan, const std::vector<Trial *> &trials);
 
 /// Refuses to start on several ranks (SceneError): the runs are processes of their own.

@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "base/read_file.h"
+#include "scene/apply_materials.h"
 #include "scene/overrides.h"
 #include "scene/quantity.h"
 #include "scene/toml_nodes.h"
@@ -48,6 +49,7 @@ TableReader TableReader::from_text(const std::string &text, const std::string &n
                      std::string(error.description()));
   }
   for (const std::string &one : overrides) apply_override(document->root, one);
+  apply_materials(document->root, name);
   TableReader reader(document, &document->root, "");
   constexpr const char *meaning = "function of time, called by name in expressions";
   if (const auto functions = reader.find("functions", "named functions of time")) {

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <tuple>
 
+#include "scene/materials.h"
 #include "scene/quantity.h"
 #include "scene/words.h"
 
@@ -25,6 +26,7 @@ bool before(const toml::node &a, const toml::node &b) {
 std::string place(const std::string &file, const toml::node &node, bool root) {
   const toml::source_region &where = node.source();
   if (where.path && *where.path == override_place) return std::string(override_place);
+  if (where.path && *where.path == materials_place) return file + ", " + std::string(materials_place);
   return root || where.begin.line == 0 ? file : file + " line " + std::to_string(where.begin.line);
 }
 

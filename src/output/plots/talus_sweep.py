@@ -5,6 +5,7 @@ Reads DIR/runs.csv and the results that it names. Writes DIR/sweep.csv and DIR/s
 
 import argparse
 import csv
+import json
 import pathlib
 import sys
 
@@ -28,14 +29,30 @@ def number(text):
         return None
 
 
+def factor_file(folder, run):
+    return folder / run["folder"] / "factor_of_safety.json"
+
+
+def factor_outcome(path):
+    """Of `talus solve --factor-of-safety`. A factor known only as a wide bracket is None."""
+    with open(path) as file:
+        solved = json.load(file)
+    factor = solved["factor_of_safety"]
+    return {"factor_of_safety": factor["value"], "factor_with_equilibrium": factor["equilibrium"], "factor_with_mechanism": factor["mechanism"],
+            "moving_volume_m3": solved["mechanisms"][0]["moving_volume_m3"]}
+
+
 def outcomes(folder, runs):
-    """The runs with what they came to; a run that broke off has none."""
-    ended = {run["folder"]: Results(folder / run["folder"]) for run in runs if not run["failure"]}
+    """The runs with what they came to; a run that broke off has none. `runs` are the rows of runs.csv; all their columns but the folder are kept."""
+    ended = {run["folder"]: Results(folder / run["folder"]) for run in runs if not run["failure"] and not factor_file(folder, run).exists()}
     largest = max(map(cell_size, ended.values()), default=0.0)
     rows = []
     for run in runs:
-        row = {key: run[key] for key in ("series", "overrides", "key", "value", "processor_s", "wall_s", "failure")}
-        if run["folder"] in ended:
+        row = {key: value for key, value in run.items() if key != "folder"}
+        if factor_file(folder, run).exists():
+            if not run["failure"]:
+                row |= factor_outcome(factor_file(folder, run))
+        elif run["folder"] in ended:
             results = ended[run["folder"]]
             row |= {key: value for key, value in outcome(results, largest).items() if key != "cell_m"}
             for name, speed in (results.history.groups().get(("velocity", "m/s"), {}) if results.history else {}).items():

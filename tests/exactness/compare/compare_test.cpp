@@ -3,42 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
 
+#include "csv_table.h"
 #include "scene.h"
 
 namespace talus {
 namespace {
-
-using Row = std::map<std::string, std::string>;
-
-std::vector<std::string> cells_of(const std::string &line) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (const char c : line)
-    if (c == '"')
-      quoted = !quoted;
-    else if (c == ',' && !quoted)
-      cells.emplace_back();
-    else
-      cells.back() += c;
-  return cells;
-}
-
-std::vector<Row> table(const Folder &folder, const std::string &name) {
-  std::ifstream file(folder / name);
-  std::string line;
-  std::getline(file, line);
-  const std::vector<std::string> names = cells_of(line);
-  std::vector<Row> rows;
-  while (std::getline(file, line)) {
-    const auto cells = cells_of(line);
-    EXPECT_EQ(cells.size(), names.size()) << line;
-    for (size_t i = 0; i < std::min(cells.size(), names.size()); ++i)
-      (i ? rows.back() : rows.emplace_back())[names[i]] = cells[i];
-  }
-  return rows;
-}
 
 double number(const Row &row, const std::string &key) { return std::stod(row.at(key)); }
 
@@ -70,7 +40,7 @@ TEST_F(Compare, VariesWhatASceneSays) {
                                  "slice: dimension=3; output.point.corner.position=[1, 0.5, 0.1]; "
                                  "boundary.front.kind=roller; boundary.back.kind=roller"});
   ASSERT_EQ(ending.status, 0) << ending.output;
-  const auto rows = table(folder_, "out/compare.csv");
+  const auto rows = csv_table(folder_ / "out/compare.csv");
   ASSERT_EQ(rows.size(), 14u);
   for (const Row &row : rows) {
     EXPECT_NEAR(number(row, "value"), 1, 0.1)
@@ -95,7 +65,7 @@ TEST_F(Compare, VariesWhatASceneSays) {
   EXPECT_TRUE(ending.says("14 of 14: ") && ending.says(" s left")) << ending.output;
   // without a reference the series that converges best is taken to its limit, or its finest run, with what is uncertain
   // about it
-  const Row reference = table(folder_, "out/reference.csv").at(0);
+  const Row reference = csv_table(folder_ / "out/reference.csv").at(0);
   EXPECT_GT(number(reference, "uncertainty"), 0);
 }
 
@@ -115,7 +85,7 @@ TEST_F(Compare, GoesOnWhereItStopped) {
   EXPECT_EQ(ending.status, 0) << ending.output;
   EXPECT_TRUE(ending.says(" of 4 runs were completed before")) << ending.output;
   EXPECT_EQ(std::filesystem::last_write_time(folder_ / "out/run001/history.csv"), written);
-  EXPECT_EQ(table(folder_, "out/compare.csv").size(), 4u);
+  EXPECT_EQ(csv_table(folder_ / "out/compare.csv").size(), 4u);
   std::vector<std::string> others = matrix;
   others[1] = "stage.fall.duration=0.01";
   EXPECT_FALSE(compare(others).says("there already")) << "runs of another scene do not count";
@@ -125,7 +95,7 @@ TEST_F(Compare, TellsOfRunsThatFail) {
   const Ending ending =
       compare({"--exact", "1", "--series", "fast: body.sand.velocity=[\"0\", \"0\"],[\"400\", \"0\"]"});
   EXPECT_EQ(ending.status, 1) << ending.output;
-  const auto rows = table(folder_, "out/compare.csv");
+  const auto rows = csv_table(folder_ / "out/compare.csv");
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0].at("failure"), "");
   EXPECT_NE(rows[1].at("failure").find("left the mesh"), std::string::npos) << rows[1].at("failure");
@@ -140,9 +110,9 @@ TEST_F(Compare, TakesFiniteElementsForTheTruth) {
   const Ending ending = compare({"--series", "euler: integrator.fraction=0.8,0.4", "--reference",
                                  "finite elements: stage.fall.kind=quasi_static"});
   ASSERT_EQ(ending.status, 0) << ending.output;
-  const Row reference = table(folder_, "out/reference.csv").at(0);
+  const Row reference = csv_table(folder_ / "out/reference.csv").at(0);
   EXPECT_EQ(reference.at("origin"), "finite elements");
-  const auto rows = table(folder_, "out/compare.csv");
+  const auto rows = csv_table(folder_ / "out/compare.csv");
   ASSERT_EQ(rows.size(), 2u);
   for (const Row &row : rows)
     EXPECT_NEAR(number(row, "error"), std::abs(number(row, "value") - number(reference, "value")), 1e-9);
@@ -174,7 +144,7 @@ TEST_F(Compare, ChartsOutcomesAgainstAKey) {
   const Ending ending = sweep({});
   EXPECT_EQ(ending.status, 0) << ending.output;
   EXPECT_TRUE(ending.says("sweep.csv and sweep.png are in sweep")) << ending.output;
-  const auto rows = table(folder_, "sweep/sweep.csv");
+  const auto rows = csv_table(folder_ / "sweep/sweep.csv");
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0].at("key"), "body.sand.velocity");
   EXPECT_EQ(rows[1].at("value"), "[0, -0.5 m/s]");

@@ -1,0 +1,362 @@
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "commands/commands.h"
+#include "commands/comparison.h"
+#include "commands/gallery.h"
+#include "commands/study_file.h"
+#include "commands/trials.h"
+#include "output/csv.h"
+#include "output/json.h"
+#include "output/script.h"
+#include "physics/laws/laws.h"
+#include "scene/words.h"
+
+namespace talus {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct StudyArguments {
+  std::string file, directory;
+  std::vector<std::string> set;
+  int jobs = 0;
+  bool no_plot = false, force = false;
+};
+
+/// A variable with its kind read.
+struct Varying : StudyVariable {
+  Variation variation;
+  std::vector<std::string> listed;  ///< values of a list or of choices, as written into the scene
+  bool random() const { return listed.empty(); }
+  bool numeric() const { return !std::holds_alternative<Choices>(variation); }
+  std::vector<std::string> overrides(const std::string &value) const {
+    std::vector<std::string> all;
+    const std::string with_unit = unit.empty() ? value : "\"" + value + " " + unit + "\"";
+    for (const std::string &one : key) all.push_back(one + "=" + (numeric() ? with_unit : value));
+    return all;
+  }
+};
+
+/// Six digits, so that tables read well; the run takes the same number.
+std::string in_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+/// A variant of the scene, with the value of each variable.
+struct Variant : Trial {
+  std::vector<std::string> values;
+  std::vector<double> measured;
+};
+
+class Study {
+ public:
+  Study(const std::string &path, const StudyArguments &arguments)
+      : root_(TableReader::from_file(path, arguments.set)), arguments_(arguments) {
+    TableReader(root_).fill(file_);
+    read_scene_name(path);
+    read_variables();
+    read_correlation();
+    check_samples();
+    check_outcomes();
+    directory_ = arguments.directory.empty() ? "results/study_" + short_name(path) : arguments.directory;
+  }
+
+  int perform() {
+    make_variants();
+    check_extremes();
+    TrialPlan plan{scene_, file_.set, arguments_.jobs};
+    plan.replace = arguments_.force, plan.refusal_ends = false;
+    if (file_.runs == StudyRuns::factor_of_safety) plan.command = {"solve", "--factor-of-safety"};
+    std::vector<Trial *> pointers;
+    for (Variant &variant : variants_) pointers.push_back(&variant);
+    try {
+      run_trials(plan, pointers);
+    } catch (const Interrupted &) {
+      if (std::any_of(pointers.begin(), pointers.end(), [](const Trial *t) { return t->done; })) conclude();
+      throw;
+    }
+    return conclude();
+  }
+
+ private:
+  void read_scene_name(const std::string &path) {
+    if (file_.scene.empty()) root_.complain("scene", "is missing: name the scene file that the study varies");
+    const fs::path beside = fs::path(path).parent_path() / file_.scene;
+    try {
+      scene_ = fs::exists(beside) ? beside.string() : find_scene(file_.scene);
+    } catch (const SceneError &error) {
+      root_.complain("scene", std::string("cannot be found: ") + error.what());
+    }
+    const Scene scene = read_scene(scene_, file_.set);
+    for (const auto &point : scene.output.point) points_.push_back(point.name);
+  }
+
+  void read_variables() {
+    if (file_.variable.empty()) root_.complain("variable", "is missing: add a table [variable.NAME] with key and kind");
+    for (const StudyVariable &one : file_.variable) {
+      Varying v{one, {}, {}};
+      const std::string path = "variable." + v.name;
+      for (const char *taken : {"run", "folder", "processor_s", "wall_s", "failure"})
+        if (v.name == taken) root_.complain(path, "must have another name: study.csv has a column of this name");
+      if (v.key.empty())
+        root_.complain(path, "needs key, the key of the scene that varies, such as body.clay.cohesion");
+      read_one_of(v.kind, "kind", v.variation);
+      if (const auto *list = std::get_if<NumberList>(&v.variation))
+        for (const double value : list->values) v.listed.push_back(in_digits(value));
+      if (const auto *words = std::get_if<Choices>(&v.variation)) v.listed = words->choices;
+      if (!v.unit.empty() && !v.numeric()) root_.complain(path + ".unit", "belongs to numbers; write units in choices");
+      if (!v.unit.empty()) check_unit(path + ".unit", v.unit);
+      variables_.push_back(v);
+    }
+  }
+
+  void check_unit(const std::string &path, const std::string &unit) const {
+    try {
+      parse_quantity("1 " + unit);
+    } catch (const std::invalid_argument &error) {
+      root_.complain(path, std::string("must be a unit such as kPa, deg or m: ") + error.what());
+    }
+  }
+
+  /// The triangle of the correlation matrix of the random variables.
+  void read_correlation() {
+    std::vector<std::string> names;
+    for (const Varying &v : variables_)
+      if (v.random()) names.push_back(v.name);
+    std::vector<std::vector<double>> matrix(names.size(), std::vector<double>(names.size()));
+    for (std::size_t i = 0; i < names.size(); ++i) matrix[i][i] = 1;
+    for (std::size_t k = 0; k < file_.correlation.size(); ++k) {
+      const StudyCorrelation &one = file_.correlation[k];
+      const std::string path = "correlation." + std::to_string(k) + ".between";
+      std::vector<std::size_t> at;
+      for (const std::string &name : one.between) {
+        const auto found = std::find(names.begin(), names.end(), name);
+        if (found == names.end())
+          root_.complain(path,
+                         "names " + name + ", which is no variable with a distribution; " + suggestion(name, names));
+        at.push_back(static_cast<std::size_t>(found - names.begin()));
+      }
+      if (at.size() != 2 || at[0] == at[1]) root_.complain(path, "must name two different variables");
+      if (matrix[at[0]][at[1]] != 0) root_.complain(path, "names two variables whose correlation is given before");
+      matrix[at[0]][at[1]] = matrix[at[1]][at[0]] = one.coefficient;
+    }
+    triangle_ = cholesky(matrix);
+    if (triangle_.empty() && !names.empty())
+      root_.complain("correlation",
+                     "is not possible: the correlation matrix is not positive definite; take "
+                     "coefficients nearer to 0");
+  }
+
+  bool random() const { return !triangle_.empty(); }
+
+  void check_samples() const {
+    if (random() && file_.samples == 0)
+      root_.complain("samples", "is missing: give the number of samples of the distributions, such as 200");
+    if (!random() && file_.samples > 0)
+      root_.complain("samples", "belongs to variables with a distribution, and all variables here are lists");
+  }
+
+  std::vector<std::string> outcome_names() const {
+    std::vector<std::string> names = file_.measures;
+    if (file_.runs == StudyRuns::factor_of_safety) {
+      names.insert(names.end(), {"factor_of_safety", "moving_volume_m3"});
+      return names;
+    }
+    names.insert(names.end(), {"fails", "load_time_of_failure_s", "largest_displacement_m", "travel_distance_m",
+                               "volume_of_slide_m3", "depth_of_slide_m"});
+    for (const std::string &point : points_)
+      names.insert(names.end(), {point + "_displacement_m", point + "_largest_speed_m_s"});
+    return names;
+  }
+
+  void check_outcomes() const {
+    for (std::size_t k = 0; k < file_.measures.size(); ++k) try {
+        parse_measure(file_.measures[k]);
+      } catch (const SceneError &) {
+        root_.complain("measures", "must be COLUMN, COLUMN@TIME or max:COLUMN of history.csv");
+      }
+    if (file_.runs == StudyRuns::factor_of_safety && !file_.measures.empty())
+      root_.complain("measures", "belong to runs = \"motion\": a factor of safety has no history");
+    const std::vector<std::string> known = outcome_names();
+    for (const Varying &v : variables_)
+      if (std::find(known.begin(), known.end(), v.name) != known.end())
+        root_.complain("variable." + v.name, "must have another name: it is the name of an outcome");
+    for (const StudyCriterion &one : file_.criterion)
+      if (std::find(known.begin(), known.end(), one.outcome) == known.end())
+        root_.complain("criterion." + one.name + ".outcome",
+                       "is no outcome of these runs; " + suggestion(one.outcome, known) + "; known are " + join(known));
+  }
+
+  /// Sample after sample, and in each the whole grid, so that more samples only add variants at the end.
+  void make_variants() {
+    Series grid;
+    for (const Varying &v : variables_)
+      if (!v.random()) grid.lists.emplace_back(v.name, v.listed);
+    const auto cells = products(grid);
+    std::vector<std::vector<double>> coordinates;
+    for (std::size_t i = 0; i < triangle_.size(); ++i)
+      coordinates.push_back(nested_hypercube(static_cast<std::size_t>(file_.samples),
+                                             static_cast<std::uint64_t>(file_.seed), static_cast<std::uint64_t>(i)));
+    const std::size_t samples = random() ? static_cast<std::size_t>(file_.samples) : 1;
+    for (std::size_t s = 0; s < samples; ++s) {
+      std::vector<double> u;
+      for (const auto &of_variable : coordinates) u.push_back(of_variable[s]);
+      u = correlated(u, triangle_);
+      for (const auto &cell : cells) add_variant(u, cell);
+    }
+  }
+
+  void add_variant(const std::vector<double> &u, const std::vector<std::string> &cell) {
+    Variant variant;
+    std::size_t sampled = 0, listed = 0;
+    for (const Varying &v : variables_) {
+      variant.values.push_back(v.random() ? value_of(v, u[sampled++])
+                                          : cell[listed++].substr(v.name.size() + 1));  // behind NAME=
+      for (const std::string &one : v.overrides(variant.values.back())) variant.overrides.push_back(one);
+    }
+    char name[32];
+    std::snprintf(name, sizeof name, "run%05zu", variants_.size());
+    variant.folder = (fs::path(directory_) / name).string();
+    variants_.push_back(variant);
+  }
+
+  static std::string value_of(const Varying &v, double u) {
+    return std::visit(
+        [&](const auto &kind) -> std::string {
+          if constexpr (requires { kind.quantile(u); }) return in_digits(kind.quantile(u));
+          return "";
+        },
+        v.variation);
+  }
+
+  /// The scene and its laws must take the smallest and largest value of each variable: what it says of them is said of
+  /// the variable.
+  void check_extremes() const {
+    for (std::size_t i = 0; i < variables_.size(); ++i) {
+      const auto less = [&](const Variant &a, const Variant &b) {
+        return number_of(a.values[i]) < number_of(b.values[i]);
+      };
+      const auto [low, high] = std::minmax_element(variants_.begin(), variants_.end(), less);
+      std::vector<std::string> values{low->values[i], high->values[i]};
+      if (!variables_[i].random()) values = variables_[i].listed;
+      for (const std::string &value : values) try_value(variables_[i], value);
+    }
+  }
+
+  void try_value(const Varying &v, const std::string &value) const {
+    std::vector<std::string> all = file_.set;
+    for (const std::string &one : v.overrides(value)) all.push_back(one);
+    try {
+      for (const BodySource &body : read_scene(scene_, all).body) read_law(body.law);
+    } catch (const SceneError &error) {
+      root_.complain("variable." + v.name,
+                     "takes the value " + value + (v.unit.empty() ? "" : " " + v.unit) +
+                         ", which the scene refuses: " + error.what() +
+                         (v.random() ? ". Mend the key, or cut the distribution off with low and high" : ""));
+    }
+  }
+
+  int conclude() {
+    write_runs();
+    write_design();
+    std::vector<std::string> words{directory_};
+    if (arguments_.no_plot) words.push_back("--no-plot");
+    const int status = run_script("talus_study.py", words);
+    std::fprintf(stderr, "study.csv, study.json%s are in %s\n", arguments_.no_plot ? "" : " and pictures",
+                 directory_.c_str());
+    return status;
+  }
+
+  void write_runs() const {
+    std::ofstream file(directory_ + "/runs.csv");
+    file << "run";
+    for (const Varying &v : variables_) file << "," << csv_field(v.name);
+    for (const std::string &measure : file_.measures) file << "," << csv_field(measure);
+    file << ",folder,processor_s,wall_s,failure\n";
+    for (std::size_t i = 0; i < variants_.size(); ++i) {
+      const Variant &variant = variants_[i];
+      if (!variant.done) continue;
+      file << i;
+      for (const std::string &value : variant.values) file << "," << csv_field(value);
+      for (const std::string &measure : file_.measures) {
+        file << ",";
+        if (!variant.failed) file << talus::value_of(variant.folder + "/history.csv", parse_measure(measure));
+      }
+      file << "," << fs::path(variant.folder).filename().string() << "," << variant.cpu << "," << variant.wall << ","
+           << csv_field(variant.failed && variant.cause.empty() ? "the run ended without a message" : variant.cause)
+           << "\n";
+    }
+    if (!file.flush()) throw std::runtime_error("cannot write " + directory_ + "/runs.csv");
+  }
+
+  /// What the script needs to know of the study.
+  void write_design() const {
+    const auto variable = [](const Varying &v) {
+      return json::Object()
+          .add("name", json::text(v.name))
+          .add("key", json::text(join(v.key)))
+          .add("unit", json::text(v.unit))
+          .add("random", v.random() ? "true" : "false")
+          .add("numeric", v.numeric() ? "true" : "false")
+          .str();
+    };
+    const auto criterion = [](const StudyCriterion &c) {
+      const bool below = c.below > any_number.low;
+      return json::Object()
+          .add("name", json::text(c.name))
+          .add("outcome", json::text(c.outcome))
+          .add("side", json::text(below ? "below" : "above"))
+          .add("limit", below ? c.below : c.above)
+          .str();
+    };
+    std::ofstream(directory_ + "/design.json") << json::Object()
+                                                      .add("title", json::text(file_.title))
+                                                      .add("confidence", file_.confidence)
+                                                      .add("planned", static_cast<double>(variants_.size()))
+                                                      .add("variables", json::array(variables_, variable))
+                                                      .add("measures", json::array(file_.measures, json::text))
+                                                      .add("criteria", json::array(file_.criterion, criterion))
+                                                      .str()
+                                               << "\n";
+  }
+
+  TableReader root_;
+  const StudyArguments &arguments_;
+  StudyFile file_;
+  std::string scene_, directory_;
+  std::vector<std::string> points_;
+  std::vector<Varying> variables_;
+  std::vector<std::vector<double>> triangle_;
+  std::vector<Variant> variants_;
+};
+
+int study(const StudyArguments &arguments) {
+  require_one_rank("study");
+  return Study(arguments.file, arguments).perform();
+}
+
+}  // namespace
+
+Action add_study(CLI::App &app) {
+  auto arguments = std::make_shared<StudyArguments>();
+  CLI::App *command = app.add_subcommand(
+      "study",
+      "run a scene over lists, grids or samples of distributions: outcomes, sensitivities, probability of failure");
+  command->add_option("FILE", arguments->file, "study file (.toml), see docs/guide/study.md")->required();
+  command->add_option("--set", arguments->set, "override a key of the study: samples=400")->take_all();
+  command->add_option("-o,--output", arguments->directory,
+                      "folder of runs, tables and pictures (default results/study_NAME)");
+  command->add_option("-j,--jobs", arguments->jobs, "runs at the same time (default: one per core)")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("--force", arguments->force, "replace runs of another study in that folder");
+  command->add_flag("--no-plot", arguments->no_plot, "do not draw the pictures");
+  return [arguments] { return study(*arguments); };
+}
+
+}  // namespace talus

@@ -1,0 +1,223 @@
+"""Outcomes of the runs of `talus study`: sensitivities, probability of failure, exceedance curves.
+
+Reads DIR/runs.csv, DIR/design.json and the results that they name. Writes DIR/study.csv (a row per run), DIR/study.json (probabilities,
+sensitivities) and, where they have something to show, DIR/tornado.png, DIR/scatter.png and DIR/exceedance.png. Runs that broke off are rows with
+their reason; exit status 1 if all did.
+"""
+
+import argparse
+import csv
+import json
+import math
+import pathlib
+import sys
+import textwrap
+
+import numpy as np
+
+import talus_style as style
+from talus_style import plt
+from talus_sweep import TITLES, number, outcomes
+
+NO_SLIDE = ("travel_distance_m", "volume_of_slide_m3", "depth_of_slide_m")  # 0 where the slope stands
+SHOWN = ("factor_of_safety", "load_time_of_failure_s", "travel_distance_m", "largest_displacement_m")
+MET, NOT_MET, UNKNOWN = 1, 0, -1
+
+
+# ---- probability ----
+
+def binomial_tail(k, n, p):
+    """Probability of k or more successes in n trials of probability p."""
+    if k <= 0:
+        return 1.0
+    if p in (0.0, 1.0):
+        return p
+    terms = [math.lgamma(n + 1) - math.lgamma(i + 1) - math.lgamma(n - i + 1) + i * math.log(p) + (n - i) * math.log1p(-p) for i in range(k, n + 1)]
+    return min(1.0, math.fsum(map(math.exp, terms)))
+
+
+def solve_for_p(function, target):
+    """p in (0, 1) at which an increasing function has the value, by bisection."""
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if function(middle) < target else (low, middle)
+    return 0.5 * (low + high)
+
+
+def clopper_pearson(k, n, confidence):
+    """Interval of a probability of which k of n independent trials had success (Clopper & Pearson 1934). It covers the probability at least
+    with the confidence; for a Latin hypercube, whose estimates scatter less, with more."""
+    rest = 0.5 * (1 - confidence)
+    low = 0.0 if k == 0 else solve_for_p(lambda p: binomial_tail(k, n, p), rest)
+    high = 1.0 if k == n else solve_for_p(lambda p: binomial_tail(k + 1, n, p), 1 - rest)
+    return low, high
+
+
+def state(row, criterion):
+    """Whether a run meets a criterion: MET, NOT_MET, or UNKNOWN where the run broke off or its factor is a bracket about the limit."""
+    if row["failure"]:
+        return UNKNOWN
+    below, limit = criterion["side"] == "below", criterion["limit"]
+    value = row.get(criterion["outcome"])
+    if value is None and criterion["outcome"] == "factor_of_safety":
+        ends = {(end < limit) == below for end in (row["factor_with_equilibrium"], row["factor_with_mechanism"])}
+        return UNKNOWN if len(ends) > 1 else MET if ends.pop() else NOT_MET
+    if value is None:  # the load time of a failure that did not happen
+        return NOT_MET
+    return MET if (value < limit if below else value > limit) else NOT_MET
+
+
+def probability(rows, criterion, confidence):
+    """Share of the runs that meet the criterion, with its interval. Runs of which it is unknown count as not meeting it in the lower limit and as
+    meeting it in the upper one."""
+    states = [state(row, criterion) for row in rows]
+    met, unknown, total = states.count(MET), states.count(UNKNOWN), len(states)
+    known = total - unknown
+    return {"criterion": criterion["name"], "outcome": criterion["outcome"], criterion["side"]: criterion["limit"], "runs": total, "met": met,
+            "unknown": unknown, "probability": met / known if known else None, "confidence": confidence,
+            "low": clopper_pearson(met, total, confidence)[0], "high": clopper_pearson(met + unknown, total, confidence)[1]}
+
+
+# ---- sensitivity ----
+
+def sensitivities(rows, variables, outcome):
+    """Effect of each numeric variable on an outcome from a linear fit in all of them: change of the outcome from the 10 % to the 90 % quantile of
+    the variable, the others at their means. ([{variable, low, high}], mean outcome, R²); None where too few runs are known."""
+    variables = [v for v in variables if v["numeric"]]
+    known = [row for row in rows if row.get(outcome) is not None]
+    x = np.array([[number(row[v["name"]]) for v in variables] for row in known], float).reshape(len(known), len(variables))
+    varies = [k for k in range(len(variables)) if len(known) and np.ptp(x[:, k]) > 0]
+    y = np.array([float(row[outcome]) for row in known])
+    if len(known) < len(varies) + 3 or not varies or np.ptp(y) == 0:
+        return None
+    x = x[:, varies]
+    middle, spread = x.mean(0), x.std(0)
+    fit, *_ = np.linalg.lstsq(np.column_stack([np.ones(len(y)), (x - middle) / spread]), y, rcond=None)
+    explained = 1 - np.var(y - fit[0] - (x - middle) / spread @ fit[1:]) / np.var(y)
+    bars = []
+    for k, column in enumerate(varies):
+        ends = (np.quantile(x[:, k], [0.1, 0.9]) - middle[k]) / spread[k]
+        bars.append({"variable": variables[column]["name"], "low": float(fit[0] + fit[1 + k] * ends[0]), "high": float(fit[0] + fit[1 + k] * ends[1])})
+    bars.sort(key=lambda bar: abs(bar["high"] - bar["low"]))
+    return {"outcome": outcome, "mean": float(fit[0]), "r2": float(explained), "bars": bars}
+
+
+# ---- pictures ----
+
+def title_of(outcome):
+    if outcome in TITLES:
+        return TITLES[outcome]
+    for ending, unit in (("_m_s", "m/s"), ("_m3", "m³"), ("_m", "m"), ("_s", "s"), ("_Pa", "Pa")):
+        if outcome.endswith(ending):
+            return f"{style.words(outcome[: -len(ending)])} [{unit}]"
+    return style.words(outcome)
+
+
+def draw_tornado(all_fits, path):
+    heights = [len(fit["bars"]) for fit in all_fits]
+    figure, axes = plt.subplots(len(all_fits), 1, figsize=(6.4, sum(0.42 * h + 1.1 for h in heights)), squeeze=False, layout="constrained",
+                                gridspec_kw={"height_ratios": [h + 1.5 for h in heights]})
+    for one, fit in zip(axes.flat, all_fits):
+        for k, bar in enumerate(fit["bars"]):
+            for end, colour, label in ((bar["low"], style.LINES[0], "variable at its 10 % quantile"), (bar["high"], style.LINES[1], "at its 90 % quantile")):
+                one.barh(k, end - fit["mean"], left=fit["mean"], height=0.62, color=colour, label=label if k == 0 else None)
+        one.axvline(fit["mean"], color=style.INK, lw=0.8)
+        one.set_yticks(range(len(fit["bars"])), [style.words(bar["variable"]) for bar in fit["bars"]])
+        one.set_xlabel(title_of(fit["outcome"]))
+        one.set_title(f"linear fit, R² = {fit['r2']:.2f}", loc="right", fontsize=8)
+    axes.flat[0].legend(fontsize=7.5, loc="lower left", bbox_to_anchor=(0, 1), ncols=2, frameon=False)
+    return style.save(figure, path)
+
+
+def draw_scatter(rows, variables, shown, criteria, path):
+    figure, axes = plt.subplots(len(shown), len(variables), figsize=(max(3.6, 2.9 * len(variables)), 2.7 * len(shown)), squeeze=False, layout="constrained")
+    for line, outcome in zip(axes, shown):
+        about = [c for c in criteria if c["outcome"] == outcome]
+        for one, v in zip(line, variables):
+            known = [row for row in rows if row.get(outcome) is not None]
+            words = list(dict.fromkeys(row[v["name"]] for row in known))
+            x = [number(row[v["name"]]) if v["numeric"] else words.index(row[v["name"]]) for row in known]
+            colours = [style.LINES[1] if any(state(row, c) == MET for c in about or criteria) else style.LINES[0] for row in known]
+            one.scatter(x, [float(row[outcome]) for row in known], s=11, c=colours, alpha=0.75, linewidths=0)
+            for criterion in about:
+                one.axhline(criterion["limit"], color=style.INK, lw=0.8, ls=":")
+            if not v["numeric"]:
+                one.set_xticks(range(len(words)), words)
+            one.set_xlabel(style.with_unit(style.words(v["name"]), v["unit"]))
+        line[0].set_ylabel(textwrap.fill(title_of(outcome), 28))
+    if criteria:
+        figure.suptitle("orange: the criterion is met", x=0.01, ha="left", fontsize=8.5, color=style.SOFT)
+    return style.save(figure, path)
+
+
+def draw_exceedance(rows, shown, criteria, confidence, path):
+    figure, axes = plt.subplots(1, len(shown), figsize=(4.4 * len(shown), 3.3), squeeze=False, layout="constrained")
+    for one, outcome in zip(axes.flat, shown):
+        values = np.sort([float(row[outcome]) for row in rows if row.get(outcome) is not None])
+        n = len(values)
+        above = np.arange(n, -1, -1)  # of n values, before the first, between them, behind the last
+        x = np.concatenate([[values[0] - 0.03 * np.ptp(values)], values])
+        low, high = np.transpose([clopper_pearson(int(k), n, confidence) for k in above])
+        one.fill_between(x, low, high, step="post", color=style.LINES[0], alpha=0.2, lw=0, label=f"{100 * confidence:g} % interval")
+        one.step(x, above / n, where="post", color=style.LINES[0], lw=1.3, label=f"{n} runs")
+        for criterion in criteria:
+            if criterion["outcome"] == outcome:
+                one.axvline(criterion["limit"], color=style.INK, lw=0.8, ls=":", label=style.words(criterion["name"]))
+        one.set(xlabel=title_of(outcome), ylabel="probability of a larger value", ylim=(0, 1.02))
+        one.legend(fontsize=7.5)
+    return style.save(figure, path)
+
+
+def varying(rows, names):
+    """Outcomes that differ between runs."""
+    return [name for name in names if len({float(row[name]) for row in rows if row.get(name) is not None}) > 1]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=pathlib.Path, metavar="DIR")
+    parser.add_argument("--no-plot", action="store_true")
+    given = parser.parse_args()
+    design = json.loads((given.folder / "design.json").read_text())
+    with open(given.folder / "runs.csv", newline="") as file:
+        rows = outcomes(given.folder, list(csv.DictReader(file)))
+    for row in rows:
+        row |= {name: 0.0 for name in NO_SLIDE if name in row and row[name] is None}
+        row |= {measure: None if row["failure"] else float(row[measure]) for measure in design["measures"]}
+        row |= {f"meets_{criterion['name']}": {MET: "yes", NOT_MET: "no", UNKNOWN: ""}[state(row, criterion)] for criterion in design["criteria"]}
+    names = list(dict.fromkeys(key for row in rows for key in row))
+    with open(given.folder / "study.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, names, restval="", lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+    broken = [row for row in rows if row["failure"]]
+    print(f"{len(rows)} of {design['planned']} runs, {len(broken)} of which broke off")
+    for row in broken[:5]:
+        print(f"  run {row['run']} broke off: {row['failure']}")
+    variables, criteria = design["variables"], design["criteria"]
+    sampled = any(v["random"] for v in variables)
+    estimates = [probability(rows, c, design["confidence"]) for c in criteria] if rows and sampled else []
+    for p in estimates:
+        side = "below" if "below" in p else "above"
+        known = "unknown" if p["probability"] is None else f"{p['probability']:.4g}"
+        print(f"{p['criterion']}: {p['outcome']} {side} {p[side]:g} in {p['met']} of {p['runs'] - p['unknown']} runs, probability {known}, "
+              f"{100 * p['confidence']:g} % interval {p['low']:.4g} to {p['high']:.4g}" + (f"; unknown in {p['unknown']} runs" if p["unknown"] else ""))
+    shown = varying(rows, dict.fromkeys([*(c["outcome"] for c in criteria), *SHOWN, *design["measures"]]))
+    fits = [fit for fit in (sensitivities(rows, variables, name) for name in shown if name != "fails") if fit]
+    (given.folder / "study.json").write_text(json.dumps({"title": design["title"], "runs": len(rows), "planned": design["planned"],
+                                                         "broke_off": len(broken), "probabilities": estimates, "sensitivities": fits}, indent=1) + "\n")
+    for name, wanted, draw in (("tornado", fits, lambda path: draw_tornado(fits, path)),
+                               ("scatter", shown, lambda path: draw_scatter(rows, variables, shown, criteria, path)),
+                               ("exceedance", shown and sampled, lambda path: draw_exceedance(rows, [s for s in shown if s != "fails"], criteria, design["confidence"], path))):
+        path = given.folder / f"{name}.png"
+        if wanted and not given.no_plot:
+            draw(path)
+        else:
+            path.unlink(missing_ok=True)  # of an earlier call
+    return 1 if len(broken) == len(rows) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# Claims about the launcher, whose path is the argument. It is copied into a tree of its own, in which a script stands for the
+# program and another one for ninja.
+set -uo pipefail
+
+tree=$(mktemp -d)
+trap 'rm -rf "$tree"' EXIT
+build=$tree/build/release
+mkdir -p "$build/bin" "$tree/tools"
+cp "$1" "$tree/talus"
+echo bash >"$tree/packages.txt"
+echo '{}' >"$tree/CMakePresets.json"
+touch "$build/build.ninja" "$build/CMakeCache.txt" "$build/configured"
+printf '#!/bin/sh\necho "program: $*; launcher: $TALUS_LAUNCHER_COMMANDS"\n' >"$build/bin/talus"
+printf '#!/bin/sh\necho built >>"%s"\n' "$tree/built" >"$tree/tools/ninja"
+chmod +x "$build/bin/talus" "$tree/tools/ninja"
+export PATH=$tree/tools:$PATH
+
+failures=0
+# claim SENTENCE EXPECTED OUTPUT: the output has the expected text.
+claim() {
+  [[ $3 == *"$2"* ]] && return
+  printf 'NOT TRUE: %s\n  expected: %s\n  output: %s\n' "$1" "$2" "$3"
+  failures=$((failures + 1))
+}
+launch() { timeout 10 "$tree/talus" "$@" 2>&1; }
+
+output=$(launch test --help)
+claim "test --help prints help" "builds the program and its tests and runs them" "$output"
+output=$(launch test -R something --help)
+claim "--help of the tests may stand last" "builds the program and its tests and runs them" "$output"
+claim "help of the tests builds nothing" "nothing" "$([[ -e $tree/built ]] && echo something || echo nothing)"
+claim "the program knows the commands of the launcher" "launcher: test" "$(launch tset)"
+claim "a command builds" "built" "$(cat "$tree/built")"
+
+exec 8>"$build/lock"
+flock 8
+for words in "check slope.toml" "describe gravity" "--help" "run --help" "check --help" "rnu"; do
+  # shellcheck disable=SC2086
+  claim "$words does not wait for a build" "program: " "$(launch $words 8>&-)"
+done
+claim "a run waits for a build" "waiting for another build" "$(timeout 2 "$tree/talus" run slope.toml 2>&1 8>&-)"
+mv "$build/bin/talus" "$build/bin/elsewhere"
+claim "without a program check waits" "waiting for another build" "$(timeout 2 "$tree/talus" check slope.toml 2>&1 8>&-)"
+exit $((failures > 0))

@@ -1,0 +1,156 @@
+// Studies by `talus study`: which values run, what a stop, a failed run and more samples do, and what is refused.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "csv_table.h"
+#include "scene.h"
+
+namespace talus {
+namespace {
+
+const std::string good_study = R"(scene = "scene.toml"
+samples = 6
+measures = ["max:corner_velocity_m_s"]
+set = ["stage.fall.duration=0.02"]
+[variable.speed]
+key = "body.sand.velocity"
+kind = "choice"
+choices = ['["0", "0"]', '["0.5", "0"]']
+[variable.modulus]
+key = "body.sand.young_modulus"
+unit = "MPa"
+kind = "lognormal"
+mean = 1
+coefficient_of_variation = 0.3
+[variable.density]
+key = "body.sand.density"
+kind = "uniform"
+low = 1800
+high = 2100
+[[correlation]]
+between = ["modulus", "density"]
+coefficient = 0.5
+[criterion.moves]
+outcome = "corner_largest_speed_m_s"
+above = 0.4
+)";
+
+class Study : public testing::Test {
+ protected:
+  Study() {
+    folder_.write("section.csv", good_section);
+    folder_.write("scene.toml", good_scene + "[output.point.corner]\nposition = [1, 0.5]\n");
+    folder_.write("study.toml", good_study);
+  }
+  std::vector<std::string> words(const std::vector<std::string> &more) const {
+    std::vector<std::string> all{"study", "study.toml", "-o", "out", "-j", "2"};
+    all.insert(all.end(), more.begin(), more.end());
+    return talus_words(all);
+  }
+  Ending study(const std::vector<std::string> &more = {"--no-plot"}) const {
+    return Program(folder_, words(more)).end();
+  }
+  const Folder folder_;
+};
+
+// a grid of two speeds for each of six samples; the faster half of the runs meets the criterion
+TEST_F(Study, RunsSamplesOverAGrid) {
+  const Ending ending = study({});
+  ASSERT_EQ(ending.status, 0) << ending.output;
+  const auto rows = csv_table(folder_ / "out/study.csv");
+  ASSERT_EQ(rows.size(), 12u);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i].at("failure"), "");
+    EXPECT_EQ(rows[i].at("modulus"), rows[i - i % 2].at("modulus")) << "the grid belongs to one sample";
+    EXPECT_EQ(rows[i].at("meets_moves"), i % 2 ? "yes" : "no");
+    EXPECT_GT(std::stod(rows[i].at("max:corner_velocity_m_s")), i % 2 ? 0.4 : -1e-9);
+  }
+  EXPECT_TRUE(ending.says("in 6 of 12 runs, probability 0.5, 95 % interval 0.2109 to 0.7891")) << ending.output;
+  for (const char *picture : {"tornado.png", "scatter.png", "exceedance.png"})
+    EXPECT_TRUE(std::filesystem::exists(folder_ / ("out/" + std::string(picture)))) << picture;
+}
+
+TEST_F(Study, StopsAtASignalAndGoesOn) {
+  {
+    Program program(folder_, words({"--no-plot"}));
+    ASSERT_TRUE(program.wait_for(folder_ / "out/run00002/trial"));
+    program.signal(SIGTERM);
+    const Ending ending = program.end();
+    EXPECT_EQ(ending.status, 1) << ending.output;
+    EXPECT_TRUE(ending.says("the same command continues with the missing runs")) << ending.output;
+  }
+  const auto some = csv_table(folder_ / "out/study.csv").size();
+  EXPECT_TRUE(some >= 3 && some < 12) << "a table of what was done";
+  const auto written = std::filesystem::last_write_time(folder_ / "out/run00000/history.csv");
+  const Ending ending = study();
+  EXPECT_EQ(ending.status, 0) << ending.output;
+  EXPECT_TRUE(ending.says(" of 12 runs were completed before")) << ending.output;
+  EXPECT_EQ(std::filesystem::last_write_time(folder_ / "out/run00000/history.csv"), written);
+  EXPECT_EQ(csv_table(folder_ / "out/study.csv").size(), 12u);
+  // more samples continue the study, other values are not taken for them
+  EXPECT_TRUE(study({"--no-plot", "--set", "samples=7"}).says("12 of 14 runs were completed before"));
+  const Ending other = study({"--no-plot", "--set", "seed=2"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_TRUE(other.says("or give --force to replace it")) << other.output;
+}
+
+TEST_F(Study, EntersRunsThatFail) {
+  folder_.write("study.toml", changed(good_study, "[\"0.5\", \"0\"]", "[\"400\", \"0\"]"));
+  const Ending ending = study();
+  EXPECT_EQ(ending.status, 0) << ending.output;
+  const auto rows = csv_table(folder_ / "out/study.csv");
+  ASSERT_EQ(rows.size(), 12u);
+  EXPECT_NE(rows[1].at("failure").find("left the mesh"), std::string::npos) << rows[1].at("failure");
+  EXPECT_EQ(rows[1].at("meets_moves"), "");
+  // Clopper and Pearson with none of 12 and, unknown counted as met, 6 of 12
+  EXPECT_TRUE(ending.says("probability 0, 95 % interval 0 to 0.7891; unknown in 6 runs")) << ending.output;
+}
+
+TEST_F(Study, ComputesFactorsOfSafety) {
+  folder_.write("study.toml", R"(scene = "scene.toml"
+runs = "factor_of_safety"
+set = ["stage.fall.kind=quasi_static", "body.sand.cohesion=8 kPa", "body.sand.friction_angle=0"]
+[variable.density]
+key = "body.sand.density"
+kind = "list"
+values = [1000, 2000]
+)");
+  const Ending ending = study();
+  ASSERT_EQ(ending.status, 0) << ending.output;
+  const auto rows = csv_table(folder_ / "out/study.csv");
+  ASSERT_EQ(rows.size(), 2u);
+  // F of soil without friction is proportional to 1 / density; the search for it stops within 0.006
+  const double light = std::stod(rows[0].at("factor_of_safety")), heavy = std::stod(rows[1].at("factor_of_safety"));
+  EXPECT_NEAR(light / heavy, 2, 0.02);
+}
+
+// every complaint names the file, the line, the key and what is wrong
+TEST_F(Study, RefusesWhatItCannotDo) {
+  for (const auto &[from, to, said] :
+       {std::array<std::string, 3>{"samples = 6\n", "", "study.toml: samples is missing"},
+        {"samples = 6", "samples = -1", "study.toml line 2: samples = -1 (number of samples"},
+        {"mean = 1\n", "", "study.toml line 9: variable.modulus needs mean"},
+        {"mean = 1\n", "mean = -1\n", "line 13: variable.modulus.mean = -1 must be above 0"},
+        {"unit = \"MPa\"", "unit = \"MPq\"", "line 11: variable.modulus.unit"},
+        {"high = 2100", "high = 1700", "low"},
+        {"\"lognormal\"", "\"lognormel\"", "did you mean `lognormal`"},
+        {"sand.young_modulus", "sand.young_module", "young_module"},
+        {"coefficient = 0.5", "coefficient = 2", "must be a number from -0.999 to 0.999"},
+        {"[\"modulus\", \"density\"]", "[\"modulus\", \"densty\"]", "did you mean `density`"},
+        {"\"corner_largest_speed_m_s\"", "\"corner_speed\"", "criterion.moves.outcome"},
+        {"above = 0.4", "above = 0.4\nbelow = 1", "needs one of below and above"},
+        {"high = 2100", "high = 2e9", "cut the distribution off with low and high"},
+        {"max:corner_velocity", "corner_velocity@now", "must be COLUMN, COLUMN@TIME or max:COLUMN"},
+        {"scene.toml", "scen.toml", "study.toml line 1: scene"}}) {
+    folder_.write("study.toml", changed(good_study, from, to));
+    const Ending ending = study();
+    EXPECT_EQ(ending.status, 2) << said;
+    EXPECT_TRUE(ending.says(said)) << "expected: " << said << "\n" << ending.output;
+  }
+}
+
+}  // namespace
+}  // namespace talus
