@@ -13,6 +13,7 @@ WIDTH, LEFT, RIGHT, HEAD, TITLE, FOOT = 12.0, 0.62, 1.0, 0.42, 0.3, 0.75  # of a
 BESIDE, BELOW, STACKED = 0.5, 0.38, 0.55  # between blocks, and between the views of one block [inch]
 DOTTED, HALO = (0, (1, 1.6)), withStroke(linewidth=2, foreground="#ffffffaa")  # seen on pale and on dark soil
 OUTLINE_PIXELS = 900
+TIME = 0.2  # share of time, against motion, in the choice of snapshots
 APART = 0.1  # crosses of particles that left the mesh [inch]
 
 
@@ -79,8 +80,8 @@ def spacing_of(results):
 
 
 def chosen_snapshots(results, times=None, count=6):
-    """Snapshots nearest to `times`; else first, last and some between, half by time and half by how far things moved. Of those that have
-    soil: all of it may have left the mesh."""
+    """Snapshots nearest to `times`; else first, last and some between: evenly by how far things moved, and by a share of TIME also by time, so
+    that a long wait before a failure is one picture and not three. Of those that have soil: all of it may have left the mesh."""
     snapshots = [snapshot for snapshot in results.snapshots if len(snapshot.ids())]
     at = np.array([snapshot.time for snapshot in snapshots])
     if times:
@@ -88,7 +89,7 @@ def chosen_snapshots(results, times=None, count=6):
     if len(snapshots) <= count:
         return snapshots
     travel = np.concatenate([[0], np.cumsum([advance(a, b) for a, b in zip(snapshots, snapshots[1:])])])
-    pace = sum((part / part[-1] for part in (at - at[0], travel) if part[-1] > 0), np.zeros(len(at)))
+    pace = sum((share * part / part[-1] for share, part in ((TIME, at - at[0]), (1 - TIME, travel)) if part[-1] > 0), np.zeros(len(at)))
     wanted = np.linspace(0, pace[-1], count)
     return [snapshots[k] for k in sorted({int(np.abs(pace - share).argmin()) for share in wanted})]
 
