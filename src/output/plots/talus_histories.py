@@ -5,6 +5,7 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 import talus_style as style
+from talus_results import ESCAPED
 
 # coordinates, stress and state of points: sections and stress paths show them better
 ELSEWHERE = ("x", "y", "z", "mean_pressure", "deviator", "mobilised_friction", "state", "displacement_x", "displacement_y", "displacement_z")

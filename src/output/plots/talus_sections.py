@@ -2,7 +2,7 @@
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.colors import LogNorm, Normalize
+from matplotlib.colors import LogNorm, Normalize, PowerNorm
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
@@ -101,7 +101,8 @@ def advance(before, after):
 
 
 class Colours:
-    """The scale that all pictures of a field share: from 0, or the least value if negative, to nearly the largest."""
+    """The scale that all pictures of a field share: from 0, or the least value if negative, to nearly the largest. That of plastic strain is even
+    in its square root, so that the thin band at failure is seen beside the large strain of the slide."""
 
     def __init__(self, field, snapshots, log=False):
         self.map = style.colours_of(field)
@@ -116,7 +117,8 @@ class Colours:
             low, high = -0.5, len(style.STATES) - 0.5
         self.names = style.STATES if field == "state" else ()
         self.beyond = len(values) > 0 and values.max() * self.factor > high
-        self.norm = LogNorm(1e-3 * high, high, clip=True) if log and low == 0 else Normalize(low, high)
+        self.rooted = field == "plastic_strain" and low == 0 and not log
+        self.norm = LogNorm(1e-3 * high, high, clip=True) if log and low == 0 else PowerNorm(0.5, low, high) if self.rooted else Normalize(low, high)
 
 
 def rounded_up(value):
@@ -278,7 +280,7 @@ class Painter:
         figure.text(LEFT / WIDTH, 1 - 0.24 / height, headline, fontsize=13, fontweight="bold", va="center")
         right = 1 - 0.25 / WIDTH
         figure.text(right, 1 - 0.24 / height, self.results.title, fontsize=9, color=style.SOFT, va="center", ha="right")
-        legend = "dotted: outline at the start" + (f"; crosses: {self.marked_escaped} particles left the mesh here" if self.marked_escaped else "")
+        legend = ("colours even in the square root; " if colours.rooted else "") + "dotted: outline at the start" + (f"; crosses: {self.marked_escaped} particles left the mesh here" if self.marked_escaped else "")
         figure.text(right, 0.16 / height, legend, fontsize=7.5, color=style.SOFT, ha="right")
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 sys.path.insert(0, sys.argv.pop(1))
 from talus_histories import drawn_energies  # noqa: E402
-from talus_sections import chosen_snapshots  # noqa: E402
+from talus_sections import Colours, chosen_snapshots  # noqa: E402
 
 
 class Snapshot:
@@ -40,6 +40,20 @@ class Snapshots(unittest.TestCase):
 
     def test_soil_that_stays_is_shown_evenly_in_time(self):
         self.assertEqual(chosen([Snapshot(n, 0.0) for n in range(101)]), [0, 20, 40, 60, 80, 100])
+
+
+class Scales(unittest.TestCase):
+    def strain(self, log=False):
+        values = types.SimpleNamespace(scalar=lambda field: (np.linspace(0, 1, 1001), "-"))
+        return Colours("plastic_strain", [values], log)
+
+    def test_a_twentieth_of_the_largest_strain_is_seen(self):
+        self.assertGreater(self.strain().norm(0.05), 0.2)
+        self.assertTrue(self.strain().rooted)
+
+    def test_a_logarithmic_scale_has_no_root(self):
+        self.assertFalse(self.strain(log=True).rooted)
+        self.assertAlmostEqual(float(self.strain(log=True).norm(1e-1)), 2 / 3)
 
 
 class Energies(unittest.TestCase):
