@@ -137,7 +137,7 @@ def write_gif(frames, path):
             break
         wide = int(0.97 * wide * (GIF_BYTES / size) ** 0.5)
     os.replace(draft, path)
-    return f"{path} ({size / 1e6:.1f} MB, {images[0].width} x {images[0].height} pixels)"
+    return f"{path} ({size / 1e6:.2g} MB, {images[0].width} x {images[0].height} pixels)"
 
 
 def reduced(path, wide):
@@ -173,4 +173,4 @@ def write_mp4(ffmpeg, frames, path):
         return ""
     size = draft.stat().st_size
     os.replace(draft, path)
-    return f"{path} ({size / 1e6:.1f} MB)"
+    return f"{path} ({size / 1e6:.2g} MB)"
