@@ -17,15 +17,21 @@ Action add_plot(CLI::App &app) {
   CLI::App *command = app.add_subcommand("plot", "draw pictures of a run and write its report");
   command->add_option("DIR", arguments->directory, "folder of the results")->required();
   command->add_option(
-      "--fields", arguments->choice.fields,
+      "--fields,--field", arguments->choice.fields,
       "fields to draw: a vector by its magnitude, a tensor by its mean, or one component, such as stress_xy");
-  command->add_option("--times", arguments->choice.times, "times to draw [s]: the nearest snapshots")
-      ->check(CLI::Number);
+  auto *times = command->add_option("--times", arguments->choice.times, "times to draw [s]: the nearest snapshots")
+                    ->check(CLI::Number);
   command->add_flag("--log", arguments->choice.logarithmic, "draw plastic strain on a logarithmic scale");
-  command->add_flag(
+  auto *slip_surface = command->add_flag(
       "--slip-surface", arguments->choice.slip_surface,
       "find the slip surface, the line of largest plastic strain, at the first of the times or at failure, "
       "and print it as [output.line.NAME] takes it");
+  command
+      ->add_flag("--movie", arguments->choice.movie,
+                 "draw a film of the fields and nothing else: DIR/pictures/movie_FIELD.gif, and .mp4 where there is an "
+                 "ffmpeg; without --fields of plastic strain or, where there is none, of displacement")
+      ->excludes(times)
+      ->excludes(slip_surface);
   return [arguments] {
     if (!std::filesystem::is_regular_file(std::filesystem::path(arguments->directory) / "run.h5"))
       throw SceneError(arguments->directory + " contains no results of a run: there is no run.h5");

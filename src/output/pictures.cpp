@@ -38,6 +38,7 @@ bool draw_pictures(const std::string &dir, const PictureChoice &choice) {
   options.insert(options.end(), choice.times.begin(), choice.times.end());
   if (choice.logarithmic) options.push_back("--log");
   if (choice.slip_surface) options.push_back("--slip-surface");
+  if (choice.movie) options.push_back("--movie");
   try {
     write_strength(dir);
   } catch (const std::exception &) {  // stress paths are then drawn without envelopes

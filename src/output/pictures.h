@@ -11,10 +11,11 @@ struct PictureChoice {
   std::vector<std::string> times;   ///< [s], the nearest snapshots
   bool logarithmic = false;         ///< scale of plastic strain
   bool slip_surface = false;        ///< finds it, in plane strain
+  bool movie = false;               ///< draws a film of the fields and nothing else
 };
 
-/// Draws DIR/pictures/*.png and DIR/report.html from the results in `dir`; call it on one rank. If drawing fails, a
-/// warning with the cause goes to standard error and the answer is false.
+/// Draws DIR/pictures/*.png and DIR/report.html, or DIR/pictures/movie_FIELD.gif and .mp4, from the results in `dir`;
+/// call it on one rank. If drawing fails, a warning with the cause goes to standard error and the answer is false.
 bool draw_pictures(const std::string &dir, const PictureChoice &choice = {});
 
 /// Draws what a scene models, from the JSON document of AnySimulation::model(), as `picture`, a PNG file, with the same

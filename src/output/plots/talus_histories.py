@@ -43,8 +43,8 @@ def draw_curves(history, quantity, unit, lines, title, path):
 
 
 def draw_energy(history, lines, title, path):
-    """All energies, and below them the kinetic one alone: it is the smallest and tells most."""
-    lines = {name: values for name, values in lines.items() if name != f"{ESCAPED}_energy" or values.any()}
+    """All energies that vary, and below them the kinetic one alone: it is the smallest and tells most."""
+    lines = drawn_energies(lines)
     kinetic = {name: values for name, values in lines.items() if "kinetic" in name}
     if not kinetic or len(lines) == len(kinetic):
         return draw_curves(history, "energy", "J", lines, title, path)
@@ -54,6 +54,13 @@ def draw_energy(history, lines, title, path):
     colour = style.LINES[list(lines).index(next(iter(kinetic))) % len(style.LINES)]
     plot_lines(lower, history, kinetic, "J", "kinetic", colour)
     return finish(figure, [upper, lower], history, "Energy", title, path)
+
+
+def drawn_energies(lines):
+    """The energies that vary. Of the potential energy it is the change since the start: its zero is where the axes happen to begin, and the
+    weight of all soil times its height would flatten all other curves."""
+    lines = {name: values for name, values in lines.items() if changes(values)}
+    return {"Δ potential" if name == "potential" else name: values - values[0] if name == "potential" else values for name, values in lines.items()}
 
 
 def draw_ledger(history, quantity, lines, title, path):

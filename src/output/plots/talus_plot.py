@@ -1,12 +1,16 @@
 #!/usr/bin/python3
-"""Draws the pictures and the report of a run: DIR/pictures/*.png and DIR/report.html."""
+"""Draws the pictures and the report of a run: DIR/pictures/*.png and DIR/report.html; or a film of it: DIR/pictures/movie_FIELD.gif and .mp4."""
 
 import argparse
+import difflib
 import sys
+
+import numpy as np
 
 from talus_factor import draw_factor
 from talus_histories import draw_histories
 from talus_lines import draw_lines
+from talus_movie import draw_movies
 from talus_paths import draw_stress_paths
 from talus_report import write_report
 from talus_results import Results
@@ -24,19 +28,27 @@ def arguments():
     parser.add_argument("--times", nargs="+", type=float, metavar="T", help="times to draw [s], the nearest snapshots")
     parser.add_argument("--log", action="store_true", help="plastic strain on a logarithmic scale")
     parser.add_argument("--slip-surface", action="store_true", help="find the slip surface, at the first of the times or at failure")
+    parser.add_argument("--movie", action="store_true", help="a film of the fields instead: of plastic strain or, without any, of displacement")
     return parser.parse_args()
 
 
-def draw(folder, fields=None, times=None, log=False, slip_surface=False):
-    """Draws everything; without `fields`, those of FIELDS that the run has, of which the state of strength only where strength was lost. Returns
-    the report's path."""
+def checked(folder, fields=None):
+    """The results in a folder, which have snapshots and the fields."""
     results = Results(folder)
     if not results.snapshots:
         raise ValueError(f"{folder} contains no snapshots")
     first = results.snapshots[0]
     for field in fields or ():
         if first.scalar(field) is None:
-            raise ValueError(f"{folder} has no field {field}; it has {', '.join(first.names())}")
+            nearest = difflib.get_close_matches(field, first.names(), 1)
+            raise ValueError(f"{folder} has no field {field}{f'; did you mean {nearest[0]}?' if nearest else ''}; it has {', '.join(first.names())}")
+    return results
+
+
+def draw(folder, fields=None, times=None, log=False, slip_surface=False):
+    """Draws everything; without `fields`, those of FIELDS that the run has, of which the state of strength only where strength was lost. Returns
+    the report's path."""
+    results = checked(folder, fields)
     pictures = results.folder / "pictures"
     usual = [field for field in FIELDS if field != "state" or lost_strength(results)]
     sections = draw_sections(results, fields or usual, times, pictures, log)
@@ -45,6 +57,15 @@ def draw(folder, fields=None, times=None, log=False, slip_surface=False):
     if slip_surface:
         curves += draw_slip_surface(results, pictures, times[0] if times else None)
     return write_report(results, sections, curves, draw_factor(results, pictures))
+
+
+def film(folder, fields=None, log=False):
+    """Draws a film of each field; without `fields` of plastic strain or, where there is none, of displacement."""
+    results = checked(folder, fields)
+    if not fields:
+        strain = results.snapshots[-1].scalar("plastic_strain")
+        fields = ["plastic_strain" if strain is not None and np.any(strain[0] > 0) else "displacement"]
+    draw_movies(results, fields, results.folder / "pictures", log)
 
 
 def lost_strength(results):
@@ -56,7 +77,10 @@ def lost_strength(results):
 def main():
     given = arguments()
     try:
-        draw(given.folder, given.fields, given.times, given.log, given.slip_surface)
+        if given.movie:
+            film(given.folder, given.fields, given.log)
+        else:
+            draw(given.folder, given.fields, given.times, given.log, given.slip_surface)
     except (OSError, ValueError) as error:
         sys.exit(f"talus_plot: {error}")
 

@@ -2,7 +2,7 @@
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.colors import LogNorm, Normalize
+from matplotlib.colors import LogNorm, Normalize, PowerNorm
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
@@ -13,6 +13,7 @@ WIDTH, LEFT, RIGHT, HEAD, TITLE, FOOT = 12.0, 0.62, 1.0, 0.42, 0.3, 0.75  # of a
 BESIDE, BELOW, STACKED = 0.5, 0.38, 0.55  # between blocks, and between the views of one block [inch]
 DOTTED, HALO = (0, (1, 1.6)), withStroke(linewidth=2, foreground="#ffffffaa")  # seen on pale and on dark soil
 OUTLINE_PIXELS = 900
+TIME = 0.2  # share of time, against motion, in the choice of snapshots
 APART = 0.1  # crosses of particles that left the mesh [inch]
 
 
@@ -79,8 +80,8 @@ def spacing_of(results):
 
 
 def chosen_snapshots(results, times=None, count=6):
-    """Snapshots nearest to `times`; else first, last and some between, half by time and half by how far things moved. Of those that have
-    soil: all of it may have left the mesh."""
+    """Snapshots nearest to `times`; else first, last and some between: evenly by how far things moved, and by a share of TIME also by time, so
+    that a long wait before a failure is one picture and not three. Of those that have soil: all of it may have left the mesh."""
     snapshots = [snapshot for snapshot in results.snapshots if len(snapshot.ids())]
     at = np.array([snapshot.time for snapshot in snapshots])
     if times:
@@ -88,19 +89,20 @@ def chosen_snapshots(results, times=None, count=6):
     if len(snapshots) <= count:
         return snapshots
     travel = np.concatenate([[0], np.cumsum([advance(a, b) for a, b in zip(snapshots, snapshots[1:])])])
-    pace = sum((part / part[-1] for part in (at - at[0], travel) if part[-1] > 0), np.zeros(len(at)))
+    pace = sum((share * part / part[-1] for share, part in ((TIME, at - at[0]), (1 - TIME, travel)) if part[-1] > 0), np.zeros(len(at)))
     wanted = np.linspace(0, pace[-1], count)
     return [snapshots[k] for k in sorted({int(np.abs(pace - share).argmin()) for share in wanted})]
 
 
 def advance(before, after):
-    """How far the fastest hundredth of the particles moved between two snapshots [m]."""
-    a, b = before.position(), after.position()
-    return float(np.percentile(np.linalg.norm(b - a, axis=1), 99)) if a.shape == b.shape and len(a) else 0.0
+    """How far the fastest hundredth of the particles that are in both snapshots moved between them [m]."""
+    _, a, b = np.intersect1d(before.ids(), after.ids(), assume_unique=True, return_indices=True)
+    return float(np.percentile(np.linalg.norm(after.position()[b] - before.position()[a], axis=1), 99)) if len(a) else 0.0
 
 
 class Colours:
-    """The scale that all pictures of a field share: from 0, or the least value if negative, to nearly the largest."""
+    """The scale that all pictures of a field share: from 0, or the least value if negative, to nearly the largest. That of plastic strain is even
+    in its square root, so that the thin band at failure is seen beside the large strain of the slide."""
 
     def __init__(self, field, snapshots, log=False):
         self.map = style.colours_of(field)
@@ -115,7 +117,8 @@ class Colours:
             low, high = -0.5, len(style.STATES) - 0.5
         self.names = style.STATES if field == "state" else ()
         self.beyond = len(values) > 0 and values.max() * self.factor > high
-        self.norm = LogNorm(1e-3 * high, high, clip=True) if log and low == 0 else Normalize(low, high)
+        self.rooted = field == "plastic_strain" and low == 0 and not log
+        self.norm = LogNorm(1e-3 * high, high, clip=True) if log and low == 0 else PowerNorm(0.5, low, high) if self.rooted else Normalize(low, high)
 
 
 def rounded_up(value):
@@ -129,8 +132,8 @@ def rounded_up(value):
 class Painter:
     """Draws one run at chosen times; what does not depend on the field is worked out once."""
 
-    def __init__(self, results, snapshots):
-        self.results, self.snapshots = results, snapshots
+    def __init__(self, results, snapshots, resolution=style.RESOLUTION):
+        self.results, self.snapshots, self.resolution = results, snapshots, resolution
         self.views, self.spacing = views_of(results), spacing_of(results)
         self.corners = [self._limits(view) for view in self.views]
         self.outlines = [self._outline(view, corners) for view, corners in zip(self.views, self.corners)]
@@ -139,11 +142,11 @@ class Painter:
 
     def _limits(self, view):
         """Corners of what is seen at all times, with room for the edge of the soil [m]."""
-        snapshots = [self.results.snapshots[0], *self.snapshots]
-        points = np.concatenate([view.seen(snapshot.position()) for snapshot in snapshots])
-        if self.results.escaped:
-            points = np.concatenate([points, view.flat(self.results.escaped.position)])
-        low, high = points.min(axis=0), points.max(axis=0)
+        clouds = [seen for snapshot in (self.results.snapshots[0], *self.snapshots) if len(seen := view.seen(snapshot.position()))]
+        if self.results.escaped and len(self.results.escaped.position):
+            clouds.append(view.flat(self.results.escaped.position))
+        low, high = (np.array([of(cloud, axis=0) for cloud in clouds]) for of in (np.min, np.max))
+        low, high = low.min(axis=0), high.max(axis=0)
         margin = 0.012 * (high - low) + 2 * self.spacing
         return low - margin, high + margin
 
@@ -169,16 +172,23 @@ class Painter:
     def over_time(self, field, colours, path):
         """All chosen times on one sheet."""
         columns = min(2 if len(self.views) == 1 else 3, len(self.snapshots))
-        return self._sheet(field, colours, path, self.snapshots, columns)
+        return style.save(self._sheet(field, colours, self.snapshots, columns), path)
 
     def large(self, field, colours, path):
         """The time that says most: the last, unless the field had faded by then."""
         values = [snapshot.scalar(field)[0] for snapshot in self.snapshots]
         tops = [np.percentile(known, 99) if (known := one[np.isfinite(one)]).size else 0.0 for one in values]
         best = self.snapshots[-1] if tops[-1] >= 0.8 * max(tops) else self.snapshots[int(np.argmax(tops))]
-        return self._sheet(field, colours, path, [best], 1, named_points=True)
+        return style.save(self._sheet(field, colours, [best], 1, named_points=True), path)
 
-    def _sheet(self, field, colours, path, snapshots, columns, named_points=False):
+    def frame(self, field, colours, snapshot, note, path):
+        """One frame of a film, with a note in its title."""
+        figure = self._sheet(field, colours, [snapshot], 1, note=note)
+        self._tiles.clear()  # those of all frames would fill the memory
+        return style.save(figure, path, dpi=self.resolution)
+
+    def _sheet(self, field, colours, snapshots, columns, named_points=False, note=""):
+        """The figure of some snapshots in so many columns."""
         spans = [high - low for low, high in self.corners]
         wide = (WIDTH - LEFT - RIGHT - BESIDE * (columns - 1)) / columns
         heights = [wide * span[1] / span[0] for span in spans]
@@ -194,25 +204,25 @@ class Painter:
                 axes = figure.add_axes([left / WIDTH, top / height, wide / WIDTH, heights[k] / height])
                 top -= STACKED
                 self._panel(axes, snapshot, field, k, colours, named_points)
-                axes.set_title("  ·  ".join(self._title(snapshot, k)), loc="left", pad=5)
+                axes.set_title("  ·  ".join(self._title(snapshot, k, note)), loc="left", pad=5)
                 lowest = n + columns >= len(snapshots)
                 if lowest and k == len(self.views) - 1:
                     axes.set_xlabel(f"{'xyz'[view.across]} [m]")
                 if column == 0:
                     axes.set_ylabel(f"{'xyz'[view.up]} [m]")
         self._frame_sheet(figure, field, colours)
-        return style.save(figure, path)
+        return figure
 
-    def _title(self, snapshot, k):
-        """Time and stage above a block, the view's name where there are several."""
-        when = [style.at_time(snapshot.time, self.results.snapshots[-1].time), snapshot.stage] if k == 0 else []
+    def _title(self, snapshot, k, note):
+        """Time, stage and a note above a block, the view's name where there are several."""
+        when = [style.at_time(snapshot.time, self.results.snapshots[-1].time), snapshot.stage, *filter(None, [note])] if k == 0 else []
         return when + ([self.views[k].name] if len(self.views) > 1 else [])
 
     def _panel(self, axes, snapshot, field, k, colours, named_points):
         """One snapshot in one view; `axes` has its final size."""
         low, high = self.corners[k]
         inches = axes.get_position().width * WIDTH
-        frame = Frame(low, high, int(inches * style.RESOLUTION))
+        frame = Frame(low, high, int(inches * self.resolution))
         owner = self._tiled(snapshot, k, frame)
         value = snapshot.scalar(field)[0] * colours.factor
         image = np.ma.masked_where(owner < 0, value[owner])
@@ -270,7 +280,7 @@ class Painter:
         figure.text(LEFT / WIDTH, 1 - 0.24 / height, headline, fontsize=13, fontweight="bold", va="center")
         right = 1 - 0.25 / WIDTH
         figure.text(right, 1 - 0.24 / height, self.results.title, fontsize=9, color=style.SOFT, va="center", ha="right")
-        legend = "dotted: outline at the start" + (f"; crosses: {self.marked_escaped} particles left the mesh here" if self.marked_escaped else "")
+        legend = ("colours even in the square root; " if colours.rooted else "") + "dotted: outline at the start" + (f"; crosses: {self.marked_escaped} particles left the mesh here" if self.marked_escaped else "")
         figure.text(right, 0.16 / height, legend, fontsize=7.5, color=style.SOFT, ha="right")
 
 

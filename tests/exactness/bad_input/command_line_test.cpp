@@ -83,6 +83,7 @@ const WrongWords wrong_words[] = {
     {"steady_motion",
      {"run", "scene.toml", "--set", "stage.0.steady=true"},
      {"stage.0.steady", "set kind = \"seepage\""}},
+    {"a_film_shows_all_times", {"plot", "nowhere", "--movie", "--times", "3"}, {"--times excludes --movie"}},
     {"no_results_to_plot", {"plot", "nowhere"}, {"nowhere contains no results"}},
 };
 

@@ -183,6 +183,37 @@ TEST(Pictures, find_the_slip_surface) {
   EXPECT_EQ(content(dir + "/pictures/slip_surface.png").substr(1, 3), "PNG");
 }
 
+/// A film is drawn instead of pictures and report. Its GIF needs no ffmpeg.
+TEST(Pictures, move) {
+  const SharedFolder folder;
+  const std::string dir = folder / "run", film = dir + "/pictures/movie_displacement.gif";
+  RunFile run(MPI_COMM_WORLD, dir, small_header(), small_mesh());
+  PictureChoice choice;
+  choice.fields = {"displacement"}, choice.movie = true;
+  const auto complaint = [&] {
+    testing::internal::CaptureStderr();
+    EXPECT_FALSE(draw_pictures(dir, choice));
+    return testing::internal::GetCapturedStderr();
+  };
+  run.write(small_snapshot(0, 0));
+  if (!world_rank()) {
+    EXPECT_NE(complaint().find("a film needs two"), std::string::npos);
+  }
+  run.write(small_snapshot(1, 1)), run.write(small_snapshot(2, 2));
+  if (world_rank()) return;
+  ASSERT_TRUE(draw_pictures(dir, choice));
+  EXPECT_EQ(content(film).substr(0, 6), "GIF89a");
+  EXPECT_FALSE(std::filesystem::exists(dir + "/report.html"));
+  choice.fields = {"plastic_strein"};
+  EXPECT_NE(complaint().find("did you mean plastic_strain?"), std::string::npos);
+  choice.fields = {};  // plastic strain
+  ASSERT_TRUE(draw_pictures(dir, choice));
+  EXPECT_TRUE(std::filesystem::exists(dir + "/pictures/movie_plastic_strain.gif"));
+  std::filesystem::remove_all(dir + "/pictures");
+  std::ofstream(dir + "/pictures") << "a file in the place of the folder";
+  EXPECT_NE(complaint().find("cannot write the film in " + dir + "/pictures"), std::string::npos);
+}
+
 TEST(Pictures, name_the_program_that_drew_them) {
   const SharedFolder folder;
   const std::string dir = folder / "run";
