@@ -70,8 +70,8 @@ class BackgroundMesh {
   std::vector<PetscInt> plex_vertex;   ///< DMPlex point of a node
   std::vector<long long> global_cell;  ///< number of the cell that does not depend on the partition (order in the file)
   std::vector<PartitionFace> partition_faces;
-  /// Of a cell, one bit for each of its faces (1 << k, opposite to vertex k): a point that would leave the mesh there
-  /// is put back inside. Empty: no face is of this kind.
+  /// Of a cell, one bit for each of its faces (1 << k, opposite to vertex k): a point beyond it by less than half of
+  /// the cell's altitude is put back inside. Empty: no face is of this kind.
   std::vector<char> closed;
   Halo halo;
 
@@ -82,7 +82,7 @@ class BackgroundMesh {
   /// partition face on each of its two ranks.
   std::vector<Facet<dim>> facets(const std::string &group) const;
   bool has_group(const std::string &name) const;
-  /// Puts points back inside that would leave the mesh by a face of this group.
+  /// From now on puts points back inside that are a little beyond a face of this group.
   void close(const std::string &group);
   const std::vector<std::string> &region_names() const { return region_names_; }  ///< the same on all ranks, sorted
   const std::vector<std::string> &group_names() const { return group_names_; }    ///< the same on all ranks, sorted

@@ -23,13 +23,13 @@ World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &m
   find_strengths();
   check_boundaries(sources);
   require(conditions.setup(mesh, std::move(sources)));
-  for (const auto &source : conditions.sources())
-    if (source.kind.keeps_soil_inside())
-      for (const std::string &group : source.groups) mesh.close(group);
   conditions.use_stand_ins(scene.stage.front().hold_loads);
   pressure.set_regions(bodies_of_cells(mesh, scene));
   set_pore_pressure_ratios();
   seed_bodies();
+  for (const auto &source : conditions.sources())  // from now on: soil has to be drawn inside
+    if (source.kind.keeps_soil_inside())
+      for (const std::string &group : source.groups) mesh.close(group);
   set_loading(scene.stage.front(), 0, Clock{});  // under which the first state is gathered
   if (const std::string fault = function_fault(); !fault.empty()) throw SceneError(fault);
 }

@@ -82,7 +82,7 @@ TEST(Walk, PutsPointsBeyondTheBoundaryBackInside) {
   }
 }
 
-/// Through a closed face, here y = 0, no point leaves; through the others it does.
+/// A point a little beyond a closed face, here y = 0, stays inside; one far beyond it or beyond another face does not.
 TEST(Walk, KeepsPointsInsideClosedFaces) {
   const SharedFile file{BoxMesh(3, 4)};
   auto mesh = BackgroundMesh<3>::read(PETSC_COMM_SELF, file.name(), {});
@@ -93,6 +93,8 @@ TEST(Walk, KeepsPointsInsideClosedFaces) {
   EXPECT_TRUE(holds(mesh, found.cell, below));
   EXPECT_NEAR(below[1], 0, 1e-8);
   EXPECT_TRUE(walk(mesh, 0, above).outside);
+  Vec<3> far_below{0.3, -0.2, 0.4};  // cells have a size of 1/4
+  EXPECT_TRUE(walk(mesh, 0, far_below).outside);
 }
 
 TEST(Walk, StaysWhereThePointIs) {
