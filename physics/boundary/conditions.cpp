@@ -37,15 +37,6 @@ template <int dim>
 void Conditions<dim>::add_contact(int node, int source, const Vec<dim> &normal, double area) {
   int &index = first_contact_of_node_[node];
   if (index < 0) index = static_cast<int>(contacts_.size()), contacts_.emplace_back();
-  for (Contact &c : contacts_[index])
-    if (c.source == source &&
-        dot<dim>(c.normal, normal) > same_direction) {  // area-weighted mean of nearly equal normals
-      for (int d = 0; d < dim; ++d) c.normal[d] = c.normal[d] * c.area + normal[d] * area;
-      const double length = std::sqrt(dot<dim>(c.normal, c.normal));
-      for (double &n : c.normal) n /= length;
-      c.area += area;
-      return;
-    }
   contacts_[index].push_back({node, source, normal, area, 0, never, false, 0, -1, false});
 }
 
