@@ -1,5 +1,6 @@
 # cmake -DROOT=folder -P check_pages.cmake: every line of a Markdown page has at most 160 characters (tables, code and displayed formulas
-# excepted), and every relative link names a file that exists.
+# excepted), and every relative link names a file that exists. Each case of docs/gallery has a row in the index of the gallery: a picture of its
+# own, its name, a sentence and a command.
 file(GLOB pages ${ROOT}/*.md)
 file(GLOB_RECURSE more ${ROOT}/docs/*.md ${ROOT}/tests/*.md)
 set(wrong 0)
@@ -59,6 +60,17 @@ foreach(page IN LISTS pages more)
     endforeach()
   endforeach()
 endforeach()
+file(STRINGS ${ROOT}/docs/gallery/README.md index)
+file(GLOB cases ${ROOT}/docs/gallery/*/README.md)
+foreach(case IN LISTS cases)
+  get_filename_component(case ${case} DIRECTORY)
+  get_filename_component(name ${case} NAME)
+  string(REGEX MATCH "[|] .<img src=\"(${name}/[a-z_]+[.](png|gif))\"[^|]*[|] [*][*][^|]*[(]${name}[)][^|]*[.] [|] `[^|`]+` [|]" row "${index}")
+  if(NOT row OR NOT EXISTS ${ROOT}/docs/gallery/${CMAKE_MATCH_1})
+    message("docs/gallery/README.md: no row with a picture, a sentence and a command of the case ${name}")
+    math(EXPR wrong "${wrong} + 1")
+  endif()
+endforeach()
 if(wrong GREATER 0)
-  message(FATAL_ERROR "${wrong} lines of pages are too long or have a dead link")
+  message(FATAL_ERROR "${wrong} lines of pages are too long, have a dead link or are missing")
 endif()

@@ -2,13 +2,14 @@
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FixedLocator, MaxNLocator
 
 import talus_style as style
 from talus_results import ESCAPED
+from talus_units import clock
 
-# coordinates, stress and state of points: sections and stress paths show them better
-ELSEWHERE = ("x", "y", "z", "mean_pressure", "deviator", "mobilised_friction", "state", "displacement_x", "displacement_y", "displacement_z")
+# coordinates, stress and state of points: sections and stress paths show them better; the clock of the loads says nothing as a curve
+ELSEWHERE = ("load_time", "x", "y", "z", "mean_pressure", "deviator", "mobilised_friction", "state", "displacement_x", "displacement_y", "displacement_z")
 
 
 def draw_histories(results, folder):
@@ -90,6 +91,15 @@ def plot_lines(axes, history, lines, unit, what, colour=None):
         axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8, handlelength=1.6)
 
 
+def time_axis(axes, last):
+    """Names the axis of time, and counts it in days for a run of days; curves are drawn over seconds."""
+    size, name = clock(last)
+    axes.set_xlabel(f"time [{name}]")
+    if size != 1:
+        axes.xaxis.set_major_locator(FixedLocator(size * MaxNLocator(8, steps=[1, 2, 5, 10]).tick_values(0, last / size)))
+        axes.xaxis.set_major_formatter(lambda time, _: f"{time / size:g}")
+
+
 def mark_stages(axes, history, named):
     """Bands for the stages, with their names above the uppermost axes."""
     starts = history.stage_starts()
@@ -108,7 +118,7 @@ def mark_stages(axes, history, named):
 def finish(figure, axes, history, headline, title, path):
     for k, one in enumerate(axes):
         mark_stages(one, history, named=k == 0)
-    axes[-1].set_xlabel("time [s]")
+    time_axis(axes[-1], history.time[-1])
     height = figure.get_figheight()
     figure.subplots_adjust(left=0.1, right=0.82, bottom=0.48 / height, top=1 - 0.72 / height, hspace=0.12)
     figure.text(0.1, 1 - 0.24 / height, headline, fontsize=12, fontweight="bold", va="center")

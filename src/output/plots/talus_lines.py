@@ -6,7 +6,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import talus_style as style
+from talus_histories import time_axis
 from talus_measures import failure
+from talus_units import at_time
 
 COUNT = 6  # times that a picture shows
 UPRIGHT = 0.2  # a line whose width is less than this share of its height is drawn over elevation, as inclinometers are
@@ -111,7 +113,7 @@ def draw_line(results, line, path, times):
     factor, unit = style.readable_unit(np.nanmax(size), "m")
     for k, row in enumerate(rows):
         colour = SPAN(k / max(1, len(rows) - 1) * 0.92)
-        label = f"{style.at_time(line.time[row], line.time[-1])}  {line.stage[row]}"
+        label = f"{at_time(line.time[row], line.time[-1])}  {line.stage[row]}"
         show(axes[0, 0], where, factor * size[row], upright, color=colour, lw=1.4, label=label)
         if frictional:
             show(axes[0, 1], where, line.columns["mobilised_friction_deg"][row], upright, color=colour, lw=1.0)
@@ -148,7 +150,8 @@ def draw_mean(results, line, axes):
     """Average mobilised friction over time, with t* above it where something failed."""
     relative = dimensionless(results, line.time)
     axes.plot(line.time, line.means()["mean_mobilised_friction_deg"], color=style.ACCENT, lw=1.4)
-    axes.set(xlabel="time [s]", ylabel="mean mobilised friction angle [deg]")
+    time_axis(axes, line.time[-1])
+    axes.set(ylabel="mean mobilised friction angle [deg]")
     axes.set_ylim(bottom=0)
     if relative is not None:
         start, scale = np.interp(0, relative, line.time), np.ptp(line.time) / np.ptp(relative)

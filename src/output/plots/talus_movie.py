@@ -15,9 +15,10 @@ from talus_sections import Colours, Painter, advance, chosen_snapshots
 
 RATE = 10            # frames of the film in a second
 FAST, SLOW = 8, 3    # length of the film for all fast parts of the run together, and for all slow ones [s]
+BEFORE = 1           # of which the slow part before the first fast one has at most so much: little can be seen in it [s]
 FLUENT = 4           # snapshots that appear in a second of the film where the soil is fast, at the least
 CREEP = 0.1          # soil is slow below this share of the largest speed of the run
-FIRST, LAST = 5, 15  # more frames for which the start and the end stand still
+FIRST, LAST = 3, 15  # more frames for which the start and the end stand still
 RESOLUTION = 100     # of the frames, dots per inch
 GIF_PIXELS, GIF_BYTES, GIF_COLOURS = 900, 2_900_000, 192  # largest width and size [bytes] of the GIF
 
@@ -25,7 +26,7 @@ GIF_PIXELS, GIF_BYTES, GIF_COLOURS = 900, 2_900_000, 192  # largest width and si
 def paces(snapshots):
     """For each interval between two snapshots (how much faster than the run its film is, is it shortened?). What lies between the first and
     the last fast interval of a stage has one factor, the same in all stages. What is before and after is shortened further, so that all slow
-    parts together take no longer than SLOW."""
+    parts together take no longer than SLOW, and what is before the first fast one no longer than BEFORE."""
     pairs = list(zip(snapshots, snapshots[1:]))
     time = np.array([after.time - before.time for before, after in pairs])
     way = np.array([advance(before, after) for before, after in pairs])
@@ -37,10 +38,12 @@ def paces(snapshots):
         if len(moving):
             fast[moving[0]:moving[-1] + 1] = True
     common = round_factor(max(time[fast].sum() / FAST, FLUENT * time[fast].mean() if fast.any() else 0.0))
+    first = np.flatnonzero(fast)[0] if fast.any() else 0
     starts = np.flatnonzero([k == 0 or stage[k] != stage[k - 1] or fast[k] != fast[k - 1] for k in range(len(pairs))])
     result = []
     for part in np.split(np.arange(len(pairs)), starts[1:]):
-        own = round_factor(time[part].sum() * (~fast).sum() / (SLOW * len(part)))
+        early = part[0] < first
+        own = round_factor(time[part].sum() * ((~fast[:first]).sum() / BEFORE if early else (~fast[first:]).sum() / (SLOW - BEFORE)) / len(part))
         shortened = bool(not fast[part[0]] and own > common)
         result += [(own if shortened else common, shortened)] * len(part)
     return result

@@ -6,6 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import talus_style as style
+from talus_histories import time_axis
 
 ENVELOPES = 4  # suctions for which the strength is drawn
 
@@ -78,7 +79,8 @@ def draw_stress_paths(results, folder):
             left.annotate(", ".join(words) or "strength", (at, slope * at + factor * intercept), fontsize=7, color=style.SOFT, ha="right", va="bottom")
     left.set(xlabel=f"mean effective stress p' [{unit}]", ylabel=f"q [{unit}]", xlim=reach, ylim=(0, 1.35 * top))
     left.set_title("open: start, full: end; grey: strength in triaxial compression", loc="left", fontsize=7.5, color=style.SOFT)
-    right.set(xlabel="time [s]", ylabel="mobilised friction angle [deg]", xlim=(results.history.time[0], results.history.time[-1]))
+    time_axis(right, results.history.time[-1])
+    right.set(ylabel="mobilised friction angle [deg]", xlim=(results.history.time[0], results.history.time[-1]))
     if not any(np.isfinite(path["friction"]).any() for path in paths.values()):
         right.text(0.5, 0.5, "without a friction angle none is mobilised", transform=right.transAxes, ha="center", color=style.SOFT)
     right.set_ylim(bottom=0)

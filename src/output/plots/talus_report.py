@@ -10,7 +10,7 @@ import talus_style as style
 from talus_factor import factor_lines, read_factor
 from talus_model import draw_model
 from talus_modelled import read_model, stage_rows
-from talus_units import Keys, text_of
+from talus_units import Keys, at_time, text_of
 
 LOG_LINES = 25
 WATER_KEYS = ("porosity", "saturation", "pore_pressure_ratio", "water_table", "permeability", "hydraulic_conductivity", "gas_permeability", "permeability_change",
@@ -59,7 +59,7 @@ def write_report(results, sections, histories, factor=()):
 def header(results):
     last = results.snapshots[-1]
     facts = [results.scene.get("phases", "dry"), f"{results.snapshots[0].position().shape[1]}D", results.program,
-             f"{thousands(last.step)} steps to t = {last.time:.4g} s"]
+             f"{thousands(last.step)} steps to {at_time(last.time, last.time)}"]
     cause = results.broke_off()
     ending = f'<p class="ending"><strong>The run broke off:</strong> {html.escape(cause)}</p>' if cause else ""
     return (f'<header><p class="kicker">Talus · report of a run</p><h1>{html.escape(results.title)}</h1>'
@@ -90,13 +90,13 @@ def key_results(results):
             found.append(("Sliding volume", volume, "moved more than a tenth of the largest" + without))
     speed = top_speed(results)
     if speed:
-        found.append(("Largest velocity", quantity(speed[0], "m/s"), f"{speed[2]}, t = {speed[1]:.4g} s"))
+        found.append(("Largest velocity", quantity(speed[0], "m/s"), f"{speed[2]}, {at_time(speed[1], last.time)}"))
     if "plastic_strain" in last and len(last.position()):
         found.append(("Largest plastic strain", f"{last.column('plastic_strain').values.max():.3g}", "at the end"))
     mass = results.history.columns.get("mass_kg") if results.history else None
     gone = results.history.columns.get("escaped_mass_kg", 0 * mass) if mass is not None else None
     if results.escaped and len(results.escaped.time):
-        note = f"{thousands(len(results.escaped.time))} particles, from t = {results.escaped.time[0]:.4g} s on"
+        note = f"{thousands(len(results.escaped.time))} particles, from {at_time(results.escaped.time[0], last.time)} on"
         found.append(("Left the mesh", quantity(results.escaped.columns["mass_kg"].sum() / 1e3, per_metre("t", results)), note))
     if mass is not None and len(mass) and mass[0]:
         lost = mass[-1] + gone[-1] - mass[0]

@@ -8,6 +8,8 @@ import tomllib
 import h5py
 import numpy as np
 
+from talus_units import DAY, at_time
+
 # ending of a history column -> unit
 UNITS = {"kg_m_s": "kg m/s", "m_s2": "m/s²", "m_s": "m/s", "m": "m", "m3": "m³", "J": "J", "W": "W", "Pa": "Pa", "N": "N", "kg": "kg", "s": "s", "deg": "deg"}
 # words that may stand before the unit: what is left is the name of a point
@@ -187,6 +189,13 @@ class Results:
             if text.startswith(BROKE_OFF):
                 return text[len(BROKE_OFF):]
         return ""
+
+    def when(self, snapshot):
+        """The time of a snapshot in words. In a run of days the time in a stage of less than a day is counted from the snapshot before it."""
+        of_stage = [k for k, one in enumerate(self.snapshots) if one.stage == snapshot.stage]
+        since = self.snapshots[max(0, of_stage[0] - 1)].time
+        short = self.snapshots[of_stage[-1]].time - since < DAY
+        return at_time(snapshot.time, self.snapshots[-1].time, since if short else 0.0)
 
     def up_axis(self):
         """The axis that gravity acts along: y unless the scene says otherwise."""

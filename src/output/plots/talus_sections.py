@@ -215,7 +215,7 @@ class Painter:
 
     def _title(self, snapshot, k, note):
         """Time, stage and a note above a block, the view's name where there are several."""
-        when = [style.at_time(snapshot.time, self.results.snapshots[-1].time), snapshot.stage, *filter(None, [note])] if k == 0 else []
+        when = [self.results.when(snapshot), snapshot.stage, *filter(None, [note])] if k == 0 else []
         return when + ([self.views[k].name] if len(self.views) > 1 else [])
 
     def _panel(self, axes, snapshot, field, k, colours, named_points):

@@ -76,7 +76,7 @@ def draw_slip_surface(results, folder, time=None):
     shown = axes.scatter(*place.T, c=strain, s=3, cmap=style.colours_of("plastic_strain"), vmax=np.percentile(strain, 99.8), linewidths=0)
     axes.plot(*line.T, color=style.ACCENT, lw=2)
     axes.set(aspect="equal", xlabel="x [m]", ylabel="elevation [m]")
-    axes.set_title(f"slip surface in the undeformed section; plastic strain at {style.at_time(snapshot.time, results.snapshots[-1].time)}", loc="left")
+    axes.set_title(f"slip surface in the undeformed section; plastic strain at {results.when(snapshot)}", loc="left")
     figure.colorbar(shown, ax=axes, shrink=0.8)
     style.save(figure, folder / "slip_surface.png")
     if buried := buried_ends(line, place):

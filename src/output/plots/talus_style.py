@@ -69,12 +69,6 @@ def with_unit(text, unit):
     return f"{text} [{unit}]" if unit else text
 
 
-def at_time(time, last):
-    """'t = 12.5 s', with the digits that a run up to `last` [s] needs."""
-    digits = 1 if last >= 10 else 2 if last >= 1 else 3
-    return f"t = {time:.{digits}f} s"
-
-
 def program():
     """Name and version of the program that draws, "Talus 0.1.0". The program passes them on when it starts a script; a script of the source
     tree that is started alone reads them from CMakeLists.txt."""

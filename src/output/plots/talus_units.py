@@ -8,7 +8,8 @@ ENTRIES = 6  # of a list that are written out
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 UNIT = re.compile(r"[A-Za-zµ°%][\w/^*.()²³µ°% -]*$")
 SHOWN = (("m2", "m²"), ("m3", "m³"), ("s2", "s²"), ("deg", "°"))  # how units are written
-TIMES = ((86400, 86400, "d"), (3600, 3600, "h"), (120, 60, "min"))  # from so many seconds on
+DAY = 86400.0  # [s]
+TIMES = ((DAY, DAY, "d"), (3600, 3600, "h"), (120, 60, "min"))  # from so many seconds on
 
 
 class Keys:
@@ -89,6 +90,21 @@ def duration(seconds):
         if seconds >= least:
             return f"{seconds / size:.4g} {name}"
     return f"{seconds:.4g} s"
+
+
+def clock(last):
+    """(size [s], name) of the unit in which the times of a run up to `last` [s] are written: days from one day on, else seconds."""
+    return (DAY, "d") if last >= DAY else (1.0, "s")
+
+
+def at_time(time, last, since=0.0):
+    """'t = 12.5 s', with the digits that a run up to `last` [s] needs. In a run of days it is 't = 12.5 d'; a stage of less than a day, which
+    began at `since` [s], adds its own seconds: 't = 90.0 d + 4.2 s'."""
+    if last >= DAY:
+        whole, rest = (since, time - since) if since > 0 else (time, 0.0)
+        return f"t = {whole / DAY:.1f} d" + (f" + {rest:.1f} s" if rest > 0 else "")
+    digits = 1 if last >= 10 else 2 if last >= 1 else 3
+    return f"t = {time:.{digits}f} s"
 
 
 def with_shown(number, unit):

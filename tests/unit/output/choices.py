@@ -7,7 +7,8 @@ import unittest
 import numpy as np
 
 sys.path.insert(0, sys.argv.pop(1))
-from talus_histories import drawn_energies  # noqa: E402
+from talus_histories import draw_histories, drawn_energies  # noqa: E402
+from talus_results import Results  # noqa: E402
 from talus_sections import Colours, chosen_snapshots  # noqa: E402
 
 
@@ -62,6 +63,26 @@ class Energies(unittest.TestCase):
         drawn = drawn_energies(lines)
         self.assertEqual(list(drawn), ["kinetic", "Δ potential"])
         self.assertEqual(list(drawn["Δ potential"]), [0, -5])
+
+
+class Histories(unittest.TestCase):
+    def test_the_clock_of_the_loads_has_no_picture(self):
+        time = np.arange(3.0)
+        history = types.SimpleNamespace(time=time, groups=lambda: {("load_time", "s"): {"": time}})
+        self.assertEqual(draw_histories(types.SimpleNamespace(history=history), None), [])
+
+
+class Times(unittest.TestCase):
+    def said(self, *snapshots):
+        results = types.SimpleNamespace(snapshots=[types.SimpleNamespace(time=time, stage=stage) for time, stage in snapshots])
+        return [Results.when(results, snapshot) for snapshot in results.snapshots]
+
+    def test_a_run_of_seconds_is_told_in_seconds(self):
+        self.assertEqual(self.said((0, "start"), (2.25, "slide"), (12.5, "slide")), ["t = 0.0 s", "t = 2.2 s", "t = 12.5 s"])
+
+    def test_a_run_of_days_is_told_in_days_and_its_slide_in_seconds_after_them(self):
+        self.assertEqual(self.said((0, "start"), (30 * 86400, "seepage"), (45 * 86400, "seepage"), (45 * 86400 + 4.25, "slide")),
+                         ["t = 0.0 d", "t = 30.0 d", "t = 45.0 d", "t = 45.0 d + 4.2 s"])
 
 
 if __name__ == "__main__":

@@ -38,22 +38,26 @@ def slope():
 class Clock(unittest.TestCase):
     def test_the_slide_has_one_pace_and_the_rain_is_shortened(self):
         pace = movie.paces(slope())
-        self.assertEqual(set(pace[:160]), {(10.0, True)})  # 40 s in the nearest of 1, 2, 5, 10, 20 to 3 s
+        self.assertEqual(set(pace[:160]), {(50.0, True)})  # 40 s before the slide in the nearest of 10, 20, 50 to 1 s
         self.assertEqual(set(pace[160:]), {(1.0, False)})
 
     def test_slow_soil_that_is_fast_later_in_its_stage_is_shortened_up_to_there(self):
         for snapshot in (snapshots := slope()):
             snapshot.stage = "all"
-        self.assertEqual(movie.paces(snapshots)[159:161], [(10.0, True), (1.0, False)])
+        self.assertEqual(movie.paces(snapshots)[159:161], [(50.0, True), (1.0, False)])
+
+    def test_what_is_slow_after_the_slide_has_the_rest_of_the_time_for_slow_parts(self):
+        rest = [Particles(48 + n, "rest", 8.016) for n in range(1, 101)]  # 100 s in the nearest of 10, 20, 50 to 2 s
+        self.assertEqual(set(movie.paces(slope() + rest)[-100:]), {(50.0, True)})
 
     def test_frames_follow_the_clock(self):
         film = movie.timeline(slope())
         frames = sum(count for _, count, _ in film)
-        self.assertEqual(frames, movie.FIRST + movie.LAST + 40 + 80 + 1)  # 4 s at ten times the pace, 8 s in real time
+        self.assertEqual(frames, movie.FIRST + movie.LAST + 8 + 80 + 1)  # 0.8 s at fifty times the pace, 8 s in real time
         self.assertEqual({count for snapshot, count, _ in film[1:-1] if snapshot.stage == "slide"}, {2, 3})  # 0.25 s each
         self.assertEqual(film[-1][0].time, 48)
         for snapshot, _, pace in film[1:]:
-            self.assertEqual(pace, "real time" if snapshot.time > 40 else "shortened: 10 × real time", snapshot.time)
+            self.assertEqual(pace, "real time" if snapshot.time > 40 else "shortened: 50 × real time", snapshot.time)
 
     def test_a_run_without_motion_is_no_division_by_zero(self):
         still = [Particles(time, "hold", 0.0) for time in (0, 1, 1, 2)]  # two at one time, as after a resume
