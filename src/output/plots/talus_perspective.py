@@ -124,5 +124,5 @@ def edges(axes, camera, low, high, metres):
         away = lowest.mean(axis=0) - middle
         lowest = lowest + 0.28 * metres * away / np.linalg.norm(away)
         axes.annotate("", *lowest, zorder=9, annotation_clip=False, arrowprops={"arrowstyle": "<->", "color": style.SOFT, "lw": 0.8, "shrinkA": 0, "shrinkB": 0})
-        axes.text(*lowest.mean(axis=0), f"{'xyz'[axis]}: {quantity(float(f'{high[axis] - low[axis]:.4g}'), 'm')}", ha="center", va="center", fontsize=8, zorder=10,
+        axes.text(*lowest.mean(axis=0), f"{'xyz'[axis]}: {quantity(float(f'{high[axis] - low[axis]:.3g}'), 'm')}", ha="center", va="center", fontsize=8, zorder=10,
                   bbox={"fc": "white", "ec": "none", "pad": 1.2})

@@ -17,7 +17,7 @@ from talus_results import Results
 from talus_sections import draw_sections
 from talus_slip import draw_slip_surface
 
-FIELDS = ("displacement", "plastic_strain", "velocity", "pore_pressure", "suction", "saturation", "surface", "mobilised_friction", "state")
+FIELDS = ("displacement", "thickness", "plastic_strain", "velocity", "pore_pressure", "suction", "saturation", "surface", "mobilised_friction", "state")
 
 
 def arguments():

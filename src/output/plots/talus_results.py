@@ -31,10 +31,11 @@ class Column:
 
 
 class Snapshot:
-    """One state of the run; columns are read when asked for."""
+    """One state of the run; columns are read when asked for. `derived` holds functions of the snapshot by the names of the fields that they compute:
+    (values, unit)."""
 
-    def __init__(self, group):
-        self._group = group
+    def __init__(self, group, derived):
+        self._group, self._derived = group, derived
         self.time = float(group.attrs["time"])
         self.step = int(group.attrs["step"])
         self.stage = group.attrs["stage"] or "start"
@@ -61,6 +62,8 @@ class Snapshot:
     def scalar(self, name):
         """A field as one number a particle, with its unit; None if there is no such field. Of a vector it is the
         magnitude, of a tensor the mean of the diagonal, or one component: `stress_xy`."""
+        if name in self._derived:
+            return self._derived[name](self)
         if name in self._group:
             column = self.column(name)
             count = column.values.shape[1]
@@ -75,6 +78,29 @@ class Snapshot:
             if component in column.components:
                 return column.values[:, column.components.index(component)], column.unit
         return None
+
+
+class Thickness:
+    """The thickness of the soil that slides, by columns: its volume over a square on the level, over the square's area, in m. Soil slides if it has
+    moved by more than a share of the largest displacement at the end; thickness is 0 for other soil."""
+
+    SHARE, WIDE = 0.1, 2.5  # the share, and the side of a square over the spacing of particles
+
+    def __init__(self, last, up):
+        self._level = [axis for axis in range(3) if axis != up]
+        size = last.scalar("displacement")[0]
+        self._sliding = last.ids()[size > self.SHARE * np.percentile(size, 99.9)] if len(size) and size.max() > 0 else last.ids()[:0]
+        self._side = self.WIDE * float(last.column("volume").values.mean()) ** (1 / 3) if len(size) else 1.0
+
+    def __call__(self, snapshot):
+        sliding = np.isin(snapshot.ids(), self._sliding, assume_unique=True)
+        thickness = np.zeros(len(sliding))
+        if sliding.any():
+            square = np.floor(snapshot.position()[sliding][:, self._level] / self._side).astype(int)
+            _, number = np.unique(square, axis=0, return_inverse=True)
+            number = number.reshape(-1)
+            thickness[sliding] = np.bincount(number, snapshot.column("volume").values[sliding, 0])[number] / self._side**2
+        return thickness, "m"
 
 
 class History:
@@ -160,7 +186,10 @@ class Results:
         self.scene_text = self._file["scene"].asstr()[0]
         self.bodies = list(self._file["bodies"].asstr()[...])
         self.scene = parsed(self._file["values"].asstr()[0] if "values" in self._file else self.scene_text)  # with its overrides
-        self.snapshots = [Snapshot(group) for group in self._file["snapshots"].values()]
+        derived = {}
+        self.snapshots = [Snapshot(group, derived) for group in self._file["snapshots"].values()]
+        if self.snapshots and self.snapshots[0].position().shape[1] == 3 and all(name in self.snapshots[-1] for name in ("displacement", "volume")):
+            derived["thickness"] = Thickness(self.snapshots[-1], self.up_axis())
         path = self.folder / "history.csv"
         self.history = History(path) if path.exists() else None
         path = self.folder / "escaped.csv"

@@ -7,34 +7,68 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
 import talus_style as style
-from talus_tiles import Frame, outline_of_cells, outline_of_points, tiles
+from talus_ground import Ground
+from talus_perspective import edges
+from talus_relief import EARTH, FAINT, Eye, between, seen, seen_from_above
+from talus_tiles import GAP_IN_SPACE, Frame, outline_of_cells, outline_of_points, tiles
 
 WIDTH, LEFT, RIGHT, HEAD, TITLE, FOOT = 12.0, 0.62, 1.0, 0.42, 0.3, 0.75  # of a sheet [inch]
 BESIDE, BELOW, STACKED = 0.5, 0.38, 0.55  # between blocks, and between the views of one block [inch]
 DOTTED, HALO = (0, (1, 1.6)), withStroke(linewidth=2, foreground="#ffffffaa")  # seen on pale and on dark soil
 OUTLINE_PIXELS = 900
 TIME = 0.2  # share of time, against motion, in the choice of snapshots
+AROUND = 0.06  # of the size of the soil: what is shown of the mesh's bottom beside it
 APART = 0.1  # crosses of particles that left the mesh [inch]
 
 
 class View:
-    """A way to look at the particles: two axes, and which particles are seen."""
+    """A way to look at the particles: two axes, and how far they are from the plane of a section [m]."""
 
-    def __init__(self, name, across, up, choose=None):
-        self.name, self.across, self.up, self._choose = name, across, up, choose
-
-    def rows(self, position):
-        return np.arange(len(position)) if self._choose is None else np.flatnonzero(self._choose(position))
+    def __init__(self, name, across, up, plane=None):
+        self.name, self.across, self.up, self.plane = name, across, up, plane
 
     def flat(self, position):
         return position[:, [self.across, self.up]]
 
-    def seen(self, position):
-        return self.flat(position)[self.rows(position)]
+    def aside(self, position):
+        """Distance from the plane of the section; zero if there is none."""
+        return np.zeros(len(position)) if self.plane is None else np.abs(position[:, self.plane[0]] - self.plane[1])
+
+    def tiles(self, position, spacing, frame, of=tiles):
+        """What `of`, tiles or outline_of_points, makes of the particles that may be nearest to a place of the plane; and which these are."""
+        aside = self.aside(position)
+        rows = np.flatnonzero(aside <= GAP_IN_SPACE * spacing)
+        return of(self.flat(position)[rows], spacing, frame, aside[rows] if self.plane else None), rows
+
+
+class MapView(View):
+    """From above, with shades."""
+
+
+class Oblique:
+    """From above in front: the body whole, or cut open along a plane (axis, place [m])."""
+
+    def __init__(self, name, eye, cut=None):
+        self.name, self.eye, self.cut = name, eye, cut
+
+    def flat(self, position):
+        return self.eye.flat(position)
+
+    def aside(self, position):
+        """Distance from the cut, of what is cut away."""
+        return np.zeros(len(position)) if self.cut is None else np.maximum(0, (self.cut[1] - position[:, self.cut[0]]) * np.sign(self.eye.level[self.cut[0]]))
+
+    def box(self, ground):
+        """The corners of what is left of the ground."""
+        box = np.array([ground.low, ground.high])
+        if self.cut:
+            axis, place = self.cut
+            box[1 if self.eye.level[axis] < 0 else 0, axis] = place  # what is nearer to the eye is gone
+        return box
 
 
 def views_of(results):
-    """The views that suit a run: one of a section or a thin slice; of a body its central section and the top."""
+    """The views that suit a run: one of a section or a thin slice; of a body the whole one, cut open, its central section, and from above."""
     first, last = results.snapshots[0].position(), results.snapshots[-1].position()
     if first.shape[1] == 2:
         return [View("section", 0, 1)]
@@ -44,25 +78,14 @@ def views_of(results):
     thin, wide = sorted(level, key=lambda axis: extent[axis])
     if extent[thin] < 0.2 * min(extent[wide], extent[up]):
         return [View("section", wide, up)]
-    moved = np.abs(last - first) if last.shape == first.shape else np.ones_like(first)
-    along = max(level, key=lambda axis: moved[:, axis].sum())
+    moved = last - first if last.shape == first.shape else np.ones_like(first)
+    along = max(level, key=lambda axis: np.abs(moved[:, axis]).sum())
     aside = next(axis for axis in level if axis != along)
-    centre, spacing = weighted_median(first[:, aside], moved[:, along]), spacing_of(results)
-    name = f"section at {'xyz'[aside]} = {centre:.3g} m"
-    return [
-        View(name, along, up, lambda at: np.abs(at[:, aside] - centre) <= spacing),
-        View("from above", along, aside, lambda at: on_top(at, along, aside, up, spacing)),
-    ]
-
-
-def on_top(position, along, aside, up, spacing):
-    """Which particles have no other above them."""
-    column = np.floor(position[:, [along, aside]] / spacing).astype(int)
-    _, number = np.unique(column, axis=0, return_inverse=True)
-    number = number.reshape(-1)
-    highest = np.full(number.max(initial=-1) + 1, -np.inf)
-    np.maximum.at(highest, number, position[:, up])
-    return position[:, up] > highest[number] - 0.9 * spacing
+    centre = weighted_median(first[:, aside], np.abs(moved[:, along]))
+    at = f"at {'xyz'[aside]} = {centre:.3g} m"
+    eye = Eye.in_front(moved[:, along].sum(), along, up)
+    return [Oblique("from above in front", eye), Oblique(f"cut open {at}", eye, (aside, centre)), View(f"section {at}", along, up, (aside, centre)),
+            MapView("from above", along, aside)]
 
 
 def weighted_median(values, weights):
@@ -117,6 +140,7 @@ class Colours:
             low, high = -0.5, len(style.STATES) - 0.5
         self.names = style.STATES if field == "state" else ()
         self.beyond = len(values) > 0 and values.max() * self.factor > high
+        self.from_nothing = low == 0 and not self.names
         self.rooted = field == "plastic_strain" and low == 0 and not log
         self.norm = LogNorm(1e-3 * high, high, clip=True) if log and low == 0 else PowerNorm(0.5, low, high) if self.rooted else Normalize(low, high)
 
@@ -135,18 +159,32 @@ class Painter:
     def __init__(self, results, snapshots, resolution=style.RESOLUTION):
         self.results, self.snapshots, self.resolution = results, snapshots, resolution
         self.views, self.spacing = views_of(results), spacing_of(results)
+        clouds = [snapshot.position() for snapshot in (results.snapshots[0], *snapshots) if len(snapshot.ids())]
+        if results.escaped and len(results.escaped.position):
+            clouds.append(results.escaped.position)
+        self.low, self.high = (of([of(cloud, axis=0) for cloud in clouds], axis=0) for of in (np.min, np.max))
+        self.ground = self._ground() if len(self.views) > 1 else None
         self.corners = [self._limits(view) for view in self.views]
         self.outlines = [self._outline(view, corners) for view, corners in zip(self.views, self.corners)]
-        self._tiles = {}
+        self._tiles, self._surfaces = {}, {}
         self.marked_escaped = 0
+
+    def _ground(self):
+        """What is shown of the ground in 3D: the soil at all times with some of the mesh's bottom around it."""
+        up = self.results.up_axis()
+        around = np.maximum(AROUND * (self.high - self.low), 2 * self.spacing)
+        around[up] = 0.5 * self.spacing
+        top = self.views[-1]
+        return Ground(self.low - around, self.high + around, self.spacing, (top.across, top.up), up, self.results.mesh())
 
     def _limits(self, view):
         """Corners of what is seen at all times, with room for the edge of the soil [m]."""
-        clouds = [seen for snapshot in (self.results.snapshots[0], *self.snapshots) if len(seen := view.seen(snapshot.position()))]
-        if self.results.escaped and len(self.results.escaped.position):
-            clouds.append(view.flat(self.results.escaped.position))
-        low, high = (np.array([of(cloud, axis=0) for cloud in clouds]) for of in (np.min, np.max))
-        low, high = low.min(axis=0), high.max(axis=0)
+        if isinstance(view, Oblique):
+            corners = np.array(np.meshgrid(*zip(self.ground.low, self.ground.high))).reshape(3, -1).T
+            flat = view.flat(corners)
+            margin = np.ptp(flat, axis=0).max() * np.array([0.1, 0.05])  # for the dimensions
+            return flat.min(axis=0) - margin, flat.max(axis=0) + margin
+        low, high = view.flat(np.array([self.low, self.high] if self.ground is None else [self.ground.low, self.ground.high]))
         margin = 0.012 * (high - low) + 2 * self.spacing
         return low - margin, high + margin
 
@@ -154,62 +192,90 @@ class Painter:
         """Polylines (around the soil, between bodies) at the start."""
         first = self.results.snapshots[0]
         position = first.position()
-        node, cell = self.results.mesh()
-        if position.shape[1] == 2 and len(cell):
-            return outline_of_cells(node, cell, position, first.body())
-        return outline_of_points(view.seen(position), self.spacing, Frame(*corners, OUTLINE_PIXELS)), []
+        if isinstance(view, Oblique):
+            return [], []
+        if position.shape[1] == 2 and len((mesh := self.results.mesh())[1]):
+            return outline_of_cells(*mesh, position, first.body())
+        return view.tiles(position, self.spacing, Frame(*corners, OUTLINE_PIXELS), outline_of_points)[0], []
 
     def _tiled(self, snapshot, k, frame):
         """Particle in each pixel of the k-th view of a snapshot, -1 outside the soil."""
         key = (snapshot.step, k, frame.shape)
         if key not in self._tiles:
-            position = snapshot.position()
-            rows = self.views[k].rows(position)
-            owner = tiles(self.views[k].flat(position)[rows], self.spacing, frame)
+            owner, rows = self.views[k].tiles(snapshot.position(), self.spacing, frame)
             self._tiles[key] = np.where(owner >= 0, rows[owner], -1)
         return self._tiles[key]
+
+    def _surface(self, snapshot):
+        """Heights of the ground at a snapshot, and where there is soil."""
+        if snapshot.step not in self._surfaces:
+            self._surfaces[snapshot.step] = self.ground.surface(snapshot.position())
+        return self._surfaces[snapshot.step]
+
+    def _sight(self, snapshot, k, columns):
+        """What the k-th view, an oblique one or one from above, sees of a snapshot."""
+        key = (snapshot.step, k, columns)
+        if key not in self._tiles:
+            view, (low, high), ground = self.views[k], self.corners[k], (self.ground, *self._surface(snapshot))
+            oblique = isinstance(view, Oblique)
+            self._tiles[key] = seen(*ground, view.eye, low, high, columns, view.box(self.ground)) if oblique else \
+                seen_from_above(*ground, self.views[0].eye, low, high, columns)
+        return self._tiles[key]
+
+    def _image(self, snapshot, field, k, colours, frame):
+        """The picture of a field: numbers, masked outside the soil, or colours [rows, columns, 3] where the soil is shaded."""
+        value = snapshot.scalar(field)[0] * colours.factor
+        if isinstance(self.views[k], (Oblique, MapView)):
+            return self._sight(snapshot, k, frame.shape[1]).painted(snapshot.position(), value, colours, self.spacing)
+        owner = self._tiled(snapshot, k, frame)
+        return np.ma.masked_where(owner < 0, value[owner])
 
     def over_time(self, field, colours, path):
         """All chosen times on one sheet."""
         columns = min(2 if len(self.views) == 1 else 3, len(self.snapshots))
-        return style.save(self._sheet(field, colours, self.snapshots, columns), path)
+        return style.save(self._sheet(field, colours, self.snapshots, columns, [[0]] if len(self.views) == 1 else [[0], [2]]), path)
 
     def large(self, field, colours, path):
         """The time that says most: the last, unless the field had faded by then."""
         values = [snapshot.scalar(field)[0] for snapshot in self.snapshots]
         tops = [np.percentile(known, 99) if (known := one[np.isfinite(one)]).size else 0.0 for one in values]
         best = self.snapshots[-1] if tops[-1] >= 0.8 * max(tops) else self.snapshots[int(np.argmax(tops))]
-        return style.save(self._sheet(field, colours, [best], 1, named_points=True), path)
+        rows = [[0]] if len(self.views) == 1 else [[0, 1], [2, 3]]
+        return style.save(self._sheet(field, colours, [best], 1, rows, named_points=True), path)
 
     def frame(self, field, colours, snapshot, note, path):
         """One frame of a film, with a note in its title."""
-        figure = self._sheet(field, colours, [snapshot], 1, note=note)
+        figure = self._sheet(field, colours, [snapshot], 1, [[0]] if len(self.views) == 1 else [[0, 1]], note=note)
         self._tiles.clear()  # those of all frames would fill the memory
+        self._surfaces.clear()
         return style.save(figure, path, dpi=self.resolution)
 
-    def _sheet(self, field, colours, snapshots, columns, named_points=False, note=""):
-        """The figure of some snapshots in so many columns."""
+    def _sheet(self, field, colours, snapshots, columns, rows, named_points=False, note=""):
+        """The figure of some snapshots in so many columns of blocks; a block has the views whose numbers are in `rows`."""
         spans = [high - low for low, high in self.corners]
         wide = (WIDTH - LEFT - RIGHT - BESIDE * (columns - 1)) / columns
-        heights = [wide * span[1] / span[0] for span in spans]
-        block = TITLE + sum(heights) + STACKED * (len(heights) - 1)
+        widths = {k: (wide - BESIDE * (len(row) - 1)) / len(row) for row in rows for k in row}
+        heights = {k: widths[k] * spans[k][1] / spans[k][0] for k in widths}
+        block = TITLE + sum(max(heights[k] for k in row) for row in rows) + STACKED * (len(rows) - 1)
         count = -(-len(snapshots) // columns)
         height = HEAD + count * block + (count - 1) * BELOW + FOOT
         figure = plt.figure(figsize=(WIDTH, height))
         for n, snapshot in enumerate(snapshots):
-            row, column = divmod(n, columns)
-            left, top = LEFT + column * (wide + BESIDE), height - HEAD - TITLE - row * (block + BELOW)
-            for k, view in enumerate(self.views):
-                top -= heights[k]
-                axes = figure.add_axes([left / WIDTH, top / height, wide / WIDTH, heights[k] / height])
-                top -= STACKED
-                self._panel(axes, snapshot, field, k, colours, named_points)
-                axes.set_title("  ·  ".join(self._title(snapshot, k, note)), loc="left", pad=5)
-                lowest = n + columns >= len(snapshots)
-                if lowest and k == len(self.views) - 1:
-                    axes.set_xlabel(f"{'xyz'[view.across]} [m]")
-                if column == 0:
-                    axes.set_ylabel(f"{'xyz'[view.up]} [m]")
+            block_row, column = divmod(n, columns)
+            left, top = LEFT + column * (wide + BESIDE), height - HEAD - TITLE - block_row * (block + BELOW)
+            for row in rows:
+                for place, k in enumerate(row):
+                    at = left + place * (widths[k] + BESIDE)
+                    axes = figure.add_axes([at / WIDTH, (top - heights[k]) / height, widths[k] / WIDTH, heights[k] / height])
+                    self._panel(axes, snapshot, field, k, colours, named_points, len(snapshots) == 1)
+                    axes.set_title("  ·  ".join(self._title(snapshot, k, note if k == rows[0][0] else None)), loc="left", pad=5)
+                    if isinstance(self.views[k], Oblique):
+                        continue
+                    if n + columns >= len(snapshots) and row is rows[-1]:
+                        axes.set_xlabel(f"{'xyz'[self.views[k].across]} [m]")
+                    if column == 0:
+                        axes.set_ylabel(f"{'xyz'[self.views[k].up]} [m]")
+                top -= max(heights[k] for k in row) + STACKED
         self._frame_sheet(figure, field, colours)
         return figure
 
@@ -218,36 +284,70 @@ class Painter:
         when = [self.results.when(snapshot), snapshot.stage, *filter(None, [note])] if k == 0 else []
         return when + ([self.views[k].name] if len(self.views) > 1 else [])
 
-    def _panel(self, axes, snapshot, field, k, colours, named_points):
-        """One snapshot in one view; `axes` has its final size."""
-        low, high = self.corners[k]
+    def _panel(self, axes, snapshot, field, k, colours, named_points, alone):
+        """One snapshot in one view; `axes` has its final size. A snapshot that is `alone` on its sheet has its dimensions."""
+        view, (low, high) = self.views[k], self.corners[k]
         inches = axes.get_position().width * WIDTH
+        metres = (high[0] - low[0]) / inches  # in an inch
         frame = Frame(low, high, int(inches * self.resolution))
-        owner = self._tiled(snapshot, k, frame)
-        value = snapshot.scalar(field)[0] * colours.factor
-        image = np.ma.masked_where(owner < 0, value[owner])
+        image = self._image(snapshot, field, k, colours, frame)
         axes.imshow(image, extent=frame.extent(), origin="lower", cmap=colours.map, norm=colours.norm, aspect="auto")
-        around, between = self.outlines[k]
+        around, between_bodies = self.outlines[k]
         for line in around:
             axes.plot(*line.T, color=style.INK, linestyle=DOTTED, linewidth=1.1, path_effects=[HALO])
-        for line in between:
+        for line in between_bodies:
             axes.plot(*line.T, color=style.SOFT, linestyle=DOTTED, linewidth=0.8, path_effects=[HALO])
-        self._mark_escaped(axes, self.views[k], snapshot.time, (high[0] - low[0]) / inches)
+        self._mark_escaped(axes, view, snapshot.time, metres)
         if named_points:
-            self._mark_points(axes, self.views[k], snapshot.time)
+            self._mark_points(axes, view, snapshot.time)
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
+        if isinstance(view, Oblique):
+            axes.axis("off")
+            if alone:
+                edges(axes, view.eye, self.ground.low, self.ground.high, metres)
+            return
+        if isinstance(view, MapView):
+            self._mirror_as_needed(axes, view)
+            self._contours(axes, snapshot)
+        elif view.plane:
+            self._bottom(axes, view)
         tall = inches * (high[1] - low[1]) / (high[0] - low[0])
         axes.xaxis.set_major_locator(MaxNLocator(max(3, int(inches / 0.6)), steps=[1, 2, 5, 10]))
         axes.yaxis.set_major_locator(MaxNLocator(max(2, int(tall / 0.4)), steps=[1, 2, 5, 10]))
+
+    def _mirror_as_needed(self, axes, view):
+        """A view from above is not one from below: the second axis runs downward where the two and the upward axis are left-handed."""
+        if (view.up - view.across) % 3 == 2:
+            axes.invert_yaxis()
+
+    def _contours(self, axes, snapshot):
+        """Lines of equal height of the soil."""
+        top, soil = self._surface(snapshot)
+        at = [self.ground.low[axis] + (np.arange(count) + 0.5) * self.ground.cell for axis, count in zip(self.ground.level, self.ground.shape)]
+        heights = np.ma.masked_where(~soil, top).T
+        levels = MaxNLocator(10).tick_values(heights.min(), heights.max())
+        levels = levels + 0.5 * (levels[1] - levels[0])  # level ground often lies at a round height
+        axes.contour(*at, heights, levels=levels, colors=style.INK, linewidths=0.4, alpha=0.5)
+
+    def _bottom(self, axes, view):
+        """The bottom of the mesh below a section."""
+        ground, (aside, place) = self.ground, view.plane
+        along = np.linspace(ground.low[view.across], ground.high[view.across], 400)
+        at = {view.across: along, aside: np.full(400, place)}
+        base, inside = between(np.stack([ground.base, ground.inside], axis=-1), [(at[axis] - ground.low[axis]) / ground.cell for axis in ground.level])
+        base = np.where(inside > 0.5, base, np.nan)
+        axes.fill_between(along, base, axes.get_ylim()[0], color=EARTH, linewidth=0)
+        axes.plot(along, base, color=style.SOFT, linewidth=0.8)
 
     def _mark_points(self, axes, view, time):
         """The named points of history.csv, where they are at a time."""
         history = self.results.history
         for name, place in (history.points(time) if history else {}).items():
-            if len(place) <= max(view.across, view.up) or not np.isfinite(place).all():
+            place = place[None]
+            if place.shape[1] < self.low.size or not np.isfinite(place).all() or view.aside(place)[0] > 2 * self.spacing:
                 continue
-            at = (place[view.across], place[view.up])
+            at = view.flat(place)[0]
             axes.plot(*at, "o", markersize=5, markerfacecolor="white", markeredgecolor=style.INK, markeredgewidth=1.0)
             axes.annotate(style.words(name), at, xytext=(6, 6), textcoords="offset points", fontsize=8.5,
                           bbox={"boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": "none", "alpha": 0.8})
@@ -280,7 +380,8 @@ class Painter:
         figure.text(LEFT / WIDTH, 1 - 0.24 / height, headline, fontsize=13, fontweight="bold", va="center")
         right = 1 - 0.25 / WIDTH
         figure.text(right, 1 - 0.24 / height, self.results.title, fontsize=9, color=style.SOFT, va="center", ha="right")
-        legend = ("colours even in the square root; " if colours.rooted else "") + "dotted: outline at the start" + (f"; crosses: {self.marked_escaped} particles left the mesh here" if self.marked_escaped else "")
+        shaded = self.ground is not None and colours.from_nothing
+        legend = (f"colour of soil: below {colours.norm.inverse(FAINT):.2g} {colours.unit}; ".replace(" ;", ";") if shaded else "") + ("colours even in the square root; " if colours.rooted else "") + "dotted: outline at the start" + (f"; crosses: {self.marked_escaped} particles left the mesh here" if self.marked_escaped else "")
         figure.text(right, 0.16 / height, legend, fontsize=7.5, color=style.SOFT, ha="right")
 
 
