@@ -31,8 +31,6 @@ class Ground:
     def number(self, position):
         """The cell of each place as one number, -1 outside the grid."""
         index = np.floor((position[:, self.level] - self.low[self.level]) / self.cell).astype(int)
-        on_edge = np.abs(position[:, self.level] - self.high[self.level]) <= 1e-6 * self.cell
-        index = np.where(on_edge, np.array(self.shape) - 1, index)
         outside = ((index < 0) | (index >= self.shape)).any(axis=1)
         return np.where(outside, -1, index[:, 0] * self.shape[1] + index[:, 1])
 

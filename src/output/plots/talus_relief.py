@@ -64,11 +64,14 @@ def lightness(normal, eye):
 
 
 def shades(ground, top, soil, eye):
-    """How light the surface is in each cell of the grid."""
-    slope = np.gradient(smoothed_inside(np.where(soil, top, ground.base), ground.spacing / ground.cell), ground.cell)
-    normal = np.ones((*ground.shape, 3))
-    normal[..., ground.level[0]], normal[..., ground.level[1]] = -slope[0], -slope[1]
-    return lightness(normal / np.linalg.norm(normal, axis=-1, keepdims=True), eye)
+    """How light the surface is in each cell of the grid. Soil that stands on the bottom of the mesh darkens what is beside it, but does not light it."""
+    light = []
+    for height in (np.where(soil, top, ground.base), ground.base):
+        slope = np.gradient(smoothed_inside(height, ground.spacing / ground.cell), ground.cell)
+        normal = np.ones((*ground.shape, 3))
+        normal[..., ground.level[0]], normal[..., ground.level[1]] = -slope[0], -slope[1]
+        light.append(lightness(normal / np.linalg.norm(normal, axis=-1, keepdims=True), eye))
+    return np.where(soil, light[0], np.minimum(*light))
 
 
 def seen_from_above(ground, top, soil, eye, low, high, columns):

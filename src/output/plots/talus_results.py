@@ -81,25 +81,32 @@ class Snapshot:
 
 
 class Thickness:
-    """The thickness of the soil that slides, by columns: its volume over a square on the level, over the square's area, in m. Soil slides if it has
-    moved by more than a share of the largest displacement at the end; thickness is 0 for other soil."""
+    """The thickness of the soil that slides: its volume per area on the level, in m, over a few particles. Soil slides if it has moved by more than
+    a share of the largest displacement at the end; thickness is 0 for other soil."""
 
-    SHARE, WIDE = 0.1, 2.5  # the share, and the side of a square over the spacing of particles
+    SHARE, WIDE = 0.1, 2.5  # the share, and the side of the squares between which volume is shared, over the spacing of particles
 
     def __init__(self, last, up):
         self._level = [axis for axis in range(3) if axis != up]
         size = last.scalar("displacement")[0]
         self._sliding = last.ids()[size > self.SHARE * np.percentile(size, 99.9)] if len(size) and size.max() > 0 else last.ids()[:0]
-        self._side = self.WIDE * float(last.column("volume").values.mean()) ** (1 / 3) if len(size) else 1.0
+        self._spacing = float(last.column("volume").values.mean()) ** (1 / 3) if len(size) else 1.0
 
     def __call__(self, snapshot):
         sliding = np.isin(snapshot.ids(), self._sliding, assume_unique=True)
         thickness = np.zeros(len(sliding))
         if sliding.any():
-            square = np.floor(snapshot.position()[sliding][:, self._level] / self._side).astype(int)
-            _, number = np.unique(square, axis=0, return_inverse=True)
-            number = number.reshape(-1)
-            thickness[sliding] = np.bincount(number, snapshot.column("volume").values[sliding, 0])[number] / self._side**2
+            place = snapshot.position()[:, self._level]
+            low, high = place.min(axis=0) - self._spacing / 2, place.max(axis=0) + self._spacing / 2
+            count = np.maximum(2, np.round((high - low) / (self.WIDE * self._spacing)).astype(int))
+            side = (high - low) / count
+            exact = np.clip((place[sliding] - low) / side - 0.5, 0, count - 1)  # soil at the edges counts for the outermost squares
+            first = np.minimum(exact.astype(int), count - 2)
+            corners = [(np.prod(np.where(corner, exact - first, 1 - exact + first), axis=1), np.ravel_multi_index((first + corner).T, count))
+                       for corner in np.ndindex(2, 2)]
+            volume = snapshot.column("volume").values[sliding, 0]
+            held = sum(np.bincount(number, share * volume, np.prod(count)) for share, number in corners) / np.prod(side)
+            thickness[sliding] = sum(share * held[number] for share, number in corners)
         return thickness, "m"
 
 

@@ -276,7 +276,7 @@ class Painter:
                     if column == 0:
                         axes.set_ylabel(f"{'xyz'[self.views[k].up]} [m]")
                 top -= max(heights[k] for k in row) + STACKED
-        self._frame_sheet(figure, field, colours)
+        self._frame_sheet(figure, field, colours, [k for row in rows for k in row])
         return figure
 
     def _title(self, snapshot, k, note):
@@ -363,8 +363,8 @@ class Painter:
         axes.plot(*place[first].T, "x", markersize=3, markeredgewidth=0.7, color=style.INK, alpha=0.6)
         self.marked_escaped = max(self.marked_escaped, len(place))
 
-    def _frame_sheet(self, figure, field, colours):
-        """Headline, colour bar, and what the dotted line is."""
+    def _frame_sheet(self, figure, field, colours, views):
+        """Headline, colour bar, and what colours and lines mean in the views with these numbers."""
         height = figure.get_figheight()
         panels = [axes.get_position() for axes in figure.axes]
         top, bottom = max(panel.y1 for panel in panels), min(panel.y0 for panel in panels)
@@ -380,9 +380,12 @@ class Painter:
         figure.text(LEFT / WIDTH, 1 - 0.24 / height, headline, fontsize=13, fontweight="bold", va="center")
         right = 1 - 0.25 / WIDTH
         figure.text(right, 1 - 0.24 / height, self.results.title, fontsize=9, color=style.SOFT, va="center", ha="right")
-        shaded = self.ground is not None and colours.from_nothing
-        legend = (f"colour of soil: below {colours.norm.inverse(FAINT):.2g} {colours.unit}; ".replace(" ;", ";") if shaded else "") + ("colours even in the square root; " if colours.rooted else "") + "dotted: outline at the start" + (f"; crosses: {self.marked_escaped} particles left the mesh here" if self.marked_escaped else "")
-        figure.text(right, 0.16 / height, legend, fontsize=7.5, color=style.SOFT, ha="right")
+        shaded = colours.from_nothing and any(isinstance(self.views[k], (Oblique, MapView)) for k in views)
+        legend = [f"colour of soil: below {colours.norm.inverse(FAINT):.2g} {colours.unit}".rstrip()] * shaded
+        legend += ["colours even in the square root"] * colours.rooted
+        legend += ["dotted: outline at the start"] * any(self.outlines[k][0] for k in views)
+        legend += [f"crosses: {self.marked_escaped} particles left the mesh here"] * bool(self.marked_escaped)
+        figure.text(right, 0.16 / height, "; ".join(legend), fontsize=7.5, color=style.SOFT, ha="right")
 
 
 def draw_sections(results, fields, times, folder, log=False):

@@ -1,0 +1,236 @@
+"""Pictures of runs in 3D: argument 1 is the folder of the scripts."""
+
+import pathlib
+import sys
+import tempfile
+import types
+import unittest
+
+import numpy as np
+from PIL import Image
+
+sys.path.insert(0, sys.argv.pop(1))
+import talus_relief as relief  # noqa: E402
+from talus_ground import Filling, Ground  # noqa: E402
+from talus_results import Thickness  # noqa: E402
+from talus_sections import Colours, Oblique, Painter  # noqa: E402
+from talus_tiles import Frame, tiles  # noqa: E402
+
+SPACING = 0.1
+RANDOM = np.random.default_rng(7)
+BOTTOM, LOW, HIGH = 0.2, np.zeros(3), np.array([2.0, 1.2, 1.0])  # slope of the mesh's bottom, and the mesh's corners
+
+
+def turned(points, up):
+    """Points with the axes x, y, z turned so that z is the axis `up`."""
+    return np.roll(points, up + 1, axis=-1)
+
+
+def level_of(up):
+    return [(up + 1) % 3, (up + 2) % 3]
+
+
+def mesh(up=2):
+    """A box of 2 x 1.2 m and 1 m high whose bottom rises along its first axis, of six tetrahedra for each of its bricks."""
+    count = (8, 6, 2)
+    grid = np.stack(np.meshgrid(*(np.linspace(0, 1, n + 1) for n in count), indexing="ij"), axis=-1).reshape(-1, 3) * HIGH
+    grid[:, 2] = BOTTOM * grid[:, 0] + grid[:, 2] * (1 - BOTTOM * grid[:, 0] / HIGH[2])
+    corner = np.arange(len(grid)).reshape([n + 1 for n in count])
+    brick = np.stack([corner[i:n0, j:n1, k:n2] for i, n0 in ((0, -1), (1, None)) for j, n1 in ((0, -1), (1, None)) for k, n2 in ((0, -1), (1, None))], axis=-1)
+    paths = [(0, 4, 6, 7), (0, 4, 5, 7), (0, 2, 6, 7), (0, 2, 3, 7), (0, 1, 5, 7), (0, 1, 3, 7)]
+    return turned(grid, up), np.concatenate([brick.reshape(-1, 8)[:, path] for path in paths])
+
+
+def layer(low, high, thickness=0.3, up=2):
+    """Particles at random between two corners of the level [2], from the bottom of the mesh up to so much above it."""
+    count = int(np.prod(np.subtract(high, low)) * thickness / SPACING**3)
+    at = RANDOM.random((count, 3)) * [*np.subtract(high, low), thickness] + [*low, 0]
+    at[:, 2] += BOTTOM * at[:, 0]
+    return turned(at, up)
+
+
+def ground(up=2):
+    return Ground(turned(LOW, up), turned(HIGH, up), SPACING, level_of(up), up, mesh(up))
+
+
+def centres(of):
+    return np.stack(np.meshgrid(*((np.arange(n) + 0.5) * of.cell for n in of.shape), indexing="ij"), axis=-1)
+
+
+class Heights(unittest.TestCase):
+    def test_the_bottom_is_that_of_the_mesh_up_to_its_edge(self):
+        for up in range(3):
+            of = ground(up)
+            self.assertTrue(of.inside.all())
+            self.assertLess(np.abs(of.base - BOTTOM * centres(of)[..., 0]).max(), BOTTOM * of.cell)
+
+    def test_the_surface_is_that_of_the_soil_up_to_its_edge(self):
+        of = ground()
+        top, soil = of.surface(layer((0, 0), (2, 1.2)))
+        self.assertTrue(soil.all())
+        self.assertLess(np.abs(top - BOTTOM * centres(of)[..., 0] - 0.3)[2:-2, 2:-2].max(), 0.6 * SPACING)
+
+    def test_bodies_apart_have_a_gap_between_them(self):
+        of = ground()
+        _, soil = of.surface(np.concatenate([layer((0, 0), (0.8, 1.2)), layer((1.3, 0), (2, 1.2))]))
+        x = centres(of)[..., 0]
+        self.assertTrue(soil[(x < 0.7) | (x > 1.4)].all())
+        self.assertFalse(soil[(x > 0.95) & (x < 1.15)].any())
+
+    def test_soil_outside_the_mesh_is_not_shown(self):
+        node, cell = mesh()
+        kept = cell[node[cell].mean(axis=1)[:, 0] < 1]
+        of = Ground(LOW, np.array([2, 1.2, 1]), SPACING, [0, 1], 2, (node, kept))
+        self.assertLess(of.high[0], 2.001)
+        _, soil = of.surface(layer((0, 0), (2, 1.2)))
+        self.assertFalse(soil[centres(of)[..., 0] > 1.05].any())
+
+
+class Fields(unittest.TestCase):
+    def test_a_linear_field_is_found_inside_the_soil_and_nothing_far_away(self):
+        at = layer((0, 0), (2, 1.2))
+        filling = Filling(at, 3 * at[:, 0] - at[:, 1], SPACING)
+        inside = at[(np.abs(at[:, 0] - 1) < 0.8) & (np.abs(at[:, 1] - 0.6) < 0.4)]
+        self.assertLess(np.abs(filling.at(inside) - 3 * inside[:, 0] + inside[:, 1]).mean(), SPACING)
+        self.assertTrue(np.isnan(Filling(np.concatenate([at, at + [0, 0, 5]]), np.ones(2 * len(at)), SPACING).at(np.array([[1, 0.6, 3.0]]))).all())
+
+    def test_particles_without_a_value_do_not_count(self):
+        at = layer((0, 0), (2, 1.2))
+        value = np.where(RANDOM.random(len(at)) < 0.3, np.nan, 4.0)
+        self.assertTrue(np.allclose(Filling(at, value, SPACING).at(at), 4.0))
+
+    def test_thickness_is_the_volume_over_the_area(self):
+        at = np.stack(np.meshgrid(*(np.arange(0.5, n) * SPACING for n in (10, 10, 3)), indexing="ij"), axis=-1).reshape(-1, 3)  # 1 x 1 x 0.3 m
+        volume = np.full((len(at), 1), SPACING**3)
+
+        def snapshot(moved):
+            columns = {"volume": volume}
+            return types.SimpleNamespace(ids=lambda: np.arange(len(at)), position=lambda: at, column=lambda name: types.SimpleNamespace(values=columns[name]),
+                                         scalar=lambda name: (moved, "m"))
+        values, unit = Thickness(snapshot(np.where(at[:, 0] < 0.5, 2.0, 0.01)), 2)(snapshot(None))
+        self.assertEqual(unit, "m")
+        inner = at[:, 0] < 0.2  # up to the edges
+        self.assertLess(np.abs(values[inner] - 0.3).max(), 0.02)
+        self.assertEqual(np.abs(values[at[:, 0] >= 0.5]).max(), 0)
+
+
+class Sections(unittest.TestCase):
+    def test_a_section_has_no_holes_and_shows_the_nearest_particles(self):
+        at = RANDOM.random((12000, 3)) * [2, 1, 1]
+        spacing = (2 / len(at)) ** (1 / 3)
+        frame = Frame((0, 0), (2, 1), 300)
+        near = np.flatnonzero(np.abs(at[:, 2] - 0.5) < 2.2 * spacing)
+        owner = tiles(at[near][:, :2], spacing, frame, np.abs(at[near, 2] - 0.5))
+        self.assertTrue((owner[10:-10, 10:-10] >= 0).all())
+        rows, columns = RANDOM.integers(10, 140, 300), RANDOM.integers(10, 290, 300)
+        places = np.column_stack([(columns + 0.5) * frame.pixel, (rows + 0.5) * frame.pixel, np.full(300, 0.5)])
+        distance = np.linalg.norm(places[:, None] - at[near][None], axis=2)
+        shown = distance[np.arange(300), owner[rows, columns]]
+        self.assertLess((shown - distance.min(axis=1)).max(), 1.5 * frame.pixel)
+
+
+class Sights(unittest.TestCase):
+    def sight(self, up=2, at=None, motion=1, cut=None):
+        of = ground(up)
+        top, soil = of.surface(layer((0, 0), (1, 1.2), up=up) if at is None else at)
+        eye = relief.Eye.in_front(motion, of.level[0], up)
+        corners = eye.flat(np.array(np.meshgrid(*zip(of.low, of.high))).reshape(3, -1).T)
+        low, high = corners.min(axis=0) - 0.1, corners.max(axis=0) + 0.1
+        box = Oblique("", eye, (of.level[1], cut)).box(of) if cut else None
+        return of, eye, (low, high), relief.seen(of, top, soil, eye, low, high, 150, box)
+
+    def test_a_place_is_where_the_projection_puts_it_whichever_axis_is_up(self):
+        for up in range(3):
+            for motion in (1, -1):
+                of, eye, (low, high), sight = self.sight(up, motion=motion)
+                pixel = (high[0] - low[0]) / sight.what.shape[1]
+                rows, columns = np.nonzero(sight.what == relief.GROUND)
+                flat = eye.flat(sight.place[rows, columns])
+                self.assertLess(np.abs(flat[:, 0] - low[0] - (columns + 0.5) * pixel).max(), 1e-6)
+                lower = low[1] + (rows + 0.5) * pixel - flat[:, 1]  # a level place is that of the field, half a spacing down
+                on_wall, on_level = np.abs(lower) < 1e-6, np.abs(lower - 0.5 * SPACING * np.cos(relief.RAISED)) < 1e-6
+                self.assertTrue((on_wall | on_level).all())
+                self.assertGreater(on_level.mean(), 0.3)
+                self.assertGreater(np.linalg.det([eye.right, eye.top, -np.cross(eye.top, eye.right)]), 0.99)  # not mirrored
+                self.assertGreater(motion * eye.right[of.level[0]], 0)  # the slide goes to the right
+                self.assertLess(motion * eye.level[of.level[0]], 0)  # and towards the eye
+
+    def test_soil_hides_what_is_behind_it(self):
+        of, eye, _, sight = self.sight(at=layer((0.9, 0.5), (1.1, 0.7), 0.6))
+        ground_seen = sight.place[sight.what == relief.GROUND]
+        behind = np.array([1.0, 0.6, 0]) + 0.35 * eye.level  # on the bottom, hidden by a pillar of 0.6 m
+        self.assertGreater(np.linalg.norm((ground_seen - behind)[:, :2], axis=1).min(), 0.05)
+        before = np.array([1.0, 0.6, 0]) - 0.35 * eye.level
+        self.assertLess(np.linalg.norm((ground_seen - before)[:, :2], axis=1).min(), 0.05)
+
+    def test_of_a_cut_body_the_half_before_the_cut_is_gone_and_its_face_is_seen(self):
+        for up in range(3):
+            of, eye, _, sight = self.sight(up, cut=0.6, at=layer((0, 0), (2, 1.2), up=up))
+            aside = sight.place[sight.what == relief.BODY][:, of.level[1]]
+            beyond = (aside - 0.6) * np.sign(eye.level[of.level[1]])
+            self.assertGreater(beyond.min(), -1e-9)
+            self.assertGreater((np.abs(beyond) < 1e-9).mean(), 0.1)
+
+    def test_from_above_the_uppermost_soil_is_seen_without_speckles(self):
+        of = ground()
+        at = layer((0, 0), (2, 1.2), 0.6)
+        value = np.where(at[:, 2] - BOTTOM * at[:, 0] > 0.3, 1.0, 0.0)
+        top, soil = of.surface(at)
+        sight = relief.seen_from_above(of, top, soil, relief.Eye.in_front(1, 0, 2), LOW[:2], HIGH[:2], 100)
+        self.assertTrue((sight.what == relief.BODY).all())
+        self.assertGreater(Filling(at, value, SPACING).at(sight.place.reshape(-1, 3)).min(), 0.7)
+
+    def test_no_state_appears_between_two_others(self):
+        of = ground()
+        at = layer((0, 0), (2, 1.2))
+        states = np.where(at[:, 0] < 1, 0.0, 3.0)
+        colours = Colours("state", [types.SimpleNamespace(scalar=lambda field: (states, "-"))])
+        sight = relief.seen_from_above(of, *of.surface(at), relief.Eye.in_front(1, 0, 2), LOW[:2], HIGH[:2], 100)
+        sight.light = np.ones_like(sight.light)
+        shown = sight.painted(at, states, colours, SPACING)[:, [10, 90]].reshape(-1, 3)
+        whole = sight.painted(at, states, colours, SPACING)
+        # a pixel at the border is a mean of the two colours, on the line between them
+        a, b = shown[0], shown[1]
+        share = ((whole - a) @ (b - a)) / ((b - a) @ (b - a))
+        self.assertLess(np.abs(whole - a - share[..., None] * (b - a)).max(), 0.02)
+
+
+class Pictures(unittest.TestCase):
+    def test_a_run_in_3d_has_four_views_and_a_sheet(self):
+        start = layer((0, 0), (1, 1.2))
+
+        class Snapshot:
+            stage = "slide"
+
+            def __init__(self, step):
+                self.step, self.time, self._way = step, float(step), 0.2 * step * np.array([1, 0, BOTTOM])
+
+            def __contains__(self, name):
+                return name == "volume"
+
+            def ids(self):
+                return np.arange(len(start))
+
+            def position(self):
+                return start + self._way
+
+            def column(self, name):
+                return types.SimpleNamespace(values=np.full((len(start), 1), SPACING**3))
+
+            def scalar(self, field):
+                return np.full(len(start), np.linalg.norm(self._way)), "m"
+
+        snapshots = [Snapshot(step) for step in range(3)]
+        results = types.SimpleNamespace(snapshots=snapshots, up_axis=lambda: 2, mesh=mesh, escaped=None, history=None, title="slope", when=lambda one: f"t = {one.time} s")
+        painter = Painter(results, snapshots, 40)
+        self.assertEqual([view.name.partition(" at y = ")[0] for view in painter.views], ["from above in front", "cut open", "section", "from above"])
+        colours = Colours("displacement", snapshots)
+        with tempfile.TemporaryDirectory() as folder:
+            for draw in (painter.large, painter.over_time):
+                with Image.open(draw("displacement", colours, pathlib.Path(folder) / "picture.png")) as picture:
+                    seen = np.asarray(picture.convert("RGB"), float)
+                    self.assertGreater((np.ptp(seen, axis=2) > 60).mean(), 0.02)  # there is colour in it
+
+
+if __name__ == "__main__":
+    unittest.main()
