@@ -7,6 +7,7 @@ from talus_tiles import EDGE, GAP, Frame, shifted, tiles
 MOST_CELLS = 700  # of the level grid along its longer side
 MOST_BOXES = 12_000_000  # of the grid in space that holds a field
 BOX, EMPTY = 1.25, 0.3  # size of such a box, over the spacing of particles, and weight of one that has none
+LOOSE = 1.5  # most heights of soil over the height that its volume fills
 SMOOTH = 1.0  # standard deviation of the smoothing of the surface, over the spacing of particles
 
 
@@ -60,9 +61,10 @@ class Ground:
             lowest = np.minimum(lowest, self.highest((share @ corner[steps == count]).reshape(-1, 3), sign=-1.0))
         return lowest
 
-    def surface(self, position):
-        """Heights of the soil's surface, and where there is soil. The surface is the envelope of the highest particles, closed over gaps as wide as in
-        sections, smoothed, and raised by the half spacing that soil reaches beyond its particles."""
+    def surface(self, position, volume):
+        """Heights of the soil's surface, and where there is soil, from the places [n, 3] and volumes [n] of the particles. The surface is the envelope
+        of the highest particles, closed over gaps as wide as in sections, smoothed, and raised by the half spacing that soil reaches beyond its
+        particles. Soil that flies or spreads so thin that it would stand on mostly air is laid down."""
         frame = Frame(self.low[self.level][::-1], (self.low[self.level] + np.array(self.shape) * self.cell)[::-1], self.shape[1])
         soil = (tiles(position[:, self.level[::-1]], self.spacing, frame)[:self.shape[0], :self.shape[1]] >= 0) & self.inside
         highest = self.highest(position)
@@ -72,7 +74,18 @@ class Ground:
         weight = smoothed(known.astype(float), SMOOTH * self.spacing / self.cell)
         height = smoothed(np.where(known, closed, 0.0), SMOOTH * self.spacing / self.cell)
         top = np.divide(height, weight, out=self.base.copy(), where=weight > 1e-6) + EDGE * self.spacing
-        return np.maximum(top, self.base), known
+        number = self.number(position)
+        held = np.bincount(number[number >= 0], volume[number >= 0], self.base.size).reshape(self.shape) / self.cell**2
+        wide = 1.5 * self.spacing / self.cell
+        thick = np.divide(smoothed(held, wide), smoothed(known.astype(float), wide), out=np.zeros(self.shape), where=known)
+        return np.clip(top, self.base, self.base + LOOSE * thick + 0.5 * self.spacing), known
+
+    def below(self, position, top):
+        """The places of particles, laid down where they are above the surface `top`."""
+        number = self.number(position)
+        result = position.copy()
+        result[:, self.up] = np.where(number >= 0, np.minimum(position[:, self.up], top.ravel()[number] - EDGE * self.spacing), position[:, self.up])
+        return result
 
 
 def max_of(edges):

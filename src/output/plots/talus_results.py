@@ -44,7 +44,7 @@ class Snapshot:
         return name in self._group
 
     def names(self):
-        return [name for name in self._group if name not in ("id", "body")]
+        return [name for name in self._group if name not in ("id", "body")] + list(self._derived)
 
     def column(self, name):
         return Column(self._group[name])

@@ -209,7 +209,7 @@ class Painter:
     def _surface(self, snapshot):
         """Heights of the ground at a snapshot, and where there is soil."""
         if snapshot.step not in self._surfaces:
-            self._surfaces[snapshot.step] = self.ground.surface(snapshot.position())
+            self._surfaces[snapshot.step] = self.ground.surface(snapshot.position(), snapshot.column("volume").values[:, 0])
         return self._surfaces[snapshot.step]
 
     def _sight(self, snapshot, k, columns):
@@ -226,7 +226,8 @@ class Painter:
         """The picture of a field: numbers, masked outside the soil, or colours [rows, columns, 3] where the soil is shaded."""
         value = snapshot.scalar(field)[0] * colours.factor
         if isinstance(self.views[k], (Oblique, MapView)):
-            return self._sight(snapshot, k, frame.shape[1]).painted(snapshot.position(), value, colours, self.spacing)
+            laid = self.ground.below(snapshot.position(), self._surface(snapshot)[0])
+            return self._sight(snapshot, k, frame.shape[1]).painted(laid, value, colours, self.spacing)
         owner = self._tiled(snapshot, k, frame)
         return np.ma.masked_where(owner < 0, value[owner])
 

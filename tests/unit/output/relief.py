@@ -53,6 +53,10 @@ def ground(up=2):
     return Ground(turned(LOW, up), turned(HIGH, up), SPACING, level_of(up), up, mesh(up))
 
 
+def surface(of, position):
+    return of.surface(position, np.full(len(position), SPACING**3))
+
+
 def centres(of):
     return np.stack(np.meshgrid(*((np.arange(n) + 0.5) * of.cell for n in of.shape), indexing="ij"), axis=-1)
 
@@ -66,23 +70,32 @@ class Heights(unittest.TestCase):
 
     def test_the_surface_is_that_of_the_soil_up_to_its_edge(self):
         of = ground()
-        top, soil = of.surface(layer((0, 0), (2, 1.2)))
+        top, soil = surface(of, layer((0, 0), (2, 1.2)))
         self.assertTrue(soil.all())
         self.assertLess(np.abs(top - BOTTOM * centres(of)[..., 0] - 0.3)[2:-2, 2:-2].max(), 0.6 * SPACING)
 
     def test_bodies_apart_have_a_gap_between_them(self):
         of = ground()
-        _, soil = of.surface(np.concatenate([layer((0, 0), (0.8, 1.2)), layer((1.3, 0), (2, 1.2))]))
+        _, soil = surface(of, np.concatenate([layer((0, 0), (0.8, 1.2)), layer((1.3, 0), (2, 1.2))]))
         x = centres(of)[..., 0]
         self.assertTrue(soil[(x < 0.7) | (x > 1.4)].all())
         self.assertFalse(soil[(x > 0.95) & (x < 1.15)].any())
+
+    def test_a_particle_that_flies_is_no_pillar(self):
+        of, at = ground(), np.concatenate([layer((0, 0), (1, 1.2)), [[1.6, 0.6, 0.9]]])
+        top, soil = surface(of, at)
+        self.assertTrue(soil[32, 12])
+        self.assertLess(top[32, 12] - BOTTOM * 1.6, 2.5 * SPACING)
+        laid = of.below(at, top)
+        self.assertLess(laid[-1, 2], top[32, 12])
+        self.assertGreater((laid[:-1] == at[:-1]).all(axis=1).mean(), 0.8)
 
     def test_soil_outside_the_mesh_is_not_shown(self):
         node, cell = mesh()
         kept = cell[node[cell].mean(axis=1)[:, 0] < 1]
         of = Ground(LOW, np.array([2, 1.2, 1]), SPACING, [0, 1], 2, (node, kept))
         self.assertLess(of.high[0], 2.001)
-        _, soil = of.surface(layer((0, 0), (2, 1.2)))
+        _, soil = surface(of, layer((0, 0), (2, 1.2)))
         self.assertFalse(soil[centres(of)[..., 0] > 1.05].any())
 
 
@@ -132,7 +145,7 @@ class Sections(unittest.TestCase):
 class Sights(unittest.TestCase):
     def sight(self, up=2, at=None, motion=1, cut=None):
         of = ground(up)
-        top, soil = of.surface(layer((0, 0), (1, 1.2), up=up) if at is None else at)
+        top, soil = surface(of, layer((0, 0), (1, 1.2), up=up) if at is None else at)
         eye = relief.Eye.in_front(motion, of.level[0], up)
         corners = eye.flat(np.array(np.meshgrid(*zip(of.low, of.high))).reshape(3, -1).T)
         low, high = corners.min(axis=0) - 0.1, corners.max(axis=0) + 0.1
@@ -175,7 +188,7 @@ class Sights(unittest.TestCase):
         of = ground()
         at = layer((0, 0), (2, 1.2), 0.6)
         value = np.where(at[:, 2] - BOTTOM * at[:, 0] > 0.3, 1.0, 0.0)
-        top, soil = of.surface(at)
+        top, soil = surface(of, at)
         sight = relief.seen_from_above(of, top, soil, relief.Eye.in_front(1, 0, 2), LOW[:2], HIGH[:2], 100)
         self.assertTrue((sight.what == relief.BODY).all())
         self.assertGreater(Filling(at, value, SPACING).at(sight.place.reshape(-1, 3)).min(), 0.7)
@@ -185,7 +198,7 @@ class Sights(unittest.TestCase):
         at = layer((0, 0), (2, 1.2))
         states = np.where(at[:, 0] < 1, 0.0, 3.0)
         colours = Colours("state", [types.SimpleNamespace(scalar=lambda field: (states, "-"))])
-        sight = relief.seen_from_above(of, *of.surface(at), relief.Eye.in_front(1, 0, 2), LOW[:2], HIGH[:2], 100)
+        sight = relief.seen_from_above(of, *surface(of, at), relief.Eye.in_front(1, 0, 2), LOW[:2], HIGH[:2], 100)
         sight.light = np.ones_like(sight.light)
         shown = sight.painted(at, states, colours, SPACING)[:, [10, 90]].reshape(-1, 3)
         whole = sight.painted(at, states, colours, SPACING)
