@@ -61,24 +61,31 @@ class Ground:
             lowest = np.minimum(lowest, self.highest((share @ corner[steps == count]).reshape(-1, 3), sign=-1.0))
         return lowest
 
-    def surface(self, position, volume):
-        """Heights of the soil's surface, and where there is soil, from the places [n, 3] and volumes [n] of the particles. The surface is the envelope
-        of the highest particles, closed over gaps as wide as in sections, smoothed, and raised by the half spacing that soil reaches beyond its
+    def surface(self, position, size):
+        """Heights of the soil's surface, and where there is soil, from the places [n, 3] and widths [n] of the particles. The surface is the envelope
+        of the highest particles, closed over gaps as wide as in sections, smoothed, and raised by the half width that soil reaches beyond its
         particles. Soil that flies or spreads so thin that it would stand on mostly air is laid down."""
         frame = Frame(self.low[self.level][::-1], (self.low[self.level] + np.array(self.shape) * self.cell)[::-1], self.shape[1])
-        soil = (tiles(position[:, self.level[::-1]], self.spacing, frame)[:self.shape[0], :self.shape[1]] >= 0) & self.inside
-        highest = self.highest(position)
-        reach = max(1, int(round(GAP * self.spacing / self.cell)))
-        closed = -widest(np.where(soil, -widest(highest, reach), -np.inf), reach)
-        known = soil & np.isfinite(closed)
-        weight = smoothed(known.astype(float), SMOOTH * self.spacing / self.cell)
-        height = smoothed(np.where(known, closed, 0.0), SMOOTH * self.spacing / self.cell)
-        top = np.divide(height, weight, out=self.base.copy(), where=weight > 1e-6) + EDGE * self.spacing
-        number = self.number(position)
-        held = np.bincount(number[number >= 0], volume[number >= 0], self.base.size).reshape(self.shape) / self.cell**2
-        wide = 1.5 * self.spacing / self.cell
-        thick = np.divide(smoothed(held, wide), smoothed(known.astype(float), wide), out=np.zeros(self.shape), where=known)
-        return np.clip(top, self.base, self.base + LOOSE * thick + 0.5 * self.spacing), known
+        owner = tiles(position[:, self.level[::-1]], size, frame)[:self.shape[0], :self.shape[1]]
+        soil = (owner >= 0) & self.inside
+        highest, number = self.highest(position), self.number(position)
+        held = np.bincount(number[number >= 0], size[number >= 0] ** 3, self.base.size).reshape(self.shape) / self.cell**2
+        top = self.base.copy()
+        over, count = (smoothed(np.where(soil, of, 0.0), 2 * self.spacing / self.cell) for of in (np.log2(size[owner] / self.spacing), 1.0))
+        coarser = np.where(soil, np.clip(np.round(over / np.maximum(count, 1e-9)), 0, 5), -1)  # how much larger particles are there, as a power of two
+        for power in np.unique(coarser[soil]):
+            width = 2**power * self.spacing / self.cell
+            reach = max(1, int(round(GAP * width)))
+            closed = -widest(np.where(soil, -widest(highest, reach), -np.inf), reach)
+            known = soil & np.isfinite(closed)
+            weight, height = smoothed(known.astype(float), SMOOTH * width), smoothed(np.where(known, closed, 0.0), SMOOTH * width)
+            height = np.divide(height, weight, out=self.base.copy(), where=weight > 1e-6) + EDGE * width * self.cell
+            wide = 1.5 * width
+            thick = np.divide(smoothed(held, wide), smoothed(soil.astype(float), wide), out=np.zeros(self.shape), where=soil)
+            limit = np.where(soil, self.base + LOOSE * thick + 0.5 * width * self.cell, np.inf)
+            mine = (coarser == power) | (~soil & (power == 0))
+            top = np.where(mine, np.clip(height, self.base, limit), top)
+        return top, soil
 
     def below(self, position, top):
         """The places of particles, laid down where they are above the surface `top`."""

@@ -10,7 +10,7 @@ import talus_style as style
 from talus_ground import Ground
 from talus_perspective import edges
 from talus_relief import EARTH, FAINT, Eye, between, seen, seen_from_above
-from talus_tiles import GAP_IN_SPACE, Frame, outline_of_cells, outline_of_points, tiles
+from talus_tiles import GAP, GAP_IN_SPACE, Frame, outline_of_cells, outline_of_points, tiles
 
 WIDTH, LEFT, RIGHT, HEAD, TITLE, FOOT = 12.0, 0.62, 1.0, 0.42, 0.3, 0.75  # of a sheet [inch]
 BESIDE, BELOW, STACKED = 0.5, 0.38, 0.55  # between blocks, and between the views of one block [inch]
@@ -34,11 +34,11 @@ class View:
         """Distance from the plane of the section; zero if there is none."""
         return np.zeros(len(position)) if self.plane is None else np.abs(position[:, self.plane[0]] - self.plane[1])
 
-    def tiles(self, position, spacing, frame, of=tiles):
+    def tiles(self, position, size, frame, of=tiles):
         """What `of`, tiles or outline_of_points, makes of the particles that may be nearest to a place of the plane; and which these are."""
         aside = self.aside(position)
-        rows = np.flatnonzero(aside <= GAP_IN_SPACE * spacing)
-        return of(self.flat(position)[rows], spacing, frame, aside[rows] if self.plane else None), rows
+        rows = np.flatnonzero(aside <= GAP_IN_SPACE * size)
+        return of(self.flat(position)[rows], size[rows], frame, aside[rows] if self.plane else None), rows
 
 
 class MapView(View):
@@ -185,7 +185,7 @@ class Painter:
             margin = np.ptp(flat, axis=0).max() * np.array([0.1, 0.05])  # for the dimensions
             return flat.min(axis=0) - margin, flat.max(axis=0) + margin
         low, high = view.flat(np.array([self.low, self.high] if self.ground is None else [self.ground.low, self.ground.high]))
-        margin = 0.012 * (high - low) + 2 * self.spacing
+        margin = 0.012 * (high - low) + (GAP if self.ground is None else GAP_IN_SPACE) * self._sizes(self.results.snapshots[0]).max()
         return low - margin, high + margin
 
     def _outline(self, view, corners):
@@ -196,20 +196,28 @@ class Painter:
             return [], []
         if position.shape[1] == 2 and len((mesh := self.results.mesh())[1]):
             return outline_of_cells(*mesh, position, first.body())
-        return view.tiles(position, self.spacing, Frame(*corners, OUTLINE_PIXELS), outline_of_points)[0], []
+        return view.tiles(position, self._sizes(first), Frame(*corners, OUTLINE_PIXELS), outline_of_points)[0], []
+
+    def _sizes(self, snapshot):
+        """The widths of the particles [m]: the spacing, but larger or smaller where cells are."""
+        first = self.results.snapshots[0]
+        if "mass" not in snapshot or "mass" not in first:
+            return np.full(len(snapshot.ids()), self.spacing)
+        share = snapshot.column("mass").values[:, 0] / first.column("mass").values.mean()
+        return self.spacing * share ** (1 / first.position().shape[1])
 
     def _tiled(self, snapshot, k, frame):
         """Particle in each pixel of the k-th view of a snapshot, -1 outside the soil."""
         key = (snapshot.step, k, frame.shape)
         if key not in self._tiles:
-            owner, rows = self.views[k].tiles(snapshot.position(), self.spacing, frame)
+            owner, rows = self.views[k].tiles(snapshot.position(), self._sizes(snapshot), frame)
             self._tiles[key] = np.where(owner >= 0, rows[owner], -1)
         return self._tiles[key]
 
     def _surface(self, snapshot):
         """Heights of the ground at a snapshot, and where there is soil."""
         if snapshot.step not in self._surfaces:
-            self._surfaces[snapshot.step] = self.ground.surface(snapshot.position(), snapshot.column("volume").values[:, 0])
+            self._surfaces[snapshot.step] = self.ground.surface(snapshot.position(), self._sizes(snapshot))
         return self._surfaces[snapshot.step]
 
     def _sight(self, snapshot, k, columns):

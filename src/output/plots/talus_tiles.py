@@ -21,42 +21,48 @@ class Frame:
         return (self.low[0], self.high[0], self.low[1], self.high[1])
 
 
-def tiles(points, spacing, frame, aside=None):
-    """For each pixel the number of its nearest particle, -1 outside the soil. `aside` are their distances from the plane of the pixels [m]."""
-    inside, reach = (points - frame.low) / frame.pixel, (GAP if aside is None else GAP_IN_SPACE) * spacing / frame.pixel
-    owner, _ = nearest(inside, frame.shape, reach, None if aside is None else aside / frame.pixel)
+def tiles(points, size, frame, aside=None):
+    """For each pixel the number of its nearest particle, -1 outside the soil. `size` [m] is the width of all particles or of each, which measures
+    distances; `aside` are their distances from the plane of the pixels [m]."""
+    if not len(points):
+        return np.full(frame.shape, -1, np.int32)
+    gap = GAP if aside is None else GAP_IN_SPACE
+    size = np.broadcast_to(np.asarray(size, np.float32) / frame.pixel, len(points))
+    owner, _ = nearest((points - frame.low) / frame.pixel, frame.shape, gap, size, None if aside is None else aside / frame.pixel)
     soil = owner >= 0
     rim = np.argwhere(~soil & touching(soil))[:, ::-1] + 0.5
-    _, depth = nearest(rim, frame.shape, reach)
-    owner[depth <= reach - EDGE * spacing / frame.pixel] = -1
+    _, depth = nearest(rim, frame.shape, gap * size.max(initial=0), np.ones(len(rim)))
+    owner[soil & (depth <= (gap - EDGE) * size[owner])] = -1
     return owner
 
 
-def nearest(points, shape, reach, aside=None):
+def nearest(points, shape, reach, size, aside=None):
     """Number of and distance to the nearest of some points (in pixels: column, row, and their distance aside), -1 and infinity beyond `reach`.
+    Distances are counted in the size of the point.
 
     Jump flooding: Rong & Tan (2006), Jump flooding in GPU with applications to Voronoi diagrams."""
     owner = np.full(shape, -1, np.int32)
     if not len(points):
         return owner, np.full(shape, np.inf, np.float32)
     x, y = points.astype(np.float32).T
+    scale = (1 / size**2).astype(np.float32)
     z2 = np.zeros_like(x) if aside is None else aside.astype(np.float32) ** 2
     row, column = y.astype(int), x.astype(int)
     seen = (row >= 0) & (row < shape[0]) & (column >= 0) & (column < shape[1])
-    seen = np.flatnonzero(seen)[np.argsort(-z2[seen], kind="stable")]  # of several in a pixel the one nearest to the plane stays
+    seen = np.flatnonzero(seen)[np.argsort(-(scale * z2)[seen], kind="stable")]  # of several in a pixel the one nearest to the plane stays
     owner[row[seen], column[seen]] = seen
     centre_y, centre_x = (np.arange(size, dtype=np.float32) + 0.5 for size in shape)
     squared = np.full(shape, np.inf, np.float32)
     rows, columns = np.nonzero(owner >= 0)
     mine = owner[rows, columns]
-    squared[rows, columns] = (x[mine] - centre_x[columns]) ** 2 + (y[mine] - centre_y[rows]) ** 2 + z2[mine]
-    for step in [*(2**k for k in range(int(np.ceil(np.log2(max(reach, 1)))), -1, -1)), 1]:
+    squared[rows, columns] = scale[mine] * ((x[mine] - centre_x[columns]) ** 2 + (y[mine] - centre_y[rows]) ** 2 + z2[mine])
+    for step in [*(2**k for k in range(int(np.ceil(np.log2(max(reach * np.max(size), 1)))), -1, -1)), 1]:
         for down in (-step, 0, step):
             for right in (-step, 0, step):
                 to_rows, from_rows = shifted(shape[0], down)
                 to_columns, from_columns = shifted(shape[1], right)
                 other = owner[from_rows, from_columns]
-                distance = (x[other] - centre_x[to_columns]) ** 2 + (y[other] - centre_y[to_rows, None]) ** 2 + z2[other]
+                distance = scale[other] * ((x[other] - centre_x[to_columns]) ** 2 + (y[other] - centre_y[to_rows, None]) ** 2 + z2[other])
                 better = (other >= 0) & (distance < squared[to_rows, to_columns])
                 owner[to_rows, to_columns][better] = other[better]
                 squared[to_rows, to_columns][better] = distance[better]
@@ -84,9 +90,9 @@ def touching(mask):
     return wide
 
 
-def outline_of_points(points, spacing, frame, aside=None):
+def outline_of_points(points, size, frame, aside=None):
     """Polylines around the soil."""
-    soil = tiles(points, spacing, frame, aside) >= 0
+    soil = tiles(points, size, frame, aside) >= 0
     centres = [frame.low[k] + (np.arange(soil.shape[1 - k]) + 0.5) * frame.pixel for k in (0, 1)]
     figure, axes = plt.subplots()
     contour = axes.contour(*centres, soil.astype(float), levels=[0.5])

@@ -54,7 +54,7 @@ def ground(up=2):
 
 
 def surface(of, position):
-    return of.surface(position, np.full(len(position), SPACING**3))
+    return of.surface(position, np.full(len(position), SPACING))
 
 
 def centres(of):
@@ -73,6 +73,14 @@ class Heights(unittest.TestCase):
         top, soil = surface(of, layer((0, 0), (2, 1.2)))
         self.assertTrue(soil.all())
         self.assertLess(np.abs(top - BOTTOM * centres(of)[..., 0] - 0.3)[2:-2, 2:-2].max(), 0.6 * SPACING)
+
+    def test_the_surface_of_large_particles_beside_small_ones_has_no_pits(self):
+        of, small, large = ground(), layer((0, 0), (1, 1.2)), layer((1, 0), (2, 1.2))[::20]  # of 2.7 times the width
+        at = np.concatenate([small, large])
+        top, soil = of.surface(at, np.repeat([SPACING, 20 ** (1 / 3) * SPACING], [len(small), len(large)]))
+        self.assertTrue(soil.all())
+        off = top - BOTTOM * centres(of)[..., 0] - 0.3
+        self.assertLess(np.abs(off[2:-2, 2:-2]).max(), 2 * SPACING)
 
     def test_bodies_apart_have_a_gap_between_them(self):
         of = ground()
@@ -133,13 +141,22 @@ class Sections(unittest.TestCase):
         spacing = (2 / len(at)) ** (1 / 3)
         frame = Frame((0, 0), (2, 1), 300)
         near = np.flatnonzero(np.abs(at[:, 2] - 0.5) < 2.2 * spacing)
-        owner = tiles(at[near][:, :2], spacing, frame, np.abs(at[near, 2] - 0.5))
+        owner = tiles(at[near][:, :2], np.full(len(near), spacing), frame, np.abs(at[near, 2] - 0.5))
         self.assertTrue((owner[10:-10, 10:-10] >= 0).all())
         rows, columns = RANDOM.integers(10, 140, 300), RANDOM.integers(10, 290, 300)
         places = np.column_stack([(columns + 0.5) * frame.pixel, (rows + 0.5) * frame.pixel, np.full(300, 0.5)])
         distance = np.linalg.norm(places[:, None] - at[near][None], axis=2)
         shown = distance[np.arange(300), owner[rows, columns]]
         self.assertLess((shown - distance.min(axis=1)).max(), 1.5 * frame.pixel)
+
+
+    def test_large_particles_close_larger_gaps(self):
+        small, large = (np.stack(np.meshgrid(np.arange(0.5, 10 / width) * width, np.arange(0.5, 10 / width) * width), axis=-1).reshape(-1, 2) for width in (0.2, 1.0))
+        at, size = np.concatenate([small, large + [10, 0]]), np.repeat([0.2, 1.0], [len(small), len(large)])
+        soil = tiles(at, size, Frame((-2, -2), (22, 12), 240)) >= 0
+        self.assertTrue(soil[22:118, 22:218].all())
+        self.assertFalse(soil[:, :17].any() or soil[:, 223:].any())
+        self.assertLess(abs(soil.sum() - 100 * 200), 0.03 * 100 * 200)
 
 
 class Sights(unittest.TestCase):
