@@ -199,12 +199,12 @@ class Painter:
         return view.tiles(position, self._sizes(first), Frame(*corners, OUTLINE_PIXELS), outline_of_points)[0], []
 
     def _sizes(self, snapshot):
-        """The widths of the particles [m]: the spacing, but larger or smaller where cells are."""
+        """The widths of the particles [m]: the spacing, or 2, 4, 8 ... times that where cells are much larger than the mean."""
         first = self.results.snapshots[0]
         if "mass" not in snapshot or "mass" not in first:
             return np.full(len(snapshot.ids()), self.spacing)
         share = snapshot.column("mass").values[:, 0] / first.column("mass").values.mean()
-        return self.spacing * share ** (1 / first.position().shape[1])
+        return self.spacing * 2 ** np.clip(np.floor(np.log2(share) / first.position().shape[1] + 0.25), 0, 5)
 
     def _tiled(self, snapshot, k, frame):
         """Particle in each pixel of the k-th view of a snapshot, -1 outside the soil."""
