@@ -17,6 +17,7 @@ import talus_style as style
 from matplotlib.colors import ListedColormap
 from talus_sections import spacing_of
 from talus_tiles import Frame, tiles
+from talus_units import at_time
 
 RIGHT, TOP = 0.5, 0.107  # of the pictures [m]
 TIMES = (0, 0.1, 0.2, 0.3, 0.5, 1.0)  # of the sequence [s]
@@ -77,7 +78,7 @@ def draw_sequence(results, path):
         axes.set_xticks(np.arange(0, RIGHT, 0.1))
         picture = areas(axes, results, snapshot, snapshot.scalar("velocity")[0], 900, cmap=style.part_of("magma_r", 0.06, 0.9),
                         vmin=0, vmax=0.6)
-        axes.set_title(style.at_time(snapshot.time, 1), loc="left", pad=3)
+        axes.set_title(at_time(snapshot.time, 1), loc="left", pad=3)
         if snapshot is results.snapshots[-1]:
             axes.plot(*measured("surface").T, color=style.ACCENT, lw=1.3, label="measured, at rest")
             axes.legend(loc="upper right", fontsize=8)

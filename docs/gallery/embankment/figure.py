@@ -18,6 +18,7 @@ from talus_paths import draw_stress_paths  # noqa: E402
 from talus_results import Results  # noqa: E402
 from talus_sections import spacing_of  # noqa: E402
 from talus_tiles import Frame, tiles  # noqa: E402
+from talus_units import at_time  # noqa: E402
 
 TIMES = (18, 33, 63)  # [s]
 RIGHT, TOP = 50, 16  # [m]
@@ -37,7 +38,7 @@ def draw_section(results, path):
             values = factor * snapshot.scalar(field)[0]
             picture = axes.imshow(np.ma.array(values[np.maximum(owner, 0)], mask=owner < 0), origin="lower", extent=frame.extent(), interpolation="nearest", **colours)
             axes.set(xlim=(0, RIGHT), ylim=(0, TOP), aspect="equal")
-            axes.set_title(style.at_time(snapshot.time, TIMES[-1]), loc="left", pad=3)
+            axes.set_title(at_time(snapshot.time, TIMES[-1]), loc="left", pad=3)
             if t == TIMES[-1]:
                 place = figure.add_axes((axes.get_position().x0 + 0.08, 0.06, 0.3, 0.018))
                 figure.colorbar(picture, cax=place, orientation="horizontal", extend="max").outline.set_visible(False)

@@ -22,8 +22,9 @@ sys.path.insert(0, str(HERE.parents[2] / "src/output/plots"))
 import matplotlib.pyplot as plt  # noqa: E402
 import talus_style as style  # noqa: E402
 from talus_results import Results  # noqa: E402
-from talus_sections import on_top, spacing_of  # noqa: E402
+from talus_sections import spacing_of  # noqa: E402
 from talus_tiles import Frame, tiles  # noqa: E402
+from talus_units import at_time  # noqa: E402
 
 SUCTION = [f"body.sand.retention.{key}" for key in ("curve=van_genuchten", "reference_suction=500", "shape=0.5")] + [
     f"body.sand.relative_permeability.{key}" for key in ("curve=van_genuchten_mualem", "shape=0.5")]
@@ -95,6 +96,16 @@ def block(talus, folder):
     draw_block(folder)
 
 
+def on_top(position, along, aside, up, spacing):
+    """Which particles have no other above them."""
+    column = np.floor(position[:, [along, aside]] / spacing).astype(int)
+    _, number = np.unique(column, axis=0, return_inverse=True)
+    number = number.reshape(-1)
+    highest = np.full(number.max(initial=-1) + 1, -np.inf)
+    np.maximum.at(highest, number, position[:, up])
+    return position[:, up] > highest[number] - 0.9 * spacing
+
+
 def draw_block(folder):
     """The block from above, and its section along the wall at z = 0, at three times."""
     results = Results(folder)
@@ -113,7 +124,7 @@ def draw_block(folder):
             axes.set(xlim=(0, 0.34), ylim=(0, high), aspect="equal", ylabel=("height [m]" if up == 1 else "z [m]") if t == times[0] else "")
             if up == 2:
                 axes.plot([0, 0.2, 0.2], [0.1, 0.1, 0], color=style.INK, lw=0.8, ls=":")
-                axes.set_title(style.at_time(snapshot.time, 1), loc="left", pad=3)
+                axes.set_title(at_time(snapshot.time, 1), loc="left", pad=3)
             if t == times[-1]:
                 box = axes.get_position()
                 place = figure.add_axes((0.92, box.y0, 0.012, box.height))
@@ -158,7 +169,7 @@ def draw_sequence(folder):
         picture = axes.imshow(np.ma.array(values[np.maximum(owner, 0)], mask=owner < 0), origin="lower", extent=frame.extent(), interpolation="nearest",
                               cmap="RdBu_r", vmin=-1000, vmax=1000)
         axes.set(xlim=(0, right), ylim=(0, 0.11), aspect="equal")
-        axes.set_title(style.at_time(snapshot.time, 1), loc="left", pad=3)
+        axes.set_title(at_time(snapshot.time, 1), loc="left", pad=3)
     grid[-1].set_xlabel("distance from the wall [m]")
     place = figure.add_axes((0.91, 0.3, 0.016, 0.4))
     figure.colorbar(picture, cax=place, extend="both").outline.set_visible(False)

@@ -150,10 +150,11 @@ def draw(results, rows, by, path):
     painters = [Painter(one, [one.snapshots[-1]]) for one in results]
     lasts = [one.snapshots[-1] for one in results]
     fields = [field for field in ("displacement", "plastic_strain") if all(last.scalar(field) is not None for last in lasts)]
-    low = style.np.min([painter.corners[0][0] for painter in painters], axis=0)
-    high = style.np.max([painter.corners[0][1] for painter in painters], axis=0)
+    section = painters[0].section
+    low = style.np.min([painter.corners[section][0] for painter in painters], axis=0)
+    high = style.np.max([painter.corners[section][1] for painter in painters], axis=0)
     for painter in painters:
-        painter.corners[0] = (low, high)
+        painter.corners[section] = (low, high)
     columns = len(results)
     wide = (WIDTH - LEFT - RIGHT - BESIDE * (columns - 1)) / columns
     tall = wide * (high[1] - low[1]) / (high[0] - low[0])
@@ -165,12 +166,12 @@ def draw(results, rows, by, path):
         for k, (painter, last, row) in enumerate(zip(painters, lasts, rows)):
             left = LEFT + k * (wide + BESIDE)
             axes = figure.add_axes([left / WIDTH, (top - tall) / height, wide / WIDTH, tall / height])
-            painter._panel(axes, last, field, 0, colours, False)
+            painter._panel(axes, last, field, section, colours)
             load = row["load_time_of_failure_s"]
             how = "stands" if not row["fails"] else "fails" if load is None else f"fails at t = {load:.3g} s"
             axes.set_title(f"{in_words(row, by)}: {how}" if n == 0 else "", loc="left", pad=5)
             if n == len(fields) - 1:
-                axes.set_xlabel("x [m]")
+                axes.set_xlabel(f"{'xyz'[painter.views[section].across]} [m]")
         bar = figure.add_axes([1 - (RIGHT - 0.22) / WIDTH, (top - tall) / height, 0.15 / WIDTH, tall / height])
         figure.colorbar(plt.cm.ScalarMappable(colours.norm, colours.map), cax=bar, extend="max" if colours.beyond else "neither")
         bar.set_title(f"{style.SYMBOL[field]} {colours.unit}".strip(), fontsize=9, pad=6)

@@ -159,6 +159,7 @@ class Painter:
     def __init__(self, results, snapshots, resolution=style.RESOLUTION):
         self.results, self.snapshots, self.resolution = results, snapshots, resolution
         self.views, self.spacing = views_of(results), spacing_of(results)
+        self.section = next(k for k, view in enumerate(self.views) if isinstance(view, View))
         clouds = [snapshot.position() for snapshot in (results.snapshots[0], *snapshots) if len(snapshot.ids())]
         if results.escaped and len(results.escaped.position):
             clouds.append(results.escaped.position)
@@ -242,7 +243,7 @@ class Painter:
     def over_time(self, field, colours, path):
         """All chosen times on one sheet."""
         columns = min(2 if len(self.views) == 1 else 3, len(self.snapshots))
-        return style.save(self._sheet(field, colours, self.snapshots, columns, [[0]] if len(self.views) == 1 else [[0], [2]]), path)
+        return style.save(self._sheet(field, colours, self.snapshots, columns, [[0]] if len(self.views) == 1 else [[0], [self.section]]), path)
 
     def large(self, field, colours, path):
         """The time that says most: the last, unless the field had faded by then."""
@@ -293,7 +294,7 @@ class Painter:
         when = [self.results.when(snapshot), snapshot.stage, *filter(None, [note])] if k == 0 else []
         return when + ([self.views[k].name] if len(self.views) > 1 else [])
 
-    def _panel(self, axes, snapshot, field, k, colours, named_points, alone):
+    def _panel(self, axes, snapshot, field, k, colours, named_points=False, alone=False):
         """One snapshot in one view; `axes` has its final size. A snapshot that is `alone` on its sheet has its dimensions."""
         view, (low, high) = self.views[k], self.corners[k]
         inches = axes.get_position().width * WIDTH

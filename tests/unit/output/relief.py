@@ -10,6 +10,7 @@ import numpy as np
 from PIL import Image
 
 sys.path.insert(0, sys.argv.pop(1))
+import talus_converge  # noqa: E402
 import talus_relief as relief  # noqa: E402
 from talus_ground import Filling, Ground  # noqa: E402
 from talus_results import Thickness  # noqa: E402
@@ -248,18 +249,23 @@ class Pictures(unittest.TestCase):
                 return types.SimpleNamespace(values=np.full((len(start), 1), SPACING**3))
 
             def scalar(self, field):
-                return np.full(len(start), np.linalg.norm(self._way)), "m"
+                return None if field == "plastic_strain" else (np.full(len(start), np.linalg.norm(self._way)), "m")
 
         snapshots = [Snapshot(step) for step in range(3)]
         results = types.SimpleNamespace(snapshots=snapshots, up_axis=lambda: 2, mesh=mesh, escaped=None, history=None, title="slope", when=lambda one: f"t = {one.time} s")
         painter = Painter(results, snapshots, 40)
+        self.assertEqual(painter.views[painter.section].name.partition(" ")[0], "section")
         self.assertEqual([view.name.partition(" at y = ")[0] for view in painter.views], ["from above in front", "cut open", "section", "from above"])
         colours = Colours("displacement", snapshots)
         with tempfile.TemporaryDirectory() as folder:
-            for draw in (painter.large, painter.over_time):
-                with Image.open(draw("displacement", colours, pathlib.Path(folder) / "picture.png")) as picture:
+            path = pathlib.Path(folder) / "picture.png"
+            row = {"fails": False, "load_time_of_failure_s": None, "value": SPACING}
+            for draw in (lambda: painter.large("displacement", colours, path), lambda: painter.over_time("displacement", colours, path),
+                         lambda: painter.frame("displacement", colours, snapshots[1], "real time", path),
+                         lambda: talus_converge.draw([results, results], [row, row], "cells", path)):
+                with Image.open(draw()) as picture:
                     seen = np.asarray(picture.convert("RGB"), float)
-                    self.assertGreater((np.ptp(seen, axis=2) > 60).mean(), 0.02)  # there is colour in it
+                    self.assertGreater((np.ptp(seen, axis=2) > 60).mean(), 0.01)  # there is colour in it
 
 
 if __name__ == "__main__":
