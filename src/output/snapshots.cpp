@@ -11,6 +11,7 @@
 #include "output/hdf5_file.h"
 #include "output/replace_file.h"
 #include "output/together.h"
+#include "paraview_state.h"
 
 namespace talus {
 namespace {
@@ -204,6 +205,7 @@ void RunFile::begin(const RunHeader &header, const MeshPicture &local_mesh, cons
     file.dataset("cell_node", mesh.cell_node, mesh.dimension + 1);
     file.save();
     replace_file(dir_ + "/mesh.xdmf", xdmf_mesh());
+    replace_file(dir_ + "/run.py", paraview_state);
     rest();
   });
 }

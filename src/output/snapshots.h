@@ -5,6 +5,7 @@
 ///     DIR/run/*.h5      what the links lead to: `mesh.h5` and one file per snapshot
 ///     DIR/run.xdmf      what ParaView opens: the particles over time; numbers of cells for it are in run/points.h5
 ///     DIR/mesh.xdmf     the background mesh, for ParaView
+///     DIR/run.py        a state of ParaView that shows both
 ///
 /// Through the links run.h5 reads like one file (`h5py.File("run.h5")["snapshots/000012/stress"]`). A snapshot has the
 /// attributes time [s], step and stage, and what the integrator did up to then (evaluations, rejections, inversions,

@@ -226,6 +226,8 @@ TEST(Snapshots, are_described_to_paraview_in_well_formed_xml) {
   EXPECT_EQ(xdmf.find("<Attribute"), xdmf.find("<Attribute Name=\"plastic_strain\"")) << "what ParaView colours by";
   EXPECT_EQ(count_of(xdmf, "mesh.h5"), 0u);
   EXPECT_EQ(count_of(mesh, "mesh.h5"), 2u);
+  for (const std::string opened : {"run.xdmf", "mesh.xdmf"})
+    EXPECT_EQ(count_of(content(dir + "/run.py"), "\"" + opened + "\""), 1u) << opened;
   const hid_t file = H5Fopen((dir + "/run/points.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   const hid_t set = H5Dopen2(file, "point", H5P_DEFAULT);
   std::vector<long long> point(300);
