@@ -11,15 +11,16 @@
 #include "output/hdf5_file.h"
 #include "output/replace_file.h"
 #include "output/together.h"
+#include "paraview_state.h"
 
 namespace talus {
 namespace {
 
-constexpr const char *mesh_file = "run/mesh.h5";
+constexpr const char *mesh_file = "run/mesh.h5", *points_file = "run/points.h5";
 
-std::string join(const std::vector<std::string> &words) {
+std::string join(const std::vector<std::string> &words, const std::string &between = " ") {
   std::string text;
-  for (const auto &word : words) text += (text.empty() ? "" : " ") + word;
+  for (const auto &word : words) text += (text.empty() ? "" : between) + word;
   return text;
 }
 
@@ -110,14 +111,40 @@ std::string data_item(const std::string &file, const std::string &name, unsigned
   return text.str();
 }
 
-/// ParaView itself names six components xx, yy, zz, xy, yz, xz, but not four.
-std::string paraview_name(const std::string &name, int components) {
-  return components == 4 ? name + " (" + join(component_names(4)) + ")" : name;
+std::string in_xml(const std::string &text) {
+  std::string escaped;
+  for (const char c : text) escaped += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
+  return escaped;
+}
+
+/// What ParaView shows as the name of a field: with the unit, and with the components where ParaView does not name them
+/// itself, as it does with six, in the order xx, yy, zz, xy, yz, xz.
+std::string paraview_name(const std::string &name, const std::string &unit, int components) {
+  std::vector<std::string> details;
+  if (unit != "-") details.push_back(unit);
+  if (components == 4) details.push_back("xx yy zz xy");
+  return details.empty() ? name : name + " (" + join(details, ", ") + ")";
+}
+
+/// Numbers stand for bodies in the files; the name of the field says which: "body (0 sand, 1 clay)".
+std::string name_of_bodies(const std::vector<std::string> &bodies) {
+  std::vector<std::string> numbered;
+  for (std::size_t b = 0; b < bodies.size(); ++b) numbered.push_back(std::to_string(b) + " " + bodies[b]);
+  return "body (" + join(numbered, ", ") + ")";
 }
 
 std::string xdmf_attribute(const std::string &name, const char *type, const std::string &data) {
-  return "        <Attribute Name=\"" + name + "\" AttributeType=\"" + type + "\" Center=\"Node\">" + data +
+  return "      <Attribute Name=\"" + in_xml(name) + "\" AttributeType=\"" + type + "\" Center=\"Node\">" + data +
          "</Attribute>\n";
+}
+
+std::string xdmf_geometry(int dimension, const std::string &data) {
+  return "      <Geometry GeometryType=\"" + std::string(dimension == 2 ? "XY" : "XYZ") + "\">" + data +
+         "</Geometry>\n";
+}
+
+std::string xdmf_file(const std::string &grids) {
+  return "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"3.0\">\n<Domain>\n" + grids + "</Domain>\n</Xdmf>\n";
 }
 
 }  // namespace
@@ -177,6 +204,8 @@ void RunFile::begin(const RunHeader &header, const MeshPicture &local_mesh, cons
     file.attribute("node_position", "unit", std::string("m"));
     file.dataset("cell_node", mesh.cell_node, mesh.dimension + 1);
     file.save();
+    replace_file(dir_ + "/mesh.xdmf", xdmf_mesh());
+    replace_file(dir_ + "/run.py", paraview_state);
     rest();
   });
 }
@@ -210,7 +239,7 @@ RunFile::Entry RunFile::write_file(const Snapshot &all, const std::string &numbe
     file.attribute(column.name, "unit", column.unit);
     file.attribute(column.name, "meaning", column.meaning);
     file.attribute(column.name, "components", join(component_names(column.components)));
-    entry.columns.push_back({column.name, column.components});
+    entry.columns.push_back({column.name, column.unit, column.components});
   }
   file.save();
   return entry;
@@ -220,7 +249,8 @@ RunFile::Entry RunFile::read_entry(const std::string &number) const {
   const Hdf5Reader file(dir_ + "/" + snapshot_file(number));
   Entry entry{number, file.number("/", "time"), file.integer("/", "step"), file.shape("id").at(0), {}};
   for (const auto &name : file.names("/"))
-    if (name != "id" && name != "body") entry.columns.push_back({name, static_cast<int>(file.shape(name).at(1))});
+    if (name != "id" && name != "body")
+      entry.columns.push_back({name, file.text(name, "unit"), static_cast<int>(file.shape(name).at(1))});
   return entry;
 }
 
@@ -229,8 +259,24 @@ void RunFile::share_last_step() {
   check_mpi(MPI_Bcast(&last_step_, 1, MPI_LONG_LONG, 0, comm_), "sharing the last step");
 }
 
+/// Writes the numbers of the points, from which ParaView's default reader makes cells of one point each: it draws no
+/// particle without. Every snapshot reads as many of them as it has particles, so they are written only when there are
+/// more particles than ever before.
+void RunFile::write_points() {
+  unsigned long long most = 1;
+  for (const auto &entry : entries_) most = std::max(most, entry.particles);
+  if (most <= points_) return;
+  std::vector<long long> number(most);
+  std::iota(number.begin(), number.end(), 0);
+  Hdf5Builder file(dir_ + "/" + points_file);
+  file.dataset("point", number, 1);
+  file.save();
+  points_ = most;
+}
+
 /// Writes run.h5 and run.xdmf anew. They hold no particle data, so this is cheap.
-void RunFile::write_index() const {
+void RunFile::write_index() {
+  write_points();
   Hdf5Builder file(dir_ + "/run.h5");
   file.attribute("/", "title", header_.title);
   file.attribute("/", "program", header_.program);
@@ -244,50 +290,45 @@ void RunFile::write_index() const {
   replace_file(dir_ + "/run.xdmf", xdmf());
 }
 
-/// Each time has two blocks, particles and background mesh, because not every reader of XDMF shows a mesh that is
-/// stated once.
+/// Particles over time and nothing else: of a collection of particles and mesh ParaView's default reader shows all
+/// times at once, coloured by nothing.
 std::string RunFile::xdmf() const {
   std::ostringstream text;
   text.precision(17);
-  text << "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"3.0\">\n<Domain>\n"
-       << "  <Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  text << "  <Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
   for (const auto &entry : entries_)
-    text << "    <Grid Name=\"" << entry.number
-         << "\" GridType=\"Collection\" CollectionType=\"Spatial\">\n      <Time Value=\"" << entry.time << "\"/>\n"
-         << xdmf_particles(entry) << xdmf_mesh() << "    </Grid>\n";
-  text << "  </Grid>\n</Domain>\n</Xdmf>\n";
-  return text.str();
+    text << "    <Grid Name=\"" << entry.number << "\">\n      <Time Value=\"" << entry.time << "\"/>\n"
+         << xdmf_particles(entry) << "    </Grid>\n";
+  text << "  </Grid>\n";
+  return xdmf_file(text.str());
 }
 
+/// ParaView colours by the first scalar: by plastic or shear strain where the soil has it.
 std::string RunFile::xdmf_particles(const Entry &entry) const {
   const std::string file = snapshot_file(entry.number), rows = std::to_string(entry.particles);
-  std::string text =
-      "      <Grid Name=\"particles\">\n        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"" + rows +
-      "\" NodesPerElement=\"1\"/>\n";
-  for (const char *name : {"id", "body"})
-    text += xdmf_attribute(name, "Scalar", data_item(file, name, entry.particles, 1, "Int"));
-  for (const auto &[name, components] : entry.columns) {
+  std::string text = "      <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"" + rows +
+                     "\" NodesPerElement=\"1\">" + data_item(points_file, "point", entry.particles, 1, "Int") +
+                     "</Topology>\n";
+  std::vector<Shape> columns = entry.columns;
+  std::ranges::stable_partition(
+      columns, [](const Shape &column) { return column.name == "plastic_strain" || column.name == "shear_strain"; });
+  for (const auto &[name, unit, components] : columns) {
     const std::string data = data_item(file, name, entry.particles, components);
-    if (name == "position")
-      text += "        <Geometry GeometryType=\"" + std::string(components == 2 ? "XY" : "XYZ") + "\">" + data +
-              "</Geometry>\n";
-    else if (components == 1)
-      text += xdmf_attribute(name, "Scalar", data);
-    else if (components <= 3)
-      text += xdmf_attribute(name, "Vector", data);
-    else  // as a matrix, because ParaView's readers interpret the type Tensor6 differently
-      text += xdmf_attribute(paraview_name(name, components), "Matrix", data);
+    // a tensor is a matrix, because ParaView's readers interpret the type Tensor6 differently
+    const char *type = components == 1 ? "Scalar" : components <= 3 ? "Vector" : "Matrix";
+    text += name == "position" ? xdmf_geometry(components, data)
+                               : xdmf_attribute(paraview_name(name, unit, components), type, data);
   }
-  return text + "      </Grid>\n";
+  text += xdmf_attribute(name_of_bodies(header_.bodies), "Scalar", data_item(file, "body", entry.particles, 1, "Int"));
+  return text + xdmf_attribute("id", "Scalar", data_item(file, "id", entry.particles, 1, "Int"));
 }
 
 std::string RunFile::xdmf_mesh() const {
-  const bool flat = dimension_ == 2;
-  return "      <Grid Name=\"background_mesh\">\n        <Topology TopologyType=\"" +
-         std::string(flat ? "Triangle" : "Tetrahedron") + "\" NumberOfElements=\"" + std::to_string(cells_) + "\">" +
-         data_item(mesh_file, "cell_node", cells_, dimension_ + 1, "Int") +
-         "</Topology>\n        <Geometry GeometryType=\"" + (flat ? "XY" : "XYZ") + "\">" +
-         data_item(mesh_file, "node_position", nodes_, dimension_) + "</Geometry>\n      </Grid>\n";
+  return xdmf_file(
+      "    <Grid Name=\"mesh\">\n      <Topology TopologyType=\"" +
+      std::string(dimension_ == 2 ? "Triangle" : "Tetrahedron") + "\" NumberOfElements=\"" + std::to_string(cells_) +
+      "\">" + data_item(mesh_file, "cell_node", cells_, dimension_ + 1, "Int") + "</Topology>\n" +
+      xdmf_geometry(dimension_, data_item(mesh_file, "node_position", nodes_, dimension_)) + "    </Grid>\n");
 }
 
 }  // namespace talus

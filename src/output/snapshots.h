@@ -3,7 +3,9 @@
 ///
 ///     DIR/run.h5        index: scene, program version, body names, and links `/mesh` and `/snapshots/000012`
 ///     DIR/run/*.h5      what the links lead to: `mesh.h5` and one file per snapshot
-///     DIR/run.xdmf      what ParaView opens: particles and background mesh over time
+///     DIR/run.xdmf      what ParaView opens: the particles over time; numbers of cells for it are in run/points.h5
+///     DIR/mesh.xdmf     the background mesh, for ParaView
+///     DIR/run.py        a state of ParaView that shows both
 ///
 /// Through the links run.h5 reads like one file (`h5py.File("run.h5")["snapshots/000012/stress"]`). A snapshot has the
 /// attributes time [s], step and stage, and what the integrator did up to then (evaluations, rejections, inversions,
@@ -61,7 +63,7 @@ class RunFile {
 
  private:
   struct Shape {
-    std::string name;
+    std::string name, unit;
     int components;
   };
   struct Entry {  ///< of the index and of the XDMF file: one snapshot
@@ -77,7 +79,8 @@ class RunFile {
   std::string snapshot_file(const std::string &number) const { return "run/" + number + ".h5"; }
   Entry write_file(const Snapshot &all, const std::string &number) const;
   Entry read_entry(const std::string &number) const;
-  void write_index() const;
+  void write_points();
+  void write_index();
   std::string xdmf() const;
   std::string xdmf_mesh() const;
   std::string xdmf_particles(const Entry &entry) const;
@@ -90,6 +93,7 @@ class RunFile {
   RunHeader header_;
   int dimension_ = 2;
   unsigned long long nodes_ = 0, cells_ = 0;
+  unsigned long long points_ = 0;  ///< how many numbers of points are written
   std::vector<Entry> entries_;
   std::vector<std::string> damaged_;
 };

@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <sstream>
 #include <stdexcept>
 
 #include "fixtures.h"
@@ -175,20 +176,64 @@ TEST(Snapshots, show_the_mesh_of_all_ranks) {
   }
 }
 
+/// Every reference of an XDMF file, "file:/dataset", leads to a dataset with the stated numbers of columns and at least
+/// the stated number of rows (exactly that number, but for the numbers of points).
+void expect_references(const std::string &dir, const std::string &xdmf) {
+  const std::string start = "<DataItem Dimensions=\"";
+  std::size_t references = 0;
+  for (auto at = xdmf.find(start); at != std::string::npos; at = xdmf.find(start, at + 1), ++references) {
+    hsize_t stated[2], there[2];
+    std::istringstream(xdmf.substr(at + start.size(), 40)) >> stated[0] >> stated[1];
+    const auto text = xdmf.find('>', at) + 1;
+    const std::string reference = xdmf.substr(text, xdmf.find('<', text) - text);
+    const auto colon = reference.find(":/");
+    const hid_t file = H5Fopen((dir + "/" + reference.substr(0, colon)).c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    ASSERT_GE(file, 0) << reference;
+    const hid_t set = H5Dopen2(file, reference.substr(colon + 1).c_str(), H5P_DEFAULT), space = H5Dget_space(set);
+    ASSERT_EQ(H5Sget_simple_extent_dims(space, there, nullptr), 2) << reference;
+    EXPECT_EQ(there[1], stated[1]) << reference;
+    if (reference == "run/points.h5:/point")
+      EXPECT_GE(there[0], stated[0]);
+    else
+      EXPECT_EQ(there[0], stated[0]) << reference;
+    H5Sclose(space), H5Dclose(set), H5Fclose(file);
+  }
+  EXPECT_GT(references, 0u);
+}
+
 TEST(Snapshots, are_described_to_paraview_in_well_formed_xml) {
   const SharedFolder folder;
-  RunFile run(MPI_COMM_WORLD, folder / "run", small_header(), small_mesh());
+  const std::string dir = folder / "run";
+  RunHeader header = small_header();
+  header.bodies = {"sand & \"silt\"", "clay <2>"};
+  RunFile run(MPI_COMM_WORLD, dir, header, small_mesh());
   run.write(small_snapshot(0, 0));
-  run.write(small_snapshot(0.1, 10));
+  run.write(small_snapshot(0.1, 10, 300));
+  run.write(small_snapshot(0.2, 20, 100));
   if (world_rank()) return;
-  const std::string xdmf = content(folder / "run/run.xdmf");
-  for (const std::string tag : {"Grid", "Attribute", "DataItem", "Geometry", "Domain", "Xdmf"})
-    EXPECT_EQ(count_of(xdmf, "<" + tag + " ") + count_of(xdmf, "<" + tag + ">"), count_of(xdmf, "</" + tag + ">"))
-        << tag;
-  EXPECT_EQ(times_in(xdmf), (Times{{"000000", 0}, {"000001", 0.1}}));  // in all digits
+  const std::string xdmf = content(dir + "/run.xdmf"), mesh = content(dir + "/mesh.xdmf");
+  for (const std::string &text : {xdmf, mesh}) {
+    for (const std::string tag : {"Grid", "Attribute", "DataItem", "Topology", "Geometry", "Domain", "Xdmf"})
+      EXPECT_EQ(count_of(text, "<" + tag + " ") + count_of(text, "<" + tag + ">"), count_of(text, "</" + tag + ">"))
+          << tag;
+    expect_references(dir, text);
+  }
+  EXPECT_EQ(times_in(xdmf), (Times{{"000000", 0}, {"000001", 0.1}, {"000002", 0.2}}));  // in all digits
   EXPECT_EQ(count_of(xdmf, "run/000001.h5:/position"), 1u);
-  EXPECT_EQ(count_of(xdmf, "Name=\"stress (xx yy zz xy)\""), 2u);
-  EXPECT_EQ(count_of(xdmf, "background_mesh"), 2u);
+  EXPECT_EQ(count_of(xdmf, "Name=\"displacement (m)\""), 3u);
+  EXPECT_EQ(count_of(xdmf, "Name=\"stress (Pa, xx yy zz xy)\""), 3u);
+  EXPECT_EQ(count_of(xdmf, "Name=\"body (0 sand &amp; &quot;silt&quot;, 1 clay &lt;2>)\""), 3u);
+  EXPECT_EQ(xdmf.find("<Attribute"), xdmf.find("<Attribute Name=\"plastic_strain\"")) << "what ParaView colours by";
+  EXPECT_EQ(count_of(xdmf, "mesh.h5"), 0u);
+  EXPECT_EQ(count_of(mesh, "mesh.h5"), 2u);
+  for (const std::string opened : {"run.xdmf", "mesh.xdmf"})
+    EXPECT_EQ(count_of(content(dir + "/run.py"), "\"" + opened + "\""), 1u) << opened;
+  const hid_t file = H5Fopen((dir + "/run/points.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  const hid_t set = H5Dopen2(file, "point", H5P_DEFAULT);
+  std::vector<long long> point(300);
+  EXPECT_GE(H5Dread(set, H5T_NATIVE_LLONG, H5S_ALL, H5S_ALL, H5P_DEFAULT, point.data()), 0);
+  for (std::size_t p = 0; p < point.size(); ++p) EXPECT_EQ(point[p], static_cast<long long>(p));
+  H5Dclose(set), H5Fclose(file);
 }
 
 TEST(Snapshots, of_a_resumed_run_follow_those_before_its_start) {
@@ -207,6 +252,8 @@ TEST(Snapshots, of_a_resumed_run_follow_those_before_its_start) {
   expect_snapshot(dir, "000002", 0.15);
   EXPECT_FALSE(std::filesystem::exists(dir + "/run/000003.h5"));
   EXPECT_EQ(times_in(content(dir + "/run.xdmf")), (Times{{"000000", 0}, {"000001", 0.1}, {"000002", 0.15}}));
+  EXPECT_EQ(count_of(content(dir + "/run.xdmf"), "Name=\"stress (Pa, xx yy zz xy)\""), 3u);  // also of those before
+  expect_references(dir, content(dir + "/run.xdmf"));
 }
 
 TEST(Snapshots, of_an_older_run_give_way) {
