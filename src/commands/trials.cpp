@@ -21,6 +21,7 @@
 
 #include "base/child_environment.h"
 #include "commands/commands.h"
+#include "mesh_source.h"
 #include "scene/reader.h"
 #include "simulation.h"
 
@@ -35,14 +36,18 @@ std::string contents(const std::string &path) {
   return text.str();
 }
 
-/// What a run depends on: DIR/trial begins with it. The number stands for the texts of scene and mesh.
+/// What a run depends on: DIR/trial begins with it. The number stands for the texts of scene and mesh, and for the
+/// state at which the run starts.
 std::string description(const TrialPlan &plan, const Trial &trial) {
   std::vector<std::string> all = plan.set;
   all.insert(all.end(), trial.overrides.begin(), trial.overrides.end());
   const Scene scene = read_scene(plan.scene, all);
-  const std::string mesh = scene.mesh.file.empty() ? scene.mesh.section : scene.mesh.file;
+  const std::string mesh = scene.mesh.file.empty() ? scene.mesh.section : scene.mesh.file,
+                    start = scene.start_from.folder.empty() ? "" : scene.start_from.folder + "/checkpoint/header";
   return joined(plan.command) + " " + plan.scene + "\n" + joined(all) + "\n" +
-         std::to_string(std::hash<std::string>{}(scene.source + contents(mesh))) + "\n";
+         std::to_string(std::hash<std::string>{}(scene.source + contents(beside_scene(scene, mesh)) +
+                                                 contents(beside_scene(scene, start)))) +
+         "\n";
 }
 
 bool resume(const TrialPlan &plan, const std::string &described, Trial &trial) {
