@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <petscsys.h>
 #include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -12,6 +13,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -29,6 +31,8 @@ namespace talus {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char *starter_variable = "TALUS_STARTER";  // process that has started this one as a trial
 
 std::string contents(const std::string &path) {
   std::ostringstream text;
@@ -83,6 +87,8 @@ pid_t start(const TrialPlan &plan, const Trial &trial) {
   posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_addopen(&actions, 2, (trial.folder + "/screen").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
   auto environment = environment_without_mpi();
+  std::string starter = std::string(starter_variable) + "=" + std::to_string(getpid());
+  environment.insert(environment.begin(), starter.data());
   pid_t child = -1;
   const int error = posix_spawn(&child, "/proc/self/exe", &actions, nullptr, argv.data(), environment.data());
   posix_spawn_file_actions_destroy(&actions);
@@ -155,6 +161,15 @@ std::string joined(const std::vector<std::string> &words) {
   std::string text;
   for (const std::string &word : words) text += (text.empty() ? "" : " ") + word;
   return text;
+}
+
+void end_with_starter() {
+  const char *given = std::getenv(starter_variable);
+  if (!given) return;
+  const std::string starter = given;
+  unsetenv(starter_variable);
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (std::to_string(getppid()) != starter) raise(SIGTERM);  // it was gone before that
 }
 
 void run_trials(const TrialPlan &plan, const std::vector<Trial *> &trials) {
