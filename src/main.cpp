@@ -16,6 +16,7 @@
 
 #include "base/version.h"
 #include "commands/commands.h"
+#include "commands/trials.h"
 #include "output/pictures.h"
 #include "scene/words.h"
 #include "simulation.h"
@@ -110,6 +111,7 @@ bool can_write_temporary_files() {
 }  // namespace
 
 int main(int argc, char **argv) {
+  talus::end_with_starter();
   if (!can_write_temporary_files()) return 1;
   // everything behind a lone "--" is PETSc's
   int own = argc;

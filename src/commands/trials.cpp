@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <petscsys.h>
 #include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -12,6 +13,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -21,6 +23,7 @@
 
 #include "base/child_environment.h"
 #include "commands/commands.h"
+#include "mesh_source.h"
 #include "scene/reader.h"
 #include "simulation.h"
 
@@ -29,20 +32,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char *starter_variable = "TALUS_STARTER";  // process that has started this one as a trial
+
 std::string contents(const std::string &path) {
   std::ostringstream text;
   text << std::ifstream(path).rdbuf();
   return text.str();
 }
 
-/// What a run depends on: DIR/trial begins with it. The number stands for the texts of scene and mesh.
+/// What a run depends on: DIR/trial begins with it. The number stands for the texts of scene and mesh, and for the
+/// state at which the run starts.
 std::string description(const TrialPlan &plan, const Trial &trial) {
   std::vector<std::string> all = plan.set;
   all.insert(all.end(), trial.overrides.begin(), trial.overrides.end());
   const Scene scene = read_scene(plan.scene, all);
-  const std::string mesh = scene.mesh.file.empty() ? scene.mesh.section : scene.mesh.file;
+  const std::string mesh = scene.mesh.file.empty() ? scene.mesh.section : scene.mesh.file,
+                    start = scene.start_from.folder.empty() ? "" : scene.start_from.folder + "/checkpoint/header";
   return joined(plan.command) + " " + plan.scene + "\n" + joined(all) + "\n" +
-         std::to_string(std::hash<std::string>{}(scene.source + contents(mesh))) + "\n";
+         std::to_string(std::hash<std::string>{}(scene.source + contents(beside_scene(scene, mesh)) +
+                                                 contents(beside_scene(scene, start)))) +
+         "\n";
 }
 
 bool resume(const TrialPlan &plan, const std::string &described, Trial &trial) {
@@ -78,6 +87,8 @@ pid_t start(const TrialPlan &plan, const Trial &trial) {
   posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_addopen(&actions, 2, (trial.folder + "/screen").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
   auto environment = environment_without_mpi();
+  std::string starter = std::string(starter_variable) + "=" + std::to_string(getpid());
+  environment.insert(environment.begin(), starter.data());
   pid_t child = -1;
   const int error = posix_spawn(&child, "/proc/self/exe", &actions, nullptr, argv.data(), environment.data());
   posix_spawn_file_actions_destroy(&actions);
@@ -150,6 +161,15 @@ std::string joined(const std::vector<std::string> &words) {
   std::string text;
   for (const std::string &word : words) text += (text.empty() ? "" : " ") + word;
   return text;
+}
+
+void end_with_starter() {
+  const char *given = std::getenv(starter_variable);
+  if (!given) return;
+  const std::string starter = given;
+  unsetenv(starter_variable);
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (std::to_string(getppid()) != starter) raise(SIGTERM);  // it was gone before that
 }
 
 void run_trials(const TrialPlan &plan, const std::vector<Trial *> &trials) {

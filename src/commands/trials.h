@@ -42,6 +42,10 @@ std::string joined(const std::vector<std::string> &words);
 /// SIGTERM, which end the runs under way too; called again, it continues with the missing runs.
 void run_trials(const TrialPlan &plan, const std::vector<Trial *> &trials);
 
+/// To be called first by every program: a run that run_trials has started ends by SIGTERM when the program that started
+/// it is gone, even killed. Programs that the run starts itself are not concerned.
+void end_with_starter();
+
 /// Refuses to start on several ranks (SceneError): the runs are processes of their own.
 void require_one_rank(const std::string &command);
 

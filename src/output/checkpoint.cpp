@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char *first_line = "Talus checkpoint 3\n";
+constexpr const char *first_line = "Talus checkpoint 4\n";
 
 std::string header_file(const std::string &dir) { return dir + "/checkpoint/header"; }
 
@@ -68,7 +68,7 @@ void together_or_refuse(MPI_Comm comm, Work &&work) {
   try {
     together(comm, work);
   } catch (const std::runtime_error &error) {
-    throw std::invalid_argument(std::string("the run cannot be resumed: ") + error.what());
+    throw std::invalid_argument(error.what());
   }
 }
 
@@ -97,9 +97,7 @@ void write_checkpoint(MPI_Comm comm, const std::string &dir, CheckpointHeader he
 CheckpointHeader read_checkpoint_header(MPI_Comm comm, const std::string &dir) {
   CheckpointHeader header;
   together_or_refuse(comm, [&] {
-    if (!fs::exists(header_file(dir)))
-      throw std::runtime_error(dir + " contains no checkpoint; run the scene without --resume" +
-                               (fs::exists(dir + "/history.csv") ? ", with --force to replace what is there" : ""));
+    if (!fs::exists(header_file(dir))) throw std::runtime_error(dir + " contains no checkpoint");
     Archive archive(load(header_file(dir)));
     serialize(archive, header);
   });

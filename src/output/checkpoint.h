@@ -24,8 +24,8 @@ struct CheckpointHeader {
 /// path and cause.
 void write_checkpoint(MPI_Comm comm, const std::string &dir, CheckpointHeader header, const Archive &state);
 
-/// The header of the checkpoint in `dir`. Throws std::invalid_argument if there is none, it is damaged, or of another
-/// version.
+/// The header of the checkpoint in `dir`. Throws std::invalid_argument, with the cause alone, if there is none, it is
+/// damaged, or of another version.
 CheckpointHeader read_checkpoint_header(MPI_Comm comm, const std::string &dir);
 
 /// The state of this rank in the checkpoint of that header. Throws std::invalid_argument if it is missing or damaged.

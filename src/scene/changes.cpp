@@ -10,6 +10,10 @@ namespace {
 
 void compare(const toml::node *before, const toml::node *now, const std::string &path,
              std::vector<std::string> &changed) {
+  static const toml::table nothing;  // a table of the scene that is not there says what an empty one says
+  const bool whole = !path.empty() && path.find('.') == std::string::npos;
+  if (whole && !before && now && now->is_table()) before = &nothing;
+  if (whole && !now && before && before->is_table()) now = &nothing;
   const auto below = [&](const std::string &key) { return path.empty() ? key : path + "." + key; };
   if (before && now && before->is_table() && now->is_table()) {
     std::set<std::string> keys;

@@ -37,6 +37,10 @@ class Checks {
     }
     bodies_that_come_and_go();
     factor_of_safety();
+    if (scene_.start_from.reset_displacement && scene_.start_from.folder.empty())
+      reader_.complain(
+          "start_from.reset_displacement",
+          "has no effect without start_from.folder, the results of the run at whose state this one starts");
   }
 
  private:

@@ -508,6 +508,21 @@ struct Output {
   }
 };
 
+/// The run at whose state this one starts.
+struct StartFrom {
+  std::string folder;               ///< of its results; empty: the run starts at the initial state of the scene
+  bool reset_displacement = false;  ///< displacements, velocities and plastic strain are zeroed first
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.text("folder", folder,
+           "results of another run of the same mesh, bodies and phases, relative to the scene: this run starts at the "
+           "state of its last checkpoint, which is its end if it has ended, at time 0 and with stages of its own");
+    v.flag("reset_displacement", reset_displacement,
+           "set displacement, velocity and plastic strain to zero at the start, as reset_displacement of a stage does "
+           "at its end");
+  }
+};
+
 struct Scene {
   std::string title;
   std::string file;                         ///< path of the scene, for messages and relative paths; not a key
@@ -516,6 +531,7 @@ struct Scene {
   PhaseModel phases = PhaseModel::dry;
   int dimension = 2;
   std::vector<double> gravity;  ///< components [m/s2]; one number points down y; empty: no gravity
+  StartFrom start_from;
   MeshSource mesh;
   std::vector<BodySource> body;
   std::vector<BoundarySource> boundary;
@@ -540,6 +556,7 @@ struct Scene {
     v.integer("dimension", dimension, Range{2, 3}, "2: plane strain on triangles, 3: tetrahedra");
     v.point("gravity", gravity, metre_per_second_squared,
             "acceleration of gravity, one component per dimension; a single number acts along -y");
+    v.table("start_from", start_from, "start at the state of another run");
     v.table("mesh", mesh, "background mesh");
     v.named("body", body, "soils, [body.NAME]");
     v.named("boundary", boundary, "conditions on named groups of facets, [boundary.NAME]");

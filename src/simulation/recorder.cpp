@@ -314,6 +314,10 @@ void Recorder<dim>::write_history() {
   require(of_.world.motion->balance(of_.clock.time, &run.balance));
   if (phases_.liquid) {
     require(of_.world.motion->fluid_ledger(run.fluids.data()));
+    if (of_.clock.time == 0) fluids_before_ = run.fluids;
+    fluids_before_.resize(run.fluids.size());
+    for (std::size_t a = 0; a < run.fluids.size(); ++a)
+      run.fluids[a].out -= fluids_before_[a].out, run.fluids[a].prescribed -= fluids_before_[a].prescribed;
     if (first_ledger_.empty())
       for (std::size_t a = 0; a < run.fluids.size(); ++a) first_ledger_.push_back(run.owned(a));
     run.first_fluid = first_ledger_;
@@ -338,6 +342,9 @@ void Recorder<dim>::write_history() {
   const WorkDone &done = of_.world.motion->work();
   work.insert(work.end(), {done.gravity, done.imposed, done.damping});
   MPI_Allreduce(MPI_IN_PLACE, work.data(), static_cast<int>(work.size()), MPI_DOUBLE, MPI_SUM, of_.world.comm);
+  if (of_.clock.time == 0) work_before_ = work;
+  work_before_.resize(work.size());
+  for (std::size_t k = 0; k < work.size(); ++k) work[k] -= work_before_[k];
   for (size_t s = 0; s < run.boundaries.size(); ++s) run.boundaries[s].work = work[s];
   run.work = {work.end()[-3], work.end()[-2], work.end()[-1]};
   if (of_.clock.time == 0) first_energy_ = run.balance.kinetic + run.balance.strain;
@@ -423,9 +430,16 @@ std::string tie_of(const std::string &table) {
 /// stages last that have not ended.
 template <int dim>
 CheckpointHeader Recorder<dim>::check_checkpoint() {
-  const CheckpointHeader found = read_checkpoint_header(of_.world.comm, options_.directory),
-                         mine = checkpoint_header(-1);
   const std::string refusal = "the run in " + options_.directory + " cannot be resumed: ";
+  CheckpointHeader found, mine = checkpoint_header(-1);
+  try {
+    found = read_checkpoint_header(of_.world.comm, options_.directory);
+  } catch (const std::invalid_argument &error) {
+    throw SceneError(refusal + error.what() + "; run the scene without --resume" +
+                     (std::filesystem::exists(options_.directory + "/history.csv")
+                          ? ", with --force to replace what is there"
+                          : ""));
+  }
   if (found.program != mine.program)
     throw SceneError(refusal + "it is one of " + found.program + ", this is " + mine.program);
   changed_ = changed_keys(found.scene, mine.scene);
@@ -452,7 +466,7 @@ CheckpointHeader Recorder<dim>::check_checkpoint() {
 template <int dim>
 void Recorder<dim>::serialize(Archive &archive) {
   archive.serialize("results", last_row_step_, last_row_time_, snapshots_, impulse_time_, first_ledger_, first_energy_,
-                    told_escaped_);
+                    work_before_, fluids_before_, told_escaped_);
   point_rows_.serialize(archive);
   of_.lines.serialize(archive);
 }

@@ -100,9 +100,11 @@ class Recorder {
   HistoryTable history_;
   std::vector<Event> events_;
   std::unique_ptr<Files> results_;
-  std::vector<double> first_ledger_;  ///< fluid masses at the start [kg]
-  double first_energy_ = 0;           ///< [J]
-  double impulse_time_ = 0;           ///< since when forces are means [s]
+  std::vector<double> first_ledger_;        ///< fluid masses at the start [kg]
+  double first_energy_ = 0;                 ///< [J]
+  std::vector<double> work_before_;         ///< done before the run, where it starts at the state of another [J]
+  std::vector<FluidLedger> fluids_before_;  ///< likewise what had passed the boundaries
+  double impulse_time_ = 0;                 ///< since when forces are means [s]
   PointRows<dim> point_rows_;
   std::vector<std::string> changed_;  ///< keys of the scene that are others than before the run was resumed
   double told_escaped_ = 0;           ///< particles that had left when the log last said so

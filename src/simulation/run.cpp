@@ -4,7 +4,9 @@
 
 #include <filesystem>
 
+#include "mesh_source.h"
 #include "scene/reader.h"
+#include "simulation/start_from.h"
 
 namespace talus {
 
@@ -18,11 +20,14 @@ Run<dim>::Run(MPI_Comm comm, const Scene &of, const RunOptions &with, const std:
       lines(world),
       dynamics((world.take_out_later_bodies(), world), clock, integrator),
       statics(world, clock),
-      recorder({world, clock, dynamics, statics, points, lines}, options) {}
+      recorder({world, clock, dynamics, statics, points, lines}, options) {
+  if (!scene.start_from.folder.empty() && !options.resume) start_from_other_run();
+}
 
 template <int dim>
 void Run<dim>::begin_next_stage() {
   progress = StageProgress{progress.number + 1, clock.time};
+  progress.resets = stage().reset_displacement;
   stop = make_stop_criterion<dim>(stage());
   dynamics.begin_stage();
 }
@@ -41,17 +46,36 @@ void Run<dim>::hand_to_particles() {
   if (world.phases.liquid) recorder.recount_fluids();
 }
 
+template <int dim>
+void Run<dim>::reset_displacement() {
+  if (statics.current()) statics.problem().soil().reset_displacement();
+  world.reset_displacement(clock.time);
+}
+
+/// What does not depend on stages, integrator and output of the scene, and so may be read by a run with others.
+template <int dim>
+PetscErrorCode Run<dim>::serialize_state(Archive &archive) {
+  PetscFunctionBeginUser;
+  unsigned long long mesh = world.mesh_fingerprint();
+  archive.serialize("mesh", mesh);
+  int differs = mesh != world.mesh_fingerprint();
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &differs, 1, MPI_INT, MPI_MAX, world.comm));
+  if (differs) throw std::invalid_argument("its mesh was another one; has the section or mesh file changed?");
+  clock.serialize(archive);
+  archive.serialize("stage", progress);
+  PetscCall(world.serialize(archive));
+  statics.serialize(archive);
+  PetscFunctionReturn(0);
+}
+
 /// The state of this rank; the scene gives the rest. Collective.
 template <int dim>
 PetscErrorCode Run<dim>::serialize(Archive &archive) {
   PetscFunctionBeginUser;
-  clock.serialize(archive);
-  archive.serialize("stage", progress);
+  PetscCall(serialize_state(archive));
   if (archive.reading()) stop = make_stop_criterion<dim>(stage());
   stop->serialize(archive);
   recorder.serialize(archive);
-  PetscCall(world.serialize(archive));
-  statics.serialize(archive);
   dynamics.serialize(archive);
   PetscFunctionReturn(0);
 }
@@ -60,8 +84,6 @@ template <int dim>
 void Run<dim>::write_checkpoint() {
   if (!recorder.writes() || !options.checkpoints) return;
   Archive archive;
-  unsigned long long mesh = world.mesh_fingerprint();
-  archive.serialize("mesh", mesh);
   require(serialize(archive));
   recorder.write_checkpoint(progress.number, archive);
 }
@@ -70,17 +92,51 @@ template <int dim>
 void Run<dim>::resume() {
   const CheckpointHeader found = recorder.check_checkpoint();
   auto folder = std::make_unique<ResultsFolder>(world.comm, options.directory, FolderUse::resume);
-  Archive archive = read_checkpoint(world.comm, options.directory, found);
-  unsigned long long mesh = 0;
-  archive.serialize("mesh", mesh);
-  int differs = mesh != world.mesh_fingerprint();
-  MPI_Allreduce(MPI_IN_PLACE, &differs, 1, MPI_INT, MPI_MAX, world.comm);
-  if (differs)
-    throw SceneError("the run in " + options.directory +
-                     " cannot be resumed: its mesh was another one; has the section or mesh file changed?");
-  require(serialize(archive));
+  try {
+    Archive archive = read_checkpoint(world.comm, options.directory, found);
+    require(serialize(archive));
+  } catch (const std::invalid_argument &error) {
+    throw SceneError("the run in " + options.directory + " cannot be resumed: " + error.what());
+  }
   recorder.take_checkpoint(found);
   recorder.append(std::move(folder));
+}
+
+/// A remap makes that what nodes and cells hold comes about anew, at time 0 and with the keys of this scene.
+template <int dim>
+void Run<dim>::start_from_other_run() {
+  const std::string folder = beside_scene(scene, scene.start_from.folder);
+  std::error_code missing;
+  if (!options.directory.empty() && std::filesystem::equivalent(folder, options.directory, missing))
+    scene.complain("start_from.folder", "must not be the folder of this run's own results; choose another one with -o");
+  try {
+    const CheckpointHeader found = read_checkpoint_header(world.comm, folder);
+    const std::vector<std::string> changed = check_start(scene, found, recorder.checkpoint_header(-1));
+    const std::vector<char> varies = world.strength_varies();
+    for (std::size_t b = 0; b < varies.size(); ++b)
+      if (varies[b]) check_strength_by_place(scene, scene.body[b].name, changed);
+    Archive archive = read_checkpoint(world.comm, folder, found);
+    try {
+      require(serialize_state(archive));
+    } catch (const std::runtime_error &error) {
+      throw std::invalid_argument(std::string("its particles bring other fields (") + error.what() +
+                                  "); strength that varies with place there must do so here");
+    }
+    std::ostringstream from;
+    from << "starts at the state of the run in " << folder << ", t = " << clock.time << " s, step " << clock.steps;
+    if (world.motion->gathered()) require(world.release(clock.time));
+    if (scene.start_from.reset_displacement || (progress.resets && (progress.met || progress.told)))
+      reset_displacement(), from << ", with displacements set to zero";
+    start_notes.push_back(from.str());
+    for (const std::string &key : changed) start_notes.push_back("since then the scene has another " + key);
+  } catch (const SceneError &) {
+    throw;
+  } catch (const std::invalid_argument &error) {
+    scene.complain("start_from.folder",
+                   std::string("must name the results of a run at whose state this one can start: ") + error.what());
+  }
+  world.escaped = {};
+  clock = {}, progress = {};
 }
 
 /// The checkpoint comes first: what a run writes because it is interrupted must not be in the way when it goes on.

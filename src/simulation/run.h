@@ -7,10 +7,11 @@ namespace talus {
 
 /// How far the present stage is.
 struct StageProgress {
-  int number = -1;    ///< -1: before the first
-  double begin = 0;   ///< [s]
-  bool met = false;   ///< its stop criterion is met, or its path followed
-  bool told = false;  ///< it was said how it ended
+  int number = -1;      ///< -1: before the first
+  double begin = 0;     ///< [s]
+  bool met = false;     ///< its stop criterion is met, or its path followed
+  bool told = false;    ///< it was said how it ended
+  bool resets = false;  ///< its end sets displacements to zero
 };
 
 template <int dim>
@@ -31,6 +32,8 @@ struct Run {
   void write_checkpoint();
   /// Goes on from the checkpoint in the directory. Throws std::invalid_argument where that cannot be. Collective.
   void resume();
+  /// Displacements, velocities and plastic strain are zero from now on.
+  void reset_displacement();
   /// Ends the run with checkpoint, history and snapshot if a signal has asked for it.
   void heed(const Verdict &verdict);
 
@@ -46,8 +49,13 @@ struct Run {
   Recorder<dim> recorder;
   StageProgress progress;
   std::unique_ptr<StopCriterion<dim>> stop;  ///< of the present stage
+  std::vector<std::string> start_notes;      ///< where the state at the start is from, if not from the scene
 
  private:
+  /// Takes the state of another run's last checkpoint (scene.start_from). Throws SceneError where that cannot be.
+  /// Collective.
+  void start_from_other_run();
+  PetscErrorCode serialize_state(Archive &archive);
   PetscErrorCode serialize(Archive &archive);
 };
 

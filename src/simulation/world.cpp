@@ -550,6 +550,18 @@ unsigned long long World<dim>::mesh_fingerprint() const {
 }
 
 template <int dim>
+std::vector<char> World<dim>::strength_varies() const {
+  std::vector<char> varies(bodies.size(), 0);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const ParticleArrays<dim> &p = bodies[b]->particles();
+    for (const double *share : {p.cohesion_share, p.friction_share})
+      if (share && std::any_of(share, share + p.count, [](double s) { return s != 1; })) varies[b] = 1;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, varies.data(), static_cast<int>(varies.size()), MPI_CHAR, MPI_MAX, comm);
+  return varies;
+}
+
+template <int dim>
 PetscErrorCode World<dim>::serialize(Archive &archive) {
   PetscFunctionBeginUser;
   archive.serialize("world", present, particle_count, total_mass);

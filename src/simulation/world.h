@@ -66,6 +66,8 @@ class World {
   std::vector<SoilFace> surface() const;  // soil_surface.cpp
   /// The first value of a function that its key does not admit, as a sentence; empty if there was none. Collective.
   std::string function_fault() const;
+  /// Of each body: do its particles on any rank have shares of a strength that varies with place? Collective.
+  std::vector<char> strength_varies() const;
   /// Tells meshes and partitions apart.
   unsigned long long mesh_fingerprint() const;
   /// Position of a particle of this rank and its number, the nearest to a place, in words.

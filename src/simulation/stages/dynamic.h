@@ -74,7 +74,7 @@ class DynamicStage final : public StageRunner<dim> {
     run_.recorder.write_history();
     run_.recorder.write_snapshot();
     run_.write_checkpoint();
-    if (stage_.reset_displacement) run_.world.reset_displacement(run_.clock.time);
+    if (stage_.reset_displacement) run_.reset_displacement();
   }
 
   void note_unmet() {

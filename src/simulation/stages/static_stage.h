@@ -22,9 +22,7 @@ class StaticStage : public StageRunner<dim> {
       follow(path_);
       finish();
     }
-    if (!stage_.reset_displacement) return;
-    if (run_.statics.made()) run_.statics.problem().soil().reset_displacement();
-    run_.world.reset_displacement(run_.clock.time);
+    if (stage_.reset_displacement) run_.reset_displacement();
   }
 
  protected:

@@ -1,5 +1,6 @@
 // Studies by `talus study`: which values run, what a stop, a failed run and more samples do, and what is refused.
 #include <gtest/gtest.h>
+#include <sys/file.h>
 
 #include <algorithm>
 #include <array>
@@ -95,6 +96,23 @@ TEST_F(Study, StopsAtASignalAndGoesOn) {
   const Ending other = study({"--no-plot", "--set", "seed=2"});
   EXPECT_EQ(other.status, 2);
   EXPECT_TRUE(other.says("or give --force to replace it")) << other.output;
+}
+
+/// Runs of a study that was killed end too: nobody writes into their folders any more.
+TEST_F(Study, TakesItsRunsAlongWhenItIsKilled) {
+  Program program(folder_, words({"--no-plot", "--set", "set=[\"stage.fall.duration=1000\"]"}));
+  ASSERT_TRUE(program.wait_for(folder_ / "out/run00000/history.csv")) << program.end().output;
+  program.signal(SIGKILL);
+  program.end();
+  const int file = open((folder_ / "out/run00000/.lock").c_str(), O_RDWR);
+  ASSERT_GE(file, 0);
+  bool free = false;
+  for (int i = 0; i < 1000 && !free; ++i) {
+    free = flock(file, LOCK_EX | LOCK_NB) == 0;
+    if (!free) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  close(file);
+  EXPECT_TRUE(free) << "a run goes on ten seconds after its study was killed";
 }
 
 TEST_F(Study, EntersRunsThatFail) {

@@ -1,0 +1,92 @@
+#include "simulation/start_from.h"
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+
+#include "scene/changes.h"
+#include "scene/words.h"
+
+namespace talus {
+namespace {
+
+using Words = std::vector<std::string>;
+
+/// Why a key must be what it was in the other run; empty: it may be another.
+std::string tie_of(const Words &words, PhaseModel phases) {
+  const std::string &table = words[0], key = words.size() > 1 ? words[1] : "", last = words.size() > 2 ? words[2] : "";
+  static const std::set<std::string> free{"title",
+                                          "start_from",
+                                          "stage",
+                                          "integrator",
+                                          "gravity",
+                                          "mesh",  // the state tells meshes apart, by whatever path they are named
+                                          "factor_of_safety",
+                                          "output"};
+  static const std::set<std::string> free_transfer{"velocity", "relaxation", "pic_fraction", "remap_interval"};
+  static const std::set<std::string> free_water{"table", "level", "excess", "suction", "open_water_load"};
+  static const std::set<std::string> tied_body{"region",
+                                               "law",
+                                               "density",
+                                               "unit_weight",
+                                               "saturated_unit_weight",
+                                               "porosity",
+                                               "grain_density",
+                                               "saturation",
+                                               "pore_pressure_ratio",
+                                               "retention",
+                                               "particles_per_cell",
+                                               "dense",
+                                               "velocity",
+                                               "displacement",
+                                               "stress",
+                                               "averaging_length"};
+  if (free.count(table)) return "";
+  if (table == "body") {
+    if (last.empty()) return "its bodies are those of that run";
+    return tied_body.count(last) ? "its particles bring regions, masses, pores, stress and kind of law from there" : "";
+  }
+  if (table == "boundary")
+    return last.empty() || last == "kind" || last == "group" ? "its boundaries have contacts and reactions from there"
+                                                             : "";
+  if (table == "transfer") return free_transfer.count(key) ? "" : "its stress points are those of that run";
+  if (table == "quasi_static") return key == "elements" ? "its Gauss points are those of that run" : "";
+  if (table == "water" && phases == PhaseModel::drained && free_water.count(key)) return "";
+  if (table == "water" || table == "gas") return "its pore fluids bring their masses and pressures from there";
+  return "that run was of another kind";
+}
+
+}  // namespace
+
+std::vector<std::string> check_start(const Scene &scene, const CheckpointHeader &found, const CheckpointHeader &mine) {
+  if (found.program != mine.program)
+    throw std::invalid_argument("it is one of " + found.program + ", this is " + mine.program);
+  std::vector<std::string> others;
+  for (const std::string &path : changed_keys(found.scene, mine.scene)) {
+    const Words words = split(path);
+    if (const std::string tie = tie_of(words, scene.phases); !tie.empty())
+      scene.complain(path, "is not what it was in the run " + scene.start_from.folder + " that start_from names, and " +
+                               tie + "; give it the value that it has there, or run that scene again with this one");
+    if (words[0] == "body" || words[0] == "boundary" || words[0] == "water" || words[0] == "transfer" ||
+        words[0] == "integrator" || words[0] == "gravity" || words[0] == "quasi_static")
+      others.push_back(path);
+  }
+  if (found.ranks != mine.ranks)
+    throw std::invalid_argument("it ran with -n " + std::to_string(found.ranks) + ", not with -n " +
+                                std::to_string(mine.ranks) + "; its state is parted among the ranks");
+  if (found.stage < 0) throw std::invalid_argument("it has no state, since its first stage did not begin");
+  return others;
+}
+
+void check_strength_by_place(const Scene &scene, const std::string &body, const std::vector<std::string> &changed) {
+  for (const std::string &path : changed) {
+    const Words words = split(path);
+    if (words[0] != "body" || words[1] != body) continue;
+    if (words[2].find("cohesion") != std::string::npos || words[2].find("friction_angle") != std::string::npos)
+      scene.complain(path, "is not what it was in the run " + scene.start_from.folder +
+                               " that start_from names, and strength that varies with place stays with the particles; "
+                               "give it the value that it has there, or run that scene again with this one");
+  }
+}
+
+}  // namespace talus
