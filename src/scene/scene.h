@@ -39,6 +39,9 @@ struct RefineBox {
   }
 };
 
+/// The axis along which elevations are counted; gravity acts against it.
+enum class Up { y = 1, z = 2 };
+
 enum class WhenOutside { stop, remove };
 
 struct MeshSource {
@@ -434,18 +437,20 @@ struct QuasiStaticSource {
 
 /// Where `talus solve --factor-of-safety` divides strength, and how many mechanisms it searches for.
 struct FactorSource {
-  std::vector<std::vector<double>> within;  ///< polygon x, y [m]; empty: everywhere
-  std::vector<std::vector<double>> along;   ///< line x, y [m]; empty: everywhere
+  std::vector<std::vector<double>> within;  ///< polygon x, elevation [m]; empty: everywhere
+  std::vector<std::vector<double>> along;   ///< line x, elevation [m]; empty: everywhere
   double width = 0;                         ///< of the band along the line [m]; 0: two cells
   int mechanisms = 1;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.points("within", within, metre,
-             "polygon of points [x, y] to which the search is confined: strength is divided inside it, elsewhere soil "
-             "keeps its strength; in 3D for all z");
-    v.points("along", along, metre,
-             "line of points [x, y] along which soil may slip: strength is divided in a band on it, elsewhere soil "
-             "keeps its strength; in 3D for all z");
+    v.points(
+        "within", within, metre,
+        "polygon of points [x, elevation] to which the search is confined: strength is divided inside it, elsewhere "
+        "soil keeps its strength; in 3D across its whole width");
+    v.points(
+        "along", along, metre,
+        "line of points [x, elevation] along which soil may slip: strength is divided in a band on it, elsewhere soil "
+        "keeps its strength; in 3D across its whole width");
     v.number("width", width, metre, Range{0, 1e5}, "width of the band on the line `along`; 0: two cells");
     v.integer("mechanisms", mechanisms, Range{1, 10},
               "number of mechanisms that are searched for: the one with the least factor, then those with the next "
@@ -515,7 +520,8 @@ struct Scene {
   std::shared_ptr<const TableReader> root;  ///< the file's root table, for complaints after reading; not a key
   PhaseModel phases = PhaseModel::dry;
   int dimension = 2;
-  std::vector<double> gravity;  ///< components [m/s2]; one number points down y; empty: no gravity
+  Up up = Up::y;
+  std::vector<double> gravity;  ///< components [m/s2]; one number points down; empty: no gravity
   MeshSource mesh;
   std::vector<BodySource> body;
   std::vector<BoundarySource> boundary;
@@ -539,7 +545,10 @@ struct Scene {
              "phase model");
     v.integer("dimension", dimension, Range{2, 3}, "2: plane strain on triangles, 3: tetrahedra");
     v.point("gravity", gravity, metre_per_second_squared,
-            "acceleration of gravity, one component per dimension; a single number acts along -y");
+            "acceleration of gravity, one component per dimension; a single number acts downwards, against `up`");
+    v.choice("up", up, {{"y", Up::y}, {"z", Up::z}},
+             "axis along which elevations are counted, of water tables, levels and vertical stress; z (as in terrain) "
+             "needs dimension = 3");
     v.table("mesh", mesh, "background mesh");
     v.named("body", body, "soils, [body.NAME]");
     v.named("boundary", boundary, "conditions on named groups of facets, [boundary.NAME]");
@@ -554,6 +563,8 @@ struct Scene {
   }
 
   double gravity_size() const;  ///< magnitude of gravity [m/s2]
+  /// Number of the component of a place that is its elevation: the one place that says which way is up.
+  int vertical() const { return static_cast<int>(up); }
   /// The first value of a function that its key does not admit, on this rank; empty if there was none.
   std::string function_fault() const;
   /// Gravity and the pseudo-static acceleration of a stage, zero beyond the dimension [m/s2].
