@@ -65,13 +65,16 @@ class Checks {
   void mesh() const {
     const MeshSource &mesh = scene_.mesh;
     if (host_mesh_) {
-      if (!mesh.file.empty() || !mesh.section.empty())
-        reader_.complain("mesh", "has a source, but the host program brings the mesh: leave out file and section");
+      if (!mesh.file.empty() || !mesh.section.empty() || !mesh.terrain.file.empty())
+        reader_.complain("mesh",
+                         "has a source, but the host program brings the mesh: leave out file, section and terrain");
       return;
     }
-    if (mesh.file.empty() == mesh.section.empty())
-      reader_.complain("mesh", mesh.file.empty() ? "needs a source: give file or section"
-                                                 : "has two sources: give either file or section");
+    const int sources = !mesh.file.empty() + !mesh.section.empty() + !mesh.terrain.file.empty();
+    if (sources != 1)
+      reader_.complain("mesh", sources == 0 ? "needs a source: give file, section or terrain.file"
+                                            : "has two sources: give one of file, section and terrain.file");
+    if (!mesh.terrain.file.empty()) return terrain();
     if (!mesh.section.empty() && !(mesh.size > 0))
       reader_.complain("mesh.size", "must be a cell size above 0 m, since the mesh is made from a section");
     if (!mesh.section.empty() && scene_.up != Up::y)
@@ -86,6 +89,26 @@ class Checks {
       if (given)
         reader_.complain(key,
                          "has no effect on a mesh from a file: change the mesh where it is made, or give a section");
+  }
+
+  void terrain() const {
+    const MeshSource &mesh = scene_.mesh;
+    const TerrainSource &t = mesh.terrain;
+    if (scene_.up != Up::z)
+      reader_.complain("mesh.terrain.file", "counts elevations along z: set dimension = 3 and up = \"z\"");
+    if (!(mesh.size > 0))
+      reader_.complain("mesh.size", "must be a cell size above 0 m, since the mesh is made from terrain");
+    for (const auto &[key, given] : {std::pair{"mesh.refine.0", !mesh.refine.empty()},
+                                     {"mesh.thickness", mesh.thickness > 0},
+                                     {"mesh.cuts", !mesh.cuts.empty()}})
+      if (given) reader_.complain(key, "has no effect on a mesh from terrain: leave it out");
+    if (!t.window.empty()) components("mesh.terrain.window", t.window.size(), 4, "numbers, west, south, east, north");
+    if (!t.base.empty()) components("mesh.terrain.base", t.base.size(), 1, "elevation");
+    if (!t.ellipsoid.given) return;
+    if (!t.slip_surface.empty())
+      reader_.complain("mesh.terrain.ellipsoid", "is a second slip surface beside slip_surface: give one of them");
+    components("mesh.terrain.ellipsoid.centre", t.ellipsoid.centre.size(), 3, "coordinates");
+    components("mesh.terrain.ellipsoid.semi_axes", t.ellipsoid.semi_axes.size(), 3, "lengths");
   }
 
   std::string up() const { return scene_.up == Up::y ? "y" : "z"; }

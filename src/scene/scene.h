@@ -44,10 +44,54 @@ enum class Up { y = 1, z = 2 };
 
 enum class WhenOutside { stop, remove };
 
+/// A slip surface: the lower side of an ellipsoid whose first axis points down the dip, the second along the strike.
+struct EllipsoidSource {
+  bool given = false;                     ///< the scene has the table
+  std::vector<double> centre, semi_axes;  ///< x, y, elevation of the map; down the dip, along the strike, normal [m]
+  double dip = 0, dip_direction = 0;      ///< [rad]
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    given = true;
+    v.point("centre", centre, metre, "centre: x, y and elevation in the coordinates of the terrain file");
+    v.point("semi_axes", semi_axes, metre,
+            "half lengths of the axes: down the dip, along the strike, along the normal");
+    v.number("dip", dip, degree, Range{0, 89}, "angle by which the first axis falls below the horizontal");
+    v.number("dip_direction", dip_direction, degree, Range{-360, 360},
+             "azimuth, clockwise from north, towards which the first axis falls: 90 deg is east");
+  }
+};
+
+/// A terrain file and what is cut out of it.
+struct TerrainSource {
+  std::string file;            ///< ESRI ASCII, GeoTIFF; empty: no terrain
+  std::vector<double> window;  ///< west, south, east, north of the map [m]; empty: all
+  int step = 1;                ///< every so many-th row and column
+  std::vector<double> base;    ///< elevation of a flat base [m]; empty: the mesh begins at the bed
+  double air = 0;              ///< height of free space above the ground [m]
+  double far_size = 0;         ///< of cells far from slide and ground [m]; 0: mesh.size
+  std::string slip_surface;    ///< a grid; empty: none
+  EllipsoidSource ellipsoid;   ///< in place of a grid
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.text("file", file, "terrain file, ESRI ASCII or GeoTIFF with coordinates and elevations in metres");
+    v.point("window", window, metre, "west, south, east, north in the coordinates of the file; default: all of it");
+    v.integer("step", step, Range{1, 1000}, "decimation: every so many-th row and column of the file is used");
+    v.point("base", base, metre,
+            "elevation of a flat base: soil is meshed from there to the ground; without it the mesh is the space above "
+            "the bed, which is the ground lowered to the slip surface");
+    v.number("air", air, metre, Range{0, 1e4}, "height of the free space above the ground, in which soil may move");
+    v.number("far_size", far_size, metre, Range{0, 1e5},
+             "cell size far from the slide, and from the ground below it; 0: mesh.size everywhere");
+    v.text("slip_surface", slip_surface, "grid of the elevations of a slip surface, relative to the scene");
+    v.table("ellipsoid", ellipsoid, "slip surface: the lower side of an ellipsoid");
+  }
+};
+
 struct MeshSource {
   std::string file;          ///< Gmsh .msh, 2.2 or 4.1, with physical groups
   std::string section;       ///< section CSV, meshed by talus-mesh
-  double size = 0;           ///< cell size of a section [m]
+  TerrainSource terrain;     ///< meshed by talus-mesh
+  double size = 0;           ///< cell size of a section or of terrain [m]
   double thickness = 0;      ///< of a 3D body cut from a section [m]; 0: one cell size
   int layers = 1;            ///< element layers over the thickness; 0: free tetrahedra
   std::vector<double> cuts;  ///< z at which regions of a 3D body from a section are parted [m]
@@ -57,13 +101,15 @@ struct MeshSource {
   void fields(Visitor &&v) {
     v.text("file", file, "Gmsh mesh file (.msh, format 2.2 or 4.1) with physical groups, relative to the scene");
     v.text("section", section, "section CSV that talus-mesh turns into a mesh, relative to the scene");
-    v.number("size", size, metre, Range{0, 1e5}, "cell size of a mesh made from a section");
+    v.number("size", size, metre, Range{0, 1e5},
+             "cell size of a mesh made from a section or terrain; of terrain in the slide and at the ground");
     v.number("thickness", thickness, metre, Range{0, 1e5},
              "thickness of a 3D body cut from a section; 0 is one cell size");
     v.integer("layers", layers, Range{0, 1000}, "element layers over the thickness; 0 gives unstructured tetrahedra");
     v.point("cuts", cuts, metre,
             "ascending z that divide the thickness: regions are then named region_1, region_2, ... along z");
     v.list("refine", refine, "boxes with smaller cells");
+    v.table("terrain", terrain, "terrain that talus-mesh turns into a mesh; needs dimension = 3 and up = \"z\"");
     v.choice("leaving_particles", leaving_particles, {{"stop", WhenOutside::stop}, {"remove", WhenOutside::remove}},
              "what becomes of particles that leave the mesh: the run ends with the place, or they are taken out of the "
              "simulation and entered in escaped.csv; may be changed with --resume");

@@ -116,7 +116,9 @@ void World<dim>::read_mesh(DM plex, const std::string &mesh_file) {
     try {
       mesh = BackgroundMesh<dim>::read(comm, mesh_file, weights);
     } catch (const std::invalid_argument &error) {
-      scene.complain(scene.mesh.file.empty() ? "mesh.section" : "mesh.file",
+      scene.complain(!scene.mesh.file.empty()      ? "mesh.file"
+                     : !scene.mesh.section.empty() ? "mesh.section"
+                                                   : "mesh.terrain",
                      std::string("cannot serve: ") + error.what());
     }
   comm = mesh.comm();

@@ -142,8 +142,10 @@ TEST(ReadScene, ChecksOneKeyAgainstAnother) {
     std::vector<std::string> overrides;
     const char *expected;
   } table[] = {
-      {dry, {"mesh.section=a.csv"}, "slope.toml line 4: mesh has two sources: give either file or section"},
-      {dry, {"mesh={}"}, "--set: mesh needs a source: give file or section"},
+      {dry,
+       {"mesh.section=a.csv"},
+       "slope.toml line 4: mesh has two sources: give one of file, section and terrain.file"},
+      {dry, {"mesh={}"}, "--set: mesh needs a source: give file, section or terrain.file"},
       {drained, {"mesh.size=0"}, "--set: mesh.size = 0 must be a cell size above 0 m"},
       {dry,
        {"dimension=4"},
