@@ -35,7 +35,7 @@ class View:
 
 def views_of(results):
     """The views that suit a run: one of a section or a thin slice; of a body its central section and the top."""
-    first, last = results.snapshots[0].position(), results.snapshots[-1].position()
+    first = results.snapshots[0].position()
     if first.shape[1] == 2:
         return [View("section", 0, 1)]
     up = results.up_axis()
@@ -44,10 +44,12 @@ def views_of(results):
     thin, wide = sorted(level, key=lambda axis: extent[axis])
     if extent[thin] < 0.2 * min(extent[wide], extent[up]):
         return [View("section", wide, up)]
-    moved = np.abs(last - first) if last.shape == first.shape else np.ones_like(first)
+    start, end = in_both(results.snapshots[0], results.snapshots[-1])  # particles may have left the mesh
+    moved = np.abs(end - start)
     along = max(level, key=lambda axis: moved[:, axis].sum())
     aside = next(axis for axis in level if axis != along)
-    centre, spacing = weighted_median(first[:, aside], moved[:, along]), spacing_of(results)
+    centre = weighted_median(start[:, aside], moved[:, along]) if len(start) else np.median(first[:, aside])
+    spacing = spacing_of(results)
     name = f"section at {'xyz'[aside]} = {centre:.3g} m"
     return [
         View(name, along, up, lambda at: np.abs(at[:, aside] - centre) <= spacing),
@@ -96,8 +98,14 @@ def chosen_snapshots(results, times=None, count=6):
 
 def advance(before, after):
     """How far the fastest hundredth of the particles that are in both snapshots moved between them [m]."""
+    start, end = in_both(before, after)
+    return float(np.percentile(np.linalg.norm(end - start, axis=1), 99)) if len(start) else 0.0
+
+
+def in_both(before, after):
+    """Places in two snapshots of the particles that are in both [m]."""
     _, a, b = np.intersect1d(before.ids(), after.ids(), assume_unique=True, return_indices=True)
-    return float(np.percentile(np.linalg.norm(after.position()[b] - before.position()[a], axis=1), 99)) if len(a) else 0.0
+    return before.position()[a], after.position()[b]
 
 
 class Colours:
@@ -166,7 +174,7 @@ class Painter:
             position = snapshot.position()
             rows = self.views[k].rows(position)
             owner = tiles(self.views[k].flat(position)[rows], self.spacing, frame)
-            self._tiles[key] = np.where(owner >= 0, rows[owner], -1)
+            self._tiles[key] = np.append(rows, -1)[owner]  # a section may have no particles any more
         return self._tiles[key]
 
     def over_time(self, field, colours, path):
