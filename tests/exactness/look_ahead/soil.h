@@ -12,7 +12,7 @@ namespace talus {
 template <int dim, class Phases = Dry>
 struct Soil {
   Soil(const std::string &text, double relaxation_time)
-      : scene(parse_scene(text, "soil")), pressure(scene, 9.81), file(PETSC_COMM_WORLD, scene) {
+      : scene(parse_scene(text, "soil")), pressure(scene), file(PETSC_COMM_WORLD, scene) {
     const BodySource &source = scene.body[0];
     mesh = BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.path(), {{source.region[0], 5.}});
     pressure.set_regions(std::vector<int>(mesh.cell_count(), 0));
