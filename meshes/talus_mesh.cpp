@@ -1,14 +1,16 @@
-// talus-mesh: from a section to a Gmsh mesh with named groups. A program of its own, since Gmsh is GPL.
+// talus-mesh: from a section or terrain to a Gmsh mesh with named groups. A program of its own, since Gmsh is GPL.
 #include <gmsh.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <optional>
 
 #include "meshes/gmsh_elements.h"
 #include "meshes/section_mesh.h"
 #include "meshes/simplex.h"
+#include "meshes/terrain_mesh.h"
 
 namespace talus {
 namespace {
@@ -20,7 +22,13 @@ struct Request {
   std::string format = "4.1";
   std::vector<double> boxes;  ///< x0 y0 x1 y1 h, repeated
   MeshOptions options;
+  // of terrain
+  TerrainOptions terrain;
+  double base = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> ellipsoid;
 };
+
+bool is_section(const std::string &source) { return std::filesystem::path(source).extension() == ".csv"; }
 
 [[noreturn]] void complain(const std::string &text) { throw std::invalid_argument(text); }
 
@@ -96,21 +104,33 @@ void report_group(int group, const std::string &name, const char *what) {
 }
 
 template <int dim>
+std::string text_of(const Vec<dim> &x) {
+  std::ostringstream text;
+  for (int d = 0; d < dim; ++d) text << (d ? ", " : "(") << x[d];
+  return text.str() + ")";
+}
+
+template <int dim>
 void report_mesh() {
   Shape worst{1e300, 1};
+  Vec<dim> flattest{}, worst_place{};  // centres of the cells with the smallest altitude and the worst quality
   double quality = 0;
   std::size_t count = 0;
   for (const auto &corner : corners_of<dim>(-1)) {
     const Shape one = shape<dim>(corner, Simplex<dim>(corner).gradient);
-    worst = {std::min(worst.altitude, one.altitude), std::min(worst.quality, one.quality)};
+    Vec<dim> centre{};
+    for (const Vec<dim> &x : corner)
+      for (int d = 0; d < dim; ++d) centre[d] += x[d] / (dim + 1);
+    if (one.altitude < worst.altitude) worst.altitude = one.altitude, flattest = centre;
+    if (one.quality < worst.quality) worst.quality = one.quality, worst_place = centre;
     quality += one.quality, ++count;
   }
   std::vector<std::size_t> nodes;
   std::vector<double> x, parametric;
   gmsh::model::mesh::getNodes(nodes, x, parametric);
-  std::cout << "cells " << count << ", nodes " << nodes.size() << ", smallest altitude " << worst.altitude
-            << " m, quality " << worst.quality << " at least, " << quality / static_cast<double>(count)
-            << " on average\n";
+  std::cout << "cells " << count << ", nodes " << nodes.size() << ", smallest altitude " << worst.altitude << " m at "
+            << text_of<dim>(flattest) << ", quality " << worst.quality << " at least, at " << text_of<dim>(worst_place)
+            << ", " << quality / static_cast<double>(count) << " on average\n";
   gmsh::vectorpair groups;
   gmsh::model::getPhysicalGroups(groups);
   for (int of : {dim, dim - 1})
@@ -131,14 +151,60 @@ void check_writable(const std::string &file) {
     throw std::runtime_error(file + ": cannot be written; check the folder and its permissions");
 }
 
+/// Volume of a group of cells; 0 where there is none [m3].
+double volume_of(const std::string &name) {
+  double volume = 0;
+  gmsh::vectorpair groups;
+  gmsh::model::getPhysicalGroups(groups, 3);
+  for (const auto &[dimension, group] : groups) {
+    std::string found;
+    gmsh::model::getPhysicalName(dimension, group, found);
+    std::vector<int> tags;
+    gmsh::model::getEntitiesForPhysicalGroup(dimension, group, tags);
+    for (const int tag : tags)
+      if (found == name)
+        for (const auto &corner : corners_of<3>(tag)) volume += measure<3, 3>(corner);
+  }
+  return volume;
+}
+
+void report_terrain(const Terrain &terrain) {
+  if (terrain.slides()) {
+    const double cells = volume_of("slide"), exact = terrain.slide_volume();
+    std::cout << "slide " << exact << " m3 between slip surface and ground, " << exact / terrain.slide_area()
+              << " m thick on average; its cells hold " << cells << " m3 (" << std::showpos << 100 * (cells / exact - 1)
+              << std::noshowpos << " %)\n";
+    if (cells == 0)
+      complain("the slide is thinner than its cells, and none has its centre in it; take a smaller --size");
+  }
+  for (const std::string &doubt : terrain.doubts()) std::cout << "warning: " << doubt << "\n";
+}
+
+void check(const TerrainOptions &o, const Terrain &terrain) {
+  if (!(o.size > 0)) complain("--size must be above 0 m");
+  const double height = o.air + (o.base ? terrain.ground()[0] - *o.base : 0), cells_per_volume = 8.5;
+  const double area = terrain.slides() ? terrain.slide_area() : terrain.width() * terrain.depth(),
+               cells = cells_per_volume * area * height / std::pow(o.size, 3);
+  if (cells > most_cells) {
+    std::ostringstream text;
+    text << "the cell size would give about " << cells << " cells, more than " << most_cells
+         << "; take a larger --size, or a smaller window";
+    complain(text.str());
+  }
+}
+
 void run(const Request &request) {
-  const Section section = read_section(request.source);
-  check(request, section);
+  std::optional<Section> section;
+  std::optional<Terrain> terrain;
+  if (is_section(request.source))
+    check(request, section.emplace(read_section(request.source)));
+  else
+    check(request.terrain, terrain.emplace(request.terrain));
   const bool existed = std::filesystem::exists(request.file);
   check_writable(request.file);
   gmsh::initialize();
   try {
-    mesh_section(section, request.options);
+    section ? mesh_section(*section, request.options) : mesh_terrain(*terrain);
     gmsh::option::setNumber("Mesh.MshFileVersion", request.format == "2.2" ? 2.2 : 4.1);
     gmsh::write(request.file);
     std::cout << request.file << " from " << request.source << "\n";
@@ -146,6 +212,12 @@ void run(const Request &request) {
       report_mesh<2>();
     else
       report_mesh<3>();
+    if (terrain) {
+      report_terrain(*terrain);
+      std::filesystem::path origin = request.file;
+      std::ofstream(origin.replace_extension(".origin.json")) << terrain->origin_document();
+      std::cout << "origin of x and y for maps: " << origin.string() << "\n";
+    }
   } catch (...) {
     gmsh::finalize();
     if (!existed) std::filesystem::remove(request.file);
@@ -154,10 +226,25 @@ void run(const Request &request) {
   gmsh::finalize();
 }
 
+void read_terrain(const CLI::App &app, Request &request) {
+  TerrainOptions &terrain = request.terrain;
+  for (const char *option : {"--thickness", "--layers", "--cuts", "--refine"})
+    if (app.count(option)) complain(std::string(option) + " belongs to sections, and the source is terrain");
+  terrain.file = request.source, terrain.size = request.options.size, request.options.dimension = 3;
+  if (!std::isnan(request.base)) terrain.base = request.base;
+  if (terrain.air < 0) complain("--air must not be below 0 m");
+  const auto &e = request.ellipsoid;
+  if (e.empty()) return;
+  constexpr double radian = 3.14159265358979323846 / 180;
+  if (!(e[3] > 0 && e[4] > 0 && e[5] > 0)) complain("--ellipsoid needs semi-axes a, b and c above 0 m");
+  if (!(e[6] >= 0 && e[6] < 90)) complain("--ellipsoid needs a dip from 0 to 90 degrees");
+  terrain.ellipsoid = Ellipsoid{{e[0], e[1], e[2]}, {e[3], e[4], e[5]}, e[6] * radian, e[7] * radian};
+}
+
 int parse(int argc, char **argv, Request &request) {
-  CLI::App app("Meshes a cross-section (CSV rows part,x,y in metres) for Talus: triangles, or a slice of tetrahedra.",
+  CLI::App app("Meshes a cross-section (CSV rows part,x,y in metres) or terrain (a grid of elevations) for Talus.",
                "talus-mesh");
-  app.add_option("SOURCE", request.source, "section CSV")->required();
+  app.add_option("SOURCE", request.source, "section CSV, or terrain: ESRI ASCII or GeoTIFF")->required();
   app.add_option("-o,--output", request.file, "mesh file to write")->required();
   app.add_option("--size", request.options.size, "cell size [m]")->required();
   app.add_option("--dimension", request.options.dimension, "2: triangles, 3: tetrahedra")->check(CLI::IsMember({2, 3}));
@@ -168,12 +255,27 @@ int parse(int argc, char **argv, Request &request) {
   app.add_option("--refine", request.boxes, "x0 y0 x1 y1 h: cells of size h in a box; may be repeated")
       ->type_size(5)
       ->expected(-1);
+  TerrainOptions &terrain = request.terrain;
+  app.add_option("--window", terrain.window, "of terrain: west south east north [m]")->expected(4);
+  app.add_option("--step", terrain.step, "of terrain: every so many-th row and column; default 1");
+  app.add_option("--base", request.base, "of terrain: elevation of a flat base [m]; default: the ground is the base");
+  app.add_option("--air", terrain.air, "of terrain: height of the free space above the ground [m]");
+  app.add_option("--far-size", terrain.far_size, "of terrain: cell size far from the slide and the ground [m]");
+  app.add_option("--slip-surface", terrain.slip_surface, "of terrain: a grid of the elevations of a slip surface");
+  app.add_option("--ellipsoid", request.ellipsoid,
+                 "of terrain: a slip surface x y z a b c dip dip_direction [m, degrees]")
+      ->expected(8);
   app.add_option("--format", request.format, "of the mesh file: 2.2 or 4.1")->check(CLI::IsMember({"2.2", "4.1"}));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError &error) {
     return app.exit(error) ? 2 : -1;
   }
+  if (!is_section(request.source))
+    read_terrain(app, request);
+  else
+    for (const char *option : {"--window", "--step", "--base", "--air", "--far-size", "--slip-surface", "--ellipsoid"})
+      if (app.count(option)) complain(std::string(option) + " belongs to terrain, and the source is a section");
   const auto &b = request.boxes;
   for (std::size_t i = 0; i + 4 < b.size(); i += 5)
     request.options.boxes.push_back({{std::min(b[i], b[i + 2]), std::min(b[i + 1], b[i + 3])},
@@ -188,8 +290,8 @@ int parse(int argc, char **argv, Request &request) {
 /// Exit status 0: a mesh was written; 2: bad input; 1: anything else.
 int main(int argc, char **argv) {
   talus::Request request;
-  if (const int status = talus::parse(argc, argv, request)) return status < 0 ? 0 : status;
   try {
+    if (const int status = talus::parse(argc, argv, request)) return status < 0 ? 0 : status;
     talus::run(request);
   } catch (const std::invalid_argument &error) {
     std::cerr << "talus-mesh: " << error.what() << "\n";

@@ -29,9 +29,11 @@ inline constexpr int common_water = -1;
 template <int dim>
 class PrescribedPressure {
  public:
-  /// `gravity` is its magnitude along -y [m/s2].
-  PrescribedPressure(const Scene &scene, double gravity)
-      : water_(&scene.water), unit_weight_(scene.water.density * gravity), ratio_(scene.body.size()) {
+  explicit PrescribedPressure(const Scene &scene)
+      : water_(&scene.water),
+        vertical_(scene.vertical()),
+        unit_weight_(scene.water.density * scene.gravity_size()),
+        ratio_(scene.body.size()) {
     for (const BodySource &body : scene.body) table_of_.push_back(&body.water_table);
   }
 
@@ -41,18 +43,18 @@ class PrescribedPressure {
 
   bool below_table(const Vec<dim> &x, double t, int soil) const {
     const double p = found(x, soil);
-    return std::isnan(p) ? x[1] < table(x[0], t, soil) : p > 0;
+    return std::isnan(p) ? x[vertical_] < table(x[0], t, soil) : p > 0;
   }
   /// Pore pressure at x [Pa].
   double operator()(const Vec<dim> &x, double t, int soil) const {
     const double elevation = table(x[0], t, soil), p = found(x, soil);
     if (!std::isnan(p)) return p;
-    return std::max(0., unit_weight_ * (elevation - x[1])) +
+    return std::max(0., unit_weight_ * (elevation - x[vertical_])) +
            water_->excess(x[0], x[1], dim == 3 ? x[2] : 0, t, elevation);
   }
   /// Hydrostatic suction at x above the common water table; 0 without one [Pa].
   double above_table(const Vec<dim> &x, double t) const {
-    return water_->table.empty() ? 0 : std::max(0., unit_weight_ * (x[1] - table(x[0], t, common_water)));
+    return water_->table.empty() ? 0 : std::max(0., unit_weight_ * (x[vertical_] - table(x[0], t, common_water)));
   }
   /// Degree of saturation of a soil at x, where `soil` is whose water it has: full below the table; above it what
   /// seepage has left by the retention curve, or else what the body says [-].
@@ -96,6 +98,7 @@ class PrescribedPressure {
   }
 
   const Water *water_;
+  int vertical_;  ///< component of a place that is its elevation
   std::function<double(const double *)> seeped_;
   Saturation seeped_saturation_;
   double unit_weight_;

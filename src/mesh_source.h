@@ -1,5 +1,5 @@
 #pragma once
-/// Finds or makes the mesh of a scene: a Gmsh file as it is, or a section handed to the program talus-mesh.
+/// Finds or makes the mesh of a scene: a Gmsh file as it is, or a section or terrain handed to the program talus-mesh.
 #include <mpi.h>
 
 #include <string>
@@ -7,6 +7,7 @@
 
 #include "base/temporary_folder.h"
 #include "scene/scene.h"
+#include "simulation.h"
 
 namespace talus {
 
@@ -17,18 +18,22 @@ struct MeshRun {
 };
 MeshRun run_talus_mesh(const std::vector<std::string> &arguments);
 
-/// The .msh file of a scene, for rank 0 to read: its own, or one made from its section that goes with this object.
+/// The .msh file of a scene, for rank 0 to read: its own, or one made from its section or terrain that goes with this
+/// object.
 class MeshFile {
  public:
   /// Collective. Throws std::invalid_argument with talus-mesh's own complaint, the same on all ranks.
   MeshFile(MPI_Comm comm, const Scene &scene);
   const std::string &path() const { return path_; }
+  const MadeMesh &made() const { return made_; }
 
  private:
-  MeshRun mesh_section(const Scene &scene);
+  MeshRun make(const Scene &scene);
+  void read_report(const std::string &printed);
 
   TemporaryFolder folder_;
   std::string path_;
+  MadeMesh made_;
 };
 
 /// `path` as written in a scene: relative to the scene's own folder.

@@ -30,7 +30,9 @@ std::unique_ptr<AnySimulation> make(MPI_Comm comm, const Scene &scene, const Run
 std::unique_ptr<AnySimulation> make_simulation(MPI_Comm comm, const Scene &scene, const RunOptions &options) {
   if (options.plex) return make(comm, scene, options, "");
   const MeshFile mesh(comm, scene);
-  return make(comm, scene, options, mesh.path());
+  RunOptions with = options;
+  with.mesh = mesh.made();
+  return make(comm, scene, with, mesh.path());
 }
 
 }  // namespace talus

@@ -34,6 +34,12 @@ class BrokenOff : public RunError {
   std::vector<std::string> fields;  ///< that the scene wants drawn; empty: the usual ones
 };
 
+/// What talus-mesh has told of the mesh that it made for the scene; on the first rank.
+struct MadeMesh {
+  std::vector<std::string> remarks;  ///< sentences about what may be meant but rarely is
+  std::string origin;                ///< of terrain: what leads back from the mesh to the map, as JSON
+};
+
 struct RunOptions {
   std::string directory;    ///< of the results; empty: nothing is written
   bool resume = false;      ///< go on from the checkpoint in the directory
@@ -44,6 +50,7 @@ struct RunOptions {
   bool gauss_points =
       false;          ///< snapshots of quasi-static stages hold Gauss points, not the particles they are handed to
   DM plex = nullptr;  ///< mesh of a host program, instead of the scene's
+  MadeMesh mesh;      ///< filled by make_simulation
 };
 
 /// What happened when: failure, end of stages.

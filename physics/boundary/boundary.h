@@ -46,7 +46,7 @@ class Boundary {
     else
       return on_soil_3d_;
   }
-  std::function<double(double x, double y, double z, double t, double unit_weight)> outside;
+  std::function<double(double x, double y, double z, double t, const LiquidBeyond &)> outside;
   std::function<double(double x, double y, double z, double t)> supply, inflow, gas_outside;
   std::function<double(double x, double y, double z, double t, double slip)> friction_coefficient, adhesion;
   std::optional<ShearZone> shear_zone;  ///< of a contact that rubbing heats
@@ -141,8 +141,8 @@ requires(!std::same_as<Kind, Boundary>) Boundary::Boundary(Kind of)
   if constexpr (member::depends_on_slip<Kind>) remembers = kind->depends_on_slip();
   if constexpr (member::shear_zone<Kind>) shear_zone = kind->shear_zone(), remembers = true;
   if constexpr (member::outside<Kind>)
-    outside = [kind](double x, double y, double z, double t, double unit_weight) {
-      return kind->outside(x, y, z, t, unit_weight);
+    outside = [kind](double x, double y, double z, double t, const LiquidBeyond &liquid) {
+      return kind->outside(x, y, z, t, liquid);
     };
   if constexpr (member::supply<Kind>)
     supply = [kind](double x, double y, double z, double t) { return kind->supply(x, y, z, t); };

@@ -20,10 +20,10 @@ struct Head {
   Function level = 0.0;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.function("level", level, metre, {-1e5, 1e5}, of::time, "elevation y of the water level, function of t");
+    v.function("level", level, metre, {-1e5, 1e5}, of::time, "elevation of the water level, along `up`, function of t");
   }
-  double outside(double, double y, double, double t, double unit_weight) const {
-    return std::max(0., unit_weight * (level(t) - y));
+  double outside(double, double, double, double t, const LiquidBeyond &liquid) const {
+    return std::max(0., liquid.unit_weight * (level(t) - liquid.elevation));
   }
   /// Nothing enters where the face is dry.
   double supply(double, double, double, double) const { return 0; }

@@ -49,6 +49,12 @@ enum class OnGas {
   pressure     ///< gas moves in and out freely, beyond the face it has the pressure `gas_outside`
 };
 
+/// The liquid beyond a place on a face.
+struct LiquidBeyond {
+  double unit_weight = 0;  ///< [N/m3]
+  double elevation = 0;    ///< of the place [m]
+};
+
 /// The members of a kind that its statements ask for.
 namespace member {
 
@@ -107,10 +113,10 @@ template <class Kind>
 concept dashpot = requires(const Kind &kind) {
   { kind.template dashpot<2>(std::array<double, 2>{}, Vec<2>{}) } -> std::same_as<Square<2>>;
 };
-/// `outside(x, y, z, t, unit_weight)`: pressure of the liquid beyond the face [Pa], which weighs `unit_weight` [N/m3].
+/// `outside(x, y, z, t, LiquidBeyond)`: pressure of the liquid beyond the face [Pa].
 template <class Kind>
 concept outside = requires(const Kind &kind) {
-  { kind.outside(0., 0., 0., 0., 0.) } -> std::same_as<double>;
+  { kind.outside(0., 0., 0., 0., LiquidBeyond{}) } -> std::same_as<double>;
 };
 /// `open_water`: the liquid beyond is water that rests on the face with its weight, so that its pressure grows with
 /// depth and loads the skeleton.

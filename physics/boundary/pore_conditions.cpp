@@ -10,9 +10,9 @@ namespace talus {
 
 template <int dim>
 PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const std::vector<Source> &sources,
-                                          bool sealed) {
+                                          bool sealed, int vertical) {
   PetscFunctionBeginUser;
-  sources_ = &sources, sealed_ = sealed;
+  sources_ = &sources, sealed_ = sealed, vertical_ = vertical;
   std::set<std::pair<int, int>> open;  // facets with a face of the fluids
   std::vector<SourceFacets<dim>> walls;
   for (int s = 0; s < static_cast<int>(sources.size()); ++s) {
@@ -88,7 +88,7 @@ PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vect
       const double part = std::min(1., filling[cell]) * f.area / dim;
       for (int node : f.node) {
         double depth = 0;  // of the other nodes below this one
-        for (int other : f.node) depth += mesh.position[node][1] - mesh.position[other][1];
+        for (int other : f.node) depth += mesh.position[node][vertical_] - mesh.position[other][vertical_];
         auto &[area, own_moment] = nodal_[grid.find_node(node)];
         for (int d = 0; d < dim; ++d)
           area[d] += part * f.normal[d], own_moment[d] += part / (dim + 1) * depth * f.normal[d];

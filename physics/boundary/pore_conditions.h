@@ -24,7 +24,7 @@ class PoreConditions {
  public:
   using Source = typename Conditions<dim>::Source;
   /// `sealed`: the surface of the soil, where no boundary acts on it, lets water out and not in. Collective.
-  PetscErrorCode setup(const BackgroundMesh<dim> &mesh, const std::vector<Source> &sources, bool sealed);
+  PetscErrorCode setup(const BackgroundMesh<dim> &mesh, const std::vector<Source> &sources, bool sealed, int vertical);
   /// Is there open water on the free surface, so that `begin` needs its moments?
   bool open_water() const { return rain_ != atmosphere && (*sources_)[rain_].kind.open_water; }
   /// Picks nodes and faces of the filled grid; `surface` [node] is the sum of w grad N over all cells [m2], `moment`
@@ -42,7 +42,7 @@ class PoreConditions {
       const Boundary &kind = (*sources_)[f.source].kind;
       if (!kind.outside) continue;
       const Vec<dim> &x = grid.position[f.node];
-      const double p = kind.outside(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t, unit_weight);
+      const double p = kind.outside(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t, {unit_weight, x[vertical_]});
       const double growth = kind.open_water && p > 0 ? unit_weight : 0;
       Vec<dim> push, load{};
       for (int d = 0; d < dim; ++d) push[d] = p * f.area[d] + growth * f.moment[d];
@@ -86,7 +86,7 @@ class PoreConditions {
         const Boundary &kind = (*sources_)[f.source].kind;
         if (kind.water == OnWater::outflow) least = 0;
         if (kind.water == OnWater::flux) least = most = -kind.inflow(x[0], x[1], z, t);
-        if (kind.water == OnWater::seepage && kind.outside(x[0], x[1], z, t, unit_weight) <= 0)
+        if (kind.water == OnWater::seepage && kind.outside(x[0], x[1], z, t, {unit_weight, x[vertical_]}) <= 0)
           least = -kind.supply(x[0], x[1], z, t);
       }
       if (least == -1e300) continue;
@@ -127,6 +127,7 @@ class PoreConditions {
 
   const std::vector<Source> *sources_ = nullptr;
   bool sealed_ = false;
+  int vertical_ = 1;
   int rain_ = atmosphere;  ///< what acts on the free surface
   std::vector<int> wall_of_node_;
   std::vector<Wall> walls_;

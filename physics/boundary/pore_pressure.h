@@ -20,7 +20,7 @@ struct PrescribedPorePressure {
     v.function("pressure", pressure, pascal, {-1e9, 1e9}, of::place_and_time,
                "pore pressure, function of x, y, z, t; negative for suction");
   }
-  double outside(double x, double y, double z, double t, double) const { return pressure(x, y, z, t); }
+  double outside(double x, double y, double z, double t, const LiquidBeyond &) const { return pressure(x, y, z, t); }
 };
 
 }  // namespace talus

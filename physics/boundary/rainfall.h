@@ -21,7 +21,7 @@ struct Rainfall {
     v.function("intensity", intensity, metre_per_second, {0, 1e3}, of::place_and_time,
                "rain, volume per area of the face and time, function of x, y, z, t");
   }
-  double outside(double, double, double, double, double) const { return 0; }
+  double outside(double, double, double, double, const LiquidBeyond &) const { return 0; }
   double supply(double x, double y, double z, double t) const { return intensity(x, y, z, t); }
 };
 

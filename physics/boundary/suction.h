@@ -18,7 +18,7 @@ struct PrescribedSuction {
   void fields(Visitor &&v) {
     v.function("suction", suction, pascal, {0, 1e9}, of::place_and_time, "suction, function of x, y, z, t");
   }
-  double outside(double x, double y, double z, double t, double) const { return -suction(x, y, z, t); }
+  double outside(double x, double y, double z, double t, const LiquidBeyond &) const { return -suction(x, y, z, t); }
 };
 
 }  // namespace talus

@@ -58,6 +58,8 @@ class PoreFluid {
   Pores<dim> next_pores(int body) { return pores_of(next_points_, body); }
   /// The gathered points take the place of the present ones.
   void swap_points() { std::swap(points_, next_points_); }
+  /// The component of a place that is its elevation.
+  int vertical() const { return scene_.vertical(); }
   /// Completes the nodes once the particles of all bodies have been added to points and cells: their pressures, the
   /// boundaries, and the velocities of the fluids, which go to `velocity` [fluids][nodes].
   PetscErrorCode gather(const Frame &frame, PoreConditions<dim> &conditions, const Array &filling,

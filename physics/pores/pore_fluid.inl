@@ -14,7 +14,7 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
       scene_(scene),
       liquid_(scene.water),
       gas_(scene.gas),
-      pressure_(scene, std::hypot(scene.gravity[0], scene.gravity[1])),
+      pressure_(scene),
       bishop_(scene.water.stress == PoreStress::bishop),
       smoothing_(scene.transfer.pore_smoothing == PoreSmoothing::nodal),
       patches_(scene.transfer.locking == Locking::patches),
@@ -24,7 +24,7 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
       next_points_(bodies.size()),
       trial_(bodies.size()) {
   const size_t nodes = mesh.node_count(), cells = mesh.cell_count();
-  const double gravity = std::hypot(scene.gravity[0], scene.gravity[1], dim == 3 ? scene.gravity[dim - 1] : 0);
+  const double gravity = scene.gravity_size();
   constexpr double earth = 9.81;  // [m/s2], for a hydraulic conductivity in a scene without gravity
   for (const auto &body : bodies)
     soils_.emplace_back(body->source(), scene.water.density * (gravity > 0 ? gravity : earth), scene.water.viscosity);

@@ -113,7 +113,8 @@ Vec<dim> Loads<dim>::traction_of(const LoadedFacet &load, const Vec<dim> &x, dou
   Vec<dim> traction{};
   if (kind.quasi_static == OnSoil::load) traction = kind.template on_soil<dim>().load(load.facet.normal, x, t);
   if (kind.open_water) {
-    const double pressure = kind.outside(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t, data_.flow->unit_weight());
+    const double pressure =
+        kind.outside(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t, {data_.flow->unit_weight(), x[scene_.vertical()]});
     for (int d = 0; d < dim; ++d) traction[d] -= pressure * load.facet.normal[d];
   }
   return traction;

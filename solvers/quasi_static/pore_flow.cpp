@@ -143,7 +143,8 @@ template <int dim>
 double PoreFlow<dim>::outside(int node, double t) const {
   if (pressed_[node] < 0) return 0;
   const Vec<dim> &x = nodes_.position[node];
-  return sources_[pressed_[node]].kind.outside(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t, unit_weight());
+  return sources_[pressed_[node]].kind.outside(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t,
+                                               {unit_weight(), x[scene_.vertical()]});
 }
 
 template <int dim>

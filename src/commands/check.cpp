@@ -88,8 +88,9 @@ const char *ending_of(const Stage &stage) {
 std::string source_of(const MeshSource &mesh) {
   char size[32];
   std::snprintf(size, sizeof size, " in cells of %.3g m", mesh.size);
-  return mesh.file.empty() ? std::filesystem::path(mesh.section).filename().string() + size
-                           : std::filesystem::path(mesh.file).filename().string();
+  const auto name = [](const std::string &path) { return std::filesystem::path(path).filename().string(); };
+  if (!mesh.file.empty()) return name(mesh.file);
+  return name(mesh.section.empty() ? mesh.terrain.file : mesh.section) + size;
 }
 
 void print_costs(const Scene &scene, const Needs &n) {

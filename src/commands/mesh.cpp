@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <filesystem>
 
 #include "commands/commands.h"
 #include "mesh_source.h"
@@ -10,8 +11,8 @@ namespace talus {
 namespace {
 
 struct MeshArguments {
-  std::string source, file, size, dimension = "2", thickness, layers, format;
-  std::vector<std::string> cuts, boxes;
+  std::string source, file, size, dimension, thickness, layers, format, step, base, air, far_size, slip_surface;
+  std::vector<std::string> cuts, boxes, window, ellipsoid;
   std::string young_modulus = "10 MPa", poisson_ratio = "0.3", density = "2000";  // a soft soil
 };
 
@@ -32,18 +33,35 @@ double quantity(const char *option, const std::string &text, Unit unit, Range ra
 
 /// For talus-mesh, which takes metres and checks what they are good for.
 std::vector<std::string> options_of(const MeshArguments &a) {
-  std::vector<std::string> options{a.source, "-o", a.file, "--dimension", a.dimension};
+  std::vector<std::string> options{a.source, "-o", a.file};
   const auto metres = [](const char *option, const std::string &text) {
     return shortest(in_unit_of(option, text, metre));
   };
-  for (const auto &[name, value] : {std::pair{"--size", a.size}, {"--thickness", a.thickness}})
+  for (const auto &[name, value] : {std::pair{"--size", a.size},
+                                    {"--thickness", a.thickness},
+                                    {"--base", a.base},
+                                    {"--air", a.air},
+                                    {"--far-size", a.far_size}})
     if (!value.empty()) options.insert(options.end(), {name, metres(name, value)});
-  for (const auto &[name, value] : {std::pair{"--layers", a.layers}, {"--format", a.format}})
+  for (const auto &[name, value] : {std::pair{"--dimension", a.dimension},
+                                    {"--layers", a.layers},
+                                    {"--format", a.format},
+                                    {"--step", a.step},
+                                    {"--slip-surface", a.slip_surface}})
     if (!value.empty()) options.insert(options.end(), {name, value});
   for (const std::string &cut : a.cuts) options.insert(options.end(), {"--cuts", metres("--cuts", cut)});
   for (std::size_t i = 0; i < a.boxes.size(); ++i) {
     if (i % 5 == 0) options.push_back("--refine");
     options.push_back(metres("--refine", a.boxes[i]));
+  }
+  for (std::size_t i = 0; i < a.window.size(); ++i) {
+    if (i == 0) options.push_back("--window");
+    options.push_back(metres("--window", a.window[i]));
+  }
+  for (std::size_t i = 0; i < a.ellipsoid.size(); ++i) {
+    if (i == 0) options.push_back("--ellipsoid");
+    options.push_back(i < 6 ? metres("--ellipsoid", a.ellipsoid[i])
+                            : shortest(in_unit_of("--ellipsoid", a.ellipsoid[i], degree)));
   }
   return options;
 }
@@ -73,6 +91,12 @@ void report_step(const MeshArguments &arguments, const LinearElastic &soil, doub
   for (const std::string &remark : report.remarks) std::printf("warning: %s\n", remark.c_str());
 }
 
+/// Of what talus-mesh makes of the source: terrain is 3D.
+int mesh_dimension(const MeshArguments &arguments) {
+  const bool terrain = std::filesystem::path(arguments.source).extension() != ".csv";
+  return terrain || arguments.dimension == "3" ? 3 : 2;
+}
+
 int make_mesh(const MeshArguments &arguments) {
   const LinearElastic soil{{.young_modulus = quantity("--young-modulus", arguments.young_modulus, pascal, {1, 1e13}),
                             .poisson_ratio = quantity("--poisson-ratio", arguments.poisson_ratio, one, {0, 0.4999})}};
@@ -80,7 +104,7 @@ int make_mesh(const MeshArguments &arguments) {
   const MeshRun run = run_talus_mesh(options_of(arguments));
   std::fputs(run.output.c_str(), run.status ? stderr : stdout);
   if (run.status) return run.status;
-  arguments.dimension == "2" ? report_step<2>(arguments, soil, density) : report_step<3>(arguments, soil, density);
+  mesh_dimension(arguments) == 2 ? report_step<2>(arguments, soil, density) : report_step<3>(arguments, soil, density);
   return 0;
 }
 
@@ -88,12 +112,12 @@ int make_mesh(const MeshArguments &arguments) {
 
 Action add_mesh(CLI::App &app) {
   auto arguments = std::make_shared<MeshArguments>();
-  CLI::App *command =
-      app.add_subcommand("mesh", "make a mesh file of a section, with a report on its quality and critical step");
-  command->add_option("SOURCE", arguments->source, "section CSV")->required();
+  CLI::App *command = app.add_subcommand(
+      "mesh", "make a mesh file of a section or of terrain, with a report on its quality and critical step");
+  command->add_option("SOURCE", arguments->source, "section CSV, or terrain: ESRI ASCII or GeoTIFF")->required();
   command->add_option("-o,--output", arguments->file, "mesh file to write (.msh)")->required();
   command->add_option("--size", arguments->size, "cell size, such as 0.5 or \"50 cm\"")->required();
-  command->add_option("--dimension", arguments->dimension, "2: triangles, 3: tetrahedra (default 2)");
+  command->add_option("--dimension", arguments->dimension, "of a section, 2: triangles, 3: tetrahedra (default 2)");
   command->add_option("--thickness", arguments->thickness, "thickness of a 3D slice (default: one cell size)");
   command->add_option("--layers", arguments->layers,
                       "element layers over the thickness; 0: unstructured tetrahedra (default 1)");
@@ -102,6 +126,21 @@ Action add_mesh(CLI::App &app) {
   command->add_option("--refine", arguments->boxes, "x0 y0 x1 y1 h: cells of size h in a box; may be repeated")
       ->type_size(5)
       ->expected(-1);
+  command->add_option("--window", arguments->window, "terrain: west south east north (default: all of it)")
+      ->expected(4);
+  command->add_option("--step", arguments->step, "terrain: every so many-th row and column is used (default 1)");
+  command->add_option(
+      "--base", arguments->base,
+      "terrain: elevation of a flat base (default: the mesh is the space above the ground or slip surface)");
+  command->add_option("--air", arguments->air, "terrain: height of the free space above the ground");
+  command->add_option("--far-size", arguments->far_size,
+                      "terrain: cell size far from the slide and the ground (default: --size)");
+  command->add_option("--slip-surface", arguments->slip_surface, "terrain: a grid of the elevations of a slip surface");
+  command
+      ->add_option("--ellipsoid", arguments->ellipsoid,
+                   "terrain: slip surface by an ellipsoid, x y z of its centre, half lengths down the dip, along the "
+                   "strike and normal, dip, dip direction (azimuth towards which it dips)")
+      ->expected(8);
   command->add_option("--format", arguments->format, "format of the mesh file: 2.2 or 4.1 (default 4.1)");
   command->add_option("--young-modulus", arguments->young_modulus,
                       "Young's modulus of the soil, for the critical step (default 10 MPa)");

@@ -22,8 +22,8 @@ class Checks {
     if (scene_.body.empty())
       reader_.complain("body", "has no soil; add a table [body.NAME] with region, density and law");
     if (scene_.stage.empty()) reader_.complain("stage", "is missing; add a table [[stage]] with its duration");
-    mesh();
     gravity();
+    mesh();
     for (BodySource &body : scene_.body) unit_weight("body." + body.name, body), this->body(body);
     for (BoundarySource &boundary : scene_.boundary)
       if (boundary.group.empty()) boundary.group = {boundary.name};
@@ -69,15 +69,20 @@ class Checks {
   void mesh() const {
     const MeshSource &mesh = scene_.mesh;
     if (host_mesh_) {
-      if (!mesh.file.empty() || !mesh.section.empty())
-        reader_.complain("mesh", "has a source, but the host program brings the mesh: leave out file and section");
+      if (!mesh.file.empty() || !mesh.section.empty() || !mesh.terrain.file.empty())
+        reader_.complain("mesh",
+                         "has a source, but the host program brings the mesh: leave out file, section and terrain");
       return;
     }
-    if (mesh.file.empty() == mesh.section.empty())
-      reader_.complain("mesh", mesh.file.empty() ? "needs a source: give file or section"
-                                                 : "has two sources: give either file or section");
+    const int sources = !mesh.file.empty() + !mesh.section.empty() + !mesh.terrain.file.empty();
+    if (sources != 1)
+      reader_.complain("mesh", sources == 0 ? "needs a source: give file, section or terrain.file"
+                                            : "has two sources: give one of file, section and terrain.file");
+    if (!mesh.terrain.file.empty()) return terrain();
     if (!mesh.section.empty() && !(mesh.size > 0))
       reader_.complain("mesh.size", "must be a cell size above 0 m, since the mesh is made from a section");
+    if (!mesh.section.empty() && scene_.up != Up::y)
+      reader_.complain("mesh.section", "counts elevations along y and is drawn out along z: leave out up = \"z\"");
     for (std::size_t i = 0; i < mesh.refine.size(); ++i)
       box("mesh.refine." + std::to_string(i), mesh.refine[i].from, mesh.refine[i].to);
     if (mesh.file.empty()) return;
@@ -90,21 +95,51 @@ class Checks {
                          "has no effect on a mesh from a file: change the mesh where it is made, or give a section");
   }
 
+  void terrain() const {
+    const MeshSource &mesh = scene_.mesh;
+    const TerrainSource &t = mesh.terrain;
+    if (scene_.up != Up::z)
+      reader_.complain("mesh.terrain.file", "counts elevations along z: set dimension = 3 and up = \"z\"");
+    if (!(mesh.size > 0))
+      reader_.complain("mesh.size", "must be a cell size above 0 m, since the mesh is made from terrain");
+    for (const auto &[key, given] : {std::pair{"mesh.refine.0", !mesh.refine.empty()},
+                                     {"mesh.thickness", mesh.thickness > 0},
+                                     {"mesh.cuts", !mesh.cuts.empty()}})
+      if (given) reader_.complain(key, "has no effect on a mesh from terrain: leave it out");
+    if (!t.window.empty()) components("mesh.terrain.window", t.window.size(), 4, "numbers, west, south, east, north");
+    if (!t.base.empty()) components("mesh.terrain.base", t.base.size(), 1, "elevation");
+    if (!t.ellipsoid.given) return;
+    if (!t.slip_surface.empty())
+      reader_.complain("mesh.terrain.ellipsoid", "is a second slip surface beside slip_surface: give one of them");
+    components("mesh.terrain.ellipsoid.centre", t.ellipsoid.centre.size(), 3, "coordinates");
+    components("mesh.terrain.ellipsoid.semi_axes", t.ellipsoid.semi_axes.size(), 3, "lengths");
+  }
+
+  std::string up() const { return scene_.up == Up::y ? "y" : "z"; }
+
   void gravity() {
+    if (scene_.vertical() >= scene_.dimension) reader_.complain("up", "needs dimension = 3: in plane strain y is up");
     std::vector<double> &gravity = scene_.gravity;
     if (gravity.empty()) gravity.assign(scene_.dimension, 0);
     if (gravity.size() == 1) {
       const double g = gravity[0];
-      if (g < 0) reader_.complain("gravity", "must not be negative: a single number acts along -y");
+      if (g < 0) reader_.complain("gravity", "must not be negative: a single number acts downwards");
       gravity.assign(scene_.dimension, 0);
-      gravity[1] = -g;
+      gravity[scene_.vertical()] = -g;
     }
     if (gravity.size() != static_cast<std::size_t>(scene_.dimension))
-      reader_.complain("gravity", "must be one number, which acts along -y, or have " + dimension() + " components");
+      reader_.complain("gravity", "must be one number, which acts downwards, or have " + dimension() + " components");
+    if (-gravity[scene_.vertical()] < scene_.gravity_size() / 2) {
+      const bool other = scene_.dimension == 3 && -gravity[3 - scene_.vertical()] >= scene_.gravity_size() / 2;
+      reader_.complain("gravity", "must point down, within 60 degrees of -" + up() +
+                                      ", since elevations are counted along up = \"" + up() + "\": " +
+                                      (other ? "set up = \"" + std::string(scene_.up == Up::y ? "z" : "y") + "\""
+                                             : "turn the mesh, or set gravity to a number, which acts along -" + up()));
+    }
   }
 
-  /// Does gravity act along -y, as elevations are counted, or not at all?
-  bool gravity_is_down() const { return -scene_.gravity[1] >= (1 - 1e-12) * scene_.gravity_size(); }
+  /// Does gravity act against up, as elevations are counted, or not at all?
+  bool gravity_is_down() const { return -scene_.gravity[scene_.vertical()] >= (1 - 1e-12) * scene_.gravity_size(); }
 
   /// Density, or porosity and grain density, that follow from unit weights.
   void unit_weight(const std::string &path, BodySource &body) const {
@@ -219,9 +254,8 @@ class Checks {
                        "needs a weight that does not depend on a water table: give unit_weight or density, without "
                        "saturated_unit_weight, porosity and grain_density");
     if (!gravity_is_down() || scene_.gravity_size() == 0)
-      reader_.complain(key,
-                       "needs gravity along -y, since it counts the soil above along y; prescribe the pressure by "
-                       "water.excess where the axes are inclined");
+      reader_.complain(key, "needs gravity along -" + up() + ", since it counts the soil above along " + up() +
+                                "; prescribe the pressure by water.excess where the axes are inclined");
   }
 
   void pores(const std::string &path, const BodySource &body) const {
@@ -265,10 +299,6 @@ class Checks {
         std::any_of(scene_.body.begin(), scene_.body.end(), [](const BodySource &b) { return !b.water_table.empty(); });
     if (!has_table && !(scene_.water.level.constant() && scene_.water.level(0) == 0))
       reader_.complain("water.level", "has no effect without a water table, which it raises: give water.table");
-    if (!scene_.water.table.empty() && -scene_.gravity[1] < scene_.gravity_size() / 2)
-      reader_.complain("gravity",
-                       "must point down, along -y, since water.table gives elevations along y: turn the mesh, or "
-                       "prescribe the pressure by water.excess");
   }
 
   void factor_of_safety() const {
@@ -277,12 +307,12 @@ class Checks {
          {std::tuple{"within", &search.within, std::size_t(3)}, {"along", &search.along, std::size_t(2)}}) {
       const std::string path = std::string("factor_of_safety.") + key;
       if (!points->empty() && points->size() < least)
-        reader_.complain(path, "must have at least " + std::to_string(least) + " points [x, y]");
+        reader_.complain(path, "must have at least " + std::to_string(least) + " points [x, elevation]");
       for (std::size_t i = 0; i < points->size(); ++i)
         if ((*points)[i].size() != 2)
-          reader_.complain(
-              path + "." + std::to_string(i),
-              "must have 2 coordinates, [x, y]" + std::string(scene_.dimension == 3 ? ": it holds for all z" : ""));
+          reader_.complain(path + "." + std::to_string(i),
+                           "must have 2 coordinates, [x, elevation]" +
+                               std::string(scene_.dimension == 3 ? ": it holds across the whole width" : ""));
       for (std::size_t i = 1; i < points->size(); ++i)
         if ((*points)[i] == (*points)[i - 1])
           reader_.complain(path + "." + std::to_string(i), "must not be the point before it again");
@@ -351,8 +381,8 @@ class Checks {
       if (stage.gravity_ramp > 0) reader_.complain(path + ".gravity_ramp", no);
       if (stage.initial_stress == InitialStress::k0 && !gravity_is_down())
         reader_.complain(path + ".initial_stress",
-                         "needs gravity along -y, since it counts the soil above along y; give the stress by "
-                         "body.NAME.stress where the axes are inclined");
+                         "needs gravity along -" + up() + ", since it counts the soil above along " + up() +
+                             "; give the stress by body.NAME.stress where the axes are inclined");
     } else {
       const Stage usual;
       for (const auto &[key, given] : {std::pair{".initial_stress", stage.initial_stress != usual.initial_stress},

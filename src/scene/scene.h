@@ -39,12 +39,59 @@ struct RefineBox {
   }
 };
 
+/// The axis along which elevations are counted; gravity acts against it.
+enum class Up { y = 1, z = 2 };
+
 enum class WhenOutside { stop, remove };
+
+/// A slip surface: the lower side of an ellipsoid whose first axis points down the dip, the second along the strike.
+struct EllipsoidSource {
+  bool given = false;                     ///< the scene has the table
+  std::vector<double> centre, semi_axes;  ///< x, y, elevation of the map; down the dip, along the strike, normal [m]
+  double dip = 0, dip_direction = 0;      ///< [rad]
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    given = true;
+    v.point("centre", centre, metre, "centre: x, y and elevation in the coordinates of the terrain file");
+    v.point("semi_axes", semi_axes, metre,
+            "half lengths of the axes: down the dip, along the strike, along the normal");
+    v.number("dip", dip, degree, Range{0, 89}, "angle by which the first axis falls below the horizontal");
+    v.number("dip_direction", dip_direction, degree, Range{-360, 360},
+             "azimuth, clockwise from north, towards which the first axis falls: 90 deg is east");
+  }
+};
+
+/// A terrain file and what is cut out of it.
+struct TerrainSource {
+  std::string file;            ///< ESRI ASCII, GeoTIFF; empty: no terrain
+  std::vector<double> window;  ///< west, south, east, north of the map [m]; empty: all
+  int step = 1;                ///< every so many-th row and column
+  std::vector<double> base;    ///< elevation of a flat base [m]; empty: the mesh begins at the bed
+  double air = 0;              ///< height of free space above the ground [m]
+  double far_size = 0;         ///< of cells far from slide and ground [m]; 0: mesh.size
+  std::string slip_surface;    ///< a grid; empty: none
+  EllipsoidSource ellipsoid;   ///< in place of a grid
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.text("file", file, "terrain file, ESRI ASCII or GeoTIFF with coordinates and elevations in metres");
+    v.point("window", window, metre, "west, south, east, north in the coordinates of the file; default: all of it");
+    v.integer("step", step, Range{1, 1000}, "decimation: every so many-th row and column of the file is used");
+    v.point("base", base, metre,
+            "elevation of a flat base: soil is meshed from there to the ground; without it the mesh is the space above "
+            "the bed, which is the ground lowered to the slip surface");
+    v.number("air", air, metre, Range{0, 1e4}, "height of the free space above the ground, in which soil may move");
+    v.number("far_size", far_size, metre, Range{0, 1e5},
+             "cell size far from the slide, and from the ground below it; 0: mesh.size everywhere");
+    v.text("slip_surface", slip_surface, "grid of the elevations of a slip surface, relative to the scene");
+    v.table("ellipsoid", ellipsoid, "slip surface: the lower side of an ellipsoid");
+  }
+};
 
 struct MeshSource {
   std::string file;          ///< Gmsh .msh, 2.2 or 4.1, with physical groups
   std::string section;       ///< section CSV, meshed by talus-mesh
-  double size = 0;           ///< cell size of a section [m]
+  TerrainSource terrain;     ///< meshed by talus-mesh
+  double size = 0;           ///< cell size of a section or of terrain [m]
   double thickness = 0;      ///< of a 3D body cut from a section [m]; 0: one cell size
   int layers = 1;            ///< element layers over the thickness; 0: free tetrahedra
   std::vector<double> cuts;  ///< z at which regions of a 3D body from a section are parted [m]
@@ -54,13 +101,15 @@ struct MeshSource {
   void fields(Visitor &&v) {
     v.text("file", file, "Gmsh mesh file (.msh, format 2.2 or 4.1) with physical groups, relative to the scene");
     v.text("section", section, "section CSV that talus-mesh turns into a mesh, relative to the scene");
-    v.number("size", size, metre, Range{0, 1e5}, "cell size of a mesh made from a section");
+    v.number("size", size, metre, Range{0, 1e5},
+             "cell size of a mesh made from a section or terrain; of terrain in the slide and at the ground");
     v.number("thickness", thickness, metre, Range{0, 1e5},
              "thickness of a 3D body cut from a section; 0 is one cell size");
     v.integer("layers", layers, Range{0, 1000}, "element layers over the thickness; 0 gives unstructured tetrahedra");
     v.point("cuts", cuts, metre,
             "ascending z that divide the thickness: regions are then named region_1, region_2, ... along z");
     v.list("refine", refine, "boxes with smaller cells");
+    v.table("terrain", terrain, "terrain that talus-mesh turns into a mesh; needs dimension = 3 and up = \"z\"");
     v.choice("leaving_particles", leaving_particles, {{"stop", WhenOutside::stop}, {"remove", WhenOutside::remove}},
              "what becomes of particles that leave the mesh: the run ends with the place, or they are taken out of the "
              "simulation and entered in escaped.csv; may be changed with --resume");
@@ -434,18 +483,20 @@ struct QuasiStaticSource {
 
 /// Where `talus solve --factor-of-safety` divides strength, and how many mechanisms it searches for.
 struct FactorSource {
-  std::vector<std::vector<double>> within;  ///< polygon x, y [m]; empty: everywhere
-  std::vector<std::vector<double>> along;   ///< line x, y [m]; empty: everywhere
+  std::vector<std::vector<double>> within;  ///< polygon x, elevation [m]; empty: everywhere
+  std::vector<std::vector<double>> along;   ///< line x, elevation [m]; empty: everywhere
   double width = 0;                         ///< of the band along the line [m]; 0: two cells
   int mechanisms = 1;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.points("within", within, metre,
-             "polygon of points [x, y] to which the search is confined: strength is divided inside it, elsewhere soil "
-             "keeps its strength; in 3D for all z");
-    v.points("along", along, metre,
-             "line of points [x, y] along which soil may slip: strength is divided in a band on it, elsewhere soil "
-             "keeps its strength; in 3D for all z");
+    v.points(
+        "within", within, metre,
+        "polygon of points [x, elevation] to which the search is confined: strength is divided inside it, elsewhere "
+        "soil keeps its strength; in 3D across its whole width");
+    v.points(
+        "along", along, metre,
+        "line of points [x, elevation] along which soil may slip: strength is divided in a band on it, elsewhere soil "
+        "keeps its strength; in 3D across its whole width");
     v.number("width", width, metre, Range{0, 1e5}, "width of the band on the line `along`; 0: two cells");
     v.integer("mechanisms", mechanisms, Range{1, 10},
               "number of mechanisms that are searched for: the one with the least factor, then those with the next "
@@ -530,7 +581,8 @@ struct Scene {
   std::shared_ptr<const TableReader> root;  ///< the file's root table, for complaints after reading; not a key
   PhaseModel phases = PhaseModel::dry;
   int dimension = 2;
-  std::vector<double> gravity;  ///< components [m/s2]; one number points down y; empty: no gravity
+  Up up = Up::y;
+  std::vector<double> gravity;  ///< components [m/s2]; one number points down; empty: no gravity
   StartFrom start_from;
   MeshSource mesh;
   std::vector<BodySource> body;
@@ -555,7 +607,10 @@ struct Scene {
              "phase model");
     v.integer("dimension", dimension, Range{2, 3}, "2: plane strain on triangles, 3: tetrahedra");
     v.point("gravity", gravity, metre_per_second_squared,
-            "acceleration of gravity, one component per dimension; a single number acts along -y");
+            "acceleration of gravity, one component per dimension; a single number acts downwards, against `up`");
+    v.choice("up", up, {{"y", Up::y}, {"z", Up::z}},
+             "axis along which elevations are counted, of water tables, levels and vertical stress; z (as in terrain) "
+             "needs dimension = 3");
     v.table("start_from", start_from, "start at the state of another run");
     v.table("mesh", mesh, "background mesh");
     v.named("body", body, "soils, [body.NAME]");
@@ -571,6 +626,8 @@ struct Scene {
   }
 
   double gravity_size() const;  ///< magnitude of gravity [m/s2]
+  /// Number of the component of a place that is its elevation: the one place that says which way is up.
+  int vertical() const { return static_cast<int>(up); }
   /// The first value of a function that its key does not admit, on this rank; empty if there was none.
   std::string function_fault() const;
   /// Gravity and the pseudo-static acceleration of a stage, zero beyond the dimension [m/s2].

@@ -123,7 +123,8 @@ double cell_size_in(const World<dim> &world, const Mechanism &box) {
 template <int dim>
 std::string too_few_cells(const World<dim> &world, const Mechanism &m) {
   constexpr double enough = 10;  // with 8 cells factors were 2 % too large, with 4.5 cells 5 %
-  const double height = m.high[1] - m.low[1], size = cell_size_in(world, m);
+  const int up = world.scene.vertical();
+  const double height = m.high[up] - m.low[up], size = cell_size_in(world, m);
   if (size == 0 || height >= enough * size) return "";
   return "warning: the mechanism from x = " + rounded(m.low[0]) + " to " + rounded(m.high[0]) + " m is " +
          rounded(height) + " m high, and its cells measure " + rounded(size) +
@@ -218,7 +219,9 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   settings.load_time = run_.clock.load_time, settings.time = run_.clock.time;
   settings.shown_displacement = 0.01 * extent, settings.mechanisms = run_.scene.factor_of_safety.mechanisms;
   if (!region.everywhere())
-    settings.divided = [&](const Vec<dim> &x, double size) { return region.holds(x[0], x[1], size); };
+    settings.divided = [&, vertical = run_.scene.vertical()](const Vec<dim> &x, double size) {
+      return region.holds(x[0], x[vertical], size);
+    };
   settings.tell_confined = [&](double share) {
     if (share == 0)
       run_.scene.complain(

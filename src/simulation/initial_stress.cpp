@@ -29,6 +29,7 @@ double earth_pressure_at_rest(const BodySource &source, const Law &law, double f
 /// sees all cells.
 template <int dim>
 void Statics<dim>::start_stress() {
+  const int vertical = world_.scene.vertical();
   std::vector<typename Overburden<dim>::Block> blocks;
   for (int c = 0; c < world_.mesh.cell_count(); ++c) {
     const int b = problem_->soil().body_of(c);
@@ -38,14 +39,14 @@ void Statics<dim>::start_stress() {
     const double water = world_.phases.liquid ? flow_->water_density(c, middle) : 0;
     blocks.push_back(world_.block_of(world_.scene.body[b], c, water, clock_.load_time));
   }
-  const Overburden<dim> overburden(world_.comm, blocks);
+  const Overburden<dim> overburden(world_.comm, blocks, vertical);
   for (size_t b = 0; b < world_.bodies.size(); ++b) {
     GaussPoints<dim> &points = problem_->soil().points()[b];
     if (!world_.present[b]) continue;
     for (int q = 0; q < points.count(); ++q) {
       const Vec<dim> &x = points.position[q];
       Vec<dim> surface = x;
-      double weight = overburden.above(x, &surface[1]), pressure = 0;
+      double weight = overburden.above(x, &surface[vertical]), pressure = 0;
       if (world_.phases.prescribed) {
         pressure = world_.pressure(x, clock_.load_time, static_cast<int>(b));
         if (world_.scene.water.open_water_load) weight += world_.pressure(surface, clock_.load_time, common_water);
@@ -57,7 +58,7 @@ void Statics<dim>::start_stress() {
                                                points.friction_share.empty() ? 1 : points.friction_share[q]);
       double *stress = &points.stress[q * stress_size<dim>];
       std::fill_n(stress, stress_size<dim>, 0.);
-      stress[1] = pressure - weight, stress[0] = stress[2] = k0 * stress[1];
+      for (int d = 0; d < 3; ++d) stress[d] = (d == vertical ? 1 : k0) * (pressure - weight);
     }
   }
 }

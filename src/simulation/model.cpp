@@ -143,6 +143,7 @@ class Model {
         .add("dimension", dim)
         .add("phases", json::text(name_of(scene_.phases)))
         .add("gravity", json_of(scene_.gravity))
+        .add("up", json::text(scene_.up == Up::y ? "y" : "z"))
         .add("scene", json::lines(scene_.root ? scene_.root->values() : scene_.source))
         .add("keys", units())
         .add("bodies", bodies())
@@ -330,8 +331,9 @@ class Model {
     const double x = centre[0], y = centre[1], z = dim == 3 ? centre[dim - 1] : 0;
     double level = std::numeric_limits<double>::quiet_NaN();
     if (kind.outside) {
-      const double weight = scene_.water.density * scene_.gravity_size(), p = kind.outside(x, y, z, 0, weight);
-      if (kind.open_water && weight > 0 && p > 0) level = y + p / weight;
+      const double weight = scene_.water.density * scene_.gravity_size(), elevation = centre[scene_.vertical()],
+                   p = kind.outside(x, y, z, 0, {weight, elevation});
+      if (kind.open_water && weight > 0 && p > 0) level = elevation + p / weight;
       values.add(p < 0 ? "suction" : "pore pressure", "Pa", std::abs(p));
     }
     if (kind.supply && !kind.open_water) values.add("supply", "m/s", kind.supply(x, y, z, 0));
@@ -341,14 +343,14 @@ class Model {
   }
 
   static const char *action_on_soil(OnSoil action, const SoilFunctions<dim> &functions) {
-    Vec<dim> up{};
-    up[1] = 1;
+    Vec<dim> any{};  // normal of a face: how many directions are held does not depend on it
+    any[0] = 1;
     switch (action) {
       case OnSoil::none:
       case OnSoil::refused:
         return "none";
       case OnSoil::support:
-        return functions.speed ? "velocity" : functions.directions(up).size() == dim ? "fixed" : "roller";
+        return functions.speed ? "velocity" : functions.directions(any).size() == dim ? "fixed" : "roller";
       case OnSoil::contact:
         return "base";
       case OnSoil::load:

@@ -10,7 +10,7 @@ namespace talus {
 /// The model at the start as a JSON document on the first rank; elsewhere empty. Lengths are in metres, all other
 /// values in the SI unit that stands beside them. It does not depend on the number of ranks. Collective.
 ///
-///     title, dimension, phases, gravity
+///     title, dimension, phases, gravity, up
 ///     scene        the scene with its overrides, as TOML
 ///     keys         unit of each key of a scene, by table and kind
 ///     bodies       name; there: from the start

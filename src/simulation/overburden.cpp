@@ -7,7 +7,7 @@
 namespace talus {
 
 template <int dim>
-Overburden<dim>::Overburden(MPI_Comm comm, const std::vector<Block> &mine) {
+Overburden<dim>::Overburden(MPI_Comm comm, const std::vector<Block> &mine, int vertical) : vertical_(vertical) {
   int ranks;
   MPI_Comm_size(comm, &ranks);
   std::vector<int> counts(ranks), starts(ranks + 1, 0);
@@ -41,15 +41,15 @@ double Overburden<dim>::above(const Vec<dim> &place, double *top) const {
   constexpr double aside = 1e-9;
   Vec<dim> x = place;
   for (int d = 0; d < dim; ++d)
-    if (d != 1) x[d] += aside * (high_[d] - low_[d]) * (2 * x[d] > low_[d] + high_[d] ? -1 : 1);
+    if (d != vertical_) x[d] += aside * (high_[d] - low_[d]) * (2 * x[d] > low_[d] + high_[d] ? -1 : 1);
   double weight = 0;
-  *top = x[1];
+  *top = x[vertical_];
   for (const int k : in_strip_[strip_of(x[0])]) {
     const Block &block = blocks_[k];
     Square<dim> edges;
     for (int a = 0; a < dim; ++a) edges.col(a) = map<dim>(block.corner[a + 1]) - map<dim>(block.corner[0]);
     const Square<dim> inverse = edges.inverse();
-    const ColumnVector<dim> at = inverse * (map<dim>(x) - map<dim>(block.corner[0])), slope = inverse.col(1);
+    const ColumnVector<dim> at = inverse * (map<dim>(x) - map<dim>(block.corner[0])), slope = inverse.col(vertical_);
     double from = 0, to = 1e300;  // height above x
     const auto cut = [&](double value, double rise) {
       if (rise > 0)
@@ -61,7 +61,7 @@ double Overburden<dim>::above(const Vec<dim> &place, double *top) const {
     };
     cut(1 - at.sum(), -slope.sum());
     for (int a = 0; a < dim; ++a) cut(at[a], slope[a]);
-    if (to > from) weight += block.unit_weight * (to - from), *top = std::max(*top, x[1] + to);
+    if (to > from) weight += block.unit_weight * (to - from), *top = std::max(*top, x[vertical_] + to);
   }
   return weight;
 }

@@ -69,6 +69,8 @@ template <int dim>
 void Recorder<dim>::write_model() const {
   const std::string model = model_of(of_.world);
   on_first_rank(of_.world.comm, [&] { replace_file(options_.directory + "/run/model.json", model); });
+  if (!scene_.mesh.terrain.file.empty())
+    on_first_rank(of_.world.comm, [&] { replace_file(options_.directory + "/origin.json", options_.mesh.origin); });
 }
 
 template <int dim>

@@ -12,8 +12,8 @@ SearchRegion::SearchRegion(const FactorSource &search) : width_(search.width) {
   for (const auto &point : search.along) line_.push_back({point[0], point[1]});
 }
 
-bool SearchRegion::holds(double x, double y, double size) const {
-  const Vec<2> place{x, y};
+bool SearchRegion::holds(double x, double elevation, double size) const {
+  const Vec<2> place{x, elevation};
   if (!polygon_.empty() && !is_inside(polygon_, place)) return false;
   if (line_.empty()) return true;
   double distance = std::numeric_limits<double>::infinity();

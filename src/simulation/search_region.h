@@ -12,9 +12,9 @@ class SearchRegion {
   explicit SearchRegion(const FactorSource &search);
   /// Is it all of the soil?
   bool everywhere() const { return polygon_.empty() && line_.empty(); }
-  /// Is a point in it, in an element of this size [m]? The polygon and the band hold for all z; with both a point has
-  /// to be in both.
-  bool holds(double x, double y, double size) const;
+  /// Is a point in it, in an element of this size [m]? The polygon and the band hold across the whole width of a 3D
+  /// soil; with both a point has to be in both.
+  bool holds(double x, double elevation, double size) const;
 
  private:
   std::vector<Vec<2>> polygon_, line_;

@@ -26,7 +26,7 @@ void Simulation<dim>::run() {
 template <int dim>
 void Simulation<dim>::begin() {
   for (const std::string &sentence : run_.start_notes) run_.recorder.note(sentence);
-  for (const std::string &sentence : run_.world.mesh.report().remarks) run_.recorder.note("warning: mesh: " + sentence);
+  for (const std::string &sentence : mesh_report().remarks) run_.recorder.note("warning: mesh: " + sentence);
   for (const std::string &sentence : brittle_soils(run_.scene, run_.world.laws, run_.world.report()))
     run_.recorder.note("warning: " + sentence);
   for (const auto &doubts : {unlikely_values(run_.scene, run_.world.laws, run_.world.report()),

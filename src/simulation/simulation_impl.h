@@ -22,7 +22,11 @@ class Simulation final : public AnySimulation {
   long long particles() const override { return run_.world.particle_count; }
   double mass() const override { return run_.world.total_mass; }
   double critical_step() override { return run_.dynamics.critical_step(); }
-  MeshReport mesh_report() const override { return run_.world.mesh.report(); }
+  MeshReport mesh_report() const override {
+    MeshReport report = run_.world.mesh.report();
+    report.remarks.insert(report.remarks.end(), run_.options.mesh.remarks.begin(), run_.options.mesh.remarks.end());
+    return report;
+  }
   std::vector<BodyReport> bodies() override { return run_.world.report(); }
   std::vector<SoilFace> surface() const override { return run_.world.surface(); }
   std::string model() const override { return model_of(run_.world); }

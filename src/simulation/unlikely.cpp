@@ -44,17 +44,12 @@ Extent extent_of(const std::vector<BodyReport> &bodies) {
   return box;
 }
 
-/// The axis to which gravity is nearest.
-int nearest_axis(const Scene &scene) {
-  const auto less = [](double a, double b) { return std::abs(a) < std::abs(b); };
-  return static_cast<int>(std::max_element(scene.gravity.begin(), scene.gravity.end(), less) - scene.gravity.begin());
-}
-
 /// The water table of [water], which lies level beyond its ends.
 void doubt_table(const Scene &scene, const Extent &soil, std::vector<std::string> &sentences) {
   const auto &table = scene.water.table;
   if (table.empty()) return;
-  const double height = soil.of(1);
+  const int up = scene.vertical();
+  const double height = soil.of(up);
   if (table.size() > 1 && (table.front()[0] >= soil.high[0] || table.back()[0] <= soil.low[0]))
     sentences.push_back("water.table runs from x = " + rounded(table.front()[0]) + " to " + rounded(table.back()[0]) +
                         " m, beside the soil, which lies from " + rounded(soil.low[0]) + " to " +
@@ -62,13 +57,14 @@ void doubt_table(const Scene &scene, const Extent &soil, std::vector<std::string
   const auto lower = [](const auto &a, const auto &b) { return a[1] < b[1]; };
   const auto [least, most] = std::minmax_element(table.begin(), table.end(), lower);
   const double level = scene.water.level(0, 0, 0, 0);
-  if ((*least)[1] + level > soil.high[1] + 2 * height)
-    sentences.push_back("water.table stands " + rounded((*least)[1] + level - soil.high[1]) +
+  if ((*least)[1] + level > soil.high[up] + 2 * height)
+    sentences.push_back("water.table stands " + rounded((*least)[1] + level - soil.high[up]) +
                         " m or more above the top of the soil, which is " + rounded(height) +
                         " m high: all of it lies deep under open water. Is this meant?");
-  if (!scene.water.level.depends_on_time() && scene.phases == PhaseModel::drained && (*most)[1] + level <= soil.low[1])
-    sentences.push_back("water.table lies below all soil (its highest point is at y = " + rounded((*most)[1] + level) +
-                        " m, the lowest soil at " + rounded(soil.low[1]) + " m): it gives no pore pressure");
+  if (!scene.water.level.depends_on_time() && scene.phases == PhaseModel::drained && (*most)[1] + level <= soil.low[up])
+    sentences.push_back(std::string("water.table lies below all soil (its highest point is at ") + axes[up] + " = " +
+                        rounded((*most)[1] + level) + " m, the lowest soil at " + rounded(soil.low[up]) +
+                        " m): it gives no pore pressure");
 }
 
 // ---- open water ----
@@ -88,7 +84,7 @@ std::vector<double> levels_of(const Scene &scene) {
 }
 
 /// May water stand on the face? Not on what faces down, and not where a support is.
-bool may_be_flooded(const SoilFace &face) { return !face.held && face.normal[1] > -1e-6; }
+bool may_be_flooded(const SoilFace &face, int up) { return !face.held && face.normal[up] > -1e-6; }
 
 /// Ground under water that hangs together.
 struct Pond {
@@ -104,7 +100,7 @@ struct Pond {
 
 /// The ponds that stand on the surface of the soil where water rises to `elevation(x)`; less than `film` deep counts as
 /// dry.
-std::vector<Pond> ponds_of(const std::vector<SoilFace> &surface, int dimension, double film,
+std::vector<Pond> ponds_of(const std::vector<SoilFace> &surface, int dimension, int up, double film,
                            const std::function<double(double)> &elevation) {
   std::map<std::array<double, 3>, int> number;  // of the corners under water
   std::vector<int> joined;                      // a corner of the same pond with a smaller number, or itself
@@ -114,9 +110,9 @@ std::vector<Pond> ponds_of(const std::vector<SoilFace> &surface, int dimension, 
   };
   for (const SoilFace &face : surface) {
     int before = -1;
-    for (int a = 0; a < dimension && may_be_flooded(face); ++a) {
+    for (int a = 0; a < dimension && may_be_flooded(face, up); ++a) {
       const auto &x = face.corner[a];
-      if (elevation(x[0]) - x[1] <= film) continue;
+      if (elevation(x[0]) - x[up] <= film) continue;
       const auto [entry, added] = number.try_emplace(x, static_cast<int>(joined.size()));
       if (added) joined.push_back(entry->second);
       if (before >= 0) joined[first(entry->second)] = first(before);
@@ -126,7 +122,7 @@ std::vector<Pond> ponds_of(const std::vector<SoilFace> &surface, int dimension, 
   std::map<int, Pond> ponds;
   for (const auto &[x, corner] : number) {
     const double level = elevation(x[0]);
-    ponds.try_emplace(first(corner), Pond{x[0], x[0], level, level, 0}).first->second.widen(x[0], level, x[1]);
+    ponds.try_emplace(first(corner), Pond{x[0], x[0], level, level, 0}).first->second.widen(x[0], level, x[up]);
   }
   std::vector<Pond> list;
   for (const auto &[corner, pond] : ponds) list.push_back(pond);
@@ -143,14 +139,14 @@ void doubt_ponds(const Scene &scene, double height, const std::vector<SoilFace> 
   std::optional<Pond> worst;
   const auto fall = [](const Pond &pond) { return pond.highest - pond.lowest; };
   for (const double level : levels_of(scene))
-    for (const Pond &pond :
-         ponds_of(surface, scene.dimension, visible * height, [&](double x) { return elevation_of(table, x) + level; }))
+    for (const Pond &pond : ponds_of(surface, scene.dimension, scene.vertical(), visible * height,
+                                     [&](double x) { return elevation_of(table, x) + level; }))
       if (!worst || fall(pond) > fall(*worst)) worst = pond;
   if (!worst || fall(*worst) <= visible * height) return;
   sentences.push_back(
       "water.table stands up to " + rounded(worst->depth) + " m above the ground from x = " + rounded(worst->west) +
-      " to " + rounded(worst->east) + " m and is not level there: it lies between y = " + rounded(worst->lowest) +
-      " and " + rounded(worst->highest) +
+      " to " + rounded(worst->east) + " m and is not level there: it lies between " + axes[scene.vertical()] + " = " +
+      rounded(worst->lowest) + " and " + rounded(worst->highest) +
       " m. Open water is level, and the program puts its weight on the ground, so that forces and factors of safety "
       "are those of no real water. Cut the table at the ground, and give each pond one elevation; where the table "
       "stands for a head (artesian pressure under the ground), set water.open_water_load = false, and no open water "
@@ -162,13 +158,14 @@ void doubt_ponds(const Scene &scene, double height, const std::vector<SoilFace> 
 void doubt_own_tables(const Scene &scene, double height, const std::vector<SoilFace> &surface,
                       std::vector<std::string> &sentences) {
   const std::vector<double> levels = levels_of(scene);
+  const int up = scene.vertical();
   for (std::size_t b = 0; b < scene.body.size(); ++b) {
     const auto &own = scene.body[b].water_table;
     if (own.empty()) continue;
     std::optional<Pond> over;
     // a steep face that a seam ends at is no ground: the water in the seam leaves it there, or a crack has its pressure
     const auto ground = [&](const SoilFace &face) {
-      return face.body == static_cast<int>(b) && !face.conditioned && face.normal[1] > 0.1;
+      return face.body == static_cast<int>(b) && !face.conditioned && face.normal[up] > 0.1;
     };
     for (const SoilFace &face : surface)
       for (int a = 0; a < scene.dimension && ground(face); ++a)
@@ -176,7 +173,7 @@ void doubt_own_tables(const Scene &scene, double height, const std::vector<SoilF
           const auto &x = face.corner[a];
           const double head = elevation_of(own, x[0]) + level;
           const double open =
-              scene.water.table.empty() ? x[1] : std::max(x[1], elevation_of(scene.water.table, x[0]) + level);
+              scene.water.table.empty() ? x[up] : std::max(x[up], elevation_of(scene.water.table, x[0]) + level);
           if (head - open <= visible * height) continue;
           if (!over) over = Pond{x[0], x[0], head, head, 0};
           over->widen(x[0], head, open);
@@ -232,7 +229,7 @@ struct Span {
 };
 
 /// Where equilibrium is asked for, soil that ends with the mesh is mostly cut off there and goes on in nature.
-void doubt_ends(const Scene &scene, const Extent &soil, int down, const std::vector<SoilFace> &surface,
+void doubt_ends(const Scene &scene, const Extent &soil, int up, const std::vector<SoilFace> &surface,
                 std::vector<std::string> &sentences) {
   constexpr double thin = 0.1;  // of the height of the soil: a layer that comes to light there decides little
   const auto asks = [](const Stage &stage) {
@@ -242,7 +239,7 @@ void doubt_ends(const Scene &scene, const Extent &soil, int down, const std::vec
   if (std::none_of(scene.stage.begin(), scene.stage.end(), asks)) return;
   for (int d = 0; d < scene.dimension; ++d)
     for (const double sign : {-1., 1.}) {
-      if (d == down) continue;
+      if (d == up) continue;
       const double end = sign < 0 ? soil.low[d] : soil.high[d], near = 1e-6 * soil.of(d);
       double all = 0, free = 0;
       Span span;
@@ -252,12 +249,12 @@ void doubt_ends(const Scene &scene, const Extent &soil, int down, const std::vec
         all += face.area;
         if (face.conditioned) continue;
         free += face.area;
-        for (int a = 0; a < scene.dimension; ++a) span.widen(face.corner[a][down]);
+        for (int a = 0; a < scene.dimension; ++a) span.widen(face.corner[a][up]);
       }
-      if (2 * free <= all || span.to - span.from < thin * soil.of(down)) continue;
+      if (2 * free <= all || span.to - span.from < thin * soil.of(up)) continue;
       const std::string zero = scene.dimension == 2 ? "[0, 0]" : "[0, 0, 0]";
       sentences.push_back(std::string("The soil ends with the mesh at ") + axes[d] + " = " + rounded(end) +
-                          " m, and no boundary names its face there, " + axes[down] + " = " + span.text() +
+                          " m, and no boundary names its face there, " + axes[up] + " = " + span.text() +
                           ": it is free to move outwards, as no soil that goes on there would be, and may fail first. "
                           "Give it kind = \"roller\" or \"fixed\"; kind = \"traction\" with traction = " +
                           zero + " says that it is a free face");
@@ -265,13 +262,12 @@ void doubt_ends(const Scene &scene, const Extent &soil, int down, const std::vec
 }
 
 /// Soil whose lowest faces end with the mesh and have no support hangs on its sides, or falls out of the mesh.
-void doubt_base(const Scene &scene, const Extent &soil, int down, const std::vector<SoilFace> &surface,
+void doubt_base(const Scene &scene, const Extent &soil, int up, const std::vector<SoilFace> &surface,
                 std::vector<std::string> &sentences) {
   const auto moves = [](const Stage &stage) { return stage.kind != StageKind::seepage; };
   if (std::none_of(scene.stage.begin(), scene.stage.end(), moves)) return;
   constexpr int strips = 64;  // per level axis: a face is one of the lowest where none in its strip lies deeper
-  const double sign = scene.gravity[down] > 0 ? 1 : -1;
-  const int across = down == 0 ? 1 : 0, along = scene.dimension == 2 ? across : 3 - down - across;
+  const int across = 0, along = scene.dimension == 2 ? across : 3 - up;
   const auto strip = [&](int axis, double x) {
     return std::clamp(static_cast<int>((x - soil.low[axis]) / soil.of(axis) * strips), 0, strips - 1);
   };
@@ -281,10 +277,10 @@ void doubt_base(const Scene &scene, const Extent &soil, int down, const std::vec
     return span;
   };
   const auto depth = [&](const SoilFace &face) {
-    const Span span = bounds(face, down);
-    return sign > 0 ? span.to : -span.from;
+    const Span span = bounds(face, up);
+    return -span.from;
   };
-  const auto faces_down = [&](const SoilFace &face) { return sign * face.normal[down] > 0.3; };
+  const auto faces_down = [&](const SoilFace &face) { return face.normal[up] < -0.3; };
   std::vector<double> deepest(strips * strips, -std::numeric_limits<double>::infinity());
   for (const SoilFace &face : surface) {
     const Span x = bounds(face, across), z = bounds(face, along);
@@ -296,10 +292,10 @@ void doubt_base(const Scene &scene, const Extent &soil, int down, const std::vec
   Span where, elevation;
   for (const SoilFace &face : surface) {
     if (!faces_down(face)) continue;
-    const Span x = bounds(face, across), z = bounds(face, along), y = bounds(face, down);
+    const Span x = bounds(face, across), z = bounds(face, along), y = bounds(face, up);
     const double deep = deepest[strip(across, (x.from + x.to) / 2) * strips + strip(along, (z.from + z.to) / 2)];
     if (depth(face) < deep - (y.to - y.from) - std::max(soil.of(across), soil.of(along)) / strips) continue;
-    const double area = face.area * sign * face.normal[down];
+    const double area = -face.area * face.normal[up];
     all += area;
     if (face.held || !face.ends_mesh) continue;
     free += area;
@@ -307,7 +303,7 @@ void doubt_base(const Scene &scene, const Extent &soil, int down, const std::vec
   }
   if (2 * free <= all) return;
   sentences.push_back(std::string("Nothing holds the soil from below: its lowest faces, ") + axes[across] + " = " +
-                      where.text() + " at " + axes[down] + " = " + elevation.text() +
+                      where.text() + " at " + axes[up] + " = " + elevation.text() +
                       ", end with the mesh, and no boundary with a support names them, so that the soil hangs on its "
                       "sides or falls out of the mesh. Give them kind = \"fixed\" or \"roller\"");
 }
@@ -327,12 +323,8 @@ std::vector<std::string> unlikely_surroundings(const Scene &scene, const std::ve
     sentences.push_back("water.density is " + rounded(scene.water.density) +
                         " kg/m3, which hardly any water has; a number without a unit counts in kg/m3. Is it in t/m3?");
   const Extent soil = extent_of(bodies);
-  const int down = nearest_axis(scene);
-  if (down != 1 || scene.gravity[1] > 0)
-    sentences.push_back(std::string("gravity points along ") + (scene.gravity[down] > 0 ? "+" : "-") + axes[down] +
-                        ", and not down along -y, which is the direction in which sections and water tables count "
-                        "elevations. Is this meant?");
-  const double height = soil.of(down);
+  const int up = scene.vertical();
+  const double height = soil.of(up);
   if (height < 0) return sentences;  // a later stage adds all soil
   if (height > highest)
     sentences.push_back("The soil is " + rounded(height) +
@@ -343,12 +335,12 @@ std::vector<std::string> unlikely_surroundings(const Scene &scene, const std::ve
   doubt_table(scene, soil, sentences);
   if (scene.phases == PhaseModel::drained) doubt_early_suction(scene, sentences);
   if (scene.phases == PhaseModel::drained && scene.water.open_water_load) {
-    doubt_ponds(scene, soil.of(1), surface, sentences);
-    doubt_own_tables(scene, soil.of(1), surface, sentences);
+    doubt_ponds(scene, soil.of(up), surface, sentences);
+    doubt_own_tables(scene, soil.of(up), surface, sentences);
     doubt_sealed_ground(scene, sentences);
   }
-  doubt_ends(scene, soil, down, surface, sentences);
-  doubt_base(scene, soil, down, surface, sentences);
+  doubt_ends(scene, soil, up, surface, sentences);
+  doubt_base(scene, soil, up, surface, sentences);
   return sentences;
 }
 
@@ -356,7 +348,7 @@ std::vector<std::string> coarse_cells(const Scene &scene, const std::vector<Body
   constexpr double few = 4;  // over the height: not even a slip surface fits in
   std::vector<std::string> sentences;
   if (scene.gravity_size() == 0) return sentences;
-  const double height = extent_of(bodies).of(nearest_axis(scene));
+  const double height = extent_of(bodies).of(scene.vertical());
   for (const BodyReport &b : bodies)
     if (b.particles > 0 && height < few * b.cell_size)
       sentences.push_back("The soil is " + rounded(height) + " m high, and the cells of " + b.name + " measure " +
@@ -413,7 +405,7 @@ std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<L
                                          const std::vector<BodyReport> &bodies) {
   constexpr double none = 1e300;
   std::vector<std::string> sentences;
-  const double height = extent_of(bodies).of(nearest_axis(scene));
+  const double height = extent_of(bodies).of(scene.vertical());
   for (std::size_t b = 0; b < laws.size(); ++b) {
     const BodySource &body = scene.body[b];
     std::vector<Doubt> doubts{

@@ -15,7 +15,7 @@ namespace talus {
 
 template <int dim>
 World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &mesh_file)
-    : scene(of), phases(phase_traits(of.phases)), comm(world), pressure(of, std::hypot(of.gravity[0], of.gravity[1])) {
+    : scene(of), phases(phase_traits(of.phases)), comm(world), pressure(of) {
   read_laws();
   std::vector<Source> sources = read_sources();
   read_mesh(plex, mesh_file);
@@ -116,7 +116,9 @@ void World<dim>::read_mesh(DM plex, const std::string &mesh_file) {
     try {
       mesh = BackgroundMesh<dim>::read(comm, mesh_file, weights);
     } catch (const std::invalid_argument &error) {
-      scene.complain(scene.mesh.file.empty() ? "mesh.section" : "mesh.file",
+      scene.complain(!scene.mesh.file.empty()      ? "mesh.file"
+                     : !scene.mesh.section.empty() ? "mesh.section"
+                                                   : "mesh.terrain",
                      std::string("cannot serve: ") + error.what());
     }
   comm = mesh.comm();
@@ -141,7 +143,7 @@ typename Overburden<dim>::Block World<dim>::block_of(const BodySource &source, i
     block.corner[a] = mesh.position[mesh.cells[cell].node[a]];
     for (int d = 0; d < dim; ++d) centre[d] += block.corner[a][d] / (dim + 1);
   }
-  block.unit_weight = -scene.gravity[1] * (soil_density(source, centre, load_time) + water);
+  block.unit_weight = -scene.gravity[scene.vertical()] * (soil_density(source, centre, load_time) + water);
   return block;
 }
 
@@ -156,7 +158,7 @@ void World<dim>::set_pore_pressure_ratios() {
   std::vector<typename Overburden<dim>::Block> blocks;
   for (int c = 0; c < mesh.cell_count(); ++c)
     if (body_of[c] >= 0 && there[body_of[c]]) blocks.push_back(block_of(scene.body[body_of[c]], c, 0, 0));
-  const Overburden<dim> overburden(comm, blocks);
+  const Overburden<dim> overburden(comm, blocks, scene.vertical());
   for (int b = 0; b < static_cast<int>(scene.body.size()); ++b) {
     const double ratio = scene.body[b].pore_pressure_ratio;
     if (ratio == 0) continue;
@@ -171,7 +173,7 @@ void World<dim>::set_pore_pressure_ratios() {
         constexpr double aside = 1e-7;  // into the cell, since soil may end at x
         Vec<dim> near = x;
         for (int d = 0; d < dim; ++d)
-          if (d != 1) near[d] += aside * (centre[d] - x[d]);
+          if (d != scene.vertical()) near[d] += aside * (centre[d] - x[d]);
         double top;
         cells.insert(cells.end(), x.begin(), x.end());
         cells.push_back(ratio * overburden.above(near, &top));

@@ -18,18 +18,19 @@ template <int dim, class Phases>
 PetscErrorCode PoreFluid<dim, Phases>::find_moment(const Frame &frame) {
   PetscFunctionBeginUser;
   const FilledGrid<dim> &grid = frame.grid;
+  const int vertical = scene_.vertical();
   std::fill_n(moment_.begin(), grid.node_count(), Vec<dim>{});
   for (int c = 0; c < grid.cell_count(); ++c) {
-    const double y = place(frame, c, reference_[c])[1];
+    const double elevation = place(frame, c, reference_[c])[vertical];
     Vec<dim> first{};
     for (int k = dim; k >= 0; --k) {
       const int i = grid.shape[c].node[k];
       for (int d = 0; d < dim; ++d) {
         const double g = k ? grid.shape[c].gradient[k - 1][d] : first[d];
         first[d] -= g;
-        moment_[i][d] += frame.weight[c] * g * (frame.position[i][1] - y);
+        moment_[i][d] += frame.weight[c] * g * (frame.position[i][vertical] - elevation);
       }
-      moment_[i][1] -= frame.weight[c] * reference_[c][k];
+      moment_[i][vertical] -= frame.weight[c] * reference_[c][k];
     }
   }
   PetscCall(frame.grid.sum(moment_[0].data(), dim));

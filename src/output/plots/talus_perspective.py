@@ -43,9 +43,7 @@ class Views:
     def __init__(self, model):
         self.model = model
         self.low, self.high = model.corners.min(axis=(0, 1)), model.corners.max(axis=(0, 1))
-        gravity = np.array(model.data["gravity"] if np.any(model.data["gravity"]) else [0, -1, 0], float)
-        steepest = np.abs(gravity).argmax()
-        up = -np.sign(gravity[steepest]) * np.eye(3)[steepest]
+        up = np.eye(3)["xyz".index(model.data["up"])]
         level = np.eye(3)[np.flatnonzero(up == 0)]
         towards = 0.55 * level[0] + 0.75 * level[1] + 0.5 * up
         self.cameras = [Camera(self.low, self.high, side * towards, up) for side in (1, -1)]

@@ -2,7 +2,6 @@
 
 import csv
 import pathlib
-import re
 import tomllib
 
 import h5py
@@ -234,13 +233,8 @@ class Results:
         return at_time(snapshot.time, self.snapshots[-1].time, since if short else 0.0)
 
     def up_axis(self):
-        """The axis that gravity acts along: y unless the scene says otherwise."""
-        gravity = self.scene.get("gravity")
-        if isinstance(gravity, list) and gravity:
-            strength = [number_in(component) for component in gravity]
-            if max(strength) > 0:
-                return int(np.argmax(strength))
-        return 1
+        """Number of the axis along which elevations are counted."""
+        return "xyz".index(self.scene.get("up", "y"))
 
 
 def parsed(text):
@@ -249,9 +243,3 @@ def parsed(text):
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError:
         return {}
-
-
-def number_in(quantity):
-    """Size of a number or of a text like '9.81 m/s2'."""
-    match = re.match(r"\s*[-+]?[0-9.]+(?:[eE][-+]?\d+)?", str(quantity))
-    return abs(float(match.group())) if match else 0.0

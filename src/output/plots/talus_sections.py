@@ -69,7 +69,7 @@ class Oblique:
 
 def views_of(results):
     """The views that suit a run: one of a section or a thin slice; of a body the whole one, cut open, its central section, and from above."""
-    first, last = results.snapshots[0].position(), results.snapshots[-1].position()
+    first = results.snapshots[0].position()
     if first.shape[1] == 2:
         return [View("section", 0, 1)]
     up = results.up_axis()
@@ -78,10 +78,11 @@ def views_of(results):
     thin, wide = sorted(level, key=lambda axis: extent[axis])
     if extent[thin] < 0.2 * min(extent[wide], extent[up]):
         return [View("section", wide, up)]
-    moved = last - first if last.shape == first.shape else np.ones_like(first)
+    start, end = in_both(results.snapshots[0], results.snapshots[-1])  # particles may have left the mesh
+    moved = end - start
     along = max(level, key=lambda axis: np.abs(moved[:, axis]).sum())
     aside = next(axis for axis in level if axis != along)
-    centre = weighted_median(first[:, aside], np.abs(moved[:, along]))
+    centre = weighted_median(start[:, aside], np.abs(moved[:, along])) if len(start) else np.median(first[:, aside])
     at = f"at {'xyz'[aside]} = {centre:.3g} m"
     eye = Eye.in_front(moved[:, along].sum(), along, up)
     return [Oblique("from above in front", eye), Oblique(f"cut open {at}", eye, (aside, centre)), View(f"section {at}", along, up, (aside, centre)),
@@ -119,8 +120,14 @@ def chosen_snapshots(results, times=None, count=6):
 
 def advance(before, after):
     """How far the fastest hundredth of the particles that are in both snapshots moved between them [m]."""
+    start, end = in_both(before, after)
+    return float(np.percentile(np.linalg.norm(end - start, axis=1), 99)) if len(start) else 0.0
+
+
+def in_both(before, after):
+    """Places in two snapshots of the particles that are in both [m]."""
     _, a, b = np.intersect1d(before.ids(), after.ids(), assume_unique=True, return_indices=True)
-    return float(np.percentile(np.linalg.norm(after.position()[b] - before.position()[a], axis=1), 99)) if len(a) else 0.0
+    return before.position()[a], after.position()[b]
 
 
 class Colours:
@@ -212,7 +219,7 @@ class Painter:
         key = (snapshot.step, k, frame.shape)
         if key not in self._tiles:
             owner, rows = self.views[k].tiles(snapshot.position(), self._sizes(snapshot), frame)
-            self._tiles[key] = np.where(owner >= 0, rows[owner], -1)
+            self._tiles[key] = np.append(rows, -1)[owner]  # a section may have no particles any more
         return self._tiles[key]
 
     def _surface(self, snapshot):

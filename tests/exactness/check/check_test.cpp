@@ -93,10 +93,6 @@ TEST(Check, DoubtsWhatFitsTheSoilBadly) {
   const std::string drained = "phases=drained", few = "fewer than 4 cells over the height";
   EXPECT_FALSE(says({"mesh.size=0.12"}, few));
   EXPECT_TRUE(says({"mesh.size=0.3"}, few));
-  EXPECT_FALSE(says({}, "gravity points along"));
-  EXPECT_FALSE(says({"gravity=[4, -9]"}, "gravity points along"));
-  EXPECT_TRUE(says({"gravity=[9, -4]"}, "gravity points along +x, and not down along -y"));
-  EXPECT_TRUE(says({"gravity=[0, 9.81]"}, "gravity points along +y"));
   EXPECT_FALSE(says({"body.sand.tension_cutoff=1e3", "body.sand.cohesion=1e3"}, "has no effect"));
   EXPECT_TRUE(
       says({"body.sand.tension_cutoff=1e4", "body.sand.cohesion=1e3"}, "tension_cutoff is 1e+04 Pa and has no effect"));

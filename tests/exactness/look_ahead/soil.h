@@ -12,7 +12,7 @@ namespace talus {
 template <int dim, class Phases = Dry>
 struct Soil {
   Soil(const std::string &text, double relaxation_time)
-      : scene(parse_scene(text, "soil")), pressure(scene, 9.81), file(PETSC_COMM_WORLD, scene) {
+      : scene(parse_scene(text, "soil")), weighing(scene), pressure(weighing), file(PETSC_COMM_WORLD, scene) {
     const BodySource &source = scene.body[0];
     mesh = BackgroundMesh<dim>::read(PETSC_COMM_WORLD, file.path(), {{source.region[0], 5.}});
     pressure.set_regions(std::vector<int>(mesh.cell_count(), 0));
@@ -42,6 +42,10 @@ struct Soil {
   const ParticleArrays<dim> &particles() const { return bodies[0]->particles(); }
 
   Scene scene;
+  /// The scene in which water weighs: tests set the gravity of the motion themselves.
+  struct Weighing : Scene {
+    explicit Weighing(const Scene &scene) : Scene(scene) { gravity.assign(dim, 0), gravity[1] = -9.81; }
+  } weighing;
   PrescribedPressure<dim> pressure;
   MeshFile file;
   BackgroundMesh<dim> mesh;

@@ -132,6 +132,9 @@ TEST(Ranks, column_of_wet_sand_is_the_same) {
 }
 TEST(Ranks, drained_slope_of_two_soils_is_the_same) { expect_the_same(slope, {}); }
 
+/// The example of the guide's page on terrain, coarser.
+TEST(Ranks, slide_on_terrain_is_the_same) { expect_the_same(TALUS_GUIDE "/valley.toml", {"mesh.size=12"}); }
+
 /// The slope of the guide, coarse and weaker, until it fails; the event's time is when the crest passed the threshold
 /// [s].
 double failure_time(MPI_Comm comm) {

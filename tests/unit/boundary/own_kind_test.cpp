@@ -31,7 +31,7 @@ struct PorousStone {
   }
   double friction_coefficient(double, double, double, double, double) const { return friction; }
   double adhesion(double, double, double, double, double) const { return 2; }
-  double outside(double x, double, double, double t, double) const { return 3000 + 100 * x + 10 * t; }
+  double outside(double x, double, double, double t, const LiquidBeyond &) const { return 3000 + 100 * x + 10 * t; }
 };
 
 /// Loads the soil and waters it: a lawn sprinkler on a raft.
@@ -123,7 +123,7 @@ struct LoadThatNobodyAsksFor : Complete {
 };
 struct PressureThatNobodyAsksFor : Complete {
   static constexpr bool open_water = false;
-  double outside(double, double, double, double, double) const { return 0; }
+  double outside(double, double, double, double, const LiquidBeyond &) const { return 0; }
 };
 struct StopsTheLiquidAlone : LeavesTheSoilAlone {
   static constexpr OnWater water = OnWater::wall;
@@ -221,7 +221,7 @@ TEST(OwnBoundary, LoadsTheParticlesBehindIt) {
 TEST(OwnBoundary, PassesWaterOfAPressureAndStopsNone) {
   Square1m soil({{"base", {"base"}, PorousStone{}}});
   PoreConditions<2> pores;
-  ASSERT_EQ(pores.setup(soil.mesh, soil.sources, false), 0);
+  ASSERT_EQ(pores.setup(soil.mesh, soil.sources, false, 1), 0);
   const std::vector<Vec<2>> nothing(soil.grid.node_count(), Vec<2>{});
   ASSERT_EQ(pores.begin(soil.grid, soil.filling, nothing, nothing), 0);
   double push = 0;
@@ -245,7 +245,7 @@ TEST(OwnBoundary, LimitsAndWallsTheLiquid) {
       cushion({{"base", {"base"}, Cushion{}}});
   for (Square1m *soil : {&raft, &belt, &cushion}) {
     PoreConditions<2> pores;
-    ASSERT_EQ(pores.setup(soil->mesh, soil->sources, false), 0);
+    ASSERT_EQ(pores.setup(soil->mesh, soil->sources, false, 1), 0);
     const std::vector<Vec<2>> nothing(soil->grid.node_count(), Vec<2>{});
     ASSERT_EQ(pores.begin(soil->grid, soil->filling, nothing, nothing), 0);
     double walls = 0, limits = 0, base = 0;

@@ -9,7 +9,8 @@ import numpy as np
 sys.path.insert(0, sys.argv.pop(1))
 from talus_histories import draw_histories, drawn_energies  # noqa: E402
 from talus_results import Results  # noqa: E402
-from talus_sections import Colours, chosen_snapshots  # noqa: E402
+from talus_sections import Colours, Painter, View, chosen_snapshots, views_of  # noqa: E402
+from talus_tiles import Frame  # noqa: E402
 
 
 class Snapshot:
@@ -41,6 +42,29 @@ class Snapshots(unittest.TestCase):
 
     def test_soil_that_stays_is_shown_evenly_in_time(self):
         self.assertEqual(chosen([Snapshot(n, 0.0) for n in range(101)]), [0, 20, 40, 60, 80, 100])
+
+
+class Block(dict):
+    """Soil in 3D, without fields, that has moved along y and down; the first particles have left the mesh."""
+
+    def __init__(self, start, left, way):
+        self.ids, self.position = lambda: np.arange(left, len(start)), lambda: start[left:] + [0, way, -way]
+
+
+class Views(unittest.TestCase):
+    def test_a_section_lies_along_the_way_though_particles_have_left(self):
+        start = np.random.default_rng(1).uniform(0, 10, (40, 3))
+        slide = [Block(start, 0, 0), Block(start, 5, 30)]
+        _, _, section, above = views_of(types.SimpleNamespace(snapshots=slide, up_axis=lambda: 2))
+        self.assertEqual((section.across, section.up), (1, 2))
+        self.assertEqual((above.across, above.up), (1, 0))
+
+    def test_a_section_that_all_soil_has_left_is_empty(self):
+        painter = Painter.__new__(Painter)
+        painter.views, painter.spacing, painter._tiles = [View("section", 0, 1, (0, 5.0))], 0.1, {}
+        painter._sizes = lambda snapshot: np.full(3, 0.1)
+        gone = types.SimpleNamespace(step=1, position=lambda: np.zeros((3, 2)))
+        self.assertTrue((painter._tiled(gone, 0, Frame((0, 0), (1, 1), 8)) == -1).all())
 
 
 class Scales(unittest.TestCase):

@@ -1,0 +1,105 @@
+#include "meshes/grid.h"
+
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+
+namespace talus {
+namespace {
+
+[[noreturn]] void complain(const std::string &file, const std::string &text) {
+  throw std::invalid_argument(file + ": " + text);
+}
+
+/// Metres, or a complaint.
+void check_projection(const Grid &grid, const OGRSpatialReference *projection) {
+  const char *to_metres =
+      "project it to metres first, such as by gdalwarp -t_srs EPSG:CODE (CODE of a UTM zone or of "
+      "the national grid)";
+  if (projection && projection->IsGeographic()) {
+    if (std::abs(grid.east()) > 360 || std::abs(grid.north()) > 90)
+      complain(grid.file,
+               "says that its coordinates are degrees, but they reach beyond 360 and 90: correct what the "
+               "file says of its projection, such as by gdal_edit.py -a_srs EPSG:CODE");
+    complain(grid.file, std::string("has coordinates in degrees; ") + to_metres);
+  }
+  if (projection && projection->IsProjected() && std::abs(projection->GetLinearUnits() - 1) > 1e-9) {
+    const char *unit = nullptr;
+    projection->GetLinearUnits(&unit);
+    complain(grid.file, std::string("has coordinates in ") + (unit ? unit : "another unit") + "; " + to_metres);
+  }
+  if (projection || std::abs(grid.west) > 360 || std::abs(grid.east()) > 360 || std::abs(grid.south) > 90 ||
+      std::abs(grid.north()) > 90)
+    return;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const double z : grid.elevation)
+    if (!std::isnan(z)) low = std::min(low, z), high = std::max(high, z);
+  const double extent = std::max(grid.columns, grid.rows) * grid.spacing;
+  if (high - low <= 10 * extent) return;
+  std::ostringstream text;
+  text << "is " << extent << " wide and " << high - low << " m high, so that its coordinates seem to be degrees; "
+       << to_metres;
+  complain(grid.file, text.str());
+}
+
+}  // namespace
+
+double Grid::at(double x, double y) const {
+  const double i = (x - west) / spacing, j = (y - south) / spacing, near = 1e-6;
+  if (!(i >= -near && i <= columns - 1 + near && j >= -near && j <= rows - 1 + near))
+    return std::numeric_limits<double>::quiet_NaN();
+  const int a = std::clamp(static_cast<int>(i), 0, std::max(0, columns - 2)),
+            b = std::clamp(static_cast<int>(j), 0, std::max(0, rows - 2));
+  const double s = std::clamp(i - a, 0., 1.), t = std::clamp(j - b, 0., 1.);
+  const double *z = &elevation[static_cast<std::size_t>(b) * columns + a];
+  return (1 - t) * ((1 - s) * z[0] + s * z[1]) + t * ((1 - s) * z[columns] + s * z[columns + 1]);
+}
+
+Grid read_grid(const std::string &file) {
+  if (!std::filesystem::exists(file)) complain(file, "cannot be opened; check the path");
+  GDALAllRegister();
+  CPLPushErrorHandler(CPLQuietErrorHandler);
+  const std::unique_ptr<GDALDataset> data(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
+  CPLPopErrorHandler();
+  if (!data)
+    complain(file, "is no grid that GDAL reads; give ESRI ASCII (.asc) or GeoTIFF (.tif)" +
+                       (*CPLGetLastErrorMsg() ? ": " + std::string(CPLGetLastErrorMsg()) : ""));
+  Grid grid;
+  grid.file = file, grid.columns = data->GetRasterXSize(), grid.rows = data->GetRasterYSize();
+  double map[6];  // west, dx/column, dx/row, north, dy/column, dy/row
+  if (data->GetGeoTransform(map) != CE_None)
+    complain(file, "does not say where it lies; give a file with coordinates, such as a GeoTIFF with its tags");
+  if (map[2] != 0 || map[4] != 0 || !(map[1] > 0) || std::abs(std::abs(map[5]) - map[1]) > 1e-6 * map[1])
+    complain(file, "must have square cells in rows from west to east; resample it, such as by gdalwarp -tr SIZE SIZE");
+  if (grid.columns < 2 || grid.rows < 2) complain(file, "must have 2 rows and columns at least");
+  grid.spacing = map[1];
+  const bool from_north = map[5] < 0;
+  grid.west = map[0] + map[1] / 2;
+  grid.south = (from_north ? map[3] + grid.rows * map[5] : map[3]) + grid.spacing / 2;
+  GDALRasterBand *band = data->GetRasterBand(1);
+  const std::string unit = band->GetUnitType();
+  if (!unit.empty() && unit != "m" && unit != "metre" && unit != "meter" && unit != "metres" && unit != "meters")
+    complain(file, "has elevations in " + unit + "; convert them to metres first");
+  grid.elevation.resize(static_cast<std::size_t>(grid.columns) * grid.rows);
+  for (int j = 0; j < grid.rows; ++j)
+    if (band->RasterIO(GF_Read, 0, from_north ? grid.rows - 1 - j : j, grid.columns, 1,
+                       &grid.elevation[static_cast<std::size_t>(j) * grid.columns], grid.columns, 1, GDT_Float64, 0, 0,
+                       nullptr) != CE_None)
+      complain(file, "cannot be read: " + std::string(CPLGetLastErrorMsg()));
+  int has_hole = 0;
+  const double hole = band->GetNoDataValue(&has_hole);
+  for (double &z : grid.elevation)
+    if (!std::isfinite(z) || (has_hole && z == hole)) z = std::numeric_limits<double>::quiet_NaN();
+  if (const char *text = data->GetProjectionRef()) grid.projection = text;
+  check_projection(grid, data->GetSpatialRef());
+  return grid;
+}
+
+}  // namespace talus

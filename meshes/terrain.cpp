@@ -1,0 +1,228 @@
+#include "meshes/terrain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+namespace talus {
+namespace {
+
+constexpr double degrees = 180 / 3.14159265358979323846;
+
+[[noreturn]] void complain(const std::string &text) { throw std::invalid_argument(text); }
+
+template <class... Part>
+std::string text_of(const Part &...part) {
+  std::ostringstream text;
+  text.precision(9);
+  (text << ... << part);
+  return text.str();
+}
+
+std::string json_text(const std::string &text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c == '\n' ? ' ' : c;
+  }
+  return quoted + "\"";
+}
+
+/// Clockwise from north, 0 to 360 degrees.
+double azimuth(const std::array<double, 2> &v) {
+  const double angle = std::atan2(v[0], v[1]) * degrees;
+  return angle < 0 ? angle + 360 : angle;
+}
+
+}  // namespace
+
+double Ellipsoid::bottom(double x, double y) const {
+  const double s = std::sin(dip_direction), c = std::cos(dip_direction);
+  const double axes[3][3] = {{std::cos(dip) * s, std::cos(dip) * c, -std::sin(dip)},
+                             {c, -s, 0},
+                             {std::sin(dip) * s, std::sin(dip) * c, std::cos(dip)}};
+  double square = 0, mixed = 0, rest = -1;  // of the equation for the height above the centre
+  for (int k = 0; k < 3; ++k) {
+    const double level = (axes[k][0] * (x - centre[0]) + axes[k][1] * (y - centre[1])) / semi_axes[k],
+                 rise = axes[k][2] / semi_axes[k];
+    square += rise * rise, mixed += level * rise, rest += level * level;
+  }
+  return centre[2] + (-mixed - std::sqrt(mixed * mixed - square * rest)) / square;
+}
+
+Terrain::Terrain(const TerrainOptions &options) : options_(options) {
+  const Grid grid = read_grid(options.file);
+  projection_ = grid.projection;
+  if (!(options.far_size >= options.size)) options_.far_size = options.size;
+  take_window(grid);
+  bed_ = ground_;
+  if (options.ellipsoid || !options.slip_surface.empty()) take_slip_surface(grid);
+  if (options.base)
+    check_base();
+  else if (!(options.air > 0))
+    complain(
+        "--air must be above 0 m where the ground itself is the base: the mesh is the space above it, in which "
+        "soil moves; give --air, or a flat base by --base");
+  if (options.size > std::min(width(), depth()))
+    complain(text_of("--size ", options.size, " m is larger than the window, which measures ", width(), " m x ",
+                     depth(), " m; take a smaller size"));
+  find_distances();
+}
+
+std::string Terrain::place(int index) const {
+  return text_of("(", origin_[0] + x(index % columns()), ", ", origin_[1] + y(index / columns()), ")");
+}
+
+void Terrain::take_window(const Grid &grid) {
+  const auto &w = options_.window;
+  const std::string extent = text_of(grid.file, " reaches from (", grid.west, ", ", grid.south, ") to (", grid.east(),
+                                     ", ", grid.north(), ") m");
+  int from[2] = {0, 0}, to[2] = {grid.columns - 1, grid.rows - 1};
+  if (!w.empty()) {
+    if (!(w[2] > w[0] && w[3] > w[1]))
+      complain("--window west south east north must have east > west and north > south");
+    const double near = 1e-6 * grid.spacing;
+    if (w[0] < grid.west - near || w[1] < grid.south - near || w[2] > grid.east() + near || w[3] > grid.north() + near)
+      complain(text_of("--window ", w[0], " ", w[1], " ", w[2], " ", w[3], " reaches out of the grid: ", extent,
+                       "; take a window inside"));
+    const double start[2] = {grid.west, grid.south};
+    for (int d = 0; d < 2; ++d) {
+      from[d] = static_cast<int>(std::lround((w[d] - start[d]) / grid.spacing));
+      to[d] = static_cast<int>(std::lround((w[d + 2] - start[d]) / grid.spacing));
+    }
+  }
+  if (options_.step < 1) complain("--step must be 1 or more");
+  ground_.file = grid.file, ground_.spacing = options_.step * grid.spacing;
+  ground_.columns = (to[0] - from[0]) / options_.step + 1, ground_.rows = (to[1] - from[1]) / options_.step + 1;
+  if (ground_.columns < 2 || ground_.rows < 2)
+    complain(text_of("the window has ", to[0] - from[0] + 1, " columns and ", to[1] - from[1] + 1,
+                     " rows of the grid; take a larger window or a smaller --step"));
+  origin_ = {grid.west + from[0] * grid.spacing, grid.south + from[1] * grid.spacing};
+  int holes = 0, first = 0;
+  for (int j = 0; j < ground_.rows; ++j)
+    for (int i = 0; i < ground_.columns; ++i) {
+      const double z = grid.elevation[static_cast<std::size_t>(from[1] + j * options_.step) * grid.columns + from[0] +
+                                      i * options_.step];
+      if (std::isnan(z) && !holes++) first = static_cast<int>(ground_.elevation.size());
+      ground_.elevation.push_back(z);
+    }
+  if (holes)
+    complain(text_of(grid.file, ": the window has no data at ", holes, " of ", ground_.elevation.size(),
+                     " places, the first at ", place(first),
+                     "; fill the holes, such as by gdal_fillnodata.py, or take another window by --window"));
+}
+
+void Terrain::take_slip_surface(const Grid &grid) {
+  const bool by_grid = !options_.slip_surface.empty();
+  if (by_grid && options_.ellipsoid) complain("give one slip surface: --slip-surface or --ellipsoid");
+  const Grid given = by_grid ? read_grid(options_.slip_surface) : Grid{};
+  double nearest = std::numeric_limits<double>::infinity();  // of the surface over the ground
+  bool met = false;
+  for (int k = 0; k < static_cast<int>(bed_.elevation.size()); ++k) {
+    const double east = origin_[0] + x(k % columns()), north = origin_[1] + y(k / columns());
+    const double z = by_grid ? given.at(east, north) : options_.ellipsoid->bottom(east, north);
+    if (std::isnan(z)) continue;  // beside it nothing slides
+    met = true;
+    nearest = std::min(nearest, z - bed_.elevation[k]);
+    bed_.elevation[k] = std::min(bed_.elevation[k], z);
+  }
+  const std::string name = by_grid ? options_.slip_surface : "the ellipsoid";
+  if (!met) complain(name + " does not lie in the window of " + grid.file + "; both count in the same coordinates");
+  if (nearest >= 0)
+    complain(text_of(name, " lies above the ground everywhere, by ", nearest,
+                     " m at least, so that nothing slides; check its elevations, or lower it"));
+  for (int k = 0; k < static_cast<int>(bed().size()); ++k) {
+    const int i = k % columns(), j = k / columns();
+    const double share = (i == 0 || i == columns() - 1 ? 0.5 : 1) * (j == 0 || j == rows() - 1 ? 0.5 : 1),
+                 area = share * ground_.spacing * ground_.spacing;  // around the place
+    slide_volume_ += area * (ground()[k] - bed()[k]);
+    if (ground()[k] > bed()[k]) slide_area_ += area;
+  }
+}
+
+void Terrain::check_base() const {
+  const auto lowest = std::min_element(bed().begin(), bed().end());
+  if (*options_.base >= *lowest)
+    complain(text_of("--base ", *options_.base, " m must lie below the lowest ", slides() ? "slip surface and " : "",
+                     "ground, which is at ", *lowest, " m, at ", place(static_cast<int>(lowest - bed().begin()))));
+}
+
+/// By two sweeps over the grid, in which each place learns from its neighbours: a few per cent too far.
+void Terrain::find_distances() {
+  distance_ = ground_;
+  std::vector<double> &d = distance_.elevation;
+  for (std::size_t k = 0; k < d.size(); ++k) d[k] = !slides() || ground()[k] > bed()[k] ? 0 : 1e300;
+  const auto learn = [&](int i, int j, int di, int dj) {
+    if (i + di < 0 || i + di >= columns() || j + dj < 0 || j + dj >= rows()) return;
+    double &mine = d[j * columns() + i];
+    mine = std::min(mine, d[(j + dj) * columns() + i + di] + std::hypot(di, dj) * ground_.spacing);
+  };
+  for (const int sign : {1, -1})
+    for (int b = 0; b < rows(); ++b)
+      for (int a = 0; a < columns(); ++a) {
+        const int i = sign > 0 ? a : columns() - 1 - a, j = sign > 0 ? b : rows() - 1 - b;
+        for (const auto &[di, dj] : {std::array{-1, 0}, {-1, -1}, {0, -1}, {1, -1}}) learn(i, j, sign * di, sign * dj);
+      }
+}
+
+double Terrain::size_at(double x, double y, double z) const {
+  constexpr double growth = 0.2;  // of cells with the distance
+  x = std::clamp(x, 0., width()), y = std::clamp(y, 0., depth());
+  const double below = options_.base ? std::max(0., bed_at(x, y) - z) : 0;
+  return std::min(options_.far_size, options_.size + growth * (distance_.at(x, y) + below));
+}
+
+std::array<double, 2> Terrain::downhill(const std::vector<double> &z) const {
+  std::array<double, 2> sum{};
+  for (int j = 1; j + 1 < rows(); ++j)
+    for (int i = 1; i + 1 < columns(); ++i) {
+      const int k = j * columns() + i;
+      if (!(ground()[k] > bed()[k])) continue;
+      sum[0] -= z[k + 1] - z[k - 1], sum[1] -= z[k + columns()] - z[k - columns()];
+    }
+  return sum;
+}
+
+std::vector<std::string> Terrain::doubts() const {
+  std::vector<std::string> sentences;
+  if (ground_.spacing > 2 * options_.size)
+    sentences.push_back(text_of("the cells at the ground (--size ", options_.size,
+                                " m) are smaller than the spacing of the elevations, ", ground_.spacing,
+                                " m, and show no more than these do"));
+  if (!slides()) return sentences;
+  const std::array<double, 2> slope = downhill(ground());
+  std::array<double, 2> dip = downhill(bed());
+  if (options_.ellipsoid)
+    dip = {std::sin(options_.ellipsoid->dip_direction), std::cos(options_.ellipsoid->dip_direction)};
+  if ((!options_.ellipsoid || options_.ellipsoid->dip > 0) && dip[0] * slope[0] + dip[1] * slope[1] < 0)
+    sentences.push_back(text_of("the slip surface dips towards ", std::lround(azimuth(dip)),
+                                " degrees from north, into the slope, which falls towards ",
+                                std::lround(azimuth(slope)),
+                                " degrees: dip direction is the azimuth (clockwise from north) towards which the "
+                                "surface dips. Is it meant to dip the other way?"));
+  const double deep = slide_volume_ / slide_area_;
+  if (options_.far_size > deep)
+    sentences.push_back(text_of("cells grow to ", options_.far_size, " m on the way of the slide, which is ", deep,
+                                " m thick on average and thinner as it spreads: a flow that is not as deep as a cell "
+                                "is not resolved. Take a --far-size (and --size) of a third of its depth or less"));
+  for (int k = 0; k < static_cast<int>(bed().size()); ++k) {
+    const int i = k % columns(), j = k / columns();
+    if (ground()[k] > bed()[k] && (i == 0 || j == 0 || i == columns() - 1 || j == rows() - 1)) {
+      sentences.push_back("the slide reaches the edge of the window at " + place(k) +
+                          ", where it is cut off; take a larger window");
+      break;
+    }
+  }
+  return sentences;
+}
+
+std::string Terrain::origin_document() const {
+  return text_of("{\"terrain\": ", json_text(options_.file), ",\n \"origin_m\": [", origin_[0], ", ", origin_[1],
+                 "],\n \"meaning\": \"x and y of the map are those of the mesh plus the origin; z is the elevation\",\n"
+                 " \"projection\": ",
+                 json_text(projection_), "}\n");
+}
+
+}  // namespace talus

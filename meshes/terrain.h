@@ -1,0 +1,82 @@
+#pragma once
+/// Terrain as it is to be meshed: a window of a grid, and what lies above a slip surface. x points east, y north, z up;
+/// x and y of the mesh are those of the grid less a local origin, so that large coordinates cost no digits.
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "meshes/grid.h"
+
+namespace talus {
+
+/// A slip surface like a spoon: the lower side of an ellipsoid. Its first axis points down the dip, the second along
+/// the strike, the third along the normal. Dip direction is the azimuth, clockwise from north, towards which the
+/// surface dips: 90 degrees is east.
+struct Ellipsoid {
+  std::array<double, 3> centre;       ///< in the coordinates of the grid [m]
+  std::array<double, 3> semi_axes;    ///< down the dip, along the strike, along the normal [m]
+  double dip = 0, dip_direction = 0;  ///< [rad]
+  /// Elevation of the lower side; not a number beside the ellipsoid.
+  double bottom(double x, double y) const;
+};
+
+struct TerrainOptions {
+  std::string file;
+  double size = 0;                     ///< of cells in and around the slide, at the ground [m]
+  double far_size = 0;                 ///< of cells far away [m]; 0: the same
+  std::vector<double> window;          ///< west, south, east, north in the coordinates of the grid [m]; empty: all
+  int step = 1;                        ///< every so many-th row and column of the grid is used
+  std::optional<double> base;          ///< elevation of a flat base; none: the mesh begins at the bed
+  double air = 0;                      ///< height of the free space above the ground [m]
+  std::string slip_surface;            ///< a grid of elevations; empty: none
+  std::optional<Ellipsoid> ellipsoid;  ///< in place of it
+};
+
+class Terrain {
+ public:
+  /// Reads and checks. Throws std::invalid_argument for what cannot be meshed, with what to do.
+  explicit Terrain(const TerrainOptions &options);
+
+  const TerrainOptions &options() const { return options_; }
+  int columns() const { return ground_.columns; }
+  int rows() const { return ground_.rows; }
+  /// Of the mesh [m].
+  double x(int column) const { return ground_.west + column * ground_.spacing; }
+  double y(int row) const { return ground_.south + row * ground_.spacing; }
+  double width() const { return x(columns() - 1); }
+  double depth() const { return y(rows() - 1); }
+  /// [rows][columns] [m]
+  const std::vector<double> &ground() const { return ground_.elevation; }
+  /// The ground, lowered to the slip surface where there is one below it.
+  const std::vector<double> &bed() const { return bed_.elevation; }
+  double ground_at(double x, double y) const { return ground_.at(x, y); }
+  double bed_at(double x, double y) const { return bed_.at(x, y); }
+  bool slides() const { return slide_area_ > 0; }
+  double slide_area() const { return slide_area_; }      ///< seen from above [m2]
+  double slide_volume() const { return slide_volume_; }  ///< [m3]
+  /// Cell size at a place [m].
+  double size_at(double x, double y, double z) const;
+  /// Sentences about what may be meant but rarely is.
+  std::vector<std::string> doubts() const;
+  /// What leads back from the mesh to the map, as JSON.
+  std::string origin_document() const;
+
+ private:
+  void take_window(const Grid &grid);
+  void take_slip_surface(const Grid &grid);
+  void check_base() const;
+  void find_distances();
+  std::string place(int index) const;  ///< in the coordinates of the grid
+  /// Where the slide as a whole falls or dips to: level components of the mean of -grad z over it.
+  std::array<double, 2> downhill(const std::vector<double> &z) const;
+
+  TerrainOptions options_;
+  std::array<double, 2> origin_{};  ///< of the mesh in the coordinates of the grid [m]
+  std::string projection_;
+  Grid ground_, bed_;
+  Grid distance_;  ///< from the slide, seen from above [m]
+  double slide_area_ = 0, slide_volume_ = 0;
+};
+
+}  // namespace talus

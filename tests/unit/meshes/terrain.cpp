@@ -1,0 +1,282 @@
+// Terrain files: what is read, cut out and refused; and the meshes that talus-mesh makes of them.
+#include "meshes/terrain.h"
+
+#include <gdal_priv.h>
+#include <gtest/gtest.h>
+#include <ogr_spatialref.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <regex>
+#include <sstream>
+
+namespace talus {
+namespace {
+
+using Elevation = std::function<double(double x, double y)>;
+constexpr double east = 5000, south = 2000, spacing = 10;  // of the first elevation of the grids below
+constexpr int columns = 21, rows = 17;
+constexpr double radian = 3.14159265358979323846 / 180;
+
+/// Falls to the east by 3 in 10.
+double plane(double x, double) { return 100 - 0.3 * (x - east); }
+
+struct Answer {
+  int status;
+  std::string text;
+};
+
+class TerrainFiles : public ::testing::Test {
+ protected:
+  const std::filesystem::path folder = std::filesystem::path(P_tmpdir) / ("talus_terrain_" + std::to_string(getpid()));
+  void SetUp() override { std::filesystem::create_directories(folder); }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+  std::string in_folder(const std::string &name) const { return (folder / name).string(); }
+
+  std::string ascii(const Elevation &elevation, const std::string &name = "a.asc", double cell = spacing,
+                    double west = east, double bottom = south) const {
+    std::ofstream file(in_folder(name));
+    file.precision(12);
+    file << "ncols " << columns << "\nnrows " << rows << "\nxllcenter " << west << "\nyllcenter " << bottom
+         << "\ncellsize " << cell << "\nNODATA_value -9999\n";
+    for (int j = rows - 1; j >= 0; --j)
+      for (int i = 0; i < columns; ++i)
+        file << elevation(west + i * cell, bottom + j * cell) << (i + 1 < columns ? " " : "\n");
+    return in_folder(name);
+  }
+
+  /// The same as GeoTIFF of a projection, EPSG.
+  std::string geotiff(const Elevation &elevation, int projection, double cell = spacing, double west = east,
+                      double bottom = south) const {
+    GDALAllRegister();
+    const std::unique_ptr<GDALDataset> data(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+        in_folder("a.tif").c_str(), columns, rows, 1, GDT_Float32, nullptr));
+    double map[] = {west - cell / 2, cell, 0, bottom + (rows - 0.5) * cell, 0, -cell};
+    data->SetGeoTransform(map);
+    OGRSpatialReference reference;
+    reference.importFromEPSG(projection);
+    data->SetSpatialRef(&reference);
+    std::vector<float> z;
+    for (int j = rows - 1; j >= 0; --j)
+      for (int i = 0; i < columns; ++i) z.push_back(static_cast<float>(elevation(west + i * cell, bottom + j * cell)));
+    EXPECT_EQ(data->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, columns, rows, z.data(), columns, rows, GDT_Float32, 0,
+                                               0, nullptr),
+              CE_None);
+    return in_folder("a.tif");
+  }
+
+  static TerrainOptions options(const std::string &file) {
+    TerrainOptions o;
+    o.file = file, o.size = 20, o.air = 30;
+    return o;
+  }
+  static std::string complaint(const TerrainOptions &o) {
+    try {
+      const Terrain terrain(o);
+    } catch (const std::invalid_argument &error) {
+      return error.what();
+    }
+    return "";
+  }
+  static void expect_words(const std::string &text, const std::vector<std::string> &words) {
+    for (const std::string &word : words)
+      EXPECT_NE(text.find(word), std::string::npos) << word << " is not in: " << text;
+  }
+  static bool doubts(const TerrainOptions &o, const std::string &word) {
+    for (const std::string &sentence : Terrain(o).doubts())
+      if (sentence.find(word) != std::string::npos) return true;
+    return false;
+  }
+
+  static Answer run(const std::string &arguments) {
+    Answer answer{-1, ""};
+    FILE *pipe = popen((TALUS_MESH " " + arguments + " 2>&1").c_str(), "r");
+    if (!pipe) return answer;
+    for (int c; (c = std::fgetc(pipe)) != EOF;) answer.text += static_cast<char>(c);
+    answer.status = WEXITSTATUS(pclose(pipe));
+    return answer;
+  }
+  /// Volume or area of a group in what talus-mesh prints; 0 where there is none.
+  static double of_group(const Answer &answer, const std::string &name) {
+    std::smatch found;
+    const std::regex line("(region|group) " + name + ": \\d+ (cells|facets), (\\S+) m");
+    return std::regex_search(answer.text, found, line) ? std::stod(found[3]) : 0;
+  }
+  static std::string content(const std::string &file) {
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    return text.str();
+  }
+};
+
+/// Rows of the file run from north to south, and its elevations are those of the centres of cells.
+TEST_F(TerrainFiles, HaveTheirElevationsWhereTheFormulaHasThem) {
+  const Elevation formula = [](double x, double y) { return 50 + 0.2 * (x - east) - 0.1 * (y - south); };
+  for (const std::string &file : {ascii(formula), geotiff(formula, 31254)}) {
+    const Grid grid = read_grid(file);
+    EXPECT_NEAR(grid.west, east, 1e-9);
+    EXPECT_NEAR(grid.south, south, 1e-9);
+    EXPECT_NEAR(grid.at(east + 33, south + 77), formula(east + 33, south + 77), 1e-4);
+    EXPECT_TRUE(std::isnan(grid.at(east - 1, south)));
+  }
+  EXPECT_NE(read_grid(in_folder("a.tif")).projection.find("31254"), std::string::npos);
+  EXPECT_EQ(read_grid(in_folder("a.asc")).projection, "");
+}
+
+TEST_F(TerrainFiles, GiveTheirWindowAndEveryOtherRow) {
+  TerrainOptions o = options(ascii([](double x, double y) { return x + 3 * y; }));
+  o.window = {east + 20, south + 30, east + 140, south + 110}, o.step = 2;
+  const Terrain terrain(o);
+  EXPECT_EQ(terrain.columns(), 7);
+  EXPECT_EQ(terrain.rows(), 5);
+  EXPECT_DOUBLE_EQ(terrain.x(6), 120);
+  EXPECT_DOUBLE_EQ(terrain.y(4), 80);
+  EXPECT_DOUBLE_EQ(terrain.ground_at(20, 40), east + 40 + 3 * (south + 70));
+  expect_words(terrain.origin_document(), {"\"origin_m\": [5020, 2030]", "a.asc"});
+}
+
+/// Dip direction is the azimuth towards which the surface dips: points on the lower side, by vectors written out.
+TEST_F(TerrainFiles, MeetAnEllipsoidThatDipsWhereItShould) {
+  const double c = std::cos(30 * radian), s = std::sin(30 * radian);
+  const struct {
+    double direction;
+    std::array<double, 3> first, second, third;
+  } cases[] = {{90, {c, 0, -s}, {0, 1, 0}, {s, 0, c}},      // east
+               {0, {0, c, -s}, {1, 0, 0}, {0, s, c}},       // north
+               {180, {0, -c, -s}, {1, 0, 0}, {0, -s, c}}};  // south
+  for (const auto &one : cases) {
+    const Ellipsoid e{{100, 200, 50}, {30, 20, 10}, 30 * radian, one.direction * radian};
+    for (const auto &[u, v] : {std::pair{0., 0.}, {0.3, 0.2}, {-0.4, 0.3}, {0.2, -0.6}}) {
+      const double w = -std::sqrt(1 - u * u - v * v);
+      std::array<double, 3> x = e.centre;
+      for (int d = 0; d < 3; ++d) x[d] += 30 * u * one.first[d] + 20 * v * one.second[d] + 10 * w * one.third[d];
+      EXPECT_NEAR(e.bottom(x[0], x[1]), x[2], 1e-9) << one.direction;
+    }
+    EXPECT_TRUE(std::isnan(e.bottom(140, 240)));
+  }
+}
+
+/// Half an ellipsoid below level ground; the grid cuts its rim in steps.
+TEST_F(TerrainFiles, SlideWithTheVolumeOfAnEllipsoid) {
+  TerrainOptions o = options(ascii([](double, double) { return 50; }, "a.asc", 2));
+  o.ellipsoid = Ellipsoid{{east + 20, south + 16, 50}, {15, 12, 6}, 0, 0.3};
+  const Terrain terrain(o);
+  const double pi = 180 * radian;
+  EXPECT_NEAR(terrain.slide_volume() / (2. / 3 * pi * 15 * 12 * 6), 1, 0.02);
+  EXPECT_NEAR(terrain.slide_area() / (pi * 15 * 12), 1, 0.04);
+  EXPECT_NEAR(terrain.bed_at(20, 16), 44, 1e-9);
+}
+
+TEST_F(TerrainFiles, DoubtWhatIsRarelyMeant) {
+  TerrainOptions o = options(ascii(plane));
+  o.ellipsoid = Ellipsoid{{east + 100, south + 80, 70}, {60, 40, 20}, 17 * radian, 90 * radian};
+  EXPECT_FALSE(doubts(o, "into the slope"));
+  EXPECT_TRUE(doubts(o, "is not resolved"));  // 20 m cells, 13 m of soil
+  o.ellipsoid->dip_direction = 270 * radian;
+  EXPECT_TRUE(doubts(o, "dips towards 270 degrees from north, into the slope, which falls towards 90 degrees"));
+  o.size = 4;
+  EXPECT_FALSE(doubts(o, "is not resolved"));
+  EXPECT_TRUE(doubts(o, "show no more"));
+  EXPECT_FALSE(doubts(o, "reaches the edge"));
+  o.ellipsoid->centre[0] = east + 180;
+  o.ellipsoid->centre[2] = plane(east + 180, 0);
+  EXPECT_TRUE(doubts(o, "reaches the edge of the window at (5200, "));
+}
+
+TEST_F(TerrainFiles, AreRefusedWithHoles) {
+  TerrainOptions o =
+      options(ascii([](double x, double y) { return x == east + 30 && y > south + 100 ? -9999. : 50.; }));
+  expect_words(complaint(o), {"no data at 6 of 357 places", "(5030, 2110)", "gdal_fillnodata.py", "--window"});
+  o.window = {east + 40, south, east + 200, south + 160};
+  EXPECT_EQ(complaint(o), "");
+}
+TEST_F(TerrainFiles, AreRefusedInDegreesAndFeet) {
+  const Elevation hill = [](double, double y) { return 1000 + 1e4 * (y - 47); };
+  expect_words(complaint(options(ascii(hill, "d.asc", 0.001, 10.2, 47))),
+               {"seem to be degrees", "project it to metres"});
+  expect_words(complaint(options(geotiff(hill, 4326, 0.001, 10.2, 47))),
+               {"coordinates in degrees", "project it to metres"});
+  expect_words(complaint(options(geotiff(plane, 4326))), {"says that its coordinates are degrees", "gdal_edit.py"});
+  expect_words(complaint(options(geotiff(plane, 2225))), {"US survey foot", "project it to metres"});
+}
+TEST_F(TerrainFiles, AreRefusedWhereTheyDoNotFit) {
+  TerrainOptions o = options(ascii(plane));
+  o.window = {east - 10, south, east + 100, south + 100};
+  expect_words(complaint(o),
+               {"--window 4990 2000 5100 2100 reaches out of the grid", "(5000, 2000) to (5200, 2160) m"});
+  o.window = {east + 100, south, east, south + 100};
+  expect_words(complaint(o), {"east > west"});
+  o.window.clear(), o.step = 20;
+  expect_words(complaint(o), {"smaller --step"});
+  o.step = 1, o.base = 41;
+  expect_words(complaint(o), {"--base 41 m must lie below the lowest ground, which is at 40 m, at (5200, 2000)"});
+  o.base.reset(), o.air = 0;
+  expect_words(complaint(o), {"--air must be above 0 m"});
+  o.air = 30, o.size = 500;
+  expect_words(complaint(o), {"--size 500 m is larger than the window"});
+  o.size = 20, o.slip_surface = ascii([](double x, double y) { return plane(x, y) + 2; }, "slip.asc");
+  expect_words(complaint(o), {"slip.asc lies above the ground everywhere, by 2 m", "lower it"});
+  o.slip_surface = ascii(plane, "far.asc", 10, 9000);
+  expect_words(complaint(o), {"does not lie in the window"});
+  expect_words(complaint(options(in_folder("none.asc"))), {"none.asc: cannot be opened"});
+  std::ofstream(in_folder("bad.asc")) << "no grid\n";
+  expect_words(complaint(options(in_folder("bad.asc"))), {"bad.asc: is no grid that GDAL reads"});
+}
+
+/// Soil and air over a flat base: volumes and areas of a plane are those of the formula.
+TEST_F(TerrainFiles, BecomeMeshesOverAFlatBase) {
+  const Answer answer = run(ascii(plane) + " -o " + in_folder("m.msh") +
+                            " --size 25 --far-size 40 --base 10 --air 30 --window 5000 2000 5100 2080");
+  EXPECT_EQ(answer.status, 0) << answer.text;
+  EXPECT_NEAR(of_group(answer, "ground"), 100 * 80 * (85 - 10), 5);
+  EXPECT_NEAR(of_group(answer, "air"), 100 * 80 * 30, 5);
+  EXPECT_NEAR(of_group(answer, "base"), 8000, 0.1);
+  EXPECT_NEAR(of_group(answer, "terrain"), 8000 * std::hypot(1, 0.3), 0.1);
+  EXPECT_NEAR(of_group(answer, "top"), 8000 * std::hypot(1, 0.3), 0.1);
+  EXPECT_NEAR(of_group(answer, "west"), 80 * (100 - 10 + 30), 0.1);
+  EXPECT_NEAR(of_group(answer, "east"), 80 * (70 - 10 + 30), 0.1);
+  EXPECT_NEAR(of_group(answer, "north"), of_group(answer, "south"), 0.1);
+  expect_words(answer.text, {"smallest altitude", " m at (", "quality"});
+  expect_words(content(in_folder("m.origin.json")), {"\"origin_m\": [5000, 2000]"});
+}
+
+/// The space above the bed: its cells of soil fill what lies between slip surface and ground.
+TEST_F(TerrainFiles, BecomeMeshesAboveASlipSurface) {
+  const std::string slip = ascii(
+      [](double x, double y) { return plane(x, y) - 12 + 0.005 * (std::pow(x - 5080, 2) + std::pow(y - 2080, 2)); },
+      "slip.asc");
+  const std::string arguments =
+      ascii(plane) + " -o " + in_folder("m.msh") + " --size 5 --far-size 15 --air 20 --slip-surface " + slip;
+  const Answer answer = run(arguments);
+  EXPECT_EQ(answer.status, 0) << answer.text;
+  const double pi = 180 * radian, paraboloid = pi * 12 * 12 / (2 * 0.005);
+  EXPECT_NEAR(of_group(answer, "slide") / paraboloid, 1, 0.04) << answer.text;
+  EXPECT_NEAR((of_group(answer, "slide") + of_group(answer, "air")) / (200. * 160 * 20 + paraboloid), 1, 0.005);
+  EXPECT_EQ(of_group(answer, "ground"), 0);
+  EXPECT_EQ(of_group(answer, "terrain"), 0);
+  EXPECT_GT(of_group(answer, "base"), 200 * 160 * std::hypot(1, 0.3));
+  const std::string first = content(in_folder("m.msh"));
+  run(arguments);
+  EXPECT_EQ(first, content(in_folder("m.msh")));
+}
+
+TEST_F(TerrainFiles, AreToldFromSections) {
+  const std::string file = ascii(plane), out = " -o " + in_folder("m.msh") + " --size 20 ";
+  const Answer layers = run(file + out + "--air 20 --layers 2"), air = run(TALUS_SECTIONS "box.csv" + out + "--air 20");
+  EXPECT_EQ(layers.status, 2);
+  EXPECT_EQ(air.status, 2);
+  expect_words(layers.text, {"--layers belongs to sections"});
+  expect_words(air.text, {"--air belongs to terrain"});
+  const Answer steep = run(file + out + "--air 20 --ellipsoid 5100 2080 70 30 30 10 95 0");
+  EXPECT_EQ(steep.status, 2);
+  expect_words(steep.text, {"dip from 0 to 90 degrees"});
+}
+
+}  // namespace
+}  // namespace talus
