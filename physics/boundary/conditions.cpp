@@ -37,7 +37,7 @@ template <int dim>
 void Conditions<dim>::add_contact(int node, int source, const Vec<dim> &normal, double area) {
   int &index = first_contact_of_node_[node];
   if (index < 0) index = static_cast<int>(contacts_.size()), contacts_.emplace_back();
-  contacts_[index].push_back({node, source, normal, area, 0, never, false, 0, -1, false});
+  contacts_[index].push_back({node, source, normal, area, 0, 0, never, false, 0, -1, false});
 }
 
 template <int dim>
@@ -99,6 +99,35 @@ PetscErrorCode Conditions<dim>::setup(const BackgroundMesh<dim> &mesh, std::vect
 }
 
 template <int dim>
+PetscErrorCode Conditions<dim>::depth_on_bases(const BackgroundMesh<dim> &mesh, const std::vector<char> &filled,
+                                               double *depth) const {
+  double sums[2] = {}, ends[2 * dim];  // volume and area; how far the soil reaches towards +d and -d
+  PetscFunctionBeginUser;
+  *depth = 0;
+  if (std::none_of(sources_.begin(), sources_.end(),
+                   [](const Source &s) { return s.kind.in_motion == OnSoil::contact; }))
+    PetscFunctionReturn(0);
+  std::fill_n(ends, 2 * dim, -std::numeric_limits<double>::infinity());
+  for (int c = 0; c < mesh.cell_count(); ++c) {
+    if (!filled[c]) continue;
+    sums[0] += mesh.volume[c];
+    for (int node : mesh.cells[c].node)
+      for (int d = 0; d < dim; ++d) {
+        ends[d] = std::max(ends[d], mesh.position[node][d]);
+        ends[dim + d] = std::max(ends[dim + d], -mesh.position[node][d]);
+      }
+  }
+  for (const auto &[source, facets] : bases_)
+    for (const Facet<dim> &f : facets)
+      if (filled[f.cell]) sums[1] += f.area;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh.comm()));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, ends, 2 * dim, MPI_DOUBLE, MPI_MAX, mesh.comm()));
+  for (int d = 0; d < dim; ++d) *depth = std::max(*depth, ends[d] + ends[dim + d]);
+  if (sums[1] > 0) *depth = std::min(*depth, sums[0] / sums[1]);
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
 PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<std::array<double, 2>> &impedance,
                                       const std::vector<double> &filling) {
   PetscFunctionBeginUser;
@@ -120,7 +149,7 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
     for (auto &of_node : contacts_)
       for (Contact &c : of_node)
         if (grid.find_node(c.node) < 0)
-          c.capacity = 0, c.since_pressed = never;  // soil that arrives here later has not pressed yet
+          c.capacity = 0, c.gathered = c.since_pressed = never;  // soil that arrives here later has not pressed yet
     nodal_.assign(nodes, 0);
     for (const auto &[source, facets] : bases_)
       for (const Facet<dim> &f : facets) {
@@ -170,7 +199,7 @@ PetscErrorCode Conditions<dim>::set_normal_forces(const BackgroundMesh<dim> &mes
   PetscCall(gather_from_all(mesh.comm(), forces));
   std::map<Vec<dim>, std::vector<Contact> *> at;
   for (auto &of_node : contacts_) {
-    for (Contact &c : of_node) c.capacity = 0, c.since_pressed = never, c.rests = false;
+    for (Contact &c : of_node) c.capacity = 0, c.gathered = c.since_pressed = never, c.rests = false;
     at[mesh.position[of_node.front().node]] = &of_node;
   }
   for (const NormalForce &f : forces) {
@@ -375,13 +404,17 @@ void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &gri
                  slope = base.friction_coefficient(x[0], x[1], z, t, slipped);
     if (c.presses) contact.capacity += slope * map<dim>(n).dot(mass * map<dim>(n)) * into;
     if (pores.thrust) contact.capacity -= slope * gamma * pores.thrust(c.node, n);
-    const double forgotten = adapted * contact.capacity, speed = std::sqrt(dot<dim>(slip, slip));
+    const bool gathers = contact.gathered < friction_delay_;
+    contact.gathered += gamma;
+    const double forgotten = (gathers ? gamma / contact.gathered : adapted) * contact.capacity;
+    const double speed = std::sqrt(dot<dim>(slip, slip));
     const double m = speed > 0 ? map<dim>(slip).dot(mass * map<dim>(slip)) / (speed * speed) : 0;
     const bool adheres = contact.since_pressed <= friction_delay_;
     const double adhering = adheres ? base.adhesion(x[0], x[1], z, t, slipped) * c.area * gamma : 0;
     const double rubbing = left_by_pressure(c, std::max(0., forgotten), adhering, slope, gamma, speed);
     const double most = rubbing + adhering;
-    contact.capacity -= forgotten, c.force = most / gamma, c.sticks = m * speed <= most;
+    if (!gathers) contact.capacity -= forgotten;
+    c.force = most / gamma, c.sticks = m * speed <= most;
     v[c.node] = {};
     if (!c.presses) add<dim>(v[c.node], into, n);
     if (!c.sticks) add<dim>(v[c.node], 1 - most / (m * speed), slip);
@@ -423,7 +456,8 @@ PetscErrorCode Conditions<dim>::serialize(Archive &archive, FilledGrid<dim> &gri
   if (archive.reading()) PetscCall(begin(grid, impedance, filling));
   archive.serialize("boundaries", impulse_, work_);
   for (auto &contacts : contacts_)
-    for (Contact &c : contacts) archive.serialize("contact", c.capacity, c.since_pressed, c.rests, c.slip, c.warm);
+    for (Contact &c : contacts)
+      archive.serialize("contact", c.capacity, c.gathered, c.since_pressed, c.rests, c.slip, c.warm);
   archive.serialize("shear zones", zone_state_, rubbed_);
   for (ActiveContact &c : active_contacts_) archive.serialize("contact now", c.force, c.presses, c.sticks);
   PetscFunctionReturn(0);

@@ -69,6 +69,9 @@ class Conditions {
   /// them at time t, and by no others. Collective.
   PetscErrorCode set_normal_forces(const BackgroundMesh<dim> &mesh, std::vector<NormalForce> forces, double t);
 
+  /// Mean depth of the soil in the cells `filled` [cells] on bases: its volume over the area of their facets beside it,
+  /// and no more than the soil is long; 0 without bases [m]. Collective.
+  PetscErrorCode depth_on_bases(const BackgroundMesh<dim> &mesh, const std::vector<char> &filled, double *depth) const;
   /// Time over which friction adapts to the normal force, docs/theory (6.2) [s].
   void set_friction_delay(double delay) { friction_delay_ = delay; }
 
@@ -106,6 +109,7 @@ class Conditions {
     Vec<dim> normal;
     double area;
     double capacity;       // friction impulse that normal impulses of the recent past still allow [N s]
+    double gathered;       // time since which `capacity` gathers, where soil was at the start; elsewhere `never` [s]
     double since_pressed;  // time since the node last pressed on the base [s]
     bool rests;            // in equilibrium as finite elements have found it, until the next `resolve`
     double slip;           // along the base since the start [m]

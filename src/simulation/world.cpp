@@ -245,8 +245,12 @@ void World<dim>::seed_bodies() {
                    "is a pressure on a face inside the soil, where it cancels: it pushes with the same force on both "
                    "sides. Draw a crack as a gap in the outline of the section, and name a wall of it");
   const double relaxation = scene.transfer.relaxation * mesh.report().smallest_altitude / wave_speed;
-  constexpr double friction_delay = 10;  // in units of altitude over wave speed, docs/theory (6.2)
-  conditions.set_friction_delay(friction_delay * mesh.report().smallest_altitude / wave_speed);
+  // ways of a wave while friction adapts, docs/theory (6.2): in units of the altitude, and across the soil and back
+  constexpr double shortest_way = 10, across_and_back = 2;
+  double depth;
+  require(conditions.depth_on_bases(mesh, filled, &depth));
+  conditions.set_friction_delay(std::max(shortest_way * mesh.report().smallest_altitude, across_and_back * depth) /
+                                wave_speed);
   motion = make_soil_motion(
       MotionParts<dim>{mesh, bodies, conditions, scene, pressure, relaxation, total_mass, particle_count});
   require(motion->setup_pores(true));

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <sstream>
 
 #include "scene/reader.h"
 #include "simulation.h"
@@ -74,32 +75,26 @@ TEST(FrictionalBase, remembers_slip_and_heat_where_the_stage_says_so) {
   const double heat = at_end("softening=true", "base_heat_J"), work = at_end("softening=true", "work_base_J");
   EXPECT_GT(heat, -work * (1 - acceleration * 0.18 / 2));
   EXPECT_LT(heat, -work * 1.05);
-  EXPECT_NEAR(at_end("softening=false", "base_friction"), std::tan(M_PI / 9), 0.02);
+  // in a single row friction lags behind a normal force that varies by a tenth, as the block still vibrates
+  EXPECT_NEAR(at_end("softening=false", "base_friction"), std::tan(M_PI / 9), 0.1 * std::tan(M_PI / 9));
 }
 
-/// The section of incline_block whose base has relief: its nodes, one cell apart, are up to 7 mm above or below the
-/// mean plane, so that neighbouring facets differ by up to 12 degrees. The file is removed at the end.
-class RoughSection {
+/// A file with a section, which is removed at the end.
+class SectionFile {
  public:
-  static constexpr double size = 0.125, roughness = 0.007;  // [m]
-  RoughSection() {
+  explicit SectionFile(const std::string &text) {
     int process = static_cast<int>(getpid());  // of rank 0: other runs of the test have files of their own
     MPI_Bcast(&process, 1, MPI_INT, 0, PETSC_COMM_WORLD);
-    name_ = std::string(P_tmpdir) + "/talus_rough_section_" + std::to_string(process) + ".csv";
-    if (rank() == 0) {
-      std::ofstream out(name_);
-      out << "part,x,y\n";
-      write_base(out, "outline");
-      out << "outline,8,1\noutline,0,1\ninterface0,0.5,0\ninterface0,0.5,0.5\ninterface0,1.5,0.5\ninterface0,1.5,0\n"
-             "region_block,1,0.25\nregion_air,4,0.5\n";
-      write_base(out, "b_base");
-    }
+    name_ = std::string(P_tmpdir) + "/talus_section_" + std::to_string(process) + ".csv";
+    if (rank() == 0) std::ofstream(name_) << "part,x,y\n" << text;
     MPI_Barrier(PETSC_COMM_WORLD);
   }
-  ~RoughSection() {
+  ~SectionFile() {
     MPI_Barrier(PETSC_COMM_WORLD);
     if (rank() == 0) std::remove(name_.c_str());
   }
+  SectionFile(const SectionFile &) = delete;
+  SectionFile &operator=(const SectionFile &) = delete;
   const std::string &name() const { return name_; }
 
  private:
@@ -108,25 +103,49 @@ class RoughSection {
     MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
     return rank;
   }
-  static void write_base(std::ostream &out, const char *part) {
+
+  std::string name_;
+};
+
+/// The section of incline_block whose base has relief: its nodes, one cell apart, are up to 7 mm above or below the
+/// mean plane, so that neighbouring facets differ by up to 12 degrees.
+constexpr double rough_size = 0.125, roughness = 0.007;  // [m]
+std::string rough_section() {
+  const auto base = [](const char *part) {
+    std::ostringstream out;
     unsigned seed = 1;
     for (int i = 0; i <= 64; ++i) {
       seed = seed * 1664525u + 1013904223u;
       const bool level = i == 0 || i == 4 || i == 12 || i == 64;  // the ends, and those of the block
-      out << part << "," << i * size << "," << (level ? 0 : roughness * ((seed >> 8) / double(1 << 23) - 1)) << "\n";
+      out << part << "," << i * rough_size << "," << (level ? 0 : roughness * ((seed >> 8) / double(1 << 23) - 1))
+          << "\n";
     }
-  }
+    return out.str();
+  };
+  return base("outline") +
+         "outline,8,1\noutline,0,1\ninterface0,0.5,0\ninterface0,0.5,0.5\ninterface0,1.5,0.5\ninterface0,1.5,0\n"
+         "region_block,1,0.25\nregion_air,4,0.5\n" +
+         base("b_base");
+}
 
-  std::string name_;
-};
+/// Friction angle that the base has mobilised in the mean since a time [degrees].
+double mobilised_friction(const AnySimulation &simulation, double since) {
+  const auto time = simulation.history().column("time_s"), x = simulation.history().column("base_force_x_N"),
+             y = simulation.history().column("base_force_y_N");
+  double along = 0, across = 0;
+  for (size_t i = 1; i < time.size(); ++i)
+    if (time[i - 1] > since) along -= x[i] * (time[i] - time[i - 1]), across += y[i] * (time[i] - time[i - 1]);
+  return std::atan2(along, across) * 180 / M_PI;
+}
 
 struct Slid {
   double rise, lowest, friction_angle;  ///< of the middle, height of the lowest particle [m]; effective [degrees]
 };
 /// The block slides by 2 m.
 Slid slide_on_relief(const std::vector<std::string> &more) {
-  const RoughSection section;
-  std::vector<std::string> overrides{"mesh.section=" + section.name(), "mesh.size=0.125", "output.interval=0"};
+  const SectionFile section(rough_section());
+  std::vector<std::string> overrides{"mesh.section=" + section.name(), "mesh.size=" + std::to_string(rough_size),
+                                     "output.interval=0"};
   overrides.insert(overrides.end(), more.begin(), more.end());
   Scene scene = read_scene(block, overrides);
   RunOptions options;
@@ -147,27 +166,41 @@ Slid slide_on_relief(const std::vector<std::string> &more) {
   const double before = heights().first;
   simulation->run();  // ends with an error if a particle leaves the mesh
   const auto [after, lowest] = heights();
-  const auto time = simulation->history().column("time_s"), x = simulation->history().column("base_force_x_N"),
-             y = simulation->history().column("base_force_y_N");
-  double along = 0, across = 0;
-  for (size_t i = 1; i < time.size(); ++i)
-    if (time[i - 1] > 0.2) along -= x[i] * (time[i] - time[i - 1]), across += y[i] * (time[i] - time[i - 1]);
-  return {after - before, lowest, std::atan2(along, across) * 180 / M_PI};
+  return {after - before, lowest, mobilised_friction(*simulation, 0.2)};
 }
 
 /// A base with relief is a plane in the mean: the block neither climbs from facet to facet, 84 mm where each facet was
 /// a constraint of its own, nor is it slowed down.
 TEST(FrictionalBase, elastic_block_slides_along_relief) {
   const Slid slid = slide_on_relief({});
-  EXPECT_NEAR(slid.rise, 0, RoughSection::roughness);
+  EXPECT_NEAR(slid.rise, 0, roughness);
   EXPECT_NEAR(slid.friction_angle, 20, 0.5);
 }
 /// The lowest particle stays within a quarter of a cell.
 TEST(FrictionalBase, soil_that_yields_stays_on_relief) {
   const Slid slid = slide_on_relief({"body.block.law=mohr_coulomb", "body.block.friction_angle=35",
                                      "body.block.cohesion=20e3", "body.block.poisson_ratio=0.3"});
-  EXPECT_LT(slid.lowest, 0.25 * RoughSection::size);
+  EXPECT_LT(slid.lowest, 0.25 * rough_size);
   EXPECT_NEAR(slid.friction_angle, 20, 0.5);
+}
+
+/// An elastic block of 8 m by 2 m keeps its friction in cells of an eighth of a metre over 7 m of way. Where friction
+/// adapts within ten times the way of a wave through such a cell, it vibrates as a whole in the end, the more the
+/// faster it slides, and has 18.3 degrees over the last 0.4 s (Adams 1995; docs/theory (6.2)). A shorter way does not
+/// show it.
+TEST(FrictionalBase, elastic_block_keeps_its_friction_in_fine_cells) {
+  const SectionFile section(
+      "outline,0,0\noutline,20,0\noutline,20,3\noutline,0,3\ninterface0,1,0\ninterface0,1,2\ninterface0,9,2\n"
+      "interface0,9,0\nregion_block,5,1\nregion_air,15,2\nb_base,0,0\nb_base,20,0\n");
+  Scene scene =
+      read_scene(block, {"mesh.section=" + section.name(), "mesh.size=0.125", "output.interval=0",
+                         "stage.0.duration=2.8", "body.block.young_modulus=50e6", "body.block.poisson_ratio=0.3",
+                         "body.block.stress=[\"0\", \"-2000 * 8.495709211125343 * (2 - y)\", \"0\", \"0\"]"});
+  RunOptions options;
+  options.pictures = options.screen = false;
+  const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+  simulation->run();
+  EXPECT_NEAR(mobilised_friction(*simulation, 2.4), 20, 0.5);
 }
 
 }  // namespace
