@@ -18,6 +18,7 @@
 #include "commands/commands.h"
 #include "commands/trials.h"
 #include "output/pictures.h"
+#include "output/script.h"
 #include "scene/words.h"
 #include "simulation.h"
 
@@ -52,6 +53,13 @@ int perform(int argc, char **argv, MPI_Comm failures, int rank) {
   CLI::App app{
       "Talus: simulation of landslides by the material point method, from initial stress to the end of the run-out"};
   app.set_version_flag("--version", std::string("talus ") + talus::version);
+  app.add_flag_callback(
+      "--python-path",
+      [&] {
+        if (speaks) std::puts(talus::script_folder().c_str());
+        throw CLI::Success();
+      },
+      "Print the folder of the Python module talus_results, which reads results, and exit");
   app.require_subcommand(1);
   std::map<CLI::App *, talus::Action> actions;
   for (auto add : {talus::add_run, talus::add_solve, talus::add_mesh, talus::add_check, talus::add_soil,

@@ -158,7 +158,9 @@ int compare(CompareArguments arguments) {
   std::vector<Variant> trials = matrix(arguments);
   std::vector<Trial *> pointers;
   for (Variant &trial : trials) pointers.push_back(&trial);
-  run_trials({arguments.scene, arguments.set, arguments.jobs}, pointers);
+  TrialPlan plan{arguments.scene, arguments.set, arguments.jobs};
+  if (!arguments.measure.empty()) plan.columns = {measure.column};
+  run_trials(plan, pointers);
   if (arguments.measure.empty()) return sweep(arguments, trials);
   for (Variant &trial : trials)
     if (!trial.failed) trial.value = value_of(trial.folder + "/history.csv", measure), read_counts(trial);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scene/reader.h"
+#include "scene/words.h"
 
 namespace talus {
 
@@ -113,17 +114,30 @@ inline std::string unquoted(const std::string &cell) {
   return text;
 }
 
+/// The names of the columns of a history.csv; none where its first line is not written yet.
+inline std::vector<std::string> columns_of(const std::string &path) {
+  std::ifstream file(path);
+  std::string line;
+  if (!std::getline(file, line) || file.eof()) return {};
+  std::vector<std::string> names = pieces(line, ',');
+  for (std::string &name : names) name = unquoted(name);
+  return names;
+}
+
+/// Throws SceneError with the nearest name where history.csv with the columns `names` lacks one.
+inline void require_column(const std::vector<std::string> &names, const std::string &column) {
+  if (std::find(names.begin(), names.end(), column) == names.end())
+    throw SceneError("history.csv has no column " + column + "; " + suggestion(column, names));
+}
+
 /// The measure of a history.csv, linear between its lines. Throws SceneError for a column it lacks.
 inline double value_of(const std::string &path, const Measure &measure) {
   std::ifstream file(path);
   std::string line;
   std::getline(file, line);
-  std::vector<std::string> names = pieces(line, ',');
-  for (std::string &name : names) name = unquoted(name);
-  const auto found = std::find(names.begin(), names.end(), measure.column);
-  if (found == names.end())
-    throw SceneError("--measure: " + path + " has no column " + measure.column + "; it has " + line);
-  const size_t column = found - names.begin();
+  const std::vector<std::string> names = columns_of(path);
+  require_column(names, measure.column);
+  const size_t column = std::find(names.begin(), names.end(), measure.column) - names.begin();
   double last_time = 0, last = NAN, largest = -INFINITY;
   while (std::getline(file, line)) {
     const std::vector<std::string> cells = pieces(line, ',');

@@ -71,6 +71,7 @@ class Study {
     make_variants();
     check_extremes();
     TrialPlan plan{scene_, file_.set, arguments_.jobs};
+    for (const std::string &measure : file_.measures) plan.columns.push_back(parse_measure(measure).column);
     plan.replace = arguments_.force, plan.refusal_ends = false;
     if (file_.runs == StudyRuns::factor_of_safety) plan.command = {"solve", "--factor-of-safety"};
     std::vector<Trial *> pointers;

@@ -23,6 +23,7 @@
 
 #include "base/child_environment.h"
 #include "commands/commands.h"
+#include "commands/comparison.h"
 #include "mesh_source.h"
 #include "scene/reader.h"
 #include "simulation.h"
@@ -73,6 +74,7 @@ void remember(const std::string &described, const Trial &trial) {
 
 pid_t start(const TrialPlan &plan, const Trial &trial) {
   fs::create_directories(trial.folder);
+  fs::remove(trial.folder + "/history.csv");  // of a run before
   std::vector<std::string> words{"talus"};
   words.insert(words.end(), plan.command.begin(), plan.command.end());
   words.insert(words.end(), {plan.scene, "-o", trial.folder, "--no-pictures", "--force"});
@@ -118,7 +120,11 @@ void run_missing(const TrialPlan &plan, const std::vector<Trial *> &trials, cons
   const size_t before = done;
   const Clock::time_point begin = Clock::now();
   if (before) std::fprintf(stderr, "%zu of %zu runs were completed before\n", before, trials.size());
-  bool told = false;
+  const auto end_others = [&] {
+    for (const auto &[child, run] : running) kill(child, SIGTERM);
+    for (const auto &[child, run] : running) waitpid(child, nullptr, 0);
+  };
+  bool told = false, has_columns = plan.columns.empty();
   while (done < trials.size() || !running.empty()) {
     if (interrupted && !told)
       for (const auto &[child, run] : running) kill(child, SIGTERM);
@@ -126,6 +132,17 @@ void run_missing(const TrialPlan &plan, const std::vector<Trial *> &trials, cons
     for (; next < trials.size() && static_cast<int>(running.size()) < jobs && !interrupted; ++next)
       if (!trials[next]->done) running[start(plan, *trials[next])] = {next, Clock::now()};
     if (running.empty()) break;
+    for (auto run = running.begin(); !has_columns && run != running.end(); ++run) {
+      const std::vector<std::string> names = columns_of(trials[run->second.first]->folder + "/history.csv");
+      try {
+        if (!names.empty())
+          for (const std::string &column : plan.columns) require_column(names, column);
+      } catch (const SceneError &) {
+        end_others();
+        throw;
+      }
+      has_columns = !names.empty();
+    }
     int status = 0;
     rusage usage{};
     const pid_t child = wait4(-1, &status, WNOHANG, &usage);  // a signal may arrive at any time
@@ -142,8 +159,10 @@ void run_missing(const TrialPlan &plan, const std::vector<Trial *> &trials, cons
     if (trial.failed && interrupted) continue;  // it may have been ended by the signal: it is run again
     trial.done = true, ++done;
     if (trial.failed) trial.cause = last_line(trial.folder + "/screen");
-    if (plan.refusal_ends && WIFEXITED(status) && WEXITSTATUS(status) == 2)
+    if (plan.refusal_ends && WIFEXITED(status) && WEXITSTATUS(status) == 2) {
+      end_others();
       throw SceneError(trial.cause.substr(trial.cause.rfind("talus: ", 0) == 0 ? 7 : 0));
+    }
     remember(described[number], trial);
     const double left =
         seconds_since(begin) / static_cast<double>(done - before) * static_cast<double>(trials.size() - done);

@@ -24,7 +24,9 @@ struct TrialPlan {
   int jobs = 0;                             ///< runs at the same time; 0: one per core
   std::vector<std::string> command{"run"};  ///< of each run, with its options
   bool replace = true;                      ///< runs of another plan in the same folders; else they are refused
-  bool refusal_ends = true;                 ///< a run that is refused as bad input ends all; else it is one that failed
+  /// Columns that history.csv must have; the first run under way that lacks one ends all.
+  std::vector<std::string> columns{};
+  bool refusal_ends = true;  ///< a run that is refused as bad input ends all; else it is one that failed
 };
 
 /// The user ended the runs before all were done.
@@ -38,8 +40,8 @@ std::string joined(const std::vector<std::string> &words);
 
 /// Reads the scene of every run, which refuses bad keys before anything runs (SceneError), marks the runs whose folder
 /// has the results of the same scene, mesh and overrides as done, and runs the others, `jobs` at a time. A progress
-/// line per run goes to standard error. Throws SceneError where a run is refused, and Interrupted after SIGINT or
-/// SIGTERM, which end the runs under way too; called again, it continues with the missing runs.
+/// line per run goes to standard error. Throws SceneError where a run is refused or lacks a column, and Interrupted
+/// after SIGINT or SIGTERM, which end the runs under way too; called again, it continues with the missing runs.
 void run_trials(const TrialPlan &plan, const std::vector<Trial *> &trials);
 
 /// To be called first by every program: a run that run_trials has started ends by SIGTERM when the program that started

@@ -13,20 +13,16 @@
 #include "base/version.h"
 
 namespace talus {
-namespace {
 
-std::string place_of(const std::string &name) {
-  const std::filesystem::path source = std::filesystem::path(TALUS_PLOTS) / name;
-  if (std::filesystem::exists(source)) return source;
+std::string script_folder() {
+  if (std::filesystem::exists(TALUS_PLOTS)) return TALUS_PLOTS;
   std::error_code error;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  return program.parent_path().parent_path() / "share/talus/plots" / name;
+  return program.parent_path().parent_path() / "share/talus/plots";
 }
 
-}  // namespace
-
 int run_script(const std::string &name, const std::vector<std::string> &arguments) {
-  std::vector<std::string> words{TALUS_PYTHON, "-B", place_of(name)};  // -B: no caches among the sources
+  std::vector<std::string> words{TALUS_PYTHON, "-B", script_folder() + "/" + name};  // -B: no caches among the sources
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char *> pointers;
   for (auto &word : words) pointers.push_back(word.data());

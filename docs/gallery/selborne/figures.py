@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 import talus_style as style
-from talus_lines import Line, dimensionless
+from talus_lines import dimensionless, means
 from talus_results import Results
 from talus_style import plt
 
@@ -33,9 +33,9 @@ def draw(talus, folder=None, saturated=None):
             shutil.copy(f"{folder}/pictures/{source}.png", HERE / f"{name}.png")
         history, relative = history_of(folder)
         draw_motion(history, relative)
-        draw_strength(Line(Path(folder) / "line_slip_surface.csv"), results)
+        draw_strength(results.lines()["slip_surface"], results)
         draw_paths(history, relative)
-        draw_inclinometers([Line(path) for path in sorted(Path(folder).glob("line_I*.csv"))], results)
+        draw_inclinometers([line for name, line in results.lines().items() if name.startswith("I")], results)
     draw_tables()
 
 
@@ -80,11 +80,11 @@ def draw_strength(line, results):
                      c=[style.STATE_COLOURS[int(state)] if np.isfinite(state) else "white" for state in line.columns["state"][row]])
     left.set(xlabel="distance along the slip surface, from its rear [m]", title="mobilised friction sin φ' (paper's fig. 11)", ylim=(0, 1))
     left.legend(fontsize=8)
-    means = line.means()
-    right.plot(relative, means["mean_mobilised_friction_deg"], color=style.INK, label="mean mobilised friction [deg]")
+    mean = means(line)
+    right.plot(relative, mean["mean_mobilised_friction_deg"], color=style.INK, label="mean mobilised friction [deg]")
     shares = right.twinx()
     for state, colour in zip(style.STATES[1:], style.STATE_COLOURS[1:]):
-        shares.plot(relative, 100 * means[f"share_{state}"], color=colour, lw=1.2, label=f"{state}")
+        shares.plot(relative, 100 * mean[f"share_{state}"], color=colour, lw=1.2, label=f"{state}")
     right.set(xlabel="t* = t / time of failure", title="mean along the slip surface (fig. 12), and states of its soil", xlim=NEAR_FAILURE, ylim=(0, None))
     right.set_ylabel("mean mobilised friction [deg]")
     shares.set(ylabel="share of the slip surface [%]", ylim=(0, 100))

@@ -8,7 +8,6 @@ itself and draws the pictures of the page from it and from the tables.
 """
 import csv
 import re
-import shutil
 import subprocess
 import sys
 import tempfile

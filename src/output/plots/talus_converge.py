@@ -15,6 +15,7 @@ from talus_measures import failure, largest_share_displacement, particles, slide
 from talus_results import Results
 from talus_sections import BELOW, BESIDE, FOOT, HEAD, LEFT, RIGHT, TITLE, WIDTH, Colours, Painter, plt
 import talus_style as style
+from talus_units import readable_unit, words
 
 THINGS = {"cells": "cell size", "steps": "time step", "particles": "number of particles per cell"}
 REMEDY = {
@@ -92,7 +93,7 @@ def judge(rows, by, within):
     cell = max(row["cell_m"] for row in rows)
     decides = bool(broken)
     asked = [("load_time_of_failure_s", "The load time at failure", "s", 0.0), ("largest_displacement_m", "The largest displacement", "m", 0.0)]
-    asked += [(key, f"The displacement of {style.words(key[: -len('_displacement_m')])}", "m", 0.0) for key in points]
+    asked += [(key, f"The displacement of {words(key[: -len('_displacement_m')])}", "m", 0.0) for key in points]
     # rear, front and slip surface are known to a cell
     asked += [("travel_distance_m", "The travel distance, from the rear of the slide to its front,", "m", cell), ("volume_of_slide_m3", "The volume of the slide", "m³", 0.0),
               ("depth_of_slide_m", "The depth of the slip surface", "m", cell)]
@@ -102,7 +103,7 @@ def judge(rows, by, within):
             continue
         state = settles(values, within, least)
         judged.append({"quantity": key, "values": values, "state": state})
-        factor, unit = style.readable_unit(max(map(abs, values)), unit)
+        factor, unit = readable_unit(max(map(abs, values)), unit)
         known = f" or one cell of {cell:.2g} m" if least and within * abs(values[-1]) < least else ""
         text = (f"{name} is {factor * min(values):.3g} to {factor * max(values):.3g} {unit}, {percent(max(values) - min(values), values)} apart: ")
         if state == "equal":

@@ -6,7 +6,7 @@ from matplotlib.ticker import FixedLocator, MaxNLocator
 
 import talus_style as style
 from talus_results import ESCAPED
-from talus_units import clock
+from talus_units import capital, clock, readable_unit, with_unit, words
 
 # coordinates, stress and state of points: sections and stress paths show them better; the clock of the loads says nothing as a curve
 ELSEWHERE = ("load_time", "x", "y", "z", "mean_pressure", "deviator", "mobilised_friction", "state", "displacement_x", "displacement_y", "displacement_z")
@@ -39,8 +39,8 @@ def changes(values):
 
 def draw_curves(history, quantity, unit, lines, title, path):
     figure, axes = plt.subplots(figsize=(7.6, 3.7))
-    plot_lines(axes, history, lines, unit, style.words(quantity))
-    return finish(figure, [axes], history, style.capital(style.words(quantity)), title, path)
+    plot_lines(axes, history, lines, unit, words(quantity))
+    return finish(figure, [axes], history, capital(words(quantity)), title, path)
 
 
 def draw_energy(history, lines, title, path):
@@ -73,16 +73,16 @@ def draw_ledger(history, quantity, lines, title, path):
     figure, (upper, lower) = plt.subplots(2, 1, sharex=True, figsize=(7.6, 4.9), gridspec_kw={"height_ratios": [3, 1.4]})
     plot_lines(upper, history, gains or {"gained": 0 * history.time}, "kg", "mass")
     plot_lines(lower, history, {"error": lines["error"]}, "kg", "error", style.INK)
-    return finish(figure, [upper, lower], history, style.capital(style.words(quantity)), title, path)
+    return finish(figure, [upper, lower], history, capital(words(quantity)), title, path)
 
 
 def plot_lines(axes, history, lines, unit, what, colour=None):
     largest = max(np.nanmax(np.abs(values)) for values in lines.values())
-    factor, unit = style.readable_unit(largest, unit)
+    factor, unit = readable_unit(largest, unit)
     for k, (name, values) in enumerate(lines.items()):
         axes.plot(history.time, factor * values, linewidth=1.5, color=colour or style.LINES[k % len(style.LINES)],
-                  linestyle=("-", "--", ":")[k // len(style.LINES) % 3], label=style.words(name))
-    axes.set_ylabel(style.with_unit(what, unit))
+                  linestyle=("-", "--", ":")[k // len(style.LINES) % 3], label=words(name))
+    axes.set_ylabel(with_unit(what, unit))
     axes.grid(axis="y", color=style.FAINT, linewidth=0.5)
     axes.set_axisbelow(True)
     axes.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]))

@@ -8,45 +8,23 @@ import numpy as np
 import talus_style as style
 from talus_histories import time_axis
 from talus_measures import failure
-from talus_units import at_time
+from talus_units import at_time, capital, readable_unit, with_unit, words
 
 COUNT = 6  # times that a picture shows
 UPRIGHT = 0.2  # a line whose width is less than this share of its height is drawn over elevation, as inclinometers are
 SPAN = plt.get_cmap("viridis")
 
 
-class Line:
-    """line_NAME.csv: columns [times, places]."""
-
-    def __init__(self, path):
-        self.name = path.stem[len("line_"):]
-        with open(path, newline="") as file:
-            rows = list(csv.DictReader(file))
-        self.stage = [row["stage"] for row in rows]
-        times = np.array([float(row["time_s"]) for row in rows])
-        starts = np.flatnonzero(np.diff(times, prepend=-np.inf))
-        places = int(np.diff(np.append(starts, len(times))).min()) if len(times) else 0
-        self.columns = {}
-        for name in rows[0] if rows else ():
-            if name not in ("time_s", "step", "stage"):
-                values = np.array([float(row[name]) for row in rows])
-                self.columns[name] = np.array([values[start:start + places] for start in starts])
-        self.time, self.stage = times[starts], [self.stage[start] for start in starts]
-
-    def moved(self):
-        """Displacement of each place since the start or the last reset [m], by axis: [times, places, axes]."""
-        return np.stack([self.columns[f"displacement_{axis}_m"] for axis in "xyz" if f"displacement_{axis}_m" in self.columns], axis=2)
-
-    def means(self):
-        """Averages along the line over time, and the shares of its places that are in each state."""
-        found = {"displacement_m": mean(self.columns["displacement_m"])}
-        for name in ("mobilised_friction_deg", "mean_pressure_Pa", "deviator_Pa", "pore_pressure_Pa", "plastic_strain"):
-            if name in self.columns:
-                found["mean_" + name] = mean(self.columns[name])
-        if "state" in self.columns:
-            for number, state in enumerate(style.STATES):
-                found[f"share_{state}"] = np.mean(self.columns["state"] == number, axis=1)
-        return found
+def means(line):
+    """Averages along the line over time, and the shares of its places that are in each state."""
+    found = {"displacement_m": mean(line["displacement_m"])}
+    for name in ("mobilised_friction_deg", "mean_pressure_Pa", "deviator_Pa", "pore_pressure_Pa", "plastic_strain"):
+        if name in line.columns:
+            found["mean_" + name] = mean(line[name])
+    if "state" in line.columns:
+        for number, state in enumerate(style.STATES):
+            found[f"share_{state}"] = np.mean(line["state"] == number, axis=1)
+    return found
 
 
 def mean(values):
@@ -71,7 +49,7 @@ def chosen(line, times=None):
     """Rows that are shown: those nearest to `times`, else first, last and some between, half by time and half by how far the line moved."""
     if times:
         return sorted({int(np.abs(line.time - time).argmin()) for time in times})
-    travel = np.concatenate([[0], np.abs(np.diff(line.means()["displacement_m"])).cumsum()])
+    travel = np.concatenate([[0], np.abs(np.diff(means(line)["displacement_m"])).cumsum()])
     pace = sum((part / part[-1] for part in (line.time - line.time[0], travel) if part[-1] > 0), np.zeros(len(line.time)))
     return sorted({int(np.abs(pace - share).argmin()) for share in np.linspace(0, pace[-1], COUNT)})
 
@@ -79,18 +57,17 @@ def chosen(line, times=None):
 def draw_lines(results, folder, times=None):
     """line_NAME.png and NAME's averages, line_NAME_mean.csv, of each followed line. Returns [("line NAME", path)]."""
     pictures = []
-    for path in sorted(results.folder.glob("line_*.csv")):
-        line = Line(path)
+    for line in results.lines().values():
         if len(line.time) < 2:
             continue
         folder.mkdir(exist_ok=True)
-        write_means(results, line, folder / f"{path.stem}_mean.csv")
-        pictures.append((f"line {line.name}", draw_line(results, line, folder / f"{path.stem}.png", times)))
+        write_means(results, line, folder / f"line_{line.name}_mean.csv")
+        pictures.append((f"line {line.name}", draw_line(results, line, folder / f"line_{line.name}.png", times)))
     return pictures
 
 
 def write_means(results, line, path):
-    columns = {"time_s": line.time} | line.means()
+    columns = {"time_s": line.time} | means(line)
     relative = dimensionless(results, line.time)
     if relative is not None:
         columns["time_over_time_to_failure"] = relative
@@ -110,7 +87,7 @@ def draw_line(results, line, path, times):
     upright = level < UPRIGHT * np.ptp(start[up])
     where = start[up] if upright else line.columns["distance_m"][0]
     size = np.linalg.norm(np.delete(moved, up, axis=2) if upright else moved, axis=2)
-    factor, unit = style.readable_unit(np.nanmax(size), "m")
+    factor, unit = readable_unit(np.nanmax(size), "m")
     for k, row in enumerate(rows):
         colour = SPAN(k / max(1, len(rows) - 1) * 0.92)
         label = f"{at_time(line.time[row], line.time[-1])}  {line.stage[row]}"
@@ -119,13 +96,13 @@ def draw_line(results, line, path, times):
             show(axes[0, 1], where, line.columns["mobilised_friction_deg"][row], upright, color=colour, lw=1.0)
             mark_states(axes[0, 1], where, line, row, upright)
     along = "elevation [m]" if upright else "distance along the line [m]"
-    name(axes[0, 0], along, style.with_unit("level displacement" if upright else "displacement", unit), upright)
+    name(axes[0, 0], along, with_unit("level displacement" if upright else "displacement", unit), upright)
     axes[0, 0].legend(fontsize=7.5)
     if frictional:
         name(axes[0, 1], along, "mobilised friction angle [deg]", upright)
         axes[0, 1].set_title("white elastic, yellow peak, orange softening, red residual", loc="left", fontsize=7.5, color=style.SOFT)
         draw_mean(results, line, axes[0, 2])
-    figure.suptitle(style.capital(style.words(line.name)), x=0.05, ha="left", fontsize=12, fontweight="bold")
+    figure.suptitle(capital(words(line.name)), x=0.05, ha="left", fontsize=12, fontweight="bold")
     figure.tight_layout()
     return style.save(figure, path)
 
@@ -149,7 +126,7 @@ def name(axes, along, what, upright):
 def draw_mean(results, line, axes):
     """Average mobilised friction over time, with t* above it where something failed."""
     relative = dimensionless(results, line.time)
-    axes.plot(line.time, line.means()["mean_mobilised_friction_deg"], color=style.ACCENT, lw=1.4)
+    axes.plot(line.time, means(line)["mean_mobilised_friction_deg"], color=style.ACCENT, lw=1.4)
     time_axis(axes, line.time[-1])
     axes.set(ylabel="mean mobilised friction angle [deg]")
     axes.set_ylim(bottom=0)

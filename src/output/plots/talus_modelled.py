@@ -6,7 +6,7 @@ import tomllib
 import numpy as np
 
 import talus_style as style
-from talus_units import Keys, duration, quantity, span
+from talus_units import Keys, duration, quantity, span, words
 
 GROUND = ("#e8d5b0", "#c2a278", "#b9bfa4", "#a9a29a", "#e0b88a", "#d5cfc9", "#a8895f", "#d8c774")  # of the soils
 EARTH, WATER, LOAD, BASE, PLATE, GAS = style.INK, "#1971c2", "#c92a2a", "#a0410d", "#5f3dc4", "#862e9c"
@@ -49,7 +49,7 @@ class Model:
         given = self.scene.get("body", {}).get(name, {})
         law = given.get("law", "")
         values = [f"{symbol} = {self.keys.text('body.NAME', law, key, given[key])}".replace(" ", UNBROKEN) for key, symbol in PARAMETERS.items() if key in given]
-        return f"{style.words(law)}: {', '.join(values)}"
+        return f"{words(law)}: {', '.join(values)}"
 
     def water_lines(self):
         """Polylines of the water tables at the start, level beyond their ends, over the width of the model: [(body, points)]."""
@@ -115,7 +115,7 @@ def stage_rows(model):
     """What a table of the stages says: the names of its columns, then a row for each stage."""
     rows = [("stage", "kind", "at most", "ends with", "what acts")]
     for number, stage in enumerate(model.stages):
-        kind = style.words(stage["kind"]) + (f", {stage['integrator']}" if stage["kind"] == "dynamic" else ", steady" if stage["steady"] else "")
+        kind = words(stage["kind"]) + (f", {stage['integrator']}" if stage["kind"] == "dynamic" else ", steady" if stage["steady"] else "")
         rows.append((stage["name"], kind, duration(stage["duration"]), ending(stage), "; ".join(actions(model, number))))
     return rows
 
@@ -148,7 +148,7 @@ def actions(model, number):
     if standing:
         said.append("on the soil: " + ", ".join(standing))
     if stage["changes"]:
-        said.append("changing with time: " + ", ".join(style.words(one.replace(".", " ")) for one in stage["changes"]))
+        said.append("changing with time: " + ", ".join(words(one.replace(".", " ")) for one in stage["changes"]))
     elif stage["hold_loads"]:
         said.append("functions of time stand still")
     if stage["initial_stress"] == "k0":

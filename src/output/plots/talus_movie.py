@@ -12,6 +12,7 @@ from PIL import Image
 
 import talus_style as style
 from talus_sections import Colours, Painter, advance, chosen_snapshots
+from talus_units import words
 
 RATE = 10            # frames of the film in a second
 FAST, SLOW = 8, 3    # length of the film for all fast parts of the run together, and for all slow ones [s]
@@ -105,7 +106,7 @@ def draw_movies(results, fields, folder, log=False):
                 written.append(write_mp4(ffmpeg, frames, folder / f"movie_{field}.mp4"))
             progress("")
         seconds = sum(count for _, count in frames) / RATE
-        print(f"{style.words(field)}: {len(frames)} of {len(results.snapshots)} snapshots in {seconds:.1f} s; wrote " + ", ".join(filter(None, written)))
+        print(f"{words(field)}: {len(frames)} of {len(results.snapshots)} snapshots in {seconds:.1f} s; wrote " + ", ".join(filter(None, written)))
     if not ffmpeg:
         print("no MP4 was written, since there is no ffmpeg; on Debian, apt-get install ffmpeg installs it")
 

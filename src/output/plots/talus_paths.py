@@ -7,6 +7,7 @@ import numpy as np
 
 import talus_style as style
 from talus_histories import time_axis
+from talus_units import readable_unit, words
 
 ENVELOPES = 4  # suctions for which the strength is drawn
 
@@ -52,11 +53,11 @@ def draw_stress_paths(results, folder):
         return []
     figure, (left, right) = plt.subplots(1, 2, figsize=(11.4, 4.4))
     largest = max(np.nanmax(np.abs([path["p"], path["q"]])) for path in paths.values())
-    factor, unit = style.readable_unit(largest, "Pa")
+    factor, unit = readable_unit(largest, "Pa")
     lowest, highest = 0.0, 0.0
     for k, (name, path) in enumerate(paths.items()):
         p, q = factor * path["p"], factor * path["q"]
-        line = {"color": style.LINES[k % len(style.LINES)], "ls": ("-", "--", ":")[k // len(style.LINES) % 3], "label": style.words(name)}
+        line = {"color": style.LINES[k % len(style.LINES)], "ls": ("-", "--", ":")[k // len(style.LINES) % 3], "label": words(name)}
         known = np.flatnonzero(np.isfinite(q))
         left.plot(p, q, lw=1.0, **line)
         left.plot(p[known[0]], q[known[0]], "o", color=line["color"], ms=4.5, mfc="white")
@@ -73,10 +74,10 @@ def draw_stress_paths(results, folder):
             if height[0] > 1.3 * top:
                 continue  # above all that is shown
             left.plot(reach, height, color=style.SOFT, lw=0.8, ls="-" if state == "peak" else ":")
-            size, of = style.readable_unit(suction, "Pa")
-            words = [body] * (len(results.bodies) > 1) + [state] * (len({line[0] for line in lines}) > 1) + [f"s = {size * suction:g} {of}"] * (len({line[1] for line in lines}) > 1)
+            size, of = readable_unit(suction, "Pa")
+            parts = [body] * (len(results.bodies) > 1) + [state] * (len({line[0] for line in lines}) > 1) + [f"s = {size * suction:g} {of}"] * (len({line[1] for line in lines}) > 1)
             at = reach[1] if height[1] < 1.3 * top else np.interp(1.25 * top, height, reach)
-            left.annotate(", ".join(words) or "strength", (at, slope * at + factor * intercept), fontsize=7, color=style.SOFT, ha="right", va="bottom")
+            left.annotate(", ".join(parts) or "strength", (at, slope * at + factor * intercept), fontsize=7, color=style.SOFT, ha="right", va="bottom")
     left.set(xlabel=f"mean effective stress p' [{unit}]", ylabel=f"q [{unit}]", xlim=reach, ylim=(0, 1.35 * top))
     left.set_title("open: start, full: end; grey: strength in triaxial compression", loc="left", fontsize=7.5, color=style.SOFT)
     time_axis(right, results.history.time[-1])

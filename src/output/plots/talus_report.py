@@ -6,11 +6,10 @@ import pathlib
 
 import numpy as np
 
-import talus_style as style
 from talus_factor import factor_lines, read_factor
 from talus_model import draw_model
 from talus_modelled import read_model, stage_rows
-from talus_units import Keys, at_time, text_of
+from talus_units import Keys, at_time, capital, readable_unit, text_of, words
 
 LOG_LINES = 25
 WATER_KEYS = ("porosity", "saturation", "pore_pressure_ratio", "water_table", "permeability", "hydraulic_conductivity", "gas_permeability", "permeability_change",
@@ -74,7 +73,7 @@ def warnings(results):
 
 def key_results(results):
     """[(what, number, note)] that a reader wants first."""
-    first, last = results.snapshots[0], results.snapshots[-1]
+    last = results.snapshots[-1]
     found = [("Particles", thousands(len(last.position())), ", ".join(results.bodies))]
     without = ", without the soil that left the mesh" if results.escaped and len(results.escaped.time) else ""
     if "displacement" in last and len(last.position()):
@@ -119,7 +118,7 @@ def top_speed(results):
         for name, values in results.history.groups().get(("velocity", "m/s"), {}).items():
             if np.isfinite(values).any():  # none where the point has no soil
                 when = float(results.history.time[np.nanargmax(values)])
-                best = max(best or (0,), (float(np.nanmax(values)), when, f"at {style.words(name)}"))
+                best = max(best or (0,), (float(np.nanmax(values)), when, f"at {words(name)}"))
     return best if best and best[0] > 0 else None
 
 
@@ -129,7 +128,7 @@ def per_metre(unit, results):
 
 
 def quantity(value, unit):
-    factor, unit = style.readable_unit(abs(value), unit)
+    factor, unit = readable_unit(abs(value), unit)
     return f"{factor * value:.3g} {unit}" if abs(factor * value) < 1000 else f"{thousands(round(factor * value))} {unit}"
 
 
@@ -158,7 +157,7 @@ def summary(results, model):
     """Soils, boundaries and water as the scene gives them, with their units."""
     scene, keys = results.scene, model.keys if model else Keys()
     bodies = {name: keys.row("body.NAME", values, "law") for name, values in scene.get("body", {}).items()}
-    inside = {style.words(key) for key in ("retention", "relative_permeability")}
+    inside = {words(key) for key in ("retention", "relative_permeability")}
     tables = [table("Soils", [{"body": name, **{key: text for key, text in row.items() if key not in inside}} for name, row in bodies.items()]),
               table("Boundaries", boundary_rows(scene, keys, model)),
               table("Water", water_rows(scene, keys, bodies))]
@@ -196,7 +195,7 @@ def water_rows(scene, keys, bodies):
     if phases == "dry":
         return []
     common = {"water in": "all soils", "mode": f"{phases}: {WATER_MODES[phases]}", **keys.row("water", scene.get("water", {}))}
-    wanted = [style.words(key) for key in WATER_KEYS]
+    wanted = [words(key) for key in WATER_KEYS]
     return [common] + [{"water in": name, **{key: row[key] for key in wanted if key in row}} for name, row in bodies.items()]
 
 
@@ -224,7 +223,7 @@ def section(name, content):
 
 
 def field_block(field, large, over_time):
-    name = style.capital(style.words(field))
+    name = capital(words(field))
     return f'<div class="field">{picture(large, name)}{picture(over_time, f"{name} over time")}</div>'
 
 
@@ -236,7 +235,7 @@ def factor_block(factor, pictures):
 
 
 def grid(histories):
-    pictures = [picture(path, style.capital(style.words(what))) for what, path in histories]
+    pictures = [picture(path, capital(words(what))) for what, path in histories]
     return f'<div class="grid">{"".join(pictures)}</div>' if pictures else ""
 
 

@@ -1,6 +1,18 @@
-"""Reads what a run of Talus left in its folder: run.h5, history.csv, run.log."""
+"""Reads what a run of Talus left in its folder. It stands on NumPy and h5py alone; docs/guide/results.md has examples.
+
+    from talus_results import Results
+    results = Results("results/slope")
+    results.history["crest_displacement_m"]               # over results.history.time, in s
+    last = results.snapshots[-1]                          # or results.snapshot_at(12.5)
+    last.position(), last.values("velocity")              # [particles, axes], in m and m/s
+    results.lines()["inclinometer"].columns               # [times, places]
+
+Units are SI, as in the files. Stress is positive in tension, pore pressure in compression.
+"""
 
 import csv
+import difflib
+import json
 import pathlib
 import tomllib
 
@@ -17,6 +29,13 @@ QUANTITIES = ("displacement", "velocity", "acceleration", "mean_pressure", "devi
 ESCAPED = "escaped"  # in columns of what left the mesh
 BROKE_OFF = "the run broke off: "  # in the log, before the cause
 FLUIDS = ("water", "gas")  # whose ledgers history.csv holds
+
+
+def unknown(kind, name, names):
+    """The error for a name that is not there, with the nearest ones that are."""
+    names = sorted(names)
+    near = difflib.get_close_matches(name, names, 3) or [each for each in names if name in each][:3]
+    return KeyError(f"no {kind} {name!r}; " + (f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(names) or 'none'}"))
 
 
 class Column:
@@ -43,19 +62,43 @@ class Snapshot:
         return name in self._group
 
     def names(self):
+        """Names of the fields."""
         return [name for name in self._group if name not in ("id", "body")] + list(self._derived)
 
     def column(self, name):
+        """A field as the file has it. Raises KeyError with the nearest names if there is none of this name."""
+        if name not in self._group:
+            raise unknown("field", name, self.names())
         return Column(self._group[name])
 
+    def values(self, name):
+        """Values of a field: [particles] of a number, [particles, components] of a vector or tensor, of which `stress_xy` is one component
+        [particles]. Raises KeyError."""
+        if name in self._group:
+            values = self.column(name).values
+            return values[:, 0] if values.shape[1] == 1 else values
+        found = self.scalar(name)
+        if found is None:
+            raise unknown("field", name, self.names())
+        return found[0]
+
+    def unit(self, name):
+        """Unit of a field, empty if it has none. Raises KeyError."""
+        found = self.scalar(name)
+        if found is None:
+            raise unknown("field", name, self.names())
+        return found[1]
+
     def position(self):
+        """Where the particles are: [particles, axes] in m."""
         return self._group["position"][...]
 
     def body(self):
+        """Number of each particle's body in Results.bodies: [particles]."""
         return self._group["body"][:, 0]
 
     def ids(self):
-        """Numbers of the particles, increasing."""
+        """Numbers of the particles, increasing: [particles]. A particle keeps its number over the run."""
         return self._group["id"][:, 0]
 
     def scalar(self, name):
@@ -110,19 +153,43 @@ class Thickness:
 
 
 class History:
-    """history.csv as columns of numbers, grouped by what they measure."""
+    """history.csv: `time` [rows] in s, `stage` and `step` of each row, and columns of numbers by their names. Raises OSError where the file has no
+    rows or is damaged."""
 
     def __init__(self, path):
         with open(path, newline="") as file:
             lines = list(csv.reader(file))
-        header, rows = lines[0], [row for row in lines[1:] if len(row) == len(lines[0])]
+        header, rows = (lines[0], [row for row in lines[1:] if len(row) == len(lines[0])]) if lines else ([], [])
         self.columns = {}
-        for k, name in enumerate(header):
-            if name != "stage":
-                self.columns[name] = np.array([float(row[k]) for row in rows])
+        try:
+            for k, name in enumerate(header):
+                if name != "stage":
+                    self.columns[name] = np.array([float(row[k]) for row in rows])
+        except ValueError as error:
+            raise OSError(f"{path} is damaged: {error}") from error
+        if "time_s" not in self.columns:
+            raise OSError(f"{path} is damaged: it has no column time_s")
         self.time = self.columns.pop("time_s")
         self.step = self.columns.pop("step", None)
         self.stage = [row[header.index("stage")] for row in rows] if "stage" in header else [""] * len(rows)
+
+    def __contains__(self, name):
+        return name in self.columns
+
+    def __getitem__(self, name):
+        """A column [rows], `history["crest_displacement_m"]`. Raises KeyError with the nearest names if there is none of this name."""
+        if name not in self.columns:
+            raise unknown("column", name, self.columns)
+        return self.columns[name]
+
+    def names(self):
+        """Names of the columns beside time, stage and step; they end with their unit."""
+        return list(self.columns)
+
+    def unit(self, name):
+        """Unit of a column, empty if it has none. Raises KeyError."""
+        self[name]
+        return split_name(name)[2]
 
     def groups(self):
         """{(quantity, unit): {label: values}}; energies are one group, and so is each measure of the named points."""
@@ -179,13 +246,90 @@ class Escaped:
         self.position = np.column_stack([self.columns[f"{axis}_m"] for axis in "xyz" if f"{axis}_m" in self.columns] or [self.time])
 
 
+class Line:
+    """A line that was followed with the soil, line_NAME.csv: columns [times, places] by their names, `time` in s and `stage` of each time."""
+
+    def __init__(self, path):
+        self.name = path.stem[len("line_"):]
+        with open(path, newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.stage = [row["stage"] for row in rows]
+        times = np.array([float(row["time_s"]) for row in rows])
+        starts = np.flatnonzero(np.diff(times, prepend=-np.inf))
+        places = int(np.diff(np.append(starts, len(times))).min()) if len(times) else 0
+        self.columns = {}
+        for name in rows[0] if rows else ():
+            if name not in ("time_s", "step", "stage"):
+                values = np.array([float(row[name]) for row in rows])
+                self.columns[name] = np.array([values[start:start + places] for start in starts])
+        self.time, self.stage = times[starts], [self.stage[start] for start in starts]
+
+    def __getitem__(self, name):
+        """A column [times, places]. Raises KeyError with the nearest names."""
+        if name not in self.columns:
+            raise unknown("column", name, self.columns)
+        return self.columns[name]
+
+    def moved(self):
+        """Displacement of each place since the start or the last reset [m], by axis: [times, places, axes]."""
+        return np.stack([self.columns[f"displacement_{axis}_m"] for axis in "xyz" if f"displacement_{axis}_m" in self.columns], axis=2)
+
+
+class Table:
+    """A table of outcomes that `talus study`, `compare` or `converge` wrote (study.csv, compare.csv, ...): columns by their names, as numbers
+    [rows] where all of its entries are numbers or empty (then NaN), otherwise as text [rows]."""
+
+    def __init__(self, path):
+        with open(path, newline="") as file:
+            lines = [row for row in csv.reader(file) if row]
+        if not lines:
+            raise OSError(f"{path} is empty")
+        self.columns = {name: column([row[k] if k < len(row) else "" for row in lines[1:]]) for k, name in enumerate(lines[0])}
+
+    def __len__(self):
+        return len(next(iter(self.columns.values())))
+
+    def __contains__(self, name):
+        return name in self.columns
+
+    def __getitem__(self, name):
+        """A column [rows]. Raises KeyError with the nearest names."""
+        if name not in self.columns:
+            raise unknown("column", name, self.columns)
+        return self.columns[name]
+
+    def names(self):
+        return list(self.columns)
+
+
+def column(words):
+    """Numbers where all words are numbers or empty, and some are; otherwise the words."""
+    try:
+        numbers = np.array([float(word) if word else np.nan for word in words])
+    except ValueError:
+        return np.array(words)
+    return numbers if np.isfinite(numbers).any() else np.array(words)
+
+
 class Results:
-    """The results in a folder. Raises FileNotFoundError or OSError where there are none."""
+    """The results in a folder: `title`, `bodies` (names), `scene` (a dictionary, with the overrides of the run), `snapshots` over time, `history`
+    (None where none was written), `escaped` (likewise). A run that goes on or broke off has what it wrote until now. Raises FileNotFoundError where the
+    folder holds no results, OSError where they cannot be read."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
         if not (self.folder / "run.h5").exists():
             raise FileNotFoundError(f"{self.folder} contains no run.h5")
+        try:
+            self._read()
+        except (OSError, KeyError, AttributeError, RuntimeError) as error:  # what h5py raises where parts are missing
+            raise OSError(f"{self.folder / 'run.h5'} cannot be read, as it is damaged or being written: {error}") from error
+        path = self.folder / "history.csv"
+        self.history = History(path) if path.exists() else None
+        path = self.folder / "escaped.csv"
+        self.escaped = Escaped(path) if path.exists() else None
+
+    def _read(self):
         self._file = h5py.File(self.folder / "run.h5", "r")
         self.title = self._file.attrs["title"] or self.folder.resolve().name
         self.program = self._file.attrs["program"]
@@ -196,10 +340,20 @@ class Results:
         self.snapshots = [Snapshot(group, derived) for group in self._file["snapshots"].values()]
         if self.snapshots and self.snapshots[0].position().shape[1] == 3 and all(name in self.snapshots[-1] for name in ("displacement", "volume")):
             derived["thickness"] = Thickness(self.snapshots[-1], self.up_axis())
-        path = self.folder / "history.csv"
-        self.history = History(path) if path.exists() else None
-        path = self.folder / "escaped.csv"
-        self.escaped = Escaped(path) if path.exists() else None
+
+    def snapshot_at(self, time):
+        """The snapshot nearest to a time [s]."""
+        if not self.snapshots:
+            raise LookupError(f"{self.folder} has no snapshots")
+        return min(self.snapshots, key=lambda snapshot: abs(snapshot.time - time))
+
+    def lines(self):
+        """The lines that were followed with the soil: {name: Line}."""
+        return {line.name: line for line in map(Line, sorted(self.folder.glob("line_*.csv")))}
+
+    def model(self):
+        """What was modelled, as run/model.json has it: soils, mesh, boundaries, water, points, stages. Raises FileNotFoundError."""
+        return json.loads((self.folder / "run" / "model.json").read_text())
 
     def mesh(self):
         """Nodes [n, dim] and cells [m, dim + 1] of the background mesh; nodes that ranks shared are one again."""

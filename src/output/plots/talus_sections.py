@@ -11,6 +11,7 @@ from talus_ground import Ground
 from talus_perspective import edges
 from talus_relief import EARTH, FAINT, Eye, between, seen, seen_from_above
 from talus_tiles import GAP, GAP_IN_SPACE, Frame, outline_of_cells, outline_of_points, tiles
+from talus_units import capital, readable_unit, words
 
 WIDTH, LEFT, RIGHT, HEAD, TITLE, FOOT = 12.0, 0.62, 1.0, 0.42, 0.3, 0.75  # of a sheet [inch]
 BESIDE, BELOW, STACKED = 0.5, 0.38, 0.55  # between blocks, and between the views of one block [inch]
@@ -139,7 +140,7 @@ class Colours:
         values = np.concatenate([snapshot.scalar(field)[0] for snapshot in snapshots])
         values = values[np.isfinite(values)]
         low, high = np.percentile(values, [0.1, 99.9]) if len(values) else (0.0, 0.0)
-        self.factor, self.unit = style.readable_unit(max(abs(low), abs(high)), snapshots[0].scalar(field)[1])
+        self.factor, self.unit = readable_unit(max(abs(low), abs(high)), snapshots[0].scalar(field)[1])
         low, high = -rounded_up(-min(low, 0.0) * self.factor), rounded_up(max(high, 0.0) * self.factor)
         if low == high:
             high = 1.0
@@ -366,7 +367,7 @@ class Painter:
                 continue
             at = view.flat(place)[0]
             axes.plot(*at, "o", markersize=5, markerfacecolor="white", markeredgecolor=style.INK, markeredgewidth=1.0)
-            axes.annotate(style.words(name), at, xytext=(6, 6), textcoords="offset points", fontsize=8.5,
+            axes.annotate(words(name), at, xytext=(6, 6), textcoords="offset points", fontsize=8.5,
                           bbox={"boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": "none", "alpha": 0.8})
 
     def _mark_escaped(self, axes, view, time, metres):
@@ -393,7 +394,7 @@ class Painter:
         if colours.names:
             bar.set_yticks(range(len(colours.names)), colours.names, rotation=90, va="center")
         bar.set_title(colours.unit, fontsize=9, pad=6)
-        headline = "  ".join(filter(None, (style.capital(style.words(field)), style.SYMBOL.get(field))))
+        headline = "  ".join(filter(None, (capital(words(field)), style.SYMBOL.get(field))))
         figure.text(LEFT / WIDTH, 1 - 0.24 / height, headline, fontsize=13, fontweight="bold", va="center")
         right = 1 - 0.25 / WIDTH
         figure.text(right, 1 - 0.24 / height, self.results.title, fontsize=9, color=style.SOFT, va="center", ha="right")

@@ -5,7 +5,8 @@ import csv
 import pathlib
 
 from matplotlib.ticker import LogFormatter
-from talus_style import LINES, np, plt, readable_unit, save, with_unit, words
+from talus_style import LINES, np, plt, save
+from talus_units import readable_unit, with_unit, words
 
 
 def read(path):

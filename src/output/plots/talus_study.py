@@ -18,6 +18,7 @@ import numpy as np
 import talus_style as style
 from talus_style import plt
 from talus_sweep import TITLES, number, outcomes
+from talus_units import with_unit, words
 
 NO_SLIDE = ("travel_distance_m", "volume_of_slide_m3", "depth_of_slide_m")  # 0 where the slope stands
 SHOWN = ("factor_of_safety", "load_time_of_failure_s", "travel_distance_m", "largest_displacement_m")
@@ -110,8 +111,8 @@ def title_of(outcome):
         return TITLES[outcome]
     for ending, unit in (("_m_s", "m/s"), ("_m3", "m³"), ("_m", "m"), ("_s", "s"), ("_Pa", "Pa")):
         if outcome.endswith(ending):
-            return f"{style.words(outcome[: -len(ending)])} [{unit}]"
-    return style.words(outcome)
+            return f"{words(outcome[: -len(ending)])} [{unit}]"
+    return words(outcome)
 
 
 def draw_tornado(all_fits, path):
@@ -123,7 +124,7 @@ def draw_tornado(all_fits, path):
             for end, colour, label in ((bar["low"], style.LINES[0], "variable at its 10 % quantile"), (bar["high"], style.LINES[1], "at its 90 % quantile")):
                 one.barh(k, end - fit["mean"], left=fit["mean"], height=0.62, color=colour, label=label if k == 0 else None)
         one.axvline(fit["mean"], color=style.INK, lw=0.8)
-        one.set_yticks(range(len(fit["bars"])), [style.words(bar["variable"]) for bar in fit["bars"]])
+        one.set_yticks(range(len(fit["bars"])), [words(bar["variable"]) for bar in fit["bars"]])
         one.set_xlabel(title_of(fit["outcome"]))
         one.set_title(f"linear fit, R² = {fit['r2']:.2f}", loc="right", fontsize=8)
     axes.flat[0].legend(fontsize=7.5, loc="lower left", bbox_to_anchor=(0, 1), ncols=2, frameon=False)
@@ -136,15 +137,15 @@ def draw_scatter(rows, variables, shown, criteria, path):
         about = [c for c in criteria if c["outcome"] == outcome]
         for one, v in zip(line, variables):
             known = [row for row in rows if row.get(outcome) is not None]
-            words = list(dict.fromkeys(row[v["name"]] for row in known))
-            x = [number(row[v["name"]]) if v["numeric"] else words.index(row[v["name"]]) for row in known]
+            choices = list(dict.fromkeys(row[v["name"]] for row in known))
+            x = [number(row[v["name"]]) if v["numeric"] else choices.index(row[v["name"]]) for row in known]
             colours = [style.LINES[1] if any(state(row, c) == MET for c in about or criteria) else style.LINES[0] for row in known]
             one.scatter(x, [float(row[outcome]) for row in known], s=11, c=colours, alpha=0.75, linewidths=0)
             for criterion in about:
                 one.axhline(criterion["limit"], color=style.INK, lw=0.8, ls=":")
             if not v["numeric"]:
-                one.set_xticks(range(len(words)), words)
-            one.set_xlabel(style.with_unit(style.words(v["name"]), v["unit"]))
+                one.set_xticks(range(len(choices)), choices)
+            one.set_xlabel(with_unit(words(v["name"]), v["unit"]))
         line[0].set_ylabel(textwrap.fill(title_of(outcome), 28))
     if criteria:
         figure.suptitle("orange: the criterion is met", x=0.01, ha="left", fontsize=8.5, color=style.SOFT)
@@ -163,7 +164,7 @@ def draw_exceedance(rows, shown, criteria, confidence, path):
         one.step(x, above / n, where="post", color=style.LINES[0], lw=1.3, label=f"{n} runs")
         for criterion in criteria:
             if criterion["outcome"] == outcome:
-                one.axvline(criterion["limit"], color=style.INK, lw=0.8, ls=":", label=style.words(criterion["name"]))
+                one.axvline(criterion["limit"], color=style.INK, lw=0.8, ls=":", label=words(criterion["name"]))
         one.set(xlabel=title_of(outcome), ylabel="probability of a larger value", ylim=(0, 1.02))
         one.legend(fontsize=7.5)
     return style.save(figure, path)

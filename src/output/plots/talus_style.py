@@ -45,30 +45,6 @@ def colours_of(field):
     return MAPS.get(field, plt.get_cmap("cividis"))
 
 
-def words(name):
-    """'plastic_strain' -> 'plastic strain'."""
-    return name.replace("_", " ")
-
-
-def capital(text):
-    return text[:1].upper() + text[1:]
-
-
-def readable_unit(largest, unit):
-    """Factor and unit in which numbers up to `largest` read well: 110000 Pa -> (1e-3, 'kPa')."""
-    if unit in ("Pa", "J", "N", "W"):
-        for power, prefix in ((9, "G"), (6, "M"), (3, "k")):
-            if largest >= 10**power:
-                return 10.0**-power, prefix + unit
-    if unit in ("m", "m/s") and 0 < largest < 0.1:
-        return 1e3, "m" + unit
-    return 1.0, "" if unit in ("-", "1") else unit
-
-
-def with_unit(text, unit):
-    return f"{text} [{unit}]" if unit else text
-
-
 def program():
     """Name and version of the program that draws, "Talus 0.1.0". The program passes them on when it starts a script; a script of the source
     tree that is started alone reads them from CMakeLists.txt."""

@@ -15,6 +15,7 @@ from talus_converge import cell_size, outcome
 from talus_results import Results
 import talus_style as style
 from talus_style import plt
+from talus_units import with_unit, words
 
 LEFT_OUT = ("cell_m", "deepest_at_x_m")  # outcomes that no chart shows
 TITLES = {"load_time_of_failure_s": "time t of the loads at failure [s]", "travel_distance_m": "travel distance, rear of the slide to its front [m]",
@@ -70,11 +71,11 @@ def charted(rows):
     for name in names:
         kind = next((title for title, ending in points.items() if name.endswith(ending)), None)
         if kind is None:
-            charts.append((TITLES.get(name, style.words(name)), {"": name}))
+            charts.append((TITLES.get(name, words(name)), {"": name}))
         elif any(title == kind for title, _ in charts):
-            next(lines for title, lines in charts if title == kind)[style.words(name[: -len(points[kind])])] = name
+            next(lines for title, lines in charts if title == kind)[words(name[: -len(points[kind])])] = name
         else:
-            charts.append((kind, {style.words(name[: -len(points[kind])]): name}))
+            charts.append((kind, {words(name[: -len(points[kind])]): name}))
     return charts
 
 
@@ -84,9 +85,9 @@ def draw(rows, path):
     lines = -(-len(charts) // columns)
     figure, axes = plt.subplots(lines, columns, figsize=(3.9 * columns, 3.1 * lines), squeeze=False, layout="constrained")
     numbers = [number(row["value"]) for row in rows]
-    words = list(dict.fromkeys(row["value"] for row in rows))
+    choices = list(dict.fromkeys(row["value"] for row in rows))
     numeric = None not in numbers
-    place = numbers if numeric else [words.index(row["value"]) for row in rows]
+    place = numbers if numeric else [choices.index(row["value"]) for row in rows]
     series = list(dict.fromkeys(row["series"] for row in rows))
     for one in axes.flat[len(charts):]:
         one.remove()
@@ -110,7 +111,7 @@ def draw(rows, path):
         if numeric and min(place) > 0 and max(place) > 20 * min(place):
             one.set_xscale("log")
         if not numeric:
-            one.set_xticks(range(len(words)), words)
+            one.set_xticks(range(len(choices)), choices)
     figure.suptitle("full: the slope fails, open: it stands", x=0.01, ha="left", fontsize=8.5, color=style.SOFT)
     return style.save(figure, path)
 
@@ -118,7 +119,7 @@ def draw(rows, path):
 def axis_title(rows):
     keys = list(dict.fromkeys(row["key"] for row in rows))
     units = {" ".join(row["value"].split()[1:]) for row in rows}
-    return style.with_unit(keys[0] if len(keys) == 1 else "last key", units.pop() if len(units) == 1 else "")
+    return with_unit(keys[0] if len(keys) == 1 else "last key", units.pop() if len(units) == 1 else "")
 
 
 def print_table(rows):

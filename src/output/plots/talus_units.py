@@ -1,8 +1,6 @@
-"""Values of a scene in words, with their units."""
+"""Names, values and times in words, with their units."""
 
 import re
-
-import talus_style as style
 
 ENTRIES = 6  # of a list that are written out
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
@@ -32,9 +30,9 @@ class Keys:
         for key, value in values.items():
             if isinstance(value, dict):
                 inside = self.row(f"{path}.{key}", value, "curve")
-                row[style.words(key)] = ", ".join(text if one == "curve" else f"{one} {text}" for one, text in inside.items())
+                row[words(key)] = ", ".join(text if one == "curve" else f"{one} {text}" for one, text in inside.items())
             else:
-                row[style.words(key)] = self.text(path, kind, key, value)
+                row[words(key)] = self.text(path, kind, key, value)
         return row
 
 
@@ -73,13 +71,13 @@ def list_of(values, unit, over_time):
 
 def quantity(value, unit):
     """A number in a unit in which it reads well."""
-    factor, unit = style.readable_unit(abs(value), unit)
+    factor, unit = readable_unit(abs(value), unit)
     return with_shown(f"{factor * value:.6g}", unit)
 
 
 def span(low, high, unit):
     """'12°', or '0 to 12°' where the two differ."""
-    factor, unit = style.readable_unit(max(abs(low), abs(high)), unit)
+    factor, unit = readable_unit(max(abs(low), abs(high)), unit)
     low, high = f"{factor * low:.4g}", f"{factor * high:.4g}"
     return with_shown(high if low == high else f"{low} to {high}", unit)
 
@@ -117,3 +115,27 @@ def shown(unit):
     for plain, pretty in SHOWN:
         unit = re.sub(rf"(?<![A-Za-z]){plain}\b" if plain == "deg" else rf"{plain}\b", pretty, unit)
     return unit
+
+
+def words(name):
+    """'plastic_strain' -> 'plastic strain'."""
+    return name.replace("_", " ")
+
+
+def capital(text):
+    return text[:1].upper() + text[1:]
+
+
+def readable_unit(largest, unit):
+    """Factor and unit in which numbers up to `largest` read well: 110000 Pa -> (1e-3, 'kPa')."""
+    if unit in ("Pa", "J", "N", "W"):
+        for power, prefix in ((9, "G"), (6, "M"), (3, "k")):
+            if largest >= 10**power:
+                return 10.0**-power, prefix + unit
+    if unit in ("m", "m/s") and 0 < largest < 0.1:
+        return 1e3, "m" + unit
+    return 1.0, "" if unit in ("-", "1") else unit
+
+
+def with_unit(text, unit):
+    return f"{text} [{unit}]" if unit else text

@@ -1,0 +1,22 @@
+"""Several runs in one chart:  outcomes.py FOLDER PICTURE   with the folder that `talus compare SCENE --series ...` wrote"""
+import sys
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+from talus_results import Results, Table
+
+folder = Path(sys.argv[1])
+sweep, runs = Table(folder / "sweep.csv"), Table(folder / "runs.csv")
+
+figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.2), layout="constrained")
+left.plot(sweep["value"], sweep["travel_distance_m"], "o-")
+left.set(xlabel=runs["key"][0], ylabel="travel distance [m]")
+for value, name in zip(runs["value"], runs["folder"]):
+    history = Results(folder / name).history
+    right.plot(history.time, history["crest_displacement_m"], label=f"{value:g}")
+right.set(xlabel="time [s]", ylabel="displacement of the crest [m]")
+right.legend(title=runs["key"][0], fontsize=8)
+figure.savefig(sys.argv[2], dpi=130)
+print(f"{len(sweep)} runs; the slide travels by {min(sweep['travel_distance_m']):.2f} to {max(sweep['travel_distance_m']):.2f} m")
