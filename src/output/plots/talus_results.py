@@ -320,9 +320,12 @@ class Results:
         self.folder = pathlib.Path(folder)
         if not (self.folder / "run.h5").exists():
             raise FileNotFoundError(f"{self.folder} contains no run.h5")
+        self._file = None
         try:
             self._read()
         except (OSError, KeyError, AttributeError, RuntimeError) as error:  # what h5py raises where parts are missing
+            if self._file:
+                self._file.close()
             raise OSError(f"{self.folder / 'run.h5'} cannot be read, as it is damaged or being written: {error}") from error
         path = self.folder / "history.csv"
         self.history = History(path) if path.exists() else None
