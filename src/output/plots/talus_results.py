@@ -339,6 +339,9 @@ class Results:
         self.scene_text = self._file["scene"].asstr()[0]
         self.bodies = list(self._file["bodies"].asstr()[...])
         self.scene = parsed(self._file["values"].asstr()[0] if "values" in self._file else self.scene_text)  # with its overrides
+        for name, group in self._file["snapshots"].items():
+            if group is None:
+                raise OSError(f"{self._file['snapshots'].get(name, getlink=True).filename}, to which it refers, is missing or damaged")
         derived = {}
         self.snapshots = [Snapshot(group, derived) for group in self._file["snapshots"].values()]
         if self.snapshots and self.snapshots[0].position().shape[1] == 3 and all(name in self.snapshots[-1] for name in ("displacement", "volume")):

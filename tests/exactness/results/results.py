@@ -90,6 +90,8 @@ class Module(unittest.TestCase):
         (broken / "run.h5").write_bytes(data[: len(data) // 3])
         self.refused(OSError, "damaged or being written", Results, broken)
         shutil.copy(self.slope / "run.h5", broken / "run.h5")
+        self.refused(OSError, "to which it refers, is missing", Results, broken)
+        shutil.copytree(self.slope / "run", broken / "run")
         (broken / "history.csv").write_text("time_s,step,stage,crest_x_m\n0,0,gravity,1.5x\n")
         self.refused(OSError, "history.csv is damaged", Results, broken)
 
