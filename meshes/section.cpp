@@ -12,20 +12,20 @@
 namespace talus {
 namespace {
 
-[[noreturn]] void complain(const std::string &file, int line, const std::string &text) {
-  throw std::invalid_argument(file + " line " + std::to_string(line) + ": " + text);
+[[noreturn]] void complain(const Section &section, int line, const std::string &text) {
+  throw std::invalid_argument(section.file + " " + section.entry(line) + ": " + text);
 }
 
 bool starts_with(const std::string &text, const std::string &start) { return text.rfind(start, 0) == 0; }
 
+/// The number at the end of a part's name, also with a decimal comma.
+bool is_number(std::string text, double &value) {
+  std::replace(text.begin(), text.end(), ',', '.');
+  return Spreadsheet{}.number(text, value);
+}
+
 constexpr std::size_t most_points =
     5000;  // more than cells can follow, and more than a quick check of crossings allows
-
-struct Row {
-  std::string part;
-  Vec<2> numbers;
-  int line;
-};
 
 bool is_header(std::vector<std::string> cells) {
   for (std::string &cell : cells)
@@ -33,33 +33,34 @@ bool is_header(std::vector<std::string> cells) {
   return cells == std::vector<std::string>{"part", "x", "y"};
 }
 
-std::vector<Row> rows_of(const Spreadsheet &sheet, const std::string &file) {
-  std::vector<Row> rows;
+std::vector<SectionRow> rows_of(const Spreadsheet &sheet, const std::string &file) {
+  std::vector<SectionRow> rows;
   for (const auto &[cells, line] : sheet.rows) {
     if (is_header(cells)) continue;
-    Row row{cells[0], {}, line};
+    SectionRow row{cells[0], {}, line};
     if (cells.size() != 3 || row.part.empty() || !sheet.number(cells[1], row.numbers[0]) ||
         !sheet.number(cells[2], row.numbers[1])) {
       std::string text;
       for (const std::string &cell : cells) text += (text.empty() ? "" : ",") + cell;
-      complain(file, line, "'" + text + "' must be a row part,x,y with two numbers in metres");
+      throw std::invalid_argument(file + " line " + std::to_string(line) + ": '" + text +
+                                  "' must be a row part,x,y with two numbers in metres");
     }
     rows.push_back(row);
   }
-  if (rows.size() > most_points)
-    complain(file, rows.back().line,
-             "the section has " + std::to_string(rows.size()) + " points, more than the " +
-                 std::to_string(most_points) + " that are taken; leave out points that are closer than cells are wide");
   return rows;
 }
 
 class Reader {
  public:
-  explicit Reader(const std::string &file) { section_.file = file; }
+  Reader(const std::string &file, bool drawn) { section_.file = file, section_.drawn = drawn; }
 
-  Section read() {
-    sheet_ = read_spreadsheet(section_.file);
-    for (const Row &row : rows_of(sheet_, section_.file)) take(row);
+  Section read(const std::vector<SectionRow> &rows) {
+    if (rows.size() > most_points)
+      complain(section_, rows.back().line,
+               "the section has " + std::to_string(rows.size()) + " points, more than the " +
+                   std::to_string(most_points) +
+                   " that are taken; leave out points that are closer than cells are wide");
+    for (const SectionRow &row : rows) take(row);
     for (const auto &[number, polyline] : interfaces_) section_.interfaces.push_back(polyline);
     for (const auto &[name, polyline] : boundaries_) section_.boundaries.push_back(polyline);
     for (const auto &[part, rows] : boxes_) add_boxes(part, rows);
@@ -68,28 +69,27 @@ class Reader {
 
  private:
   Section section_;
-  Spreadsheet sheet_;
   std::map<int, Polyline> interfaces_;
   std::map<std::string, Polyline> boundaries_;
-  std::map<std::string, std::vector<Row>> boxes_;
+  std::map<std::string, std::vector<SectionRow>> boxes_;
 
-  static void append(Polyline &polyline, const std::string &part, const Row &row) {
+  static void append(Polyline &polyline, const std::string &part, const SectionRow &row) {
     polyline.part = part;
     polyline.points.push_back(row.numbers);
     polyline.lines.push_back(row.line);
   }
 
-  std::string name_in(const Row &row, const std::string &start) const {
+  std::string name_in(const SectionRow &row, const std::string &start) const {
     const std::string name = row.part.substr(start.size());
-    if (name.empty()) complain(section_.file, row.line, "'" + row.part + "' must be followed by a name");
+    if (name.empty()) complain(section_, row.line, "'" + row.part + "' must be followed by a name");
     return name;
   }
 
-  void take(const Row &row) {
+  void take(const SectionRow &row) {
     double number;
     if (row.part == "outline") {
       append(section_.outline, row.part, row);
-    } else if (starts_with(row.part, "interface") && sheet_.number(row.part.substr(9), number) &&
+    } else if (starts_with(row.part, "interface") && is_number(row.part.substr(9), number) &&
                number == std::floor(number) && std::abs(number) <= most_points) {
       append(interfaces_[static_cast<int>(number)], row.part, row);
     } else if (starts_with(row.part, "b_")) {
@@ -100,30 +100,28 @@ class Reader {
     } else if (starts_with(row.part, "refine_")) {
       boxes_[row.part].push_back(row);
     } else if (row.part == "free_space") {
-      if (row.numbers[0] <= 0) complain(section_.file, row.line, "the height of the free space must be above 0 m");
+      if (row.numbers[0] <= 0) complain(section_, row.line, "the height of the free space must be above 0 m");
       if (section_.has_free_space)
-        complain(section_.file, row.line, "a section has one row of free_space, this is a second");
+        complain(section_, row.line, "a section has one row of free_space, this is a second");
       section_.has_free_space = true;
       section_.free_height = row.numbers[0], section_.free_extra = row.numbers[1];
     } else {
-      complain(section_.file, row.line,
+      complain(section_, row.line,
                "'" + row.part +
                    "' is no part of a section; parts are outline, interfaceN, b_NAME, region_NAME, refine_SIZE "
                    "and free_space");
     }
   }
 
-  void add_boxes(const std::string &part, const std::vector<Row> &rows) {
+  void add_boxes(const std::string &part, const std::vector<SectionRow> &rows) {
     double size;
-    if (!sheet_.number(part.substr(7), size) || size <= 0)
-      complain(section_.file, rows[0].line, "'" + part + "' must be refine_SIZE with a cell size above 0 m");
+    if (!is_number(part.substr(7), size) || size <= 0)
+      complain(section_, rows[0].line, "'" + part + "' must be refine_SIZE with a cell size above 0 m");
     if (rows.size() % 2)
-      complain(section_.file, rows.back().line,
-               "'" + part + "' needs a second row with the opposite corner of the box");
+      complain(section_, rows.back().line, "'" + part + "' needs a second row with the opposite corner of the box");
     for (std::size_t i = 0; i < rows.size(); i += 2) {
       const Vec<2> &a = rows[i].numbers, &b = rows[i + 1].numbers;
-      if (a[0] == b[0] || a[1] == b[1])
-        complain(section_.file, rows[i + 1].line, "the box of '" + part + "' has no area");
+      if (a[0] == b[0] || a[1] == b[1]) complain(section_, rows[i + 1].line, "the box of '" + part + "' has no area");
       section_.boxes.push_back(
           {{std::min(a[0], b[0]), std::min(a[1], b[1])}, {std::max(a[0], b[0]), std::max(a[1], b[1])}, size});
     }
@@ -142,13 +140,13 @@ void check_outline(const Section &section, double tolerance) {
   const auto &x = outline.points;
   const std::size_t count = x.size();
   if (count == 0) throw std::invalid_argument(section.file + ": has no outline; give rows outline,x,y");
-  if (count < 3) complain(section.file, outline.lines.back(), "an outline needs at least 3 points");
+  if (count < 3) complain(section, outline.lines.back(), "an outline needs at least 3 points");
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (std::hypot(x[i][0] - x[j][0], x[i][1] - x[j][1]) <= tolerance)
-        complain(section.file, outline.lines[i],
-                 "repeats the point of line " + std::to_string(outline.lines[j]) +
-                     "; leave it out (an outline closes itself)");
+        complain(
+            section, outline.lines[i],
+            "repeats the point of " + section.entry(outline.lines[j]) + "; leave it out (an outline closes itself)");
   const auto crosses = [&](std::size_t i, std::size_t j) {
     const Vec<2> &a = x[i], &b = x[(i + 1) % count], &c = x[j], &d = x[(j + 1) % count];
     if ((j + 1) % count == i)
@@ -160,9 +158,9 @@ void check_outline(const Section &section, double tolerance) {
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (crosses(i, j))
-        complain(section.file, outline.lines[i],
+        complain(section, outline.lines[i],
                  "the outline crosses itself: segment " + segment_text(outline, i) + " meets segment " +
-                     segment_text(outline, j) + " of line " + std::to_string(outline.lines[j]) +
+                     segment_text(outline, j) + " of " + section.entry(outline.lines[j]) +
                      "; give its points in order around the section");
 }
 
@@ -247,13 +245,13 @@ std::size_t piece_at(const Polyline &line, const Vec<2> &x) {
 
 void check_polyline(const Section &section, const Polyline &polyline, const std::string &what, bool edge_counts,
                     const std::vector<Vec<2>> &domain, double tolerance) {
-  if (polyline.points.size() < 2) complain(section.file, polyline.lines.back(), what + " needs at least 2 points");
+  if (polyline.points.size() < 2) complain(section, polyline.lines.back(), what + " needs at least 2 points");
   for (std::size_t i = 1; i < polyline.points.size(); ++i)
     if (std::hypot(polyline.points[i][0] - polyline.points[i - 1][0],
                    polyline.points[i][1] - polyline.points[i - 1][1]) <= tolerance)
-      complain(section.file, polyline.lines[i], what + " repeats its last point; leave it out");
+      complain(section, polyline.lines[i], what + " repeats its last point; leave it out");
   if (!reaches(polyline, domain, edge_counts, tolerance))
-    complain(section.file, polyline.lines[0],
+    complain(section, polyline.lines[0],
              what + " lies outside the outline" + (edge_counts ? "" : " or only on it") + "; move it into the section");
 }
 
@@ -268,7 +266,7 @@ void check(const Section &section) {
     check_polyline(section, p, "the boundary 'b_" + p.part + "'", true, domain, tolerance);
   for (const Seed &seed : section.seeds)
     if (!is_inside(domain, seed.point))
-      complain(section.file, seed.line, "the seed of region '" + seed.name + "' lies outside the section");
+      complain(section, seed.line, "the seed of region '" + seed.name + "' lies outside the section");
 }
 
 }  // namespace
@@ -311,11 +309,15 @@ std::string Section::layer_at(const Vec<2> &x) const {
   return "layer" + std::to_string(layer);
 }
 
-Section read_section(const std::string &file) {
-  Section section = Reader(file).read();
+std::string Section::entry(int line) const { return (drawn ? "entity " : "line ") + std::to_string(line); }
+
+Section section_of(const std::vector<SectionRow> &rows, const std::string &file, bool drawn) {
+  Section section = Reader(file, drawn).read(rows);
   check(section);
   return section;
 }
+
+Section read_section(const std::string &file) { return section_of(rows_of(read_spreadsheet(file), file), file, false); }
 
 std::optional<Crossing> crossing_interfaces(const Section &section) {
   const auto opposite = [](double a, double b) { return (a > 0 && b < 0) || (a < 0 && b > 0); };

@@ -1,5 +1,6 @@
 #pragma once
-/// A surveyed cross-section as read from a CSV file of rows `part,x,y` [m]; `#` starts a comment. Parts:
+/// A surveyed cross-section, as read from a CSV file of rows `part,x,y` [m], in which `#` starts a comment, or from a
+/// drawing (drawing.h). Parts:
 ///
 ///   outline           polygon, in order
 ///   interface0, 1...  polylines from top to bottom; layer0 lies above interface0, layer1 below it, and so on. Beyond
@@ -19,10 +20,16 @@
 
 namespace talus {
 
+/// A point of a part, in the order of the file.
+struct SectionRow {
+  std::string part;
+  Vec<2> numbers;  ///< coordinates [m]; of free_space its height and extra width [m]
+  int line;        ///< of the file; of a drawing the number of the entity
+};
 struct Polyline {
   std::string part;            ///< its name in the file
   std::vector<Vec<2>> points;  ///< [m]
-  std::vector<int> lines;      ///< line of each point in the file
+  std::vector<int> lines;      ///< line of each point in the file; of a drawing its entity
 };
 struct Seed {
   std::string name;
@@ -36,6 +43,7 @@ struct RefinedBox {
 
 struct Section {
   std::string file;
+  bool drawn = false;  ///< read from a drawing, whose entities take the place of lines
   Polyline outline;
   std::vector<Polyline> interfaces;  ///< top to bottom
   std::vector<Polyline> boundaries;  ///< `part` without b_
@@ -44,7 +52,8 @@ struct Section {
   bool has_free_space = false;
   double free_height = 0, free_extra = 0;  ///< [m]
 
-  double largest_extent() const;  ///< of the outline, width or height [m]
+  std::string entry(int line) const;  ///< "line 5", or "entity 5" of a drawing
+  double largest_extent() const;      ///< of the outline, width or height [m]
   std::vector<Vec<2>> domain()
       const;            ///< polygon that is meshed: the outline, with free space above it where asked for
   double area() const;  ///< of the domain [m2]
@@ -54,6 +63,8 @@ struct Section {
 /// Reads and checks a section. Throws std::invalid_argument with file and line for rows that are malformed or unknown,
 /// fewer than three points, repeated points, an outline that crosses itself, and parts that lie outside.
 Section read_section(const std::string &file);
+/// The same from rows that have been read from a file. `drawn`: from a drawing.
+Section section_of(const std::vector<SectionRow> &rows, const std::string &file, bool drawn);
 
 /// Two interfaces that go through one another, so that counting those above a point says nothing about its layer.
 struct Crossing {

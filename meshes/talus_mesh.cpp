@@ -7,6 +7,7 @@
 #include <iostream>
 #include <optional>
 
+#include "meshes/drawing.h"
 #include "meshes/gmsh_elements.h"
 #include "meshes/section_mesh.h"
 #include "meshes/simplex.h"
@@ -28,7 +29,16 @@ struct Request {
   std::vector<double> ellipsoid;
 };
 
-bool is_section(const std::string &source) { return std::filesystem::path(source).extension() == ".csv"; }
+bool is_section(const std::string &source) {
+  return std::filesystem::path(source).extension() == ".csv" || is_drawing(source);
+}
+
+Section section_in(const std::string &source) {
+  if (!is_drawing(source)) return read_section(source);
+  const Drawing drawing = read_drawing(source);
+  for (const std::string &doubt : drawing.doubts) std::cout << "warning: " << doubt << "\n";
+  return section_of(drawing.rows, source, true);
+}
 
 [[noreturn]] void complain(const std::string &text) { throw std::invalid_argument(text); }
 
@@ -197,7 +207,7 @@ void run(const Request &request) {
   std::optional<Section> section;
   std::optional<Terrain> terrain;
   if (is_section(request.source))
-    check(request, section.emplace(read_section(request.source)));
+    check(request, section.emplace(section_in(request.source)));
   else
     check(request.terrain, terrain.emplace(request.terrain));
   const bool existed = std::filesystem::exists(request.file);
@@ -242,9 +252,11 @@ void read_terrain(const CLI::App &app, Request &request) {
 }
 
 int parse(int argc, char **argv, Request &request) {
-  CLI::App app("Meshes a cross-section (CSV rows part,x,y in metres) or terrain (a grid of elevations) for Talus.",
-               "talus-mesh");
-  app.add_option("SOURCE", request.source, "section CSV, or terrain: ESRI ASCII or GeoTIFF")->required();
+  CLI::App app(
+      "Meshes a cross-section (CSV rows part,x,y in metres, or a DXF drawing) or terrain (a grid of elevations) for "
+      "Talus.",
+      "talus-mesh");
+  app.add_option("SOURCE", request.source, "section: CSV or DXF; or terrain: ESRI ASCII or GeoTIFF")->required();
   app.add_option("-o,--output", request.file, "mesh file to write")->required();
   app.add_option("--size", request.options.size, "cell size [m]")->required();
   app.add_option("--dimension", request.options.dimension, "2: triangles, 3: tetrahedra")->check(CLI::IsMember({2, 3}));

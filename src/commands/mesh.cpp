@@ -93,8 +93,9 @@ void report_step(const MeshArguments &arguments, const LinearElastic &soil, doub
 
 /// Of what talus-mesh makes of the source: terrain is 3D.
 int mesh_dimension(const MeshArguments &arguments) {
-  const bool terrain = std::filesystem::path(arguments.source).extension() != ".csv";
-  return terrain || arguments.dimension == "3" ? 3 : 2;
+  const std::string kind = std::filesystem::path(arguments.source).extension();
+  const bool section = kind == ".csv" || kind == ".dxf" || kind == ".DXF";
+  return !section || arguments.dimension == "3" ? 3 : 2;
 }
 
 int make_mesh(const MeshArguments &arguments) {
@@ -114,7 +115,8 @@ Action add_mesh(CLI::App &app) {
   auto arguments = std::make_shared<MeshArguments>();
   CLI::App *command = app.add_subcommand(
       "mesh", "make a mesh file of a section or of terrain, with a report on its quality and critical step");
-  command->add_option("SOURCE", arguments->source, "section CSV, or terrain: ESRI ASCII or GeoTIFF")->required();
+  command->add_option("SOURCE", arguments->source, "section: CSV or DXF; or terrain: ESRI ASCII or GeoTIFF")
+      ->required();
   command->add_option("-o,--output", arguments->file, "mesh file to write (.msh)")->required();
   command->add_option("--size", arguments->size, "cell size, such as 0.5 or \"50 cm\"")->required();
   command->add_option("--dimension", arguments->dimension, "of a section, 2: triangles, 3: tetrahedra (default 2)");

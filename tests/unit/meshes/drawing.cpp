@@ -1,0 +1,160 @@
+#include "meshes/drawing.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace talus {
+namespace {
+
+/// A DXF file in text form, whose entities follow one another as they are called; a file of R12 without a header where
+/// `unit` is 0.
+class Dxf {
+ public:
+  explicit Dxf(int unit = 0) {
+    if (unit) group(0, "SECTION"), group(2, "HEADER"), group(9, "$INSUNITS"), group(70, unit), group(0, "ENDSEC");
+    group(0, "SECTION"), group(2, "ENTITIES");
+  }
+  Dxf &line(const std::string &layer, Vec<2> a, Vec<2> b, double z = 0) {
+    group(0, "LINE"), group(8, layer), group(10, a[0]), group(20, a[1]), group(30, z), group(11, b[0]), group(21, b[1]),
+        group(31, z);
+    return *this;
+  }
+  Dxf &polyline(const std::string &layer, const std::vector<Vec<2>> &points, bool closed) {
+    group(0, "POLYLINE"), group(8, layer), group(66, 1), group(70, closed ? 1 : 0);
+    for (const Vec<2> &x : points) group(0, "VERTEX"), group(8, layer), group(10, x[0]), group(20, x[1]);
+    group(0, "SEQEND");
+    return *this;
+  }
+  Dxf &point(const std::string &layer, Vec<2> x) {
+    group(0, "POINT"), group(8, layer), group(10, x[0]), group(20, x[1]);
+    return *this;
+  }
+  Dxf &text(const std::string &layer, Vec<2> x) {
+    group(0, "TEXT"), group(8, layer), group(10, x[0]), group(20, x[1]), group(40, 1), group(1, "clay");
+    return *this;
+  }
+  Dxf &circle(const std::string &layer, Vec<2> x, double radius) {
+    group(0, "CIRCLE"), group(8, layer), group(10, x[0]), group(20, x[1]), group(40, radius);
+    return *this;
+  }
+  std::string content() const { return text_ + "  0\nENDSEC\n  0\nEOF\n"; }
+
+ private:
+  template <class T>
+  void group(int code, const T &value) {
+    std::ostringstream lines;
+    lines << "  " << code << "\n" << value << "\n";
+    text_ += lines.str();
+  }
+  std::string text_;
+};
+
+/// The drawing as a section; the file is removed.
+Section section_in(const std::string &content, std::vector<std::string> *doubts = nullptr) {
+  const std::string file = std::string(P_tmpdir) + "/talus_drawing_" + std::to_string(getpid()) + ".dxf";
+  std::ofstream(file) << content;
+  try {
+    const Drawing drawing = read_drawing(file);
+    std::remove(file.c_str());
+    if (doubts) *doubts = drawing.doubts;
+    return section_of(drawing.rows, file, true);
+  } catch (...) {
+    std::remove(file.c_str());
+    throw;
+  }
+}
+
+void expect_refused(const Dxf &dxf, const std::string &words) {
+  try {
+    section_in(dxf.content());
+    ADD_FAILURE() << "taken, not refused with: " << words;
+  } catch (const std::invalid_argument &error) {
+    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what() << "\nlacks: " << words;
+  }
+}
+
+const std::vector<Vec<2>> box{{0, 0}, {25, 0}, {25, 8}, {0, 8}}, ground{{0, 7}, {10, 7}, {15, 2}, {25, 2}};
+Dxf slope(int unit = 0) {
+  return Dxf(unit)
+      .polyline("outline", box, true)
+      .polyline("interface0", ground, false)
+      .point("region_air", {20, 6})
+      .text("region_clay", {5, 3});
+}
+
+/// Polylines in the order of the rows give the very section of the guide's CSV file, and so does the guide's drawing.
+void expect_slope(const Section &drawn) {
+  const Section read = read_section(TALUS_GUIDE "/slope.csv");
+  EXPECT_EQ(drawn.outline.points, read.outline.points);
+  ASSERT_EQ(drawn.interfaces.size(), 1u);
+  EXPECT_EQ(drawn.interfaces[0].points, read.interfaces[0].points);
+  ASSERT_EQ(drawn.seeds.size(), 2u);
+  EXPECT_EQ(drawn.seeds[0].name, "air");
+  EXPECT_EQ(drawn.seeds[1].name, "clay");
+  EXPECT_EQ(drawn.seeds[1].point, read.seeds[1].point);
+}
+TEST(Drawing, IsTheSectionOfTheSameRows) {
+  expect_slope(section_in(slope().content()));
+  expect_slope(section_of(read_drawing(TALUS_GUIDE "/slope.dxf").rows, "slope.dxf", true));
+}
+
+/// Lines in any order and direction, in capitals and millimetres.
+TEST(Drawing, JoinsPiecesAndConvertsUnits) {
+  Dxf dxf(4);
+  const auto mm = [](const Vec<2> &x) { return Vec<2>{1e3 * x[0], 1e3 * x[1]}; };
+  for (const int i : {2, 0, 3, 1}) dxf.line("OUTLINE", mm(box[(i + i % 2) % 4]), mm(box[(i + 1 - i % 2) % 4]));
+  for (const int i : {1, 2, 0}) dxf.line("INTERFACE0", mm(ground[i + i % 2]), mm(ground[i + 1 - i % 2]));
+  dxf.point("REGION_CLAY", {5e3, 3e3}).line("DIMENSIONS", {0, 0}, {1, 1});
+  dxf.polyline("REFINE_0.2", {{8e3, 1e3}, {12e3, 1e3}, {12e3, 4e3}, {8e3, 4e3}}, true);
+  std::vector<std::string> doubts;
+  const Section section = section_in(dxf.content(), &doubts);
+  EXPECT_DOUBLE_EQ(section.area(), 200);
+  EXPECT_EQ(section.outline.points.size(), 4u);
+  ASSERT_EQ(section.interfaces[0].points.size(), 4u);
+  EXPECT_EQ(section.layer_at({12, 4.9}), "layer1");
+  EXPECT_EQ(section.layer_at({12, 5.1}), "layer0");
+  EXPECT_EQ(section.seeds[0].name, "clay");
+  ASSERT_EQ(section.boxes.size(), 1u);
+  EXPECT_DOUBLE_EQ(section.boxes[0].size, 0.2);
+  EXPECT_DOUBLE_EQ(section.boxes[0].to[1], 4);
+  ASSERT_EQ(doubts.size(), 2u);
+  EXPECT_NE(doubts[0].find("coordinates in millimetres"), std::string::npos) << doubts[0];
+  EXPECT_NE(doubts[1].find("left out: dimensions"), std::string::npos) << doubts[1];
+}
+
+/// A circle becomes chords of 4 degrees, within 0.1 % of its area.
+TEST(Drawing, TurnsArcsIntoChords) {
+  const Section section = section_in(Dxf().circle("outline", {10, 10}, 5).content());
+  EXPECT_NEAR(section.area() / (25 * M_PI), 1, 1e-3);
+  EXPECT_NEAR(static_cast<double>(section.outline.points.size()), 90, 1);
+}
+
+TEST(Drawing, RefusesWhatIsNoSection) {
+  expect_refused(Dxf().polyline("outline", box, false), "entity 1: the outline is open between (0, 8) and (0, 0) m");
+  expect_refused(
+      Dxf().line("outline", {0, 0}, {5, 0}).line("outline", {5.1, 0}, {5, 5}),
+      "entity 2: layer 'outline' does not join into one line: between (5, 0) and (5.1, 0) m its pieces are 0.1 m");
+  expect_refused(slope().line("b_wall", {0, 0}, {0, 3}).line("b_wall", {0, 3}, {0, 0}),
+                 "entity 6: layer 'b_wall' has this line twice, also as entity 5");
+  expect_refused(slope().line("b_wall", {0, 0}, {0, 3}, 2.5), "entity 5: layer 'b_wall' has a point with z = 2.5");
+  expect_refused(slope().polyline("region_sand", box, false), "a region is named by a point or a text inside it");
+  expect_refused(slope().point("b_wall", {0, 1}), "it takes lines and polylines");
+  expect_refused(slope(8), "unit 8 of $INSUNITS");
+  expect_refused(Dxf().polyline("interface0", ground, false), "has no outline");
+  expect_refused(slope().line("b_wall", {50, 0}, {60, 0}), "entity 5: the boundary 'b_wall' lies outside the outline");
+  expect_refused(slope().line("interface_x", {0, 1}, {25, 1}), "'interface_x' is no part of a section");
+}
+
+TEST(Drawing, RefusesWhatIsNoDrawing) {
+  EXPECT_THROW(section_in("outline,0,0\n"), std::invalid_argument);
+  EXPECT_THROW(read_drawing("/nowhere/slope.dxf"), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace talus
