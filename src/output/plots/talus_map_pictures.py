@@ -34,8 +34,8 @@ def draw_map(maps, path):
     """Hill-shaded ground before the slide with contours; thickness, outline and path of the slide upon it."""
     ground, grid, origin = maps.ground, maps.grid, maps.axes.origin[:2]
     size = np.array(grid.shape) * grid.spacing
-    width = 7.0
-    figure, axes = plt.subplots(figsize=(width + 1.4, np.clip(width * size[1] / size[0], 2.0, 9.0) + 1.1), layout="constrained")
+    tall = np.clip(7.0 * size[1] / size[0], 2.0, 9.0)  # of the map, in inches
+    figure, axes = plt.subplots(figsize=(np.clip(tall * size[0] / size[1], 5.0, 7.0) + 1.4, tall + 1.1), layout="constrained")
     east, north = (origin[k] + ground.low[k] + (np.arange(ground.shape[k]) + 0.5) * ground.cell for k in (0, 1))
     before = smoothed_evenly(maps.before, grid.spacing / (2 * ground.cell))
     shade = LightSource(azdeg=315, altdeg=45).hillshade(before.T[::-1], dx=ground.cell, dy=ground.cell)  # it takes north first
@@ -66,7 +66,7 @@ def draw_map(maps, path):
                   bbox={"fc": "white", "ec": "none", "alpha": 0.7, "pad": 1})
     axes.annotate("N", (0.965, 0.81), (0.965, 0.92), xycoords="axes fraction", ha="center", fontsize=10, zorder=5,
                   arrowprops={"arrowstyle": "<-", "color": style.INK, "lw": 1.4})
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=3, fontsize=8)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.55 / tall), ncols=3, fontsize=8)
     axes.set_title(maps.results.title, loc="left")
     return style.save(figure, path)
 

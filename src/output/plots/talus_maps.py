@@ -100,7 +100,7 @@ class Maps:
         self.grid = Grid(self.node.min(axis=0), self.node.max(axis=0), spacing or self._usual_spacing())
         if self.grid.spacing < 1.5 * self.size:
             warn(f"cells of {self.grid.spacing:g} m are not much wider than the particles ({self.size:.3g} m): single particles show in the grids; "
-                 f"from --spacing {SPACING * self.size:.2g} on they are smooth")
+                 f"from --spacing {SPACING * self.size:.2g} on less so")
         self.sliding = np.union1d(Thickness(last, self.axes.up).sliding, left_mesh(results))
         if not len(self.sliding):
             raise ValueError(f"{results.folder}: no soil has moved, so that there is nothing to map")

@@ -133,6 +133,7 @@ class Grids(unittest.TestCase):
     def test_thickness_of_a_box_of_cubes(self):
         for spacing in (0.25, 0.07):  # wider and narrower than a particle
             grid = talus_maps.Grid(np.zeros(3), np.array([2.0, 1.0, 1.0]), spacing)
+            self.assertAlmostEqual(grid.centres()[0][0], 0, delta=1e-12)  # as those of a terrain file
             thickness, = grid.spread(self.place, self.size, [self.size**3]) / spacing**2
             share = [np.clip(np.minimum(at + spacing / 2, high) - np.maximum(at - spacing / 2, low), 0, None) / spacing
                      for at, low, high in zip(grid.centres(), (0.33, 0.21), (1.33, 0.71))]
@@ -212,6 +213,11 @@ class Maps(unittest.TestCase):
                 _, path, _ = feature(results, "path")
                 np.testing.assert_allclose(np.subtract(path.GetPoint(path.GetPointCount() - 1), path.GetPoint(0)), [4, 2, 16], rtol=0.01)
                 np.testing.assert_allclose(path.GetPoint(0)[:2], [WEST + 30, SOUTH + 30], atol=2)
+                # north is up: grid and outline are where the particles are
+                centre = [thickness.sum(axis=1 - k) @ (low[k] + (np.arange(thickness.shape[k]) + 0.5) * SPACING) / thickness.sum() for k in (0, 1)]
+                np.testing.assert_allclose(centre, path.GetPoint(path.GetPointCount() - 1)[:2], atol=0.5)
+                _, outline, _ = feature(results, "outline")
+                np.testing.assert_allclose(outline.Centroid().GetPoint()[:2], centre, atol=2)
                 speed, _, _ = read(FOLDER / results / "maps/largest_speed.tif")
                 np.testing.assert_allclose(np.nanmedian(speed), np.sqrt(276), rtol=0.01)
 
