@@ -124,18 +124,18 @@ class Snapshot:
 
 class Thickness:
     """The thickness of the soil that slides: its volume per area on the level, in m, over a few particles. Soil slides if it has moved by more than
-    a share of the largest displacement at the end; thickness is 0 for other soil."""
+    a share of the largest displacement at the end; `sliding` holds the numbers of its particles. Thickness is 0 for other soil."""
 
     SHARE, WIDE = 0.1, 2.5  # the share, and the side of the squares between which volume is shared, over the spacing of particles
 
     def __init__(self, last, up):
         self._level = [axis for axis in range(3) if axis != up]
         size = last.scalar("displacement")[0]
-        self._sliding = last.ids()[size > self.SHARE * np.percentile(size, 99.9)] if len(size) and size.max() > 0 else last.ids()[:0]
+        self.sliding = last.ids()[size > self.SHARE * np.percentile(size, 99.9)] if len(size) and size.max() > 0 else last.ids()[:0]
         self._spacing = float(last.column("volume").values.mean()) ** (1 / 3) if len(size) else 1.0
 
     def __call__(self, snapshot):
-        sliding = np.isin(snapshot.ids(), self._sliding, assume_unique=True)
+        sliding = np.isin(snapshot.ids(), self.sliding, assume_unique=True)
         thickness = np.zeros(len(sliding))
         if sliding.any():
             place = snapshot.position()[:, self._level]

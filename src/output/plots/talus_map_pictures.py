@@ -1,0 +1,116 @@
+"""Pictures of maps: a hill-shaded map of the deposit, and a section along the path of the slide."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.colors import LightSource
+from matplotlib.ticker import MaxNLocator
+
+import talus_style as style
+from talus_ground import smoothed
+from talus_relief import between
+
+STATES = 5  # surfaces in the section, at most
+
+
+def extent(low, cell, shape, origin):
+    """Corners of a grid as matplotlib's imshow takes them, in the coordinates of the map."""
+    low = low + origin
+    return (low[0], low[0] + shape[0] * cell, low[1], low[1] + shape[1] * cell)
+
+
+def round_length(longest):
+    """The largest of 1, 2, 5, 10, ... m that is no longer."""
+    power = 10.0 ** np.floor(np.log10(longest))
+    return power * max(factor for factor in (1, 2, 5) if factor * power <= longest)
+
+
+def smoothed_evenly(height, deviation):
+    """Heights smoothed by a bell of this standard deviation [cells]; beyond the edges slopes go on."""
+    beyond = min(int(np.ceil(3 * deviation)), min(height.shape) - 1)
+    return smoothed(np.pad(height, beyond, mode="reflect", reflect_type="odd"), deviation)[beyond:-beyond, beyond:-beyond]
+
+
+def draw_map(maps, path):
+    """Hill-shaded ground before the slide with contours; thickness, outline and path of the slide upon it."""
+    ground, grid, origin = maps.ground, maps.grid, maps.axes.origin[:2]
+    size = np.array(grid.shape) * grid.spacing
+    tall = np.clip(7.0 * size[1] / size[0], 2.0, 9.0)  # of the map, in inches
+    figure, axes = plt.subplots(figsize=(np.clip(tall * size[0] / size[1], 5.0, 7.0) + 1.4, tall + 1.1), layout="constrained")
+    east, north = (origin[k] + ground.low[k] + (np.arange(ground.shape[k]) + 0.5) * ground.cell for k in (0, 1))
+    before = smoothed_evenly(maps.before, grid.spacing / (2 * ground.cell))
+    shade = LightSource(azdeg=315, altdeg=45).hillshade(before.T[::-1], dx=ground.cell, dy=ground.cell)  # it takes north first
+    axes.imshow(0.5 + 0.5 * shade, cmap="gray", vmin=0, vmax=1, origin="upper", extent=extent(ground.low[:2], ground.cell, ground.shape, origin))
+    levels = MaxNLocator(12).tick_values(before.min(), before.max())
+    lines = axes.contour(east, north, before.T, levels, colors=style.SOFT, linewidths=0.5)
+    axes.clabel(lines, fontsize=6, fmt="%g", colors=style.INK)
+    deposit = np.ma.masked_where(~maps.covered, maps.thickness[-1])
+    image = axes.imshow(deposit.T, cmap=style.colours_of("thickness"), vmin=0, origin="lower", alpha=0.85, zorder=2,
+                        extent=extent(grid.low, grid.spacing, grid.shape, origin))
+    figure.colorbar(image, ax=axes, shrink=0.75, label=f"thickness at {maps.times[-1]:g} s [m]")
+    for rings, dashes in ((maps.rings(maps.covered), "-"), (maps.rings(maps.thickness[0] >= maps.limit), "--")):
+        for ring in rings:
+            axes.plot(*ring.T, color=style.INK, lw=1.0, ls=dashes, zorder=3)
+    way = maps.path[:, :2] + origin
+    axes.plot(*way.T, color=style.ACCENT, lw=1.6, zorder=4, label="path of the centre of mass")
+    axes.plot(*way[-1], "o", color=style.ACCENT, ms=4, zorder=4)
+    axes.plot([], [], color=style.INK, lw=1.0, label="outline of the deposit")
+    axes.plot([], [], color=style.INK, lw=1.0, ls="--", label="outline at the start")
+    low, high = origin + grid.low, origin + grid.low + size
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="east [m]", ylabel="north [m]", aspect="equal")
+    axes.ticklabel_format(useOffset=False, style="plain")
+    axes.tick_params(axis="y", labelrotation=90)
+    length = round_length(0.25 * size[0])
+    at = low + 0.04 * size
+    axes.plot([at[0], at[0] + length], [at[1]] * 2, color=style.INK, lw=3, solid_capstyle="butt", zorder=5)
+    axes.annotate(f"{length:g} m", (at[0] + length / 2, at[1]), (0, 4), textcoords="offset points", ha="center", fontsize=8, zorder=5,
+                  bbox={"fc": "white", "ec": "none", "alpha": 0.7, "pad": 1})
+    axes.annotate("N", (0.965, 0.81), (0.965, 0.92), xycoords="axes fraction", ha="center", fontsize=10, zorder=5,
+                  arrowprops={"arrowstyle": "<-", "color": style.INK, "lw": 1.4})
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.55 / tall), ncols=3, fontsize=8)
+    axes.set_title(maps.results.title, loc="left")
+    return style.save(figure, path)
+
+
+def line_along(maps):
+    """Places [n, 2] along the path of the slide, half a cell apart, from behind the crown to beyond the toe, and their distances [m]."""
+    way = maps.path[np.isfinite(maps.path[:, 0]), :2]
+    kept = [way[0]]
+    for place in way[1:]:  # a centre of mass that comes to rest turns in all directions
+        if np.linalg.norm(place - kept[-1]) > 2 * maps.size:
+            kept.append(place)
+    if len(kept) < 2:
+        kept = [maps.crown[:2], maps.toe[:2]]
+    kept = np.array(kept)
+    ends = []
+    for end, beside, reached in ((kept[0], kept[1], maps.crown), (kept[-1], kept[-2], maps.toe)):
+        out = (end - beside) / np.linalg.norm(end - beside)
+        ends.append(end + out * (max((reached[:2] - end) @ out, 0) + 0.15 * np.linalg.norm((maps.toe - maps.crown)[:2])))
+    corner = np.vstack([ends[0], kept, ends[1]])
+    along = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(corner, axis=0), axis=1))])
+    distance = np.arange(0, along[-1], maps.ground.cell)
+    place = np.column_stack([np.interp(distance, along, corner[:, k]) for k in (0, 1)])
+    low = maps.ground.low[:2]
+    inside = ((place >= low) & (place <= low + np.array(maps.ground.shape) * maps.ground.cell)).all(axis=1)
+    return place[inside], distance[inside] - distance[inside][0]
+
+
+def draw_section(maps, path):
+    """Section along the path of the slide: ground before, bottom of the mesh, and the surface at several times."""
+    place, distance = line_along(maps)
+    index = [(place[:, k] - maps.ground.low[k]) / maps.ground.cell for k in (0, 1)]
+    chosen = np.unique(np.round(np.linspace(0, len(maps.times) - 1, STATES)).astype(int))[1:]
+    tops = [maps.before] + [maps.surface(maps.results.snapshots[k]) for k in chosen]
+    base, *lines = between(np.stack([maps.ground.base, *tops], axis=-1), index)
+    height = np.ptp(np.array([base, *lines]))
+    figure, axes = plt.subplots(figsize=(8.6, np.clip(7.4 * height / np.ptp(distance), 1.6, 6.0) + 1.4), layout="constrained")
+    axes.fill_between(distance, base, base.min() - 0.05 * height, color="#d9cfbd", lw=0)
+    axes.fill_between(distance, base, lines[-1], color="#b8b2a7", lw=0)
+    axes.plot(distance, base, color=style.INK, lw=0.9, label="bottom of the mesh")
+    axes.plot(distance, lines[0], color=style.INK, lw=1.0, ls="--", label="surface before")
+    colours = plt.get_cmap("viridis")(np.linspace(0.75, 0.1, len(chosen)))
+    for k, colour, line in zip(chosen, colours, lines[1:]):
+        axes.plot(distance, np.where(line > base + 1e-3 * maps.size, line, np.nan), color=colour, lw=1.1, label=f"surface at {maps.times[k]:g} s")
+    axes.set(xlabel="distance along the path of the slide [m]", ylabel="elevation [m]", aspect="equal", xlim=(0, distance[-1]), ylim=(base.min() - 0.05 * height, None))
+    axes.ticklabel_format(useOffset=False, style="plain")
+    axes.legend(loc="lower left", bbox_to_anchor=(0, 1.01), ncols=3, fontsize=8)
+    return style.save(figure, path)

@@ -1,0 +1,317 @@
+#!/usr/bin/python3
+"""Maps of a run in 3D, for geographic information systems and as pictures: DIR/maps/*.tif, deposit.gpkg, map.png and section.png."""
+
+import argparse
+import json
+import pathlib
+import sys
+
+import numpy as np
+from osgeo import gdal, ogr, osr
+
+import talus_style as style
+from talus_ground import Ground
+from talus_map_pictures import draw_map, draw_section
+from talus_results import Results, Thickness
+
+NO_DATA = -9999.0
+LIMIT = 0.5  # least thickness of soil that counts, over the size of particles: thinner soil is single particles
+SPACING = 2.0  # of the grids where there is no terrain file, over the size of particles
+MOST_CELLS = 50_000_000  # of one grid
+
+gdal.UseExceptions()
+ogr.UseExceptions()
+osr.UseExceptions()
+
+
+def warn(text):
+    print(f"warning: {text}", file=sys.stderr)
+
+
+def left_mesh(results):
+    """Numbers of the particles that are in the first snapshot and no longer in the last."""
+    return np.setdiff1d(results.snapshots[0].ids(), results.snapshots[-1].ids(), assume_unique=True)
+
+
+class Axes:
+    """From the coordinates of the mesh to those of a map: east, north, elevation. With y up the map looks from above too: its north is -z."""
+
+    def __init__(self, results):
+        self.up = results.up_axis()
+        path = results.folder / "origin.json"
+        found = json.loads(path.read_text()) if path.exists() else {}
+        self.origin = np.array([*found.get("origin_m", (0.0, 0.0)), 0.0])
+        self.projection = found.get("projection", "")
+        self.terrain = found.get("terrain", "")
+
+    def level(self, vectors):
+        """Vectors [n, 3] in the order east, north, up, without the origin."""
+        return vectors if self.up == 2 else vectors[:, [0, 2, 1]] * [1, -1, 1]
+
+
+class Grid:
+    """Square cells over the extent of the mesh. Cells are centred on its southwest corner, as those of the terrain file are. Arrays on the grid are
+    [cells to the east, cells to the north]; coordinates are without the origin of the map."""
+
+    def __init__(self, low, high, spacing):
+        self.spacing, self.low = spacing, low[:2] - spacing / 2
+        count = np.round((high - low)[:2] / spacing - 1e-6) + 1
+        if count.prod() > MOST_CELLS:
+            raise ValueError(f"--spacing {spacing:g} m makes {count.prod():.3g} cells, more than {MOST_CELLS:.3g}: choose a larger spacing")
+        self.shape = tuple(count.astype(int).tolist())
+
+    def centres(self):
+        return [low + (np.arange(count) + 0.5) * self.spacing for low, count in zip(self.low, self.shape)]
+
+    def number(self, position):
+        """The cell of each place as one number; places beyond the edge count for the outermost cells."""
+        index = np.clip(np.floor((position[:, :2] - self.low) / self.spacing).astype(int), 0, np.array(self.shape) - 1)
+        return np.ravel_multi_index(index.T, self.shape)
+
+    def spread(self, position, size, values):
+        """Sums over cells [n, cells, cells] of values [n, particles], each spread evenly over the level square of width `size` [m] of its particle.
+        Nothing is lost: what is beyond the edge counts for the outermost cells."""
+        least = (position[:, :2] - size[:, None] / 2 - self.low) / self.spacing
+        most = least + size[:, None] / self.spacing
+        first = np.floor(least).astype(int)
+        result = np.zeros((len(values), np.prod(self.shape)))
+        reach = int(np.ceil((size / self.spacing).max(initial=0))) + 1
+        share = [[np.clip(np.minimum(most[:, axis], first[:, axis] + k + 1) - np.maximum(least[:, axis], first[:, axis] + k), 0, None)
+                  / (most - least)[:, axis] for k in range(reach)] for axis in (0, 1)]
+        for corner in np.ndindex(reach, reach):
+            index = np.clip(first + corner, 0, np.array(self.shape) - 1)
+            number, weight = np.ravel_multi_index(index.T, self.shape), share[0][corner[0]] * share[1][corner[1]]
+            for sums, value in zip(result, values):
+                sums += np.bincount(number, weight * value, len(sums))
+        return result.reshape(-1, *self.shape)
+
+
+class Maps:
+    """Everything that is mapped, on one grid: thickness and speed are of the soil that slides, the change of thickness is of all soil."""
+
+    def __init__(self, results, spacing=None, limit=None):
+        self.results, self.axes = results, Axes(results)
+        first, last = results.snapshots[0], results.snapshots[-1]
+        node, self.cells = results.mesh()
+        self.node = self.axes.level(node)
+        volume = first.column("volume").values[:, 0]
+        self.size = float(volume.mean()) ** (1 / 3)
+        self.limit = LIMIT * self.size if limit is None else limit
+        self.grid = Grid(self.node.min(axis=0), self.node.max(axis=0), spacing or self._usual_spacing())
+        if self.grid.spacing < 1.5 * self.size:
+            warn(f"cells of {self.grid.spacing:g} m are not much wider than the particles ({self.size:.3g} m): single particles show in the grids; "
+                 f"from --spacing {SPACING * self.size:.2g} on less so")
+        self.sliding = np.union1d(Thickness(last, self.axes.up).sliding, left_mesh(results))
+        if not len(self.sliding):
+            raise ValueError(f"{results.folder}: no soil has moved, so that there is nothing to map")
+        self._accumulate()
+        self.covered = self.thickness[-1] >= self.limit
+        if not self.covered.any():
+            raise ValueError(f"the deposit is nowhere as thick as --limit {self.limit:g} m; its largest thickness is {self.thickness[-1].max():.3g} m")
+        self._elevations(first, last)
+
+    def _usual_spacing(self):
+        """That of the terrain file, without one SPACING times the size of the particles."""
+        coarse = SPACING * self.size
+        if not self.axes.terrain:
+            return coarse
+        try:
+            return abs(gdal.Open(self.axes.terrain).GetGeoTransform()[1])
+        except RuntimeError as error:
+            warn(f"cannot read the spacing of the terrain file, and take {coarse:.3g} m, {SPACING:g} times the size of the particles: {error}")
+            return coarse
+
+    def _accumulate(self):
+        self.times, self.thickness, self.path, self.volume = [], [], [], []
+        nothing = np.full(self.grid.shape, np.nan)
+        self.largest_speed, self.arrival = nothing.copy(), nothing.copy()
+        for snapshot in self.results.snapshots:
+            moves = np.isin(snapshot.ids(), self.sliding, assume_unique=True)
+            place, volume = self.axes.level(snapshot.position())[moves], snapshot.column("volume").values[moves, 0]
+            velocity = self.axes.level(snapshot.column("velocity").values)[moves]
+            held, *flow = self.grid.spread(place, np.cbrt(volume), [volume, *(volume * velocity.T)])
+            thickness = held / self.grid.spacing**2
+            there = thickness >= self.limit
+            speed = np.linalg.norm(np.divide(flow, held, out=np.zeros_like(flow), where=there), axis=0)
+            self.largest_speed = np.where(there, np.fmax(self.largest_speed, speed), self.largest_speed)
+            self.arrival = np.where(there & ~np.isfinite(self.arrival), snapshot.time, self.arrival)
+            self.times.append(snapshot.time)
+            self.thickness.append(thickness)
+            self.volume.append(volume.sum())
+            self.path.append(np.average(place, axis=0, weights=volume) if len(place) else np.full(3, np.nan))
+        self.thickness, self.path = np.array(self.thickness), np.array(self.path)
+
+    def _column(self, snapshot):
+        """Thickness of all soil."""
+        volume = snapshot.column("volume").values[:, 0]
+        return self.grid.spread(self.axes.level(snapshot.position()), np.cbrt(volume), [volume])[0] / self.grid.spacing**2
+
+    def _elevations(self, first, last):
+        """Surface of the soil and, where there is none, bottom of the mesh, at the start and at all snapshots that the section shows."""
+        self.change = self._column(last) - self._column(first)
+        self.ground = Ground(self.node.min(axis=0), self.node.max(axis=0), self.size, (0, 1), 2, (self.node, self.cells))
+        self.before = self.surface(first)
+        start = self.axes.level(first.position())[np.isin(first.ids(), self.sliding, assume_unique=True)]
+        self.crown = start[start[:, 2].argmax()]
+        # the toe is the cell of the deposit that is furthest from the crown; its elevation is that of the lowest particle there
+        east, north = (at[self.covered] for at in np.meshgrid(*self.grid.centres(), indexing="ij"))
+        far = np.hypot(east - self.crown[0], north - self.crown[1]).argmax()
+        toe = np.array([east[far], north[far], 0.0])
+        end = self.axes.level(last.position())[np.isin(last.ids(), self.sliding, assume_unique=True)]
+        near = np.abs(end[:, :2] - toe[:2]).max(axis=1) <= (self.grid.spacing + self.size) / 2
+        self.toe = np.array([*toe[:2], end[near, 2].min()])
+
+    def surface(self, snapshot):
+        """Elevations of the surface on the grid of self.ground."""
+        position, volume = self.axes.level(snapshot.position()), snapshot.column("volume").values[:, 0]
+        top, soil = self.ground.surface(position, np.cbrt(volume))
+        return np.where(soil, top, self.ground.base)
+
+    def polygons(self, mask):
+        """Outline of the cells of a mask along their edges, with holes, as one OGR multipolygon in the coordinates of the map."""
+        cells, found = raster(self, [(mask, "", "")]), ogr.GetDriverByName("Memory").CreateDataSource("")  # they own band and layer
+        layer = found.CreateLayer("outline", reference_of(self.axes.projection), ogr.wkbPolygon)
+        gdal.Polygonize(cells.GetRasterBand(1), cells.GetRasterBand(1), layer, -1, [])
+        several = ogr.Geometry(ogr.wkbMultiPolygon)
+        for feature in layer:
+            several.AddGeometry(feature.GetGeometryRef())
+        return several
+
+    def rings(self, mask):
+        """The same as arrays of places [n, 2]."""
+        return [np.array(ring.GetPoints())[:, :2] for polygon in self.polygons(mask) for ring in polygon]
+
+    def numbers(self):
+        """Measures of the deposit, by their names with units, as attributes of its outline."""
+        deposit, area = self.thickness[-1], self.covered.sum() * self.grid.spacing**2
+        run_out, fall = np.linalg.norm((self.toe - self.crown)[:2]), self.crown[2] - self.toe[2]
+        inside = deposit[self.covered].sum() * self.grid.spacing**2
+        return {"area_m2": area, "volume_m3": inside, "run_out_m": run_out, "fall_height_m": fall,
+                "angle_of_reach_deg": np.degrees(np.arctan2(fall, run_out)), "mean_thickness_m": inside / area,
+                "largest_thickness_m": deposit.max(), "least_thickness_m": self.limit, "time_s": self.times[-1]}
+
+    def layers(self):
+        """Of each grid: name, values, unit and meaning."""
+        steps = np.diff(self.times)
+        interval = f"the states in run.h5, {steps.max():g} s apart or less: what happens between them is missed"
+        return (("thickness", self.thickness[-1], "m", f"thickness of the soil that slid, at {self.times[-1]:g} s"),
+                ("largest_thickness", self.thickness.max(axis=0), "m", f"largest thickness of the soil that slides, of {interval}"),
+                ("largest_speed", self.largest_speed, "m/s", f"largest size of the depth-averaged velocity where soil is at least {self.limit:.3g} m thick, of {interval}"),
+                ("arrival_time", self.arrival, "s", f"first time at which sliding soil is at least {self.limit:.3g} m thick, of {interval}"),
+                ("change", self.change, "m", f"thickness of all soil at {self.times[-1]:g} s minus that at {self.times[0]:g} s"))
+
+
+def reference_of(projection):
+    """The projection as GDAL takes it; None without one."""
+    if not projection:
+        return None
+    reference = osr.SpatialReference()
+    reference.SetFromUserInput(projection)
+    reference.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+    return reference
+
+
+def raster(maps, bands, path="", driver="MEM", options=()):
+    """A raster file of arrays on the grid, north up. `bands` are (values, meaning, unit)."""
+    grid, reference = maps.grid, reference_of(maps.axes.projection)
+    kind = gdal.GDT_Byte if bands[0][0].dtype == bool else gdal.GDT_Float32
+    made = gdal.GetDriverByName(driver).Create(str(path), *grid.shape, len(bands), kind, list(options))
+    low = grid.low + maps.axes.origin[:2]
+    made.SetGeoTransform((low[0], grid.spacing, 0, low[1] + grid.shape[1] * grid.spacing, 0, -grid.spacing))
+    if reference:
+        made.SetSpatialRef(reference)
+    made.SetMetadata({"SOFTWARE": style.program(), "TITLE": maps.results.title})
+    for k, (values, meaning, unit) in enumerate(bands, start=1):
+        band = made.GetRasterBand(k)
+        if kind == gdal.GDT_Float32:
+            band.SetNoDataValue(NO_DATA)
+        band.SetDescription(meaning)
+        band.SetUnitType(unit)
+        band.WriteArray(np.where(np.isfinite(values), values, NO_DATA).T[::-1] if kind == gdal.GDT_Float32 else values.astype(np.uint8).T[::-1])
+    return made
+
+
+def write_rasters(maps, folder, ascii_grids):
+    """The GeoTIFF files; with `ascii_grids` the same as ESRI ASCII, with their projections beside them."""
+    options = ("COMPRESS=DEFLATE",)
+    for name, values, unit, meaning in maps.layers():
+        made = raster(maps, [(values, meaning, unit)], folder / f"{name}.tif", "GTiff", options)
+        if ascii_grids:
+            gdal.GetDriverByName("AAIGrid").CreateCopy(str(folder / f"{name}.asc"), made, options=["SIGNIFICANT_DIGITS=8"])
+        made.FlushCache()
+    bands = [(values, f"thickness at {time:g} s", "m") for time, values in zip(maps.times, maps.thickness)]
+    raster(maps, bands, folder / "thickness_over_time.tif", "GTiff", options).FlushCache()
+
+
+def write_vectors(maps, path):
+    """The GeoPackage: layer `outline` of the deposit, layer `path` of the centre of mass of the soil that slides."""
+    path.unlink(missing_ok=True)
+    reference = reference_of(maps.axes.projection)
+    made = ogr.GetDriverByName("GPKG").CreateDataSource(str(path))
+    line = ogr.Geometry(ogr.wkbLineString25D)
+    places = maps.path[np.isfinite(maps.path[:, 0])]
+    for place in places + maps.axes.origin:
+        line.AddPoint(*map(float, place))
+    length = np.linalg.norm(np.diff(places, axis=0), axis=1).sum()
+    layers = (("outline", ogr.wkbMultiPolygon, maps.polygons(maps.covered), maps.numbers()),
+              ("path", ogr.wkbLineString25D, line, {"length_m": length, "start_s": maps.times[0], "end_s": maps.times[-1]}))
+    for name, kind, geometry, numbers in layers:
+        layer = made.CreateLayer(name, reference, kind)
+        for key in numbers:
+            layer.CreateField(ogr.FieldDefn(key, ogr.OFTReal))
+        feature = ogr.Feature(layer.GetLayerDefn())
+        for key, value in numbers.items():
+            feature.SetField(key, float(value))
+        feature.SetGeometry(geometry)
+        layer.CreateFeature(feature)
+    made.FlushCache()
+
+
+def checked(folder):
+    """The results of a run in 3D that can be mapped; what is incomplete about them is said."""
+    results = Results(folder)
+    if not results.snapshots:
+        raise ValueError(f"{folder} contains no snapshots")
+    first = results.snapshots[0]
+    if first.position().shape[1] != 3:
+        raise ValueError(f"{folder} is a run in 2D: maps need one in 3D (dimension = 3)")
+    for field in ("displacement", "velocity", "volume"):
+        if field not in results.snapshots[-1]:
+            raise ValueError(f"{folder} has no field {field}, which maps need")
+    if results.broke_off():
+        warn(f"the run broke off: {results.broke_off()}; the maps show it up to {results.snapshots[-1].time:g} s")
+    gone = left_mesh(results)
+    if len(gone):
+        volume = first.column("volume").values[np.isin(first.ids(), gone, assume_unique=True)].sum()
+        warn(f"{len(gone)} particles with a volume of {volume:.4g} m3 at the start left the mesh: the deposit is without them")
+    return results
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", metavar="DIR", help="folder of the run")
+    parser.add_argument("--spacing", type=float, help="of the grids [m]")
+    parser.add_argument("--limit", type=float, help="least thickness [m] of soil that counts for outline, arrival and speed")
+    parser.add_argument("--ascii", action="store_true", help="write the grids as ESRI ASCII too")
+    given = parser.parse_args()
+    try:
+        maps = Maps(checked(given.folder), given.spacing, given.limit)
+        folder = pathlib.Path(given.folder) / "maps"
+        folder.mkdir(exist_ok=True)
+        write_rasters(maps, folder, given.ascii)
+        write_vectors(maps, folder / "deposit.gpkg")
+        draw_map(maps, folder / "map.png")
+        draw_section(maps, folder / "section.png")
+    except (OSError, ValueError, RuntimeError) as error:
+        sys.exit(f"talus_maps: {error}")
+    print(f"maps of {maps.results.title} at {maps.times[-1]:g} s, cells of {maps.grid.spacing:g} m, {maps.grid.shape[0]} x {maps.grid.shape[1]}")
+    print(f"projection: {'that of the terrain file' if maps.axes.projection else 'none, coordinates are ' + ('those of the terrain file' if maps.axes.terrain else 'local')}")
+    for name, value in maps.numbers().items():
+        words, _, unit = name.rpartition("_")
+        print(f"  {style.words(words):20} {value:12.6g} {unit}")
+    print(f"  {'volume that slid':20} {maps.volume[-1]:12.6g} m3, in the grid {maps.thickness[-1].sum() * maps.grid.spacing**2:.6g} m3")
+    print(f"maps are in {folder}: grids as .tif{', .asc' if given.ascii else ''}, deposit.gpkg, map.png, section.png")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,253 @@
+"""Maps of bodies that fly at a known velocity without gravity, so that thickness, outline, speed and arrival time are known.
+
+    maps_test.py TALUS MPIEXEC"""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy as np
+from osgeo import gdal, ogr, osr
+
+TALUS, MPIEXEC = sys.argv[1:3]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "src/output/plots"))
+import talus_maps
+
+gdal.UseExceptions()
+ogr.UseExceptions()
+
+# a block of 0.5 m x 0.5 m, 0.6 m deep, in a box of 3 m x 2 m x 0.6 m
+FLIGHT = """part,x,y
+outline,0,0
+outline,3,0
+outline,3,2
+outline,0,2
+interface0,0.5,0.5
+interface0,0.5,1
+interface0,1,1
+interface0,1,0.5
+interface1,0.5,0.5
+interface1,1,0.5
+region_block,0.75,0.75
+region_air,2,1.5
+region_air,2,0.25
+"""
+SOIL = """law = "linear_elastic"
+density = 2000
+young_modulus = "1 MPa"
+poisson_ratio = 0.3
+"""
+BLOCK = f"""gravity = 0
+dimension = 3
+[mesh]
+section = "flight.csv"
+size = 0.25
+thickness = 0.6
+leaving_particles = "remove"
+[body.block]
+region = "block"
+velocity = ["10", "0", "0"]
+{SOIL}
+[output]
+interval = 0.01
+[[stage]]
+duration = 0.1
+"""
+# a plane that falls by 0.2 to the east and by 0.1 to the north, whose soil flies up and, more slowly, to the northeast
+WEST, SOUTH, SPACING = 600000.0, 200000.0, 5.0
+PLANE = f"""gravity = 0
+dimension = 3
+up = "z"
+[mesh]
+size = 5
+leaving_particles = "remove"
+[mesh.terrain]
+file = "plane.tif"
+slip_surface = "slip.tif"
+air = 25
+[body.soil]
+region = "slide"
+velocity = ["4", "2", "16"]
+{SOIL}
+[output]
+interval = 0.25
+[[stage]]
+duration = 1
+"""
+
+
+def write_terrain(folder):
+    east, north = np.meshgrid(np.arange(21) * SPACING, np.arange(15) * SPACING)
+    ground = 300 - 0.2 * east - 0.1 * north
+    pit = (east >= 15) & (east <= 45) & (north >= 15) & (north <= 45)
+    for name, height in (("plane.tif", ground), ("slip.tif", ground - np.where(pit, 10, -1))):
+        made = gdal.GetDriverByName("GTiff").Create(str(folder / name), 21, 15, 1, gdal.GDT_Float64)
+        made.SetGeoTransform((WEST - SPACING / 2, SPACING, 0, SOUTH + 14.5 * SPACING, 0, -SPACING))
+        reference = osr.SpatialReference()
+        reference.ImportFromEPSG(2056)
+        made.SetSpatialRef(reference)
+        made.GetRasterBand(1).WriteArray(height[::-1])
+        made.FlushCache()
+
+
+def talus(*words, ranks=1, status=0):
+    """What the program says, standard output and error together."""
+    start = [MPIEXEC, "--allow-run-as-root", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-n", str(ranks)] if ranks > 1 else []
+    ended = subprocess.run([*start, TALUS, *map(str, words)], cwd=FOLDER, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                           env={**os.environ, "OMP_NUM_THREADS": "1"})
+    assert ended.returncode == status, f"talus {words} ended with {ended.returncode}: {ended.stdout}"
+    return ended.stdout
+
+
+def read(path):
+    """Values [to the east, to the north], not a number where there are none; the corner in the southwest and the spacing."""
+    file = gdal.Open(str(path))
+    band, map_ = file.GetRasterBand(1), file.GetGeoTransform()
+    assert band.GetNoDataValue() == -9999
+    values = band.ReadAsArray()[::-1].T.astype(float)
+    return np.where(values == -9999, np.nan, values), np.array([map_[0], map_[3] + map_[5] * file.RasterYSize]), map_[1]
+
+
+def feature(results, layer):
+    file = ogr.Open(str(FOLDER / results / "maps/deposit.gpkg"))
+    one = file.GetLayer(layer).GetNextFeature()
+    return one.items(), one.GetGeometryRef().Clone(), file.GetLayer(layer).GetSpatialRef()
+
+
+def volume_of(results, snapshot=-1):
+    snapshots = list(h5py.File(FOLDER / results / "run.h5")["snapshots"].values())
+    return snapshots[snapshot]["volume"][...].sum()
+
+
+class Grids(unittest.TestCase):
+    """A box of cubes, 1 m x 0.5 m, 0.3 m high, from (0.33, 0.21) on: thickness and volume are exact to round-off."""
+
+    def setUp(self):
+        corner = np.stack(np.meshgrid(np.arange(10), np.arange(5), np.arange(3), indexing="ij"), axis=-1).reshape(-1, 3) * 0.1
+        self.place, self.size = corner + [0.33, 0.21, 0] + np.full(3, 0.05), np.full(len(corner), 0.1)
+
+    def test_thickness_of_a_box_of_cubes(self):
+        for spacing in (0.25, 0.07):  # wider and narrower than a particle
+            grid = talus_maps.Grid(np.zeros(3), np.array([2.0, 1.0, 1.0]), spacing)
+            self.assertAlmostEqual(grid.centres()[0][0], 0, delta=1e-12)  # as those of a terrain file
+            thickness, = grid.spread(self.place, self.size, [self.size**3]) / spacing**2
+            share = [np.clip(np.minimum(at + spacing / 2, high) - np.maximum(at - spacing / 2, low), 0, None) / spacing
+                     for at, low, high in zip(grid.centres(), (0.33, 0.21), (1.33, 0.71))]
+            np.testing.assert_allclose(thickness, 0.3 * np.outer(*share), atol=1e-12)
+
+    def test_nothing_is_lost_at_the_edge(self):
+        grid = talus_maps.Grid(np.zeros(3), np.ones(3), 0.25)  # ends within the box
+        volume, = grid.spread(self.place, self.size, [self.size**3])
+        self.assertAlmostEqual(volume.sum(), 0.15, delta=1e-12)
+
+
+class Maps(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        (FOLDER / "flight.csv").write_text(FLIGHT)
+        (FOLDER / "block.toml").write_text(BLOCK)
+        (FOLDER / "plane.toml").write_text(PLANE)
+        write_terrain(FOLDER)
+        for ranks in (1, 2):
+            for name in ("block", "plane"):
+                talus("run", f"{name}.toml", "-o", f"{name}{ranks}", "--no-pictures", ranks=ranks)
+
+    def test_block_with_y_up(self):
+        for ranks in (1, 2):
+            with self.subTest(ranks=ranks):
+                results, cell = f"block{ranks}", 0.25
+                said = talus("maps", results, "--spacing", cell, "--limit", 0.2, "--ascii")
+                self.assertIn("projection: none, coordinates are local", said)
+                thickness, low, spacing = read(FOLDER / results / "maps/thickness.tif")
+                self.assertEqual(spacing, cell)
+                # east is x and north is -z: the block is at x from 1.5 to 2 m, over all of z from 0 to 0.6 m
+                np.testing.assert_allclose(low, [-cell / 2, -0.6 - cell / 2], atol=1e-9)
+                self.assertAlmostEqual(thickness.sum() * cell**2, volume_of(results), delta=1e-6 * volume_of(results))
+                self.assertAlmostEqual(volume_of(results), 0.5 * 0.5 * 0.6, delta=1e-9)
+                self.assertAlmostEqual(thickness.sum(axis=1) @ (low[0] + (np.arange(len(thickness)) + 0.5) * cell) / thickness.sum(), 1.75, delta=0.01)
+                # over the depth of the block, 0.6 m, it is 0.5 m thick: particles are as irregular as the tetrahedra they are in
+                self.assertAlmostEqual(thickness[7].sum() * cell / 0.6, 0.5, delta=0.03)
+                numbers, outline, _ = feature(results, "outline")
+                west, east, south, north = outline.GetEnvelope()
+                np.testing.assert_allclose([west, east, south, north], [1.5, 2, -0.6, 0], atol=cell)
+                self.assertAlmostEqual(numbers["area_m2"], outline.GetArea(), delta=1e-9)
+                speed, _, _ = read(FOLDER / results / "maps/largest_speed.tif")
+                np.testing.assert_allclose(speed[np.isfinite(speed)], 10, atol=1e-3)
+                # the front is at x = 1 + 10 t: it crosses half of the cell from 1.625 to 1.875 m at 0.075 s
+                arrival, _, _ = read(FOLDER / results / "maps/arrival_time.tif")
+                self.assertAlmostEqual(arrival[3, 1], 0, delta=1e-9)
+                self.assertAlmostEqual(arrival[7, 1], 0.075, delta=0.016)
+                self.assertTrue(np.isnan(arrival[11]).all())
+                numbers, path, _ = feature(results, "path")
+                self.assertAlmostEqual(numbers["length_m"], 1.0, delta=1e-3)
+                np.testing.assert_allclose(path.GetPoint(0), [0.75, -0.3, 0.75], atol=0.02)
+                np.testing.assert_allclose(path.GetPoint(path.GetPointCount() - 1), [1.75, -0.3, 0.75], atol=0.02)
+                ascii_grid, ascii_low, _ = read(FOLDER / results / "maps/thickness.asc")
+                np.testing.assert_allclose(ascii_grid, thickness, rtol=1e-6)
+                np.testing.assert_allclose(ascii_low, low, atol=1e-9)
+                change, _, _ = read(FOLDER / results / "maps/change.tif")
+                self.assertLess(change[3, 1], -0.4)
+                self.assertAlmostEqual(change.sum(), 0, delta=1e-5)
+
+    def test_plane_with_z_up(self):
+        for ranks in (1, 2):
+            with self.subTest(ranks=ranks):
+                results = f"plane{ranks}"
+                talus("maps", results)
+                thickness, low, spacing = read(FOLDER / results / "maps/thickness.tif")
+                # the cells are those of the terrain file
+                self.assertEqual((spacing, thickness.shape), (SPACING, (21, 15)))
+                np.testing.assert_array_equal(low, [WEST - SPACING / 2, SOUTH - SPACING / 2])
+                volume = volume_of(results)
+                self.assertAlmostEqual(thickness.sum() * SPACING**2, volume, delta=1e-6 * volume)
+                reference = osr.SpatialReference()
+                reference.ImportFromEPSG(2056)
+                for of in (gdal.Open(str(FOLDER / results / "maps/thickness.tif")).GetSpatialRef(), feature(results, "outline")[2]):
+                    self.assertTrue(of.IsSame(reference))
+                # the body, about 10 m thick below a square around (30, 30), has moved by (4, 2) after 1 s
+                self.assertAlmostEqual(thickness[7, 6], 10, delta=1.5)
+                _, path, _ = feature(results, "path")
+                np.testing.assert_allclose(np.subtract(path.GetPoint(path.GetPointCount() - 1), path.GetPoint(0)), [4, 2, 16], rtol=0.01)
+                np.testing.assert_allclose(path.GetPoint(0)[:2], [WEST + 30, SOUTH + 30], atol=2)
+                # north is up: grid and outline are where the particles are
+                centre = [thickness.sum(axis=1 - k) @ (low[k] + (np.arange(thickness.shape[k]) + 0.5) * SPACING) / thickness.sum() for k in (0, 1)]
+                np.testing.assert_allclose(centre, path.GetPoint(path.GetPointCount() - 1)[:2], atol=0.5)
+                _, outline, _ = feature(results, "outline")
+                np.testing.assert_allclose(outline.Centroid().GetPoint()[:2], centre, atol=2)
+                speed, _, _ = read(FOLDER / results / "maps/largest_speed.tif")
+                np.testing.assert_allclose(np.nanmedian(speed), np.sqrt(276), rtol=0.01)
+
+    def test_particles_that_left_are_said(self):
+        (FOLDER / "longer.toml").write_text(BLOCK.replace("duration = 0.1", "duration = 0.23"))
+        talus("run", "longer.toml", "-o", "left", "--no-pictures")
+        said = talus("maps", "left", "--spacing", 0.25)
+        gone = volume_of("left", 0) - volume_of("left")
+        self.assertIn(f"with a volume of {gone:.4g} m3 at the start left the mesh", said)
+        arrival, _, _ = read(FOLDER / "left/maps/arrival_time.tif")
+        self.assertTrue(np.isfinite(arrival[3:12, 1]).all())  # also where soil went that has left
+
+    def test_what_cannot_be_mapped_is_refused(self):
+        (FOLDER / "empty").mkdir(exist_ok=True)
+        self.assertIn("there is no run.h5", talus("maps", "empty", status=2))
+        talus("run", "block.toml", "-o", "flat", "--no-pictures", "--set", "dimension=2", "--set", "body.block.velocity=[\"10\",\"0\"]",
+              "--set", "mesh.thickness=1", "--set", "output.interval=0.1")
+        self.assertIn("is a run in 2D", talus("maps", "flat", status=1))
+        self.assertIn("nowhere as thick", talus("maps", "block1", "--limit", 5, status=1))
+        self.assertIn("choose a larger spacing", talus("maps", "block1", "--spacing", 1e-5, status=1))
+        self.assertIn("single particles show", talus("maps", "block1", "--spacing", 0.06))
+
+    def test_interrupted_run(self):
+        talus("run", "block.toml", "-o", "broken", "--no-pictures")
+        with open(FOLDER / "broken/run.log", "a") as log:
+            log.write("0.1 s  the run broke off: the disk is full\n")
+        self.assertIn("the run broke off: the disk is full; the maps show it up to 0.1 s", talus("maps", "broken", "--spacing", 0.25))
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as name:
+        FOLDER = pathlib.Path(name)
+        unittest.main(argv=sys.argv[:1], verbosity=2)
