@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <memory>
 #include <sstream>
@@ -18,11 +19,11 @@ namespace {
   throw std::invalid_argument(file + ": " + text);
 }
 
+constexpr const char *to_metres =
+    "project it to metres first, such as by gdalwarp -t_srs EPSG:CODE (CODE of a UTM zone or of the national grid)";
+
 /// Metres, or a complaint.
 void check_projection(const Grid &grid, const OGRSpatialReference *projection) {
-  const char *to_metres =
-      "project it to metres first, such as by gdalwarp -t_srs EPSG:CODE (CODE of a UTM zone or of "
-      "the national grid)";
   if (projection && projection->IsGeographic()) {
     if (std::abs(grid.east()) > 360 || std::abs(grid.north()) > 90)
       complain(grid.file,
@@ -35,11 +36,18 @@ void check_projection(const Grid &grid, const OGRSpatialReference *projection) {
     projection->GetLinearUnits(&unit);
     complain(grid.file, std::string("has coordinates in ") + (unit ? unit : "another unit") + "; " + to_metres);
   }
-  if (projection || std::abs(grid.west) > 360 || std::abs(grid.east()) > 360 || std::abs(grid.south) > 90 ||
-      std::abs(grid.north()) > 90)
+}
+
+/// Metres as far as elevations tell, or a complaint.
+void check_elevations(const Grid &grid) {
+  const std::string &unit = grid.unit;
+  if (!unit.empty() && unit != "m" && unit != "metre" && unit != "meter" && unit != "metres" && unit != "meters")
+    complain(grid.file, "has elevations in " + unit + "; convert them to metres first");
+  if (!grid.projection.empty() || std::abs(grid.west) > 360 || std::abs(grid.east()) > 360 ||
+      std::abs(grid.south) > 90 || std::abs(grid.north()) > 90)
     return;
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const double z : grid.elevation)
+  for (const double z : grid.values)
     if (!std::isnan(z)) low = std::min(low, z), high = std::max(high, z);
   const double extent = std::max(grid.columns, grid.rows) * grid.spacing;
   if (high - low <= 10 * extent) return;
@@ -51,20 +59,10 @@ void check_projection(const Grid &grid, const OGRSpatialReference *projection) {
 
 }  // namespace
 
-double Grid::at(double x, double y) const {
-  const double i = (x - west) / spacing, j = (y - south) / spacing, near = 1e-6;
-  if (!(i >= -near && i <= columns - 1 + near && j >= -near && j <= rows - 1 + near))
-    return std::numeric_limits<double>::quiet_NaN();
-  const int a = std::clamp(static_cast<int>(i), 0, std::max(0, columns - 2)),
-            b = std::clamp(static_cast<int>(j), 0, std::max(0, rows - 2));
-  const double s = std::clamp(i - a, 0., 1.), t = std::clamp(j - b, 0., 1.);
-  const double *z = &elevation[static_cast<std::size_t>(b) * columns + a];
-  return (1 - t) * ((1 - s) * z[0] + s * z[1]) + t * ((1 - s) * z[columns] + s * z[columns + 1]);
-}
-
 Grid read_grid(const std::string &file) {
   if (!std::filesystem::exists(file)) complain(file, "cannot be opened; check the path");
   GDALAllRegister();
+  CPLSetConfigOption("AAIGRID_DATATYPE", "Float64");  // GDAL reads ESRI ASCII in single precision else
   CPLPushErrorHandler(CPLQuietErrorHandler);
   const std::unique_ptr<GDALDataset> data(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
   CPLPopErrorHandler();
@@ -84,22 +82,35 @@ Grid read_grid(const std::string &file) {
   grid.west = map[0] + map[1] / 2;
   grid.south = (from_north ? map[3] + grid.rows * map[5] : map[3]) + grid.spacing / 2;
   GDALRasterBand *band = data->GetRasterBand(1);
-  const std::string unit = band->GetUnitType();
-  if (!unit.empty() && unit != "m" && unit != "metre" && unit != "meter" && unit != "metres" && unit != "meters")
-    complain(file, "has elevations in " + unit + "; convert them to metres first");
-  grid.elevation.resize(static_cast<std::size_t>(grid.columns) * grid.rows);
+  grid.unit = band->GetUnitType();
+  grid.values.resize(static_cast<std::size_t>(grid.columns) * grid.rows);
   for (int j = 0; j < grid.rows; ++j)
     if (band->RasterIO(GF_Read, 0, from_north ? grid.rows - 1 - j : j, grid.columns, 1,
-                       &grid.elevation[static_cast<std::size_t>(j) * grid.columns], grid.columns, 1, GDT_Float64, 0, 0,
+                       &grid.values[static_cast<std::size_t>(j) * grid.columns], grid.columns, 1, GDT_Float64, 0, 0,
                        nullptr) != CE_None)
       complain(file, "cannot be read: " + std::string(CPLGetLastErrorMsg()));
   int has_hole = 0;
   const double hole = band->GetNoDataValue(&has_hole);
-  for (double &z : grid.elevation)
+  for (double &z : grid.values)
     if (!std::isfinite(z) || (has_hole && z == hole)) z = std::numeric_limits<double>::quiet_NaN();
   if (const char *text = data->GetProjectionRef()) grid.projection = text;
   check_projection(grid, data->GetSpatialRef());
   return grid;
+}
+
+Grid read_elevations(const std::string &file) {
+  Grid grid = read_grid(file);
+  check_elevations(grid);
+  return grid;
+}
+
+void write_values(const Grid &grid, const std::string &file) {
+  std::ofstream out(file, std::ios::binary);
+  out.precision(17);
+  out << grid.columns << " " << grid.rows << " " << grid.west << " " << grid.south << " " << grid.spacing << "\n";
+  out.write(reinterpret_cast<const char *>(grid.values.data()),
+            static_cast<std::streamsize>(grid.values.size() * sizeof(double)));
+  if (!out.flush()) complain(file, "cannot be written; check the folder and its free space");
 }
 
 }  // namespace talus

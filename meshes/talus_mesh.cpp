@@ -9,6 +9,7 @@
 
 #include "meshes/drawing.h"
 #include "meshes/gmsh_elements.h"
+#include "meshes/grid.h"
 #include "meshes/section_mesh.h"
 #include "meshes/simplex.h"
 #include "meshes/terrain_mesh.h"
@@ -20,6 +21,7 @@ constexpr double most_cells = 1e8;
 
 struct Request {
   std::string source, file;
+  bool values = false;  ///< of a grid, instead of a mesh
   std::string format = "4.1";
   std::vector<double> boxes;  ///< x0 y0 x1 y1 h, repeated
   MeshOptions options;
@@ -204,6 +206,7 @@ void check(const TerrainOptions &o, const Terrain &terrain) {
 }
 
 void run(const Request &request) {
+  if (request.values) return write_values(read_grid(request.source), request.file);
   std::optional<Section> section;
   std::optional<Terrain> terrain;
   if (is_section(request.source))
@@ -258,7 +261,8 @@ int parse(int argc, char **argv, Request &request) {
       "talus-mesh");
   app.add_option("SOURCE", request.source, "section: CSV or DXF; or terrain: ESRI ASCII or GeoTIFF")->required();
   app.add_option("-o,--output", request.file, "mesh file to write")->required();
-  app.add_option("--size", request.options.size, "cell size [m]")->required();
+  app.add_option("--size", request.options.size, "cell size [m]");
+  app.add_flag("--values", request.values, "write the values of a grid for Talus to read, and no mesh");
   app.add_option("--dimension", request.options.dimension, "2: triangles, 3: tetrahedra")->check(CLI::IsMember({2, 3}));
   app.add_option("--thickness", request.options.thickness, "of a 3D slice [m]; default one cell size");
   app.add_option("--layers", request.options.layers, "of elements over the thickness; 0: free tetrahedra; default 1");
@@ -283,6 +287,8 @@ int parse(int argc, char **argv, Request &request) {
   } catch (const CLI::ParseError &error) {
     return app.exit(error) ? 2 : -1;
   }
+  if (request.values) return 0;
+  if (!app.count("--size")) complain("--size is required");
   if (!is_section(request.source))
     read_terrain(app, request);
   else

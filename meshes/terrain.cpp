@@ -53,7 +53,7 @@ double Ellipsoid::bottom(double x, double y) const {
 }
 
 Terrain::Terrain(const TerrainOptions &options) : options_(options) {
-  const Grid grid = read_grid(options.file);
+  const Grid grid = read_elevations(options.file);
   projection_ = grid.projection;
   if (!(options.far_size >= options.size)) options_.far_size = options.size;
   take_window(grid);
@@ -103,13 +103,13 @@ void Terrain::take_window(const Grid &grid) {
   int holes = 0, first = 0;
   for (int j = 0; j < ground_.rows; ++j)
     for (int i = 0; i < ground_.columns; ++i) {
-      const double z = grid.elevation[static_cast<std::size_t>(from[1] + j * options_.step) * grid.columns + from[0] +
-                                      i * options_.step];
-      if (std::isnan(z) && !holes++) first = static_cast<int>(ground_.elevation.size());
-      ground_.elevation.push_back(z);
+      const double z = grid.values[static_cast<std::size_t>(from[1] + j * options_.step) * grid.columns + from[0] +
+                                   i * options_.step];
+      if (std::isnan(z) && !holes++) first = static_cast<int>(ground_.values.size());
+      ground_.values.push_back(z);
     }
   if (holes)
-    complain(text_of(grid.file, ": the window has no data at ", holes, " of ", ground_.elevation.size(),
+    complain(text_of(grid.file, ": the window has no data at ", holes, " of ", ground_.values.size(),
                      " places, the first at ", place(first),
                      "; fill the holes, such as by gdal_fillnodata.py, or take another window by --window"));
 }
@@ -117,16 +117,16 @@ void Terrain::take_window(const Grid &grid) {
 void Terrain::take_slip_surface(const Grid &grid) {
   const bool by_grid = !options_.slip_surface.empty();
   if (by_grid && options_.ellipsoid) complain("give one slip surface: --slip-surface or --ellipsoid");
-  const Grid given = by_grid ? read_grid(options_.slip_surface) : Grid{};
+  const Grid given = by_grid ? read_elevations(options_.slip_surface) : Grid{};
   double nearest = std::numeric_limits<double>::infinity();  // of the surface over the ground
   bool met = false;
-  for (int k = 0; k < static_cast<int>(bed_.elevation.size()); ++k) {
+  for (int k = 0; k < static_cast<int>(bed_.values.size()); ++k) {
     const double east = origin_[0] + x(k % columns()), north = origin_[1] + y(k / columns());
     const double z = by_grid ? given.at(east, north) : options_.ellipsoid->bottom(east, north);
     if (std::isnan(z)) continue;  // beside it nothing slides
     met = true;
-    nearest = std::min(nearest, z - bed_.elevation[k]);
-    bed_.elevation[k] = std::min(bed_.elevation[k], z);
+    nearest = std::min(nearest, z - bed_.values[k]);
+    bed_.values[k] = std::min(bed_.values[k], z);
   }
   const std::string name = by_grid ? options_.slip_surface : "the ellipsoid";
   if (!met) complain(name + " does not lie in the window of " + grid.file + "; both count in the same coordinates");
@@ -152,7 +152,7 @@ void Terrain::check_base() const {
 /// By two sweeps over the grid, in which each place learns from its neighbours: a few per cent too far.
 void Terrain::find_distances() {
   distance_ = ground_;
-  std::vector<double> &d = distance_.elevation;
+  std::vector<double> &d = distance_.values;
   for (std::size_t k = 0; k < d.size(); ++k) d[k] = !slides() || ground()[k] > bed()[k] ? 0 : 1e300;
   const auto learn = [&](int i, int j, int di, int dj) {
     if (i + di < 0 || i + di >= columns() || j + dj < 0 || j + dj >= rows()) return;

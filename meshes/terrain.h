@@ -47,9 +47,9 @@ class Terrain {
   double width() const { return x(columns() - 1); }
   double depth() const { return y(rows() - 1); }
   /// [rows][columns] [m]
-  const std::vector<double> &ground() const { return ground_.elevation; }
+  const std::vector<double> &ground() const { return ground_.values; }
   /// The ground, lowered to the slip surface where there is one below it.
-  const std::vector<double> &bed() const { return bed_.elevation; }
+  const std::vector<double> &bed() const { return bed_.values; }
   double ground_at(double x, double y) const { return ground_.at(x, y); }
   double bed_at(double x, double y) const { return bed_.at(x, y); }
   bool slides() const { return slide_area_ > 0; }

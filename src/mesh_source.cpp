@@ -5,16 +5,22 @@
 #include <unistd.h>
 
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
 
+#include "scene/place_grid.h"
+
 extern char **environ;
 
 namespace talus {
 namespace {
+
+const MeshRun no_folder{1, "cannot make a folder for temporary files; set TMPDIR to one that can be written"};
 
 std::string number(double x) {
   std::ostringstream s;
@@ -66,6 +72,51 @@ std::vector<std::string> of_terrain(const Scene &scene, const std::string &file)
   return arguments;
 }
 
+/// What talus-mesh said, without its name and the end of the line.
+MeshRun plain(MeshRun run) {
+  const std::string speaker = "talus-mesh: ";
+  if (run.output.starts_with(speaker)) run.output.erase(0, speaker.size());
+  while (run.output.ends_with('\n')) run.output.pop_back();
+  return run;
+}
+
+/// All ranks learn how a run of talus-mesh on rank 0 has ended.
+void tell_all(MPI_Comm comm, int &status, std::string &complaint) {
+  MPI_Bcast(&status, 1, MPI_INT, 0, comm);
+  int length = static_cast<int>(complaint.size());
+  MPI_Bcast(&length, 1, MPI_INT, 0, comm);
+  complaint.resize(length);
+  MPI_Bcast(complaint.data(), length, MPI_CHAR, 0, comm);
+}
+
+/// By FNV-1a, which finds edited files and not forged ones.
+std::string digest_of(const Grid &grid) {
+  std::uint64_t digest = 14695981039346656037u;
+  const auto take = [&](double value) { digest = (digest ^ std::bit_cast<std::uint64_t>(value)) * 1099511628211u; };
+  for (const double number : {grid.west, grid.south, grid.spacing, static_cast<double>(grid.columns)}) take(number);
+  for (const double value : grid.values) take(value);
+  std::ostringstream text;
+  text << std::hex << digest;
+  return text.str();
+}
+
+/// Reads a grid by way of talus-mesh, which writes its values into a plain file: GDAL stays out of this program.
+MeshRun values_of(const std::string &file, Grid &grid) {
+  TemporaryFolder folder;
+  if (!folder.make()) return no_folder;
+  const std::string values = folder.path() + "/values";
+  MeshRun run = plain(run_talus_mesh({file, "--values", "-o", values}));
+  if (run.status) return run;
+  std::ifstream in(values, std::ios::binary);
+  in >> grid.columns >> grid.rows >> grid.west >> grid.south >> grid.spacing;
+  in.ignore();  // the end of the line
+  if (in) grid.values.resize(static_cast<std::size_t>(grid.columns) * grid.rows);
+  in.read(reinterpret_cast<char *>(grid.values.data()),
+          static_cast<std::streamsize>(grid.values.size() * sizeof(double)));
+  if (!in) return {1, "the values that talus-mesh has written end early; make room in the folder for temporary files"};
+  return run;
+}
+
 }  // namespace
 
 MeshRun run_talus_mesh(const std::vector<std::string> &arguments) {
@@ -106,23 +157,23 @@ std::string beside_scene(const Scene &scene, const std::string &path) {
 
 MeshFile::MeshFile(MPI_Comm comm, const Scene &scene) {
   const MeshSource &source = scene.mesh;
+  int rank;
+  MPI_Comm_rank(comm, &rank);
   if (!source.file.empty()) {
     path_ = beside_scene(scene, source.file);
+    if (rank == 0) read_origin(std::filesystem::path(path_).replace_extension(".origin.json"));
+    MPI_Bcast(origin_.data(), 2, MPI_DOUBLE, 0, comm);
     return;
   }
-  int rank, status = 0;
-  MPI_Comm_rank(comm, &rank);
+  int status = 0;
   std::string complaint;
   if (rank == 0) {
     const MeshRun run = make(scene);
     status = run.status, complaint = run.output;
     if (status == 0) read_report(run.output);
   }
-  MPI_Bcast(&status, 1, MPI_INT, 0, comm);
-  int length = static_cast<int>(complaint.size());
-  MPI_Bcast(&length, 1, MPI_INT, 0, comm);
-  complaint.resize(length);
-  MPI_Bcast(complaint.data(), length, MPI_CHAR, 0, comm);
+  tell_all(comm, status, complaint);
+  MPI_Bcast(origin_.data(), 2, MPI_DOUBLE, 0, comm);
   const bool terrain = !source.terrain.file.empty();
   if (status == 2) scene.complain(terrain ? "mesh.terrain" : "mesh.section", "cannot be meshed: " + complaint);
   if (status)
@@ -136,20 +187,50 @@ void MeshFile::read_report(const std::string &printed) {
   const std::string warning = "warning: ";
   for (std::string line; std::getline(lines, line);)
     if (line.starts_with(warning)) made_.remarks.push_back(line.substr(warning.size()));
-  std::ostringstream origin;
-  if (std::ifstream file(folder_.path() + "/mesh.origin.json"); file) origin << file.rdbuf();
-  made_.origin = origin.str();
+  read_origin(folder_.path() + "/mesh.origin.json");
+}
+
+/// The document of the origin, and its two numbers; without the file x and y are those of the mesh.
+void MeshFile::read_origin(const std::string &name) {
+  std::ostringstream document;
+  if (std::ifstream file(name); file) document << file.rdbuf();
+  made_.origin = document.str();
+  const std::string key = "\"origin_m\": [";
+  const std::size_t begin = made_.origin.find(key);
+  if (begin != std::string::npos)
+    std::sscanf(made_.origin.c_str() + begin + key.size(), "%lf, %lf", &origin_[0], &origin_[1]);
 }
 
 MeshRun MeshFile::make(const Scene &scene) {
   const MeshSource &source = scene.mesh;
-  if (!folder_.make()) return {1, "cannot make a folder for temporary files; set TMPDIR to one that can be written"};
+  if (!folder_.make()) return no_folder;
   path_ = folder_.path() + "/mesh.msh";
-  MeshRun run = run_talus_mesh(source.section.empty() ? of_terrain(scene, path_) : of_section(scene, path_));
-  const std::string speaker = "talus-mesh: ";
-  if (run.output.starts_with(speaker)) run.output.erase(0, speaker.size());
-  while (run.output.ends_with('\n')) run.output.pop_back();
-  return run;
+  return plain(run_talus_mesh(source.section.empty() ? of_terrain(scene, path_) : of_section(scene, path_)));
+}
+
+void read_grids(MPI_Comm comm, const Scene &scene, std::array<double, 2> origin) {
+  int rank;
+  MPI_Comm_rank(comm, &rank);
+  for (const auto &place_grid : grids_of(scene.file)) {
+    const std::string key = "grids." + place_grid->name;
+    int status = 0;
+    std::string complaint;
+    Grid &grid = place_grid->grid;
+    if (rank == 0) {
+      const MeshRun run = values_of(place_grid->file, grid);
+      status = run.status, complaint = run.output;
+    }
+    tell_all(comm, status, complaint);
+    if (status == 2) scene.complain(key, "cannot be read: " + complaint);
+    if (status) throw std::runtime_error(key + " cannot be read: " + complaint);
+    MPI_Bcast(&grid.columns, 1, MPI_INT, 0, comm);
+    MPI_Bcast(&grid.rows, 1, MPI_INT, 0, comm);
+    for (double *number : {&grid.west, &grid.south, &grid.spacing}) MPI_Bcast(number, 1, MPI_DOUBLE, 0, comm);
+    grid.values.resize(static_cast<std::size_t>(grid.columns) * grid.rows);
+    for (int row = 0; row < grid.rows; ++row)  // in parts, since MPI counts by int
+      MPI_Bcast(&grid.values[static_cast<std::size_t>(row) * grid.columns], grid.columns, MPI_DOUBLE, 0, comm);
+    place_grid->origin = origin, place_grid->digest = digest_of(grid);
+  }
 }
 
 }  // namespace talus

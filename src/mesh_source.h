@@ -2,6 +2,7 @@
 /// Finds or makes the mesh of a scene: a Gmsh file as it is, or a section or terrain handed to the program talus-mesh.
 #include <mpi.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -26,15 +27,23 @@ class MeshFile {
   MeshFile(MPI_Comm comm, const Scene &scene);
   const std::string &path() const { return path_; }
   const MadeMesh &made() const { return made_; }
+  /// Of the mesh in the coordinates of its terrain, on all ranks; zero where there is none [m].
+  std::array<double, 2> origin() const { return origin_; }
 
  private:
   MeshRun make(const Scene &scene);
   void read_report(const std::string &printed);
+  void read_origin(const std::string &file);
 
   TemporaryFolder folder_;
   std::string path_;
   MadeMesh made_;
+  std::array<double, 2> origin_{};
 };
+
+/// Reads the grids of [grids], which count from this origin of the mesh, on rank 0 and hands their values to all.
+/// Collective. Throws std::invalid_argument with talus-mesh's own complaint, the same on all ranks.
+void read_grids(MPI_Comm comm, const Scene &scene, std::array<double, 2> origin);
 
 /// `path` as written in a scene: relative to the scene's own folder.
 std::string beside_scene(const Scene &scene, const std::string &path);

@@ -28,8 +28,12 @@ std::unique_ptr<AnySimulation> make(MPI_Comm comm, const Scene &scene, const Run
 }  // namespace
 
 std::unique_ptr<AnySimulation> make_simulation(MPI_Comm comm, const Scene &scene, const RunOptions &options) {
-  if (options.plex) return make(comm, scene, options, "");
+  if (options.plex) {
+    read_grids(comm, scene, {});
+    return make(comm, scene, options, "");
+  }
   const MeshFile mesh(comm, scene);
+  read_grids(comm, scene, mesh.origin());
   RunOptions with = options;
   with.mesh = mesh.made();
   return make(comm, scene, with, mesh.path());

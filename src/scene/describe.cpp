@@ -200,6 +200,14 @@ void describe_scene(Describer &describer) {
                  "",
                  {{"functions.NAME", "expression of t or list of [t, value] points", "",
                    "function of time, values in SI or with a unit"}}});
+  describer.add(
+      {"[grids]",
+       "grids",
+       "Grid files that expressions call by name at a place: excess = \"max(0, 9810 * (water(x, y) - z))\".",
+       "",
+       {{"grids.NAME", "path", "",
+         "grid of values (ESRI ASCII, GeoTIFF), relative to the scene; called with x and y of the mesh, linear "
+         "between its nodes; counts in the coordinates of the terrain, or of the mesh where there is none"}}});
 }
 
 void describe_scene(std::ostream &out, const std::string &key) {

@@ -4,16 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 
+#include "scene/place_grid.h"
+
 namespace talus {
 
 /// muParser reads its variables where they were bound: here, so it can be neither copied nor moved.
 struct Function::Expression {
-  Expression(const std::string &text, double factor, const NamedFunctions &named) : functions(named), scale(factor) {
+  Expression(const std::string &text, double factor, const NamedFunctions &named)
+      : functions(named), grids(CallableGrids::now()), scale(factor) {
     parser.DefineVar("x", &x);
     parser.DefineVar("y", &y);
     parser.DefineVar("z", &z);
@@ -22,6 +26,7 @@ struct Function::Expression {
     parser.DefineVar("slip", &slip);
     parser.DefineConst("pi", std::numbers::pi);
     for (auto &[name, function] : functions) parser.DefineFunUserData(name, call, &function);
+    for (auto &[name, grid] : grids) parser.DefineFunUserData(name, look_up, grid.get(), false);
     parser.SetExpr(text);
     for (const auto &[name, address] : parser.GetUsedVar()) used.insert(name);
     (void)parser.Eval();  // translates the text, so that later calls only run it
@@ -31,9 +36,24 @@ struct Function::Expression {
   Expression &operator=(const Expression &) = delete;
 
   static double call(void *function, double t) { return (*static_cast<const Function *>(function))(t); }
+  static double look_up(void *grid, double x, double y) { return static_cast<const PlaceGrid *>(grid)->at(x, y); }
+
+  /// Value before `scale`; not a number where a grid has none, also where the expression went on without it.
+  double value() {
+    for (auto &[name, grid] : grids) grid->missed = false;
+    const double found = parser.Eval();
+    return missed() ? std::numeric_limits<double>::quiet_NaN() : found;
+  }
+  /// The grid that had no value at the last place; null: none.
+  const PlaceGrid *missed() const {
+    for (auto &[name, grid] : grids)
+      if (grid->missed) return grid.get();
+    return nullptr;
+  }
 
   mu::Parser parser;
   NamedFunctions functions;
+  NamedGrids grids;
   /// Keeps the first value that its key does not admit.
   void report(double value) const;
 
@@ -63,6 +83,7 @@ bool assigns(const std::string &text) {
 std::string message(const mu::Parser::exception_type &error, const NamedFunctions &functions) {
   std::string names = "pi";
   for (const auto &[name, function] : functions) names += ", " + name + "()";
+  for (const auto &[name, grid] : CallableGrids::now()) names += ", " + name + "(x, y)";
   const bool unknown = error.GetCode() == mu::ecUNASSIGNABLE_TOKEN || error.GetCode() == mu::ecUNEXPECTED_PARENS;
   return error.GetMsg() + (unknown ? " It may also name " + names : "");
 }
@@ -82,6 +103,19 @@ void Function::Expression::report(double value) const {
   for (const auto &[name, at] : {std::pair{"x", x}, {"y", y}, {"z", z}, {"table", table}, {"slip", slip}})
     if (used.contains(name)) text << comma << name << " = " << at << " m", comma = ", ";
   text << comma << "t = " << t << " s";
+  if (const PlaceGrid *grid = missed()) {
+    const Grid &g = grid->grid;
+    const auto [east, north] = grid->missed_at;
+    const bool outside = east < g.west || east > g.east() || north < g.south || north > g.north();
+    text.precision(12);
+    text << ": " << grid->file << " has no value at (" << east << ", " << north << ") m, ";
+    if (outside)
+      text << "since it reaches from (" << g.west << ", " << g.south << ") to (" << g.east() << ", " << g.north()
+           << "); give a grid that covers the soil, in the coordinates of "
+           << (grid->origin == std::array<double, 2>{} ? "the mesh" : "the terrain");
+    else
+      text << "beside a place without data; fill it, such as by gdal_fillnodata.py";
+  }
   limits->fault = text.str();
 }
 
@@ -111,7 +145,7 @@ double Function::operator()(double x, double y, double z, double t, double table
   if (!expression_) return value_;
   Expression &e = *expression_;
   e.x = x, e.y = y, e.z = z, e.t = t, e.table = table, e.slip = slip;
-  const double value = e.scale * e.parser.Eval();
+  const double value = e.scale * e.value();
   const bool admissible = !e.limits || (value >= e.limits->low && value <= e.limits->high);  // false also for NaN
   if (!admissible) e.report(value);
   return value;

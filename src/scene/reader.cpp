@@ -51,24 +51,41 @@ TableReader TableReader::from_text(const std::string &text, const std::string &n
   for (const std::string &one : overrides) apply_override(document->root, one);
   apply_materials(document->root, name);
   TableReader reader(document, &document->root, "");
+  const auto check_name = [](const Value &value, const std::string &key) {
+    if (!is_function_name(key))
+      value.must_be(
+          "named by letters, digits and _, other than x, y, z, t, table, pi and the functions that expressions "
+          "have of themselves, such as sin or min");
+  };
+  if (const auto grids = reader.find("grids", "grids of values by place")) {
+    if (!grids->node().is_table()) grids->must_be("a table, [grids]");
+    for (const auto &[key, node] : in_file_order(*grids->node().as_table())) {
+      const Value value(*document, *node, "grids." + key, "grid of values, called by name in expressions");
+      check_name(value, key);
+      document->grids[key] = value.named_grid();
+    }
+  }
   constexpr const char *meaning = "function of time, called by name in expressions";
   if (const auto functions = reader.find("functions", "named functions of time")) {
     if (!functions->node().is_table()) functions->must_be("a table, [functions]");
     for (const auto &[key, node] : in_file_order(*functions->node().as_table())) {
       const Value value(*document, *node, "functions." + key, meaning);
-      if (!is_function_name(key))
-        value.must_be(
-            "named by letters, digits and _, other than x, y, z, t, table, pi and the functions that expressions "
-            "have of themselves, such as sin or min");
+      check_name(value, key);
+      if (document->grids.contains(key)) value.must_be("named otherwise than a grid of [grids]");
       document->functions[key] = value.named_function();
     }
   }
   return reader;
 }
 
+/// Files of [grids] that have been read appear with a digest of their content, since another content is another scene.
 std::string TableReader::values() const {
+  toml::table with = document_->root;
+  for (const auto &[name, grid] : document_->grids)
+    if (!grid->digest.empty())
+      with["grids"].as_table()->insert_or_assign(name, grid->file + ", content " + grid->digest);
   std::ostringstream text;
-  text << document_->root;
+  text << with;
   return text.str();
 }
 

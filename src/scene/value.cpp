@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <string_view>
 
@@ -91,6 +92,7 @@ Function TableReader::Value::table(const std::string &expected, const ReadValue 
 
 Function TableReader::Value::expression(const std::string &expected, double scale) const {
   try {
+    const CallableGrids callable(document_->grids);
     return Function(string(expected), scale, document_->functions);
   } catch (const std::invalid_argument &error) {
     must_be(expected, error.what());
@@ -129,6 +131,18 @@ Function TableReader::Value::limited_expression(const std::string &expected, Uni
   function.limit(limits);
   document_->expressions.emplace_back(function, limits);
   return function;
+}
+
+std::shared_ptr<PlaceGrid> TableReader::Value::named_grid() const {
+  const std::string expected = "the name of a grid file, ESRI ASCII or GeoTIFF, relative to the scene";
+  const std::filesystem::path given(string(expected));
+  auto grid = std::make_shared<PlaceGrid>();
+  grid->scene = document_->file, grid->name = path_.substr(path_.find('.') + 1);
+  grid->file = given.is_absolute()
+                   ? given.string()
+                   : (std::filesystem::path(document_->file).parent_path() / given).lexically_normal().string();
+  remember(grid);
+  return grid;
 }
 
 Function TableReader::Value::named_function() const {

@@ -4,9 +4,11 @@
 #include <toml++/toml.h>
 
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "scene/place_grid.h"
 #include "scene/reader.h"
 
 namespace talus {
@@ -20,6 +22,7 @@ struct TableReader::Document {
   std::string file;
   toml::table root;
   NamedFunctions functions;
+  NamedGrids grids;
   mutable std::vector<std::pair<Function, std::shared_ptr<const FunctionLimits>>> expressions;  ///< of all keys
 };
 
@@ -44,6 +47,8 @@ class TableReader::Value {
   Function function(Unit unit, Range range, const char *variables) const;
   /// An expression of the place; not given where the value is a number or a quantity, or of another kind.
   Function place_function(Unit unit, Range range) const;
+  /// A file of [grids], relative to the folder of the scene; not opened yet.
+  std::shared_ptr<PlaceGrid> named_grid() const;
   /// A function of [functions]: of t alone, its values in any unit.
   Function named_function() const;
   /// A number or a quantity of any unit, in SI.

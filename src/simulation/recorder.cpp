@@ -423,6 +423,7 @@ void Recorder<dim>::write_checkpoint(int stage, const Archive &state) {
 /// Why a key of the scene must be what it was: what the saved state has from it.
 std::string tie_of(const std::string &table) {
   if (table == "mesh") return "particles, stresses and contacts in the checkpoint belong to the cells of the mesh";
+  if (table == "grids") return "functions of place take their values from it";
   if (table == "boundary") return "the checkpoint holds reactions, contacts and work of the boundaries as they were";
   return "the saved state has come about with it";
 }

@@ -459,7 +459,7 @@ TEST(ReadOneOf, NeedsTheKeyThatTheTableAnnounces) {
 
 TEST(ReadOneOf, RefusesKeysOfAnotherKindAndRequiresItsOwn) {
   EXPECT_TRUE(contains(complaint([] { read_law("law = 'dense'\ndensity = 1\npeak = 1"); }),
-                       "line 3: peak is no known key; known are functions, place, solver, law, density"));
+                       "line 3: peak is no known key; known are grids, functions, place, solver, law, density"));
   EXPECT_TRUE(contains(complaint([] { read_law("law = 'dense'"); }), "needs density"));
   EXPECT_TRUE(contains(complaint([] { read_law("law = 'dense'\ndensty = 1"); }), "did you mean it by `densty`?"));
 }

@@ -1,0 +1,201 @@
+// A grid of a linear function is that function: whatever reads a grid by place does what it does with the expression,
+// to round-off. And what a grid does not say is refused.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+
+#include "scene/reader.h"
+#include "simulation.h"
+
+namespace talus {
+namespace {
+
+using Overrides = std::vector<std::string>;
+const std::string block = std::string(TALUS_VERIFICATION) + "/incline_block/scene.toml";
+
+int rank() {
+  int rank;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  return rank;
+}
+
+class Grids : public ::testing::Test {
+ protected:
+  std::filesystem::path folder;
+  void SetUp() override {
+    int process = static_cast<int>(getpid());  // of rank 0: other runs of the test have files of their own
+    MPI_Bcast(&process, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+    folder = std::filesystem::path(P_tmpdir) / ("talus_grids_" + std::to_string(process));
+    if (rank() == 0) std::filesystem::create_directories(folder);
+    MPI_Barrier(PETSC_COMM_WORLD);
+  }
+  void TearDown() override {
+    MPI_Barrier(PETSC_COMM_WORLD);
+    if (rank() == 0) std::filesystem::remove_all(folder);
+  }
+  std::string in_folder(const std::string &name) const { return (folder / name).string(); }
+
+  using Value = std::function<double(double x, double y)>;
+  /// From (west, south), `columns` x `rows` values 0.5 m apart.
+  std::string grid(const std::string &name, const Value &value, int columns = 21, int rows = 7, double west = -1,
+                   double south = -1, double spacing = 0.5) const {
+    if (rank() == 0) {
+      std::ofstream file(in_folder(name));
+      file.precision(17);
+      file << "ncols " << columns << "\nnrows " << rows << "\nxllcenter " << west << "\nyllcenter " << south
+           << "\ncellsize " << spacing << "\nNODATA_value -9999\n";
+      for (int j = rows - 1; j >= 0; --j)
+        for (int i = 0; i < columns; ++i)
+          file << value(west + i * spacing, south + j * spacing) << (i + 1 < columns ? " " : "\n");
+    }
+    MPI_Barrier(PETSC_COMM_WORLD);
+    return in_folder(name);
+  }
+
+  static RunOptions quiet() {
+    RunOptions options;
+    options.pictures = options.screen = false;
+    return options;
+  }
+  static Snapshot end_of(const std::string &file, Overrides overrides, bool runs = true) {
+    overrides.emplace_back("stage.0.duration=0.1");
+    Scene scene = read_scene(file, overrides);
+    const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, quiet());
+    if (runs) simulation->run();
+    return simulation->snapshot();
+  }
+  /// Each value of the particles within round-off of the largest of its column.
+  static void expect_same(const Snapshot &a, const Snapshot &b, double tolerance = 1e-9) {
+    ASSERT_EQ(a.id, b.id);
+    ASSERT_EQ(a.columns.size(), b.columns.size());
+    for (std::size_t k = 0; k < a.columns.size(); ++k) {
+      double largest = 0, difference = 0;
+      for (std::size_t i = 0; i < a.columns[k].values.size(); ++i) {
+        largest = std::max<double>(largest, std::abs(a.columns[k].values[i]));
+        difference = std::max<double>(difference, std::abs(a.columns[k].values[i] - b.columns[k].values[i]));
+      }
+      // round-off, grown over a hundred steps; columns that are zero but for it have no size to compare with
+      EXPECT_LE(difference, tolerance * largest + 1e-15) << "column " << k;
+    }
+  }
+  static bool differ(const Snapshot &a, const Snapshot &b) {
+    double difference = 0;
+    for (std::size_t i = 0; i < a.columns[0].values.size(); ++i)
+      difference = std::max<double>(difference, std::abs(a.columns[0].values[i] - b.columns[0].values[i]));
+    MPI_Allreduce(MPI_IN_PLACE, &difference, 1, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD);
+    return difference > 1e-6;  // [m], of positions
+  }
+  /// Ends with these words in its complaint.
+  static void expect_refused(const std::function<void()> &what, const Overrides &words) {
+    try {
+      what();
+      FAIL() << "was not refused";
+    } catch (const std::exception &error) {
+      for (const std::string &word : words)
+        EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
+    }
+  }
+};
+
+TEST_F(Grids, friction_of_the_base_slides_as_its_expression_does) {
+  const std::string file = grid("a.asc", [](double x, double y) { return 15 + 2 * x + 3 * y; });
+  const Snapshot number = end_of(block, {});
+  const Snapshot expression = end_of(block, {"boundary.base.friction_angle=15 + 2 * x + 3 * y"});
+  expect_same(expression, end_of(block, {"grids.angle=" + file, "boundary.base.friction_angle=angle(x, y)"}));
+  EXPECT_TRUE(differ(expression, number));
+}
+
+TEST_F(Grids, strength_yields_as_its_expression_does) {
+  const std::string file = grid("a.asc", [](double x, double y) { return 500 + 200 * x + 300 * y; });
+  Overrides soil{"body.block.law=mohr_coulomb", "body.block.friction_angle=5"}, by_grid = soil, number = soil;
+  number.emplace_back("body.block.cohesion=1e6");
+  soil.emplace_back("body.block.cohesion=500 + 200 * x + 300 * y");
+  by_grid.insert(by_grid.end(), {"grids.c=" + file, "body.block.cohesion=c(x, y)"});
+  const Snapshot expression = end_of(block, soil);
+  expect_same(expression, end_of(block, by_grid));
+  EXPECT_TRUE(differ(expression, end_of(block, number)));
+}
+
+TEST_F(Grids, water_table_presses_as_its_expression_does) {
+  const std::string file = grid("a.asc", [](double x, double) { return 0.2 + 0.1 * x; });
+  Overrides wet{"phases=drained"}, by_grid = wet, dry = wet;
+  wet.emplace_back("water.excess=max(0, 9810 * (0.2 + 0.1 * x - y))");
+  by_grid.insert(by_grid.end(), {"grids.water=" + file, "water.excess=max(0, 9810 * (water(x, 0) - y))"});
+  dry.emplace_back("water.density=1000");
+  expect_same(end_of(block, wet, false), end_of(block, by_grid, false), 1e-12);
+  const Snapshot expression = end_of(block, wet);
+  expect_same(expression, end_of(block, by_grid), 1e-6);  // the water lifts the block: contacts open by round-off
+  EXPECT_TRUE(differ(expression, end_of(block, dry)));
+}
+
+/// A grid counts as the terrain does: x and y of the mesh plus the origin, also where the mesh is a file.
+TEST_F(Grids, count_from_the_origin_of_the_terrain) {
+  const std::string ground = grid(
+      "ground.asc", [](double, double) { return 20; }, 5, 4, 5000, 2000, 10);
+  const std::string values = grid(
+      "a.asc", [](double x, double y) { return 1e3 * (x - 5000) - 2e3 * (y - 2000); }, 9, 7, 4990, 1990, 10);
+  const auto scene = [&](const std::string &mesh, const std::string &xx) {
+    return "dimension = 3\nup = \"z\"\nphases = \"dry\"\ngravity = 0\n" + mesh +
+           "[grids]\nstress = \"a.asc\"\n[body.soil]\nregion = \"ground\"\nlaw = \"linear_elastic\"\n"
+           "young_modulus = 1e7\npoisson_ratio = 0.3\ndensity = 2000\nstress = [\"" +
+           xx + "\", \"0\", \"0\", \"0\", \"0\", \"0\"]\n[[stage]]\nduration = 0.1\n";
+  };
+  const std::string terrain = "[mesh]\nsize = 10\n[mesh.terrain]\nfile = \"ground.asc\"\nbase = 0\n";
+  const auto start = [&](const std::string &text) {
+    Scene read = parse_scene(text, in_folder("scene.toml"));
+    return make_simulation(PETSC_COMM_WORLD, read, quiet())->snapshot();
+  };
+  const std::string expression = "1e3 * x - 2e3 * y";
+  expect_same(start(scene(terrain, expression)), start(scene(terrain, "stress(x, y)")));
+  if (rank() == 0) {
+    const std::string command = std::string(TALUS_MESH) + " " + ground + " -o " + in_folder("mesh.msh") +
+                                " --size 10 --base 0 > " + in_folder("said");
+    ASSERT_EQ(std::system(command.c_str()), 0);
+  }
+  MPI_Barrier(PETSC_COMM_WORLD);
+  const std::string made = "[mesh]\nfile = \"mesh.msh\"\n";
+  expect_same(start(scene(made, expression)), start(scene(made, "stress(x, y)")));
+}
+
+TEST_F(Grids, have_values_where_they_are_asked) {
+  const auto with = [&](const std::string &file, const std::string &angle) {
+    return [=, this] { end_of(block, {"grids.angle=" + file, "boundary.base.friction_angle=" + angle}); };
+  };
+  const std::string short_one = grid(
+      "short.asc", [](double, double) { return 20; }, 3, 7);
+  expect_refused(with(short_one, "angle(x, y)"),
+                 {"boundary.base.friction_angle", "short.asc has no value at (", "reaches from (-1, -1) to (0, 2)",
+                  "give a grid that covers the soil"});
+  expect_refused(with(short_one, "max(20, angle(x, y))"), {"short.asc has no value at ("});  // nothing hides it
+  const std::string hole = grid("hole.asc", [](double x, double) { return x == 1 ? -9999 : 20; });
+  expect_refused(with(hole, "angle(x, y)"), {"hole.asc has no value at (", "gdal_fillnodata.py"});
+  if (rank() == 0) std::ofstream(in_folder("text.asc")) << "no grid\n";
+  MPI_Barrier(PETSC_COMM_WORLD);
+  expect_refused(with(in_folder("text.asc"), "angle(x, y)"), {"grids.angle", "text.asc: is no grid that GDAL reads"});
+  expect_refused(with(in_folder("absent.asc"), "angle(x, y)"), {"grids.angle", "absent.asc"});
+  expect_refused(with(hole, "angle(x)"), {"boundary.base.friction_angle"});
+}
+
+/// Another content of the file is another scene.
+TEST_F(Grids, tie_a_resumed_run_to_their_content) {
+  const auto constant = [&](double angle) { return grid("a.asc", [=](double, double) { return angle; }); };
+  const auto run = [&](bool resume) {
+    Scene scene = read_scene(block, {"grids.angle=" + in_folder("a.asc"), "boundary.base.friction_angle=angle(x, y)",
+                                     "stage.0.duration=" + std::string(resume ? "0.06" : "0.05")});
+    RunOptions options = quiet();
+    options.directory = in_folder("results"), options.resume = resume;
+    make_simulation(PETSC_COMM_WORLD, scene, options)->run();
+  };
+  constant(20);
+  run(false);
+  run(true);
+  constant(21);
+  expect_refused([&] { run(true); }, {"grids.angle", "is not what it was"});
+}
+
+}  // namespace
+}  // namespace talus
