@@ -35,9 +35,13 @@ int patch_size(bool slice) {
   return dim == 2 ? 2 : slice ? 4 : 8;
 }
 
+/// Weight of a cell without a body: so small that much air weighs nothing against the soil, and not 0, so that air
+/// alone is divided too.
+constexpr double empty_weight = 1e-3;
+
 std::vector<double> weights_of(const Regions &regions,
                                const std::vector<std::pair<std::string, double>> &region_weight) {
-  std::vector<double> of_combination(regions.names.size(), 1), weight;
+  std::vector<double> of_combination(regions.names.size(), empty_weight), weight;
   for (std::size_t k = 0; k < regions.names.size(); ++k)
     for (const auto &[name, value] : region_weight)
       if (std::count(regions.names[k].begin(), regions.names[k].end(), name))

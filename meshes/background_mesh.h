@@ -44,7 +44,7 @@ template <int dim>
 class BackgroundMesh {
  public:
   /// Reads a Gmsh file on rank 0, checks it, cuts patches, distributes it. `region_weight` gives the weight of a cell
-  /// from the names of its regions (particles it will hold plus one; the largest counts, 1 without any); patches of
+  /// from the names of its regions (particles it will hold plus one; the largest counts, 1/1000 without); patches of
   /// cells, theory 4.5, stay on one rank and do not depend on the number of ranks. Collective. Throws
   /// std::invalid_argument (the same on all ranks) for a file that cannot be read, a wrong dimension, cells of zero
   /// volume or that overlap, and cells in no named group.

@@ -104,6 +104,8 @@ template <int dim>
 void Recorder<dim>::close() {
   if (!results_) return;
   note_steps();
+  if (largest_imbalance_ > 0)
+    results_->progress.note("largest imbalance of particles among ranks: " + rounded(largest_imbalance_));
   results_->progress.finish();
   if (!options_.pictures) return;
   int rank, drawn = 1;
@@ -224,6 +226,23 @@ void Recorder<dim>::write_escaped() {
   written_escaped_ = escaped.sums().particles;
 }
 
+/// Particles of the rank that has most, over the mean of all ranks: says it when the run starts or is resumed, and
+/// remembers the largest. Collective.
+template <int dim>
+void Recorder<dim>::watch_imbalance() {
+  double mine = 0, most;
+  int ranks;
+  for (const auto &body : of_.world.bodies) mine += body->particles().count;
+  MPI_Comm_size(of_.world.comm, &ranks);
+  MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE, MPI_MAX, of_.world.comm);
+  if (ranks == 1 || most == 0) return;
+  const double imbalance = most * ranks / static_cast<double>(of_.world.particle_count);
+  if (largest_imbalance_ == 0 && results_)
+    results_->progress.note("particles are shared among " + std::to_string(ranks) + " ranks with imbalance " +
+                            rounded(imbalance) + " (those of the rank that has most, over the mean)");
+  largest_imbalance_ = std::max(largest_imbalance_, imbalance);
+}
+
 /// What the integrator did, for the log.
 template <int dim>
 void Recorder<dim>::note_steps() {
@@ -302,6 +321,7 @@ void Recorder<dim>::write_history() {
   std::vector<double> row = point_rows_.at(of_.clock.time, of_.statics);
   of_.lines.write(of_.clock, of_.statics);
   last_row_step_ = of_.clock.steps, last_row_time_ = of_.clock.time;
+  watch_imbalance();
   double potential = 0;
   for (const auto &body : of_.world.bodies) {
     const ParticleArrays<dim> &p = body->particles();

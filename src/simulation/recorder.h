@@ -87,6 +87,7 @@ class Recorder {
   void write_model() const;
   void name_columns();
   RunRow<dim> run_row() const;
+  void watch_imbalance();
   void note_steps();
   void note_escaped();
   void write_escaped();
@@ -109,6 +110,7 @@ class Recorder {
   std::vector<std::string> changed_;  ///< keys of the scene that are others than before the run was resumed
   double told_escaped_ = 0;           ///< particles that had left when the log last said so
   double written_escaped_ = -1;       ///< particles in escaped.csv; -1: not known
+  double largest_imbalance_ = 0;      ///< at rows of the history since this program began or resumed the run
   long long last_row_step_ = -1, checkpoints_ = 0;
   long long snapshots_ = 0;                           ///< that the run has written
   double last_row_time_ = -1, checkpoint_time_ = -1;  ///< [s]
