@@ -135,6 +135,20 @@ TEST(Ranks, drained_slope_of_two_soils_is_the_same) { expect_the_same(slope, {})
 /// The example of the guide's page on terrain, coarser.
 TEST(Ranks, slide_on_terrain_is_the_same) { expect_the_same(TALUS_GUIDE "/valley.toml", {"mesh.size=12"}); }
 
+/// Above the terrain of the guide, ten times the air: ranks share the soil and not the cells, as evenly as patches of 8
+/// cells with 8 particles each, which are never divided, allow.
+TEST(Ranks, soil_is_shared_evenly_whatever_air_there_is) {
+  Scene scene = read_scene(TALUS_GUIDE "/valley.toml", {"mesh.size=12", "mesh.terrain.air=300"});
+  RunOptions options;
+  options.pictures = options.screen = false;
+  const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+  long long most = static_cast<long long>(simulation->snapshot().id.size());
+  int ranks;
+  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_LONG_LONG, MPI_MAX, PETSC_COMM_WORLD);
+  EXPECT_LT(static_cast<double>(most - 64) * ranks, 1.05 * static_cast<double>(simulation->particles()));
+}
+
 /// The slope of the guide, coarse and weaker, until it fails; the event's time is when the crest passed the threshold
 /// [s].
 double failure_time(MPI_Comm comm) {
