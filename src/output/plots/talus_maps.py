@@ -7,12 +7,17 @@ import pathlib
 import sys
 
 import numpy as np
-from osgeo import gdal, ogr, osr
+
+try:
+    from osgeo import gdal, ogr, osr
+except ImportError:
+    sys.exit("talus_maps: the Python module of GDAL is missing; install the package python3-gdal")
 
 import talus_style as style
 from talus_ground import Ground
 from talus_map_pictures import draw_map, draw_section
 from talus_results import Results, Thickness
+from talus_units import words
 
 NO_DATA = -9999.0
 LIMIT = 0.5  # least thickness of soil that counts, over the size of particles: thinner soil is single particles
@@ -307,8 +312,8 @@ def main():
     print(f"maps of {maps.results.title} at {maps.times[-1]:g} s, cells of {maps.grid.spacing:g} m, {maps.grid.shape[0]} x {maps.grid.shape[1]}")
     print(f"projection: {'that of the terrain file' if maps.axes.projection else 'none, coordinates are ' + ('those of the terrain file' if maps.axes.terrain else 'local')}")
     for name, value in maps.numbers().items():
-        words, _, unit = name.rpartition("_")
-        print(f"  {style.words(words):20} {value:12.6g} {unit}")
+        quantity, _, unit = name.rpartition("_")
+        print(f"  {words(quantity):20} {value:12.6g} {unit}")
     print(f"  {'volume that slid':20} {maps.volume[-1]:12.6g} m3, in the grid {maps.thickness[-1].sum() * maps.grid.spacing**2:.6g} m3")
     print(f"maps are in {folder}: grids as .tif{', .asc' if given.ascii else ''}, deposit.gpkg, map.png, section.png")
 
