@@ -200,9 +200,11 @@ void World<dim>::seed_bodies() {
   const int stride = id_stride();
   double wave_speed = 0;
   std::vector<char> filled(mesh.cell_count(), 0), always(filled);  // at some time, from the start to the end
-  for (const BodySource &source : scene.body)
-    for (const std::string &region : source.region)
-      for (int cell : mesh.region(region)) filled[cell] = 1, always[cell] = !comes_or_goes(source);
+  std::vector<char> elastic(filled);                               // by soil that never yields
+  for (size_t b = 0; b < scene.body.size(); ++b)
+    for (const std::string &region : scene.body[b].region)
+      for (int cell : mesh.region(region))
+        filled[cell] = 1, always[cell] = !comes_or_goes(scene.body[b]), elastic[cell] = never_fails(laws[b]);
   SurfaceLoads<dim> &loads = conditions.surface_loads();
   loads.share(mesh, filled);
   movers_.resize(scene.body.size()), outside_.resize(scene.body.size());
@@ -245,10 +247,10 @@ void World<dim>::seed_bodies() {
                    "is a pressure on a face inside the soil, where it cancels: it pushes with the same force on both "
                    "sides. Draw a crack as a gap in the outline of the section, and name a wall of it");
   const double relaxation = scene.transfer.relaxation * mesh.report().smallest_altitude / wave_speed;
-  // ways of a wave while friction adapts, docs/theory (6.2): in units of the altitude, and across the soil and back
+  // ways of a wave while friction adapts, docs/theory (6.2): in units of the altitude, and across elastic soil and back
   constexpr double shortest_way = 10, across_and_back = 2;
   double depth;
-  require(conditions.depth_on_bases(mesh, filled, &depth));
+  require(conditions.depth_on_bases(mesh, elastic, &depth));
   conditions.set_friction_delay(std::max(shortest_way * mesh.report().smallest_altitude, across_and_back * depth) /
                                 wave_speed);
   motion = make_soil_motion(
