@@ -39,6 +39,7 @@ study), and `<!-- end -->`.
 
 import argparse
 import csv
+import difflib
 import importlib.util
 import math
 import os
@@ -381,7 +382,13 @@ def main():
     given = parser.parse_args()
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     holds, start = True, time.time()
-    for page in pages_of(given.gallery, given.names):
+    pages = list(pages_of(given.gallery, given.names))
+    known = [name for page in pages for name in (*page.runs, *page.studies)]
+    for name in given.only or ():
+        if name not in known:
+            near = difflib.get_close_matches(name, known, 1)
+            sys.exit(f"--only {name}: no page has a run or study of this name; " + (f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"))
+    for page in pages:
         if given.list:
             for run in page.runs.values():
                 print(f"{page.name:18s} {run['cost']:6s} {run['about']}")
