@@ -31,6 +31,12 @@ class Dxf {
     group(0, "SEQEND");
     return *this;
   }
+  Dxf &light_polyline(const std::string &layer, const std::vector<Vec<2>> &points, bool closed) {
+    group(0, "LWPOLYLINE"), group(100, "AcDbEntity"), group(8, layer), group(100, "AcDbPolyline"),
+        group(90, points.size()), group(70, closed ? 1 : 0);
+    for (const Vec<2> &x : points) group(10, x[0]), group(20, x[1]);
+    return *this;
+  }
   Dxf &point(const std::string &layer, Vec<2> x) {
     group(0, "POINT"), group(8, layer), group(10, x[0]), group(20, x[1]);
     return *this;
@@ -101,6 +107,12 @@ void expect_slope(const Section &drawn) {
 }
 TEST(Drawing, IsTheSectionOfTheSameRows) {
   expect_slope(section_in(slope().content()));
+  expect_slope(section_in(Dxf()
+                              .light_polyline("outline", box, true)
+                              .light_polyline("interface0", ground, false)
+                              .point("region_air", {20, 6})
+                              .point("region_clay", {5, 3})
+                              .content()));
   expect_slope(section_of(read_drawing(TALUS_GUIDE "/slope.dxf").rows, "slope.dxf", true));
 }
 
