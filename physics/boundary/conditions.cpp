@@ -13,6 +13,12 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
+/// `count` zeros, with room to grow: soil that spreads does not ask for memory at each remap.
+void clear(std::vector<double> &values, size_t count) {
+  if (values.capacity() < count) values.reserve(2 * count);
+  values.assign(count, 0);
+}
+
 template <int dim>
 double dot(const Vec<dim> &a, const Vec<dim> &b) {
   double s = 0;
@@ -150,7 +156,7 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
       for (Contact &c : of_node)
         if (grid.find_node(c.node) < 0)
           c.capacity = 0, c.gathered = c.since_pressed = never;  // soil that arrives here later has not pressed yet
-    nodal_.assign(nodes, 0);
+    clear(nodal_, nodes);
     for (const auto &[source, facets] : bases_)
       for (const Facet<dim> &f : facets) {
         const int cell = grid.find_cell(f.cell);
@@ -171,7 +177,7 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
     constexpr int width = dim * dim;
     for (const auto &[source, facets] : dashpots_) {
       const auto &dashpot = sources_[source].kind.template on_soil<dim>().dashpot;
-      nodal_.assign(static_cast<size_t>(nodes) * width, 0);
+      clear(nodal_, static_cast<size_t>(nodes) * width);
       for (const Facet<dim> &f : facets) {
         const int cell = grid.find_cell(f.cell);
         if (cell < 0) continue;

@@ -100,7 +100,8 @@ struct MeshSource {
   template <class Visitor>
   void fields(Visitor &&v) {
     v.text("file", file, "Gmsh mesh file (.msh, format 2.2 or 4.1) with physical groups, relative to the scene");
-    v.text("section", section, "section, a CSV file or a DXF drawing, that talus-mesh turns into a mesh; relative to the scene");
+    v.text("section", section,
+           "section, a CSV file or a DXF drawing, that talus-mesh turns into a mesh; relative to the scene");
     v.number("size", size, metre, Range{0, 1e5},
              "cell size of a mesh made from a section or terrain; of terrain in the slide and at the ground");
     v.number("thickness", thickness, metre, Range{0, 1e5},

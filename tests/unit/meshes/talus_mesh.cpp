@@ -82,7 +82,8 @@ TEST_F(TalusMesh, RefusesInterfacesThatCrossUnlessEveryPieceHasAName) {
   const std::string options = " --size 0.5 -o " + in_folder("m.msh");
   const Answer refused = run(write("s.csv", crossed) + options);
   EXPECT_EQ(refused.status, 2);
-  expect_words(refused, {"s.csv line 7: 'interface1' crosses 'interface0' of line 5 near (2, 1)", "by a point region_NAME"});
+  expect_words(refused,
+               {"s.csv line 7: 'interface1' crosses 'interface0' of line 5 near (2, 1)", "by a point region_NAME"});
   EXPECT_EQ(run(write("s.csv", crossed + "region_d,3.5,1\n") + options).status, 0);
 }
 
