@@ -186,6 +186,10 @@ void report_terrain(const Terrain &terrain) {
     std::cout << "slide " << exact << " m3 between slip surface and ground, " << exact / terrain.slide_area()
               << " m thick on average; its cells hold " << cells << " m3 (" << std::showpos << 100 * (cells / exact - 1)
               << std::noshowpos << " %)\n";
+    constexpr double much = 0.05;  // more than other uncertainties of a volume that slides
+    if (cells > 0 && std::abs(cells / exact - 1) > much)
+      std::cout << "warning: the cells of the slide hold " << cells << " m3, and between slip surface and ground are "
+                << exact << " m3: a cell belongs to the slide if its centre does. Take a smaller --size\n";
     if (cells == 0)
       complain("the slide is thinner than its cells, and none has its centre in it; take a smaller --size");
   }
