@@ -14,6 +14,7 @@
 #include <stdexcept>
 
 #include "scene/place_grid.h"
+#include "scene/reader.h"
 
 extern char **environ;
 
@@ -209,10 +210,11 @@ MeshRun MeshFile::make(const Scene &scene) {
 }
 
 void read_grids(MPI_Comm comm, const Scene &scene, std::array<double, 2> origin) {
+  if (!scene.root) return;  // a scene made in memory names no files
   int rank;
   MPI_Comm_rank(comm, &rank);
-  for (const auto &place_grid : grids_of(scene.file)) {
-    const std::string key = "grids." + place_grid->name;
+  for (const auto &[name, place_grid] : scene.root->grids()) {
+    const std::string key = "grids." + name;
     int status = 0;
     std::string complaint;
     Grid &grid = place_grid->grid;

@@ -33,7 +33,7 @@ def main():
     for by in ("cells", "steps", "particles"):
         out = pathlib.Path(folder) / by
         chosen = ["--values", values[by]] if by in values else []
-        ended = subprocess.run([talus, "converge", HERE / page / "scene.toml", "--by", by, "-o", out, "-j", "1", "--no-plot", *chosen],
+        ended = subprocess.run([talus, "converge", HERE / page / "scene.toml", "--by", by, "-o", out, "-j", "1", "--no-plot", "--force", *chosen],
                                stdin=subprocess.DEVNULL)
         if ended.returncode not in (0, 1):  # 1: something decides
             sys.exit(f"talus converge --by {by} failed")

@@ -14,7 +14,7 @@ BRITTLE = 100  # shape factor; the scene has 30
 
 def converge(talus, folder, *options):
     """The rows of converge.csv. Status 1 is the verdict that the cells decide something."""
-    ended = subprocess.run([talus, "converge", HERE / "slope.toml", "-o", folder, *options], stdin=subprocess.DEVNULL)
+    ended = subprocess.run([talus, "converge", HERE / "slope.toml", "-o", folder, "--force", *options], stdin=subprocess.DEVNULL)
     if ended.returncode not in (0, 1):
         sys.exit("talus converge failed")
     with open(folder / "converge.csv", newline="") as file:

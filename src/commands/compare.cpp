@@ -24,7 +24,7 @@ struct CompareArguments {
   std::string scene, directory, measure, exact, reference;
   std::vector<std::string> series, set;
   int jobs = 0;
-  bool no_plot = false;
+  bool force = false, no_plot = false;
 };
 
 /// One run of the matrix; its label is the name of its series.
@@ -159,6 +159,7 @@ int compare(CompareArguments arguments) {
   std::vector<Trial *> pointers;
   for (Variant &trial : trials) pointers.push_back(&trial);
   TrialPlan plan{arguments.scene, arguments.set, arguments.jobs};
+  plan.replace = arguments.force;
   if (!arguments.measure.empty()) plan.columns = {measure.column};
   run_trials(plan, pointers);
   if (arguments.measure.empty()) return sweep(arguments, trials);
@@ -207,6 +208,7 @@ Action add_compare(CLI::App &app) {
                       "folder of runs, tables and charts (default results/compare_NAME)");
   command->add_option("-j,--jobs", arguments->jobs, "runs at the same time (default: one per core)")
       ->check(CLI::Range(1, 1024));
+  command->add_flag("--force", arguments->force, "replace runs of another scene or of other values in that folder");
   command->add_flag("--no-plot", arguments->no_plot, "do not draw the chart");
   return [arguments] { return compare(*arguments); };
 }

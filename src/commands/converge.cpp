@@ -30,7 +30,7 @@ struct ConvergeArguments {
   std::vector<std::string> set;
   double within = 5;  ///< [%]
   int jobs = 0;
-  bool no_plot = false;
+  bool force = false, no_plot = false;
 };
 
 /// The keys that are refined together, at their values in the scene, and the refinement.
@@ -127,7 +127,9 @@ int converge(ConvergeArguments arguments) {
   std::vector<Trial> trials = trials_of(refinement, arguments.directory);
   std::vector<Trial *> pointers;
   for (Trial &trial : trials) pointers.push_back(&trial);
-  run_trials({arguments.scene, arguments.set, arguments.jobs}, pointers);
+  TrialPlan plan{arguments.scene, arguments.set, arguments.jobs};
+  plan.replace = arguments.force;
+  run_trials(plan, pointers);
   write_runs(arguments.directory + "/runs.csv", refinement, trials);
   const char *refined[] = {"cells", "steps", "particles"};
   std::vector<std::string> words{arguments.directory, "--by", refined[static_cast<int>(arguments.refined)], "--within",
@@ -169,6 +171,7 @@ Action add_converge(CLI::App &app) {
                       "folder of runs, converge.csv, converge.json and converge.png (default results/converge_NAME)");
   command->add_option("-j,--jobs", arguments->jobs, "runs at the same time (default: one per core)")
       ->check(CLI::Range(1, 1024));
+  command->add_flag("--force", arguments->force, "replace runs of another scene or of other values in that folder");
   command->add_flag("--no-plot", arguments->no_plot, "do not draw the picture");
   return [arguments] { return converge(*arguments); };
 }

@@ -23,7 +23,7 @@ struct TrialPlan {
   std::vector<std::string> set;             ///< overrides
   int jobs = 0;                             ///< runs at the same time; 0: one per core
   std::vector<std::string> command{"run"};  ///< of each run, with its options
-  bool replace = true;                      ///< runs of another plan in the same folders; else they are refused
+  bool replace = false;                     ///< runs of another plan in the same folders; else they are refused
   /// Columns that history.csv must have; the first run under way that lacks one ends all.
   std::vector<std::string> columns{};
   bool refusal_ends = true;  ///< a run that is refused as bad input ends all; else it is one that failed

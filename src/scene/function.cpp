@@ -16,8 +16,8 @@ namespace talus {
 
 /// muParser reads its variables where they were bound: here, so it can be neither copied nor moved.
 struct Function::Expression {
-  Expression(const std::string &text, double factor, const NamedFunctions &named)
-      : functions(named), grids(CallableGrids::now()), scale(factor) {
+  Expression(const std::string &text, double factor, const NamedFunctions &named, const NamedGrids &of_places)
+      : functions(named), grids(of_places), scale(factor) {
     parser.DefineVar("x", &x);
     parser.DefineVar("y", &y);
     parser.DefineVar("z", &z);
@@ -80,10 +80,10 @@ bool assigns(const std::string &text) {
 
 /// muParser's message; for what it did not recognise, the names that it would have beside the variables, which the key
 /// decides on.
-std::string message(const mu::Parser::exception_type &error, const NamedFunctions &functions) {
+std::string message(const mu::Parser::exception_type &error, const NamedFunctions &functions, const NamedGrids &grids) {
   std::string names = "pi";
   for (const auto &[name, function] : functions) names += ", " + name + "()";
-  for (const auto &[name, grid] : CallableGrids::now()) names += ", " + name + "(x, y)";
+  for (const auto &[name, grid] : grids) names += ", " + name + "(x, y)";
   const bool unknown = error.GetCode() == mu::ecUNASSIGNABLE_TOKEN || error.GetCode() == mu::ecUNEXPECTED_PARENS;
   return error.GetMsg() + (unknown ? " It may also name " + names : "");
 }
@@ -129,12 +129,14 @@ Function::Function(std::vector<double> times, std::vector<double> values)
   if (!rising) throw std::invalid_argument("the times of a table must rise from point to point");
 }
 
-Function::Function(const std::string &expression, double scale, const NamedFunctions &functions) : given_(true) {
+Function::Function(const std::string &expression, double scale, const NamedFunctions &functions,
+                   const NamedGrids &grids)
+    : given_(true) {
   if (assigns(expression)) throw std::invalid_argument("`=` assigns; equality is `==`");
   try {
-    expression_ = std::make_shared<Expression>(expression, scale, functions);
+    expression_ = std::make_shared<Expression>(expression, scale, functions, grids);
   } catch (const mu::Parser::exception_type &error) {
-    throw std::invalid_argument(message(error, functions));
+    throw std::invalid_argument(message(error, functions, grids));
   }
 }
 

@@ -8,7 +8,9 @@
 namespace talus {
 
 class Function;
-using NamedFunctions = std::map<std::string, Function>;  ///< the scene's [functions] of t
+struct PlaceGrid;
+using NamedFunctions = std::map<std::string, Function>;                ///< the scene's [functions] of t
+using NamedGrids = std::map<std::string, std::shared_ptr<PlaceGrid>>;  ///< the scene's [grids]
 
 /// Variables that a key gives its function.
 namespace of {
@@ -38,8 +40,10 @@ class Function {
   /// value.
   Function(std::vector<double> times, std::vector<double> values);
   /// `scale` times the expression. Throws std::invalid_argument with muParser's message when the text is no expression
-  /// of x, y, z, t, table, slip, pi and the named functions, each of which is called with one argument.
-  Function(const std::string &expression, double scale, const NamedFunctions &functions = {});
+  /// of x, y, z, t, table, slip, pi, the named functions, each of which is called with one argument, and the grids,
+  /// called with two. Where a grid has no value the expression has none.
+  Function(const std::string &expression, double scale, const NamedFunctions &functions = {},
+           const NamedGrids &grids = {});
 
   bool given() const { return given_; }
   bool constant() const { return given_ && !expression_ && times_.empty(); }

@@ -3,18 +3,13 @@
 /// names the file; its values arrive when the mesh is made, since they count from the origin of the mesh.
 #include <array>
 #include <cmath>
-#include <map>
-#include <memory>
 #include <string>
-#include <vector>
 
 #include "base/grid.h"
 
 namespace talus {
 
 struct PlaceGrid {
-  std::string scene;  ///< file that names it
-  std::string name;
   std::string file;                           ///< path, as the program opens it
   std::string digest;                         ///< of the values, once they have arrived
   std::array<double, 2> origin{};             ///< of the mesh in the coordinates of the file [m]
@@ -31,22 +26,5 @@ struct PlaceGrid {
     return value;
   }
 };
-
-using NamedGrids = std::map<std::string, std::shared_ptr<PlaceGrid>>;
-
-/// The grids that expressions made meanwhile may call.
-class CallableGrids {
- public:
-  explicit CallableGrids(const NamedGrids &grids);
-  CallableGrids(const CallableGrids &) = delete;
-  CallableGrids &operator=(const CallableGrids &) = delete;
-  ~CallableGrids();
-  static const NamedGrids &now();
-};
-
-/// Adds a grid to those that `grids_of` finds while something holds it.
-void remember(const std::shared_ptr<PlaceGrid> &grid);
-/// The grids that the scene of this file names, in the order in which they were read; the same on all ranks.
-std::vector<std::shared_ptr<PlaceGrid>> grids_of(const std::string &scene);
 
 }  // namespace talus

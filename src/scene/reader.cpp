@@ -198,6 +198,8 @@ void TableReader::function(const char *key, Function &value, Unit unit, Range ra
   if (const auto given = find(key, meaning)) value = given->function(unit, range, variables);
 }
 
+const NamedGrids &TableReader::grids() const { return document_->grids; }
+
 std::string TableReader::function_fault() const {
   for (const auto &[function, limits] : document_->expressions)
     if (!limits->fault.empty()) return limits->fault;

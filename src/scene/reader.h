@@ -109,6 +109,8 @@ class TableReader {
 
   /// The whole file with overrides applied, as TOML without its comments.
   std::string values() const;
+  /// The files of [grids], whose values arrive later.
+  const NamedGrids &grids() const;
 
   /// Number of the kind named at `key`; 0 for an absent key unless `deferred` announced it.
   std::size_t kind(const char *key, const std::vector<std::string> &kinds);

@@ -92,8 +92,7 @@ Function TableReader::Value::table(const std::string &expected, const ReadValue 
 
 Function TableReader::Value::expression(const std::string &expected, double scale) const {
   try {
-    const CallableGrids callable(document_->grids);
-    return Function(string(expected), scale, document_->functions);
+    return Function(string(expected), scale, document_->functions, document_->grids);
   } catch (const std::invalid_argument &error) {
     must_be(expected, error.what());
   }
@@ -137,11 +136,9 @@ std::shared_ptr<PlaceGrid> TableReader::Value::named_grid() const {
   const std::string expected = "the name of a grid file, ESRI ASCII or GeoTIFF, relative to the scene";
   const std::filesystem::path given(string(expected));
   auto grid = std::make_shared<PlaceGrid>();
-  grid->scene = document_->file, grid->name = path_.substr(path_.find('.') + 1);
   grid->file = given.is_absolute()
                    ? given.string()
                    : (std::filesystem::path(document_->file).parent_path() / given).lexically_normal().string();
-  remember(grid);
   return grid;
 }
 

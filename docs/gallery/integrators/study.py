@@ -52,7 +52,7 @@ REFERENCES = {"creep": "no remap: transfer.remap_interval=0.3"}  # cells that st
 
 def study(talus, name):
     scene, measure, overrides, series = STUDIES[name]
-    words = [talus, "compare", ROOT / scene, "--measure", measure, "-o", RUNS / name, "--no-plot", *sum((["--series", s] for s in series), []),
+    words = [talus, "compare", ROOT / scene, "--measure", measure, "-o", RUNS / name, "--no-plot", "--force", *sum((["--series", s] for s in series), []),
              *(["--reference", REFERENCES[name]] if name in REFERENCES else [])]
     subprocess.run(words + (["--set", *overrides] if overrides else []), check=False)  # a failed run is a line of the table
     for file, kept in (("compare", name), ("reference", f"{name}_reference")):

@@ -33,6 +33,9 @@ there:
     tables = [{name = "crest", rows = ["eta"], column = "size_m", value = "crest_m", digits = 1}]   # tables of the page, made from the file;
                                      # digits may be "as written" there
 
+A page with `model = "scene.toml"` at the head of its file shows what that scene models in a picture model.png, which --write draws again; it carries the
+digest of the scene, by which --pages finds that it is of another one.
+
 The tables stand in README.md between the lines `<!-- numbers -->`, `<!-- studies -->` (a list of them) or `<!-- sizes: crest -->` (a table of a
 study), and `<!-- end -->`.
 """
@@ -40,6 +43,7 @@ study), and `<!-- end -->`.
 import argparse
 import csv
 import difflib
+import hashlib
 import importlib.util
 import math
 import os
@@ -51,6 +55,9 @@ import sys
 import tempfile
 import time
 import tomllib
+
+from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 
 import talus_measures
 from talus_results import Results
@@ -65,7 +72,7 @@ class Page:
         self.folder, self.file, self.readme = folder, folder / "numbers.toml", folder / "README.md"
         self.name = folder.name
         stated = tomllib.loads(self.file.read_text())
-        self.runs, self.studies = stated.get("run", {}), stated.get("study", {})
+        self.runs, self.studies, self.model = stated.get("run", {}), stated.get("study", {}), stated.get("model")
         own = folder / "measures.py"
         self.measures = dict(talus_measures.MEASURES)
         if own.exists():
@@ -340,6 +347,36 @@ def check_study(page, name, study, talus, write):
     return holds
 
 
+# ---- the picture of the model ----
+
+COLOURS = 64  # of the palette of a picture of lines and flat areas, which takes a quarter of the place so
+
+
+def digest_of(page):
+    return hashlib.sha256((page.folder / page.model).read_bytes()).hexdigest()
+
+
+def draw_model(page, talus):
+    """Draws model.png of the page's scene."""
+    with tempfile.TemporaryDirectory() as folder:
+        drawn = pathlib.Path(folder) / "model.png"
+        subprocess.run([talus, "check", page.folder / page.model, "--picture", drawn], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        mark = PngInfo()
+        mark.add_text("scene", digest_of(page))
+        Image.open(drawn).convert("RGB").quantize(COLOURS).save(page.folder / "model.png", optimize=True, pnginfo=mark)
+    print(f"{page.name}: model.png drawn")
+
+
+def model_in_step(page):
+    """Whether the page shows the model of its scene as it is."""
+    picture = page.folder / "model.png"
+    fault = ("has no picture model.png" if not picture.exists() else "does not show model.png" if "](model.png)" not in page.readme.read_text()
+             else "shows the model of another scene" if Image.open(picture).info.get("scene") != digest_of(page) else "")
+    if fault:
+        print(f"{page.name}: FAIL: {page.readme.name} {fault}: ./talus verify --gallery {page.name} --pages --write")
+    return not fault
+
+
 # ---- commands ----
 
 def pages_of(gallery, names):
@@ -403,6 +440,10 @@ def main():
                 if name in given.only if given.only else given.long:
                     holds = check_study(page, name, study, given.talus, given.write) and holds
         holds = put_in_step(page, given.write) and holds
+        if page.model:
+            if given.write:
+                draw_model(page, given.talus)
+            holds = model_in_step(page) and holds
     if given.pages and holds:
         print(f"the tables of the pages in {given.gallery} are in step")
     elif not given.pages and not given.list:

@@ -140,12 +140,15 @@ def label(axes, boundary, points, normals, size):
 
 def named_points(axes, model, flat):
     """Named points and followed lines; `flat` gives the place in the picture of places [..., dim]."""
+    places = [flat(point["position"]) for point in model.data["points"]]
+    near = 0.03 * np.ptp(axes.get_xlim())
     for line in model.data["lines"]:
         points = flat(line["points"])
+        beside = any(np.linalg.norm(place - points[0]) < near for place in places)  # a point, whose name stands to the right
         axes.plot(*points.T, color=style.INK, lw=1.0, ls=(0, (1, 1.4)), zorder=8)
-        axes.annotate(line["name"], points[0], (0, 5), textcoords="offset points", fontsize=7.5, ha="center", zorder=9, path_effects=[WHITE], style="italic")
-    for point in model.data["points"]:
-        at = flat(point["position"])
+        axes.annotate(line["name"], points[0], (-3 if beside else 0, 5), textcoords="offset points", fontsize=7.5, ha="right" if beside else "center",
+                      zorder=9, path_effects=[WHITE], style="italic")
+    for point, at in zip(model.data["points"], places):
         axes.plot(*at, "o", ms=4.2, mfc=style.INK, mec="white", mew=0.8, zorder=9)
         axes.annotate(point["name"], at, (4, 4), textcoords="offset points", fontsize=8, zorder=9, path_effects=[WHITE])
 

@@ -164,6 +164,13 @@ TEST_F(Compare, ChartsOutcomesAgainstAKey) {
   EXPECT_GT(number(rows[1], "corner_largest_speed_m_s"), 0.4);
   EXPECT_TRUE(sweep({"--no-plot"}).says("2 of 2 runs were completed before")) << "goes on where it was stopped";
   EXPECT_TRUE(sweep({"--exact", "1"}).says("--exact and --reference belong to a --measure"));
+  // other values are not taken for them, and replace them only when that is asked for
+  const Ending other = sweep({"--no-plot", "--set", "stage.fall.duration=0.1"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_TRUE(other.says("or give --force to replace it")) << other.output;
+  const Ending replaced = sweep({"--no-plot", "--set", "stage.fall.duration=0.1", "--force"});
+  EXPECT_EQ(replaced.status, 0) << replaced.output;
+  EXPECT_FALSE(replaced.says("completed before")) << replaced.output;
 }
 
 }  // namespace

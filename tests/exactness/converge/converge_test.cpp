@@ -81,7 +81,10 @@ TEST_F(Converge, ContinuesAndRunsAnotherSceneAnew) {
   const auto written = std::filesystem::last_write_time(folder_ / "out/run_0.3536/history.csv");
   EXPECT_EQ(converge(gliding("4"), {"--no-plot"}).status, 0);
   EXPECT_EQ(std::filesystem::last_write_time(folder_ / "out/run_0.3536/history.csv"), written);
-  const Ending other = converge(gliding("2"), {"--no-plot"});
+  const Ending refused = converge(gliding("2"), {"--no-plot"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_TRUE(refused.says("or give --force to replace it")) << refused.output;
+  const Ending other = converge(gliding("2"), {"--no-plot", "--force"});
   EXPECT_FALSE(other.says("completed before")) << "the text of the scene has changed: " << other.output;
   EXPECT_TRUE(other.says("The largest displacement is 0.1 to 0.1 m")) << other.output;
 }
