@@ -12,7 +12,6 @@
 #include "output/csv.h"
 #include "output/json.h"
 #include "output/script.h"
-#include "physics/laws/laws.h"
 #include "scene/words.h"
 
 namespace talus {
@@ -254,7 +253,7 @@ class Study {
     std::vector<std::string> all = file_.set;
     for (const std::string &one : v.overrides(value)) all.push_back(one);
     try {
-      for (const BodySource &body : read_scene(scene_, all).body) read_law(body.law);
+      read_wholly(scene_, all);
     } catch (const SceneError &error) {
       root_.complain("variable." + v.name,
                      "takes the value " + value + (v.unit.empty() ? "" : " " + v.unit) +

@@ -25,8 +25,11 @@
 #include "commands/commands.h"
 #include "commands/comparison.h"
 #include "mesh_source.h"
+#include "physics/boundary/boundary.h"
+#include "physics/laws/laws.h"
 #include "scene/reader.h"
 #include "simulation.h"
+#include "solvers/integrators.h"
 
 namespace talus {
 namespace {
@@ -46,7 +49,7 @@ std::string contents(const std::string &path) {
 std::string description(const TrialPlan &plan, const Trial &trial) {
   std::vector<std::string> all = plan.set;
   all.insert(all.end(), trial.overrides.begin(), trial.overrides.end());
-  const Scene scene = read_scene(plan.scene, all);
+  const Scene scene = read_wholly(plan.scene, all);
   const std::string mesh = scene.mesh.file.empty() ? scene.mesh.section : scene.mesh.file,
                     start = scene.start_from.folder.empty() ? "" : scene.start_from.folder + "/checkpoint/header";
   return joined(plan.command) + " " + plan.scene + "\n" + joined(all) + "\n" +
@@ -189,6 +192,15 @@ void end_with_starter() {
   unsetenv(starter_variable);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (std::to_string(getppid()) != starter) raise(SIGTERM);  // it was gone before that
+}
+
+Scene read_wholly(const std::string &file, const std::vector<std::string> &set) {
+  Scene scene = read_scene(file, set);
+  for (const BodySource &body : scene.body) read_law(body.law);
+  for (const BoundarySource &boundary : scene.boundary) read_boundary(boundary.kind);
+  DeferredTable integrator = scene.integrator;
+  read_integrator(integrator, fluids_move(scene.phases));
+  return scene;
 }
 
 void run_trials(const TrialPlan &plan, const std::vector<Trial *> &trials) {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "scene/scene.h"
+
 namespace talus {
 
 /// One run and its cost.
@@ -34,6 +36,10 @@ class Interrupted : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// The scene with all that other rooms read of it later: laws, boundaries and the integrator. Throws SceneError where a
+/// key or a value of any of them is refused.
+Scene read_wholly(const std::string &file, const std::vector<std::string> &set);
 
 /// Words with a space between them.
 std::string joined(const std::vector<std::string> &words);

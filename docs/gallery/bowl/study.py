@@ -65,8 +65,7 @@ def runs(talus):
 def pictures(talus):
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([talus, "run", HERE / "scene.toml", "-o", folder, "--force"], check=True)
-        for source, name in (("displacement_large", "bowl"), ("plastic_strain_large", "bands")):
-            shutil.copy(f"{folder}/pictures/{source}.png", HERE / f"{name}.png")
+        shutil.copy(f"{folder}/pictures/displacement_large.png", HERE / "bowl.png")
 
 
 def main():

@@ -121,6 +121,8 @@ TEST_F(Compare, TakesFiniteElementsForTheTruth) {
 TEST_F(Compare, RefusesWhatItCannotRun) {
   for (const auto &[more, said] :
        {std::pair{std::vector<std::string>{"--series", "euler: integrator.fractoin=1"}, "integrator.fractoin"},
+        {{"--series", "euler:", "--series", "law: body.sand.frictoin_angle=30"}, "body.sand.frictoin_angle"},
+        {{"--series", "euler:", "--series", "base: boundary.base.frictoin_angle=30"}, "boundary.base.frictoin_angle"},
         {{"--series", "order: integrator.kind=arkode; integrator.order=3,9"}, "2 to 5"},
         {{"--series", "euler:", "--exact", "one"}, "must be a number"},
         {{"--series", "euler:", "--exact", "1", "--reference", "fem: stage.fall.kind=quasi_static"},
@@ -129,6 +131,7 @@ TEST_F(Compare, RefusesWhatItCannotRun) {
     const Ending ending = compare(more);
     EXPECT_EQ(ending.status, 2) << said;
     EXPECT_TRUE(ending.says(said)) << ending.output;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out")) << "before anything runs";
   }
 }
 
