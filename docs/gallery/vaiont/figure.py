@@ -1,9 +1,11 @@
 #!/usr/bin/python3
-"""Draws the Vaiont slide from a run of its scene:  figure.py DIR [DIR_OF_5_DEGREES]"""
+"""Draws the Vaiont slide from a run of its scene:  figure.py DIR [DIR_OF_5_DEGREES | --program TALUS]"""
 
 import argparse
 import pathlib
+import subprocess
 import sys
+import tempfile
 
 import numpy as np
 
@@ -19,6 +21,7 @@ from talus_sections import spacing_of  # noqa: E402
 from talus_tiles import Frame, tiles  # noqa: E402
 
 BASE = np.array([(-150, 1149), (0, 1040), (550.6, 640), (1255, 640), (1755, 1030)])
+SOFTER = "functions.phi_b=[[0, 12], [150, 12], [151, 5]]"  # the base keeps 5 degrees
 PER_SECOND = 4  # rows of the history
 LOADS = (0, 20, 30, 40, 60, 150, 155, 160, 170, 180)  # load times of the frames [s]
 SCALES = ((0, 0.002), (30, 0.02), (150, 0.3), (180, 1))  # plastic strain up to these load times is shown up to that value
@@ -134,9 +137,14 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("run", help="folder of a run of scene.toml")
     parser.add_argument("softer", nargs="?", help="folder of a run with a base of 5 degrees")
+    parser.add_argument("--program", metavar="TALUS", help="make that run with this program")
     arguments = parser.parse_args()
-    run, softer = Results(arguments.run), Results(arguments.softer) if arguments.softer else None
+    run = Results(arguments.run)
+    with tempfile.TemporaryDirectory() as folder:
+        if arguments.program:
+            arguments.softer = folder
+            subprocess.run([arguments.program, "run", HERE / "scene.toml", "-o", folder, "--force", "--no-pictures", "--set", SOFTER], check=True)
+        draw_motion(run, Results(arguments.softer) if arguments.softer else None, HERE / "motion.png")
     draw_frames(run, HERE / "frames.png")
-    draw_motion(run, softer, HERE / "motion.png")
     draw_plane(run, HERE / "plane.png")
     draw_points(run, HERE / "friction.png")
