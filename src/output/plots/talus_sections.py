@@ -254,10 +254,10 @@ class Painter:
         return style.save(self._sheet(field, colours, self.snapshots, columns, [[0]] if len(self.views) == 1 else [[0], [self.section]]), path)
 
     def large(self, field, colours, path):
-        """The time that says most: the last, unless the field had faded by then."""
+        """The time that says most: the last, unless the field had faded by then. Of thickness always the last, the deposit, thinner as it is."""
         values = [snapshot.scalar(field)[0] for snapshot in self.snapshots]
         tops = [np.percentile(known, 99) if (known := one[np.isfinite(one)]).size else 0.0 for one in values]
-        best = self.snapshots[-1] if tops[-1] >= 0.8 * max(tops) else self.snapshots[int(np.argmax(tops))]
+        best = self.snapshots[-1] if field == "thickness" or tops[-1] >= 0.8 * max(tops) else self.snapshots[int(np.argmax(tops))]
         rows = [[0]] if len(self.views) == 1 else [[0, 1], [2, 3]]
         return style.save(self._sheet(field, colours, [best], 1, rows, named_points=True), path)
 

@@ -1,6 +1,9 @@
 // A run that was interrupted, at whatever step, or killed, and then resumed, is the run that was not: bit for bit on
 // the same number of ranks. What cannot be resumed is refused and left as it is.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include "tests/exactness/bad_input/scene.h"
 
@@ -97,6 +100,15 @@ class Resumed : public testing::TestWithParam<Variant> {
     ASSERT_TRUE(program.wait_for(folder_ / results + "/run/" + snapshot + ".h5")) << program.end().output;
     program.signal(signal);
     program.end();
+    wait_for_lock(results);
+  }
+
+  /// Ranks whose mpirun was killed end a moment after it; until then the folder is theirs.
+  void wait_for_lock(const std::string &results) const {
+    const int lock = ::open((folder_ / results + "/.lock").c_str(), O_RDWR);
+    if (lock < 0) return;
+    ::flock(lock, LOCK_EX);
+    ::close(lock);
   }
 
   const Folder folder_;
