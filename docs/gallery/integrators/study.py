@@ -44,7 +44,7 @@ STUDIES = {
     "remap": ("docs/gallery/column/scene.toml", "corner_x_m", ["mesh.size=0.01"],
               ["euler: transfer.remap_interval=0.3,0.2,0.1,0.05,0.02,0", "arkode 3: integrator.kind=arkode; transfer.remap_interval=0.3,0.2,0.1,0.05,0.02"]),
     "creep": ("docs/gallery/selborne_hydrostatic/scene.toml", "crest_displacement_m",
-              ["mesh.size=0.9", "stage.recharge.duration=5", "stage.recharge.until=duration", "stage.slide.duration=0"],
+              ["mesh.size=0.9", "stage.recharge.duration=5", "stage.slide.duration=0"],
               ["euler: transfer.remap_interval=0.02,0.01,0.005,0.002,0.001,0.0005,0"]),
 }
 REFERENCES = {"creep": "no remap: transfer.remap_interval=0.3"}  # cells that stay: linear finite elements
