@@ -302,7 +302,8 @@ PetscErrorCode Conditions<dim>::take_bases(MPI_Comm comm, std::vector<BaseReport
   enum { area, slip, temperature, pressure, heat, friction, normal, sums };
   const int sources = static_cast<int>(sources_.size());
   reports.assign(sources, {});
-  if (std::none_of(sources_.begin(), sources_.end(), [](const Source &s) { return s.kind.remembers; }))
+  if (std::none_of(sources_.begin(), sources_.end(),
+                   [](const Source &s) { return s.kind.in_motion == OnSoil::contact; }))
     PetscFunctionReturn(0);
   std::vector<double> sum(sums * sources, 0), hottest(sources, 0);
   for (int s = 0; s < sources; ++s) std::copy_n(rubbed_[s].begin(), 2, &sum[s * sums + friction]);
@@ -425,7 +426,6 @@ void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &gri
     if (!c.presses) add<dim>(v[c.node], into, n);
     if (!c.sticks) add<dim>(v[c.node], 1 - most / (m * speed), slip);
     account(c.node, c.contact->source, before);
-    if (!base.remembers) continue;
     const double share = c.sticks ? 1 : most / (m * speed);
     c.rubbed = {}, add<dim>(c.rubbed, -share * m, slip);
     if (!counted_[c.node]) continue;

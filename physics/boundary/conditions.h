@@ -87,12 +87,14 @@ class Conditions {
                            const std::vector<double> &filling);
 
   const std::vector<Source> &sources() const { return sources_; }
+  /// Facets of the bases of this rank, with the source that they belong to.
+  const std::vector<std::pair<int, std::vector<Facet<dim>>>> &bases() const { return bases_; }
   bool has_dashpots() const { return !dashpots_.empty(); }
   bool loads(int source) const { return sources_[source].kind.in_motion == OnSoil::load; }
   /// A base as the soil finds it that touches it now: means over its area, per source.
   struct BaseReport {
     double slip = 0;                      ///< [m]
-    double friction = 0;                  ///< sum of friction over sum of normal forces since the last call
+    double friction = 0;                  ///< sum of friction over sum of total normal forces since the last call
     double temperature = 0, hottest = 0;  ///< rise in the shear zone, its mean and that of the hottest place [K]
     double pressure = 0;                  ///< excess pressure in the shear zone [Pa]
     double heat = 0;                      ///< that friction has left in and beside the shear zone, in all [J]

@@ -195,10 +195,12 @@ struct BoundaryRow {
   bool loads = false;  ///< it loads the soil: the mean displacement of its faces is shown, otherwise the force by which
                        ///< it supports the soil
   bool inflow = false;                    ///< the water that enters through it is shown
+  bool is_base = false;                   ///< its friction, and the clearance of the soil over it, are shown
   bool remembers = false, heats = false;  ///< a base: its slip is shown; and the heat of its shear zone
   Vec<dim> value{};                       ///< displacement [m] or force [N]
   double water = 0;                       ///< entering [m3/s]
   double work = 0;                        ///< done on the soil since the start [J]
+  double clearance = 0;                   ///< of the soil over a base [m]
   typename Conditions<dim>::BaseReport base{};
 };
 
@@ -246,7 +248,9 @@ struct RunRow {
       for (int d = 0; d < dim; ++d)
         column(b.name + (b.loads ? "_displacement_" : "_force_") + "xyz"[d], b.loads ? "m" : "N", b.value[d]);
     for (const auto &b : boundaries) {
-      if (b.remembers) column(b.name + "_slip", "m", b.base.slip), column(b.name + "_friction", "-", b.base.friction);
+      if (b.remembers) column(b.name + "_slip", "m", b.base.slip);
+      if (b.is_base)
+        column(b.name + "_friction", "-", b.base.friction), column(b.name + "_clearance", "m", b.clearance);
       if (!b.heats) continue;
       column(b.name + "_temperature", "K", b.base.temperature);
       column(b.name + "_hottest", "K", b.base.hottest);

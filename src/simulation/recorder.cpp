@@ -16,6 +16,7 @@
 #include "scene/changes.h"
 #include "scene/reader.h"
 #include "scene/words.h"
+#include "simulation/base_clearance.h"
 #include "simulation/model.h"
 #include "simulation/output_fields.h"
 
@@ -304,9 +305,11 @@ RunRow<dim> Recorder<dim>::run_row() const {
     row.boundaries.push_back({source.name,
                               world.conditions.loads(static_cast<int>(s)),
                               has_flow_stages(scene_) && source.kind.has_inflow(),
+                              source.kind.in_motion == OnSoil::contact,
                               source.kind.remembers,
                               source.kind.shear_zone.has_value(),
                               {},
+                              0,
                               0,
                               0,
                               {}});
@@ -352,7 +355,9 @@ void Recorder<dim>::write_history() {
   require(of_.world.conditions.take_impulses(of_.world.comm, impulses));
   std::vector<typename Conditions<dim>::BaseReport> bases;
   require(of_.world.conditions.take_bases(of_.world.comm, bases));
-  for (size_t s = 0; s < bases.size(); ++s) run.boundaries[s].base = bases[s];
+  const std::vector<double> clearances = base_clearances(of_.world);
+  for (size_t s = 0; s < bases.size(); ++s)
+    run.boundaries[s].base = bases[s], run.boundaries[s].clearance = clearances[s];
   require(of_.world.conditions.surface_loads().mean_displacements(of_.world.motion->grid(), faces));
   if (of_.statics.current()) require(of_.statics.problem().boundary_forces(of_.clock.load_time, impulses, faces));
   const double elapsed = of_.statics.current() ? 1 : of_.clock.time - impulse_time_;

@@ -110,11 +110,13 @@ TEST(RunRow, names_what_it_holds_and_closes_its_ledgers) {
   const Conditions<2>::BaseReport base{.slip = 15, .friction = 16, .temperature = 17, .hottest = 18, .pressure = 19};
   row.boundaries = {{.name = "base",
                      .inflow = true,
+                     .is_base = true,
                      .remembers = true,
                      .heats = true,
                      .value = {8, 9},
                      .water = 10,
                      .work = 11,
+                     .clearance = 20,
                      .base = base},
                     {.name = "footing", .loads = true, .value = {12, 13}, .work = 14}};
   Names names;
@@ -146,6 +148,7 @@ TEST(RunRow, names_what_it_holds_and_closes_its_ledgers) {
                           "footing_displacement_y_m",
                           "base_slip_m",
                           "base_friction",
+                          "base_clearance_m",
                           "base_temperature_K",
                           "base_hottest_K",
                           "base_excess_pressure_Pa",
@@ -162,6 +165,7 @@ TEST(RunRow, names_what_it_holds_and_closes_its_ledgers) {
   EXPECT_EQ(value["base_force_y_N"], 9);
   EXPECT_EQ(value["footing_displacement_x_m"], 12);
   EXPECT_EQ(value["base_friction"], 16);
+  EXPECT_EQ(value["base_clearance_m"], 20);
   EXPECT_EQ(value["base_excess_pressure_Pa"], 19);
   // energy at the start, work, energy now and that of what has left
   EXPECT_EQ(value["dissipated_J"], 30 + 11 + 14 + 4 + 5 - 6 - (1 + 2 + 9));
