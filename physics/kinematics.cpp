@@ -4,8 +4,17 @@
 
 namespace talus {
 
-bool decompose_exactly(const Square<3> &g, Increment<3> &out) {
-  const Square<3> f = Square<3>::Identity() + g;
+bool decompose_exactly(const Gradient<2> &g, Increment<2> &out) {
+  const PlaneStretch stretch(g);
+  if (!(stretch.volume > -1)) return false;
+  const double ratio = stretch.q / stretch.m;
+  const double slope = ratio < 1e-3 ? (1 + ratio * ratio / 3) / stretch.m : std::atanh(ratio) / stretch.q;
+  out = stretch.increment(std::log1p(stretch.volume) / 2, slope);
+  return true;
+}
+
+bool decompose_exactly(const Gradient<3> &g, Increment<3> &out) {
+  const Square<3> f = Square<3>::Identity() + Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(g.data());
   if (!(f.determinant() > 0)) return false;
   const Eigen::SelfAdjointEigenSolver<Square<3>> eigen(f.transpose() * f);
   const ColumnVector<3> stretch = eigen.eigenvalues().cwiseSqrt();

@@ -126,7 +126,7 @@ class SoilMotion final : public AnySoilMotion<dim> {
   void clear_grid();
   // deformation
   PetscErrorCode deform(double t, const Vec<dim> *u, State &to);
-  void deform_cells(const Vec<dim> *u, State &to);
+  void move_nodes(const Vec<dim> *u, State &to);
   PetscErrorCode smooth_volume_strain(const Shape<dim> *shape);
   void update_points(double t, size_t body, State &to);
   const double *history_seen_by_law(size_t body) {

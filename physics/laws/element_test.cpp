@@ -110,9 +110,7 @@ class Driver {
 
   /// The accepted state deformed by dF = [e^xx xy xz; 0 e^yy yz; 0 0 e^zz].
   ElementState deformed(const Unknowns &x, const Step &step) const {
-    Square<3> g = Square<3>::Zero();
-    for (int i = 0; i < 3; ++i) g(i, i) = std::expm1(x[i]);
-    g(0, 1) = x[3], g(1, 2) = x[4], g(0, 2) = x[5];
+    const Gradient<3> g{std::expm1(x[0]), x[3], x[5], 0, std::expm1(x[1]), x[4], 0, 0, std::expm1(x[2])};
     Increment<3> increment;
     decompose<3>(g, increment);
     ElementState next = state_;

@@ -6,72 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "physics/block.h"
 #include "physics/laws/principal_tangent.h"
 #include "physics/laws/update_stress.h"
 
 namespace talus {
 namespace {
 
-using Four = double __attribute__((vector_size(4 * sizeof(double))));
-using Row = double __attribute__((vector_size(lanes * sizeof(double))));
-
-/// Numbers k to k + 3 of four points, from one Four a point to one Four a number.
-struct Transposed {
-  Four row[4];
-  [[gnu::always_inline]] Transposed(const double *const from[4], std::size_t k) {
-    Four a, b, c, d;
-    std::memcpy(&a, from[0] + k, sizeof a), std::memcpy(&b, from[1] + k, sizeof b);
-    std::memcpy(&c, from[2] + k, sizeof c), std::memcpy(&d, from[3] + k, sizeof d);
-    const Four ab02 = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab13 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-    const Four cd02 = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd13 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-    row[0] = __builtin_shufflevector(ab02, cd02, 0, 1, 4, 5), row[1] = __builtin_shufflevector(ab13, cd13, 0, 1, 4, 5);
-    row[2] = __builtin_shufflevector(ab02, cd02, 2, 3, 6, 7), row[3] = __builtin_shufflevector(ab13, cd13, 2, 3, 6, 7);
-  }
-};
-
-/// `size` numbers of each of `lanes` points: all points' first numbers, then all second ones.
-template <std::size_t size>
-struct Block {
-  alignas(sizeof(Row)) double value[size > 0 ? size : 1][lanes];
-
-  /// Each row is written at once: a wide read of what was written in pieces would wait for memory.
-  [[gnu::always_inline]] void load(const double *const from[lanes]) {
-    if constexpr (size < 4)
-      for (std::size_t k = 0; k < size; ++k) {
-        const Row row{from[0][k], from[1][k], from[2][k], from[3][k], from[4][k], from[5][k], from[6][k], from[7][k]};
-        std::memcpy(value[k], &row, sizeof row);
-      }
-    else
-      for (std::size_t step = 0; step < size; step += 4) {
-        const std::size_t first = step + 4 <= size ? step : size - 4;  // the last four overlap those before
-        const Transposed low(from, first), high(from + 4, first);
-        for (int k = 0; k < 4; ++k) {
-          const Row row = __builtin_shufflevector(low.row[k], high.row[k], 0, 1, 2, 3, 4, 5, 6, 7);
-          std::memcpy(value[first + k], &row, sizeof row);
-        }
-      }
-    // the compiler must not trace single lanes back to here: it would take them out of the vector loop
-    asm("" : "+m"(value));
-  }
-  void fill(double number) {
-    for (auto &row : value) std::fill_n(row, lanes, number);
-  }
-  void store(int lane, double *to) const {
-    for (std::size_t k = 0; k < size; ++k) to[k] = value[k][lane];
-  }
-};
-
-/// A T of `size` doubles taken from lane i, or put there.
-template <class T, std::size_t size>
-[[gnu::always_inline]] inline T take(const Block<size> &b, int i) {
-  return [&]<std::size_t... k>(std::index_sequence<k...>) __attribute__((always_inline)) { return T{b.value[k][i]...}; }
-  (std::make_index_sequence<size>());
-}
-template <std::size_t size>
-[[gnu::always_inline]] inline void put(Block<size> &b, int i, const std::array<double, size> &h) {
-  [&]<std::size_t... k>(std::index_sequence<k...>) __attribute__((always_inline)) { ((b.value[k][i] = h[k]), ...); }
-  (std::make_index_sequence<size>());
-}
 [[gnu::always_inline]] inline void put(Block<4> &b, int i, const Stress<2> &s) {
   b.value[0][i] = s.xx, b.value[1][i] = s.yy, b.value[2][i] = s.zz, b.value[3][i] = s.xy;
 }

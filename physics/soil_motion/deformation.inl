@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "physics/soil_motion.h"
+#include "physics/soil_motion/cell_deformation.h"
 
 namespace talus {
 
@@ -45,39 +46,13 @@ PetscErrorCode SoilMotion<dim, Phases>::smooth_volume_strain(const Shape<dim> *s
 /// Moves the nodes of the accepted state by `u` and finds the increments of deformation of its cells, theory (3.1),
 /// (3.2).
 template <int dim, class Phases>
-void SoilMotion<dim, Phases>::deform_cells(const Vec<dim> *u, State &to) {
-  const int nodes = grid_.node_count(), cells = grid_.cell_count();
-  for (int i = 0; i < nodes; ++i)
+void SoilMotion<dim, Phases>::move_nodes(const Vec<dim> *u, State &to) {
+  for (int i = 0; i < grid_.node_count(); ++i)
     for (int d = 0; d < dim; ++d) to.position[i][d] = accepted_.position[i][d] + u[i][d];
-  double slender = 1, smallest = 1;
-  inverted_ = false;
-  for (int c = 0; c < cells; ++c) {
-    const Shape<dim> &from = accepted_.shape[c];
-    Shape<dim> &shape = to.shape[c];
-    Square<dim> g = Square<dim>::Zero();
-    for (int k = 0; k < dim; ++k)
-      for (int i = 0; i < dim; ++i) {
-        const double du = u[from.node[k + 1]][i] - u[from.node[0]][i];
-        for (int j = 0; j < dim; ++j) g(i, j) += du * from.gradient[k][j];
-      }
-    if (!decompose<dim>(g, increment_[c])) {
-      smallest = -1, inverted_ = true;
-      increment_[c] = {};
-      increment_[c].rotation[0] = 1;
-      if constexpr (dim == 3) increment_[c].rotation[4] = increment_[c].rotation[8] = 1;
-    }
-    volume_strain_[c] = trace<dim>(increment_[c]);
-    std::array<const Vec<dim> *, dim + 1> x;
-    for (int k = 0; k <= dim; ++k) x[k] = &to.position[from.node[k]];
-    shape.node = from.node;
-    shape.volume = simplex_gradients<dim>(x, shape.gradient);
-    double gradient = 0;
-    for (const auto &row : shape.gradient)
-      for (double value : row) gradient += value * value;
-    slender = std::max(slender, gradient / slenderness_[c]);
-    smallest = std::min(smallest, shape.volume / mesh_.volume[grid_.mesh_cell[c]]);
-  }
-  if (!is_trial(to)) step_ratio_ = 1 / std::sqrt(slender), smallest_ratio_ = smallest;
+  const WorstCell worst = deform_cells<dim>(grid_, u, to.position, accepted_.shape, slenderness_.data(), to.shape,
+                                            increment_.data(), volume_strain_.data());
+  inverted_ = worst.volume == -1;
+  if (!is_trial(to)) step_ratio_ = 1 / std::sqrt(worst.slenderness), smallest_ratio_ = worst.volume;
 }
 
 /// Stress, history and volume of the points of a body, theory (3.3), (3.9); adds their volumes to the cells.
@@ -130,7 +105,7 @@ PetscErrorCode SoilMotion<dim, Phases>::deform(double t, const Vec<dim> *u, Stat
     accepted.trial = trial;
     PetscCall(fluid_.find_divergence(accepted, pore_conditions_, u));
   }
-  deform_cells(u, to);
+  move_nodes(u, to);
   if constexpr (Phases::liquid) std::copy_n(volume_strain_.begin(), cells, pore_strain_.begin());
   PetscCall(smooth_volume_strain(to.shape));
   if constexpr (Phases::liquid) {  // the pores' volume follows the smoothing of their pressure

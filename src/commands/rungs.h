@@ -8,6 +8,7 @@
 #include "tests/verification/cam_clay_paths/exact.h"
 #include "tests/verification/celia/exact.h"
 #include "tests/verification/closed_box/exact.h"
+#include "tests/verification/curved_chute/exact.h"
 #include "tests/verification/dynamic_oedometer/exact.h"
 #include "tests/verification/elastic_bar/exact.h"
 #include "tests/verification/fem_at_rest/exact.h"
@@ -67,6 +68,8 @@ inline constexpr LadderEntry ladder[] = {
      rungs::elastic_bar},
     {"incline_block", "verification", "block on a rough plane: sliding, sticking, adhesion, friction that drops",
      rungs::incline_block},
+    {"curved_chute", "verification", "block that slides through a circular valley: friction by weight and curvature",
+     rungs::curved_chute},
     {"wet_incline", "verification", "saturated block on a rough plane: friction by the effective normal force",
      rungs::wet_incline},
     {"loaded_face", "verification", "loads on faces that move through several cells", rungs::loaded_face},

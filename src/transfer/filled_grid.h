@@ -80,29 +80,27 @@ class FilledGrid {
   Halo halo_;
 };
 
-/// Gradients 1..dim and volume of a simplex from its vertices; the volume is negative for an inverted one.
+/// Gradients 1..dim and volume of a simplex from its edges, which lead from vertex 0 to the others; the volume is
+/// negative for an inverted one. Straight-line code, for loops over several cells at a time.
 template <int dim>
-inline double simplex_gradients(const std::array<const Vec<dim> *, dim + 1> &x, std::array<Vec<dim>, dim> &gradient) {
+[[gnu::always_inline]] inline double simplex_gradients(const std::array<Vec<dim>, dim> &edge,
+                                                       std::array<Vec<dim>, dim> &gradient) {
   if constexpr (dim == 2) {
-    const double ax = (*x[1])[0] - (*x[0])[0], ay = (*x[1])[1] - (*x[0])[1];
-    const double bx = (*x[2])[0] - (*x[0])[0], by = (*x[2])[1] - (*x[0])[1];
-    const double det = ax * by - ay * bx, i = 1 / det;
-    gradient[0] = {by * i, -bx * i};
-    gradient[1] = {-ay * i, ax * i};
+    const auto &[a, b] = edge;
+    const double det = a[0] * b[1] - b[0] * a[1], i = 1 / det;
+    gradient[0] = {b[1] * i, -b[0] * i};
+    gradient[1] = {-a[1] * i, a[0] * i};
     return det / 2;
   } else {
-    double e[3][3];
-    for (int k = 0; k < 3; ++k)
-      for (int d = 0; d < 3; ++d) e[k][d] = (*x[k + 1])[d] - (*x[0])[d];
-    const auto cross = [](const double *a, const double *b, Vec<3> &c) {
-      c = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    const auto cross = [](const Vec<3> &a, const Vec<3> &b) __attribute__((always_inline)) {
+      return Vec<3>{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
     };
-    cross(e[1], e[2], gradient[0]);
-    cross(e[2], e[0], gradient[1]);
-    cross(e[0], e[1], gradient[2]);
-    const double det = e[0][0] * gradient[0][0] + e[0][1] * gradient[0][1] + e[0][2] * gradient[0][2], i = 1 / det;
-    for (auto &g : gradient)
-      for (double &c : g) c *= i;
+    const auto &[a, b, c] = edge;
+    const Vec<3> bc = cross(b, c), ca = cross(c, a), ab = cross(a, b);
+    const double det = a[0] * bc[0] + a[1] * bc[1] + a[2] * bc[2], i = 1 / det;
+    gradient[0] = {bc[0] * i, bc[1] * i, bc[2] * i};
+    gradient[1] = {ca[0] * i, ca[1] * i, ca[2] * i};
+    gradient[2] = {ab[0] * i, ab[1] * i, ab[2] * i};
     return det / 6;
   }
 }
