@@ -18,6 +18,8 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <regex>
+#include <set>
 #include <sstream>
 #include <thread>
 
@@ -25,10 +27,12 @@
 #include "commands/commands.h"
 #include "commands/comparison.h"
 #include "mesh_source.h"
+#include "output/csv.h"
 #include "physics/boundary/boundary.h"
 #include "physics/laws/laws.h"
 #include "scene/reader.h"
 #include "simulation.h"
+#include "simulation/scene_keys.h"
 #include "solvers/integrators.h"
 
 namespace talus {
@@ -111,6 +115,34 @@ std::string last_line(const std::string &path) {
 
 void on_signal(int) { interrupted = 1; }
 
+/// The sentences behind "warning:" in the log of a run, each once.
+std::vector<std::string> sentences_of(const Trial &trial) {
+  static const std::string mark = "  warning: ";
+  std::vector<std::string> found;
+  std::ifstream file(trial.folder + "/run.log");
+  for (std::string line; std::getline(file, line);)
+    if (const std::size_t at = line.find(mark); at != std::string::npos) {
+      const std::string sentence = line.substr(at + mark.size());
+      if (std::find(found.begin(), found.end(), sentence) == found.end()) found.push_back(sentence);
+    }
+  return found;
+}
+
+/// A sentence with # for each number.
+std::string without_numbers(const std::string &sentence) {
+  static const std::regex number("[0-9][0-9.]*(e[-+]?[0-9]+)?");
+  return std::regex_replace(sentence, number, "#");
+}
+
+/// Is it the path of a key, with its pattern: body.clay.cohesion and body.NAME.cohesion?
+bool matches(const std::string &key, const std::string &pattern) {
+  const std::vector<std::string> words = pieces(key, '.'), wanted = pieces(pattern, '.');
+  return words.size() == wanted.size() &&
+         std::equal(words.begin(), words.end(), wanted.begin(), [](const std::string &word, const std::string &other) {
+           return word == other || other == "NAME" || other == "N";
+         });
+}
+
 /// Runs what is not done yet.
 void run_missing(const TrialPlan &plan, const std::vector<Trial *> &trials, const std::vector<std::string> &described) {
   using Clock = std::chrono::steady_clock;
@@ -183,6 +215,51 @@ std::string joined(const std::vector<std::string> &words) {
   std::string text;
   for (const std::string &word : words) text += (text.empty() ? "" : " ") + word;
   return text;
+}
+
+std::vector<SharedWarning> warnings_of(const std::vector<Trial *> &trials) {
+  std::vector<SharedWarning> all;
+  std::map<std::string, std::size_t> known;
+  for (const Trial *trial : trials) {
+    if (!trial->done) continue;
+    std::set<std::size_t> mine;  // sentences of this run that differ in their numbers count once
+    for (const std::string &sentence : sentences_of(*trial)) {
+      const auto [at, added] = known.emplace(without_numbers(sentence), all.size());
+      if (added) all.push_back({sentence, 0, fs::path(trial->folder).filename().string()});
+      mine.insert(at->second);
+    }
+    for (const std::size_t i : mine) ++all[i].runs;
+  }
+  return all;
+}
+
+void write_warnings(const std::string &folder, const std::vector<SharedWarning> &warnings) {
+  std::ofstream file(folder + "/warnings.csv");
+  file << "warning,runs,first_run\n";
+  for (const SharedWarning &one : warnings)
+    file << csv_field(one.sentence) << "," << one.runs << "," << csv_field(one.first) << "\n";
+  if (!file.flush()) throw std::runtime_error("cannot write " + folder + "/warnings.csv");
+}
+
+void print_warnings(const std::vector<SharedWarning> &warnings, std::size_t runs) {
+  for (const SharedWarning &one : warnings)
+    std::printf("warning in %d of %zu runs, first in %s: %s\n", one.runs, runs, one.first.c_str(),
+                one.sentence.c_str());
+  std::fflush(stdout);
+}
+
+std::string warnings_of(const Trial &trial) {
+  std::string text;
+  for (const std::string &sentence : sentences_of(trial)) text += (text.empty() ? "" : " | ") + sentence;
+  return text;
+}
+
+std::string unit_of_key(const std::string &key) {
+  const Describer keys = scene_keys();
+  for (const Describer::Block &block : keys.blocks())
+    for (const Describer::Key &one : block.keys)
+      if (!one.unit.empty() && matches(key, one.path)) return one.unit;
+  return "";
 }
 
 void end_with_starter() {

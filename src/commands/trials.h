@@ -50,6 +50,24 @@ std::string joined(const std::vector<std::string> &words);
 /// after SIGINT or SIGTERM, which end the runs under way too; called again, it continues with the missing runs.
 void run_trials(const TrialPlan &plan, const std::vector<Trial *> &trials);
 
+/// What the runs that are done warned of in their logs, one sentence for all that differ in their numbers alone; each
+/// with the number of runs and the first of them.
+struct SharedWarning {
+  std::string sentence;  ///< as the first run has it
+  int runs = 0;
+  std::string first;  ///< folder of the first run, without the path
+};
+std::vector<SharedWarning> warnings_of(const std::vector<Trial *> &trials);
+/// Writes them to FOLDER/warnings.csv, for the scripts.
+void write_warnings(const std::string &folder, const std::vector<SharedWarning> &warnings);
+/// Prints them, each once.
+void print_warnings(const std::vector<SharedWarning> &warnings, std::size_t runs);
+/// All warnings of one run as one text.
+std::string warnings_of(const Trial &trial);
+
+/// Unit of a number without one at a key of a scene, such as body.clay.cohesion; empty where it has none.
+std::string unit_of_key(const std::string &key);
+
 /// To be called first by every program: a run that run_trials has started ends by SIGTERM when the program that started
 /// it is gone, even killed. Programs that the run starts itself are not concerned.
 void end_with_starter();
