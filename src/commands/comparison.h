@@ -42,6 +42,48 @@ inline std::vector<std::string> pieces(const std::string &text, char separator) 
   return out;
 }
 
+/// A number, also one with a unit behind it ("5 mm"); NaN if it is none.
+inline double number_of(const std::string &text) {
+  const std::string bare = !text.empty() && text.front() == '"' ? text.substr(1) : text;
+  char *end = nullptr;
+  const double value = std::strtod(bare.c_str(), &end);
+  return end == bare.c_str() ? NAN : value;
+}
+
+/// What stands behind the number of a value, its unit; empty where it is none.
+inline std::string unit_behind(const std::string &text) {
+  if (std::isnan(number_of(text))) return "";
+  std::string bare = text;
+  std::erase(bare, '"');
+  char *end = nullptr;
+  std::strtod(bare.c_str(), &end);
+  return trimmed(end);
+}
+
+/// What is wrong with a list whose numbers have different units, or some of them a unit and others none: those would be
+/// read in the unit of the key, "4,8,12 kPa" as 4 Pa, 8 Pa and 12 kPa, and charts would order them by their numbers.
+/// Empty if nothing is.
+inline std::string mixed_units(const std::vector<std::string> &values) {
+  std::vector<std::string> numbers;
+  for (const std::string &value : values)
+    if (!std::isnan(number_of(value))) numbers.push_back(value);
+  if (numbers.empty()) return "";
+  const std::string &last = numbers.back(), unit = unit_behind(last);
+  for (const std::string &value : numbers) {
+    const std::string other = unit_behind(value), named = unit.empty() ? other : unit;
+    if (other == unit) continue;
+    std::string all;
+    for (const std::string &one : numbers)
+      all += (all.empty() ? "" : ",") + one + (unit_behind(one).empty() ? " " + named : "");
+    return !other.empty() && !unit.empty()
+               ? "has values in " + other + " and in " + unit + ": give all of them in one unit"
+               : "has a unit at " + (unit.empty() ? value : last) + " and none at " + (unit.empty() ? last : value) +
+                     ", which would be a number in the unit of the key: give all of them a unit, such as " + all +
+                     ", or none";
+  }
+  return "";
+}
+
 /// "NAME: key=a,b; key=c". Throws SceneError.
 inline Series parse_series(const std::string &text) {
   const size_t colon = text.find(':');
@@ -57,6 +99,8 @@ inline Series parse_series(const std::string &text) {
     series.lists.emplace_back(trimmed(part.substr(0, equal)), pieces(part.substr(equal + 1), ','));
     for (const std::string &value : series.lists.back().second)
       if (value.empty()) throw SceneError("--series \"" + text + "\": `" + part + "` has an empty value");
+    if (const std::string wrong = mixed_units(series.lists.back().second); !wrong.empty())
+      throw SceneError("--series \"" + text + "\": `" + part + "` " + wrong);
   }
   return series;
 }
@@ -74,14 +118,6 @@ inline std::vector<std::vector<std::string>> products(const Series &series) {
     all = std::move(next);
   }
   return all;
-}
-
-/// A number, also one with a unit behind it ("5 mm": within a series the unit is the same); NaN if it is none.
-inline double number_of(const std::string &text) {
-  const std::string bare = !text.empty() && text.front() == '"' ? text.substr(1) : text;
-  char *end = nullptr;
-  const double value = std::strtod(bare.c_str(), &end);
-  return end == bare.c_str() ? NAN : value;
 }
 
 /// What is read off a history.

@@ -109,7 +109,10 @@ class Study {
       read_one_of(v.kind, "kind", v.variation);
       if (const auto *list = std::get_if<NumberList>(&v.variation))
         for (const double value : list->values) v.listed.push_back(in_digits(value));
-      if (const auto *words = std::get_if<Choices>(&v.variation)) v.listed = words->choices;
+      if (const auto *words = std::get_if<Choices>(&v.variation)) {
+        v.listed = words->choices;
+        if (const std::string wrong = mixed_units(v.listed); !wrong.empty()) root_.complain(path + ".choices", wrong);
+      }
       if (!v.unit.empty() && !v.numeric()) root_.complain(path + ".unit", "belongs to numbers; write units in choices");
       if (!v.unit.empty()) check_unit(path + ".unit", v.unit);
       variables_.push_back(v);

@@ -34,6 +34,25 @@ TEST(Comparison, numbers_may_have_a_unit) {
   EXPECT_TRUE(std::isnan(number_of("euler")));
 }
 
+TEST(Comparison, lists_of_which_some_numbers_have_a_unit_are_refused) {
+  EXPECT_EQ(unit_behind("\"5 mm\""), "mm");
+  EXPECT_EQ(unit_behind("[0, 1 m]"), "");
+  for (const char *good : {"a: k=4 kPa,8 kPa,12kPa", "a: k=4,8,12", "a: k=a,b", "a: k=[0, 1 m],[0, 2]"})
+    EXPECT_NO_THROW(parse_series(good)) << good;
+  for (const auto &[text, said] :
+       {std::pair{"a: k=4,8,12 kPa",
+                  "none at 4, which would be a number in the unit of the key: give all of them a "
+                  "unit, such as 4 kPa,8 kPa,12 kPa, or none"},
+        {"a: k=4 kPa,8", "has a unit at 4 kPa and none at 8"},
+        {"a: k=4 kPa,1 MPa", "has values in kPa and in MPa"}})
+    try {
+      parse_series(text);
+      ADD_FAILURE() << text;
+    } catch (const SceneError &error) {
+      EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << error.what();
+    }
+}
+
 TEST(Comparison, richardson_finds_the_limit_of_a_power) {
   std::vector<std::pair<double, double>> refined;
   for (const double h : {0.1, 0.2, 0.4}) refined.emplace_back(h, 7 + 3 * h * h);
