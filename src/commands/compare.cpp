@@ -123,6 +123,12 @@ void print(const std::vector<Variant> &trials, const std::string &measure, const
       std::printf("%-20s %-50s %14.8g %10.2e %10.3g %10lld %10lld %8lld\n", t.label.c_str(),
                   joined(t.overrides).c_str(), t.value, t.error, t.cpu, t.steps, t.evaluations, t.rejections);
   }
+  if (const auto without = std::count_if(trials.begin(), trials.end(),
+                                         [](const Variant &t) { return !t.failed && std::isnan(t.value); }))
+    std::printf(
+        "%ld of %zu runs have no value: they ended before that time without coming to rest, or the point had no "
+        "soil\n",
+        static_cast<long>(without), trials.size());
 }
 
 /// Outcomes of each run against the last key of its series: whether and when it fails, how far and how fast it moves.
@@ -163,7 +169,7 @@ int compare(CompareArguments arguments) {
   for (Variant &trial : trials) pointers.push_back(&trial);
   TrialPlan plan{arguments.scene, arguments.set, arguments.jobs};
   plan.replace = arguments.force;
-  if (!arguments.measure.empty()) plan.columns = {measure.column};
+  if (!arguments.measure.empty()) plan.measures = {measure};
   run_trials(plan, pointers);
   const std::vector<SharedWarning> warnings = warnings_of(pointers);
   write_warnings(arguments.directory, warnings);

@@ -166,14 +166,28 @@ inline void require_column(const std::vector<std::string> &names, const std::str
     throw SceneError("history.csv has no column " + column + "; " + suggestion(column, names));
 }
 
-/// The measure of a history.csv, linear between its lines. Throws SceneError for a column it lacks.
+/// Did the run with this history.csv end with its soil at rest or in equilibrium? Its log says so of the last stage.
+inline bool ended_at_rest(const std::string &history, const std::string &last_stage) {
+  std::ifstream log(history.substr(0, history.rfind("history.csv")) + "run.log");
+  const std::string rest = "  stage " + last_stage + " came to rest",
+                    equilibrium = "  stage " + last_stage + " is in equilibrium";
+  for (std::string line; std::getline(log, line);)
+    if (line.find(rest) != std::string::npos || line.find(equilibrium) != std::string::npos) return true;
+  return false;
+}
+
+/// The measure of a history.csv, linear between its lines. At a time after the end of a run that came to rest before,
+/// the last line counts; after another end there is no value (NaN). Throws SceneError for a column it lacks.
 inline double value_of(const std::string &path, const Measure &measure) {
   std::ifstream file(path);
-  std::string line;
+  std::string line, last_stage;
   std::getline(file, line);
   const std::vector<std::string> names = columns_of(path);
   require_column(names, measure.column);
-  const size_t column = std::find(names.begin(), names.end(), measure.column) - names.begin();
+  const auto place = [&](const std::string &name) {
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  };
+  const std::size_t column = place(measure.column), stage = place("stage");
   double last_time = 0, last = NAN, largest = -INFINITY;
   while (std::getline(file, line)) {
     const std::vector<std::string> cells = pieces(line, ',');
@@ -184,8 +198,10 @@ inline double value_of(const std::string &path, const Measure &measure) {
                  ? value
                  : last + (value - last) * (measure.time - last_time) / (time - last_time);
     last_time = time, last = value, largest = std::max(largest, value);
+    if (stage < cells.size()) last_stage = unquoted(cells[stage]);
   }
-  return measure.largest ? largest : std::isnan(measure.time) ? last : NAN;
+  if (measure.largest) return std::isfinite(largest) ? largest : NAN;
+  return std::isnan(measure.time) || ended_at_rest(path, last_stage) ? last : NAN;
 }
 
 struct Reference {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -70,7 +71,7 @@ class Study {
     make_variants();
     check_extremes();
     TrialPlan plan{scene_, file_.set, arguments_.jobs};
-    for (const std::string &measure : file_.measures) plan.columns.push_back(parse_measure(measure).column);
+    for (const std::string &measure : file_.measures) plan.measures.push_back(parse_measure(measure));
     plan.replace = arguments_.force, plan.refusal_ends = false;
     if (file_.runs == StudyRuns::factor_of_safety) plan.command = {"solve", "--factor-of-safety"};
     std::vector<Trial *> pointers;
@@ -295,7 +296,9 @@ class Study {
       for (const std::string &value : variant.values) file << "," << csv_field(value);
       for (const std::string &measure : file_.measures) {
         file << ",";
-        if (!variant.failed) file << talus::value_of(variant.folder + "/history.csv", parse_measure(measure));
+        const double value =
+            variant.failed ? NAN : talus::value_of(variant.folder + "/history.csv", parse_measure(measure));
+        if (std::isfinite(value)) file << value;
       }
       file << "," << fs::path(variant.folder).filename().string() << "," << variant.cpu << "," << variant.wall << ","
            << csv_field(variant.failed && variant.cause.empty() ? "the run ended without a message" : variant.cause)

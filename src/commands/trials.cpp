@@ -30,6 +30,7 @@
 #include "output/csv.h"
 #include "physics/boundary/boundary.h"
 #include "physics/laws/laws.h"
+#include "scene/quantity.h"
 #include "scene/reader.h"
 #include "simulation.h"
 #include "simulation/scene_keys.h"
@@ -48,12 +49,23 @@ std::string contents(const std::string &path) {
   return text.str();
 }
 
+/// Throws SceneError where the stages end before the time of a measure.
+void require_within_stages(const Scene &scene, const Measure &measure) {
+  double end = 0;
+  for (const Stage &stage : scene.stage) end += stage.duration;
+  if (measure.time > end * (1 + 1e-9))
+    throw SceneError("the measure " + measure.column + "@" + shortest(measure.time) +
+                     " asks for t = " + shortest(measure.time) +
+                     " s, and the stages of the scene end at t = " + shortest(end) + " s at the latest");
+}
+
 /// What a run depends on: DIR/trial begins with it. The number stands for the texts of scene and mesh, and for the
 /// state at which the run starts.
 std::string description(const TrialPlan &plan, const Trial &trial) {
   std::vector<std::string> all = plan.set;
   all.insert(all.end(), trial.overrides.begin(), trial.overrides.end());
   const Scene scene = read_wholly(plan.scene, all);
+  for (const Measure &measure : plan.measures) require_within_stages(scene, measure);
   const std::string mesh = scene.mesh.file.empty() ? scene.mesh.section : scene.mesh.file,
                     start = scene.start_from.folder.empty() ? "" : scene.start_from.folder + "/checkpoint/header";
   return joined(plan.command) + " " + plan.scene + "\n" + joined(all) + "\n" +
@@ -159,7 +171,7 @@ void run_missing(const TrialPlan &plan, const std::vector<Trial *> &trials, cons
     for (const auto &[child, run] : running) kill(child, SIGTERM);
     for (const auto &[child, run] : running) waitpid(child, nullptr, 0);
   };
-  bool told = false, has_columns = plan.columns.empty();
+  bool told = false, has_columns = plan.measures.empty();
   while (done < trials.size() || !running.empty()) {
     if (interrupted && !told)
       for (const auto &[child, run] : running) kill(child, SIGTERM);
@@ -171,7 +183,7 @@ void run_missing(const TrialPlan &plan, const std::vector<Trial *> &trials, cons
       const std::vector<std::string> names = columns_of(trials[run->second.first]->folder + "/history.csv");
       try {
         if (!names.empty())
-          for (const std::string &column : plan.columns) require_column(names, column);
+          for (const Measure &measure : plan.measures) require_column(names, measure.column);
       } catch (const SceneError &) {
         end_others();
         throw;
@@ -282,7 +294,10 @@ Scene read_wholly(const std::string &file, const std::vector<std::string> &set) 
 
 void run_trials(const TrialPlan &plan, const std::vector<Trial *> &trials) {
   std::vector<std::string> described;
-  for (Trial *trial : trials) described.push_back(description(plan, *trial)), resume(plan, described.back(), *trial);
+  for (Trial *trial : trials) {
+    described.push_back(description(plan, *trial));
+    resume(plan, described.back(), *trial);
+  }
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   run_missing(plan, trials, described);

@@ -7,11 +7,10 @@ broke off, as `talus verify` ends with 1 where a number does not hold.
 
 import argparse
 import csv
-import json
 import pathlib
 import sys
 
-from talus_outcomes import FAILS, MOVES, STANDS, cell_size, outcome, warnings_in
+from talus_outcomes import FAILS, MOVES, STANDS, cell_size, outcome, warnings_in, write_json
 from talus_results import Results
 from talus_sections import BELOW, BESIDE, FOOT, HEAD, LEFT, RIGHT, TITLE, WIDTH, Colours, Painter, plt
 import talus_style as style
@@ -119,7 +118,7 @@ def write_tables(rows, sentences, judged, decides, by, within, folder):
         writer.writeheader()
         writer.writerows(rows)
     page = {"by": by, "within": within, "decides": decides, "verdict": sentences, "quantities": judged, "warnings": warnings_in(folder), "runs": rows}
-    (folder / "converge.json").write_text(json.dumps(page, indent=1) + "\n")
+    write_json(folder / "converge.json", page)
 
 
 def draw(results, rows, by, path):

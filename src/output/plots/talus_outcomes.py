@@ -7,6 +7,8 @@ is that of the last snapshot, since the start or the last reset.
 """
 
 import csv
+import json
+import math
 
 import numpy as np
 
@@ -52,7 +54,7 @@ def outcome(results, cell=None):
     row = {"state": state, "fails": {FAILS: True, MOVES: None, STANDS: False}[state], "load_time_of_failure_s": failed_at, "largest_displacement_m": moved}
     history = results.history
     for name in history.points(0) if history else {}:
-        row[f"{name}_displacement_m"] = float(history.columns[f"{name}_displacement_m"][-1])
+        row[f"{name}_displacement_m"] = finite(history.columns[f"{name}_displacement_m"][-1])  # none where the point has no soil
     travel, volume, depth, place = slide(results) if state != STANDS else (None, None, None, None)
     row |= {"travel_distance_m": travel, "volume_of_slide_m3": volume, "depth_of_slide_m": depth, "deepest_at_x_m": place}
     return row | {"steps": int(steps(results)), "particles": int(particles(results)), "cell_m": own}
@@ -67,6 +69,22 @@ def in_words(row, cell):
         return f"soil slid by less than a cell of {cell:.2g} m: smaller cells show whether it fails"
     small = row["largest_displacement_m"] <= SMALL * cell
     return f"no soil moved by more than {100 * SMALL:g} % of a cell of {cell:.2g} m" if small else "soil deformed as a whole, without sliding"
+
+
+def finite(value):
+    """A number; None where it is none or infinite."""
+    return float(value) if math.isfinite(value) else None
+
+
+def write_json(path, page):
+    """JSON has no NaN: numbers that are none are null."""
+    def cleaned(value):
+        if isinstance(value, dict):
+            return {key: cleaned(one) for key, one in value.items()}
+        if isinstance(value, (list, tuple)):
+            return [cleaned(one) for one in value]
+        return finite(value) if isinstance(value, float) else value
+    path.write_text(json.dumps(cleaned(page), indent=1, allow_nan=False) + "\n")
 
 
 def warnings_in(folder):

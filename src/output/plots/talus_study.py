@@ -16,7 +16,7 @@ import textwrap
 import numpy as np
 
 import talus_style as style
-from talus_outcomes import FAILS, MOVES, STANDS, warnings_in
+from talus_outcomes import FAILS, MOVES, STANDS, finite, warnings_in, write_json
 from talus_style import plt
 from talus_sweep import TITLES, number, outcomes
 from talus_units import with_unit, words
@@ -58,7 +58,7 @@ def clopper_pearson(k, n, confidence):
 
 def state(row, criterion):
     """Whether a run meets a criterion: MET, NOT_MET, or UNKNOWN where the run broke off, where its factor is a bracket about the limit,
-    or where the criterion asks whether a slope fails that moved by less than a cell."""
+    where the criterion asks whether a slope fails that moved by less than a cell, or where the run has no value."""
     if row["failure"]:
         return UNKNOWN
     below, limit = criterion["side"] == "below", criterion["limit"]
@@ -68,8 +68,8 @@ def state(row, criterion):
     if value is None and criterion["outcome"] == "factor_of_safety":
         ends = {(end < limit) == below for end in (row["factor_with_equilibrium"], row["factor_with_mechanism"])}
         return UNKNOWN if len(ends) > 1 else MET if ends.pop() else NOT_MET
-    if value is None:  # the load time of a failure that did not happen
-        return NOT_MET
+    if value is None:  # the load time of a failure that did not happen; of others it is not known
+        return NOT_MET if criterion["outcome"] == "load_time_of_failure_s" else UNKNOWN
     return MET if (value < limit if below else value > limit) else NOT_MET
 
 
@@ -190,7 +190,7 @@ def main():
     for row in rows:
         if row.get("state") == STANDS:
             row |= {name: 0.0 for name in NO_SLIDE}
-        row |= {measure: None if row["failure"] else float(row[measure]) for measure in design["measures"]}
+        row |= {measure: finite(float(row[measure] or "nan")) for measure in design["measures"]}
         row |= {f"meets_{criterion['name']}": {MET: "yes", NOT_MET: "no", UNKNOWN: ""}[state(row, criterion)] for criterion in design["criteria"]}
     names = list(dict.fromkeys(key for row in rows for key in row))
     with open(given.folder / "study.csv", "w", newline="") as file:
@@ -215,8 +215,12 @@ def main():
               f"{100 * p['confidence']:g} % interval {p['low']:.4g} to {p['high']:.4g}" + (f"; unknown in {p['unknown']} runs" if p["unknown"] else ""))
     shown = varying(rows, dict.fromkeys([*(c["outcome"] for c in criteria), *SHOWN, *design["measures"]]))
     fits = [fit for fit in (sensitivities(rows, variables, name) for name in shown if name != "fails") if fit]
-    (given.folder / "study.json").write_text(json.dumps({"title": design["title"], "runs": len(rows), "planned": design["planned"],
-                                                         "broke_off": len(broken), "warnings": warnings_in(given.folder), "probabilities": estimates, "sensitivities": fits}, indent=1) + "\n")
+    for measure in design["measures"]:
+        if without := [row["run"] for row in rows if not row["failure"] and row[measure] is None]:
+            print(f"{measure} has no value in {len(without)} runs, first in run {without[0]}: they ended before that time without coming to rest, or the point "
+                  "had no soil")
+    write_json(given.folder / "study.json", {"title": design["title"], "runs": len(rows), "planned": design["planned"], "broke_off": len(broken),
+                                             "warnings": warnings_in(given.folder), "probabilities": estimates, "sensitivities": fits})
     for name, wanted, draw in (("tornado", fits, lambda path: draw_tornado(fits, path)),
                                ("scatter", shown, lambda path: draw_scatter(rows, variables, shown, criteria, path)),
                                ("exceedance", shown and sampled, lambda path: draw_exceedance(rows, [s for s in shown if s != "fails"], criteria, design["confidence"], path))):

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import pathlib
 import shutil
 import subprocess
@@ -13,9 +14,10 @@ import numpy as np
 
 PROGRAM = sys.argv.pop()
 sys.path.insert(0, subprocess.run([PROGRAM, "--python-path"], check=True, capture_output=True, text=True).stdout.strip())
-from talus_outcomes import FAILS, MOVES, STANDS, state_of  # noqa: E402
+from talus_outcomes import FAILS, MOVES, STANDS, state_of, write_json  # noqa: E402
 from talus_report import key_results  # noqa: E402
 from talus_results import Results  # noqa: E402
+from talus_study import UNKNOWN, state  # noqa: E402
 
 SECTION = """part,x,y
 outline,0,0
@@ -131,6 +133,22 @@ class Outcomes(unittest.TestCase):
                 self.assertEqual(one[name], other[name])
         self.assertEqual(table[0]["volume_of_slide_m3"], self.table[1]["volume_of_slide_m3"])
         self.assertRegex(printed, r"strength +5 kPa +moves")
+
+    def test_a_run_at_rest_has_its_last_row_at_later_times(self):
+        for row in self.table:  # all come to rest before 14 s
+            self.assertAlmostEqual(float(row["crest_displacement_m@14"]) / float(row["crest_displacement_m"]), 1, delta=1e-5)  # six digits
+
+    def test_values_that_are_none_are_null(self):
+        (self.folder / "none.toml").write_text(STUDY.replace("crest_displacement_m@14", "crest_displacement_m@9"))
+        late = ["--set", 'set=["stage.slide.until=duration","stage.slide.duration=0.5"]']
+        refused = subprocess.run([PROGRAM, "study", "none.toml", "-o", "late", "--no-plot", *late], capture_output=True, text=True, cwd=self.folder)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("the measure crest_displacement_m@9 asks for t = 9 s, and the stages of the scene end at t = 0.5 s", refused.stderr)
+        known = {"failure": "", "strength": "1", "state": "stands", "fails": False, "x": None}
+        self.assertEqual(state(known, {"outcome": "x", "side": "below", "limit": 1}), UNKNOWN)
+        path = self.folder / "page.json"
+        write_json(path, {"a": [math.nan, 1.5], "b": {"c": math.inf, "d": True, "e": 3}})
+        self.assertEqual(json.loads(path.read_text(), parse_constant=self.fail), {"a": [None, 1.5], "b": {"c": None, "d": True, "e": 3}})
 
     def test_warnings_of_the_runs_reach_the_summary(self):
         printed = self.call("study", "factors.toml", "-o", "factors", "-j", "2", "--no-plot")

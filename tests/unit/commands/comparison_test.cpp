@@ -79,6 +79,22 @@ TEST(Comparison, without_convergence_the_finest_run_is_as_uncertain_as_its_last_
   EXPECT_NEAR(chance.uncertainty, 0.3476, 1e-12);
 }
 
+TEST(Comparison, after_the_end_of_a_run_at_rest_its_last_row_counts) {
+  const std::string folder = testing::TempDir(), path = folder + "history.csv";
+  const auto value = [&](const std::string &log, const std::string &measure) {
+    std::ofstream(path) << "time_s,step,stage,x_m\n0,0,start,0\n1,5,fall,4\n2,9,slide,2\n";
+    std::ofstream(folder + "run.log") << "2026-01-01 12:00:00  stage slide\n" << log;
+    return value_of(path, parse_measure(measure));
+  };
+  EXPECT_EQ(value("2026-01-01 12:00:00  stage slide came to rest\n", "x_m@30"), 2);
+  EXPECT_EQ(value("2026-01-01 12:00:00  stage slide is in equilibrium: unbalanced\n", "x_m@30"), 2);
+  for (const char *log : {"", "2026-01-01 12:00:00  stage fall came to rest\n",
+                          "2026-01-01 12:00:00  stage slide reached its duration of 2 s\n"})
+    EXPECT_TRUE(std::isnan(value(log, "x_m@30"))) << log;
+  EXPECT_EQ(value("", "x_m@1.5"), 3);
+  std::remove(path.c_str()), std::remove((folder + "run.log").c_str());
+}
+
 TEST(Comparison, measures_are_read_off_a_history) {
   const std::string path = testing::TempDir() + "comparison_history.csv";
   std::ofstream(path) << "time_s,step,stage,x_m\n0,0,start,0\n1,5,fall,4\n2,9,fall,2\n";
