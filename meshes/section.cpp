@@ -300,6 +300,38 @@ std::vector<Vec<2>> Section::domain() const {
   return domain;
 }
 
+std::string Section::doubt() const {
+  constexpr double low = 0.1;    // of the height of the soil: a lower face decides little
+  constexpr double steep = 0.2;  // width over height of a face that counts as the end of the soil
+  if (!has_free_space || free_extra == 0) return "";
+  const auto &x = outline.points;
+  const double sign = free_extra > 0 ? 1 : -1;
+  const auto beyond = [&](const Vec<2> &a, const Vec<2> &b) { return sign * a[0] < sign * b[0]; };
+  const auto above = [](const Vec<2> &a, const Vec<2> &b) { return a[1] < b[1]; };
+  const double end = (*std::max_element(x.begin(), x.end(), beyond))[0];
+  const double height =
+      (*std::max_element(x.begin(), x.end(), above))[1] - (*std::min_element(x.begin(), x.end(), above))[1];
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Vec<2> &a = x[i], &b = x[(i + 1) % x.size()];
+    const double rise = std::abs(b[1] - a[1]), tolerance = 1e-6 * largest_extent();
+    const bool at_end = std::abs(a[0] - end) <= tolerance || std::abs(b[0] - end) <= tolerance;
+    if (!at_end || rise <= low * height || std::abs(b[0] - a[0]) > steep * rise) continue;
+    if (std::any_of(boundaries.begin(), boundaries.end(),
+                    [&](const Polyline &line) { return is_on(line, a, tolerance) && is_on(line, b, tolerance); }))
+      continue;
+    std::ostringstream text;
+    text
+        << "free_space leaves the " << (sign > 0 ? "right" : "left")
+        << " end of the soil free: its steep face at x = " << end << " m, y = " << std::min(a[1], b[1]) << " to "
+        << std::max(a[1], b[1])
+        << " m, has air beyond it, and the soil falls out there unless it stands as a cut. Where the ground goes on in "
+           "nature, draw the outline on to the end of the run-out and give free_space no extra width; a face that is "
+           "meant is named by b_NAME along it";
+    return text.str();
+  }
+  return "";
+}
+
 double Section::area() const { return std::abs(signed_area(domain())); }
 
 std::string Section::layer_at(const Vec<2> &x) const {

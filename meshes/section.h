@@ -58,6 +58,9 @@ struct Section {
       const;            ///< polygon that is meshed: the outline, with free space above it where asked for
   double area() const;  ///< of the domain [m2]
   std::string layer_at(const Vec<2> &x) const;  ///< layerN or air; seeds are not looked at
+  /// A sentence where the free space beside an end leaves a steep face of the soil there free, though no b_NAME names
+  /// it; empty otherwise.
+  std::string doubt() const;
 };
 
 /// Reads and checks a section. Throws std::invalid_argument with file and line for rows that are malformed or unknown,

@@ -36,7 +36,11 @@ bool is_section(const std::string &source) {
 }
 
 Section section_in(const std::string &source) {
-  if (!is_drawing(source)) return read_section(source);
+  if (!is_drawing(source)) {
+    const Section section = read_section(source);
+    if (const std::string doubt = section.doubt(); !doubt.empty()) std::cout << "warning: " << doubt << "\n";
+    return section;
+  }
   const Drawing drawing = read_drawing(source);
   for (const std::string &doubt : drawing.doubts) std::cout << "warning: " << doubt << "\n";
   return section_of(drawing.rows, source, true);

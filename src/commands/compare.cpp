@@ -99,13 +99,15 @@ Reference reference_of(const CompareArguments &arguments, const std::vector<Vari
 void write_csv(const std::string &path, const std::vector<Variant> &trials) {
   std::ofstream file(path);
   file.precision(10);
-  file << "series,overrides,parameter,value,error,processor_s,wall_s,steps,evaluations,rejections,pareto,failure\n";
+  file << "series,overrides,parameter,value,error,processor_s,wall_s,steps,evaluations,rejections,pareto,failure,"
+          "warnings\n";
   for (const Variant &t : trials) {
     const bool beaten = std::any_of(trials.begin(), trials.end(),
                                     [&](const Variant &o) { return !o.failed && o.cpu < t.cpu && o.error < t.error; });
     file << csv_field(t.label) << "," << csv_field(joined(t.overrides)) << "," << t.parameter << "," << t.value << ","
          << t.error << "," << t.cpu << "," << t.wall << "," << t.steps << "," << t.evaluations << "," << t.rejections
-         << "," << (!t.failed && std::isfinite(t.error) && !beaten) << "," << csv_field(t.cause) << "\n";
+         << "," << (!t.failed && std::isfinite(t.error) && !beaten) << "," << csv_field(t.cause) << ","
+         << csv_field(warnings_of(t)) << "\n";
   }
 }
 
@@ -121,18 +123,25 @@ void print(const std::vector<Variant> &trials, const std::string &measure, const
       std::printf("%-20s %-50s %14.8g %10.2e %10.3g %10lld %10lld %8lld\n", t.label.c_str(),
                   joined(t.overrides).c_str(), t.value, t.error, t.cpu, t.steps, t.evaluations, t.rejections);
   }
+  if (const auto without = std::count_if(trials.begin(), trials.end(),
+                                         [](const Variant &t) { return !t.failed && std::isnan(t.value); }))
+    std::printf(
+        "%ld of %zu runs have no value: they ended before that time without coming to rest, or the point had no "
+        "soil\n",
+        static_cast<long>(without), trials.size());
 }
 
 /// Outcomes of each run against the last key of its series: whether and when it fails, how far and how fast it moves.
 int sweep(const CompareArguments &arguments, const std::vector<Variant> &trials) {
   std::ofstream file(arguments.directory + "/runs.csv");
-  file << "series,overrides,key,value,folder,processor_s,wall_s,failure\n";
+  file << "series,overrides,key,value,unit,folder,processor_s,wall_s,failure,warnings\n";
   for (const Variant &t : trials) {
     const std::string last = t.overrides.empty() ? "=" : t.overrides.back();
     const size_t at = last.find('=');
     file << csv_field(t.label) << "," << csv_field(joined(t.overrides)) << "," << last.substr(0, at) << ","
-         << csv_field(unquoted(last.substr(at + 1))) << "," << fs::path(t.folder).filename().string() << "," << t.cpu
-         << "," << t.wall << "," << csv_field(t.cause) << "\n";
+         << csv_field(unquoted(last.substr(at + 1))) << "," << unit_of_key(last.substr(0, at)) << ","
+         << fs::path(t.folder).filename().string() << "," << t.cpu << "," << t.wall << "," << csv_field(t.cause) << ","
+         << csv_field(warnings_of(t)) << "\n";
   }
   if (!file.flush()) throw std::runtime_error("cannot write " + arguments.directory + "/runs.csv");
   std::vector<std::string> words{arguments.directory};
@@ -160,9 +169,15 @@ int compare(CompareArguments arguments) {
   for (Variant &trial : trials) pointers.push_back(&trial);
   TrialPlan plan{arguments.scene, arguments.set, arguments.jobs};
   plan.replace = arguments.force;
-  if (!arguments.measure.empty()) plan.columns = {measure.column};
+  if (!arguments.measure.empty()) plan.measures = {measure};
   run_trials(plan, pointers);
-  if (arguments.measure.empty()) return sweep(arguments, trials);
+  const std::vector<SharedWarning> warnings = warnings_of(pointers);
+  write_warnings(arguments.directory, warnings);
+  if (arguments.measure.empty()) {
+    const int status = sweep(arguments, trials);
+    print_warnings(warnings, trials.size());
+    return status;
+  }
   for (Variant &trial : trials)
     if (!trial.failed) trial.value = value_of(trial.folder + "/history.csv", measure), read_counts(trial);
   const Reference reference = reference_of(arguments, trials);
@@ -172,6 +187,7 @@ int compare(CompareArguments arguments) {
   }
   for (Variant &trial : trials) trial.error = std::abs(trial.value - reference.value);
   print(trials, arguments.measure, reference);
+  print_warnings(warnings, pointers.size());
   write_csv(arguments.directory + "/compare.csv", trials);
   std::ofstream(arguments.directory + "/reference.csv")
       << std::setprecision(12) << "measure,value,uncertainty,origin\n\"" << arguments.measure << "\","

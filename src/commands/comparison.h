@@ -42,6 +42,48 @@ inline std::vector<std::string> pieces(const std::string &text, char separator) 
   return out;
 }
 
+/// A number, also one with a unit behind it ("5 mm"); NaN if it is none.
+inline double number_of(const std::string &text) {
+  const std::string bare = !text.empty() && text.front() == '"' ? text.substr(1) : text;
+  char *end = nullptr;
+  const double value = std::strtod(bare.c_str(), &end);
+  return end == bare.c_str() ? NAN : value;
+}
+
+/// What stands behind the number of a value, its unit; empty where it is none.
+inline std::string unit_behind(const std::string &text) {
+  if (std::isnan(number_of(text))) return "";
+  std::string bare = text;
+  std::erase(bare, '"');
+  char *end = nullptr;
+  std::strtod(bare.c_str(), &end);
+  return trimmed(end);
+}
+
+/// What is wrong with a list whose numbers have different units, or some of them a unit and others none: those would be
+/// read in the unit of the key, "4,8,12 kPa" as 4 Pa, 8 Pa and 12 kPa, and charts would order them by their numbers.
+/// Empty if nothing is.
+inline std::string mixed_units(const std::vector<std::string> &values) {
+  std::vector<std::string> numbers;
+  for (const std::string &value : values)
+    if (!std::isnan(number_of(value))) numbers.push_back(value);
+  if (numbers.empty()) return "";
+  const std::string &last = numbers.back(), unit = unit_behind(last);
+  for (const std::string &value : numbers) {
+    const std::string other = unit_behind(value), named = unit.empty() ? other : unit;
+    if (other == unit) continue;
+    std::string all;
+    for (const std::string &one : numbers)
+      all += (all.empty() ? "" : ",") + one + (unit_behind(one).empty() ? " " + named : "");
+    return !other.empty() && !unit.empty()
+               ? "has values in " + other + " and in " + unit + ": give all of them in one unit"
+               : "has a unit at " + (unit.empty() ? value : last) + " and none at " + (unit.empty() ? last : value) +
+                     ", which would be a number in the unit of the key: give all of them a unit, such as " + all +
+                     ", or none";
+  }
+  return "";
+}
+
 /// "NAME: key=a,b; key=c". Throws SceneError.
 inline Series parse_series(const std::string &text) {
   const size_t colon = text.find(':');
@@ -57,6 +99,8 @@ inline Series parse_series(const std::string &text) {
     series.lists.emplace_back(trimmed(part.substr(0, equal)), pieces(part.substr(equal + 1), ','));
     for (const std::string &value : series.lists.back().second)
       if (value.empty()) throw SceneError("--series \"" + text + "\": `" + part + "` has an empty value");
+    if (const std::string wrong = mixed_units(series.lists.back().second); !wrong.empty())
+      throw SceneError("--series \"" + text + "\": `" + part + "` " + wrong);
   }
   return series;
 }
@@ -74,14 +118,6 @@ inline std::vector<std::vector<std::string>> products(const Series &series) {
     all = std::move(next);
   }
   return all;
-}
-
-/// A number, also one with a unit behind it ("5 mm": within a series the unit is the same); NaN if it is none.
-inline double number_of(const std::string &text) {
-  const std::string bare = !text.empty() && text.front() == '"' ? text.substr(1) : text;
-  char *end = nullptr;
-  const double value = std::strtod(bare.c_str(), &end);
-  return end == bare.c_str() ? NAN : value;
 }
 
 /// What is read off a history.
@@ -130,14 +166,28 @@ inline void require_column(const std::vector<std::string> &names, const std::str
     throw SceneError("history.csv has no column " + column + "; " + suggestion(column, names));
 }
 
-/// The measure of a history.csv, linear between its lines. Throws SceneError for a column it lacks.
+/// Did the run with this history.csv end with its soil at rest or in equilibrium? Its log says so of the last stage.
+inline bool ended_at_rest(const std::string &history, const std::string &last_stage) {
+  std::ifstream log(history.substr(0, history.rfind("history.csv")) + "run.log");
+  const std::string rest = "  stage " + last_stage + " came to rest",
+                    equilibrium = "  stage " + last_stage + " is in equilibrium";
+  for (std::string line; std::getline(log, line);)
+    if (line.find(rest) != std::string::npos || line.find(equilibrium) != std::string::npos) return true;
+  return false;
+}
+
+/// The measure of a history.csv, linear between its lines. At a time after the end of a run that came to rest before,
+/// the last line counts; after another end there is no value (NaN). Throws SceneError for a column it lacks.
 inline double value_of(const std::string &path, const Measure &measure) {
   std::ifstream file(path);
-  std::string line;
+  std::string line, last_stage;
   std::getline(file, line);
   const std::vector<std::string> names = columns_of(path);
   require_column(names, measure.column);
-  const size_t column = std::find(names.begin(), names.end(), measure.column) - names.begin();
+  const auto place = [&](const std::string &name) {
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  };
+  const std::size_t column = place(measure.column), stage = place("stage");
   double last_time = 0, last = NAN, largest = -INFINITY;
   while (std::getline(file, line)) {
     const std::vector<std::string> cells = pieces(line, ',');
@@ -148,8 +198,10 @@ inline double value_of(const std::string &path, const Measure &measure) {
                  ? value
                  : last + (value - last) * (measure.time - last_time) / (time - last_time);
     last_time = time, last = value, largest = std::max(largest, value);
+    if (stage < cells.size()) last_stage = unquoted(cells[stage]);
   }
-  return measure.largest ? largest : std::isnan(measure.time) ? last : NAN;
+  if (measure.largest) return std::isfinite(largest) ? largest : NAN;
+  return std::isnan(measure.time) || ended_at_rest(path, last_stage) ? last : NAN;
 }
 
 struct Reference {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -111,11 +112,11 @@ std::vector<Trial> trials_of(const Refinement &r, const std::string &directory) 
 /// What the script needs to know of the runs.
 void write_runs(const std::string &path, const Refinement &r, const std::vector<Trial> &trials) {
   std::ofstream file(path);
-  file << "value,unit,overrides,folder,processor_s,wall_s,failure\n";
+  file << "value,unit,overrides,folder,processor_s,wall_s,failure,warnings\n";
   for (std::size_t i = 0; i < trials.size(); ++i)
     file << shortest(rounded(r.values[i])) << "," << r.unit << "," << csv_field(joined(trials[i].overrides)) << ","
          << fs::path(trials[i].folder).filename().string() << "," << trials[i].cpu << "," << trials[i].wall << ","
-         << csv_field(trials[i].cause) << "\n";
+         << csv_field(trials[i].cause) << "," << csv_field(warnings_of(trials[i])) << "\n";
 }
 
 int converge(ConvergeArguments arguments) {
@@ -131,11 +132,14 @@ int converge(ConvergeArguments arguments) {
   plan.replace = arguments.force;
   run_trials(plan, pointers);
   write_runs(arguments.directory + "/runs.csv", refinement, trials);
+  const std::vector<SharedWarning> warnings = warnings_of(pointers);
+  write_warnings(arguments.directory, warnings);
   const char *refined[] = {"cells", "steps", "particles"};
   std::vector<std::string> words{arguments.directory, "--by", refined[static_cast<int>(arguments.refined)], "--within",
                                  shortest(arguments.within / 100)};
   if (arguments.no_plot) words.push_back("--no-plot");
   const int status = run_script("talus_converge.py", words);
+  print_warnings(warnings, trials.size());
   std::fprintf(stderr, "tables%s are in %s\n", arguments.no_plot ? "" : " and picture", arguments.directory.c_str());
   return status;
 }
@@ -159,7 +163,13 @@ Action add_converge(CLI::App &app) {
           "(default: the scene's size times 1.414, 1, 0.707; its step times 1, 0.707, 0.5; 3, 6, 12 particles "
           "per triangle or 4, 8, 20 per tetrahedron)")
       ->delimiter(',')
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Validator(
+          [](const std::string &text) {
+            char *end = nullptr;
+            const bool good = std::strtod(text.c_str(), &end) > 0 && *end == '\0';
+            return good ? std::string() : text + " must be a number above 0, without a unit: sizes are in m";
+          },
+          ""));
   command
       ->add_option("--within", arguments->within,
                    "results that differ by no more than this share of the finest run's count as equal [%] (default 5)")

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -70,7 +71,7 @@ class Study {
     make_variants();
     check_extremes();
     TrialPlan plan{scene_, file_.set, arguments_.jobs};
-    for (const std::string &measure : file_.measures) plan.columns.push_back(parse_measure(measure).column);
+    for (const std::string &measure : file_.measures) plan.measures.push_back(parse_measure(measure));
     plan.replace = arguments_.force, plan.refusal_ends = false;
     if (file_.runs == StudyRuns::factor_of_safety) plan.command = {"solve", "--factor-of-safety"};
     std::vector<Trial *> pointers;
@@ -102,14 +103,17 @@ class Study {
     for (const StudyVariable &one : file_.variable) {
       Varying v{one, {}, {}};
       const std::string path = "variable." + v.name;
-      for (const char *taken : {"run", "folder", "processor_s", "wall_s", "failure"})
+      for (const char *taken : {"run", "folder", "processor_s", "wall_s", "failure", "warnings", "state"})
         if (v.name == taken) root_.complain(path, "must have another name: study.csv has a column of this name");
       if (v.key.empty())
         root_.complain(path, "needs key, the key of the scene that varies, such as body.clay.cohesion");
       read_one_of(v.kind, "kind", v.variation);
       if (const auto *list = std::get_if<NumberList>(&v.variation))
         for (const double value : list->values) v.listed.push_back(in_digits(value));
-      if (const auto *words = std::get_if<Choices>(&v.variation)) v.listed = words->choices;
+      if (const auto *words = std::get_if<Choices>(&v.variation)) {
+        v.listed = words->choices;
+        if (const std::string wrong = mixed_units(v.listed); !wrong.empty()) root_.complain(path + ".choices", wrong);
+      }
       if (!v.unit.empty() && !v.numeric()) root_.complain(path + ".unit", "belongs to numbers; write units in choices");
       if (!v.unit.empty()) check_unit(path + ".unit", v.unit);
       variables_.push_back(v);
@@ -265,9 +269,15 @@ class Study {
   int conclude() {
     write_runs();
     write_design();
+    std::vector<Trial *> trials;
+    for (Variant &variant : variants_) trials.push_back(&variant);
+    const std::vector<SharedWarning> warnings = warnings_of(trials);
+    write_warnings(directory_, warnings);
     std::vector<std::string> words{directory_};
     if (arguments_.no_plot) words.push_back("--no-plot");
     const int status = run_script("talus_study.py", words);
+    const auto done = std::count_if(trials.begin(), trials.end(), [](const Trial *t) { return t->done; });
+    print_warnings(warnings, static_cast<std::size_t>(done));
     std::fprintf(stderr, "study.csv, study.json%s are in %s\n", arguments_.no_plot ? "" : " and pictures",
                  directory_.c_str());
     return status;
@@ -278,7 +288,7 @@ class Study {
     file << "run";
     for (const Varying &v : variables_) file << "," << csv_field(v.name);
     for (const std::string &measure : file_.measures) file << "," << csv_field(measure);
-    file << ",folder,processor_s,wall_s,failure\n";
+    file << ",folder,processor_s,wall_s,failure,warnings\n";
     for (std::size_t i = 0; i < variants_.size(); ++i) {
       const Variant &variant = variants_[i];
       if (!variant.done) continue;
@@ -286,11 +296,13 @@ class Study {
       for (const std::string &value : variant.values) file << "," << csv_field(value);
       for (const std::string &measure : file_.measures) {
         file << ",";
-        if (!variant.failed) file << talus::value_of(variant.folder + "/history.csv", parse_measure(measure));
+        const double value =
+            variant.failed ? NAN : talus::value_of(variant.folder + "/history.csv", parse_measure(measure));
+        if (std::isfinite(value)) file << value;
       }
       file << "," << fs::path(variant.folder).filename().string() << "," << variant.cpu << "," << variant.wall << ","
            << csv_field(variant.failed && variant.cause.empty() ? "the run ended without a message" : variant.cause)
-           << "\n";
+           << "," << csv_field(warnings_of(variant)) << "\n";
     }
     if (!file.flush()) throw std::runtime_error("cannot write " + directory_ + "/runs.csv");
   }
@@ -301,7 +313,7 @@ class Study {
       return json::Object()
           .add("name", json::text(v.name))
           .add("key", json::text(join(v.key)))
-          .add("unit", json::text(v.unit))
+          .add("unit", json::text(v.unit.empty() && v.numeric() ? unit_of_key(v.key.front()) : v.unit))
           .add("random", v.random() ? "true" : "false")
           .add("numeric", v.numeric() ? "true" : "false")
           .str();

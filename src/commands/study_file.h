@@ -186,7 +186,8 @@ struct StudyFile {
     v.number("confidence", confidence, one, Range{0.5, 0.9999}, "confidence of the interval of a probability");
     v.texts("set", set, "overrides of the scene in all runs, key.path=value");
     v.texts("measures", measures,
-            "further outcomes, read off history.csv: COLUMN (at the end), COLUMN@TIME or max:COLUMN");
+            "further outcomes, read off history.csv: COLUMN (at the end), COLUMN@TIME (at rest before: the last row) "
+            "or max:COLUMN");
     v.named("variable", variable, "what varies, [variable.NAME]");
     v.list("correlation", correlation, "correlation of two variables; the others are independent");
     v.named("criterion", criterion, "what counts as failure, [criterion.NAME]: its probability is estimated");

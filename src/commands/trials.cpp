@@ -18,6 +18,8 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <regex>
+#include <set>
 #include <sstream>
 #include <thread>
 
@@ -25,10 +27,13 @@
 #include "commands/commands.h"
 #include "commands/comparison.h"
 #include "mesh_source.h"
+#include "output/csv.h"
 #include "physics/boundary/boundary.h"
 #include "physics/laws/laws.h"
+#include "scene/quantity.h"
 #include "scene/reader.h"
 #include "simulation.h"
+#include "simulation/scene_keys.h"
 #include "solvers/integrators.h"
 
 namespace talus {
@@ -44,12 +49,23 @@ std::string contents(const std::string &path) {
   return text.str();
 }
 
+/// Throws SceneError where the stages end before the time of a measure.
+void require_within_stages(const Scene &scene, const Measure &measure) {
+  double end = 0;
+  for (const Stage &stage : scene.stage) end += stage.duration;
+  if (measure.time > end * (1 + 1e-9))
+    throw SceneError("the measure " + measure.column + "@" + shortest(measure.time) +
+                     " asks for t = " + shortest(measure.time) +
+                     " s, and the stages of the scene end at t = " + shortest(end) + " s at the latest");
+}
+
 /// What a run depends on: DIR/trial begins with it. The number stands for the texts of scene and mesh, and for the
 /// state at which the run starts.
 std::string description(const TrialPlan &plan, const Trial &trial) {
   std::vector<std::string> all = plan.set;
   all.insert(all.end(), trial.overrides.begin(), trial.overrides.end());
   const Scene scene = read_wholly(plan.scene, all);
+  for (const Measure &measure : plan.measures) require_within_stages(scene, measure);
   const std::string mesh = scene.mesh.file.empty() ? scene.mesh.section : scene.mesh.file,
                     start = scene.start_from.folder.empty() ? "" : scene.start_from.folder + "/checkpoint/header";
   return joined(plan.command) + " " + plan.scene + "\n" + joined(all) + "\n" +
@@ -111,6 +127,34 @@ std::string last_line(const std::string &path) {
 
 void on_signal(int) { interrupted = 1; }
 
+/// The sentences behind "warning:" in the log of a run, each once.
+std::vector<std::string> sentences_of(const Trial &trial) {
+  static const std::string mark = "  warning: ";
+  std::vector<std::string> found;
+  std::ifstream file(trial.folder + "/run.log");
+  for (std::string line; std::getline(file, line);)
+    if (const std::size_t at = line.find(mark); at != std::string::npos) {
+      const std::string sentence = line.substr(at + mark.size());
+      if (std::find(found.begin(), found.end(), sentence) == found.end()) found.push_back(sentence);
+    }
+  return found;
+}
+
+/// A sentence with # for each number.
+std::string without_numbers(const std::string &sentence) {
+  static const std::regex number("[0-9][0-9.]*(e[-+]?[0-9]+)?");
+  return std::regex_replace(sentence, number, "#");
+}
+
+/// Is it the path of a key, with its pattern: body.clay.cohesion and body.NAME.cohesion?
+bool matches(const std::string &key, const std::string &pattern) {
+  const std::vector<std::string> words = pieces(key, '.'), wanted = pieces(pattern, '.');
+  return words.size() == wanted.size() &&
+         std::equal(words.begin(), words.end(), wanted.begin(), [](const std::string &word, const std::string &other) {
+           return word == other || other == "NAME" || other == "N";
+         });
+}
+
 /// Runs what is not done yet.
 void run_missing(const TrialPlan &plan, const std::vector<Trial *> &trials, const std::vector<std::string> &described) {
   using Clock = std::chrono::steady_clock;
@@ -127,7 +171,7 @@ void run_missing(const TrialPlan &plan, const std::vector<Trial *> &trials, cons
     for (const auto &[child, run] : running) kill(child, SIGTERM);
     for (const auto &[child, run] : running) waitpid(child, nullptr, 0);
   };
-  bool told = false, has_columns = plan.columns.empty();
+  bool told = false, has_columns = plan.measures.empty();
   while (done < trials.size() || !running.empty()) {
     if (interrupted && !told)
       for (const auto &[child, run] : running) kill(child, SIGTERM);
@@ -139,7 +183,7 @@ void run_missing(const TrialPlan &plan, const std::vector<Trial *> &trials, cons
       const std::vector<std::string> names = columns_of(trials[run->second.first]->folder + "/history.csv");
       try {
         if (!names.empty())
-          for (const std::string &column : plan.columns) require_column(names, column);
+          for (const Measure &measure : plan.measures) require_column(names, measure.column);
       } catch (const SceneError &) {
         end_others();
         throw;
@@ -185,6 +229,51 @@ std::string joined(const std::vector<std::string> &words) {
   return text;
 }
 
+std::vector<SharedWarning> warnings_of(const std::vector<Trial *> &trials) {
+  std::vector<SharedWarning> all;
+  std::map<std::string, std::size_t> known;
+  for (const Trial *trial : trials) {
+    if (!trial->done) continue;
+    std::set<std::size_t> mine;  // sentences of this run that differ in their numbers count once
+    for (const std::string &sentence : sentences_of(*trial)) {
+      const auto [at, added] = known.emplace(without_numbers(sentence), all.size());
+      if (added) all.push_back({sentence, 0, fs::path(trial->folder).filename().string()});
+      mine.insert(at->second);
+    }
+    for (const std::size_t i : mine) ++all[i].runs;
+  }
+  return all;
+}
+
+void write_warnings(const std::string &folder, const std::vector<SharedWarning> &warnings) {
+  std::ofstream file(folder + "/warnings.csv");
+  file << "warning,runs,first_run\n";
+  for (const SharedWarning &one : warnings)
+    file << csv_field(one.sentence) << "," << one.runs << "," << csv_field(one.first) << "\n";
+  if (!file.flush()) throw std::runtime_error("cannot write " + folder + "/warnings.csv");
+}
+
+void print_warnings(const std::vector<SharedWarning> &warnings, std::size_t runs) {
+  for (const SharedWarning &one : warnings)
+    std::printf("warning in %d of %zu runs, first in %s: %s\n", one.runs, runs, one.first.c_str(),
+                one.sentence.c_str());
+  std::fflush(stdout);
+}
+
+std::string warnings_of(const Trial &trial) {
+  std::string text;
+  for (const std::string &sentence : sentences_of(trial)) text += (text.empty() ? "" : " | ") + sentence;
+  return text;
+}
+
+std::string unit_of_key(const std::string &key) {
+  const Describer keys = scene_keys();
+  for (const Describer::Block &block : keys.blocks())
+    for (const Describer::Key &one : block.keys)
+      if (!one.unit.empty() && matches(key, one.path)) return one.unit;
+  return "";
+}
+
 void end_with_starter() {
   const char *given = std::getenv(starter_variable);
   if (!given) return;
@@ -205,7 +294,10 @@ Scene read_wholly(const std::string &file, const std::vector<std::string> &set) 
 
 void run_trials(const TrialPlan &plan, const std::vector<Trial *> &trials) {
   std::vector<std::string> described;
-  for (Trial *trial : trials) described.push_back(description(plan, *trial)), resume(plan, described.back(), *trial);
+  for (Trial *trial : trials) {
+    described.push_back(description(plan, *trial));
+    resume(plan, described.back(), *trial);
+  }
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   run_missing(plan, trials, described);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "commands/comparison.h"
 #include "scene/scene.h"
 
 namespace talus {
@@ -26,8 +27,9 @@ struct TrialPlan {
   int jobs = 0;                             ///< runs at the same time; 0: one per core
   std::vector<std::string> command{"run"};  ///< of each run, with its options
   bool replace = false;                     ///< runs of another plan in the same folders; else they are refused
-  /// Columns that history.csv must have; the first run under way that lacks one ends all.
-  std::vector<std::string> columns{};
+  /// What is read off history.csv: the stages must last so long, and the first run under way that lacks a column ends
+  /// all.
+  std::vector<Measure> measures{};
   bool refusal_ends = true;  ///< a run that is refused as bad input ends all; else it is one that failed
 };
 
@@ -49,6 +51,24 @@ std::string joined(const std::vector<std::string> &words);
 /// line per run goes to standard error. Throws SceneError where a run is refused or lacks a column, and Interrupted
 /// after SIGINT or SIGTERM, which end the runs under way too; called again, it continues with the missing runs.
 void run_trials(const TrialPlan &plan, const std::vector<Trial *> &trials);
+
+/// What the runs that are done warned of in their logs, one sentence for all that differ in their numbers alone; each
+/// with the number of runs and the first of them.
+struct SharedWarning {
+  std::string sentence;  ///< as the first run has it
+  int runs = 0;
+  std::string first;  ///< folder of the first run, without the path
+};
+std::vector<SharedWarning> warnings_of(const std::vector<Trial *> &trials);
+/// Writes them to FOLDER/warnings.csv, for the scripts.
+void write_warnings(const std::string &folder, const std::vector<SharedWarning> &warnings);
+/// Prints them, each once.
+void print_warnings(const std::vector<SharedWarning> &warnings, std::size_t runs);
+/// All warnings of one run as one text.
+std::string warnings_of(const Trial &trial);
+
+/// Unit of a number without one at a key of a scene, such as body.clay.cohesion; empty where it has none.
+std::string unit_of_key(const std::string &key);
 
 /// To be called first by every program: a run that run_trials has started ends by SIGTERM when the program that started
 /// it is gone, even killed. Programs that the run starts itself are not concerned.

@@ -24,7 +24,12 @@ namespace talus {
 
 template <int dim>
 Recorder<dim>::Recorder(const Sources<dim> &of, const RunOptions &options)
-    : of_(of), scene_(of.world.scene), phases_(of.world.phases), options_(options), point_rows_(of.world, of.points) {
+    : of_(of),
+      scene_(of.world.scene),
+      phases_(of.world.phases),
+      options_(options),
+      point_rows_(of.world, of.points),
+      ends_(of.world) {
   check_pictures();
   check_intervals();
 }
@@ -422,6 +427,7 @@ Snapshot Recorder<dim>::particles() {
 template <int dim>
 void Recorder<dim>::write_snapshot() {
   note_escaped();
+  for (const std::string &sentence : ends_.newly_reached(of_.clock.stage)) note("warning: " + sentence);
   if (!results_) return;
   write_escaped();
   if (results_->file.last_step() == of_.clock.steps) return;
@@ -496,6 +502,7 @@ void Recorder<dim>::serialize(Archive &archive) {
   archive.serialize("results", last_row_step_, last_row_time_, snapshots_, impulse_time_, first_ledger_, first_energy_,
                     work_before_, fluids_before_, told_escaped_);
   point_rows_.serialize(archive);
+  ends_.serialize(archive);
   of_.lines.serialize(archive);
 }
 

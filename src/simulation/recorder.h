@@ -12,6 +12,7 @@
 #include "output/snapshots.h"
 #include "simulation/dynamics.h"
 #include "simulation/followed_lines.h"
+#include "simulation/mesh_ends.h"
 #include "simulation/statics.h"
 #include "simulation/tracked_points.h"
 
@@ -107,6 +108,7 @@ class Recorder {
   std::vector<FluidLedger> fluids_before_;  ///< likewise what had passed the boundaries
   double impulse_time_ = 0;                 ///< since when forces are means [s]
   PointRows<dim> point_rows_;
+  MeshEnds<dim> ends_;
   std::vector<std::string> changed_;  ///< keys of the scene that are others than before the run was resumed
   double told_escaped_ = 0;           ///< particles that had left when the log last said so
   double written_escaped_ = -1;       ///< particles in escaped.csv; -1: not known

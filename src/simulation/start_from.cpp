@@ -1,10 +1,13 @@
 #include "simulation/start_from.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <stdexcept>
 
 #include "scene/changes.h"
+#include "scene/quantity.h"
+#include "scene/reader.h"
 #include "scene/words.h"
 
 namespace talus {
@@ -57,6 +60,22 @@ std::string tie_of(const Words &words, PhaseModel phases) {
   return "that run was of another kind";
 }
 
+/// Refuses a gravity of another size where a unit weight gives the density: the particles bring that of the other run.
+void check_unit_weights(const Scene &scene, const std::string &values_there) {
+  Scene there;
+  TableReader::from_text(values_there, scene.start_from.folder).fill(there);
+  const double before = there.gravity_size();
+  if (std::abs(scene.gravity_size() - before) <= 1e-12 * before) return;
+  for (const BodySource &body : scene.body) {
+    if (body.unit_weight == 0 && body.saturated_unit_weight == 0) continue;
+    scene.complain("gravity",
+                   "is not the " + shortest(before) + " m/s2 of the run " + scene.start_from.folder +
+                       " that start_from names, and with it the unit weights of " + body.name +
+                       " stand for another density than that of its particles, which come from there; give density, or "
+                       "porosity and grain_density, in place of unit weights, and run that scene again so");
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> check_start(const Scene &scene, const CheckpointHeader &found, const CheckpointHeader &mine) {
@@ -68,6 +87,7 @@ std::vector<std::string> check_start(const Scene &scene, const CheckpointHeader 
     if (const std::string tie = tie_of(words, scene.phases); !tie.empty())
       scene.complain(path, "is not what it was in the run " + scene.start_from.folder + " that start_from names, and " +
                                tie + "; give it the value that it has there, or run that scene again with this one");
+    if (words[0] == "gravity") check_unit_weights(scene, found.scene);
     if (words[0] == "body" || words[0] == "boundary" || words[0] == "water" || words[0] == "transfer" ||
         words[0] == "integrator" || words[0] == "gravity" || words[0] == "quasi_static")
       others.push_back(path);

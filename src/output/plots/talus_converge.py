@@ -7,11 +7,10 @@ broke off, as `talus verify` ends with 1 where a number does not hold.
 
 import argparse
 import csv
-import json
 import pathlib
 import sys
 
-from talus_measures import failure, largest_share_displacement, particles, slide, steps
+from talus_outcomes import FAILS, MOVES, STANDS, cell_size, outcome, warnings_in, write_json
 from talus_results import Results
 from talus_sections import BELOW, BESIDE, FOOT, HEAD, LEFT, RIGHT, TITLE, WIDTH, Colours, Painter, plt
 import talus_style as style
@@ -24,32 +23,6 @@ REMEDY = {
     "steps": "Take smaller steps and look again",
     "particles": "Take more particles per cell and look again",
 }
-
-
-# ---- what a run says ----
-
-def outcome(results, cell):
-    """The numbers of one run; None where there is nothing to say. A slope fails if the watched point of a stage did, or if soil moved by more than
-    `cell` [m], the largest cell size of all runs, also in a later stage."""
-    try:
-        failed_at = failure(results)[1]
-    except LookupError:
-        failed_at = None
-    moved = largest_share_displacement(results)
-    row = {"fails": failed_at is not None or moved > cell, "load_time_of_failure_s": failed_at, "largest_displacement_m": moved}
-    history = results.history
-    for name in history.points(0) if history else {}:
-        row[f"{name}_displacement_m"] = float(history.columns[f"{name}_displacement_m"][-1])
-    travel, volume, depth, place = slide(results) if moved > cell else (None, None, None, None)
-    row |= {"travel_distance_m": travel, "volume_of_slide_m3": volume, "depth_of_slide_m": depth, "deepest_at_x_m": place}
-    return row | {"steps": int(steps(results)), "particles": int(particles(results)), "cell_m": cell_size(results)}
-
-
-def cell_size(results):
-    """Side of the regular triangle or tetrahedron of the mean size of all cells [m]."""
-    node, cell = results.mesh()
-    size = style.np.abs(style.np.linalg.det(node[cell[:, 1:]] - node[cell[:, :1]])).mean()
-    return float((2 * size / 3**0.5) ** 0.5 if cell.shape[1] == 3 else (2**0.5 * size) ** (1 / 3))
 
 
 # ---- the verdict ----
@@ -83,14 +56,16 @@ def judge(rows, by, within):
     sentences = [f"The run with {in_words(row, by)} broke off: {row['failure']}." for row in broken]
     if len(rows) < 3:
         return sentences + ["Fewer than three runs came to their end, so that nothing can be said."], True, judged
-    standing, failing = [r for r in rows if not r["fails"]], [r for r in rows if r["fails"]]
-    if standing and failing and settles([row["largest_displacement_m"] for row in rows], within) != "equal":
-        names = [", ".join(in_words(row, by) for row in some) for some in (failing, standing)]
-        sentences.append(f"The slope fails with {names[0]} and stands with {names[1]}: the {thing} decides whether it fails.")
-        return sentences + [REMEDY[by] + "."], True, judged
-    sentences.append(f"The slope {'fails' if failing else 'stands'} in all {len(rows)} runs.")
-    points = [key for key in rows[-1] if key.endswith("_displacement_m") and key != "largest_displacement_m"]
     cell = max(row["cell_m"] for row in rows)
+    verbs = {FAILS: "fails", MOVES: f"moves by less than a cell of {cell:.2g} m", STANDS: "stands"}
+    states = {state: [row for row in rows if row["state"] == state] for state in verbs}
+    states = {state: some for state, some in states.items() if some}
+    if len(states) > 1 and settles([row["largest_displacement_m"] for row in rows], within) != "equal":
+        each = [f"{verbs[state]} with {', '.join(in_words(row, by) for row in some)}" for state, some in states.items()]
+        sentences.append(f"The slope {', '.join(each[:-1])} and {each[-1]}: the {thing} decides whether it fails.")
+        return sentences + [REMEDY[by] + "."], True, judged
+    sentences.append(f"The slope {verbs[next(iter(states))]} in all {len(rows)} runs.")
+    points = [key for key in rows[-1] if key.endswith("_displacement_m") and key != "largest_displacement_m"]
     decides = bool(broken)
     asked = [("load_time_of_failure_s", "The load time at failure", "s", 0.0), ("largest_displacement_m", "The largest displacement", "m", 0.0)]
     asked += [(key, f"The displacement of {words(key[: -len('_displacement_m')])}", "m", 0.0) for key in points]
@@ -133,7 +108,7 @@ def print_table(rows, by):
             print(f"{row['value']:>10g} broke off: {row['failure']}")
             continue
         shown = [f"{row[key]:>16,d}" if isinstance(row[key], int) else f"{'-' if row[key] is None else format(row[key], '.4g'):>16}" for key, _ in COLUMNS]
-        print(f"{row['value']:>10g} {'fails' if row['fails'] else 'stands':>7} " + " ".join(shown))
+        print(f"{row['value']:>10g} {row['state']:>7} " + " ".join(shown))
 
 
 def write_tables(rows, sentences, judged, decides, by, within, folder):
@@ -142,8 +117,8 @@ def write_tables(rows, sentences, judged, decides, by, within, folder):
         writer = csv.DictWriter(file, names, restval="")
         writer.writeheader()
         writer.writerows(rows)
-    page = {"by": by, "within": within, "decides": decides, "verdict": sentences, "quantities": judged, "runs": rows}
-    (folder / "converge.json").write_text(json.dumps(page, indent=1) + "\n")
+    page = {"by": by, "within": within, "decides": decides, "verdict": sentences, "quantities": judged, "warnings": warnings_in(folder), "runs": rows}
+    write_json(folder / "converge.json", page)
 
 
 def draw(results, rows, by, path):
@@ -169,7 +144,7 @@ def draw(results, rows, by, path):
             axes = figure.add_axes([left / WIDTH, (top - tall) / height, wide / WIDTH, tall / height])
             painter._panel(axes, last, field, section, colours)
             load = row["load_time_of_failure_s"]
-            how = "stands" if not row["fails"] else "fails" if load is None else f"fails at t = {load:.3g} s"
+            how = row["state"] if load is None else f"{row['state']} at t = {load:.3g} s"
             axes.set_title(f"{in_words(row, by)}: {how}" if n == 0 else "", loc="left", pad=5)
             if n == len(fields) - 1:
                 axes.set_xlabel(f"{'xyz'[painter.views[section].across]} [m]")
@@ -193,7 +168,7 @@ def main():
     rows, ended = [], []
     for run in runs:
         row = {"value": float(run["value"]), "unit": run["unit"], "overrides": run["overrides"], "wall_s": float(run["wall_s"]),
-               "processor_s": float(run["processor_s"]), "failure": run["failure"]}
+               "processor_s": float(run["processor_s"]), "failure": run["failure"], "warnings": run["warnings"]}
         if not row["failure"]:
             ended.append(Results(given.folder / run["folder"]))
         rows.append(row)

@@ -8,6 +8,8 @@ import re
 
 import numpy as np
 
+from talus_results import largest_displacement, sliding
+
 MEASURES = {}
 
 
@@ -141,20 +143,19 @@ def largest_displacement_near(results, place, within, at_snapshot=0):
 @measure
 def largest_share_displacement(results, share=0.999):
     """The displacement that this share of the mass has at most at the end [m]: the largest, without single particles."""
-    last = results.snapshots[-1]
-    moved, mass = last.scalar("displacement")[0], last.column("mass").values[:, 0]
-    order = np.argsort(moved)
-    return float(moved[order][np.searchsorted(np.cumsum(mass[order]), share * mass.sum())])
+    return largest_displacement(results.snapshots[-1], share)
 
 
-def slide(results, share=0.1):
-    """The soil that has moved by more than a tenth of the largest displacement at the end: its travel distance, which is the level distance from
-    its rear at the start to its front at the end along the mean direction of its motion [m], its volume [m3, or m3/m], the largest depth of its
-    lower face below the ground, and the x of this depth [m], both in the undeformed section. Depth and place are known to the spacing of particles. Snapshots without `displacement` or `volume` raise KeyError."""
+def slide(results):
+    """The soil that slides at the end (talus_results.sliding): its travel distance, which is the level distance from its rear at the start to its front at
+    the end along the mean direction of its motion [m], its volume [m3, or m3/m], the largest depth of its lower face below the ground, and the x of this
+    depth [m], both in the undeformed section. Depth and place are known to the spacing of particles. Zeros where nothing moved. Snapshots without
+    `displacement` or `volume` raise KeyError."""
     last = results.snapshots[-1]
     moved = last.column("displacement").values
-    size = np.linalg.norm(moved, axis=1)
-    inside = size > share * largest_share_displacement(results)
+    inside = sliding(last)
+    if not inside.any():
+        return 0.0, 0.0, 0.0, 0.0
     up = results.up_axis()
     level = [axis for axis in range(moved.shape[1]) if axis != up]
     mean = moved[inside][:, level].mean(axis=0)

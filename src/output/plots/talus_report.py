@@ -9,6 +9,8 @@ import numpy as np
 from talus_factor import factor_lines, read_factor
 from talus_model import draw_model
 from talus_modelled import read_model, stage_rows
+from talus_outcomes import in_words, outcome
+from talus_results import largest_displacement
 from talus_units import Keys, at_time, capital, readable_unit, text_of, words
 
 LOG_LINES = 25
@@ -78,15 +80,16 @@ def key_results(results):
     without = ", without the soil that left the mesh" if results.escaped and len(results.escaped.time) else ""
     if "displacement" in last and len(last.position()):
         vector = last.column("displacement").values
-        size = np.linalg.norm(vector, axis=1)
         up = results.up_axis()
         level, rise = np.abs(np.delete(vector, up, axis=1)).max(), np.abs(vector[:, up]).max()
         parts = f"{quantity(level, 'm')} level, {quantity(rise, 'm')} up or down"
-        found.append(("Largest displacement", quantity(size.max(), "m"), parts + without))
+        found.append(("Largest displacement", quantity(largest_displacement(last), "m"), f"of 99.9 % of the mass; of any particle {parts}{without}"))
         if "volume" in last:
-            volume = last.column("volume").values[size > 0.1 * size.max(), 0].sum()
-            volume = quantity(volume, per_metre("m³", results))
-            found.append(("Sliding volume", volume, "moved more than a tenth of the largest" + without))
+            came_to = outcome(results)
+            found.append(("State at the end", came_to["state"], in_words(came_to, came_to["cell_m"])))
+            volume = came_to["volume_of_slide_m3"]
+            note = "no soil slides" if volume is None else f"moved more than a tenth of the largest; {quantity(came_to['travel_distance_m'], 'm')} from rear to front"
+            found.append(("Sliding volume", quantity(volume or 0.0, per_metre("m³", results)), note + without))
     speed = top_speed(results)
     if speed:
         found.append(("Largest velocity", quantity(speed[0], "m/s"), f"{speed[2]}, {at_time(speed[1], last.time)}"))

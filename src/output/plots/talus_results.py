@@ -122,16 +122,30 @@ class Snapshot:
         return None
 
 
-class Thickness:
-    """The thickness of the soil that slides: its volume per area on the level, in m, over a few particles. Soil slides if it has moved by more than
-    a share of the largest displacement at the end; `sliding` holds the numbers of its particles. Thickness is 0 for other soil."""
+def largest_displacement(snapshot, share=0.999):
+    """The displacement that this share of the mass has at most [m]: the largest, without single particles."""
+    moved = snapshot.scalar("displacement")[0]
+    if not len(moved):
+        return 0.0
+    mass, order = snapshot.column("mass").values[:, 0], np.argsort(moved)
+    return float(moved[order][np.searchsorted(np.cumsum(mass[order]), share * mass.sum())])
 
-    SHARE, WIDE = 0.1, 2.5  # the share, and the side of the squares between which volume is shared, over the spacing of particles
+
+def sliding(snapshot, share=0.1):
+    """Which particles slide: those that have moved by more than this share of the largest displacement."""
+    return snapshot.scalar("displacement")[0] > share * largest_displacement(snapshot)
+
+
+class Thickness:
+    """The thickness of the soil that slides until the end: its volume per area on the level, in m, over a few particles. `sliding` holds the numbers of
+    the particles of this soil. Thickness is 0 for other soil."""
+
+    WIDE = 2.5  # side of the squares between which volume is shared, over the spacing of particles
 
     def __init__(self, last, up):
         self._level = [axis for axis in range(3) if axis != up]
         size = last.scalar("displacement")[0]
-        self.sliding = last.ids()[size > self.SHARE * np.percentile(size, 99.9)] if len(size) and size.max() > 0 else last.ids()[:0]
+        self.sliding = last.ids()[sliding(last)]
         self._spacing = float(last.column("volume").values.mean()) ** (1 / 3) if len(size) else 1.0
 
     def __call__(self, snapshot):

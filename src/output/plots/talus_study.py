@@ -16,6 +16,7 @@ import textwrap
 import numpy as np
 
 import talus_style as style
+from talus_outcomes import FAILS, MOVES, STANDS, finite, warnings_in, write_json
 from talus_style import plt
 from talus_sweep import TITLES, number, outcomes
 from talus_units import with_unit, words
@@ -56,16 +57,19 @@ def clopper_pearson(k, n, confidence):
 
 
 def state(row, criterion):
-    """Whether a run meets a criterion: MET, NOT_MET, or UNKNOWN where the run broke off or its factor is a bracket about the limit."""
+    """Whether a run meets a criterion: MET, NOT_MET, or UNKNOWN where the run broke off, where its factor is a bracket about the limit,
+    where the criterion asks whether a slope fails that moved by less than a cell, or where the run has no value."""
     if row["failure"]:
         return UNKNOWN
     below, limit = criterion["side"] == "below", criterion["limit"]
     value = row.get(criterion["outcome"])
+    if row.get("state") == MOVES and criterion["outcome"] == "fails":
+        return UNKNOWN
     if value is None and criterion["outcome"] == "factor_of_safety":
         ends = {(end < limit) == below for end in (row["factor_with_equilibrium"], row["factor_with_mechanism"])}
         return UNKNOWN if len(ends) > 1 else MET if ends.pop() else NOT_MET
-    if value is None:  # the load time of a failure that did not happen
-        return NOT_MET
+    if value is None:  # the load time of a failure that did not happen; of others it is not known
+        return NOT_MET if criterion["outcome"] == "load_time_of_failure_s" else UNKNOWN
     return MET if (value < limit if below else value > limit) else NOT_MET
 
 
@@ -99,7 +103,7 @@ def sensitivities(rows, variables, outcome):
     bars = []
     for k, column in enumerate(varies):
         ends = (np.quantile(x[:, k], [0.1, 0.9]) - middle[k]) / spread[k]
-        bars.append({"variable": variables[column]["name"], "low": float(fit[0] + fit[1 + k] * ends[0]), "high": float(fit[0] + fit[1 + k] * ends[1])})
+        bars.append({"variable": variables[column]["name"], "unit": variables[column]["unit"], "low": float(fit[0] + fit[1 + k] * ends[0]), "high": float(fit[0] + fit[1 + k] * ends[1])})
     bars.sort(key=lambda bar: abs(bar["high"] - bar["low"]))
     return {"outcome": outcome, "mean": float(fit[0]), "r2": float(explained), "bars": bars}
 
@@ -124,7 +128,7 @@ def draw_tornado(all_fits, path):
             for end, colour, label in ((bar["low"], style.LINES[0], "variable at its 10 % quantile"), (bar["high"], style.LINES[1], "at its 90 % quantile")):
                 one.barh(k, end - fit["mean"], left=fit["mean"], height=0.62, color=colour, label=label if k == 0 else None)
         one.axvline(fit["mean"], color=style.INK, lw=0.8)
-        one.set_yticks(range(len(fit["bars"])), [words(bar["variable"]) for bar in fit["bars"]])
+        one.set_yticks(range(len(fit["bars"])), [with_unit(words(bar["variable"]), bar["unit"]) for bar in fit["bars"]])
         one.set_xlabel(title_of(fit["outcome"]))
         one.set_title(f"linear fit, R² = {fit['r2']:.2f}", loc="right", fontsize=8)
     axes.flat[0].legend(fontsize=7.5, loc="lower left", bbox_to_anchor=(0, 1), ncols=2, frameon=False)
@@ -184,8 +188,9 @@ def main():
     with open(given.folder / "runs.csv", newline="") as file:
         rows = outcomes(given.folder, list(csv.DictReader(file)))
     for row in rows:
-        row |= {name: 0.0 for name in NO_SLIDE if name in row and row[name] is None}
-        row |= {measure: None if row["failure"] else float(row[measure]) for measure in design["measures"]}
+        if row.get("state") == STANDS:
+            row |= {name: 0.0 for name in NO_SLIDE}
+        row |= {measure: finite(float(row[measure] or "nan")) for measure in design["measures"]}
         row |= {f"meets_{criterion['name']}": {MET: "yes", NOT_MET: "no", UNKNOWN: ""}[state(row, criterion)] for criterion in design["criteria"]}
     names = list(dict.fromkeys(key for row in rows for key in row))
     with open(given.folder / "study.csv", "w", newline="") as file:
@@ -194,9 +199,12 @@ def main():
         writer.writerows(rows)
 
     broken = [row for row in rows if row["failure"]]
+    states = [row["state"] for row in rows if "state" in row]
     print(f"{len(rows)} of {design['planned']} runs, {len(broken)} of which broke off")
     for row in broken[:5]:
         print(f"  run {row['run']} broke off: {row['failure']}")
+    if states:
+        print(f"the slope fails in {states.count(FAILS)} runs, moves by less than a cell in {states.count(MOVES)}, stands in {states.count(STANDS)}")
     variables, criteria = design["variables"], design["criteria"]
     sampled = any(v["random"] for v in variables)
     estimates = [probability(rows, c, design["confidence"]) for c in criteria] if rows and sampled else []
@@ -207,8 +215,12 @@ def main():
               f"{100 * p['confidence']:g} % interval {p['low']:.4g} to {p['high']:.4g}" + (f"; unknown in {p['unknown']} runs" if p["unknown"] else ""))
     shown = varying(rows, dict.fromkeys([*(c["outcome"] for c in criteria), *SHOWN, *design["measures"]]))
     fits = [fit for fit in (sensitivities(rows, variables, name) for name in shown if name != "fails") if fit]
-    (given.folder / "study.json").write_text(json.dumps({"title": design["title"], "runs": len(rows), "planned": design["planned"],
-                                                         "broke_off": len(broken), "probabilities": estimates, "sensitivities": fits}, indent=1) + "\n")
+    for measure in design["measures"]:
+        if without := [row["run"] for row in rows if not row["failure"] and row[measure] is None]:
+            print(f"{measure} has no value in {len(without)} runs, first in run {without[0]}: they ended before that time without coming to rest, or the point "
+                  "had no soil")
+    write_json(given.folder / "study.json", {"title": design["title"], "runs": len(rows), "planned": design["planned"], "broke_off": len(broken),
+                                             "warnings": warnings_in(given.folder), "probabilities": estimates, "sensitivities": fits})
     for name, wanted, draw in (("tornado", fits, lambda path: draw_tornado(fits, path)),
                                ("scatter", shown, lambda path: draw_scatter(rows, variables, shown, criteria, path)),
                                ("exceedance", shown and sampled, lambda path: draw_exceedance(rows, [s for s in shown if s != "fails"], criteria, design["confidence"], path))):

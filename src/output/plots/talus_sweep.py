@@ -8,17 +8,18 @@ import csv
 import json
 import pathlib
 import sys
+import textwrap
 
 import numpy as np
 
-from talus_converge import cell_size, outcome
+from talus_outcomes import FAILS, MOVES, STANDS, outcome
 from talus_results import Results
 import talus_style as style
 from talus_style import plt
 from talus_units import with_unit, words
 
 LEFT_OUT = ("cell_m", "deepest_at_x_m")  # outcomes that no chart shows
-TITLES = {"load_time_of_failure_s": "time t of the loads at failure [s]", "travel_distance_m": "travel distance, rear of the slide to its front [m]",
+TITLES = {"load_time_of_failure_s": "time t of the loads at failure [s]", "travel_distance_m": "travel distance, from the rear of the slide to its front [m]",
           "volume_of_slide_m3": "volume of the slide [m³]", "depth_of_slide_m": "depth of the slip surface [m]"}
 
 
@@ -46,7 +47,6 @@ def factor_outcome(path):
 def outcomes(folder, runs):
     """The runs with what they came to; a run that broke off has none. `runs` are the rows of runs.csv; all their columns but the folder are kept."""
     ended = {run["folder"]: Results(folder / run["folder"]) for run in runs if not run["failure"] and not factor_file(folder, run).exists()}
-    largest = max(map(cell_size, ended.values()), default=0.0)
     rows = []
     for run in runs:
         row = {key: value for key, value in run.items() if key != "folder"}
@@ -55,7 +55,7 @@ def outcomes(folder, runs):
                 row |= factor_outcome(factor_file(folder, run))
         elif run["folder"] in ended:
             results = ended[run["folder"]]
-            row |= {key: value for key, value in outcome(results, largest).items() if key != "cell_m"}
+            row |= {key: value for key, value in outcome(results).items() if key != "cell_m"}
             for name, speed in (results.history.groups().get(("velocity", "m/s"), {}) if results.history else {}).items():
                 row[f"{name}_largest_speed_m_s"] = float(np.nanmax(speed)) if np.isfinite(speed).any() else None
         rows.append(row)
@@ -79,11 +79,23 @@ def charted(rows):
     return charts
 
 
+MARKS = {FAILS: ("o", "full"), MOVES: ("s", "left"), STANDS: ("o", "none"), None: ("X", "full")}  # marker and how it is filled; None: the run broke off
+LEGEND = {FAILS: "the slope fails", MOVES: "it moves by less than a cell", STANDS: "it stands", None: "the run broke off"}
+
+
+def mark(axes, x, y, state, colour):
+    shape, fill = MARKS[state]
+    broken = state is None
+    axes.plot(x, y, shape, color=style.SOFT if broken else colour, ms=6 if broken else 4.5, fillstyle=fill, mfc=None if fill != "none" else "white",
+              markerfacecoloralt="white", ls="", clip_on=False, zorder=3, transform=axes.get_xaxis_transform() if broken else axes.transData)
+
+
 def draw(rows, path):
+    """Charts of all outcomes that differ. Runs that broke off have no outcome: a cross at the lower edge marks their value of the key."""
     charts = charted(rows)
     columns = min(3, len(charts))
     lines = -(-len(charts) // columns)
-    figure, axes = plt.subplots(lines, columns, figsize=(3.9 * columns, 3.1 * lines), squeeze=False, layout="constrained")
+    figure, axes = plt.subplots(lines, columns, figsize=(3.9 * columns, 3.1 * lines), squeeze=False, sharex=True, layout="constrained")
     numbers = [number(row["value"]) for row in rows]
     choices = list(dict.fromkeys(row["value"] for row in rows))
     numeric = None not in numbers
@@ -94,42 +106,51 @@ def draw(rows, path):
     for one, (title, of) in zip(axes.flat, charts):
         for k, (label, column) in enumerate(of.items()):
             for n, name in enumerate(series):
-                known = sorted((place[i], row[column], row.get("fails")) for i, row in enumerate(rows) if row["series"] == name and row.get(column) is not None)
+                known = sorted((place[i], row[column], row["state"]) for i, row in enumerate(rows) if row["series"] == name and row.get(column) is not None)
                 if not known:
                     continue
-                x, y, fails = zip(*known)
+                x, y, _ = zip(*known)
                 colour = style.LINES[(k if len(of) > 1 else n) % len(style.LINES)]
                 legend = ", ".join(filter(None, (label, name if len(series) > 1 else "")))
                 one.plot(x, y, ("-", "--", ":", "-.")[n % 4 if len(of) > 1 else 0], color=colour, lw=1.1, label=legend)
-                for a, b, failed in known:
-                    one.plot(a, b, "o", color=colour, ms=4.5, mfc=colour if failed else "white")
+                for a, b, state in known:
+                    mark(one, a, b, state, colour)
+        for x, row in zip(place, rows):
+            if row["failure"]:
+                mark(one, x, 0, None, style.SOFT)
         if any(any(each) for each in (of, series[1:])):
             one.legend(fontsize=7.5)
-        one.set(xlabel=axis_title(rows), ylabel=title)
+        one.set_xlabel(textwrap.fill(axis_title(rows), 38, break_on_hyphens=False))
+        one.set_ylabel(textwrap.fill(title, 34))
+        one.tick_params(labelbottom=True)
         low, high = one.get_ylim()
         one.set_ylim(min(0, low), high + 0.06 * (high - min(0, low)))
         if numeric and min(place) > 0 and max(place) > 20 * min(place):
             one.set_xscale("log")
         if not numeric:
-            one.set_xticks(range(len(choices)), choices)
-    figure.suptitle("full: the slope fails, open: it stands", x=0.01, ha="left", fontsize=8.5, color=style.SOFT)
+            one.set_xticks(range(len(choices)), [textwrap.fill(choice, 14) for choice in choices])
+    states = {row.get("state") for row in rows}
+    handles = [plt.Line2D([], [], marker=MARKS[state][0], color=style.SOFT, ls="", ms=5, fillstyle=MARKS[state][1], markerfacecoloralt="white",
+                          mfc="white" if MARKS[state][1] == "none" else None, label=LEGEND[state]) for state in MARKS if state in states]
+    figure.suptitle(" ", fontsize=12)  # room for the legend
+    figure.legend(handles=handles, loc="upper left", ncols=len(handles), fontsize=8, frameon=False)
     return style.save(figure, path)
 
 
 def axis_title(rows):
     keys = list(dict.fromkeys(row["key"] for row in rows))
-    units = {" ".join(row["value"].split()[1:]) for row in rows}
+    units = {" ".join(row["value"].split()[1:]) or row["unit"] for row in rows}
     return with_unit(keys[0] if len(keys) == 1 else "last key", units.pop() if len(units) == 1 else "")
 
 
 def print_table(rows):
-    columns = ["fails", *(column for _, of in charted(rows) for column in of.values())]
+    columns = ["state", *(column for _, of in charted(rows) for column in of.values())]
     print(f"{'series':14} {'value':>12} " + " ".join(f"{column[:26]:>26}" for column in columns))
     for row in rows:
         if row["failure"]:
             print(f"{row['series']:14} {row['value']:>12} broke off: {row['failure']}")
             continue
-        shown = ["yes" if row["fails"] else "no", *("-" if row.get(column) is None else f"{row[column]:.4g}" for column in columns[1:])]
+        shown = [row["state"], *("-" if row.get(column) is None else f"{row[column]:.4g}" for column in columns[1:])]
         print(f"{row['series']:14} {row['value']:>12} " + " ".join(f"{value:>26}" for value in shown))
 
 
@@ -147,8 +168,10 @@ def main():
         writer.writeheader()
         writer.writerows(rows)
     ended = [row for row in rows if not row["failure"]]
-    if ended and not given.no_plot:
-        draw(ended, given.folder / "sweep.png")
+    if ended and charted(rows) and not given.no_plot:
+        draw(rows, given.folder / "sweep.png")
+    else:
+        (given.folder / "sweep.png").unlink(missing_ok=True)  # of an earlier call
     return 1 if len(ended) < len(rows) else 0
 
 

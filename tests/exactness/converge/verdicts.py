@@ -9,7 +9,7 @@ from talus_converge import judge, settles  # noqa: E402
 
 def rows(**columns):
     """Runs with cells of 0.4, 0.2 and 0.1 m that fail, with these quantities."""
-    runs = [{"value": size, "unit": "m", "failure": "", "fails": True, "cell_m": size, "largest_displacement_m": 2.0} for size in (0.4, 0.2, 0.1)]
+    runs = [{"value": size, "unit": "m", "failure": "", "state": "fails", "cell_m": size, "largest_displacement_m": 2.0} for size in (0.4, 0.2, 0.1)]
     for key, values in columns.items():
         for run, value in zip(runs, values):
             run[key] = value
@@ -31,13 +31,19 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(settles([3.5, 3.0, 3.45], 0.05, least=0.4), "open")
 
     def test_that_some_fail_and_some_stand_is_the_verdict(self):
-        runs = rows(fails=[True, False, True], largest_displacement_m=[2.0, 0.01, 2.1])
+        runs = rows(state=["fails", "stands", "fails"], largest_displacement_m=[2.0, 0.01, 2.1])
         sentences, decides, _ = judge(runs, "cells", 0.05)
         self.assertTrue(decides)
         self.assertEqual(sentences[0], "The slope fails with 0.4 m, 0.1 m and stands with 0.2 m: the cell size decides whether it fails.")
 
+    def test_a_motion_of_less_than_a_cell_is_said(self):
+        runs = rows(state=["moves", "fails", "fails"], largest_displacement_m=[0.3, 0.6, 0.9])
+        self.assertEqual(judge(runs, "cells", 0.05)[0][0],
+                         "The slope fails with 0.2 m, 0.1 m and moves by less than a cell of 0.4 m with 0.4 m: the cell size decides whether it fails.")
+        self.assertEqual(judge(rows(state=["moves"] * 3), "cells", 0.05)[0][0], "The slope moves by less than a cell of 0.4 m in all 3 runs.")
+
     def test_equal_displacements_do_not_divide_runs_into_failing_and_standing(self):
-        runs = rows(fails=[True, False, True], largest_displacement_m=[0.401, 0.399, 0.402])  # about the size of a cell
+        runs = rows(state=["fails", "moves", "fails"], largest_displacement_m=[0.401, 0.399, 0.402])  # about the size of a cell
         self.assertFalse(judge(runs, "cells", 0.05)[1])
 
     def test_the_load_may_be_settled_while_the_run_out_is_not(self):

@@ -184,5 +184,34 @@ TEST_F(Leaving, LedgersAreOfTheirRun) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "results/escaped.csv"));
 }
 
+/// Soil that comes to a wall at the end of the mesh is said once, with group, place and stage, the same on several
+/// ranks; so is none where soil does not move or where it is let out.
+TEST_F(Leaving, TheEndOfTheMeshIsSaid) {
+  const std::vector<std::string> wall{"mesh.leaving_particles=stop", "boundary.right.kind=roller",
+                                      "body.block.velocity=[\"12\", \"0\"]"};
+  const std::string warning = "warning: moving soil has come to the end of the mesh near (";
+  const auto said = [&](const std::string &results) {
+    std::ostringstream text;
+    text << std::ifstream(folder_ / (results + "/run.log")).rdbuf();
+    return Ending{0, text.str()};
+  };
+  std::string first;
+  for (const int ranks : {1, 2}) {
+    const std::string results = "wall" + std::to_string(ranks);
+    ASSERT_EQ(run("out.toml", results, wall, ranks).status, 0);
+    ASSERT_EQ(run("whole.toml", results, wall, ranks, {"--resume"}).status, 0);
+    const Ending log = said(results);
+    EXPECT_EQ(log.count(warning), 1) << log.output;
+    EXPECT_TRUE(log.says(" m, at the group right, in stage out: from now on its run-out is that of the mesh"));
+    const std::string sentence = log.output.substr(log.output.find(warning), 100);
+    EXPECT_TRUE(sentence.find(warning + "2.") == 0 || sentence.find(warning + "3, ") == 0) << sentence;
+    EXPECT_EQ(first.empty() ? first = sentence : first, sentence);
+  }
+  ASSERT_EQ(run("out.toml", "still", {wall[0], wall[1]}).status, 0);
+  EXPECT_EQ(said("still").count(warning), 0);
+  ASSERT_EQ(run("out.toml", "open", straight).status, 0);
+  EXPECT_EQ(said("open").count(warning), 0);
+}
+
 }  // namespace
 }  // namespace talus

@@ -171,6 +171,22 @@ TEST_F(AfterSource, WhatTheStateIsTiedToIsRefused) {
   expect_refused({"start_from.folder=results/varied"}, {"start_from.folder", "strength that varies with place there"});
 }
 
+/// Unit weights are densities by the gravity of the first run, and its particles bring their masses from there.
+TEST_F(AfterSource, AnotherGravityIsRefusedWhereUnitWeightsGiveTheDensity) {
+  const std::string heavy = changed(soil, "porosity = 0.3\ngrain_density = 2650", "unit_weight = \"20 kN/m3\"");
+  ASSERT_EQ(work_.run(heavy + settle, "heavy", {}).status, 0);
+  const auto start_there = [&](const std::string &gravity) {
+    return work_.run(changed(heavy, "gravity = 9.81", gravity) + fall + "[start_from]\nfolder = \"results/heavy\"\n",
+                     "refused", {});
+  };
+  const Ending ending = start_there("gravity = 20");
+  EXPECT_EQ(ending.status, 2) << ending.output;
+  EXPECT_TRUE(ending.says("line 2: gravity = 20 is not the 9.81 m/s2 of the run") &&
+              ending.says("the unit weights of sand"))
+      << ending.output;
+  EXPECT_EQ(start_there("gravity = [5.886, -7.848]").status, 0) << "turned, of the same size";
+}
+
 TEST_F(AfterSource, AFolderWithoutAStateIsRefused) {
   expect_refused({"start_from.folder=results/nobody"}, {"start_from.folder", "contains no checkpoint"});
   const Ending own = start("source", {}, 1, {"--force"});

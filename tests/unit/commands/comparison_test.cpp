@@ -34,6 +34,25 @@ TEST(Comparison, numbers_may_have_a_unit) {
   EXPECT_TRUE(std::isnan(number_of("euler")));
 }
 
+TEST(Comparison, lists_of_which_some_numbers_have_a_unit_are_refused) {
+  EXPECT_EQ(unit_behind("\"5 mm\""), "mm");
+  EXPECT_EQ(unit_behind("[0, 1 m]"), "");
+  for (const char *good : {"a: k=4 kPa,8 kPa,12kPa", "a: k=4,8,12", "a: k=a,b", "a: k=[0, 1 m],[0, 2]"})
+    EXPECT_NO_THROW(parse_series(good)) << good;
+  for (const auto &[text, said] :
+       {std::pair{"a: k=4,8,12 kPa",
+                  "none at 4, which would be a number in the unit of the key: give all of them a "
+                  "unit, such as 4 kPa,8 kPa,12 kPa, or none"},
+        {"a: k=4 kPa,8", "has a unit at 4 kPa and none at 8"},
+        {"a: k=4 kPa,1 MPa", "has values in kPa and in MPa"}})
+    try {
+      parse_series(text);
+      ADD_FAILURE() << text;
+    } catch (const SceneError &error) {
+      EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << error.what();
+    }
+}
+
 TEST(Comparison, richardson_finds_the_limit_of_a_power) {
   std::vector<std::pair<double, double>> refined;
   for (const double h : {0.1, 0.2, 0.4}) refined.emplace_back(h, 7 + 3 * h * h);
@@ -58,6 +77,22 @@ TEST(Comparison, without_convergence_the_finest_run_is_as_uncertain_as_its_last_
       extrapolate({{0.05, 12.0638}, {0.1, 12.0541}, {0.2, 11.7065}, {0.4, 11.7174}});
   EXPECT_EQ(chance.value, 12.0638);
   EXPECT_NEAR(chance.uncertainty, 0.3476, 1e-12);
+}
+
+TEST(Comparison, after_the_end_of_a_run_at_rest_its_last_row_counts) {
+  const std::string folder = testing::TempDir(), path = folder + "history.csv";
+  const auto value = [&](const std::string &log, const std::string &measure) {
+    std::ofstream(path) << "time_s,step,stage,x_m\n0,0,start,0\n1,5,fall,4\n2,9,slide,2\n";
+    std::ofstream(folder + "run.log") << "2026-01-01 12:00:00  stage slide\n" << log;
+    return value_of(path, parse_measure(measure));
+  };
+  EXPECT_EQ(value("2026-01-01 12:00:00  stage slide came to rest\n", "x_m@30"), 2);
+  EXPECT_EQ(value("2026-01-01 12:00:00  stage slide is in equilibrium: unbalanced\n", "x_m@30"), 2);
+  for (const char *log : {"", "2026-01-01 12:00:00  stage fall came to rest\n",
+                          "2026-01-01 12:00:00  stage slide reached its duration of 2 s\n"})
+    EXPECT_TRUE(std::isnan(value(log, "x_m@30"))) << log;
+  EXPECT_EQ(value("", "x_m@1.5"), 3);
+  std::remove(path.c_str()), std::remove((folder + "run.log").c_str());
 }
 
 TEST(Comparison, measures_are_read_off_a_history) {

@@ -78,6 +78,20 @@ TEST(Section, FreeSpaceExtendsTheDomainUpwardAndAside) {
   EXPECT_EQ(right.layer_at({8, 1}), "layer0");
 }
 
+TEST(Section, FreeSpaceBesideASteepEndOfTheSoilIsDoubted) {
+  const std::string slope = "outline,0,0\noutline,10,0\noutline,10,2\noutline,6,2\noutline,3,5\noutline,0,5\n";
+  const std::string right = section_of(slope + "free_space,2,3\n").doubt(),
+                    left = section_of(slope + "free_space,2,-3\n").doubt();
+  EXPECT_NE(right.find("the right end of the soil free: its steep face at x = 10 m, y = 0 to 2 m"), std::string::npos)
+      << right;
+  EXPECT_NE(left.find("the left end of the soil free: its steep face at x = 0 m, y = 0 to 5 m"), std::string::npos)
+      << left;
+  EXPECT_EQ(section_of(slope + "free_space,2,0\n").doubt(), "") << "the end of the soil is that of the mesh";
+  EXPECT_EQ(section_of(slope + "free_space,2,3\nb_cut,10,0\nb_cut,10,2\n").doubt(), "") << "named";
+  const std::string wedge = "outline,0,0\noutline,10,0\noutline,6,2\noutline,3,5\noutline,0,5\n";
+  EXPECT_EQ(section_of(wedge + "free_space,2,3\n").doubt(), "") << "runs out";
+}
+
 TEST(Section, RefinedBoxesTakeTwoRows) {
   const Section s = section_of(square + "refine_0.25,3,2\nrefine_0.25,1,1\n");
   ASSERT_EQ(s.boxes.size(), 1u);

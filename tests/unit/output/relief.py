@@ -126,7 +126,7 @@ class Fields(unittest.TestCase):
         volume = np.full((len(at), 1), SPACING**3)
 
         def snapshot(moved):
-            columns = {"volume": volume}
+            columns = {"volume": volume, "mass": 2000 * volume}
             return types.SimpleNamespace(ids=lambda: np.arange(len(at)), position=lambda: at, column=lambda name: types.SimpleNamespace(values=columns[name]),
                                          scalar=lambda name: (moved, "m"))
         values, unit = Thickness(snapshot(np.where(at[:, 0] < 0.5, 2.0, 0.01)), 2)(snapshot(None))
@@ -259,7 +259,7 @@ class Pictures(unittest.TestCase):
         colours = Colours("displacement", snapshots)
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "picture.png"
-            row = {"fails": False, "load_time_of_failure_s": None, "value": SPACING}
+            row = {"state": "stands", "load_time_of_failure_s": None, "value": SPACING}
             for draw in (lambda: painter.large("displacement", colours, path), lambda: painter.over_time("displacement", colours, path),
                          lambda: painter.frame("displacement", colours, snapshots[1], "real time", path),
                          lambda: talus_converge.draw([results, results], [row, row], "cells", path)):

@@ -1,0 +1,113 @@
+#include "simulation/mesh_ends.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <map>
+
+#include "simulation/failure.h"
+
+namespace talus {
+namespace {
+
+/// A named group of faces: its number among all, and whether a boundary acts on it.
+struct Group {
+  int number = -1;
+  bool has_boundary = false;
+};
+
+/// Of each local face of a named group, by cell and face, its group; one with a boundary, where it has several.
+template <int dim>
+std::map<std::pair<int, int>, Group> groups_of_faces(const World<dim> &world) {
+  std::map<std::pair<int, int>, Group> group_of;
+  const std::vector<std::string> &names = world.mesh.group_names();
+  for (std::size_t g = 0; g < names.size(); ++g) {
+    const bool bounded =
+        std::any_of(world.scene.boundary.begin(), world.scene.boundary.end(), [&](const BoundarySource &boundary) {
+          return std::count(boundary.group.begin(), boundary.group.end(), names[g]);
+        });
+    for (const Facet<dim> &facet : world.mesh.facets(names[g])) {
+      Group &group = group_of[{facet.cell, facet.face}];
+      if (group.number < 0 || (bounded && !group.has_boundary)) group = {static_cast<int>(g), bounded};
+    }
+  }
+  return group_of;
+}
+
+}  // namespace
+
+template <int dim>
+MeshEnds<dim>::MeshEnds(const World<dim> &world) : world_(world), faces_(world.mesh.cell_count()), told_(planes) {
+  constexpr double far = std::numeric_limits<double>::infinity();
+  std::array<double, planes> end;  // against the outward normal of each plane
+  end.fill(far);
+  const auto outward = [](int plane, const Vec<dim> &x) { return plane % 2 ? x[plane / 2] : -x[plane / 2]; };
+  for (const Vec<dim> &x : world.mesh.position)
+    for (int p = 0; p < planes; ++p) end[p] = std::min(end[p], -outward(p, x));
+  MPI_Allreduce(MPI_IN_PLACE, end.data(), planes, MPI_DOUBLE, MPI_MIN, world.comm);
+  const auto group_of = groups_of_faces(world);
+  for (int c = 0; c < world.mesh.cell_count(); ++c)
+    for (int k = 0; k <= dim; ++k) {
+      if (world.mesh.cells[c].neighbour[k] != boundary) continue;
+      for (int p = 0; p < planes; ++p) {
+        if (p == 2 * world.scene.vertical()) continue;  // soil lies on it
+        double face = 0, depth = 0;                     // distances from the plane
+        for (int a = 0; a <= dim; ++a) {
+          const double distance = -end[p] - outward(p, world.mesh.position[world.mesh.cells[c].node[a]]);
+          (a == k ? depth : face) = std::max(a == k ? depth : face, distance);
+        }
+        if (face > 1e-6 * depth) continue;
+        const auto named = group_of.find({c, k});
+        const Group group = named == group_of.end() ? Group{} : named->second;
+        if (!group.has_boundary && world.scene.mesh.leaving_particles == WhenOutside::remove) continue;  // it goes on
+        faces_[c].push_back({p, group.number, depth});
+      }
+    }
+}
+
+template <int dim>
+std::vector<std::string> MeshEnds<dim>::newly_reached(const std::string &stage) {
+  std::array<Found, planes> mine;
+  for (const auto &body : world_.bodies) {
+    const ParticleArrays<dim> &p = body->particles();
+    for (int i = 0; i < p.count; ++i)
+      for (const Face &face : faces_[p.cell[i]]) {
+        const int d = face.plane / 2;
+        const double moved = (face.plane % 2 ? 1 : -1) * (p.position[i][d] - p.reference[i][d]);
+        Found &found = mine[face.plane];
+        if (moved <= face.depth || (found.id >= 0 && found.id <= p.id[i])) continue;
+        found.id = p.id[i], found.group = face.group;
+        std::copy_n(p.position[i].begin(), dim, found.place);
+      }
+  }
+  int ranks;
+  MPI_Comm_size(world_.comm, &ranks);
+  std::vector<Found> all(static_cast<std::size_t>(ranks) * planes);
+  MPI_Allgather(mine.data(), sizeof mine, MPI_BYTE, all.data(), sizeof mine, MPI_BYTE, world_.comm);
+  std::vector<std::string> sentences;
+  for (int plane = 0; plane < planes; ++plane) {
+    const Found *first = nullptr;
+    for (int rank = 0; rank < ranks; ++rank) {
+      const Found &found = all[rank * planes + plane];
+      if (found.id >= 0 && (!first || found.id < first->id)) first = &found;
+    }
+    if (!first || told_[plane]) continue;
+    told_[plane] = 1;
+    std::string place;
+    for (int d = 0; d < dim; ++d) place += (d ? ", " : "") + rounded(first->place[d]);
+    const bool top = plane == 2 * world_.scene.vertical() + 1;
+    sentences.push_back("moving soil has come to the end of the mesh near (" + place + ") m, at " +
+                        (first->group < 0
+                             ? "a face that no group names"
+                             : "the group " + world_.mesh.group_names()[static_cast<std::size_t>(first->group)]) +
+                        ", in stage " + stage + ": from now on " + (top ? "its height" : "its run-out") +
+                        " is that of the mesh. Give the mesh more free space " + (top ? "above" : "there") +
+                        ", unless a wall stands there in nature");
+  }
+  return sentences;
+}
+
+template class MeshEnds<2>;
+template class MeshEnds<3>;
+
+}  // namespace talus

@@ -1,0 +1,190 @@
+"""What runs of a slope came to, in the report and in the tables of `talus study` and `talus compare`, and what they warned of: outcomes.py PROGRAM"""
+
+import csv
+import json
+import math
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+PROGRAM = sys.argv.pop()
+sys.path.insert(0, subprocess.run([PROGRAM, "--python-path"], check=True, capture_output=True, text=True).stdout.strip())
+from talus_outcomes import FAILS, MOVES, STANDS, state_of, write_json  # noqa: E402
+from talus_report import key_results  # noqa: E402
+from talus_results import Results  # noqa: E402
+from talus_study import UNKNOWN, state  # noqa: E402
+
+SECTION = """part,x,y
+outline,0,0
+outline,30,0
+outline,30,8
+outline,0,8
+interface0,0,6
+interface0,8,6
+interface0,14,2
+interface0,30,2
+region_clay,4,1
+region_air,25,6
+"""
+SCENE = """title = "A small slope"
+gravity = 9.81
+[mesh]
+section = "slope.csv"
+size = 0.8
+[body.clay]
+region = "clay"
+density = 2000
+law = "mohr_coulomb"
+young_modulus = "10 MPa"
+poisson_ratio = 0.3
+cohesion = "6 kPa"
+friction_angle = 10
+[boundary.base]
+kind = "fixed"
+[boundary.left]
+kind = "roller"
+[boundary.right]
+kind = "roller"
+[[stage]]
+name = "slide"
+duration = "15 s"
+gravity_ramp = "1 s"
+until = "rest"
+damping = 0.05
+[output]
+interval = 0.5
+[output.point.crest]
+position = [8, 6]
+"""
+STUDY = """scene = "slope.toml"
+measures = ["crest_displacement_m@14"]
+[variable.strength]
+key = "body.clay.cohesion"
+unit = "kPa"
+kind = "list"
+values = [2, 5, 9]
+[criterion.failure]
+outcome = "fails"
+above = 0.5
+"""
+FACTORS = """scene = "static.toml"
+runs = "factor_of_safety"
+[variable.angle]
+key = "body.clay.friction_angle"
+kind = "list"
+values = [6, 8]
+"""
+
+
+def rows(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+class Outcomes(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp())
+        static = SCENE.replace('gravity_ramp = "1 s"\nuntil = "rest"\ndamping = 0.05\n', 'kind = "quasi_static"\n')
+        for name, text in (("slope.csv", SECTION), ("slope.toml", SCENE), ("static.toml", static), ("study.toml", STUDY), ("factors.toml", FACTORS)):
+            (cls.folder / name).write_text(text)
+        cls.printed = cls.call("study", "study.toml", "-o", "out", "-j", "2")
+        cls.table = rows(cls.folder / "out/study.csv")
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    @classmethod
+    def call(cls, *words):
+        done = subprocess.run([PROGRAM, *words], capture_output=True, text=True, cwd=cls.folder)
+        if done.returncode:
+            raise AssertionError(f"{words} ended with {done.returncode}: {done.stdout} {done.stderr}")
+        return done.stdout
+
+    def test_a_slide_of_less_than_a_cell_has_a_state_of_its_own(self):
+        self.assertEqual([(row["state"], row["fails"]) for row in self.table], [("fails", "True"), ("moves", ""), ("stands", "False")])
+        self.assertEqual([row["meets_failure"] for row in self.table], ["yes", "", "no"])
+        self.assertIn("the slope fails in 1 runs, moves by less than a cell in 1, stands in 1", self.printed)
+        moved, standing = self.table[1:]
+        self.assertGreater(float(moved["volume_of_slide_m3"]), 10)
+        self.assertGreater(float(moved["depth_of_slide_m"]), 2)
+        self.assertEqual([float(standing[name]) for name in ("travel_distance_m", "volume_of_slide_m3", "depth_of_slide_m")], [0, 0, 0])
+
+    def test_the_report_says_the_same(self):
+        for k, row in enumerate(self.table):
+            cards = {what: (number, note) for what, number, note in key_results(Results(self.folder / f"out/run{k:05d}"))}
+            self.assertEqual(cards["State at the end"][0], row["state"])
+            shown = float(cards["Largest displacement"][0].split()[0]) / (1000 if " mm" in cards["Largest displacement"][0] else 1)
+            self.assertAlmostEqual(shown / float(row["largest_displacement_m"]), 1, delta=0.005)  # three digits
+            self.assertAlmostEqual(float(cards["Sliding volume"][0].split()[0]), float(row["volume_of_slide_m3"]), delta=0.05)  # three digits
+        self.assertIn("less than a cell of 0.77 m", cards_note(self.folder / "out/run00001"))
+
+    def test_compare_says_the_same(self):
+        printed = self.call("compare", "slope.toml", "-o", "compared", "-j", "2", "--no-plot", "--series", "strength: body.clay.cohesion=5 kPa,9 kPa")
+        table = rows(self.folder / "compared/sweep.csv")
+        for one, other in zip(table, self.table[1:]):
+            for name in ("state", "fails", "largest_displacement_m"):
+                self.assertEqual(one[name], other[name])
+        self.assertEqual(table[0]["volume_of_slide_m3"], self.table[1]["volume_of_slide_m3"])
+        self.assertRegex(printed, r"strength +5 kPa +moves")
+
+    def test_a_run_at_rest_has_its_last_row_at_later_times(self):
+        for row in self.table:  # all come to rest before 14 s
+            self.assertAlmostEqual(float(row["crest_displacement_m@14"]) / float(row["crest_displacement_m"]), 1, delta=1e-5)  # six digits
+
+    def test_values_that_are_none_are_null(self):
+        (self.folder / "none.toml").write_text(STUDY.replace("crest_displacement_m@14", "crest_displacement_m@9"))
+        late = ["--set", 'set=["stage.slide.until=duration","stage.slide.duration=0.5"]']
+        refused = subprocess.run([PROGRAM, "study", "none.toml", "-o", "late", "--no-plot", *late], capture_output=True, text=True, cwd=self.folder)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("the measure crest_displacement_m@9 asks for t = 9 s, and the stages of the scene end at t = 0.5 s", refused.stderr)
+        known = {"failure": "", "strength": "1", "state": "stands", "fails": False, "x": None}
+        self.assertEqual(state(known, {"outcome": "x", "side": "below", "limit": 1}), UNKNOWN)
+        path = self.folder / "page.json"
+        write_json(path, {"a": [math.nan, 1.5], "b": {"c": math.inf, "d": True, "e": 3}})
+        self.assertEqual(json.loads(path.read_text(), parse_constant=self.fail), {"a": [None, 1.5], "b": {"c": None, "d": True, "e": 3}})
+
+    def test_warnings_of_the_runs_reach_the_summary(self):
+        printed = self.call("study", "factors.toml", "-o", "factors", "-j", "2", "--no-plot")
+        said = "the factor of a mechanism of fewer than 10 cells is some per cent too large"
+        lines = [line for line in printed.splitlines() if said in line]
+        self.assertEqual(len(lines), 1, printed)
+        self.assertTrue(lines[0].startswith("warning in 2 of 2 runs, first in run00000: the mechanism from x = "), lines[0])
+        self.assertTrue(all(said in row["warnings"] for row in rows(self.folder / "factors/study.csv")))
+        warnings = json.loads((self.folder / "factors/study.json").read_text())["warnings"]
+        self.assertEqual([(one["runs"], one["first_run"]) for one in warnings if said in one["warning"]], [(2, "run00000")])
+
+
+def cards_note(folder):
+    return next(note for what, _, note in key_results(Results(folder)) if what == "State at the end")
+
+
+class Soil:
+    """Particles of equal mass that moved by `way` and have this plastic strain."""
+
+    def __init__(self, way, strain=None):
+        self.snapshots = [self]
+        self.fields = {"displacement": np.full(50, way)} | ({} if strain is None else {"plastic_strain": np.full(50, strain)})
+
+    def __contains__(self, name):
+        return name in self.fields
+
+    def scalar(self, name):
+        return self.fields[name], ""
+
+
+class States(unittest.TestCase):
+    def test_limits(self):
+        for way, strain, failed, state in ((1.1, 0.0, False, FAILS), (0.0, 0.0, True, FAILS), (0.5, 0.3, False, MOVES), (0.5, 0.05, False, STANDS),
+                                           (0.05, 0.3, False, STANDS), (0.5, None, False, MOVES)):
+            self.assertEqual(state_of(Soil(way, strain), 1.0, failed, way), state, (way, strain, failed))
+
+
+if __name__ == "__main__":
+    unittest.main()
