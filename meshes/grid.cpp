@@ -57,6 +57,36 @@ void check_elevations(const Grid &grid) {
   complain(grid.file, text.str());
 }
 
+/// The values of a band, from the southwest; not a number where it says that it has none.
+void read_values(GDALRasterBand &band, bool from_north, Grid &grid) {
+  grid.values.resize(static_cast<std::size_t>(grid.columns) * grid.rows);
+  CPLErrorReset();
+  CPLPushErrorHandler(CPLQuietErrorHandler);  // of a file that ends early GDAL complains once for each line
+  bool complete = true;
+  for (int j = 0; j < grid.rows && complete; ++j)
+    complete = band.RasterIO(GF_Read, 0, from_north ? grid.rows - 1 - j : j, grid.columns, 1,
+                             &grid.values[static_cast<std::size_t>(j) * grid.columns], grid.columns, 1, GDT_Float64, 0,
+                             0, nullptr) == CE_None;
+  CPLPopErrorHandler();
+  if (!complete)
+    complain(grid.file, "ends early or is damaged, so that not all of its " + std::to_string(grid.rows) + " rows of " +
+                            std::to_string(grid.columns) +
+                            " values can be read; fetch or write it again (GDAL: " + CPLGetLastErrorMsg() + ")");
+  int has_hole = 0;
+  const double hole = band.GetNoDataValue(&has_hole), scale = band.GetScale(), offset = band.GetOffset();
+  const bool single = band.GetRasterDataType() == GDT_Float32;  // the value of a hole is written in more digits
+  const auto missing = [&](double z) {
+    return !std::isfinite(z) ||
+           (has_hole && (z == hole || (single && static_cast<float>(z) == static_cast<float>(hole))));
+  };
+  for (double &z : grid.values) z = missing(z) ? std::numeric_limits<double>::quiet_NaN() : offset + scale * z;
+  if (scale == 1 && offset == 0) return;
+  std::ostringstream text;
+  text << grid.file << ": values are " << scale << " times those stored plus " << offset
+       << ", by the scale and the offset that the file gives its band";
+  grid.remarks.push_back(text.str());
+}
+
 }  // namespace
 
 Grid read_grid(const std::string &file) {
@@ -83,16 +113,13 @@ Grid read_grid(const std::string &file) {
   grid.south = (from_north ? map[3] + grid.rows * map[5] : map[3]) + grid.spacing / 2;
   GDALRasterBand *band = data->GetRasterBand(1);
   grid.unit = band->GetUnitType();
-  grid.values.resize(static_cast<std::size_t>(grid.columns) * grid.rows);
-  for (int j = 0; j < grid.rows; ++j)
-    if (band->RasterIO(GF_Read, 0, from_north ? grid.rows - 1 - j : j, grid.columns, 1,
-                       &grid.values[static_cast<std::size_t>(j) * grid.columns], grid.columns, 1, GDT_Float64, 0, 0,
-                       nullptr) != CE_None)
-      complain(file, "cannot be read: " + std::string(CPLGetLastErrorMsg()));
-  int has_hole = 0;
-  const double hole = band->GetNoDataValue(&has_hole);
-  for (double &z : grid.values)
-    if (!std::isfinite(z) || (has_hole && z == hole)) z = std::numeric_limits<double>::quiet_NaN();
+  if (const int bands = data->GetRasterCount(); bands > 1) {
+    const std::string name = band->GetDescription();
+    grid.remarks.push_back(file + ": of its " + std::to_string(bands) + " bands the first is taken" +
+                           (name.empty() ? "" : ", `" + name + "`") +
+                           "; another one makes a file of its own by gdal_translate -b NUMBER");
+  }
+  read_values(*band, from_north, grid);
   if (const char *text = data->GetProjectionRef()) grid.projection = text;
   check_projection(grid, data->GetSpatialRef());
   return grid;
@@ -102,6 +129,38 @@ Grid read_elevations(const std::string &file) {
   Grid grid = read_grid(file);
   check_elevations(grid);
   return grid;
+}
+
+void check_same_projection(const Grid &grid, const std::string &projection, const std::string &of) {
+  if (grid.projection.empty() || projection.empty() || grid.projection == projection) return;
+  OGRSpatialReference own, other;
+  if (own.importFromWkt(grid.projection.c_str()) != OGRERR_NONE ||
+      other.importFromWkt(projection.c_str()) != OGRERR_NONE)
+    return;
+  for (OGRSpatialReference *one : {&own, &other}) {
+    if (one->IsLocal()) return;  // a name without a place on the earth
+    one->StripVertical();
+    one->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  }
+  const char *const options[] = {"CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS",
+                                 "IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", nullptr};
+  if (own.IsSame(&other, options)) return;
+  // one definition has many spellings, of which places tell more than names
+  CPLPushErrorHandler(CPLQuietErrorHandler);
+  const std::unique_ptr<OGRCoordinateTransformation> to_other(OGRCreateCoordinateTransformation(&own, &other));
+  double x = (grid.west + grid.east()) / 2, y = (grid.south + grid.north()) / 2;
+  const double from[] = {x, y};
+  const bool near =
+      to_other && to_other->Transform(1, &x, &y) && std::hypot(x - from[0], y - from[1]) < 0.1 * grid.spacing;
+  CPLPopErrorHandler();
+  if (near) return;
+  const auto name = [](const OGRSpatialReference &one) {
+    const char *text = one.GetName();
+    return std::string(text ? text : "one without a name");
+  };
+  complain(grid.file, "has the projection " + name(own) + ", and " + of + " has " + name(other) +
+                          ", in which the same place has other coordinates; project it to that by gdalwarp -t_srs, or "
+                          "correct what the file says by gdal_edit.py -a_srs");
 }
 
 void write_values(const Grid &grid, const std::string &file) {

@@ -21,7 +21,9 @@ constexpr double most_cells = 1e8;
 
 struct Request {
   std::string source, file;
-  bool values = false;  ///< of a grid, instead of a mesh
+  bool values = false;                ///< of a grid, instead of a mesh
+  std::string projection;             ///< as well-known text, that a grid of values must have ...
+  std::string terrain_of_projection;  ///< ... as this file has
   std::string format = "4.1";
   std::vector<double> boxes;  ///< x0 y0 x1 y1 h, repeated
   MeshOptions options;
@@ -214,7 +216,12 @@ void check(const TerrainOptions &o, const Terrain &terrain) {
 }
 
 void run(const Request &request) {
-  if (request.values) return write_values(read_grid(request.source), request.file);
+  if (request.values) {
+    const Grid grid = read_grid(request.source);
+    check_same_projection(grid, request.projection, request.terrain_of_projection);
+    for (const std::string &remark : grid.remarks) std::cout << "warning: " << remark << "\n";
+    return write_values(grid, request.file);
+  }
   std::optional<Section> section;
   std::optional<Terrain> terrain;
   if (is_section(request.source))
@@ -271,6 +278,8 @@ int parse(int argc, char **argv, Request &request) {
   app.add_option("-o,--output", request.file, "mesh file to write")->required();
   app.add_option("--size", request.options.size, "cell size [m]");
   app.add_flag("--values", request.values, "write the values of a grid for Talus to read, and no mesh");
+  app.add_option("--projection", request.projection, "of --values: well-known text of the projection to compare with");
+  app.add_option("--projection-of", request.terrain_of_projection, "the file that has this projection");
   app.add_option("--dimension", request.options.dimension, "2: triangles, 3: tetrahedra")->check(CLI::IsMember({2, 3}));
   app.add_option("--thickness", request.options.thickness, "of a 3D slice [m]; default one cell size");
   app.add_option("--layers", request.options.layers, "of elements over the thickness; 0: free tetrahedra; default 1");

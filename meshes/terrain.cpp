@@ -21,6 +21,14 @@ std::string text_of(const Part &...part) {
   return text.str();
 }
 
+/// A length in a sentence, to three digits.
+std::string length(double metres) {
+  std::ostringstream text;
+  text.precision(3);
+  text << metres << " m";
+  return text.str();
+}
+
 std::string json_text(const std::string &text) {
   std::string quoted = "\"";
   for (const char c : text) {
@@ -38,23 +46,41 @@ double azimuth(const std::array<double, 2> &v) {
 
 }  // namespace
 
-double Ellipsoid::bottom(double x, double y) const {
+std::array<std::array<double, 3>, 3> Ellipsoid::axes() const {
   const double s = std::sin(dip_direction), c = std::cos(dip_direction);
-  const double axes[3][3] = {{std::cos(dip) * s, std::cos(dip) * c, -std::sin(dip)},
-                             {c, -s, 0},
-                             {std::sin(dip) * s, std::sin(dip) * c, std::cos(dip)}};
+  return {{{std::cos(dip) * s, std::cos(dip) * c, -std::sin(dip)},
+           {c, -s, 0},
+           {std::sin(dip) * s, std::sin(dip) * c, std::cos(dip)}}};
+}
+
+double Ellipsoid::side(double x, double y, double sign) const {
+  const auto axis = axes();
   double square = 0, mixed = 0, rest = -1;  // of the equation for the height above the centre
   for (int k = 0; k < 3; ++k) {
-    const double level = (axes[k][0] * (x - centre[0]) + axes[k][1] * (y - centre[1])) / semi_axes[k],
-                 rise = axes[k][2] / semi_axes[k];
+    const double level = (axis[k][0] * (x - centre[0]) + axis[k][1] * (y - centre[1])) / semi_axes[k],
+                 rise = axis[k][2] / semi_axes[k];
     square += rise * rise, mixed += level * rise, rest += level * level;
   }
-  return centre[2] + (-mixed - std::sqrt(mixed * mixed - square * rest)) / square;
+  return centre[2] + (-mixed + sign * std::sqrt(mixed * mixed - square * rest)) / square;
+}
+
+double Ellipsoid::bottom(double x, double y) const { return side(x, y, -1); }
+double Ellipsoid::top(double x, double y) const { return side(x, y, 1); }
+
+/// On the unit sphere the rim is the great circle normal to (n0, 0, n2), since the second axis is level.
+std::array<double, 3> Ellipsoid::rim(double angle) const {
+  const auto axis = axes();
+  const double n0 = axis[0][2] / semi_axes[0], n2 = axis[2][2] / semi_axes[2], n = std::hypot(n0, n2);
+  const double along[] = {std::sin(angle) * n2 / n, std::cos(angle), -std::sin(angle) * n0 / n};
+  std::array<double, 3> place = centre;
+  for (int k = 0; k < 3; ++k)
+    for (int d = 0; d < 3; ++d) place[d] += along[k] * semi_axes[k] * axis[k][d];
+  return place;
 }
 
 Terrain::Terrain(const TerrainOptions &options) : options_(options) {
   const Grid grid = read_elevations(options.file);
-  projection_ = grid.projection;
+  projection_ = grid.projection, remarks_ = grid.remarks;
   if (!(options.far_size >= options.size)) options_.far_size = options.size;
   take_window(grid);
   bed_ = ground_;
@@ -112,17 +138,61 @@ void Terrain::take_window(const Grid &grid) {
     complain(text_of(grid.file, ": the window has no data at ", holes, " of ", ground_.values.size(),
                      " places, the first at ", place(first),
                      "; fill the holes, such as by gdal_fillnodata.py, or take another window by --window"));
+  check_steps(ground(), grid.file);
+}
+
+void Terrain::check_steps(const std::vector<double> &z, const std::string &file) const {
+  constexpr double steep = 2, rare = 15;  // a spike is this steep on all sides, and so much more than the roughness
+  constexpr double cliff = 10;            // rise over run of a step that no cell can follow
+  const auto refuse = [&](int at, const std::string &how, const std::string &others) {
+    complain(text_of(file, ": the elevation ", z[at], " m at ", place(at), " ", how, ", as no ground does", others,
+                     ". Correct it; if ", z[at],
+                     " stands for a place without data, say so by gdal_translate -a_nodata ", z[at],
+                     " and fill it by gdal_fillnodata.py; or take a window without it by --window"));
+  };
+  std::vector<double> beside, off(z.size());
+  int step_at = -1;
+  double highest = cliff * std::max(ground_.spacing, options_.size);
+  for (int k = 0; k < static_cast<int>(z.size()); ++k) {
+    const int i = k % columns(), j = k / columns();
+    beside.clear();
+    for (int b = std::max(0, j - 1); b <= std::min(rows() - 1, j + 1); ++b)
+      for (int a = std::max(0, i - 1); a <= std::min(columns() - 1, i + 1); ++a)
+        if (a != i || b != j) beside.push_back(z[b * columns() + a]);
+    const auto middle = beside.begin() + static_cast<long>(beside.size() / 2);
+    std::nth_element(beside.begin(), middle, beside.end());
+    off[k] = z[k] - *middle;
+    for (const int next : {i > 0 ? k - 1 : k, j > 0 ? k - columns() : k})
+      if (std::abs(z[k] - z[next]) > highest) highest = std::abs(z[k] - z[next]), step_at = z[k] < z[next] ? k : next;
+  }
+  std::vector<double> roughness;
+  for (const double one : off) roughness.push_back(std::abs(one));
+  const auto most = roughness.begin() + static_cast<long>(0.95 * static_cast<double>(roughness.size() - 1));
+  std::nth_element(roughness.begin(), most, roughness.end());
+  const double allowed = std::max(steep * ground_.spacing, rare * *most);
+  const auto spikes = std::count_if(off.begin(), off.end(), [&](double one) { return std::abs(one) > allowed; });
+  const auto worst =
+      std::max_element(off.begin(), off.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  if (spikes)
+    refuse(static_cast<int>(worst - off.begin()),
+           text_of("stands ", length(std::abs(*worst)), " ", *worst > 0 ? "above" : "below", " the places around it"),
+           spikes > 1 ? text_of(" (so do ", spikes, " places)") : "");
+  if (step_at >= 0) refuse(step_at, text_of("is ", length(highest), " lower than the place beside it"), "");
 }
 
 void Terrain::take_slip_surface(const Grid &grid) {
   const bool by_grid = !options_.slip_surface.empty();
   if (by_grid && options_.ellipsoid) complain("give one slip surface: --slip-surface or --ellipsoid");
   const Grid given = by_grid ? read_elevations(options_.slip_surface) : Grid{};
+  if (by_grid) check_same_projection(given, projection_, grid.file);
+  remarks_.insert(remarks_.end(), given.remarks.begin(), given.remarks.end());
   double nearest = std::numeric_limits<double>::infinity();  // of the surface over the ground
   bool met = false;
+  std::vector<double> slip;
   for (int k = 0; k < static_cast<int>(bed_.values.size()); ++k) {
     const double east = origin_[0] + x(k % columns()), north = origin_[1] + y(k / columns());
     const double z = by_grid ? given.at(east, north) : options_.ellipsoid->bottom(east, north);
+    slip.push_back(z);
     if (std::isnan(z)) continue;  // beside it nothing slides
     met = true;
     nearest = std::min(nearest, z - bed_.values[k]);
@@ -140,6 +210,71 @@ void Terrain::take_slip_surface(const Grid &grid) {
     slide_volume_ += area * (ground()[k] - bed()[k]);
     if (ground()[k] > bed()[k]) slide_area_ += area;
   }
+  check_steps(bed(), name);
+  check_slip_surface(slip, name);
+}
+
+void Terrain::check_slip_surface(const std::vector<double> &slip, const std::string &name) {
+  const bool by_grid = !options_.slip_surface.empty();
+  const double deep = slide_volume_ / slide_area_;
+  double highest = -std::numeric_limits<double>::infinity(), lowest = -highest, deepest = 0;
+  int deepest_at = 0;
+  bool emerges = false;  // the upper side of an ellipsoid
+  for (int k = 0; k < static_cast<int>(slip.size()); ++k) {
+    const double depth = ground()[k] - slip[k];
+    if (options_.ellipsoid) {
+      const double east = origin_[0] + x(k % columns()), north = origin_[1] + y(k / columns());
+      emerges = emerges || options_.ellipsoid->top(east, north) > ground()[k];
+    }
+    if (!(depth > 0)) continue;
+    highest = std::max(highest, slip[k]), lowest = std::min(lowest, ground()[k]);
+    if (depth > deepest) deepest = depth, deepest_at = k;
+  }
+  if (options_.ellipsoid && !emerges)
+    complain(text_of("the ellipsoid lies wholly below the ground, ", length(deepest), " deep at ", place(deepest_at),
+                     ", so that the slide would have a vertical wall all round; raise its centre, in elevation, to "
+                     "the ground or near it"));
+  if (by_grid && lowest - highest > 0.5 * deep)
+    complain(text_of(name, " reaches up to ", highest, " m only, ", length(lowest - highest),
+                     " below the lowest ground above it, so that the slide is ", length(deep),
+                     " thick and its surface comes to light nowhere. Are these depths? Elevations are asked for: the "
+                     "ground minus the depth, such as by gdal_calc.py"));
+  const double wide = std::sqrt(slide_area_);
+  if (deep > 0.5 * wide)
+    remarks_.push_back(text_of("the slide is ", length(deep), " thick on average and covers ", slide_area_,
+                               " m2 only, so that it is a shaft rather than a slide. Are elevations and coordinates "
+                               "in metres, and ",
+                               name, " an elevation and not a depth?"));
+  // where the surface ends below the ground, the slide ends at a wall
+  double wall = deepest / 3;
+  std::string where;
+  const auto note = [&](double height, const std::string &at) {
+    if (height > wall) wall = height, where = at;
+  };
+  for (int k = 0; by_grid && k < static_cast<int>(slip.size()); ++k)
+    for (const auto &[a, b] : {std::array{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+      const int i = k % columns() + a, j = k / columns() + b, behind = k - a - b * columns();
+      if (!(slip[k] < ground()[k]) || i < 0 || j < 0 || i >= columns() || j >= rows()) continue;
+      if (!std::isnan(slip[j * columns() + i])) continue;
+      const int i_behind = k % columns() - a, j_behind = k / columns() - b;
+      const bool inside = i_behind >= 0 && j_behind >= 0 && i_behind < columns() && j_behind < rows();
+      const double depth = ground()[k] - slip[k];
+      const double inwards = inside && !std::isnan(slip[behind]) ? ground()[behind] - slip[behind] : depth;
+      note(std::min(depth, 2 * depth - inwards), place(k));  // it may rise to the ground within its last cell
+    }
+  constexpr int round = 180;
+  for (int k = 0; options_.ellipsoid && k < round; ++k) {
+    const auto [east, north, elevation] = options_.ellipsoid->rim(2 * 3.14159265358979323846 * k / round);
+    note(ground_at(east - origin_[0], north - origin_[1]) - elevation,
+         text_of("(", std::round(east), ", ", std::round(north), ")"));
+  }
+  if (where.empty()) return;
+  remarks_.push_back(text_of(name, " ends ", length(wall), " below the ground at ", where, ", and it is ",
+                             length(deepest), " deep at most: the slide has a vertical wall there. ",
+                             by_grid ? "Go on with the grid until it is above the ground, also inside, where it has no "
+                                       "data (gdal_fillnodata.py)"
+                                     : "Raise the centre of the ellipsoid, or turn it, until its rim is above the "
+                                       "ground"));
 }
 
 void Terrain::check_base() const {
@@ -186,7 +321,7 @@ std::array<double, 2> Terrain::downhill(const std::vector<double> &z) const {
 }
 
 std::vector<std::string> Terrain::doubts() const {
-  std::vector<std::string> sentences;
+  std::vector<std::string> sentences = remarks_;
   if (ground_.spacing > 2 * options_.size)
     sentences.push_back(text_of("the cells at the ground (--size ", options_.size,
                                 " m) are smaller than the spacing of the elevations, ", ground_.spacing,
@@ -204,8 +339,9 @@ std::vector<std::string> Terrain::doubts() const {
                                 "surface dips. Is it meant to dip the other way?"));
   const double deep = slide_volume_ / slide_area_;
   if (options_.far_size > deep)
-    sentences.push_back(text_of("cells grow to ", options_.far_size, " m on the way of the slide, which is ", deep,
-                                " m thick on average and thinner as it spreads: a flow that is not as deep as a cell "
+    sentences.push_back(text_of("cells grow to ", options_.far_size, " m on the way of the slide, which is ",
+                                length(deep),
+                                " thick on average and thinner as it spreads: a flow that is not as deep as a cell "
                                 "is not resolved. Take a --far-size (and --size) of a third of its depth or less"));
   for (int k = 0; k < static_cast<int>(bed().size()); ++k) {
     const int i = k % columns(), j = k / columns();

@@ -19,6 +19,14 @@ struct Ellipsoid {
   double dip = 0, dip_direction = 0;  ///< [rad]
   /// Elevation of the lower side; not a number beside the ellipsoid.
   double bottom(double x, double y) const;
+  /// The same of the upper side.
+  double top(double x, double y) const;
+  /// A place of the rim, seen from above, where lower and upper side meet; `angle` from 0 to 2 pi goes round it.
+  std::array<double, 3> rim(double angle) const;
+
+ private:
+  std::array<std::array<double, 3>, 3> axes() const;
+  double side(double x, double y, double sign) const;
 };
 
 struct TerrainOptions {
@@ -66,6 +74,11 @@ class Terrain {
   void take_window(const Grid &grid);
   void take_slip_surface(const Grid &grid);
   void check_base() const;
+  /// Refuses elevations that no ground has: single places, or edges of areas, far above or below those around them.
+  void check_steps(const std::vector<double> &z, const std::string &file) const;
+  /// Refuses a slip surface that does not come up to the ground, and notes where it ends below it. `slip` is not a
+  /// number where there is none.
+  void check_slip_surface(const std::vector<double> &slip, const std::string &name);
   void find_distances();
   std::string place(int index) const;  ///< in the coordinates of the grid
   /// Where the slide as a whole falls or dips to: level components of the mean of -grad z over it.
@@ -74,6 +87,7 @@ class Terrain {
   TerrainOptions options_;
   std::array<double, 2> origin_{};  ///< of the mesh in the coordinates of the grid [m]
   std::string projection_;
+  std::vector<std::string> remarks_;  ///< on how files were read
   Grid ground_, bed_;
   Grid distance_;  ///< from the slide, seen from above [m]
   double slide_area_ = 0, slide_volume_ = 0;

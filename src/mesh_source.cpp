@@ -101,12 +101,38 @@ std::string digest_of(const Grid &grid) {
   return text.str();
 }
 
+/// Text at a key of a document of an origin (Terrain::origin_document); empty where it has none.
+std::string text_in(const std::string &document, const std::string &key) {
+  const std::string opening = "\"" + key + "\": \"";
+  const std::size_t begin = document.find(opening);
+  std::string text;
+  for (std::size_t i = begin + opening.size(); begin != std::string::npos && i < document.size(); ++i) {
+    if (document[i] == '"') return text;
+    if (document[i] == '\\') ++i;
+    text += document[i];
+  }
+  return "";
+}
+
+/// What talus-mesh has warned of.
+std::vector<std::string> warnings_in(const std::string &printed) {
+  std::vector<std::string> sentences;
+  std::istringstream lines(printed);
+  const std::string warning = "warning: ";
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with(warning)) sentences.push_back(line.substr(warning.size()));
+  return sentences;
+}
+
 /// Reads a grid by way of talus-mesh, which writes its values into a plain file: GDAL stays out of this program.
-MeshRun values_of(const std::string &file, Grid &grid) {
+MeshRun values_of(const std::string &file, const std::string &document, Grid &grid) {
   TemporaryFolder folder;
   if (!folder.make()) return no_folder;
   const std::string values = folder.path() + "/values";
-  MeshRun run = plain(run_talus_mesh({file, "--values", "-o", values}));
+  std::vector<std::string> arguments{file, "--values", "-o", values};
+  if (const std::string projection = text_in(document, "projection"); !projection.empty())
+    arguments.insert(arguments.end(), {"--projection", projection, "--projection-of", text_in(document, "terrain")});
+  MeshRun run = plain(run_talus_mesh(arguments));
   if (run.status) return run;
   std::ifstream in(values, std::ios::binary);
   in >> grid.columns >> grid.rows >> grid.west >> grid.south >> grid.spacing;
@@ -184,10 +210,7 @@ MeshFile::MeshFile(MPI_Comm comm, const Scene &scene) {
 
 /// Warnings in what talus-mesh printed, and the origin that it has left beside the mesh.
 void MeshFile::read_report(const std::string &printed) {
-  std::istringstream lines(printed);
-  const std::string warning = "warning: ";
-  for (std::string line; std::getline(lines, line);)
-    if (line.starts_with(warning)) made_.remarks.push_back(line.substr(warning.size()));
+  made_.remarks = warnings_in(printed);
   read_origin(folder_.path() + "/mesh.origin.json");
 }
 
@@ -209,8 +232,10 @@ MeshRun MeshFile::make(const Scene &scene) {
   return plain(run_talus_mesh(source.section.empty() ? of_terrain(scene, path_) : of_section(scene, path_)));
 }
 
-void read_grids(MPI_Comm comm, const Scene &scene, std::array<double, 2> origin) {
-  if (!scene.root) return;  // a scene made in memory names no files
+std::vector<std::string> read_grids(MPI_Comm comm, const Scene &scene, std::array<double, 2> origin,
+                                    const std::string &document) {
+  std::vector<std::string> remarks;
+  if (!scene.root) return remarks;  // a scene made in memory names no files
   int rank;
   MPI_Comm_rank(comm, &rank);
   for (const auto &[name, place_grid] : scene.root->grids()) {
@@ -219,8 +244,9 @@ void read_grids(MPI_Comm comm, const Scene &scene, std::array<double, 2> origin)
     std::string complaint;
     Grid &grid = place_grid->grid;
     if (rank == 0) {
-      const MeshRun run = values_of(place_grid->file, grid);
+      const MeshRun run = values_of(place_grid->file, document, grid);
       status = run.status, complaint = run.output;
+      for (const std::string &sentence : warnings_in(run.output)) remarks.push_back(key + ": " + sentence);
     }
     tell_all(comm, status, complaint);
     if (status == 2) scene.complain(key, "cannot be read: " + complaint);
@@ -233,6 +259,7 @@ void read_grids(MPI_Comm comm, const Scene &scene, std::array<double, 2> origin)
       MPI_Bcast(&grid.values[static_cast<std::size_t>(row) * grid.columns], grid.columns, MPI_DOUBLE, 0, comm);
     place_grid->origin = origin, place_grid->digest = digest_of(grid);
   }
+  return remarks;
 }
 
 }  // namespace talus

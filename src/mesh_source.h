@@ -42,8 +42,11 @@ class MeshFile {
 };
 
 /// Reads the grids of [grids], which count from this origin of the mesh, on rank 0 and hands their values to all.
-/// Collective. Throws std::invalid_argument with talus-mesh's own complaint, the same on all ranks.
-void read_grids(MPI_Comm comm, const Scene &scene, std::array<double, 2> origin);
+/// `document` says where the mesh lies, as MadeMesh::origin does; grids of another projection are refused. Returns what
+/// is to be said of them, on rank 0. Collective. Throws std::invalid_argument with talus-mesh's own complaint, the same
+/// on all ranks.
+std::vector<std::string> read_grids(MPI_Comm comm, const Scene &scene, std::array<double, 2> origin,
+                                    const std::string &document);
 
 /// `path` as written in a scene: relative to the scene's own folder.
 std::string beside_scene(const Scene &scene, const std::string &path);

@@ -1,5 +1,7 @@
 #include "simulation.h"
 
+#include <optional>
+
 #include "mesh_source.h"
 #include "simulation/simulation_impl.h"
 
@@ -28,15 +30,13 @@ std::unique_ptr<AnySimulation> make(MPI_Comm comm, const Scene &scene, const Run
 }  // namespace
 
 std::unique_ptr<AnySimulation> make_simulation(MPI_Comm comm, const Scene &scene, const RunOptions &options) {
-  if (options.plex) {
-    read_grids(comm, scene, {});
-    return make(comm, scene, options, "");
-  }
-  const MeshFile mesh(comm, scene);
-  read_grids(comm, scene, mesh.origin());
   RunOptions with = options;
-  with.mesh = mesh.made();
-  return make(comm, scene, with, mesh.path());
+  std::optional<MeshFile> mesh;
+  if (!options.plex) with.mesh = mesh.emplace(comm, scene).made();
+  for (const std::string &remark :
+       read_grids(comm, scene, mesh ? mesh->origin() : std::array<double, 2>{}, with.mesh.origin))
+    with.mesh.remarks.push_back(remark);
+  return make(comm, scene, with, mesh ? mesh->path() : "");
 }
 
 }  // namespace talus

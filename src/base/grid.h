@@ -10,11 +10,12 @@ namespace talus {
 struct Grid {
   std::string file;
   int columns = 0, rows = 0;
-  double west = 0, south = 0;  ///< of the first value, the centre of its cell [m]
-  double spacing = 0;          ///< of columns and rows [m]
-  std::vector<double> values;  ///< [rows][columns], from the southwest; not a number where there is no data
-  std::string projection;      ///< as well-known text; empty where the file names none
-  std::string unit;            ///< of the values, as the file names it; mostly empty
+  double west = 0, south = 0;        ///< of the first value, the centre of its cell [m]
+  double spacing = 0;                ///< of columns and rows [m]
+  std::vector<double> values;        ///< [rows][columns], from the southwest; not a number where there is no data
+  std::string projection;            ///< as well-known text; empty where the file names none
+  std::string unit;                  ///< of the values, as the file names it; mostly empty
+  std::vector<std::string> remarks;  ///< sentences on how the file was read
 
   double east() const { return west + (columns - 1) * spacing; }
   double north() const { return south + (rows - 1) * spacing; }

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 
 #include "scene/place_grid.h"
+#include "scene/words.h"
 
 namespace talus {
 
@@ -78,13 +80,31 @@ bool assigns(const std::string &text) {
   return false;
 }
 
+/// A name that the text calls and that nothing has; empty where there is none.
+std::string unknown_call(const std::string &text, const NamedFunctions &functions, const NamedGrids &grids) {
+  const mu::Parser parser;
+  const std::regex call("([A-Za-z_][A-Za-z_0-9]*)\\s*\\(");
+  for (auto found = std::sregex_iterator(text.begin(), text.end(), call); found != std::sregex_iterator(); ++found)
+    if (const std::string name = (*found)[1];
+        !parser.GetFunDef().contains(name) && !functions.contains(name) && !grids.contains(name))
+      return name;
+  return "";
+}
+
 /// muParser's message; for what it did not recognise, the names that it would have beside the variables, which the key
 /// decides on.
-std::string message(const mu::Parser::exception_type &error, const NamedFunctions &functions, const NamedGrids &grids) {
+std::string message(const mu::Parser::exception_type &error, const std::string &text, const NamedFunctions &functions,
+                    const NamedGrids &grids) {
   std::string names = "pi";
-  for (const auto &[name, function] : functions) names += ", " + name + "()";
-  for (const auto &[name, grid] : grids) names += ", " + name + "(x, y)";
+  std::vector<std::string> calls;
+  for (const auto &[name, function] : functions) names += ", " + name + "()", calls.push_back(name);
+  for (const auto &[name, grid] : grids) names += ", " + name + "(x, y)", calls.push_back(name);
   const bool unknown = error.GetCode() == mu::ecUNASSIGNABLE_TOKEN || error.GetCode() == mu::ecUNEXPECTED_PARENS;
+  if (const std::string name = unknown_call(text, functions, grids); unknown && !name.empty()) {
+    const std::string near = nearest(name, calls);
+    return "there is no function or grid `" + name + "`" + (near.empty() ? "." : "; did you mean `" + near + "`?") +
+           " It may name " + names;
+  }
   return error.GetMsg() + (unknown ? " It may also name " + names : "");
 }
 
@@ -136,7 +156,7 @@ Function::Function(const std::string &expression, double scale, const NamedFunct
   try {
     expression_ = std::make_shared<Expression>(expression, scale, functions, grids);
   } catch (const mu::Parser::exception_type &error) {
-    throw std::invalid_argument(message(error, functions, grids));
+    throw std::invalid_argument(message(error, expression, functions, grids));
   }
 }
 

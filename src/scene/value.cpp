@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <regex>
 #include <string_view>
 
 #include "scene/quantity.h"
@@ -115,9 +116,21 @@ Function TableReader::Value::place_function(Unit unit, Range range) const {
   return limited_expression(expected, unit, range, of::place);
 }
 
+/// From above, x and z of a mesh whose y points up are the east and the south: a grid asked for (x, z) is its mirror
+/// image.
+void TableReader::Value::refuse_mirrored_grids(const std::string &expected) const {
+  if (document_->root["dimension"].value_or(2) != 3 || document_->root["up"].value_or(std::string("y")) != "y") return;
+  const std::string text = string(expected);
+  for (const auto &[name, grid] : document_->grids)
+    if (std::regex_search(text, std::regex("\\b" + name + "\\s*\\([^(),]*,\\s*z\\s*\\)")))
+      must_be(expected, "with up = \"y\" north is -z, and " + name +
+                            "(x, z) would be the mirror image of the map: write " + name + "(x, -z)");
+}
+
 Function TableReader::Value::limited_expression(const std::string &expected, Unit unit, Range range,
                                                 const char *variables) const {
   Function function = expression(expected, unit.si);
+  refuse_mirrored_grids(expected);
   const std::string known = std::string(", ") + variables + ",";
   for (const std::string name : {"x", "y", "z", "t", "table", "slip"})
     if (function.uses(name) && known.find(" " + name + ",") == std::string::npos)

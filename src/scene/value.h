@@ -59,6 +59,7 @@ class TableReader::Value {
   template <class ReadValue>
   Function table(const std::string &expected, const ReadValue &read_value) const;
   Function expression(const std::string &expected, double scale) const;
+  void refuse_mirrored_grids(const std::string &expected) const;
   /// An expression whose values are held against the range of the key as they are used.
   Function limited_expression(const std::string &expected, Unit unit, Range range, const char *variables) const;
 

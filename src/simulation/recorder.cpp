@@ -75,8 +75,9 @@ template <int dim>
 void Recorder<dim>::write_model() const {
   const std::string model = model_of(of_.world);
   on_first_rank(of_.world.comm, [&] { replace_file(options_.directory + "/run/model.json", model); });
-  if (!scene_.mesh.terrain.file.empty())
-    on_first_rank(of_.world.comm, [&] { replace_file(options_.directory + "/origin.json", options_.mesh.origin); });
+  on_first_rank(of_.world.comm, [&] {  // of terrain, also of a mesh file that was made of it
+    if (!options_.mesh.origin.empty()) replace_file(options_.directory + "/origin.json", options_.mesh.origin);
+  });
 }
 
 template <int dim>

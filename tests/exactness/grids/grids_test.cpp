@@ -109,6 +109,29 @@ TEST_F(Grids, friction_of_the_base_slides_as_its_expression_does) {
   EXPECT_TRUE(differ(expression, number));
 }
 
+/// What is stored as 10 times the angle less 1000 is the angle, by the scale and the offset of a band; the run says so.
+TEST_F(Grids, have_the_scale_and_offset_of_their_band) {
+  const std::string file = grid("a.asc", [](double x, double y) { return 15 + 2 * x + 3 * y; });
+  grid("stored.asc", [](double x, double y) { return 10 * (15 + 2 * x + 3 * y) - 10000; });
+  if (rank() == 0)
+    std::ofstream(in_folder("a.vrt"))
+        << "<VRTDataset rasterXSize='21' rasterYSize='7'><GeoTransform>-1.25, 0.5, 0, 2.25, 0, -0.5</GeoTransform>"
+        << "<VRTRasterBand dataType='Float64' band='1'><Offset>1000</Offset><Scale>0.1</Scale><SimpleSource>"
+        << "<SourceFilename relativeToVRT='1'>stored.asc</SourceFilename><SourceBand>1</SourceBand></SimpleSource>"
+        << "</VRTRasterBand></VRTDataset>";
+  MPI_Barrier(PETSC_COMM_WORLD);
+  const auto with = [&](const std::string &name) {
+    return Overrides{"grids.angle=" + name, "boundary.base.friction_angle=angle(x, y)"};
+  };
+  expect_same(end_of(block, with(file)), end_of(block, with(in_folder("a.vrt"))), 1e-6);  // digits lost by the offset
+  Scene scene = read_scene(block, with(in_folder("a.vrt")));
+  const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, quiet());
+  std::string said;
+  for (const std::string &remark : simulation->mesh_report().remarks) said += remark;
+  if (rank() == 0) EXPECT_NE(said.find("grids.angle: "), std::string::npos) << said;
+  if (rank() == 0) EXPECT_NE(said.find("0.1 times those stored plus 1000"), std::string::npos) << said;
+}
+
 TEST_F(Grids, strength_yields_as_its_expression_does) {
   const std::string file = grid("a.asc", [](double x, double y) { return 500 + 200 * x + 300 * y; });
   Overrides soil{"body.block.law=mohr_coulomb", "body.block.friction_angle=5"}, by_grid = soil, number = soil;
@@ -178,6 +201,77 @@ TEST_F(Grids, have_values_where_they_are_asked) {
   expect_refused(with(in_folder("text.asc"), "angle(x, y)"), {"grids.angle", "text.asc: is no grid that GDAL reads"});
   expect_refused(with(in_folder("absent.asc"), "angle(x, y)"), {"grids.angle", "absent.asc"});
   expect_refused(with(hole, "angle(x)"), {"boundary.base.friction_angle"});
+}
+
+/// A grid in another projection than the terrain is refused, whether the mesh is made by the scene or is a file;
+/// results of both have the origin of the map.
+TEST_F(Grids, have_the_projection_of_the_terrain) {
+  const auto zone = [&](const std::string &file, int number) {
+    if (rank() == 0)
+      std::ofstream(std::filesystem::path(file).replace_extension(".prj"))
+          << "PROJCS[\"WGS_1984_UTM_Zone_" << number << "N\",GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID["
+          << "\"WGS_1984\",6378137,298.257223563]],PRIMEM[\"Greenwich\",0],UNIT[\"Degree\",0.0174532925199433]],"
+          << "PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"latitude_of_origin\",0],PARAMETER[\"central_meridian\","
+          << 6 * number - 183 << "],PARAMETER[\"scale_factor\",0.9996],PARAMETER[\"false_easting\",500000],"
+          << "PARAMETER[\"false_northing\",0],UNIT[\"Meter\",1]]";
+    MPI_Barrier(PETSC_COMM_WORLD);
+  };
+  const std::string ground = grid(
+      "ground.asc", [](double, double) { return 20; }, 5, 4, 505000, 5.1e6, 10);
+  const std::string values = grid(
+      "a.asc", [](double, double) { return 1e3; }, 9, 7, 504990, 5.1e6 - 10, 10);
+  zone(ground, 32);
+  if (rank() == 0) {
+    const std::string command = std::string(TALUS_MESH) + " " + ground + " -o " + in_folder("mesh.msh") +
+                                " --size 10 --base 0 > " + in_folder("said");
+    ASSERT_EQ(std::system(command.c_str()), 0);
+  }
+  const std::string soil =
+      "[grids]\nstress = \"a.asc\"\n[body.soil]\nregion = \"ground\"\nlaw = \"linear_elastic\"\n"
+      "young_modulus = 1e7\npoisson_ratio = 0.3\ndensity = 2000\n"
+      "stress = [\"stress(x, y)\", \"0\", \"0\", \"0\", \"0\", \"0\"]\n[[stage]]\nduration = 1e-3\n";
+  for (const std::string mesh :
+       {"size = 10\n[mesh.terrain]\nfile = \"ground.asc\"\nbase = 0\n", "file = \"mesh.msh\"\n"}) {
+    const auto run = [&] {
+      Scene scene = parse_scene("dimension = 3\nup = \"z\"\nphases = \"dry\"\ngravity = 0\n[mesh]\n" + mesh + soil,
+                                in_folder("scene.toml"));
+      RunOptions options = quiet();
+      options.directory = in_folder("results"), options.replace = true;
+      make_simulation(PETSC_COMM_WORLD, scene, options)->run();
+    };
+    zone(values, 33);
+    expect_refused(run,
+                   {"grids.stress", "a.asc: has the projection", "33N", "ground.asc has", "32N", "gdalwarp -t_srs"});
+    zone(values, 32);
+    run();
+    std::ostringstream origin;
+    origin << std::ifstream(in_folder("results/origin.json")).rdbuf();
+    for (const char *word : {"\"origin_m\": [505000, 5100000]", "32N", "ground.asc"})
+      EXPECT_NE(origin.str().find(word), std::string::npos) << word << " is not in: " << origin.str();
+    MPI_Barrier(PETSC_COMM_WORLD);
+    if (rank() == 0) std::filesystem::remove_all(in_folder("results"));
+    MPI_Barrier(PETSC_COMM_WORLD);
+  }
+}
+
+/// Seen from above, with y up, north is -z.
+TEST_F(Grids, are_not_mirrored) {
+  const auto read = [](const std::string &up, const std::string &call) {
+    return [=] {
+      parse_scene("dimension = 3\nup = \"" + up +
+                      "\"\nphases = \"drained\"\ngravity = 9.81\n[mesh]\nfile = \"a.msh\"\n"
+                      "[grids]\nbed = \"a.asc\"\n[water]\nexcess = \"" +
+                      call +
+                      "\"\n[body.soil]\nregion = \"a\"\n"
+                      "law = \"linear_elastic\"\nyoung_modulus = 1e7\npoisson_ratio = 0.3\ndensity = 2000\n"
+                      "[[stage]]\nduration = 1\n",
+                  "scene.toml");
+    };
+  };
+  expect_refused(read("y", "max(0, bed(x + 1, z ) - y)"), {"north is -z", "mirror image", "write bed(x, -z)"});
+  EXPECT_NO_THROW(read("y", "bed(x, -z)")());
+  EXPECT_NO_THROW(read("z", "bed(x, z)")());
+  expect_refused(read("z", "bedd(x, y)"), {"there is no function or grid `bedd`; did you mean `bed`?"});
 }
 
 /// Another content of the file is another scene.

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -52,11 +53,13 @@ class TerrainFiles : public ::testing::Test {
   }
 
   /// The same as GeoTIFF of a projection, EPSG.
-  std::string geotiff(const Elevation &elevation, int projection, double cell = spacing, double west = east,
-                      double bottom = south) const {
+  std::string geotiff(
+      const Elevation &elevation, int projection, double cell = spacing, double west = east, double bottom = south,
+      int bands = 1, const std::function<void(GDALRasterBand &)> &describe = [](GDALRasterBand &) {}) const {
     GDALAllRegister();
     const std::unique_ptr<GDALDataset> data(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
-        in_folder("a.tif").c_str(), columns, rows, 1, GDT_Float32, nullptr));
+        in_folder("a.tif").c_str(), columns, rows, bands, GDT_Float32, nullptr));
+    describe(*data->GetRasterBand(1));
     double map[] = {west - cell / 2, cell, 0, bottom + (rows - 0.5) * cell, 0, -cell};
     data->SetGeoTransform(map);
     OGRSpatialReference reference;
@@ -227,6 +230,122 @@ TEST_F(TerrainFiles, AreRefusedWhereTheyDoNotFit) {
   expect_words(complaint(options(in_folder("none.asc"))), {"none.asc: cannot be opened"});
   std::ofstream(in_folder("bad.asc")) << "no grid\n";
   expect_words(complaint(options(in_folder("bad.asc"))), {"bad.asc: is no grid that GDAL reads"});
+}
+
+/// Elevations stored as 0.1 z + 1000 are those of the formula, and a hole is told by its stored value.
+TEST_F(TerrainFiles, HaveTheScaleAndOffsetOfTheirBand) {
+  const std::string file = geotiff([](double x, double y) { return x == east ? -5 : (plane(x, y) - 1000) / 0.1; },
+                                   31254, spacing, east, south, 2,
+                                   [](GDALRasterBand &band) {
+                                     band.SetScale(0.1), band.SetOffset(1000), band.SetNoDataValue(-5);
+                                     band.SetDescription("ground");
+                                   });
+  const Grid grid = read_grid(file);
+  EXPECT_NEAR(grid.at(east + 100, south + 50), plane(east + 100, 0), 1e-3);  // stored in single precision
+  EXPECT_TRUE(std::isnan(grid.at(east, south)));
+  ASSERT_EQ(grid.remarks.size(), 2u);
+  expect_words(grid.remarks[0], {"of its 2 bands the first is taken, `ground`", "gdal_translate -b"});
+  expect_words(grid.remarks[1], {"values are 0.1 times those stored plus 1000"});
+  TerrainOptions o = options(file);
+  o.window = {east + 10, south, east + 200, south + 160};
+  EXPECT_TRUE(doubts(o, "0.1 times those stored plus 1000"));
+}
+
+/// One sentence, and not one of GDAL for each row that is missing.
+TEST_F(TerrainFiles, AreRefusedWhenTheyEndEarly) {
+  const std::string file = ascii(plane);
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  const Answer answer = run(file + " -o " + in_folder("m.msh") + " --size 20 --air 20");
+  EXPECT_EQ(answer.status, 2);
+  expect_words(answer.text, {"a.asc: ends early or is damaged, so that not all of its 17 rows"});
+  EXPECT_EQ(std::count(answer.text.begin(), answer.text.end(), '\n'), 1) << answer.text;
+}
+
+/// Elevations that no ground has, on a slope and on rough ground; the roughness itself passes, and so does a cliff.
+TEST_F(TerrainFiles, AreRefusedWithSpikes) {
+  const auto with = [&](double value, const Elevation &elevation) {
+    return options(
+        ascii([=](double x, double y) { return x == east + 60 && y == south + 50 ? value : elevation(x, y); }));
+  };
+  const Elevation rough = [](double x, double y) { return plane(x, y) + 4 * std::sin(x) * std::cos(y) + 200; };
+  for (const Elevation &ground : {Elevation(plane), rough})
+    for (const double value : {9999., -9998., 0.}) {
+      std::ostringstream words;
+      words << "the elevation " << value << " m at (5060, 2050) stands ";
+      expect_words(complaint(with(value, ground)), {words.str(), "gdal_translate -a_nodata", "gdal_fillnodata.py"});
+    }
+  EXPECT_EQ(complaint(with(plane(east + 60, 0) + 10, plane)), "");
+  EXPECT_EQ(complaint(options(ascii(rough))), "");
+  EXPECT_EQ(complaint(options(ascii([](double x, double y) { return plane(x, y) + (x < east + 90 ? 80 : 0); }))), "");
+  const Elevation half = [](double x, double y) { return x < east + 90 ? -9998 : plane(x, y); };
+  expect_words(complaint(options(ascii(half))), {"the elevation -9998 m at (5080, ", "lower than the place beside it"});
+  TerrainOptions o = options(ascii(plane));
+  o.slip_surface = ascii([](double x, double y) { return x > east + 100 ? -9998 : plane(x, y) - 5; }, "slip.asc");
+  expect_words(complaint(o), {"slip.asc: the elevation -9998 m"});
+}
+
+/// Slip surfaces that no slide has.
+TEST_F(TerrainFiles, DoNotMeetImpossibleSlipSurfaces) {
+  const Elevation bowl = [](double x, double y) {
+    return 12 - 0.005 * (std::pow(x - 5080, 2) + std::pow(y - 2080, 2));  // depth below the plane, to a radius of 49 m
+  };
+  const Elevation high = [](double x, double y) { return plane(x, y) + 1100; };
+  TerrainOptions o = options(ascii(high));
+  o.size = 4;
+  o.slip_surface = ascii(bowl, "depth.asc");
+  expect_words(complaint(o), {"depth.asc reaches up to 12 m only", "thick", "Are these depths?"});
+  const auto slip = [&](const Elevation &hides) {
+    return ascii([&](double x, double y) { return hides(x, y) > 0 ? -9999 : high(x, y) - bowl(x, y); }, "slip.asc");
+  };
+  o.slip_surface = slip([](double, double) { return 0; });
+  EXPECT_FALSE(doubts(o, "wall"));
+  o.slip_surface = slip([](double x, double) { return x - east - 80; });  // ends in the middle
+  EXPECT_TRUE(doubts(o, "slip.asc ends 11.5 m below the ground at (5070, 2080), and it is 11.5 m deep at most"));
+  o.slip_surface = slip([](double x, double y) { return x == east + 70 && y == south + 80; });  // a hole
+  EXPECT_TRUE(doubts(o, "vertical wall"));
+  o.slip_surface.clear();
+  o.ellipsoid = Ellipsoid{{east + 100, south + 80, 1170}, {60, 40, 20}, 17 * radian, 90 * radian};
+  EXPECT_FALSE(doubts(o, "wall"));
+  o.ellipsoid->centre[2] = 1160;  // a dome still comes out
+  EXPECT_TRUE(doubts(o, "the ellipsoid ends 11.8 m below"));
+  o.ellipsoid->centre[2] = 1140;
+  expect_words(complaint(o), {"lies wholly below the ground", "50.", "raise its centre"});
+}
+
+/// The rim of an ellipsoid is where both sides meet.
+TEST_F(TerrainFiles, MeetAnEllipsoidUpToItsRim) {
+  const Ellipsoid e{{100, 200, 50}, {30, 20, 10}, 30 * radian, 40 * radian};
+  for (const double angle : {0., 1., 2.5, 4., 6.}) {
+    const auto [x, y, z] = e.rim(angle);
+    const double inside = 1 - 1e-10;  // towards the centre, where the root is real; sides part by its root, 1e-5
+    const double u = 100 + inside * (x - 100), v = 200 + inside * (y - 200);
+    EXPECT_NEAR(e.bottom(u, v), z, 1e-3);
+    EXPECT_NEAR(e.top(u, v), z, 1e-3);
+    EXPECT_TRUE(std::isnan(e.top(100 + 1.001 * (x - 100), 200 + 1.001 * (y - 200))));
+  }
+}
+
+/// A slip surface in another projection is refused; the same one by another name, or none, is not.
+TEST_F(TerrainFiles, CompareProjections) {
+  TerrainOptions o = options(geotiff(plane, 31254));
+  std::filesystem::rename(o.file, in_folder("terrain.tif"));
+  o.file = in_folder("terrain.tif"), o.size = 4;
+  const Elevation slip = [](double x, double y) { return plane(x, y) - 0.01 * (200 - x + east); };
+  o.slip_surface = geotiff(slip, 31255);
+  expect_words(complaint(o), {"a.tif: has the projection MGI / Austria GK Central, and ",
+                              "terrain.tif has MGI / Austria GK West", "gdalwarp -t_srs"});
+  o.slip_surface = geotiff(slip, 31254);
+  EXPECT_EQ(complaint(o), "");
+  o.slip_surface = ascii(slip, "slip.asc");
+  EXPECT_EQ(complaint(o), "");
+  OGRSpatialReference west;
+  west.importFromEPSG(31254), west.morphToESRI();
+  char *text = nullptr;
+  west.exportToWkt(&text);
+  std::ofstream(in_folder("slip.prj")) << text;  // as other programs write it beside ESRI ASCII
+  CPLFree(text);
+  EXPECT_NE(read_grid(o.slip_surface).projection, "");
+  EXPECT_EQ(complaint(o), "");
 }
 
 /// Soil and air over a flat base: volumes and areas of a plane are those of the formula.
