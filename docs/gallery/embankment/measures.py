@@ -5,6 +5,7 @@ import numpy as np
 WET, DRY = 0.97, 0.95  # degrees of saturation: the front has passed; water is missing again
 STRIP = 0.5  # width of the columns in which the surface of the soil is found [m]
 WEIGHT_OF_WATER = 9810.0  # [N/m3]
+GROUND, TOP = 5.0, 15.0  # elevation of the level ground and of the crest [m]
 
 
 def while_it_slides(results, by=0.5):
@@ -29,6 +30,58 @@ def depth(snapshot):
     return top[column] - y
 
 
+def start_of_rain(results):
+    """End of the first stage, `gravity` [s]."""
+    history = results.history
+    return max(time for time, stage in zip(history.time, history.stage) if stage == "gravity")
+
+
+def share_of_strength(results, point):
+    """Share of the friction angle's sine that a point mobilises when the rain begins; 1 at yield."""
+    columns, k, soil = results.history.columns, np.searchsorted(results.history.time, start_of_rain(results) - 0.01), results.scene["body"]["soil"]
+    strength = soil["friction_angle"] + soil["suction_friction_rate"] * columns[f"{point}_suction_Pa"][k]
+    return float(np.sin(np.radians(columns[f"{point}_mobilised_friction_deg"][k])) / np.sin(np.radians(strength)))
+
+
+def share_that_yields(results):
+    """Share of the particles that are at their strength when the rain begins."""
+    at = min(results.snapshots, key=lambda each: abs(each.time - start_of_rain(results)))
+    return float((at.scalar("state")[0] > 0).mean())
+
+
+def profile(snapshot):
+    """Surface of the soil: the x of the middle of each column and its highest particle [m]."""
+    x, y = snapshot.position()[:, 0], snapshot.position()[:, 1]
+    column = np.floor(x / STRIP).astype(int)
+    top = np.full(column.max() + 1, -np.inf)
+    np.maximum.at(top, column[column >= 0], y[column >= 0])
+    return STRIP * (np.arange(len(top)) + 0.5), top
+
+
+def toe_of_the_slope(snapshot, above=0.5):
+    """The x beyond which the surface is less than this much above the level ground [m], between columns by a line."""
+    x, top = profile(snapshot)
+    k = np.flatnonzero(top > GROUND + above)[-1]
+    return float(x[k] + (x[k + 1] - x[k]) * (top[k] - GROUND - above) / (top[k] - top[k + 1]))
+
+
+def run_out_of_the_toe(results):
+    """Distance between the toes of the slope at the start and at the end [m]."""
+    return toe_of_the_slope(results.snapshots[-1]) - toe_of_the_slope(results.snapshots[0])
+
+
+def angle_of_the_face(snapshot, margin=1.0):
+    """Inclination of a line through the surface between 1 m above the ground and 1 m below the crest [deg]."""
+    x, top = profile(snapshot)
+    inside = (top > GROUND + margin) & (top < TOP - margin)
+    return float(-np.degrees(np.arctan(np.polyfit(x[inside], top[inside], 1)[0])))
+
+
+def flattening(results):
+    """By how much the face is flatter at the end than at the start [deg]."""
+    return angle_of_the_face(results.snapshots[0]) - angle_of_the_face(results.snapshots[-1])
+
+
 def share_behind_the_front_that_is_dry(results):
     """Mean over the slide of the share of the particles passed by the wetting front whose saturation is below 0.95 again."""
     return float(np.mean([(snapshot.scalar("saturation")[0][passed] < DRY).mean() for snapshot, passed in while_it_slides(results)]))
@@ -50,5 +103,6 @@ def hydrostatic_pressure_behind_the_front(results):
     return float(max(WEIGHT_OF_WATER * depth(snapshot)[snapshot.scalar("saturation")[0] > 0.99].max() for snapshot, _ in while_it_slides(results)))
 
 
-MEASURES = {function.__name__: function for function in (share_behind_the_front_that_is_dry, share_behind_the_front_that_is_dry_at_the_end,
+MEASURES = {function.__name__: function for function in (share_of_strength, share_that_yields, run_out_of_the_toe, flattening,
+                                                         share_behind_the_front_that_is_dry, share_behind_the_front_that_is_dry_at_the_end,
                                                          largest_pressure_while_it_slides, hydrostatic_pressure_behind_the_front)}
