@@ -3,10 +3,8 @@
 `start` computes the stress before the rain, in cells of 0.5 and 0.7 m, and writes section_start.csv; `slide` the whole run in cells of 0.7 m, and writes
 section_slide.csv. A section is 10 m high at 1V:mH with a crest of 15 m on 5 m of soil. Runs that FOLDER holds are not repeated."""
 
-import csv
 import pathlib
 import re
-import subprocess
 import sys
 
 import numpy as np
@@ -15,13 +13,12 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parents[2] / "src/output/plots"), str(HERE)]
 
 import measures  # noqa: E402
-import talus_measures  # noqa: E402
-from talus_results import Results  # noqa: E402
+import study  # noqa: E402
 
 CREST, BASE, HEIGHT, BEYOND = 15.0, 5.0, 10.0, 15.0  # width of the crest, depth of the ground, height of the slope, level ground in front of it [m]
 POINTS = {"S1": (0.4, 0.2), "D1": (2.0, 2.0), "S2": (None, 0.3), "D2": (None, 1.2)}  # from the toe up the face (None: mid-height), depth below it [m]
-START = [(slope, strength, size) for size in (0.7,) for slope in (1.25, 1.5, 1.75, 2.0) for strength in (6.4, 7.5, 10.0, 15.0)]
-SLIDE = [(slope, strength) for strength in (7.5, 15.0) for slope in (1.75, 1.6, 1.9, 2.0)]
+START = [(slope, strength, 0.7) for slope in (1.25, 1.5, 1.6, 1.75, 1.8, 1.9, 2.0) for strength in (6.4, 7.5, 10.0, 15.0)]
+SLIDE = [(slope, 10.0) for slope in (1.8, 1.6, 1.75, 1.9, 2.0)]
 
 
 def outline(slope):
@@ -56,41 +53,14 @@ def scene(slope, strength, size, rain):
 
 def run(talus, folder, slope, strength, size, rain):
     out = folder / f"{slope}_{strength}_{size}{'' if rain else '_start'}"
-    if not (out / "run/report.html").exists() and not (out / "done").exists():
-        out.mkdir(parents=True, exist_ok=True)
-        (out / "section.csv").write_text(outline(slope))
-        (out / "scene.toml").write_text(scene(slope, strength, size, rain))
-        subprocess.run([talus, "run", out / "scene.toml", "-o", out / "run", "--no-pictures", "--force"], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, check=True)
-        (out / "done").touch()
-    return Results(out / "run")
+    out.mkdir(parents=True, exist_ok=True)
+    (out / "section.csv").write_text(outline(slope))
+    (out / "scene.toml").write_text(scene(slope, strength, size, rain))
+    return study.run(talus, out / "scene.toml", out / "run")[0]
 
 
 def start_row(results):
     return {point: f"{measures.share_of_strength(results, point):.2f}" for point in POINTS} | {"yields_percent": f"{100 * measures.share_that_yields(results):.1f}"}
-
-
-def slide_row(results, slope):
-    columns = results.history.columns
-    toe = CREST + slope * HEIGHT
-    sliding = [snapshot.time for snapshot, _ in measures.while_it_slides(results)]
-    row = {"slides_after_s": f"{sliding[0] - measures.start_of_rain(results):.0f}" if sliding else "stands"}
-    if not sliding:
-        return row
-    first, last = results.snapshots[0], results.snapshots[-1]
-    angle = [measures.angle_of_the_face(snapshot) for snapshot in (first, last)]
-    return row | {"toe_m": f"{measures.run_out_of_the_toe(results):.1f}", "front_m": f"{talus_measures.largest_x_moved(results, beyond=toe):.1f}",
-                  "middle_m": f"{talus_measures.largest_displacement_near(results, place('S2', slope) + [0, 0.2], 1.2, 3):.1f}",
-                  **{f"{point}_m": f"{columns[f'{point}_displacement_m'][-1]:.2f}" for point in POINTS},
-                  "D1_S": f"{columns['D1_saturation'][-1]:.3f}", "flatter_deg": f"{angle[0] - angle[1]:.1f}",
-                  "dry_percent": f"{100 * measures.share_behind_the_front_that_is_dry(results):.1f}",
-                  "pressure_kPa": f"{measures.largest_pressure_while_it_slides(results) / 1e3:.0f}"}
-
-
-def write(name, rows):
-    with open(HERE / name, "w", newline="") as file:
-        writer = csv.DictWriter(file, max(rows, key=len).keys(), restval="")
-        writer.writeheader()
-        writer.writerows(rows)
 
 
 if __name__ == "__main__":
@@ -101,10 +71,10 @@ if __name__ == "__main__":
         for slope, strength, size in START:
             rows.append({"slope": f"1:{slope}", "strength_kPa": strength, "cells_m": size, **start_row(run(talus, folder, slope, strength, size, False))})
             print(rows[-1], flush=True)
-        write("section_start.csv", rows)
+        study.write("section_start.csv", rows)
     if "slide" in asked:
         rows = []
         for slope, strength in SLIDE:
-            rows.append({"slope": f"1:{slope}", "strength_kPa": strength, **slide_row(run(talus, folder, slope, strength, 0.7, True), slope)})
+            rows.append({"slope": f"1:{slope}", "strength_kPa": strength, **study.outcome(run(talus, folder, slope, strength, 0.7, True))})
             print(rows[-1], flush=True)
-            write("section_slide.csv", rows)
+            study.write("section_slide.csv", rows)
