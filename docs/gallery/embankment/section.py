@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Which slope and which strength from suction meet what the paper says of its embankment:  section.py TALUS FOLDER [start|slide ...]
-`start` computes the stress before the rain, in cells of 0.5 and 0.7 m, and writes section_start.csv; `slide` the whole run in cells of 0.7 m, and writes
-section_slide.csv. A section is 10 m high at 1V:mH with a crest of 15 m on 5 m of soil. Runs that FOLDER holds are not repeated."""
+`start` computes the stress before the rain and writes section_start.csv, `slide` the slide and writes section_slide.csv, in cells of 0.7 m. A section is 10 m high at 1V:mH with a crest of 15 m on 5 m of soil. Runs that FOLDER holds are not repeated."""
 
 import pathlib
 import re
@@ -16,9 +15,9 @@ import measures  # noqa: E402
 import study  # noqa: E402
 
 CREST, BASE, HEIGHT, BEYOND = 15.0, 5.0, 10.0, 15.0  # width of the crest, depth of the ground, height of the slope, level ground in front of it [m]
-POINTS = {"S1": (0.4, 0.2), "D1": (2.0, 2.0), "S2": (None, 0.3), "D2": (None, 1.2)}  # from the toe up the face (None: mid-height), depth below it [m]
-START = [(slope, strength, 0.7) for slope in (1.25, 1.5, 1.6, 1.75, 1.8, 1.9, 2.0) for strength in (6.4, 7.5, 10.0, 15.0)]
-SLIDE = [(slope, 10.0) for slope in (1.8, 1.6, 1.75, 1.9, 2.0)]
+POINTS = {"S1": (0.4, 0.2), "D1": (2.0, 1.7), "S2": (None, 0.3), "D2": (None, 1.2)}  # from the toe up the face (None: mid-height), depth below it [m]
+START = [(slope, strength, 0.7) for slope in (1.25, 1.5, 1.6, 1.75, 1.8, 1.85, 1.9, 2.0) for strength in (6.4, 7.5, 10.0, 15.0)]
+SLIDE = [(slope, 10.0) for slope in (1.6, 1.75, 1.8, 1.85, 1.9)]
 
 
 def outline(slope):
@@ -46,6 +45,7 @@ def scene(slope, strength, size, rain):
     for point in POINTS:
         x, y = place(point, slope)
         text = re.sub(rf"(\[output.point.{point}\]\nposition = ).*", rf"\g<1>[{x:.3f}, {y:.3f}]", text)
+    text = text.replace("duration = 110", "duration = 94")  # by then the slide is over
     if not rain:
         return re.sub(r'(?s)\[\[stage\]\]\nname = "rain".*?\n\n', "", text)
     return text
@@ -60,7 +60,12 @@ def run(talus, folder, slope, strength, size, rain):
 
 
 def start_row(results):
-    return {point: f"{measures.share_of_strength(results, point):.2f}" for point in POINTS} | {"yields_percent": f"{100 * measures.share_that_yields(results):.1f}"}
+    return {point: f"{measures.share_of_strength(results, point):.2f}" for point in ("S1", "S2")} | {"yields_percent": f"{100 * measures.share_that_yields(results):.1f}"}
+
+
+def slide_row(results):
+    row = study.outcome(results)
+    return {key: row[key] for key in ("slides_after_s", "toe_m", "middle_m", "S1_m", "S2_m", "D2_m", "flatter_deg", "dry_percent", "pressure_kPa", "still_water_kPa")}
 
 
 if __name__ == "__main__":
@@ -69,12 +74,12 @@ if __name__ == "__main__":
     if "start" in asked:
         rows = []
         for slope, strength, size in START:
-            rows.append({"slope": f"1:{slope}", "strength_kPa": strength, "cells_m": size, **start_row(run(talus, folder, slope, strength, size, False))})
+            rows.append({"slope": f"1:{slope}", "strength_kPa": strength, **start_row(run(talus, folder, slope, strength, size, False))})
             print(rows[-1], flush=True)
         study.write("section_start.csv", rows)
     if "slide" in asked:
         rows = []
         for slope, strength in SLIDE:
-            rows.append({"slope": f"1:{slope}", "strength_kPa": strength, **study.outcome(run(talus, folder, slope, strength, 0.7, True))})
+            rows.append({"slope": f"1:{slope}", "strength_kPa": strength, **slide_row(run(talus, folder, slope, strength, 0.7, True))})
             print(rows[-1], flush=True)
             study.write("section_slide.csv", rows)
