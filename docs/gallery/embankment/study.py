@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Runs the scene with other parameters, cells and models:  study.py TALUS FOLDER [sensitivity|cells|model ...]
 `sensitivity` halves and doubles in cells of 1 m what the paper does not give, `cells` changes cells, particles and steps, `model` the phases, the storage of
-the water and the dimension. Each writes its table, NAME.csv beside this file. Runs that FOLDER holds are not repeated."""
+the water and the dimension, in cells of 1.4 m, and draws storage.png. Each writes its table, NAME.csv beside this file. Runs that FOLDER holds are not repeated."""
 
 import csv
 import pathlib
@@ -14,6 +14,7 @@ import numpy as np
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parents[2] / "src/output/plots"), str(HERE)]
 
+import figure  # noqa: E402
 import measures  # noqa: E402
 import talus_measures  # noqa: E402
 from talus_results import Results  # noqa: E402
@@ -30,7 +31,7 @@ STUDIES = {
         "67 kPa at a suction of 800 kPa, as the text says": ("body.soil.suction_cohesion=154e3", "body.soil.suction_cohesion_rate=7e-7"),
         "P_0 of the retention curve 25 kPa (50)": ("body.soil.retention.reference_suction=25e3",),
         "P_0 of the retention curve 100 kPa": ("body.soil.retention.reference_suction=100e3",),
-        "permeability 5e-10 m2 (1e-9)": ("body.soil.permeability=5e-10",),
+        "permeability 5e-10 m2 (1e-9)": ("body.soil.permeability=5e-10", "stage.rain.duration=120"),
         "permeability 2e-9 m2": ("body.soil.permeability=2e-9",),
         "K_l 10 MPa (20)": ("water.bulk_modulus=10e6",),
         "K_l 40 MPa": ("water.bulk_modulus=40e6",),
@@ -39,7 +40,7 @@ STUDIES = {
         **{f"cells of {size} m": (f"mesh.size={size}",) for size in (1.4, 1.0, 0.7, 0.5)},
         "cells of 1.0 m, 6 particles in each": ("mesh.size=1", "body.soil.particles_per_cell=6"),
         "cells of 1.0 m, step 0.3 of the critical (0.6)": ("mesh.size=1", "integrator.fraction=0.3"),
-        "cells of 1.0 m, the paper's k and K_l": ("mesh.size=1", *PAPER),
+        "cells of 1.4 m, the paper's k and K_l": ("mesh.size=1.4", *PAPER),
     },
     "model": {
         "the scene": (),
@@ -49,7 +50,8 @@ STUDIES = {
         "storage of the water in rate form": ("water.storage=rate",),
     },
 }
-COARSE = {"sensitivity": ("mesh.size=1", "stage.rain.duration=60"), "model": ("mesh.size=1.4",)}  # of these studies: cells, and until the slide is over
+UNTIL_REST = "stage.rain.duration=60"  # the slide is over by then
+COMMON = {"sensitivity": ("mesh.size=1", UNTIL_REST), "cells": (UNTIL_REST,), "model": ("mesh.size=1.4",)}
 
 
 def outcome(results):
@@ -91,9 +93,12 @@ def write(name, rows):
 if __name__ == "__main__":
     talus, folder = sys.argv[1], pathlib.Path(sys.argv[2]).resolve()
     for name in sys.argv[3:] or STUDIES:
-        rows = []
+        rows, ran = [], {}
         for number, (label, overrides) in enumerate(STUDIES[name].items()):
-            results, seconds = run(talus, HERE / "scene.toml", folder / f"{name}_{number}", (*COARSE.get(name, ()), *overrides))
+            results, seconds = run(talus, HERE / "scene.toml", folder / f"{name}_{number}", (*COMMON.get(name, ()), *overrides))
+            ran[label] = results
             rows.append({"run": label, **outcome(results), "processor_s": f"{seconds:.0f}"})
             print(rows[-1], flush=True)
             write(f"{name}.csv", rows)
+        if name == "model":
+            figure.draw_storage(ran["the scene"], ran["storage of the water in rate form"], HERE / "storage.png")
