@@ -8,6 +8,7 @@
 #include "commands/gallery.h"
 #include "commands/needs.h"
 #include "commands/scales.h"
+#include "commands/slice.h"
 #include "output/json.h"
 #include "output/pictures.h"
 #include "scene/reader.h"
@@ -18,7 +19,7 @@ namespace {
 struct CheckArguments {
   std::string scene;
   std::vector<std::string> set;
-  bool json = false, no_umat = false;
+  bool slice = false, json = false, no_umat = false;
   bool draws = false;   ///< a picture
   std::string picture;  ///< file; empty: named after the scene
 };
@@ -257,7 +258,7 @@ std::string picture_of(const CheckArguments &arguments, const std::string &scene
 
 int check(const CheckArguments &arguments) {
   const std::string file = find_scene(arguments.scene), picture = picture_of(arguments, file);
-  Scene scene = read_scene(file, arguments.set);
+  Scene scene = read_scene(file, with_slice(arguments.slice, arguments.set));
   if (arguments.no_umat) refuse_umat(scene);
   const Needs needs = find_needs(scene, arguments.draws);
   const std::vector<std::string> advice = advise(scene, needs);
@@ -280,6 +281,7 @@ Action add_check(CLI::App &app) {
       app.add_subcommand("check", "estimate cost and memory of a scene without running it, and give advice");
   command->add_option("SCENE", arguments->scene, "scene file (.toml) or the name of a gallery scene")->required();
   command->add_option("--set", arguments->set, "override a key of the scene: key.path=value")->take_all();
+  command->add_flag("--slice", arguments->slice, slice_meaning);
   command->add_flag("--no-umat", arguments->no_umat, "refuse laws that load a library: for scenes of strangers");
   CLI::Option *picture =
       command

@@ -3,6 +3,7 @@
 #include "commands/commands.h"
 #include "commands/foreign_code.h"
 #include "commands/gallery.h"
+#include "commands/slice.h"
 #include "scene/reader.h"
 #include "simulation.h"
 
@@ -12,17 +13,18 @@ namespace {
 struct RunArguments {
   std::string scene, directory;
   std::vector<std::string> set;
-  bool no_pictures = false, no_umat = false, resume = false, force = false;
+  bool slice = false, no_pictures = false, no_umat = false, resume = false, force = false;
 };
 
 void on_signal(int) { interrupted = 1; }
 
 int run(const RunArguments &arguments) {
   const std::string file = find_scene(arguments.scene);
-  Scene scene = read_scene(file, arguments.set);
+  const std::vector<std::string> set = with_slice(arguments.slice, arguments.set);
+  Scene scene = read_scene(file, set);
   if (arguments.no_umat) refuse_umat(scene);
   RunOptions options;
-  options.directory = arguments.directory.empty() ? default_results(file, arguments.set) : arguments.directory;
+  options.directory = arguments.directory.empty() ? default_results(file, set) : arguments.directory;
   options.pictures = !arguments.no_pictures;
   options.resume = arguments.resume;
   options.replace = arguments.force;
@@ -47,6 +49,7 @@ Action add_run(CLI::App &app) {
   command->add_option("-o,--output", arguments->directory,
                       "folder of the results (default results/NAME, with what --set changes)");
   command->add_option("--set", arguments->set, "override a key of the scene: key.path=value")->take_all();
+  command->add_flag("--slice", arguments->slice, slice_meaning);
   command->add_flag("--no-umat", arguments->no_umat, "refuse laws that load a library: for scenes of strangers");
   CLI::Option *resume =
       command->add_flag("--resume", arguments->resume,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "commands/slice.h"
 #include "physics/laws/element_test.h"
 #include "simulation.h"
 
@@ -56,9 +57,6 @@ class Rung {
   double wall_seconds_ = 0;
   std::vector<Checked> quantities_;
 };
-
-/// Overrides that make a plane scene three-dimensional: a slice, held by rollers at its faces.
-inline const std::vector<std::string> slice{"dimension=3", "boundary.front.kind=roller", "boundary.back.kind=roller"};
 
 /// Overrides for either dimension, with more behind them.
 inline std::vector<std::string> in_dimension(int dimension, const std::vector<std::string> &more = {}) {

@@ -28,9 +28,14 @@ class Checks {
     for (BoundarySource &boundary : scene_.boundary)
       if (boundary.group.empty()) boundary.group = {boundary.name};
     water();
-    for (const OutputPoint &point : scene_.output.point)
+    for (OutputPoint &point : scene_.output.point) {
+      into_middle(point.position);
       components("output.point." + point.name + ".position", point.position.size(), scene_.dimension, "coordinates");
-    for (const OutputLine &line : scene_.output.line) followed_line(line);
+    }
+    for (OutputLine &line : scene_.output.line) {
+      for (std::vector<double> &point : line.points) into_middle(point);
+      followed_line(line);
+    }
     for (std::size_t i = 0; i < scene_.stage.size(); ++i) {
       if (scene_.stage[i].name.empty()) scene_.stage[i].name = std::to_string(i);
       stage(scene_.stage[i], "stage." + std::to_string(i));
@@ -44,6 +49,13 @@ class Checks {
   }
 
  private:
+  /// A point of the section lies in the middle of the body that is drawn out of it.
+  void into_middle(std::vector<double> &point) const {
+    const MeshSource &mesh = scene_.mesh;
+    if (scene_.dimension == 3 && !mesh.section.empty() && point.size() == 2)
+      point.push_back((mesh.thickness > 0 ? mesh.thickness : mesh.size) / 2);
+  }
+
   void followed_line(const OutputLine &line) const {
     const std::string path = "output.line." + line.name;
     if (line.name.find('/') != std::string::npos)

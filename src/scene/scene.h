@@ -513,8 +513,7 @@ struct OutputPoint {
   void fields(Visitor &&v) {
     v.point("position", position, metre,
             "position at the start, in the soil or at its surface; the nearest particle is tracked, stages by finite "
-            "elements show "
-            "the place itself");
+            "elements show the place itself; [x, y] in a 3D body from a section is in the middle of its thickness");
   }
 };
 

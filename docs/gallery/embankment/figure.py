@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Draws a run of the embankment as figures 29 to 34 of Alonso, Yerro & Pinyol (2015) show theirs:  figure.py DIR
-rain.png is figure 29, points.png figures 30, 31, 33 and 34, paths.png figure 32."""
+rain.png is figure 29, points.png figures 30, 31, 33 and 34, paths.png figure 32. study.py draws storage.png with draw_storage."""
 
 import argparse
 import pathlib
@@ -20,8 +20,8 @@ from talus_sections import spacing_of  # noqa: E402
 from talus_tiles import Frame, tiles  # noqa: E402
 from talus_units import at_time  # noqa: E402
 
-TIMES = (18, 33, 63)  # [s]
-RIGHT, TOP = 50, 16  # [m]
+TIMES = (24, 30, 116)  # [s]
+RIGHT, TOP = 48, 16  # [m]
 POINTS = ("S1", "D1", "S2", "D2")
 SOLID, WATER, GAS, POROSITY = 9.8e6, 20e6, 101325.0, 0.35  # bulk moduli of skeleton, water and gas [Pa] in figure 34
 
@@ -33,7 +33,7 @@ def draw_section(results, path):
     for line, t in zip(grid, TIMES):
         snapshot = min(results.snapshots, key=lambda each: abs(each.time - t))
         owner = tiles(snapshot.position()[:, :2], spacing_of(results), frame)
-        fields = (("suction", 1e-3, {"cmap": "YlOrBr", "vmin": 0, "vmax": 100}), ("displacement", 1, {"cmap": "viridis", "vmin": 0, "vmax": 6}))
+        fields = (("suction", 1e-3, {"cmap": "YlOrBr", "vmin": 0, "vmax": 100}), ("displacement", 1, {"cmap": "viridis", "vmin": 0, "vmax": 8}))
         for axes, (field, factor, colours) in zip(line, fields):
             values = factor * snapshot.scalar(field)[0]
             picture = axes.imshow(np.ma.array(values[np.maximum(owner, 0)], mask=owner < 0), origin="lower", extent=frame.extent(), interpolation="nearest", **colours)
@@ -66,6 +66,27 @@ def draw_points(results, path):
         grid.flat[7].plot(time[near], 1e-3 * columns[f"{point}_pore_pressure_Pa"][near], ".", ms=2.5, color=colour)
     grid.flat[7].set(xlim=(time[0], time[-1]), xlabel="time [s]")
     grid.flat[7].set_title("pore pressure where S > 0.99 [kPa]", loc="left")
+    figure.tight_layout()
+    style.save(figure, path)
+
+
+def draw_storage(mass, rate, path):
+    """Deviator of the four points with storage of the water by masses and in rate form, and the saturation of the first."""
+    figure, grid = plt.subplots(2, 2, figsize=(8.6, 4.6), sharex=True)
+    for axes, point in zip(grid.flat, POINTS):
+        for results, name, colour, width in ((rate, "rate form", style.LINES[1], 0.6), (mass, "masses", style.LINES[0], 1.2)):
+            history = results.history
+            axes.plot(history.time, 1e-3 * history.columns[f"{point}_deviator_Pa"], lw=width, color=colour, label=name)
+        history = mass.history
+        full = history.time[history.columns[f"{point}_saturation"] > 0.99]
+        if len(full):
+            axes.axvline(full[0], color=style.INK, lw=0.7, ls=":")
+        axes.set_title(f"{point}: deviator q [kPa]", loc="left")
+        axes.set_ylim(0, 1e-3 * 2 * mass.history.columns[f"{point}_deviator_Pa"].max())
+        axes.set_xlim(0, mass.history.time[-1])
+    for axes in grid[1]:
+        axes.set_xlabel("time [s]")
+    grid.flat[0].legend(fontsize=8)
     figure.tight_layout()
     style.save(figure, path)
 

@@ -1,10 +1,10 @@
-"""How quiet the slide of the embankment is: measures of numbers.toml beside those of src/output/plots/talus_measures.py."""
+"""How the embankment slides, and how quietly: measures of numbers.toml beside those of src/output/plots/talus_measures.py."""
 
 import numpy as np
 
 WET, DRY = 0.97, 0.95  # degrees of saturation: the front has passed; water is missing again
-STRIP = 0.5  # width of the columns in which the surface of the soil is found [m]
 WEIGHT_OF_WATER = 9810.0  # [N/m3]
+GROUND, TOP = 5.0, 15.0  # elevation of the level ground and of the crest [m]
 
 
 def while_it_slides(results, by=0.5):
@@ -19,14 +19,71 @@ def while_it_slides(results, by=0.5):
             yield snapshot, passed
 
 
-def depth(snapshot):
-    """Depth of the particles below the highest one in their column [m]."""
-    x, y = snapshot.position()[:, 0], snapshot.position()[:, 1]
-    column = np.floor(x / STRIP).astype(int)
-    column -= column.min()
+def surface(snapshot):
+    """Columns two particles wide: the x of their middles, the highest particle in each, and the column of each particle."""
+    place = snapshot.position()
+    x, y = place[:, 0], place[:, 1]
+    wide = 2 * snapshot.column("volume").values.mean() ** (1 / place.shape[1])
+    column = np.floor((x - x.min()) / wide).astype(int)
     top = np.full(column.max() + 1, -np.inf)
     np.maximum.at(top, column, y)
-    return top[column] - y
+    return x.min() + wide * (np.arange(len(top)) + 0.5), top, column
+
+
+def depth(snapshot):
+    """Depth of the particles below the highest one in their column [m]."""
+    _, top, column = surface(snapshot)
+    return top[column] - snapshot.position()[:, 1]
+
+
+def start_of_rain(results):
+    """End of the first stage, `gravity` [s]."""
+    history = results.history
+    return max(time for time, stage in zip(history.time, history.stage) if stage == "gravity")
+
+
+def share_of_strength(results, point):
+    """Share of the friction angle's sine that a point mobilises when the rain begins; 1 at yield."""
+    columns, k, soil = results.history.columns, np.searchsorted(results.history.time, start_of_rain(results) - 0.01), results.scene["body"]["soil"]
+    strength = soil["friction_angle"] + soil["suction_friction_rate"] * columns[f"{point}_suction_Pa"][k]
+    return float(np.sin(np.radians(columns[f"{point}_mobilised_friction_deg"][k])) / np.sin(np.radians(strength)))
+
+
+def share_that_yields(results):
+    """Share of the particles that are at their strength when the rain begins."""
+    at = min(results.snapshots, key=lambda each: abs(each.time - start_of_rain(results)))
+    return float((at.scalar("state")[0] > 0).mean())
+
+
+def toe_of_the_slope(snapshot, above=0.5):
+    """The x beyond which the surface is less than this much above the level ground [m], between columns by a line."""
+    x, top, _ = surface(snapshot)
+    k = np.flatnonzero(top > GROUND + above)[-1]
+    return float(x[k] + (x[k + 1] - x[k]) * (top[k] - GROUND - above) / (top[k] - top[k + 1]))
+
+
+def run_out_of_the_toe(results):
+    """Distance between the toes of the slope at the start and at the end [m]."""
+    return toe_of_the_slope(results.snapshots[-1]) - toe_of_the_slope(results.snapshots[0])
+
+
+def displacement_at_mid_height(results, within=1.2):
+    """Largest displacement at the end of soil that was within this distance of S2 when the rain began [m]."""
+    place = results.scene["output"]["point"]["S2"]["position"][:2]
+    start, last = min(results.snapshots, key=lambda each: abs(each.time - start_of_rain(results))), results.snapshots[-1]
+    return float(last.scalar("displacement")[0][np.linalg.norm(start.position()[:, :2] - place, axis=1) < within].max())
+
+
+def angle_of_the_face(snapshot, margin=1.0):
+    """Inclination of a line through the surface between 1 m above the ground and 1 m below the crest [deg]."""
+    x, top, _ = surface(snapshot)
+    inside = (top > GROUND + margin) & (top < TOP - margin)
+    return float(-np.degrees(np.arctan(np.polyfit(x[inside], top[inside], 1)[0])))
+
+
+def flattening(results):
+    """By how much the face is flatter at the end than at the start [deg]."""
+    return angle_of_the_face(results.snapshots[0]) - angle_of_the_face(results.snapshots[-1])
 
 
 def share_behind_the_front_that_is_dry(results):
@@ -50,5 +107,6 @@ def hydrostatic_pressure_behind_the_front(results):
     return float(max(WEIGHT_OF_WATER * depth(snapshot)[snapshot.scalar("saturation")[0] > 0.99].max() for snapshot, _ in while_it_slides(results)))
 
 
-MEASURES = {function.__name__: function for function in (share_behind_the_front_that_is_dry, share_behind_the_front_that_is_dry_at_the_end,
+MEASURES = {function.__name__: function for function in (share_of_strength, share_that_yields, run_out_of_the_toe, flattening, displacement_at_mid_height,
+                                                         share_behind_the_front_that_is_dry, share_behind_the_front_that_is_dry_at_the_end,
                                                          largest_pressure_while_it_slides, hydrostatic_pressure_behind_the_front)}

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Studies of the Selborne scene: what each number that the paper does not give does to the answer, and the figures of the page.
 
-    study.py TALUS [cells|softening|residual|initial|excavation|steps|model|days|figures ...]
+    study.py TALUS [cells|softening|figure5|residual|initial|excavation|steps|model|days|figures ...]
 
 TALUS is the program (build/release/bin/talus). Each study adds to NAME.csv beside this file the runs that are not in it yet; `figures` runs the scene
 itself and draws the pictures of the page from it and from the tables.
@@ -31,6 +31,7 @@ def softening(eta=500, reference=1.4, length=1):
     return both("shape_factor", eta) + both("reference_size", reference) + both("averaging_length", length)
 
 
+SLICE = ["dimension=3", "boundary.front.kind=roller", "boundary.back.kind=roller"]  # as --slice
 HELD = "functions.h=[[0, 5.6], [5, 5.6], [25.37, 11.07], [1000, 11.07]]"  # the load at failure of the scene, no more
 
 # name of a study: {name of a run: overrides, or (scene, overrides)}
@@ -41,6 +42,7 @@ STUDIES = {
     "softening": {"as the scene": [], "averaging_length 0.7 m": softening(length=0.7), "averaging_length 1.4 m": softening(length=1.4),
                   "reference_size 0.7 m": softening(reference=0.7), "reference_size 2.8 m": softening(reference=2.8),
                   "shape_factor 400": softening(eta=400)},
+    "figure5": {f"eta {eta}, {size} m": [f"mesh.size={size}", *both("shape_factor", eta)] for size in (1.0, 0.7) for eta in (250, 400, 500, 1000)},
     "residual": {**{f"{c} kPa": [f"body.weathered.residual_cohesion={c} kPa"] for c in (1, 2, 4.7, 7, 10)},
                  **{f"{c} kPa, table held at 11.07 m": [f"body.weathered.residual_cohesion={c} kPa", HELD, "stage.recharge.duration=40"] for c in (4.7, 7, 10)},
                  **{f"unweathered clay {c} kPa": [f"body.unweathered.residual_cohesion={c} kPa"] for c in (0, 0.5, 2, 4.7)}},
@@ -54,7 +56,7 @@ STUDIES = {
               "E 10 MPa": both("young_modulus", "10 MPa"), "E 40 MPa": both("young_modulus", "40 MPa"),
               "table rises at half the rate": ["functions.h=[[0, 5.6], [5, 5.6], [75, 15]]"],
               "table rises at twice the rate": ["functions.h=[[0, 5.6], [5, 5.6], [22.5, 15]]"],
-              "slice of tetrahedra, 1 m": 3, "triangles, 1 m": ["mesh.size=1"]},
+              "slice of tetrahedra, 1 m": [*SLICE, "mesh.size=1", *both("particles_per_cell", 8)], "triangles, 1 m": ["mesh.size=1"]},
 }
 
 
@@ -66,14 +68,10 @@ def scene_text(name):
 
 
 def scene(overrides):
-    """Text of a scene and the overrides of its run; a number stands for K0 or, as 3, for a slice."""
+    """Text of a scene and the overrides of its run; a number stands for K0."""
     if isinstance(overrides, tuple):
         return scene_text(overrides[0]), overrides[1]
     text = scene_text("scene.toml")
-    if overrides == 3:
-        text = re.sub(r"^position = \[(.*)\]", r"position = [\1, 0.5]", text, flags=re.M).replace("dimension = 2", "dimension = 3")
-        text = text.replace("[boundary.left]", '[boundary.sides]\ngroup = ["front", "back"]\nkind = "roller"\n[boundary.left]')
-        return text, ["mesh.size=1", *both("particles_per_cell", 8)]
     if isinstance(overrides, float):  # K0 in the slope as it is, brought to equilibrium
         stress = f'stress = ["{overrides} * {VERTICAL}", "{VERTICAL}", "{overrides} * {VERTICAL}", "0"]\nlaw = '
         text = re.sub(r'^gravity_ramp.*\n', "", text, flags=re.M)

@@ -34,6 +34,17 @@ TEST(Check, KnowsParticlesMassAndLayer) {
   EXPECT_GT(number(ending, "burst_steps"), 10);
 }
 
+TEST(Check, TakesAPlaneSceneAsASliceBetweenRollers) {
+  const Folder folder;
+  folder.write("scene.toml", good_scene), folder.write("section.csv", good_section);
+  const Ending flag = talus(folder, {"check", "scene.toml", "--json", "--slice"});
+  ASSERT_EQ(flag.status, 0) << flag.output;
+  EXPECT_TRUE(flag.says("\"one_element_slice\": true")) << flag.output;
+  const Ending overrides = check(folder, {"dimension=3", "boundary.front.kind=roller", "boundary.back.kind=roller"});
+  EXPECT_EQ(number(flag, "critical_step_s"), number(overrides, "critical_step_s"));
+  EXPECT_EQ(number(flag, "mass_kg"), number(overrides, "mass_kg"));
+}
+
 TEST(Check, FillsACellOnceThatTwoOfABodysRegionsName) {
   const Folder folder;
   EXPECT_NEAR(number(check(folder, {"body.sand.region=['sand', 'sand']"}), "mass_kg"), 1000, 1e-9);

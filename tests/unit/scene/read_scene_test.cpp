@@ -105,6 +105,19 @@ TEST(ReadScene, PointsASingleGravityDownInThreeDimensions) {
   EXPECT_EQ(scene.gravity, (std::vector<double>{0, -9.81, 0}));
 }
 
+TEST(ReadScene, PointsOfASectionLieInTheMiddleOfItsBody) {
+  const std::string text = drained + "[output.point.crest]\nposition = [1, 2]\n";
+  EXPECT_EQ(parse_scene(text, "slope.toml").output.point[0].position, (std::vector<double>{1, 2}));
+  const Scene slice = parse_scene(text, "slope.toml", {"dimension=3", "output.line.slip.points=[[0, 1], [4, 2, 0.1]]"});
+  EXPECT_EQ(slice.output.point[0].position, (std::vector<double>{1, 2, 0.5}));  // of a cell of 1 m
+  EXPECT_EQ(slice.output.line[0].points[0], (std::vector<double>{0, 1, 0.5}));
+  EXPECT_EQ(slice.output.line[0].points[1], (std::vector<double>{4, 2, 0.1}));
+  const Scene thick = parse_scene(text, "slope.toml", {"dimension=3", "mesh.thickness=6"});
+  EXPECT_EQ(thick.output.point[0].position, (std::vector<double>{1, 2, 3}));
+  EXPECT_NE(refusal(dry, {"dimension=3"}).find("must have 3 coordinates, not 2"),
+            std::string::npos);  // a mesh from a file
+}
+
 TEST(ReadScene, KeepsTheTextAsItWasRun) {
   const Scene scene = parse_scene(dry, "slope.toml", {"body.sand.density=1800", "title=b"});
   EXPECT_EQ(scene.source, "# --set body.sand.density=1800\n# --set title=b\n" + dry);
