@@ -15,6 +15,7 @@
 #include "scene/quantity.h"
 #include "scene/reader.h"
 #include "scene/scene.h"
+#include "simulation/softening.h"
 #include "solvers/integrators.h"
 
 namespace talus {
@@ -138,6 +139,8 @@ int converge(ConvergeArguments arguments) {
   std::vector<std::string> words{arguments.directory, "--by", refined[static_cast<int>(arguments.refined)], "--within",
                                  shortest(arguments.within / 100)};
   if (arguments.no_plot) words.push_back("--no-plot");
+  if (std::any_of(scene.body.begin(), scene.body.end(), [](const BodySource &b) { return softens(read_law(b.law)); }))
+    words.push_back("--softening");
   const int status = run_script("talus_converge.py", words);
   print_warnings(warnings, trials.size());
   std::fprintf(stderr, "tables%s are in %s\n", arguments.no_plot ? "" : " and picture", arguments.directory.c_str());

@@ -37,7 +37,7 @@ Action add_plot(CLI::App &app) {
       throw SceneError(arguments->directory + " contains no results of a run: there is no run.h5");
     int rank;
     MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-    return rank || draw_pictures(arguments->directory, arguments->choice) ? 0 : 1;
+    return rank ? 0 : status_of_pictures(arguments->directory, arguments->choice);
   };
 }
 

@@ -69,6 +69,7 @@ class Study {
 
   int perform() {
     make_variants();
+    check_runs_before();
     check_extremes();
     TrialPlan plan{scene_, file_.set, arguments_.jobs};
     for (const std::string &measure : file_.measures) plan.measures.push_back(parse_measure(measure));
@@ -224,9 +225,7 @@ class Study {
                                           : cell[listed++].substr(v.name.size() + 1));  // behind NAME=
       for (const std::string &one : v.overrides(variant.values.back())) variant.overrides.push_back(one);
     }
-    char name[32];
-    std::snprintf(name, sizeof name, "run%05zu", variants_.size());
-    variant.folder = (fs::path(directory_) / name).string();
+    variant.folder = folder_of(variants_.size());
     variants_.push_back(variant);
   }
 
@@ -264,6 +263,24 @@ class Study {
                          ", which the scene refuses: " + error.what() +
                          (v.random() ? ". Mend the key, or cut the distribution off with low and high" : ""));
     }
+  }
+
+  /// Fewer samples than were run before would cut the tables of the study.
+  void check_runs_before() const {
+    if (arguments_.force) return;
+    std::size_t before = variants_.size();
+    while (fs::exists(folder_of(before) + "/trial")) ++before;
+    if (before > variants_.size())
+      throw SceneError(directory_ + " holds " + std::to_string(before) + " runs of this study, and " +
+                       std::to_string(variants_.size()) +
+                       " are asked for: the tables would lose the others. Ask for as many as there are, choose another "
+                       "folder with -o, or give --force to leave them out of the tables; their folders stay");
+  }
+
+  std::string folder_of(std::size_t run) const {
+    char name[32];
+    std::snprintf(name, sizeof name, "run%05zu", run);
+    return (fs::path(directory_) / name).string();
   }
 
   int conclude() {

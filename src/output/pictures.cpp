@@ -17,20 +17,28 @@ bool warn(const std::string &what, const std::string &cause) {
   return false;
 }
 
-/// Runs a script on the results in `dir`.
-bool draw(const char *name, const std::string &dir, const std::vector<std::string> &options) {
+/// Runs a script on the results in `dir`: its exit status, 1 where it cannot be run. Status 2, an error in what it was
+/// asked for, is one that it has told.
+int status_of(const char *name, const std::string &dir, const std::vector<std::string> &options) {
   std::vector<std::string> arguments{dir};
   arguments.insert(arguments.end(), options.begin(), options.end());
   try {
-    return run_script(name, arguments) == 0 || warn("pictures of " + dir, std::string(name) + " failed");
+    const int status = run_script(name, arguments);
+    if (status != 0 && status != 2) warn("pictures of " + dir, std::string(name) + " failed");
+    return status;
   } catch (const std::runtime_error &error) {
-    return warn("pictures of " + dir, error.what());
+    warn("pictures of " + dir, error.what());
+    return 1;
   }
+}
+
+bool draw(const char *name, const std::string &dir, const std::vector<std::string> &options) {
+  return status_of(name, dir, options) == 0;
 }
 
 }  // namespace
 
-bool draw_pictures(const std::string &dir, const PictureChoice &choice) {
+int status_of_pictures(const std::string &dir, const PictureChoice &choice) {
   std::vector<std::string> options;
   if (!choice.fields.empty()) options.push_back("--fields");
   options.insert(options.end(), choice.fields.begin(), choice.fields.end());
@@ -43,8 +51,10 @@ bool draw_pictures(const std::string &dir, const PictureChoice &choice) {
     write_strength(dir);
   } catch (const std::exception &) {  // stress paths are then drawn without envelopes
   }
-  return draw("talus_plot.py", dir, options);
+  return status_of("talus_plot.py", dir, options);
 }
+
+bool draw_pictures(const std::string &dir, const PictureChoice &choice) { return status_of_pictures(dir, choice) == 0; }
 
 std::string without_pictures(const std::string &dir) {
   return "the results in " + dir + " are complete, but have no pictures and no report; talus plot " + dir +

@@ -18,6 +18,9 @@ struct PictureChoice {
 /// call it on one rank. If drawing fails, a warning with the cause goes to standard error and the answer is false.
 bool draw_pictures(const std::string &dir, const PictureChoice &choice = {});
 
+/// The same, answered by an exit status: 0, 2 where the choice names what the results do not have, 1 for another error.
+int status_of_pictures(const std::string &dir, const PictureChoice &choice);
+
 /// Draws what a scene models, from the JSON document of AnySimulation::model(), as `picture`, a PNG file, with the same
 /// answer.
 bool draw_model(const std::string &model, const std::string &picture);

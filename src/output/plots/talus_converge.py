@@ -18,14 +18,15 @@ from talus_units import readable_unit, words
 
 THINGS = {"cells": "cell size", "steps": "time step", "particles": "number of particles per cell"}
 REMEDY = {
-    "cells": "Look at `talus check` for softening that is too brittle for these cells; give the soil an averaging_length, or take smaller "
-             "cells and look again. Until then their scatter is the error of these numbers",
+    "cells": "Take smaller cells and look again. Until then their scatter is the error of these numbers",
     "steps": "Take smaller steps and look again",
     "particles": "Take more particles per cell and look again",
 }
 
 
-# ---- the verdict ----
+# ---- the verdict ----# where soil softens, and its cells decide something
+SOFTENING = "Look at `talus check` for softening that is too brittle for these cells, and give the soil an averaging_length. "
+
 
 def percent(difference, values):
     """A difference as a share of the finest run's value, "12 %"; round-off is 0."""
@@ -48,9 +49,11 @@ def in_words(row, by):
     return f"{row['value']:g} m" if by == "cells" else f"{row['value']:g}{' ' + row['unit'] if row['unit'] else ''}"
 
 
-def judge(rows, by, within):
-    """([sentence], whether the refined quantity decides something, [what it does to each quantity]). `rows` from coarse to fine."""
+def judge(rows, by, within, softening=False):
+    """([sentence], whether the refined quantity decides something, [what it does to each quantity]). `rows` from coarse to fine;
+    `softening` says that soil softens."""
     thing, judged = THINGS[by], []
+    remedy = (SOFTENING if softening and by == "cells" else "") + REMEDY[by] + "."
     broken = [row for row in rows if row["failure"]]
     rows = [row for row in rows if not row["failure"]]
     sentences = [f"The run with {in_words(row, by)} broke off: {row['failure']}." for row in broken]
@@ -63,7 +66,7 @@ def judge(rows, by, within):
     if len(states) > 1 and settles([row["largest_displacement_m"] for row in rows], within) != "equal":
         each = [f"{verbs[state]} with {', '.join(in_words(row, by) for row in some)}" for state, some in states.items()]
         sentences.append(f"The slope {', '.join(each[:-1])} and {each[-1]}: the {thing} decides whether it fails.")
-        return sentences + [REMEDY[by] + "."], True, judged
+        return sentences + [remedy], True, judged
     sentences.append(f"The slope {verbs[next(iter(states))]} in all {len(rows)} runs.")
     points = [key for key in rows[-1] if key.endswith("_displacement_m") and key != "largest_displacement_m"]
     decides = bool(broken)
@@ -91,7 +94,7 @@ def judge(rows, by, within):
             text += f"the {thing} decides it."
             decides = True
         sentences.append(text)
-    return sentences + ([REMEDY[by] + "."] if decides else []), decides, judged
+    return sentences + ([remedy] if decides else []), decides, judged
 
 
 # ---- tables and picture ----
@@ -161,6 +164,7 @@ def main():
     parser.add_argument("folder", type=pathlib.Path, metavar="DIR")
     parser.add_argument("--by", choices=THINGS, required=True)
     parser.add_argument("--within", type=float, required=True, help="differences up to this share count as none")
+    parser.add_argument("--softening", action="store_true", help="soil softens")
     parser.add_argument("--no-plot", action="store_true")
     given = parser.parse_args()
     with open(given.folder / "runs.csv", newline="") as file:
@@ -175,7 +179,7 @@ def main():
     largest = max(map(cell_size, ended), default=0.0)
     for row, one in zip([row for row in rows if not row["failure"]], ended):
         row |= outcome(one, largest)
-    sentences, decides, judged = judge(rows, given.by, given.within)
+    sentences, decides, judged = judge(rows, given.by, given.within, given.softening)
     print_table(rows, given.by)
     print("\n" + "\n".join(sentences))
     write_tables(rows, sentences, judged, decides, given.by, given.within, given.folder)

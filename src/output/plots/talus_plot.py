@@ -32,8 +32,12 @@ def arguments():
     return parser.parse_args()
 
 
+class NoSuchField(ValueError):
+    """An error of who asked for the pictures."""
+
+
 def checked(folder, fields=None):
-    """The results in a folder, which have snapshots and the fields."""
+    """The results in a folder, which have snapshots and the fields. Raises NoSuchField with the nearest one."""
     results = Results(folder)
     if not results.snapshots:
         raise ValueError(f"{folder} contains no snapshots")
@@ -41,14 +45,24 @@ def checked(folder, fields=None):
     for field in fields or ():
         if first.scalar(field) is None:
             nearest = difflib.get_close_matches(field, first.names(), 1)
-            raise ValueError(f"{folder} has no field {field}{f'; did you mean {nearest[0]}?' if nearest else ''}; it has {', '.join(first.names())}")
+            raise NoSuchField(f"{folder} has no field {field}{f'; did you mean {nearest[0]}?' if nearest else ''}; it has {', '.join(first.names())}")
     return results
+
+
+def tell_of_times(results, times):
+    """Says which of the times lie outside of the run: the nearest snapshots are shown then."""
+    first, last = results.snapshots[0].time, results.snapshots[-1].time
+    for time in times or ():
+        if not first <= time <= last * (1 + 1e-9):
+            shown = first if time < first else last
+            print(f"talus: --times {time:g}: the run has snapshots from {first:g} to {last:.6g} s; that at {shown:.6g} s is shown", file=sys.stderr)
 
 
 def draw(folder, fields=None, times=None, log=False, slip_surface=False):
     """Draws everything; without `fields`, those of FIELDS that the run has, of which the state of strength only where strength was lost. Returns
     the report's path."""
     results = checked(folder, fields)
+    tell_of_times(results, times)
     pictures = results.folder / "pictures"
     usual = [field for field in FIELDS if field != "state" or lost_strength(results)]
     sections = draw_sections(results, fields or usual, times, pictures, log)
@@ -81,9 +95,13 @@ def main():
             film(given.folder, given.fields, given.log)
         else:
             draw(given.folder, given.fields, given.times, given.log, given.slip_surface)
+    except NoSuchField as error:
+        print(f"talus: {error}", file=sys.stderr)
+        return 2
     except (OSError, ValueError) as error:
         sys.exit(f"talus_plot: {error}")
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -127,7 +127,11 @@ def largest_displacement(snapshot, share=0.999):
     moved = snapshot.scalar("displacement")[0]
     if not len(moved):
         return 0.0
-    mass, order = snapshot.column("mass").values[:, 0], np.argsort(moved)
+    try:
+        mass = snapshot.column("mass").values[:, 0]
+    except KeyError:  # results of other programs
+        mass = np.ones(len(moved))
+    order = np.argsort(moved)
     return float(moved[order][np.searchsorted(np.cumsum(mass[order]), share * mass.sum())])
 
 

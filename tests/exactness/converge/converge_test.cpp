@@ -56,6 +56,7 @@ TEST_F(Converge, SaysThatCellsDecideWhereTheyDoNotResolveTheMotion) {
   const Ending ending = converge(gliding("max(0, 40 * (x - 0.95))"), {"--values", "0.35,0.25,0.12", "--no-plot"});
   EXPECT_EQ(ending.status, 1) << ending.output;
   EXPECT_TRUE(ending.says("the cell size decides it")) << ending.output;
+  EXPECT_FALSE(ending.says("averaging_length")) << "elastic soil does not soften: " << ending.output;
   EXPECT_NE(content(folder_ / "out/converge.json").find("\"decides\": true"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out/converge.png"));
 }

@@ -56,6 +56,11 @@ class Verdicts(unittest.TestCase):
                          [("load_time_of_failure_s", "equal"), ("largest_displacement_m", "equal"), ("crest_displacement_m", "open")])
         self.assertFalse(judge(rows(load_time_of_failure_s=[13.2, 13.4, 13.3]), "cells", 0.05)[1])
 
+    def test_averaging_is_advised_where_soil_softens(self):
+        runs = rows(crest_displacement_m=[6.0, 4.0, 5.0])
+        for by, softening, advised in (("cells", True, True), ("cells", False, False), ("steps", True, False)):
+            self.assertEqual("averaging_length" in judge(runs, by, 0.05, softening)[0][-1], advised)
+
     def test_a_run_that_broke_off_is_no_agreement(self):
         runs = rows() + [{"value": 0.05, "unit": "m", "failure": "a particle left the mesh"}]
         sentences, decides, _ = judge(runs, "cells", 0.05)

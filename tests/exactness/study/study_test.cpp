@@ -93,7 +93,11 @@ TEST_F(Study, StopsAtASignalAndGoesOn) {
   EXPECT_EQ(csv_table(folder_ / "out/study.csv").size(), 12u);
   // more samples continue the study, other values are not taken for them
   EXPECT_TRUE(study({"--no-plot", "--set", "samples=7"}).says("12 of 14 runs were completed before"));
-  const Ending other = study({"--no-plot", "--set", "seed=2"});
+  const Ending fewer = study({"--no-plot", "--set", "samples=3"});
+  EXPECT_EQ(fewer.status, 2);
+  EXPECT_TRUE(fewer.says("out holds 14 runs of this study, and 6 are asked for")) << fewer.output;
+  EXPECT_EQ(csv_table(folder_ / "out/study.csv").size(), 14u) << "the table is what it was";
+  const Ending other = study({"--no-plot", "--set", "samples=7", "--set", "seed=2"});
   EXPECT_EQ(other.status, 2);
   EXPECT_TRUE(other.says("or give --force to replace it")) << other.output;
 }

@@ -214,6 +214,30 @@ TEST(Pictures, move) {
   EXPECT_NE(complaint().find("cannot write the film in " + dir + "/pictures"), std::string::npos);
 }
 
+/// What was asked for and is not there is an error of the user, with status 2; times beyond the run are said.
+TEST(Pictures, say_what_they_cannot_show) {
+  const SharedFolder folder;
+  const std::string dir = folder / "run";
+  RunFile run(MPI_COMM_WORLD, dir, small_header(), small_mesh());
+  run.write(small_snapshot(0, 0)), run.write(small_snapshot(2, 2));
+  if (world_rank()) return;
+  const auto drawn = [&](const std::string &field, const std::string &time) {
+    testing::internal::CaptureStderr();
+    const int status = status_of_pictures(dir, {{field}, {time}});
+    return std::pair{status, testing::internal::GetCapturedStderr()};
+  };
+  const double last = 2;
+  const auto [good, nothing] = drawn("displacement", std::to_string(last / 2));
+  EXPECT_EQ(good, 0);
+  EXPECT_EQ(nothing, "");
+  const auto [refused, nearest] = drawn("plastic_strein", "1");
+  EXPECT_EQ(refused, 2);
+  EXPECT_NE(nearest.find("has no field plastic_strein; did you mean plastic_strain?"), std::string::npos) << nearest;
+  const auto [late, said] = drawn("displacement", "1000");
+  EXPECT_EQ(late, 0);
+  EXPECT_NE(said.find("talus: --times 1000: the run has snapshots from "), std::string::npos) << said;
+}
+
 TEST(Pictures, name_the_program_that_drew_them) {
   const SharedFolder folder;
   const std::string dir = folder / "run";
