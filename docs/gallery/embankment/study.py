@@ -51,7 +51,7 @@ STUDIES = {
     },
 }
 UNTIL_REST = "stage.rain.duration=60"  # the slide is over by then
-COMMON = {"sensitivity": ("mesh.size=1", UNTIL_REST), "cells": (UNTIL_REST,), "model": ("mesh.size=1.4",)}
+COMMON = {"sensitivity": ("mesh.size=1", UNTIL_REST), "cells": (UNTIL_REST,), "model": ("mesh.size=1.4", UNTIL_REST)}
 
 
 def outcome(results):
