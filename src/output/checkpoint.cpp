@@ -156,7 +156,7 @@ Checkpoint read_checkpoint(MPI_Comm comm, const std::string &dir) {
       if (!last || !exist[1]) throw;
     }
   }
-  found.last_number = found.header.number;
+  found.last_number = std::max(found.header.number, number_in(header_file(dir)));
   if (rank == 0)
     for (const auto &file : fs::directory_iterator(dir + "/checkpoint")) {
       long long number;

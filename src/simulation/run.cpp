@@ -89,8 +89,9 @@ template <int dim>
 PetscErrorCode Run<dim>::serialize(Archive &archive) {
   PetscFunctionBeginUser;
   PetscCall(serialize_state(archive));
-  if (archive.reading()) stop = make_stop_criterion<dim>(stage());
-  stop->serialize(archive);
+  const bool staged = progress.number >= 0;  // a host program steps without stages
+  if (archive.reading() && staged) stop = make_stop_criterion<dim>(stage());
+  if (staged) stop->serialize(archive);
   recorder.serialize(archive);
   dynamics.serialize(archive);
   PetscFunctionReturn(0);
