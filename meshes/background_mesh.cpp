@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
+#include "base/archive.h"
 #include "meshes/complaints.h"
 #include "meshes/gmsh_file.h"
 #include "meshes/partition.h"
@@ -13,6 +15,40 @@
 #include "meshes/soundness.h"
 
 namespace talus {
+
+/// What rank 0 keeps of a mesh, so that it can be divided anew.
+template <int dim>
+struct WholeMesh {
+  GmshMesh source;
+  std::vector<int> patch;                  ///< of cells
+  std::vector<Vec<dim>> centre;            ///< of patches [m]
+  std::vector<std::vector<int>> touching;  ///< patches that share faces with a patch
+
+  WholeMesh() = default;
+  WholeMesh(GmshMesh of, const Simplices<dim> &cells, const std::vector<int> &patch_of);
+  std::vector<double> weight_of_patches(const std::vector<double> &cell_weight) const {
+    std::vector<double> weight(centre.size(), 0);
+    for (std::size_t c = 0; c < patch.size(); ++c) weight[patch[c]] += cell_weight[c];
+    return weight;
+  }
+};
+
+template <int dim>
+WholeMesh<dim>::WholeMesh(GmshMesh of, const Simplices<dim> &cells, const std::vector<int> &patch_of)
+    : source(std::move(of)), patch(patch_of) {
+  const int count = patch.empty() ? 0 : *std::max_element(patch.begin(), patch.end()) + 1;
+  centre.assign(count, Vec<dim>{}), touching.resize(count);
+  std::vector<int> size(count, 0);
+  for (std::size_t c = 0; c < patch.size(); ++c) {
+    const int p = patch[c];
+    for (const auto &x : cells.corners(static_cast<int>(c))) map<dim>(centre[p]) += map<dim>(x) / (dim + 1);
+    ++size[p];
+    for (int other : cells.neighbour[c])
+      if (other >= 0 && patch[other] != p) touching[p].push_back(patch[other]);
+  }
+  for (int p = 0; p < count; ++p) map<dim>(centre[p]) /= size[p];
+}
+
 namespace {
 
 /// 3D, and all nodes of all ranks lie on two planes z = const. Collective.
@@ -50,66 +86,31 @@ std::vector<double> weights_of(const Regions &regions,
   return weight;
 }
 
-/// Carries one number per cell of rank 0 to the cells' new places.
-PetscErrorCode carry(PetscSF migration, DM from, DM to, const std::vector<PetscInt> &values,
-                     std::vector<PetscInt> &carried) {
-  PetscInt first, end, begin_from, end_from, begin_to, end_to;
+/// The largest sum of weight on a rank over the mean.
+double largest_share(const std::vector<double> &weight, const std::vector<int> &rank, int ranks) {
+  std::vector<double> sum(ranks, 0);
+  for (std::size_t k = 0; k < weight.size(); ++k) sum[rank[k]] += weight[k];
+  const double all = std::accumulate(sum.begin(), sum.end(), 0.);
+  return all > 0 ? ranks * *std::max_element(sum.begin(), sum.end()) / all : 1;
+}
+
+/// Carries one number per point of rank 0 to the points' new places.
+PetscErrorCode carry(PetscSF migration, DM to, const std::vector<PetscInt> &values, std::vector<PetscInt> &carried) {
+  PetscInt begin, end;
   PetscFunctionBeginUser;
-  PetscCall(DMPlexGetChart(from, &begin_from, &end_from));
-  PetscCall(DMPlexGetChart(to, &begin_to, &end_to));
-  std::vector<PetscInt> roots(end_from - begin_from, -1), leaves(end_to - begin_to, -1);
-  PetscCall(DMPlexGetHeightStratum(from, 0, &first, &end));
-  std::copy(values.begin(), values.end(), roots.begin() + (first - begin_from));
-  PetscCall(PetscSFBcastBegin(migration, MPIU_INT, roots.data(), leaves.data(), MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(migration, MPIU_INT, roots.data(), leaves.data(), MPI_REPLACE));
-  PetscCall(DMPlexGetHeightStratum(to, 0, &first, &end));
-  carried.assign(leaves.begin() + (first - begin_to), leaves.begin() + (end - begin_to));
+  PetscCall(DMPlexGetChart(to, &begin, &end));
+  carried.assign(end - begin, -1);
+  PetscCall(PetscSFBcastBegin(migration, MPIU_INT, values.data(), carried.data(), MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(migration, MPIU_INT, values.data(), carried.data(), MPI_REPLACE));
   PetscFunctionReturn(0);
 }
 
-/// Ranks of cells: whole patches, equal sums of weight.
-template <int dim>
-std::vector<int> ranks_of_cells(const Simplices<dim> &cells, const std::vector<int> &patch,
-                                const std::vector<double> &weight, int ranks) {
-  const int count = patch.empty() ? 0 : *std::max_element(patch.begin(), patch.end()) + 1;
-  std::vector<Vec<dim>> centre(count, Vec<dim>{});
-  std::vector<double> patch_weight(count, 0);
-  std::vector<int> size(count, 0);
-  std::vector<std::vector<int>> touching(count);
-  for (std::size_t c = 0; c < patch.size(); ++c) {
-    const int p = patch[c];
-    for (const auto &x : cells.corners(static_cast<int>(c))) map<dim>(centre[p]) += map<dim>(x) / (dim + 1);
-    patch_weight[p] += weight[c], ++size[p];
-    for (int other : cells.neighbour[c])
-      if (other >= 0 && patch[other] != p) touching[p].push_back(patch[other]);
-  }
-  for (int p = 0; p < count; ++p) map<dim>(centre[p]) /= size[p];
-  const auto rank = partition<dim>(centre, patch_weight, touching, ranks);
-  std::vector<int> rank_of_cell;
-  for (int p : patch) rank_of_cell.push_back(rank[p]);
-  return rank_of_cell;
-}
-
-/// Gives each patch of rank 0 to one rank and moves the cells; number and patch of a cell move along.
-template <int dim>
-PetscErrorCode distribute_patches(Dm &plex, Simplices<dim> &cells, const std::vector<int> &patch,
-                                  const std::vector<double> &weight, std::vector<PetscInt> &number,
-                                  std::vector<PetscInt> &patch_of) {
-  Dm distributed;
-  StarForest migration;
-  int ranks;
+/// Part of the numbers of points: those of the cells.
+PetscErrorCode of_cells(DM plex, const std::vector<PetscInt> &points, std::vector<PetscInt> &cells) {
+  PetscInt first, end;
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)(DM)plex), &ranks));
-  patch_of.assign(patch.begin(), patch.end());
-  for (std::size_t c = 0; c < patch.size(); ++c) number.push_back(static_cast<PetscInt>(c));
-  if (ranks == 1) PetscFunctionReturn(0);
-  PetscCall(
-      distribute(plex, ranks_of_cells<dim>(cells, patch, weight, ranks), distributed.create(), migration.create()));
-  PetscCall(carry(migration, plex, distributed, std::vector(number), number));
-  PetscCall(carry(migration, plex, distributed, std::vector(patch_of), patch_of));
-  std::swap(plex, distributed);
-  cells = {};
-  PetscCall(read_simplices<dim>(plex, cells));
+  PetscCall(DMPlexGetHeightStratum(plex, 0, &first, &end));
+  cells.assign(points.begin() + first, points.begin() + end);
   PetscFunctionReturn(0);
 }
 
@@ -144,11 +145,27 @@ PetscErrorCode cell_numbers(DM plex, std::vector<PetscInt> &number) {
   PetscFunctionReturn(0);
 }
 
+/// Numbers of local points, unique over all ranks.
+PetscErrorCode point_numbers(DM plex, std::vector<PetscInt> &number) {
+  IS numbering;
+  const PetscInt *index;
+  PetscInt count;
+  PetscFunctionBeginUser;
+  PetscCall(DMPlexCreatePointNumbering(plex, &numbering));
+  PetscCall(ISGetLocalSize(numbering, &count));
+  PetscCall(ISGetIndices(numbering, &index));
+  for (PetscInt p = 0; p < count; ++p) number.push_back(index[p] < 0 ? -index[p] - 1 : index[p]);
+  PetscCall(ISRestoreIndices(numbering, &index));
+  PetscCall(ISDestroy(&numbering));
+  PetscFunctionReturn(0);
+}
+
 }  // namespace
 
 template <int dim>
 BackgroundMesh<dim> BackgroundMesh<dim>::read(MPI_Comm comm, const std::string &file,
-                                              const std::vector<std::pair<std::string, double>> &region_weight) {
+                                              const std::vector<std::pair<std::string, double>> &region_weight,
+                                              const Cuts &given) {
   int rank;
   MPI_Comm_rank(comm, &rank);
   std::string complaint;
@@ -165,8 +182,7 @@ BackgroundMesh<dim> BackgroundMesh<dim>::read(MPI_Comm comm, const std::string &
   Regions regions;
   require(make_plex(comm, dim, source, mesh.plex_.create(), complaint));
   agree(comm, complaint.empty() ? "" : file + ": " + complaint);
-  const std::string remark = std::move(source.remark);
-  source = {};
+  const std::string remark = std::exchange(source.remark, "");
   require(read_simplices(mesh.plex_, cells));
   require(read_regions(mesh.plex_, regions));
   agree(comm, complaint_about_cells(file, cells, regions, Names::required));
@@ -175,10 +191,132 @@ BackgroundMesh<dim> BackgroundMesh<dim>::read(MPI_Comm comm, const std::string &
 
   const int size = patch_size<dim>(is_one_element_slice<dim>(comm, cells.position));
   const auto patch = make_patches<dim>(cells.node, cells.neighbour, regions.combination, size);
-  std::vector<PetscInt> number, patch_of;
-  require(distribute_patches(mesh.plex_, cells, patch, weights_of(regions, region_weight), number, patch_of));
-  require(mesh.flatten(cells, number, patch_of));
+  int ranks;
+  MPI_Comm_size(comm, &ranks);
+  if (ranks > 1) {
+    const auto whole = rank == 0 ? std::make_shared<const WholeMesh<dim>>(std::move(source), cells, patch)
+                                 : std::make_shared<const WholeMesh<dim>>();
+    mesh.whole_ = whole, mesh.cuts_ = given;
+    if (static_cast<int>(given.size()) + 1 != ranks) {
+      mesh.cuts_.resize(ranks - 1);
+      if (rank == 0) {
+        const std::vector<double> patches = whole->weight_of_patches(weights_of(regions, region_weight));
+        mesh.cuts_ = find_cuts<dim>(whole->centre, patches, whole->touching, ranks);
+        const double all = std::accumulate(patches.begin(), patches.end(), 0.);
+        mesh.heaviest_patch_ = patches.empty() ? 0 : ranks * *std::max_element(patches.begin(), patches.end()) / all;
+      }
+      MPI_Bcast(&mesh.heaviest_patch_, 1, MPI_DOUBLE, 0, comm);
+      MPI_Bcast(mesh.cuts_.data(), static_cast<int>(mesh.cuts_.size() * sizeof(Cut)), MPI_BYTE, 0, comm);
+    }
+  }
+  require(mesh.settle(cells, patch));
   return mesh;
+}
+
+template <int dim>
+PetscErrorCode BackgroundMesh<dim>::settle(Simplices<dim> &cells, const std::vector<int> &patch) {
+  PetscInt begin, end;
+  int rank;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm(), &rank));
+  PetscCall(DMPlexGetChart(plex_, &begin, &end));
+  std::vector<PetscInt> number, patch_of(end, -1), patches;
+  std::copy(patch.begin(), patch.end(), patch_of.begin());  // cells are the first points
+  if (cuts_.empty()) {
+    number.resize(patch.size());
+    std::iota(number.begin(), number.end(), 0);
+    PetscCall(of_cells(plex_, patch_of, patches));
+    PetscCall(flatten(cells, number, patches));
+    PetscFunctionReturn(0);
+  }
+  Dm distributed;
+  StarForest migration;
+  std::vector<int> rank_of_cell;
+  if (rank == 0) {
+    const std::vector<int> rank_of_patch = ranks_by_cuts<dim>(whole_->centre, cuts_);
+    for (int p : patch) rank_of_cell.push_back(rank_of_patch[p]);
+  }
+  std::vector<PetscInt> points(end), patch_of_point;
+  std::iota(points.begin(), points.end(), 0);
+  PetscCall(distribute(plex_, rank_of_cell, distributed.create(), migration.create()));
+  PetscCall(carry(migration, distributed, points, point_number_));
+  PetscCall(carry(migration, distributed, patch_of, patch_of_point));
+  PetscCall(of_cells(distributed, point_number_, number));
+  PetscCall(of_cells(distributed, patch_of_point, patches));
+  std::swap(plex_, distributed);
+  cells = {};
+  PetscCall(read_simplices<dim>(plex_, cells));
+  PetscCall(flatten(cells, number, patches));
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+Cuts BackgroundMesh<dim>::balanced_cuts(const std::vector<std::pair<long long, double>> &filled,
+                                        double *imbalance) const {
+  struct Weight {
+    double cell, weight;
+  };
+  std::vector<Weight> mine;
+  for (const auto &[cell, weight] : filled) mine.push_back({static_cast<double>(cell), weight});
+  int rank, ranks, count = static_cast<int>(mine.size() * sizeof(Weight));
+  MPI_Comm_rank(comm(), &rank), MPI_Comm_size(comm(), &ranks);
+  std::vector<int> counts(ranks), first(ranks + 1, 0);
+  MPI_Gather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, comm());
+  std::partial_sum(counts.begin(), counts.end(), first.begin() + 1);
+  std::vector<Weight> all(rank == 0 ? first[ranks] / sizeof(Weight) : 0);
+  MPI_Gatherv(mine.data(), count, MPI_BYTE, all.data(), counts.data(), first.data(), MPI_BYTE, 0, comm());
+  Cuts cuts(ranks - 1);
+  if (rank == 0) {
+    std::vector<double> weight(whole_->patch.size(), empty_weight);
+    for (const Weight &one : all) weight[static_cast<std::size_t>(one.cell)] = one.weight;
+    const std::vector<double> patches = whole_->weight_of_patches(weight);
+    cuts = find_cuts<dim>(whole_->centre, patches, whole_->touching, ranks);
+    *imbalance = largest_share(patches, ranks_by_cuts<dim>(whole_->centre, cuts), ranks);
+  }
+  MPI_Bcast(cuts.data(), static_cast<int>(cuts.size() * sizeof(Cut)), MPI_BYTE, 0, comm());
+  MPI_Bcast(imbalance, 1, MPI_DOUBLE, 0, comm());
+  return cuts;
+}
+
+template <int dim>
+BackgroundMesh<dim> BackgroundMesh<dim>::divided(const Cuts &cuts) const {
+  BackgroundMesh mesh;
+  Simplices<dim> none;
+  std::string complaint;
+  mesh.whole_ = whole_, mesh.cuts_ = cuts, mesh.remarks_ = remarks_;
+  require(make_plex(comm(), dim, whole_->source, mesh.plex_.create(), complaint));
+  require(mesh.settle(none, whole_->patch));
+  return mesh;
+}
+
+template <int dim>
+PetscErrorCode BackgroundMesh<dim>::find_fingerprint() {
+  PetscFunctionBeginUser;
+  unsigned long long sum = 0;  // a sum over cells does not depend on which rank has them
+  for (int c = 0; c < cell_count(); ++c) {
+    unsigned long long one = talus::fingerprint(&global_cell[c], sizeof global_cell[c]);
+    for (const int node : cells[c].node) {
+      one = talus::fingerprint(&global_node[node], sizeof global_node[node], one);
+      one = talus::fingerprint(position[node].data(), sizeof position[node], one);
+    }
+    sum += one;
+  }
+  PetscCallMPI(MPI_Allreduce(&sum, &fingerprint_, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, comm()));
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+std::vector<long long> BackgroundMesh<dim>::global_edges() const {
+  PetscInt first, end;
+  require(DMPlexGetDepthStratum(plex_, 1, &first, &end));
+  std::vector<long long> edges;
+  for (PetscInt edge = first; edge < end; ++edge) edges.push_back(global_point(edge));
+  return edges;
+}
+
+template <int dim>
+unsigned long long BackgroundMesh<dim>::partition_fingerprint() const {
+  return talus::fingerprint(global_cell.data(), global_cell.size() * sizeof(long long));
 }
 
 template <int dim>
@@ -198,6 +336,7 @@ BackgroundMesh<dim> BackgroundMesh<dim>::adopt(DM plex) {
   const auto patch = make_patches<dim>(cells.node, cells.neighbour, regions.combination, size);
   std::vector<PetscInt> number;
   require(cell_numbers(plex, number));
+  require(point_numbers(plex, mesh.point_number_));
   require(mesh.flatten(cells, number, std::vector<PetscInt>(patch.begin(), patch.end())));
   return mesh;
 }

@@ -4,6 +4,7 @@
 #include <petscdmplex.h>
 
 #include <array>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,11 +13,14 @@
 #include "base/vec.h"
 #include "meshes/halo.h"
 #include "meshes/mesh_report.h"
+#include "meshes/partition.h"
 
 namespace talus {
 
 template <int dim>
 struct Simplices;  // meshes/plex.h
+template <int dim>
+struct WholeMesh;  // background_mesh.cpp
 
 /// One cell: what the walk and the gathers need, together in memory (128 bytes in 3D).
 template <int dim>
@@ -44,16 +48,29 @@ template <int dim>
 class BackgroundMesh {
  public:
   /// Reads a Gmsh file on rank 0, checks it, cuts patches, distributes it. `region_weight` gives the weight of a cell
-  /// from the names of its regions (particles it will hold plus one; the largest counts, 1/1000 without); patches of
-  /// cells, theory 4.5, stay on one rank and do not depend on the number of ranks. Collective. Throws
-  /// std::invalid_argument (the same on all ranks) for a file that cannot be read, a wrong dimension, cells of zero
-  /// volume or that overlap, and cells in no named group.
+  /// from the names of its regions (particles it will hold plus one; the largest counts, 1/1000 without); `given`, if
+  /// it is for as many ranks, is the partition instead. Patches of cells, theory 4.5, stay on one rank and do not depend
+  /// on the number of ranks. Collective. Throws std::invalid_argument (the same on all ranks) for a file that cannot be
+  /// read, a wrong dimension, cells of zero volume or that overlap, and cells in no named group.
   static BackgroundMesh read(MPI_Comm comm, const std::string &file,
-                             const std::vector<std::pair<std::string, double>> &region_weight);
+                             const std::vector<std::pair<std::string, double>> &region_weight, const Cuts &given = {});
   /// Takes a distributed DMPlex of a host program (a reference is kept). Labels with a physical name are regions and
   /// groups; patches are cut within each rank, `global_cell` is DMPlex's cell numbering. Collective; throws as `read`
   /// does.
   static BackgroundMesh adopt(DM plex);
+
+  /// Can the mesh be divided among the ranks in another way? Not on one rank, and not the mesh of a host program.
+  bool divisible() const { return !cuts_.empty(); }
+  /// Weight of the heaviest patch over the mean weight of ranks when the mesh was read: imbalance may be as much above 1,
+  /// since patches stay whole. 0 where the mesh is not divisible.
+  double heaviest_patch() const { return heaviest_patch_; }
+  const Cuts &cuts() const { return cuts_; }  ///< the partition; empty where the mesh is not divisible
+  /// The partition with nearly equal sums of weight, where `filled` are the cells of this rank that weigh something:
+  /// their global numbers and weights. `imbalance`: the weight of the rank that gets most, over the mean. Collective,
+  /// the same on all ranks.
+  Cuts balanced_cuts(const std::vector<std::pair<long long, double>> &filled, double *imbalance) const;
+  /// This mesh on another partition: the mesh that `read` would give with these cuts, to the bit. Collective.
+  BackgroundMesh divided(const Cuts &cuts) const;
 
   int cell_count() const { return static_cast<int>(cells.size()); }
   int node_count() const { return static_cast<int>(position.size()); }
@@ -69,6 +86,7 @@ class BackgroundMesh {
   std::vector<PetscInt> plex_point;    ///< DMPlex point of a cell
   std::vector<PetscInt> plex_vertex;   ///< DMPlex point of a node
   std::vector<long long> global_cell;  ///< number of the cell that does not depend on the partition (order in the file)
+  std::vector<long long> global_node;  ///< likewise of the node: its `global_point`
   std::vector<PartitionFace> partition_faces;
   /// Of a cell, one bit for each of its faces (1 << k, opposite to vertex k): a point beyond it by less than half of
   /// the cell's altitude is put back inside. Empty: no face is of this kind.
@@ -84,6 +102,17 @@ class BackgroundMesh {
   bool has_group(const std::string &name) const;
   /// From now on puts points back inside that are a little beyond a face of this group.
   void close(const std::string &group);
+  /// Number of a node or edge, given by its DMPlex point, that does not depend on the partition; in the mesh of a host
+  /// program not on the rank.
+  long long global_point(PetscInt plex_point) const {
+    return point_number_.empty() ? plex_point : point_number_[plex_point];
+  }
+  /// Numbers of the edges of this rank, by their `global_point`.
+  std::vector<long long> global_edges() const;
+  /// Tells meshes apart, the same on all ranks and on any partition.
+  unsigned long long fingerprint() const { return fingerprint_; }
+  /// Tells partitions apart: of the cells of this rank and their order.
+  unsigned long long partition_fingerprint() const;
   const std::vector<std::string> &region_names() const { return region_names_; }  ///< the same on all ranks, sorted
   const std::vector<std::string> &group_names() const { return group_names_; }    ///< the same on all ranks, sorted
   MeshReport report() const;                                                      ///< collective
@@ -94,12 +123,20 @@ class BackgroundMesh {
   /// Makes the flat copy of plex_; `number` and `patch_of` belong to its cells in its own order.
   PetscErrorCode flatten(const Simplices<dim> &simplices, const std::vector<PetscInt> &number,
                          const std::vector<PetscInt> &patch_of);
+  /// Distributes plex_, which is whole on rank 0, by the cuts, and flattens it; `cells` are those of rank 0.
+  PetscErrorCode settle(Simplices<dim> &cells, const std::vector<int> &patch);
+  PetscErrorCode find_fingerprint();
 
   Dm plex_;
   PetscInt first_plex_cell_ = 0;
   std::vector<int> flat_cell_;                             // of a plex cell, counted from the first
   std::vector<std::array<PetscInt, dim + 1>> plex_facet_;  // DMPlex point of the face opposite to vertex k of a cell
+  std::vector<PetscInt> point_number_;                     // of plex points; empty: they are their own numbers
   std::vector<std::string> region_names_, group_names_, remarks_;
+  std::shared_ptr<const WholeMesh<dim>> whole_;  // where the mesh is divisible: on rank 0 all of it
+  Cuts cuts_;
+  double heaviest_patch_ = 0;
+  unsigned long long fingerprint_ = 0;
 };
 
 }  // namespace talus

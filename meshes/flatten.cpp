@@ -224,13 +224,14 @@ PetscErrorCode BackgroundMesh<dim>::flatten(const Simplices<dim> &s, const std::
   patch_count = local_patch.met();
 
   const int nodes = node.met();
-  position.resize(nodes), plex_vertex.resize(nodes), owned.resize(nodes);
+  position.resize(nodes), plex_vertex.resize(nodes), owned.resize(nodes), global_node.resize(nodes);
   for (std::size_t v = 0; v < s.position.size(); ++v) {
     const int i = node.number(static_cast<PetscInt>(v));
     if (i < 0) continue;  // a node of no cell
     position[i] = s.position[v];
     plex_vertex[i] = s.first_vertex + static_cast<PetscInt>(v);
     owned[i] = !points.is_ghost[plex_vertex[i]];
+    global_node[i] = global_point(plex_vertex[i]);
   }
 
   std::vector<RankAndCell> mine(points.end, {-1, -1}), across;
@@ -250,6 +251,7 @@ PetscErrorCode BackgroundMesh<dim>::flatten(const Simplices<dim> &s, const std::
   PetscCall(sum_at_nodes(points, node, s.first_vertex, *this));
   PetscCall(names_at_height(plex_, 0, region_names_));
   PetscCall(names_at_height(plex_, 1, group_names_));
+  PetscCall(find_fingerprint());
   PetscFunctionReturn(0);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace talus {
@@ -12,26 +13,27 @@ class Bisection {
  public:
   Bisection(const std::vector<Vec<dim>> &centre, const std::vector<double> &weight,
             const std::vector<std::vector<int>> &touching)
-      : centre_(centre), weight_(weight), touching_(touching), side_(centre.size(), neither), rank(centre.size(), 0) {}
+      : centre_(centre), weight_(weight), touching_(touching), side_(centre.size(), neither) {}
 
-  /// Gives `ranks` ranks from `first` on to some patches.
-  void divide(std::vector<int> patches, int first, int ranks) {
-    if (ranks == 1) {
-      for (int p : patches) rank[p] = first;
-      return;
-    }
+  /// Cuts some patches for `ranks` ranks.
+  void divide(std::vector<int> patches, int ranks) {
+    if (ranks == 1) return;
     const int lower_ranks = ranks / 2;
     const double share = static_cast<double>(lower_ranks) / ranks;
     std::size_t lower = 0, fewest = -1;
+    Cut best;
     for (int axis = 0; axis < dim; ++axis) {
       auto sorted = patches;
       const std::size_t at = cut(sorted, axis, share), faces = faces_cut(sorted, at);
       if (faces >= fewest && axis > 0) continue;
       fewest = faces, lower = at, best_ = sorted;
+      best = {std::numeric_limits<double>::infinity(), axis, 0};
+      if (at < sorted.size()) best.place = centre_[sorted[at]][axis], best.patch = sorted[at];
     }
+    cuts.push_back(best);
     const std::vector<int> halves[2] = {{best_.begin(), best_.begin() + lower}, {best_.begin() + lower, best_.end()}};
-    divide(halves[0], first, lower_ranks);
-    divide(halves[1], first + lower_ranks, ranks - lower_ranks);
+    divide(halves[0], lower_ranks);
+    divide(halves[1], ranks - lower_ranks);
   }
 
  private:
@@ -43,7 +45,7 @@ class Bisection {
   std::vector<int> best_;
 
  public:
-  std::vector<int> rank;
+  Cuts cuts;
 
  private:
   /// Sorts patches along an axis; returns how many of them hold `share` of the weight.
@@ -72,18 +74,38 @@ class Bisection {
 }  // namespace
 
 template <int dim>
-std::vector<int> partition(const std::vector<Vec<dim>> &centre, const std::vector<double> &weight,
-                           const std::vector<std::vector<int>> &touching, int ranks) {
+Cuts find_cuts(const std::vector<Vec<dim>> &centre, const std::vector<double> &weight,
+               const std::vector<std::vector<int>> &touching, int ranks) {
   Bisection<dim> bisection(centre, weight, touching);
   std::vector<int> all(centre.size());
   std::iota(all.begin(), all.end(), 0);
-  bisection.divide(all, 0, ranks);
-  return bisection.rank;
+  bisection.divide(all, ranks);
+  return bisection.cuts;
 }
 
-template std::vector<int> partition<2>(const std::vector<Vec<2>> &, const std::vector<double> &,
-                                       const std::vector<std::vector<int>> &, int);
-template std::vector<int> partition<3>(const std::vector<Vec<3>> &, const std::vector<double> &,
-                                       const std::vector<std::vector<int>> &, int);
+template <int dim>
+std::vector<int> ranks_by_cuts(const std::vector<Vec<dim>> &centre, const Cuts &cuts) {
+  std::vector<int> rank(centre.size(), 0);
+  for (std::size_t p = 0; p < centre.size(); ++p) {
+    int &first = rank[p];
+    std::size_t cut = 0;  // of the ranks from `first` on
+    for (int ranks = static_cast<int>(cuts.size()) + 1; ranks > 1;) {
+      const Cut &here = cuts[cut];
+      const int lower_ranks = ranks / 2;
+      const double x = centre[p][here.axis];
+      const bool below = x < here.place || (x == here.place && static_cast<long long>(p) < here.patch);
+      cut += below ? 1 : lower_ranks;  // the cut here, and the others of the lower half
+      first += below ? 0 : lower_ranks, ranks = below ? lower_ranks : ranks - lower_ranks;
+    }
+  }
+  return rank;
+}
+
+template Cuts find_cuts<2>(const std::vector<Vec<2>> &, const std::vector<double> &,
+                           const std::vector<std::vector<int>> &, int);
+template Cuts find_cuts<3>(const std::vector<Vec<3>> &, const std::vector<double> &,
+                           const std::vector<std::vector<int>> &, int);
+template std::vector<int> ranks_by_cuts<2>(const std::vector<Vec<2>> &, const Cuts &);
+template std::vector<int> ranks_by_cuts<3>(const std::vector<Vec<3>> &, const Cuts &);
 
 }  // namespace talus

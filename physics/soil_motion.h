@@ -103,6 +103,7 @@ class SoilMotion final : public AnySoilMotion<dim> {
   using Velocities = NodalVelocities<dim, fields>;
   using State = SoilState<dim>;
 
+  Archive::Rows serialize_points(Archive &archive, size_t body);
   PoreReport pore_report(const Body<dim> &body, int particle) const requires Phases::liquid;
   PetscErrorCode start_pores(bool fill) requires Phases::liquid;
   // particles to nodes and back

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/gather.h"
+#include "base/local_numbers.h"
 #include "physics/boundary/node_normals.h"
 
 namespace talus {
@@ -458,15 +459,103 @@ PetscErrorCode Conditions<dim>::serialize(Archive &archive, FilledGrid<dim> &gri
                                           const std::vector<std::array<double, 2>> &impedance,
                                           const std::vector<double> &filling) {
   PetscFunctionBeginUser;
-  archive.serialize("supports", stand_ins_, frozen_);
-  if (archive.reading()) PetscCall(begin(grid, impedance, filling));
-  archive.serialize("boundaries", impulse_, work_);
-  for (auto &contacts : contacts_)
-    for (Contact &c : contacts)
-      archive.serialize("contact", c.capacity, c.gathered, c.since_pressed, c.rests, c.slip, c.warm);
-  archive.serialize("shear zones", zone_state_, rubbed_);
-  for (ActiveContact &c : active_contacts_) archive.serialize("contact now", c.force, c.presses, c.sticks);
+  const BackgroundMesh<dim> &mesh = grid.mesh();
+  archive.serialize("supports", stand_ins_);
+  std::vector<long long> nodes;
+  for (const Reaction &r : frozen_) nodes.push_back(mesh.global_node[r.node]);
+  archive.column(archive.rows("nodes of reactions", Belongs::to_points, nodes), "reactions", frozen_);
+  if (archive.reading()) {
+    frozen_.resize(nodes.size());
+    const LocalNumbers node_of(mesh.global_node);
+    for (size_t k = 0; k < nodes.size(); ++k) frozen_[k].node = node_of(nodes[k]);
+    PetscCall(begin(grid, impedance, filling));
+  }
+  archive.sums("boundaries", impulse_, work_, rubbed_);
+  serialize_contacts(archive, grid);
+  serialize_zones(archive, mesh);
   PetscFunctionReturn(0);
+}
+
+/// The contacts that soil has touched; `place` is the number of a contact at its node.
+template <int dim>
+void Conditions<dim>::serialize_contacts(Archive &archive, const FilledGrid<dim> &grid) {
+  struct Stored {
+    double capacity, gathered, since_pressed, slip;
+    int place, state;
+  };
+  struct StoredNow {
+    double force;
+    int place, state;
+  };
+  enum { rests = 1, warm = 2, presses = 1, sticks = 2 };
+  const BackgroundMesh<dim> &mesh = grid.mesh();
+  const LocalNumbers node_of(archive.reading() ? mesh.global_node : std::vector<long long>{});
+  std::vector<long long> nodes;
+  std::vector<Stored> stored;
+  for (auto &of_node : contacts_)
+    for (Contact &c : of_node) {
+      if (archive.reading())
+        c.capacity = c.slip = 0, c.gathered = c.since_pressed = never, c.rests = c.warm = false;
+      else if (c.capacity != 0 || c.gathered != never || c.since_pressed != never || c.rests || c.slip != 0 || c.warm)
+        nodes.push_back(mesh.global_node[c.node]),
+            stored.push_back({c.capacity, c.gathered, c.since_pressed, c.slip, static_cast<int>(&c - of_node.data()),
+                              (c.rests ? rests : 0) | (c.warm ? warm : 0)});
+    }
+  archive.column(archive.rows("nodes of contacts", Belongs::to_points, nodes), "contacts", stored);
+  for (size_t k = 0; archive.reading() && k < nodes.size(); ++k) {
+    const Stored &s = stored[k];
+    Contact &c = contacts_.at(first_contact_of_node_[node_of(nodes[k])]).at(s.place);
+    c.capacity = s.capacity, c.gathered = s.gathered, c.since_pressed = s.since_pressed, c.slip = s.slip;
+    c.rests = s.state & rests, c.warm = s.state & warm;
+  }
+
+  std::vector<StoredNow> stored_now;
+  std::map<const Contact *, ActiveContact *> active;
+  nodes.clear();
+  for (ActiveContact &c : active_contacts_) {
+    const int node = c.contact->node;
+    active[c.contact] = &c;
+    if (archive.reading()) continue;
+    nodes.push_back(mesh.global_node[node]);
+    stored_now.push_back({c.force, static_cast<int>(c.contact - contacts_[first_contact_of_node_[node]].data()),
+                          (c.presses ? presses : 0) | (c.sticks ? sticks : 0)});
+  }
+  archive.column(archive.rows("nodes of contacts now", Belongs::to_points, nodes), "contacts now", stored_now);
+  for (size_t k = 0; archive.reading() && k < nodes.size(); ++k) {
+    const StoredNow &s = stored_now[k];
+    const auto found = active.find(&contacts_.at(first_contact_of_node_[node_of(nodes[k])]).at(s.place));
+    if (found == active.end()) continue;
+    ActiveContact &c = *found->second;
+    c.force = s.force, c.presses = s.state & presses, c.sticks = s.state & sticks;
+  }
+}
+
+/// Heat and pressure in the shear zones that are not as they were at the start.
+template <int dim>
+void Conditions<dim>::serialize_zones(Archive &archive, const BackgroundMesh<dim> &mesh) {
+  if (archive.reading()) std::fill(zone_state_.begin(), zone_state_.end(), 0.);
+  for (int source = 0; source < static_cast<int>(sources_.size()); ++source) {
+    if (!zone_grids_[source]) continue;
+    const size_t width = zone_grids_[source]->size();
+    std::vector<long long> nodes;
+    std::vector<int> places;
+    std::vector<double> states;
+    for (auto &of_node : contacts_)
+      for (Contact &c : of_node) {
+        if (c.source != source || archive.reading() || !c.warm) continue;
+        nodes.push_back(mesh.global_node[c.node]), places.push_back(static_cast<int>(&c - of_node.data()));
+        states.insert(states.end(), zone_of(c), zone_of(c) + width);
+      }
+    const Archive::Rows rows = archive.rows("nodes of shear zones", Belongs::to_points, nodes);
+    archive.column(rows, "place of the shear zone", places);
+    archive.column(rows, "shear zone", states, width);
+    if (!archive.reading()) continue;
+    const LocalNumbers node_of(mesh.global_node);
+    for (size_t k = 0; k < nodes.size(); ++k) {
+      Contact &c = contacts_.at(first_contact_of_node_[node_of(nodes[k])]).at(places[k]);
+      std::copy_n(&states[k * width], width, zone_of(c));
+    }
+  }
 }
 
 template class Conditions<2>;

@@ -144,6 +144,8 @@ class Conditions {
   };
   void add_direction(PrescribedSet &set, int node, int source, const Vec<dim> &direction);
   void add_contact(int node, int source, const Vec<dim> &normal, double area);
+  void serialize_contacts(Archive &archive, const FilledGrid<dim> &grid);
+  void serialize_zones(Archive &archive, const BackgroundMesh<dim> &mesh);
   ShearZoneGrid &grid_of(const Contact &c) { return *zone_grids_[c.source]; }
   double *zone_of(const Contact &c) { return &zone_state_[c.zone]; }
   void spread_heat(double gamma);

@@ -120,7 +120,8 @@ class PoreFluid {
   const std::vector<Vec<dim>> &surface() const { return surface_; }
   /// Its first moment in depth below the node, where open water rests on it [m3].
   const std::vector<Vec<dim>> &surface_moment() const { return moment_; }
-  void serialize(Archive &archive);
+  void serialize(Archive &archive, const typename FilledGrid<dim>::Rows &grid,
+                 const std::vector<Archive::Rows> &points_of_bodies);
 
   bool prescribed = false;  ///< pressures follow [water] instead of the fluids' motion
   double prescribed_ramp = 1;

@@ -109,13 +109,28 @@ PoreReport PoreFluid<dim, Phases>::report(int body, int point, int cell, bool su
 }
 
 template <int dim, class Phases>
-void PoreFluid<dim, Phases>::serialize(Archive &archive) {
-  for (PorePoints &points : points_) {
-    archive.serialize("pores", points.count, points.grains, points.share, points.suction, points.pressure);
-    for (int a = 0; a < fluids; ++a) archive.serialize("fluid", points.mass[a]);
+void PoreFluid<dim, Phases>::serialize(Archive &archive, const typename FilledGrid<dim>::Rows &grid,
+                                       const std::vector<Archive::Rows> &points_of_bodies) {
+  for (size_t b = 0; b < points_.size(); ++b) {
+    const Archive::Rows &rows = points_of_bodies[b];
+    PorePoints &points = points_[b];
+    if (archive.reading()) points.count = static_cast<int>(rows.count), points.reserve(points.count);
+    archive.column(rows, "volume of grains", points.grains);
+    archive.column(rows, "share of gas", points.share);
+    archive.column(rows, "suction of points", points.suction);
+    archive.column(rows, "pressure of points", points.pressure);
+    for (int a = 0; a < fluids; ++a) archive.column(rows, "mass of a fluid", points.mass[a]);
   }
-  archive.serialize("fluids", cells_, nodes_, surface_, moment_, mean_, reference_, rows_, grain_mass_, body_of_node_,
-                    out_, prescribed_mass_);
+  archive.column(grid.cells, "pores of cells", cells_);
+  archive.column(grid.cells, "mean place", mean_);
+  archive.column(grid.cells, "place of pressure", reference_);
+  archive.column(grid.cells, "rows of the mass matrix", rows_);
+  archive.column(grid.cells, "mass of grains", grain_mass_);
+  archive.column(grid.nodes, "pores of nodes", nodes_);
+  archive.column(grid.nodes, "surface", surface_);
+  archive.column(grid.nodes, "moment of the surface", moment_);
+  archive.column(grid.nodes, "body of a node", body_of_node_);
+  archive.sums("fluids", out_, prescribed_mass_);
 }
 
 template <int dim, class Phases>

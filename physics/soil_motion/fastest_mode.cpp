@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/local_numbers.h"
 #include "physics/kinematics.h"
 #include "physics/laws/laws.h"
 #include "transfer/mass_matrix.h"
@@ -97,6 +98,19 @@ PetscErrorCode FastestMode<dim>::find(FilledGrid<dim> &grid, const SoilState<dim
   }
   for (int i = 0; i < nodes; ++i) mode_[grid.mesh_node[i]] = wave_[i];
   PetscFunctionReturn(0);
+}
+
+template <int dim>
+void FastestMode<dim>::serialize(Archive &archive) {
+  std::vector<long long> nodes;  // that move
+  std::vector<Vec<dim>> values;
+  for (size_t i = 0; i < mode_.size(); ++i)
+    if (mode_[i] != Vec<dim>{}) nodes.push_back(mesh_.global_node[i]), values.push_back(mode_[i]);
+  archive.column(archive.rows("nodes of the fastest mode", Belongs::to_points, nodes), "fastest mode", values);
+  if (!archive.reading()) return;
+  mode_.assign(mesh_.node_count(), Vec<dim>{});
+  const LocalNumbers node_of(mesh_.global_node);
+  for (size_t k = 0; k < nodes.size(); ++k) mode_[node_of(nodes[k])] = values[k];
 }
 
 template class FastestMode<2>;

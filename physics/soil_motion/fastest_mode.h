@@ -23,7 +23,7 @@ class FastestMode {
   PetscErrorCode find(FilledGrid<dim> &grid, const SoilState<dim> &state,
                       const std::vector<std::unique_ptr<Body<dim>>> &bodies, const std::vector<PointSet> &points,
                       int iterations, double *omega);
-  void serialize(Archive &archive) { archive.serialize("fastest mode", mode_); }
+  void serialize(Archive &archive);
 
  private:
   void measure_elasticity(const FilledGrid<dim> &grid, const SoilState<dim> &state,

@@ -157,10 +157,16 @@ const double *PrescribedPoreWater<dim>::suction(const FilledGrid<dim> &grid, con
 }
 
 template <int dim>
-void PrescribedPoreWater<dim>::serialize(Archive &archive) {
-  archive.serialize("pore water", extra_mass_, sample_time_, last_time_, table_moves_);
-  for (Sample &sample : sample_)
-    archive.serialize("pore pressure", sample.gradient, sample.value, sample.nodal, sample.suction, sample.jump);
+void PrescribedPoreWater<dim>::serialize(Archive &archive, const typename FilledGrid<dim>::Rows &rows) {
+  archive.serialize("pore water", sample_time_, last_time_, table_moves_);
+  archive.column(rows.nodes, "extra mass", extra_mass_);
+  for (Sample &sample : sample_) {
+    archive.column(rows.cells, "gradient of pore pressure", sample.gradient);
+    archive.column(rows.cells, "pore pressure", sample.value);
+    archive.column(rows.nodes, "nodal pore pressure", sample.nodal);
+    archive.column(rows.cells, "suction", sample.suction);
+    archive.column(rows.cells, "jump of pore pressure", sample.jump);
+  }
 }
 
 template class PrescribedPoreWater<2>;

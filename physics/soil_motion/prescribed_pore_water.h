@@ -43,7 +43,7 @@ class PrescribedPoreWater {
   /// Pore water gained since seeding, which weighs but is not inert [node] [kg].
   const std::vector<double> &extra_mass() const { return extra_mass_; }
 
-  void serialize(Archive &archive);
+  void serialize(Archive &archive, const typename FilledGrid<dim>::Rows &rows);
 
  private:
   struct Sample {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/local_numbers.h"
+
 #include "physics/soil_motion.h"
 
 namespace talus {
@@ -105,31 +107,77 @@ void SoilMotion<dim, Phases>::state(int b, int i, double *stress, double *histor
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::serialize(Archive &archive) {
   PetscFunctionBeginUser;
-  grid_.serialize(archive);
-  archive.serialize("nodes", velocities_.start, velocities_.now, velocities_.unmapped_start, velocities_.remap_time,
-                    velocities_.own_share);
-  archive.serialize("cells", accepted_.particle_volume, accepted_.weight, blend_, filling_, slenderness_, impedance_);
+  const typename FilledGrid<dim>::Rows grid = grid_.serialize(archive);
+  for (int field = 0; field < fields; ++field) {
+    const int first = field * grid_.node_count();
+    archive.column(grid.nodes, "velocity at the remap", velocities_.start.data() + first, sizeof(Vec<dim>));
+    archive.column(grid.nodes, "velocity", velocities_.now.data() + first, sizeof(Vec<dim>));
+    archive.column(grid.nodes, "unmapped velocity", velocities_.unmapped_start.data() + first, sizeof(Vec<dim>));
+  }
+  archive.serialize("velocities", velocities_.remap_time, velocities_.own_share);
+  archive.column(grid.cells, "particle volume", accepted_.particle_volume);
+  archive.column(grid.cells, "weight", accepted_.weight);
+  archive.column(grid.cells, "blend", blend_);
+  archive.column(grid.cells, "filling", filling_);
+  archive.column(grid.cells, "slenderness", slenderness_);
+  archive.column(grid.cells, "impedance", impedance_);
+  std::vector<Archive::Rows> points(bodies_.size());
   for (size_t b = 0; b < bodies_.size(); ++b) {
-    PointSet &p = points_[b];
-    archive.serialize("points", p.count, p.own_cell, p.own_stress, p.own_history, p.own_volume, p.own_limit,
-                      p.own_cohesion_share, p.own_friction_share, p.start_history, p.start_volume, p.of_cell);
-    refer_to_points(b);
-    if (nonlocal_[b]) nonlocal_[b]->serialize(archive);
+    points[b] = serialize_points(archive, b);
+    if (nonlocal_[b]) nonlocal_[b]->serialize(archive, grid, points[b]);
   }
   accepted_.refer_to(grid_);
-  archive.serialize("motion", gathered_, accepted_time_, moved_, smallest_ratio_, step_ratio_, speed_squared_);
+  archive.serialize("motion", gathered_, accepted_time_);
+  double smallest[] = {-smallest_ratio_, -step_ratio_};
+  archive.largest("least of the motion", smallest), archive.largest("motion", moved_, speed_squared_);
+  smallest_ratio_ = -smallest[0], step_ratio_ = -smallest[1];
   work_.serialize(archive);
-  if constexpr (Phases::prescribed) water_.serialize(archive);
+  if constexpr (Phases::prescribed) water_.serialize(archive, grid);
   if constexpr (!Phases::liquid) fastest_mode_.serialize(archive);
   PetscCall(conditions_.serialize(archive, grid_, impedance_, filling_));
   if (archive.reading()) conditions_.surface_loads().begin(bodies_, grid_);
   if constexpr (Phases::liquid) {
-    fluid_.serialize(archive);
+    fluid_.serialize(archive, grid, points);
     velocities_.before_step = velocities_.now;
     if (archive.reading())
       PetscCall(pore_conditions_.begin(grid_, filling_, fluid_.surface(), fluid_.surface_moment()));
   }
   PetscFunctionReturn(0);
+}
+
+/// Stress points of a body, as rows of their cells.
+template <int dim, class Phases>
+Archive::Rows SoilMotion<dim, Phases>::serialize_points(Archive &archive, size_t b) {
+  PointSet &p = points_[b];
+  std::vector<long long> cells;
+  for (int q = 0; q < p.count; ++q) cells.push_back(mesh_.global_cell[grid_.mesh_cell[p.own_cell[q]]]);
+  const Archive::Rows rows = archive.rows("stress points", Belongs::to_cells, cells);
+  if (archive.reading()) {
+    p.count = static_cast<int>(cells.size());
+    p.own_cell.resize(std::max(p.own_cell.size(), cells.size()));
+    std::fill(p.of_cell.begin(), p.of_cell.end(), -1);
+    const LocalNumbers cell_of(mesh_.global_cell);
+    for (int q = 0; q < p.count; ++q) {
+      const int cell = cell_of(cells[q]);
+      p.own_cell[q] = grid_.find_cell(cell);
+      if (transfer_.average_stress) p.of_cell[cell] = q;
+    }
+  }
+  if (transfer_.average_stress) {
+    const int history = bodies_[b]->history_count();
+    archive.column(rows, "stress", p.own_stress, components);
+    archive.column(rows, "history", p.own_history, history);
+    archive.column(rows, "history at the remap", p.start_history, history);
+    archive.column(rows, "volume", p.own_volume);
+    archive.column(rows, "volume at the remap", p.start_volume);
+    archive.column(rows, "initial volume", p.own_limit);
+    if (reads_shares(bodies_[b]->law())) {
+      archive.column(rows, "share of cohesion", p.own_cohesion_share);
+      archive.column(rows, "share of friction", p.own_friction_share);
+    }
+  }
+  refer_to_points(b);
+  return rows;
 }
 
 template <int dim, class Phases>

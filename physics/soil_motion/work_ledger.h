@@ -37,7 +37,7 @@ class WorkLedger {
   void add(const FilledGrid<dim> &grid, const Vec<dim> *u, const Vec<dim> &gravity, const double *extra_mass,
            bool damped);
   const WorkDone &done() const { return done_; }
-  void serialize(Archive &archive) { archive.serialize("work", done_.gravity, done_.imposed, done_.damping); }
+  void serialize(Archive &archive) { archive.sums("work", done_.gravity, done_.imposed, done_.damping); }
 
  private:
   std::vector<Vec<dim>> imposed_;  ///< [node] of this rank [N]

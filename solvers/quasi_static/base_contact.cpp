@@ -215,11 +215,27 @@ void BaseContact<dim>::restore(const State &state) {
   for (size_t k = 0; k < points_.size(); ++k) points_[k].spring = points_[k].trial = state[k];
 }
 
+/// The points at a node, which are on the rank that owns it, are in the same order on any partition.
 template <int dim>
 void BaseContact<dim>::serialize(Archive &archive) {
+  const ElementNodes<dim> &nodes = soil_.nodes();
+  const BackgroundMesh<dim> &mesh = soil_.mesh();
   State state = save();
-  archive.serialize("bases", state);
-  restore(state);
+  std::vector<long long> of;
+  for (const Point &p : points_) of.push_back(mesh.global_point(nodes.point[p.node]));
+  std::vector<long long> stored = of;
+  archive.column(archive.rows("nodes of springs", Belongs::to_points, stored), "springs", state);
+  if (!archive.reading()) return;
+  std::map<long long, std::vector<size_t>> rows;
+  for (size_t k = 0; k < stored.size(); ++k) rows[stored[k]].push_back(k);
+  State mine;
+  std::map<long long, size_t> met;
+  for (const long long node : of) {
+    const std::vector<size_t> &of_node = rows[node];
+    const size_t place = met[node]++;
+    mine.push_back(place < of_node.size() ? state[of_node[place]] : Vec<dim>{});
+  }
+  restore(mine);
 }
 
 template <int dim>

@@ -5,6 +5,8 @@
 #include <limits>
 #include <set>
 
+#include "base/local_numbers.h"
+
 namespace talus {
 namespace {
 
@@ -39,6 +41,35 @@ double PoreFlow<dim>::unit_weight() const {
   double square = 0;
   for (double g : gravity_) square += g * g;
   return liquid_.density * std::sqrt(square);
+}
+
+template <int dim>
+void PoreFlow<dim>::serialize(Archive &archive) {
+  std::vector<long long> wet, present, numbers;  // points with a pressure, now or before; nodes that are there now
+  std::vector<double> pressures;
+  for (int i = 0; i < nodes_.count(); ++i) {
+    if (!archive.reading()) pressure_of_point_[nodes_.point[i]] = accepted[i];
+    present.push_back(mesh_.global_point(nodes_.point[i]));
+  }
+  for (size_t p = 0; p < pressure_of_point_.size(); ++p) {
+    numbers.push_back(mesh_.global_point(static_cast<PetscInt>(p)));
+    if (archive.reading() || std::isnan(pressure_of_point_[p])) continue;
+    wet.push_back(numbers.back()), pressures.push_back(pressure_of_point_[p]);
+  }
+  archive.column(archive.rows("wet nodes", Belongs::to_points, wet), "accepted pressure", pressures);
+  const LocalNumbers node_of(present), point_of(numbers);
+  std::vector<double> trial = pressure;
+  std::vector<char> open = open_;
+  const Archive::Rows rows = archive.rows("nodes of flow", Belongs::to_points, present);
+  archive.column(rows, "pressure of flow", trial);
+  archive.column(rows, "open seepage faces", open);
+  archive.sums("inflow", inflow_);
+  if (!archive.reading()) return;
+  std::fill(pressure_of_point_.begin(), pressure_of_point_.end(), std::numeric_limits<double>::quiet_NaN());
+  for (size_t k = 0; k < wet.size(); ++k) pressure_of_point_[point_of(wet[k])] = pressures[k];
+  for (int i = 0; i < nodes_.count(); ++i) accepted[i] = pressure_of_point_[nodes_.point[i]];
+  for (size_t k = 0; k < present.size(); ++k)
+    if (const int i = node_of.find(present[k]); i >= 0) pressure[i] = trial[k], open_[i] = open[k];
 }
 
 // ---- cells and boundaries ----

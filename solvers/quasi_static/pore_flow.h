@@ -93,9 +93,7 @@ class PoreFlow {
   std::vector<double> pressure_of_cells() const;
 
   /// The state in a checkpoint, between two steps.
-  void serialize(Archive &archive) {
-    archive.serialize("flow", accepted, pressure, pressure_of_point_, open_, inflow_);
-  }
+  void serialize(Archive &archive);
 
   std::vector<double> pressure;  ///< trial, of local nodes [Pa]
   std::vector<double> accepted;  ///< at the start of the step [Pa]

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/local_numbers.h"
+
 namespace talus {
 
 template <int dim>
@@ -139,6 +141,9 @@ PetscErrorCode QuasiStatic<dim>::begin_path(double load_time) {
   for (size_t i = 0; i < external.size(); ++i) unborne_[i] = external[i] - unborne_[i], external[i] -= internal[i];
   PetscCall(soil_.nodes().add_to_global(external, out_of_balance_));
   PetscCall(unknowns_.turn(out_of_balance_, true));
+  PetscCall(soil_.nodes().sum(unborne_));  // the rank that owns a node has all of it, so that it can move with the node
+  for (int i = 0; i < soil_.nodes().count(); ++i)
+    if (!soil_.nodes().owned[i]) std::fill_n(&unborne_[i * dim], dim, 0.);
   PetscFunctionReturn(0);
 }
 
@@ -243,7 +248,26 @@ template <int dim>
 void QuasiStatic<dim>::serialize(Archive &archive) {
   soil_.serialize(archive);
   bases_.serialize(archive);
-  archive.serialize("path", share_, unborne_, borne_acceleration_);
+  archive.serialize("path", share_, borne_acceleration_);
+  const ElementNodes<dim> &nodes = soil_.nodes();
+  std::vector<long long> numbers;
+  std::vector<double> loads;
+  for (int i = 0; i < nodes.count() && !unborne_.empty(); ++i) {
+    if (!nodes.owned[i]) continue;
+    numbers.push_back(soil_.mesh().global_point(nodes.point[i]));
+    loads.insert(loads.end(), &unborne_[i * dim], &unborne_[i * dim] + dim);
+  }
+  if (archive.reading()) numbers.clear(), loads.clear();
+  archive.column(archive.rows("nodes of unborne loads", Belongs::to_points, numbers), "unborne loads", loads, dim);
+  if (!archive.reading()) return;
+  unborne_.assign(static_cast<size_t>(nodes.count()) * dim, 0);
+  std::vector<long long> mine;
+  for (int i = 0; i < nodes.count(); ++i) mine.push_back(soil_.mesh().global_point(nodes.point[i]));
+  const LocalNumbers node_of(mine);
+  for (size_t k = 0; k < numbers.size(); ++k) {
+    const int i = node_of.find(numbers[k]);
+    if (i >= 0 && nodes.owned[i]) std::copy_n(&loads[k * dim], dim, &unborne_[i * dim]);
+  }
 }
 
 // ---- what it found ----

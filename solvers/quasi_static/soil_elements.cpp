@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 
+#include "base/local_numbers.h"
 #include "physics/laws/strength_by_place.h"
 
 namespace talus {
@@ -323,8 +325,53 @@ void SoilElements<dim>::reset_displacement() {
 
 template <int dim>
 void SoilElements<dim>::serialize(Archive &archive) {
-  archive.serialize("elements", displacement_, displacement_of_point_);
-  for (GaussPoints<dim> &p : points_) archive.serialize("Gauss points", p.stress, p.history, p.total_strain);
+  constexpr size_t width = dim * sizeof(double);
+  const int points = static_cast<int>(displacement_of_point_.size()) / dim;
+  std::vector<long long> moved, numbers;  // points with a node, now or before
+  std::vector<double> displacement;
+  for (int i = 0; i < nodes_.count() && !archive.reading(); ++i)
+    std::copy_n(&displacement_[i * dim], dim, &displacement_of_point_[nodes_.point[i] * dim]);
+  for (int p = 0; p < points; ++p) {
+    const double *u = &displacement_of_point_[p * dim];
+    numbers.push_back(mesh_.global_point(p));
+    if (std::all_of(u, u + dim, [](double x) { return x == 0; })) continue;
+    moved.push_back(numbers.back()), displacement.insert(displacement.end(), u, u + dim);
+  }
+  if (archive.reading()) moved.clear(), displacement.clear();
+  archive.column(archive.rows("moved nodes", Belongs::to_points, moved), "nodal displacement", displacement, dim);
+  if (archive.reading()) {
+    const LocalNumbers point_of(numbers);
+    std::fill(displacement_of_point_.begin(), displacement_of_point_.end(), 0.);
+    for (size_t k = 0; k < moved.size(); ++k)
+      std::memcpy(&displacement_of_point_[point_of(moved[k]) * dim], &displacement[k * dim], width);
+    for (int i = 0; i < nodes_.count(); ++i)
+      std::copy_n(&displacement_of_point_[nodes_.point[i] * dim], dim, &displacement_[i * dim]);
+  }
+  for (GaussPoints<dim> &p : points_) serialize_points(archive, p);
+}
+
+/// Those of a body, as rows of their cells: the points of a cell in their order.
+template <int dim>
+void SoilElements<dim>::serialize_points(Archive &archive, GaussPoints<dim> &p) {
+  const size_t per_cell = points_per_cell(), memory = history_size(p.law);
+  std::vector<long long> cells;
+  for (size_t q = 0; q < p.cell.size(); q += per_cell) cells.push_back(mesh_.global_cell[p.cell[q]]);
+  const Archive::Rows rows = archive.rows("cells of Gauss points", Belongs::to_cells, cells);
+  std::vector<int> first;  // point of each row's cell
+  if (archive.reading()) {
+    const LocalNumbers cell_of(mesh_.global_cell);
+    for (const long long cell : cells) first.push_back(first_point_[cell_of(cell)]);
+  }
+  const auto column = [&](const char *name, std::vector<double> &values, size_t width) {
+    std::vector<double> stored;
+    if (!archive.reading()) stored = values;
+    archive.column(rows, name, stored, width * per_cell);
+    for (size_t k = 0; k < first.size() && width; ++k)
+      std::copy_n(&stored[k * width * per_cell], width * per_cell, &values[first[k] * width]);
+  };
+  column("stress of Gauss points", p.stress, components);
+  column("history of Gauss points", p.history, memory);
+  column("strain of Gauss points", p.total_strain, components);
 }
 
 template <int dim>

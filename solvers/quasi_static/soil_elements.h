@@ -140,6 +140,7 @@ class SoilElements {
   };
   void place_points();
   void make_groups();
+  void serialize_points(Archive &archive, GaussPoints<dim> &points);
 
   const BackgroundMesh<dim> &mesh_;
   const SoilData<dim> &data_;

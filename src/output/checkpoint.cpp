@@ -1,5 +1,6 @@
 #include "output/checkpoint.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -16,9 +17,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char *first_line = "Talus checkpoint 4\n";
+constexpr const char *first_line = "Talus checkpoint 5\n";
 
 std::string header_file(const std::string &dir) { return dir + "/checkpoint/header"; }
+std::string header_before(const std::string &dir) { return header_file(dir) + ".before"; }
 
 std::string state_name(long long number, int rank) {
   char name[64];
@@ -49,17 +51,42 @@ std::string load(const std::string &path) {
 
 void serialize(Archive &archive, CheckpointHeader &header) {
   archive.serialize("header", header.program, header.scene, header.time, header.step, header.number, header.stage,
-                    header.ranks);
+                    header.ranks, header.mesh, header.partition, header.cuts);
 }
 
-/// Removes all states of this rank except that of `number`.
-void remove_others(const std::string &dir, int rank, long long number) {
+/// Number and rank of a state by the name of its file; false where it is another file.
+bool is_state(const fs::path &file, long long *number, int *rank) {
+  int end = 0;
+  const std::string name = file.filename();
+  return std::sscanf(name.c_str(), "%lld.%d%n", number, rank, &end) == 2 && end == static_cast<int>(name.size());
+}
+
+/// Removes the states but those of two checkpoints; those of ranks that are no more are shared among those that are.
+void remove_others(const std::string &dir, int my_rank, int ranks, long long last, long long before) {
   std::vector<fs::path> old;
-  const std::string mine = fs::path(state_name(number, rank)).extension();
-  for (const auto &file : fs::directory_iterator(dir + "/checkpoint"))
-    if (file.path().extension() == mine && file.path().filename() != state_name(number, rank))
+  for (const auto &file : fs::directory_iterator(dir + "/checkpoint")) {
+    long long number;
+    int rank;
+    if (is_state(file.path(), &number, &rank) && rank % ranks == my_rank && number != last && number != before)
       old.push_back(file.path());
+  }
   for (const auto &file : old) fs::remove(file);
+}
+
+CheckpointHeader header_in(const std::string &file) {
+  CheckpointHeader header;
+  Archive archive(load(file));
+  serialize(archive, header);
+  return header;
+}
+
+/// Number of the checkpoint of a header; -1 where there is none, or it cannot be read.
+long long number_in(const std::string &file) {
+  try {
+    return fs::exists(file) ? header_in(file).number : -1;
+  } catch (const std::runtime_error &) {
+    return -1;
+  }
 }
 
 /// `together` for bad input: failures are std::invalid_argument.
@@ -79,9 +106,15 @@ void write_checkpoint(MPI_Comm comm, const std::string &dir, CheckpointHeader he
   check_mpi(MPI_Comm_size(comm, &header.ranks), "counting ranks");
   on_first_rank(comm, [&] { make_folder(dir + "/checkpoint"); });
   const std::string path = dir + "/checkpoint/" + state_name(header.number, rank);
+  long long before = -1;
   try {
     together(comm, [&] { save(path, state.bytes()); });
     on_first_rank(comm, [&] {
+      before = number_in(header_file(dir));
+      if (before >= 0)
+        replace_file(header_before(dir), read_file(header_file(dir)));
+      else  // there is none, or it is damaged, and what is before it stays
+        before = number_in(header_before(dir));
       Archive archive;
       serialize(archive, header);
       save(header_file(dir), archive.bytes());
@@ -91,24 +124,47 @@ void write_checkpoint(MPI_Comm comm, const std::string &dir, CheckpointHeader he
     fs::remove(path, ignored);  // frees space on a full disk
     throw;
   }
-  together(comm, [&] { remove_others(dir, rank, header.number); });
+  check_mpi(MPI_Bcast(&before, 1, MPI_LONG_LONG, 0, comm), "sending the number of a checkpoint");
+  together(comm, [&] { remove_others(dir, rank, header.ranks, header.number, before); });
 }
 
-CheckpointHeader read_checkpoint_header(MPI_Comm comm, const std::string &dir) {
-  CheckpointHeader header;
-  together_or_refuse(comm, [&] {
-    if (!fs::exists(header_file(dir))) throw std::runtime_error(dir + " contains no checkpoint");
-    Archive archive(load(header_file(dir)));
-    serialize(archive, header);
-  });
-  return header;
-}
-
-Archive read_checkpoint(MPI_Comm comm, const std::string &dir, const CheckpointHeader &header) {
-  Archive archive;
-  together_or_refuse(comm,
-                     [&] { archive = Archive(load(dir + "/checkpoint/" + state_name(header.number, rank_in(comm)))); });
-  return archive;
+Checkpoint read_checkpoint(MPI_Comm comm, const std::string &dir) {
+  Checkpoint found;
+  const int rank = rank_in(comm);
+  int ranks;
+  check_mpi(MPI_Comm_size(comm, &ranks), "counting ranks");
+  int exist[2] = {fs::exists(header_file(dir)), fs::exists(header_before(dir))};
+  check_mpi(MPI_Bcast(exist, 2, MPI_INT, 0, comm), "looking for checkpoints");
+  if (!exist[0] && !exist[1]) throw std::invalid_argument(dir + " contains no checkpoint");
+  for (const bool last : {true, false}) {
+    if (!exist[last ? 0 : 1]) continue;
+    try {
+      together_or_refuse(comm, [&] {
+        found.header = header_in(last ? header_file(dir) : header_before(dir));
+        found.parts.clear();
+        // of `written` ranks the part of this one; the first rank has some
+        const long long written = found.header.ranks, begin = (rank * written + ranks - 1) / ranks,
+                        end = ((rank + 1) * written + ranks - 1) / ranks;
+        for (long long r = begin; r < end; ++r)
+          found.parts.emplace_back(
+              load(dir + "/checkpoint/" + state_name(found.header.number, static_cast<int>(r))));
+      });
+      break;
+    } catch (const std::invalid_argument &error) {
+      if (!found.passed_over.empty()) throw std::invalid_argument(found.passed_over);
+      found.passed_over = error.what();
+      if (!last || !exist[1]) throw;
+    }
+  }
+  found.last_number = std::max(found.header.number, number_in(header_file(dir)));
+  if (rank == 0)
+    for (const auto &file : fs::directory_iterator(dir + "/checkpoint")) {
+      long long number;
+      int of_rank;
+      if (is_state(file.path(), &number, &of_rank)) found.last_number = std::max(found.last_number, number);
+    }
+  check_mpi(MPI_Bcast(&found.last_number, 1, MPI_LONG_LONG, 0, comm), "sending the number of a checkpoint");
+  return found;
 }
 
 }  // namespace talus

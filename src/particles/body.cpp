@@ -3,6 +3,8 @@
 #include <cstring>
 #include <limits>
 
+#include "base/local_numbers.h"
+
 namespace talus {
 namespace {
 
@@ -201,17 +203,22 @@ PetscErrorCode Body<dim>::migrate(const std::vector<std::pair<int, int>> &leaver
 }
 
 template <int dim>
-PetscErrorCode Body<dim>::serialize(Archive &archive) {
+PetscErrorCode Body<dim>::serialize(Archive &archive, const BackgroundMesh<dim> &mesh) {
   PetscFunctionBeginUser;
-  PetscInt count = arrays_.count;
-  archive.serialize("particles", count);
-  if (archive.reading()) PetscCall(resize(count));
+  std::vector<long long> cells;
+  for (int i = 0; i < arrays_.count; ++i) cells.push_back(mesh.global_cell[arrays_.cell[i]]);
+  const Archive::Rows particles = archive.rows("particles", Belongs::to_cells, cells);
+  if (archive.reading()) {
+    PetscCall(resize(static_cast<PetscInt>(cells.size())));
+    const LocalNumbers cell_of(mesh.global_cell);
+    for (int i = 0; i < arrays_.count; ++i) arrays_.cell[i] = cell_of(cells[i]);
+  }
   PetscCall(give_back());
   for (const FieldSpec &f : field_specs<dim>(law_, fluids_, face_count_)) {
+    if (std::string("cell") == f.name) continue;
     void *values;
     PetscCall(DMSwarmGetField(swarm_, f.name, nullptr, nullptr, &values));
-    const size_t size = f.type == PETSC_INT ? sizeof(PetscInt) : sizeof(double);
-    archive.serialize_bytes(f.name, values, size * f.components * count);
+    archive.column(particles, f.name, values, (f.type == PETSC_INT ? sizeof(PetscInt) : sizeof(double)) * f.components);
     PetscCall(DMSwarmRestoreField(swarm_, f.name, nullptr, nullptr, &values));
   }
   PetscCall(borrow());

@@ -83,8 +83,8 @@ class Body {
   /// Sends each leaver (particle, rank) away; collective, also for ranks without leavers. Afterwards the arrived
   /// particles are the last ones: `first_arrival` is the index of the first.
   PetscErrorCode migrate(const std::vector<std::pair<int, int>> &leavers, int *first_arrival);
-  /// All particles of this rank, with every field that is registered.
-  PetscErrorCode serialize(Archive &archive);
+  /// All particles of this rank, with every field that is registered, as rows of their cells.
+  PetscErrorCode serialize(Archive &archive, const BackgroundMesh<dim> &mesh);
 
  private:
   PetscErrorCode borrow();     ///< takes the arrays from the swarm

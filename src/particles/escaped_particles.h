@@ -40,7 +40,10 @@ class EscapedParticles {
 
   const EscapedSums &sums() const { return sums_; }
   const std::vector<EscapedParticle<dim>> &of_this_rank() const { return list_; }
-  void serialize(Archive &archive) { archive.serialize("escaped particles", list_, sums_); }
+  void serialize(Archive &archive) {
+    archive.records("escaped particles", list_);
+    archive.serialize("sums of escaped particles", sums_);
+  }
 
  private:
   std::vector<EscapedParticle<dim>> list_;

@@ -87,6 +87,9 @@ struct TerrainSource {
   }
 };
 
+/// When the mesh is divided among the ranks in another way.
+enum class BalanceRanks { when_it_pays, never, always };
+
 struct MeshSource {
   std::string file;          ///< Gmsh .msh, 2.2 or 4.1, with physical groups
   std::string section;       ///< section, CSV or DXF, meshed by talus-mesh
@@ -97,6 +100,7 @@ struct MeshSource {
   std::vector<double> cuts;  ///< z at which regions of a 3D body from a section are parted [m]
   std::vector<RefineBox> refine;
   WhenOutside leaving_particles = WhenOutside::stop;  ///< particles that leave the mesh
+  BalanceRanks balance_ranks = BalanceRanks::when_it_pays;
   template <class Visitor>
   void fields(Visitor &&v) {
     v.text("file", file, "Gmsh mesh file (.msh, format 2.2 or 4.1) with physical groups, relative to the scene");
@@ -114,6 +118,13 @@ struct MeshSource {
     v.choice("leaving_particles", leaving_particles, {{"stop", WhenOutside::stop}, {"remove", WhenOutside::remove}},
              "what becomes of particles that leave the mesh: the run ends with the place, or they are taken out of the "
              "simulation and entered in escaped.csv; may be changed with --resume");
+    v.choice("balance_ranks", balance_ranks,
+             {{"when_it_pays", BalanceRanks::when_it_pays},
+              {"never", BalanceRanks::never},
+              {"always", BalanceRanks::always}},
+             "when the mesh is divided among the ranks of a run in another way, because the soil has moved: once ranks "
+             "have waited for others longer than that takes, never, or at every remap, which shows that the answer does "
+             "not depend on it; may be changed with --resume");
   }
 };
 

@@ -38,9 +38,24 @@ IntegratorSettings choose_integrator(const Scene &scene) {
   return settings;
 }
 
+namespace {
+
+int ranks_of(MPI_Comm comm) {
+  int ranks;
+  MPI_Comm_size(comm, &ranks);
+  return ranks;
+}
+
+}  // namespace
+
 template <int dim>
 Dynamics<dim>::Dynamics(World<dim> &world, Clock &clock, const IntegratorSettings &settings)
-    : world_(world), clock_(clock), settings_(settings), integrator_(make_integrator(settings)) {
+    : world_(world),
+      clock_(clock),
+      settings_(settings),
+      integrator_(make_integrator(settings)),
+      balancing_(world.scene.mesh.balance_ranks, ranks_of(world.comm), world.mesh.report().cells,
+                 world.mesh.divisible()) {
   check_fixed_step();
 }
 
@@ -72,6 +87,7 @@ Verdict Dynamics<dim>::cycle(double until) {
   require(step(until));
   const Verdict verdict = agree();
   if (verdict.broken) refuse_broken();
+  just_remapped_ = remap_due_;
   require(remap_due_ ? remap() : world_.motion->update_pore_pressures(clock_.time));
   return verdict;
 }
@@ -144,19 +160,21 @@ Verdict Dynamics<dim>::agree() {
   constexpr double elsewhere = std::numeric_limits<double>::lowest();
   Vec<3> watched{};
   if (watch && !watch(&watched)) watched.fill(elsewhere);
-  double mine[8] = {motion.moved(),
+  double mine[9] = {motion.moved(),
                     1 / motion.step_ratio(),
                     motion.smallest_volume_ratio() <= 0.2 ? 1. : 0.,
                     !(motion.speed_squared() < 1e300) ? 1. : 0.,
                     interrupted ? 1. : 0.,
                     watched[0],
                     watched[1],
-                    watched[2]};
+                    watched[2],
+                    world_.work_of_rank()};
   for (const auto &body : world_.bodies)
     if (!law_trouble(body->law()).text.empty()) mine[3] = 1;
   if (!world_.scene.function_fault().empty()) mine[3] = 1;
-  double all[8];
-  MPI_Allreduce(mine, all, 8, MPI_DOUBLE, MPI_MAX, world_.comm);
+  double all[9];
+  MPI_Allreduce(mine, all, 9, MPI_DOUBLE, MPI_MAX, world_.comm);
+  work_of_rank_ = mine[8], balancing_.step(all[8]);
   if (watch && all[5] == elsewhere)
     throw RunFailure(
         "the particle that this stage watches for failure has left the mesh; watch another place (failure_point), or "
@@ -193,7 +211,9 @@ PetscErrorCode Dynamics<dim>::remap() {
     PetscCall(world_.sort());
     since_sort_ = 0;
   }
-  PetscCall(world_.check_conservation());
+  double work;
+  PetscCall(world_.check_conservation(work_of_rank_, &work));
+  balancing_.remap(work);
   PetscCall(PetscTime(&start));
   PetscCall(world_.motion->begin(clock_.time));
   PetscCall(PetscTime(&end));
@@ -205,6 +225,8 @@ template <int dim>
 void Dynamics<dim>::serialize(Archive &archive) {
   notice_release();
   archive.serialize("dynamics", remaps_, since_sort_, critical_step_, shrink_, omega_max_, omega_step_, remap_due_);
+  balancing_.serialize(archive);
+  if (archive.reading()) integrator_ = make_integrator(settings_);  // the nodes are others
   integrator_->serialize(archive);
   known_releases_ = world_.releases();
 }

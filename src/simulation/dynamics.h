@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 
+#include "simulation/balancing.h"
 #include "simulation/world.h"
 #include "solvers/integrators.h"
 
@@ -41,6 +42,10 @@ class Dynamics {
 
   bool fixed_step() const { return step_rule(settings_).fixed > 0; }
   long long remaps() const { return remaps_; }
+  /// Was the last step followed by a remap?
+  bool just_remapped() const { return just_remapped_; }
+  Balancing &balancing() { return balancing_; }
+  const Balancing &balancing() const { return balancing_; }
   const StepStatistics &statistics() const { return integrator_->statistics(); }
   void serialize(Archive &archive);
 
@@ -65,7 +70,9 @@ class Dynamics {
   double shrink_ = 1;         ///< of the critical step since then
   double omega_max_ = 0;      ///< of the filled mesh, at step omega_step_ [1/s]
   long long omega_step_ = -1, remaps_ = 0, since_sort_ = 0, known_releases_ = 0;
-  bool remap_due_ = false;
+  bool remap_due_ = false, just_remapped_ = false;
+  double work_of_rank_ = 0;  ///< in the last step
+  Balancing balancing_;
 };
 
 }  // namespace talus

@@ -95,6 +95,11 @@ void Recorder<dim>::append(std::unique_ptr<ResultsFolder> folder) {
   of_.lines.append(options_.directory, last_row_time_);
   results_->progress.resume(of_.clock.time, of_.clock.steps);
   results_->progress.note("resumed at t = " + rounded(of_.clock.time) + " s, step " + std::to_string(of_.clock.steps));
+  if (!passed_over_.empty())
+    results_->progress.note("warning: " + passed_over_ + "; the run goes on from the checkpoint before it");
+  if (written_ranks_ > 0)
+    results_->progress.note("before it ran on " + std::to_string(written_ranks_) + (written_ranks_ == 1 ? " rank" : " ranks") +
+                            ": the answer differs by round-off from that of a run on the same number");
   for (const std::string &key : changed_) results_->progress.note("since then the scene has another " + key);
   if (!has_table)
     results_->progress.note("warning: history.csv was missing; it begins here");
@@ -111,8 +116,7 @@ template <int dim>
 void Recorder<dim>::close() {
   if (!results_) return;
   note_steps();
-  if (largest_imbalance_ > 0)
-    results_->progress.note("largest imbalance of particles among ranks: " + rounded(largest_imbalance_));
+  note_sharing();
   results_->progress.finish();
   if (!options_.pictures) return;
   int rank, drawn = 1;
@@ -233,21 +237,54 @@ void Recorder<dim>::write_escaped() {
   written_escaped_ = escaped.sums().particles;
 }
 
-/// Particles of the rank that has most, over the mean of all ranks: says it when the run starts or is resumed, and
-/// remembers the largest. Collective.
+/// Work of the rank that has most, over the mean of all ranks: says it when the run starts or is resumed. Collective.
 template <int dim>
-void Recorder<dim>::watch_imbalance() {
-  double mine = 0, most;
+void Recorder<dim>::note_imbalance() {
   int ranks;
-  for (const auto &body : of_.world.bodies) mine += body->particles().count;
   MPI_Comm_size(of_.world.comm, &ranks);
-  MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE, MPI_MAX, of_.world.comm);
-  if (ranks == 1 || most == 0) return;
-  const double imbalance = most * ranks / static_cast<double>(of_.world.particle_count);
-  if (largest_imbalance_ == 0 && results_)
-    results_->progress.note("particles are shared among " + std::to_string(ranks) + " ranks with imbalance " +
-                            rounded(imbalance) + " (those of the rank that has most, over the mean)");
-  largest_imbalance_ = std::max(largest_imbalance_, imbalance);
+  if (ranks == 1 || imbalance_at_start_ > 0 || of_.world.particle_count == 0) return;
+  double work[2] = {of_.world.work_of_rank(), of_.world.work_of_rank()};
+  MPI_Allreduce(MPI_IN_PLACE, &work[0], 1, MPI_DOUBLE, MPI_MAX, of_.world.comm);
+  MPI_Allreduce(MPI_IN_PLACE, &work[1], 1, MPI_DOUBLE, MPI_SUM, of_.world.comm);
+  imbalance_at_start_ = work[0] * ranks / work[1];
+  std::string text = "particles are shared among " + std::to_string(ranks) + " ranks with imbalance " +
+                     rounded(imbalance_at_start_) + " (work of the rank that has most, over the mean)";
+  if (of_.world.mesh.heaviest_patch() > 0.05)
+    text += "; patches of cells stay whole, and the heaviest is " + rounded(of_.world.mesh.heaviest_patch()) +
+            " of the mean: a finer mesh or fewer ranks would be better balanced";
+  if (results_) results_->progress.note(text);
+}
+
+template <int dim>
+void Recorder<dim>::note_balancing(double expected) {
+  const Balancing &balancing = of_.dynamics.balancing();
+  constexpr long long told = 20;  // at which the log stops to tell each of them
+  if (!results_ || balancing.count() > told) return;
+  std::ostringstream text;
+  text.precision(3);
+  text << "the mesh was divided among the ranks in another way: imbalance " << balancing.imbalance() << " before, "
+       << expected << " now";
+  if (balancing.count() == told) text << "; further times are not told";
+  results_->progress.note(text.str());
+}
+
+/// How the work was shared among the ranks, for the log.
+template <int dim>
+void Recorder<dim>::note_sharing() {
+  const Balancing &balancing = of_.dynamics.balancing();
+  if (imbalance_at_start_ == 0) return;
+  std::ostringstream text;
+  text.precision(3);
+  text << "imbalance of ranks: " << imbalance_at_start_ << " at the start, "
+       << std::max(imbalance_at_start_, balancing.highest()) << " at most";
+  if (balancing.count() > 0) {
+    text << "; the mesh was divided in another way " << balancing.count()
+         << (balancing.count() == 1 ? " time" : " times") << ", in " << balancing.seconds() << " s";
+    if (balancing.saved() > 0)
+      text << ", which saved about " << 100 * balancing.saved() / (1 + balancing.saved())
+           << " % of the time of steps (by their work, had the imbalance lasted)";
+  }
+  results_->progress.note(text.str());
 }
 
 /// What the integrator did, for the log.
@@ -330,7 +367,7 @@ void Recorder<dim>::write_history() {
   std::vector<double> row = point_rows_.at(of_.clock.time, of_.statics);
   of_.lines.write(of_.clock, of_.statics);
   last_row_step_ = of_.clock.steps, last_row_time_ = of_.clock.time;
-  watch_imbalance();
+  note_imbalance();
   double potential = 0;
   for (const auto &body : of_.world.bodies) {
     const ParticleArrays<dim> &p = body->particles();
@@ -440,9 +477,17 @@ void Recorder<dim>::write_snapshot() {
 
 template <int dim>
 CheckpointHeader Recorder<dim>::checkpoint_header(int stage) const {
-  CheckpointHeader header{
-      program, scene_.root ? scene_.root->values() : "", of_.clock.time, of_.clock.steps, checkpoints_ + 1, stage, 0};
+  CheckpointHeader header;
+  header.program = program, header.scene = scene_.root ? scene_.root->values() : "", header.stage = stage;
+  header.time = of_.clock.time, header.step = of_.clock.steps, header.number = checkpoints_ + 1;
   MPI_Comm_size(of_.world.comm, &header.ranks);
+  const BackgroundMesh<dim> &mesh = of_.world.mesh;
+  header.mesh = mesh.fingerprint();
+  header.partition.resize(header.ranks);
+  const unsigned long long mine = mesh.partition_fingerprint();
+  MPI_Allgather(&mine, 1, MPI_UNSIGNED_LONG_LONG, header.partition.data(), 1, MPI_UNSIGNED_LONG_LONG, of_.world.comm);
+  for (const Cut &cut : mesh.cuts())
+    header.cuts.insert(header.cuts.end(), {cut.place, static_cast<double>(cut.axis), static_cast<double>(cut.patch)});
   return header;
 }
 
@@ -464,11 +509,12 @@ std::string tie_of(const std::string &table) {
 /// to the checkpoint either none has left, or they have been taken out), the search for factors of safety, and how long
 /// stages last that have not ended.
 template <int dim>
-CheckpointHeader Recorder<dim>::check_checkpoint() {
+Checkpoint Recorder<dim>::find_checkpoint() {
   const std::string refusal = "the run in " + options_.directory + " cannot be resumed: ";
-  CheckpointHeader found, mine = checkpoint_header(-1);
+  Checkpoint checkpoint;
+  const CheckpointHeader &found = checkpoint.header, mine = checkpoint_header(-1);
   try {
-    found = read_checkpoint_header(of_.world.comm, options_.directory);
+    checkpoint = read_checkpoint(of_.world.comm, options_.directory);
   } catch (const std::invalid_argument &error) {
     throw SceneError(refusal + error.what() + "; run the scene without --resume" +
                      (std::filesystem::exists(options_.directory + "/history.csv")
@@ -483,19 +529,23 @@ CheckpointHeader Recorder<dim>::check_checkpoint() {
     const bool listed = words.size() > 1 && words[0] == "stage";
     const int stage = listed ? std::stoi(words[1]) : 0;
     const bool result = words[0] == "title" || words[0] == "factor_of_safety" || path == "mesh.leaving_particles" ||
+                        path == "mesh.balance_ranks" ||
                         (words[0] == "output" && words.size() > 1 && words[1] != "point");
     const bool to_come = listed && (stage > found.stage || (stage == found.stage && words.back() == "duration"));
     if (!result && !to_come)
       scene_.complain(path, "is not what it was when the run in " + options_.directory + " began, and " +
                                 tie_of(words[0]) +
                                 "; with --resume only title, [output] without its points, [factor_of_safety], "
-                                "mesh.leaving_particles, the duration of the present stage and the stages after it "
+                                "mesh.leaving_particles, mesh.balance_ranks, the duration of the present stage and the stages after it "
                                 "may change (repeat the --set of that run)");
   }
-  if (found.ranks != mine.ranks)
-    throw SceneError(refusal + "it ran with -n " + std::to_string(found.ranks) + ", not with -n " +
-                     std::to_string(mine.ranks) + "; its state is parted among the ranks");
-  return found;
+  if (found.ranks != mine.ranks) written_ranks_ = found.ranks;
+  return checkpoint;
+}
+
+template <int dim>
+void Recorder<dim>::take_checkpoint(const Checkpoint &found) {
+  checkpoints_ = found.last_number, checkpoint_time_ = found.header.time, passed_over_ = found.passed_over;
 }
 
 template <int dim>

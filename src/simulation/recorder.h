@@ -56,6 +56,8 @@ class Recorder {
   /// Says what happened, now or at other times.
   void note(const std::string &text);
   void note(const std::string &text, double time, double load_time);
+  /// Says that the mesh was divided in another way, which is expected to bring this imbalance.
+  void note_balancing(double expected);
   /// Ends the run: throws RunError with the cause, where the run stood and what is left of it; BrokenOff if pictures of
   /// that are wanted.
   [[noreturn]] void fail(const std::string &cause);
@@ -65,10 +67,11 @@ class Recorder {
 
   CheckpointHeader checkpoint_header(int stage) const;
   void write_checkpoint(int stage, const Archive &state);
-  /// Reads the header of the run in the directory and refuses a run that this one cannot go on with; notes which keys
-  /// have changed. Collective.
-  CheckpointHeader check_checkpoint();
-  void take_checkpoint(const CheckpointHeader &found) { checkpoints_ = found.number, checkpoint_time_ = found.time; }
+  /// Reads the checkpoint of the run in the directory and refuses a run that this one cannot go on with; notes which
+  /// keys have changed. Collective.
+  Checkpoint find_checkpoint();
+  /// Goes on with it.
+  void take_checkpoint(const Checkpoint &found);
   void serialize(Archive &archive);
 
   const HistoryTable &history() const { return history_; }
@@ -88,7 +91,8 @@ class Recorder {
   void write_model() const;
   void name_columns();
   RunRow<dim> run_row() const;
-  void watch_imbalance();
+  void note_imbalance();
+  void note_sharing();
   void note_steps();
   void note_escaped();
   void write_escaped();
@@ -112,7 +116,9 @@ class Recorder {
   std::vector<std::string> changed_;  ///< keys of the scene that are others than before the run was resumed
   double told_escaped_ = 0;           ///< particles that had left when the log last said so
   double written_escaped_ = -1;       ///< particles in escaped.csv; -1: not known
-  double largest_imbalance_ = 0;      ///< at rows of the history since this program began or resumed the run
+  std::string passed_over_;           ///< what was wrong with a later checkpoint than the one that the run goes on from
+  int written_ranks_ = 0;             ///< on which it ran before, if these are others
+  double imbalance_at_start_ = 0;     ///< of particles; 0: not looked at yet
   long long last_row_step_ = -1, checkpoints_ = 0;
   long long snapshots_ = 0;                           ///< that the run has written
   double last_row_time_ = -1, checkpoint_time_ = -1;  ///< [s]

@@ -2,6 +2,9 @@
 // that neither a checkpoint nor an interruption changes the answer.
 #include "simulation/run.h"
 
+#include <petsctime.h>
+
+#include <algorithm>
 #include <filesystem>
 
 #include "mesh_source.h"
@@ -9,13 +12,31 @@
 #include "simulation/start_from.h"
 
 namespace talus {
+namespace {
+
+/// How the mesh was divided when the checkpoint was written with which a run goes on; nothing where that cannot be
+/// known.
+Cuts cuts_to_resume(MPI_Comm comm, const RunOptions &options) {
+  Cuts cuts;
+  if (!options.resume) return cuts;
+  try {
+    const CheckpointHeader header = read_checkpoint(comm, options.directory).header;
+    for (std::size_t k = 0; k + 2 < header.cuts.size(); k += 3)
+      cuts.push_back({header.cuts[k], static_cast<long long>(header.cuts[k + 1]),
+                      static_cast<long long>(header.cuts[k + 2])});
+  } catch (const std::invalid_argument &) {  // of which `resume` complains
+  }
+  return cuts;
+}
+
+}  // namespace
 
 template <int dim>
 Run<dim>::Run(MPI_Comm comm, const Scene &of, const RunOptions &with, const std::string &mesh_file)
     : scene(of),
       options(with),
       integrator(choose_integrator(of)),
-      world(comm, of, with.plex, mesh_file),
+      world(comm, of, with.plex, mesh_file, cuts_to_resume(comm, with)),
       points(world),
       lines(world),
       dynamics((world.take_out_later_bodies(), world), clock, integrator),
@@ -56,13 +77,8 @@ void Run<dim>::reset_displacement() {
 template <int dim>
 PetscErrorCode Run<dim>::serialize_state(Archive &archive) {
   PetscFunctionBeginUser;
-  unsigned long long mesh = world.mesh_fingerprint();
-  archive.serialize("mesh", mesh);
-  int differs = mesh != world.mesh_fingerprint();
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &differs, 1, MPI_INT, MPI_MAX, world.comm));
-  if (differs) throw std::invalid_argument("its mesh was another one; has the section or mesh file changed?");
   clock.serialize(archive);
-  archive.serialize("stage", progress);
+  archive.serialize("stage", progress.number, progress.begin, progress.met, progress.told, progress.resets);
   PetscCall(world.serialize(archive));
   statics.serialize(archive);
   PetscFunctionReturn(0);
@@ -73,8 +89,9 @@ template <int dim>
 PetscErrorCode Run<dim>::serialize(Archive &archive) {
   PetscFunctionBeginUser;
   PetscCall(serialize_state(archive));
-  if (archive.reading()) stop = make_stop_criterion<dim>(stage());
-  stop->serialize(archive);
+  const bool staged = progress.number >= 0;  // a host program steps without stages
+  if (archive.reading() && staged) stop = make_stop_criterion<dim>(stage());
+  if (staged) stop->serialize(archive);
   recorder.serialize(archive);
   dynamics.serialize(archive);
   PetscFunctionReturn(0);
@@ -89,16 +106,60 @@ void Run<dim>::write_checkpoint() {
 }
 
 template <int dim>
+Holdings Run<dim>::holdings() const {
+  Holdings mine{world.mesh.global_cell, world.mesh.global_node};
+  if (std::any_of(scene.stage.begin(), scene.stage.end(), [](const Stage &s) { return is_static(s.kind); })) {
+    const std::vector<long long> edges = world.mesh.global_edges();  // which have nodes of finite elements
+    mine.points.insert(mine.points.end(), edges.begin(), edges.end());
+  }
+  return mine;
+}
+
+template <int dim>
+Archive Run<dim>::state_of(Checkpoint found) const {
+  if (found.header.mesh != world.mesh.fingerprint())
+    throw std::invalid_argument("its mesh was another one; has the section or mesh file changed?");
+  int rank, ranks;
+  MPI_Comm_rank(world.comm, &rank), MPI_Comm_size(world.comm, &ranks);
+  int same = found.header.ranks == ranks && found.header.partition[rank] == world.mesh.partition_fingerprint();
+  MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_MIN, world.comm);
+  if (same) return std::move(found.parts.front());
+  return deal(world.comm, found.parts, holdings());
+}
+
+template <int dim>
+void Run<dim>::balance_ranks() {
+  Balancing &balancing = dynamics.balancing();
+  if (!dynamics.just_remapped() || !balancing.due()) return;
+  PetscLogDouble start, end;
+  require(PetscTime(&start));
+  double expected;
+  const Cuts cuts = world.mesh.balanced_cuts(world.work_of_cells(), &expected);
+  if (!balancing.worth(expected)) return;
+  Archive state;
+  require(serialize(state));
+  world.divide(cuts);
+  std::vector<Archive> part;
+  part.emplace_back(state.bytes());
+  state = deal(world.comm, part, holdings());
+  part.clear();
+  require(serialize(state));
+  require(PetscTime(&end));
+  balancing.done(end - start);
+  recorder.note_balancing(expected);
+}
+
+template <int dim>
 void Run<dim>::resume() {
-  const CheckpointHeader found = recorder.check_checkpoint();
+  Checkpoint found = recorder.find_checkpoint();
   auto folder = std::make_unique<ResultsFolder>(world.comm, options.directory, FolderUse::resume);
+  recorder.take_checkpoint(found);
   try {
-    Archive archive = read_checkpoint(world.comm, options.directory, found);
+    Archive archive = state_of(std::move(found));
     require(serialize(archive));
   } catch (const std::invalid_argument &error) {
     throw SceneError("the run in " + options.directory + " cannot be resumed: " + error.what());
   }
-  recorder.take_checkpoint(found);
   recorder.append(std::move(folder));
 }
 
@@ -110,12 +171,14 @@ void Run<dim>::start_from_other_run() {
   if (!options.directory.empty() && std::filesystem::equivalent(folder, options.directory, missing))
     scene.complain("start_from.folder", "must not be the folder of this run's own results; choose another one with -o");
   try {
-    const CheckpointHeader found = read_checkpoint_header(world.comm, folder);
-    const std::vector<std::string> changed = check_start(scene, found, recorder.checkpoint_header(-1));
+    Checkpoint found = read_checkpoint(world.comm, folder);
+    const std::vector<std::string> changed = check_start(scene, found.header, recorder.checkpoint_header(-1));
     const std::vector<char> varies = world.strength_varies();
     for (std::size_t b = 0; b < varies.size(); ++b)
       if (varies[b]) check_strength_by_place(scene, scene.body[b].name, changed);
-    Archive archive = read_checkpoint(world.comm, folder, found);
+    if (!found.passed_over.empty())
+      start_notes.push_back("warning: " + found.passed_over + "; the checkpoint before it is taken");
+    Archive archive = state_of(std::move(found));
     try {
       require(serialize_state(archive));
     } catch (const std::runtime_error &error) {

@@ -1,5 +1,6 @@
 #pragma once
 /// The parts of a run, which its stages act on, and how far it is. None of the parts knows this one.
+#include "output/deal.h"
 #include "simulation/recorder.h"
 #include "simulation/stops/stop_criterion.h"
 
@@ -34,6 +35,9 @@ struct Run {
   void resume();
   /// Displacements, velocities and plastic strain are zero from now on.
   void reset_displacement();
+  /// Divides the mesh among the ranks in another way, if soil has moved so far that it is worth it: the state goes
+  /// through memory as it would through a checkpoint that is resumed on another partition. Collective.
+  void balance_ranks();
   /// Ends the run with checkpoint, history and snapshot if a signal has asked for it.
   void heed(const Verdict &verdict);
 
@@ -55,6 +59,10 @@ struct Run {
   /// Takes the state of another run's last checkpoint (scene.start_from). Throws SceneError where that cannot be.
   /// Collective.
   void start_from_other_run();
+  /// The state of this rank, dealt out to the present partition if it was saved on another one. Throws
+  /// std::invalid_argument where the mesh was another one. Collective.
+  Archive state_of(Checkpoint found) const;
+  Holdings holdings() const;
   PetscErrorCode serialize_state(Archive &archive);
   PetscErrorCode serialize(Archive &archive);
 };

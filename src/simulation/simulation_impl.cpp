@@ -53,7 +53,9 @@ template <int dim>
 void Simulation<dim>::step_until(double t) {
   told([&] {
     run_.dynamics.set_loading(run_.scene.stage.front(), run_.clock.time);
-    run_.heed(run_.dynamics.cycle(t));
+    const Verdict verdict = run_.dynamics.cycle(t);
+    run_.balance_ranks();
+    run_.heed(verdict);
   });
 }
 

@@ -92,9 +92,6 @@ std::vector<std::string> check_start(const Scene &scene, const CheckpointHeader 
         words[0] == "integrator" || words[0] == "gravity" || words[0] == "quasi_static")
       others.push_back(path);
   }
-  if (found.ranks != mine.ranks)
-    throw std::invalid_argument("it ran with -n " + std::to_string(found.ranks) + ", not with -n " +
-                                std::to_string(mine.ranks) + "; its state is parted among the ranks");
   if (found.stage < 0) throw std::invalid_argument("it has no state, since its first stage did not begin");
   return others;
 }

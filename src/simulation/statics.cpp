@@ -203,7 +203,8 @@ void Statics<dim>::save_seeped_pressure(const std::string &directory) const {
 template <int dim>
 void Statics<dim>::serialize(Archive &archive) {
   bool begun = made();
-  archive.serialize("statics", begun, current_, moved_since_, seeped_cells_);
+  archive.serialize("statics", begun, current_, moved_since_);
+  archive.records("pressure of seepage", seeped_cells_);
   std::string lost;
   for (const std::string &name : lost_stages) lost += name + '\n';
   archive.serialize("lost stages", lost);

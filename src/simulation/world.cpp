@@ -14,11 +14,11 @@
 namespace talus {
 
 template <int dim>
-World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &mesh_file)
+World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &mesh_file, const Cuts &cuts)
     : scene(of), phases(phase_traits(of.phases)), comm(world), pressure(of) {
   read_laws();
   std::vector<Source> sources = read_sources();
-  read_mesh(plex, mesh_file);
+  read_mesh(plex, mesh_file, cuts);
   check_bodies();
   find_strengths();
   check_boundaries(sources);
@@ -27,9 +27,7 @@ World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &m
   pressure.set_regions(bodies_of_cells(mesh, scene));
   set_pore_pressure_ratios();
   seed_bodies();
-  for (const auto &source : conditions.sources())  // from now on: soil has to be drawn inside
-    if (source.kind.keeps_soil_inside())
-      for (const std::string &group : source.groups) mesh.close(group);
+  close_bases();  // from now on: soil has to be drawn inside
   set_loading(scene.stage.front(), 0, Clock{});  // under which the first state is gathered
   if (const std::string fault = function_fault(); !fault.empty()) throw SceneError(fault);
 }
@@ -106,7 +104,7 @@ std::vector<typename World<dim>::Source> World<dim>::read_sources() {
 }
 
 template <int dim>
-void World<dim>::read_mesh(DM plex, const std::string &mesh_file) {
+void World<dim>::read_mesh(DM plex, const std::string &mesh_file, const Cuts &cuts) {
   std::vector<std::pair<std::string, double>> weights;
   for (const BodySource &body : scene.body)
     for (const std::string &region : body.region) weights.emplace_back(region, particles_per_cell<dim>(body) + 1);
@@ -114,7 +112,7 @@ void World<dim>::read_mesh(DM plex, const std::string &mesh_file) {
     mesh = BackgroundMesh<dim>::adopt(plex);
   else
     try {
-      mesh = BackgroundMesh<dim>::read(comm, mesh_file, weights);
+      mesh = BackgroundMesh<dim>::read(comm, mesh_file, weights, cuts);
     } catch (const std::invalid_argument &error) {
       scene.complain(!scene.mesh.file.empty()      ? "mesh.file"
                      : !scene.mesh.section.empty() ? "mesh.section"
@@ -195,18 +193,59 @@ int World<dim>::id_stride() const {
   return stride;
 }
 
+/// Cells in the regions of some bodies.
+template <int dim>
+std::vector<char> World<dim>::cells_of_bodies(const std::function<bool(size_t body)> &which) const {
+  std::vector<char> cells(mesh.cell_count(), 0);
+  for (size_t b = 0; b < scene.body.size(); ++b)
+    for (const std::string &region : scene.body[b].region)
+      for (int cell : mesh.region(region)) cells[cell] = which(b);
+  return cells;
+}
+
+/// What bodies need of the mesh as it is divided now.
+template <int dim>
+void World<dim>::settle_bodies() {
+  conditions.surface_loads().share(mesh, cells_of_bodies([](size_t) { return true; }));
+  critical_.clear();
+  for (size_t b = 0; b < scene.body.size(); ++b) {
+    const BodySource &source = scene.body[b];
+    const double density = soil_density(source, Vec<dim>{}, 0);
+    wave_speed_ = std::max(wave_speed_, std::sqrt(constrained_modulus(laws[b]) / density));
+    PoreStiffness pores{source.porosity, {}};
+    if (phases.liquid) pores.fluids.push_back({scene.water.density, scene.water.bulk_modulus});
+    if (phases.gas) pores.fluids.push_back({scene.gas.density, scene.gas.bulk_modulus});
+    critical_.emplace_back(mesh, laws[b], density, pores);
+  }
+}
+
+template <int dim>
+void World<dim>::close_bases() {
+  for (const auto &source : conditions.sources())
+    if (source.kind.keeps_soil_inside())
+      for (const std::string &group : source.groups) mesh.close(group);
+}
+
+template <int dim>
+void World<dim>::make_motion() {
+  const double relaxation = scene.transfer.relaxation * mesh.report().smallest_altitude / wave_speed_;
+  motion = make_soil_motion(MotionParts<dim>{mesh, bodies, conditions, scene, pressure, relaxation, seeded_mass_,
+                                             seeded_particles_});
+}
+
+/// Ways of a wave while friction adapts, docs/theory (6.2): in units of the altitude, and across elastic soil and back.
+template <int dim>
+void World<dim>::set_friction_delay() {
+  constexpr double shortest_way = 10, across_and_back = 2;
+  conditions.set_friction_delay(
+      std::max(shortest_way * mesh.report().smallest_altitude, across_and_back * depth_on_bases_) / wave_speed_);
+}
+
 template <int dim>
 void World<dim>::seed_bodies() {
   const int stride = id_stride();
-  double wave_speed = 0;
-  std::vector<char> filled(mesh.cell_count(), 0), always(filled);  // at some time, from the start to the end
-  std::vector<char> elastic(filled);                               // by soil that never yields
-  for (size_t b = 0; b < scene.body.size(); ++b)
-    for (const std::string &region : scene.body[b].region)
-      for (int cell : mesh.region(region))
-        filled[cell] = 1, always[cell] = !comes_or_goes(scene.body[b]), elastic[cell] = never_fails(laws[b]);
   SurfaceLoads<dim> &loads = conditions.surface_loads();
-  loads.share(mesh, filled);
+  settle_bodies();
   movers_.resize(scene.body.size()), outside_.resize(scene.body.size());
   for (size_t b = 0; b < scene.body.size(); ++b) {
     const BodySource &source = scene.body[b];
@@ -222,12 +261,6 @@ void World<dim>::seed_bodies() {
     if (totals[0] == 0) scene.complain(path, "is empty: its regions have no cells");
     check_seeded(body, path);
     particle_count += static_cast<long long>(totals[0]), total_mass += totals[1];
-    const double density = soil_density(source, Vec<dim>{}, 0);
-    wave_speed = std::max(wave_speed, std::sqrt(constrained_modulus(body.law()) / density));
-    PoreStiffness pores{source.porosity, {}};
-    if (phases.liquid) pores.fluids.push_back({scene.water.density, scene.water.bulk_modulus});
-    if (phases.gas) pores.fluids.push_back({scene.gas.density, scene.gas.bulk_modulus});
-    critical_.emplace_back(mesh, body.law(), density, pores);
     if (!source.displacement.empty())
       for (int i = 0; i < body.particles().count; ++i) movers_[b].push_back(i);
     require(relocate<dim>(body, mesh, movers_[b], outside_[b]));
@@ -241,20 +274,17 @@ void World<dim>::seed_bodies() {
   if (idle >= 0)
     scene.complain("boundary." + conditions.sources()[idle].name + ".kind",
                    "is a load on a face without soil behind it at the start; name a group on the surface of a body");
-  const int cancelled = loads.find_cancelled(mesh, always);
+  const int cancelled =  // by soil that is there from the start to the end
+      loads.find_cancelled(mesh, cells_of_bodies([&](size_t b) { return !comes_or_goes(scene.body[b]); }));
   if (cancelled >= 0)
     scene.complain("boundary." + conditions.sources()[cancelled].name + ".kind",
                    "is a pressure on a face inside the soil, where it cancels: it pushes with the same force on both "
                    "sides. Draw a crack as a gap in the outline of the section, and name a wall of it");
-  const double relaxation = scene.transfer.relaxation * mesh.report().smallest_altitude / wave_speed;
-  // ways of a wave while friction adapts, docs/theory (6.2): in units of the altitude, and across elastic soil and back
-  constexpr double shortest_way = 10, across_and_back = 2;
-  double depth;
-  require(conditions.depth_on_bases(mesh, elastic, &depth));
-  conditions.set_friction_delay(std::max(shortest_way * mesh.report().smallest_altitude, across_and_back * depth) /
-                                wave_speed);
-  motion = make_soil_motion(
-      MotionParts<dim>{mesh, bodies, conditions, scene, pressure, relaxation, total_mass, particle_count});
+  require(conditions.depth_on_bases(mesh, cells_of_bodies([&](size_t b) { return never_fails(laws[b]); }),
+                                    &depth_on_bases_));
+  set_friction_delay();
+  seeded_mass_ = total_mass, seeded_particles_ = particle_count;
+  make_motion();
   require(motion->setup_pores(true));
 }
 
@@ -409,9 +439,9 @@ PetscErrorCode World<dim>::sort() {
 }
 
 template <int dim>
-PetscErrorCode World<dim>::check_conservation() const {
+PetscErrorCode World<dim>::check_conservation(double mine_too, double *sum) const {
   PetscFunctionBeginUser;
-  double mine[2]{}, all[2];
+  double mine[3]{0, 0, mine_too}, all[3];
   for (const auto &body : bodies) {
     const ParticleArrays<dim> &p = body->particles();
     mine[0] += p.count;
@@ -420,7 +450,8 @@ PetscErrorCode World<dim>::check_conservation() const {
     for (int i = 0; i < p.count; ++i) mass += p.mass[i];
     mine[1] += mass;
   }
-  PetscCallMPI(MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, comm));
+  PetscCallMPI(MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, comm));
+  *sum = all[2];
   const double round_off = 1e-12 * (total_mass + escaped.sums().mass);
   if (all[0] != static_cast<double>(particle_count) || std::abs(all[1] - total_mass) > round_off)
     throw RunFailure("particles were lost or doubled: " + std::to_string(static_cast<long long>(all[0])) +
@@ -549,14 +580,6 @@ std::vector<Vec<dim>> World<dim>::nodal_displacement() {
   return u;
 }
 
-/// Tells meshes and partitions apart.
-template <int dim>
-unsigned long long World<dim>::mesh_fingerprint() const {
-  unsigned long long sum = fingerprint(mesh.position.data(), mesh.position.size() * sizeof(Vec<dim>));
-  for (const Cell<dim> &cell : mesh.cells) sum = fingerprint(cell.node.data(), sizeof cell.node, sum);
-  return fingerprint(mesh.global_cell.data(), mesh.global_cell.size() * sizeof(long long), sum);
-}
-
 template <int dim>
 std::vector<char> World<dim>::strength_varies() const {
   std::vector<char> varies(bodies.size(), 0);
@@ -572,11 +595,58 @@ std::vector<char> World<dim>::strength_varies() const {
 template <int dim>
 PetscErrorCode World<dim>::serialize(Archive &archive) {
   PetscFunctionBeginUser;
-  archive.serialize("world", present, particle_count, total_mass);
+  double mass = seeded_mass_;
+  archive.serialize("world", present, particle_count, total_mass, mass, seeded_particles_, depth_on_bases_);
+  if (archive.reading() && mass != seeded_mass_) {  // by round-off, where the mesh was divided in another way then
+    const Loading<dim> loading = motion->loading;
+    seeded_mass_ = mass;
+    make_motion();
+    motion->loading = loading;
+    PetscCall(motion->setup_pores(false));
+  }
+  set_friction_delay();
   escaped.serialize(archive);
-  for (const auto &body : bodies) PetscCall(body->serialize(archive));
+  for (const auto &body : bodies) PetscCall(body->serialize(archive, mesh));
   PetscCall(motion->serialize(archive));
   PetscFunctionReturn(0);
+}
+
+template <int dim>
+double World<dim>::work_of_rank() const {
+  double work = motion->grid().cell_count();
+  for (const auto &body : bodies) work += body->particles().count;
+  return work;
+}
+
+template <int dim>
+std::vector<std::pair<long long, double>> World<dim>::work_of_cells() const {
+  std::vector<int> particles(mesh.cell_count(), 0);
+  for (const auto &body : bodies)
+    for (int i = 0; i < body->particles().count; ++i) ++particles[body->particles().cell[i]];
+  std::vector<std::pair<long long, double>> work;
+  for (int c = 0; c < mesh.cell_count(); ++c)
+    if (particles[c] > 0) work.emplace_back(mesh.global_cell[c], particles[c] + 1);
+  return work;
+}
+
+template <int dim>
+void World<dim>::divide(const Cuts &cuts) {
+  for (const auto &body : bodies) require(body->resize(0));
+  const Loading<dim> loading = motion->loading;
+  std::vector<Source> sources = conditions.sources();
+  const bool stand_ins = conditions.uses_stand_ins();
+  mesh = mesh.divided(cuts), comm = mesh.comm();
+  conditions = Conditions<dim>();
+  require(conditions.setup(mesh, std::move(sources)));
+  conditions.use_stand_ins(stand_ins), conditions.remember_slip(loading.softening);
+  pressure.set_regions(bodies_of_cells(mesh, scene));
+  set_pore_pressure_ratios();
+  settle_bodies();
+  close_bases();
+  set_friction_delay();
+  make_motion();
+  motion->loading = loading;
+  require(motion->setup_pores(false));
 }
 
 template class World<2>;

@@ -2,6 +2,7 @@
 /// What a scene is made of once it is built: mesh, bodies, laws, boundaries and the motion of the soil. It has no clock
 /// and no files: times are handed in.
 #include <array>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,8 +27,9 @@ class World {
   using Source = typename Conditions<dim>::Source;
 
   /// Reads the mesh from `mesh_file`, or takes that of a host program. Throws SceneError where the scene does not fit
-  /// it. The scene must outlive the world. Collective.
-  World(MPI_Comm world, const Scene &of, DM plex, const std::string &mesh_file);
+  /// it. The scene must outlive the world. The mesh is divided by `cuts` if these are for as many ranks, otherwise so
+  /// that all ranks get as many particles. Collective.
+  World(MPI_Comm world, const Scene &of, DM plex, const std::string &mesh_file, const Cuts &cuts = {});
   World(const World &) = delete;  // its parts know each other's place
 
   /// Bodies that no stage adds.
@@ -49,8 +51,8 @@ class World {
   long long releases() const { return releases_; }
   /// Orders particles by cell.
   PetscErrorCode sort();
-  /// Throws RunFailure where particles or mass were lost. Collective.
-  PetscErrorCode check_conservation() const;
+  /// Throws RunFailure where particles or mass were lost. Also sums up a number of each rank, at no cost. Collective.
+  PetscErrorCode check_conservation(double mine, double *sum) const;
   /// Changes between dashpots and the supports that stand in for them; what these bear stays on as a dead load.
   PetscErrorCode fix_dashpots(bool fixed, double time);
   /// Bodies come and go, and their particles with them.
@@ -68,14 +70,19 @@ class World {
   std::string function_fault() const;
   /// Of each body: do its particles on any rank have shares of a strength that varies with place? Collective.
   std::vector<char> strength_varies() const;
-  /// Tells meshes and partitions apart.
-  unsigned long long mesh_fingerprint() const;
   /// Position of a particle of this rank and its number, the nearest to a place, in words.
   std::string nearest_particle(const Vec<dim> &where) const;
   /// Of mesh nodes [m]; only nodes of the filled grid have one. Collective.
   std::vector<Vec<dim>> nodal_displacement();
   /// Bodies, motion and boundaries. Collective.
   PetscErrorCode serialize(Archive &archive);
+  /// Work that this rank has in a step, in particles: a filled cell is as much as one.
+  double work_of_rank() const;
+  /// Global numbers and work of the filled cells of this rank.
+  std::vector<std::pair<long long, double>> work_of_cells() const;
+  /// Divides the mesh among the ranks in another way. Particles, and all that nodes and cells hold, are gone: `serialize`
+  /// brings them back from a state that was dealt out to the new partition. Collective.
+  void divide(const Cuts &cuts);
 
   const Scene &scene;
   const PhaseTraits phases;
@@ -99,7 +106,7 @@ class World {
   void read_laws();
   void find_strengths();
   std::vector<Source> read_sources();
-  void read_mesh(DM plex, const std::string &mesh_file);
+  void read_mesh(DM plex, const std::string &mesh_file, const Cuts &cuts);
   void check_bodies() const;                                        // world_checks.cpp
   void check_boundaries(const std::vector<Source> &) const;         // world_checks.cpp
   void check_quasi_static_base(const std::string &path) const;      // world_checks.cpp
@@ -111,11 +118,20 @@ class World {
   int id_stride() const;
   bool comes_or_goes(const BodySource &) const;
   void set_pore_pressure_ratios();
+  std::vector<char> cells_of_bodies(const std::function<bool(size_t body)> &which) const;
   void seed_bodies();
+  void settle_bodies();
+  void close_bases();
+  void make_motion();
+  void set_friction_delay();
   void count_particles();
   PetscErrorCode take_out(double time);
 
   std::vector<CriticalStep<dim>> critical_;
+  double wave_speed_ = 0;            ///< the largest of the bodies [m/s]
+  double depth_on_bases_ = 0;        ///< of elastic soil at the start [m]
+  double seeded_mass_ = 0;           ///< of all ranks [kg]
+  long long seeded_particles_ = 0;   ///< of all ranks
   std::vector<std::vector<int>> movers_;   ///< [body] particles that left their cells at the last release ...
   std::vector<std::vector<int>> outside_;  ///< ... and those of them that left the mesh
   long long releases_ = 0;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/local_numbers.h"
+
 namespace talus {
 
 template <>
@@ -65,12 +67,34 @@ PetscErrorCode FilledGrid<dim>::sum(double *values, int width) {
 }
 
 template <int dim>
-void FilledGrid<dim>::serialize(Archive &archive) {
-  if (archive.reading()) clear();
-  archive.serialize("grid", node_count_, cell_count_, mesh_node, mass, position, mesh_cell, shape, mass_matrix,
-                    nodal_share, size, patch);
-  for (int i = 0; i < node_count(); ++i) compact_node_[mesh_node[i]] = i;
-  for (int c = 0; c < cell_count(); ++c) compact_cell_[mesh_cell[c]] = c;
+typename FilledGrid<dim>::Rows FilledGrid<dim>::serialize(Archive &archive) {
+  const BackgroundMesh<dim> &mesh = *mesh_;
+  std::vector<long long> nodes, cells;
+  for (int i = 0; i < node_count_; ++i) nodes.push_back(mesh.global_node[mesh_node[i]]);
+  for (int c = 0; c < cell_count_; ++c) cells.push_back(mesh.global_cell[mesh_cell[c]]);
+  const Rows rows{archive.rows("nodes of the grid", Belongs::to_points, nodes),
+                  archive.rows("cells of the grid", Belongs::to_cells, cells)};
+  if (archive.reading()) {
+    clear();
+    const LocalNumbers node_of(mesh.global_node), cell_of(mesh.global_cell);
+    for (const long long number : nodes) enter_node(node_of(number));
+    for (const long long number : cells) {
+      const int cell = cell_of(number);
+      compact_cell_[cell] = cell_count_, mesh_cell[cell_count_++] = cell;
+    }
+  }
+  archive.column(rows.nodes, "mass", mass);
+  archive.column(rows.nodes, "position", position);
+  archive.column(rows.cells, "shape", shape);
+  archive.column(rows.cells, "mass matrix", mass_matrix);
+  archive.column(rows.cells, "nodal share", nodal_share);
+  if (archive.reading())
+    for (int c = 0; c < cell_count_; ++c) {
+      const int cell = mesh_cell[c];
+      for (int k = 0; k <= dim; ++k) shape[c].node[k] = compact_node_[mesh.cells[cell].node[k]];
+      size[c] = element_size_[cell], patch[c] = mesh.patch[cell];
+    }
+  return rows;
 }
 
 template class FilledGrid<2>;

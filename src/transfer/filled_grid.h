@@ -48,8 +48,12 @@ class FilledGrid {
   void complete();
   /// Adds up `width` doubles per compact node over the ranks that share the node; collective.
   PetscErrorCode sum(double *values, int width);
+  /// Rows of a checkpoint for the filled nodes and cells, by compact number.
+  struct Rows {
+    Archive::Rows nodes, cells;
+  };
   /// Saves or loads nodes and cells with their fields.
-  void serialize(Archive &archive);
+  Rows serialize(Archive &archive);
 
   int node_count() const { return node_count_; }
   int cell_count() const { return cell_count_; }

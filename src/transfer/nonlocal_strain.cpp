@@ -188,8 +188,16 @@ void NonlocalStrain<dim>::restore(const PointSet &points, double *history) const
 }
 
 template <int dim>
-void NonlocalStrain<dim>::serialize(Archive &archive) {
-  archive.serialize("nonlocal strain", volume_, gradient_, mass_, over_diagonal_, average_, excess_, own_, seen_);
+void NonlocalStrain<dim>::serialize(Archive &archive, const typename FilledGrid<dim>::Rows &grid,
+                                    const Archive::Rows &points) {
+  archive.column(grid.cells, "volume of nonlocal strain", volume_);
+  archive.column(grid.cells, "gradients of nonlocal strain", gradient_);
+  archive.column(grid.nodes, "mass of nonlocal strain", mass_);
+  archive.column(grid.nodes, "diagonal of nonlocal strain", over_diagonal_);
+  archive.column(grid.nodes, "nonlocal strain", average_);
+  archive.column(points, "excess of nonlocal strain", excess_);
+  archive.column(points, "own strain", own_);
+  archive.column(points, "history as seen", seen_, history_count_);
 }
 
 template class NonlocalStrain<2>;

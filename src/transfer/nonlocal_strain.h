@@ -30,7 +30,7 @@ class NonlocalStrain {
   /// Puts back into `history`, which a law made of `averaged`, each point's own plastic strain with what it gained.
   void restore(const PointSet &points, double *history) const;
   /// Writes what the next step depends on, or reads it.
-  void serialize(Archive &archive);
+  void serialize(Archive &archive, const typename FilledGrid<dim>::Rows &grid, const Archive::Rows &points);
   /// What the law takes for the width of a band: 2 l in every cell [m].
   const double *size() const { return size_.data(); }
 

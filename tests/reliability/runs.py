@@ -193,7 +193,7 @@ def compare(folder, one, other):
     """history.csv, pore_pressure.csv of seepage and the states in the checkpoint byte for byte, snapshots value by value. The number of a checkpoint counts those
     that were written, of which an interruption repeats or spares some: it is not compared."""
     a, b = folder / one, folder / other
-    states = [{path.suffix: path.read_bytes() for path in (which / "checkpoint").iterdir() if path.name[0].isdigit()} for which in (a, b)]
+    states = [{path.suffix: path.read_bytes() for path in sorted((which / "checkpoint").iterdir()) if path.name[0].isdigit()} for which in (a, b)]
     if states[0].keys() != states[1].keys():
         raise Wrong(f"the checkpoint has states of the ranks {sorted(states[1])}, not {sorted(states[0])}")
     for rank in states[0]:

@@ -58,13 +58,13 @@ double difference(const Snapshot &mine, const Snapshot &whole, const std::string
   return largest / scale;
 }
 
-void expect_the_same(const std::string &file, const std::vector<std::string> &overrides) {
+void expect_the_same(const std::string &file, std::vector<std::string> overrides, double tolerance = 1e-10) {
   const Result whole = alone(file, overrides), shared = after_200_steps(PETSC_COMM_WORLD, file, overrides);
   EXPECT_EQ(shared.count, whole.count);
   EXPECT_NEAR(shared.mass, whole.mass, 1e-14 * whole.mass);
   EXPECT_NEAR(shared.time, whole.time, 1e-12 * whole.time);
   for (const char *field : {"position", "velocity", "stress"})
-    EXPECT_LT(difference(shared.particles, whole.particles, field), 1e-10) << field;
+    EXPECT_LT(difference(shared.particles, whole.particles, field), tolerance) << field;
   long long count = static_cast<long long>(shared.particles.id.size());
   MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_LONG_LONG, MPI_SUM, PETSC_COMM_WORLD);
   EXPECT_EQ(count, whole.count);
@@ -134,6 +134,47 @@ TEST(Ranks, drained_slope_of_two_soils_is_the_same) { expect_the_same(slope, {})
 
 /// The example of the guide's page on terrain, coarser.
 TEST(Ranks, slide_on_terrain_is_the_same) { expect_the_same(TALUS_GUIDE "/valley.toml", {"mesh.size=12"}); }
+
+/// The same where the mesh is divided anew at every remap: everything moves from rank to rank again and again.
+void expect_the_same_when_balanced(const std::string &file, std::vector<std::string> overrides) {
+  overrides.push_back("mesh.balance_ranks=always");
+  expect_the_same(file, overrides);
+}
+TEST(Balanced, column_collapse_is_the_same) { expect_the_same_when_balanced(column, {"mesh.size=0.01"}); }
+TEST(Balanced, column_collapse_is_the_same_on_a_base_that_heats_itself) {
+  expect_the_same_when_balanced(
+      column,
+      {"mesh.size=0.01", "boundary.base.kind=heated_friction",
+       "boundary.base.friction_angle=10 + 10 * exp(-slip / 0.01)", "boundary.base.thickness=1e-4",
+       "boundary.base.hydraulic_conductivity=1e-9", "boundary.base.storage=1e-8",
+       "boundary.base.thermal_pressurisation=1e5", "boundary.base.heat_capacity=1e6"});
+}
+TEST(Balanced, column_collapse_is_the_same_with_particle_stress) {
+  expect_the_same_when_balanced(column, {"mesh.size=0.01", "transfer.average_stress=false", "transfer.locking=nodal"});
+}
+TEST(Balanced, column_collapse_is_the_same_with_steps_by_the_frequency_of_the_mesh) {
+  expect_the_same_when_balanced(column, {"mesh.size=0.01", "integrator.omega_max=mesh"});
+}
+TEST(Balanced, column_collapse_is_the_same_under_error_control) {
+  expect_the_same_when_balanced(column,
+                                {"mesh.size=0.01", "integrator.kind=arkode", "integrator.velocity_tolerance=1e-5"});
+}
+TEST(Balanced, slope_that_softens_by_averaged_strain_is_the_same) {
+  expect_the_same_when_balanced(slope, {"body.weathered.averaging_length=1.5", "transfer.remap_interval=0.002"});
+}
+TEST(Balanced, column_of_wet_sand_is_the_same) {
+  for (const std::string phases : {"saturated", "unsaturated", "three-phase"}) {
+    SCOPED_TRACE(phases);
+    expect_the_same_when_balanced(
+        wet_column, {"mesh.size=0.01", "phases=" + phases, "body.sand.retention.curve=van_genuchten",
+                     "body.sand.retention.reference_suction=500", "body.sand.retention.shape=0.5",
+                     "boundary.rain.kind=rainfall", "boundary.rain.group=free_surface",
+                     "boundary.rain.intensity=0.01", "transfer.remap_interval=0.01"});
+  }
+}
+TEST(Balanced, slide_on_terrain_is_the_same) {
+  expect_the_same_when_balanced(TALUS_GUIDE "/valley.toml", {"mesh.size=12", "transfer.remap_interval=0.005"});
+}
 
 /// Above the terrain of the guide, ten times the air: ranks share the soil and not the cells, as evenly as patches of 8
 /// cells with 8 particles each, which are never divided, allow.

@@ -1,0 +1,80 @@
+#pragma once
+/// When the mesh is divided among the ranks in another way because soil has moved from some ranks to others,
+/// docs/scaling.md. Work is counted in particles that go through a step; a filled cell is as much as one. What balancing
+/// costs is counted in the same unit, by rates that were measured once and not by the clock of this run: so a run does
+/// the same whenever it is repeated or resumed.
+#include <algorithm>
+
+#include "base/archive.h"
+#include "scene/scene.h"
+
+namespace talus {
+
+class Balancing {
+ public:
+  /// `cells` of the whole mesh; `divisible`: the mesh can be divided in another way.
+  Balancing(BalanceRanks when, int ranks, long long cells, bool divisible)
+      : when_(divisible ? when : BalanceRanks::never), ranks_(ranks), cells_(static_cast<double>(cells)) {}
+
+  /// A step has been done, with this work on the rank that had most.
+  void step(double largest) { largest_ = largest, ++steps_; }
+  /// A remap follows: `all` is the work of all ranks in those steps.
+  void remap(double all) {
+    const double mean = all / ranks_;
+    imbalance_ = mean > 0 ? largest_ / mean : 1;
+    if (started_ < 1) started_ = imbalance_;
+    highest_ = std::max(highest_, imbalance_);
+    lost_ += static_cast<double>(steps_) * (largest_ - mean);
+    if (before_ > 0) saved_ += static_cast<double>(steps_) * (before_ - imbalance_) * mean;
+    done_ += static_cast<double>(steps_) * largest_;
+    steps_ = 0;
+    cost_ = per_cell * cells_ + per_particle * largest_;
+  }
+  /// Is it time to look for another partition? After a remap.
+  bool due() const {
+    constexpr double limit = 1.1;  // below it no partition is much better, since patches stay whole
+    if (when_ == BalanceRanks::always) return true;
+    return when_ == BalanceRanks::when_it_pays && imbalance_ > limit && lost_ > cost_;
+  }
+  /// Is a partition that is known to have this imbalance worth it? If not, it is time again after as much loss.
+  bool worth(double expected) {
+    constexpr double least_gain = 0.03;
+    if (when_ == BalanceRanks::always) return true;
+    if (imbalance_ - expected > least_gain) return true;
+    lost_ = 0;
+    return false;
+  }
+  /// It was done, in this time of the clock [s].
+  void done(double seconds) {
+    before_ = std::max(before_, imbalance_), lost_ = 0, ++count_;
+    seconds_ += seconds;
+  }
+
+  double imbalance() const { return imbalance_; }  ///< up to the last remap
+  double at_start() const { return started_; }     ///< since this program began or resumed the run; 0: not known
+  double highest() const { return highest_; }      ///< likewise
+  long long count() const { return count_; }       ///< of balancings in the whole run
+  double seconds() const { return seconds_; }      ///< that they took since this program began or resumed the run [s]
+  /// Work that the steps would have had in addition without them, over the work that they had: an estimate, as if the
+  /// imbalance before the first balancing, or a larger one later, had lasted.
+  double saved() const { return done_ > 0 ? saved_ / done_ : 0; }
+
+  void serialize(Archive &archive) { archive.serialize("balancing", lost_, largest_, steps_, count_, before_); }
+
+ private:
+  // Measured, docs/scaling.md: dividing a mesh anew takes about 20 us for each of its cells on the first rank, and 10
+  // us for each particle of the rank that has most; a particle goes through a step in about 50 ns.
+  static constexpr double per_cell = 400, per_particle = 200;
+
+  BalanceRanks when_;
+  int ranks_;
+  double cells_;
+  double lost_ = 0;      ///< work that ranks have waited for since the last balancing
+  double largest_ = 0;   ///< work of the rank that had most in the last step
+  double before_ = 0;    ///< largest imbalance at a balancing
+  long long steps_ = 0;  ///< since the last remap
+  long long count_ = 0;
+  double imbalance_ = 1, cost_ = 0, started_ = 0, highest_ = 0, saved_ = 0, done_ = 0, seconds_ = 0;
+};
+
+}  // namespace talus
