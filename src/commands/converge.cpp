@@ -159,7 +159,7 @@ Action add_converge(CLI::App &app) {
           "(default: the scene's size times 1.414, 1, 0.707; its step times 1, 0.707, 0.5; 3, 6, 12 particles "
           "per triangle or 4, 8, 20 per tetrahedron)")
       ->delimiter(',')
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero);
   command
       ->add_option("--within", arguments->within,
                    "results that differ by no more than this share of the finest run's count as equal [%] (default 5)")

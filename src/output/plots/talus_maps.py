@@ -108,7 +108,9 @@ class Maps:
                  f"from --spacing {SPACING * self.size:.2g} on less so")
         self.sliding = np.union1d(Thickness(last, self.axes.up).sliding, left_mesh(results))
         if not len(self.sliding):
-            raise ValueError(f"{results.folder}: no soil has moved, so that there is nothing to map")
+            moved = last.scalar("displacement")[0].max(initial=0)
+            raise ValueError(f"{results.folder}: no soil has slid, so that there is nothing to map: the largest displacement, {moved:.3g} m, is that of "
+                             f"soil that deforms, below the spacing of particles, {self.size:.3g} m")
         self._accumulate()
         self.covered = self.thickness[-1] >= self.limit
         if not self.covered.any():

@@ -8,6 +8,8 @@ import re
 
 import numpy as np
 
+from talus_results import Thickness, slid
+
 MEASURES = {}
 
 
@@ -147,14 +149,13 @@ def largest_share_displacement(results, share=0.999):
     return float(moved[order][np.searchsorted(np.cumsum(mass[order]), share * mass.sum())])
 
 
-def slide(results, share=0.1):
-    """The soil that has moved by more than a tenth of the largest displacement at the end: its travel distance, which is the level distance from
+def slide(results):
+    """The soil that has slid by the end (talus_results.slid): its travel distance, which is the level distance from
     its rear at the start to its front at the end along the mean direction of its motion [m], its volume [m3, or m3/m], the largest depth of its
     lower face below the ground, and the x of this depth [m], both in the undeformed section. Depth and place are known to the spacing of particles. Snapshots without `displacement` or `volume` raise KeyError."""
     last = results.snapshots[-1]
     moved = last.column("displacement").values
-    size = np.linalg.norm(moved, axis=1)
-    inside = size > share * largest_share_displacement(results)
+    inside = slid(last)
     up = results.up_axis()
     level = [axis for axis in range(moved.shape[1]) if axis != up]
     mean = moved[inside][:, level].mean(axis=0)
@@ -172,6 +173,36 @@ def slide(results, share=0.1):
     deepest = int(np.argmax(ground - base))
     place = start[number == deepest, level[0]].mean()
     return float(travel), float(volume[inside].sum()), float(ground[deepest] - base[deepest]), float(place)
+
+
+def flow(results, states=10):
+    """In 3D, of the soil that has slid by the end (talus_results.slid): the median of its thickness by volume and the largest one without single
+    particles, and the mean size of the cells where it is, over some states after the start [m]; None where nothing slid."""
+    last = results.snapshots[-1]
+    if last.position().shape[1] != 3 or len(results.snapshots) < 2:
+        return None
+    thickness = Thickness(last, results.up_axis())
+    node, cell = results.mesh()
+    if not len(thickness.sliding) or not len(cell):
+        return None
+    level = [axis for axis in range(3) if axis != results.up_axis()]
+    corner = node[cell]
+    size = (np.sqrt(2) * np.abs(np.linalg.det(corner[:, 1:] - corner[:, :1]))) ** (1 / 3)  # edge of a regular tetrahedron of this volume
+    side, low = size.max(), node[:, level].min(axis=0)  # no square between the largest cells is without a cell
+    count = np.floor(np.ptp(node[:, level], axis=0) / side).astype(int) + 1
+    def square(place):
+        return np.ravel_multi_index(np.clip(np.floor((place - low) / side).astype(int), 0, count - 1).T, count)
+    of_cell = square(corner.mean(axis=1)[:, level])
+    cells, total = np.bincount(of_cell, minlength=np.prod(count)), np.bincount(of_cell, size, np.prod(count))
+    chosen = results.snapshots[1:]
+    depth, there = [], []
+    for snapshot in chosen[:: -(-len(chosen) // states)]:
+        moves = np.isin(snapshot.ids(), thickness.sliding, assume_unique=True)
+        depth.append(thickness(snapshot)[0][moves])
+        at = square(snapshot.position()[moves][:, level])
+        there.append(total[at[cells[at] > 0]] / cells[at[cells[at] > 0]])
+    depth, there = np.concatenate(depth), np.concatenate(there)
+    return (float(np.median(depth)), float(np.percentile(depth, 99)), float(there.mean())) if len(depth) and len(there) else None
 
 
 # ---- fields ----

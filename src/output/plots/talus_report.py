@@ -7,8 +7,10 @@ import pathlib
 import numpy as np
 
 from talus_factor import factor_lines, read_factor
+from talus_measures import flow
 from talus_model import draw_model
 from talus_modelled import read_model, stage_rows
+from talus_results import slid, spacing
 from talus_units import Keys, at_time, capital, readable_unit, text_of, words
 
 LOG_LINES = 25
@@ -84,9 +86,15 @@ def key_results(results):
         parts = f"{quantity(level, 'm')} level, {quantity(rise, 'm')} up or down"
         found.append(("Largest displacement", quantity(size.max(), "m"), parts + without))
         if "volume" in last:
-            volume = last.column("volume").values[size > 0.1 * size.max(), 0].sum()
-            volume = quantity(volume, per_metre("m³", results))
-            found.append(("Sliding volume", volume, "moved more than a tenth of the largest" + without))
+            moves = slid(last)
+            volume = quantity(last.column("volume").values[moves, 0].sum(), per_metre("m³", results)) if moves.any() else "none"
+            note = "moved more than a tenth of the largest" if moves.any() else f"no soil moved by the spacing of particles, {quantity(spacing(last), 'm')}"
+            found.append(("Sliding volume", volume, note + without))
+    depth = flow(results) if "displacement" in last and "volume" in last else None
+    if depth:
+        typical, most, cell = depth
+        thin = ": a flow that is not as deep as a cell is not resolved; take smaller cells on its way" if typical < cell else ""
+        found.append(("Depth of the flow", f"{quantity(typical, 'm')}, {quantity(most, 'm')} at most", f"median after the start; cells there measure {quantity(cell, 'm')}{thin}"))
     speed = top_speed(results)
     if speed:
         found.append(("Largest velocity", quantity(speed[0], "m/s"), f"{speed[2]}, {at_time(speed[1], last.time)}"))

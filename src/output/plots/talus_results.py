@@ -122,17 +122,37 @@ class Snapshot:
         return None
 
 
-class Thickness:
-    """The thickness of the soil that slides: its volume per area on the level, in m, over a few particles. Soil slides if it has moved by more than
-    a share of the largest displacement at the end; `sliding` holds the numbers of its particles. Thickness is 0 for other soil."""
+SLIDES = 0.1  # share of the largest displacement beyond which soil slides
 
-    SHARE, WIDE = 0.1, 2.5  # the share, and the side of the squares between which volume is shared, over the spacing of particles
+
+def spacing(snapshot):
+    """Mean distance of neighbouring particles, by their volume [m]; 0 without particles."""
+    volume = snapshot.column("volume").values
+    return float(volume.mean()) ** (1 / snapshot.position().shape[1]) if len(volume) else 0.0
+
+
+def slid(last):
+    """Which particles have slid by the last snapshot [particles]: those that have moved by more than a tenth of the largest displacement, if this is
+    above the spacing of particles; below it soil has deformed, and none has slid. The largest is that of all but a thousandth of the particles."""
+    return slides(last.scalar("displacement")[0], spacing(last))
+
+
+def slides(displacement, spacing):
+    """The same of displacements [m] of particles with this spacing."""
+    largest = np.percentile(displacement, 99.9) if len(displacement) else 0.0
+    return displacement > SLIDES * largest if largest > spacing else np.zeros(len(displacement), bool)
+
+
+class Thickness:
+    """The thickness of the soil that slides: its volume per area on the level, in m, over a few particles. Soil slides if it has `slid` by the end;
+    `sliding` holds the numbers of its particles. Thickness is 0 for other soil."""
+
+    WIDE = 2.5  # the side of the squares between which volume is shared, over the spacing of particles
 
     def __init__(self, last, up):
         self._level = [axis for axis in range(3) if axis != up]
-        size = last.scalar("displacement")[0]
-        self.sliding = last.ids()[size > self.SHARE * np.percentile(size, 99.9)] if len(size) and size.max() > 0 else last.ids()[:0]
-        self._spacing = float(last.column("volume").values.mean()) ** (1 / 3) if len(size) else 1.0
+        self.sliding = last.ids()[slid(last)]
+        self._spacing = spacing(last) or 1.0
 
     def __call__(self, snapshot):
         sliding = np.isin(snapshot.ids(), self.sliding, assume_unique=True)
