@@ -131,10 +131,10 @@ Grid read_elevations(const std::string &file) {
   return grid;
 }
 
-void check_same_projection(const Grid &grid, const std::string &projection, const std::string &of) {
-  if (grid.projection.empty() || projection.empty() || grid.projection == projection) return;
+void check_same_projection(const Location &here, const std::string &projection, const std::string &of) {
+  if (here.projection.empty() || projection.empty() || here.projection == projection) return;
   OGRSpatialReference own, other;
-  if (own.importFromWkt(grid.projection.c_str()) != OGRERR_NONE ||
+  if (own.importFromWkt(here.projection.c_str()) != OGRERR_NONE ||
       other.importFromWkt(projection.c_str()) != OGRERR_NONE)
     return;
   for (OGRSpatialReference *one : {&own, &other}) {
@@ -148,17 +148,16 @@ void check_same_projection(const Grid &grid, const std::string &projection, cons
   // one definition has many spellings, of which places tell more than names
   CPLPushErrorHandler(CPLQuietErrorHandler);
   const std::unique_ptr<OGRCoordinateTransformation> to_other(OGRCreateCoordinateTransformation(&own, &other));
-  double x = (grid.west + grid.east()) / 2, y = (grid.south + grid.north()) / 2;
-  const double from[] = {x, y};
+  auto [x, y] = here.middle;
   const bool near =
-      to_other && to_other->Transform(1, &x, &y) && std::hypot(x - from[0], y - from[1]) < 0.1 * grid.spacing;
+      to_other && to_other->Transform(1, &x, &y) && std::hypot(x - here.middle[0], y - here.middle[1]) < here.near;
   CPLPopErrorHandler();
   if (near) return;
   const auto name = [](const OGRSpatialReference &one) {
     const char *text = one.GetName();
     return std::string(text ? text : "one without a name");
   };
-  complain(grid.file, "has the projection " + name(own) + ", and " + of + " has " + name(other) +
+  complain(here.file, "has the projection " + name(own) + ", and " + of + " has " + name(other) +
                           ", in which the same place has other coordinates; project it to that by gdalwarp -t_srs, or "
                           "correct what the file says by gdal_edit.py -a_srs");
 }

@@ -1,6 +1,7 @@
 #pragma once
 /// Reads grid files: ESRI ASCII, GeoTIFF and whatever else GDAL reads. Part of talus-mesh, which hands the values to
 /// the program: no library of Talus links GDAL.
+#include <array>
 #include <string>
 
 #include "base/grid.h"
@@ -14,10 +15,21 @@ Grid read_grid(const std::string &file);
 /// The same, of elevations; also for those in another unit than metres, and coordinates that seem to be degrees.
 Grid read_elevations(const std::string &file);
 
-/// Throws std::invalid_argument where the projection of a grid is not that of the file `of`, given as well-known text:
-/// where they differ as definitions and by more than a tenth of the spacing at the middle of the grid. Nothing is known
-/// of an empty projection; heights do not count.
-void check_same_projection(const Grid &grid, const std::string &projection, const std::string &of);
+/// What a file says of where it lies.
+struct Location {
+  std::string file, projection;  ///< path; well-known text, empty where the file names none
+  std::array<double, 2> middle;  ///< in its coordinates [m]
+  double near;                   ///< what is nearer than this counts as the same place [m]
+};
+inline Location location_of(const Grid &grid) {
+  return {
+      grid.file, grid.projection, {(grid.west + grid.east()) / 2, (grid.south + grid.north()) / 2}, grid.spacing / 10};
+}
+
+/// Throws std::invalid_argument where the projection of a file is not that of the file `of`, given as well-known text:
+/// where they differ as definitions and by more than `near` at the middle. Nothing is known of an empty projection;
+/// heights do not count.
+void check_same_projection(const Location &own, const std::string &projection, const std::string &of);
 
 /// Writes values as the program reads them (src/mesh_source.cpp): a line of columns, rows, west, south and spacing,
 /// then the values as doubles. Throws std::invalid_argument.

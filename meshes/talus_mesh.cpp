@@ -31,6 +31,8 @@ struct Request {
   TerrainOptions terrain;
   double base = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> ellipsoid;
+  std::vector<std::string> layers;  ///< name and file, repeated
+  std::string depth_shape = "bowl";
 };
 
 bool is_section(const std::string &source) {
@@ -199,6 +201,10 @@ void report_terrain(const Terrain &terrain) {
     if (cells == 0)
       complain("the slide is thinner than its cells, and none has its centre in it; take a smaller --size");
   }
+  for (const auto &[name, file] : terrain.options().layers)
+    if (volume_of(name) == 0)
+      std::cout << "warning: layer " << name << " has no cells: no cell of the ground has its centre below " << file
+                << " and above the next layer\n";
   for (const std::string &doubt : terrain.doubts()) std::cout << "warning: " << doubt << "\n";
 }
 
@@ -218,7 +224,7 @@ void check(const TerrainOptions &o, const Terrain &terrain) {
 void run(const Request &request) {
   if (request.values) {
     const Grid grid = read_grid(request.source);
-    check_same_projection(grid, request.projection, request.terrain_of_projection);
+    check_same_projection(location_of(grid), request.projection, request.terrain_of_projection);
     for (const std::string &remark : grid.remarks) std::cout << "warning: " << remark << "\n";
     return write_values(grid, request.file);
   }
@@ -261,6 +267,12 @@ void read_terrain(const CLI::App &app, Request &request) {
   terrain.file = request.source, terrain.size = request.options.size, request.options.dimension = 3;
   if (!std::isnan(request.base)) terrain.base = request.base;
   if (terrain.air < 0) complain("--air must not be below 0 m");
+  if (terrain.outline.empty() && (terrain.depth != 0 || app.count("--depth-shape")))
+    complain("--depth and --depth-shape belong to an --outline");
+  if (terrain.way.empty() && terrain.way_width != 0) complain("--way-width belongs to a --way");
+  terrain.bowl = request.depth_shape == "bowl";
+  for (std::size_t k = 0; k + 1 < request.layers.size(); k += 2)
+    terrain.layers.push_back({request.layers[k], request.layers[k + 1]});
   const auto &e = request.ellipsoid;
   if (e.empty()) return;
   constexpr double radian = 3.14159265358979323846 / 180;
@@ -298,6 +310,18 @@ int parse(int argc, char **argv, Request &request) {
   app.add_option("--ellipsoid", request.ellipsoid,
                  "of terrain: a slip surface x y z a b c dip dip_direction [m, degrees]")
       ->expected(8);
+  app.add_option("--outline", terrain.outline,
+                 "of terrain: the outline of a slide, polygons of a Shapefile or GeoPackage");
+  app.add_option("--depth", terrain.depth, "of terrain: largest depth of the slip surface in the outline [m]");
+  app.add_option("--depth-shape", request.depth_shape, "of terrain: depth in the outline, bowl (default) or constant")
+      ->check(CLI::IsMember({"bowl", "constant"}));
+  app.add_option("--layer", request.layers, "of terrain: NAME FILE, a layer below a grid; may be repeated")
+      ->type_size(2)
+      ->expected(-1);
+  app.add_option("--way", terrain.way, "of terrain: x y of a point of the line along which the slide flows; repeated")
+      ->type_size(2)
+      ->expected(-1);
+  app.add_option("--way-width", terrain.way_width, "of terrain: width of the strip of small cells along --way [m]");
   app.add_option("--format", request.format, "of the mesh file: 2.2 or 4.1")->check(CLI::IsMember({"2.2", "4.1"}));
   try {
     app.parse(argc, argv);
@@ -309,7 +333,8 @@ int parse(int argc, char **argv, Request &request) {
   if (!is_section(request.source))
     read_terrain(app, request);
   else
-    for (const char *option : {"--window", "--step", "--base", "--air", "--far-size", "--slip-surface", "--ellipsoid"})
+    for (const char *option : {"--window", "--step", "--base", "--air", "--far-size", "--slip-surface", "--ellipsoid",
+                               "--outline", "--depth", "--layer", "--way"})
       if (app.count(option)) complain(std::string(option) + " belongs to terrain, and the source is a section");
   const auto &b = request.boxes;
   for (std::size_t i = 0; i + 4 < b.size(); i += 5)

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "meshes/outline.h"
+
 namespace talus {
 namespace {
 
@@ -84,13 +86,22 @@ Terrain::Terrain(const TerrainOptions &options) : options_(options) {
   if (!(options.far_size >= options.size)) options_.far_size = options.size;
   take_window(grid);
   bed_ = ground_;
-  if (options.ellipsoid || !options.slip_surface.empty()) take_slip_surface(grid);
+  if (options.ellipsoid || !options.slip_surface.empty() || !options.outline.empty()) take_slip_surface(grid);
+  take_layers(grid);
   if (options.base)
     check_base();
   else if (!(options.air > 0))
     complain(
         "--air must be above 0 m where the ground itself is the base: the mesh is the space above it, in which "
         "soil moves; give --air, or a flat base by --base");
+  if (const auto &w = options.way; !w.empty()) {
+    if (w.size() < 4 || w.size() % 2) complain("--way needs two points x y or more");
+    if (!(options.way_width > 0))
+      complain("--way-width must be above 0 m: the width of the strip of small cells along --way");
+    if (!slides()) complain("--way leads away from a slide, of which there is none: give a slip surface");
+    for (std::size_t a = 0; a + 3 < w.size(); a += 2)
+      if (w[a] == w[a + 2] && w[a + 1] == w[a + 3]) complain("--way has a point twice in succession");
+  }
   if (options.size > std::min(width(), depth()))
     complain(text_of("--size ", options.size, " m is larger than the window, which measures ", width(), " m x ",
                      depth(), " m; take a smaller size"));
@@ -180,29 +191,57 @@ void Terrain::check_steps(const std::vector<double> &z, const std::string &file)
   if (step_at >= 0) refuse(step_at, text_of("is ", length(highest), " lower than the place beside it"), "");
 }
 
-void Terrain::take_slip_surface(const Grid &grid) {
-  const bool by_grid = !options_.slip_surface.empty();
-  if (by_grid && options_.ellipsoid) complain("give one slip surface: --slip-surface or --ellipsoid");
-  const Grid given = by_grid ? read_elevations(options_.slip_surface) : Grid{};
-  if (by_grid) check_same_projection(given, projection_, grid.file);
-  remarks_.insert(remarks_.end(), given.remarks.begin(), given.remarks.end());
-  double nearest = std::numeric_limits<double>::infinity();  // of the surface over the ground
-  bool met = false;
-  std::vector<double> slip;
-  for (int k = 0; k < static_cast<int>(bed_.values.size()); ++k) {
-    const double east = origin_[0] + x(k % columns()), north = origin_[1] + y(k / columns());
-    const double z = by_grid ? given.at(east, north) : options_.ellipsoid->bottom(east, north);
-    slip.push_back(z);
-    if (std::isnan(z)) continue;  // beside it nothing slides
-    met = true;
-    nearest = std::min(nearest, z - bed_.values[k]);
-    bed_.values[k] = std::min(bed_.values[k], z);
+std::vector<double> Terrain::slip_surface(const Grid &grid) {
+  const auto remember = [&](const Location &location, const std::vector<std::string> &remarks) {
+    check_same_projection(location, projection_, grid.file);
+    remarks_.insert(remarks_.end(), remarks.begin(), remarks.end());
+  };
+  const auto at_places = [&](const auto &elevation) {
+    std::vector<double> z;
+    for (int k = 0; k < static_cast<int>(ground().size()); ++k)
+      z.push_back(elevation(origin_[0] + x(k % columns()), origin_[1] + y(k / columns())));
+    return z;
+  };
+  if (options_.ellipsoid) return at_places([&](double x, double y) { return options_.ellipsoid->bottom(x, y); });
+  if (!options_.slip_surface.empty()) {
+    const Grid given = read_elevations(options_.slip_surface);
+    remember(location_of(given), given.remarks);
+    return at_places([&](double x, double y) { return given.at(x, y); });
   }
-  const std::string name = by_grid ? options_.slip_surface : "the ellipsoid";
-  if (!met) complain(name + " does not lie in the window of " + grid.file + "; both count in the same coordinates");
+  const Outline outline = read_outline(options_.outline);
+  remember(outline.location, {});
+  if (!(options_.depth > 0))
+    complain("--depth must be above 0 m: the largest depth of the slip surface in the outline");
+  std::vector<char> inside;
+  for (const double one : at_places([&](double x, double y) { return outline.contains(x, y) ? 1. : 0.; }))
+    inside.push_back(one > 0);
+  std::vector<double> z =
+      options_.bowl ? bowl(inside, columns(), options_.depth) : std::vector<double>(inside.size(), options_.depth);
+  for (std::size_t k = 0; k < z.size(); ++k)
+    z[k] = inside[k] ? ground()[k] - z[k] : std::numeric_limits<double>::quiet_NaN();
+  return z;
+}
+
+void Terrain::take_slip_surface(const Grid &grid) {
+  if (!options_.slip_surface.empty() + options_.ellipsoid.has_value() + !options_.outline.empty() > 1)
+    complain("give one slip surface: --slip-surface, --ellipsoid or --outline");
+  const std::vector<double> slip = slip_surface(grid);
+  double nearest = std::numeric_limits<double>::infinity();  // of the surface over the ground
+  for (std::size_t k = 0; k < slip.size(); ++k) {
+    if (std::isnan(slip[k])) continue;  // beside it nothing slides
+    nearest = std::min(nearest, slip[k] - bed_.values[k]);
+    bed_.values[k] = std::min(bed_.values[k], slip[k]);
+  }
+  const std::string name = options_.ellipsoid               ? "the ellipsoid"
+                           : !options_.slip_surface.empty() ? options_.slip_surface
+                                                            : options_.outline;
+  if (std::isinf(nearest))
+    complain(name + " does not lie in the window of " + grid.file +
+             (options_.outline.empty() ? "" : ", or no elevation of the grid is in it") +
+             "; both count in the same coordinates");
   if (nearest >= 0)
-    complain(text_of(name, " lies above the ground everywhere, by ", nearest,
-                     " m at least, so that nothing slides; check its elevations, or lower it"));
+    complain(text_of(name, " lies above the ground everywhere, by ", length(nearest),
+                     " at least, so that nothing slides; check its elevations, or lower it"));
   for (int k = 0; k < static_cast<int>(bed().size()); ++k) {
     const int i = k % columns(), j = k / columns();
     const double share = (i == 0 || i == columns() - 1 ? 0.5 : 1) * (j == 0 || j == rows() - 1 ? 0.5 : 1),
@@ -211,7 +250,36 @@ void Terrain::take_slip_surface(const Grid &grid) {
     if (ground()[k] > bed()[k]) slide_area_ += area;
   }
   check_steps(bed(), name);
-  check_slip_surface(slip, name);
+  if (options_.outline.empty()) check_slip_surface(slip, name);  // that of an outline is as deep as was asked for
+}
+
+void Terrain::take_layers(const Grid &grid) {
+  if (!options_.layers.empty() && !options_.base)
+    complain("--layer NAME FILE parts the ground over a flat base: give --base, or leave the layers out");
+  for (const auto &[name, file] : options_.layers) {
+    for (const char *own : {"slide", "ground", "air", "base", "terrain", "top", "west", "east", "south", "north"})
+      if (name == own)
+        complain("--layer " + name + " " + file + ": " + name + " is a group of the mesh already; name it otherwise");
+    const Grid given = read_elevations(file);
+    check_same_projection(location_of(given), projection_, grid.file);
+    remarks_.insert(remarks_.end(), given.remarks.begin(), given.remarks.end());
+    Grid &surface = layer_.emplace_back(ground_);
+    for (int k = 0; k < static_cast<int>(surface.values.size()); ++k) {
+      surface.values[k] = given.at(origin_[0] + x(k % columns()), origin_[1] + y(k / columns()));
+      if (std::isnan(surface.values[k]))
+        complain(file + " has no elevation at " + place(k) + ", where layer " + name +
+                 " needs one; give a grid that covers the "
+                 "window, and an elevation below the base where the layer is absent");
+    }
+    for (double &z : surface.values) z = std::max(z, *options_.base);  // where it is absent
+    check_steps(surface.values, file);
+  }
+}
+
+std::string Terrain::layer_at(double x, double y, double z) const {
+  for (std::size_t k = layer_.size(); k-- > 0;)
+    if (z < layer_[k].at(x, y)) return options_.layers[k][0];
+  return "";
 }
 
 void Terrain::check_slip_surface(const std::vector<double> &slip, const std::string &name) {
@@ -289,6 +357,16 @@ void Terrain::find_distances() {
   distance_ = ground_;
   std::vector<double> &d = distance_.values;
   for (std::size_t k = 0; k < d.size(); ++k) d[k] = !slides() || ground()[k] > bed()[k] ? 0 : 1e300;
+  const std::vector<double> &w = options_.way;
+  for (std::size_t a = 0; slides() && a + 3 < w.size(); a += 2)
+    for (int k = 0; k < static_cast<int>(d.size()); ++k) {
+      const double from[] = {origin_[0] + x(k % columns()) - w[a], origin_[1] + y(k / columns()) - w[a + 1]},
+                   along[] = {w[a + 2] - w[a], w[a + 3] - w[a + 1]};
+      const double share =
+          std::clamp((from[0] * along[0] + from[1] * along[1]) / (along[0] * along[0] + along[1] * along[1]), 0., 1.);
+      const double away = std::hypot(from[0] - share * along[0], from[1] - share * along[1]);
+      d[k] = std::min(d[k], std::max(0., away - options_.way_width / 2));
+    }
   const auto learn = [&](int i, int j, int di, int dj) {
     if (i + di < 0 || i + di >= columns() || j + dj < 0 || j + dj >= rows()) return;
     double &mine = d[j * columns() + i];
@@ -338,11 +416,13 @@ std::vector<std::string> Terrain::doubts() const {
                                 " degrees: dip direction is the azimuth (clockwise from north) towards which the "
                                 "surface dips. Is it meant to dip the other way?"));
   const double deep = slide_volume_ / slide_area_;
-  if (options_.far_size > deep)
-    sentences.push_back(text_of("cells grow to ", options_.far_size, " m on the way of the slide, which is ",
-                                length(deep),
-                                " thick on average and thinner as it spreads: a flow that is not as deep as a cell "
-                                "is not resolved. Take a --far-size (and --size) of a third of its depth or less"));
+  const double on_way = options_.way.empty() ? options_.far_size : options_.size;
+  if (on_way > deep)
+    sentences.push_back(text_of(
+        options_.way.empty() ? "cells grow to " : "cells measure ", length(on_way),
+        " on the way of the slide, which is ", length(deep),
+        " thick on average and thinner as it spreads: a flow that is not as deep as a cell is not resolved. Take "
+        "cells of a third of its depth or less there, by --far-size and --size, or by --size along a line --way"));
   for (int k = 0; k < static_cast<int>(bed().size()); ++k) {
     const int i = k % columns(), j = k / columns();
     if (ground()[k] > bed()[k] && (i == 0 || j == 0 || i == columns() - 1 || j == rows() - 1)) {

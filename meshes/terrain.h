@@ -39,6 +39,12 @@ struct TerrainOptions {
   double air = 0;                      ///< height of the free space above the ground [m]
   std::string slip_surface;            ///< a grid of elevations; empty: none
   std::optional<Ellipsoid> ellipsoid;  ///< in place of it
+  std::string outline;                 ///< polygons, in place of both; empty: none
+  double depth = 0;                    ///< of the slip surface in the outline, the largest [m] ...
+  bool bowl = true;                    ///< ... from 0 at the outline on, or else everywhere
+  std::vector<std::array<std::string, 2>> layers;  ///< name and grid of the upper surface, from top to bottom
+  std::vector<double> way;                         ///< x, y, x, y, ... of a line in the coordinates of the grid [m]
+  double way_width = 0;                            ///< of the strip along it in which cells measure `size` [m]
 };
 
 class Terrain {
@@ -63,6 +69,8 @@ class Terrain {
   bool slides() const { return slide_area_ > 0; }
   double slide_area() const { return slide_area_; }      ///< seen from above [m2]
   double slide_volume() const { return slide_volume_; }  ///< [m3]
+  /// The layer to which ground at a place belongs; empty: none.
+  std::string layer_at(double x, double y, double z) const;
   /// Cell size at a place [m].
   double size_at(double x, double y, double z) const;
   /// Sentences about what may be meant but rarely is.
@@ -73,6 +81,9 @@ class Terrain {
  private:
   void take_window(const Grid &grid);
   void take_slip_surface(const Grid &grid);
+  /// Elevations of the slip surface at the places of the window; not a number where there is none.
+  std::vector<double> slip_surface(const Grid &grid);
+  void take_layers(const Grid &grid);
   void check_base() const;
   /// Refuses elevations that no ground has: single places, or edges of areas, far above or below those around them.
   void check_steps(const std::vector<double> &z, const std::string &file) const;
@@ -89,7 +100,8 @@ class Terrain {
   std::string projection_;
   std::vector<std::string> remarks_;  ///< on how files were read
   Grid ground_, bed_;
-  Grid distance_;  ///< from the slide, seen from above [m]
+  Grid distance_;  ///< from the slide and its way, seen from above [m]
+  std::vector<Grid> layer_;
   double slide_area_ = 0, slide_volume_ = 0;
 };
 

@@ -125,7 +125,9 @@ class TerrainModel {
     const double ground = terrain_.ground_at(x, y), bed = terrain_.bed_at(x, y);
     if (!terrain_.options().base) return bed < ground && z < ground ? "slide" : "air";
     if (volume + 1 < volumes_.size()) return "air";
-    return bed < ground && z > bed ? "slide" : "ground";
+    if (bed < ground && z > bed) return "slide";
+    const std::string layer = terrain_.layer_at(x, y, z);
+    return layer.empty() ? "ground" : layer;
   }
 
   static std::vector<std::size_t> simplices_of(int type, int entity) {

@@ -14,15 +14,6 @@
 
 namespace talus {
 
-/// Elevation of a polyline of points [x, elevation] at x, level beyond its ends [m].
-inline double elevation_of(const std::vector<std::vector<double>> &points, double x) {
-  if (points.size() == 1) return points[0][1];
-  size_t k = 1;
-  while (k + 1 < points.size() && points[k][0] < x) ++k;
-  const double s = std::clamp((x - points[k - 1][0]) / (points[k][0] - points[k - 1][0]), 0., 1.);
-  return points[k - 1][1] + s * (points[k][1] - points[k - 1][1]);
-}
-
 /// Whose water: a number of a body, or that of the [water] table, which also stands above the ground.
 inline constexpr int common_water = -1;
 
@@ -43,18 +34,18 @@ class PrescribedPressure {
 
   bool below_table(const Vec<dim> &x, double t, int soil) const {
     const double p = found(x, soil);
-    return std::isnan(p) ? x[vertical_] < table(x[0], t, soil) : p > 0;
+    return std::isnan(p) ? x[vertical_] < table(x, t, soil) : p > 0;
   }
   /// Pore pressure at x [Pa].
   double operator()(const Vec<dim> &x, double t, int soil) const {
-    const double elevation = table(x[0], t, soil), p = found(x, soil);
+    const double elevation = table(x, t, soil), p = found(x, soil);
     if (!std::isnan(p)) return p;
     return std::max(0., unit_weight_ * (elevation - x[vertical_])) +
            water_->excess(x[0], x[1], dim == 3 ? x[2] : 0, t, elevation);
   }
   /// Hydrostatic suction at x above the common water table; 0 without one [Pa].
   double above_table(const Vec<dim> &x, double t) const {
-    return water_->table.empty() ? 0 : std::max(0., unit_weight_ * (x[vertical_] - table(x[0], t, common_water)));
+    return !water_->table.given() ? 0 : std::max(0., unit_weight_ * (x[vertical_] - table(x, t, common_water)));
   }
   /// Degree of saturation of a soil at x, where `soil` is whose water it has: full below the table; above it what
   /// seepage has left by the retention curve, or else what the body says [-].
@@ -64,11 +55,11 @@ class PrescribedPressure {
     return std::isnan(drained) ? body.saturation : drained;
   }
   /// Has the soil water of its own? Its pressure may then jump at the soil's border.
-  bool apart(int soil) const { return soil >= 0 && (!table_of_[soil]->empty() || ratio_[soil]); }
+  bool apart(int soil) const { return soil >= 0 && (table_of_[soil]->given() || ratio_[soil]); }
   /// May pores fill or dry while the soil moves? What seepage has found stands still then.
   bool moves() const {
-    const auto given = [](const auto *table) { return !table->empty(); };
-    return (!water_->table.empty() || std::any_of(table_of_.begin(), table_of_.end(), given)) &&
+    const auto given = [](const WaterTable *table) { return table->given(); };
+    return (water_->table.given() || std::any_of(table_of_.begin(), table_of_.end(), given)) &&
            !water_->level.constant();
   }
   /// Degree of saturation of a body's soil at a place [-]; not a number where that is not known.
@@ -84,16 +75,15 @@ class PrescribedPressure {
   double density() const { return water_->density; }
 
  private:
-  using Table = std::vector<std::vector<double>>;
   /// Elevation of the water table at x [m].
-  double table(double x, double t, int soil) const {
-    const Table &points = soil >= 0 && !table_of_[soil]->empty() ? *table_of_[soil] : water_->table;
-    return points.empty() ? -1e300 : elevation_of(points, x) + water_->level(t);
+  double table(const Vec<dim> &x, double t, int soil) const {
+    const WaterTable &table = soil >= 0 && table_of_[soil]->given() ? *table_of_[soil] : water_->table;
+    return table.given() ? table.at(x[0], x[1], dim == 3 ? x[2] : 0) + water_->level(t) : -1e300;
   }
   /// What is not given by a table; no number where there is none.
   double found(const Vec<dim> &x, int soil) const {
     if (soil >= 0 && ratio_[soil]) return ratio_[soil](x.data());
-    const bool own = soil >= 0 && !table_of_[soil]->empty();
+    const bool own = soil >= 0 && table_of_[soil]->given();
     return seeped_ && !own ? seeped_(x.data()) : NAN;
   }
 
@@ -103,7 +93,7 @@ class PrescribedPressure {
   Saturation seeped_saturation_;
   double unit_weight_;
   std::vector<int> soil_of_cell_;
-  std::vector<const Table *> table_of_;                       ///< [body]
+  std::vector<const WaterTable *> table_of_;                  ///< [body]
   std::vector<std::function<double(const double *)>> ratio_;  ///< [body]
 };
 

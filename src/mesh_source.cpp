@@ -67,6 +67,13 @@ std::vector<std::string> of_terrain(const Scene &scene, const std::string &file)
   if (t.far_size > 0) add("--far-size", {t.far_size});
   if (!t.slip_surface.empty())
     arguments.insert(arguments.end(), {"--slip-surface", beside_scene(scene, t.slip_surface)});
+  if (!t.outline.empty()) arguments.insert(arguments.end(), {"--outline", beside_scene(scene, t.outline)});
+  if (t.depth > 0) add("--depth", {t.depth});
+  if (t.depth_shape == DepthShape::constant) arguments.insert(arguments.end(), {"--depth-shape", "constant"});
+  for (const LayerSource &layer : t.layer)
+    arguments.insert(arguments.end(), {"--layer", layer.name, beside_scene(scene, layer.file)});
+  for (const std::vector<double> &point : t.way) add("--way", point);
+  if (t.way_width > 0) add("--way-width", {t.way_width});
   if (const EllipsoidSource &e = t.ellipsoid; e.given)
     add("--ellipsoid", {e.centre[0], e.centre[1], e.centre[2], e.semi_axes[0], e.semi_axes[1], e.semi_axes[2],
                         e.dip / degree.si, e.dip_direction / degree.si});

@@ -118,6 +118,9 @@ class AnySimulation {
   virtual std::vector<BodyReport> bodies() = 0;  ///< collective
   /// Surface of the soil at the start, of all ranks. Collective.
   virtual std::vector<SoilFace> surface() const = 0;
+  /// Middles of the facets of these groups that lie downhill of the soil, which a slide may reach, in the order in
+  /// which it would, the same on all ranks. Collective.
+  virtual std::vector<std::array<double, 3>> downhill(const std::vector<std::string> &groups) const = 0;
   /// What the scene models, for pictures (simulation/model.h); on the first rank. Collective.
   virtual std::string model() const = 0;
   virtual Snapshot snapshot() = 0;  ///< particles of this rank

@@ -8,6 +8,15 @@ namespace talus {
 
 using Action = std::function<int()>;
 
+/// Of an option: a number above 0. CLI::PositiveNumber says the same with the largest number there is, in 309 digits.
+inline const CLI::Validator above_zero(
+    [](const std::string &text) {
+      double value = 0;
+      const bool number = CLI::detail::lexical_cast(text, value);
+      return number && value > 0 ? std::string() : text + " must be a number above 0";
+    },
+    "NUMBER ABOVE 0");
+
 /// Exit status of solve where the factor of safety is known no better than a wide bracket.
 inline constexpr int undecided_status = 3;
 

@@ -166,13 +166,7 @@ Action add_converge(CLI::App &app) {
           "(default: the scene's size times 1.414, 1, 0.707; its step times 1, 0.707, 0.5; 3, 6, 12 particles "
           "per triangle or 4, 8, 20 per tetrahedron)")
       ->delimiter(',')
-      ->check(CLI::Validator(
-          [](const std::string &text) {
-            char *end = nullptr;
-            const bool good = std::strtod(text.c_str(), &end) > 0 && *end == '\0';
-            return good ? std::string() : text + " must be a number above 0, without a unit: sizes are in m";
-          },
-          ""));
+      ->check(above_zero);
   command
       ->add_option("--within", arguments->within,
                    "results that differ by no more than this share of the finest run's count as equal [%] (default 5)")

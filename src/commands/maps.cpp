@@ -21,12 +21,12 @@ Action add_maps(CLI::App &app) {
       ->add_option("--spacing", arguments->spacing,
                    "width of the cells [m]; by default that of the terrain file or, without terrain, twice the size of "
                    "the particles")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero);
   command
       ->add_option("--limit", arguments->limit,
                    "least thickness [m] of soil that counts for outline, arrival time and speed; by default half the "
                    "size of the particles")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero);
   command->add_flag("--ascii", arguments->ascii, "write the grids as ESRI ASCII too");
   return [arguments] {
     if (!std::filesystem::is_regular_file(std::filesystem::path(arguments->directory) / "run.h5"))

@@ -11,8 +11,9 @@ namespace talus {
 namespace {
 
 struct MeshArguments {
-  std::string source, file, size, dimension, thickness, layers, format, step, base, air, far_size, slip_surface;
-  std::vector<std::string> cuts, boxes, window, ellipsoid;
+  std::string source, file, size, dimension, thickness, layers, format, step, base, air, far_size, slip_surface,
+      outline, depth, depth_shape, way_width;
+  std::vector<std::string> cuts, boxes, window, ellipsoid, soil_layers, way;
   std::string young_modulus = "10 MPa", poisson_ratio = "0.3", density = "2000";  // a soft soil
 };
 
@@ -41,13 +42,17 @@ std::vector<std::string> options_of(const MeshArguments &a) {
                                     {"--thickness", a.thickness},
                                     {"--base", a.base},
                                     {"--air", a.air},
-                                    {"--far-size", a.far_size}})
+                                    {"--far-size", a.far_size},
+                                    {"--depth", a.depth},
+                                    {"--way-width", a.way_width}})
     if (!value.empty()) options.insert(options.end(), {name, metres(name, value)});
   for (const auto &[name, value] : {std::pair{"--dimension", a.dimension},
                                     {"--layers", a.layers},
                                     {"--format", a.format},
                                     {"--step", a.step},
-                                    {"--slip-surface", a.slip_surface}})
+                                    {"--slip-surface", a.slip_surface},
+                                    {"--outline", a.outline},
+                                    {"--depth-shape", a.depth_shape}})
     if (!value.empty()) options.insert(options.end(), {name, value});
   for (const std::string &cut : a.cuts) options.insert(options.end(), {"--cuts", metres("--cuts", cut)});
   for (std::size_t i = 0; i < a.boxes.size(); ++i) {
@@ -57,6 +62,14 @@ std::vector<std::string> options_of(const MeshArguments &a) {
   for (std::size_t i = 0; i < a.window.size(); ++i) {
     if (i == 0) options.push_back("--window");
     options.push_back(metres("--window", a.window[i]));
+  }
+  for (std::size_t i = 0; i < a.soil_layers.size(); ++i) {
+    if (i % 2 == 0) options.push_back("--layer");
+    options.push_back(a.soil_layers[i]);
+  }
+  for (std::size_t i = 0; i < a.way.size(); ++i) {
+    if (i % 2 == 0) options.push_back("--way");
+    options.push_back(metres("--way", a.way[i]));
   }
   for (std::size_t i = 0; i < a.ellipsoid.size(); ++i) {
     if (i == 0) options.push_back("--ellipsoid");
@@ -143,6 +156,23 @@ Action add_mesh(CLI::App &app) {
                    "terrain: slip surface by an ellipsoid, x y z of its centre, half lengths down the dip, along the "
                    "strike and normal, dip, dip direction (azimuth towards which it dips)")
       ->expected(8);
+  command->add_option("--outline", arguments->outline,
+                      "terrain: slip surface by the outline of the slide, polygons of a Shapefile or GeoPackage");
+  command->add_option("--depth", arguments->depth, "terrain: largest depth of the slip surface in the outline");
+  command->add_option("--depth-shape", arguments->depth_shape,
+                      "terrain: depth in the outline, bowl (default: 0 at the outline) or constant");
+  command
+      ->add_option("--layer", arguments->soil_layers,
+                   "terrain: NAME FILE, a group of the cells below a grid of elevations; from top to bottom")
+      ->type_size(2)
+      ->expected(-1);
+  command
+      ->add_option("--way", arguments->way,
+                   "terrain: x y, a point of the line along which cells measure --size; may be repeated")
+      ->type_size(2)
+      ->expected(-1);
+  command->add_option("--way-width", arguments->way_width,
+                      "terrain: width of the strip of small cells along the line --way");
   command->add_option("--format", arguments->format, "format of the mesh file: 2.2 or 4.1 (default 4.1)");
   command->add_option("--young-modulus", arguments->young_modulus,
                       "Young's modulus of the soil, for the critical step (default 10 MPa)");

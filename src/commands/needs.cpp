@@ -49,7 +49,7 @@ BodyNeeds needs_of(const BodyReport &report, const BodySource &source) {
   return b;
 }
 
-LayerNeeds layer_of(const Scene &scene, const std::vector<BodyNeeds> &bodies, double gravity) {
+LayerNeeds layer_of(const Scene &scene, const std::vector<BodyNeeds> &bodies, double gravity, double depth) {
   LayerNeeds layer;
   double mass = 0, volume = 0;
   std::array<double, 3> low = bodies[0].body.low, high = bodies[0].body.high;
@@ -65,6 +65,8 @@ LayerNeeds layer_of(const Scene &scene, const std::vector<BodyNeeds> &bodies, do
     layer.height =
         gravity > 0 ? layer.height + extent * std::abs(scene.gravity[d]) / gravity : std::max(layer.height, extent);
   }
+  const bool downwards = gravity > 0 && std::abs(scene.gravity[scene.vertical()]) == gravity;
+  if (downwards && depth > 0) layer.height = depth;
   const double density = mass / volume;
   layer.transit = scales::transit(layer.height, layer.wave_speed);
   layer.gravity_stress = density * gravity * layer.height;
@@ -74,25 +76,33 @@ LayerNeeds layer_of(const Scene &scene, const std::vector<BodyNeeds> &bodies, do
 }
 
 /// Takes some steps and times them, after a few that touch the memory first.
-void burst(AnySimulation &simulation, Needs &needs) {
+void burst(AnySimulation &simulation, Scene &scene, Needs &needs) {
   PetscLogDouble start, now;
   double mine[2] = {0, 0}, all[2];
+  const double interval = scene.transfer.remap_interval;
   try {
     for (int i = 0; i < 3; ++i) simulation.single_step();
     for (const Column &column : simulation.snapshot().columns)  // of a state that has not broken off
       mine[1] += 8. * static_cast<double>(column.values.size());
-    PetscTime(&start);
-    int over = 0;
-    while (needs.burst_steps < burst_length && !over) {
-      simulation.single_step();
-      PetscTime(&now);
-      ++needs.burst_steps, needs.seconds_per_step = (now - start) / needs.burst_steps;
-      over = now - start > longest_burst;
-      MPI_Allreduce(MPI_IN_PLACE, &over, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD);
-    }
+    const auto timed = [&](int most, double longest, int &steps, double &seconds) {
+      PetscTime(&start);
+      for (int over = 0; steps < most && !over;) {
+        simulation.single_step();
+        PetscTime(&now);
+        ++steps, seconds = (now - start) / steps;
+        over = now - start > longest;
+        MPI_Allreduce(MPI_IN_PLACE, &over, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD);
+      }
+    };
+    timed(burst_length, longest_burst, needs.burst_steps, needs.seconds_per_step);
+    scene.transfer.remap_interval = 0;
+    int remaps = 0;
+    timed(burst_length / 2, longest_burst / 2, remaps, needs.seconds_per_remap);
+    needs.seconds_per_remap = std::max(needs.seconds_per_remap, needs.seconds_per_step);
   } catch (const RunError &error) {
     needs.burst_failure = error.what();
   }
+  scene.transfer.remap_interval = interval;
   (void)PetscMemoryGetCurrentUsage(&mine[0]);
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
   needs.memory = all[0], needs.results = all[1];
@@ -154,6 +164,8 @@ class Adviser {
       say(needs_.function_fault +
           ". A run ends where it needs such a value; the function was tried all over the soil and "
           "the stages.");
+    if (!needs_.downhill_fault.empty())
+      say(needs_.downhill_fault + ". That place lies downhill of the soil: the run ends if a slide comes so far.");
     for (const std::string &sentence : needs_.unlikely) say(sentence + (sentence.ends_with('?') ? "" : "."));
     if (!scene_.root->has("gravity"))
       say("The scene gives no gravity, so that soil has no weight; gravity = 0 says that this is meant.");
@@ -410,7 +422,24 @@ void sample_functions(const Scene &scene, const std::vector<BodyReport> &bodies)
   });
 }
 
+/// Asks the friction of each base for its value where soil lies and downhill of it. Values that a key does not admit,
+/// as beyond a grid, are remembered by the scene. Collective.
+void try_ground_downhill(const Scene &scene, const AnySimulation &simulation) {
+  for (const BoundarySource &source : scene.boundary) {
+    const Boundary kind = read_boundary(source.kind);
+    const std::vector<std::array<double, 3>> places =
+        simulation.downhill(source.group.empty() ? std::vector{source.name} : source.group);
+    for (const auto &value : {kind.friction_coefficient, kind.adhesion})
+      for (const auto &[x, y, z] : places)
+        if (value) (void)value(x, y, z, 0, 0);
+  }
+}
+
 }  // namespace
+
+double Needs::longest_run_time() const {
+  return seconds_per_step > 0 ? run_time() * seconds_per_remap / seconds_per_step : 0;
+}
 
 double Needs::run_time() const {
   return std::accumulate(stages.begin(), stages.end(), 0.,
@@ -437,14 +466,16 @@ Needs find_needs(Scene &scene, bool with_model) {
     fastest = std::max(fastest, needs.bodies[b].wave_speed);
     if (reports[b].critical_step < reports[needs.slowest].critical_step) needs.slowest = static_cast<int>(b);
   }
-  needs.layer = layer_of(scene, needs.bodies, needs.gravity);
+  const std::vector<SoilFace> surface = simulation->surface();
+  needs.layer =
+      layer_of(scene, needs.bodies, needs.gravity, greatest_depth(surface, scene.dimension, scene.vertical()));
   std::vector<Law> laws;
   for (const BodyNeeds &b : needs.bodies) laws.push_back(b.law);
   const std::vector<Softening> softening = softening_of(scene, laws, reports);
   for (std::size_t b = 0; b < reports.size(); ++b) needs.bodies[b].softening = softening[b];
   needs.brittle = brittle_soils(scene, laws, reports);
-  needs.unlikely = unlikely_values(scene, laws, reports);
-  for (const auto &more : {unlikely_surroundings(scene, reports, simulation->surface()), coarse_cells(scene, reports)})
+  needs.unlikely = unlikely_values(scene, laws, reports, surface);
+  for (const auto &more : {unlikely_surroundings(scene, reports, surface), coarse_cells(scene, reports, surface)})
     needs.unlikely.insert(needs.unlikely.end(), more.begin(), more.end());
   const StepRule rule = step_rule(read_integrator(scene.integrator, fluids_move(scene.phases)));
   needs.critical_step = rule.bound == FrequencyBound::mesh || scene.water.drag == PoreDrag::at_start
@@ -454,10 +485,14 @@ Needs find_needs(Scene &scene, bool with_model) {
   needs.fixed_step = rule.fixed > 0;
   needs.step = needs.fixed_step ? rule.fixed : rule.share * needs.critical_step;
   MPI_Comm_size(PETSC_COMM_WORLD, &needs.ranks);
-  burst(*simulation, needs);
+  burst(*simulation, scene, needs);
   if (scene.function_fault().empty()) {  // else the burst has broken off by it
     sample_functions(scene, reports);
     needs.function_fault = scene.function_fault();
+  }
+  if (scene.function_fault().empty()) {
+    try_ground_downhill(scene, *simulation);
+    needs.downhill_fault = scene.function_fault();
   }
   needs.snapshots = 1;
   for (const Stage &stage : scene.stage) {

@@ -19,9 +19,9 @@ struct BodyNeeds {
   Softening softening = {};
 };
 
-/// All bodies taken for one layer, as high as they reach together.
+/// All bodies taken for one layer, as deep as their soil is below its surface.
 struct LayerNeeds {
-  double height = 0;          ///< along gravity; without gravity the largest extent [m]
+  double height = 0;          ///< depth where gravity points down, else extent along it or, without it, largest [m]
   double modulus = 0;         ///< M = K + 4/3 G of the softest body [Pa]
   double transit = 0;         ///< of the slowest compression wave over the height [s]
   double wave_speed = 0;      ///< of that wave [m/s]
@@ -59,26 +59,29 @@ struct Needs {
   std::vector<BodyNeeds> bodies;
   LayerNeeds layer;
   std::vector<StageNeeds> stages;
+  std::string downhill_fault;         ///< the same, of ground that a slide may reach
   std::string function_fault;         ///< a value of a function that its key does not admit, as a sentence
   std::vector<std::string> unlikely;  ///< sentences on values that hardly any soil has
   std::vector<std::string> brittle;   ///< sentences on soils that soften fast for the height of the ground
   std::vector<HeatedBaseNeeds> heated_bases;
-  Drainage drainage;            ///< time = 0 without gravity
-  double gravity;               ///< [m/s2]
-  int slowest;                  ///< body that sets the critical step
-  double critical_step;         ///< [s]
-  double altitude_rule;         ///< smallest altitude over the largest wave speed [s]
-  double step;                  ///< taken [s]
-  bool fixed_step;              ///< given by the scene
-  int burst_steps = 0;          ///< timed
-  double seconds_per_step = 0;  ///< of wall time
-  std::string burst_failure;    ///< why the burst broke off; empty if it did not
-  double memory;                ///< resident after the burst, over all ranks [B]
-  double results;               ///< snapshots on disk [B]
+  Drainage drainage;             ///< time = 0 without gravity
+  double gravity;                ///< [m/s2]
+  int slowest;                   ///< body that sets the critical step
+  double critical_step;          ///< [s]
+  double altitude_rule;          ///< smallest altitude over the largest wave speed [s]
+  double step;                   ///< taken [s]
+  bool fixed_step;               ///< given by the scene
+  int burst_steps = 0;           ///< timed
+  double seconds_per_step = 0;   ///< of wall time, of soil at rest
+  double seconds_per_remap = 0;  ///< of a step that ends with a remap, as each one does in the fastest soil
+  std::string burst_failure;     ///< why the burst broke off; empty if it did not
+  double memory;                 ///< resident after the burst, over all ranks [B]
+  double results;                ///< snapshots on disk [B]
   long long snapshots;
   int ranks;
 
-  double run_time() const;  ///< of all stages at their longest [s]
+  double run_time() const;          ///< of all stages at their longest, without remaps [s]
+  double longest_run_time() const;  ///< the same with a remap in each step [s]
   long long particles() const;
   const BodyNeeds &slowest_body() const { return bodies[slowest]; }
 };

@@ -165,6 +165,10 @@ void Describer::points(const char *key, const std::vector<std::vector<double>> &
   line(key, number_in(unit) + ", list of points", initial, meaning, unit);
 }
 
+void Describer::water_table(const char *key, const WaterTable &, Unit unit, const char *meaning) {
+  line(key, number_in(unit) + std::string(", list of points, or an expression of ") + of::place, "", meaning, unit);
+}
+
 void Describer::function(const char *key, const Function &value, Unit unit, Range range, const char *variables,
                          const char *meaning) {
   line(key, number_in(unit) + ", " + from_to(range) + ", function of " + variables,

@@ -120,9 +120,24 @@ class Checks {
       if (given) reader_.complain(key, "has no effect on a mesh from terrain: leave it out");
     if (!t.window.empty()) components("mesh.terrain.window", t.window.size(), 4, "numbers, west, south, east, north");
     if (!t.base.empty()) components("mesh.terrain.base", t.base.size(), 1, "elevation");
+    const std::string path = "mesh.terrain.";
+    if (!t.outline.empty() && !(t.depth > 0))
+      reader_.complain(path + "outline", "needs depth, the largest depth of the slip surface within it");
+    if (t.outline.empty() && t.depth > 0) reader_.complain(path + "depth", "has no effect without an outline");
+    for (const LayerSource &layer : t.layer) {
+      if (layer.file.empty()) reader_.complain(path + "layer." + layer.name, "needs file, a grid of elevations");
+      if (t.base.empty())
+        reader_.complain(path + "layer." + layer.name, "parts the ground over a flat base: give base, or leave it out");
+    }
+    for (std::size_t i = 0; i < t.way.size(); ++i)
+      components(path + "way." + std::to_string(i), t.way[i].size(), 2, "coordinates, [x, y]");
+    if (!t.way.empty() && !(t.way_width > 0))
+      reader_.complain(path + "way", "needs way_width, the width of the strip of small cells along it");
+    if (t.way.empty() && t.way_width > 0) reader_.complain(path + "way_width", "has no effect without a way");
+    if (t.ellipsoid.given + !t.slip_surface.empty() + !t.outline.empty() > 1)
+      reader_.complain(path + (t.ellipsoid.given ? "ellipsoid" : "outline"),
+                       "is a second slip surface: give one of slip_surface, ellipsoid and outline");
     if (!t.ellipsoid.given) return;
-    if (!t.slip_surface.empty())
-      reader_.complain("mesh.terrain.ellipsoid", "is a second slip surface beside slip_surface: give one of them");
     components("mesh.terrain.ellipsoid.centre", t.ellipsoid.centre.size(), 3, "coordinates");
     components("mesh.terrain.ellipsoid.semi_axes", t.ellipsoid.semi_axes.size(), 3, "lengths");
   }
@@ -206,7 +221,7 @@ class Checks {
     for (std::size_t i = 0; i < body.dense.size(); ++i) dense(path + ".dense." + std::to_string(i), body.dense[i]);
     weight(path, body);
     if (body.pore_pressure_ratio > 0) ratio(path + ".pore_pressure_ratio", body);
-    if (!body.water_table.empty()) water_table(path + ".water_table", body);
+    if (body.water_table.given()) water_table(path + ".water_table", body);
     if (body.relative_permeability.reader && !body.retention.reader)
       reader_.complain(path + ".relative_permeability",
                        "has no effect without a retention curve, from which the degree of saturation follows: add [" +
@@ -242,8 +257,13 @@ class Checks {
       reader_.complain(key, "prescribes the pore pressure, which needs phases = \"drained\" and no seepage stage");
   }
 
-  /// Points of a water table, sorted by x.
-  void table(const std::string &key, const std::vector<std::vector<double>> &points) const {
+  /// Points of a water table, sorted by x, or its elevation at a level place.
+  void table(const std::string &key, const WaterTable &table) const {
+    const std::vector<std::vector<double>> &points = table.points;
+    if (table.elevation.uses(up()))
+      reader_.complain(key, "cannot depend on " + up() + ", the elevation itself, since up = \"" + up() + "\"");
+    if (scene_.dimension == 2 && table.elevation.uses("z"))
+      reader_.complain(key, "cannot depend on z, which plane strain (dimension = 2) has not");
     for (std::size_t i = 0; i < points.size(); ++i) {
       const std::string path = key + "." + std::to_string(i);
       components(path, points[i].size(), 2, "coordinates, [x, elevation]");
@@ -307,8 +327,8 @@ class Checks {
                        "has no effect in a drained scene without a seepage stage: give suction as water.excess below "
                        "zero, or leave it out");
     const bool has_table =
-        !scene_.water.table.empty() ||
-        std::any_of(scene_.body.begin(), scene_.body.end(), [](const BodySource &b) { return !b.water_table.empty(); });
+        scene_.water.table.given() ||
+        std::any_of(scene_.body.begin(), scene_.body.end(), [](const BodySource &b) { return b.water_table.given(); });
     if (!has_table && !(scene_.water.level.constant() && scene_.water.level(0) == 0))
       reader_.complain("water.level", "has no effect without a water table, which it raises: give water.table");
   }

@@ -193,6 +193,19 @@ void TableReader::points(const char *key, std::vector<std::vector<double>> &valu
   }
 }
 
+void TableReader::water_table(const char *key, WaterTable &value, Unit unit, const char *meaning) {
+  const auto given = find(key, meaning);
+  if (!given) return;
+  constexpr Range elevations{-1e4, 1e4};
+  if (given->node().is_string()) {
+    const Function elevation = given->function(unit, elevations, of::place);
+    if (!elevation.constant()) return void(value.elevation = elevation);
+  }
+  if (!given->node().is_array())
+    given->must_be("a list of points [x, elevation] or an expression of " + std::string(of::place));
+  points(key, value.points, unit, meaning);
+}
+
 void TableReader::function(const char *key, Function &value, Unit unit, Range range, const char *variables,
                            const char *meaning) {
   if (const auto given = find(key, meaning)) value = given->function(unit, range, variables);

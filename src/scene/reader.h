@@ -20,6 +20,7 @@
 #include "base/units.h"
 #include "scene/deferred.h"
 #include "scene/function.h"
+#include "scene/water_table.h"
 
 namespace talus {
 
@@ -69,6 +70,8 @@ class TableReader {
   void quantities(const char *key, std::vector<double> &value, const char *meaning);
   /// A list of quantities; a single one gives a vector of size 1.
   void point(const char *key, std::vector<double> &value, Unit unit, const char *meaning);
+  /// A list of points [x, elevation], or an expression of the place.
+  void water_table(const char *key, WaterTable &value, Unit unit, const char *meaning);
   void points(const char *key, std::vector<std::vector<double>> &value, Unit unit, const char *meaning);
   /// A quantity, a list of [t, value] points, or an expression; numbers and tables are checked against the range.
   /// `variables` are those that the function may name, as in namespace `of`; its values are checked as they are used.

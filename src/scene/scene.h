@@ -12,6 +12,7 @@
 #include "base/units.h"
 #include "scene/deferred.h"
 #include "scene/function.h"
+#include "scene/water_table.h"
 
 namespace talus {
 
@@ -61,6 +62,19 @@ struct EllipsoidSource {
   }
 };
 
+/// A surface below which soil is of another kind, by a grid.
+struct LayerSource {
+  std::string name;  ///< the table's own name, [mesh.terrain.layer.NAME], and that of the group of its cells
+  std::string file;
+  template <class Visitor>
+  void fields(Visitor &&v) {
+    v.text("file", file, "grid of the elevations of the upper surface of the layer, relative to the scene");
+  }
+};
+
+/// How deep a slip surface is within an outline.
+enum class DepthShape { bowl, constant };
+
 /// A terrain file and what is cut out of it.
 struct TerrainSource {
   std::string file;            ///< ESRI ASCII, GeoTIFF; empty: no terrain
@@ -71,6 +85,12 @@ struct TerrainSource {
   double far_size = 0;         ///< of cells far from slide and ground [m]; 0: mesh.size
   std::string slip_surface;    ///< a grid; empty: none
   EllipsoidSource ellipsoid;   ///< in place of a grid
+  std::string outline;         ///< of the slide, in place of both; polygons of a Shapefile or GeoPackage
+  double depth = 0;            ///< largest, within the outline [m]
+  DepthShape depth_shape = DepthShape::bowl;
+  std::vector<LayerSource> layer;        ///< from top to bottom
+  std::vector<std::vector<double>> way;  ///< line x, y of the map, along which cells are as small as in the slide [m]
+  double way_width = 0;                  ///< [m]
   template <class Visitor>
   void fields(Visitor &&v) {
     v.text("file", file, "terrain file, ESRI ASCII or GeoTIFF with coordinates and elevations in metres");
@@ -84,6 +104,20 @@ struct TerrainSource {
              "cell size far from the slide, and from the ground below it; 0: mesh.size everywhere");
     v.text("slip_surface", slip_surface, "grid of the elevations of a slip surface, relative to the scene");
     v.table("ellipsoid", ellipsoid, "slip surface: the lower side of an ellipsoid");
+    v.text("outline", outline,
+           "outline of a slide, whose slip surface is `depth` below the ground within it: polygons of a Shapefile or "
+           "GeoPackage in the projection of the terrain, relative to the scene");
+    v.number("depth", depth, metre, Range{0, 1e4}, "largest depth of the slip surface within the outline");
+    v.choice("depth_shape", depth_shape, {{"bowl", DepthShape::bowl}, {"constant", DepthShape::constant}},
+             "bowl: from 0 at the outline to `depth`, with the same curvature everywhere, as by the sloping local base "
+             "level; constant: `depth` everywhere, with a vertical wall along the outline");
+    v.named("layer", layer,
+            "layers of soil over a flat base, from top to bottom, [mesh.terrain.layer.NAME]: cells below the surface "
+            "of a layer are the group NAME in place of `ground`");
+    v.points("way", way, metre,
+             "line of points [x, y] of the map along which the slide flows: within way_width cells measure mesh.size, "
+             "as in the slide");
+    v.number("way_width", way_width, metre, Range{0, 1e5}, "width of the strip along the way");
   }
 };
 
@@ -146,20 +180,20 @@ enum class PermeabilityChange { none, kozeny_carman, grain_share };
 inline constexpr Range weight_of_soil{1e3, 1e5};  ///< of unit weights [N/m3]
 
 struct BodySource {
-  std::string name;                  ///< the table's own name, [body.NAME]
-  std::vector<std::string> region;   ///< physical groups of cells
-  double unit_weight = 0;            ///< total, above the water table if it differs below it [N/m3]; gives density
-  double saturated_unit_weight = 0;  ///< total, below the water table [N/m3]; gives grain_density
-  double density = 0;                ///< total density [kg/m3]; or porosity and grain_density
-  double porosity = 0;               ///< [-]
-  double grain_density = 0;          ///< [kg/m3]
-  double saturation = 0;             ///< of the pores above the water table [-]
-  double pore_pressure_ratio = 0;    ///< r_u: pore pressure over the weight of the soil above [-]
-  std::vector<std::vector<double>> water_table;  ///< of its own, polyline x, elevation [m]
-  bool reduce_strength = true;                   ///< by a factor of safety
-  double permeability = 0;                       ///< intrinsic, k [m2]; or hydraulic_conductivity
-  double hydraulic_conductivity = 0;             ///< k rho_w g / mu_w [m/s]
-  double gas_permeability = 0;                   ///< intrinsic, of the gas [m2]; 0: that of the liquid
+  std::string name;                   ///< the table's own name, [body.NAME]
+  std::vector<std::string> region;    ///< physical groups of cells
+  double unit_weight = 0;             ///< total, above the water table if it differs below it [N/m3]; gives density
+  double saturated_unit_weight = 0;   ///< total, below the water table [N/m3]; gives grain_density
+  double density = 0;                 ///< total density [kg/m3]; or porosity and grain_density
+  double porosity = 0;                ///< [-]
+  double grain_density = 0;           ///< [kg/m3]
+  double saturation = 0;              ///< of the pores above the water table [-]
+  double pore_pressure_ratio = 0;     ///< r_u: pore pressure over the weight of the soil above [-]
+  WaterTable water_table;             ///< of its own
+  bool reduce_strength = true;        ///< by a factor of safety
+  double permeability = 0;            ///< intrinsic, k [m2]; or hydraulic_conductivity
+  double hydraulic_conductivity = 0;  ///< k rho_w g / mu_w [m/s]
+  double gas_permeability = 0;        ///< intrinsic, of the gas [m2]; 0: that of the liquid
   PermeabilityChange permeability_change = PermeabilityChange::none;  ///< with porosity
   DeferredTable retention;                                            ///< [body.NAME.retention], read by physics/pores
   DeferredTable relative_permeability;                                ///< [body.NAME.relative_permeability], likewise
@@ -194,10 +228,10 @@ struct BodySource {
     v.number("pore_pressure_ratio", pore_pressure_ratio, one, Range{0, 1},
              "r_u: pore pressure over the weight per area of the soil above, as it lies at the start, in place of that "
              "of [water]; needs phases = \"drained\" and unit_weight");
-    v.points(
+    v.water_table(
         "water_table", water_table, metre,
-        "water table or piezometric line of this soil: polyline of points [x, elevation] in place of water.table in "
-        "the regions that the body fills at the start; water.level and water.excess apply to it; the pressure may "
+        "water table or piezometric line of this soil, given as water.table is and in place of it in the regions that "
+        "the body fills at the start; water.level and water.excess apply to it; the pressure may "
         "jump at the border of these regions; needs phases = \"drained\"");
     v.flag(
         "reduce_strength", reduce_strength,
@@ -266,7 +300,7 @@ struct Water {
   PoreDrag drag = PoreDrag::over_step;            ///< implicit in a step, or from the velocities at its start
   PoreStorage storage = PoreStorage::mass;        ///< what pressure follows from
   Function suction;                               ///< above the table, function of x, y, z [Pa]; not given: hydrostatic
-  std::vector<std::vector<double>> table;         ///< polyline x, elevation [m]; pressure is hydrostatic below it
+  WaterTable table;                               ///< pressure is hydrostatic below it
   Function level = 0.0;                           ///< added to the elevation of the table, function of t [m]
   Function excess = 0.0;        ///< added to the hydrostatic pressure, function of x, y, z, t and `table` [Pa]
   bool open_water_load = true;  ///< open water above the ground rests on submerged faces
@@ -291,12 +325,14 @@ struct Water {
         "coefficient; rate is for comparison (it loses water near saturation) and needs phases = \"unsaturated\"");
     v.function("suction", suction, pascal, Range{0, 1e9}, of::place,
                "initial suction above the water table, function of x, y, z; default: hydrostatic");
-    v.points("table", table, metre, "water table: polyline of points [x, elevation]; pressure is hydrostatic below it");
+    v.water_table("table", table, metre,
+                  "water table: polyline of points [x, elevation], or an expression of the level place for its "
+                  "elevation, such as that of a grid, water(x, y); pressure is hydrostatic below it");
     v.function("level", level, metre, Range{-1e4, 1e4}, of::time, "rise of the whole water table, function of t");
     v.function(
         "excess", excess, pascal, Range{-1e9, 1e9}, of::place_time_and_table,
         "excess pressure, added to the hydrostatic pressure, function of x, y, z, t and `table` (elevation of "
-        "the water table at x); where it does not vanish at the surface of the soil it loads the surface too, so "
+        "the water table there); where it does not vanish at the surface of the soil it loads the surface too, so "
         "that a uniform excess has no effect");
     v.flag("open_water_load", open_water_load,
            "the weight of open water above the ground acts on the submerged ground");

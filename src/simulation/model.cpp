@@ -361,16 +361,16 @@ class Model {
     return "none";
   }
 
-  /// The common water table, and those of bodies that have one of their own.
+  /// The common water table, and those of bodies that have one of their own, as far as they are polylines.
   std::string water_tables() const {
     struct Table {
       std::string body;
       const std::vector<std::vector<double>> *points;
     };
     std::vector<Table> tables;
-    if (!scene_.water.table.empty()) tables.push_back({"", &scene_.water.table});
+    if (!scene_.water.table.points.empty()) tables.push_back({"", &scene_.water.table.points});
     for (const BodySource &body : scene_.body)
-      if (!body.water_table.empty()) tables.push_back({body.name, &body.water_table});
+      if (!body.water_table.points.empty()) tables.push_back({body.name, &body.water_table.points});
     const double rise = tables.empty() ? 0 : scene_.water.level(0);
     return json::array(tables, [&](const Table &table) {
       std::vector<std::vector<double>> points = *table.points;
@@ -379,13 +379,16 @@ class Model {
     });
   }
 
-  /// Where the prescribed pore pressure ends in the soil, if it is not only that of a water table; in plane strain.
+  /// Where the prescribed pore pressure ends in the soil, if it is not only that of a polyline; in plane strain.
   std::string line_of_no_pressure() const {
     std::vector<Piece<dim>> mine;
     const Function &excess = scene_.water.excess;
     const bool by_ratio =
         std::ranges::any_of(scene_.body, [](const BodySource &body) { return body.pore_pressure_ratio > 0; });
-    const bool told = by_ratio || !excess.constant() || excess(0) != 0;
+    const bool by_function =
+        scene_.water.table.elevation.given() ||
+        std::ranges::any_of(scene_.body, [](const BodySource &body) { return body.water_table.elevation.given(); });
+    const bool told = by_function || by_ratio || !excess.constant() || excess(0) != 0;
     for (int c = 0; dim == 2 && world_.phases.prescribed && told && c < world_.mesh.cell_count(); ++c) {
       if (!has_soil(c)) continue;
       const int soil = world_.pressure.soil_of(c);

@@ -29,8 +29,9 @@ void Simulation<dim>::begin() {
   for (const std::string &sentence : mesh_report().remarks) run_.recorder.note("warning: mesh: " + sentence);
   for (const std::string &sentence : brittle_soils(run_.scene, run_.world.laws, run_.world.report()))
     run_.recorder.note("warning: " + sentence);
-  for (const auto &doubts : {unlikely_values(run_.scene, run_.world.laws, run_.world.report()),
-                             unlikely_surroundings(run_.scene, run_.world.report(), run_.world.surface())})
+  const std::vector<SoilFace> surface = run_.world.surface();
+  for (const auto &doubts : {unlikely_values(run_.scene, run_.world.laws, run_.world.report(), surface),
+                             unlikely_surroundings(run_.scene, run_.world.report(), surface)})
     for (const std::string &sentence : doubts) run_.recorder.note("warning: " + sentence);
   run_.recorder.write_history();
   if (run_.options.gauss_points && is_static(run_.scene.stage.front().kind)) run_.statics.prepare();

@@ -29,6 +29,9 @@ class Simulation final : public AnySimulation {
   }
   std::vector<BodyReport> bodies() override { return run_.world.report(); }
   std::vector<SoilFace> surface() const override { return run_.world.surface(); }
+  std::vector<std::array<double, 3>> downhill(const std::vector<std::string> &groups) const override {
+    return run_.world.downhill(groups);
+  }
   std::string model() const override { return model_of(run_.world); }
   Snapshot snapshot() override { return run_.recorder.snapshot(); }
   const HistoryTable &history() const override { return run_.recorder.history(); }

@@ -78,7 +78,44 @@ std::vector<SoilFace> World<dim>::surface() const {
   return all;
 }
 
+template <int dim>
+std::vector<std::array<double, 3>> World<dim>::downhill(const std::vector<std::string> &groups) const {
+  const std::vector<int> body_of = bodies_of_cells(mesh, scene);
+  std::vector<SoilFace> mine;
+  for (const std::string &group : groups)
+    for (const Facet<dim> &facet : mesh.has_group(group) ? mesh.facets(group) : std::vector<Facet<dim>>{}) {
+      SoilFace face;
+      face.body = body_of[facet.cell];
+      for (int a = 0, n = 0; a <= dim; ++a)
+        if (a != facet.face)
+          std::copy_n(mesh.position[mesh.cells[facet.cell].node[a]].begin(), dim, face.corner[n++].begin());
+      mine.push_back(face);
+    }
+  const std::vector<SoilFace> all = gathered(comm, mine);
+  std::vector<std::array<double, 3>> middle(all.size(), std::array<double, 3>{});
+  std::map<std::array<double, 3>, std::vector<std::size_t>> beside;  // of a corner: the facets that meet there
+  std::vector<std::size_t> reached;
+  std::vector<char> seen(all.size());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    for (int a = 0; a < dim; ++a) {
+      beside[all[k].corner[a]].push_back(k);
+      for (int d = 0; d < dim; ++d) middle[k][d] += all[k].corner[a][d] / dim;
+    }
+    if (all[k].body >= 0) reached.push_back(k), seen[k] = 1;
+  }
+  for (std::size_t next = 0; next < reached.size(); ++next)  // grows as it goes downhill
+    for (int a = 0; a < dim; ++a)
+      for (const std::size_t other : beside[all[reached[next]].corner[a]])
+        if (!seen[other] && middle[other][scene.vertical()] < middle[reached[next]][scene.vertical()])
+          reached.push_back(other), seen[other] = 1;
+  std::vector<std::array<double, 3>> places;
+  for (const std::size_t k : reached) places.push_back(middle[k]);
+  return places;
+}
+
 template std::vector<SoilFace> World<2>::surface() const;
+template std::vector<std::array<double, 3>> World<2>::downhill(const std::vector<std::string> &) const;
+template std::vector<std::array<double, 3>> World<3>::downhill(const std::vector<std::string> &) const;
 template std::vector<SoilFace> World<3>::surface() const;
 
 }  // namespace talus

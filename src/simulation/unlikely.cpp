@@ -11,7 +11,7 @@
 #include "base/units.h"
 #include "physics/boundary/boundary.h"
 #include "physics/boundary/pore_conditions.h"
-#include "physics/prescribed_pressure.h"
+#include "scene/water_table.h"
 #include "simulation/failure.h"
 
 namespace talus {
@@ -44,27 +44,48 @@ Extent extent_of(const std::vector<BodyReport> &bodies) {
   return box;
 }
 
+double table_at(const WaterTable &table, const std::array<double, 3> &x) { return table.at(x[0], x[1], x[2]); }
+
 /// The water table of [water], which lies level beyond its ends.
-void doubt_table(const Scene &scene, const Extent &soil, std::vector<std::string> &sentences) {
-  const auto &table = scene.water.table;
-  if (table.empty()) return;
+void doubt_table(const Scene &scene, const Extent &soil, const std::vector<SoilFace> &surface,
+                 std::vector<std::string> &sentences) {
+  if (!scene.water.table.given()) return;
+  const auto &table = scene.water.table.points;
   const int up = scene.vertical();
   const double height = soil.of(up);
   if (table.size() > 1 && (table.front()[0] >= soil.high[0] || table.back()[0] <= soil.low[0]))
     sentences.push_back("water.table runs from x = " + rounded(table.front()[0]) + " to " + rounded(table.back()[0]) +
                         " m, beside the soil, which lies from " + rounded(soil.low[0]) + " to " +
                         rounded(soil.high[0]) + " m: the water there is level with the end of the table");
-  const auto lower = [](const auto &a, const auto &b) { return a[1] < b[1]; };
-  const auto [least, most] = std::minmax_element(table.begin(), table.end(), lower);
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  const auto take = [&](double elevation) { least = std::min(least, elevation), most = std::max(most, elevation); };
+  for (const auto &point : table) take(point[1]);
+  for (const SoilFace &face : surface)
+    for (int a = 0; a < scene.dimension && table.empty(); ++a) take(table_at(scene.water.table, face.corner[a]));
   const double level = scene.water.level(0, 0, 0, 0);
-  if ((*least)[1] + level > soil.high[up] + 2 * height)
-    sentences.push_back("water.table stands " + rounded((*least)[1] + level - soil.high[up]) +
+  if (least + level > soil.high[up] + 2 * height)
+    sentences.push_back("water.table stands " + rounded(least + level - soil.high[up]) +
                         " m or more above the top of the soil, which is " + rounded(height) +
                         " m high: all of it lies deep under open water. Is this meant?");
-  if (!scene.water.level.depends_on_time() && scene.phases == PhaseModel::drained && (*most)[1] + level <= soil.low[up])
+  if (!scene.water.level.depends_on_time() && scene.phases == PhaseModel::drained && most + level <= soil.low[up])
     sentences.push_back(std::string("water.table lies below all soil (its highest point is at ") + axes[up] + " = " +
-                        rounded((*most)[1] + level) + " m, the lowest soil at " + rounded(soil.low[up]) +
+                        rounded(most + level) + " m, the lowest soil at " + rounded(soil.low[up]) +
                         " m): it gives no pore pressure");
+}
+
+/// Soil counts as wet below a water table; an excess presses and fills no pores.
+void doubt_excess_alone(const Scene &scene, std::vector<std::string> &sentences) {
+  const Function &excess = scene.water.excess;
+  if (scene.phases != PhaseModel::drained || scene.water.table.given()) return;
+  if (excess.constant() && excess(0) == 0) return;
+  for (const BodySource &body : scene.body)
+    if ((body.saturation > 0 || body.saturated_unit_weight > 0) && !body.water_table.given() &&
+        body.pore_pressure_ratio == 0)
+      sentences.push_back("water.excess is the only pore pressure of body." + body.name + ", whose " +
+                          (body.saturation > 0 ? "saturation" : "saturated_unit_weight") +
+                          " asks for a water table: all of this soil has the weight above the water table. Give the "
+                          "elevation of the water as water.table, which may be an expression or a grid, and by "
+                          "water.excess only what is not hydrostatic");
 }
 
 // ---- open water ----
@@ -98,10 +119,10 @@ struct Pond {
   }
 };
 
-/// The ponds that stand on the surface of the soil where water rises to `elevation(x)`; less than `film` deep counts as
+/// The ponds that stand on the surface of the soil where water rises to `elevation`; less than `film` deep counts as
 /// dry.
 std::vector<Pond> ponds_of(const std::vector<SoilFace> &surface, int dimension, int up, double film,
-                           const std::function<double(double)> &elevation) {
+                           const std::function<double(const std::array<double, 3> &)> &elevation) {
   std::map<std::array<double, 3>, int> number;  // of the corners under water
   std::vector<int> joined;                      // a corner of the same pond with a smaller number, or itself
   const auto first = [&](int corner) {
@@ -112,7 +133,7 @@ std::vector<Pond> ponds_of(const std::vector<SoilFace> &surface, int dimension, 
     int before = -1;
     for (int a = 0; a < dimension && may_be_flooded(face, up); ++a) {
       const auto &x = face.corner[a];
-      if (elevation(x[0]) - x[up] <= film) continue;
+      if (elevation(x) - x[up] <= film) continue;
       const auto [entry, added] = number.try_emplace(x, static_cast<int>(joined.size()));
       if (added) joined.push_back(entry->second);
       if (before >= 0) joined[first(entry->second)] = first(before);
@@ -121,7 +142,7 @@ std::vector<Pond> ponds_of(const std::vector<SoilFace> &surface, int dimension, 
   }
   std::map<int, Pond> ponds;
   for (const auto &[x, corner] : number) {
-    const double level = elevation(x[0]);
+    const double level = elevation(x);
     ponds.try_emplace(first(corner), Pond{x[0], x[0], level, level, 0}).first->second.widen(x[0], level, x[up]);
   }
   std::vector<Pond> list;
@@ -134,13 +155,13 @@ constexpr double visible = 0.01;  // of the height of the soil: what no table fo
 /// Open water rests on the ground with its weight, so that a table that stands above the ground has to be level there.
 void doubt_ponds(const Scene &scene, double height, const std::vector<SoilFace> &surface,
                  std::vector<std::string> &sentences) {
-  const auto &table = scene.water.table;
-  if (table.size() < 2) return;
+  const WaterTable &table = scene.water.table;
+  if (!table.given() || table.level()) return;
   std::optional<Pond> worst;
   const auto fall = [](const Pond &pond) { return pond.highest - pond.lowest; };
   for (const double level : levels_of(scene))
     for (const Pond &pond : ponds_of(surface, scene.dimension, scene.vertical(), visible * height,
-                                     [&](double x) { return elevation_of(table, x) + level; }))
+                                     [&](const auto &x) { return table_at(table, x) + level; }))
       if (!worst || fall(pond) > fall(*worst)) worst = pond;
   if (!worst || fall(*worst) <= visible * height) return;
   sentences.push_back(
@@ -160,8 +181,8 @@ void doubt_own_tables(const Scene &scene, double height, const std::vector<SoilF
   const std::vector<double> levels = levels_of(scene);
   const int up = scene.vertical();
   for (std::size_t b = 0; b < scene.body.size(); ++b) {
-    const auto &own = scene.body[b].water_table;
-    if (own.empty()) continue;
+    const WaterTable &own = scene.body[b].water_table;
+    if (!own.given()) continue;
     std::optional<Pond> over;
     // a steep face that a seam ends at is no ground: the water in the seam leaves it there, or a crack has its pressure
     const auto ground = [&](const SoilFace &face) {
@@ -171,9 +192,9 @@ void doubt_own_tables(const Scene &scene, double height, const std::vector<SoilF
       for (int a = 0; a < scene.dimension && ground(face); ++a)
         for (const double level : levels) {
           const auto &x = face.corner[a];
-          const double head = elevation_of(own, x[0]) + level;
+          const double head = table_at(own, x) + level;
           const double open =
-              scene.water.table.empty() ? x[up] : std::max(x[up], elevation_of(scene.water.table, x[0]) + level);
+              scene.water.table.given() ? std::max(x[up], table_at(scene.water.table, x) + level) : x[up];
           if (head - open <= visible * height) continue;
           if (!over) over = Pond{x[0], x[0], head, head, 0};
           over->widen(x[0], head, open);
@@ -308,7 +329,82 @@ void doubt_base(const Scene &scene, const Extent &soil, int up, const std::vecto
                       "sides or falls out of the mesh. Give them kind = \"fixed\" or \"roller\"");
 }
 
+/// The faces of one side of the soil, found by their place on the level.
+class LevelFaces {
+ public:
+  LevelFaces(const std::vector<SoilFace> &faces, int dimension, int up, double sign) : up_(up) {
+    for (int d = 0; d < dimension; ++d)
+      if (d != up) level_.push_back(d);
+    for (const SoilFace &face : faces)
+      if (sign * face.normal[up] > 1e-6) faces_.push_back(face);
+    for (const SoilFace &face : faces_)
+      for (int d : level_)
+        for (int a = 0; a < dimension; ++a)
+          low_[d] = std::min(low_[d], face.corner[a][d]), high_[d] = std::max(high_[d], face.corner[a][d]);
+    std::array<int, 3> from{}, to{};
+    for (std::size_t k = 0; k < faces_.size(); ++k) {
+      for (int d : level_) {
+        from[d] = strips, to[d] = 0;
+        for (int a = 0; a < dimension; ++a)
+          from[d] = std::min(from[d], strip(d, faces_[k].corner[a][d])),
+          to[d] = std::max(to[d], strip(d, faces_[k].corner[a][d]));
+      }
+      const int second = level_.back();
+      for (int i = from[level_[0]]; i <= to[level_[0]]; ++i)
+        for (int j = from[second]; j <= to[second]; ++j) in_[i * strips + j].push_back(static_cast<int>(k));
+    }
+  }
+  const std::vector<SoilFace> &faces() const { return faces_; }
+
+  /// Elevation of the lowest face at a place; not a number where there is none.
+  double lowest(const std::array<double, 3> &x) const {
+    double found = std::numeric_limits<double>::quiet_NaN();
+    for (int k : in_[strip(level_[0], x[level_[0]]) * strips + strip(level_.back(), x[level_.back()])])
+      if (const double z = elevation(faces_[k], x); !std::isnan(z) && !(z >= found)) found = z;
+    return found;
+  }
+
+ private:
+  static constexpr int strips = 128;
+  int strip(int d, double x) const {
+    return std::clamp(static_cast<int>((x - low_[d]) / (high_[d] - low_[d]) * strips), 0, strips - 1);
+  }
+  /// Of a face at a place on the level; not a number beside it.
+  double elevation(const SoilFace &face, const std::array<double, 3> &x) const {
+    constexpr double near = 1e-9;
+    const auto &c = face.corner;
+    const int i = level_[0], j = level_.back();
+    if (level_.size() == 1) {
+      const double s = (x[i] - c[0][i]) / (c[1][i] - c[0][i]);
+      return s >= -near && s <= 1 + near ? c[0][up_] + s * (c[1][up_] - c[0][up_]) : NAN;
+    }
+    const double a = c[1][i] - c[0][i], b = c[2][i] - c[0][i], p = c[1][j] - c[0][j], q = c[2][j] - c[0][j];
+    const double u = ((x[i] - c[0][i]) * q - (x[j] - c[0][j]) * b) / (a * q - b * p),
+                 v = ((x[j] - c[0][j]) * a - (x[i] - c[0][i]) * p) / (a * q - b * p);
+    if (!(u >= -near && v >= -near && u + v <= 1 + near)) return NAN;
+    return c[0][up_] + u * (c[1][up_] - c[0][up_]) + v * (c[2][up_] - c[0][up_]);
+  }
+
+  int up_;
+  std::vector<int> level_;  ///< axes
+  std::vector<SoilFace> faces_;
+  std::array<double, 3> low_{1e300, 1e300, 1e300}, high_{-1e300, -1e300, -1e300};
+  std::vector<std::vector<int>> in_ = std::vector<std::vector<int>>(strips * strips);  ///< strips of both axes: faces
+};
+
 }  // namespace
+
+double greatest_depth(const std::vector<SoilFace> &surface, int dimension, int up) {
+  const LevelFaces above(surface, dimension, up, 1), below(surface, dimension, up, -1);
+  double greatest = 0;
+  for (const SoilFace &face : above.faces()) {
+    std::array<double, 3> middle{};
+    for (int a = 0; a < dimension; ++a)
+      for (int d = 0; d < 3; ++d) middle[d] += face.corner[a][d] / dimension;
+    if (const double bottom = below.lowest(middle); middle[up] - bottom > greatest) greatest = middle[up] - bottom;
+  }
+  return greatest;
+}
 
 std::vector<std::string> unlikely_surroundings(const Scene &scene, const std::vector<BodyReport> &bodies,
                                                const std::vector<SoilFace> &surface) {
@@ -332,7 +428,8 @@ std::vector<std::string> unlikely_surroundings(const Scene &scene, const std::ve
   if (height < lowest)
     sentences.push_back("The soil is " + rounded(height) +
                         " m high; coordinates count in metres. Is the mesh in kilometres?");
-  doubt_table(scene, soil, sentences);
+  doubt_table(scene, soil, surface, sentences);
+  doubt_excess_alone(scene, sentences);
   if (scene.phases == PhaseModel::drained) doubt_early_suction(scene, sentences);
   if (scene.phases == PhaseModel::drained && scene.water.open_water_load) {
     doubt_ponds(scene, soil.of(up), surface, sentences);
@@ -344,25 +441,26 @@ std::vector<std::string> unlikely_surroundings(const Scene &scene, const std::ve
   return sentences;
 }
 
-std::vector<std::string> coarse_cells(const Scene &scene, const std::vector<BodyReport> &bodies) {
-  constexpr double few = 4;  // over the height: not even a slip surface fits in
+std::vector<std::string> coarse_cells(const Scene &scene, const std::vector<BodyReport> &bodies,
+                                      const std::vector<SoilFace> &surface) {
+  constexpr double few = 4;  // over the depth: not even a slip surface fits in
   std::vector<std::string> sentences;
   if (scene.gravity_size() == 0) return sentences;
-  const double height = extent_of(bodies).of(scene.vertical());
+  const double depth = greatest_depth(surface, scene.dimension, scene.vertical());
   for (const BodyReport &b : bodies)
-    if (b.particles > 0 && height < few * b.cell_size)
-      sentences.push_back("The soil is " + rounded(height) + " m high, and the cells of " + b.name + " measure " +
-                          rounded(b.cell_size) + " m: fewer than " + rounded(few) +
-                          " cells over the height resolve neither stress nor slip surface. Take smaller cells "
+    if (b.particles > 0 && depth > 0 && depth < few * b.cell_size)
+      sentences.push_back("The soil is " + rounded(depth) + " m deep at most, and the cells of " + b.name +
+                          " measure " + rounded(b.cell_size) + " m: fewer than " + rounded(few) +
+                          " cells over the depth resolve neither stress nor slip surface. Take smaller cells "
                           "(mesh.size)");
   return sentences;
 }
 
 namespace {
 
-/// Strength and stiffness that make no sense for soil as high as this, though some other soil may have them.
-void doubt_for_height(const BodySource &source, const BodyReport &body, const Law &law, double weight,
-                      std::vector<std::string> &sentences) {
+/// Strength and stiffness that make no sense for soil as deep as this, though some other soil may have them.
+void doubt_for_depth(const BodySource &source, const BodyReport &body, const Law &law, double weight,
+                     std::vector<std::string> &sentences) {
   // c over the weight per area of the soil: below, c does not decide whether anything stands; above, all does
   constexpr double no_effect = 1e-3, stands_always = 100;
   constexpr double sand = 30 * degree.si;  // which is often given a trace of cohesion
@@ -378,12 +476,12 @@ void doubt_for_height(const BodySource &source, const BodyReport &body, const La
   if (c >= least_cohesion && c < no_effect * weight && phi < sand)
     sentences.push_back("body." + source.name + ".cohesion is " + rounded(c) + " Pa, " + rounded(c / weight) +
                         " of the weight of the soil, " + rounded(weight / 1e3) +
-                        " kPa over its height: it decides nothing, and clays with a friction angle of " +
+                        " kPa over its depth: it decides nothing, and clays with a friction angle of " +
                         rounded(phi / degree.si) + " deg have 1 to 50 kPa. Is it in kPa?");
   if (c > stands_always * weight && source.reduce_strength)
     sentences.push_back("body." + source.name + ".cohesion is " + rounded(c) + " Pa, " + rounded(c / weight) +
                         " times the weight of the soil, " + rounded(weight / 1e3) +
-                        " kPa over its height: such soil stands in any shape. Is it a unit too large? For rock or a "
+                        " kPa over its depth: such soil stands in any shape. Is it a unit too large? For rock or a "
                         "structure, reduce_strength = false says that a factor of safety does not concern it");
   const double young = 9 * bulk_modulus(law) * shear_modulus(law) / (3 * bulk_modulus(law) + shear_modulus(law));
   constexpr double stiffer = 5;  // soils and rocks have 50 to 1000
@@ -402,10 +500,10 @@ void doubt_for_height(const BodySource &source, const BodyReport &body, const La
 }  // namespace
 
 std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<Law> &laws,
-                                         const std::vector<BodyReport> &bodies) {
+                                         const std::vector<BodyReport> &bodies, const std::vector<SoilFace> &surface) {
   constexpr double none = 1e300;
   std::vector<std::string> sentences;
-  const double height = extent_of(bodies).of(scene.vertical());
+  const double depth = greatest_depth(surface, scene.dimension, scene.vertical());
   for (std::size_t b = 0; b < laws.size(); ++b) {
     const BodySource &body = scene.body[b];
     std::vector<Doubt> doubts{
@@ -432,9 +530,9 @@ std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<L
                                   rounded(apex) + " Pa");
         },
         laws[b]);
-    if (bodies[b].particles > 0 && scene.gravity_size() > 0)
-      doubt_for_height(body, bodies[b], laws[b], bodies[b].mass / bodies[b].volume * scene.gravity_size() * height,
-                       sentences);
+    if (bodies[b].particles > 0 && scene.gravity_size() > 0 && depth > 0)
+      doubt_for_depth(body, bodies[b], laws[b], bodies[b].mass / bodies[b].volume * scene.gravity_size() * depth,
+                      sentences);
     for (const Doubt &one : doubts)
       if (one.value > 0 && (one.value < one.least || one.value > one.most))
         sentences.push_back("body." + body.name + "." + one.key + " is " + rounded(one.value / one.unit.si) + " " +

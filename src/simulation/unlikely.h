@@ -9,17 +9,21 @@
 
 namespace talus {
 
-/// A sentence for each value of a soil that no soil has, or none of this height, with the unit that may have been
-/// meant.
+/// Greatest depth of the soil below its surface, along the axis `up` [m]: the height of a slope over a level base, and
+/// the thickness of a slide that lies on a slope. 0 without faces.
+double greatest_depth(const std::vector<SoilFace> &surface, int dimension, int up);
+
+/// A sentence for each value of a soil that no soil has, or none of this depth, with the unit that may have been meant.
 std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<Law> &laws,
-                                         const std::vector<BodyReport> &bodies);
+                                         const std::vector<BodyReport> &bodies, const std::vector<SoilFace> &surface);
 
 /// A sentence for what fits the soil badly: its size, the direction of gravity, the place of the water table, open
 /// water that is not level, ends of the mesh without a condition. `bodies` and `surface` as they are at the start.
 std::vector<std::string> unlikely_surroundings(const Scene &scene, const std::vector<BodyReport> &bodies,
                                                const std::vector<SoilFace> &surface);
 
-/// A sentence for each body whose cells are too large for the height of the soil.
-std::vector<std::string> coarse_cells(const Scene &scene, const std::vector<BodyReport> &bodies);
+/// A sentence for each body whose cells are too large for the depth of the soil.
+std::vector<std::string> coarse_cells(const Scene &scene, const std::vector<BodyReport> &bodies,
+                                      const std::vector<SoilFace> &surface);
 
 }  // namespace talus

@@ -66,6 +66,8 @@ class World {
   std::vector<BodyReport> report();
   /// Faces of the bodies that are there at the start beyond which there is no soil, of all ranks. Collective.
   std::vector<SoilFace> surface() const;  // soil_surface.cpp
+  /// Middles of facets downhill of the soil, see AnySimulation. Collective.
+  std::vector<std::array<double, 3>> downhill(const std::vector<std::string> &groups) const;  // soil_surface.cpp
   /// The first value of a function that its key does not admit, as a sentence; empty if there was none. Collective.
   std::string function_fault() const;
   /// Of each body: do its particles on any rank have shares of a strength that varies with place? Collective.

@@ -8,6 +8,7 @@ from matplotlib.ticker import MaxNLocator
 import talus_style as style
 from talus_ground import smoothed
 from talus_relief import between
+from talus_way import Way
 
 STATES = 5  # surfaces in the section, at most
 
@@ -72,23 +73,10 @@ def draw_map(maps, path):
 
 
 def line_along(maps):
-    """Places [n, 2] along the path of the slide, half a cell apart, from behind the crown to beyond the toe, and their distances [m]."""
-    way = maps.path[np.isfinite(maps.path[:, 0]), :2]
-    kept = [way[0]]
-    for place in way[1:]:  # a centre of mass that comes to rest turns in all directions
-        if np.linalg.norm(place - kept[-1]) > 2 * maps.size:
-            kept.append(place)
-    if len(kept) < 2:
-        kept = [maps.crown[:2], maps.toe[:2]]
-    kept = np.array(kept)
-    ends = []
-    for end, beside, reached in ((kept[0], kept[1], maps.crown), (kept[-1], kept[-2], maps.toe)):
-        out = (end - beside) / np.linalg.norm(end - beside)
-        ends.append(end + out * (max((reached[:2] - end) @ out, 0) + 0.15 * np.linalg.norm((maps.toe - maps.crown)[:2])))
-    corner = np.vstack([ends[0], kept, ends[1]])
-    along = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(corner, axis=0), axis=1))])
-    distance = np.arange(0, along[-1], maps.ground.cell)
-    place = np.column_stack([np.interp(distance, along, corner[:, k]) for k in (0, 1)])
+    """Places [n, 2] along the way of the slide, half a cell apart, and their distances [m]."""
+    way = Way.of(maps.path[:, :2], maps.crown[:2], maps.toe[:2], maps.size)
+    distance = np.arange(0, way.length, maps.ground.cell)
+    place = way.at(distance)
     low = maps.ground.low[:2]
     inside = ((place >= low) & (place <= low + np.array(maps.ground.shape) * maps.ground.cell)).all(axis=1)
     return place[inside], distance[inside] - distance[inside][0]

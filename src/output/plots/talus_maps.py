@@ -16,7 +16,7 @@ except ImportError:
 import talus_style as style
 from talus_ground import Ground
 from talus_map_pictures import draw_map, draw_section
-from talus_results import Results, Thickness
+from talus_results import Results, Thickness, largest_displacement
 from talus_units import words
 
 NO_DATA = -9999.0
@@ -107,8 +107,10 @@ class Maps:
             warn(f"cells of {self.grid.spacing:g} m are not much wider than the particles ({self.size:.3g} m): single particles show in the grids; "
                  f"from --spacing {SPACING * self.size:.2g} on less so")
         self.sliding = np.union1d(Thickness(last, self.axes.up).sliding, left_mesh(results))
-        if not len(self.sliding):
-            raise ValueError(f"{results.folder}: no soil has moved, so that there is nothing to map")
+        moved = largest_displacement(last)
+        if not len(self.sliding) or (moved < self.size and not len(left_mesh(results))):
+            raise ValueError(f"{results.folder}: no soil has slid far enough for a map: the largest displacement, {moved:.3g} m, is below the spacing of "
+                             f"particles, {self.size:.3g} m")
         self._accumulate()
         self.covered = self.thickness[-1] >= self.limit
         if not self.covered.any():

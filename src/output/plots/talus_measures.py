@@ -8,7 +8,7 @@ import re
 
 import numpy as np
 
-from talus_results import largest_displacement, sliding
+from talus_results import Thickness, largest_displacement, sliding
 
 MEASURES = {}
 
@@ -173,6 +173,36 @@ def slide(results):
     deepest = int(np.argmax(ground - base))
     place = start[number == deepest, level[0]].mean()
     return float(travel), float(volume[inside].sum()), float(ground[deepest] - base[deepest]), float(place)
+
+
+def flow(results, states=10):
+    """In 3D, of the soil that has slid by the end (talus_results.slid): the median of its thickness by volume and the largest one without single
+    particles, and the mean size of the cells where it is, over some states after the start [m]; None where nothing slid."""
+    last = results.snapshots[-1]
+    if last.position().shape[1] != 3 or len(results.snapshots) < 2:
+        return None
+    thickness = Thickness(last, results.up_axis())
+    node, cell = results.mesh()
+    if not len(thickness.sliding) or not len(cell):
+        return None
+    level = [axis for axis in range(3) if axis != results.up_axis()]
+    corner = node[cell]
+    size = (np.sqrt(2) * np.abs(np.linalg.det(corner[:, 1:] - corner[:, :1]))) ** (1 / 3)  # edge of a regular tetrahedron of this volume
+    side, low = size.max(), node[:, level].min(axis=0)  # no square between the largest cells is without a cell
+    count = np.floor(np.ptp(node[:, level], axis=0) / side).astype(int) + 1
+    def square(place):
+        return np.ravel_multi_index(np.clip(np.floor((place - low) / side).astype(int), 0, count - 1).T, count)
+    of_cell = square(corner.mean(axis=1)[:, level])
+    cells, total = np.bincount(of_cell, minlength=np.prod(count)), np.bincount(of_cell, size, np.prod(count))
+    chosen = results.snapshots[1:]
+    depth, there = [], []
+    for snapshot in chosen[:: -(-len(chosen) // states)]:
+        moves = np.isin(snapshot.ids(), thickness.sliding, assume_unique=True)
+        depth.append(thickness(snapshot)[0][moves])
+        at = square(snapshot.position()[moves][:, level])
+        there.append(total[at[cells[at] > 0]] / cells[at[cells[at] > 0]])
+    depth, there = np.concatenate(depth), np.concatenate(there)
+    return (float(np.median(depth)), float(np.percentile(depth, 99)), float(there.mean())) if len(depth) and len(there) else None
 
 
 # ---- fields ----

@@ -76,6 +76,7 @@ class Boundary:
         self.groups, self.values, self.changes, self.level = data["groups"], data["values"], data["changes"], data["level"]
         faces = data["faces"]
         self.has_soil = np.array([face["soil"] for face in faces], bool)
+        self.partly = not self.has_soil.all()  # values are known where there is soil
         self.corners = np.array([face["corners"] for face in faces]).reshape(-1, dimension, dimension)
         self.normal = np.array([face["normal"] for face in faces]).reshape(-1, dimension)
         self.vector = np.array([face["vector"] for face in faces]).reshape(-1, dimension)
@@ -95,7 +96,7 @@ class Boundary:
 
     def at_start(self):
         """Its values at the start, in words; empty if it has none."""
-        said = [f"{one['name']} {span(one['low'], one['high'], one['unit'])}" for one in self.values if one["name"] != "adhesion" or one["high"]]
+        said = [f"{one['name']} {span(one['low'], one['high'], one['unit'])}" + " at the soil" * (self.partly and one["low"] < one["high"]) for one in self.values if one["name"] != "adhesion" or one["high"]]
         if self.level is not None:
             said = [f"water level {quantity(self.level, 'm')}"]
         if not self.changes:
@@ -172,6 +173,8 @@ def notes(model):
     if model.data["water"]["tables"]:
         level = ", rises and falls: level = " + model.keys.text("water", "", "level", water["level"]) if "level" in water else ""
         said.append("blue line: water table at the start" + level)
+    elif "table" in water:
+        said.append(f"water table: {water['table']}")
     if model.data["water"]["line"]:
         said.append("dashed blue line: where the pore pressure at the start ends in the soil")
     for key in ("suction", "excess"):

@@ -29,7 +29,12 @@ class Eye:
     @classmethod
     def in_front(cls, motion, along, up):
         """One that sees the front of soil that moves along an axis with this sign, to the right of the picture."""
-        along, up = np.sign(motion or 1) * np.eye(3)[along], np.eye(3)[up]
+        return cls.before(np.sign(motion or 1) * np.eye(3)[along], up)
+
+    @classmethod
+    def before(cls, along, up):
+        """The same of soil that moves in a level direction [3]."""
+        up = np.eye(3)[up]
         return cls(-np.cos(TURNED) * along + np.sin(TURNED) * np.cross(up, along), up)
 
     def flat(self, points):
@@ -88,19 +93,26 @@ def seen_from_above(ground, top, soil, eye, low, high, columns):
     return Sight(point, np.where(beyond | (filled <= 0.5), NOTHING, np.where(covered > 0.5, BODY, GROUND)), light)
 
 
-def seen(ground, top, soil, eye, low, high, columns, box=None):
+def seen(ground, top, soil, eye, low, high, columns, cut=None):
     """The Sight of a picture with corners `low`, `high` [m on the picture] and so many columns. `top` and `soil` are those of Ground.surface. What is
-    outside the corners `box` [3, m] is cut away; by default those of the ground."""
-    box = np.array([ground.low, ground.high] if box is None else box)
+    nearer to the eye than the vertical plane `cut`, its level normal [3] and its place along that [m], is cut away."""
+    box = np.array([ground.low, ground.high])
     pixel = (high[0] - low[0]) / (columns * FINER)
     across = low[0] + (np.arange(columns * FINER) + 0.5) * pixel
     upward = low[1] + (np.arange(int(round((high[1] - low[1]) / pixel))) + 0.5) * pixel
     # each column of the picture is a vertical plane: where it enters and leaves the box
     start = np.outer(across, eye.right)
-    ends = np.stack([(box - start[:, None, :])[:, :, axis] / eye.level[axis] for axis in ground.level], axis=-1)  # [columns, 2, 2]
+    into = [at if abs(at := eye.level[axis]) > 1e-6 else 1e-6 for axis in ground.level]  # never along a side of the box
+    ends = np.stack([(box - start[:, None, :])[:, :, axis] / at for axis, at in zip(ground.level, into)], axis=-1)  # [columns, 2, 2]
     nearer, further = ends.min(axis=1), ends.max(axis=1)
     enters, leaves = nearer.max(axis=1), further.min(axis=1)
     face = np.array(ground.level)[nearer.argmax(axis=1)]  # the axis of the side through which it enters
+    wall = -np.sign(eye.level[face])[:, None] * np.eye(3)[face]
+    if cut:
+        normal, place = cut
+        first = (place - start @ normal) / (eye.level @ normal)
+        wall = np.where((first > enters)[:, None], -np.sign(eye.level @ normal) * normal, wall)
+        enters = np.maximum(enters, first)
     count = int(np.ceil(max((leaves - enters).max(), 0) / (0.7 * ground.cell))) + 2
     deep = enters[:, None] + np.linspace(0, 1, count) * np.maximum(leaves - enters, 0)[:, None]
     place = [(start[:, None, axis] + deep * eye.level[axis] - ground.low[axis]) / ground.cell for axis in ground.level]
@@ -130,7 +142,7 @@ def seen(ground, top, soil, eye, low, high, columns, box=None):
     point = start[:, None, :] + depth[..., None] * eye.level
     on_wall = take(height, k) - tall > 0.5 * ground.spacing  # elsewhere the field is that of half a spacing down, among the particles
     point[..., ground.up] = np.where(on_wall, tall, tall - 0.5 * ground.spacing)
-    side = lightness(-np.sign(eye.level[face])[:, None] * np.eye(3)[face], eye)
+    side = lightness(wall, eye)
     shine = np.where(k == 1, side[:, None], take(light, k))
     return Sight(point.transpose(1, 0, 2), what.T, shine.T)
 

@@ -7,6 +7,7 @@ import pathlib
 import numpy as np
 
 from talus_factor import factor_lines, read_factor
+from talus_measures import flow
 from talus_model import draw_model
 from talus_modelled import read_model, stage_rows
 from talus_outcomes import in_words, outcome
@@ -90,6 +91,11 @@ def key_results(results):
             volume = came_to["volume_of_slide_m3"]
             note = "no soil slides" if volume is None else f"moved more than a tenth of the largest; {quantity(came_to['travel_distance_m'], 'm')} from rear to front"
             found.append(("Sliding volume", quantity(volume or 0.0, per_metre("m³", results)), note + without))
+    depth = flow(results) if "displacement" in last and "volume" in last else None
+    if depth:
+        typical, most, cell = depth
+        thin = ": a flow that is not as deep as a cell is not resolved; take smaller cells on its way" if typical < cell else ""
+        found.append(("Depth of the flow", f"{quantity(typical, 'm')}, {quantity(most, 'm')} at most", f"median after the start; cells there measure {quantity(cell, 'm')}{thin}"))
     speed = top_speed(results)
     if speed:
         found.append(("Largest velocity", quantity(speed[0], "m/s"), f"{speed[2]}, {at_time(speed[1], last.time)}"))

@@ -122,6 +122,16 @@ class Snapshot:
         return None
 
 
+SLIDES = 0.1  # share of the largest displacement beyond which soil slides
+SMALL = 0.1  # share of the spacing of particles below which the largest displacement is that of soil that stands
+
+
+def spacing(snapshot):
+    """Mean distance of neighbouring particles, by their volume [m]; 0 without particles."""
+    volume = snapshot.column("volume").values
+    return float(volume.mean()) ** (1 / snapshot.position().shape[1]) if len(volume) else 0.0
+
+
 def largest_displacement(snapshot, share=0.999):
     """The displacement that this share of the mass has at most [m]: the largest, without single particles."""
     moved = snapshot.scalar("displacement")[0]
@@ -135,9 +145,15 @@ def largest_displacement(snapshot, share=0.999):
     return float(moved[order][np.searchsorted(np.cumsum(mass[order]), share * mass.sum())])
 
 
-def sliding(snapshot, share=0.1):
-    """Which particles slide: those that have moved by more than this share of the largest displacement."""
-    return snapshot.scalar("displacement")[0] > share * largest_displacement(snapshot)
+def sliding(last):
+    """Which particles have slid by the last snapshot: those that have moved by more than SLIDES of the largest displacement; none where this is below
+    SMALL of the spacing of particles. Whether soil slid or deformed as a whole is for talus_outcomes to say."""
+    return slides(last.scalar("displacement")[0], largest_displacement(last), spacing(last))
+
+
+def slides(displacement, largest, spacing):
+    """The same of displacements [m] of particles with this spacing."""
+    return displacement > SLIDES * largest if largest > SMALL * spacing else np.zeros(len(displacement), bool)
 
 
 class Thickness:
@@ -148,9 +164,8 @@ class Thickness:
 
     def __init__(self, last, up):
         self._level = [axis for axis in range(3) if axis != up]
-        size = last.scalar("displacement")[0]
         self.sliding = last.ids()[sliding(last)]
-        self._spacing = float(last.column("volume").values.mean()) ** (1 / 3) if len(size) else 1.0
+        self._spacing = spacing(last) or 1.0
 
     def __call__(self, snapshot):
         sliding = np.isin(snapshot.ids(), self.sliding, assume_unique=True)

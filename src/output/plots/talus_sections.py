@@ -10,26 +10,43 @@ import talus_style as style
 from talus_ground import Ground
 from talus_perspective import edges
 from talus_relief import EARTH, FAINT, Eye, between, seen, seen_from_above
+from talus_results import slides
 from talus_tiles import GAP, GAP_IN_SPACE, Frame, outline_of_cells, outline_of_points, tiles
 from talus_units import capital, readable_unit, words
+from talus_way import Way
 
 WIDTH, LEFT, RIGHT, HEAD, TITLE, FOOT = 12.0, 0.62, 1.0, 0.42, 0.3, 0.75  # of a sheet [inch]
 BESIDE, BELOW, STACKED = 0.5, 0.38, 0.55  # between blocks, and between the views of one block [inch]
 DOTTED, HALO = (0, (1, 1.6)), withStroke(linewidth=2, foreground="#ffffffaa")  # seen on pale and on dark soil
 OUTLINE_PIXELS = 900
 TIME = 0.2  # share of time, against motion, in the choice of snapshots
+ASTRAY = 2.0  # how far the way of a slide may leave a plane of two axes, over the spacing of particles, and is still shown there
+STATIONS = 20  # places of the centre of mass on the way of a slide, or some more
 AROUND = 0.06  # of the size of the soil: what is shown of the mesh's bottom beside it
 APART = 0.1  # crosses of particles that left the mesh [inch]
 
 
 class View:
-    """A way to look at the particles: two axes, and how far they are from the plane of a section [m]."""
+    """A view of the particles along an axis: two axes, and how far they are from the plane of a section [m]."""
 
     def __init__(self, name, across, up, plane=None):
         self.name, self.across, self.up, self.plane = name, across, up, plane
 
+    @property
+    def labels(self):
+        return [f"{'xyz'[axis]} [m]" for axis in (self.across, self.up)]
+
     def flat(self, position):
         return position[:, [self.across, self.up]]
+
+    def limits(self, low, high):
+        """Corners of what it shows of a box."""
+        return self.flat(np.array([low, high]))
+
+    def line(self, ground, count):
+        """Places of the section: along the picture, and their coordinates by level axes."""
+        along = np.linspace(ground.low[self.across], ground.high[self.across], count)
+        return along, {self.across: along, self.plane[0]: np.full(count, self.plane[1])}
 
     def aside(self, position):
         """Distance from the plane of the section; zero if there is none."""
@@ -42,12 +59,37 @@ class View:
         return of(self.flat(position)[rows], size[rows], frame, aside[rows] if self.plane else None), rows
 
 
+class WayView(View):
+    """The section along the way of a slide, laid out flat."""
+
+    def __init__(self, name, way, level, up):
+        super().__init__(name, None, up, plane=way)
+        self.level = level
+
+    @property
+    def labels(self):
+        return ["distance along the slide [m]", f"{'xyz'[self.up]} [m]"]
+
+    def flat(self, position):
+        return np.column_stack([self.plane.beside(position[:, self.level])[0], position[:, self.up]])
+
+    def aside(self, position):
+        return self.plane.beside(position[:, self.level])[1]
+
+    def limits(self, low, high):
+        return np.array([0, low[self.up]]), np.array([self.plane.length, high[self.up]])
+
+    def line(self, ground, count):
+        along = np.linspace(0, self.plane.length, count)
+        return along, dict(zip(self.level, self.plane.at(along).T))
+
+
 class MapView(View):
     """From above, with shades."""
 
 
 class Oblique:
-    """From above in front: the body whole, or cut open along a plane (axis, place [m])."""
+    """From above in front: the body whole, or cut open along a vertical plane, its level normal [3] and its place along that [m]."""
 
     def __init__(self, name, eye, cut=None):
         self.name, self.eye, self.cut = name, eye, cut
@@ -57,19 +99,15 @@ class Oblique:
 
     def aside(self, position):
         """Distance from the cut, of what is cut away."""
-        return np.zeros(len(position)) if self.cut is None else np.maximum(0, (self.cut[1] - position[:, self.cut[0]]) * np.sign(self.eye.level[self.cut[0]]))
-
-    def box(self, ground):
-        """The corners of what is left of the ground."""
-        box = np.array([ground.low, ground.high])
-        if self.cut:
-            axis, place = self.cut
-            box[1 if self.eye.level[axis] < 0 else 0, axis] = place  # what is nearer to the eye is gone
-        return box
+        if self.cut is None:
+            return np.zeros(len(position))
+        normal, place = self.cut
+        return np.maximum(0, (place - position @ normal) * np.sign(self.eye.level @ normal))
 
 
 def views_of(results):
-    """The views that suit a run: one of a section or a thin slice; of a body the whole one, cut open, its central section, and from above."""
+    """The views that suit a run: one of a section or a thin slice; of a body the whole one, cut open, its central section, and from above. Cut and
+    section follow the way of a slide that leaves the plane of two axes."""
     first = results.snapshots[0].position()
     if first.shape[1] == 2:
         return [View("section", 0, 1)]
@@ -84,10 +122,36 @@ def views_of(results):
     along = max(level, key=lambda axis: np.abs(moved[:, axis]).sum())
     aside = next(axis for axis in level if axis != along)
     centre = weighted_median(start[:, aside], np.abs(moved[:, along])) if len(start) else np.median(first[:, aside])
+    above = MapView("from above", along, aside)
+    way = way_of(results, moved, level)
+    if way is not None and np.abs(way.at(np.linspace(0, way.length, 50))[:, level.index(aside)] - centre).max() > ASTRAY * spacing_of(results):
+        ahead, normal = np.zeros(3), np.zeros(3)
+        ahead[level] = way.chord()
+        normal[level] = np.array([-1, 1]) * way.chord()[::-1]
+        eye = Eye.before(ahead, up)
+        return [Oblique("from above in front", eye), Oblique("cut open along the slide", eye, (normal, way.corners[0] @ normal[level])),
+                WayView("section along the slide", way, level, up), above]
     at = f"at {'xyz'[aside]} = {centre:.3g} m"
     eye = Eye.in_front(moved[:, along].sum(), along, up)
-    return [Oblique("from above in front", eye), Oblique(f"cut open {at}", eye, (aside, centre)), View(f"section {at}", along, up, (aside, centre)),
-            MapView("from above", along, aside)]
+    return [Oblique("from above in front", eye), Oblique(f"cut open {at}", eye, (np.eye(3)[aside], centre)), View(f"section {at}", along, up, (aside, centre)),
+            above]
+
+
+def way_of(results, moved, level):
+    """The way of the soil that slides, on the level axes; None where no soil slides. `moved` is from the first to the last snapshot."""
+    first, last = results.snapshots[0], results.snapshots[-1]
+    ids = np.intersect1d(first.ids(), last.ids(), assume_unique=True)
+    size = np.linalg.norm(moved, axis=1)
+    ids = ids[slides(size, np.quantile(size, 0.999) if len(size) else 0.0, spacing_of(results))]
+    if not len(ids):
+        return None
+    every = max(1, len(results.snapshots) // STATIONS)
+    clouds = [shown.position()[np.isin(shown.ids(), ids, assume_unique=True)] for shown in (*results.snapshots[::every], last)]
+    path = np.array([cloud[:, level].mean(axis=0) for cloud in clouds])
+    up = results.up_axis()
+    crown = clouds[0][clouds[0][:, up].argmax()][level]
+    toe = clouds[-1][np.linalg.norm(clouds[-1][:, level] - crown, axis=1).argmax()][level]
+    return Way.of(path, crown, toe, spacing_of(results))
 
 
 def weighted_median(values, weights):
@@ -193,7 +257,7 @@ class Painter:
             flat = view.flat(corners)
             margin = np.ptp(flat, axis=0).max() * np.array([0.1, 0.05])  # for the dimensions
             return flat.min(axis=0) - margin, flat.max(axis=0) + margin
-        low, high = view.flat(np.array([self.low, self.high] if self.ground is None else [self.ground.low, self.ground.high]))
+        low, high = view.limits(*((self.low, self.high) if self.ground is None else (self.ground.low, self.ground.high)))
         margin = 0.012 * (high - low) + (GAP if self.ground is None else GAP_IN_SPACE) * self._sizes(self.results.snapshots[0]).max()
         return low - margin, high + margin
 
@@ -235,7 +299,7 @@ class Painter:
         if key not in self._tiles:
             view, (low, high), ground = self.views[k], self.corners[k], (self.ground, *self._surface(snapshot))
             oblique = isinstance(view, Oblique)
-            self._tiles[key] = seen(*ground, view.eye, low, high, columns, view.box(self.ground)) if oblique else \
+            self._tiles[key] = seen(*ground, view.eye, low, high, columns, view.cut) if oblique else \
                 seen_from_above(*ground, self.views[0].eye, low, high, columns)
         return self._tiles[key]
 
@@ -290,9 +354,9 @@ class Painter:
                     if isinstance(self.views[k], Oblique):
                         continue
                     if n + columns >= len(snapshots) and row is rows[-1]:
-                        axes.set_xlabel(f"{'xyz'[self.views[k].across]} [m]")
+                        axes.set_xlabel(self.views[k].labels[0])
                     if column == 0:
-                        axes.set_ylabel(f"{'xyz'[self.views[k].up]} [m]")
+                        axes.set_ylabel(self.views[k].labels[1])
                 top -= max(heights[k] for k in row) + STACKED
         self._frame_sheet(figure, field, colours, [k for row in rows for k in row])
         return figure
@@ -350,11 +414,11 @@ class Painter:
 
     def _bottom(self, axes, view):
         """The bottom of the mesh below a section."""
-        ground, (aside, place) = self.ground, view.plane
-        along = np.linspace(ground.low[view.across], ground.high[view.across], 400)
-        at = {view.across: along, aside: np.full(400, place)}
+        ground = self.ground
+        along, at = view.line(ground, 400)
         base, inside = between(np.stack([ground.base, ground.inside], axis=-1), [(at[axis] - ground.low[axis]) / ground.cell for axis in ground.level])
-        base = np.where(inside > 0.5, base, np.nan)
+        beyond = np.any([(at[axis] < ground.low[axis]) | (at[axis] > ground.high[axis]) for axis in ground.level], axis=0)
+        base = np.where((inside > 0.5) & ~beyond, base, np.nan)
         axes.fill_between(along, base, axes.get_ylim()[0], color=EARTH, linewidth=0)
         axes.plot(along, base, color=style.SOFT, linewidth=0.8)
 

@@ -84,6 +84,10 @@ const WrongWords wrong_words[] = {
      {"run", "scene.toml", "--set", "stage.0.steady=true"},
      {"stage.0.steady", "set kind = \"seepage\""}},
     {"a_film_shows_all_times", {"plot", "nowhere", "--movie", "--times", "3"}, {"--times excludes --movie"}},
+    {"width_of_cells_below_zero", {"maps", "nowhere", "--spacing", "-3"}, {"--spacing: -3 must be a number above 0"}},
+    {"values_that_are_no_numbers",
+     {"converge", "scene.toml", "--by", "cells", "--values", "a"},
+     {"--values: a must be a number above 0"}},
     {"no_results_to_plot", {"plot", "nowhere"}, {"nowhere contains no results"}},
 };
 

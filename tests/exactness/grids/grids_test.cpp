@@ -128,8 +128,10 @@ TEST_F(Grids, have_the_scale_and_offset_of_their_band) {
   const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, quiet());
   std::string said;
   for (const std::string &remark : simulation->mesh_report().remarks) said += remark;
-  if (rank() == 0) EXPECT_NE(said.find("grids.angle: "), std::string::npos) << said;
-  if (rank() == 0) EXPECT_NE(said.find("0.1 times those stored plus 1000"), std::string::npos) << said;
+  if (rank() == 0) {
+    EXPECT_NE(said.find("grids.angle: "), std::string::npos) << said;
+    EXPECT_NE(said.find("0.1 times those stored plus 1000"), std::string::npos) << said;
+  }
 }
 
 TEST_F(Grids, strength_yields_as_its_expression_does) {
@@ -153,6 +155,49 @@ TEST_F(Grids, water_table_presses_as_its_expression_does) {
   const Snapshot expression = end_of(block, wet);
   expect_same(expression, end_of(block, by_grid), 1e-6);  // the water lifts the block: contacts open by round-off
   EXPECT_TRUE(differ(expression, end_of(block, dry)));
+}
+
+/// A water table presses, fills the pores and weighs alike whether it is given by points, by an expression or by a
+/// grid; that soil is wet below it is seen by its mass.
+TEST_F(Grids, water_table_is_that_of_its_points_and_expression) {
+  grid(
+      "ground.asc", [](double, double) { return 20; }, 5, 4, 5000, 2000, 10);
+  grid(
+      "a.asc", [](double x, double) { return 5 + 0.2 * (x - 5000); }, 9, 7, 4990, 1990, 10);
+  grid(
+      "b.asc", [](double x, double y) { return 5 + 0.2 * (x - 5000) + 0.1 * (y - 2000); }, 9, 7, 4990, 1990, 10);
+  const auto start = [&](const std::string &water, bool runs) {
+    const std::string text =
+        "dimension = 3\nup = \"z\"\nphases = \"drained\"\ngravity = 9.81\n[mesh]\nsize = 10\n[mesh.terrain]\n"
+        "file = \"ground.asc\"\nbase = 0\n[grids]\na = \"a.asc\"\nb = \"b.asc\"\n[body.soil]\nregion = \"ground\"\n"
+        "law = \"linear_elastic\"\nyoung_modulus = 1e7\npoisson_ratio = 0.3\nunit_weight = 18e3\n"
+        "saturated_unit_weight = 21e3\n[boundary.base]\nkind = \"fixed\"\n[[stage]]\nduration = 0.02\n[water]\n" +
+        water;
+    Scene read = parse_scene(text, in_folder("scene.toml"));
+    const auto simulation = make_simulation(PETSC_COMM_WORLD, read, quiet());
+    if (runs) simulation->run();
+    return simulation->snapshot();
+  };
+  const auto mass = [](const Snapshot &state) {
+    double sum = 0;
+    for (const Column &column : state.columns)
+      if (column.name == "mass")
+        for (const double one : column.values) sum += one;
+    MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+    return sum;
+  };
+  for (const bool runs : {false, true}) {
+    const Snapshot points = start("table = [[0, 5], [40, 13]]\n", runs);
+    const double tolerance = runs ? 1e-6 : 1e-12;
+    expect_same(points, start("table = \"5 + 0.2 * x\"\n", runs), tolerance);
+    expect_same(points, start("table = \"a(x, y)\"\n", runs), tolerance);
+  }
+  expect_same(start("table = \"5 + 0.2 * x + 0.1 * y\"\nlevel = 1\n", true),
+              start("table = \"b(x, y)\"\nlevel = 1\n", true), 1e-6);
+  // 40 m x 30 m x 20 m, of which 9 m on average are wet; by whole particles, of which there are four over 10 m or so
+  const double g = 9.81, exact = 1200 * (9 * 21e3 + 11 * 18e3) / g;
+  EXPECT_NEAR(mass(start("table = \"a(x, y)\"\n", false)) / exact, 1, 0.01);
+  EXPECT_NEAR(mass(start("excess = \"max(0, 9810 * (a(x, y) - z))\"\n", false)) / (1200 * 20 * 18e3 / g), 1, 1e-9);
 }
 
 /// A grid counts as the terrain does: x and y of the mesh plus the origin, also where the mesh is a file.

@@ -7,7 +7,9 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
+import unittest.mock
 
 import h5py
 import numpy as np
@@ -15,6 +17,7 @@ from osgeo import gdal, ogr, osr
 
 TALUS, MPIEXEC = sys.argv[1:3]
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "src/output/plots"))
+import talus_map_pictures
 import talus_maps
 
 gdal.UseExceptions()
@@ -189,6 +192,18 @@ class Maps(unittest.TestCase):
                 ascii_grid, ascii_low, _ = read(FOLDER / results / "maps/thickness.asc")
                 np.testing.assert_allclose(ascii_grid, thickness, rtol=1e-6)
                 np.testing.assert_allclose(ascii_low, low, atol=1e-9)
+                numbers, _, _ = feature(results, "outline")
+                inside = np.where(thickness >= 0.2, thickness, 0)
+                self.assertAlmostEqual(numbers["volume_m3"], inside.sum() * cell**2, delta=1e-6)
+                self.assertAlmostEqual(numbers["mean_thickness_m"], numbers["volume_m3"] / numbers["area_m2"], delta=1e-9)
+                self.assertAlmostEqual(numbers["largest_thickness_m"], thickness.max(), delta=1e-6)
+                self.assertAlmostEqual(numbers["least_thickness_m"], 0.2, delta=1e-12)
+                self.assertAlmostEqual(numbers["time_s"], 0.1, delta=1e-12)
+                # from the crown, at the upper face of the block at the start, to the middle of the furthest cell
+                self.assertTrue(0.5 < numbers["run_out_m"] < np.hypot(1.5, 0.6) + cell)
+                self.assertTrue(0.3 < numbers["fall_height_m"] < 0.5)  # particles lie inside of the block, 0.5 m high
+                angle = np.degrees(np.arctan(numbers["fall_height_m"] / numbers["run_out_m"]))
+                self.assertAlmostEqual(numbers["angle_of_reach_deg"], angle, delta=1e-9)
                 change, _, _ = read(FOLDER / results / "maps/change.tif")
                 self.assertLess(change[3, 1], -0.4)
                 self.assertAlmostEqual(change.sum(), 0, delta=1e-5)
@@ -220,6 +235,45 @@ class Maps(unittest.TestCase):
                 np.testing.assert_allclose(outline.Centroid().GetPoint()[:2], centre, atol=2)
                 speed, _, _ = read(FOLDER / results / "maps/largest_speed.tif")
                 np.testing.assert_allclose(np.nanmedian(speed), np.sqrt(276), rtol=0.01)
+
+    def test_outline_has_holes(self):
+        grid = talus_maps.Grid(np.zeros(3), np.array([6.0, 6.0, 1.0]), 1.0)
+        axes = types.SimpleNamespace(origin=np.array([WEST, SOUTH, 0.0]), projection="")
+        maps = types.SimpleNamespace(grid=grid, axes=axes, results=types.SimpleNamespace(title=""))
+        mask = np.zeros(grid.shape, bool)
+        mask[1:6, 1:5] = True
+        mask[2, 3] = mask[4, 2] = False
+        outline = talus_maps.Maps.polygons(maps, mask)
+        self.assertEqual(outline.GetGeometryCount(), 1)
+        self.assertEqual(outline.GetGeometryRef(0).GetGeometryCount(), 3)  # the outer ring and two holes
+        self.assertAlmostEqual(outline.GetArea(), 18, delta=1e-9)
+        np.testing.assert_allclose(outline.GetEnvelope(), [WEST + 0.5, WEST + 5.5, SOUTH + 0.5, SOUTH + 4.5])
+        hole = outline.GetGeometryRef(0).GetGeometryRef(1).GetEnvelope()
+        self.assertIn(tuple(np.round(hole, 6)), [(WEST + 1.5, WEST + 2.5, SOUTH + 2.5, SOUTH + 3.5), (WEST + 3.5, WEST + 4.5, SOUTH + 1.5, SOUTH + 2.5)])
+
+    def test_map_shows_contours_outline_and_path(self):
+        maps = talus_maps.Maps(talus_maps.checked(FOLDER / "plane1"))
+        with unittest.mock.patch.object(talus_map_pictures.style, "save", side_effect=lambda figure, path: figure):
+            axes = talus_map_pictures.draw_map(maps, "map.png").axes[0]
+        lines = {line.get_label(): line.get_xydata() for line in axes.lines}
+        np.testing.assert_allclose(lines["path of the centre of mass"], maps.path[:, :2] + [WEST, SOUTH])
+        contours = [path.vertices for collection in axes.collections for path in collection.get_paths() if len(path.vertices) > 3]
+        self.assertGreater(len(contours), 4)
+        # the ground falls by 0.2 to the east and 0.1 to the north: far from the pit a contour runs along (1, -2)
+        for contour in contours:
+            away = contour[(contour[:, 0] > WEST + 60) & (contour[:, 0] < WEST + 95)]
+            if len(away) > 3:
+                np.testing.assert_allclose(0.2 * away[:, 0] + 0.1 * away[:, 1], np.mean(0.2 * away[:, 0] + 0.1 * away[:, 1]), atol=0.3)
+        drawn = [line.get_xydata() for line in axes.lines if len(line.get_xydata()) > 4]
+        for ring in maps.rings(maps.covered):
+            self.assertTrue(any(one.shape == ring.shape and np.allclose(one, ring) for one in drawn))
+
+    def test_soil_that_stands_has_not_slid(self):
+        velocity = ["--set", 'body.block.velocity=["0.5","0","0"]']  # 0.05 m at the end, a third of the spacing of particles
+        talus("run", "block.toml", "-o", "stands", "--no-pictures", *velocity)
+        said = talus("maps", "stands", "--spacing", 0.25, status=1)
+        self.assertIn("no soil has slid far enough for a map", said)
+        self.assertIn("the largest displacement, 0.05 m", said)
 
     def test_particles_that_left_are_said(self):
         (FOLDER / "longer.toml").write_text(BLOCK.replace("duration = 0.1", "duration = 0.23"))

@@ -153,7 +153,7 @@ class InPlaneStrain(unittest.TestCase):
         self.assertAlmostEqual(values["friction angle"]["high"], 28.75)
         np.testing.assert_allclose(self.boundary["top"].vector, np.tile([0, -1000], (4, 1)), atol=1e-9)
         self.assertEqual(self.boundary["top"].at_start(), "pressure 1 kPa at the start, changes with time")
-        self.assertEqual(self.boundary["base"].line(), "base: base with friction, friction angle 21.25 to 28.75°")
+        self.assertEqual(self.boundary["base"].line(), "base: base with friction, friction angle 21.25 to 28.75° at the soil")
 
     def test_water_table_is_that_of_the_start(self):
         (body, line), = self.model.water_lines()
@@ -258,7 +258,7 @@ class Pictures(unittest.TestCase):
         report = (self.folder.path / "out/report.html").read_text()
         self.assertLess(report.index('alt="Model at the start"'), report.index('alt="Displacement"'))
         for cells in ("<th>young modulus</th><td>1 MPa</td>", "<th>pressure</th><td>–</td><td>–</td><td>1 kPa at 0 s, 2 kPa at 1 s</td>",
-                      "<th>at the start</th><td>friction angle 21.25 to 28.75°</td><td>–</td><td>pressure 1 kPa at the start, changes with time</td>",
+                      "<th>at the start</th><td>friction angle 21.25 to 28.75° at the soil</td><td>–</td><td>pressure 1 kPa at the start, changes with time</td>",
                       "<th>mode</th><td>drained: pore pressure is prescribed</td>", "<th>table</th><td>(0, 0.3), (2, 0.1) m</td>",
                       "<th>level</th><td>0.05 + rise(t) [m]</td>",
                       "<td>rise</td><td>0 at 0 s, 10 cm at 10 s</td>",

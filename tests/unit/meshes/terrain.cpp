@@ -4,6 +4,7 @@
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
 #include <ogr_spatialref.h>
+#include <ogrsf_frmts.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -72,6 +73,28 @@ class TerrainFiles : public ::testing::Test {
                                                0, nullptr),
               CE_None);
     return in_folder("a.tif");
+  }
+
+  /// A circle with a round hole around its centre, radius 0 for none, as a polygon of a GeoPackage.
+  std::string outline(double x, double y, double radius, double hole, int projection) const {
+    GDALAllRegister();
+    const std::string file = in_folder("outline.gpkg");
+    std::filesystem::remove(file);
+    const std::unique_ptr<GDALDataset> data(
+        GetGDALDriverManager()->GetDriverByName("GPKG")->Create(file.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    OGRSpatialReference reference;
+    reference.importFromEPSG(projection);
+    OGRLayer *layer = data->CreateLayer("slide", &reference, wkbPolygon);
+    OGRPolygon polygon;
+    for (const double r : {radius, hole}) {
+      OGRLinearRing ring;
+      for (int k = 0; k <= 90; ++k) ring.addPoint(x + r * std::cos(k * 4 * radian), y + r * std::sin(k * 4 * radian));
+      if (r > 0) polygon.addRing(&ring);
+    }
+    OGRFeature feature(layer->GetLayerDefn());
+    feature.SetGeometry(&polygon);
+    EXPECT_EQ(layer->CreateFeature(&feature), OGRERR_NONE);
+    return file;
   }
 
   static TerrainOptions options(const std::string &file) {
@@ -323,6 +346,82 @@ TEST_F(TerrainFiles, MeetAnEllipsoidUpToItsRim) {
     EXPECT_NEAR(e.top(u, v), z, 1e-3);
     EXPECT_TRUE(std::isnan(e.top(100 + 1.001 * (x - 100), 200 + 1.001 * (y - 200))));
   }
+}
+
+/// In a circle the bowl is a paraboloid, half as deep on average as in the middle; the grid cuts its rim in steps.
+TEST_F(TerrainFiles, SlideInAnOutline) {
+  TerrainOptions o = options(geotiff([](double x, double) { return 500 - 0.3 * (x - east); }, 31254, 2));
+  std::filesystem::rename(o.file, in_folder("terrain.tif"));
+  o.file = in_folder("terrain.tif"), o.size = 2;
+  o.outline = outline(east + 20, south + 16, 14.9, 0, 31254), o.depth = 6;
+  const double circle = 180 * radian * 14.9 * 14.9;
+  const Terrain bowl(o);
+  // nodes are 2 m apart: the rim lies up to a node too far out, by 1 m of 15 on average, and the slide reaches there
+  EXPECT_NEAR(bowl.slide_area() / circle, 1, 0.03);
+  EXPECT_NEAR(bowl.slide_volume() / (circle * 6 / 2), 1.07, 0.07);
+  EXPECT_NEAR(bowl.ground_at(20, 16) - bowl.bed_at(20, 16), 6, 1e-9);
+  EXPECT_NEAR(bowl.ground_at(28, 16) - bowl.bed_at(28, 16), 6 * (1 - std::pow(8. / 15.5, 2)), 0.25);
+  EXPECT_TRUE(bowl.doubts().empty());
+  o.bowl = false;
+  EXPECT_NEAR(Terrain(o).slide_volume() / (circle * 6), 1, 0.03);
+  o.outline = outline(east + 20, south + 16, 14.9, 7.45, 31254);
+  EXPECT_NEAR(Terrain(o).slide_volume() / (circle * 6 * 0.75), 1, 0.03);
+  o.depth = 0;
+  expect_words(complaint(o), {"--depth must be above 0 m"});
+  o.depth = 6, o.outline = outline(east + 500, south + 16, 14.9, 0, 31254);
+  expect_words(complaint(o), {"outline.gpkg does not lie in the window"});
+  o.outline = outline(east + 20, south + 16, 14.9, 0, 31255);
+  expect_words(complaint(o), {"outline.gpkg: has the projection MGI / Austria GK Central"});
+  o.outline = outline(east + 20, south + 16, 14.9, 0, 2225);
+  expect_words(complaint(o), {"outline.gpkg: has coordinates in another unit than metres"});
+  o.outline = outline(10, 47, 1, 0, 4326);
+  expect_words(complaint(o), {"outline.gpkg: has coordinates in degrees"});
+  o.slip_surface = in_folder("terrain.tif");
+  expect_words(complaint(o), {"give one slip surface"});
+  o.slip_surface.clear(), o.outline = ascii(plane);
+  expect_words(complaint(o), {"a.asc: is no file of outlines that GDAL reads"});
+}
+
+/// Layers below grids: their cells have the volume between the grids, to half a cell at their borders.
+TEST_F(TerrainFiles, HaveLayers) {
+  const std::string clay = ascii([](double x, double y) { return plane(x, y) - 20; }, "clay.asc"),
+                    rock = ascii([](double x, double) { return x > east + 50 ? 30 : -100; }, "rock.asc");
+  const std::string arguments = ascii(plane) + " -o " + in_folder("m.msh") +
+                                " --size 5 --far-size 8 --base 10 --window 5000 2000 5100 2080 --layer clay " + clay;
+  const Answer answer = run(arguments + " --layer rock " + rock);
+  EXPECT_EQ(answer.status, 0) << answer.text;
+  EXPECT_NEAR(of_group(answer, "ground") / (100 * 80 * 20), 1, 0.02);
+  EXPECT_NEAR(of_group(answer, "rock") / (45 * 80 * 20), 1, 0.05);
+  EXPECT_NEAR(of_group(answer, "ground") + of_group(answer, "clay") + of_group(answer, "rock"), 100 * 80 * 75, 5);
+  expect_words(run(arguments + " --layer rock " + ascii([](double, double) { return -100; }, "low.asc")).text,
+               {"warning: layer rock has no cells"});
+  TerrainOptions o = options(ascii(plane));
+  o.layers = {{"clay", clay}};
+  expect_words(complaint(o), {"--layer NAME FILE parts the ground over a flat base"});
+  o.base = 0, o.layers = {{"slide", clay}};
+  expect_words(complaint(o), {"slide is a group of the mesh already"});
+  o.layers = {{"clay", ascii(plane, "far.asc", 10, 5050)}};
+  expect_words(complaint(o), {"far.asc has no elevation at (5000, 2000), where layer clay needs one"});
+}
+
+/// Cells are as small along the way as in the slide, and grow beside it.
+TEST_F(TerrainFiles, AreFineAlongTheWay) {
+  TerrainOptions o = options(ascii(plane));
+  o.size = 4, o.far_size = 30;
+  o.ellipsoid = Ellipsoid{{east + 50, south + 80, plane(east + 50, 0)}, {30, 20, 12}, 17 * radian, 90 * radian};
+  EXPECT_TRUE(doubts(o, "cells grow to 30 m on the way"));
+  EXPECT_GT(Terrain(o).size_at(180, 80, 50), 15);
+  o.way = {east + 50, south + 80, east + 120, south + 80, east + 200, south + 100}, o.way_width = 40;
+  const Terrain terrain(o);
+  EXPECT_FALSE(doubts(o, "on the way"));
+  EXPECT_DOUBLE_EQ(terrain.size_at(100, 80, 70), 4);
+  EXPECT_DOUBLE_EQ(terrain.size_at(160, 90, 50), 4);
+  EXPECT_DOUBLE_EQ(terrain.size_at(100, 100, 70), 4);
+  EXPECT_NEAR(terrain.size_at(100, 150, 70), 4 + 0.2 * 50, 1);
+  o.way.pop_back();
+  expect_words(complaint(o), {"two points"});
+  o.way = {1, 1, 2, 2}, o.way_width = 0;
+  expect_words(complaint(o), {"--way-width must be above 0 m"});
 }
 
 /// A slip surface in another projection is refused; the same one by another name, or none, is not.

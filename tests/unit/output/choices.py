@@ -59,6 +59,24 @@ class Views(unittest.TestCase):
         self.assertEqual((section.across, section.up), (1, 2))
         self.assertEqual((above.across, above.up), (1, 0))
 
+    def test_a_section_follows_an_oblique_slide(self):
+        start = np.random.default_rng(1).uniform(0, 10, (400, 3))
+        way = [np.array([0.0, 0, 0]), np.array([20.0, 20, -20]), np.array([20.0, 50, -30])]  # to the northeast, then to the north
+        slide = [Block(start + by, 0, 0) for by in way]
+        _, cut, section, above = views_of(types.SimpleNamespace(snapshots=slide, up_axis=lambda: 2))
+        self.assertEqual((cut.name, section.name), ("cut open along the slide", "section along the slide"))
+        middle = np.array([start.mean(axis=0) + by for by in way])
+        np.testing.assert_allclose(section.aside(middle), 0, atol=1e-9)
+        flat = section.flat(middle)
+        np.testing.assert_allclose(np.diff(flat[:, 0]), [20 * np.sqrt(2), 30], rtol=1e-9)
+        np.testing.assert_allclose(flat[:, 1], middle[:, 2])
+        np.testing.assert_allclose(section.aside(middle[1:2] + [3, -3, 5]), 3 * np.sqrt(2), rtol=1e-6)
+        # beyond its corners the way goes on straight
+        first = section.plane.corners[0] - [1, 1]
+        self.assertAlmostEqual(section.flat(np.array([[*first, 0]]))[0, 0], -np.sqrt(2), places=9)
+        normal, place = cut.cut
+        self.assertAlmostEqual(normal @ np.array([*section.plane.corners[-1], 0]), place, places=9)
+
     def test_a_section_that_all_soil_has_left_is_empty(self):
         painter = Painter.__new__(Painter)
         painter.views, painter.spacing, painter._tiles = [View("section", 0, 1, (0, 5.0))], 0.1, {}

@@ -167,8 +167,8 @@ class Sights(unittest.TestCase):
         eye = relief.Eye.in_front(motion, of.level[0], up)
         corners = eye.flat(np.array(np.meshgrid(*zip(of.low, of.high))).reshape(3, -1).T)
         low, high = corners.min(axis=0) - 0.1, corners.max(axis=0) + 0.1
-        box = Oblique("", eye, (of.level[1], cut)).box(of) if cut else None
-        return of, eye, (low, high), relief.seen(of, top, soil, eye, low, high, 150, box)
+        plane = (np.eye(3)[of.level[1]], cut) if cut else None
+        return of, eye, (low, high), relief.seen(of, top, soil, eye, low, high, 150, plane)
 
     def test_a_place_is_where_the_projection_puts_it_whichever_axis_is_up(self):
         for up in range(3):
@@ -201,6 +201,18 @@ class Sights(unittest.TestCase):
             beyond = (aside - 0.6) * np.sign(eye.level[of.level[1]])
             self.assertGreater(beyond.min(), -1e-9)
             self.assertGreater((np.abs(beyond) < 1e-9).mean(), 0.1)
+
+    def test_a_cut_may_be_oblique(self):
+        of = ground()
+        at = layer((0, 0), (2, 1.2))
+        ahead = np.array([np.cos(0.5), np.sin(0.5), 0])
+        normal, eye = np.array([-ahead[1], ahead[0], 0]), relief.Eye.before(ahead, 2)
+        place = normal @ [1, 0.6, 0]
+        corners = eye.flat(np.array(np.meshgrid(*zip(of.low, of.high))).reshape(3, -1).T)
+        sight = relief.seen(of, *surface(of, at), eye, corners.min(axis=0) - 0.1, corners.max(axis=0) + 0.1, 150, (normal, place))
+        beyond = (sight.place[sight.what == relief.BODY] @ normal - place) * np.sign(eye.level @ normal)
+        self.assertGreater(beyond.min(), -1e-9)
+        self.assertGreater((np.abs(beyond) < 1e-9).mean(), 0.1)
 
     def test_from_above_the_uppermost_soil_is_seen_without_speckles(self):
         of = ground()

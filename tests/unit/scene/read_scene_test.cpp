@@ -95,7 +95,7 @@ TEST(ReadScene, ReadsADrainedScene) {
   const Scene scene = parse_scene(drained, "slope.toml");
   EXPECT_EQ(scene.phases, PhaseModel::drained);
   EXPECT_TRUE(scene.water.given);
-  EXPECT_EQ(scene.water.table[1], (std::vector<double>{10, 2}));
+  EXPECT_EQ(scene.water.table.points[1], (std::vector<double>{10, 2}));
   EXPECT_EQ(scene.body[0].grain_density, 2650);
   EXPECT_EQ(scene.gravity, (std::vector<double>{0, 0}));
 }
