@@ -10,9 +10,10 @@ import sys
 import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[2] / "src/output/plots"))
+sys.path[:0] = [str(HERE.parents[2] / "src/output/plots"), str(HERE)]
 
 import matplotlib.pyplot as plt  # noqa: E402
+import measures  # noqa: E402
 import talus_style as style  # noqa: E402
 from talus_paths import draw_stress_paths  # noqa: E402
 from talus_results import Results  # noqa: E402
@@ -71,18 +72,18 @@ def draw_points(results, path):
 
 
 def draw_storage(mass, rate, path):
-    """Deviator of the four points with storage of the water by masses and in rate form, and the saturation of the first."""
+    """Deviator of the four points with storage of the water by masses and in rate form; dotted: S = 0.99 with masses."""
     figure, grid = plt.subplots(2, 2, figsize=(8.6, 4.6), sharex=True)
     for axes, point in zip(grid.flat, POINTS):
         for results, name, colour, width in ((rate, "rate form", style.LINES[1], 0.6), (mass, "masses", style.LINES[0], 1.2)):
             history = results.history
             axes.plot(history.time, 1e-3 * history.columns[f"{point}_deviator_Pa"], lw=width, color=colour, label=name)
         history = mass.history
-        full = history.time[history.columns[f"{point}_saturation"] > 0.99]
+        full = history.time[(history.columns[f"{point}_saturation"] > 0.99) & (history.time > measures.start_of_rain(mass))]
         if len(full):
             axes.axvline(full[0], color=style.INK, lw=0.7, ls=":")
         axes.set_title(f"{point}: deviator q [kPa]", loc="left")
-        axes.set_ylim(0, 1e-3 * 2 * mass.history.columns[f"{point}_deviator_Pa"].max())
+        axes.set_ylim(0, 1e-3 * 1.3 * mass.history.columns[f"{point}_deviator_Pa"].max())
         axes.set_xlim(0, mass.history.time[-1])
     for axes in grid[1]:
         axes.set_xlabel("time [s]")

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Which slope and which strength from suction meet what the paper says of its embankment:  section.py TALUS FOLDER [start|slide ...]
-`start` computes the stress before the rain and writes section_start.csv, `slide` the slide and writes section_slide.csv, in cells of 0.7 m. A section is 10 m high at 1V:mH with a crest of 15 m on 5 m of soil. Runs that FOLDER holds are not repeated."""
+`start` computes the stress before the rain and writes section_start.csv, `slide` the slide and writes section_slide.csv, in cells of 0.7 m. A section is
+10 m high at 1V:mH with a crest of 15 m on 5 m of soil. Runs that FOLDER holds are not repeated."""
 
 import pathlib
 import re
@@ -16,7 +17,7 @@ import study  # noqa: E402
 
 CREST, BASE, HEIGHT, BEYOND = 15.0, 5.0, 10.0, 15.0  # width of the crest, depth of the ground, height of the slope, level ground in front of it [m]
 POINTS = {"S1": (0.4, 0.2), "D1": (2.0, 1.7), "S2": (None, 0.3), "D2": (None, 1.2)}  # from the toe up the face (None: mid-height), depth below it [m]
-START = [(slope, strength, 0.7) for slope in (1.25, 1.5, 1.6, 1.75, 1.8, 1.85, 1.9, 2.0) for strength in (6.4, 7.5, 10.0, 15.0)]
+START = [(slope, strength) for slope in (1.25, 1.5, 1.6, 1.75, 1.8, 1.85, 1.9, 2.0) for strength in (6.4, 7.5, 10.0, 15.0)]
 SLIDE = [(slope, 10.0) for slope in (1.6, 1.75, 1.8, 1.85, 1.9)]
 
 
@@ -37,10 +38,9 @@ def place(point, slope):
     return toe + along * (HEIGHT * long / 2 if up is None else up) + inwards * depth
 
 
-def scene(slope, strength, size, rain):
+def scene(slope, strength, rain):
     """Text of the scene with another section and strength, beside a file section.csv."""
     text = (HERE / "scene.toml").read_text().replace("../../../meshes/embankment.csv", "section.csv")
-    text = re.sub(r'^size = .*$', f"size = {size}", text, flags=re.M)
     text = re.sub(r"^suction_cohesion = .*$", f'suction_cohesion = "{strength} kPa"', text, flags=re.M)
     for point in POINTS:
         x, y = place(point, slope)
@@ -51,11 +51,11 @@ def scene(slope, strength, size, rain):
     return text
 
 
-def run(talus, folder, slope, strength, size, rain):
-    out = folder / f"{slope}_{strength}_{size}{'' if rain else '_start'}"
+def run(talus, folder, slope, strength, rain):
+    out = folder / f"{slope}_{strength}_{'slide' if rain else 'start'}"
     out.mkdir(parents=True, exist_ok=True)
     (out / "section.csv").write_text(outline(slope))
-    (out / "scene.toml").write_text(scene(slope, strength, size, rain))
+    (out / "scene.toml").write_text(scene(slope, strength, rain))
     return study.run(talus, out / "scene.toml", out / "run")[0]
 
 
@@ -73,13 +73,13 @@ if __name__ == "__main__":
     asked = sys.argv[3:] or ("start", "slide")
     if "start" in asked:
         rows = []
-        for slope, strength, size in START:
-            rows.append({"slope": f"1:{slope}", "strength_kPa": strength, **start_row(run(talus, folder, slope, strength, size, False))})
+        for slope, strength in START:
+            rows.append({"slope": f"1:{slope}", "strength_kPa": strength, **start_row(run(talus, folder, slope, strength, False))})
             print(rows[-1], flush=True)
         study.write("section_start.csv", rows)
     if "slide" in asked:
         rows = []
         for slope, strength in SLIDE:
-            rows.append({"slope": f"1:{slope}", "strength_kPa": strength, **slide_row(run(talus, folder, slope, strength, 0.7, True))})
+            rows.append({"slope": f"1:{slope}", "strength_kPa": strength, **slide_row(run(talus, folder, slope, strength, True))})
             print(rows[-1], flush=True)
             study.write("section_slide.csv", rows)

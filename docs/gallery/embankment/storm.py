@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""When the slope of storm.toml loses its equilibrium, looked at every six hours for a week, and how far it then slides:  storm.py TALUS FOLDER
-Runs into FOLDER and writes storm.csv."""
+"""When the slope of storm.toml loses its equilibrium, looked at every six hours for a week, and how far it then slides:  storm.py TALUS FOLDER [rows|factors]
+Runs into FOLDER and writes storm.csv; with `factors` the factor of safety over time, storm_factors.csv."""
 
 import csv
 import pathlib
@@ -53,14 +53,33 @@ def row_of(talus, folder, name, keys):
         "speed_m_s": f"{max(float(r['S2_velocity_m_s']) for r in rows):.2f}"}
 
 
+def factor_after(talus, folder, hours):
+    """Factor of safety after hours of rain, in cells of 1 m."""
+    text = (HERE / "storm.toml").read_text().replace("../../../meshes", str(HERE.parents[2] / "meshes"))
+    rain = f'[[stage]]\nname = "rain"\nkind = "seepage"\nduration = "{hours} h"\n[[stage]]\nname = "stands"\nkind = "quasi_static"\nduration = 1\nhold_loads = true\n'
+    (folder / "factor.toml").write_text(re.sub(r'(?s)\[\[stage\]\]\nname = "first_day".*?\[quasi_static\]', lambda _: rain + "\n[quasi_static]", text))
+    done = subprocess.run([talus, "solve", folder / "factor.toml", "--factor-of-safety", "-o", folder / "factor", "--force"], capture_output=True, text=True)
+    found = re.search(r"factor of safety ([\d.]+): .*?the factor of safety is ([\d.]+)", done.stdout + done.stderr, flags=re.S)
+    if not found:
+        raise SystemExit(done.stderr[-600:])
+    return {"hours": hours, "davis": found[1], "associated": found[2]}
+
+
+def write(name, columns, rows):
+    with open(HERE / name, "w", newline="") as file:
+        writer = csv.DictWriter(file, columns, restval="")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
 if __name__ == "__main__":
     talus, folder = sys.argv[1], pathlib.Path(sys.argv[2])
     folder.mkdir(parents=True, exist_ok=True)
-    table = []
-    for name, keys in RUNS.items():
-        table.append(row_of(talus, folder, name, keys))
-        print(table[-1], flush=True)
-    with open(HERE / "storm.csv", "w", newline="") as file:
-        writer = csv.DictWriter(file, ["run", "lost_h", "S1_m", "S2_m", "D1_m", "D2_m", "speed_m_s"], restval="")
-        writer.writeheader()
-        writer.writerows(table)
+    if sys.argv[3:] == ["factors"]:
+        write("storm_factors.csv", ["hours", "davis", "associated"], [factor_after(talus, folder, hours) for hours in (24, 36, 48)])
+    else:
+        table = []
+        for name, keys in RUNS.items():
+            table.append(row_of(talus, folder, name, keys))
+            print(table[-1], flush=True)
+        write("storm.csv", ["run", "lost_h", "S1_m", "S2_m", "D1_m", "D2_m", "speed_m_s"], table)

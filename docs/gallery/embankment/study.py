@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Runs the scene with other parameters, cells and models:  study.py TALUS FOLDER [sensitivity|cells|model ...]
 `sensitivity` halves and doubles in cells of 1 m what the paper does not give, `cells` changes cells, particles and steps, `model` the phases, the storage of
-the water and the dimension, in cells of 1.4 m, and draws storage.png. Each writes its table, NAME.csv beside this file. Runs that FOLDER holds are not repeated."""
+the water and the dimension, in cells of 1.4 m, and draws storage.png. Each writes its table, NAME.csv beside this file. Runs that FOLDER holds are not
+repeated."""
 
 import csv
 import pathlib
