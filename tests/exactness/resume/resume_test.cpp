@@ -182,8 +182,8 @@ TEST_P(ResumedOnOtherRanks, IsTheSameButForRoundOff) {
   const Folder folder;
   folder.write("section.csv", good_section), folder.write("scene.toml", falling_scene);
   const auto run = [&](const std::string &results, const std::string &duration, bool resume, int ranks) {
-    std::vector<std::string> words{"run", "scene.toml", "-o", results, "--no-pictures", "--set",
-                                   "stage.1.duration=" + duration};
+    std::vector<std::string> words{
+        "run", "scene.toml", "-o", results, "--no-pictures", "--set", "stage.1.duration=" + duration};
     for (const std::string &key : change.set) words.insert(words.end(), {"--set", key});
     if (resume) words.push_back("--resume");
     const Ending ending = talus(folder, words, ranks);
@@ -402,7 +402,8 @@ TEST_F(EndedRun, IsResumedFromTheCheckpointBeforeADamagedOne) {
     const Ending ending = run({"--resume"});
     EXPECT_EQ(ending.status, 0) << ending.output;
     EXPECT_TRUE(ending.says("warning: ") && ending.says(cause) && ending.says("from the checkpoint before it"))
-        << cause << "\n" << ending.output;
+        << cause << "\n"
+        << ending.output;
     EXPECT_TRUE(ending.says("resumed at t = 0.04 s")) << ending.output;
     EXPECT_TRUE(ending.says("t = 0.05 / 0.05 s")) << ending.output;
     EXPECT_GT(state(), name) << "numbers are not used twice";
