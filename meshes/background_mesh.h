@@ -49,9 +49,9 @@ class BackgroundMesh {
  public:
   /// Reads a Gmsh file on rank 0, checks it, cuts patches, distributes it. `region_weight` gives the weight of a cell
   /// from the names of its regions (particles it will hold plus one; the largest counts, 1/1000 without); `given`, if
-  /// it is for as many ranks, is the partition instead. Patches of cells, theory 4.5, stay on one rank and do not depend
-  /// on the number of ranks. Collective. Throws std::invalid_argument (the same on all ranks) for a file that cannot be
-  /// read, a wrong dimension, cells of zero volume or that overlap, and cells in no named group.
+  /// it is for as many ranks, is the partition instead. Patches of cells, theory 4.5, stay on one rank and do not
+  /// depend on the number of ranks. Collective. Throws std::invalid_argument (the same on all ranks) for a file that
+  /// cannot be read, a wrong dimension, cells of zero volume or that overlap, and cells in no named group.
   static BackgroundMesh read(MPI_Comm comm, const std::string &file,
                              const std::vector<std::pair<std::string, double>> &region_weight, const Cuts &given = {});
   /// Takes a distributed DMPlex of a host program (a reference is kept). Labels with a physical name are regions and
@@ -61,8 +61,8 @@ class BackgroundMesh {
 
   /// Can the mesh be divided among the ranks in another way? Not on one rank, and not the mesh of a host program.
   bool divisible() const { return !cuts_.empty(); }
-  /// Weight of the heaviest patch over the mean weight of ranks when the mesh was read: imbalance may be as much above 1,
-  /// since patches stay whole. 0 where the mesh is not divisible.
+  /// Weight of the heaviest patch over the mean weight of ranks when the mesh was read: imbalance may be as much above
+  /// 1, since patches stay whole. 0 where the mesh is not divisible.
   double heaviest_patch() const { return heaviest_patch_; }
   const Cuts &cuts() const { return cuts_; }  ///< the partition; empty where the mesh is not divisible
   /// The partition with nearly equal sums of weight, where `filled` are the cells of this rank that weigh something:

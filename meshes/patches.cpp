@@ -1,7 +1,8 @@
 #include "meshes/patches.h"
 
 #include <algorithm>
-#include <set>
+#include <functional>
+#include <queue>
 #include <utility>
 
 namespace talus {
@@ -17,9 +18,9 @@ class Patches {
   void grow() {
     const int count = static_cast<int>(node_.size());
     free_neighbours_.resize(count);
-    for (int c = 0; c < count; ++c) waiting_.insert({free_neighbours_[c] = count_free(c), c});
-    while (!waiting_.empty()) {
-      cells_.assign(1, waiting_.begin()->second);
+    for (int c = 0; c < count; ++c) waiting_[free_neighbours_[c] = count_free(c)].push(c);
+    for (int first; (first = loneliest()) != none;) {
+      cells_.assign(1, first);
       nodes_.clear();
       take(cells_.front());
       for (int next; static_cast<int>(cells_.size()) < size_ && (next = best()) != none;) {
@@ -61,8 +62,10 @@ class Patches {
   const int size_;
   int patch_count_ = 0;
   std::vector<int> free_neighbours_, cells_;
-  std::set<int> nodes_;
-  std::set<std::pair<int, int>> waiting_;  // (free neighbours, cell) of free cells
+  std::vector<int> nodes_;  // of the patch that grows; few
+  /// Cells by their number of free neighbours, which only falls: a cell that is not free any more, or has fewer, is
+  /// left out when its turn comes.
+  std::array<std::priority_queue<int, std::vector<int>, std::greater<>>, dim + 2> waiting_;
 
  public:
   std::vector<int> patch;
@@ -75,22 +78,27 @@ class Patches {
                                           [&](int j) { return joinable(c, j) && patch[j] == none; }));
   }
 
+  /// The free cell with the fewest free neighbours, the first one of them; none when all are taken.
+  int loneliest() {
+    for (int free = 0; free < static_cast<int>(waiting_.size()); ++free)
+      for (auto &cells = waiting_[free]; !cells.empty(); cells.pop())
+        if (const int c = cells.top(); patch[c] == none && free_neighbours_[c] == free) return c;
+    return none;
+  }
+
   void take(int c) {
-    waiting_.erase({free_neighbours_[c], c});
     patch[c] = patch_count_;
-    nodes_.insert(node_[c].begin(), node_[c].end());
-    for (int j : neighbour_[c]) {
-      if (!joinable(c, j) || patch[j] != none) continue;
-      waiting_.erase({free_neighbours_[j], j});
-      waiting_.insert({free_neighbours_[j] = count_free(j), j});
-    }
+    for (int node : node_[c])
+      if (!std::count(nodes_.begin(), nodes_.end(), node)) nodes_.push_back(node);
+    for (int j : neighbour_[c])
+      if (joinable(c, j) && patch[j] == none) waiting_[free_neighbours_[j] = count_free(j)].push(j);
   }
 
   /// Few new nodes means that cells close around an edge or a vertex.
   double score(int c) const {
     double faces = 0, nodes = 0;
     for (int j : neighbour_[c]) faces += j >= 0 && patch[j] == patch_count_;
-    for (int i : node_[c]) nodes += nodes_.count(i);
+    for (int i : node_[c]) nodes += std::count(nodes_.begin(), nodes_.end(), i) > 0;
     return 10 * faces + 6 * nodes - 0.5 * free_neighbours_[c];
   }
 

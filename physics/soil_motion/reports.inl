@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/local_numbers.h"
-
 #include "physics/soil_motion.h"
 
 namespace talus {

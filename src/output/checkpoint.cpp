@@ -146,8 +146,7 @@ Checkpoint read_checkpoint(MPI_Comm comm, const std::string &dir) {
         const long long written = found.header.ranks, begin = (rank * written + ranks - 1) / ranks,
                         end = ((rank + 1) * written + ranks - 1) / ranks;
         for (long long r = begin; r < end; ++r)
-          found.parts.emplace_back(
-              load(dir + "/checkpoint/" + state_name(found.header.number, static_cast<int>(r))));
+          found.parts.emplace_back(load(dir + "/checkpoint/" + state_name(found.header.number, static_cast<int>(r))));
       });
       break;
     } catch (const std::invalid_argument &error) {

@@ -96,9 +96,9 @@ class Directory {
 
 /// Where the rows of one table go, and in which order they come together.
 struct Route {
-  std::vector<std::size_t> rows;                                // of each part
-  std::vector<std::vector<std::pair<int, std::size_t>>> sent;   // to each rank: (part, row)
-  std::vector<std::pair<int, std::size_t>> received;            // in the order wanted: (rank, its row)
+  std::vector<std::size_t> rows;                               // of each part
+  std::vector<std::vector<std::pair<int, std::size_t>>> sent;  // to each rank: (part, row)
+  std::vector<std::pair<int, std::size_t>> received;           // in the order wanted: (rank, its row)
 };
 
 class Dealer {
@@ -132,7 +132,10 @@ class Dealer {
     if (rank_in(comm_) == 0) {
       for (const Archive::Entry &one : parts_.at(0)) {
         const bool common = one.belongs == Belongs::to_all, column = one.belongs == Belongs::to_rows;
-        plan_.add(one.belongs, one.name, common ? one.content : column ? one.content.substr(0, sizeof(std::size_t)) : "");
+        plan_.add(one.belongs, one.name,
+                  common   ? one.content
+                  : column ? one.content.substr(0, sizeof(std::size_t))
+                           : "");
       }
       bytes = plan_.bytes();
     }

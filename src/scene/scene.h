@@ -152,13 +152,14 @@ struct MeshSource {
     v.choice("leaving_particles", leaving_particles, {{"stop", WhenOutside::stop}, {"remove", WhenOutside::remove}},
              "what becomes of particles that leave the mesh: the run ends with the place, or they are taken out of the "
              "simulation and entered in escaped.csv; may be changed with --resume");
-    v.choice("balance_ranks", balance_ranks,
-             {{"when_it_pays", BalanceRanks::when_it_pays},
-              {"never", BalanceRanks::never},
-              {"always", BalanceRanks::always}},
-             "when the mesh is divided among the ranks of a run in another way, because the soil has moved: once ranks "
-             "have waited for others longer than that takes, never, or at every remap, which shows that the answer does "
-             "not depend on it; may be changed with --resume");
+    v.choice(
+        "balance_ranks", balance_ranks,
+        {{"when_it_pays", BalanceRanks::when_it_pays},
+         {"never", BalanceRanks::never},
+         {"always", BalanceRanks::always}},
+        "when the mesh is divided among the ranks of a run in another way, because the soil has moved: once ranks "
+        "have waited for others longer than that takes, never, or at every remap, which shows that the answer does "
+        "not depend on it; may be changed with --resume");
   }
 };
 

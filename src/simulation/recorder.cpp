@@ -98,7 +98,8 @@ void Recorder<dim>::append(std::unique_ptr<ResultsFolder> folder) {
   if (!passed_over_.empty())
     results_->progress.note("warning: " + passed_over_ + "; the run goes on from the checkpoint before it");
   if (written_ranks_ > 0)
-    results_->progress.note("before it ran on " + std::to_string(written_ranks_) + (written_ranks_ == 1 ? " rank" : " ranks") +
+    results_->progress.note("before it ran on " + std::to_string(written_ranks_) +
+                            (written_ranks_ == 1 ? " rank" : " ranks") +
                             ": the answer differs by round-off from that of a run on the same number");
   for (const std::string &key : changed_) results_->progress.note("since then the scene has another " + key);
   if (!has_table)
@@ -533,11 +534,12 @@ Checkpoint Recorder<dim>::find_checkpoint() {
                         (words[0] == "output" && words.size() > 1 && words[1] != "point");
     const bool to_come = listed && (stage > found.stage || (stage == found.stage && words.back() == "duration"));
     if (!result && !to_come)
-      scene_.complain(path, "is not what it was when the run in " + options_.directory + " began, and " +
-                                tie_of(words[0]) +
-                                "; with --resume only title, [output] without its points, [factor_of_safety], "
-                                "mesh.leaving_particles, mesh.balance_ranks, the duration of the present stage and the stages after it "
-                                "may change (repeat the --set of that run)");
+      scene_.complain(
+          path,
+          "is not what it was when the run in " + options_.directory + " began, and " + tie_of(words[0]) +
+              "; with --resume only title, [output] without its points, [factor_of_safety], "
+              "mesh.leaving_particles, mesh.balance_ranks, the duration of the present stage and the stages after it "
+              "may change (repeat the --set of that run)");
   }
   if (found.ranks != mine.ranks) written_ranks_ = found.ranks;
   return checkpoint;

@@ -22,8 +22,8 @@ Cuts cuts_to_resume(MPI_Comm comm, const RunOptions &options) {
   try {
     const CheckpointHeader header = read_checkpoint(comm, options.directory).header;
     for (std::size_t k = 0; k + 2 < header.cuts.size(); k += 3)
-      cuts.push_back({header.cuts[k], static_cast<long long>(header.cuts[k + 1]),
-                      static_cast<long long>(header.cuts[k + 2])});
+      cuts.push_back(
+          {header.cuts[k], static_cast<long long>(header.cuts[k + 1]), static_cast<long long>(header.cuts[k + 2])});
   } catch (const std::invalid_argument &) {  // of which `resume` complains
   }
   return cuts;

@@ -27,7 +27,7 @@ World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &m
   pressure.set_regions(bodies_of_cells(mesh, scene));
   set_pore_pressure_ratios();
   seed_bodies();
-  close_bases();  // from now on: soil has to be drawn inside
+  close_bases();                                 // from now on: soil has to be drawn inside
   set_loading(scene.stage.front(), 0, Clock{});  // under which the first state is gathered
   if (const std::string fault = function_fault(); !fault.empty()) throw SceneError(fault);
 }
@@ -229,8 +229,8 @@ void World<dim>::close_bases() {
 template <int dim>
 void World<dim>::make_motion() {
   const double relaxation = scene.transfer.relaxation * mesh.report().smallest_altitude / wave_speed_;
-  motion = make_soil_motion(MotionParts<dim>{mesh, bodies, conditions, scene, pressure, relaxation, seeded_mass_,
-                                             seeded_particles_});
+  motion = make_soil_motion(
+      MotionParts<dim>{mesh, bodies, conditions, scene, pressure, relaxation, seeded_mass_, seeded_particles_});
 }
 
 /// Ways of a wave while friction adapts, docs/theory (6.2): in units of the altitude, and across elastic soil and back.

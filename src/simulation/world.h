@@ -82,8 +82,8 @@ class World {
   double work_of_rank() const;
   /// Global numbers and work of the filled cells of this rank.
   std::vector<std::pair<long long, double>> work_of_cells() const;
-  /// Divides the mesh among the ranks in another way. Particles, and all that nodes and cells hold, are gone: `serialize`
-  /// brings them back from a state that was dealt out to the new partition. Collective.
+  /// Divides the mesh among the ranks in another way. Particles, and all that nodes and cells hold, are gone:
+  /// `serialize` brings them back from a state that was dealt out to the new partition. Collective.
   void divide(const Cuts &cuts);
 
   const Scene &scene;
@@ -130,10 +130,10 @@ class World {
   PetscErrorCode take_out(double time);
 
   std::vector<CriticalStep<dim>> critical_;
-  double wave_speed_ = 0;            ///< the largest of the bodies [m/s]
-  double depth_on_bases_ = 0;        ///< of elastic soil at the start [m]
-  double seeded_mass_ = 0;           ///< of all ranks [kg]
-  long long seeded_particles_ = 0;   ///< of all ranks
+  double wave_speed_ = 0;                  ///< the largest of the bodies [m/s]
+  double depth_on_bases_ = 0;              ///< of elastic soil at the start [m]
+  double seeded_mass_ = 0;                 ///< of all ranks [kg]
+  long long seeded_particles_ = 0;         ///< of all ranks
   std::vector<std::vector<int>> movers_;   ///< [body] particles that left their cells at the last release ...
   std::vector<std::vector<int>> outside_;  ///< ... and those of them that left the mesh
   long long releases_ = 0;

@@ -143,11 +143,10 @@ void expect_the_same_when_balanced(const std::string &file, std::vector<std::str
 TEST(Balanced, column_collapse_is_the_same) { expect_the_same_when_balanced(column, {"mesh.size=0.01"}); }
 TEST(Balanced, column_collapse_is_the_same_on_a_base_that_heats_itself) {
   expect_the_same_when_balanced(
-      column,
-      {"mesh.size=0.01", "boundary.base.kind=heated_friction",
-       "boundary.base.friction_angle=10 + 10 * exp(-slip / 0.01)", "boundary.base.thickness=1e-4",
-       "boundary.base.hydraulic_conductivity=1e-9", "boundary.base.storage=1e-8",
-       "boundary.base.thermal_pressurisation=1e5", "boundary.base.heat_capacity=1e6"});
+      column, {"mesh.size=0.01", "boundary.base.kind=heated_friction",
+               "boundary.base.friction_angle=10 + 10 * exp(-slip / 0.01)", "boundary.base.thickness=1e-4",
+               "boundary.base.hydraulic_conductivity=1e-9", "boundary.base.storage=1e-8",
+               "boundary.base.thermal_pressurisation=1e5", "boundary.base.heat_capacity=1e6"});
 }
 TEST(Balanced, column_collapse_is_the_same_with_particle_stress) {
   expect_the_same_when_balanced(column, {"mesh.size=0.01", "transfer.average_stress=false", "transfer.locking=nodal"});
@@ -166,10 +165,10 @@ TEST(Balanced, column_of_wet_sand_is_the_same) {
   for (const std::string phases : {"saturated", "unsaturated", "three-phase"}) {
     SCOPED_TRACE(phases);
     expect_the_same_when_balanced(
-        wet_column, {"mesh.size=0.01", "phases=" + phases, "body.sand.retention.curve=van_genuchten",
-                     "body.sand.retention.reference_suction=500", "body.sand.retention.shape=0.5",
-                     "boundary.rain.kind=rainfall", "boundary.rain.group=free_surface",
-                     "boundary.rain.intensity=0.01", "transfer.remap_interval=0.01"});
+        wet_column,
+        {"mesh.size=0.01", "phases=" + phases, "body.sand.retention.curve=van_genuchten",
+         "body.sand.retention.reference_suction=500", "body.sand.retention.shape=0.5", "boundary.rain.kind=rainfall",
+         "boundary.rain.group=free_surface", "boundary.rain.intensity=0.01", "transfer.remap_interval=0.01"});
   }
 }
 TEST(Balanced, slide_on_terrain_is_the_same) {

@@ -176,14 +176,14 @@ class ResumedOnOtherRanks : public testing::TestWithParam<Change> {};
 
 /// Ends in the middle of a Lagrangian part and goes on on other ranks, or on the same: the answers differ by round-off,
 /// which some hundred steps leave below 1e-9 of each field's largest value. What goes on on the same ranks is the run
-/// without an interruption, to the bit (above).
+/// without an interruption, to the bit (above). The floor of 1e-14 is for strains that are nothing but round-off.
 TEST_P(ResumedOnOtherRanks, IsTheSameButForRoundOff) {
   const Change &change = GetParam();
   const Folder folder;
   folder.write("section.csv", good_section), folder.write("scene.toml", falling_scene);
   const auto run = [&](const std::string &results, const std::string &duration, bool resume, int ranks) {
-    std::vector<std::string> words{"run", "scene.toml", "-o", results, "--no-pictures", "--set",
-                                   "stage.1.duration=" + duration};
+    std::vector<std::string> words{
+        "run", "scene.toml", "-o", results, "--no-pictures", "--set", "stage.1.duration=" + duration};
     for (const std::string &key : change.set) words.insert(words.end(), {"--set", key});
     if (resume) words.push_back("--resume");
     const Ending ending = talus(folder, words, ranks);
@@ -205,14 +205,14 @@ for field in ends[0]:
     if field == 'mass': assert numpy.array_equal(a, b), field
     if a.dtype.kind == 'f':
         scale = numpy.nanmax(numpy.abs(a)) or 1
-        assert numpy.nanmax(numpy.abs(a - b)) <= 1e-9 * scale, (field, numpy.nanmax(numpy.abs(a - b)) / scale)
+        assert numpy.nanmax(numpy.abs(a - b)) <= 1e-9 * scale + 1e-14, (field, numpy.nanmax(numpy.abs(a - b)) / scale)
 last = [list(csv.reader(open(name + '/history.csv')))[-1] for name in ('whole', 'resumed')]
 rows = [list(csv.reader(open(name + '/history.csv'))) for name in ('whole', 'resumed')]
 for k, name in enumerate(rows[0][0]):
     if name in ('stage', 'step'): continue
     scale = max(abs(float(row[k])) for row in rows[0][1:]) or 1
     a, b = float(last[0][k]), float(last[1][k])
-    assert abs(a - b) <= 1e-7 * scale or a != a and b != b, (name, a, b)
+    assert abs(a - b) <= 1e-7 * scale + 1e-9 or a != a and b != b, (name, a, b)
 print('the same')
 )"})
                             .end();
@@ -402,7 +402,8 @@ TEST_F(EndedRun, IsResumedFromTheCheckpointBeforeADamagedOne) {
     const Ending ending = run({"--resume"});
     EXPECT_EQ(ending.status, 0) << ending.output;
     EXPECT_TRUE(ending.says("warning: ") && ending.says(cause) && ending.says("from the checkpoint before it"))
-        << cause << "\n" << ending.output;
+        << cause << "\n"
+        << ending.output;
     EXPECT_TRUE(ending.says("resumed at t = 0.04 s")) << ending.output;
     EXPECT_TRUE(ending.says("t = 0.05 / 0.05 s")) << ending.output;
     EXPECT_GT(state(), name) << "numbers are not used twice";

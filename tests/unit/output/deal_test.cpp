@@ -35,7 +35,8 @@ bool has_point(long long p, int rank, int ranks) { return p % ranks == rank || (
 Module module_of(int rank, int ranks) {
   Module module;
   for (long long c = 0; c < cells; ++c)
-    if (has_cell(c, rank, ranks)) module.cell.push_back(c), module.stress.insert(module.stress.end(), {c * 10., c * 20.});
+    if (has_cell(c, rank, ranks))
+      module.cell.push_back(c), module.stress.insert(module.stress.end(), {c * 10., c * 20.});
   for (long long p = 0; p < points; ++p)
     for (int k = 0; has_point(p, rank, ranks) && k < (p % 3 ? 1 : 2); ++k)
       module.point.push_back(p), module.place.push_back(static_cast<int>(10 * p + k));
