@@ -3,6 +3,7 @@
 #include "commands/commands.h"
 #include "commands/foreign_code.h"
 #include "commands/gallery.h"
+#include "commands/trials.h"
 #include "scene/reader.h"
 #include "simulation.h"
 
@@ -15,7 +16,10 @@ struct RunArguments {
   bool no_pictures = false, no_umat = false, resume = false, force = false;
 };
 
-void on_signal(int) { interrupted = 1; }
+void on_signal(int) {
+  interrupted = 1;
+  end_soon_without_starter();
+}
 
 int run(const RunArguments &arguments) {
   const std::string file = find_scene(arguments.scene);
