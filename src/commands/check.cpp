@@ -102,11 +102,15 @@ void print_costs(const Scene &scene, const Needs &n) {
   line("bodies", "%-16s %-14s %10s %8s %5s %10s %8s %8s %12s", "", "law", "particles", "cells", "each", per, "c_p m/s",
        "c_s m/s", "critical s");
   for (const BodyNeeds &b : n.bodies)
-    line("", "%-16s %-14s %10lld %8lld %5d %10.4g %8.3g %8.3g %12.3g", b.body.name.c_str(), law_name(b.law),
-         b.body.particles, b.body.cells, b.body.fewest_per_cell, b.body.mass, b.wave_speed, b.shear_speed,
-         b.body.critical_step);
+    if (b.there())
+      line("", "%-16s %-14s %10lld %8lld %5d %10.4g %8.3g %8.3g %12.3g", b.body.name.c_str(), law_name(b.law),
+           b.body.particles, b.body.cells, b.body.fewest_per_cell, b.body.mass, b.wave_speed, b.shear_speed,
+           b.body.critical_step);
+    else
+      line("", "%-16s %-14s added by a stage, not there at the start", b.body.name.c_str(), law_name(b.law));
   line("memory", "%s resident; snapshots take about %s (%lld)", spoken_bytes(n.memory).c_str(),
        spoken_bytes(n.results).c_str(), n.snapshots);
+  if (n.particles() == 0) return;  // neither steps nor times are known
   const BodyReport &slowest = n.slowest_body().body;
   if (n.critical_step > slowest.critical_step)
     line("step", "critical %.4g s (2 / omega_max) of the filled mesh, %.2f times that of its fastest cell",
@@ -137,6 +141,7 @@ void print_costs(const Scene &scene, const Needs &n) {
 }
 
 void print_scales(const Needs &n) {
+  if (n.particles() == 0) return;
   const LayerNeeds &layer = n.layer;
   line("scales", "%.3g m deep at most, crossed by a wave in %s", layer.height, spoken(layer.transit).c_str());
   if (n.gravity > 0) {

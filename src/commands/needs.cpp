@@ -159,7 +159,8 @@ class Adviser {
           "whom you would trust with a program, or check and run it with --no-umat, which refuses it.");
     if (!needs_.burst_failure.empty()) say("The run breaks off in its first steps: " + needs_.burst_failure + ".");
     for (const std::string &remark : needs_.mesh.remarks) say(remark);
-    for (const BodyNeeds &b : needs_.bodies) particles(b), locking(b), softening(b), yielding_ground(b);
+    for (const BodyNeeds &b : needs_.bodies)
+      if (b.there()) particles(b), locking(b), softening(b), yielding_ground(b);
     if (!needs_.function_fault.empty())
       say(needs_.function_fault +
           ". A run ends where it needs such a value; the function was tried all over the soil and "
@@ -167,6 +168,11 @@ class Adviser {
     if (!needs_.downhill_fault.empty())
       say(needs_.downhill_fault + ". That place lies downhill of the soil: the run ends if a slide comes so far.");
     for (const std::string &sentence : needs_.unlikely) say(sentence + (sentence.ends_with('?') ? "" : "."));
+    if (needs_.particles() == 0) {
+      say("Stages add all soil, and none is there at the start: steps, times and scales are not known before a run. "
+          "Without `add` in the stages check estimates them of the whole soil.");
+      return std::move(advice_);
+    }
     if (!scene_.root->has("gravity"))
       say("The scene gives no gravity, so that soil has no weight; gravity = 0 says that this is meant.");
     for (const std::string &sentence : needs_.brittle) say(sentence);

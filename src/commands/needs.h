@@ -17,6 +17,7 @@ struct BodyNeeds {
   double wave_speed = 0, shear_speed = 0;  ///< elastic, c_p and c_s [m/s]
   double averaging_length = 0;             ///< of the plastic strain that softens [m]; 0: none
   Softening softening = {};
+  bool there() const { return body.particles > 0; }  ///< at the start; else a stage adds it
 };
 
 /// All bodies taken for one layer, as deep as their soil is below its surface.

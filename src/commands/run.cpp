@@ -4,6 +4,7 @@
 #include "commands/foreign_code.h"
 #include "commands/gallery.h"
 #include "commands/slice.h"
+#include "commands/trials.h"
 #include "scene/reader.h"
 #include "simulation.h"
 
@@ -16,7 +17,10 @@ struct RunArguments {
   bool slice = false, no_pictures = false, no_umat = false, resume = false, force = false;
 };
 
-void on_signal(int) { interrupted = 1; }
+void on_signal(int) {
+  interrupted = 1;
+  end_soon_without_starter();
+}
 
 int run(const RunArguments &arguments) {
   const std::string file = find_scene(arguments.scene);

@@ -4,6 +4,7 @@
 #include "commands/commands.h"
 #include "commands/foreign_code.h"
 #include "commands/gallery.h"
+#include "commands/trials.h"
 #include "output/json.h"
 #include "output/pictures.h"
 #include "scene/reader.h"
@@ -18,7 +19,10 @@ struct SolveArguments {
   bool no_pictures = false, no_umat = false, factor_of_safety = false, json = false, force = false;
 };
 
-void on_signal(int) { interrupted = 1; }
+void on_signal(int) {
+  interrupted = 1;
+  end_soon_without_starter();
+}
 
 std::string to_json(const FactorBracket &bracket) {
   return json::Object()

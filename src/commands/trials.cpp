@@ -42,6 +42,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char *starter_variable = "TALUS_STARTER";  // process that has started this one as a trial
+pid_t starter_process = 0;                                 // 0: this is no trial
 
 std::string contents(const std::string &path) {
   std::ostringstream text;
@@ -277,10 +278,15 @@ std::string unit_of_key(const std::string &key) {
 void end_with_starter() {
   const char *given = std::getenv(starter_variable);
   if (!given) return;
-  const std::string starter = given;
+  starter_process = static_cast<pid_t>(std::atol(given));
   unsetenv(starter_variable);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (std::to_string(getppid()) != starter) raise(SIGTERM);  // it was gone before that
+  if (getppid() != starter_process) raise(SIGTERM);  // it was gone before that
+}
+
+void end_soon_without_starter() {
+  constexpr unsigned grace = 5;                                           // [s]
+  if (starter_process > 0 && getppid() != starter_process) alarm(grace);  // SIGALRM ends a process
 }
 
 Scene read_wholly(const std::string &file, const std::vector<std::string> &set) {

@@ -73,6 +73,9 @@ std::string unit_of_key(const std::string &key);
 /// To be called first by every program: a run that run_trials has started ends by SIGTERM when the program that started
 /// it is gone, even killed. Programs that the run starts itself are not concerned.
 void end_with_starter();
+/// To be called by what handles SIGTERM: a run whose starter is gone has some seconds to end in order, also in the
+/// midst of a mesh or an equilibrium, and is ended then. Safe in a signal handler.
+void end_soon_without_starter();
 
 /// Refuses to start on several ranks (SceneError): the runs are processes of their own.
 void require_one_rank(const std::string &command);

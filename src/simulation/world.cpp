@@ -528,7 +528,7 @@ std::vector<BodyReport> World<dim>::report() {
     MPI_Bcast(place.data(), 3, MPI_DOUBLE, slowest.rank, comm);
     report.particles = static_cast<long long>(sums[0]), report.cells = static_cast<long long>(sums[1]);
     report.mass = sums[2], report.volume = sums[3];
-    report.fewest_per_cell = static_cast<int>(least[0]);
+    report.fewest_per_cell = sums[1] > 0 ? static_cast<int>(least[0]) : 0;
     for (int d = 0; d < dim; ++d) report.low[d] = least[1 + d], report.high[d] = -least[4 + d];
     report.critical_step = slowest.step, report.slowest_cell = place;
     report.mean_critical_step = sums[4] / sums[1];

@@ -176,7 +176,7 @@ def slide(results):
 
 
 def flow(results, states=10):
-    """In 3D, of the soil that has slid by the end (talus_results.slid): the median of its thickness by volume and the largest one without single
+    """In 3D, of the soil that has slid by the end (talus_results.sliding): the median of its thickness by volume and the largest one without single
     particles, and the mean size of the cells where it is, over some states after the start [m]; None where nothing slid."""
     last = results.snapshots[-1]
     if last.position().shape[1] != 3 or len(results.snapshots) < 2:

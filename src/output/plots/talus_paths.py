@@ -45,6 +45,18 @@ def nearest_lines(lines, suctions):
     return [line for line in lines if line[1] in chosen]
 
 
+def spread(heights, gap, top):
+    """Heights of labels in the order of those of their lines, apart by `gap` at least and none above `top`."""
+    placed = np.sort(np.minimum(heights, top))
+    for k in range(1, len(placed)):
+        placed[k] = max(placed[k], placed[k - 1] + gap)
+    for k in range(len(placed) - 1, -1, -1):
+        placed[k] = min(placed[k], top if k == len(placed) - 1 else placed[k + 1] - gap)
+    found = np.empty(len(placed))
+    found[np.argsort(heights, kind="stable")] = placed
+    return found
+
+
 def draw_stress_paths(results, folder):
     """stress_paths.png: deviator over mean effective stress with the strength in triaxial compression, and mobilised friction over time.
     Returns [("stress paths", path)]; nothing without named points or with fewer than three rows of the history."""
@@ -66,7 +78,7 @@ def draw_stress_paths(results, folder):
         lowest, highest = min(lowest, np.nanmin(p)), max(highest, np.nanmax(p))
     reach = np.array([lowest, 1.08 * highest + 1e-9])
     top = left.get_ylim()[1]
-    bodies = bodies_of(results, paths)
+    bodies, labels = bodies_of(results, paths), []
     for body, lines in strength_of(folder).items():
         mine = [path["suction"] for name, path in paths.items() if bodies.get(name) == body]
         for state, suction, slope, intercept in nearest_lines(lines, np.concatenate(mine)) if mine else ():
@@ -77,7 +89,11 @@ def draw_stress_paths(results, folder):
             size, of = readable_unit(suction, "Pa")
             parts = [body] * (len(results.bodies) > 1) + [state] * (len({line[0] for line in lines}) > 1) + [f"s = {size * suction:g} {of}"] * (len({line[1] for line in lines}) > 1)
             at = reach[1] if height[1] < 1.3 * top else np.interp(1.25 * top, height, reach)
-            left.annotate(", ".join(parts) or "strength", (at, slope * at + factor * intercept), fontsize=7, color=style.SOFT, ha="right", va="bottom")
+            labels.append((", ".join(parts) or "strength", at, slope * at + factor * intercept))
+    for (text, at, height), y in zip(labels, spread(np.array([height for _, _, height in labels]), 0.055 * top, 1.3 * top)):
+        leader = {"arrowstyle": "-", "lw": 0.4, "color": style.SOFT, "shrinkA": 0, "shrinkB": 0} if abs(y - height) > 0.02 * top else None
+        left.annotate(text, (at, height), (at if leader is None else at - 0.04 * reach[1], y), fontsize=7, color=style.SOFT, ha="right", va="bottom",
+                      arrowprops=leader, bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.3})
     left.set(xlabel=f"mean effective stress p' [{unit}]", ylabel=f"q [{unit}]", xlim=reach, ylim=(0, 1.35 * top))
     left.set_title("open: start, full: end; grey: strength in triaxial compression", loc="left", fontsize=7.5, color=style.SOFT)
     time_axis(right, results.history.time[-1])

@@ -243,8 +243,8 @@ class History:
         return places
 
     def stage_starts(self):
-        """[(time, name)] of the stages."""
-        return [(self.time[k], name) for k, name in enumerate(self.stage) if k == 0 or name != self.stage[k - 1]]
+        """[(time, name)] of the stages. A stage begins at the last row of the one before; its own first row comes an interval later."""
+        return [(self.time[max(0, k - 1)], name) for k, name in enumerate(self.stage) if k == 0 or name != self.stage[k - 1]]
 
 
 def split_name(name):

@@ -197,7 +197,8 @@ def in_both(before, after):
 
 class Colours:
     """The scale that all pictures of a field share: from 0, or the least value if negative, to nearly the largest. That of plastic strain is even
-    in its square root, so that the thin band at failure is seen beside the large strain of the slide."""
+    in its square root, so that the thin band at failure is seen beside the large strain of the slide; that of mobilised friction in its fourth power,
+    since soil near failure, where the last degrees count, would be of one colour otherwise."""
 
     def __init__(self, field, snapshots, log=False):
         self.map = style.colours_of(field)
@@ -214,7 +215,10 @@ class Colours:
         self.beyond = len(values) > 0 and values.max() * self.factor > high
         self.from_nothing = low == 0 and not self.names
         self.rooted = field == "plastic_strain" and low == 0 and not log
-        self.norm = LogNorm(1e-3 * high, high, clip=True) if log and low == 0 else PowerNorm(0.5, low, high) if self.rooted else Normalize(low, high)
+        power = 0.5 if self.rooted else 4 if field == "mobilised_friction" and low == 0 else 1
+        self.uneven = {0.5: "colours even in the square root", 4: "colours even in the fourth power"}.get(power, "")
+        self.ticks = [float(f"{high * share:.2g}") for share in (0, 0.7, 0.85, 0.93, 1)] if power == 4 else None
+        self.norm = LogNorm(1e-3 * high, high, clip=True) if log and low == 0 else PowerNorm(power, low, high) if power != 1 else Normalize(low, high)
 
 
 def rounded_up(value):
@@ -457,6 +461,8 @@ class Painter:
         bar.tick_params(length=2)
         if colours.names:
             bar.set_yticks(range(len(colours.names)), colours.names, rotation=90, va="center")
+        if colours.ticks:
+            bar.set_yticks(colours.ticks, [f"{value:g}" for value in colours.ticks])
         bar.set_title(colours.unit, fontsize=9, pad=6)
         headline = "  ".join(filter(None, (capital(words(field)), style.SYMBOL.get(field))))
         figure.text(LEFT / WIDTH, 1 - 0.24 / height, headline, fontsize=13, fontweight="bold", va="center")
@@ -464,7 +470,7 @@ class Painter:
         figure.text(right, 1 - 0.24 / height, self.results.title, fontsize=9, color=style.SOFT, va="center", ha="right")
         shaded = colours.from_nothing and any(isinstance(self.views[k], (Oblique, MapView)) for k in views)
         legend = [f"colour of soil: below {colours.norm.inverse(FAINT):.2g} {colours.unit}".rstrip()] * shaded
-        legend += ["colours even in the square root"] * colours.rooted
+        legend += [colours.uneven] * bool(colours.uneven)
         legend += ["dotted: outline at the start"] * any(self.outlines[k][0] for k in views)
         legend += [f"crosses: {self.marked_escaped} particles left the mesh here"] * bool(self.marked_escaped)
         figure.text(right, 0.16 / height, "; ".join(legend), fontsize=7.5, color=style.SOFT, ha="right")

@@ -36,7 +36,7 @@ STATE_COLOURS = ("#eef1f4", "#ffd43b", "#f76707", "#c92a2a")
 # of even steps in lightness; strain and pressure start pale, so that the eye goes to where there is some
 MAPS = {"displacement": plt.get_cmap("viridis"), "thickness": part_of("YlOrRd", 0.05, 1.0), "velocity": plt.get_cmap("plasma"),
         "plastic_strain": part_of("magma_r", 0.03, 0.95), "pore_pressure": part_of("YlGnBu", 0.08, 1.0),
-        "suction": part_of("YlOrBr", 0.03, 0.95), "saturation": plt.get_cmap("YlGnBu"), "mobilised_friction": part_of("magma_r", 0.03, 0.95),
+        "suction": part_of("YlOrBr", 0.03, 0.95), "saturation": plt.get_cmap("YlGnBu"), "mobilised_friction": part_of("YlOrRd", 0.02, 0.95),
         "state": ListedColormap(STATE_COLOURS)}
 SYMBOL = {"displacement": "|u|", "velocity": "|v|", "thickness": "h", "plastic_strain": "εₚ", "pore_pressure": "p", "suction": "s", "saturation": "S", "mobilised_friction": "φₘ"}
 

@@ -59,6 +59,29 @@ TEST(Check, KnowsStagesByFiniteElements) {
   EXPECT_FALSE(ending.says("Gravity is applied at once")) << ending.output;
 }
 
+/// Soil that a stage adds has no particles yet: neither of it nor of a scene without other soil are numbers invented.
+TEST(Check, SaysWhichSoilAStageAdds) {
+  const Folder folder;
+  folder.write("scene.toml", good_scene), folder.write("section.csv", good_section);
+  const auto page = [&](std::vector<std::string> more) {
+    std::vector<std::string> words{"check", "scene.toml", "--set", "stage.0.kind=quasi_static"};
+    for (const std::string &one : more) words.insert(words.end(), {"--set", one});
+    return talus(folder, words);
+  };
+  const std::vector<std::string> fill{"body.fill.region=air", "body.fill.density=1800", "body.fill.law=linear_elastic",
+                                      "body.fill.young_modulus=1e6", "body.fill.poisson_ratio=0.3"};
+  std::vector<std::string> one = fill, all = fill;
+  one.push_back("stage.0.add=[\"fill\"]"), all.push_back("stage.0.add=[\"fill\", \"sand\"]");
+  for (const auto &[overrides, added, known] : {std::tuple{one, 1, true}, {all, 2, false}}) {
+    const Ending ending = page(overrides);
+    ASSERT_EQ(ending.status, 0) << ending.output;
+    EXPECT_EQ(ending.count("added by a stage, not there at the start"), added) << ending.output;
+    EXPECT_FALSE(ending.says("nan") || ending.says("-2147483648") || ending.says(" inf")) << ending.output;
+    EXPECT_EQ(ending.says("Stages add all soil"), !known) << ending.output;
+    EXPECT_EQ(ending.says("crossed by a wave"), known) << ending.output;
+  }
+}
+
 TEST(Check, TellsThatARunBreaksOffAtOnce) {
   const Folder folder;
   const Ending ending = check(folder, {"body.sand.velocity=['1e200', '0']"});

@@ -36,6 +36,14 @@ TEST(HistoryRows, static_stages_show_the_place_itself) {
   }
 }
 
+/// In drained soil a support bears the effective weight: the pressure of the water at the base bears the rest.
+TEST(HistoryRows, show_the_effective_force_of_drained_soil) {
+  const HistoryTable history = solve(column + "[[stage]]\nkind = \"quasi_static\"\nduration = 1\n",
+                                     {"phases=drained", "water.table=[[0, 1], [1, 1]]"})
+                                   .history;
+  EXPECT_NEAR(history.column("walls_force_y_N").back(), (2000 - 1000) * 10, 1e-6);
+}
+
 /// Under its weight the column has sigma_yy = -gamma (1 - y) and nu / (1 - nu) of it sideways, which rows show by
 /// components, mean pressure, deviator and the friction that they mobilise.
 TEST(HistoryRows, show_the_stress_of_a_point) {

@@ -122,6 +122,31 @@ TEST_F(Study, TakesItsRunsAlongWhenItIsKilled) {
   }
 }
 
+/// Also where they do not ask for signals: 40 000 cells are made, read and searched for neighbours before the first
+/// step.
+TEST_F(Study, TakesItsRunsAlongBeforeTheirFirstStep) {
+  Program program(folder_, words({"--no-plot", "--set", "set=[\"mesh.size=0.005\"]"}));
+  ASSERT_TRUE(program.wait_for(folder_ / "out/run00000/screen")) << program.end().output;
+  const auto runs = [&] {
+    int found = 0;
+    for (const auto &entry : std::filesystem::directory_iterator("/proc")) {
+      std::ifstream file(entry.path() / "cmdline");
+      std::string words{std::istreambuf_iterator<char>(file), {}};
+      std::error_code none;
+      found += words.find("out/run00000") != std::string::npos &&
+               std::filesystem::read_symlink(entry.path() / "cwd", none) == folder_.path();
+    }
+    return found;
+  };
+  for (int i = 0; i < 1000 && runs() == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  std::this_thread::sleep_for(std::chrono::seconds(1));  // it has begun to listen to signals
+  ASSERT_GT(runs(), 0);
+  program.signal(SIGKILL);
+  program.end();
+  for (int i = 0; i < 90 && runs() > 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_EQ(runs(), 0) << "nine seconds after its study was killed";
+}
+
 TEST_F(Study, EntersRunsThatFail) {
   folder_.write("study.toml", changed(good_study, "[\"0.5\", \"0\"]", "[\"400\", \"0\"]"));
   const Ending ending = study();

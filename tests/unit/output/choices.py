@@ -8,7 +8,8 @@ import numpy as np
 
 sys.path.insert(0, sys.argv.pop(1))
 from talus_histories import draw_histories, drawn_energies  # noqa: E402
-from talus_results import Results  # noqa: E402
+from talus_paths import spread  # noqa: E402
+from talus_results import History, Results  # noqa: E402
 from talus_sections import Colours, Painter, View, chosen_snapshots, views_of  # noqa: E402
 from talus_tiles import Frame  # noqa: E402
 
@@ -98,6 +99,22 @@ class Scales(unittest.TestCase):
         self.assertFalse(self.strain(log=True).rooted)
         self.assertAlmostEqual(float(self.strain(log=True).norm(1e-1)), 2 / 3)
 
+    def test_the_last_degrees_before_failure_differ(self):
+        values = types.SimpleNamespace(scalar=lambda field: (np.linspace(0, 30, 1001), "deg"))
+        scale = Colours("mobilised_friction", [values])
+        self.assertGreater(scale.norm(30) - scale.norm(28), 0.2)  # of the whole range; 0.07 if it were even
+        self.assertGreater(np.ptp(scale.map(1.0)[:3]), 0.4)  # no black
+
+
+class Labels(unittest.TestCase):
+    def test_labels_of_near_lines_keep_apart_in_their_order(self):
+        lines = np.array([1.0, 0.98, 0.3, 1.01, 0.99])
+        placed = spread(lines, 0.05, 1.05)
+        self.assertGreater(np.diff(np.sort(placed)).min(), 0.0499)
+        self.assertEqual(list(np.argsort(placed)), list(np.argsort(lines)))
+        self.assertLessEqual(placed.max(), 1.05)
+        self.assertEqual(placed[2], 0.3)
+
 
 class Energies(unittest.TestCase):
     def test_potential_energy_is_its_change_and_what_stays_is_left_out(self):
@@ -108,6 +125,11 @@ class Energies(unittest.TestCase):
 
 
 class Histories(unittest.TestCase):
+    def test_a_stage_begins_where_the_one_before_ended(self):
+        history = History.__new__(History)
+        history.time, history.stage = np.array([0.0, 1.0, 2.0, 2.5, 3.0]), ["start", "rain", "rain", "slide", "slide"]
+        self.assertEqual(history.stage_starts(), [(0.0, "start"), (0.0, "rain"), (2.0, "slide")])
+
     def test_the_clock_of_the_loads_has_no_picture(self):
         time = np.arange(3.0)
         history = types.SimpleNamespace(time=time, groups=lambda: {("load_time", "s"): {"": time}})
