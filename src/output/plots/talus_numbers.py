@@ -418,7 +418,7 @@ def main():
     parser.add_argument("--list", action="store_true", help="name the runs and what they cost")
     given = parser.parse_args()
     os.environ.setdefault("OMP_NUM_THREADS", "1")
-    holds, start = True, time.time()
+    faults, start = [], time.time()
     pages = list(pages_of(given.gallery, given.names))
     known = [name for page in pages for name in (*page.runs, *page.studies)]
     for name in given.only or ():
@@ -435,20 +435,26 @@ def main():
         if not given.pages:
             for name, run in page.runs.items():
                 if name in given.only if given.only else given.long or run["cost"] == "quick":
-                    holds = check_run(page, name, run, given.talus, given.write) and holds
+                    if not check_run(page, name, run, given.talus, given.write):
+                        faults.append(f"{page.name}: run {name} ({run['about']})")
             for name, study in page.studies.items():
                 if name in given.only if given.only else given.long:
-                    holds = check_study(page, name, study, given.talus, given.write) and holds
-        holds = put_in_step(page, given.write) and holds
+                    if not check_study(page, name, study, given.talus, given.write):
+                        faults.append(f"{page.name}: study {name} ({study['about']})")
+        if not put_in_step(page, given.write):
+            faults.append(f"{page.name}: tables of {page.readme.name}")
         if page.model:
             if given.write:
                 draw_model(page, given.talus)
-            holds = model_in_step(page) and holds
-    if given.pages and holds:
+            if not model_in_step(page):
+                faults.append(f"{page.name}: picture of the model")
+    if given.pages and not faults:
         print(f"the tables of the pages in {given.gallery} are in step")
     elif not given.pages and not given.list:
-        print(f"{'all numbers hold' if holds else 'not all numbers hold'} that the pages in {given.gallery} state; {time.time() - start:.0f} s")
-    return 0 if holds else 1
+        print(f"{'not all numbers hold' if faults else 'all numbers hold'} that the pages in {given.gallery} state; {time.time() - start:.0f} s")
+    for fault in faults:  # each with its cause further up
+        print(f"  {fault}")
+    return 1 if faults else 0
 
 
 if __name__ == "__main__":
