@@ -135,7 +135,7 @@ void print_costs(const Scene &scene, const Needs &n) {
   if (n.burst_steps)
     line("run time",
          "about %s to %s on %d rank%s: an estimate from %d steps of %s each with soil at rest, and of %s with a remap, "
-         "which fast soil has in each step; files and pictures come on top",
+         "which fast soil has in each step; the mesh, files and pictures come on top",
          spoken(n.run_time()).c_str(), spoken(n.longest_run_time()).c_str(), n.ranks, n.ranks > 1 ? "s" : "",
          n.burst_steps, spoken(n.seconds_per_step).c_str(), spoken(n.seconds_per_remap).c_str());
 }

@@ -199,6 +199,7 @@ law = "mohr_coulomb"
 young_modulus = "20 MPa"
 poisson_ratio = 0.3
 friction_angle = 30
+cohesion = 0
 [boundary.base]
 kind = "friction"
 friction_angle = "bed(x, y)"
@@ -346,7 +347,7 @@ TEST(Check, DoubtsStrengthThatMakesNoSenseForItsHeight) {
     return check(folder, overrides).says(text);
   };
   EXPECT_FALSE(says({"body.sand.cohesion=0.9e6"}, "stands in any shape"));
-  EXPECT_TRUE(says({"body.sand.cohesion=1e6"}, "times the weight of the soil, 9.81 kPa over its height"));
+  EXPECT_TRUE(says({"body.sand.cohesion=1e6"}, "times the weight of the soil, 9.81 kPa over its depth"));
   EXPECT_FALSE(says({"body.sand.cohesion=1e6", "body.sand.reduce_strength=false"}, "stands in any shape"));
   EXPECT_TRUE(says({"body.sand.cohesion=0.3e6"},
                    "The stiffness of body.sand, young_modulus = 1 MPa, is 3.333 times its cohesion"));

@@ -299,6 +299,8 @@ TEST_F(TerrainFiles, AreRefusedWithSpikes) {
     }
   EXPECT_EQ(complaint(with(plane(east + 60, 0) + 10, plane)), "");
   EXPECT_EQ(complaint(options(ascii(rough))), "");
+  const Elevation wild = [](double x, double y) { return plane(x, y) + 30 * std::sin(x) * std::cos(y); };
+  EXPECT_EQ(complaint(options(ascii(wild))), "") << "places stand out by more than two spacings, and so do all others";
   EXPECT_EQ(complaint(options(ascii([](double x, double y) { return plane(x, y) + (x < east + 90 ? 80 : 0); }))), "");
   const Elevation half = [](double x, double y) { return x < east + 90 ? -9998 : plane(x, y); };
   expect_words(complaint(options(ascii(half))), {"the elevation -9998 m at (5080, ", "lower than the place beside it"});
