@@ -57,7 +57,7 @@ Action add_run(CLI::App &app) {
   command->add_flag("--no-umat", arguments->no_umat, "refuse laws that load a library: for scenes of strangers");
   CLI::Option *resume =
       command->add_flag("--resume", arguments->resume,
-                        "continue the run in that folder from its last checkpoint, on the same number of ranks");
+                        "continue the run in that folder from its last checkpoint, on any number of ranks");
   command->add_flag("--force", arguments->force, "replace the results of another run in that folder")->excludes(resume);
   command->add_flag("--no-pictures", arguments->no_pictures, "do not draw pictures at the end");
   return [arguments] { return run(*arguments); };

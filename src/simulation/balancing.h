@@ -32,11 +32,10 @@ class Balancing {
   }
   /// Is it time to look for another partition? After a remap.
   bool due() const {
-    // Soil that moves on loses more with each step: the sum of losses and costs is least when both are equal, and
-    // hardly larger at a quarter of it, which holds large imbalances down. Below 1.1 no partition is much better.
-    constexpr double limit = 1.1, large = 1.2;
+    // Soil that moves on loses more with each step: the sum of losses and costs is least when both are equal.
+    constexpr double limit = 1.1;  // below it no partition is much better, since patches stay whole
     if (when_ == BalanceRanks::always) return true;
-    return when_ == BalanceRanks::when_it_pays && imbalance_ > limit && lost_ > (imbalance_ > large ? 0.25 : 1) * cost_;
+    return when_ == BalanceRanks::when_it_pays && imbalance_ > limit && lost_ > cost_;
   }
   /// Is a partition that is known to have this imbalance worth it? If not, it is time again after as much loss.
   bool worth(double expected) {
