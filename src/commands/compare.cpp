@@ -156,7 +156,9 @@ int compare(CompareArguments arguments) {
   require_one_rank("compare");
   arguments.scene = find_scene(arguments.scene);
   read_scene(arguments.scene, arguments.set);
-  if (arguments.directory.empty()) arguments.directory = "results/compare_" + short_name(arguments.scene);
+  if (arguments.directory.empty())
+    arguments.directory =
+        (arguments.measure.empty() ? "results/sweep_" : "results/compare_") + short_name(arguments.scene);
   if (arguments.measure.empty() && !(arguments.exact.empty() && arguments.reference.empty()))
     throw SceneError("--exact and --reference belong to a --measure: name the column of history.csv that is compared");
   const Measure measure = arguments.measure.empty() ? Measure{} : parse_measure(arguments.measure);
@@ -220,8 +222,9 @@ Action add_compare(CLI::App &app) {
                       "the run whose value counts as true: \"NAME: key=a; key=b\", such as \"finite elements: "
                       "stage.0.kind=quasi_static\"");
   command->add_option("--set", arguments->set, "override a key in all runs: key.path=value")->take_all();
-  command->add_option("-o,--output", arguments->directory,
-                      "folder of runs, tables and charts (default results/compare_NAME)");
+  command->add_option(
+      "-o,--output", arguments->directory,
+      "folder of runs, tables and charts (default results/compare_NAME, without --measure results/sweep_NAME)");
   command->add_option("-j,--jobs", arguments->jobs, "runs at the same time (default: one per core)")
       ->check(CLI::Range(1, 1024));
   command->add_flag("--force", arguments->force, "replace runs of another scene or of other values in that folder");

@@ -40,7 +40,8 @@ std::string short_name(const std::string &scene_file) {
   return path.stem() == "scene" ? path.parent_path().filename() : path.stem();
 }
 
-std::string default_results(const std::string &scene_file, const std::vector<std::string> &set) {
+std::string default_results(const std::string &scene_file, const std::vector<std::string> &set,
+                            const std::string &ending) {
   constexpr std::size_t longest = 120;  // characters; file systems end at 255 bytes
   std::string name = short_name(scene_file), overrides;
   for (const std::string &one : set) overrides += "_" + one;
@@ -51,7 +52,7 @@ std::string default_results(const std::string &scene_file, const std::vector<std
     number << std::hex << fingerprint(overrides.data(), overrides.size());
     overrides = overrides.substr(0, longest) + "_" + number.str();
   }
-  return "results/" + name + overrides;
+  return "results/" + name + ending + overrides;
 }
 
 }  // namespace talus

@@ -12,8 +12,9 @@ std::string find_scene(const std::string &name);
 /// What a scene is called in names of folders: its file without the ending, or its folder for a file scene.toml.
 std::string short_name(const std::string &scene_file);
 
-/// The default folder of a run: results/NAME, followed by the overrides of --set, so that other inputs have another
-/// folder.
-std::string default_results(const std::string &scene_file, const std::vector<std::string> &set);
+/// The default folder of a run: results/NAME, followed by the ending of the command and the overrides of --set, so that
+/// other commands and other inputs have another folder.
+std::string default_results(const std::string &scene_file, const std::vector<std::string> &set,
+                            const std::string &ending = "");
 
 }  // namespace talus

@@ -126,7 +126,8 @@ int solve(const SolveArguments &arguments) {
   if (scene.stage.empty())
     scene.complain("stage", "has no quasi-static stage to solve; set its kind = \"quasi_static\"");
   RunOptions options;
-  options.directory = arguments.directory.empty() ? default_results(file, arguments.set) : arguments.directory;
+  options.directory =
+      arguments.directory.empty() ? default_results(file, arguments.set, "_solve") : arguments.directory;
   options.replace = arguments.force;
   options.pictures = options.checkpoints = false, options.gauss_points = true;
   std::signal(SIGINT, on_signal);
@@ -168,7 +169,7 @@ Action add_solve(CLI::App &app) {
       app.add_subcommand("solve", "solve the quasi-static stages of a scene by finite elements; factor of safety");
   command->add_option("SCENE", arguments->scene, "scene file (.toml) or the name of a gallery scene")->required();
   command->add_option("-o,--output", arguments->directory,
-                      "folder of the results (default results/NAME, with what --set changes)");
+                      "folder of the results (default results/NAME_solve, with what --set changes)");
   command->add_option("--set", arguments->set, "override a key of the scene: key.path=value")->take_all();
   command->add_flag("--no-umat", arguments->no_umat, "refuse laws that load a library: for scenes of strangers");
   command->add_flag("--factor-of-safety", arguments->factor_of_safety,

@@ -23,6 +23,8 @@ struct NamedUnit {
 constexpr Dimension mass{1, 0, 0, 0}, length{0, 1, 0, 0}, time{0, 0, 1, 0}, angle{0, 0, 0, 1};
 constexpr Dimension force{1, 1, -2, 0}, pressure{1, -1, -2, 0}, energy{1, 2, -2, 0}, power{1, 2, -3, 0};
 
+constexpr double foot = 0.3048, pound_force = 0.45359237 * 9.80665;  // [m], [N], exact by definition
+
 constexpr NamedUnit named_units[] = {
     {"m", 1, length, true},
     {"s", 1, time, true},
@@ -32,6 +34,10 @@ constexpr NamedUnit named_units[] = {
     {"Pa", 1, pressure, true},
     {"bar", 1e5, pressure, true},
     {"atm", 101325, pressure, false},
+    {"ft", foot, length, false},
+    {"psf", pound_force / (foot * foot), pressure, false},
+    {"psi", pound_force / (foot * foot / 144), pressure, false},
+    {"pcf", pound_force / (foot * foot * foot), {1, -2, -2, 0}, false},  // a unit weight
     {"J", 1, energy, true},
     {"W", 1, power, true},
     {"K", 1, {0, 0, 0, 0, 1}, false},
