@@ -42,6 +42,7 @@ STUDIES = {
         "cells of 1.0 m, 6 particles in each": ("mesh.size=1", "body.soil.particles_per_cell=6"),
         "cells of 1.0 m, step 0.3 of the critical (0.6)": ("mesh.size=1", "integrator.fraction=0.3"),
         "cells of 1.4 m, the paper's k and K_l": ("mesh.size=1.4", *PAPER),
+        "cells of 1.0 m, the paper's k and K_l": ("mesh.size=1", *PAPER),
     },
     "model": {
         "the scene": (),
