@@ -156,7 +156,7 @@ Checkpoint read_checkpoint(MPI_Comm comm, const std::string &dir) {
     }
   }
   found.last_number = std::max(found.header.number, number_in(header_file(dir)));
-  if (rank == 0)
+  if (rank == 0 && !found.passed_over.empty())  // otherwise what a run that died has begun is written again
     for (const auto &file : fs::directory_iterator(dir + "/checkpoint")) {
       long long number;
       int of_rank;
