@@ -1,5 +1,6 @@
 #include "scene/quantity.h"
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -100,9 +101,28 @@ std::optional<Measure> find_unit(std::string_view name) {
   return std::nullopt;
 }
 
+/// The unit that a name is but for small and capital letters, `kPa` for `KPA`; empty if there is none. Of several, the
+/// first prefix.
+std::string unit_in_other_case(std::string_view name) {
+  const auto same = [&](const std::string &unit) {
+    return std::ranges::equal(name, unit, [](unsigned char a, unsigned char b) {
+      return std::tolower(a) == std::tolower(b);
+    });
+  };
+  for (const NamedUnit &unit : named_units) {
+    if (same(std::string(unit.name))) return std::string(unit.name);
+    for (const Prefix &prefix : prefixes)
+      if (const std::string with = std::string(prefix.name) + std::string(unit.name); unit.prefixed && same(with))
+        return with;
+  }
+  return "";
+}
+
 [[noreturn]] void refuse_unit(std::string_view name) {
   std::vector<std::string> names;
   for (const NamedUnit &unit : named_units) names.emplace_back(unit.name);
+  if (const std::string meant = unit_in_other_case(name); !meant.empty())
+    throw std::invalid_argument("`" + std::string(name) + "` is no unit; did you mean `" + meant + "`?");
   throw std::invalid_argument("`" + std::string(name) + "` is no unit; known, with SI prefixes where usual, are " +
                               join(names));
 }
@@ -209,6 +229,11 @@ std::optional<double> take_number(std::string_view &text) {
   return number;
 }
 
+/// Does a decimal comma follow the digits that were read?
+bool has_decimal_comma(std::string_view rest) {
+  return rest.size() > 1 && rest[0] == ',' && std::isdigit((unsigned char)rest[1]);
+}
+
 /// What is likely meant where `given` stands for a key of dimension `wanted`.
 struct Confusion {
   Dimension wanted, given;
@@ -238,7 +263,7 @@ bool looks_like_quantity(std::string_view text) {
   text = trim(text);
   if (!take_number(text)) return false;
   const bool per = text.starts_with("1/");
-  return text.empty() || per || std::isalpha((unsigned char)text[0]) || text[0] == '%' ||
+  return text.empty() || per || has_decimal_comma(text) || std::isalpha((unsigned char)text[0]) || text[0] == '%' ||
          (unsigned char)text[0] >= 0x80;
 }
 
@@ -248,6 +273,8 @@ Quantity parse_quantity(std::string_view text) {
   if (!number) throw std::invalid_argument("a number, or a number and its unit, is expected");
   if (!std::isfinite(*number)) throw std::invalid_argument("the number is not finite");
   if (rest.empty()) return {*number, true, 1, {}};
+  if (has_decimal_comma(rest))
+    throw std::invalid_argument("decimals are written with a point, 7.5 and not 7,5");
   const Measure measure = UnitText(rest).read();
   return {*number, false, measure.si, measure.dimension};
 }

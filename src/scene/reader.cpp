@@ -46,7 +46,10 @@ TableReader TableReader::from_text(const std::string &text, const std::string &n
     document->root = toml::parse(text, name);
   } catch (const toml::parse_error &error) {
     throw SceneError(name + " line " + std::to_string(error.source().begin.line) + ": " +
-                     std::string(error.description()));
+                     std::string(error.description()) +
+                     (error.description().find("could not determine value type") != std::string_view::npos
+                          ? "; a text, or a number with a unit, is written in quotes"
+                          : ""));
   }
   for (const std::string &one : overrides) apply_override(document->root, one);
   apply_materials(document->root, name);

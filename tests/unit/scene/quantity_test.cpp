@@ -11,6 +11,13 @@ namespace {
 constexpr Unit unit_weight{"N/m3", 1, {1, -2, -2, 0}};
 constexpr Unit cubic_metre_per_second{"m3/s", 1, {0, 3, -1, 0}};
 
+TEST(Quantity, NamesTheUnitThatIsMeantAndTheDecimalPoint) {
+  EXPECT_NE(complaint([] { parse_quantity("7 kpa"); }).find("did you mean `kPa`?"), std::string::npos);
+  EXPECT_NE(complaint([] { parse_quantity("7 KPa"); }).find("did you mean `kPa`?"), std::string::npos);
+  EXPECT_NE(complaint([] { parse_quantity("7,0 kPa"); }).find("decimals are written with a point"), std::string::npos);
+  EXPECT_TRUE(looks_like_quantity("7,0 kPa"));
+}
+
 TEST(Quantity, ReadsEveryUsualSpellingOfAUnit) {
   const struct {
     const char *text;
