@@ -85,12 +85,20 @@ typename FilledGrid<dim>::Rows FilledGrid<dim>::serialize(Archive &archive) {
   }
   archive.column(rows.nodes, "mass", mass);
   archive.column(rows.nodes, "position", position);
-  archive.column(rows.cells, "shape", shape);
+  std::vector<double> figures;  // of the shapes, without their node numbers, which are those of this partition
+  for (int c = 0; c < cell_count_ && !archive.reading(); ++c) {
+    for (const Vec<dim> &gradient : shape[c].gradient) figures.insert(figures.end(), gradient.begin(), gradient.end());
+    figures.push_back(shape[c].volume);
+  }
+  archive.column(rows.cells, "shape", figures, dim * dim + 1);
   archive.column(rows.cells, "mass matrix", mass_matrix);
   archive.column(rows.cells, "nodal share", nodal_share);
   if (archive.reading())
     for (int c = 0; c < cell_count_; ++c) {
       const int cell = mesh_cell[c];
+      const double *figure = &figures[c * (dim * dim + 1)];
+      for (Vec<dim> &gradient : shape[c].gradient) std::copy_n(figure, dim, gradient.begin()), figure += dim;
+      shape[c].volume = *figure;
       for (int k = 0; k <= dim; ++k) shape[c].node[k] = compact_node_[mesh.cells[cell].node[k]];
       size[c] = element_size_[cell], patch[c] = mesh.patch[cell];
     }
