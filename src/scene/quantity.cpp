@@ -105,9 +105,8 @@ std::optional<Measure> find_unit(std::string_view name) {
 /// first prefix.
 std::string unit_in_other_case(std::string_view name) {
   const auto same = [&](const std::string &unit) {
-    return std::ranges::equal(name, unit, [](unsigned char a, unsigned char b) {
-      return std::tolower(a) == std::tolower(b);
-    });
+    return std::ranges::equal(name, unit,
+                              [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); });
   };
   for (const NamedUnit &unit : named_units) {
     if (same(std::string(unit.name))) return std::string(unit.name);
@@ -273,8 +272,7 @@ Quantity parse_quantity(std::string_view text) {
   if (!number) throw std::invalid_argument("a number, or a number and its unit, is expected");
   if (!std::isfinite(*number)) throw std::invalid_argument("the number is not finite");
   if (rest.empty()) return {*number, true, 1, {}};
-  if (has_decimal_comma(rest))
-    throw std::invalid_argument("decimals are written with a point, 7.5 and not 7,5");
+  if (has_decimal_comma(rest)) throw std::invalid_argument("decimals are written with a point, 7.5 and not 7,5");
   const Measure measure = UnitText(rest).read();
   return {*number, false, measure.si, measure.dimension};
 }
