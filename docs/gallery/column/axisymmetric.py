@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Collapse of round columns in 3D, a quarter of each between two rollers: runs them, writes axisymmetric.csv, draws axisymmetric.png.
 
-    axisymmetric.py -o DIR        runs what DIR does not hold yet (about an hour on one core), then draws
+    axisymmetric.py -o DIR        runs what DIR does not hold yet (about ten minutes on one core), then draws
     axisymmetric.py               draws axisymmetric.csv again
 """
 
@@ -23,8 +23,10 @@ from talus_results import Results  # noqa: E402
 
 RADIUS, GRAVITY, DENSITY = 0.1, 9.81, 1600  # R0 [m], [m/s2], [kg/m3]
 MASS = 0.995  # share of the mass behind the front
-# aspect ratio H0 / R0, cells over R0, friction angle [deg]
-RUNS = [(a, n, 30) for a in (0.8, 2, 4) for n in (7, 10, 14)] + [(a, 20, 30) for a in (0.8, 2)] + [(a, 10, phi) for a in (0.8, 2, 4) for phi in (26, 34)]
+ASPECTS = (0.8, 2, 4)
+# friction angle [deg], friction angle of the base (None: no slip), cells over R0
+SERIES = ((30, None, 7), (30, None, 10), (30, None, 14), (30, 22, 7), (30, 22, 10), (26, None, 10))
+ONLY = {(30, None, 14): (0.8, 2)}  # series that do not run every aspect
 
 SCENE = """title = "Round column, H0 / R0 = {aspect:g}"
 dimension = 3
@@ -65,7 +67,7 @@ def mesh(path, aspect, cells):
     beyond it a layer in which the front runs out."""
     h = RADIUS / cells
     rings = int(np.ceil(cells * (1.6 + 1.3 * float(run_out(aspect)))))
-    top, low = int(np.ceil(aspect * cells)) + 2, int(np.ceil(cells * min(aspect, 0.6))) + 2
+    top, low = int(np.ceil(aspect * cells)) + 2, int(np.ceil(cells * (0.4 + 0.3 * aspect))) + 2
     inner = int(1.5 * cells)
     height = lambda i, j: top if max(i, j) < inner else low  # layers of the block (i, j)
 
@@ -141,18 +143,23 @@ def measure(folder):
             "crest": np.max(position[radius < 0.1 * RADIUS, 1]) / RADIUS, "time_s": last.time, "particles": len(radius)}
 
 
+def name_of(friction, base, cells):
+    return f"{friction}°, {'no slip' if base is None else f'base {base}°'}, R₀/{cells}"
+
+
 def run_all(folder, program):
     rows = []
-    for aspect, cells, friction, base in RUNS:
+    runs = [(aspect, cells, friction, base) for friction, base, cells in SERIES for aspect in ONLY.get((friction, base, cells), ASPECTS)]
+    for aspect, cells, friction, base in runs:
         here = folder / f"a{aspect:g}_cells{cells}_friction{friction}_{'no_slip' if base is None else f'base{base}'}"
         if not (here / "done").exists():
             write_scene(here, aspect, cells, friction, base)
             done = subprocess.run([program, "run", str(here / "scene.toml"), "-o", str(here), "--no-pictures", "--force"], capture_output=True, text=True)
             if done.returncode:
-                print(f"a = {aspect:g}, {cells} cells, {friction} deg: {done.stderr.strip().splitlines()[-1]}", file=sys.stderr)
+                print(f"a = {aspect:g}, {cells} cells, {friction} deg, base {base}: {done.stderr.strip().splitlines()[-1]}", file=sys.stderr)
                 continue
             (here / "done").touch()
-        row = {"aspect": aspect, "cells": cells, "friction_angle_deg": friction, "base": "no slip" if base is None else f"{base} deg"}
+        row = {"series": name_of(friction, base, cells), "aspect": aspect}
         row |= {name: f"{value:.4g}" if isinstance(value, float) else value for name, value in measure(here).items()}
         rows.append(row)
         print(", ".join(f"{name} {value}" for name, value in row.items()), flush=True)
@@ -160,3 +167,34 @@ def run_all(folder, program):
         writer = csv.DictWriter(file, rows[0], lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
+
+
+def draw(path):
+    """Run-out and crest over the aspect ratio, with the measured laws."""
+    with open(HERE / "axisymmetric.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    figure, grid = plt.subplots(1, 2, figsize=(8.6, 3.8))
+    a = np.linspace(0.5, 4.5, 200)
+    laws = (run_out(a), np.where(a < 0.74, a, 0.88 * a ** (1 / 6)))
+    for axes, law, column, label in zip(grid, laws, ("runout", "crest"), ("run-out (R − R₀) / R₀", "height of the crest over R₀")):
+        axes.fill_between(a, 0.9 * law, 1.1 * law, color="#e6eef0", lw=0, zorder=0)
+        axes.plot(a, law, color=style.SOFT, lw=1.3, ls=(0, (4, 2)), label="Lube et al. (2004), ± 10 %")
+        for colour, (friction, base, cells) in zip(style.LINES, SERIES):
+            name = name_of(friction, base, cells)
+            points = np.array([(float(row["aspect"]), float(row[column])) for row in rows if row["series"] == name]).T
+            axes.plot(*points, "o-", color=colour, ms=4.5, lw=1, label=name)
+        axes.set(xlabel="aspect ratio a = H₀ / R₀", xlim=(0.5, 4.5), ylim=(0, None))
+        axes.set_title(label, loc="left")
+    grid[0].legend(fontsize=7.5)
+    figure.tight_layout()
+    style.save(figure, path)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("-o", "--output", metavar="DIR", type=pathlib.Path, help="folder of the runs")
+    parser.add_argument("--program", default=str(ROOT / "talus"), help="the talus program")
+    given = parser.parse_args()
+    if given.output:
+        run_all(given.output.resolve(), given.program)
+    draw(HERE / "axisymmetric.png")
