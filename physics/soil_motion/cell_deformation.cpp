@@ -85,7 +85,7 @@ WorstCell deform_cells(const FilledGrid<dim> &grid, const Vec<dim> *u, const Vec
       block.strain.store(i, increment[c].strain.data()), block.rotation.store(i, increment[c].rotation.data());
       if (block.small.value[0][i] == 0 &&
           !decompose_exactly(take<Gradient<dim>>(block.displacement_gradient, i), increment[c])) {
-        worst.volume = -1;
+        worst.volume = -1, worst.inverted = true;
         set_no_increment(increment[c]);
       }
       volume_strain[c] = trace<dim>(increment[c]);

@@ -8,7 +8,8 @@ namespace talus {
 /// The worst of the cells, for the length of the next step.
 struct WorstCell {
   double slenderness = 1;  ///< largest sum of squared gradients of the shape functions over that at the remap
-  double volume = 1;       ///< least volume over that in the mesh; -1: a cell has turned inside out
+  double volume = 1;       ///< least volume over that in the mesh; not above -1 where a cell has turned inside out
+  bool inverted = false;   ///< a cell has turned inside out
 };
 
 /// Displacements `u` lead from the shapes `from` to nodes at `position` [m]. Finds the shapes there (`to` may be

@@ -51,7 +51,7 @@ void SoilMotion<dim, Phases>::move_nodes(const Vec<dim> *u, State &to) {
     for (int d = 0; d < dim; ++d) to.position[i][d] = accepted_.position[i][d] + u[i][d];
   const WorstCell worst = deform_cells<dim>(grid_, u, to.position, accepted_.shape, slenderness_.data(), to.shape,
                                             increment_.data(), volume_strain_.data());
-  inverted_ = worst.volume == -1;
+  inverted_ = worst.inverted;
   if (!is_trial(to)) step_ratio_ = 1 / std::sqrt(worst.slenderness), smallest_ratio_ = worst.volume;
 }
 

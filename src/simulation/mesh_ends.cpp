@@ -37,7 +37,21 @@ std::map<std::pair<int, int>, Group> groups_of_faces(const World<dim> &world) {
 }  // namespace
 
 template <int dim>
-MeshEnds<dim>::MeshEnds(const World<dim> &world) : world_(world), faces_(world.mesh.cell_count()), told_(planes) {
+MeshEnds<dim>::MeshEnds(const World<dim> &world) : world_(world), told_(planes) {
+  find_faces();
+}
+
+template <int dim>
+void MeshEnds<dim>::serialize(Archive &archive) {
+  archive.serialize("ends of the mesh", told_);
+  if (archive.reading()) find_faces();
+}
+
+/// Faces of the cells that this rank has now.
+template <int dim>
+void MeshEnds<dim>::find_faces() {
+  const World<dim> &world = world_;
+  faces_.assign(world.mesh.cell_count(), {});
   constexpr double far = std::numeric_limits<double>::infinity();
   std::array<double, planes> end;  // against the outward normal of each plane
   end.fill(far);

@@ -16,9 +16,12 @@ class MeshEnds {
   /// A sentence for each plane whose cells contain, for the first time, soil that has moved towards it by more than the
   /// size of its cell. Collective.
   std::vector<std::string> newly_reached(const std::string &stage);
-  void serialize(Archive &archive) { archive.serialize("ends of the mesh", told_); }
+  /// Saves or loads which ends have been told of. The mesh may be divided in another way when it is loaded. Collective.
+  void serialize(Archive &archive);
 
  private:
+  void find_faces();
+
   static constexpr int planes = 2 * dim;  ///< of the box, two of each axis
   struct Face {
     int plane, group;  ///< number of the group among all names, or -1
