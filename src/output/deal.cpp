@@ -5,56 +5,13 @@
 #include <map>
 #include <unordered_map>
 
+#include "output/deliver.h"
 #include "output/together.h"
 
 namespace talus {
 namespace {
 
-using Messages = std::vector<std::string>;  // to or from each rank
 using Entries = std::vector<Archive::Entry>;
-
-/// Sends each rank its message and returns what came from each. Collective.
-Messages deliver(MPI_Comm comm, const Messages &sent) {
-  constexpr std::size_t piece = std::size_t(1) << 30;  // MPI counts in int
-  constexpr int tag = 23;
-  const int ranks = static_cast<int>(sent.size());
-  std::vector<unsigned long long> to(ranks), from(ranks);
-  for (int r = 0; r < ranks; ++r) to[r] = sent[r].size();
-  check_mpi(MPI_Alltoall(to.data(), 1, MPI_UNSIGNED_LONG_LONG, from.data(), 1, MPI_UNSIGNED_LONG_LONG, comm),
-            "exchanging sizes");
-  Messages received(ranks);
-  std::vector<MPI_Request> requests;
-  const auto in_pieces = [&](std::size_t size, auto &&each) {
-    for (std::size_t at = 0; at < size; at += piece) {
-      requests.emplace_back();
-      check_mpi(each(at, static_cast<int>(std::min(piece, size - at)), &requests.back()), "exchanging rows");
-    }
-  };
-  for (int r = 0; r < ranks; ++r) {
-    received[r].resize(from[r]);
-    in_pieces(from[r], [&](std::size_t at, int size, MPI_Request *request) {
-      return MPI_Irecv(received[r].data() + at, size, MPI_BYTE, r, tag, comm, request);
-    });
-  }
-  for (int r = 0; r < ranks; ++r)
-    in_pieces(to[r], [&](std::size_t at, int size, MPI_Request *request) {
-      return MPI_Isend(sent[r].data() + at, size, MPI_BYTE, r, tag, comm, request);
-    });
-  check_mpi(MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE), "exchanging rows");
-  return received;
-}
-
-template <class T>
-void append(std::string &bytes, const T &value) {
-  bytes.append(reinterpret_cast<const char *>(&value), sizeof value);
-}
-
-template <class T>
-std::vector<T> values_of(std::string_view bytes) {
-  std::vector<T> values(bytes.size() / sizeof(T));
-  if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
-  return values;
-}
 
 /// Which ranks have a cell or point. Each number has a home rank that knows; no rank knows all.
 class Directory {

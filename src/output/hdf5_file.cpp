@@ -3,7 +3,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <stdexcept>
+#include <type_traits>
 
 #include "output/replace_file.h"
 
@@ -93,6 +95,31 @@ void Hdf5Builder::dataset(const std::string &name, const std::vector<std::string
   if (count) check_hdf5(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()), "filling " + name);
 }
 
+template <class T>
+void Hdf5Builder::dataset_of_parts(const std::string &name, int columns, const std::vector<Part> &parts) {
+  constexpr bool real = std::is_same_v<T, double>;
+  const hid_t stored_as = real ? H5T_IEEE_F64LE : H5T_STD_I64LE, type = real ? H5T_NATIVE_DOUBLE : H5T_NATIVE_LLONG;
+  const T missing = real ? static_cast<T>(std::nan("")) : static_cast<T>(-1);
+  hsize_t shape[] = {0, static_cast<hsize_t>(columns)};
+  for (const Part &part : parts) shape[0] += part.rows;
+  const H5Space space(H5Screate_simple(2, shape, nullptr), "shaping " + name);
+  const H5Properties virtually(H5Pcreate(H5P_DATASET_CREATE), "preparing " + name);
+  check_hdf5(H5Pset_fill_value(virtually, type, &missing), "preparing " + name);
+  hsize_t start[] = {0, 0};
+  for (const Part &part : parts) {
+    const hsize_t rows[] = {static_cast<hsize_t>(part.rows), shape[1]};
+    if (part.rows == 0) continue;
+    const H5Space there(H5Screate_simple(2, rows, nullptr), "shaping " + name);
+    check_hdf5(H5Sselect_hyperslab(space, H5S_SELECT_SET, start, nullptr, rows, nullptr), "shaping " + name);
+    check_hdf5(H5Pset_virtual(virtually, space, part.file.c_str(), ("/" + name).c_str(), there), "joining " + name);
+    start[0] += rows[0];
+  }
+  check_hdf5(H5Sselect_all(space), "shaping " + name);
+  H5Dataset(H5Dcreate2(file_, name.c_str(), stored_as, space, H5P_DEFAULT, virtually, H5P_DEFAULT), "joining " + name);
+}
+template void Hdf5Builder::dataset_of_parts<double>(const std::string &, int, const std::vector<Part> &);
+template void Hdf5Builder::dataset_of_parts<long long>(const std::string &, int, const std::vector<Part> &);
+
 H5Attribute Hdf5Builder::new_attribute(const std::string &object, const char *name, hid_t type) {
   const H5Space space(H5Screate(H5S_SCALAR), "shaping an attribute");
   return {H5Acreate_by_name(file_, object.c_str(), name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
@@ -162,6 +189,24 @@ std::vector<hsize_t> Hdf5Reader::shape(const std::string &dataset) const {
   std::vector<hsize_t> shape(rank);
   check_hdf5(H5Sget_simple_extent_dims(space, shape.data(), nullptr), what);
   return shape;
+}
+
+std::vector<std::string> Hdf5Reader::parts(const std::string &dataset) const {
+  const std::string what = "cannot read how " + dataset + " in " + path_ + " is stored";
+  const H5Dataset set(H5Dopen2(file_, dataset.c_str(), H5P_DEFAULT), what);
+  const H5Properties created(H5Dget_create_plist(set), what);
+  const H5D_layout_t layout = H5Pget_layout(created);
+  check_hdf5(layout, what);
+  std::size_t count = 0;
+  if (layout == H5D_VIRTUAL) check_hdf5(H5Pget_virtual_count(created, &count), what);
+  std::vector<std::string> files(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const ssize_t length = H5Pget_virtual_filename(created, k, nullptr, 0);
+    check_hdf5(length, what);
+    files[k].resize(length);
+    check_hdf5(H5Pget_virtual_filename(created, k, files[k].data(), length + 1), what);
+  }
+  return files;
 }
 
 std::vector<std::string> Hdf5Reader::texts(const std::string &dataset) const {

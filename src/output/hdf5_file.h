@@ -67,6 +67,14 @@ class Hdf5Builder {
   void attribute(const std::string &object, const char *name, double value);
   void attribute(const std::string &object, const char *name, long long value);
   void attribute(const std::string &object, const char *name, const std::string &text);
+  /// Makes `name` a dataset whose rows are those of the datasets of this name in other files, one file after the other.
+  /// Where a file is missing readers see NaN, or -1 in whole numbers.
+  struct Part {
+    std::string file;  ///< relative to this one
+    long long rows;
+  };
+  template <class T>  // double or long long
+  void dataset_of_parts(const std::string &name, int columns, const std::vector<Part> &parts);
   /// Makes `name` a link to the content of another file, whose path is relative to this one.
   void link(const std::string &name, const std::string &file);
   /// Writes the file to the disk, whole or not at all. Throws std::runtime_error with path and cause.
@@ -91,6 +99,8 @@ class Hdf5Reader {
   ~Hdf5Reader();
   std::vector<std::string> names(const std::string &group) const;  ///< of the links in a group, in alphabetical order
   std::vector<hsize_t> shape(const std::string &dataset) const;
+  /// Files that hold the rows of a dataset_of_parts, as they are named in it; none of another dataset.
+  std::vector<std::string> parts(const std::string &dataset) const;
   std::vector<std::string> texts(const std::string &dataset) const;
   std::vector<double> numbers(const std::string &dataset) const;  ///< row by row
   double number(const std::string &object, const char *attribute) const;

@@ -10,7 +10,9 @@
 
 #include "output/hdf5_file.h"
 #include "output/replace_file.h"
+#include "output/shared_tables.h"
 #include "output/together.h"
+#include "output/writers.h"
 #include "paraview_state.h"
 
 namespace talus {
@@ -33,40 +35,20 @@ void check_lengths(const Snapshot &s) {
                                std::to_string(column.components) + " components");
 }
 
-/// `values`, rows of `row`, in the order in which `order` names the rows.
-template <class T>
-std::vector<T> reordered(const std::vector<T> &values, const std::vector<std::size_t> &order, int row = 1) {
-  std::vector<T> sorted;
-  sorted.reserve(values.size());
-  for (const std::size_t r : order) std::copy_n(values.begin() + r * row, row, std::back_inserter(sorted));
-  return sorted;
+std::vector<long long> widened(const std::vector<int> &values) { return {values.begin(), values.end()}; }
+
+unsigned long long sum(const std::vector<long long> &counts) {
+  return std::accumulate(counts.begin(), counts.end(), 0ull);
 }
 
-/// All particles on rank 0, by increasing id; elsewhere none.
-Snapshot gathered(MPI_Comm comm, const Snapshot &local) {
-  Snapshot all{local.time, local.step,   local.stage, gather(comm, local.id), gather(comm, local.body),
-               {},         local.numbers};
-  std::vector<std::size_t> order(all.id.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return all.id[a] < all.id[b]; });
-  for (const auto &column : local.columns) {
-    const auto values = gather(comm, column.values, column.components);
-    all.columns.push_back(
-        {column.name, column.unit, column.meaning, column.components, reordered(values, order, column.components)});
-  }
-  all.id = reordered(all.id, order);
-  all.body = reordered(all.body, order);
-  return all;
-}
-
-/// All cells on rank 0. Nodes that ranks share appear once per rank, which does no harm in a picture.
-MeshPicture gathered(MPI_Comm comm, const MeshPicture &local) {
-  long long nodes = static_cast<long long>(local.position.size()) / local.dimension, before = 0;
-  check_mpi(MPI_Exscan(&nodes, &before, 1, MPI_LONG_LONG, MPI_SUM, comm), "numbering nodes");
+/// Numbers of rows that the ranks have one after the other.
+std::vector<long long> numbered_over_ranks(MPI_Comm comm, std::size_t rows) {
+  long long count = static_cast<long long>(rows), before = 0;
+  check_mpi(MPI_Exscan(&count, &before, 1, MPI_LONG_LONG, MPI_SUM, comm), "numbering rows");
   if (rank_in(comm) == 0) before = 0;
-  std::vector<long long> cell_node = local.cell_node;
-  for (auto &node : cell_node) node += before;
-  return {local.dimension, gather(comm, local.position, local.dimension), gather(comm, cell_node, local.dimension + 1)};
+  std::vector<long long> number(rows);
+  std::iota(number.begin(), number.end(), before);
+  return number;
 }
 
 bool is_snapshot(const std::filesystem::path &file) {
@@ -84,7 +66,7 @@ std::vector<std::string> numbers_of_snapshots(const std::string &folder) {
 }
 
 void remove_snapshots(const std::string &folder) {
-  for (const std::string &number : numbers_of_snapshots(folder)) std::filesystem::remove(folder + "/" + number + ".h5");
+  for (const std::string &number : numbers_of_snapshots(folder)) remove_tables(folder + "/" + number + ".h5");
 }
 
 std::string numbered(long long count) {
@@ -98,7 +80,7 @@ std::string set_aside(const std::string &folder, const std::string &number) {
   std::string name = number + ".unreadable.h5";
   for (int k = 2; std::filesystem::exists(folder + "/" + name); ++k)
     name = number + ".unreadable." + std::to_string(k) + ".h5";
-  std::filesystem::rename(folder + "/" + number + ".h5", folder + "/" + name);
+  rename_tables(folder + "/" + number + ".h5", folder + "/" + name);
   return name;
 }
 
@@ -149,8 +131,9 @@ std::string xdmf_file(const std::string &grids) {
 
 }  // namespace
 
-RunFile::RunFile(MPI_Comm comm, const std::string &dir, const RunHeader &header, const MeshPicture &local_mesh)
-    : RunFile(comm, dir) {
+RunFile::RunFile(MPI_Comm comm, const std::string &dir, const RunHeader &header, const MeshPicture &local_mesh,
+                 long long rows)
+    : RunFile(comm, dir, rows) {
   begin(header, local_mesh, [&] {
     write_index();  // before the old snapshots are removed, so that no link ever leads nowhere
     remove_snapshots(dir_ + "/run");
@@ -158,8 +141,8 @@ RunFile::RunFile(MPI_Comm comm, const std::string &dir, const RunHeader &header,
 }
 
 RunFile RunFile::append(MPI_Comm comm, const std::string &dir, const RunHeader &header, const MeshPicture &local_mesh,
-                        long long count) {
-  RunFile run(comm, dir);
+                        long long count, long long rows) {
+  RunFile run(comm, dir, rows);
   run.count_ = count;
   run.begin(header, local_mesh, [&] {
     std::vector<std::string> later;
@@ -180,7 +163,7 @@ RunFile RunFile::append(MPI_Comm comm, const std::string &dir, const RunHeader &
       }
     }
     run.write_index();
-    for (const auto &number : later) std::filesystem::remove(dir + "/" + run.snapshot_file(number));
+    for (const auto &number : later) remove_tables(run.path_of(run.snapshot_file(number)));
     for (const auto &[number, cause] : unreadable)
       run.damaged_.push_back("a damaged snapshot, which the run now writes again, is kept as run/" +
                              set_aside(dir + "/run", number) + ": " + cause);
@@ -189,32 +172,60 @@ RunFile RunFile::append(MPI_Comm comm, const std::string &dir, const RunHeader &
   return run;
 }
 
-/// Writes the mesh, then does what `rest` says on the first rank.
+/// Writes the mesh, then does what `rest` says on the first rank. Nodes that ranks share appear once per rank, which
+/// does no harm in a picture.
 void RunFile::begin(const RunHeader &header, const MeshPicture &local_mesh, const std::function<void()> &rest) {
-  const MeshPicture mesh = gathered(comm_, local_mesh);
+  const int dim = local_mesh.dimension;
+  const std::vector<long long> node = numbered_over_ranks(comm_, local_mesh.position.size() / dim);
+  const std::vector<long long> cell = numbered_over_ranks(comm_, local_mesh.cell_node.size() / (dim + 1));
+  const int count = Writers::needed(comm_, {node.size(), cell.size()}, most_rows_);
+  const Writers of_nodes(comm_, node, count), of_cells(comm_, cell, count);
+  std::vector<long long> cell_node = local_mesh.cell_node;
+  for (auto &corner : cell_node) corner = node[corner];
+  on_first_rank(comm_, [&] { make_folder(dir_ + "/run"); });
+  write_tables(comm_, path_of(mesh_file), of_cells.mine(),
+               {{"node_position", dim, of_nodes.collect(local_mesh.position, dim), of_nodes.rows()},
+                {"cell_node", dim + 1, of_cells.collect(cell_node, dim + 1), of_cells.rows()}},
+               [&](Hdf5Builder &file) {
+                 file.attribute("/", "dimension", static_cast<long long>(dim));
+                 file.attribute("node_position", "unit", std::string("m"));
+               });
   on_first_rank(comm_, [&] {
     header_ = header;
-    dimension_ = mesh.dimension;
-    nodes_ = mesh.position.size() / mesh.dimension;
-    cells_ = mesh.cell_node.size() / (mesh.dimension + 1);
-    make_folder(dir_ + "/run");
-    Hdf5Builder file(dir_ + "/" + mesh_file);
-    file.attribute("/", "dimension", static_cast<long long>(mesh.dimension));
-    file.dataset("node_position", mesh.position, mesh.dimension);
-    file.attribute("node_position", "unit", std::string("m"));
-    file.dataset("cell_node", mesh.cell_node, mesh.dimension + 1);
-    file.save();
-    replace_file(dir_ + "/mesh.xdmf", xdmf_mesh());
-    replace_file(dir_ + "/run.py", paraview_state);
+    dimension_ = dim;
+    nodes_ = sum(of_nodes.rows());
+    cells_ = sum(of_cells.rows());
+    replace_file(path_of("mesh.xdmf"), xdmf_mesh());
+    replace_file(path_of("run.py"), paraview_state);
     rest();
   });
 }
 
 void RunFile::write(const Snapshot &local) {
   together(comm_, [&] { check_lengths(local); });
-  const Snapshot all = gathered(comm_, local);
+  const std::string number = numbered(count_);
+  const Writers writers(comm_, local.id, Writers::needed(comm_, {local.id.size()}, most_rows_));
+  Entry entry{number, local.time, local.step, sum(writers.rows()), {}};
+  std::vector<Table> tables = {{"id", 1, writers.collect(local.id), writers.rows()},
+                               {"body", 1, writers.collect(widened(local.body)), writers.rows()}};
+  for (const auto &column : local.columns) {
+    tables.push_back(
+        {column.name, column.components, writers.collect(column.values, column.components), writers.rows()});
+    entry.columns.push_back({column.name, column.unit, column.components});
+  }
+  write_tables(comm_, path_of(snapshot_file(number)), writers.mine(), tables, [&](Hdf5Builder &file) {
+    file.attribute("/", "time", local.time);
+    file.attribute("/", "step", local.step);
+    file.attribute("/", "stage", local.stage);
+    for (const auto &[name, value] : local.numbers) file.attribute("/", name.c_str(), value);
+    for (const auto &column : local.columns) {
+      file.attribute(column.name, "unit", column.unit);
+      file.attribute(column.name, "meaning", column.meaning);
+      file.attribute(column.name, "components", join(component_names(column.components)));
+    }
+  });
   on_first_rank(comm_, [&] {
-    entries_.push_back(write_file(all, numbered(count_)));
+    entries_.push_back(entry);
     try {
       write_index();
     } catch (...) {
@@ -225,28 +236,9 @@ void RunFile::write(const Snapshot &local) {
   last_step_ = local.step, ++count_;
 }
 
-RunFile::Entry RunFile::write_file(const Snapshot &all, const std::string &number) const {
-  Entry entry{number, all.time, all.step, all.id.size(), {}};
-  Hdf5Builder file(dir_ + "/" + snapshot_file(number));
-  file.attribute("/", "time", all.time);
-  file.attribute("/", "step", all.step);
-  file.attribute("/", "stage", all.stage);
-  for (const auto &[name, value] : all.numbers) file.attribute("/", name.c_str(), value);
-  file.dataset("id", all.id, 1);
-  file.dataset("body", std::vector<long long>(all.body.begin(), all.body.end()), 1);
-  for (const auto &column : all.columns) {
-    file.dataset(column.name, column.values, column.components);
-    file.attribute(column.name, "unit", column.unit);
-    file.attribute(column.name, "meaning", column.meaning);
-    file.attribute(column.name, "components", join(component_names(column.components)));
-    entry.columns.push_back({column.name, column.unit, column.components});
-  }
-  file.save();
-  return entry;
-}
-
 RunFile::Entry RunFile::read_entry(const std::string &number) const {
-  const Hdf5Reader file(dir_ + "/" + snapshot_file(number));
+  check_parts(path_of(snapshot_file(number)), "id");
+  const Hdf5Reader file(path_of(snapshot_file(number)));
   Entry entry{number, file.number("/", "time"), file.integer("/", "step"), file.shape("id").at(0), {}};
   for (const auto &name : file.names("/"))
     if (name != "id" && name != "body")

@@ -12,11 +12,12 @@
 /// steps_bounded_by_error, steps_bounded_by_stability, steps_bounded_by_outputs, shortest_step_s, longest_step_s); `id`
 /// [particles][1] in increasing order; `body` [particles][1], an index into
 /// `/bodies`; and one [particles][components] dataset per column, with the attributes unit, meaning and components ("xx
-/// yy zz xy"). All numbers are doubles or 64-bit integers. The file does not depend on the number of ranks.
+/// yy zz xy"). All numbers are doubles or 64-bit integers. What a reader gets does not depend on the number of ranks.
 ///
 /// Every file appears by renaming a complete one, so a run that dies, or a full disk, leaves all earlier snapshots
-/// readable (hdf5_file.h says why HDF5 alone does not give that). The price: rank 0 holds one snapshot of all particles
-/// while it is written.
+/// readable (hdf5_file.h says why HDF5 alone does not give that). So a writer holds in memory what it writes. Of more
+/// rows than one writer should hold several ranks write a file each, `000012.part0.h5` and so on by increasing id, and
+/// `000012.h5` joins them into datasets that read like one; `mesh.h5` alike.
 #include <mpi.h>
 
 #include <functional>
@@ -40,16 +41,19 @@ struct RunHeader {
 /// path and cause, the same on all ranks, and leaves what was written before as it is.
 class RunFile {
  public:
+  static constexpr long long rows_of_a_writer = 4'000'000;  ///< at most; of particles with 40 numbers 1.3 GB
+
   /// Starts the results in folder `dir`, which is made where it is missing; snapshots of an older run in it are
   /// removed.
-  RunFile(MPI_Comm comm, const std::string &dir, const RunHeader &header, const MeshPicture &local_mesh);
+  RunFile(MPI_Comm comm, const std::string &dir, const RunHeader &header, const MeshPicture &local_mesh,
+          long long rows = rows_of_a_writer);
 
   /// Continues the results of an earlier run of the same scene behind its first `count` snapshots: index and mesh are
   /// written anew, later snapshots are removed. Of snapshots that cannot be read no file is lost: one of the first
   /// `count` stays where it is, without an entry in the index; the file of a later one, which the run writes again, is
   /// renamed to `run/NUMBER.unreadable.h5`.
   static RunFile append(MPI_Comm comm, const std::string &dir, const RunHeader &header, const MeshPicture &local_mesh,
-                        long long count);
+                        long long count, long long rows = rows_of_a_writer);
 
   /// Adds a snapshot. Ranks without particles pass columns without values.
   void write(const Snapshot &local);
@@ -74,10 +78,10 @@ class RunFile {
     std::vector<Shape> columns;
   };
 
-  RunFile(MPI_Comm comm, const std::string &dir) : comm_(comm), dir_(dir) {}
+  RunFile(MPI_Comm comm, const std::string &dir, long long rows) : comm_(comm), dir_(dir), most_rows_(rows) {}
   void begin(const RunHeader &header, const MeshPicture &local_mesh, const std::function<void()> &rest);
   std::string snapshot_file(const std::string &number) const { return "run/" + number + ".h5"; }
-  Entry write_file(const Snapshot &all, const std::string &number) const;
+  std::string path_of(const std::string &file) const { return dir_ + "/" + file; }
   Entry read_entry(const std::string &number) const;
   void write_points();
   void write_index();
@@ -88,6 +92,7 @@ class RunFile {
 
   MPI_Comm comm_;
   std::string dir_;
+  long long most_rows_;
   long long last_step_ = -1, count_ = 0;
   // on rank 0 only:
   RunHeader header_;

@@ -401,5 +401,114 @@ TEST(Snapshots, survive_a_full_disk) {
   if (world_rank() == 0) expect_snapshot(dir, "000002", 2, 2000);
 }
 
+/// Many rows are written by several ranks; 60 stand for the millions of RunFile::rows_of_a_writer.
+constexpr long long few_rows = 60;
+
+int parts_of(const std::string &dir, const std::string &name) {
+  int count = 0;
+  for (const auto &file : std::filesystem::directory_iterator(dir + "/run"))
+    count += file.path().filename().string().find(name + ".part") == 0;
+  return count;
+}
+
+TEST(Snapshots, of_many_particles_are_written_by_several_ranks_and_read_like_one_file) {
+  const SharedFolder folder;
+  const std::string dir = folder / "run";
+  RunFile run(MPI_COMM_WORLD, dir, small_header(), small_mesh(), few_rows);
+  run.write(small_snapshot(0, 0));
+  run.write(small_snapshot(0.1, 25, 70));
+  run.write(small_snapshot(0.2, 50, 50));
+  if (world_rank()) return;
+  expect_snapshot(dir, "000000", 0);
+  expect_snapshot(dir, "000001", 0.1, 70);
+  expect_snapshot(dir, "000002", 0.2, 50);
+  const int ranks = world_size(), alone = 0;  // one writer has no parts
+  EXPECT_EQ(parts_of(dir, "000000"), ranks == 1 ? alone : std::min(ranks, 4));
+  EXPECT_EQ(parts_of(dir, "000001"), ranks == 1 ? alone : 2);
+  EXPECT_EQ(parts_of(dir, "000002"), alone);
+  expect_references(dir, content(dir + "/run.xdmf"));
+}
+
+TEST(Snapshots, show_a_large_mesh_that_several_ranks_write) {
+  const SharedFolder folder;
+  const std::string dir = folder / "run";
+  RunFile run(MPI_COMM_WORLD, dir, small_header(), small_mesh(), 5);
+  if (world_rank()) return;
+  const auto ranks = static_cast<std::size_t>(world_size());
+  EXPECT_EQ(parts_of(dir, "mesh"), ranks == 1 ? 0 : ranks == 2 ? 2 : 4);
+  const auto position = read(dir, "mesh/node_position"), cell = read(dir, "mesh/cell_node");
+  ASSERT_EQ(position.size(), 8 * ranks);
+  ASSERT_EQ(cell.size(), 6 * ranks);
+  for (std::size_t r = 0; r < ranks; ++r)
+    EXPECT_EQ(position[2 * static_cast<std::size_t>(cell[6 * r])], static_cast<double>(r)) << "of rank " << r;
+  expect_references(dir, content(dir + "/mesh.xdmf"));
+}
+
+TEST(Snapshots, whose_parts_are_missing_or_strange_are_left_out) {
+  if (world_size() == 1) return;  // one rank writes no parts
+  const SharedFolder folder;
+  const std::string dir = folder / "run";
+  {
+    RunFile run(MPI_COMM_WORLD, dir, small_header(), small_mesh(), few_rows);
+    for (int n = 0; n < 4; ++n) run.write(small_snapshot(0.1 * n, n, n == 3 ? 120 : 200));
+  }
+  if (world_rank() == 0) {
+    std::filesystem::remove(dir + "/run/000000.part1.h5");
+    std::filesystem::resize_file(dir + "/run/000001.part0.h5", 100);
+    std::filesystem::copy_file(dir + "/run/000003.part1.h5", dir + "/run/000002.part0.h5",
+                               std::filesystem::copy_options::overwrite_existing);
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  RunFile resumed = RunFile::append(MPI_COMM_WORLD, dir, small_header(), small_mesh(), 4, few_rows);
+  if (world_rank()) return;
+  const std::string cause[] = {"000000.part1.h5", "000001.part0.h5",
+                               "000002.h5 joins files that do not belong together"};
+  ASSERT_EQ(resumed.damaged().size(), 3u);
+  for (int n = 0; n < 3; ++n) EXPECT_NE(resumed.damaged()[n].find(cause[n]), std::string::npos) << resumed.damaged()[n];
+  EXPECT_EQ(times_in(content(dir + "/run.xdmf")), (Times{{"000003", 0.1 * 3}}));
+}
+
+TEST(Snapshots, in_parts_give_way_with_them) {
+  const SharedFolder folder;
+  const std::string dir = folder / "run";
+  {
+    RunFile run(MPI_COMM_WORLD, dir, small_header(), small_mesh(), few_rows);
+    for (int n = 0; n < 3; ++n) run.write(small_snapshot(0.1 * n, n));
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  {
+    RunFile resumed = RunFile::append(MPI_COMM_WORLD, dir, small_header(), small_mesh(), 2, few_rows);
+    if (world_rank() == 0) EXPECT_EQ(parts_of(dir, "000002"), 0);
+    resumed.write(small_snapshot(0.15, 2, 70));
+  }
+  if (world_rank() == 0) expect_snapshot(dir, "000001", 0.1), expect_snapshot(dir, "000002", 0.15, 70);
+  MPI_Barrier(MPI_COMM_WORLD);
+  RunFile run(MPI_COMM_WORLD, dir, small_header(), small_mesh());
+  run.write(small_snapshot(5, 5));
+  if (world_rank()) return;
+  expect_snapshot(dir, "000000", 5);
+  EXPECT_EQ(parts_of(dir, ""), 0);
+}
+
+TEST(Snapshots, in_parts_survive_a_full_disk) {
+  const SharedFolder folder;
+  const std::string dir = folder / "run";
+  RunFile run(MPI_COMM_WORLD, dir, small_header(), small_mesh(), few_rows);
+  run.write(small_snapshot(0, 0));
+  {
+    const FullDisk full(10000);
+    const std::string said = complaint([&] { run.write(small_snapshot(2, 2, 2000)); });
+    EXPECT_NE(said.find("File too large"), std::string::npos) << said;
+    EXPECT_TRUE(agreed(said));
+  }
+  if (world_rank() == 0) {
+    expect_snapshot(dir, "000000", 0);
+    EXPECT_EQ(parts_of(dir, "000001"), 0);
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  run.write(small_snapshot(2, 2, 2000));  // there is room again
+  if (world_rank() == 0) expect_snapshot(dir, "000001", 2, 2000);
+}
+
 }  // namespace
 }  // namespace talus
