@@ -17,6 +17,7 @@ HERE = Path(__file__).resolve().parent
 COPIED = {"plastic_strain_large": "slide", "displacement_large": "run_out"}
 POINTS = ("crest", "upper", "lower", "toe")
 NEAR_FAILURE = (0.97, 1.06)  # t* that the figures of the failure show
+PLACES = (12, 26, 38)  # distances along the slip surface of the places that stand for the paper's P1, P5 and P7 [m]
 
 
 def draw(talus, folder=None, saturated=None):
@@ -71,7 +72,7 @@ def draw_motion(history, relative):
 
 def draw_strength(line, results):
     relative = dimensionless(results, line.time)
-    figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 4.0), layout="constrained")
+    figure, ((left, right), (path, three)) = plt.subplots(2, 2, figsize=(11.5, 7.8), layout="constrained")
     along = line.columns["distance_m"][0]
     for k, t in enumerate((0.02, 0.8, 0.97, 0.99, 1.0, 1.02)):
         row = int(np.nanargmin(np.abs(relative - t)))
@@ -90,7 +91,36 @@ def draw_strength(line, results):
     right.set_ylabel("mean mobilised friction [deg]")
     shares.set(ylabel="share of the slip surface [%]", ylim=(0, 100))
     shares.legend(fontsize=8, loc="center right")
+    draw_mean_path(path, relative, mean)
+    draw_places(three, line, relative)
     style.save(figure, HERE / "strength.png", dpi=130)
+
+
+def draw_mean_path(axis, relative, mean):
+    """The mean effective stress of the slip surface, with three moments of its failure."""
+    p, q = mean["mean_mean_pressure_Pa"] / 1e3, mean["mean_deviator_Pa"] / 1e3
+    shown = (relative >= 0) & (relative <= 1.02)
+    axis.plot(p[shown], q[shown], color=style.INK, lw=1.1)
+    largest = int(np.nanargmax(np.where(relative <= 1, mean["mean_mobilised_friction_deg"], np.nan)))
+    for label, row in (("start", np.flatnonzero(shown)[0]), ("largest friction", largest), ("failure", int(np.nanargmin(np.abs(relative - 1)))),
+                       ("least friction", int(np.nanargmin(np.where(shown, mean["mean_mobilised_friction_deg"], np.nan))))):
+        axis.plot(p[row], q[row], "o", ms=5, label=f"{label}, t* = {relative[row]:.2f}")
+    axis.set(xlabel="mean p' along the slip surface [kPa]", ylabel="mean q [kPa]", title="mean stress of the slip surface up to t* = 1.02 (paper's fig. 12b)")
+    axis.legend(fontsize=8)
+
+
+def draw_places(axis, line, relative):
+    """Mobilised friction of three places of the slip surface, and how far its middle has moved."""
+    moved = axis.twinx()
+    for name, distance, colour in zip(("rear", "middle", "front"), PLACES, style.LINES):
+        place = int(np.abs(line.columns["distance_m"][0] - distance).argmin())
+        axis.plot(relative, line.columns["mobilised_friction_deg"][:, place], color=colour, lw=1.1, label=f"{name}, {distance} m from its rear")
+        if name == "middle":
+            moved.plot(relative, line.columns["displacement_m"][:, place], "--", color=style.SOFT, lw=1.1)
+    axis.set(xlabel="t* = t / time of failure", ylabel="mobilised friction [deg]", title="three places of the slip surface (paper's fig. 14)", xlim=(0.9, 1.25),
+             ylim=(0, None))
+    moved.set(ylabel="displacement of the middle, dashed [m]", ylim=(0, None))
+    axis.legend(fontsize=8, loc="lower right")
 
 
 def draw_paths(history, relative):

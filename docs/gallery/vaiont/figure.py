@@ -56,12 +56,14 @@ def draw_frames(results, path):
 
 
 def draw_motion(results, softer, path):
-    figure, (rise, slide) = plt.subplots(1, 2, figsize=(9.2, 3.4))
-    figure.subplots_adjust(left=0.07, right=0.98, bottom=0.15, top=0.93, wspace=0.22)
+    figure, (rise, slow, slide) = plt.subplots(1, 3, figsize=(13.2, 3.4))
+    figure.subplots_adjust(left=0.05, right=0.99, bottom=0.15, top=0.9, wspace=0.2)
     wet = np.array(results.history.stage) == "water"
     load = results.history.columns["load_time_s"][wet]
     for point, label, line in (("m10", "middle of the lower part (10)", "-"), ("P0", "P0, at the edge of the front", ":")):
-        rise.plot(load, np.linalg.norm(measures.way(results, point), axis=0)[wet], line, label=label)
+        moved = np.linalg.norm(measures.way(results, point), axis=0)[wet]
+        rise.plot(load, moved, line, label=label)
+        slow.plot(moved, measures.mean_speed(results, point)[wet], line, label=label)
     rise.plot([np.interp(53, *np.array(results.scene["functions"]["hw"], float).T[::-1])], [8.5], "o", color="black", label="Alonso, Yerro & Pinyol (2015)")
     rise.set(xlabel="load time [s]", ylabel="displacement [m]", xlim=(0, load[-1]))
     rise.legend(frameon=False, loc="lower right", fontsize=8)
@@ -70,6 +72,10 @@ def draw_motion(results, softer, path):
         rise.axvline(t, color="grey", linewidth=0.7, linestyle=":")
         rise.annotate(f"{level}", (t, 1.01), xycoords=("data", "axes fraction"), ha="center", va="bottom", size=8)
     rise.annotate("m of water", (70, 1.01), xycoords=("data", "axes fraction"), va="bottom", size=8)
+    slow.axhline(0.5, color="black", linewidth=0.7, linestyle=":")
+    slow.annotate("paper, fig. 22: 0.5 m/s", (0.98, 0.5), xycoords=("axes fraction", "data"), ha="right", va="bottom", size=8.5)
+    slow.set(xlabel="displacement [m]", ylabel="speed, mean over a second [m/s]", xlim=(0, None), ylim=(0, None), title="base 12°, up to 60 m of water")
+    slow.title.set(size=9)
     for run, label, colour in ((results, "base 0°", "C0"), (softer, "base 5°", "C1")):
         if run is None:
             continue
