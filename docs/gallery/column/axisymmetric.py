@@ -7,6 +7,8 @@
 
 import argparse
 import csv
+import dataclasses
+import itertools
 import pathlib
 import subprocess
 import sys
@@ -23,10 +25,30 @@ from talus_results import Results  # noqa: E402
 
 RADIUS, GRAVITY, DENSITY = 0.1, 9.81, 1600  # R0 [m], [m/s2], [kg/m3]
 MASS = 0.995  # share of the mass behind the front
-ASPECTS = (0.8, 2, 4)
-# friction angle [deg], friction angle of the base (None: no slip), cells over R0
-SERIES = ((30, None, 7), (30, None, 10), (30, None, 14), (30, 22, 7), (30, 22, 10), (26, None, 10))
-ONLY = {(30, None, 14): (0.8, 2)}  # series that do not run every aspect
+
+
+@dataclasses.dataclass(frozen=True)
+class Series:
+    cells: int  # over R0
+    friction: float = 30  # [deg]
+    base: float | None = None  # friction angle [deg]; None: no slip
+    peak: float | None = None  # friction angle that softens to `friction` [deg], with dilation that ends; None: constant
+    aspects: tuple = (0.8, 2, 4)
+
+    def name(self):
+        angle = f"{self.friction}°" if self.peak is None else f"{self.peak} to {self.friction}°"
+        return f"{angle}, {'no slip' if self.base is None else f'base {self.base}°'}, R₀/{self.cells}"
+
+    def strength(self):
+        """Keys of the soil: dense sand dilates by 8 degrees at its peak and loses this and its peak over a shear of a tenth."""
+        if self.peak is None:
+            return f"friction_angle = {self.friction}"
+        return (f"friction_angle = {self.peak}\nresidual_friction_angle = {self.friction}\nresidual_cohesion = 0\n"
+                f"dilation_angle = 8\nresidual_dilation_angle = 0\nshape_factor = 20\nreference_size = {RADIUS / 10}")
+
+
+SERIES = (Series(7), Series(10), Series(14, aspects=(0.8, 2)), Series(7, base=22), Series(10, base=22), Series(10, friction=26),
+          Series(10, peak=38, aspects=(0.8, 2)), Series(10, base=22, peak=38, aspects=(0.8, 2)))
 
 SCENE = """title = "Round column, H0 / R0 = {aspect:g}"
 dimension = 3
@@ -40,7 +62,7 @@ law = "mohr_coulomb"
 young_modulus = "2 MPa"
 poisson_ratio = 0.3
 cohesion = 0
-friction_angle = {friction}
+{strength}
 stress = ["{lateral} * ({height} - y)", "{vertical} * ({height} - y)", "{lateral} * ({height} - y)", "0", "0", "0"]
 [boundary.base]
 {base}
@@ -114,13 +136,13 @@ def mesh(path, aspect, cells):
         file.write("$EndElements\n")
 
 
-def write_scene(folder, aspect, cells, friction, base):
+def write_scene(folder, aspect, series):
     folder.mkdir(parents=True, exist_ok=True)
-    mesh(folder / "column.msh", aspect, cells)
+    mesh(folder / "column.msh", aspect, series.cells)
     height = aspect * RADIUS
     (folder / "scene.toml").write_text(SCENE.format(
-        aspect=aspect, gravity=GRAVITY, density=DENSITY, friction=friction, height=height,
-        base='kind = "fixed"' if base is None else f'kind = "friction"\nfriction_angle = {base}',
+        aspect=aspect, gravity=GRAVITY, density=DENSITY, strength=series.strength(), height=height,
+        base='kind = "fixed"' if series.base is None else f'kind = "friction"\nfriction_angle = {series.base}',
         vertical=-GRAVITY * DENSITY, lateral=-GRAVITY * DENSITY * 0.3 / 0.7, duration=f"{1 + 8 * np.sqrt(height / GRAVITY):.3f}"))
 
 
@@ -143,23 +165,18 @@ def measure(folder):
             "crest": np.max(position[radius < 0.1 * RADIUS, 1]) / RADIUS, "time_s": last.time, "particles": len(radius)}
 
 
-def name_of(friction, base, cells):
-    return f"{friction}°, {'no slip' if base is None else f'base {base}°'}, R₀/{cells}"
-
-
 def run_all(folder, program):
     rows = []
-    runs = [(aspect, cells, friction, base) for friction, base, cells in SERIES for aspect in ONLY.get((friction, base, cells), ASPECTS)]
-    for aspect, cells, friction, base in runs:
-        here = folder / f"a{aspect:g}_cells{cells}_friction{friction}_{'no_slip' if base is None else f'base{base}'}"
+    for series, aspect in ((series, aspect) for series in SERIES for aspect in series.aspects):
+        here = folder / "".join(letter for letter in f"a{aspect:g} {series.name()}" if letter.isascii() and letter.isalnum())
         if not (here / "done").exists():
-            write_scene(here, aspect, cells, friction, base)
+            write_scene(here, aspect, series)
             done = subprocess.run([program, "run", str(here / "scene.toml"), "-o", str(here), "--no-pictures", "--force"], capture_output=True, text=True)
             if done.returncode:
-                print(f"a = {aspect:g}, {cells} cells, {friction} deg, base {base}: {done.stderr.strip().splitlines()[-1]}", file=sys.stderr)
+                print(f"a = {aspect:g}, {series.name()}: {done.stderr.strip().splitlines()[-1]}", file=sys.stderr)
                 continue
             (here / "done").touch()
-        row = {"series": name_of(friction, base, cells), "aspect": aspect}
+        row = {"series": series.name(), "aspect": aspect}
         row |= {name: f"{value:.4g}" if isinstance(value, float) else value for name, value in measure(here).items()}
         rows.append(row)
         print(", ".join(f"{name} {value}" for name, value in row.items()), flush=True)
@@ -179,10 +196,9 @@ def draw(path):
     for axes, law, column, label in zip(grid, laws, ("runout", "crest"), ("run-out (R − R₀) / R₀", "height of the crest over R₀")):
         axes.fill_between(a, 0.9 * law, 1.1 * law, color="#e6eef0", lw=0, zorder=0)
         axes.plot(a, law, color=style.SOFT, lw=1.3, ls=(0, (4, 2)), label="Lube et al. (2004), ± 10 %")
-        for colour, (friction, base, cells) in zip(style.LINES, SERIES):
-            name = name_of(friction, base, cells)
-            points = np.array([(float(row["aspect"]), float(row[column])) for row in rows if row["series"] == name]).T
-            axes.plot(*points, "o-", color=colour, ms=4.5, lw=1, label=name)
+        for colour, series in zip(itertools.cycle(style.LINES), SERIES):
+            points = np.array([(float(row["aspect"]), float(row[column])) for row in rows if row["series"] == series.name()]).T
+            axes.plot(*points, "o-" if series.peak is None else "s--", color=colour, ms=4.5, lw=1, label=series.name())
         axes.set(xlabel="aspect ratio a = H₀ / R₀", xlim=(0.5, 4.5), ylim=(0, None))
         axes.set_title(label, loc="left")
     grid[0].legend(fontsize=7.5)
