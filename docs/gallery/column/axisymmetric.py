@@ -40,11 +40,11 @@ class Series:
         return f"{angle}, {'no slip' if self.base is None else f'base {self.base}°'}, R₀/{self.cells}"
 
     def strength(self):
-        """Keys of the soil: dense sand dilates by 8 degrees at its peak and loses this and its peak over a shear of a tenth."""
+        """Keys of the soil: dense sand dilates by 8 degrees at its peak, and has lost 63 % of this and of its peak at a plastic strain of 0.2."""
         if self.peak is None:
             return f"friction_angle = {self.friction}"
         return (f"friction_angle = {self.peak}\nresidual_friction_angle = {self.friction}\nresidual_cohesion = 0\n"
-                f"dilation_angle = 8\nresidual_dilation_angle = 0\nshape_factor = 20\nreference_size = {RADIUS / 10}")
+                f"dilation_angle = 8\nresidual_dilation_angle = 0\nshape_factor = 5\nreference_size = {RADIUS / 10}")
 
 
 SERIES = (Series(7), Series(10), Series(14, aspects=(0.8, 2)), Series(7, base=22), Series(10, base=22), Series(10, friction=26),
