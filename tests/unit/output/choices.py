@@ -11,6 +11,7 @@ from talus_histories import draw_histories, drawn_energies  # noqa: E402
 from talus_paths import spread  # noqa: E402
 from talus_results import History, Results  # noqa: E402
 from talus_sections import Colours, Painter, View, chosen_snapshots, views_of  # noqa: E402
+from talus_slip import slip_surface  # noqa: E402
 from talus_tiles import Frame  # noqa: E402
 
 
@@ -147,6 +148,60 @@ class Times(unittest.TestCase):
     def test_a_run_of_days_is_told_in_days_and_its_slide_in_seconds_after_them(self):
         self.assertEqual(self.said((0, "start"), (30 * 86400, "seepage"), (45 * 86400, "seepage"), (45 * 86400 + 4.25, "slide")),
                          ["t = 0.0 d", "t = 30.0 d", "t = 45.0 d", "t = 45.0 d + 4.2 s"])
+
+
+class Sheared:
+    """Soil of 20 m by 10 m with a particle in each square of 0.25 m, and a plastic strain that is given at each place."""
+
+    def __init__(self, strain):
+        x, y = np.meshgrid(np.arange(0.125, 20, 0.25), np.arange(0.125, 10, 0.25))
+        self._place = np.column_stack([x.ravel(), y.ravel()])
+        self._strain = np.array([strain(*place) for place in self._place])
+        self.time, self.folder, self.snapshots = 0, "here", [self]
+
+    def __contains__(self, name):
+        return name == "plastic_strain"
+
+    def ids(self):
+        return np.arange(len(self._place))
+
+    def position(self):
+        return self._place
+
+    def scalar(self, name):
+        return self._strain, "-"
+
+    def up_axis(self):
+        return 1
+
+
+class SlipSurface(unittest.TestCase):
+    """A line within 0.5 m, the height of a row, of the middle of its band."""
+
+    def test_stays_in_one_of_two_bands(self):
+        # in every fourth metre the upper band, 3 m above the lower one, has more strain; the lower one has more in all
+        def strain(x, y):
+            return 0.6 if abs(y - 3) < 0.5 else (1.0 if x % 4 < 1 else 0.3) if abs(y - 6) < 0.5 else 0.0
+
+        line = slip_surface(Sheared(strain), 0)[0]
+        self.assertLess(np.abs(line[:, 1] - 3).max(), 0.5)
+        self.assertGreater(np.ptp(line[:, 0]), 19)
+
+    def test_does_not_leap_over_sound_soil_to_a_band_that_is_near(self):
+        # 1 m of soil between the bands, less than a step may rise; the upper one has more strain to the right of the middle, and ends there
+        def strain(x, y):
+            return 0.6 if abs(y - 3) < 0.5 else 0.7 if abs(y - 5) < 0.5 and 10 < x < 12 else 0.0
+
+        self.assertLess(np.abs(slip_surface(Sheared(strain), 0)[0][:, 1] - 3).max(), 0.5)
+
+    def test_follows_a_band_that_rises_steeply(self):
+        def band(x):
+            return 2 if x < 12 else 2 + 2.5 * (x - 12)
+
+        line = slip_surface(Sheared(lambda x, y: float(abs(y - band(x)) < (0.5 if x < 12 else 1.2) and x < 15)), 0)[0]
+        self.assertGreater(line[:, 1].max(), 8)
+        for x, y in line:
+            self.assertLess(abs(y - band(x)), 1.3)
 
 
 if __name__ == "__main__":
