@@ -14,6 +14,12 @@ def read(path):
         return list(csv.DictReader(file))
 
 
+def scale_of(values):
+    """Logarithmic, but where all values lie within a decade, whose numbers would overlap."""
+    values = [value for value in values if value > 0]
+    return "log" if values and max(values) > 9.99 * min(values) else "linear"
+
+
 def draw(rows, reference, path):
     """Each key that some series refine has its own charts against it."""
     rows = [r for r in rows if not r["failure"]]
@@ -36,8 +42,9 @@ def draw(rows, reference, path):
             values.plot(h, v, "o-", color=colours[name], markersize=4, linewidth=1)
         refined = with_unit(key, mine[0]["unit"])
         values.axhline(float(reference["value"]), color=INK, linewidth=0.8, linestyle=":")
-        order.set(xscale="log", yscale="log", xlabel=refined, ylabel="error of " + reference["measure"])
-        values.set(xscale="log", xlabel=refined, ylabel=reference["measure"])
+        xscale, yscale = scale_of(float(r["parameter"]) for r in mine), scale_of(float(r["error"]) for r in mine)
+        order.set(xscale=xscale, yscale=yscale, xlabel=refined, ylabel="error of " + reference["measure"])
+        values.set(xscale=xscale, xlabel=refined, ylabel=reference["measure"])
         low, high = values.get_ylim()
         if spread > 0:  # a series that misses by far would flatten the others
             values.set_ylim(max(low, around - spread), min(high, around + spread))
@@ -47,7 +54,7 @@ def draw(rows, reference, path):
         cost.step(*zip(*best), where="post", color=INK, linewidth=0.8, linestyle=":", label="Pareto front")
     if np.isfinite(uncertainty) and uncertainty > 0:
         cost.axhspan(cost.get_ylim()[0] if cost.get_ylim()[0] > 0 else uncertainty / 10, uncertainty, color=FAINT, alpha=0.4, label="reference uncertain")
-    cost.set(xscale="log", yscale="log", xlabel="processor time [s]", ylabel="error of " + reference["measure"])
+    cost.set(xscale=scale_of(float(r["processor_s"]) for r in rows), yscale=scale_of(float(r["error"]) for r in rows), xlabel="processor time [s]", ylabel="error of " + reference["measure"])
     cost.legend()
     save(figure, path)
 

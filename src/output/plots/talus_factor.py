@@ -4,6 +4,7 @@ import json
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.patheffects import Normal, Stroke
 from matplotlib.tri import Triangulation
 
 import talus_style as style
@@ -99,7 +100,7 @@ def draw_mechanism(results, factor, headline, path):
     for number, mechanism in enumerate(factor["mechanisms"], 1):
         label = f"slip surface {number}: {short(mechanism['factor_of_safety'])}" if several else "slip surface"
         axes.plot(*np.array(mechanism["slip_surface_m"]).T, color=style.INK if number == 1 else style.LINES[(number - 2) % len(style.LINES)],
-                  lw=1.2, ls=(0, (4, 2)), label=label)
+                  lw=1.2, ls=(0, (4, 2)), label=label, path_effects=[Stroke(linewidth=3, foreground="white", alpha=0.7), Normal()])  # on a dark band
     axes.set_aspect("equal")
     axes.set_xlabel("x [m]"), axes.set_ylabel("y [m]")
     axes.set_title(headline, loc="left")
