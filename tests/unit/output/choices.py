@@ -3,11 +3,17 @@
 import sys
 import types
 import unittest
+import unittest.mock
 
 import numpy as np
 
 sys.path.insert(0, sys.argv.pop(1))
+import talus_compare  # noqa: E402
+import talus_factor  # noqa: E402
+import talus_study  # noqa: E402
+import talus_sweep  # noqa: E402
 from talus_histories import draw_histories, drawn_energies  # noqa: E402
+from talus_outcomes import FAILS  # noqa: E402
 from talus_paths import spread  # noqa: E402
 from talus_results import History, Results  # noqa: E402
 from talus_sections import Colours, Painter, View, chosen_snapshots, views_of  # noqa: E402
@@ -202,6 +208,54 @@ class SlipSurface(unittest.TestCase):
         self.assertGreater(line[:, 1].max(), 8)
         for x, y in line:
             self.assertLess(abs(y - band(x)), 1.3)
+
+
+class Charts(unittest.TestCase):
+    """One axis, one quantity, with its unit."""
+
+    def labels(self, module, draw):
+        """(x label, y label) of each chart of a picture."""
+        seen = []
+        with unittest.mock.patch.object(module, "save", lambda figure, path: seen.append(figure)):
+            draw()
+        return [(axes.get_xlabel().replace("\n", " "), axes.get_ylabel().replace("\n", " ")) for axes in seen[0].axes if axes.get_xlabel()]
+
+    def test_outcomes_stand_against_each_key_of_its_own(self):
+        rows = [{"series": key, "key": key, "value": value, "unit": unit, "failure": "", "state": FAILS, "volume_of_slide_m3": volume}
+                for key, unit, values in (("body.clay.cohesion", "Pa", ("6 kPa", "8 kPa")), ("body.clay.friction_angle", "deg", ("20", "25")))
+                for volume, value in enumerate(values, 3)]
+        rows = [row | {"volume_of_slide_m3": float(row["volume_of_slide_m3"])} for row in rows]
+        self.assertEqual(self.labels(talus_sweep.style, lambda: talus_sweep.draw(rows, "", True)),
+                         [("body.clay.cohesion [kPa]", "volume of the slide [m³/m]"), ("body.clay.friction_angle [deg]", "volume of the slide [m³/m]")])
+        self.assertEqual(talus_sweep.title_of("volume_of_slide_m3", False), "volume of the slide [m³]")
+        self.assertEqual(talus_sweep.title_of("crest_largest_speed_m_s", True), "crest largest speed [m/s]")
+
+    def test_errors_stand_against_each_key_of_its_own(self):
+        rows = [{"series": series, "key": key, "unit": unit, "parameter": value, "value": 1 + error, "error": error, "processor_s": 1, "pareto": "0", "failure": ""}
+                for series, key, unit in (("euler", "integrator.fraction", ""), ("arkode", "integrator.velocity_tolerance", "m/s"))
+                for value, error in ((0.1, 0.01), (0.001, 0.001))]
+        labels = self.labels(talus_compare, lambda: talus_compare.draw(rows, {"uncertainty": "0", "value": "1", "measure": "way"}, ""))
+        self.assertEqual([x for x, _ in labels], ["processor time [s]", *2 * ["integrator.fraction"], *2 * ["integrator.velocity_tolerance [m/s]"]])
+
+    def test_bars_of_a_tornado_say_their_values(self):
+        fit = {"outcome": "travel_distance_m", "mean": 5.0, "r2": 1.0, "bars": [{"variable": "friction", "unit": "deg", "quantiles": [20.5, 27.5], "low": 4.0, "high": 6.0}]}
+        seen = []
+        with unittest.mock.patch.object(talus_study.style, "save", lambda figure, path: seen.append(figure)):
+            talus_study.draw_tornado([fit], True, "")
+        self.assertEqual([label.get_text() for label in seen[0].axes[0].get_yticklabels()], ["friction\n20.5 to 27.5 deg"])
+
+
+class Mechanisms(unittest.TestCase):
+    def test_are_a_field_on_cells_with_soil_and_arrows_where_it_moves(self):
+        nodes = np.array([(0.0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1)])
+        cells = np.array([(0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4)])
+        points = np.array([(0.6, 0.3), (0.3, 0.6)])  # of the left half; the right one is air
+        triangles, values = talus_factor.field_of_cells(types.SimpleNamespace(mesh=lambda: (nodes, cells)), points, np.array([1.0, 3.0]))
+        self.assertEqual(sorted(map(tuple, triangles.triangles)), [(0, 1, 4), (0, 4, 3)])
+        self.assertEqual((values[1], values[3], values[4]), (1, 3, 2))
+        place, way = talus_factor.arrows_of(np.array([(0.0, 0), (10, 0)]), np.array([(0.0, 0), (0, 5)]))
+        self.assertEqual(place.tolist(), [[10, 0]])
+        self.assertGreater(way[0, 1], 0)
 
 
 if __name__ == "__main__":
