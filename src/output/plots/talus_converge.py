@@ -149,6 +149,8 @@ def draw(results, rows, by, path):
             load = row["load_time_of_failure_s"]
             how = row["state"] if load is None else f"{row['state']} at t = {load:.3g} s"
             axes.set_title(f"{in_words(row, by)}: {how}" if n == 0 else "", loc="left", pad=5)
+            if k == 0:
+                axes.set_ylabel(f"{'xyz'[painter.views[section].up]} [m]")
             if n == len(fields) - 1:
                 axes.set_xlabel(f"{'xyz'[painter.views[section].across]} [m]")
         bar = figure.add_axes([1 - (RIGHT - 0.22) / WIDTH, (top - tall) / height, 0.15 / WIDTH, tall / height])
