@@ -16,7 +16,7 @@ from talus_histories import draw_histories, drawn_energies  # noqa: E402
 from talus_outcomes import FAILS  # noqa: E402
 from talus_paths import spread  # noqa: E402
 from talus_results import History, Results  # noqa: E402
-from talus_sections import Colours, Painter, View, chosen_snapshots, views_of  # noqa: E402
+from talus_sections import Colours, Painter, View, chosen_snapshots, telling, views_of  # noqa: E402
 from talus_slip import slip_surface  # noqa: E402
 from talus_tiles import Frame  # noqa: E402
 
@@ -154,6 +154,18 @@ class Times(unittest.TestCase):
     def test_a_run_of_days_is_told_in_days_and_its_slide_in_seconds_after_them(self):
         self.assertEqual(self.said((0, "start"), (30 * 86400, "seepage"), (45 * 86400, "seepage"), (45 * 86400 + 4.25, "slide")),
                          ["t = 0.0 d", "t = 30.0 d", "t = 45.0 d", "t = 45.0 d + 4.2 s"])
+
+
+class Panels(unittest.TestCase):
+    def state(self, way, strain, left=0):
+        snapshot = Snapshot(0, way, left)
+        snapshot.scalar = lambda field: (np.full(30 - left, strain), "-")
+        return snapshot
+
+    def test_are_drawn_where_they_show_something_else(self):
+        snapshots = [self.state(0, 0), self.state(0, 0.001), self.state(0, 0.5), self.state(1, 0.5), self.state(1, 0.501), self.state(1, 0.501, left=3)]
+        shown = telling(snapshots, "strain", Colours("strain", snapshots), 1.0)
+        self.assertEqual([snapshots.index(one) for one in shown], [0, 2, 3, 5])
 
 
 class Sheared:
