@@ -300,12 +300,14 @@ std::vector<Vec<2>> Section::domain() const {
   return domain;
 }
 
-std::string Section::doubt() const {
+namespace {
+
+std::string doubt_about_free_face(const Section &section) {
   constexpr double low = 0.1;    // of the height of the soil: a lower face decides little
   constexpr double steep = 0.2;  // width over height of a face that counts as the end of the soil
-  if (!has_free_space || free_extra == 0) return "";
-  const auto &x = outline.points;
-  const double sign = free_extra > 0 ? 1 : -1;
+  if (!section.has_free_space || section.free_extra == 0) return "";
+  const auto &x = section.outline.points;
+  const double sign = section.free_extra > 0 ? 1 : -1;
   const auto beyond = [&](const Vec<2> &a, const Vec<2> &b) { return sign * a[0] < sign * b[0]; };
   const auto above = [](const Vec<2> &a, const Vec<2> &b) { return a[1] < b[1]; };
   const double end = (*std::max_element(x.begin(), x.end(), beyond))[0];
@@ -313,10 +315,10 @@ std::string Section::doubt() const {
       (*std::max_element(x.begin(), x.end(), above))[1] - (*std::min_element(x.begin(), x.end(), above))[1];
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec<2> &a = x[i], &b = x[(i + 1) % x.size()];
-    const double rise = std::abs(b[1] - a[1]), tolerance = 1e-6 * largest_extent();
+    const double rise = std::abs(b[1] - a[1]), tolerance = 1e-6 * section.largest_extent();
     const bool at_end = std::abs(a[0] - end) <= tolerance || std::abs(b[0] - end) <= tolerance;
     if (!at_end || rise <= low * height || std::abs(b[0] - a[0]) > steep * rise) continue;
-    if (std::any_of(boundaries.begin(), boundaries.end(),
+    if (std::any_of(section.boundaries.begin(), section.boundaries.end(),
                     [&](const Polyline &line) { return is_on(line, a, tolerance) && is_on(line, b, tolerance); }))
       continue;
     std::ostringstream text;
@@ -330,6 +332,41 @@ std::string Section::doubt() const {
     return text.str();
   }
   return "";
+}
+
+/// An interface all of which lies above one that is listed before it, where layers are told by their number.
+std::string doubt_about_order(const Section &section) {
+  const double extent = section.largest_extent(), tolerance = 1e-9 * extent;
+  const std::vector<Polyline> &lines = section.interfaces;
+  if (section.seeds.size() > lines.size()) return "";  // each layer has a name of its own
+  for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
+    const Polyline &upper = lines[i], &lower = lines[i + 1];
+    int above = 0, below = 0;
+    const auto compare = [&](const Polyline &one, const Polyline &other, int &over, int &under) {
+      for (const Vec<2> &x : one.points)
+        if (!is_on(other, x, tolerance)) ++(is_below(other, x, extent) ? under : over);
+    };
+    compare(lower, upper, above, below), compare(upper, lower, below, above);
+    if (above == 0 || below > 0) continue;
+    std::ostringstream text;
+    text << "'" << lower.part << "' (" << section.entry(lower.lines[0]) << ") lies above '" << upper.part << "' ("
+         << section.entry(upper.lines[0])
+         << "), and interfaces are numbered from top to bottom. Layers count from the top whatever these numbers are: "
+            "layer0 lies above all interfaces, layer"
+         << lines.size()
+         << " below all of them. Number the interfaces from the top, or name each layer by a point region_NAME";
+    return text.str();
+  }
+  return "";
+}
+
+}  // namespace
+
+std::vector<std::string> Section::doubts() const {
+  std::vector<std::string> sentences;
+  for (const std::string &sentence : {doubt_about_free_face(*this), doubt_about_order(*this)})
+    if (!sentence.empty()) sentences.push_back(sentence);
+  return sentences;
 }
 
 double Section::area() const { return std::abs(signed_area(domain())); }

@@ -58,9 +58,9 @@ struct Section {
       const;            ///< polygon that is meshed: the outline, with free space above it where asked for
   double area() const;  ///< of the domain [m2]
   std::string layer_at(const Vec<2> &x) const;  ///< layerN or air; seeds are not looked at
-  /// A sentence where the free space beside an end leaves a steep face of the soil there free, though no b_NAME names
-  /// it; empty otherwise.
-  std::string doubt() const;
+  /// Sentences on what a section may have but hardly means: a steep face that the free space beside an end leaves free
+  /// though no b_NAME names it, and interfaces that are listed from bottom to top.
+  std::vector<std::string> doubts() const;
 };
 
 /// Reads and checks a section. Throws std::invalid_argument with file and line for rows that are malformed or unknown,

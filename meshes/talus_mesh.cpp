@@ -40,14 +40,14 @@ bool is_section(const std::string &source) {
 }
 
 Section section_in(const std::string &source) {
-  if (!is_drawing(source)) {
-    const Section section = read_section(source);
-    if (const std::string doubt = section.doubt(); !doubt.empty()) std::cout << "warning: " << doubt << "\n";
+  const auto doubted = [](Section section) {
+    for (const std::string &doubt : section.doubts()) std::cout << "warning: " << doubt << "\n";
     return section;
-  }
+  };
+  if (!is_drawing(source)) return doubted(read_section(source));
   const Drawing drawing = read_drawing(source);
   for (const std::string &doubt : drawing.doubts) std::cout << "warning: " << doubt << "\n";
-  return section_of(drawing.rows, source, true);
+  return doubted(section_of(drawing.rows, source, true));
 }
 
 [[noreturn]] void complain(const std::string &text) { throw std::invalid_argument(text); }
@@ -90,8 +90,10 @@ void check(const Request &request, const Section &section) {
     if (!(box.size > 0)) complain("--refine x0 y0 x1 y1 h needs a cell size h above 0 m");
   if (const double cells = estimated_cells(section, o); cells > most_cells) {
     std::ostringstream text;
-    text << "the cell sizes would give about " << cells << " cells, more than " << most_cells
-         << "; take a larger --size, or larger cells in the boxes of --refine and refine_SIZE";
+    text << "the cell sizes would give about " << cells << " cells, more than " << most_cells << ", in a section of "
+         << extent
+         << " m; coordinates count in metres, are these in millimetres? Otherwise take a larger --size, or larger "
+            "cells in the boxes of --refine and refine_SIZE";
     complain(text.str());
   }
   if (o.thickness < 0) complain("--thickness must be above 0 m");

@@ -96,17 +96,24 @@ Reference reference_of(const CompareArguments &arguments, const std::vector<Vari
   return best;
 }
 
+/// The key that a series refines: the last one; empty where it sets none.
+std::string last_key(const Variant &t) {
+  return t.overrides.empty() ? "" : t.overrides.back().substr(0, t.overrides.back().find('='));
+}
+
 void write_csv(const std::string &path, const std::vector<Variant> &trials) {
   std::ofstream file(path);
   file.precision(10);
-  file << "series,overrides,parameter,value,error,processor_s,wall_s,steps,evaluations,rejections,pareto,failure,"
+  file << "series,overrides,key,unit,parameter,value,error,processor_s,wall_s,steps,evaluations,rejections,pareto,"
+          "failure,"
           "warnings\n";
   for (const Variant &t : trials) {
     const bool beaten = std::any_of(trials.begin(), trials.end(),
                                     [&](const Variant &o) { return !o.failed && o.cpu < t.cpu && o.error < t.error; });
-    file << csv_field(t.label) << "," << csv_field(joined(t.overrides)) << "," << t.parameter << "," << t.value << ","
-         << t.error << "," << t.cpu << "," << t.wall << "," << t.steps << "," << t.evaluations << "," << t.rejections
-         << "," << (!t.failed && std::isfinite(t.error) && !beaten) << "," << csv_field(t.cause) << ","
+    file << csv_field(t.label) << "," << csv_field(joined(t.overrides)) << "," << last_key(t) << ","
+         << unit_of_key(last_key(t)) << "," << t.parameter << "," << t.value << "," << t.error << "," << t.cpu << ","
+         << t.wall << "," << t.steps << "," << t.evaluations << "," << t.rejections << ","
+         << (!t.failed && std::isfinite(t.error) && !beaten) << "," << csv_field(t.cause) << ","
          << csv_field(warnings_of(t)) << "\n";
   }
 }

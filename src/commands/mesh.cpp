@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -5,6 +6,7 @@
 #include "mesh_source.h"
 #include "scene/quantity.h"
 #include "scene/reader.h"
+#include "simulation/unlikely.h"
 #include "solvers/critical_step.h"
 
 namespace talus {
@@ -79,8 +81,9 @@ std::vector<std::string> options_of(const MeshArguments &a) {
   return options;
 }
 
+/// `up` is the axis along which elevations count.
 template <int dim>
-void report_step(const MeshArguments &arguments, const LinearElastic &soil, double density) {
+void report_mesh(const MeshArguments &arguments, const LinearElastic &soil, double density, int up) {
   const auto mesh = BackgroundMesh<dim>::read(PETSC_COMM_SELF, arguments.file, {});
   const Law law = soil;
   CriticalStep<dim> critical(mesh, law, density);
@@ -102,13 +105,15 @@ void report_step(const MeshArguments &arguments, const LinearElastic &soil, doub
   const MeshReport report = mesh.report();
   std::printf(") m; smallest altitude over wave speed is %.4g s\n", report.smallest_altitude / speed);
   for (const std::string &remark : report.remarks) std::printf("warning: %s\n", remark.c_str());
+  double low = mesh.position[0][up], high = low;
+  for (const auto &x : mesh.position) low = std::min(low, x[up]), high = std::max(high, x[up]);
+  if (const std::string sentence = unlikely_height(high - low, "The mesh"); !sentence.empty())
+    std::printf("warning: %s\n", sentence.c_str());
 }
 
-/// Of what talus-mesh makes of the source: terrain is 3D.
-int mesh_dimension(const MeshArguments &arguments) {
+bool is_section(const MeshArguments &arguments) {
   const std::string kind = std::filesystem::path(arguments.source).extension();
-  const bool section = kind == ".csv" || kind == ".dxf" || kind == ".DXF";
-  return !section || arguments.dimension == "3" ? 3 : 2;
+  return kind == ".csv" || kind == ".dxf" || kind == ".DXF";
 }
 
 int make_mesh(const MeshArguments &arguments) {
@@ -118,7 +123,11 @@ int make_mesh(const MeshArguments &arguments) {
   const MeshRun run = run_talus_mesh(options_of(arguments));
   std::fputs(run.output.c_str(), run.status ? stderr : stdout);
   if (run.status) return run.status;
-  mesh_dimension(arguments) == 2 ? report_step<2>(arguments, soil, density) : report_step<3>(arguments, soil, density);
+  if (!is_section(arguments))  // terrain
+    report_mesh<3>(arguments, soil, density, 2);
+  else
+    arguments.dimension == "3" ? report_mesh<3>(arguments, soil, density, 1)
+                               : report_mesh<2>(arguments, soil, density, 1);
   return 0;
 }
 

@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <sstream>
 
 #include "commands/foreign_code.h"
 #include "commands/scales.h"
 #include "physics/boundary/boundary.h"
 #include "physics/laws/strength_by_place.h"
-#include "physics/pores/hyperbolicity.h"
 #include "scene/reader.h"
 #include "simulation/unlikely.h"
 
@@ -20,24 +18,6 @@ namespace {
 
 constexpr int burst_length = 40;
 constexpr double longest_burst = 5;  // [s]
-
-/// Four digits at most.
-std::string digits(double value, int count = 3) {
-  std::ostringstream text;
-  text.precision(count);
-  text << value;
-  return text.str();
-}
-
-/// Does softening depend on the size of the cells?
-bool unscaled(const Law &law) {
-  return std::visit(
-      [](const auto &one) {
-        if constexpr (requires { one.softens(); }) return one.softens() && one.reference_size == 0;
-        return false;
-      },
-      law);
-}
 
 BodyNeeds needs_of(const BodyReport &report, const BodySource &source) {
   BodyNeeds b{report, read_law(source.law)};
@@ -150,262 +130,6 @@ std::vector<HeatedBaseNeeds> heated_bases_of(const Scene &scene, const Needs &ne
   }
   return bases;
 }
-
-// ---- advice ----
-
-class Adviser {
- public:
-  Adviser(const Scene &scene, const Needs &needs) : scene_(scene), needs_(needs) {}
-
-  std::vector<std::string> all() {
-    for (const std::string &body : bodies_with_umat(scene_))
-      say("body." + body +
-          " runs the library of its UMAT, which can do whatever a program can: take such a scene only from people "
-          "whom you would trust with a program, or check and run it with --no-umat, which refuses it.");
-    if (!needs_.burst_failure.empty()) say("The run breaks off in its first steps: " + needs_.burst_failure + ".");
-    for (const std::string &remark : needs_.mesh.remarks) say(remark);
-    for (const BodyNeeds &b : needs_.bodies)
-      if (b.there()) particles(b), locking(b), softening(b), yielding_ground(b);
-    if (!needs_.function_fault.empty())
-      say(needs_.function_fault +
-          ". A run ends where it needs such a value; the function was tried all over the soil and "
-          "the stages.");
-    if (!needs_.downhill_fault.empty())
-      say(needs_.downhill_fault + ". That place lies downhill of the soil: the run ends if a slide comes so far.");
-    for (const std::string &sentence : needs_.unlikely) say(sentence + (sentence.ends_with('?') ? "" : "."));
-    if (needs_.particles() == 0) {
-      say("Stages add all soil, and none is there at the start: steps, times and scales are not known before a run. "
-          "Without `add` in the stages check estimates them of the whole soil.");
-      return std::move(advice_);
-    }
-    if (!scene_.root->has("gravity"))
-      say("The scene gives no gravity, so that soil has no weight; gravity = 0 says that this is meant.");
-    for (const std::string &sentence : needs_.brittle) say(sentence);
-    stiffness();
-    start();
-    for (std::size_t i = 0; i < scene_.stage.size(); ++i) stage(scene_.stage[i]);
-    bases();
-    step();
-    transfer();
-    dimension();
-    water();
-    suction();
-    return std::move(advice_);
-  }
-
- private:
-  void say(const std::string &sentence) { advice_.push_back(sentence); }
-
-  void particles(const BodyNeeds &b) {
-    const int fewest = b.body.fewest_per_cell;
-    const bool plane = scene_.dimension == 2;
-    const auto moves = [](const Stage &stage) { return !is_static(stage.kind) && stage.pore_flow; };
-    if (fluids_move(scene_.phases) && std::ranges::any_of(scene_.stage, moves) && fewest < (plane ? 6 : 8))
-      say(std::to_string(fewest) + " particles per cell in " + b.body.name +
-          " are few if soil with pore fluids flows far: a column of saturated sand ran out a fifth less far with 3 per "
-          "triangle than with 6 or 12; look with `talus converge --by particles`.");
-    if (fewest >= (plane ? 3 : 4)) return;
-    const std::string wanted = plane ? "three or more per triangle" : "four or more per tetrahedron";
-    if (fewest == 1)
-      say("One particle per cell in " + b.body.name + " is too few: the error of stress was " +
-          (plane ? "10 % at rest and 23 % in motion, compared with 1.2 % and 5 % with three" : "13 to 18 %") +
-          "; take " + wanted + ".");
-    else
-      say(std::to_string(fewest) + " particles per cell in " + b.body.name +
-          " are few where cells lose particles; take " + wanted + ".");
-  }
-
-  void locking(const BodyNeeds &b) {
-    const double K = bulk_modulus(b.law), G = shear_modulus(b.law), nu = (3 * K - 2 * G) / (2 * (3 * K + G));
-    if (nu > 0.45 && scene_.transfer.locking == Locking::none)
-      say("Poisson's ratio " + digits(nu) + " in " + b.body.name +
-          " makes linear cells lock (the load of a footing was 45 % too high at 0.49); take transfer.locking = "
-          "\"patches\".");
-  }
-
-  void softening(const BodyNeeds &b) {
-    const double slope = b.softening.slope;
-    if (slope == 0) return;
-    if (b.averaging_length > 0 && b.averaging_length < b.body.cell_size)
-      say("The averaging_length of " + b.body.name + ", " + digits(b.averaging_length) +
-          " m, is less than its cells of " + digits(b.body.cell_size) +
-          " m: the average then hardly reaches the next cell, and bands are as wide as cells are; take cells of at "
-          "most "
-          "this length.");
-    if (b.averaging_length > 0) return;  // bands are wider than a cell, and cells do not snap back alone
-    if (unscaled(b.law))
-      say(b.body.name +
-          " softens without a reference_size: shear bands are one cell wide, so the result depends on the mesh; give "
-          "the element size to which shape_factor belongs, or an averaging_length.");
-    constexpr double snap_back =
-        0.87;  // sqrt(3) / 2: strength of simple shear falls as fast as elastic strain gives way
-    if (slope > snap_back / 2)
-      say("Strength of " + b.body.name + " decreases with plastic strain at " + digits(slope, 2) +
-          " of 2 G in cells of " + digits(b.body.cell_size) + " m, " +
-          (slope > snap_back ? "above the " : "near the ") + digits(snap_back) +
-          " at which a sheared cell snaps back and loses its strength at once; take smaller cells with a "
-          "reference_size, or a smaller shape_factor.");
-  }
-
-  void stiffness() {
-    const LayerNeeds &layer = needs_.layer;
-    if (layer.gravity_strain > 0.1)
-      say("The weight of the soil strains it by " + digits(100 * layer.gravity_strain) +
-          " %: soil that falls by its height arrives at " +
-          digits(100 * scales::fall_speed(layer.height, needs_.gravity) / layer.wave_speed) +
-          " % of the wave speed and bounces; with a stiffer soil the number of steps increases with the root of the "
-          "stiffness.");
-  }
-
-  void start() {
-    if (needs_.gravity == 0 || is_static(scene_.stage.front().kind)) return;
-    const Stage &first = scene_.stage.front();
-    const bool stressed =
-        std::all_of(scene_.body.begin(), scene_.body.end(), [](const auto &b) { return !b.stress.empty(); });
-    if (!stressed && first.gravity_ramp == 0 && first.damping == 0)
-      say("Gravity is applied at once to soil without stress, which oscillates up to twice the static strain; give "
-          "body.NAME.stress, or a first stage with gravity_ramp = " +
-          digits(20 * needs_.layer.transit, 1) + " s (20 wave transits) and damping.");
-  }
-
-  /// Elastic soil at rest presses sideways with nu / (1 - nu); where that is less than the soil needs to stand, all of
-  /// it yields.
-  void yielding_ground(const BodyNeeds &b) {
-    const bool by_weight = std::any_of(scene_.stage.begin(), scene_.stage.end(), [](const Stage &s) {
-      return s.kind == StageKind::quasi_static && s.initial_stress == InitialStress::kept;
-    });
-    if (!by_weight || !std::holds_alternative<MohrCoulomb>(b.law) || needs_.gravity == 0) return;
-    const double phi = b.body.strength.friction_angle[0];  // the least asks for most
-    const double K = bulk_modulus(b.law), G = shear_modulus(b.law), nu = (3 * K - 2 * G) / (2 * (3 * K + G));
-    if (std::sin(phi) >= 1 - 2 * nu || phi == 0) return;
-    const double enough = (1 - std::sin(phi)) / 2;
-    constexpr double locks = 0.45;
-    say("Elastic ground of " + b.body.name +
-        " at rest has the lateral stress ratio nu / (1 - nu) = " + digits(nu / (1 - nu), 2) +
-        ", less than its friction angle requires without cohesion: much of it yields under its weight alone, and "
-        "Newton's iterations may stall; take initial_stress = \"k0\"" +
-        (enough < locks ? ", or poisson_ratio above " + digits(enough, 2) + " (sin phi > 1 - 2 nu)." : "."));
-  }
-
-  void stage(const Stage &stage) {
-    if (is_static(stage.kind)) return;
-    if (stage.until == StopWhen::equilibrium && stage.damping == 0)
-      say("Stage " + stage.name +
-          " waits for equilibrium without damping, so waves hardly decay; damping = 0.7 is the fastest way to rest.");
-    if (stage.until == StopWhen::equilibrium && stage.duration < 20 * needs_.layer.transit)
-      say("Stage " + stage.name + " lasts " + digits(stage.duration / needs_.layer.transit) +
-          " wave transits, too short for equilibrium; give it " + digits(50 * needs_.layer.transit, 1) + " s or more.");
-  }
-
-  /// Bases whose friction depends on slip or heat, in stages that do not let them slip for good.
-  void bases() {
-    for (const BoundarySource &source : scene_.boundary) {
-      if (!read_boundary(source.kind).remembers) continue;
-      for (const Stage &stage : scene_.stage)
-        if (is_static(stage.kind) && stage.kind != StageKind::seepage)
-          say("Stage " + stage.name + " takes boundary." + source.name +
-              " at a slip of 0 and cold: finite elements do not follow its slip.");
-        else if (!is_static(stage.kind) && stage.gravity_ramp > 0 && stage.softening)
-          say("Stage " + stage.name + " builds up the stress while boundary." + source.name +
-              " counts slip and heat; softening = false keeps it fresh and cold until the loads come.");
-    }
-  }
-
-  void step() {
-    if (needs_.fixed_step && needs_.step < 0.3 * needs_.critical_step)
-      say("The fixed step is " + digits(needs_.step / needs_.critical_step, 2) +
-          " of the critical step; without integrator.step it would be 0.6 of it.");
-    const BodyReport &b = needs_.slowest_body().body;
-    if (b.critical_step > 0.4 * b.mean_critical_step) return;
-    std::string at = std::string("(") + digits(b.slowest_cell[0]) + ", " + digits(b.slowest_cell[1]) +
-                     (scene_.dimension == 3 ? ", " + digits(b.slowest_cell[2]) : "") + ") m";
-    for (std::size_t i = 0; i < scene_.mesh.refine.size(); ++i)
-      if (inside(scene_.mesh.refine[i], b.slowest_cell)) at += ", in mesh.refine." + std::to_string(i) + ",";
-    say("Small cells at " + at + " determine the step: it is " + digits(b.critical_step / b.mean_critical_step, 2) +
-        " of the mean critical step of the cells of " + b.name + ".");
-  }
-
-  bool inside(const RefineBox &box, const std::array<double, 3> &x) const {
-    for (int d = 0; d < 2; ++d)
-      if (x[d] < box.from[d] || x[d] > box.to[d]) return false;
-    return true;
-  }
-
-  void transfer() {
-    const Transfer &t = scene_.transfer;
-    if (t.remap_interval == 0)
-      say("A remap in every step costs twice the time or more and adds cell-crossing noise; transfer.remap_interval = "
-          "0.1 is the default.");
-    if (t.integration == Integration::particle || t.integration == Integration::mixed)
-      say("Integration by particle volumes was four to nine times less accurate than \"blended\" where particles cross "
-          "cells.");
-    constexpr long long few = 5000;
-    if (needs_.ranks > 1 && needs_.particles() / needs_.ranks < few)
-      say("A rank has " + std::to_string(needs_.particles() / needs_.ranks) + " particles; below " +
-          std::to_string(few) + " communication takes longer than the computation it shares.");
-  }
-
-  void dimension() {
-    if (!needs_.mesh.one_element_slice) return;
-    // measured on the gallery's column: with four particles a cell a step costs 7 times, and 1.6 times as many are
-    // needed
-    constexpr double per_particle_in_cell = 2.8;
-    double cells = 0;
-    for (const BodyNeeds &b : needs_.bodies) cells += static_cast<double>(b.body.cells);
-    say("A slice of one element gives the result of plane strain on triangles at about " +
-        digits(per_particle_in_cell * static_cast<double>(needs_.particles()) / cells, 2) +
-        " times the cost; set dimension = 2.");
-  }
-
-  void water() {
-    const Drainage &d = needs_.drainage;
-    if (d.time == 0) return;
-    const std::string bounds = std::string("k above ") + digits(d.drained_above, 1) + " m/s", time = spoken(d.time);
-    if (scene_.phases == PhaseModel::drained && needs_.drainage.computed)
-      say("The water stands still while the soil moves: that is right where soil drains in the " + time +
-          " of the dynamic stages, " + bounds + ".");
-    else if (scene_.phases == PhaseModel::drained)
-      say("A prescribed pore pressure is right where soil drains in the " + time + " of the stages, " + bounds +
-          " (less in proportion where a stage represents a longer time). Below " + digits(d.undrained_below, 1) +
-          " m/s failure is undrained: use total-stress strengths; in between pore pressure has to be computed.");
-    else if (fluids_move(scene_.phases))
-      say("Moving pore water is needed for k between " + digits(d.undrained_below, 1) +
-          " m/s, below which soil stays undrained in the " + time + " of the stages, and " +
-          digits(d.drained_above, 1) + " m/s, above which phases = \"drained\" gives the same result at lower cost.");
-    else
-      say("phases = \"dry\" is right for soil without water, or with total-stress strengths; with water in its pores "
-          "the soil would be drained in " +
-          time + " for " + bounds + " and undrained below " + digits(d.undrained_below, 1) + " m/s.");
-  }
-
-  /// Gas shares at which waves of some body grow without bound.
-  void suction() {
-    const bool gas_moves = scene_.phases == PhaseModel::three_phase, bishop = scene_.water.stress == PoreStress::bishop;
-    if (scene_.phases != PhaseModel::unsaturated && !gas_moves) return;
-    const Liquid liquid(scene_.water);
-    for (std::size_t b = 0; b < scene_.body.size(); ++b) {
-      const SoilPores soil(scene_.body[b], scene_.water.density * (needs_.gravity > 0 ? needs_.gravity : 9.81),
-                           scene_.water.viscosity);
-      double first = 0, last = 0;
-      for (double share = 2 * residual_gas; share < 0.99 * soil.largest_gas_share(); share *= 1.05) {
-        if (hyperbolic(soil, liquid, PoreGas(scene_.gas), constrained_modulus(needs_.bodies[b].law),
-                       scene_.body[b].grain_density, share, gas_moves, bishop))
-          continue;
-        if (first == 0) first = share;
-        last = share;
-      }
-      if (first > 0)
-        say("The equations of " + scene_.body[b].name + " are not hyperbolic at saturations from " +
-            digits(1 - last, 4) + " to " + digits(1 - first, 4) +
-            " with net stress and no drag: short waves grow there unless permeability is low; set water.stress = "
-            "\"bishop\", or take stiffer soil or water.");
-    }
-  }
-
-  const Scene &scene_;
-  const Needs &needs_;
-  std::vector<std::string> advice_;
-};
 
 /// Tries each function of time over the stages, and over a box around the soil if it knows the place too. Those whose
 /// value their key does not admit remember it. Functions of the place alone have been used where they are needed.
@@ -521,16 +245,6 @@ Needs find_needs(Scene &scene, bool with_model) {
   needs.heated_bases = heated_bases_of(scene, needs);
   needs.drainage = drainage_of(scene, needs);
   return needs;
-}
-
-std::vector<std::string> advise(const Scene &scene, const Needs &needs) { return Adviser(scene, needs).all(); }
-
-std::string spoken(double seconds) {
-  const std::pair<double, const char *> units[] = {{86400, "d"}, {3600, "h"},  {60, "min"},
-                                                   {1, "s"},     {1e-3, "ms"}, {1e-6, "us"}};
-  for (const auto &[size, name] : units)
-    if (seconds >= size) return digits(seconds / size) + " " + name;
-  return digits(seconds) + " s";
 }
 
 }  // namespace talus

@@ -57,8 +57,8 @@ class Statics {
   /// Collective.
   std::vector<double> inflow() const;
 
-  /// A factor of safety is wanted. It does not depend on the stress from which its search starts: stages give up early,
-  /// and the run goes on from where they lose equilibrium.
+  /// A factor of safety is wanted. It does not depend on the stress from which its search starts: the run goes on from
+  /// where stages lose equilibrium, unless their soil softens.
   bool for_factor = false;
   /// Elements of first order make factors too large: a factor of safety has always those of second order.
   Elements elements() const { return for_factor ? Elements::quadratic : world_.scene.quasi_static.elements; }

@@ -13,17 +13,25 @@ namespace talus {
 /// the thickness of a slide that lies on a slope. 0 without faces.
 double greatest_depth(const std::vector<SoilFace> &surface, int dimension, int up);
 
+/// A sentence on soil, or a section, that is higher than any mountain [m]; empty otherwise. `what` is its subject.
+std::string unlikely_height(double height, const std::string &what);
+
 /// A sentence for each value of a soil that no soil has, or none of this depth, with the unit that may have been meant.
 std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<Law> &laws,
                                          const std::vector<BodyReport> &bodies, const std::vector<SoilFace> &surface);
 
 /// A sentence for what fits the soil badly: its size, the direction of gravity, the place of the water table, open
-/// water that is not level, ends of the mesh without a condition. `bodies` and `surface` as they are at the start.
+/// water that is not level or fills a hollow, ends of the mesh without a condition, motion over days. `bodies` and
+/// `surface` as they are at the start.
 std::vector<std::string> unlikely_surroundings(const Scene &scene, const std::vector<BodyReport> &bodies,
                                                const std::vector<SoilFace> &surface);
 
 /// A sentence for each body whose cells are too large for the depth of the soil.
 std::vector<std::string> coarse_cells(const Scene &scene, const std::vector<BodyReport> &bodies,
                                       const std::vector<SoilFace> &surface);
+
+/// A sentence for each body of which more than a hundredth has a plastic strain above 10. `state` has the particles of
+/// this rank. Collective.
+std::vector<std::string> unlikely_strains(const std::vector<BodyReport> &bodies, const Snapshot &state);
 
 }  // namespace talus

@@ -9,14 +9,15 @@ from talus_results import Results, Table
 
 folder = Path(sys.argv[1])
 sweep, runs = Table(folder / "sweep.csv"), Table(folder / "runs.csv")
+varied = f"{runs['key'][0].rpartition('.')[2].replace('_', ' ')} [{runs['unit'][0]}]"
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.2), layout="constrained")
 left.plot(sweep["value"], sweep["travel_distance_m"], "o-")
-left.set(xlabel=runs["key"][0], ylabel="travel distance [m]")
+left.set(xlabel=varied, ylabel="travel distance [m]")
 for value, name in zip(runs["value"], runs["folder"]):
     history = Results(folder / name).history
     right.plot(history.time, history["crest_displacement_m"], label=f"{value:g}")
 right.set(xlabel="time [s]", ylabel="displacement of the crest [m]")
-right.legend(title=runs["key"][0], fontsize=8)
+right.legend(title=varied, fontsize=8)
 figure.savefig(sys.argv[2], dpi=130)
 print(f"{len(sweep)} runs; the slide travels by {min(sweep['travel_distance_m']):.2f} to {max(sweep['travel_distance_m']):.2f} m")

@@ -6,6 +6,7 @@ import csv
 import pathlib
 
 from talus_style import FAINT, INK, LINES, np, plt, save
+from talus_units import with_unit
 
 
 def read(path):
@@ -13,33 +14,47 @@ def read(path):
         return list(csv.DictReader(file))
 
 
+def scale_of(values):
+    """Logarithmic, but where all values lie within a decade, whose numbers would overlap."""
+    values = [value for value in values if value > 0]
+    return "log" if values and max(values) > 9.99 * min(values) else "linear"
+
+
 def draw(rows, reference, path):
+    """Each key that some series refine has its own charts against it."""
     rows = [r for r in rows if not r["failure"]]
     uncertainty = float(reference["uncertainty"])
-    figure, (cost, order, values) = plt.subplots(1, 3, figsize=(10.6, 3.4), layout="constrained")
-    for k, name in enumerate(dict.fromkeys(r["series"] for r in rows)):
-        of = [r for r in rows if r["series"] == name]
-        x, y, h, v = (np.array([float(r[c]) for r in of]) for c in ("processor_s", "error", "parameter", "value"))
-        colour = LINES[k % len(LINES)]
-        seen = y > 0
-        cost.plot(x[seen], y[seen], "o-", color=colour, label=name, markersize=4, linewidth=1)
-        order.plot(h[seen], y[seen], "o-", color=colour, markersize=4, linewidth=1)
-        values.plot(h, v, "o-", color=colour, markersize=4, linewidth=1)
+    keys = list(dict.fromkeys(r["key"] for r in rows))
+    figure = plt.figure(figsize=(10.6, 3.4 * len(keys)), layout="constrained")
+    grid = figure.add_gridspec(len(keys), 3)
+    cost = figure.add_subplot(grid[:, 0])
+    colours = {name: LINES[k % len(LINES)] for k, name in enumerate(dict.fromkeys(r["series"] for r in rows))}
+    around = np.median([float(r["value"]) for r in rows])
+    spread = 5 * np.median([abs(float(r["value"]) - around) for r in rows])
+    for n, key in enumerate(keys):
+        order, values = figure.add_subplot(grid[n, 1]), figure.add_subplot(grid[n, 2])
+        mine = [r for r in rows if r["key"] == key]
+        for name in dict.fromkeys(r["series"] for r in mine):
+            x, y, h, v = (np.array([float(r[c]) for r in mine if r["series"] == name]) for c in ("processor_s", "error", "parameter", "value"))
+            seen = y > 0
+            cost.plot(x[seen], y[seen], "o-", color=colours[name], label=name, markersize=4, linewidth=1)
+            order.plot(h[seen], y[seen], "o-", color=colours[name], markersize=4, linewidth=1)
+            values.plot(h, v, "o-", color=colours[name], markersize=4, linewidth=1)
+        refined = with_unit(key, mine[0]["unit"])
+        values.axhline(float(reference["value"]), color=INK, linewidth=0.8, linestyle=":")
+        xscale, yscale = scale_of(float(r["parameter"]) for r in mine), scale_of(float(r["error"]) for r in mine)
+        order.set(xscale=xscale, yscale=yscale, xlabel=refined, ylabel="error of " + reference["measure"])
+        values.set(xscale=xscale, xlabel=refined, ylabel=reference["measure"])
+        low, high = values.get_ylim()
+        if spread > 0:  # a series that misses by far would flatten the others
+            values.set_ylim(max(low, around - spread), min(high, around + spread))
     best = sorted(((float(r["processor_s"]), float(r["error"])) for r in rows if r["pareto"] == "1"))
     best = [(x, y) for x, y in best if y > 0]
     if best:
         cost.step(*zip(*best), where="post", color=INK, linewidth=0.8, linestyle=":", label="Pareto front")
     if np.isfinite(uncertainty) and uncertainty > 0:
         cost.axhspan(cost.get_ylim()[0] if cost.get_ylim()[0] > 0 else uncertainty / 10, uncertainty, color=FAINT, alpha=0.4, label="reference uncertain")
-    cost.set(xscale="log", yscale="log", xlabel="processor time [s]", ylabel="error of " + reference["measure"])
-    values.axhline(float(reference["value"]), color=INK, linewidth=0.8, linestyle=":")
-    order.set(xscale="log", yscale="log", xlabel="refined key")
-    values.set(xscale="log", xlabel="refined key", ylabel=reference["measure"])
-    around = np.median([float(r["value"]) for r in rows])
-    spread = 5 * np.median([abs(float(r["value"]) - around) for r in rows])
-    low, high = values.get_ylim()
-    if spread > 0:  # a series that misses by far would flatten the others
-        values.set_ylim(max(low, around - spread), min(high, around + spread))
+    cost.set(xscale=scale_of(float(r["processor_s"]) for r in rows), yscale=scale_of(float(r["error"]) for r in rows), xlabel="processor time [s]", ylabel="error of " + reference["measure"])
     cost.legend()
     save(figure, path)
 

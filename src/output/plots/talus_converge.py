@@ -49,9 +49,9 @@ def in_words(row, by):
     return f"{row['value']:g} m" if by == "cells" else f"{row['value']:g}{' ' + row['unit'] if row['unit'] else ''}"
 
 
-def judge(rows, by, within, softening=False):
+def judge(rows, by, within, softening=False, volumes="m³"):
     """([sentence], whether the refined quantity decides something, [what it does to each quantity]). `rows` from coarse to fine;
-    `softening` says that soil softens."""
+    `softening` says that soil softens, and `volumes` is the unit of volumes."""
     thing, judged = THINGS[by], []
     remedy = (SOFTENING if softening and by == "cells" else "") + REMEDY[by] + "."
     broken = [row for row in rows if row["failure"]]
@@ -73,7 +73,7 @@ def judge(rows, by, within, softening=False):
     asked = [("load_time_of_failure_s", "The load time at failure", "s", 0.0), ("largest_displacement_m", "The largest displacement", "m", 0.0)]
     asked += [(key, f"The displacement of {words(key[: -len('_displacement_m')])}", "m", 0.0) for key in points]
     # rear, front and slip surface are known to a cell
-    asked += [("travel_distance_m", "The travel distance, from the rear of the slide to its front,", "m", cell), ("volume_of_slide_m3", "The volume of the slide", "m³", 0.0),
+    asked += [("travel_distance_m", "The travel distance, from the rear of the slide to its front,", "m", cell), ("volume_of_slide_m3", "The volume of the slide", volumes, 0.0),
               ("depth_of_slide_m", "The depth of the slip surface", "m", cell)]
     for key, name, unit, least in asked:
         values = [row.get(key) for row in rows]
@@ -100,12 +100,12 @@ def judge(rows, by, within, softening=False):
 # ---- tables and picture ----
 
 COLUMNS = (("load_time_of_failure_s", "failure at t [s]"), ("largest_displacement_m", "largest u [m]"), ("travel_distance_m", "travel [m]"),
-           ("volume_of_slide_m3", "volume [m3]"), ("depth_of_slide_m", "depth [m]"), ("deepest_at_x_m", "at x [m]"), ("steps", "steps"),
+           ("volume_of_slide_m3", "volume [{}]"), ("depth_of_slide_m", "depth [m]"), ("deepest_at_x_m", "at x [m]"), ("steps", "steps"),
            ("wall_s", "run time [s]"))
 
 
-def print_table(rows, by):
-    print(f"{by:>10} {'':>7} " + " ".join(f"{title:>16}" for _, title in COLUMNS))
+def print_table(rows, by, volumes):
+    print(f"{by:>10} {'':>7} " + " ".join(f"{title.format(volumes):>16}" for _, title in COLUMNS))
     for row in rows:
         if row["failure"]:
             print(f"{row['value']:>10g} broke off: {row['failure']}")
@@ -149,6 +149,8 @@ def draw(results, rows, by, path):
             load = row["load_time_of_failure_s"]
             how = row["state"] if load is None else f"{row['state']} at t = {load:.3g} s"
             axes.set_title(f"{in_words(row, by)}: {how}" if n == 0 else "", loc="left", pad=5)
+            if k == 0:
+                axes.set_ylabel(f"{'xyz'[painter.views[section].up]} [m]")
             if n == len(fields) - 1:
                 axes.set_xlabel(f"{'xyz'[painter.views[section].across]} [m]")
         bar = figure.add_axes([1 - (RIGHT - 0.22) / WIDTH, (top - tall) / height, 0.15 / WIDTH, tall / height])
@@ -179,8 +181,9 @@ def main():
     largest = max(map(cell_size, ended), default=0.0)
     for row, one in zip([row for row in rows if not row["failure"]], ended):
         row |= outcome(one, largest)
-    sentences, decides, judged = judge(rows, given.by, given.within, given.softening)
-    print_table(rows, given.by)
+    volumes = ended[0].per_metre("m³") if ended else "m³"
+    sentences, decides, judged = judge(rows, given.by, given.within, given.softening, volumes)
+    print_table(rows, given.by, volumes)
     print("\n" + "\n".join(sentences))
     write_tables(rows, sentences, judged, decides, given.by, given.within, given.folder)
     if ended and not given.no_plot:

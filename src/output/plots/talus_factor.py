@@ -4,10 +4,14 @@ import json
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.patheffects import Normal, Stroke
+from matplotlib.tri import Triangulation
 
 import talus_style as style
 
 BRIGHT = 0.97  # share of the soil that shears less than the end of the colour scale
+ARROWS = 32  # squares over the longer side of the soil, with an arrow each
+MOVES = 0.1  # of the largest displacement: less has no arrow
 
 
 def read_factor(results):
@@ -56,25 +60,53 @@ def draw_factor(results, folder):
     return pictures
 
 
+def field_of_cells(results, position, values):
+    """The cells of the mesh that have points, as triangles, and at each node the mean of the values in its cells."""
+    nodes, cells = results.mesh()
+    of = Triangulation(*nodes.T, cells).get_trifinder()(*position.T)
+    sums, counts = np.bincount(of[of >= 0], values[of >= 0], len(cells)), np.bincount(of[of >= 0], minlength=len(cells))
+    filled = np.flatnonzero(counts)
+    corners = cells[filled]
+    total, times = np.zeros(len(nodes)), np.zeros(len(nodes))
+    for corner in corners.T:
+        np.add.at(total, corner, sums[filled] / counts[filled])
+        np.add.at(times, corner, 1)
+    return Triangulation(*nodes.T, corners), total / np.maximum(times, 1)
+
+
+def arrows_of(position, displacement):
+    """Places and mean displacements [n, 2] in squares of the soil that moves."""
+    side = np.ptp(position, axis=0).max() / ARROWS
+    _, square = np.unique(np.floor(position / side), axis=0, return_inverse=True)
+    square = square.ravel()
+    count = np.bincount(square)
+    place, way = (np.column_stack([np.bincount(square, column) / count for column in values.T]) for values in (position, displacement))
+    size = np.linalg.norm(way, axis=1)
+    moves = size > MOVES * size.max()
+    return place[moves], way[moves] / max(size.max(), 1e-300) * 2 * side
+
+
 def draw_mechanism(results, factor, headline, path):
-    """Shear strain of the mechanism, which is scaled so that it shows, and the slip surface."""
+    """Shear strain of the mechanism, its motion and the slip surface."""
     last = results.snapshots[-1]
     position = last.position()
     strain = last.scalar("shear_strain")[0]
     figure, axes = plt.subplots(figsize=(9, 4.2))
-    order = np.argsort(strain)
-    dots = axes.scatter(*position[order].T, c=strain[order] / max(np.quantile(strain, BRIGHT), 1e-300), s=7, linewidths=0,
-                        cmap=style.colours_of("plastic_strain"), vmin=0, vmax=1)
+    triangles, at_nodes = field_of_cells(results, position, strain / max(np.quantile(strain, BRIGHT), 1e-300))
+    field = axes.tripcolor(triangles, at_nodes, shading="gouraud", cmap=style.colours_of("plastic_strain"), vmin=0, vmax=1)
+    place, way = arrows_of(position, last.values("displacement"))
+    axes.quiver(*place.T, *way.T, angles="xy", scale_units="xy", scale=1, width=0.0018, color=style.SOFT)
     several = len(factor["mechanisms"]) > 1
     for number, mechanism in enumerate(factor["mechanisms"], 1):
         label = f"slip surface {number}: {short(mechanism['factor_of_safety'])}" if several else "slip surface"
         axes.plot(*np.array(mechanism["slip_surface_m"]).T, color=style.INK if number == 1 else style.LINES[(number - 2) % len(style.LINES)],
-                  lw=1.2, ls=(0, (4, 2)), label=label)
+                  lw=1.2, ls=(0, (4, 2)), label=label, path_effects=[Stroke(linewidth=3, foreground="white", alpha=0.7), Normal()])  # on a dark band
     axes.set_aspect("equal")
     axes.set_xlabel("x [m]"), axes.set_ylabel("y [m]")
     axes.set_title(headline, loc="left")
     axes.legend(loc="best")
-    figure.colorbar(dots, ax=axes, label=f"shear strain over its {100 * BRIGHT:.0f} % quantile", shrink=0.8)
+    figure.colorbar(field, ax=axes, label=f"shear strain over its {100 * BRIGHT:.0f} % quantile", shrink=0.8)
+    figure.text(0.99, 0.01, "arrows: the motion of the mechanism, whose size is free", ha="right", fontsize=8, color=style.SOFT)
     figure.tight_layout()
     return style.save(figure, path)
 

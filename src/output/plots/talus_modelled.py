@@ -171,7 +171,7 @@ def notes(model):
     water = model.scene.get("water", {})
     said = []
     if model.data["water"]["tables"]:
-        level = ", rises and falls: level = " + model.keys.text("water", "", "level", water["level"]) if "level" in water else ""
+        level = ", raised by level = " + model.keys.text("water", "", "level", water["level"]) if "level" in water else ""
         said.append("blue line: water table at the start" + level)
     elif "table" in water:
         said.append(f"water table: {water['table']}")

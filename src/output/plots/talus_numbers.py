@@ -18,20 +18,21 @@ numbers.toml beside its README.md:
     ]
 
 A measure is a function of talus_measures.py, or of a file measures.py beside the page; it gives SI units, and `times` (1 if left out) makes the
-stated unit of it. Tolerances are absolute, in the stated unit. A study is a command of the page, all of which are long; with a `file` it writes
-a CSV, without one it draws pictures and runs only with --write. Where it names a `scene`, that is run into FOLDER first, and `copy` takes pictures from
-there:
+stated unit of it. Tolerances are absolute, in the stated unit. A study is a command of the page or a list of them, all of which are long; with a `file`
+it writes a CSV, without one it draws pictures and runs only with --write. Where it names a `scene`, that is run into FOLDER first, and `copy` takes
+pictures from there:
 
     [study.sizes]
     about = "four meshes"
-    command = "sizes.py TALUS run"   # a script beside the page; TALUS becomes the program, FOLDER an empty folder
+    command = "sizes.py TALUS run"   # a script beside the page, or "TALUS maps FOLDER"; TALUS becomes the program, FOLDER an empty folder
     scene = "scene.toml"
     copy = {"slope.png" = "pictures/displacement.png"}
     file = "sizes.csv"               # compared row by row in the columns below, by relative tolerances
     compare = {crest_m = 0.05}
     because = "..."
     tables = [{name = "crest", rows = ["eta"], column = "size_m", value = "crest_m", digits = 1}]   # tables of the page, made from the file;
-                                     # digits may be "as written" there
+                                     # digits may be "as written" there; {name = "printed", text = "sizes.txt"} shows a file that the study
+                                     # writes beside the page as it is
 
 A page with `model = "scene.toml"` at the head of its file shows what that scene models in a picture model.png, which --write draws again; it carries the
 digest of the scene, by which --pages finds that it is of another one.
@@ -109,7 +110,8 @@ class Page:
             tables["studies"] = table_of_studies(stated["study"])
         for name, study in stated.get("study", {}).items():
             for wanted in study.get("tables", []):
-                tables[f"{name}: {wanted['name']}"] = table_of_study(self.folder / study["file"], wanted, study)
+                tables[f"{name}: {wanted['name']}"] = (printed(self.folder / wanted["text"]) if "text" in wanted
+                                                       else table_of_study(self.folder / study["file"], wanted, study))
         return tables
 
     def text_in_step(self):
@@ -197,10 +199,20 @@ def table_of_runs(runs, page):
                     f"`./talus verify --gallery {page}{' --long' if any(run['cost'] == 'long' for run in runs.values()) else ''}` runs the scenes again and compares."]
 
 
+def commands_of(study):
+    given = study.get("command", [])
+    return [given] if isinstance(given, str) else given
+
+
+def printed(path):
+    """What a program printed, as a block of a page."""
+    return ["", *(f"    {line}".rstrip() for line in path.read_text().splitlines()), ""]
+
+
 def table_of_studies(studies):
     lines = ["| study | command | gives | repeated with the present program |", "|---|---|---|---|"]
     for study in studies.values():
-        command = f"`{study['command']}`" if "command" in study else "`talus run`"
+        command = ", ".join(f"`{re.sub('^TALUS', 'talus', one)}`" for one in (["talus run"] if "scene" in study else []) + commands_of(study))
         gives = f"[{study['file']}]({study['file']})" if "file" in study else "pictures"
         lines.append(f"| {study['about']} | {command} | {gives} | {'no: ' + study['unchecked'] if 'unchecked' in study else 'yes'} |")
     return lines
@@ -298,7 +310,7 @@ def check_study(page, name, study, talus, write):
     """Repeats a study: in place if its file is to be written, else in a copy of the page, whose file is then compared row by row."""
     if "file" not in study and not write:
         return True
-    print(f"{page.name}: {study['about']}: {study.get('command', '')}", flush=True)
+    print(f"{page.name}: {study['about']}: {', '.join(commands_of(study))}", flush=True)
     start = time.time()
     with tempfile.TemporaryDirectory() as folder:
         here, runs = page.folder, f"{folder}/runs"
@@ -316,12 +328,13 @@ def check_study(page, name, study, talus, write):
         if before is not None:  # a script that goes on where it was stopped would keep every row
             (here / study["file"]).unlink()
         commands = [[talus, "run", here / study["scene"], "-o", runs, "--force"]] if "scene" in study else []
-        if "command" in study:
-            script, *words = study["command"].split()
-            commands.append([sys.executable, "-B", here / script, *[{"TALUS": talus, "FOLDER": runs}.get(word, word) for word in words]])
+        for given in commands_of(study):
+            first, *words = [{"TALUS": talus, "FOLDER": runs}.get(word, word) for word in given.split()]
+            commands.append([*([talus] if first == talus else [sys.executable, "-B", here / first]), *words])
         for command in commands:
-            if subprocess.run(command, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE if command[0] == talus else None).returncode:
-                print("  FAIL: a command failed")
+            done = subprocess.run(command, cwd=here, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE if command[0] == talus else None, text=True)
+            if done.returncode:
+                print(f"  FAIL: a command failed: {((done.stderr or '').strip().splitlines() or ['its message is above'])[-1]}")
                 if before is not None:
                     (here / study["file"]).write_bytes(before)
                 return False
@@ -430,7 +443,7 @@ def main():
             for run in page.runs.values():
                 print(f"{page.name:18s} {run['cost']:6s} {run['about']}")
             for study in page.studies.values():
-                print(f"{page.name:18s} {'long':6s} {study['about']}: {study.get('command', '')}")
+                print(f"{page.name:18s} {'long':6s} {study['about']}: {', '.join(commands_of(study))}")
             continue
         if not given.pages:
             for name, run in page.runs.items():

@@ -90,7 +90,7 @@ def key_results(results):
             found.append(("State at the end", came_to["state"], in_words(came_to, came_to["cell_m"])))
             volume = came_to["volume_of_slide_m3"]
             note = "no soil slides" if volume is None else f"moved more than a tenth of the largest; {quantity(came_to['travel_distance_m'], 'm')} from rear to front"
-            found.append(("Sliding volume", quantity(volume or 0.0, per_metre("m³", results)), note + without))
+            found.append(("Sliding volume", quantity(volume or 0.0, results.per_metre("m³")), note + without))
     depth = flow(results) if "displacement" in last and "volume" in last else None
     if depth:
         typical, most, cell = depth
@@ -105,12 +105,12 @@ def key_results(results):
     gone = results.history.columns.get("escaped_mass_kg", 0 * mass) if mass is not None else None
     if results.escaped and len(results.escaped.time):
         note = f"{thousands(len(results.escaped.time))} particles, from {at_time(results.escaped.time[0], last.time)} on"
-        found.append(("Left the mesh", quantity(results.escaped.columns["mass_kg"].sum() / 1e3, per_metre("t", results)), note))
+        found.append(("Left the mesh", quantity(results.escaped.columns["mass_kg"].sum() / 1e3, results.per_metre("t")), note))
     if mass is not None and len(mass) and mass[0]:
         lost = mass[-1] + gone[-1] - mass[0]
-        end = quantity(mass[-1] / 1e3, per_metre("t", results))
+        end = quantity(mass[-1] / 1e3, results.per_metre("t"))
         closed = abs(lost) <= ROUNDED * (mass[0] + mass[-1] + gone[-1])
-        error = f"{lost:+.1e} {per_metre('kg', results)}"
+        error = f"{lost:+.1e} {results.per_metre('kg')}"
         share = "" if closed else f"; {abs(lost) / mass[0]:.1e} of the mass at the start has {'appeared' if lost > 0 else 'vanished'}"
         found.append(("Mass ledger", "closed" if closed else error, f"{end} at the end{share}"))
     return found
@@ -129,11 +129,6 @@ def top_speed(results):
                 when = float(results.history.time[np.nanargmax(values)])
                 best = max(best or (0,), (float(np.nanmax(values)), when, f"at {words(name)}"))
     return best if best and best[0] > 0 else None
-
-
-def per_metre(unit, results):
-    """In plane strain a mass or volume is that of a metre of the slope."""
-    return unit + "/m" if results.snapshots[0].position().shape[1] == 2 else unit
 
 
 def quantity(value, unit):

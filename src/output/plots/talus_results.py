@@ -425,6 +425,10 @@ class Results:
         short = self.snapshots[of_stage[-1]].time - since < DAY
         return at_time(snapshot.time, self.snapshots[-1].time, since if short else 0.0)
 
+    def per_metre(self, unit):
+        """The unit of a mass or a volume: in plane strain it is that of a metre of the slope."""
+        return unit + "/m" if self.snapshots[0].position().shape[1] == 2 else unit
+
     def up_axis(self):
         """Number of the axis along which elevations are counted."""
         return "xyz".index(self.scene.get("up", "y"))

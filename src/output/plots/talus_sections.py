@@ -20,6 +20,8 @@ BESIDE, BELOW, STACKED = 0.5, 0.38, 0.55  # between blocks, and between the view
 DOTTED, HALO = (0, (1, 1.6)), withStroke(linewidth=2, foreground="#ffffffaa")  # seen on pale and on dark soil
 OUTLINE_PIXELS = 900
 TIME = 0.2  # share of time, against motion, in the choice of snapshots
+PART = 0.25  # of the spacing of particles: soil that has moved by less is where it was
+SHADE = 0.02  # of the scale of colours: less is not seen
 ASTRAY = 2.0  # how far the way of a slide may leave a plane of two axes, over the spacing of particles, and is still shown there
 STATIONS = 20  # places of the centre of mass on the way of a slide, or some more
 AROUND = 0.06  # of the size of the soil: what is shown of the mesh's bottom beside it
@@ -167,7 +169,6 @@ def spacing_of(results):
     volume = first.column("volume").values.sum() if "volume" in first else np.prod(np.ptp(position, axis=0))
     return float((volume / len(position)) ** (1 / position.shape[1])) or 1.0
 
-
 def chosen_snapshots(results, times=None, count=6):
     """Snapshots nearest to `times`; else first, last and some between: evenly by how far things moved, and by a share of TIME also by time, so
     that a long wait before a failure is one picture and not three. Of those that have soil: all of it may have left the mesh."""
@@ -221,6 +222,22 @@ class Colours:
         self.norm = LogNorm(1e-3 * high, high, clip=True) if log and low == 0 else PowerNorm(power, low, high) if power != 1 else Normalize(low, high)
 
 
+def telling(snapshots, field, colours, spacing):
+    """Of the snapshots those that show something else than the one before: soil that moved by a part of the spacing, or another colour in more than a
+    hundredth of it."""
+    kept = snapshots[:1]
+    for snapshot in snapshots[1:]:
+        _, a, b = np.intersect1d(kept[-1].ids(), snapshot.ids(), assume_unique=True, return_indices=True)
+        same = len(a) == len(kept[-1].ids()) == len(snapshot.ids())
+        if same and len(a):
+            moved = np.linalg.norm(snapshot.position()[b] - kept[-1].position()[a], axis=1)
+            before, after = (np.nan_to_num(np.ma.filled(colours.norm(colours.factor * one.scalar(field)[0][rows]), 0.0)) for one, rows in ((kept[-1], a), (snapshot, b)))
+            same = np.percentile(moved, 99) < PART * spacing and np.percentile(np.abs(after - before), 99) < SHADE
+        if not same:
+            kept.append(snapshot)
+    return kept
+
+
 def rounded_up(value):
     """The next number of two digits: 1.834 -> 1.9."""
     if value <= 0:
@@ -232,8 +249,8 @@ def rounded_up(value):
 class Painter:
     """Draws one run at chosen times; what does not depend on the field is worked out once."""
 
-    def __init__(self, results, snapshots, resolution=style.RESOLUTION):
-        self.results, self.snapshots, self.resolution = results, snapshots, resolution
+    def __init__(self, results, snapshots, resolution=style.RESOLUTION, as_asked=False):
+        self.results, self.snapshots, self.resolution, self.as_asked = results, snapshots, resolution, as_asked
         self.views, self.spacing = views_of(results), spacing_of(results)
         self.section = next(k for k, view in enumerate(self.views) if isinstance(view, View))
         clouds = [snapshot.position() for snapshot in (results.snapshots[0], *snapshots) if len(snapshot.ids())]
@@ -317,9 +334,10 @@ class Painter:
         return np.ma.masked_where(owner < 0, value[owner])
 
     def over_time(self, field, colours, path):
-        """All chosen times on one sheet."""
-        columns = min(2 if len(self.views) == 1 else 3, len(self.snapshots))
-        return style.save(self._sheet(field, colours, self.snapshots, columns, [[0]] if len(self.views) == 1 else [[0], [self.section]]), path)
+        """All chosen times on one sheet; of times that the program has chosen those at which something else is seen."""
+        shown = self.snapshots if self.as_asked else telling(self.snapshots, field, colours, self.spacing)
+        columns = min(2 if len(self.views) == 1 else 3, len(shown))
+        return style.save(self._sheet(field, colours, shown, columns, [[0]] if len(self.views) == 1 else [[0], [self.section]]), path)
 
     def large(self, field, colours, path):
         """The time that says most: the last, unless the field had faded by then. Of thickness always the last, the deposit, thinner as it is."""
@@ -481,7 +499,7 @@ def draw_sections(results, fields, times, folder, log=False):
     Returns [(field, path of the large one, path of the sheet over time)]."""
     if not len(results.snapshots[0].position()):
         return []
-    painter = Painter(results, chosen_snapshots(results, times))
+    painter = Painter(results, chosen_snapshots(results, times), as_asked=bool(times))
     pictures = []
     for field in fields:
         if any(snapshot.scalar(field) is None for snapshot in painter.snapshots):

@@ -11,15 +11,15 @@ from talus_sections import spacing_of
 from talus_style import plt
 
 LEAST = 0.2  # of the largest plastic strain: soil with less is no part of the surface
-GAP = 3  # columns without strain that may lie within the surface
-COLUMN = 2  # width of a column, in distances of neighbouring particles
+STEEPEST = 3  # rows by which the surface may rise or fall from one column to the next: 72 degrees
+COLUMN = 2  # width of a column and height of a row, in distances of neighbouring particles
 NEAR = 0.15  # of the height of the soil: a line that ends deeper below the ground has not come out
 
 
 def slip_surface(results, time=None):
     """Points [n, 2] of the surface in the undeformed section, from left to right, and the snapshot that shows it: the one nearest to `time`, else to
-    the failure, else the last. In each column of soil the surface passes through the centre of the larger half of the strain. Raises ValueError
-    where there is none."""
+    the failure, else the last. The surface is a connected path through columns and rows of soil; in each column it passes through the centre of the
+    larger half of the strain near the path. Raises ValueError where there is none."""
     if time is None:
         try:
             time = failure(results)[0]
@@ -36,19 +36,41 @@ def slip_surface(results, time=None):
     top = np.percentile(strain, 99.8)
     if top <= 0:
         raise ValueError(f"no soil of {results.folder} has plastic strain at t = {snapshot.time:g} s; name another time with --times")
-    column = np.floor(place[:, 0] / (COLUMN * spacing_of(results))).astype(int)
-    points = {}
-    for number in np.unique(column):
-        mine = column == number
-        if strain[mine].max() > LEAST * top:
-            weight = np.where(strain[mine] > 0.5 * strain[mine].max(), strain[mine], 0)
-            points[number] = np.average(place[mine], axis=0, weights=weight)
-    numbers = np.array(sorted(points))
-    pieces = np.split(numbers, np.flatnonzero(np.diff(numbers) > GAP) + 1)
-    longest = max(pieces, key=len)
-    if len(longest) < 3:
+    column, row = np.floor((place - place.min(axis=0)) / (COLUMN * spacing_of(results))).astype(int).T
+    sums, counts = np.zeros((2, column.max() + 1, row.max() + 1))
+    np.add.at(sums, (column, row), strain)
+    np.add.at(counts, (column, row), 1)
+    path = path_of_most(np.where(counts > 0, sums / np.maximum(counts, 1) / top - LEAST, -1))
+    points = []
+    for number, middle in path:
+        mine = (column == number) & (np.abs(row - middle) <= 1)
+        if mine.any() and strain[mine].max() > 0:
+            points.append(np.average(place[mine], axis=0, weights=np.where(strain[mine] > 0.5 * strain[mine].max(), strain[mine], 0)))
+    if len(points) < 3:
         raise ValueError(f"plastic strain of {results.folder} forms no surface at t = {snapshot.time:g} s; name another time with --times")
-    return smoothed(np.array([points[number] for number in longest])), snapshot, place, strain
+    return smoothed(np.array(points)), snapshot, place, strain
+
+
+def path_of_most(worth):
+    """The path (column, row), ... from left to right whose bins have the largest sum of `worth` [columns, rows], of all that begin and end anywhere and
+    rise or fall by at most STEEPEST rows a column. The rows that a steep step passes count where their worth is negative, so that the path does not leap
+    over soil without strain from one band to another. By dynamic programming: the best path to a bin continues one of the best paths to its neighbours."""
+    columns, rows = worth.shape
+    best, before = worth.copy(), np.full(worth.shape, -1)  # of the paths that end in a bin; -1: they begin there
+    for c in range(1, columns):
+        lost = np.concatenate([[0], np.cumsum(np.minimum(worth[c], 0))])  # of all rows below
+        for r in range(rows):
+            for other in range(max(0, r - STEEPEST), min(rows, r + STEEPEST + 1)):
+                low, high = sorted((r, other))
+                value = worth[c, r] + best[c - 1, other] + (lost[high] - lost[low + 1] if high > low else 0)
+                if value > best[c, r]:
+                    best[c, r], before[c, r] = value, other
+    c, r = np.unravel_index(np.argmax(best), best.shape)
+    path = []
+    while r >= 0:
+        path.append((c, r))
+        c, r = c - 1, before[c, r]
+    return path[::-1]
 
 
 def buried_ends(line, place):

@@ -18,7 +18,7 @@ import numpy as np
 import talus_style as style
 from talus_outcomes import FAILS, MOVES, STANDS, finite, warnings_in, write_json
 from talus_style import plt
-from talus_sweep import TITLES, number, outcomes
+from talus_sweep import number, outcomes, plane, title_of
 from talus_units import with_unit, words
 
 NO_SLIDE = ("travel_distance_m", "volume_of_slide_m3", "depth_of_slide_m")  # 0 where the slope stands
@@ -102,40 +102,33 @@ def sensitivities(rows, variables, outcome):
     explained = 1 - np.var(y - fit[0] - (x - middle) / spread @ fit[1:]) / np.var(y)
     bars = []
     for k, column in enumerate(varies):
-        ends = (np.quantile(x[:, k], [0.1, 0.9]) - middle[k]) / spread[k]
-        bars.append({"variable": variables[column]["name"], "unit": variables[column]["unit"], "low": float(fit[0] + fit[1 + k] * ends[0]), "high": float(fit[0] + fit[1 + k] * ends[1])})
+        quantiles = np.quantile(x[:, k], [0.1, 0.9])
+        ends = (quantiles - middle[k]) / spread[k]
+        bars.append({"variable": variables[column]["name"], "unit": variables[column]["unit"], "quantiles": quantiles.tolist(), "low": float(fit[0] + fit[1 + k] * ends[0]), "high": float(fit[0] + fit[1 + k] * ends[1])})
     bars.sort(key=lambda bar: abs(bar["high"] - bar["low"]))
     return {"outcome": outcome, "mean": float(fit[0]), "r2": float(explained), "bars": bars}
 
 
 # ---- pictures ----
 
-def title_of(outcome):
-    if outcome in TITLES:
-        return TITLES[outcome]
-    for ending, unit in (("_m_s", "m/s"), ("_m3", "m³"), ("_m", "m"), ("_s", "s"), ("_Pa", "Pa")):
-        if outcome.endswith(ending):
-            return f"{words(outcome[: -len(ending)])} [{unit}]"
-    return words(outcome)
-
-
-def draw_tornado(all_fits, path):
+def draw_tornado(all_fits, in_plane, path):
     heights = [len(fit["bars"]) for fit in all_fits]
-    figure, axes = plt.subplots(len(all_fits), 1, figsize=(6.4, sum(0.42 * h + 1.1 for h in heights)), squeeze=False, layout="constrained",
+    figure, axes = plt.subplots(len(all_fits), 1, figsize=(6.4, sum(0.5 * h + 1.1 for h in heights)), squeeze=False, layout="constrained",
                                 gridspec_kw={"height_ratios": [h + 1.5 for h in heights]})
     for one, fit in zip(axes.flat, all_fits):
         for k, bar in enumerate(fit["bars"]):
             for end, colour, label in ((bar["low"], style.LINES[0], "variable at its 10 % quantile"), (bar["high"], style.LINES[1], "at its 90 % quantile")):
                 one.barh(k, end - fit["mean"], left=fit["mean"], height=0.62, color=colour, label=label if k == 0 else None)
         one.axvline(fit["mean"], color=style.INK, lw=0.8)
-        one.set_yticks(range(len(fit["bars"])), [with_unit(words(bar["variable"]), bar["unit"]) for bar in fit["bars"]])
-        one.set_xlabel(title_of(fit["outcome"]))
+        one.set_yticks(range(len(fit["bars"])), [f"{words(bar['variable'])}\n{bar['quantiles'][0]:.3g} to {bar['quantiles'][1]:.3g} {bar['unit']}".rstrip()
+                                                 for bar in fit["bars"]])
+        one.set_xlabel(title_of(fit["outcome"], in_plane))
         one.set_title(f"linear fit, R² = {fit['r2']:.2f}", loc="right", fontsize=8)
     axes.flat[0].legend(fontsize=7.5, loc="lower left", bbox_to_anchor=(0, 1), ncols=2, frameon=False)
     return style.save(figure, path)
 
 
-def draw_scatter(rows, variables, shown, criteria, path):
+def draw_scatter(rows, variables, shown, criteria, in_plane, path):
     figure, axes = plt.subplots(len(shown), len(variables), figsize=(max(3.6, 2.9 * len(variables)), 2.7 * len(shown)), squeeze=False, layout="constrained")
     for line, outcome in zip(axes, shown):
         about = [c for c in criteria if c["outcome"] == outcome]
@@ -150,13 +143,13 @@ def draw_scatter(rows, variables, shown, criteria, path):
             if not v["numeric"]:
                 one.set_xticks(range(len(choices)), choices)
             one.set_xlabel(with_unit(words(v["name"]), v["unit"]))
-        line[0].set_ylabel(textwrap.fill(title_of(outcome), 28))
+        line[0].set_ylabel(textwrap.fill(title_of(outcome, in_plane), 28))
     if criteria:
         figure.suptitle("orange: the criterion is met", x=0.01, ha="left", fontsize=8.5, color=style.SOFT)
     return style.save(figure, path)
 
 
-def draw_exceedance(rows, shown, criteria, confidence, path):
+def draw_exceedance(rows, shown, criteria, confidence, in_plane, path):
     figure, axes = plt.subplots(1, len(shown), figsize=(4.4 * len(shown), 3.3), squeeze=False, layout="constrained")
     for one, outcome in zip(axes.flat, shown):
         values = np.sort([float(row[outcome]) for row in rows if row.get(outcome) is not None])
@@ -169,7 +162,7 @@ def draw_exceedance(rows, shown, criteria, confidence, path):
         for criterion in criteria:
             if criterion["outcome"] == outcome:
                 one.axvline(criterion["limit"], color=style.INK, lw=0.8, ls=":", label=words(criterion["name"]))
-        one.set(xlabel=title_of(outcome), ylabel="probability of a larger value", ylim=(0, 1.02))
+        one.set(xlabel=title_of(outcome, in_plane), ylabel="probability of a larger value", ylim=(0, 1.02))
         one.legend(fontsize=7.5)
     return style.save(figure, path)
 
@@ -186,7 +179,8 @@ def main():
     given = parser.parse_args()
     design = json.loads((given.folder / "design.json").read_text())
     with open(given.folder / "runs.csv", newline="") as file:
-        rows = outcomes(given.folder, list(csv.DictReader(file)))
+        runs = list(csv.DictReader(file))
+    rows, in_plane = outcomes(given.folder, runs), plane(given.folder, runs)
     for row in rows:
         if row.get("state") == STANDS:
             row |= {name: 0.0 for name in NO_SLIDE}
@@ -221,9 +215,9 @@ def main():
                   "had no soil")
     write_json(given.folder / "study.json", {"title": design["title"], "runs": len(rows), "planned": design["planned"], "broke_off": len(broken),
                                              "warnings": warnings_in(given.folder), "probabilities": estimates, "sensitivities": fits})
-    for name, wanted, draw in (("tornado", fits, lambda path: draw_tornado(fits, path)),
-                               ("scatter", shown, lambda path: draw_scatter(rows, variables, shown, criteria, path)),
-                               ("exceedance", shown and sampled, lambda path: draw_exceedance(rows, [s for s in shown if s != "fails"], criteria, design["confidence"], path))):
+    for name, wanted, draw in (("tornado", fits, lambda path: draw_tornado(fits, in_plane, path)),
+                               ("scatter", shown, lambda path: draw_scatter(rows, variables, shown, criteria, in_plane, path)),
+                               ("exceedance", shown and sampled, lambda path: draw_exceedance(rows, [s for s in shown if s != "fails"], criteria, design["confidence"], in_plane, path))):
         path = given.folder / f"{name}.png"
         if wanted and not given.no_plot:
             draw(path)

@@ -13,14 +13,14 @@ import textwrap
 import numpy as np
 
 from talus_outcomes import FAILS, MOVES, STANDS, outcome
-from talus_results import Results
+from talus_results import UNITS, Results
 import talus_style as style
 from talus_style import plt
 from talus_units import with_unit, words
 
 LEFT_OUT = ("cell_m", "deepest_at_x_m")  # outcomes that no chart shows
 TITLES = {"load_time_of_failure_s": "time t of the loads at failure [s]", "travel_distance_m": "travel distance, from the rear of the slide to its front [m]",
-          "volume_of_slide_m3": "volume of the slide [m³]", "depth_of_slide_m": "depth of the slip surface [m]"}
+          "volume_of_slide_m3": "volume of the slide [m³]", "moving_volume_m3": "volume that moves [m³]", "depth_of_slide_m": "depth of the slip surface [m]"}
 
 
 def number(text):
@@ -44,6 +44,19 @@ def factor_outcome(path):
             "moving_volume_m3": solved["mechanisms"][0]["moving_volume_m3"]}
 
 
+def plane(folder, runs):
+    """Are the runs sections in plane strain, whose volumes are those of a metre? Of those that have not broken off."""
+    ended = next((run for run in runs if not run["failure"]), None)
+    return bool(ended) and Results(folder / ended["folder"]).per_metre("") == "/m"
+
+
+def title_of(outcome, in_plane):
+    """An outcome in words, with its unit."""
+    unit = next((ending for ending in UNITS if outcome.endswith("_" + ending)), None)
+    title = TITLES.get(outcome) or (with_unit(words(outcome[: -len(unit) - 1]), UNITS[unit]) if unit else words(outcome))
+    return title.replace("[m³]", "[m³/m]") if in_plane else title
+
+
 def outcomes(folder, runs):
     """The runs with what they came to; a run that broke off has none. `runs` are the rows of runs.csv; all their columns but the folder are kept."""
     ended = {run["folder"]: Results(folder / run["folder"]) for run in runs if not run["failure"] and not factor_file(folder, run).exists()}
@@ -62,7 +75,7 @@ def outcomes(folder, runs):
     return rows
 
 
-def charted(rows):
+def charted(rows, in_plane=False):
     """The outcomes that differ between runs, those of the same kind together: [(title, {label: column})]."""
     names = [key for key in dict.fromkeys(key for row in rows for key in row)
              if key not in LEFT_OUT and any(isinstance(row.get(key), float) for row in rows)]
@@ -71,7 +84,7 @@ def charted(rows):
     for name in names:
         kind = next((title for title, ending in points.items() if name.endswith(ending)), None)
         if kind is None:
-            charts.append((TITLES.get(name, words(name)), {"": name}))
+            charts.append((title_of(name, in_plane), {"": name}))
         elif any(title == kind for title, _ in charts):
             next(lines for title, lines in charts if title == kind)[words(name[: -len(points[kind])])] = name
         else:
@@ -90,20 +103,14 @@ def mark(axes, x, y, state, colour):
               markerfacecoloralt="white", ls="", clip_on=False, zorder=3, transform=axes.get_xaxis_transform() if broken else axes.transData)
 
 
-def draw(rows, path):
-    """Charts of all outcomes that differ. Runs that broke off have no outcome: a cross at the lower edge marks their value of the key."""
-    charts = charted(rows)
-    columns = min(3, len(charts))
-    lines = -(-len(charts) // columns)
-    figure, axes = plt.subplots(lines, columns, figsize=(3.9 * columns, 3.1 * lines), squeeze=False, sharex=True, layout="constrained")
+def draw_charts(axes, rows, charts):
+    """The outcomes against the one key that these runs vary."""
     numbers = [number(row["value"]) for row in rows]
     choices = list(dict.fromkeys(row["value"] for row in rows))
     numeric = None not in numbers
     place = numbers if numeric else [choices.index(row["value"]) for row in rows]
     series = list(dict.fromkeys(row["series"] for row in rows))
-    for one in axes.flat[len(charts):]:
-        one.remove()
-    for one, (title, of) in zip(axes.flat, charts):
+    for one, (title, of) in zip(axes, charts):
         for k, (label, column) in enumerate(of.items()):
             for n, name in enumerate(series):
                 known = sorted((place[i], row[column], row["state"]) for i, row in enumerate(rows) if row["series"] == name and row.get(column) is not None)
@@ -122,13 +129,28 @@ def draw(rows, path):
             one.legend(fontsize=7.5)
         one.set_xlabel(textwrap.fill(axis_title(rows), 38, break_on_hyphens=False))
         one.set_ylabel(textwrap.fill(title, 34))
-        one.tick_params(labelbottom=True)
         low, high = one.get_ylim()
         one.set_ylim(min(0, low), high + 0.06 * (high - min(0, low)))
         if numeric and min(place) > 0 and max(place) > 20 * min(place):
             one.set_xscale("log")
         if not numeric:
             one.set_xticks(range(len(choices)), [textwrap.fill(choice, 14) for choice in choices])
+
+
+def draw(rows, path, in_plane=False):
+    """Charts of all outcomes that differ, one row of them or more for each key that is varied. Runs that broke off have no outcome: a cross at the lower
+    edge marks their value of the key."""
+    parts = [[row for row in rows if row["key"] == key] for key in dict.fromkeys(row["key"] for row in rows)]
+    parts = [(part, charted(part, in_plane)) for part in parts]
+    parts = [(part, charts) for part, charts in parts if charts]
+    columns = min(3, max(len(charts) for _, charts in parts))
+    lines = [-(-len(charts) // columns) for _, charts in parts]
+    figure, axes = plt.subplots(sum(lines), columns, figsize=(3.9 * columns, 3.1 * sum(lines)), squeeze=False, layout="constrained")
+    for n, (part, charts) in enumerate(parts):
+        own = axes[sum(lines[:n]):sum(lines[: n + 1])].ravel()
+        for one in own[len(charts):]:
+            one.remove()
+        draw_charts(own, part, charts)
     states = {row.get("state") for row in rows}
     handles = [plt.Line2D([], [], marker=MARKS[state][0], color=style.SOFT, ls="", ms=5, fillstyle=MARKS[state][1], markerfacecoloralt="white",
                           mfc="white" if MARKS[state][1] == "none" else None, label=LEGEND[state]) for state in MARKS if state in states]
@@ -138,9 +160,9 @@ def draw(rows, path):
 
 
 def axis_title(rows):
-    keys = list(dict.fromkeys(row["key"] for row in rows))
+    """Of runs that vary the same key."""
     units = {" ".join(row["value"].split()[1:]) or row["unit"] for row in rows}
-    return with_unit(keys[0] if len(keys) == 1 else "last key", units.pop() if len(units) == 1 else "")
+    return with_unit(rows[0]["key"], units.pop() if len(units) == 1 else "")
 
 
 def print_table(rows):
@@ -160,7 +182,8 @@ def main():
     parser.add_argument("--no-plot", action="store_true")
     given = parser.parse_args()
     with open(given.folder / "runs.csv", newline="") as file:
-        rows = outcomes(given.folder, list(csv.DictReader(file)))
+        runs = list(csv.DictReader(file))
+    rows = outcomes(given.folder, runs)
     print_table(rows)
     names = list(dict.fromkeys(key for row in rows for key in row))
     with open(given.folder / "sweep.csv", "w", newline="") as file:
@@ -169,7 +192,7 @@ def main():
         writer.writerows(rows)
     ended = [row for row in rows if not row["failure"]]
     if ended and charted(rows) and not given.no_plot:
-        draw(rows, given.folder / "sweep.png")
+        draw(rows, given.folder / "sweep.png", plane(given.folder, runs))
     else:
         (given.folder / "sweep.png").unlink(missing_ok=True)  # of an earlier call
     return 1 if len(ended) < len(rows) else 0

@@ -1,7 +1,5 @@
 #pragma once
 /// Quasi-static equilibrium along a path of loads.
-#include <algorithm>
-
 #include "simulation/stages/static_stage.h"
 
 namespace talus {
@@ -20,12 +18,9 @@ class EquilibriumStage final : public StaticStage<dim> {
       const double before = this->load_at(from), after = this->load_at(to);
       return problem.advance(to, after, before, after - before, stage.softening, outcome);
     };
-    constexpr double early = 0.05;
-    const double smallest =
-        std::max(this->run_.scene.quasi_static.smallest_step, this->run_.statics.for_factor ? early : 0);
     require(follow_path(
-        1. / stage.load_steps, smallest, advance, [&](double share, const StepOutcome &) { this->done(share); },
-        &path.share, &path.last, &path.iterations));
+        1. / stage.load_steps, this->run_.scene.quasi_static.smallest_step, advance,
+        [&](double share, const StepOutcome &) { this->done(share); }, &path.share, &path.last, &path.iterations));
   }
   void describe(const Path &path, std::ostream &text) override { this->describe_equilibrium(path, text); }
 };

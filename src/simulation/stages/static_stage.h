@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "scene/reader.h"
+#include "simulation/softening.h"
 #include "simulation/stages/stage_runner.h"
 
 namespace talus {
@@ -127,10 +128,11 @@ class StaticStage : public StageRunner<dim> {
         text << "; its soil softens, and beyond its peak there may be no equilibrium that stays near: motion goes on "
                 "from here (when_lost = \"next_stage\" and a dynamic stage), and softening = false keeps the strength";
       const bool goes_on = run_.statics.for_factor && !water_flows();
-      if (goes_on && softened)
+      if (goes_on && stage_.softening && std::ranges::any_of(run_.world.laws, softens))
         throw RunFailure(text.str() +
-                         "; there is no factor of safety, since the strength that is left depends on how "
-                         "far the loads came: with softening = false it is that of the peak strength");
+                         "; there is no factor of safety, since the strength that is left depends on how far the "
+                         "loads came, and this on the steps: other load_steps may find the equilibrium; with "
+                         "softening = false soil keeps the strength that it has at the beginning of the stage");
       if (stage_.when_lost == WhenLost::stop && !goes_on) throw RunFailure(text.str());
       if (goes_on) {
         run_.statics.lost_stages.push_back(stage_.name);

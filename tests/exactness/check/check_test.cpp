@@ -253,6 +253,87 @@ TEST(Check, DoubtsOpenWaterThatIsNotLevel) {
       << "two ponds, of which each is level";
 }
 
+/// A ditch from x = 0.5 to 1.5 m in ground at y = 0.5 m, 0.3 m deep.
+TEST(Check, DoubtsPondsInHollowsOfTheGround) {
+  const Folder folder;
+  folder.write("ditch.csv",
+               "part,x,y\noutline,0,0\noutline,2,0\noutline,2,1\noutline,0,1\ninterface0,0,0.5\ninterface0,0.5,0.5\n"
+               "interface0,0.8,0.2\ninterface0,1.2,0.2\ninterface0,1.5,0.5\ninterface0,2,0.5\n"
+               "region_sand,0.5,0.25\nregion_air,1,0.7\n");
+  const auto advice = [&](const std::string &table, std::vector<std::string> overrides = {}) {
+    overrides.insert(overrides.end(), {"phases=drained", "mesh.section=ditch.csv", "mesh.size=0.1", table,
+                                       "boundary.right.kind=roller"});
+    const Ending ending = check(folder, overrides);
+    EXPECT_EQ(ending.status, 0) << ending.output;
+    return ending;
+  };
+  const Ending level = advice("water.table=[[0, 0.4]]");
+  EXPECT_TRUE(level.says("water.table makes a pond of up to 0.2 m in a hollow of the ground from x = 0.6"))
+      << level.output;
+  const char *doubt = "makes a pond of up to";
+  EXPECT_TRUE(advice("water.table=[[0, 0.4], [2, 0.4]]").says(doubt)) << "no point in the hollow";
+  EXPECT_TRUE(advice("water.table=[[0, 0.1]]", {"water.level=[[0, 0], [0.05, 0.3]]"}).says(doubt)) << "it rises";
+  EXPECT_FALSE(advice("water.table=[[0, 0.4], [0.6, 0.4], [1.4, 0.4], [2, 0.4]]").says(doubt))
+      << "points at the shores";
+  EXPECT_FALSE(advice("water.table=[[0, 0.4], [0.7, 0.1], [1.3, 0.1], [2, 0.4]]").says(doubt)) << "below the bottom";
+  EXPECT_FALSE(advice("water.table=[[0, 0.15]]").says(doubt));
+  EXPECT_FALSE(advice("water.table=[[0, 0.4]]", {"water.open_water_load=false"}).says(doubt));
+  EXPECT_FALSE(advice("water.table=[[0, 0.9]]").says(doubt)) << "a lake to both ends";
+}
+
+/// Undrained clay below a water table, and motion for days.
+TEST(Check, DoubtsWaterOverSoilWithoutFriction) {
+  const Folder folder;
+  const auto doubted = [&](std::vector<std::string> overrides) {
+    return check(folder, overrides).says("body.sand has no friction (friction_angle = 0)");
+  };
+  const std::vector<std::string> clay{"phases=drained", "water.table=[[0, 0.4]]", "body.sand.friction_angle=0",
+                                      "body.sand.cohesion=5 kPa"};
+  const auto with = [&](const std::vector<std::string> &more) {
+    std::vector<std::string> all = clay;
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  EXPECT_TRUE(doubted(clay));
+  EXPECT_FALSE(doubted(with({"body.sand.friction_angle=20"})));
+  EXPECT_FALSE(doubted(with({"water.table=[[0, -1]]"}))) << "no water in it";
+  EXPECT_TRUE(doubted(with({"water.table=[[0, -1]]", "water.level=[[0, 0], [0.05, 1.2]]"}))) << "it rises";
+  EXPECT_FALSE(doubted({"body.sand.friction_angle=0", "body.sand.cohesion=5 kPa"})) << "dry";
+}
+
+TEST(Check, DoubtsMotionOverDays) {
+  const Folder folder;
+  const char *doubt = "Stage fall lets the soil move for 3 d";
+  EXPECT_TRUE(check(folder, {"stage.0.duration=3 d"}).says(doubt));
+  EXPECT_FALSE(check(folder, {"stage.0.duration=20 h"}).says("lets the soil move for"));
+  EXPECT_FALSE(check(folder, {"stage.0.duration=3 d", "stage.0.kind=quasi_static"}).says("lets the soil move for"));
+}
+
+/// A section of 20 m by 10 m that was drawn in millimetres; small cells in it are refused, with the same question.
+TEST(Check, DoubtsSectionsInMillimetresBeforeTheirMesh) {
+  const Folder folder;
+  folder.write("millimetres.csv", "part,x,y\noutline,0,0\noutline,20000,0\noutline,20000,10000\noutline,0,10000\n");
+  const Ending ending = talus(folder, {"mesh", "millimetres.csv", "--size", "2000", "-o", "a.msh"});
+  EXPECT_EQ(ending.status, 0) << ending.output;
+  EXPECT_TRUE(ending.says("The mesh is 1e+04 m high; coordinates count in metres. Is the mesh in millimetres or feet?"))
+      << ending.output;
+  const Ending fine = talus(folder, {"mesh", "millimetres.csv", "--size", "0.5", "-o", "b.msh"});
+  EXPECT_NE(fine.status, 0);
+  EXPECT_TRUE(fine.says("coordinates count in metres, are these in millimetres?")) << fine.output;
+  folder.write("section.csv", good_section);
+  EXPECT_FALSE(talus(folder, {"mesh", "section.csv", "--size", "0.25", "-o", "c.msh"}).says("millimetres"));
+}
+
+/// Interfaces listed from bottom to top: what the mesher doubts is said by check too.
+TEST(Check, DoubtsInterfacesFromBottomToTop) {
+  const Folder folder;
+  const std::string outline = "part,x,y\noutline,0,0\noutline,2,0\noutline,2,1\noutline,0,1\n";
+  folder.write("up.csv", outline + "interface0,0,0.25\ninterface0,2,0.25\ninterface1,0,0.5\ninterface1,2,0.5\n");
+  const std::vector<std::string> words{"mesh.section=up.csv", "body.sand.region=layer2"};
+  const Ending ending = check(folder, words);
+  EXPECT_TRUE(ending.says("'interface1' (line 8) lies above 'interface0' (line 6)")) << ending.output;
+}
+
 TEST(Check, DoubtsWaterTablesOfASoilAboveItsGround) {
   const Folder folder;
   folder.write("top.csv", good_section + "b_top,0,0.5\nb_top,1,0.5\n");

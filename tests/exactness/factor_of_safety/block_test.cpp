@@ -210,7 +210,8 @@ TEST(Block, stands_at_any_strength_before_an_elastic_wall) {
 }
 
 /// Clay that has yielded against a wall, by several per cent in most places, keeps little of its peak strength, twice
-/// the residual one, when the wall and most of the pressure are taken away. Trials take nothing from it.
+/// the residual one, when the wall and most of the pressure are taken away. Trials take nothing from it. Newton's
+/// iterations need steps of about one per cent of that second stage: it is not lost.
 TEST(Block, has_the_strength_that_the_stages_left) {
   const Overrides words{"mesh.section=" + std::string(TALUS_WALL),
                         "boundary.surface.pressure=[[0, 0], [1, 1e5], [2, 1e4]]",
@@ -222,10 +223,31 @@ TEST(Block, has_the_strength_that_the_stages_left) {
                         "body.wall.young_modulus=1e6",
                         "body.wall.poisson_ratio=0",
                         "boundary.right.kind=roller"};
-  const std::string without_wall = "[[stage]]\nkind = \"quasi_static\"\nduration = 1\nremove = \"wall\"\n";
+  const std::string without_wall =
+      "[[stage]]\nkind = \"quasi_static\"\nduration = 1\nremove = \"wall\"\nsoftening = false\n";
   const FactorOfSafety left = factor_of(words, without_wall);
   EXPECT_GT(left.lower, 1.4);
   EXPECT_LT(left.upper, 1.7) << "of 2.8 at its peak";
+  EXPECT_TRUE(left.lost_stages.empty()) << left.lost_stages[0];
+}
+
+/// A stage whose soil softens and that is lost leaves a strength that depends on the steps, also where nothing has
+/// softened yet: one step for all of the load, which is too large for the soil, leaves the peak strength at 0 % of it.
+TEST(Block, has_no_factor_where_soil_that_softens_loses_its_equilibrium) {
+  const Overrides words{"boundary.surface.pressure=[[0, 0], [1, 30e3]]", "body.soil.residual_cohesion=7e3",
+                        "body.soil.shape_factor=30", "stage.load.load_steps=1", "quasi_static.smallest_step=1"};
+  try {
+    factor_of(words);
+    ADD_FAILURE() << "a factor";
+  } catch (const RunError &error) {
+    for (const char *part : {"no equilibrium beyond 0 %", "and this on the steps", "softening = false"})
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+  }
+  Overrides fresh = words;
+  fresh.push_back("stage.load.softening=false");
+  const FactorOfSafety peak = factor_of(fresh);
+  EXPECT_EQ(peak.lost_stages.size(), 1);
+  expect_holds(peak, 28. / 30);
 }
 
 /// Outside of the polygon soil keeps its strength: where nothing else is divided than soil that cannot fail alone,

@@ -32,6 +32,12 @@ std::string complaint(const std::string &content) {
   return "";
 }
 
+/// The one doubt about a section; empty if there is none.
+std::string doubt(const std::string &content) {
+  const std::vector<std::string> doubts = section_of(content).doubts();
+  return doubts.empty() ? "" : doubts[0];
+}
+
 void expect_words(const std::string &text, const std::vector<std::string> &words) {
   for (const std::string &word : words) EXPECT_NE(text.find(word), std::string::npos) << word << " is not in: " << text;
 }
@@ -80,16 +86,25 @@ TEST(Section, FreeSpaceExtendsTheDomainUpwardAndAside) {
 
 TEST(Section, FreeSpaceBesideASteepEndOfTheSoilIsDoubted) {
   const std::string slope = "outline,0,0\noutline,10,0\noutline,10,2\noutline,6,2\noutline,3,5\noutline,0,5\n";
-  const std::string right = section_of(slope + "free_space,2,3\n").doubt(),
-                    left = section_of(slope + "free_space,2,-3\n").doubt();
+  const std::string right = doubt(slope + "free_space,2,3\n"), left = doubt(slope + "free_space,2,-3\n");
   EXPECT_NE(right.find("the right end of the soil free: its steep face at x = 10 m, y = 0 to 2 m"), std::string::npos)
       << right;
   EXPECT_NE(left.find("the left end of the soil free: its steep face at x = 0 m, y = 0 to 5 m"), std::string::npos)
       << left;
-  EXPECT_EQ(section_of(slope + "free_space,2,0\n").doubt(), "") << "the end of the soil is that of the mesh";
-  EXPECT_EQ(section_of(slope + "free_space,2,3\nb_cut,10,0\nb_cut,10,2\n").doubt(), "") << "named";
+  EXPECT_EQ(doubt(slope + "free_space,2,0\n"), "") << "the end of the soil is that of the mesh";
+  EXPECT_EQ(doubt(slope + "free_space,2,3\nb_cut,10,0\nb_cut,10,2\n"), "") << "named";
   const std::string wedge = "outline,0,0\noutline,10,0\noutline,6,2\noutline,3,5\noutline,0,5\n";
-  EXPECT_EQ(section_of(wedge + "free_space,2,3\n").doubt(), "") << "runs out";
+  EXPECT_EQ(doubt(wedge + "free_space,2,3\n"), "") << "runs out";
+}
+
+TEST(Section, InterfacesFromBottomToTopAreDoubted) {
+  const std::string low = "interface0,0,1\ninterface0,4,1\n", high = "interface1,0,2\ninterface1,4,2\n";
+  expect_words(doubt(square + low + high), {"'interface1' (line ", ") lies above 'interface0' (line ",
+                                            "layer0 lies above all interfaces, layer2 below all of them"});
+  EXPECT_EQ(doubt(square + "interface0,0,2\ninterface0,4,2\ninterface1,0,1\ninterface1,4,1\n"), "");
+  EXPECT_EQ(doubt(square + "interface0,0,2\ninterface0,4,2\ninterface1,0,2\ninterface1,4,1\n"), "") << "a wedge";
+  EXPECT_EQ(doubt(square + low + high + "region_a,1,0.5\nregion_b,1,1.5\nregion_c,1,2.5\n"), "") << "all named";
+  EXPECT_NE(doubt(square + low + high + "region_a,1,0.5\n"), "") << "one named";
 }
 
 TEST(Section, RefinedBoxesTakeTwoRows) {

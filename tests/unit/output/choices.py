@@ -3,14 +3,21 @@
 import sys
 import types
 import unittest
+import unittest.mock
 
 import numpy as np
 
 sys.path.insert(0, sys.argv.pop(1))
+import talus_compare  # noqa: E402
+import talus_factor  # noqa: E402
+import talus_study  # noqa: E402
+import talus_sweep  # noqa: E402
 from talus_histories import draw_histories, drawn_energies  # noqa: E402
+from talus_outcomes import FAILS  # noqa: E402
 from talus_paths import spread  # noqa: E402
 from talus_results import History, Results  # noqa: E402
-from talus_sections import Colours, Painter, View, chosen_snapshots, views_of  # noqa: E402
+from talus_sections import Colours, Painter, View, chosen_snapshots, telling, views_of  # noqa: E402
+from talus_slip import slip_surface  # noqa: E402
 from talus_tiles import Frame  # noqa: E402
 
 
@@ -147,6 +154,120 @@ class Times(unittest.TestCase):
     def test_a_run_of_days_is_told_in_days_and_its_slide_in_seconds_after_them(self):
         self.assertEqual(self.said((0, "start"), (30 * 86400, "seepage"), (45 * 86400, "seepage"), (45 * 86400 + 4.25, "slide")),
                          ["t = 0.0 d", "t = 30.0 d", "t = 45.0 d", "t = 45.0 d + 4.2 s"])
+
+
+class Panels(unittest.TestCase):
+    def state(self, way, strain, left=0):
+        snapshot = Snapshot(0, way, left)
+        snapshot.scalar = lambda field: (np.full(30 - left, strain), "-")
+        return snapshot
+
+    def test_are_drawn_where_they_show_something_else(self):
+        snapshots = [self.state(0, 0), self.state(0, 0.001), self.state(0, 0.5), self.state(1, 0.5), self.state(1, 0.501), self.state(1, 0.501, left=3)]
+        shown = telling(snapshots, "strain", Colours("strain", snapshots), 1.0)
+        self.assertEqual([snapshots.index(one) for one in shown], [0, 2, 3, 5])
+
+
+class Sheared:
+    """Soil of 20 m by 10 m with a particle in each square of 0.25 m, and a plastic strain that is given at each place."""
+
+    def __init__(self, strain):
+        x, y = np.meshgrid(np.arange(0.125, 20, 0.25), np.arange(0.125, 10, 0.25))
+        self._place = np.column_stack([x.ravel(), y.ravel()])
+        self._strain = np.array([strain(*place) for place in self._place])
+        self.time, self.folder, self.snapshots = 0, "here", [self]
+
+    def __contains__(self, name):
+        return name == "plastic_strain"
+
+    def ids(self):
+        return np.arange(len(self._place))
+
+    def position(self):
+        return self._place
+
+    def scalar(self, name):
+        return self._strain, "-"
+
+    def up_axis(self):
+        return 1
+
+
+class SlipSurface(unittest.TestCase):
+    """A line within 0.5 m, the height of a row, of the middle of its band."""
+
+    def test_stays_in_one_of_two_bands(self):
+        # in every fourth metre the upper band, 3 m above the lower one, has more strain; the lower one has more in all
+        def strain(x, y):
+            return 0.6 if abs(y - 3) < 0.5 else (1.0 if x % 4 < 1 else 0.3) if abs(y - 6) < 0.5 else 0.0
+
+        line = slip_surface(Sheared(strain), 0)[0]
+        self.assertLess(np.abs(line[:, 1] - 3).max(), 0.5)
+        self.assertGreater(np.ptp(line[:, 0]), 19)
+
+    def test_does_not_leap_over_sound_soil_to_a_band_that_is_near(self):
+        # 1 m of soil between the bands, less than a step may rise; the upper one has more strain to the right of the middle, and ends there
+        def strain(x, y):
+            return 0.6 if abs(y - 3) < 0.5 else 0.7 if abs(y - 5) < 0.5 and 10 < x < 12 else 0.0
+
+        self.assertLess(np.abs(slip_surface(Sheared(strain), 0)[0][:, 1] - 3).max(), 0.5)
+
+    def test_follows_a_band_that_rises_steeply(self):
+        def band(x):
+            return 2 if x < 12 else 2 + 2.5 * (x - 12)
+
+        line = slip_surface(Sheared(lambda x, y: float(abs(y - band(x)) < (0.5 if x < 12 else 1.2) and x < 15)), 0)[0]
+        self.assertGreater(line[:, 1].max(), 8)
+        for x, y in line:
+            self.assertLess(abs(y - band(x)), 1.3)
+
+
+class Charts(unittest.TestCase):
+    """One axis, one quantity, with its unit."""
+
+    def labels(self, module, draw):
+        """(x label, y label) of each chart of a picture."""
+        seen = []
+        with unittest.mock.patch.object(module, "save", lambda figure, path: seen.append(figure)):
+            draw()
+        return [(axes.get_xlabel().replace("\n", " "), axes.get_ylabel().replace("\n", " ")) for axes in seen[0].axes if axes.get_xlabel()]
+
+    def test_outcomes_stand_against_each_key_of_its_own(self):
+        rows = [{"series": key, "key": key, "value": value, "unit": unit, "failure": "", "state": FAILS, "volume_of_slide_m3": volume}
+                for key, unit, values in (("body.clay.cohesion", "Pa", ("6 kPa", "8 kPa")), ("body.clay.friction_angle", "deg", ("20", "25")))
+                for volume, value in enumerate(values, 3)]
+        rows = [row | {"volume_of_slide_m3": float(row["volume_of_slide_m3"])} for row in rows]
+        self.assertEqual(self.labels(talus_sweep.style, lambda: talus_sweep.draw(rows, "", True)),
+                         [("body.clay.cohesion [kPa]", "volume of the slide [m³/m]"), ("body.clay.friction_angle [deg]", "volume of the slide [m³/m]")])
+        self.assertEqual(talus_sweep.title_of("volume_of_slide_m3", False), "volume of the slide [m³]")
+        self.assertEqual(talus_sweep.title_of("crest_largest_speed_m_s", True), "crest largest speed [m/s]")
+
+    def test_errors_stand_against_each_key_of_its_own(self):
+        rows = [{"series": series, "key": key, "unit": unit, "parameter": value, "value": 1 + error, "error": error, "processor_s": 1, "pareto": "0", "failure": ""}
+                for series, key, unit in (("euler", "integrator.fraction", ""), ("arkode", "integrator.velocity_tolerance", "m/s"))
+                for value, error in ((0.1, 0.01), (0.001, 0.001))]
+        labels = self.labels(talus_compare, lambda: talus_compare.draw(rows, {"uncertainty": "0", "value": "1", "measure": "way"}, ""))
+        self.assertEqual([x for x, _ in labels], ["processor time [s]", *2 * ["integrator.fraction"], *2 * ["integrator.velocity_tolerance [m/s]"]])
+
+    def test_bars_of_a_tornado_say_their_values(self):
+        fit = {"outcome": "travel_distance_m", "mean": 5.0, "r2": 1.0, "bars": [{"variable": "friction", "unit": "deg", "quantiles": [20.5, 27.5], "low": 4.0, "high": 6.0}]}
+        seen = []
+        with unittest.mock.patch.object(talus_study.style, "save", lambda figure, path: seen.append(figure)):
+            talus_study.draw_tornado([fit], True, "")
+        self.assertEqual([label.get_text() for label in seen[0].axes[0].get_yticklabels()], ["friction\n20.5 to 27.5 deg"])
+
+
+class Mechanisms(unittest.TestCase):
+    def test_are_a_field_on_cells_with_soil_and_arrows_where_it_moves(self):
+        nodes = np.array([(0.0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1)])
+        cells = np.array([(0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4)])
+        points = np.array([(0.6, 0.3), (0.3, 0.6)])  # of the left half; the right one is air
+        triangles, values = talus_factor.field_of_cells(types.SimpleNamespace(mesh=lambda: (nodes, cells)), points, np.array([1.0, 3.0]))
+        self.assertEqual(sorted(map(tuple, triangles.triangles)), [(0, 1, 4), (0, 4, 3)])
+        self.assertEqual((values[1], values[3], values[4]), (1, 3, 2))
+        place, way = talus_factor.arrows_of(np.array([(0.0, 0), (10, 0)]), np.array([(0.0, 0), (0, 5)]))
+        self.assertEqual(place.tolist(), [[10, 0]])
+        self.assertGreater(way[0, 1], 0)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,108 @@
+// Doubts about ends of the mesh.
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "physics/boundary/boundary.h"
+#include "simulation/failure.h"
+#include "simulation/unlikely_parts.h"
+
+namespace talus {
+namespace {
+
+/// A range of coordinates along an axis.
+struct Span {
+  double from = std::numeric_limits<double>::infinity(), to = -from;
+  void widen(double x) { from = std::min(from, x), to = std::max(to, x); }
+  std::string text() const { return rounded(from) + (to > from ? " to " + rounded(to) : "") + " m"; }
+};
+
+/// Where equilibrium is asked for, soil that ends with the mesh is mostly cut off there and goes on in nature.
+void doubt_sides(const Scene &scene, const Extent &soil, int up, const std::vector<SoilFace> &surface,
+                 std::vector<std::string> &sentences) {
+  constexpr double thin = 0.1;  // of the height of the soil: a layer that comes to light there decides little
+  const auto asks = [](const Stage &stage) {
+    return stage.kind == StageKind::quasi_static || stage.kind == StageKind::consolidation ||
+           (stage.kind == StageKind::dynamic && stage.until == StopWhen::equilibrium);
+  };
+  if (std::none_of(scene.stage.begin(), scene.stage.end(), asks)) return;
+  for (int d = 0; d < scene.dimension; ++d)
+    for (const double sign : {-1., 1.}) {
+      if (d == up) continue;
+      const double end = sign < 0 ? soil.low[d] : soil.high[d], near = 1e-6 * soil.of(d);
+      double all = 0, free = 0;
+      Span span;
+      for (const SoilFace &face : surface) {
+        const auto beside = [&](int a) { return std::abs(face.corner[a][d] - end) > near; };
+        if (!face.ends_mesh || sign * face.normal[d] < 0.9 || beside(0) || beside(1)) continue;
+        all += face.area;
+        if (face.conditioned) continue;
+        free += face.area;
+        for (int a = 0; a < scene.dimension; ++a) span.widen(face.corner[a][up]);
+      }
+      if (2 * free <= all || span.to - span.from < thin * soil.of(up)) continue;
+      const std::string zero = scene.dimension == 2 ? "[0, 0]" : "[0, 0, 0]";
+      sentences.push_back(std::string("The soil ends with the mesh at ") + axis_names[d] + " = " + rounded(end) +
+                          " m, and no boundary names its face there, " + axis_names[up] + " = " + span.text() +
+                          ": it is free to move outwards, as no soil that goes on there would be, and may fail first. "
+                          "Give it kind = \"roller\" or \"fixed\"; kind = \"traction\" with traction = " +
+                          zero + " says that it is a free face");
+    }
+}
+
+/// Soil whose lowest faces end with the mesh and have no support hangs on its sides, or falls out of the mesh.
+void doubt_base(const Scene &scene, const Extent &soil, int up, const std::vector<SoilFace> &surface,
+                std::vector<std::string> &sentences) {
+  const auto moves = [](const Stage &stage) { return stage.kind != StageKind::seepage; };
+  if (std::none_of(scene.stage.begin(), scene.stage.end(), moves)) return;
+  constexpr int strips = 64;  // per level axis: a face is one of the lowest where none in its strip lies deeper
+  const int across = 0, along = scene.dimension == 2 ? across : 3 - up;
+  const auto strip = [&](int axis, double x) {
+    return std::clamp(static_cast<int>((x - soil.low[axis]) / soil.of(axis) * strips), 0, strips - 1);
+  };
+  const auto bounds = [&](const SoilFace &face, int axis) {
+    Span span;
+    for (int a = 0; a < scene.dimension; ++a) span.widen(face.corner[a][axis]);
+    return span;
+  };
+  const auto depth = [&](const SoilFace &face) {
+    const Span span = bounds(face, up);
+    return -span.from;
+  };
+  const auto faces_down = [&](const SoilFace &face) { return face.normal[up] < -0.3; };
+  std::vector<double> deepest(strips * strips, -std::numeric_limits<double>::infinity());
+  for (const SoilFace &face : surface) {
+    const Span x = bounds(face, across), z = bounds(face, along);
+    for (int i = strip(across, x.from); faces_down(face) && i <= strip(across, x.to); ++i)
+      for (int k = strip(along, z.from); k <= strip(along, z.to); ++k)
+        deepest[i * strips + k] = std::max(deepest[i * strips + k], depth(face));
+  }
+  double all = 0, free = 0;
+  Span where, elevation;
+  for (const SoilFace &face : surface) {
+    if (!faces_down(face)) continue;
+    const Span x = bounds(face, across), z = bounds(face, along), y = bounds(face, up);
+    const double deep = deepest[strip(across, (x.from + x.to) / 2) * strips + strip(along, (z.from + z.to) / 2)];
+    if (depth(face) < deep - (y.to - y.from) - std::max(soil.of(across), soil.of(along)) / strips) continue;
+    const double area = -face.area * face.normal[up];
+    all += area;
+    if (face.held || !face.ends_mesh) continue;
+    free += area;
+    where.widen(x.from), where.widen(x.to), elevation.widen(y.from), elevation.widen(y.to);
+  }
+  if (2 * free <= all) return;
+  sentences.push_back(std::string("Nothing holds the soil from below: its lowest faces, ") + axis_names[across] +
+                      " = " + where.text() + " at " + axis_names[up] + " = " + elevation.text() +
+                      ", end with the mesh, and no boundary with a support names them, so that the soil hangs on its "
+                      "sides or falls out of the mesh. Give them kind = \"fixed\" or \"roller\"");
+}
+
+}  // namespace
+
+void doubt_ends(const Scene &scene, const Extent &soil, const std::vector<SoilFace> &surface,
+                std::vector<std::string> &sentences) {
+  doubt_sides(scene, soil, scene.vertical(), surface, sentences);
+  doubt_base(scene, soil, scene.vertical(), surface, sentences);
+}
+
+}  // namespace talus

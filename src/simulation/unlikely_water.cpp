@@ -1,0 +1,276 @@
+// Doubts about water tables, open water and seepage.
+#include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
+
+#include "physics/boundary/boundary.h"
+#include "physics/boundary/pore_conditions.h"
+#include "scene/water_table.h"
+#include "simulation/failure.h"
+#include "simulation/unlikely_parts.h"
+
+namespace talus {
+namespace {
+
+double table_at(const WaterTable &table, const std::array<double, 3> &x) { return table.at(x[0], x[1], x[2]); }
+
+/// The water table of [water], which lies level beyond its ends.
+void doubt_table(const Scene &scene, const Extent &soil, const std::vector<SoilFace> &surface,
+                 std::vector<std::string> &sentences) {
+  if (!scene.water.table.given()) return;
+  const auto &table = scene.water.table.points;
+  const int up = scene.vertical();
+  const double height = soil.of(up);
+  if (table.size() > 1 && (table.front()[0] >= soil.high[0] || table.back()[0] <= soil.low[0]))
+    sentences.push_back("water.table runs from x = " + rounded(table.front()[0]) + " to " + rounded(table.back()[0]) +
+                        " m, beside the soil, which lies from " + rounded(soil.low[0]) + " to " +
+                        rounded(soil.high[0]) + " m: the water there is level with the end of the table");
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  const auto take = [&](double elevation) { least = std::min(least, elevation), most = std::max(most, elevation); };
+  for (const auto &point : table) take(point[1]);
+  for (const SoilFace &face : surface)
+    for (int a = 0; a < scene.dimension && table.empty(); ++a) take(table_at(scene.water.table, face.corner[a]));
+  const double level = scene.water.level(0, 0, 0, 0);
+  if (least + level > soil.high[up] + 2 * height)
+    sentences.push_back("water.table stands " + rounded(least + level - soil.high[up]) +
+                        " m or more above the top of the soil, which is " + rounded(height) +
+                        " m high: all of it lies deep under open water. Is this meant?");
+  if (!scene.water.level.depends_on_time() && scene.phases == PhaseModel::drained && most + level <= soil.low[up])
+    sentences.push_back(std::string("water.table lies below all soil (its highest point is at ") + axis_names[up] +
+                        " = " + rounded(most + level) + " m, the lowest soil at " + rounded(soil.low[up]) +
+                        " m): it gives no pore pressure");
+}
+
+/// Soil counts as wet below a water table; an excess presses and fills no pores.
+void doubt_excess_alone(const Scene &scene, std::vector<std::string> &sentences) {
+  const Function &excess = scene.water.excess;
+  if (scene.phases != PhaseModel::drained || scene.water.table.given()) return;
+  if (excess.constant() && excess(0) == 0) return;
+  for (const BodySource &body : scene.body)
+    if ((body.saturation > 0 || body.saturated_unit_weight > 0) && !body.water_table.given() &&
+        body.pore_pressure_ratio == 0)
+      sentences.push_back("water.excess is the only pore pressure of body." + body.name + ", whose " +
+                          (body.saturation > 0 ? "saturation" : "saturated_unit_weight") +
+                          " asks for a water table: all of this soil has the weight above the water table. Give the "
+                          "elevation of the water as water.table, which may be an expression or a grid, and by "
+                          "water.excess only what is not hydrostatic");
+}
+
+// ---- open water ----
+
+/// Elevations that water.level adds to tables in the course of the stages [m]. An expression is asked for the start
+/// alone: a value that its key does not admit would end the run, also one that never comes so far.
+std::vector<double> levels_of(const Scene &scene) {
+  constexpr int intervals = 50;
+  double end = 0;
+  for (const Stage &stage : scene.stage)
+    if (!stage.hold_loads) end += stage.duration;
+  const Function &level = scene.water.level;
+  std::vector<double> levels{level(0)};
+  for (int k = 1; k <= intervals && level.depends_on_time() && !level.uses("t"); ++k)
+    levels.push_back(level(end * k / intervals));
+  return levels;
+}
+
+/// May water stand on the face? Not on what faces down, and not where a support is.
+bool may_be_flooded(const SoilFace &face, int up) { return !face.held && face.normal[up] > -1e-6; }
+
+/// Ground under water that hangs together.
+struct Pond {
+  double west, east;       ///< its ends [m]
+  double lowest, highest;  ///< surface of the water [m]
+  double depth;            ///< greatest [m]
+  void widen(double x, double surface, double ground) {
+    west = std::min(west, x), east = std::max(east, x);
+    lowest = std::min(lowest, surface), highest = std::max(highest, surface);
+    depth = std::max(depth, surface - ground);
+  }
+};
+
+/// The ponds that stand on the surface of the soil where water rises to `elevation`; less than `film` deep counts as
+/// dry.
+std::vector<Pond> ponds_of(const std::vector<SoilFace> &surface, int dimension, int up, double film,
+                           const std::function<double(const std::array<double, 3> &)> &elevation) {
+  std::map<std::array<double, 3>, int> number;  // of the corners under water
+  std::vector<int> joined;                      // a corner of the same pond with a smaller number, or itself
+  const auto first = [&](int corner) {
+    while (joined[corner] != corner) corner = joined[corner] = joined[joined[corner]];
+    return corner;
+  };
+  for (const SoilFace &face : surface) {
+    int before = -1;
+    for (int a = 0; a < dimension && may_be_flooded(face, up); ++a) {
+      const auto &x = face.corner[a];
+      if (elevation(x) - x[up] <= film) continue;
+      const auto [entry, added] = number.try_emplace(x, static_cast<int>(joined.size()));
+      if (added) joined.push_back(entry->second);
+      if (before >= 0) joined[first(entry->second)] = first(before);
+      before = entry->second;
+    }
+  }
+  std::map<int, Pond> ponds;
+  for (const auto &[x, corner] : number) {
+    const double level = elevation(x);
+    ponds.try_emplace(first(corner), Pond{x[0], x[0], level, level, 0}).first->second.widen(x[0], level, x[up]);
+  }
+  std::vector<Pond> list;
+  for (const auto &[corner, pond] : ponds) list.push_back(pond);
+  return list;
+}
+
+constexpr double visible = 0.01;  // of the height of the soil: what no table follows the ground more closely than
+
+/// Open water rests on the ground with its weight, so that a table that stands above the ground has to be level there.
+void doubt_ponds(const Scene &scene, double height, const std::vector<SoilFace> &surface,
+                 std::vector<std::string> &sentences) {
+  const WaterTable &table = scene.water.table;
+  if (!table.given() || table.level()) return;
+  std::optional<Pond> worst;
+  const auto fall = [](const Pond &pond) { return pond.highest - pond.lowest; };
+  for (const double level : levels_of(scene))
+    for (const Pond &pond : ponds_of(surface, scene.dimension, scene.vertical(), visible * height,
+                                     [&](const auto &x) { return table_at(table, x) + level; }))
+      if (!worst || fall(pond) > fall(*worst)) worst = pond;
+  if (!worst || fall(*worst) <= visible * height) return;
+  sentences.push_back(
+      "water.table stands up to " + rounded(worst->depth) + " m above the ground from x = " + rounded(worst->west) +
+      " to " + rounded(worst->east) + " m and is not level there: it lies between " + axis_names[scene.vertical()] +
+      " = " + rounded(worst->lowest) + " and " + rounded(worst->highest) +
+      " m. Open water is level, and the program puts its weight on the ground, so that forces and factors of safety "
+      "are those of no real water. Cut the table at the ground, and give each pond one elevation; where the table "
+      "stands for a head (artesian pressure under the ground), set water.open_water_load = false, and no open water "
+      "loads the ground");
+}
+
+/// A table that goes straight on over a hollow of the ground makes a pond there, which has no elevation of its own. Of
+/// a plane section: in 3D a valley is no hollow.
+void doubt_ponds_in_hollows(const Scene &scene, const Extent &soil, const std::vector<SoilFace> &surface,
+                            std::vector<std::string> &sentences) {
+  const WaterTable &table = scene.water.table;
+  if (table.points.empty() || scene.dimension == 3) return;
+  const double film = visible * soil.of(scene.vertical()), shore = visible * soil.of(0);
+  std::optional<Pond> deepest;
+  for (const double level : levels_of(scene))
+    for (const Pond &pond : ponds_of(surface, scene.dimension, scene.vertical(), film,
+                                     [&](const auto &x) { return table_at(table, x) + level; })) {
+      const bool hollow = pond.west > soil.low[0] + shore && pond.east < soil.high[0] - shore;
+      const bool meant = table.points.size() > 1 && std::ranges::any_of(table.points, [&](const auto &point) {
+                           return point[0] >= pond.west - shore && point[0] <= pond.east + shore;
+                         });
+      if (hollow && !meant && (!deepest || pond.depth > deepest->depth)) deepest = pond;
+    }
+  if (!deepest) return;
+  sentences.push_back("water.table makes a pond of up to " + rounded(deepest->depth) +
+                      " m in a hollow of the ground from x = " + rounded(deepest->west) + " to " +
+                      rounded(deepest->east) +
+                      " m, which loads the ground, and no point of the table lies there. Where the hollow is dry, lead "
+                      "the table below its bottom by further points; where a pond is meant, give the table a point at "
+                      "each shore, or set water.open_water_load = false for none that loads");
+}
+
+/// The water table of one soil gives pore pressure and no open water: above the free surface of this soil nothing
+/// bears against it.
+void doubt_own_tables(const Scene &scene, double height, const std::vector<SoilFace> &surface,
+                      std::vector<std::string> &sentences) {
+  const std::vector<double> levels = levels_of(scene);
+  const int up = scene.vertical();
+  for (std::size_t b = 0; b < scene.body.size(); ++b) {
+    const WaterTable &own = scene.body[b].water_table;
+    if (!own.given()) continue;
+    std::optional<Pond> over;
+    // a steep face that a seam ends at is no ground: the water in the seam leaves it there, or a crack has its pressure
+    const auto ground = [&](const SoilFace &face) {
+      return face.body == static_cast<int>(b) && !face.conditioned && face.normal[up] > 0.1;
+    };
+    for (const SoilFace &face : surface)
+      for (int a = 0; a < scene.dimension && ground(face); ++a)
+        for (const double level : levels) {
+          const auto &x = face.corner[a];
+          const double head = table_at(own, x) + level;
+          const double open =
+              scene.water.table.given() ? std::max(x[up], table_at(scene.water.table, x) + level) : x[up];
+          if (head - open <= visible * height) continue;
+          if (!over) over = Pond{x[0], x[0], head, head, 0};
+          over->widen(x[0], head, open);
+        }
+    if (!over) continue;
+    sentences.push_back("body." + scene.body[b].name + ".water_table stands up to " + rounded(over->depth) +
+                        " m above the free surface of this soil and the open water on it, from x = " +
+                        rounded(over->west) + " to " + rounded(over->east) +
+                        " m: it gives pore pressure in the soil only, and no open water bears against that pressure, "
+                        "so that the soil there is lifted. Cut it at the ground, and give a pond by water.table; where "
+                        "it stands for a head (artesian pressure), water.open_water_load = false says so");
+  }
+}
+
+// ---- seepage ----
+
+/// The first stage of seepage, or the end of the stages.
+std::vector<Stage>::const_iterator first_seepage(const Scene &scene) {
+  return std::find_if(scene.stage.begin(), scene.stage.end(),
+                      [](const Stage &stage) { return stage.kind == StageKind::seepage; });
+}
+
+/// Pressure rises under ground that lets no water out, where none stands that would bear against it.
+void doubt_sealed_ground(const Scene &scene, std::vector<std::string> &sentences) {
+  if (first_seepage(scene) == scene.stage.end()) return;
+  for (const BoundarySource &boundary : scene.boundary)
+    if (std::count(boundary.group.begin(), boundary.group.end(), free_surface) &&
+        read_boundary(boundary.kind).water == OnWater::wall)
+      sentences.push_back("boundary." + boundary.name +
+                          " lets no water through the ground, so that pore pressure may rise there, and "
+                          "water.open_water_load = true takes this pressure for the load of water on the ground: it "
+                          "would not weaken the soil. Set water.open_water_load = false, or let water out with kind = "
+                          "\"rainfall\" and intensity = 0");
+}
+
+/// The suction of drained soil is where its seepage begins, and no stage before that sees it.
+void doubt_early_suction(const Scene &scene, std::vector<std::string> &sentences) {
+  const auto first = first_seepage(scene);
+  if (scene.water.suction.given() && first != scene.stage.end() && first != scene.stage.begin())
+    sentences.push_back("water.suction acts from the first stage of seepage on, " + first->name +
+                        ": the soil of stage " + scene.stage.front().name +
+                        " has none. If its strength depends on suction, put a stage of seepage with hold_loads = true "
+                        "before it");
+}
+
+}  // namespace
+
+void doubt_water_without_friction(const Scene &scene, int body, const BodyReport &report, const Law &law,
+                                  std::vector<std::string> &sentences) {
+  const BodySource &source = scene.body[body];
+  const WaterTable &table = source.water_table.given() ? source.water_table : scene.water.table;
+  const bool frictional = std::visit(
+      [](const auto &one) {
+        return requires { one.friction_angle; };
+      },
+      law);
+  const bool none = frictional && report.strength.friction_angle[1] == 0 && report.strength.cohesion[1] > 0;
+  if (!none || scene.phases != PhaseModel::drained || !table.given() || reads_suction(law)) return;
+  const std::vector<double> levels = levels_of(scene);
+  double highest = table.points.empty() ? std::numeric_limits<double>::infinity() : -1e300;
+  for (const auto &point : table.points)
+    highest = std::max(highest, point[1] + *std::max_element(levels.begin(), levels.end()));
+  if (highest <= report.low[scene.vertical()]) return;
+  sentences.push_back("body." + source.name +
+                      " has no friction (friction_angle = 0), as clay with its undrained strength, and lies below a "
+                      "water table: pore pressure takes nothing from such a strength, so that water which rises does "
+                      "not weaken this soil. If its cohesion is that of drained soil, give its friction_angle too");
+}
+
+void doubt_water(const Scene &scene, const Extent &soil, const std::vector<SoilFace> &surface,
+                 std::vector<std::string> &sentences) {
+  const double height = soil.of(scene.vertical());
+  doubt_table(scene, soil, surface, sentences);
+  doubt_excess_alone(scene, sentences);
+  if (scene.phases != PhaseModel::drained) return;
+  doubt_early_suction(scene, sentences);
+  if (!scene.water.open_water_load) return;
+  doubt_ponds(scene, height, surface, sentences);
+  doubt_ponds_in_hollows(scene, soil, surface, sentences);
+  doubt_own_tables(scene, height, surface, sentences);
+  doubt_sealed_ground(scene, sentences);
+}
+
+}  // namespace talus
