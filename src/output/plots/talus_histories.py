@@ -11,6 +11,8 @@ from talus_units import capital, clock, readable_unit, with_unit, words
 # coordinates, stress and state of points: sections and stress paths show them better; the clock of the loads says nothing as a curve
 ELSEWHERE = ("load_time", "x", "y", "z", "mean_pressure", "deviator", "mobilised_friction", "state", "displacement_x", "displacement_y", "displacement_z")
 
+OF_ALL_SOIL = ("J", "W", "N", "kg", "kg m/s")
+
 
 def draw_histories(results, folder):
     """history_QUANTITY.png of each group of columns that varies, and energy.png. Returns [(quantity, path)]."""
@@ -22,12 +24,12 @@ def draw_histories(results, folder):
         if quantity in ELSEWHERE or quantity.startswith("stress_") or not any(changes(values) for values in lines.values()):
             continue
         if quantity == "energy":
-            pictures.append((quantity, draw_energy(history, lines, results.title, folder / "energy.png")))
+            pictures.append((quantity, draw_energy(history, lines, results.title, results.per_metre(""), folder / "energy.png")))
         elif quantity.endswith("_ledger"):
-            pictures.append((quantity, draw_ledger(history, quantity, lines, results.title, folder / f"{quantity}.png")))
+            pictures.append((quantity, draw_ledger(history, quantity, lines, results.title, results.per_metre(""), folder / f"{quantity}.png")))
         else:
             path = folder / f"history_{quantity}.png"
-            pictures.append((quantity, draw_curves(history, quantity, unit, lines, results.title, path)))
+            pictures.append((quantity, draw_curves(history, quantity, unit, lines, results.title, results.per_metre(""), path)))
     return pictures
 
 
@@ -37,23 +39,23 @@ def changes(values):
     return known.size > 0 and np.ptp(known) > 1e-9 * np.abs(known).max()
 
 
-def draw_curves(history, quantity, unit, lines, title, path):
+def draw_curves(history, quantity, unit, lines, title, per, path):
     figure, axes = plt.subplots(figsize=(7.6, 3.7))
-    plot_lines(axes, history, lines, unit, words(quantity))
+    plot_lines(axes, history, lines, unit, words(quantity), per)
     return finish(figure, [axes], history, capital(words(quantity)), title, path)
 
 
-def draw_energy(history, lines, title, path):
+def draw_energy(history, lines, title, per, path):
     """All energies that vary, and below them the kinetic one alone: it is the smallest and tells most."""
     lines = drawn_energies(lines)
     kinetic = {name: values for name, values in lines.items() if "kinetic" in name}
     if not kinetic or len(lines) == len(kinetic):
-        return draw_curves(history, "energy", "J", lines, title, path)
+        return draw_curves(history, "energy", "J", lines, title, per, path)
     shape = {"figsize": (7.6, 4.9), "gridspec_kw": {"height_ratios": [3, 1.4]}}
     figure, (upper, lower) = plt.subplots(2, 1, sharex=True, **shape)
-    plot_lines(upper, history, lines, "J", "energy")
+    plot_lines(upper, history, lines, "J", "energy", per)
     colour = style.LINES[list(lines).index(next(iter(kinetic))) % len(style.LINES)]
-    plot_lines(lower, history, kinetic, "J", "kinetic", colour)
+    plot_lines(lower, history, kinetic, "J", "kinetic", per, colour)
     return finish(figure, [upper, lower], history, "Energy", title, path)
 
 
@@ -64,25 +66,26 @@ def drawn_energies(lines):
     return {"Δ potential" if name == "potential" else name: values - values[0] if name == "potential" else values for name, values in lines.items()}
 
 
-def draw_ledger(history, quantity, lines, title, path):
+def draw_ledger(history, quantity, lines, title, per, path):
     """What has been gained, what has come in through boundaries and what was given, and below the error of the sum."""
     gains = {"gained": lines["stored"] - lines["stored"][0], "came in": -lines["out"], "was given": lines["given"]}
     if ESCAPED in lines:
         gains["left with soil"] = lines[ESCAPED]
     gains = {name: values for name, values in gains.items() if np.ptp(values) > 0}
     figure, (upper, lower) = plt.subplots(2, 1, sharex=True, figsize=(7.6, 4.9), gridspec_kw={"height_ratios": [3, 1.4]})
-    plot_lines(upper, history, gains or {"gained": 0 * history.time}, "kg", "mass")
-    plot_lines(lower, history, {"error": lines["error"]}, "kg", "error", style.INK)
+    plot_lines(upper, history, gains or {"gained": 0 * history.time}, "kg", "mass", per)
+    plot_lines(lower, history, {"error": lines["error"]}, "kg", "error", per, style.INK)
     return finish(figure, [upper, lower], history, capital(words(quantity)), title, path)
 
 
-def plot_lines(axes, history, lines, unit, what, colour=None):
+def plot_lines(axes, history, lines, unit, what, per, colour=None):
+    """`per` is "/m" in plane strain, where forces, energies and masses are those of a metre of the slope."""
     largest = max(np.nanmax(np.abs(values)) for values in lines.values())
-    factor, unit = readable_unit(largest, unit)
+    factor, shown = readable_unit(largest, unit)
     for k, (name, values) in enumerate(lines.items()):
         axes.plot(history.time, factor * values, linewidth=1.5, color=colour or style.LINES[k % len(style.LINES)],
                   linestyle=("-", "--", ":")[k // len(style.LINES) % 3], label=words(name))
-    axes.set_ylabel(with_unit(what, unit))
+    axes.set_ylabel(with_unit(what, shown + per if unit in OF_ALL_SOIL else shown))
     axes.grid(axis="y", color=style.FAINT, linewidth=0.5)
     axes.set_axisbelow(True)
     axes.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]))

@@ -1,5 +1,6 @@
 """What the pictures of a run choose to show: argument 1 is the folder of the scripts."""
 
+import pathlib
 import sys
 import types
 import unittest
@@ -241,6 +242,17 @@ class Charts(unittest.TestCase):
                          [("body.clay.cohesion [kPa]", "volume of the slide [m³/m]"), ("body.clay.friction_angle [deg]", "volume of the slide [m³/m]")])
         self.assertEqual(talus_sweep.title_of("volume_of_slide_m3", False), "volume of the slide [m³]")
         self.assertEqual(talus_sweep.title_of("crest_largest_speed_m_s", True), "crest largest speed [m/s]")
+
+    def test_energies_of_a_section_are_those_of_a_metre(self):
+        history = History.__new__(History)
+        history.time, history.step, history.stage = np.array([0.0, 1.0]), np.array([0, 1]), ["slide", "slide"]
+        history.columns = {"kinetic_J": np.array([0.0, 2e3]), "crest_displacement_m": np.array([0.0, 1.0])}
+        for per, unit in (("/m", "kJ/m"), ("", "kJ")):
+            results = types.SimpleNamespace(history=history, title="", per_metre=lambda text, per=per: text + per)
+            seen = []
+            with unittest.mock.patch.object(talus_sweep.style, "save", lambda figure, path: seen.append(figure)):
+                draw_histories(results, pathlib.Path())
+            self.assertEqual(sorted(axes.get_ylabel() for figure in seen for axes in figure.axes), ["displacement [m]", f"energy [{unit}]"])
 
     def test_errors_stand_against_each_key_of_its_own(self):
         rows = [{"series": series, "key": key, "unit": unit, "parameter": value, "value": 1 + error, "error": error, "processor_s": 1, "pareto": "0", "failure": ""}
