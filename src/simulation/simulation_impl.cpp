@@ -16,7 +16,7 @@ void Simulation<dim>::run() {
     if (run_.progress.number < 0) begin();
     const long long before = run_.clock.steps;
     run_stages();
-    for (const std::string &sentence : unlikely_strains(run_.world.report(), snapshot()))
+    for (const std::string &sentence : unlikely_strains(run_.world.comm, run_.world.report(), snapshot()))
       run_.recorder.note("warning: " + sentence);
     if (run_.options.resume && run_.clock.steps == before)
       run_.recorder.note("nothing was left to do: the run had reached its end before it was resumed");

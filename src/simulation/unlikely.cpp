@@ -126,7 +126,7 @@ std::string unlikely_height(double height, const std::string &what) {
   return what + " is " + rounded(height) + " m high; coordinates count in metres. Is the mesh in millimetres or feet?";
 }
 
-std::vector<std::string> unlikely_strains(const std::vector<BodyReport> &bodies, const Snapshot &state) {
+std::vector<std::string> unlikely_strains(MPI_Comm comm, const std::vector<BodyReport> &bodies, const Snapshot &state) {
   constexpr double large = 10, share = 0.01;
   const auto column = [&](const char *name) -> const std::vector<double> * {
     for (const Column &one : state.columns)
@@ -144,8 +144,8 @@ std::vector<std::string> unlikely_strains(const std::vector<BodyReport> &bodies,
       if (!((*strain)[i] > large)) continue;
       sums[1] += (*volume)[i], mine = std::max(mine, (*strain)[i]);
     }
-    MPI_Allreduce(sums, all, 2, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
-    MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD);
+    MPI_Allreduce(sums, all, 2, MPI_DOUBLE, MPI_SUM, comm);
+    MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE, MPI_MAX, comm);
     if (all[1] <= share * all[0]) continue;
     sentences.push_back(
         rounded(100 * all[1] / all[0]) + " % of body." + bodies[b].name + " has a plastic strain above " +

@@ -1,5 +1,7 @@
 #pragma once
 /// What a scene may have but hardly means: most of it comes from a number in another unit than that of its key.
+#include <mpi.h>
+
 #include <string>
 #include <vector>
 
@@ -32,6 +34,6 @@ std::vector<std::string> coarse_cells(const Scene &scene, const std::vector<Body
 
 /// A sentence for each body of which more than a hundredth has a plastic strain above 10. `state` has the particles of
 /// this rank. Collective.
-std::vector<std::string> unlikely_strains(const std::vector<BodyReport> &bodies, const Snapshot &state);
+std::vector<std::string> unlikely_strains(MPI_Comm comm, const std::vector<BodyReport> &bodies, const Snapshot &state);
 
 }  // namespace talus

@@ -24,7 +24,7 @@ std::vector<std::string> doubts(int sheared) {
   state.columns = {strain, volume};
   std::vector<BodyReport> bodies(2);
   bodies[0].name = "clay", bodies[1].name = "sand";
-  return unlikely_strains(bodies, state);
+  return unlikely_strains(PETSC_COMM_WORLD, bodies, state);
 }
 
 TEST(Unlikely, StrainsOfMoreThanAHundredthOfABodyAreDoubted) {
