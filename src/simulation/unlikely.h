@@ -1,5 +1,7 @@
 #pragma once
 /// What a scene may have but hardly means: most of it comes from a number in another unit than that of its key.
+#include <mpi.h>
+
 #include <string>
 #include <vector>
 

@@ -40,6 +40,26 @@ class Faults(unittest.TestCase):
             self.assertTrue(told.stdout.splitlines()[-3].startswith("not all numbers hold that the pages"), told.stdout)
             self.assertEqual(told.stdout.splitlines()[-2:], ["  small: run slow (the scene as it is)", "  small: study sizes (four meshes)"])
 
+    def test_what_a_program_printed_is_on_the_page(self):
+        with tempfile.TemporaryDirectory() as name:
+            page = pathlib.Path(name) / "docs" / "gallery" / "small"
+            page.mkdir(parents=True)
+            (page / "numbers.toml").write_text('[study.picture]\nabout = "a picture"\ncommand = ["TALUS draw FOLDER", "write.py TALUS"]\n'
+                                               'tables = [{name = "printed", text = "said.txt"}]\n')
+            (page / "README.md").write_text("<!-- studies -->\n<!-- end -->\n<!-- picture: printed -->\n<!-- end -->\n")
+            (page / "said.txt").write_text("old\n")
+            (page / "write.py").write_text("import pathlib\npathlib.Path('said.txt').write_text('the slope\\n\\nfails\\n')\n")
+
+            def verify(*words):
+                return subprocess.run([sys.executable, "-B", SCRIPT, page.parent, "/bin/true", *words], capture_output=True, text=True)
+            self.assertEqual(verify("--long", "--write").returncode, 0)
+            text = (page / "README.md").read_text()
+            self.assertIn("<!-- picture: printed -->\n\n    the slope\n\n    fails\n\n<!-- end -->", text)
+            self.assertIn("| `talus draw FOLDER`, `write.py TALUS` |", text)
+            self.assertEqual(verify("--pages").returncode, 0)
+            (page / "said.txt").write_text("the slope\n\nstands\n")
+            self.assertEqual(verify("--pages").returncode, 1)
+
 
 if __name__ == "__main__":
     unittest.main()
