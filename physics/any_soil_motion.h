@@ -106,7 +106,7 @@ class AnySoilMotion : public Motion {
   /// Fills the pores of the particles, which must be off the grid, to the pressures of `liquid`(cell, place) [Pa].
   virtual void fill_pores(const std::function<double(int, const Vec<dim> &)> &liquid) = 0;
   /// Largest frequency of elastic motion of the filled mesh [1/s] by power iteration, which comes from below,
-  /// docs/theory (5.7); not where fluids move. Goes on from the mode that it found last. After `begin`; collective.
+  /// docs/theory (5.7). Goes on from the mode that it found last. After `begin`; collective.
   virtual PetscErrorCode largest_frequency(int iterations, double *omega) = 0;
 };
 

@@ -93,9 +93,8 @@ class SoilMotion final : public AnySoilMotion<dim> {
   void fill_pores([[maybe_unused]] const std::function<double(int, const Vec<dim> &)> &liquid) override {
     if constexpr (Phases::liquid) fluid_.fill(liquid);
   }
-  PetscErrorCode largest_frequency([[maybe_unused]] int iterations, [[maybe_unused]] double *omega) override {
-    if constexpr (!Phases::liquid) return fastest_mode_.find(grid_, accepted_, bodies_, points_, iterations, omega);
-    return 0;
+  PetscErrorCode largest_frequency(int iterations, double *omega) override {
+    return fastest_mode_.find(grid_, accepted_, bodies_, points_, iterations, omega);
   }
 
  private:
@@ -103,6 +102,7 @@ class SoilMotion final : public AnySoilMotion<dim> {
   using Velocities = NodalVelocities<dim, fields>;
   using State = SoilState<dim>;
 
+  static std::vector<PoreStiffness> pores_of_bodies(const MotionParts<dim> &parts);
   Archive::Rows serialize_points(Archive &archive, size_t body);
   PoreReport pore_report(const Body<dim> &body, int particle) const requires Phases::liquid;
   PetscErrorCode start_pores(bool fill) requires Phases::liquid;
@@ -165,7 +165,7 @@ class SoilMotion final : public AnySoilMotion<dim> {
   Velocities velocities_;
   [[no_unique_address]] If<Phases::prescribed, PrescribedPoreWater<dim>> water_;
   WorkLedger<dim> work_;
-  [[no_unique_address]] If<!Phases::liquid, FastestMode<dim>> fastest_mode_;
+  FastestMode<dim, fields> fastest_mode_;
 
   // nodes
   std::vector<Vec<dim>> force_;    ///< [N]

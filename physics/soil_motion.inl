@@ -8,6 +8,13 @@
 namespace talus {
 
 template <int dim, class Phases>
+std::vector<PoreStiffness> SoilMotion<dim, Phases>::pores_of_bodies(const MotionParts<dim> &parts) {
+  std::vector<PoreStiffness> pores;
+  for (const auto &body : parts.bodies) pores.push_back(pore_stiffness(parts.scene, body->source(), fluids));
+  return pores;
+}
+
+template <int dim, class Phases>
 SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
     : mesh_(parts.mesh),
       bodies_(parts.bodies),
@@ -26,7 +33,7 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
             Phases::prescribed ||
                 std::any_of(parts.bodies.begin(), parts.bodies.end(),
                             [](const auto &body) { return !body->source().body_acceleration.empty(); })),
-      fastest_mode_(parts.mesh, smallest_mass_),
+      fastest_mode_(parts.mesh, smallest_mass_, pores_of_bodies(parts)),
       fluid_(parts.mesh, parts.bodies, parts.scene) {
   const BackgroundMesh<dim> &mesh = parts.mesh;
   const auto &bodies = parts.bodies;

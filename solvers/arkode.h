@@ -17,7 +17,7 @@ struct ArkodeSettings : StepKeys {
   double velocity_tolerance = 1e-3;      ///< of one step [m/s]
   double displacement_tolerance = 1e-5;  ///< of one step [m]
   double floor = 1e-4;                   ///< of the critical step: a run that needs less stops [-]
-  FrequencyBound bound = FrequencyBound::cells;
+  FrequencyBound bound = FrequencyBound::automatic;
   bool drag = false;  ///< the motion has drag between phases; not a key
   ArkodeSettings() : StepKeys(0.8) {}
   template <class Visitor>

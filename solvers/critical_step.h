@@ -8,17 +8,9 @@
 
 #include "meshes/background_mesh.h"
 #include "physics/laws/laws.h"
+#include "physics/pores/pore_stiffness.h"
 
 namespace talus {
-
-/// Fluids that move on their own: full pores of each, the stiffest they can be.
-struct PoreStiffness {
-  double porosity = 0;
-  struct Fluid {
-    double density, bulk_modulus;
-  };
-  std::vector<Fluid> fluids;
-};
 
 /// Largest eigenfrequency squared of a cell of a uniform elastic material [1/s2], with pore fluids that no drag holds
 /// back: implicit drag lowers frequencies. `density` is that of the soil, or of the skeleton per volume of soil where

@@ -12,7 +12,7 @@ namespace talus {
 struct EulerSettings : StepKeys {
   static constexpr const char *name = "euler";
   double limit = 1;  ///< fixed step over the critical step beyond which no run starts [-]
-  FrequencyBound bound = FrequencyBound::cells;
+  FrequencyBound bound = FrequencyBound::automatic;
   EulerSettings() : StepKeys(0.6) {}
   StepRule rule() const { return {step, fraction, limit, bound}; }
   std::string drag_problem() const { return ""; }  ///< drag is implicit in every step

@@ -19,8 +19,9 @@ struct StepBounds {
 
 /// What omega_max is taken from.
 enum class FrequencyBound {
-  cells,  ///< the fastest filled cell by itself: safe
-  mesh    ///< the filled mesh, by power iteration: sharp, and from below
+  automatic,  ///< one of the others, which the scene decides (src/simulation/step_bound.h)
+  cells,      ///< the fastest filled cell by itself: safe
+  mesh        ///< the filled mesh, by power iteration: sharp, and from below
 };
 
 /// What a scene fixes about steps, in units of the critical step 2 / omega_max where it is not a time.
@@ -35,9 +36,12 @@ struct StepRule {
 template <class Visitor>
 void frequency_bound(Visitor &&v, FrequencyBound &bound) {
   v.choice(
-      "omega_max", bound, {{"cells", FrequencyBound::cells}, {"mesh", FrequencyBound::mesh}},
-      "largest frequency: that of the fastest filled cell alone, or that of the whole filled mesh by power iteration "
-      "at remaps, which allows longer steps, above all on tetrahedra; mesh is not available where pore fluids move");
+      "omega_max", bound,
+      {{"auto", FrequencyBound::automatic}, {"cells", FrequencyBound::cells}, {"mesh", FrequencyBound::mesh}},
+      "largest frequency: that of the fastest filled cell alone (cells), or that of the whole filled mesh by power "
+      "iteration at remaps (mesh), which allows longer steps, above all on tetrahedra; auto is mesh in dry and drained "
+      "3D scenes, and cells in plane strain and slices, where pore fluids move, beside a fixed step, with a fraction "
+      "above 0.8 and with the laws cam_clay and umat");
 }
 
 /// The keys `step` and `fraction` of [integrator], which every kind has.

@@ -114,6 +114,7 @@ class AnySimulation {
   virtual long long particles() const = 0;       ///< over all ranks
   virtual double mass() const = 0;               ///< over all ranks [kg]
   virtual double critical_step() = 0;            ///< of the present state, over all ranks [s]
+  virtual std::string step_bound() const = 0;    ///< what the critical step is taken from, and why, as a sentence
   virtual MeshReport mesh_report() const = 0;    ///< collective
   virtual std::vector<BodyReport> bodies() = 0;  ///< collective
   /// Surface of the soil at the start, of all ranks. Collective.

@@ -58,7 +58,7 @@ struct CamClay {
            ": soil hardens as it is compressed";
   }
 
-  static constexpr bool by_place = false, rate_dependent = false;
+  static constexpr bool by_place = false, rate_dependent = false, stiffens = true;
   bool reads_suction() const { return false; }
   bool strength_varies() const { return true; }
   bool cohesionless() const { return false; }

@@ -7,6 +7,7 @@
 /// - `prepare()`: derives constants from the parameters, once per update of all points
 /// - `reads_suction()`: does its strength depend on `Surroundings::suction`?
 /// - `reads_shares`: do c and phi of a point follow from the shares in its `Surroundings`? Absent: never
+/// - `stiffens`: may its elastic stiffness exceed its moduli? Absent: never
 /// - `by_place`: does the compiled case read suction and shares of its `Surroundings`?
 /// - `rate_dependent`: does its stress depend on the time that a strain takes?
 /// - `as_case(use)`: where the law is compiled in several cases, calls `use` with the one that fits its parameters
@@ -116,6 +117,15 @@ inline bool reads_shares(const Law &law) {
           return one.reads_shares;
         else
           return false;
+      },
+      law);
+}
+
+/// May the soil become stiffer than its moduli say?
+inline bool stiffens(const Law &law) {
+  return std::visit(
+      [](const auto &one) {
+        return requires { one.stiffens; };
       },
       law);
 }

@@ -18,6 +18,7 @@ namespace talus {
 struct Umat : IsotropicElastic {
   static constexpr const char *name = "umat";
   static constexpr const char *meaning = "law of your own: an Abaqus-style UMAT in a shared library";
+  static constexpr bool stiffens = true;  // as far as its moduli can tell
   static constexpr const char *no_reduction = "keeps its strength in PROPS, which only the UMAT understands";
 
   std::string library;                ///< path

@@ -132,7 +132,7 @@ PetscErrorCode SoilMotion<dim, Phases>::serialize(Archive &archive) {
   smallest_ratio_ = -smallest[0], step_ratio_ = -smallest[1];
   work_.serialize(archive);
   if constexpr (Phases::prescribed) water_.serialize(archive, grid);
-  if constexpr (!Phases::liquid) fastest_mode_.serialize(archive);
+  fastest_mode_.serialize(archive);
   PetscCall(conditions_.serialize(archive, grid_, impedance_, filling_));
   if (archive.reading()) conditions_.surface_loads().begin(bodies_, grid_);
   if constexpr (Phases::liquid) {

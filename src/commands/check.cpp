@@ -121,6 +121,7 @@ void print_costs(const Scene &scene, const Needs &n) {
   if (n.critical_step < slowest.critical_step)
     line("", "critical %.4g s with explicit drag, %.2g of that", n.critical_step,
          n.critical_step / slowest.critical_step);
+  line("", "%s", n.step_bound.c_str());
   line("", "%s %.4g s, %.2f of it", n.fixed_step ? "fixed at" : "taken", n.step, n.step / n.critical_step);
   line("stages", "%-16s %-12s %10s %10s %14s %12s", "", "until", "longest s", "steps", "wave transits", "run time");
   for (std::size_t i = 0; i < n.stages.size(); ++i) {
@@ -235,6 +236,7 @@ void print_json(const Scene &scene, const Needs &n, const std::vector<std::strin
                         .add("settlement_m", n.layer.settlement)
                         .str())
       .add("critical_step_s", n.critical_step)
+      .add("step_bound", json::text(n.step_bound))
       .add("altitude_rule_s", n.altitude_rule)
       .add("step_s", n.step)
       .add("stages", json::array(n.stages, stage))

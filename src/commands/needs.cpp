@@ -213,9 +213,8 @@ Needs find_needs(Scene &scene, bool with_model) {
   for (const auto &more : {unlikely_surroundings(scene, reports, surface), coarse_cells(scene, reports, surface)})
     needs.unlikely.insert(needs.unlikely.end(), more.begin(), more.end());
   const StepRule rule = step_rule(read_integrator(scene.integrator, fluids_move(scene.phases)));
-  needs.critical_step = rule.bound == FrequencyBound::mesh || scene.water.drag == PoreDrag::at_start
-                            ? simulation->critical_step()
-                            : needs.slowest_body().body.critical_step;
+  needs.critical_step = simulation->critical_step();
+  needs.step_bound = simulation->step_bound();
   needs.altitude_rule = needs.mesh.smallest_altitude / fastest;
   needs.fixed_step = rule.fixed > 0;
   needs.step = needs.fixed_step ? rule.fixed : rule.share * needs.critical_step;

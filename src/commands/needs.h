@@ -69,6 +69,7 @@ struct Needs {
   double gravity;                ///< [m/s2]
   int slowest;                   ///< body that sets the critical step
   double critical_step;          ///< [s]
+  std::string step_bound;        ///< what it is taken from, as a sentence
   double altitude_rule;          ///< smallest altitude over the largest wave speed [s]
   double step;                   ///< taken [s]
   bool fixed_step;               ///< given by the scene

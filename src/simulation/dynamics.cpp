@@ -27,10 +27,6 @@ IntegratorSettings choose_integrator(const Scene &scene) {
   if (const std::string problem = drag_problem(settings); !problem.empty())
     scene.complain("integrator.kind", "must be \"euler\", or \"arkode\" of order 3, where pore fluids move: " +
                                           problem + "; or take phases = \"dry\" or \"drained\"");
-  if (step_rule(settings).bound == FrequencyBound::mesh)
-    scene.complain(
-        "integrator.omega_max",
-        "must be \"cells\" where pore fluids move: power iteration knows the elastic waves of the skeleton alone");
   for (size_t k = 0; k < scene.stage.size() && phases.gas; ++k)
     if (is_static(scene.stage[k].kind))
       scene.complain("stage." + std::to_string(k) + ".kind",
@@ -52,8 +48,9 @@ template <int dim>
 Dynamics<dim>::Dynamics(World<dim> &world, Clock &clock, const IntegratorSettings &settings)
     : world_(world),
       clock_(clock),
-      settings_(settings),
-      integrator_(make_integrator(settings)),
+      bound_(choose_step_bound(world.scene, world.laws, settings, world.mesh.report().one_element_slice)),
+      settings_(with_bound(settings, bound_.by)),
+      integrator_(make_integrator(settings_)),
       balancing_(world.scene.mesh.balance_ranks, ranks_of(world.comm), world.mesh.report().cells,
                  world.mesh.divisible()) {
   check_fixed_step();
@@ -65,7 +62,7 @@ void Dynamics<dim>::check_fixed_step() {
   const StepRule rule = step_rule(settings_);
   if (rule.fixed == 0) return;
   double critical =
-      rule.bound == FrequencyBound::mesh || explicit_drag() ? critical_step() : std::numeric_limits<double>::infinity();
+      bound_.by == FrequencyBound::mesh || explicit_drag() ? critical_step() : std::numeric_limits<double>::infinity();
   if (std::isinf(critical))
     for (const BodyReport &body : world_.report()) critical = std::min(critical, body.critical_step);
   if (rule.fixed > rule.limit * critical)
@@ -104,7 +101,7 @@ void Dynamics<dim>::notice_release() {
 template <int dim>
 double Dynamics<dim>::critical_step() {
   double step = world_.critical_step_of_cells(clock_.time);
-  if (step_rule(settings_).bound == FrequencyBound::mesh) {
+  if (bound_.by == FrequencyBound::mesh) {
     constexpr int first = 60, further = 6,
                   apart = 8;  // iterations; steps between two estimates where remaps come thick and fast
     const bool anew = omega_step_ < 0;

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "simulation/balancing.h"
+#include "simulation/step_bound.h"
 #include "simulation/world.h"
 #include "solvers/integrators.h"
 
@@ -40,6 +41,7 @@ class Dynamics {
   /// Largest stable step of the present state [s]. Collective.
   double critical_step();
 
+  const StepBound &step_bound() const { return bound_; }
   bool fixed_step() const { return step_rule(settings_).fixed > 0; }
   long long remaps() const { return remaps_; }
   /// Was the last step followed by a remap?
@@ -64,6 +66,7 @@ class Dynamics {
 
   World<dim> &world_;
   Clock &clock_;
+  const StepBound bound_;
   const IntegratorSettings settings_;
   std::unique_ptr<Integrator> integrator_;
   double critical_step_ = 0;  ///< at the last remap; 0: not known [s]

@@ -302,6 +302,7 @@ void Recorder<dim>::note_steps() {
        << " because a cell turned inside out; steps bounded by";
   for (const auto &[count, what] : bounds)
     text << " " << what << ": " << count << (what == bounds[2].second ? "" : ",");
+  text << "; " << of_.dynamics.step_bound().sentence();
   note(text.str());
 }
 

@@ -22,6 +22,7 @@ class Simulation final : public AnySimulation {
   long long particles() const override { return run_.world.particle_count; }
   double mass() const override { return run_.world.total_mass; }
   double critical_step() override { return run_.dynamics.critical_step(); }
+  std::string step_bound() const override { return run_.dynamics.step_bound().sentence(); }
   MeshReport mesh_report() const override {
     MeshReport report = run_.world.mesh.report();
     report.remarks.insert(report.remarks.end(), run_.options.mesh.remarks.begin(), run_.options.mesh.remarks.end());

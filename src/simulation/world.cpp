@@ -212,10 +212,7 @@ void World<dim>::settle_bodies() {
     const BodySource &source = scene.body[b];
     const double density = soil_density(source, Vec<dim>{}, 0);
     wave_speed_ = std::max(wave_speed_, std::sqrt(constrained_modulus(laws[b]) / density));
-    PoreStiffness pores{source.porosity, {}};
-    if (phases.liquid) pores.fluids.push_back({scene.water.density, scene.water.bulk_modulus});
-    if (phases.gas) pores.fluids.push_back({scene.gas.density, scene.gas.bulk_modulus});
-    critical_.emplace_back(mesh, laws[b], density, pores);
+    critical_.emplace_back(mesh, laws[b], density, pore_stiffness(scene, source, phases.fluids()));
   }
 }
 

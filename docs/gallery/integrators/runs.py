@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """What `talus compare` cannot read off one column: energy over 100 periods, angular momentum, dissipation of remaps, time per evaluation, steps by the frequency of cells and of the mesh.
 
-    runs.py TALUS [drift|spin|dissipation|cost|bound|stability|figure ...]
+    runs.py TALUS [drift|spin|dissipation|cost|bound|laws|stability|figure ...]
 
 Each study writes NAME.csv beside this file, `figure` draws drift.png, orders.png and stability.png. TALUS is build/release/bin/talus; `stability` runs stability_test
 beside it.
@@ -141,6 +141,38 @@ def bound(talus):
                 write("bound", rows)
 
 
+LAWS = {"mohr_coulomb": "cohesion = 0\nfriction_angle = 19.8", "mohr_coulomb, softening": "cohesion = 300\nfriction_angle = 25\nresidual_cohesion = 30\nresidual_friction_angle = 15\nshape_factor = 25",
+        "drucker_prager": "cohesion = 0\nfriction_angle = 19.8", "mu_i": "static_friction = 0.36\nlimiting_friction = 0.6\ngrain_size = 0.002", "newtonian": "viscosity = 1",
+        "bingham": "viscosity = 1\nyield_stress = 100", "linear_elastic": ""}
+
+
+def laws(talus):
+    """The column in 3D with seven laws by both bounds: free tetrahedra and a slice, remaps seldom and in every step."""
+    from slides import COLUMN3D
+    scene = (HERE.parent / "column/scene.toml").read_text()
+    body = scene[scene.index('law = "mohr_coulomb"'):scene.index("stress =")]
+    meshes = {"free": ["mesh.size=0.02", "mesh.layers=0", "mesh.thickness=0.06"], "slice": ["mesh.size=0.01"]}
+    rows = []
+    for law, keys in LAWS.items():
+        # beside the scene, since its mesh is named relative to it
+        file = HERE.parent / "column/.laws.toml"
+        file.write_text(scene.replace(body, f'law = "{law.split(",")[0]}"\nyoung_modulus = "0.84 MPa"\npoisson_ratio = 0.3\n{keys}\n'))
+        try:
+            for mesh, overrides in meshes.items():
+                for interval in (0.1, 0):
+                    for of, fraction in (("cells", 0.6), ("mesh", 0.6), ("mesh", 0.8)):
+                        name = f"laws {law} {mesh} {interval} {of} {fraction}".replace(",", "")
+                        _, seconds, count = run(talus, file, name, ["output.interval=0", f"transfer.remap_interval={interval}", f"integrator.omega_max={of}", f"integrator.fraction={fraction}", *COLUMN3D, *overrides])
+                        history = list(csv.DictReader(open(RUNS / name.replace(" ", "_") / "history.csv")))
+                        end = float(history[-1]["time_s"])
+                        rows.append({"law": law, "mesh": mesh, "remap_interval": interval, "omega_max": of, "fraction": fraction, "steps": count, "processor_s": round(seconds, 2), "end_s": round(end, 3),
+                                     "front_m": round(float(history[-1]["corner_x_m"]), 4)})
+                        print(rows[-1], flush=True)
+                        write("laws", rows)
+        finally:
+            file.unlink()
+
+
 def stability(talus):
     test = Path(talus).parent / "stability_test"
     subprocess.run([next(p for p in (test, *ROOT.glob("build/*/tests/**/stability_test"), *ROOT.glob("build/*/bin/stability_test")) if p.exists())], check=True,
@@ -194,5 +226,5 @@ def figure(_):
 
 if __name__ == "__main__":
     RUNS.mkdir(parents=True, exist_ok=True)
-    for name in sys.argv[2:] or ["drift", "spin", "dissipation", "cost", "bound", "stability", "figure"]:
+    for name in sys.argv[2:] or ["drift", "spin", "dissipation", "cost", "bound", "laws", "stability", "figure"]:
         globals()[name](sys.argv[1])

@@ -47,6 +47,33 @@ TEST(Check, TakesAPlaneSceneAsASliceBetweenRollers) {
   EXPECT_EQ(number(flag, "mass_kg"), number(overrides, "mass_kg"));
 }
 
+TEST(Check, SaysWhatTheCriticalStepIsTakenFromAndWhy) {
+  const Folder folder;
+  const std::vector<std::string> in_3d{"dimension=3", "mesh.thickness=0.5", "mesh.layers=2",
+                                       "boundary.front.kind=roller", "boundary.back.kind=roller"};
+  const auto with = [&](const std::vector<std::string> &more) {
+    std::vector<std::string> all = in_3d;
+    all.insert(all.end(), more.begin(), more.end());
+    return check(folder, all);
+  };
+  const Ending mesh = with({}), cells = with({"integrator.omega_max=cells"});
+  EXPECT_TRUE(mesh.says("of the whole filled mesh (integrator.omega_max = \\\"auto\\\", on tetrahedra)"))
+      << mesh.output;
+  EXPECT_TRUE(cells.says("of the fastest filled cell (integrator.omega_max = \\\"cells\\\")")) << cells.output;
+  EXPECT_GT(number(mesh, "critical_step_s"), 1.5 * number(cells, "critical_step_s"));
+  const auto falls_back = [&](const Ending &ending, const std::string &why) {
+    EXPECT_TRUE(ending.says("of the fastest filled cell (integrator.omega_max = \\\"auto\\\", and " + why))
+        << ending.output;
+  };
+  falls_back(check(folder, {}), "in plane strain");
+  falls_back(with({"mesh.layers=1"}), "in plane strain");
+  falls_back(with({"integrator.step=1e-5"}), "integrator.step is fixed");
+  falls_back(with({"integrator.fraction=0.81"}), "integrator.fraction is above 0.8");
+  const std::vector<std::string> wet{"phases=saturated", "body.sand.permeability=1e-10", "body.sand.porosity=0.4",
+                                     "body.sand.grain_density=2600", "water.table=[[0, 0.5], [2, 0.5]]"};
+  falls_back(with(wet), "pore pressures of single cells scatter");
+}
+
 TEST(Check, FillsACellOnceThatTwoOfABodysRegionsName) {
   const Folder folder;
   EXPECT_NEAR(number(check(folder, {"body.sand.region=['sand', 'sand']"}), "mass_kg"), 1000, 1e-9);

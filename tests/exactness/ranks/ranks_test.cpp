@@ -105,6 +105,9 @@ TEST(Ranks, column_collapse_is_the_same_in_3d) {
 TEST(Ranks, column_collapse_is_the_same_with_steps_by_the_frequency_of_the_mesh) {
   expect_the_same(column, {"mesh.size=0.01", "integrator.omega_max=mesh"});
 }
+TEST(Ranks, column_of_wet_sand_is_the_same_with_steps_by_the_frequency_of_the_mesh) {
+  expect_the_same(wet_column, {"mesh.size=0.01", "integrator.omega_max=mesh"});
+}
 TEST(Ranks, column_collapse_is_the_same_under_error_control) {
   expect_the_same(column, {"mesh.size=0.01", "integrator.kind=arkode", "integrator.velocity_tolerance=1e-5"});
 }

@@ -83,8 +83,13 @@ const Variant variants[] = {
     {"by_arkode", {"integrator.kind=arkode"}, 1, SIGKILL},
     {"by_arkode_with_moving_water", with_pores({"phases=unsaturated", "integrator.kind=arkode"})},
     {"with_steps_by_the_frequency_of_the_mesh", {"integrator.omega_max=mesh"}},
+    {"with_moving_water_and_steps_by_the_frequency_of_the_mesh",
+     with_pores({"phases=unsaturated", "integrator.omega_max=mesh"})},
     {"in_3d",
      {"dimension=3", "mesh.thickness=0.25", "boundary.front.kind=roller", "boundary.back.kind=roller",
+      "output.point.tip.position=[1, 0.5, 0]", "output.line.down.points=[[1, 0.5, 0.1], [1, 0.1, 0.1]]"}},
+    {"in_3d_by_default_with_the_frequency_of_the_mesh",
+     {"dimension=3", "mesh.thickness=0.5", "mesh.layers=2", "boundary.front.kind=roller", "boundary.back.kind=roller",
       "output.point.tip.position=[1, 0.5, 0]", "output.line.down.points=[[1, 0.5, 0.1], [1, 0.1, 0.1]]"}},
 };
 

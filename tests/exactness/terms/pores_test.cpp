@@ -1,4 +1,6 @@
 // Pore water and gas that move: docs/theory/pores.md (2.1), (3.1) to (3.3), (4.2) to (4.8a), (5.1), on a few cells.
+#include <Eigen/Eigenvalues>
+
 #include "physics/pores/pore_fluid.inl"  // emits what libraries have only inline
 #include "pore_equations.h"
 
@@ -249,6 +251,53 @@ void volumes_and_masses_follow_the_motion() {
   }
 }
 TALUS_IN_FULL_AND_OPEN_PORES(volumes_and_masses_follow_the_motion)
+
+/// The largest frequency of the filled mesh is that of S M^-1 K, theory (5.7), with the strains, stiffness and inertia
+/// of the fluids (6.1): all entries of the matrix.
+template <int dim, class Phases>
+void frequency_of_the_mesh_is_the_largest_of_all_modes() {
+  constexpr int fluids = 1 + Phases::gas;
+  WetBox<dim, Phases> box(water());
+  Equations<dim, Phases> exact(box.soil);
+  ASSERT_EQ(box.soil.motion->begin(0), 0);
+  const double density[] = {water_density, air_density}, modulus[] = {water_bulk, air_bulk};
+  const int field = exact.nodes * dim, size = (1 + fluids) * field;
+  std::vector<double> volume(exact.nodes, 0);
+  for (int c = 0; c < exact.cells; ++c)
+    for (int i : exact.mesh.cells[c].node) volume[i] += exact.weight[c] / (dim + 1);
+  Eigen::MatrixXd product(size, size);
+  for (int column = 0; column < size; ++column) {
+    const int of = column / field, node = column % field / dim, direction = column % dim;
+    std::vector<Tensor> stress(exact.cells, Tensor::Zero());
+    std::vector<std::vector<Tensor>> pressure(fluids, stress);  // n p_a
+    for (int c = 0; c < exact.cells; ++c)
+      for (int k = 0; k <= dim; ++k) {
+        if (exact.mesh.cells[c].node[k] != node) continue;
+        Tensor g = Tensor::Zero();
+        g.template topLeftCorner<dim, dim>().row(direction) = exact.shape[c].gradient.row(k);
+        if (of == 0) stress[c] = shear * (g + g.transpose()) + (bulk - 2 * shear / 3) * g.trace() * Tensor::Identity();
+        for (int a = 0; a < fluids; ++a) {
+          const double strain = of == 0 ? (1 - porosity) * g.trace() : of == 1 + a ? porosity * g.trace() : 0;
+          const Tensor p = modulus[a] / porosity * strain * Tensor::Identity();
+          stress[c] += (1 - porosity) * p, pressure[a][c] = porosity * p;
+        }
+      }
+    for (int f = 0; f <= fluids; ++f) {
+      Nodes<dim, Phases> x = exact.internal_force(f == 0 ? stress : pressure[f - 1], false);
+      for (int i = 0; i < exact.nodes; ++i) x[i] /= -(f == 0 ? exact.mass[i] : porosity * density[f - 1] * volume[i]);
+      x = exact.back_and_forth(x);
+      for (int row = 0; row < field; ++row) product(f * field + row, column) = x[row / dim][row % dim];
+    }
+  }
+  const double omega = std::sqrt(Eigen::EigenSolver<Eigen::MatrixXd>(product).eigenvalues().real().maxCoeff());
+  double found = 0;
+  ASSERT_EQ(box.soil.motion->largest_frequency(3000, &found), 0);
+  EXPECT_NEAR(found / omega, 1, 1e-4) << "a power iteration, which comes from below";
+}
+TALUS_IN_FULL_AND_OPEN_PORES(frequency_of_the_mesh_is_the_largest_of_all_modes)
+TEST(Pores, frequency_of_the_mesh_is_the_largest_of_all_modes_three_phase_2d) {
+  frequency_of_the_mesh_is_the_largest_of_all_modes<2, ThreePhase>();
+}
 
 }  // namespace
 }  // namespace talus

@@ -1,0 +1,24 @@
+#pragma once
+/// What bounds the step of a run, docs/theory section 5.2: the fastest cell or the whole filled mesh.
+#include <string>
+#include <vector>
+
+#include "physics/laws/laws.h"
+#include "scene/scene.h"
+#include "solvers/integrators.h"
+
+namespace talus {
+
+struct StepBound {
+  FrequencyBound by;  ///< cells or mesh
+  std::string why;    ///< a clause for logs and pages
+  std::string sentence() const;
+};
+
+/// What `integrator.omega_max` stands for in this scene, whose mesh may be a slice one cell thick.
+StepBound choose_step_bound(const Scene &scene, const std::vector<Law> &laws, const IntegratorSettings &settings,
+                            bool slice);
+/// The settings with that bound in the place of `automatic`.
+IntegratorSettings with_bound(IntegratorSettings settings, FrequencyBound bound);
+
+}  // namespace talus
