@@ -212,7 +212,7 @@ def printed(path):
 def table_of_studies(studies):
     lines = ["| study | command | gives | repeated with the present program |", "|---|---|---|---|"]
     for study in studies.values():
-        command = ", ".join(f"`{re.sub('^TALUS', 'talus', one)}`" for one in (["talus run"] if "scene" in study else []) + commands_of(study))
+        command = ", ".join(f"`{re.sub('^TALUS', 'talus', one)}`" for one in commands_of(study) or ["talus run"])
         gives = f"[{study['file']}]({study['file']})" if "file" in study else "pictures"
         lines.append(f"| {study['about']} | {command} | {gives} | {'no: ' + study['unchecked'] if 'unchecked' in study else 'yes'} |")
     return lines
