@@ -48,7 +48,7 @@ class Series:
 
 
 SERIES = (Series(7), Series(10), Series(14, aspects=(0.8, 2)), Series(7, base=22), Series(10, base=22), Series(10, friction=26),
-          Series(10, peak=38, aspects=(0.8, 2)), Series(10, base=22, peak=38, aspects=(0.8, 2)))
+          Series(10, peak=38, aspects=(0.8,)), Series(10, base=22, peak=38, aspects=(0.8, 2)))
 
 SCENE = """title = "Round column, H0 / R0 = {aspect:g}"
 dimension = 3
