@@ -124,7 +124,10 @@ int solve(const SolveArguments &arguments) {
   const auto dynamic = [](const Stage &stage) { return stage.kind == StageKind::dynamic; };
   std::erase_if(scene.stage, dynamic);
   if (scene.stage.empty())
-    scene.complain("stage", "has no quasi-static stage to solve; set its kind = \"quasi_static\"");
+    throw std::invalid_argument(
+        file +
+        " has no quasi-static stage to solve: all of its stages are of kind = \"dynamic\". Put one before them:\n"
+        "[[stage]]\nname = \"gravity\"\nkind = \"quasi_static\"\nduration = 1\nsoftening = false");
   RunOptions options;
   options.directory =
       arguments.directory.empty() ? default_results(file, arguments.set, "_solve") : arguments.directory;

@@ -275,7 +275,7 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   if (static_cast<int>(result.further.size()) + 1 < settings.mechanisms)
     run_.recorder.note("no further mechanism was found: the rest of the soil stands while that of those found is held");
   for (const std::string &stage : result.lost_stages)
-    run_.recorder.note("WARNING: stage " + stage +
+    run_.recorder.note("warning: stage " + stage +
                        " found no equilibrium, so the search for the factor began out of balance; the factor does not "
                        "depend on it, but displacement and stress of that stage are not those of this soil");
   ++run_.clock.steps;

@@ -1,5 +1,8 @@
 #include "simulation/simulation_impl.h"
 
+#include <algorithm>
+#include <set>
+
 #include "simulation/softening.h"
 #include "simulation/stages/stage_runner.h"
 #include "simulation/unlikely.h"
@@ -22,6 +25,29 @@ void Simulation<dim>::run() {
       run_.recorder.note("nothing was left to do: the run had reached its end before it was resumed");
   });
   run_.recorder.close();
+}
+
+/// Free space is called "air"; a region of another name that no body fills was mostly forgotten.
+template <int dim>
+std::vector<std::string> Simulation<dim>::regions_without_soil() const {
+  const BackgroundMesh<dim> &mesh = run_.world.mesh;
+  std::vector<char> filled(mesh.cell_count(), false);
+  std::set<std::string> named{"air"};
+  for (const BodySource &body : run_.scene.body)
+    for (const std::string &region : body.region) {
+      named.insert(region);
+      for (const int cell : mesh.region(region)) filled[cell] = true;
+    }
+  std::vector<std::string> sentences;
+  for (const std::string &region : mesh.region_names()) {
+    const std::vector<int> cells = mesh.region(region);
+    if (named.count(region) || std::any_of(cells.begin(), cells.end(), [&](int cell) { return filled[cell]; }))
+      continue;
+    sentences.push_back("no body fills the region " + region +
+                        ", which is empty space into which soil may move. If it is soil, give it a [body.NAME]; free "
+                        "space is called air");
+  }
+  return sentences;
 }
 
 /// What is written of the state at the start.

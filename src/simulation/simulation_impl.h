@@ -25,7 +25,8 @@ class Simulation final : public AnySimulation {
   std::string step_bound() const override { return run_.dynamics.step_bound().sentence(); }
   MeshReport mesh_report() const override {
     MeshReport report = run_.world.mesh.report();
-    report.remarks.insert(report.remarks.end(), run_.options.mesh.remarks.begin(), run_.options.mesh.remarks.end());
+    for (const auto &more : {run_.options.mesh.remarks, regions_without_soil()})
+      report.remarks.insert(report.remarks.end(), more.begin(), more.end());
     return report;
   }
   std::vector<BodyReport> bodies() override { return run_.world.report(); }
@@ -41,6 +42,7 @@ class Simulation final : public AnySimulation {
   void nodal_field(const std::string &name, const std::function<void(PetscInt, const double *)> &put) override;
 
  private:
+  std::vector<std::string> regions_without_soil() const;
   void begin();
   void run_stages();
   void step_until(double t);

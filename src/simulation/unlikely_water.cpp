@@ -42,13 +42,14 @@ void doubt_table(const Scene &scene, const Extent &soil, const std::vector<SoilF
                         " m): it gives no pore pressure");
 }
 
-/// Soil counts as wet below a water table; an excess presses and fills no pores.
+/// Soil counts as wet below a water table; an excess presses and fills no pores. Pores that are full everywhere have
+/// one weight.
 void doubt_excess_alone(const Scene &scene, std::vector<std::string> &sentences) {
   const Function &excess = scene.water.excess;
   if (scene.phases != PhaseModel::drained || scene.water.table.given()) return;
   if (excess.constant() && excess(0) == 0) return;
   for (const BodySource &body : scene.body)
-    if ((body.saturation > 0 || body.saturated_unit_weight > 0) && !body.water_table.given() &&
+    if (((body.saturation > 0 && body.saturation < 1) || body.saturated_unit_weight > 0) && !body.water_table.given() &&
         body.pore_pressure_ratio == 0)
       sentences.push_back("water.excess is the only pore pressure of body." + body.name + ", whose " +
                           (body.saturation > 0 ? "saturation" : "saturated_unit_weight") +

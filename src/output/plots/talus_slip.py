@@ -17,15 +17,30 @@ NEAR = 0.15  # of the height of the soil: a line that ends deeper below the grou
 
 
 def slip_surface(results, time=None):
-    """Points [n, 2] of the surface in the undeformed section, from left to right, and the snapshot that shows it: the one nearest to `time`, else to
-    the failure, else the last. The surface is a connected path through columns and rows of soil; in each column it passes through the centre of the
-    larger half of the strain near the path. Raises ValueError where there is none."""
-    if time is None:
+    """Points [n, 2] of the surface in the undeformed section, from left to right, and the snapshot that shows it: the one nearest to `time`, else the
+    first from the failure on whose surface leads from ground to ground, else the last. The surface is a connected path through columns and rows of soil;
+    in each column it passes through the centre of the larger half of the strain near the path. Raises ValueError where there is none."""
+    if time is not None:
+        return surface_at(results, at(results, time))
+    try:
+        begin = at(results, failure(results)[0]).time
+    except (LookupError, OSError):
+        return surface_at(results, results.snapshots[-1])
+    for snapshot in results.snapshots:
+        if snapshot.time < begin:
+            continue
         try:
-            time = failure(results)[0]
-        except (LookupError, OSError):
-            pass
-    snapshot, first = at(results, time), results.snapshots[0]
+            found = surface_at(results, snapshot)
+        except ValueError:
+            continue
+        if not buried_ends(found[0], found[2]):
+            return found
+    return surface_at(results, results.snapshots[-1])
+
+
+def surface_at(results, snapshot):
+    """The surface that one snapshot shows, as slip_surface gives it."""
+    first = results.snapshots[0]
     if "plastic_strain" not in snapshot:
         raise ValueError(f"{results.folder} has no field plastic_strain, whose band is the slip surface")
     kept = np.isin(snapshot.ids(), first.ids())

@@ -191,6 +191,35 @@ TEST(Check, DoubtsWetWeightsWithoutAWaterTable) {
   EXPECT_FALSE(says("table='0.4 - 0.1 * x', excess='100 * x'"));
 }
 
+/// Soil whose pores are full everywhere weighs the same above and below any table.
+TEST(Check, DoesNotDoubtFullPoresWithoutAWaterTable) {
+  const Folder folder;
+  folder.write("section.csv", good_section);
+  folder.write("scene.toml",
+               changed(good_scene, "density = 2000", "porosity = 0.3\ngrain_density = 2650\nsaturation = 1"));
+  const auto says = [&](const std::string &saturation) {
+    return talus(folder, {"check", "scene.toml", "--set", "phases=drained", "--set",
+                          "water={excess='9810 * (0.5 - y)'}", "--set", "body.sand.saturation=" + saturation})
+        .says("water.excess is the only pore pressure of body.sand");
+  };
+  EXPECT_TRUE(says("0.5"));
+  EXPECT_FALSE(says("1"));
+}
+
+/// Soil that was drawn and has no body would be a hole in the slope.
+TEST(Check, DoubtsRegionsThatNoBodyFills) {
+  const Folder folder;
+  folder.write("scene.toml", good_scene);
+  const auto says = [&](const std::string &name) {
+    std::string section = good_section;
+    if (!name.empty()) section = changed(section, "region_air", "region_" + name);
+    folder.write("section.csv", section);
+    return talus(folder, {"check", "scene.toml"}).says("no body fills the region");
+  };
+  EXPECT_FALSE(says(""));
+  EXPECT_TRUE(says("gravel"));
+}
+
 /// A slide on a slope is as deep as it is thick, not as its range of elevations. A grid of the friction of its base has
 /// to cover the ground downhill of it.
 TEST(Check, LooksAtASlideOnASlope) {

@@ -92,7 +92,7 @@ TEST_F(TalusMesh, CountsTheCellsOfBoxesBeforeItMakesThem) {
   const std::string options = " --size 0.5 -o " + in_folder("m.msh");
   const Answer of_section = run(write("s.csv", square + "refine_0.00001,1,1\nrefine_0.00001,2,2\n") + options);
   EXPECT_EQ(of_section.status, 2);
-  expect_words(of_section, {"about 2.3", "more than 1e+08", "larger cells in the boxes"});
+  expect_words(of_section, {"about 2.3", "more than 2e+07", "larger cells in the boxes"});
   const Answer of_options = run(write("s.csv", square) + options + " --refine 1 1 2 2 1e-5");
   EXPECT_EQ(of_options.status, 2);
   EXPECT_EQ(run(write("s.csv", square) + options + " --refine 5 5 6 6 1e-5").status, 0);  // outside the section
