@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/room.h"
 #include "physics/pores/pore_fluid.inl"
 #include "physics/soil_motion.h"
 
@@ -38,14 +39,15 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
   const BackgroundMesh<dim> &mesh = parts.mesh;
   const auto &bodies = parts.bodies;
   const int nodes = mesh.node_count(), cells = mesh.cell_count();
-  force_.resize(nodes), scratch_.resize(nodes * fields);
-  if constexpr (Phases::liquid) pore_strain_.resize(cells);
-  update_.velocity.assign(nodes, Quad{}), update_.displacement.assign(nodes, Quad{});
-  for (int a = 0; a < fluids; ++a) update_.fluid[a].assign(nodes, Quad{});
-  for (auto *field : {&blend_, &filling_, &volume_strain_, &slenderness_}) field->assign(cells, 0);
-  increment_.resize(cells), cell_stress_.resize(cells), impedance_.resize(cells);
-  patch_weight_.assign(mesh.patch_count, 0), patch_sum_.assign(mesh.patch_count, 0);
-  nodal_.assign(static_cast<size_t>(nodes) * (dim + 2), 0);
+  make_room(force_, nodes), make_room(scratch_, static_cast<size_t>(nodes) * fields);
+  if constexpr (Phases::liquid) make_room(pore_strain_, cells);
+  make_room(update_.velocity, nodes), make_room(update_.displacement, nodes);
+  for (int a = 0; a < fluids; ++a) make_room(update_.fluid[a], nodes);
+  for (auto *field : {&blend_, &filling_, &volume_strain_, &slenderness_}) make_room(*field, cells);
+  for (auto *field : {&accepted_.particle_volume, &accepted_.weight}) make_room(*field, cells);
+  make_room(increment_, cells), make_room(cell_stress_, cells), make_room(impedance_, cells);
+  make_room(patch_weight_, mesh.patch_count), make_room(patch_sum_, mesh.patch_count);
+  make_room(nodal_, static_cast<size_t>(nodes) * (dim + 2));
   for (const auto &body : bodies) {
     const double length = body->source().averaging_length;
     nonlocal_.push_back(length > 0 ? std::make_unique<NonlocalStrain<dim>>(
@@ -57,14 +59,14 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
       PointSet &points = (*all)[b];
       points.of_cell.assign(cells, -1);
       if (!transfer_.average_stress) continue;
-      points.own_cell.resize(cells), points.own_volume.resize(cells), points.own_limit.resize(cells),
-          points.start_volume.resize(cells);
+      const size_t history = static_cast<size_t>(cells) * bodies[b]->history_count();
+      make_room(points.own_cell, cells);
+      for (auto *field : {&points.own_volume, &points.own_limit, &points.start_volume}) make_room(*field, cells);
       if (reads_shares(bodies[b]->law()))
-        points.own_cohesion_share.resize(cells), points.own_friction_share.resize(cells);
-      points.own_stress.resize(static_cast<size_t>(cells) * components);
-      points.own_history.resize(static_cast<size_t>(cells) * bodies[b]->history_count());
-      points.start_history.resize(points.own_history.size());
-      change_.resize(std::max(change_.size(), static_cast<size_t>(cells) * (1 + fluids + bodies[b]->history_count())));
+        make_room(points.own_cohesion_share, cells), make_room(points.own_friction_share, cells);
+      make_room(points.own_stress, static_cast<size_t>(cells) * components);
+      make_room(points.own_history, history), make_room(points.start_history, history);
+      make_room(change_, std::max(change_.size(), static_cast<size_t>(cells) * (1 + fluids) + history));
     }
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/phases.h"
+#include "base/room.h"
 #include "physics/boundary/pore_conditions.h"
 #include "physics/pores/drag.h"
 #include "physics/pores/fluids.h"
@@ -137,8 +138,8 @@ class PoreFluid {
 
     void reserve(int points) {
       if (points <= static_cast<int>(grains.size())) return;
-      grains.resize(points), share.resize(points), suction.resize(points);
-      for (Array &m : mass) m.resize(points);
+      for (Array *field : {&grains, &share, &suction}) make_room(*field, points);
+      for (Array &m : mass) make_room(m, points);
     }
   };
   struct CellPores {

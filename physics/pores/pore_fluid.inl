@@ -28,15 +28,16 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
   constexpr double earth = 9.81;  // [m/s2], for a hydraulic conductivity in a scene without gravity
   for (const auto &body : bodies)
     soils_.emplace_back(body->source(), scene.water.density * (gravity > 0 ? gravity : earth), scene.water.viscosity);
-  cells_.resize(cells), nodes_.resize(nodes), mean_.resize(cells), reference_.resize(cells), rows_.resize(cells),
-      head_.resize(cells), grain_mass_.resize(cells);
-  nodal_head_.resize(nodes), momentum_.resize(nodes), surface_.resize(nodes), moment_.resize(nodes), gap_.resize(nodes),
-      beyond_.assign(nodes, 0), body_of_node_.assign(nodes, 0);
-  for (int a = 0; a < fluids; ++a)
-    flux_[a].resize(nodes), gap_flux_[a].resize(nodes), impulse_[a].resize(cells), divergence_[a].resize(cells),
-        smooth_[a].resize(cells);
-  nodal_.resize(4 * nodes);
-  if constexpr (Phases::suction) patch_pores_.resize(mesh.patch_count);
+  make_room(cells_, cells), make_room(nodes_, nodes), make_room(mean_, cells), make_room(reference_, cells);
+  make_room(rows_, cells), make_room(head_, cells), make_room(grain_mass_, cells), make_room(nodal_head_, nodes);
+  for (auto *field : {&surface_, &moment_, &gap_}) make_room(*field, nodes);
+  make_room(momentum_, nodes), make_room(beyond_, nodes), make_room(body_of_node_, nodes);
+  for (int a = 0; a < fluids; ++a) {
+    make_room(flux_[a], nodes), make_room(gap_flux_[a], nodes), make_room(impulse_[a], cells);
+    make_room(divergence_[a], cells), make_room(smooth_[a], cells);
+  }
+  make_room(nodal_, 4 * nodes);
+  if constexpr (Phases::suction) make_room(patch_pores_, mesh.patch_count);
   for (auto *all : {&points_, &next_points_})
     for (size_t b = 0; b < bodies.size(); ++b)
       (*all)[b].reserve(scene.transfer.average_stress ? static_cast<int>(cells) : bodies[b]->particles().count);

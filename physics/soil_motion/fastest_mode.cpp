@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/local_numbers.h"
+#include "base/room.h"
 #include "physics/kinematics.h"
 #include "physics/laws/laws.h"
 #include "transfer/mass_matrix.h"
@@ -121,10 +122,11 @@ PetscErrorCode FastestMode<dim, fields>::find(FilledGrid<dim> &grid, const SoilS
   PetscFunctionBeginUser;
   const int nodes = grid.node_count();
   if (elasticity_.empty()) {
-    elasticity_.resize(mesh_.cell_count());
-    for (auto &mode : mode_) mode.resize(mesh_.node_count());
-    for (auto &mass : fluid_mass_) mass.resize(mesh_.node_count());
-    for (auto *field : {&wave_, &force_}) field->resize(static_cast<size_t>(fields) * mesh_.node_count());
+    make_room(elasticity_, mesh_.cell_count());
+    for (auto &mode : mode_)
+      if (mode.empty()) make_room(mode, mesh_.node_count());  // else it comes from a checkpoint
+    for (auto &mass : fluid_mass_) make_room(mass, mesh_.node_count());
+    for (auto *field : {&wave_, &force_}) make_room(*field, static_cast<size_t>(fields) * mesh_.node_count());
   }
   measure_elasticity(grid, state, bodies, points);
   PetscCall(measure_fluid_mass(grid, state));

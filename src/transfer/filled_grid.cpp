@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/local_numbers.h"
+#include "base/room.h"
 
 namespace talus {
 
@@ -20,9 +21,9 @@ template <int dim>
 FilledGrid<dim>::FilledGrid(const BackgroundMesh<dim> &mesh) : mesh_(&mesh), halo_(mesh.halo) {
   const int nodes = mesh.node_count(), cells = mesh.cell_count();
   compact_node_.assign(nodes, -1), compact_cell_.assign(cells, -1);
-  mesh_node.resize(nodes), mass.resize(nodes), position.resize(nodes);
-  mesh_cell.resize(cells), shape.resize(cells), mass_matrix.resize(cells), nodal_share.resize(cells);
-  size.resize(cells), patch.resize(cells), element_size_.reserve(cells);
+  make_room(mesh_node, nodes), make_room(mass, nodes), make_room(position, nodes);
+  make_room(mesh_cell, cells), make_room(shape, cells), make_room(mass_matrix, cells), make_room(nodal_share, cells);
+  make_room(size, cells), make_room(patch, cells), element_size_.reserve(cells);
   for (double volume : mesh.volume) element_size_.push_back(element_size<dim>(volume));
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/room.h"
+
 namespace talus {
 namespace {
 
@@ -43,11 +45,11 @@ NonlocalStrain<dim>::NonlocalStrain(const BackgroundMesh<dim> &mesh, double leng
   MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_DOUBLE, MPI_MAX, mesh.comm());
   least_ = -bounds[0], largest_ = std::min(bounds[1], dim + 1.);
   const std::size_t nodes = mesh.node_count(), cells = mesh.cell_count();
-  size_.assign(cells, 2 * length), volume_.assign(cells, 0), gradient_.resize(cells), cell_.resize(cells),
-      sums_.resize(nodes);
+  size_.assign(cells, 2 * length), make_room(volume_, cells), make_room(gradient_, cells);
+  make_room(cell_, cells), make_room(sums_, nodes);
   for (auto *nodal : {&mass_, &over_diagonal_, &load_, &average_, &residual_, &direction_, &product_})
-    nodal->assign(nodes, 0);
-  excess_.resize(cells), own_.resize(cells), seen_.resize(cells * history_count);
+    make_room(*nodal, nodes);
+  make_room(excess_, cells), make_room(own_, cells), make_room(seen_, cells * history_count);
 }
 
 template <int dim>
