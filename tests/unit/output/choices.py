@@ -223,6 +223,23 @@ class SlipSurface(unittest.TestCase):
             self.assertLess(abs(y - band(x)), 1.3)
 
 
+    def test_is_that_of_the_first_time_at_which_it_leads_from_ground_to_ground(self):
+        # a circle from the ground at x = 4 to the ground at x = 16, of which the part to the right of `front` is sheared
+        def circle(front):
+            return lambda x, y: float(front < x < 16.4 and abs(np.hypot(x - 10, y - 12) - 6.3) < 0.4)
+
+        moments = [Sheared(circle(front)) for front in (15, 9, 3.6, 3.6)]
+        for time, moment in enumerate(moments):
+            moment.time = time
+        results = moments[0]
+        results.snapshots = moments
+        with unittest.mock.patch("talus_slip.failure", lambda results: (1.0,)):
+            line, snapshot = slip_surface(results)[:2]
+        self.assertEqual(snapshot.time, 2)
+        self.assertLess(line[0, 0], 6)
+        self.assertEqual(slip_surface(results, 1)[1].time, 1)
+
+
 class Charts(unittest.TestCase):
     """One axis, one quantity, with its unit."""
 
