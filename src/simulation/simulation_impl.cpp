@@ -27,12 +27,13 @@ void Simulation<dim>::run() {
   run_.recorder.close();
 }
 
-/// Free space is called "air"; a region of another name that no body fills was mostly forgotten.
+/// Free space is called "air", or "air_1" and so on between cuts; a region of another name that no body fills was
+/// mostly forgotten.
 template <int dim>
 std::vector<std::string> Simulation<dim>::regions_without_soil() const {
   const BackgroundMesh<dim> &mesh = run_.world.mesh;
   std::vector<char> filled(mesh.cell_count(), false);
-  std::set<std::string> named{"air"};
+  std::set<std::string> named;
   for (const BodySource &body : run_.scene.body)
     for (const std::string &region : body.region) {
       named.insert(region);
@@ -41,7 +42,8 @@ std::vector<std::string> Simulation<dim>::regions_without_soil() const {
   std::vector<std::string> sentences;
   for (const std::string &region : mesh.region_names()) {
     const std::vector<int> cells = mesh.region(region);
-    if (named.count(region) || std::any_of(cells.begin(), cells.end(), [&](int cell) { return filled[cell]; }))
+    const bool air = region == "air" || region.starts_with("air_");
+    if (air || named.count(region) || std::any_of(cells.begin(), cells.end(), [&](int cell) { return filled[cell]; }))
       continue;
     sentences.push_back("no body fills the region " + region +
                         ", which is empty space into which soil may move. If it is soil, give it a [body.NAME]; free "

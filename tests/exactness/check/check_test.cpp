@@ -224,6 +224,7 @@ TEST(Check, DoubtsRegionsThatNoBodyFills) {
     return talus(folder, {"check", "scene.toml"}).says("no body fills the region");
   };
   EXPECT_FALSE(says(""));
+  EXPECT_FALSE(says("air_1"));  // between cuts
   EXPECT_TRUE(says("gravel"));
 }
 
