@@ -1,6 +1,7 @@
 # cmake -DROOT=folder -P check_pages.cmake: every line of a Markdown page has at most 160 characters (tables, code and displayed formulas
 # excepted), and every relative link names a file that exists. Each case of docs/gallery has a row in the index of the gallery: a picture of its
-# own, its name, a sentence and a command.
+# own, its name, a sentence and a command. Pages start scripts by their names: they are executable and choose Debian's Python, which has the packages
+# that the launcher installs; another python3 of the PATH may lack them.
 file(GLOB pages ${ROOT}/*.md)
 file(GLOB_RECURSE more ${ROOT}/docs/*.md ${ROOT}/tests/*.md)
 set(wrong 0)
@@ -25,6 +26,10 @@ foreach(page IN LISTS pages more)
       else()
         set(code TRUE)
       endif()
+    endif()
+    if(line MATCHES "^ *(python|python3) ")
+      message("${name}:${number}: starts python3; start the script by its name")
+      math(EXPR wrong "${wrong} + 1")
     endif()
     if(code OR line MATCHES "^    ")
       continue()
@@ -71,6 +76,12 @@ foreach(case IN LISTS cases)
     math(EXPR wrong "${wrong} + 1")
   endif()
 endforeach()
+execute_process(COMMAND find ${ROOT}/docs ${ROOT}/tests -name "*.py" ! -perm -u+x -exec grep -l -m 1 "^#!" {} + OUTPUT_VARIABLE idle OUTPUT_STRIP_TRAILING_WHITESPACE)
+execute_process(COMMAND grep -rlE "^#!.*(env |local/).*python" --include=*.py ${ROOT}/docs ${ROOT}/tests OUTPUT_VARIABLE foreign OUTPUT_STRIP_TRAILING_WHITESPACE)
+if(idle OR foreign)
+  message("these scripts begin with #! but are not executable, or begin with another line than #!/usr/bin/python3:\n${idle}${foreign}")
+  math(EXPR wrong "${wrong} + 1")
+endif()
 if(wrong GREATER 0)
-  message(FATAL_ERROR "${wrong} lines of pages are too long, have a dead link or are missing")
+  message(FATAL_ERROR "${wrong} lines of pages are too long, have a dead link, start what they should not, or are missing")
 endif()

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Draws architecture.png: the libraries and programs of Talus and who links whom, read from the CMakeLists.txt files.
 
     docs/architecture.py            # writes docs/architecture.png

@@ -118,24 +118,12 @@ void write_csv(const std::string &path, const std::vector<Variant> &trials) {
   }
 }
 
-void print(const std::vector<Variant> &trials, const std::string &measure, const Reference &reference) {
-  std::printf("%s; reference %.8g +- %.2g (%s)\n\n", measure.c_str(), reference.value, reference.uncertainty,
-              reference.origin.c_str());
-  std::printf("%-20s %-50s %14s %10s %10s %10s %10s %8s\n", "series", "overrides", "value", "error", "cpu s", "steps",
-              "evals", "rejected");
-  for (const Variant &t : trials) {
-    if (t.failed)
-      std::printf("%-20s %-50s FAILED: %s\n", t.label.c_str(), joined(t.overrides).c_str(), t.cause.c_str());
-    else
-      std::printf("%-20s %-50s %14.8g %10.2e %10.3g %10lld %10lld %8lld\n", t.label.c_str(),
-                  joined(t.overrides).c_str(), t.value, t.error, t.cpu, t.steps, t.evaluations, t.rejections);
-  }
-  if (const auto without = std::count_if(trials.begin(), trials.end(),
-                                         [](const Variant &t) { return !t.failed && std::isnan(t.value); }))
-    std::printf(
-        "%ld of %zu runs have no value: they ended before that time without coming to rest, or the point had no "
-        "soil\n",
-        static_cast<long>(without), trials.size());
+/// Starts the script that prints the table of the runs and draws their chart. Returns its status.
+int tell(const CompareArguments &arguments, const char *script) {
+  std::vector<std::string> words{arguments.directory};
+  if (arguments.no_plot) words.push_back("--no-plot");
+  std::fflush(stdout);
+  return run_script(script, words);
 }
 
 /// Outcomes of each run against the last key of its series: whether and when it fails, how far and how fast it moves.
@@ -151,9 +139,7 @@ int sweep(const CompareArguments &arguments, const std::vector<Variant> &trials)
          << csv_field(warnings_of(t)) << "\n";
   }
   if (!file.flush()) throw std::runtime_error("cannot write " + arguments.directory + "/runs.csv");
-  std::vector<std::string> words{arguments.directory};
-  if (arguments.no_plot) words.push_back("--no-plot");
-  const int status = run_script("talus_sweep.py", words);
+  const int status = tell(arguments, "talus_sweep.py");
   std::fprintf(stderr, "sweep.csv%s in %s\n", arguments.no_plot ? " is" : " and sweep.png are",
                arguments.directory.c_str());
   return status;
@@ -195,14 +181,13 @@ int compare(CompareArguments arguments) {
     trials.pop_back();
   }
   for (Variant &trial : trials) trial.error = std::abs(trial.value - reference.value);
-  print(trials, arguments.measure, reference);
-  print_warnings(warnings, pointers.size());
   write_csv(arguments.directory + "/compare.csv", trials);
   std::ofstream(arguments.directory + "/reference.csv")
       << std::setprecision(12) << "measure,value,uncertainty,origin\n\"" << arguments.measure << "\","
       << reference.value << "," << reference.uncertainty << ",\"" << reference.origin << "\"\n";
-  if (!arguments.no_plot) draw_comparison(arguments.directory);
-  std::fprintf(stderr, "table and chart are in %s\n", arguments.directory.c_str());
+  tell(arguments, "talus_compare.py");
+  print_warnings(warnings, pointers.size());
+  std::fprintf(stderr, "table%s in %s\n", arguments.no_plot ? " is" : " and chart are", arguments.directory.c_str());
   return std::any_of(trials.begin(), trials.end(), [](const Variant &t) { return t.failed; }) ? 1 : 0;
 }
 

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The terrain of this page, mountain.asc: the flank of a mountain with a winding gully, and relief at all scales. `terrain.py` writes it anew.
 
 East x and north y in m from the corner (500000, 5200000):

@@ -1,11 +1,11 @@
+#!/usr/bin/python3
 """The front of a slide over time and its speed:  front.py RESULTS PICTURE"""
 import sys
+from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 from talus_results import Results
+from talus_style import plt, save
 
 MOVED = 0.05  # soil belongs to the slide if it has moved by more than this [m]
 
@@ -25,5 +25,5 @@ right.plot(time, speed, label="front, from the snapshots")
 right.plot(results.history.time, results.history["crest_velocity_m_s"], label="crest, from history.csv")
 right.set(xlabel="time [s]", ylabel="speed [m/s]", xlim=left.get_xlim())
 right.legend()
-figure.savefig(sys.argv[2], dpi=130)
+save(figure, Path(sys.argv[2]))
 print(f"the front ends at x = {front[-1]:.2f} m; its largest speed is {max(speed):.2f} m/s")

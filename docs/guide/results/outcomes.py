@@ -1,11 +1,10 @@
+#!/usr/bin/python3
 """Several runs in one chart:  outcomes.py FOLDER PICTURE   with the folder that `talus compare SCENE --series ...` wrote"""
 import sys
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 from talus_results import Results, Table
+from talus_style import plt, save
 
 folder = Path(sys.argv[1])
 sweep, runs = Table(folder / "sweep.csv"), Table(folder / "runs.csv")
@@ -18,6 +17,6 @@ for value, name in zip(runs["value"], runs["folder"]):
     history = Results(folder / name).history
     right.plot(history.time, history["crest_displacement_m"], label=f"{value:g}")
 right.set(xlabel="time [s]", ylabel="displacement of the crest [m]")
-right.legend(title=varied, fontsize=8)
-figure.savefig(sys.argv[2], dpi=130)
+right.legend(title=varied, fontsize=8, title_fontsize=8)
+save(figure, Path(sys.argv[2]))
 print(f"{len(sweep)} runs; the slide travels by {min(sweep['travel_distance_m']):.2f} to {max(sweep['travel_distance_m']):.2f} m")

@@ -1,14 +1,14 @@
+#!/usr/bin/python3
 """A field along a vertical line at some times:  profile.py RESULTS FIELD X PICTURE TIME [TIME ...]
 
 The value at an elevation is the mean over the particles nearby, weighted by volume and by the distance in x and y.
 """
 import sys
+from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 from talus_results import Results
+from talus_style import plt, save
 
 folder, field, x, picture, *times = sys.argv[1:]
 results = Results(folder)
@@ -32,4 +32,4 @@ for time in map(float, times):
     print(f"{snapshot.time:g} s: {field} from {profile.min():.4g} to {profile.max():.4g} {unit}")
 axes.set(xlabel=f"{field.replace('_', ' ')} [{unit or '-'}]", ylabel=f"elevation at x = {float(x):g} m [m]")
 axes.legend()
-figure.savefig(picture, dpi=130)
+save(figure, Path(picture))

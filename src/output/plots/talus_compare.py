@@ -1,12 +1,17 @@
-"""Draws DIR/compare.png from the DIR/compare.csv of `talus compare`: error against processor time and against the refined key, and the
-values themselves; one line a series."""
+"""Of the DIR/compare.csv of `talus compare`: prints the table, and draws DIR/compare.png, error against processor time and against the refined key, and
+the values themselves; one line a series."""
 
 import argparse
 import csv
 import pathlib
+import re
 
 from talus_style import FAINT, INK, LINES, np, plt, save
+from talus_table import lines_of
 from talus_units import with_unit
+
+COLUMNS = (("value", "value", ".8g"), ("error", "error", ".2e"), ("processor_s", "processor time [s]", ".3g"), ("steps", "steps", ".0f"),
+           ("evaluations", "evaluations", ".0f"), ("rejections", "attempts rejected", ".0f"))
 
 
 def read(path):
@@ -59,8 +64,30 @@ def draw(rows, reference, path):
     save(figure, path)
 
 
+def varied(row, series):
+    """What a run sets that other runs of its series set otherwise, with the last words of the keys."""
+    own, *others = (re.split(r" (?=[\w.]+=)", each["overrides"]) for each in (row, *series))
+    return ", ".join(word.split("=")[0].rpartition(".")[2] + "=" + word.partition("=")[2] for word in own if not all(word in other for other in others))
+
+
+def table(rows, width=None):
+    """Lines of the table of all runs."""
+    texts = []
+    for row in rows:
+        keys = [row["series"], varied(row, [other for other in rows if other["series"] == row["series"]])]
+        texts.append(keys + ([f"broke off: {row['failure']}"] if row["failure"] else [format(float(row[key]), digits) for key, _, digits in COLUMNS]))
+    return lines_of(["series", "varied", *(heading for _, heading, _ in COLUMNS)], texts, keys=2, width=width)
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser()
     parser.add_argument("dir", type=pathlib.Path)
-    folder = parser.parse_args().dir
-    draw(read(folder / "compare.csv"), read(folder / "reference.csv")[0], folder / "compare.png")
+    parser.add_argument("--no-plot", action="store_true")
+    given = parser.parse_args()
+    runs, reference = read(given.dir / "compare.csv"), read(given.dir / "reference.csv")[0]
+    print(f"{reference['measure']}; reference {float(reference['value']):.8g} +- {float(reference['uncertainty']):.2g} ({reference['origin']})\n")
+    print("\n".join(table(runs)))
+    if without := sum(not run["failure"] and not np.isfinite(float(run["value"])) for run in runs):
+        print(f"{without} of {len(runs)} runs have no value: they ended before that time without coming to rest, or the point had no soil")
+    if not given.no_plot:
+        draw(runs, reference, given.dir / "compare.png")

@@ -14,6 +14,7 @@ from talus_outcomes import FAILS, MOVES, STANDS, cell_size, outcome, warnings_in
 from talus_results import Results
 from talus_sections import BELOW, BESIDE, FOOT, HEAD, LEFT, RIGHT, TITLE, WIDTH, Colours, Painter, plt
 import talus_style as style
+from talus_table import folded, lines_of
 from talus_units import readable_unit, words
 
 THINGS = {"cells": "cell size", "steps": "time step", "particles": "number of particles per cell"}
@@ -24,7 +25,9 @@ REMEDY = {
 }
 
 
-# ---- the verdict ----# where soil softens, and its cells decide something
+# ---- the verdict ----
+
+# where soil softens, and its cells decide something
 SOFTENING = "Look at `talus check` for softening that is too brittle for these cells, and give the soil an averaging_length. "
 
 
@@ -104,14 +107,13 @@ COLUMNS = (("load_time_of_failure_s", "failure at t [s]"), ("largest_displacemen
            ("wall_s", "run time [s]"))
 
 
-def print_table(rows, by, volumes):
-    print(f"{by:>10} {'':>7} " + " ".join(f"{title.format(volumes):>16}" for _, title in COLUMNS))
+def table(rows, by, volumes, width=None):
+    """Lines of the table of all runs."""
+    texts = []
     for row in rows:
-        if row["failure"]:
-            print(f"{row['value']:>10g} broke off: {row['failure']}")
-            continue
-        shown = [f"{row[key]:>16,d}" if isinstance(row[key], int) else f"{'-' if row[key] is None else format(row[key], '.4g'):>16}" for key, _ in COLUMNS]
-        print(f"{row['value']:>10g} {row['state']:>7} " + " ".join(shown))
+        shown = [f"{row[key]:,d}" if isinstance(row[key], int) else "-" if row[key] is None else f"{row[key]:.4g}" for key, _ in COLUMNS if not row["failure"]]
+        texts.append([f"{row['value']:g}"] + ([f"broke off: {row['failure']}"] if row["failure"] else [row["state"], *shown]))
+    return lines_of([by, "state", *(heading.format(volumes) for _, heading in COLUMNS)], texts, width=width)
 
 
 def write_tables(rows, sentences, judged, decides, by, within, folder):
@@ -183,8 +185,7 @@ def main():
         row |= outcome(one, largest)
     volumes = ended[0].per_metre("m³") if ended else "m³"
     sentences, decides, judged = judge(rows, given.by, given.within, given.softening, volumes)
-    print_table(rows, given.by, volumes)
-    print("\n" + "\n".join(sentences))
+    print("\n".join([*table(rows, given.by, volumes), "", *map(folded, sentences)]))
     write_tables(rows, sentences, judged, decides, given.by, given.within, given.folder)
     if ended and not given.no_plot:
         draw(ended, [row for row in rows if not row["failure"]], given.by, given.folder / "converge.png")

@@ -11,10 +11,13 @@ from talus_units import Keys, duration, quantity, span, words
 GROUND = ("#e8d5b0", "#c2a278", "#b9bfa4", "#a9a29a", "#e0b88a", "#d5cfc9", "#a8895f", "#d8c774")  # of the soils
 EARTH, WATER, LOAD, BASE, PLATE, GAS = style.INK, "#1971c2", "#c92a2a", "#a0410d", "#5f3dc4", "#862e9c"
 UNBROKEN = "\u00a0"  # a blank at which no line ends
-# parameters of soils that the legend has, by key
+# symbols of the parameters of soils; a parameter without one has its key in words
 PARAMETERS = {"unit_weight": "γ", "saturated_unit_weight": "γₛₐₜ", "density": "ρ", "porosity": "n", "grain_density": "ρₛ", "young_modulus": "E",
               "shear_modulus": "G", "bulk_modulus": "K", "poisson_ratio": "ν", "cohesion": "c", "friction_angle": "φ", "dilation_angle": "ψ",
-              "residual_cohesion": "cᵣ", "residual_friction_angle": "φᵣ", "hydraulic_conductivity": "k", "permeability": "k"}
+              "residual_cohesion": "cᵣ", "residual_friction_angle": "φᵣ", "residual_dilation_angle": "ψᵣ", "tension_cutoff": "σₜ",
+              "k0": "K₀", "hydraulic_conductivity": "k", "permeability": "k"}
+# keys of soils that are no parameters: what they fill, their law, their particles, their state at the start
+NO_PARAMETERS = {"region", "law", "material", "particles_per_cell", "dense", "velocity", "displacement", "stress", "body_acceleration", "water_table"}
 # what a boundary does to the soil: words, colour, symbol in perspective
 ON_SOIL = {"fixed": ("fixed", EARTH, "s"), "roller": ("roller", EARTH, "o"), "base": ("base with friction", BASE, "X"),
            "load": ("load", LOAD, "v"), "velocity": ("moving plate", PLATE, "D"), "dashpot": ("non-reflecting", GAS, "P")}
@@ -45,11 +48,15 @@ class Model:
         return GROUND[body % len(GROUND)]
 
     def soil_line(self, name):
-        """Law and main parameters of a soil."""
+        """Law (or material of the library) and parameters of a soil: first those with symbols, then the others."""
         given = self.scene.get("body", {}).get(name, {})
-        law = given.get("law", "")
-        values = [f"{symbol} = {self.keys.text('body.NAME', law, key, given[key])}".replace(" ", UNBROKEN) for key, symbol in PARAMETERS.items() if key in given]
-        return f"{words(law)}: {', '.join(values)}"
+        others = [key for key, value in given.items() if key not in NO_PARAMETERS and key not in PARAMETERS and not isinstance(value, dict)]
+        said = [f"{symbol} = {self._value(given, key)}" for key, symbol in PARAMETERS.items() if key in given]
+        said += [f"{words(key)} {self._value(given, key)}" for key in others]
+        return f"{words(given.get('law') or given.get('material', ''))}: {', '.join(one.replace(' ', UNBROKEN) for one in said)}"
+
+    def _value(self, given, key):
+        return self.keys.text("body.NAME", given.get("law", ""), key, given[key])
 
     def water_lines(self):
         """Polylines of the water tables at the start, level beyond their ends, over the width of the model: [(body, points)]."""

@@ -19,6 +19,7 @@ import talus_style as style
 from talus_outcomes import FAILS, MOVES, STANDS, finite, warnings_in, write_json
 from talus_style import plt
 from talus_sweep import number, outcomes, plane, title_of
+from talus_table import folded
 from talus_units import with_unit, words
 
 NO_SLIDE = ("travel_distance_m", "volume_of_slide_m3", "depth_of_slide_m")  # 0 where the slope stands
@@ -196,23 +197,23 @@ def main():
     states = [row["state"] for row in rows if "state" in row]
     print(f"{len(rows)} of {design['planned']} runs, {len(broken)} of which broke off")
     for row in broken[:5]:
-        print(f"  run {row['run']} broke off: {row['failure']}")
+        print(folded(f"  run {row['run']} broke off: {row['failure']}"))
     if states:
-        print(f"the slope fails in {states.count(FAILS)} runs, moves by less than a cell in {states.count(MOVES)}, stands in {states.count(STANDS)}")
+        print(folded(f"the slope fails in {states.count(FAILS)} runs, moves by less than a cell in {states.count(MOVES)}, stands in {states.count(STANDS)}"))
     variables, criteria = design["variables"], design["criteria"]
     sampled = any(v["random"] for v in variables)
     estimates = [probability(rows, c, design["confidence"]) for c in criteria] if rows and sampled else []
     for p in estimates:
         side = "below" if "below" in p else "above"
         known = "unknown" if p["probability"] is None else f"{p['probability']:.4g}"
-        print(f"{p['criterion']}: {p['outcome']} {side} {p[side]:g} in {p['met']} of {p['runs'] - p['unknown']} runs, probability {known}, "
-              f"{100 * p['confidence']:g} % interval {p['low']:.4g} to {p['high']:.4g}" + (f"; unknown in {p['unknown']} runs" if p["unknown"] else ""))
+        print(folded(f"{p['criterion']}: {p['outcome']} {side} {p[side]:g} in {p['met']} of {p['runs'] - p['unknown']} runs, probability {known}, "
+                     f"{100 * p['confidence']:g} % interval {p['low']:.4g} to {p['high']:.4g}" + (f"; unknown in {p['unknown']} runs" if p["unknown"] else "")))
     shown = varying(rows, dict.fromkeys([*(c["outcome"] for c in criteria), *SHOWN, *design["measures"]]))
     fits = [fit for fit in (sensitivities(rows, variables, name) for name in shown if name != "fails") if fit]
     for measure in design["measures"]:
         if without := [row["run"] for row in rows if not row["failure"] and row[measure] is None]:
-            print(f"{measure} has no value in {len(without)} runs, first in run {without[0]}: they ended before that time without coming to rest, or the point "
-                  "had no soil")
+            print(folded(f"{measure} has no value in {len(without)} runs, first in run {without[0]}: they ended before that time without coming to rest, or the "
+                         "point had no soil"))
     write_json(given.folder / "study.json", {"title": design["title"], "runs": len(rows), "planned": design["planned"], "broke_off": len(broken),
                                              "warnings": warnings_in(given.folder), "probabilities": estimates, "sensitivities": fits})
     for name, wanted, draw in (("tornado", fits, lambda path: draw_tornado(fits, in_plane, path)),

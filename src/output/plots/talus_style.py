@@ -46,12 +46,12 @@ def colours_of(field):
 
 
 def program():
-    """Name and version of the program that draws, "Talus 0.1.0". The program passes them on when it starts a script; a script of the source
-    tree that is started alone reads them from CMakeLists.txt."""
+    """Name and version of the program that draws, "Talus 0.1.0". The program passes them on when it starts a script; a script that is started alone
+    reads them from CMakeLists.txt, which an installed program lacks."""
     if "TALUS_PROGRAM" in os.environ:
         return os.environ["TALUS_PROGRAM"]
-    root = pathlib.Path(__file__).resolve().parents[3]
-    return "Talus " + re.search(r"project\(Talus VERSION (\S+)", (root / "CMakeLists.txt").read_text()).group(1)
+    lists = pathlib.Path(__file__).resolve().parents[3] / "CMakeLists.txt"
+    return "Talus " + re.search(r"project\(Talus VERSION (\S+)", lists.read_text()).group(1) if lists.exists() else "Talus"
 
 
 def save(figure, path, **options):

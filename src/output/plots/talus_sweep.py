@@ -16,6 +16,7 @@ from talus_outcomes import FAILS, MOVES, STANDS, outcome
 from talus_results import UNITS, Results
 import talus_style as style
 from talus_style import plt
+from talus_table import lines_of
 from talus_units import with_unit, words
 
 LEFT_OUT = ("cell_m", "deepest_at_x_m")  # outcomes that no chart shows
@@ -165,15 +166,15 @@ def axis_title(rows):
     return with_unit(rows[0]["key"], units.pop() if len(units) == 1 else "")
 
 
-def print_table(rows):
-    columns = ["state", *(column for _, of in charted(rows) for column in of.values())]
-    print(f"{'series':14} {'value':>12} " + " ".join(f"{column[:26]:>26}" for column in columns))
+def table(rows, in_plane=False, width=None):
+    """Lines of the table of all runs."""
+    columns = [(", ".join(filter(None, (label, title))), column) for title, of in charted(rows, in_plane) for label, column in of.items()]
+    texts = []
     for row in rows:
-        if row["failure"]:
-            print(f"{row['series']:14} {row['value']:>12} broke off: {row['failure']}")
-            continue
-        shown = [row["state"], *("-" if row.get(column) is None else f"{row[column]:.4g}" for column in columns[1:])]
-        print(f"{row['series']:14} {row['value']:>12} " + " ".join(f"{value:>26}" for value in shown))
+        keys = [row["series"], row["value"]]
+        texts.append(keys + ([f"broke off: {row['failure']}"] if row["failure"] else
+                             [row["state"] if "state" in row else "", *("-" if row.get(column) is None else f"{row[column]:.4g}" for _, column in columns)]))
+    return lines_of(["series", axis_title(rows) if len({row["key"] for row in rows}) == 1 else "value", "state", *(title for title, _ in columns)], texts, 2, width)
 
 
 def main():
@@ -183,8 +184,8 @@ def main():
     given = parser.parse_args()
     with open(given.folder / "runs.csv", newline="") as file:
         runs = list(csv.DictReader(file))
-    rows = outcomes(given.folder, runs)
-    print_table(rows)
+    rows, in_plane = outcomes(given.folder, runs), plane(given.folder, runs)
+    print("\n".join(table(rows, in_plane)))
     names = list(dict.fromkeys(key for row in rows for key in row))
     with open(given.folder / "sweep.csv", "w", newline="") as file:
         writer = csv.DictWriter(file, names, restval="", lineterminator="\n")
@@ -192,7 +193,7 @@ def main():
         writer.writerows(rows)
     ended = [row for row in rows if not row["failure"]]
     if ended and charted(rows) and not given.no_plot:
-        draw(rows, given.folder / "sweep.png", plane(given.folder, runs))
+        draw(rows, given.folder / "sweep.png", in_plane)
     else:
         (given.folder / "sweep.png").unlink(missing_ok=True)  # of an earlier call
     return 1 if len(ended) < len(rows) else 0

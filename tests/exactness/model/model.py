@@ -47,6 +47,9 @@ young_modulus = 1e6
 poisson_ratio = 0.3
 cohesion = "1 kPa"
 friction_angle = 30
+residual_friction_angle = 25
+shape_factor = 50
+reference_size = "0.25 m"
 [body.sand.retention]
 curve = "van_genuchten"
 reference_suction = 2e4
@@ -174,7 +177,8 @@ class InPlaneStrain(unittest.TestCase):
 
     def test_soils_have_their_parameters_with_units(self):
         line = self.model.soil_line("sand").replace("\u00a0", " ")
-        self.assertEqual(line, "mohr coulomb: n = 0.4, ρₛ = 2650 kg/m³, E = 1 MPa, ν = 0.3, c = 1 kPa, φ = 30°, k = 1e-5 m/s")
+        self.assertEqual(line, "mohr coulomb: n = 0.4, ρₛ = 2650 kg/m³, E = 1 MPa, ν = 0.3, c = 1 kPa, φ = 30°, φᵣ = 25°, k = 1e-5 m/s, "
+                               "shape factor 50, reference size 0.25 m")
 
 
 class Variants(unittest.TestCase):

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Draws the element tests of the laws' pages: draw.py TALUS [NAME ...] runs `TALUS soil NAME.toml` and keeps its plot as NAME.png."""
 
 import pathlib

@@ -1,0 +1,51 @@
+"""Tables of outcomes fit into the terminal: argument 1 is the folder of the scripts."""
+
+import sys
+import unittest
+
+sys.path.insert(0, sys.argv.pop(1))
+import talus_compare  # noqa: E402
+import talus_converge  # noqa: E402
+import talus_sweep  # noqa: E402
+from talus_table import folded, lines_of  # noqa: E402
+
+ENDED = {"failure": "", "state": "fails", "load_time_of_failure_s": 13.48, "largest_displacement_m": 3.956, "travel_distance_m": 11.65,
+         "volume_of_slide_m3": 21.36, "depth_of_slide_m": 3.905, "deepest_at_x_m": 12.3, "steps": 16425, "wall_s": 12.34}
+CAUSE = "particle 12 left the mesh at x = 12 m and y = 3 m; make the mesh larger, so that there is room for the soil to move in"
+
+
+class Tables(unittest.TestCase):
+    def test_that_fit_are_one_block(self):
+        self.assertEqual(lines_of(["a", "long heading"], [["x", "1"], ["xyz", "22"]], width=20), ["        long", "  a  heading", "  x        1", "xyz       22"])
+
+    def test_columns_without_room_are_another_table_with_the_same_first_column(self):
+        lines = lines_of(["run", "one", "two", "three"], [["a", "1.0000", "2.0000", "3.0000"], ["b", "failed"]], width=20)
+        self.assertEqual(lines, ["run     one     two", "  a  1.0000  2.0000", "  b  failed", "", "run   three", "  a  3.0000"])
+
+    def test_of_converge_and_compare_fit_into_80_characters(self):
+        rows = [ENDED | {"value": 0.5657}, {"value": 0.4, "failure": CAUSE}, ENDED | {"value": 0.2828}]
+        lines = talus_converge.table(rows, "cells", "m³/m", 80)
+        self.assertLessEqual(max(map(len, lines)), 80)
+        self.assertNotIn("", lines)  # one block
+        self.assertIn("room for the soil to move in", " ".join(" ".join(lines).split()))
+        swept = [ENDED | {"series": "residual", "key": "body.clay.residual_friction_angle", "value": str(value), "unit": "deg", "crest_displacement_m": 2.75,
+                          "crest_largest_speed_m_s": 1.2, "face_displacement_m": 3.1, "face_largest_speed_m_s": 1.5} for value in (8, 11)]
+        lines = talus_sweep.table(swept, True, 80)
+        self.assertLessEqual(max(map(len, lines)), 80)
+        self.assertIn("[m³/m]", " ".join(lines))
+
+    def test_of_errors_say_what_differs_within_a_series(self):
+        common = {"failure": "", "value": "1.2345678", "error": "1e-3", "processor_s": "12.3", "steps": "16425", "evaluations": "16425", "rejections": "0"}
+        rows = [common | {"series": "arkode", "overrides": f"integrator.kind=arkode integrator.velocity_tolerance={value}"} for value in ("1e-2", "1e-4")]
+        rows.append(common | {"series": "slow", "overrides": 'body.sand.velocity=["0", "-0.5 m/s"]'})
+        lines = talus_compare.table(rows, 80)
+        self.assertLessEqual(max(map(len, lines)), 80)
+        self.assertEqual([talus_compare.varied(row, [other for other in rows if other["series"] == row["series"]]) for row in rows],
+                         ["velocity_tolerance=1e-2", "velocity_tolerance=1e-4", ""])
+
+    def test_sentences_are_folded(self):
+        self.assertEqual(folded("one two three", 8), "one two\nthree")
+
+
+if __name__ == "__main__":
+    unittest.main()
