@@ -15,7 +15,7 @@ from measures import AREA, FOOT, HERE, LINE, STRIP, Results, failure_line, foot,
 import matplotlib.pyplot as plt  # after measures, which says where the style of the pictures is
 import talus_style as style
 from matplotlib.colors import ListedColormap
-from talus_sections import spacing_of
+from talus_views import spacing_of
 from talus_tiles import Frame, tiles
 from talus_units import at_time
 

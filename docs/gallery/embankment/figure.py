@@ -17,7 +17,7 @@ import measures  # noqa: E402
 import talus_style as style  # noqa: E402
 from talus_paths import draw_stress_paths  # noqa: E402
 from talus_results import Results  # noqa: E402
-from talus_sections import spacing_of  # noqa: E402
+from talus_views import spacing_of  # noqa: E402
 from talus_tiles import Frame, tiles  # noqa: E402
 from talus_units import at_time  # noqa: E402
 

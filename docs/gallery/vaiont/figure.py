@@ -17,7 +17,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import measures  # noqa: E402
 import talus_style as style  # noqa: E402
 from talus_results import Results  # noqa: E402
-from talus_sections import spacing_of  # noqa: E402
+from talus_views import spacing_of  # noqa: E402
 from talus_tiles import Frame, tiles  # noqa: E402
 
 BASE = np.array([(-150, 1149), (0, 1040), (550.6, 640), (1255, 640), (1755, 1030)])

@@ -10,9 +10,10 @@ import csv
 import pathlib
 import sys
 
+from talus_colours import Colours
 from talus_outcomes import FAILS, MOVES, STANDS, cell_size, outcome, warnings_in, write_json
 from talus_results import Results
-from talus_sections import BELOW, BESIDE, FOOT, HEAD, LEFT, RIGHT, TITLE, WIDTH, Colours, Painter, plt
+from talus_sections import BELOW, BESIDE, FOOT, HEAD, LEFT, RIGHT, TITLE, WIDTH, Painter, plt
 import talus_style as style
 from talus_table import folded, lines_of
 from talus_units import readable_unit, words

@@ -11,7 +11,9 @@ import numpy as np
 from PIL import Image
 
 import talus_style as style
-from talus_sections import Colours, Painter, advance, chosen_snapshots
+from talus_colours import Colours
+from talus_moments import advance, chosen_snapshots
+from talus_sections import Painter
 from talus_units import words
 
 RATE = 10            # frames of the film in a second

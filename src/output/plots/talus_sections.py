@@ -2,248 +2,25 @@
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.colors import LogNorm, Normalize, PowerNorm
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
 import talus_style as style
+from talus_colours import Colours
 from talus_ground import Ground
+from talus_moments import chosen_snapshots, telling
 from talus_perspective import edges
-from talus_relief import EARTH, FAINT, Eye, between, seen, seen_from_above
-from talus_results import slides
-from talus_tiles import GAP, GAP_IN_SPACE, Frame, outline_of_cells, outline_of_points, tiles
-from talus_units import capital, readable_unit, words
-from talus_way import Way
+from talus_relief import EARTH, FAINT, between, seen, seen_from_above
+from talus_tiles import GAP, GAP_IN_SPACE, Frame, outline_of_cells, outline_of_points
+from talus_units import capital, words
+from talus_views import MapView, Oblique, View, spacing_of, views_of
 
 WIDTH, LEFT, RIGHT, HEAD, TITLE, FOOT = 12.0, 0.62, 1.0, 0.42, 0.3, 0.75  # of a sheet [inch]
 BESIDE, BELOW, STACKED = 0.5, 0.38, 0.55  # between blocks, and between the views of one block [inch]
 DOTTED, HALO = (0, (1, 1.6)), withStroke(linewidth=2, foreground="#ffffffaa")  # seen on pale and on dark soil
 OUTLINE_PIXELS = 900
-TIME = 0.2  # share of time, against motion, in the choice of snapshots
-PART = 0.25  # of the spacing of particles: soil that has moved by less is where it was
-SHADE = 0.02  # of the scale of colours: less is not seen
-ASTRAY = 2.0  # how far the way of a slide may leave a plane of two axes, over the spacing of particles, and is still shown there
-STATIONS = 20  # places of the centre of mass on the way of a slide, or some more
 AROUND = 0.06  # of the size of the soil: what is shown of the mesh's bottom beside it
 APART = 0.1  # crosses of particles that left the mesh [inch]
-
-
-class View:
-    """A view of the particles along an axis: two axes, and how far they are from the plane of a section [m]."""
-
-    def __init__(self, name, across, up, plane=None):
-        self.name, self.across, self.up, self.plane = name, across, up, plane
-
-    @property
-    def labels(self):
-        return [f"{'xyz'[axis]} [m]" for axis in (self.across, self.up)]
-
-    def flat(self, position):
-        return position[:, [self.across, self.up]]
-
-    def limits(self, low, high):
-        """Corners of what it shows of a box."""
-        return self.flat(np.array([low, high]))
-
-    def line(self, ground, count):
-        """Places of the section: along the picture, and their coordinates by level axes."""
-        along = np.linspace(ground.low[self.across], ground.high[self.across], count)
-        return along, {self.across: along, self.plane[0]: np.full(count, self.plane[1])}
-
-    def aside(self, position):
-        """Distance from the plane of the section; zero if there is none."""
-        return np.zeros(len(position)) if self.plane is None else np.abs(position[:, self.plane[0]] - self.plane[1])
-
-    def tiles(self, position, size, frame, of=tiles):
-        """What `of`, tiles or outline_of_points, makes of the particles that may be nearest to a place of the plane; and which these are."""
-        aside = self.aside(position)
-        rows = np.flatnonzero(aside <= GAP_IN_SPACE * size)
-        return of(self.flat(position)[rows], size[rows], frame, aside[rows] if self.plane else None), rows
-
-
-class WayView(View):
-    """The section along the way of a slide, laid out flat."""
-
-    def __init__(self, name, way, level, up):
-        super().__init__(name, None, up, plane=way)
-        self.level = level
-
-    @property
-    def labels(self):
-        return ["distance along the slide [m]", f"{'xyz'[self.up]} [m]"]
-
-    def flat(self, position):
-        return np.column_stack([self.plane.beside(position[:, self.level])[0], position[:, self.up]])
-
-    def aside(self, position):
-        return self.plane.beside(position[:, self.level])[1]
-
-    def limits(self, low, high):
-        return np.array([0, low[self.up]]), np.array([self.plane.length, high[self.up]])
-
-    def line(self, ground, count):
-        along = np.linspace(0, self.plane.length, count)
-        return along, dict(zip(self.level, self.plane.at(along).T))
-
-
-class MapView(View):
-    """From above, with shades."""
-
-
-class Oblique:
-    """From above in front: the body whole, or cut open along a vertical plane, its level normal [3] and its place along that [m]."""
-
-    def __init__(self, name, eye, cut=None):
-        self.name, self.eye, self.cut = name, eye, cut
-
-    def flat(self, position):
-        return self.eye.flat(position)
-
-    def aside(self, position):
-        """Distance from the cut, of what is cut away."""
-        if self.cut is None:
-            return np.zeros(len(position))
-        normal, place = self.cut
-        return np.maximum(0, (place - position @ normal) * np.sign(self.eye.level @ normal))
-
-
-def views_of(results):
-    """The views that suit a run: one of a section or a thin slice; of a body the whole one, cut open, its central section, and from above. Cut and
-    section follow the way of a slide that leaves the plane of two axes."""
-    first = results.snapshots[0].position()
-    if first.shape[1] == 2:
-        return [View("section", 0, 1)]
-    up = results.up_axis()
-    level = [axis for axis in range(3) if axis != up]
-    extent = np.ptp(first, axis=0)
-    thin, wide = sorted(level, key=lambda axis: extent[axis])
-    if extent[thin] < 0.2 * min(extent[wide], extent[up]):
-        return [View("section", wide, up)]
-    start, end = in_both(results.snapshots[0], results.snapshots[-1])  # particles may have left the mesh
-    moved = end - start
-    along = max(level, key=lambda axis: np.abs(moved[:, axis]).sum())
-    aside = next(axis for axis in level if axis != along)
-    centre = weighted_median(start[:, aside], np.abs(moved[:, along])) if len(start) else np.median(first[:, aside])
-    above = MapView("from above", along, aside)
-    way = way_of(results, moved, level)
-    if way is not None and np.abs(way.at(np.linspace(0, way.length, 50))[:, level.index(aside)] - centre).max() > ASTRAY * spacing_of(results):
-        ahead, normal = np.zeros(3), np.zeros(3)
-        ahead[level] = way.chord()
-        normal[level] = np.array([-1, 1]) * way.chord()[::-1]
-        eye = Eye.before(ahead, up)
-        return [Oblique("from above in front", eye), Oblique("cut open along the slide", eye, (normal, way.corners[0] @ normal[level])),
-                WayView("section along the slide", way, level, up), above]
-    at = f"at {'xyz'[aside]} = {centre:.3g} m"
-    eye = Eye.in_front(moved[:, along].sum(), along, up)
-    return [Oblique("from above in front", eye), Oblique(f"cut open {at}", eye, (np.eye(3)[aside], centre)), View(f"section {at}", along, up, (aside, centre)),
-            above]
-
-
-def way_of(results, moved, level):
-    """The way of the soil that slides, on the level axes; None where no soil slides. `moved` is from the first to the last snapshot."""
-    first, last = results.snapshots[0], results.snapshots[-1]
-    ids = np.intersect1d(first.ids(), last.ids(), assume_unique=True)
-    size = np.linalg.norm(moved, axis=1)
-    ids = ids[slides(size, np.quantile(size, 0.999) if len(size) else 0.0, spacing_of(results))]
-    if not len(ids):
-        return None
-    every = max(1, len(results.snapshots) // STATIONS)
-    clouds = [shown.position()[np.isin(shown.ids(), ids, assume_unique=True)] for shown in (*results.snapshots[::every], last)]
-    path = np.array([cloud[:, level].mean(axis=0) for cloud in clouds])
-    up = results.up_axis()
-    crown = clouds[0][clouds[0][:, up].argmax()][level]
-    toe = clouds[-1][np.linalg.norm(clouds[-1][:, level] - crown, axis=1).argmax()][level]
-    return Way.of(path, crown, toe, spacing_of(results))
-
-
-def weighted_median(values, weights):
-    order = np.argsort(values)
-    total = np.cumsum(weights[order])
-    return values[order[np.searchsorted(total, total[-1] / 2)]] if total[-1] > 0 else np.median(values)
-
-
-def spacing_of(results):
-    """Mean distance of neighbouring particles at the start [m]."""
-    first = results.snapshots[0]
-    position = first.position()
-    volume = first.column("volume").values.sum() if "volume" in first else np.prod(np.ptp(position, axis=0))
-    return float((volume / len(position)) ** (1 / position.shape[1])) or 1.0
-
-def chosen_snapshots(results, times=None, count=6):
-    """Snapshots nearest to `times`; else first, last and some between: evenly by how far things moved, and by a share of TIME also by time, so
-    that a long wait before a failure is one picture and not three. Of those that have soil: all of it may have left the mesh."""
-    snapshots = [snapshot for snapshot in results.snapshots if len(snapshot.ids())]
-    at = np.array([snapshot.time for snapshot in snapshots])
-    if times:
-        return [snapshots[k] for k in sorted({int(np.abs(at - time).argmin()) for time in times})]
-    if len(snapshots) <= count:
-        return snapshots
-    travel = np.concatenate([[0], np.cumsum([advance(a, b) for a, b in zip(snapshots, snapshots[1:])])])
-    pace = sum((share * part / part[-1] for share, part in ((TIME, at - at[0]), (1 - TIME, travel)) if part[-1] > 0), np.zeros(len(at)))
-    wanted = np.linspace(0, pace[-1], count)
-    return [snapshots[k] for k in sorted({int(np.abs(pace - share).argmin()) for share in wanted})]
-
-
-def advance(before, after):
-    """How far the fastest hundredth of the particles that are in both snapshots moved between them [m]."""
-    start, end = in_both(before, after)
-    return float(np.percentile(np.linalg.norm(end - start, axis=1), 99)) if len(start) else 0.0
-
-
-def in_both(before, after):
-    """Places in two snapshots of the particles that are in both [m]."""
-    _, a, b = np.intersect1d(before.ids(), after.ids(), assume_unique=True, return_indices=True)
-    return before.position()[a], after.position()[b]
-
-
-class Colours:
-    """The scale that all pictures of a field share: from 0, or the least value if negative, to nearly the largest. That of plastic strain is even
-    in its square root, so that the thin band at failure is seen beside the large strain of the slide; that of mobilised friction in its fourth power,
-    since soil near failure, where the last degrees count, would be of one colour otherwise."""
-
-    def __init__(self, field, snapshots, log=False):
-        self.map = style.colours_of(field)
-        values = np.concatenate([snapshot.scalar(field)[0] for snapshot in snapshots])
-        values = values[np.isfinite(values)]
-        low, high = np.percentile(values, [0.1, 99.9]) if len(values) else (0.0, 0.0)
-        self.factor, self.unit = readable_unit(max(abs(low), abs(high)), snapshots[0].scalar(field)[1])
-        low, high = -rounded_up(-min(low, 0.0) * self.factor), rounded_up(max(high, 0.0) * self.factor)
-        if low == high:
-            high = 1.0
-        if field == "state":
-            low, high = -0.5, len(style.STATES) - 0.5
-        self.names = style.STATES if field == "state" else ()
-        self.beyond = len(values) > 0 and values.max() * self.factor > high
-        self.from_nothing = low == 0 and not self.names
-        self.rooted = field == "plastic_strain" and low == 0 and not log
-        power = 0.5 if self.rooted else 4 if field == "mobilised_friction" and low == 0 else 1
-        self.uneven = {0.5: "colours even in the square root", 4: "colours even in the fourth power"}.get(power, "")
-        self.ticks = [float(f"{high * share:.2g}") for share in (0, 0.7, 0.85, 0.93, 1)] if power == 4 else None
-        self.norm = LogNorm(1e-3 * high, high, clip=True) if log and low == 0 else PowerNorm(power, low, high) if power != 1 else Normalize(low, high)
-
-
-def telling(snapshots, field, colours, spacing):
-    """Of the snapshots those that show something else than the one before: soil that moved by a part of the spacing, or another colour in more than a
-    hundredth of it."""
-    kept = snapshots[:1]
-    for snapshot in snapshots[1:]:
-        _, a, b = np.intersect1d(kept[-1].ids(), snapshot.ids(), assume_unique=True, return_indices=True)
-        same = len(a) == len(kept[-1].ids()) == len(snapshot.ids())
-        if same and len(a):
-            moved = np.linalg.norm(snapshot.position()[b] - kept[-1].position()[a], axis=1)
-            before, after = (np.nan_to_num(np.ma.filled(colours.norm(colours.factor * one.scalar(field)[0][rows]), 0.0)) for one, rows in ((kept[-1], a), (snapshot, b)))
-            same = np.percentile(moved, 99) < PART * spacing and np.percentile(np.abs(after - before), 99) < SHADE
-        if not same:
-            kept.append(snapshot)
-    return kept
-
-
-def rounded_up(value):
-    """The next number of two digits: 1.834 -> 1.9."""
-    if value <= 0:
-        return 0.0
-    step = 10.0 ** (np.floor(np.log10(value)) - 1)
-    return float(np.ceil(round(value / step, 6)) * step)
 
 
 class Painter:

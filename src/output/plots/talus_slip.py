@@ -7,8 +7,8 @@ import numpy as np
 
 import talus_style as style
 from talus_measures import at, failure
-from talus_sections import spacing_of
 from talus_style import plt
+from talus_views import spacing_of
 
 LEAST = 0.2  # of the largest plastic strain: soil with less is no part of the surface
 STEEPEST = 3  # rows by which the surface may rise or fall from one column to the next: 72 degrees

@@ -13,13 +13,16 @@ import talus_compare  # noqa: E402
 import talus_factor  # noqa: E402
 import talus_study  # noqa: E402
 import talus_sweep  # noqa: E402
+from talus_colours import Colours  # noqa: E402
 from talus_histories import draw_histories, drawn_energies  # noqa: E402
+from talus_moments import chosen_snapshots, telling  # noqa: E402
 from talus_outcomes import FAILS  # noqa: E402
 from talus_paths import spread  # noqa: E402
 from talus_results import History, Results  # noqa: E402
-from talus_sections import Colours, Painter, View, chosen_snapshots, telling, views_of  # noqa: E402
+from talus_sections import Painter  # noqa: E402
 from talus_slip import slip_surface  # noqa: E402
 from talus_tiles import Frame  # noqa: E402
+from talus_views import View, views_of  # noqa: E402
 
 
 class Snapshot:

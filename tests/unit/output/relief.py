@@ -14,7 +14,9 @@ import talus_converge  # noqa: E402
 import talus_relief as relief  # noqa: E402
 from talus_ground import Filling, Ground  # noqa: E402
 from talus_results import Thickness  # noqa: E402
-from talus_sections import Colours, Oblique, Painter  # noqa: E402
+from talus_colours import Colours  # noqa: E402
+from talus_sections import Painter  # noqa: E402
+from talus_views import Oblique  # noqa: E402
 from talus_tiles import Frame, tiles  # noqa: E402
 
 SPACING = 0.1

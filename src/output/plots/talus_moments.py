@@ -1,0 +1,50 @@
+"""The times of a run that pictures show."""
+
+import numpy as np
+
+TIME = 0.2  # share of time, against motion, in the choice of snapshots
+PART = 0.25  # of the spacing of particles: soil that has moved by less is where it was
+SHADE = 0.02  # of the scale of colours: less is not seen
+
+
+def chosen_snapshots(results, times=None, count=6):
+    """Snapshots nearest to `times`; else first, last and some between: evenly by how far things moved, and by a share of TIME also by time, so
+    that a long wait before a failure is one picture and not three. Of those that have soil: all of it may have left the mesh."""
+    snapshots = [snapshot for snapshot in results.snapshots if len(snapshot.ids())]
+    at = np.array([snapshot.time for snapshot in snapshots])
+    if times:
+        return [snapshots[k] for k in sorted({int(np.abs(at - time).argmin()) for time in times})]
+    if len(snapshots) <= count:
+        return snapshots
+    travel = np.concatenate([[0], np.cumsum([advance(a, b) for a, b in zip(snapshots, snapshots[1:])])])
+    pace = sum((share * part / part[-1] for share, part in ((TIME, at - at[0]), (1 - TIME, travel)) if part[-1] > 0), np.zeros(len(at)))
+    wanted = np.linspace(0, pace[-1], count)
+    return [snapshots[k] for k in sorted({int(np.abs(pace - share).argmin()) for share in wanted})]
+
+
+def advance(before, after):
+    """How far the fastest hundredth of the particles that are in both snapshots moved between them [m]."""
+    start, end = in_both(before, after)
+    return float(np.percentile(np.linalg.norm(end - start, axis=1), 99)) if len(start) else 0.0
+
+
+def in_both(before, after):
+    """Places in two snapshots of the particles that are in both [m]."""
+    _, a, b = np.intersect1d(before.ids(), after.ids(), assume_unique=True, return_indices=True)
+    return before.position()[a], after.position()[b]
+
+
+def telling(snapshots, field, colours, spacing):
+    """Of the snapshots those that show something else than the one before: soil that moved by a part of the spacing, or another colour in more than a
+    hundredth of it."""
+    kept = snapshots[:1]
+    for snapshot in snapshots[1:]:
+        _, a, b = np.intersect1d(kept[-1].ids(), snapshot.ids(), assume_unique=True, return_indices=True)
+        same = len(a) == len(kept[-1].ids()) == len(snapshot.ids())
+        if same and len(a):
+            moved = np.linalg.norm(snapshot.position()[b] - kept[-1].position()[a], axis=1)
+            before, after = (np.nan_to_num(np.ma.filled(colours.norm(colours.factor * one.scalar(field)[0][rows]), 0.0)) for one, rows in ((kept[-1], a), (snapshot, b)))
+            same = np.percentile(moved, 99) < PART * spacing and np.percentile(np.abs(after - before), 99) < SHADE
+        if not same:
+            kept.append(snapshot)
+    return kept
