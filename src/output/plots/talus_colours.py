@@ -1,36 +1,64 @@
 """The scale of colours of a field."""
 
+import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import LogNorm, Normalize, PowerNorm
 
 import talus_style as style
 from talus_units import readable_unit
 
+FAINT = 0.02  # values below this share of a scale that begins with nothing have the colour of soil, so that its shape and its layers are seen
+EVEN = 5.0  # the scale of mobilised friction begins at a multiple of this [deg]
+
 
 class Colours:
-    """The scale that all pictures of a field share: from 0, or the least value if negative, to nearly the largest. That of plastic strain is even
-    in its square root, so that the thin band at failure is seen beside the large strain of the slide; that of mobilised friction in its fourth power,
-    since soil near failure, where the last degrees count, would be of one colour otherwise."""
+    """The scale that all pictures of a field share: from 0, or the least value if negative, to nearly the largest. A field that takes both signs has a
+    scale with two colours that is pale at 0. That of plastic strain is even in its square root, so that the thin band at failure is seen beside the large
+    strain of the slide; that of mobilised friction begins below nearly all soil under stress, since most of it differs by a few degrees."""
 
     def __init__(self, field, snapshots, log=False):
-        self.map = style.colours_of(field)
         values = np.concatenate([snapshot.scalar(field)[0] for snapshot in snapshots])
         values = values[np.isfinite(values)]
         low, high = np.percentile(values, [0.1, 99.9]) if len(values) else (0.0, 0.0)
         self.factor, self.unit = readable_unit(max(abs(low), abs(high)), snapshots[0].scalar(field)[1])
         low, high = -rounded_up(-min(low, 0.0) * self.factor), rounded_up(max(high, 0.0) * self.factor)
+        signed = min(-low, high) > FAINT * max(-low, high)
         if low == high:
             high = 1.0
+        elif not signed:  # a little of the other sign is beyond the end
+            low, high = (0.0, high) if high > -low else (low, 0.0)
         if field == "state":
             low, high = -0.5, len(style.STATES) - 0.5
+            signed = False
+        if field == "mobilised_friction" and np.any(values > 0):
+            low = EVEN * np.floor(np.percentile(values[values > 0], 5) * self.factor / EVEN)
+        self.map = style.colours_of(field, signed)
         self.names = style.STATES if field == "state" else ()
-        self.beyond = len(values) > 0 and values.max() * self.factor > high
-        self.from_nothing = low == 0 and not self.names
+        self.shown = (low, high)  # of the scale, in the bar
+        self.above, self.below = (bool(len(values)) and bool(there) for there in (values.max(initial=high) * self.factor > high, values.min(initial=low) * self.factor < low))
         self.rooted = field == "plastic_strain" and low == 0 and not log
-        power = 0.5 if self.rooted else 4 if field == "mobilised_friction" and low == 0 else 1
-        self.uneven = {0.5: "colours even in the square root", 4: "colours even in the fourth power"}.get(power, "")
-        self.ticks = [float(f"{high * share:.2g}") for share in (0, 0.7, 0.85, 0.93, 1)] if power == 4 else None
-        self.norm = LogNorm(1e-3 * high, high, clip=True) if log and low == 0 else PowerNorm(power, low, high) if power != 1 else Normalize(low, high)
+        self.uneven = "colours even in the square root" if self.rooted else ""
+        largest = max(-low, high)
+        self.norm = LogNorm(1e-3 * high, high, clip=True) if log and low == 0 else PowerNorm(0.5, 0, high) if self.rooted else \
+            Normalize(-largest, largest) if signed else Normalize(low, high)
+        self.faint = 0.0 if self.names else float(self.norm.inverse(FAINT)) if low == 0 else (FAINT / 4 if signed else FAINT) * largest  # the least size that has a colour
+
+    def plain(self, values):
+        """Which values have the colour of soil."""
+        return ~np.isfinite(values) | (np.abs(values) < self.faint)
+
+    def bar(self, figure, place):
+        """The bar of the scale in new axes at `place`, with its unit above it. Returns its axes."""
+        axes = figure.add_axes(place)
+        extend = {(False, False): "neither", (True, False): "max", (False, True): "min", (True, True): "both"}[(self.above, self.below)]
+        figure.colorbar(plt.cm.ScalarMappable(self.norm, self.map), cax=axes, extend=extend)
+        axes.tick_params(length=2)
+        if self.names:
+            axes.set_yticks(range(len(self.names)), self.names, rotation=90, va="center")
+        else:
+            axes.set_ylim(*(self.shown if not isinstance(self.norm, LogNorm) else (None, None)))
+        axes.set_title(self.unit, fontsize=9, pad=6)
+        return axes
 
 
 def rounded_up(value):

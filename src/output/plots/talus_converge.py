@@ -156,8 +156,7 @@ def draw(results, rows, by, path):
                 axes.set_ylabel(f"{'xyz'[painter.views[section].up]} [m]")
             if n == len(fields) - 1:
                 axes.set_xlabel(f"{'xyz'[painter.views[section].across]} [m]")
-        bar = figure.add_axes([1 - (RIGHT - 0.22) / WIDTH, (top - tall) / height, 0.15 / WIDTH, tall / height])
-        figure.colorbar(plt.cm.ScalarMappable(colours.norm, colours.map), cax=bar, extend="max" if colours.beyond else "neither")
+        bar = colours.bar(figure, [1 - (RIGHT - 0.22) / WIDTH, (top - tall) / height, 0.15 / WIDTH, tall / height])
         bar.set_title(f"{style.SYMBOL[field]} {colours.unit}".strip(), fontsize=9, pad=6)
     figure.text(LEFT / WIDTH, 1 - 0.2 / height, f"At the end, by {THINGS[by]}", fontsize=13, fontweight="bold", va="center")
     figure.text(1 - 0.25 / WIDTH, 1 - 0.2 / height, results[0].title, fontsize=9, color=style.SOFT, va="center", ha="right")

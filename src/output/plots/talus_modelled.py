@@ -8,7 +8,6 @@ import numpy as np
 import talus_style as style
 from talus_units import Keys, duration, quantity, span, words
 
-GROUND = ("#e8d5b0", "#c2a278", "#b9bfa4", "#a9a29a", "#e0b88a", "#d5cfc9", "#a8895f", "#d8c774")  # of the soils
 EARTH, WATER, LOAD, BASE, PLATE, GAS = style.INK, "#1971c2", "#c92a2a", "#a0410d", "#5f3dc4", "#862e9c"
 UNBROKEN = "\u00a0"  # a blank at which no line ends
 # symbols of the parameters of soils; a parameter without one has its key in words
@@ -45,7 +44,7 @@ class Model:
         self.stages = self.data["stages"]
 
     def colour(self, body):
-        return GROUND[body % len(GROUND)]
+        return style.GROUND[body % len(style.GROUND)]
 
     def soil_line(self, name):
         """Law (or material of the library) and parameters of a soil: first those with symbols, then the others."""

@@ -3,6 +3,7 @@
 import numpy as np
 
 TIME = 0.2  # share of time, against motion, in the choice of snapshots
+MOTION = ("displacement", "velocity", "plastic_strain", "thickness")  # fields that are nothing as long as soil has not moved
 PART = 0.25  # of the spacing of particles: soil that has moved by less is where it was
 SHADE = 0.02  # of the scale of colours: less is not seen
 
@@ -32,6 +33,19 @@ def in_both(before, after):
     """Places in two snapshots of the particles that are in both [m]."""
     _, a, b = np.intersect1d(before.ids(), after.ids(), assume_unique=True, return_indices=True)
     return before.position()[a], after.position()[b]
+
+
+def with_stress(results, snapshots, field):
+    """The snapshots, but in place of the first one, where the field is nothing in it and no measure of motion, that of the end of the stage that follows:
+    gravity and pore pressure grow from 0 in a first stage, so that the start would show soil without stress and without water."""
+    first = snapshots[0]
+    nothing = field not in MOTION and not field.rpartition("_")[0] in MOTION and not np.any(np.nan_to_num(first.scalar(field)[0]))
+    if not nothing or len(results.snapshots) < 3:
+        return snapshots
+    stage = results.snapshots[1].stage
+    ready = [snapshot for snapshot in results.snapshots if snapshot.stage == stage and len(snapshot.ids())][-1:]
+    return [*ready, *(snapshot for snapshot in snapshots[1:] if snapshot.time > ready[0].time)] if ready and np.any(np.nan_to_num(ready[0].scalar(field)[0])) \
+        else snapshots
 
 
 def telling(snapshots, field, colours, spacing):

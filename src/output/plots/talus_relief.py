@@ -14,7 +14,6 @@ SOIL, EARTH = np.array(to_rgb("#b8b2a7")), np.array(to_rgb("#d9cfbd"))  # of soi
 FINER = 2  # samples per pixel along each axis
 RAISED, TURNED = np.radians(30), np.radians(50)  # the eye above the horizon, and beside the direction of the slide
 DARKEST = 0.55
-FAINT = 0.02  # values below this share of a scale that begins with nothing have the colour of soil, so that its shape is seen
 NOTHING, GROUND, BODY = 0, 1, 2  # what a pixel shows
 
 
@@ -56,8 +55,7 @@ class Sight:
         found = np.array([Filling(position, field.astype(float), spacing).at(self.place[body]) for field in fields])
         found = np.where(np.isfinite(found[0]), found.argmax(axis=0), np.nan) if colours.names else found[0]
         level = np.ma.filled(colours.norm(found), np.nan)
-        plain = ~np.isfinite(found) | (colours.from_nothing & (level < FAINT))
-        rgb[body] = np.where(plain[:, None], SOIL, colours.map(level)[:, :3]) * self.light[body][:, None]
+        rgb[body] = np.where(colours.plain(found)[:, None], SOIL, colours.map(level)[:, :3]) * self.light[body][:, None]
         rows, columns = (count // FINER for count in self.what.shape)
         return rgb[:rows * FINER, :columns * FINER].reshape(rows, FINER, columns, FINER, 3).mean(axis=(1, 3))
 

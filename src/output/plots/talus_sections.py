@@ -8,9 +8,10 @@ from matplotlib.ticker import MaxNLocator
 import talus_style as style
 from talus_colours import Colours
 from talus_ground import Ground
-from talus_moments import chosen_snapshots, telling
+from talus_moments import chosen_snapshots, telling, with_stress
 from talus_perspective import edges
-from talus_relief import EARTH, FAINT, between, seen, seen_from_above
+from talus_relief import EARTH, SOIL, between, seen, seen_from_above
+from talus_soils import middles, moved_away, painted, tints
 from talus_tiles import GAP, GAP_IN_SPACE, Frame, outline_of_cells, outline_of_points
 from talus_units import capital, words
 from talus_views import MapView, Oblique, View, spacing_of, views_of
@@ -19,6 +20,7 @@ WIDTH, LEFT, RIGHT, HEAD, TITLE, FOOT = 12.0, 0.62, 1.0, 0.42, 0.3, 0.75  # of a
 BESIDE, BELOW, STACKED = 0.5, 0.38, 0.55  # between blocks, and between the views of one block [inch]
 DOTTED, HALO = (0, (1, 1.6)), withStroke(linewidth=2, foreground="#ffffffaa")  # seen on pale and on dark soil
 OUTLINE_PIXELS = 900
+MOVED = 0.8  # of the spacing of particles: an outline that is nearer to the present edge of the soil is not drawn
 AROUND = 0.06  # of the size of the soil: what is shown of the mesh's bottom beside it
 APART = 0.1  # crosses of particles that left the mesh [inch]
 
@@ -38,7 +40,10 @@ class Painter:
         self.corners = [self._limits(view) for view in self.views]
         self.outlines = [self._outline(view, corners) for view, corners in zip(self.views, self.corners)]
         self._tiles, self._surfaces = {}, {}
-        self.marked_escaped = 0
+        # a section alone shows soils in the colours of the model; views in space shade all soil alike
+        self.flat = len(self.views) == 1
+        self.tints = tints(len(results.bodies)) if self.flat else None
+        self.marked_escaped, self.drawn_outline = 0, False
 
     def _ground(self):
         """What is shown of the ground in 3D: the soil at all times with some of the mesh's bottom around it."""
@@ -60,14 +65,14 @@ class Painter:
         return low - margin, high + margin
 
     def _outline(self, view, corners):
-        """Polylines (around the soil, between bodies) at the start."""
+        """Polylines around the soil at the start."""
         first = self.results.snapshots[0]
         position = first.position()
         if isinstance(view, Oblique):
-            return [], []
+            return []
         if position.shape[1] == 2 and len((mesh := self.results.mesh())[1]):
-            return outline_of_cells(*mesh, position, first.body())
-        return view.tiles(position, self._sizes(first), Frame(*corners, OUTLINE_PIXELS), outline_of_points)[0], []
+            return outline_of_cells(*mesh, position)
+        return view.tiles(position, self._sizes(first), Frame(*corners, OUTLINE_PIXELS), outline_of_points)[0]
 
     def _sizes(self, snapshot):
         """The widths of the particles [m]: the spacing, or 2, 4, 8 ... times that where cells are much larger than the mean."""
@@ -102,25 +107,24 @@ class Painter:
         return self._tiles[key]
 
     def _image(self, snapshot, field, k, colours, frame):
-        """The picture of a field: numbers, masked outside the soil, or colours [rows, columns, 3] where the soil is shaded."""
+        """The picture of a field [rows, columns, 3 or 4]."""
         value = snapshot.scalar(field)[0] * colours.factor
         if isinstance(self.views[k], (Oblique, MapView)):
             laid = self.ground.below(snapshot.position(), self._surface(snapshot)[0])
             return self._sight(snapshot, k, frame.shape[1]).painted(laid, value, colours, self.spacing)
-        owner = self._tiled(snapshot, k, frame)
-        return np.ma.masked_where(owner < 0, value[owner])
+        return painted(self._tiled(snapshot, k, frame), value, snapshot.body(), self.tints if self.flat else np.tile(SOIL, (len(self.results.bodies), 1)), colours)
 
-    def over_time(self, field, colours, path):
-        """All chosen times on one sheet; of times that the program has chosen those at which something else is seen."""
-        shown = self.snapshots if self.as_asked else telling(self.snapshots, field, colours, self.spacing)
+    def over_time(self, field, colours, snapshots, path):
+        """All these times on one sheet; of times that the program has chosen those at which something else is seen."""
+        shown = snapshots if self.as_asked else telling(snapshots, field, colours, self.spacing)
         columns = min(2 if len(self.views) == 1 else 3, len(shown))
         return style.save(self._sheet(field, colours, shown, columns, [[0]] if len(self.views) == 1 else [[0], [self.section]]), path)
 
-    def large(self, field, colours, path):
+    def large(self, field, colours, snapshots, path):
         """The time that says most: the last, unless the field had faded by then. Of thickness always the last, the deposit, thinner as it is."""
-        values = [snapshot.scalar(field)[0] for snapshot in self.snapshots]
+        values = [snapshot.scalar(field)[0] for snapshot in snapshots]
         tops = [np.percentile(known, 99) if (known := one[np.isfinite(one)]).size else 0.0 for one in values]
-        best = self.snapshots[-1] if field == "thickness" or tops[-1] >= 0.8 * max(tops) else self.snapshots[int(np.argmax(tops))]
+        best = snapshots[-1] if field == "thickness" or tops[-1] >= 0.8 * max(tops) else snapshots[int(np.argmax(tops))]
         rows = [[0]] if len(self.views) == 1 else [[0, 1], [2, 3]]
         return style.save(self._sheet(field, colours, [best], 1, rows, named_points=True), path)
 
@@ -141,6 +145,7 @@ class Painter:
         count = -(-len(snapshots) // columns)
         height = HEAD + count * block + (count - 1) * BELOW + FOOT
         figure = plt.figure(figsize=(WIDTH, height))
+        self.drawn_outline = False
         for n, snapshot in enumerate(snapshots):
             block_row, column = divmod(n, columns)
             left, top = LEFT + column * (wide + BESIDE), height - HEAD - TITLE - block_row * (block + BELOW)
@@ -172,13 +177,16 @@ class Painter:
         metres = (high[0] - low[0]) / inches  # in an inch
         frame = Frame(low, high, int(inches * self.resolution))
         image = self._image(snapshot, field, k, colours, frame)
-        axes.imshow(image, extent=frame.extent(), origin="lower", cmap=colours.map, norm=colours.norm, aspect="auto")
-        around, between_bodies = self.outlines[k]
-        for line in around:
-            axes.plot(*line.T, color=style.INK, linestyle=DOTTED, linewidth=1.1, path_effects=[HALO])
-        for line in between_bodies:
-            axes.plot(*line.T, color=style.SOFT, linestyle=DOTTED, linewidth=0.8, path_effects=[HALO])
+        axes.imshow(image, extent=frame.extent(), origin="lower", aspect="auto")
+        for line in self.outlines[k]:
+            if not isinstance(view, MapView):
+                line = moved_away(line, self._tiled(snapshot, k, frame) >= 0, frame, MOVED * self.spacing)
+            if np.isfinite(line).any():
+                axes.plot(*line.T, color=style.INK, linestyle=DOTTED, linewidth=1.1, path_effects=[HALO])
+                self.drawn_outline = True
         self._mark_escaped(axes, view, snapshot.time, metres)
+        if alone and self.flat and len(self.results.bodies) > 1:
+            self._name_soils(axes, snapshot, self._tiled(snapshot, k, frame), frame)
         if named_points:
             self._mark_points(axes, view, snapshot.time)
         axes.set_xlim(low[0], high[0])
@@ -233,6 +241,12 @@ class Painter:
             axes.annotate(words(name), at, xytext=(6, 6), textcoords="offset points", fontsize=8.5,
                           bbox={"boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": "none", "alpha": 0.8})
 
+    def _name_soils(self, axes, snapshot, owner, frame):
+        """The names of the soils in the middle of each."""
+        for number, (row, column) in middles(np.where(owner >= 0, snapshot.body()[owner], -1)).items():
+            at = frame.low + (np.array([column, row]) + 0.5) * frame.pixel
+            axes.text(*at, words(self.results.bodies[number]), fontsize=8.5, ha="center", va="center", path_effects=[withStroke(linewidth=2.2, foreground="white")])
+
     def _mark_escaped(self, axes, view, time, metres):
         """Where particles have left the mesh up to a time: one cross for all that left at about the same place. An inch of the picture is so many
         `metres`."""
@@ -250,25 +264,24 @@ class Painter:
         panels = [axes.get_position() for axes in figure.axes]
         top, bottom = max(panel.y1 for panel in panels), min(panel.y0 for panel in panels)
         tall = min(top - bottom, 3.4 / height)
-        bar = figure.add_axes([1 - (RIGHT - 0.22) / WIDTH, top - tall, 0.15 / WIDTH, tall])
-        scale = plt.cm.ScalarMappable(colours.norm, colours.map)
-        figure.colorbar(scale, cax=bar, extend="max" if colours.beyond else "neither")
-        bar.tick_params(length=2)
-        if colours.names:
-            bar.set_yticks(range(len(colours.names)), colours.names, rotation=90, va="center")
-        if colours.ticks:
-            bar.set_yticks(colours.ticks, [f"{value:g}" for value in colours.ticks])
-        bar.set_title(colours.unit, fontsize=9, pad=6)
+        colours.bar(figure, [1 - (RIGHT - 0.22) / WIDTH, top - tall, 0.15 / WIDTH, tall])
         headline = "  ".join(filter(None, (capital(words(field)), style.SYMBOL.get(field))))
         figure.text(LEFT / WIDTH, 1 - 0.24 / height, headline, fontsize=13, fontweight="bold", va="center")
         right = 1 - 0.25 / WIDTH
         figure.text(right, 1 - 0.24 / height, self.results.title, fontsize=9, color=style.SOFT, va="center", ha="right")
-        shaded = colours.from_nothing and any(isinstance(self.views[k], (Oblique, MapView)) for k in views)
-        legend = [f"colour of soil: below {colours.norm.inverse(FAINT):.2g} {colours.unit}".rstrip()] * shaded
+        legend = [f"colour of soil: less than {colours.faint:.2g} {colours.unit}".rstrip()] * (colours.faint > 0)
         legend += [colours.uneven] * bool(colours.uneven)
-        legend += ["dotted: outline at the start"] * any(self.outlines[k][0] for k in views)
+        legend += ["dotted: outline at the start"] * self.drawn_outline
         legend += [f"crosses: {self.marked_escaped} particles left the mesh here"] * bool(self.marked_escaped)
         figure.text(right, 0.16 / height, "; ".join(legend), fontsize=7.5, color=style.SOFT, ha="right")
+        if self.flat:
+            self._legend_of_soils(figure)
+
+    def _legend_of_soils(self, figure):
+        """The soils and their colours, below on the left."""
+        handles = [plt.Rectangle((0, 0), 1, 1, fc=tint, ec=style.SOFT, lw=0.5) for tint in self.tints]
+        figure.legend(handles, map(words, self.results.bodies), loc="lower left", bbox_to_anchor=(LEFT / WIDTH - 0.006, 0.09 / figure.get_figheight()),
+                      ncols=8, fontsize=7.5, borderpad=0, borderaxespad=0.5, handlelength=1.6, handleheight=0.9, columnspacing=1.4, labelcolor=style.SOFT)
 
 
 def draw_sections(results, fields, times, folder, log=False):
@@ -283,7 +296,8 @@ def draw_sections(results, fields, times, folder, log=False):
             continue
         if not any(np.isfinite(snapshot.scalar(field)[0]).any() for snapshot in painter.snapshots):
             continue  # such as the mobilised friction of soil without friction
-        colours = Colours(field, painter.snapshots, log and field == "plastic_strain")
-        pictures.append((field, painter.large(field, colours, folder / f"{field}_large.png"),
-                         painter.over_time(field, colours, folder / f"{field}.png")))
+        snapshots = painter.snapshots if times else with_stress(results, painter.snapshots, field)
+        colours = Colours(field, snapshots, log and field == "plastic_strain")
+        pictures.append((field, painter.large(field, colours, snapshots, folder / f"{field}_large.png"),
+                         painter.over_time(field, colours, snapshots, folder / f"{field}.png")))
     return pictures

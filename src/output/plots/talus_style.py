@@ -31,6 +31,7 @@ def part_of(name, low, high):
     return LinearSegmentedColormap.from_list(f"{name}_part", plt.get_cmap(name)(np.linspace(low, high, 256)))
 
 
+GROUND = ("#e8d5b0", "#c2a278", "#b9bfa4", "#a9a29a", "#e0b88a", "#d5cfc9", "#a8895f", "#d8c774")  # of the soils
 STATES = ("elastic", "peak", "softening", "residual")  # values 0, 1, 2, 3 of the field state
 STATE_COLOURS = ("#eef1f4", "#ffd43b", "#f76707", "#c92a2a")
 # of even steps in lightness; strain and pressure start pale, so that the eye goes to where there is some
@@ -38,11 +39,19 @@ MAPS = {"displacement": plt.get_cmap("viridis"), "thickness": part_of("YlOrRd", 
         "plastic_strain": part_of("magma_r", 0.03, 0.95), "pore_pressure": part_of("YlGnBu", 0.08, 1.0),
         "suction": part_of("YlOrBr", 0.03, 0.95), "saturation": plt.get_cmap("YlGnBu"), "mobilised_friction": part_of("YlOrRd", 0.02, 0.95),
         "state": ListedColormap(STATE_COLOURS)}
+SIGNED = {"pore_pressure": plt.get_cmap("BrBG")}  # of fields that take both signs, pale at 0; others take BOTH
+BOTH = plt.get_cmap("RdBu_r")
 SYMBOL = {"displacement": "|u|", "velocity": "|v|", "thickness": "h", "plastic_strain": "εₚ", "pore_pressure": "p", "suction": "s", "saturation": "S", "mobilised_friction": "φₘ"}
 
 
-def colours_of(field):
-    return MAPS.get(field, plt.get_cmap("cividis"))
+def colours_of(field, signed=False):
+    return SIGNED.get(field, BOTH) if signed else MAPS.get(field, plt.get_cmap("cividis"))
+
+
+def headline(figure, text, title):
+    """What a chart shows, and of which scene; `figure` has the layout "constrained"."""
+    figure.suptitle(text, x=0.01, ha="left", fontsize=12, fontweight="bold")
+    figure.text(0.99, 0.985, title, ha="right", va="top", fontsize=8.5, color=SOFT)
 
 
 def program():

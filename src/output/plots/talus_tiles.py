@@ -100,19 +100,16 @@ def outline_of_points(points, size, frame, aside=None):
     return [line for line in contour.allsegs[0] if len(line) > 20]
 
 
-def outline_of_cells(node, cell, position, body):
-    """Polylines around the triangles that bodies fill, and between bodies: exact, since bodies are made of cells."""
+def outline_of_cells(node, cell, position):
+    """Polylines around the triangles that soil fills: exact, since bodies are made of cells."""
     mesh = Triangulation(node[:, 0], node[:, 1], cell)
     inside = mesh.get_trifinder()(position[:, 0], position[:, 1])
-    filled = np.full(len(cell), -1)
-    filled[inside[inside >= 0]] = body[inside >= 0]
-    other = np.where(mesh.neighbors >= 0, filled[mesh.neighbors], -1)
-    lines = []
-    for wanted in ((filled[:, None] >= 0) & (other < 0), (other >= 0) & (filled[:, None] > other)):
-        cells, sides = np.nonzero(wanted)
-        edges = np.column_stack([mesh.triangles[cells, sides], mesh.triangles[cells, (sides + 1) % 3]])
-        lines.append([node[chain] for chain in chained(edges)])
-    return lines
+    filled = np.zeros(len(cell), bool)
+    filled[inside[inside >= 0]] = True
+    beside = np.where(mesh.neighbors >= 0, filled[mesh.neighbors], False)
+    cells, sides = np.nonzero(filled[:, None] & ~beside)
+    edges = np.column_stack([mesh.triangles[cells, sides], mesh.triangles[cells, (sides + 1) % 3]])
+    return [node[chain] for chain in chained(edges)]
 
 
 def chained(edges):

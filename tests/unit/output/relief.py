@@ -259,6 +259,9 @@ class Pictures(unittest.TestCase):
             def position(self):
                 return start + self._way
 
+            def body(self):
+                return np.zeros(len(start), int)
+
             def column(self, name):
                 return types.SimpleNamespace(values=np.full((len(start), 1), SPACING**3))
 
@@ -266,7 +269,7 @@ class Pictures(unittest.TestCase):
                 return None if field == "plastic_strain" else (np.full(len(start), np.linalg.norm(self._way)), "m")
 
         snapshots = [Snapshot(step) for step in range(3)]
-        results = types.SimpleNamespace(snapshots=snapshots, up_axis=lambda: 2, mesh=mesh, escaped=None, history=None, title="slope", when=lambda one: f"t = {one.time} s")
+        results = types.SimpleNamespace(snapshots=snapshots, up_axis=lambda: 2, mesh=mesh, bodies=["soil"], escaped=None, history=None, title="slope", when=lambda one: f"t = {one.time} s")
         painter = Painter(results, snapshots, 40)
         self.assertEqual(painter.views[painter.section].name.partition(" ")[0], "section")
         self.assertEqual([view.name.partition(" at y = ")[0] for view in painter.views], ["from above in front", "cut open", "section", "from above"])
@@ -274,7 +277,7 @@ class Pictures(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "picture.png"
             row = {"state": "stands", "load_time_of_failure_s": None, "value": SPACING}
-            for draw in (lambda: painter.large("displacement", colours, path), lambda: painter.over_time("displacement", colours, path),
+            for draw in (lambda: painter.large("displacement", colours, snapshots, path), lambda: painter.over_time("displacement", colours, snapshots, path),
                          lambda: painter.frame("displacement", colours, snapshots[1], "real time", path),
                          lambda: talus_converge.draw([results, results], [row, row], "cells", path)):
                 with Image.open(draw()) as picture:
