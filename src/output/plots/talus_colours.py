@@ -8,6 +8,7 @@ import talus_style as style
 from talus_units import readable_unit
 
 FAINT = 0.02  # values below this share of a scale that begins with nothing have the colour of soil, so that its shape and its layers are seen
+FAINT_ROOT = 0.05  # the same of a scale that is even in the square root, on which more is seen
 EVEN = 5.0  # the scale of mobilised friction begins at a multiple of this [deg]
 
 
@@ -41,7 +42,7 @@ class Colours:
         largest = max(-low, high)
         self.norm = LogNorm(1e-3 * high, high, clip=True) if log and low == 0 else PowerNorm(0.5, 0, high) if self.rooted else \
             Normalize(-largest, largest) if signed else Normalize(low, high)
-        self.faint = 0.0 if self.names else float(self.norm.inverse(FAINT)) if low == 0 else (FAINT / 4 if signed else FAINT) * largest  # the least size that has a colour
+        self.faint = 0.0 if self.names else float(self.norm.inverse(FAINT_ROOT if self.rooted else FAINT)) if low == 0 else (FAINT / 4 if signed else FAINT) * largest  # the least size that has a colour
 
     def plain(self, values):
         """Which values have the colour of soil."""

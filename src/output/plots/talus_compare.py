@@ -6,7 +6,8 @@ import csv
 import pathlib
 import re
 
-from talus_style import FAINT, INK, LINES, np, plt, save
+from talus_results import Results
+from talus_style import FAINT, INK, LINES, headline, np, plt, save
 from talus_table import lines_of
 from talus_units import with_unit
 
@@ -25,7 +26,7 @@ def scale_of(values):
     return "log" if values and max(values) > 9.99 * min(values) else "linear"
 
 
-def draw(rows, reference, path):
+def draw(rows, reference, path, title=""):
     """Each key that some series refine has its own charts against it."""
     rows = [r for r in rows if not r["failure"]]
     uncertainty = float(reference["uncertainty"])
@@ -60,7 +61,8 @@ def draw(rows, reference, path):
     if np.isfinite(uncertainty) and uncertainty > 0:
         cost.axhspan(cost.get_ylim()[0] if cost.get_ylim()[0] > 0 else uncertainty / 10, uncertainty, color=FAINT, alpha=0.4, label="reference uncertain")
     cost.set(xscale=scale_of(float(r["processor_s"]) for r in rows), yscale=scale_of(float(r["error"]) for r in rows), xlabel="processor time [s]", ylabel="error of " + reference["measure"])
-    cost.legend()
+    cost.legend(fontsize=7.5)
+    headline(figure, f"Error of {reference['measure']} against cost and refinement", title)
     save(figure, path)
 
 
@@ -90,4 +92,5 @@ if __name__ == "__main__":
     if without := sum(not run["failure"] and not np.isfinite(float(run["value"])) for run in runs):
         print(f"{without} of {len(runs)} runs have no value: they ended before that time without coming to rest, or the point had no soil")
     if not given.no_plot:
-        draw(runs, reference, given.dir / "compare.png")
+        first = next(iter(sorted(given.dir.glob("run*/run.h5"))), None)
+        draw(runs, reference, given.dir / "compare.png", Results(first.parent).title if first else "")

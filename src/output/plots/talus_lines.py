@@ -80,7 +80,7 @@ def write_means(results, line, path):
 def draw_line(results, line, path, times):
     rows = chosen(line, times)
     frictional = "mobilised_friction_deg" in line.columns and np.isfinite(line.columns["mobilised_friction_deg"]).any()
-    figure, axes = plt.subplots(1, 3 if frictional else 1, figsize=(13.2 if frictional else 6.0, 4.3), squeeze=False)
+    figure, axes = plt.subplots(1, 3 if frictional else 1, figsize=(13.2 if frictional else 6.0, 4.3), squeeze=False, layout="constrained")
     moved, start = line.moved(), [line.columns[f"{axis}_m"][0] for axis in "xyz" if f"{axis}_m" in line.columns]
     up = results.up_axis()
     level = np.linalg.norm([np.ptp(x) for axis, x in enumerate(start) if axis != up])
@@ -102,8 +102,7 @@ def draw_line(results, line, path, times):
         name(axes[0, 1], along, "mobilised friction angle [deg]", upright)
         axes[0, 1].set_title("white elastic, yellow peak, orange softening, red residual", loc="left", fontsize=7.5, color=style.SOFT)
         draw_mean(results, line, axes[0, 2])
-    figure.suptitle(capital(words(line.name)), x=0.05, ha="left", fontsize=12, fontweight="bold")
-    figure.tight_layout()
+    style.headline(figure, capital(words(line.name)), results.title)
     return style.save(figure, path)
 
 

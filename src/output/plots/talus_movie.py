@@ -20,6 +20,7 @@ RATE = 10            # frames of the film in a second
 FAST, SLOW = 8, 3    # length of the film for all fast parts of the run together, and for all slow ones [s]
 BEFORE = 1           # of which the slow part before the first fast one has at most so much: little can be seen in it [s]
 FLUENT = 4           # snapshots that appear in a second of the film where the soil is fast, at the least
+FEW = 20             # snapshots while soil is fast: fewer are no film
 CREEP = 0.1          # soil is slow below this share of the largest speed of the run
 FIRST, LAST = 3, 15  # more frames for which the start and the end stand still
 RESOLUTION = 100     # of the frames, dots per inch
@@ -83,14 +84,26 @@ def timeline(snapshots):
     return film
 
 
+def tell_of_few(snapshots):
+    """A sentence on a run whose motion has fewer snapshots than a film shows fluently; empty where it has enough."""
+    pairs = [(before, after) for (before, after), (_, shortened) in zip(zip(snapshots, snapshots[1:]), paces(snapshots)) if not shortened]
+    count, time = len(pairs), sum(after.time - before.time for before, after in pairs)
+    if count >= FEW or not time:
+        return ""
+    stages = dict.fromkeys(after.stage for _, after in pairs)
+    wanted = float(f"{time / (RATE * FAST / 2):.1g}")
+    return (f"the soil moves in {count} of the snapshots only, in the stage{'s' * (len(stages) > 1)} {', '.join(stages)}: output_interval = {wanted:g} s there, "
+            "or output.interval, shows its motion fluently")
+
+
 def draw_movies(results, fields, folder, log=False):
     """movie_FIELD.gif of each field, and movie_FIELD.mp4 where there is an ffmpeg; says on standard output what it wrote and what not. Raises
     ValueError where there is nothing that moves, OSError where `folder` cannot be written."""
     snapshots = chosen_snapshots(results, count=len(results.snapshots))
     if len(snapshots) < 2:
         raise ValueError(f"{results.folder} contains {len(snapshots)} snapshot with soil, and a film needs two; a smaller "
-                         "output.snapshot_interval writes more")
-    film = timeline(snapshots)
+                         "output.interval writes more")
+    film, few = timeline(snapshots), tell_of_few(snapshots)
     painter = Painter(results, snapshots, RESOLUTION)
     ffmpeg = shutil.which("ffmpeg")
     for field in fields:
@@ -109,6 +122,8 @@ def draw_movies(results, fields, folder, log=False):
             progress("")
         seconds = sum(count for _, count in frames) / RATE
         print(f"{words(field)}: {len(frames)} of {len(results.snapshots)} snapshots in {seconds:.1f} s; wrote " + ", ".join(filter(None, written)))
+    if few:
+        print(few)
     if not ffmpeg:
         print("no MP4 was written, since there is no ffmpeg; on Debian, apt-get install ffmpeg installs it")
 

@@ -7,7 +7,8 @@ import numpy as np
 
 import talus_style as style
 from talus_histories import time_axis
-from talus_units import readable_unit, words
+from talus_measures import failure
+from talus_units import at_time, readable_unit, words
 
 ENVELOPES = 4  # suctions for which the strength is drawn
 
@@ -45,6 +46,20 @@ def nearest_lines(lines, suctions):
     return [line for line in lines if line[1] in chosen]
 
 
+def time_of_failure(results):
+    """When the watched point failed [s]; infinite where none did."""
+    try:
+        return failure(results)[0]
+    except (LookupError, OSError):
+        return np.inf
+
+
+def label_of(name, time, known):
+    """The name of a point, with the time from which on there is no soil at it, if its path ends before the run."""
+    last = np.flatnonzero(np.isfinite(known))[-1]
+    return words(name) if last == len(known) - 1 else f"{words(name)}, no stress after {at_time(time[last], time[-1])}"
+
+
 def spread(heights, gap, top):
     """Heights of labels in the order of those of their lines, apart by `gap` at least and none above `top`."""
     placed = np.sort(np.minimum(heights, top))
@@ -63,18 +78,24 @@ def draw_stress_paths(results, folder):
     paths = paths_of(results.history)
     if not paths:
         return []
-    figure, (left, right) = plt.subplots(1, 2, figsize=(11.4, 4.4))
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11.4, 4.4), layout="constrained")
+    time, failed = results.history.time, time_of_failure(results)
     largest = max(np.nanmax(np.abs([path["p"], path["q"]])) for path in paths.values())
     factor, unit = readable_unit(largest, "Pa")
     lowest, highest = 0.0, 0.0
     for k, (name, path) in enumerate(paths.items()):
         p, q = factor * path["p"], factor * path["q"]
-        line = {"color": style.LINES[k % len(style.LINES)], "ls": ("-", "--", ":")[k // len(style.LINES) % 3], "label": words(name)}
+        line = {"color": style.LINES[k % len(style.LINES)], "ls": ("-", "--", ":")[k // len(style.LINES) % 3], "label": label_of(name, time, q)}
         known = np.flatnonzero(np.isfinite(q))
-        left.plot(p, q, lw=1.0, **line)
+        after = time > failed
+        left.plot(p[~after], q[~after], lw=1.2, **line)
         left.plot(p[known[0]], q[known[0]], "o", color=line["color"], ms=4.5, mfc="white")
+        if after[known].any():  # in motion the stress jumps from row to row
+            first = max(int(after.argmax()) - 1, 0)
+            left.plot(p[first:], q[first:], lw=0.6, alpha=0.5, **line)
+            left.plot(p[first], q[first], "D", color=line["color"], ms=4.5)
         left.plot(p[known[-1]], q[known[-1]], "o", color=line["color"], ms=4.5)
-        right.plot(results.history.time, path["friction"], lw=1.1, **line)
+        right.plot(time, path["friction"], lw=1.1, **line)
         lowest, highest = min(lowest, np.nanmin(p)), max(highest, np.nanmax(p))
     reach = np.array([lowest, 1.08 * highest + 1e-9])
     top = left.get_ylim()[1]
@@ -95,13 +116,16 @@ def draw_stress_paths(results, folder):
         left.annotate(text, (at, height), (at if leader is None else at - 0.04 * reach[1], y), fontsize=7, color=style.SOFT, ha="right", va="bottom",
                       arrowprops=leader, bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.3})
     left.set(xlabel=f"mean effective stress p' [{unit}]", ylabel=f"q [{unit}]", xlim=reach, ylim=(0, 1.35 * top))
-    left.set_title("open: start, full: end; grey: strength in triaxial compression", loc="left", fontsize=7.5, color=style.SOFT)
-    time_axis(right, results.history.time[-1])
-    right.set(ylabel="mobilised friction angle [deg]", xlim=(results.history.time[0], results.history.time[-1]))
+    said = ["open: start", "full: end", "diamond: failure, thin after it" * np.isfinite(failed), "grey: strength in triaxial compression" * bool(labels)]
+    left.set_title("; ".join(filter(None, said)), loc="left", fontsize=7.5, color=style.SOFT)
+    time_axis(right, time[-1])
+    right.set(ylabel="mobilised friction angle [deg]", xlim=(time[0], time[-1]))
+    if np.isfinite(failed):
+        right.axvline(failed, color=style.FAINT, lw=0.8, zorder=0.5)
+        right.annotate("failure", (failed, 1.01), xycoords=("data", "axes fraction"), ha="center", fontsize=7.5, color=style.SOFT)
     if not any(np.isfinite(path["friction"]).any() for path in paths.values()):
         right.text(0.5, 0.5, "without a friction angle none is mobilised", transform=right.transAxes, ha="center", color=style.SOFT)
     right.set_ylim(bottom=0)
     right.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.01, 1), ncols=1 + len(paths) // 20)
-    figure.suptitle("Stress paths of the named points", x=0.06, ha="left", fontsize=12, fontweight="bold")
-    figure.tight_layout()
+    style.headline(figure, "Stress paths of the named points", results.title)
     return [("stress paths", style.save(figure, folder / "stress_paths.png"))]

@@ -128,6 +128,14 @@ class Painter:
         rows = [[0]] if len(self.views) == 1 else [[0, 1], [2, 3]]
         return style.save(self._sheet(field, colours, [best], 1, rows, named_points=True), path)
 
+    def picture_of_line(self, snapshot, field, line, name, path):
+        """A field in the section, and a line [n, 2] upon it, whose name stands in the title."""
+        figure = self._sheet(field, Colours(field, [snapshot]), [snapshot], 1, [[self.section]], note=f"line: {name}")
+        axes = figure.axes[0]
+        axes.plot(*line.T, color="white", lw=3.4)
+        axes.plot(*line.T, color=style.ACCENT, lw=1.8)
+        return style.save(figure, path)
+
     def frame(self, field, colours, snapshot, note, path):
         """One frame of a film, with a note in its title."""
         figure = self._sheet(field, colours, [snapshot], 1, [[0]] if len(self.views) == 1 else [[0, 1]], note=note)

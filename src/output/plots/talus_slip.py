@@ -5,9 +5,8 @@ import sys
 
 import numpy as np
 
-import talus_style as style
 from talus_measures import at, failure
-from talus_style import plt
+from talus_sections import Painter
 from talus_views import spacing_of
 
 LEAST = 0.2  # of the largest plastic strain: soil with less is no part of the surface
@@ -66,6 +65,35 @@ def surface_at(results, snapshot):
     return smoothed(np.array(points)), snapshot, place, strain
 
 
+class Undeformed:
+    """A snapshot whose particles are where they were at the start; those that came later are not there."""
+
+    def __init__(self, snapshot, first):
+        self._snapshot, self._first, self._kept = snapshot, first, np.isin(snapshot.ids(), first.ids())
+        self.time, self.stage, self.step = snapshot.time, snapshot.stage, -1
+
+    def __contains__(self, name):
+        return name in self._snapshot
+
+    def ids(self):
+        return self._snapshot.ids()[self._kept]
+
+    def body(self):
+        return self._snapshot.body()[self._kept]
+
+    def position(self):
+        return self._first.position()[np.searchsorted(self._first.ids(), self.ids())]
+
+    def column(self, name):
+        column = self._snapshot.column(name)
+        column.values = column.values[self._kept]
+        return column
+
+    def scalar(self, name):
+        values, unit = self._snapshot.scalar(name)
+        return values[self._kept], unit
+
+
 def path_of_most(worth):
     """The path (column, row), ... from left to right whose bins have the largest sum of `worth` [columns, rows], of all that begin and end anywhere and
     rise or fall by at most STEEPEST rows a column. The rows that a steep step passes count where their worth is negative, so that the path does not leap
@@ -109,13 +137,9 @@ def draw_slip_surface(results, folder, time=None):
         rows = csv.writer(file, lineterminator="\n")
         rows.writerow(("x_m", "elevation_m"))
         rows.writerows([f"{value:.6g}" for value in point] for point in line)
-    figure, axes = plt.subplots(figsize=(9.0, 1.2 + 8.0 * np.ptp(place[:, 1]) / np.ptp(place[:, 0])), layout="constrained")
-    shown = axes.scatter(*place.T, c=strain, s=3, cmap=style.colours_of("plastic_strain"), vmax=np.percentile(strain, 99.8), linewidths=0)
-    axes.plot(*line.T, color=style.ACCENT, lw=2)
-    axes.set(aspect="equal", xlabel="x [m]", ylabel="elevation [m]")
-    axes.set_title(f"slip surface in the undeformed section; plastic strain at {results.when(snapshot)}", loc="left")
-    figure.colorbar(shown, ax=axes, shrink=0.8)
-    style.save(figure, folder / "slip_surface.png")
+    undeformed = Undeformed(snapshot, results.snapshots[0])
+    painter = Painter(results, [undeformed])
+    painter.picture_of_line(undeformed, "plastic_strain", line, "slip surface, in the section as it was at the start", folder / "slip_surface.png")
     if buried := buried_ends(line, place):
         print(f"talus: the line ends inside the soil on the {' and on the '.join(buried)}: at t = {snapshot.time:g} s the plastic strain that is more than "
               f"{LEAST:g} of the largest forms no surface from ground to ground; a later time (--times) may show the whole one", file=sys.stderr)

@@ -18,7 +18,7 @@ import numpy as np
 import talus_style as style
 from talus_outcomes import FAILS, MOVES, STANDS, finite, warnings_in, write_json
 from talus_style import plt
-from talus_sweep import number, outcomes, plane, title_of
+from talus_sweep import number, outcomes, plane, title_of, title_of_runs
 from talus_table import folded
 from talus_units import with_unit, words
 
@@ -112,7 +112,7 @@ def sensitivities(rows, variables, outcome):
 
 # ---- pictures ----
 
-def draw_tornado(all_fits, in_plane, path):
+def draw_tornado(all_fits, in_plane, path, title=""):
     heights = [len(fit["bars"]) for fit in all_fits]
     figure, axes = plt.subplots(len(all_fits), 1, figsize=(6.4, sum(0.5 * h + 1.1 for h in heights)), squeeze=False, layout="constrained",
                                 gridspec_kw={"height_ratios": [h + 1.5 for h in heights]})
@@ -125,12 +125,13 @@ def draw_tornado(all_fits, in_plane, path):
                                                  for bar in fit["bars"]])
         one.set_xlabel(title_of(fit["outcome"], in_plane))
         one.set_title(f"linear fit, R² = {fit['r2']:.2f}", loc="right", fontsize=8)
-    axes.flat[0].legend(fontsize=7.5, loc="lower left", bbox_to_anchor=(0, 1), ncols=2, frameon=False)
+    style.legend_below(figure, axes.flat[0].get_legend_handles_labels()[0])
+    style.headline(figure, "What decides", title)
     return style.save(figure, path)
 
 
-def draw_scatter(rows, variables, shown, criteria, in_plane, path):
-    figure, axes = plt.subplots(len(shown), len(variables), figsize=(max(3.6, 2.9 * len(variables)), 2.7 * len(shown)), squeeze=False, layout="constrained")
+def draw_scatter(rows, variables, shown, criteria, in_plane, path, title=""):
+    figure, axes = plt.subplots(len(shown), len(variables), figsize=(max(5.2, 2.9 * len(variables)), 0.3 + 2.7 * len(shown)), squeeze=False, layout="constrained")
     for line, outcome in zip(axes, shown):
         about = [c for c in criteria if c["outcome"] == outcome]
         for one, v in zip(line, variables):
@@ -146,12 +147,14 @@ def draw_scatter(rows, variables, shown, criteria, in_plane, path):
             one.set_xlabel(with_unit(words(v["name"]), v["unit"]))
         line[0].set_ylabel(textwrap.fill(title_of(outcome, in_plane), 28))
     if criteria:
-        figure.suptitle("orange: the criterion is met", x=0.01, ha="left", fontsize=8.5, color=style.SOFT)
+        met = [plt.Line2D([], [], marker="o", ls="", ms=4, color=style.LINES[k], label=text) for k, text in enumerate(("no criterion is met", "a criterion is met"))]
+        style.legend_below(figure, met)
+    style.headline(figure, "Outcomes against the variables", title)
     return style.save(figure, path)
 
 
-def draw_exceedance(rows, shown, criteria, confidence, in_plane, path):
-    figure, axes = plt.subplots(1, len(shown), figsize=(4.4 * len(shown), 3.3), squeeze=False, layout="constrained")
+def draw_exceedance(rows, shown, criteria, confidence, in_plane, path, title=""):
+    figure, axes = plt.subplots(1, len(shown), figsize=(max(5.2, 4.4 * len(shown)), 3.5), squeeze=False, layout="constrained")
     for one, outcome in zip(axes.flat, shown):
         values = np.sort([float(row[outcome]) for row in rows if row.get(outcome) is not None])
         n = len(values)
@@ -165,6 +168,7 @@ def draw_exceedance(rows, shown, criteria, confidence, in_plane, path):
                 one.axvline(criterion["limit"], color=style.INK, lw=0.8, ls=":", label=words(criterion["name"]))
         one.set(xlabel=title_of(outcome, in_plane), ylabel="probability of a larger value", ylim=(0, 1.02))
         one.legend(fontsize=7.5)
+    style.headline(figure, "Probability of exceedance", title)
     return style.save(figure, path)
 
 
@@ -216,9 +220,10 @@ def main():
                          "point had no soil"))
     write_json(given.folder / "study.json", {"title": design["title"], "runs": len(rows), "planned": design["planned"], "broke_off": len(broken),
                                              "warnings": warnings_in(given.folder), "probabilities": estimates, "sensitivities": fits})
-    for name, wanted, draw in (("tornado", fits, lambda path: draw_tornado(fits, in_plane, path)),
-                               ("scatter", shown, lambda path: draw_scatter(rows, variables, shown, criteria, in_plane, path)),
-                               ("exceedance", shown and sampled, lambda path: draw_exceedance(rows, [s for s in shown if s != "fails"], criteria, design["confidence"], in_plane, path))):
+    title = design["title"] or title_of_runs(given.folder, runs)
+    for name, wanted, draw in (("tornado", fits, lambda path: draw_tornado(fits, in_plane, path, title)),
+                               ("scatter", shown, lambda path: draw_scatter(rows, variables, shown, criteria, in_plane, path, title)),
+                               ("exceedance", shown and sampled, lambda path: draw_exceedance(rows, [s for s in shown if s != "fails"], criteria, design["confidence"], in_plane, path, title))):
         path = given.folder / f"{name}.png"
         if wanted and not given.no_plot:
             draw(path)

@@ -54,6 +54,12 @@ def headline(figure, text, title):
     figure.text(0.99, 0.985, title, ha="right", va="top", fontsize=8.5, color=SOFT)
 
 
+def legend_below(figure, handles):
+    """One legend of all charts, below them on the left; `figure` has the layout "constrained"."""
+    figure.supxlabel(" ", fontsize=10)  # keeps the room
+    figure.legend(handles=handles, loc="lower left", ncols=len(handles), fontsize=8)
+
+
 def program():
     """Name and version of the program that draws, "Talus 0.1.0". The program passes them on when it starts a script; a script that is started alone
     reads them from CMakeLists.txt, which an installed program lacks."""

@@ -138,7 +138,12 @@ def draw_charts(axes, rows, charts):
             one.set_xticks(range(len(choices)), [textwrap.fill(choice, 14) for choice in choices])
 
 
-def draw(rows, path, in_plane=False):
+def title_of_runs(folder, runs):
+    """The title of the scene that all runs vary, of the first of them that left results."""
+    return next((Results(folder / run["folder"]).title for run in runs if (folder / run["folder"] / "run.h5").exists()), "")
+
+
+def draw(rows, path, in_plane=False, title=""):
     """Charts of all outcomes that differ, one row of them or more for each key that is varied. Runs that broke off have no outcome: a cross at the lower
     edge marks their value of the key."""
     parts = [[row for row in rows if row["key"] == key] for key in dict.fromkeys(row["key"] for row in rows)]
@@ -155,8 +160,9 @@ def draw(rows, path, in_plane=False):
     states = {row.get("state") for row in rows}
     handles = [plt.Line2D([], [], marker=MARKS[state][0], color=style.SOFT, ls="", ms=5, fillstyle=MARKS[state][1], markerfacecoloralt="white",
                           mfc="white" if MARKS[state][1] == "none" else None, label=LEGEND[state]) for state in MARKS if state in states]
-    figure.suptitle(" ", fontsize=12)  # room for the legend
-    figure.legend(handles=handles, loc="upper left", ncols=len(handles), fontsize=8, frameon=False)
+    keys = dict.fromkeys(words(row["key"].rpartition(".")[2]) for row in rows)
+    style.headline(figure, f"Outcomes against {', '.join(filter(None, keys)) or 'the series'}", title)
+    style.legend_below(figure, handles)
     return style.save(figure, path)
 
 
@@ -193,7 +199,7 @@ def main():
         writer.writerows(rows)
     ended = [row for row in rows if not row["failure"]]
     if ended and charted(rows) and not given.no_plot:
-        draw(rows, given.folder / "sweep.png", in_plane)
+        draw(rows, given.folder / "sweep.png", in_plane, title_of_runs(given.folder, runs))
     else:
         (given.folder / "sweep.png").unlink(missing_ok=True)  # of an earlier call
     return 1 if len(ended) < len(rows) else 0

@@ -15,12 +15,13 @@ import talus_study  # noqa: E402
 import talus_sweep  # noqa: E402
 from talus_colours import Colours  # noqa: E402
 from talus_histories import draw_histories, drawn_energies  # noqa: E402
-from talus_moments import chosen_snapshots, telling  # noqa: E402
+from talus_moments import chosen_snapshots, telling, with_stress  # noqa: E402
 from talus_outcomes import FAILS  # noqa: E402
-from talus_paths import spread  # noqa: E402
+from talus_paths import label_of, spread  # noqa: E402
 from talus_results import History, Results  # noqa: E402
 from talus_sections import Painter  # noqa: E402
 from talus_slip import slip_surface  # noqa: E402
+from talus_soils import moved_away, painted, tints  # noqa: E402
 from talus_tiles import Frame  # noqa: E402
 from talus_views import View, views_of  # noqa: E402
 
@@ -110,11 +111,28 @@ class Scales(unittest.TestCase):
         self.assertFalse(self.strain(log=True).rooted)
         self.assertAlmostEqual(float(self.strain(log=True).norm(1e-1)), 2 / 3)
 
-    def test_the_last_degrees_before_failure_differ(self):
-        values = types.SimpleNamespace(scalar=lambda field: (np.linspace(0, 30, 1001), "deg"))
-        scale = Colours("mobilised_friction", [values])
-        self.assertGreater(scale.norm(30) - scale.norm(28), 0.2)  # of the whole range; 0.07 if it were even
+    def of(self, field, values, unit="-"):
+        return Colours(field, [types.SimpleNamespace(scalar=lambda field: (np.asarray(values, float), unit))])
+
+    def test_mobilised_friction_is_even_and_begins_below_nearly_all_soil(self):
+        scale = self.of("mobilised_friction", np.concatenate([np.zeros(500), np.linspace(12, 30, 1001)]), "deg")  # half of it without stress
+        self.assertEqual(scale.shown, (10, 30))
+        self.assertAlmostEqual(scale.norm(30) - scale.norm(28), 0.1)
         self.assertGreater(np.ptp(scale.map(1.0)[:3]), 0.4)  # no black
+        self.assertEqual(list(scale.plain(np.array([0, 12, np.nan]))), [True, False, True])
+
+    def test_a_field_of_both_signs_is_pale_at_nothing(self):
+        scale = self.of("displacement_x", np.linspace(-1, 3, 1001), "m")
+        self.assertEqual(scale.shown, (-1, 3))
+        self.assertAlmostEqual(float(scale.norm(0)), 0.5)
+        self.assertAlmostEqual(float(scale.norm(1)) + float(scale.norm(-1)), 1)
+        self.assertGreater(min(scale.map(0.5)[:3]), 0.9)
+        self.assertGreater(scale.map(1.0)[0], scale.map(1.0)[2])  # red above, blue below
+        self.assertGreater(scale.map(0.0)[2], scale.map(0.0)[0])
+
+    def test_a_little_of_the_other_sign_is_beyond_the_end(self):
+        scale = self.of("pore_pressure", np.linspace(-0.01, 1, 1001), "-")
+        self.assertEqual((scale.shown, scale.above, scale.below), ((0, 1), False, True))
 
 
 class Labels(unittest.TestCase):
@@ -125,6 +143,13 @@ class Labels(unittest.TestCase):
         self.assertEqual(list(np.argsort(placed)), list(np.argsort(lines)))
         self.assertLessEqual(placed.max(), 1.05)
         self.assertEqual(placed[2], 0.3)
+
+
+class Paths(unittest.TestCase):
+    def test_that_end_before_the_run_say_when(self):
+        time, known = np.arange(5.0), np.array([1.0, 2, 3, np.nan, np.nan])
+        self.assertEqual(label_of("crest", time, known), "crest, no stress after t = 2.00 s")
+        self.assertEqual(label_of("left_face", time, np.ones(5)), "left face")
 
 
 class Energies(unittest.TestCase):
@@ -170,6 +195,54 @@ class Panels(unittest.TestCase):
         snapshots = [self.state(0, 0), self.state(0, 0.001), self.state(0, 0.5), self.state(1, 0.5), self.state(1, 0.501), self.state(1, 0.501, left=3)]
         shown = telling(snapshots, "strain", Colours("strain", snapshots), 1.0)
         self.assertEqual([snapshots.index(one) for one in shown], [0, 2, 3, 5])
+
+
+class Water:
+    """A field that is nothing at the start, and something from the end of gravity on."""
+
+    def __init__(self, time, stage, value):
+        self.time, self.stage, self._value = time, stage, value
+
+    def ids(self):
+        return np.arange(3)
+
+    def scalar(self, field):
+        return np.full(3, float(self._value)), "Pa"
+
+
+class Stress(unittest.TestCase):
+    def test_is_shown_from_the_end_of_gravity_on_and_motion_from_the_start_on(self):
+        all_of_them = [Water(0, "start", 0), Water(1, "gravity", 5), Water(2, "gravity", 10), Water(3, "rain", 11), Water(4, "rain", 12)]
+        results, chosen = types.SimpleNamespace(snapshots=all_of_them), [all_of_them[k] for k in (0, 1, 4)]
+        self.assertEqual([one.time for one in with_stress(results, chosen, "pore_pressure")], [2, 4])
+        self.assertEqual([one.time for one in with_stress(results, chosen, "velocity_x")], [0, 1, 4])
+
+
+class Soils(unittest.TestCase):
+    """A section of 20 by 10 pixels, the lower half clay (0), the upper half sand (1)."""
+
+    def setUp(self):
+        self.owner = np.arange(200).reshape(10, 20)
+        self.body = (np.arange(200) >= 100).astype(int)
+        self.frame = Frame((0, 0), (2, 1), 20)
+
+    def test_are_seen_where_a_field_has_nothing_to_show(self):
+        value = np.where(np.arange(200) % 20 < 10, 0.0, 1.0)
+        scale = Colours("displacement", [types.SimpleNamespace(scalar=lambda field: (value, "m"))])
+        picture = painted(self.owner, value, self.body, tints(2), scale)
+        for row, body in ((2, 0), (7, 1)):
+            np.testing.assert_allclose(picture[row, 3], [*tints(2)[body], 1])
+            np.testing.assert_allclose(picture[row, 15], scale.map(scale.norm(1.0)))
+        self.assertLess(picture[4, 3, :3].sum(), picture[2, 3, :3].sum() - 0.5)  # the line between them
+
+    def test_an_outline_is_seen_where_the_soil_has_left_it(self):
+        soil = np.zeros((10, 20), bool)
+        soil[:5, :10] = soil[:9, 10:] = True  # the left half has sunk from 0.9 to 0.5
+        line = moved_away(np.array([(0.0, 0.9), (2.0, 0.9)]), soil, self.frame, 0.1)
+        seen = line[np.isfinite(line[:, 0]), 0]
+        self.assertGreater(len(seen), 5)
+        self.assertLess(seen.max(), 1.0)
+        self.assertTrue(np.isnan(line[line.shape[0] // 2 + 2:]).all())
 
 
 class Sheared:
