@@ -237,8 +237,8 @@ Needs find_needs(Scene &scene, bool with_model) {
     const double steps = std::ceil(stage.duration / needs.step);
     needs.stages.push_back(
         {stage.name, stage.duration, steps, steps * needs.seconds_per_step, stage.duration / needs.layer.transit});
-    const double interval = scene.output_interval(stage);
-    needs.snapshots += interval > 0 ? static_cast<long long>(std::ceil(stage.duration / interval)) : 1;
+    needs.snapshots +=
+        scene.output.interval > 0 ? static_cast<long long>(std::ceil(stage.duration / scene.output.interval)) : 1;
   }
   needs.results *= static_cast<double>(needs.snapshots);
   needs.heated_bases = heated_bases_of(scene, needs);

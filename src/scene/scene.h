@@ -374,7 +374,6 @@ struct Stage {
   std::string name;
   StageKind kind = StageKind::dynamic;
   double duration = required;  ///< longest duration [s]
-  double output_interval = 0;  ///< time between snapshots [s]; 0: output.interval
   StopWhen until = StopWhen::duration;
   double damping = 0;           ///< local (Cundall) damping factor alpha [-]
   double gravity_ramp = 0;      ///< gravity and pore pressure grow linearly over this time [s]
@@ -406,8 +405,6 @@ struct Stage {
              "motion by the material point method, or by finite elements: static equilibrium, flow of pore water "
              "through soil at rest, or consolidation (both in time)");
     v.number("duration", duration, second, Range{0, 1e9}, "longest duration of the stage");
-    v.number("output_interval", output_interval, second, Range{0, 1e9},
-             "time between snapshots in this stage, such as a short one while soil slides; 0: output.interval");
     v.choice("until", until,
              {{"duration", StopWhen::duration},
               {"equilibrium", StopWhen::equilibrium},
@@ -592,9 +589,8 @@ struct Output {
       picture;  ///< empty: displacement, plastic strain, velocity and pore pressure, as far as there are
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.number(
-        "interval", interval, second, Range{0, 1e9},
-        "time between snapshots; 0: only at the start and end of stages; a stage may have its own output_interval");
+    v.number("interval", interval, second, Range{0, 1e9},
+             "time between snapshots; 0: only at the start and end of stages");
     v.number("history_interval", history_interval, second, Range{0, 1e9},
              "time between lines of history.csv; 0: a 200th of the longest stage");
     v.number("checkpoint_interval", checkpoint_interval, second, Range{0, 1e9},
@@ -647,10 +643,6 @@ struct Scene {
   QuasiStaticSource quasi_static;
   FactorSource factor_of_safety;
   Output output;
-  /// Time between the snapshots of a stage [s]; 0: only at its end.
-  double output_interval(const Stage &one) const {
-    return one.output_interval > 0 ? one.output_interval : output.interval;
-  }
   template <class Visitor>
   void fields(Visitor &&v) {
     v.text("title", title, "one line that says what the scene shows");

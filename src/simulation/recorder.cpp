@@ -160,12 +160,9 @@ void Recorder<dim>::check_intervals() {
   if (std::isinf(step)) return;  // all soil comes later
   const double least = step / 1000;
   const Output &output = scene_.output;
-  std::vector<std::pair<std::string, double>> intervals{{"output.interval", output.interval},
-                                                        {"output.history_interval", output.history_interval},
-                                                        {"output.checkpoint_interval", output.checkpoint_interval}};
-  for (std::size_t n = 0; n < scene_.stage.size(); ++n)
-    intervals.emplace_back("stage." + std::to_string(n) + ".output_interval", scene_.stage[n].output_interval);
-  for (const auto &[key, interval] : intervals)
+  for (const auto &[key, interval] : {std::pair{"output.interval", output.interval},
+                                      {"output.history_interval", output.history_interval},
+                                      {"output.checkpoint_interval", output.checkpoint_interval}})
     if (interval > 0 && interval < least)
       scene_.complain(key, "must be 0, or " + rounded(least) + " s or more: the critical step is " + rounded(step) +
                                " s, and nothing new happens in a thousandth of it");
@@ -534,14 +531,14 @@ Checkpoint Recorder<dim>::find_checkpoint() {
     const bool listed = words.size() > 1 && words[0] == "stage";
     const int stage = listed ? std::stoi(words[1]) : 0;
     const bool result = words[0] == "title" || words[0] == "factor_of_safety" || path == "mesh.leaving_particles" ||
-                        path == "mesh.balance_ranks" || (listed && words.back() == "output_interval") ||
+                        path == "mesh.balance_ranks" ||
                         (words[0] == "output" && words.size() > 1 && words[1] != "point");
     const bool to_come = listed && (stage > found.stage || (stage == found.stage && words.back() == "duration"));
     if (!result && !to_come)
       scene_.complain(
           path,
           "is not what it was when the run in " + options_.directory + " began, and " + tie_of(words[0]) +
-              "; with --resume only title, [output] without its points, output_interval, [factor_of_safety], "
+              "; with --resume only title, [output] without its points, [factor_of_safety], "
               "mesh.leaving_particles, mesh.balance_ranks, the duration of the present stage and the stages after it "
               "may change (repeat the --set of that run)");
   }

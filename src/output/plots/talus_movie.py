@@ -92,8 +92,8 @@ def tell_of_few(snapshots):
         return ""
     stages = dict.fromkeys(after.stage for _, after in pairs)
     wanted = float(f"{time / (RATE * FAST / 2):.1g}")
-    return (f"the soil moves in {count} of the snapshots only, in the stage{'s' * (len(stages) > 1)} {', '.join(stages)}: output_interval = {wanted:g} s there, "
-            "or output.interval, shows its motion fluently")
+    return (f"the soil moves in {count} of the snapshots only, in the stage{'s' * (len(stages) > 1)} {', '.join(stages)}: a run with output.interval = {wanted:g} s "
+            "shows its motion fluently")
 
 
 def draw_movies(results, fields, folder, log=False):

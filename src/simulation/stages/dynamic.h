@@ -46,8 +46,7 @@ class DynamicStage final : public StageRunner<dim> {
     for (const Stage &s : run_.scene.stage) longest = std::max(longest, s.duration);
     const Output &output = run_.scene.output;
     history_interval_ = output.history_interval > 0 ? output.history_interval : longest / 200;
-    snapshot_interval_ = run_.scene.output_interval(stage_);
-    checkpoint_interval_ = output.checkpoint_interval > 0 ? output.checkpoint_interval : snapshot_interval_;
+    checkpoint_interval_ = output.checkpoint_interval > 0 ? output.checkpoint_interval : output.interval;
     set_loading();
   }
   void set_loading() { run_.dynamics.set_loading(stage_, run_.clock.time - run_.progress.begin); }
@@ -55,7 +54,8 @@ class DynamicStage final : public StageRunner<dim> {
   /// One step and what is written after it.
   void advance() {
     const double begin = run_.progress.begin, &now = run_.clock.time;
-    const double row = next_time(begin, history_interval_, now), snapshot = next_time(begin, snapshot_interval_, now),
+    const double row = next_time(begin, history_interval_, now),
+                 snapshot = next_time(begin, run_.scene.output.interval, now),
                  checkpoint = next_time(begin, checkpoint_interval_, now);
     set_loading();
     const Verdict verdict = run_.dynamics.cycle(run_.dynamics.fixed_step() ? end() : std::min(end(), snapshot));
@@ -91,7 +91,7 @@ class DynamicStage final : public StageRunner<dim> {
 
   Run<dim> &run_;
   const Stage &stage_;
-  double history_interval_ = 0, snapshot_interval_ = 0, checkpoint_interval_ = 0;  ///< [s]
+  double history_interval_ = 0, checkpoint_interval_ = 0;  ///< [s]
 };
 
 }  // namespace talus

@@ -67,7 +67,7 @@ class Clock(unittest.TestCase):
     def test_a_slide_with_few_snapshots_is_told_with_what_would_be_enough(self):
         self.assertEqual(movie.tell_of_few(slope()), "")
         few = [snapshot for snapshot in slope() if snapshot.time <= 40 or snapshot.time % 2 == 0]
-        self.assertIn("moves in 4 of the snapshots only, in the stage slide: output_interval = 0.2 s", movie.tell_of_few(few))  # 8 s in 40 parts
+        self.assertIn("moves in 4 of the snapshots only, in the stage slide: a run with output.interval = 0.2 s", movie.tell_of_few(few))  # 8 s in 40 parts
 
     def test_paces_are_said_in_words(self):
         self.assertEqual([movie.pace_in_words(movie.round_factor(factor), False) for factor in (1.2, 86400, 0.04, 0)],
