@@ -4,6 +4,7 @@ cell sizes; writes sizes.csv beside itself, and of the three default sizes conve
 
 import csv
 import pathlib
+import re
 import subprocess
 import sys
 import textwrap
@@ -26,10 +27,13 @@ def converge(talus, folder, *options):
 
 def on_the_page(text):
     """Table and sentences as a page shows them: without the columns that follow the depth, and without the name of the folder."""
-    table, sentences = text[text.index("     cells"):].split("\n\n", 1)
-    end = table.index("depth [m]") + len("depth [m]")
-    sentences = [line for line in sentences.splitlines() if not line.startswith("tables and picture")]
-    return "\n".join([*(f"{row[:end]}   ..." for row in table.splitlines()), "", *(textwrap.fill(line, WIDTH) for line in sentences)]) + "\n"
+    paragraphs = text.split("\n\n")
+    k = next(k for k, paragraph in enumerate(paragraphs) if re.search(r"cells +state", paragraph))
+    lines = paragraphs[k].splitlines()
+    first = next(n for n, line in enumerate(lines) if "depth" in line) - 1  # the heading has three lines
+    end = next(line.index("depth") for line in lines if "depth" in line) + len("depth")
+    sentences = [line for line in paragraphs[k + 1].splitlines() if not line.startswith("tables and picture")]
+    return "\n".join([*(f"{row[:end]}   ...".rstrip() for row in lines[first:]), "", *(textwrap.fill(line, WIDTH) for line in sentences)]) + "\n"
 
 
 def main():

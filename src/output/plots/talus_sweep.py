@@ -53,8 +53,14 @@ def plane(folder, runs):
 
 def title_of(outcome, in_plane):
     """An outcome in words, with its unit."""
+    title = TITLES.get(outcome)
+    return named(outcome, in_plane) if title is None else title.replace("[m³]", "[m³/m]") if in_plane else title
+
+
+def named(outcome, in_plane):
+    """The name of an outcome as its column has it, in words, with its unit."""
     unit = next((ending for ending in UNITS if outcome.endswith("_" + ending)), None)
-    title = TITLES.get(outcome) or (with_unit(words(outcome[: -len(unit) - 1]), UNITS[unit]) if unit else words(outcome))
+    title = with_unit(words(outcome[: -len(unit) - 1]), UNITS[unit]) if unit else words(outcome)
     return title.replace("[m³]", "[m³/m]") if in_plane else title
 
 
@@ -174,13 +180,14 @@ def axis_title(rows):
 
 def table(rows, in_plane=False, width=None):
     """Lines of the table of all runs."""
-    columns = [(", ".join(filter(None, (label, title))), column) for title, of in charted(rows, in_plane) for label, column in of.items()]
+    columns = [(named(column, in_plane), column) for _, of in charted(rows) for column in of.values()]
     texts = []
     for row in rows:
         keys = [row["series"], row["value"]]
         texts.append(keys + ([f"broke off: {row['failure']}"] if row["failure"] else
                              [row["state"] if "state" in row else "", *("-" if row.get(column) is None else f"{row[column]:.4g}" for _, column in columns)]))
-    return lines_of(["series", axis_title(rows) if len({row["key"] for row in rows}) == 1 else "value", "state", *(title for title, _ in columns)], texts, 2, width)
+    value = words(axis_title(rows).rpartition(".")[2]) if len({row["key"] for row in rows}) == 1 else "value"
+    return lines_of(["series", value, "state", *(name for name, _ in columns)], texts, 2, width)
 
 
 def main():

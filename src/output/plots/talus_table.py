@@ -21,7 +21,7 @@ def lines_of(headings, rows, keys=1, width=None):
     folded, sizes = [], []
     for k, heading in enumerate(headings):
         widest = max((len(row[k]) for row in (rows if k < keys else whole)), default=0)
-        folded.append(textwrap.wrap(heading, max(widest, LEAST), break_long_words=False, break_on_hyphens=False) or [""])
+        folded.append(textwrap.wrap(heading, max(widest, LEAST, len(heading) // 3), break_long_words=False, break_on_hyphens=False) or [""])
         sizes.append(max(widest, *map(len, folded[-1])))
     lines = []
     for columns in fitting(sizes, keys, width):
@@ -38,7 +38,7 @@ def lines_of(headings, rows, keys=1, width=None):
 
 
 def row_of(cells, sizes):
-    return BETWEEN.join(cell.rjust(size) for cell, size in zip(cells, sizes))
+    return BETWEEN.join(cell.rjust(size) for cell, size in zip(cells, sizes)).rstrip()
 
 
 def sentence(before, text, width):
