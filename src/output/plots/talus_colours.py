@@ -35,18 +35,22 @@ class Colours:
             low = EVEN * np.floor(np.percentile(values[values > 0], 5) * self.factor / EVEN)
         self.map = style.colours_of(field, signed)
         self.names = style.STATES if field == "state" else ()
-        self.shown = (low, high)  # of the scale, in the bar
+        self.shown = (0.5, high) if self.names else (low, high)  # of the scale, in the bar; soil without a state of its strength has its own colour
         self.above, self.below = (bool(len(values)) and bool(there) for there in (values.max(initial=high) * self.factor > high, values.min(initial=low) * self.factor < low))
         self.rooted = field == "plastic_strain" and low == 0 and not log
         self.uneven = "colours even in the square root" if self.rooted else ""
         largest = max(-low, high)
         self.norm = LogNorm(1e-3 * high, high, clip=True) if log and low == 0 else PowerNorm(0.5, 0, high) if self.rooted else \
             Normalize(-largest, largest) if signed else Normalize(low, high)
-        self.faint = 0.0 if self.names else float(self.norm.inverse(FAINT_ROOT if self.rooted else FAINT)) if low == 0 else (FAINT / 4 if signed else FAINT) * largest  # the least size that has a colour
+        self.faint = 0.5 if self.names else float(self.norm.inverse(FAINT_ROOT if self.rooted else FAINT)) if low == 0 else (FAINT / 4 if signed else FAINT) * largest  # the least size that has a colour
 
     def plain(self, values):
         """Which values have the colour of soil."""
         return ~np.isfinite(values) | (np.abs(values) < self.faint)
+
+    def in_words(self):
+        """What has the colour of soil."""
+        return f"colour of soil: {self.names[0]}" if self.names else f"colour of soil: less than {self.faint:.2g} {self.unit}".rstrip()
 
     def bar(self, figure, place):
         """The bar of the scale in new axes at `place`, with its unit above it. Returns its axes."""
@@ -55,9 +59,9 @@ class Colours:
         figure.colorbar(plt.cm.ScalarMappable(self.norm, self.map), cax=axes, extend=extend)
         axes.tick_params(length=2)
         if self.names:
-            axes.set_yticks(range(len(self.names)), self.names, rotation=90, va="center")
-        else:
-            axes.set_ylim(*(self.shown if not isinstance(self.norm, LogNorm) else (None, None)))
+            axes.set_yticks(range(1, len(self.names)), self.names[1:], rotation=90, va="center")
+        if not isinstance(self.norm, LogNorm):
+            axes.set_ylim(*self.shown)
         axes.set_title(self.unit, fontsize=9, pad=6)
         return axes
 

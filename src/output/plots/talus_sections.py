@@ -277,7 +277,7 @@ class Painter:
         figure.text(LEFT / WIDTH, 1 - 0.24 / height, headline, fontsize=13, fontweight="bold", va="center")
         right = 1 - 0.25 / WIDTH
         figure.text(right, 1 - 0.24 / height, self.results.title, fontsize=9, color=style.SOFT, va="center", ha="right")
-        legend = [f"colour of soil: less than {colours.faint:.2g} {colours.unit}".rstrip()] * (colours.faint > 0)
+        legend = [colours.in_words()]
         legend += [colours.uneven] * bool(colours.uneven)
         legend += ["dotted: outline at the start"] * self.drawn_outline
         legend += [f"crosses: {self.marked_escaped} particles left the mesh here"] * bool(self.marked_escaped)
