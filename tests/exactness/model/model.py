@@ -178,7 +178,7 @@ class InPlaneStrain(unittest.TestCase):
     def test_soils_have_their_parameters_with_units(self):
         line = self.model.soil_line("sand").replace("\u00a0", " ")
         self.assertEqual(line, "mohr coulomb: n = 0.4, ρₛ = 2650 kg/m³, E = 1 MPa, ν = 0.3, c = 1 kPa, φ = 30°, φᵣ = 25°, k = 1e-5 m/s, "
-                               "shape factor 50, reference size 0.25 m")
+                               "reference size 0.25 m, shape factor 50")
 
 
 class Variants(unittest.TestCase):

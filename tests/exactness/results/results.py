@@ -112,6 +112,12 @@ class Module(unittest.TestCase):
         for name in ("front", "profile", "outcomes"):
             self.assertGreater((self.folder / f"{name}.png").stat().st_size, 10000)
 
+    def test_pictures_of_the_slip_surface_and_of_the_stress_paths_are_drawn(self):
+        said = self.call(sys.executable, "-B", pathlib.Path(MODULE) / "talus_plot.py", self.slope, "--fields", "stress_xy", "--times", 5, "--slip-surface")
+        self.assertIn("[output.line.slip_surface]", said)
+        for name in ("stress_xy", "stress_paths", "slip_surface"):
+            self.assertEqual((self.slope / f"pictures/{name}.png").read_bytes()[:4], b"\x89PNG")
+
     def moved(self):
         return np.linalg.norm(self.results.snapshots[-1].values("displacement"), axis=1) > 0.05
 
