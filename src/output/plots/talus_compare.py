@@ -8,6 +8,7 @@ import re
 
 from talus_results import Results
 from talus_style import FAINT, INK, LINES, headline, np, plt, save
+from talus_sweep import named
 from talus_table import lines_of
 from talus_units import with_unit
 
@@ -26,10 +27,16 @@ def scale_of(values):
     return "log" if values and max(values) > 9.99 * min(values) else "linear"
 
 
+def in_words(measure):
+    """'max:crest_displacement_m' -> 'largest crest displacement [m]', 'crest_x_m@30' -> 'crest x [m] at 30 s'."""
+    column, _, time = measure.removeprefix("max:").partition("@")
+    return "largest " * measure.startswith("max:") + named(column, False) + (f" at {time} s" if time else "")
+
+
 def draw(rows, reference, path, title=""):
     """Each key that some series refine has its own charts against it."""
     rows = [r for r in rows if not r["failure"]]
-    uncertainty = float(reference["uncertainty"])
+    uncertainty, measure = float(reference["uncertainty"]), in_words(reference["measure"])
     keys = list(dict.fromkeys(r["key"] for r in rows))
     figure = plt.figure(figsize=(10.6, 3.4 * len(keys)), layout="constrained")
     grid = figure.add_gridspec(len(keys), 3)
@@ -49,8 +56,8 @@ def draw(rows, reference, path, title=""):
         refined = with_unit(key, mine[0]["unit"])
         values.axhline(float(reference["value"]), color=INK, linewidth=0.8, linestyle=":")
         xscale, yscale = scale_of(float(r["parameter"]) for r in mine), scale_of(float(r["error"]) for r in mine)
-        order.set(xscale=xscale, yscale=yscale, xlabel=refined, ylabel="error of " + reference["measure"])
-        values.set(xscale=xscale, xlabel=refined, ylabel=reference["measure"])
+        order.set(xscale=xscale, yscale=yscale, xlabel=refined, ylabel="error of " + measure)
+        values.set(xscale=xscale, xlabel=refined, ylabel=measure)
         low, high = values.get_ylim()
         if spread > 0:  # a series that misses by far would flatten the others
             values.set_ylim(max(low, around - spread), min(high, around + spread))
@@ -60,9 +67,9 @@ def draw(rows, reference, path, title=""):
         cost.step(*zip(*best), where="post", color=INK, linewidth=0.8, linestyle=":", label="Pareto front")
     if np.isfinite(uncertainty) and uncertainty > 0:
         cost.axhspan(cost.get_ylim()[0] if cost.get_ylim()[0] > 0 else uncertainty / 10, uncertainty, color=FAINT, alpha=0.4, label="reference uncertain")
-    cost.set(xscale=scale_of(float(r["processor_s"]) for r in rows), yscale=scale_of(float(r["error"]) for r in rows), xlabel="processor time [s]", ylabel="error of " + reference["measure"])
+    cost.set(xscale=scale_of(float(r["processor_s"]) for r in rows), yscale=scale_of(float(r["error"]) for r in rows), xlabel="processor time [s]", ylabel="error of " + measure)
     cost.legend(fontsize=7.5)
-    headline(figure, f"Error of {reference['measure']} against cost and refinement", title)
+    headline(figure, f"Error of {measure.partition(' [')[0]} against cost and refinement", title)
     save(figure, path)
 
 

@@ -49,9 +49,11 @@ def colours_of(field, signed=False):
 
 
 def headline(figure, text, title):
-    """What a chart shows, and of which scene; `figure` has the layout "constrained"."""
-    figure.suptitle(text, x=0.01, ha="left", fontsize=12, fontweight="bold")
-    figure.text(0.99, 0.985, title, ha="right", va="top", fontsize=8.5, color=SOFT)
+    """What a chart shows, and of which scene, below it where there is no room beside it; `figure` has the layout "constrained"."""
+    beside = 0.13 * len(text) + 0.08 * len(title) < figure.get_figwidth()  # [inch]
+    figure.suptitle(text + "\n" * (not beside), x=0.01, ha="left", fontsize=12, fontweight="bold")
+    at = {"x": 0.99, "y": 0.985, "ha": "right"} if beside else {"x": 0.01, "y": 0.98 - 0.21 / figure.get_figheight(), "ha": "left"}
+    figure.text(s=title, va="top", fontsize=8.5, color=SOFT, **at)
 
 
 def legend_below(figure, handles):

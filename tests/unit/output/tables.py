@@ -43,6 +43,10 @@ class Tables(unittest.TestCase):
         self.assertEqual([talus_compare.varied(row, [other for other in rows if other["series"] == row["series"]]) for row in rows],
                          ["velocity_tolerance=1e-2", "velocity_tolerance=1e-4", ""])
 
+    def test_measures_are_said_in_words(self):
+        self.assertEqual([talus_compare.in_words(measure) for measure in ("max:crest_displacement_m", "toe_x_m@30", "kinetic_J")],
+                         ["largest crest displacement [m]", "toe x [m] at 30 s", "kinetic [J]"])
+
     def test_sentences_are_folded(self):
         self.assertEqual(folded("one two three", 8), "one two\nthree")
 
