@@ -10,7 +10,6 @@
 #include "commands/gallery.h"
 #include "commands/trials.h"
 #include "output/csv.h"
-#include "output/pictures.h"
 #include "output/script.h"
 #include "scene/reader.h"
 #include "scene/scene.h"

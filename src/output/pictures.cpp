@@ -74,8 +74,6 @@ bool draw_model(const std::string &model, const std::string &picture) {
   }
 }
 
-bool draw_comparison(const std::string &dir) { return draw("talus_compare.py", dir, {}); }
-
 bool draw_element_tests(const std::string &dir, const std::vector<std::string> &tests, const std::string &title) {
   std::vector<std::string> options{"--title", title, "--tests"};
   options.insert(options.end(), tests.begin(), tests.end());

@@ -28,9 +28,6 @@ bool draw_model(const std::string &model, const std::string &picture);
 /// What a run says that ends without its pictures, although its results are complete.
 std::string without_pictures(const std::string &dir);
 
-/// Draws DIR/compare.png from DIR/compare.csv, with the same answer.
-bool draw_comparison(const std::string &dir);
-
 /// Draws DIR/soil.png from the CSV files of element tests in `dir`, with the same answer.
 bool draw_element_tests(const std::string &dir, const std::vector<std::string> &tests, const std::string &title);
 
