@@ -18,8 +18,14 @@ class EquilibriumStage final : public StaticStage<dim> {
       const double before = this->load_at(from), after = this->load_at(to);
       return problem.advance(to, after, before, after - before, stage.softening, outcome);
     };
+    std::function<PetscErrorCode(StepOutcome *)>
+        failure;  // which the search for a factor finds sooner than small steps
+    if (this->run_.statics.for_factor)
+      failure = [&](StepOutcome *outcome) {
+        return find_failure(problem, this->run_.world.laws, this->load_at(1), this->run_.clock.time, outcome);
+      };
     require(follow_path(
-        1. / stage.load_steps, this->run_.scene.quasi_static.smallest_step, advance,
+        1. / stage.load_steps, this->run_.scene.quasi_static.smallest_step, advance, failure,
         [&](double share, const StepOutcome &) { this->done(share); }, &path.share, &path.last, &path.iterations));
   }
   void describe(const Path &path, std::ostream &text) override { this->describe_equilibrium(path, text); }

@@ -18,7 +18,7 @@ from talus_outcomes import FAILS  # noqa: E402
 from talus_paths import spread  # noqa: E402
 from talus_results import History, Results  # noqa: E402
 from talus_sections import Colours, Painter, View, chosen_snapshots, telling, views_of  # noqa: E402
-from talus_slip import slip_surface  # noqa: E402
+from talus_slip import said_of_ends, slip_surface  # noqa: E402
 from talus_tiles import Frame  # noqa: E402
 
 
@@ -238,6 +238,28 @@ class SlipSurface(unittest.TestCase):
         self.assertEqual(snapshot.time, 2)
         self.assertLess(line[0, 0], 6)
         self.assertEqual(slip_surface(results, 1)[1].time, 1)
+
+        def said(time):
+            line, snapshot, place, _ = slip_surface(results, time)
+            return said_of_ends(results, line, place, snapshot)
+
+        self.assertRegex(said(1), r"ends inside the soil, .* m below the ground on the left: no connected path of .* at t = 1 s; a later time")
+        self.assertEqual(said(2), "")
+
+    def test_says_that_no_path_leads_to_the_ground(self):
+        # a band from one end of the soil to the other, 3 m below its ground
+        results = Sheared(lambda x, y: float(abs(y - 7) < 0.5))
+        line, snapshot, place, _ = slip_surface(results, 0)
+        said = said_of_ends(results, line, place, snapshot)
+        self.assertIn("2.9 m below the ground on the left and 2.9 m below the ground on the right", said)
+        self.assertIn("no connected path", said)
+        self.assertIn("the last time of the run", said)
+
+    def test_says_how_far_below_the_ground_a_line_ends(self):
+        # up to 1 m below the ground on the right, a tenth of its height
+        results = Sheared(lambda x, y: float(abs(np.hypot(x - 10, y - 12) - 6.3) < 0.4 and (x < 10 or y < 9)))
+        line, snapshot, place, _ = slip_surface(results, 0)
+        self.assertRegex(said_of_ends(results, line, place, snapshot), "m below the ground on the right: soil with more than 0.2 of .* ends there")
 
 
 class Charts(unittest.TestCase):
