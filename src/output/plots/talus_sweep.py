@@ -75,6 +75,13 @@ def outcomes(folder, runs):
     return rows
 
 
+def lines_of(rows):
+    """The line to which each row belongs: its series and, where that varies further keys than the last one, their values."""
+    further = [row["overrides"].rsplit(f"{row['key']}=", 1)[0].strip() for row in rows]
+    several = {row["series"] for row, text in zip(rows, further) if any(one["series"] == row["series"] and other != text for one, other in zip(rows, further))}
+    return [f"{row['series']}, {text}" if row["series"] in several else row["series"] for row, text in zip(rows, further)]
+
+
 def charted(rows, in_plane=False):
     """The outcomes that differ between runs, those of the same kind together: [(title, {label: column})]."""
     names = [key for key in dict.fromkeys(key for row in rows for key in row)
@@ -109,11 +116,12 @@ def draw_charts(axes, rows, charts):
     choices = list(dict.fromkeys(row["value"] for row in rows))
     numeric = None not in numbers
     place = numbers if numeric else [choices.index(row["value"]) for row in rows]
-    series = list(dict.fromkeys(row["series"] for row in rows))
+    line = lines_of(rows)
+    series = list(dict.fromkeys(line))
     for one, (title, of) in zip(axes, charts):
         for k, (label, column) in enumerate(of.items()):
             for n, name in enumerate(series):
-                known = sorted((place[i], row[column], row["state"]) for i, row in enumerate(rows) if row["series"] == name and row.get(column) is not None)
+                known = sorted((place[i], row[column], row["state"]) for i, row in enumerate(rows) if line[i] == name and row.get(column) is not None)
                 if not known:
                     continue
                 x, y, _ = zip(*known)
@@ -167,13 +175,15 @@ def axis_title(rows):
 
 def print_table(rows):
     columns = ["state", *(column for _, of in charted(rows) for column in of.values())]
-    print(f"{'series':14} {'value':>12} " + " ".join(f"{column[:26]:>26}" for column in columns))
-    for row in rows:
+    lines = lines_of(rows)
+    width = max(14, *map(len, lines))
+    print(f"{'series':{width}} {'value':>12} " + " ".join(f"{column[:26]:>26}" for column in columns))
+    for line, row in zip(lines, rows):
         if row["failure"]:
-            print(f"{row['series']:14} {row['value']:>12} broke off: {row['failure']}")
+            print(f"{line:{width}} {row['value']:>12} broke off: {row['failure']}")
             continue
         shown = [row["state"], *("-" if row.get(column) is None else f"{row[column]:.4g}" for column in columns[1:])]
-        print(f"{row['series']:14} {row['value']:>12} " + " ".join(f"{value:>26}" for value in shown))
+        print(f"{line:{width}} {row['value']:>12} " + " ".join(f"{value:>26}" for value in shown))
 
 
 def main():

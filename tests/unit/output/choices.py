@@ -273,7 +273,8 @@ class Charts(unittest.TestCase):
         return [(axes.get_xlabel().replace("\n", " "), axes.get_ylabel().replace("\n", " ")) for axes in seen[0].axes if axes.get_xlabel()]
 
     def test_outcomes_stand_against_each_key_of_its_own(self):
-        rows = [{"series": key, "key": key, "value": value, "unit": unit, "failure": "", "state": FAILS, "volume_of_slide_m3": volume}
+        rows = [{"series": key, "overrides": f"{key}={value}", "key": key, "value": value, "unit": unit, "failure": "", "state": FAILS,
+                 "volume_of_slide_m3": volume}
                 for key, unit, values in (("body.clay.cohesion", "Pa", ("6 kPa", "8 kPa")), ("body.clay.friction_angle", "deg", ("20", "25")))
                 for volume, value in enumerate(values, 3)]
         rows = [row | {"volume_of_slide_m3": float(row["volume_of_slide_m3"])} for row in rows]
@@ -281,6 +282,12 @@ class Charts(unittest.TestCase):
                          [("body.clay.cohesion [kPa]", "volume of the slide [m³/m]"), ("body.clay.friction_angle [deg]", "volume of the slide [m³/m]")])
         self.assertEqual(talus_sweep.title_of("volume_of_slide_m3", False), "volume of the slide [m³]")
         self.assertEqual(talus_sweep.title_of("crest_largest_speed_m_s", True), "crest largest speed [m/s]")
+
+    def test_a_series_over_two_keys_is_a_line_for_each_value_of_the_first(self):
+        rows = [{"series": "both", "overrides": f"body.clay.cohesion={c} body.clay.friction_angle={phi}", "key": "body.clay.friction_angle", "value": phi}
+                for c in ("4 kPa", "8 kPa") for phi in ("15", "20")]
+        self.assertEqual(talus_sweep.lines_of(rows), ["both, body.clay.cohesion=4 kPa"] * 2 + ["both, body.clay.cohesion=8 kPa"] * 2)
+        self.assertEqual(talus_sweep.lines_of(rows[:2]), ["both"] * 2)
 
     def test_energies_of_a_section_are_those_of_a_metre(self):
         history = History.__new__(History)
