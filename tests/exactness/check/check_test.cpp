@@ -340,6 +340,8 @@ duration = 1
     return ending;
   };
   const Ending whole = look(20, 19);  // what lies uphill is not asked for
+  EXPECT_TRUE(whole.says("by mesh.terrain.far_size and mesh.size")) << "keys, no options: " << whole.output;
+  EXPECT_FALSE(whole.says("--size"));
   const double exact =
       1 / std::hypot(std::cos(26.565 * std::acos(-1) / 180) / 6, std::sin(26.565 * std::acos(-1) / 180) / 30);
   EXPECT_NEAR(number(whole, "height_m"), exact, 3) << "to a cell; elevations range over 27 m";
