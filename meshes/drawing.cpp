@@ -17,15 +17,6 @@ namespace {
 
 constexpr double join_share = 1e-6;  // ends nearer than this share of the drawing join
 
-struct Unit {
-  const char *name;
-  double metres;
-};
-/// Units of $INSUNITS that sections are drawn in (Autodesk, DXF reference, HEADER section).
-const std::map<int, Unit> units{{1, {"inches", 0.0254}},    {2, {"feet", 0.3048}}, {4, {"millimetres", 1e-3}},
-                                {5, {"centimetres", 1e-2}}, {6, {"metres", 1}},    {7, {"kilometres", 1e3}},
-                                {14, {"decimetres", 1e-1}}};
-
 struct Piece {  // of a line that may consist of several
   std::vector<Vec<2>> points;
   int entity;
@@ -58,7 +49,7 @@ class Reader {
     CPLPopErrorHandler();
     if (!data || data->GetLayerCount() == 0)
       complain("is no drawing that can be read; save it as DXF in text form (ASCII)");
-    metres_ = unit();
+    read_unit();
     int entity = 0;
     for (const auto &feature : *data->GetLayer(0)) take(*feature, ++entity);
     for (const auto &[part, pieces] : pieces_) extend(pieces);
@@ -78,9 +69,8 @@ class Reader {
     throw std::invalid_argument(file_ + " entity " + std::to_string(entity) + ": " + text);
   }
 
-  /// Metres of the drawing's unit. GDAL does not hand on the header, whose variable is a line $INSUNITS, one 70 and
-  /// one with the number.
-  double unit() {
+  /// GDAL does not hand on the header, whose variable of the unit is a line $INSUNITS, one 70 and one with the number.
+  void read_unit() {
     std::ifstream text(file_);
     int number = 0;
     for (std::string line; std::getline(text, line);) {
@@ -89,15 +79,14 @@ class Reader {
       if (std::getline(text, line) && std::getline(text, line)) number = std::atoi(line.c_str());
       break;
     }
-    if (number == 0) return 1;
-    const auto found = units.find(number);
-    if (found == units.end())
+    if (number == 0) return;
+    const auto *unit =
+        std::ranges::find_if(length_units, [=](const LengthUnit &one) { return one.in_drawings == number; });
+    if (unit == std::end(length_units))
       complain("is drawn in unit " + std::to_string(number) +
-               " of $INSUNITS, which is none that sections are drawn in; set it to metres (6) or millimetres (4)");
-    if (found->second.metres != 1)
-      drawing_.doubts.push_back(file_ + ": coordinates in " + found->second.name + " are read as such (" +
-                                "$INSUNITS) and turned into metres");
-    return found->second.metres;
+               " of $INSUNITS, which is none that sections are drawn in; set it to metres (6), millimetres (4) or feet "
+               "(2)");
+    drawing_.rows.unit = *unit, drawing_.rows.stated = "$INSUNITS";
   }
 
   void take(OGRFeature &feature, int entity) {
@@ -118,7 +107,7 @@ class Reader {
     const OGRwkbGeometryType kind = wkbFlatten(shape.getGeometryType());
     if (kind == wkbPoint && region) {
       const OGRPoint &point = *shape.toPoint();
-      drawing_.rows.push_back({part, place(point.getX(), point.getY(), point.getZ(), part, entity), entity});
+      drawing_.rows.rows.push_back({part, place(point.getX(), point.getY(), point.getZ(), part, entity), entity});
     } else if (kind == wkbLineString && !region) {
       const OGRLineString &line = *shape.toLineString();
       Piece piece{{}, entity};
@@ -143,7 +132,7 @@ class Reader {
     if (z != 0 && std::isfinite(z))
       complain(entity, "layer '" + part + "' has a point with z = " + std::to_string(z) +
                            "; draw the section in the plane of x (along it) and y (up), at z = 0");
-    return {x * metres_, y * metres_};
+    return {x, y};
   }
 
   void extend(const std::vector<Piece> &pieces) {
@@ -185,11 +174,14 @@ class Reader {
     if (part == "outline") {
       if (!closed)
         complain(rows.back().line, "the outline is open between " + text_of(rows.back().numbers) + " and " +
-                                       text_of(rows.front().numbers) + " m; close it, with ends that meet");
+                                       text_of(rows.front().numbers) + " " + sign() +
+                                       "; close it, with ends that meet");
       rows.pop_back();
     }
-    drawing_.rows.insert(drawing_.rows.end(), rows.begin(), rows.end());
+    drawing_.rows.rows.insert(drawing_.rows.rows.end(), rows.begin(), rows.end());
   }
+
+  std::string sign() const { return drawing_.rows.unit.sign; }
 
   [[noreturn]] void complain_of_gap(const std::string &part, const std::vector<Piece> &chain,
                                     const Piece &other) const {
@@ -200,7 +192,8 @@ class Reader {
         if (distance(a, b) < least) least = distance(a, b), from = a, to = b;
     std::ostringstream text;
     text << "layer '" << part << "' does not join into one line: between " << text_of(from) << " and " << text_of(to)
-         << " m its pieces are " << least << " m apart. Let ends meet (snap), or leave out a line that is drawn twice";
+         << " " << sign() << " its pieces are " << least << " " << sign()
+         << " apart. Let ends meet (snap), or leave out a line that is drawn twice";
     complain(other.entity, text.str());
   }
 
@@ -209,16 +202,15 @@ class Reader {
       Vec<2> low = piece.points[0], high = low;
       for (const Vec<2> &x : piece.points)
         for (int d = 0; d < 2; ++d) low[d] = std::min(low[d], x[d]), high[d] = std::max(high[d], x[d]);
-      drawing_.rows.push_back({part, low, piece.entity}), drawing_.rows.push_back({part, high, piece.entity});
+      drawing_.rows.rows.push_back({part, low, piece.entity}), drawing_.rows.rows.push_back({part, high, piece.entity});
     }
   }
 
   std::string file_;
-  double metres_ = 1;
   Drawing drawing_;
   std::map<std::string, std::vector<Piece>> pieces_;
   std::set<std::string> left_out_;
-  Vec<2> low_{1e300, 1e300}, high_{-1e300, -1e300};  ///< of all lines [m]
+  Vec<2> low_{1e300, 1e300}, high_{-1e300, -1e300};  ///< of all lines
 };
 
 }  // namespace

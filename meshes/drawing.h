@@ -6,8 +6,8 @@
 ///   region_NAME                   a point or a text in the piece
 ///   refine_SIZE                   closed polylines, whose boxes are refined
 ///
-/// Other layers are left out. x goes along the section and y upwards, in the unit of the drawing ($INSUNITS), or in
-/// metres where it has none. Arcs and curves become chords, of 4 degrees of an arc.
+/// Other layers are left out. x goes along the section and y upwards. All numbers, also SIZE, are in the unit of the
+/// drawing ($INSUNITS), or in metres where it has none. Arcs and curves become chords, of 4 degrees of an arc.
 #include <string>
 #include <vector>
 
@@ -16,8 +16,8 @@
 namespace talus {
 
 struct Drawing {
-  std::vector<SectionRow> rows;     ///< [m]
-  std::vector<std::string> doubts;  ///< what the user should know: layers that are left out, the unit
+  SectionRows rows;
+  std::vector<std::string> doubts;  ///< what the user should know: layers that are left out
 };
 
 bool is_drawing(const std::string &file);  ///< by the ending of its name

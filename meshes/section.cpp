@@ -27,40 +27,86 @@ bool is_number(std::string text, double &value) {
 constexpr std::size_t most_points =
     5000;  // more than cells can follow, and more than a quick check of crossings allows
 
-bool is_header(std::vector<std::string> cells) {
-  for (std::string &cell : cells)
-    std::transform(cell.begin(), cell.end(), cell.begin(), [](unsigned char c) { return std::tolower(c); });
-  return cells == std::vector<std::string>{"part", "x", "y"};
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
 }
 
-std::vector<SectionRow> rows_of(const Spreadsheet &sheet, const std::string &file) {
-  std::vector<SectionRow> rows;
-  for (const auto &[cells, line] : sheet.rows) {
-    if (is_header(cells)) continue;
-    SectionRow row{cells[0], {}, line};
-    if (cells.size() != 3 || row.part.empty() || !sheet.number(cells[1], row.numbers[0]) ||
-        !sheet.number(cells[2], row.numbers[1])) {
-      std::string text;
-      for (const std::string &cell : cells) text += (text.empty() ? "" : ",") + cell;
-      throw std::invalid_argument(file + " line " + std::to_string(line) + ": '" + text +
-                                  "' must be a row part,x,y with two numbers in metres");
-    }
-    rows.push_back(row);
+/// The rows of a table, below headers that may state its unit.
+class Table {
+ public:
+  Table(const Spreadsheet &sheet, const std::string &file) : sheet_(sheet), file_(file) {}
+
+  SectionRows read() {
+    for (const SpreadsheetRow &row : sheet_.rows) lower(row.cells[0]) == "part" ? take_header(row) : take(row);
+    return table_;
   }
-  return rows;
-}
+
+ private:
+  [[noreturn]] void complain(const SpreadsheetRow &row, const std::string &text) const {
+    std::string cells;
+    for (const std::string &cell : row.cells) cells += (cells.empty() ? "" : ",") + cell;
+    throw std::invalid_argument(file_ + " line " + std::to_string(row.line) + ": '" + cells + "' " + text);
+  }
+
+  void take(const SpreadsheetRow &row) {
+    SectionRow one{row.cells[0], {}, row.line};
+    if (row.cells.size() != 3 || one.part.empty() || !sheet_.number(row.cells[1], one.numbers[0]) ||
+        !sheet_.number(row.cells[2], one.numbers[1]))
+      complain(row, "must be a row part,x,y with two numbers, in metres or in the unit of a header part,x [ft],y [ft]");
+    table_.rows.push_back(one);
+  }
+
+  /// The unit in a cell `x [ft]` or `x (ft)` of a header; empty where the cell is the axis alone.
+  std::string unit_in(const SpreadsheetRow &row, std::size_t column, char axis) const {
+    constexpr const char *form = "must be a header part,x,y or, with a unit, part,x [ft],y [ft]";
+    if (row.cells.size() != 3) complain(row, form);
+    const std::string cell = row.cells[column];
+    if (cell.empty() || std::tolower(static_cast<unsigned char>(cell[0])) != axis) complain(row, form);
+    const std::size_t open = cell.find_first_not_of(" \t", 1);
+    if (open == std::string::npos) return "";
+    if (!(cell[open] == '[' && cell.back() == ']') && !(cell[open] == '(' && cell.back() == ')')) complain(row, form);
+    const std::string inside = cell.substr(open + 1, cell.size() - open - 2);
+    const std::size_t first = inside.find_first_not_of(" \t");
+    if (first == std::string::npos) complain(row, form);
+    return inside.substr(first, inside.find_last_not_of(" \t") - first + 1);
+  }
+
+  void take_header(const SpreadsheetRow &row) {
+    const std::string sign = lower(unit_in(row, 1, 'x')), other = lower(unit_in(row, 2, 'y'));
+    if (sign != other) complain(row, "must state the same unit for x and y");
+    if (sign.empty()) return;
+    const auto *unit = std::ranges::find_if(
+        length_units, [&](const LengthUnit &one) { return lower(one.sign) == sign || one.name == sign; });
+    if (unit == std::end(length_units))
+      complain(row, "states no unit that sections are drawn in: take one of " + known_length_units());
+    if (!table_.rows.empty() && table_.unit.sign != std::string(unit->sign))
+      complain(row, "states another unit than the rows above it have, " + std::string(table_.unit.name) +
+                        "; give all points of a section in one unit, with the header above them");
+    table_.unit = *unit, table_.stated = "line " + std::to_string(row.line);
+  }
+
+  const Spreadsheet &sheet_;
+  const std::string &file_;
+  SectionRows table_;
+};
 
 class Reader {
  public:
   Reader(const std::string &file, bool drawn) { section_.file = file, section_.drawn = drawn; }
 
-  Section read(const std::vector<SectionRow> &rows) {
+  Section read(const SectionRows &source) {
+    const std::vector<SectionRow> &rows = source.rows;
+    section_.unit = source.unit, section_.unit_stated = source.stated;
     if (rows.size() > most_points)
       complain(section_, rows.back().line,
                "the section has " + std::to_string(rows.size()) + " points, more than the " +
                    std::to_string(most_points) +
                    " that are taken; leave out points that are closer than cells are wide");
-    for (const SectionRow &row : rows) take(row);
+    for (SectionRow row : rows) {
+      for (double &number : row.numbers) number *= section_.unit.metres;
+      take(row);
+    }
     for (const auto &[number, polyline] : interfaces_) section_.interfaces.push_back(polyline);
     for (const auto &[name, polyline] : boundaries_) section_.boundaries.push_back(polyline);
     for (const auto &[part, rows] : boxes_) add_boxes(part, rows);
@@ -122,8 +168,9 @@ class Reader {
     for (std::size_t i = 0; i < rows.size(); i += 2) {
       const Vec<2> &a = rows[i].numbers, &b = rows[i + 1].numbers;
       if (a[0] == b[0] || a[1] == b[1]) complain(section_, rows[i + 1].line, "the box of '" + part + "' has no area");
-      section_.boxes.push_back(
-          {{std::min(a[0], b[0]), std::min(a[1], b[1])}, {std::max(a[0], b[0]), std::max(a[1], b[1])}, size});
+      section_.boxes.push_back({{std::min(a[0], b[0]), std::min(a[1], b[1])},
+                                {std::max(a[0], b[0]), std::max(a[1], b[1])},
+                                size * section_.unit.metres});
     }
   }
 };
@@ -131,7 +178,7 @@ class Reader {
 std::string segment_text(const Polyline &p, std::size_t i) {
   const std::size_t j = (i + 1) % p.points.size();
   std::ostringstream text;
-  text << "(" << p.points[i][0] << ", " << p.points[i][1] << ")-(" << p.points[j][0] << ", " << p.points[j][1] << ")";
+  text << "(" << p.points[i][0] << ", " << p.points[i][1] << ")-(" << p.points[j][0] << ", " << p.points[j][1] << ") m";
   return text.str();
 }
 
@@ -302,6 +349,17 @@ std::vector<Vec<2>> Section::domain() const {
 
 namespace {
 
+std::string doubt_about_unit(const Section &section) {
+  if (section.unit.metres != 1)
+    return section.file + ": all numbers are in " + section.unit.name + " (" + section.unit_stated +
+           ") and turned into metres";
+  if (section.drawn && section.unit_stated.empty())
+    return section.file +
+           ": the drawing names no unit ($INSUNITS), and its coordinates are taken as metres; set the "
+           "unit in the drawing";
+  return "";
+}
+
 std::string doubt_about_free_face(const Section &section) {
   constexpr double low = 0.1;    // of the height of the soil: a lower face decides little
   constexpr double steep = 0.2;  // width over height of a face that counts as the end of the soil
@@ -364,7 +422,7 @@ std::string doubt_about_order(const Section &section) {
 
 std::vector<std::string> Section::doubts() const {
   std::vector<std::string> sentences;
-  for (const std::string &sentence : {doubt_about_free_face(*this), doubt_about_order(*this)})
+  for (const std::string &sentence : {doubt_about_unit(*this), doubt_about_free_face(*this), doubt_about_order(*this)})
     if (!sentence.empty()) sentences.push_back(sentence);
   return sentences;
 }
@@ -380,13 +438,16 @@ std::string Section::layer_at(const Vec<2> &x) const {
 
 std::string Section::entry(int line) const { return (drawn ? "entity " : "line ") + std::to_string(line); }
 
-Section section_of(const std::vector<SectionRow> &rows, const std::string &file, bool drawn) {
+Section section_of(const SectionRows &rows, const std::string &file, bool drawn) {
   Section section = Reader(file, drawn).read(rows);
   check(section);
   return section;
 }
 
-Section read_section(const std::string &file) { return section_of(rows_of(read_spreadsheet(file), file), file, false); }
+Section read_section(const std::string &file) {
+  const Spreadsheet sheet = read_spreadsheet(file);
+  return section_of(Table(sheet, file).read(), file, false);
+}
 
 std::optional<Crossing> crossing_interfaces(const Section &section) {
   const auto opposite = [](double a, double b) { return (a > 0 && b < 0) || (a < 0 && b > 0); };

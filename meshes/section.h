@@ -1,6 +1,7 @@
 #pragma once
-/// A surveyed cross-section, as read from a CSV file of rows `part,x,y` [m], in which `#` starts a comment, or from a
-/// drawing (drawing.h). Parts:
+/// A surveyed cross-section, as read from a CSV file of rows `part,x,y`, in which `#` starts a comment, or from a
+/// drawing (drawing.h). A header `part,x [ft],y [ft]` states the unit of all its numbers, which are in metres without
+/// one. Parts:
 ///
 ///   outline           polygon, in order
 ///   interface0, 1...  polylines from top to bottom; layer0 lies above interface0, layer1 below it, and so on. Beyond
@@ -17,14 +18,21 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "meshes/length_unit.h"
 
 namespace talus {
 
 /// A point of a part, in the order of the file.
 struct SectionRow {
   std::string part;
-  Vec<2> numbers;  ///< coordinates [m]; of free_space its height and extra width [m]
+  Vec<2> numbers;  ///< coordinates; of free_space its height and extra width
   int line;        ///< of the file; of a drawing the number of the entity
+};
+/// What a file says, in its own unit.
+struct SectionRows {
+  std::vector<SectionRow> rows;
+  LengthUnit unit = metres;
+  std::string stated;  ///< where the unit stands in the file, such as "line 2"; empty: nowhere
 };
 struct Polyline {
   std::string part;            ///< its name in the file
@@ -43,7 +51,9 @@ struct RefinedBox {
 
 struct Section {
   std::string file;
-  bool drawn = false;  ///< read from a drawing, whose entities take the place of lines
+  bool drawn = false;        ///< read from a drawing, whose entities take the place of lines
+  LengthUnit unit = metres;  ///< of the file
+  std::string unit_stated;   ///< where in the file; empty: nowhere
   Polyline outline;
   std::vector<Polyline> interfaces;  ///< top to bottom
   std::vector<Polyline> boundaries;  ///< `part` without b_
@@ -58,16 +68,18 @@ struct Section {
       const;            ///< polygon that is meshed: the outline, with free space above it where asked for
   double area() const;  ///< of the domain [m2]
   std::string layer_at(const Vec<2> &x) const;  ///< layerN or air; seeds are not looked at
-  /// Sentences on what a section may have but hardly means: a steep face that the free space beside an end leaves free
-  /// though no b_NAME names it, and interfaces that are listed from bottom to top.
+  /// Sentences on what a section may have but hardly means: another unit than metres, a drawing without a unit, a steep
+  /// face that the free space beside an end leaves free though no b_NAME names it, and interfaces that are listed from
+  /// bottom to top.
   std::vector<std::string> doubts() const;
 };
 
 /// Reads and checks a section. Throws std::invalid_argument with file and line for rows that are malformed or unknown,
-/// fewer than three points, repeated points, an outline that crosses itself, and parts that lie outside.
+/// units that are no length, fewer than three points, repeated points, an outline that crosses itself, and parts that
+/// lie outside.
 Section read_section(const std::string &file);
 /// The same from rows that have been read from a file. `drawn`: from a drawing.
-Section section_of(const std::vector<SectionRow> &rows, const std::string &file, bool drawn);
+Section section_of(const SectionRows &rows, const std::string &file, bool drawn);
 
 /// Two interfaces that go through one another, so that counting those above a point says nothing about its layer.
 struct Crossing {

@@ -40,8 +40,10 @@ bool is_section(const std::string &source) {
 }
 
 Section section_in(const std::string &source) {
-  const auto doubted = [](Section section) {
+  const auto doubted = [&](Section section) {
     for (const std::string &doubt : section.doubts()) std::cout << "warning: " << doubt << "\n";
+    if (section.unit.metres == 1 && !section.unit_stated.empty())
+      std::cout << source << ": all numbers are in metres (" << section.unit_stated << ")\n";
     return section;
   };
   if (!is_drawing(source)) return doubted(read_section(source));
@@ -91,8 +93,13 @@ void check(const Request &request, const Section &section) {
   if (const double cells = estimated_cells(section, o); cells > most_cells) {
     std::ostringstream text;
     text << "the cell sizes would give about " << cells << " cells, more than " << most_cells << ", in a section of "
-         << extent
-         << " m; coordinates count in metres, are these in millimetres? Otherwise take a larger --size, or larger "
+         << extent << " m; "
+         << (section.unit_stated.empty() ? "coordinates count in metres, are these in millimetres? " +
+                                               (section.drawn ? std::string("Set the unit in the drawing ($INSUNITS)")
+                                                              : "State it in the header, part,x [mm],y [mm]") +
+                                               ". Otherwise take"
+                                         : "take")
+         << " a larger --size, or larger "
             "cells in the boxes of --refine and refine_SIZE";
     complain(text.str());
   }
@@ -285,7 +292,7 @@ void read_terrain(const CLI::App &app, Request &request) {
 
 int parse(int argc, char **argv, Request &request) {
   CLI::App app(
-      "Meshes a cross-section (CSV rows part,x,y in metres, or a DXF drawing) or terrain (a grid of elevations) for "
+      "Meshes a cross-section (CSV rows part,x,y, or a DXF drawing) or terrain (a grid of elevations) for "
       "Talus.",
       "talus-mesh");
   app.add_option("SOURCE", request.source, "section: CSV or DXF; or terrain: ESRI ASCII or GeoTIFF")->required();

@@ -4,12 +4,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <regex>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -86,6 +89,22 @@ MeshRun plain(MeshRun run) {
   if (run.output.starts_with(speaker)) run.output.erase(0, speaker.size());
   while (run.output.ends_with('\n')) run.output.pop_back();
   return run;
+}
+
+/// With the keys of a scene in place of options of talus-mesh: mesh.size for --size.
+std::string in_keys(const std::string &text) {
+  static const std::regex option("(^|[ (])--([a-z][a-z-]*)");  // and no part of a file's name
+  static const std::set<std::string> of_sections{"size", "thickness", "layers", "cuts", "refine"};
+  std::string keys;
+  std::size_t end = 0;
+  for (std::sregex_iterator one(text.begin(), text.end(), option), last; one != last; ++one) {
+    std::string key = one->str(2);
+    std::ranges::replace(key, '-', '_');
+    const char *table = key == "dimension" ? "" : of_sections.count(key) ? "mesh." : "mesh.terrain.";
+    keys += text.substr(end, one->position() - end) + one->str(1) + table + key;
+    end = one->position() + one->length();
+  }
+  return keys + text.substr(end);
 }
 
 /// All ranks learn how a run of talus-mesh on rank 0 has ended.
@@ -236,7 +255,9 @@ MeshRun MeshFile::make(const Scene &scene) {
   const MeshSource &source = scene.mesh;
   if (!folder_.make()) return no_folder;
   path_ = folder_.path() + "/mesh.msh";
-  return plain(run_talus_mesh(source.section.empty() ? of_terrain(scene, path_) : of_section(scene, path_)));
+  MeshRun run = plain(run_talus_mesh(source.section.empty() ? of_terrain(scene, path_) : of_section(scene, path_)));
+  run.output = in_keys(run.output);
+  return run;
 }
 
 std::vector<std::string> read_grids(MPI_Comm comm, const Scene &scene, std::array<double, 2> origin,

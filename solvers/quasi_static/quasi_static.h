@@ -25,6 +25,7 @@ struct StepOutcome {
   double residual = 0;    ///< out-of-balance force over the size of the forces
   double largest = 0;     ///< largest displacement of a node in the step [m]
   bool singular = false;  ///< the linear system had no solution
+  bool fails = false;     ///< a mechanism of failure was found for the loads at the end of the path
   bool stopped = false;   ///< somebody asked the program to stop
 };
 
@@ -84,9 +85,14 @@ class QuasiStatic {
   struct State {
     typename SoilElements<dim>::State soil;
     typename BaseContact<dim>::State bases;
+    double share;
+    Vec<dim> borne_acceleration;
   };
-  State save() const { return {soil_.save(), bases_.save()}; }
-  void restore(const State &state) { soil_.restore(state.soil), bases_.restore(state.bases); }
+  State save() const { return {soil_.save(), bases_.save(), share_, borne_acceleration_}; }
+  void restore(const State &state) {
+    soil_.restore(state.soil), bases_.restore(state.bases);
+    share_ = state.share, borne_acceleration_ = state.borne_acceleration;
+  }
   /// The state in a checkpoint, between two paths.
   void serialize(Archive &archive);
   /// Force of each boundary on the soil [N] and mean displacement of each loaded face [m], at the last converged state.

@@ -21,11 +21,13 @@ Law without_softening(const Law &law) {
 
 PetscErrorCode follow_path(double step, double smallest,
                            const std::function<PetscErrorCode(double, double, StepOutcome *)> &advance,
+                           const std::function<PetscErrorCode(StepOutcome *)> &find_failure,
                            const std::function<void(double, const StepOutcome &)> &done, double *share,
                            StepOutcome *outcome, int *iterations) {
-  constexpr int quick = 6;
+  constexpr int quick = 6, doubtful = 2;  // iterations of a step, steps that failed
   PetscFunctionBeginUser;
   const double largest = step;
+  int failed = 0;
   *share = 0, *iterations = 0;
   while (*share < 1) {
     const double to = *share + step > 1 - 1e-9 ? 1 : *share + step;
@@ -34,6 +36,10 @@ PetscErrorCode follow_path(double step, double smallest,
     if (outcome->stopped) PetscFunctionReturn(0);
     if (!outcome->converged) {
       if (step / 2 < smallest) PetscFunctionReturn(0);
+      if (++failed == doubtful && find_failure) {
+        PetscCall(find_failure(outcome));
+        if (outcome->fails || outcome->stopped) PetscFunctionReturn(0);
+      }
       step /= 2;
       continue;
     }
@@ -43,6 +49,27 @@ PetscErrorCode follow_path(double step, double smallest,
   }
   PetscFunctionReturn(0);
 }
+
+template <int dim>
+PetscErrorCode find_failure(QuasiStatic<dim> &problem, const std::vector<Law> &laws, double load_time, double time,
+                            StepOutcome *outcome) {
+  PetscFunctionBeginUser;
+  const auto before = problem.save();
+  TrialStrength<dim> strength(problem.soil(), problem.bases(), laws);
+  strength.set(1, true);
+  LimitState<dim> limit(problem);
+  LimitSearch found;
+  PetscCall(limit.setup(load_time, time));
+  PetscCall(limit.search(&found));
+  strength.restore();
+  problem.restore(before);
+  outcome->fails = found.verdict == LimitVerdict::mechanism;
+  outcome->stopped = found.verdict == LimitVerdict::interrupted;
+  PetscFunctionReturn(0);
+}
+
+template PetscErrorCode find_failure(QuasiStatic<2> &, const std::vector<Law> &, double, double, StepOutcome *);
+template PetscErrorCode find_failure(QuasiStatic<3> &, const std::vector<Law> &, double, double, StepOutcome *);
 
 namespace {
 

@@ -13,11 +13,21 @@ namespace talus {
 Law without_softening(const Law &law);
 
 /// Carries a path from share 0 to 1 in load steps of at most `step`, halved where they fail and doubled after quick
-/// ones; `done` is told of each. Returns the outcome of the last step and, in `share`, how far it came.
+/// ones; `done` is told of each. `find_failure`, where it is given, is asked once, after the second step that failed:
+/// the path ends if it finds that the soil fails. Returns the outcome of the last step and, in `share`, how far it
+/// came.
 PetscErrorCode follow_path(double step, double smallest,
                            const std::function<PetscErrorCode(double from, double to, StepOutcome *)> &advance,
+                           const std::function<PetscErrorCode(StepOutcome *)> &find_failure,
                            const std::function<void(double share, const StepOutcome &)> &done, double *share,
                            StepOutcome *outcome, int *iterations);
+
+/// Says in `outcome` whether soil with its present strength fails under the loads of `load_time`. It is given psi =
+/// phi, with which no soil bears less than with its own psi (Radenkovic 1961), so that soil that fails has no
+/// equilibrium. The problem keeps its state.
+template <int dim>
+PetscErrorCode find_failure(QuasiStatic<dim> &problem, const std::vector<Law> &laws, double load_time, double time,
+                            StepOutcome *outcome);
 
 /// What a strength reduction needs of its surroundings.
 template <int dim>

@@ -92,10 +92,10 @@ void report_mesh(const MeshArguments &arguments, const LinearElastic &soil, doub
     if (critical(cell) < critical(slowest)) slowest = cell;
   const double speed = std::sqrt(constrained_modulus(law) / density);
   std::printf(
-      "critical step %.4g s (2 / omega_max of all cells) in soil with E = %s, nu = %s, density %s, where c_p = %.4g "
+      "critical step %.4g s (2 / omega_max of all cells) in soil with E = %.4g MPa, nu = %s, density %.4g kg/m3, where "
+      "c_p = %.4g "
       "m/s\n",
-      critical(slowest), arguments.young_modulus.c_str(), arguments.poisson_ratio.c_str(), arguments.density.c_str(),
-      speed);
+      critical(slowest), soil.young_modulus / 1e6, arguments.poisson_ratio.c_str(), density, speed);
   std::printf("set by the cell at (");
   for (int d = 0; d < dim; ++d) {
     double centre = 0;

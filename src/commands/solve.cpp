@@ -108,11 +108,6 @@ void print(const FactorOfSafety &factor) {
                 m.low[0], m.high[0], 100 * m.of_critical, in_words(m).c_str());
     if (factor.davis) std::printf("With psi = phi it is %s\n", in_words(m.dilating).c_str());
   }
-  for (const std::string &stage : factor.lost_stages)
-    std::printf(
-        "WARNING: stage %s found no equilibrium; the factor does not depend on it, but displacement and stress "
-        "of that stage are not those of this soil.\n",
-        stage.c_str());
 }
 
 int solve(const SolveArguments &arguments) {

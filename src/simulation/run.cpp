@@ -108,8 +108,10 @@ void Run<dim>::write_checkpoint() {
 template <int dim>
 Holdings Run<dim>::holdings() const {
   Holdings mine{world.mesh.global_cell, world.mesh.global_node};
-  if (std::any_of(scene.stage.begin(), scene.stage.end(), [](const Stage &s) { return is_static(s.kind); })) {
-    const std::vector<long long> edges = world.mesh.global_edges();  // which have nodes of finite elements
+  // edges have nodes of finite elements, if not in a stage of this scene then in one of the run that it starts from
+  if (!scene.start_from.folder.empty() ||
+      std::ranges::any_of(scene.stage, [](const Stage &s) { return is_static(s.kind); })) {
+    const std::vector<long long> edges = world.mesh.global_edges();
     mine.points.insert(mine.points.end(), edges.begin(), edges.end());
   }
   return mine;

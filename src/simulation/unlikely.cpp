@@ -11,13 +11,27 @@
 namespace talus {
 namespace {
 
-/// A key whose value lies outside of what soils have, and what it would be in the unit that was probably meant.
+/// What the number of a key may have been meant in.
+struct Meant {
+  const char *text;  ///< unit or key
+  double si;         ///< of the key for a number of 1 [SI]
+};
+
+/// A key whose value lies outside of what soils have, and the units in which its number may have been meant.
 struct Doubt {
   const char *key;
   double value;        ///< SI
   Unit unit;           ///< in which the key counts numbers
   double least, most;  ///< of soils, from laboratory models of dust to rock, SI
-  const char *meant;   ///< unit or key
+  std::vector<Meant> meant;
+
+  bool likely(double si) const { return least <= si && si <= most; }
+  /// A question for the first unit in which the number is one of soils; empty if it is in none.
+  std::string question() const {
+    for (const Meant &one : meant)
+      if (likely(value / unit.si * one.si)) return std::string(" Is it in ") + one.text + "?";
+    return "";
+  }
 };
 
 constexpr double least_cohesion = 20;  ///< [Pa]; less is doubted whatever the height
@@ -244,25 +258,33 @@ void doubt_for_depth(const BodySource &source, const BodyReport &body, const Law
 
 std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<Law> &laws,
                                          const std::vector<BodyReport> &bodies, const std::vector<SoilFace> &surface) {
-  constexpr double none = 1e300;
+  constexpr double none = 1e300, g = 9.81;  // [m/s2]
+  constexpr double water_flow = 1e-7;       // permeability over hydraulic conductivity [m s]
+  const std::vector<Meant> of_weights{{"kg/m3 (key density)", g}};
   std::vector<std::string> sentences;
   const double depth = greatest_depth(surface, scene.dimension, scene.vertical());
   for (std::size_t b = 0; b < laws.size(); ++b) {
     const BodySource &body = scene.body[b];
+    const bool weighed = body.unit_weight > 0 || body.saturated_unit_weight > 0;  // densities follow from it
     std::vector<Doubt> doubts{
-        {"density", body.density, kilogram_per_cubic_metre, 100, 10e3, "t/m3"},
-        {"grain_density", body.grain_density, kilogram_per_cubic_metre, 500, 10e3, "t/m3"},
-        {"unit_weight", body.unit_weight, newton_per_cubic_metre, 5e3, 60e3, "kg/m3 (key density)"},
-        {"saturated_unit_weight", body.saturated_unit_weight, newton_per_cubic_metre, 8e3, 60e3, "kg/m3"},
-        {"permeability", body.permeability, square_metre, 0, 1e-6, "m/s (key hydraulic_conductivity)"},
+        {"density",
+         weighed ? 0 : body.density,
+         kilogram_per_cubic_metre,
+         100,
+         10e3,
+         {{"t/m3", 1e3}, {"kN/m3 (key unit_weight)", 1e3 / g}, {"N/m3 (key unit_weight)", 1 / g}}},
+        {"grain_density", weighed ? 0 : body.grain_density, kilogram_per_cubic_metre, 500, 10e3, {{"t/m3", 1e3}}},
+        {"unit_weight", body.unit_weight, newton_per_cubic_metre, 5e3, 60e3, of_weights},
+        {"saturated_unit_weight", body.saturated_unit_weight, newton_per_cubic_metre, 8e3, 60e3, of_weights},
+        {"permeability", body.permeability, square_metre, 0, 1e-6, {{"m/s (key hydraulic_conductivity)", water_flow}}},
     };
     std::visit(
         [&](const auto &law) {
           if constexpr (requires { law.young_modulus; })
-            doubts.push_back({"young_modulus", law.young_modulus, pascal, 5e3, none, "kPa or MPa"});
+            doubts.push_back({"young_modulus", law.young_modulus, pascal, 5e3, none, {{"kPa or MPa", 1e6}}});
           if constexpr (requires { law.friction_angle; }) {
-            doubts.push_back({"cohesion", law.cohesion, pascal, least_cohesion, none, "kPa"});
-            doubts.push_back({"friction_angle", law.friction_angle, degree, 2 * degree.si, none, "radians"});
+            doubts.push_back({"cohesion", law.cohesion, pascal, least_cohesion, none, {{"kPa", 1e3}}});
+            doubts.push_back({"friction_angle", law.friction_angle, degree, 2 * degree.si, none, {{"radians", 1}}});
           }
           if constexpr (requires { law.tension_cutoff; })
             if (const double apex = law.cohesion / std::tan(law.friction_angle);
@@ -279,10 +301,10 @@ std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<L
       doubt_for_depth(body, bodies[b], laws[b], bodies[b].mass / bodies[b].volume * scene.gravity_size() * depth,
                       sentences);
     for (const Doubt &one : doubts)
-      if (one.value > 0 && (one.value < one.least || one.value > one.most))
+      if (one.value > 0 && !one.likely(one.value))
         sentences.push_back("body." + body.name + "." + one.key + " is " + rounded(one.value / one.unit.si) + " " +
                             one.unit.name + ", which hardly any soil has; a number without a unit counts in " +
-                            one.unit.name + ". Is it in " + one.meant + "?");
+                            one.unit.name + "." + one.question());
   }
   return sentences;
 }

@@ -23,7 +23,8 @@ std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<L
                                          const std::vector<BodyReport> &bodies, const std::vector<SoilFace> &surface);
 
 /// A sentence for what fits the soil badly: its size, the direction of gravity, the place of the water table, open
-/// water that is not level or fills a hollow, ends of the mesh without a condition, motion over days. `bodies` and
+/// water that is not level or fills a hollow, ends of the mesh without a condition, soil over free space, motion over
+/// days. `bodies` and
 /// `surface` as they are at the start.
 std::vector<std::string> unlikely_surroundings(const Scene &scene, const std::vector<BodyReport> &bodies,
                                                const std::vector<SoilFace> &surface);

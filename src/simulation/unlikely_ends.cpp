@@ -1,4 +1,4 @@
-// Doubts about ends of the mesh.
+// Doubts about ends of the mesh and of the soil.
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -97,12 +97,65 @@ void doubt_base(const Scene &scene, const Extent &soil, int up, const std::vecto
                       "sides or falls out of the mesh. Give them kind = \"fixed\" or \"roller\"");
 }
 
+/// Groups of these faces that hang together by common corners.
+std::vector<std::vector<const SoilFace *>> connected(const std::vector<const SoilFace *> &faces, int corners) {
+  std::map<std::array<double, 3>, std::vector<std::size_t>> beside;  // of a corner: the faces that meet there
+  for (std::size_t k = 0; k < faces.size(); ++k)
+    for (int a = 0; a < corners; ++a) beside[faces[k]->corner[a]].push_back(k);
+  std::vector<char> seen(faces.size());
+  std::vector<std::vector<const SoilFace *>> groups;
+  for (std::size_t first = 0; first < faces.size(); ++first) {
+    if (seen[first]) continue;
+    std::vector<std::size_t> reached{first};
+    seen[first] = 1;
+    for (std::size_t next = 0; next < reached.size(); ++next)  // grows on the way
+      for (int a = 0; a < corners; ++a)
+        for (const std::size_t other : beside[faces[reached[next]]->corner[a]])
+          if (!seen[other]) seen[other] = 1, reached.push_back(other);
+    std::vector<const SoilFace *> &group = groups.emplace_back();
+    for (const std::size_t k : reached) group.push_back(faces[k]);
+  }
+  return groups;
+}
+
+/// Soil over free space: mostly a region of the section that no body fills.
+void doubt_voids(const Scene &scene, int up, const std::vector<SoilFace> &surface,
+                 std::vector<std::string> &sentences) {
+  constexpr double level = 0.5;        // of the normal along the vertical: a steeper face is a wall
+  constexpr std::size_t few = 3;       // faces: fewer are the raggedness of a surface that cells follow
+  constexpr double negligible = 0.01;  // of the area of the soil from above
+  std::vector<const SoilFace *> roofs;
+  double above = 0;
+  for (const SoilFace &face : surface) {
+    above += std::max(0., face.area * face.normal[up]);
+    if (face.normal[up] < -level && !face.ends_mesh && !face.conditioned) roofs.push_back(&face);
+  }
+  for (const auto &group : connected(roofs, scene.dimension)) {
+    double area = 0;
+    std::array<Span, 3> span;
+    for (const SoilFace *face : group) {
+      area -= face->area * face->normal[up];
+      for (int a = 0; a < scene.dimension; ++a)
+        for (int d = 0; d < scene.dimension; ++d) span[d].widen(face->corner[a][d]);
+    }
+    if (group.size() < few || area < negligible * above) continue;
+    std::string place;
+    for (int d = 0; d < scene.dimension; ++d)
+      if (d != up) place += (place.empty() ? "" : ", ") + std::string(1, axis_names[d]) + " = " + span[d].text();
+    sentences.push_back("The soil hangs over free space: nothing is below its faces at " + place + ", " +
+                        axis_names[up] + " = " + span[up].text() +
+                        ", so that it falls, or bends down as a roof. Does a region there belong to no body (key "
+                        "region)? Soil that is meant to fall may stay so");
+  }
+}
+
 }  // namespace
 
 void doubt_ends(const Scene &scene, const Extent &soil, const std::vector<SoilFace> &surface,
                 std::vector<std::string> &sentences) {
   doubt_sides(scene, soil, scene.vertical(), surface, sentences);
   doubt_base(scene, soil, scene.vertical(), surface, sentences);
+  doubt_voids(scene, scene.vertical(), surface, sentences);
 }
 
 }  // namespace talus

@@ -105,7 +105,7 @@ class Maps:
         self.grid = Grid(self.node.min(axis=0), self.node.max(axis=0), spacing or self._usual_spacing())
         if self.grid.spacing < 1.5 * self.size:
             warn(f"cells of {self.grid.spacing:g} m are not much wider than the particles ({self.size:.3g} m): single particles show in the grids; "
-                 f"from --spacing {SPACING * self.size:.2g} on less so")
+                 f"less so with --spacing {SPACING * self.size:.2g} or more")
         self.sliding = np.union1d(Thickness(last, self.axes.up).sliding, left_mesh(results))
         moved = largest_displacement(last)
         if not len(self.sliding) or (moved < self.size and not len(left_mesh(results))):

@@ -116,11 +116,28 @@ def path_of_most(worth):
     return path[::-1]
 
 
+def depth_of_ends(line, place):
+    """Depth of the left and of the right end of the line below the ground."""
+    reach = max(np.ptp(line[:, 0]) / len(line), np.ptp(place[:, 0]) / 200)
+    return {side: place[np.abs(place[:, 0] - x) <= reach, 1].max(initial=y) - y for side, (x, y) in (("left", line[0]), ("right", line[-1]))}
+
+
 def buried_ends(line, place):
     """Those of the words left and right at which the line ends inside the soil, further below the ground than a share NEAR of the soil's height."""
-    reach = max(np.ptp(line[:, 0]) / len(line), np.ptp(place[:, 0]) / 200)
-    ground = [place[np.abs(place[:, 0] - x) <= reach, 1].max(initial=y) for x, y in (line[0], line[-1])]
-    return [side for side, level, (_, y) in zip(("left", "right"), ground, (line[0], line[-1])) if level - y > NEAR * np.ptp(place[:, 1])]
+    return [side for side, depth in depth_of_ends(line, place).items() if depth > NEAR * np.ptp(place[:, 1])]
+
+
+def said_of_ends(results, line, place, snapshot):
+    """A sentence about ends of the line that are further below the ground than a row is high; empty if there are none."""
+    deep = {side: depth for side, depth in depth_of_ends(line, place).items() if depth > COLUMN * spacing_of(results)}
+    if not deep:
+        return ""
+    ends = " and ".join(f"{depth:.2g} m below the ground on the {side}" for side, depth in deep.items())
+    band = f"soil with more than {LEAST:g} of the largest plastic strain"
+    if not buried_ends(line, place):
+        return f"the line ends inside the soil, {ends}: {band} ends there"
+    more = "the last time of the run" if snapshot is results.snapshots[-1] else "a later time (--times) may show the whole surface"
+    return f"the line ends inside the soil, {ends}: no connected path of {band} leads from ground to ground at t = {snapshot.time:g} s; {more}"
 
 
 def smoothed(line):
@@ -139,10 +156,10 @@ def draw_slip_surface(results, folder, time=None):
         rows.writerows([f"{value:.6g}" for value in point] for point in line)
     undeformed = Undeformed(snapshot, results.snapshots[0])
     painter = Painter(results, [undeformed])
-    painter.picture_of_line(undeformed, "plastic_strain", line, "slip surface, in the section as it was at the start", folder / "slip_surface.png")
-    if buried := buried_ends(line, place):
-        print(f"talus: the line ends inside the soil on the {' and on the '.join(buried)}: at t = {snapshot.time:g} s the plastic strain that is more than "
-              f"{LEAST:g} of the largest forms no surface from ground to ground; a later time (--times) may show the whole one", file=sys.stderr)
+    part = "part of the slip surface" if buried_ends(line, place) else "slip surface"
+    painter.picture_of_line(undeformed, "plastic_strain", line, f"{part}, in the section as it was at the start", folder / "slip_surface.png")
+    if said := said_of_ends(results, line, place, snapshot):
+        print(f"talus: {said}", file=sys.stderr)
     if results.snapshots[0].position().shape[1] == 2:
         print("[output.line.slip_surface]\npoints = [" + ", ".join(f"[{x:.4g}, {y:.4g}]" for x, y in line) + "]")
     return [("slip surface", folder / "slip_surface.png")]

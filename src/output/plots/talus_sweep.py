@@ -82,6 +82,13 @@ def outcomes(folder, runs):
     return rows
 
 
+def series_lines(rows):
+    """The line to which each row belongs: its series and, where that varies further keys than the last one, their values."""
+    further = [row["overrides"].rsplit(f"{row['key']}=", 1)[0].strip() for row in rows]
+    several = {row["series"] for row, text in zip(rows, further) if any(one["series"] == row["series"] and other != text for one, other in zip(rows, further))}
+    return [f"{row['series']}, {text}" if row["series"] in several else row["series"] for row, text in zip(rows, further)]
+
+
 def charted(rows, in_plane=False):
     """The outcomes that differ between runs, those of the same kind together: [(title, {label: column})]."""
     names = [key for key in dict.fromkeys(key for row in rows for key in row)
@@ -116,11 +123,12 @@ def draw_charts(axes, rows, charts):
     choices = list(dict.fromkeys(row["value"] for row in rows))
     numeric = None not in numbers
     place = numbers if numeric else [choices.index(row["value"]) for row in rows]
-    series = list(dict.fromkeys(row["series"] for row in rows))
+    line = series_lines(rows)
+    series = list(dict.fromkeys(line))
     for one, (title, of) in zip(axes, charts):
         for k, (label, column) in enumerate(of.items()):
             for n, name in enumerate(series):
-                known = sorted((place[i], row[column], row["state"]) for i, row in enumerate(rows) if row["series"] == name and row.get(column) is not None)
+                known = sorted((place[i], row[column], row["state"]) for i, row in enumerate(rows) if line[i] == name and row.get(column) is not None)
                 if not known:
                     continue
                 x, y, _ = zip(*known)
@@ -182,8 +190,8 @@ def table(rows, in_plane=False, width=None):
     """Lines of the table of all runs."""
     columns = [(named(column, in_plane), column) for _, of in charted(rows) for column in of.values()]
     texts = []
-    for row in rows:
-        keys = [row["series"], row["value"]]
+    for line, row in zip(series_lines(rows), rows):
+        keys = [line, row["value"]]
         texts.append(keys + ([f"broke off: {row['failure']}"] if row["failure"] else
                              [row["state"] if "state" in row else "", *("-" if row.get(column) is None else f"{row[column]:.4g}" for _, column in columns)]))
     value = words(axis_title(rows).rpartition(".")[2]) if len({row["key"] for row in rows}) == 1 else "value"

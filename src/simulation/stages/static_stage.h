@@ -115,8 +115,10 @@ class StaticStage : public StageRunner<dim> {
     if (path_.share < 1) {
       text << (soil_moves() ? "no equilibrium beyond " : "no flow was found beyond ") << 100 * path_.share
            << " % of the " << (soil_moves() ? "loads" : "duration") << " of stage " << stage_.name << ": "
-           << (path_.last.singular ? "the stiffness became singular" : "Newton's iterations did not converge") << " ("
-           << path_.last.iterations << " iterations";
+           << (path_.last.fails      ? "a mechanism of failure was found under all of them, even with psi = phi"
+               : path_.last.singular ? "the stiffness became singular"
+                                     : "Newton's iterations did not converge")
+           << " (" << path_.last.iterations << " iterations";
       if (!water_flows()) text << ", out-of-balance force " << path_.last.residual << " of the forces";
       if (!water_flows() && path_.last.largest < ran_away)
         text << ", largest step of a node " << path_.last.largest << " m";

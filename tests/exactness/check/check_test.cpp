@@ -151,6 +151,66 @@ TEST(Check, DoubtsValuesThatNoSoilHas) {
   EXPECT_TRUE(check(folder, {"body.sand.friction_angle=0.47"}).says("body.sand.friction_angle is 0.47 deg"));
   EXPECT_TRUE(check(folder, {"body.sand.young_modulus=20"}).says("body.sand.young_modulus is 20 Pa"));
   EXPECT_TRUE(check(folder, {"body.sand.density=1.9"}).says("Is it in t/m3?"));
+  EXPECT_TRUE(check(folder, {"body.sand.density=18"}).says("Is it in kN/m3 (key unit_weight)?"));
+  const Ending nothing = check(folder, {"body.sand.density=0.01"});
+  EXPECT_TRUE(nothing.says("density is 0.01 kg/m3, which hardly any soil has")) << nothing.output;
+  EXPECT_FALSE(nothing.says("Is it in")) << "no unit makes it a soil";
+}
+
+/// Each number is asked for in the unit in which it is one of soils, and the density that follows from it is not.
+TEST(Check, DoubtsUnitWeightsInTheUnitThatWasMeant) {
+  const Folder folder;
+  folder.write("section.csv", good_section);
+  folder.write("scene.toml", changed(good_scene, "density = 2000", "unit_weight = 1900"));
+  const auto asks = [&](const std::string &value, const std::string &question) {
+    const Ending ending = talus(folder, {"check", "scene.toml", "--set", "body.sand.unit_weight=" + value});
+    EXPECT_TRUE(ending.says("body.sand.unit_weight is ")) << ending.output;
+    EXPECT_FALSE(ending.says("body.sand.density is")) << ending.output;
+    EXPECT_EQ(ending.says("Is it in"), !question.empty()) << ending.output;
+    EXPECT_TRUE(ending.says(question)) << value << ": " << ending.output;
+  };
+  asks("1900", "Is it in kg/m3 (key density)?");
+  asks("90e3", "");
+  EXPECT_FALSE(
+      talus(folder, {"check", "scene.toml", "--set", "body.sand.unit_weight=19 kN/m3"}).says("hardly any soil"));
+}
+
+/// A section in feet is as large as it was drawn, and check says what was taken.
+TEST(Check, SaysTheUnitOfASection) {
+  const Folder folder;
+  folder.write("scene.toml", changed(good_scene, "size = 0.25", "size = \"0.25 ft\""));
+  folder.write("section.csv", changed(good_section, "part,x,y", "part,x [ft],y [ft]"));
+  const Ending ending = talus(folder, {"check", "scene.toml"});
+  EXPECT_EQ(ending.status, 0) << ending.output;
+  EXPECT_TRUE(ending.says("section.csv: all numbers are in feet (line 1) and turned into metres")) << ending.output;
+  const Ending mesh = talus(folder, {"mesh", "section.csv", "--size", "0.25 ft", "-o", "a.msh"});
+  EXPECT_TRUE(mesh.says("all numbers are in feet (line 1)")) << mesh.output;
+  EXPECT_TRUE(mesh.says("region sand: ")) << mesh.output;
+  EXPECT_TRUE(mesh.says(" cells, 0.0464")) << "half a square foot, in m2: " << mesh.output;
+}
+
+/// A region below soil that no body fills is a void, whose roof is soil.
+TEST(Check, DoubtsSoilOverAVoid) {
+  const Folder folder;
+  folder.write("scene.toml", good_scene);
+  const auto look = [&](const std::string &below, const std::vector<std::string> &more = {}) {
+    folder.write("section.csv",
+                 changed(good_section, "region_sand,0.5,0.25\n",
+                         "interface1,0,0.25\ninterface1,1,0.25\nregion_sand,0.5,0.4\nregion_" + below + ",0.5,0.1\n"));
+    std::vector<std::string> words{"check", "scene.toml", "--set", "mesh.size=0.1"};
+    for (const std::string &one : more) words.insert(words.end(), {"--set", one});
+    return talus(folder, words);
+  };
+  const Ending ending = look("clay");
+  EXPECT_TRUE(ending.says("The soil hangs over free space: nothing is below its faces at x = 0 to 1 m, y = 0.25 m"))
+      << ending.output;
+  EXPECT_FALSE(look("clay", {"body.sand.region=['sand', 'clay']"}).says("hangs over"));
+  const std::string held = "boundary.floor={group='floor', kind='fixed'}";
+  folder.write("floor.csv", changed(good_section, "region_sand,0.5,0.25\n",
+                                    "interface1,0,0.25\ninterface1,1,0.25\nregion_sand,0.5,0.4\nregion_clay,0.5,0.1\n"
+                                    "b_floor,0,0.25\nb_floor,1,0.25\n"));
+  EXPECT_FALSE(look("clay", {"mesh.section=floor.csv", held}).says("hangs over"));
+  EXPECT_FALSE(check(folder, {}).says("hangs over"));
 }
 
 TEST(Check, DoubtsWhatFitsTheSoilBadly) {
@@ -277,6 +337,8 @@ duration = 1
     return ending;
   };
   const Ending whole = look(20, 19);  // what lies uphill is not asked for
+  EXPECT_TRUE(whole.says("by mesh.terrain.far_size and mesh.size")) << "keys, no options: " << whole.output;
+  EXPECT_FALSE(whole.says("--size"));
   const double exact =
       1 / std::hypot(std::cos(26.565 * std::acos(-1) / 180) / 6, std::sin(26.565 * std::acos(-1) / 180) / 30);
   EXPECT_NEAR(number(whole, "height_m"), exact, 3) << "to a cell; elevations range over 27 m";

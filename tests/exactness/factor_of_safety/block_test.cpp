@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/read_file.h"
+#include "base/temporary_folder.h"
 #include "scene/reader.h"
 #include "simulation.h"
 #include "solvers/quasi_static/bracket.h"
@@ -248,6 +250,24 @@ TEST(Block, has_no_factor_where_soil_that_softens_loses_its_equilibrium) {
   const FactorOfSafety peak = factor_of(fresh);
   EXPECT_EQ(peak.lost_stages.size(), 1);
   expect_holds(peak, 28. / 30);
+}
+
+/// Where the strength is too small for the loads a trial says so after the second step that failed, and the smallest
+/// steps are not tried: the stage ends far above them. The factor is that of the block.
+TEST(Block, fails_before_small_steps_are_tried) {
+  TemporaryFolder folder;
+  ASSERT_TRUE(folder.make());
+  Scene scene = parse_scene(block, std::string(TALUS_MESHES) + "/scene.toml", {"boundary.surface.pressure=30e3"});
+  RunOptions options;
+  options.pictures = options.screen = options.checkpoints = false, options.directory = folder.path() + "/run";
+  const FactorOfSafety factor = make_simulation(PETSC_COMM_WORLD, scene, options)->factor_of_safety();
+  EXPECT_EQ(factor.lost_stages.size(), 1);
+  expect_holds(factor, 28. / 30);
+  const std::string log = read_file(options.directory + "/run.log");
+  EXPECT_NE(log.find("a mechanism of failure was found under all of them, even with psi = phi"), std::string::npos)
+      << log;
+  const std::string warning = "stage load found no equilibrium, so the search";
+  EXPECT_EQ(log.find(warning), log.rfind(warning)) << "said once";
 }
 
 /// Outside of the polygon soil keeps its strength: where nothing else is divided than soil that cannot fail alone,

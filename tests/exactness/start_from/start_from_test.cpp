@@ -164,6 +164,20 @@ assert numpy.abs(alone['position'][...][order[0]] - shared['position'][...][orde
   }
 }
 
+/// Finite elements have nodes on edges, which go to other ranks too, though this scene has no stage of theirs.
+TEST(StartedBehindElements, StartsOnAnotherNumberOfRanks) {
+  const Work work;
+  const std::vector<std::string> firm{"body.sand.cohesion=5e3", "boundary.base.friction_angle=30"};
+  for (const int ranks : {1, 2}) {
+    const Ending source = work.run(soil + balance, "source", firm, ranks, {"--force"});
+    ASSERT_EQ(source.status, 0) << source.output;
+    const std::string name = "from" + std::to_string(ranks);
+    const Ending ending = work.run(soil + fall + from_source, name, firm, 3 - ranks);
+    EXPECT_EQ(ending.status, 0) << ending.output;
+  }
+  work.expect_python("a, b = end('from1'), end('from2')\nassert numpy.abs(a['position'] - b['position']).max() < 1e-9");
+}
+
 TEST_F(AfterSource, SaysWhatIsDifferent) {
   const Ending ending = start("other", {"body.sand.friction_angle=10"});
   EXPECT_TRUE(ending.says("since then the scene has another body.sand.friction_angle")) << ending.output;

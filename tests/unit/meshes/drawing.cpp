@@ -123,7 +123,7 @@ TEST(Drawing, JoinsPiecesAndConvertsUnits) {
   for (const int i : {2, 0, 3, 1}) dxf.line("OUTLINE", mm(box[(i + i % 2) % 4]), mm(box[(i + 1 - i % 2) % 4]));
   for (const int i : {1, 2, 0}) dxf.line("INTERFACE0", mm(ground[i + i % 2]), mm(ground[i + 1 - i % 2]));
   dxf.point("REGION_CLAY", {5e3, 3e3}).line("DIMENSIONS", {0, 0}, {1, 1});
-  dxf.polyline("REFINE_0.2", {{8e3, 1e3}, {12e3, 1e3}, {12e3, 4e3}, {8e3, 4e3}}, true);
+  dxf.polyline("REFINE_200", {{8e3, 1e3}, {12e3, 1e3}, {12e3, 4e3}, {8e3, 4e3}}, true);
   std::vector<std::string> doubts;
   const Section section = section_in(dxf.content(), &doubts);
   EXPECT_DOUBLE_EQ(section.area(), 200);
@@ -133,11 +133,22 @@ TEST(Drawing, JoinsPiecesAndConvertsUnits) {
   EXPECT_EQ(section.layer_at({12, 5.1}), "layer0");
   EXPECT_EQ(section.seeds[0].name, "clay");
   ASSERT_EQ(section.boxes.size(), 1u);
-  EXPECT_DOUBLE_EQ(section.boxes[0].size, 0.2);
+  EXPECT_DOUBLE_EQ(section.boxes[0].size, 0.2) << "in the unit of the drawing, like all its numbers";
   EXPECT_DOUBLE_EQ(section.boxes[0].to[1], 4);
-  ASSERT_EQ(doubts.size(), 2u);
-  EXPECT_NE(doubts[0].find("coordinates in millimetres"), std::string::npos) << doubts[0];
-  EXPECT_NE(doubts[1].find("left out: dimensions"), std::string::npos) << doubts[1];
+  ASSERT_EQ(doubts.size(), 1u);
+  EXPECT_NE(doubts[0].find("left out: dimensions"), std::string::npos) << doubts[0];
+  ASSERT_EQ(section.doubts().size(), 1u);
+  EXPECT_NE(section.doubts()[0].find("all numbers are in millimetres ($INSUNITS)"), std::string::npos);
+}
+
+TEST(Drawing, SaysWhichUnitItsNumbersHave) {
+  const Section feet = section_in(slope(2).content()), survey = section_in(slope(21).content());
+  EXPECT_DOUBLE_EQ(feet.outline.points[1][0], 25 * 0.3048);
+  EXPECT_DOUBLE_EQ(survey.outline.points[1][0], 25 * 1200. / 3937);
+  EXPECT_EQ(section_in(slope(6).content()).doubts().size(), 0u);
+  const std::vector<std::string> none = section_in(slope(0).content()).doubts();
+  ASSERT_EQ(none.size(), 1u);
+  EXPECT_NE(none[0].find("names no unit ($INSUNITS), and its coordinates are taken as metres"), std::string::npos);
 }
 
 /// A circle becomes chords of 4 degrees, within 0.1 % of its area.

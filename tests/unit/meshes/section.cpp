@@ -136,6 +136,45 @@ TEST(Section, IsReadAsSpreadsheetsSaveIt) {
   }
 }
 
+/// All numbers, also the size of cells and the free space, are in the unit of the header, in each form of it.
+TEST(Section, HeaderStatesTheUnit) {
+  const std::string rows =
+      "outline,0,0\noutline,40,0\noutline,40,30\noutline,0,30\nfree_space,10,20\nrefine_2,1,1\n"
+      "refine_2,3,2\nregion_soil,5,5\n";
+  const double foot = 0.3048;
+  for (const std::string header : {"part,x [ft],y [ft]\n", "# a survey\nPART , X (FT) , Y(FT)\npart,x,y\n",
+                                   "part,x[ feet ],y [Feet]\npart,x [feet],y [feet]\n"}) {
+    const Section s = section_of(header + rows);
+    EXPECT_EQ(s.outline.points[2], (Vec<2>{40 * foot, 30 * foot})) << header;
+    EXPECT_EQ(s.free_height, 10 * foot);
+    EXPECT_EQ(s.free_extra, 20 * foot);
+    EXPECT_EQ(s.boxes[0].size, 2 * foot);
+    EXPECT_EQ(s.boxes[0].to[0], 3 * foot);
+    EXPECT_EQ(s.seeds[0].point, (Vec<2>{5 * foot, 5 * foot}));
+    expect_words(s.doubts().at(0), {"all numbers are in feet (line ", ") and turned into metres"});
+  }
+  EXPECT_EQ(section_of("part,x [m],y [m]\n" + square).doubts().size(), 0u);
+  EXPECT_EQ(section_of("part,x [in],y [in]\noutline,0,0\noutline,100,0\noutline,0,50\n").outline.points[1][0], 2.54);
+  EXPECT_EQ(section_of("part,x [mm],y [mm]\noutline,0,0\noutline,500,0\noutline,0,50\n").outline.points[1][0], 0.5);
+}
+
+TEST(BadSection, UnitsAreCheckedAtTheirLine) {
+  const std::string form = "must be a header part,x,y or, with a unit, part,x [ft],y [ft]";
+  expect_words(complaint("part,x [kN],y [kN]\n" + square),
+               {"line 1", "states no unit that sections are drawn in", "m, mm, cm, dm, km, ft, in, ftUS"});
+  expect_words(complaint("part,x [ft],y [m]\n" + square), {"line 1", "the same unit for x and y"});
+  expect_words(complaint("part,x [ft],y\n" + square), {"line 1", "the same unit for x and y"});
+  for (const std::string header : {"part,x ft,y ft\n", "part,x [ft,y [ft\n", "part,y,x\n", "part,x []\n",
+                                   "part,x [],y []\n", "part,x [ft],y [ft],z [ft]\n", "part,xft,yft\n"})
+    expect_words(complaint("# survey\n" + header + square), {"line 2", form});
+  expect_words(complaint(square + "part,x [ft],y [ft]\n"),
+               {"line 6", "another unit than the rows above it have, metres"});
+  expect_words(complaint("part,x [ft],y [ft]\noutline,0,0\npart,x [m],y [m]\n"),
+               {"line 3", "rows above it have, feet"});
+  expect_words(complaint("part,x [ft],y [ft]\noutline,4 ft,0\n"),
+               {"line 2", "in the unit of a header part,x [ft],y [ft]"});
+}
+
 TEST(BadSection, NumbersAreNotGuessed) {
   expect_words(complaint("outline,0,0\noutline,\"4,5\",0\n"), {"line 2", "two numbers"});  // thousands, or a fraction
   expect_words(complaint("outline;0;0\noutline;1.234,5;0\n"), {"line 2", "two numbers"});

@@ -20,7 +20,7 @@ from talus_outcomes import FAILS  # noqa: E402
 from talus_paths import label_of, spread  # noqa: E402
 from talus_results import History, Results  # noqa: E402
 from talus_sections import Painter  # noqa: E402
-from talus_slip import slip_surface  # noqa: E402
+from talus_slip import said_of_ends, slip_surface  # noqa: E402
 from talus_soils import moved_away, painted, tints  # noqa: E402
 from talus_tiles import Frame  # noqa: E402
 from talus_views import View, views_of  # noqa: E402
@@ -315,6 +315,28 @@ class SlipSurface(unittest.TestCase):
         self.assertLess(line[0, 0], 6)
         self.assertEqual(slip_surface(results, 1)[1].time, 1)
 
+        def said(time):
+            line, snapshot, place, _ = slip_surface(results, time)
+            return said_of_ends(results, line, place, snapshot)
+
+        self.assertRegex(said(1), r"ends inside the soil, .* m below the ground on the left: no connected path of .* at t = 1 s; a later time")
+        self.assertEqual(said(2), "")
+
+    def test_says_that_no_path_leads_to_the_ground(self):
+        # a band from one end of the soil to the other, 3 m below its ground
+        results = Sheared(lambda x, y: float(abs(y - 7) < 0.5))
+        line, snapshot, place, _ = slip_surface(results, 0)
+        said = said_of_ends(results, line, place, snapshot)
+        self.assertIn("2.9 m below the ground on the left and 2.9 m below the ground on the right", said)
+        self.assertIn("no connected path", said)
+        self.assertIn("the last time of the run", said)
+
+    def test_says_how_far_below_the_ground_a_line_ends(self):
+        # up to 1 m below the ground on the right, a tenth of its height
+        results = Sheared(lambda x, y: float(abs(np.hypot(x - 10, y - 12) - 6.3) < 0.4 and (x < 10 or y < 9)))
+        line, snapshot, place, _ = slip_surface(results, 0)
+        self.assertRegex(said_of_ends(results, line, place, snapshot), "m below the ground on the right: soil with more than 0.2 of .* ends there")
+
 
 class Charts(unittest.TestCase):
     """One axis, one quantity, with its unit."""
@@ -327,7 +349,8 @@ class Charts(unittest.TestCase):
         return [(axes.get_xlabel().replace("\n", " "), axes.get_ylabel().replace("\n", " ")) for axes in seen[0].axes if axes.get_xlabel()]
 
     def test_outcomes_stand_against_each_key_of_its_own(self):
-        rows = [{"series": key, "key": key, "value": value, "unit": unit, "failure": "", "state": FAILS, "volume_of_slide_m3": volume}
+        rows = [{"series": key, "overrides": f"{key}={value}", "key": key, "value": value, "unit": unit, "failure": "", "state": FAILS,
+                 "volume_of_slide_m3": volume}
                 for key, unit, values in (("body.clay.cohesion", "Pa", ("6 kPa", "8 kPa")), ("body.clay.friction_angle", "deg", ("20", "25")))
                 for volume, value in enumerate(values, 3)]
         rows = [row | {"volume_of_slide_m3": float(row["volume_of_slide_m3"])} for row in rows]
@@ -335,6 +358,12 @@ class Charts(unittest.TestCase):
                          [("body.clay.cohesion [kPa]", "volume of the slide [m³/m]"), ("body.clay.friction_angle [deg]", "volume of the slide [m³/m]")])
         self.assertEqual(talus_sweep.title_of("volume_of_slide_m3", False), "volume of the slide [m³]")
         self.assertEqual(talus_sweep.title_of("crest_largest_speed_m_s", True), "crest largest speed [m/s]")
+
+    def test_a_series_over_two_keys_is_a_line_for_each_value_of_the_first(self):
+        rows = [{"series": "both", "overrides": f"body.clay.cohesion={c} body.clay.friction_angle={phi}", "key": "body.clay.friction_angle", "value": phi}
+                for c in ("4 kPa", "8 kPa") for phi in ("15", "20")]
+        self.assertEqual(talus_sweep.lines_of(rows), ["both, body.clay.cohesion=4 kPa"] * 2 + ["both, body.clay.cohesion=8 kPa"] * 2)
+        self.assertEqual(talus_sweep.lines_of(rows[:2]), ["both"] * 2)
 
     def test_energies_of_a_section_are_those_of_a_metre(self):
         history = History.__new__(History)
