@@ -171,7 +171,7 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
       double total = 0;
       for (const Contact &c : contacts_[index]) total += c.area;
       for (Contact &c : contacts_[index])
-        active_contacts_.push_back({i, &c, nodal_[i] * c.area / total, 0, c.rests, c.rests, {}});
+        active_contacts_.push_back({i, &c, nodal_[i] * c.area / total, 0, c.rests, c.rests, {}, {}, 0, 0, 0});
     }
   }
   if (!dashpots_.empty() && !stand_ins_) {
@@ -341,12 +341,41 @@ double Conditions<dim>::target(const Prescribed &c, int k, const Vec<dim> &x, do
   return speed ? speed(c.direction[k], x, t) : 0;
 }
 
+/// The directions in which the contacts of one node bar its motion, made orthogonal: what the second of two planes
+/// takes must not give back what the first has taken.
+template <int dim>
+class Conditions<dim>::Barred {
+ public:
+  /// The next contact belongs to `node`.
+  void at(int node) {
+    if (node != node_) node_ = node, count_ = 0;
+  }
+
+  /// Takes from the vector `v` of the node its part along the normal `n` and the directions before it.
+  void take(const Vec<dim> &n, Vec<dim> &v) {
+    Vec<dim> direction = n;
+    for (int k = 0; k < count_; ++k) add<dim>(direction, -dot<dim>(n, direction_[k]), direction_[k]);
+    const double left = count_ > 0 ? std::sqrt(dot<dim>(direction, direction)) : 1;
+    if (count_ == dim || left < parallel) return;
+    for (double &component : direction) component /= left;
+    add<dim>(v, -dot<dim>(v, direction), direction);
+    direction_[count_++] = direction;
+  }
+
+ private:
+  static constexpr double parallel = 1e-6;
+  int node_ = -1, count_ = 0;
+  std::array<Vec<dim>, dim> direction_;
+};
+
 template <int dim>
 void Conditions<dim>::constrain(double t, const FilledGrid<dim> &grid, Vec<dim> *v, bool sticking) const {
+  Barred barred;
   for (const ActiveContact &c : active_contacts_) {
+    barred.at(c.node);
     const double into = dot<dim>(v[c.node], c.contact->normal);
     if (sticking && c.sticks) v[c.node] = {}, add<dim>(v[c.node], into, c.contact->normal);
-    if (into > 0 || (sticking && c.presses)) add<dim>(v[c.node], -into, c.contact->normal);
+    if (into > 0 || (sticking && c.presses)) barred.take(c.contact->normal, v[c.node]);
   }
   for (const ActivePrescribed &p : active_prescribed_)
     for (int k = 0; k < p.condition->count; ++k)
@@ -358,7 +387,9 @@ void Conditions<dim>::constrain(double t, const FilledGrid<dim> &grid, Vec<dim> 
 template <int dim>
 void Conditions<dim>::project(const FilledGrid<dim> &, const Vec<dim> *v, Vec<dim> *force) const {
   for (const Dashpot &d : active_dashpots_) map<dim>(force[d.node]) -= d.matrix * map<dim>(v[d.node]);
+  Barred barred;
   for (const ActiveContact &c : active_contacts_) {
+    barred.at(c.node);
     Vec<dim> &f = force[c.node], slip = v[c.node];
     const Vec<dim> &n = c.contact->normal;
     const double into = dot<dim>(f, n);
@@ -368,11 +399,90 @@ void Conditions<dim>::project(const FilledGrid<dim> &, const Vec<dim> *v, Vec<di
       f = {}, add<dim>(f, into, n);
     else if (speed > 0)
       add<dim>(f, -c.force / speed, slip);
-    if (into > 0) add<dim>(f, -into, n);
+    if (into > 0) barred.take(n, f);
   }
   for (const ActivePrescribed &p : active_prescribed_)
     for (int k = 0; k < p.condition->count; ++k)
       add<dim>(force[p.node], -dot<dim>(force[p.node], p.condition->direction[k]), p.condition->direction[k]);
+}
+
+/// The contacts of a node follow one another; the place behind the last one of the node of contact `first`.
+template <int dim>
+size_t Conditions<dim>::last_at_node(size_t first) const {
+  size_t last = first + 1;
+  while (last < active_contacts_.size() && active_contacts_[last].node == active_contacts_[first].node) ++last;
+  return last;
+}
+
+/// The velocity that contact `c` alone leaves of the velocity `before` of its node, theory (6.1).
+template <int dim>
+Vec<dim> Conditions<dim>::respond(ActiveContact &c, double t, double gamma, const Vec<dim> &x, const Square<dim> &mass,
+                                  const Pores &pores, const Vec<dim> &before) {
+  const Contact &contact = *c.contact;
+  const Vec<dim> &n = contact.normal;
+  const Boundary &base = sources_[contact.source].kind;
+  const double into = dot<dim>(before, n);
+  Vec<dim> slip = before;
+  add<dim>(slip, -into, n);
+  c.presses = into > 0;
+  const double z = dim == 3 ? x[dim - 1] : 0, slipped = contact.slip,
+               slope = base.friction_coefficient(x[0], x[1], z, t, slipped);
+  c.pressed = c.presses ? map<dim>(n).dot(mass * map<dim>(n)) * into : 0;
+  c.capacity = contact.capacity;
+  if (c.presses) c.capacity += slope * c.pressed;
+  if (pores.thrust) c.capacity -= slope * gamma * pores.thrust(c.node, n);
+  const bool gathers = contact.gathered < friction_delay_;
+  const double adapted = friction_delay_ > 0 ? 1 - std::exp(-gamma / friction_delay_) : 1;
+  const double forgotten = (gathers ? gamma / (contact.gathered + gamma) : adapted) * c.capacity;
+  const double speed = std::sqrt(dot<dim>(slip, slip));
+  const double m = speed > 0 ? map<dim>(slip).dot(mass * map<dim>(slip)) / (speed * speed) : 0;
+  const bool adheres = c.presses || contact.since_pressed + gamma <= friction_delay_;
+  const double adhering = adheres ? base.adhesion(x[0], x[1], z, t, slipped) * c.area * gamma : 0;
+  const double rubbing = left_by_pressure(c, std::max(0., forgotten), adhering, slope, gamma, speed);
+  const double most = rubbing + adhering;
+  if (!gathers) c.capacity -= forgotten;
+  c.force = most / gamma, c.sticks = m * speed <= most;
+  const double share = c.sticks ? 1 : most / (m * speed);
+  c.rubs = share * m * speed;
+  c.rubbed = {}, add<dim>(c.rubbed, -share * m, slip);
+  Vec<dim> after{};
+  if (!c.presses) add<dim>(after, into, n);
+  if (!c.sticks) add<dim>(after, 1 - most / (m * speed), slip);
+  for (int d = 0; d < dim; ++d) c.change[d] = after[d] - before[d];
+  return after;
+}
+
+/// All contacts of a node act on its velocity. At a true edge the force of each depends on those of the others: each in
+/// turn meets the velocity that the others leave, until nothing changes (Gauss-Seidel; Jean 1999), theory (6.1a).
+template <int dim>
+void Conditions<dim>::settle_node(double t, double gamma, const Vec<dim> &x, const Square<dim> &mass,
+                                  const Pores &pores, size_t first, size_t last, Vec<dim> &v) {
+  constexpr int most_sweeps = 200;
+  constexpr double negligible = 1e-7;  // of the velocity that the contacts meet
+  const double met = std::sqrt(dot<dim>(v, v));
+  for (size_t k = first; k < last; ++k) active_contacts_[k].change = {};
+  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    double moved = 0;
+    for (size_t k = first; k < last; ++k) {
+      ActiveContact &c = active_contacts_[k];
+      Vec<dim> others = v;
+      add<dim>(others, -1, c.change);
+      const Vec<dim> after = respond(c, t, gamma, x, mass, pores, others);
+      for (int d = 0; d < dim; ++d) moved = std::max(moved, std::abs(after[d] - v[d]));
+      v = after;
+    }
+    if (last == first + 1 || moved <= negligible * met) return;
+  }
+}
+
+/// What a contact remembers of a step.
+template <int dim>
+void Conditions<dim>::commit(ActiveContact &c, double gamma) {
+  Contact &contact = *c.contact;
+  contact.rests = false;
+  contact.since_pressed = c.presses ? 0 : contact.since_pressed + gamma;
+  contact.gathered += gamma;
+  contact.capacity = c.capacity;
 }
 
 template <int dim>
@@ -395,43 +505,22 @@ void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &gri
     account(d.node, d.source, before);
   }
   spread_heat(gamma);
-  const double adapted = friction_delay_ > 0 ? 1 - std::exp(-gamma / friction_delay_) : 1;
-  for (ActiveContact &c : active_contacts_) {
-    const Vec<dim> before = v[c.node], &n = c.contact->normal;
-    const Square<dim> mass = mass_of(c.node);
-    const double into = dot<dim>(before, n);
-    const Boundary &base = sources_[c.contact->source].kind;
-    Vec<dim> slip = before;
-    add<dim>(slip, -into, n);
-    c.presses = into > 0;
-    Contact &contact = *c.contact;
-    contact.rests = false;
-    contact.since_pressed = c.presses ? 0 : contact.since_pressed + gamma;
-    const Vec<dim> &x = grid.position[c.node];
-    const double z = dim == 3 ? x[dim - 1] : 0, slipped = contact.slip,
-                 slope = base.friction_coefficient(x[0], x[1], z, t, slipped);
-    if (c.presses) contact.capacity += slope * map<dim>(n).dot(mass * map<dim>(n)) * into;
-    if (pores.thrust) contact.capacity -= slope * gamma * pores.thrust(c.node, n);
-    const bool gathers = contact.gathered < friction_delay_;
-    contact.gathered += gamma;
-    const double forgotten = (gathers ? gamma / contact.gathered : adapted) * contact.capacity;
-    const double speed = std::sqrt(dot<dim>(slip, slip));
-    const double m = speed > 0 ? map<dim>(slip).dot(mass * map<dim>(slip)) / (speed * speed) : 0;
-    const bool adheres = contact.since_pressed <= friction_delay_;
-    const double adhering = adheres ? base.adhesion(x[0], x[1], z, t, slipped) * c.area * gamma : 0;
-    const double rubbing = left_by_pressure(c, std::max(0., forgotten), adhering, slope, gamma, speed);
-    const double most = rubbing + adhering;
-    if (!gathers) contact.capacity -= forgotten;
-    c.force = most / gamma, c.sticks = m * speed <= most;
-    v[c.node] = {};
-    if (!c.presses) add<dim>(v[c.node], into, n);
-    if (!c.sticks) add<dim>(v[c.node], 1 - most / (m * speed), slip);
-    account(c.node, c.contact->source, before);
-    const double share = c.sticks ? 1 : most / (m * speed);
-    c.rubbed = {}, add<dim>(c.rubbed, -share * m, slip);
-    if (!counted_[c.node]) continue;
-    rubbed_[contact.source][0] += share * m * speed;
-    if (c.presses) rubbed_[contact.source][1] += map<dim>(n).dot(mass * map<dim>(n)) * into;
+  for (size_t first = 0, last; first < active_contacts_.size(); first = last) {
+    last = last_at_node(first);
+    const int node = active_contacts_[first].node;
+    const Square<dim> mass = mass_of(node);
+    settle_node(t, gamma, grid.position[node], mass, pores, first, last, v[node]);
+    for (size_t k = first; k < last; ++k) {
+      ActiveContact &c = active_contacts_[k];
+      commit(c, gamma);
+      if (!counted_[node]) continue;
+      Reaction r{node, c.contact->source, {}};
+      map<dim>(r.value) = mass * map<dim>(c.change);
+      for (int d = 0; d < dim; ++d) impulse_[r.source][d] += r.value[d];
+      impulses_.push_back(r);
+      rubbed_[r.source][0] += c.rubs;
+      rubbed_[r.source][1] += c.pressed;
+    }
   }
   for (const ActivePrescribed &p : active_prescribed_)
     for (int k = 0; k < p.condition->count; ++k) {

@@ -129,7 +129,12 @@ class Conditions {
     double force;          // friction against sliding in the last `resolve` [N]
     bool presses, sticks;  // in the last `resolve`
     Vec<dim> rubbed;       // impulse of friction in the last `resolve` [N s]
+    // Of the step that is being resolved:
+    Vec<dim> change;       // of the velocity of the node by this contact [m/s]
+    double pressed, rubs;  // normal impulse and impulse of friction [N s]
+    double capacity;       // that the contact will have
   };
+  class Barred;
   struct Dashpot {
     int node, source;
     Square<dim> matrix;  // [kg/s]
@@ -144,6 +149,12 @@ class Conditions {
   };
   void add_direction(PrescribedSet &set, int node, int source, const Vec<dim> &direction);
   void add_contact(int node, int source, const Vec<dim> &normal, double area);
+  size_t last_at_node(size_t first) const;
+  Vec<dim> respond(ActiveContact &c, double t, double gamma, const Vec<dim> &x, const Square<dim> &mass,
+                   const Pores &pores, const Vec<dim> &before);
+  void settle_node(double t, double gamma, const Vec<dim> &x, const Square<dim> &mass, const Pores &pores, size_t first,
+                   size_t last, Vec<dim> &v);
+  void commit(ActiveContact &c, double gamma);
   void serialize_contacts(Archive &archive, const FilledGrid<dim> &grid);
   void serialize_zones(Archive &archive, const BackgroundMesh<dim> &mesh);
   ShearZoneGrid &grid_of(const Contact &c) { return *zone_grids_[c.source]; }

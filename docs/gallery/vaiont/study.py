@@ -37,6 +37,7 @@ CASES = (
     ("cells of 15 m", ["mesh.size=15"]),
     ("cells of 12 m", ["mesh.size=12"]),
     ("cells of 10 m", ["mesh.size=10"]),
+    ("cells of 8 m", ["mesh.size=8"]),
     *((f"other round-off: snapshots every {interval} s", [f"output.interval={interval}"]) for interval in (0.5, 1, 1.25, 1.5, 3)),
     ("softening of the cell, 20 m", ["body.rock.averaging_length=0"]),
     ("softening of the cell, 15 m", ["body.rock.averaging_length=0", "mesh.size=15"]),
