@@ -34,10 +34,12 @@ class Series:
     base: float | None = None  # friction angle [deg]; None: no slip
     peak: float | None = None  # friction angle that softens to `friction` [deg], with dilation that ends; None: constant
     aspects: tuple = (0.8, 2, 4)
+    relaxation: int = 400  # transfer.relaxation; 400: the default
 
     def name(self):
         angle = f"{self.friction}°" if self.peak is None else f"{self.peak} to {self.friction}°"
-        return f"{angle}, {'no slip' if self.base is None else f'base {self.base}°'}, R₀/{self.cells}"
+        relaxed = "" if self.relaxation == 400 else f", relaxation {self.relaxation}"
+        return f"{angle}, {'no slip' if self.base is None else f'base {self.base}°'}, R₀/{self.cells}{relaxed}"
 
     def strength(self):
         """Keys of the soil: dense sand dilates by 8 degrees at its peak, and has lost 63 % of this and of its peak at a plastic strain of 0.2."""
@@ -48,13 +50,17 @@ class Series:
 
 
 SERIES = (Series(7), Series(10), Series(14, aspects=(0.8, 2)), Series(7, base=22), Series(10, base=22), Series(10, friction=26),
-          Series(10, peak=38, aspects=(0.8,)), Series(10, base=22, peak=38, aspects=(0.8, 2)))
+          Series(10, peak=38, aspects=(0.8,)), Series(10, base=22, peak=38, aspects=(0.8, 2)), Series(7, relaxation=100, aspects=(2,)),
+          Series(7, relaxation=1600, aspects=(0.8, 2)), Series(7, friction=38, aspects=(2,)), Series(7, friction=45, aspects=(2,)))
 
 SCENE = """title = "Round column, H0 / R0 = {aspect:g}"
 dimension = 3
 gravity = {gravity}
 [mesh]
 file = "column.msh"
+leaving_particles = "remove"
+[transfer]
+relaxation = {relaxation}
 [body.sand]
 region = "sand"
 density = {density}
@@ -141,7 +147,7 @@ def write_scene(folder, aspect, series):
     mesh(folder / "column.msh", aspect, series.cells)
     height = aspect * RADIUS
     (folder / "scene.toml").write_text(SCENE.format(
-        aspect=aspect, gravity=GRAVITY, density=DENSITY, strength=series.strength(), height=height,
+        aspect=aspect, gravity=GRAVITY, density=DENSITY, strength=series.strength(), height=height, relaxation=series.relaxation,
         base='kind = "fixed"' if series.base is None else f'kind = "friction"\nfriction_angle = {series.base}',
         vertical=-GRAVITY * DENSITY, lateral=-GRAVITY * DENSITY * 0.3 / 0.7, duration=f"{1 + 8 * np.sqrt(height / GRAVITY):.3f}"))
 
