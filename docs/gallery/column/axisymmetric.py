@@ -204,10 +204,11 @@ def draw(path):
         axes.plot(a, law, color=style.SOFT, lw=1.3, ls=(0, (4, 2)), label="Lube et al. (2004), ± 10 %")
         for colour, series in zip(itertools.cycle(style.LINES), SERIES):
             points = np.array([(float(row["aspect"]), float(row[column])) for row in rows if row["series"] == series.name()]).T
-            axes.plot(*points, "o-" if series.peak is None else "s--", color=colour, ms=4.5, lw=1, label=series.name())
+            varied = series.relaxation != 400 or series.friction > 30  # the first colours come again
+            axes.plot(*points, "s--" if series.peak else "^:" if varied else "o-", color=colour, ms=4.5, lw=1, label=series.name())
         axes.set(xlabel="aspect ratio a = H₀ / R₀", xlim=(0.5, 4.5), ylim=(0, None))
         axes.set_title(label, loc="left")
-    grid[0].legend(fontsize=7.5)
+    grid[1].legend(*grid[0].get_legend_handles_labels(), fontsize=6.5, ncols=2, loc="lower center")
     figure.tight_layout()
     style.save(figure, path)
 
