@@ -41,7 +41,7 @@ void frequency_bound(Visitor &&v, FrequencyBound &bound) {
       "largest frequency: that of the fastest filled cell alone (cells), or that of the whole filled mesh by power "
       "iteration at remaps (mesh), which allows longer steps, above all on tetrahedra; auto is mesh in dry and drained "
       "3D scenes, and cells in plane strain and slices, where pore fluids move, beside a fixed step, with a fraction "
-      "above 0.8 and with the laws cam_clay and umat");
+      "above 0.8, with the laws cam_clay and umat, and where softening is brittle");
 }
 
 /// The keys `step` and `fraction` of [integrator], which every kind has.

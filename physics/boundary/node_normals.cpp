@@ -41,6 +41,8 @@ class Tiling {
     places_.erase(std::unique(places_.begin(), places_.end()), places_.end());
     find_neighbours();
     find_patches();
+    find_weights();
+    find_means();
     for (int pass = 0; pass < normal_smoothings; ++pass) smooth();
     merge();
   }
@@ -155,10 +157,60 @@ class Tiling {
     patch_.resize(count());
     for (int t = 0; t < count(); ++t)
       for (int k = 0; k < dim; ++k) {
-        Patch &patch = patches_[patch_[t][k] = patch_of_root[root(t * dim + k)]];
-        patch.area += tiles_[t].area / dim;
-        map<dim>(patch.normal) += tiles_[t].area * normal(t);
+        patch_[t][k] = patch_of_root[root(t * dim + k)];
+        patches_[patch_[t][k]].area += tiles_[t].area / dim;
       }
+  }
+  static int corner(const std::array<int, dim> &places, int place) {
+    return static_cast<int>(std::find(places.begin(), places.end(), place) - places.begin());
+  }
+
+  /// Facets count by area in the means of their patches. At a rim of a surface more of them may lie ahead of the node
+  /// than behind it along the rim, as the diagonals go, and the mean normal would be that of a place beside the node.
+  /// There the weights grow or fall along the rim, so that the middle of the facets is abreast of the node.
+  void find_weights() {
+    weight_.resize(count());
+    for (int t = 0; t < count(); ++t) weight_[t].fill(tiles_[t].area);
+    if constexpr (dim == 3) {
+      std::map<std::pair<int, int>, int> facets_at_edge;  // of a patch to another place
+      for (int t = 0; t < count(); ++t)
+        for (const int p : patch_[t])
+          for (const int place : places_of(t)) facets_at_edge[{p, place}] += place != patches_[p].place;
+      std::map<int, std::vector<int>> ends;  // of the edges of a rim at a patch
+      for (const auto &[edge, facets] : facets_at_edge)
+        if (facets == 1) ends[edge.first].push_back(edge.second);
+      struct Balance {
+        Column along;
+        double sum = 0, square = 0;
+      };
+      std::map<int, Balance> balance;
+      for (const auto &[p, places] : ends) {
+        if (places.size() != 2) continue;
+        const auto way = [&, at = patches_[p].place](int to) -> Column {
+          return (map<dim>(places_[to]) - map<dim>(places_[at])).normalized();
+        };
+        const Column back = way(places[0]), forth = way(places[1]);
+        if (back.dot(forth) < straight_rim) balance[p].along = (forth - back).normalized();
+      }
+      const auto offset = [&](int t, int p, const Balance &b) -> double {
+        return (centre(t) - map<dim>(places_[patches_[p].place])).dot(b.along);
+      };
+      for (int t = 0; t < count(); ++t)
+        for (const int p : patch_[t])
+          if (const auto b = balance.find(p); b != balance.end()) {
+            const double s = offset(t, p, b->second);
+            b->second.sum += tiles_[t].area * s, b->second.square += tiles_[t].area * s * s;
+          }
+      for (int t = 0; t < count(); ++t)
+        for (int k = 0; k < dim; ++k)
+          if (const auto b = balance.find(patch_[t][k]); b != balance.end())
+            weight_[t][k] *= std::max(0., 1 - b->second.sum / b->second.square * offset(t, patch_[t][k], b->second));
+    }
+  }
+
+  void find_means() {
+    for (int t = 0; t < count(); ++t)
+      for (int k = 0; k < dim; ++k) map<dim>(patches_[patch_[t][k]].normal) += weight_[t][k] * normal(t);
     for (Patch &patch : patches_) map<dim>(patch.normal).normalize();
     for (int t = 0; t < count(); ++t)
       for (const int p : patch_[t])
@@ -168,9 +220,6 @@ class Tiling {
                                map<dim>(near.normal).dot(normal(t)) > same_plane;
         }
   }
-  static int corner(const std::array<int, dim> &places, int place) {
-    return static_cast<int>(std::find(places.begin(), places.end(), place) - places.begin());
-  }
 
   /// Every patch on relief takes the mean of the facets at its node, and a facet the mean of its nodes.
   void smooth() {
@@ -178,7 +227,7 @@ class Tiling {
     for (int t = 0; t < count(); ++t) {
       Column mean = Column::Zero();
       for (const int p : patch_[t]) mean += map<dim>(patches_[p].normal);
-      for (const int p : patch_[t]) sum[p] += tiles_[t].area * mean;
+      for (int k = 0; k < dim; ++k) sum[patch_[t][k]] += weight_[t][k] * mean;
     }
     for (size_t p = 0; p < patches_.size(); ++p)
       if (!patches_[p].plane) map<dim>(patches_[p].normal) = sum[p].normalized();
@@ -204,12 +253,14 @@ class Tiling {
   }
   int count() const { return static_cast<int>(tiles_.size()); }
 
-  static constexpr double sharpest = 0.5;  // cosine of 60 degrees: a sharper edge is always a true one
+  static constexpr double sharpest = 0.5;       // cosine of 60 degrees: a sharper edge is always a true one
+  static constexpr double straight_rim = -0.5;  // cosine of 120 degrees: a rim that bends more than by 60 has a corner
   std::vector<Tile<dim>> tiles_;
   std::vector<Vec<dim>> places_;
   std::vector<std::vector<std::pair<int, Edge>>> neighbours_;
   std::vector<Patch> patches_;
-  std::vector<std::array<int, dim>> patch_;  // of the corners of a tile
+  std::vector<std::array<int, dim>> patch_;      // of the corners of a tile
+  std::vector<std::array<double, dim>> weight_;  // of a tile in the means of these patches
 };
 
 }  // namespace

@@ -148,8 +148,9 @@ class PoreFluid {
     double saturated;                         ///< conductivity of the liquid in pores full of it [m2/(Pa s)]
     double density[fluids], mass[fluids];     ///< [kg/m3], [kg]
     double saturation;
-    double mixture;  ///< pressure of the pores in the total stress [Pa]
-    bool smoothed;   ///< the pores of all cells of its patch are nearly full
+    double mixture;          ///< pressure of the pores in the total stress [Pa]
+    long long smoothed = 0;  ///< 1: the pores of all cells of its patch are nearly full; as wide as the others, since
+                             ///< checkpoints would store what is between a narrower one and the end
   };
   static constexpr int last = 3, mixture = Phases::suction ? fluids : 0;  ///< lane; pressure that acts on the skeleton
   struct NodePores {                                                      // sums over cells and ranks

@@ -160,6 +160,8 @@ template <int dim>
 void PrescribedPoreWater<dim>::serialize(Archive &archive, const typename FilledGrid<dim>::Rows &rows) {
   archive.serialize("pore water", sample_time_, last_time_, table_moves_);
   archive.column(rows.nodes, "extra mass", extra_mass_);
+  const bool sampled = sample_time_[1] > sample_time_[0];
+  if (!sampled) return;  // since the remap, which may have filled more cells than the samples know
   for (Sample &sample : sample_) {
     archive.column(rows.cells, "gradient of pore pressure", sample.gradient);
     archive.column(rows.cells, "pore pressure", sample.value);

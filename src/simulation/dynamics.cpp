@@ -48,7 +48,8 @@ template <int dim>
 Dynamics<dim>::Dynamics(World<dim> &world, Clock &clock, const IntegratorSettings &settings)
     : world_(world),
       clock_(clock),
-      bound_(choose_step_bound(world.scene, world.laws, settings, world.mesh.report().one_element_slice)),
+      bound_(
+          choose_step_bound(world.scene, world.laws, world.report(), settings, world.mesh.report().one_element_slice)),
       settings_(with_bound(settings, bound_.by)),
       integrator_(make_integrator(settings_)),
       balancing_(world.scene.mesh.balance_ranks, ranks_of(world.comm), world.mesh.report().cells,

@@ -2,13 +2,14 @@
 
 #include "physics/phase_models.h"
 #include "scene/quantity.h"
+#include "simulation/softening.h"
 
 namespace talus {
 namespace {
 
 /// Why the frequency of the mesh is not the default here; empty where it is.
-std::string objection(const Scene &scene, const std::vector<Law> &laws, const IntegratorSettings &settings,
-                      bool slice) {
+std::string objection(const Scene &scene, const std::vector<Law> &laws, const std::vector<BodyReport> &bodies,
+                      const IntegratorSettings &settings, bool slice) {
   const StepRule rule = step_rule(settings);
   constexpr double largest_share = 0.8;  // the iteration comes from below, docs/theory section 5.2
   if (scene.dimension == 2 || slice) return "in plane strain such long steps change the time of failure";
@@ -18,17 +19,19 @@ std::string objection(const Scene &scene, const std::vector<Law> &laws, const In
   for (const Law &law : laws)
     if (stiffens(law))
       return std::string("soil of the law ") + law_name(law) + " may become stiffer than its moduli at the start";
+  if (!brittle_soils(scene, laws, bodies).empty())
+    return "where softening is brittle such long steps change the load at failure";
   return "";
 }
 
 }  // namespace
 
-StepBound choose_step_bound(const Scene &scene, const std::vector<Law> &laws, const IntegratorSettings &settings,
-                            bool slice) {
+StepBound choose_step_bound(const Scene &scene, const std::vector<Law> &laws, const std::vector<BodyReport> &bodies,
+                            const IntegratorSettings &settings, bool slice) {
   const FrequencyBound asked = step_rule(settings).bound;
   if (asked == FrequencyBound::cells) return {asked, "integrator.omega_max = \"cells\""};
   if (asked == FrequencyBound::mesh) return {asked, "integrator.omega_max = \"mesh\""};
-  const std::string objection = talus::objection(scene, laws, settings, slice);
+  const std::string objection = talus::objection(scene, laws, bodies, settings, slice);
   if (objection.empty()) return {FrequencyBound::mesh, "integrator.omega_max = \"auto\", on tetrahedra"};
   return {FrequencyBound::cells, "integrator.omega_max = \"auto\", and " + objection};
 }

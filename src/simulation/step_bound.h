@@ -5,6 +5,7 @@
 
 #include "physics/laws/laws.h"
 #include "scene/scene.h"
+#include "simulation.h"
 #include "solvers/integrators.h"
 
 namespace talus {
@@ -15,9 +16,9 @@ struct StepBound {
   std::string sentence() const;
 };
 
-/// What `integrator.omega_max` stands for in this scene, whose mesh may be a slice one cell thick.
-StepBound choose_step_bound(const Scene &scene, const std::vector<Law> &laws, const IntegratorSettings &settings,
-                            bool slice);
+/// What `integrator.omega_max` stands for in this scene with these bodies, whose mesh may be a slice one cell thick.
+StepBound choose_step_bound(const Scene &scene, const std::vector<Law> &laws, const std::vector<BodyReport> &bodies,
+                            const IntegratorSettings &settings, bool slice);
 /// The settings with that bound in the place of `automatic`.
 IntegratorSettings with_bound(IntegratorSettings settings, FrequencyBound bound);
 

@@ -34,10 +34,12 @@ class Series:
     base: float | None = None  # friction angle [deg]; None: no slip
     peak: float | None = None  # friction angle that softens to `friction` [deg], with dilation that ends; None: constant
     aspects: tuple = (0.8, 2, 4)
+    relaxation: int = 400  # transfer.relaxation; 400: the default
 
     def name(self):
         angle = f"{self.friction}°" if self.peak is None else f"{self.peak} to {self.friction}°"
-        return f"{angle}, {'no slip' if self.base is None else f'base {self.base}°'}, R₀/{self.cells}"
+        relaxed = "" if self.relaxation == 400 else f", relaxation {self.relaxation}"
+        return f"{angle}, {'no slip' if self.base is None else f'base {self.base}°'}, R₀/{self.cells}{relaxed}"
 
     def strength(self):
         """Keys of the soil: dense sand dilates by 8 degrees at its peak, and has lost 63 % of this and of its peak at a plastic strain of 0.2."""
@@ -48,13 +50,17 @@ class Series:
 
 
 SERIES = (Series(7), Series(10), Series(14, aspects=(0.8, 2)), Series(7, base=22), Series(10, base=22), Series(10, friction=26),
-          Series(10, peak=38, aspects=(0.8,)), Series(10, base=22, peak=38, aspects=(0.8, 2)))
+          Series(10, peak=38, aspects=(0.8,)), Series(10, base=22, peak=38, aspects=(0.8, 2)), Series(7, relaxation=100, aspects=(2,)),
+          Series(7, relaxation=1600, aspects=(0.8, 2)), Series(7, friction=38, aspects=(2,)), Series(7, friction=45, aspects=(2,)))
 
 SCENE = """title = "Round column, H0 / R0 = {aspect:g}"
 dimension = 3
 gravity = {gravity}
 [mesh]
 file = "column.msh"
+leaving_particles = "remove"
+[transfer]
+relaxation = {relaxation}
 [body.sand]
 region = "sand"
 density = {density}
@@ -141,7 +147,7 @@ def write_scene(folder, aspect, series):
     mesh(folder / "column.msh", aspect, series.cells)
     height = aspect * RADIUS
     (folder / "scene.toml").write_text(SCENE.format(
-        aspect=aspect, gravity=GRAVITY, density=DENSITY, strength=series.strength(), height=height,
+        aspect=aspect, gravity=GRAVITY, density=DENSITY, strength=series.strength(), height=height, relaxation=series.relaxation,
         base='kind = "fixed"' if series.base is None else f'kind = "friction"\nfriction_angle = {series.base}',
         vertical=-GRAVITY * DENSITY, lateral=-GRAVITY * DENSITY * 0.3 / 0.7, duration=f"{1 + 8 * np.sqrt(height / GRAVITY):.3f}"))
 
@@ -198,10 +204,11 @@ def draw(path):
         axes.plot(a, law, color=style.SOFT, lw=1.3, ls=(0, (4, 2)), label="Lube et al. (2004), ± 10 %")
         for colour, series in zip(itertools.cycle(style.LINES), SERIES):
             points = np.array([(float(row["aspect"]), float(row[column])) for row in rows if row["series"] == series.name()]).T
-            axes.plot(*points, "o-" if series.peak is None else "s--", color=colour, ms=4.5, lw=1, label=series.name())
+            varied = series.relaxation != 400 or series.friction > 30  # the first colours come again
+            axes.plot(*points, "s--" if series.peak else "^:" if varied else "o-", color=colour, ms=4.5, lw=1, label=series.name())
         axes.set(xlabel="aspect ratio a = H₀ / R₀", xlim=(0.5, 4.5), ylim=(0, None))
         axes.set_title(label, loc="left")
-    grid[0].legend(fontsize=7.5)
+    grid[1].legend(*grid[0].get_legend_handles_labels(), fontsize=6.5, ncols=2, loc="lower center")
     figure.tight_layout()
     style.save(figure, path)
 

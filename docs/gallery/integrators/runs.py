@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """What `talus compare` cannot read off one column: energy over 100 periods, angular momentum, dissipation of remaps, time per evaluation, steps by the frequency of cells and of the mesh.
 
-    runs.py TALUS [drift|spin|dissipation|cost|bound|laws|stability|figure ...]
+    runs.py TALUS [drift|spin|dissipation|cost|bound|laws|brittle|stability|figure ...]
 
 Each study writes NAME.csv beside this file, `figure` draws drift.png, orders.png and stability.png. TALUS is build/release/bin/talus; `stability` runs stability_test
 beside it.
@@ -171,6 +171,91 @@ def laws(talus):
             file.unlink()
 
 
+CUT_SECTION = """part,x,y
+outline,0,0
+outline,16,0
+outline,16,6.5
+outline,0,6.5
+interface0,0,5
+interface0,6,5
+interface0,6,0
+region_soil,3,2.5
+region_air,12,3
+"""
+CUT = """title = "{what} in softening soil, whose weight grows"
+dimension = 3
+gravity = 9.81
+[mesh]
+section = "section.csv"
+size = 0.6
+layers = 0
+{mesh}
+[body.soil]
+region = "{region}"
+density = 2000
+law = "mohr_coulomb"
+young_modulus = "10 MPa"
+poisson_ratio = 0.3
+cohesion = "40 kPa"
+friction_angle = 20
+residual_cohesion = "5 kPa"
+residual_friction_angle = 15
+shape_factor = {shape}
+reference_size = 0.6
+stress = ["-9810 * (5 - y)", "-19620 * (5 - y)", "-9810 * (5 - y)", "0", "0", "0"]
+body_acceleration = ["0", "-0.3 * t", "0"]
+[boundary.base]
+kind = "fixed"
+[boundary.sides]
+group = ["left", "right", "front", "back"]
+kind = "roller"
+[[stage]]
+name = "gravity"
+duration = 20
+until = "equilibrium"
+damping = 0.7
+softening = false
+hold_loads = true
+reset_displacement = true
+[[stage]]
+name = "loading"
+duration = 40
+until = "failure"
+failure_point = "crest"
+damping = 0.05
+[[stage]]
+name = "slide"
+duration = 3
+hold_loads = true
+[output]
+interval = 0
+history_interval = 0.05
+point.crest.position = [6, 5, {middle}]
+point.toe.position = [6, 0.3, {middle}]
+"""
+
+
+def brittle(talus):
+    """Vertical cuts 5 m high, straight and around a corner, whose weight grows until they fail: load and run-out by both bounds, for soil that softens faster and faster."""
+    rows = []
+    kinds = {"cut": {"what": "Vertical cut", "mesh": "thickness = 6", "region": "soil", "middle": 3},
+             "corner": {"what": "Corner of two vertical cuts", "mesh": "thickness = 12\ncuts = [6]", "region": "soil_1", "middle": 6}}
+    for kind, keys in kinds.items():
+        for shape in (50, 100, 300):
+            file = RUNS / "brittle.toml"
+            (RUNS / "section.csv").write_text(CUT_SECTION)
+            file.write_text(CUT.format(**keys, shape=shape))
+            for of, fraction in (("cells", 0.6), ("mesh", 0.3), ("mesh", 0.6)):
+                name = f"brittle {kind} {shape} {of} {fraction}"
+                history, _, count = run(talus, file, name, [f"integrator.omega_max={of}", f"integrator.fraction={fraction}"])
+                log = (RUNS / name.replace(" ", "_") / "run.log").read_text()
+                failure, length = float(re.search(r"loads at t = ([\d.]+) s", log)[1]), float(re.search(r"slip surface of about ([\d.]+) m", log)[1])
+                rows.append({"scene": kind, "shape_factor": shape, "critical_length_m": length, "omega_max": of, "fraction": fraction, "steps": count, "failure_load_time_s": round(failure, 3),
+                             "failure_load_g": round(1 + 0.3 * failure / 9.81, 4), "crest_m": round(history[-1]["crest_displacement_m"], 3), "toe_m": round(history[-1]["toe_displacement_m"], 3)})
+                print(rows[-1], flush=True)
+                write("brittle", rows)
+
+
 def stability(talus):
     test = Path(talus).parent / "stability_test"
     subprocess.run([next(p for p in (test, *ROOT.glob("build/*/tests/**/stability_test"), *ROOT.glob("build/*/bin/stability_test")) if p.exists())], check=True,
@@ -224,5 +309,5 @@ def figure(_):
 
 if __name__ == "__main__":
     RUNS.mkdir(parents=True, exist_ok=True)
-    for name in sys.argv[2:] or ["drift", "spin", "dissipation", "cost", "bound", "laws", "stability", "figure"]:
+    for name in sys.argv[2:] or ["drift", "spin", "dissipation", "cost", "bound", "laws", "brittle", "stability", "figure"]:
         globals()[name](sys.argv[1])

@@ -69,6 +69,13 @@ TEST(Check, SaysWhatTheCriticalStepIsTakenFromAndWhy) {
   falls_back(with({"mesh.layers=1"}), "in plane strain");
   falls_back(with({"integrator.step=1e-5"}), "integrator.step is fixed");
   falls_back(with({"integrator.fraction=0.81"}), "integrator.fraction is above 0.8");
+  // a slip surface of 0.08 and of 8 m spreads by itself, below and above 1.5 times the height of 0.5 m
+  const auto softening = [&](const char *shape_factor) {
+    return with({"body.sand.cohesion=5e3", "body.sand.residual_cohesion=1e3", "body.sand.residual_friction_angle=25",
+                 std::string("body.sand.shape_factor=") + shape_factor});
+  };
+  falls_back(softening("1000"), "where softening is brittle");
+  EXPECT_TRUE(softening("10").says("on tetrahedra)"));
   folder.write("scene.toml", changed(good_scene, "density = 2000", "porosity = 0.4\ngrain_density = 2600"));
   std::vector<std::string> wet{"check",
                                "scene.toml",

@@ -26,6 +26,7 @@ struct Variant {
   const char *name;
   std::vector<std::string> set;
   int ranks = 1, signal = SIGINT;
+  std::vector<const char *> until = {"000003"};  ///< snapshots at which the run is ended by the signal
 };
 
 void PrintTo(const Variant &variant, std::ostream *out) { *out << variant.name; }
@@ -79,6 +80,11 @@ const Variant variants[] = {
      with_pores({"phases=unsaturated", "water.storage=rate", "water.drag=explicit", "boundary.rain.kind=rainfall",
                  "boundary.rain.group=free_surface", "boundary.rain.intensity=0.01"})},
     {"balanced_at_every_remap_on_two_ranks", {"mesh.balance_ranks=always"}, 2, SIGKILL},
+    {"drained_by_arkode_and_balanced_at_every_remap_on_two_ranks",
+     {"phases=drained", "water.table=[[0, 0.3], [2, 0.1]]", "integrator.kind=arkode", "mesh.balance_ranks=always"},
+     2,
+     SIGTERM,
+     {"000002", "000004", "000006", "000008", "000010", "000012", "000014", "000016", "000018", "000020", "000022"}},
     {"with_a_fixed_step", {"integrator.step=2e-4"}},
     {"by_arkode", {"integrator.kind=arkode"}, 1, SIGKILL},
     {"by_arkode_with_moving_water", with_pores({"phases=unsaturated", "integrator.kind=arkode"})},
@@ -140,7 +146,8 @@ print('the same')
 
 TEST_P(Resumed, IsTheSameToTheBit) {
   run_until("whole", "000024", SIGINT, false);
-  run_until("resumed", "000003", GetParam().signal, false);
+  for (bool resume = false; const char *snapshot : GetParam().until)
+    run_until("resumed", snapshot, GetParam().signal, resume), resume = true;
   run_until("resumed", "000024", SIGINT, true);
   const Ending ending = Program(folder_, {PYTHON, "-c", comparison}).end();
   EXPECT_TRUE(ending.says("the same")) << ending.output;

@@ -3,6 +3,7 @@
 /// middle from the lowest point, J / m = (R^2 + (R - h)^2) / 2 and r_c the distance of its centre of mass from the
 /// centre of the circle, J theta'' = -m g r_c sin theta -+ R tan phi_b N, N = m (g cos theta + r_c theta'^2). The angle
 /// 2 delta is small, so that N is the sum of the normal stress.
+#include <algorithm>
 #include <cmath>
 
 #include "commands/rung.h"
@@ -50,21 +51,32 @@ inline void curved_chute(Rung &rung) {
     const double across = sums[1] / sums[0], below = radius - sums[2] / sums[0];
     return Place{std::atan2(across, below), radius - std::hypot(across, below)};
   };
+  const auto fastest = [&](const Snapshot &snapshot, int dimension) {  // component of the velocity of a particle [m/s]
+    double speed = 0;
+    for (int d = 0; d < dimension; ++d)
+      for (const double v : component(snapshot, "velocity", d)) speed = std::max(speed, std::abs(v));
+    return speed;
+  };
   struct Mesh {
-    int dimension;
+    int dimension, layers;
     double size;
   };
-  for (const auto [dimension, size] : {Mesh{2, 0.12}, Mesh{2, 0.09}, Mesh{3, 0.12}}) {
-    const std::string name = name_of(dimension) + ", cells of " + number(size) + " m, ";
+  for (const auto [dimension, layers, size] :
+       {Mesh{2, 1, 0.12}, Mesh{2, 1, 0.09}, Mesh{3, 1, 0.12}, Mesh{3, 4, 0.12}}) {
+    const std::string name = name_of(dimension) + (layers > 1 ? ", " + number(layers) + " layers" : "") +
+                             ", cells of " + number(size) + " m, ";
     for (const double time : {1., 2.6}) {
       std::vector<std::string> more{"mesh.size=" + number(size), "stage.0.duration=" + number(time)};
-      if (dimension == 3) more.push_back("gravity=[0, -9.81, 0]");
+      if (dimension == 3)
+        more.insert(more.end(), {"gravity=[0, -9.81, 0]", "mesh.layers=" + number(layers),
+                                 "mesh.thickness=" + number(layers * size)});
       const Run run = rung.run(in_dimension(dimension, more));
       const Place from = place(run.start), to = place(run.end);
       rung.compare(name + (time == 1 ? "way after 1 s" : "way to its place of rest") + " [deg]",
                    (start - exact(time)) / degree, (from.angle - to.angle) / degree, 0.015);
       if (time == 1) continue;
-      rung.compare(name + "rise over the base in cells", 0, (to.height - from.height) / size, 0.25, 1);
+      rung.compare(name + "rise over the base in cells", 0, (to.height - from.height) / size, 0.1, 1);
+      rung.compare(name + "fastest particle at rest [m/s]", 0, fastest(run.end, dimension), 0.04, 1);
     }
   }
 }
