@@ -362,8 +362,8 @@ class Charts(unittest.TestCase):
     def test_a_series_over_two_keys_is_a_line_for_each_value_of_the_first(self):
         rows = [{"series": "both", "overrides": f"body.clay.cohesion={c} body.clay.friction_angle={phi}", "key": "body.clay.friction_angle", "value": phi}
                 for c in ("4 kPa", "8 kPa") for phi in ("15", "20")]
-        self.assertEqual(talus_sweep.lines_of(rows), ["both, body.clay.cohesion=4 kPa"] * 2 + ["both, body.clay.cohesion=8 kPa"] * 2)
-        self.assertEqual(talus_sweep.lines_of(rows[:2]), ["both"] * 2)
+        self.assertEqual(talus_sweep.series_lines(rows), ["both, body.clay.cohesion=4 kPa"] * 2 + ["both, body.clay.cohesion=8 kPa"] * 2)
+        self.assertEqual(talus_sweep.series_lines(rows[:2]), ["both"] * 2)
 
     def test_energies_of_a_section_are_those_of_a_metre(self):
         history = History.__new__(History)
