@@ -89,11 +89,11 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
   for (int c = 0; c < mesh_.cell_count(); ++c)
     for (int a = 0; a <= dim && active_[c]; ++a) body_of_node_[nodes_.of_cell(c)[a]] = body_of_[c];
 
-  const std::vector<char> beyond = mesh_.across(active_);  // is there soil across a face of the partition?
+  const std::vector<char> active_across = mesh_.across(active_);  // is there soil across a face of the partition?
   const auto soil_across = [&](int neighbour) {
     if (neighbour == boundary) return false;
     if (neighbour >= 0) return active_[neighbour] != 0;
-    return beyond[-2 - neighbour] != 0;
+    return active_across[-2 - neighbour] != 0;
   };
 
   std::set<std::pair<int, int>> taken;  // faces with a boundary of their own
