@@ -6,8 +6,10 @@
 #include <stdexcept>
 
 #include "base/archive.h"
+#include "base/local_numbers.h"
 #include "meshes/complaints.h"
 #include "meshes/gmsh_file.h"
+#include "meshes/mesh_part.h"
 #include "meshes/partition.h"
 #include "meshes/patches.h"
 #include "meshes/plex.h"
@@ -16,26 +18,31 @@
 
 namespace talus {
 
-/// What rank 0 keeps of a mesh, so that it can be divided anew.
+/// What rank 0 keeps of a mesh, for new partitions and finite elements.
 template <int dim>
 struct WholeMesh {
   GmshMesh source;
+  std::vector<char> has_elements;          ///< cells that may have finite elements
   std::vector<int> patch;                  ///< of cells
   std::vector<Vec<dim>> centre;            ///< of patches [m]
   std::vector<std::vector<int>> touching;  ///< patches that share faces with a patch
 
-  WholeMesh() = default;
-  WholeMesh(GmshMesh of, const Simplices<dim> &cells, const std::vector<int> &patch_of);
   std::vector<double> weight_of_patches(const std::vector<double> &cell_weight) const {
     std::vector<double> weight(centre.size(), 0);
     for (std::size_t c = 0; c < patch.size(); ++c) weight[patch[c]] += cell_weight[c];
     return weight;
   }
+  void find_patches(const Simplices<dim> &cells);
+  std::vector<int> ranks_of_cells(const Cuts &cuts) const {
+    const std::vector<int> rank_of_patch = ranks_by_cuts<dim>(centre, cuts);
+    std::vector<int> rank;
+    for (const int p : patch) rank.push_back(rank_of_patch[p]);
+    return rank;
+  }
 };
 
 template <int dim>
-WholeMesh<dim>::WholeMesh(GmshMesh of, const Simplices<dim> &cells, const std::vector<int> &patch_of)
-    : source(std::move(of)), patch(patch_of) {
+void WholeMesh<dim>::find_patches(const Simplices<dim> &cells) {
   const int count = patch.empty() ? 0 : *std::max_element(patch.begin(), patch.end()) + 1;
   centre.assign(count, Vec<dim>{}), touching.resize(count);
   std::vector<int> size(count, 0);
@@ -86,32 +93,25 @@ std::vector<double> weights_of(const Regions &regions,
   return weight;
 }
 
+/// Cells of regions that have a weight, or all where none has.
+std::vector<char> cells_with_elements(const Regions &regions,
+                                      const std::vector<std::pair<std::string, double>> &region_weight) {
+  std::vector<char> of_combination, of_cell;
+  for (const std::vector<std::string> &names : regions.names)
+    of_combination.push_back(region_weight.empty() ||
+                             std::any_of(region_weight.begin(), region_weight.end(), [&](const auto &one) {
+                               return std::count(names.begin(), names.end(), one.first) > 0;
+                             }));
+  for (const int combination : regions.combination) of_cell.push_back(of_combination[combination]);
+  return of_cell;
+}
+
 /// The largest sum of weight on a rank over the mean.
 double largest_share(const std::vector<double> &weight, const std::vector<int> &rank, int ranks) {
   std::vector<double> sum(ranks, 0);
   for (std::size_t k = 0; k < weight.size(); ++k) sum[rank[k]] += weight[k];
   const double all = std::accumulate(sum.begin(), sum.end(), 0.);
   return all > 0 ? ranks * *std::max_element(sum.begin(), sum.end()) / all : 1;
-}
-
-/// Carries one number per point of rank 0 to the points' new places.
-PetscErrorCode carry(PetscSF migration, DM to, const std::vector<PetscInt> &values, std::vector<PetscInt> &carried) {
-  PetscInt begin, end;
-  PetscFunctionBeginUser;
-  PetscCall(DMPlexGetChart(to, &begin, &end));
-  carried.assign(end - begin, -1);
-  PetscCall(PetscSFBcastBegin(migration, MPIU_INT, values.data(), carried.data(), MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(migration, MPIU_INT, values.data(), carried.data(), MPI_REPLACE));
-  PetscFunctionReturn(0);
-}
-
-/// Part of the numbers of points: those of the cells.
-PetscErrorCode of_cells(DM plex, const std::vector<PetscInt> &points, std::vector<PetscInt> &cells) {
-  PetscInt first, end;
-  PetscFunctionBeginUser;
-  PetscCall(DMPlexGetHeightStratum(plex, 0, &first, &end));
-  cells.assign(points.begin() + first, points.begin() + end);
-  PetscFunctionReturn(0);
 }
 
 template <int dim>
@@ -131,33 +131,21 @@ Facet<dim> facet_of(const BackgroundMesh<dim> &mesh, int number, int face) {
   return facet;
 }
 
-/// Numbers of local cells, unique over all ranks.
-PetscErrorCode cell_numbers(DM plex, std::vector<PetscInt> &number) {
-  IS numbering;
-  const PetscInt *index;
-  PetscInt count;
-  PetscFunctionBeginUser;
-  PetscCall(DMPlexGetCellNumbering(plex, &numbering));
-  PetscCall(ISGetLocalSize(numbering, &count));
-  PetscCall(ISGetIndices(numbering, &index));
-  number.assign(index, index + count);
-  PetscCall(ISRestoreIndices(numbering, &index));
-  PetscFunctionReturn(0);
-}
-
-/// Numbers of local points, unique over all ranks.
-PetscErrorCode point_numbers(DM plex, std::vector<PetscInt> &number) {
-  IS numbering;
-  const PetscInt *index;
-  PetscInt count;
-  PetscFunctionBeginUser;
-  PetscCall(DMPlexCreatePointNumbering(plex, &numbering));
-  PetscCall(ISGetLocalSize(numbering, &count));
-  PetscCall(ISGetIndices(numbering, &index));
-  for (PetscInt p = 0; p < count; ++p) number.push_back(index[p] < 0 ? -index[p] - 1 : index[p]);
-  PetscCall(ISRestoreIndices(numbering, &index));
-  PetscCall(ISDestroy(&numbering));
-  PetscFunctionReturn(0);
+/// A mesh that is whole on rank 0, from its file.
+template <int dim>
+MeshPart<dim> part_of_file(const GmshMesh &source, std::string &complaint) {
+  MeshPart<dim> part;
+  if (source.cells.empty()) return part;  // as on other ranks
+  read_mesh<dim>(source, part.cells, part.groups, complaint);
+  if (!complaint.empty()) return part;
+  const long long cells = static_cast<long long>(part.cells.node.size());
+  part.regions = combine(static_cast<int>(cells), source.regions);
+  part.cell_number.resize(cells), part.node_number.resize(part.cells.position.size());
+  std::iota(part.cell_number.begin(), part.cell_number.end(), 0);
+  std::iota(part.node_number.begin(), part.node_number.end(), cells);
+  part.owned.assign(part.node_number.size(), 1);
+  part.mean_edge = mean_edges<dim>(part.cells, source);
+  return part;
 }
 
 }  // namespace
@@ -178,75 +166,46 @@ BackgroundMesh<dim> BackgroundMesh<dim>::read(MPI_Comm comm, const std::string &
   agree(comm, complaint);
 
   BackgroundMesh mesh;
-  Simplices<dim> cells;
-  Regions regions;
-  require(make_plex(comm, dim, source, mesh.plex_.create(), complaint));
+  mesh.comm_ = Communicator(comm);
+  MeshPart<dim> all = part_of_file<dim>(source, complaint);
   agree(comm, complaint.empty() ? "" : file + ": " + complaint);
   const std::string remark = std::exchange(source.remark, "");
-  require(read_simplices(mesh.plex_, cells));
-  require(read_regions(mesh.plex_, regions));
-  agree(comm, complaint_about_cells(file, cells, regions, Names::required));
-  if (rank == 0) mesh.remarks_ = mesh_remarks(cells, regions);
+  agree(comm, complaint_about_cells(file, all.cells, all.regions, Names::required));
+  if (rank == 0) mesh.remarks_ = mesh_remarks(all.cells, all.regions);
   if (!remark.empty()) mesh.remarks_.push_back(remark);
 
-  const int size = patch_size<dim>(is_one_element_slice<dim>(comm, cells.position));
-  const auto patch = make_patches<dim>(cells.node, cells.neighbour, regions.combination, size);
+  const int size = patch_size<dim>(is_one_element_slice<dim>(comm, all.cells.position));
+  all.patch = make_patches<dim>(all.cells.node, all.cells.neighbour, all.regions.combination, size);
+  const auto whole = std::make_shared<WholeMesh<dim>>();
+  whole->source = std::move(source), whole->has_elements = cells_with_elements(all.regions, region_weight);
+  mesh.whole_ = whole;
   int ranks;
   MPI_Comm_size(comm, &ranks);
   if (ranks > 1) {
-    const auto whole = rank == 0 ? std::make_shared<const WholeMesh<dim>>(std::move(source), cells, patch)
-                                 : std::make_shared<const WholeMesh<dim>>();
-    mesh.whole_ = whole, mesh.cuts_ = given;
+    whole->patch = all.patch;
+    whole->find_patches(all.cells);
+    mesh.cuts_ = given;
     if (static_cast<int>(given.size()) + 1 != ranks) {
       mesh.cuts_.resize(ranks - 1);
       if (rank == 0) {
-        const std::vector<double> patches = whole->weight_of_patches(weights_of(regions, region_weight));
+        const std::vector<double> patches = whole->weight_of_patches(weights_of(all.regions, region_weight));
         mesh.cuts_ = find_cuts<dim>(whole->centre, patches, whole->touching, ranks);
-        const double all = std::accumulate(patches.begin(), patches.end(), 0.);
-        mesh.heaviest_patch_ = patches.empty() ? 0 : ranks * *std::max_element(patches.begin(), patches.end()) / all;
+        const double sum = std::accumulate(patches.begin(), patches.end(), 0.);
+        mesh.heaviest_patch_ = patches.empty() ? 0 : ranks * *std::max_element(patches.begin(), patches.end()) / sum;
       }
       MPI_Bcast(&mesh.heaviest_patch_, 1, MPI_DOUBLE, 0, comm);
       MPI_Bcast(mesh.cuts_.data(), static_cast<int>(mesh.cuts_.size() * sizeof(Cut)), MPI_BYTE, 0, comm);
     }
   }
-  require(mesh.settle(cells, patch));
+  require(mesh.settle(std::move(all)));
   return mesh;
 }
 
 template <int dim>
-PetscErrorCode BackgroundMesh<dim>::settle(Simplices<dim> &cells, const std::vector<int> &patch) {
-  PetscInt begin, end;
-  int rank;
+PetscErrorCode BackgroundMesh<dim>::settle(MeshPart<dim> whole) {
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(comm(), &rank));
-  PetscCall(DMPlexGetChart(plex_, &begin, &end));
-  std::vector<PetscInt> number, patch_of(end, -1), patches;
-  std::copy(patch.begin(), patch.end(), patch_of.begin());  // cells are the first points
-  if (cuts_.empty()) {
-    number.resize(patch.size());
-    std::iota(number.begin(), number.end(), 0);
-    PetscCall(of_cells(plex_, patch_of, patches));
-    PetscCall(flatten(cells, number, patches));
-    PetscFunctionReturn(0);
-  }
-  Dm distributed;
-  StarForest migration;
-  std::vector<int> rank_of_cell;
-  if (rank == 0) {
-    const std::vector<int> rank_of_patch = ranks_by_cuts<dim>(whole_->centre, cuts_);
-    for (int p : patch) rank_of_cell.push_back(rank_of_patch[p]);
-  }
-  std::vector<PetscInt> points(end), patch_of_point;
-  std::iota(points.begin(), points.end(), 0);
-  PetscCall(distribute(plex_, rank_of_cell, distributed.create(), migration.create()));
-  PetscCall(carry(migration, distributed, points, point_number_));
-  PetscCall(carry(migration, distributed, patch_of, patch_of_point));
-  PetscCall(of_cells(distributed, point_number_, number));
-  PetscCall(of_cells(distributed, patch_of_point, patches));
-  std::swap(plex_, distributed);
-  cells = {};
-  PetscCall(read_simplices<dim>(plex_, cells));
-  PetscCall(flatten(cells, number, patches));
+  if (!cuts_.empty()) whole = deal_out(comm(), whole, whole_->ranks_of_cells(cuts_));
+  PetscCall(flatten(std::move(whole)));
   PetscFunctionReturn(0);
 }
 
@@ -281,11 +240,12 @@ Cuts BackgroundMesh<dim>::balanced_cuts(const std::vector<std::pair<long long, d
 template <int dim>
 BackgroundMesh<dim> BackgroundMesh<dim>::divided(const Cuts &cuts) const {
   BackgroundMesh mesh;
-  Simplices<dim> none;
-  std::string complaint;
+  std::string complaint;  // there was none when it was read
+  mesh.comm_ = Communicator(comm());
   mesh.whole_ = whole_, mesh.cuts_ = cuts, mesh.remarks_ = remarks_;
-  require(make_plex(comm(), dim, whole_->source, mesh.plex_.create(), complaint));
-  require(mesh.settle(none, whole_->patch));
+  MeshPart<dim> all = part_of_file<dim>(whole_->source, complaint);
+  all.patch = whole_->patch;
+  require(mesh.settle(std::move(all)));
   return mesh;
 }
 
@@ -306,12 +266,27 @@ PetscErrorCode BackgroundMesh<dim>::find_fingerprint() {
 }
 
 template <int dim>
+const ElementPlex &BackgroundMesh<dim>::element_plex() const {
+  if (elements_) return *elements_;
+  const auto made = std::make_shared<ElementPlex>();
+  require(make_plex(comm(), dim, whole_->source, whole_->has_elements,
+                    cuts_.empty() ? std::vector<int>(whole_->has_elements.size(), 0) : whole_->ranks_of_cells(cuts_),
+                    made->dm, made->number));
+  PetscInt first, end;
+  require(DMPlexGetDepthStratum(made->dm, 0, &first, &end));
+  made->vertex.assign(node_count(), -1);
+  const LocalNumbers node_of(global_node);
+  for (PetscInt p = first; p < end; ++p) made->vertex[node_of(made->number[p])] = p;
+  elements_ = made;
+  return *elements_;
+}
+
+template <int dim>
 std::vector<long long> BackgroundMesh<dim>::global_edges() const {
   PetscInt first, end;
-  require(DMPlexGetDepthStratum(plex_, 1, &first, &end));
-  std::vector<long long> edges;
-  for (PetscInt edge = first; edge < end; ++edge) edges.push_back(global_point(edge));
-  return edges;
+  const ElementPlex &plex = element_plex();
+  require(DMPlexGetDepthStratum(plex.dm, 1, &first, &end));
+  return {plex.number.begin() + first, plex.number.begin() + end};
 }
 
 template <int dim>
@@ -324,20 +299,25 @@ BackgroundMesh<dim> BackgroundMesh<dim>::adopt(DM plex) {
   const MPI_Comm comm = PetscObjectComm((PetscObject)plex);
   agree(comm, complaint_about_plex(plex, dim));
   BackgroundMesh mesh;
-  Simplices<dim> cells;
-  Regions regions;
-  require(PetscObjectReference((PetscObject)plex));
-  *mesh.plex_.create() = plex;
-  require(read_simplices(plex, cells));
-  require(read_regions(plex, regions));
-  agree(comm, complaint_about_cells("the DMPlex of the host program", cells, regions, Names::optional));
+  MeshPart<dim> part;
+  HostPoints points;
+  mesh.comm_ = Communicator(comm);
+  require(part_of_plex(plex, part, points));
+  agree(comm, complaint_about_cells("the DMPlex of the host program", part.cells, part.regions, Names::optional));
 
-  const int size = patch_size<dim>(is_one_element_slice<dim>(comm, cells.position));
-  const auto patch = make_patches<dim>(cells.node, cells.neighbour, regions.combination, size);
-  std::vector<PetscInt> number;
-  require(cell_numbers(plex, number));
-  require(point_numbers(plex, mesh.point_number_));
-  require(mesh.flatten(cells, number, std::vector<PetscInt>(patch.begin(), patch.end())));
+  const int size = patch_size<dim>(is_one_element_slice<dim>(comm, part.cells.position));
+  part.patch = make_patches<dim>(part.cells.node, part.cells.neighbour, part.regions.combination, size);
+  require(mesh.flatten(std::move(part)));
+  const auto elements = std::make_shared<ElementPlex>();
+  require(PetscObjectReference((PetscObject)plex));
+  *elements->dm.create() = plex;
+  const LocalNumbers node_of(mesh.global_node);
+  elements->vertex.assign(mesh.node_count(), -1);
+  for (const PetscInt p : points.vertex)
+    if (const int i = node_of.find(points.number[p]); i >= 0) elements->vertex[i] = p;
+  elements->number = std::move(points.number);
+  mesh.host_vertex = elements->vertex;
+  mesh.elements_ = elements;
   return mesh;
 }
 
@@ -353,33 +333,20 @@ bool BackgroundMesh<dim>::has_group(const std::string &name) const {
 
 template <int dim>
 std::vector<int> BackgroundMesh<dim>::region(const std::string &name) const {
-  std::vector<PetscInt> points;
-  if (has_region(name)) require(points_at_height(plex_, name, 0, points));
+  std::vector<char> inside;
+  for (const auto &names : regions_.names) inside.push_back(std::count(names.begin(), names.end(), name) > 0);
   std::vector<int> cell;
-  for (PetscInt p : points) cell.push_back(flat_cell_[p - first_plex_cell_]);
-  std::sort(cell.begin(), cell.end());
+  for (int c = 0; c < cell_count(); ++c)
+    if (inside[regions_.combination[c]]) cell.push_back(c);
   return cell;
 }
 
 template <int dim>
 std::vector<Facet<dim>> BackgroundMesh<dim>::facets(const std::string &group) const {
-  std::vector<PetscInt> points;
-  if (has_group(group)) require(points_at_height(plex_, group, 1, points));
   std::vector<Facet<dim>> facets;
-  for (PetscInt p : points) {
-    PetscInt count;
-    const PetscInt *support;
-    require(DMPlexGetSupportSize(plex_, p, &count));
-    require(DMPlexGetSupport(plex_, p, &support));
-    for (PetscInt i = 0; i < count; ++i) {
-      const int cell = flat_cell_[support[i] - first_plex_cell_];
-      const auto &around = plex_facet_[cell];
-      facets.push_back(
-          facet_of(*this, cell, static_cast<int>(std::find(around.begin(), around.end(), p) - around.begin())));
-    }
-  }
-  std::sort(facets.begin(), facets.end(),
-            [](const auto &a, const auto &b) { return std::pair(a.cell, a.face) < std::pair(b.cell, b.face); });
+  for (const auto &[name, sides] : groups_)
+    for (const Side &side : sides)
+      if (name == group) facets.push_back(facet_of(*this, side.cell, side.face));
   return facets;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
-/// The background mesh: DMPlex holds topology and distribution, this flat copy serves the hot loops.
-/// Cells are in Morton order; every simplex is positively oriented. `dim` = 2: triangles, 3: tetrahedra.
+/// The background mesh of one rank, for the hot loops. Cells are in Morton order; every simplex is positively oriented.
+/// `dim` = 2: triangles, 3: tetrahedra. A DMPlex exists where a host program brings it, and of the soil where finite
+/// elements need it: of air it would take more memory than all of this.
 #include <petscdmplex.h>
 
 #include <array>
@@ -14,11 +15,12 @@
 #include "meshes/halo.h"
 #include "meshes/mesh_report.h"
 #include "meshes/partition.h"
+#include "meshes/simplices.h"
 
 namespace talus {
 
 template <int dim>
-struct Simplices;  // meshes/plex.h
+struct MeshPart;  // meshes/mesh_part.h
 template <int dim>
 struct WholeMesh;  // background_mesh.cpp
 
@@ -44,11 +46,19 @@ struct Facet {
   double area;                ///< [m2], in 2D per metre of thickness [m]
 };
 
+/// The DMPlex on which finite elements number their nodes.
+struct ElementPlex {
+  Dm dm;
+  std::vector<PetscInt> vertex;   ///< point of a node of the mesh, -1 where there is none
+  std::vector<long long> number;  ///< of points, see BackgroundMesh::global_node; edges have numbers of their own
+};
+
 template <int dim>
 class BackgroundMesh {
  public:
   /// Reads a Gmsh file on rank 0, checks it, cuts patches, distributes it. `region_weight` gives the weight of a cell
-  /// from the names of its regions (particles it will hold plus one; the largest counts, 1/1000 without); `given`, if
+  /// from the names of its regions (particles it will hold plus one; the largest counts, 1/1000 without); only these
+  /// regions, or all where there are none, can have finite elements. `given`, if
   /// it is for as many ranks, is the partition instead. Patches of cells, theory 4.5, stay on one rank and do not
   /// depend on the number of ranks. Collective. Throws std::invalid_argument (the same on all ranks) for a file that
   /// cannot be read, a wrong dimension, cells of zero volume or that overlap, and cells in no named group.
@@ -83,11 +93,12 @@ class BackgroundMesh {
   std::vector<double> mean_edge;       ///< of the edges at a node, over all ranks [m]
   std::vector<double> nodal_volume;    ///< sum of cell volumes / (dim + 1) at a node, over all ranks [m3]
   std::vector<char> owned;             ///< 1 on the one rank that counts the node in global sums
-  std::vector<PetscInt> plex_point;    ///< DMPlex point of a cell
-  std::vector<PetscInt> plex_vertex;   ///< DMPlex point of a node
   std::vector<long long> global_cell;  ///< number of the cell that does not depend on the partition (order in the file)
-  std::vector<long long> global_node;  ///< likewise of the node: its `global_point`
+  std::vector<long long> global_node;  ///< likewise of the node
+  std::vector<PetscInt> host_vertex;   ///< point of a node in the DMPlex of a host program; empty without a host
   std::vector<PartitionFace> partition_faces;
+  /// Of each partition face, what `of_cells` holds for the cell across, on its rank. Collective.
+  std::vector<char> across(const std::vector<char> &of_cells) const;
   /// Of a cell, one bit for each of its faces (1 << k, opposite to vertex k): a point beyond it by less than half of
   /// the cell's altitude is put back inside. Empty: no face is of this kind.
   std::vector<char> closed;
@@ -102,12 +113,9 @@ class BackgroundMesh {
   bool has_group(const std::string &name) const;
   /// From now on puts points back inside that are a little beyond a face of this group.
   void close(const std::string &group);
-  /// Number of a node or edge, given by its DMPlex point, that does not depend on the partition; in the mesh of a host
-  /// program not on the rank.
-  long long global_point(PetscInt plex_point) const {
-    return point_number_.empty() ? plex_point : point_number_[plex_point];
-  }
-  /// Numbers of the edges of this rank, by their `global_point`.
+  /// The DMPlex for finite elements, made when it is first asked for. Collective.
+  const ElementPlex &element_plex() const;
+  /// Numbers of the edges of this rank that finite elements can have, by `ElementPlex::number`. Collective.
   std::vector<long long> global_edges() const;
   /// Tells meshes apart, the same on all ranks and on any partition.
   unsigned long long fingerprint() const { return fingerprint_; }
@@ -116,24 +124,22 @@ class BackgroundMesh {
   const std::vector<std::string> &region_names() const { return region_names_; }  ///< the same on all ranks, sorted
   const std::vector<std::string> &group_names() const { return group_names_; }    ///< the same on all ranks, sorted
   MeshReport report() const;                                                      ///< collective
-  DM plex() const { return plex_; }
-  MPI_Comm comm() const { return PetscObjectComm(reinterpret_cast<PetscObject>(plex())); }
+  MPI_Comm comm() const { return comm_; }
 
  private:
-  /// Makes the flat copy of plex_; `number` and `patch_of` belong to its cells in its own order.
-  PetscErrorCode flatten(const Simplices<dim> &simplices, const std::vector<PetscInt> &number,
-                         const std::vector<PetscInt> &patch_of);
-  /// Distributes plex_, which is whole on rank 0, by the cuts, and flattens it; `cells` are those of rank 0.
-  PetscErrorCode settle(Simplices<dim> &cells, const std::vector<int> &patch);
+  /// Makes the flat copy of what this rank has.
+  PetscErrorCode flatten(MeshPart<dim> part);
+  /// Distributes a mesh that is whole on rank 0 by the cuts, and flattens it.
+  PetscErrorCode settle(MeshPart<dim> whole);
   PetscErrorCode find_fingerprint();
 
-  Dm plex_;
-  PetscInt first_plex_cell_ = 0;
-  std::vector<int> flat_cell_;                             // of a plex cell, counted from the first
-  std::vector<std::array<PetscInt, dim + 1>> plex_facet_;  // DMPlex point of the face opposite to vertex k of a cell
-  std::vector<PetscInt> point_number_;                     // of plex points; empty: they are their own numbers
+  Communicator comm_;
+  Regions regions_;  // of cells
+  Groups groups_;
+  std::vector<Seam> seams_;
   std::vector<std::string> region_names_, group_names_, remarks_;
-  std::shared_ptr<const WholeMesh<dim>> whole_;  // where the mesh is divisible: on rank 0 all of it
+  mutable std::shared_ptr<const ElementPlex> elements_;
+  std::shared_ptr<const WholeMesh<dim>> whole_;  // of a mesh that was read: on rank 0 all of it
   Cuts cuts_;
   double heaviest_patch_ = 0;
   unsigned long long fingerprint_ = 0;

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <vector>
 
-#include "meshes/plex.h"
+#include "meshes/simplices.h"
 
 namespace talus {
 

@@ -1,10 +1,10 @@
 #pragma once
 /// Complaints about meshes: what is wrong, where, and what to do. An empty text is no complaint.
-#include <mpi.h>
+#include <petscdmplex.h>
 
 #include <string>
 
-#include "meshes/plex.h"
+#include "meshes/simplices.h"
 
 namespace talus {
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "meshes/plex.h"
+#include "meshes/simplices.h"
 
 namespace talus {
 

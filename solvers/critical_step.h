@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/room.h"
 #include "meshes/background_mesh.h"
 #include "physics/laws/laws.h"
 #include "physics/pores/pore_stiffness.h"
@@ -31,7 +32,9 @@ template <int dim>
 class CriticalStep {
  public:
   CriticalStep(const BackgroundMesh<dim> &mesh, const Law &law, double density, PoreStiffness pores = {})
-      : mesh_(&mesh), law_(&law), density_(density), pores_(std::move(pores)), step_(mesh.cell_count(), 0) {}
+      : mesh_(&mesh), law_(&law), density_(density), pores_(std::move(pores)) {
+    make_room(step_, mesh.cell_count());
+  }
   double operator()(int mesh_cell) {
     double &step = step_[mesh_cell];
     if (step == 0) step = 2 / std::sqrt(cell_frequency_squared(mesh_->cells[mesh_cell], *law_, density_, pores_));

@@ -203,7 +203,7 @@ PetscErrorCode Conditions<dim>::set_normal_forces(const BackgroundMesh<dim> &mes
                                                   double t) {
   PetscFunctionBeginUser;
   if (bases_.empty()) PetscFunctionReturn(0);
-  PetscCall(gather_from_all(mesh.comm(), forces));
+  PetscCall(gather_from(mesh.comm(), mesh.halo.neighbours(), forces));
   std::map<Vec<dim>, std::vector<Contact> *> at;
   for (auto &of_node : contacts_) {
     for (Contact &c : of_node) c.capacity = 0, c.gathered = c.since_pressed = never, c.rests = false;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <tuple>
@@ -21,7 +22,7 @@ const double same_plane = std::cos(0.1 * M_PI / 180);
 // Passes of the smoothing of normals along a patch; each averages over the facets at a node.
 constexpr int normal_smoothings = 4;
 
-/// A facet as all ranks know it: its nodes by their positions.
+/// A facet as other ranks know it: its nodes by their positions.
 template <int dim>
 struct Tile {
   int source;
@@ -31,7 +32,7 @@ struct Tile {
   auto key() const { return std::tie(source, corner, normal); }
 };
 
-/// All facets of all boundaries with their neighbours and patches.
+/// Facets of all boundaries, those of this rank and of what decides on its normals, with their neighbours and patches.
 template <int dim>
 class Tiling {
  public:
@@ -263,6 +264,39 @@ class Tiling {
   std::vector<std::array<double, dim>> weight_;  // of a tile in the means of these patches
 };
 
+/// How far from a node the facets are that decide on its normal, in the largest edges of facets: six around it by the
+/// passes of smoothing, and beyond these the sides of an edge with `edge_reach` and a facet.
+constexpr double reach = 12;
+
+/// Ranks whose parts of the mesh come as near as that to the part of this rank; other ranks need none of its facets.
+template <int dim>
+PetscErrorCode ranks_in_reach(const BackgroundMesh<dim> &mesh, const std::vector<Tile<dim>> &tiles,
+                              std::vector<int> &near) {
+  int rank, ranks;
+  double edge = 0;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh.comm(), &rank));
+  PetscCallMPI(MPI_Comm_size(mesh.comm(), &ranks));
+  for (const Tile<dim> &t : tiles)
+    for (const Vec<dim> &a : t.corner)
+      for (const Vec<dim> &b : t.corner) edge = std::max(edge, (map<dim>(a) - map<dim>(b)).norm());
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &edge, 1, MPI_DOUBLE, MPI_MAX, mesh.comm()));
+  std::array<Vec<dim>, 2> box;
+  box[0].fill(std::numeric_limits<double>::max()), box[1].fill(std::numeric_limits<double>::lowest());
+  for (const Vec<dim> &x : mesh.position)
+    for (int d = 0; d < dim; ++d) box[0][d] = std::min(box[0][d], x[d]), box[1][d] = std::max(box[1][d], x[d]);
+  std::vector<std::array<Vec<dim>, 2>> boxes(ranks);
+  PetscCallMPI(MPI_Allgather(&box, 2 * dim, MPI_DOUBLE, boxes.data(), 2 * dim, MPI_DOUBLE, mesh.comm()));
+  near.clear();
+  for (int r = 0; r < ranks; ++r) {
+    bool meets = r != rank;
+    for (int d = 0; d < dim; ++d)
+      meets &= boxes[r][0][d] <= box[1][d] + reach * edge && box[0][d] <= boxes[r][1][d] + reach * edge;
+    if (meets) near.push_back(r);
+  }
+  PetscFunctionReturn(0);
+}
+
 }  // namespace
 
 template <int dim>
@@ -277,7 +311,9 @@ PetscErrorCode find_node_normals(const BackgroundMesh<dim> &mesh, const std::vec
       std::sort(tile.corner.begin(), tile.corner.end());
       tiles.push_back(tile);
     }
-  PetscCall(gather_from_all(mesh.comm(), tiles));
+  std::vector<int> near;
+  PetscCall(ranks_in_reach(mesh, tiles, near));
+  PetscCall(gather_from(mesh.comm(), near, tiles));
   std::sort(tiles.begin(), tiles.end(), [](const Tile<dim> &a, const Tile<dim> &b) { return a.key() < b.key(); });
   const Tiling<dim> tiling(std::move(tiles));
   std::vector<int> node_at(tiling.patches().empty() ? 0 : tiling.patches().back().place + 1, -1);

@@ -43,29 +43,19 @@ template <int dim>
 class CellsBeyond {
  public:
   /// `set` [local cells]. Collective.
-  CellsBeyond(const BackgroundMesh<dim> &mesh, const std::vector<char> &set) : mesh_(mesh), set_(set) {
-    int ranks, count = mesh.cell_count();
-    MPI_Comm_size(mesh.comm(), &ranks);
-    std::vector<int> counts(ranks);
-    starts_.assign(ranks + 1, 0);
-    MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, mesh.comm());
-    for (int r = 0; r < ranks; ++r) starts_[r + 1] = starts_[r] + counts[r];
-    all_.resize(starts_[ranks]);
-    MPI_Allgatherv(set.data(), count, MPI_CHAR, all_.data(), counts.data(), starts_.data(), MPI_CHAR, mesh.comm());
-  }
+  CellsBeyond(const BackgroundMesh<dim> &mesh, const std::vector<char> &set)
+      : mesh_(mesh), set_(set), across_(mesh.across(set)) {}
   /// Is the cell on the other side of a facet in the set?
   bool operator()(const Facet<dim> &f) const {
     const int across = mesh_.cells[f.cell].neighbour[f.face];
     if (across >= boundary) return across >= 0 && set_[across];
-    const PartitionFace &other = mesh_.partition_faces[-2 - across];
-    return all_[starts_[other.rank] + other.cell];
+    return across_[-2 - across] != 0;
   }
 
  private:
   const BackgroundMesh<dim> &mesh_;
   const std::vector<char> &set_;
-  std::vector<int> starts_;
-  std::vector<char> all_;
+  const std::vector<char> across_;  // by partition face
 };
 
 }  // namespace

@@ -90,8 +90,8 @@ PetscErrorCode BaseContact<dim>::activate() {
       }
   }
 
-  // a facet lies on one rank, and its node may belong to another
-  PetscCall(gather_from_all(nodes.comm(), all));
+  // a facet lies on one rank, and its node may belong to a neighbour
+  PetscCall(gather_from(mesh.comm(), mesh.halo.neighbours(), all));
   std::sort(all.begin(), all.end(), [](const Touch<dim> &a, const Touch<dim> &b) { return a.key() < b.key(); });
 
   std::map<PetscInt, int> local;
@@ -219,10 +219,9 @@ void BaseContact<dim>::restore(const State &state) {
 template <int dim>
 void BaseContact<dim>::serialize(Archive &archive) {
   const ElementNodes<dim> &nodes = soil_.nodes();
-  const BackgroundMesh<dim> &mesh = soil_.mesh();
   State state = save();
   std::vector<long long> of;
-  for (const Point &p : points_) of.push_back(mesh.global_point(nodes.point[p.node]));
+  for (const Point &p : points_) of.push_back(nodes.number[p.node]);
   std::vector<long long> stored = of;
   archive.column(archive.rows("nodes of springs", Belongs::to_points, stored), "springs", state);
   if (!archive.reading()) return;

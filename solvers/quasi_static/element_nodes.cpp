@@ -36,12 +36,14 @@ PetscErrorCode ElementNodes<dim>::setup(const BackgroundMesh<dim> &mesh, int ord
   const PetscInt *ends;
   PetscFunctionBeginUser;
   order_ = order, per_cell_ = element_nodes<dim>(order), components_ = components;
-  PetscCall(DMClone(mesh.plex(), dm_.create()));
+  const ElementPlex &plex = mesh.element_plex();
+  PetscCall(DMClone(plex.dm, dm_.create()));
   PetscCall(DMPlexGetChart(dm_, &begin, &end));
   PetscCall(DMPlexGetDepthStratum(dm_, 1, &first_edge, &end_edge));
 
   std::map<PetscInt, int> vertex;  // of the plex -> of the mesh
-  for (int i = 0; i < mesh.node_count(); ++i) vertex[mesh.plex_vertex[i]] = i;
+  for (int i = 0; i < mesh.node_count(); ++i)
+    if (plex.vertex[i] >= 0) vertex[plex.vertex[i]] = i;
   std::map<std::pair<int, int>, PetscInt> edge;  // by the vertices at its ends
   if (order == 2)
     for (PetscInt e = first_edge; e < end_edge; ++e) {
@@ -55,7 +57,7 @@ PetscErrorCode ElementNodes<dim>::setup(const BackgroundMesh<dim> &mesh, int ord
   for (int c = 0; c < mesh.cell_count(); ++c) {
     if (!active[c]) continue;
     const auto &node = mesh.cells[c].node;
-    for (int i : node) has_node[mesh.plex_vertex[i]] = 1;
+    for (int i : node) has_node[plex.vertex[i]] = 1;
     if (order == 2)
       for (const auto &[a, b] : simplex_edges<dim>) has_node[edge_between(node[a], node[b])] = 1;
   }
@@ -71,14 +73,14 @@ PetscErrorCode ElementNodes<dim>::setup(const BackgroundMesh<dim> &mesh, int ord
   PetscSection numbering;
   PetscCall(DMGetGlobalSection(dm_, &numbering));
 
-  position.clear(), owned.clear(), point.clear(), global_.clear();
+  position.clear(), owned.clear(), point.clear(), number.clear(), global_.clear();
   std::vector<int> node_of(end, -1);
   for (PetscInt p = begin; p < end; ++p) {
     if (!has_node[p]) continue;
     PetscInt row;
     PetscCall(PetscSectionGetOffset(numbering, p, &row));
     node_of[p] = count();
-    owned.push_back(row >= 0), point.push_back(p);
+    owned.push_back(row >= 0), point.push_back(p), number.push_back(plex.number[p]);
     global_.push_back((row >= 0 ? row : -row - 1) / components);
     position.push_back({});
     const auto found = vertex.find(p);
@@ -91,7 +93,8 @@ PetscErrorCode ElementNodes<dim>::setup(const BackgroundMesh<dim> &mesh, int ord
     }
   }
   vertex_node_.assign(mesh.node_count(), -1);
-  for (int i = 0; i < mesh.node_count(); ++i) vertex_node_[i] = node_of[mesh.plex_vertex[i]];
+  for (int i = 0; i < mesh.node_count(); ++i)
+    if (plex.vertex[i] >= 0) vertex_node_[i] = node_of[plex.vertex[i]];
   cell_node_.assign(static_cast<size_t>(mesh.cell_count()) * per_cell_, -1);
   for (int c = 0; c < mesh.cell_count(); ++c) {
     if (!active[c]) continue;

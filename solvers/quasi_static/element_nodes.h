@@ -1,6 +1,6 @@
 #pragma once
 /// Nodes of the finite elements on the active cells of a mesh: the vertices and, for order 2, the middles of edges.
-/// Numbering and exchange are DMPlex's own: a section on a clone of the mesh's DMPlex.
+/// Numbering and exchange are DMPlex's own: a section on a clone of the mesh's DMPlex for elements.
 #include <petscdmplex.h>
 
 #include <vector>
@@ -46,7 +46,8 @@ class ElementNodes {
 
   std::vector<Vec<dim>> position;  ///< of local nodes [m]
   std::vector<char> owned;         ///< 1 on the one rank that has the node's row
-  std::vector<PetscInt> point;     ///< its point of the DMPlex
+  std::vector<PetscInt> point;     ///< of the DMPlex, a local node's
+  std::vector<long long> number;   ///< of the same, not depending on the partition (ElementPlex::number)
 
   PetscErrorCode global_vector(Vector &v) const;
   /// Values of local nodes from a global vector; [count][components].

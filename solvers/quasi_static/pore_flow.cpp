@@ -29,9 +29,7 @@ PoreFlow<dim>::PoreFlow(const BackgroundMesh<dim> &mesh, const Scene &scene, con
   for (int d = 0; d < dim; ++d) gravity_[d] = scene.gravity[d], square += gravity_[d] * gravity_[d];
   for (const BodySource &body : scene.body)
     soils_.emplace_back(body, scene.water.density * (square > 0 ? std::sqrt(square) : earth), scene.water.viscosity);
-  PetscInt begin, end = 0;
-  (void)DMPlexGetChart(mesh_.plex(), &begin, &end);
-  pressure_of_point_.assign(end, std::numeric_limits<double>::quiet_NaN());
+  pressure_of_point_.assign(mesh_.element_plex().number.size(), std::numeric_limits<double>::quiet_NaN());
   sources_.insert(sources_.end(), more.begin(), more.end());
   inflow_.assign(sources_.size(), 0);
 }
@@ -49,10 +47,10 @@ void PoreFlow<dim>::serialize(Archive &archive) {
   std::vector<double> pressures;
   for (int i = 0; i < nodes_.count(); ++i) {
     if (!archive.reading()) pressure_of_point_[nodes_.point[i]] = accepted[i];
-    present.push_back(mesh_.global_point(nodes_.point[i]));
+    present.push_back(nodes_.number[i]);
   }
   for (size_t p = 0; p < pressure_of_point_.size(); ++p) {
-    numbers.push_back(mesh_.global_point(static_cast<PetscInt>(p)));
+    numbers.push_back(mesh_.element_plex().number[p]);
     if (archive.reading() || std::isnan(pressure_of_point_[p])) continue;
     wet.push_back(numbers.back()), pressures.push_back(pressure_of_point_[p]);
   }
@@ -91,20 +89,11 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
   for (int c = 0; c < mesh_.cell_count(); ++c)
     for (int a = 0; a <= dim && active_[c]; ++a) body_of_node_[nodes_.of_cell(c)[a]] = body_of_[c];
 
-  // ranks tell each other their cells: is there soil across a face of the partition?
-  int ranks, mine = mesh_.cell_count();
-  PetscCallMPI(MPI_Comm_size(nodes_.comm(), &ranks));
-  std::vector<int> counts(ranks), starts(ranks + 1, 0);
-  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, counts.data(), 1, MPI_INT, nodes_.comm()));
-  for (int r = 0; r < ranks; ++r) starts[r + 1] = starts[r] + counts[r];
-  std::vector<char> everywhere(starts[ranks]);
-  PetscCallMPI(MPI_Allgatherv(active_.data(), mine, MPI_CHAR, everywhere.data(), counts.data(), starts.data(), MPI_CHAR,
-                              nodes_.comm()));
+  const std::vector<char> active_across = mesh_.across(active_);  // is there soil across a face of the partition?
   const auto soil_across = [&](int neighbour) {
     if (neighbour == boundary) return false;
     if (neighbour >= 0) return active_[neighbour] != 0;
-    const PartitionFace &face = mesh_.partition_faces[-2 - neighbour];
-    return everywhere[starts[face.rank] + face.cell] != 0;
+    return active_across[-2 - neighbour] != 0;
   };
 
   std::set<std::pair<int, int>> taken;  // faces with a boundary of their own

@@ -254,7 +254,7 @@ void QuasiStatic<dim>::serialize(Archive &archive) {
   std::vector<double> loads;
   for (int i = 0; i < nodes.count() && !unborne_.empty(); ++i) {
     if (!nodes.owned[i]) continue;
-    numbers.push_back(soil_.mesh().global_point(nodes.point[i]));
+    numbers.push_back(nodes.number[i]);
     loads.insert(loads.end(), &unborne_[i * dim], &unborne_[i * dim] + dim);
   }
   if (archive.reading()) numbers.clear(), loads.clear();
@@ -262,7 +262,7 @@ void QuasiStatic<dim>::serialize(Archive &archive) {
   if (!archive.reading()) return;
   unborne_.assign(static_cast<size_t>(nodes.count()) * dim, 0);
   std::vector<long long> mine;
-  for (int i = 0; i < nodes.count(); ++i) mine.push_back(soil_.mesh().global_point(nodes.point[i]));
+  for (int i = 0; i < nodes.count(); ++i) mine.push_back(nodes.number[i]);
   const LocalNumbers node_of(mine);
   for (size_t k = 0; k < numbers.size(); ++k) {
     const int i = node_of.find(numbers[k]);

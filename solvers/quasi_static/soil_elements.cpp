@@ -113,9 +113,7 @@ void SoilElements<dim>::place_points() {
       for (int d = 0; d < dim; ++d) increment.rotation[dim == 2 ? 0 : d * (dim + 1)] = 1;
     }
   }
-  PetscInt begin, end = 0;
-  (void)DMPlexGetChart(mesh_.plex(), &begin, &end);
-  displacement_of_point_.assign(static_cast<size_t>(end) * dim, 0);
+  displacement_of_point_.assign(mesh_.element_plex().number.size() * dim, 0);
 }
 
 template <int dim>
@@ -333,7 +331,7 @@ void SoilElements<dim>::serialize(Archive &archive) {
     std::copy_n(&displacement_[i * dim], dim, &displacement_of_point_[nodes_.point[i] * dim]);
   for (int p = 0; p < points; ++p) {
     const double *u = &displacement_of_point_[p * dim];
-    numbers.push_back(mesh_.global_point(p));
+    numbers.push_back(mesh_.element_plex().number[p]);
     if (std::all_of(u, u + dim, [](double x) { return x == 0; })) continue;
     moved.push_back(numbers.back()), displacement.insert(displacement.end(), u, u + dim);
   }

@@ -50,7 +50,7 @@ template <int dim>
 PetscErrorCode Supports<dim>::setup(const BackgroundMesh<dim> &mesh, const ElementNodes<dim> &nodes,
                                     const std::vector<char> &active, const std::vector<Source> &sources) {
   PetscFunctionBeginUser;
-  sources_ = &sources;
+  sources_ = &sources, moves_ = false;
   std::vector<Wanted<dim>> all;
   for (int s = 0; s < static_cast<int>(sources.size()); ++s) {
     const Boundary &kind = sources[s].kind;
@@ -64,15 +64,17 @@ PetscErrorCode Supports<dim>::setup(const BackgroundMesh<dim> &mesh, const Eleme
       }
   }
 
-  // a facet lies on one rank and its nodes may lie on others too: every rank receives the directions of all
-  PetscCall(gather_from_all(nodes.comm(), all));
+  for (const Wanted<dim> &w : all) moves_ |= static_cast<bool>(sources[w.source].kind.template on_soil<dim>().speed);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &moves_, 1, MPI_CXX_BOOL, MPI_LOR, mesh.comm()));
+
+  // a facet lies on one rank and its nodes may lie on others too, which are neighbours
+  PetscCall(gather_from(mesh.comm(), mesh.halo.neighbours(), all));
   std::sort(all.begin(), all.end(), [](const Wanted<dim> &a, const Wanted<dim> &b) { return a.key() < b.key(); });
 
   std::map<PetscInt, int> local;
   for (int i = 0; i < nodes.count(); ++i) local[nodes.global()[i]] = i;
-  of_node_.assign(nodes.count(), -1), supports_.clear(), moves_ = false;
+  of_node_.assign(nodes.count(), -1), supports_.clear();
   for (const Wanted<dim> &w : all) {
-    moves_ |= static_cast<bool>(sources[w.source].kind.template on_soil<dim>().speed);
     const auto found = local.find(w.global);
     if (found == local.end()) continue;
     int &index = of_node_[found->second];

@@ -23,7 +23,7 @@ enum class Belongs : char {
   to_largest,  ///< numbers whose largest over ranks count
   to_any,      ///< records that any rank may keep
   to_cells,    ///< begins rows: global numbers of the cells that they belong to
-  to_points,   ///< begins rows: numbers of the nodes or edges that they belong to (BackgroundMesh::global_point)
+  to_points,   ///< begins rows: numbers of the nodes or edges that they belong to (ElementPlex::number)
   to_rows      ///< a column of rows
 };
 

@@ -33,6 +33,25 @@ class Owned {
 using Dm = Owned<DM, DMDestroy>;
 using Vector = Owned<::Vec, VecDestroy>;
 
+/// A communicator of PETSc's own on that of a program, so that messages do not meet those of others.
+class Communicator {
+ public:
+  Communicator() = default;
+  explicit Communicator(MPI_Comm of) { (void)PetscCommDuplicate(of, &comm_, nullptr); }
+  Communicator(Communicator &&other) noexcept : comm_(std::exchange(other.comm_, MPI_COMM_NULL)) {}
+  Communicator &operator=(Communicator &&other) noexcept {
+    std::swap(comm_, other.comm_);
+    return *this;
+  }
+  ~Communicator() {
+    if (comm_ != MPI_COMM_NULL) (void)PetscCommDestroy(&comm_);
+  }
+  operator MPI_Comm() const { return comm_; }
+
+ private:
+  MPI_Comm comm_ = MPI_COMM_NULL;
+};
+
 /// Borrows a swarm field as an array of T, one per local particle; given back at scope exit.
 template <class T>
 class Field {

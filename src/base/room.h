@@ -21,15 +21,22 @@ inline void hand_back_zeros([[maybe_unused]] void *begin, [[maybe_unused]] std::
 #endif
 }
 
-/// `values` become `count` zeros, or what T{} is; zeros take no memory before they are written to.
+/// `values` become `count` zeros, or what T{} is; zeros take no memory before they are written to, and little while
+/// this makes them.
 template <class T>
 void make_room(std::vector<T> &values, std::size_t count) {
   static_assert(std::is_trivially_copyable_v<T>, "its bytes are its value");
-  values.assign(count, T{});
   const T one{};
   const auto *bytes = reinterpret_cast<const unsigned char *>(&one);
-  if (std::all_of(bytes, bytes + sizeof one, [](unsigned char byte) { return byte == 0; }))
-    hand_back_zeros(values.data(), count * sizeof(T));
+  const bool zero = std::all_of(bytes, bytes + sizeof one, [](unsigned char byte) { return byte == 0; });
+  constexpr std::size_t at_a_time = (std::size_t{1} << 22) / sizeof(T) + 1;
+  values.clear();
+  values.reserve(count);
+  while (values.size() < count) {
+    const std::size_t before = values.size();
+    values.resize(std::min(count, before + at_a_time));
+    if (zero) hand_back_zeros(values.data() + before, (values.size() - before) * sizeof(T));
+  }
 }
 
 }  // namespace talus

@@ -51,7 +51,7 @@ void MeshEnds<dim>::serialize(Archive &archive) {
 template <int dim>
 void MeshEnds<dim>::find_faces() {
   const World<dim> &world = world_;
-  faces_.assign(world.mesh.cell_count(), {});
+  faces_.clear();
   constexpr double far = std::numeric_limits<double>::infinity();
   std::array<double, planes> end;  // against the outward normal of each plane
   end.fill(far);
@@ -74,7 +74,7 @@ void MeshEnds<dim>::find_faces() {
         const auto named = group_of.find({c, k});
         const Group group = named == group_of.end() ? Group{} : named->second;
         if (!group.has_boundary && world.scene.mesh.leaving_particles == WhenOutside::remove) continue;  // it goes on
-        faces_[c].push_back({p, group.number, depth});
+        faces_.push_back({c, p, group.number, depth});
       }
     }
 }
@@ -84,15 +84,19 @@ std::vector<std::string> MeshEnds<dim>::newly_reached(const std::string &stage) 
   std::array<Found, planes> mine;
   for (const auto &body : world_.bodies) {
     const ParticleArrays<dim> &p = body->particles();
-    for (int i = 0; i < p.count; ++i)
-      for (const Face &face : faces_[p.cell[i]]) {
-        const int d = face.plane / 2;
-        const double moved = (face.plane % 2 ? 1 : -1) * (p.position[i][d] - p.reference[i][d]);
-        Found &found = mine[face.plane];
-        if (moved <= face.depth || (found.id >= 0 && found.id <= p.id[i])) continue;
-        found.id = p.id[i], found.group = face.group;
+    auto first = faces_.begin();
+    for (int i = 0; i < p.count; ++i) {
+      if (i > 0 && p.cell[i] < p.cell[i - 1]) first = faces_.begin();  // particles of a cell stand together
+      first = std::lower_bound(first, faces_.end(), p.cell[i], [](const Face &f, int cell) { return f.cell < cell; });
+      for (auto face = first; face != faces_.end() && face->cell == p.cell[i]; ++face) {
+        const int d = face->plane / 2;
+        const double moved = (face->plane % 2 ? 1 : -1) * (p.position[i][d] - p.reference[i][d]);
+        Found &found = mine[face->plane];
+        if (moved <= face->depth || (found.id >= 0 && found.id <= p.id[i])) continue;
+        found.id = p.id[i], found.group = face->group;
         std::copy_n(p.position[i].begin(), dim, found.place);
       }
+    }
   }
   int ranks;
   MPI_Comm_size(world_.comm, &ranks);

@@ -24,8 +24,9 @@ class MeshEnds {
 
   static constexpr int planes = 2 * dim;  ///< of the box, two of each axis
   struct Face {
-    int plane, group;  ///< number of the group among all names, or -1
-    double depth;      ///< of its cell [m]
+    int cell, plane;
+    int group;     ///< number among all names, or -1
+    double depth;  ///< of its cell [m]
   };
   struct Found {
     long long id = -1;  ///< particle with the smallest number there; -1: none
@@ -34,8 +35,8 @@ class MeshEnds {
   };
 
   const World<dim> &world_;
-  std::vector<std::vector<Face>> faces_;  ///< of each cell
-  std::vector<char> told_;                ///< of each plane
+  std::vector<Face> faces_;  ///< by cell
+  std::vector<char> told_;   ///< of each plane
 };
 
 }  // namespace talus

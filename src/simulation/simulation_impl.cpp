@@ -112,8 +112,9 @@ void Simulation<dim>::nodal_field(const std::string &name, const std::function<v
   std::vector<Vec<dim>> u;
   if (displacement) u = world.nodal_displacement();
   const FilledGrid<dim> &grid = world.motion->grid();
+  const std::vector<PetscInt> &vertex = world.mesh.host_vertex;
   for (int i = 0; i < grid.node_count(); ++i)
-    put(world.mesh.plex_vertex[grid.mesh_node[i]],
+    put(vertex.empty() ? grid.mesh_node[i] : vertex[grid.mesh_node[i]],
         displacement ? u[grid.mesh_node[i]].data() : world.motion->velocity() + i * dim);
 }
 

@@ -23,8 +23,14 @@ FilledGrid<dim>::FilledGrid(const BackgroundMesh<dim> &mesh) : mesh_(&mesh), hal
   compact_node_.assign(nodes, -1), compact_cell_.assign(cells, -1);
   make_room(mesh_node, nodes), make_room(mass, nodes), make_room(position, nodes);
   make_room(mesh_cell, cells), make_room(shape, cells), make_room(mass_matrix, cells), make_room(nodal_share, cells);
-  make_room(size, cells), make_room(patch, cells), element_size_.reserve(cells);
-  for (double volume : mesh.volume) element_size_.push_back(element_size<dim>(volume));
+  make_room(size, cells), make_room(patch, cells), make_room(element_size_, cells);
+}
+
+template <int dim>
+double FilledGrid<dim>::element_size_of(int mesh_cell) {
+  double &size = element_size_[mesh_cell];
+  if (size == 0) size = element_size<dim>(mesh_->volume[mesh_cell]);
+  return size;
 }
 
 template <int dim>
@@ -50,7 +56,7 @@ void FilledGrid<dim>::complete() {
     for (int k = 0; k <= dim; ++k) s.node[k] = compact_node_[cell.node[k]];
     s.gradient = cell.gradient, s.volume = mesh_->volume[mesh_cell[c]];
   }
-  for (int c = 0; c < cell_count_; ++c) size[c] = element_size_[mesh_cell[c]], patch[c] = mesh_->patch[mesh_cell[c]];
+  for (int c = 0; c < cell_count_; ++c) size[c] = element_size_of(mesh_cell[c]), patch[c] = mesh_->patch[mesh_cell[c]];
 }
 
 template <int dim>
@@ -101,7 +107,7 @@ typename FilledGrid<dim>::Rows FilledGrid<dim>::serialize(Archive &archive) {
       for (Vec<dim> &gradient : shape[c].gradient) std::copy_n(figure, dim, gradient.begin()), figure += dim;
       shape[c].volume = *figure;
       for (int k = 0; k <= dim; ++k) shape[c].node[k] = compact_node_[mesh.cells[cell].node[k]];
-      size[c] = element_size_[cell], patch[c] = mesh.patch[cell];
+      size[c] = element_size_of(cell), patch[c] = mesh.patch[cell];
     }
   return rows;
 }

@@ -72,6 +72,7 @@ class FilledGrid {
   std::vector<int> patch;                                           ///< patch of the mesh
 
  private:
+  double element_size_of(int mesh_cell);
   void enter_node(int node) {
     if (compact_node_[node] < 0) mesh_node[node_count_] = node, compact_node_[node] = node_count_++;
   }
@@ -79,7 +80,7 @@ class FilledGrid {
   const BackgroundMesh<dim> *mesh_;
   int node_count_ = 0, cell_count_ = 0;
   std::vector<int> compact_node_, compact_cell_;
-  std::vector<double> element_size_;  ///< of mesh cells [m]
+  std::vector<double> element_size_;  ///< of mesh cells that were filled before, otherwise 0 [m]
   std::vector<double> staging_;
   Halo halo_;
 };

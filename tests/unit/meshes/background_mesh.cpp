@@ -1,6 +1,7 @@
 #include "meshes/background_mesh.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <cmath>
 #include <map>
@@ -180,7 +181,48 @@ TYPED_TEST(MeshOnRanks, MeanEdgesDoNotDependOnTheRanks) {
   std::map<Vec<dim>, double> expected;
   for (int i = 0; i < alone.node_count(); ++i) expected[alone.position[i]] = alone.mean_edge[i];
   for (int i = 0; i < this->mesh.node_count(); ++i)
-    EXPECT_NEAR(this->mesh.mean_edge[i], expected.at(this->mesh.position[i]), 1e-14);
+    EXPECT_EQ(this->mesh.mean_edge[i], expected.at(this->mesh.position[i]));
+}
+
+/// Each cell's value is its global number: the value across a face is that of the cell on its other side.
+TYPED_TEST(MeshOnRanks, CellsAcrossPartitionFacesAreAsked) {
+  constexpr int dim = TestFixture::dim;
+  const auto alone = BackgroundMesh<dim>::read(PETSC_COMM_SELF, this->file.name(), {});
+  std::map<long long, int> of_number;
+  for (int c = 0; c < alone.cell_count(); ++c) of_number[alone.global_cell[c]] = c;
+  const auto byte_of = [](long long number) { return static_cast<char>(number % 101); };
+  std::vector<char> mine;
+  for (const long long number : this->mesh.global_cell) mine.push_back(byte_of(number));
+  const std::vector<char> across = this->mesh.across(mine);
+  ASSERT_EQ(across.size(), this->mesh.partition_faces.size());
+  for (int c = 0; c < this->mesh.cell_count(); ++c)
+    for (int k = 0; k <= dim; ++k) {
+      const int next = this->mesh.cells[c].neighbour[k];
+      if (next >= boundary) continue;
+      const int there = alone.cells[of_number.at(this->mesh.global_cell[c])].neighbour[k];
+      EXPECT_EQ(across[-2 - next], byte_of(alone.global_cell[there]));
+    }
+}
+
+/// Of the box its lower half can have finite elements: its cells, and no air, are in the DMPlex, whatever the ranks.
+TYPED_TEST(MeshOnRanks, ThePlexOfElementsHoldsTheirRegionsAlone) {
+  const ElementPlex &plex = this->mesh.element_plex();
+  PetscInt first, end;
+  ASSERT_EQ(DMPlexGetHeightStratum(plex.dm, 0, &first, &end), 0);
+  EXPECT_EQ(end - first, static_cast<PetscInt>(this->mesh.region("lower").size()));
+  std::set<int> of_lower, found;
+  for (int c : this->mesh.region("lower"))
+    of_lower.insert(this->mesh.cells[c].node.begin(), this->mesh.cells[c].node.end());
+  for (int i = 0; i < this->mesh.node_count(); ++i) {
+    if (plex.vertex[i] < 0) continue;
+    found.insert(i);
+    EXPECT_EQ(plex.number[plex.vertex[i]], this->mesh.global_node[i]);
+  }
+  EXPECT_EQ(found, of_lower);
+  const std::vector<long long> edges = this->mesh.global_edges();
+  const std::set<long long> once(edges.begin(), edges.end());
+  EXPECT_EQ(once.size(), edges.size());
+  for (const long long node : this->mesh.global_node) EXPECT_EQ(once.count(node), 0u);
 }
 
 TYPED_TEST(MeshOnRanks, ReportCountsCellsAndNodesOnce) {
@@ -194,14 +236,54 @@ TYPED_TEST(MeshOnRanks, ReportCountsCellsAndNodesOnce) {
   EXPECT_FALSE(report.one_element_slice);
 }
 
+/// The names of the box, as a host would give them.
+void label_box(DM plex) {
+  for (int height : {0, 1}) {
+    PetscInt first, end;
+    ASSERT_EQ(DMPlexGetHeightStratum(plex, height, &first, &end), 0);
+    for (PetscInt p = first; p < end; ++p) {
+      double volume, centre[3], normal[3];
+      ASSERT_EQ(DMPlexComputeCellGeometryFVM(plex, p, &volume, centre, normal), 0);
+      const char *name = height == 0                        ? centre[1] < 0.5 ? "lower" : nullptr
+                         : std::abs(centre[1] - 0.5) < 1e-9 ? "middle"
+                                                            : nullptr;
+      if (name) {
+        ASSERT_EQ(DMSetLabelValue(plex, name, p, 1), 0);
+      }
+    }
+  }
+}
+
 TYPED_TEST(MeshOnRanks, AHostsPlexIsAdopted) {
   constexpr int dim = TestFixture::dim;
-  const auto adopted = BackgroundMesh<dim>::adopt(this->mesh.plex());
+  const auto whole = BackgroundMesh<dim>::read(PETSC_COMM_WORLD, this->file.name(), {}, this->mesh.cuts());
+  const DM plex = whole.element_plex().dm;
+  label_box(plex);
+  const auto adopted = BackgroundMesh<dim>::adopt(plex);
   EXPECT_EQ(adopted.cell_count(), this->mesh.cell_count());
   EXPECT_EQ(adopted.region("lower"), this->mesh.region("lower"));
   EXPECT_EQ(adopted.facets("middle").size(), this->mesh.facets("middle").size());
   EXPECT_EQ(adopted.position, this->mesh.position);
-  EXPECT_THROW(BackgroundMesh<5 - dim>::adopt(this->mesh.plex()), std::invalid_argument);
+  EXPECT_EQ(adopted.halo.neighbours(), this->mesh.halo.neighbours());
+  EXPECT_EQ(adopted.halo.shared_nodes(), this->mesh.halo.shared_nodes());
+  EXPECT_EQ(adopted.owned, this->mesh.owned);
+  EXPECT_EQ(adopted.host_vertex.size(), adopted.position.size());
+  for (int i = 0; i < adopted.node_count(); ++i) EXPECT_NEAR(adopted.mean_edge[i], this->mesh.mean_edge[i], 1e-14);
+  EXPECT_THROW(BackgroundMesh<5 - dim>::adopt(plex), std::invalid_argument);
+}
+
+/// With what rank 0 keeps for new partitions; a DMPlex of all cells would take three times as much.
+TEST(MeshInMemory, TakesLittleForACell) {
+  constexpr int n = 12, cells = 6 * n * n * n;
+  const SharedFile file{BoxMesh(3, n)};
+  const auto in_use = [] {
+    const struct mallinfo2 heap = mallinfo2();
+    return static_cast<double>(heap.uordblks + heap.hblkhd);
+  };
+  const double before = in_use();
+  const auto mesh = BackgroundMesh<3>::read(PETSC_COMM_SELF, file.name(), {});
+  ASSERT_EQ(mesh.cell_count(), cells);
+  EXPECT_LT((in_use() - before) / cells, 220);
 }
 
 TEST(MeshOnRanksOfACoarseCube, IsASliceWithPatchesOfFour) {
