@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What carries the slide while it creeps at a water level of 60 m, cells of 20 m, and writes damping.csv:  budget.py TALUS
+"""What carries the slide while it creeps at a water level of 60 m, cells of 15 m, and writes damping.csv:  budget.py TALUS
 Works of history.csv between the load times 70 and 80 s, over the way of the rock in that time: forces in MN per metre of width."""
 
 import csv
@@ -23,7 +23,7 @@ COLUMNS = ("damping", "way_m", "speed_m_s", "gravity_MN", "water_MN", "base_MN",
 
 def budget(talus, damping, folder):
     out = pathlib.Path(folder) / str(damping)
-    changes = ["mesh.size=20", f"stage.water.damping={damping}", "stage.water.duration=80", "stage.slide.duration=0.01"]
+    changes = ["mesh.size=15", f"stage.water.damping={damping}", "stage.water.duration=80", "stage.slide.duration=0.01"]
     subprocess.run([talus, "run", HERE / "scene.toml", "-o", out, "--no-pictures", "--set", *changes], stdout=subprocess.DEVNULL, check=True)
     results = Results(out)
     history, columns = results.history, results.history.columns

@@ -28,7 +28,7 @@ class Tables(unittest.TestCase):
         self.assertLessEqual(max(map(len, lines)), 80)
         self.assertNotIn("", lines)  # one block
         self.assertIn("room for the soil to move in", " ".join(" ".join(lines).split()))
-        swept = [ENDED | {"series": "residual", "key": "body.clay.residual_friction_angle", "value": str(value), "unit": "deg", "crest_displacement_m": 2.75,
+        swept = [ENDED | {"series": "residual", "key": "body.clay.residual_friction_angle", "value": str(value), "unit": "deg", "overrides": f"body.clay.residual_friction_angle={value}", "crest_displacement_m": 2.75,
                           "crest_largest_speed_m_s": 1.2, "face_displacement_m": 3.1, "face_largest_speed_m_s": 1.5} for value in (8, 11)]
         lines = talus_sweep.table(swept, True, 80)
         self.assertLessEqual(max(map(len, lines)), 80)
