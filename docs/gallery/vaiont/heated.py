@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The base that heats itself (heated.toml): runs it in cells of 20 m with each number of the shear zone changed, writes heated.csv:  heated.py TALUS [CASE ...]
+"""The base that heats itself (heated.toml): runs it in cells of 15 m with each number of the shear zone changed, writes heated.csv:  heated.py TALUS [CASE ...]
 With names of cases only these are run, and the rows of the others stay as they are. Draws heated.png from a run:  heated.py --draw FOLDER"""
 
 import csv
@@ -65,7 +65,7 @@ def row_of(name, results):
 
 def run(talus, name, changes, folder):
     out = pathlib.Path(folder) / name.replace(" ", "_").replace("/", "_")
-    subprocess.run([talus, "run", HERE / "heated.toml", "-o", out, "--no-pictures", "--set", "mesh.size=20", *changes], stdout=subprocess.DEVNULL, check=False)
+    subprocess.run([talus, "run", HERE / "heated.toml", "-o", out, "--no-pictures", "--set", "mesh.size=15", *changes], stdout=subprocess.DEVNULL, check=False)
     return row_of(name, Results(out))
 
 

@@ -230,13 +230,15 @@ TEST(FrictionalBase, elastic_block_keeps_its_friction_in_fine_cells) {
   EXPECT_NEAR(mobilised_friction(*simulation, 2.4), 20, 0.5);
 }
 
-/// Rock that rests on two planes with a kink between them, as finite elements have found it, stays at rest when motion takes
-/// over. At the kink both planes bear it. Where each took what it met alone, 46 MN were missing there at once, and the rock
-/// crept: 2e-2 m/s after these 20 ms, in which a wave comes 50 m far. What is left is the tolerance of the sweeps.
+/// Elastic rock that rests on two planes with a kink between them, as finite elements have found it, stays at rest when
+/// motion takes over. At the kink both planes bear it. Where each took what it met alone, 46 MN were missing there at
+/// once, and the rock crept: 2e-2 m/s after these 20 ms, in which a wave comes 50 m far. What is left is round-off: the
+/// weight alone would give 0.2 m/s.
 TEST(FrictionalBase, rock_stays_at_rest_on_two_planes) {
   Scene scene = read_scene(std::string(TALUS_GALLERY) + "/vaiont/scene.toml",
-                           {"mesh.size=20", "stage.settle.duration=0.02", "stage.settle.damping=0",
-                            "stage.water.duration=1e-4", "stage.slide.duration=1e-4", "output.interval=0"});
+                           {"mesh.size=20", "body.rock.cohesion=1e9", "output.interval=0",
+                            "stage=[{name='gravity', kind='quasi_static', duration=1, hold_loads=true}, "
+                            "{name='settle', duration=0.02, hold_loads=true}]"});
   RunOptions options;
   options.pictures = options.screen = false;
   const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
@@ -247,8 +249,7 @@ TEST(FrictionalBase, rock_stays_at_rest_on_two_planes) {
     if (column.name == "velocity")
       for (const double value : column.values) fastest = std::max(fastest, std::abs(value));
   MPI_Allreduce(MPI_IN_PLACE, &fastest, 1, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD);
-  EXPECT_GT(fastest, 0);
-  EXPECT_LT(fastest, 1e-5);
+  EXPECT_LT(fastest, 1e-12);
 }
 
 }  // namespace
