@@ -147,7 +147,7 @@ PetscErrorCode Conditions<dim>::begin(FilledGrid<dim> &grid, const std::vector<s
     counted_[i] = mesh.owned[grid.mesh_node[i]];
     const PrescribedSet &set = prescribed_[stand_ins_];
     const int index = set.of_node[grid.mesh_node[i]];
-    if (index >= 0) active_prescribed_.push_back({i, &set.entry[index]});
+    if (index >= 0) active_prescribed_.push_back({i, &set.entry[index], {}});
   }
   for (const Reaction &r : frozen_)
     if (!stand_ins_ && grid.find_node(r.node) >= 0)
@@ -378,10 +378,7 @@ void Conditions<dim>::constrain(double t, const FilledGrid<dim> &grid, Vec<dim> 
     if (into > 0 || (sticking && c.presses)) barred.take(c.contact->normal, v[c.node]);
   }
   for (const ActivePrescribed &p : active_prescribed_)
-    for (int k = 0; k < p.condition->count; ++k)
-      add<dim>(v[p.node],
-               target(*p.condition, k, grid.position[p.node], t) - dot<dim>(v[p.node], p.condition->direction[k]),
-               p.condition->direction[k]);
+    for (int k = 0; k < p.condition->count; ++k) impose(p, k, t, grid.position[p.node], v[p.node]);
 }
 
 template <int dim>
@@ -448,30 +445,50 @@ Vec<dim> Conditions<dim>::respond(ActiveContact &c, double t, double gamma, cons
   Vec<dim> after{};
   if (!c.presses) add<dim>(after, into, n);
   if (!c.sticks) add<dim>(after, 1 - most / (m * speed), slip);
-  for (int d = 0; d < dim; ++d) c.change[d] = after[d] - before[d];
   return after;
 }
 
-/// All contacts of a node act on its velocity. At a true edge the force of each depends on those of the others: each in
-/// turn meets the velocity that the others leave, until nothing changes (Gauss-Seidel; Jean 1999), theory (6.1a).
+/// The node of `p` gets the velocity of its direction `k`.
+template <int dim>
+void Conditions<dim>::impose(const ActivePrescribed &p, int k, double t, const Vec<dim> &x, Vec<dim> &v) const {
+  const Vec<dim> &direction = p.condition->direction[k];
+  add<dim>(v, target(*p.condition, k, x, t) - dot<dim>(v, direction), direction);
+}
+
+/// All contacts of a node, and its support if it has one, act on its velocity. At a true edge, and beside a roller, the
+/// force of each depends on those of the others: each in turn meets the velocity that the others leave, until nothing
+/// changes (Gauss-Seidel; Jean 1999), theory (6.1a).
 template <int dim>
 void Conditions<dim>::settle_node(double t, double gamma, const Vec<dim> &x, const Square<dim> &mass,
-                                  const Pores &pores, size_t first, size_t last, Vec<dim> &v) {
+                                  const Pores &pores, size_t first, size_t last, ActivePrescribed *support,
+                                  Vec<dim> &v) {
   constexpr int most_sweeps = 200;
   constexpr double negligible = 1e-14, stuck = 1e-7;  // of the velocity that the contacts meet
-  const double met = std::sqrt(dot<dim>(v, v));
+  const bool alone = last == first + 1 && !support;
+  double met = 0;
   for (size_t k = first; k < last; ++k) active_contacts_[k].change = {};
+  if (support) support->change = {};
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     double moved = 0;
+    const auto act = [&](Vec<dim> &change, const auto &response) {
+      Vec<dim> others = v;
+      add<dim>(others, -1, change);
+      const Vec<dim> after = response(others);
+      for (int d = 0; d < dim; ++d)
+        change[d] = after[d] - others[d], moved = std::max(moved, std::abs(after[d] - v[d]));
+      v = after;
+    };
+    if (support)
+      act(support->change, [&](Vec<dim> others) {
+        for (int k = 0; k < support->condition->count; ++k) impose(*support, k, t, x, others);
+        return others;
+      });
+    met = std::max(met, std::sqrt(dot<dim>(v, v)));
     for (size_t k = first; k < last; ++k) {
       ActiveContact &c = active_contacts_[k];
-      Vec<dim> others = v;
-      add<dim>(others, -1, c.change);
-      const Vec<dim> after = respond(c, t, gamma, x, mass, pores, others);
-      for (int d = 0; d < dim; ++d) moved = std::max(moved, std::abs(after[d] - v[d]));
-      v = after;
+      act(c.change, [&](const Vec<dim> &others) { return respond(c, t, gamma, x, mass, pores, others); });
     }
-    if (last == first + 1) return;
+    if (alone) return;
     if (moved <= negligible * met) break;
   }
   // friction that holds the node together with others may be at its own limit to round-off
@@ -513,11 +530,14 @@ void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &gri
     account(d.node, d.source, before);
   }
   spread_heat(gamma);
+  auto supported = active_prescribed_.begin();
   for (size_t first = 0, last; first < active_contacts_.size(); first = last) {
     last = last_at_node(first);
     const int node = active_contacts_[first].node;
     const Square<dim> mass = mass_of(node);
-    settle_node(t, gamma, grid.position[node], mass, pores, first, last, v[node]);
+    while (supported != active_prescribed_.end() && supported->node < node) ++supported;
+    const bool has_support = supported != active_prescribed_.end() && supported->node == node;
+    settle_node(t, gamma, grid.position[node], mass, pores, first, last, has_support ? &*supported : nullptr, v[node]);
     for (size_t k = first; k < last; ++k) {
       ActiveContact &c = active_contacts_[k];
       commit(c, gamma);
@@ -532,10 +552,10 @@ void Conditions<dim>::resolve(double t, double gamma, const FilledGrid<dim> &gri
   }
   for (const ActivePrescribed &p : active_prescribed_)
     for (int k = 0; k < p.condition->count; ++k) {
-      const Vec<dim> before = v[p.node];
-      add<dim>(v[p.node],
-               target(*p.condition, k, grid.position[p.node], t) - dot<dim>(before, p.condition->direction[k]),
-               p.condition->direction[k]);
+      const Vec<dim> &direction = p.condition->direction[k];
+      Vec<dim> before = v[p.node];
+      impose(p, k, t, grid.position[p.node], v[p.node]);
+      add<dim>(before, -dot<dim>(p.change, direction), direction);
       account(p.node, p.condition->source[k], before);
     }
 }

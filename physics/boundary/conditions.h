@@ -121,6 +121,7 @@ class Conditions {
   struct ActivePrescribed {
     int node;  // compact
     const Prescribed *condition;
+    Vec<dim> change;  // of the velocity of the node by it, while contacts are resolved [m/s]
   };
   struct ActiveContact {
     int node;
@@ -153,7 +154,8 @@ class Conditions {
   Vec<dim> respond(ActiveContact &c, double t, double gamma, const Vec<dim> &x, const Square<dim> &mass,
                    const Pores &pores, const Vec<dim> &before);
   void settle_node(double t, double gamma, const Vec<dim> &x, const Square<dim> &mass, const Pores &pores, size_t first,
-                   size_t last, Vec<dim> &v);
+                   size_t last, ActivePrescribed *support, Vec<dim> &v);
+  void impose(const ActivePrescribed &p, int k, double t, const Vec<dim> &x, Vec<dim> &v) const;
   void commit(ActiveContact &c, double gamma);
   void serialize_contacts(Archive &archive, const FilledGrid<dim> &grid);
   void serialize_zones(Archive &archive, const BackgroundMesh<dim> &mesh);

@@ -24,7 +24,7 @@ BASE = np.array([(-150, 1149), (0, 1040), (550.6, 640), (1255, 640), (1755, 1030
 SOFTER = "functions.phi_b=[[0, 12], [150, 12], [151, 5]]"  # the base keeps 5 degrees
 PER_SECOND = 4  # rows of the history
 LOADS = (0, 20, 30, 40, 60, 150, 155, 160, 170, 180)  # load times of the frames [s]
-SCALES = ((0, 0.002), (30, 0.02), (150, 0.3), (180, 1))  # plastic strain up to these load times is shown up to that value
+SCALES = ((0, 0.002), (40, 0.02), (150, 0.3), (180, 1))  # plastic strain up to these load times is shown up to that value
 SPANS = ((0, 20), (20, 30), (30, 40), (40, 50), (50, 60), (60, 70), (70, 80))  # load times between which the plane is looked for [s]
 
 
@@ -117,8 +117,8 @@ def draw_plane(results, path):
     turn.plot(middle, strain, "s--", label="line through the growing plastic strain")
     turn.axhline(108, color="black", linewidth=0.7, linestyle=":"), turn.annotate("bisector", (1, 108.5), size=8.5)
     turn.axhline(90, color="grey", linewidth=0.7, linestyle=":"), turn.annotate("vertical", (1, 90.5), size=8.5, color="grey")
-    turn.set(xlabel="load time [s]", ylabel="inclination from the horizontal, uphill side [deg]", xlim=(0, 80), ylim=(75, 115))
-    turn.legend(frameon=False, loc="lower right", fontsize=8)
+    turn.set(xlabel="load time [s]", ylabel="inclination from the horizontal, uphill side [deg]", xlim=(0, 80), ylim=(70, 118))
+    turn.legend(frameon=False, loc="lower right", fontsize=7.5)
     style.save(figure, path)
 
 
