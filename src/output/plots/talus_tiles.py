@@ -53,19 +53,33 @@ def nearest(points, shape, reach, size, aside=None):
     owner[row[seen], column[seen]] = seen
     centre_y, centre_x = (np.arange(size, dtype=np.float32) + 0.5 for size in shape)
     squared = np.full(shape, np.inf, np.float32)
-    rows, columns = np.nonzero(owner >= 0)
-    mine = owner[rows, columns]
-    squared[rows, columns] = scale[mine] * ((x[mine] - centre_x[columns]) ** 2 + (y[mine] - centre_y[rows]) ** 2 + z2[mine])
+    # what is known of the owner of each pixel, beside the pixel: to look it up by number for all pixels would take most of the time
+    its_x, its_y, its_z2, its_scale = (np.full(shape, value, np.float32) for value in (0, 0, 0, np.inf))
+
+    def own(pixels, points, distance):
+        for field, values in ((owner, points), (squared, distance), (its_x, x[points]), (its_y, y[points]), (its_z2, z2[points]),
+                              (its_scale, scale[points])):
+            field.ravel()[pixels] = values
+
+    pixels = np.flatnonzero(owner >= 0)
+    rows, columns = np.divmod(pixels, shape[1])
+    mine = owner.ravel()[pixels]
+    own(pixels, mine, scale[mine] * ((x[mine] - centre_x[columns]) ** 2 + (y[mine] - centre_y[rows]) ** 2 + z2[mine]))
     for step in [*(2**k for k in range(int(np.ceil(np.log2(max(reach * np.max(size), 1)))), -1, -1)), 1]:
-        for down in (-step, 0, step):
-            for right in (-step, 0, step):
-                to_rows, from_rows = shifted(shape[0], down)
-                to_columns, from_columns = shifted(shape[1], right)
-                other = owner[from_rows, from_columns]
-                distance = scale[other] * ((x[other] - centre_x[to_columns]) ** 2 + (y[other] - centre_y[to_rows, None]) ** 2 + z2[other])
-                better = (other >= 0) & (distance < squared[to_rows, to_columns])
-                owner[to_rows, to_columns][better] = other[better]
-                squared[to_rows, to_columns][better] = distance[better]
+        for down, right in ((i, j) for i in (-step, 0, step) for j in (-step, 0, step) if i or j):
+            to_rows, from_rows = shifted(shape[0], down)
+            to_columns, from_columns = shifted(shape[1], right)
+            there = from_rows, from_columns
+            distance, along_y = its_x[there] - centre_x[to_columns], its_y[there] - centre_y[to_rows, None]
+            distance *= distance
+            along_y *= along_y
+            distance += along_y
+            distance += its_z2[there]
+            distance *= its_scale[there]
+            nearer = np.flatnonzero(distance < squared[to_rows, to_columns])
+            rows, columns = np.divmod(nearer, max(1, distance.shape[1]))
+            pixels = (rows + to_rows.start) * shape[1] + columns + to_columns.start
+            own(pixels, owner.ravel()[pixels + down * shape[1] + right], distance.ravel()[nearer])
     far = squared > reach**2
     owner[far] = -1
     distance = np.sqrt(squared)
