@@ -52,8 +52,9 @@ def headline(figure, text, title):
     """What a chart shows, and of which scene, below it where there is no room beside it; `figure` has the layout "constrained"."""
     beside = 0.13 * len(text) + 0.08 * len(title) < figure.get_figwidth()  # [inch]
     figure.suptitle(text + "\n" * (not beside), x=0.01, ha="left", fontsize=12, fontweight="bold")
-    at = {"x": 0.99, "y": 0.985, "ha": "right"} if beside else {"x": 0.01, "y": 0.98 - 0.21 / figure.get_figheight(), "ha": "left"}
-    figure.text(s=title, va="top", fontsize=8.5, color=SOFT, **at)
+    down = 0.05 if beside else 0.28  # from the top [inch]
+    at = {"x": 0.99, "ha": "right"} if beside else {"x": 0.01, "ha": "left"}
+    figure.text(y=1 - down / figure.get_figheight(), s=title, va="top", fontsize=8.5, color=SOFT, **at)
 
 
 def legend_below(figure, handles):
