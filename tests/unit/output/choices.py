@@ -130,6 +130,16 @@ class Scales(unittest.TestCase):
         self.assertGreater(scale.map(1.0)[0], scale.map(1.0)[2])  # red above, blue below
         self.assertGreater(scale.map(0.0)[2], scale.map(0.0)[0])
 
+    def test_soil_has_its_colour_below_the_shares_that_the_guide_states(self):
+        for field, values, share in (("displacement", np.linspace(0, 2, 1001), 0.02), ("plastic_strain", np.linspace(0, 2, 1001), 0.0025),
+                                     ("displacement_x", np.linspace(-1, 2, 1001), 0.005), ("stress_xx", np.linspace(-2, 0, 1001), 0.02)):
+            scale = self.of(field, values)
+            self.assertEqual(list(scale.plain(np.array([0.9, 1.1]) * 2 * share)), [True, False], field)
+
+    def test_both_signs_are_those_above_two_hundredths_of_the_larger(self):
+        ends = [self.of("stress_xx", np.linspace(-100 * low, 100, 10001)).shown for low in (0.018, 0.023)]
+        self.assertEqual([low for low, _ in ends], [0, -2.2])  # nearly the least
+
     def test_a_little_of_the_other_sign_is_beyond_the_end(self):
         scale = self.of("pore_pressure", np.linspace(-0.01, 1, 1001), "-")
         self.assertEqual((scale.shown, scale.above, scale.below), ((0, 1), False, True))
