@@ -10,8 +10,10 @@ from matplotlib.tri import Triangulation
 import talus_style as style
 
 BRIGHT = 0.97  # share of the soil that shears less than the end of the colour scale
-ARROWS = 32  # squares over the longer side of the soil, with an arrow each
+ARROWS = 22  # squares over the longer side of the soil, with an arrow each
+LONGEST = 1.3  # length of an arrow over the side of its square
 MOVES = 0.1  # of the largest displacement: less has no arrow
+WIDTH, BESIDE, AROUND = 9.0, 1.9, 1.1  # of the picture, left and right of the soil, above and below it [inch]
 
 
 def read_factor(results):
@@ -83,7 +85,7 @@ def arrows_of(position, displacement):
     place, way = (np.column_stack([np.bincount(square, column) / count for column in values.T]) for values in (position, displacement))
     size = np.linalg.norm(way, axis=1)
     moves = size > MOVES * size.max()
-    return place[moves], way[moves] / max(size.max(), 1e-300) * 2 * side
+    return place[moves], way[moves] / max(size.max(), 1e-300) * LONGEST * side
 
 
 def draw_mechanism(results, factor, headline, path):
@@ -91,7 +93,10 @@ def draw_mechanism(results, factor, headline, path):
     last = results.snapshots[-1]
     position = last.position()
     strain = last.scalar("shear_strain")[0]
-    figure, axes = plt.subplots(figsize=(9, 4.2))
+    extent = np.ptp(position, axis=0)
+    height = float(np.clip((WIDTH - BESIDE) * extent[1] / max(extent[0], 1e-300), 1.6, 6.4))
+    width = max(min(WIDTH, height * extent[0] / max(extent[1], 1e-300) + BESIDE), 6.0)  # of a high section; the title needs room
+    figure, axes = plt.subplots(figsize=(width, height + AROUND), layout="constrained")
     triangles, at_nodes = field_of_cells(results, position, strain / max(np.quantile(strain, BRIGHT), 1e-300))
     field = axes.tripcolor(triangles, at_nodes, shading="gouraud", cmap=style.colours_of("plastic_strain"), vmin=0, vmax=1)
     place, way = arrows_of(position, last.values("displacement"))
@@ -102,23 +107,24 @@ def draw_mechanism(results, factor, headline, path):
         axes.plot(*np.array(mechanism["slip_surface_m"]).T, color=style.INK if number == 1 else style.LINES[(number - 2) % len(style.LINES)],
                   lw=1.2, ls=(0, (4, 2)), label=label, path_effects=[Stroke(linewidth=3, foreground="white", alpha=0.7), Normal()])  # on a dark band
     axes.set_aspect("equal")
-    axes.set_xlabel("x [m]"), axes.set_ylabel("y [m]")
+    axes.set_xlabel("x [m]\narrows: the motion of the mechanism, whose size is free"), axes.set_ylabel("y [m]")
     axes.set_title(headline, loc="left")
     axes.legend(loc="best")
-    figure.colorbar(field, ax=axes, label=f"shear strain over its {100 * BRIGHT:.0f} % quantile", shrink=0.8)
-    figure.text(0.99, 0.01, "arrows: the motion of the mechanism, whose size is free", ha="right", fontsize=8, color=style.SOFT)
-    figure.tight_layout()
+    figure.colorbar(field, ax=axes, label=f"shear strain over its\n{100 * BRIGHT:.0f} % quantile", shrink=0.8, aspect=14)
     return style.save(figure, path)
 
 
 def draw_displacement(factor, headline, path):
-    """Largest displacement of the trials in equilibrium, and lines at the factors for which it grows without bound."""
+    """Largest displacement of the trials in equilibrium, and lines at the factors for which it grows without bound. Trials with psi = phi go on from
+    the last state with psi < phi: those that moved no further show no displacement of their own."""
     figure, axes = plt.subplots(figsize=(7.6, 3.7))
+    before = 0.0  # the displacement with which the trials of a kind begin
     for dilating, colour, name in ((False, style.LINES[0], "psi < phi"), (True, style.LINES[1], "psi = phi")):
         trials = [t for t in factor["trials"] if t["psi_is_phi"] == dilating and t["search"] == 1]
-        stable = sorted((t["factor"], t["displacement_m"]) for t in trials if t["outcome"] == "equilibrium")
+        stable = sorted((t["factor"], t["displacement_m"]) for t in trials if t["outcome"] == "equilibrium" and t["displacement_m"] > 1.0001 * before)
         if stable:
-            axes.plot(*np.array(stable).T, "o-", color=colour, ms=4, label=f"equilibrium, {name}")
+            axes.plot(*np.array(stable).T, "o-", color=colour, ms=4, label=f"equilibrium, {name}" + ", from the last of psi < phi on" * (before > 0))
+            before = stable[-1][1]
         for k, failed in enumerate(sorted(t["factor"] for t in trials if t["outcome"] == "mechanism")):
             axes.axvline(failed, color=colour, lw=0.8, ls=":", label=f"mechanism, {name}" if k == 0 else None)
         for k, open_one in enumerate(sorted(t["factor"] for t in trials if t["outcome"] == "undecided")):

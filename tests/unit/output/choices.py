@@ -413,6 +413,41 @@ class Mechanisms(unittest.TestCase):
         self.assertEqual(place.tolist(), [[10, 0]])
         self.assertGreater(way[0, 1], 0)
 
+    def test_leave_the_eye_some_room_between_arrows(self):
+        place = np.stack(np.meshgrid(np.linspace(0, 60, 241), np.linspace(0, 20, 81)), axis=-1).reshape(-1, 2)
+        arrows, way = talus_factor.arrows_of(place, np.ones_like(place))
+        self.assertLess(len(arrows), 300)
+        self.assertLess(np.linalg.norm(way, axis=1).max(), 1.5 * np.diff(np.unique(np.round(arrows[:, 0], 6))).max())  # not over its next but one
+
+    def figure(self, draw):
+        seen = []
+        with unittest.mock.patch.object(talus_factor.style, "save", lambda figure, path: seen.append(figure)):
+            draw()
+        return seen[0]
+
+    def test_fill_the_width_of_their_picture(self):
+        nodes = np.array([(0.0, 0), (60, 0), (60, 20), (0, 20)])
+        place = nodes[[0, 2, 3]] * 0.98 + 0.1
+        last = types.SimpleNamespace(position=lambda: place, scalar=lambda field: (np.ones(3), "-"), values=lambda field: np.ones((3, 2)))
+        results = types.SimpleNamespace(snapshots=[last], mesh=lambda: (nodes, np.array([(0, 1, 2), (0, 2, 3)])))
+        factor = {"mechanisms": [{"slip_surface_m": [[0, 20], [60, 0]], "factor_of_safety": {"value": 1.2, "decided": True}}]}
+        figure = self.figure(lambda: talus_factor.draw_mechanism(results, factor, "", None))
+        figure.canvas.draw()
+        section = figure.axes[0].get_window_extent().transformed(figure.transFigure.inverted())
+        self.assertLess(section.x0, 0.12)
+        self.assertGreater(section.width, 0.7)
+
+    def test_a_displacement_that_another_search_has_left_is_no_curve(self):
+        def trial(factor, dilating, outcome, displacement):
+            return {"factor": factor, "psi_is_phi": dilating, "search": 1, "outcome": outcome, "displacement_m": displacement}
+        own = [trial(1.0, False, "equilibrium", 0.01), trial(1.2, False, "equilibrium", 0.03), trial(1.3, False, "mechanism", 1)]
+        for further, curves in (([trial(1.25, True, "equilibrium", 0.03)], 1), ([trial(1.25, True, "equilibrium", 0.03), trial(1.3, True, "equilibrium", 0.05)], 2)):
+            factor = {"trials": own + further + [trial(1.4, True, "mechanism", 1)]}
+            lines = [line for line in self.figure(lambda: talus_factor.draw_displacement(factor, "", None)).axes[0].lines if line.get_marker() == "o"]
+            self.assertEqual(len(lines), curves)
+        self.assertEqual(lines[1].get_xdata().tolist(), [1.3])
+        self.assertIn("from the last", lines[1].get_label())
+
 
 if __name__ == "__main__":
     unittest.main()
