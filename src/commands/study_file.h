@@ -152,7 +152,7 @@ struct StudyCriterion {
   double below = any_number.low, above = any_number.high;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.text("outcome", outcome, "column of study.csv, such as factor_of_safety or travel_distance_m");
+    v.text("outcome", outcome, "column of study.csv, such as factor_of_safety or travel_distance_m; fails is 1 or 0");
     v.number("below", below, one, any_number, "the criterion is met where the outcome is below this number");
     v.number("above", above, one, any_number, "the criterion is met where the outcome is above this number");
   }

@@ -89,7 +89,7 @@ def probability(rows, criterion, confidence):
 
 def sensitivities(rows, variables, outcome):
     """Effect of each numeric variable on an outcome from a linear fit in all of them: change of the outcome from the 10 % to the 90 % quantile of
-    the variable, the others at their means. ([{variable, low, high}], mean outcome, R²); None where too few runs are known."""
+    the variable, the others at their means. Means and quantiles are those of the runs with this outcome. None where they are too few."""
     variables = [v for v in variables if v["numeric"]]
     known = [row for row in rows if row.get(outcome) is not None]
     x = np.array([[number(row[v["name"]]) for v in variables] for row in known], float).reshape(len(known), len(variables))
@@ -103,11 +103,11 @@ def sensitivities(rows, variables, outcome):
     explained = 1 - np.var(y - fit[0] - (x - middle) / spread @ fit[1:]) / np.var(y)
     bars = []
     for k, column in enumerate(varies):
-        quantiles = np.quantile(x[:, k], [0.1, 0.9])
+        quantiles = np.quantile(x[:, k], [0.1, 0.9])  # of the runs with this outcome, not of the distribution
         ends = (quantiles - middle[k]) / spread[k]
         bars.append({"variable": variables[column]["name"], "unit": variables[column]["unit"], "quantiles": quantiles.tolist(), "low": float(fit[0] + fit[1 + k] * ends[0]), "high": float(fit[0] + fit[1 + k] * ends[1])})
     bars.sort(key=lambda bar: abs(bar["high"] - bar["low"]))
-    return {"outcome": outcome, "mean": float(fit[0]), "r2": float(explained), "bars": bars}
+    return {"outcome": outcome, "runs": len(known), "mean": float(fit[0]), "r2": float(explained), "bars": bars}
 
 
 # ---- pictures ----
@@ -118,13 +118,13 @@ def draw_tornado(all_fits, in_plane, path, title=""):
                                 gridspec_kw={"height_ratios": [h + 1.5 for h in heights]})
     for one, fit in zip(axes.flat, all_fits):
         for k, bar in enumerate(fit["bars"]):
-            for end, colour, label in ((bar["low"], style.LINES[0], "variable at its 10 % quantile"), (bar["high"], style.LINES[1], "at its 90 % quantile")):
+            for end, colour, label in ((bar["low"], style.LINES[0], "variable at the 10 % quantile of these runs"), (bar["high"], style.LINES[1], "at their 90 % quantile")):
                 one.barh(k, end - fit["mean"], left=fit["mean"], height=0.62, color=colour, label=label if k == 0 else None)
         one.axvline(fit["mean"], color=style.INK, lw=0.8)
         one.set_yticks(range(len(fit["bars"])), [f"{words(bar['variable'])}\n{bar['quantiles'][0]:.3g} to {bar['quantiles'][1]:.3g} {bar['unit']}".rstrip()
                                                  for bar in fit["bars"]])
         one.set_xlabel(title_of(fit["outcome"], in_plane))
-        one.set_title(f"linear fit, R² = {fit['r2']:.2f}", loc="right", fontsize=8)
+        one.set_title(f"linear fit to {fit['runs']} runs, R² = {fit['r2']:.2f}", loc="right", fontsize=8)
     style.legend_below(figure, axes.flat[0].get_legend_handles_labels()[0])
     style.headline(figure, "What decides", title)
     return style.save(figure, path)

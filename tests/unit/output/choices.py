@@ -394,11 +394,19 @@ class Charts(unittest.TestCase):
         self.assertEqual([x for x, _ in labels], ["processor time [s]", *2 * ["integrator.fraction"], *2 * ["integrator.velocity_tolerance [m/s]"]])
 
     def test_bars_of_a_tornado_say_their_values(self):
-        fit = {"outcome": "travel_distance_m", "mean": 5.0, "r2": 1.0, "bars": [{"variable": "friction", "unit": "deg", "quantiles": [20.5, 27.5], "low": 4.0, "high": 6.0}]}
+        fit = {"outcome": "travel_distance_m", "runs": 40, "mean": 5.0, "r2": 1.0, "bars": [{"variable": "friction", "unit": "deg", "quantiles": [20.5, 27.5], "low": 4.0, "high": 6.0}]}
         seen = []
         with unittest.mock.patch.object(talus_study.style, "save", lambda figure, path: seen.append(figure)):
             talus_study.draw_tornado([fit], True, "")
         self.assertEqual([label.get_text() for label in seen[0].axes[0].get_yticklabels()], ["friction\n20.5 to 27.5 deg"])
+        self.assertEqual([text.get_text() for text in seen[0].legends[0].get_texts()], ["variable at the 10 % quantile of these runs", "at their 90 % quantile"])
+        self.assertIn("fit to 40 runs", seen[0].axes[0].get_title(loc="right"))
+
+    def test_quantiles_of_a_tornado_are_of_the_runs_with_the_outcome(self):
+        rows = [{"c": str(k), "factor_of_safety": float(k) if k > 10 else None} for k in range(1, 31)]
+        fit = talus_study.sensitivities(rows, [{"name": "c", "unit": "Pa", "numeric": True}], "factor_of_safety")
+        self.assertEqual(fit["runs"], 20)
+        self.assertAlmostEqual(fit["bars"][0]["quantiles"][0], 11 + 0.1 * 19)
 
 
 class Mechanisms(unittest.TestCase):
