@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -40,6 +41,12 @@ inline std::vector<std::string> pieces(const std::string &text, char separator) 
   }
   for (std::string &piece : out) piece = trimmed(piece);
   return out;
+}
+
+/// A sentence with # for each of its numbers and their signs, alike for sentences that differ in their numbers alone.
+inline std::string without_numbers(const std::string &sentence) {
+  static const std::regex number("-?[0-9][0-9.]*(e[-+]?[0-9]+)?");
+  return std::regex_replace(sentence, number, "#");
 }
 
 /// A number, also one with a unit behind it ("5 mm"); NaN if it is none.

@@ -18,7 +18,6 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <regex>
 #include <set>
 #include <sstream>
 #include <thread>
@@ -139,12 +138,6 @@ std::vector<std::string> sentences_of(const Trial &trial) {
       if (std::find(found.begin(), found.end(), sentence) == found.end()) found.push_back(sentence);
     }
   return found;
-}
-
-/// A sentence with # for each number.
-std::string without_numbers(const std::string &sentence) {
-  static const std::regex number("[0-9][0-9.]*(e[-+]?[0-9]+)?");
-  return std::regex_replace(sentence, number, "#");
 }
 
 /// Is it the path of a key, with its pattern: body.clay.cohesion and body.NAME.cohesion?

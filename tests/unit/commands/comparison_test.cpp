@@ -106,5 +106,11 @@ TEST(Comparison, measures_are_read_off_a_history) {
   std::remove(path.c_str());
 }
 
+TEST(Comparison, sentences_that_differ_in_numbers_and_their_signs_are_one) {
+  EXPECT_EQ(without_numbers("moves by -1.5e-3 m at (4, -2)"), "moves by # m at (#, #)");
+  EXPECT_EQ(without_numbers("moves by 20 m at (-4, 0.5)"), "moves by # m at (#, #)");
+  EXPECT_NE(without_numbers("moves by 20 m"), without_numbers("moves by 20 s"));
+}
+
 }  // namespace
 }  // namespace talus
