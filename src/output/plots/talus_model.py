@@ -17,7 +17,7 @@ except ImportError as error:
 from matplotlib.collections import LineCollection, PolyCollection
 from talus_modelled import WATER, Model, notes, stage_rows
 from talus_perspective import Views
-from talus_symbols import SYMBOL, WHITE, Symbols, chains, dimension, label, named_points
+from talus_symbols import SYMBOL, WHITE, Symbols, chains, dimension, keep_apart, label, movable, named_points
 
 WIDTH, MARGIN, LINE = 12.0, 0.45, 0.19  # of the picture, its edges and a line of its text [inch]
 
@@ -54,7 +54,7 @@ class Sheet:
         self.figure = plt.figure(figsize=(WIDTH, self.height))
         title = textwrap.shorten(model.title or "Model", 120, placeholder=" …")
         self.figure.text(MARGIN / WIDTH, 1 - 0.22 / self.height, title, fontsize=12, weight="bold", va="center")
-        kind = "plane strain" if model.dimension == 2 else "3D"
+        kind = "plane strain" if model.dimension == 2 else f"3D, terrain of {model.terrain}" if model.terrain else "3D"
         subtitle = f"{model.data['phases']}, {kind}; the model at the start"
         self.figure.text(MARGIN / WIDTH, 1 - 0.42 / self.height, subtitle, fontsize=9, color=style.SOFT, va="center")
 
@@ -111,9 +111,9 @@ def perspectives(model):
     views = Views(model)
     sheet = Sheet(model, views.height)
     left = MARGIN
-    for k, (name, width) in enumerate(Views.SHOWN):
+    for k, width in enumerate(Views.WIDTHS):
         axes = sheet.axes(left, sheet.view_top, width, views.height)
-        axes.set_title(name, loc="left", fontsize=8.5, color=style.SOFT, y=0.92)
+        axes.set_title(views.title(k), loc="left", fontsize=8.5, color=style.SOFT, y=0.92)
         views.draw(axes, k)
         left += width + 0.2
     return sheet
@@ -154,6 +154,7 @@ def section(model):
     water(axes, model, symbols, low, high)
     named_points(axes, model, np.asarray)
     dimensions(axes, model, low, high, metres)
+    keep_apart(axes, [line.get_xydata() for line in axes.lines if line.get_zorder() >= 6])
     return sheet
 
 
@@ -169,7 +170,7 @@ def outline(cells):
 
 
 def name_body(axes, model, cells, name, metres, **look):
-    """Writes a name into the middle of some cells, where there is no named point near."""
+    """Writes a name into the middle of some cells, or beside it where keep_apart finds it on something else."""
     if not len(cells):
         return
     centres = cells.mean(axis=1)
@@ -177,10 +178,12 @@ def name_body(axes, model, cells, name, metres, **look):
     area = np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
     middle = (centres * area[:, None]).sum(axis=0) / area.sum()
     away = ((centres - middle) ** 2).sum(axis=1)
-    for point in model.data["points"]:
-        away[(np.abs(centres - point["position"]) < (0.5 * metres, 0.25 * metres)).all(axis=1)] += np.inf
-    at = centres[np.argmin(away)]  # which lies in the body
-    axes.text(*at, name, ha="center", va="center", zorder=8, path_effects=[WHITE], **look)
+    order = np.argsort(away)  # all of which lie in the body
+    nearest = [centres[order[0]]]
+    for at in centres[order[1:4000]]:
+        if len(nearest) < 150 and (np.abs(at - nearest) > 0.08 * metres).any(axis=1).all():
+            nearest.append(at)
+    movable(axes.text(*nearest[0], name, ha="center", va="center", zorder=8, path_effects=[WHITE], **look), nearest, of_soil=True)
 
 
 def outer_level(symbols, boundary):
@@ -212,7 +215,7 @@ def dimensions(axes, model, low, high, metres):
     soil = model.corners[np.isin(model.body, np.flatnonzero(model.there))]
     soil = soil if len(soil) else model.corners
     first, last = soil.min(axis=(0, 1)), soil.max(axis=(0, 1))
-    away = 0.44 * metres
+    away = 0.48 * metres
     spans = [((first[0], low[1] - away), (last[0], low[1] - away))]
     if last[0] - first[0] < 0.999 * (high[0] - low[0]):
         spans.append(((low[0], low[1] - 1.6 * away), (high[0], low[1] - 1.6 * away)))

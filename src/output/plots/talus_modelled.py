@@ -1,6 +1,7 @@
 """What a scene models, from the document that the program makes of it (src/simulation/model.h): in numbers, and in words."""
 
 import json
+import pathlib
 import tomllib
 
 import numpy as np
@@ -31,6 +32,7 @@ class Model:
         self.title = self.data["title"]
         self.dimension = self.data["dimension"]
         self.scene = tomllib.loads(self.data["scene"])
+        self.terrain = pathlib.PurePath(self.scene.get("mesh", {}).get("terrain", {}).get("file", "")).name  # the file; empty where there is none
         self.keys = Keys(self.data["keys"])
         self.bodies = [body["name"] for body in self.data["bodies"]]
         self.there = [body["there"] for body in self.data["bodies"]]
@@ -109,10 +111,18 @@ class Boundary:
             return ", ".join(said)
         return ", ".join(said) + " at the start, changes with time" if said else "changes with time"
 
+    def place(self):
+        """In 3D the plane of its faces where they lie in one across an axis: " (z = 0 m)"."""
+        if self.corners.shape[-1] < 3 or not len(self.corners):
+            return ""
+        corners = self.corners.reshape(-1, 3)
+        flat = np.flatnonzero(np.ptp(corners, axis=0) < 1e-6 * np.ptp(corners, axis=0).max())
+        return f" ({'xyz'[flat[0]]} = {quantity(float(f'{corners[0, flat[0]]:.4g}'), 'm')})" if len(flat) == 1 else ""
+
     def line(self):
         values = self.at_start()
         told = values.startswith(self.what()) or (self.values and self.soil == "load")
-        return f"{self.name}: {values if told else ', '.join(filter(None, (self.what(), values)))}"
+        return f"{self.name}{self.place()}: {values if told else ', '.join(filter(None, (self.what(), values)))}"
 
 
 SEEPING = {"seepage": "water seeps, soil at rest", "consolidation": "water seeps, soil consolidates"}  # kinds of stages

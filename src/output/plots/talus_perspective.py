@@ -6,7 +6,7 @@ from matplotlib.colors import to_rgb
 
 import talus_style as style
 from talus_modelled import WATER
-from talus_symbols import SYMBOL, Symbols, named_points
+from talus_symbols import SYMBOL, Symbols, keep_apart, named_points
 from talus_units import quantity
 
 
@@ -35,9 +35,9 @@ class Camera:
 
 
 class Views:
-    """The soil from above in front, and from below behind."""
+    """The soil from above, from the side of the largest level coordinates, and from below, from the side of the smallest ones."""
 
-    SHOWN = (("from above", 6.4), ("from below, seen from behind", 4.5))  # what they are called, and their widths [inch]
+    WIDTHS = (6.4, 4.5)  # [inch]
     TALLEST, ROOM = 4.6, 1.0  # of the soil in a view, and beside it for dimensions [inch]
 
     def __init__(self, model):
@@ -51,13 +51,21 @@ class Views:
         boxes = [camera.flat(corners) for camera in self.cameras]
         self.middles = [(box.min(axis=0) + box.max(axis=0)) / 2 for box in boxes]
         sizes = [np.ptp(box, axis=0) for box in boxes]
-        self.metres = [max(size[0] / (width - self.ROOM), size[1] / self.TALLEST) for size, (_, width) in zip(sizes, self.SHOWN)]  # per inch
+        self.metres = [max(size[0] / (width - self.ROOM), size[1] / self.TALLEST) for size, width in zip(sizes, self.WIDTHS)]  # per inch
         self.height = max(size[1] / metres for size, metres in zip(sizes, self.metres)) + self.ROOM  # [inch]
+
+    def title(self, number):
+        """From where a view looks. Names of groups do not say it: the group front of a section is that at z = 0, which is seen in the second view."""
+        height, end = (("above", "largest"), ("below", "smallest"))[number]
+        if self.model.terrain:
+            return f"from {height}, from the {('northeast', 'southwest')[number]}"
+        level = " and ".join(axis for axis in "xyz" if axis != self.model.data["up"])
+        return f"from {height}, from the side of the {end} {level}"
 
     def draw(self, axes, number):
         """Draws one of the views into axes of its width and of the common height."""
         camera, metres, middle = self.cameras[number], self.metres[number], self.middles[number]
-        half = np.array([self.SHOWN[number][1], self.height]) * metres / 2
+        half = np.array([self.WIDTHS[number], self.height]) * metres / 2
         axes.set(xlim=(middle[0] - half[0], middle[0] + half[0]), ylim=(middle[1] - half[1], middle[1] + half[1]))
         axes.axis("off")
         self.faces(axes, camera)
@@ -67,6 +75,8 @@ class Views:
             self.water(axes, camera, metres)
             named_points(axes, self.model, camera.flat)
         edges(axes, camera, self.low, self.high, metres)
+        directions(axes, camera, metres, ("x, east", "y, north", "z") if self.model.terrain else "xyz")
+        keep_apart(axes)
 
     def faces(self, axes, camera):
         """The faces of the soil that the camera sees, the furthest first."""
@@ -124,3 +134,14 @@ def edges(axes, camera, low, high, metres):
         axes.annotate("", *lowest, zorder=9, annotation_clip=False, arrowprops={"arrowstyle": "<->", "color": style.SOFT, "lw": 0.8, "shrinkA": 0, "shrinkB": 0})
         axes.text(*lowest.mean(axis=0), f"{'xyz'[axis]}: {quantity(float(f'{high[axis] - low[axis]:.3g}'), 'm')}", ha="center", va="center", fontsize=8, zorder=10,
                   bbox={"fc": "white", "ec": "none", "pad": 1.2})
+
+
+def directions(axes, camera, metres, names):
+    """Arrows along the axes of coordinates in the lower left corner."""
+    corner = np.array([axes.get_xlim()[0], axes.get_ylim()[0]]) + 0.45 * metres
+    for axis, name in enumerate(np.eye(3)):
+        way = 0.34 * metres * np.array([name @ camera.right, name @ camera.top])
+        axes.annotate("", corner + way, corner, zorder=9, arrowprops={"arrowstyle": "->", "color": style.INK, "lw": 0.9, "shrinkA": 0, "shrinkB": 0})
+        beyond = corner + way * (1 + 0.12 * metres / max(np.linalg.norm(way), 0.05 * metres))
+        axes.text(*beyond, names[axis], ha="left" if way[0] > 0.1 * metres else "right" if way[0] < -0.1 * metres else "center",
+                  va="top" if way[1] < -0.1 * metres else "center", fontsize=7.5, zorder=10)

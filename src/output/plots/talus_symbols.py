@@ -138,6 +138,54 @@ def label(axes, boundary, points, normals, size):
               va="bottom" if n[0][1] > 0.5 else "top" if n[0][1] < -0.5 else "center")
 
 
+AROUND = [(side * x, y, "left" if side > 0 else "right", "baseline") for y, x in ((4, 4), (-10, 4), (12, 2), (-18, 2)) for side in (1, -1)]  # of a point [points]
+ABOVE = [(0, y, align, "baseline") for y in (5, -11, 14, -20) for align in ("center", "left", "right")]
+
+
+def keep_apart(axes, lines=()):
+    """Moves names in axes that stand on other texts: those of points and followed lines to another side of them, those of soils to another of
+    their `places`, where none of `lines` (each [n, 2]) runs through them either. Texts that cannot move stay where they are."""
+    renderer = axes.figure.canvas.get_renderer()
+    placed = [text.get_window_extent(renderer) for text in axes.texts if text.get_text() and not hasattr(text, "places")]
+    marks = np.array([point for line in lines for point in axes.transData.transform(between(np.asarray(line), axes))]).reshape(-1, 2)
+
+    def crowd(text, through):
+        box = text.get_window_extent(renderer).padded(1)
+        shared = sum(common.width * common.height for one in placed if (common := box.intersection(box, one)) is not None)
+        return shared + 20 * (through and np.count_nonzero(((marks > box.min) & (marks < box.max)).all(axis=1)))
+
+    for text in sorted((one for one in axes.texts if hasattr(one, "places")), key=lambda one: one.of_soil):
+        best = np.inf
+        for place in text.places:
+            kept = text.get_position(), text.get_ha(), text.get_va()
+            put(text, place)
+            if (here := crowd(text, text.of_soil)) < best:
+                best = here
+            else:
+                put(text, (*kept[0], *kept[1:]))
+            if best == 0:
+                break
+        placed.append(text.get_window_extent(renderer))
+
+
+def put(text, place):
+    text.set_position(place[:2])
+    if len(place) > 2:
+        text.set(ha=place[2], va=place[3])
+
+
+def between(line, axes):
+    """Points on a polyline, so near to each other that none passes a word unseen."""
+    step = 0.004 * np.ptp(axes.get_xlim())
+    parts = [a + np.linspace(0, 1, min(400, 2 + int(np.linalg.norm(b - a) / step)))[:, None] * (b - a) for a, b in zip(line[:-1], line[1:])]
+    return np.concatenate(parts) if parts else np.asarray(line)
+
+
+def movable(text, places, of_soil=False):
+    """A text that keep_apart may put to any of these places (x, y, alignments)."""
+    text.places, text.of_soil = places, of_soil
+
+
 def named_points(axes, model, flat):
     """Named points and followed lines; `flat` gives the place in the picture of places [..., dim]."""
     places = [flat(point["position"]) for point in model.data["points"]]
@@ -146,11 +194,12 @@ def named_points(axes, model, flat):
         points = flat(line["points"])
         beside = any(np.linalg.norm(place - points[0]) < near for place in places)  # a point, whose name stands to the right
         axes.plot(*points.T, color=style.INK, lw=1.0, ls=(0, (1, 1.4)), zorder=8)
-        axes.annotate(line["name"], points[0], (-3 if beside else 0, 5), textcoords="offset points", fontsize=7.5, ha="right" if beside else "center",
-                      zorder=9, path_effects=[WHITE], style="italic")
+        name = axes.annotate(line["name"], points[0], (-3 if beside else 0, 5), textcoords="offset points", fontsize=7.5, ha="right" if beside else "center",
+                             zorder=9, path_effects=[WHITE], style="italic")
+        movable(name, [(*name.get_position(), name.get_ha(), "baseline"), *ABOVE])
     for point, at in zip(model.data["points"], places):
         axes.plot(*at, "o", ms=4.2, mfc=style.INK, mec="white", mew=0.8, zorder=9)
-        axes.annotate(point["name"], at, (4, 4), textcoords="offset points", fontsize=8, zorder=9, path_effects=[WHITE])
+        movable(axes.annotate(point["name"], at, (4, 4), textcoords="offset points", fontsize=8, zorder=9, path_effects=[WHITE]), AROUND)
 
 
 def dimension(axes, begin, end):

@@ -6,15 +6,17 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
 
 import numpy as np
 
 TALUS, MPIRUN, PLOTS = sys.argv.pop(1), sys.argv.pop(1), sys.argv.pop(1)
 sys.path.insert(0, PLOTS)
-from talus_model import outline  # noqa: E402
+from talus_model import outline, plt  # noqa: E402
 from talus_modelled import Model, stage_rows  # noqa: E402
-from talus_symbols import chains  # noqa: E402
+from talus_perspective import Views  # noqa: E402
+from talus_symbols import chains, keep_apart, movable, named_points  # noqa: E402
 from talus_units import duration, span, text_of  # noqa: E402
 
 SECTION = """part,x,y
@@ -207,6 +209,15 @@ class Variants(unittest.TestCase):
         base, = [one for one in model.boundaries if one.name == "base"]
         self.assertAlmostEqual(area(base.corners[base.has_soil]).sum(), 0.5)
 
+    def test_views_in_3d_say_from_where_they_see_front_and_back(self):
+        model = Model(self.folder.model(*SOLID[:-1], "boundary.front={kind='roller'}", "boundary.back={kind='roller'}"))
+        front, back = ([one for one in model.boundaries if one.name == name][0] for name in ("front", "back"))
+        self.assertEqual([front.line(), back.line()], ["front (z = 0 m): roller", "back (z = 0.5 m): roller"])
+        views = Views(model)
+        for number, (end, seen, hidden) in enumerate((("largest x and z", back, front), ("smallest x and z", front, back))):
+            self.assertIn(end, views.title(number))
+            for boundary, is_seen in ((seen, True), (hidden, False)):
+                self.assertTrue((views.cameras[number].sees(boundary.corners.mean(axis=1), boundary.normal) == is_seen).all(), boundary.name)
 
     def test_soil_that_a_stage_adds_is_not_there(self):
         model = Model(self.folder.model(*FILL))
@@ -289,6 +300,24 @@ class Words(unittest.TestCase):
         self.assertEqual(span(1000, 1000, "Pa"), "1 kPa")
         self.assertEqual(span(0, 12.5, "deg"), "0 to 12.5°")
         self.assertEqual([duration(one) for one in (0.5, 60, 150, 7200, 86400)], ["0.5 s", "60 s", "2.5 min", "2 h", "1 d"])
+
+
+class Names(unittest.TestCase):
+    def test_keep_apart(self):
+        figure, axes = plt.subplots()
+        self.addCleanup(plt.close, figure)
+        axes.set(xlim=(0, 10), ylim=(0, 10))
+        axes.text(5.3, 5.3, "a dimension", ha="left")
+        soil = axes.text(5, 2, "soil", ha="center")
+        movable(soil, [(5, 2), (5, 3), (7, 2)], of_soil=True)
+        points = [{"name": name, "position": place} for name, place in (("crest", [5, 5]), ("upper", [5, 5.1]), ("lower", [5.1, 4.9]))]
+        model = types.SimpleNamespace(data={"points": points, "lines": [{"name": "pile", "points": [[5, 5], [5, 0]]}]})
+        named_points(axes, model, np.asarray)
+        keep_apart(axes, [axes.lines[0].get_xydata()])
+        boxes = [text.get_window_extent() for text in axes.texts]
+        for k, one in enumerate(boxes):
+            self.assertFalse(any(one.overlaps(other) for other in boxes[:k]), axes.texts[k].get_text())
+        self.assertEqual(soil.get_position(), (7, 2))  # off the dotted line
 
 
 class Lines(unittest.TestCase):
