@@ -4,6 +4,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import LightSource
 from matplotlib.ticker import MaxNLocator
+from matplotlib.transforms import offset_copy
 
 import talus_style as style
 from talus_ground import smoothed
@@ -31,19 +32,51 @@ def smoothed_evenly(height, deviation):
     return smoothed(np.pad(height, beyond, mode="reflect", reflect_type="odd"), deviation)[beyond:-beyond, beyond:-beyond]
 
 
+def near(mask, cells):
+    """Cells that are this near to one of the mask."""
+    for _ in range(cells):
+        wider = np.pad(mask, 1)
+        mask = wider[1:-1, 1:-1] | wider[:-2, 1:-1] | wider[2:, 1:-1] | wider[1:-1, :-2] | wider[1:-1, 2:]
+    return mask
+
+
+def places_of_labels(lines, low, high, taken, apart):
+    """Places for the heights of contours, each on its line: away from the edges of the map, not in what is `taken` (a function of places
+    [n, 2]), and `apart` [m] from each other. A line without such a place has no label."""
+    found = np.empty((0, 2))
+    for segments in lines.allsegs:
+        for line in sorted(segments, key=len, reverse=True)[:2]:
+            inside = line[((line > low + 0.7 * apart) & (line < high - 0.7 * apart)).all(axis=1)]
+            free = inside[~taken(inside)]
+            if len(free) and len(found):
+                nearest = np.linalg.norm(free[:, None] - found, axis=2).min(axis=1)
+                free = free[nearest > apart]
+            if len(free):
+                middle = free[np.argmin(np.linalg.norm(free - free.mean(axis=0), axis=1))]
+                found = np.vstack([found, middle])
+    return found
+
+
+def ticks_of(axes, width, height):
+    """As many ticks as numbers with this many digits leave room for; `width`, `height` of the map [inch]."""
+    digits = max(len(f"{value:.0f}") for value in (*axes.get_xlim(), *axes.get_ylim()))
+    for axis, length in ((axes.xaxis, width), (axes.yaxis, height)):
+        axis.set_major_locator(MaxNLocator(int(np.clip(length / (0.12 * digits + 0.2), 1, 8)), min_n_ticks=2, prune="lower"))
+
+
 def draw_map(maps, path):
     """Hill-shaded ground before the slide with contours; thickness, outline and path of the slide upon it."""
     ground, grid, origin = maps.ground, maps.grid, maps.axes.origin[:2]
     size = np.array(grid.shape) * grid.spacing
     tall = np.clip(7.0 * size[1] / size[0], 2.0, 9.0)  # of the map, in inches
-    figure, axes = plt.subplots(figsize=(np.clip(tall * size[0] / size[1], 5.0, 7.0) + 1.4, tall + 1.1), layout="constrained")
+    wide = np.clip(tall * size[0] / size[1], 5.0, 7.0)
+    figure, axes = plt.subplots(figsize=(wide + 1.4, tall + 1.1), layout="constrained")
     east, north = (origin[k] + ground.low[k] + (np.arange(ground.shape[k]) + 0.5) * ground.cell for k in (0, 1))
     before = smoothed_evenly(maps.before, grid.spacing / (2 * ground.cell))
     shade = LightSource(azdeg=315, altdeg=45).hillshade(before.T[::-1], dx=ground.cell, dy=ground.cell)  # it takes north first
     axes.imshow(0.5 + 0.5 * shade, cmap="gray", vmin=0, vmax=1, origin="upper", extent=extent(ground.low[:2], ground.cell, ground.shape, origin))
     levels = MaxNLocator(12).tick_values(before.min(), before.max())
     lines = axes.contour(east, north, before.T, levels, colors=style.SOFT, linewidths=0.5)
-    axes.clabel(lines, fontsize=6, fmt="%g", colors=style.INK)
     deposit = np.ma.masked_where(~maps.covered, maps.thickness[-1])
     image = axes.imshow(deposit.T, cmap=style.colours_of("thickness"), vmin=0, origin="lower", alpha=0.85, zorder=2,
                         extent=extent(grid.low, grid.spacing, grid.shape, origin))
@@ -58,14 +91,28 @@ def draw_map(maps, path):
     axes.plot([], [], color=style.INK, lw=1.0, ls="--", label="outline at the start")
     low, high = origin + grid.low, origin + grid.low + size
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="east [m]", ylabel="north [m]", aspect="equal")
+    ticks_of(axes, min(wide, tall * size[0] / size[1]), min(tall, wide * size[1] / size[0]))
     axes.ticklabel_format(useOffset=False, style="plain")
     axes.tick_params(axis="y", labelrotation=90)
     length = round_length(0.25 * size[0])
     at = low + 0.04 * size
+    inch = size[0] / min(wide, tall * size[0] / size[1])  # [m]
+
+    def taken(place):
+        """By the scale, the arrow to the north, and the soil at the start and at the end."""
+        scale = (place < at + [length + 0.2 * inch, 0.45 * inch]).all(axis=1)
+        arrow = (place > high - [0.45 * inch, 0.75 * inch]).all(axis=1)
+        column, row = np.clip(((place - low) / grid.spacing).astype(int), 0, np.array(grid.shape) - 1).T
+        return scale | arrow | soil[column, row]
+
+    soil = near(maps.covered | (maps.thickness[0] >= maps.limit), int(np.ceil(0.2 * inch / grid.spacing)))
+    if len(places := places_of_labels(lines, low, high, taken, 0.4 * inch)):
+        axes.clabel(lines, fontsize=6, fmt="%g", colors=style.INK, manual=[tuple(place) for place in places])
     axes.plot([at[0], at[0] + length], [at[1]] * 2, color=style.INK, lw=3, solid_capstyle="butt", zorder=5)
     axes.annotate(f"{length:g} m", (at[0] + length / 2, at[1]), (0, 4), textcoords="offset points", ha="center", fontsize=8, zorder=5,
                   bbox={"fc": "white", "ec": "none", "alpha": 0.7, "pad": 1})
-    axes.annotate("N", (0.965, 0.81), (0.965, 0.92), xycoords="axes fraction", ha="center", fontsize=10, zorder=5,
+    head, foot = (offset_copy(axes.transAxes, figure, -14, down, units="points") for down in (-20, -46))
+    axes.annotate("N", (1, 1), (1, 1), xycoords=foot, textcoords=head, ha="center", fontsize=10, zorder=5,
                   arrowprops={"arrowstyle": "<-", "color": style.INK, "lw": 1.4})
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.55 / tall), ncols=3, fontsize=8)
     axes.set_title(maps.results.title, loc="left")

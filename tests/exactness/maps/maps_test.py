@@ -268,6 +268,22 @@ class Maps(unittest.TestCase):
         for ring in maps.rings(maps.covered):
             self.assertTrue(any(one.shape == ring.shape and np.allclose(one, ring) for one in drawn))
 
+    def test_texts_of_a_map_keep_apart(self):
+        for results in ("block1", "plane1"):
+            maps = talus_maps.Maps(talus_maps.checked(FOLDER / results))
+            for east, north in ((WEST, SOUTH), (2.6e6, 1.2e6)):  # also with many digits
+                maps.axes.origin = np.array([east, north, 0.0])
+                with unittest.mock.patch.object(talus_map_pictures.style, "save", side_effect=lambda figure, path: figure):
+                    figure = talus_map_pictures.draw_map(maps, "map.png")
+                figure.canvas.draw()
+                axes = figure.axes[0]
+                texts = [text for text in (*axes.texts, *axes.get_xticklabels(), *axes.get_yticklabels()) if text.get_text()]
+                self.assertTrue({"N"} < {text.get_text() for text in texts})
+                boxes = [text.get_window_extent().frozen() for text in texts]
+                for k, one in enumerate(boxes):
+                    for other, text in zip(boxes[:k], texts):
+                        self.assertFalse(one.overlaps(other), f"{results}: {texts[k].get_text()} over {text.get_text()}")
+
     def test_soil_that_stands_has_not_slid(self):
         velocity = ["--set", 'body.block.velocity=["0.5","0","0"]']  # 0.05 m at the end, a third of the spacing of particles
         talus("run", "block.toml", "-o", "stands", "--no-pictures", *velocity)
