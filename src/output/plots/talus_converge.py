@@ -13,11 +13,12 @@ import sys
 from talus_colours import Colours
 from talus_outcomes import FAILS, MOVES, STANDS, cell_size, outcome, warnings_in, write_json
 from talus_results import Results
-from talus_sections import BELOW, BESIDE, FOOT, HEAD, LEFT, RIGHT, TITLE, WIDTH, Painter, plt
+from talus_sections import BELOW, BESIDE, HEAD, LEFT, RIGHT, TITLE, WIDTH, Painter, plt
 import talus_style as style
 from talus_table import folded, lines_of
 from talus_units import readable_unit, words
 
+FOOT = 0.5  # room for the labels of the lowest axes [inch]
 THINGS = {"cells": "cell size", "steps": "time step", "particles": "number of particles per cell"}
 REMEDY = {
     "cells": "Take smaller cells and look again. Until then their scatter is the error of these numbers",
@@ -140,7 +141,7 @@ def draw(results, rows, by, path):
     columns = len(results)
     wide = (WIDTH - LEFT - RIGHT - BESIDE * (columns - 1)) / columns
     tall = wide * (high[1] - low[1]) / (high[0] - low[0])
-    height = HEAD + len(fields) * (TITLE + tall + BELOW) + FOOT
+    height = HEAD + len(fields) * (TITLE + tall + BELOW) - BELOW + FOOT
     figure = plt.figure(figsize=(WIDTH, height))
     for n, field in enumerate(fields):
         colours = Colours(field, lasts)
