@@ -58,10 +58,19 @@ def places_of_labels(lines, low, high, taken, apart):
 
 
 def ticks_of(axes, width, height):
-    """As many ticks as numbers with this many digits leave room for; `width`, `height` of the map [inch]."""
-    digits = max(len(f"{value:.0f}") for value in (*axes.get_xlim(), *axes.get_ylim()))
-    for axis, length in ((axes.xaxis, width), (axes.yaxis, height)):
-        axis.set_major_locator(MaxNLocator(int(np.clip(length / (0.12 * digits + 0.2), 1, 8)), min_n_ticks=2, prune="lower"))
+    """As many ticks as numbers with this many digits leave room for, none so near to an end that its number passes it; `width`, `height` of the map
+    [inch]."""
+    number = 0.085 * max(len(f"{value:.0f}") for value in (*axes.get_xlim(), *axes.get_ylim()))  # its length [inch]
+    for axis, length, (low, high) in ((axes.xaxis, width, axes.get_xlim()), (axes.yaxis, height, axes.get_ylim())):
+        beside = 0.5 * number / length * (high - low)
+        first = int(np.clip(length / (1.4 * number + 0.2), 1, 8))
+        for most in range(first, first + 3):  # two of them, if they do not touch
+            ticks = MaxNLocator(most, min_n_ticks=2).tick_values(low, high)
+            inside = ticks[(ticks >= low + beside) & (ticks <= high - beside)]
+            if most == first or (len(inside) == 2 and inside[1] - inside[0] > 2.3 * beside):
+                axis.set_ticks(inside)
+            if len(inside) > 1:
+                break
 
 
 def draw_map(maps, path):

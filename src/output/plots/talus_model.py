@@ -180,8 +180,8 @@ def name_body(axes, model, cells, name, metres, **look):
     away = ((centres - middle) ** 2).sum(axis=1)
     order = np.argsort(away)  # all of which lie in the body
     nearest = [centres[order[0]]]
-    for at in centres[order[1:4000]]:
-        if len(nearest) < 150 and (np.abs(at - nearest) > 0.08 * metres).any(axis=1).all():
+    for at in centres[order[1:6000]]:
+        if len(nearest) < 400 and (np.abs(at - nearest) > 0.12 * metres).any(axis=1).all():
             nearest.append(at)
     movable(axes.text(*nearest[0], name, ha="center", va="center", zorder=8, path_effects=[WHITE], **look), nearest, of_soil=True)
 

@@ -138,7 +138,7 @@ def edges(axes, camera, low, high, metres):
 
 def directions(axes, camera, metres, names):
     """Arrows along the axes of coordinates in the lower left corner."""
-    corner = np.array([axes.get_xlim()[0], axes.get_ylim()[0]]) + 0.45 * metres
+    corner = np.array([axes.get_xlim()[0], axes.get_ylim()[0]]) + (0.45 * metres, 0.36 * metres)
     for axis, name in enumerate(np.eye(3)):
         way = 0.34 * metres * np.array([name @ camera.right, name @ camera.top])
         axes.annotate("", corner + way, corner, zorder=9, arrowprops={"arrowstyle": "->", "color": style.INK, "lw": 0.9, "shrinkA": 0, "shrinkB": 0})
