@@ -75,6 +75,13 @@ class Boundary {
   SoilFunctions<3> on_soil_3d_;
 };
 
+/// A boundary of a scene, with the groups of facets that it holds on.
+struct NamedBoundary {
+  std::string name;
+  std::vector<std::string> groups;
+  Boundary kind;
+};
+
 /// Reads the kind that the table names, out of the list in kinds.h. Throws SceneError.
 Boundary read_boundary(const DeferredTable &table);
 

@@ -22,7 +22,7 @@ struct LiquidAtNode {
 template <int dim>
 class PoreConditions {
  public:
-  using Source = typename Conditions<dim>::Source;
+  using Source = NamedBoundary;
   /// `sealed`: the surface of the soil, where no boundary acts on it, lets water out and not in. Collective.
   PetscErrorCode setup(const BackgroundMesh<dim> &mesh, const std::vector<Source> &sources, bool sealed, int vertical);
   /// Is there open water on the free surface, so that `begin` needs its moments?

@@ -27,6 +27,10 @@ struct PrescribedDirections {
     map<dim>(direction[count]) = rest;
     source[count++] = of;
   }
+  /// Takes from a vector its part along the directions.
+  void take_from(Vec<dim> &v) const {
+    for (int k = 0; k < count; ++k) add_scaled<dim>(v, -dot<dim>(v, direction[k]), direction[k]);
+  }
 };
 
 }  // namespace talus

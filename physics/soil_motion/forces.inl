@@ -114,7 +114,7 @@ PetscErrorCode SoilMotion<dim, Phases>::acceleration(double t, const double *u, 
   const Vec<dim> *unbalanced = force_.data();
   if (loading.damping > 0) {  // what supports take up is not out of balance: damping must not change their reactions
     std::copy_n(force_.begin(), grid_.node_count(), scratch_.begin());
-    conditions_.project(grid_, reinterpret_cast<const Vec<dim> *>(v), scratch_.data());
+    conditions_.project(reinterpret_cast<const Vec<dim> *>(v), scratch_.data());
     unbalanced = scratch_.data();
   }
   if constexpr (Phases::liquid)

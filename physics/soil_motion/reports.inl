@@ -185,7 +185,7 @@ PetscErrorCode SoilMotion<dim, Phases>::balance(double, Balance *sums) {
   double local[4]{}, total[4];
   PetscCall(total_force(loading.set_at, accepted_));
   std::copy_n(force_.begin(), grid_.node_count(), scratch_.begin());
-  conditions_.project(grid_, velocities_.now.data(), scratch_.data());
+  conditions_.project(velocities_.now.data(), scratch_.data());
   const auto magnitude = [](const Vec<dim> &x) {
     double s = 0;
     for (double c : x) s += c * c;

@@ -39,4 +39,10 @@ void make_room(std::vector<T> &values, std::size_t count) {
   }
 }
 
+/// `values` become `count` zeros, with room to grow: soil that spreads does not ask for memory at each remap.
+inline void zeros_with_room(std::vector<double> &values, std::size_t count) {
+  if (values.capacity() < count) values.reserve(2 * count);
+  values.assign(count, 0);
+}
+
 }  // namespace talus

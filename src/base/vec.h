@@ -25,4 +25,16 @@ ConstMap<dim> map(const Vec<dim> &v) {
   return ConstMap<dim>(v.data());
 }
 
+template <int dim>
+double dot(const Vec<dim> &a, const Vec<dim> &b) {
+  double sum = 0;
+  for (int d = 0; d < dim; ++d) sum += a[d] * b[d];
+  return sum;
+}
+/// a += scale * b
+template <int dim>
+void add_scaled(Vec<dim> &a, double scale, const Vec<dim> &b) {
+  for (int d = 0; d < dim; ++d) a[d] += scale * b[d];
+}
+
 }  // namespace talus

@@ -33,7 +33,7 @@ std::vector<double> base_clearances(const World<dim> &world) {
   if (std::none_of(sources.begin(), sources.end(), [](const auto &s) { return s.kind.in_motion == OnSoil::contact; }))
     return mean;
   std::vector<Lowest> facets;
-  for (const auto &[source, all] : world.conditions.bases())
+  for (const auto &[source, all] : world.conditions.bases().facets())
     for (const Facet<dim> &f : all)
       facets.push_back({f.cell, f.face, source, f.area, std::numeric_limits<double>::infinity()});
   std::stable_sort(facets.begin(), facets.end(), [](const Lowest &a, const Lowest &b) { return a.cell < b.cell; });

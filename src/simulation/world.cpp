@@ -234,7 +234,7 @@ void World<dim>::make_motion() {
 template <int dim>
 void World<dim>::set_friction_delay() {
   constexpr double shortest_way = 10, across_and_back = 2;
-  conditions.set_friction_delay(
+  conditions.bases().set_friction_delay(
       std::max(shortest_way * mesh.report().smallest_altitude, across_and_back * depth_on_bases_) / wave_speed_);
 }
 
@@ -277,8 +277,8 @@ void World<dim>::seed_bodies() {
     scene.complain("boundary." + conditions.sources()[cancelled].name + ".kind",
                    "is a pressure on a face inside the soil, where it cancels: it pushes with the same force on both "
                    "sides. Draw a crack as a gap in the outline of the section, and name a wall of it");
-  require(conditions.depth_on_bases(mesh, cells_of_bodies([&](size_t b) { return never_fails(laws[b]); }),
-                                    &depth_on_bases_));
+  require(conditions.bases().find_depth(mesh, cells_of_bodies([&](size_t b) { return never_fails(laws[b]); }),
+                                        &depth_on_bases_));
   set_friction_delay();
   seeded_mass_ = total_mass, seeded_particles_ = particle_count;
   make_motion();
@@ -356,7 +356,7 @@ void World<dim>::set_loading(const Stage &stage, double stage_time, const Clock 
   motion->loading.time = clock.load_time;
   motion->loading.damping = stage.damping;
   motion->loading.softening = stage.softening;
-  conditions.remember_slip(stage.softening);
+  conditions.bases().remember_slip(stage.softening);
   motion->loading.pore_flow = stage.pore_flow;
 }
 
@@ -459,7 +459,7 @@ PetscErrorCode World<dim>::check_conservation(double mine_too, double *sum) cons
 template <int dim>
 void World<dim>::reset_displacement(double time) {
   if (motion->gathered()) require(release(time));
-  conditions.forget_slip();
+  conditions.bases().forget_slip();
   for (const auto &body : bodies) {
     const ParticleArrays<dim> &p = body->particles();
     std::copy_n(p.position, p.count, p.reference);
@@ -635,7 +635,7 @@ void World<dim>::divide(const Cuts &cuts) {
   mesh = mesh.divided(cuts), comm = mesh.comm();
   conditions = Conditions<dim>();
   require(conditions.setup(mesh, std::move(sources)));
-  conditions.use_stand_ins(stand_ins), conditions.remember_slip(loading.softening);
+  conditions.use_stand_ins(stand_ins), conditions.bases().remember_slip(loading.softening);
   pressure.set_regions(bodies_of_cells(mesh, scene));
   set_pore_pressure_ratios();
   settle_bodies();

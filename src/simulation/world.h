@@ -24,7 +24,7 @@ namespace talus {
 template <int dim>
 class World {
  public:
-  using Source = typename Conditions<dim>::Source;
+  using Source = NamedBoundary;
 
   /// Reads the mesh from `mesh_file`, or takes that of a host program. Throws SceneError where the scene does not fit
   /// it. The scene must outlive the world. The mesh is divided by `cuts` if these are for as many ranks, otherwise so

@@ -17,13 +17,6 @@ std::array<Vec<dim>, dim + 1> gradients(const std::array<Vec<dim>, dim> &given) 
   return all;
 }
 
-template <int dim>
-double dot(const Vec<dim> &a, const Vec<dim> &b) {
-  double sum = 0;
-  for (int d = 0; d < dim; ++d) sum += a[d] * b[d];
-  return sum;
-}
-
 }  // namespace
 
 /// Eigenvalues of D^-1 A lie between the extremes of those of its cells (Irons & Treharne 1971), which Gershgorin's

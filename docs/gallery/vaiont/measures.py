@@ -57,8 +57,8 @@ def speed_in_stage(results, point, stage):
 
 
 def run_out(results, point):
-    """Largest horizontal displacement of a point [m]."""
-    return way(results, point)[0].max()
+    """Largest horizontal displacement of a point [m], to whichever side."""
+    return np.abs(way(results, point)[0]).max()
 
 
 def at_load(results, t):

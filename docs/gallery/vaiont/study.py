@@ -15,7 +15,11 @@ sys.path.insert(0, str(HERE.parents[2] / "src/output/plots"))
 sys.path.insert(0, str(HERE))
 
 import measures  # noqa: E402
+import mirrored  # noqa: E402
 from talus_results import Results  # noqa: E402
+
+SIZE = 15  # m, of the cells where a case says nothing else
+
 
 def times(factor):
     """The scene with its water `factor` times as slow, and as long a time to come to rest at 60 m."""
@@ -34,7 +38,8 @@ def strength(factor):
 
 CASES = (
     ("as the scene", []),
-    ("cells of 20 m", ["mesh.size=20"]),
+    ("mirrored: x to -x", None),
+    *((f"cells of {size} m", [f"mesh.size={size}"]) for size in (20, 17, 15.1, 14.9, 13)),
     ("cells of 12 m", ["mesh.size=12"]),
     ("cells of 10 m", ["mesh.size=10"]),
     ("cells of 8 m", ["mesh.size=8"]),
@@ -74,7 +79,8 @@ COLUMNS = ("case", "ended", "failure_m", "at_30_m", "at_53_m", "at_60_m", "rest_
 def run(talus, name, changes, folder):
     """One row: what the case gave, or that it broke off."""
     out = pathlib.Path(folder) / "".join(letter for letter in name if letter.isalnum())
-    command = [talus, "run", HERE / "scene.toml", "-o", out, "--no-pictures", "--set", "mesh.size=15", *changes]
+    scene, changes = (mirrored.write(talus, folder, SIZE), []) if changes is None else (HERE / "scene.toml", ["--set", f"mesh.size={SIZE}", *changes])
+    command = [talus, "run", scene, "-o", out, "--no-pictures", *changes]
     subprocess.run(command, stdout=subprocess.DEVNULL, check=False)
     results = Results(out)
     row = {"case": name, "ended": "broke off" if results.broke_off() else "completed"}

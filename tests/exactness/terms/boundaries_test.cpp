@@ -118,7 +118,7 @@ template <int dim>
 void friction_follows_the_normal_impulses_of_the_last_moments() {
   constexpr double delay = 0.017, step = 0.005, angle = 0.4, adhesion = 40;
   Box<dim> box("", "[boundary.base]\nkind = \"friction\"\nfriction_angle = \"0.4 rad\"\nadhesion = 40\n");
-  box.soil.conditions.set_friction_delay(delay);
+  box.soil.conditions.bases().set_friction_delay(delay);
   Equations<dim> exact(box.soil);
   ASSERT_EQ(box.soil.motion->begin(0), 0);
   const auto area = areas(box, exact, "base", true);

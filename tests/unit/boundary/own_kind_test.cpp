@@ -187,7 +187,7 @@ TEST(OwnBoundary, DampsMotion) {
   Square1m soil({{"base", {"base"}, Cushion{}}});
   EXPECT_TRUE(soil.conditions.has_dashpots());
   std::vector<Vec<2>> v(soil.grid.node_count(), Vec<2>{1, -0.5}), force(v.size(), Vec<2>{});
-  soil.conditions.project(soil.grid, v.data(), force.data());  // the matrix of a node times its velocity
+  soil.conditions.project(v.data(), force.data());  // the matrix of a node times its velocity
   double pull[2]{};
   for (int i = 0; i < soil.grid.node_count(); ++i)
     for (int d = 0; d < 2; ++d) pull[d] += soil.mesh.owned[soil.grid.mesh_node[i]] * force[i][d];

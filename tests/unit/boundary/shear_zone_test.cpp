@@ -48,9 +48,9 @@ struct Slab {
     soil.conditions.add_work(u.data());
     return report().friction;
   }
-  Conditions<2>::BaseReport report() {
-    std::vector<Conditions<2>::BaseReport> all;
-    EXPECT_EQ(soil.conditions.take_bases(PETSC_COMM_WORLD, all), 0);
+  RigidBases<2>::Report report() {
+    std::vector<RigidBases<2>::Report> all;
+    EXPECT_EQ(soil.conditions.bases().take_reports(PETSC_COMM_WORLD, all), 0);
     return all[0];
   }
   Square1m soil;
@@ -159,28 +159,28 @@ TEST(FrictionBySlip, FollowsTheWayAlongTheBase) {
   EXPECT_NEAR(slab.report().slip, 0.12, 1e-12);
   slab.step(0.01, speed, -stress);  // in the air
   EXPECT_NEAR(slab.step(0.01), expected(0.12), 1e-12);
-  slab.soil.conditions.remember_slip(false);
+  slab.soil.conditions.bases().remember_slip(false);
   EXPECT_NEAR(slab.step(0.01), expected(0.15), 1e-12);
   EXPECT_NEAR(slab.step(0.01), expected(0.15), 1e-12);
-  slab.soil.conditions.remember_slip(true);
-  slab.soil.conditions.forget_slip();
+  slab.soil.conditions.bases().remember_slip(true);
+  slab.soil.conditions.bases().forget_slip();
   EXPECT_NEAR(slab.step(0.01), expected(0), 1e-12);
 }
 
 /// A stage that does not record slip neither heats the base nor forgets its heat, which spreads on.
 TEST(HeatedBase, IsHeatedOnlyWhereSlipCounts) {
   Slab slab{Boundary(heated(0.01, 0, 0))};
-  slab.soil.conditions.remember_slip(false);
+  slab.soil.conditions.bases().remember_slip(false);
   EXPECT_NEAR(slab.step(0.1), coefficient, 1e-12);
   EXPECT_EQ(slab.report().heat, 0);
-  slab.soil.conditions.remember_slip(true);
+  slab.soil.conditions.bases().remember_slip(true);
   slab.step(0.1);
   const double heat = slab.report().heat;
   EXPECT_GT(heat, 0);
-  slab.soil.conditions.remember_slip(false);
+  slab.soil.conditions.bases().remember_slip(false);
   EXPECT_LT(slab.step(0.1), 0.95 * coefficient);
   EXPECT_NEAR(slab.report().heat, heat, 1e-12 * heat);
-  slab.soil.conditions.forget_slip();
+  slab.soil.conditions.bases().forget_slip();
   EXPECT_NEAR(slab.step(0.1), coefficient, 1e-12);
 }
 

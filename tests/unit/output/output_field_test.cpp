@@ -107,7 +107,7 @@ TEST(RunRow, names_what_it_holds_and_closes_its_ledgers) {
   row.work = {4, 5, -6};
   row.escaped = {.particles = 3, .mass = 50, .fluid_mass = {6, 0}, .momentum = {70, -80}, .energy = 9};
   row.fluids = {{100, 7, 2}}, row.first_fluid = {104};
-  const Conditions<2>::BaseReport base{.slip = 15, .friction = 16, .temperature = 17, .hottest = 18, .pressure = 19};
+  const RigidBases<2>::Report base{.slip = 15, .friction = 16, .temperature = 17, .hottest = 18, .pressure = 19};
   row.boundaries = {{.name = "base",
                      .inflow = true,
                      .is_base = true,
