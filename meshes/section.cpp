@@ -313,7 +313,7 @@ void check(const Section &section) {
     check_polyline(section, p, "the boundary 'b_" + p.part + "'", true, domain, tolerance);
   for (const Seed &seed : section.seeds)
     if (!is_inside(domain, seed.point))
-      complain(section, seed.line, "the seed of region '" + seed.name + "' lies outside the section");
+      complain(section, seed.line, "the point region_" + seed.name + " lies outside the section");
 }
 
 }  // namespace

@@ -168,8 +168,8 @@ class SectionModel {
       const int tag = piece_at(seed.point);
       const auto [at, is_new] = seeded.try_emplace(tag, &seed);
       if (!is_new && at->second->name != seed.name)
-        throw std::invalid_argument(section_.file + " " + section_.entry(seed.line) + ": the seed of region '" +
-                                    seed.name + "' lies in the same piece as that of '" + at->second->name + "' in " +
+        throw std::invalid_argument(section_.file + " " + section_.entry(seed.line) + ": the point region_" +
+                                    seed.name + " lies in the same piece as region_" + at->second->name + " in " +
                                     section_.entry(at->second->line) + "; part them by an interface");
       pieces_.at(tag).name = seed.name;
     }

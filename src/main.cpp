@@ -47,6 +47,29 @@ std::vector<std::string> command_names(const CLI::App &app) {
   return names;
 }
 
+/// Names the words that a command does not know, in the order in which they were typed, with the option that may be
+/// meant; empty where an option is right and its value is not.
+std::string unknown_words(const CLI::App &app, int argc, char **argv) {
+  const auto chosen = app.get_subcommands();
+  if (chosen.empty()) return "";
+  std::vector<std::string> left = app.remaining(true), options, values, known;
+  for (int i = 1; i < argc; ++i)
+    if (const auto at = std::find(left.begin(), left.end(), argv[i]); at != left.end())
+      (at->starts_with('-') ? options : values).push_back(*at), left.erase(at);
+  for (const CLI::Option *option : chosen[0]->get_options())
+    for (const std::string &name : option->get_lnames()) known.push_back(name);
+  std::string text = "talus: " + chosen[0]->get_name() + " ";
+  if (options.empty())
+    return values.empty() ? "" : text + "takes nothing more, and there is " + talus::join(values) + " too";
+  text += "has no option ";
+  for (std::size_t k = 0; k < options.size(); ++k) {
+    const std::string word = options[k].substr(0, options[k].find('=')),
+                      near = talus::nearest(word.substr(std::min(word.find_first_not_of('-'), word.size())), known);
+    text += (k ? ", and no " : "") + word + (near.empty() ? "" : "; did you mean `--" + near + "`?");
+  }
+  return text + "\n`talus " + chosen[0]->get_name() + " --help` describes all of them";
+}
+
 /// Runs the chosen command; owned PETSc objects die in here, before PetscFinalize.
 int perform(int argc, char **argv, MPI_Comm failures, int rank) {
   const bool speaks = rank == 0;
@@ -69,10 +92,18 @@ int perform(int argc, char **argv, MPI_Comm failures, int rank) {
     const talus::Action action = add(app);
     actions[app.get_subcommands({})[before]] = action;
   }
+  for (const char *name : {"run", "solve", "check", "compare", "verify", "bench"})
+    app.get_subcommand(name)->footer(std::string("On several MPI ranks: ./talus ") + name +
+                                     " ... -n RANKS, or without the launcher mpiexec -n RANKS talus " + name + " ...");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError &error) {
     if (!speaks) return error.get_exit_code() ? 2 : 0;
+    if (dynamic_cast<const CLI::ExtrasError *>(&error))
+      if (const std::string sentence = unknown_words(app, argc, argv); !sentence.empty()) {
+        std::fprintf(stderr, "%s\n", sentence.c_str());
+        return 2;
+      }
     const std::vector<std::string> names = command_names(app);
     const std::string word = argc > 1 ? argv[1] : "";
     if (word.empty() || word[0] == '-' || std::find(names.begin(), names.end(), word) != names.end())

@@ -15,6 +15,7 @@
 #include "scene/quantity.h"
 #include "scene/reader.h"
 #include "scene/scene.h"
+#include "scene/words.h"
 #include "simulation/softening.h"
 #include "solvers/integrators.h"
 
@@ -157,7 +158,16 @@ Action add_converge(CLI::App &app) {
   const std::map<std::string, Refined> names{
       {"cells", Refined::cells}, {"steps", Refined::steps}, {"particles", Refined::particles}};
   command->add_option("--by", arguments->refined, "what is refined: cells (mesh.size), steps, particles (per cell)")
-      ->transform(CLI::CheckedTransformer(names))
+      ->transform(CLI::Validator(
+          [names](std::string &word) -> std::string {
+            std::vector<std::string> known;
+            for (const auto &[name, refined] : names) known.push_back(name);
+            const auto found = names.find(word);
+            if (found == names.end()) return "there is no " + word + " to refine; " + suggestion(word, known);
+            word = std::to_string(static_cast<int>(found->second));
+            return "";
+          },
+          "cells|steps|particles"))
       ->default_str("cells");
   command
       ->add_option(

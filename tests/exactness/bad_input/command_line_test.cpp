@@ -16,7 +16,17 @@ void PrintTo(const WrongWords &wrong, std::ostream *out) { *out << wrong.name; }
 
 const WrongWords wrong_words[] = {
     {"no_command", {}, {"A subcommand is required"}},
-    {"unknown_option", {"run", "scene.toml", "--fast"}, {"--fast"}},
+    {"unknown_option", {"run", "scene.toml", "--fast"}, {"run has no option --fast\n", "talus run --help"}},
+    {"misspelt_option",
+     {"check", "scene.toml", "--pictre"},
+     {"check has no option --pictre; did you mean `--picture`?"}},
+    {"two_misspelt_options",
+     {"run", "scene.toml", "--resum", "--forze"},
+     {"has no option --resum; did you mean `--resume`?, and no --forze; did you mean `--force`?"}},
+    {"a_word_too_many", {"check", "scene.toml", "other.toml"}, {"check takes nothing more, and there is other.toml"}},
+    {"unknown_quantity_to_refine",
+     {"converge", "scene.toml", "--by", "cell"},
+     {"there is no cell to refine; did you mean `cells`?"}},
     {"scene_not_there", {"run", "noscene.toml"}, {"noscene.toml is neither a file nor a gallery scene", "column"}},
     {"scene_is_a_folder", {"check", "."}, {". is neither a file nor a gallery scene"}},
     {"unknown_override",

@@ -217,7 +217,7 @@ TEST(BadSection, NamesTheLine) {
   expect_words(complaint(square + "refine_fine,1,1\n"), {"line 6", "refine_SIZE"});
   expect_words(complaint(square + "refine_1,1,1\n"), {"line 6", "second row"});
   expect_words(complaint(square + "free_space,0,1\n"), {"line 6", "height"});
-  expect_words(complaint(square + "region_soil,5,1\n"), {"line 6", "'soil'", "outside"});
+  expect_words(complaint(square + "region_soil,5,1\n"), {"line 6", "region_soil", "outside"});
   expect_words(complaint(square + "outline,4,3\n"), {"line 6", "repeats", "line 4"});
 }
 
