@@ -366,6 +366,13 @@ void TableReader::refuse(const std::string &sentence) const {
                    (path_.empty() ? "" : path_ + ": ") + sentence);
 }
 
+std::string TableReader::written_at(const std::string &key_path) const {
+  const toml::node *node = static_cast<const toml::table *>(table_);
+  for (const std::string &word : split(key_path))
+    if (node) node = child(*node, word);
+  return !node || node->is_table() ? "" : literal(*node);
+}
+
 void TableReader::complain(const std::string &key_path, const std::string &sentence) const {
   const toml::node *node = static_cast<const toml::table *>(table_);
   bool found = true;

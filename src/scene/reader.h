@@ -110,6 +110,9 @@ class TableReader {
   /// Calls visit for each function of the file that is an expression.
   void each_expression(const std::function<void(const Function &)> &visit) const;
 
+  /// The value at a key as the scene writes it, with its unit if it has one; the key is given by its path from here.
+  /// Empty if it is not there, or is a table.
+  std::string written_at(const std::string &key_path) const;
   /// The whole file with overrides applied, as TOML without its comments.
   std::string values() const;
   /// The files of [grids], whose values arrive later.

@@ -60,6 +60,24 @@ std::string tie_of(const Words &words, PhaseModel phases) {
   return "that run was of another kind";
 }
 
+/// Names the keys by which the mesh became another one. Where there are none, its file has changed, as the state says
+/// later.
+void check_mesh(const Scene &scene, const std::vector<std::string> &changed) {
+  Words keys;
+  for (const std::string &path : changed)
+    if (path == "dimension" ||
+        (split(path)[0] == "mesh" && path != "mesh.leaving_particles" && path != "mesh.balance_ranks"))
+      keys.push_back(path);
+  if (keys.empty()) return;
+  const std::string first = keys[0];
+  keys.erase(keys.begin());
+  scene.complain(first, "is not what it was in the run " + scene.start_from.folder +
+                            " that start_from names, so that its mesh was another one" +
+                            (keys.empty() ? "" : " (others too: " + join(keys) + ")") +
+                            ", and its particles, stresses and contacts belong to the cells of that mesh; give it the "
+                            "value that it has there, or run that scene again with this one");
+}
+
 /// Refuses a gravity of another size where a unit weight gives the density: the particles bring that of the other run.
 void check_unit_weights(const Scene &scene, const std::string &values_there) {
   Scene there;
@@ -82,7 +100,9 @@ std::vector<std::string> check_start(const Scene &scene, const CheckpointHeader 
   if (found.program != mine.program)
     throw std::invalid_argument("it is one of " + found.program + ", this is " + mine.program);
   std::vector<std::string> others;
-  for (const std::string &path : changed_keys(found.scene, mine.scene)) {
+  const std::vector<std::string> changed = changed_keys(found.scene, mine.scene);
+  if (found.mesh != mine.mesh) check_mesh(scene, changed);
+  for (const std::string &path : changed) {
     const Words words = split(path);
     if (const std::string tie = tie_of(words, scene.phases); !tie.empty())
       scene.complain(path, "is not what it was in the run " + scene.start_from.folder + " that start_from names, and " +

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "scene/quantity.h"
+#include "scene/reader.h"
 #include "simulation/failure.h"
 #include "simulation/unlikely_parts.h"
 
@@ -43,6 +45,34 @@ Extent extent_of(const std::vector<BodyReport> &bodies) {
     for (int d = 0; d < 3 && b.particles > 0; ++d)
       box.low[d] = std::min(box.low[d], b.low[d]), box.high[d] = std::max(box.high[d], b.high[d]);
   return box;
+}
+
+/// Of the earth, in the units that are mixed up with m/s2, and as in a centrifuge, which is meant; empty if it is
+/// likely.
+std::string doubt_about_gravity(double g) {
+  constexpr double earth = 9.81, least = 0.1, most = 30, alike = 0.01;
+  constexpr double foot = 0.3048;
+  struct {
+    double factor;
+    const char *question;
+  } const mistakes[] = {
+      {1e3, "Is it in mm/s2?"},
+      {1 / foot, "Is it in ft/s2?"},
+      {foot, "Is it 9.81 m/s2, or 32.2 ft/s2, and not 9.81 ft/s2?"},
+      {1e-2, "Is it 9.81 m/s2, and not cm/s2?"},
+      {1e-3, "Is it 9.81 m/s2, and not mm/s2?"},
+  };
+  const std::string said = "gravity is " + rounded(g) + " m/s2; that of the earth is 9.81 m/s2";
+  for (const auto &[factor, question] : mistakes)
+    if (std::abs(g / (earth * factor) - 1) <= alike) return said + ". " + question;
+  if (g > most) return said + ". Is this " + rounded(g / earth) + " times as much meant, as in a centrifuge?";
+  return g < least ? said + ". Is it in another unit than m/s2?" : "";
+}
+
+/// Is a value of the scene, as it is written there, a number with a unit?
+bool has_unit(std::string written) {
+  std::erase(written, '"');
+  return looks_like_quantity(written) && !parse_quantity(written).plain;
 }
 
 /// Motion is computed wave by wave: slides take seconds to minutes, and what takes days is slow enough for equilibrium.
@@ -173,13 +203,11 @@ std::vector<std::string> unlikely_strains(MPI_Comm comm, const std::vector<BodyR
 
 std::vector<std::string> unlikely_surroundings(const Scene &scene, const std::vector<BodyReport> &bodies,
                                                const std::vector<SoilFace> &surface) {
-  constexpr double lowest = 0.01;                       // [m], an experiment on a table
-  constexpr double centrifuge = 3000, asteroid = 1e-3;  // [m/s2]
+  constexpr double lowest = 0.01;  // [m], an experiment on a table
   std::vector<std::string> sentences;
   const double g = scene.gravity_size();
   if (g == 0) return sentences;
-  if (g < asteroid || g > centrifuge)
-    sentences.push_back("gravity is " + rounded(g) + " m/s2; that of the earth is 9.81 m/s2. Is it in mm/s2?");
+  if (const std::string sentence = doubt_about_gravity(g); !sentence.empty()) sentences.push_back(sentence);
   if (scene.water.given && (scene.water.density < 500 || scene.water.density > 3000))
     sentences.push_back("water.density is " + rounded(scene.water.density) +
                         " kg/m3, which hardly any water has; a number without a unit counts in kg/m3. Is it in t/m3?");
@@ -300,11 +328,16 @@ std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<L
     if (bodies[b].particles > 0 && scene.gravity_size() > 0 && depth > 0)
       doubt_for_depth(body, bodies[b], laws[b], bodies[b].mass / bodies[b].volume * scene.gravity_size() * depth,
                       sentences);
-    for (const Doubt &one : doubts)
-      if (one.value > 0 && !one.likely(one.value))
-        sentences.push_back("body." + body.name + "." + one.key + " is " + rounded(one.value / one.unit.si) + " " +
-                            one.unit.name + ", which hardly any soil has; a number without a unit counts in " +
-                            one.unit.name + "." + one.question());
+    for (const Doubt &one : doubts) {
+      if (one.value <= 0 || one.likely(one.value)) continue;
+      const std::string path = "body." + body.name + "." + one.key,
+                        given = scene.root ? scene.root->written_at(path) : "";
+      sentences.push_back(
+          path + " is " + rounded(one.value / one.unit.si) + " " + one.unit.name + ", which hardly any soil has" +
+          (has_unit(given)
+               ? "; the scene gives it as " + given + ". Is another unit meant?"
+               : std::string("; a number without a unit counts in ") + one.unit.name + "." + one.question()));
+    }
   }
   return sentences;
 }

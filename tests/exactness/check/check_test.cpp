@@ -239,6 +239,15 @@ TEST(Check, DoubtsWhatFitsTheSoilBadly) {
       << "a state that has broken off is not looked at";
   EXPECT_TRUE(says({drained, "water.table=[[0, 0.4]]", "water.density=1"}, "Is it in t/m3?"));
   EXPECT_TRUE(says({"gravity=9810"}, "Is it in mm/s2?"));
+  EXPECT_TRUE(says({"gravity=9.81 ft/s2"}, "gravity is 2.99 m/s2; that of the earth is 9.81 m/s2. Is it 9.81 m/s2"));
+  EXPECT_TRUE(says({"gravity=0.00981"}, "Is it 9.81 m/s2, and not mm/s2?"));
+  EXPECT_TRUE(says({"gravity=490.5"}, "Is this 50 times as much meant, as in a centrifuge?"));
+  for (const char *likely : {"gravity=9.81", "gravity=10", "gravity=32.2 ft/s2", "gravity=1.62", "gravity=0"})
+    EXPECT_FALSE(says({likely}, "that of the earth")) << likely;
+  EXPECT_TRUE(says({"body.sand.density=2.7"}, "a number without a unit counts in kg/m3. Is it in t/m3?"));
+  const Ending in_grams = check(folder, {"body.sand.density=2700 g/m3"});
+  EXPECT_TRUE(in_grams.says("hardly any soil has; the scene gives it as")) << in_grams.output;
+  EXPECT_FALSE(in_grams.says("t/m3?")) << in_grams.output;
   EXPECT_TRUE(says({drained, "water.table=[[-9, 0.4], [-8, 0.2]]"}, "runs from x = -9 to -8 m, beside the soil"));
   EXPECT_TRUE(says({drained, "water.table=[[0, -1]]"}, "it gives no pore pressure"));
   EXPECT_FALSE(says({drained, "water.table=[[0, -1]]", "water.level=t"}, "it gives no pore pressure"));

@@ -192,7 +192,7 @@ TEST_F(AfterSource, WhatTheStateIsTiedToIsRefused) {
     expect_refused({key}, {std::string(key, std::string(key).find('=')), "that start_from names"});
   expect_refused({"boundary.right.kind=roller"}, {"boundary.right", "that start_from names"});
   expect_refused({"phases=drained", "water.table=[[0, 0.1]]"}, {"phases", "that start_from names"});
-  expect_refused({"mesh.size=0.2"}, {"start_from", "its mesh was another one"});
+  expect_refused({"mesh.size=0.2"}, {"mesh.size", "its mesh was another one", "belong to the cells of that mesh"});
   expect_refused({"body.sand.cohesion=1e3 + 500 * x"},
                  {"body.sand.cohesion", "strength that varies with place stays with the particles"});
   ASSERT_EQ(work_.run(soil + settle, "varied", {"body.sand.cohesion=1e3 + 500 * x"}).status, 0);
