@@ -183,6 +183,15 @@ void BaseContact<dim>::add_force(std::vector<double> &force, std::vector<Vec<dim
 }
 
 template <int dim>
+void BaseContact<dim>::add_work(const std::vector<double> &u, double share, std::vector<double> &of_source) const {
+  for (const Point &p : points_) {
+    const double pressing = map<dim>(p.spring).dot(map<dim>(p.normal));
+    for (int d = 0; d < dim; ++d)
+      of_source[p.source] -= share * (p.spring[d] - std::min(0., pressing) * p.normal[d]) * u[p.node * dim + d];
+  }
+}
+
+template <int dim>
 PetscErrorCode BaseContact<dim>::each_stiffness(double plastic, double elastic, const Put &put) const {
   PetscFunctionBeginUser;
   typename SoilElements<dim>::Stiffness block;

@@ -34,8 +34,8 @@ BaseForce<dim> force_at_given_friction(const Vec<dim> &spring, const Vec<dim> &n
 template <int dim>
 class BaseContact {
  public:
-  using Source = typename Conditions<dim>::Source;
-  using NormalForce = typename Conditions<dim>::NormalForce;
+  using Source = NamedBoundary;
+  using NormalForce = typename RigidBases<dim>::NormalForce;
   using State = std::vector<Vec<dim>>;  ///< forces of the springs at the last converged state [N]
   using Put = std::function<PetscErrorCode(const int *node, int count, typename SoilElements<dim>::Stiffness &)>;
   /// The references must outlive it.
@@ -59,6 +59,9 @@ class BaseContact {
   void add_trial_force(const std::vector<double> &u, std::vector<double> &force);
   /// The same at the last converged state; `of_source`, if given, receives the force of each boundary on the soil.
   void add_force(std::vector<double> &force, std::vector<Vec<dim>> *of_source = nullptr) const;
+  /// Adds to the work of each boundary on the soil what the forces of the last converged state, times `share`, do on
+  /// the nodal increments `u` [J].
+  void add_work(const std::vector<double> &u, double share, std::vector<double> &of_source) const;
   /// Calls put(node, 1, stiffness): `plastic` times that at the trial state plus `elastic` times that of a layer
   /// between soil and base as stiff as the elements upon it.
   PetscErrorCode each_stiffness(double plastic, double elastic, const Put &put) const;

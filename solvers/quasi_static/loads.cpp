@@ -32,7 +32,7 @@ double Loads<dim>::pore_pressure(const Vec<dim> &x, double t, int soil) const {
 /// -grad p, otherwise as a part of the stress. So does, in any case, the difference that water of the soil's own makes:
 /// it may jump at the soil's border, across which total stress is continuous.
 template <int dim>
-void Loads<dim>::add_volume(int c, double t, std::vector<double> &force) const {
+void Loads<dim>::add_volume(int c, double t, bool only_weight, std::vector<double> &force) const {
   const BackgroundMesh<dim> &mesh = soil_.mesh();
   const int order = soil_.nodes().order(), per_cell = element_nodes<dim>(order);
   std::array<double, element_nodes<dim>(2)> shape;
@@ -46,9 +46,9 @@ void Loads<dim>::add_volume(int c, double t, std::vector<double> &force) const {
   Vec<dim> slope{};
   const auto of_l = barycentric_gradients<dim>(mesh.cells[c]);
   const int soil = soil_.body_of(c);
-  const bool apart = data_.pressure && data_.apart(soil),
-             in_stress = data_.pressure && (apart || !data_.open_water_load);
-  if (data_.pressure)
+  const bool pressed = data_.pressure && !only_weight, apart = pressed && data_.apart(soil),
+             in_stress = pressed && (apart || !data_.open_water_load);
+  if (pressed)
     for (int a = 0; a <= dim; ++a) {
       const Vec<dim> &x = mesh.position[mesh.cells[c].node[a]];
       const double common = pore_pressure(x, t, common_water);
@@ -67,11 +67,11 @@ void Loads<dim>::add_volume(int c, double t, std::vector<double> &force) const {
     for (int a = 0; a <= dim; ++a) here += rule.point[q][a] * stress[a];
     for (int a = 0; a < per_cell; ++a) {
       add(a, density * volume * shape[a], acceleration);
-      if (data_.pressure && data_.open_water_load) add(a, -volume * shape[a], slope);
+      if (pressed && data_.open_water_load) add(a, -volume * shape[a], slope);
       if (in_stress) add(a, volume * here, gradient[a]);
     }
   }
-  if (source.body_acceleration.empty()) return;
+  if (source.body_acceleration.empty() || only_weight) return;
   for (size_t q = 0; q < rule_.point.size(); ++q) {
     const Vec<dim> x = place_in(mesh, c, rule_.point[q]);
     Vec<dim> b;
@@ -85,25 +85,43 @@ void Loads<dim>::add_volume(int c, double t, std::vector<double> &force) const {
 }
 
 template <int dim>
-void Loads<dim>::force(double t, std::vector<double> &force, const std::function<bool(int cell)> &counts) const {
+void Loads<dim>::add_load(const LoadedFacet &load, double t, std::vector<double> &force) const {
   const ElementNodes<dim> &nodes = soil_.nodes();
-  force.assign(static_cast<size_t>(nodes.count()) * dim, 0);
-  for (int c = 0; c < soil_.mesh().cell_count(); ++c)
-    if (soil_.active(c) && (!counts || counts(c))) add_volume(c, t, force);
   std::array<double, element_nodes<dim>(2)> shape;
-  for (const LoadedFacet &load : facets_) {
-    if (counts && !counts(load.facet.cell)) continue;
-    for (size_t q = 0; q < facet_rule_.point.size(); ++q) {
-      Vec<dim> x{};
-      for (int a = 0; a < dim; ++a)
-        for (int d = 0; d < dim; ++d) x[d] += facet_rule_.point[q][a] * nodes.position[load.node[a]][d];
-      shape_functions<dim - 1>(nodes.order(), facet_rule_.point[q], shape.data());
-      const Vec<dim> traction = traction_of(load, x, t);
-      const double area = load.share * load.facet.area * facet_rule_.weight[q];
-      for (size_t a = 0; a < load.node.size(); ++a)
-        for (int d = 0; d < dim; ++d) force[load.node[a] * dim + d] += area * shape[a] * traction[d];
-    }
+  for (size_t q = 0; q < facet_rule_.point.size(); ++q) {
+    Vec<dim> x{};
+    for (int a = 0; a < dim; ++a)
+      for (int d = 0; d < dim; ++d) x[d] += facet_rule_.point[q][a] * nodes.position[load.node[a]][d];
+    shape_functions<dim - 1>(nodes.order(), facet_rule_.point[q], shape.data());
+    const Vec<dim> traction = traction_of(load, x, t);
+    const double area = load.share * load.facet.area * facet_rule_.weight[q];
+    for (size_t a = 0; a < load.node.size(); ++a)
+      for (int d = 0; d < dim; ++d) force[load.node[a] * dim + d] += area * shape[a] * traction[d];
   }
+}
+
+template <int dim>
+void Loads<dim>::force(double t, std::vector<double> &force, const std::function<bool(int cell)> &counts) const {
+  force.assign(static_cast<size_t>(soil_.nodes().count()) * dim, 0);
+  for (int c = 0; c < soil_.mesh().cell_count(); ++c)
+    if (soil_.active(c) && (!counts || counts(c))) add_volume(c, t, false, force);
+  for (const LoadedFacet &load : facets_)
+    if (!counts || counts(load.facet.cell)) add_load(load, t, force);
+}
+
+template <int dim>
+void Loads<dim>::weight(double t, std::vector<double> &force, const std::function<bool(int cell)> &counts) const {
+  force.assign(static_cast<size_t>(soil_.nodes().count()) * dim, 0);
+  for (int c = 0; c < soil_.mesh().cell_count(); ++c)
+    if (soil_.active(c) && (!counts || counts(c))) add_volume(c, t, true, force);
+}
+
+template <int dim>
+void Loads<dim>::load_of(int source, double t, std::vector<double> &force,
+                         const std::function<bool(int cell)> &counts) const {
+  force.assign(static_cast<size_t>(soil_.nodes().count()) * dim, 0);
+  for (const LoadedFacet &load : facets_)
+    if (load.source == source && (!counts || counts(load.facet.cell))) add_load(load, t, force);
 }
 
 /// Force per area of a boundary that loads, and of open water [Pa].

@@ -137,7 +137,19 @@ PetscErrorCode QuasiStatic<dim>::begin_path(double load_time) {
   loads_.force(load_time, external);
   const Vec<dim> now = std::exchange(loads_.acceleration, borne_acceleration_);
   loads_.force(load_time, unborne_, [this](int cell) { return soil_.stressed(cell); });
-  loads_.acceleration = now, share_ = 0;
+  loads_.weight(load_time, unborne_parts_.gravity, [this](int cell) { return soil_.stressed(cell); });
+  loads_.acceleration = now, share_ = 0, load_time_ = load_time;
+  std::vector<double> whole;
+  loads_.weight(load_time, whole);
+  for (size_t i = 0; i < whole.size(); ++i) unborne_parts_.gravity[i] = whole[i] - unborne_parts_.gravity[i];
+  unborne_parts_.loads.assign(sources_.size(), {});
+  for (size_t s = 0; s < sources_.size(); ++s) {
+    if (!loads_.loads(static_cast<int>(s))) continue;
+    std::vector<double> &part = unborne_parts_.loads[s];
+    loads_.load_of(static_cast<int>(s), load_time, part, [this](int cell) { return soil_.stressed(cell); });
+    loads_.load_of(static_cast<int>(s), load_time, whole);
+    for (size_t i = 0; i < whole.size(); ++i) part[i] = whole[i] - part[i];
+  }
   for (size_t i = 0; i < external.size(); ++i) unborne_[i] = external[i] - unborne_[i], external[i] -= internal[i];
   PetscCall(soil_.nodes().add_to_global(external, out_of_balance_));
   PetscCall(unknowns_.turn(out_of_balance_, true));
@@ -151,7 +163,7 @@ template <int dim>
 PetscErrorCode QuasiStatic<dim>::prepare(double share, double load_time, double time, double dt, ::Vec x) {
   std::vector<double> external, motion;
   PetscFunctionBeginUser;
-  stopped_ = balanced_ = false, scale_open_ = true, trial_share_ = share;
+  stopped_ = balanced_ = false, scale_open_ = true, trial_share_ = share, trial_load_time_ = load_time;
   soil_.find_suction(load_time);
   bases_.set_strength(load_time);
   loads_.force(load_time, external);
@@ -239,8 +251,68 @@ PetscErrorCode QuasiStatic<dim>::commit(::Vec x, bool softening) {
   std::vector<double> u;
   PetscFunctionBeginUser;
   PetscCall(unknowns_.displacement_of(x, true, u));
+  Working forces;
+  std::vector<double> sums(2 + sources_.size(), 0);
+  PetscCall(working_forces(&forces));
+  PetscCall(add_work(u, 0.5, forces, sums));
+  soil_.deform(u);
+  sums[0] = soil_.stress_work();
   soil_.commit(u, softening), bases_.commit(u);
-  share_ = trial_share_, borne_acceleration_ = loads_.acceleration;
+  share_ = trial_share_, load_time_ = trial_load_time_, borne_acceleration_ = loads_.acceleration;
+  PetscCall(working_forces(&forces));
+  PetscCall(add_work(u, 0.5, forces, sums));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM,
+                             soil_.nodes().comm()));
+  work_.stress += sums[0], work_.gravity += sums[1];
+  work_.of_boundary.resize(sources_.size());
+  for (size_t s = 0; s < sources_.size(); ++s) work_.of_boundary[s] += sums[2 + s];
+  PetscFunctionReturn(0);
+}
+
+/// At the last converged state. What the soil did not bear when the path began counts by the share of the path.
+template <int dim>
+PetscErrorCode QuasiStatic<dim>::working_forces(Working *forces) const {
+  PetscFunctionBeginUser;
+  const auto without = [this](const std::vector<double> &unborne, std::vector<double> &force) {
+    for (size_t i = 0; share_ < 1 && i < unborne.size(); ++i) force[i] -= (1 - share_) * unborne[i];
+  };
+  loads_.weight(load_time_, forces->gravity);
+  without(unborne_parts_.gravity, forces->gravity);
+  forces->loads.assign(sources_.size(), {});
+  for (size_t s = 0; s < sources_.size(); ++s) {
+    if (!loads_.loads(static_cast<int>(s))) continue;
+    loads_.load_of(static_cast<int>(s), load_time_, forces->loads[s]);
+    if (!unborne_parts_.loads.empty()) without(unborne_parts_.loads[s], forces->loads[s]);
+  }
+  if (supports_.moves()) PetscCall(reactions(load_time_, forces->reaction, nullptr));
+  PetscFunctionReturn(0);
+}
+
+/// Adds what these forces, times `share`, do on nodal increments: `sums` has gravity behind its first entry, then the
+/// boundaries.
+template <int dim>
+PetscErrorCode QuasiStatic<dim>::add_work(const std::vector<double> &u, double share, const Working &forces,
+                                          std::vector<double> &sums) const {
+  PetscFunctionBeginUser;
+  const auto on_u = [&](const std::vector<double> &force) {
+    double work = 0;
+    for (size_t i = 0; i < force.size(); ++i) work += force[i] * u[i];
+    return share * work;
+  };
+  sums[1] += on_u(forces.gravity);
+  std::vector<double> of_source(sources_.size(), 0);
+  for (size_t s = 0; s < sources_.size(); ++s) of_source[s] = on_u(forces.loads[s]);
+  bases_.add_work(u, share, of_source);
+  for (int i = 0; i < soil_.nodes().count() && !forces.reaction.empty(); ++i) {
+    const Support<dim> *s = soil_.nodes().owned[i] ? supports_.at(i) : nullptr;
+    for (int k = 0; s && k < s->count; ++k) {
+      double force = 0, way = 0;
+      for (int d = 0; d < dim; ++d)
+        force += forces.reaction[i * dim + d] * s->direction[k][d], way += u[i * dim + d] * s->direction[k][d];
+      of_source[s->source[k]] += share * force * way;
+    }
+  }
+  for (size_t s = 0; s < sources_.size(); ++s) sums[2 + s] += of_source[s];
   PetscFunctionReturn(0);
 }
 
@@ -272,19 +344,30 @@ void QuasiStatic<dim>::serialize(Archive &archive) {
 
 // ---- what it found ----
 
+/// Forces of the supports on local nodes at the last converged state [N]; `of_base`, if given, receives the force of
+/// each base on the soil. Collective.
 template <int dim>
-PetscErrorCode QuasiStatic<dim>::boundary_forces(double load_time, std::vector<Vec<dim>> &force,
-                                                 std::vector<Vec<dim>> &face) const {
-  std::vector<double> reaction, external;
+PetscErrorCode QuasiStatic<dim>::reactions(double load_time, std::vector<double> &reaction,
+                                           std::vector<Vec<dim>> *of_base) const {
+  std::vector<double> external;
   PetscFunctionBeginUser;
-  const ElementNodes<dim> &nodes = soil_.nodes();
   soil_.internal_force(reaction, false);
-  force.assign(sources_.size(), Vec<dim>{});
-  bases_.add_force(reaction, &force);
+  bases_.add_force(reaction, of_base);
   loads_.force(load_time, external);
   for (size_t i = 0; i < reaction.size(); ++i) reaction[i] -= external[i];
   for (size_t i = 0; share_ < 1 && i < reaction.size(); ++i) reaction[i] += (1 - share_) * unborne_[i];
-  PetscCall(nodes.sum(reaction));
+  PetscCall(soil_.nodes().sum(reaction));
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode QuasiStatic<dim>::boundary_forces(double load_time, std::vector<Vec<dim>> &force,
+                                                 std::vector<Vec<dim>> &face) const {
+  std::vector<double> reaction;
+  PetscFunctionBeginUser;
+  const ElementNodes<dim> &nodes = soil_.nodes();
+  force.assign(sources_.size(), Vec<dim>{});
+  PetscCall(reactions(load_time, reaction, &force));
   for (int i = 0; i < nodes.count(); ++i) {
     const Support<dim> *s = nodes.owned[i] ? supports_.at(i) : nullptr;
     for (int k = 0; s && k < s->count; ++k) {

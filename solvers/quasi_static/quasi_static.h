@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,16 @@ struct StepOutcome {
   bool singular = false;  ///< the linear system had no solution
   bool fails = false;     ///< a mechanism of failure was found for the loads at the end of the path
   bool stopped = false;   ///< somebody asked the program to stop
+};
+
+/// Work on the soil along the paths so far, by forces that are the means of those at the ends of each step: exact where
+/// they are linear in between. The same on all ranks [J].
+struct PathWork {
+  double stress = 0;                ///< on the strains: the sum of all work
+  double gravity = 0;               ///< and what else pulls on all mass
+  std::vector<double> of_boundary;  ///< by loads, prescribed motion and bases
+  /// The rest: by pore pressure, body accelerations, and forces that were out of balance when a path began.
+  double imposed() const { return stress - gravity - std::accumulate(of_boundary.begin(), of_boundary.end(), 0.); }
 };
 
 template <int dim>
@@ -87,12 +98,15 @@ class QuasiStatic {
     typename BaseContact<dim>::State bases;
     double share;
     Vec<dim> borne_acceleration;
+    PathWork work;
   };
-  State save() const { return {soil_.save(), bases_.save(), share_, borne_acceleration_}; }
+  State save() const { return {soil_.save(), bases_.save(), share_, borne_acceleration_, work_}; }
   void restore(const State &state) {
-    soil_.restore(state.soil), bases_.restore(state.bases);
+    soil_.restore(state.soil), bases_.restore(state.bases), work_ = state.work;
     share_ = state.share, borne_acceleration_ = state.borne_acceleration;
   }
+  const PathWork &work() const { return work_; }
+  void set_work(const PathWork &work) { work_ = work; }
   /// The state in a checkpoint, between two paths.
   void serialize(Archive &archive);
   /// Force of each boundary on the soil [N] and mean displacement of each loaded face [m], at the last converged state.
@@ -105,6 +119,15 @@ class QuasiStatic {
   std::function<bool()> stop_asked;  ///< ends iterations when it is true; collective; may be empty
 
  private:
+  /// Nodal forces that do work on the soil, this rank's part [N].
+  struct Working {
+    std::vector<double> gravity, reaction;   ///< `reaction` on the rank that owns a node; empty where no support moves
+    std::vector<std::vector<double>> loads;  ///< by source; empty for those that do not load
+  };
+  PetscErrorCode working_forces(Working *forces) const;
+  PetscErrorCode reactions(double load_time, std::vector<double> &reaction, std::vector<Vec<dim>> *of_base) const;
+  PetscErrorCode add_work(const std::vector<double> &u, double share, const Working &forces,
+                          std::vector<double> &sums) const;
   PetscErrorCode make_solver(SNESLineSearchType line_search = SNESLINESEARCHCP);
   PetscErrorCode start_with_motion(const std::vector<double> &motion, ::Vec x);
   PetscErrorCode stiffness(double plastic, double elastic, const std::vector<double> *motion,
@@ -128,7 +151,10 @@ class QuasiStatic {
          stiffness_scale_ = 1;          // sizes of the forces before the first iteration [N] and of stiffness [Pa]
   double share_ = 1, trial_share_ = 1;  ///< of the path, at the converged state and at the one that is being solved
   std::vector<double> unborne_;         ///< [local nodes][dim] loads at the begin of the path that come along it [N]
-  Vec<dim> borne_acceleration_;         ///< under which the soil was at the last converged state [m/s2]
+  Working unborne_parts_;               ///< likewise
+  double load_time_ = 0, trial_load_time_ = 0;  ///< of the loads, likewise [s]
+  PathWork work_;
+  Vec<dim> borne_acceleration_;  ///< under which the soil was at the last converged state [m/s2]
   bool scale_open_ = true;
   /// Whether the last iterate is in equilibrium. PETSc's reason is not enough: its search for a critical point calls an
   /// iterate that went astray converged where force and step are perpendicular.

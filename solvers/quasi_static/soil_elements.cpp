@@ -296,6 +296,28 @@ PetscErrorCode SoilElements<dim>::each_element(const std::function<PetscErrorCod
   PetscFunctionReturn(0);
 }
 
+template <int dim>
+double SoilElements<dim>::stress_work() const {
+  double work = 0;
+  for (const GaussPoints<dim> &p : points_)
+    for (int q = 0; p.present && q < p.count(); ++q)
+      for (int k = 0; k < components; ++k) {
+        const auto [i, j] = component_axes<dim>()[k];
+        const double mean = (p.stress[q * components + k] + p.trial_stress[q * components + k]) / 2;
+        work += p.volume[q] * (i == j ? 1 : 2) * mean * p.increment[q].strain[k];
+      }
+  return work;
+}
+
+template <int dim>
+double SoilElements<dim>::strain_energy() const {
+  double energy = 0;
+  for (const GaussPoints<dim> &p : points_)
+    for (int q = 0; p.present && q < p.count(); ++q)
+      energy += p.volume[q] * stored_energy<dim>(p.law, &p.stress[q * components]);
+  return energy;
+}
+
 // ---- states ----
 
 template <int dim>

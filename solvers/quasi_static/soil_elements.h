@@ -89,6 +89,11 @@ class SoilElements {
                                 const std::function<PetscErrorCode(const int *, int, Stiffness &)> &put);
   /// Calls visit(nodes, their number) for each element.
   PetscErrorCode each_element(const std::function<PetscErrorCode(const int *, int)> &visit) const;
+  /// Work that the stress, between the committed and the trial state, does on the increment of strain, this rank's part
+  /// [J]. Of elastic soil it is the change of strain energy.
+  double stress_work() const;
+  /// Strain energy at the committed state, this rank's part [J].
+  double strain_energy() const;
   /// Accepts the trial state that `u` led to.
   void commit(const std::vector<double> &u, bool softening);
   /// Displacement counts from here; so does plastic strain.

@@ -262,7 +262,9 @@ PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law>
   for (size_t b = 0; b < settings.kept.size(); ++b)
     if (settings.kept[b]) strength.keep(b);
   if (settings.divided) settings.tell_confined(strength.confine(settings.divided));
+  const PathWork work = problem.work();  // trials do none
   PetscCall(MechanismSearch<dim>(problem, strength, settings, result).run(interrupted));
+  problem.set_work(work);
   strength.restore();
   PetscFunctionReturn(0);
 }

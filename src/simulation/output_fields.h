@@ -201,7 +201,7 @@ struct BoundaryRow {
   double water = 0;                       ///< entering [m3/s]
   double work = 0;                        ///< done on the soil since the start [J]
   double clearance = 0;                   ///< of the soil over a base [m]
-  typename Conditions<dim>::BaseReport base{};
+  typename RigidBases<dim>::Report base{};
 };
 
 /// The whole run in a row of history.csv: sums over all ranks.

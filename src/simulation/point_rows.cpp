@@ -32,8 +32,13 @@ std::vector<double> PointRows<dim>::at(double time, const Statics<dim> &statics)
     found.push_back(state ? 1 : 0);
   }
   MPI_Allreduce(MPI_IN_PLACE, found.data(), static_cast<int>(found.size()), MPI_DOUBLE, MPI_SUM, world_.comm);
-  const double elapsed = velocities_.empty() || statics.current() ? 0 : time - time_;
-  time_ = time, velocities_.resize(count * dim);
+  velocities_.resize(count * dim), earlier_.resize(count * dim);
+  // a row that follows soon on another one, as at the end of a stage, counts from the row before that
+  const bool soon = rows_ > 1 && time - time_ < 0.5 * (time_ - earlier_time_);
+  const std::vector<double> before = soon ? earlier_ : velocities_;
+  const double elapsed = rows_ == 0 || statics.current() ? 0 : time - (soon ? earlier_time_ : time_);
+  if (!soon) earlier_ = velocities_, earlier_time_ = time_;
+  rows_ = statics.current() ? 1 : rows_ + 1, time_ = time;
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> row;
   for (std::size_t i = 0; i < count; ++i) {
@@ -46,8 +51,8 @@ std::vector<double> PointRows<dim>::at(double time, const Statics<dim> &statics)
       row.insert(row.end(), width - dim - 1, nan);
     double square = 0;
     for (int d = 0; d < dim; ++d) {
-      double &before = velocities_[i * dim + d];
-      square += (velocity[d] - before) * (velocity[d] - before), before = velocity[d];
+      const double change = velocity[d] - before[i * dim + d];
+      square += change * change, velocities_[i * dim + d] = velocity[d];
     }
     row.push_back(!there ? nan : elapsed > 0 ? std::sqrt(square) / elapsed : 0);
   }

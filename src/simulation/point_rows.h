@@ -18,16 +18,19 @@ class PointRows {
   /// Names of the columns of one point, which begin with `prefix`.
   std::vector<std::string> names(const std::string &prefix) const;
   /// The columns of all points at a time [s], point by point; those of a point whose particle is gone are NaN. The
-  /// acceleration is the change of velocity since the last call over the time since then; zero in the first one, and in
-  /// stages by finite elements. Collective, the same on all ranks.
+  /// acceleration is the change of velocity since the last call over the time since then, or since the call before that
+  /// where the last one was a short while ago (less than half of the time between these two): the velocity of a single
+  /// step tells nothing of a mean. It is zero in the first call, and in stages by finite elements. Collective, the same
+  /// on all ranks.
   std::vector<double> at(double time, const Statics<dim> &statics);
-  void serialize(Archive &archive) { archive.serialize("points", time_, velocities_); }
+  void serialize(Archive &archive) { archive.serialize("points", rows_, time_, velocities_, earlier_time_, earlier_); }
 
  private:
   const World<dim> &world_;
   TrackedPoints<dim> &points_;
-  double time_ = 0;                 ///< of the last call [s]
-  std::vector<double> velocities_;  ///< of the points then [m/s]; empty: there was none
+  long long rows_ = 0;                        ///< calls since the start or the last stage by finite elements
+  double time_ = 0, earlier_time_ = 0;        ///< of the last call, and of one before it [s]
+  std::vector<double> velocities_, earlier_;  ///< of the points then [m/s]
 };
 
 }  // namespace talus

@@ -382,6 +382,7 @@ void Recorder<dim>::write_history() {
   RunRow<dim> run = run_row();
   MPI_Allreduce(&potential, &run.potential, 1, MPI_DOUBLE, MPI_SUM, of_.world.comm);
   require(of_.world.motion->balance(of_.clock.time, &run.balance));
+  if (of_.statics.current()) run.balance.strain = of_.statics.strain_energy();
   if (phases_.liquid) {
     require(of_.world.motion->fluid_ledger(run.fluids.data()));
     if (of_.clock.time == 0) fluids_before_ = run.fluids;
@@ -398,8 +399,8 @@ void Recorder<dim>::write_history() {
   }
   std::vector<Vec<dim>> impulses, faces(run.boundaries.size());
   require(of_.world.conditions.take_impulses(of_.world.comm, impulses));
-  std::vector<typename Conditions<dim>::BaseReport> bases;
-  require(of_.world.conditions.take_bases(of_.world.comm, bases));
+  std::vector<typename RigidBases<dim>::Report> bases;
+  require(of_.world.conditions.bases().take_reports(of_.world.comm, bases));
   const std::vector<double> clearances = base_clearances(of_.world);
   for (size_t s = 0; s < bases.size(); ++s)
     run.boundaries[s].base = bases[s], run.boundaries[s].clearance = clearances[s];
@@ -414,6 +415,9 @@ void Recorder<dim>::write_history() {
   const WorkDone &done = of_.world.motion->work();
   work.insert(work.end(), {done.gravity, done.imposed, done.damping});
   MPI_Allreduce(MPI_IN_PLACE, work.data(), static_cast<int>(work.size()), MPI_DOUBLE, MPI_SUM, of_.world.comm);
+  const PathWork by_statics = of_.statics.work();
+  for (std::size_t s = 0; s < by_statics.of_boundary.size(); ++s) work[s] += by_statics.of_boundary[s];
+  work.end()[-3] += by_statics.gravity, work.end()[-2] += of_.statics.imposed_work();
   if (of_.clock.time == 0) work_before_ = work;
   work_before_.resize(work.size());
   for (std::size_t k = 0; k < work.size(); ++k) work[k] -= work_before_[k];

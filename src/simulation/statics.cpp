@@ -101,6 +101,7 @@ template <int dim>
 void Statics<dim>::begin_stage(const Stage &stage, bool soil_moves) {
   if (!problem_) prepare();
   if (moved_since_) to_gauss_points();
+  const double before = strain_energy();
   world_.choose_bodies(stage, clock_);
   choose_laws(stage);
   require(activate());
@@ -108,8 +109,16 @@ void Statics<dim>::begin_stage(const Stage &stage, bool soil_moves) {
   current_ = true, moved_since_ = false;
   check_supports(soil_moves);
   if (stage.initial_stress == InitialStress::k0) start_stress();
+  imposed_ += strain_energy() - before;
   problem_->set_acceleration(world_.scene.acceleration_in(stage));
   require(problem_->begin_path(clock_.load_time));
+}
+
+template <int dim>
+double Statics<dim>::strain_energy() const {
+  double energy = problem_->soil().strain_energy();
+  MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPI_DOUBLE, MPI_SUM, world_.comm);
+  return energy;
 }
 
 template <int dim>
@@ -203,7 +212,9 @@ void Statics<dim>::save_seeped_pressure(const std::string &directory) const {
 template <int dim>
 void Statics<dim>::serialize(Archive &archive) {
   bool begun = made();
+  PathWork done = work();
   archive.serialize("statics", begun, current_, moved_since_);
+  archive.serialize("work of statics", imposed_, done.stress, done.gravity, done.of_boundary);
   archive.records("pressure of seepage", seeped_cells_);
   std::string lost;
   for (const std::string &name : lost_stages) lost += name + '\n';
@@ -219,6 +230,7 @@ void Statics<dim>::serialize(Archive &archive) {
   }
   if (begun) {
     problem_->serialize(archive);
+    problem_->set_work(done);
     if (flow_) flow_->serialize(archive);
   }
   if (archive.reading()) use_seeped_pressure();
@@ -231,14 +243,20 @@ std::vector<double> Statics<dim>::inflow() const {
 }
 
 /// Stress is linear between the Gauss points of a cell; history too, but not beyond what the points have: strength must
-/// not grow.
+/// not grow. Nor does stress go beyond them where it is `between`: what soil bears at all of them, it bears there.
 template <int dim>
-void Statics<dim>::interpolate(int cell, const Barycentric<dim> &l, double *stress, double *history) const {
+void Statics<dim>::interpolate(int cell, const Barycentric<dim> &l, bool between, double *stress,
+                               double *history) const {
   const SoilElements<dim> &soil = problem_->soil();
   const int per_cell = soil.points_per_cell(), first = soil.first_point(cell), body = soil.body_of(cell);
   const double near = per_cell > 1 ? soil.rule().point[0][0] : 1, far = per_cell > 1 ? soil.rule().point[0][1] : 0;
   std::array<double, dim + 1> weight{};
   for (int a = 0; a < per_cell; ++a) weight[a] = per_cell > 1 ? (l[a] - far) / (near - far) : 1;
+  if (between) {
+    double sum = 0;
+    for (double &w : weight) sum += w = std::max(w, 0.);
+    for (double &w : weight) w /= sum;
+  }
   const GaussPoints<dim> &points = soil.points()[body];
   const auto value = [&](const std::vector<double> &field, int width, int k) {
     double sum = 0;
@@ -265,12 +283,13 @@ void Statics<dim>::to_particles() {
     for (int i = 0; i < p.count; ++i) {
       const int cell = p.cell[i];
       const Barycentric<dim> l = barycentric(world_.mesh.cells[cell], p.position[i]);
-      interpolate(cell, l, &p.stress[i * stress_size<dim>], p.history + i * memory);
+      interpolate(cell, l, false, &p.stress[i * stress_size<dim>], p.history + i * memory);
       const Vec<dim> u = problem_->soil().displacement(cell, l);
       for (int d = 0; d < dim; ++d) p.reference[i][d] = p.position[i][d] - u[d], p.velocity[i][d] = 0;
     }
   }
-  require(world_.conditions.set_normal_forces(world_.mesh, problem_->bases().normal_forces(), clock_.load_time));
+  require(
+      world_.conditions.bases().set_normal_forces(world_.mesh, problem_->bases().normal_forces(), clock_.load_time));
   if (world_.phases.liquid)
     world_.motion->fill_pores([this](int cell, const Vec<dim> &x) {
       return flow_->pressure_at(cell, barycentric(world_.mesh.cells[cell], x));
@@ -312,7 +331,6 @@ std::optional<ParticleState<dim>> Statics<dim>::state_at(const Vec<dim> &x) cons
   state.body = problem_->soil().body_of(cell), state.position = x;
   state.displacement = problem_->soil().displacement(cell, l);
   state.history.resize(world_.bodies[state.body]->history_count());
-  interpolate(cell, l, state.stress.data(), state.history.data());
   if (world_.phases.prescribed) state.pore_pressure = world_.pressure(x, clock_.load_time, state.body);
   if (world_.phases.liquid) {
     state.pore_pressure = flow_->pressure_at(cell, l), state.saturation = flow_->saturation(cell, l);
@@ -322,7 +340,37 @@ std::optional<ParticleState<dim>> Statics<dim>::state_at(const Vec<dim> &x) cons
   const Law &law = world_.bodies[state.body]->law();
   state.strength =
       StrengthByPlace(world_.scene.body[state.body].law, law).shares(law, x[0], x[1], dim == 3 ? x[dim - 1] : 0);
+  interpolate(cell, l, false, state.stress.data(), state.history.data());
+  if (!bears(cell, state)) interpolate(cell, l, true, state.stress.data(), state.history.data());
   return state;
+}
+
+/// Is the stress within the strength of the soil in this cell? On a line from one Gauss point through another it may
+/// leave it behind them.
+template <int dim>
+bool Statics<dim>::bears(int cell, const ParticleState<dim> &state) const {
+  constexpr double round_off = 1e-9;
+  const GaussPoints<dim> &points = problem_->soil().points()[state.body];
+  if (never_fails(points.law)) return true;
+  const int first = problem_->soil().first_point(cell), number = 0;
+  std::array<double, stress_size<dim>> stress, admitted;
+  std::copy_n(state.stress.begin(), stress_size<dim>, stress.begin());
+  std::vector<double> history(state.history.begin(), state.history.end()), changed = history;
+  admit_stress<dim>(points.law, {.count = 1,
+                                 .stress_in = stress.data(),
+                                 .history_in = history.data(),
+                                 .stress_out = admitted.data(),
+                                 .history_out = changed.data(),
+                                 .cell = &number,
+                                 .increment = &points.increment[first],
+                                 .size = &points.size[first],
+                                 .suction = points.suction.empty() ? nullptr : &points.suction[first],
+                                 .cohesion_share = &state.strength.cohesion,
+                                 .friction_share = &state.strength.friction});
+  double largest = 0, change = 0;
+  for (int k = 0; k < stress_size<dim>; ++k)
+    largest = std::max(largest, std::abs(stress[k])), change = std::max(change, std::abs(admitted[k] - stress[k]));
+  return change <= round_off * largest;
 }
 
 /// The other way after a dynamic stage: Gauss points take the mean of the particles in their cell, weighted by volume;

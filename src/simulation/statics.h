@@ -50,9 +50,15 @@ class Statics {
   /// Columns of the Gauss points, in place of particles.
   Snapshot gauss_points() const;
   /// The state at a place in the soil, or at the nearest place of the soil if it is outside: displacement by the shape
-  /// functions, stress and history between the Gauss points of the cell; at rest. None where another rank has it.
-  /// Collective.
+  /// functions, stress and history between the Gauss points of the cell; at rest. Beyond the Gauss points stress goes
+  /// on linearly where the soil bears it, else it is that of the nearest place between them. None where another rank
+  /// has it. Collective.
   std::optional<ParticleState<dim>> state_at(const Vec<dim> &x) const;
+  /// Work of the stages by finite elements so far, and the strain energy of the soil while `current` [J]; the same on
+  /// all ranks. Strain energy that a stage begins with or that leaves with a body is imposed. The second is collective.
+  PathWork work() const { return made() ? problem_->work() : PathWork{}; }
+  double imposed_work() const { return work().imposed() + imposed_; }
+  double strain_energy() const;
   /// Volume per time that enters through each boundary of the motion [m3/s]; none while the motion has the soil.
   /// Collective.
   std::vector<double> inflow() const;
@@ -75,7 +81,8 @@ class Statics {
   void pressure_from_particles();
   void use_seeped_pressure();
   int cell_at(const Vec<dim> &x) const;
-  void interpolate(int cell, const Barycentric<dim> &l, double *stress, double *history) const;
+  void interpolate(int cell, const Barycentric<dim> &l, bool between, double *stress, double *history) const;
+  bool bears(int cell, const ParticleState<dim> &state) const;
 
   World<dim> &world_;
   const Clock &clock_;
@@ -84,6 +91,7 @@ class Statics {
   std::vector<double> seeped_cells_;  ///< of this rank, as CellPressure takes them
   std::shared_ptr<const CellPressure<dim>> seeped_;
   bool current_ = false, moved_since_ = false;
+  double imposed_ = 0;  ///< strain energy that stages began with, less what left with bodies [J]
 };
 
 }  // namespace talus

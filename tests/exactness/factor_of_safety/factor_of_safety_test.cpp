@@ -61,6 +61,21 @@ TEST(FactorOfSafety, depends_neither_on_elasticity_nor_on_initial_stress) {
   }
 }
 
+/// In the corners of a slope the stress of its Gauss points, drawn out linearly, may leave the yield surface.
+TEST(FactorOfSafety, leaves_named_points_with_a_stress_that_the_soil_bears) {
+  Scene scene =
+      read_scene(std::string(TALUS_SLOPES) + "/scene.toml",
+                 coarse + Overrides{"output.point={toe={position=[48.768, 0]}, crest={position=[18.288, 15.24]}, "
+                                    "face={position=[33.528, 7.62]}, corner={position=[0, 0]}}"});
+  RunOptions options;
+  options.pictures = options.screen = false;
+  const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+  simulation->factor_of_safety();
+  for (const char *point : {"toe", "crest", "face", "corner"})
+    for (const double phi : simulation->history().column(std::string(point) + "_mobilised_friction_deg"))
+      EXPECT_LT(phi, 20 * (1 + 1e-6)) << point;
+}
+
 /// Soil with half of the strength has half of the factor, though it does not stand; with twice of it, twice the factor.
 TEST(FactorOfSafety, is_proportional_to_strength) {
   const Overrides flow{"body.soil.dilation_angle=20"};

@@ -36,6 +36,67 @@ TEST(HistoryRows, static_stages_show_the_place_itself) {
   }
 }
 
+/// Energies of the last row [J].
+struct Energies {
+  double strain, gravity, imposed, dissipated;
+  explicit Energies(const HistoryTable &history)
+      : strain(history.column("strain_J").back()),
+        gravity(history.column("work_gravity_J").back()),
+        imposed(history.column("work_imposed_J").back()),
+        dissipated(history.column("dissipated_J").back()) {}
+};
+constexpr double round_off = 1e-9;
+const std::string equilibrium = "[[stage]]\nname = \"rest\"\nkind = \"quasi_static\"\nduration = 1\n";
+
+/// Weight that grows from nothing along a path does half of the work of the whole weight on the same way: all of it is
+/// strain energy of elastic soil, w^2 h^3 / (6 M) per width, in however many steps.
+TEST(HistoryRows, static_stages_do_the_work_that_elastic_soil_stores) {
+  const double modulus = 10e6 * 0.7 / (1.3 * 0.4), weight = 2000 * 10, exact = weight * weight / (6 * modulus);
+  for (const char *steps : {"stage.rest.load_steps=1", "stage.rest.load_steps=5"}) {
+    const Energies e(solve(column + equilibrium, {steps}).history);
+    EXPECT_NEAR(e.strain, exact, round_off * exact) << steps;
+    EXPECT_NEAR(e.gravity, exact, round_off * exact) << steps;
+    EXPECT_NEAR(e.imposed, 0, round_off * exact);
+    EXPECT_NEAR(e.dissipated, 0, round_off * exact);
+  }
+}
+
+/// So do loads and plates, each under its name; a second path adds to the first.
+TEST(HistoryRows, static_stages_count_the_work_of_loads_and_plates) {
+  const std::string more = equilibrium + "[[stage]]\nname = \"more\"\nkind = \"quasi_static\"\nduration = 1\n";
+  const double modulus = 10e6 * 0.7 / (1.3 * 0.4);
+  const HistoryTable pressed = solve(column + more + "[boundary.top]\nkind = \"traction\"\npressure = \"1e4 * t\"\n",
+                                     {"gravity=0", "boundary.top.group=surface"})
+                                   .history;
+  const double stored = 2e4 * 2e4 / (2 * modulus);
+  EXPECT_NEAR(pressed.column("strain_J").back(), stored, round_off * stored);
+  EXPECT_NEAR(pressed.column("work_top_J").back(), stored, round_off * stored);
+  EXPECT_NEAR(pressed.column("dissipated_J").back(), 0, round_off * stored);
+  const HistoryTable moved =
+      solve(column + more + "[boundary.top]\nkind = \"velocity\"\nvelocity = [\"0\", \"-1e-3\"]\n",
+            {"gravity=0", "boundary.top.group=surface"})
+          .history;
+  const double squeezed = modulus * 2e-3 * 2e-3 / 2;
+  EXPECT_NEAR(moved.column("strain_J").back(), squeezed, round_off * squeezed);
+  EXPECT_NEAR(moved.column("work_top_J").back(), squeezed, round_off * squeezed);
+  EXPECT_NEAR(moved.column("dissipated_J").back(), 0, round_off * squeezed);
+}
+
+/// Stress that a stage begins with is imposed; soil that yields dissipates; water that is prescribed does work too.
+TEST(HistoryRows, static_stages_dissipate_what_yields) {
+  const Energies at_rest(solve(column + equilibrium, {"stage.rest.initial_stress=k0"}).history);
+  EXPECT_GT(at_rest.imposed, 0.9 * at_rest.strain);
+  EXPECT_NEAR(at_rest.dissipated, 0, round_off * at_rest.strain);
+  const Energies wet(solve(column + equilibrium, {"phases=drained", "water.table=[[0, 1], [1, 1]]"}).history);
+  EXPECT_NEAR(wet.imposed, -0.5 * wet.gravity, round_off * wet.gravity) << "buoyancy is half of the weight";
+  EXPECT_NEAR(wet.dissipated, 0, round_off * wet.strain);
+  const Energies yields(solve(column + equilibrium, {"body.soil.law=mohr_coulomb", "body.soil.cohesion=100",
+                                                     "body.soil.friction_angle=10", "stage.rest.load_steps=10"})
+                            .history);
+  EXPECT_GT(yields.dissipated, 0.01 * yields.strain);
+  EXPECT_NEAR(yields.gravity, yields.strain + yields.dissipated, round_off * yields.strain);
+}
+
 /// In drained soil a support bears the effective weight: the pressure of the water at the base bears the rest.
 TEST(HistoryRows, show_the_effective_force_of_drained_soil) {
   const HistoryTable history = solve(column + "[[stage]]\nkind = \"quasi_static\"\nduration = 1\n",
@@ -82,6 +143,21 @@ TEST(HistoryRows, show_the_mean_acceleration_since_the_row_before) {
     rising += v[i] > v[i - 1];
   }
   EXPECT_GT(rising, 5);
+}
+
+/// A row at the end of a stage, soon after another one, is a mean over as long a time as the others. The top of a
+/// column that falls freely, until the wave from the base arrives after 12 ms, by an acceleration that grows with time
+/// shows over which.
+TEST(HistoryRows, do_not_end_with_the_acceleration_of_a_single_step) {
+  const HistoryTable history =
+      solve(column + "[output.point.top]\nposition = [0.5, 1]\n[[stage]]\nduration = 0.0085\n",
+            {"output.history_interval=0.002", "mesh.size=0.05", "body.soil.body_acceleration=[\"0\", \"-1000 * t\"]"})
+          .history;
+  const std::vector<double> a = history.column("top_acceleration_m_s2"), t = history.column("time_s");
+  const size_t n = t.size();
+  ASSERT_LT(t[n - 1] - t[n - 2], 0.5 * (t[n - 2] - t[n - 3]));
+  EXPECT_NEAR(a[n - 2], 10 + 1000 * (t[n - 2] + t[n - 3]) / 2, 0.2);
+  EXPECT_NEAR(a[n - 1], 10 + 1000 * (t[n - 1] + t[n - 3]) / 2, 0.2);
 }
 
 /// Rows come with the first step that reaches their time, and the motion is the same to the last bit however many there
