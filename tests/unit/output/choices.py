@@ -170,6 +170,16 @@ class Energies(unittest.TestCase):
         self.assertEqual(list(drawn["Δ potential"]), [0, -5])
 
 
+    def test_of_a_mechanism_are_not_drawn(self):
+        history = History.__new__(History)
+        history.time, history.step, history.stage = np.arange(3.0), np.arange(3), ["start", "gravity", "strength reduction"]
+        history.columns = {"strain_J": np.array([0.0, 2, 9]), "work_gravity_J": np.array([0.0, 3, 3]), "dissipated_J": np.array([0.0, 1, -6])}
+        seen = []
+        with unittest.mock.patch.object(talus_sweep.style, "save", lambda figure, path: seen.append(figure)):
+            draw_histories(types.SimpleNamespace(history=history, title="", per_metre=lambda text: text), pathlib.Path())
+        self.assertGreaterEqual(min(np.nanmin(line.get_ydata()) for line in seen[0].axes[0].lines if len(line.get_ydata()) == 3), 0)
+
+
 class Histories(unittest.TestCase):
     def test_a_stage_begins_where_the_one_before_ended(self):
         history = History.__new__(History)
