@@ -46,6 +46,10 @@ struct FactorBracket {
   double lower = 0, upper = 0;
   bool decided = true;
   double value() const { return (lower + upper) / 2; }
+  /// Is it so wide that it says nothing of the factor?
+  bool failed() const { return !decided && upper > widest * lower; }
+
+  static constexpr double widest = 1.1;
 };
 
 /// A motion by which soil fails, and the factor of safety at which it does.

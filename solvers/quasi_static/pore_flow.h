@@ -38,7 +38,7 @@ struct WaterBalance {
 template <int dim>
 class PoreFlow {
  public:
-  using Source = typename Conditions<dim>::Source;
+  using Source = NamedBoundary;
   /// `suction`: pores may dry; otherwise they stay full at any pressure. `more` are boundaries of the water in addition
   /// to those that the motion has too. The references must outlive it.
   PoreFlow(const BackgroundMesh<dim> &mesh, const Scene &scene, const std::vector<Source> &sources, bool suction,

@@ -20,7 +20,7 @@ struct Support : PrescribedDirections<dim> {
 template <int dim>
 class Supports {
  public:
-  using Source = typename Conditions<dim>::Source;
+  using Source = NamedBoundary;
   /// Collective. `active` [cells]: facets count where their cell is active.
   PetscErrorCode setup(const BackgroundMesh<dim> &mesh, const ElementNodes<dim> &nodes, const std::vector<char> &active,
                        const std::vector<Source> &sources);

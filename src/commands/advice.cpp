@@ -105,12 +105,14 @@ class Adviser {
   void softening(const BodyNeeds &b) {
     const double slope = b.softening.slope;
     if (slope == 0) return;
-    if (b.averaging_length > 0 && b.averaging_length < b.body.cell_size)
-      say("The averaging_length of " + b.body.name + ", " + digits(b.averaging_length) +
-          " m, is less than its cells of " + digits(b.body.cell_size) +
-          " m: the average then hardly reaches the next cell, and bands are as wide as cells are; take cells of at "
-          "most "
-          "this length.");
+    constexpr double resolved = 0.8;  // of the averaging length: the rock of Vaiont stands in larger cells
+    const double largest = resolved * b.averaging_length;
+    if (b.averaging_length > 0 && b.body.cell_size > largest)
+      say("Cells of " + b.body.name + ", " + digits(b.body.cell_size) + " m, do not resolve its averaging_length of " +
+          digits(b.averaging_length) +
+          " m: the average hardly reaches the next cell, and the soil seems stronger than it is (with 20 m the rock of "
+          "the gallery's vaiont stands in cells of 17 m, and fails in cells of 15 m and less); take cells of at most " +
+          digits(largest) + " m.");
     if (b.averaging_length > 0) return;  // bands are wider than a cell, and cells do not snap back alone
     if (unscaled(b.law))
       say(b.body.name +
@@ -141,7 +143,12 @@ class Adviser {
     const Stage &first = scene_.stage.front();
     const bool stressed =
         std::all_of(scene_.body.begin(), scene_.body.end(), [](const auto &b) { return !b.stress.empty(); });
-    if (!stressed && first.gravity_ramp == 0 && first.damping == 0)
+    if (stressed || first.gravity_ramp > 0 || first.damping > 0) return;
+    const auto at_rest = [](const Stage &stage) { return is_static(stage.kind); };
+    if (const auto later = std::ranges::find_if(scene_.stage, at_rest); later != scene_.stage.end())
+      say("Stage " + later->name + " would bring the soil to rest under its weight, but comes after " + first.name +
+          ", in which soil without stress falls under it at once; the stage at rest is usually the first.");
+    else
       say("Gravity is applied at once to soil without stress, which oscillates up to twice the static strain; give "
           "body.NAME.stress, or a first stage with gravity_ramp = " +
           digits(20 * needs_.layer.transit, 1) + " s (20 wave transits) and damping.");

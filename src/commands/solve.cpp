@@ -83,15 +83,16 @@ std::string to_json(const FactorOfSafety &factor) {
 }
 
 std::string in_words(const FactorBracket &b) {
-  char text[200];
+  char text[300];
   if (b.decided)
     std::snprintf(text, sizeof text, "%.3f: equilibrium with strength divided by %.4g, a mechanism by %.4g", b.value(),
                   b.lower, b.upper);
   else
     std::snprintf(text, sizeof text,
-                  "between %.4g and %.4g: equilibrium with strength divided by %.4g, a mechanism by %.4g, and between "
-                  "the two trials that found neither",
-                  b.lower, b.upper, b.lower, b.upper);
+                  "%s %.4g and %.4g: equilibrium with strength divided by %.4g, a mechanism by %.4g, and between "
+                  "the two trials that found neither%s",
+                  b.failed() ? "was not found. It is somewhere between" : "between", b.lower, b.upper, b.lower, b.upper,
+                  b.failed() ? ": the search has failed. Another mesh may help, or other [[stage]] load_steps" : "");
   return text;
 }
 

@@ -260,7 +260,7 @@ struct BodySource {
              "cohesionless laws");
     v.number("averaging_length", averaging_length, metre, Range{0, 1e4},
              "nonlocal softening: plastic strain is averaged over this length l, with 2 l in place of the cell size; "
-             "0: no averaging; l should not be below the cell size");
+             "0: no averaging; l should be 1.25 times the cell size or more");
     v.functions("velocity", velocity, metre_per_second, of::place,
                 "initial velocity, one function of x, y, z per component");
     v.functions("displacement", displacement, metre, of::place,

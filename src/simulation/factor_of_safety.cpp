@@ -90,9 +90,11 @@ FactorOfSafety Simulation<dim>::factor_of_safety() {
 namespace {
 
 std::string bracket_in_words(const FactorBracket &b) {
-  return (b.decided ? "" : "between ") + rounded(b.decided ? b.value() : b.lower) +
-         (b.decided ? "" : " and " + rounded(b.upper)) + " (equilibrium with strength divided by " + rounded(b.lower) +
-         ", a mechanism with " + rounded(b.upper) + ")";
+  return (b.decided    ? ""
+          : b.failed() ? "not found: the search has failed, it is somewhere between "
+                       : "between ") +
+         rounded(b.decided ? b.value() : b.lower) + (b.decided ? "" : " and " + rounded(b.upper)) +
+         " (equilibrium with strength divided by " + rounded(b.lower) + ", a mechanism with " + rounded(b.upper) + ")";
 }
 
 /// Volume and place of the soil that moves.

@@ -285,6 +285,14 @@ TEST(Block, keeps_its_strength_outside_of_the_search) {
   expect_holds(factor_of({"factor_of_safety.along=[[0, 0.5], [1, 0.5]]", "factor_of_safety.width=1.1"}), 2.8);
 }
 
+/// Undecided trials leave a bracket: a narrow one says what the factor is, one from 0.2 to 1 that the search has
+/// failed.
+TEST(FactorBracket, is_no_answer_where_it_is_wide) {
+  EXPECT_FALSE((FactorBracket{.lower = 0.983, .upper = 0.99, .decided = false}.failed()));
+  EXPECT_TRUE((FactorBracket{.lower = 0.209, .upper = 1.003, .decided = false}.failed()));
+  EXPECT_FALSE((FactorBracket{.lower = 0.209, .upper = 1.003, .decided = true}.failed()));
+}
+
 /// A linear solver that gives up, here for want of iterations, leaves trials undecided: their factors are no answer.
 struct FewIterations {
   explicit FewIterations(int most) { PetscOptionsSetValue(nullptr, "-talus_ksp_max_it", std::to_string(most).c_str()); }
