@@ -77,14 +77,14 @@ class Sheet:
             y = self.heading(page, MARGIN, y + 0.5 * LINE, "Water")
             y = self.paragraph(page, MARGIN, y, self.water)
         y = self.heading(page, WIDTH / 2 + 0.5, 0.5 * LINE, "Boundaries")
-        symbols = Symbols(page, 0.1)
+        symbols, short = Symbols(page, 0.1), Symbols(page, 0.06)  # arrows keep to their row
         for boundary, lines in self.boundaries:
             left = WIDTH / 2 + 0.5
             if model.dimension == 2:
                 arrows = boundary.soil in ("load", "velocity")  # above the line, the other symbols below it; y points down here
-                line = np.array([[left, y], [left + 0.5, y]]) + (0, 0.06 if arrows else -0.03)
+                line = np.array([[left, y], [left + 0.5, y]]) + (0, {"load": 0.06, "velocity": -0.07}.get(boundary.soil, -0.03))
                 down = np.array([[0.0, -1.0 if arrows else 1.0]])
-                symbols.draw(boundary, line, down, np.array([[0.0, 0.5]]) * np.linalg.norm(boundary.vector, axis=1).max(initial=0))
+                (short if arrows else symbols).draw(boundary, line, down, np.array([[0.0, 0.5]]) * np.linalg.norm(boundary.vector, axis=1).max(initial=0))
             else:
                 page.plot(left + 0.25, y, boundary.marker(), color=boundary.colour, ms=6, mfc="none" if boundary.marker() == "o" else None)
             y = self.paragraph(page, left + 0.62, y, lines)

@@ -362,7 +362,7 @@ def check_study(page, name, study, talus, write):
 
 # ---- the picture of the model ----
 
-COLOURS = 64  # of the palette of a picture of lines and flat areas, which takes a quarter of the place so
+COLOURS = 64  # of the palette of a picture of lines and flat areas, which takes a quarter of the place so; also colours of few pixels are in it
 
 
 def digest_of(page):
@@ -376,7 +376,7 @@ def draw_model(page, talus):
         subprocess.run([talus, "check", page.folder / page.model, "--picture", drawn], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         mark = PngInfo()
         mark.add_text("scene", digest_of(page))
-        Image.open(drawn).convert("RGB").quantize(COLOURS).save(page.folder / "model.png", optimize=True, pnginfo=mark)
+        Image.open(drawn).convert("RGB").quantize(COLOURS, Image.Quantize.MAXCOVERAGE).save(page.folder / "model.png", optimize=True, pnginfo=mark)
     print(f"{page.name}: model.png drawn")
 
 
