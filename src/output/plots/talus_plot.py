@@ -13,7 +13,7 @@ from talus_lines import draw_lines
 from talus_movie import draw_movies
 from talus_paths import draw_stress_paths
 from talus_report import write_report
-from talus_results import Results
+from talus_results import NOT_ENDED, Results
 from talus_sections import draw_sections
 from talus_slip import draw_slip_surface
 
@@ -63,6 +63,8 @@ def draw(folder, fields=None, times=None, log=False, slip_surface=False):
     the report's path."""
     results = checked(folder, fields)
     tell_of_times(results, times)
+    if results.broke_off() == NOT_ENDED:  # a run that broke off has said why
+        print(f"talus: the run in {folder} is incomplete: {NOT_ENDED}; the pictures show it up to {results.snapshots[-1].time:.6g} s", file=sys.stderr)
     pictures = results.folder / "pictures"
     usual = [field for field in FIELDS if field != "state" or lost_strength(results)]
     sections = draw_sections(results, fields or usual, times, pictures, log)

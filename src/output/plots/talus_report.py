@@ -11,7 +11,7 @@ from talus_measures import flow
 from talus_model import draw_model
 from talus_modelled import read_model, stage_rows
 from talus_outcomes import in_words, outcome
-from talus_results import largest_displacement
+from talus_results import NOT_ENDED, largest_displacement
 from talus_units import Keys, at_time, capital, readable_unit, text_of, words
 
 LOG_LINES = 25
@@ -63,7 +63,7 @@ def header(results):
     facts = [results.scene.get("phases", "dry"), f"{results.snapshots[0].position().shape[1]}D", results.program,
              f"{thousands(last.step)} steps to {at_time(last.time, last.time)}"]
     cause = results.broke_off()
-    ending = f'<p class="ending"><strong>The run broke off:</strong> {html.escape(cause)}</p>' if cause else ""
+    ending = f'<p class="ending"><strong>The run {"is incomplete" if cause == NOT_ENDED else "broke off"}:</strong> {html.escape(cause)}</p>' if cause else ""
     return (f'<header><p class="kicker">Talus · report of a run</p><h1>{html.escape(results.title)}</h1>'
             f"<p>{' · '.join(html.escape(str(fact)) for fact in facts)}</p>{ending}</header>\n")
 

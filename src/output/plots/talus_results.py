@@ -14,6 +14,7 @@ import csv
 import difflib
 import json
 import pathlib
+import re
 import tomllib
 
 import h5py
@@ -28,6 +29,7 @@ QUANTITIES = ("displacement", "velocity", "acceleration", "mean_pressure", "devi
               "plastic_strain", "mobilised_friction", "state", "displacement_x", "displacement_y", "displacement_z", *(f"stress_{axes}" for axes in ("xx", "yy", "zz", "xy", "yz", "xz")), "x", "y", "z")
 ESCAPED = "escaped"  # in columns of what left the mesh
 BROKE_OFF = "the run broke off: "  # in the log, before the cause
+NOT_ENDED = "it was killed, or still runs, since run.log has no end"
 FLUIDS = ("water", "gas")  # whose ledgers history.csv holds
 
 
@@ -409,14 +411,14 @@ class Results:
         return path.read_text(errors="replace").splitlines() if path.exists() else []
 
     def broke_off(self):
-        """Why and where the run ended early; empty if it came to its end, or goes on."""
-        for line in reversed(self.log_lines()):
-            text = line.partition("  ")[2]
-            if text.startswith("resumed at "):
-                break
-            if text.startswith(BROKE_OFF):
-                return text[len(BROKE_OFF):]
-        return ""
+        """Why and where the run ended early; empty if it came to its end. A run that was killed or still runs has no end in its log."""
+        said = [line.partition("  ")[2] for line in self.log_lines()]
+        starts = [k for k, text in enumerate(said) if text.startswith("resumed at ")]
+        said = said[starts[-1]:] if starts else said
+        causes = [text[len(BROKE_OFF):] for text in said if text.startswith(BROKE_OFF)]
+        if causes:
+            return causes[-1]
+        return "" if not said or any(map(is_end, said)) else NOT_ENDED
 
     def when(self, snapshot):
         """The time of a snapshot in words. In a run of days the time in a stage of less than a day is counted from the snapshot before it."""
@@ -432,6 +434,15 @@ class Results:
     def up_axis(self):
         """Number of the axis along which elevations are counted."""
         return "xyz".index(self.scene.get("up", "y"))
+
+
+def is_end(line):
+    """Is a line of the log one that only a run at its end writes? The sums of its steps, or where nothing but equilibria were sought a state of
+    progress after which nothing is left."""
+    if " evaluations of the forces, " in line:
+        return True
+    found = re.search(r"  t = (\S+) / (\S+) s  step \d+(.*)", line)
+    return bool(found) and not found[3].endswith(" left") and (found[1] == found[2] or "particle-updates/s" in found[3])
 
 
 def parsed(text):

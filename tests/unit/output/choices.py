@@ -18,7 +18,7 @@ from talus_histories import draw_histories, drawn_energies  # noqa: E402
 from talus_moments import chosen_snapshots, telling, with_stress  # noqa: E402
 from talus_outcomes import FAILS  # noqa: E402
 from talus_paths import label_of, spread  # noqa: E402
-from talus_results import History, Results  # noqa: E402
+from talus_results import NOT_ENDED, History, Results  # noqa: E402
 from talus_sections import Painter  # noqa: E402
 from talus_slip import said_of_ends, slip_surface  # noqa: E402
 from talus_soils import moved_away, painted, tints  # noqa: E402
@@ -356,6 +356,36 @@ class SlipSurface(unittest.TestCase):
         results = Sheared(lambda x, y: float(abs(np.hypot(x - 10, y - 12) - 6.3) < 0.4 and (x < 10 or y < 9)))
         line, snapshot, place, _ = slip_surface(results, 0)
         self.assertRegex(said_of_ends(results, line, place, snapshot), "m below the ground on the right: soil with more than 0.2 of .* ends there")
+
+
+class Ends(unittest.TestCase):
+    """The last lines of run.log of a run in motion, of one of nothing but equilibria, and of one that broke off."""
+
+    SUMS = "246 steps from 0.0168 to 0.0645 s, 246 evaluations of the forces, 0 attempts rejected by the error test"
+    RATE = "step 246  2.2 M particle-updates/s"
+
+    def why(self, *said):
+        run = types.SimpleNamespace(log_lines=lambda: [f"2026-11-25 18:46:39  {text}" for text in said])
+        return Results.broke_off(run)
+
+    def test_of_a_run_that_was_killed_are_missing(self):
+        self.assertEqual(self.why("stage slide"), NOT_ENDED)
+        self.assertEqual(self.why("stage slide", f"slide  t = 12.62 / 40 s  {self.RATE}  at most 4 s left"), NOT_ENDED)
+        self.assertEqual(self.why("stage slide", f"slide  t = 40 / 40 s  {self.RATE}  at most 0 s left"), NOT_ENDED)
+        self.assertEqual(self.why("stage slide", "slide  t = 12.62 / 40 s  step 246"), NOT_ENDED)  # within a slow step
+
+    def test_are_the_sums_of_the_steps_or_progress_without_a_rest(self):
+        self.assertEqual(self.why("stage slide", self.SUMS, "slide  t = 20.2 / 60 s  step 246"), "")  # at rest
+        self.assertEqual(self.why("stage gravity", "gravity  t = 1 / 1 s  step 5"), "")
+        self.assertEqual(self.why("stage flow", "flow  t = 3 / 9 s  step 5  22 k particle-updates/s", "factor of safety 1.112"), "")
+
+    def test_count_from_where_the_run_was_resumed(self):
+        self.assertEqual(self.why(self.SUMS, "the run broke off: interrupted"), "interrupted")
+        self.assertEqual(self.why(self.SUMS, "the run broke off: interrupted", "resumed at t = 1 s, step 9"), NOT_ENDED)
+        self.assertEqual(self.why("the run broke off: interrupted", "resumed at t = 1 s, step 9", self.SUMS), "")
+
+    def test_of_a_run_without_a_log_are_not_known(self):
+        self.assertEqual(self.why(), "")
 
 
 class Charts(unittest.TestCase):

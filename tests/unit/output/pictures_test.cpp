@@ -110,7 +110,7 @@ TEST(Pictures, show_stress_paths_and_the_water_ledger) {
     EXPECT_EQ(content(dir + "/pictures/" + name).substr(1, 3), "PNG") << name;
 }
 
-/// A run that broke off says so on top of its report, unless it was resumed.
+/// A run that broke off or was killed says so on top of its report, unless it was resumed and came to its end.
 TEST(Pictures, and_report_tell_how_a_run_broke_off) {
   const SharedFolder folder;
   const std::string dir = folder / "run";
@@ -125,8 +125,13 @@ TEST(Pictures, and_report_tell_how_a_run_broke_off) {
   std::ofstream log(dir + "/run.log");
   log << "12:00:00  stage slide\n12:00:01  the run broke off: a particle left the mesh near (3, 1) m\n" << std::flush;
   EXPECT_NE(top_of_report().find("a particle left the mesh near (3, 1) m"), std::string::npos);
-  log << "12:01:00  resumed at t = 1 s, step 9\n" << std::flush;
+  log << "12:01:00  resumed at t = 1 s, step 9\n12:01:02  slide  t = 2 / 4 s  step 12  5 k particle-updates/s  at most "
+         "4 s left\n"
+      << std::flush;
   EXPECT_EQ(top_of_report().find("broke off"), std::string::npos);
+  EXPECT_NE(top_of_report().find("it was killed, or still runs"), std::string::npos);
+  log << "12:01:03  slide  t = 4 / 4 s  step 24  5 k particle-updates/s\n" << std::flush;
+  EXPECT_EQ(top_of_report().find("class=\"ending\""), std::string::npos);
 }
 
 /// What particles took away is one of the energies, and round-off of the table is no error of the ledger.
