@@ -16,6 +16,8 @@ for snapshot in results.snapshots:
     if moved.any():
         time.append(snapshot.time)
         front.append(snapshot.position()[moved, 0].max())
+if len(time) < 2:
+    sys.exit(f"no soil has moved by more than {100 * MOVED:g} cm in two snapshots: there is no front")
 speed = np.gradient(front, time)
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.2), layout="constrained")

@@ -10,8 +10,12 @@ import numpy as np
 from talus_results import Results
 from talus_style import plt, save
 
+if len(sys.argv) < 6:
+    sys.exit(__doc__)
 folder, field, x, picture, *times = sys.argv[1:]
 results = Results(folder)
+if results.snapshots[-1].scalar(field) is None:
+    sys.exit(f"there is no field {field}; there are {', '.join(results.snapshots[-1].names())}")
 nodes, cells = results.mesh()
 corners = nodes[cells]
 width = np.median(np.linalg.norm(corners[:, 0] - corners[:, 1], axis=1)) / 2  # half a cell [m]
@@ -19,7 +23,7 @@ width = np.median(np.linalg.norm(corners[:, 0] - corners[:, 1], axis=1)) / 2  # 
 figure, axes = plt.subplots(figsize=(4.5, 4), layout="constrained")
 for time in map(float, times):
     snapshot = results.snapshot_at(time)
-    values, unit = snapshot.scalar(field) or sys.exit(f"there is no field {field}; there are {', '.join(snapshot.names())}")
+    values, unit = snapshot.scalar(field)
     place, volume = snapshot.position(), snapshot.values("volume")
     near = np.abs(place[:, 0] - float(x)) < 2 * width
     if not near.any():
