@@ -50,7 +50,7 @@ class Colours:
 
     def in_words(self):
         """What has the colour of soil."""
-        return f"colour of soil: {self.names[0]}" if self.names else f"colour of soil: less than {self.faint:.2g} {self.unit}".rstrip()
+        return f"in the colour of its soil: {self.names[0]}" if self.names else f"in the colour of its soil: below {self.faint:.2g} {self.unit}".rstrip()
 
     def bar(self, figure, place):
         """The bar of the scale in new axes at `place`, with its unit above it. Returns its axes."""

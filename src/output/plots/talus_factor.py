@@ -116,7 +116,7 @@ def draw_mechanism(results, factor, headline, path):
 
 def draw_displacement(factor, headline, path):
     """Largest displacement of the trials in equilibrium, and lines at the factors for which it grows without bound. Trials with psi = phi go on from
-    the last state with psi < phi: those that moved no further show no displacement of their own."""
+    the last state with psi < phi: those that moved no further have no displacement of their own and are diamonds at that of this state."""
     figure, axes = plt.subplots(figsize=(7.6, 3.7))
     before = 0.0  # the displacement with which the trials of a kind begin
     for dilating, colour, name in ((False, style.LINES[0], "psi < phi"), (True, style.LINES[1], "psi = phi")):
@@ -125,8 +125,11 @@ def draw_displacement(factor, headline, path):
         if stable:
             axes.plot(*np.array(stable).T, "o-", color=colour, ms=4, label=f"equilibrium, {name}" + ", from the last of psi < phi on" * (before > 0))
             before = stable[-1][1]
+        elif before > 0 and any(t["outcome"] == "equilibrium" for t in trials):
+            resting = sorted(t["factor"] for t in trials if t["outcome"] == "equilibrium")
+            axes.plot(resting, [before] * len(resting), ls="", marker="D", mfc="white", color=colour, ms=4, label=f"equilibrium, {name}, which moved no further")
         for k, failed in enumerate(sorted(t["factor"] for t in trials if t["outcome"] == "mechanism")):
-            axes.axvline(failed, color=colour, lw=0.8, ls=":", label=f"mechanism, {name}" if k == 0 else None)
+            axes.axvline(failed, color=colour, lw=0.8, ls=":", label=f"mechanism, {name}, the lowest at {failed:.4g}" if k == 0 else None)
         for k, open_one in enumerate(sorted(t["factor"] for t in trials if t["outcome"] == "undecided")):
             axes.axvline(open_one, color=style.ACCENT, ls="--", lw=0.8, label="undecided" if k == 0 else None)
     axes.set_xlabel("factor by which strength is divided"), axes.set_ylabel("largest displacement [m]")

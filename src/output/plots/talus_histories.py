@@ -31,7 +31,7 @@ def draw_histories(results, folder):
             pictures.append((quantity, draw_ledger(history, quantity, lines, results.title, results.per_metre(""), folder / f"{quantity}.png")))
         else:
             path = folder / f"history_{quantity}.png"
-            pictures.append((quantity, draw_curves(history, quantity, unit, lines, results.title, results.per_metre(""), path)))
+            pictures.append((quantity, draw_curves(history, quantity, unit, lines, results.title, results.per_metre(""), path, base_friction(results.scene, quantity))))
     return pictures
 
 
@@ -41,9 +41,23 @@ def changes(values):
     return known.size > 0 and np.ptp(known) > 1e-9 * np.abs(known).max()
 
 
-def draw_curves(history, quantity, unit, lines, title, per, path):
+def base_friction(scene, quantity):
+    """tan phi of the base NAME whose history is NAME_friction, if its friction angle is a constant and it has no adhesion; else None."""
+    name, _, what = quantity.rpartition("_")
+    base = scene.get("boundary", {}).get(name, {})
+    angle = base.get("friction_angle") if what == "friction" and not base.get("adhesion") else None
+    try:
+        return float(np.tan(np.radians(float(angle.removesuffix("deg") if isinstance(angle, str) else angle))))
+    except (TypeError, ValueError):
+        return None
+
+
+def draw_curves(history, quantity, unit, lines, title, per, path, tan_phi=None):
     figure, axes = plt.subplots(figsize=(7.6, 3.7))
     plot_lines(axes, history, lines, unit, words(quantity), per)
+    if tan_phi is not None:
+        axes.axhline(tan_phi, color=style.SOFT, lw=0.9, ls=(0, (4, 2)), zorder=1)
+        axes.annotate(f"tan φ = {tan_phi:.3g}", (1.01, tan_phi), xycoords=("axes fraction", "data"), fontsize=8, color=style.SOFT, va="center")
     return finish(figure, [axes], history, capital(words(quantity)), title, path)
 
 

@@ -89,12 +89,12 @@ def draw_stress_paths(results, folder):
         known = np.flatnonzero(np.isfinite(q))
         after = time > failed
         left.plot(p[~after], q[~after], lw=1.2, **line)
-        left.plot(p[known[0]], q[known[0]], "o", color=line["color"], ms=4.5, mfc="white")
+        left.plot(p[known[0]], q[known[0]], "o", color=line["color"], ms=4.5, mfc="white", clip_on=False, zorder=3)
         if after[known].any():  # in motion the stress jumps from row to row
             first = max(int(after.argmax()) - 1, 0)
             left.plot(p[first:], q[first:], lw=0.6, alpha=0.5, **line)
             left.plot(p[first], q[first], "D", color=line["color"], ms=4.5)
-        left.plot(p[known[-1]], q[known[-1]], "o", color=line["color"], ms=4.5)
+        left.plot(p[known[-1]], q[known[-1]], "o", color=line["color"], ms=4.5, clip_on=False, zorder=3)
         right.plot(time, path["friction"], lw=1.1, **line)
         lowest, highest = min(lowest, np.nanmin(p)), max(highest, np.nanmax(p))
     reach = np.array([lowest, 1.08 * highest + 1e-9])

@@ -18,6 +18,7 @@ from talus_sections import draw_sections
 from talus_slip import draw_slip_surface
 
 FIELDS = ("displacement", "thickness", "plastic_strain", "velocity", "pore_pressure", "suction", "saturation", "surface", "mobilised_friction", "state")
+OF_PORES = ("pore_pressure", "gas_pressure", "suction", "saturation")
 
 
 def arguments():
@@ -44,6 +45,8 @@ def checked(folder, fields=None):
     first = results.snapshots[0]
     for field in fields or ():
         if first.scalar(field) is None:
+            if field in OF_PORES and results.scene.get("phases", "dry") == "dry":
+                raise NoSuchField(f"{folder} has no field {field}: its run is dry (phases); it has {', '.join(first.names())}")
             nearest = difflib.get_close_matches(field, first.names(), 1)
             raise NoSuchField(f"{folder} has no field {field}{f'; did you mean {nearest[0]}?' if nearest else ''}; it has {', '.join(first.names())}")
     return results

@@ -14,7 +14,7 @@ import talus_factor  # noqa: E402
 import talus_study  # noqa: E402
 import talus_sweep  # noqa: E402
 from talus_colours import Colours  # noqa: E402
-from talus_histories import draw_histories, drawn_energies  # noqa: E402
+from talus_histories import base_friction, draw_histories, drawn_energies  # noqa: E402
 from talus_moments import chosen_snapshots, telling, with_stress  # noqa: E402
 from talus_outcomes import FAILS  # noqa: E402
 from talus_paths import label_of, spread  # noqa: E402
@@ -185,6 +185,12 @@ class Histories(unittest.TestCase):
         history = History.__new__(History)
         history.time, history.stage = np.array([0.0, 1.0, 2.0, 2.5, 3.0]), ["start", "rain", "rain", "slide", "slide"]
         self.assertEqual(history.stage_starts(), [(0.0, "start"), (0.0, "rain"), (2.0, "slide")])
+
+    def test_of_friction_on_a_base_have_the_tangent_of_a_constant_angle(self):
+        scene = {"boundary": {"bed": {"friction_angle": 20}, "rock": {"friction_angle": "20 deg"}, "clay": {"friction_angle": "20 + x"}, "wall": {}}}
+        for name, tan_phi in (("bed", 0.36397), ("rock", 0.36397), ("clay", None), ("wall", None), ("other", None)):
+            self.assertEqual(base_friction(scene, f"{name}_friction") and round(base_friction(scene, f"{name}_friction"), 5), tan_phi)
+        self.assertIsNone(base_friction(scene, "bed_clearance"))
 
     def test_the_clock_of_the_loads_has_no_picture(self):
         time = np.arange(3.0)
@@ -420,7 +426,7 @@ class Charts(unittest.TestCase):
         history.time, history.step, history.stage = np.array([0.0, 1.0]), np.array([0, 1]), ["slide", "slide"]
         history.columns = {"kinetic_J": np.array([0.0, 2e3]), "crest_displacement_m": np.array([0.0, 1.0])}
         for per, unit in (("/m", "kJ/m"), ("", "kJ")):
-            results = types.SimpleNamespace(history=history, title="", per_metre=lambda text, per=per: text + per)
+            results = types.SimpleNamespace(history=history, scene={}, title="", per_metre=lambda text, per=per: text + per)
             seen = []
             with unittest.mock.patch.object(talus_sweep.style, "save", lambda figure, path: seen.append(figure)):
                 draw_histories(results, pathlib.Path())
@@ -491,8 +497,9 @@ class Mechanisms(unittest.TestCase):
         own = [trial(1.0, False, "equilibrium", 0.01), trial(1.2, False, "equilibrium", 0.03), trial(1.3, False, "mechanism", 1)]
         for further, curves in (([trial(1.25, True, "equilibrium", 0.03)], 1), ([trial(1.25, True, "equilibrium", 0.03), trial(1.3, True, "equilibrium", 0.05)], 2)):
             factor = {"trials": own + further + [trial(1.4, True, "mechanism", 1)]}
-            lines = [line for line in self.figure(lambda: talus_factor.draw_displacement(factor, "", None)).axes[0].lines if line.get_marker() == "o"]
-            self.assertEqual(len(lines), curves)
+            drawn = self.figure(lambda: talus_factor.draw_displacement(factor, "", None)).axes[0].lines
+            lines, resting = ([line for line in drawn if line.get_marker() == marker] for marker in "oD")
+            self.assertEqual((len(lines), len(resting)), (curves, 2 - curves))
         self.assertEqual(lines[1].get_xdata().tolist(), [1.3])
         self.assertIn("from the last", lines[1].get_label())
 
