@@ -22,10 +22,12 @@ namespace {
 constexpr const char *to_metres =
     "project it to metres first, such as by gdalwarp -t_srs EPSG:CODE (CODE of a UTM zone or of the national grid)";
 
-/// Metres, or a complaint.
-void check_projection(const Grid &grid, const OGRSpatialReference *projection) {
+/// Metres, or a complaint. `map` is GDAL's: west, dx/column, dx/row, north, dy/column, dy/row.
+void check_projection(const Grid &grid, const double *map, const OGRSpatialReference *projection) {
   if (projection && projection->IsGeographic()) {
-    if (std::abs(grid.east()) > 360 || std::abs(grid.north()) > 90)
+    const double east = map[0] + grid.columns * map[1] + grid.rows * map[2],
+                 south = map[3] + grid.columns * map[4] + grid.rows * map[5];
+    if (std::max(std::abs(map[0]), std::abs(east)) > 361 || std::max(std::abs(map[3]), std::abs(south)) > 91)
       complain(grid.file,
                "says that its coordinates are degrees, but they reach beyond 360 and 90: correct what the "
                "file says of its projection, such as by gdal_edit.py -a_srs EPSG:CODE");
@@ -104,6 +106,7 @@ Grid read_grid(const std::string &file) {
   double map[6];  // west, dx/column, dx/row, north, dy/column, dy/row
   if (data->GetGeoTransform(map) != CE_None)
     complain(file, "does not say where it lies; give a file with coordinates, such as a GeoTIFF with its tags");
+  check_projection(grid, map, data->GetSpatialRef());  // first, since degrees are seldom square
   if (map[2] != 0 || map[4] != 0 || !(map[1] > 0) || std::abs(std::abs(map[5]) - map[1]) > 1e-6 * map[1])
     complain(file, "must have square cells in rows from west to east; resample it, such as by gdalwarp -tr SIZE SIZE");
   if (grid.columns < 2 || grid.rows < 2) complain(file, "must have 2 rows and columns at least");
@@ -121,7 +124,6 @@ Grid read_grid(const std::string &file) {
   }
   read_values(*band, from_north, grid);
   if (const char *text = data->GetProjectionRef()) grid.projection = text;
-  check_projection(grid, data->GetSpatialRef());
   return grid;
 }
 
@@ -158,8 +160,9 @@ void check_same_projection(const Location &here, const std::string &projection, 
     return std::string(text ? text : "one without a name");
   };
   complain(here.file, "has the projection " + name(own) + ", and " + of + " has " + name(other) +
-                          ", in which the same place has other coordinates; project it to that by gdalwarp -t_srs, or "
-                          "correct what the file says by gdal_edit.py -a_srs");
+                          ", in which the same place has other coordinates; project it to that by " +
+                          (here.vector ? "ogr2ogr -t_srs, or correct what the file says by ogr2ogr -a_srs"
+                                       : "gdalwarp -t_srs, or correct what the file says by gdal_edit.py -a_srs"));
 }
 
 void write_values(const Grid &grid, const std::string &file) {

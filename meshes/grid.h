@@ -20,6 +20,7 @@ struct Location {
   std::string file, projection;  ///< path; well-known text, empty where the file names none
   std::array<double, 2> middle;  ///< in its coordinates [m]
   double near;                   ///< what is nearer than this counts as the same place [m]
+  bool vector = false;           ///< of polygons, not a grid, which other programs project
 };
 inline Location location_of(const Grid &grid) {
   return {

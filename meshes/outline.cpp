@@ -3,13 +3,15 @@
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
-#include <Eigen/SparseCholesky>
+#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <memory>
 #include <stdexcept>
+
+#include "meshes/polygon.h"
 
 namespace talus {
 namespace {
@@ -42,6 +44,37 @@ bool Outline::contains(double x, double y) const {
   return inside;
 }
 
+bool Outline::touches(double x, double y, double near) const {
+  for (const auto &ring : rings)
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const auto &a = ring[k], &b = ring[(k + 1) % ring.size()];
+      bool beside = false;
+      const double here[] = {x, y};
+      for (int d = 0; d < 2; ++d)
+        beside = beside || here[d] < std::min(a[d], b[d]) - near || here[d] > std::max(a[d], b[d]) + near;
+      if (beside) continue;
+      if (a == b || distance_to_segment({a[0], a[1]}, {b[0], b[1]}, {x, y}) <= near) return true;
+    }
+  return false;
+}
+
+std::array<double, 4> Outline::sides_around(double x, double y, double farthest) const {
+  std::array<double, 4> nearest{farthest, farthest, farthest, farthest};
+  const double here[] = {x, y};
+  for (const auto &ring : rings)
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const auto &a = ring[k], &b = ring[(k + 1) % ring.size()];
+      for (int d = 0; d < 2; ++d) {  // along this axis
+        const int e = 1 - d;
+        if ((a[e] > here[e]) == (b[e] > here[e])) continue;
+        const double away = a[d] + (here[e] - a[e]) / (b[e] - a[e]) * (b[d] - a[d]) - here[d];
+        double &one = nearest[2 * d + (away > 0)];
+        one = std::min(one, std::abs(away));
+      }
+    }
+  return nearest;
+}
+
 Outline read_outline(const std::string &file) {
   if (!std::filesystem::exists(file)) complain(file, "cannot be opened; check the path");
   GDALAllRegister();
@@ -50,7 +83,7 @@ Outline read_outline(const std::string &file) {
   CPLPopErrorHandler();
   if (!data) complain(file, "is no file of outlines that GDAL reads; give a Shapefile (.shp) or a GeoPackage (.gpkg)");
   Outline outline;
-  outline.location.file = file;
+  outline.location.file = file, outline.location.vector = true;
   for (OGRLayer *layer : data->GetLayers()) {
     const std::size_t before = outline.rings.size();
     for (const OGRFeatureUniquePtr &feature : *layer)
@@ -78,7 +111,8 @@ Outline read_outline(const std::string &file) {
   return outline;
 }
 
-std::vector<double> bowl(const std::vector<char> &inside, int columns, double deepest) {
+std::vector<double> bowl(const std::vector<char> &inside, const std::vector<std::array<double, 4>> &rim, int columns,
+                         double deepest) {
   const int nodes = static_cast<int>(inside.size());
   std::vector<int> number(nodes, -1);
   int unknowns = 0;
@@ -86,21 +120,40 @@ std::vector<double> bowl(const std::vector<char> &inside, int columns, double de
     if (inside[k]) number[k] = unknowns++;
   std::vector<double> depth(nodes, 0);
   if (unknowns == 0) return depth;
+  const auto beside = [&](int k, int side) {
+    constexpr int along[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+    const int i = k % columns + along[side][0], at = i + (k / columns + along[side][1]) * columns;
+    return i >= 0 && i < columns && at >= 0 && at < nodes && inside[at] && rim[k][side] >= 1 ? at : -1;
+  };
+  // Shortley & Weller (1938): second differences with the distances to the rim, exact for a paraboloid
+  constexpr double nearest = 1e-4;  // of the rim, so that no row is much larger than the others
   std::vector<Eigen::Triplet<double>> entries;
   for (int k = 0; k < nodes; ++k) {
     if (!inside[k]) continue;
-    entries.emplace_back(number[k], number[k], 4);
-    const int column = k % columns;
-    for (const int beside : {column > 0 ? k - 1 : -1, column + 1 < columns ? k + 1 : -1, k - columns, k + columns})
-      if (beside >= 0 && beside < nodes && inside[beside]) entries.emplace_back(number[k], number[beside], -1);
+    double own = 0;
+    for (int side = 0; side < 4; ++side) {
+      const double here = std::max(rim[k][side], nearest), opposite = std::max(rim[k][side ^ 1], nearest),
+                   weight = 2 / (here * (here + opposite));
+      own += weight;
+      if (const int at = beside(k, side); at >= 0) entries.emplace_back(number[k], number[at], -weight);
+    }
+    entries.emplace_back(number[k], number[k], own);
   }
   Eigen::SparseMatrix<double> matrix(unknowns, unknowns);
   matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
-  const Eigen::VectorXd found = solver.solve(Eigen::VectorXd::Ones(unknowns)),
-                        scaled = found * (deepest / found.maxCoeff());
+  Eigen::SparseLU<Eigen::SparseMatrix<double>> solver;
+  solver.compute(matrix);
+  const Eigen::VectorXd found = solver.solve(Eigen::VectorXd::Ones(unknowns));
   for (int k = 0; k < nodes; ++k)
-    if (inside[k]) depth[k] = scaled[number[k]];
+    if (inside[k]) depth[k] = found[number[k]];
+  // the deepest place lies between nodes: on a parabola through the deepest node and those beside it
+  const int lowest = static_cast<int>(std::max_element(depth.begin(), depth.end()) - depth.begin());
+  double most = depth[lowest];
+  for (const int side : {0, 2})
+    if (const int a = beside(lowest, side), b = beside(lowest, side + 1); a >= 0 && b >= 0)
+      if (const double bend = 2 * depth[lowest] - depth[a] - depth[b]; bend > 0)
+        most += (depth[b] - depth[a]) * (depth[b] - depth[a]) / (8 * bend);
+  for (double &one : depth) one *= deepest / most;
   return depth;
 }
 

@@ -210,10 +210,17 @@ void report_terrain(const Terrain &terrain) {
     if (cells == 0)
       complain("the slide is thinner than its cells, and none has its centre in it; take a smaller --size");
   }
-  for (const auto &[name, file] : terrain.options().layers)
-    if (volume_of(name) == 0)
-      std::cout << "warning: layer " << name << " has no cells: no cell of the ground has its centre below " << file
-                << " and above the next layer\n";
+  const auto &layers = terrain.options().layers;
+  for (std::size_t k = 0; k < layers.size(); ++k) {
+    const auto &[name, file] = layers[k];
+    if (volume_of(name) > 0) continue;
+    std::cout << "warning: layer " << name << " has no cells: ";
+    if (const std::string above = terrain.layer_above(static_cast<int>(k)); !above.empty())
+      std::cout << "its surface, " << file << ", lies below that of layer " << above
+                << ", which is given after it, everywhere. Give the surfaces from top to bottom\n";
+    else
+      std::cout << "no cell of the ground has its centre below " << file << " and above the next layer\n";
+  }
   for (const std::string &doubt : terrain.doubts()) std::cout << "warning: " << doubt << "\n";
 }
 

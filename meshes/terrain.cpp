@@ -212,13 +212,30 @@ std::vector<double> Terrain::slip_surface(const Grid &grid) {
   remember(outline.location, {});
   if (!(options_.depth > 0))
     complain("--depth must be above 0 m: the largest depth of the slip surface in the outline");
-  std::vector<char> inside;
-  for (const double one : at_places([&](double x, double y) { return outline.contains(x, y) ? 1. : 0.; }))
-    inside.push_back(one > 0);
+  return slip_surface(outline);
+}
+
+/// A place on the outline counts alike on all sides: a bowl is 0 deep there, and a constant depth half as deep, so that
+/// the wall, which needs the width of a cell, stands on the outline.
+std::vector<double> Terrain::slip_surface(const Outline &outline) const {
+  constexpr double near = 1e-6;  // of the spacing
+  const double h = ground_.spacing;
+  std::vector<char> inside, on;
+  std::vector<std::array<double, 4>> rim;
+  for (int k = 0; k < static_cast<int>(ground().size()); ++k) {
+    const double x = origin_[0] + this->x(k % columns()), y = origin_[1] + this->y(k / columns());
+    on.push_back(outline.touches(x, y, near * h));
+    inside.push_back(!on.back() && outline.contains(x, y));
+    rim.push_back(inside.back() ? outline.sides_around(x, y, h) : std::array<double, 4>{});
+    for (double &away : rim.back()) away = away > (1 - near) * h ? 1 : away / h;
+  }
   std::vector<double> z =
-      options_.bowl ? bowl(inside, columns(), options_.depth) : std::vector<double>(inside.size(), options_.depth);
+      options_.bowl ? bowl(inside, rim, columns(), options_.depth) : std::vector<double>(inside.size(), options_.depth);
   for (std::size_t k = 0; k < z.size(); ++k)
-    z[k] = inside[k] ? ground()[k] - z[k] : std::numeric_limits<double>::quiet_NaN();
+    if (inside[k] || (on[k] && !options_.bowl))
+      z[k] = ground()[k] - (on[k] ? z[k] / 2 : z[k]);
+    else
+      z[k] = std::numeric_limits<double>::quiet_NaN();
   return z;
 }
 
@@ -249,7 +266,7 @@ void Terrain::take_slip_surface(const Grid &grid) {
     slide_volume_ += area * (ground()[k] - bed()[k]);
     if (ground()[k] > bed()[k]) slide_area_ += area;
   }
-  check_steps(bed(), name);
+  if (!options_.slip_surface.empty()) check_steps(bed(), name);  // an ellipsoid may be as steep as its wall is high
   if (options_.outline.empty()) check_slip_surface(slip, name);  // that of an outline is as deep as was asked for
 }
 
@@ -282,6 +299,18 @@ std::string Terrain::layer_at(double x, double y, double z) const {
   return "";
 }
 
+std::string Terrain::layer_above(int index) const {
+  const std::vector<double> &own = layer_[index].values;
+  if (std::none_of(own.begin(), own.end(), [&](double z) { return z > *options_.base; })) return "";
+  for (std::size_t k = index + 1; k < layer_.size(); ++k) {
+    bool above = true;
+    for (std::size_t at = 0; at < own.size(); ++at)
+      above = above && (layer_[k].values[at] >= own[at] || own[at] <= *options_.base);
+    if (above) return options_.layers[k][0];
+  }
+  return "";
+}
+
 void Terrain::check_slip_surface(const std::vector<double> &slip, const std::string &name) {
   const bool by_grid = !options_.slip_surface.empty();
   const double deep = slide_volume_ / slide_area_;
@@ -308,6 +337,19 @@ void Terrain::check_slip_surface(const std::vector<double> &slip, const std::str
                      " thick and its surface comes to light nowhere. Are these depths? Elevations are asked for: the "
                      "ground minus the depth, such as by gdal_calc.py"));
   const double wide = std::sqrt(slide_area_);
+  double least = deepest;  // depth of the surface
+  for (std::size_t k = 0; k < slip.size(); ++k)
+    least = std::min(least, std::isnan(slip[k]) ? least : ground()[k] - slip[k]);
+  if (by_grid && least > 0.5 * deep) {
+    const std::string sentence =
+        text_of(name, " lies below the ground everywhere, by ", length(least), " at least and ", length(deep),
+                " on average, so that all ground above it slides and its surface comes to light nowhere. ");
+    if (deep > 0.1 * wide)
+      complain(sentence +
+               "Check its elevations, or lift its rim above the ground; a slide that is as deep everywhere is given by "
+               "--outline, --depth and --depth-shape constant");
+    remarks_.push_back(sentence + "Is this meant?");
+  }
   if (deep > 0.5 * wide)
     remarks_.push_back(text_of("the slide is ", length(deep), " thick on average and covers ", slide_area_,
                                " m2 only, so that it is a shaft rather than a slide. Are elevations and coordinates "

@@ -10,6 +10,8 @@
 
 namespace talus {
 
+struct Outline;
+
 /// A slip surface like a spoon: the lower side of an ellipsoid. Its first axis points down the dip, the second along
 /// the strike, the third along the normal. Dip direction is the azimuth, clockwise from north, towards which the
 /// surface dips: 90 degrees is east.
@@ -71,6 +73,9 @@ class Terrain {
   double slide_volume() const { return slide_volume_; }  ///< [m3]
   /// The layer to which ground at a place belongs; empty: none.
   std::string layer_at(double x, double y, double z) const;
+  /// The next layer whose surface lies above that of layer `index` wherever this is above the base, so that it has no
+  /// cells; empty: none.
+  std::string layer_above(int index) const;
   /// Cell size at a place [m].
   double size_at(double x, double y, double z) const;
   /// Sentences about what may be meant but rarely is.
@@ -83,6 +88,8 @@ class Terrain {
   void take_slip_surface(const Grid &grid);
   /// Elevations of the slip surface at the places of the window; not a number where there is none.
   std::vector<double> slip_surface(const Grid &grid);
+  /// The same of one in an outline.
+  std::vector<double> slip_surface(const Outline &outline) const;
   void take_layers(const Grid &grid);
   void check_base() const;
   /// Refuses elevations that no ground has: single places, or edges of areas, far above or below those around them.

@@ -75,8 +75,9 @@ class TerrainFiles : public ::testing::Test {
     return in_folder("a.tif");
   }
 
-  /// A circle with a round hole around its centre, radius 0 for none, as a polygon of a GeoPackage.
-  std::string outline(double x, double y, double radius, double hole, int projection) const {
+  using Ring = std::vector<std::array<double, 2>>;
+  /// A polygon, with its holes, of a GeoPackage.
+  std::string package(const std::vector<Ring> &rings, int projection) const {
     GDALAllRegister();
     const std::string file = in_folder("outline.gpkg");
     std::filesystem::remove(file);
@@ -86,15 +87,26 @@ class TerrainFiles : public ::testing::Test {
     reference.importFromEPSG(projection);
     OGRLayer *layer = data->CreateLayer("slide", &reference, wkbPolygon);
     OGRPolygon polygon;
-    for (const double r : {radius, hole}) {
+    for (const Ring &places : rings) {
       OGRLinearRing ring;
-      for (int k = 0; k <= 90; ++k) ring.addPoint(x + r * std::cos(k * 4 * radian), y + r * std::sin(k * 4 * radian));
-      if (r > 0) polygon.addRing(&ring);
+      for (const auto &[x, y] : places) ring.addPoint(x, y);
+      ring.closeRings();
+      polygon.addRing(&ring);
     }
     OGRFeature feature(layer->GetLayerDefn());
     feature.SetGeometry(&polygon);
     EXPECT_EQ(layer->CreateFeature(&feature), OGRERR_NONE);
     return file;
+  }
+  /// A circle with a round hole around its centre, radius 0 for none.
+  std::string outline(double x, double y, double radius, double hole, int projection) const {
+    std::vector<Ring> rings;
+    for (const double r : {radius, hole}) {
+      Ring ring;
+      for (int k = 0; k < 90; ++k) ring.push_back({x + r * std::cos(k * 4 * radian), y + r * std::sin(k * 4 * radian)});
+      if (r > 0) rings.push_back(ring);
+    }
+    return package(rings, projection);
   }
 
   static TerrainOptions options(const std::string &file) {
@@ -229,6 +241,13 @@ TEST_F(TerrainFiles, AreRefusedInDegreesAndFeet) {
   expect_words(complaint(options(geotiff(hill, 4326, 0.001, 10.2, 47))),
                {"coordinates in degrees", "project it to metres"});
   expect_words(complaint(options(geotiff(plane, 4326))), {"says that its coordinates are degrees", "gdal_edit.py"});
+  const std::string file = geotiff(hill, 4326, 0.001, 10.2, 47);
+  {  // degrees are seldom square
+    const std::unique_ptr<GDALDataset> data(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
+    double map[] = {10.2, 0.0015, 0, 47.016, 0, -0.001};
+    data->SetGeoTransform(map);
+  }
+  expect_words(complaint(options(file)), {"coordinates in degrees", "project it to metres"});
   expect_words(complaint(options(geotiff(plane, 2225))), {"US survey foot", "project it to metres"});
 }
 TEST_F(TerrainFiles, AreRefusedWhereTheyDoNotFit) {
@@ -309,6 +328,19 @@ TEST_F(TerrainFiles, AreRefusedWithSpikes) {
   expect_words(complaint(o), {"slip.asc: the elevation -9998 m"});
 }
 
+/// The wall behind an ellipsoid that dips into a steep slope is no spike: what is wrong is the dip, or the elevation.
+TEST_F(TerrainFiles, DoubtTheEllipsoidAndNotTheGround) {
+  TerrainOptions o = options(ascii([](double x, double) { return 1000 - 0.8 * (x - east); }));
+  o.size = 5;
+  o.ellipsoid = Ellipsoid{{east + 100, south + 80, 920}, {70, 50, 20}, 38 * radian, 270 * radian};
+  EXPECT_EQ(complaint(o), "");
+  EXPECT_TRUE(doubts(o, "dips towards 270 degrees from north, into the slope, which falls towards 90 degrees"));
+  o.ellipsoid->dip_direction = 90 * radian;
+  EXPECT_FALSE(doubts(o, "into the slope"));
+  o.ellipsoid->centre[2] = 780;
+  expect_words(complaint(o), {"the ellipsoid lies wholly below the ground"});
+}
+
 /// Slip surfaces that no slide has.
 TEST_F(TerrainFiles, DoNotMeetImpossibleSlipSurfaces) {
   const Elevation bowl = [](double x, double y) {
@@ -328,6 +360,10 @@ TEST_F(TerrainFiles, DoNotMeetImpossibleSlipSurfaces) {
   EXPECT_TRUE(doubts(o, "slip.asc ends 11.5 m below the ground at (5070, 2080), and it is 11.5 m deep at most"));
   o.slip_surface = slip([](double x, double y) { return x == east + 70 && y == south + 80; });  // a hole
   EXPECT_TRUE(doubts(o, "vertical wall"));
+  o.slip_surface = ascii([&](double x, double y) { return high(x, y) - 60; }, "slip.asc");
+  expect_words(complaint(o), {"slip.asc lies below the ground everywhere, by 60 m at least and 60 m on average"});
+  o.slip_surface = ascii([&](double x, double y) { return high(x, y) - 3; }, "slip.asc");  // loose soil, all of it
+  EXPECT_TRUE(doubts(o, "slip.asc lies below the ground everywhere, by 3 m at least"));
   o.slip_surface.clear();
   o.ellipsoid = Ellipsoid{{east + 100, south + 80, 1170}, {60, 40, 20}, 17 * radian, 90 * radian};
   EXPECT_FALSE(doubts(o, "wall"));
@@ -350,7 +386,7 @@ TEST_F(TerrainFiles, MeetAnEllipsoidUpToItsRim) {
   }
 }
 
-/// In a circle the bowl is a paraboloid, half as deep on average as in the middle; the grid cuts its rim in steps.
+/// In a circle the bowl is a paraboloid, half as deep on average as in the middle.
 TEST_F(TerrainFiles, SlideInAnOutline) {
   TerrainOptions o = options(geotiff([](double x, double) { return 500 - 0.3 * (x - east); }, 31254, 2));
   std::filesystem::rename(o.file, in_folder("terrain.tif"));
@@ -358,11 +394,12 @@ TEST_F(TerrainFiles, SlideInAnOutline) {
   o.outline = outline(east + 20, south + 16, 14.9, 0, 31254), o.depth = 6;
   const double circle = 180 * radian * 14.9 * 14.9;
   const Terrain bowl(o);
-  // nodes are 2 m apart: the rim lies up to a node too far out, by 1 m of 15 on average, and the slide reaches there
+  // at nodes the depth is that of the paraboloid but for the sides of the polygon, 0.1 %; sums over 180 nodes, 2 m
+  // apart
   EXPECT_NEAR(bowl.slide_area() / circle, 1, 0.03);
-  EXPECT_NEAR(bowl.slide_volume() / (circle * 6 / 2), 1.07, 0.07);
+  EXPECT_NEAR(bowl.slide_volume() / (circle * 6 / 2), 1, 0.01);
   EXPECT_NEAR(bowl.ground_at(20, 16) - bowl.bed_at(20, 16), 6, 1e-9);
-  EXPECT_NEAR(bowl.ground_at(28, 16) - bowl.bed_at(28, 16), 6 * (1 - std::pow(8. / 15.5, 2)), 0.25);
+  EXPECT_NEAR(bowl.ground_at(28, 16) - bowl.bed_at(28, 16), 6 * (1 - std::pow(8. / 14.9, 2)), 0.01);
   EXPECT_TRUE(bowl.doubts().empty());
   o.bowl = false;
   EXPECT_NEAR(Terrain(o).slide_volume() / (circle * 6), 1, 0.03);
@@ -373,7 +410,7 @@ TEST_F(TerrainFiles, SlideInAnOutline) {
   o.depth = 6, o.outline = outline(east + 500, south + 16, 14.9, 0, 31254);
   expect_words(complaint(o), {"outline.gpkg does not lie in the window"});
   o.outline = outline(east + 20, south + 16, 14.9, 0, 31255);
-  expect_words(complaint(o), {"outline.gpkg: has the projection MGI / Austria GK Central"});
+  expect_words(complaint(o), {"outline.gpkg: has the projection MGI / Austria GK Central", "ogr2ogr -t_srs"});
   o.outline = outline(east + 20, south + 16, 14.9, 0, 2225);
   expect_words(complaint(o), {"outline.gpkg: has coordinates in another unit than metres"});
   o.outline = outline(10, 47, 1, 0, 4326);
@@ -382,6 +419,41 @@ TEST_F(TerrainFiles, SlideInAnOutline) {
   expect_words(complaint(o), {"give one slip surface"});
   o.slip_surface.clear(), o.outline = ascii(plane);
   expect_words(complaint(o), {"a.asc: is no file of outlines that GDAL reads"});
+}
+
+/// The volume is that of the outline wherever its middle lies between nodes, and with a radius of six nodes.
+TEST_F(TerrainFiles, HaveTheVolumeOfAnOutlineBetweenNodes) {
+  TerrainOptions o = options(ascii([](double, double) { return 500; }));
+  for (const double radius : {60., 70.})
+    for (const auto &[x, y] : {std::pair{100., 80.}, {103., 81.}, {105., 80.}, {105., 75.}, {98.3, 83.1}}) {
+      o.outline = outline(east + x, south + y, radius, 0, 31254), o.depth = 15;
+      EXPECT_NEAR(Terrain(o).slide_volume() / (180 * radian * radius * radius * 15 / 2), 1, 0.03)
+          << radius << " " << x << " " << y;
+    }
+}
+
+/// Sides on nodes, and turned by right angles: nodes on the outline count alike on all sides.
+TEST_F(TerrainFiles, HaveOneVolumeInAllDirections) {
+  const Ring corners{{-60, -30}, {40, -30}, {60, -10}, {60, 50}, {-20, 50}, {-20, 10}, {-60, 10}};
+  const double area = 120 * 80 - 40 * 40 - 20 * 20 / 2;
+  for (const bool bowl : {true, false}) {
+    double first = 0;
+    for (int turn = 0; turn < 4; ++turn) {
+      Ring ring;
+      for (const auto &[u, v] : corners) {
+        const std::array<double, 2> turned[] = {{u, v}, {-v, u}, {-u, -v}, {v, -u}};
+        ring.push_back({east + 100 + turned[turn][0], south + 80 + turned[turn][1]});
+      }
+      TerrainOptions o = options(ascii([](double, double) { return 500; }));
+      o.outline = package({ring}, 31254), o.depth = 15, o.bowl = bowl;
+      const double volume = Terrain(o).slide_volume();
+      if (turn == 0) first = volume;
+      EXPECT_NEAR(volume, first, 1e-6 * first) << bowl << " " << turn;
+      if (bowl) continue;
+      // by Pick's theorem: corners count as sides do, one cell too much in all
+      EXPECT_NEAR(volume, (area + spacing * spacing) * 15, 1e-6 * volume);
+    }
+  }
 }
 
 /// Layers below grids: their cells have the volume between the grids, to half a cell at their borders.
@@ -397,6 +469,12 @@ TEST_F(TerrainFiles, HaveLayers) {
   EXPECT_NEAR(of_group(answer, "ground") + of_group(answer, "clay") + of_group(answer, "rock"), 100 * 80 * 75, 5);
   expect_words(run(arguments + " --layer rock " + ascii([](double, double) { return -100; }, "low.asc")).text,
                {"warning: layer rock has no cells"});
+  const std::string deep = ascii([](double x, double y) { return plane(x, y) - 40; }, "deep.asc");
+  expect_words(run(ascii(plane) + " -o " + in_folder("m.msh") +
+                   " --size 10 --far-size 10 --base 10 --window 5000 2000 5100 2080 --layer clay " + deep +
+                   " --layer rock " + clay)
+                   .text,
+               {"warning: layer clay has no cells: its surface, ", "lies below that of layer rock", "top to bottom"});
   TerrainOptions o = options(ascii(plane));
   o.layers = {{"clay", clay}};
   expect_words(complaint(o), {"--layer NAME FILE parts the ground over a flat base"});
