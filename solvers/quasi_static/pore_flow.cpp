@@ -64,7 +64,8 @@ void PoreFlow<dim>::serialize(Archive &archive) {
   archive.sums("inflow", inflow_);
   if (!archive.reading()) return;
   std::fill(pressure_of_point_.begin(), pressure_of_point_.end(), std::numeric_limits<double>::quiet_NaN());
-  for (size_t k = 0; k < wet.size(); ++k) pressure_of_point_[point_of(wet[k])] = pressures[k];
+  for (size_t k = 0; k < wet.size(); ++k)  // of a node between ranks this one may have no soil
+    if (const int p = point_of.find(wet[k]); p >= 0) pressure_of_point_[p] = pressures[k];
   for (int i = 0; i < nodes_.count(); ++i) accepted[i] = pressure_of_point_[nodes_.point[i]];
   for (size_t k = 0; k < present.size(); ++k)
     if (const int i = node_of.find(present[k]); i >= 0) pressure[i] = trial[k], open_[i] = open[k];

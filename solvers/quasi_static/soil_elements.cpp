@@ -362,8 +362,9 @@ void SoilElements<dim>::serialize(Archive &archive) {
   if (archive.reading()) {
     const LocalNumbers point_of(numbers);
     std::fill(displacement_of_point_.begin(), displacement_of_point_.end(), 0.);
-    for (size_t k = 0; k < moved.size(); ++k)
-      std::memcpy(&displacement_of_point_[point_of(moved[k]) * dim], &displacement[k * dim], width);
+    for (size_t k = 0; k < moved.size(); ++k)  // of a node between ranks this one may have no soil
+      if (const int p = point_of.find(moved[k]); p >= 0)
+        std::memcpy(&displacement_of_point_[p * dim], &displacement[k * dim], width);
     for (int i = 0; i < nodes_.count(); ++i)
       std::copy_n(&displacement_of_point_[nodes_.point[i] * dim], dim, &displacement_[i * dim]);
   }

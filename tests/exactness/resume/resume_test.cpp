@@ -382,6 +382,30 @@ print('the same')
 INSTANTIATE_TEST_SUITE_P(All, ResumedBehindElementsOnOtherRanks, testing::ValuesIn(chains),
                          [](const auto &chain) { return chain.param.name; });
 
+/// Where the cut between two ranks runs along the ground, a rank has nodes that only cells of the other one fill with
+/// soil, and rows of them in the checkpoint. In cells of this size it does.
+TEST(ResumedBehindElements, OnRanksThatShareNodesOfEmptyCells) {
+  const Folder folder;
+  folder.write("slope.csv",
+               "part,x,y\noutline,0,0\noutline,40,0\noutline,40,14\noutline,0,14\ninterface0,0,12\n"
+               "interface0,14,12\ninterface0,24,4\ninterface0,40,4\nregion_air,35,10\nregion_soil,5,3\n");
+  const std::string scene =
+      "dimension = 2\ngravity = 9.81\n[mesh]\nsection = \"slope.csv\"\nsize = 0.6\n[body.soil]\nregion = \"soil\"\n"
+      "density = 1800\nlaw = \"linear_elastic\"\nyoung_modulus = \"20 MPa\"\npoisson_ratio = 0.44\n"
+      "[boundary.base]\nkind = \"fixed\"\n[boundary.left]\nkind = \"roller\"\n[boundary.right]\nkind = \"roller\"\n"
+      "[quasi_static]\nelements = \"patches\"\n" +
+      stage("gravity", "quasi_static", "duration = 1\nhold_loads = true\n");
+  const auto run = [&](const std::string &text, int ranks) {
+    folder.write("scene.toml", text);
+    std::vector<std::string> words{"run", "scene.toml", "-o", "results", "--no-pictures"};
+    if (ranks > 1) words.push_back("--resume");
+    const Ending ending = talus(folder, words, ranks);
+    EXPECT_EQ(ending.status, 0) << ending.output;
+  };
+  run(scene, 1);
+  run(scene + stage("moves", "dynamic", "duration = 0.01\n"), 2);
+}
+
 /// A short run that has ended.
 class EndedRun : public testing::Test {
  protected:
