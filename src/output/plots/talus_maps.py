@@ -218,6 +218,13 @@ def reference_of(projection):
     return reference
 
 
+def undefined():
+    """Level coordinates in metres somewhere: a GeoPackage has this name, number -1, for them; without one GDAL calls them degrees, number 0."""
+    reference = osr.SpatialReference()
+    reference.SetFromUserInput('LOCAL_CS["Undefined Cartesian SRS",UNIT["metre",1]]')
+    return reference
+
+
 def raster(maps, bands, path="", driver="MEM", options=()):
     """A raster file of arrays on the grid, north up. `bands` are (values, meaning, unit)."""
     grid, reference = maps.grid, reference_of(maps.axes.projection)
@@ -253,7 +260,7 @@ def write_rasters(maps, folder, ascii_grids):
 def write_vectors(maps, path):
     """The GeoPackage: layer `outline` of the deposit, layer `path` of the centre of mass of the soil that slides."""
     path.unlink(missing_ok=True)
-    reference = reference_of(maps.axes.projection)
+    reference = reference_of(maps.axes.projection) or undefined()
     made = ogr.GetDriverByName("GPKG").CreateDataSource(str(path))
     line = ogr.Geometry(ogr.wkbLineString25D)
     places = maps.path[np.isfinite(maps.path[:, 0])]

@@ -2,8 +2,10 @@
 
     maps_test.py TALUS MPIEXEC"""
 
+import contextlib
 import os
 import pathlib
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -174,7 +176,10 @@ class Maps(unittest.TestCase):
                 self.assertAlmostEqual(thickness.sum(axis=1) @ (low[0] + (np.arange(len(thickness)) + 0.5) * cell) / thickness.sum(), 1.75, delta=0.01)
                 # over the depth of the block, 0.6 m, it is 0.5 m thick: particles are as irregular as the tetrahedra they are in
                 self.assertAlmostEqual(thickness[7].sum() * cell / 0.6, 0.5, delta=0.03)
-                numbers, outline, _ = feature(results, "outline")
+                numbers, outline, reference = feature(results, "outline")
+                self.assertEqual((reference.GetName(), reference.IsGeographic()), ("Undefined Cartesian SRS", 0))
+                with contextlib.closing(sqlite3.connect(FOLDER / results / "maps/deposit.gpkg")) as package:
+                    self.assertEqual(package.execute("select distinct srs_id from gpkg_geometry_columns").fetchall(), [(-1,)])
                 west, east, south, north = outline.GetEnvelope()
                 np.testing.assert_allclose([west, east, south, north], [1.5, 2, -0.6, 0], atol=cell)
                 self.assertAlmostEqual(numbers["area_m2"], outline.GetArea(), delta=1e-9)
