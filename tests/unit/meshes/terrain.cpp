@@ -332,7 +332,7 @@ TEST_F(TerrainFiles, AreRefusedWithSpikes) {
 TEST_F(TerrainFiles, DoubtTheEllipsoidAndNotTheGround) {
   TerrainOptions o = options(ascii([](double x, double) { return 1000 - 0.8 * (x - east); }));
   o.size = 5;
-  o.ellipsoid = Ellipsoid{{east + 100, south + 80, 920}, {70, 50, 20}, 38 * radian, 270 * radian};
+  o.ellipsoid = Ellipsoid{{east + 100, south + 80, 920}, {80, 60, 15}, 39 * radian, 270 * radian};
   EXPECT_EQ(complaint(o), "");
   EXPECT_TRUE(doubts(o, "dips towards 270 degrees from north, into the slope, which falls towards 90 degrees"));
   o.ellipsoid->dip_direction = 90 * radian;
