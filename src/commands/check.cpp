@@ -263,6 +263,9 @@ std::string picture_of(const CheckArguments &arguments, const std::string &scene
   if (std::filesystem::path(arguments.picture).extension() != ".png")
     throw SceneError("--picture " + arguments.picture + " must be the name of a PNG file, such as " +
                      short_name(scene_file) + "_model.png");
+  const std::filesystem::path folder = std::filesystem::absolute(arguments.picture).parent_path();
+  if (!std::filesystem::is_directory(folder))
+    throw SceneError("--picture " + arguments.picture + " cannot be written: there is no folder " + folder.string());
   return arguments.picture;
 }
 

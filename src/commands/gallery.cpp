@@ -1,8 +1,10 @@
 #include "commands/gallery.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cstring>
 #include <filesystem>
+#include <initializer_list>
 #include <sstream>
 
 #include "base/archive.h"
@@ -23,7 +25,17 @@ std::filesystem::path gallery_folder() {
 
 std::string find_scene(const std::string &name) {
   namespace fs = std::filesystem;
-  if (fs::is_regular_file(name)) return name;
+  if (fs::is_regular_file(name)) {
+    const std::string ending = fs::path(name).extension();
+    const auto is = [&](std::initializer_list<const char *> some) {
+      return std::ranges::find(some, ending) != some.end();
+    };
+    if (is({".csv", ".dxf"}))
+      throw SceneError(name + " is a section, not a scene: a scene (.toml) names it with mesh.section");
+    if (is({".msh", ".asc", ".tif", ".tiff", ".h5", ".xdmf"}))
+      throw SceneError(name + " is not a scene, which is a .toml file");
+    return name;
+  }
   const fs::path gallery = gallery_folder();
   const fs::path scene = gallery / name / "scene.toml";
   if (fs::is_regular_file(scene)) return scene.string();
@@ -32,6 +44,8 @@ std::string find_scene(const std::string &name) {
     for (const auto &entry : fs::directory_iterator(gallery))
       if (fs::is_regular_file(entry.path() / "scene.toml"))
         known += (known.empty() ? "" : ", ") + entry.path().filename().string();
+  if (fs::exists(fs::path(name) / "run.h5"))
+    throw SceneError(name + " is a folder with the results of a run: give the scene (.toml) of the run instead");
   throw SceneError(name + " is neither a file nor a gallery scene (" + known + ")");
 }
 

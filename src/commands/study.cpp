@@ -195,7 +195,9 @@ class Study {
     for (const StudyCriterion &one : file_.criterion)
       if (std::find(known.begin(), known.end(), one.outcome) == known.end())
         root_.complain("criterion." + one.name + ".outcome",
-                       "is no outcome of these runs; " + suggestion(one.outcome, known) + "; known are " + join(known));
+                       "is no outcome of these runs; " +
+                           (nearest(one.outcome, known).empty() ? "" : suggestion(one.outcome, known) + " ") +
+                           "known are " + join(known));
   }
 
   /// Sample after sample, and in each the whole grid, so that more samples only add variants at the end.

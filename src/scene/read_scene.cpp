@@ -212,8 +212,14 @@ class Checks {
 
   void body(const BodySource &body) const {
     const std::string path = "body." + body.name;
-    if (body.region.empty())
-      reader_.complain(path, "needs region, the name (or list of names) of the mesh's physical groups that it fills");
+    if (body.region.empty()) {
+      std::vector<std::string> complete;
+      for (const BodySource &other : scene_.body)
+        if (!other.region.empty()) complete.push_back(other.name);
+      const std::string near = nearest(body.name, complete);
+      reader_.complain(path, "needs region, the name (or list of names) of the mesh's physical groups that it fills" +
+                                 (near.empty() ? "" : "; or is this body `" + near + "`, misspelt?"));
+    }
     functions(path + ".velocity", body.velocity, scene_.dimension);
     functions(path + ".displacement", body.displacement, scene_.dimension);
     functions(path + ".body_acceleration", body.body_acceleration, scene_.dimension);

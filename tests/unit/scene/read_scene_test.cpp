@@ -174,6 +174,7 @@ TEST(ReadScene, ChecksOneKeyAgainstAnother) {
       {drained, {"dimension=3", "up=z"}, "mesh.section = \"slope.csv\" counts elevations along y"},
       {dry, {"gravity=-9.81"}, "gravity = -9.81 must not be negative"},
       {dry, {"body.sand.region=[]"}, "slope.toml line 7: body.sand needs region"},
+      {dry, {"body.snd.density=1"}, "or is this body `sand`, misspelt?"},
       {dry, {"body.sand.velocity=[1, 2, 3]"}, "must have 2 components, not 3 (dimension = 2)"},
       {dry, {"body.sand.displacement=1"}, "must have 2 components, not 1 (dimension = 2)"},
       {dry, {"body.sand.body_acceleration=[1]"}, "must have 2 components, not 1 (dimension = 2)"},
