@@ -279,8 +279,13 @@ class Model {
       for (int a = 0; a < dim; ++a)
         for (int d = 0; d < dim; ++d) centre[d] += face.corner[a][d] / dim;
       if (face.body >= 0) {  // functions need not be defined where there is no soil
-        vector = exerted(kind, action, face, centre, values);
-        level = std::fmax(level, look_at_pores(kind, centre, values));
+        Values of_centre;
+        vector = exerted(kind, action, face, centre, of_centre);
+        level = std::fmax(level, look_at_pores(kind, centre, of_centre));
+        for (int a = 0; a < dim; ++a) {  // between which the values of the centre lie
+          exerted(kind, action, face, face.corner[a], values);
+          look_at_pores(kind, face.corner[a], values);
+        }
       }
       return Object()
           .add("corners", corners(face, dim))
@@ -302,17 +307,16 @@ class Model {
         .str();
   }
 
-  /// Load [Pa] or velocity [m/s] in the middle of a face at the start; `values` takes what the boundary prescribes
-  /// there.
-  static Vec<dim> exerted(const Boundary &kind, OnSoil action, const Piece<dim> &face, const Vec<dim> &centre,
+  /// Load [Pa] or velocity [m/s] at a place of a face at the start; `values` takes what the boundary prescribes there.
+  static Vec<dim> exerted(const Boundary &kind, OnSoil action, const Piece<dim> &face, const Vec<dim> &place,
                           Values &values) {
     const auto &on_soil = kind.template on_soil<dim>();
-    const double x = centre[0], y = centre[1], z = dim == 3 ? centre[dim - 1] : 0;
+    const double x = place[0], y = place[1], z = dim == 3 ? place[dim - 1] : 0;
     Vec<dim> vector{};
-    if (action == OnSoil::load) vector = on_soil.load(face.normal, centre, 0);
+    if (action == OnSoil::load) vector = on_soil.load(face.normal, place, 0);
     if (action == OnSoil::support && on_soil.speed)
       for (const Vec<dim> &direction : on_soil.directions(face.normal)) {
-        const double speed = on_soil.speed(direction, centre, 0);
+        const double speed = on_soil.speed(direction, place, 0);
         for (int d = 0; d < dim; ++d) vector[d] += speed * direction[d];
       }
     double inwards = 0, square = 0;
@@ -327,11 +331,11 @@ class Model {
   }
 
   /// The same for the pores; the level of open water [m], not a number where there is none.
-  double look_at_pores(const Boundary &kind, const Vec<dim> &centre, Values &values) const {
-    const double x = centre[0], y = centre[1], z = dim == 3 ? centre[dim - 1] : 0;
+  double look_at_pores(const Boundary &kind, const Vec<dim> &place, Values &values) const {
+    const double x = place[0], y = place[1], z = dim == 3 ? place[dim - 1] : 0;
     double level = std::numeric_limits<double>::quiet_NaN();
     if (kind.outside) {
-      const double weight = scene_.water.density * scene_.gravity_size(), elevation = centre[scene_.vertical()],
+      const double weight = scene_.water.density * scene_.gravity_size(), elevation = place[scene_.vertical()],
                    p = kind.outside(x, y, z, 0, {weight, elevation});
       if (kind.open_water && weight > 0 && p > 0) level = elevation + p / weight;
       values.add(p < 0 ? "suction" : "pore pressure", "Pa", std::abs(p));

@@ -154,11 +154,11 @@ class InPlaneStrain(unittest.TestCase):
     def test_boundaries_say_what_they_do(self):
         self.assertEqual({name: one.soil for name, one in self.boundary.items()}, {"base": "base", "left": "roller", "top": "load"})
         values = {one["name"]: one for one in self.boundary["base"].values}
-        self.assertAlmostEqual(values["friction angle"]["low"], 21.25)  # in the middle of the faces with soil
-        self.assertAlmostEqual(values["friction angle"]["high"], 28.75)
+        self.assertAlmostEqual(values["friction angle"]["low"], 20)  # at the corners of the faces with soil
+        self.assertAlmostEqual(values["friction angle"]["high"], 30)
         np.testing.assert_allclose(self.boundary["top"].vector, np.tile([0, -1000], (4, 1)), atol=1e-9)
         self.assertEqual(self.boundary["top"].at_start(), "pressure 1 kPa at the start, changes with time")
-        self.assertEqual(self.boundary["base"].line(), "base: base with friction, friction angle 21.25 to 28.75° at the soil")
+        self.assertEqual(self.boundary["base"].line(), "base: base with friction, friction angle 20 to 30° at the soil")
 
     def test_water_table_is_that_of_the_start(self):
         (body, line), = self.model.water_lines()
@@ -254,12 +254,18 @@ class Pictures(unittest.TestCase):
         self.assertEqual(status, 2, said)
         self.assertIn("--picture block.jpg must be the name of a PNG file", said)
 
-    def test_that_cannot_be_written_fail(self):
+    def test_are_refused_without_their_folder(self):
         for ranks in (1, 2):
             status, said = self.check("--picture", "no/such/folder/block.png", ranks=ranks)
+            self.assertEqual(status, 2, said)
+            self.assertIn("--picture no/such/folder/block.png cannot be written: there is no folder", said)
+
+    def test_that_cannot_be_written_fail(self):
+        (self.folder.path / "taken.png").mkdir(exist_ok=True)
+        for ranks in (1, 2):
+            status, said = self.check("--picture", "taken.png", ranks=ranks)
             self.assertEqual(status, 1, said)
-            self.assertIn("No such file or directory", said)
-            self.assertIn("no picture no/such/folder/block.png", said)
+            self.assertIn("no picture taken.png", said)
 
     def test_without_matplotlib_fail(self):
         (self.folder.path / "matplotlib.py").write_text("raise ImportError('there is none')\n")
@@ -273,7 +279,7 @@ class Pictures(unittest.TestCase):
         report = (self.folder.path / "out/report.html").read_text()
         self.assertLess(report.index('alt="Model at the start"'), report.index('alt="Displacement"'))
         for cells in ("<th>young modulus</th><td>1 MPa</td>", "<th>pressure</th><td>–</td><td>–</td><td>1 kPa at 0 s, 2 kPa at 1 s</td>",
-                      "<th>at the start</th><td>friction angle 21.25 to 28.75° at the soil</td><td>–</td><td>pressure 1 kPa at the start, changes with time</td>",
+                      "<th>at the start</th><td>friction angle 20 to 30° at the soil</td><td>–</td><td>pressure 1 kPa at the start, changes with time</td>",
                       "<th>mode</th><td>drained: pore pressure is prescribed</td>", "<th>table</th><td>(0, 0.3), (2, 0.1) m</td>",
                       "<th>level</th><td>0.05 + rise(t) [m]</td>",
                       "<td>rise</td><td>0 at 0 s, 10 cm at 10 s</td>",
