@@ -23,6 +23,7 @@ CASES = (
     ("as heated.toml", []),
     ("cells of 12 m", ["mesh.size=12"]),
     ("heat without expansion", [BED + "thermal_pressurisation=0"]),
+    ("heat when the water has risen to 60 m", ["stage.water.duration=80"]),
     ("heat from the rising water on", ["stage.water.softening=true"]),
     ("undrained", [BED + "hydraulic_conductivity=0"]),
     ("thickness 1.4 mm", [BED + "thickness=1.4e-3"]),

@@ -57,6 +57,8 @@ CASES = (
     ("gravity does not soften the rock", ["stage.gravity.softening=false", "stage.settle.softening=false"]),
     ("residual cohesion 75 kPa", ["body.rock.residual_cohesion=75e3"]),
     ("residual cohesion 150 kPa", ["body.rock.residual_cohesion=150e3"]),
+    *((f"residual cohesion {c} kPa, cells of 12 m", [f"body.rock.residual_cohesion={c}e3", "mesh.size=12"]) for c in (75, 150, 225)),
+    ("residual cohesion 150 kPa, cells of 10 m", ["body.rock.residual_cohesion=150e3", "mesh.size=10"]),
     ("E 2.5 GPa", ["body.rock.young_modulus=2.5e9"]),
     ("E 10 GPa", ["body.rock.young_modulus=1e10"]),
     ("E 5 MPa, as printed", ["body.rock.young_modulus=5e6"]),
