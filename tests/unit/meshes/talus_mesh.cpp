@@ -147,12 +147,12 @@ TEST_F(TalusMesh, ComplainsAboutBadInputWithStatus2) {
   EXPECT_FALSE(std::filesystem::exists(in_folder("m.msh")));
 }
 
-TEST_F(TalusMesh, ComplainsAboutSeedsThatContradictEachOther) {
+TEST_F(TalusMesh, ComplainsAboutPointsOfRegionsThatContradictEachOther) {
   const std::string square = "outline,0,0\noutline,4,0\noutline,4,2\noutline,0,2\n";
   const Answer answer =
       run(write("s.csv", square + "region_clay,1,1\nregion_sand,3,1\n") + " --size 1 -o " + in_folder("m.msh"));
   EXPECT_EQ(answer.status, 2);
-  expect_words(answer, {"line 6", "'sand'", "'clay'", "interface"});
+  expect_words(answer, {"line 6", "region_sand", "region_clay", "interface"});
   EXPECT_FALSE(std::filesystem::exists(in_folder("m.msh")));
 }
 
