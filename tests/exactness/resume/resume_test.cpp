@@ -301,9 +301,9 @@ const Chain chains[] = {
       stage("rests", "quasi_static", "duration = 1\n")}},
     {"of_consolidation_on_two_ranks",
      {"phases=saturated", "water.bulk_modulus=1e7"},
-     {stage("weight", "consolidation", "duration = 40\ninitial_stress = \"k0\"\n"),
-      stage("more", "consolidation", "duration = 40\n"), stage("moves", "dynamic", "duration = 0.01\n"),
-      stage("rests", "consolidation", "duration = 20\n")},
+     {stage("weight", "consolidation", "duration = 4\ninitial_stress = \"k0\"\n"),
+      stage("more", "consolidation", "duration = 4\n"), stage("moves", "dynamic", "duration = 0.01\n"),
+      stage("rests", "consolidation", "duration = 2\n")},
      2},
 };
 
