@@ -20,10 +20,10 @@ class TakeTurns {
   template <class Act>
   void operator()(int count, int first, Vec<dim> &v, Act &&act) {
     std::fill_n(change_.begin(), count, Vec<dim>{});
-    met_ = 0;
+    double met = 0;
     for (int sweep = 0; sweep < most_sweeps; ++sweep) {
       double moved = 0;
-      met_ = std::max(met_, map<dim>(v).norm());
+      met = std::max(met, map<dim>(v).norm());
       for (int turn = 0; turn < count; ++turn) {
         const int k = (first + turn) % count;
         Vec<dim> others = v;
@@ -33,19 +33,16 @@ class TakeTurns {
           change_[k][d] = after[d] - others[d], moved = std::max(moved, std::abs(after[d] - v[d]));
         v = after;
       }
-      if (count == 1 || moved <= negligible * met_) return;
+      if (count == 1 || moved <= negligible * met) return;
     }
   }
 
   const Vec<dim> &change(int k) const { return change_[k]; }  ///< of the vector by actor k
-  /// Largest length of the vector before a sweep.
-  double met() const { return met_; }
 
  private:
   static constexpr int most_sweeps = 200;
   static constexpr double negligible = 1e-14;  // of the vector that the actors meet
   std::vector<Vec<dim>> change_;
-  double met_ = 0;
 };
 
 }  // namespace talus
