@@ -316,7 +316,10 @@ def main():
         write_vectors(maps, folder / "deposit.gpkg")
         draw_map(maps, folder / "map.png")
         draw_section(maps, folder / "section.png")
-    except (OSError, ValueError, RuntimeError) as error:
+    except ValueError as error:  # of what these results or this choice cannot give
+        print(f"talus: {error}", file=sys.stderr)
+        sys.exit(2)
+    except (OSError, RuntimeError) as error:
         sys.exit(f"talus_maps: {error}")
     print(f"maps of {maps.results.title} at {maps.times[-1]:g} s, cells of {maps.grid.spacing:g} m, {maps.grid.shape[0]} x {maps.grid.shape[1]}")
     print(f"projection: {'that of the terrain file' if maps.axes.projection else 'none, coordinates are ' + ('those of the terrain file' if maps.axes.terrain else 'local')}")
