@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -27,16 +28,38 @@ Result after_200_steps(MPI_Comm comm, const std::string &file, const std::vector
   return {simulation->snapshot(), simulation->particles(), simulation->mass(), simulation->time()};
 }
 
-/// Each rank runs the whole scene alone, one rank after the other: they share the file of the mesh.
+template <class T>
+void tell_all(std::vector<T> &values, MPI_Datatype type) {
+  int count = static_cast<int>(values.size());
+  MPI_Bcast(&count, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+  values.resize(count);
+  MPI_Bcast(values.data(), count, type, 0, PETSC_COMM_WORLD);
+}
+
+constexpr std::array compared{"position", "velocity", "stress"};
+
+const Column &column_of(const Snapshot &snapshot, const std::string &name) {
+  return *std::find_if(snapshot.columns.begin(), snapshot.columns.end(),
+                       [&](const Column &c) { return c.name == name; });
+}
+
+/// The first rank runs the whole scene alone and tells the others.
 Result alone(const std::string &file, const std::vector<std::string> &overrides) {
-  int ranks, rank;
-  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  int rank;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  Result result;
-  for (int r = 0; r < ranks; ++r) {
-    if (r == rank) result = after_200_steps(PETSC_COMM_SELF, file, overrides);
-    MPI_Barrier(PETSC_COMM_WORLD);
+  Result result{};
+  if (rank == 0) result = after_200_steps(PETSC_COMM_SELF, file, overrides);
+  MPI_Bcast(&result.count, 1, MPI_LONG_LONG, 0, PETSC_COMM_WORLD);
+  for (double *number : {&result.mass, &result.time}) MPI_Bcast(number, 1, MPI_DOUBLE, 0, PETSC_COMM_WORLD);
+  tell_all(result.particles.id, MPI_LONG_LONG);
+  std::vector<Column> columns;
+  for (const char *name : compared) {
+    Column column = rank == 0 ? column_of(result.particles, name) : Column{name, "", "", 1, {}};
+    MPI_Bcast(&column.components, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+    tell_all(column.values, MPI_DOUBLE);
+    columns.push_back(column);
   }
+  result.particles.columns = columns;
   return result;
 }
 
@@ -45,10 +68,7 @@ Result alone(const std::string &file, const std::vector<std::string> &overrides)
 double difference(const Snapshot &mine, const Snapshot &whole, const std::string &name) {
   std::map<long long, size_t> place;
   for (size_t i = 0; i < whole.id.size(); ++i) place[whole.id[i]] = i;
-  const auto column = [&](const Snapshot &s) {
-    return *std::find_if(s.columns.begin(), s.columns.end(), [&](const Column &c) { return c.name == name; });
-  };
-  const Column a = column(mine), b = column(whole);
+  const Column &a = column_of(mine, name), &b = column_of(whole, name);
   double largest = 0, scale = 0;
   for (const double value : b.values) scale = std::max(scale, std::abs(value));
   for (size_t i = 0; i < mine.id.size(); ++i)
@@ -63,7 +83,7 @@ void expect_the_same(const std::string &file, std::vector<std::string> overrides
   EXPECT_EQ(shared.count, whole.count);
   EXPECT_NEAR(shared.mass, whole.mass, 1e-14 * whole.mass);
   EXPECT_NEAR(shared.time, whole.time, 1e-12 * whole.time);
-  for (const char *field : {"position", "velocity", "stress"})
+  for (const char *field : compared)
     EXPECT_LT(difference(shared.particles, whole.particles, field), tolerance) << field;
   long long count = static_cast<long long>(shared.particles.id.size());
   MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_LONG_LONG, MPI_SUM, PETSC_COMM_WORLD);
