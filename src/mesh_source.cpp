@@ -9,8 +9,10 @@
 #include <bit>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -40,11 +42,9 @@ std::string talus_mesh_path() {
 }
 
 /// What talus-mesh is asked for.
-std::vector<std::string> of_section(const Scene &scene, const std::string &file) {
+std::vector<std::string> options_of_section(const Scene &scene) {
   const MeshSource &source = scene.mesh;
-  std::vector<std::string> arguments{
-      beside_scene(scene, source.section), "-o", file, "--size", number(source.size), "--dimension",
-      std::to_string(scene.dimension)};
+  std::vector<std::string> arguments{"--size", number(source.size), "--dimension", std::to_string(scene.dimension)};
   if (scene.dimension == 3) {
     arguments.insert(arguments.end(), {"--layers", std::to_string(source.layers)});
     if (source.thickness > 0) arguments.insert(arguments.end(), {"--thickness", number(source.thickness)});
@@ -106,6 +106,49 @@ std::string in_keys(const std::string &text) {
   }
   return keys + text.substr(end);
 }
+
+/// A mesh that is kept for the next run that asks for the same, in the folder that the environment variable
+/// TALUS_KEPT_MESHES names: the many small runs of tests would spend much of their time in the start of talus-mesh. Its
+/// name is a digest of the program, of its arguments and of the contents of the section. What goes wrong with it costs
+/// time only, and nothing is said of it.
+class KeptMesh {
+ public:
+  KeptMesh(const std::string &section, const std::vector<std::string> &options) {
+    const char *folder = std::getenv("TALUS_KEPT_MESHES");
+    if (!folder || !*folder) return;
+    const std::filesystem::path program = talus_mesh_path();
+    std::error_code error;
+    const auto built = std::filesystem::last_write_time(program, error).time_since_epoch().count();
+    std::ifstream file(section, std::ios::binary);
+    if (!file || error) return;
+    std::ostringstream recipe;
+    recipe << program << ' ' << built << ' ' << std::filesystem::path(section).extension();
+    for (const std::string &option : options) recipe << ' ' << option;
+    recipe << '\n' << file.rdbuf();
+    std::ostringstream name;
+    name << std::hex << std::hash<std::string>()(recipe.str()) << ".msh";
+    path_ = std::filesystem::path(folder) / name.str();
+  }
+
+  bool copy_to(const std::string &mesh) const {
+    std::error_code error;
+    return !path_.empty() && std::filesystem::copy_file(path_, mesh, overwrite, error);
+  }
+
+  /// The copy gets its name when it is complete.
+  void keep(const std::string &mesh) const {
+    if (path_.empty()) return;
+    std::error_code error;
+    const std::filesystem::path part = path_.string() + "-" + std::to_string(getpid());
+    std::filesystem::create_directories(path_.parent_path(), error);
+    if (std::filesystem::copy_file(mesh, part, overwrite, error)) std::filesystem::rename(part, path_, error);
+    if (error) std::filesystem::remove(part, error);
+  }
+
+ private:
+  static constexpr auto overwrite = std::filesystem::copy_options::overwrite_existing;
+  std::filesystem::path path_;  ///< empty: none is kept
+};
 
 /// All ranks learn how a run of talus-mesh on rank 0 has ended.
 void tell_all(MPI_Comm comm, int &status, std::string &complaint) {
@@ -255,7 +298,18 @@ MeshRun MeshFile::make(const Scene &scene) {
   const MeshSource &source = scene.mesh;
   if (!folder_.make()) return no_folder;
   path_ = folder_.path() + "/mesh.msh";
-  MeshRun run = plain(run_talus_mesh(source.section.empty() ? of_terrain(scene, path_) : of_section(scene, path_)));
+  std::vector<std::string> arguments;
+  std::optional<KeptMesh> kept;
+  if (source.section.empty()) {
+    arguments = of_terrain(scene, path_);
+  } else {
+    const std::string section = beside_scene(scene, source.section);
+    arguments = options_of_section(scene);
+    if (kept.emplace(section, arguments).copy_to(path_)) return {0, ""};
+    arguments.insert(arguments.begin(), {section, "-o", path_});
+  }
+  MeshRun run = plain(run_talus_mesh(arguments));
+  if (kept && run.status == 0 && warnings_in(run.output).empty()) kept->keep(path_);  // it has nothing to say again
   run.output = in_keys(run.output);
   return run;
 }

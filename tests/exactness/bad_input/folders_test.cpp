@@ -117,5 +117,34 @@ TEST(Start, NeedsRoomForTemporaryFiles) {
   EXPECT_TRUE(ending.says("set TMPDIR")) << ending.output;
 }
 
+/// Of a section that has the same contents and is asked for in the same way, wherever its file is.
+TEST(Start, TakesAMeshThatIsKept) {
+  const Folder folder;
+  folder.write("scene.toml", good_scene), folder.write("section.csv", good_section);
+  const auto meshes = [&] {
+    std::vector<std::string> names;
+    for (const auto &file : std::filesystem::directory_iterator(folder / "kept"))
+      names.push_back("kept/" + file.path().filename().string());
+    return names;
+  };
+  const auto status = [&](const std::string &size = "0.25") {
+    return Program(folder, {"env", "TALUS_KEPT_MESHES=" + folder / "kept", TALUS, "check", "scene.toml", "--set",
+                            "mesh.size=" + size})
+        .end()
+        .status;
+  };
+  EXPECT_EQ(status(), 0);
+  ASSERT_EQ(meshes().size(), 1u);
+  folder.write(meshes()[0], "no mesh");
+  EXPECT_EQ(status(), 2) << "it is taken as it is";
+  EXPECT_EQ(status("0.2"), 0);
+  folder.write("section.csv", good_section + "# another\n");
+  EXPECT_EQ(status(), 0);
+  EXPECT_EQ(meshes().size(), 3u);
+  std::filesystem::remove_all(folder / "kept");
+  folder.write("kept", "a file");
+  EXPECT_EQ(status(), 0) << "kept nowhere";
+}
+
 }  // namespace
 }  // namespace talus
