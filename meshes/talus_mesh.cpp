@@ -6,6 +6,8 @@
 #include <fstream>
 #include <iostream>
 #include <optional>
+#include <set>
+#include <sstream>
 
 #include "meshes/drawing.h"
 #include "meshes/gmsh_elements.h"
@@ -237,6 +239,22 @@ void check(const TerrainOptions &o, const Terrain &terrain) {
   }
 }
 
+/// "cells of 2 m, of 0.5 m at least in boxes".
+std::string sizes(const Request &request, const std::optional<Section> &section) {
+  std::ostringstream text;
+  text << "cells of " << (section ? request.options.size : request.terrain.size) << " m";
+  if (!section) {
+    if (request.terrain.far_size > 0) text << ", and of " << request.terrain.far_size << " m far away";
+    return text.str();
+  }
+  std::set<double> refined;
+  for (const std::vector<RefinedBox> *boxes : {&section->boxes, &request.options.boxes})
+    for (const RefinedBox &box : *boxes) refined.insert(box.size);
+  for (const double size : refined) text << (size == *refined.begin() ? ", in boxes of " : ", ") << size;
+  if (!refined.empty()) text << " m";
+  return text.str();
+}
+
 void run(const Request &request) {
   if (request.values) {
     const Grid grid = read_grid(request.source);
@@ -257,7 +275,7 @@ void run(const Request &request) {
     section ? mesh_section(*section, request.options) : mesh_terrain(*terrain);
     gmsh::option::setNumber("Mesh.MshFileVersion", request.format == "2.2" ? 2.2 : 4.1);
     gmsh::write(request.file);
-    std::cout << request.file << " from " << request.source << "\n";
+    std::cout << request.file << " from " << request.source << ", in " << sizes(request, section) << "\n";
     if (request.options.dimension == 2)
       report_mesh<2>();
     else

@@ -108,6 +108,13 @@ void print_costs(const Scene &scene, const Needs &n) {
            b.body.critical_step);
     else
       line("", "%-16s %-14s added by a stage, not there at the start", b.body.name.c_str(), law_name(b.law));
+  const char *label = "volume";
+  for (const BodyNeeds &b : n.bodies) {
+    if (!b.there()) continue;
+    line(label, "%-16s %.4g %s in cells of %.3g m on average", b.body.name.c_str(), b.body.volume,
+         scene.dimension == 2 ? "m3/m" : "m3", b.body.cell_size);
+    label = "";
+  }
   line("memory", "%s resident; snapshots take about %s (%lld)", spoken_bytes(n.memory).c_str(),
        spoken_bytes(n.results).c_str(), n.snapshots);
   if (n.particles() == 0) return;  // neither steps nor times are known
@@ -123,6 +130,7 @@ void print_costs(const Scene &scene, const Needs &n) {
          n.critical_step / slowest.critical_step);
   line("", "%s", n.step_bound.c_str());
   line("", "%s %.4g s, %.2f of it", n.fixed_step ? "fixed at" : "taken", n.step, n.step / n.critical_step);
+  bool moves = false;  // in some stage
   line("stages", "%-16s %-12s %10s %10s %14s %12s", "", "until", "longest s", "steps", "wave transits", "run time");
   for (std::size_t i = 0; i < n.stages.size(); ++i) {
     const StageNeeds &s = n.stages[i];
@@ -132,7 +140,10 @@ void print_costs(const Scene &scene, const Needs &n) {
     }
     line("", "%-16s %-12s %10.4g %10.0f %14.4g %12s", s.name.c_str(), ending_of(scene.stage[i]), s.duration, s.steps,
          s.transits, n.burst_steps ? spoken(s.run_time).c_str() : "-");
+    moves = true;
   }
+  if (moves && !n.fixed_step)
+    line("", "steps at the size of the first one; soil that comes into smaller cells, or deforms them, takes more");
   if (n.burst_steps)
     line("run time",
          "about %s to %s on %d rank%s: an estimate from %d steps of %s each with soil at rest, and of %s with a remap, "
@@ -194,6 +205,7 @@ void print_json(const Scene &scene, const Needs &n, const std::vector<std::strin
         .add("cells", static_cast<double>(b.body.cells))
         .add("fewest_particles_per_cell", b.body.fewest_per_cell)
         .add("mass_kg", b.body.mass)
+        .add("volume_m3", b.body.volume)
         .add("density_kg_m3", b.density)
         .add("wave_speed_m_s", b.wave_speed)
         .add("shear_wave_speed_m_s", b.shear_speed)

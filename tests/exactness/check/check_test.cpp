@@ -28,6 +28,10 @@ TEST(Check, KnowsParticlesMassAndLayer) {
   const Ending ending = check(folder, {});
   ASSERT_EQ(ending.status, 0) << ending.output;
   EXPECT_NEAR(number(ending, "mass_kg"), 2000 * 0.5, 1e-9);
+  EXPECT_NEAR(number(ending, "volume_m3"), 0.5, 1e-12);
+  const Ending page = talus(folder, {"check", "scene.toml"});
+  EXPECT_TRUE(page.says("0.5 m3/m in cells of ")) << page.output;
+  EXPECT_TRUE(page.says("steps at the size of the first one")) << page.output;
   EXPECT_NEAR(number(ending, "height_m"), 0.5, 1e-12);
   const double modulus = 1e6 * 0.7 / (1.3 * 0.4);  // E (1 - nu) / ((1 + nu) (1 - 2 nu))
   EXPECT_NEAR(number(ending, "gravity_strain"), 2000 * 9.81 * 0.5 / modulus, 1e-9);
@@ -191,6 +195,7 @@ TEST(Check, SaysTheUnitOfASection) {
   EXPECT_EQ(ending.status, 0) << ending.output;
   EXPECT_TRUE(ending.says("section.csv: all numbers are in feet (line 1) and turned into metres")) << ending.output;
   const Ending mesh = talus(folder, {"mesh", "section.csv", "--size", "0.25 ft", "-o", "a.msh"});
+  EXPECT_TRUE(mesh.says("a.msh from section.csv, in cells of 0.0762 m\n")) << mesh.output;
   EXPECT_TRUE(mesh.says("all numbers are in feet (line 1)")) << mesh.output;
   EXPECT_TRUE(mesh.says("region sand: ")) << mesh.output;
   EXPECT_TRUE(mesh.says(" cells, 0.0464")) << "half a square foot, in m2: " << mesh.output;
