@@ -3,6 +3,7 @@
 /// once per phase model, behind one interface per dimension. Virtual calls are per step or per output, never in a loop
 /// of the kernel.
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <memory>
 #include <string>
@@ -40,6 +41,7 @@ struct Loading {
 struct Balance {
   double unbalanced = 0, applied = 0;  ///< sums of nodal force magnitudes [N]
   double kinetic = 0, strain = 0;      ///< [J]
+  std::array<double, 3> moment{};      ///< mass times place, of the particles [kg m]
   /// Unbalanced over applied force; 0 where no force acts at all [-].
   double ratio() const { return unbalanced == 0 ? 0 : unbalanced / applied; }
 };

@@ -13,6 +13,7 @@
 #include "physics/kinematics.h"
 #include "physics/laws/update_stress.h"
 #include "physics/pores/pore_fluid.h"
+#include "physics/soil_motion/cell_motion.h"
 #include "physics/soil_motion/fastest_mode.h"
 #include "physics/soil_motion/nodal_velocities.h"
 #include "physics/soil_motion/prescribed_pore_water.h"
@@ -138,6 +139,8 @@ class SoilMotion final : public AnySoilMotion<dim> {
   }
   const double *find_suction(size_t body);
   bool is_trial(const State &state) const { return &state != &accepted_; }
+  /// How a cell has moved since the last remap; not at all before `begin`.
+  CellMotion<dim> cell_motion(int mesh_cell) const;
   // forces
   void internal_force(const State &state);
   void add_body_forces(double load_time);

@@ -72,18 +72,25 @@ PoreReport SoilMotion<dim, Phases>::pore_report(const Body<dim> &body, int i) co
 }
 
 template <int dim, class Phases>
-void SoilMotion<dim, Phases>::present(const Body<dim> &body, int i, Vec<dim> *position, Vec<dim> *velocity) const {
-  const ParticleArrays<dim> &p = body.particles();
-  *position = p.position[i], *velocity = p.velocity[i];
-  if (!gathered_) return;
-  const auto n = barycentric(mesh_.cells[p.cell[i]], p.position[i]);
-  const auto &node = grid_.shape[grid_.find_cell(p.cell[i])].node;
-  for (double &component : *velocity) component *= velocities_.own_share;  // as a remap would find it now
+CellMotion<dim> SoilMotion<dim, Phases>::cell_motion(int mesh_cell) const {
+  CellMotion<dim> motion;
+  if (!gathered_) return motion;
+  motion.own_share = velocities_.own_share;  // as a remap would find it now
+  const auto &node = grid_.shape[grid_.find_cell(mesh_cell)].node;
   for (int k = 0; k <= dim; ++k)
     for (int d = 0; d < dim; ++d) {
-      (*position)[d] += n[k] * (grid_.position[node[k]][d] - mesh_.position[grid_.mesh_node[node[k]]][d]);
-      (*velocity)[d] += n[k] * (velocities_.now[node[k]][d] - velocities_.own_share * velocities_.start[node[k]][d]);
+      motion.way[k][d] = grid_.position[node[k]][d] - mesh_.position[grid_.mesh_node[node[k]]][d];
+      motion.gain[k][d] = velocities_.now[node[k]][d] - velocities_.own_share * velocities_.start[node[k]][d];
     }
+  return motion;
+}
+
+template <int dim, class Phases>
+void SoilMotion<dim, Phases>::present(const Body<dim> &body, int i, Vec<dim> *position, Vec<dim> *velocity) const {
+  const ParticleArrays<dim> &p = body.particles();
+  const auto n = barycentric(mesh_.cells[p.cell[i]], p.position[i]);
+  const CellMotion<dim> motion = cell_motion(p.cell[i]);
+  *position = motion.position(n, p.position[i]), *velocity = motion.velocity(n, p.velocity[i]);
 }
 
 template <int dim, class Phases>
@@ -182,7 +189,7 @@ Archive::Rows SoilMotion<dim, Phases>::serialize_points(Archive &archive, size_t
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::balance(double, Balance *sums) {
   PetscFunctionBeginUser;
-  double local[4]{}, total[4];
+  double local[4 + dim]{}, total[4 + dim];
   PetscCall(total_force(loading.set_at, accepted_));
   std::copy_n(force_.begin(), grid_.node_count(), scratch_.begin());
   conditions_.project(velocities_.now.data(), scratch_.data());
@@ -206,17 +213,23 @@ PetscErrorCode SoilMotion<dim, Phases>::balance(double, Balance *sums) {
     local[1] += magnitude(force_[i]);
   }
   // of the particles: nodes also carry modes that no particle feels
-  for (const auto &body : bodies_)
-    for (int i = 0; i < body->particles().count; ++i) {
-      Vec<dim> x, v;
-      present(*body, i, &x, &v);
-      for (double c : v) local[2] += body->particles().mass[i] * c * c / 2;
+  for (const auto &body : bodies_) {
+    const ParticleArrays<dim> &p = body->particles();
+    CellMotion<dim> motion;
+    for (int i = 0; i < p.count; ++i) {
+      if (i == 0 || p.cell[i] != p.cell[i - 1]) motion = cell_motion(p.cell[i]);
+      const auto n = barycentric(mesh_.cells[p.cell[i]], p.position[i]);
+      const Vec<dim> x = motion.position(n, p.position[i]), v = motion.velocity(n, p.velocity[i]);
+      local[2] += p.mass[i] * dot<dim>(v, v) / 2;
+      for (int d = 0; d < dim; ++d) local[4 + d] += p.mass[i] * x[d];
     }
+  }
   for (size_t b = 0; b < bodies_.size(); ++b)
     for (int q = 0; q < points_[b].count; ++q)
       local[3] += points_[b].volume[q] * stored_energy<dim>(bodies_[b]->law(), &points_[b].stress[q * components]);
-  PetscCallMPI(MPI_Allreduce(local, total, 4, MPI_DOUBLE, MPI_SUM, mesh_.comm()));
+  PetscCallMPI(MPI_Allreduce(local, total, 4 + dim, MPI_DOUBLE, MPI_SUM, mesh_.comm()));
   *sums = {total[0], total[1], total[2], total[3]};
+  std::copy_n(total + 4, dim, sums->moment.begin());
   PetscFunctionReturn(0);
 }
 

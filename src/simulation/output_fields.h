@@ -213,6 +213,7 @@ struct RunRow {
   double particles = 0;     ///< their number
   double load_time = 0;     ///< time that functions of the scene see [s]
   double first_energy = 0;  ///< kinetic and strain energy at the start [J]
+  bool balanced = true;     ///< energy has a balance: not that of a mechanism, whose size is free
   EscapedSums escaped;      ///< what left the mesh and was taken out
   WorkDone work;
   std::vector<FluidLedger> fluids;  ///< that move on their own: water, then gas
@@ -266,7 +267,8 @@ struct RunRow {
     work_column("gravity", work.gravity);
     work_column("imposed", work.imposed);
     work_column("damping", work.damping);
-    column(string("dissipated"), "J", first_energy + done - (balance.kinetic + balance.strain + escaped.energy));
+    const double rest = first_energy + done - (balance.kinetic + balance.strain + escaped.energy);
+    column(string("dissipated"), "J", balanced ? rest : std::numeric_limits<double>::quiet_NaN());
   }
   /// Mass of a fluid that the boundaries do not account for: it stays what it is [kg].
   double owned(std::size_t a) const {

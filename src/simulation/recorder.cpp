@@ -19,6 +19,7 @@
 #include "simulation/base_clearance.h"
 #include "simulation/model.h"
 #include "simulation/output_fields.h"
+#include "simulation/ways_out.h"
 
 namespace talus {
 
@@ -171,8 +172,11 @@ void Recorder<dim>::check_intervals() {
 // ---- what happens ----
 
 template <int dim>
-void Recorder<dim>::begin_stage(const std::string &name) {
-  if (results_) results_->progress.stage(name);
+void Recorder<dim>::begin_stage(const Stage &stage) {
+  if (!results_) return;
+  const auto here = scene_.stage.begin() + (&stage - scene_.stage.data());
+  results_->progress.stage(stage.name,
+                           std::none_of(here, scene_.stage.end(), [](const Stage &s) { return is_static(s.kind); }));
 }
 
 template <int dim>
@@ -192,6 +196,36 @@ void Recorder<dim>::note(const std::string &text, double time, double load_time)
   if (results_) results_->progress.note(text);
 }
 
+template <int dim>
+const std::vector<int> &Recorder<dim>::ways_out() {
+  if (known_ways_ != of_.world.escaped.sums().particles)
+    ways_out_ = talus::ways_out(of_.world), known_ways_ = of_.world.escaped.sums().particles;
+  return ways_out_;
+}
+
+/// The groups by which particles left the mesh, with their shares of the mass. Collective.
+template <int dim>
+std::string Recorder<dim>::ways_in_words() {
+  const std::vector<std::string> &names = of_.world.mesh.group_names();
+  std::vector<double> mass(names.size() + 1);  // the last: faces without a name
+  const auto &mine = of_.world.escaped.of_this_rank();
+  const std::vector<int> &groups = ways_out();
+  for (std::size_t i = 0; i < mine.size(); ++i) mass[groups[i] < 0 ? names.size() : groups[i]] += mine[i].mass;
+  MPI_Allreduce(MPI_IN_PLACE, mass.data(), static_cast<int>(mass.size()), MPI_DOUBLE, MPI_SUM, of_.world.comm);
+  std::vector<std::size_t> order(mass.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater{}, [&](std::size_t g) { return mass[g]; });
+  const double all = std::accumulate(mass.begin(), mass.end(), 0.);
+  std::ostringstream text;
+  text.precision(3);
+  for (const std::size_t g : order) {
+    if (mass[g] == 0) continue;
+    text << (g == order[0] ? "by " : ", ") << (g < names.size() ? names[g] : "faces without a name");
+    if (mass[g] < all) text << " " << 100 * mass[g] / all << " %";
+  }
+  return text.str();
+}
+
 /// Says what has left the mesh so far, if more has left than was told. Collective.
 template <int dim>
 void Recorder<dim>::note_escaped() {
@@ -206,8 +240,8 @@ void Recorder<dim>::note_escaped() {
          << place_of_first<dim>(of_.world.comm, any, any ? mine.front().position : Vec<dim>{})
          << ", and are taken out; ";
   }
-  text << "so far " << sums.particles << (sums.particles == 1 ? " has" : " have") << " left: mass " << sums.mass
-       << " kg";
+  text << "so far " << sums.particles << (sums.particles == 1 ? " has" : " have") << " left " << ways_in_words()
+       << ": mass " << sums.mass << " kg";
   for (int a = 0; a < phases_.fluids(); ++a) text << (a ? ", gas " : ", water ") << sums.fluid_mass[a] << " kg";
   text << ", momentum (";
   for (int d = 0; d < dim; ++d) text << (d ? ", " : "") << sums.momentum[d];
@@ -227,12 +261,15 @@ void Recorder<dim>::write_escaped() {
   for (int a = 0; a < phases_.fluids(); ++a) table.names.push_back(history_column(a ? "gas" : "water", "kg"));
   for (const auto &[name, unit] : {std::pair{"", "m"}, {"velocity_", "m/s"}, {"momentum_", "kg m/s"}})
     for (int d = 0; d < dim; ++d) table.names.push_back(history_column(std::string(name) + "xyz"[d], unit));
+  table.names.push_back("group"), table.groups = of_.world.mesh.group_names();
+  auto way = ways_out().begin();
   for (const EscapedParticle<dim> &one : escaped.of_this_rank()) {
     table.values.insert(table.values.end(),
                         {one.time, static_cast<double>(one.id), static_cast<double>(one.body), one.mass});
     table.values.insert(table.values.end(), one.fluid_mass, one.fluid_mass + phases_.fluids());
     for (const Vec<dim> *x : {&one.position, &one.velocity, &one.momentum})
       table.values.insert(table.values.end(), x->begin(), x->end());
+    table.values.push_back(*way++);
   }
   write_escaped_table(of_.world.comm, options_.directory + "/escaped.csv", header().bodies, table);
   written_escaped_ = escaped.sums().particles;
@@ -293,17 +330,16 @@ template <int dim>
 void Recorder<dim>::note_steps() {
   const StepStatistics &s = of_.dynamics.statistics();
   if (s.steps == 0) return;  // nothing but equilibria
-  const std::pair<long long, const char *> bounds[] = {
-      {s.by_error, "the error"}, {s.by_stability, "stability"}, {s.by_schedule, "outputs"}};
   std::ostringstream text;
   text.precision(3);
   text << s.steps << " steps from " << s.shortest << " to " << s.longest << " s, " << s.evaluations
-       << " evaluations of the forces, " << s.rejections << " attempts rejected by the error test, " << s.inversions
-       << " because a cell turned inside out; steps bounded by";
-  for (const auto &[count, what] : bounds)
-    text << " " << what << ": " << count << (what == bounds[2].second ? "" : ",");
-  text << "; " << of_.dynamics.step_bound().sentence();
+       << " evaluations of the forces, " << s.rejections << " attempts rejected";
+  if (s.rejections > 0) text << " by the error test";
+  if (s.inversions > 0) text << ", " << s.inversions << " because a cell turned inside out";
   note(text.str());
+  note("steps bounded by the error: " + std::to_string(s.by_error) + ", stability: " + std::to_string(s.by_stability) +
+       ", outputs: " + std::to_string(s.by_schedule));
+  note(of_.dynamics.step_bound().sentence());
 }
 
 template <int dim>
@@ -370,18 +406,9 @@ void Recorder<dim>::write_history() {
   of_.lines.write(of_.clock, of_.statics);
   last_row_step_ = of_.clock.steps, last_row_time_ = of_.clock.time;
   note_imbalance();
-  double potential = 0;
-  for (const auto &body : of_.world.bodies) {
-    const ParticleArrays<dim> &p = body->particles();
-    for (int i = 0; i < p.count; ++i) {
-      Vec<dim> x, v;
-      of_.world.motion->present(*body, i, &x, &v);
-      for (int d = 0; d < dim; ++d) potential -= p.mass[i] * scene_.gravity[d] * x[d];
-    }
-  }
   RunRow<dim> run = run_row();
-  MPI_Allreduce(&potential, &run.potential, 1, MPI_DOUBLE, MPI_SUM, of_.world.comm);
   require(of_.world.motion->balance(of_.clock.time, &run.balance));
+  for (int d = 0; d < dim; ++d) run.potential -= scene_.gravity[d] * run.balance.moment[d];
   if (of_.statics.current()) run.balance.strain = of_.statics.strain_energy();
   if (phases_.liquid) {
     require(of_.world.motion->fluid_ledger(run.fluids.data()));
@@ -424,7 +451,7 @@ void Recorder<dim>::write_history() {
   for (size_t s = 0; s < run.boundaries.size(); ++s) run.boundaries[s].work = work[s];
   run.work = {work.end()[-3], work.end()[-2], work.end()[-1]};
   if (of_.clock.time == 0) first_energy_ = run.balance.kinetic + run.balance.strain;
-  run.first_energy = first_energy_;
+  run.first_energy = first_energy_, run.balanced = of_.clock.stage != strength_reduction;
   run.visit([&](const std::string &, const char *, double value) { row.push_back(value); });
   row.insert(row.begin(), {of_.clock.time, static_cast<double>(of_.clock.steps)});
   history_.rows.push_back(row);
