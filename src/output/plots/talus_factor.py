@@ -13,7 +13,7 @@ BRIGHT = 0.97  # share of the soil that shears less than the end of the colour s
 ARROWS = 22  # squares over the longer side of the soil, with an arrow each
 LONGEST = 1.3  # length of an arrow over the side of its square
 MOVES = 0.1  # of the largest displacement: less has no arrow
-WIDTH, BESIDE, AROUND = 9.0, 1.9, 1.1  # of the picture, left and right of the soil, above and below it [inch]
+WIDTH, BESIDE, AROUND = 9.0, 1.9, 1.5  # of the picture, left and right of the soil, above and below it [inch]
 
 
 def read_factor(results):
@@ -56,7 +56,7 @@ def draw_factor(results, folder):
     if factor is None:
         return []
     headline = f"Factor of safety {in_words(factor['factor_of_safety'])}"
-    pictures = [("displacement against factor", draw_displacement(factor, headline, folder / "factor_displacement.png"))]
+    pictures = [("displacement against factor", draw_displacement(factor, headline, results.title, folder / "factor_displacement.png"))]
     if factor["mechanisms"][0]["slip_surface_m"] and results.snapshots[-1].position().shape[1] == 2:
         pictures.insert(0, ("mechanism and slip surface", draw_mechanism(results, factor, headline, folder / "factor_mechanism.png")))
     return pictures
@@ -108,16 +108,16 @@ def draw_mechanism(results, factor, headline, path):
                   lw=1.2, ls=(0, (4, 2)), label=label, path_effects=[Stroke(linewidth=3, foreground="white", alpha=0.7), Normal()])  # on a dark band
     axes.set_aspect("equal")
     axes.set_xlabel("x [m]\narrows: the motion of the mechanism, whose size is free"), axes.set_ylabel("y [m]")
-    axes.set_title(headline, loc="left")
+    style.headline(figure, headline, results.title)
     axes.legend(loc="best")
     figure.colorbar(field, ax=axes, label=f"shear strain over its\n{100 * BRIGHT:.0f} % quantile", shrink=0.8, aspect=14)
     return style.save(figure, path)
 
 
-def draw_displacement(factor, headline, path):
+def draw_displacement(factor, headline, title, path):
     """Largest displacement of the trials in equilibrium, and lines at the factors for which it grows without bound. Trials with psi = phi go on from
     the last state with psi < phi: those that moved no further have no displacement of their own and are diamonds at that of this state."""
-    figure, axes = plt.subplots(figsize=(7.6, 3.7))
+    figure, axes = plt.subplots(figsize=(7.6, 4.0), layout="constrained")
     before = 0.0  # the displacement with which the trials of a kind begin
     for dilating, colour, name in ((False, style.LINES[0], "psi < phi"), (True, style.LINES[1], "psi = phi")):
         trials = [t for t in factor["trials"] if t["psi_is_phi"] == dilating and t["search"] == 1]
@@ -133,7 +133,6 @@ def draw_displacement(factor, headline, path):
         for k, open_one in enumerate(sorted(t["factor"] for t in trials if t["outcome"] == "undecided")):
             axes.axvline(open_one, color=style.ACCENT, ls="--", lw=0.8, label="undecided" if k == 0 else None)
     axes.set_xlabel("factor by which strength is divided"), axes.set_ylabel("largest displacement [m]")
-    axes.set_title(headline, loc="left")
+    style.headline(figure, headline, title)
     axes.legend(loc="best", fontsize="small")
-    figure.tight_layout()
     return style.save(figure, path)

@@ -5,8 +5,10 @@ import csv
 import pathlib
 
 from matplotlib.ticker import LogFormatter
-from talus_style import LINES, np, plt, save
+from talus_style import LINES, headline, np, plt, save
 from talus_units import readable_unit, with_unit, words
+
+MOST = 1.6  # of the room that other tests need: more is not given to compression, which has a chart of its own
 
 
 def read(path):
@@ -32,11 +34,31 @@ def widen(limits, set_limits, least):
         set_limits((low + high - least) / 2, (low + high + least) / 2)
 
 
+def compresses(test):
+    """Is it an oedometer or isotropic compression, whose pressure rises as long as it is driven?"""
+    return np.nanmax(np.abs(test["compression"])) > np.nanmax(driven_strain(test))
+
+
+def keep_to(axes, shown, begun):
+    """Limits axes to curves [(x, y)] and to the beginnings of others where these would take most of the room. Returns whether they reach further."""
+    cut = False
+    for k, limits, set_limits in ((0, axes.get_xlim, axes.set_xlim), (1, axes.get_ylim, axes.set_ylim)):
+        values = np.concatenate([curve[k] for curve in shown] + [curve[k][:1] for curve in begun])
+        low, high = np.nanmin(values), np.nanmax(values)
+        if high > low and np.ptp(limits()) > MOST * (high - low):
+            set_limits(low - 0.05 * (high - low), high + 0.05 * (high - low))
+            cut = True
+    return cut
+
+
 def draw(tests, title, path):
-    top = max(np.nanmax(np.abs([t["mean_pressure_Pa"], t["deviator_Pa"]])) for t in tests.values())
+    compression = [name for name in tests if compresses(tests[name])]
+    others = [name for name in tests if name not in compression]
+    top = max(np.nanmax(np.abs([tests[name]["mean_pressure_Pa"], tests[name]["deviator_Pa"]])) for name in others or tests)
     scale, unit = readable_unit(top, "Pa")
-    figure, axes = plt.subplots(2, 2, figsize=(8.6, 7.0), layout="constrained")
-    figure.suptitle(title, fontsize=10.5, x=0.01, ha="left")
+    figure, axes = plt.subplots(2, 2, figsize=(8.6, 7.2), layout="constrained")
+    headline(figure, "Element tests", title)
+    curves = {name: [] for name in tests}  # in the three charts that tests share
     has_void_ratio = any(np.isfinite(t["void_ratio"]).all() for t in tests.values())
     for colour, (name, t) in zip(LINES * 4, tests.items()):
         p, q = scale * t["mean_pressure_Pa"], scale * t["deviator_Pa"]
@@ -47,6 +69,7 @@ def draw(tests, title, path):
             axes[0, 0].plot(p + scale * t["pore_pressure_Pa"], q, "--", color=colour, lw=0.8)
         axes[0, 1].plot(strain, q, color=colour)
         axes[1, 0].plot(strain, 100 * t["compression"], color=colour)
+        curves[name] = [(p, q), (strain, q), (strain, 100 * t["compression"])]
         volume = t["void_ratio"] if has_void_ratio else -100 * t["compression"]
         axes[1, 1].plot(np.where(p > 1e-3 * scale * top, p, np.nan), volume, color=colour)
     axes[0, 0].set(xlabel=f"mean effective pressure p' [{unit}]", ylabel=with_unit("q", unit), title="stress path (dashed: total)")
@@ -54,6 +77,9 @@ def draw(tests, title, path):
     axes[1, 0].set(xlabel="deviatoric strain [%]", ylabel="loss of volume [%]", title="volume")
     axes[1, 1].set(xscale="log", xlabel=f"mean effective pressure p' [{unit}]", title="compression",
                    ylabel="void ratio e" if has_void_ratio else "volume strain [%]")
+    shared = (axes[0, 0], axes[0, 1], axes[1, 0])
+    if compression and others and any([keep_to(one, *([curves[name][k] for name in names] for names in (others, compression))) for k, one in enumerate(shared)]):
+        axes[1, 1].set_title("compression, whole here alone")
     widen(axes[0, 0].get_xlim, axes[0, 0].set_xlim, 0.1 * scale * top)  # what hardly changes is not blown up
     low, high = axes[1, 1].get_xlim()
     if high < 1.5 * low:
