@@ -32,8 +32,9 @@ void write_escaped_table(MPI_Comm comm, const std::string &path, const std::vect
     for (const double *line : lines) {
       text << line[0] << "," << static_cast<long long>(line[1]) << ","
            << csv_field(bodies[static_cast<std::size_t>(line[2])]);
-      for (std::size_t k = 3; k < width; ++k) text << "," << line[k];
-      text << "\n";
+      for (std::size_t k = 3; k + 1 < width; ++k) text << "," << line[k];
+      text << "," << (line[width - 1] < 0 ? "" : csv_field(local.groups[static_cast<std::size_t>(line[width - 1])]))
+           << "\n";
     }
     replace_file(path, text.str());
   });

@@ -56,6 +56,7 @@ std::vector<std::string> Simulation<dim>::regions_without_soil() const {
 template <int dim>
 void Simulation<dim>::begin() {
   for (const std::string &sentence : run_.start_notes) run_.recorder.note(sentence);
+  if (run_.recorder.writes()) note_bodies();
   for (const std::string &sentence : mesh_report().remarks) run_.recorder.note("warning: mesh: " + sentence);
   for (const std::string &sentence : brittle_soils(run_.scene, run_.world.laws, run_.world.report()))
     run_.recorder.note("warning: " + sentence);
@@ -68,6 +69,16 @@ void Simulation<dim>::begin() {
   run_.recorder.write_snapshot();
   run_.begin_next_stage();
   run_.write_checkpoint();
+}
+
+/// How much soil there is at the start, as the scene and the mesh made it.
+template <int dim>
+void Simulation<dim>::note_bodies() {
+  for (const BodyReport &body : run_.world.report())
+    if (body.particles > 0)
+      run_.recorder.note(body.name + ": " + rounded(body.volume) + (dim == 2 ? " m3/m, " : " m3, ") +
+                         rounded(body.mass) + (dim == 2 ? " kg/m in " : " kg in ") + std::to_string(body.particles) +
+                         " particles");
 }
 
 template <int dim>

@@ -44,6 +44,7 @@ class Simulation final : public AnySimulation {
  private:
   std::vector<std::string> regions_without_soil() const;
   void begin();
+  void note_bodies();
   void run_stages();
   void step_until(double t);
   FactorOfSafety reduce_strength();

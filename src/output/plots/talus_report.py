@@ -7,6 +7,7 @@ import pathlib
 import numpy as np
 
 from talus_factor import factor_lines, read_factor
+from talus_histories import base_friction
 from talus_measures import flow
 from talus_model import draw_model
 from talus_modelled import read_model, stage_rows
@@ -99,12 +100,13 @@ def key_results(results):
     speed = top_speed(results)
     if speed:
         found.append(("Largest velocity", quantity(speed[0], "m/s"), f"{speed[2]}, {at_time(speed[1], last.time)}"))
+    found += bases(results)
     if "plastic_strain" in last and len(last.position()):
         found.append(("Largest plastic strain", f"{last.column('plastic_strain').values.max():.3g}", "at the end"))
     mass = results.history.columns.get("mass_kg") if results.history else None
     gone = results.history.columns.get("escaped_mass_kg", 0 * mass) if mass is not None else None
     if results.escaped and len(results.escaped.time):
-        note = f"{thousands(len(results.escaped.time))} particles, from {at_time(results.escaped.time[0], last.time)} on"
+        note = f"{thousands(len(results.escaped.time))} particles, from {at_time(results.escaped.time[0], last.time)} on{ways_out(results.escaped)}"
         found.append(("Left the mesh", quantity(results.escaped.columns["mass_kg"].sum() / 1e3, results.per_metre("t")), note))
     if mass is not None and len(mass) and mass[0]:
         lost = mass[-1] + gone[-1] - mass[0]
@@ -114,6 +116,34 @@ def key_results(results):
         share = "" if closed else f"; {abs(lost) / mass[0]:.1e} of the mass at the start has {'appeared' if lost > 0 else 'vanished'}"
         found.append(("Mass ledger", "closed" if closed else error, f"{end} at the end{share}"))
     return found
+
+
+def bases(results):
+    """Of each frictional base that soil lies on at the end: its mean friction since the row before, beside tan phi where that is one number, and how
+    close the soil is to it."""
+    columns, found = results.history.columns if results.history else {}, []
+    for name in results.scene.get("boundary", {}):
+        friction, clearance = columns.get(f"{name}_friction"), columns.get(f"{name}_clearance_m")
+        if friction is None or not len(friction) or not friction[-1] > 0:
+            continue
+        tan_phi = base_friction(results.scene, f"{name}_friction")
+        notes = ["friction over normal force, mean of the last row"] + [f"tan φ = {tan_phi:.3g}"] * (tan_phi is not None)
+        if clearance is not None and clearance[-1] > 0:
+            notes.append(f"lowest particles {quantity(clearance[-1], 'm')} above it")
+        found.append((f"Friction on {words(name)} at the end", f"{friction[-1]:.3g}", "; ".join(notes)))
+    return found
+
+
+def ways_out(escaped):
+    """By which groups of faces the mass left, most of it first, in words; empty where no group is known."""
+    mass = {}
+    for group, kilograms in zip(escaped.group, escaped.columns["mass_kg"]):
+        mass[group] = mass.get(group, 0) + kilograms
+    if not any(mass):
+        return ""
+    groups = sorted(mass, key=mass.get, reverse=True)
+    shares = [f" {100 * mass[group] / sum(mass.values()):.3g} %" if len(groups) > 1 else "" for group in groups]
+    return "; by " + ", ".join(f"{words(group) or 'faces without a name'}{share}" for group, share in zip(groups, shares))
 
 
 def top_speed(results):

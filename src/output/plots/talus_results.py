@@ -276,7 +276,8 @@ class Escaped:
         with open(path, newline="") as file:
             rows = list(csv.DictReader(file))
         self.body = [row["body"] for row in rows]
-        self.columns = {name: np.array([float(row[name]) for row in rows]) for name in (rows[0] if rows else ()) if name != "body"}
+        self.group = [row.get("group", "") for row in rows]  # of faces by which it left; empty where these have no name
+        self.columns = {name: np.array([float(row[name]) for row in rows]) for name in (rows[0] if rows else ()) if name not in ("body", "group")}
         self.time = self.columns.get("time_s", np.zeros(0))
         self.position = np.column_stack([self.columns[f"{axis}_m"] for axis in "xyz" if f"{axis}_m" in self.columns] or [self.time])
 
@@ -437,9 +438,9 @@ class Results:
 
 
 def is_end(line):
-    """Is a line of the log one that only a run at its end writes? The sums of its steps, or where nothing but equilibria were sought a state of
-    progress after which nothing is left."""
-    if " evaluations of the forces, " in line:
+    """Is a line of the log one that only a run at its end writes? The last state of progress says "done". Logs of before that have the sums of the
+    steps, or where nothing but equilibria were sought a state of progress after which nothing is left."""
+    if re.search(r"  step \d+  done in ", line) or " evaluations of the forces, " in line:
         return True
     found = re.search(r"  t = (\S+) / (\S+) s  step \d+(.*)", line)
     return bool(found) and not found[3].endswith(" left") and (found[1] == found[2] or "particle-updates/s" in found[3])

@@ -85,6 +85,7 @@ TEST_P(EachLeaving, ClosesItsLedger) {
   ASSERT_EQ(half.status, 0) << half.output;
   ASSERT_EQ(all.status, 0) << all.output;
   EXPECT_TRUE(half.says("particles leave the mesh, the first near (3, ")) << half.output;
+  EXPECT_TRUE(all.says(" left by right: mass ")) << all.output;
   EXPECT_TRUE(all.says("; no soil is left")) << all.output;
   expect({"closes", "half"}), expect({"closes", "all", "all"});
 }

@@ -19,7 +19,7 @@ class Run:
     def __init__(self, folder):
         with open(f"{folder}/escaped.csv", newline="") as file:
             rows = list(csv.DictReader(file))
-        self.body = [row.pop("body") for row in rows]
+        self.body, self.group = [row.pop("body") for row in rows], [row.pop("group") for row in rows]
         self.escaped = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
         with open(f"{folder}/history.csv", newline="") as file:
             rows = list(csv.DictReader(file))
@@ -40,6 +40,7 @@ def closes(folder, everything):
     assert not here if everything else here, "particles in the mesh at the end"
     assert list(history["escaped_particles"] + history["particles"]) == [len(ids)] * len(history["particles"])
     assert set(run.body) == {"block"}
+    assert set(run.group) == {"right"}, "the group of the side"
     mass = history["mass_kg"][0]
     assert np.abs(history["mass_kg"] + history["escaped_mass_kg"] - mass).max() < ROUND_OFF * mass, "mass"
     of_id = dict(zip(run.first["id"].ravel().astype(int), run.first["mass"].ravel()))

@@ -12,12 +12,14 @@ sys.path.insert(0, sys.argv.pop(1))
 import talus_compare  # noqa: E402
 import talus_factor  # noqa: E402
 import talus_study  # noqa: E402
+import talus_soil  # noqa: E402
 import talus_sweep  # noqa: E402
 from talus_colours import Colours  # noqa: E402
 from talus_histories import base_friction, draw_histories, drawn_energies  # noqa: E402
 from talus_moments import chosen_snapshots, telling, with_stress  # noqa: E402
 from talus_outcomes import FAILS  # noqa: E402
 from talus_paths import label_of, spread  # noqa: E402
+from talus_report import bases, ways_out  # noqa: E402
 from talus_results import NOT_ENDED, History, Results  # noqa: E402
 from talus_sections import Painter  # noqa: E402
 from talus_slip import said_of_ends, slip_surface  # noqa: E402
@@ -165,8 +167,8 @@ class Paths(unittest.TestCase):
 class Energies(unittest.TestCase):
     def test_potential_energy_is_its_change_and_what_stays_is_left_out(self):
         lines = {"kinetic": np.array([0.0, 2.0]), "potential": np.array([6e6, 6e6 - 5]), "escaped_energy": np.zeros(2), "strain": np.full(2, 3.0)}
-        drawn = drawn_energies(lines)
-        self.assertEqual(list(drawn), ["kinetic", "Δ potential"])
+        drawn = drawn_energies(lines | {"dissipated": np.array([0.0, 1.0])})
+        self.assertEqual(list(drawn), ["kinetic", "Δ potential", "dissipated\n(remainder)"])
         self.assertEqual(list(drawn["Δ potential"]), [0, -5])
 
 
@@ -364,6 +366,39 @@ class SlipSurface(unittest.TestCase):
         self.assertRegex(said_of_ends(results, line, place, snapshot), "m below the ground on the right: soil with more than 0.2 of .* ends there")
 
 
+class ElementTests(unittest.TestCase):
+    def test_are_not_crushed_by_an_oedometer(self):
+        way = np.linspace(0, 1, 5)
+        def test(axial, aside, p, q):
+            strain = {f"strain_{c}": np.zeros(5) for c in ("xx", "zz", "xy", "yz", "xz")} | {"strain_yy": -axial * way}
+            strain |= {"strain_xx": aside * way, "strain_zz": aside * way}
+            return strain | {"mean_pressure_Pa": 1e5 + p * way, "deviator_Pa": q * way, "compression": (axial - 2 * aside) * way, "pore_pressure_Pa": 0 * way, "void_ratio": np.nan * way}
+        shear, oedometer = test(0.05, 0.025, 5e4, 1.5e5), test(0.1, 0, 9e6, 8e6)
+        for tests, largest in (({"shear": shear, "oedometer": oedometer}, 200), ({"oedometer": oedometer}, 9000)):
+            with unittest.mock.patch.object(talus_soil, "save", lambda figure, path: figure):
+                paths, _, _, compression = talus_soil.draw(tests, "", None).axes
+            factor = 1 if "kPa" in paths.get_xlabel() else 1e3
+            self.assertEqual(round(factor * paths.get_xlim()[1] / largest, 0), 1, tests.keys())
+            self.assertGreater(factor * compression.get_xlim()[1], 9000)  # whole in its own chart
+
+
+class Report(unittest.TestCase):
+    def test_says_by_which_groups_soil_left(self):
+        def said(*groups):
+            return ways_out(types.SimpleNamespace(group=groups, columns={"mass_kg": np.array([1.0, 2.0, 1.0])}))
+        self.assertEqual(said("north", "east_side", "north"), "; by north 50 %, east side 50 %")
+        self.assertEqual(said("north", "", "north"), "; by north 50 %, faces without a name 50 %")
+        self.assertEqual(said("north", "north", "north"), "; by north")
+        self.assertEqual(said("", "", ""), "")
+
+    def test_has_the_friction_of_bases_and_how_close_the_soil_is(self):
+        columns = {"bed_friction": np.array([0.1, 0.355]), "bed_clearance_m": np.array([0.2, 0.0121]), "dry_friction": np.array([0.3, 0.0]), "dry_clearance_m": np.zeros(2)}
+        scene = {"boundary": {"bed": {"friction_angle": 20}, "dry": {"friction_angle": 20}, "side": {}}}
+        (what, number, note), = bases(types.SimpleNamespace(history=types.SimpleNamespace(columns=columns), scene=scene))
+        self.assertEqual((what, number), ("Friction on bed at the end", "0.355"))
+        self.assertTrue(note.endswith("tan φ = 0.364; lowest particles 12.1 mm above it"), note)
+
+
 class Ends(unittest.TestCase):
     """The last lines of run.log of a run in motion, of one of nothing but equilibria, and of one that broke off."""
 
@@ -384,6 +419,11 @@ class Ends(unittest.TestCase):
         self.assertEqual(self.why("stage slide", self.SUMS, "slide  t = 20.2 / 60 s  step 246"), "")  # at rest
         self.assertEqual(self.why("stage gravity", "gravity  t = 1 / 1 s  step 5"), "")
         self.assertEqual(self.why("stage flow", "flow  t = 3 / 9 s  step 5  22 k particle-updates/s", "factor of safety 1.112"), "")
+
+    def test_are_said_by_the_last_state_of_progress(self):
+        for last, why in (("slide  t = 20.2 of 60 s  step 246  done in 12 s", ""), ("slide  t = 60 of 60 s  step 246  5 k updates/s", NOT_ENDED),
+                          ("gravity  t = 1 of 1 s  step 5", NOT_ENDED)):
+            self.assertEqual(self.why("stage slide", last), why)
 
     def test_count_from_where_the_run_was_resumed(self):
         self.assertEqual(self.why(self.SUMS, "the run broke off: interrupted"), "interrupted")
@@ -483,7 +523,7 @@ class Mechanisms(unittest.TestCase):
         nodes = np.array([(0.0, 0), (60, 0), (60, 20), (0, 20)])
         place = nodes[[0, 2, 3]] * 0.98 + 0.1
         last = types.SimpleNamespace(position=lambda: place, scalar=lambda field: (np.ones(3), "-"), values=lambda field: np.ones((3, 2)))
-        results = types.SimpleNamespace(snapshots=[last], mesh=lambda: (nodes, np.array([(0, 1, 2), (0, 2, 3)])))
+        results = types.SimpleNamespace(snapshots=[last], mesh=lambda: (nodes, np.array([(0, 1, 2), (0, 2, 3)])), title="")
         factor = {"mechanisms": [{"slip_surface_m": [[0, 20], [60, 0]], "factor_of_safety": {"value": 1.2, "decided": True}}]}
         figure = self.figure(lambda: talus_factor.draw_mechanism(results, factor, "", None))
         figure.canvas.draw()
@@ -497,7 +537,7 @@ class Mechanisms(unittest.TestCase):
         own = [trial(1.0, False, "equilibrium", 0.01), trial(1.2, False, "equilibrium", 0.03), trial(1.3, False, "mechanism", 1)]
         for further, curves in (([trial(1.25, True, "equilibrium", 0.03)], 1), ([trial(1.25, True, "equilibrium", 0.03), trial(1.3, True, "equilibrium", 0.05)], 2)):
             factor = {"trials": own + further + [trial(1.4, True, "mechanism", 1)]}
-            drawn = self.figure(lambda: talus_factor.draw_displacement(factor, "", None)).axes[0].lines
+            drawn = self.figure(lambda: talus_factor.draw_displacement(factor, "", "", None)).axes[0].lines
             lines, resting = ([line for line in drawn if line.get_marker() == marker] for marker in "oD")
             self.assertEqual((len(lines), len(resting)), (curves, 2 - curves))
         self.assertEqual(lines[1].get_xdata().tolist(), [1.3])
