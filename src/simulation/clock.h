@@ -6,6 +6,9 @@
 
 namespace talus {
 
+/// Stage of the mechanism of a factor of safety, the last row of the history and the last snapshot.
+inline constexpr const char *strength_reduction = "strength reduction";
+
 struct Clock {
   double time = 0;          ///< since the start of the run [s]
   double load_time = 0;     ///< what functions of the scene see as t [s]

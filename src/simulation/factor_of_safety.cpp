@@ -121,6 +121,21 @@ double cell_size_in(const World<dim> &world, const Mechanism &box) {
   return dim == 2 ? std::sqrt(4 / std::sqrt(3.) * all[1] / all[0]) : std::cbrt(6 * std::sqrt(2.) * all[1] / all[0]);
 }
 
+/// A trial goes on from the state of the one before, and where that bears the loads with the new strength too there is
+/// nothing to iterate.
+std::string trial_in_words(const StrengthTrial &t) {
+  std::string text =
+      "strength divided by " + rounded(t.factor) + (t.dilating ? ", psi = phi" : "") + ": " + name_of(t.outcome);
+  const bool at_once = t.outcome == TrialOutcome::equilibrium && t.iterations == 0;
+  text += at_once ? " at once, since the state that the trials before have led to bears it; "
+                  : " after " + std::to_string(t.iterations) + (t.iterations == 1 ? " iteration, " : " iterations, ");
+  if (t.outcome == TrialOutcome::mechanism)
+    return text + "displacement grows without bound, and " + rounded(100 * t.surplus) +
+           " % of the work of the loads finds no resistance";
+  return text + "moved " + rounded(t.displacement) + " m at most since strength was first divided" +
+         (at_once ? "" : ", out-of-balance force " + rounded(t.residual));
+}
+
 /// A doubt about a mechanism that is few cells high; empty if it is not.
 template <int dim>
 std::string too_few_cells(const World<dim> &world, const Mechanism &m) {
@@ -206,7 +221,7 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   int rank;
   MPI_Comm_rank(world.comm, &rank);
   FactorTables tables(rank == 0 ? run_.options.directory : "");
-  run_.clock.stage = "strength reduction";
+  run_.clock.stage = strength_reduction;
   for (size_t b = 0; b < world.laws.size(); ++b)
     if (!run_.scene.body[b].reduce_strength)
       run_.recorder.note("the strength of body." + run_.scene.body[b].name +
@@ -239,14 +254,7 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   };
   for (const BodySource &body : run_.scene.body) settings.kept.push_back(!body.reduce_strength);
   settings.tell = [&](const StrengthTrial &t) {
-    std::string text = "strength divided by " + rounded(t.factor) + (t.dilating ? ", psi = phi" : "") + ": " +
-                       name_of(t.outcome) + ", " + std::to_string(t.iterations) + " iterations, ";
-    if (t.outcome == TrialOutcome::mechanism)
-      text += "displacement grows without bound, and " + rounded(100 * t.surplus) +
-              " % of the work of the loads finds no resistance";
-    else
-      text += "largest displacement " + rounded(t.displacement) + " m, out-of-balance force " + rounded(t.residual);
-    run_.recorder.note(text);
+    run_.recorder.note(trial_in_words(t));
     tables.add(t);
   };
   require(talus::reduce_strength<dim>(run_.statics.problem(), world.laws, settings, &result, &stopped));

@@ -79,7 +79,8 @@ def drawn_energies(lines):
     """The energies that vary. Of the potential energy it is the change since the start: its zero is where the axes happen to begin, and the
     weight of all soil times its height would flatten all other curves."""
     lines = {name: values for name, values in lines.items() if changes(values)}
-    return {"Δ potential" if name == "potential" else name: values - values[0] if name == "potential" else values for name, values in lines.items()}
+    names = {"potential": "Δ potential", "dissipated": "dissipated\n(remainder)"}  # what the balance leaves, theory (6.6)
+    return {names.get(name, name): values - values[0] if name == "potential" else values for name, values in lines.items()}
 
 
 def draw_ledger(history, quantity, lines, title, per, path):

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "scene/reader.h"
 #include "simulation.h"
@@ -17,11 +19,19 @@ namespace {
 using Overrides = std::vector<std::string>;
 constexpr double same = 0.005;
 
-FactorOfSafety factor_of(const std::string &file, const Overrides &overrides = {}) {
+FactorOfSafety search(const std::string &file, const Overrides &overrides) {
   Scene scene = read_scene(std::string(TALUS_SLOPES) + "/" + file, overrides);
   RunOptions options;
   options.pictures = options.screen = false;
   return make_simulation(PETSC_COMM_WORLD, scene, options)->factor_of_safety();
+}
+
+/// Claims about the same scene share its factor.
+const FactorOfSafety &factor_of(const std::string &file, const Overrides &overrides = {}) {
+  static std::map<std::pair<std::string, Overrides>, FactorOfSafety> known;
+  const std::pair scene{file, overrides};
+  if (!known.contains(scene)) known[scene] = search(file, overrides);
+  return known.at(scene);
 }
 
 Overrides operator+(Overrides a, const Overrides &b) {
@@ -74,6 +84,10 @@ TEST(FactorOfSafety, leaves_named_points_with_a_stress_that_the_soil_bears) {
   for (const char *point : {"toe", "crest", "face", "corner"})
     for (const double phi : simulation->history().column(std::string(point) + "_mobilised_friction_deg"))
       EXPECT_LT(phi, 20 * (1 + 1e-6)) << point;
+  std::vector<double> dissipated = simulation->history().column("dissipated_J");
+  EXPECT_TRUE(std::isnan(dissipated.back())) << "the size of a mechanism is free, and has no balance";
+  dissipated.pop_back();
+  for (const double of_path : dissipated) EXPECT_TRUE(std::isfinite(of_path));
 }
 
 /// Soil with half of the strength has half of the factor, though it does not stand; with twice of it, twice the factor.
@@ -149,8 +163,8 @@ double factor_of_circle(double x, double y, double radius, double c0, double g) 
 TEST(FactorOfSafety, of_clay_whose_strength_grows_with_depth_is_that_of_the_worst_circle) {
   for (const auto &[c0, g] : {std::pair{10e3, 2e3}, {0., 3e3}}) {
     double least = 1e9;
-    for (double x = 24; x < 50; x += 1)
-      for (double y = 20; y < 50; y += 1)
+    for (double x = 24; x < 50; x += 2)
+      for (double y = 20; y < 50; y += 2)
         for (double radius = 10; radius < 58; radius += 0.5)
           least = std::min(least, factor_of_circle(x, y, radius, c0, g));
     const FactorOfSafety found = factor_of(
@@ -186,6 +200,8 @@ TEST(FactorOfSafety, divides_the_strength_of_a_point) {
     }
 }
 
+const Overrides dry_wedge{"body.seam.water_table=[[0, -10]]", "boundary.crack.pressure=0"};
+
 /// A block of rock on a thin weak seam before a tension crack, dry and with water: the planar wedge of Hoek & Bray
 /// (1981), F = [c A + (W cos b - U - V sin b) tan phi] / (W sin b + V cos b). The slip surface is the middle of the
 /// seam; the row of elements in which it shears makes F 1 % too small or large. With psi = 0 c and tan phi are those of
@@ -199,7 +215,7 @@ TEST(FactorOfSafety, of_a_wedge_before_a_tension_crack_is_that_of_hoek_and_bray)
     const double exact = (c * area + normal * std::tan(phi)) / shear;
     Overrides water{"body.seam.water_table=[[0, 0.1], [10, " + std::to_string(level) + "]]",
                     "boundary.crack.pressure=1e4 * max(0, " + std::to_string(level) + " - y)"};
-    if (level == 0) water = {"body.seam.water_table=[[0, -10]]", "boundary.crack.pressure=0"};
+    if (level == 0) water = dry_wedge;
     EXPECT_NEAR(factor_of("../../guide/wedge.toml", water).value() / exact, 1, 0.015) << level;
     if (level != 9) continue;
     double davis = exact;
@@ -233,8 +249,7 @@ TEST(FactorOfSafety, leaves_soil_that_keeps_its_strength) {
                        "body.rock.friction_angle=40",     "body.rock.dilation_angle=40",
                        "body.rock.reduce_strength=false", "boundary.crack.pressure=0",
                        "body.seam.water_table=[[0, -10]]"};
-  const double dry =
-      factor_of("../../guide/wedge.toml", {"boundary.crack.pressure=0", "body.seam.water_table=[[0, -10]]"}).value();
+  const double dry = factor_of("../../guide/wedge.toml", dry_wedge).value();
   EXPECT_NEAR(factor_of("../../guide/wedge.toml", rock).value() / dry, 1, 0.01);
   // rock so weak that it fails before the seam if its strength is divided too: 1.10 against 1.28
   const Overrides weak{"body.rock.cohesion=20e3", "body.rock.friction_angle=30", "body.rock.dilation_angle=30"};
@@ -348,7 +363,7 @@ TEST(FactorOfSafety, ends_when_interrupted) {
   const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
   simulation->run();
   interrupted = 1;
-  EXPECT_THROW(factor_of("scene.toml", coarse), RunError);
+  EXPECT_THROW(search("scene.toml", coarse), RunError);
   EXPECT_THROW(simulation->factor_of_safety(), RunError);
   interrupted = 0;
   for (const Event &event : simulation->events()) EXPECT_EQ(event.text.find("strength divided by"), std::string::npos);
