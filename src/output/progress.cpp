@@ -1,5 +1,6 @@
 #include "output/progress.h"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -36,6 +37,12 @@ std::string short_number(double value) {
   return text;
 }
 
+/// Characters in a line of a terminal; 0 where that is not known.
+int width_of(std::FILE *screen) {
+  winsize size{};
+  return ioctl(fileno(screen), TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
+
 /// 42 s, 3 min 20 s, 5 h 12 min.
 std::string duration(double seconds) {
   const auto s = std::llround(seconds);
@@ -63,7 +70,7 @@ Progress::Progress(MPI_Comm comm, const std::string &log_path, double total, boo
     log_.open(log_path, append ? std::ios::app : std::ios::trunc);
     if (!log_) throw std::runtime_error("cannot write " + log_path + ": " + std::strerror(errno));
     terminal_ = isatty(fileno(screen_));
-    looked_at_ = printed_at_ = clock_();
+    looked_at_ = began_at_ = printed_at_ = clock_();
     next_print_ = printed_at_ + (terminal_ ? terminal_interval : first_line);
     next_log_ = printed_at_ + first_line;
   });
@@ -73,9 +80,10 @@ Progress::~Progress() {
   if (line_open_) std::fputc('\n', screen_);
 }
 
-void Progress::stage(const std::string &name) {
+void Progress::stage(const std::string &name, bool to_the_end) {
   if (!prints_) return;
-  stage_ = name;
+  stage_ = name, estimates_ = to_the_end;
+  printed_ = now_, printed_at_ = clock_();  // the rate of another stage says nothing about this one
   log("stage " + name);
 }
 
@@ -102,19 +110,23 @@ void Progress::look_at_clock() {
 /// Rate and remaining time are those of the interval since the last line.
 std::string Progress::describe(double clock) const {
   const double elapsed = clock - printed_at_, advanced = now_.time - printed_.time;
-  char times[96];
-  std::snprintf(times, sizeof times, "  t = %.4g / %.4g s  step %lld", now_.time, total_, now_.step);
-  std::string line = stage_ + times;
-  if (elapsed <= 0 || advanced <= 0) return line;
-  line += "  " + short_number((now_.updates - printed_.updates) / elapsed) + " particle-updates/s";
-  if (now_.time < total_ && !finished_)
-    line += "  at most " + duration((total_ - now_.time) / advanced * elapsed) + " left";
+  std::string line = state();
+  if (!estimates_ || elapsed <= 0 || advanced <= 0) return line;
+  line += "  " + short_number((now_.updates - printed_.updates) / elapsed) + " updates/s";
+  if (now_.time < total_) line += "  at most " + duration((total_ - now_.time) / advanced * elapsed) + " left";
   return line;
 }
 
+std::string Progress::state() const {
+  char times[96];
+  std::snprintf(times, sizeof times, "  t = %.4g of %.4g s  step %lld", now_.time, total_, now_.step);
+  return stage_ + times;
+}
+
 void Progress::print(const std::string &line) {
-  if (terminal_)
-    std::fprintf(screen_, "\r%s\033[K", line.c_str());
+  const int width = terminal_ ? width_of(screen_) : 0;
+  if (terminal_)  // a line that wraps could not be overwritten
+    std::fprintf(screen_, "\r%s\033[K", (width > 0 ? line.substr(0, width - 1) : line).c_str());
   else
     std::fprintf(screen_, "%s\n", line.c_str());
   std::fflush(screen_);
@@ -136,8 +148,7 @@ void Progress::failure(const std::string &text) {
 
 void Progress::finish() {
   on_first_rank(comm_, [&] {
-    finished_ = true;
-    const std::string line = describe(clock_());
+    const std::string line = state() + "  done in " + duration(clock_() - began_at_);
     print(line);
     if (line_open_) std::fputc('\n', screen_);
     line_open_ = false;

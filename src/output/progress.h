@@ -9,10 +9,10 @@
 
 namespace talus {
 
-/// On a terminal: one line that overwrites itself twice a second. Elsewhere (a pipe, a batch job): a line after 2 s and
-/// then every 10 s. run.log: a line after 2 s, then one a minute, with the time of day. It may be called every step:
-/// the clock is read about ten times a second only. A line of run.log that cannot be written does not end the run: the
-/// screen shows a warning, and `finish` fails.
+/// On a terminal: one line that overwrites itself twice a second, cut to the width of the terminal. Elsewhere (a pipe,
+/// a batch job): a line after 2 s and then every 10 s. run.log: a line after 2 s, then one a minute, with the time of
+/// day. It may be called every step: the clock is read about ten times a second only. A line of run.log that cannot be
+/// written does not end the run: the screen shows a warning, and `finish` fails.
 class Progress {
  public:
   /// Collective. `total` is the simulated time at which the run ends at the latest [s]; `append`
@@ -24,8 +24,9 @@ class Progress {
   Progress &operator=(const Progress &) = delete;
   ~Progress();
 
-  /// A stage begins.
-  void stage(const std::string &name);
+  /// A stage begins. `to_the_end`: from here on the run moves as time goes on, so that its rate says how long the rest
+  /// takes; finite elements take no longer for a longer stage.
+  void stage(const std::string &name, bool to_the_end = true);
 
   /// A step is done: simulated time [s], number of the step, and the number of particles (of all ranks) that it moved.
   void step(double time, long long number, long long particles) {
@@ -53,20 +54,21 @@ class Progress {
     double updates = 0;  ///< particles moved so far
   };
   void look_at_clock();
+  std::string state() const;  ///< time and step
   std::string describe(double clock) const;
   void print(const std::string &line);
   void log(const std::string &line);
 
   MPI_Comm comm_;
   std::string log_path_, lost_;  ///< `lost_`: why the first of the lines that run.log lacks was not written, or ""
-  bool prints_, terminal_ = false, finished_ = false;
+  bool prints_, terminal_ = false, estimates_ = true;
   double total_;
   std::FILE *screen_;
   std::function<double()> clock_;
   std::ofstream log_;
   std::string stage_;
-  State now_, printed_;    ///< at the last step, at the last line printed
-  double printed_at_ = 0;  ///< clock at the last line printed [s]
+  State now_, printed_;                   ///< at the last step, at the last line printed
+  double began_at_ = 0, printed_at_ = 0;  ///< clock at the start, at the last line printed [s]
   double next_print_ = 0, next_log_ = 0;
   double looked_at_ = 0;  ///< clock when it was last read [s]
   long long steps_between_looks_ = 1, until_clock_ = 1;

@@ -48,7 +48,7 @@ def run(talus, name):
     done = subprocess.run([str(w) for w in words], capture_output=True, text=True)
     wall = time.time() - start
     log = (folder / "run.log").read_text()
-    steps = re.findall(r"(\d+) steps from (\S+) to (\S+) s, (\d+) evaluations of the forces, (\d+) attempts rejected.*the error: (\d+), stability: (\d+), outputs: (\d+)", log)[-1]
+    steps = re.findall(r"(\d+) steps from (\S+) to (\S+) s, (\d+) evaluations of the forces, (\d+) attempts rejected[\s\S]*?the error: (\d+), stability: (\d+), outputs: (\d+)", log)[-1]
     failure = re.search(r"loads at t = ([\d.]+) s", log)
     last = list(csv.DictReader(open(folder / "history.csv")))[-1]
     end = "failed: " + done.stderr.strip().splitlines()[-1] if done.returncode else "at rest" if "came to rest" in log else f"{float(last['time_s']):.3g} s"

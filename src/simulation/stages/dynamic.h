@@ -36,7 +36,7 @@ class DynamicStage final : public StageRunner<dim> {
     run_.statics.leave();
     require(run_.world.fix_dashpots(stage_.hold_loads, run_.clock.time));
     run_.clock.stage = stage_.name;
-    run_.recorder.begin_stage(stage_.name);
+    run_.recorder.begin_stage(stage_);
     run_.dynamics.restart();
     const std::string point = run_.stop->watched_point();
     run_.dynamics.watch = nullptr;

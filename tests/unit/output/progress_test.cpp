@@ -47,13 +47,37 @@ TEST(Progress, tells_rate_and_remaining_time_now_and_then) {
     return;
   }
   EXPECT_EQ(lines_of(said.screen), 8) << said.screen;  // at 2, 12, 22, 32, 42, 52 s; the note; the end
-  EXPECT_NE(said.screen.find("slide  t = 1.2"), std::string::npos) << said.screen;
-  EXPECT_NE(said.screen.find("100 k particle-updates/s"), std::string::npos) << said.screen;
+  EXPECT_NE(said.screen.find("slide  t = 1.211 of 1000 s  step 1211  "), std::string::npos) << said.screen;
+  EXPECT_NE(said.screen.find("100 k updates/s"), std::string::npos) << said.screen;
   EXPECT_NE(said.screen.find("at most 2 h 46 min left"), std::string::npos) << said.screen;
   EXPECT_NE(said.screen.find("the slope failed\n"), std::string::npos);
   EXPECT_EQ(lines_of(said.log), 4) << said.log;  // the stage, at 2 s, the note, the end
   EXPECT_EQ(said.log.substr(said.log.find("the slope failed")).find("left"), std::string::npos)
       << "after the end nothing is left";
+  EXPECT_NE(said.log.find("slide  t = 6 of 1000 s  step 6000  done in 1 min 00 s"), std::string::npos) << said.log;
+}
+
+/// Time of equilibria is no measure of work, and the rate of one stage is none of the next.
+TEST(Progress, says_what_is_left_only_where_all_that_is_left_moves) {
+  const SharedFolder folder;
+  const std::string path = folder / ("screen" + std::to_string(world_rank()));
+  std::FILE *screen = std::fopen(path.c_str(), "w+");
+  double now = 0;
+  {
+    Progress progress(MPI_COMM_WORLD, folder / "run.log", 100, false, screen, [&] { return now; });
+    progress.stage("gravity", false);
+    for (int n = 1; n <= 20; ++n) now += 5, progress.step(1e-2 * n, n, 1000);
+    progress.stage("slide");
+    for (int n = 1; n <= 20; ++n) now += 5, progress.step(0.2 + n, 20 + n, 1000);
+  }
+  std::fclose(screen);
+  if (world_rank()) return;
+  const std::string said = content(path), gravity = said.substr(0, said.find("slide  t")),
+                    slide = said.substr(gravity.size(), said.find('\n', gravity.size()) - gravity.size());
+  EXPECT_GT(lines_of(gravity), 2) << said;
+  EXPECT_EQ(gravity.find("left"), std::string::npos) << said;
+  EXPECT_EQ(gravity.find("updates"), std::string::npos) << said;
+  EXPECT_NE(slide.find("at most 8 min"), std::string::npos) << slide << "\n5 s for each of the 99 s, not of gravity";
 }
 
 TEST(Progress, reads_the_clock_seldom) {
