@@ -15,7 +15,7 @@ except ImportError as error:
     sys.exit(f"talus_model: pictures need Python with NumPy and Matplotlib (Debian: python3-matplotlib): {error}")
 
 from matplotlib.collections import LineCollection, PolyCollection
-from talus_modelled import WATER, Model, notes, stage_rows
+from talus_modelled import WATER, Model, notes, outline, stage_rows
 from talus_perspective import Views
 from talus_symbols import SYMBOL, WHITE, Symbols, chains, dimension, keep_apart, label, movable, named_points
 
@@ -158,17 +158,6 @@ def section(model):
     return sheet
 
 
-def outline(cells):
-    """Edges that only one cell has."""
-    if not len(cells):
-        return []
-    edges = np.concatenate([cells[:, [0, 1]], cells[:, [1, 2]], cells[:, [2, 0]]])
-    size = np.ptp(edges.reshape(-1, 2), axis=0).max()
-    key = np.sort(np.round(edges / (1e-7 * size)).astype(np.int64).view([("x", np.int64), ("y", np.int64)])[..., 0], axis=1)
-    _, first, count = np.unique(key, axis=0, return_index=True, return_counts=True)
-    return edges[first[count == 1]]
-
-
 def name_body(axes, model, cells, name, metres, **look):
     """Writes a name into the middle of some cells, or beside it where keep_apart finds it on something else."""
     if not len(cells):
@@ -222,8 +211,23 @@ def dimensions(axes, model, low, high, metres):
     spans.append(((high[0] + away, first[1]), (high[0] + away, last[1])))
     if last[1] - first[1] < 0.999 * (high[1] - low[1]):
         spans.append(((high[0] + 1.6 * away, low[1]), (high[0] + 1.6 * away, high[1])))
-    for begin, end in spans:
-        dimension(axes, np.array(begin), np.array(end))
+    boxes = [text.get_window_extent().padded(3).transformed(axes.transData.inverted()) for text in axes.texts if text.get_text()]
+    for begin, end in map(np.array, spans):
+        if begin[0] == end[0]:  # upright: on the left if names are in its way on the right only
+            mirrored = np.array([low[0] + high[0] - begin[0], begin[1]]), np.array([low[0] + high[0] - end[0], end[1]])
+            begin, end = min((begin, end), mirrored, key=lambda ends: sum(crosses(box, *ends) for box in boxes))
+        dimension(axes, begin, end)
+    for text in axes.texts:  # others keep off
+        if hasattr(text, "of_line") or hasattr(text, "places") or not text.get_text():
+            continue
+        box = text.get_window_extent().transformed(axes.transData.inverted())
+        if any(crosses(box, line.xy, line.xyann) for line in axes.texts if getattr(line, "of_line", False)):
+            text.set(bbox={"fc": "white", "ec": "none", "pad": 1.2}, zorder=11)
+
+
+def crosses(box, begin, end):
+    """Does a level or upright line run through a box?"""
+    return box.x0 < max(begin[0], end[0]) and box.x1 > min(begin[0], end[0]) and box.y0 < max(begin[1], end[1]) and box.y1 > min(begin[1], end[1])
 
 
 def main():

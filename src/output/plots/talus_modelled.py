@@ -70,6 +70,17 @@ class Model:
         return lines
 
 
+def outline(cells):
+    """Edges [n, 2, dim] that only one of some triangles [m, 3, dim] has."""
+    if not len(cells):
+        return []
+    edges = np.concatenate([cells[:, [0, 1]], cells[:, [1, 2]], cells[:, [2, 0]]])
+    size = np.ptp(edges.reshape(-1, cells.shape[-1]), axis=0).max()
+    _, node = np.unique(np.round(edges.reshape(-1, cells.shape[-1]) / (1e-7 * size)).astype(np.int64), axis=0, return_inverse=True)
+    _, first, count = np.unique(np.sort(node.reshape(-1, 2), axis=1), axis=0, return_index=True, return_counts=True)
+    return edges[first[count == 1]]
+
+
 def read_model(folder):
     """The model of a run, or None where the run has left no document of it."""
     path = folder / "run" / "model.json"

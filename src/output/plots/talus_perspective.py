@@ -1,13 +1,18 @@
 """Perspective views of what a scene models in 3D."""
 
 import numpy as np
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_rgb
 
 import talus_style as style
-from talus_modelled import WATER
+from talus_modelled import WATER, outline
 from talus_symbols import SYMBOL, Symbols, keep_apart, named_points
 from talus_units import quantity
+
+EARTH, EARTH_NAME = "#dfe5e8", "grey"  # ground without soil
+BESIDE = np.radians(25)  # of the eye, from the direction to which soil faces
+LEVEL = 0.05  # slope of the top of soil that faces nowhere
+LOWER = -0.05  # upward part of the outward normal of the bottom of the mesh
 
 
 class Camera:
@@ -35,20 +40,25 @@ class Camera:
 
 
 class Views:
-    """The soil from above, from the side of the largest level coordinates, and from below, from the side of the smallest ones."""
+    """The soil from above, from the side of the largest level coordinates, and from below, from the side of the smallest ones. On a terrain the first
+    view looks at the ground around the soil too, from the side to which the soil faces."""
 
     WIDTHS = (6.4, 4.5)  # [inch]
     TALLEST, ROOM = 4.6, 1.0  # of the soil in a view, and beside it for dimensions [inch]
 
     def __init__(self, model):
         self.model = model
-        self.low, self.high = model.corners.min(axis=(0, 1)), model.corners.max(axis=(0, 1))
-        up = np.eye(3)["xyz".index(model.data["up"])]
-        level = np.eye(3)[np.flatnonzero(up == 0)]
-        towards = 0.55 * level[0] + 0.75 * level[1] + 0.5 * up
-        self.cameras = [Camera(self.low, self.high, side * towards, up) for side in (1, -1)]
-        corners = np.stack(np.meshgrid(*zip(self.low, self.high)), axis=-1).reshape(-1, 3)  # of the box around the soil
-        boxes = [camera.flat(corners) for camera in self.cameras]
+        self.up = np.eye(3)["xyz".index(model.data["up"])]
+        level = np.eye(3)[np.flatnonzero(self.up == 0)]
+        self.ground, self.rim = ground_of(model, self.up) if model.terrain else (np.zeros((0, 3, 3)), np.zeros((0, 2, 3)))
+        self.towards = 0.55 * level[0] + 0.75 * level[1]
+        downhill = facing(model, self.up) if model.terrain else None
+        if downhill is not None:
+            self.towards = np.linalg.norm(self.towards) * (np.cos(BESIDE) * downhill + np.sin(BESIDE) * np.cross(self.up, downhill))
+        seen = [np.concatenate([model.corners, self.ground]), model.corners]
+        self.lows, self.highs = ([of(corners, axis=(0, 1)) for corners in seen] for of in (np.min, np.max))
+        self.cameras = [Camera(*box, side * (self.towards + 0.5 * self.up), self.up) for *box, side in zip(self.lows, self.highs, (1, -1))]
+        boxes = [camera.flat(np.stack(np.meshgrid(*zip(low, high)), axis=-1).reshape(-1, 3)) for camera, low, high in zip(self.cameras, self.lows, self.highs)]
         self.middles = [(box.min(axis=0) + box.max(axis=0)) / 2 for box in boxes]
         sizes = [np.ptp(box, axis=0) for box in boxes]
         self.metres = [max(size[0] / (width - self.ROOM), size[1] / self.TALLEST) for size, width in zip(sizes, self.WIDTHS)]  # per inch
@@ -58,7 +68,8 @@ class Views:
         """From where a view looks. Names of groups do not say it: the group front of a section is that at z = 0, which is seen in the second view."""
         height, end = (("above", "largest"), ("below", "smallest"))[number]
         if self.model.terrain:
-            return f"from {height}, from the {('northeast', 'southwest')[number]}"
+            what = f"terrain ({EARTH_NAME}) and soil " * (len(self.ground) > 0 and number == 0)
+            return f"{what}from {height}, from the {compass((1, -1)[number] * self.towards)}"
         level = " and ".join(axis for axis in "xyz" if axis != self.model.data["up"])
         return f"from {height}, from the side of the {end} {level}"
 
@@ -68,35 +79,79 @@ class Views:
         half = np.array([self.WIDTHS[number], self.height]) * metres / 2
         axes.set(xlim=(middle[0] - half[0], middle[0] + half[0]), ylim=(middle[1] - half[1], middle[1] + half[1]))
         axes.axis("off")
-        self.faces(axes, camera)
+        self.faces(axes, camera, self.ground if number == 0 else self.ground[:0])
         for boundary in self.model.boundaries:
             symbols_of(axes, boundary, camera, metres)
         if number == 0:
+            if len(self.rim):
+                axes.add_collection(LineCollection(camera.flat(self.rim), colors=style.INK, linewidths=0.9, zorder=3), autolim=False)
             self.water(axes, camera, metres)
             named_points(axes, self.model, camera.flat)
-        edges(axes, camera, self.low, self.high, metres)
+        edges(axes, camera, self.lows[number], self.highs[number], metres)
         directions(axes, camera, metres, ("x, east", "y, north", "z") if self.model.terrain else "xyz")
         keep_apart(axes)
 
-    def faces(self, axes, camera):
-        """The faces of the soil that the camera sees, the furthest first."""
+    def faces(self, axes, camera, ground):
+        """The faces of the soil and of the ground that the camera sees, the furthest first."""
         model = self.model
-        centres = model.corners.mean(axis=1)
+        corners = np.concatenate([model.corners, ground])
+        normal = np.concatenate([model.normal, normals_of(ground, self.up)])
+        colours = np.array([to_rgb(model.colour(body)) for body in model.body] + [to_rgb(EARTH)] * len(ground))
+        centres = corners.mean(axis=1)
         order = np.argsort(-camera.depth(centres))
-        order = order[camera.sees(centres, model.normal)[order]]
+        order = order[camera.sees(centres, normal)[order]]
         light = camera.right * -0.35 + camera.top * 0.8 - camera.forward * 0.5
-        shade = 0.72 + 0.28 * np.clip(model.normal @ light, 0, 1)
-        colours = np.array([to_rgb(model.colour(body)) for body in model.body]) * shade[:, None]
-        thin = np.clip(40 / np.sqrt(len(model.corners)), 0.08, 0.4)
-        axes.add_collection(PolyCollection(camera.flat(model.corners[order]), fc=colours[order], ec="#8d7b5c", lw=thin, zorder=2), autolim=False)
+        of_ground = np.arange(len(corners)) >= len(model.corners)
+        lamp = -0.8 * camera.right + 0.5 * self.up  # low, from the left: the relief of the ground is weak beside that of cells
+        shade = np.where(of_ground, 0.4 + 0.6 * np.clip(normal @ lamp / np.linalg.norm(lamp), 0, 1), 0.72 + 0.28 * np.clip(normal @ light, 0, 1))
+        colours = colours * shade[:, None]
+        thin = np.clip(40 / np.sqrt(len(corners)), 0.08, 0.4)
+        line = np.where(of_ground[:, None], 0.94 * colours, to_rgb("#8d7b5c"))
+        axes.add_collection(PolyCollection(camera.flat(corners[order]), fc=colours[order], ec=line[order], lw=thin, zorder=2), autolim=False)
 
     def water(self, axes, camera, metres):
         """The water tables on the side of the soil that faces the camera; a table is a line of x and y."""
-        front = self.high[2] if camera.eye[2] > camera.middle[2] else self.low[2]
+        low, high = self.lows[1], self.highs[1]
+        front = high[2] if camera.eye[2] > camera.middle[2] else low[2]
         for _, points in self.model.water_lines():
             line = camera.flat(np.column_stack([points, np.full(len(points), front)]))
             axes.plot(*line.T, color=WATER, lw=1.6, zorder=6)
             Symbols(axes, SYMBOL * metres).level(*(0.88 * line[0] + 0.12 * line[1]))
+
+
+def normals_of(faces, up):
+    """Upward unit normals [n, 3] of triangles [n, 3, 3]."""
+    normal = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
+    normal = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+    return normal * np.where(normal @ up < 0, -1, 1)[:, None]
+
+
+def ground_of(model, up):
+    """The bottom of the mesh where no soil lies on it, triangles [n, 3, 3], and the rim of the soil upon it, pieces of a line [m, 2, 3]; of faces on which
+    some boundary acts."""
+    faces = [(boundary.corners[down], boundary.has_soil[down]) for boundary in model.boundaries if len(boundary.corners)
+             for down in [boundary.normal @ up < LOWER]]
+    if not faces:
+        return np.zeros((0, 3, 3)), np.zeros((0, 2, 3))
+    corners, soil = (np.concatenate(parts) for parts in zip(*faces))
+    _, first = np.unique(np.round(corners.mean(axis=1), 6), axis=0, return_index=True)  # of two boundaries
+    corners, soil = corners[first], soil[first]
+    return corners[~soil], np.array(outline(corners[soil])).reshape(-1, 2, 3)
+
+
+def facing(model, up):
+    """The level direction [3] to which the top of the soil faces, None where that is level."""
+    top = model.normal @ up > 0
+    face, normal = model.corners[top], model.normal[top]
+    area = np.linalg.norm(np.cross(face[:, 1] - face[:, 0], face[:, 2] - face[:, 0]), axis=1)
+    level = area @ normal * (up == 0)
+    return level / np.linalg.norm(level) if np.linalg.norm(level) > LEVEL * area.sum() else None
+
+
+def compass(direction):
+    """The quarter from which a direction [3] to the eye comes, as a word; x is east and y north."""
+    names = ("east", "northeast", "north", "northwest", "west", "southwest", "south", "southeast")
+    return names[int(round(np.arctan2(direction[1], direction[0]) / (np.pi / 4))) % 8]
 
 
 def symbols_of(axes, boundary, camera, metres):
