@@ -2,7 +2,6 @@
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.colors import LightSource
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import offset_copy
 
@@ -12,6 +11,11 @@ from talus_relief import between
 from talus_way import Way
 
 STATES = 5  # surfaces in the section, at most
+LAMPS = ((315, 0.6), (270, 0.2), (0, 0.2))  # azimuths of the light on a map and their shares: one alone leaves slopes along it without relief
+HEIGHT = 45  # of the lamps above the horizon [deg]
+DARK, LIGHT = 0.45, 0.95  # greys of slopes in shade and in full light: neither black nor white
+MOVED = 0.3  # of the size of particles: a surface that changed by less stands still in the section
+AROUND = 0.15  # of the length of what moved: what is shown of the section before and behind it
 
 
 def extent(low, cell, shape, origin):
@@ -30,6 +34,17 @@ def smoothed_evenly(height, deviation):
     """Heights smoothed by a bell of this standard deviation [cells]; beyond the edges slopes go on."""
     beyond = min(int(np.ceil(3 * deviation)), min(height.shape) - 1)
     return smoothed(np.pad(height, beyond, mode="reflect", reflect_type="odd"), deviation)[beyond:-beyond, beyond:-beyond]
+
+
+def shade(height, cell):
+    """How light a level grid of heights [to the east, to the north] is, from DARK to LIGHT."""
+    east, north = np.gradient(height, cell)
+    size = np.sqrt(east**2 + north**2 + 1)
+    light = 0
+    for azimuth, share in LAMPS:
+        towards = np.cos(np.radians(HEIGHT)) * np.array([np.sin(np.radians(azimuth)), np.cos(np.radians(azimuth))])
+        light = light + share * np.clip((np.sin(np.radians(HEIGHT)) - east * towards[0] - north * towards[1]) / size, 0, 1)
+    return DARK + (LIGHT - DARK) * light
 
 
 def near(mask, cells):
@@ -79,11 +94,10 @@ def draw_map(maps, path):
     size = np.array(grid.shape) * grid.spacing
     tall = np.clip(7.0 * size[1] / size[0], 2.0, 9.0)  # of the map, in inches
     wide = np.clip(tall * size[0] / size[1], 5.0, 7.0)
-    figure, axes = plt.subplots(figsize=(wide + 1.4, tall + 1.1), layout="constrained")
+    figure, axes = plt.subplots(figsize=(wide + 1.4, tall + 1.4), layout="constrained")
     east, north = (origin[k] + ground.low[k] + (np.arange(ground.shape[k]) + 0.5) * ground.cell for k in (0, 1))
     before = smoothed_evenly(maps.before, grid.spacing / (2 * ground.cell))
-    shade = LightSource(azdeg=315, altdeg=45).hillshade(before.T[::-1], dx=ground.cell, dy=ground.cell)  # it takes north first
-    axes.imshow(0.5 + 0.5 * shade, cmap="gray", vmin=0, vmax=1, origin="upper", extent=extent(ground.low[:2], ground.cell, ground.shape, origin))
+    axes.imshow(shade(before, ground.cell).T, cmap="gray", vmin=0, vmax=1, origin="lower", extent=extent(ground.low[:2], ground.cell, ground.shape, origin))
     levels = MaxNLocator(12).tick_values(before.min(), before.max())
     lines = axes.contour(east, north, before.T, levels, colors=style.SOFT, linewidths=0.5)
     deposit = np.ma.masked_where(~maps.covered, maps.thickness[-1])
@@ -124,7 +138,7 @@ def draw_map(maps, path):
     axes.annotate("N", (1, 1), (1, 1), xycoords=foot, textcoords=head, ha="center", fontsize=10, zorder=5,
                   arrowprops={"arrowstyle": "<-", "color": style.INK, "lw": 1.4})
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.55 / tall), ncols=3, fontsize=8)
-    axes.set_title(maps.results.title, loc="left")
+    style.headline(figure, f"Deposit at {maps.times[-1]:g} s", maps.results.title)
     return style.save(figure, path)
 
 
@@ -138,6 +152,16 @@ def line_along(maps):
     return place[inside], distance[inside] - distance[inside][0]
 
 
+def around_motion(lines, least):
+    """The part of a section, as a slice, in which some of the surfaces differ from the first by more than `least` [m], with AROUND of its length on both
+    sides; all of it where none does."""
+    moved = np.flatnonzero(np.abs(np.array(lines[1:]) - lines[0]).max(axis=0) > least)
+    if not len(moved):
+        return slice(None)
+    beside = int(np.ceil(AROUND * (moved[-1] - moved[0])))
+    return slice(max(0, moved[0] - beside), moved[-1] + beside + 1)
+
+
 def draw_section(maps, path):
     """Section along the path of the slide: ground before, bottom of the mesh, and the surface at several times."""
     place, distance = line_along(maps)
@@ -145,8 +169,11 @@ def draw_section(maps, path):
     chosen = np.unique(np.round(np.linspace(0, len(maps.times) - 1, STATES)).astype(int))[1:]
     tops = [maps.before] + [maps.surface(maps.results.snapshots[k]) for k in chosen]
     base, *lines = between(np.stack([maps.ground.base, *tops], axis=-1), index)
+    shown = around_motion(lines, MOVED * maps.size)
+    base, lines, distance = base[shown], [line[shown] for line in lines], distance[shown] - distance[shown][0]
     height = np.ptp(np.array([base, *lines]))
-    figure, axes = plt.subplots(figsize=(8.6, np.clip(7.4 * height / np.ptp(distance), 1.6, 6.0) + 1.4), layout="constrained")
+    figure, axes = plt.subplots(figsize=(8.6, np.clip(7.4 * height / np.ptp(distance), 1.6, 6.0) + 1.9), layout="constrained")
+    style.headline(figure, "Section along the path of the slide", maps.results.title)
     axes.fill_between(distance, base, base.min() - 0.05 * height, color="#d9cfbd", lw=0)
     axes.fill_between(distance, base, lines[-1], color="#b8b2a7", lw=0)
     axes.plot(distance, base, color=style.INK, lw=0.9, label="bottom of the mesh")

@@ -128,6 +128,24 @@ def volume_of(results, snapshot=-1):
     return snapshots[snapshot]["volume"][...].sum()
 
 
+class Pictures(unittest.TestCase):
+    def test_no_slope_is_burnt_out(self):
+        """Slopes of 45 degrees to all sides, the steepest to the lamp in the northwest: all have relief, and none is white or black."""
+        east, north = np.meshgrid(np.linspace(-1, 1, 41), np.linspace(-1, 1, 41), indexing="ij")
+        for to_east, to_north in ((1, 0), (0, 1), (-1, 0), (0, -1), (-0.7, 0.7), (0.7, -0.7)):
+            light = talus_map_pictures.shade(-(to_east * east + to_north * north) + 0.05 * np.sin(8 * east + 5 * north), 0.05)
+            self.assertGreater(np.ptp(light), 0.01)
+            self.assertGreaterEqual(light.min(), 0.45)
+            self.assertLessEqual(light.max(), 0.95)
+
+    def test_a_section_shows_what_moved(self):
+        before = np.zeros(1000)
+        after = before + np.where(np.abs(np.arange(1000) - 500) <= 100, 2.0, 0.1)
+        shown = talus_map_pictures.around_motion([before, before, after], 0.5)
+        self.assertEqual((shown.start, shown.stop), (370, 631))
+        self.assertEqual(talus_map_pictures.around_motion([before, before], 0.5), slice(None))
+
+
 class Grids(unittest.TestCase):
     """A box of cubes, 1 m x 0.5 m, 0.3 m high, from (0.33, 0.21) on: thickness and volume are exact to round-off."""
 
