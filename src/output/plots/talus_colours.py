@@ -8,6 +8,7 @@ import talus_style as style
 from talus_units import readable_unit
 
 FAINT = 0.02  # values below this share of a scale that begins with nothing have the colour of soil, so that its shape and its layers are seen
+ZERO = 1e-6  # the same of a field that takes both signs: its scale is pale at 0, and where it passes through 0 is no place without it
 FAINT_ROOT = 0.05  # the same of a scale that is even in the square root, on which more is seen
 EVEN = 5.0  # the scale of mobilised friction begins at a multiple of this [deg]
 
@@ -33,7 +34,7 @@ class Colours:
             signed = False
         if field == "mobilised_friction" and np.any(values > 0):
             low = EVEN * np.floor(np.percentile(values[values > 0], 5) * self.factor / EVEN)
-        self.map = style.colours_of(field, signed)
+        self.map, self.signed = style.colours_of(field, signed), signed
         self.names = style.STATES if field == "state" else ()
         self.shown = (0.5, high) if self.names else (low, high)  # of the scale, in the bar; soil without a state of its strength has its own colour
         self.above, self.below = (bool(len(values)) and bool(there) for there in (values.max(initial=high) * self.factor > high, values.min(initial=low) * self.factor < low))
@@ -42,7 +43,7 @@ class Colours:
         largest = max(-low, high)
         self.norm = LogNorm(1e-3 * high, high, clip=True) if log and low == 0 else PowerNorm(0.5, 0, high) if self.rooted else \
             Normalize(-largest, largest) if signed else Normalize(low, high)
-        self.faint = 0.5 if self.names else float(self.norm.inverse(FAINT_ROOT if self.rooted else FAINT)) if low == 0 else (FAINT / 4 if signed else FAINT) * largest  # the least size that has a colour
+        self.faint = 0.5 if self.names else float(self.norm.inverse(FAINT_ROOT if self.rooted else FAINT)) if low == 0 else (ZERO if signed else FAINT) * largest  # the least size that has a colour
 
     def plain(self, values):
         """Which values have the colour of soil."""
@@ -50,7 +51,9 @@ class Colours:
 
     def in_words(self):
         """What has the colour of soil."""
-        return f"in the colour of its soil: {self.names[0]}" if self.names else f"in the colour of its soil: below {self.faint:.2g} {self.unit}".rstrip()
+        if self.names or self.signed:
+            return f"in the colour of its soil: {self.names[0] if self.names else 0}"
+        return f"in the colour of its soil: below {self.faint:.2g} {self.unit}".rstrip()
 
     def bar(self, figure, place):
         """The bar of the scale in new axes at `place`, with its unit above it. Returns its axes."""

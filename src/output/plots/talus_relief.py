@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.colors import to_rgb
 
 from talus_ground import Filling, smoothed
+from talus_soils import without_islands
 
 SOIL, EARTH = np.array(to_rgb("#b8b2a7")), np.array(to_rgb("#d9cfbd"))  # of soil without a value, and of the mesh's bottom
 FINER = 2  # samples per pixel along each axis
@@ -47,15 +48,18 @@ class Sight:
     def __init__(self, place, what, light):
         self.place, self.what, self.light = place, what, light
 
-    def painted(self, position, value, colours, spacing):
-        """The picture [rows, columns, 3] of a field of the particles."""
+    def painted(self, position, value, colours, spacing, reach=0):
+        """The picture [rows, columns, 3] of a field of the particles; `reach` [pixels] as in talus_soils.painted."""
         rgb = np.where((self.what == NOTHING)[..., None], 1.0, EARTH * self.light[..., None])
         body = self.what == BODY
         fields = [value == number for number in range(len(colours.names))] or [value]  # a mean of states would be another state
         found = np.array([Filling(position, field.astype(float), spacing).at(self.place[body]) for field in fields])
         found = np.where(np.isfinite(found[0]), found.argmax(axis=0), np.nan) if colours.names else found[0]
         level = np.ma.filled(colours.norm(found), np.nan)
-        rgb[body] = np.where(colours.plain(found)[:, None], SOIL, colours.map(level)[:, :3]) * self.light[body][:, None]
+        plain = np.ones(self.what.shape, bool)
+        plain[body] = colours.plain(found)
+        plain = plain[body] if colours.names else without_islands(plain, FINER * reach)[body] | ~np.isfinite(found)
+        rgb[body] = np.where(plain[:, None], SOIL, colours.map(level)[:, :3]) * self.light[body][:, None]
         rows, columns = (count // FINER for count in self.what.shape)
         return rgb[:rows * FINER, :columns * FINER].reshape(rows, FINER, columns, FINER, 3).mean(axis=(1, 3))
 

@@ -4,11 +4,13 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
+from matplotlib.transforms import offset_copy
 
 import talus_style as style
 from talus_colours import Colours
 from talus_ground import Ground
 from talus_moments import chosen_snapshots, telling, with_stress
+from talus_outcomes import cell_size
 from talus_perspective import edges
 from talus_relief import EARTH, SOIL, between, seen, seen_from_above
 from talus_soils import middles, moved_away, painted, tints
@@ -21,6 +23,8 @@ BESIDE, BELOW, STACKED = 0.5, 0.38, 0.55  # between blocks, and between the view
 DOTTED, HALO = (0, (1, 1.6)), withStroke(linewidth=2, foreground="#ffffffaa")  # seen on pale and on dark soil
 OUTLINE_PIXELS = 900
 MOVED = 0.8  # of the spacing of particles: an outline that is nearer to the present edge of the soil is not drawn
+TALLEST = 0.8  # height of a map over the width of its column
+ISLAND = 0.35  # half the width of one or two cells that are not shown as soil without a value amid others, over their size
 AROUND = 0.06  # of the size of the soil: what is shown of the mesh's bottom beside it
 APART = 0.1  # crosses of particles that left the mesh [inch]
 
@@ -31,6 +35,7 @@ class Painter:
     def __init__(self, results, snapshots, resolution=style.RESOLUTION, as_asked=False):
         self.results, self.snapshots, self.resolution, self.as_asked = results, snapshots, resolution, as_asked
         self.views, self.spacing = views_of(results), spacing_of(results)
+        self.cell = cell_size(results) if len(results.mesh()[1]) else 0.0
         self.section = next(k for k, view in enumerate(self.views) if isinstance(view, View))
         clouds = [snapshot.position() for snapshot in (results.snapshots[0], *snapshots) if len(snapshot.ids())]
         if results.escaped and len(results.escaped.position):
@@ -109,10 +114,11 @@ class Painter:
     def _image(self, snapshot, field, k, colours, frame):
         """The picture of a field [rows, columns, 3 or 4]."""
         value = snapshot.scalar(field)[0] * colours.factor
+        reach = int(round(max(ISLAND * self.cell, 0.75 * self.spacing) / frame.pixel))
         if isinstance(self.views[k], (Oblique, MapView)):
             laid = self.ground.below(snapshot.position(), self._surface(snapshot)[0])
-            return self._sight(snapshot, k, frame.shape[1]).painted(laid, value, colours, self.spacing)
-        return painted(self._tiled(snapshot, k, frame), value, snapshot.body(), self.tints if self.flat else np.tile(SOIL, (len(self.results.bodies), 1)), colours)
+            return self._sight(snapshot, k, frame.shape[1]).painted(laid, value, colours, self.spacing, reach)
+        return painted(self._tiled(snapshot, k, frame), value, snapshot.body(), self.tints if self.flat else np.tile(SOIL, (len(self.results.bodies), 1)), colours, reach)
 
     def over_time(self, field, colours, snapshots, path):
         """All these times on one sheet; of times that the program has chosen those at which something else is seen."""
@@ -148,6 +154,9 @@ class Painter:
         spans = [high - low for low, high in self.corners]
         wide = (WIDTH - LEFT - RIGHT - BESIDE * (columns - 1)) / columns
         widths = {k: (wide - BESIDE * (len(row) - 1)) / len(row) for row in rows for k in row}
+        for k in widths:  # a map may be much longer to the north than to the east
+            if isinstance(self.views[k], MapView):
+                widths[k] = min(widths[k], TALLEST * widths[k] * spans[k][0] / spans[k][1])
         heights = {k: widths[k] * spans[k][1] / spans[k][0] for k in widths}
         block = TITLE + sum(max(heights[k] for k in row) for row in rows) + STACKED * (len(rows) - 1)
         count = -(-len(snapshots) // columns)
@@ -159,7 +168,7 @@ class Painter:
             left, top = LEFT + column * (wide + BESIDE), height - HEAD - TITLE - block_row * (block + BELOW)
             for row in rows:
                 for place, k in enumerate(row):
-                    at = left + place * (widths[k] + BESIDE)
+                    at = left + place * ((wide - BESIDE * (len(row) - 1)) / len(row) + BESIDE)
                     axes = figure.add_axes([at / WIDTH, (top - heights[k]) / height, widths[k] / WIDTH, heights[k] / height])
                     self._panel(axes, snapshot, field, k, colours, named_points, len(snapshots) == 1)
                     axes.set_title("  ·  ".join(self._title(snapshot, k, note if k == rows[0][0] else None)), loc="left", pad=5)
@@ -207,6 +216,8 @@ class Painter:
         if isinstance(view, MapView):
             self._mirror_as_needed(axes, view)
             self._contours(axes, snapshot)
+            if view.of_terrain:
+                self._north(axes)
         elif view.plane:
             self._bottom(axes, view)
         tall = inches * (high[1] - low[1]) / (high[0] - low[0])
@@ -217,6 +228,12 @@ class Painter:
         """A view from above is not one from below: the second axis runs downward where the two and the upward axis are left-handed."""
         if (view.up - view.across) % 3 == 2:
             axes.invert_yaxis()
+
+    def _north(self, axes):
+        """The arrow to the north, in the upper right corner."""
+        head, foot = (offset_copy(axes.transAxes, axes.figure, -12, down, units="points") for down in (-16, -40))
+        axes.annotate("N", (1, 1), (1, 1), xycoords=foot, textcoords=head, ha="center", fontsize=9, zorder=5, path_effects=[HALO],
+                      arrowprops={"arrowstyle": "<-", "color": style.INK, "lw": 1.2})
 
     def _contours(self, axes, snapshot):
         """Lines of equal height of the soil."""

@@ -4,6 +4,8 @@ import numpy as np
 from matplotlib.colors import to_rgb
 
 import talus_style as style
+from talus_ground import widest
+from talus_tiles import touching
 
 LINE = 0.6  # how dark the line between two soils is
 SHORTEST = 4  # pieces of an outline that are seen, over the reach within which it counts as the present edge
@@ -14,14 +16,28 @@ def tints(count):
     return np.array([to_rgb(style.GROUND[k % len(style.GROUND)]) for k in range(count)])
 
 
-def painted(owner, value, body, tint, colours):
+def without_islands(plain, reach):
+    """Of a mask [rows, columns] what is wider than about twice `reach` [pixels], with the corners and ends of it: a single cell whose value happens to be
+    nothing would look like a hole."""
+    if reach < 1 or not plain.any() or plain.all():
+        return plain
+    kept = ~widest(~plain, reach)
+    for _ in range(4 * reach):
+        kept = touching(kept) & plain
+    return kept
+
+
+def painted(owner, value, body, tint, colours, reach=0):
     """The picture [rows, columns, 4] of a section: `owner` numbers the particle of each pixel, -1 outside the soil; `value` and `body` belong to the
-    particles, and `tint` holds the colours of the bodies."""
+    particles, and `tint` holds the colours of the bodies. Soil has its own colour where the field is nothing in areas wider than twice `reach`."""
     soil = owner >= 0
     picture = np.zeros((*owner.shape, 4))
     mine = owner[soil]
     with_field = colours.map(np.ma.filled(colours.norm(value[mine]), np.nan))[:, :3]
-    picture[soil, :3] = np.where(colours.plain(value[mine])[:, None], tint[body[mine]], with_field)
+    plain = np.ones(owner.shape, bool)
+    plain[soil] = colours.plain(value[mine])
+    plain = plain[soil] if colours.names else without_islands(plain, reach)[soil] | ~np.isfinite(value[mine])
+    picture[soil, :3] = np.where(plain[:, None], tint[body[mine]], with_field)
     picture[soil, 3] = 1
     dark = borders(np.where(soil, body[owner], -1))
     picture[dark, :3] = (1 - LINE) * picture[dark, :3] + LINE * np.array(to_rgb(style.INK))

@@ -71,7 +71,15 @@ class WayView(View):
 
 
 class MapView(View):
-    """From above, with shades."""
+    """From above, with shades. A map of a terrain has the east to the right and the north on top."""
+
+    def __init__(self, name, across, up, of_terrain=False):
+        super().__init__(name, across, up)
+        self.of_terrain = of_terrain
+
+    @property
+    def labels(self):
+        return ["x, east [m]", "y, north [m]"] if self.of_terrain else super().labels
 
 
 class Oblique:
@@ -108,7 +116,7 @@ def views_of(results):
     along = max(level, key=lambda axis: np.abs(moved[:, axis]).sum())
     aside = next(axis for axis in level if axis != along)
     centre = weighted_median(start[:, aside], np.abs(moved[:, along])) if len(start) else np.median(first[:, aside])
-    above = MapView("from above", along, aside)
+    above = MapView("from above", 0, 1, on_terrain(results)) if up == 2 else MapView("from above", along, aside)
     way = way_of(results, moved, level)
     if way is not None and np.abs(way.at(np.linspace(0, way.length, 50))[:, level.index(aside)] - centre).max() > ASTRAY * spacing_of(results):
         ahead, normal = np.zeros(3), np.zeros(3)
@@ -121,6 +129,11 @@ def views_of(results):
     eye = Eye.in_front(moved[:, along].sum(), along, up)
     return [Oblique("from above in front", eye), Oblique(f"cut open {at}", eye, (np.eye(3)[aside], centre)), View(f"section {at}", along, up, (aside, centre)),
             above]
+
+
+def on_terrain(results):
+    """Has the run the coordinates of a map?"""
+    return "terrain" in results.scene.get("mesh", {}) or (results.folder / "origin.json").exists()
 
 
 def way_of(results, moved, level):

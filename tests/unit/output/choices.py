@@ -70,15 +70,15 @@ class Views(unittest.TestCase):
     def test_a_section_lies_along_the_way_though_particles_have_left(self):
         start = np.random.default_rng(1).uniform(0, 10, (40, 3))
         slide = [Block(start, 0, 0), Block(start, 5, 30)]
-        _, _, section, above = views_of(types.SimpleNamespace(snapshots=slide, up_axis=lambda: 2))
+        _, _, section, above = views_of(types.SimpleNamespace(snapshots=slide, up_axis=lambda: 2, scene={}, folder=pathlib.Path("nowhere")))
         self.assertEqual((section.across, section.up), (1, 2))
-        self.assertEqual((above.across, above.up), (1, 0))
+        self.assertEqual((above.across, above.up), (0, 1))  # the east to the right
 
     def test_a_section_follows_an_oblique_slide(self):
         start = np.random.default_rng(1).uniform(0, 10, (400, 3))
         way = [np.array([0.0, 0, 0]), np.array([20.0, 20, -20]), np.array([20.0, 50, -30])]  # to the northeast, then to the north
         slide = [Block(start + by, 0, 0) for by in way]
-        _, cut, section, above = views_of(types.SimpleNamespace(snapshots=slide, up_axis=lambda: 2))
+        _, cut, section, above = views_of(types.SimpleNamespace(snapshots=slide, up_axis=lambda: 2, scene={}, folder=pathlib.Path("nowhere")))
         self.assertEqual((cut.name, section.name), ("cut open along the slide", "section along the slide"))
         middle = np.array([start.mean(axis=0) + by for by in way])
         np.testing.assert_allclose(section.aside(middle), 0, atol=1e-9)
@@ -134,7 +134,7 @@ class Scales(unittest.TestCase):
 
     def test_soil_has_its_colour_below_the_shares_that_the_guide_states(self):
         for field, values, share in (("displacement", np.linspace(0, 2, 1001), 0.02), ("plastic_strain", np.linspace(0, 2, 1001), 0.0025),
-                                     ("displacement_x", np.linspace(-1, 2, 1001), 0.005), ("stress_xx", np.linspace(-2, 0, 1001), 0.02)):
+                                     ("displacement_x", np.linspace(-1, 2, 1001), 1e-6), ("stress_xx", np.linspace(-2, 0, 1001), 0.02)):
             scale = self.of(field, values)
             self.assertEqual(list(scale.plain(np.array([0.9, 1.1]) * 2 * share)), [True, False], field)
 
@@ -262,6 +262,19 @@ class Soils(unittest.TestCase):
             np.testing.assert_allclose(picture[row, 3], [*tints(2)[body], 1])
             np.testing.assert_allclose(picture[row, 15], scale.map(scale.norm(1.0)))
         self.assertLess(picture[4, 3, :3].sum(), picture[2, 3, :3].sum() - 0.5)  # the line between them
+
+    def test_a_single_cell_of_nothing_is_no_hole(self):
+        owner = np.arange(400).reshape(20, 20).repeat(10, axis=0).repeat(10, axis=1)  # particles of 10 pixels
+        value = np.ones(400)
+        value[:100], value[305] = 0, 0  # a quarter of the soil, and one particle amid the rest
+        scale = Colours("displacement", [types.SimpleNamespace(scalar=lambda field: (value, "m"))])
+        tint, body = tints(1), np.zeros(400, int)
+        at = {name: painted(owner, value, body, tint, scale, reach)[row, column, :3].tolist() for name, reach, row, column in
+              (("hole", 0, 155, 55), ("none", 8, 155, 55), ("quarter", 8, 20, 55), ("edge", 8, 0, 0))}
+        self.assertEqual(at["hole"], tint[0].tolist())
+        self.assertEqual(at["quarter"], tint[0].tolist())
+        self.assertEqual(at["edge"], tint[0].tolist())
+        self.assertEqual(at["none"], list(scale.map(0.0)[:3]))
 
     def test_an_outline_is_seen_where_the_soil_has_left_it(self):
         soil = np.zeros((10, 20), bool)

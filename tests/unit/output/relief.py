@@ -5,6 +5,7 @@ import sys
 import tempfile
 import types
 import unittest
+import unittest.mock
 
 import numpy as np
 from PIL import Image
@@ -12,6 +13,7 @@ from PIL import Image
 sys.path.insert(0, sys.argv.pop(1))
 import talus_converge  # noqa: E402
 import talus_relief as relief  # noqa: E402
+import talus_sections  # noqa: E402
 from talus_ground import Filling, Ground  # noqa: E402
 from talus_results import Thickness  # noqa: E402
 from talus_colours import Colours  # noqa: E402
@@ -269,7 +271,7 @@ class Pictures(unittest.TestCase):
                 return None if field == "plastic_strain" else (np.full(len(start), np.linalg.norm(self._way)), "m")
 
         snapshots = [Snapshot(step) for step in range(3)]
-        results = types.SimpleNamespace(snapshots=snapshots, up_axis=lambda: 2, mesh=mesh, bodies=["soil"], escaped=None, history=None, title="slope", when=lambda one: f"t = {one.time} s")
+        results = types.SimpleNamespace(snapshots=snapshots, up_axis=lambda: 2, mesh=mesh, scene={}, folder=pathlib.Path("nowhere"), bodies=["soil"], escaped=None, history=None, title="slope", when=lambda one: f"t = {one.time} s")
         painter = Painter(results, snapshots, 40)
         self.assertEqual(painter.views[painter.section].name.partition(" ")[0], "section")
         self.assertEqual([view.name.partition(" at y = ")[0] for view in painter.views], ["from above in front", "cut open", "section", "from above"])
@@ -283,6 +285,14 @@ class Pictures(unittest.TestCase):
                 with Image.open(draw()) as picture:
                     seen = np.asarray(picture.convert("RGB"), float)
                     self.assertGreater((np.ptp(seen, axis=2) > 60).mean(), 0.01)  # there is colour in it
+        self.assertEqual(painter.views[-1].labels, ["x [m]", "y [m]"])
+        results.scene = {"mesh": {"terrain": {}}}  # the north is on top and marked
+        painter = Painter(results, snapshots, 40)
+        self.assertEqual(painter.views[-1].labels, ["x, east [m]", "y, north [m]"])
+        with unittest.mock.patch.object(talus_sections.style, "save", lambda figure, path: figure):
+            drawn = painter.large("displacement", colours, snapshots, None)
+        self.assertEqual([text.get_text() for axes in drawn.axes for text in axes.texts if text.get_text() == "N"], ["N"])
+        self.assertFalse(any(axes.yaxis_inverted() or axes.xaxis_inverted() for axes in drawn.axes))
 
 
 if __name__ == "__main__":
