@@ -2,8 +2,9 @@
 /// Are the equations of soil, water and gas hyperbolic at a state? Plane waves along one direction without drag,
 /// docs/theory/pores.md (6.2): the squares of their speeds are the eigenvalues of M^-1 A. One that is negative or not
 /// real lets the shortest waves grow fastest.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
+#include "base/eigenvalues.h"
 #include "physics/pores/storage.h"
 
 namespace talus {
@@ -33,7 +34,7 @@ inline bool hyperbolic(const SoilPores &soil, const Liquid &liquid, const PoreGa
   waves.row(0) =
       (Eigen::RowVector3d(modulus, 0, 0) - pores - in_liquid - (gas_moves ? in_gas : Eigen::RowVector3d(0, 0, 0))) /
       ((1 - n) * grain_density);
-  const auto squares = waves.eigenvalues();
+  const Eigen::VectorXcd squares = eigenvalues(waves);
   const double scale = squares.cwiseAbs().maxCoeff();
   for (int i = 0; i < 3; ++i)
     if (squares[i].real() < -1e-9 * scale || std::abs(squares[i].imag()) > 1e-7 * scale) return false;

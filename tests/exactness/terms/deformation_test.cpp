@@ -2,6 +2,7 @@
 // (4.6), (4.7), (5.5), (5.6).
 #include <Eigen/Eigenvalues>
 
+#include "base/eigenvalues.h"
 #include "equations.h"
 #include "solvers/critical_step.h"
 
@@ -154,7 +155,7 @@ void critical_step_is_that_of_the_fastest_mode_of_the_cell() {
     }
     const double node_mass = density * exact.shape[c].volume / (dim + 1);
     const Eigen::MatrixXd K = exact.shape[c].volume / node_mass * B.transpose() * D * B;
-    const double omega = std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K).eigenvalues().maxCoeff());
+    const double omega = std::sqrt(eigenvalues(K).real().maxCoeff());
     EXPECT_NEAR(step(c) * omega / 2, 1, 1e-10) << "cell " << c;
   }
 }
@@ -190,7 +191,7 @@ void critical_step_knows_the_fluids() {
     }
     const Eigen::VectorXd scale = mass.cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd symmetric = scale.asDiagonal() * K * scale.asDiagonal();
-    const double omega = std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric).eigenvalues().maxCoeff());
+    const double omega = std::sqrt(eigenvalues(symmetric).real().maxCoeff());
     EXPECT_NEAR(step(c) * omega / 2, 1, 1e-9) << "cell " << c;
   }
 }
@@ -220,7 +221,7 @@ void frequency_of_the_mesh_is_the_largest_of_all_modes() {
     for (int row = 0; row < size; ++row) product(row, column) = x[row / dim][row % dim];
     unit[column / dim].setZero();
   }
-  const double omega = std::sqrt(Eigen::EigenSolver<Eigen::MatrixXd>(product).eigenvalues().real().maxCoeff());
+  const double omega = std::sqrt(eigenvalues(product).real().maxCoeff());
   double found = 0;
   ASSERT_EQ(box.soil.motion->largest_frequency(3000, &found), 0);
   EXPECT_NEAR(found / omega, 1, 1e-4) << "a power iteration, which comes from below";

@@ -1,6 +1,5 @@
 // Pore water and gas that move: docs/theory/pores.md (2.1), (3.1) to (3.3), (4.2) to (4.8a), (5.1), on a few cells.
-#include <Eigen/Eigenvalues>
-
+#include "base/eigenvalues.h"
 #include "physics/pores/pore_fluid.inl"  // emits what libraries have only inline
 #include "pore_equations.h"
 
@@ -289,7 +288,7 @@ void frequency_of_the_mesh_is_the_largest_of_all_modes() {
       for (int row = 0; row < field; ++row) product(f * field + row, column) = x[row / dim][row % dim];
     }
   }
-  const double omega = std::sqrt(Eigen::EigenSolver<Eigen::MatrixXd>(product).eigenvalues().real().maxCoeff());
+  const double omega = std::sqrt(eigenvalues(product).real().maxCoeff());
   double found = 0;
   ASSERT_EQ(box.soil.motion->largest_frequency(3000, &found), 0);
   EXPECT_NEAR(found / omega, 1, 1e-4) << "a power iteration, which comes from below";
