@@ -5,12 +5,13 @@
 /// + n strain of the water, and the two drag at one another. Linear, so its solution is known.
 #include <Eigen/Dense>
 #include <cmath>
-#include <unsupported/Eigen/MatrixFunctions>
 #include <vector>
 
+#include "base/eigenvalues.h"
 #include "given_places.h"
 #include "physics/pores/drag.h"
 #include "solvers/integrator.h"
+#include "tests/unit/exponential.h"
 
 namespace talus {
 
@@ -28,7 +29,7 @@ class WetSprings : public GivenPlaces {
   }
 
   /// Largest frequency without drag [1/s].
-  double largest_frequency() const { return std::sqrt(matrix(0).eigenvalues().cwiseAbs().maxCoeff()); }
+  double largest_frequency() const { return std::sqrt(eigenvalues(matrix(0)).cwiseAbs().maxCoeff()); }
   /// (u, v) at time t from the present state.
   Eigen::VectorXd exact(double t) const {
     const int n = 2 * count;
@@ -37,7 +38,7 @@ class WetSprings : public GivenPlaces {
     rates.bottomLeftCorner(n, n) = -matrix(0), rates.bottomRightCorner(n, n) = -matrix(1);
     Eigen::VectorXd start(2 * n);
     start << Eigen::Map<const Eigen::VectorXd>(place.data(), n), Eigen::Map<const Eigen::VectorXd>(speed.data(), n);
-    return (rates * t).exp() * start;
+    return exponential<Eigen::MatrixXd>(rates * t) * start;
   }
   /// Largest difference of the present velocities to those.
   double error(const Eigen::VectorXd &state) const {
