@@ -127,7 +127,9 @@ def bases(results):
         if friction is None or not len(friction) or not friction[-1] > 0:
             continue
         tan_phi = base_friction(results.scene, f"{name}_friction")
-        notes = ["friction over normal force, mean of the last row"] + [f"tan φ = {tan_phi:.3g}"] * (tan_phi is not None)
+        notes = ["friction over normal force, mean of the last row"]
+        if tan_phi is not None:
+            notes.append(f"tan φ = {tan_phi:.3g}")
         if clearance is not None and clearance[-1] > 0:
             notes.append(f"lowest particles {quantity(clearance[-1], 'm')} above it")
         found.append((f"Friction on {words(name)} at the end", f"{friction[-1]:.3g}", "; ".join(notes)))

@@ -410,6 +410,9 @@ class Report(unittest.TestCase):
         (what, number, note), = bases(types.SimpleNamespace(history=types.SimpleNamespace(columns=columns), scene=scene))
         self.assertEqual((what, number), ("Friction on bed at the end", "0.355"))
         self.assertTrue(note.endswith("tan φ = 0.364; lowest particles 12.1 mm above it"), note)
+        scene["boundary"]["bed"]["friction_angle"] = "20 + x"
+        (_, _, note), = bases(types.SimpleNamespace(history=types.SimpleNamespace(columns=columns), scene=scene))
+        self.assertTrue(note.endswith("last row; lowest particles 12.1 mm above it"), note)
 
 
 class Ends(unittest.TestCase):
