@@ -149,7 +149,11 @@ class Model {
         .add("bodies", bodies())
         .add("cells", cells())
         .add("boundaries", boundaries())
-        .add("water", Object().add("tables", water_tables()).add("line", line_of_no_pressure()).str())
+        .add("water", Object()
+                          .add("tables", water_tables())
+                          .add("line", line_of_no_pressure())
+                          .add("surface", water_surface())
+                          .str())
         .add("stages", json::array(scene_.stage, [&](Stage stage) { return stage_of(stage); }))
         .add("points",
              json::array(
@@ -381,6 +385,29 @@ class Model {
       for (std::vector<double> &point : points) point[1] += rise;
       return Object().add("body", json::text(table.body)).add("points", json_of(points)).str();
     });
+  }
+
+  /// Water tables that are functions of the level place, such as grids, over the faces of the ground of their soil: a
+  /// triangle in the middle of each, since a grid need not reach beyond the soil.
+  std::string water_surface() const {
+    std::vector<Piece<dim>> pieces;
+    const int up = scene_.vertical();
+    constexpr double steep = 0.2, share = 0.7;  // of the normal of ground, and of the size of the face
+    for (const SoilFace &face : surface_) {
+      if (dim == 2 || face.normal[up] < steep) continue;
+      const WaterTable &own = scene_.body[face.body].water_table, &table = own.given() ? own : scene_.water.table;
+      if (!table.elevation.given()) continue;
+      Piece<dim> piece = piece_of(face);
+      Vec<dim> middle{};
+      for (const Vec<dim> &corner : piece.corner)
+        for (int d = 0; d < dim; ++d) middle[d] += corner[d] / 3;
+      for (Vec<dim> &corner : piece.corner) {
+        for (int d = 0; d < dim; ++d) corner[d] = middle[d] + share * (corner[d] - middle[d]);
+        corner[up] = table.at(corner[0], corner[1], corner[dim - 1]) + scene_.water.level(0);
+      }
+      pieces.push_back(piece);
+    }
+    return json::array(in_order(pieces), [](const Piece<dim> &piece) { return corners(piece, 3); });
   }
 
   /// Where the prescribed pore pressure ends in the soil, if it is not only that of a polyline; in plane strain.

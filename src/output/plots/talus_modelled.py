@@ -202,6 +202,8 @@ def notes(model):
         said.append("blue line: water table at the start" + level)
     elif "table" in water:
         said.append(f"water table: {water['table']}")
+    if model.data["water"].get("surface"):  # no older model has one
+        said.append("blue faces: water table at the start, seen through the ground")
     if model.data["water"]["line"]:
         said.append("dashed blue line: where the pore pressure at the start ends in the soil")
     for key in ("suction", "excess"):

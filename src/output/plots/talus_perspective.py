@@ -10,7 +10,7 @@ from talus_symbols import SYMBOL, Symbols, keep_apart, named_points
 from talus_units import quantity
 
 EARTH, EARTH_NAME = "#dfe5e8", "grey"  # ground without soil
-BESIDE = np.radians(25)  # of the eye, from the direction to which soil faces
+BESIDE = np.radians(20)  # of the eye, from the direction to which soil faces
 LEVEL = 0.05  # slope of the top of soil that faces nowhere
 LOWER = -0.05  # upward part of the outward normal of the bottom of the mesh
 
@@ -110,7 +110,10 @@ class Views:
         axes.add_collection(PolyCollection(camera.flat(corners[order]), fc=colours[order], ec=line[order], lw=thin, zorder=2), autolim=False)
 
     def water(self, axes, camera, metres):
-        """The water tables on the side of the soil that faces the camera; a table is a line of x and y."""
+        """The water tables on the side of the soil that faces the camera; a table is a line of x and y. Tables that are functions of the place are seen
+        through the ground."""
+        surface = np.array(self.model.data["water"].get("surface") or np.zeros((0, 3, 3)), float)
+        axes.add_collection(PolyCollection(camera.flat(surface), fc=WATER, alpha=0.45, lw=0, zorder=3.5), autolim=False)
         low, high = self.lows[1], self.highs[1]
         front = high[2] if camera.eye[2] > camera.middle[2] else low[2]
         for _, points in self.model.water_lines():

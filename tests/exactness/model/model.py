@@ -13,8 +13,8 @@ import numpy as np
 
 TALUS, MPIRUN, PLOTS = sys.argv.pop(1), sys.argv.pop(1), sys.argv.pop(1)
 sys.path.insert(0, PLOTS)
-from talus_model import outline, plt  # noqa: E402
-from talus_modelled import Model, stage_rows  # noqa: E402
+from talus_model import dimensions, plt  # noqa: E402
+from talus_modelled import Model, notes, outline, stage_rows  # noqa: E402
 from talus_perspective import Views  # noqa: E402
 from talus_symbols import chains, keep_apart, movable, named_points  # noqa: E402
 from talus_units import duration, span, text_of  # noqa: E402
@@ -219,6 +219,16 @@ class Variants(unittest.TestCase):
             for boundary, is_seen in ((seen, True), (hidden, False)):
                 self.assertTrue((views.cameras[number].sees(boundary.corners.mean(axis=1), boundary.normal) == is_seen).all(), boundary.name)
 
+    def test_water_table_of_a_function_lies_over_the_ground_in_3d(self):
+        model = Model(self.folder.model(*SOLID, "water.table=0.2 + 0.1 * x"))
+        surface = np.array(model.data["water"]["surface"])
+        np.testing.assert_allclose(surface[..., 1], 0.2 + 0.1 * surface[..., 0] + 0.05, atol=1e-12)  # raised by level
+        self.assertTrue((surface[..., [0, 2]] >= 0).all() and (surface[..., 0] <= 1).all() and (surface[..., 2] <= 0.5).all())
+        level = surface[:, :, [0, 2]]
+        self.assertAlmostEqual(area(level).sum(), 0.7**2 * 0.5)
+        self.assertIn("blue faces: water table at the start, seen through the ground", notes(model))
+        self.assertEqual(Model(self.folder.model(*SOLID)).data["water"]["surface"], [])  # a polyline is a line
+
     def test_soil_that_a_stage_adds_is_not_there(self):
         model = Model(self.folder.model(*FILL))
         self.assertEqual(model.there, [False])
@@ -324,6 +334,46 @@ class Names(unittest.TestCase):
         for k, one in enumerate(boxes):
             self.assertFalse(any(one.overlaps(other) for other in boxes[:k]), axes.texts[k].get_text())
         self.assertEqual(soil.get_position(), (7, 2))  # off the dotted line
+
+
+class Terrain(unittest.TestCase):
+    """A plane that falls by 0.5 to the south, whose middle third is soil."""
+
+    def setUp(self):
+        node = np.array([[[x, y, 0.5 * y] for y in range(4)] for x in range(4)], float)
+        faces = [(i, j, [node[i, j], node[i + 1, j], node[i, j + 1]]) for i in range(3) for j in range(3)]
+        faces += [(i, j, [node[i + 1, j + 1], node[i + 1, j], node[i, j + 1]]) for i in range(3) for j in range(3)]
+        corners, soil = np.array([face[2] for face in faces]), np.array([face[:2] == (1, 1) for face in faces])
+        normal = np.tile(np.array([0, -0.5, 1]) / np.sqrt(1.25), (len(faces), 1))
+        bed = types.SimpleNamespace(corners=corners, normal=-normal, has_soil=soil)
+        self.model = types.SimpleNamespace(corners=corners[soil] + [0, 0, 0.1], normal=normal[soil], body=np.zeros(2, int), terrain="dem.asc", boundaries=[bed],
+                                           data={"up": "z", "points": [], "lines": [], "water": {"tables": []}}, colour=lambda body: "#e8d5b0")
+
+    def test_is_seen_from_downhill_around_its_soil(self):
+        views = Views(self.model)
+        self.assertEqual(len(views.ground), 16)
+        self.assertAlmostEqual(np.linalg.norm(views.rim[:, 1] - views.rim[:, 0], axis=1).sum(), 2 + 2 * np.sqrt(1.25))
+        self.assertEqual([views.title(number) for number in (0, 1)], ["terrain (grey) and soil from above, from the south", "from below, from the north"])
+        self.assertLess(views.towards[1], 0)
+        np.testing.assert_allclose([views.lows[0], views.highs[0]], [[0, 0, 0], [3, 3, 1.6]], atol=0.11)
+
+    def test_that_faces_nowhere_is_seen_from_the_largest_coordinates(self):
+        self.model.normal = np.tile([0.0, 0, 1], (2, 1))
+        self.assertEqual(Views(self.model).title(0), "terrain (grey) and soil from above, from the northeast")
+
+
+class Dimensions(unittest.TestCase):
+    def test_keep_off_names(self):
+        for sides, at in (([], 11.3), ([11], -1.3), ([-1.5], 11.3), ([11, -1.5], 11.3)):
+            figure, axes = plt.subplots(figsize=(8, 6))
+            self.addCleanup(plt.close, figure)
+            axes.set(xlim=(-3, 16), ylim=(-3, 13))
+            names = [axes.text(x, 5, "name") for x in sides]
+            model = types.SimpleNamespace(corners=np.array([[[0, 0], [10, 0], [10, 10]], [[0, 0], [10, 10], [0, 10]]], float), body=np.zeros(2, int), there=[True])
+            dimensions(axes, model, np.zeros(2), np.full(2, 10.0), 2.7)
+            upright, = (line for line in axes.texts if getattr(line, "of_line", False) and line.xy[0] == line.xyann[0])
+            self.assertAlmostEqual(upright.xy[0], at, delta=0.01)
+            self.assertEqual([name.get_bbox_patch() is not None for name in names], [len(sides) == 2 and name.get_position()[0] > 0 for name in names])
 
 
 class Lines(unittest.TestCase):
