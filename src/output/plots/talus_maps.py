@@ -16,7 +16,7 @@ except ImportError:
 import talus_style as style
 from talus_ground import Ground
 from talus_map_pictures import draw_map, draw_section
-from talus_results import Results, Thickness, largest_displacement
+from talus_results import NOT_ENDED, Results, Thickness, largest_displacement
 from talus_units import words
 
 NO_DATA = -9999.0
@@ -292,8 +292,8 @@ def checked(folder):
     for field in ("displacement", "velocity", "volume"):
         if field not in results.snapshots[-1]:
             raise ValueError(f"{folder} has no field {field}, which maps need")
-    if results.broke_off():
-        warn(f"the run broke off: {results.broke_off()}; the maps show it up to {results.snapshots[-1].time:g} s")
+    if cause := results.broke_off():
+        warn(f"the run {'is incomplete' if cause == NOT_ENDED else 'broke off'}: {cause}; the maps show it up to {results.snapshots[-1].time:g} s")
     gone = left_mesh(results)
     if len(gone):
         volume = first.column("volume").values[np.isin(first.ids(), gone, assume_unique=True)].sum()

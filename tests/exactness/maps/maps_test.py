@@ -335,9 +335,15 @@ class Maps(unittest.TestCase):
 
     def test_interrupted_run(self):
         talus("run", "block.toml", "-o", "broken", "--no-pictures")
-        with open(FOLDER / "broken/run.log", "a") as log:
-            log.write("0.1 s  the run broke off: the disk is full\n")
+        log = FOLDER / "broken/run.log"
+        whole = log.read_text()
+        log.write_text(whole + "0.1 s  the run broke off: the disk is full\n")
         self.assertIn("the run broke off: the disk is full; the maps show it up to 0.1 s", talus("maps", "broken", "--spacing", 0.25))
+        log.write_text("".join(line for line in whole.splitlines(keepends=True) if "done in" not in line and "evaluations" not in line))
+        said = talus("maps", "broken", "--spacing", 0.25)
+        self.assertIn("warning: the run is incomplete: it was killed, or still runs, since run.log has no end; the maps show it up to 0.1 s", said)
+        log.write_text(whole)
+        self.assertNotIn("incomplete", talus("maps", "broken", "--spacing", 0.25))
 
 
 if __name__ == "__main__":
