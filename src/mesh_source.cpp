@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -17,6 +18,7 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
 
 #include "scene/place_grid.h"
 #include "scene/reader.h"
@@ -150,9 +152,13 @@ class KeptMesh {
   std::filesystem::path path_;  ///< empty: none is kept
 };
 
-/// All ranks learn how a run of talus-mesh on rank 0 has ended.
+/// All ranks learn how a run of talus-mesh on rank 0 has ended. The others sleep until then: a rank that waits within
+/// MPI keeps its core busy, on which talus-mesh could run.
 void tell_all(MPI_Comm comm, int &status, std::string &complaint) {
-  MPI_Bcast(&status, 1, MPI_INT, 0, comm);
+  MPI_Request request;
+  MPI_Ibcast(&status, 1, MPI_INT, 0, comm, &request);
+  for (int ended = 0; MPI_Test(&request, &ended, MPI_STATUS_IGNORE), !ended;)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
   int length = static_cast<int>(complaint.size());
   MPI_Bcast(&length, 1, MPI_INT, 0, comm);
   complaint.resize(length);

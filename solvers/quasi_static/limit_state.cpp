@@ -93,6 +93,7 @@ PetscErrorCode LimitState<dim>::settle(int most, LimitSearch *result, bool *sett
   PetscCall(evaluate(x_));
   for (int k = 0;; ++k) {
     const double scale = problem_.force_scale();
+    if (problem_.iterated && scale > 0) problem_.iterated(result->iterations, residual_ / scale);
     *settled = residual_ <= std::max(0.05 * prop_force_, 0.5 * small_residual * scale);
     if (*settled || k == most || stop_asked()) PetscFunctionReturn(0);
     PetscCall(problem_.stiffness(1, prop_));

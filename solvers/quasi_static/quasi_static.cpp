@@ -117,6 +117,7 @@ PetscErrorCode QuasiStatic<dim>::snes_converged(SNES, PetscInt iteration, PetscR
   *reason = SNES_CONVERGED_ITERATING;
   problem.balanced_ = norm <= problem.scene_.quasi_static.tolerance * problem.force_scale_;
   if (iteration == 0) problem.scale_open_ = false;  // an iterate that goes astray must not widen what counts as small
+  if (problem.iterated && problem.force_scale_ > 0) problem.iterated(iteration, norm / problem.force_scale_);
   if (!std::isfinite(norm))
     *reason = SNES_DIVERGED_FNORM_NAN;
   else if (problem.balanced_)

@@ -117,6 +117,9 @@ class QuasiStatic {
   bool direct() const { return direct_; }  ///< the linear solver
 
   std::function<bool()> stop_asked;  ///< ends iterations when it is true; collective; may be empty
+  /// Told of each iteration for equilibrium: its number, and the force out of balance over the forces that act; may be
+  /// empty.
+  std::function<void(int, double)> iterated;
 
  private:
   /// Nodal forces that do work on the soil, this rank's part [N].

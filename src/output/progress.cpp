@@ -95,7 +95,15 @@ void Progress::look_at_clock() {
   until_clock_ = steps_between_looks_;
   looked_at_ = clock;
   if (clock < next_print_ && clock < next_log_) return;
-  const std::string line = describe(clock);
+  tell(describe(clock), clock);
+  printed_ = now_, printed_at_ = clock;
+}
+
+void Progress::seeking(const std::string &text) {
+  if (prints_) tell(state() + "  " + text, clock_());
+}
+
+void Progress::tell(const std::string &line, double clock) {
   if (clock >= next_print_) {
     print(line);
     next_print_ = clock + (terminal_ ? terminal_interval : plain_interval);
@@ -104,7 +112,6 @@ void Progress::look_at_clock() {
     log(line);
     next_log_ = clock + log_interval;
   }
-  printed_ = now_, printed_at_ = clock;
 }
 
 /// Rate and remaining time are those of the interval since the last line.

@@ -35,6 +35,9 @@ class Progress {
     if (--until_clock_ <= 0) look_at_clock();
   }
 
+  /// Between two steps, while iterations of finite elements go on: what they have come to.
+  void seeking(const std::string &text);
+
   /// The run goes on from here.
   void resume(double time, long long number) { now_ = printed_ = {time, number, 0}; }
 
@@ -54,6 +57,7 @@ class Progress {
     double updates = 0;  ///< particles moved so far
   };
   void look_at_clock();
+  void tell(const std::string &line, double clock);  ///< where a line is due
   std::string state() const;  ///< time and step
   std::string describe(double clock) const;
   void print(const std::string &line);

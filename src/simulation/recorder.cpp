@@ -186,6 +186,15 @@ void Recorder<dim>::progress() {
 }
 
 template <int dim>
+void Recorder<dim>::seeking(int iteration, double out_of_balance) {
+  if (!results_) return;
+  std::ostringstream text;
+  text.precision(1);
+  text << "iteration " << iteration << ": " << std::scientific << out_of_balance << " of the forces out of balance";
+  results_->progress.seeking(text.str());
+}
+
+template <int dim>
 void Recorder<dim>::note(const std::string &text) {
   note(text, of_.clock.time, of_.clock.load_time);
 }

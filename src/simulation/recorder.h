@@ -48,6 +48,8 @@ class Recorder {
 
   void begin_stage(const Stage &stage);  ///< one of the scene
   void progress();                       ///< after each step
+  /// During a search for equilibrium: number of an iteration, and force out of balance over the forces that act.
+  void seeking(int iteration, double out_of_balance);
   /// A row of the history, or a snapshot, of the present state; none twice for the same step. Collective.
   void write_history();
   void write_snapshot();

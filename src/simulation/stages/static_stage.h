@@ -79,6 +79,7 @@ class StaticStage : public StageRunner<dim> {
     run_.clock.stage = stage_.name, run_.clock.hold_loads = stage_.hold_loads;
     run_.recorder.begin_stage(stage_);
     run_.statics.begin_stage(stage_, soil_moves());
+    run_.statics.problem().iterated = [&run = run_](int k, double unbalanced) { run.recorder.seeking(k, unbalanced); };
     begin_strain_ = run_.statics.softening_strain();
     begin_ = run_.clock.time, begin_load_ = run_.clock.load_time;
   }

@@ -80,6 +80,25 @@ TEST(Progress, says_what_is_left_only_where_all_that_is_left_moves) {
   EXPECT_NE(slide.find("at most 8 min"), std::string::npos) << slide << "\n5 s for each of the 99 s, not of gravity";
 }
 
+/// One equilibrium of a large model may take an hour.
+TEST(Progress, tells_of_iterations_between_two_steps) {
+  const SharedFolder folder;
+  const std::string path = folder / ("screen" + std::to_string(world_rank()));
+  std::FILE *screen = std::fopen(path.c_str(), "w+");
+  double now = 0;
+  {
+    Progress progress(MPI_COMM_WORLD, folder / "run.log", 1, false, screen, [&] { return now; });
+    progress.stage("gravity", false);
+    for (int k = 1; k <= 100; ++k) now += 1, progress.seeking("iteration " + std::to_string(k));
+  }
+  std::fclose(screen);
+  if (world_rank()) return;
+  const std::string said = content(path), log = content(folder / "run.log");
+  EXPECT_EQ(lines_of(said), 10) << said;  // at 2, 12, ... 92 s
+  EXPECT_NE(said.find("gravity  t = 0 of 1 s  step 0  iteration 92\n"), std::string::npos) << said;
+  EXPECT_EQ(lines_of(log), 3) << log;  // the stage, at 2 s and at 62 s
+}
+
 TEST(Progress, reads_the_clock_seldom) {
   const SharedFolder folder;
   const Spoken said = spoken(folder, 60);
