@@ -157,8 +157,14 @@ std::shared_ptr<PlaceGrid> TableReader::Value::named_grid() const {
 
 Function TableReader::Value::named_function() const {
   const std::string expected = "a list of [t, value] points or an expression of t";
-  if (node_->is_array()) return table(expected, [](const Value &element) { return element.any_quantity(); });
-  if (is_number() || looks_like_quantity(string(expected))) return any_quantity();
+  // in the plain unit of the keys whose expressions call it: degrees where an angle is meant, otherwise SI
+  const auto value = [&](const Value &element) {
+    const double si = element.any_quantity();
+    return element.is_number() ? si
+                               : si / std::pow(degree.si, parse_quantity(element.string(expected)).dimension.angle);
+  };
+  if (node_->is_array()) return table(expected, value);
+  if (is_number() || looks_like_quantity(string(expected))) return value(*this);
   const Function function = expression(expected, 1);
   for (const char *place : {"x", "y", "z", "table", "slip"})
     if (function.uses(place)) must_be(expected, std::string("a named function cannot depend on ") + place);

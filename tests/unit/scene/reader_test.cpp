@@ -298,6 +298,16 @@ TEST(TableReader, CallsTheFunctionsOfTheSceneInExpressions) {
   EXPECT_EQ(read("load = 'twice(t) * (x < 1)'\n" + functions).load(1, 0, 0, 5), 0);
 }
 
+/// Expressions count angles in degrees, so that is what a function gives that they call.
+TEST(TableReader, GivesAnglesOfNamedFunctionsInDegrees) {
+  const double radian = 3.14159265358979323846 / 180;
+  for (const char *of :
+       {"[[0, '30 deg'], [1, '30 deg']]", "30", "'30 deg'", "[[0, 30], [1, '0.52359877559829887 rad']]"})
+    EXPECT_NEAR(read("angle = 'phi(t)'\n[functions]\nphi = " + std::string(of)).angle(0.5), 30 * radian, 1e-12) << of;
+  const std::string rate = "[functions]\nrate = '2 deg/kPa'\n";
+  EXPECT_NEAR(read("angle = '1000 * rate(t)'\n" + rate).angle(0), 2 * radian, 1e-12);
+}
+
 TEST(TableReader, RefusesNamedFunctionsThatAreNone) {
   EXPECT_TRUE(contains(refusal("[functions]\nrain = 'x'"), "a named function cannot depend on x"));
   EXPECT_TRUE(contains(refusal("[functions]\nt = 1"), "must be named by letters"));
