@@ -15,7 +15,7 @@ sys.path[:0] = [str(HERE.parents[2] / "src/output/plots"), str(HERE)]
 import matplotlib.pyplot as plt  # noqa: E402
 import measures  # noqa: E402
 import talus_style as style  # noqa: E402
-from talus_paths import draw_stress_paths  # noqa: E402
+from talus_paths import draw_stress_paths, strength_of  # noqa: E402
 from talus_results import Results  # noqa: E402
 from talus_views import spacing_of  # noqa: E402
 from talus_tiles import Frame, tiles  # noqa: E402
@@ -24,7 +24,7 @@ from talus_units import at_time  # noqa: E402
 TIMES = (24, 30, 116)  # [s]
 RIGHT, TOP = 48, 16  # [m]
 POINTS = ("S1", "D1", "S2", "D2")
-SOLID, WATER, GAS, POROSITY = 9.8e6, 20e6, 101325.0, 0.35  # bulk moduli of skeleton, water and gas [Pa] in figure 34
+SOLID, WATER, GAS, POROSITY = 9.8e6, 100e6, 1e4, 0.35  # bulk moduli of skeleton, water and gas [Pa] of Table 3, for figure 34
 
 
 def draw_section(results, path):
@@ -61,7 +61,7 @@ def draw_points(results, path):
     wet = np.linspace(0.9, 1, 2001)
     grid.flat[6].semilogy(wet, (SOLID + 1 / (POROSITY * wet / WATER + POROSITY * (1 - wet) / GAS)) / 1e6, color=style.INK)
     grid.flat[6].set(xlim=(0.9, 1), xlabel="degree of saturation")
-    grid.flat[6].set_title("bulk modulus of the mixture, (21) of the paper [MPa] (34)", loc="left")
+    grid.flat[6].set_title("bulk modulus by (21) and Table 3 of the paper [MPa] (34)", loc="left")
     full = [columns[f"{point}_saturation"] > 0.99 for point in POINTS]
     for colour, point, near in zip(style.LINES, POINTS, full):
         grid.flat[7].plot(time[near], 1e-3 * columns[f"{point}_pore_pressure_Pa"][near], ".", ms=2.5, color=colour)
@@ -96,6 +96,8 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", metavar="DIR", type=pathlib.Path, help="results of a run")
     results = Results(parser.parse_args().folder)
+    if not strength_of(results.folder / "pictures"):
+        sys.exit(f"figure.py: no strength of the soil beside the pictures of {results.folder}; `talus plot {results.folder}` writes it")
     draw_section(results, HERE / "rain.png")
     plt.rcParams["savefig.dpi"] = 120
     draw_points(results, HERE / "points.png")
