@@ -292,6 +292,11 @@ Scene read_wholly(const std::string &file, const std::vector<std::string> &set) 
 }
 
 void run_trials(const TrialPlan &plan, const std::vector<Trial *> &trials) {
+  for (const Trial *trial : trials)
+    if (const fs::path all = fs::path(trial->folder).parent_path(); !plan.replace && fs::exists(all / "run.h5"))
+      throw SceneError(
+          all.string() +
+          " holds the results of a run; choose another folder with -o, or give --force to write beside them");
   std::vector<std::string> described;
   for (Trial *trial : trials) {
     described.push_back(description(plan, *trial));

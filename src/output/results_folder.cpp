@@ -28,6 +28,14 @@ int lock(const std::string &path) {
                               "; wait for its end, or choose another folder with -o");
 }
 
+/// Is it the folder of a study, a comparison or a refinement? Each of their runs has a file that says what it depends
+/// on.
+bool holds_trials(const std::string &path) {
+  for (const fs::directory_entry &entry : fs::directory_iterator(path))
+    if (fs::exists(entry.path() / "trial")) return true;
+  return false;
+}
+
 }  // namespace
 
 ResultsFolder::ResultsFolder(MPI_Comm comm, const std::string &path, FolderUse use) {
@@ -42,6 +50,10 @@ ResultsFolder::ResultsFolder(MPI_Comm comm, const std::string &path, FolderUse u
       throw std::invalid_argument(path + " holds the results of a run" +
                                   (fs::exists(path + "/checkpoint/header") ? " (--resume goes on with it)" : "") +
                                   "; choose another folder with -o, or give --force to replace them");
+    if (!used && use == FolderUse::start && holds_trials(path))
+      throw std::invalid_argument(path +
+                                  " holds the runs of a study or a comparison; choose another folder with -o, "
+                                  "or give --force to write beside them");
     fs::remove_all(path + "/checkpoint");
   });
 }

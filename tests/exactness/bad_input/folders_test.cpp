@@ -52,6 +52,19 @@ TEST_F(Results, AreNotReplacedUnasked) {
   EXPECT_NE(content("results/history.csv"), history);
 }
 
+TEST_F(Results, OfRunsAndComparisonsAreNotMixedUnasked) {
+  const std::vector<std::string> set{"--set", "stage.0.duration=0.01"},
+      compare{"compare", "scene.toml", "--series", "gravity: gravity=1,2", "--no-plot", "-o", "results"};
+  EXPECT_EQ(end_of(set).status, 0);
+  expect(Program(folder_, talus_words(compare, 1)).end(), 2, {"results holds the results of a run", "-o", "--force"});
+  std::filesystem::remove_all(folder_ / "results");
+  std::filesystem::create_directories(folder_ / "results/run000");
+  folder_.write("results/run000/trial", "a run of a comparison");
+  expect(end_of(set), 2, {"results holds the runs of a study or a comparison", "-o", "--force"});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "results/history.csv"));
+  EXPECT_EQ(end_of({"--force", "--set", "stage.0.duration=0.01"}).status, 0);
+}
+
 TEST_F(Results, AreOfOneRunAtATime) {
   Program first(folder_, run(endless_));
   ASSERT_TRUE(first.wait_for(folder_ / "results/run/000002.h5")) << first.end().output;
