@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Studies of the Selborne scene: what each number that the paper does not give does to the answer, and the figures of the page.
 
-    study.py TALUS [cells|softening|figure5|residual|initial|excavation|steps|model|days|figures ...]
+    study.py TALUS [cells|softening|figure5|residual|initial|excavation|rear|steps|model|days|figures ...]
 
 TALUS is the program (build/release/bin/talus). Each study adds to NAME.csv beside this file the runs that are not in it yet; `figures` runs the scene
 itself and draws the pictures of the page from it and from the tables.
@@ -49,6 +49,8 @@ STUDIES = {
     "initial": {"gravity switched on": [], **{f"K0 = {k0}": k0 for k0 in (0.5, 1.0, 1.5, 2.0)}},
     "excavation": {f"K0 = {k0}, eta {eta}": ("excavation.toml", [*(f"body.{body}.k0={k0}" for body in ("weathered", "unweathered", "cut")), *both("shape_factor", eta)])
                    for eta in (500, 50) for k0 in (0.5, 1.0, 1.5, 2.0)},
+    "rear": {**{"rear at x = 0, 1.2 m": ["mesh.size=1.2"]},
+             **{f"rear at x = -20 m, {size} m": [f"mesh.size={size}", 'mesh.section="rear.csv"'] for size in (1.2, 1.0, 0.7)}},
     "steps": {**{f"step {f} of the critical": [f"integrator.fraction={f}"] for f in (0.3, 0.6, 0.9)},
               **{f"{n} particles per cell": both("particles_per_cell", n) for n in (3, 6, 12)}},
     "model": {"locking left in": ["transfer.locking=none"], "damping 0": ["stage.recharge.damping=0", "stage.slide.damping=0"],
@@ -65,6 +67,12 @@ def scene_text(name):
     text = (HERE / name).read_text().replace("../../../meshes", str(HERE.parents[2] / "meshes"))
     text = re.sub(r"^interval = .*$", "interval = 0", text, flags=re.M)
     return re.sub(r"^\[output\.line.*\n(points.*\n)?", "", text, flags=re.M)
+
+
+def write_rear_section(folder):
+    """rear.csv: the section of the scene, whose rear boundary is 20 m farther behind the crest."""
+    text = (HERE.parents[2] / "meshes/selborne.csv").read_text()
+    (Path(folder) / "rear.csv").write_text(re.sub(r"^(outline|interface\d|b_recharge_base|b_recharge_side),0,", r"\1,-20,", text, flags=re.M))
 
 
 def scene(overrides):
@@ -98,6 +106,7 @@ def run(talus, overrides):
     text, keys = scene(overrides)
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "scene.toml").write_text(text)
+        write_rear_section(folder)
         words = [word for key in keys for word in ("--set", key)]
         done = subprocess.run([talus, "run", f"{folder}/scene.toml", "-o", f"{folder}/run", "--no-pictures", "--force", *words], capture_output=True, text=True)
         if done.returncode:
