@@ -39,8 +39,9 @@ def strength(factor):
 CASES = (
     ("as the scene", []),
     ("mirrored: x to -x", None),
-    *((f"cells of {size} m", [f"mesh.size={size}"]) for size in (20, 17, 15.1, 14.9, 13)),
+    *((f"cells of {size} m", [f"mesh.size={size}"]) for size in (20, 17, 16, 15.5, 15.1, 14.9, 14, 13, 12.5)),
     ("cells of 12 m", ["mesh.size=12"]),
+    ("cells of 11 m", ["mesh.size=11"]),
     ("cells of 10 m", ["mesh.size=10"]),
     ("cells of 8 m", ["mesh.size=8"]),
     *((f"other round-off: snapshots every {interval} s", [f"output.interval={interval}"]) for interval in (0.5, 1, 1.25, 1.5, 3)),
@@ -54,6 +55,8 @@ CASES = (
     ("hardly any softening, eta 1", ["body.rock.shape_factor=1"]),
     ("all strength 1 % lower", strength(0.99)),
     ("all strength 1 % higher", strength(1.01)),
+    *((f"cells of {size} m, all strength {abs(percent)} % {'lower' if percent < 0 else 'higher'}", [f"mesh.size={size}", *strength(1 + percent / 100)])
+      for size, percent in ((16, -1), (16, -2), (14, -1), (11, 1), (11, 2))),
     ("gravity does not soften the rock", ["stage.gravity.softening=false", "stage.settle.softening=false"]),
     ("residual cohesion 75 kPa", ["body.rock.residual_cohesion=75e3"]),
     ("residual cohesion 150 kPa", ["body.rock.residual_cohesion=150e3"]),
