@@ -49,11 +49,11 @@ class Colours:
         """Which values have the colour of soil."""
         return ~np.isfinite(values) | (np.abs(values) < self.faint)
 
-    def in_words(self):
-        """What has the colour of soil."""
+    def in_words(self, soil="in the colour of its soil"):
+        """What has the colour of soil, which `soil` names."""
         if self.names or self.signed:
-            return f"in the colour of its soil: {self.names[0] if self.names else 0}"
-        return f"in the colour of its soil: below {self.faint:.2g} {self.unit}".rstrip()
+            return f"{soil}: {self.names[0] if self.names else 0}"
+        return f"{soil}: below {self.faint:.2g} {self.unit}".rstrip()
 
     def bar(self, figure, place):
         """The bar of the scale in new axes at `place`, with its unit above it. Returns its axes."""

@@ -28,7 +28,9 @@ def short(bracket):
 
 
 def in_words(bracket):
-    """'1.234 (equilibrium at 1.231, mechanism at 1.237)'."""
+    """'1.234 (equilibrium at 1.231, mechanism at 1.237)', or what lies between the two."""
+    if not bracket["decided"]:
+        return f"between {bracket['equilibrium']:.4g} (equilibrium) and {bracket['mechanism']:.4g} (mechanism)"
     return f"{short(bracket)} (equilibrium at {bracket['equilibrium']:.4g}, mechanism at {bracket['mechanism']:.4g})"
 
 
@@ -134,5 +136,5 @@ def draw_displacement(factor, headline, title, path):
             axes.axvline(open_one, color=style.ACCENT, ls="--", lw=0.8, label="undecided" if k == 0 else None)
     axes.set_xlabel("factor by which strength is divided"), axes.set_ylabel("largest displacement [m]")
     style.headline(figure, headline, title)
-    axes.legend(loc="best", fontsize="small")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2, fontsize="small")  # lines at the factors would run through its words
     return style.save(figure, path)

@@ -10,8 +10,6 @@ from talus_units import capital, clock, readable_unit, with_unit, words
 
 # coordinates, stress and state of points: sections and stress paths show them better; the clock of the loads says nothing as a curve
 ELSEWHERE = ("load_time", "x", "y", "z", "mean_pressure", "deviator", "mobilised_friction", "state", "displacement_x", "displacement_y", "displacement_z")
-
-MECHANISM = "strength reduction"  # stage of the last row after a factor of safety: a mechanism of free size has no balance of energy
 OF_ALL_SOIL = ("J", "W", "N", "kg", "kg m/s")
 
 
@@ -25,7 +23,6 @@ def draw_histories(results, folder):
         if quantity in ELSEWHERE or quantity.startswith("stress_") or not any(changes(values) for values in lines.values()):
             continue
         if quantity == "energy":
-            lines = {name: np.where(np.array(history.stage) == MECHANISM, np.nan, values) for name, values in lines.items()}
             pictures.append((quantity, draw_energy(history, lines, results.title, results.per_metre(""), folder / "energy.png")))
         elif quantity.endswith("_ledger"):
             pictures.append((quantity, draw_ledger(history, quantity, lines, results.title, results.per_metre(""), folder / f"{quantity}.png")))

@@ -8,6 +8,7 @@ import numpy as np
 import talus_style as style
 from talus_histories import time_axis
 from talus_measures import failure
+from talus_moments import last_reset
 from talus_units import at_time, capital, readable_unit, with_unit, words
 
 COUNT = 6  # times that a picture shows
@@ -45,13 +46,27 @@ def dimensionless(results, times):
     return (times - begin) / (failed - begin)
 
 
-def chosen(line, times=None):
-    """Rows that are shown: those nearest to `times`, else first, last and some between, half by time and half by how far the line moved."""
+def chosen(line, times=None, reset=-np.inf):
+    """Rows that are shown: those nearest to `times`, else first, last and some between, half by time and half by how far the line moved. Of a line whose
+    displacement was reset at a time those after it."""
     if times:
         return sorted({int(np.abs(line.time - time).argmin()) for time in times})
-    travel = np.concatenate([[0], np.abs(np.diff(means(line)["displacement_m"])).cumsum()])
-    pace = sum((part / part[-1] for part in (line.time - line.time[0], travel) if part[-1] > 0), np.zeros(len(line.time)))
-    return sorted({int(np.abs(pace - share).argmin()) for share in np.linspace(0, pace[-1], COUNT)})
+    after = np.flatnonzero(line.time > reset * (1 + 1e-9))
+    after = after if len(after) > 1 else np.arange(len(line.time))
+    time, moved = line.time[after], means(line)["displacement_m"][after]
+    travel = np.concatenate([[0], np.abs(np.diff(moved)).cumsum()])
+    pace = sum((part / part[-1] for part in (time - time[0], travel) if part[-1] > 0), np.zeros(len(time)))
+    return sorted({int(after[np.abs(pace - share).argmin()]) for share in np.linspace(0, pace[-1], COUNT)})
+
+
+def under_stress(line, rows):
+    """Of these rows those from the end of the first stage on, in which gravity grows from 0: before it there is no stress whose friction could be mobilised.
+    At least the last one; without further stages those in which some is."""
+    stages = [name for name in line.stage if name != "start"]
+    first = [k for k, name in enumerate(line.stage) if stages and name == stages[0]][-1:]
+    if first and first[0] < len(line.time) - 1:
+        return [row for row in rows if row >= first[0]] or rows[-1:]
+    return [row for row in rows if np.any(np.nan_to_num(line.columns["mobilised_friction_deg"][row]))]
 
 
 def draw_lines(results, folder, times=None):
@@ -78,7 +93,8 @@ def write_means(results, line, path):
 
 
 def draw_line(results, line, path, times):
-    rows = chosen(line, times)
+    reset = last_reset(results)
+    rows = chosen(line, times, reset[0] if reset else -np.inf)
     frictional = "mobilised_friction_deg" in line.columns and np.isfinite(line.columns["mobilised_friction_deg"]).any()
     figure, axes = plt.subplots(1, 3 if frictional else 1, figsize=(13.2 if frictional else 6.0, 4.3), squeeze=False, layout="constrained")
     moved, start = line.moved(), [line.columns[f"{axis}_m"][0] for axis in "xyz" if f"{axis}_m" in line.columns]
@@ -87,12 +103,13 @@ def draw_line(results, line, path, times):
     upright = level < UPRIGHT * np.ptp(start[up])
     where = start[up] if upright else line.columns["distance_m"][0]
     size = np.linalg.norm(np.delete(moved, up, axis=2) if upright else moved, axis=2)
-    factor, unit = readable_unit(np.nanmax(size), "m")
+    factor, unit = readable_unit(np.nanmax(size[rows]), "m")
+    stressed = under_stress(line, rows) if frictional else []
     for k, row in enumerate(rows):
         colour = SPAN(k / max(1, len(rows) - 1) * 0.92)
         label = f"{at_time(line.time[row], line.time[-1])}  {line.stage[row]}"
         show(axes[0, 0], where, factor * size[row], upright, color=colour, lw=1.4, label=label)
-        if frictional:
+        if frictional and row in stressed:
             show(axes[0, 1], where, line.columns["mobilised_friction_deg"][row], upright, color=colour, lw=1.0)
             mark_states(axes[0, 1], where, line, row, upright)
     along = "elevation [m]" if upright else "distance along the line [m]"

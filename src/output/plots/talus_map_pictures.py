@@ -103,14 +103,14 @@ def draw_map(maps, path):
     deposit = np.ma.masked_where(~maps.covered, maps.thickness[-1])
     image = axes.imshow(deposit.T, cmap=style.colours_of("thickness"), vmin=0, origin="lower", alpha=0.85, zorder=2,
                         extent=extent(grid.low, grid.spacing, grid.shape, origin))
-    figure.colorbar(image, ax=axes, shrink=0.75, label=f"thickness at {maps.times[-1]:g} s [m]")
+    figure.colorbar(image, ax=axes, shrink=0.75, label=f"thickness at {maps.moment()} [m]")
     for rings, dashes in ((maps.rings(maps.covered), "-"), (maps.rings(maps.thickness[0] >= maps.limit), "--")):
         for ring in rings:
             axes.plot(*ring.T, color=style.INK, lw=1.0, ls=dashes, zorder=3)
     way = maps.path[:, :2] + origin
     axes.plot(*way.T, color=style.ACCENT, lw=1.6, zorder=4, label="path of the centre of mass")
     axes.plot(*way[-1], "o", color=style.ACCENT, ms=4, zorder=4)
-    axes.plot([], [], color=style.INK, lw=1.0, label="outline of the deposit")
+    axes.plot([], [], color=style.INK, lw=1.0, label=f"outline of the {'soil that slid' if maps.moving else 'deposit'}")
     axes.plot([], [], color=style.INK, lw=1.0, ls="--", label="outline at the start")
     low, high = origin + grid.low, origin + grid.low + size
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="east [m]", ylabel="north [m]", aspect="equal")
@@ -138,7 +138,7 @@ def draw_map(maps, path):
     axes.annotate("N", (1, 1), (1, 1), xycoords=foot, textcoords=head, ha="center", fontsize=10, zorder=5,
                   arrowprops={"arrowstyle": "<-", "color": style.INK, "lw": 1.4})
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.55 / tall), ncols=3, fontsize=8)
-    style.headline(figure, f"Deposit at {maps.times[-1]:g} s", maps.results.title)
+    style.headline(figure, maps.headline(), maps.results.title)
     return style.save(figure, path)
 
 
@@ -180,7 +180,7 @@ def draw_section(maps, path):
     axes.plot(distance, lines[0], color=style.INK, lw=1.0, ls="--", label="surface before")
     colours = plt.get_cmap("viridis")(np.linspace(0.75, 0.1, len(chosen)))
     for k, colour, line in zip(chosen, colours, lines[1:]):
-        axes.plot(distance, np.where(line > base + 1e-3 * maps.size, line, np.nan), color=colour, lw=1.1, label=f"surface at {maps.times[k]:g} s")
+        axes.plot(distance, np.where(line > base + 1e-3 * maps.size, line, np.nan), color=colour, lw=1.1, label=f"surface at {maps.moment(k)}")
     axes.set(xlabel="distance along the path of the slide [m]", ylabel="elevation [m]", aspect="equal", xlim=(0, distance[-1]), ylim=(base.min() - 0.05 * height, None))
     axes.ticklabel_format(useOffset=False, style="plain")
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1.01), ncols=3, fontsize=8)

@@ -16,7 +16,7 @@ except ImportError:
 import talus_style as style
 from talus_ground import Ground
 from talus_map_pictures import draw_map, draw_section
-from talus_results import NOT_ENDED, Results, Thickness, largest_displacement
+from talus_results import NOT_ENDED, SLOW, Results, Thickness, largest_displacement, still_moving
 from talus_units import words
 
 NO_DATA = -9999.0
@@ -111,6 +111,7 @@ class Maps:
         if not len(self.sliding) or (moved < self.size and not len(left_mesh(results))):
             raise ValueError(f"{results.folder}: no soil has slid far enough for a map: the largest displacement, {moved:.3g} m, is below the spacing of "
                              f"particles, {self.size:.3g} m")
+        self.moving = still_moving(last, self.sliding)
         self._accumulate()
         self.covered = self.thickness[-1] >= self.limit
         if not self.covered.any():
@@ -173,6 +174,13 @@ class Maps:
         position, volume = self.axes.level(snapshot.position()), snapshot.column("volume").values[:, 0]
         top, soil = self.ground.surface(position, np.cbrt(volume))
         return np.where(soil, top, self.ground.base)
+
+    def moment(self, snapshot=-1):
+        """The time of a snapshot in words, as the pictures of a run have it."""
+        return self.results.when(self.results.snapshots[snapshot]).removeprefix("t = ")
+
+    def headline(self):
+        return f"Soil at {self.moment()}, still moving at up to {self.moving[1]:.3g} m/s" if self.moving else f"Deposit at {self.moment()}"
 
     def polygons(self, mask):
         """Outline of the cells of a mask along their edges, with holes, as one OGR multipolygon in the coordinates of the map."""
@@ -267,15 +275,16 @@ def write_vectors(maps, path):
     for place in places + maps.axes.origin:
         line.AddPoint(*map(float, place))
     length = np.linalg.norm(np.diff(places, axis=0), axis=1).sum()
-    layers = (("outline", ogr.wkbMultiPolygon, maps.polygons(maps.covered), maps.numbers()),
+    layers = (("outline", ogr.wkbMultiPolygon, maps.polygons(maps.covered),
+               maps.numbers() | {"still_moving": bool(maps.moving), "speed_m_s": maps.moving[1] if maps.moving else 0.0}),
               ("path", ogr.wkbLineString25D, line, {"length_m": length, "start_s": maps.times[0], "end_s": maps.times[-1]}))
     for name, kind, geometry, numbers in layers:
         layer = made.CreateLayer(name, reference, kind)
         for key in numbers:
-            layer.CreateField(ogr.FieldDefn(key, ogr.OFTReal))
+            layer.CreateField(ogr.FieldDefn(key, ogr.OFTInteger if isinstance(numbers[key], bool) else ogr.OFTReal))
         feature = ogr.Feature(layer.GetLayerDefn())
         for key, value in numbers.items():
-            feature.SetField(key, float(value))
+            feature.SetField(key, int(value) if isinstance(value, bool) else float(value))
         feature.SetGeometry(geometry)
         layer.CreateFeature(feature)
     made.FlushCache()
@@ -321,7 +330,10 @@ def main():
         sys.exit(2)
     except (OSError, RuntimeError) as error:
         sys.exit(f"talus_maps: {error}")
-    print(f"maps of {maps.results.title} at {maps.times[-1]:g} s, cells of {maps.grid.spacing:g} m, {maps.grid.shape[0]} x {maps.grid.shape[1]}")
+    if maps.moving:
+        warn(f"the soil has not come to rest: {100 * maps.moving[0]:.2g} % of what slid is faster than {SLOW:g} m/s, at up to {maps.moving[1]:.3g} m/s; outline, "
+             f"run-out and angle of reach are those at {maps.moment()} and not of a final deposit. A longer duration of its last stage gives that")
+    print(f"maps of {maps.results.title}: {maps.headline()[0].lower() + maps.headline()[1:]}, cells of {maps.grid.spacing:g} m, {maps.grid.shape[0]} x {maps.grid.shape[1]}")
     print(f"projection: {'that of the terrain file' if maps.axes.projection else 'none, coordinates are ' + ('those of the terrain file' if maps.axes.terrain else 'local')}")
     for name, value in maps.numbers().items():
         quantity, _, unit = name.rpartition("_")

@@ -8,7 +8,7 @@ import re
 
 import numpy as np
 
-from talus_results import Thickness, largest_displacement, sliding
+from talus_results import Thickness, largest_displacement, sliding, spacing
 
 MEASURES = {}
 
@@ -176,8 +176,9 @@ def slide(results):
 
 
 def flow(results, states=10):
-    """In 3D, of the soil that has slid by the end (talus_results.sliding): the median of its thickness by volume and the largest one without single
-    particles, and the mean size of the cells where it is, over some states after the start [m]; None where nothing slid."""
+    """In 3D, of the soil that has slid by the end (talus_results.sliding), where it has left its outline at the start: the median of its thickness by volume
+    and the largest one without single particles, and the mean size of the cells where it is, over some states after the start [m]. The thick soil that stays
+    in the scarp does not count, unless none went further. None where nothing slid."""
     last = results.snapshots[-1]
     if last.position().shape[1] != 3 or len(results.snapshots) < 2:
         return None
@@ -194,14 +195,23 @@ def flow(results, states=10):
         return np.ravel_multi_index(np.clip(np.floor((place - low) / side).astype(int), 0, count - 1).T, count)
     of_cell = square(corner.mean(axis=1)[:, level])
     cells, total = np.bincount(of_cell, minlength=np.prod(count)), np.bincount(of_cell, size, np.prod(count))
-    chosen = results.snapshots[1:]
-    depth, there = [], []
+    first, chosen = results.snapshots[0], results.snapshots[1:]
+    depth, there, left = [], [], []
+    wide = Thickness.WIDE * spacing(first)
+    def footprint(place):
+        return [tuple(one) for one in np.floor((place[:, level] - low) / wide).astype(int)]
+    outline = set(footprint(first.position()[np.isin(first.ids(), thickness.sliding, assume_unique=True)]))
     for snapshot in chosen[:: -(-len(chosen) // states)]:
         moves = np.isin(snapshot.ids(), thickness.sliding, assume_unique=True)
         depth.append(thickness(snapshot)[0][moves])
-        at = square(snapshot.position()[moves][:, level])
-        there.append(total[at[cells[at] > 0]] / cells[at[cells[at] > 0]])
-    depth, there = np.concatenate(depth), np.concatenate(there)
+        place = snapshot.position()[moves]
+        at = square(place[:, level])
+        there.append(np.divide(total[at], cells[at], out=np.full(len(at), np.nan), where=cells[at] > 0))
+        left.append(np.array([one not in outline for one in footprint(place)], bool))
+    depth, there, left = map(np.concatenate, (depth, there, left))
+    if left.any():
+        depth, there = depth[left], there[left]
+    there = there[np.isfinite(there)]
     return (float(np.median(depth)), float(np.percentile(depth, 99)), float(there.mean())) if len(depth) and len(there) else None
 
 

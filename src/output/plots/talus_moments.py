@@ -1,9 +1,12 @@
 """The times of a run that pictures show."""
 
+import types
+
 import numpy as np
 
 TIME = 0.2  # share of time, against motion, in the choice of snapshots
 MOTION = ("displacement", "velocity", "plastic_strain", "thickness")  # fields that are nothing as long as soil has not moved
+RESET = ("displacement", "plastic_strain")  # of these, what counts is since the last reset
 PART = 0.25  # of the spacing of particles: soil that has moved by less is where it was
 SHADE = 0.02  # of the scale of colours: less is not seen
 
@@ -46,6 +49,24 @@ def with_stress(results, snapshots, field):
     ready = [snapshot for snapshot in results.snapshots if snapshot.stage == stage and len(snapshot.ids())][-1:]
     return [*ready, *(snapshot for snapshot in snapshots[1:] if snapshot.time > ready[0].time)] if ready and np.any(np.nan_to_num(ready[0].scalar(field)[0])) \
         else snapshots
+
+
+def last_reset(results):
+    """Time and stage of the last snapshot before the last reset of displacement that the run went on after; None without such a reset. It is at the end of
+    a stage, whose last snapshot still has what is then set to 0."""
+    resets = {stage.get("name") for stage in results.scene.get("stage", []) if stage.get("reset_displacement")}
+    ends = [one for one, after in zip(results.snapshots, results.snapshots[1:]) if one.stage in resets and one.stage != after.stage]
+    return (ends[-1].time, ends[-1].stage) if ends else None
+
+
+def since_reset(results, snapshots, field):
+    """The snapshots; of a field that is set to 0 at the end of a stage the start and some after the last reset, so that the settlement under gravity does
+    not hide what the slope does then. With the name of this stage, empty without a reset."""
+    reset = last_reset(results) if field in RESET or field.rpartition("_")[0] in RESET else None
+    later = [snapshot for snapshot in results.snapshots if reset and snapshot.time > reset[0] and len(snapshot.ids())]
+    if not later:
+        return snapshots, ""
+    return [snapshots[0], *chosen_snapshots(types.SimpleNamespace(snapshots=later), count=5)], reset[1]
 
 
 def telling(snapshots, field, colours, spacing):

@@ -18,6 +18,8 @@ from talus_sections import draw_sections
 from talus_slip import draw_slip_surface
 
 FIELDS = ("displacement", "thickness", "plastic_strain", "velocity", "pore_pressure", "suction", "saturation", "surface", "mobilised_friction", "state")
+OF_PARTICLES = ("id", "body")  # numbers that are no quantities
+OF_MECHANISM = "shear_strain"  # field that says nothing but of the mechanism of a factor of safety
 OF_PORES = ("pore_pressure", "gas_pressure", "suction", "saturation")
 
 
@@ -44,6 +46,8 @@ def checked(folder, fields=None):
         raise ValueError(f"{folder} contains no snapshots")
     first = results.snapshots[0]
     for field in fields or ():
+        if field in OF_PARTICLES:
+            raise NoSuchField(f"{field} is a number of particles and no quantity with a scale: pictures/model.png has the bodies with their names; fields are {', '.join(first.names())}")
         if first.scalar(field) is None:
             if field in OF_PORES and results.scene.get("phases", "dry") == "dry":
                 raise NoSuchField(f"{folder} has no field {field}: its run is dry (phases); it has {', '.join(first.names())}")
@@ -70,17 +74,21 @@ def draw(folder, fields=None, times=None, log=False, slip_surface=False):
         print(f"talus: the run in {folder} is incomplete: {NOT_ENDED}; the pictures show it up to {results.snapshots[-1].time:.6g} s", file=sys.stderr)
     pictures = results.folder / "pictures"
     usual = [field for field in FIELDS if field != "state" or lost_strength(results)]
-    sections = draw_sections(results, fields or usual, times, pictures, log)
+    whole, results = results, results.before_reduction()
+    of_mechanism = [field for field in fields or () if field == OF_MECHANISM and whole is not results]
+    sections = draw_sections(results, [field for field in fields or usual if field not in of_mechanism], times, pictures, log)
+    if of_mechanism:
+        sections += draw_sections(whole.of_reduction(), of_mechanism, times, pictures)
     curves = draw_histories(results, pictures) + draw_stress_paths(results, pictures)
     curves += draw_lines(results, pictures, times)
     if slip_surface:
         curves += draw_slip_surface(results, pictures, times[0] if times else None)
-    return write_report(results, sections, curves, draw_factor(results, pictures))
+    return write_report(results, sections, curves, draw_factor(whole, pictures))
 
 
 def film(folder, fields=None, log=False):
     """Draws a film of each field; without `fields` of plastic strain or, where there is none, of displacement."""
-    results = checked(folder, fields)
+    results = checked(folder, fields).before_reduction()
     if not fields:
         strain = results.snapshots[-1].scalar("plastic_strain")
         fields = ["plastic_strain" if strain is not None and np.any(strain[0] > 0) else "displacement"]

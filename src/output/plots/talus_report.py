@@ -6,13 +6,13 @@ import pathlib
 
 import numpy as np
 
-from talus_factor import factor_lines, read_factor
+from talus_factor import factor_lines, read_factor, short
 from talus_histories import base_friction
 from talus_measures import flow
 from talus_model import draw_model
 from talus_modelled import read_model, stage_rows
 from talus_outcomes import in_words, outcome
-from talus_results import NOT_ENDED, largest_displacement
+from talus_results import NOT_ENDED, SLOW, largest_displacement, sliding, still_moving
 from talus_units import Keys, at_time, capital, readable_unit, text_of, words
 
 LOG_LINES = 25
@@ -38,7 +38,8 @@ PAGE = """<!doctype html>
 
 
 def write_report(results, sections, histories, factor=()):
-    """`sections` [(field, large picture, sheet of times)], `histories` and `factor` [(quantity, picture)] -> path of the page."""
+    """`sections` [(field, large picture, sheet of times)], `histories` and `factor` [(quantity, picture)] -> path of the page. `results` are those before
+    the strength is reduced where a factor of safety was asked for."""
     css = (pathlib.Path(__file__).parent / "report.css").read_text()
     model = read_model(results.folder)
     parts = [
@@ -78,17 +79,20 @@ def warnings(results):
 def key_results(results):
     """[(what, number, note)] that a reader wants first."""
     last = results.snapshots[-1]
-    found = [("Particles", thousands(len(last.position())), ", ".join(results.bodies))]
+    factor = read_factor(results)
+    found = [] if factor is None else [("Factor of safety", short(factor["factor_of_safety"]), ends_of(factor["factor_of_safety"]))]
+    found.append(("Particles", thousands(len(last.position())), ", ".join(results.bodies)))
+    when = "at the end" if factor is None else "before the strength is reduced"
     without = ", without the soil that left the mesh" if results.escaped and len(results.escaped.time) else ""
     if "displacement" in last and len(last.position()):
         vector = last.column("displacement").values
         up = results.up_axis()
         level, rise = np.abs(np.delete(vector, up, axis=1)).max(), np.abs(vector[:, up]).max()
         parts = f"{quantity(level, 'm')} level, {quantity(rise, 'm')} up or down"
-        found.append(("Largest displacement", quantity(largest_displacement(last), "m"), f"of 99.9 % of the mass; of any particle {parts}{without}"))
+        found.append(("Largest displacement", quantity(largest_displacement(last), "m"), f"of 99.9 % of the mass; of any particle {parts}{without}" + f"; {when}" * (factor is not None)))
         if "volume" in last:
             came_to = outcome(results)
-            found.append(("State at the end", came_to["state"], in_words(came_to, came_to["cell_m"])))
+            found.append((f"State {when}", came_to["state"], in_words(came_to, came_to["cell_m"]) + motion_at_end(last)))
             volume = came_to["volume_of_slide_m3"]
             note = "no soil slides" if volume is None else f"moved more than a tenth of the largest; {quantity(came_to['travel_distance_m'], 'm')} from rear to front"
             found.append(("Sliding volume", quantity(volume or 0.0, results.per_metre("m³")), note + without))
@@ -96,13 +100,13 @@ def key_results(results):
     if depth:
         typical, most, cell = depth
         thin = ": a flow that is not as deep as a cell is not resolved; take smaller cells on its way" if typical < cell else ""
-        found.append(("Depth of the flow", f"{quantity(typical, 'm')}, {quantity(most, 'm')} at most", f"median after the start; cells there measure {quantity(cell, 'm')}{thin}"))
+        found.append(("Depth of the flow", f"{quantity(typical, 'm')}, {quantity(most, 'm')} at most", f"median where it left its outline at the start; cells there measure {quantity(cell, 'm')}{thin}"))
     speed = top_speed(results)
     if speed:
         found.append(("Largest velocity", quantity(speed[0], "m/s"), f"{speed[2]}, {at_time(speed[1], last.time)}"))
     found += bases(results)
     if "plastic_strain" in last and len(last.position()):
-        found.append(("Largest plastic strain", f"{last.column('plastic_strain').values.max():.3g}", "at the end"))
+        found.append(("Largest plastic strain", f"{last.column('plastic_strain').values.max():.3g}", when))
     mass = results.history.columns.get("mass_kg") if results.history else None
     gone = results.history.columns.get("escaped_mass_kg", 0 * mass) if mass is not None else None
     if results.escaped and len(results.escaped.time):
@@ -116,6 +120,16 @@ def key_results(results):
         share = "" if closed else f"; {abs(lost) / mass[0]:.1e} of the mass at the start has {'appeared' if lost > 0 else 'vanished'}"
         found.append(("Mass ledger", "closed" if closed else error, f"{end} at the end{share}"))
     return found
+
+
+def ends_of(bracket):
+    return f"equilibrium with strength divided by {bracket['equilibrium']:.4g}, a mechanism with {bracket['mechanism']:.4g}"
+
+
+def motion_at_end(last):
+    """Whether the soil that slid has come to rest, in words; empty if it has."""
+    moving = still_moving(last, last.ids()[sliding(last)])
+    return f"; still moving: {100 * moving[0]:.2g} % of what slid is faster than {SLOW:g} m/s, at up to {quantity(moving[1], 'm/s')}" if moving else ""
 
 
 def bases(results):

@@ -10,6 +10,7 @@
 Units are SI, as in the files. Stress is positive in tension, pore pressure in compression.
 """
 
+import copy
 import csv
 import difflib
 import json
@@ -31,6 +32,7 @@ ESCAPED = "escaped"  # in columns of what left the mesh
 BROKE_OFF = "the run broke off: "  # in the log, before the cause
 NOT_ENDED = "it was killed, or still runs, since run.log has no end"
 FLUIDS = ("water", "gas")  # whose ledgers history.csv holds
+MECHANISM = "strength reduction"  # stage of the last state after a factor of safety: a mechanism, whose size is free
 
 
 def unknown(kind, name, names):
@@ -158,6 +160,22 @@ def slides(displacement, largest, spacing):
     return displacement > SLIDES * largest if largest > SMALL * spacing else np.zeros(len(displacement), bool)
 
 
+SLOW = 0.1  # speed that soil at rest does not have [m/s]
+RESTLESS = 0.01  # share of the mass that slid: where more of it is faster than SLOW, it has not come to rest
+
+
+def still_moving(snapshot, numbers):
+    """The share of the soil with these numbers that is faster than SLOW, and the speed that 99.9 % of it have at most [m/s]; None where it has come to
+    rest, as at most RESTLESS of it is faster."""
+    of = np.isin(snapshot.ids(), numbers, assume_unique=True)
+    if not of.any() or "velocity" not in snapshot:
+        return None
+    speed = snapshot.scalar("velocity")[0][of]
+    mass = snapshot.column("mass").values[of, 0] if "mass" in snapshot else np.ones(len(speed))
+    share = mass[speed > SLOW].sum() / mass.sum()
+    return (float(share), float(np.quantile(speed, 0.999))) if share > RESTLESS else None
+
+
 class Thickness:
     """The thickness of the soil that slides until the end: its volume per area on the level, in m, over a few particles. `sliding` holds the numbers of
     the particles of this soil. Thickness is 0 for other soil."""
@@ -225,6 +243,15 @@ class History:
         """Unit of a column, empty if it has none. Raises KeyError."""
         self[name]
         return split_name(name)[2]
+
+    def without(self, stage):
+        """The same without the rows of a stage."""
+        kept = np.array([name != stage for name in self.stage], bool)
+        other = copy.copy(self)
+        other.time, other.step = self.time[kept], None if self.step is None else self.step[kept]
+        other.stage = [name for name in self.stage if name != stage]
+        other.columns = {name: values[kept] for name, values in self.columns.items()}
+        return other
 
     def groups(self):
         """{(quantity, unit): {label: values}}; energies are one group, and so is each measure of the named points."""
@@ -378,10 +405,31 @@ class Results:
         for name, group in self._file["snapshots"].items():
             if group is None:
                 raise OSError(f"{self._file['snapshots'].get(name, getlink=True).filename}, to which it refers, is missing or damaged")
+        self.snapshots = self._snapshots(self._file["snapshots"].values())
+
+    def _snapshots(self, groups):
         derived = {}
-        self.snapshots = [Snapshot(group, derived) for group in self._file["snapshots"].values()]
-        if self.snapshots and self.snapshots[0].position().shape[1] == 3 and all(name in self.snapshots[-1] for name in ("displacement", "volume")):
-            derived["thickness"] = Thickness(self.snapshots[-1], self.up_axis())
+        snapshots = [Snapshot(group, derived) for group in groups]
+        if snapshots and snapshots[0].position().shape[1] == 3 and all(name in snapshots[-1] for name in ("displacement", "volume")):
+            derived["thickness"] = Thickness(snapshots[-1], self.up_axis())
+        return snapshots
+
+    def of_reduction(self):
+        """The same with the start and the mechanism alone."""
+        other = copy.copy(self)
+        other.snapshots = [self.snapshots[0], *(snapshot for snapshot in self.snapshots if snapshot.stage == MECHANISM)]
+        return other
+
+    def before_reduction(self):
+        """The same without the mechanism that the search for a factor of safety leaves as the last state: its displacement has any size, and it is no
+        state of the slope. Results without one are returned as they are."""
+        kept = [group for group in self._file["snapshots"].values() if group.attrs["stage"] != MECHANISM]
+        if len(kept) in (0, len(self.snapshots)):
+            return self
+        other = copy.copy(self)
+        other.snapshots = self._snapshots(kept)
+        other.history = self.history.without(MECHANISM) if self.history else None
+        return other
 
     def snapshot_at(self, time):
         """The snapshot nearest to a time [s]."""

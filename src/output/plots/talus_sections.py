@@ -9,10 +9,11 @@ from matplotlib.transforms import offset_copy
 import talus_style as style
 from talus_colours import Colours
 from talus_ground import Ground
-from talus_moments import chosen_snapshots, telling, with_stress
+from talus_moments import chosen_snapshots, since_reset, telling, with_stress
 from talus_outcomes import cell_size
 from talus_perspective import edges
 from talus_relief import EARTH, SOIL, between, seen, seen_from_above
+from talus_results import MECHANISM
 from talus_soils import middles, moved_away, painted, tints
 from talus_tiles import GAP, GAP_IN_SPACE, Frame, outline_of_cells, outline_of_points
 from talus_units import capital, words
@@ -49,6 +50,7 @@ class Painter:
         self.flat = len(self.views) == 1
         self.tints = tints(len(results.bodies)) if self.flat else None
         self.marked_escaped, self.drawn_outline = 0, False
+        self.reset = ""  # stage at whose end the field was last set to 0
 
     def _ground(self):
         """What is shown of the ground in 3D: the soil at all times with some of the mesh's bottom around it."""
@@ -184,7 +186,8 @@ class Painter:
 
     def _title(self, snapshot, k, note):
         """Time, stage and a note above a block, the view's name where there are several."""
-        when = [self.results.when(snapshot), snapshot.stage, *filter(None, [note])] if k == 0 else []
+        stage = "mechanism, whose size is free" if snapshot.stage == MECHANISM else snapshot.stage
+        when = [self.results.when(snapshot), stage, *filter(None, [note])] if k == 0 else []
         return when + ([self.views[k].name] if len(self.views) > 1 else [])
 
     def _panel(self, axes, snapshot, field, k, colours, named_points=False, alone=False):
@@ -294,8 +297,9 @@ class Painter:
         figure.text(LEFT / WIDTH, 1 - 0.24 / height, headline, fontsize=13, fontweight="bold", va="center")
         right = 1 - 0.25 / WIDTH
         figure.text(right, 1 - 0.24 / height, self.results.title, fontsize=9, color=style.SOFT, va="center", ha="right")
-        legend = [colours.in_words()]
+        legend = [colours.in_words("in the colour of its soil" if self.flat else "grey")]
         legend += [colours.uneven] * bool(colours.uneven)
+        legend += [f"since the end of stage {self.reset}"] * bool(self.reset)
         legend += ["dotted: outline at the start"] * self.drawn_outline
         legend += [f"crosses: {self.marked_escaped} particles left the mesh here"] * bool(self.marked_escaped)
         figure.text(right, 0.16 / height, "; ".join(legend), fontsize=7.5, color=style.SOFT, ha="right")
@@ -310,18 +314,20 @@ class Painter:
 
 
 def draw_sections(results, fields, times, folder, log=False):
-    """FIELD_large.png and FIELD.png of each field that the run has; plastic strain on a logarithmic scale if `log`.
-    Returns [(field, path of the large one, path of the sheet over time)]."""
+    """FIELD_large.png and FIELD.png of each field that the run has; plastic strain on a logarithmic scale if `log`. The program chooses snapshots without
+    `times`. Returns [(field, path of the large one, path of the sheet over time)]."""
     if not len(results.snapshots[0].position()):
         return []
-    painter = Painter(results, chosen_snapshots(results, times), as_asked=bool(times))
+    chosen = chosen_snapshots(results, times)
+    after, _ = ([], "") if times else since_reset(results, chosen, "displacement")
+    painter = Painter(results, chosen + after, as_asked=bool(times))
     pictures = []
     for field in fields:
-        if any(snapshot.scalar(field) is None for snapshot in painter.snapshots):
+        if any(snapshot.scalar(field) is None for snapshot in chosen):
             continue
-        if not any(np.isfinite(snapshot.scalar(field)[0]).any() for snapshot in painter.snapshots):
+        if not any(np.isfinite(snapshot.scalar(field)[0]).any() for snapshot in chosen):
             continue  # such as the mobilised friction of soil without friction
-        snapshots = painter.snapshots if times else with_stress(results, painter.snapshots, field)
+        snapshots, painter.reset = (chosen, "") if times else since_reset(results, with_stress(results, chosen, field), field)
         colours = Colours(field, snapshots, log and field == "plastic_strain")
         pictures.append((field, painter.large(field, colours, snapshots, folder / f"{field}_large.png"),
                          painter.over_time(field, colours, snapshots, folder / f"{field}.png")))

@@ -222,6 +222,11 @@ class Maps(unittest.TestCase):
                 self.assertAlmostEqual(numbers["largest_thickness_m"], thickness.max(), delta=1e-6)
                 self.assertAlmostEqual(numbers["least_thickness_m"], 0.2, delta=1e-12)
                 self.assertAlmostEqual(numbers["time_s"], 0.1, delta=1e-12)
+                # it flies on at 10 m/s: this is no deposit
+                self.assertEqual(numbers["still_moving"], 1)
+                self.assertAlmostEqual(numbers["speed_m_s"], 10, delta=1e-3)
+                self.assertIn("soil at 0.100 s, still moving at up to 10 m/s", said)
+                self.assertIn("100 % of what slid is faster than 0.1 m/s", said)
                 # from the crown, at the upper face of the block at the start, to the middle of the furthest cell
                 self.assertTrue(0.5 < numbers["run_out_m"] < np.hypot(1.5, 0.6) + cell)
                 self.assertTrue(0.3 < numbers["fall_height_m"] < 0.5)  # particles lie inside of the block, 0.5 m high
@@ -290,6 +295,15 @@ class Maps(unittest.TestCase):
         drawn = [line.get_xydata() for line in axes.lines if len(line.get_xydata()) > 4]
         for ring in maps.rings(maps.covered):
             self.assertTrue(any(one.shape == ring.shape and np.allclose(one, ring) for one in drawn))
+
+    def test_only_soil_at_rest_is_a_deposit(self):
+        maps = talus_maps.Maps(talus_maps.checked(FOLDER / "block1"))
+        with unittest.mock.patch.object(talus_map_pictures.style, "save", side_effect=lambda figure, path: figure):
+            said = []
+            for maps.moving in (maps.moving, None):
+                figure = talus_map_pictures.draw_map(maps, "map.png")
+                said.append((figure._suptitle.get_text().strip(), [text.get_text() for text in figure.axes[0].get_legend().get_texts()][1]))
+        self.assertEqual(said, [("Soil at 0.100 s, still moving at up to 10 m/s", "outline of the soil that slid"), ("Deposit at 0.100 s", "outline of the deposit")])
 
     def test_texts_of_a_map_keep_apart(self):
         for results in ("block1", "plane1"):

@@ -11,16 +11,19 @@ import numpy as np
 sys.path.insert(0, sys.argv.pop(1))
 import talus_compare  # noqa: E402
 import talus_factor  # noqa: E402
+import talus_lines  # noqa: E402
+import talus_plot  # noqa: E402
 import talus_study  # noqa: E402
 import talus_soil  # noqa: E402
 import talus_sweep  # noqa: E402
 from talus_colours import Colours  # noqa: E402
 from talus_histories import base_friction, draw_histories, drawn_energies  # noqa: E402
-from talus_moments import chosen_snapshots, telling, with_stress  # noqa: E402
-from talus_outcomes import FAILS  # noqa: E402
+from talus_measures import flow  # noqa: E402
+from talus_moments import chosen_snapshots, since_reset, telling, with_stress  # noqa: E402
+from talus_outcomes import FAILS, STANDS  # noqa: E402
 from talus_paths import label_of, spread  # noqa: E402
-from talus_report import bases, ways_out  # noqa: E402
-from talus_results import NOT_ENDED, History, Results  # noqa: E402
+from talus_report import bases, key_results, ways_out  # noqa: E402
+from talus_results import MECHANISM, NOT_ENDED, History, Results, still_moving  # noqa: E402
 from talus_sections import Painter  # noqa: E402
 from talus_slip import said_of_ends, slip_surface  # noqa: E402
 from talus_soils import moved_away, painted, tints  # noqa: E402
@@ -138,6 +141,10 @@ class Scales(unittest.TestCase):
             scale = self.of(field, values)
             self.assertEqual(list(scale.plain(np.array([0.9, 1.1]) * 2 * share)), [True, False], field)
 
+    def test_say_how_soil_without_a_value_looks(self):
+        scale = self.of("displacement", np.linspace(0, 2, 1001), "m")
+        self.assertEqual((scale.in_words(), scale.in_words("grey")), ("in the colour of its soil: below 0.04 m", "grey: below 0.04 m"))
+
     def test_both_signs_are_those_above_two_hundredths_of_the_larger(self):
         ends = [self.of("stress_xx", np.linspace(-100 * low, 100, 10001)).shown for low in (0.018, 0.023)]
         self.assertEqual([low for low, _ in ends], [0, -2.2])  # nearly the least
@@ -176,10 +183,169 @@ class Energies(unittest.TestCase):
         history = History.__new__(History)
         history.time, history.step, history.stage = np.arange(3.0), np.arange(3), ["start", "gravity", "strength reduction"]
         history.columns = {"strain_J": np.array([0.0, 2, 9]), "work_gravity_J": np.array([0.0, 3, 3]), "dissipated_J": np.array([0.0, 1, -6])}
-        seen = []
-        with unittest.mock.patch.object(talus_sweep.style, "save", lambda figure, path: seen.append(figure)):
-            draw_histories(types.SimpleNamespace(history=history, title="", per_metre=lambda text: text), pathlib.Path())
-        self.assertGreaterEqual(min(np.nanmin(line.get_ydata()) for line in seen[0].axes[0].lines if len(line.get_ydata()) == 3), 0)
+        history.columns |= {"crest_displacement_m": np.array([0.0, 0.07, 0.9])}
+        before = history.without(MECHANISM)
+        self.assertEqual((list(before.time), list(before.step), before.stage), ([0, 1], [0, 1], ["start", "gravity"]))
+        self.assertEqual({name: values[-1] for name, values in before.columns.items()},
+                         {"strain_J": 2, "work_gravity_J": 3, "dissipated_J": 1, "crest_displacement_m": 0.07})
+        self.assertEqual(history["crest_displacement_m"][-1], 0.9)
+
+
+class Group(dict):
+    """What stands in run.h5 for a snapshot of three particles that have moved by a way."""
+
+    def __init__(self, time, stage, way):
+        def field(value, unit):
+            return Field(np.asarray(value, float).reshape(3, -1), unit)
+        super().__init__(displacement=field([[way, 0]] * 3, "m"), position=field(np.zeros((3, 2)), "m"), volume=field(np.ones(3), "m2"), mass=field(np.ones(3), "kg"),
+                         plastic_strain=field(np.zeros(3), "-"), id=field(np.arange(3), "").astype(int))
+        self.attrs = {"time": time, "step": int(time), "stage": stage}
+
+
+class Field:
+    def __init__(self, values, unit):
+        self._values, self.attrs = values, {"unit": unit}
+
+    def astype(self, kind):
+        return Field(self._values.astype(kind), self.attrs["unit"])
+
+    def __getitem__(self, what):
+        return self._values[what]
+
+
+class Reduction(unittest.TestCase):
+    """Soil that settles by 0.07 m, whose mechanism moves by 1.3 m."""
+
+    def setUp(self):
+        self.results = Results.__new__(Results)
+        groups = {"0": Group(0, "", 0), "1": Group(1, "gravity", 0.07), "2": Group(1, MECHANISM, 1.3)}
+        self.results._file, self.results.history, self.results.escaped = {"snapshots": groups}, None, None
+        self.results.snapshots = self.results._snapshots(groups.values())
+        self.results.scene, self.results.bodies, self.results.folder = {}, ["clay"], pathlib.Path("nowhere")
+        self.results.mesh = lambda: (np.zeros((0, 2)), np.zeros((0, 3), int))
+
+    def test_leaves_its_mechanism_out_of_the_state_of_the_slope(self):
+        self.assertEqual([one.stage for one in self.results.before_reduction().snapshots], ["start", "gravity"])
+        self.assertEqual([one.stage for one in self.results.snapshots], ["start", "gravity", MECHANISM])
+        self.assertIs(self.results.before_reduction().before_reduction().snapshots[-1].stage, "gravity")
+        self.assertEqual([one.stage for one in self.results.of_reduction().snapshots], ["start", MECHANISM])
+
+    def test_is_what_a_report_begins_with(self):
+        bracket = {"decided": False, "equilibrium": 1.083, "mechanism": 1.091}
+        came_to = {"state": STANDS, "cell_m": 1.0, "largest_displacement_m": 0.07, "volume_of_slide_m3": None}
+        with unittest.mock.patch("talus_report.read_factor", lambda results: {"factor_of_safety": bracket}), unittest.mock.patch("talus_report.outcome", lambda results: came_to):
+            found = key_results(self.results.before_reduction())
+        self.assertEqual(found[0][:2], ("Factor of safety", "between 1.083 and 1.091"))
+        cards = {what: (number, note) for what, number, note in found}
+        self.assertEqual(cards["Largest displacement"][0], "70 mm")
+        self.assertTrue(cards["Largest displacement"][1].endswith("before the strength is reduced"))
+        self.assertEqual(cards["State before the strength is reduced"][0], STANDS)
+        self.assertNotIn("State at the end", cards)
+
+
+class Motion(unittest.TestCase):
+    """1000 particles of which the first have slid, and some still do."""
+
+    def moving(self, fast, of=1000):
+        speed = np.where(np.arange(1000) < fast, 3.0, 0.05)
+        snapshot = Moving(speed)
+        return still_moving(snapshot, np.arange(of))
+
+    def test_is_said_from_a_hundredth_of_the_mass_on(self):
+        self.assertIsNone(self.moving(10))
+        self.assertEqual(self.moving(11), (0.011, 3.0))
+        self.assertEqual(self.moving(10, of=100), (0.1, 3.0))  # of what slid
+        self.assertIsNone(self.moving(1000, of=0))
+
+
+class Moving(dict):
+    def __init__(self, speed):
+        super().__init__(velocity=speed)
+        self.ids, self.scalar = lambda: np.arange(len(speed)), lambda field: (speed, "m/s")
+
+
+class Depth(unittest.TestCase):
+    """A cube of 10 m whose upper layers, a fifth of it, run out as a sheet half a metre thick, while the rest moves by 3 m."""
+
+    def flow(self):
+        start = np.stack(np.meshgrid(*3 * [np.arange(10) + 0.5], indexing="ij"), axis=-1).reshape(-1, 3)
+        end = start + [3, 0, 0]
+        sheet = start[:, 2] > 8
+        x, y = np.meshgrid(np.arange(20, 60, 2) + 0.5, np.arange(10) + 0.5)
+        end[sheet] = np.column_stack([x.ravel(), y.ravel(), np.full(200, 0.5)])
+        snapshots = []
+        for time, place in enumerate((start, end)):
+            snapshot = Group(time, "slide", 0)
+            snapshot.update(position=Field(place, "m"), displacement=Field(place - start, "m"), volume=Field(np.ones((1000, 1)), "m3"), mass=Field(np.ones((1000, 1)), "kg"),
+                            id=Field(np.arange(1000)[:, None], ""))
+            snapshots.append(snapshot)
+        results = Results.__new__(Results)
+        results.scene = {"up": "z"}
+        results.snapshots = results._snapshots(snapshots)
+        corner = np.stack(np.meshgrid(np.arange(0, 64, 2), np.arange(0, 12, 2), [0], indexing="ij"), axis=-1).reshape(-1, 1, 3)
+        node = (corner + 2 * np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])).reshape(-1, 3).astype(float)
+        results.mesh = lambda: (node, np.arange(len(node)).reshape(-1, 4))
+        return flow(results)
+
+    def test_of_a_flow_is_that_of_the_soil_that_has_left_its_outline(self):
+        depth, _, cell = self.flow()
+        self.assertLess(depth, 1)
+        self.assertAlmostEqual(cell, (8 * 2**0.5) ** (1 / 3), delta=1e-9)  # regular tetrahedron of the volume of a corner of 2 m
+
+
+class Resets(unittest.TestCase):
+    def results(self, *stages):
+        snapshots = [Snapshot(time, 0.1 * time) for time in range(len(stages))]
+        for snapshot, stage in zip(snapshots, stages):
+            snapshot.stage = stage
+        scene = {"stage": [{"name": "gravity", "reset_displacement": True}, {"name": "rain"}]}
+        return types.SimpleNamespace(snapshots=snapshots, scene=scene)
+
+    def test_are_what_displacement_is_shown_since(self):
+        results = self.results("start", "gravity", "gravity", "gravity", "rain", "rain", "rain")
+        shown, stage = since_reset(results, results.snapshots[:5], "displacement")
+        self.assertEqual(([one.time for one in shown], stage), ([0, 4, 5, 6], "gravity"))
+        for field, other in (("displacement_x", [0, 4, 5, 6]), ("velocity", [0, 1, 2, 3, 4])):
+            self.assertEqual([one.time for one in since_reset(results, results.snapshots[:5], field)[0]], other)
+
+    def test_at_the_end_of_a_run_show_nothing_else(self):
+        results = self.results("start", "gravity", "gravity")
+        self.assertEqual(since_reset(results, results.snapshots, "displacement"), (results.snapshots, ""))
+
+    def test_lines_are_shown_after_them_and_their_friction_after_the_first_stage(self):
+        line = types.SimpleNamespace(time=np.arange(7.0), stage=["start", "gravity", "gravity", "gravity", "rain", "rain", "rain"])
+        line.columns = {"displacement_m": np.arange(7.0)[:, None], "mobilised_friction_deg": np.arange(7.0)[:, None]}
+        with unittest.mock.patch("talus_lines.means", lambda line: {"displacement_m": line.columns["displacement_m"][:, 0]}):
+            self.assertEqual(talus_lines.chosen(line, reset=3.0), [4, 5, 6])
+            self.assertEqual(talus_lines.chosen(line)[0], 0)
+        self.assertEqual(talus_lines.under_stress(line, [0, 2, 3, 6]), [3, 6])
+        line.stage = ["start"] + 6 * ["slide"]
+        self.assertEqual(talus_lines.under_stress(line, [0, 3, 6]), [3, 6])
+
+
+class Factors(unittest.TestCase):
+    def test_that_are_brackets_have_a_headline_with_room_and_a_legend_beside_the_lines(self):
+        bracket = {"decided": False, "equilibrium": 1.083, "mechanism": 1.0912}
+        trials = [{"psi_is_phi": dilating, "search": 1, "factor": factor, "outcome": outcome, "displacement_m": size} for dilating, factor, outcome, size in
+                  ((False, 1.0, "equilibrium", 0.1), (False, 1.083, "equilibrium", 0.6), (False, 1.0912, "mechanism", 9), (True, 1.17, "equilibrium", 6), (True, 1.18, "mechanism", 9))]
+        with unittest.mock.patch.object(talus_factor.style, "save", lambda figure, path: figure):
+            figure = talus_factor.draw_displacement({"trials": trials}, f"Factor of safety {talus_factor.in_words(bracket)}", "Cut of 14 m", None)
+        figure.canvas.draw()
+        whole, axes = figure.bbox, figure.axes[0]
+        self.assertLess(figure._suptitle.get_window_extent().x1, whole.x1)
+        legend = axes.get_legend().get_window_extent()
+        self.assertLess(legend.y1, axes.get_window_extent().y0)
+        self.assertGreater(legend.y0, whole.y0)
+
+
+class Refusals(unittest.TestCase):
+    def test_numbers_of_particles_are_no_fields(self):
+        first = types.SimpleNamespace(scalar=lambda field: (np.zeros(3), ""), names=lambda: ["velocity"])
+        with unittest.mock.patch("talus_plot.Results", lambda folder: types.SimpleNamespace(snapshots=[first], scene={})):
+            talus_plot.checked("here", ["velocity"])
+            for field in ("body", "id"):
+                with self.assertRaisesRegex(talus_plot.NoSuchField, f"{field} is a number of particles"):
+                    talus_plot.checked("here", [field])
 
 
 class Histories(unittest.TestCase):
