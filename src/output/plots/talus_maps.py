@@ -331,8 +331,8 @@ def main():
     except (OSError, RuntimeError) as error:
         sys.exit(f"talus_maps: {error}")
     if maps.moving:
-        warn(f"the soil has not come to rest: {100 * maps.moving[0]:.2g} % of what slid is faster than {SLOW:g} m/s, at up to {maps.moving[1]:.3g} m/s; outline, "
-             f"run-out and angle of reach are those at {maps.moment()} and not of a final deposit. A longer duration of its last stage gives that")
+        warn(f"the soil has not come to rest: {100 * maps.moving[0]:.3g} % of what slid is faster than {SLOW:g} m/s, at up to {maps.moving[1]:.3g} m/s; outline, "
+             f"run-out and angle of reach are those at {maps.moment()} and not of a final deposit, for which its last stage takes a longer duration")
     print(f"maps of {maps.results.title}: {maps.headline()[0].lower() + maps.headline()[1:]}, cells of {maps.grid.spacing:g} m, {maps.grid.shape[0]} x {maps.grid.shape[1]}")
     print(f"projection: {'that of the terrain file' if maps.axes.projection else 'none, coordinates are ' + ('those of the terrain file' if maps.axes.terrain else 'local')}")
     for name, value in maps.numbers().items():

@@ -129,7 +129,7 @@ def ends_of(bracket):
 def motion_at_end(last):
     """Whether the soil that slid has come to rest, in words; empty if it has."""
     moving = still_moving(last, last.ids()[sliding(last)])
-    return f"; still moving: {100 * moving[0]:.2g} % of what slid is faster than {SLOW:g} m/s, at up to {quantity(moving[1], 'm/s')}" if moving else ""
+    return f"; still moving: {100 * moving[0]:.3g} % of what slid is faster than {SLOW:g} m/s, at up to {quantity(moving[1], 'm/s')}" if moving else ""
 
 
 def bases(results):
