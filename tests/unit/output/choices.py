@@ -22,7 +22,7 @@ from talus_measures import flow  # noqa: E402
 from talus_moments import chosen_snapshots, since_reset, telling, with_stress  # noqa: E402
 from talus_outcomes import FAILS, STANDS  # noqa: E402
 from talus_paths import label_of, spread  # noqa: E402
-from talus_report import bases, key_results, ways_out  # noqa: E402
+from talus_report import bases, key_results, motion_at_end, ways_out  # noqa: E402
 from talus_results import MECHANISM, NOT_ENDED, History, Results, still_moving  # noqa: E402
 from talus_sections import Painter  # noqa: E402
 from talus_slip import said_of_ends, slip_surface  # noqa: E402
@@ -230,6 +230,11 @@ class Reduction(unittest.TestCase):
         self.assertIs(self.results.before_reduction().before_reduction().snapshots[-1].stage, "gravity")
         self.assertEqual([one.stage for one in self.results.of_reduction().snapshots], ["start", MECHANISM])
 
+    def test_is_named_in_the_picture_of_its_strain(self):
+        painter = Painter.__new__(Painter)
+        painter.results, painter.views = self.results, [None]
+        self.assertEqual([painter._title(one, 0, None)[1] for one in self.results.snapshots], ["start", "gravity", "mechanism, whose size is free"])
+
     def test_is_what_a_report_begins_with(self):
         bracket = {"decided": False, "equilibrium": 1.083, "mechanism": 1.091}
         came_to = {"state": STANDS, "cell_m": 1.0, "largest_displacement_m": 0.07, "volume_of_slide_m3": None}
@@ -256,6 +261,12 @@ class Motion(unittest.TestCase):
         self.assertEqual(self.moving(11), (0.011, 3.0))
         self.assertEqual(self.moving(10, of=100), (0.1, 3.0))  # of what slid
         self.assertIsNone(self.moving(1000, of=0))
+
+    def test_is_told_by_the_report(self):
+        last = Moving(np.full(1000, 11.4))
+        with unittest.mock.patch("talus_report.sliding", lambda last: np.ones(1000, bool)):
+            self.assertEqual(motion_at_end(last), "; still moving: 100 % of what slid is faster than 0.1 m/s, at up to 11.4 m/s")
+            self.assertEqual(motion_at_end(Moving(np.full(1000, 0.05))), "")
 
 
 class Moving(dict):
