@@ -17,7 +17,7 @@ NEAR = 0.15  # of the height of the soil: a line that ends deeper below the grou
 
 def slip_surface(results, time=None):
     """Points [n, 2] of the surface in the undeformed section, from left to right, and the snapshot that shows it: the one nearest to `time`, else the
-    first from the failure on whose surface leads from ground to ground, else the last. The surface is a connected path through columns and rows of soil;
+    first from the failure on whose surface leads from ground to ground, else the first of which no end is buried, else the last. The surface is a connected path through columns and rows of soil;
     in each column it passes through the centre of the larger half of the strain near the path. Raises ValueError where there is none."""
     if time is not None:
         return surface_at(results, at(results, time))
@@ -25,6 +25,7 @@ def slip_surface(results, time=None):
         begin = at(results, failure(results)[0]).time
     except (LookupError, OSError):
         return surface_at(results, results.snapshots[-1])
+    almost = None
     for snapshot in results.snapshots:
         if snapshot.time < begin:
             continue
@@ -32,9 +33,11 @@ def slip_surface(results, time=None):
             found = surface_at(results, snapshot)
         except ValueError:
             continue
-        if not buried_ends(found[0], found[2]):
+        if not deep_ends(results, found[0], found[2]):
             return found
-    return surface_at(results, results.snapshots[-1])
+        if almost is None and not buried_ends(found[0], found[2]):
+            almost = found
+    return almost or surface_at(results, results.snapshots[-1])
 
 
 def surface_at(results, snapshot):
@@ -127,9 +130,14 @@ def buried_ends(line, place):
     return [side for side, depth in depth_of_ends(line, place).items() if depth > NEAR * np.ptp(place[:, 1])]
 
 
+def deep_ends(results, line, place):
+    """Depth of the ends of the line that are further below the ground than a row is high: the others are at the ground."""
+    return {side: depth for side, depth in depth_of_ends(line, place).items() if depth > COLUMN * spacing_of(results)}
+
+
 def said_of_ends(results, line, place, snapshot):
-    """A sentence about ends of the line that are further below the ground than a row is high; empty if there are none."""
-    deep = {side: depth for side, depth in depth_of_ends(line, place).items() if depth > COLUMN * spacing_of(results)}
+    """A sentence about ends of the line that are not at the ground; empty if there are none."""
+    deep = deep_ends(results, line, place)
     if not deep:
         return ""
     ends = " and ".join(f"{depth:.2g} m below the ground on the {side}" for side, depth in deep.items())

@@ -540,6 +540,20 @@ class SlipSurface(unittest.TestCase):
         self.assertRegex(said(1), r"ends inside the soil, .* m below the ground on the left: no connected path of .* at t = 1 s; a later time")
         self.assertEqual(said(2), "")
 
+    def test_is_not_that_of_an_earlier_time_which_ends_a_little_below_the_ground(self):
+        # the first band ends 1 m below the ground on the right, a tenth of the height of the soil and two rows; the second one at the ground
+        circle = [lambda x, y: float(abs(np.hypot(x - 10, y - 12) - 6.3) < 0.4 and (x < 10 or y < 9)),
+                  lambda x, y: float(abs(np.hypot(x - 10, y - 12) - 6.3) < 0.4)]
+        moments = [Sheared(strain) for strain in circle]
+        for time, moment in enumerate(moments):
+            moment.time = time
+        results = moments[0]
+        with unittest.mock.patch("talus_slip.failure", lambda results: (0.0,)):
+            results.snapshots = moments
+            self.assertEqual(slip_surface(results)[1].time, 1)
+            results.snapshots = [moments[0], moments[0]]
+            self.assertEqual(slip_surface(results)[1].time, 0)
+
     def test_says_that_no_path_leads_to_the_ground(self):
         # a band from one end of the soil to the other, 3 m below its ground
         results = Sheared(lambda x, y: float(abs(y - 7) < 0.5))
