@@ -11,6 +11,7 @@
 #include "commands/trials.h"
 #include "output/csv.h"
 #include "output/script.h"
+#include "scene/quantity.h"
 #include "scene/reader.h"
 #include "scene/scene.h"
 
@@ -100,6 +101,20 @@ std::string last_key(const Variant &t) {
   return t.overrides.empty() ? "" : t.overrides.back().substr(0, t.overrides.back().find('='));
 }
 
+/// A value of a series as tables have it: a number in the unit that was typed, else in that of its key; other values as
+/// they were typed.
+std::pair<std::string, std::string> value_and_unit(const std::string &override) {
+  const size_t at = override.find('=');
+  if (at == std::string::npos) return {};
+  const std::string key = override.substr(0, at), text = unquoted(override.substr(at + 1));
+  try {
+    const Quantity quantity = parse_quantity(text);
+    if (!quantity.plain) return {shortest(quantity.number), unit_behind(text)};
+  } catch (const std::invalid_argument &) {  // an expression, a list or a word
+  }
+  return {text, unit_of_key(key)};
+}
+
 void write_csv(const std::string &path, const std::vector<Variant> &trials) {
   std::ofstream file(path);
   file.precision(10);
@@ -109,11 +124,11 @@ void write_csv(const std::string &path, const std::vector<Variant> &trials) {
   for (const Variant &t : trials) {
     const bool beaten = std::any_of(trials.begin(), trials.end(),
                                     [&](const Variant &o) { return !o.failed && o.cpu < t.cpu && o.error < t.error; });
-    file << csv_field(t.label) << "," << csv_field(joined(t.overrides)) << "," << last_key(t) << ","
-         << unit_of_key(last_key(t)) << "," << t.parameter << "," << t.value << "," << t.error << "," << t.cpu << ","
-         << t.wall << "," << t.steps << "," << t.evaluations << "," << t.rejections << ","
-         << (!t.failed && std::isfinite(t.error) && !beaten) << "," << csv_field(t.cause) << ","
-         << csv_field(warnings_of(t)) << "\n";
+    const std::string unit = t.overrides.empty() ? "" : value_and_unit(t.overrides.back()).second;
+    file << csv_field(t.label) << "," << csv_field(joined(t.overrides)) << "," << last_key(t) << "," << csv_field(unit)
+         << "," << t.parameter << "," << t.value << "," << t.error << "," << t.cpu << "," << t.wall << "," << t.steps
+         << "," << t.evaluations << "," << t.rejections << "," << (!t.failed && std::isfinite(t.error) && !beaten)
+         << "," << csv_field(t.cause) << "," << csv_field(warnings_of(t)) << "\n";
   }
 }
 
@@ -130,12 +145,10 @@ int sweep(const CompareArguments &arguments, const std::vector<Variant> &trials)
   std::ofstream file(arguments.directory + "/runs.csv");
   file << "series,overrides,key,value,unit,folder,processor_s,wall_s,failure,warnings\n";
   for (const Variant &t : trials) {
-    const std::string last = t.overrides.empty() ? "=" : t.overrides.back();
-    const size_t at = last.find('=');
-    file << csv_field(t.label) << "," << csv_field(joined(t.overrides)) << "," << last.substr(0, at) << ","
-         << csv_field(unquoted(last.substr(at + 1))) << "," << unit_of_key(last.substr(0, at)) << ","
-         << fs::path(t.folder).filename().string() << "," << t.cpu << "," << t.wall << "," << csv_field(t.cause) << ","
-         << csv_field(warnings_of(t)) << "\n";
+    const auto [value, unit] = value_and_unit(t.overrides.empty() ? "" : t.overrides.back());
+    file << csv_field(t.label) << "," << csv_field(joined(t.overrides)) << "," << last_key(t) << "," << csv_field(value)
+         << "," << csv_field(unit) << "," << fs::path(t.folder).filename().string() << "," << t.cpu << "," << t.wall
+         << "," << csv_field(t.cause) << "," << csv_field(warnings_of(t)) << "\n";
   }
   if (!file.flush()) throw std::runtime_error("cannot write " + arguments.directory + "/runs.csv");
   const int status = tell(arguments, "talus_sweep.py");

@@ -165,6 +165,14 @@ TEST_F(Compare, ChartsOutcomesAgainstAKey) {
   EXPECT_EQ(rows[0].at("fails"), "False");
   EXPECT_GT(number(rows[1], "largest_displacement_m"), number(rows[0], "largest_displacement_m"));
   EXPECT_GT(number(rows[1], "corner_largest_speed_m_s"), 0.4);
+  const Ending typed = Program(folder_, talus_words({"compare", "scene.toml", "-o", "typed", "--no-plot", "--series",
+                                                     "stiff: body.sand.young_modulus=1 MPa,2 MPa"}))
+                           .end();
+  EXPECT_EQ(typed.status, 0) << typed.output;
+  const auto with_unit = csv_table(folder_ / "typed/sweep.csv");
+  ASSERT_EQ(with_unit.size(), 2u);
+  EXPECT_EQ(with_unit[1].at("value"), "2") << "a number in the unit that was typed";
+  EXPECT_EQ(with_unit[1].at("unit"), "MPa");
   EXPECT_TRUE(sweep({"--no-plot"}).says("2 of 2 runs were completed before")) << "goes on where it was stopped";
   EXPECT_TRUE(sweep({"--exact", "1"}).says("--exact and --reference belong to a --measure"));
   // other values are not taken for them, and replace them only when that is asked for

@@ -99,12 +99,13 @@ class Module(unittest.TestCase):
         python, examples = sys.executable, SOURCES / "docs/guide/results"
         front = self.call(python, "-B", examples / "front.py", self.slope, self.folder / "front.png")
         self.assertIn("the front ends at x = ", front)
+        self.assertIn("towards larger x", front)
         self.assertAlmostEqual(float(front.split("=")[1].split()[0]), self.results.snapshots[-1].position()[self.moved(), 0].max(), delta=0.01)
         profile = self.call(python, "-B", examples / "profile.py", self.slope, "displacement", 12, self.folder / "profile.png", 5, 1e9)
         self.assertEqual(len(profile.splitlines()), 2)
         compared = self.folder / "compared"
         self.call(PROGRAM, "compare", SCENE, "--no-plot", "-o", compared, "--set", *COARSE, "--series",
-                  "residual: body.clay.residual_friction_angle=8,17")
+                  "residual: body.clay.residual_friction_angle=8 deg,17 deg")
         table = Table(compared / "sweep.csv")
         self.assertEqual((list(table["value"]), list(table["series"]), len(table)), ([8, 17], ["residual"] * 2, 2))
         self.refused(KeyError, "did you mean travel_distance_m", table.__getitem__, "travel_distanc_m")
