@@ -51,6 +51,9 @@ class Function {
   /// Does the expression name this variable: x, y, z, t, table or slip?
   bool uses(const std::string &variable) const;
 
+  /// Times at which a table has its points [s]; none of another function.
+  const std::vector<double> &times() const { return times_; }
+
   double operator()(double x, double y, double z, double t, double table = 0, double slip = 0) const;
   double operator()(double t) const { return (*this)(0, 0, 0, t); }
 

@@ -60,17 +60,21 @@ void doubt_excess_alone(const Scene &scene, std::vector<std::string> &sentences)
 
 // ---- open water ----
 
-/// Elevations that water.level adds to tables in the course of the stages [m]. An expression is asked for the start
-/// alone: a value that its key does not admit would end the run, also one that never comes so far.
+/// Elevations that water.level adds to tables in the course of the stages [m], among them those at the points of a
+/// table and at the end of each stage. An expression is asked for the start alone: a value that its key does not admit
+/// would end the run, also one that never comes so far.
 std::vector<double> levels_of(const Scene &scene) {
   constexpr int intervals = 50;
   double end = 0;
+  std::vector<double> times = scene.water.level.times();
   for (const Stage &stage : scene.stage)
-    if (!stage.hold_loads) end += stage.duration;
+    if (!stage.hold_loads) times.push_back(end += stage.duration);
   const Function &level = scene.water.level;
   std::vector<double> levels{level(0)};
-  for (int k = 1; k <= intervals && level.depends_on_time() && !level.uses("t"); ++k)
-    levels.push_back(level(end * k / intervals));
+  if (!level.depends_on_time() || level.uses("t")) return levels;
+  for (int k = 1; k <= intervals; ++k) times.push_back(end * k / intervals);
+  for (const double time : times)
+    if (time > 0 && time <= end) levels.push_back(level(time));
   return levels;
 }
 
@@ -127,13 +131,12 @@ void doubt_ponds(const Scene &scene, double height, const std::vector<SoilFace> 
                  std::vector<std::string> &sentences) {
   const WaterTable &table = scene.water.table;
   if (!table.given() || table.level()) return;
-  std::optional<Pond> worst;
-  const auto fall = [](const Pond &pond) { return pond.highest - pond.lowest; };
+  std::optional<Pond> worst;  // of all that are not level, the deepest
   for (const double level : levels_of(scene))
     for (const Pond &pond : ponds_of(surface, scene.dimension, scene.vertical(), visible * height,
                                      [&](const auto &x) { return table_at(table, x) + level; }))
-      if (!worst || fall(pond) > fall(*worst)) worst = pond;
-  if (!worst || fall(*worst) <= visible * height) return;
+      if (pond.highest - pond.lowest > visible * height && (!worst || pond.depth > worst->depth)) worst = pond;
+  if (!worst) return;
   sentences.push_back(
       "water.table stands up to " + rounded(worst->depth) + " m above the ground from x = " + rounded(worst->west) +
       " to " + rounded(worst->east) + " m and is not level there: it lies between " + axis_names[scene.vertical()] +

@@ -396,6 +396,11 @@ TEST(Check, DoubtsOpenWaterThatIsNotLevel) {
   EXPECT_FALSE(advice({"water.table=[[0, 0.4], [1, 0.1]]"}).says(doubt));
   EXPECT_TRUE(advice({"water.table=[[0, 0.4], [1, 0.1]]", "water.level=[[0, 0], [0.05, 0.5]]"}).says(doubt))
       << "a table that rises above the ground";
+  // a peak that lasts shorter than the times at which functions are looked at
+  EXPECT_TRUE(
+      advice({"water.table=[[0, 0.4], [1, 0.1]]", "water.level=[[0, 0], [0.0301, 0], [0.0305, 0.5], [0.0309, 0]]"})
+          .says("water.table stands up to 0.6 m above the ground"))
+      << "the deepest at the points of water.level";
   EXPECT_FALSE(advice({"water.table=[[0, 0.9], [0.1, 0.9], [0.2, 0.4], [0.8, 0.4], [0.9, 0.7], [1, 0.7]]"}).says(doubt))
       << "two ponds, of which each is level";
 }
