@@ -17,7 +17,8 @@ inline const CLI::Validator above_zero(
     },
     "NUMBER ABOVE 0");
 
-/// Exit status of solve where the factor of safety is known no better than a wide bracket.
+/// Exit status of solve where a trial within the bracket of a factor of safety was undecided, so that the bracket is
+/// wider than was asked for.
 inline constexpr int undecided_status = 3;
 
 Action add_run(CLI::App &app);

@@ -89,8 +89,8 @@ std::string in_words(const FactorBracket &b) {
                   b.lower, b.upper);
   else
     std::snprintf(text, sizeof text,
-                  "%s %.4g and %.4g: equilibrium with strength divided by %.4g, a mechanism by %.4g, and between "
-                  "the two trials that found neither%s",
+                  "%s %.4g and %.4g: equilibrium with strength divided by %.4g, a mechanism by %.4g, and every "
+                  "trial between these two found neither%s",
                   b.failed() ? "was not found. It is somewhere between" : "between", b.lower, b.upper, b.lower, b.upper,
                   b.failed() ? ": the search has failed. Another mesh may help, or other [[stage]] load_steps" : "");
   return text;
@@ -172,8 +172,8 @@ Action add_solve(CLI::App &app) {
   command->add_option("--set", arguments->set, "override a key of the scene: key.path=value")->take_all();
   command->add_flag("--no-umat", arguments->no_umat, "refuse laws that load a library: for scenes of strangers");
   command->add_flag("--factor-of-safety", arguments->factor_of_safety,
-                    "reduce strength after the stages until the soil fails; status 3 if the factor is known only as a "
-                    "wide bracket");
+                    "reduce strength after the stages until the soil fails; status 3 if a trial between the ends of "
+                    "its bracket found neither equilibrium nor mechanism, so that it stays wider than 0.5 %");
   command->add_flag("--json", arguments->json, "print the factor of safety as one JSON document");
   command->add_flag("--force", arguments->force, "replace the results of another run in that folder");
   command->add_flag("--no-pictures", arguments->no_pictures, "do not draw pictures at the end");

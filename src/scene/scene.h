@@ -603,7 +603,8 @@ struct Output {
     v.texts("picture", picture,
             "fields that are drawn: a vector by its magnitude, a tensor by its mean, or one component such as "
             "stress_xy; default: those of displacement, plastic_strain, velocity, pore_pressure, suction, saturation, "
-            "surface and mobilised_friction that exist, and state where soil has softened");
+            "surface and mobilised_friction that exist, and state where soil has softened; in 3D also thickness, the "
+            "volume of sliding soil per area");
   }
 };
 

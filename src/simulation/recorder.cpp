@@ -147,6 +147,8 @@ void Recorder<dim>::check_pictures() {
     const bool drawn = std::ranges::any_of(fields.list(), [&](const auto &one) {
       return field == one.name || (one.components > 1 && field.rfind(one.name + "_", 0) == 0);
     });
+    if (!drawn && dim == 3 && field == "thickness")
+      continue;  // not in the file: the pictures take it from displacement
     if (!drawn)
       scene_.complain("output.picture",
                       "names \"" + field + "\", which this run does not have; " + suggestion(field, known));

@@ -187,7 +187,7 @@ TEST_F(RunThatEnds, WithARangeForTheFactorOfSafety) {
       with({"env", "PETSC_OPTIONS=-talus_ksp_max_it 6"}, {"--set", "quasi_static.linear_solver=iterative"});
   EXPECT_EQ(range.status, 3) << range.output;
   EXPECT_TRUE(range.says(": undecided, ")) << range.output;
-  EXPECT_TRUE(range.says("and between the two trials that found neither")) << range.output;
+  EXPECT_TRUE(range.says("and every trial between these two found neither")) << range.output;
   const Ending read =
       Program(folder_, {PYTHON, "-c",
                         "import json\nexact, range = (json.load(open(f))['factor_of_safety'] for f in "
