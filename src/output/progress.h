@@ -58,7 +58,7 @@ class Progress {
   };
   void look_at_clock();
   void tell(const std::string &line, double clock);  ///< where a line is due
-  std::string state() const;  ///< time and step
+  std::string state() const;                         ///< time and step
   std::string describe(double clock) const;
   void print(const std::string &line);
   void log(const std::string &line);

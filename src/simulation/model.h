@@ -20,7 +20,8 @@ namespace talus {
 ///                  the least to the largest over the faces with soil; level of open water; faces: corners, normal, is
 ///                  there soil, load [Pa] or velocity [m/s] at the centre
 ///     water        line of pressure zero in the soil, in pieces; tables: body (empty: all), points at the start; in 3D
-///                  surface: pieces, triangles, of tables that are functions of the place, over the ground of their soil
+///                  surface: pieces, triangles, of tables that are functions of the place, over the ground of their
+///                  soil
 ///     stages       keys as in the scene with their defaults, in SI; acceleration; integrator; changes: what changes
 ///                  with time in the stage
 ///     points, lines   name and place of what the scene follows

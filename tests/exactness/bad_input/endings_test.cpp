@@ -186,7 +186,7 @@ TEST_F(RunThatEnds, WithARangeForTheFactorOfSafety) {
   const Ending range =
       with({"env", "PETSC_OPTIONS=-talus_ksp_max_it 6"}, {"--set", "quasi_static.linear_solver=iterative"});
   EXPECT_EQ(range.status, 3) << range.output;
-  EXPECT_TRUE(range.says(": undecided, ")) << range.output;
+  EXPECT_TRUE(range.says(": undecided after ")) << range.output;
   EXPECT_TRUE(range.says("and every trial between these two found neither")) << range.output;
   const Ending read =
       Program(folder_, {PYTHON, "-c",

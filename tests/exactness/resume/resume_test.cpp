@@ -446,7 +446,7 @@ TEST_F(EndedRun, GoesOnWithALongerStage) {
   const std::string history = content("results/history.csv");
   const Ending nothing_left = run({"--resume"});
   EXPECT_EQ(nothing_left.status, 0);
-  EXPECT_TRUE(nothing_left.says("t = 0.05 / 0.05 s")) << nothing_left.output;
+  EXPECT_TRUE(nothing_left.says("t = 0.05 of 0.05 s")) << nothing_left.output;
   EXPECT_TRUE(nothing_left.says("nothing was left to do: the run had reached its end")) << nothing_left.output;
   EXPECT_EQ(content("results/history.csv"), history);
   const Ending ending = run({"--resume", "--set", "stage.0.duration=0.08", "--set", "output.interval=0.02"});
@@ -480,7 +480,7 @@ TEST_F(EndedRun, IsResumedFromTheCheckpointBeforeADamagedOne) {
         << cause << "\n"
         << ending.output;
     EXPECT_TRUE(ending.says("resumed at t = 0.04 s")) << ending.output;
-    EXPECT_TRUE(ending.says("t = 0.05 / 0.05 s")) << ending.output;
+    EXPECT_TRUE(ending.says("t = 0.05 of 0.05 s")) << ending.output;
     EXPECT_GT(state(), name) << "numbers are not used twice";
     std::filesystem::remove_all(folder_ / "results");
     std::filesystem::rename(folder_ / "copy", folder_ / "results");
