@@ -108,7 +108,7 @@ TEST_F(TalusMesh, RefinesBoxesOfTheSectionAndOfTheCommandLine) {
   const std::string coarse = "box.csv --size 0.25 -o ";
   const auto cells = [&](const std::string &options) {
     const std::string text = run(TALUS_SECTIONS + coarse + in_folder("m.msh") + options).text;
-    return std::stoi(text.substr(text.find("cells ") + 6));
+    return std::stoi(text.substr(text.find("\ncells ") + 7));
   };
   EXPECT_GT(cells(" --refine 0 0 0.3 0.3 0.05"), 2 * cells(""));
   EXPECT_GT(cells(" --refine 0 0 0.3 0.3 0.05 --refine 0.7 0.7 1 1 0.05"), cells(" --refine 0 0 0.3 0.3 0.05"));
