@@ -132,7 +132,8 @@ class Outcomes(unittest.TestCase):
             for name in ("state", "fails", "largest_displacement_m"):
                 self.assertEqual(one[name], other[name])
         self.assertEqual(table[0]["volume_of_slide_m3"], self.table[1]["volume_of_slide_m3"])
-        self.assertRegex(printed, r"strength +5 kPa +moves")
+        self.assertRegex(printed, r"\[kPa\] +state")
+        self.assertRegex(printed, r"strength +5 +moves")
 
     def test_a_run_at_rest_has_its_last_row_at_later_times(self):
         for row in self.table:  # all come to rest before 14 s
