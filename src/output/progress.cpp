@@ -100,7 +100,7 @@ void Progress::look_at_clock() {
 }
 
 void Progress::seeking(const std::string &text) {
-  if (prints_) tell(state() + "  " + text, clock_());
+  if (prints_) tell(text, clock_());
 }
 
 void Progress::tell(const std::string &line, double clock) {

@@ -35,7 +35,7 @@ class Progress {
     if (--until_clock_ <= 0) look_at_clock();
   }
 
-  /// Between two steps, while iterations of finite elements go on: what they have come to.
+  /// Between two steps, while iterations of finite elements go on: a line of what they have come to.
   void seeking(const std::string &text);
 
   /// The run goes on from here.

@@ -191,8 +191,9 @@ template <int dim>
 void Recorder<dim>::seeking(int iteration, double out_of_balance) {
   if (!results_) return;
   std::ostringstream text;
+  text << of_.clock.stage << "  t = " << of_.clock.time << " s  iteration " << iteration << ": ";
   text.precision(1);
-  text << "iteration " << iteration << ": " << std::scientific << out_of_balance << " of the forces out of balance";
+  text << std::scientific << out_of_balance << " of the forces out of balance";
   results_->progress.seeking(text.str());
 }
 
