@@ -6,7 +6,7 @@ from matplotlib.ticker import FixedLocator, MaxNLocator
 
 import talus_style as style
 from talus_results import ESCAPED
-from talus_units import capital, clock, readable_unit, with_unit, words
+from talus_units import at_time, capital, clock, readable_unit, with_unit, words
 
 # coordinates, stress and state of points: sections and stress paths show them better; the clock of the loads says nothing as a curve
 ELSEWHERE = ("load_time", "x", "y", "z", "mean_pressure", "deviator", "mobilised_friction", "state", "displacement_x", "displacement_y", "displacement_z")
@@ -108,13 +108,16 @@ def plot_lines(axes, history, lines, unit, what, per, colour=None):
         axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8, handlelength=1.6)
 
 
-def time_axis(axes, last):
-    """Names the axis of time, and counts it in days for a run of days; curves are drawn over seconds."""
+def time_axis(axes, last, first=0.0):
+    """Names the axis of time, and counts it in days for a run of days; of its last seconds, from `first` on, in seconds since then. Curves are drawn over
+    seconds."""
     size, name = clock(last)
-    axes.set_xlabel(f"time [{name}]")
+    short = last - first < size
+    axes.set_xlabel(f"time since {at_time(first, last)} [s]" if short and size != 1 else f"time [{name}]")
     if size != 1:
-        axes.xaxis.set_major_locator(FixedLocator(size * MaxNLocator(8, steps=[1, 2, 5, 10]).tick_values(0, last / size)))
-        axes.xaxis.set_major_formatter(lambda time, _: f"{time / size:g}")
+        start, size = (first, 1.0) if short else (0.0, size)
+        axes.xaxis.set_major_locator(FixedLocator(start + size * MaxNLocator(8, steps=[1, 2, 5, 10]).tick_values((first - start) / size, (last - start) / size)))
+        axes.xaxis.set_major_formatter(lambda time, _: f"{(time - start) / size:g}")
 
 
 def mark_stages(axes, history, named):

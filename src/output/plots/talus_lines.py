@@ -8,7 +8,7 @@ import numpy as np
 import talus_style as style
 from talus_histories import time_axis
 from talus_measures import failure
-from talus_moments import last_reset
+from talus_moments import after, last_reset
 from talus_units import at_time, capital, readable_unit, with_unit, words
 
 COUNT = 6  # times that a picture shows
@@ -46,17 +46,16 @@ def dimensionless(results, times):
     return (times - begin) / (failed - begin)
 
 
-def chosen(line, times=None, reset=-np.inf):
+def chosen(line, times=None, reset=None):
     """Rows that are shown: those nearest to `times`, else first, last and some between, half by time and half by how far the line moved. Of a line whose
     displacement was reset at a time those after it."""
     if times:
         return sorted({int(np.abs(line.time - time).argmin()) for time in times})
-    after = np.flatnonzero(line.time > reset * (1 + 1e-9))
-    after = after if len(after) > 1 else np.arange(len(line.time))
-    time, moved = line.time[after], means(line)["displacement_m"][after]
+    later = after(reset, line.time)
+    time, moved = line.time[later], means(line)["displacement_m"][later]
     travel = np.concatenate([[0], np.abs(np.diff(moved)).cumsum()])
     pace = sum((part / part[-1] for part in (time - time[0], travel) if part[-1] > 0), np.zeros(len(time)))
-    return sorted({int(after[np.abs(pace - share).argmin()]) for share in np.linspace(0, pace[-1], COUNT)})
+    return sorted({int(later[np.abs(pace - share).argmin()]) for share in np.linspace(0, pace[-1], COUNT)})
 
 
 def under_stress(line, rows):
@@ -93,8 +92,8 @@ def write_means(results, line, path):
 
 
 def draw_line(results, line, path, times):
-    reset = last_reset(results)
-    rows = chosen(line, times, reset[0] if reset else -np.inf)
+    reset = None if times else last_reset(results)
+    rows = chosen(line, times, reset)
     frictional = "mobilised_friction_deg" in line.columns and np.isfinite(line.columns["mobilised_friction_deg"]).any()
     figure, axes = plt.subplots(1, 3 if frictional else 1, figsize=(13.2 if frictional else 6.0, 4.3), squeeze=False, layout="constrained")
     moved, start = line.moved(), [line.columns[f"{axis}_m"][0] for axis in "xyz" if f"{axis}_m" in line.columns]
@@ -118,7 +117,7 @@ def draw_line(results, line, path, times):
     if frictional:
         name(axes[0, 1], along, "mobilised friction angle [deg]", upright)
         axes[0, 1].set_title("white elastic, yellow peak, orange softening, red residual", loc="left", fontsize=7.5, color=style.SOFT)
-        draw_mean(results, line, axes[0, 2])
+        draw_mean(results, line, axes[0, 2], after(reset, line.time))
     style.headline(figure, capital(words(line.name)), results.title)
     return style.save(figure, path)
 
@@ -139,11 +138,11 @@ def name(axes, along, what, upright):
     axes.set(xlabel=what, ylabel=along) if upright else axes.set(xlabel=along, ylabel=what)
 
 
-def draw_mean(results, line, axes):
-    """Average mobilised friction over time, with t* above it where something failed."""
+def draw_mean(results, line, axes, rows):
+    """Average mobilised friction over the times of these rows, with t* above it where something failed."""
     relative = dimensionless(results, line.time)
-    axes.plot(line.time, means(line)["mean_mobilised_friction_deg"], color=style.ACCENT, lw=1.4)
-    time_axis(axes, line.time[-1])
+    axes.plot(line.time[rows], means(line)["mean_mobilised_friction_deg"][rows], color=style.ACCENT, lw=1.4)
+    time_axis(axes, line.time[-1], line.time[rows[0]] if rows[0] else 0.0)
     axes.set(ylabel="mean mobilised friction angle [deg]")
     axes.set_ylim(bottom=0)
     if relative is not None:

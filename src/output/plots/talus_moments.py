@@ -59,6 +59,12 @@ def last_reset(results):
     return (ends[-1].time, ends[-1].stage) if ends else None
 
 
+def after(reset, times):
+    """Numbers of those of the times that come after the reset that last_reset has found; of all of them without a reset, or where fewer than two do."""
+    later = np.flatnonzero(times > reset[0] * (1 + 1e-9)) if reset else []
+    return later if len(later) > 1 else np.arange(len(times))
+
+
 def since_reset(results, snapshots, field):
     """The snapshots; of a field that is set to 0 at the end of a stage the start and some after the last reset, so that the settlement under gravity does
     not hide what the slope does then. With the name of this stage, empty without a reset."""

@@ -327,11 +327,37 @@ class Resets(unittest.TestCase):
         line = types.SimpleNamespace(time=np.arange(7.0), stage=["start", "gravity", "gravity", "gravity", "rain", "rain", "rain"])
         line.columns = {"displacement_m": np.arange(7.0)[:, None], "mobilised_friction_deg": np.arange(7.0)[:, None]}
         with unittest.mock.patch("talus_lines.means", lambda line: {"displacement_m": line.columns["displacement_m"][:, 0]}):
-            self.assertEqual(talus_lines.chosen(line, reset=3.0), [4, 5, 6])
+            self.assertEqual(talus_lines.chosen(line, reset=(3.0, "gravity")), [4, 5, 6])
             self.assertEqual(talus_lines.chosen(line)[0], 0)
         self.assertEqual(talus_lines.under_stress(line, [0, 2, 3, 6]), [3, 6])
         line.stage = ["start"] + 6 * ["slide"]
         self.assertEqual(talus_lines.under_stress(line, [0, 3, 6]), [3, 6])
+
+
+    def test_are_where_every_panel_of_a_line_begins(self):
+        """Of a line of 12 days that was reset after 5 days, and of one of 10 days and 20 s that was reset after 10 days."""
+        for day, label, ticks in ((86400.0, "time [d]", ["6", "7", "8", "9", "10", "11", "12"]), (5.0, "time since t = 10.0 d [s]", ["0", "2", "4", "6", "8", "10", "12", "14"])):
+            time = np.concatenate([np.arange(7) * 86400.0, 10 * 86400.0 + np.arange(5) * day]) if day == 5 else np.arange(13) * day
+            reset = 5 if day > 5 else 7
+            ones = np.ones((len(time), 4))
+            columns = {name: ones * np.arange(4) for name in ("x_m", "y_m", "distance_m")} | {name: ones * time[:, None] for name in
+                       ("displacement_m", "displacement_x_m", "displacement_y_m", "mobilised_friction_deg")} | {"state": 0 * ones}
+            line = types.SimpleNamespace(name="inclinometer", time=time, columns=columns, stage=["gravity"] * (reset + 1) + ["rain"] * (len(time) - reset - 1))
+            line.moved, seen = lambda: np.stack([ones, ones], axis=2), []
+            type_of = type("Line", (types.SimpleNamespace,), {"__getitem__": lambda self, name: self.columns[name]})
+            line = type_of(**vars(line))
+            snapshots = [types.SimpleNamespace(time=at, stage=stage) for at, stage in zip(time, line.stage)]
+            results = types.SimpleNamespace(snapshots=snapshots, title="", up_axis=lambda: 1, history=None, scene={"stage": [{"name": "gravity", "reset_displacement": True}, {"name": "rain"}]})
+            with unittest.mock.patch.object(talus_lines.style, "save", lambda figure, path: seen.append(figure)), \
+                    unittest.mock.patch("talus_lines.dimensionless", lambda results, times: None):
+                talus_lines.draw_line(results, line, "", None)
+            profile, _, mean = seen[0].axes
+            self.assertEqual(mean.lines[0].get_xdata()[0], time[reset + 1])
+            self.assertEqual(len(profile.lines), len(talus_lines.chosen(line, reset=(time[reset], "gravity"))))
+            seen[0].canvas.draw()
+            low, high = mean.get_xlim()
+            shown = [text.get_text() for at, text in zip(mean.get_xticks(), mean.get_xticklabels()) if low <= at <= high]
+            self.assertEqual((mean.get_xlabel(), shown), (label, ticks))
 
 
 class Factors(unittest.TestCase):
