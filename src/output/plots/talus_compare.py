@@ -7,7 +7,7 @@ import pathlib
 import re
 
 from talus_results import Results
-from talus_style import FAINT, INK, LINES, headline, np, plt, save
+from talus_style import FAINT, INK, LINES, few_log_ticks, headline, np, plt, save
 from talus_sweep import named
 from talus_table import lines_of
 from talus_units import with_unit
@@ -69,6 +69,7 @@ def draw(rows, reference, path, title=""):
         cost.axhspan(cost.get_ylim()[0] if cost.get_ylim()[0] > 0 else uncertainty / 10, uncertainty, color=FAINT, alpha=0.4, label="reference uncertain")
     cost.set(xscale=scale_of(float(r["processor_s"]) for r in rows), yscale=scale_of(float(r["error"]) for r in rows), xlabel="processor time [s]", ylabel="error of " + measure)
     cost.legend(fontsize=7.5)
+    few_log_ticks(*figure.axes)
     headline(figure, f"Error of {measure.partition(' [')[0]} against cost and refinement", title)
     save(figure, path)
 

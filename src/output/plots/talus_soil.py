@@ -4,8 +4,7 @@ import argparse
 import csv
 import pathlib
 
-from matplotlib.ticker import LogFormatter
-from talus_style import LINES, headline, np, plt, save
+from talus_style import LINES, few_log_ticks, headline, np, plt, save
 from talus_units import readable_unit, with_unit, words
 
 MOST = 1.6  # of the room that other tests need: more is not given to compression, which has a chart of its own
@@ -88,8 +87,7 @@ def draw(tests, title, path):
     if not has_void_ratio:
         widen(axes[1, 1].get_ylim, axes[1, 1].set_ylim, 0.01)
     axes[1, 0].invert_yaxis()
-    for formatter in (axes[1, 1].xaxis.set_major_formatter, axes[1, 1].xaxis.set_minor_formatter):
-        formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(2, 0.5)))
+    few_log_ticks(axes[1, 1])
     axes[0, 0].legend(fontsize=8)
     return save(figure, path)
 

@@ -19,7 +19,7 @@ import talus_style as style
 from talus_outcomes import FAILS, MOVES, STANDS, finite, warnings_in, write_json
 from talus_style import plt
 from talus_sweep import number, outcomes, plane, title_of, title_of_runs
-from talus_table import folded
+from talus_table import folded, lines_of
 from talus_units import with_unit, words
 
 NO_SLIDE = ("travel_distance_m", "volume_of_slide_m3", "depth_of_slide_m")  # 0 where the slope stands
@@ -108,6 +108,22 @@ def sensitivities(rows, variables, outcome):
         bars.append({"variable": variables[column]["name"], "unit": variables[column]["unit"], "quantiles": quantiles.tolist(), "low": float(fit[0] + fit[1 + k] * ends[0]), "high": float(fit[0] + fit[1 + k] * ends[1])})
     bars.sort(key=lambda bar: abs(bar["high"] - bar["low"]))
     return {"outcome": outcome, "runs": len(known), "mean": float(fit[0]), "r2": float(explained), "bars": bars}
+
+
+# ---- correlation ----
+
+def correlation_lines(pairs, width=None):
+    """Lines that compare the correlation of the sample with the one that was asked for, and sentences on pairs where they are far apart."""
+    if not pairs:
+        return []
+    samples = int(pairs[0]["samples"])
+    rows = [[" and ".join(pair["between"]), f"{pair['asked']:g}", f"{pair['sample']:.2g}"] for pair in pairs]
+    lines = [f"correlation of the normal scores of {samples} samples", *lines_of(["variables", "asked for", "in the sample"], rows, width=width)]
+    far = [" and ".join(pair["between"]) for pair in pairs if pair["far"]]
+    if far:
+        lines.append(folded(f"warning: the sample's correlation of {'; '.join(far)} is farther from the asked one than two standard deviations of chance, about "
+                            f"{2 / math.sqrt(samples):.2g} for weak correlations, which one sample in twenty is: take more samples or another seed", width))
+    return lines
 
 
 # ---- pictures ----
@@ -206,6 +222,9 @@ def main():
         print(folded(f"the slope fails in {states.count(FAILS)} runs, moves by less than a cell in {states.count(MOVES)}, stands in {states.count(STANDS)}"))
     variables, criteria = design["variables"], design["criteria"]
     sampled = any(v["random"] for v in variables)
+    pairs = design.get("correlations", [])
+    if pairs:
+        print("\n".join(correlation_lines(pairs)))
     estimates = [probability(rows, c, design["confidence"]) for c in criteria] if rows and sampled else []
     for p in estimates:
         side = "below" if "below" in p else "above"
@@ -219,7 +238,7 @@ def main():
             print(folded(f"{measure} has no value in {len(without)} runs, first in run {without[0]}: they ended before that time without coming to rest, or the "
                          "point had no soil"))
     write_json(given.folder / "study.json", {"title": design["title"], "runs": len(rows), "planned": design["planned"], "broke_off": len(broken),
-                                             "warnings": warnings_in(given.folder), "probabilities": estimates, "sensitivities": fits})
+                                             "warnings": warnings_in(given.folder), "correlations": pairs, "probabilities": estimates, "sensitivities": fits})
     title = design["title"] or title_of_runs(given.folder, runs)
     for name, wanted, draw in (("tornado", fits, lambda path: draw_tornado(fits, in_plane, path, title)),
                                ("scatter", shown, lambda path: draw_scatter(rows, variables, shown, criteria, in_plane, path, title)),

@@ -10,6 +10,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap, ListedColormap
+from matplotlib.ticker import FuncFormatter, Locator, NullFormatter
 
 INK, SOFT, FAINT, ACCENT = "#1f2933", "#616e7c", "#cbd2d9", "#0b7285"
 LINES = ("#0b7285", "#d9480f", "#5f3dc4", "#2b8a3e", "#c2255c", "#e67700", "#1864ab", "#495057")
@@ -46,6 +47,44 @@ SYMBOL = {"displacement": "|u|", "velocity": "|v|", "thickness": "h", "plastic_s
 
 def colours_of(field, signed=False):
     return SIGNED.get(field, BOTH) if signed else MAPS.get(field, plt.get_cmap("cividis"))
+
+
+class LogTicks(Locator):
+    """Few ticks of a logarithmic axis, whose labels keep apart: round numbers as far as `most` of them have room, else whole decades."""
+
+    STEPS = ((1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9), (1, 1.5, 2, 3, 5, 7), (1, 2, 5), (1, 3), (1,))
+
+    def __init__(self, most):
+        self.most = most
+
+    def __call__(self):
+        return self.tick_values(*sorted(self.axis.get_view_interval()))
+
+    def tick_values(self, low, high):
+        decades = np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
+        for steps in self.STEPS:
+            ticks = [float(f"{step}e{int(k)}") for k in decades for step in steps]
+            ticks = [tick for tick in ticks if low * (1 - 1e-9) <= tick <= high * (1 + 1e-9)]
+            if len(ticks) <= self.most:
+                return np.array(ticks)
+        return np.array(ticks[:: -(-len(ticks) // self.most)])
+
+
+def log_number(value, _=None):
+    """0.002, 50, 2×10⁻⁴"""
+    if 1e-3 <= value < 1e5:
+        return f"{value:g}"
+    digits, _, power = f"{value:.6e}".partition("e")
+    raised = "10" + str(int(power)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+    return raised if float(digits) == 1 else f"{float(digits):g}×{raised}"
+
+
+def few_log_ticks(*charts):
+    """Labels of the logarithmic axes of these charts that do not overlap."""
+    for axis, most in ((axis, most) for axes in charts for axis, most in ((axes.xaxis, 5), (axes.yaxis, 6)) if axis.get_scale() == "log"):
+        axis.set_major_locator(LogTicks(most))
+        axis.set_major_formatter(FuncFormatter(log_number))
+        axis.set_minor_formatter(NullFormatter())
 
 
 def headline(figure, text, title):

@@ -148,6 +148,7 @@ def draw_charts(axes, rows, charts):
         one.set_ylim(min(0, low), high + 0.06 * (high - min(0, low)))
         if numeric and min(place) > 0 and max(place) > 20 * min(place):
             one.set_xscale("log")
+            style.few_log_ticks(one)
         if not numeric:
             one.set_xticks(range(len(choices)), [textwrap.fill(choice, 14) for choice in choices])
 

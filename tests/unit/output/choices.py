@@ -712,6 +712,37 @@ class Charts(unittest.TestCase):
         labels = self.labels(talus_compare, lambda: talus_compare.draw(rows, {"uncertainty": "0", "value": "1", "measure": "way"}, ""))
         self.assertEqual([x for x, _ in labels], ["processor time [s]", *2 * ["integrator.fraction"], *2 * ["integrator.velocity_tolerance [m/s]"]])
 
+    def test_correlations_of_a_sample_stand_beside_the_asked_ones(self):
+        pairs = [{"between": ["c", "phi"], "asked": -0.5, "sample": -0.5421, "samples": 50, "far": False}]
+        self.assertEqual([line.split() for line in talus_study.correlation_lines(pairs, 100)[-1:]], [["c", "and", "phi", "-0.5", "-0.54"]])
+        pairs.append({"between": ["c", "E"], "asked": 0.0, "sample": 0.4, "samples": 50, "far": True})
+        said = " ".join(talus_study.correlation_lines(pairs, 100)).split("warning: ")[1]
+        self.assertTrue(said.startswith("the sample's correlation of c and E is farther from the asked one"), said)
+        self.assertIn("about 0.28 for weak", " ".join(said.split()))
+        self.assertEqual(talus_study.correlation_lines([]), [])
+
+    def test_labels_of_logarithmic_axes_are_few_and_keep_apart(self):
+        for low, high in ((0.1, 1.1), (2e-4, 3e-3), (0.021, 0.048), (1, 1e3), (1e-9, 1e4), (7e4, 2e6)):
+            rows = [{"series": "euler", "key": "integrator.fraction", "unit": "", "parameter": value, "value": 1 + value, "error": value, "processor_s": value, "pareto": "0", "failure": ""}
+                    for value in np.geomspace(low, high, 4)]
+            seen = []
+            with unittest.mock.patch.object(talus_compare, "save", lambda figure, path: seen.append(figure)), \
+                    unittest.mock.patch.object(talus_compare, "scale_of", lambda values: "log"):
+                talus_compare.draw(rows, {"uncertainty": "0", "value": "1", "measure": "way"}, "")
+            seen[0].canvas.draw()
+            for axes in seen[0].axes:
+                for axis, name in ((axes.xaxis, "x"), (axes.yaxis, "y")):
+                    if axis.get_scale() != "log":
+                        continue
+                    low_end, high_end = axis.get_view_interval()
+                    labels = [label for tick in (*axis.get_major_ticks(), *axis.get_minor_ticks()) for label in (tick.label1,)
+                              if label.get_text() and low_end <= tick.get_loc() <= high_end]
+                    self.assertTrue(2 <= len(labels) <= 6, (low, high, [label.get_text() for label in labels]))
+                    boxes = sorted(((box.x0, box.x1) if name == "x" else (box.y0, box.y1) for box in (label.get_window_extent() for label in labels)))
+                    self.assertTrue(all(one[1] < other[0] for one, other in zip(boxes, boxes[1:])), (low, high, name, [label.get_text() for label in labels]))
+            talus_sweep.plt.close(seen[0])
+        self.assertEqual([talus_sweep.style.log_number(value) for value in (2e-4, 1e-5, 0.002, 50, 3e5)], ["2×10⁻⁴", "10⁻⁵", "0.002", "50", "3×10⁵"])
+
     def test_bars_of_a_tornado_say_their_values(self):
         fit = {"outcome": "travel_distance_m", "runs": 40, "mean": 5.0, "r2": 1.0, "bars": [{"variable": "friction", "unit": "deg", "quantiles": [20.5, 27.5], "low": 4.0, "high": 6.0}]}
         seen = []
