@@ -115,10 +115,11 @@ void Recorder<dim>::append(std::unique_ptr<ResultsFolder> folder) {
 }
 
 template <int dim>
-void Recorder<dim>::close() {
+void Recorder<dim>::close(const std::string &last_words) {
   if (!results_) return;
   note_steps();
   note_sharing();
+  if (!last_words.empty()) note(last_words);
   results_->progress.finish();
   if (!options_.pictures) return;
   int rank, drawn = 1;

@@ -42,8 +42,9 @@ class Recorder {
   /// Opens the files of a new run, or those of the run that was read from a checkpoint.
   void open();
   void append(std::unique_ptr<ResultsFolder> folder);
-  /// Ends the files and draws the pictures. Throws RunError if these cannot be drawn.
-  void close();
+  /// Ends the files, with `last_words` in the log unless they are empty, and draws the pictures. Throws RunError if
+  /// these cannot be drawn.
+  void close(const std::string &last_words = "");
   bool writes() const { return results_ != nullptr; }  ///< files, not only the table in memory
 
   void begin_stage(const Stage &stage);  ///< one of the scene

@@ -53,6 +53,7 @@ struct Run {
   Recorder<dim> recorder;
   StageProgress progress;
   std::unique_ptr<StopCriterion<dim>> stop;  ///< of the present stage
+  std::string motion_left;                   ///< at the end of the last stage; empty where soil is at rest
   std::vector<std::string> start_notes;      ///< where the state at the start is from, if not from the scene
 
  private:

@@ -24,7 +24,7 @@ void Simulation<dim>::run() {
     if (run_.options.resume && run_.clock.steps == before)
       run_.recorder.note("nothing was left to do: the run had reached its end before it was resumed");
   });
-  run_.recorder.close();
+  run_.recorder.close(run_.motion_left);
 }
 
 /// Free space is called "air", or "air_1" and so on between cuts; a region of another name that no body fills was

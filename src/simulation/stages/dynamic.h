@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "simulation/stages/stage_runner.h"
+#include "simulation/still_moving.h"
 
 namespace talus {
 
@@ -75,7 +76,17 @@ class DynamicStage final : public StageRunner<dim> {
     run_.recorder.write_history();
     run_.recorder.write_snapshot();
     run_.write_checkpoint();
+    if (run_.last_stage()) find_motion_left();  // before a reset sets it to zero
     if (stage_.reset_displacement) run_.reset_displacement();
+  }
+
+  void find_motion_left() {
+    const auto left = still_moving(run_.world.comm, run_.recorder.snapshot());
+    if (!left) return;
+    std::ostringstream text;
+    text << "the slide has not come to rest at t = " << run_.clock.time << " s: " << left->sentence()
+         << "; a longer duration of the stage " << stage_.name << " would show where it stops";
+    run_.motion_left = text.str();
   }
 
   void note_unmet() {

@@ -16,7 +16,7 @@ PROGRAM = sys.argv.pop()
 sys.path.insert(0, subprocess.run([PROGRAM, "--python-path"], check=True, capture_output=True, text=True).stdout.strip())
 from talus_outcomes import FAILS, MOVES, STANDS, state_of, write_json  # noqa: E402
 from talus_report import key_results  # noqa: E402
-from talus_results import Results  # noqa: E402
+from talus_results import SLOW, Results, sliding, still_moving  # noqa: E402
 from talus_study import UNKNOWN, state  # noqa: E402
 
 SECTION = """part,x,y
@@ -124,6 +124,23 @@ class Outcomes(unittest.TestCase):
             self.assertAlmostEqual(shown / float(row["largest_displacement_m"]), 1, delta=0.005)  # three digits
             self.assertAlmostEqual(float(cards["Sliding volume"][0].split()[0]), float(row["volume_of_slide_m3"]), delta=0.05)  # three digits
         self.assertIn("less than a cell of 0.77 m", cards_note(self.folder / "out/run00001"))
+
+    def test_a_slide_that_has_not_come_to_rest_is_one_for_log_screen_and_report(self):
+        ends = ["--set", "stage.slide.until=duration", "--set", "stage.slide.duration=3"]
+        for cohesion in ("2 kPa", "9 kPa"):
+            done = subprocess.run([PROGRAM, "run", "slope.toml", "-o", "moving", "--no-pictures", "--force", "--set", f"body.clay.cohesion={cohesion}", *ends],
+                                  capture_output=True, text=True, cwd=self.folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            results = Results(self.folder / "moving")
+            moving = still_moving(results.snapshots[-1], results.snapshots[-1].ids()[sliding(results.snapshots[-1])])
+            said, last = "the slide has not come to rest at t = 3 s: ", results.log_lines()[-2]
+            if cohesion == "9 kPa":
+                self.assertIsNone(moving)
+                self.assertNotIn(said, done.stderr)
+                continue
+            self.assertGreater(moving[0], 0.1)
+            self.assertIn(f"{said}{100 * moving[0]:.3g} % of what slid is faster than {SLOW:g} m/s, at up to {moving[1]:.3g} m/s; ", last)
+            self.assertIn(last.partition("  ")[2], done.stderr.splitlines()[-3:])
 
     def test_compare_says_the_same(self):
         printed = self.call("compare", "slope.toml", "-o", "compared", "-j", "2", "--no-plot", "--series", "strength: body.clay.cohesion=5 kPa,9 kPa")
