@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
+#include <map>
 
 #include "commands/commands.h"
 #include "commands/comparison.h"
@@ -11,7 +12,6 @@
 #include "commands/trials.h"
 #include "output/csv.h"
 #include "output/script.h"
-#include "scene/quantity.h"
 #include "scene/reader.h"
 #include "scene/scene.h"
 
@@ -29,7 +29,9 @@ struct CompareArguments {
 
 /// One run of the matrix; its label is the name of its series.
 struct Variant : Trial {
-  double parameter = NAN;     ///< what is refined in the series: the value of its last list
+  std::string key;            ///< that the series refines, its last one; empty where it sets none
+  KeyValue setting;           ///< its value
+  double parameter = NAN;     ///< the number of that, if there is one
   bool is_reference = false;  ///< its value is the one that the others are compared with
   double value = NAN, error = NAN;
   long long steps = 0, evaluations = 0, rejections = 0;
@@ -42,10 +44,18 @@ std::vector<Variant> matrix(const CompareArguments &arguments) {
     for (const auto &overrides : products(series)) {
       Variant trial;
       trial.label = series.name, trial.overrides = overrides;
-      if (!series.lists.empty()) trial.parameter = number_of(overrides.back().substr(overrides.back().find('=') + 1));
+      if (!overrides.empty()) {
+        const size_t at = overrides.back().find('=');
+        trial.key = overrides.back().substr(0, at),
+        trial.setting = value_at(trial.key, overrides.back().substr(at + 1));
+      }
       trials.push_back(trial);
     }
   }
+  std::map<std::string, std::vector<KeyValue *>> settings;
+  for (Variant &trial : trials) settings[trial.key].push_back(&trial.setting);
+  for (const auto &[key, values] : settings) share_unit(key, values);
+  for (Variant &trial : trials) trial.parameter = number_of(trial.setting.text);
   if (!arguments.reference.empty()) {
     const Series series = parse_series(arguments.reference);
     const auto overrides = products(series);
@@ -96,25 +106,6 @@ Reference reference_of(const CompareArguments &arguments, const std::vector<Vari
   return best;
 }
 
-/// The key that a series refines: the last one; empty where it sets none.
-std::string last_key(const Variant &t) {
-  return t.overrides.empty() ? "" : t.overrides.back().substr(0, t.overrides.back().find('='));
-}
-
-/// A value of a series as tables have it: a number in the unit that was typed, else in that of its key; other values as
-/// they were typed.
-std::pair<std::string, std::string> value_and_unit(const std::string &override) {
-  const size_t at = override.find('=');
-  if (at == std::string::npos) return {};
-  const std::string key = override.substr(0, at), text = unquoted(override.substr(at + 1));
-  try {
-    const Quantity quantity = parse_quantity(text);
-    if (!quantity.plain) return {shortest(quantity.number), unit_behind(text)};
-  } catch (const std::invalid_argument &) {  // an expression, a list or a word
-  }
-  return {text, unit_of_key(key)};
-}
-
 void write_csv(const std::string &path, const std::vector<Variant> &trials) {
   std::ofstream file(path);
   file.precision(10);
@@ -124,11 +115,11 @@ void write_csv(const std::string &path, const std::vector<Variant> &trials) {
   for (const Variant &t : trials) {
     const bool beaten = std::any_of(trials.begin(), trials.end(),
                                     [&](const Variant &o) { return !o.failed && o.cpu < t.cpu && o.error < t.error; });
-    const std::string unit = t.overrides.empty() ? "" : value_and_unit(t.overrides.back()).second;
-    file << csv_field(t.label) << "," << csv_field(joined(t.overrides)) << "," << last_key(t) << "," << csv_field(unit)
-         << "," << t.parameter << "," << t.value << "," << t.error << "," << t.cpu << "," << t.wall << "," << t.steps
-         << "," << t.evaluations << "," << t.rejections << "," << (!t.failed && std::isfinite(t.error) && !beaten)
-         << "," << csv_field(t.cause) << "," << csv_field(warnings_of(t)) << "\n";
+    file << csv_field(t.label) << "," << csv_field(joined(t.overrides)) << "," << t.key << ","
+         << csv_field(t.setting.unit) << "," << t.parameter << "," << t.value << "," << t.error << "," << t.cpu << ","
+         << t.wall << "," << t.steps << "," << t.evaluations << "," << t.rejections << ","
+         << (!t.failed && std::isfinite(t.error) && !beaten) << "," << csv_field(t.cause) << ","
+         << csv_field(warnings_of(t)) << "\n";
   }
 }
 
@@ -145,10 +136,10 @@ int sweep(const CompareArguments &arguments, const std::vector<Variant> &trials)
   std::ofstream file(arguments.directory + "/runs.csv");
   file << "series,overrides,key,value,unit,folder,processor_s,wall_s,failure,warnings\n";
   for (const Variant &t : trials) {
-    const auto [value, unit] = value_and_unit(t.overrides.empty() ? "" : t.overrides.back());
-    file << csv_field(t.label) << "," << csv_field(joined(t.overrides)) << "," << last_key(t) << "," << csv_field(value)
-         << "," << csv_field(unit) << "," << fs::path(t.folder).filename().string() << "," << t.cpu << "," << t.wall
-         << "," << csv_field(t.cause) << "," << csv_field(warnings_of(t)) << "\n";
+    file << csv_field(t.label) << "," << csv_field(joined(t.overrides)) << "," << t.key << ","
+         << csv_field(t.setting.text) << "," << csv_field(t.setting.unit) << ","
+         << fs::path(t.folder).filename().string() << "," << t.cpu << "," << t.wall << "," << csv_field(t.cause) << ","
+         << csv_field(warnings_of(t)) << "\n";
   }
   if (!file.flush()) throw std::runtime_error("cannot write " + arguments.directory + "/runs.csv");
   const int status = tell(arguments, "talus_sweep.py");

@@ -129,11 +129,16 @@ class Study {
     }
   }
 
-  /// The triangle of the correlation matrix of the random variables.
-  void read_correlation() {
+  std::vector<std::string> random_names() const {
     std::vector<std::string> names;
     for (const Varying &v : variables_)
       if (v.random()) names.push_back(v.name);
+    return names;
+  }
+
+  /// The triangle of the correlation matrix of the random variables.
+  void read_correlation() {
+    const std::vector<std::string> names = random_names();
     std::vector<std::vector<double>> matrix(names.size(), std::vector<double>(names.size()));
     for (std::size_t i = 0; i < names.size(); ++i) matrix[i][i] = 1;
     for (std::size_t k = 0; k < file_.correlation.size(); ++k) {
@@ -151,7 +156,7 @@ class Study {
       if (matrix[at[0]][at[1]] != 0) root_.complain(path, "names two variables whose correlation is given before");
       matrix[at[0]][at[1]] = matrix[at[1]][at[0]] = one.coefficient;
     }
-    triangle_ = cholesky(matrix);
+    asked_ = matrix, triangle_ = cholesky(matrix);
     if (triangle_.empty() && !names.empty())
       root_.complain("correlation",
                      "is not possible: the correlation matrix is not positive definite; take "
@@ -215,6 +220,8 @@ class Study {
       std::vector<double> u;
       for (const auto &of_variable : coordinates) u.push_back(of_variable[s]);
       u = correlated(u, triangle_);
+      scores_.resize(u.size());
+      for (std::size_t i = 0; i < u.size(); ++i) scores_[i].push_back(normal_quantile(u[i]));
       for (const auto &cell : cells) add_variant(u, cell);
     }
   }
@@ -326,13 +333,38 @@ class Study {
     if (!file.flush()) throw std::runtime_error("cannot write " + directory_ + "/runs.csv");
   }
 
+  /// Asked and found correlation of the random variables: of the pairs that shall be correlated, and of others whose
+  /// sample is by chance. As JSON.
+  std::string correlations() const {
+    struct Pair {
+      std::size_t a, b;
+    };
+    const std::vector<std::string> names = random_names();
+    const std::size_t samples = scores_.empty() ? 0 : scores_.front().size();
+    const auto found = [&](const Pair &p) { return correlation(scores_[p.a], scores_[p.b]); };
+    const auto far = [&](const Pair &p) { return far_from(found(p), asked_[p.a][p.b], samples); };
+    std::vector<Pair> pairs;
+    for (std::size_t b = 0; samples > 1 && b < names.size(); ++b)
+      for (std::size_t a = 0; a < b; ++a)
+        if (asked_[a][b] != 0 || far({a, b})) pairs.push_back({a, b});
+    return json::array(pairs, [&](const Pair &p) {
+      return json::Object()
+          .add("between", json::array(std::vector{names[p.a], names[p.b]}, json::text))
+          .add("asked", asked_[p.a][p.b])
+          .add("sample", found(p))
+          .add("samples", static_cast<double>(samples))
+          .add("far", far(p) ? "true" : "false")
+          .str();
+    });
+  }
+
   /// What the script needs to know of the study.
   void write_design() const {
     const auto variable = [](const Varying &v) {
       return json::Object()
           .add("name", json::text(v.name))
           .add("key", json::text(join(v.key)))
-          .add("unit", json::text(v.unit.empty() && v.numeric() ? unit_of_key(v.key.front()) : v.unit))
+          .add("unit", json::text(v.numeric() ? value_at(v.key.front(), "1 " + v.unit).unit : ""))
           .add("random", v.random() ? "true" : "false")
           .add("numeric", v.numeric() ? "true" : "false")
           .str();
@@ -351,6 +383,7 @@ class Study {
                                                       .add("confidence", file_.confidence)
                                                       .add("planned", static_cast<double>(variants_.size()))
                                                       .add("variables", json::array(variables_, variable))
+                                                      .add("correlations", correlations())
                                                       .add("measures", json::array(file_.measures, json::text))
                                                       .add("criteria", json::array(file_.criterion, criterion))
                                                       .str()
@@ -363,7 +396,8 @@ class Study {
   std::string scene_, directory_;
   std::vector<std::string> points_;
   std::vector<Varying> variables_;
-  std::vector<std::vector<double>> triangle_;
+  std::vector<std::vector<double>> asked_, triangle_;  ///< correlation of the random variables, and its triangle
+  std::vector<std::vector<double>> scores_;            ///< normal scores of each random variable in all samples
   std::vector<Variant> variants_;
 };
 

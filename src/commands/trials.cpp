@@ -268,6 +268,31 @@ std::string unit_of_key(const std::string &key) {
   return "";
 }
 
+KeyValue value_at(const std::string &key, const std::string &typed) {
+  const std::string text = unquoted(typed);
+  try {
+    const Quantity quantity = parse_quantity(text);
+    return {shortest(quantity.number), quantity.plain ? unit_of_key(key) : unit_behind(text), true};
+  } catch (const std::invalid_argument &) {  // an expression, a list or a word
+    return {text, unit_of_key(key)};
+  }
+}
+
+void share_unit(const std::string &key, const std::vector<KeyValue *> &values) {
+  for (KeyValue *value : values) {
+    const KeyValue &first = *values.front();
+    if (value->unit == first.unit) continue;
+    if (!value->number || !first.number || value->unit.empty() || first.unit.empty())
+      throw SceneError("the series give " + key + " the values " + first.text + " [" + first.unit + "] and " +
+                       value->text + " [" + value->unit +
+                       "], which cannot share an axis: write both as numbers, or both in the unit of the key");
+    const double factor = parse_quantity("1 " + value->unit).si / parse_quantity("1 " + first.unit).si;
+    char text[32];
+    std::snprintf(text, sizeof text, "%.10g", std::stod(value->text) * factor);  // without the round-off of the factor
+    value->text = text, value->unit = first.unit;
+  }
+}
+
 void end_with_starter() {
   const char *given = std::getenv(starter_variable);
   if (!given) return;

@@ -70,6 +70,18 @@ std::string warnings_of(const Trial &trial);
 /// Unit of a number without one at a key of a scene, such as body.clay.cohesion; empty where it has none.
 std::string unit_of_key(const std::string &key);
 
+/// A value of a key as tables and charts have it: a number in the unit that was typed, else in that of its key; an
+/// expression, a list or a word as it was typed.
+struct KeyValue {
+  std::string text, unit;
+  bool number = false;
+};
+KeyValue value_at(const std::string &key, const std::string &typed);
+
+/// Brings values of one key to the unit of the first of them, so that they may share an axis: "0.01 MPa" after "4 kPa"
+/// becomes 10 kPa. Throws SceneError where one of them is no number and has another unit.
+void share_unit(const std::string &key, const std::vector<KeyValue *> &values);
+
 /// To be called first by every program: a run that run_trials has started ends by SIGTERM when the program that started
 /// it is gone, even killed. Programs that the run starts itself are not concerned.
 void end_with_starter();

@@ -124,6 +124,8 @@ TEST_F(Compare, RefusesWhatItCannotRun) {
         {{"--series", "euler:", "--series", "law: body.sand.frictoin_angle=30"}, "body.sand.frictoin_angle"},
         {{"--series", "euler:", "--series", "base: boundary.base.frictoin_angle=30"}, "boundary.base.frictoin_angle"},
         {{"--series", "order: integrator.kind=arkode; integrator.order=3,9"}, "2 to 5"},
+        {{"--series", "stiff: body.sand.young_modulus=1 MPa", "--series", "x: body.sand.young_modulus=stiff"},
+         "the values 1 [MPa] and stiff [Pa], which cannot share an axis"},
         {{"--series", "euler:", "--exact", "one"}, "must be a number"},
         {{"--series", "euler:", "--exact", "1", "--reference", "fem: stage.fall.kind=quasi_static"},
          "give one of them"},
@@ -166,13 +168,17 @@ TEST_F(Compare, ChartsOutcomesAgainstAKey) {
   EXPECT_GT(number(rows[1], "largest_displacement_m"), number(rows[0], "largest_displacement_m"));
   EXPECT_GT(number(rows[1], "corner_largest_speed_m_s"), 0.4);
   const Ending typed = Program(folder_, talus_words({"compare", "scene.toml", "-o", "typed", "--no-plot", "--series",
-                                                     "stiff: body.sand.young_modulus=1 MPa,2 MPa"}))
+                                                     "stiff: body.sand.young_modulus=1 MPa,2 MPa", "--series",
+                                                     "soft: body.sand.young_modulus=700 kPa", "--series",
+                                                     "plain: body.sand.young_modulus=8e5"}))
                            .end();
   EXPECT_EQ(typed.status, 0) << typed.output;
   const auto with_unit = csv_table(folder_ / "typed/sweep.csv");
-  ASSERT_EQ(with_unit.size(), 2u);
+  ASSERT_EQ(with_unit.size(), 4u);
   EXPECT_EQ(with_unit[1].at("value"), "2") << "a number in the unit that was typed";
-  EXPECT_EQ(with_unit[1].at("unit"), "MPa");
+  for (const Row &row : with_unit) EXPECT_EQ(row.at("unit"), "MPa") << "series on one axis have one unit";
+  EXPECT_EQ(with_unit[2].at("value"), "0.7");
+  EXPECT_EQ(with_unit[3].at("value"), "0.8") << "of a number without a unit, which is that of the key";
   EXPECT_TRUE(sweep({"--no-plot"}).says("2 of 2 runs were completed before")) << "goes on where it was stopped";
   EXPECT_TRUE(sweep({"--exact", "1"}).says("--exact and --reference belong to a --measure"));
   // other values are not taken for them, and replace them only when that is asked for

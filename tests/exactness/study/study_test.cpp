@@ -70,6 +70,8 @@ TEST_F(Study, RunsSamplesOverAGrid) {
     EXPECT_GT(std::stod(rows[i].at("max:corner_velocity_m_s")), i % 2 ? 0.4 : -1e-9);
   }
   EXPECT_TRUE(ending.says("in 6 of 12 runs, probability 0.5, 95 % interval 0.2109 to 0.7891")) << ending.output;
+  EXPECT_TRUE(ending.says("correlation of the normal scores of 6 samples")) << ending.output;
+  EXPECT_TRUE(ending.says("modulus and density    0.5    0.68")) << ending.output;
   for (const char *picture : {"tornado.png", "scatter.png", "exceedance.png"})
     EXPECT_TRUE(std::filesystem::exists(folder_ / ("out/" + std::string(picture)))) << picture;
 }
