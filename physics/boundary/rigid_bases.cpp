@@ -152,7 +152,8 @@ size_t RigidBases<dim>::last_at_node(size_t first) const {
 
 /// All that acts on the vector of a node takes its turn there, the contact that it presses on most before the others,
 /// so that one contact that holds the node alone leaves nothing to them: which of them is the first in a list must not
-/// matter. `at_contact(c, others)` and `at_support(p, others)` return what they leave of `others`.
+/// matter. `at_contact(c, into, others)`, where `into` is the part of `others` into the base, changes `others` and says
+/// whether the base also takes what draws off it, besides what presses on it; `at_support(p, others)` changes `others`.
 template <int dim>
 template <class AtContact, class AtSupport>
 void RigidBases<dim>::take_turns_at_nodes(PrescribedMotion<dim> &prescribed, Vec<dim> *vectors,
@@ -167,7 +168,16 @@ void RigidBases<dim>::take_turns_at_nodes(PrescribedMotion<dim> &prescribed, Vec
     const auto most = std::max_element(&active_[first], &active_[first] + contacts, presses_less) - &active_[first];
     const auto *support = prescribed.find(node);
     take_turns_(contacts + (support != nullptr), static_cast<int>(most), v, [&](int k, const Vec<dim> &others) {
-      return k < contacts ? at_contact(active_[first + k], others) : at_support(*support, others);
+      Vec<dim> left = others;
+      if (k == contacts) {
+        at_support(*support, left);
+        return left;
+      }
+      const Vec<dim> &n = active_[first + k].contact->normal;
+      const double into = dot<dim>(left, n);
+      const bool holds = at_contact(active_[first + k], into, left);
+      if (into > 0 || holds) add_scaled<dim>(left, -dot<dim>(left, n), n);
+      return left;
     });
   }
 }
@@ -178,17 +188,11 @@ void RigidBases<dim>::constrain(double t, const FilledGrid<dim> &grid, Prescribe
   using Support = typename PrescribedMotion<dim>::Active;
   take_turns_at_nodes(
       prescribed, v,
-      [&](const Active &c, Vec<dim> after) {
-        const Vec<dim> &n = c.contact->normal;
-        const double into = dot<dim>(after, n);
-        if (sticking && c.sticks) after = {}, add_scaled<dim>(after, into, n);
-        if (into > 0 || (sticking && c.presses)) add_scaled<dim>(after, -dot<dim>(after, n), n);
-        return after;
+      [&](const Active &c, double into, Vec<dim> &left) {
+        if (sticking && c.sticks) left = {}, add_scaled<dim>(left, into, c.contact->normal);
+        return sticking && c.presses;
       },
-      [&](const Support &p, Vec<dim> after) {
-        prescribed.impose(p, t, grid.position[p.node], after);
-        return after;
-      });
+      [&](const Support &p, Vec<dim> &left) { prescribed.impose(p, t, grid.position[p.node], left); });
 }
 
 template <int dim>
@@ -196,23 +200,18 @@ void RigidBases<dim>::project(PrescribedMotion<dim> &prescribed, const Vec<dim> 
   using Support = typename PrescribedMotion<dim>::Active;
   take_turns_at_nodes(
       prescribed, force,
-      [&](const Active &c, Vec<dim> after) {
+      [&](const Active &c, double into, Vec<dim> &left) {
         const Vec<dim> &n = c.contact->normal;
-        const double into = dot<dim>(after, n);
         Vec<dim> slip = v[c.node];
         add_scaled<dim>(slip, -dot<dim>(slip, n), n);
         const double speed = std::sqrt(dot<dim>(slip, slip));
         if (c.sticks)
-          after = {}, add_scaled<dim>(after, into, n);
+          left = {}, add_scaled<dim>(left, into, n);
         else if (speed > 0)
-          add_scaled<dim>(after, -c.force / speed, slip);
-        if (into > 0) add_scaled<dim>(after, -dot<dim>(after, n), n);
-        return after;
+          add_scaled<dim>(left, -c.force / speed, slip);
+        return false;
       },
-      [](const Support &p, Vec<dim> after) {
-        p.condition->take_from(after);
-        return after;
-      });
+      [](const Support &p, Vec<dim> &left) { p.condition->take_from(left); });
 }
 
 /// The velocity that contact `c` alone leaves of the velocity `before` of its node, theory (6.1).
