@@ -143,11 +143,14 @@ void print_costs(const Scene &scene, const Needs &n) {
     moves = true;
   }
   if (moves && !n.fixed_step)
-    line("", "steps at the size of the first one; soil that comes into smaller cells, or deforms them, takes more");
+    line("",
+         "steps: the fewest in that time, all as long as the first one; soil that comes into smaller cells, or deforms "
+         "them, takes shorter ones%s",
+         scene.dimension == 3 ? ", slides over terrain a fifth to a third more of them" : "");
   if (n.burst_steps)
     line("run time",
-         "about %s to %s on %d rank%s: an estimate from %d steps of %s each with soil at rest, and of %s with a remap, "
-         "which fast soil has in each step; the mesh, files and pictures come on top",
+         "about %s to %s on %d rank%s for these steps: an estimate from %d steps of %s each with soil at rest, and of "
+         "%s with a remap, which fast soil has in each step; the mesh, files and pictures come on top",
          spoken(n.run_time()).c_str(), spoken(n.longest_run_time()).c_str(), n.ranks, n.ranks > 1 ? "s" : "",
          n.burst_steps, spoken(n.seconds_per_step).c_str(), spoken(n.seconds_per_remap).c_str());
 }

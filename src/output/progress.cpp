@@ -114,13 +114,14 @@ void Progress::tell(const std::string &line, double clock) {
   }
 }
 
-/// Rate and remaining time are those of the interval since the last line.
+/// Rate and remaining time are those of the interval since the last line. The rest may take less, where a stage ends
+/// before its duration, or more, where steps become shorter.
 std::string Progress::describe(double clock) const {
   const double elapsed = clock - printed_at_, advanced = now_.time - printed_.time;
   std::string line = state();
   if (!estimates_ || elapsed <= 0 || advanced <= 0) return line;
   line += "  " + short_number((now_.updates - printed_.updates) / elapsed) + " updates/s";
-  if (now_.time < total_) line += "  at most " + duration((total_ - now_.time) / advanced * elapsed) + " left";
+  if (now_.time < total_) line += "  at this rate " + duration((total_ - now_.time) / advanced * elapsed) + " left";
   return line;
 }
 

@@ -31,7 +31,7 @@ TEST(Check, KnowsParticlesMassAndLayer) {
   EXPECT_NEAR(number(ending, "volume_m3"), 0.5, 1e-12);
   const Ending page = talus(folder, {"check", "scene.toml"});
   EXPECT_TRUE(page.says("0.5 m3/m in cells of ")) << page.output;
-  EXPECT_TRUE(page.says("steps at the size of the first one")) << page.output;
+  EXPECT_TRUE(page.says("steps: the fewest in that time, all as long as the first one")) << page.output;
   EXPECT_NEAR(number(ending, "height_m"), 0.5, 1e-12);
   const double modulus = 1e6 * 0.7 / (1.3 * 0.4);  // E (1 - nu) / ((1 + nu) (1 - 2 nu))
   EXPECT_NEAR(number(ending, "gravity_strain"), 2000 * 9.81 * 0.5 / modulus, 1e-9);

@@ -49,7 +49,7 @@ TEST(Progress, tells_rate_and_remaining_time_now_and_then) {
   EXPECT_EQ(lines_of(said.screen), 8) << said.screen;  // at 2, 12, 22, 32, 42, 52 s; the note; the end
   EXPECT_NE(said.screen.find("slide  t = 1.211 of 1000 s  step 1211  "), std::string::npos) << said.screen;
   EXPECT_NE(said.screen.find("100 k updates/s"), std::string::npos) << said.screen;
-  EXPECT_NE(said.screen.find("at most 2 h 46 min left"), std::string::npos) << said.screen;
+  EXPECT_NE(said.screen.find("at this rate 2 h 46 min left"), std::string::npos) << said.screen;
   EXPECT_NE(said.screen.find("the slope failed\n"), std::string::npos);
   EXPECT_EQ(lines_of(said.log), 4) << said.log;  // the stage, at 2 s, the note, the end
   EXPECT_EQ(said.log.substr(said.log.find("the slope failed")).find("left"), std::string::npos)
