@@ -86,7 +86,7 @@ TEST(Progress, says_what_is_left_only_where_all_that_is_left_moves) {
   EXPECT_GT(lines_of(gravity), 2) << said;
   EXPECT_EQ(gravity.find("left"), std::string::npos) << said;
   EXPECT_EQ(gravity.find("updates"), std::string::npos) << said;
-  EXPECT_NE(slide.find("at most 8 min"), std::string::npos) << slide << "\n5 s for each of the 99 s, not of gravity";
+  EXPECT_NE(slide.find("at this rate 8 min"), std::string::npos) << slide << "\n5 s for each of the 99 s, not of gravity";
 }
 
 /// One equilibrium of a large model may take an hour.
