@@ -114,6 +114,8 @@ def draw_line(results, line, path, times):
     along = "elevation [m]" if upright else "distance along the line [m]"
     name(axes[0, 0], along, with_unit("level displacement" if upright else "displacement", unit), upright)
     axes[0, 0].legend(fontsize=7.5)
+    if reset and line.time[rows[0]] > reset[0]:
+        axes[0, 0].set_title(f"since the end of stage {reset[1]}", loc="left", fontsize=7.5, color=style.SOFT)
     if frictional:
         name(axes[0, 1], along, "mobilised friction angle [deg]", upright)
         axes[0, 1].set_title("white elastic, yellow peak, orange softening, red residual", loc="left", fontsize=7.5, color=style.SOFT)

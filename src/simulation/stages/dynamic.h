@@ -84,8 +84,14 @@ class DynamicStage final : public StageRunner<dim> {
     const auto left = still_moving(run_.world.comm, run_.recorder.snapshot());
     if (!left) return;
     std::ostringstream text;
-    text << "the slide has not come to rest at t = " << run_.clock.time << " s: " << left->sentence()
-         << "; a longer duration of the stage " << stage_.name << " would show where it stops";
+    text << "the slide has not come to rest at t = " << run_.clock.time << " s: " << left->sentence() << "; ";
+    if (!run_.progress.met)
+      text << "a longer duration of the stage " << stage_.name;
+    else if (stage_.until == StopWhen::rest)  // of all soil, most of which may stand
+      text << "the rms speed of all soil is below rest_speed, and a smaller rest_speed of the stage " << stage_.name;
+    else
+      text << "a further stage";
+    text << " would show where it stops";
     run_.motion_left = text.str();
   }
 

@@ -101,11 +101,15 @@ class Outcomes(unittest.TestCase):
         shutil.rmtree(cls.folder)
 
     @classmethod
-    def call(cls, *words):
+    def ended(cls, *words):
         done = subprocess.run([PROGRAM, *words], capture_output=True, text=True, cwd=cls.folder)
         if done.returncode:
             raise AssertionError(f"{words} ended with {done.returncode}: {done.stdout} {done.stderr}")
-        return done.stdout
+        return done
+
+    @classmethod
+    def call(cls, *words):
+        return cls.ended(*words).stdout
 
     def test_a_slide_of_less_than_a_cell_has_a_state_of_its_own(self):
         self.assertEqual([(row["state"], row["fails"]) for row in self.table], [("fails", "True"), ("moves", ""), ("stands", "False")])
@@ -140,7 +144,15 @@ class Outcomes(unittest.TestCase):
                 continue
             self.assertGreater(moving[0], 0.1)
             self.assertIn(f"{said}{100 * moving[0]:.3g} % of what slid is faster than {SLOW:g} m/s, at up to {moving[1]:.3g} m/s; ", last)
+            self.assertTrue(last.endswith("; a longer duration of the stage slide would show where it stops"), last)
             self.assertIn(last.partition("  ")[2], done.stderr.splitlines()[-3:])
+        # soil that stands lowers the speed below which a stage counts as at rest
+        stages = SCENE.replace('gravity_ramp = "1 s"\nuntil = "rest"', 'until = "rest"\nrest_speed = 0.3').replace(
+            "[[stage]]", '[[stage]]\nname = "begin"\nduration = "2 s"\ngravity_ramp = "1 s"\n[[stage]]')
+        (self.folder / "two.toml").write_text(stages)
+        done = self.ended("run", "two.toml", "-o", "moving", "--no-pictures", "--force", "--set", "body.clay.cohesion=2 kPa").stderr
+        self.assertIn("stage slide came to rest", done)
+        self.assertIn("the rms speed of all soil is below rest_speed, and a smaller rest_speed of the stage slide would show where it stops", done)
 
     def test_compare_says_the_same(self):
         printed = self.call("compare", "slope.toml", "-o", "compared", "-j", "2", "--no-plot", "--series", "strength: body.clay.cohesion=5 kPa,9 kPa")

@@ -353,6 +353,7 @@ class Resets(unittest.TestCase):
                 talus_lines.draw_line(results, line, "", None)
             profile, _, mean = seen[0].axes
             self.assertEqual(mean.lines[0].get_xdata()[0], time[reset + 1])
+            self.assertEqual(profile.get_title(loc="left"), "since the end of stage gravity")
             self.assertEqual(len(profile.lines), len(talus_lines.chosen(line, reset=(time[reset], "gravity"))))
             seen[0].canvas.draw()
             low, high = mean.get_xlim()
