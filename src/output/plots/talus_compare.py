@@ -42,11 +42,11 @@ def draw(rows, reference, path, title=""):
     grid = figure.add_gridspec(len(keys), 3)
     cost = figure.add_subplot(grid[:, 0])
     colours = {name: LINES[k % len(LINES)] for k, name in enumerate(dict.fromkeys(r["series"] for r in rows))}
-    around = np.median([float(r["value"]) for r in rows])
-    spread = 5 * np.median([abs(float(r["value"]) - around) for r in rows])
     for n, key in enumerate(keys):
         order, values = figure.add_subplot(grid[n, 1]), figure.add_subplot(grid[n, 2])
         mine = [r for r in rows if r["key"] == key]
+        around = np.median([float(r["value"]) for r in mine])
+        spread = 5 * np.median([abs(float(r["value"]) - around) for r in mine])
         for name in dict.fromkeys(r["series"] for r in mine):
             x, y, h, v = (np.array([float(r[c]) for r in mine if r["series"] == name]) for c in ("processor_s", "error", "parameter", "value"))
             seen = y > 0
@@ -65,9 +65,12 @@ def draw(rows, reference, path, title=""):
     best = [(x, y) for x, y in best if y > 0]
     if best:
         cost.step(*zip(*best), where="post", color=INK, linewidth=0.8, linestyle=":", label="Pareto front")
-    if np.isfinite(uncertainty) and uncertainty > 0:
-        cost.axhspan(cost.get_ylim()[0] if cost.get_ylim()[0] > 0 else uncertainty / 10, uncertainty, color=FAINT, alpha=0.4, label="reference uncertain")
     cost.set(xscale=scale_of(float(r["processor_s"]) for r in rows), yscale=scale_of(float(r["error"]) for r in rows), xlabel="processor time [s]", ylabel="error of " + measure)
+    if np.isfinite(uncertainty) and uncertainty > 0:  # as far down as the errors go
+        low, high = cost.get_ylim()
+        low, high = (min(low, uncertainty / 2), max(high, 1.2 * uncertainty)) if cost.get_yscale() == "log" else (min(low, 0), max(high, 1.2 * uncertainty))
+        cost.axhspan(low, uncertainty, color=FAINT, alpha=0.4, label="reference uncertain")
+        cost.set_ylim(low, high)
     cost.legend(fontsize=7.5)
     few_log_ticks(*figure.axes)
     headline(figure, f"Error of {measure.partition(' [')[0]} against cost and refinement", title)

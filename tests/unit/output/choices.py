@@ -722,6 +722,19 @@ class Charts(unittest.TestCase):
         self.assertIn("about 0.28 for weak", " ".join(said.split()))
         self.assertEqual(talus_study.correlation_lines([]), [])
 
+    def test_values_of_a_series_are_not_cut_off_by_another_one_that_scatters_less(self):
+        rows = [{"series": key, "key": key, "unit": "", "parameter": k + 1, "value": value, "error": abs(value - 2), "processor_s": k + 1, "pareto": "0", "failure": ""}
+                for key, values in (("fraction", (2.001, 2.002, 2.003, 2.004)), ("size", (1.9, 2.05, 2.1))) for k, value in enumerate(values)]
+        seen = []
+        with unittest.mock.patch.object(talus_compare, "save", lambda figure, path: seen.append(figure)):
+            talus_compare.draw(rows, {"uncertainty": "0.002", "value": "2", "measure": "way"}, "")
+        cost, _, _, _, sizes = seen[0].axes
+        low, high = sizes.get_ylim()
+        self.assertTrue(low < 1.9 and high > 2.1, (low, high))
+        low, high = cost.get_ylim()
+        self.assertTrue(0.0002 < low < 0.002, low)  # the uncertainty brings no empty decade
+        talus_sweep.plt.close(seen[0])
+
     def test_labels_of_logarithmic_axes_are_few_and_keep_apart(self):
         for low, high in ((0.1, 1.1), (2e-4, 3e-3), (0.021, 0.048), (1, 1e3), (1e-9, 1e4), (7e4, 2e6)):
             rows = [{"series": "euler", "key": "integrator.fraction", "unit": "", "parameter": value, "value": 1 + value, "error": value, "processor_s": value, "pareto": "0", "failure": ""}
