@@ -109,7 +109,8 @@ def draw_mechanism(results, factor, headline, path):
         axes.plot(*np.array(mechanism["slip_surface_m"]).T, color=style.INK if number == 1 else style.LINES[(number - 2) % len(style.LINES)],
                   lw=1.2, ls=(0, (4, 2)), label=label, path_effects=[Stroke(linewidth=3, foreground="white", alpha=0.7), Normal()])  # on a dark band
     axes.set_aspect("equal")
-    axes.set_xlabel("x [m]\narrows: the motion of the mechanism, whose size is free"), axes.set_ylabel("y [m]")
+    axes.set(xlabel="x [m]", ylabel="y [m]")
+    axes.set_title("arrows: the motion of the mechanism, whose size is free", loc="left", fontsize=7.5, color=style.SOFT)
     style.headline(figure, headline, results.title)
     axes.legend(loc="best")
     figure.colorbar(field, ax=axes, label=f"shear strain over its\n{100 * BRIGHT:.0f} % quantile", shrink=0.8, aspect=14)

@@ -808,6 +808,9 @@ class Mechanisms(unittest.TestCase):
         section = figure.axes[0].get_window_extent().transformed(figure.transFigure.inverted())
         self.assertLess(section.x0, 0.12)
         self.assertGreater(section.width, 0.7)
+        # below the axis a second line of words was cut off in a low section
+        self.assertEqual(figure.axes[0].get_xlabel(), "x [m]")
+        self.assertIn("whose size is free", figure.axes[0].get_title(loc="left"))
 
     def test_a_displacement_that_another_search_has_left_is_no_curve(self):
         def trial(factor, dilating, outcome, displacement):
