@@ -47,7 +47,9 @@ int width_of(std::FILE *screen) {
 std::string duration(double seconds) {
   const auto s = std::llround(seconds);
   char text[48];
-  if (s < 60)
+  if (s < 1)
+    std::snprintf(text, sizeof text, "less than 1 s");
+  else if (s < 60)
     std::snprintf(text, sizeof text, "%lld s", s);
   else if (s < 3600)
     std::snprintf(text, sizeof text, "%lld min %02lld s", s / 60, s % 60);

@@ -160,6 +160,7 @@ def slides(displacement, largest, spacing):
     return displacement > SLIDES * largest if largest > SMALL * spacing else np.zeros(len(displacement), bool)
 
 
+# the log decides it likewise: src/simulation/still_moving.h
 SLOW = 0.1  # speed that soil at rest does not have [m/s]
 RESTLESS = 0.01  # share of the mass that slid: where more of it is faster than SLOW, it has not come to rest
 

@@ -1,6 +1,7 @@
 """What the pictures of a run choose to show: argument 1 is the folder of the scripts."""
 
 import pathlib
+import re
 import sys
 import types
 import unittest
@@ -12,7 +13,9 @@ sys.path.insert(0, sys.argv.pop(1))
 import talus_compare  # noqa: E402
 import talus_factor  # noqa: E402
 import talus_lines  # noqa: E402
+import talus_outcomes  # noqa: E402
 import talus_plot  # noqa: E402
+import talus_results  # noqa: E402
 import talus_study  # noqa: E402
 import talus_soil  # noqa: E402
 import talus_sweep  # noqa: E402
@@ -261,6 +264,12 @@ class Motion(unittest.TestCase):
         self.assertEqual(self.moving(11), (0.011, 3.0))
         self.assertEqual(self.moving(10, of=100), (0.1, 3.0))  # of what slid
         self.assertIsNone(self.moving(1000, of=0))
+
+    def test_is_told_from_the_same_limits_by_the_program(self):
+        header = (pathlib.Path(talus_plot.__file__).parents[2] / "simulation/still_moving.h").read_text()
+        stated = {name: float(number) for name, number in re.findall(r"constexpr double (\w+) = ([\d.]+);", header)}
+        self.assertEqual(stated, {"slides_share": talus_results.SLIDES, "slides_least": talus_results.SMALL, "slow": talus_results.SLOW,
+                                  "restless": talus_results.RESTLESS, "nearly_all": talus_outcomes.SHARE})
 
     def test_is_told_by_the_report(self):
         last = Moving(np.full(1000, 11.4))

@@ -86,7 +86,18 @@ TEST(Progress, says_what_is_left_only_where_all_that_is_left_moves) {
   EXPECT_GT(lines_of(gravity), 2) << said;
   EXPECT_EQ(gravity.find("left"), std::string::npos) << said;
   EXPECT_EQ(gravity.find("updates"), std::string::npos) << said;
-  EXPECT_NE(slide.find("at this rate 8 min"), std::string::npos) << slide << "\n5 s for each of the 99 s, not of gravity";
+  EXPECT_NE(slide.find("at this rate 8 min"), std::string::npos)
+      << slide << "\n5 s for each of the 99 s, not of gravity";
+}
+
+TEST(Progress, says_that_little_is_left) {
+  const SharedFolder folder;
+  const std::string said = said_of(folder, 1, [](Progress &progress, double &now) {
+    progress.stage("slide");
+    for (int n = 1; n <= 95; ++n) now += 0.025, progress.step(0.01 * n, n, 1000);
+  });
+  if (world_rank()) return;
+  EXPECT_NE(said.find("at this rate less than 1 s left"), std::string::npos) << said;
 }
 
 /// One equilibrium of a large model may take an hour.
