@@ -58,6 +58,7 @@ STUDIES = {
               "E 10 MPa": both("young_modulus", "10 MPa"), "E 40 MPa": both("young_modulus", "40 MPa"),
               "table rises at half the rate": ["functions.h=[[0, 5.6], [5, 5.6], [75, 15]]"],
               "table rises at twice the rate": ["functions.h=[[0, 5.6], [5, 5.6], [22.5, 15]]"],
+              "grains of 3125 kg/m3, 1.2 m": [*both("grain_density", 3125), "mesh.size=1.2"],
               "slice of tetrahedra, 1 m": [*SLICE, "mesh.size=1", *both("particles_per_cell", 8)], "triangles, 1 m": ["mesh.size=1"]},
 }
 
