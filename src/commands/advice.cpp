@@ -32,6 +32,17 @@ bool unscaled(const Law &law) {
       law);
 }
 
+/// Peak friction angle less dilation angle of soil that softens [rad]; 0 for others.
+double flow_off_normal(const Law &law) {
+  return std::visit(
+      [](const auto &one) {
+        if constexpr (requires { one.softens(), one.friction_angle, one.dilation_angle; })
+          return one.softens() ? one.friction_angle - one.dilation_angle : 0.;
+        return 0.;
+      },
+      law);
+}
+
 class Adviser {
  public:
   Adviser(const Scene &scene, const Needs &needs) : scene_(scene), needs_(needs) {}
@@ -113,6 +124,14 @@ class Adviser {
           " m: the average hardly reaches the next cell, and the soil seems stronger than it is (with 20 m the rock of "
           "the gallery's vaiont stands in cells of 17 m, and fails in cells of 15 m and less); take cells of at most " +
           digits(largest) + " m.");
+    // Vaiont with 42 degrees scatters; Selborne's load at failure with 26 falls smoothly as cells get smaller
+    constexpr double far_off = 30 * degree.si;
+    if (flow_off_normal(b.law) > far_off)
+      say("Soil of " + b.body.name + " softens, and its friction angle exceeds its dilation angle by " +
+          digits(flow_off_normal(b.law) / degree.si) +
+          " degrees: a load at failure is then not unique and differs from mesh to mesh by some per cent of strength, "
+          "in fine cells as in coarse ones (the gallery's vaiont); repeat it with other cell sizes (`talus converge`), "
+          "or take the strength of Davis (1968) with a dilation angle equal to the friction angle.");
     if (b.averaging_length > 0) return;  // bands are wider than a cell, and cells do not snap back alone
     if (unscaled(b.law))
       say(b.body.name +

@@ -680,6 +680,19 @@ TEST(Check, KnowsTheSlipSurfaceThatSpreads) {
   EXPECT_EQ(number(check(folder, {}), "critical_slip_length_m"), 0);
 }
 
+TEST(Check, WarnsOfFlowFarFromTheNormal) {
+  const Folder folder;
+  const char *advice = "a load at failure is then not unique";
+  const auto with_angles = [&](const char *phi, const char *psi) {
+    return with(with(softening, std::string("body.sand.friction_angle=") + phi),
+                std::string("body.sand.dilation_angle=") + psi);
+  };
+  EXPECT_TRUE(check(folder, with_angles("36", "5")).says(advice));
+  EXPECT_TRUE(check(folder, with_angles("36", "5")).says("exceeds its dilation angle by 31 degrees"));
+  EXPECT_FALSE(check(folder, with_angles("34", "5")).says(advice));
+  EXPECT_FALSE(check(folder, {"body.sand.friction_angle=36"}).says(advice)) << "does not soften";
+}
+
 // the height is 0.5 m: a surface of 1.5 times that, 0.75 m, spreads at a shape factor of 475
 TEST(Check, WarnsOfBrittleSoftening) {
   const Folder folder;
