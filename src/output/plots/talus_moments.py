@@ -72,7 +72,11 @@ def since_reset(results, snapshots, field):
     later = [snapshot for snapshot in results.snapshots if reset and snapshot.time > reset[0] and len(snapshot.ids())]
     if not later:
         return snapshots, ""
-    return [snapshots[0], *chosen_snapshots(types.SimpleNamespace(snapshots=later), count=5)], reset[1]
+    chosen = lambda count: chosen_snapshots(types.SimpleNamespace(snapshots=later), count=count)
+    size = lambda snapshot: np.nanpercentile(np.abs(snapshot.scalar(field)[0]), 99)
+    first, *others = chosen(6)
+    nothing_yet = others and size(first) < SHADE * size(others[-1])  # as the start, which is shown
+    return [snapshots[0], *(others if nothing_yet else chosen(5))], reset[1]
 
 
 def telling(snapshots, field, colours, spacing):

@@ -317,7 +317,7 @@ class Resets(unittest.TestCase):
     def results(self, *stages):
         snapshots = [Snapshot(time, 0.1 * time) for time in range(len(stages))]
         for snapshot, stage in zip(snapshots, stages):
-            snapshot.stage = stage
+            snapshot.stage, snapshot.scalar = stage, lambda _, time=snapshot.time: (np.full(10, 1.0 + time), "m")
         scene = {"stage": [{"name": "gravity", "reset_displacement": True}, {"name": "rain"}]}
         return types.SimpleNamespace(snapshots=snapshots, scene=scene)
 
@@ -327,6 +327,14 @@ class Resets(unittest.TestCase):
         self.assertEqual(([one.time for one in shown], stage), ([0, 4, 5, 6], "gravity"))
         for field, other in (("displacement_x", [0, 4, 5, 6]), ("velocity", [0, 1, 2, 3, 4])):
             self.assertEqual([one.time for one in since_reset(results, results.snapshots[:5], field)[0]], other)
+
+    def test_are_followed_by_what_is_not_nothing_again(self):
+        results = self.results("start", "gravity", "gravity", *["rain"] * 12)
+        for snapshot in results.snapshots:
+            snapshot.scalar = lambda _, time=snapshot.time: (np.full(10, max(0.0, time - 3.0)), "m")  # the reset is at 2
+        shown, _ = since_reset(results, results.snapshots, "displacement")
+        self.assertEqual((len(shown), shown[0].time), (6, 0))
+        self.assertGreater(shown[1].time, 3)
 
     def test_at_the_end_of_a_run_show_nothing_else(self):
         results = self.results("start", "gravity", "gravity")
