@@ -783,6 +783,55 @@ class Charts(unittest.TestCase):
         self.assertEqual([text.get_text() for text in seen[0].legends[0].get_texts()], ["variable at the 10 % quantile of these runs", "at their 90 % quantile"])
         self.assertIn("fit to 40 runs", seen[0].axes[0].get_title(loc="right"))
 
+    VARIABLES = [{"name": "c", "unit": "kPa", "numeric": True, "random": True}, {"name": "rise", "unit": "m", "numeric": True, "random": False},
+                 {"name": "drain", "unit": "", "numeric": False, "random": False}]
+
+    def paired(self):
+        """Eight samples of a strength, each with two levels and two drains: soil slides at the upper level alone, in six of eight samples."""
+        rows = []
+        for c in range(8):
+            for rise in ("0", "3"):
+                for drain in ("shut", "open"):
+                    way = 10.0 - c if rise == "3" and c < 6 else 0.0
+                    rows.append({"c": str(c), "rise": rise, "drain": drain, "failure": "", "state": FAILS if way else STANDS, "fails": bool(way), "way": way})
+        return rows
+
+    def test_lists_and_choices_beside_distributions_have_a_probability_each(self):
+        cases = talus_study.cases_of(self.paired(), self.VARIABLES)
+        self.assertEqual([talus_study.case_text(case, self.VARIABLES) for case, _ in cases],
+                         ["rise = 0 m, drain = shut", "rise = 0 m, drain = open", "rise = 3 m, drain = shut", "rise = 3 m, drain = open"])
+        found = [talus_study.probability(rows, {"name": "slide", "outcome": "fails", "side": "above", "limit": 0.5}, 0.95) for _, rows in cases]
+        self.assertEqual([(p["met"], p["runs"]) for p in found], [(0, 8), (0, 8), (6, 8), (6, 8)])  # n is the number of samples
+        self.assertEqual(talus_study.cases_of(self.paired(), self.VARIABLES[:1]), [({}, self.paired())])
+        # without distributions a list is a variable of the fit, and a choice that is no number has a fit per value
+        listed = [v | {"random": False} for v in self.VARIABLES]
+        self.assertEqual([case for case, _ in talus_study.cases_of(self.paired(), listed)], [{"drain": "shut"}, {"drain": "open"}])
+
+    def test_pictures_of_a_study_have_a_curve_and_a_panel_per_case(self):
+        rows, seen = self.paired(), []
+        cases = talus_study.cases_of(rows, self.VARIABLES)
+        for k in range(4):
+            for row in rows:
+                row[f"other{k}"] = row["way"] + k
+        fits = talus_study.fits_of(cases, self.VARIABLES, ["way"])
+        self.assertEqual([bool(fit["bars"]) for fit in fits], [False, False, True, True])
+        self.assertEqual({len(fit["bars"]) for fit in fits if fit["bars"]}, {1})  # the strength: the others do not vary in a case
+        with unittest.mock.patch.object(talus_study.style, "save", lambda figure, path: seen.append(figure)):
+            talus_study.draw_tornado(fits, False, "", variables=self.VARIABLES)
+            talus_study.draw_exceedance(cases, self.VARIABLES, ["way", *(f"other{k}" for k in range(4))], [], 0.95, False, "")
+            talus_study.draw_scatter(rows, self.VARIABLES, ["way"], [], False, "")
+        tornado, exceedance, scatter = seen
+        self.assertEqual([axes.get_title(loc="right").split("\n")[0] for axes in tornado.axes], [talus_study.case_text(case, self.VARIABLES) for case, _ in cases])
+        self.assertEqual(len({axes.get_xlim() for axes in tornado.axes}), 1)
+        for axes in exceedance.axes:
+            self.assertEqual([line.get_label().rpartition(": ")[2] for line in axes.lines], ["8 runs"] * 4)
+        exceedance.canvas.draw()
+        self.assertEqual(len({round(axes.get_position().x0, 3) for axes in exceedance.axes}), 3)  # five panels, three in a row
+        self.assertLess(exceedance.get_figwidth(), 14)
+        self.assertEqual([text.get_text() for text in scatter.legends[0].get_texts()], [talus_study.case_text(case, self.VARIABLES) for case, _ in cases])
+        for figure in seen:
+            talus_study.plt.close(figure)
+
     def test_quantiles_of_a_tornado_are_of_the_runs_with_the_outcome(self):
         rows = [{"c": str(k), "factor_of_safety": float(k) if k > 10 else None} for k in range(1, 31)]
         fit = talus_study.sensitivities(rows, [{"name": "c", "unit": "Pa", "numeric": True}], "factor_of_safety")
