@@ -170,8 +170,11 @@ BackgroundMesh<dim> BackgroundMesh<dim>::read(MPI_Comm comm, const std::string &
   MeshPart<dim> all = part_of_file<dim>(source, complaint);
   agree(comm, complaint.empty() ? "" : file + ": " + complaint);
   const std::string remark = std::exchange(source.remark, "");
-  agree(comm, complaint_about_cells(file, all.cells, all.regions, Names::required));
-  if (rank == 0) mesh.remarks_ = mesh_remarks(all.cells, all.regions);
+  {
+    const CellTree<dim> tree(all.cells);
+    agree(comm, complaint_about_cells(file, all.cells, tree, all.regions, Names::required));
+    if (rank == 0) mesh.remarks_ = mesh_remarks(all.cells, tree, all.regions);
+  }
   if (!remark.empty()) mesh.remarks_.push_back(remark);
 
   const int size = patch_size<dim>(is_one_element_slice<dim>(comm, all.cells.position));
@@ -303,7 +306,8 @@ BackgroundMesh<dim> BackgroundMesh<dim>::adopt(DM plex) {
   HostPoints points;
   mesh.comm_ = Communicator(comm);
   require(part_of_plex(plex, part, points));
-  agree(comm, complaint_about_cells("the DMPlex of the host program", part.cells, part.regions, Names::optional));
+  agree(comm, complaint_about_cells("the DMPlex of the host program", part.cells, CellTree<dim>(part.cells),
+                                    part.regions, Names::optional));
 
   const int size = patch_size<dim>(is_one_element_slice<dim>(comm, part.cells.position));
   part.patch = make_patches<dim>(part.cells.node, part.cells.neighbour, part.regions.combination, size);
