@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "base/archive.h"
+#include "base/freed_memory.h"
 #include "base/local_numbers.h"
 #include "meshes/complaints.h"
 #include "meshes/gmsh_file.h"
@@ -207,8 +208,10 @@ BackgroundMesh<dim> BackgroundMesh<dim>::read(MPI_Comm comm, const std::string &
 template <int dim>
 PetscErrorCode BackgroundMesh<dim>::settle(MeshPart<dim> whole) {
   PetscFunctionBeginUser;
+  hand_back_freed_memory();  // of what was made to read and check the mesh
   if (!cuts_.empty()) whole = deal_out(comm(), whole, whole_->ranks_of_cells(cuts_));
   PetscCall(flatten(std::move(whole)));
+  hand_back_freed_memory();
   PetscFunctionReturn(0);
 }
 

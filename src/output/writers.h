@@ -30,27 +30,29 @@ class Writers {
     Messages sent(sent_.size());
     for (std::size_t r = 0; r < sent.size(); ++r) {
       sent[r].reserve(sent_[r].size() * bytes);
-      for (const std::size_t k : sent_[r]) sent[r].append(reinterpret_cast<const char *>(&values[k * row]), bytes);
+      for (const int k : sent_[r]) sent[r].append(reinterpret_cast<const char *>(&values[k * row]), bytes);
     }
     const Messages received = deliver(comm_, sent);
+    const auto rows_of = [&](int rank) {
+      return rank == rank_ ? reinterpret_cast<const char *>(values.data()) : received[rank].data();
+    };
     std::vector<T> collected(order_.size() * row);
     for (std::size_t k = 0; k < order_.size(); ++k)
-      std::memcpy(&collected[k * row], received[order_[k].rank].data() + order_[k].row * bytes, bytes);
+      std::memcpy(&collected[k * row], rows_of(order_[k].rank) + order_[k].row * bytes, bytes);
     return collected;
   }
 
  private:
   struct Origin {
     long long number;
-    int rank;
-    std::size_t row;  ///< of what this rank sent
+    int rank, row;  ///< of what that rank sent; of this rank, of all of its rows
   };
 
   MPI_Comm comm_;
-  int mine_ = -1;
+  int rank_, mine_ = -1;
   std::vector<long long> rows_;
-  std::vector<std::vector<std::size_t>> sent_;  ///< rows of this rank that go to each rank
-  std::vector<Origin> order_;                   ///< of what arrives, by number
+  std::vector<std::vector<int>> sent_;  ///< rows of this rank that go to each other rank
+  std::vector<Origin> order_;           ///< of the rows of this writer, by number
 };
 
 }  // namespace talus
