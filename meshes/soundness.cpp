@@ -80,10 +80,10 @@ struct Solid {
 
 /// Two simplices overlap where no axis parts them: normals of sides and, in 3D, of pairs of edges.
 template <int dim>
-bool overlap(const Solid<dim> &one, const Solid<dim> &other) {
-  const Corners<dim> &a = one.corner, &b = other.corner;
-  const double least = touch * std::min(one.longest, other.longest);
-  if (one.parted_by_side(b, least) || other.parted_by_side(a, least)) return false;
+bool overlap(const Solid<dim> &one, const Corners<dim> &b) {
+  const Corners<dim> &a = one.corner;
+  const double least = touch * std::min(one.longest, longest_edge<dim>(b));
+  if (one.parted_by_side(b, least) || Solid<dim>(b).parted_by_side(a, least)) return false;
   if constexpr (dim == 3)
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < i; ++j)
@@ -264,7 +264,7 @@ std::pair<int, int> overlapping_cells(const Simplices<dim> &cells, const CellTre
     const bool found = tree.any(box_around<dim>(solid.corner), [&](int candidate) {
       if (candidate == c || std::find(around.begin(), around.end(), candidate) != around.end()) return false;
       other = candidate;
-      return overlap<dim>(solid, Solid<dim>(cells.corners(candidate)));
+      return overlap<dim>(solid, cells.corners(candidate));
     });
     if (found) return {c, other};
   }
