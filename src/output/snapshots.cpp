@@ -184,10 +184,11 @@ void RunFile::write_mesh(MeshPicture local_mesh) {
     for (auto &corner : local_mesh.cell_node) corner = node[corner];
     const Writers of_nodes(comm_, node, count), of_cells(comm_, numbered_over_ranks(comm_, cells), count);
     writer = of_cells.mine();
-    tables.push_back({"node_position", dim, of_nodes.collect(local_mesh.position, dim), of_nodes.rows()});
-    tables.push_back({"cell_node", dim + 1, of_cells.collect(local_mesh.cell_node, dim + 1), of_cells.rows()});
-    local_mesh = MeshPicture();
+    tables.push_back({"node_position", dim, of_nodes.collect(std::move(local_mesh.position), dim), of_nodes.rows()});
+    tables.push_back(
+        {"cell_node", dim + 1, of_cells.collect(std::move(local_mesh.cell_node), dim + 1), of_cells.rows()});
   }
+  hand_back_freed_memory();
   on_first_rank(comm_, [&] { make_folder(dir_ + "/run"); });
   write_tables(comm_, path_of(mesh_file), writer, tables, [&](Hdf5Builder &file) {
     file.attribute("/", "dimension", static_cast<long long>(dim));

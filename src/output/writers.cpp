@@ -45,6 +45,9 @@ Writers::Writers(MPI_Comm comm, const std::vector<long long> &number, int count)
     for (std::size_t row = 0; row < arrived.size(); ++row) order_.push_back({arrived[row], r, static_cast<int>(row)});
   }
   std::sort(order_.begin(), order_.end(), [](const Origin &a, const Origin &b) { return a.number < b.number; });
+  stay_ = order_.size() == number.size();
+  for (int k = 0; stay_ && k < static_cast<int>(order_.size()); ++k)
+    stay_ = order_[k].rank == rank_ && order_[k].row == k;
 }
 
 }  // namespace talus

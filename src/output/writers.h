@@ -25,7 +25,7 @@ class Writers {
 
   /// The rows of this writer by increasing number, each of `row` values; none where this rank is no writer. Collective.
   template <class T>
-  std::vector<T> collect(const std::vector<T> &values, int row = 1) const {
+  std::vector<T> collect(std::vector<T> values, int row = 1) const {
     const std::size_t bytes = row * sizeof(T);
     Messages sent(sent_.size());
     for (std::size_t r = 0; r < sent.size(); ++r) {
@@ -33,6 +33,7 @@ class Writers {
       for (const int k : sent_[r]) sent[r].append(reinterpret_cast<const char *>(&values[k * row]), bytes);
     }
     const Messages received = deliver(comm_, sent);
+    if (stay_) return values;
     const auto rows_of = [&](int rank) {
       return rank == rank_ ? reinterpret_cast<const char *>(values.data()) : received[rank].data();
     };
@@ -53,6 +54,7 @@ class Writers {
   std::vector<long long> rows_;
   std::vector<std::vector<int>> sent_;  ///< rows of this rank that go to each other rank
   std::vector<Origin> order_;           ///< of the rows of this writer, by number
+  bool stay_ = true;                    ///< they are all rows of this rank, in their order
 };
 
 }  // namespace talus

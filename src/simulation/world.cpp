@@ -8,6 +8,7 @@
 #include <limits>
 #include <numeric>
 
+#include "base/freed_memory.h"
 #include "scene/reader.h"
 #include "solvers/quasi_static/pore_flow.h"
 
@@ -30,6 +31,7 @@ World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &m
   close_bases();                                 // from now on: soil has to be drawn inside
   set_loading(scene.stage.front(), 0, Clock{});  // under which the first state is gathered
   if (const std::string fault = function_fault(); !fault.empty()) throw SceneError(fault);
+  hand_back_freed_memory();
 }
 
 template <int dim>
