@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "base/archive.h"
+#include "base/freed_memory.h"
 #include "base/local_numbers.h"
 #include "meshes/complaints.h"
 #include "meshes/gmsh_file.h"
@@ -18,9 +19,11 @@
 
 namespace talus {
 
-/// What rank 0 keeps of a mesh, for new partitions and finite elements.
+/// What rank 0 keeps of a mesh: on one rank the cells that may have finite elements, on several all for new partitions.
 template <int dim>
 struct WholeMesh {
+  TakenCells with_elements;
+
   GmshMesh source;
   std::vector<char> has_elements;          ///< cells that may have finite elements
   std::vector<int> patch;                  ///< of cells
@@ -36,7 +39,15 @@ struct WholeMesh {
   std::vector<int> ranks_of_cells(const Cuts &cuts) const {
     const std::vector<int> rank_of_patch = ranks_by_cuts<dim>(centre, cuts);
     std::vector<int> rank;
+    rank.reserve(patch.size());
     for (const int p : patch) rank.push_back(rank_of_patch[p]);
+    return rank;
+  }
+  std::vector<int> ranks_of_element_cells(const Cuts &cuts) const {
+    const std::vector<int> all = ranks_of_cells(cuts);
+    std::vector<int> rank;
+    for (std::size_t c = 0; c < all.size(); ++c)
+      if (has_elements[c]) rank.push_back(all[c]);
     return rank;
   }
 };
@@ -170,18 +181,24 @@ BackgroundMesh<dim> BackgroundMesh<dim>::read(MPI_Comm comm, const std::string &
   MeshPart<dim> all = part_of_file<dim>(source, complaint);
   agree(comm, complaint.empty() ? "" : file + ": " + complaint);
   const std::string remark = std::exchange(source.remark, "");
-  agree(comm, complaint_about_cells(file, all.cells, all.regions, Names::required));
-  if (rank == 0) mesh.remarks_ = mesh_remarks(all.cells, all.regions);
+  {
+    const CellTree<dim> tree(all.cells);
+    agree(comm, complaint_about_cells(file, all.cells, tree, all.regions, Names::required));
+    if (rank == 0) mesh.remarks_ = mesh_remarks(all.cells, tree, all.regions);
+  }
   if (!remark.empty()) mesh.remarks_.push_back(remark);
 
   const int size = patch_size<dim>(is_one_element_slice<dim>(comm, all.cells.position));
   all.patch = make_patches<dim>(all.cells.node, all.cells.neighbour, all.regions.combination, size);
   const auto whole = std::make_shared<WholeMesh<dim>>();
-  whole->source = std::move(source), whole->has_elements = cells_with_elements(all.regions, region_weight);
   mesh.whole_ = whole;
   int ranks;
   MPI_Comm_size(comm, &ranks);
-  if (ranks > 1) {
+  if (ranks == 1) {
+    whole->with_elements = take_cells(dim, source, cells_with_elements(all.regions, region_weight));
+    source = GmshMesh();
+  } else {
+    whole->source = std::move(source), whole->has_elements = cells_with_elements(all.regions, region_weight);
     whole->patch = all.patch;
     whole->find_patches(all.cells);
     mesh.cuts_ = given;
@@ -204,8 +221,10 @@ BackgroundMesh<dim> BackgroundMesh<dim>::read(MPI_Comm comm, const std::string &
 template <int dim>
 PetscErrorCode BackgroundMesh<dim>::settle(MeshPart<dim> whole) {
   PetscFunctionBeginUser;
+  hand_back_freed_memory();  // of what was made to read and check the mesh
   if (!cuts_.empty()) whole = deal_out(comm(), whole, whole_->ranks_of_cells(cuts_));
   PetscCall(flatten(std::move(whole)));
+  hand_back_freed_memory();
   PetscFunctionReturn(0);
 }
 
@@ -269,9 +288,13 @@ template <int dim>
 const ElementPlex &BackgroundMesh<dim>::element_plex() const {
   if (elements_) return *elements_;
   const auto made = std::make_shared<ElementPlex>();
-  require(make_plex(comm(), dim, whole_->source, whole_->has_elements,
-                    cuts_.empty() ? std::vector<int>(whole_->has_elements.size(), 0) : whole_->ranks_of_cells(cuts_),
-                    made->dm, made->number));
+  const TakenCells &alone = whole_->with_elements;
+  if (cuts_.empty())
+    require(
+        make_plex(comm(), dim, alone, std::vector<int>(alone.corner.size() / (dim + 1), 0), made->dm, made->number));
+  else
+    require(make_plex(comm(), dim, take_cells(dim, whole_->source, whole_->has_elements),
+                      whole_->ranks_of_element_cells(cuts_), made->dm, made->number));
   PetscInt first, end;
   require(DMPlexGetDepthStratum(made->dm, 0, &first, &end));
   made->vertex.assign(node_count(), -1);
@@ -303,7 +326,8 @@ BackgroundMesh<dim> BackgroundMesh<dim>::adopt(DM plex) {
   HostPoints points;
   mesh.comm_ = Communicator(comm);
   require(part_of_plex(plex, part, points));
-  agree(comm, complaint_about_cells("the DMPlex of the host program", part.cells, part.regions, Names::optional));
+  agree(comm, complaint_about_cells("the DMPlex of the host program", part.cells, CellTree<dim>(part.cells),
+                                    part.regions, Names::optional));
 
   const int size = patch_size<dim>(is_one_element_slice<dim>(comm, part.cells.position));
   part.patch = make_patches<dim>(part.cells.node, part.cells.neighbour, part.regions.combination, size);

@@ -1,7 +1,6 @@
 #pragma once
 /// Search for the cells near a place: boxes around groups of cells, halved again and again.
 #include <algorithm>
-#include <numeric>
 #include <vector>
 
 #include "meshes/simplices.h"
@@ -33,42 +32,46 @@ Box<dim> box_around(const std::array<Vec<dim>, dim + 1> &corner) {
 template <int dim>
 class CellTree {
  public:
-  /// `cells` must outlive the tree.
-  explicit CellTree(const Simplices<dim> &cells) : order_(cells.node.size()) {
-    for (int c = 0; c < static_cast<int>(order_.size()); ++c) box_.push_back(box_around<dim>(cells.corners(c)));
-    std::iota(order_.begin(), order_.end(), 0);
-    if (!order_.empty()) build(0, static_cast<int>(order_.size()));
+  explicit CellTree(const Simplices<dim> &cells) {
+    const int count = static_cast<int>(cells.node.size());
+    leaves_.reserve(count);
+    for (int c = 0; c < count; ++c) leaves_.push_back({box_around<dim>(cells.corners(c)), c});
+    if (count > 0) build(0, count);
   }
-
-  const Box<dim> &box(int cell) const { return box_[cell]; }
 
   /// Calls `take(cell)` for the cells whose boxes meet `box`, until it returns true; returns whether it did.
   template <class Take>
   bool any(const Box<dim> &box, const Take &take) const {
-    return !order_.empty() && any(0, box, take);
+    return !leaves_.empty() && any(0, box, take);
   }
 
  private:
-  static constexpr int leaf = 8;  // cells at the end of a branch
+  static constexpr int most = 8;  // cells at the end of a branch
+  /// A cell with its box: those of a branch stand together in memory.
+  struct Leaf {
+    Box<dim> box;
+    int cell;
+  };
   struct Branch {
     Box<dim> box;
-    int begin, end;  ///< cells in `order_`
+    int begin, end;  ///< leaves
     int second;      ///< the second half; the first follows; -1 at the end
   };
 
   int build(int begin, int end) {
     const int mine = static_cast<int>(branches_.size());
-    Box<dim> all = box_[order_[begin]];
-    for (int i = begin; i < end; ++i) all.enclose(box_[order_[i]]);
+    Box<dim> all = leaves_[begin].box;
+    for (int i = begin; i < end; ++i) all.enclose(leaves_[i].box);
     branches_.push_back({all, begin, end, -1});
-    if (end - begin <= leaf) return mine;
+    if (end - begin <= most) return mine;
     int axis = 0;
     for (int d = 1; d < dim; ++d)
       if (all.high[d] - all.low[d] > all.high[axis] - all.low[axis]) axis = d;
     const int middle = (begin + end) / 2;
-    std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](int a, int b) {
-      return box_[a].low[axis] + box_[a].high[axis] < box_[b].low[axis] + box_[b].high[axis];
-    });
+    std::nth_element(leaves_.begin() + begin, leaves_.begin() + middle, leaves_.begin() + end,
+                     [&](const Leaf &a, const Leaf &b) {
+                       return a.box.low[axis] + a.box.high[axis] < b.box.low[axis] + b.box.high[axis];
+                     });
     build(begin, middle);
     const int second = build(middle, end);
     branches_[mine].second = second;
@@ -80,12 +83,11 @@ class CellTree {
     const Branch &branch = branches_[number];
     if (!branch.box.meets(box)) return false;
     if (branch.second >= 0) return any(number + 1, box, take) || any(branch.second, box, take);
-    return std::any_of(order_.begin() + branch.begin, order_.begin() + branch.end,
-                       [&](int cell) { return box_[cell].meets(box) && take(cell); });
+    return std::any_of(leaves_.begin() + branch.begin, leaves_.begin() + branch.end,
+                       [&](const Leaf &leaf) { return leaf.box.meets(box) && take(leaf.cell); });
   }
 
-  std::vector<Box<dim>> box_;
-  std::vector<int> order_;
+  std::vector<Leaf> leaves_;
   std::vector<Branch> branches_;
 };
 

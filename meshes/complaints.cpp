@@ -38,8 +38,8 @@ bool overlap(const Simplices<dim> &cells, int cell, int face) {
 }  // namespace
 
 template <int dim>
-std::string complaint_about_cells(const std::string &source, const Simplices<dim> &cells, const Regions &regions,
-                                  Names names) {
+std::string complaint_about_cells(const std::string &source, const Simplices<dim> &cells, const CellTree<dim> &tree,
+                                  const Regions &regions, Names names) {
   const auto complain = [&](int cell, const std::string &text) {
     return source + ": " + describe(cells, regions, cell) + " " + text;
   };
@@ -60,7 +60,7 @@ std::string complaint_about_cells(const std::string &source, const Simplices<dim
       if (overlap<dim>(cells, c, k))
         return complain(c, "overlaps " + describe(cells, regions, cells.neighbour[c][k]) +
                                ": one of them is inverted; remesh there");
-  if (const auto [one, other] = overlapping_cells<dim>(cells); one >= 0)
+  if (const auto [one, other] = overlapping_cells<dim>(cells, tree); one >= 0)
     return complain(one, "overlaps " + describe(cells, regions, other) +
                              ", which shares no side with it: parts of the mesh lie in one place; fragment the "
                              "geometry (Gmsh: BooleanFragments), or leave one part out");
@@ -108,7 +108,9 @@ void require(PetscErrorCode error) {
   throw std::runtime_error(std::string("PETSc: ") + (text ? text : "unknown error"));
 }
 
-template std::string complaint_about_cells(const std::string &, const Simplices<2> &, const Regions &, Names);
-template std::string complaint_about_cells(const std::string &, const Simplices<3> &, const Regions &, Names);
+template std::string complaint_about_cells(const std::string &, const Simplices<2> &, const CellTree<2> &,
+                                           const Regions &, Names);
+template std::string complaint_about_cells(const std::string &, const Simplices<3> &, const CellTree<3> &,
+                                           const Regions &, Names);
 
 }  // namespace talus

@@ -4,16 +4,16 @@
 
 #include <string>
 
-#include "meshes/simplices.h"
+#include "meshes/cell_tree.h"
 
 namespace talus {
 
 /// Cells of no volume, cells that overlap, and, where each has to have a name, cells in no region. Serial; `source`
-/// names the mesh.
+/// names the mesh, `tree` is that of the cells.
 enum class Names { required, optional };
 template <int dim>
-std::string complaint_about_cells(const std::string &source, const Simplices<dim> &cells, const Regions &regions,
-                                  Names names);
+std::string complaint_about_cells(const std::string &source, const Simplices<dim> &cells, const CellTree<dim> &tree,
+                                  const Regions &regions, Names names);
 
 /// A host's DMPlex that cannot serve: wrong dimension, an overlap, no faces, cells that are not simplices. Local.
 std::string complaint_about_plex(DM plex, int dimension);

@@ -12,38 +12,6 @@ namespace {
 
 using StarForest = Owned<PetscSF, PetscSFDestroy>;
 
-/// The marked cells, and the nodes that they have, in the order of the file.
-struct Taken {
-  std::vector<PetscInt> cells;
-  std::vector<int> node;  ///< of the mesh
-  std::vector<double> position;
-  std::vector<int> rank;  ///< of cells
-};
-
-Taken take_cells(int dimension, const GmshMesh &mesh, const std::vector<char> &take,
-                 const std::vector<int> &rank_of_cell) {
-  Taken taken;
-  const std::size_t corners = dimension + 1;
-  std::vector<int> number(mesh.position.size() / dimension, -1);
-  for (std::size_t c = 0; c < take.size(); ++c)
-    for (std::size_t k = 0; k < corners && take[c]; ++k) number[mesh.cells[c * corners + k]] = 0;
-  for (std::size_t i = 0; i < number.size(); ++i) {
-    if (number[i] < 0) continue;
-    number[i] = static_cast<int>(taken.node.size());
-    taken.node.push_back(static_cast<int>(i));
-    const double *x = &mesh.position[i * dimension];
-    taken.position.insert(taken.position.end(), x, x + dimension);
-  }
-  for (std::size_t c = 0; c < take.size(); ++c) {
-    if (!take[c]) continue;
-    for (std::size_t k = 0; k < corners; ++k) taken.cells.push_back(number[mesh.cells[c * corners + k]]);
-    // DMPlex stores tetrahedra with their sides turned outward
-    if (dimension == 3) std::swap(taken.cells[taken.cells.size() - 4], taken.cells[taken.cells.size() - 3]);
-    taken.rank.push_back(rank_of_cell[c]);
-  }
-  return taken;
-}
-
 /// Sends each cell of rank 0 to its rank. `migration` leads from points there to local points. On one rank nothing
 /// moves: `distributed` and `migration` stay null.
 PetscErrorCode distribute(DM plex, const std::vector<int> &rank_of_cell, DM *distributed, PetscSF *migration) {
@@ -66,24 +34,46 @@ PetscErrorCode distribute(DM plex, const std::vector<int> &rank_of_cell, DM *dis
 
 }  // namespace
 
-PetscErrorCode make_plex(MPI_Comm comm, int dimension, const GmshMesh &mesh, const std::vector<char> &take,
-                         const std::vector<int> &rank_of_cell, Dm &plex, std::vector<long long> &number) {
+TakenCells take_cells(int dimension, const GmshMesh &mesh, const std::vector<char> &take) {
+  TakenCells taken;
+  const std::size_t corners = dimension + 1;
+  taken.all_cells = static_cast<long long>(take.size());
+  taken.all_nodes = static_cast<long long>(mesh.position.size()) / dimension;
+  std::vector<int> number(taken.all_nodes, -1);
+  for (std::size_t c = 0; c < take.size(); ++c)
+    for (std::size_t k = 0; k < corners && take[c]; ++k) number[mesh.cells[c * corners + k]] = 0;
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    if (number[i] < 0) continue;
+    number[i] = static_cast<int>(taken.node.size());
+    taken.node.push_back(static_cast<int>(i));
+    const double *x = &mesh.position[i * dimension];
+    taken.position.insert(taken.position.end(), x, x + dimension);
+  }
+  for (std::size_t c = 0; c < take.size(); ++c) {
+    if (!take[c]) continue;
+    for (std::size_t k = 0; k < corners; ++k) taken.corner.push_back(number[mesh.cells[c * corners + k]]);
+    // DMPlex stores tetrahedra with their sides turned outward
+    if (dimension == 3) std::swap(taken.corner[taken.corner.size() - 4], taken.corner[taken.corner.size() - 3]);
+  }
+  return taken;
+}
+
+PetscErrorCode make_plex(MPI_Comm comm, int dimension, const TakenCells &taken, const std::vector<int> &rank_of_cell,
+                         Dm &plex, std::vector<long long> &number) {
   PetscInt begin, end, first_vertex, end_vertex;
   PetscFunctionBeginUser;
-  const Taken taken = take_cells(dimension, mesh, take, rank_of_cell);
-  PetscCall(DMPlexCreateFromCellListPetsc(comm, dimension, static_cast<PetscInt>(taken.rank.size()),
+  PetscCall(DMPlexCreateFromCellListPetsc(comm, dimension, static_cast<PetscInt>(rank_of_cell.size()),
                                           static_cast<PetscInt>(taken.node.size()), dimension + 1, PETSC_TRUE,
-                                          taken.cells.data(), dimension, taken.position.data(), plex.create()));
+                                          taken.corner.data(), dimension, taken.position.data(), plex.create()));
   PetscCall(DMPlexGetChart(plex, &begin, &end));
   PetscCall(DMPlexGetDepthStratum(plex, 0, &first_vertex, &end_vertex));
-  const long long cells = static_cast<long long>(take.size()),
-                  nodes = static_cast<long long>(mesh.position.size()) / dimension;
   std::vector<long long> whole(end);
   for (PetscInt p = begin; p < end; ++p)
-    whole[p] = first_vertex <= p && p < end_vertex ? cells + taken.node[p - first_vertex] : cells + nodes + p;
+    whole[p] =
+        taken.all_cells + (first_vertex <= p && p < end_vertex ? taken.node[p - first_vertex] : taken.all_nodes + p);
   Dm distributed;
   StarForest migration;
-  PetscCall(distribute(plex, taken.rank, distributed.create(), migration.create()));
+  PetscCall(distribute(plex, rank_of_cell, distributed.create(), migration.create()));
   if (!distributed) {
     number = std::move(whole);
     PetscFunctionReturn(0);

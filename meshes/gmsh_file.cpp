@@ -440,6 +440,7 @@ class Reader {
         in_.complain_at_large("node " + std::to_string(node_number_[i].first) + " is there twice" + save_again);
     mesh_.dimension = dimension_;
     const auto places = [&](const Elements &elements, int nodes, std::vector<int> &into) {
+      into.reserve(elements.node.size() * nodes);
       for (std::size_t e = 0; e < elements.node.size(); ++e) {
         const auto begin = elements.node[e].begin();
         for (int k = 0; k < nodes; ++k) {

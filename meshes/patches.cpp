@@ -1,24 +1,60 @@
 #include "meshes/patches.h"
 
 #include <algorithm>
-#include <functional>
-#include <queue>
+#include <bit>
+#include <cstdint>
 #include <utility>
 
 namespace talus {
 namespace {
+
+/// A set of numbers below a count, of which the lowest is asked for again and again: a bit for each of them, and one
+/// for each 64 bits, and so on up to a single word.
+class LowestFirst {
+ public:
+  explicit LowestFirst(std::size_t count) {
+    do levels_.emplace_back(count = (count + 63) / 64);
+    while (count > 1);
+  }
+  void insert(std::size_t number) {
+    for (auto &level : levels_) level[number / 64] |= bit(number), number /= 64;
+  }
+  void erase(std::size_t number) {
+    for (auto &level : levels_) {
+      if ((level[number / 64] &= ~bit(number)) != 0) return;
+      number /= 64;
+    }
+  }
+  /// -1 of an empty set.
+  int lowest() const {
+    if (levels_.back().empty() || levels_.back()[0] == 0) return -1;
+    std::size_t number = 0;
+    for (auto level = levels_.rbegin(); level != levels_.rend(); ++level)
+      number = 64 * number + std::countr_zero((*level)[number]);
+    return static_cast<int>(number);
+  }
+
+ private:
+  static std::uint64_t bit(std::size_t number) { return std::uint64_t{1} << (number % 64); }
+  std::vector<std::vector<std::uint64_t>> levels_;
+};
 
 template <int dim>
 class Patches {
  public:
   using Corners = std::vector<std::array<int, dim + 1>>;
   Patches(const Corners &node, const Corners &neighbour, const std::vector<int> &kind, int size)
-      : node_(node), neighbour_(neighbour), kind_(kind), size_(size), patch(node.size(), none) {}
+      : node_(node),
+        neighbour_(neighbour),
+        kind_(kind),
+        size_(size),
+        waiting_(dim + 2, LowestFirst(node.size())),
+        patch(node.size(), none) {}
 
   void grow() {
     const int count = static_cast<int>(node_.size());
     free_neighbours_.resize(count);
-    for (int c = 0; c < count; ++c) waiting_[free_neighbours_[c] = count_free(c)].push(c);
+    for (int c = 0; c < count; ++c) waiting_[free_neighbours_[c] = count_free(c)].insert(c);
     for (int first; (first = loneliest()) != none;) {
       cells_.assign(1, first);
       nodes_.clear();
@@ -33,16 +69,16 @@ class Patches {
 
   /// Three passes, since a joined pair of fragments may still be a fragment.
   void join_fragments() {
-    std::vector<std::vector<int>> members(patch_count_);
-    for (std::size_t c = 0; c < patch.size(); ++c) members[patch[c]].push_back(static_cast<int>(c));
+    std::vector<int> next(patch.size(), none);  // of the same patch
+    std::vector<Members> members(patch_count_);
+    for (int c = 0; c < static_cast<int>(patch.size()); ++c) join(members[patch[c]], {c, c, 1}, next);
     for (int pass = 0; pass < 3; ++pass)
       for (int p = 0; p < patch_count_; ++p) {
-        if (members[p].empty() || static_cast<int>(members[p].size()) >= (size_ + 1) / 2) continue;
-        const int into = smallest_neighbour(p, members);
+        if (members[p].count == 0 || members[p].count >= (size_ + 1) / 2) continue;
+        const int into = smallest_neighbour(p, members, next);
         if (into == none) continue;
-        for (int c : members[p]) patch[c] = into;
-        members[into].insert(members[into].end(), members[p].begin(), members[p].end());
-        members[p].clear();
+        for (int c = members[p].first; c != none; c = next[c]) patch[c] = into;
+        join(members[into], std::exchange(members[p], {}), next);
       }
   }
 
@@ -62,10 +98,8 @@ class Patches {
   const int size_;
   int patch_count_ = 0;
   std::vector<int> free_neighbours_, cells_;
-  std::vector<int> nodes_;  // of the patch that grows; few
-  /// Cells by their number of free neighbours, which only falls: a cell that is not free any more, or has fewer, is
-  /// left out when its turn comes.
-  std::array<std::priority_queue<int, std::vector<int>, std::greater<>>, dim + 2> waiting_;
+  std::vector<int> nodes_;            // of the patch that grows; few
+  std::vector<LowestFirst> waiting_;  // free cells by their number of free neighbours
 
  public:
   std::vector<int> patch;
@@ -80,18 +114,21 @@ class Patches {
 
   /// The free cell with the fewest free neighbours, the first one of them; none when all are taken.
   int loneliest() {
-    for (int free = 0; free < static_cast<int>(waiting_.size()); ++free)
-      for (auto &cells = waiting_[free]; !cells.empty(); cells.pop())
-        if (const int c = cells.top(); patch[c] == none && free_neighbours_[c] == free) return c;
+    for (const LowestFirst &cells : waiting_)
+      if (const int c = cells.lowest(); c >= 0) return c;
     return none;
   }
 
   void take(int c) {
     patch[c] = patch_count_;
+    waiting_[free_neighbours_[c]].erase(c);
     for (int node : node_[c])
       if (!std::count(nodes_.begin(), nodes_.end(), node)) nodes_.push_back(node);
     for (int j : neighbour_[c])
-      if (joinable(c, j) && patch[j] == none) waiting_[free_neighbours_[j] = count_free(j)].push(j);
+      if (joinable(c, j) && patch[j] == none) {
+        waiting_[free_neighbours_[j]].erase(j);
+        waiting_[free_neighbours_[j] = count_free(j)].insert(j);
+      }
   }
 
   /// Few new nodes means that cells close around an edge or a vertex.
@@ -113,12 +150,20 @@ class Patches {
     return best;
   }
 
-  int smallest_neighbour(int p, const std::vector<std::vector<int>> &members) const {
+  /// Cells of a patch, each with the next one.
+  struct Members {
+    int first = none, last = none, count = 0;
+  };
+  static void join(Members &members, const Members &more, std::vector<int> &next) {
+    (members.count ? next[members.last] : members.first) = more.first;
+    members.last = more.last, members.count += more.count;
+  }
+
+  int smallest_neighbour(int p, const std::vector<Members> &members, const std::vector<int> &next) const {
     int smallest = none;
-    for (int c : members[p])
+    for (int c = members[p].first; c != none; c = next[c])
       for (int j : neighbour_[c])
-        if (joinable(c, j) && patch[j] != p &&
-            (smallest == none || members[patch[j]].size() < members[smallest].size()))
+        if (joinable(c, j) && patch[j] != p && (smallest == none || members[patch[j]].count < members[smallest].count))
           smallest = patch[j];
     return smallest;
   }

@@ -26,10 +26,10 @@ struct Simplex {
 
 template <int dim>
 double longest_edge(const std::array<Vec<dim>, dim + 1> &corner) {
-  double longest = 0;
+  double square = 0;
   for (int a = 0; a <= dim; ++a)
-    for (int b = 0; b < a; ++b) longest = std::max(longest, (map<dim>(corner[a]) - map<dim>(corner[b])).norm());
-  return longest;
+    for (int b = 0; b < a; ++b) square = std::max(square, (map<dim>(corner[a]) - map<dim>(corner[b])).squaredNorm());
+  return std::sqrt(square);
 }
 
 /// Too flat to compute with: its volume is lost in the round-off of its edges.

@@ -41,17 +41,20 @@ class Sides {
   /// Calls `visit` with the sides of each facet, all with the same nodes, ascending.
   template <class Visit>
   void of_facets(const Visit &visit) const {
-    std::vector<std::pair<Nodes, Side>> here;
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> here;  // nodes above the lowest one, and the number of a side
     std::vector<Side> same;
     for (std::size_t node = 0; node + 1 < first_.size(); ++node) {
       here.clear();
-      for (std::uint32_t s = first_[node]; s < first_[node + 1]; ++s)
-        here.emplace_back(nodes(side(side_[s])), side(side_[s]));
+      for (std::uint32_t s = first_[node]; s < first_[node + 1]; ++s) {
+        std::uint64_t others = 0;
+        for (const int one : nodes(side(side_[s]))) others = others << 32 | static_cast<std::uint32_t>(one);
+        here.emplace_back(others, side_[s]);  // the lowest node is shifted out
+      }
       std::sort(here.begin(), here.end());
       for (std::size_t begin = 0, end; begin < here.size(); begin = end) {
         same.clear();
         for (end = begin; end < here.size() && here[end].first == here[begin].first; ++end)
-          same.push_back(here[end].second);
+          same.push_back(side(here[end].second));
         visit(same);
       }
     }
@@ -168,30 +171,31 @@ void read_mesh(const GmshMesh &source, Simplices<dim> &cells, Groups &groups, st
 
 template <int dim>
 std::vector<double> mean_edges(const Simplices<dim> &cells, const GmshMesh &source) {
-  // sides of a tetrahedron; the order of edges is that of DMPlex, in which the lengths have always been added up
-  constexpr int corner_of_side[4][3] = {{1, 0, 2}, {1, 3, 0}, {1, 2, 3}, {2, 0, 3}};
-  std::vector<double> sum(cells.position.size(), 0);
-  std::vector<int> number(cells.position.size(), 0);
-  std::vector<std::vector<int>> met(cells.position.size());  // the other ends, above a node
-  const auto meet = [&](int a, int b) {
-    std::vector<int> &others = met[std::min(a, b)];
-    const int other = std::max(a, b);
-    if (std::find(others.begin(), others.end(), other) != others.end()) return;
-    others.push_back(other);
-    const double length = (map<dim>(cells.position[a]) - map<dim>(cells.position[b])).norm();
-    for (const int i : {a, b}) sum[i] += length, ++number[i];
-  };
-  for (int c = 0; c < static_cast<int>(cells.node.size()); ++c) {
-    const int *node = &source.cells[static_cast<std::size_t>(c) * (dim + 1)];
-    if constexpr (dim == 2) {
-      for (int k = 0; k < 3; ++k) meet(node[k], node[(k + 1) % 3]);
-    } else {
-      for (const auto &side : corner_of_side)
-        for (int k = 0; k < 3; ++k) meet(node[side[k]], node[side[(k + 1) % 3]]);
+  // other corners of a cell, by corner; in the order of DMPlex, in which the lengths have always been added up
+  constexpr int others[2][4][3] = {{{1, 2}, {0, 2}, {1, 0}}, {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {1, 0, 2}}};
+  const std::size_t nodes = cells.position.size();
+  std::vector<std::uint32_t> first(nodes + 1, 0), corner(source.cells.size());  // of each node: corners of cells
+  for (const int node : source.cells) ++first[node + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::uint32_t> end(first.begin(), first.end() - 1);
+  for (std::size_t k = 0; k < source.cells.size(); ++k) corner[end[source.cells[k]]++] = static_cast<std::uint32_t>(k);
+  std::vector<double> mean(nodes);
+  std::vector<int> met_by(nodes, -1);  // the last node from which an edge led here
+  for (int i = 0; i < static_cast<int>(nodes); ++i) {
+    double sum = 0;
+    int number = 0;
+    for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
+      const std::uint32_t own = corner[k] % (dim + 1), cell = corner[k] - own;
+      for (int side = 0; side < dim; ++side) {
+        const int other = source.cells[cell + others[dim - 2][own][side]];
+        if (met_by[other] == i) continue;
+        met_by[other] = i;
+        sum += (map<dim>(cells.position[i]) - map<dim>(cells.position[other])).norm(), ++number;
+      }
     }
+    mean[i] = sum / number;
   }
-  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] /= number[i];
-  return sum;
+  return mean;
 }
 
 template void read_mesh(const GmshMesh &, Simplices<2> &, Groups &, std::string &);

@@ -5,7 +5,6 @@
 #include <numeric>
 #include <sstream>
 
-#include "meshes/cell_tree.h"
 #include "meshes/simplex.h"
 
 namespace talus {
@@ -48,19 +47,43 @@ bool overlap_along(const ColumnVector<dim> &axis, const Corners<dim> &a, const C
   return std::min(high[0], high[1]) - std::max(low[0], low[1]) > least;
 }
 
+/// A cell with what is asked of it again for each other cell.
+template <int dim>
+struct Solid {
+  explicit Solid(const Corners<dim> &corners)
+      : corner(corners), simplex(corners), longest(longest_edge<dim>(corners)) {}
+
+  Corners<dim> corner;
+  Simplex<dim> simplex;
+  double longest;
+
+  /// The normal of a side parts this cell from another: their extents along it overlap by no more than `least`. Along
+  /// the gradient of a barycentric coordinate this cell reaches from 0 to 1.
+  bool parted_by_side(const Corners<dim> &other, double least) const {
+    std::array<std::array<double, dim + 1>, dim + 1> n;  // of each corner of the other cell
+    for (int k = 0; k <= dim; ++k) {
+      const ColumnVector<dim> from_first = map<dim>(other[k]) - map<dim>(corner[0]);
+      n[k][0] = 1;
+      for (int d = 0; d < dim; ++d) n[k][d + 1] = map<dim>(simplex.gradient[d]).dot(from_first), n[k][0] -= n[k][d + 1];
+    }
+    ColumnVector<dim> first = ColumnVector<dim>::Zero();
+    for (const auto &gradient : simplex.gradient) first -= map<dim>(gradient);
+    for (int side = 0; side <= dim; ++side) {
+      double low = n[0][side], high = n[0][side];
+      for (int k = 1; k <= dim; ++k) low = std::min(low, n[k][side]), high = std::max(high, n[k][side]);
+      const double steepness = side ? map<dim>(simplex.gradient[side - 1]).norm() : first.norm();
+      if (std::min(1., high) - std::max(0., low) <= least * steepness) return true;
+    }
+    return false;
+  }
+};
+
 /// Two simplices overlap where no axis parts them: normals of sides and, in 3D, of pairs of edges.
 template <int dim>
-bool overlap(const Corners<dim> &a, const Corners<dim> &b) {
-  const double least = touch * std::min(longest_edge<dim>(a), longest_edge<dim>(b));
-  for (const Corners<dim> *one : {&a, &b}) {
-    const Simplex<dim> simplex(*one);
-    ColumnVector<dim> first = ColumnVector<dim>::Zero();
-    for (const auto &gradient : simplex.gradient) {
-      if (!overlap_along<dim>(map<dim>(gradient), a, b, least)) return false;
-      first -= map<dim>(gradient);
-    }
-    if (!overlap_along<dim>(first, a, b, least)) return false;
-  }
+bool overlap(const Solid<dim> &one, const Corners<dim> &b) {
+  const Corners<dim> &a = one.corner;
+  const double least = touch * std::min(one.longest, longest_edge<dim>(b));
+  if (one.parted_by_side(b, least) || Solid<dim>(b).parted_by_side(a, least)) return false;
   if constexpr (dim == 3)
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < i; ++j)
@@ -90,8 +113,8 @@ class Sets {
 template <int dim>
 class Inspector {
  public:
-  Inspector(const Simplices<dim> &cells, const Regions &regions)
-      : cells_(cells), regions_(regions), count_(static_cast<int>(cells.node.size())), tree_(cells), parts_(count_) {}
+  Inspector(const Simplices<dim> &cells, const CellTree<dim> &tree, const Regions &regions)
+      : cells_(cells), regions_(regions), count_(static_cast<int>(cells.node.size())), tree_(tree), parts_(count_) {}
 
   std::vector<std::string> remarks() {
     seams();
@@ -224,7 +247,7 @@ class Inspector {
   const Simplices<dim> &cells_;
   const Regions &regions_;
   const int count_;
-  const CellTree<dim> tree_;
+  const CellTree<dim> &tree_;
   Sets parts_;
   std::vector<std::string> remarks_;
 };
@@ -232,17 +255,16 @@ class Inspector {
 }  // namespace
 
 template <int dim>
-std::pair<int, int> overlapping_cells(const Simplices<dim> &cells) {
-  const CellTree<dim> tree(cells);
+std::pair<int, int> overlapping_cells(const Simplices<dim> &cells, const CellTree<dim> &tree) {
   for (int c = 0; c < static_cast<int>(cells.node.size()); ++c) {
     const auto &around = cells.neighbour[c];
     if (std::find(around.begin(), around.end(), -1) == around.end()) continue;
-    const Corners<dim> corner = cells.corners(c);
+    const Solid<dim> solid(cells.corners(c));
     int other = -1;
-    const bool found = tree.any(tree.box(c), [&](int candidate) {
+    const bool found = tree.any(box_around<dim>(solid.corner), [&](int candidate) {
       if (candidate == c || std::find(around.begin(), around.end(), candidate) != around.end()) return false;
       other = candidate;
-      return overlap<dim>(corner, cells.corners(candidate));
+      return overlap<dim>(solid, cells.corners(candidate));
     });
     if (found) return {c, other};
   }
@@ -250,13 +272,13 @@ std::pair<int, int> overlapping_cells(const Simplices<dim> &cells) {
 }
 
 template <int dim>
-std::vector<std::string> mesh_remarks(const Simplices<dim> &cells, const Regions &regions) {
-  return Inspector<dim>(cells, regions).remarks();
+std::vector<std::string> mesh_remarks(const Simplices<dim> &cells, const CellTree<dim> &tree, const Regions &regions) {
+  return Inspector<dim>(cells, tree, regions).remarks();
 }
 
-template std::pair<int, int> overlapping_cells(const Simplices<2> &);
-template std::pair<int, int> overlapping_cells(const Simplices<3> &);
-template std::vector<std::string> mesh_remarks(const Simplices<2> &, const Regions &);
-template std::vector<std::string> mesh_remarks(const Simplices<3> &, const Regions &);
+template std::pair<int, int> overlapping_cells(const Simplices<2> &, const CellTree<2> &);
+template std::pair<int, int> overlapping_cells(const Simplices<3> &, const CellTree<3> &);
+template std::vector<std::string> mesh_remarks(const Simplices<2> &, const CellTree<2> &, const Regions &);
+template std::vector<std::string> mesh_remarks(const Simplices<3> &, const CellTree<3> &, const Regions &);
 
 }  // namespace talus

@@ -44,7 +44,6 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
   make_room(update_.velocity, nodes), make_room(update_.displacement, nodes);
   for (int a = 0; a < fluids; ++a) make_room(update_.fluid[a], nodes);
   for (auto *field : {&blend_, &filling_, &volume_strain_, &slenderness_}) make_room(*field, cells);
-  for (auto *field : {&accepted_.particle_volume, &accepted_.weight}) make_room(*field, cells);
   make_room(increment_, cells), make_room(cell_stress_, cells), make_room(impedance_, cells);
   make_room(patch_weight_, mesh.patch_count), make_room(patch_sum_, mesh.patch_count);
   make_room(nodal_, static_cast<size_t>(nodes) * (dim + 2));
@@ -57,7 +56,7 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
   for (auto *all : {&points_, &next_points_})
     for (size_t b = 0; b < bodies.size(); ++b) {
       PointSet &points = (*all)[b];
-      points.of_cell.assign(cells, -1);
+      points.make_room_in(cells);
       if (!transfer_.average_stress) continue;
       const size_t history = static_cast<size_t>(cells) * bodies[b]->history_count();
       make_room(points.own_cell, cells);

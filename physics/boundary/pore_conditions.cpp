@@ -4,6 +4,7 @@
 #include <set>
 #include <tuple>
 
+#include "base/room.h"
 #include "physics/boundary/node_normals.h"
 
 namespace talus {
@@ -44,8 +45,9 @@ PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const
     if (index < 0) index = static_cast<int>(walls_.size()), walls_.emplace_back();
     walls_[index].add(n.normal, n.source);
   }
-  for (auto *field : {&taken_, &taken_moment_}) field->resize(mesh.node_count());
-  nodal_.resize(mesh.node_count()), at_gap_.resize(mesh.node_count()), at_surface_.resize(mesh.node_count());
+  for (auto *field : {&taken_, &taken_moment_}) make_room(*field, mesh.node_count());
+  for (auto *field : {&at_gap_, &at_surface_}) make_room(*field, mesh.node_count());
+  make_room(nodal_, mesh.node_count());
   active_walls_.reserve(walls_.size()), faces_.reserve(mesh.node_count()), gaps_.reserve(mesh.node_count()),
       gap_cells_.reserve((dim + 1) * mesh.cell_count());
   PetscFunctionReturn(0);

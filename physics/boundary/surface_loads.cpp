@@ -4,6 +4,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "base/room.h"
 #include "meshes/locate.h"
 
 namespace talus {
@@ -202,7 +203,7 @@ PetscErrorCode SurfaceLoads<dim>::end(FilledGrid<dim> &grid, const std::vector<d
   PetscFunctionBeginUser;
   constexpr int square = dim * dim, width = square + 1;
   if (faces_.empty()) PetscFunctionReturn(0);
-  nodal_.resize(static_cast<size_t>(grid.mesh().node_count()) * width);
+  if (nodal_.empty()) make_room(nodal_, static_cast<size_t>(grid.mesh().node_count()) * width);
   std::fill_n(nodal_.begin(), grid.node_count() * width, 0.);
   for (int c = 0; c < grid.cell_count(); ++c) {
     const Square<dim> f =

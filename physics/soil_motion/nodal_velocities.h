@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/phases.h"
+#include "base/room.h"
 #include "transfer/mass_matrix.h"
 
 namespace talus {
@@ -15,13 +16,11 @@ struct NodalVelocities {
 
   /// `relaxation_time` is tau of docs/theory (4.10) [s], 0: none; `between_remaps`: nodes relax in each step.
   NodalVelocities(int nodes, double relaxation_time, bool between_remaps)
-      : momentum(nodes),
-        start(nodes * fields),
-        now(nodes * fields),
-        unmapped_start(nodes * fields),
-        before_step(nodes * fields),
-        relaxation_time(relaxation_time),
-        relaxes(between_remaps && relaxation_time > 0) {}
+      : relaxation_time(relaxation_time), relaxes(between_remaps && relaxation_time > 0) {
+    make_room(momentum, nodes);
+    for (Field *field : {&start, &now, &unmapped_start}) make_room(*field, static_cast<size_t>(nodes) * fields);
+    if constexpr (fields > 1) make_room(before_step, static_cast<size_t>(nodes) * fields);
+  }
 
   Field momentum;        ///< of the solid on this rank, [node], filled while particles are gathered [kg m/s]
   Field start;           ///< v^0, what particles have in common with the nodes; particles keep the rest [m/s]

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/room.h"
 #include "meshes/locate.h"
 #include "physics/laws/laws.h"
 
@@ -11,7 +12,8 @@ namespace talus {
 template <int dim>
 PrescribedPoreWater<dim>::PrescribedPoreWater(const BackgroundMesh<dim> &mesh, const Bodies &bodies,
                                               const PrescribedPressure<dim> &pressure)
-    : mesh_(mesh), bodies_(bodies), pressure_(pressure), extra_mass_(mesh.node_count(), 0) {
+    : mesh_(mesh), bodies_(bodies), pressure_(pressure) {
+  make_room(extra_mass_, mesh.node_count());
   for (const auto &body : bodies) suction_matters_ = suction_matters_ || reads_suction(body->law());
   for (int b = 0; b < static_cast<int>(bodies.size()); ++b) apart_ = apart_ || pressure.apart(b);
 }
@@ -73,8 +75,13 @@ void PrescribedPoreWater<dim>::sample(double time, const FilledGrid<dim> &grid, 
   table_moves_ = pressure_.moves();
   for (int k = 0; k < 2; ++k) {
     Sample &sample = sample_[k];
-    sample.gradient.resize(mesh_.cell_count()), sample.value.resize(mesh_.cell_count()),
-        sample.nodal.resize(mesh_.node_count());
+    const size_t nodes = mesh_.node_count(), cells = mesh_.cell_count();
+    const auto all = [](auto &values, size_t count) {  // those of a checkpoint are as many as there was soil
+      if (values.size() < count) make_room(values, count);
+    };
+    all(sample.nodal, nodes), all(sample.gradient, cells), all(sample.value, cells);
+    if (suction_matters_) all(sample.suction, cells);
+    if (apart_) all(sample.jump, cells);
     for (int i = 0; i < grid.node_count(); ++i)
       sample.nodal[i] = pressure_(mesh_.position[grid.mesh_node[i]], sample_time_[k], common_water);
     const auto in_cell = [&](int c, int node) {  // of the soil's own water
@@ -83,14 +90,13 @@ void PrescribedPoreWater<dim>::sample(double time, const FilledGrid<dim> &grid, 
                                    : sample.nodal[node];
     };
     if (suction_matters_) {
-      sample.suction.resize(mesh_.cell_count());
       for (int c = 0; c < grid.cell_count(); ++c) {
         sample.suction[c] = 0;
         for (int i : grid.shape[c].node) sample.suction[c] += std::max(0., -in_cell(c, i)) / (dim + 1);
       }
     }
     const auto stress_part = [this](double p) { return suction_matters_ ? std::max(0., p) : p; };
-    if (apart_) sample.jump.assign(mesh_.cell_count(), 0);
+    if (apart_) std::fill_n(sample.jump.begin(), grid.cell_count(), 0.);
     for (int c = 0; apart_ && c < grid.cell_count(); ++c)
       for (int a = 0; a <= dim; ++a) {
         const int i = grid.shape[c].node[a];

@@ -59,7 +59,7 @@ void SoilMotion<dim, Phases>::average_shares(size_t b) {
   std::fill_n(points.own_cohesion_share.begin(), points.count, 0.);
   std::fill_n(points.own_friction_share.begin(), points.count, 0.);
   for (int i = 0; i < p.count; ++i) {
-    const int q = points.of_cell[p.cell[i]];
+    const int q = points.find(p.cell[i]);
     const double weight = p.volume[i] / points.own_volume[q];
     points.own_cohesion_share[q] += weight * p.cohesion_share[i];
     points.own_friction_share[q] += weight * p.friction_share[i];
@@ -243,7 +243,7 @@ double SoilMotion<dim, Phases>::prepare_update(double t) {
 template <int dim, class Phases>
 void SoilMotion<dim, Phases>::clear_grid() {
   for (PointSet &points : points_) {
-    for (int c = 0; c < grid_.cell_count(); ++c) points.of_cell[grid_.mesh_cell[c]] = -1;
+    for (int c = 0; c < grid_.cell_count(); ++c) points.leave(grid_.mesh_cell[c]);
     points.count = 0;
   }
   grid_.clear();

@@ -68,7 +68,7 @@ PoreReport SoilMotion<dim, Phases>::pore_report(const Body<dim> &body, int i) co
   const auto &node = grid_.shape[cell].node;
   const bool surface =
       std::count_if(node.begin(), node.end(), [&](int n) { return pore_conditions_.at_surface(n); }) >= dim;
-  return fluid_.report(b, transfer_.average_stress ? points_[b].of_cell[mesh_cell] : i, cell, surface);
+  return fluid_.report(b, transfer_.average_stress ? points_[b].find(mesh_cell) : i, cell, surface);
 }
 
 template <int dim, class Phases>
@@ -103,7 +103,7 @@ void SoilMotion<dim, Phases>::state(int b, int i, double *stress, double *histor
   *volume = p.volume[i];
   if (!gathered_ || !transfer_.average_stress) return;
   const PointSet &points = points_[b];
-  const int q = points.of_cell[p.cell[i]];
+  const int q = points.find(p.cell[i]);
   std::copy_n(&points.stress[q * components], components, stress);
   for (int h = 0; h < count; ++h) history[h] += points.history[q * count + h] - points.start_history[q * count + h];
   *volume =
@@ -159,14 +159,15 @@ Archive::Rows SoilMotion<dim, Phases>::serialize_points(Archive &archive, size_t
   for (int q = 0; q < p.count; ++q) cells.push_back(mesh_.global_cell[grid_.mesh_cell[p.own_cell[q]]]);
   const Archive::Rows rows = archive.rows("stress points", Belongs::to_cells, cells);
   if (archive.reading()) {
-    p.count = static_cast<int>(cells.size());
     p.own_cell.resize(std::max(p.own_cell.size(), cells.size()));
-    std::fill(p.of_cell.begin(), p.of_cell.end(), -1);
+    p.make_room_in(mesh_.cell_count()), p.count = 0;
     const LocalNumbers cell_of(mesh_.global_cell);
-    for (int q = 0; q < p.count; ++q) {
-      const int cell = cell_of(cells[q]);
-      p.own_cell[q] = grid_.find_cell(cell);
-      if (transfer_.average_stress) p.of_cell[cell] = q;
+    for (const long long number : cells) {
+      const int cell = cell_of(number), compact = grid_.find_cell(cell);
+      if (transfer_.average_stress)
+        p.enter(cell, compact);
+      else
+        p.own_cell[p.count++] = compact;
     }
   }
   if (transfer_.average_stress) {

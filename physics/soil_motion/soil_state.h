@@ -4,6 +4,7 @@
 /// which has arrays of its own.
 #include <vector>
 
+#include "base/room.h"
 #include "transfer/filled_grid.h"
 #include "transfer/stress_points.h"
 
@@ -24,7 +25,7 @@ struct SoilState {
 template <int dim>
 struct AcceptedState : SoilState<dim> {
   AcceptedState(int cells, size_t bodies) {
-    this->particle_volume.assign(cells, 0), this->weight.assign(cells, 0);
+    for (auto *field : {&this->particle_volume, &this->weight}) talus::make_room(*field, cells);
     this->stress.resize(bodies), this->history.resize(bodies), this->volume.resize(bodies);
   }
   void refer_to(FilledGrid<dim> &grid) { this->position = grid.position.data(), this->shape = grid.shape.data(); }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/archive.h"
+#include "base/room.h"
 #include "transfer/filled_grid.h"
 
 namespace talus {
@@ -20,7 +21,7 @@ template <int dim>
 class WorkLedger {
  public:
   /// `imposes`: the scene has body accelerations or prescribes pore pressure.
-  WorkLedger(int nodes, bool imposes) : imposed_(imposes ? nodes : 0), damping_(nodes) {}
+  WorkLedger(int nodes, bool imposes) { make_room(imposed_, imposes ? nodes : 0), make_room(damping_, nodes); }
 
   bool imposes() const { return !imposed_.empty(); }
   /// To be called before and after imposed forces are added to `force` [node] [N].

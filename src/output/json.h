@@ -1,18 +1,20 @@
 #pragma once
 /// Values of a JSON document.
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <sstream>
 #include <string>
+#include <utility>
 
 namespace talus::json {
 
 /// JSON knows neither NaN nor infinity.
 inline std::string number(double x) {
   if (!std::isfinite(x)) return "null";
-  std::ostringstream text;
-  text.precision(17);
-  text << x;
-  return text.str();
+  std::array<char, 32> text;
+  const auto [end, error] = std::to_chars(text.begin(), text.end(), x, std::chars_format::general, 17);
+  return {text.data(), end};
 }
 
 inline std::string text(const std::string &words) {
@@ -45,11 +47,15 @@ inline std::string lines(const std::string &words) {
 class Object {
  public:
   Object &add(const std::string &name, const std::string &value) {  ///< `value` is JSON
-    text_ += (text_.empty() ? "{" : ", ") + json::text(name) + ": " + value;
+    text_ += text_.empty() ? "{" : ", ";
+    text_ += json::text(name);
+    text_ += ": ";
+    text_ += value;
     return *this;
   }
   Object &add(const std::string &name, double value) { return add(name, number(value)); }
-  std::string str() const { return text_.empty() ? "{}" : text_ + "}"; }
+  std::string str() const & { return text_.empty() ? "{}" : text_ + "}"; }
+  std::string str() && { return text_.empty() ? "{}" : std::move(text_ += "}"); }
 
  private:
   std::string text_;
@@ -58,9 +64,13 @@ class Object {
 /// An array of values that are JSON.
 template <class Values, class ToJson>
 std::string array(const Values &values, const ToJson &to_json) {
-  std::string list;
-  for (const auto &value : values) list += (list.empty() ? "" : ",\n  ") + to_json(value);
-  return "[" + list + "]";
+  std::string list = "[";
+  for (const auto &value : values) {
+    if (list.size() > 1) list += ",\n  ";
+    list += to_json(value);
+  }
+  list += "]";
+  return list;
 }
 
 }  // namespace talus::json

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "base/freed_memory.h"
 #include "output/hdf5_file.h"
 #include "output/replace_file.h"
 #include "output/shared_tables.h"
@@ -131,20 +132,19 @@ std::string xdmf_file(const std::string &grids) {
 
 }  // namespace
 
-RunFile::RunFile(MPI_Comm comm, const std::string &dir, const RunHeader &header, const MeshPicture &local_mesh,
-                 long long rows)
+RunFile::RunFile(MPI_Comm comm, const std::string &dir, const RunHeader &header, MeshPicture local_mesh, long long rows)
     : RunFile(comm, dir, rows) {
-  begin(header, local_mesh, [&] {
+  begin(header, std::move(local_mesh), [&] {
     write_index();  // before the old snapshots are removed, so that no link ever leads nowhere
     remove_snapshots(dir_ + "/run");
   });
 }
 
-RunFile RunFile::append(MPI_Comm comm, const std::string &dir, const RunHeader &header, const MeshPicture &local_mesh,
+RunFile RunFile::append(MPI_Comm comm, const std::string &dir, const RunHeader &header, MeshPicture local_mesh,
                         long long count, long long rows) {
   RunFile run(comm, dir, rows);
   run.count_ = count;
-  run.begin(header, local_mesh, [&] {
+  run.begin(header, std::move(local_mesh), [&] {
     std::vector<std::string> later;
     std::vector<std::pair<std::string, std::string>> unreadable;  // of the later ones, with the cause
     for (const std::string &number : numbers_of_snapshots(dir + "/run")) {
@@ -172,29 +172,37 @@ RunFile RunFile::append(MPI_Comm comm, const std::string &dir, const RunHeader &
   return run;
 }
 
-/// Writes the mesh, then does what `rest` says on the first rank. Nodes that ranks share appear once per rank, which
-/// does no harm in a picture.
-void RunFile::begin(const RunHeader &header, const MeshPicture &local_mesh, const std::function<void()> &rest) {
+/// Nodes that ranks share appear once per rank, which does no harm in a picture.
+void RunFile::write_mesh(MeshPicture local_mesh) {
   const int dim = local_mesh.dimension;
-  const std::vector<long long> node = numbered_over_ranks(comm_, local_mesh.position.size() / dim);
-  const std::vector<long long> cell = numbered_over_ranks(comm_, local_mesh.cell_node.size() / (dim + 1));
-  const int count = Writers::needed(comm_, {node.size(), cell.size()}, most_rows_);
-  const Writers of_nodes(comm_, node, count), of_cells(comm_, cell, count);
-  std::vector<long long> cell_node = local_mesh.cell_node;
-  for (auto &corner : cell_node) corner = node[corner];
+  std::vector<Table> tables;
+  int writer;
+  {  // what is not written itself is gone before the writing, which takes the most memory
+    const std::size_t nodes = local_mesh.position.size() / dim, cells = local_mesh.cell_node.size() / (dim + 1);
+    const int count = Writers::needed(comm_, {nodes, cells}, most_rows_);
+    const std::vector<long long> node = numbered_over_ranks(comm_, nodes);
+    for (auto &corner : local_mesh.cell_node) corner = node[corner];
+    const Writers of_nodes(comm_, node, count), of_cells(comm_, numbered_over_ranks(comm_, cells), count);
+    writer = of_cells.mine();
+    tables.push_back({"node_position", dim, of_nodes.collect(std::move(local_mesh.position), dim), of_nodes.rows()});
+    tables.push_back(
+        {"cell_node", dim + 1, of_cells.collect(std::move(local_mesh.cell_node), dim + 1), of_cells.rows()});
+  }
+  hand_back_freed_memory();
   on_first_rank(comm_, [&] { make_folder(dir_ + "/run"); });
-  write_tables(comm_, path_of(mesh_file), of_cells.mine(),
-               {{"node_position", dim, of_nodes.collect(local_mesh.position, dim), of_nodes.rows()},
-                {"cell_node", dim + 1, of_cells.collect(cell_node, dim + 1), of_cells.rows()}},
-               [&](Hdf5Builder &file) {
-                 file.attribute("/", "dimension", static_cast<long long>(dim));
-                 file.attribute("node_position", "unit", std::string("m"));
-               });
+  write_tables(comm_, path_of(mesh_file), writer, tables, [&](Hdf5Builder &file) {
+    file.attribute("/", "dimension", static_cast<long long>(dim));
+    file.attribute("node_position", "unit", std::string("m"));
+  });
+  dimension_ = dim, nodes_ = sum(tables[0].rows), cells_ = sum(tables[1].rows);
+}
+
+/// Writes the mesh, then does what `rest` says on the first rank.
+void RunFile::begin(const RunHeader &header, MeshPicture local_mesh, const std::function<void()> &rest) {
+  write_mesh(std::move(local_mesh));
+  hand_back_freed_memory();
   on_first_rank(comm_, [&] {
     header_ = header;
-    dimension_ = dim;
-    nodes_ = sum(of_nodes.rows());
-    cells_ = sum(of_cells.rows());
     replace_file(path_of("mesh.xdmf"), xdmf_mesh());
     replace_file(path_of("run.py"), paraview_state);
     rest();

@@ -45,14 +45,14 @@ class RunFile {
 
   /// Starts the results in folder `dir`, which is made where it is missing; snapshots of an older run in it are
   /// removed.
-  RunFile(MPI_Comm comm, const std::string &dir, const RunHeader &header, const MeshPicture &local_mesh,
+  RunFile(MPI_Comm comm, const std::string &dir, const RunHeader &header, MeshPicture local_mesh,
           long long rows = rows_of_a_writer);
 
   /// Continues the results of an earlier run of the same scene behind its first `count` snapshots: index and mesh are
   /// written anew, later snapshots are removed. Of snapshots that cannot be read no file is lost: one of the first
   /// `count` stays where it is, without an entry in the index; the file of a later one, which the run writes again, is
   /// renamed to `run/NUMBER.unreadable.h5`.
-  static RunFile append(MPI_Comm comm, const std::string &dir, const RunHeader &header, const MeshPicture &local_mesh,
+  static RunFile append(MPI_Comm comm, const std::string &dir, const RunHeader &header, MeshPicture local_mesh,
                         long long count, long long rows = rows_of_a_writer);
 
   /// Adds a snapshot. Ranks without particles pass columns without values.
@@ -79,7 +79,8 @@ class RunFile {
   };
 
   RunFile(MPI_Comm comm, const std::string &dir, long long rows) : comm_(comm), dir_(dir), most_rows_(rows) {}
-  void begin(const RunHeader &header, const MeshPicture &local_mesh, const std::function<void()> &rest);
+  void write_mesh(MeshPicture local_mesh);
+  void begin(const RunHeader &header, MeshPicture local_mesh, const std::function<void()> &rest);
   std::string snapshot_file(const std::string &number) const { return "run/" + number + ".h5"; }
   std::string path_of(const std::string &file) const { return dir_ + "/" + file; }
   Entry read_entry(const std::string &number) const;
@@ -94,10 +95,10 @@ class RunFile {
   std::string dir_;
   long long most_rows_;
   long long last_step_ = -1, count_ = 0;
-  // on rank 0 only:
-  RunHeader header_;
   int dimension_ = 2;
   unsigned long long nodes_ = 0, cells_ = 0;
+  // on rank 0 only:
+  RunHeader header_;
   unsigned long long points_ = 0;  ///< how many numbers of points are written
   std::vector<Entry> entries_;
   std::vector<std::string> damaged_;

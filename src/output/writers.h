@@ -25,32 +25,36 @@ class Writers {
 
   /// The rows of this writer by increasing number, each of `row` values; none where this rank is no writer. Collective.
   template <class T>
-  std::vector<T> collect(const std::vector<T> &values, int row = 1) const {
+  std::vector<T> collect(std::vector<T> values, int row = 1) const {
     const std::size_t bytes = row * sizeof(T);
     Messages sent(sent_.size());
     for (std::size_t r = 0; r < sent.size(); ++r) {
       sent[r].reserve(sent_[r].size() * bytes);
-      for (const std::size_t k : sent_[r]) sent[r].append(reinterpret_cast<const char *>(&values[k * row]), bytes);
+      for (const int k : sent_[r]) sent[r].append(reinterpret_cast<const char *>(&values[k * row]), bytes);
     }
     const Messages received = deliver(comm_, sent);
+    if (stay_) return values;
+    const auto rows_of = [&](int rank) {
+      return rank == rank_ ? reinterpret_cast<const char *>(values.data()) : received[rank].data();
+    };
     std::vector<T> collected(order_.size() * row);
     for (std::size_t k = 0; k < order_.size(); ++k)
-      std::memcpy(&collected[k * row], received[order_[k].rank].data() + order_[k].row * bytes, bytes);
+      std::memcpy(&collected[k * row], rows_of(order_[k].rank) + order_[k].row * bytes, bytes);
     return collected;
   }
 
  private:
   struct Origin {
     long long number;
-    int rank;
-    std::size_t row;  ///< of what this rank sent
+    int rank, row;  ///< of what that rank sent; of this rank, of all of its rows
   };
 
   MPI_Comm comm_;
-  int mine_ = -1;
+  int rank_, mine_ = -1;
   std::vector<long long> rows_;
-  std::vector<std::vector<std::size_t>> sent_;  ///< rows of this rank that go to each rank
-  std::vector<Origin> order_;                   ///< of what arrives, by number
+  std::vector<std::vector<int>> sent_;  ///< rows of this rank that go to each other rank
+  std::vector<Origin> order_;           ///< of the rows of this writer, by number
+  bool stay_ = true;                    ///< they are all rows of this rank, in their order
 };
 
 }  // namespace talus

@@ -1,5 +1,6 @@
 #include "particles/body.h"
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 
@@ -132,10 +133,14 @@ template <int dim>
 PetscErrorCode Body<dim>::sort(int cell_count) {
   PetscFunctionBeginUser;
   const int count = arrays_.count;
-  start_.assign(cell_count + 1, 0), order_.resize(count);
-  for (int p = 0; p < count; ++p) ++start_[arrays_.cell[p] + 1];
-  for (int c = 0; c < cell_count; ++c) start_[c + 1] += start_[c];
-  for (int p = 0; p < count; ++p) order_[p] = start_[arrays_.cell[p]]++;  // counting sort: stable, so results repeat
+  if (count == 0) PetscFunctionReturn(0);
+  const auto [low, high] = std::minmax_element(arrays_.cell, arrays_.cell + count);
+  const int first = *low, cells = *high - first + 1;
+  start_.reserve(cell_count + 1), start_.assign(cells + 1, 0), order_.resize(count);
+  for (int p = 0; p < count; ++p) ++start_[arrays_.cell[p] - first + 1];
+  for (int c = 0; c < cells; ++c) start_[c + 1] += start_[c];
+  for (int p = 0; p < count; ++p)
+    order_[p] = start_[arrays_.cell[p] - first]++;  // counting sort: stable, so results repeat
   rearrange();
   PetscFunctionReturn(0);
 }

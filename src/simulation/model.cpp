@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <tuple>
 
 #include "output/json.h"
 #include "output/together.h"
@@ -40,15 +41,21 @@ std::array<Vec<dim>, 3> sorted(std::array<Vec<dim>, 3> corner) {
 /// behind it.
 template <int dim>
 std::vector<Piece<dim>> in_order(const std::vector<Piece<dim>> &pieces) {
-  const auto key = [](const Piece<dim> &piece) { return std::pair(piece.source, sorted<dim>(piece.corner)); };
-  std::map<std::pair<int, std::array<Vec<dim>, 3>>, Piece<dim>> found;
-  for (const Piece<dim> &piece : pieces) {
-    const auto [at, is_new] = found.emplace(key(piece), piece);
-    if (!is_new && std::pair(piece.body, piece.normal) > std::pair(at->second.body, at->second.normal))
-      at->second = piece;
-  }
+  struct Place {
+    int source;
+    std::array<Vec<dim>, 3> corner;
+    auto operator<=>(const Place &) const = default;
+  };
+  std::vector<std::pair<Place, const Piece<dim> *>> places;
+  places.reserve(pieces.size());
+  for (const Piece<dim> &piece : pieces) places.push_back({{piece.source, sorted<dim>(piece.corner)}, &piece});
+  std::stable_sort(places.begin(), places.end(), [](const auto &a, const auto &b) {
+    const auto face = [](const auto &one) { return std::tie(one.second->body, one.second->normal); };
+    return a.first != b.first ? a.first < b.first : face(a) > face(b);
+  });
   std::vector<Piece<dim>> all;
-  for (const auto &[place, piece] : found) all.push_back(piece);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (i == 0 || places[i].first != places[i - 1].first) all.push_back(*places[i].second);
   return all;
 }
 
@@ -164,7 +171,7 @@ class Model {
         .add("lines", json::array(scene_.output.line, [](const OutputLine &line) {
                return Object().add("name", json::text(line.name)).add("points", json_of(line.points)).str();
              }));
-    return rank_in(world_.comm) == 0 ? all.str() : "";
+    return rank_in(world_.comm) == 0 ? std::move(all).str() : "";
   }
 
  private:
@@ -224,11 +231,15 @@ class Model {
         }
       }
     std::vector<Piece<dim>> all = gathered(world_.comm, mine);
+    const auto is_free = [](const Source *source) {
+      return std::ranges::count(source->groups, std::string(free_surface)) > 0;
+    };
     std::set<std::array<Vec<dim>, 3>> taken;  // by boundaries that have a say about the water
-    for (const Piece<dim> &piece : all)
-      if (sources[piece.source]->kind.water != OnWater::surface) taken.insert(sorted<dim>(piece.corner));
+    if (std::ranges::any_of(sources, is_free))
+      for (const Piece<dim> &piece : all)
+        if (sources[piece.source]->kind.water != OnWater::surface) taken.insert(sorted<dim>(piece.corner));
     for (std::size_t s = 0; s < sources.size(); ++s) {
-      if (rank_in(world_.comm) || !std::ranges::count(sources[s]->groups, std::string(free_surface))) continue;
+      if (rank_in(world_.comm) || !is_free(sources[s])) continue;
       for (const SoilFace &face : surface_) {
         Piece<dim> piece = piece_of(face);
         piece.source = static_cast<int>(s);

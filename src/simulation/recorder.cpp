@@ -65,6 +65,8 @@ template <int dim>
 MeshPicture Recorder<dim>::mesh_picture() const {
   MeshPicture picture;
   picture.dimension = dim;
+  picture.position.reserve(of_.world.mesh.position.size() * dim);
+  picture.cell_node.reserve(of_.world.mesh.cells.size() * (dim + 1));
   for (const Vec<dim> &x : of_.world.mesh.position) picture.position.insert(picture.position.end(), x.begin(), x.end());
   for (const Cell<dim> &cell : of_.world.mesh.cells)
     picture.cell_node.insert(picture.cell_node.end(), cell.node.begin(), cell.node.end());

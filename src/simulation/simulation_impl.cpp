@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/freed_memory.h"
 #include "simulation/softening.h"
 #include "simulation/stages/stage_runner.h"
 #include "simulation/unlikely.h"
@@ -17,6 +18,7 @@ void Simulation<dim>::run() {
     run_.recorder.open();
   told([&] {
     if (run_.progress.number < 0) begin();
+    hand_back_freed_memory();
     const long long before = run_.clock.steps;
     run_stages();
     for (const std::string &sentence : unlikely_strains(run_.world.comm, run_.world.report(), snapshot()))

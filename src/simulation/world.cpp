@@ -8,6 +8,7 @@
 #include <limits>
 #include <numeric>
 
+#include "base/freed_memory.h"
 #include "scene/reader.h"
 #include "solvers/quasi_static/pore_flow.h"
 
@@ -30,6 +31,7 @@ World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &m
   close_bases();                                 // from now on: soil has to be drawn inside
   set_loading(scene.stage.front(), 0, Clock{});  // under which the first state is gathered
   if (const std::string fault = function_fault(); !fault.empty()) throw SceneError(fault);
+  hand_back_freed_memory();
 }
 
 template <int dim>
@@ -207,6 +209,7 @@ std::vector<char> World<dim>::cells_of_bodies(const std::function<bool(size_t bo
 template <int dim>
 void World<dim>::settle_bodies() {
   conditions.surface_loads().share(mesh, cells_of_bodies([](size_t) { return true; }));
+  smallest_altitude_ = mesh.report().smallest_altitude;
   critical_.clear();
   for (size_t b = 0; b < scene.body.size(); ++b) {
     const BodySource &source = scene.body[b];
@@ -225,7 +228,7 @@ void World<dim>::close_bases() {
 
 template <int dim>
 void World<dim>::make_motion() {
-  const double relaxation = scene.transfer.relaxation * mesh.report().smallest_altitude / wave_speed_;
+  const double relaxation = scene.transfer.relaxation * smallest_altitude_ / wave_speed_;
   motion = make_soil_motion(
       MotionParts<dim>{mesh, bodies, conditions, scene, pressure, relaxation, seeded_mass_, seeded_particles_});
 }
@@ -234,8 +237,8 @@ void World<dim>::make_motion() {
 template <int dim>
 void World<dim>::set_friction_delay() {
   constexpr double shortest_way = 10, across_and_back = 2;
-  conditions.bases().set_friction_delay(
-      std::max(shortest_way * mesh.report().smallest_altitude, across_and_back * depth_on_bases_) / wave_speed_);
+  conditions.bases().set_friction_delay(std::max(shortest_way * smallest_altitude_, across_and_back * depth_on_bases_) /
+                                        wave_speed_);
 }
 
 template <int dim>

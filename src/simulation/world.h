@@ -131,6 +131,7 @@ class World {
 
   std::vector<CriticalStep<dim>> critical_;
   double wave_speed_ = 0;                  ///< the largest of the bodies [m/s]
+  double smallest_altitude_ = 0;           ///< of the cells of the mesh [m]
   double depth_on_bases_ = 0;              ///< of elastic soil at the start [m]
   double seeded_mass_ = 0;                 ///< of all ranks [kg]
   long long seeded_particles_ = 0;         ///< of all ranks

@@ -20,7 +20,7 @@ double element_size<3>(double volume) {
 template <int dim>
 FilledGrid<dim>::FilledGrid(const BackgroundMesh<dim> &mesh) : mesh_(&mesh), halo_(mesh.halo) {
   const int nodes = mesh.node_count(), cells = mesh.cell_count();
-  compact_node_.assign(nodes, -1), compact_cell_.assign(cells, -1);
+  make_room(compact_node_, nodes), make_room(compact_cell_, cells);
   make_room(mesh_node, nodes), make_room(mass, nodes), make_room(position, nodes);
   make_room(mesh_cell, cells), make_room(shape, cells), make_room(mass_matrix, cells), make_room(nodal_share, cells);
   make_room(size, cells), make_room(patch, cells), make_room(element_size_, cells);
@@ -35,8 +35,8 @@ double FilledGrid<dim>::element_size_of(int mesh_cell) {
 
 template <int dim>
 void FilledGrid<dim>::clear() {
-  for (int i = 0; i < node_count_; ++i) compact_node_[mesh_node[i]] = -1;
-  for (int c = 0; c < cell_count_; ++c) compact_cell_[mesh_cell[c]] = -1;
+  for (int i = 0; i < node_count_; ++i) compact_node_[mesh_node[i]] = 0;
+  for (int c = 0; c < cell_count_; ++c) compact_cell_[mesh_cell[c]] = 0;
   node_count_ = cell_count_ = 0;
 }
 
@@ -44,7 +44,7 @@ template <int dim>
 void FilledGrid<dim>::complete() {
   if (!halo_.empty()) {
     staging_.resize(std::max(staging_.size(), compact_node_.size()));
-    for (int node : halo_.shared_nodes()) staging_[node] = compact_node_[node] >= 0;
+    for (int node : halo_.shared_nodes()) staging_[node] = find_node(node) >= 0;
     (void)halo_.sum(staging_.data(), 1);
     for (int node : halo_.shared_nodes())
       if (staging_[node] > 0) enter_node(node);
@@ -53,7 +53,7 @@ void FilledGrid<dim>::complete() {
   for (int c = 0; c < cell_count_; ++c) {
     const Cell<dim> &cell = mesh_->cells[mesh_cell[c]];
     Shape<dim> &s = shape[c];
-    for (int k = 0; k <= dim; ++k) s.node[k] = compact_node_[cell.node[k]];
+    for (int k = 0; k <= dim; ++k) s.node[k] = find_node(cell.node[k]);
     s.gradient = cell.gradient, s.volume = mesh_->volume[mesh_cell[c]];
   }
   for (int c = 0; c < cell_count_; ++c) size[c] = element_size_of(mesh_cell[c]), patch[c] = mesh_->patch[mesh_cell[c]];
@@ -66,10 +66,10 @@ PetscErrorCode FilledGrid<dim>::sum(double *values, int width) {
   staging_.resize(std::max(staging_.size(), compact_node_.size() * width));  // once for the widest sum
   for (int node : halo_.shared_nodes())
     for (int k = 0; k < width; ++k)
-      staging_[node * width + k] = compact_node_[node] < 0 ? 0 : values[compact_node_[node] * width + k];
+      staging_[node * width + k] = find_node(node) < 0 ? 0 : values[find_node(node) * width + k];
   PetscCall(halo_.sum(staging_.data(), width));
   for (int node : halo_.shared_nodes())
-    if (compact_node_[node] >= 0) std::copy_n(&staging_[node * width], width, &values[compact_node_[node] * width]);
+    if (find_node(node) >= 0) std::copy_n(&staging_[node * width], width, &values[find_node(node) * width]);
   PetscFunctionReturn(0);
 }
 
@@ -87,7 +87,7 @@ typename FilledGrid<dim>::Rows FilledGrid<dim>::serialize(Archive &archive) {
     for (const long long number : nodes) enter_node(node_of(number));
     for (const long long number : cells) {
       const int cell = cell_of(number);
-      compact_cell_[cell] = cell_count_, mesh_cell[cell_count_++] = cell;
+      mesh_cell[cell_count_] = cell, compact_cell_[cell] = ++cell_count_;
     }
   }
   archive.column(rows.nodes, "mass", mass);
@@ -106,7 +106,7 @@ typename FilledGrid<dim>::Rows FilledGrid<dim>::serialize(Archive &archive) {
       const double *figure = &figures[c * (dim * dim + 1)];
       for (Vec<dim> &gradient : shape[c].gradient) std::copy_n(figure, dim, gradient.begin()), figure += dim;
       shape[c].volume = *figure;
-      for (int k = 0; k <= dim; ++k) shape[c].node[k] = compact_node_[mesh.cells[cell].node[k]];
+      for (int k = 0; k <= dim; ++k) shape[c].node[k] = find_node(mesh.cells[cell].node[k]);
       size[c] = element_size_of(cell), patch[c] = mesh.patch[cell];
     }
   return rows;

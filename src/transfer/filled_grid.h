@@ -32,17 +32,16 @@ class FilledGrid {
   void clear();
   /// Compact number of a mesh cell, which is the last one on first use: its sums over particles are then to be set.
   [[gnu::always_inline]] int enter_cell(int cell) {
-    int compact = compact_cell_[cell];
-    if (compact < 0) {
-      compact_cell_[cell] = compact = cell_count_++, mesh_cell[compact] = cell;
+    if (compact_cell_[cell] == 0) {
+      mesh_cell[cell_count_] = cell, compact_cell_[cell] = ++cell_count_;
       for (int node : mesh_->cells[cell].node) enter_node(node);
     }
-    return compact;
+    return find_cell(cell);
   }
   /// Compact number of a mesh cell, -1 when it holds nothing.
-  int find_cell(int mesh_cell) const { return compact_cell_[mesh_cell]; }
+  int find_cell(int mesh_cell) const { return compact_cell_[mesh_cell] - 1; }
   /// Compact number of a mesh node, -1 when no filled cell has it.
-  int find_node(int mesh_node) const { return compact_node_[mesh_node]; }
+  int find_node(int mesh_node) const { return compact_node_[mesh_node] - 1; }
   /// Once all cells are entered: enters nodes that only other ranks have filled, and places cells and nodes as they are
   /// in the mesh; collective.
   void complete();
@@ -74,13 +73,13 @@ class FilledGrid {
  private:
   double element_size_of(int mesh_cell);
   void enter_node(int node) {
-    if (compact_node_[node] < 0) mesh_node[node_count_] = node, compact_node_[node] = node_count_++;
+    if (compact_node_[node] == 0) mesh_node[node_count_] = node, compact_node_[node] = ++node_count_;
   }
 
   const BackgroundMesh<dim> *mesh_;
   int node_count_ = 0, cell_count_ = 0;
-  std::vector<int> compact_node_, compact_cell_;
-  std::vector<double> element_size_;  ///< of mesh cells that were filled before, otherwise 0 [m]
+  std::vector<int> compact_node_, compact_cell_;  // of the mesh: compact number plus one, 0 where it holds nothing
+  std::vector<double> element_size_;              ///< of mesh cells that were filled before, otherwise 0 [m]
   std::vector<double> staging_;
   Halo halo_;
 };

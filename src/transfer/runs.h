@@ -55,7 +55,7 @@ class RunFromNodes {
     }
     for (int a = 0; a < fluids; ++a) point_mass_[a] = from.pores.mass[a];
     if constexpr (averaged) {
-      const int point = from.points.of_cell[mesh_cell], count = body.history_count();
+      const int point = from.points.find(mesh_cell), count = body.history_count();
       stress = from.points.stress + point * components;
       const double *change = from.change + point * (1 + fluids + count);
       growth_ = change[0], content = change + 1, gain_ = change + 1 + fluids;

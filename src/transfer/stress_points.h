@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/room.h"
+
 namespace talus {
 
 struct PointSet {
@@ -19,14 +21,18 @@ struct PointSet {
   std::vector<int> own_cell;
   std::vector<double> own_stress, own_history, own_volume, own_limit, own_cohesion_share, own_friction_share;
   std::vector<double> start_history, start_volume;  ///< at the remap; particles gain the difference
-  std::vector<int> of_cell;                         ///< [mesh cells] point of a cell, -1: none
 
+  /// Makes room for the points of `cells` mesh cells.
+  void make_room_in(int cells) { make_room(number_, cells); }
+  /// The point of a mesh cell, -1 where there is none.
+  int find(int mesh_cell) const { return number_[mesh_cell] - 1; }
   /// The point of a mesh cell, which is the last one on first use: its sums are then to be set.
   int enter(int mesh_cell, int compact_cell) {
-    int &point = of_cell[mesh_cell];
-    if (point < 0) point = count++, own_cell[point] = compact_cell;
-    return point;
+    if (number_[mesh_cell] == 0) own_cell[count] = compact_cell, number_[mesh_cell] = ++count;
+    return find(mesh_cell);
   }
+  /// The mesh cell has no point any more.
+  void leave(int mesh_cell) { number_[mesh_cell] = 0; }
   /// Turns sums over particles into means weighted by volume, where the Lagrangian part starts.
   void start(int components, int history_count) {
     for (int q = 0; q < count; ++q) {
@@ -37,6 +43,9 @@ struct PointSet {
     std::copy_n(own_history.begin(), count * history_count, start_history.begin());
     std::copy_n(own_volume.begin(), count, start_volume.begin());
   }
+
+ private:
+  std::vector<int> number_;  ///< [mesh cells] point plus one, 0 where there is none
 };
 
 }  // namespace talus
