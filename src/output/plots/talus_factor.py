@@ -12,6 +12,7 @@ import talus_style as style
 BRIGHT = 0.97  # share of the soil that shears less than the end of the colour scale
 ARROWS = 22  # squares over the longer side of the soil, with an arrow each
 LONGEST = 1.3  # length of an arrow over the side of its square
+TOO_FAR = 0.2  # displacement over the height of the soil, beyond which no equilibrium of small strains can be trusted; also in factor_of_safety.cpp
 MOVES = 0.1  # of the largest displacement: less has no arrow
 WIDTH, BESIDE, AROUND = 9.0, 1.9, 1.5  # of the picture, left and right of the soil, above and below it [inch]
 
@@ -47,8 +48,8 @@ def factor_lines(factor):
     if not factor["factor_of_safety"]["decided"]:
         lines.append("Trials between the two ends found neither an equilibrium nor a mechanism, so there is no number.")
     for stage in factor["stages_without_equilibrium"]:
-        lines.append(f"Warning: stage {stage} found no equilibrium. The factor does not depend on it; displacement and stress of that "
-                     "stage are not those of this soil.")
+        lines.append(f"Warning: stage {stage} found no equilibrium, so the search began out of balance: the factor is doubtful, and displacement and "
+                     "stress of that stage are not those of this soil.")
     return lines
 
 
@@ -58,7 +59,7 @@ def draw_factor(results, folder):
     if factor is None:
         return []
     headline = f"Factor of safety {in_words(factor['factor_of_safety'])}"
-    pictures = [("displacement against factor", draw_displacement(factor, headline, results.title, folder / "factor_displacement.png"))]
+    pictures = [("displacement against factor", draw_displacement(factor, headline, results.title, folder / "factor_displacement.png", height_of(results)))]
     if factor["mechanisms"][0]["slip_surface_m"] and results.snapshots[-1].position().shape[1] == 2:
         pictures.insert(0, ("mechanism and slip surface", draw_mechanism(results, factor, headline, folder / "factor_mechanism.png")))
     return pictures
@@ -117,7 +118,12 @@ def draw_mechanism(results, factor, headline, path):
     return style.save(figure, path)
 
 
-def draw_displacement(factor, headline, title, path):
+def height_of(results):
+    """Of the soil at the start [m]."""
+    return float(np.ptp(results.snapshots[0].position()[:, results.up_axis()]))
+
+
+def draw_displacement(factor, headline, title, path, height=np.inf):
     """Largest displacement of the trials in equilibrium, and lines at the factors for which it grows without bound. Trials with psi = phi go on from
     the last state with psi < phi: those that moved no further have no displacement of their own and are diamonds at that of this state."""
     figure, axes = plt.subplots(figsize=(7.6, 4.0), layout="constrained")
@@ -135,6 +141,9 @@ def draw_displacement(factor, headline, title, path):
             axes.axvline(failed, color=colour, lw=0.8, ls=":", label=f"mechanism, {name}, the lowest at {failed:.4g}" if k == 0 else None)
         for k, open_one in enumerate(sorted(t["factor"] for t in trials if t["outcome"] == "undecided")):
             axes.axvline(open_one, color=style.ACCENT, ls="--", lw=0.8, label="undecided" if k == 0 else None)
+    if any(t["outcome"] == "equilibrium" and t["displacement_m"] > TOO_FAR * height for t in factor["trials"]):
+        axes.axhline(TOO_FAR * height, color=style.SOFT, lw=0.8)
+        axes.set_title(f"above the line ({100 * TOO_FAR:g} % of the height of the soil) no equilibrium of small strains can be trusted", loc="left", fontsize=7.5, color=style.SOFT)
     axes.set_xlabel("factor by which strength is divided"), axes.set_ylabel("largest displacement [m]")
     style.headline(figure, headline, title)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2, fontsize="small")  # lines at the factors would run through its words

@@ -80,7 +80,8 @@ def key_results(results):
     """[(what, number, note)] that a reader wants first."""
     last = results.snapshots[-1]
     factor = read_factor(results)
-    found = [] if factor is None else [("Factor of safety", short(factor["factor_of_safety"]), ends_of(factor["factor_of_safety"]))]
+    found = [] if factor is None else [("Factor of safety", short(factor["factor_of_safety"]), ends_of(factor["factor_of_safety"]) + doubt(factor))]
+    lost = (factor or {}).get("stages_without_equilibrium", ())
     found.append(("Particles", thousands(len(last.position())), ", ".join(results.bodies)))
     when = "at the end" if factor is None else "before the strength is reduced"
     without = ", without the soil that left the mesh" if results.escaped and len(results.escaped.time) else ""
@@ -92,7 +93,10 @@ def key_results(results):
         found.append(("Largest displacement", quantity(largest_displacement(last), "m"), f"of 99.9 % of the mass; of any particle {parts}{without}" + f"; {when}" * (factor is not None)))
         if "volume" in last:
             came_to = outcome(results)
-            found.append((f"State {when}", came_to["state"], in_words(came_to, came_to["cell_m"]) + motion_at_end(last)))
+            if lost:
+                found.append((f"State {when}", "no equilibrium", f"stage {', '.join(lost)} found none: displacements are those of the last state on the way to its loads"))
+            else:
+                found.append((f"State {when}", came_to["state"], in_words(came_to, came_to["cell_m"]) + motion_at_end(last)))
             volume = came_to["volume_of_slide_m3"]
             note = "no soil slides" if volume is None else f"moved more than a tenth of the largest; {quantity(came_to['travel_distance_m'], 'm')} from rear to front"
             found.append(("Sliding volume", quantity(volume or 0.0, results.per_metre("m³")), note + without))
@@ -124,6 +128,12 @@ def key_results(results):
 
 def ends_of(bracket):
     return f"equilibrium with strength divided by {bracket['equilibrium']:.4g}, a mechanism with {bracket['mechanism']:.4g}"
+
+
+def doubt(factor):
+    """What makes the number doubtful, in words; empty where nothing does."""
+    lost = factor.get("stages_without_equilibrium")
+    return f"; doubtful: stage {', '.join(lost)} found no equilibrium, so the search began out of balance" if lost else ""
 
 
 def motion_at_end(last):

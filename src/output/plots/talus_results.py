@@ -247,10 +247,13 @@ class History:
 
     def without(self, stage):
         """The same without the rows of a stage."""
-        kept = np.array([name != stage for name in self.stage], bool)
+        return self.rows(np.flatnonzero([name != stage for name in self.stage]))
+
+    def rows(self, kept):
+        """The same with these rows alone, by their numbers."""
         other = copy.copy(self)
         other.time, other.step = self.time[kept], None if self.step is None else self.step[kept]
-        other.stage = [name for name in self.stage if name != stage]
+        other.stage = [self.stage[k] for k in kept]
         other.columns = {name: values[kept] for name, values in self.columns.items()}
         return other
 
@@ -333,6 +336,14 @@ class Line:
         if name not in self.columns:
             raise unknown("column", name, self.columns)
         return self.columns[name]
+
+    def without(self, stage):
+        """The same without the rows of a stage."""
+        other = copy.copy(self)
+        kept = np.flatnonzero([name != stage for name in self.stage])
+        other.time, other.stage = self.time[kept], [self.stage[k] for k in kept]
+        other.columns = {name: values[kept] for name, values in self.columns.items()}
+        return other
 
     def moved(self):
         """Displacement of each place since the start or the last reset [m], by axis: [times, places, axes]."""
@@ -430,6 +441,7 @@ class Results:
         other = copy.copy(self)
         other.snapshots = self._snapshots(kept)
         other.history = self.history.without(MECHANISM) if self.history else None
+        other._without = MECHANISM
         return other
 
     def snapshot_at(self, time):
@@ -440,7 +452,9 @@ class Results:
 
     def lines(self):
         """The lines that were followed with the soil: {name: Line}."""
-        return {line.name: line for line in map(Line, sorted(self.folder.glob("line_*.csv")))}
+        lines = map(Line, sorted(self.folder.glob("line_*.csv")))
+        left_out = getattr(self, "_without", None)
+        return {line.name: line.without(left_out) for line in lines}
 
     def model(self):
         """What was modelled, as run/model.json has it: soils, mesh, boundaries, water, points, stages. Raises FileNotFoundError."""
