@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """The front of a slide over time and its speed:  front.py RESULTS PICTURE
 
-The slide goes where its soil has moved on the average by the end. Displacement counts from the last reset (reset_displacement) on.
+The slide goes where its soil has moved on the average by the end. Displacement counts from the last reset (reset_displacement) on. The speed is that of
+the soil at the front: the front itself jumps where soil further on begins to belong to the slide, which is no motion.
 """
 import sys
 from pathlib import Path
@@ -15,7 +16,7 @@ MOVED = 0.05  # soil belongs to the slide if it has moved by more than this [m]
 results = Results(sys.argv[1])
 resets = [k for k, stage in enumerate(results.model()["stages"]) if stage["reset_displacement"]]
 before = {"start"} | {stage["name"] for stage in results.model()["stages"][: max(resets, default=-1) + 1]}
-snapshots = [snapshot for snapshot in results.snapshots if snapshot.stage not in before]
+snapshots = [snapshot for snapshot in results.snapshots if snapshot.stage not in before and "velocity" in snapshot]
 level = [axis for axis in range(snapshots[-1].position().shape[1]) if axis != results.up_axis()] if snapshots else []
 
 
@@ -29,7 +30,7 @@ last, moved = snapshots[-1], slides(snapshots[-1])
 way = np.average(last.values("displacement")[moved], axis=0, weights=last.values("volume")[moved])[level]
 way /= np.linalg.norm(way)  # direction on the level
 
-time, front, place = [], [], []
+time, front, place, speed = [], [], [], []
 for snapshot in snapshots:
     moved = slides(snapshot)
     if moved.any():
@@ -38,16 +39,14 @@ for snapshot in snapshots:
         time.append(snapshot.time)
         front.append(position[farthest] @ way)
         place.append(position[farthest])
-if len(time) < 2:
-    sys.exit(f"only one snapshot has soil that has moved by more than {100 * MOVED:g} cm: a speed needs two")
-speed = np.gradient(front, time)
+        speed.append(snapshot.values("velocity")[moved][farthest][level] @ way)
 plane = len(level) == 1
 towards = f"{'larger' if way[0] > 0 else 'smaller'} x" if plane else "(" + ", ".join(f"{part:.2f}" for part in way) + ")"
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.2), layout="constrained")
 left.plot(time, np.array(place)[:, 0] if plane else front)
 left.set(xlabel="time [s]", ylabel="front of the slide, x [m]" if plane else f"front of the slide towards {towards} [m]")
-right.plot(time, speed, label="front, from the snapshots")
+right.plot(time, speed, label="soil at the front, from the snapshots")
 speeds = [name for name in results.history.names() if name.endswith("_velocity_m_s")] if results.history else []
 for name in speeds:
     right.plot(results.history.time, results.history[name], label=f"{name.removesuffix('_velocity_m_s')}, from history.csv")
@@ -55,4 +54,4 @@ right.set(xlabel="time [s]", ylabel="speed [m/s]", xlim=left.get_xlim())
 right.legend()
 save(figure, Path(sys.argv[2]))
 where = ", ".join(f"{'xyz'[axis]} = {value:.2f} m" for axis, value in zip(level, place[-1]))
-print(f"the slide goes towards {towards}; the front ends at {where}; its largest speed is {max(speed):.2f} m/s")
+print(f"the slide goes towards {towards}; the front ends at {where}; the largest speed of the soil there is {max(speed):.2f} m/s")

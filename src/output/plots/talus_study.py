@@ -25,7 +25,6 @@ from talus_sweep import number, outcomes, plane, title_of, title_of_runs
 from talus_table import folded, lines_of
 from talus_units import with_unit, words
 
-NO_SLIDE = ("travel_distance_m", "volume_of_slide_m3", "depth_of_slide_m")  # 0 where the slope stands
 SHOWN = ("factor_of_safety", "load_time_of_failure_s", "travel_distance_m", "largest_displacement_m")
 MET, NOT_MET, UNKNOWN = 1, 0, -1
 MANY = 6  # cases: more have no pictures of their fits
@@ -287,8 +286,6 @@ def main():
         runs = list(csv.DictReader(file))
     rows, in_plane = outcomes(given.folder, runs), plane(given.folder, runs)
     for row in rows:
-        if row.get("state") == STANDS:
-            row |= {name: 0.0 for name in NO_SLIDE}
         row |= {measure: finite(float(row[measure] or "nan")) for measure in design["measures"]}
         row |= {f"meets_{criterion['name']}": {MET: "yes", NOT_MET: "no", UNKNOWN: ""}[state(row, criterion)] for criterion in design["criteria"]}
     names = list(dict.fromkeys(key for row in rows for key in row))

@@ -19,6 +19,7 @@ from talus_style import plt
 from talus_table import lines_of
 from talus_units import with_unit, words
 
+NO_SLIDE = ("travel_distance_m", "volume_of_slide_m3", "depth_of_slide_m")  # 0 where the slope stands
 LEFT_OUT = ("cell_m", "deepest_at_x_m")  # outcomes that no chart shows
 TITLES = {"load_time_of_failure_s": "time t of the loads at failure [s]", "travel_distance_m": "travel distance, from the rear of the slide to its front [m]",
           "volume_of_slide_m3": "volume of the slide [m³]", "moving_volume_m3": "volume that moves [m³]", "depth_of_slide_m": "depth of the slip surface [m]"}
@@ -65,7 +66,7 @@ def named(outcome, in_plane):
 
 
 def outcomes(folder, runs):
-    """The runs with what they came to; a run that broke off has none. `runs` are the rows of runs.csv; all their columns but the folder are kept."""
+    """The runs with what they came to; a run that broke off has none, and a slope that stands a slide of size 0. `runs` are the rows of runs.csv; all their columns but the folder are kept."""
     ended = {run["folder"]: Results(folder / run["folder"]) for run in runs if not run["failure"] and not factor_file(folder, run).exists()}
     rows = []
     for run in runs:
@@ -78,6 +79,8 @@ def outcomes(folder, runs):
             row |= {key: value for key, value in outcome(results).items() if key != "cell_m"}
             for name, speed in (results.history.groups().get(("velocity", "m/s"), {}) if results.history else {}).items():
                 row[f"{name}_largest_speed_m_s"] = float(np.nanmax(speed)) if np.isfinite(speed).any() else None
+            if row["state"] == STANDS:
+                row |= {name: 0.0 for name in NO_SLIDE}
         rows.append(row)
     return rows
 
@@ -108,13 +111,21 @@ def charted(rows, in_plane=False):
 
 MARKS = {FAILS: ("o", "full"), MOVES: ("s", "left"), STANDS: ("o", "none"), None: ("X", "full")}  # marker and how it is filled; None: the run broke off
 LEGEND = {FAILS: "the slope fails", MOVES: "it moves by less than a cell", STANDS: "it stands", None: "the run broke off"}
+NEVER = "at the upper edge: it did not fail by the end"
 
 
-def mark(axes, x, y, state, colour):
+def mark(axes, x, y, state, colour, never=False):
+    """`never`: at the upper edge, whatever y."""
     shape, fill = MARKS[state]
     broken = state is None
     axes.plot(x, y, shape, color=style.SOFT if broken else colour, ms=6 if broken else 4.5, fillstyle=fill, mfc=None if fill != "none" else "white",
-              markerfacecoloralt="white", ls="", clip_on=False, zorder=3, transform=axes.get_xaxis_transform() if broken else axes.transData)
+              markerfacecoloralt="white", ls="", clip_on=False, zorder=3, transform=axes.get_xaxis_transform() if broken or never else axes.transData)
+
+
+def never_failed(rows, charts):
+    """Runs that have ended without the failure whose load time a chart shows, while others have it."""
+    shown = any("load_time_of_failure_s" in of.values() for _, of in charts)
+    return [row for row in rows if shown and not row["failure"] and row.get("load_time_of_failure_s") is None and "state" in row]
 
 
 def draw_charts(axes, rows, charts):
@@ -137,9 +148,11 @@ def draw_charts(axes, rows, charts):
                 one.plot(x, y, ("-", "--", ":", "-.")[n % 4 if len(of) > 1 else 0], color=colour, lw=1.1, label=legend)
                 for a, b, state in known:
                     mark(one, a, b, state, colour)
-        for x, row in zip(place, rows):
+        for i, (x, row) in enumerate(zip(place, rows)):
             if row["failure"]:
                 mark(one, x, 0, None, style.SOFT)
+            elif "load_time_of_failure_s" in of.values() and row in never_failed(rows, charts):
+                mark(one, x, 1, row["state"], style.LINES[series.index(line[i]) % len(style.LINES)], never=True)
         if any(any(each) for each in (of, series[1:])):
             one.legend(fontsize=7.5)
         one.set_xlabel(textwrap.fill(axis_title(rows), 38, break_on_hyphens=False))
@@ -148,8 +161,12 @@ def draw_charts(axes, rows, charts):
         one.set_ylim(min(0, low), high + 0.06 * (high - min(0, low)))
         if numeric and min(place) > 0 and max(place) > 20 * min(place):
             one.set_xscale("log")
+            one.set_xlim(min(place) ** 1.05 / max(place) ** 0.05, max(place) ** 1.05 / min(place) ** 0.05)
             style.few_log_ticks(one)
+        elif numeric and max(place) > min(place):  # the same for all outcomes, also where few runs have a value
+            one.set_xlim(min(place) - 0.05 * (max(place) - min(place)), max(place) + 0.05 * (max(place) - min(place)))
         if not numeric:
+            one.set_xlim(-0.05 * (len(choices) - 1) - 0.05, 1.05 * (len(choices) - 1) + 0.05)
             one.set_xticks(range(len(choices)), [textwrap.fill(choice, 14) for choice in choices])
 
 
@@ -175,6 +192,8 @@ def draw(rows, path, in_plane=False, title=""):
     states = {row.get("state") for row in rows}
     handles = [plt.Line2D([], [], marker=MARKS[state][0], color=style.SOFT, ls="", ms=5, fillstyle=MARKS[state][1], markerfacecoloralt="white",
                           mfc="white" if MARKS[state][1] == "none" else None, label=LEGEND[state]) for state in MARKS if state in states]
+    if any(never_failed(part, charts) for part, charts in parts):
+        handles.append(plt.Line2D([], [], ls="", label=NEVER))
     keys = dict.fromkeys(words(row["key"].rpartition(".")[2]) for row in rows)
     style.headline(figure, f"Outcomes against {', '.join(filter(None, keys)) or 'the series'}", title)
     style.legend_below(figure, handles)

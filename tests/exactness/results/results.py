@@ -3,6 +3,8 @@ results.py PROGRAM SOURCES"""
 
 import csv
 import pathlib
+import re
+import runpy
 import shutil
 import subprocess
 import sys
@@ -21,6 +23,20 @@ from talus_results import Results, Table  # noqa: E402
 LOADED = set(sys.modules) - loaded
 SCENE = SOURCES / "docs/guide/slope.toml"
 COARSE = ["mesh.size=0.8", "output.line.down.points=[[12, 5], [12, 0.5]]"]
+
+
+def rows_of(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def runpy_of(script, *words):
+    """The names of a script after it has run here."""
+    before, sys.argv = sys.argv, [str(script), *map(str, words)]
+    try:
+        return runpy.run_path(str(script))
+    finally:
+        sys.argv = before
 
 
 class Module(unittest.TestCase):
@@ -101,6 +117,9 @@ class Module(unittest.TestCase):
         self.assertIn("the front ends at x = ", front)
         self.assertIn("towards larger x", front)
         self.assertAlmostEqual(float(front.split("=")[1].split()[0]), self.results.snapshots[-1].position()[self.moved(), 0].max(), delta=0.01)
+        fastest = max(np.linalg.norm(snapshot.values("velocity"), axis=1).max() for snapshot in self.results.snapshots)
+        speed = float(re.search(r"speed of the soil there is (\S+) m/s", front)[1])
+        self.assertTrue(0 < speed < fastest + 0.005, (speed, fastest))  # two digits; the front jumps where soil further on begins to count
         profile = self.call(python, "-B", examples / "profile.py", self.slope, "displacement", 12, self.folder / "profile.png", 5, 1e9)
         self.assertEqual(len(profile.splitlines()), 2)
         compared = self.folder / "compared"
@@ -110,6 +129,23 @@ class Module(unittest.TestCase):
         self.assertEqual((list(table["value"]), list(table["series"]), len(table)), ([8, 17], ["residual"] * 2, 2))
         self.refused(KeyError, "did you mean travel_distance_m", table.__getitem__, "travel_distanc_m")
         self.assertIn("2 runs", self.call(python, "-B", examples / "outcomes.py", compared, self.folder / "outcomes.png"))
+        # two keys, and a run without a slide's distance: as if the same runs belonged to two levels of water
+        for name in ("runs.csv", "sweep.csv"):
+            head, *lines = (compared / name).read_text().splitlines()
+            both = [re.sub(r"body.clay.residual_friction_angle=", f"water.level={level} \\g<0>", line) for level in (0, 3) for line in lines]
+            (compared / name).write_text("\n".join([head, *both]) + "\n")
+        table = rows_of(compared / "sweep.csv")
+        table[0]["travel_distance_m"] = ""
+        with open(compared / "sweep.csv", "w", newline="") as file:
+            writer = csv.DictWriter(file, table[0])
+            writer.writeheader()
+            writer.writerows(table)
+        said = self.call(python, "-B", examples / "outcomes.py", compared, self.folder / "two.png")
+        self.assertIn("4 runs; the slide travels by ", said)
+        self.assertNotIn("nan", said)
+        drawn = runpy_of(examples / "outcomes.py", compared, self.folder / "two.png")
+        self.assertEqual([text.get_text() for text in drawn["right"].get_legend().get_texts()],
+                         [f"residual, water.level={level}: {angle}" for level in (0, 3) for angle in (8, 17)])
         for name in ("front", "profile", "outcomes"):
             self.assertGreater((self.folder / f"{name}.png").stat().st_size, 10000)
 
