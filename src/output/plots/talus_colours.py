@@ -5,23 +5,34 @@ import numpy as np
 from matplotlib.colors import LogNorm, Normalize, PowerNorm
 
 import talus_style as style
+from talus_results import MECHANISM
 from talus_units import readable_unit
 
 FAINT = 0.02  # values below this share of a scale that begins with nothing have the colour of soil, so that its shape and its layers are seen
 ZERO = 1e-6  # the same of a field that takes both signs: its scale is pale at 0, and where it passes through 0 is no place without it
 FAINT_ROOT = 0.05  # the same of a scale that is even in the square root, on which more is seen
+# What is less in all pictures is nothing: the mesh cannot tell a motion by a thousandth of the spacing of particles, which is less than a pixel, from the
+# rest of a stress wave; and a cell sheared by 0.001 has slipped by a thousandth of its size.
+STILL = 1e-3  # displacement over the spacing of particles
+INTACT = 1e-3  # plastic strain
 EVEN = 5.0  # the scale of mobilised friction begins at a multiple of this [deg]
 
 
 class Colours:
     """The scale that all pictures of a field share: from 0, or the least value if negative, to nearly the largest. A field that takes both signs has a
     scale with two colours that is pale at 0. That of plastic strain is even in its square root, so that the thin band at failure is seen beside the large
-    strain of the slide; that of mobilised friction begins below nearly all soil under stress, since most of it differs by a few degrees."""
+    strain of the slide; that of mobilised friction begins below nearly all soil under stress, since most of it differs by a few degrees. Displacement and
+    plastic strain that are next to nothing in all pictures have the colour of soil, and `nothing` says how large they are; `spacing` is that of particles [m].
+    """
 
-    def __init__(self, field, snapshots, log=False):
+    def __init__(self, field, snapshots, log=False, spacing=0.0):
         values = np.concatenate([snapshot.scalar(field)[0] for snapshot in snapshots])
         values = values[np.isfinite(values)]
         low, high = np.percentile(values, [0.1, 99.9]) if len(values) else (0.0, 0.0)
+        floor = floor_of(field, snapshots, spacing)
+        self.nothing = said_of_nothing(field, np.abs(values).max(initial=0.0)) if floor and max(-low, high) < floor else ""
+        if self.nothing:
+            low, high = min(np.sign(low), 0.0) * floor, floor
         self.factor, self.unit = readable_unit(max(abs(low), abs(high)), snapshots[0].scalar(field)[1])
         low, high = -rounded_up(-min(low, 0.0) * self.factor), rounded_up(max(high, 0.0) * self.factor)
         signed = min(-low, high) > FAINT * max(-low, high)
@@ -44,6 +55,8 @@ class Colours:
         self.norm = LogNorm(1e-3 * high, high, clip=True) if log and low == 0 else PowerNorm(0.5, 0, high) if self.rooted else \
             Normalize(-largest, largest) if signed else Normalize(low, high)
         self.faint = 0.5 if self.names else float(self.norm.inverse(FAINT_ROOT if self.rooted else FAINT)) if low == 0 else (ZERO if signed else FAINT) * largest  # the least size that has a colour
+        if self.nothing:
+            self.faint, self.above, self.below = np.inf, False, False
 
     def plain(self, values):
         """Which values have the colour of soil."""
@@ -51,6 +64,8 @@ class Colours:
 
     def in_words(self, soil="in the colour of its soil"):
         """What has the colour of soil, which `soil` names."""
+        if self.nothing:
+            return f"{soil}: all of it"
         if self.names or self.signed:
             return f"{soil}: {self.names[0] if self.names else 0}"
         return f"{soil}: below {self.faint:.2g} {self.unit}".rstrip()
@@ -67,6 +82,19 @@ class Colours:
             axes.set_ylim(*self.shown)
         axes.set_title(self.unit, fontsize=9, pad=6)
         return axes
+
+
+def floor_of(field, snapshots, spacing):
+    """The size below which a field is nothing; 0 without such a size, as of a mechanism, whose size is free."""
+    floors = {"displacement": STILL * spacing, "plastic_strain": INTACT}
+    floor = floors.get(field, floors.get(field.rpartition("_")[0], 0.0))  # also of displacement_x
+    return 0.0 if floor and any(snapshot.stage == MECHANISM for snapshot in snapshots) else floor
+
+
+def said_of_nothing(field, largest):
+    """"nothing moved: at most 0.12 mm"."""
+    factor, unit = readable_unit(largest, "m") if field.startswith("displacement") else (1.0, "")
+    return f"{'nothing moved' if unit else 'nothing sheared'}: at most {factor * largest:.2g} {unit}".rstrip()
 
 
 def rounded_up(value):

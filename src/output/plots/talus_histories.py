@@ -5,6 +5,7 @@ import numpy as np
 from matplotlib.ticker import FixedLocator, MaxNLocator
 
 import talus_style as style
+from talus_moments import RESET, after, last_reset
 from talus_results import ESCAPED
 from talus_units import at_time, capital, clock, readable_unit, with_unit, words
 
@@ -15,11 +16,14 @@ OF_ALL_SOIL = ("J", "W", "N", "kg", "kg m/s")
 
 def draw_histories(results, folder):
     """history_QUANTITY.png of each group of columns that varies, and energy.png. Returns [(quantity, path)]."""
-    history = results.history
-    if history is None or len(history.time) < 2:
+    whole = results.history
+    if whole is None or len(whole.time) < 2:
         return []
-    pictures = []
-    for (quantity, unit), lines in history.groups().items():
+    pictures, reset = [], last_reset(results)
+    since = whole.rows(after(reset, whole.time)) if reset else whole
+    for (quantity, unit), lines in whole.groups().items():
+        history = since if quantity in RESET else whole  # what is set to 0 begins there, so that the settlement before does not set the scale
+        lines = history.groups()[quantity, unit]
         if quantity in ELSEWHERE or quantity.startswith("stress_") or not any(changes(values) for values in lines.values()):
             continue
         if quantity == "energy":
@@ -28,7 +32,8 @@ def draw_histories(results, folder):
             pictures.append((quantity, draw_ledger(history, quantity, lines, results.title, results.per_metre(""), folder / f"{quantity}.png")))
         else:
             path = folder / f"history_{quantity}.png"
-            pictures.append((quantity, draw_curves(history, quantity, unit, lines, results.title, results.per_metre(""), path, base_friction(results.scene, quantity))))
+            pictures.append((quantity, draw_curves(history, quantity, unit, lines, results.title, results.per_metre(""), path, base_friction(results.scene, quantity),
+                                                  reset[1] if reset and history.time[0] > reset[0] else "")))
     return pictures
 
 
@@ -49,12 +54,15 @@ def base_friction(scene, quantity):
         return None
 
 
-def draw_curves(history, quantity, unit, lines, title, per, path, tan_phi=None):
+def draw_curves(history, quantity, unit, lines, title, per, path, tan_phi=None, reset=""):
+    """`reset` is the stage at whose end the quantity was last set to 0."""
     figure, axes = plt.subplots(figsize=(7.6, 3.7))
     plot_lines(axes, history, lines, unit, words(quantity), per)
     if tan_phi is not None:
         axes.axhline(tan_phi, color=style.SOFT, lw=0.9, ls=(0, (4, 2)), zorder=1)
         axes.annotate(f"tan φ = {tan_phi:.3g}", (1.01, tan_phi), xycoords=("axes fraction", "data"), fontsize=8, color=style.SOFT, va="center")
+    if reset:
+        figure.text(0.985, 0.1 / figure.get_figheight(), f"since the end of stage {reset}", fontsize=7.5, color=style.SOFT, ha="right")
     return finish(figure, [axes], history, capital(words(quantity)), title, path)
 
 
@@ -138,7 +146,7 @@ def mark_stages(axes, history, named):
 def finish(figure, axes, history, headline, title, path):
     for k, one in enumerate(axes):
         mark_stages(one, history, named=k == 0)
-    time_axis(axes[-1], history.time[-1])
+    time_axis(axes[-1], history.time[-1], history.time[0])
     height = figure.get_figheight()
     figure.subplots_adjust(left=0.1, right=0.82, bottom=0.48 / height, top=1 - 0.72 / height, hspace=0.12)
     figure.text(0.1, 1 - 0.24 / height, headline, fontsize=12, fontweight="bold", va="center")

@@ -113,7 +113,6 @@ def draw_line(results, line, path, times):
             mark_states(axes[0, 1], where, line, row, upright)
     along = "elevation [m]" if upright else "distance along the line [m]"
     name(axes[0, 0], along, with_unit("level displacement" if upright else "displacement", unit), upright)
-    axes[0, 0].legend(fontsize=7.5)
     if reset and line.time[rows[0]] > reset[0]:
         axes[0, 0].set_title(f"since the end of stage {reset[1]}", loc="left", fontsize=7.5, color=style.SOFT)
     if frictional:
@@ -121,6 +120,7 @@ def draw_line(results, line, path, times):
         axes[0, 1].set_title("white elastic, yellow peak, orange softening, red residual", loc="left", fontsize=7.5, color=style.SOFT)
         draw_mean(results, line, axes[0, 2], after(reset, line.time))
     style.headline(figure, capital(words(line.name)), results.title)
+    style.legend_below(figure, axes[0, 0].get_legend_handles_labels()[0], None if frictional else 3)  # beside curves that may run anywhere
     return style.save(figure, path)
 
 

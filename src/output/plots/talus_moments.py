@@ -89,7 +89,7 @@ def telling(snapshots, field, colours, spacing):
         if same and len(a):
             moved = np.linalg.norm(snapshot.position()[b] - kept[-1].position()[a], axis=1)
             before, after = (np.nan_to_num(np.ma.filled(colours.norm(colours.factor * one.scalar(field)[0][rows]), 0.0)) for one, rows in ((kept[-1], a), (snapshot, b)))
-            same = np.percentile(moved, 99) < PART * spacing and np.percentile(np.abs(after - before), 99) < SHADE
+            same = np.percentile(moved, 99) < PART * spacing and (bool(colours.nothing) or np.percentile(np.abs(after - before), 99) < SHADE)
         if not same:
             kept.append(snapshot)
     return kept

@@ -107,7 +107,7 @@ def draw_movies(results, fields, folder, log=False):
     painter = Painter(results, snapshots, RESOLUTION)
     ffmpeg = shutil.which("ffmpeg")
     for field in fields:
-        colours = Colours(field, snapshots, log and field == "plastic_strain")
+        colours = Colours(field, snapshots, log and field == "plastic_strain", painter.spacing)
         with temporary_folder(folder) as place:
             frames = []
             for n, (snapshot, count, pace) in enumerate(film, 1):

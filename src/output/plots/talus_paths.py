@@ -72,6 +72,14 @@ def spread(heights, gap, top):
     return found
 
 
+def label_place(at, height, slope, y):
+    """Where the lower right corner of a label stands that shall be at the height `y`, of a line through (at, height): on the line, which rises to the right
+    and so leaves the label alone, and never below it."""
+    if slope <= 0:
+        return at, max(y, height)
+    return (at, height) if y > height else (at - (height - y) / slope, y)
+
+
 def draw_stress_paths(results, folder):
     """stress_paths.png: deviator over mean effective stress with the strength in triaxial compression, and mobilised friction over time.
     Returns [("stress paths", path)]; nothing without named points or with fewer than three rows of the history."""
@@ -110,10 +118,11 @@ def draw_stress_paths(results, folder):
             size, of = readable_unit(suction, "Pa")
             parts = [body] * (len(results.bodies) > 1) + [state] * (len({line[0] for line in lines}) > 1) + [f"s = {size * suction:g} {of}"] * (len({line[1] for line in lines}) > 1)
             at = reach[1] if height[1] < 1.3 * top else np.interp(1.25 * top, height, reach)
-            labels.append((", ".join(parts) or "strength", at, slope * at + factor * intercept))
-    for (text, at, height), y in zip(labels, spread(np.array([height for _, _, height in labels]), 0.055 * top, 1.3 * top)):
-        leader = {"arrowstyle": "-", "lw": 0.4, "color": style.SOFT, "shrinkA": 0, "shrinkB": 0} if abs(y - height) > 0.02 * top else None
-        left.annotate(text, (at, height), (at if leader is None else at - 0.04 * reach[1], y), fontsize=7, color=style.SOFT, ha="right", va="bottom",
+            labels.append((", ".join(parts) or "strength", at, slope * at + factor * intercept, slope))
+    for (text, at, height, slope), y in zip(labels, spread(np.array([height for _, _, height, _ in labels]), 0.055 * top, 1.27 * top)):
+        x, y = label_place(at, height, slope, y)
+        leader = {"arrowstyle": "-", "lw": 0.4, "color": style.SOFT, "shrinkA": 0, "shrinkB": 0} if slope <= 0 and y - height > 0.02 * top else None
+        left.annotate(text, (at, height), (x - 0.012 * np.ptp(reach), y + 0.012 * top), fontsize=7, color=style.SOFT, ha="right", va="bottom",
                       arrowprops=leader, bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.3})
     left.set(xlabel=f"mean effective stress p' [{unit}]", ylabel=f"q [{unit}]", xlim=reach, ylim=(0, 1.35 * top))
     said = ["open: start", "full: end", "diamond: failure, thin after it" * np.isfinite(failed), "grey: strength in triaxial compression" * bool(labels)]

@@ -27,6 +27,7 @@ MOVED = 0.8  # of the spacing of particles: an outline that is nearer to the pre
 TALLEST = 0.8  # height of a map over the width of its column
 ISLAND = 0.35  # half the width of one or two cells that are not shown as soil without a value amid others, over their size
 AROUND = 0.06  # of the size of the soil: what is shown of the mesh's bottom beside it
+ROOM = 0.28  # which the name of a point needs above it [inch]
 APART = 0.1  # crosses of particles that left the mesh [inch]
 
 
@@ -125,6 +126,7 @@ class Painter:
     def over_time(self, field, colours, snapshots, path):
         """All these times on one sheet; of times that the program has chosen those at which something else is seen."""
         shown = snapshots if self.as_asked else telling(snapshots, field, colours, self.spacing)
+        shown = snapshots[-1:] if colours.nothing and len(shown) == 1 else shown
         columns = min(2 if len(self.views) == 1 else 3, len(shown))
         return style.save(self._sheet(field, colours, shown, columns, [[0]] if len(self.views) == 1 else [[0], [self.section]]), path)
 
@@ -138,7 +140,7 @@ class Painter:
 
     def picture_of_line(self, snapshot, field, line, name, path):
         """A field in the section, and a line [n, 2] upon it, whose name stands in the title."""
-        figure = self._sheet(field, Colours(field, [snapshot]), [snapshot], 1, [[self.section]], note=f"line: {name}")
+        figure = self._sheet(field, Colours(field, [snapshot], spacing=self.spacing), [snapshot], 1, [[self.section]], note=f"line: {name}")
         axes = figure.axes[0]
         axes.plot(*line.T, color="white", lw=3.4)
         axes.plot(*line.T, color=style.ACCENT, lw=1.8)
@@ -208,7 +210,7 @@ class Painter:
         if alone and self.flat and len(self.results.bodies) > 1:
             self._name_soils(axes, snapshot, self._tiled(snapshot, k, frame), frame)
         if named_points:
-            self._mark_points(axes, view, snapshot.time)
+            self._mark_points(axes, view, snapshot.time, high[1] - ROOM * metres)
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
         if isinstance(view, Oblique):
@@ -257,8 +259,8 @@ class Painter:
         axes.fill_between(along, base, axes.get_ylim()[0], color=EARTH, linewidth=0)
         axes.plot(along, base, color=style.SOFT, linewidth=0.8)
 
-    def _mark_points(self, axes, view, time):
-        """The named points of history.csv, where they are at a time."""
+    def _mark_points(self, axes, view, time, highest):
+        """The named points of history.csv, where they are at a time; names of points that are higher than `highest` stand below them, away from the title."""
         history = self.results.history
         for name, place in (history.points(time) if history else {}).items():
             place = place[None]
@@ -266,7 +268,8 @@ class Painter:
                 continue
             at = view.flat(place)[0]
             axes.plot(*at, "o", markersize=5, markerfacecolor="white", markeredgecolor=style.INK, markeredgewidth=1.0)
-            axes.annotate(words(name), at, xytext=(6, 6), textcoords="offset points", fontsize=8.5,
+            below = at[1] > highest
+            axes.annotate(words(name), at, xytext=(6, -6 if below else 6), textcoords="offset points", va="top" if below else "baseline", fontsize=8.5,
                           bbox={"boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": "none", "alpha": 0.8})
 
     def _name_soils(self, axes, snapshot, owner, frame):
@@ -294,7 +297,10 @@ class Painter:
         tall = min(top - bottom, 3.4 / height)
         colours.bar(figure, [1 - (RIGHT - 0.22) / WIDTH, top - tall, 0.15 / WIDTH, tall])
         headline = "  ".join(filter(None, (capital(words(field)), style.SYMBOL.get(field))))
-        figure.text(LEFT / WIDTH, 1 - 0.24 / height, headline, fontsize=13, fontweight="bold", va="center")
+        written = figure.text(LEFT / WIDTH, 1 - 0.24 / height, headline, fontsize=13, fontweight="bold", va="center")
+        if colours.nothing:
+            figure.draw_without_rendering()
+            figure.text(written.get_window_extent().x1 / figure.bbox.width + 0.15 / WIDTH, 1 - 0.24 / height, colours.nothing, fontsize=10, va="center")
         right = 1 - 0.25 / WIDTH
         figure.text(right, 1 - 0.24 / height, self.results.title, fontsize=9, color=style.SOFT, va="center", ha="right")
         legend = [colours.in_words("in the colour of its soil" if self.flat else "grey")]
@@ -328,7 +334,7 @@ def draw_sections(results, fields, times, folder, log=False):
         if not any(np.isfinite(snapshot.scalar(field)[0]).any() for snapshot in chosen):
             continue  # such as the mobilised friction of soil without friction
         snapshots, painter.reset = (chosen, "") if times else since_reset(results, with_stress(results, chosen, field), field)
-        colours = Colours(field, snapshots, log and field == "plastic_strain")
+        colours = Colours(field, snapshots, log and field == "plastic_strain", painter.spacing)
         pictures.append((field, painter.large(field, colours, snapshots, folder / f"{field}_large.png"),
                          painter.over_time(field, colours, snapshots, folder / f"{field}.png")))
     return pictures

@@ -13,7 +13,8 @@ from matplotlib.colors import LinearSegmentedColormap, ListedColormap
 from matplotlib.ticker import FuncFormatter, Locator, NullFormatter
 
 INK, SOFT, FAINT, ACCENT = "#1f2933", "#616e7c", "#cbd2d9", "#0b7285"
-LINES = ("#0b7285", "#d9480f", "#5f3dc4", "#2b8a3e", "#c2255c", "#e67700", "#1864ab", "#495057")
+LINES = ("#0b7285", "#d9480f", "#5f3dc4", "#2b8a3e", "#c2255c", "#e67700", "#6f4518", "#868e96")
+EDGE = 0.12  # between titles and the edge of a chart [inch]
 RESOLUTION = 170  # dots per inch
 
 plt.rcParams.update({
@@ -90,16 +91,21 @@ def few_log_ticks(*charts):
 def headline(figure, text, title):
     """What a chart shows, and of which scene, below it where there is no room beside it; `figure` has the layout "constrained"."""
     beside = 0.13 * len(text) + 0.08 * len(title) < figure.get_figwidth()  # [inch]
-    figure.suptitle(text + "\n" * (not beside), x=0.01, ha="left", fontsize=12, fontweight="bold")
-    down = 0.05 if beside else 0.28  # from the top [inch]
-    at = {"x": 0.99, "ha": "right"} if beside else {"x": 0.01, "ha": "left"}
+    width, height = figure.get_size_inches()
+    x, y = EDGE / width, EDGE / height
+    room = EDGE + (0.24 if beside else 0.42)  # above the charts [inch]
+    figure.get_layout_engine().set(rect=(0.5 * x, 0.5 * y, 1 - x, 1 - 0.5 * y - room / height))
+    figure.suptitle(text, x=x, y=1 - y, ha="left", fontsize=12, fontweight="bold")
+    down = EDGE + (0.02 if beside else 0.24)  # from the top [inch]
+    at = {"x": 1 - x, "ha": "right"} if beside else {"x": x, "ha": "left"}
     figure.text(y=1 - down / figure.get_figheight(), s=title, va="top", fontsize=8.5, color=SOFT, **at)
 
 
-def legend_below(figure, handles):
-    """One legend of all charts, below them on the left; `figure` has the layout "constrained"."""
-    figure.supxlabel(" ", fontsize=10)  # keeps the room
-    figure.legend(handles=handles, loc="lower left", ncols=len(handles), fontsize=8)
+def legend_below(figure, handles, columns=None):
+    """One legend of all charts, below them on the left, in so many columns; `figure` has the layout "constrained"."""
+    columns = columns or len(handles)
+    figure.supxlabel("\n".join([" "] * -(-len(handles) // columns)), fontsize=10)  # keeps the room
+    figure.legend(handles=handles, loc="lower left", ncols=columns, fontsize=8)
 
 
 def program():

@@ -7,6 +7,7 @@ import types
 import unittest
 import unittest.mock
 
+import matplotlib
 import numpy as np
 
 sys.path.insert(0, sys.argv.pop(1))
@@ -24,7 +25,7 @@ from talus_histories import base_friction, draw_histories, drawn_energies  # noq
 from talus_measures import flow  # noqa: E402
 from talus_moments import chosen_snapshots, since_reset, telling, with_stress  # noqa: E402
 from talus_outcomes import FAILS, STANDS  # noqa: E402
-from talus_paths import label_of, spread  # noqa: E402
+from talus_paths import label_of, label_place, spread  # noqa: E402
 from talus_report import bases, key_results, motion_at_end, ways_out  # noqa: E402
 from talus_results import MECHANISM, NOT_ENDED, History, Results, still_moving  # noqa: E402
 from talus_sections import Painter  # noqa: E402
@@ -32,6 +33,10 @@ from talus_slip import said_of_ends, slip_surface  # noqa: E402
 from talus_soils import moved_away, painted, tints  # noqa: E402
 from talus_tiles import Frame  # noqa: E402
 from talus_views import View, views_of  # noqa: E402
+
+
+def matplotlib_colour(name):
+    return np.array(matplotlib.colors.to_rgb(name))
 
 
 class Snapshot:
@@ -108,7 +113,7 @@ class Views(unittest.TestCase):
 
 class Scales(unittest.TestCase):
     def strain(self, log=False):
-        values = types.SimpleNamespace(scalar=lambda field: (np.linspace(0, 1, 1001), "-"))
+        values = types.SimpleNamespace(stage="slide", scalar=lambda field: (np.linspace(0, 1, 1001), "-"))
         return Colours("plastic_strain", [values], log)
 
     def test_a_twentieth_of_the_largest_strain_is_seen(self):
@@ -119,8 +124,21 @@ class Scales(unittest.TestCase):
         self.assertFalse(self.strain(log=True).rooted)
         self.assertAlmostEqual(float(self.strain(log=True).norm(1e-1)), 2 / 3)
 
-    def of(self, field, values, unit="-"):
-        return Colours(field, [types.SimpleNamespace(scalar=lambda field: (np.asarray(values, float), unit))])
+    def of(self, field, values, unit="-", spacing=0.0, stage="slide"):
+        return Colours(field, [types.SimpleNamespace(stage=stage, scalar=lambda field: (np.asarray(values, float), unit))], spacing=spacing)
+
+    def test_what_is_next_to_nothing_has_the_colour_of_soil(self):
+        for field, ends, unit, said in (("displacement", (0, 1.2e-4), "m", "nothing moved: at most 0.12 mm"), ("displacement_y", (-1.2e-4, 2e-5), "m", "nothing moved: at most 0.12 mm"),
+                                        ("plastic_strain", (0, 5e-5), "-", "nothing sheared: at most 5e-05")):
+            values = np.linspace(*ends, 1001)
+            scale = self.of(field, values, unit, 0.5)  # a thousandth of the spacing is 0.5 mm
+            self.assertEqual(scale.nothing, said)
+            self.assertTrue(scale.plain(values * scale.factor).all(), field)
+            self.assertGreaterEqual(scale.shown[1] / scale.factor, 5e-4)
+            larger = self.of(field, 25 * values, unit, 0.5)
+            self.assertEqual(larger.nothing, "")
+            self.assertFalse(larger.plain(25 * values * larger.factor).all())
+            self.assertEqual(self.of(field, values, unit, 0.5, talus_results.MECHANISM).nothing, "")  # its size is free
 
     def test_mobilised_friction_is_even_and_begins_below_nearly_all_soil(self):
         scale = self.of("mobilised_friction", np.concatenate([np.zeros(500), np.linspace(12, 30, 1001)]), "deg")  # half of it without stress
@@ -165,6 +183,45 @@ class Labels(unittest.TestCase):
         self.assertEqual(list(np.argsort(placed)), list(np.argsort(lines)))
         self.assertLessEqual(placed.max(), 1.05)
         self.assertEqual(placed[2], 0.3)
+
+
+    def test_of_a_line_are_not_crossed_by_it(self):
+        for slope in (0.7, 1.4, 0.0, -0.2):
+            for wanted in (18.0, 20.0, 21.0):
+                x, y = label_place(50.0, 20.0, slope, wanted)
+                self.assertLessEqual(x, 50)
+                for left in np.linspace(0, 10, 11):  # of the lower edge of the label, which ends at x
+                    self.assertLessEqual(20 + slope * (x - left - 50) if slope > 0 else 20, y + 1e-9)
+
+    def test_of_points_near_the_upper_edge_stand_below_them(self):
+        painter = Painter.__new__(Painter)
+        painter.results = types.SimpleNamespace(history=types.SimpleNamespace(points=lambda time: {"crest": np.array([5.0, 9.9]), "toe": np.array([9.0, 2.0])}))
+        painter.low, painter.spacing = np.zeros(2), 0.5
+        figure, axes = talus_sweep.plt.subplots()
+        axes.set(xlim=(0, 10), ylim=(0, 10))
+        painter._mark_points(axes, types.SimpleNamespace(aside=lambda place: [0.0], flat=lambda place: place), 0.0, 9.5)
+        figure.canvas.draw()
+        tops = {text.get_text(): text.get_window_extent().y1 for text in axes.texts}
+        self.assertLess(tops["crest"], axes.get_window_extent().y1)
+        self.assertGreater(tops["toe"], axes.transData.transform((9, 2))[1])
+        talus_sweep.plt.close(figure)
+
+    def test_of_lines_have_colours_that_differ(self):
+        lines = np.array([matplotlib_colour(line) for line in talus_sweep.style.LINES])
+        apart = [np.linalg.norm(one - other) for k, one in enumerate(lines) for other in lines[:k]]
+        self.assertGreater(min(apart), 0.19)  # it was 0.17 of kinetic and dissipated energy, which looked alike
+
+    def test_and_titles_keep_away_from_the_edge_and_from_the_charts(self):
+        for title in ("Slope", "A title of a scene that is so long that it has no room beside the headline of the chart"):
+            figure, axes = talus_sweep.plt.subplots(figsize=(6, 3), layout="constrained")
+            axes.set_title("of the chart", loc="left")
+            talus_sweep.style.headline(figure, "Factor of safety", title)
+            figure.canvas.draw()
+            inch, own = figure.dpi, axes.get_tightbbox()
+            for box in (text.get_window_extent() for text in (figure._suptitle, *figure.texts) if text.get_text().strip()):
+                self.assertGreater(min(box.x0, figure.bbox.x1 - box.x1, figure.bbox.y1 - box.y1), 0.09 * inch, title)
+                self.assertGreater(box.y0, own.y1, title)
+            talus_sweep.plt.close(figure)
 
 
 class Paths(unittest.TestCase):
@@ -418,7 +475,22 @@ class Histories(unittest.TestCase):
     def test_the_clock_of_the_loads_has_no_picture(self):
         time = np.arange(3.0)
         history = types.SimpleNamespace(time=time, groups=lambda: {("load_time", "s"): {"": time}})
-        self.assertEqual(draw_histories(types.SimpleNamespace(history=history), None), [])
+        self.assertEqual(draw_histories(types.SimpleNamespace(history=history, scene={}, snapshots=[]), None), [])
+
+    def test_of_displacement_begin_at_the_last_reset(self):
+        history = History.__new__(History)
+        history.time, history.step, history.stage = np.arange(6.0), np.arange(6), ["start", "gravity", "gravity", "rain", "rain", "rain"]
+        history.columns = {"crest_displacement_m": np.array([0, 0.2, 0.3, 0, 1e-3, 2e-3]), "crest_velocity_m_s": np.array([0, 0.2, 0.1, 0, 1e-3, 1e-3])}
+        snapshots = [types.SimpleNamespace(time=float(time), stage=stage) for time, stage in zip(history.time, history.stage)]
+        for resets, first in ((True, 3.0), (False, 0.0)):
+            scene, seen = {"stage": [{"name": "gravity", "reset_displacement": resets}, {"name": "rain"}]}, {}
+            results = types.SimpleNamespace(history=history, scene=scene, snapshots=snapshots, title="", per_metre=lambda text: text)
+            with unittest.mock.patch.object(talus_sweep.style, "save", lambda figure, path: seen.update({path.name: figure})):
+                draw_histories(results, pathlib.Path())
+            moved, speed = (seen[f"history_{name}.png"] for name in ("displacement", "velocity"))
+            self.assertEqual((moved.axes[0].lines[0].get_xdata()[0], speed.axes[0].lines[0].get_xdata()[0]), (first, 0))
+            self.assertEqual("since the end of stage gravity" in [text.get_text() for text in moved.texts], resets)
+            self.assertEqual(max(moved.axes[0].lines[0].get_ydata()), 2.0 if resets else 0.3)  # mm or m
 
 
 class Times(unittest.TestCase):
@@ -717,7 +789,7 @@ class Charts(unittest.TestCase):
         history.time, history.step, history.stage = np.array([0.0, 1.0]), np.array([0, 1]), ["slide", "slide"]
         history.columns = {"kinetic_J": np.array([0.0, 2e3]), "crest_displacement_m": np.array([0.0, 1.0])}
         for per, unit in (("/m", "kJ/m"), ("", "kJ")):
-            results = types.SimpleNamespace(history=history, scene={}, title="", per_metre=lambda text, per=per: text + per)
+            results = types.SimpleNamespace(history=history, scene={}, snapshots=[], title="", per_metre=lambda text, per=per: text + per)
             seen = []
             with unittest.mock.patch.object(talus_sweep.style, "save", lambda figure, path: seen.append(figure)):
                 draw_histories(results, pathlib.Path())
@@ -782,6 +854,26 @@ class Charts(unittest.TestCase):
         self.assertEqual([label.get_text() for label in seen[0].axes[0].get_yticklabels()], ["friction\n20.5 to 27.5 deg"])
         self.assertEqual([text.get_text() for text in seen[0].legends[0].get_texts()], ["variable at the 10 % quantile of these runs", "at their 90 % quantile"])
         self.assertIn("fit to 40 runs", seen[0].axes[0].get_title(loc="right"))
+
+    def test_panels_of_a_key_share_its_range_and_show_standing_runs(self):
+        rows = []
+        for level in ("0", "3"):
+            for c in ("4", "7", "10"):
+                fails = level == "3" and c == "4"
+                rows.append({"series": "wet", "overrides": f"water.level={level} body.clay.cohesion={c} kPa", "key": "body.clay.cohesion", "value": c, "unit": "kPa", "failure": "",
+                             "state": FAILS if fails else STANDS, "load_time_of_failure_s": 1.3 if fails else None, "largest_displacement_m": 7.0 if fails else 1e-4,
+                             "travel_distance_m": 43.0 if fails else 0.0})
+        seen = []
+        with unittest.mock.patch.object(talus_sweep.style, "save", lambda figure, path: seen.append(figure)):
+            talus_sweep.draw(rows, "")
+        ranges = {axes.get_xlim() for axes in seen[0].axes}
+        self.assertEqual(len(ranges), 1)
+        self.assertTrue(3 < next(iter(ranges))[0] < 4 and 10 < next(iter(ranges))[1] < 11, ranges)
+        time = seen[0].axes[0]
+        upper = [float(line.get_xdata()[0]) for line in time.lines if line.get_transform() == time.get_xaxis_transform()]
+        self.assertEqual(upper, [4, 7, 10, 7, 10])  # without a failure
+        self.assertIn(talus_sweep.NEVER, [text.get_text() for text in seen[0].legends[0].get_texts()])
+        talus_sweep.plt.close(seen[0])
 
     VARIABLES = [{"name": "c", "unit": "kPa", "numeric": True, "random": True}, {"name": "rise", "unit": "m", "numeric": True, "random": False},
                  {"name": "drain", "unit": "", "numeric": False, "random": False}]
