@@ -51,7 +51,8 @@ speeds = [name for name in results.history.names() if name.endswith("_velocity_m
 for name in speeds:
     right.plot(results.history.time, results.history[name], label=f"{name.removesuffix('_velocity_m_s')}, from history.csv")
 right.set(xlabel="time [s]", ylabel="speed [m/s]", xlim=left.get_xlim())
-right.legend()
+right.set_ylim(top=1.4 * right.get_ylim()[1])  # room for the legend
+right.legend(loc="upper left")
 save(figure, Path(sys.argv[2]))
 where = ", ".join(f"{'xyz'[axis]} = {value:.2f} m" for axis, value in zip(level, place[-1]))
 print(f"the slide goes towards {towards}; the front ends at {where}; the largest speed of the soil there is {max(speed):.2f} m/s")
