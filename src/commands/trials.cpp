@@ -25,6 +25,7 @@
 #include "base/child_environment.h"
 #include "commands/commands.h"
 #include "commands/comparison.h"
+#include "commands/history_columns.h"
 #include "mesh_source.h"
 #include "output/csv.h"
 #include "physics/boundary/boundary.h"
@@ -65,7 +66,10 @@ std::string description(const TrialPlan &plan, const Trial &trial) {
   std::vector<std::string> all = plan.set;
   all.insert(all.end(), trial.overrides.begin(), trial.overrides.end());
   const Scene scene = read_wholly(plan.scene, all);
-  for (const Measure &measure : plan.measures) require_within_stages(scene, measure);
+  for (const Measure &measure : plan.measures) {
+    require_column(possible_columns(scene), measure.column);
+    require_within_stages(scene, measure);
+  }
   const std::string mesh = scene.mesh.file.empty() ? scene.mesh.section : scene.mesh.file,
                     start = scene.start_from.folder.empty() ? "" : scene.start_from.folder + "/checkpoint/header";
   return joined(plan.command) + " " + plan.scene + "\n" + joined(all) + "\n" +

@@ -27,8 +27,8 @@ struct TrialPlan {
   int jobs = 0;                             ///< runs at the same time; 0: one per core
   std::vector<std::string> command{"run"};  ///< of each run, with its options
   bool replace = false;                     ///< runs of another plan in the same folders; else they are refused
-  /// What is read off history.csv: the stages must last so long, and the first run under way that lacks a column ends
-  /// all.
+  /// What is read off history.csv: the stages must last so long, and a column that no history of the scene has is
+  /// refused before anything runs; the first run under way that lacks one ends all.
   std::vector<Measure> measures{};
   bool refusal_ends = true;  ///< a run that is refused as bad input ends all; else it is one that failed
 };

@@ -70,8 +70,9 @@ TEST_F(Study, RunsSamplesOverAGrid) {
     EXPECT_GT(std::stod(rows[i].at("max:corner_velocity_m_s")), i % 2 ? 0.4 : -1e-9);
   }
   // the speed is chosen and has no probability: each has its own, of six samples
-  EXPECT_TRUE(ending.says("speed = [\"0\", \"0\"]: corner_largest_speed_m_s above 0.4 in 0 of 6 runs, probability 0, "
-                          "95 % interval 0 to 0.4593"))
+  EXPECT_TRUE(
+      ending.says("speed = [\"0\", \"0\"]: corner_largest_speed_m_s above 0.4 in 0 of 6 runs, probability 0, "
+                  "95 % interval 0 to 0.4593"))
       << ending.output;
   EXPECT_TRUE(ending.says("in 6 of 6 runs, probability 1, 95 % interval 0.5407 to 1")) << ending.output;
   EXPECT_FALSE(ending.says("of 12 runs, probability")) << ending.output;
@@ -79,6 +80,27 @@ TEST_F(Study, RunsSamplesOverAGrid) {
   EXPECT_TRUE(ending.says("modulus and density    0.5    0.68")) << ending.output;
   for (const char *picture : {"tornado.png", "scatter.png", "exceedance.png"})
     EXPECT_TRUE(std::filesystem::exists(folder_ / ("out/" + std::string(picture)))) << picture;
+}
+
+/// A misspelt measure is refused before anything runs, and every column that a run has is a measure.
+TEST_F(Study, KnowsTheColumnsOfItsRunsBeforehand) {
+  const auto measured = [&](const std::string &measures) {
+    return study({"--no-plot", "--set", "measures=[" + measures + "]", "--set", "samples=1"});
+  };
+  const Ending ending = measured("\"max:cornr_velocity_m_s\"");
+  EXPECT_EQ(ending.status, 2);
+  EXPECT_TRUE(ending.says("history.csv has no column cornr_velocity_m_s; did you mean `corner_velocity_m_s`?"))
+      << ending.output;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  ASSERT_EQ(measured("\"corner_x_m\"").status, 0);
+  std::string all;
+  const auto history = csv_table(folder_ / "out/run00000/history.csv");
+  ASSERT_FALSE(history.empty());
+  for (const auto &[name, value] : history.front())
+    if (name != "stage") all += (all.empty() ? "\"" : ", \"") + name + "\"";
+  EXPECT_NE(all.find("\"dissipated_J\""), std::string::npos) << all;
+  const Ending every = measured(all);
+  EXPECT_EQ(every.status, 0) << every.output;
 }
 
 TEST_F(Study, StopsAtASignalAndGoesOn) {
@@ -162,8 +184,10 @@ TEST_F(Study, EntersRunsThatFail) {
   ASSERT_EQ(rows.size(), 12u);
   EXPECT_NE(rows[1].at("failure").find("left the mesh"), std::string::npos) << rows[1].at("failure");
   EXPECT_EQ(rows[1].at("meets_moves"), "");
-  // Clopper and Pearson with none of 12 and, unknown counted as met, 6 of 12
-  EXPECT_TRUE(ending.says("probability 0, 95 % interval 0 to 0.7891; unknown in 6 runs")) << ending.output;
+  // Clopper and Pearson with none of 6 and, unknown counted as met, 6 of 6
+  EXPECT_TRUE(ending.says("in 0 of 6 runs, probability 0, 95 % interval 0 to 0.4593")) << ending.output;
+  EXPECT_TRUE(ending.says("in 0 of 0 runs, probability unknown, 95 % interval 0 to 1; unknown in 6 runs"))
+      << ending.output;
 }
 
 TEST_F(Study, ComputesFactorsOfSafety) {
