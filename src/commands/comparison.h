@@ -173,13 +173,17 @@ inline void require_column(const std::vector<std::string> &names, const std::str
     throw SceneError("history.csv has no column " + column + "; " + suggestion(column, names));
 }
 
-/// Did the run with this history.csv end with its soil at rest or in equilibrium? Its log says so of the last stage.
+/// Did the run with this history.csv end with its soil at rest, by rest_speed, or in equilibrium? Its log says so of
+/// the last stage.
 inline bool ended_at_rest(const std::string &history, const std::string &last_stage) {
   std::ifstream log(history.substr(0, history.rfind("history.csv")) + "run.log");
   const std::string rest = "  stage " + last_stage + " came to rest",
+                    slow = "  stage " + last_stage + " ended: the rms speed of all soil is below rest_speed",
                     equilibrium = "  stage " + last_stage + " is in equilibrium";
   for (std::string line; std::getline(log, line);)
-    if (line.find(rest) != std::string::npos || line.find(equilibrium) != std::string::npos) return true;
+    if (line.find(rest) != std::string::npos || line.find(slow) != std::string::npos ||
+        line.find(equilibrium) != std::string::npos)
+      return true;
   return false;
 }
 

@@ -121,9 +121,11 @@ double cell_size_in(const World<dim> &world, const Mechanism &box) {
   return dim == 2 ? std::sqrt(4 / std::sqrt(3.) * all[1] / all[0]) : std::cbrt(6 * std::sqrt(2.) * all[1] / all[0]);
 }
 
+constexpr double too_far = 0.2;  ///< displacement over the height of the soil; also in talus_factor.py
+
 /// A trial goes on from the state of the one before, and where that bears the loads with the new strength too there is
 /// nothing to iterate.
-std::string trial_in_words(const StrengthTrial &t) {
+std::string trial_in_words(const StrengthTrial &t, double height) {
   std::string text =
       "strength divided by " + rounded(t.factor) + (t.dilating ? ", psi = phi" : "") + ": " + name_of(t.outcome);
   const bool at_once = t.outcome == TrialOutcome::equilibrium && t.iterations == 0;
@@ -133,7 +135,11 @@ std::string trial_in_words(const StrengthTrial &t) {
     return text + "displacement grows without bound, and " + rounded(100 * t.surplus) +
            " % of the work of the loads finds no resistance";
   return text + "moved " + rounded(t.displacement) + " m at most since strength was first divided" +
-         (at_once ? "" : ", out-of-balance force " + rounded(t.residual));
+         (at_once ? "" : ", out-of-balance force " + rounded(t.residual)) +
+         (t.outcome == TrialOutcome::equilibrium && t.displacement > too_far * height
+              ? "; this is more than " + rounded(100 * too_far) + " % of the " + rounded(height) +
+                    " m that the soil is high, for which small strains do not count: no equilibrium that one can trust"
+              : "");
 }
 
 /// A doubt about a mechanism that is few cells high; empty if it is not.
@@ -218,6 +224,7 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   for (const BodyReport &body : bodies())
     for (int d = 0; d < dim; ++d) low[d] = std::min(low[d], body.low[d]), high[d] = std::max(high[d], body.high[d]);
   for (int d = 0; d < dim; ++d) extent = std::max(extent, high[d] - low[d]);
+  const double height = high[run_.scene.vertical()] - low[run_.scene.vertical()];
   int rank;
   MPI_Comm_rank(world.comm, &rank);
   FactorTables tables(rank == 0 ? run_.options.directory : "");
@@ -254,7 +261,7 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   };
   for (const BodySource &body : run_.scene.body) settings.kept.push_back(!body.reduce_strength);
   settings.tell = [&](const StrengthTrial &t) {
-    run_.recorder.note(trial_in_words(t));
+    run_.recorder.note(trial_in_words(t, height));
     tables.add(t);
   };
   require(talus::reduce_strength<dim>(run_.statics.problem(), world.laws, settings, &result, &stopped));
@@ -285,9 +292,11 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   if (static_cast<int>(result.further.size()) + 1 < settings.mechanisms)
     run_.recorder.note("no further mechanism was found: the rest of the soil stands while that of those found is held");
   for (const std::string &stage : result.lost_stages)
-    run_.recorder.note("warning: stage " + stage +
-                       " found no equilibrium, so the search for the factor began out of balance; the factor does not "
-                       "depend on it, but displacement and stress of that stage are not those of this soil");
+    run_.recorder.note(
+        "warning: stage " + stage +
+        " found no equilibrium, so the search for the factor began out of balance: the factor is doubtful, "
+        "and displacement and stress of that stage are not those of this soil. Search again where the "
+        "stage has an equilibrium: with other load_steps, initial_stress = \"k0\", or other cells");
   ++run_.clock.steps;
   run_.hand_to_particles();
   run_.recorder.write_history();

@@ -13,7 +13,7 @@ namespace {
 /// A named group of faces: its number among all, and whether a boundary acts on it.
 struct Group {
   int number = -1;
-  bool has_boundary = false;
+  bool has_boundary = false, slips = true;
 };
 
 /// Of each local face of a named group, by cell and face, its group; one with a boundary, where it has several.
@@ -26,9 +26,17 @@ std::map<std::pair<int, int>, Group> groups_of_faces(const World<dim> &world) {
         std::any_of(world.scene.boundary.begin(), world.scene.boundary.end(), [&](const BoundarySource &boundary) {
           return std::count(boundary.group.begin(), boundary.group.end(), names[g]);
         });
+    const bool slips = std::ranges::none_of(world.conditions.sources(), [&](const auto &source) {
+      if (!std::ranges::count(source.groups, names[g]) || source.kind.fluids_only()) return false;
+      if (source.kind.in_motion != OnSoil::support) return true;
+      Vec<dim> normal{};
+      normal[0] = 1;
+      const auto &find = source.kind.template on_soil<dim>().directions;
+      return !find || static_cast<int>(find(normal).size()) == dim;
+    });
     for (const Facet<dim> &facet : world.mesh.facets(names[g])) {
       Group &group = group_of[{facet.cell, facet.face}];
-      if (group.number < 0 || (bounded && !group.has_boundary)) group = {static_cast<int>(g), bounded};
+      if (group.number < 0 || (bounded && !group.has_boundary)) group = {static_cast<int>(g), bounded, slips};
     }
   }
   return group_of;
@@ -59,6 +67,7 @@ void MeshEnds<dim>::find_faces() {
   for (const Vec<dim> &x : world.mesh.position)
     for (int p = 0; p < planes; ++p) end[p] = std::min(end[p], -outward(p, x));
   MPI_Allreduce(MPI_IN_PLACE, end.data(), planes, MPI_DOUBLE, MPI_MIN, world.comm);
+  std::copy_n(end.begin(), planes, end_);
   const auto group_of = groups_of_faces(world);
   for (int c = 0; c < world.mesh.cell_count(); ++c)
     for (int k = 0; k <= dim; ++k) {
@@ -74,7 +83,7 @@ void MeshEnds<dim>::find_faces() {
         const auto named = group_of.find({c, k});
         const Group group = named == group_of.end() ? Group{} : named->second;
         if (!group.has_boundary && world.scene.mesh.leaving_particles == WhenOutside::remove) continue;  // it goes on
-        faces_.push_back({c, p, group.number, depth});
+        faces_.push_back({c, p, group.number, depth, group.slips});
       }
     }
 }
@@ -121,6 +130,57 @@ std::vector<std::string> MeshEnds<dim>::newly_reached(const std::string &stage) 
                         ", in stage " + stage + ": from now on " + (top ? "its height" : "its run-out") +
                         " is that of the mesh. Give the mesh more free space " + (top ? "above" : "there") +
                         ", unless a wall stands there in nature");
+  }
+  return sentences;
+}
+
+template <int dim>
+std::vector<std::string> MeshEnds<dim>::cut_off() const {
+  constexpr double along = 0.5;  // cosine of way and normal, from which on a side is in front of a slide or behind it
+  const int up = world_.scene.vertical();
+  double size[planes]{}, most[planes]{}, largest = 0, slid[dim]{};
+  int group[planes];
+  std::fill_n(group, planes, -1);
+  for (const Face &face : faces_)
+    if (face.slips && face.plane / 2 != up)
+      size[face.plane] = std::max(size[face.plane], face.depth), group[face.plane] = face.group;
+  MPI_Allreduce(MPI_IN_PLACE, size, planes, MPI_DOUBLE, MPI_MAX, world_.comm);
+  for (const auto &body : world_.bodies) {
+    const ParticleArrays<dim> &p = body->particles();
+    for (int i = 0; i < p.count; ++i) {
+      double square = 0;
+      for (int d = 0; d < dim; ++d) square += std::pow(p.position[i][d] - p.reference[i][d], 2);
+      const double moved = std::sqrt(square);
+      largest = std::max(largest, moved);
+      for (int d = 0; d < dim; ++d)
+        if (d != up) slid[d] += p.mass[i] * (p.position[i][d] - p.reference[i][d]);
+      for (int plane = 0; plane < planes; ++plane) {
+        const double outward = (plane % 2 ? 1 : -1) * p.reference[i][plane / 2];
+        if (-end_[plane] - outward <= size[plane]) most[plane] = std::max(most[plane], moved);
+      }
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, most, planes, MPI_DOUBLE, MPI_MAX, world_.comm);
+  MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, world_.comm);
+  MPI_Allreduce(MPI_IN_PLACE, slid, dim, MPI_DOUBLE, MPI_SUM, world_.comm);
+  MPI_Allreduce(MPI_IN_PLACE, group, planes, MPI_INT, MPI_MAX, world_.comm);
+  double way = 0;
+  for (const double part : slid) way += part * part;
+  std::vector<std::string> sentences;
+  for (int plane = 0; plane < planes; ++plane) {
+    if (size[plane] == 0 || largest <= size[plane] || most[plane] <= cut_share * largest) continue;
+    const double outward = (plane % 2 ? 1 : -1) * slid[plane / 2] / std::sqrt(way > 0 ? way : 1);
+    if (std::abs(outward) < along) continue;
+    const std::string &name = group[plane] < 0 ? "" : world_.mesh.group_names()[static_cast<std::size_t>(group[plane])];
+    sentences.push_back("the end of the mesh " +
+                        (name.empty() ? std::string(plane % 2 ? "at the largest " : "at the smallest ") +
+                                            "xyz"[plane / 2] + std::string(", which no group names,")
+                                      : "at the group " + name) +
+                        " cuts the slide off: soil that lay there has moved by " + rounded(most[plane]) + " m, " +
+                        rounded(100 * most[plane] / largest) + " % of the largest displacement (" + rounded(largest) +
+                        " m; more than " + rounded(100 * cut_share) + " % counts). Extend the section " +
+                        (outward < 0 ? "behind the crest" : "in front of the toe") +
+                        ", unless the soil ends there in nature or this is a plane of symmetry");
   }
   return sentences;
 }

@@ -16,6 +16,12 @@ class MeshEnds {
   /// A sentence for each plane whose cells contain, for the first time, soil that has moved towards it by more than the
   /// size of its cell. Collective.
   std::vector<std::string> newly_reached(const std::string &stage);
+  /// A sentence for each side of the mesh behind, beside or in front of a slide that cuts it off: soil that lay at this
+  /// side has moved by more than `cut_share` of the largest displacement since the last reset. A side counts where it
+  /// is a roller or no boundary acts on it, and where it faces the slide's way or its rear: sides along the way are
+  /// often planes of symmetry. Collective.
+  std::vector<std::string> cut_off() const;
+  static constexpr double cut_share = 0.05;
   /// Saves or loads which ends have been told of. The mesh may be divided in another way when it is loaded. Collective.
   void serialize(Archive &archive);
 
@@ -27,6 +33,7 @@ class MeshEnds {
     int cell, plane;
     int group;     ///< number among all names, or -1
     double depth;  ///< of its cell [m]
+    bool slips;    ///< soil can move along it: a roller, or no boundary
   };
   struct Found {
     long long id = -1;  ///< particle with the smallest number there; -1: none
@@ -37,6 +44,7 @@ class MeshEnds {
   const World<dim> &world_;
   std::vector<Face> faces_;  ///< by cell
   std::vector<char> told_;   ///< of each plane
+  double end_[2 * dim]{};    ///< of each plane, minus its place along the outward normal [m]
 };
 
 }  // namespace talus

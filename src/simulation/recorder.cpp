@@ -51,6 +51,7 @@ void Recorder<dim>::open() {
   write_model();
   of_.lines.open(options_.directory);
   for (const std::string &sentence : of_.lines.left_out()) results_->progress.note(sentence);
+  for (const std::string &sentence : of_.points.far_off()) results_->progress.note("warning: " + sentence);
   write_escaped();  // in place of that of a run that was here before
 }
 
@@ -579,14 +580,16 @@ Checkpoint Recorder<dim>::find_checkpoint() {
     const bool result = words[0] == "title" || words[0] == "factor_of_safety" || path == "mesh.leaving_particles" ||
                         path == "mesh.balance_ranks" ||
                         (words[0] == "output" && words.size() > 1 && words[1] != "point");
-    const bool to_come = listed && (stage > found.stage || (stage == found.stage && words.back() == "duration"));
+    const bool to_come =
+        listed &&
+        (stage > found.stage || (stage == found.stage && (words.back() == "duration" || words.back() == "rest_speed")));
     if (!result && !to_come)
-      scene_.complain(
-          path,
-          "is not what it was when the run in " + options_.directory + " began, and " + tie_of(words[0]) +
-              "; with --resume only title, [output] without its points, [factor_of_safety], "
-              "mesh.leaving_particles, mesh.balance_ranks, the duration of the present stage and the stages after it "
-              "may change (repeat the --set of that run)");
+      scene_.complain(path, "is not what it was when the run in " + options_.directory + " began, and " +
+                                tie_of(words[0]) +
+                                "; with --resume only title, [output] without its points, [factor_of_safety], "
+                                "mesh.leaving_particles, mesh.balance_ranks, duration and rest_speed of the present "
+                                "stage and the stages after it "
+                                "may change (repeat the --set of that run)");
   }
   if (found.ranks != mine.ranks) written_ranks_ = found.ranks;
   return checkpoint;

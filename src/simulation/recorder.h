@@ -1,6 +1,7 @@
 #pragma once
 /// What a run tells: rows of history.csv, snapshots, notes, checkpoints, and why it ended. It reads the world and the
 /// clock and changes nothing that the answer depends on.
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -59,6 +60,10 @@ class Recorder {
   /// Says what happened, now or at other times.
   void note(const std::string &text);
   void note(const std::string &text, double time, double load_time);
+  /// Warns of ends of the mesh that cut a slide off, at the end of a run. Collective.
+  void note_cut_off() {
+    for (const std::string &sentence : ends_.cut_off()) note("warning: " + sentence);
+  }
   /// Says that the mesh was divided in another way, which is expected to bring this imbalance.
   void note_balancing(double expected);
   /// Ends the run: throws RunError with the cause, where the run stood and what is left of it; BrokenOff if pictures of
@@ -73,6 +78,8 @@ class Recorder {
   /// Reads the checkpoint of the run in the directory and refuses a run that this one cannot go on with; notes which
   /// keys have changed. Collective.
   Checkpoint find_checkpoint();
+  /// Did `find_checkpoint` find another value of this key?
+  bool has_changed(const std::string &key) const { return std::ranges::find(changed_, key) != changed_.end(); }
   /// Goes on with it.
   void take_checkpoint(const Checkpoint &found);
   void serialize(Archive &archive);

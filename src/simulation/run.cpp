@@ -162,6 +162,10 @@ void Run<dim>::resume() {
   } catch (const std::invalid_argument &error) {
     throw SceneError("the run in " + options.directory + " cannot be resumed: " + error.what());
   }
+  if (recorder.has_changed("stage." + std::to_string(progress.number) + ".rest_speed")) {
+    progress.met = false;  // it has to stay below the new speed
+    stop = make_stop_criterion<dim>(stage());
+  }
   recorder.append(std::move(folder));
 }
 

@@ -23,6 +23,7 @@ void Simulation<dim>::run() {
     run_stages();
     for (const std::string &sentence : unlikely_strains(run_.world.comm, run_.world.report(), snapshot()))
       run_.recorder.note("warning: " + sentence);
+    run_.recorder.note_cut_off();
     if (run_.options.resume && run_.clock.steps == before)
       run_.recorder.note("nothing was left to do: the run had reached its end before it was resumed");
   });

@@ -19,6 +19,16 @@ TrackedPoints<dim>::TrackedPoints(const World<dim> &world) : world_(world) {
                             "must be in the soil or at its surface; the nearest particle is " +
                                 rounded(found.distance) + " m away, in a cell of " + rounded(found.cell_size) + " m");
     points_.push_back(found.point);
+    if (found.distance <= 0.5 * found.cell_size) continue;
+    const auto in_words = [](const Vec<dim> &x) {
+      std::string text;
+      for (int d = 0; d < dim; ++d) text += (d ? ", " : "(") + rounded(x[d]);
+      return text + ") m";
+    };
+    far_off_.push_back("output.point." + wanted.name + ": its position " + in_words(place) +
+                       " is not where soil is: the particle that is followed, the nearest, lies at " +
+                       in_words(found.at) + ", " + rounded(found.distance) + " m away, in a cell of " +
+                       rounded(found.cell_size) + " m");
   }
 }
 
@@ -33,6 +43,7 @@ template <int dim>
 typename TrackedPoints<dim>::Found TrackedPoints<dim>::nearest_particle(const std::string &name,
                                                                         const Vec<dim> &place) const {
   Point point{name, place};
+  Vec<dim> at{};
   double nearest = std::numeric_limits<double>::infinity(), cell_size = 0;
   for (size_t b = 0; b < world_.bodies.size(); ++b) {
     const ParticleArrays<dim> &p = world_.bodies[b]->particles();
@@ -41,7 +52,7 @@ typename TrackedPoints<dim>::Found TrackedPoints<dim>::nearest_particle(const st
       for (int d = 0; d < dim; ++d) distance += (p.position[i][d] - place[d]) * (p.position[i][d] - place[d]);
       if (distance < nearest * (1 - 1e-9) || (distance <= nearest * (1 + 1e-9) && p.id[i] < point.id))
         nearest = distance, point.body = static_cast<int>(b), point.id = p.id[i],
-        cell_size = std::pow(world_.mesh.volume[p.cell[i]], 1. / dim);
+        cell_size = std::pow(world_.mesh.volume[p.cell[i]], 1. / dim), at = p.position[i];
     }
   }
   double best;
@@ -53,8 +64,10 @@ typename TrackedPoints<dim>::Found TrackedPoints<dim>::nearest_particle(const st
   MPI_Allreduce(&id, &winner, 1, MPI_LONG_LONG, MPI_MIN, world_.comm);
   point.body = candidate && point.id == winner ? point.body : -1;
   MPI_Allreduce(MPI_IN_PLACE, &point.body, 1, MPI_INT, MPI_MAX, world_.comm);
+  if (!candidate || point.id != winner) at.fill(std::numeric_limits<double>::lowest());
+  MPI_Allreduce(MPI_IN_PLACE, at.data(), dim, MPI_DOUBLE, MPI_MAX, world_.comm);
   point.id = static_cast<PetscInt>(winner);
-  return {point, std::sqrt(best), cell_size};
+  return {point, at, std::sqrt(best), cell_size};
 }
 
 template <int dim>

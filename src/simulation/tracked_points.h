@@ -23,6 +23,9 @@ class TrackedPoints {
   /// Points without names at these places; those that are not near any soil are left out. Collective.
   TrackedPoints(const World<dim> &world, const std::vector<Vec<dim>> &places);
 
+  /// A sentence for each point whose particle is further away than half a cell. The same on all ranks.
+  const std::vector<std::string> &far_off() const { return far_off_; }
+
   std::vector<Point> &all() { return points_; }
   const std::vector<Point> &all() const { return points_; }
   /// Index of a point's particle in its body, -1 where another rank has it.
@@ -33,6 +36,7 @@ class TrackedPoints {
  private:
   struct Found {
     Point point;
+    Vec<dim> at;                 ///< place of its particle [m]
     double distance, cell_size;  ///< of its particle, and of the particle's cell [m]
     /// A point of the soil is never further from a particle than its cell is wide.
     bool in_soil() const { return distance <= 2 * cell_size; }
@@ -41,6 +45,7 @@ class TrackedPoints {
 
   const World<dim> &world_;
   std::vector<Point> points_;
+  std::vector<std::string> far_off_;
 };
 
 }  // namespace talus

@@ -51,7 +51,7 @@ def run(talus, name):
     steps = re.findall(r"(\d+) steps from (\S+) to (\S+) s, (\d+) evaluations of the forces, (\d+) attempts rejected[\s\S]*?the error: (\d+), stability: (\d+), outputs: (\d+)", log)[-1]
     failure = re.search(r"loads at t = ([\d.]+) s", log)
     last = list(csv.DictReader(open(folder / "history.csv")))[-1]
-    end = "failed: " + done.stderr.strip().splitlines()[-1] if done.returncode else "at rest" if "came to rest" in log else f"{float(last['time_s']):.3g} s"
+    end = "failed: " + done.stderr.strip().splitlines()[-1] if done.returncode else "at rest" if "came to rest" in log or "is below rest_speed" in log else f"{float(last['time_s']):.3g} s"
     moved = last["corner_x_m" if scene == "column" else "crest_displacement_m"]
     return {"run": name, "ranks": ranks, "particles": int(float(last["particles"])), "end": end, "failure_load_time_s": failure[1] if failure else "",
             "front_or_crest_m": round(float(moved), 4),

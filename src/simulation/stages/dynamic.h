@@ -92,6 +92,8 @@ class DynamicStage final : public StageRunner<dim> {
     else
       text << "a further stage";
     text << " would show where it stops";
+    if (run_.recorder.writes() && (!run_.progress.met || stage_.until == StopWhen::rest))
+      text << " (--resume goes on with it)";
     run_.motion_left = text.str();
   }
 

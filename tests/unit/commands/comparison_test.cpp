@@ -87,6 +87,11 @@ TEST(Comparison, after_the_end_of_a_run_at_rest_its_last_row_counts) {
     return value_of(path, parse_measure(measure));
   };
   EXPECT_EQ(value("2026-01-01 12:00:00  stage slide came to rest\n", "x_m@30"), 2);
+  EXPECT_EQ(
+      value("2026-01-01 12:00:00  stage slide ended: the rms speed of all soil is below rest_speed = 0.1 m/s, but 2 "
+            "% of what slid is faster\n",
+            "x_m@30"),
+      2);
   EXPECT_EQ(value("2026-01-01 12:00:00  stage slide is in equilibrium: unbalanced\n", "x_m@30"), 2);
   for (const char *log : {"", "2026-01-01 12:00:00  stage fall came to rest\n",
                           "2026-01-01 12:00:00  stage slide reached its duration of 2 s\n"})
