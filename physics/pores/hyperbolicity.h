@@ -10,7 +10,8 @@
 namespace talus {
 
 /// Do all waves have a real speed? `modulus` is that of the skeleton in a confined compression [Pa]; gas at gauge 0,
-/// liquid below it by the suction of the gas share. `gas_moves`: three phases; `bishop` as the scene's stress.
+/// liquid below it by the suction of the gas share. True where that suction leaves no liquid to speak of waves in, as
+/// near the driest state under exponential compression. `gas_moves`: three phases; `bishop` as the scene's stress.
 inline bool hyperbolic(const SoilPores &soil, const Liquid &liquid, const PoreGas &gas, double modulus,
                        double grain_density, double gas_share, bool gas_moves, bool bishop) {
   const double n = soil.porosity(), wet = 1 - gas_share;
@@ -34,6 +35,7 @@ inline bool hyperbolic(const SoilPores &soil, const Liquid &liquid, const PoreGa
   waves.row(0) =
       (Eigen::RowVector3d(modulus, 0, 0) - pores - in_liquid - (gas_moves ? in_gas : Eigen::RowVector3d(0, 0, 0))) /
       ((1 - n) * grain_density);
+  if (!waves.allFinite()) return true;
   const Eigen::VectorXcd squares = eigenvalues(waves);
   const double scale = squares.cwiseAbs().maxCoeff();
   for (int i = 0; i < 3; ++i)

@@ -8,7 +8,9 @@
 
 namespace talus {
 
+/// Throws if there are none; a matrix that is not finite would otherwise make LAPACK end the program, with status 0.
 inline Eigen::VectorXcd eigenvalues(Eigen::MatrixXd matrix) {
+  if (!matrix.allFinite()) throw std::runtime_error("a matrix that is not finite has no eigenvalues");
   PetscBLASInt size = static_cast<PetscBLASInt>(matrix.rows()), work_size = 4 * size, one = 1, info = 0;
   Eigen::VectorXd real(size), imaginary(size), work(work_size);
   LAPACKgeev_("N", "N", &size, matrix.data(), &size, real.data(), imaginary.data(), nullptr, &one, nullptr, &one,

@@ -196,6 +196,20 @@ TEST(Hyperbolicity, bishops_stress_keeps_it_and_net_stress_loses_it_near_saturat
   EXPECT_EQ(lost_bishop, 0);
 }
 
+// at the driest states suction is so large that water has no density left
+TEST(Hyperbolicity, has_an_answer_up_to_the_driest_state) {
+  const SoilPores soil = soil_of(silt);
+  Water w;
+  w.bulk_modulus = 1e8;
+  w.compression = Compression::exponential;
+  const Liquid liquid(w);
+  for (const double left : {1e-2, 1e-4, 1e-6, 1e-9})
+    for (const bool gas_moves : {true, false})
+      EXPECT_NO_THROW(
+          (void)hyperbolic(soil, liquid, air(), 1e6, 2700, (1 - left) * soil.largest_gas_share(), gas_moves, true));
+  EXPECT_THROW((void)eigenvalues(Eigen::Matrix2d::Constant(NAN)), std::runtime_error);
+}
+
 // One linearised step: right to second order where the storage hardly changes, far off where it jumps.
 TEST(NaiveStorage, is_right_far_from_saturation_and_wrong_across_it) {
   const SoilPores soil = soil_of(silt);
