@@ -131,7 +131,7 @@ class Adviser {
           digits(flow_off_normal(b.law) / degree.si) +
           " degrees: a load at failure is then not unique and differs from mesh to mesh by some per cent of strength, "
           "in fine cells as in coarse ones (the gallery's vaiont); repeat it with other cell sizes (`talus converge`), "
-          "or take the strength of Davis (1968) with a dilation angle equal to the friction angle.");
+          "and compare it with finite elements of second order, the strength of Davis (1968) and associated flow.");
     if (b.averaging_length > 0) return;  // bands are wider than a cell, and cells do not snap back alone
     if (unscaled(b.law))
       say(b.body.name +
