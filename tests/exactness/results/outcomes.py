@@ -144,15 +144,38 @@ class Outcomes(unittest.TestCase):
                 continue
             self.assertGreater(moving[0], 0.1)
             self.assertIn(f"{said}{100 * moving[0]:.3g} % of what slid is faster than {SLOW:g} m/s, at up to {moving[1]:.3g} m/s; ", last)
-            self.assertTrue(last.endswith("; a longer duration of the stage slide would show where it stops"), last)
+            self.assertTrue(last.endswith("; a longer duration of the stage slide would show where it stops (--resume goes on with it)"), last)
             self.assertIn(last.partition("  ")[2], done.stderr.splitlines()[-3:])
         # soil that stands lowers the speed below which a stage counts as at rest
         stages = SCENE.replace('gravity_ramp = "1 s"\nuntil = "rest"', 'until = "rest"\nrest_speed = 0.3').replace(
             "[[stage]]", '[[stage]]\nname = "begin"\nduration = "2 s"\ngravity_ramp = "1 s"\n[[stage]]')
         (self.folder / "two.toml").write_text(stages)
         done = self.ended("run", "two.toml", "-o", "moving", "--no-pictures", "--force", "--set", "body.clay.cohesion=2 kPa").stderr
-        self.assertIn("stage slide came to rest", done)
+        self.assertIn("stage slide ended: the rms speed of all soil is below rest_speed = 0.3 m/s, but ", done)
+        self.assertNotIn("came to rest", done)
         self.assertIn("the rms speed of all soil is below rest_speed, and a smaller rest_speed of the stage slide would show where it stops", done)
+
+        # the run goes on with a smaller one
+        done = self.ended("run", "two.toml", "-o", "moving", "--no-pictures", "--resume", "--set", "body.clay.cohesion=2 kPa", "--set", "stage.slide.rest_speed=0.02").stderr
+        self.assertIn("since then the scene has another stage.1.rest_speed", done)
+        self.assertIn("stage slide came to rest", done)
+        self.assertNotIn("nothing was left to do", done)
+
+    def test_a_slide_that_the_end_of_the_mesh_cuts_off_is_warned_of(self):
+        said = "the end of the mesh at the group left cuts the slide off: soil that lay there has moved by "
+        for crest, cut in ((2, True), (8, False)):  # m behind it
+            (self.folder / "near.csv").write_text(SECTION.replace("outline,0,0", f"outline,{8 - crest},0").replace("outline,0,8", f"outline,{8 - crest},8").replace(
+                "interface0,0,6", f"interface0,{8 - crest},6").replace("region_clay,4,1", "region_clay,7.5,1"))
+            (self.folder / "near.toml").write_text(SCENE.replace("slope.csv", "near.csv"))
+            done = self.ended("run", "near.toml", "-o", "near", "--no-pictures", "--force", "--set", "body.clay.cohesion=1 kPa", "--set", "stage.slide.duration=4").stderr
+            self.assertEqual(said in done, cut, done)
+        self.ended("run", "slope.toml", "-o", "near", "--no-pictures", "--force", "--set", "body.clay.cohesion=9 kPa")
+        self.assertNotIn("cuts the slide off", (self.folder / "near/run.log").read_text())  # soil that stands is not cut off
+
+    def test_a_point_above_the_ground_names_the_particle_that_is_followed(self):
+        for height, far in ((6.0, False), (6.6, True)):
+            log = self.ended("run", "slope.toml", "-o", "point", "--no-pictures", "--force", "--set", "stage.slide.duration=0.01", "--set", f"output.point.crest.position=[4, {height}]").stderr
+            self.assertEqual("output.point.crest: its position (4, 6.6) m is not where soil is: the particle that is followed, the nearest, lies at (" in log, far, log)
 
     def test_compare_says_the_same(self):
         printed = self.call("compare", "slope.toml", "-o", "compared", "-j", "2", "--no-plot", "--series", "strength: body.clay.cohesion=5 kPa,9 kPa")
