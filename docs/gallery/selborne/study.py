@@ -50,7 +50,10 @@ STUDIES = {
     "excavation": {f"K0 = {k0}, eta {eta}": ("excavation.toml", [*(f"body.{body}.k0={k0}" for body in ("weathered", "unweathered", "cut")), *both("shape_factor", eta)])
                    for eta in (500, 50) for k0 in (0.5, 1.0, 1.5, 2.0)},
     "rear": {**{"rear at x = 0, 1.2 m": ["mesh.size=1.2"]},
-             **{f"rear at x = -20 m, {size} m": [f"mesh.size={size}", 'mesh.section="rear.csv"'] for size in (1.2, 1.0, 0.7)}},
+             **{f"rear at x = -20 m, {size} m": [f"mesh.size={size}", 'mesh.section="rear.csv"'] for size in (1.2, 1.0, 0.7)},
+             **{f"{name}, 1.2 m": ["mesh.size=1.2", f'mesh.section="{file}.csv"']
+                for name, file in (("base at y = -5 m", "base"), ("rear -20 m, base -5 m, front 20 m farther", "wide"),
+                                   ("rear -20 m, base -10 m, front 20 m farther", "deep"))}},
     "steps": {**{f"step {f} of the critical": [f"integrator.fraction={f}"] for f in (0.3, 0.6, 0.9)},
               **{f"{n} particles per cell": both("particles_per_cell", n) for n in (3, 6, 12)}},
     "model": {"locking left in": ["transfer.locking=none"], "damping 0": ["stage.recharge.damping=0", "stage.slide.damping=0"],
@@ -70,10 +73,16 @@ def scene_text(name):
     return re.sub(r"^\[output\.line.*\n(points.*\n)?", "", text, flags=re.M)
 
 
-def write_rear_section(folder):
-    """rear.csv: the section of the scene, whose rear boundary is 20 m farther behind the crest."""
-    text = (HERE.parents[2] / "meshes/selborne.csv").read_text()
-    (Path(folder) / "rear.csv").write_text(re.sub(r"^(outline|interface\d|b_recharge_base|b_recharge_side),0,", r"\1,-20,", text, flags=re.M))
+SECTIONS = {"rear": (-20, 0, 56), "base": (0, -5, 56), "wide": (-20, -5, 76), "deep": (-20, -10, 76)}  # rear, base, front [m]; the scene: 0, 0, 56
+
+
+def write_sections(folder):
+    """NAME.csv: the section of the scene with other ends."""
+    for name, (rear, base, front) in SECTIONS.items():
+        text = (HERE.parents[2] / "meshes/selborne.csv").read_text()
+        text = re.sub(r"^(outline|b_recharge_base|b_recharge_side),(\d+),0$", rf"\1,\2,{base}", text, flags=re.M)
+        text = re.sub(r"^(outline|interface\d),56,", rf"\1,{front},", text, flags=re.M)
+        (Path(folder) / f"{name}.csv").write_text(re.sub(r"^(outline|interface\d|b_recharge_base|b_recharge_side),0,", rf"\1,{rear},", text, flags=re.M))
 
 
 def scene(overrides):
@@ -107,7 +116,7 @@ def run(talus, overrides):
     text, keys = scene(overrides)
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "scene.toml").write_text(text)
-        write_rear_section(folder)
+        write_sections(folder)
         words = [word for key in keys for word in ("--set", key)]
         done = subprocess.run([talus, "run", f"{folder}/scene.toml", "-o", f"{folder}/run", "--no-pictures", "--force", *words], capture_output=True, text=True)
         if done.returncode:
