@@ -68,8 +68,42 @@ PetscErrorCode find_failure(QuasiStatic<dim> &problem, const std::vector<Law> &l
   PetscFunctionReturn(0);
 }
 
+template <int dim>
+PetscErrorCode settle_propped(QuasiStatic<dim> &problem, const std::vector<Law> &laws, double load_time, double time,
+                              bool *dilated, StepOutcome *outcome) {
+  PetscFunctionBeginUser;
+  *dilated = false;
+  const auto before = problem.save();
+  LimitState<dim> limit(problem);
+  LimitSearch found;
+  PetscCall(limit.setup(load_time, time));
+  PetscCall(limit.search(&found));
+  outcome->iterations = found.iterations;
+  outcome->converged = found.verdict == LimitVerdict::equilibrium;
+  outcome->stopped = found.verdict == LimitVerdict::interrupted;
+  if (!outcome->converged && !outcome->stopped) {
+    problem.restore(before);
+    TrialStrength<dim> strength(problem.soil(), problem.bases(), laws);
+    strength.set(1, true);
+    PetscCall(limit.setup(load_time, time));
+    PetscCall(limit.search(&found));
+    strength.restore();
+    outcome->iterations += found.iterations;
+    outcome->converged = *dilated = found.verdict == LimitVerdict::equilibrium;
+    outcome->fails = found.verdict == LimitVerdict::mechanism;
+    outcome->stopped = found.verdict == LimitVerdict::interrupted;
+  }
+  if (!outcome->converged) problem.restore(before);
+  if (outcome->converged) outcome->residual = found.residual, outcome->largest = found.displacement;
+  PetscFunctionReturn(0);
+}
+
 template PetscErrorCode find_failure(QuasiStatic<2> &, const std::vector<Law> &, double, double, StepOutcome *);
 template PetscErrorCode find_failure(QuasiStatic<3> &, const std::vector<Law> &, double, double, StepOutcome *);
+template PetscErrorCode settle_propped(QuasiStatic<2> &, const std::vector<Law> &, double, double, bool *,
+                                       StepOutcome *);
+template PetscErrorCode settle_propped(QuasiStatic<3> &, const std::vector<Law> &, double, double, bool *,
+                                       StepOutcome *);
 
 namespace {
 

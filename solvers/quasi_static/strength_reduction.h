@@ -29,6 +29,15 @@ template <int dim>
 PetscErrorCode find_failure(QuasiStatic<dim> &problem, const std::vector<Law> &laws, double load_time, double time,
                             StepOutcome *outcome);
 
+/// Searches for an equilibrium under all loads of `load_time` from the present state by the iterations of a strength
+/// reduction: an elastic prop that becomes softer and softer guides them where Newton's iterations along a path of
+/// loads went astray. Soil moves with the dilation that it has or, if that leads nowhere, with psi = phi, which sets
+/// `dilated`: its strength is the same, so that it bears the stress that is found. If `outcome->converged`, the problem
+/// is in that state, else in the one before; `fails` says that soil with psi = phi fails. Supports must not move.
+template <int dim>
+PetscErrorCode settle_propped(QuasiStatic<dim> &problem, const std::vector<Law> &laws, double load_time, double time,
+                              bool *dilated, StepOutcome *outcome);
+
 /// What a strength reduction needs of its surroundings.
 template <int dim>
 struct ReductionSettings {

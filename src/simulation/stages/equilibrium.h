@@ -20,17 +20,48 @@ class EquilibriumStage final : public StaticStage<dim> {
     };
     // a trial of the factor finds it sooner than small steps do; friction of a base has no bound by psi = phi
     std::function<PetscErrorCode(StepOutcome *)> failure;
-    if (this->run_.statics.for_factor &&
-        std::ranges::none_of(this->run_.world.conditions.sources(),
-                             [](const auto &source) { return source.kind.quasi_static == OnSoil::contact; }))
+    if (this->run_.statics.for_factor && !on_base())
       failure = [&](StepOutcome *outcome) {
         return find_failure(problem, this->run_.world.laws, this->load_at(1), this->run_.clock.time, outcome);
       };
     require(follow_path(
         1. / stage.load_steps, this->run_.scene.quasi_static.smallest_step, advance, failure,
         [&](double share, const StepOutcome &) { this->done(share); }, &path.share, &path.last, &path.iterations));
+    if (path.share < 1 && may_settle(path)) settle(path);
   }
-  void describe(const Path &path, std::ostream &text) override { this->describe_equilibrium(path, text); }
+  bool on_base() const {
+    return std::ranges::any_of(this->run_.world.conditions.sources(),
+                               [](const auto &source) { return source.kind.quasi_static == OnSoil::contact; });
+  }
+  /// In the first stage the share of gravity that was reached says nothing of the soil, and so long as no strength is
+  /// lost, another way to the state under all of it will do. Later stages end where their loads find no equilibrium.
+  bool may_settle(const Path &path) const {
+    const bool may_go_on = this->stage_.when_lost != WhenLost::stop && !this->run_.statics.for_factor;
+    const bool loses_strength = this->stage_.softening && std::ranges::any_of(this->run_.world.laws, softens);
+    return this->run_.progress.number == 0 && this->run_.scene.start_from.folder.empty() && !may_go_on &&
+           !loses_strength && !path.last.stopped && !path.last.fails && !on_base() &&
+           !this->run_.statics.problem().supports().moves();
+  }
+  void settle(Path &path) {
+    left_at_ = path.share;
+    require(settle_propped(this->run_.statics.problem(), this->run_.world.laws, this->load_at(1), this->run_.clock.time,
+                           &dilated_, &path.last));
+    path.iterations += path.last.iterations;
+    if (path.last.converged) path.share = 1, this->done(1);
+  }
+  void describe(const Path &path, std::ostream &text) override {
+    this->describe_equilibrium(path, text);
+    if (left_at_ >= 0)
+      text << "; its load steps ended at " << 100 * left_at_
+           << " %, and the rest came at once, against an elastic prop that was then taken away"
+           << (dilated_ ? ", in soil that moved with psi = phi: it bears this stress with its own psi too, but lateral "
+                          "stress and displacements are those of soil that dilates"
+                        : ": displacements depend on this way more than stresses do")
+           << ". Other load_steps (here " << this->stage_.load_steps
+           << ") may do without, and so may initial_stress = \"k0\"";
+  }
+  bool dilated_ = false;
+  double left_at_ = -1;  ///< share of the loads where Newton's iterations ended before; -1: they did not
 };
 
 }  // namespace talus

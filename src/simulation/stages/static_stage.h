@@ -131,8 +131,8 @@ class StaticStage : public StageRunner<dim> {
         text << "; its soil softens, and beyond its peak there may be no equilibrium that stays near: motion goes on "
                 "from here (when_lost = \"next_stage\" and a dynamic stage), and softening = false keeps the strength";
       else if (soil_moves() && !path_.last.fails)
-        text << "; the slope may be too weak to stand, or, where the stage is the first, initial_stress = \"k0\" may "
-                "help";
+        text << "; the slope may be too weak to stand, or other load_steps (here " << stage_.load_steps
+             << ") may help, or, where the stage is the first, initial_stress = \"k0\"";
       const bool goes_on = run_.statics.for_factor && !water_flows();
       if (goes_on && stage_.softening && std::ranges::any_of(run_.world.laws, softens))
         throw RunFailure(text.str() +
