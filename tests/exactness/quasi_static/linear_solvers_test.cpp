@@ -108,7 +108,8 @@ TEST(QuasiStatic, a_search_that_gives_up_is_no_equilibrium) {
     for (size_t i = 0; i < wanted.size(); ++i) EXPECT_NEAR(found[i], wanted[i], 1e-8);  // the tolerance of Newton
   }
   const Options given((gives_up + " -talus_snes_linesearch_type cp").c_str());  // both times
-  EXPECT_THROW(solve(column), RunError);
+  const std::string said = solve(column).events.back().text;  // found in another way, without Newton's steps
+  EXPECT_NE(said.find("its load steps ended at 0 %"), std::string::npos) << said;
 }
 
 /// What several ranks add to one number, they add in an order of their own, and factors are not shared: the same run
