@@ -26,7 +26,7 @@ TrackedPoints<dim>::TrackedPoints(const World<dim> &world) : world_(world) {
       return text + ") m";
     };
     far_off_.push_back("output.point." + wanted.name + ": its position " + in_words(place) +
-                       " is not where soil is: the particle that is followed, the nearest, lies at " +
+                       " has no particle within half a cell: the one that is followed, the nearest, lies at " +
                        in_words(found.at) + ", " + rounded(found.distance) + " m away, in a cell of " +
                        rounded(found.cell_size) + " m");
   }

@@ -175,7 +175,7 @@ class Outcomes(unittest.TestCase):
     def test_a_point_above_the_ground_names_the_particle_that_is_followed(self):
         for height, far in ((6.0, False), (6.6, True)):
             log = self.ended("run", "slope.toml", "-o", "point", "--no-pictures", "--force", "--set", "stage.slide.duration=0.01", "--set", f"output.point.crest.position=[4, {height}]").stderr
-            self.assertEqual("output.point.crest: its position (4, 6.6) m is not where soil is: the particle that is followed, the nearest, lies at (" in log, far, log)
+            self.assertEqual("output.point.crest: its position (4, 6.6) m has no particle within half a cell: the one that is followed, the nearest, lies at (" in log, far, log)
 
     def test_compare_says_the_same(self):
         printed = self.call("compare", "slope.toml", "-o", "compared", "-j", "2", "--no-plot", "--series", "strength: body.clay.cohesion=5 kPa,9 kPa")
