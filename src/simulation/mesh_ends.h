@@ -21,8 +21,8 @@ class MeshEnds {
   /// is a roller or no boundary acts on it, and where it faces the slide's way or its rear: sides along the way are
   /// often planes of symmetry. Collective.
   std::vector<std::string> cut_off() const;
-  static constexpr double cut_share =
-      0.02;  // 0.03 at the rear of the gallery's selborne in cells of 1.4 m; elastic soil has less
+  /// The rear of the gallery's selborne moves by 0.03 in cells of 1.4 m, soil that stands by less.
+  static constexpr double cut_share = 0.02;
   /// Saves or loads which ends have been told of. The mesh may be divided in another way when it is loaded. Collective.
   void serialize(Archive &archive);
 
