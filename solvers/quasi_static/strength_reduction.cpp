@@ -76,22 +76,25 @@ PetscErrorCode settle_propped(QuasiStatic<dim> &problem, const std::vector<Law> 
   const auto before = problem.save();
   LimitState<dim> limit(problem);
   LimitSearch found;
-  PetscCall(limit.setup(load_time, time));
-  PetscCall(limit.search(&found));
-  outcome->iterations = found.iterations;
-  outcome->converged = found.verdict == LimitVerdict::equilibrium;
-  outcome->stopped = found.verdict == LimitVerdict::interrupted;
+  outcome->iterations = 0;
+  const auto search = [&]() -> PetscErrorCode {
+    PetscFunctionBeginUser;
+    PetscCall(limit.setup(load_time, time));
+    PetscCall(limit.search(&found));
+    outcome->iterations += found.iterations;
+    outcome->converged = found.verdict == LimitVerdict::equilibrium;
+    outcome->fails = found.verdict == LimitVerdict::mechanism;
+    outcome->stopped = found.verdict == LimitVerdict::interrupted;
+    PetscFunctionReturn(0);
+  };
+  PetscCall(search());
   if (!outcome->converged && !outcome->stopped) {
     problem.restore(before);
     TrialStrength<dim> strength(problem.soil(), problem.bases(), laws);
     strength.set(1, true);
-    PetscCall(limit.setup(load_time, time));
-    PetscCall(limit.search(&found));
+    PetscCall(search());
     strength.restore();
-    outcome->iterations += found.iterations;
-    outcome->converged = *dilated = found.verdict == LimitVerdict::equilibrium;
-    outcome->fails = found.verdict == LimitVerdict::mechanism;
-    outcome->stopped = found.verdict == LimitVerdict::interrupted;
+    *dilated = outcome->converged;
   }
   if (!outcome->converged) problem.restore(before);
   if (outcome->converged) outcome->residual = found.residual, outcome->largest = found.displacement;
