@@ -13,19 +13,20 @@ ZERO = 1e-6  # the same of a field that takes both signs: its scale is pale at 0
 FAINT_ROOT = 0.05  # the same of a scale that is even in the square root, on which more is seen
 # What is less in all pictures is nothing: the mesh cannot tell a motion by a thousandth of the spacing of particles, which is less than a pixel, from the
 # rest of a stress wave; and a cell sheared by 0.001 has slipped by a thousandth of its size.
-STILL = 1e-3  # displacement over the spacing of particles
+STILL = 1e-3  # displacement over the spacing of particles; of a velocity, that from one picture to the next
 INTACT = 1e-3  # plastic strain
+NOTHING = {"displacement": ("nothing moved", "m"), "velocity": ("nothing moves", "m/s"), "plastic_strain": ("nothing sheared", "")}  # fields with such a floor
 EVEN = 5.0  # the scale of mobilised friction begins at a multiple of this [deg]
 
 
 class Colours:
     """The scale that all pictures of a field share: from 0, or the least value if negative, to nearly the largest. A field that takes both signs has a
     scale with two colours that is pale at 0. That of plastic strain is even in its square root, so that the thin band at failure is seen beside the large
-    strain of the slide; that of mobilised friction begins below nearly all soil under stress, since most of it differs by a few degrees. Displacement and
-    plastic strain that are next to nothing in all pictures have the colour of soil, and `nothing` says how large they are; `spacing` is that of particles [m].
-    """
+    strain of the slide; that of mobilised friction begins below nearly all soil under stress, since most of it differs by a few degrees. Displacement,
+    velocity and plastic strain that are next to nothing in all pictures have the colour of soil, and `nothing` says how large they are; `spacing` is that of
+    particles [m]. The scale is that of `snapshots`; where a picture also shows others, `shown` are all of them."""
 
-    def __init__(self, field, snapshots, log=False, spacing=0.0):
+    def __init__(self, field, snapshots, log=False, spacing=0.0, shown=()):
         values = np.concatenate([snapshot.scalar(field)[0] for snapshot in snapshots])
         values = values[np.isfinite(values)]
         low, high = np.percentile(values, [0.1, 99.9]) if len(values) else (0.0, 0.0)
@@ -48,7 +49,8 @@ class Colours:
         self.map, self.signed = style.colours_of(field, signed), signed
         self.names = style.STATES if field == "state" else ()
         self.shown = (0.5, high) if self.names else (low, high)  # of the scale, in the bar; soil without a state of its strength has its own colour
-        self.above, self.below = (bool(len(values)) and bool(there) for there in (values.max(initial=high) * self.factor > high, values.min(initial=low) * self.factor < low))
+        ends = [end(known) * self.factor for one in shown or snapshots if len(known := (all_of := one.scalar(field)[0])[np.isfinite(all_of)]) for end in (np.min, np.max)]
+        self.above, self.below = max(ends, default=high) > high, min(ends, default=low) < low
         self.rooted = field == "plastic_strain" and low == 0 and not log
         self.uneven = "colours even in the square root" if self.rooted else ""
         largest = max(-low, high)
@@ -85,16 +87,23 @@ class Colours:
 
 
 def floor_of(field, snapshots, spacing):
-    """The size below which a field is nothing; 0 without such a size, as of a mechanism, whose size is free."""
-    floors = {"displacement": STILL * spacing, "plastic_strain": INTACT}
-    floor = floors.get(field, floors.get(field.rpartition("_")[0], 0.0))  # also of displacement_x
+    """The size below which a field is nothing; 0 without such a size, as of a mechanism, whose size is free. A speed is nothing at which soil would have
+    moved by nothing from one picture to the next."""
+    kind = next((kind for kind in NOTHING if field in (kind, f"{kind}_{field[-1]}")), "")  # also of displacement_x
+    if kind == "velocity":
+        times = sorted(snapshot.time for snapshot in snapshots)
+        between = (times[-1] - times[0]) / (len(times) - 1) if len(times) > 1 else times[0]
+        floor = STILL * spacing / between if between > 0 else 0.0
+    else:
+        floor = {"displacement": STILL * spacing, "plastic_strain": INTACT}.get(kind, 0.0)
     return 0.0 if floor and any(snapshot.stage == MECHANISM for snapshot in snapshots) else floor
 
 
 def said_of_nothing(field, largest):
     """"nothing moved: at most 0.12 mm"."""
-    factor, unit = readable_unit(largest, "m") if field.startswith("displacement") else (1.0, "")
-    return f"{'nothing moved' if unit else 'nothing sheared'}: at most {factor * largest:.2g} {unit}".rstrip()
+    what, unit = next(said for kind, said in NOTHING.items() if field.startswith(kind))
+    factor, unit = readable_unit(largest, unit) if unit else (1.0, "")
+    return f"{what}: at most {factor * largest:.2g} {unit}".rstrip()
 
 
 def rounded_up(value):

@@ -8,7 +8,7 @@ import numpy as np
 import talus_style as style
 from talus_histories import time_axis
 from talus_measures import failure
-from talus_moments import after, last_reset
+from talus_moments import after, last_reset, since
 from talus_units import at_time, capital, readable_unit, with_unit, words
 
 COUNT = 6  # times that a picture shows
@@ -92,8 +92,10 @@ def write_means(results, line, path):
 
 
 def draw_line(results, line, path, times):
-    reset = None if times else last_reset(results)
+    reset = last_reset(results)
     rows = chosen(line, times, reset)
+    later = [bool(reset) and line.time[row] > reset[0] for row in rows]
+    mixed = any(later[k] != later[0] for k in range(len(rows)) if rows[k] > 0)
     frictional = "mobilised_friction_deg" in line.columns and np.isfinite(line.columns["mobilised_friction_deg"]).any()
     figure, axes = plt.subplots(1, 3 if frictional else 1, figsize=(13.2 if frictional else 6.0, 4.3), squeeze=False, layout="constrained")
     moved, start = line.moved(), [line.columns[f"{axis}_m"][0] for axis in "xyz" if f"{axis}_m" in line.columns]
@@ -106,19 +108,19 @@ def draw_line(results, line, path, times):
     stressed = under_stress(line, rows) if frictional else []
     for k, row in enumerate(rows):
         colour = SPAN(k / max(1, len(rows) - 1) * 0.92)
-        label = f"{at_time(line.time[row], line.time[-1])}  {line.stage[row]}"
+        label = f"{at_time(line.time[row], line.time[-1])}  {line.stage[row]}" + mixed * f", {since(reset[1] if later[k] else '')}"
         show(axes[0, 0], where, factor * size[row], upright, color=colour, lw=1.4, label=label)
         if frictional and row in stressed:
             show(axes[0, 1], where, line.columns["mobilised_friction_deg"][row], upright, color=colour, lw=1.0)
             mark_states(axes[0, 1], where, line, row, upright)
     along = "elevation [m]" if upright else "distance along the line [m]"
     name(axes[0, 0], along, with_unit("level displacement" if upright else "displacement", unit), upright)
-    if reset and line.time[rows[0]] > reset[0]:
+    if later[-1] and not mixed:
         axes[0, 0].set_title(f"since the end of stage {reset[1]}", loc="left", fontsize=7.5, color=style.SOFT)
     if frictional:
         name(axes[0, 1], along, "mobilised friction angle [deg]", upright)
         axes[0, 1].set_title("white elastic, yellow peak, orange softening, red residual", loc="left", fontsize=7.5, color=style.SOFT)
-        draw_mean(results, line, axes[0, 2], after(reset, line.time))
+        draw_mean(results, line, axes[0, 2], after(None if times else reset, line.time))
     style.headline(figure, capital(words(line.name)), results.title)
     style.legend_below(figure, axes[0, 0].get_legend_handles_labels()[0], None if frictional else 3)  # beside curves that may run anywhere
     return style.save(figure, path)

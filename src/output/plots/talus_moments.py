@@ -51,12 +51,48 @@ def with_stress(results, snapshots, field):
         else snapshots
 
 
+def of_reset(field):
+    """Is this a field, or a component of one, that a reset sets to 0?"""
+    return field in RESET or field.rpartition("_")[0] in RESET
+
+
+def resets(results):
+    """Time and stage of the last snapshot before each reset of displacement that the run went on after. A reset is at the end of a stage, whose last
+    snapshot still has what is then set to 0."""
+    names = {stage.get("name") for stage in results.scene.get("stage", []) if stage.get("reset_displacement")}
+    return [(one.time, one.stage) for one, after in zip(results.snapshots, results.snapshots[1:]) if one.stage in names and one.stage != after.stage]
+
+
 def last_reset(results):
-    """Time and stage of the last snapshot before the last reset of displacement that the run went on after; None without such a reset. It is at the end of
-    a stage, whose last snapshot still has what is then set to 0."""
-    resets = {stage.get("name") for stage in results.scene.get("stage", []) if stage.get("reset_displacement")}
-    ends = [one for one, after in zip(results.snapshots, results.snapshots[1:]) if one.stage in resets and one.stage != after.stage]
-    return (ends[-1].time, ends[-1].stage) if ends else None
+    """The last one of them; None without a reset."""
+    return (resets(results) or [None])[-1]
+
+
+def origin(results, snapshot):
+    """The stage from whose end a field that resets set to 0 counts in a snapshot; empty where it counts from the start of the run."""
+    return ([stage for time, stage in resets(results) if time < snapshot.time] or [""])[-1]
+
+
+def since(stage):
+    """What a picture says of this origin."""
+    return f"since the end of stage {stage}" if stage else "since the start"
+
+
+def scaled_by(results, snapshots, field):
+    """Those of the snapshots that make the scale of a field: of one that a reset sets to 0 those after the last reset, so that the settlement under gravity
+    does not hide what the slope does then; all where there are none."""
+    reset = last_reset(results) if of_reset(field) else None
+    return [snapshot for snapshot in snapshots if reset and snapshot.time > reset[0]] or snapshots
+
+
+def origins(results, snapshots, field):
+    """What each of the snapshots counts a field from, in words: a list of these, empty where all count from the same, which is second. The start, at which
+    nothing has moved yet, counts from anything."""
+    if not of_reset(field) or not resets(results):
+        return [], ""
+    stages = [origin(results, snapshot) for snapshot in snapshots]
+    of_moved = {stage for stage, snapshot in zip(stages, snapshots) if snapshot is not results.snapshots[0]}
+    return ([since(stage) for stage in stages], "") if len(of_moved) > 1 else ([], "".join(of_moved))
 
 
 def after(reset, times):
@@ -68,7 +104,7 @@ def after(reset, times):
 def since_reset(results, snapshots, field):
     """The snapshots; of a field that is set to 0 at the end of a stage the start and some after the last reset, so that the settlement under gravity does
     not hide what the slope does then. With the name of this stage, empty without a reset."""
-    reset = last_reset(results) if field in RESET or field.rpartition("_")[0] in RESET else None
+    reset = last_reset(results) if of_reset(field) else None
     later = [snapshot for snapshot in results.snapshots if reset and snapshot.time > reset[0] and len(snapshot.ids())]
     if not later:
         return snapshots, ""

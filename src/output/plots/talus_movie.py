@@ -11,7 +11,6 @@ import numpy as np
 from PIL import Image
 
 import talus_style as style
-from talus_colours import Colours
 from talus_moments import advance, chosen_snapshots
 from talus_sections import Painter
 from talus_units import words
@@ -107,7 +106,8 @@ def draw_movies(results, fields, folder, log=False):
     painter = Painter(results, snapshots, RESOLUTION)
     ffmpeg = shutil.which("ffmpeg")
     for field in fields:
-        colours = Colours(field, snapshots, log and field == "plastic_strain", painter.spacing)
+        painter.count_from(field, snapshots)
+        colours = painter.colours(field, snapshots, log)
         with temporary_folder(folder) as place:
             frames = []
             for n, (snapshot, count, pace) in enumerate(film, 1):

@@ -4,6 +4,7 @@ import csv
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.patheffects import withStroke
 
 import talus_style as style
 from talus_histories import time_axis
@@ -11,6 +12,7 @@ from talus_measures import failure
 from talus_units import at_time, readable_unit, words
 
 ENVELOPES = 4  # suctions for which the strength is drawn
+LINE = 0.055  # height of a line of small letters over that of the chart of paths
 
 
 def strength_of(folder):
@@ -60,24 +62,35 @@ def label_of(name, time, known):
     return words(name) if last == len(known) - 1 else f"{words(name)}, no stress after {at_time(time[last], time[-1])}"
 
 
-def spread(heights, gap, top):
-    """Heights of labels in the order of those of their lines, apart by `gap` at least and none above `top`."""
-    placed = np.sort(np.minimum(heights, top))
-    for k in range(1, len(placed)):
-        placed[k] = max(placed[k], placed[k - 1] + gap)
-    for k in range(len(placed) - 1, -1, -1):
-        placed[k] = min(placed[k], top if k == len(placed) - 1 else placed[k + 1] - gap)
-    found = np.empty(len(placed))
-    found[np.argsort(heights, kind="stable")] = placed
+def grouped(lines, near):
+    """Lines (start of the label, its end, height, slope) that are nearer to each other than `near` at the place of their labels have one label, above the
+    highest of them. Returns [(text, number of the highest)]."""
+    order, groups = sorted(range(len(lines)), key=lambda k: -lines[k][2]), []
+    for k in order:
+        if groups and lines[groups[-1][-1]][2] - lines[k][2] < near:
+            groups[-1].append(k)
+        else:
+            groups.append([k])
+    found = []
+    for group in groups:
+        ends = {}
+        for k in reversed(group):
+            ends.setdefault(lines[k][0], []).append(lines[k][1])
+        found.append(("; ".join(", ".join(filter(None, [start, ", ".join(filter(None, several))])) for start, several in ends.items()) or "strength", group[0]))
     return found
 
 
-def label_place(at, height, slope, y):
-    """Where the lower right corner of a label stands that shall be at the height `y`, of a line through (at, height): on the line, which rises to the right
-    and so leaves the label alone, and never below it."""
-    if slope <= 0:
-        return at, max(y, height)
-    return (at, height) if y > height else (at - (height - y) / slope, y)
+def name_envelopes(axes, lines):
+    """Names of the envelopes along them, at the end where they leave the chart: (start of the label, its end, slope, intercept) each."""
+    (left, right), (_, top) = axes.get_xlim(), axes.get_ylim()
+    least = min((0.97 * top - intercept) / slope if slope > 0 else right for _, _, slope, intercept in lines)
+    where = float(np.clip(least, left + 0.3 * (right - left), right))  # at which all are seen, as far as they are
+    sizes = [(start, end, slope * where + intercept, slope) for start, end, slope, intercept in lines]
+    for text, k in grouped(sizes, LINE * top):
+        _, _, slope, intercept = lines[k]
+        at = min(right - 0.01 * (right - left), (0.97 * top - intercept) / slope if slope > 0 else right)
+        axes.text(at, slope * at + intercept, text, rotation=np.degrees(np.arctan(slope)), rotation_mode="anchor", transform_rotates_text=True, fontsize=7,
+                  color=style.SOFT, ha="right", va="bottom", zorder=4, path_effects=[withStroke(linewidth=2, foreground="white")])
 
 
 def draw_stress_paths(results, folder):
@@ -116,15 +129,11 @@ def draw_stress_paths(results, folder):
                 continue  # above all that is shown
             left.plot(reach, height, color=style.SOFT, lw=0.8, ls="-" if state == "peak" else ":")
             size, of = readable_unit(suction, "Pa")
-            parts = [body] * (len(results.bodies) > 1) + [state] * (len({line[0] for line in lines}) > 1) + [f"s = {size * suction:g} {of}"] * (len({line[1] for line in lines}) > 1)
-            at = reach[1] if height[1] < 1.3 * top else np.interp(1.25 * top, height, reach)
-            labels.append((", ".join(parts) or "strength", at, slope * at + factor * intercept, slope))
-    for (text, at, height, slope), y in zip(labels, spread(np.array([height for _, _, height, _ in labels]), 0.055 * top, 1.27 * top)):
-        x, y = label_place(at, height, slope, y)
-        leader = {"arrowstyle": "-", "lw": 0.4, "color": style.SOFT, "shrinkA": 0, "shrinkB": 0} if slope <= 0 and y - height > 0.02 * top else None
-        left.annotate(text, (at, height), (x - 0.012 * np.ptp(reach), y + 0.012 * top), fontsize=7, color=style.SOFT, ha="right", va="bottom",
-                      arrowprops=leader, bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.3})
+            start = ", ".join([body] * (len(results.bodies) > 1) + [state] * (len({line[0] for line in lines}) > 1))
+            labels.append((start, f"s = {size * suction:g} {of}" if len({line[1] for line in lines}) > 1 else "", slope, factor * intercept))
     left.set(xlabel=f"mean effective stress p' [{unit}]", ylabel=f"q [{unit}]", xlim=reach, ylim=(0, 1.35 * top))
+    if labels:
+        name_envelopes(left, labels)
     said = ["open: start", "full: end", "diamond: failure, thin after it" * np.isfinite(failed), "grey: strength in triaxial compression" * bool(labels)]
     left.set_title("; ".join(filter(None, said)), loc="left", fontsize=7.5, color=style.SOFT)
     time_axis(right, time[-1])

@@ -73,6 +73,12 @@ def draw(folder, fields=None, times=None, log=False, slip_surface=False):
     if results.broke_off() == NOT_ENDED:  # a run that broke off has said why
         print(f"talus: the run in {folder} is incomplete: {NOT_ENDED}; the pictures show it up to {results.snapshots[-1].time:.6g} s", file=sys.stderr)
     pictures = results.folder / "pictures"
+    slip, without = [], None
+    if slip_surface:  # before the sections, which show it
+        try:
+            slip = draw_slip_surface(results.before_reduction(), pictures, times[0] if times else None)
+        except ValueError as error:
+            without = error  # everything else is drawn
     usual = [field for field in FIELDS if field != "state" or lost_strength(results)]
     whole, results = results, results.before_reduction()
     of_mechanism = [field for field in fields or () if field == OF_MECHANISM and whole is not results]
@@ -80,10 +86,11 @@ def draw(folder, fields=None, times=None, log=False, slip_surface=False):
     if of_mechanism:
         sections += draw_sections(whole.of_reduction(), of_mechanism, times, pictures)
     curves = draw_histories(results, pictures) + draw_stress_paths(results, pictures)
-    curves += draw_lines(results, pictures, times)
-    if slip_surface:
-        curves += draw_slip_surface(results, pictures, times[0] if times else None)
-    return write_report(results, sections, curves, draw_factor(whole, pictures))
+    curves += draw_lines(results, pictures, times) + slip
+    report = write_report(results, sections, curves, draw_factor(whole, pictures))
+    if without:
+        raise without
+    return report
 
 
 def film(folder, fields=None, log=False):

@@ -8,8 +8,9 @@ from matplotlib.transforms import offset_copy
 
 import talus_style as style
 from talus_colours import Colours
+from talus_factor import read_factor, short
 from talus_ground import Ground
-from talus_moments import chosen_snapshots, since_reset, telling, with_stress
+from talus_moments import chosen_snapshots, origins, scaled_by, since_reset, telling, with_stress
 from talus_outcomes import cell_size
 from talus_perspective import edges
 from talus_relief import EARTH, SOIL, between, seen, seen_from_above
@@ -51,7 +52,8 @@ class Painter:
         self.flat = len(self.views) == 1
         self.tints = tints(len(results.bodies)) if self.flat else None
         self.marked_escaped, self.drawn_outline = 0, False
-        self.reset = ""  # stage at whose end the field was last set to 0
+        self.slips = []  # (name, points [n, 2], style of the line) of slip surfaces, which pictures of one time show in a section alone
+        self.reset, self.since = "", {}  # stage at whose end the field was last set to 0; {step: what it counts from}, where that differs
 
     def _ground(self):
         """What is shown of the ground in 3D: the soil at all times with some of the mesh's bottom around it."""
@@ -123,6 +125,17 @@ class Painter:
             return self._sight(snapshot, k, frame.shape[1]).painted(laid, value, colours, self.spacing, reach)
         return painted(self._tiled(snapshot, k, frame), value, snapshot.body(), self.tints if self.flat else np.tile(SOIL, (len(self.results.bodies), 1)), colours, reach)
 
+    def count_from(self, field, snapshots):
+        """Lets the pictures say what these snapshots count the field from: each in its title where that differs."""
+        said, self.reset = origins(self.results, snapshots, field)
+        self.since = {snapshot.step: words for snapshot, words in zip(snapshots, said)}
+
+    def colours(self, field, snapshots, log=False):
+        """The scale that the pictures of these snapshots share: that of those after the last reset, unless nothing has moved since."""
+        later = scaled_by(self.results, snapshots, field)
+        of = [Colours(field, some, log and field == "plastic_strain", self.spacing, snapshots) for some in ([later] if later is snapshots else [later, snapshots])]
+        return of[-1] if of[0].nothing else of[0]
+
     def over_time(self, field, colours, snapshots, path):
         """All these times on one sheet; of times that the program has chosen those at which something else is seen."""
         shown = snapshots if self.as_asked else telling(snapshots, field, colours, self.spacing)
@@ -189,7 +202,7 @@ class Painter:
     def _title(self, snapshot, k, note):
         """Time, stage and a note above a block, the view's name where there are several."""
         stage = "mechanism, whose size is free" if snapshot.stage == MECHANISM else snapshot.stage
-        when = [self.results.when(snapshot), stage, *filter(None, [note])] if k == 0 else []
+        when = [self.results.when(snapshot), stage, *filter(None, [note, self.since.get(snapshot.step)])] if k == 0 else []
         return when + ([self.views[k].name] if len(self.views) > 1 else [])
 
     def _panel(self, axes, snapshot, field, k, colours, named_points=False, alone=False):
@@ -206,6 +219,10 @@ class Painter:
             if np.isfinite(line).any():
                 axes.plot(*line.T, color=style.INK, linestyle=DOTTED, linewidth=1.1, path_effects=[HALO])
                 self.drawn_outline = True
+        if alone and self.flat:
+            for name, line, dash in self.slips:
+                axes.plot(*line.T, color="white", lw=3.2)
+                axes.plot(*line.T, color=style.ACCENT, lw=1.8, ls=dash, label=name)
         self._mark_escaped(axes, view, snapshot.time, metres)
         if alone and self.flat and len(self.results.bodies) > 1:
             self._name_soils(axes, snapshot, self._tiled(snapshot, k, frame), frame)
@@ -314,9 +331,25 @@ class Painter:
 
     def _legend_of_soils(self, figure):
         """The soils and their colours, below on the left."""
+        lines = figure.axes[0].get_legend_handles_labels()
+        if lines[0]:  # above the soils
+            figure.add_artist(figure.legend(*lines, loc="lower left", bbox_to_anchor=(LEFT / WIDTH - 0.006, 0.28 / figure.get_figheight()), fontsize=7.5, borderpad=0,
+                                            borderaxespad=0.5, handlelength=2.4, ncols=2, columnspacing=1.4, labelcolor=style.SOFT))
         handles = [plt.Rectangle((0, 0), 1, 1, fc=tint, ec=style.SOFT, lw=0.5) for tint in self.tints]
         figure.legend(handles, map(words, self.results.bodies), loc="lower left", bbox_to_anchor=(LEFT / WIDTH - 0.006, 0.09 / figure.get_figheight()),
                       ncols=8, fontsize=7.5, borderpad=0, borderaxespad=0.5, handlelength=1.6, handleheight=0.9, columnspacing=1.4, labelcolor=style.SOFT)
+
+
+def slip_surfaces(results, folder):
+    """What is known of slip surfaces of a run in plane strain or a slice: the line that `talus plot --slip-surface` has found, and that of the least factor of
+    safety. [(name, points [n, 2], style of the line)]"""
+    found = []
+    if (path := folder / "slip_surface.csv").exists():
+        found.append(("slip surface, where its soil was at the start", np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2), "-"))
+    factor = read_factor(results)
+    if factor and factor["mechanisms"][0]["slip_surface_m"]:
+        found.append((f"slip surface of the factor of safety, {short(factor['factor_of_safety'])}", np.array(factor["mechanisms"][0]["slip_surface_m"]), (0, (4, 2))))
+    return found
 
 
 def draw_sections(results, fields, times, folder, log=False):
@@ -327,6 +360,7 @@ def draw_sections(results, fields, times, folder, log=False):
     chosen = chosen_snapshots(results, times)
     after, _ = ([], "") if times else since_reset(results, chosen, "displacement")
     painter = Painter(results, chosen + after, as_asked=bool(times))
+    painter.slips = slip_surfaces(results, folder)
     pictures = []
     for field in fields:
         if any(snapshot.scalar(field) is None for snapshot in chosen):
@@ -334,7 +368,9 @@ def draw_sections(results, fields, times, folder, log=False):
         if not any(np.isfinite(snapshot.scalar(field)[0]).any() for snapshot in chosen):
             continue  # such as the mobilised friction of soil without friction
         snapshots, painter.reset = (chosen, "") if times else since_reset(results, with_stress(results, chosen, field), field)
-        colours = Colours(field, snapshots, log and field == "plastic_strain", painter.spacing)
-        pictures.append((field, painter.large(field, colours, snapshots, folder / f"{field}_large.png"),
+        if times:
+            painter.count_from(field, snapshots)
+        colours = painter.colours(field, snapshots, log)
+        pictures.append((field, painter.large(field, colours, scaled_by(results, snapshots, field), folder / f"{field}_large.png"),
                          painter.over_time(field, colours, snapshots, folder / f"{field}.png")))
     return pictures

@@ -1,8 +1,10 @@
 """What the pictures of a run choose to show: argument 1 is the folder of the scripts."""
 
+import json
 import pathlib
 import re
 import sys
+import tempfile
 import types
 import unittest
 import unittest.mock
@@ -17,6 +19,7 @@ import talus_lines  # noqa: E402
 import talus_outcomes  # noqa: E402
 import talus_plot  # noqa: E402
 import talus_results  # noqa: E402
+import talus_sections  # noqa: E402
 import talus_study  # noqa: E402
 import talus_soil  # noqa: E402
 import talus_sweep  # noqa: E402
@@ -25,7 +28,7 @@ from talus_histories import base_friction, draw_histories, drawn_energies  # noq
 from talus_measures import flow  # noqa: E402
 from talus_moments import chosen_snapshots, since_reset, telling, with_stress  # noqa: E402
 from talus_outcomes import FAILS, STANDS  # noqa: E402
-from talus_paths import label_of, label_place, spread  # noqa: E402
+from talus_paths import grouped, label_of, name_envelopes  # noqa: E402
 from talus_report import bases, key_results, motion_at_end, ways_out  # noqa: E402
 from talus_results import MECHANISM, NOT_ENDED, History, Results, still_moving  # noqa: E402
 from talus_sections import Painter  # noqa: E402
@@ -125,16 +128,18 @@ class Scales(unittest.TestCase):
         self.assertAlmostEqual(float(self.strain(log=True).norm(1e-1)), 2 / 3)
 
     def of(self, field, values, unit="-", spacing=0.0, stage="slide"):
-        return Colours(field, [types.SimpleNamespace(stage=stage, scalar=lambda field: (np.asarray(values, float), unit))], spacing=spacing)
+        snapshots = [types.SimpleNamespace(time=time, stage=stage, scalar=lambda field: (np.asarray(values, float), unit)) for time in (0.0, 2.0)]
+        return Colours(field, snapshots, spacing=spacing)
 
     def test_what_is_next_to_nothing_has_the_colour_of_soil(self):
         for field, ends, unit, said in (("displacement", (0, 1.2e-4), "m", "nothing moved: at most 0.12 mm"), ("displacement_y", (-1.2e-4, 2e-5), "m", "nothing moved: at most 0.12 mm"),
+                                        ("velocity", (0, 6e-5), "m/s", "nothing moves: at most 0.06 mm/s"), ("velocity_x", (-6e-5, 0), "m/s", "nothing moves: at most 0.06 mm/s"),
                                         ("plastic_strain", (0, 5e-5), "-", "nothing sheared: at most 5e-05")):
             values = np.linspace(*ends, 1001)
-            scale = self.of(field, values, unit, 0.5)  # a thousandth of the spacing is 0.5 mm
+            scale = self.of(field, values, unit, 0.5)  # a thousandth of the spacing is 0.5 mm, and there are 2 s from one picture to the next
             self.assertEqual(scale.nothing, said)
             self.assertTrue(scale.plain(values * scale.factor).all(), field)
-            self.assertGreaterEqual(scale.shown[1] / scale.factor, 5e-4)
+            self.assertGreaterEqual(np.ptp(scale.shown) / scale.factor, 2.5e-4 if "velocity" in field else 5e-4)
             larger = self.of(field, 25 * values, unit, 0.5)
             self.assertEqual(larger.nothing, "")
             self.assertFalse(larger.plain(25 * values * larger.factor).all())
@@ -176,22 +181,26 @@ class Scales(unittest.TestCase):
 
 
 class Labels(unittest.TestCase):
-    def test_labels_of_near_lines_keep_apart_in_their_order(self):
-        lines = np.array([1.0, 0.98, 0.3, 1.01, 0.99])
-        placed = spread(lines, 0.05, 1.05)
-        self.assertGreater(np.diff(np.sort(placed)).min(), 0.0499)
-        self.assertEqual(list(np.argsort(placed)), list(np.argsort(lines)))
-        self.assertLessEqual(placed.max(), 1.05)
-        self.assertEqual(placed[2], 0.3)
+    def test_of_near_lines_are_one(self):
+        lines = [("clay", "s = 0 Pa", 10.0, 0.7), ("clay", "s = 500 kPa", 40.0, 0.7), ("clay", "s = 1 MPa", 40.5, 0.7), ("sand", "", 41.0, 0.7)]
+        self.assertEqual(grouped(lines, 2.0), [("clay, s = 500 kPa, s = 1 MPa; sand", 3), ("clay, s = 0 Pa", 0)])
+        self.assertEqual(len(grouped(lines, 0.1)), 4)
+        self.assertEqual(grouped([("", "", 1.0, 0.7)], 2.0), [("strength", 0)])
 
-
-    def test_of_a_line_are_not_crossed_by_it(self):
-        for slope in (0.7, 1.4, 0.0, -0.2):
-            for wanted in (18.0, 20.0, 21.0):
-                x, y = label_place(50.0, 20.0, slope, wanted)
-                self.assertLessEqual(x, 50)
-                for left in np.linspace(0, 10, 11):  # of the lower edge of the label, which ends at x
-                    self.assertLessEqual(20 + slope * (x - left - 50) if slope > 0 else 20, y + 1e-9)
+    def test_of_envelopes_lie_along_them_and_on_no_other(self):
+        figure, axes = talus_sweep.plt.subplots(figsize=(5, 4))
+        axes.set(xlim=(0, 56), ylim=(0, 58))
+        lines = [("", "s = 0 Pa", 0.77, 2.0), ("", "s = 200 kPa", 0.78, 18.0), ("", "s = 500 kPa", 0.79, 22.5), ("", "s = 1 MPa", 0.79, 23.2)]
+        name_envelopes(axes, lines)
+        figure.canvas.draw()
+        self.assertEqual([text.get_text() for text in axes.texts], ["s = 500 kPa, s = 1 MPa", "s = 200 kPa", "s = 0 Pa"])
+        inside = axes.get_window_extent()
+        for text, slope in zip(axes.texts, (0.79, 0.78, 0.77)):
+            box = text.get_window_extent()
+            self.assertTrue(inside.x0 < box.x0 and box.x1 < inside.x1 + 2 and box.y1 < inside.y1 + 2, (text.get_text(), box, inside))
+            (x, y), (ahead, up) = axes.transData.transform([(0, 0), (1, slope)])
+            self.assertAlmostEqual(text.get_rotation(), np.degrees(np.arctan2(up - y, ahead - x)), places=3)
+        talus_sweep.plt.close(figure)
 
     def test_of_points_near_the_upper_edge_stand_below_them(self):
         painter = Painter.__new__(Painter)
@@ -292,7 +301,7 @@ class Reduction(unittest.TestCase):
 
     def test_is_named_in_the_picture_of_its_strain(self):
         painter = Painter.__new__(Painter)
-        painter.results, painter.views = self.results, [None]
+        painter.results, painter.views, painter.since = self.results, [None], {}
         self.assertEqual([painter._title(one, 0, None)[1] for one in self.results.snapshots], ["start", "gravity", "mechanism, whose size is free"])
 
     def test_is_what_a_report_begins_with(self):
@@ -393,6 +402,38 @@ class Resets(unittest.TestCase):
         self.assertEqual((len(shown), shown[0].time), (6, 0))
         self.assertGreater(shown[1].time, 3)
 
+    def settled(self):
+        """Soil that settles by 0.25 m under gravity, and creeps by 10 mm a second after the reset at t = 2 s."""
+        results = self.results("start", "gravity", "gravity", "rain", "rain", "rain")
+        for step, snapshot in enumerate(results.snapshots):
+            moved = 0.125 * step if step <= 2 else 0.01 * (step - 2)
+            snapshot.step, snapshot.scalar = step, lambda _, moved=moved: (np.full(10, moved), "m")
+        painter = Painter.__new__(Painter)
+        painter.results, painter.spacing = results, 1e-3
+        return painter, results.snapshots
+
+    def test_make_the_scale_of_pictures_and_films_that_also_show_what_was_before(self):
+        painter, snapshots = self.settled()
+        scale = painter.colours("displacement", snapshots)
+        self.assertEqual((scale.shown[1], scale.unit, scale.above), (30, "mm", True))  # the settlement lies beyond its end
+        self.assertEqual(painter.colours("displacement_x", snapshots).shown[1], 30)
+        self.assertEqual(painter.colours("velocity", snapshots).shown[1], 0.25)  # no reset sets it to 0
+        self.assertEqual(painter.colours("displacement", snapshots[:3]).shown[1], 0.25)  # nothing else is shown
+        painter.spacing = 100.0  # of which 30 mm are next to nothing
+        self.assertEqual((painter.colours("displacement", snapshots).shown[1], painter.colours("displacement", snapshots).nothing), (0.25, ""))
+
+    def test_between_the_times_of_a_picture_are_said_in_its_titles(self):
+        painter, snapshots = self.settled()
+        painter.count_from("displacement", snapshots[1:4])
+        self.assertEqual((painter.since, painter.reset), ({1: "since the start", 2: "since the start", 3: "since the end of stage gravity"}, ""))
+        painter.results.when, painter.views = lambda snapshot: f"t = {snapshot.time} s", [View("section", 0, 1)]
+        self.assertEqual(painter._title(snapshots[3], 0, ""), ["t = 3 s", "rain", "since the end of stage gravity"])
+        for shown, reset in ((snapshots[3:], "gravity"), ([snapshots[0], *snapshots[3:]], "gravity"), (snapshots[:3], "")):  # one origin: said once
+            painter.count_from("displacement", shown)
+            self.assertEqual((painter.since, painter.reset), ({}, reset))
+        painter.count_from("velocity", snapshots)
+        self.assertEqual((painter.since, painter.reset), ({}, ""))
+
     def test_at_the_end_of_a_run_show_nothing_else(self):
         results = self.results("start", "gravity", "gravity")
         self.assertEqual(since_reset(results, results.snapshots, "displacement"), (results.snapshots, ""))
@@ -429,6 +470,11 @@ class Resets(unittest.TestCase):
             self.assertEqual(mean.lines[0].get_xdata()[0], time[reset + 1])
             self.assertEqual(profile.get_title(loc="left"), "since the end of stage gravity")
             self.assertEqual(len(profile.lines), len(talus_lines.chosen(line, reset=(time[reset], "gravity"))))
+            with unittest.mock.patch.object(talus_lines.style, "save", lambda figure, path: seen.append(figure)), \
+                    unittest.mock.patch("talus_lines.dimensionless", lambda results, times: None):
+                talus_lines.draw_line(results, line, "", [time[2], time[-1]])  # times before and after it
+            self.assertEqual([curve.get_label().split(", ")[-1] for curve in seen[1].axes[0].lines], ["since the start", "since the end of stage gravity"])
+            talus_sweep.plt.close(seen[1])
             seen[0].canvas.draw()
             low, high = mean.get_xlim()
             shown = [text.get_text() for at, text in zip(mean.get_xticks(), mean.get_xticklabels()) if low <= at <= high]
@@ -684,6 +730,52 @@ class SlipSurface(unittest.TestCase):
         results = Sheared(lambda x, y: float(abs(np.hypot(x - 10, y - 12) - 6.3) < 0.4 and (x < 10 or y < 9)))
         line, snapshot, place, _ = slip_surface(results, 0)
         self.assertRegex(said_of_ends(results, line, place, snapshot), "m below the ground on the right: soil with more than 0.2 of .* ends there")
+
+
+    def test_is_in_the_picture_of_a_section_where_it_was_found(self):
+        line = np.array([[2.0, 9.0], [10.0, 4.0], [18.0, 2.0]])
+        for found, factor in ((True, False), (False, True), (True, True), (False, False)):
+            with tempfile.TemporaryDirectory() as place:
+                folder = pathlib.Path(place)
+                if found:
+                    (folder / "slip_surface.csv").write_text("x_m,elevation_m\n" + "".join(f"{x},{y}\n" for x, y in line))
+                if factor:
+                    (folder / "factor_of_safety.json").write_text(json.dumps({"mechanisms": [{"slip_surface_m": (line + 1).tolist()}],
+                                                                              "factor_of_safety": {"decided": True, "value": 1.2345}}))
+                soil = Moved()
+                results = types.SimpleNamespace(snapshots=[soil], up_axis=lambda: 1, mesh=lambda: (np.zeros((0, 2)), np.zeros((0, 3), int)), scene={}, folder=folder, bodies=["clay"],
+                                                escaped=None, history=None, title="slope", when=lambda one: f"t = {one.time} s")
+                sheets = []
+                with unittest.mock.patch.object(talus_sections.style, "save", lambda figure, path: sheets.append(figure)):
+                    talus_sections.draw_sections(results, ["displacement"], None, folder)
+                drawn = {curve.get_label(): curve.get_xydata() for curve in sheets[0].axes[0].lines}
+                legend = [text.get_text() for one in (*sheets[0].legends, *sheets[0].artists) if hasattr(one, "get_texts") for text in one.get_texts()]
+                for there, name, points in ((found, "slip surface, where its soil was at the start", line), (factor, "slip surface of the factor of safety, 1.234", line + 1)):
+                    self.assertEqual((name in drawn, name in legend), (there, there), (name, list(drawn), legend))
+                    if there:
+                        np.testing.assert_allclose(drawn[name], points)
+                for sheet in sheets:
+                    talus_sweep.plt.close(sheet)
+
+
+class Moved(Sheared):
+    """The same soil, of which the upper half has moved by 1 m."""
+    step, stage = 1, "slide"
+
+    def __init__(self):
+        super().__init__(lambda x, y: float(y > 5))
+
+    def __contains__(self, name):
+        return name in ("displacement", "volume")
+
+    def body(self):
+        return np.zeros(len(self._place), int)
+
+    def column(self, name):
+        return types.SimpleNamespace(values=np.full((len(self._place), 1), 0.25**2))
+
+    def scalar(self, name):
+        return (self._strain, "m") if name == "displacement" else None
 
 
 class ElementTests(unittest.TestCase):
