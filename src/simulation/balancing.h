@@ -1,8 +1,7 @@
 #pragma once
 /// When the mesh is divided among the ranks in another way because soil has moved from some ranks to others,
-/// docs/scaling.md. Work is counted in particles that go through a step; a filled cell is as much as one. What
-/// balancing costs is counted in the same unit, by rates that were measured once and not by the clock of this run: so a
-/// run does the same whenever it is repeated or resumed.
+/// docs/scaling.md. What balancing costs is counted in the unit of the work of steps (simulation/work.h), by rates that
+/// were measured once and not by the clock of this run: so a run does the same whenever it is repeated or resumed.
 #include <algorithm>
 
 #include "base/archive.h"
@@ -28,7 +27,7 @@ class Balancing {
     if (before_ > 0) saved_ += static_cast<double>(steps_) * (before_ - imbalance_) * mean;
     done_ += static_cast<double>(steps_) * largest_;
     steps_ = 0;
-    cost_ = per_cell * cells_ + per_particle * largest_;
+    cost_ = per_cell * cells_ + per_work * largest_;
   }
   /// Is it time to look for another partition? After a remap.
   bool due() const {
@@ -63,9 +62,9 @@ class Balancing {
   void serialize(Archive &archive) { archive.serialize("balancing", lost_, largest_, steps_, count_, before_); }
 
  private:
-  // Measured, docs/scaling.md: a cell of the mesh takes about as long as 40 particles in a step when the mesh is
-  // divided anew, and a particle about as long as 20 of them when the state moves.
-  static constexpr double per_cell = 40, per_particle = 20;
+  // Measured, docs/scaling.md, in the unit of work: to divide the mesh anew takes this much for each of its cells, and
+  // to move the state this much for the work of the rank that has most.
+  static constexpr double per_cell = 270, per_work = 33;
 
   BalanceRanks when_;
   int ranks_;

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "base/freed_memory.h"
+#include "base/sum.h"
 #include "scene/reader.h"
 #include "solvers/quasi_static/pore_flow.h"
 
@@ -16,7 +16,11 @@ namespace talus {
 
 template <int dim>
 World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &mesh_file, const Cuts &cuts)
-    : scene(of), phases(phase_traits(of.phases)), comm(world), pressure(of) {
+    : scene(of),
+      phases(phase_traits(of.phases)),
+      comm(world),
+      pressure(of),
+      rates_(WorkRates::with(of.transfer.average_stress)) {
   read_laws();
   std::vector<Source> sources = read_sources();
   read_mesh(plex, mesh_file, cuts);
@@ -109,7 +113,8 @@ template <int dim>
 void World<dim>::read_mesh(DM plex, const std::string &mesh_file, const Cuts &cuts) {
   std::vector<std::pair<std::string, double>> weights;
   for (const BodySource &body : scene.body)
-    for (const std::string &region : body.region) weights.emplace_back(region, particles_per_cell<dim>(body) + 1);
+    for (const std::string &region : body.region)
+      weights.emplace_back(region, rates_.of_cell(particles_per_cell<dim>(body)));
   if (plex)
     mesh = BackgroundMesh<dim>::adopt(plex);
   else
@@ -255,7 +260,7 @@ void World<dim>::seed_bodies() {
     seed<dim>(body, mesh, stride, [&](const Vec<dim> &x) { return soil_density(source, x, 0); });
     loads.seed(body, mesh);
     double sums[2] = {static_cast<double>(body.particles().count), 0}, totals[2];
-    sums[1] = std::accumulate(body.particles().mass, body.particles().mass + body.particles().count, 0.);
+    sums[1] = sum_of(body.particles().mass, body.particles().count);
     MPI_Allreduce(sums, totals, 2, MPI_DOUBLE, MPI_SUM, comm);
     const std::string path = "body." + source.name;
     if (totals[0] == 0) scene.complain(path, "is empty: its regions have no cells");
@@ -319,10 +324,11 @@ void World<dim>::count_particles() {
   double mine[2]{}, all[2];
   for (const auto &body : bodies) {
     const ParticleArrays<dim> &p = body->particles();
-    mine[0] += p.count, mine[1] += std::accumulate(p.mass, p.mass + p.count, 0.);
+    mine[0] += p.count, mine[1] += sum_of(p.mass, p.count);
   }
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, comm);
   particle_count = static_cast<long long>(all[0]), total_mass = all[1];
+  count_runs();
 }
 
 /// Bodies that come and go: their particles do too.
@@ -444,15 +450,12 @@ PetscErrorCode World<dim>::check_conservation(double mine_too, double *sum) cons
   double mine[3]{0, 0, mine_too}, all[3];
   for (const auto &body : bodies) {
     const ParticleArrays<dim> &p = body->particles();
-    mine[0] += p.count;
-    double mass = 0;
-#pragma omp simd reduction(+ : mass)
-    for (int i = 0; i < p.count; ++i) mass += p.mass[i];
-    mine[1] += mass;
+    mine[0] += p.count, mine[1] += sum_of(p.mass, p.count);
   }
   PetscCallMPI(MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, comm));
   *sum = all[2];
-  const double round_off = 1e-12 * (total_mass + escaped.sums().mass);
+  const double round_off = round_off_of_sum(particle_count + static_cast<long long>(escaped.sums().particles),
+                                            total_mass + escaped.sums().mass);
   if (all[0] != static_cast<double>(particle_count) || std::abs(all[1] - total_mass) > round_off)
     throw RunFailure("particles were lost or doubled: " + std::to_string(static_cast<long long>(all[0])) +
                      " are there, and there should be " + std::to_string(particle_count));
@@ -608,25 +611,47 @@ PetscErrorCode World<dim>::serialize(Archive &archive) {
   escaped.serialize(archive);
   for (const auto &body : bodies) PetscCall(body->serialize(archive, mesh));
   PetscCall(motion->serialize(archive));
+  if (archive.reading()) count_runs();
   PetscFunctionReturn(0);
 }
 
 template <int dim>
 double World<dim>::work_of_rank() const {
-  double work = motion->grid().cell_count();
+  double work = rates_.per_cell * motion->grid().cell_count() + rates_.per_run * runs_;
   for (const auto &body : bodies) work += body->particles().count;
   return work;
 }
 
+namespace {
+
+/// Calls `use` with the cell of each run (simulation/work.h) of the bodies.
+template <int dim, class Use>
+void for_each_run(const std::vector<std::unique_ptr<Body<dim>>> &bodies, Use use) {
+  for (const auto &body : bodies) {
+    const ParticleArrays<dim> &p = body->particles();
+    for (int i = 0; i < p.count; ++i)
+      if (i == 0 || p.cell[i] != p.cell[i - 1]) use(p.cell[i]);
+  }
+}
+
+}  // namespace
+
+template <int dim>
+void World<dim>::count_runs() {
+  runs_ = 0;
+  for_each_run(bodies, [this](int) { ++runs_; });
+}
+
 template <int dim>
 std::vector<std::pair<long long, double>> World<dim>::work_of_cells() const {
-  std::vector<int> particles(mesh.cell_count(), 0);
+  std::vector<double> work(mesh.cell_count(), 0);
   for (const auto &body : bodies)
-    for (int i = 0; i < body->particles().count; ++i) ++particles[body->particles().cell[i]];
-  std::vector<std::pair<long long, double>> work;
+    for (int i = 0; i < body->particles().count; ++i) work[body->particles().cell[i]] += 1;
+  std::vector<std::pair<long long, double>> filled;
+  for_each_run(bodies, [&](int cell) { work[cell] += rates_.per_run; });
   for (int c = 0; c < mesh.cell_count(); ++c)
-    if (particles[c] > 0) work.emplace_back(mesh.global_cell[c], particles[c] + 1);
-  return work;
+    if (work[c] > 0) filled.emplace_back(mesh.global_cell[c], work[c] + rates_.per_cell);
+  return filled;
 }
 
 template <int dim>

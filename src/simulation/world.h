@@ -17,6 +17,7 @@
 #include "simulation/clock.h"
 #include "simulation/failure.h"
 #include "simulation/overburden.h"
+#include "simulation/work.h"
 #include "solvers/critical_step.h"
 
 namespace talus {
@@ -78,8 +79,10 @@ class World {
   std::vector<Vec<dim>> nodal_displacement();
   /// Bodies, motion and boundaries. Collective.
   PetscErrorCode serialize(Archive &archive);
-  /// Work that this rank has in a step, in particles: a filled cell is as much as one.
+  /// Work that this rank has in a step (simulation/work.h), with the runs of particles that `count_runs` found.
   double work_of_rank() const;
+  /// After a remap, and where the particles of this rank are others.
+  void count_runs();
   /// Global numbers and work of the filled cells of this rank.
   std::vector<std::pair<long long, double>> work_of_cells() const;
   /// Divides the mesh among the ranks in another way. Particles, and all that nodes and cells hold, are gone:
@@ -130,9 +133,11 @@ class World {
   PetscErrorCode take_out(double time);
 
   std::vector<CriticalStep<dim>> critical_;
-  double wave_speed_ = 0;                  ///< the largest of the bodies [m/s]
-  double smallest_altitude_ = 0;           ///< of the cells of the mesh [m]
-  double depth_on_bases_ = 0;              ///< of elastic soil at the start [m]
+  double wave_speed_ = 0;         ///< the largest of the bodies [m/s]
+  double smallest_altitude_ = 0;  ///< of the cells of the mesh [m]
+  double depth_on_bases_ = 0;     ///< of elastic soil at the start [m]
+  const WorkRates rates_;
+  long long runs_ = 0;                     ///< of particles of one cell, on this rank
   double seeded_mass_ = 0;                 ///< of all ranks [kg]
   long long seeded_particles_ = 0;         ///< of all ranks
   std::vector<std::vector<int>> movers_;   ///< [body] particles that left their cells at the last release ...
