@@ -32,9 +32,8 @@ std::unique_ptr<AnySimulation> make(MPI_Comm comm, const Scene &scene, const Run
 std::unique_ptr<AnySimulation> make_simulation(MPI_Comm comm, const Scene &scene, const RunOptions &options) {
   RunOptions with = options;
   std::optional<MeshFile> mesh;
-  if (!options.plex) with.mesh = mesh.emplace(comm, scene).made();
-  for (const std::string &remark :
-       read_grids(comm, scene, mesh ? mesh->origin() : std::array<double, 2>{}, with.mesh.origin))
+  if (!options.plex) with.mesh = mesh.emplace(comm, scene).made(), with.mesh.corner = mesh->origin();
+  for (const std::string &remark : read_grids(comm, scene, with.mesh.corner, with.mesh.origin))
     with.mesh.remarks.push_back(remark);
   return make(comm, scene, with, mesh ? mesh->path() : "");
 }

@@ -38,6 +38,7 @@ class BrokenOff : public RunError {
 struct MadeMesh {
   std::vector<std::string> remarks;  ///< sentences about what may be meant but rarely is
   std::string origin;                ///< of terrain: what leads back from the mesh to the map, as JSON
+  std::array<double, 2> corner{};    ///< from which x and y of the mesh count on the map, on all ranks [m]
 };
 
 struct RunOptions {

@@ -37,7 +37,7 @@ Run<dim>::Run(MPI_Comm comm, const Scene &of, const RunOptions &with, const std:
       options(with),
       integrator(choose_integrator(of)),
       world(comm, of, with.plex, mesh_file, cuts_to_resume(comm, with)),
-      points(world),
+      points(world, options.mesh.corner),
       lines(world),
       dynamics((world.take_out_later_bodies(), world), clock, integrator),
       statics(world, clock),

@@ -3,13 +3,36 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 #include "scene/reader.h"
 
 namespace talus {
 
+namespace {
+
+/// To the millimetre: places on a map have seven digits before it.
+std::string coordinate(double x) {
+  std::ostringstream text;
+  text.precision(12);
+  text << std::round(1e3 * x) / 1e3 + 0.0;  // no -0
+  return text.str();
+}
+
+std::string in_words(const double *x, int count) {
+  std::string text;
+  for (int d = 0; d < count; ++d) text += (d ? ", " : "(") + coordinate(x[d]);
+  return text + ") m";
+}
+
+}  // namespace
+
 template <int dim>
-TrackedPoints<dim>::TrackedPoints(const World<dim> &world) : world_(world) {
+TrackedPoints<dim>::TrackedPoints(const World<dim> &world, std::array<double, 2> corner) : world_(world) {
+  const std::string on_map =
+      corner == std::array<double, 2>{}
+          ? ""
+          : "; x and y count from the corner of the mesh, which is at " + in_words(corner.data(), 2) + " of the map";
   for (const OutputPoint &wanted : world_.scene.output.point) {
     Vec<dim> place;
     std::copy_n(wanted.position.begin(), dim, place.begin());
@@ -17,18 +40,14 @@ TrackedPoints<dim>::TrackedPoints(const World<dim> &world) : world_(world) {
     if (!found.in_soil())
       world_.scene.complain("output.point." + wanted.name + ".position",
                             "must be in the soil or at its surface; the nearest particle is " +
-                                rounded(found.distance) + " m away, in a cell of " + rounded(found.cell_size) + " m");
+                                rounded(found.distance) + " m away, in a cell of " + rounded(found.cell_size) + " m" +
+                                on_map);
     points_.push_back(found.point);
     if (found.distance <= 0.5 * found.cell_size) continue;
-    const auto in_words = [](const Vec<dim> &x) {
-      std::string text;
-      for (int d = 0; d < dim; ++d) text += (d ? ", " : "(") + rounded(x[d]);
-      return text + ") m";
-    };
-    far_off_.push_back("output.point." + wanted.name + ": its position " + in_words(place) +
+    far_off_.push_back("output.point." + wanted.name + ": its position " + in_words(place.data(), dim) +
                        " has no particle within half a cell: the one that is followed, the nearest, lies at " +
-                       in_words(found.at) + ", " + rounded(found.distance) + " m away, in a cell of " +
-                       rounded(found.cell_size) + " m");
+                       in_words(found.at.data(), dim) + ", " + rounded(found.distance) + " m away, in a cell of " +
+                       rounded(found.cell_size) + " m" + on_map);
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// Named points of the scene's output: in motion the particle that was nearest at the start, wherever it goes; in
 /// stages by finite elements the place itself. So are the places along lines.
+#include <array>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,9 @@ class TrackedPoints {
     PetscInt id = -1;  ///< of its particle
     int index = -1;    ///< of its particle on this rank when it was last found
   };
-  /// The points of the scene's output. Throws SceneError for one that is not near any soil. Collective.
-  explicit TrackedPoints(const World<dim> &world);
+  /// The points of the scene's output, which like the mesh count from this corner on a map. Throws SceneError for one
+  /// that is not near any soil. Collective.
+  explicit TrackedPoints(const World<dim> &world, std::array<double, 2> corner = {});
   /// Points without names at these places; those that are not near any soil are left out. Collective.
   TrackedPoints(const World<dim> &world, const std::vector<Vec<dim>> &places);
 

@@ -271,7 +271,7 @@ TEST_F(Grids, have_the_projection_of_the_terrain) {
                                 " --size 10 --base 0 > " + in_folder("said");
     ASSERT_EQ(std::system(command.c_str()), 0);
   }
-  const std::string soil =
+  std::string soil =
       "[grids]\nstress = \"a.asc\"\n[body.soil]\nregion = \"ground\"\nlaw = \"linear_elastic\"\n"
       "young_modulus = 1e7\npoisson_ratio = 0.3\ndensity = 2000\n"
       "stress = [\"stress(x, y)\", \"0\", \"0\", \"0\", \"0\", \"0\"]\n[[stage]]\nduration = 1e-3\n";
@@ -289,6 +289,10 @@ TEST_F(Grids, have_the_projection_of_the_terrain) {
                    {"grids.stress", "a.asc: has the projection", "33N", "ground.asc has", "32N", "gdalwarp -t_srs"});
     zone(values, 32);
     run();
+    soil += "[output.point.well]\nposition = [505015.125, 5100012, 19]\n";  // a place of the map
+    expect_refused(run, {"output.point.well.position", "the nearest particle is",
+                         "x and y count from the corner of the mesh, which is at (505000, 5100000) m of the map"});
+    soil.erase(soil.find("[output"));
     std::ostringstream origin;
     origin << std::ifstream(in_folder("results/origin.json")).rdbuf();
     for (const char *word : {"\"origin_m\": [505000, 5100000]", "32N", "ground.asc"})
