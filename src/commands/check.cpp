@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
@@ -274,14 +276,22 @@ void print_json(const Scene &scene, const Needs &n, const std::vector<std::strin
 
 /// The file of the picture. A wrong name is refused before the work.
 std::string picture_of(const CheckArguments &arguments, const std::string &scene_file) {
-  if (arguments.picture.empty()) return short_name(scene_file) + "_model.png";
-  if (std::filesystem::path(arguments.picture).extension() != ".png")
-    throw SceneError("--picture " + arguments.picture + " must be the name of a PNG file, such as " +
-                     short_name(scene_file) + "_model.png");
-  const std::filesystem::path folder = std::filesystem::absolute(arguments.picture).parent_path();
+  const std::string usual = short_name(scene_file) + "_model.png";
+  const std::string picture = arguments.picture.empty() ? usual : arguments.picture;
+  if (!arguments.draws) return picture;
+  if (std::filesystem::is_directory(picture))
+    throw SceneError("--picture " + picture + " is a folder: name a PNG file in it, such as " +
+                     (std::filesystem::path(picture) / usual).string());
+  if (std::filesystem::path(picture).extension() != ".png")
+    throw SceneError("--picture " + picture + " must be the name of a PNG file, such as " + usual);
+  const std::filesystem::path folder = std::filesystem::absolute(picture).parent_path();
   if (!std::filesystem::is_directory(folder))
-    throw SceneError("--picture " + arguments.picture + " cannot be written: there is no folder " + folder.string());
-  return arguments.picture;
+    throw SceneError("--picture " + picture + " cannot be written: there is no folder " + folder.string());
+  const bool exists = std::filesystem::exists(picture);
+  if (access(exists ? picture.c_str() : folder.c_str(), W_OK))
+    throw SceneError("--picture " + picture + " cannot be written: " +
+                     (exists ? "it may not be changed" : "nothing may be written into " + folder.string()));
+  return picture;
 }
 
 int check(const CheckArguments &arguments) {

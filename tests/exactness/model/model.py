@@ -270,12 +270,21 @@ class Pictures(unittest.TestCase):
             self.assertEqual(status, 2, said)
             self.assertIn("--picture no/such/folder/block.png cannot be written: there is no folder", said)
 
-    def test_that_cannot_be_written_fail(self):
+    def test_are_refused_in_the_place_of_a_folder(self):
         (self.folder.path / "taken.png").mkdir(exist_ok=True)
-        for ranks in (1, 2):
-            status, said = self.check("--picture", "taken.png", ranks=ranks)
-            self.assertEqual(status, 1, said)
-            self.assertIn("no picture taken.png", said)
+        for ranks, name in ((1, "taken.png"), (2, "taken.png"), (1, ".")):
+            status, said = self.check("--picture", name, ranks=ranks)
+            self.assertEqual(status, 2, said)
+            self.assertIn(f"--picture {name} is a folder: name a PNG file in it, such as {name}/block_model.png", said)
+            self.assertNotIn("particles", said)  # before the work
+
+    @unittest.skipIf(os.geteuid() == 0, "root may write anywhere")
+    def test_are_refused_where_nothing_may_be_written(self):
+        locked = self.folder.path / "locked"
+        locked.mkdir(mode=0o500, exist_ok=True)
+        status, said = self.check("--picture", "locked/block.png")
+        self.assertEqual(status, 2, said)
+        self.assertIn("--picture locked/block.png cannot be written: nothing may be written into ", said)
 
     def test_without_matplotlib_fail(self):
         (self.folder.path / "matplotlib.py").write_text("raise ImportError('there is none')\n")
