@@ -48,6 +48,12 @@ def history_of(folder):
     return history, dimensionless(Results(folder), history["time_s"])
 
 
+def save(figure, name):
+    """Writes a picture of the page, with some paper around its charts."""
+    figure.get_layout_engine().set(w_pad=0.09, h_pad=0.09, wspace=0.02, hspace=0.03)
+    style.save(figure, HERE / f"{name}.png", dpi=130)
+
+
 def draw_pressures(history, relative):
     figure, axis = plt.subplots(figsize=(7.5, 3.6), layout="constrained")
     for point, name, colour in (("base", "at the base, (10, 0)", 0), ("P2", "P2, on the contact (17, 8.5)", 1), ("below_toe", "below the toe (36, 2)", 2)):
@@ -55,7 +61,7 @@ def draw_pressures(history, relative):
     axis.axvline(1, color="0.6", lw=1, ls=":")
     axis.set(xlabel="t* = t / time of failure", title="pore pressure where water moves [kPa] (paper's fig. 6)", xlim=(0, None))
     axis.legend(fontsize=8, loc="upper left")
-    style.save(figure, HERE / "pressures.png", dpi=130)
+    save(figure, "pressures")
 
 
 def draw_motion(history, relative):
@@ -67,33 +73,43 @@ def draw_motion(history, relative):
         axis.set(xlabel="t* = t / time of failure", title=title, xlim=(0.95, 1.25), ylim=(0, None))
     axes[2].set_ylim(0, 0.4)
     axes[0].legend(fontsize=8)
-    style.save(figure, HERE / "motion.png", dpi=130)
+    save(figure, "motion")
 
 
 def draw_strength(line, results):
-    relative = dimensionless(results, line.time)
-    figure, ((left, right), (path, three)) = plt.subplots(2, 2, figsize=(11.5, 7.8), layout="constrained")
+    relative, mean = dimensionless(results, line.time), means(line)
+    figure, ((left, path), (friction, shares), (three, moved)) = plt.subplots(3, 2, figsize=(11.5, 11.2), layout="constrained")
+    draw_along(left, line, relative)
+    draw_mean_path(path, relative, mean)
+    friction.plot(relative, mean["mean_mobilised_friction_deg"], color=style.INK, lw=1.4)
+    friction.set(xlabel="t* = t / time of failure", ylabel="mean mobilised friction φ' [deg]", title="mean along the slip surface (paper's fig. 12)", xlim=NEAR_FAILURE,
+                 ylim=(0, 16))
+    for state, colour in zip(style.STATES[1:], ("#f2b705", *style.STATE_COLOURS[2:])):  # the yellow of a thin line is darker
+        shares.plot(relative, 100 * mean[f"share_{state}"], color=colour, lw=1.6, label=state)
+    shares.set(xlabel="t* = t / time of failure", ylabel="share of the slip surface [%]", title="states of its soil", xlim=NEAR_FAILURE, ylim=(-1, 100))
+    shares.legend(fontsize=8, loc="center right")
+    draw_places(three, moved, line, relative)
+    for axes in (friction, shares, three, moved):
+        axes.axvline(1, color=style.FAINT, lw=0.9, zorder=0.5)
+        axes.annotate("failure", (1, 0.985), xycoords=("data", "axes fraction"), xytext=(3, 0), textcoords="offset points", va="top", fontsize=7.5, color=style.SOFT)
+    save(figure, "strength")
+
+
+def draw_along(axis, line, relative):
+    """Mobilised friction along the slip surface at some times, with the states of its soil."""
     along = line.columns["distance_m"][0]
     for k, t in enumerate((0.02, 0.8, 0.97, 0.99, 1.0, 1.02)):
         row = int(np.nanargmin(np.abs(relative - t)))
         mobilised = np.sin(np.radians(line.columns["mobilised_friction_deg"][row]))
-        left.plot(along, mobilised, color=plt.get_cmap("viridis")(k / 5.5), lw=1.1, label=f"t* = {relative[row]:.3f}")
-        left.scatter(along, mobilised, s=16, edgecolors=style.INK, linewidths=0.4, zorder=3,
-                     c=[style.STATE_COLOURS[int(state)] if np.isfinite(state) else "white" for state in line.columns["state"][row]])
-    left.set(xlabel="distance along the slip surface, from its rear [m]", title="mobilised friction sin φ' (paper's fig. 11)", ylim=(0, 1))
-    left.legend(fontsize=8)
-    mean = means(line)
-    right.plot(relative, mean["mean_mobilised_friction_deg"], color=style.INK, label="mean mobilised friction [deg]")
-    shares = right.twinx()
-    for state, colour in zip(style.STATES[1:], style.STATE_COLOURS[1:]):
-        shares.plot(relative, 100 * mean[f"share_{state}"], color=colour, lw=1.2, label=f"{state}")
-    right.set(xlabel="t* = t / time of failure", title="mean along the slip surface (fig. 12), and states of its soil", xlim=NEAR_FAILURE, ylim=(0, None))
-    right.set_ylabel("mean mobilised friction [deg]")
-    shares.set(ylabel="share of the slip surface [%]", ylim=(0, 100))
-    shares.legend(fontsize=8, loc="center right")
-    draw_mean_path(path, relative, mean)
-    draw_places(three, line, relative)
-    style.save(figure, HERE / "strength.png", dpi=130)
+        axis.plot(along, mobilised, color=plt.get_cmap("viridis")(k / 5.5), lw=1.3, label=f"t* = {relative[row]:.3f}")
+        axis.scatter(along, mobilised, s=16, edgecolors=style.INK, linewidths=0.4, zorder=3,
+                     c=[("white", *style.STATE_COLOURS[1:])[int(state)] if np.isfinite(state) else "white" for state in line.columns["state"][row]])
+    axis.set(xlabel="distance along the slip surface, from its rear [m]", ylabel="mobilised friction sin φ' [-]", title="along the slip surface (paper's fig. 11)",
+             xlim=(0, along[-1] + 1), ylim=(0, 0.6))
+    states = [plt.Line2D([], [], ls="", marker="o", ms=4.5, mfc=colour, mec=style.INK, mew=0.4, label=state)
+              for state, colour in zip(style.STATES, ("white", *style.STATE_COLOURS[1:]))]
+    axis.add_artist(axis.legend(handles=states, fontsize=8, loc="upper left", ncols=2))
+    axis.legend(fontsize=8, loc="upper right", ncols=2)
 
 
 def draw_mean_path(axis, relative, mean):
@@ -105,22 +121,21 @@ def draw_mean_path(axis, relative, mean):
     for label, row in (("start", np.flatnonzero(shown)[0]), ("largest friction", largest), ("failure", int(np.nanargmin(np.abs(relative - 1)))),
                        ("least friction", int(np.nanargmin(np.where(shown, mean["mean_mobilised_friction_deg"], np.nan))))):
         axis.plot(p[row], q[row], "o", ms=5, label=f"{label}, t* = {relative[row]:.2f}")
-    axis.set(xlabel="mean p' along the slip surface [kPa]", ylabel="mean q [kPa]", title="mean stress of the slip surface up to t* = 1.02 (paper's fig. 12b)")
-    axis.legend(fontsize=8)
+    axis.set(xlabel="mean effective stress p' of the slip surface [kPa]", ylabel="mean deviator q [kPa]", title="mean stress up to t* = 1.02 (paper's fig. 12b)")
+    axis.legend(fontsize=8, loc="center", bbox_to_anchor=(0.5, 0.58))
 
 
-def draw_places(axis, line, relative):
-    """Mobilised friction of three places of the slip surface, and how far its middle has moved."""
-    moved = axis.twinx()
+def draw_places(friction, moved, line, relative):
+    """Mobilised friction of three places of the slip surface, and how far they have moved."""
     for name, distance, colour in zip(("rear", "middle", "front"), PLACES, style.LINES):
         place = int(np.abs(line.columns["distance_m"][0] - distance).argmin())
-        axis.plot(relative, line.columns["mobilised_friction_deg"][:, place], color=colour, lw=1.1, label=f"{name}, {distance} m from its rear")
-        if name == "middle":
-            moved.plot(relative, line.columns["displacement_m"][:, place], "--", color=style.SOFT, lw=1.1)
-    axis.set(xlabel="t* = t / time of failure", ylabel="mobilised friction [deg]", title="three places of the slip surface (paper's fig. 14)", xlim=(0.9, 1.25),
-             ylim=(0, None))
-    moved.set(ylabel="displacement of the middle, dashed [m]", ylim=(0, None))
-    axis.legend(fontsize=8, loc="lower right")
+        friction.plot(relative, line.columns["mobilised_friction_deg"][:, place], color=colour, lw=1.3, label=f"{name}, {distance} m from the rear end")
+        moved.plot(relative, line.columns["displacement_m"][:, place], color=colour, lw=1.3, label=name)
+    friction.set(xlabel="t* = t / time of failure", ylabel="mobilised friction φ' [deg]", title="three places of the slip surface (paper's fig. 14)", xlim=(0.9, 1.25),
+                 ylim=(0, None))
+    moved.set(xlabel="t* = t / time of failure", ylabel="displacement [m]", title="displacement of the three places", xlim=(0.9, 1.25), ylim=(0, None))
+    friction.legend(fontsize=8, loc="lower right")
+    moved.legend(fontsize=8, loc="upper left", bbox_to_anchor=(0.0, 0.9))
 
 
 def draw_paths(history, relative):
@@ -139,7 +154,7 @@ def draw_paths(history, relative):
             axis.plot(along, 6 * (s * along + cohesion * c) / (3 - s), dash, color=style.SOFT, lw=0.9, label=f"{strength}, triaxial compression")
         axis.set(xlabel="mean effective stress p' [kPa]", ylabel="deviator q [kPa]", title=point.replace("_", " "), ylim=(0, None))
     axes[0].legend(fontsize=7.5)
-    style.save(figure, HERE / "paths.png", dpi=130)
+    save(figure, "paths")
 
 
 def draw_inclinometers(lines, results):
@@ -154,7 +169,7 @@ def draw_inclinometers(lines, results):
         axis.set(title=f"{line.name}, x = {line.columns['x_m'][0].mean():.0f} m", xlabel="level displacement [mm]")
     axes[0].set_ylabel("elevation [m]")
     axes[0].legend(fontsize=8)
-    style.save(figure, HERE / "inclinometers.png", dpi=130)
+    save(figure, "inclinometers")
 
 
 def table(name):
@@ -163,18 +178,21 @@ def table(name):
 
 
 def draw_tables():
-    figure, (cells, load, residual) = plt.subplots(1, 3, figsize=(11.5, 3.5), layout="constrained")
-    for kind, marker in (("nonlocal", "o-"), ("of the cell", "s--")):
+    figure, (cells, residual, load) = plt.subplots(1, 3, figsize=(11.5, 3.9), layout="constrained")
+    for kind, name, marker in (("nonlocal", "averaged over 1 m", "o-"), ("of the cell", "of the cell", "s--")):
         rows = [row for row in table("cells") if row["run"].startswith(kind)]
         size = [float(row["run"].split(",")[1].split()[0]) for row in rows]
-        cells.plot(size, [float(row["crest_m"]) for row in rows], marker, ms=4, label=kind)
-        load.plot(size, [float(row["pressure_kPa"]) for row in rows], marker, ms=4, label=kind)
-    cells.axhline(4, color="0.6", lw=1, ls=":")
-    cells.text(1.4, 4.05, "recorded in the experiment", ha="right", color="0.4", fontsize=8)
-    cells.set(xlabel="cell size [m]", title="displacement of the crest [m]", ylim=(0, None))
-    load.set(xlabel="cell size [m]", title="base pressure at failure [kPa]", ylim=(0, 130))
-    cells.legend(fontsize=8, title="softening", title_fontsize=8)
+        cells.plot(size, [float(row["crest_m"]) for row in rows], marker, ms=4, label=name)
+        load.plot(size, [float(row["pressure_kPa"]) for row in rows], marker, ms=4, label=name)
     rows = [row for row in table("residual") if re.fullmatch(r"[\d.]+ kPa", row["run"])]  # of the weathered clay, each at its own load
     residual.plot([float(row["run"].split()[0]) for row in rows], [float(row["crest_m"]) for row in rows], "o-", ms=4)
-    residual.set(xlabel="residual cohesion of the weathered clay [kPa]", title="displacement of the crest [m]", ylim=(0, None))
-    style.save(figure, HERE / "sensitivity.png", dpi=130)
+    for axis, at in ((cells, 1.44), (residual, 10.3)):
+        axis.axhline(4, color="0.6", lw=1, ls=":")
+        axis.set(ylabel="displacement of the crest [m]", ylim=(0, 8.4))
+        axis.text(at, 3.93, "recorded in the experiment", ha="right", va="top", color="0.4", fontsize=8)
+    cells.set(xlabel="cell size [m]", xlim=(0.45, 1.45), title="cells and run-out")
+    load.set(xlabel="cell size [m]", ylabel="pressure at the base at failure [kPa]", xlim=(0.45, 1.45), ylim=(0, 130), title="cells and load at failure")
+    residual.set(xlabel="residual cohesion of the weathered clay [kPa]", xlim=(0, 10.4), title="strength and run-out, cells of 0.7 m")
+    for axis in (cells, load):
+        axis.legend(fontsize=8, title="softening", title_fontsize=8, alignment="left", loc="lower left" if axis is load else "upper right")
+    save(figure, "sensitivity")
