@@ -28,20 +28,25 @@ SOLID, WATER, GAS, POROSITY = 9.8e6, 100e6, 1e4, 0.35  # bulk moduli of skeleton
 
 
 def draw_section(results, path):
-    figure, grid = plt.subplots(len(TIMES), 2, figsize=(8.6, 5.2), sharex=True, sharey=True)
-    figure.subplots_adjust(left=0.05, right=0.98, bottom=0.16, top=0.95, hspace=0.25, wspace=0.06)
+    figure, grid = plt.subplots(len(TIMES), 2, figsize=(9.6, 6.0), sharex=True, sharey=True)
+    figure.subplots_adjust(left=0.06, right=0.985, bottom=0.2, top=0.95, hspace=0.22, wspace=0.06)
     frame = Frame((0, 0), (RIGHT, TOP), 900)
+    fields = (("suction", 1e-3, {"cmap": "YlOrBr", "vmin": 0, "vmax": 100}), ("displacement", 1, {"cmap": "viridis", "vmin": 0, "vmax": 8}))
     for line, t in zip(grid, TIMES):
         snapshot = min(results.snapshots, key=lambda each: abs(each.time - t))
         owner = tiles(snapshot.position()[:, :2], spacing_of(results), frame)
-        fields = (("suction", 1e-3, {"cmap": "YlOrBr", "vmin": 0, "vmax": 100}), ("displacement", 1, {"cmap": "viridis", "vmin": 0, "vmax": 8}))
         for axes, (field, factor, colours) in zip(line, fields):
             values = factor * snapshot.scalar(field)[0]
             picture = axes.imshow(np.ma.array(values[np.maximum(owner, 0)], mask=owner < 0), origin="lower", extent=frame.extent(), interpolation="nearest", **colours)
-            axes.set(xlim=(0, RIGHT), ylim=(0, TOP), aspect="equal")
-            axes.set_title(at_time(snapshot.time, TIMES[-1]), loc="left", pad=3)
+            axes.set(xlim=(0, RIGHT), ylim=(0, TOP), aspect="equal", xticks=range(0, RIGHT + 1, 10), yticks=range(0, TOP, 5))
+            since = snapshot.time - measures.start_of_rain(results)
+            axes.set_title(f"{field}, {at_time(snapshot.time, TIMES[-1])}, {since:.0f} s of rain", loc="left", pad=3)
+            if axes is line[0]:
+                axes.set_ylabel("elevation [m]")
             if t == TIMES[-1]:
-                place = figure.add_axes((axes.get_position().x0 + 0.08, 0.06, 0.3, 0.018))
+                axes.set_xlabel("x [m]")
+                at = axes.get_position()
+                place = figure.add_axes((at.x0, 0.055, 0.8 * at.width, 0.018))
                 figure.colorbar(picture, cax=place, orientation="horizontal", extend="max").outline.set_visible(False)
                 place.set_title("displacement [m]" if field == "displacement" else "suction [kPa]", size=8.5, loc="left", pad=4)
     style.save(figure, path)
