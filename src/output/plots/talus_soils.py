@@ -33,13 +33,14 @@ def painted(owner, value, body, tint, colours, reach=0):
     soil = owner >= 0
     picture = np.zeros((*owner.shape, 4))
     mine = owner[soil]
-    with_field = colours.map(np.ma.filled(colours.norm(value[mine]), np.nan))[:, :3]
+    # the colours of particles, of which there are fewer than of pixels
+    with_field, own_colour = colours.map(np.ma.filled(colours.norm(value), np.nan)), np.insert(tint[body], 3, 1, axis=1)
     plain = np.ones(owner.shape, bool)
-    plain[soil] = colours.plain(value[mine])
-    plain = plain[soil] if colours.names else without_islands(plain, reach)[soil] | ~np.isfinite(value[mine])
-    picture[soil, :3] = np.where(plain[:, None], tint[body[mine]], with_field)
-    picture[soil, 3] = 1
-    dark = borders(np.where(soil, body[owner], -1))
+    plain[soil] = colours.plain(value)[mine]
+    plain = plain[soil] if colours.names else without_islands(plain, reach)[soil] | ~np.isfinite(value)[mine]
+    with_field[:, 3] = 1
+    picture[soil] = np.where(plain[:, None], own_colour[mine], with_field[mine])
+    dark = borders(np.where(soil, body[owner], -1)) if len(tint) > 1 else np.zeros(owner.shape, bool)
     picture[dark, :3] = (1 - LINE) * picture[dark, :3] + LINE * np.array(to_rgb(style.INK))
     return picture
 

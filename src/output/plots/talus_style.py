@@ -1,5 +1,6 @@
 """How the pictures of Talus look: type, colours, units of a size that reads well."""
 
+import io
 import os
 import pathlib
 import re
@@ -11,11 +12,14 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap, ListedColormap
 from matplotlib.ticker import FuncFormatter, Locator, NullFormatter
+from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 
 INK, SOFT, FAINT, ACCENT = "#1f2933", "#616e7c", "#cbd2d9", "#0b7285"
 LINES = ("#0b7285", "#d9480f", "#5f3dc4", "#2b8a3e", "#c2255c", "#e67700", "#6f4518", "#868e96")
 EDGE = 0.12  # between titles and the edge of a chart [inch]
 RESOLUTION = 170  # dots per inch
+PACKED = 4  # of 9: how thoroughly pictures are packed
 
 plt.rcParams.update({
     "font.family": "DejaVu Sans", "font.size": 9, "axes.titlesize": 9.5, "axes.labelsize": 9,
@@ -121,6 +125,12 @@ def save(figure, path, **options):
     """Writes a figure as PNG, whose metadata say in "Software" which program drew it, and closes it. `options` are those of matplotlib's
     savefig, such as dpi. Returns the path."""
     path.parent.mkdir(exist_ok=True)
-    figure.savefig(path, metadata={"Software": f"{program()}, Matplotlib {matplotlib.__version__}"}, **options)
+    drawn = io.BytesIO()  # packed below: that takes two thirds of the time without the opacity, which is 1 all over, and a little less thoroughly
+    figure.savefig(drawn, format="rgba", **options)
+    dpi = options.get("dpi", plt.rcParams["savefig.dpi"])
+    size = tuple(int(length) for length in figure.bbox_inches.size * dpi)
+    about = PngInfo()
+    about.add_text("Software", f"{program()}, Matplotlib {matplotlib.__version__}")
+    Image.frombuffer("RGBA", size, drawn.getbuffer()).convert("RGB").save(path, "png", pnginfo=about, dpi=(dpi, dpi), compress_level=PACKED)
     plt.close(figure)
     return path
