@@ -15,6 +15,7 @@ sys.path.insert(0, str(HERE))
 
 import matplotlib.pyplot as plt  # noqa: E402
 import measures  # noqa: E402
+from matplotlib.colors import LogNorm  # noqa: E402
 import talus_style as style  # noqa: E402
 from talus_results import Results  # noqa: E402
 from talus_views import spacing_of  # noqa: E402
@@ -24,7 +25,8 @@ BASE = np.array([(-150, 1149), (0, 1040), (550.6, 640), (1255, 640), (1755, 1030
 SOFTER = "functions.phi_b=[[0, 12], [150, 12], [151, 5]]"  # the base keeps 5 degrees
 PER_SECOND = 4  # rows of the history
 LOADS = (0, 20, 30, 40, 60, 150, 155, 160, 170, 180)  # load times of the frames [s]
-SCALES = ((0, 0.002), (40, 0.02), (150, 0.3), (180, 1))  # plastic strain up to these load times is shown up to that value
+STRAINS, INTACT = (1e-3, 3), "#dfe3e8"  # ends of the scale of plastic strain, and the colour of rock with less
+KINKS = ((550.6, "^", "kink below the slope"), (1255, "o", "kink at the far bank"))  # of the base, which points pass [m]
 SPANS = ((0, 20), (20, 30), (30, 40), (40, 50), (50, 60), (60, 70), (70, 80))  # load times between which the plane is looked for [s]
 
 
@@ -33,25 +35,32 @@ def level_at(results, t):
 
 
 def draw_frames(results, path):
-    figure, grid = plt.subplots(len(LOADS) // 2, 2, figsize=(9.2, 10), sharex=True, sharey=True)
-    figure.subplots_adjust(left=0.06, right=0.98, bottom=0.09, top=0.97, hspace=0.22, wspace=0.05)
-    frame = Frame((-150, 600), (1755, 1150), 900)
-    for axes, t in zip(grid.flat, LOADS):
+    (left, right), (low, high) = (-150, 1755), (600, 1150)
+    wide, beside, title, width = 4.35, 0.25, 0.42, 9.8  # of a frame, between frames, above each, of the picture [inch]
+    tall = wide * (high - low) / (right - left)
+    height = 0.1 + len(LOADS) // 2 * (tall + title) + 1.15
+    figure = plt.figure(figsize=(width, height))
+    frame, colours = Frame((left, low), (right, high), 900), {"cmap": style.colours_of("plastic_strain").with_extremes(under=INTACT), "norm": LogNorm(*STRAINS)}
+    for k, t in enumerate(LOADS):
+        row, column = divmod(k, 2)
+        axes = figure.add_axes(((0.62 + column * (wide + beside)) / width, 1 - (0.1 + (row + 1) * (tall + title)) / height, wide / width, tall / height))
         snapshot = measures.at_load(results, t)
         owner = tiles(snapshot.position()[:, :2], spacing_of(results), frame)
-        values = snapshot.scalar("plastic_strain")[0]
-        place, (_, top) = next((k, scale) for k, scale in enumerate(SCALES) if t <= scale[0])
-        picture = axes.imshow(np.ma.array(values[np.maximum(owner, 0)], mask=owner < 0), origin="lower", extent=frame.extent(),
-                              interpolation="nearest", cmap="viridis", vmin=0, vmax=top)
-        axes.plot(*BASE.T, color="black", linewidth=1)
-        axes.set(xlim=(-150, 1755), ylim=(600, 1150), aspect="equal")
+        values = np.maximum(snapshot.scalar("plastic_strain")[0], 1e-12)
+        picture = axes.imshow(np.ma.array(values[np.maximum(owner, 0)], mask=owner < 0), origin="lower", extent=frame.extent(), interpolation="nearest", **colours)
+        axes.plot(*BASE.T, color=style.INK, linewidth=1)
+        axes.set(xlim=(left, right), ylim=(low, high), xticks=range(0, 1751, 250), yticks=range(600, 1101, 100))
+        axes.tick_params(labelleft=column == 0, labelbottom=row == len(LOADS) // 2 - 1)
+        if column == 0:
+            axes.set_ylabel("elevation [m]")
+        if row == len(LOADS) // 2 - 1:
+            axes.set_xlabel("x [m]")
         base = np.interp(t, *np.array(results.scene["functions"]["phi_b"], float).T)
         axes.set_title(f"t = {t} s, water {level_at(results, t):.0f} m, base {base:.0f}°", loc="left", pad=3, size=8.5)
-        if t == SCALES[place][0]:
-            bar = figure.add_axes((0.07 + 0.235 * place, 0.045, 0.19, 0.01))
-            figure.colorbar(picture, cax=bar, orientation="horizontal", extend="max").outline.set_visible(False)
-            bar.tick_params(labelsize=7.5), bar.locator_params(nbins=4)
-            bar.set_title("plastic strain at t = 0" if t == 0 else f"up to t = {t} s", size=8.5, loc="left", pad=4)
+    bar = figure.add_axes((0.62 / width, 0.3 / height, wide / width, 0.12 / height))
+    figure.colorbar(picture, cax=bar, orientation="horizontal", extend="both").outline.set_visible(False)
+    bar.set_xticks([1e-3, 1e-2, 0.1, 1], ["0.001", "0.01", "0.1", "1"], size=8)
+    bar.set_title("plastic strain, the same scale in all frames; grey: less", size=8.5, loc="left", pad=4)
     style.save(figure, path)
 
 
@@ -101,8 +110,8 @@ def along_plane(results, snapshot, angle, height, half_width=15.0):
 
 def draw_plane(results, path):
     """Mobilised friction along the plane over load time, and how the plane turns."""
-    figure, (map_, turn) = plt.subplots(1, 2, figsize=(9.2, 3.6), width_ratios=(1.15, 1))
-    figure.subplots_adjust(left=0.07, right=0.98, bottom=0.15, top=0.9, wspace=0.25)
+    figure, (map_, turn) = plt.subplots(1, 2, figsize=(9.6, 4.0), width_ratios=(1.2, 1))
+    figure.subplots_adjust(left=0.065, right=0.985, bottom=0.125, top=0.86, wspace=0.22)
     loads, height = np.arange(0, 81, 2.0), np.arange(0, 246, 17.5)
     middle, strain = [sum(span) / 2 for span in SPANS], [measures.plane_of_strain(results, *span)[0] for span in SPANS]
     friction = np.array([along_plane(results, measures.at_load(results, t), np.interp(t, middle, strain), height) for t in loads]).T
@@ -110,32 +119,43 @@ def draw_plane(results, path):
     for level in (30, 53, 57, 60):
         t = np.interp(level, *np.array(results.scene["functions"]["hw"], float).T[::-1])
         map_.axvline(t, color="white", linewidth=0.7, linestyle=":")
-        map_.annotate(f"{level} m", (t, 247), ha="center", va="bottom", size=8, annotation_clip=False)
+        map_.annotate(f"{level}", (t, 247), ha="center", va="bottom", size=8, annotation_clip=False)
+    map_.annotate("m of water", (64, 247), va="bottom", size=8, annotation_clip=False)
     map_.set(xlabel="load time [s]", ylabel="distance from the kink along the plane [m]", xlim=(0, 80), ylim=(0, 245))
     figure.colorbar(picture, ax=map_, extend="both", label="mobilised friction [deg]").outline.set_visible(False)
     turn.plot(middle, [measures.plane_of_motion(results, *span) for span in SPANS], "o-", label="from the velocities of both parts")
     turn.plot(middle, strain, "s--", label="line through the growing plastic strain")
     turn.axhline(108, color="black", linewidth=0.7, linestyle=":"), turn.annotate("bisector", (1, 108.5), size=8.5)
     turn.axhline(90, color="grey", linewidth=0.7, linestyle=":"), turn.annotate("vertical", (1, 90.5), size=8.5, color="grey")
-    turn.set(xlabel="load time [s]", ylabel="inclination from the horizontal, uphill side [deg]", xlim=(0, 80), ylim=(70, 118))
-    turn.legend(frameon=False, loc="lower right", fontsize=7.5)
+    turn.set(xlabel="load time [s]", ylabel="inclination from the uphill level [deg]", xlim=(0, 80), ylim=(70, 118))
+    turn.legend(frameon=False, loc="lower left", bbox_to_anchor=(-0.02, 1.0), borderaxespad=0.2, fontsize=8)  # above, where no curve runs
     style.save(figure, path)
 
 
 def draw_points(results, path):
-    """Mobilised friction of thirteen points in the slide."""
-    figure, points = plt.subplots(figsize=(9.2, 3.2))
-    figure.subplots_adjust(left=0.07, right=0.9, bottom=0.17, top=0.95)
+    """Mobilised friction of thirteen points in the slide over time, a row for each, with the times at which they pass a kink of the base."""
+    figure, points = plt.subplots(figsize=(9.6, 4.0))
+    figure.subplots_adjust(left=0.055, right=1.06, bottom=0.125, top=0.92)
     history = results.history
     moving = np.array(history.stage) == "slide"
+    time = (history.time[moving] - history.time[moving][0])[PER_SECOND - 1:]
+    mean = lambda column: np.convolve(column, np.ones(PER_SECOND) / PER_SECOND, "valid")
+    friction = np.array([mean(np.nan_to_num(history.columns[f"m{k}_mobilised_friction_deg"][moving])) for k in range(1, 14)])
+    step = time[1] - time[0]
+    picture = points.pcolormesh(np.append(time - step / 2, time[-1] + step / 2), np.arange(0.5, 14), friction, cmap="viridis", vmin=0, vmax=42)
+    for edge in np.arange(1.5, 13):
+        points.axhline(edge, color="white", linewidth=1.2)
     for k in range(1, 14):
-        angle = np.nan_to_num(history.columns[f"m{k}_mobilised_friction_deg"][moving])
-        points.plot((history.time[moving] - history.time[moving][0])[PER_SECOND - 1:], np.convolve(angle, np.ones(PER_SECOND) / PER_SECOND, "valid"),
-                    color=plt.get_cmap("turbo")(k / 14), linewidth=1.1, label=str(k))
-    points.set(xlabel="time since the base lost its friction [s]", ylabel="mobilised friction [deg]", ylim=(0, 45))
-    points.legend(frameon=False, loc="center left", bbox_to_anchor=(1, 0.5), fontsize=8)
-    for angle in (36, 42):
-        points.axhline(angle, color="grey", linewidth=0.6, linestyle=":")
+        x = results.scene["output"]["point"][f"m{k}"]["position"][0] + history.columns[f"m{k}_displacement_x_m"][moving]
+        for kink, marker, label in KINKS:
+            passed = np.flatnonzero((x[:-1] < kink) & (x[1:] >= kink))
+            points.plot((history.time[moving] - history.time[moving][0])[passed[:1]], [k] * len(passed[:1]), marker, color="white", markeredgecolor=style.INK,
+                        markersize=6, linestyle="none", clip_on=False, zorder=4)
+    points.set(xlabel="time since the base lost its friction [s]", ylabel="point, from the scarp to the toe", yticks=range(1, 14), xlim=(time[0] - step / 2, time[-1] + step / 2))
+    points.invert_yaxis()
+    figure.colorbar(picture, ax=points, pad=0.02, aspect=24, label="mobilised friction [deg]", ticks=(0, 10, 20, 30, 36, 42)).outline.set_visible(False)
+    marks = [plt.Line2D([], [], marker=marker, color="white", markeredgecolor=style.INK, markersize=6, linestyle="none", label=f"passes the {label}") for _, marker, label in KINKS]
+    points.legend(handles=marks, frameon=False, loc="lower left", bbox_to_anchor=(-0.01, 1.0), borderaxespad=0.2, ncols=2, fontsize=8)
     style.save(figure, path)
 
 
