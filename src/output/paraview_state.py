@@ -1,6 +1,7 @@
 """Opens the results in the folder of this file in ParaView (5.11 or newer): File > Load State, or paraview --state=run.py
 
-The last snapshot, coloured by plastic strain where the soil yields and else by displacement, in front of the background mesh.
+The last snapshot, coloured by plastic strain where the soil yields and else by displacement, in front of the background mesh. The colours of velocity,
+displacement and plastic strain reach to their largest values over all times.
 """
 import json
 import os
@@ -31,9 +32,19 @@ shown.ShaderPreset = "Plain circle" if flat else "Sphere"
 yields = "plastic_strain" in arrays.keys() and arrays["plastic_strain"].GetRange()[1] > 1e-3
 field = "plastic_strain" if yields else "displacement (m)"
 ColorBy(shown, ("POINTS", field))
+# The scales, of a hundred times at most; ParaView by itself would take those of the time at which a field is chosen.
+component = {name: component for name, component in (("plastic_strain", 0), ("displacement (m)", -1), ("velocity (m/s)", -1)) if name in arrays.keys()}
+largest = dict.fromkeys(component, 0.0)
+for time in sorted({*times[:: -(-len(times) // 100)], times[-1]}):
+    particles.UpdatePipeline(time)
+    for name in component:
+        largest[name] = max(largest[name], arrays[name].GetRange(component[name])[1])
+for name, value in largest.items():
+    scale = GetColorTransferFunction(name)
+    scale.ApplyPreset("Viridis (matplotlib)", True)
+    scale.RescaleTransferFunction(0, value or 1)
+    scale.AutomaticRescaleRangeMode = "Never"
 colours = GetColorTransferFunction(field)
-colours.ApplyPreset("Viridis (matplotlib)", True)
-colours.RescaleTransferFunction(0, arrays[field].GetRange(0 if yields else -1)[1])
 shown.SetScalarBarVisibility(view, True)
 bar = GetScalarBar(colours, view)
 bar.TitleColor = bar.LabelColor = [0, 0, 0]

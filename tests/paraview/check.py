@@ -63,7 +63,18 @@ Hide(particles, view)
 
 state = os.path.join(folder, "run.py")
 with open(state) as script:
-    exec(compile(script.read(), state, "exec"), {"__file__": state})
+    names = {"__file__": state}
+    exec(compile(script.read(), state, "exec"), names)
+field_of_state = names["field"]
+for name, of_all in (("velocity (m/s)", "velocity"), ("displacement (m)", "displacement"), ("plastic_strain", "plastic_strain")):
+    if of_all in snapshots[0]:
+        largest = max(np.linalg.norm(snapshot[of_all][()], axis=1).max() for snapshot in snapshots)
+        shown = GetDisplayProperties(GetActiveSource(), view)
+        shown.SetScalarColoring(name, servermanager.GetAssociationFromString("POINTS"))
+        shown.RescaleTransferFunctionToDataRange(True, False)  # as ParaView does where somebody chooses it in the list; ColorBy would enforce the present range
+        end = GetColorTransferFunction(name).RGBPoints[-4]
+        expect(abs(end - (largest or 1)) < 1e-5 * (largest or 1), f"the colours of {name} reach to its largest value over all times, {largest:.4g}, not to {end:.4g}")
+GetDisplayProperties(GetActiveSource(), view).SetScalarColoring(field_of_state, servermanager.GetAssociationFromString("POINTS"))
 SaveScreenshot(picture, view, ImageResolution=[1000, 500])
 from paraview.vtk.vtkIOImage import vtkPNGReader
 
