@@ -1,5 +1,7 @@
 """Pictures of the particles: sections in plane strain, slices from the side, bodies cut through and from above."""
 
+import os
+
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.patheffects import withStroke
@@ -344,7 +346,8 @@ def slip_surfaces(results, folder):
     """What is known of slip surfaces of a run in plane strain or a slice: the line that `talus plot --slip-surface` has found, and that of the least factor of
     safety. [(name, points [n, 2], style of the line)]"""
     found = []
-    if (path := folder / "slip_surface.csv").exists():
+    path, run = folder / "slip_surface.csv", results.folder / "run.h5"
+    if path.exists() and not (run.exists() and run.stat().st_mtime > path.stat().st_mtime):  # that of an earlier run in this folder is not its own
         found.append(("slip surface, where its soil was at the start", np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2), "-"))
     factor = read_factor(results)
     if factor and factor["mechanisms"][0]["slip_surface_m"]:
@@ -361,16 +364,43 @@ def draw_sections(results, fields, times, folder, log=False):
     after, _ = ([], "") if times else since_reset(results, chosen, "displacement")
     painter = Painter(results, chosen + after, as_asked=bool(times))
     painter.slips = slip_surfaces(results, folder)
-    pictures = []
-    for field in fields:
-        if any(snapshot.scalar(field) is None for snapshot in chosen):
-            continue
-        if not any(np.isfinite(snapshot.scalar(field)[0]).any() for snapshot in chosen):
-            continue  # such as the mobilised friction of soil without friction
+    fields = [field for field in fields if not any(snapshot.scalar(field) is None for snapshot in chosen)
+              and any(np.isfinite(snapshot.scalar(field)[0]).any() for snapshot in chosen)]  # nowhere: such as the mobilised friction of soil without friction
+    paths = {field: (folder / f"{field}_large.png", folder / f"{field}.png") for field in fields}
+
+    def draw(field):
         snapshots, painter.reset = (chosen, "") if times else since_reset(results, with_stress(results, chosen, field), field)
         if times:
             painter.count_from(field, snapshots)
         colours = painter.colours(field, snapshots, log)
-        pictures.append((field, painter.large(field, colours, scaled_by(results, snapshots, field), folder / f"{field}_large.png"),
-                         painter.over_time(field, colours, snapshots, folder / f"{field}.png")))
-    return pictures
+        large, over_time = paths[field]
+        painter.large(field, colours, scaled_by(results, snapshots, field), large)
+        painter.over_time(field, colours, snapshots, over_time)
+
+    on_two_cores(draw, fields)
+    return [(field, *paths[field]) for field in fields]
+
+
+def on_two_cores(draw, fields):
+    """Draws all fields: every second one in a process of its own where there is a second core. What that one fails to draw is drawn here, where errors are
+    heard."""
+    if len(fields) < 2 or len(os.sched_getaffinity(0)) < 2:
+        for field in fields:
+            draw(field)
+        return
+    other = os.fork()
+    if other == 0:
+        failed = 1
+        try:
+            for field in fields[1::2]:
+                draw(field)
+            failed = 0
+        finally:
+            os._exit(failed)
+    try:
+        for field in fields[::2]:
+            draw(field)
+    finally:
+        failed = os.waitpid(other, 0)[1]
+    for field in fields[1::2] if failed else ():
+        draw(field)

@@ -1,6 +1,7 @@
 """What the pictures of a run choose to show: argument 1 is the folder of the scripts."""
 
 import json
+import os
 import pathlib
 import re
 import sys
@@ -756,6 +757,38 @@ class SlipSurface(unittest.TestCase):
                         np.testing.assert_allclose(drawn[name], points)
                 for sheet in sheets:
                     talus_sweep.plt.close(sheet)
+                if found:
+                    (folder / "run.h5").touch()
+                    os.utime(folder / "slip_surface.csv", (0, 0))  # the folder has another run since
+                    self.assertEqual(len(talus_sections.slip_surfaces(results, folder)), factor)
+
+
+class Cores(unittest.TestCase):
+    def drawn_by(self, cores, fails=False):
+        """{field: the process that drew it}"""
+        here = os.getpid()
+        with tempfile.TemporaryDirectory() as place, unittest.mock.patch("os.sched_getaffinity", lambda process: set(range(cores))):
+            def draw(field):
+                if fails and os.getpid() != here:
+                    raise OSError("no space")
+                (pathlib.Path(place) / field).write_text(str(os.getpid()))
+
+            talus_sections.on_two_cores(draw, ["a", "b", "c"])
+            return {path.name: int(path.read_text()) for path in pathlib.Path(place).iterdir()}
+
+    def test_share_the_fields(self):
+        here = os.getpid()
+        self.assertEqual(self.drawn_by(1), dict.fromkeys("abc", here))
+        self.assertEqual({field: process == here for field, process in self.drawn_by(2).items()}, {"a": True, "b": False, "c": True})
+        with unittest.mock.patch("sys.stderr"):
+            self.assertEqual(self.drawn_by(2, fails=True), dict.fromkeys("abc", here))
+
+    def test_hear_what_cannot_be_drawn(self):
+        def draw(field):
+            raise OSError(f"no space for {field}")
+        for cores in (1, 2):
+            with unittest.mock.patch("os.sched_getaffinity", lambda process: set(range(cores))), self.assertRaisesRegex(OSError, "no space for a"):
+                talus_sections.on_two_cores(draw, ["a", "b"])
 
 
 class Moved(Sheared):
