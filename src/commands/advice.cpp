@@ -32,16 +32,32 @@ bool unscaled(const Law &law) {
       law);
 }
 
-/// Peak friction angle less dilation angle of soil that softens [rad]; 0 for others.
+/// Peak friction angle less dilation angle [rad]; 0 for soil without them.
 double flow_off_normal(const Law &law) {
   return std::visit(
       [](const auto &one) {
-        if constexpr (requires { one.softens(), one.friction_angle, one.dilation_angle; })
-          return one.softens() ? one.friction_angle - one.dilation_angle : 0.;
+        if constexpr (requires { one.friction_angle, one.dilation_angle; })
+          return one.friction_angle - one.dilation_angle;
         return 0.;
       },
       law);
 }
+
+/// Share of its shear strength that soil bears on a slip surface, Davis (1968).
+double davis_share(const Law &law) {
+  return std::visit(
+      [](const auto &one) {
+        if constexpr (requires { one.friction_angle, one.dilation_angle; })
+          return std::cos(one.friction_angle) * std::cos(one.dilation_angle) /
+                 (1 - std::sin(one.friction_angle) * std::sin(one.dilation_angle));
+        return 1.;
+      },
+      law);
+}
+
+/// From here on loads at failure scatter from mesh to mesh [rad]: vaiont with 42 degrees does, and selborne's with 26
+/// falls smoothly as cells get smaller.
+constexpr double flow_far_off_normal = 30 * degree.si;
 
 class Adviser {
  public:
@@ -55,7 +71,7 @@ class Adviser {
     if (!needs_.burst_failure.empty()) say("The run breaks off in its first steps: " + needs_.burst_failure + ".");
     for (const std::string &remark : needs_.mesh.remarks) say(remark);
     for (const BodyNeeds &b : needs_.bodies)
-      if (b.there()) particles(b), locking(b), softening(b), yielding_ground(b);
+      if (b.there()) particles(b), locking(b), softening(b), flow(b), yielding_ground(b);
     if (!needs_.function_fault.empty())
       say(needs_.function_fault +
           ". A run ends where it needs such a value; the function was tried all over the soil and "
@@ -124,9 +140,7 @@ class Adviser {
           " m: the average hardly reaches the next cell, and the soil seems stronger than it is (with 20 m the rock of "
           "the gallery's vaiont stands in cells of 17 m, and fails in cells of 15 m and less); take cells of at most " +
           digits(largest) + " m.");
-    // Vaiont with 42 degrees scatters; Selborne's load at failure with 26 falls smoothly as cells get smaller
-    constexpr double far_off = 30 * degree.si;
-    if (flow_off_normal(b.law) > far_off)
+    if (flow_off_normal(b.law) > flow_far_off_normal)
       say("Soil of " + b.body.name + " softens, and its friction angle exceeds its dilation angle by " +
           digits(flow_off_normal(b.law) / degree.si) +
           " degrees: a load at failure is then not unique and differs from mesh to mesh by some per cent of strength, "
@@ -145,6 +159,32 @@ class Adviser {
           (slope > snap_back ? "above the " : "near the ") + digits(snap_back) +
           " at which a sheared cell snaps back and loses its strength at once; take smaller cells with a "
           "reference_size, or a smaller shape_factor.");
+  }
+
+  /// Soil that keeps its strength, where finite elements are asked how much it bears. The first stage at rest is mostly
+  /// that of its own weight. A search for the factor of safety takes the strength of Davis, whose load is unique.
+  void flow(const BodyNeeds &b) {
+    if (b.softening.slope != 0 || flow_off_normal(b.law) <= flow_far_off_normal) return;
+    const std::string off = "The friction angle of " + b.body.name + " exceeds its dilation angle by " +
+                            digits(flow_off_normal(b.law) / degree.si) + " degrees: ";
+    bool loaded = false;
+    std::string loads;
+    for (const Stage &stage : scene_.stage) {
+      if (stage.kind != StageKind::quasi_static && stage.kind != StageKind::consolidation) continue;
+      if (loaded && loads.empty()) loads = stage.name;
+      loaded = true;
+    }
+    if (!loads.empty())
+      say(off + "the load at which stage " + loads +
+          " finds no more equilibrium is not unique and differs from mesh to mesh, in fine cells and with elements of "
+          "second order too (the gallery's vaiont); repeat it with other cell sizes (`talus converge`), and compare it "
+          "with associated flow and the strength of Davis (1968).");
+    if (scene_.root->has("factor_of_safety"))
+      say(off +
+          "its load at failure is not unique, so the factor of safety is that with the strength of Davis (1968), " +
+          digits(davis_share(b.law), 2) +
+          " of its shear strength, which is usually on the safe side; the factor with psi = phi, which is given "
+          "too, is an upper limit.");
   }
 
   void stiffness() {
