@@ -209,7 +209,6 @@ PetscErrorCode Dynamics<dim>::remap() {
     PetscCall(world_.sort());
     since_sort_ = 0;
   }
-  world_.count_runs();
   double work;
   PetscCall(world_.check_conservation(work_of_rank_, &work));
   balancing_.remap(work);

@@ -398,6 +398,7 @@ PetscErrorCode World<dim>::release(double time, bool to_next) {
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &lost, 1, MPI_INT, MPI_MAX, comm));
   if (lost) PetscCall(take_out(time));
+  count_runs();
   ++releases_;
   PetscCall(PetscTime(&end));
   breakdown.release += middle - start, breakdown.relocate += end - middle;
@@ -439,6 +440,7 @@ PetscErrorCode World<dim>::sort() {
   PetscLogDouble start, end;
   PetscCall(PetscTime(&start));
   for (auto &body : bodies) PetscCall(body->sort(mesh.cell_count()));
+  count_runs();
   PetscCall(PetscTime(&end));
   breakdown.relocate += end - start;
   PetscFunctionReturn(0);

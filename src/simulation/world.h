@@ -81,8 +81,6 @@ class World {
   PetscErrorCode serialize(Archive &archive);
   /// Work that this rank has in a step (simulation/work.h), with the runs of particles that `count_runs` found.
   double work_of_rank() const;
-  /// After a remap, and where the particles of this rank are others.
-  void count_runs();
   /// Global numbers and work of the filled cells of this rank.
   std::vector<std::pair<long long, double>> work_of_cells() const;
   /// Divides the mesh among the ranks in another way. Particles, and all that nodes and cells hold, are gone:
@@ -130,6 +128,7 @@ class World {
   void make_motion();
   void set_friction_delay();
   void count_particles();
+  void count_runs();  ///< where particles have another cell or place in memory
   PetscErrorCode take_out(double time);
 
   std::vector<CriticalStep<dim>> critical_;

@@ -37,6 +37,15 @@ TEST(StillMoving, IsNoSlideBelowATenthOfTheSpacing) {
   EXPECT_TRUE(left(400, 0.11));
 }
 
+TEST(StillMoving, IsThatOfAllRanks) {
+  int rank, ranks;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank), MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  const auto found = left(rank == 0 ? 400 : 0);
+  ASSERT_TRUE(found);
+  EXPECT_DOUBLE_EQ(found->share, 1. / ranks);
+  EXPECT_DOUBLE_EQ(found->speed, 3);
+}
+
 TEST(StillMoving, NeedsParticles) {
   Snapshot none;
   for (const auto &[name, components] : {std::pair{"displacement", 2}, {"velocity", 2}, {"mass", 1}, {"volume", 1}})
