@@ -73,8 +73,7 @@ void MeshEnds<dim>::find_faces() {
     for (int k = 0; k <= dim; ++k) {
       if (world.mesh.cells[c].neighbour[k] != boundary) continue;
       for (int p = 0; p < planes; ++p) {
-        if (p == 2 * world.scene.vertical()) continue;  // soil lies on it
-        double face = 0, depth = 0;                     // distances from the plane
+        double face = 0, depth = 0;  // distances from the plane
         for (int a = 0; a <= dim; ++a) {
           const double distance = -end[p] - outward(p, world.mesh.position[world.mesh.cells[c].node[a]]);
           (a == k ? depth : face) = std::max(a == k ? depth : face, distance);
@@ -83,6 +82,7 @@ void MeshEnds<dim>::find_faces() {
         const auto named = group_of.find({c, k});
         const Group group = named == group_of.end() ? Group{} : named->second;
         if (!group.has_boundary && world.scene.mesh.leaving_particles == WhenOutside::remove) continue;  // it goes on
+        if (p == bottom() && group.slips) continue;
         faces_.push_back({c, p, group.number, depth, group.slips});
       }
     }
@@ -99,6 +99,7 @@ std::vector<std::string> MeshEnds<dim>::newly_reached(const std::string &stage) 
       first = std::lower_bound(first, faces_.end(), p.cell[i], [](const Face &f, int cell) { return f.cell < cell; });
       for (auto face = first; face != faces_.end() && face->cell == p.cell[i]; ++face) {
         const int d = face->plane / 2;
+        if (face->plane == bottom()) continue;  // soil lies on it
         const double moved = (face->plane % 2 ? 1 : -1) * (p.position[i][d] - p.reference[i][d]);
         Found &found = mine[face->plane];
         if (moved <= face->depth || (found.id >= 0 && found.id <= p.id[i])) continue;
@@ -135,16 +136,88 @@ std::vector<std::string> MeshEnds<dim>::newly_reached(const std::string &stage) 
 }
 
 template <int dim>
+typename MeshEnds<dim>::Sheared MeshEnds<dim>::sheared(const OfPlanes &size) const {
+  constexpr double strip = 0.2;    // of the height of the soil: of selborne, whatever its cells, a shear band and more
+  constexpr double hardly = 0.01;  // strain of soil that slides without shearing
+  constexpr double few = 0.3;      // of the mean mass: parts with less of it are corners
+  constexpr double bare = 0.05;    // of the bottom
+  constexpr int most_parts = 100;  // along an axis
+  const int up = world_.scene.vertical();
+  const auto each_particle = [&](const auto &visit) {
+    for (const auto &body : world_.bodies) {
+      const ParticleArrays<dim> &p = body->particles();
+      const int memory = body->history_count(), field = plastic_strain_field(body->law());
+      for (int i = 0; i < p.count; ++i)
+        visit(p.reference[i], p.mass[i], field < 0 ? 0 : p.history[static_cast<std::size_t>(i) * memory + field]);
+    }
+  };
+  constexpr double far = std::numeric_limits<double>::infinity();
+  double range[2]{-far, -far}, sums[2]{};  // highest and lowest soil, the latter negative
+  each_particle([&](const Vec<dim> &x, double mass, double strain) {
+    range[0] = std::max(range[0], x[up]), range[1] = std::max(range[1], -x[up]);
+    sums[0] += mass * strain, sums[1] += mass * strain * strain;
+  });
+  MPI_Allreduce(MPI_IN_PLACE, range, 2, MPI_DOUBLE, MPI_MAX, world_.comm);
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, world_.comm);
+  Sheared found;
+  found.mean = sums[0] > 0 ? sums[1] / sums[0] : 0;
+  if (found.mean < hardly) return found;
+  for (int plane = 0; plane < planes; ++plane) {
+    if (size[plane] == 0) continue;
+    const double within = found.within[plane] = std::max(strip * (range[0] + range[1]), size[plane]);
+    int parts[dim], all = 1;  // of the plane, as long as the strip is wide
+    for (int d = 0; d < dim; ++d) {
+      const double length = -end_[2 * d + 1] - end_[2 * d];
+      parts[d] = d == plane / 2 ? 1 : std::clamp(static_cast<int>(length / within), 1, most_parts), all *= parts[d];
+    }
+    const auto part_at = [&](const Vec<dim> &x) {
+      int part = 0;
+      for (int d = 0; d < dim; ++d) {
+        const double share = (x[d] - end_[2 * d]) / (-end_[2 * d + 1] - end_[2 * d]);
+        part = part * parts[d] + std::clamp(static_cast<int>(share * parts[d]), 0, parts[d] - 1);
+      }
+      return part;
+    };
+    std::vector<double> of(3 * static_cast<std::size_t>(all));
+    double *mass = of.data(), *strain = mass + all, *faces = strain + all;
+    each_particle([&](const Vec<dim> &x, double m, double e) {
+      if (-end_[plane] - (plane % 2 ? 1 : -1) * x[plane / 2] > within) return;
+      const int part = part_at(x);
+      mass[part] += m, strain[part] += m * e;
+    });
+    for (const Face &face : faces_) {
+      if (face.plane != plane) continue;
+      Vec<dim> middle{};
+      for (const int node : world_.mesh.cells[face.cell].node)
+        for (int d = 0; d < dim; ++d) middle[d] += world_.mesh.position[node][d] / (dim + 1);
+      ++faces[part_at(middle)];
+    }
+    MPI_Allreduce(MPI_IN_PLACE, of.data(), static_cast<int>(of.size()), MPI_DOUBLE, MPI_SUM, world_.comm);
+    double total = 0;
+    int filled = 0, covered = 0, with_faces = 0;
+    for (int k = 0; k < all; ++k) {
+      total += mass[k], filled += mass[k] > 0;
+      with_faces += faces[k] > 0, covered += faces[k] > 0 && mass[k] > 0;
+    }
+    if (plane == bottom() && covered < (1 - bare) * with_faces) continue;
+    for (int k = 0; k < all; ++k)
+      if (mass[k] > few * total / filled) found.beside[plane] = std::max(found.beside[plane], strain[k] / mass[k]);
+  }
+  return found;
+}
+
+template <int dim>
 std::vector<std::string> MeshEnds<dim>::cut_off() const {
   constexpr double along = 0.5;  // cosine of way and normal, from which on a side is in front of a slide or behind it
   const int up = world_.scene.vertical();
-  double size[planes]{}, most[planes]{}, largest = 0, slid[dim]{};
+  OfPlanes size{}, most{};
+  double largest = 0, slid[dim]{};
   int group[planes];
   std::fill_n(group, planes, -1);
   for (const Face &face : faces_)
-    if (face.slips && face.plane / 2 != up)
+    if (face.plane == bottom() || (face.slips && face.plane / 2 != up))
       size[face.plane] = std::max(size[face.plane], face.depth), group[face.plane] = face.group;
-  MPI_Allreduce(MPI_IN_PLACE, size, planes, MPI_DOUBLE, MPI_MAX, world_.comm);
+  MPI_Allreduce(MPI_IN_PLACE, size.data(), planes, MPI_DOUBLE, MPI_MAX, world_.comm);
   for (const auto &body : world_.bodies) {
     const ParticleArrays<dim> &p = body->particles();
     for (int i = 0; i < p.count; ++i) {
@@ -160,27 +233,41 @@ std::vector<std::string> MeshEnds<dim>::cut_off() const {
       }
     }
   }
-  MPI_Allreduce(MPI_IN_PLACE, most, planes, MPI_DOUBLE, MPI_MAX, world_.comm);
+  MPI_Allreduce(MPI_IN_PLACE, most.data(), planes, MPI_DOUBLE, MPI_MAX, world_.comm);
   MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, world_.comm);
   MPI_Allreduce(MPI_IN_PLACE, slid, dim, MPI_DOUBLE, MPI_SUM, world_.comm);
   MPI_Allreduce(MPI_IN_PLACE, group, planes, MPI_INT, MPI_MAX, world_.comm);
   double way = 0;
   for (const double part : slid) way += part * part;
+  const Sheared sheared = this->sheared(size);
+  const auto percent = [](double share) { return rounded(100 * share) + " %"; };
   std::vector<std::string> sentences;
   for (int plane = 0; plane < planes; ++plane) {
-    if (size[plane] == 0 || largest <= size[plane] || most[plane] <= cut_share * largest) continue;
+    if (size[plane] == 0 || largest <= size[plane]) continue;
+    const bool below = plane == bottom();
     const double outward = (plane % 2 ? 1 : -1) * slid[plane / 2] / std::sqrt(way > 0 ? way : 1);
-    if (std::abs(outward) < along) continue;
+    if (!below && std::abs(outward) < along) continue;
     const std::string &name = group[plane] < 0 ? "" : world_.mesh.group_names()[static_cast<std::size_t>(group[plane])];
-    sentences.push_back("the end of the mesh " +
-                        (name.empty() ? std::string(plane % 2 ? "at the largest " : "at the smallest ") +
-                                            "xyz"[plane / 2] + std::string(", which no group names,")
-                                      : "at the group " + name) +
-                        " cuts the slide off: soil that lay there has moved by " + rounded(most[plane]) + " m, " +
-                        rounded(100 * most[plane] / largest) + " % of the largest displacement (" + rounded(largest) +
-                        " m; more than " + rounded(100 * cut_share) + " % counts). Extend the section " +
-                        (outward < 0 ? "behind the crest" : "in front of the toe") +
-                        ", unless the soil ends there in nature or this is a plane of symmetry");
+    const std::string place = name.empty() ? std::string(plane % 2 ? "at the largest " : "at the smallest ") +
+                                                 "xyz"[plane / 2] + std::string(", which no group names,")
+                                           : "at the group " + name;
+    const std::string advice =
+        std::string("Extend the section ") +
+        (below         ? "downwards, unless firm ground begins there in nature"
+         : outward < 0 ? "behind the crest, unless the soil ends there in nature or this is a plane of symmetry"
+                       : "in front of the toe, unless the soil ends there in nature or this is a plane of symmetry");
+    if (!below && most[plane] > cut_share * largest)
+      sentences.push_back("the end of the mesh " + place + " cuts the slide off: soil that lay there has moved by " +
+                          rounded(most[plane]) + " m, " + percent(most[plane] / largest) +
+                          " of the largest displacement (" + rounded(largest) + " m; more than " + percent(cut_share) +
+                          " counts). " + advice);
+    else if (sheared.beside[plane] > reached_share * sheared.mean)
+      sentences.push_back(
+          std::string("the slide reaches the ") + (below ? "fixed bottom" : "end") + " of the mesh " + place +
+          ": soil within " + rounded(sheared.within[plane]) + " m of it has a plastic strain of up to " +
+          rounded(sheared.beside[plane]) + ", " + percent(sheared.beside[plane] / sheared.mean) +
+          " of the mean of what has sheared (" + rounded(sheared.mean) + "; more than " + percent(reached_share) +
+          " counts), so that the load at failure and the run-out depend on where the mesh ends. " + advice);
   }
   return sentences;
 }

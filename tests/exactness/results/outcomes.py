@@ -4,6 +4,7 @@ import csv
 import json
 import math
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -171,6 +172,30 @@ class Outcomes(unittest.TestCase):
             self.assertEqual(said in done, cut, done)
         self.ended("run", "slope.toml", "-o", "near", "--no-pictures", "--force", "--set", "body.clay.cohesion=9 kPa")
         self.assertNotIn("cuts the slide off", (self.folder / "near/run.log").read_text())  # soil that stands is not cut off
+
+    def test_a_bottom_of_the_mesh_that_a_slide_reaches_is_warned_of_whatever_the_cells(self):
+        said = "the slide reaches the fixed bottom of the mesh at the group base: soil within "
+        wide = SECTION.replace("outline,0,", "outline,-20,").replace("interface0,0,", "interface0,-20,")
+        cases = {"2 m of ground": (wide, True), "12 m of ground": (wide.replace("outline,-20,0\noutline,30,0", "outline,-20,-10\noutline,30,-10"), False),
+                 "bare floor in front of the toe": (SECTION.replace("interface0,14,2\ninterface0,30,2", "interface0,20,0"), False)}
+        for size in (0.8, 0.5):
+            for name, (section, reached) in cases.items():
+                (self.folder / "ends.csv").write_text(section)
+                (self.folder / "ends.toml").write_text(SCENE.replace("slope.csv", "ends.csv"))
+                done = self.ended("run", "ends.toml", "-o", "ends", "--no-pictures", "--force", "--set", "body.clay.cohesion=2 kPa", "--set", f"mesh.size={size}",
+                                  "--set", "stage.slide.duration=4").stderr
+                self.assertEqual(said in done, reached, f"{name}, {size} m: {done}")
+
+    def test_a_rear_that_a_slide_reaches_is_warned_of_though_its_soil_hardly_moves(self):
+        root = pathlib.Path(__file__).resolve().parents[3]
+        text, said = (root / "meshes/selborne.csv").read_text(), "the slide reaches the end of the mesh at the group left: soil within "
+        for rear, reached in ((0, True), (-20, False)):  # m; the base of both is 5 m deeper than that of the gallery's scene
+            section = re.sub(r"^(outline|b_recharge_base|b_recharge_side),(\d+),0$", r"\1,\2,-5", text, flags=re.M)
+            (self.folder / "ends.csv").write_text(re.sub(r"^(outline|interface\d|b_recharge_base|b_recharge_side),0,", rf"\1,{rear},", section, flags=re.M))
+            (self.folder / "ends.toml").write_text((root / "docs/gallery/selborne/scene.toml").read_text().replace("../../../meshes/selborne.csv", "ends.csv"))
+            done = self.ended("run", "ends.toml", "-o", "ends", "--no-pictures", "--force", "--set", "mesh.size=2", "--set", "output.interval=0").stderr
+            self.assertEqual(said in done, reached, done)
+            self.assertNotIn("cuts the slide off", done)  # less than 2 % of the largest displacement
 
     def test_a_point_above_the_ground_names_the_particle_that_is_followed(self):
         for height, far in ((6.0, False), (6.6, True)):
