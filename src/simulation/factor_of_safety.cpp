@@ -138,7 +138,8 @@ std::string trial_in_words(const StrengthTrial &t, double height) {
          (at_once ? "" : ", out-of-balance force " + rounded(t.residual)) +
          (t.outcome == TrialOutcome::equilibrium && t.displacement > too_far * height
               ? "; this is more than " + rounded(100 * too_far) + " % of the " + rounded(height) +
-                    " m that the soil is high, for which small strains do not count: no equilibrium that one can trust"
+                    " m that the soil is high: so near to a mechanism the displacement has no meaning, and the balance "
+                    "of forces alone counts"
               : "");
 }
 

@@ -12,7 +12,7 @@ import talus_style as style
 BRIGHT = 0.97  # share of the soil that shears less than the end of the colour scale
 ARROWS = 22  # squares over the longer side of the soil, with an arrow each
 LONGEST = 1.3  # length of an arrow over the side of its square
-TOO_FAR = 0.2  # displacement over the height of the soil, beyond which no equilibrium of small strains can be trusted; also in factor_of_safety.cpp
+TOO_FAR = 0.2  # displacement over the height of the soil, beyond which it has no meaning, as next to a mechanism: the balance of forces alone counts; also in factor_of_safety.cpp
 MOVES = 0.1  # of the largest displacement: less has no arrow
 WIDTH, BESIDE, AROUND = 9.0, 1.9, 1.5  # of the picture, left and right of the soil, above and below it [inch]
 
@@ -143,7 +143,7 @@ def draw_displacement(factor, headline, title, path, height=np.inf):
             axes.axvline(open_one, color=style.ACCENT, ls="--", lw=0.8, label="undecided" if k == 0 else None)
     if any(t["outcome"] == "equilibrium" and t["displacement_m"] > TOO_FAR * height for t in factor["trials"]):
         axes.axhline(TOO_FAR * height, color=style.SOFT, lw=0.8)
-        axes.set_title(f"above the line ({100 * TOO_FAR:g} % of the height of the soil) no equilibrium of small strains can be trusted", loc="left", fontsize=7.5, color=style.SOFT)
+        axes.set_title(f"above the line ({100 * TOO_FAR:g} % of the height of the soil) displacement has no meaning: the balance of forces alone counts", loc="left", fontsize=7.5, color=style.SOFT)
     axes.set_xlabel("factor by which strength is divided"), axes.set_ylabel("largest displacement [m]")
     style.headline(figure, headline, title)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2, fontsize="small")  # lines at the factors would run through its words

@@ -5,6 +5,7 @@ import numpy as np
 from matplotlib.ticker import FixedLocator, MaxNLocator
 
 import talus_style as style
+from talus_modelled import read_model
 from talus_moments import RESET, after, last_reset
 from talus_results import ESCAPED
 from talus_units import at_time, capital, clock, readable_unit, with_unit, words
@@ -27,6 +28,8 @@ def draw_histories(results, folder):
         if quantity in ELSEWHERE or quantity.startswith("stress_") or not any(changes(values) for values in lines.values()):
             continue
         if quantity == "energy":
+            if "potential" in lines:
+                lines = lines | {"potential": lines["potential"] + potential_that_left(results, history.time)}
             pictures.append((quantity, draw_energy(history, lines, results.title, results.per_metre(""), folder / "energy.png")))
         elif quantity.endswith("_ledger"):
             pictures.append((quantity, draw_ledger(history, quantity, lines, results.title, results.per_metre(""), folder / f"{quantity}.png")))
@@ -78,6 +81,18 @@ def draw_energy(history, lines, title, per, path):
     colour = style.LINES[list(lines).index(next(iter(kinetic))) % len(style.LINES)]
     plot_lines(lower, history, kinetic, "J", "kinetic", per, colour)
     return finish(figure, [upper, lower], history, "Energy", title, path)
+
+
+def potential_that_left(results, times):
+    """Potential energy [J] that particles had where they left the mesh, of those gone by each time: without it the curve falls by their weight times their
+    height above wherever the axes begin."""
+    model = results.escaped and read_model(results.folder)
+    if not model:
+        return np.zeros(len(times))
+    escaped, gravity = results.escaped, np.array(model.data["gravity"])
+    mass = sum(values for name, values in escaped.columns.items() if name.endswith("_kg"))
+    energies = np.append(0, np.cumsum(-mass * (escaped.position @ gravity[:escaped.position.shape[1]])))
+    return energies[np.searchsorted(escaped.time, times, side="right")]
 
 
 def drawn_energies(lines):

@@ -25,7 +25,7 @@ import talus_study  # noqa: E402
 import talus_soil  # noqa: E402
 import talus_sweep  # noqa: E402
 from talus_colours import Colours  # noqa: E402
-from talus_histories import base_friction, draw_histories, drawn_energies  # noqa: E402
+from talus_histories import base_friction, draw_histories, drawn_energies, potential_that_left  # noqa: E402
 from talus_measures import flow  # noqa: E402
 from talus_moments import chosen_snapshots, since_reset, telling, with_stress  # noqa: E402
 from talus_outcomes import FAILS, STANDS  # noqa: E402
@@ -247,6 +247,14 @@ class Energies(unittest.TestCase):
         drawn = drawn_energies(lines | {"dissipated": np.array([0.0, 1.0])})
         self.assertEqual(list(drawn), ["kinetic", "Δ potential", "dissipated\n(remainder)"])
         self.assertEqual(list(drawn["Δ potential"]), [0, -5])
+
+    def test_potential_energy_counts_particles_that_left(self):
+        escaped = types.SimpleNamespace(time=np.array([1.0, 2.0]), position=np.array([[5.0, 100.0], [5.0, 200.0]]),
+                                        columns={"mass_kg": np.array([2.0, 1.0]), "water_kg": np.array([0.0, 1.0]), "x_m": np.full(2, 5.0)})
+        with unittest.mock.patch("talus_histories.read_model", lambda folder: types.SimpleNamespace(data={"gravity": [0, -10, 0]})):
+            left = potential_that_left(types.SimpleNamespace(escaped=escaped, folder=None), np.array([0.0, 1.0, 1.5, 3.0]))
+        self.assertEqual(list(left), [0, 2000, 2000, 6000])
+        self.assertEqual(list(potential_that_left(types.SimpleNamespace(escaped=None), np.zeros(2))), [0, 0])
 
 
     def test_of_a_mechanism_are_not_drawn(self):

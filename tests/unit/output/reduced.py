@@ -68,7 +68,7 @@ class Doubts(unittest.TestCase):
             trials = [{"psi_is_phi": True, "search": 1, "factor": 1.142, "outcome": "equilibrium", "displacement_m": way}]
             with unittest.mock.patch.object(talus_factor.style, "save", lambda figure, path: figure):
                 figure = talus_factor.draw_displacement({"trials": trials}, "", "", None, 18.0)
-            self.assertEqual("no equilibrium of small strains can be trusted" in figure.axes[0].get_title(loc="left"), doubted)
+            self.assertEqual("displacement has no meaning: the balance of forces alone counts" in figure.axes[0].get_title(loc="left"), doubted)
 
 
 if __name__ == "__main__":
