@@ -1,6 +1,8 @@
 """Of the DIR/compare.csv of `talus compare`: prints the table, and draws DIR/compare.png, error against processor time and against the refined key, and
 the values themselves; one line a series."""
 
+import talus_interrupt  # noqa: F401  before all that takes time
+
 import argparse
 import csv
 import pathlib

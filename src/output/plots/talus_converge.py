@@ -5,6 +5,8 @@ DIR/converge.png, and prints a table and a verdict. Exit status: 0 if the refine
 broke off, as `talus verify` ends with 1 where a number does not hold.
 """
 
+import talus_interrupt  # noqa: F401  before all that takes time
+
 import argparse
 import csv
 import pathlib

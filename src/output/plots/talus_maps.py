@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 """Maps of a run in 3D, for geographic information systems and as pictures: DIR/maps/*.tif, deposit.gpkg, map.png and section.png."""
 
+import talus_interrupt  # noqa: F401  before all that takes time
+
 import argparse
 import json
 import pathlib

@@ -2,6 +2,8 @@
 """Draws what a scene models: soils, mesh, boundaries with the symbols of the field, loads, water, named points, dimensions, stages. A section in
 plane strain, two perspective views in 3D."""
 
+import talus_interrupt  # noqa: F401  before all that takes time
+
 import argparse
 import pathlib
 import sys

@@ -41,6 +41,8 @@ The tables stand in README.md between the lines `<!-- numbers -->`, `<!-- studie
 study), and `<!-- end -->`.
 """
 
+import talus_interrupt  # noqa: F401  before all that takes time
+
 import argparse
 import csv
 import difflib

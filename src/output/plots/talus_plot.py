@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 """Draws the pictures and the report of a run: DIR/pictures/*.png and DIR/report.html; or a film of it: DIR/pictures/movie_FIELD.gif and .mp4."""
 
+import talus_interrupt  # noqa: F401  before all that takes time
+
 import argparse
 import difflib
 import sys

@@ -275,9 +275,21 @@ class History:
                 places[point] = np.array([np.interp(time, self.time, axis) for axis in axes])
         return places
 
+    def way(self, point):
+        """The coordinates of a named point over time [rows, axes]."""
+        return np.column_stack([self.columns[f"{point}_{axis}_m"] for axis in "xyz" if f"{point}_{axis}_m" in self.columns])
+
     def stage_starts(self):
         """[(time, name)] of the stages. A stage begins at the last row of the one before; its own first row comes an interval later."""
         return [(self.time[max(0, k - 1)], name) for k, name in enumerate(self.stage) if k == 0 or name != self.stage[k - 1]]
+
+
+def together(values):
+    """The names [[name, ...], ...] of a dictionary, those with the same values together, in its order: points that are the same particle."""
+    groups = {}
+    for name, numbers in values.items():
+        groups.setdefault(np.asarray(numbers).tobytes(), []).append(name)
+    return list(groups.values())
 
 
 def split_name(name):

@@ -1,6 +1,7 @@
 """Pictures of the particles: sections in plane strain, slices from the side, bodies cut through and from above."""
 
 import os
+import signal
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -12,12 +13,14 @@ import talus_style as style
 from talus_colours import Colours
 from talus_factor import read_factor, short
 from talus_ground import Ground
+from talus_interrupt import end_with_parent
 from talus_moments import chosen_snapshots, origins, scaled_by, since_reset, telling, with_stress
 from talus_outcomes import cell_size
 from talus_perspective import edges
 from talus_relief import EARTH, SOIL, between, seen, seen_from_above
-from talus_results import MECHANISM
+from talus_results import MECHANISM, together
 from talus_soils import middles, moved_away, painted, tints
+from talus_symbols import AROUND as SIDES, WHITE, keep_apart, movable
 from talus_tiles import GAP, GAP_IN_SPACE, Frame, outline_of_cells, outline_of_points
 from talus_units import capital, words
 from talus_views import MapView, Oblique, View, spacing_of, views_of
@@ -181,7 +184,7 @@ class Painter:
         count = -(-len(snapshots) // columns)
         height = HEAD + count * block + (count - 1) * BELOW + FOOT
         figure = plt.figure(figsize=(WIDTH, height))
-        self.drawn_outline = False
+        self.marked_escaped, self.drawn_outline = 0, False
         for n, snapshot in enumerate(snapshots):
             block_row, column = divmod(n, columns)
             left, top = LEFT + column * (wide + BESIDE), height - HEAD - TITLE - block_row * (block + BELOW)
@@ -190,6 +193,8 @@ class Painter:
                     at = left + place * ((wide - BESIDE * (len(row) - 1)) / len(row) + BESIDE)
                     axes = figure.add_axes([at / WIDTH, (top - heights[k]) / height, widths[k] / WIDTH, heights[k] / height])
                     self._panel(axes, snapshot, field, k, colours, named_points, len(snapshots) == 1)
+                    if named_points:
+                        keep_apart(axes)
                     axes.set_title("  ·  ".join(self._title(snapshot, k, note if k == rows[0][0] else None)), loc="left", pad=5)
                     if isinstance(self.views[k], Oblique):
                         continue
@@ -279,17 +284,19 @@ class Painter:
         axes.plot(along, base, color=style.SOFT, linewidth=0.8)
 
     def _mark_points(self, axes, view, time, highest):
-        """The named points of history.csv, where they are at a time; names of points that are higher than `highest` stand below them, away from the title."""
+        """The named points of history.csv, where they are at a time, those that are the same particle with one name; names of points that are higher than
+        `highest` stand below them, away from the title, and all of them beside each other."""
         history = self.results.history
-        for name, place in (history.points(time) if history else {}).items():
-            place = place[None]
+        places = history.points(time) if history else {}
+        for names in together({name: history.way(name) for name in places}):
+            place = places[names[0]][None]
             if place.shape[1] < self.low.size or not np.isfinite(place).all() or view.aside(place)[0] > 2 * self.spacing:
                 continue
             at = view.flat(place)[0]
             axes.plot(*at, "o", markersize=5, markerfacecolor="white", markeredgecolor=style.INK, markeredgewidth=1.0)
-            below = at[1] > highest
-            axes.annotate(words(name), at, xytext=(6, -6 if below else 6), textcoords="offset points", va="top" if below else "baseline", fontsize=8.5,
-                          bbox={"boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": "none", "alpha": 0.8})
+            around = [side for side in SIDES if side[1] < 0] if at[1] > highest else SIDES
+            name = axes.annotate(", ".join(map(words, names)), at, around[0][:2], textcoords="offset points", ha=around[0][2], fontsize=8.5, path_effects=[WHITE])
+            movable(name, around)
 
     def _name_soils(self, axes, snapshot, owner, frame):
         """The names of the soils in the middle of each."""
@@ -298,12 +305,16 @@ class Painter:
             axes.text(*at, words(self.results.bodies[number]), fontsize=8.5, ha="center", va="center", path_effects=[withStroke(linewidth=2.2, foreground="white")])
 
     def _mark_escaped(self, axes, view, time, metres):
-        """Where particles have left the mesh up to a time: one cross for all that left at about the same place. An inch of the picture is so many
-        `metres`."""
+        """Where particles have left the mesh up to a time, of those that left in the shown part: one cross for all that left at about the same place. An
+        inch of the picture is so many `metres`."""
         escaped = self.results.escaped
-        if escaped is None or not (escaped.time <= time).any():
+        if escaped is None:
             return
-        place = view.flat(escaped.position[escaped.time <= time])
+        left = escaped.position[escaped.time <= time]
+        left = left[view.aside(left) <= 2 * self.spacing]
+        if not len(left):
+            return
+        place = view.flat(left)
         _, first = np.unique(np.floor(place / (APART * metres)), axis=0, return_index=True)
         axes.plot(*place[first].T, "x", markersize=3, markeredgewidth=0.7, color=style.INK, alpha=0.6)
         self.marked_escaped = max(self.marked_escaped, len(place))
@@ -392,6 +403,8 @@ def on_two_cores(draw, fields):
     if other == 0:
         failed = 1
         try:
+            if "TALUS_PROGRAM" in os.environ:
+                end_with_parent()
             for field in fields[1::2]:
                 draw(field)
             failed = 0
@@ -400,6 +413,9 @@ def on_two_cores(draw, fields):
     try:
         for field in fields[::2]:
             draw(field)
+    except BaseException:
+        os.kill(other, signal.SIGTERM)
+        raise
     finally:
         failed = os.waitpid(other, 0)[1]
     for field in fields[1::2] if failed else ():

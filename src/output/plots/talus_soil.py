@@ -1,5 +1,7 @@
 """Draws DIR/soil.png from the CSV files that `talus soil` writes: stress path, shear, volume, compression line."""
 
+import talus_interrupt  # noqa: F401  before all that takes time
+
 import argparse
 import csv
 import pathlib

@@ -8,6 +8,8 @@ sensitivities) and, where they have something to show, DIR/tornado.png, DIR/scat
 their reason; exit status 1 if all did.
 """
 
+import talus_interrupt  # noqa: F401  before all that takes time
+
 import argparse
 import csv
 import json

@@ -3,6 +3,8 @@
 Reads DIR/runs.csv and the results that it names. Writes DIR/sweep.csv and DIR/sweep.png and prints the table. Exit status: 1 if a run broke off.
 """
 
+import talus_interrupt  # noqa: F401  before all that takes time
+
 import argparse
 import csv
 import json

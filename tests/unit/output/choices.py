@@ -4,6 +4,8 @@ import json
 import os
 import pathlib
 import re
+import signal
+import subprocess
 import sys
 import tempfile
 import types
@@ -32,11 +34,13 @@ from talus_outcomes import FAILS, STANDS  # noqa: E402
 from talus_paths import grouped, label_of, name_envelopes  # noqa: E402
 from talus_report import bases, key_results, motion_at_end, ways_out  # noqa: E402
 from talus_results import MECHANISM, NOT_ENDED, History, Results, still_moving  # noqa: E402
+from talus_relief import Eye  # noqa: E402
 from talus_sections import Painter  # noqa: E402
 from talus_slip import said_of_ends, slip_surface  # noqa: E402
 from talus_soils import moved_away, painted, tints  # noqa: E402
+from talus_symbols import keep_apart  # noqa: E402
 from talus_tiles import Frame  # noqa: E402
-from talus_views import View, views_of  # noqa: E402
+from talus_views import Oblique, View, views_of  # noqa: E402
 
 
 def matplotlib_colour(name):
@@ -113,6 +117,61 @@ class Views(unittest.TestCase):
         painter._sizes = lambda snapshot: np.full(3, 0.1)
         gone = types.SimpleNamespace(step=1, position=lambda: np.zeros((3, 2)))
         self.assertTrue((painter._tiled(gone, 0, Frame((0, 0), (1, 1), 8)) == -1).all())
+
+
+class Interrupted(unittest.TestCase):
+    """A script that waits for its model, in a pipe that nobody writes into."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        pipe = pathlib.Path(folder.name) / "model.json"
+        os.mkfifo(pipe)
+        self.command = [sys.executable, "-B", str(pathlib.Path(talus_plot.__file__).with_name("talus_model.py")), str(pipe), f"{folder.name}/model.png"]
+        self.pipe = pipe
+
+    def ended(self, command, end):
+        """Status and words of a command to which something is done once the script reads."""
+        with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=os.environ | {"TALUS_PROGRAM": "Talus"}) as process:
+            with open(self.pipe, "w"):  # waits for the reader; at its end the script has an empty model
+                end(process)
+                words = process.communicate(timeout=60)[1]
+            return process.returncode, words
+
+    def test_scripts_say_one_line(self):
+        self.assertEqual(self.ended(self.command, lambda script: script.send_signal(signal.SIGINT)), (130, "talus: interrupted\n"))
+
+    @unittest.skipUnless(sys.platform == "linux", "other systems do not tell a process of its parent's end")
+    def test_scripts_end_with_the_program(self):
+        program = [sys.executable, "-c", "import subprocess, sys; subprocess.run(sys.argv[1:])", *self.command]
+        self.assertEqual(self.ended(program, lambda started: started.kill()), (-signal.SIGKILL, "talus: interrupted\n"))
+
+
+class Crosses(unittest.TestCase):
+    """Of particles that left the mesh."""
+
+    def marked(self, view, time):
+        painter = Painter.__new__(Painter)
+        painter.results = types.SimpleNamespace(escaped=types.SimpleNamespace(time=np.array([1.0, 2.0, 3.0]), position=np.array([[0.0, 0, 0], [0, 50, 0], [0, -50, 0]])))
+        painter.spacing, painter.views, painter.corners = 1.0, [view], [(np.zeros(2), np.full(2, 100.0))]
+        painter.marked_escaped, painter.said = 83, []  # of an earlier sheet
+        painter._title = lambda *_: ["time"]
+        painter._panel = lambda axes, snapshot, *_: painter._mark_escaped(axes, view, snapshot.time, 10.0)
+        painter._frame_sheet = lambda *_: painter.said.append(painter.marked_escaped)
+        figure = painter._sheet("velocity", None, [types.SimpleNamespace(time=time)], 1, [[0]])
+        talus_sweep.plt.close(figure)
+        self.assertEqual(sum(len(line.get_xdata()) for line in figure.axes[0].lines), painter.said[0])
+        return painter.said[0]
+
+    def test_are_those_of_the_time_that_is_shown(self):
+        view = View("section", 0, 1)
+        self.assertEqual([self.marked(view, time) for time in (0.5, 1.5, 2.5, 9.0)], [0, 1, 2, 3])
+
+    def test_are_not_where_the_body_is_cut_away(self):
+        eye = Eye(np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]))
+        self.assertEqual(self.marked(Oblique("whole", eye), 9.0), 3)
+        self.assertEqual(self.marked(Oblique("cut open", eye, (np.array([0.0, 1.0, 0.0]), 0.0)), 9.0), 2)
+        self.assertEqual(self.marked(View("section", 0, 2, (1, 0.0)), 9.0), 1)
 
 
 class Scales(unittest.TestCase):
@@ -203,17 +262,31 @@ class Labels(unittest.TestCase):
             self.assertAlmostEqual(text.get_rotation(), np.degrees(np.arctan2(up - y, ahead - x)), places=3)
         talus_sweep.plt.close(figure)
 
-    def test_of_points_near_the_upper_edge_stand_below_them(self):
+    def with_points(self, places):
+        """A section from (0, 0) to (10, 10) with the names of points."""
         painter = Painter.__new__(Painter)
-        painter.results = types.SimpleNamespace(history=types.SimpleNamespace(points=lambda time: {"crest": np.array([5.0, 9.9]), "toe": np.array([9.0, 2.0])}))
-        painter.low, painter.spacing = np.zeros(2), 0.5
+        history = types.SimpleNamespace(points=lambda time: {name: np.array(place) for name, place in places.items()}, way=lambda name: np.array([places[name]] * 3))
+        painter.results, painter.low, painter.spacing = types.SimpleNamespace(history=history), np.zeros(2), 0.5
         figure, axes = talus_sweep.plt.subplots()
         axes.set(xlim=(0, 10), ylim=(0, 10))
         painter._mark_points(axes, types.SimpleNamespace(aside=lambda place: [0.0], flat=lambda place: place), 0.0, 9.5)
+        keep_apart(axes)
         figure.canvas.draw()
+        return figure, axes
+
+    def test_of_points_near_the_upper_edge_stand_below_them(self):
+        painter = Painter.__new__(Painter)
+        figure, axes = self.with_points({"crest": (5.0, 9.9), "toe": (9.0, 2.0)})
         tops = {text.get_text(): text.get_window_extent().y1 for text in axes.texts}
         self.assertLess(tops["crest"], axes.get_window_extent().y1)
         self.assertGreater(tops["toe"], axes.transData.transform((9, 2))[1])
+        talus_sweep.plt.close(figure)
+
+    def test_of_points_beside_each_other_do_not_cover_each_other_and_one_particle_has_one(self):
+        figure, axes = self.with_points({"crest": (5.0, 5.0), "brow": (5.1, 4.9), "shoulder": (5.0, 5.0)})
+        self.assertEqual([text.get_text() for text in axes.texts], ["crest, shoulder", "brow"])
+        one, other = (text.get_window_extent() for text in axes.texts)
+        self.assertFalse(one.overlaps(other))
         talus_sweep.plt.close(figure)
 
     def test_of_lines_have_colours_that_differ(self):
