@@ -87,8 +87,7 @@ def key_results(results):
     without = ", without the soil that left the mesh" if results.escaped and len(results.escaped.time) else ""
     if "displacement" in last and len(last.position()):
         vector = last.column("displacement").values
-        up = results.up_axis()
-        level, rise = np.abs(np.delete(vector, up, axis=1)).max(), np.abs(vector[:, up]).max()
+        level, rise = level_and_upright(vector, results.up_axis())
         parts = f"{quantity(level, 'm')} level, {quantity(rise, 'm')} up or down"
         found.append(("Largest displacement", quantity(largest_displacement(last), "m"), f"of 99.9 % of the mass; of any particle {parts}{without}" + f"; {when}" * (factor is not None)))
         if "volume" in last:
@@ -124,6 +123,11 @@ def key_results(results):
         share = "" if closed else f"; {abs(lost) / mass[0]:.1e} of the mass at the start has {'appeared' if lost > 0 else 'vanished'}"
         found.append(("Mass ledger", "closed" if closed else error, f"{end} at the end{share}"))
     return found
+
+
+def level_and_upright(vectors, up):
+    """The largest size of the level parts of vectors [n, 2 or 3], and that of their parts along the axis `up`."""
+    return np.linalg.norm(np.delete(vectors, up, axis=1), axis=1).max(), np.abs(vectors[:, up]).max()
 
 
 def ends_of(bracket):

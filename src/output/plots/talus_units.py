@@ -63,10 +63,11 @@ def list_of(values, unit, over_time):
     pairs = all(isinstance(one, list) and len(one) == 2 and not isinstance(one[0], list) for one in values)
     if over_time and not pairs:  # a list of functions
         return "; ".join(text_of(one, unit, over_time) for one in values)
-    say = (lambda one: f"{text_of(one[1], unit)} at {text_of(one[0], 's')}") if over_time else (lambda one: f"({', '.join(str(x) for x in one)})")
+    own = any(isinstance(x, str) for one in values for x in one)  # some values carry their unit, so each is written with one
+    say = (lambda one: f"{text_of(one[1], unit)} at {text_of(one[0], 's')}") if over_time else (lambda one: f"({', '.join(text_of(x, unit) if own else str(x) for x in one)})")
     few = values if len(values) <= ENTRIES else [values[0], values[-1]]
     text = " to ".join(map(say, few)) + f" in {len(values)} points" if few is not values else ", ".join(map(say, few))
-    return text if over_time else with_shown(text, unit)
+    return text if over_time or own else with_shown(text, unit)
 
 
 def quantity(value, unit):

@@ -319,6 +319,7 @@ class Words(unittest.TestCase):
         self.assertEqual(text_of([[0, 12], [150, 0]], "deg", over_time=True), "12° at 0 s, 0° at 150 s")
         self.assertEqual(text_of([[0, "7 m"], ["30 days", "9 m"]], "m", over_time=True), "7 m at 0 s, 9 m at 30 days")
         self.assertEqual(text_of([[k, k] for k in range(9)], "m"), "(0, 0) to (8, 8) in 9 points m")
+        self.assertEqual(text_of([[0, "4 ft"], ["30 ft", "4 ft"]], "m"), "(0 m, 4 ft), (30 ft, 4 ft)")  # no unit behind values that carry their own
         self.assertEqual(text_of(["0", "t"], "m/s", over_time=True), "0 m/s, t [m/s]")
 
     def test_spans_and_durations(self):

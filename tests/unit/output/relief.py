@@ -15,6 +15,7 @@ import talus_converge  # noqa: E402
 import talus_relief as relief  # noqa: E402
 import talus_sections  # noqa: E402
 from talus_ground import Filling, Ground  # noqa: E402
+from talus_report import level_and_upright  # noqa: E402
 from talus_results import Thickness  # noqa: E402
 from talus_colours import Colours  # noqa: E402
 from talus_sections import Painter  # noqa: E402
@@ -240,6 +241,14 @@ class Sights(unittest.TestCase):
         a, b = shown[0], shown[1]
         share = ((whole - a) @ (b - a)) / ((b - a) @ (b - a))
         self.assertLess(np.abs(whole - a - share[..., None] * (b - a)).max(), 0.02)
+
+
+class Numbers(unittest.TestCase):
+    def test_a_level_displacement_is_the_length_of_both_level_components(self):
+        vectors = np.array([[3.0, 4, -1], [-4.5, 0, 2]])
+        self.assertEqual(level_and_upright(vectors, 2), (5, 2))
+        self.assertEqual(level_and_upright(vectors[:, [1, 2, 0]], 1), (5, 2))  # up is y
+        self.assertEqual(level_and_upright(vectors[:, :2], 1), (4.5, 4))
 
 
 class Pictures(unittest.TestCase):
