@@ -1,6 +1,7 @@
 #include "simulation/ways_out.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -34,6 +35,25 @@ std::vector<EndFace<dim>> end_faces(const BackgroundMesh<dim> &mesh) {
       faces.push_back({c, k, found == group_of.end() ? unnamed : found->second});
     }
   return faces;
+}
+
+/// Gradient of the shape function of the node opposite to a face [1/m]: it points into the cell.
+template <int dim>
+Vec<dim> inward(const Cell<dim> &cell, int face) {
+  if (face > 0) return cell.gradient[face - 1];
+  Vec<dim> first{};
+  for (int a = 0; a < dim; ++a)
+    for (int d = 0; d < dim; ++d) first[d] -= cell.gradient[a][d];
+  return first;
+}
+
+/// Speed at which a velocity leaves a cell through one of its faces [m/s].
+template <int dim>
+double speed_through(const Cell<dim> &cell, int face, const Vec<dim> &velocity) {
+  const Vec<dim> normal = inward(cell, face);
+  double into = 0, size = 0;
+  for (int d = 0; d < dim; ++d) into += normal[d] * velocity[d], size += normal[d] * normal[d];
+  return -into / std::sqrt(size);
 }
 
 /// How far a place in or near a cell is from one of its faces [m].
@@ -73,17 +93,21 @@ class Boxes {
   }
 
   struct Nearest {
-    double distance;
+    double distance;  ///< or less than 0: the speed through the face, of several that are next to the place
     int group;
   };
-  /// The end face next to a place; far away where there is none near it.
-  Nearest nearest(const Vec<dim> &x) const {
+  /// The end face next to a place, in an edge of the mesh that which the velocity leaves through; far away where there
+  /// is none near it.
+  Nearest nearest(const Vec<dim> &x, const Vec<dim> &velocity) const {
+    const double at_once = 1e-6 * size_;
     Nearest best{std::numeric_limits<double>::max(), unnamed};
     each_box(x, x, [&](long long key) {
       const auto found = in_.find(key);
       if (found == in_.end()) return;
       for (const int f : found->second) {
-        const double distance = distance_from<dim>(mesh_.cells[faces_[f].cell], faces_[f].face, x);
+        const Cell<dim> &cell = mesh_.cells[faces_[f].cell];
+        double distance = distance_from<dim>(cell, faces_[f].face, x);
+        if (distance < at_once) distance = std::min(distance, -speed_through<dim>(cell, faces_[f].face, velocity));
         if (std::pair(distance, faces_[f].group) < std::pair(best.distance, best.group))
           best = {distance, faces_[f].group};
       }
@@ -120,19 +144,19 @@ class Boxes {
 
 template <int dim>
 std::vector<int> ways_out(const World<dim> &world) {
-  std::vector<Vec<dim>> mine;
-  for (const EscapedParticle<dim> &one : world.escaped.of_this_rank()) mine.push_back(one.position);
+  std::vector<std::array<Vec<dim>, 2>> mine;
+  for (const EscapedParticle<dim> &one : world.escaped.of_this_rank()) mine.push_back({one.position, one.velocity});
   // the mesh may have been divided in another way since, so that the face is on another rank than the particle
-  std::vector<Vec<dim>> all = gather(world.comm, mine);
+  std::vector<std::array<Vec<dim>, 2>> all = gather(world.comm, mine);
   long long count = static_cast<long long>(all.size()), before = 0, here = static_cast<long long>(mine.size());
   MPI_Bcast(&count, 1, MPI_LONG_LONG, 0, world.comm);
   all.resize(static_cast<std::size_t>(count));
-  MPI_Bcast(all.data(), static_cast<int>(count * dim), MPI_DOUBLE, 0, world.comm);
+  MPI_Bcast(all.data(), static_cast<int>(2 * count * dim), MPI_DOUBLE, 0, world.comm);
   MPI_Exscan(&here, &before, 1, MPI_LONG_LONG, MPI_SUM, world.comm);
   if (rank_in(world.comm) == 0) before = 0;  // of which MPI says nothing
   const Boxes<dim> boxes(world.mesh);
   std::vector<typename Boxes<dim>::Nearest> nearest;
-  for (const Vec<dim> &x : all) nearest.push_back(boxes.nearest(x));
+  for (const auto &[x, velocity] : all) nearest.push_back(boxes.nearest(x, velocity));
   MPI_Allreduce(MPI_IN_PLACE, nearest.data(), static_cast<int>(count), MPI_DOUBLE_INT, MPI_MINLOC, world.comm);
   std::vector<int> groups;
   for (long long i = before; i < before + here; ++i)
