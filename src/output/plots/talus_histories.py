@@ -7,7 +7,7 @@ from matplotlib.ticker import FixedLocator, MaxNLocator
 import talus_style as style
 from talus_modelled import read_model
 from talus_moments import RESET, after, last_reset
-from talus_results import ESCAPED
+from talus_results import ESCAPED, together
 from talus_units import at_time, capital, clock, readable_unit, with_unit, words
 
 # coordinates, stress and state of points: sections and stress paths show them better; the clock of the loads says nothing as a curve
@@ -22,9 +22,11 @@ def draw_histories(results, folder):
         return []
     pictures, reset = [], last_reset(results)
     since = whole.rows(after(reset, whole.time)) if reset else whole
+    same = {names[0]: names for names in together({name: whole.way(name) for name in whole.points(0.0)})}
+    others = {name for names in same.values() for name in names[1:]}
     for (quantity, unit), lines in whole.groups().items():
         history = since if quantity in RESET else whole  # what is set to 0 begins there, so that the settlement before does not set the scale
-        lines = history.groups()[quantity, unit]
+        lines = {", ".join(same.get(name, [name])): values for name, values in history.groups()[quantity, unit].items() if name not in others}
         if quantity in ELSEWHERE or quantity.startswith("stress_") or not any(changes(values) for values in lines.values()):
             continue
         if quantity == "energy":

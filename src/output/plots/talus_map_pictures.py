@@ -72,6 +72,20 @@ def places_of_labels(lines, low, high, taken, apart):
     return found
 
 
+def place_of_scale(soil, spacing, low, length, inch):
+    """The left end of a scale so long [m] on a map with so much soil (a mask of cells): in the corner that has least of it, the first of those that have none.
+    In the upper right one the arrow points to the north."""
+    size = np.array(soil.shape) * spacing
+    edge, tall = 0.04 * size, 0.3 * inch  # with its number above it
+    corners = [edge, [size[0] - edge[0] - length, edge[1]], [edge[0], size[1] - edge[1] - tall]]
+
+    def covered(at):
+        (west, south), (east, north) = (np.floor(np.array(end) / spacing).astype(int) for end in (at, np.add(at, [length, tall])))
+        return np.count_nonzero(soil[max(west, 0):east + 1, max(south, 0):north + 1])
+
+    return low + min(corners, key=covered)
+
+
 def ticks_of(axes, width, height):
     """As many ticks as numbers with this many digits leave room for, none so near to an end that its number passes it; `width`, `height` of the map
     [inch]."""
@@ -118,17 +132,17 @@ def draw_map(maps, path):
     axes.ticklabel_format(useOffset=False, style="plain")
     axes.tick_params(axis="y", labelrotation=90)
     length = round_length(0.25 * size[0])
-    at = low + 0.04 * size
     inch = size[0] / min(wide, tall * size[0] / size[1])  # [m]
+    soil = near(maps.covered | (maps.thickness[0] >= maps.limit), int(np.ceil(0.2 * inch / grid.spacing)))
+    at = place_of_scale(soil, grid.spacing, low, length, inch)
 
     def taken(place):
         """By the scale, the arrow to the north, and the soil at the start and at the end."""
-        scale = (place < at + [length + 0.2 * inch, 0.45 * inch]).all(axis=1)
+        scale = ((place > at - 0.3 * inch) & (place < at + [length + 0.3 * inch, 0.45 * inch])).all(axis=1)
         arrow = (place > high - [0.45 * inch, 0.75 * inch]).all(axis=1)
         column, row = np.clip(((place - low) / grid.spacing).astype(int), 0, np.array(grid.shape) - 1).T
         return scale | arrow | soil[column, row]
 
-    soil = near(maps.covered | (maps.thickness[0] >= maps.limit), int(np.ceil(0.2 * inch / grid.spacing)))
     if len(places := places_of_labels(lines, low, high, taken, 0.4 * inch)):
         axes.clabel(lines, fontsize=6, fmt="%g", colors=style.INK, manual=[tuple(place) for place in places])
     axes.plot([at[0], at[0] + length], [at[1]] * 2, color=style.INK, lw=3, solid_capstyle="butt", zorder=5)

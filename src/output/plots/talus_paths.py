@@ -9,6 +9,7 @@ from matplotlib.patheffects import withStroke
 import talus_style as style
 from talus_histories import time_axis
 from talus_measures import failure
+from talus_results import together
 from talus_units import at_time, readable_unit, words
 
 ENVELOPES = 4  # suctions for which the strength is drawn
@@ -104,9 +105,11 @@ def draw_stress_paths(results, folder):
     largest = max(np.nanmax(np.abs([path["p"], path["q"]])) for path in paths.values())
     factor, unit = readable_unit(largest, "Pa")
     lowest, highest = 0.0, 0.0
-    for k, (name, path) in enumerate(paths.items()):
+    same = together({name: results.history.way(name) for name in paths})
+    for k, names in enumerate(same):
+        path = paths[names[0]]
         p, q = factor * path["p"], factor * path["q"]
-        line = {"color": style.LINES[k % len(style.LINES)], "ls": ("-", "--", ":")[k // len(style.LINES) % 3], "label": label_of(name, time, q)}
+        line = {"color": style.LINES[k % len(style.LINES)], "ls": ("-", "--", ":")[k // len(style.LINES) % 3], "label": label_of(", ".join(names), time, q)}
         known = np.flatnonzero(np.isfinite(q))
         after = time > failed
         left.plot(p[~after], q[~after], lw=1.2, **line)
@@ -144,6 +147,6 @@ def draw_stress_paths(results, folder):
     if not any(np.isfinite(path["friction"]).any() for path in paths.values()):
         right.text(0.5, 0.5, "without a friction angle none is mobilised", transform=right.transAxes, ha="center", color=style.SOFT)
     right.set_ylim(bottom=0)
-    right.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.01, 1), ncols=1 + len(paths) // 20)
+    right.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.01, 1), ncols=1 + len(same) // 20)
     style.headline(figure, "Stress paths of the named points", results.title)
     return [("stress paths", style.save(figure, folder / "stress_paths.png"))]

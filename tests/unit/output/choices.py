@@ -19,6 +19,7 @@ sys.path.insert(0, sys.argv.pop(1))
 import talus_compare  # noqa: E402
 import talus_factor  # noqa: E402
 import talus_lines  # noqa: E402
+import talus_map_pictures  # noqa: E402
 import talus_outcomes  # noqa: E402
 import talus_plot  # noqa: E402
 import talus_results  # noqa: E402
@@ -602,7 +603,7 @@ class Histories(unittest.TestCase):
 
     def test_the_clock_of_the_loads_has_no_picture(self):
         time = np.arange(3.0)
-        history = types.SimpleNamespace(time=time, groups=lambda: {("load_time", "s"): {"": time}})
+        history = types.SimpleNamespace(time=time, groups=lambda: {("load_time", "s"): {"": time}}, points=lambda time: {})
         self.assertEqual(draw_histories(types.SimpleNamespace(history=history, scene={}, snapshots=[]), None), [])
 
     def test_of_displacement_begin_at_the_last_reset(self):
@@ -619,6 +620,33 @@ class Histories(unittest.TestCase):
             self.assertEqual((moved.axes[0].lines[0].get_xdata()[0], speed.axes[0].lines[0].get_xdata()[0]), (first, 0))
             self.assertEqual("since the end of stage gravity" in [text.get_text() for text in moved.texts], resets)
             self.assertEqual(max(moved.axes[0].lines[0].get_ydata()), 2.0 if resets else 0.3)  # mm or m
+
+
+    def test_of_points_that_are_one_particle_are_one(self):
+        history = History.__new__(History)
+        history.time, history.step, history.stage = np.arange(3.0), np.arange(3), ["start", "slide", "slide"]
+        ways = {"crest": [0.0, 1, 2], "toe": [0.0, 2, 4], "shoulder": [0.0, 1, 2]}
+        history.columns = {f"{name}_{what}": np.array(way) for name, way in ways.items() for what in ("x_m", "y_m", "displacement_m")}
+        results, seen = types.SimpleNamespace(history=history, scene={}, snapshots=[], title="", per_metre=lambda text: text), []
+        with unittest.mock.patch.object(talus_sweep.style, "save", lambda figure, path: seen.append(figure)):
+            draw_histories(results, pathlib.Path())
+        self.assertEqual([text.get_text() for text in seen[0].axes[0].get_legend().get_texts()], ["crest, shoulder", "toe"])
+
+
+class Scale(unittest.TestCase):
+    def test_of_a_map_stands_where_no_soil_is(self):
+        soil, low = np.zeros((50, 50), bool), np.array([1000.0, 2000.0])
+
+        def place():
+            return tuple(talus_map_pictures.place_of_scale(soil, 2.0, low, 20.0, 15.0))  # a map of 100 m on 6.7 inches
+
+        self.assertEqual(place(), (1004.0, 2004.0))
+        soil[5, 2] = True
+        self.assertEqual(place(), (1076.0, 2004.0))
+        soil[45, 2] = True
+        self.assertEqual(place(), (1004.0, 2091.5))
+        soil[4:6, 47] = True
+        self.assertEqual(place(), (1004.0, 2004.0))  # less soil than there
 
 
 class Times(unittest.TestCase):
