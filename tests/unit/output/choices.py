@@ -155,11 +155,11 @@ class Crosses(unittest.TestCase):
         painter = Painter.__new__(Painter)
         painter.results = types.SimpleNamespace(escaped=types.SimpleNamespace(time=np.array([1.0, 2.0, 3.0]), position=np.array([[0.0, 0, 0], [0, 50, 0], [0, -50, 0]])))
         painter.spacing, painter.views, painter.corners = 1.0, [view], [(np.zeros(2), np.full(2, 100.0))]
-        painter.marked_escaped, painter.said = 83, []  # of an earlier sheet
+        painter.marked_escaped, painter.said, painter.since, painter.reset = 83, [], {}, ""  # crosses of an earlier sheet
         painter._title = lambda *_: ["time"]
         painter._panel = lambda axes, snapshot, *_: painter._mark_escaped(axes, view, snapshot.time, 10.0)
         painter._frame_sheet = lambda *_: painter.said.append(painter.marked_escaped)
-        figure = painter._sheet("velocity", None, [types.SimpleNamespace(time=time)], 1, [[0]])
+        figure = painter._sheet("velocity", None, [types.SimpleNamespace(time=time, step=1)], 1, [[0]])
         talus_sweep.plt.close(figure)
         self.assertEqual(sum(len(line.get_xdata()) for line in figure.axes[0].lines), painter.said[0])
         return painter.said[0]
