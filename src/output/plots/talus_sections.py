@@ -14,6 +14,7 @@ from talus_colours import Colours
 from talus_factor import read_factor, short
 from talus_ground import Ground
 from talus_interrupt import end_with_parent
+from talus_modelled import read_model
 from talus_moments import chosen_snapshots, origins, scaled_by, since_reset, telling, with_stress
 from talus_outcomes import cell_size
 from talus_perspective import edges
@@ -30,6 +31,7 @@ BESIDE, BELOW, STACKED = 0.5, 0.38, 0.55  # between blocks, and between the view
 DOTTED, HALO = (0, (1, 1.6)), withStroke(linewidth=2, foreground="#ffffffaa")  # seen on pale and on dark soil
 OUTLINE_PIXELS = 900
 MOVED = 0.8  # of the spacing of particles: an outline that is nearer to the present edge of the soil is not drawn
+LINE, LETTER = 0.17, 0.078  # height of a line of a title, and width of a letter of it [inch]
 TALLEST = 0.8  # height of a map over the width of its column
 ISLAND = 0.35  # half the width of one or two cells that are not shown as soil without a value amid others, over their size
 AROUND = 0.06  # of the size of the soil: what is shown of the mesh's bottom beside it
@@ -67,6 +69,15 @@ class Painter:
         around[up] = 0.5 * self.spacing
         top = self.views[-1]
         return Ground(self.low - around, self.high + around, self.spacing, (top.across, top.up), up, self.results.mesh())
+
+    def _box(self):
+        """Corners of the box whose dimensions a picture in 3D states: that of the ground, as high as the soil is: from the lowest to the highest place of
+        particles' centres and of corners of the model's soil, since half a particle above a centre may be beyond the soil."""
+        low, high, up = self.ground.low.copy(), self.ground.high.copy(), self.results.up_axis()
+        model = read_model(self.results.folder)
+        heights = [self.low[up], self.high[up], *(model.corners[..., up].ravel() if model else (low[up], high[up]))]
+        low[up], high[up] = min(heights), max(heights)
+        return low, high
 
     def _limits(self, view):
         """Corners of what is seen at all times, with room for the edge of the soil [m]."""
@@ -166,13 +177,14 @@ class Painter:
 
     def frame(self, field, colours, snapshot, note, path):
         """One frame of a film, with a note in its title."""
-        figure = self._sheet(field, colours, [snapshot], 1, [[0]] if len(self.views) == 1 else [[0, 1]], note=note)
+        figure = self._sheet(field, colours, [snapshot], 1, [[0]] if len(self.views) == 1 else [[0, 1]], note=note, lines=1 if len(self.views) == 1 else 2)
         self._tiles.clear()  # those of all frames would fill the memory
         self._surfaces.clear()
         return style.save(figure, path, dpi=self.resolution)
 
-    def _sheet(self, field, colours, snapshots, columns, rows, named_points=False, note=""):
-        """The figure of some snapshots in so many columns of blocks; a block has the views whose numbers are in `rows`."""
+    def _sheet(self, field, colours, snapshots, columns, rows, named_points=False, note="", lines=1):
+        """The figure of some snapshots in so many columns of blocks; a block has the views whose numbers are in `rows`, and room for so many `lines` of
+        its title or more. The size of a film's frames may not depend on their titles."""
         spans = [high - low for low, high in self.corners]
         wide = (WIDTH - LEFT - RIGHT - BESIDE * (columns - 1)) / columns
         widths = {k: (wide - BESIDE * (len(row) - 1)) / len(row) for row in rows for k in row}
@@ -180,14 +192,18 @@ class Painter:
             if isinstance(self.views[k], MapView):
                 widths[k] = min(widths[k], TALLEST * widths[k] * spans[k][0] / spans[k][1])
         heights = {k: widths[k] * spans[k][1] / spans[k][0] for k in widths}
-        block = TITLE + sum(max(heights[k] for k in row) for row in rows) + STACKED * (len(rows) - 1)
+        since = {self.since.get(snapshot.step) for snapshot in snapshots}
+        titles = {(n, k): wrapped(self._title(snapshot, k, note if k == rows[0][0] else None, len(since) > 1), widths[k])
+                  for n, snapshot in enumerate(snapshots) for row in rows for k in row}
+        above = TITLE + LINE * (max(lines, *(titles[n, rows[0][0]].count("\n") + 1 for n in range(len(snapshots)))) - 1)
+        block = above + sum(max(heights[k] for k in row) for row in rows) + STACKED * (len(rows) - 1)
         count = -(-len(snapshots) // columns)
         height = HEAD + count * block + (count - 1) * BELOW + FOOT
         figure = plt.figure(figsize=(WIDTH, height))
         self.marked_escaped, self.drawn_outline = 0, False
         for n, snapshot in enumerate(snapshots):
             block_row, column = divmod(n, columns)
-            left, top = LEFT + column * (wide + BESIDE), height - HEAD - TITLE - block_row * (block + BELOW)
+            left, top = LEFT + column * (wide + BESIDE), height - HEAD - above - block_row * (block + BELOW)
             for row in rows:
                 for place, k in enumerate(row):
                     at = left + place * ((wide - BESIDE * (len(row) - 1)) / len(row) + BESIDE)
@@ -195,7 +211,7 @@ class Painter:
                     self._panel(axes, snapshot, field, k, colours, named_points, len(snapshots) == 1)
                     if named_points:
                         keep_apart(axes)
-                    axes.set_title("  ·  ".join(self._title(snapshot, k, note if k == rows[0][0] else None)), loc="left", pad=5)
+                    axes.set_title(titles[n, k], loc="left", pad=5)
                     if isinstance(self.views[k], Oblique):
                         continue
                     if n + columns >= len(snapshots) and row is rows[-1]:
@@ -203,13 +219,14 @@ class Painter:
                     if column == 0:
                         axes.set_ylabel(self.views[k].labels[1])
                 top -= max(heights[k] for k in row) + STACKED
-        self._frame_sheet(figure, field, colours, [k for row in rows for k in row])
+        said = f"since the end of stage {self.reset}" if self.reset else since.pop() if len(since) == 1 else None
+        self._frame_sheet(figure, field, colours, [k for row in rows for k in row], said)
         return figure
 
-    def _title(self, snapshot, k, note):
-        """Time, stage and a note above a block, the view's name where there are several."""
+    def _title(self, snapshot, k, note, with_since=True):
+        """Time, stage and a note above a block, which has a note or "" in its first view alone; the view's name where there are several."""
         stage = "mechanism, whose size is free" if snapshot.stage == MECHANISM else snapshot.stage
-        when = [self.results.when(snapshot), stage, *filter(None, [note, self.since.get(snapshot.step)])] if k == 0 else []
+        when = [] if note is None and k else [self.results.when(snapshot), stage, *filter(None, [note, self.since.get(snapshot.step) if with_since else None])]
         return when + ([self.views[k].name] if len(self.views) > 1 else [])
 
     def _panel(self, axes, snapshot, field, k, colours, named_points=False, alone=False):
@@ -240,7 +257,7 @@ class Painter:
         if isinstance(view, Oblique):
             axes.axis("off")
             if alone:
-                edges(axes, view.eye, self.ground.low, self.ground.high, metres)
+                edges(axes, view.eye, *self._box(), metres)
             return
         if isinstance(view, MapView):
             self._mirror_as_needed(axes, view)
@@ -319,8 +336,8 @@ class Painter:
         axes.plot(*place[first].T, "x", markersize=3, markeredgewidth=0.7, color=style.INK, alpha=0.6)
         self.marked_escaped = max(self.marked_escaped, len(place))
 
-    def _frame_sheet(self, figure, field, colours, views):
-        """Headline, colour bar, and what colours and lines mean in the views with these numbers."""
+    def _frame_sheet(self, figure, field, colours, views, since):
+        """Headline with what all panels count the field from, colour bar, and what colours and lines mean in the views with these numbers."""
         height = figure.get_figheight()
         panels = [axes.get_position() for axes in figure.axes]
         top, bottom = max(panel.y1 for panel in panels), min(panel.y0 for panel in panels)
@@ -328,14 +345,14 @@ class Painter:
         colours.bar(figure, [1 - (RIGHT - 0.22) / WIDTH, top - tall, 0.15 / WIDTH, tall])
         headline = "  ".join(filter(None, (capital(words(field)), style.SYMBOL.get(field))))
         written = figure.text(LEFT / WIDTH, 1 - 0.24 / height, headline, fontsize=13, fontweight="bold", va="center")
-        if colours.nothing:
+        beside = ", ".join(filter(None, (since, colours.nothing)))
+        if beside:
             figure.draw_without_rendering()
-            figure.text(written.get_window_extent().x1 / figure.bbox.width + 0.15 / WIDTH, 1 - 0.24 / height, colours.nothing, fontsize=10, va="center")
+            figure.text(written.get_window_extent().x1 / figure.bbox.width + 0.15 / WIDTH, 1 - 0.24 / height, beside, fontsize=10, va="center")
         right = 1 - 0.25 / WIDTH
         figure.text(right, 1 - 0.24 / height, self.results.title, fontsize=9, color=style.SOFT, va="center", ha="right")
         legend = [colours.in_words("in the colour of its soil" if self.flat else "grey")]
         legend += [colours.uneven] * bool(colours.uneven)
-        legend += [f"since the end of stage {self.reset}"] * bool(self.reset)
         legend += ["dotted: outline at the start"] * self.drawn_outline
         legend += [f"crosses: {self.marked_escaped} particles left the mesh here"] * bool(self.marked_escaped)
         figure.text(right, 0.16 / height, "; ".join(legend), fontsize=7.5, color=style.SOFT, ha="right")
@@ -351,6 +368,18 @@ class Painter:
         handles = [plt.Rectangle((0, 0), 1, 1, fc=tint, ec=style.SOFT, lw=0.5) for tint in self.tints]
         figure.legend(handles, map(words, self.results.bodies), loc="lower left", bbox_to_anchor=(LEFT / WIDTH - 0.006, 0.09 / figure.get_figheight()),
                       ncols=8, fontsize=7.5, borderpad=0, borderaxespad=0.5, handlelength=1.6, handleheight=0.9, columnspacing=1.4, labelcolor=style.SOFT)
+
+
+def wrapped(parts, width):
+    """The parts of a title beside each other, on as many lines as a panel of this width [inch] needs."""
+    lines = [parts[0]]
+    for part in parts[1:]:
+        longer = f"{lines[-1]}  ·  {part}"
+        if LETTER * len(longer) <= width:
+            lines[-1] = longer
+        else:
+            lines.append(part)
+    return "\n".join(lines)
 
 
 def slip_surfaces(results, folder):

@@ -295,6 +295,7 @@ class Pictures(unittest.TestCase):
                     seen = np.asarray(picture.convert("RGB"), float)
                     self.assertGreater((np.ptp(seen, axis=2) > 60).mean(), 0.01)  # there is colour in it
         self.assertEqual(painter.views[-1].labels, ["x [m]", "y [m]"])
+        self.titles_keep_apart(painter, colours, snapshots)
         results.scene = {"mesh": {"terrain": {}}}  # the north is on top and marked
         painter = Painter(results, snapshots, 40)
         self.assertEqual(painter.views[-1].labels, ["x, east [m]", "y, north [m]"])
@@ -302,6 +303,30 @@ class Pictures(unittest.TestCase):
             drawn = painter.large("displacement", colours, snapshots, None)
         self.assertEqual([text.get_text() for axes in drawn.axes for text in axes.texts if text.get_text() == "N"], ["N"])
         self.assertFalse(any(axes.yaxis_inverted() or axes.xaxis_inverted() for axes in drawn.axes))
+
+    def titles_keep_apart(self, painter, colours, snapshots):
+        """What all panels count from is said once, and what differs in titles that do not cover each other; the slip surface has its time in its title."""
+        late = "since the end of stage excavation"
+        with unittest.mock.patch.object(talus_sections.style, "save", lambda figure, path, **_: figure):
+            for since in ({0: "since the start", 1: late, 2: late}, {0: late, 1: late, 2: late}):
+                painter.since, painter.as_asked = since, True
+                figures = [painter.over_time("displacement", colours, snapshots, None), painter.frame("displacement", colours, snapshots[1], "shortened: 1/20 of real time", None)]
+                for figure in figures:
+                    figure.draw_without_rendering()
+                    titles = [axes.title if axes.title.get_text() else axes._left_title for axes in figure.axes]
+                    boxes = [title.get_window_extent() for title in titles if title.get_text()]
+                    self.assertFalse(any(one.overlaps(other) for k, one in enumerate(boxes) for other in boxes[:k]))
+                    told = [text.get_text() for text in (*titles, *figure.texts) if late in text.get_text()]
+                    self.assertEqual(len(told), 1 if figure is figures[1] or len(set(since.values())) == 1 else 2)
+            painter.since = {}
+            line = np.array([[0.2, 0.1], [0.5, 0.1], [0.8, 0.1]])
+            title = painter.picture_of_line(snapshots[1], "displacement", line, "slip surface", None).axes[0].get_title(loc="left")
+        for said in ("t = 1.0 s", "line: slip surface", "section at y"):
+            self.assertIn(said, title)
+        model = types.SimpleNamespace(corners=np.array([[[0, 0, 0.0], [1, 0, 0], [0, 1, 0.02]]]) + painter.low)
+        with unittest.mock.patch.object(talus_sections, "read_model", lambda folder: model):
+            low, high = painter._box()
+        self.assertEqual((low[2], high[2]), (painter.low[2], painter.high[2]))  # without half a particle
 
 
 if __name__ == "__main__":
