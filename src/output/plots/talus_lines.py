@@ -114,7 +114,7 @@ def draw_line(results, line, path, times):
             show(axes[0, 1], where, line.columns["mobilised_friction_deg"][row], upright, color=colour, lw=1.0)
             mark_states(axes[0, 1], where, line, row, upright)
     along = "elevation [m]" if upright else "distance along the line [m]"
-    name(axes[0, 0], along, with_unit("level displacement" if upright else "displacement", unit), upright)
+    name(axes[0, 0], along, with_unit("size of level displacement" if upright else "displacement", unit), upright)
     if later[-1] and not mixed:
         axes[0, 0].set_title(f"since the end of stage {reset[1]}", loc="left", fontsize=7.5, color=style.SOFT)
     if frictional:

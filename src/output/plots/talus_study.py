@@ -23,7 +23,7 @@ import numpy as np
 import talus_style as style
 from talus_outcomes import FAILS, MOVES, STANDS, finite, warnings_in, write_json
 from talus_style import plt
-from talus_sweep import number, outcomes, plane, title_of, title_of_runs
+from talus_sweep import MARKS, mark, number, outcomes, plane, title_of, title_of_runs
 from talus_table import folded, lines_of
 from talus_units import with_unit, words
 
@@ -201,14 +201,16 @@ def draw_bars(axes, fit, what, case):
 
 
 def draw_scatter(rows, variables, shown, criteria, in_plane, path, title=""):
+    """A panel per outcome and variable. Runs that broke off have no outcome: a cross at the lower edge marks their value of the variable."""
     cases = cases_of(rows, variables)
     cases = cases if 1 < len(cases) <= len(SHAPES) and any(v["random"] for v in variables) else [({}, rows)]
+    broken = [row for row in rows if row["failure"]]
     figure, axes = plt.subplots(len(shown), len(variables), figsize=(max(5.2, 2.9 * len(variables)), 0.3 + 2.7 * len(shown)), squeeze=False, layout="constrained")
     for line, outcome in zip(axes, shown):
         about = [c for c in criteria if c["outcome"] == outcome]
         for one, v in zip(line, variables):
             known = [row for row in rows if row.get(outcome) is not None]
-            choices = list(dict.fromkeys(row[v["name"]] for row in known))
+            choices = list(dict.fromkeys(row[v["name"]] for row in known + broken))
             for (_, of_case), shape in zip(cases, SHAPES):
                 dots = [row for row in of_case if row.get(outcome) is not None]
                 x = [number(row[v["name"]]) if v["numeric"] else choices.index(row[v["name"]]) for row in dots]
@@ -216,6 +218,8 @@ def draw_scatter(rows, variables, shown, criteria, in_plane, path, title=""):
                 one.scatter(x, [float(row[outcome]) for row in dots], s=11, c=colours, marker=shape, alpha=0.75, linewidths=0)
             for criterion in about:
                 one.axhline(criterion["limit"], color=style.INK, lw=0.8, ls=":")
+            for row in broken:
+                mark(one, number(row[v["name"]]) if v["numeric"] else choices.index(row[v["name"]]), 0, None, style.SOFT)
             if not v["numeric"]:
                 one.set_xticks(range(len(choices)), choices)
             one.set_xlabel(with_unit(words(v["name"]), v["unit"]))
@@ -223,8 +227,9 @@ def draw_scatter(rows, variables, shown, criteria, in_plane, path, title=""):
     dot = {"ls": "", "ms": 4}
     met = [plt.Line2D([], [], marker="o", color=style.LINES[k], label=text, **dot) for k, text in enumerate(("no criterion is met", "a criterion is met"))] if criteria else []
     which = [plt.Line2D([], [], marker=shape, color=style.SOFT, label=case_text(case, variables), **dot) for (case, _), shape in zip(cases, SHAPES) if case]
-    if met + which:
-        style.legend_below(figure, met + which)
+    lost = [plt.Line2D([], [], marker=MARKS[None][0], color=style.SOFT, label=f"at the lower edge: {len(broken)} of {len(rows)} runs broke off", ls="", ms=5)] if broken else []
+    if met + which + lost:
+        style.legend_below(figure, met + which + lost)
     style.headline(figure, "Outcomes against the variables", title)
     return style.save(figure, path)
 

@@ -1080,6 +1080,17 @@ class Charts(unittest.TestCase):
             talus_sweep.plt.close(seen[0])
         self.assertEqual([talus_sweep.style.log_number(value) for value in (2e-4, 1e-5, 0.002, 50, 3e5)], ["2×10⁻⁴", "10⁻⁵", "0.002", "50", "3×10⁵"])
 
+    def test_runs_of_a_study_that_broke_off_are_crosses(self):
+        rows = [{"c": str(c), "way": None if c == 3 else float(c), "failure": "no equilibrium" if c == 3 else ""} for c in range(5)]
+        variables = [{"name": "c", "unit": "kPa", "numeric": True, "random": True}]
+        for some, said in ((rows, ["at the lower edge: 1 of 5 runs broke off"]), (rows[:3], [])):
+            seen = []
+            with unittest.mock.patch.object(talus_study.style, "save", lambda figure, path: seen.append(figure)):
+                talus_study.draw_scatter(some, variables, ["way"], [], False, "")
+            self.assertEqual([line.get_xdata()[0] for line in seen[0].axes[0].lines if line.get_marker() == "X"], [3] * len(said))
+            self.assertEqual([text.get_text() for legend in seen[0].legends for text in legend.get_texts()], said)
+            talus_study.plt.close(seen[0])
+
     def test_bars_of_a_tornado_say_their_values(self):
         fit = {"outcome": "travel_distance_m", "runs": 40, "mean": 5.0, "r2": 1.0, "bars": [{"variable": "friction", "unit": "deg", "quantiles": [20.5, 27.5], "low": 4.0, "high": 6.0}]}
         seen = []
