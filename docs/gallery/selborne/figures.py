@@ -16,7 +16,8 @@ from talus_style import plt
 HERE = Path(__file__).resolve().parent
 COPIED = {"plastic_strain_large": "slide", "displacement_large": "run_out"}
 POINTS = ("crest", "upper", "lower", "toe")
-NEAR_FAILURE = (0.97, 1.06)  # t* that the figures of the failure show
+FROM_FIRST_YIELD = (0.88, 1.06)  # t* that the states of the slip surface are shown for
+FROM_START = (0, 1.06)  # and its mean friction
 PLACES = (12, 26, 38)  # distances along the slip surface of the places that stand for the paper's P1, P5 and P7 [m]
 
 
@@ -56,7 +57,8 @@ def save(figure, name):
 
 def draw_pressures(history, relative):
     figure, axis = plt.subplots(figsize=(7.5, 3.6), layout="constrained")
-    for point, name, colour in (("base", "at the base, (10, 0)", 0), ("P2", "P2, on the contact (17, 8.5)", 1), ("below_toe", "below the toe (36, 2)", 2)):
+    for point, name, colour in (("base", "at the base, (10, 0)", 0), ("P2", "P2, 1 m above the contact (17, 8.5)", 1),
+                                ("below_toe", "below the toe (36, 2)", 2)):
         axis.plot(relative, history[f"{point}_pore_pressure_Pa"] / 1e3, color=style.LINES[colour], lw=1.1, label=name)
     axis.axvline(1, color="0.6", lw=1, ls=":")
     axis.set(xlabel="t* = t / time of failure", title="pore pressure where water moves [kPa] (paper's fig. 6)", xlim=(0, None))
@@ -82,11 +84,11 @@ def draw_strength(line, results):
     draw_along(left, line, relative)
     draw_mean_path(path, relative, mean)
     friction.plot(relative, mean["mean_mobilised_friction_deg"], color=style.INK, lw=1.4)
-    friction.set(xlabel="t* = t / time of failure", ylabel="mean mobilised friction φ' [deg]", title="mean along the slip surface (paper's fig. 12)", xlim=NEAR_FAILURE,
-                 ylim=(0, 16))
+    friction.set(xlabel="t* = t / time of failure", ylabel="mean mobilised friction φ' [deg]", title="mean along the slip surface (paper's fig. 12)",
+                 xlim=FROM_START, ylim=(0, 16))
     for state, colour in zip(style.STATES[1:], ("#f2b705", *style.STATE_COLOURS[2:])):  # the yellow of a thin line is darker
         shares.plot(relative, 100 * mean[f"share_{state}"], color=colour, lw=1.6, label=state)
-    shares.set(xlabel="t* = t / time of failure", ylabel="share of the slip surface [%]", title="states of its soil", xlim=NEAR_FAILURE, ylim=(-1, 100))
+    shares.set(xlabel="t* = t / time of failure", ylabel="share of the slip surface [%]", title="states of its soil", xlim=FROM_FIRST_YIELD, ylim=(-1, 100))
     shares.legend(fontsize=8, loc="center right")
     draw_places(three, moved, line, relative)
     for axes in (friction, shares, three, moved):
@@ -158,17 +160,17 @@ def draw_paths(history, relative):
 
 
 def draw_inclinometers(lines, results):
-    figure, axes = plt.subplots(1, len(lines), figsize=(11.5, 3.8), layout="constrained", sharey=True)
+    """Level displacement since the end of gravity, at which it is set to 0: as it is in the file, since the row at t* = 0, written before that, still has
+    what gravity moved."""
+    figure, axes = plt.subplots(1, len(lines), figsize=(11.5, 3.8), layout="constrained", sharex=True, sharey=True)
     for axis, line in zip(axes, lines):
         relative = dimensionless(results, line.time)
-        start = int(np.nanargmin(np.abs(relative)))
-        for t, colour in ((0.9, style.LINES[0]), (0.98, style.LINES[4]), (0.998, style.LINES[1])):
+        for t, colour in ((0.9, style.LINES[0]), (0.98, style.LINES[4]), (1, style.LINES[1])):
             row = int(np.nanargmin(np.abs(relative - t)))
-            moved = 1e3 * (line.columns["displacement_x_m"][row] - line.columns["displacement_x_m"][start])
-            axis.plot(moved, line.columns["y_m"][0], color=colour, lw=1.3, label=f"t* = {relative[row]:.3f}")
-        axis.set(title=f"{line.name}, x = {line.columns['x_m'][0].mean():.0f} m", xlabel="level displacement [mm]")
+            axis.plot(1e3 * line.columns["displacement_x_m"][row], line.columns["y_m"][0], color=colour, lw=1.3, label=f"t* = {relative[row]:.3f}")
+        axis.set(title=f"{line.name}, x = {line.columns['x_m'][0].mean():.0f} m", xlabel="level displacement since gravity [mm]", xlim=(0, None))
     axes[0].set_ylabel("elevation [m]")
-    axes[0].legend(fontsize=8)
+    axes[-1].legend(fontsize=8, loc="upper right")
     save(figure, "inclinometers")
 
 
@@ -186,13 +188,16 @@ def draw_tables():
         load.plot(size, [float(row["pressure_kPa"]) for row in rows], marker, ms=4, label=name)
     rows = [row for row in table("residual") if re.fullmatch(r"[\d.]+ kPa", row["run"])]  # of the weathered clay, each at its own load
     residual.plot([float(row["run"].split()[0]) for row in rows], [float(row["crest_m"]) for row in rows], "o-", ms=4)
+    for k, row in enumerate(rows):  # the last but one below the line, where there is space
+        residual.annotate(f"at {float(row['pressure_kPa']):.0f} kPa", (float(row["run"].split()[0]), float(row["crest_m"])), fontsize=8, color=style.SOFT,
+                          xytext=(4, -13 if k == len(rows) - 2 else 6), textcoords="offset points", ha="right" if k == len(rows) - 1 else "left")
     for axis, at in ((cells, 1.44), (residual, 10.3)):
         axis.axhline(4, color="0.6", lw=1, ls=":")
         axis.set(ylabel="displacement of the crest [m]", ylim=(0, 8.4))
         axis.text(at, 3.93, "recorded in the experiment", ha="right", va="top", color="0.4", fontsize=8)
     cells.set(xlabel="cell size [m]", xlim=(0.45, 1.45), title="cells and run-out")
     load.set(xlabel="cell size [m]", ylabel="pressure at the base at failure [kPa]", xlim=(0.45, 1.45), ylim=(0, 130), title="cells and load at failure")
-    residual.set(xlabel="residual cohesion of the weathered clay [kPa]", xlim=(0, 10.4), title="strength and run-out, cells of 0.7 m")
+    residual.set(xlabel="residual cohesion of the weathered clay [kPa]", xlim=(0, 10.4), title="strength, run-out and pressure at failure")
     for axis in (cells, load):
         axis.legend(fontsize=8, title="softening", title_fontsize=8, alignment="left", loc="lower left" if axis is load else "upper right")
     save(figure, "sensitivity")
