@@ -347,9 +347,9 @@ def check_study(page, name, study, talus, write):
             print(f"  written in {time.time() - start:.0f} s")
             return True
         stated, computed = (list(csv.DictReader(open(place / study["file"], newline=""))) for place in (page.folder, here))
-    holds = len(stated) == len(computed)
+    holds = as_many = len(stated) == len(computed)
     for column, tolerance in study["compare"].items():
-        worst = 0.0 if holds else math.inf
+        worst = 0.0 if as_many else math.inf
         for one, other in zip(stated, computed):
             if one[column] != other[column]:
                 try:

@@ -40,6 +40,22 @@ class Faults(unittest.TestCase):
             self.assertTrue(told.stdout.splitlines()[-3].startswith("not all numbers hold that the pages"), told.stdout)
             self.assertEqual(told.stdout.splitlines()[-2:], ["  small: run slow (the scene as it is)", "  small: study sizes (four meshes)"])
 
+    def test_each_column_of_a_study_fails_by_itself(self):
+        with tempfile.TemporaryDirectory() as name:
+            page = pathlib.Path(name) / "docs" / "gallery" / "small"
+            page.mkdir(parents=True)
+            for folder in ("meshes", "src", "physics", "tests"):
+                (pathlib.Path(name) / folder).mkdir()
+            (pathlib.Path(name) / "CMakeLists.txt").touch()
+            (page / "numbers.toml").write_text('[study.sizes]\nabout = "four meshes"\ncommand = "sizes.py TALUS"\nfile = "sizes.csv"\n'
+                                               'compare = {crest_m = 0.05, toe_m = 0.05}\nbecause = "of the cells"\n')
+            (page / "README.md").write_text("<!-- studies -->\n<!-- end -->\n")
+            (page / "sizes.csv").write_text("size_m,crest_m,toe_m\n1,2,3\n")
+            (page / "sizes.py").write_text("import pathlib\npathlib.Path('sizes.csv').write_text('size_m,crest_m,toe_m\\n1,4,3.03\\n')\n")
+            told = subprocess.run([sys.executable, "-B", SCRIPT, page.parent, "/bin/false", "--long"], capture_output=True, text=True)
+            self.assertEqual(told.returncode, 1)
+            self.assertRegex(told.stdout, r"crest_m +largest difference  1.00e\+00  tolerance 0.05 FAILS\n +toe_m +largest difference  1.00e-02  tolerance 0.05 holds")
+
     def test_what_a_program_printed_is_on_the_page(self):
         with tempfile.TemporaryDirectory() as name:
             page = pathlib.Path(name) / "docs" / "gallery" / "small"
