@@ -214,5 +214,33 @@ TEST_F(Leaving, TheEndOfTheMeshIsSaid) {
   EXPECT_EQ(said("open").count(warning), 0);
 }
 
+/// None leaves, and none is missed either: the mass of as many particles of equal mass differs with the order of its
+/// sum.
+TEST_F(Leaving, MissesNoneOfManyEqualParticles) {
+  folder_.write("dam.toml", R"(gravity = 9.81
+[mesh]
+section = ")" TALUS_MESHES R"(/dam.csv"
+size = 0.014
+[body.soil]
+region = "soil"
+density = 2000
+particles_per_cell = 16
+law = "linear_elastic"
+young_modulus = "1 MPa"
+poisson_ratio = 0.3
+[boundary.base]
+kind = "fixed"
+[boundary.left]
+kind = "roller"
+[[stage]]
+duration = 3e-4
+[output]
+interval = 0
+history_interval = 0
+)");
+  const Ending ending = run("dam.toml", "dam", {"transfer.remap_interval=0"});
+  EXPECT_EQ(ending.status, 0) << ending.output;
+}
+
 }  // namespace
 }  // namespace talus
