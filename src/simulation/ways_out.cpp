@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <unordered_map>
 
 #include "output/together.h"
@@ -47,33 +48,31 @@ Vec<dim> inward(const Cell<dim> &cell, int face) {
   return first;
 }
 
+template <std::size_t dim>
+double size_of(const std::array<double, dim> &x) {
+  return std::sqrt(std::inner_product(x.begin(), x.end(), x.begin(), 0.));
+}
+
 /// Speed at which a velocity leaves a cell through one of its faces [m/s].
 template <int dim>
 double speed_through(const Cell<dim> &cell, int face, const Vec<dim> &velocity) {
   const Vec<dim> normal = inward(cell, face);
-  double into = 0, size = 0;
-  for (int d = 0; d < dim; ++d) into += normal[d] * velocity[d], size += normal[d] * normal[d];
-  return -into / std::sqrt(size);
+  return -std::inner_product(normal.begin(), normal.end(), velocity.begin(), 0.) / size_of(normal);
 }
 
 /// How far a place in or near a cell is from one of its faces [m].
 template <int dim>
 double distance_from(const Cell<dim> &cell, int face, const Vec<dim> &x) {
-  double share[dim + 1], size[dim + 1]{};
-  Vec<dim> first{};
+  double share[dim + 1];
   share[0] = 1;
   for (int a = 1; a <= dim; ++a) {
     share[a] = 0;
-    for (int d = 0; d < dim; ++d) {
-      share[a] += cell.gradient[a - 1][d] * (x[d] - cell.origin[d]);
-      size[a] += cell.gradient[a - 1][d] * cell.gradient[a - 1][d], first[d] -= cell.gradient[a - 1][d];
-    }
+    for (int d = 0; d < dim; ++d) share[a] += cell.gradient[a - 1][d] * (x[d] - cell.origin[d]);
     share[0] -= share[a];
   }
-  for (int d = 0; d < dim; ++d) size[0] += first[d] * first[d];
   double distance = 0;
   for (int a = 0; a <= dim; ++a)
-    distance = std::max(distance, (a == face ? std::abs(share[a]) : -share[a]) / std::sqrt(size[a]));
+    distance = std::max(distance, (a == face ? std::abs(share[a]) : -share[a]) / size_of(inward(cell, a)));
   return distance;
 }
 
