@@ -95,6 +95,17 @@ class BaseContact {
       else
         visit(p.node, p.normal);
   }
+  /// Area of the bases under nodes of this rank that are marked, and of it what is open and what slips at the trial
+  /// state [m2].
+  std::array<double, 3> areas(const std::vector<char> &marked) const {
+    std::array<double, 3> sums{};
+    for (const Point &p : points_) {
+      if (!marked[p.node]) continue;
+      const BaseForce<dim> f = borne(p, p.trial);
+      sums[0] += p.area, sums[1] += f.presses ? 0 : p.area, sums[2] += f.presses && f.slides ? p.area : 0;
+    }
+    return sums;
+  }
   /// Forces of this rank's soil on the bases at the vertices of the mesh; those of middles of edges go to their ends.
   std::vector<NormalForce> normal_forces() const;
 

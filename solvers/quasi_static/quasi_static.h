@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "solvers/quasi_static/base_contact.h"
+#include "solvers/quasi_static/hanging_pieces.h"
 #include "solvers/quasi_static/loads.h"
 #include "solvers/quasi_static/soil_elements.h"
 #include "solvers/quasi_static/unknowns.h"
@@ -28,6 +29,7 @@ struct StepOutcome {
   bool singular = false;  ///< the linear system had no solution
   bool fails = false;     ///< a mechanism of failure was found for the loads at the end of the path
   bool stopped = false;   ///< somebody asked the program to stop
+  std::string moving;     ///< soil on bases that moves although its prop gives way: where, how much, and on what
 };
 
 /// Work on the soil along the paths so far, by forces that are the means of those at the ends of each step: exact where
@@ -115,6 +117,8 @@ class QuasiStatic {
   PetscErrorCode boundary_forces(double load_time, std::vector<Vec<dim>> &force, std::vector<Vec<dim>> &face) const;
   long long unknowns() const { return unknowns_.count(); }
   bool direct() const { return direct_; }  ///< the linear solver
+  /// Pieces that hang, and that no base holds, since `activate`.
+  const LeftOut<dim> &left_out() const { return left_out_; }
 
   std::function<bool()> stop_asked;  ///< ends iterations when it is true; collective; may be empty
   /// Told of each iteration for equilibrium: its number, and the force out of balance over the forces that act; may be
@@ -132,6 +136,12 @@ class QuasiStatic {
   PetscErrorCode add_work(const std::vector<double> &u, double share, const Working &forces,
                           std::vector<double> &sums) const;
   PetscErrorCode make_solver(SNESLineSearchType line_search = SNESLINESEARCHCP);
+  PetscErrorCode activate_again();
+  enum class Way { balanced, moving, lost };
+  PetscErrorCode relax(int *iterations, double *unbalanced, Way *way);
+  PetscErrorCode find_moving(::Vec direction);
+  PetscErrorCode leave_out_hanging(bool *found);
+  PetscErrorCode advance_on_bases(double share, double load_time, double time, double dt, StepOutcome *outcome);
   PetscErrorCode start_with_motion(const std::vector<double> &motion, ::Vec x);
   PetscErrorCode stiffness(double plastic, double elastic, const std::vector<double> *motion,
                            std::vector<double> *lift);
@@ -163,6 +173,10 @@ class QuasiStatic {
   /// iterate that went astray converged where force and step are perpendicular.
   bool balanced_ = false;
   bool direct_ = true, stopped_ = false;
+  std::vector<char> present_;  ///< bodies
+  LeftOut<dim> left_out_;
+  CellSet moving_;            ///< cells that moved when `relax` ended
+  std::string moving_where_;  ///< the same in words
 };
 
 }  // namespace talus

@@ -120,8 +120,12 @@ template <int dim>
 PetscErrorCode SoilElements<dim>::activate(const std::vector<char> &present) {
   PetscFunctionBeginUser;
   active_.assign(mesh_.cell_count(), 0);
-  for (int c = 0; c < mesh_.cell_count(); ++c) active_[c] = body_of_[c] >= 0 && present[body_of_[c]];
+  for (int c = 0; c < mesh_.cell_count(); ++c)
+    active_[c] = body_of_[c] >= 0 && present[body_of_[c]] && (left_out_.empty() || !left_out_[c]);
   for (size_t b = 0; b < points_.size(); ++b) points_[b].present = present[b];
+  for (GaussPoints<dim> &p : points_)
+    for (int q = 0; q < p.count(); ++q)
+      if (!active_[p.cell[q]]) p.increment[q].strain.fill(0);
   for (int i = 0; i < nodes_.count(); ++i)
     std::copy_n(&displacement_[i * dim], dim, &displacement_of_point_[nodes_.point[i] * dim]);
   PetscCall(nodes_.setup(mesh_, order_, active_));
@@ -141,7 +145,9 @@ void SoilElements<dim>::make_groups() {
     for (int first = 0; first < p.count();) {
       int last = first + per_rule;
       if (patches_)
-        while (last < p.count() && mesh_.patch[p.cell[last]] == mesh_.patch[p.cell[first]]) last += per_rule;
+        while (last < p.count() && mesh_.patch[p.cell[last]] == mesh_.patch[p.cell[first]] &&
+               active_[p.cell[last]] == active_[p.cell[first]])
+          last += per_rule;
       if (active_[p.cell[first]]) {
         Group g{static_cast<int>(b), first, last - first, static_cast<int>(group_node_.size()), 0, gradient_.size(), 0};
         for (int q = first; q < last; q += per_rule) {
@@ -407,8 +413,9 @@ void SoilElements<dim>::admit() {
 template <int dim>
 Vec<dim> SoilElements<dim>::displacement(int cell, const Barycentric<dim> &place) const {
   std::array<double, element_nodes<dim>(2)> shape;
-  shape_functions<dim>(order_, place, shape.data());
   Vec<dim> u{};
+  if (!active_[cell]) return u;
+  shape_functions<dim>(order_, place, shape.data());
   for (int a = 0; a < element_nodes<dim>(order_); ++a)
     for (int d = 0; d < dim; ++d) u[d] += shape[a] * displacement_[nodes_.of_cell(cell)[a] * dim + d];
   return u;

@@ -76,6 +76,9 @@ class SoilElements {
   /// Takes these bodies (by their place in the scene) in and leaves out the others. Nodes keep their displacement; new
   /// ones have none. Collective.
   PetscErrorCode activate(const std::vector<char> &present);
+  /// `activate` leaves these cells out, whatever their body; empty: none.
+  void leave_out(const std::vector<char> &cells) { left_out_ = cells; }
+  const std::vector<char> &left_out() const { return left_out_; }
 
   /// Suction of laws that read it, at the loads of time t.
   void find_suction(double t);
@@ -153,7 +156,7 @@ class SoilElements {
   bool patches_, suction_matters_ = false;
   Quadrature<dim> rule_;
   std::vector<int> body_of_, first_point_;  // of cells
-  std::vector<char> active_;                // cells
+  std::vector<char> active_, left_out_;     // cells
   std::vector<GaussPoints<dim>> points_;
   ElementNodes<dim> nodes_;
   std::vector<Group> groups_;

@@ -67,6 +67,14 @@ class StaticStage : public StageRunner<dim> {
     text << "stage " << stage_.name << " is in equilibrium: " << problem.unknowns() << " unknowns, " << path.iterations
          << " iterations (" << (problem.direct() ? "LU" : "GMRES and multigrid") << "), largest displacement "
          << problem.soil().largest_displacement() << " m";
+    if (const LeftOut<dim> &out = problem.left_out(); out.pieces > 0) {
+      text << "; " << out.pieces << (out.pieces == 1 ? " piece" : " pieces") << " of soil, " << out.volume
+           << (dim == 3 ? " m3" : " m2") << " or " << 100 * out.share
+           << " % of it, that hang on the rest by an edge or a corner and find no hold on the base are left out: they "
+              "have no stress and fall when motion begins; the largest is at (";
+      for (int d = 0; d < dim; ++d) text << (d ? ", " : "") << std::llround(out.place[d]);
+      text << ") m";
+    }
   }
 
   Run<dim> &run_;
@@ -126,10 +134,16 @@ class StaticStage : public StageRunner<dim> {
       else if (!water_flows())
         text << ", and the displacement ran away";
       text << ")";
+      if (!path_.last.moving.empty()) text << "; " << path_.last.moving;
       const bool softened = soil_moves() && run_.statics.softening_strain() > begin_strain_;
       if (softened)
         text << "; its soil softens, and beyond its peak there may be no equilibrium that stays near: motion goes on "
                 "from here (when_lost = \"next_stage\" and a dynamic stage), and softening = false keeps the strength";
+      else if (soil_moves() && !path_.last.moving.empty())
+        text
+            << "; a base or soil that is too weak there has no equilibrium: let it start by motion, in a dynamic stage "
+               "with damping, or make base or soil stronger there; finer or coarser cells may do where it is little "
+               "soil";
       else if (soil_moves() && !path_.last.fails)
         text << "; the slope may be too weak to stand, or other load_steps (here " << stage_.load_steps
              << ") may help, or, where the stage is the first, initial_stress = \"k0\"";

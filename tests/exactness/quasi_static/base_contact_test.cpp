@@ -3,6 +3,9 @@
 // Newton's tolerance; limits are found to the smallest step of the loads, 1e-3 of them.
 #include "solvers/quasi_static/base_contact.h"
 
+#include <filesystem>
+#include <fstream>
+
 #include "solved.h"
 
 namespace talus {
@@ -166,6 +169,80 @@ TEST(BaseContact, goes_on_in_motion) {
             sharp + Keys{"quasi_static.elements=patches", "body.soil.poisson_ratio=0"});
   const double most = largest(solved, 2, [&](size_t p, int k) { return solved.value("velocity", p, k); });
   EXPECT_LT(most, 4e-4);
+}
+
+// ---- rough ground ---------------------------------------------------------------------------------------------------
+
+/// Terrain that falls by 37 degrees, with relief at all scales down to its grid of 10 m.
+double rough_ground(double x, double y) {
+  const auto at = [](double i, double j, int k) {
+    const double h = std::sin(i * 127.1 + j * 311.7 + k * 74.7) * 43758.5453;
+    return 2 * (h - std::floor(h)) - 1;
+  };
+  double z = 1000 + 0.75 * x;
+  for (int k = 0; k < 5; ++k) {
+    const double length = 160 / std::pow(2, k), i = std::floor(x / length), j = std::floor(y / length);
+    double u = x / length - i, v = y / length - j;
+    u = u * u * (3 - 2 * u), v = v * v * (3 - 2 * v);
+    z += 15 / std::pow(2, k) *
+         ((1 - v) * ((1 - u) * at(i, j, k) + u * at(i + 1, j, k)) +
+          v * ((1 - u) * at(i, j + 1, k) + u * at(i + 1, j + 1, k)));
+  }
+  return z;
+}
+
+Solved stand_on_rough_ground(const Keys &keys) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "talus_rough_ground";
+  int rank, ranks;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank), MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  const std::filesystem::path file = folder / ("ground_" + std::to_string(ranks) + ".asc");
+  if (rank == 0) {
+    std::filesystem::create_directories(folder);
+    std::ofstream grid(file);
+    grid << "ncols 41\nnrows 41\nxllcorner 0\nyllcorner 0\ncellsize 10\nNODATA_value -9999\n";
+    for (int j = 40; j >= 0; --j)
+      for (int i = 0; i < 41; ++i)
+        grid << std::llround(100 * rough_ground(10 * (i + 0.5), 10 * (j + 0.5))) / 100. << (i < 40 ? " " : "\n");
+  }
+  MPI_Barrier(PETSC_COMM_WORLD);
+  return solve("dimension = 3\nup = \"z\"\ngravity = 10\n[mesh]\n[mesh.terrain]\nfile = \"" + file.string() +
+                   "\"\nwindow = [10, 10, 400, 400]\nair = 20\nfar_size = 40\n[mesh.terrain.ellipsoid]\n"
+                   "centre = [205, 205, 1155]\nsemi_axes = [90, 70, 25]\ndip = 37\ndip_direction = 270\n"
+                   "[body.debris]\nregion = \"slide\"\ndensity = 2000\nlaw = \"linear_elastic\"\n"
+                   "young_modulus = 5e7\npoisson_ratio = 0.3\n[boundary.bed]\ngroup = \"base\"\nkind = \"friction\"\n"
+                   "friction_angle = 50\n[quasi_static]\nelements = \"patches\"\n"
+                   "[[stage]]\nname = \"gravity\"\nkind = \"quasi_static\"\nduration = 1\nload_steps = 1\n",
+               keys);
+}
+double left_out(const Solved &solved) {  // volume by the log [m3]
+  for (const Event &event : solved.events)
+    if (const size_t at = event.text.find(" of soil, ");
+        at != std::string::npos && event.text.find("left out") < event.text.npos)
+      return std::stod(event.text.substr(at + 10));
+  return 0;
+}
+
+/// Where contact opens, corners of the soil turn about edges of the mesh until they rest on the base again. The base
+/// bears the weight of all soil but that of pieces that nothing holds; the log gives their volume by three figures.
+TEST(BaseContact, bears_soil_on_rough_ground) {
+  for (const char *size : {"12", "7"}) {
+    const Solved solved = stand_on_rough_ground({std::string("mesh.size=") + size, "quasi_static.tolerance=1e-8"});
+    const double weight = 10 * solved.history.column("mass_kg").back(), out = 2e4 * left_out(solved);
+    EXPECT_NEAR(solved.history.column("bed_force_z_N").back(), weight - out, 1e-6 * weight + 5e-3 * out) << size;
+    EXPECT_NEAR(solved.history.column("bed_force_x_N").back(), 0, 1e-6 * weight) << size;
+    EXPECT_NEAR(solved.history.column("bed_force_y_N").back(), 0, 1e-6 * weight) << size;
+    EXPECT_LT(out, 0.01 * weight) << size;
+  }
+}
+
+/// On a base that is too smooth for it the soil slides as a whole, which the message says with its place.
+TEST(BaseContact, says_where_soil_slides_off_rough_ground) {
+  try {
+    stand_on_rough_ground({"mesh.size=12", "boundary.bed.friction_angle=10", "quasi_static.smallest_step=0.5"});
+    FAIL() << "it stands";
+  } catch (const std::exception &error) {
+    EXPECT_NE(std::string(error.what()).find("move without end around ("), std::string::npos) << error.what();
+  }
 }
 
 // ---- the law of the contact -----------------------------------------------------------------------------------------
