@@ -306,7 +306,10 @@ PetscErrorCode QuasiStatic<dim>::relax(int *iterations, double *unbalanced, Way 
     prop *= stalls ? 0.1 : std::clamp(ratio, 0.1, 1.);
   }
   moving_.clear(), moving_where_.clear();
-  if (*way == Way::moving) PetscCall(find_moving(direction));
+  if (*way == Way::balanced || stopped_ || !std::isfinite(norm)) PetscFunctionReturn(0);
+  PetscCall(find_moving(direction));
+  const std::string sure = "move without end";
+  if (*way == Way::lost) moving_where_.replace(moving_where_.find(sure), sure.size(), "moved most");
   PetscFunctionReturn(0);
 }
 
@@ -390,7 +393,7 @@ PetscErrorCode QuasiStatic<dim>::advance_on_bases(double share, double load_time
     PetscCall(relax(&iterations, &outcome->residual, &way));
     outcome->iterations += iterations;
     PetscCall(VecNorm(x_, NORM_INFINITY, &outcome->largest));
-    outcome->moving = moving_where_;
+    outcome->moving = way == Way::moving ? moving_where_ : "";
     if (way == Way::moving) {
       bool found;
       PetscCall(make_solver());
@@ -444,6 +447,7 @@ PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double 
     PetscCall(make_solver());
   }
   if (!ended() && bases_.any() && !bare) PetscCall(relaxed());
+  if (!ended() && bases_.any()) outcome->moving = moving_where_;
   outcome->converged = balanced_, outcome->stopped = stopped_;
   if (outcome->converged) PetscCall(commit(x_, softening));
   PetscFunctionReturn(0);
