@@ -206,7 +206,7 @@ BackgroundMesh<dim> BackgroundMesh<dim>::read(MPI_Comm comm, const std::string &
       mesh.cuts_.resize(ranks - 1);
       if (rank == 0) {
         const std::vector<double> patches = whole->weight_of_patches(weights_of(all.regions, region_weight));
-        mesh.cuts_ = find_cuts<dim>(whole->centre, patches, whole->touching, ranks);
+        mesh.cuts_ = find_cuts<dim>(whole->centre, {patches, {}}, whole->touching, ranks);
         const double sum = std::accumulate(patches.begin(), patches.end(), 0.);
         mesh.heaviest_patch_ = patches.empty() ? 0 : ranks * *std::max_element(patches.begin(), patches.end()) / sum;
       }
@@ -229,27 +229,28 @@ PetscErrorCode BackgroundMesh<dim>::settle(MeshPart<dim> whole) {
 }
 
 template <int dim>
-Cuts BackgroundMesh<dim>::balanced_cuts(const std::vector<std::pair<long long, double>> &filled,
+Cuts BackgroundMesh<dim>::balanced_cuts(const std::vector<FilledCell<dim>> &filled, double cost,
                                         double *imbalance) const {
-  struct Weight {
-    double cell, weight;
-  };
-  std::vector<Weight> mine;
-  for (const auto &[cell, weight] : filled) mine.push_back({static_cast<double>(cell), weight});
-  int rank, ranks, count = static_cast<int>(mine.size() * sizeof(Weight));
+  int rank, ranks, count = static_cast<int>(filled.size() * sizeof(FilledCell<dim>));
   MPI_Comm_rank(comm(), &rank), MPI_Comm_size(comm(), &ranks);
   std::vector<int> counts(ranks), first(ranks + 1, 0);
   MPI_Gather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, comm());
   std::partial_sum(counts.begin(), counts.end(), first.begin() + 1);
-  std::vector<Weight> all(rank == 0 ? first[ranks] / sizeof(Weight) : 0);
-  MPI_Gatherv(mine.data(), count, MPI_BYTE, all.data(), counts.data(), first.data(), MPI_BYTE, 0, comm());
+  std::vector<FilledCell<dim>> all(rank == 0 ? first[ranks] / sizeof(FilledCell<dim>) : 0);
+  MPI_Gatherv(filled.data(), count, MPI_BYTE, all.data(), counts.data(), first.data(), MPI_BYTE, 0, comm());
   Cuts cuts(ranks - 1);
   if (rank == 0) {
     std::vector<double> weight(whole_->patch.size(), empty_weight);
-    for (const Weight &one : all) weight[static_cast<std::size_t>(one.cell)] = one.weight;
-    const std::vector<double> patches = whole_->weight_of_patches(weight);
-    cuts = find_cuts<dim>(whole_->centre, patches, whole_->touching, ranks);
-    *imbalance = largest_share(patches, ranks_by_cuts<dim>(whole_->centre, cuts), ranks);
+    PatchLoad<dim> load;
+    load.way.resize(whole_->centre.size());
+    for (const FilledCell<dim> &one : all) {
+      weight[one.number] = one.weight;
+      map<dim>(load.way[whole_->patch[one.number]]) += one.weight * map<dim>(one.way);
+    }
+    load.weight = whole_->weight_of_patches(weight), load.partition_cost = cost;
+    for (std::size_t p = 0; p < load.way.size(); ++p) map<dim>(load.way[p]) /= load.weight[p];
+    cuts = find_cuts<dim>(whole_->centre, load, whole_->touching, ranks);
+    *imbalance = largest_share(load.weight, ranks_by_cuts<dim>(whole_->centre, cuts), ranks);
   }
   MPI_Bcast(cuts.data(), static_cast<int>(cuts.size() * sizeof(Cut)), MPI_BYTE, 0, comm());
   MPI_Bcast(imbalance, 1, MPI_DOUBLE, 0, comm());

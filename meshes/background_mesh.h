@@ -53,6 +53,14 @@ struct ElementPlex {
   std::vector<long long> number;  ///< of points, see BackgroundMesh::global_node; edges have numbers of their own
 };
 
+/// A cell with soil, for a partition.
+template <int dim>
+struct FilledCell {
+  long long number = 0;  ///< its global one
+  double weight = 0;
+  Vec<dim> way{};  ///< of its soil in a step [m]
+};
+
 template <int dim>
 class BackgroundMesh {
  public:
@@ -75,10 +83,10 @@ class BackgroundMesh {
   /// 1, since patches stay whole. 0 where the mesh is not divisible.
   double heaviest_patch() const { return heaviest_patch_; }
   const Cuts &cuts() const { return cuts_; }  ///< the partition; empty where the mesh is not divisible
-  /// The partition with nearly equal sums of weight, where `filled` are the cells of this rank that weigh something:
-  /// their global numbers and weights. `imbalance`: the weight of the rank that gets most, over the mean. Collective,
-  /// the same on all ranks.
-  Cuts balanced_cuts(const std::vector<std::pair<long long, double>> &filled, double *imbalance) const;
+  /// The partition with nearly equal sums of weight, where `filled` are the cells of this rank that weigh something,
+  /// and a new partition costs as much as `cost` of weight in a step. `imbalance`: the weight of the rank that gets
+  /// most, over the mean. Collective, the same on all ranks.
+  Cuts balanced_cuts(const std::vector<FilledCell<dim>> &filled, double cost, double *imbalance) const;
   /// This mesh on another partition: the mesh that `read` would give with these cuts, to the bit. Collective.
   BackgroundMesh divided(const Cuts &cuts) const;
 

@@ -16,12 +16,20 @@ struct Cut {
 /// fewer than ranks.
 using Cuts = std::vector<Cut>;
 
-/// Cuts with nearly equal sums of `weight` on all ranks, each along the axis that cuts the fewest faces between
-/// patches. `centre` is a patch's place, `touching` the patches it shares faces with. A graph partitioner (Scotch) cuts
-/// a little less, but its answer differs from call to call, and a run could not be repeated to the bit; cuts are also a
-/// partition that a checkpoint can hold.
+/// What there is to share.
 template <int dim>
-Cuts find_cuts(const std::vector<Vec<dim>> &centre, const std::vector<double> &weight,
+struct PatchLoad {
+  std::vector<double> weight;  ///< of patches
+  std::vector<Vec<dim>> way;   ///< of the weight of a patch in a step [m]; empty where nothing moves
+  double partition_cost = 0;   ///< of a new partition, in the unit of weight
+};
+
+/// Cuts with nearly equal sums of weight on all ranks, each along the axis that costs least in a step: for the faces
+/// between patches with weight that are cut, and for the weight that crosses the cut. `centre` is a patch's place,
+/// `touching` the patches it shares faces with. A graph partitioner (Scotch) cuts a little less, but its answer differs
+/// from call to call, and a run could not be repeated to the bit; cuts are also a partition that a checkpoint can hold.
+template <int dim>
+Cuts find_cuts(const std::vector<Vec<dim>> &centre, const PatchLoad<dim> &load,
                const std::vector<std::vector<int>> &touching, int ranks);
 
 /// Ranks of patches.

@@ -35,7 +35,8 @@ class Archive {
   explicit Archive(std::string bytes) : bytes_(std::move(bytes)), reading_(true) {}
 
   bool reading() const { return reading_; }
-  const std::string &bytes() const { return bytes_; }
+  const std::string &bytes() const & { return bytes_; }
+  std::string bytes() && { return std::move(bytes_); }
 
   /// Numbers, plain structs, texts, and vectors of plain structs, which get their size back; all under one name, and
   /// the same on all ranks. Reading throws std::runtime_error where the archive holds something else.

@@ -20,7 +20,7 @@ class Directory {
     check_mpi(MPI_Comm_size(comm, &ranks_), "counting ranks");
     Messages sent(ranks_);
     for (const long long number : mine) append(sent[home(number)], number);
-    const Messages received = deliver(comm, sent);
+    const Messages received = deliver(comm, std::move(sent));
     for (int r = 0; r < ranks_; ++r)
       for (const long long number : values_of<long long>(received[r])) owners_.emplace_back(number, r);
     std::sort(owners_.begin(), owners_.end());
@@ -29,14 +29,14 @@ class Directory {
   std::unordered_map<long long, std::vector<int>> find(const std::vector<long long> &numbers) const {
     Messages questions(ranks_), answers(ranks_);
     for (const long long number : numbers) append(questions[home(number)], number);
-    const Messages asked = deliver(comm_, questions);
+    const Messages asked = deliver(comm_, std::move(questions));
     for (int r = 0; r < ranks_; ++r)
       for (const long long number : values_of<long long>(asked[r]))
         for (auto at = std::lower_bound(owners_.begin(), owners_.end(), std::pair(number, 0));
              at != owners_.end() && at->first == number; ++at)
           append(answers[r], number), append(answers[r], static_cast<long long>(at->second));
     std::unordered_map<long long, std::vector<int>> found;
-    for (const std::string &answer : deliver(comm_, answers)) {
+    for (const std::string &answer : deliver(comm_, std::move(answers))) {
       const auto pairs = values_of<long long>(answer);
       for (std::size_t k = 0; k + 1 < pairs.size(); k += 2) found[pairs[k]].push_back(static_cast<int>(pairs[k + 1]));
     }
@@ -51,11 +51,32 @@ class Directory {
   std::vector<std::pair<long long, int>> owners_;  // of the numbers whose home this is
 };
 
+/// Rows that follow one another: of a part, or in what came from a rank.
+struct Span {
+  int from = 0;
+  std::size_t row = 0, count = 0;
+};
+
+/// Adds a span, to the last one where it goes on from there.
+void add_span(std::vector<Span> &spans, const Span &span) {
+  const bool goes_on =
+      !spans.empty() && spans.back().from == span.from && spans.back().row + spans.back().count == span.row;
+  if (goes_on)
+    spans.back().count += span.count;
+  else
+    spans.push_back(span);
+}
+
 /// Where the rows of one table go, and in which order they come together.
 struct Route {
-  std::vector<std::size_t> rows;                               // of each part
-  std::vector<std::vector<std::pair<int, std::size_t>>> sent;  // to each rank: (part, row)
-  std::vector<std::pair<int, std::size_t>> received;           // in the order wanted: (rank, its row)
+  std::vector<std::size_t> rows;        // of each part
+  std::vector<std::vector<Span>> sent;  // to each rank, of parts
+  std::vector<Span> received;           // in the order wanted, of ranks
+};
+
+/// Rows of an owner that a rank is sent from one of the sender's parts.
+struct Sent {
+  long long owner, part, count;
 };
 
 class Dealer {
@@ -75,7 +96,7 @@ class Dealer {
     together(comm_, [&] {
       if (!complaint_.empty()) throw std::runtime_error(complaint_);
     });
-    return Archive(result_.bytes());
+    return Archive(std::move(result_).bytes());
   }
 
  private:
@@ -155,11 +176,20 @@ class Dealer {
   void begin_rows(const Archive::Entry &entry, std::size_t k) {
     const bool cells = entry.belongs == Belongs::to_cells;
     Route &route = routes_.emplace_back();
-    std::vector<std::vector<long long>> owner;  // of the rows of each part
+    struct Owned {
+      long long owner;
+      Span rows;
+    };
+    std::vector<Owned> all;  // rows of all parts, by owners
     std::vector<long long> different;
-    for (const Entries &part : parts_) {
-      owner.push_back(values_of<long long>(part[k].content));
-      different.insert(different.end(), owner.back().begin(), owner.back().end());
+    for (std::size_t part = 0; part < parts_.size(); ++part) {
+      const auto owner = values_of<long long>(parts_[part][k].content);
+      route.rows.push_back(owner.size());
+      for (std::size_t row = 0, end; row < owner.size(); row = end) {
+        for (end = row; end < owner.size() && owner[end] == owner[row];) ++end;
+        all.push_back({owner[row], {static_cast<int>(part), row, end - row}});
+        different.push_back(owner[row]);
+      }
     }
     std::sort(different.begin(), different.end());
     different.erase(std::unique(different.begin(), different.end()), different.end());
@@ -169,18 +199,16 @@ class Dealer {
         complain("`" + std::string(entry.name) + "` belongs to " + (cells ? "a cell" : "a node or edge") +
                  " that is not in the mesh");
     route.sent.resize(ranks_);
-    for (const auto &of_part : owner) route.rows.push_back(of_part.size());
     Messages sent(ranks_);
-    for (std::size_t part = 0; part < owner.size(); ++part)
-      for (std::size_t row = 0; row < owner[part].size(); ++row) {
-        const auto found = ranks_of.find(owner[part][row]);
-        if (found == ranks_of.end()) continue;
-        for (const int r : found->second) {
-          route.sent[r].emplace_back(static_cast<int>(part), row);
-          append(sent[r], owner[part][row]), append(sent[r], static_cast<long long>(part));
-        }
+    for (const Owned &one : all) {
+      const auto found = ranks_of.find(one.owner);
+      if (found == ranks_of.end()) continue;
+      for (const int r : found->second) {
+        add_span(route.sent[r], one.rows);
+        append(sent[r], Sent{one.owner, one.rows.from, static_cast<long long>(one.rows.count)});
       }
-    collect(route, deliver(comm_, sent), place_[cells ? 0 : 1], entry);
+    }
+    collect(route, deliver(comm_, std::move(sent)), place_[cells ? 0 : 1], entry);
   }
 
   /// Puts arrived rows into the wanted order; of a point that several parts had only the rows of the first one stay.
@@ -188,24 +216,28 @@ class Dealer {
                const Archive::Entry &entry) {
     struct Arrived {
       std::size_t place;
-      int rank;
-      std::size_t row;
       long long owner;
+      Span rows;
     };
     std::vector<Arrived> arrived;
     std::unordered_map<long long, std::pair<int, long long>> first;  // rank and part
     for (int r = 0; r < ranks_; ++r) {
-      const auto pairs = values_of<long long>(received[r]);
-      for (std::size_t row = 0; 2 * row + 1 < pairs.size(); ++row) {
-        const std::pair from(r, pairs[2 * row + 1]);
-        if (first.try_emplace(pairs[2 * row], from).first->second == from)
-          arrived.push_back({place.at(pairs[2 * row]), r, row, pairs[2 * row]});
+      std::size_t row = 0;
+      for (const Sent &one : values_of<Sent>(received[r])) {
+        const Span rows{r, row, static_cast<std::size_t>(one.count)};
+        const std::pair from(r, one.part);
+        if (first.try_emplace(one.owner, from).first->second == from)
+          arrived.push_back({place.at(one.owner), one.owner, rows});
+        row += rows.count;
       }
     }
     std::stable_sort(arrived.begin(), arrived.end(),
                      [](const Arrived &a, const Arrived &b) { return a.place < b.place; });
     std::string owners;
-    for (const Arrived &one : arrived) route.received.emplace_back(one.rank, one.row), append(owners, one.owner);
+    for (const Arrived &one : arrived) {
+      add_span(route.received, one.rows);
+      for (std::size_t row = 0; row < one.rows.count; ++row) append(owners, one.owner);
+    }
     result_.add(entry.belongs, entry.name, owners);
   }
 
@@ -228,13 +260,15 @@ class Dealer {
         complain("`" + std::string(entry.name) + "` is not in all parts");
     Messages sent(ranks_);
     for (int r = 0; r < ranks_ && complaint_.empty(); ++r)
-      for (const auto &[part, row] : route.sent[r])
-        if (parts_[part][k].content.size() > head) sent[r] += parts_[part][k].content.substr(head + row * bytes, bytes);
-    const Messages received = deliver(comm_, sent);
+      for (const Span &rows : route.sent[r])
+        if (const std::string_view from = parts_[rows.from][k].content; from.size() > head)
+          sent[r] += from.substr(head + rows.row * bytes, rows.count * bytes);
+    const Messages received = deliver(comm_, std::move(sent));
     std::string content;
     append(content, of), append(content, static_cast<std::size_t>(bytes));
-    for (const auto &[rank, row] : route.received)
-      if (received[rank].size() >= (row + 1) * bytes) content.append(received[rank], row * bytes, bytes);
+    for (const Span &rows : route.received)
+      if (received[rows.from].size() >= (rows.row + rows.count) * bytes)
+        content.append(received[rows.from], rows.row * bytes, rows.count * bytes);
     result_.add(entry.belongs, entry.name, content);
   }
 

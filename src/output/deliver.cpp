@@ -6,7 +6,7 @@
 
 namespace talus {
 
-Messages deliver(MPI_Comm comm, const Messages &sent) {
+Messages deliver(MPI_Comm comm, Messages sent) {
   constexpr std::size_t piece = std::size_t(1) << 30;  // MPI counts in int
   constexpr int tag = 23;
   const int ranks = static_cast<int>(sent.size());
@@ -22,7 +22,11 @@ Messages deliver(MPI_Comm comm, const Messages &sent) {
       check_mpi(each(at, static_cast<int>(std::min(piece, size - at)), &requests.back()), "exchanging rows");
     }
   };
+  const int mine = rank_in(comm);
+  received[mine] = std::move(sent[mine]);
+  to[mine] = from[mine] = 0;
   for (int r = 0; r < ranks; ++r) {
+    if (r == mine) continue;
     received[r].resize(from[r]);
     in_pieces(from[r], [&](std::size_t at, int size, MPI_Request *request) {
       return MPI_Irecv(received[r].data() + at, size, MPI_BYTE, r, tag, comm, request);

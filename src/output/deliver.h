@@ -11,8 +11,9 @@ namespace talus {
 
 using Messages = std::vector<std::string>;  ///< to or from each rank
 
-/// Sends each rank its message and returns what came from each. Messages may have any length. Collective.
-Messages deliver(MPI_Comm comm, const Messages &sent);
+/// Sends each rank its message and returns what came from each. Messages may have any length; that of a rank to itself
+/// is not copied. Collective.
+Messages deliver(MPI_Comm comm, Messages sent);
 
 template <class T>
 void append(std::string &bytes, const T &value) {

@@ -216,7 +216,8 @@ PetscErrorCode Body<dim>::serialize(Archive &archive, const BackgroundMesh<dim> 
   if (archive.reading()) {
     PetscCall(resize(static_cast<PetscInt>(cells.size())));
     const LocalNumbers cell_of(mesh.global_cell);
-    for (int i = 0; i < arrays_.count; ++i) arrays_.cell[i] = cell_of(cells[i]);
+    for (int i = 0; i < arrays_.count; ++i)
+      arrays_.cell[i] = i > 0 && cells[i] == cells[i - 1] ? arrays_.cell[i - 1] : cell_of(cells[i]);
   }
   PetscCall(give_back());
   for (const FieldSpec &f : field_specs<dim>(law_, fluids_, face_count_)) {

@@ -136,13 +136,13 @@ void Run<dim>::balance_ranks() {
   PetscLogDouble start, end;
   require(PetscTime(&start));
   double expected;
-  const Cuts cuts = world.mesh.balanced_cuts(world.work_of_cells(), &expected);
+  const Cuts cuts = world.mesh.balanced_cuts(world.work_of_cells(clock.last_step), balancing.cost(), &expected);
   if (!balancing.worth(expected)) return;
   Archive state;
   require(serialize(state));
   world.divide(cuts);
   std::vector<Archive> part;
-  part.emplace_back(state.bytes());
+  part.emplace_back(std::move(state).bytes());
   state = deal(world.comm, part, holdings());
   part.clear();
   require(serialize(state));

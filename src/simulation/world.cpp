@@ -648,14 +648,20 @@ void World<dim>::count_runs() {
 }
 
 template <int dim>
-std::vector<std::pair<long long, double>> World<dim>::work_of_cells() const {
-  std::vector<double> work(mesh.cell_count(), 0);
-  for (const auto &body : bodies)
-    for (int i = 0; i < body->particles().count; ++i) work[body->particles().cell[i]] += 1;
-  std::vector<std::pair<long long, double>> filled;
-  for_each_run(bodies, [&](int cell) { work[cell] += rates_.per_run; });
-  for (int c = 0; c < mesh.cell_count(); ++c)
-    if (work[c] > 0) filled.emplace_back(mesh.global_cell[c], work[c] + rates_.per_cell);
+std::vector<FilledCell<dim>> World<dim>::work_of_cells(double step) const {
+  std::vector<FilledCell<dim>> all(mesh.cell_count()), filled;
+  for (const auto &body : bodies) {
+    const ParticleArrays<dim> &p = body->particles();
+    for (int i = 0; i < p.count; ++i)
+      all[p.cell[i]].weight += 1, map<dim>(all[p.cell[i]].way) += map<dim>(p.velocity[i]);
+  }
+  for (int c = 0; c < mesh.cell_count(); ++c) {
+    if (all[c].weight == 0) continue;
+    filled.push_back({mesh.global_cell[c], all[c].weight + rates_.per_cell, {}});
+    map<dim>(filled.back().way) = step / all[c].weight * map<dim>(all[c].way);
+    all[c].number = static_cast<long long>(filled.size()) - 1;
+  }
+  for_each_run(bodies, [&](int cell) { filled[all[cell].number].weight += rates_.per_run; });
   return filled;
 }
 

@@ -81,8 +81,8 @@ class World {
   PetscErrorCode serialize(Archive &archive);
   /// Work that this rank has in a step (simulation/work.h), with the runs of particles that `count_runs` found.
   double work_of_rank() const;
-  /// Global numbers and work of the filled cells of this rank.
-  std::vector<std::pair<long long, double>> work_of_cells() const;
+  /// The filled cells of this rank with their work; a step of `step` seconds. After a remap.
+  std::vector<FilledCell<dim>> work_of_cells(double step) const;
   /// Divides the mesh among the ranks in another way. Particles, and all that nodes and cells hold, are gone:
   /// `serialize` brings them back from a state that was dealt out to the new partition. Collective.
   void divide(const Cuts &cuts);
