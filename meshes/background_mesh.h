@@ -22,7 +22,7 @@ namespace talus {
 template <int dim>
 struct MeshPart;  // meshes/mesh_part.h
 template <int dim>
-struct WholeMesh;  // background_mesh.cpp
+class WholeMesh;  // meshes/whole_mesh.h
 
 /// One cell: what the walk and the gathers need, together in memory (128 bytes in 3D).
 template <int dim>
@@ -50,28 +50,22 @@ struct Facet {
 struct ElementPlex {
   Dm dm;
   std::vector<PetscInt> vertex;   ///< point of a node of the mesh, -1 where there is none
-  std::vector<long long> number;  ///< of points, see BackgroundMesh::global_node; edges have numbers of their own
-};
-
-/// A cell with soil, for a partition.
-template <int dim>
-struct FilledCell {
-  long long number = 0;  ///< its global one
-  double weight = 0;
-  Vec<dim> way{};  ///< of its soil in a step [m]
+  std::vector<long long> number;  ///< of vertices that of their node, of edges another one; the same on any partition
 };
 
 template <int dim>
 class BackgroundMesh {
  public:
-  /// Reads a Gmsh file on rank 0, checks it, cuts patches, distributes it. `region_weight` gives the weight of a cell
-  /// from the names of its regions (particles it will hold plus one; the largest counts, 1/1000 without); only these
-  /// regions, or all where there are none, can have finite elements. `given`, if
-  /// it is for as many ranks, is the partition instead. Patches of cells, theory 4.5, stay on one rank and do not
-  /// depend on the number of ranks. Collective. Throws std::invalid_argument (the same on all ranks) for a file that
-  /// cannot be read, a wrong dimension, cells of zero volume or that overlap, and cells in no named group.
+  /// Reads a Gmsh file on rank 0, checks it, cuts patches, distributes it; then all edges are halved as often as
+  /// `halvings` says (meshes/refine.h), and the new cells form patches within the old ones. `region_weight` gives the
+  /// weight of a cell from the names of its regions (particles it will hold plus one; the largest counts, 1/1000
+  /// without); only these regions, or all where there are none, can have finite elements. `given`, if it is for as many
+  /// ranks, is the partition instead. Patches of cells, theory 4.5, stay on one rank and do not depend on the number of
+  /// ranks. Collective. Throws std::invalid_argument (the same on all ranks) for a file that cannot be read, a wrong
+  /// dimension, cells of zero volume or that overlap, and cells in no named group.
   static BackgroundMesh read(MPI_Comm comm, const std::string &file,
-                             const std::vector<std::pair<std::string, double>> &region_weight, const Cuts &given = {});
+                             const std::vector<std::pair<std::string, double>> &region_weight, const Cuts &given = {},
+                             int halvings = 0);
   /// Takes a distributed DMPlex of a host program (a reference is kept). Labels with a physical name are regions and
   /// groups; patches are cut within each rank, `global_cell` is DMPlex's cell numbering. Collective; throws as `read`
   /// does.
@@ -137,8 +131,8 @@ class BackgroundMesh {
  private:
   /// Makes the flat copy of what this rank has.
   PetscErrorCode flatten(MeshPart<dim> part);
-  /// Distributes a mesh that is whole on rank 0 by the cuts, and flattens it.
-  PetscErrorCode settle(MeshPart<dim> whole);
+  /// Distributes a mesh that is whole on rank 0 by the cuts, refines and flattens it.
+  PetscErrorCode settle(MeshPart<dim> part);
   PetscErrorCode find_fingerprint();
 
   Communicator comm_;
@@ -147,8 +141,11 @@ class BackgroundMesh {
   std::vector<Seam> seams_;
   std::vector<std::string> region_names_, group_names_, remarks_;
   mutable std::shared_ptr<const ElementPlex> elements_;
-  std::shared_ptr<const WholeMesh<dim>> whole_;  // of a mesh that was read: on rank 0 all of it
+  std::vector<std::string> element_regions_;     // that can have finite elements; none: all
+  long long end_of_numbers_ = 0;                 // of nodes
+  std::shared_ptr<const WholeMesh<dim>> whole_;  // of a mesh that several ranks share: on rank 0 that of the file
   Cuts cuts_;
+  int halvings_ = 0;
   double heaviest_patch_ = 0;
   unsigned long long fingerprint_ = 0;
 };

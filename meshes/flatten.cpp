@@ -144,7 +144,7 @@ PetscErrorCode BackgroundMesh<dim>::flatten(MeshPart<dim> part) {
     global_cell[c] = part.cell_number[from];
     regions_.combination[c] = part.regions.combination[from];
   }
-  patch_count = local_patch.met();
+  patch_count = local_patch.met(), end_of_numbers_ = part.end_of_numbers;
 
   const int nodes = node.met();
   position.resize(nodes), mean_edge.resize(nodes), owned.resize(nodes), global_node.resize(nodes);

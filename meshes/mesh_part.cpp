@@ -1,10 +1,12 @@
 #include "meshes/mesh_part.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <numeric>
 
 #include "base/archive.h"
+#include "meshes/patches.h"
 
 namespace talus {
 namespace {
@@ -33,8 +35,8 @@ std::string receive(MPI_Comm comm, int from) {
 template <int dim>
 void serialize(Archive &archive, MeshPart<dim> &part) {
   archive.serialize("cells", part.cells.position, part.cells.node, part.cells.neighbour, part.cell_number,
-                    part.node_number, part.patch, part.owned, part.mean_edge, part.regions.combination,
-                    part.neighbours);
+                    part.node_number, part.patch, part.owned, part.mean_edge, part.regions.combination, part.neighbours,
+                    part.all_cells, part.end_of_numbers);
   const auto each = [&](auto &list, const auto &item) {
     std::size_t count = list.size();
     archive.serialize("count", count);
@@ -80,6 +82,7 @@ class Dealer {
     add_nodes(rank, nodes, part);
     add_cells(rank, mine, part);
     part.regions.names = whole_.regions.names;
+    part.all_cells = whole_.all_cells, part.end_of_numbers = whole_.end_of_numbers;
     for (const auto &[name, sides] : whole_.groups) {
       part.groups.emplace_back(name, std::vector<Side>{});
       for (const Side &side : sides)
@@ -166,6 +169,31 @@ MeshPart<dim> deal_out(MPI_Comm comm, const MeshPart<dim> &whole, const std::vec
   return mine;
 }
 
+template <int dim>
+bool is_one_element_slice(MPI_Comm comm, const std::vector<Vec<dim>> &position) {
+  if constexpr (dim == 2) return false;
+  double range[2] = {std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};  // min z, min -z
+  for (const auto &x : position) range[0] = std::min(range[0], x[dim - 1]), range[1] = std::min(range[1], -x[dim - 1]);
+  MPI_Allreduce(MPI_IN_PLACE, range, 2, MPI_DOUBLE, MPI_MIN, comm);
+  const double front = range[0], back = -range[1], tolerance = 1e-6 * (back - front);
+  int off = std::any_of(position.begin(), position.end(),
+                        [=](const auto &x) { return x[dim - 1] > front + tolerance && x[dim - 1] < back - tolerance; });
+  MPI_Allreduce(MPI_IN_PLACE, &off, 1, MPI_INT, MPI_MAX, comm);
+  return !off;
+}
+
+template <int dim>
+void cut_patches(MPI_Comm comm, MeshPart<dim> &part, const std::vector<int> &kind, bool within_patches) {
+  // sizes that lock neither nor soften (docs/theory, section on locking)
+  const int size = is_one_element_slice<dim>(comm, part.cells.position) ? 4 : dim == 2 ? 2 : 8;
+  part.patch =
+      make_patches<dim>(part.cells.node, part.cells.neighbour, kind, size, within_patches ? std::max(2, size / 2) : 0);
+}
+
+template bool is_one_element_slice<2>(MPI_Comm, const std::vector<Vec<2>> &);
+template bool is_one_element_slice<3>(MPI_Comm, const std::vector<Vec<3>> &);
+template void cut_patches(MPI_Comm, MeshPart<2> &, const std::vector<int> &, bool);
+template void cut_patches(MPI_Comm, MeshPart<3> &, const std::vector<int> &, bool);
 template MeshPart<2> deal_out(MPI_Comm, const MeshPart<2> &, const std::vector<int> &);
 template MeshPart<3> deal_out(MPI_Comm, const MeshPart<3> &, const std::vector<int> &);
 

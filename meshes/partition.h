@@ -16,6 +16,14 @@ struct Cut {
 /// fewer than ranks.
 using Cuts = std::vector<Cut>;
 
+/// A cell with soil, for a partition.
+template <int dim>
+struct FilledCell {
+  long long number = 0;  ///< its global one
+  double weight = 0;
+  Vec<dim> way{};  ///< of its soil in a step [m]
+};
+
 /// What there is to share.
 template <int dim>
 struct PatchLoad {

@@ -68,13 +68,13 @@ class Patches {
   }
 
   /// Three passes, since a joined pair of fragments may still be a fragment.
-  void join_fragments() {
+  void join_fragments(int smallest) {
     std::vector<int> next(patch.size(), none);  // of the same patch
     std::vector<Members> members(patch_count_);
     for (int c = 0; c < static_cast<int>(patch.size()); ++c) join(members[patch[c]], {c, c, 1}, next);
     for (int pass = 0; pass < 3; ++pass)
       for (int p = 0; p < patch_count_; ++p) {
-        if (members[p].count == 0 || members[p].count >= (size_ + 1) / 2) continue;
+        if (members[p].count == 0 || members[p].count >= smallest) continue;
         const int into = smallest_neighbour(p, members, next);
         if (into == none) continue;
         for (int c = members[p].first; c != none; c = next[c]) patch[c] = into;
@@ -174,17 +174,17 @@ class Patches {
 template <int dim>
 std::vector<int> make_patches(const std::vector<std::array<int, dim + 1>> &node,
                               const std::vector<std::array<int, dim + 1>> &neighbour, const std::vector<int> &kind,
-                              int size) {
+                              int size, int smallest) {
   Patches<dim> patches(node, neighbour, kind, size);
   patches.grow();
-  patches.join_fragments();
+  patches.join_fragments(smallest > 0 ? smallest : (size + 1) / 2);
   patches.number_by_first_appearance();
   return std::move(patches.patch);
 }
 
 template std::vector<int> make_patches<2>(const std::vector<std::array<int, 3>> &,
-                                          const std::vector<std::array<int, 3>> &, const std::vector<int> &, int);
+                                          const std::vector<std::array<int, 3>> &, const std::vector<int> &, int, int);
 template std::vector<int> make_patches<3>(const std::vector<std::array<int, 4>> &,
-                                          const std::vector<std::array<int, 4>> &, const std::vector<int> &, int);
+                                          const std::vector<std::array<int, 4>> &, const std::vector<int> &, int, int);
 
 }  // namespace talus

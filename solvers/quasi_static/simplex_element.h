@@ -3,10 +3,10 @@
 /// Nodes of an element: its vertices, then (order 2) the middles of its edges 01, 02, (03,) 12, (13, 23).
 #include <array>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "base/vec.h"
+#include "meshes/simplex_edges.h"
 
 namespace talus {
 
@@ -17,16 +17,6 @@ template <int dim>
 constexpr int element_nodes(int order) {
   return order == 1 ? dim + 1 : (dim + 1) * (dim + 2) / 2;
 }
-
-/// Vertices of edge `e` of a simplex, in the order of the nodes.
-template <int dim>
-inline constexpr auto simplex_edges = [] {
-  std::array<std::pair<int, int>, dim *(dim + 1) / 2> edges{};
-  int e = 0;
-  for (int a = 0; a <= dim; ++a)
-    for (int b = a + 1; b <= dim; ++b) edges[e++] = {a, b};
-  return edges;
-}();
 
 /// Values of the shape functions at a place.
 template <int dim>

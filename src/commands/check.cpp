@@ -92,8 +92,11 @@ std::string source_of(const MeshSource &mesh) {
   char size[32];
   std::snprintf(size, sizeof size, " in cells of %.3g m", mesh.size);
   const auto name = [](const std::string &path) { return std::filesystem::path(path).filename().string(); };
-  if (!mesh.file.empty()) return name(mesh.file);
-  return name(mesh.section.empty() ? mesh.terrain.file : mesh.section) + size;
+  std::string text =
+      mesh.file.empty() ? name(mesh.section.empty() ? mesh.terrain.file : mesh.section) + size : name(mesh.file);
+  if (mesh.halvings > 0)
+    text += ", edges halved " + (mesh.halvings == 1 ? "once" : std::to_string(mesh.halvings) + " times");
+  return text;
 }
 
 void print_costs(const Scene &scene, const Needs &n) {

@@ -84,6 +84,10 @@ class Checks {
       if (!mesh.file.empty() || !mesh.section.empty() || !mesh.terrain.file.empty())
         reader_.complain("mesh",
                          "has a source, but the host program brings the mesh: leave out file, section and terrain");
+      if (mesh.halvings > 0)
+        reader_.complain(
+            "mesh.halvings",
+            "has no effect on the mesh of a host program, which can refine its DMPlex itself: leave it out");
       return;
     }
     const int sources = !mesh.file.empty() + !mesh.section.empty() + !mesh.terrain.file.empty();

@@ -133,6 +133,7 @@ struct MeshSource {
   int layers = 1;            ///< element layers over the thickness; 0: free tetrahedra
   std::vector<double> cuts;  ///< z at which regions of a 3D body from a section are parted [m]
   std::vector<RefineBox> refine;
+  int halvings = 0;                                   ///< of the edges of all cells, once ranks have their parts
   WhenOutside leaving_particles = WhenOutside::stop;  ///< particles that leave the mesh
   BalanceRanks balance_ranks = BalanceRanks::when_it_pays;
   template <class Visitor>
@@ -148,6 +149,9 @@ struct MeshSource {
     v.point("cuts", cuts, metre,
             "ascending z that divide the thickness: regions are then named region_1, region_2, ... along z");
     v.list("refine", refine, "boxes with smaller cells");
+    v.integer("halvings", halvings, Range{0, 4},
+              "how often the edges of all cells are halved, each time for 4 times as many triangles or 8 times as many "
+              "tetrahedra; ranks do it after the mesh has been divided among them, so that none holds all cells");
     v.table("terrain", terrain, "terrain that talus-mesh turns into a mesh; needs dimension = 3 and up = \"z\"");
     v.choice("leaving_particles", leaving_particles, {{"stop", WhenOutside::stop}, {"remove", WhenOutside::remove}},
              "what becomes of particles that leave the mesh: the run ends with the place, or they are taken out of the "

@@ -11,7 +11,7 @@ namespace talus {
 
 class Balancing {
  public:
-  /// `cells` of the whole mesh; `divisible`: the mesh can be divided in another way.
+  /// `cells` that one rank has to handle to divide the mesh; `divisible`: the mesh can be divided in another way.
   Balancing(BalanceRanks when, int ranks, long long cells, bool divisible)
       : when_(divisible ? when : BalanceRanks::never), ranks_(ranks), cells_(static_cast<double>(cells)) {}
 

@@ -42,6 +42,14 @@ int ranks_of(MPI_Comm comm) {
   return ranks;
 }
 
+/// Cells on the busiest rank when the mesh is divided anew: all of the file, and its own once their edges are halved.
+template <int dim>
+long long cells_to_divide(const World<dim> &world) {
+  const long long all = world.mesh.report().cells;
+  const int halvings = world.scene.mesh.halvings;
+  return halvings == 0 ? all : (all >> dim * halvings) + all / ranks_of(world.comm);
+}
+
 }  // namespace
 
 template <int dim>
@@ -52,8 +60,7 @@ Dynamics<dim>::Dynamics(World<dim> &world, Clock &clock, const IntegratorSetting
           choose_step_bound(world.scene, world.laws, world.report(), settings, world.mesh.report().one_element_slice)),
       settings_(with_bound(settings, bound_.by)),
       integrator_(make_integrator(settings_)),
-      balancing_(world.scene.mesh.balance_ranks, ranks_of(world.comm), world.mesh.report().cells,
-                 world.mesh.divisible()) {
+      balancing_(world.scene.mesh.balance_ranks, ranks_of(world.comm), cells_to_divide(world), world.mesh.divisible()) {
   check_fixed_step();
 }
 

@@ -237,7 +237,7 @@ std::vector<std::string> coarse_cells(const Scene &scene, const std::vector<Body
       sentences.push_back("The soil is " + rounded(depth) + " m deep at most, and the cells of " + b.name +
                           " measure " + rounded(b.cell_size) + " m: fewer than " + rounded(few) +
                           " cells over the depth resolve neither stress nor slip surface. Take smaller cells "
-                          "(mesh.size)");
+                          "(mesh.size, mesh.halvings)");
   return sentences;
 }
 

@@ -119,7 +119,7 @@ void World<dim>::read_mesh(DM plex, const std::string &mesh_file, const Cuts &cu
     mesh = BackgroundMesh<dim>::adopt(plex);
   else
     try {
-      mesh = BackgroundMesh<dim>::read(comm, mesh_file, weights, cuts);
+      mesh = BackgroundMesh<dim>::read(comm, mesh_file, weights, cuts, scene.mesh.halvings);
     } catch (const std::invalid_argument &error) {
       scene.complain(!scene.mesh.file.empty()      ? "mesh.file"
                      : !scene.mesh.section.empty() ? "mesh.section"

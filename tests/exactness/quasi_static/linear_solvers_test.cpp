@@ -34,26 +34,31 @@ tolerance = 1e-11
 )";
   int rank, ranks;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank), MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
-  Solved whole;
-  for (int r = 0; r < ranks; ++r) {  // one after the other: they share the file of the mesh
-    if (r == rank) whole = solve(text, {}, PETSC_COMM_SELF);
-    MPI_Barrier(PETSC_COMM_WORLD);
-  }
-  std::map<long long, size_t> place;
-  for (size_t i = 0; i < whole.points.id.size(); ++i) place[whole.points.id[i]] = i;
-  EXPECT_GT(
-      *std::max_element(whole.column("plastic_strain").values.begin(), whole.column("plastic_strain").values.end()),
-      1e-4);
-  for (const char *solver : {"direct", "iterative"}) {
-    const Solved shared = solve(text, {"quasi_static.linear_solver=" + std::string(solver)});
-    EXPECT_LT(largest(shared, 2,
-                      [&](size_t p, int k) {
-                        return (shared.value("displacement", p, k) -
-                                whole.value("displacement", place.at(shared.points.id[p]), k)) /
-                               0.1;
-                      }),
-              1e-8)
-        << solver;
+  const std::vector<std::string> halved{"mesh.size=6", "mesh.halvings=1"};
+  for (std::vector<std::string> keys : std::vector<std::vector<std::string>>{{}, halved}) {
+    Solved whole;
+    for (int r = 0; r < ranks; ++r) {  // one after the other: they share the file of the mesh
+      if (r == rank) whole = solve(text, keys, PETSC_COMM_SELF);
+      MPI_Barrier(PETSC_COMM_WORLD);
+    }
+    std::map<long long, size_t> place;
+    for (size_t i = 0; i < whole.points.id.size(); ++i) place[whole.points.id[i]] = i;
+    EXPECT_GT(
+        *std::max_element(whole.column("plastic_strain").values.begin(), whole.column("plastic_strain").values.end()),
+        1e-4);
+    for (const char *solver : {"direct", "iterative"}) {
+      keys.push_back("quasi_static.linear_solver=" + std::string(solver));
+      const Solved shared = solve(text, keys);
+      keys.pop_back();
+      EXPECT_LT(largest(shared, 2,
+                        [&](size_t p, int k) {
+                          return (shared.value("displacement", p, k) -
+                                  whole.value("displacement", place.at(shared.points.id[p]), k)) /
+                                 0.1;
+                        }),
+                1e-8)
+          << solver << ", " << keys.size() << " keys";
+    }
   }
 }
 

@@ -122,6 +122,20 @@ TEST(Ranks, column_collapse_is_the_same_in_3d) {
                "boundary.back.kind=roller", "output.point.corner.position=[0.2, 0.1, 0]",
                "body.bars.stress=[" + k0 + ", \"-9.81 * 2650 * (0.1 - y)\", " + k0 + ", \"0\", \"0\", \"0\"]"});
 }
+/// Cells whose edges ranks have halved.
+const std::vector<std::string> halved_3d{"mesh.size=0.05",
+                                         "mesh.halvings=1",
+                                         "dimension=3",
+                                         "mesh.layers=0",
+                                         "mesh.thickness=0.1",
+                                         "boundary.front.kind=roller",
+                                         "boundary.back.kind=roller",
+                                         "output.point.corner.position=[0.2, 0.1, 0]",
+                                         "body.bars.stress=[\"0\", \"0\", \"0\", \"0\", \"0\", \"0\"]"};
+TEST(Ranks, column_collapse_is_the_same_in_halved_cells) {
+  expect_the_same(column, {"mesh.size=0.04", "mesh.halvings=2"});
+}
+TEST(Ranks, column_collapse_is_the_same_in_halved_cells_in_3d) { expect_the_same(column, halved_3d); }
 TEST(Ranks, column_collapse_is_the_same_with_steps_by_the_frequency_of_the_mesh) {
   expect_the_same(column, {"mesh.size=0.01", "integrator.omega_max=mesh"});
 }
@@ -200,6 +214,11 @@ TEST(Balanced, column_collapse_is_the_same_in_3d) {
                "boundary.back.kind=roller", "output.point.corner.position=[0.2, 0.1, 0]",
                "body.bars.stress=[\"0\", \"0\", \"0\", \"0\", \"0\", \"0\"]"});
 }
+
+TEST(Balanced, column_collapse_is_the_same_in_halved_cells) {
+  expect_the_same_when_balanced(column, {"mesh.size=0.04", "mesh.halvings=2"});
+}
+TEST(Balanced, column_collapse_is_the_same_in_halved_cells_in_3d) { expect_the_same_when_balanced(column, halved_3d); }
 
 /// Above the terrain of the guide, ten times the air: ranks share the soil and not the cells, as evenly as patches of 8
 /// cells with 8 particles each, which are never divided, allow.

@@ -85,6 +85,10 @@ const Variant variants[] = {
      2,
      SIGTERM,
      {"000002", "000004", "000006", "000008", "000010", "000012", "000014", "000016", "000018", "000020", "000022"}},
+    {"in_halved_cells_balanced_at_every_remap_on_two_ranks",
+     {"mesh.size=0.2", "mesh.halvings=1", "mesh.balance_ranks=always"},
+     2,
+     SIGKILL},
     {"with_a_fixed_step", {"integrator.step=2e-4"}},
     {"by_arkode", {"integrator.kind=arkode"}, 1, SIGKILL},
     {"by_arkode_with_moving_water", with_pores({"phases=unsaturated", "integrator.kind=arkode"})},
@@ -182,6 +186,8 @@ const Change changes[] = {
     {"by_the_frequency_of_the_mesh_2_to_1", {"integrator.omega_max=mesh"}, 2, 1},
     {"averaged_strain_1_to_4", {"body.sand.averaging_length=0.3"}, 1, 4},
     {"balanced_4_to_2", {"mesh.balance_ranks=always"}, 4, 2},
+    {"halved_cells_4_to_2", {"mesh.size=0.2", "mesh.halvings=1"}, 4, 2},
+    {"halved_cells_1_to_2", {"mesh.size=0.4", "mesh.halvings=2"}, 1, 2},
 };
 
 class ResumedOnOtherRanks : public testing::TestWithParam<Change> {};

@@ -238,6 +238,9 @@ TEST(ReadScene, ChecksOneKeyAgainstAnother) {
        {"body.clay.relative_permeability.curve=cubic"},
        "has no effect without a retention curve, from which the degree of saturation follows: add "
        "[body.clay.retention] with curve, or leave [body.clay.relative_permeability] out"},
+      {dry, {"mesh.halvings=5"}, "so that none holds all cells) must be a whole number from 0 to 4"},
+      {dry, {"mesh.halvings=0.5"}, "must be a whole number from 0 to 4"},
+      {dry, {"mesh.halving=1"}, "did you mean `halvings`?"},
       {dry, {"mesh.leaving_particles=go"}, "may be changed with --resume) must be one of stop, remove"},
       {dry, {"output.point.crest.position=[1]"}, "output.point.crest.position = [1] must have 2 coordinates, not 1"},
       {dry,
