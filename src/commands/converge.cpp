@@ -48,7 +48,7 @@ Refinement cells_of(const Scene &scene, const std::vector<double> &values) {
   if (mesh.section.empty())
     throw SceneError(
         "converge --by cells needs a scene with mesh.section, whose cells it can make anew; the mesh file " +
-        mesh.file + " stays as it is: run the scene with meshes of your own, and compare the runs");
+        mesh.file + " stays as it is: compare runs with mesh.halvings = 0 and 1, or with meshes of your own");
   Refinement r{{{"mesh.size", mesh.size}}, values, "m"};
   for (std::size_t i = 0; i < mesh.refine.size(); ++i)
     r.keys["mesh.refine." + std::to_string(i) + ".size"] = mesh.refine[i].size;
