@@ -6,6 +6,10 @@
 namespace talus {
 namespace {
 
+/// Weight of a cell without a body: so small that much air weighs nothing against the soil, and not 0, so that air
+/// alone is divided too.
+constexpr double empty_weight = 1e-3;
+
 /// The largest sum of weight on a rank.
 double largest_share(const std::vector<double> &weight, const std::vector<int> &rank, int ranks) {
   std::vector<double> sum(ranks, 0);

@@ -15,9 +15,6 @@ namespace talus {
 template <int dim>
 MeshPart<dim> part_of_file(const GmshMesh &source, std::string &complaint);
 
-/// Weight of a cell without a body: so small that much air weighs nothing against the soil, and not 0, so that air
-/// alone is divided too.
-constexpr double empty_weight = 1e-3;
 /// The cells whose regions have a weight, with the largest of them.
 template <int dim>
 std::vector<FilledCell<dim>> filled_cells(const Regions &regions,
