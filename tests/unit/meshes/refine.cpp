@@ -267,17 +267,17 @@ TYPED_TEST(RefinedMesh, IsDividedAnew) {
   constexpr int dim = TestFixture::dim;
   if (!this->mesh.divisible()) return;
   const auto work_on = [&](const auto &mesh, long long children) {
-    std::vector<std::pair<long long, double>> work;
+    std::vector<FilledCell<dim>> work;
     for (int c = 0; c < mesh.cell_count(); ++c) {
       const long long before = mesh.global_cell[c] / children;
-      if (before % 3 == 0) work.emplace_back(mesh.global_cell[c], static_cast<double>(before % 7 + 1) / children);
+      if (before % 3 == 0) work.push_back({mesh.global_cell[c], static_cast<double>(before % 7 + 1) / children, {}});
     }
     return work;
   };
   double imbalance, expected_imbalance;
   const auto before = this->read(PETSC_COMM_WORLD, 0);
-  const Cuts cuts = this->mesh.balanced_cuts(work_on(this->mesh, this->children), &imbalance),
-             expected = before.balanced_cuts(work_on(before, 1), &expected_imbalance);
+  const Cuts cuts = this->mesh.balanced_cuts(work_on(this->mesh, this->children), 0, &imbalance),
+             expected = before.balanced_cuts(work_on(before, 1), 0, &expected_imbalance);
   ASSERT_EQ(cuts.size(), expected.size());
   for (std::size_t k = 0; k < cuts.size(); ++k) EXPECT_EQ(cuts[k].place, expected[k].place);
   EXPECT_EQ(imbalance, expected_imbalance);  // the work of a cell is a sum of parts that have no round-off
