@@ -17,7 +17,7 @@ class Bisection {
  public:
   Bisection(const std::vector<Vec<dim>> &centre, const PatchLoad<dim> &load,
             const std::vector<std::vector<int>> &touching)
-      : centre_(centre), load_(load), weight_(load.weight), touching_(touching), side_(centre.size(), neither) {}
+      : centre_(centre), load_(load), touching_(touching), side_(centre.size(), neither) {}
 
   /// Cuts some patches for `ranks` ranks.
   void divide(std::vector<int> patches, int ranks) {
@@ -46,7 +46,6 @@ class Bisection {
   static constexpr char neither = 0, below = 1, above = 2;
   const std::vector<Vec<dim>> &centre_;
   const PatchLoad<dim> &load_;
-  const std::vector<double> &weight_;
   const std::vector<std::vector<int>> &touching_;
   std::vector<char> side_;
   std::vector<int> best_;
@@ -61,10 +60,11 @@ class Bisection {
       return centre_[a][axis] != centre_[b][axis] ? centre_[a][axis] < centre_[b][axis] : a < b;
     });
     double total = 0, sum = 0;
-    for (int p : patches) total += weight_[p];
+    for (int p : patches) total += load_.weight[p];
     std::size_t at = 0;
-    while (at < patches.size() && std::abs(sum + weight_[patches[at]] - share * total) <= std::abs(sum - share * total))
-      sum += weight_[patches[at++]];
+    while (at < patches.size() &&
+           std::abs(sum + load_.weight[patches[at]] - share * total) <= std::abs(sum - share * total))
+      sum += load_.weight[patches[at++]];
     return at;
   }
 
@@ -73,8 +73,10 @@ class Bisection {
     double cost = 0;
     for (std::size_t i = 0; i < lower; ++i)
       for (const int other : touching_[patches[i]])
-        if (side_[other] == above)
-          cost += std::min(weight_[patches[i]], weight_[other]) < least_filled_weight ? empty_face_cost : face_cost;
+        if (side_[other] == above) {
+          const double weight = std::min(load_.weight[patches[i]], load_.weight[other]);
+          cost += weight < least_filled_weight ? empty_face_cost : face_cost;
+        }
     for (int p : patches) side_[p] = neither;
     return cost;
   }
@@ -86,7 +88,7 @@ class Bisection {
     if (load_.way.empty() || lower == patches.size()) return 0;
     double low = std::numeric_limits<double>::max(), high = -low, fastest = 0;
     for (const int p : patches) {
-      if (weight_[p] < least_filled_weight) continue;
+      if (load_.weight[p] < least_filled_weight) continue;
       low = std::min(low, centre_[p][axis]), high = std::max(high, centre_[p][axis]);
       fastest = std::max(fastest, std::abs(load_.way[p][axis]));
     }
@@ -96,7 +98,7 @@ class Bisection {
     for (std::size_t i = 0; i < patches.size(); ++i) {
       const int p = patches[i];
       const bool is_lower = centre_[p][axis] + steps * load_.way[p][axis] < place;
-      crossed += (i < lower) == is_lower ? 0 : i < lower ? weight_[p] : -weight_[p];
+      crossed += (i < lower) == is_lower ? 0 : i < lower ? load_.weight[p] : -load_.weight[p];
     }
     return steps > 0 ? std::sqrt(2 * load_.partition_cost * std::abs(crossed) / steps) : 0;
   }

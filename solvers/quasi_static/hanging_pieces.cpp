@@ -8,8 +8,6 @@
 namespace talus {
 namespace {
 
-constexpr double most_left_out = 0.01;  // of the volume of the soil
-
 /// A cell of the soil, as all ranks know it.
 template <int dim>
 struct Element {

@@ -137,11 +137,13 @@ class QuasiStatic {
                           std::vector<double> &sums) const;
   PetscErrorCode make_solver(SNESLineSearchType line_search = SNESLINESEARCHCP);
   PetscErrorCode activate_again();
+  // soil_on_bases.cpp
   enum class Way { balanced, moving, lost };
   PetscErrorCode relax(int *iterations, double *unbalanced, Way *way);
-  PetscErrorCode find_moving(::Vec direction);
+  PetscErrorCode find_moving(::Vec direction, const char *how);
   PetscErrorCode leave_out_hanging(bool *found);
   PetscErrorCode advance_on_bases(double share, double load_time, double time, double dt, StepOutcome *outcome);
+  // quasi_static.cpp
   PetscErrorCode start_with_motion(const std::vector<double> &motion, ::Vec x);
   PetscErrorCode stiffness(double plastic, double elastic, const std::vector<double> *motion,
                            std::vector<double> *lift);
