@@ -308,6 +308,19 @@ def check_run(page, name, run, talus, write):
 
 # ---- studies ----
 
+def copy_beside_the_rest(page, root):
+    """A copy of a page's folder in a tree whose other folders lead to the project's own, since scenes and scripts name meshes, programs and other pages."""
+    project = next(folder for folder in page.parents if folder.name == "docs").parent
+    here = root / page.relative_to(project)
+    shutil.copytree(page, here)
+    for folder in here.parents:
+        for other in (project / folder.relative_to(root)).iterdir():
+            if not other.name.startswith(".") and not (folder / other.name).exists():
+                (folder / other.name).symlink_to(other)
+        if folder == root:
+            return here
+
+
 def check_study(page, name, study, talus, write):
     """Repeats a study: in place if its file is to be written, else in a copy of the page, whose file is then compared row by row."""
     if "file" not in study and not write:
@@ -317,15 +330,7 @@ def check_study(page, name, study, talus, write):
     with tempfile.TemporaryDirectory() as folder:
         here, runs = page.folder, f"{folder}/runs"
         if not write:
-            root = pathlib.Path(folder) / "tree"
-            here = root / "docs" / page.folder.parent.name / page.folder.name
-            shutil.copytree(page.folder, here)
-            for part in ("meshes", "src", "physics", "tests"):
-                (root / part).symlink_to(page.folder.parents[2] / part)
-            (root / "CMakeLists.txt").symlink_to(page.folder.parents[2] / "CMakeLists.txt")
-            for other in page.folder.parent.iterdir():
-                if other.name != page.name:
-                    (here.parent / other.name).symlink_to(other)
+            here = copy_beside_the_rest(page.folder, pathlib.Path(folder) / "tree")
         before = (here / study["file"]).read_bytes() if "file" in study and (here / study["file"]).exists() else None
         if before is not None:  # a script that goes on where it was stopped would keep every row
             (here / study["file"]).unlink()

@@ -44,9 +44,6 @@ class Faults(unittest.TestCase):
         with tempfile.TemporaryDirectory() as name:
             page = pathlib.Path(name) / "docs" / "gallery" / "small"
             page.mkdir(parents=True)
-            for folder in ("meshes", "src", "physics", "tests"):
-                (pathlib.Path(name) / folder).mkdir()
-            (pathlib.Path(name) / "CMakeLists.txt").touch()
             (page / "numbers.toml").write_text('[study.sizes]\nabout = "four meshes"\ncommand = "sizes.py TALUS"\nfile = "sizes.csv"\n'
                                                'compare = {crest_m = 0.05, toe_m = 0.05}\nbecause = "of the cells"\n')
             (page / "README.md").write_text("<!-- studies -->\n<!-- end -->\n")
@@ -55,6 +52,26 @@ class Faults(unittest.TestCase):
             told = subprocess.run([sys.executable, "-B", SCRIPT, page.parent, "/bin/false", "--long"], capture_output=True, text=True)
             self.assertEqual(told.returncode, 1)
             self.assertRegex(told.stdout, r"crest_m +largest difference  1.00e\+00  tolerance 0.05 FAILS\n +toe_m +largest difference  1.00e-02  tolerance 0.05 holds")
+
+    def test_a_study_finds_what_lies_beside_its_page(self):
+        for place in ("docs/gallery/small", "docs/guide"):
+            with self.subTest(place), tempfile.TemporaryDirectory() as name:
+                page, docs = pathlib.Path(name) / place, pathlib.Path(name) / "docs"
+                (docs / "gallery").mkdir(parents=True)
+                page.mkdir()
+                for file in ("meshes/slope.csv", "docs/theory/table.csv", "docs/gallery/other/part.csv"):
+                    (pathlib.Path(name) / file).parent.mkdir(exist_ok=True)
+                    (pathlib.Path(name) / file).touch()
+                up = "../" * (place.count("/") + 1)
+                (page / "numbers.toml").write_text('[study.sizes]\nabout = "four meshes"\ncommand = "sizes.py"\nfile = "sizes.csv"\n'
+                                                   'compare = {crest_m = 0.05}\nbecause = "of the cells"\n')
+                (page / "README.md").write_text("<!-- studies -->\n<!-- end -->\n")
+                (page / "sizes.csv").write_text("size_m,crest_m\n1,2\n")
+                (page / "sizes.py").write_text("import pathlib\n" + "".join(
+                    f"open('{up}{file}')\n" for file in ("meshes/slope.csv", "docs/theory/table.csv", "docs/gallery/other/part.csv"))
+                    + "pathlib.Path('sizes.csv').write_text('size_m,crest_m\\n1,2\\n')\n")
+                told = subprocess.run([sys.executable, "-B", SCRIPT, docs / "gallery", "/bin/false", "--long"], capture_output=True, text=True)
+                self.assertRegex(told.stdout, r"crest_m +largest difference  0.00e\+00  tolerance 0.05 holds", told.stderr)
 
     def test_what_a_program_printed_is_on_the_page(self):
         with tempfile.TemporaryDirectory() as name:
