@@ -132,13 +132,14 @@ class Adviser {
   void softening(const BodyNeeds &b) {
     const double slope = b.softening.slope;
     if (slope == 0) return;
-    constexpr double resolved = 0.8;  // of the averaging length: the rock of Vaiont stands in larger cells
+    constexpr double resolved =
+        0.8;  // of the averaging length: of larger cells the next one hardly counts in the average
     const double largest = resolved * b.averaging_length;
     if (b.averaging_length > 0 && b.body.cell_size > largest)
       say("Cells of " + b.body.name + ", " + digits(b.body.cell_size) + " m, do not resolve its averaging_length of " +
           digits(b.averaging_length) +
-          " m: the average hardly reaches the next cell, and the soil seems stronger than it is (with 20 m the rock of "
-          "the gallery's vaiont stands in cells of 17 m, and fails in cells of 15 m and less); take cells of at most " +
+          " m: the average hardly reaches the next cell, and the soil seems stronger than it is; take cells of at "
+          "most " +
           digits(largest) + " m.");
     if (flow_off_normal(b.law) > flow_far_off_normal)
       say("Soil of " + b.body.name + " softens, and its friction angle exceeds its dilation angle by " +
