@@ -11,6 +11,7 @@
 
 #include "base/archive.h"
 #include "physics/boundary/conditions.h"
+#include "physics/laws/present_strength.h"
 #include "physics/motion.h"
 #include "physics/pores/pore_report.h"
 #include "physics/prescribed_pressure.h"
@@ -84,6 +85,8 @@ class AnySoilMotion : public Motion {
   virtual void present(const Body<dim> &body, int particle, Vec<dim> *position, Vec<dim> *velocity) const = 0;
   /// Stress [stress_size], history and volume of a particle within the Lagrangian part.
   virtual void state(int body, int particle, double *stress, double *history, double *volume) const = 0;
+  /// By what the law has softened the strength to which this stress belongs.
+  virtual SofteningInput softened_by(int body, int particle) const = 0;
   virtual const WorkDone &work() const = 0;
   /// Freezes the reactions of supports that stand in for dashpots. Collective.
   virtual PetscErrorCode freeze_reactions(double t) = 0;

@@ -63,6 +63,7 @@ class SoilMotion final : public AnySoilMotion<dim> {
   bool find_trouble(Vec<dim> *where, std::string *cause) const override;
   void present(const Body<dim> &body, int particle, Vec<dim> *position, Vec<dim> *velocity) const override;
   void state(int body, int particle, double *stress, double *history, double *volume) const override;
+  SofteningInput softened_by(int body, int particle) const override;
   const WorkDone &work() const override { return work_.done(); }
   PetscErrorCode freeze_reactions(double t) override;
   PetscErrorCode balance(double t, Balance *sums) override;

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "base/gather.h"
+#include "meshes/near_parts.h"
 #include "physics/boundary/prescribed_directions.h"
 
 namespace talus {
@@ -272,28 +273,18 @@ constexpr double reach = 12;
 template <int dim>
 PetscErrorCode ranks_in_reach(const BackgroundMesh<dim> &mesh, const std::vector<Tile<dim>> &tiles,
                               std::vector<int> &near) {
-  int rank, ranks;
+  int rank;
   double edge = 0;
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(mesh.comm(), &rank));
-  PetscCallMPI(MPI_Comm_size(mesh.comm(), &ranks));
   for (const Tile<dim> &t : tiles)
     for (const Vec<dim> &a : t.corner)
       for (const Vec<dim> &b : t.corner) edge = std::max(edge, (map<dim>(a) - map<dim>(b)).norm());
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &edge, 1, MPI_DOUBLE, MPI_MAX, mesh.comm()));
-  std::array<Vec<dim>, 2> box;
-  box[0].fill(std::numeric_limits<double>::max()), box[1].fill(std::numeric_limits<double>::lowest());
-  for (const Vec<dim> &x : mesh.position)
-    for (int d = 0; d < dim; ++d) box[0][d] = std::min(box[0][d], x[d]), box[1][d] = std::max(box[1][d], x[d]);
-  std::vector<std::array<Vec<dim>, 2>> boxes(ranks);
-  PetscCallMPI(MPI_Allgather(&box, 2 * dim, MPI_DOUBLE, boxes.data(), 2 * dim, MPI_DOUBLE, mesh.comm()));
+  const std::vector<Box<dim>> boxes = boxes_of_parts(mesh);
   near.clear();
-  for (int r = 0; r < ranks; ++r) {
-    bool meets = r != rank;
-    for (int d = 0; d < dim; ++d)
-      meets &= boxes[r][0][d] <= box[1][d] + reach * edge && box[0][d] <= boxes[r][1][d] + reach * edge;
-    if (meets) near.push_back(r);
-  }
+  for (int r = 0; r < static_cast<int>(boxes.size()); ++r)
+    if (r != rank && boxes[r].meets(boxes[rank], reach * edge)) near.push_back(r);
   PetscFunctionReturn(0);
 }
 

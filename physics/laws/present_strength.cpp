@@ -21,7 +21,7 @@ constexpr bool is_frictional = requires(OneLaw law) {
 
 }  // namespace
 
-PresentStrength::PresentStrength(const Law &law) : law_(law), plastic_strain_(plastic_strain_field(law)) {
+PresentStrength::PresentStrength(const Law &law) : law_(law) {
   known_ = std::visit(
       [](auto &one) {
         if constexpr (is_frictional<decltype(one)>) one.prepare();
@@ -31,13 +31,12 @@ PresentStrength::PresentStrength(const Law &law) : law_(law), plastic_strain_(pl
 }
 
 template <int dim>
-Mobilised PresentStrength::operator()(const Stress<dim> &stress, const double *history,
+Mobilised PresentStrength::operator()(const Stress<dim> &stress, double plastic_strain,
                                       const Surroundings &around) const {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   return std::visit(
       [&](const auto &one) -> Mobilised {
         if constexpr (is_frictional<decltype(one)>) {
-          const double plastic_strain = history[plastic_strain_];
           const auto now = one.present(plastic_strain, around);
           const Principal<double> s = PrincipalAxes<dim, double>(stress).values();
           const double apex = 2 * now.c / std::tan(now.phi), depth = apex - (s.s1 + s.s3), circle = s.s1 - s.s3;
@@ -63,7 +62,7 @@ Mobilised PresentStrength::operator()(const Stress<dim> &stress, const double *h
       law_);
 }
 
-template Mobilised PresentStrength::operator()<2>(const Stress<2> &, const double *, const Surroundings &) const;
-template Mobilised PresentStrength::operator()<3>(const Stress<3> &, const double *, const Surroundings &) const;
+template Mobilised PresentStrength::operator()<2>(const Stress<2> &, double, const Surroundings &) const;
+template Mobilised PresentStrength::operator()<3>(const Stress<3> &, double, const Surroundings &) const;
 
 }  // namespace talus

@@ -19,6 +19,12 @@ struct Mobilised {
   StrengthState state;
 };
 
+/// What a frictional law takes for the softening of a point.
+struct SofteningInput {
+  double plastic_strain = 0;  ///< that of the point of stress, or its average over the averaging length of the body [-]
+  double size = 0;            ///< width of a band: element size, or twice the averaging length [m]
+};
+
 /// The strength of one soil over plastic strain, suction and place.
 class PresentStrength {
  public:
@@ -26,19 +32,18 @@ class PresentStrength {
 
   /// Has the law a cohesion and a friction angle? Otherwise it is not to be asked.
   bool known() const { return known_; }
-  /// Of an effective stress and the internal variables of the law. The mobilised angle is that of the Mohr circle which
-  /// touches an envelope through the apex of the present strength,
-  /// sin(phi_m) = (s1 - s3) / (2 c cot(phi) - s1 - s3), s1 the largest principal stress, positive in tension (Alonso,
-  /// Yerro & Pinyol 2015, eq. (20), of the plane quantities). It is phi at the yield surface of Mohr and Coulomb; on a
-  /// cone of Drucker and Prager it may be larger or smaller. A point counts as at its yield surface from 99 % of its
-  /// strength on, and strength as lost, or residual, where 5 %, or 95 %, of the fall from peak to residual is over.
+  /// Of an effective stress and the plastic strain by which the law softens. The mobilised angle is that of the Mohr
+  /// circle which touches an envelope through the apex of the present strength, sin(phi_m) = (s1 - s3) / (2 c cot(phi)
+  /// - s1 - s3), s1 the largest principal stress, positive in tension (Alonso, Yerro & Pinyol 2015, eq. (20), of the
+  /// plane quantities). It is phi at the yield surface of Mohr and Coulomb; on a cone of Drucker and Prager it may be
+  /// larger or smaller. A point counts as at its yield surface from 99 % of its strength on, and strength as lost, or
+  /// residual, where 5 %, or 95 %, of the fall from peak to residual is over.
   template <int dim>
-  Mobilised operator()(const Stress<dim> &stress, const double *history, const Surroundings &around) const;
+  Mobilised operator()(const Stress<dim> &stress, double plastic_strain, const Surroundings &around) const;
 
  private:
   Law law_;  ///< prepared
   bool known_;
-  int plastic_strain_;  ///< index among the internal variables
 };
 
 }  // namespace talus

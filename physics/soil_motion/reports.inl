@@ -111,6 +111,22 @@ void SoilMotion<dim, Phases>::state(int b, int i, double *stress, double *histor
 }
 
 template <int dim, class Phases>
+SofteningInput SoilMotion<dim, Phases>::softened_by(int b, int i) const {
+  const Body<dim> &body = *bodies_[b];
+  const ParticleArrays<dim> &p = body.particles();
+  const int count = body.history_count(), field = plastic_strain_field(body.law());
+  SofteningInput found{0, element_size<dim>(mesh_.volume[p.cell[i]])};
+  if (field < 0) return found;
+  found.plastic_strain = p.history[i * count + field];
+  if (!gathered_) return found;
+  const PointSet &points = points_[b];
+  const int q = transfer_.average_stress ? points.find(p.cell[i]) : i;
+  found.plastic_strain = points.history[q * count + field];
+  if (nonlocal_[b]) found.plastic_strain += nonlocal_[b]->excess(q), found.size = 2 * body.source().averaging_length;
+  return found;
+}
+
+template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::serialize(Archive &archive) {
   PetscFunctionBeginUser;
   const typename FilledGrid<dim>::Rows grid = grid_.serialize(archive);

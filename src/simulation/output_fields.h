@@ -31,7 +31,7 @@ struct ParticleState {
   double pore_pressure = 0, gas_pressure = 0, suction = 0;  ///< [Pa]
   double saturation = 0, porosity = 0;
   bool surface = false;         ///< fluids may pass through a side of its cell
-  double size = 0;              ///< element size of its cell [m]
+  SofteningInput softened_by;   ///< what its law takes for softening
   StrengthShares strength;      ///< of the body's law
   std::vector<double> history;  ///< internal variables of the body's law
 
@@ -44,7 +44,7 @@ struct ParticleState {
     motion.state(b, i, stress.data(), history.data(), &volume);
     for (int d = 0; d < dim; ++d) displacement[d] = position[d] - p.reference[i][d];
     mass = p.mass[i];
-    size = element_size<dim>(motion.grid().mesh().volume[p.cell[i]]);
+    softened_by = motion.softened_by(b, i);
     if (p.cohesion_share) strength = {p.cohesion_share[i], p.friction_share[i]};
     if (phases.prescribed) pore_pressure = motion.pore_pressure(p.cell[i], position);
     if (phases.liquid) {
@@ -68,7 +68,7 @@ struct GaussPointState {
   double shear_strain = 0;
   double pore_pressure = 0, suction = 0;  ///< [Pa]
   double saturation = 0;                  ///< [-]
-  double size = 0;                        ///< element size of its cell [m]
+  SofteningInput softened_by;             ///< what its law takes for softening
   StrengthShares strength;                ///< of the body's law
   const double *history = nullptr;        ///< internal variables of the body's law
 };
@@ -84,23 +84,19 @@ Invariants<Point::dimension> invariants_of(const Point &p) {
 template <class Point>
 void add_mobilised_strength(OutputFields<Point> &fields,
                             const std::vector<std::unique_ptr<Body<Point::dimension>>> &bodies) {
-  struct Soil {
-    PresentStrength strength;
-    double band;  ///< width of the bands in which it softens, where that is not the size of the cell [m]
-  };
-  auto soils = std::make_shared<std::vector<Soil>>();
-  for (const auto &body : bodies) soils->push_back({PresentStrength(body->law()), 2 * body->source().averaging_length});
-  if (std::ranges::none_of(*soils, [](const Soil &soil) { return soil.strength.known(); })) return;
+  auto soils = std::make_shared<std::vector<PresentStrength>>();
+  for (const auto &body : bodies) soils->emplace_back(body->law());
+  if (std::ranges::none_of(*soils, [](const PresentStrength &soil) { return soil.known(); })) return;
   const auto mobilised = [soils](const Point &p) -> std::array<double, 2> {
-    const Soil &soil = (*soils)[p.body];
-    if (!soil.strength.known()) return {std::nan(""), std::nan("")};
+    const PresentStrength &soil = (*soils)[p.body];
+    if (!soil.known()) return {std::nan(""), std::nan("")};
     Stress<Point::dimension> stress;
     std::memcpy(&stress, p.stress.data(), sizeof stress);
-    const Surroundings around{.size = soil.band > 0 ? soil.band : p.size,
+    const Surroundings around{.size = p.softened_by.size,
                               .suction = p.suction,
                               .cohesion = p.strength.cohesion,
                               .friction = p.strength.friction};
-    const Mobilised found = soil.strength(stress, &p.history[0], around);
+    const Mobilised found = soil(stress, p.softened_by.plastic_strain, around);
     return {found.friction_angle / degree.si, static_cast<double>(found.state)};
   };
   fields.add("mobilised_friction", "deg",
@@ -171,6 +167,11 @@ OutputFields<Point> output_fields(const PhaseTraits &phases,
         [of_body](const Point &p) { return of_body[p.body].friction_angle[1] / degree.si * p.strength.friction; });
   }
   add_mobilised_strength(fields, bodies);
+  if (particles && std::ranges::any_of(bodies, [](const auto &b) { return b->source().averaging_length > 0; }))
+    fields.add("averaged_plastic_strain", "-",
+               "plastic strain by which the soil softens: that of the cell, averaged over averaging_length where its "
+               "body has one",
+               Tracked::no, [](const Point &p) { return p.softened_by.plastic_strain; });
   // The internal variables of the laws. A body whose law does not have a variable shows NaN there.
   for (const auto &body : bodies)
     for (const HistoryField &variable : history_fields(body->law())) {

@@ -336,13 +336,20 @@ std::optional<ParticleState<dim>> Statics<dim>::state_at(const Vec<dim> &x) cons
     state.pore_pressure = flow_->pressure_at(cell, l), state.saturation = flow_->saturation(cell, l);
     state.suction = std::max(0., -state.pore_pressure);
   }
-  state.size = element_size<dim>(world_.mesh.volume[cell]);
   const Law &law = world_.bodies[state.body]->law();
   state.strength =
       StrengthByPlace(world_.scene.body[state.body].law, law).shares(law, x[0], x[1], dim == 3 ? x[dim - 1] : 0);
   interpolate(cell, l, false, state.stress.data(), state.history.data());
   if (!bears(cell, state)) interpolate(cell, l, true, state.stress.data(), state.history.data());
+  state.softened_by = softened_by(cell, state.body, state.history.data());
   return state;
+}
+
+/// Finite elements soften by the strain of a point and the size of its cell.
+template <int dim>
+SofteningInput Statics<dim>::softened_by(int cell, int body, const double *history) const {
+  const int field = plastic_strain_field(world_.bodies[body]->law());
+  return {field < 0 ? 0 : history[field], element_size<dim>(world_.mesh.volume[cell])};
 }
 
 /// Is the stress within the strength of the soil in this cell? On a line from one Gauss point through another it may
@@ -475,8 +482,8 @@ Snapshot Statics<dim>::gauss_points() const {
       if (world_.phases.liquid)
         point.pore_pressure = flow_->pressure_at(cell, l), point.saturation = flow_->saturation(cell, l),
         point.suction = std::max(0., -point.pore_pressure);
-      point.size = element_size<dim>(world_.mesh.volume[cell]);
       point.history = p.history.data() + static_cast<size_t>(q) * world_.bodies[b]->history_count();
+      point.softened_by = softened_by(cell, b, point.history);
       fields.append(point, s.columns);
     }
   }

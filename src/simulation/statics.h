@@ -83,6 +83,7 @@ class Statics {
   int cell_at(const Vec<dim> &x) const;
   void interpolate(int cell, const Barycentric<dim> &l, bool between, double *stress, double *history) const;
   bool bears(int cell, const ParticleState<dim> &state) const;
+  SofteningInput softened_by(int cell, int body, const double *history) const;
 
   World<dim> &world_;
   const Clock &clock_;

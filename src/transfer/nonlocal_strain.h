@@ -27,6 +27,8 @@ class NonlocalStrain {
 
   /// History of the points with the average in place of their own plastic strain.
   const double *averaged(const PointSet &points);
+  /// The average at a point less its own plastic strain, as the next step takes it.
+  double excess(int point) const { return excess_[point]; }
   /// Puts back into `history`, which a law made of `averaged`, each point's own plastic strain with what it gained.
   void restore(const PointSet &points, double *history) const;
   /// Writes what the next step depends on, or reads it.

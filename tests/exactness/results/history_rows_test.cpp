@@ -9,6 +9,7 @@
 namespace talus {
 namespace {
 
+const std::string slope = std::string(TALUS_MESHES) + "/../tests/exactness/ranks/slope.toml";
 const std::string column = "gravity = 10\n" + box + R"(
 density = 2000
 [boundary.walls]
@@ -125,6 +126,32 @@ TEST(HistoryRows, show_the_stress_of_a_point) {
   EXPECT_NEAR(history.column("p_mobilised_friction_deg").back(), std::asin(sine) * 180 / M_PI, 1e-6);
   EXPECT_EQ(history.column("p_state").back(), 0);
   EXPECT_EQ(history.column("p_plastic_strain").back(), 0);
+}
+
+/// A slope too weak to stand slides at its yield surface, with a friction angle of 20 degrees all the while. By the
+/// strain with which the law softens, that of the cell or its average, all of the soil that slides mobilises that
+/// angle; by the strain of the particles some would mobilise 24 degrees.
+TEST(HistoryRows, mobilised_friction_is_that_of_the_strain_by_which_soil_softens) {
+  for (const char *length : {"0", "1.5"}) {
+    Scene scene = read_scene(slope, {std::string("body.weathered.averaging_length=") + length});
+    RunOptions options;
+    options.pictures = options.screen = false;
+    const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+    for (int step = 0; step < 200; ++step) simulation->single_step();
+    const Solved found{simulation->snapshot(), simulation->history(), simulation->events()};
+    double counts[2] = {0, 0}, largest = 0;  // soil that has lost strength; of it, at its yield surface
+    for (size_t i = 0; i < found.points.id.size(); ++i) {
+      if (found.points.body[i] != 0) continue;
+      const double angle = found.value("mobilised_friction", i);
+      largest = std::max(largest, angle);
+      if (found.value("state", i) < 2) continue;
+      ++counts[0], counts[1] += angle > 19.9;
+    }
+    MPI_Allreduce(MPI_IN_PLACE, counts, 2, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+    EXPECT_LT(largest, 20.2) << length;
+    EXPECT_GT(counts[0], 1000) << length;
+    EXPECT_GT(counts[1], 0.6 * counts[0]) << length << ": the others are unloaded by vibration";
+  }
 }
 
 /// Until the wave from the base arrives, after 12 ms, the top of a column falls freely; the acceleration of a row is

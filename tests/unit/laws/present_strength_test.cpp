@@ -18,8 +18,7 @@ MohrCoulomb softening_clay() {
 }
 
 Mobilised of(const Law &law, const Stress<2> &stress, double plastic_strain = 0, const Surroundings &where = around) {
-  const double history[] = {plastic_strain, 0, 0};
-  return PresentStrength(law)(stress, history, where);
+  return PresentStrength(law)(stress, plastic_strain, where);
 }
 
 /// Degrees of a circle from s3 to s1 [kPa] under an envelope with this c [kPa] and phi [degrees].
@@ -79,14 +78,13 @@ void expect_peak_at_the_yield_surface(OneLaw law) {
     ++yielded;
     Stress<3> s;
     std::memcpy(&s, points.stress[i].data(), sizeof s);
-    const double history[] = {0, 0, 0};
-    const Mobilised found = strength(s, history, around);
+    const Mobilised found = strength(s, 0, around);
     EXPECT_EQ(found.state, StrengthState::peak) << i;
     EXPECT_NEAR(found.friction_angle, law.friction_angle, 1e-5) << i;
     const Invariants<3> invariants(s);
     invariants.take_off(s, 1. / 3, 1e3);
-    EXPECT_EQ(strength(s, history, around).state, StrengthState::elastic) << i;
-    EXPECT_LT(strength(s, history, around).friction_angle, law.friction_angle) << i;
+    EXPECT_EQ(strength(s, 0, around).state, StrengthState::elastic) << i;
+    EXPECT_LT(strength(s, 0, around).friction_angle, law.friction_angle) << i;
   }
   EXPECT_GT(yielded, count / 4);
 }
