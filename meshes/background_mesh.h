@@ -101,6 +101,7 @@ class BackgroundMesh {
   std::vector<PartitionFace> partition_faces;
   /// Of each partition face, what `of_cells` holds for the cell across, on its rank. Collective.
   std::vector<char> across(const std::vector<char> &of_cells) const;
+  std::vector<PetscInt> across(const std::vector<PetscInt> &of_cells) const;
   /// Of a cell, one bit for each of its faces (1 << k, opposite to vertex k): a point beyond it by less than half of
   /// the cell's altitude is put back inside. Empty: no face is of this kind.
   std::vector<char> closed;

@@ -207,8 +207,17 @@ std::vector<char> BackgroundMesh<dim>::across(const std::vector<char> &of_cells)
   return beyond;
 }
 
+template <int dim>
+std::vector<PetscInt> BackgroundMesh<dim>::across(const std::vector<PetscInt> &of_cells) const {
+  std::vector<PetscInt> beyond;
+  require(exchange(*this, seams_, MPIU_INT, of_cells, beyond));
+  return beyond;
+}
+
 template std::vector<char> BackgroundMesh<2>::across(const std::vector<char> &) const;
 template std::vector<char> BackgroundMesh<3>::across(const std::vector<char> &) const;
+template std::vector<PetscInt> BackgroundMesh<2>::across(const std::vector<PetscInt> &) const;
+template std::vector<PetscInt> BackgroundMesh<3>::across(const std::vector<PetscInt> &) const;
 template PetscErrorCode BackgroundMesh<2>::flatten(MeshPart<2>);
 template PetscErrorCode BackgroundMesh<3>::flatten(MeshPart<3>);
 

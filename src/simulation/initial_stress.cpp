@@ -25,8 +25,7 @@ double earth_pressure_at_rest(const BodySource &source, const Law &law, double f
 
 }  // namespace
 
-/// Vertical stress by the weight of soil and open water above, lateral stress k0 times its effective part. Every rank
-/// sees all cells.
+/// Vertical stress by the weight of soil and open water above, lateral stress k0 times its effective part.
 template <int dim>
 void Statics<dim>::start_stress() {
   const int vertical = world_.scene.vertical();
@@ -39,7 +38,7 @@ void Statics<dim>::start_stress() {
     const double water = world_.phases.liquid ? flow_->water_density(c, middle) : 0;
     blocks.push_back(world_.block_of(world_.scene.body[b], c, water, clock_.load_time));
   }
-  const Overburden<dim> overburden(world_.comm, blocks, vertical);
+  const Overburden<dim> overburden(world_.mesh, blocks, vertical);
   for (size_t b = 0; b < world_.bodies.size(); ++b) {
     GaussPoints<dim> &points = problem_->soil().points()[b];
     if (!world_.present[b]) continue;

@@ -3,8 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "base/vec.h"
-#include "petscsys.h"
+#include "meshes/near_parts.h"
 
 namespace talus {
 
@@ -16,21 +15,21 @@ class Overburden {
     std::array<Vec<dim>, dim + 1> corner;
     double unit_weight;  ///< total [N/m3]
   };
-  /// From the blocks of this rank; every rank sees all of them. `vertical` is the component of a place that is its
-  /// elevation. Collective.
-  Overburden(MPI_Comm comm, const std::vector<Block> &mine, int vertical);
+  /// From the blocks of this rank, which are cells of its part of the mesh. `vertical` is the component of a place that
+  /// is its elevation. Ranks whose parts lie above each other exchange their blocks. Collective.
+  Overburden(const BackgroundMesh<dim> &mesh, const std::vector<Block> &mine, int vertical);
 
-  /// Weight per area of the soil on the vertical above x [Pa]. `top` receives the elevation of its upper end, that of x
-  /// where no soil is above it [m].
+  /// Weight per area of the soil on the vertical above a place x in this rank's part of the mesh [Pa]. `top` receives
+  /// the elevation of its upper end, that of x where no soil is above it [m].
   double above(const Vec<dim> &x, double *top) const;
 
  private:
   int strip_of(double x) const;
 
   int vertical_;
-  std::vector<Block> blocks_;
+  std::vector<Block> blocks_;               ///< above this rank's part of the mesh or in it
   std::vector<std::vector<int>> in_strip_;  ///< blocks that reach into a strip of x
-  Vec<dim> low_{}, high_{};                 ///< of the blocks [m]
+  Box<dim> extent_;                         ///< of the blocks of all ranks [m]
 };
 
 }  // namespace talus

@@ -163,7 +163,7 @@ void World<dim>::set_pore_pressure_ratios() {
   std::vector<typename Overburden<dim>::Block> blocks;
   for (int c = 0; c < mesh.cell_count(); ++c)
     if (body_of[c] >= 0 && there[body_of[c]]) blocks.push_back(block_of(scene.body[body_of[c]], c, 0, 0));
-  const Overburden<dim> overburden(comm, blocks, scene.vertical());
+  const Overburden<dim> overburden(mesh, blocks, scene.vertical());
   for (int b = 0; b < static_cast<int>(scene.body.size()); ++b) {
     const double ratio = scene.body[b].pore_pressure_ratio;
     if (ratio == 0) continue;
