@@ -59,16 +59,19 @@ void check_elevations(const Grid &grid) {
   complain(grid.file, text.str());
 }
 
-/// The values of a band, from the southwest; not a number where it says that it has none.
+/// The values of a band, from the southwest; not a number where it says that it has none. Rows are read in the order of
+/// the file: GDAL finds a row of ESRI ASCII by those before it, and tries in vain again and again, for each of them
+/// that a file which ends early has not, before it complains of a later one.
 void read_values(GDALRasterBand &band, bool from_north, Grid &grid) {
   grid.values.resize(static_cast<std::size_t>(grid.columns) * grid.rows);
   CPLErrorReset();
   CPLPushErrorHandler(CPLQuietErrorHandler);  // of a file that ends early GDAL complains once for each line
   bool complete = true;
-  for (int j = 0; j < grid.rows && complete; ++j)
-    complete = band.RasterIO(GF_Read, 0, from_north ? grid.rows - 1 - j : j, grid.columns, 1,
-                             &grid.values[static_cast<std::size_t>(j) * grid.columns], grid.columns, 1, GDT_Float64, 0,
-                             0, nullptr) == CE_None;
+  for (int line = 0; line < grid.rows && complete; ++line) {
+    const std::size_t row = from_north ? grid.rows - 1 - line : line;
+    complete = band.RasterIO(GF_Read, 0, line, grid.columns, 1, &grid.values[row * grid.columns], grid.columns, 1,
+                             GDT_Float64, 0, 0, nullptr) == CE_None;
+  }
   CPLPopErrorHandler();
   if (!complete)
     complain(grid.file, "ends early or is damaged, so that not all of its " + std::to_string(grid.rows) + " rows of " +

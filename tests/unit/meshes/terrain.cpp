@@ -132,9 +132,10 @@ class TerrainFiles : public ::testing::Test {
     return false;
   }
 
+  /// Broken off after a minute, which nothing here takes.
   static Answer run(const std::string &arguments) {
     Answer answer{-1, ""};
-    FILE *pipe = popen((TALUS_MESH " " + arguments + " 2>&1").c_str(), "r");
+    FILE *pipe = popen(("timeout 60 " TALUS_MESH " " + arguments + " 2>&1").c_str(), "r");
     if (!pipe) return answer;
     for (int c; (c = std::fgetc(pipe)) != EOF;) answer.text += static_cast<char>(c);
     answer.status = WEXITSTATUS(pclose(pipe));
@@ -301,6 +302,20 @@ TEST_F(TerrainFiles, AreRefusedWhenTheyEndEarly) {
   EXPECT_EQ(answer.status, 2);
   expect_words(answer.text, {"a.asc: ends early or is damaged, so that not all of its 17 rows"});
   EXPECT_EQ(std::count(answer.text.begin(), answer.text.end(), '\n'), 1) << answer.text;
+}
+
+/// At once, however many rows are missing, and wherever the grid is read: GDAL's search for a row that is not there
+/// doubles with each of them.
+TEST_F(TerrainFiles, AreRefusedAtOnceWhenMostOfThemIsMissing) {
+  std::ofstream(in_folder("begun.asc")) << "ncols 3\nnrows 500\nxllcenter " << east << "\nyllcenter " << south
+                                        << "\ncellsize 10\n90 80 70\n90 80 70\n";
+  const std::string begun = in_folder("begun.asc"), mesh = " -o " + in_folder("m.msh"), cells = " --size 20 --air 20";
+  for (const std::string &arguments :
+       {begun + mesh + cells, begun + mesh + " --values", ascii(plane) + mesh + cells + " --slip-surface " + begun}) {
+    const Answer answer = run(arguments);
+    EXPECT_EQ(answer.status, 2) << arguments;  // 124: it was still reading
+    expect_words(answer.text, {"begun.asc: ends early or is damaged, so that not all of its 500 rows of 3 values"});
+  }
 }
 
 /// Elevations that no ground has, on a slope and on rough ground; the roughness itself passes, and so does a cliff.
