@@ -37,7 +37,7 @@ TrackedPoints<dim>::TrackedPoints(const World<dim> &world, std::array<double, 2>
     Vec<dim> place;
     std::copy_n(wanted.position.begin(), dim, place.begin());
     const Found found = nearest_particle(wanted.name, place);
-    if (!found.in_soil())
+    if (!found.near_soil())
       world_.scene.complain("output.point." + wanted.name + ".position",
                             "must be in the soil or at its surface; the nearest particle is " +
                                 rounded(found.distance) + " m away, in a cell of " + rounded(found.cell_size) + " m" +
@@ -63,7 +63,8 @@ typename TrackedPoints<dim>::Found TrackedPoints<dim>::nearest_particle(const st
                                                                         const Vec<dim> &place) const {
   Point point{name, place};
   Vec<dim> at{};
-  double nearest = std::numeric_limits<double>::infinity(), cell_size = 0;
+  double nearest = std::numeric_limits<double>::infinity();
+  double sizes[2] = {0, 0};  // of the cell of the nearest, and of its particles
   for (size_t b = 0; b < world_.bodies.size(); ++b) {
     const ParticleArrays<dim> &p = world_.bodies[b]->particles();
     for (int i = 0; i < p.count; ++i) {
@@ -71,14 +72,15 @@ typename TrackedPoints<dim>::Found TrackedPoints<dim>::nearest_particle(const st
       for (int d = 0; d < dim; ++d) distance += (p.position[i][d] - place[d]) * (p.position[i][d] - place[d]);
       if (distance < nearest * (1 - 1e-9) || (distance <= nearest * (1 + 1e-9) && p.id[i] < point.id))
         nearest = distance, point.body = static_cast<int>(b), point.id = p.id[i],
-        cell_size = std::pow(world_.mesh.volume[p.cell[i]], 1. / dim), at = p.position[i];
+        sizes[0] = std::pow(world_.mesh.volume[p.cell[i]], 1. / dim), sizes[1] = std::pow(p.volume[i], 1. / dim),
+        at = p.position[i];
     }
   }
   double best;
   MPI_Allreduce(&nearest, &best, 1, MPI_DOUBLE, MPI_MIN, world_.comm);
   const bool candidate = nearest <= best * (1 + 1e-9);
-  if (!candidate) cell_size = 0;
-  MPI_Allreduce(MPI_IN_PLACE, &cell_size, 1, MPI_DOUBLE, MPI_MAX, world_.comm);
+  if (!candidate) sizes[0] = sizes[1] = 0;
+  MPI_Allreduce(MPI_IN_PLACE, sizes, 2, MPI_DOUBLE, MPI_MAX, world_.comm);
   long long id = candidate ? point.id : std::numeric_limits<long long>::max(), winner;
   MPI_Allreduce(&id, &winner, 1, MPI_LONG_LONG, MPI_MIN, world_.comm);
   point.body = candidate && point.id == winner ? point.body : -1;
@@ -86,7 +88,7 @@ typename TrackedPoints<dim>::Found TrackedPoints<dim>::nearest_particle(const st
   if (!candidate || point.id != winner) at.fill(std::numeric_limits<double>::lowest());
   MPI_Allreduce(MPI_IN_PLACE, at.data(), dim, MPI_DOUBLE, MPI_MAX, world_.comm);
   point.id = static_cast<PetscInt>(winner);
-  return {point, at, std::sqrt(best), cell_size};
+  return {point, at, std::sqrt(best), sizes[0], sizes[1]};
 }
 
 template <int dim>

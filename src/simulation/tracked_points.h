@@ -22,7 +22,7 @@ class TrackedPoints {
   /// The points of the scene's output, which like the mesh count from this corner on a map. Throws SceneError for one
   /// that is not near any soil. Collective.
   explicit TrackedPoints(const World<dim> &world, std::array<double, 2> corner = {});
-  /// Points without names at these places; those that are not near any soil are left out. Collective.
+  /// Points without names at these places; those beside the soil are left out. Collective.
   TrackedPoints(const World<dim> &world, const std::vector<Vec<dim>> &places);
 
   /// A sentence for each point whose particle is further away than half a cell. The same on all ranks.
@@ -38,10 +38,13 @@ class TrackedPoints {
  private:
   struct Found {
     Point point;
-    Vec<dim> at;                 ///< place of its particle [m]
-    double distance, cell_size;  ///< of its particle, and of the particle's cell [m]
-    /// A point of the soil is never further from a particle than its cell is wide.
-    bool in_soil() const { return distance <= 2 * cell_size; }
+    Vec<dim> at;                ///< place of its particle [m]
+    double distance;            ///< of its particle [m]
+    double cell_size, spacing;  ///< of the particle's cell, and of the particles there [m]
+    /// A point at the surface may be meant a little above it.
+    bool near_soil() const { return distance <= 2 * cell_size; }
+    /// Places in a cell, if that is not slender, are nearer to a particle than particles to one another.
+    bool in_soil() const { return distance <= spacing; }
   };
   Found nearest_particle(const std::string &name, const Vec<dim> &place) const;
 

@@ -279,8 +279,21 @@ TEST(FollowedLines, move_with_the_soil) {
   for (size_t i = 5; i < time.size(); ++i) {
     EXPECT_EQ(time[i], time[i - i % 5]);
     const double fall = 5 * time[i] * time[i] * (1 + 1 / step[i]);  // of Euler's steps
-    if (time[i] < 0.004) EXPECT_NEAR(y[i] - y[i % 5], -fall, 1e-3 * fall) << time[i];
+    if (time[i] < 0.004) {
+      EXPECT_NEAR(y[i] - y[i % 5], -fall, 1e-3 * fall) << time[i];
+    }
   }
+}
+
+/// Particles stand for the places in the soil, not for those in the air above it, where they would be the same again.
+TEST(FollowedLines, end_with_the_soil) {
+  const FollowedLine line(column +
+                              "[output.line.up]\npoints = [[0.5, 0.5], [0.5, 2]]\nspacing = 0.1\n"
+                              "[[stage]]\nduration = 0.001\n",
+                          "up");
+  const auto &distance = line.columns.at("distance_m");
+  for (const double s : distance) EXPECT_LT(s, 0.55);
+  EXPECT_NEAR(*std::max_element(distance.begin(), distance.end()), 0.5, 1e-9) << "the surface is the soil's too";
 }
 
 TEST(FollowedLines, are_refused_where_they_are_none) {
