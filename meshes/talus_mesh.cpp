@@ -340,6 +340,8 @@ int parse(int argc, char **argv, Request &request) {
   app.add_option("--base", request.base, "of terrain: elevation of a flat base [m]; default: the ground is the base");
   app.add_option("--air", terrain.air, "of terrain: height of the free space above the ground [m]");
   app.add_option("--far-size", terrain.far_size, "of terrain: cell size far from the slide and the ground [m]");
+  app.add_option("--halvings", terrain.halvings,
+                 "of terrain: how often a run will halve the edges of the cells, for warnings about their size");
   app.add_option("--slip-surface", terrain.slip_surface, "of terrain: a grid of the elevations of a slip surface");
   app.add_option("--ellipsoid", request.ellipsoid,
                  "of terrain: a slip surface x y z a b c dip dip_direction [m, degrees]")
@@ -367,8 +369,8 @@ int parse(int argc, char **argv, Request &request) {
   if (!is_section(request.source))
     read_terrain(app, request);
   else
-    for (const char *option : {"--window", "--step", "--base", "--air", "--far-size", "--slip-surface", "--ellipsoid",
-                               "--outline", "--depth", "--layer", "--way"})
+    for (const char *option : {"--window", "--step", "--base", "--air", "--far-size", "--halvings", "--slip-surface",
+                               "--ellipsoid", "--outline", "--depth", "--layer", "--way"})
       if (app.count(option)) complain(std::string(option) + " belongs to terrain, and the source is a section");
   const auto &b = request.boxes;
   for (std::size_t i = 0; i + 4 < b.size(); i += 5)

@@ -458,10 +458,14 @@ std::vector<std::string> Terrain::doubts() const {
                                 " degrees: dip direction is the azimuth (clockwise from north) towards which the "
                                 "surface dips. Is it meant to dip the other way?"));
   const double deep = slide_volume_ / slide_area_;
-  const double on_way = options_.way.empty() ? options_.far_size : options_.size;
+  const double meshed = options_.way.empty() ? options_.far_size : options_.size,
+               on_way = std::ldexp(meshed, -options_.halvings);
   if (on_way > deep)
     sentences.push_back(text_of(
         options_.way.empty() ? "cells grow to " : "cells measure ", length(on_way),
+        options_.halvings > 0 ? text_of(" (", length(meshed), " with edges halved ",
+                                        options_.halvings == 1 ? "once" : text_of(options_.halvings, " times"), ")")
+                              : "",
         " on the way of the slide, which is ", length(deep),
         " thick on average and thinner as it spreads: a flow that is not as deep as a cell is not resolved. Take "
         "cells of a third of its depth or less there, by --far-size and --size, or by --size along a line --way"));

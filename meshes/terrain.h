@@ -35,6 +35,7 @@ struct TerrainOptions {
   std::string file;
   double size = 0;                     ///< of cells in and around the slide, at the ground [m]
   double far_size = 0;                 ///< of cells far away [m]; 0: the same
+  int halvings = 0;                    ///< of their edges in the run, which the mesh does not have
   std::vector<double> window;          ///< west, south, east, north in the coordinates of the grid [m]; empty: all
   int step = 1;                        ///< every so many-th row and column of the grid is used
   std::optional<double> base;          ///< elevation of a flat base; none: the mesh begins at the bed

@@ -70,6 +70,7 @@ std::vector<std::string> of_terrain(const Scene &scene, const std::string &file)
   if (!t.base.empty()) add("--base", t.base);
   if (t.air > 0) add("--air", {t.air});
   if (t.far_size > 0) add("--far-size", {t.far_size});
+  if (scene.mesh.halvings > 0) arguments.insert(arguments.end(), {"--halvings", std::to_string(scene.mesh.halvings)});
   if (!t.slip_surface.empty())
     arguments.insert(arguments.end(), {"--slip-surface", beside_scene(scene, t.slip_surface)});
   if (!t.outline.empty()) arguments.insert(arguments.end(), {"--outline", beside_scene(scene, t.outline)});

@@ -360,6 +360,9 @@ duration = 1
   const Ending whole = look(20, 19);  // what lies uphill is not asked for
   EXPECT_TRUE(whole.says("by mesh.terrain.far_size and mesh.size")) << "keys, no options: " << whole.output;
   EXPECT_FALSE(whole.says("--size"));
+  EXPECT_TRUE(whole.says("cells grow to 8 m on the way"));
+  const Ending halved = talus(folder, {"check", "scene.toml", "--json", "--set", "mesh.halvings=1"});
+  EXPECT_FALSE(halved.says("on the way")) << "of 4 m they are smaller than the slide is thick: " << halved.output;
   const double exact =
       1 / std::hypot(std::cos(26.565 * std::acos(-1) / 180) / 6, std::sin(26.565 * std::acos(-1) / 180) / 30);
   EXPECT_NEAR(number(whole, "height_m"), exact, 3) << "to a cell; elevations range over 27 m";

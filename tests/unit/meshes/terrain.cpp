@@ -505,6 +505,11 @@ TEST_F(TerrainFiles, AreFineAlongTheWay) {
   o.size = 4, o.far_size = 30;
   o.ellipsoid = Ellipsoid{{east + 50, south + 80, plane(east + 50, 0)}, {30, 20, 12}, 17 * radian, 90 * radian};
   EXPECT_TRUE(doubts(o, "cells grow to 30 m on the way"));
+  o.halvings = 1;
+  EXPECT_TRUE(doubts(o, "cells grow to 15 m (30 m with edges halved once) on the way"));
+  o.halvings = 2;  // 7.5 m
+  EXPECT_FALSE(doubts(o, "on the way"));
+  o.halvings = 0;
   EXPECT_GT(Terrain(o).size_at(180, 80, 50), 15);
   o.way = {east + 50, south + 80, east + 120, south + 80, east + 200, south + 100}, o.way_width = 40;
   const Terrain terrain(o);
