@@ -275,7 +275,7 @@ PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double 
     PetscCall(make_solver());
   }
   if (!ended() && bases_.any() && !bare) PetscCall(relaxed());
-  if (!ended() && bases_.any()) outcome->moving = moving_where_;
+  if (!ended() && bases_.any()) outcome->moved_most = moving_where_;
   outcome->converged = balanced_, outcome->stopped = stopped_;
   if (outcome->converged) PetscCall(commit(x_, softening));
   PetscFunctionReturn(0);

@@ -30,6 +30,8 @@ struct StepOutcome {
   bool fails = false;     ///< a mechanism of failure was found for the loads at the end of the path
   bool stopped = false;   ///< somebody asked the program to stop
   std::string moving;     ///< soil on bases that moves although its prop gives way: where, how much, and on what
+  std::string
+      moved_most;  ///< soil on bases in the last of iterations that were lost, which may move for no other reason
 };
 
 /// Work on the soil along the paths so far, by forces that are the means of those at the ends of each step: exact where

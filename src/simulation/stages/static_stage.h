@@ -135,6 +135,7 @@ class StaticStage : public StageRunner<dim> {
         text << ", and the displacement ran away";
       text << ")";
       if (!path_.last.moving.empty()) text << "; " << path_.last.moving;
+      if (!path_.last.moved_most.empty()) text << "; in the last iteration " << path_.last.moved_most;
       const bool softened = soil_moves() && run_.statics.softening_strain() > begin_strain_;
       if (softened)
         text << "; its soil softens, and beyond its peak there may be no equilibrium that stays near: motion goes on "
@@ -144,6 +145,10 @@ class StaticStage : public StageRunner<dim> {
             << "; a base or soil that is too weak there has no equilibrium: let it start by motion, in a dynamic stage "
                "with damping, or make base or soil stronger there; finer or coarser cells may do where it is little "
                "soil";
+      else if (soil_moves() && !path_.last.moved_most.empty())
+        text << "; that need not mean that base or soil is too weak there: a few cells at the rim of the soil that "
+                "yield can keep the iterations from an equilibrium of the rest. Motion shows whether it stands: a "
+                "dynamic stage with damping, from the start or (when_lost = \"next_stage\") from here";
       else if (soil_moves() && !path_.last.fails)
         text << "; the slope may be too weak to stand, or other load_steps (here " << stage_.load_steps
              << ") may help, or, where the stage is the first, initial_stress = \"k0\"";
@@ -165,6 +170,9 @@ class StaticStage : public StageRunner<dim> {
     run_.dynamics.set_loading(stage_, 0);
     const Balance sums = run_.balance();
     if (sums.applied > 0) text << "; unbalanced force ratio of the particles that take it over " << sums.ratio();
+    if (sums.applied > 0 && sums.ratio() > swings)
+      text << ", by which soil at rest swings as soon as it may move: quasi_static.elements = \"patches\" or a dynamic "
+              "stage with damping after this one lets it rest";
     run_.recorder.note(text.str());
     run_.progress.met = true;
     if (sets_pressure()) run_.statics.take_seeped_pressure();
@@ -172,6 +180,7 @@ class StaticStage : public StageRunner<dim> {
     run_.write_checkpoint();
   }
 
+  static constexpr double swings = 0.01;    ///< unbalanced force ratio
   static constexpr double ran_away = 1000;  ///< displacement of a step that is none of soil [m]
   Path path_;
   double begin_ = 0, begin_load_ = 0;  ///< [s]
