@@ -25,6 +25,7 @@ BASE = np.array([(-150, 1149), (0, 1040), (550.6, 640), (1255, 640), (1755, 1030
 SOFTER = "functions.phi_b=[[0, 12], [150, 12], [151, 5]]"  # the base keeps 5 degrees
 PER_SECOND = 4  # rows of the history
 LOADS = (0, 20, 30, 40, 60, 150, 155, 160, 170, 180)  # load times of the frames [s]
+FAST_LOADS = (155, 160, 170, 180)  # of those after the base has lost its friction [s]
 STRAINS, INTACT = (1e-3, 3), "#dfe3e8"  # ends of the scale of plastic strain, and the colour of rock with less
 KINKS = ((550.6, "^", "kink below the slope"), (1255, "o", "kink at the far bank"))  # of the base, which points pass [m]
 SPANS = ((0, 20), (20, 30), (30, 40), (40, 50), (50, 60), (60, 70), (70, 80))  # load times between which the plane is looked for [s]
@@ -34,14 +35,14 @@ def level_at(results, t):
     return np.interp(t, *np.array(results.scene["functions"]["hw"], float).T)
 
 
-def draw_frames(results, path):
+def draw_frames(results, loads, path):
     (left, right), (low, high) = (-150, 1755), (600, 1150)
     wide, beside, title, width = 4.35, 0.25, 0.42, 9.8  # of a frame, between frames, above each, of the picture [inch]
     tall = wide * (high - low) / (right - left)
-    height = 0.1 + len(LOADS) // 2 * (tall + title) + 1.15
+    height = 0.1 + len(loads) // 2 * (tall + title) + 1.15
     figure = plt.figure(figsize=(width, height))
     frame, colours = Frame((left, low), (right, high), 900), {"cmap": style.colours_of("plastic_strain").with_extremes(under=INTACT), "norm": LogNorm(*STRAINS)}
-    for k, t in enumerate(LOADS):
+    for k, t in enumerate(loads):
         row, column = divmod(k, 2)
         axes = figure.add_axes(((0.62 + column * (wide + beside)) / width, 1 - (0.1 + (row + 1) * (tall + title)) / height, wide / width, tall / height))
         snapshot = measures.at_load(results, t)
@@ -50,10 +51,10 @@ def draw_frames(results, path):
         picture = axes.imshow(np.ma.array(values[np.maximum(owner, 0)], mask=owner < 0), origin="lower", extent=frame.extent(), interpolation="nearest", **colours)
         axes.plot(*BASE.T, color=style.INK, linewidth=1)
         axes.set(xlim=(left, right), ylim=(low, high), xticks=range(0, 1751, 250), yticks=range(600, 1101, 100))
-        axes.tick_params(labelleft=column == 0, labelbottom=row == len(LOADS) // 2 - 1)
+        axes.tick_params(labelleft=column == 0, labelbottom=row == len(loads) // 2 - 1)
         if column == 0:
             axes.set_ylabel("elevation [m]")
-        if row == len(LOADS) // 2 - 1:
+        if row == len(loads) // 2 - 1:
             axes.set_xlabel("x [m]")
         base = np.interp(t, *np.array(results.scene["functions"]["phi_b"], float).T)
         axes.set_title(f"t = {t} s, water {level_at(results, t):.0f} m, base {base:.0f}°", loc="left", pad=3, size=8.5)
@@ -170,7 +171,10 @@ if __name__ == "__main__":
         if arguments.program:
             arguments.softer = folder
             subprocess.run([arguments.program, "run", HERE / "scene.toml", "-o", folder, "--force", "--no-pictures", "--set", SOFTER], check=True)
-        draw_motion(run, Results(arguments.softer) if arguments.softer else None, HERE / "motion.png")
-    draw_frames(run, HERE / "frames.png")
+        softer = Results(arguments.softer) if arguments.softer else None
+        draw_motion(run, softer, HERE / "motion.png")
+        if softer:
+            draw_frames(softer, FAST_LOADS, HERE / "frames_5.png")
+    draw_frames(run, LOADS, HERE / "frames.png")
     draw_plane(run, HERE / "plane.png")
     draw_points(run, HERE / "friction.png")
