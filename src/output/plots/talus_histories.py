@@ -34,7 +34,10 @@ def draw_histories(results, folder):
                 lines = lines | {"potential": lines["potential"] + potential_that_left(results, history.time)}
             pictures.append((quantity, draw_energy(history, lines, results.title, results.per_metre(""), folder / "energy.png")))
         elif quantity.endswith("_ledger"):
-            pictures.append((quantity, draw_ledger(history, quantity, lines, results.title, results.per_metre(""), folder / f"{quantity}.png")))
+            begin, ramp = end_of_dry_ramp(results.scene, history)
+            shown = history.rows(range(begin, len(history.time)))
+            pictures.append((quantity, draw_ledger(shown, quantity, {name: values[begin:] for name, values in lines.items()}, results.title,
+                                                   results.per_metre(""), folder / f"{quantity}.png", ramp)))
         else:
             path = folder / f"history_{quantity}.png"
             pictures.append((quantity, draw_curves(history, quantity, unit, lines, results.title, results.per_metre(""), path, base_friction(results.scene, quantity),
@@ -105,15 +108,27 @@ def drawn_energies(lines):
     return {names.get(name, name): values - values[0] if name == "potential" else values for name, values in lines.items()}
 
 
-def draw_ledger(history, quantity, lines, title, per, path):
-    """What has been gained, what has come in through boundaries and what was given, and below the error of the sum."""
-    gains = {"gained": lines["stored"] - lines["stored"][0], "came in": -lines["out"], "was given": lines["given"]}
+def end_of_dry_ramp(scene, history):
+    """Row and name of the stage in which gravity grew while no water flowed; 0 and "" without one. Suction grows with gravity there, theory (5.3), so that the
+    pores begin full, and the water that the ramp takes from them would be larger than all that comes in later."""
+    ramps = [stage.get("name") for stage in scene.get("stage", []) if stage.get("gravity_ramp") and not stage.get("pore_flow", True)]
+    rows = [k for k, name in enumerate(history.stage) if name in ramps]
+    return (rows[-1], history.stage[rows[-1]]) if rows and rows[-1] < len(history.time) - 2 else (0, "")
+
+
+def draw_ledger(history, quantity, lines, title, per, path, ramp=""):
+    """What has been gained, what has come in through boundaries and what was given, since the first row, and below the error of the sum. `ramp` is the stage
+    that ends with this row."""
+    since = {name: values - values[0] for name, values in lines.items()}
+    gains = {"gained": since["stored"], "came in": -since["out"], "was given": since["given"]}
     if ESCAPED in lines:
-        gains["left with soil"] = lines[ESCAPED]
+        gains["left with soil"] = since[ESCAPED]
     gains = {name: values for name, values in gains.items() if np.ptp(values) > 0}
     figure, (upper, lower) = plt.subplots(2, 1, sharex=True, figsize=(7.6, 4.9), gridspec_kw={"height_ratios": [3, 1.4]})
     plot_lines(upper, history, gains or {"gained": 0 * history.time}, "kg", "mass", per)
     plot_lines(lower, history, {"error": lines["error"]}, "kg", "error", per, style.INK)
+    if ramp:
+        figure.text(0.985, 0.1 / figure.get_figheight(), f"since the end of stage {ramp}", fontsize=7.5, color=style.SOFT, ha="right")
     return finish(figure, [upper, lower], history, capital(words(quantity)), title, path)
 
 

@@ -57,6 +57,13 @@ def time_of_failure(results):
         return np.inf
 
 
+def name_of_mean_stress(results):
+    """What the mean stress of the history is. By theory (2.10) it is net stress where the pores have suction, unless the scene asks for Bishop's."""
+    suction = any(name.endswith("_suction_Pa") for name in results.history.columns)
+    net = suction and results.scene.get("water", {}).get("stress", "net") == "net"
+    return "mean stress p', effective, and net where there is suction" if net else "mean effective stress p'"
+
+
 def label_of(name, time, known):
     """The name of a point, with the time from which on there is no soil at it, if its path ends before the run."""
     last = np.flatnonzero(np.isfinite(known))[-1]
@@ -95,7 +102,7 @@ def name_envelopes(axes, lines):
 
 
 def draw_stress_paths(results, folder):
-    """stress_paths.png: deviator over mean effective stress with the strength in triaxial compression, and mobilised friction over time.
+    """stress_paths.png: deviator over mean effective or net stress with the strength in triaxial compression, and mobilised friction over time.
     Returns [("stress paths", path)]; nothing without named points or with fewer than three rows of the history."""
     paths = paths_of(results.history)
     if not paths:
@@ -134,7 +141,7 @@ def draw_stress_paths(results, folder):
             size, of = readable_unit(suction, "Pa")
             start = ", ".join([body] * (len(results.bodies) > 1) + [state] * (len({line[0] for line in lines}) > 1))
             labels.append((start, f"s = {size * suction:g} {of}" if len({line[1] for line in lines}) > 1 else "", slope, factor * intercept))
-    left.set(xlabel=f"mean effective stress p' [{unit}]", ylabel=f"q [{unit}]", xlim=reach, ylim=(0, 1.35 * top))
+    left.set(xlabel=f"{name_of_mean_stress(results)} [{unit}]", ylabel=f"q [{unit}]", xlim=reach, ylim=(0, 1.35 * top))
     if labels:
         name_envelopes(left, labels)
     said = ["open: start", "full: end", "diamond: failure, thin after it" * np.isfinite(failed), "grey: strength in triaxial compression" * bool(labels)]

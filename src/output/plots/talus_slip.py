@@ -12,6 +12,8 @@ from talus_views import spacing_of
 LEAST = 0.2  # of the largest plastic strain: soil with less is no part of the surface
 STEEPEST = 3  # rows by which the surface may rise or fall from one column to the next: 72 degrees
 COLUMN = 2  # width of a column and height of a row, in distances of neighbouring particles
+RUN = 6  # columns in a row that are worth a word
+BASES = ("friction", "heated_friction")  # kinds of boundary on which soil slips
 NEAR = 0.15  # of the height of the soil: a line that ends deeper below the ground has not come out
 
 
@@ -148,6 +150,29 @@ def said_of_ends(results, line, place, snapshot):
     return f"the line ends inside the soil, {ends}: no connected path of {band} leads from ground to ground at t = {snapshot.time:g} s; {more}"
 
 
+def said_of_line(results, line, place, strain):
+    """Sentences about parts of the line that are no slip surface: those along the ground, those in soil that has hardly sheared, and that slip on a base is
+    none of its strain."""
+    row, top = COLUMN * spacing_of(results), np.percentile(strain, 99.8)
+    near = [np.linalg.norm(place - point, axis=1) <= row for point in line]
+    ground = [place[np.abs(place[:, 0] - x) <= row, 1].max(initial=y) - y <= row for x, y in line]
+    weak = [strain[mine].max(initial=0) < LEAST * top for mine in near]
+    said = []
+    if along := spans(line, ground):
+        said.append(f"the line follows the ground {along}: soil has sheared at the surface there, and this part is no slip surface")
+    if without := spans(line, weak):
+        said.append(f"the line passes soil with less than {LEAST:g} of the largest plastic strain {without}: the band is not continuous there")
+    if bases := [name for name, boundary in results.scene.get("boundary", {}).items() if boundary.get("kind") in BASES]:
+        said.append(f"slip on the boundary {' and '.join(bases)} is no plastic strain: where soil slides on it the line, which shows shear in the soil alone, need not follow it")
+    return said
+
+
+def spans(line, marked):
+    """Where RUN points of the line or more in a row are marked, in words."""
+    edges = np.flatnonzero(np.diff([0, *map(int, marked), 0]))
+    return " and ".join(f"from x = {line[a, 0]:.4g} to {line[b - 1, 0]:.4g} m" for a, b in zip(edges[::2], edges[1::2]) if b - a >= RUN)
+
+
 def smoothed(line):
     """Elevations as medians of three neighbours, so that one column beside the band does not kink it."""
     inner = np.median([line[:-2, 1], line[1:-1, 1], line[2:, 1]], axis=0)
@@ -167,6 +192,8 @@ def draw_slip_surface(results, folder, time=None):
     part = "part of the slip surface" if buried_ends(line, place) else "slip surface"
     painter.picture_of_line(undeformed, "plastic_strain", line, f"{part}, in the section as it was at the start", folder / "slip_surface.png")
     if said := said_of_ends(results, line, place, snapshot):
+        print(f"talus: {said}", file=sys.stderr)
+    for said in said_of_line(results, line, place, strain):
         print(f"talus: {said}", file=sys.stderr)
     if results.snapshots[0].position().shape[1] == 2:
         print("[output.line.slip_surface]\npoints = [" + ", ".join(f"[{x:.4g}, {y:.4g}]" for x, y in line) + "]")

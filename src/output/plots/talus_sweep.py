@@ -18,11 +18,13 @@ from talus_outcomes import FAILS, MOVES, STANDS, outcome
 from talus_results import UNITS, Results
 import talus_style as style
 from talus_style import plt
-from talus_table import lines_of
+from talus_table import folded, lines_of
 from talus_units import with_unit, words
 
 NO_SLIDE = ("travel_distance_m", "volume_of_slide_m3", "depth_of_slide_m")  # 0 where the slope stands
 LEFT_OUT = ("cell_m", "deepest_at_x_m")  # outcomes that no chart shows
+MOST = 5  # named points that charts and the table show
+INSIDE = 6  # lines whose names have room in their chart
 TITLES = {"load_time_of_failure_s": "time t of the loads at failure [s]", "travel_distance_m": "travel distance, from the rear of the slide to its front [m]",
           "volume_of_slide_m3": "volume of the slide [m³]", "moving_volume_m3": "volume that moves [m³]", "depth_of_slide_m": "depth of the slip surface [m]"}
 
@@ -94,11 +96,35 @@ def series_lines(rows):
     return [f"{row['series']}, {text}" if row["series"] in several else row["series"] for row, text in zip(rows, further)]
 
 
+def points_of(rows):
+    """Names of the points of these runs, and of those MOST that are shown if there are more: evenly from the one that moved farthest to the one that moved
+    least."""
+    moved = {}
+    for row in rows:
+        for key, value in row.items():
+            if key.endswith("_displacement_m") and key != "largest_displacement_m" and isinstance(value, float):
+                name = key[: -len("_displacement_m")]
+                moved[name] = max(moved.get(name, 0.0), value)
+    order = sorted(moved, key=lambda name: -moved[name])
+    shown = {order[k] for k in np.linspace(0, len(order) - 1, MOST).round().astype(int)} if len(order) > MOST else set(order)
+    return list(moved), [name for name in moved if name in shown]
+
+
+def said_of_points(rows):
+    """A sentence about points that are left out; empty if there are none."""
+    names, shown = points_of(rows)
+    if len(shown) == len(names):
+        return ""
+    return f"Of {len(names)} named points {len(shown)} are shown, evenly from the one that moved farthest to the one that moved least; sweep.csv has all"
+
+
 def charted(rows, in_plane=False):
     """The outcomes that differ between runs, those of the same kind together: [(title, {label: column})]."""
-    names = [key for key in dict.fromkeys(key for row in rows for key in row)
-             if key not in LEFT_OUT and any(isinstance(row.get(key), float) for row in rows)]
     points = {"displacement at the end [m]": "_displacement_m", "largest speed [m/s]": "_largest_speed_m_s"}
+    known, shown = points_of(rows)
+    hidden = {name + ending for name in set(known) - set(shown) for ending in points.values()}
+    names = [key for key in dict.fromkeys(key for row in rows for key in row)
+             if key not in LEFT_OUT and key not in hidden and any(isinstance(row.get(key), float) for row in rows)]
     charts = []
     for name in names:
         kind = next((title for title, ending in points.items() if name.endswith(ending)), None)
@@ -131,21 +157,23 @@ def never_failed(rows, charts):
 
 
 def draw_charts(axes, rows, charts):
-    """The outcomes against the one key that these runs vary."""
+    """The outcomes against the one key that these runs vary. Returns the lines of charts that have no room for their names."""
     numbers = [number(row["value"]) for row in rows]
     choices = list(dict.fromkeys(row["value"] for row in rows))
     numeric = None not in numbers
     place = numbers if numeric else [choices.index(row["value"]) for row in rows]
     line = series_lines(rows)
     series = list(dict.fromkeys(line))
+    labels = list(dict.fromkeys(label for _, of in charts if len(of) > 1 for label in of))  # one colour in all charts
+    outside = []
     for one, (title, of) in zip(axes, charts):
-        for k, (label, column) in enumerate(of.items()):
+        for label, column in of.items():
             for n, name in enumerate(series):
                 known = sorted((place[i], row[column], row["state"]) for i, row in enumerate(rows) if line[i] == name and row.get(column) is not None)
                 if not known:
                     continue
                 x, y, _ = zip(*known)
-                colour = style.LINES[(k if len(of) > 1 else n) % len(style.LINES)]
+                colour = style.LINES[(labels.index(label) if len(of) > 1 else n) % len(style.LINES)]
                 legend = ", ".join(filter(None, (label, name if len(series) > 1 else "")))
                 one.plot(x, y, ("-", "--", ":", "-.")[n % 4 if len(of) > 1 else 0], color=colour, lw=1.1, label=legend)
                 for a, b, state in known:
@@ -156,7 +184,10 @@ def draw_charts(axes, rows, charts):
             elif "load_time_of_failure_s" in of.values() and row in never_failed(rows, charts):
                 mark(one, x, 1, row["state"], style.LINES[series.index(line[i]) % len(style.LINES)], never=True)
         if any(any(each) for each in (of, series[1:])):
-            one.legend(fontsize=7.5)
+            if len(one.get_legend_handles_labels()[0]) > INSIDE:
+                outside += one.get_legend_handles_labels()[0]
+            else:
+                one.legend(fontsize=7.5)
         one.set_xlabel(textwrap.fill(axis_title(rows), 38, break_on_hyphens=False))
         one.set_ylabel(textwrap.fill(title, 34))
         low, high = one.get_ylim()
@@ -170,6 +201,7 @@ def draw_charts(axes, rows, charts):
         if not numeric:
             one.set_xlim(-0.05 * (len(choices) - 1) - 0.05, 1.05 * (len(choices) - 1) + 0.05)
             one.set_xticks(range(len(choices)), [textwrap.fill(choice, 14) for choice in choices])
+    return outside
 
 
 def title_of_runs(folder, runs):
@@ -186,11 +218,12 @@ def draw(rows, path, in_plane=False, title=""):
     columns = min(3, max(len(charts) for _, charts in parts))
     lines = [-(-len(charts) // columns) for _, charts in parts]
     figure, axes = plt.subplots(sum(lines), columns, figsize=(3.9 * columns, 3.1 * sum(lines)), squeeze=False, layout="constrained")
+    outside = []
     for n, (part, charts) in enumerate(parts):
         own = axes[sum(lines[:n]):sum(lines[: n + 1])].ravel()
         for one in own[len(charts):]:
             one.remove()
-        draw_charts(own, part, charts)
+        outside += draw_charts(own, part, charts)
     states = {row.get("state") for row in rows}
     handles = [plt.Line2D([], [], marker=MARKS[state][0], color=style.SOFT, ls="", ms=5, fillstyle=MARKS[state][1], markerfacecoloralt="white",
                           mfc="white" if MARKS[state][1] == "none" else None, label=LEGEND[state]) for state in MARKS if state in states]
@@ -198,7 +231,10 @@ def draw(rows, path, in_plane=False, title=""):
         handles.append(plt.Line2D([], [], ls="", label=NEVER))
     keys = dict.fromkeys(words(row["key"].rpartition(".")[2]) for row in rows)
     style.headline(figure, f"Outcomes against {', '.join(filter(None, keys)) or 'the series'}", title)
-    style.legend_below(figure, handles)
+    if said := said_of_points(rows):
+        handles.append(plt.Line2D([], [], ls="", label=said.partition(",")[0]))
+    handles += {(one.get_label(), one.get_color(), one.get_linestyle()): one for one in outside}.values()
+    style.legend_below(figure, handles, min(len(handles), 2 * columns + 1) if outside else None)
     return style.save(figure, path)
 
 
@@ -229,6 +265,8 @@ def main():
         runs = list(csv.DictReader(file))
     rows, in_plane = outcomes(given.folder, runs), plane(given.folder, runs)
     print("\n".join(table(rows, in_plane)))
+    if said := said_of_points(rows):
+        print(folded(said))
     names = list(dict.fromkeys(key for row in rows for key in row))
     with open(given.folder / "sweep.csv", "w", newline="") as file:
         writer = csv.DictWriter(file, names, restval="", lineterminator="\n")

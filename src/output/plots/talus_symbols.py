@@ -5,12 +5,14 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.patches import Polygon
 from matplotlib.patheffects import withStroke
+from matplotlib.transforms import Bbox
 
 import talus_style as style
 from talus_modelled import ON_SOIL, WATER
 from talus_units import quantity
 
 SYMBOL = 0.11  # size of a boundary's symbol [inch]
+DOT = 4.2  # size of the dot of a named point [pt]
 WHITE = withStroke(linewidth=2.2, foreground="white")
 
 
@@ -143,10 +145,12 @@ ABOVE = [(0, y, align, "baseline") for y in (5, -11, 14, -20) for align in ("cen
 
 
 def keep_apart(axes, lines=()):
-    """Moves names in axes that stand on other texts: those of points and followed lines to another side of them, those of soils to another of
+    """Moves names in axes that stand on other texts or on named points: those of points and followed lines to another side of them, those of soils to another of
     their `places`, where none of `lines` (each [n, 2]) runs through them either. Texts that cannot move stay where they are."""
     renderer = axes.figure.canvas.get_renderer()
     placed = [text.get_window_extent(renderer) for text in axes.texts if text.get_text() and not hasattr(text, "places")]
+    placed += [Bbox([place, place]).padded(DOT / 2 * axes.figure.dpi / 72) for dot in axes.lines if hasattr(dot, "of_point")
+               for place in axes.transData.transform(dot.get_xydata())]
     marks = np.array([point for line in lines for point in axes.transData.transform(between(np.asarray(line), axes))]).reshape(-1, 2)
 
     def crowd(text, through):
@@ -198,7 +202,8 @@ def named_points(axes, model, flat):
                              zorder=9, path_effects=[WHITE], style="italic")
         movable(name, [(*name.get_position(), name.get_ha(), "baseline"), *ABOVE])
     for point, at in zip(model.data["points"], places):
-        axes.plot(*at, "o", ms=4.2, mfc=style.INK, mec="white", mew=0.8, zorder=9)
+        [dot] = axes.plot(*at, "o", ms=DOT, mfc=style.INK, mec="white", mew=0.8, zorder=9)
+        dot.of_point = True
         movable(axes.annotate(point["name"], at, (4, 4), textcoords="offset points", fontsize=8, zorder=9, path_effects=[WHITE]), AROUND)
 
 

@@ -32,14 +32,14 @@ from talus_histories import base_friction, draw_histories, drawn_energies, poten
 from talus_measures import flow  # noqa: E402
 from talus_moments import chosen_snapshots, since_reset, telling, with_stress  # noqa: E402
 from talus_outcomes import FAILS, STANDS  # noqa: E402
-from talus_paths import grouped, label_of, name_envelopes  # noqa: E402
+from talus_paths import grouped, label_of, name_envelopes, name_of_mean_stress  # noqa: E402
 from talus_report import bases, key_results, motion_at_end, ways_out  # noqa: E402
 from talus_results import MECHANISM, NOT_ENDED, History, Results, still_moving  # noqa: E402
 from talus_relief import Eye  # noqa: E402
 from talus_sections import Painter  # noqa: E402
-from talus_slip import said_of_ends, slip_surface  # noqa: E402
+from talus_slip import said_of_ends, said_of_line, slip_surface  # noqa: E402
 from talus_soils import moved_away, painted, tints  # noqa: E402
-from talus_symbols import keep_apart  # noqa: E402
+from talus_symbols import keep_apart, named_points  # noqa: E402
 from talus_tiles import Frame  # noqa: E402
 from talus_views import Oblique, View, views_of  # noqa: E402
 
@@ -275,6 +275,18 @@ class Labels(unittest.TestCase):
         figure.canvas.draw()
         return figure, axes
 
+    def test_of_points_of_a_model_do_not_cover_the_dots_of_others(self):
+        figure, axes = talus_sweep.plt.subplots()
+        axes.set(xlim=(0, 50), ylim=(0, 20))
+        points = {"D2": (23.679, 8.944), "S2": (24.6, 9.7)}  # S2 where the name of D2 would stand
+        model = types.SimpleNamespace(data={"lines": [], "points": [{"name": name, "position": place} for name, place in points.items()]})
+        named_points(axes, model, np.asarray)
+        keep_apart(axes)
+        for text in axes.texts:
+            for name, place in points.items():
+                self.assertFalse(text.get_window_extent().contains(*axes.transData.transform(place)), (text.get_text(), name))
+        talus_sweep.plt.close(figure)
+
     def test_of_points_near_the_upper_edge_stand_below_them(self):
         painter = Painter.__new__(Painter)
         figure, axes = self.with_points({"crest": (5.0, 9.9), "toe": (9.0, 2.0)})
@@ -313,6 +325,12 @@ class Paths(unittest.TestCase):
         time, known = np.arange(5.0), np.array([1.0, 2, 3, np.nan, np.nan])
         self.assertEqual(label_of("crest", time, known), "crest, no stress after t = 2.00 s")
         self.assertEqual(label_of("left_face", time, np.ones(5)), "left face")
+
+    def test_name_the_mean_stress_that_the_pores_leave(self):
+        moist, full = ({name: np.zeros(2) for name in names} for names in (("toe_deviator_Pa", "toe_suction_Pa"), ("toe_deviator_Pa",)))
+        for columns, water, net in ((moist, {}, True), (moist, {"stress": "bishop"}, False), (full, {}, False)):
+            results = types.SimpleNamespace(history=types.SimpleNamespace(columns=columns), scene={"water": water})
+            self.assertEqual("net" in name_of_mean_stress(results), net)
 
 
 class Energies(unittest.TestCase):
@@ -606,6 +624,21 @@ class Histories(unittest.TestCase):
         history = types.SimpleNamespace(time=time, groups=lambda: {("load_time", "s"): {"": time}}, points=lambda time: {})
         self.assertEqual(draw_histories(types.SimpleNamespace(history=history, scene={}, snapshots=[]), None), [])
 
+    def test_of_water_begin_when_suction_no_longer_grows_with_gravity(self):
+        history = History.__new__(History)
+        history.time, history.step, history.stage = np.arange(6.0), np.arange(6), ["start", "gravity", "gravity", "rain", "rain", "rain"]
+        history.columns = {"water_kg": np.array([90.0, 60, 50, 52, 55, 57]), "water_out_kg": np.array([0.0, 0, 0, -2, -5, -7]),
+                           "water_given_kg": np.array([0.0, -30, -40, -40, -40, -40]), "water_error_kg": np.zeros(6)}
+        for flows, first in ((False, 2.0), (True, 0.0)):
+            scene, seen = {"stage": [{"name": "gravity", "gravity_ramp": 1, "pore_flow": flows}, {"name": "rain"}]}, {}
+            results = types.SimpleNamespace(history=history, scene=scene, snapshots=[], title="", per_metre=lambda text: text)
+            with unittest.mock.patch.object(talus_sweep.style, "save", lambda figure, path: seen.update({path.name: figure})):
+                draw_histories(results, pathlib.Path())
+            upper = seen["water_ledger.png"].axes[0]
+            gained = {line.get_label(): line for line in upper.lines}["gained"]
+            self.assertEqual((gained.get_xdata()[0], gained.get_ydata()[0], gained.get_ydata()[-1]), (first, 0, -33 if flows else 7))
+            self.assertEqual("since the end of stage gravity" in [text.get_text() for text in seen["water_ledger.png"].texts], not flows)
+
     def test_of_displacement_begin_at_the_last_reset(self):
         history = History.__new__(History)
         history.time, history.step, history.stage = np.arange(6.0), np.arange(6), ["start", "gravity", "gravity", "rain", "rain", "rain"]
@@ -742,7 +775,7 @@ class Sheared:
         x, y = np.meshgrid(np.arange(0.125, 20, 0.25), np.arange(0.125, 10, 0.25))
         self._place = np.column_stack([x.ravel(), y.ravel()])
         self._strain = np.array([strain(*place) for place in self._place])
-        self.time, self.folder, self.snapshots = 0, "here", [self]
+        self.time, self.folder, self.snapshots, self.scene = 0, "here", [self], {}
 
     def __contains__(self, name):
         return name == "plastic_strain"
@@ -834,6 +867,21 @@ class SlipSurface(unittest.TestCase):
         self.assertIn("2.9 m below the ground on the left and 2.9 m below the ground on the right", said)
         self.assertIn("no connected path", said)
         self.assertIn("the last time of the run", said)
+
+    def test_says_where_it_is_none(self):
+        # a band 3 m below the ground that is followed by one along the ground, and one that is interrupted for 3 m
+        results = Sheared(lambda x, y: float(abs(y - (7 if x < 10 else 9.7 if x > 11 else 7 + 2.7 * (x - 10))) < 0.5))
+        results.scene = {"boundary": {"bed": {"kind": "friction"}, "left": {"kind": "roller"}}}
+        line, _, place, strain = slip_surface(results, 0)
+        ground, slip = said_of_line(results, line, place, strain)
+        self.assertRegex(ground, r"follows the ground from x = 1[01]\.?\d* to (19|20)\.?\d* m")
+        self.assertIn("boundary bed is no plastic strain", slip)
+        line = np.column_stack([np.arange(0.25, 20, 0.5), np.full(40, 3.0)])
+        broken = Sheared(lambda x, y: float(abs(y - 3) < 0.5 and not 8 < x < 12.5))
+        [weak] = said_of_line(broken, line, broken.position(), broken.scalar("plastic_strain")[0])
+        self.assertRegex(weak, r"from x = 8\.\d* to 1[12]\.\d* m: the band is not continuous")
+        whole = Sheared(lambda x, y: float(abs(y - 3) < 0.5))
+        self.assertEqual(said_of_line(whole, line, whole.position(), whole.scalar("plastic_strain")[0]), [])
 
     def test_says_how_far_below_the_ground_a_line_ends(self):
         # up to 1 m below the ground on the right, a tenth of its height
@@ -1056,6 +1104,21 @@ class Charts(unittest.TestCase):
         self.assertTrue(low < 1.9 and high > 2.1, (low, high))
         low, high = cost.get_ylim()
         self.assertTrue(0.0002 < low < 0.002, low)  # the uncertainty brings no empty decade
+        talus_sweep.plt.close(seen[0])
+
+    def test_show_no_more_named_points_than_have_room(self):
+        rows = [{"series": "soil", "key": "size", "value": str(size), "unit": "m", "overrides": f"size={size}", "failure": "", "state": FAILS,
+                 **{f"m{n}_displacement_m": 1.0 * n * size for n in range(14)}, **{f"m{n}_largest_speed_m_s": 2.0 for n in range(14)}} for size in (1, 2)]
+        self.assertEqual(talus_sweep.points_of(rows)[1], ["m0", "m3", "m7", "m10", "m13"])
+        self.assertIn("Of 14 named points 5", talus_sweep.said_of_points(rows))
+        self.assertLess(max(map(len, talus_sweep.table(rows, width=10**6))), 250)
+        self.assertEqual(talus_sweep.said_of_points([{"m1_displacement_m": 1.0}]), "")
+        seen = []
+        with unittest.mock.patch.object(talus_sweep.style, "save", lambda figure, path: seen.append(figure)):
+            talus_sweep.draw(rows, "")
+        colours = [{line.get_label(): line.get_color() for line in axes.lines if line.get_label().startswith("m")} for axes in seen[0].axes]
+        self.assertEqual(colours[0], colours[1])
+        self.assertEqual(len(set(colours[0].values())), 5)
         talus_sweep.plt.close(seen[0])
 
     def test_labels_of_logarithmic_axes_are_few_and_keep_apart(self):
