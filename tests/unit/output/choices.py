@@ -278,7 +278,8 @@ class Labels(unittest.TestCase):
     def test_of_points_of_a_model_do_not_cover_the_dots_of_others(self):
         figure, axes = talus_sweep.plt.subplots()
         axes.set(xlim=(0, 50), ylim=(0, 20))
-        points = {"D2": (23.679, 8.944), "S2": (24.6, 9.7)}  # S2 where the name of D2 would stand
+        name_of_D2 = axes.transData.transform((23.679, 8.944)) + 9 * figure.dpi / 72  # up and to the right of its dot
+        points = {"D2": (23.679, 8.944), "S2": axes.transData.inverted().transform(name_of_D2)}
         model = types.SimpleNamespace(data={"lines": [], "points": [{"name": name, "position": place} for name, place in points.items()]})
         named_points(axes, model, np.asarray)
         keep_apart(axes)
