@@ -38,13 +38,17 @@ def strength(factor):
 
 CASES = (
     ("as the scene", []),
-    ("mirrored: x to -x", None),
+    ("mirrored: x to -x", lambda talus, folder: mirrored.write(talus, folder, SIZE)),
     *((f"cells of {size} m", [f"mesh.size={size}"]) for size in (20, 17, 16, 15.5, 15.1, 14.9, 14, 13, 12.5)),
     ("cells of 12 m", ["mesh.size=12"]),
     ("cells of 11 m", ["mesh.size=11"]),
     ("cells of 10 m", ["mesh.size=10"]),
     ("cells of 8 m", ["mesh.size=8"]),
     *((f"other round-off: snapshots every {interval} s", [f"output.interval={interval}"]) for interval in (0.5, 1, 1.25, 1.5, 3)),
+    *((f"other round-off: the scene shifted, {right:g} m in x, {up:g} m in y",
+       lambda talus, folder, right=right, up=up: mirrored.write_shifted(talus, folder, SIZE, right, up))
+      for right, up in ((0, -640), (0, 360), (1000, 0), (3000, -640))),
+    ("other round-off: steps of 0.59 of the critical one (0.6)", ["integrator.fraction=0.59"]),
     ("softening of the cell, 20 m", ["body.rock.averaging_length=0", "mesh.size=20"]),
     ("softening of the cell, 15 m", ["body.rock.averaging_length=0"]),
     ("softening of the cell, 12 m", ["body.rock.averaging_length=0", "mesh.size=12"]),
@@ -84,8 +88,9 @@ COLUMNS = ("case", "ended", "failure_m", "at_30_m", "at_53_m", "at_60_m", "rest_
 def run(talus, name, changes, folder):
     """One row: what the case gave, or that it broke off."""
     out = pathlib.Path(folder) / "".join(letter for letter in name if letter.isalnum())
-    scene, changes = (mirrored.write(talus, folder, SIZE), []) if changes is None else (HERE / "scene.toml", ["--set", f"mesh.size={SIZE}", *changes])
-    command = [talus, "run", scene, "-o", out, "--no-pictures", *changes]
+    placed = callable(changes)  # writes a scene with its own mesh
+    scene, sets = (changes(talus, folder), []) if placed else (HERE / "scene.toml", [f"mesh.size={SIZE}", *changes])
+    command = [talus, "run", scene, "-o", out, "--no-pictures", *(word for each in sets for word in ("--set", each))]
     subprocess.run(command, stdout=subprocess.DEVNULL, check=False)
     results = Results(out)
     row = {"case": name, "ended": "broke off" if results.broke_off() else "completed"}
