@@ -10,7 +10,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 RUNS = {
-    **{name: (f"mesh.size={size}",) for name, size in (("the scene: cells of 1 m", 1), ("cells of 0.7 m", 0.7))},
+    **{name: (f"mesh.size={size}",) for name, size in (("the scene: cells of 1 m", 1), ("cells of 0.7 m", 0.7), ("cells of 1.2 m", 1.2), ("cells of 1.4 m", 1.4))},
     **{f"elements of second order, cells of {size} m": (f"mesh.size={size}", "quasi_static.elements=quadratic") for size in (1, 0.7, 0.5)},
     "permeability 3.75e-14 m2 (7.5e-14)": ("body.soil.permeability=3.75e-14",),
     "permeability 1.5e-13 m2": ("body.soil.permeability=1.5e-13",),

@@ -50,6 +50,7 @@ STUDIES = {
         "three phases, gas of Table 3": GAS,
         "slice of tetrahedra": SLICE,
         "storage of the water in rate form": ("water.storage=rate",),
+        "three phases, gas of Table 3, step 0.59 of the critical (0.6)": (*GAS, "integrator.fraction=0.59"),
     },
 }
 UNTIL_REST = "stage.rain.duration=60"  # the slide is over by then
@@ -62,7 +63,7 @@ def outcome(results):
     row = {point: f"{measures.share_of_strength(results, point):.2f}" for point in ("S1", "S2")}
     sliding = [snapshot.time for snapshot, _ in measures.while_it_slides(results)]
     row["slides_after_s"] = f"{sliding[0] - measures.start_of_rain(results):.0f}" if sliding else "stands"
-    if sliding:
+    if sliding and not results.broke_off():
         row |= {"toe_m": f"{measures.run_out_of_the_toe(results):.1f}", "middle_m": f"{measures.displacement_at_mid_height(results):.1f}",
                 **{f"{point}_m": f"{columns[f'{point}_displacement_m'][-1]:.2f}" for point in ("S1", "D1", "S2", "D2")},
                 "D1_S": f"{columns['D1_saturation'][-1]:.3f}", "flatter_deg": f"{measures.flattening(results):.1f}",
@@ -99,7 +100,8 @@ if __name__ == "__main__":
         for number, (label, overrides) in enumerate(STUDIES[name].items()):
             results, seconds = run(talus, HERE / "scene.toml", folder / f"{name}_{number}", (*COMMON.get(name, ()), *overrides))
             ran[label] = results
-            rows.append({"run": label, **outcome(results), "processor_s": f"{seconds:.0f}"})
+            ended = f"broke off after {results.history.time[-1] - measures.start_of_rain(results):.0f} s of rain" if results.broke_off() else "completed"
+            rows.append({"run": label, **({"ended": ended} if name == "model" else {}), **outcome(results), "processor_s": f"{seconds:.0f}"})
             print(rows[-1], flush=True)
             write(f"{name}.csv", rows)
         if name == "model":
