@@ -11,6 +11,7 @@ import numpy as np
 import talus_style as style
 from talus_lines import dimensionless, means
 from talus_results import Results
+from talus_slip import draw_slip_surface
 from talus_style import plt
 
 HERE = Path(__file__).resolve().parent
@@ -18,7 +19,7 @@ COPIED = {"plastic_strain_large": "slide", "displacement_large": "run_out"}
 POINTS = ("crest", "upper", "lower", "toe")
 FROM_FIRST_YIELD = (0.88, 1.06)  # t* that the states of the slip surface are shown for
 FROM_START = (0, 1.06)  # and its mean friction
-PLACES = (12, 26, 38)  # distances along the slip surface of the places that stand for the paper's P1, P5 and P7 [m]
+PLACES = (8, 20, 32)  # distances along the slip surface of the places that stand for the paper's P1, P5 and P7 [m]
 
 
 def draw(talus, folder=None, saturated=None):
@@ -34,6 +35,8 @@ def draw(talus, folder=None, saturated=None):
         results = Results(folder)
         for source, name in COPIED.items():
             shutil.copy(f"{folder}/pictures/{source}.png", HERE / f"{name}.png")
+        [(_, surface)] = draw_slip_surface(results, Path(folder) / "pictures")
+        shutil.copy(surface, HERE / "failure.png")
         history, relative = history_of(folder)
         draw_motion(history, relative)
         draw_strength(results.lines()["slip_surface"], results)

@@ -41,7 +41,7 @@ STUDIES = {
               for size in (1.4, 1.0, 0.7, 0.5)},
     "softening": {"as the scene": [], "averaging_length 0.7 m": softening(length=0.7), "averaging_length 1.4 m": softening(length=1.4),
                   "reference_size 0.7 m": softening(reference=0.7), "reference_size 2.8 m": softening(reference=2.8),
-                  "shape_factor 400": softening(eta=400)},
+                  "shape_factor 400": softening(eta=400), "of the cell, 1.0 m": ["mesh.size=1.0", *softening(length=0)]},
     "figure5": {f"eta {eta}, {size} m": [f"mesh.size={size}", *both("shape_factor", eta)] for size in (1.0, 0.7) for eta in (250, 400, 500, 1000)},
     "residual": {**{f"{c} kPa": [f"body.weathered.residual_cohesion={c} kPa"] for c in (1, 2, 4.7, 7, 10)},
                  **{f"{c} kPa, table held at 11.07 m": [f"body.weathered.residual_cohesion={c} kPa", HELD, "stage.recharge.duration=40"] for c in (4.7, 7, 10)},
