@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <regex>
 #include <string_view>
 
@@ -157,11 +158,19 @@ std::shared_ptr<PlaceGrid> TableReader::Value::named_grid() const {
 
 Function TableReader::Value::named_function() const {
   const std::string expected = "a list of [t, value] points or an expression of t";
+  std::optional<Value> first;
+  Dimension dimension{};  // of the first value; 0 without a unit is 0 in each
   // in the plain unit of the keys whose expressions call it: degrees where an angle is meant, otherwise SI
   const auto value = [&](const Value &element) {
     const double si = element.any_quantity();
-    return element.is_number() ? si
-                               : si / std::pow(degree.si, parse_quantity(element.string(expected)).dimension.angle);
+    const Dimension own = element.is_number() ? Dimension{} : parse_quantity(element.string(expected)).dimension;
+    if (si == 0 && own == Dimension{}) return si;
+    if (!first)
+      first = element, dimension = own;
+    else if (!(own == dimension))
+      element.must_be("a quantity of the same dimension as " + first->path_ + written(*first->node_),
+                      "all values of a function have units of one dimension, or none has a unit");
+    return si / std::pow(degree.si, own.angle);
   };
   if (node_->is_array()) return table(expected, value);
   if (is_number() || looks_like_quantity(string(expected))) return value(*this);

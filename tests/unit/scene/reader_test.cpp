@@ -296,13 +296,19 @@ TEST(TableReader, CallsTheFunctionsOfTheSceneInExpressions) {
   const std::string functions = "[functions]\nrain = [[0, 0], ['10 s', '5 kPa']]\ntwice = '2 * rain(t)'\n";
   EXPECT_DOUBLE_EQ(read("load = 'twice(t) * (x < 1)'\n" + functions).load(5), 5e3);
   EXPECT_EQ(read("load = 'twice(t) * (x < 1)'\n" + functions).load(1, 0, 0, 5), 0);
+  const std::string units = "[functions]\nh = [[0, '100 Pa'], [1, 0], [2, '2 kPa'], [3, '3 kN/m2']]\n";
+  EXPECT_DOUBLE_EQ(read("load = 'h(t)'\n" + units).load(2.5), 2500);
+  EXPECT_TRUE(
+      contains(refusal("[functions]\nh = [[0, '100 Pa'], [1, '2 m']]"), "line 2: functions.h.1.1 = \"2 m\" (") &&
+      contains(refusal("[functions]\nh = [[0, 0], [1, 1], [2, '2 m']]"),
+               "must be a quantity of the same dimension as functions.h.1.1 = 1; all values"));
 }
 
 /// Expressions count angles in degrees, so that is what a function gives that they call.
 TEST(TableReader, GivesAnglesOfNamedFunctionsInDegrees) {
   const double radian = 3.14159265358979323846 / 180;
   for (const char *of :
-       {"[[0, '30 deg'], [1, '30 deg']]", "30", "'30 deg'", "[[0, 30], [1, '0.52359877559829887 rad']]"})
+       {"[[0, '30 deg'], [1, '30 deg']]", "30", "'30 deg'", "[[0, '30 deg'], [1, '0.52359877559829887 rad']]"})
     EXPECT_NEAR(read("angle = 'phi(t)'\n[functions]\nphi = " + std::string(of)).angle(0.5), 30 * radian, 1e-12) << of;
   const std::string rate = "[functions]\nrate = '2 deg/kPa'\n";
   EXPECT_NEAR(read("angle = '1000 * rate(t)'\n" + rate).angle(0), 2 * radian, 1e-12);
