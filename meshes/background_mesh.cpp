@@ -1,6 +1,7 @@
 #include "meshes/background_mesh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -58,7 +59,7 @@ std::vector<FilledCell<dim>> in_larger_cells(std::vector<FilledCell<dim>> cells,
 template <int dim>
 BackgroundMesh<dim> BackgroundMesh<dim>::read(MPI_Comm comm, const std::string &file,
                                               const std::vector<std::pair<std::string, double>> &region_weight,
-                                              const Cuts &given, int halvings) {
+                                              const Cuts &given, int halvings, const SeedCounts &seeds) {
   int rank;
   MPI_Comm_rank(comm, &rank);
   std::string complaint;
@@ -80,6 +81,11 @@ BackgroundMesh<dim> BackgroundMesh<dim>::read(MPI_Comm comm, const std::string &
     agree(comm, complaint_about_cells(file, all.cells, tree, all.regions, Names::required));
     if (rank == 0) mesh.remarks_ = mesh_remarks(all.cells, tree, all.regions);
   }
+  double counts[2] = {static_cast<double>(all.cells.node.size()), 0};
+  for (const FilledCell<dim> &one : filled_cells<dim>(all.regions, seeds.per_cell))
+    counts[1] += std::ldexp(one.weight, dim * halvings);
+  MPI_Bcast(counts, 2, MPI_DOUBLE, 0, comm);
+  agree(comm, complaint_about_needs<dim>(comm, counts[0], counts[1], seeds.numbers_per_cell, halvings));
   if (!remark.empty()) mesh.remarks_.push_back(remark);
   for (std::string &one : mesh.remarks_)
     if (halvings > 0) one = "Of the mesh before its edges are halved: " + one;

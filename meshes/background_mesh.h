@@ -13,6 +13,7 @@
 #include "base/owned.h"
 #include "base/vec.h"
 #include "meshes/halo.h"
+#include "meshes/mesh_needs.h"
 #include "meshes/mesh_report.h"
 #include "meshes/partition.h"
 #include "meshes/simplices.h"
@@ -62,10 +63,11 @@ class BackgroundMesh {
   /// without); only these regions, or all where there are none, can have finite elements. `given`, if it is for as many
   /// ranks, is the partition instead. Patches of cells, theory 4.5, stay on one rank and do not depend on the number of
   /// ranks. Collective. Throws std::invalid_argument (the same on all ranks) for a file that cannot be read, a wrong
-  /// dimension, cells of zero volume or that overlap, and cells in no named group.
+  /// dimension, cells of zero volume or that overlap, cells in no named group, and more cells or `seeds` than there are
+  /// numbers and memory for, before edges are halved.
   static BackgroundMesh read(MPI_Comm comm, const std::string &file,
                              const std::vector<std::pair<std::string, double>> &region_weight, const Cuts &given = {},
-                             int halvings = 0);
+                             int halvings = 0, const SeedCounts &seeds = {});
   /// Takes a distributed DMPlex of a host program (a reference is kept). Labels with a physical name are regions and
   /// groups; patches are cut within each rank, `global_cell` is DMPlex's cell numbering. Collective; throws as `read`
   /// does.

@@ -392,6 +392,11 @@ int main(int argc, char **argv) {
   } catch (const std::invalid_argument &error) {
     std::cerr << "talus-mesh: " << error.what() << "\n";
     return 2;
+  } catch (const std::bad_alloc &) {
+    std::cerr
+        << "talus-mesh: the memory of this machine, or a limit of it (ulimit -v), does not suffice: take a larger "
+           "--size\n";
+    return 1;
   } catch (const std::exception &error) {
     std::cerr << "talus-mesh: " << error.what() << "\n";
     return 1;

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <map>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -23,6 +24,10 @@
 #include "simulation.h"
 
 namespace {
+
+constexpr const char *out_of_memory =
+    "the memory of this machine, or a limit of it (ulimit -v), does not suffice: take larger cells (mesh.size), fewer "
+    "mesh.halvings or particles_per_cell, or ranks on more machines; talus check says what a scene takes";
 
 /// Errors reach all ranks alike. Where one rank fails alone, such as by a file that only it cannot read, the others
 /// would wait for it for ever: a rank that failed waits for them to fail too, and otherwise ends all.
@@ -121,6 +126,10 @@ int perform(int argc, char **argv, MPI_Comm failures, int rank) {
     if (speaks) std::fprintf(stderr, "talus: %s\n", error.what());
     end_together(failures, rank, error.what(), 1);
     if (speaks) (void)talus::draw_pictures(error.results, {.fields = error.fields, .times = {}});  // no rank waits now
+    return 1;
+  } catch (const std::bad_alloc &) {
+    if (speaks) std::fprintf(stderr, "talus: %s\n", out_of_memory);
+    end_together(failures, rank, out_of_memory, 1);
     return 1;
   } catch (const std::exception &error) {
     if (speaks) std::fprintf(stderr, "talus: %s\n", error.what());

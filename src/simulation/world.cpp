@@ -112,14 +112,17 @@ std::vector<typename World<dim>::Source> World<dim>::read_sources() {
 template <int dim>
 void World<dim>::read_mesh(DM plex, const std::string &mesh_file, const Cuts &cuts) {
   std::vector<std::pair<std::string, double>> weights;
+  SeedCounts seeds{{}, id_stride()};
   for (const BodySource &body : scene.body)
-    for (const std::string &region : body.region)
+    for (const std::string &region : body.region) {
       weights.emplace_back(region, rates_.of_cell(particles_per_cell<dim>(body)));
+      seeds.per_cell.emplace_back(region, particles_per_cell<dim>(body));
+    }
   if (plex)
     mesh = BackgroundMesh<dim>::adopt(plex);
   else
     try {
-      mesh = BackgroundMesh<dim>::read(comm, mesh_file, weights, cuts, scene.mesh.halvings);
+      mesh = BackgroundMesh<dim>::read(comm, mesh_file, weights, cuts, scene.mesh.halvings, seeds);
     } catch (const std::invalid_argument &error) {
       scene.complain(!scene.mesh.file.empty()      ? "mesh.file"
                      : !scene.mesh.section.empty() ? "mesh.section"

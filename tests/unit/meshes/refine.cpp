@@ -348,6 +348,33 @@ TEST(RefinedTriangle, LeavesNoPartAlone) {
   EXPECT_EQ(part.cell_number, (std::vector<long long>{0, 1, 2, 3}));
 }
 
+/// More particles than there are numbers for, and than any machine has memory for: refused before edges are halved.
+TEST(RefinedBox, IsRefusedWhereNumbersOrMemoryEnd) {
+  const SharedFile file{BoxMesh(3, 1)};
+  const auto complaint = [&](int particles) -> std::string {
+    try {
+      const double each = particles;
+      BackgroundMesh<3>::read(PETSC_COMM_WORLD, file.name(), {}, {}, 1,
+                              {{{"lower", each}, {"upper", each}}, particles});
+    } catch (const std::invalid_argument &error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(complaint(4), "");
+  const std::string numbers = complaint(45'000'000);
+  EXPECT_EQ(
+      numbers,
+      "its 6 cells become 48 where their edges are halved once (mesh.halvings), and with up to 45000000 particles "
+      "in each need 2160000000 numbers of particles, of which there are 2147483647; take fewer halvings, larger "
+      "cells (mesh.size), or fewer particles_per_cell");
+  const std::string memory = complaint(44'000'000);
+  EXPECT_EQ(memory.find("its 6 cells become 48 where their edges are halved once (mesh.halvings), and with 2112000000 "
+                        "particles need about 1.27e+03 GB on this machine, which has "),
+            0u)
+      << memory;
+}
+
 /// A slice that is one element thick is two thick once its edges are halved: its patches are those of other meshes.
 TEST(RefinedSlice, IsTwoCellsThick) {
   const SharedFile file{BoxMesh(3, 1)};
