@@ -40,6 +40,20 @@ void check_projection(const Grid &grid, const double *map, const OGRSpatialRefer
   }
 }
 
+/// Square cells in rows from west to east, or a complaint.
+void check_cells(const std::string &file, const double *map) {
+  std::ostringstream text;
+  text.precision(9);
+  if (map[2] != 0 || map[4] != 0 || !(map[1] > 0))
+    text << "must have rows from west to east, but from one column to the next x changes by " << map[1] << " and y by "
+         << map[4] << ", and from one row to the next by " << map[2] << " and " << map[5]
+         << "; resample it, such as by gdalwarp -tr SIZE SIZE";
+  else if (const double high = std::abs(map[5]); std::abs(high - map[1]) > 1e-6 * map[1])
+    text << "must have square cells, but they are " << map[1] << " wide and " << high
+         << " high; resample it, such as by gdalwarp -tr " << std::min(map[1], high) << " " << std::min(map[1], high);
+  if (!text.str().empty()) complain(file, text.str());
+}
+
 /// Metres as far as elevations tell, or a complaint.
 void check_elevations(const Grid &grid) {
   const std::string &unit = grid.unit;
@@ -110,8 +124,7 @@ Grid read_grid(const std::string &file) {
   if (data->GetGeoTransform(map) != CE_None)
     complain(file, "does not say where it lies; give a file with coordinates, such as a GeoTIFF with its tags");
   check_projection(grid, map, data->GetSpatialRef());  // first, since degrees are seldom square
-  if (map[2] != 0 || map[4] != 0 || !(map[1] > 0) || std::abs(std::abs(map[5]) - map[1]) > 1e-6 * map[1])
-    complain(file, "must have square cells in rows from west to east; resample it, such as by gdalwarp -tr SIZE SIZE");
+  check_cells(file, map);
   if (grid.columns < 2 || grid.rows < 2) complain(file, "must have 2 rows and columns at least");
   grid.spacing = map[1];
   const bool from_north = map[5] < 0;

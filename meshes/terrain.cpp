@@ -23,13 +23,14 @@ std::string text_of(const Part &...part) {
   return text.str();
 }
 
-/// A length in a sentence, to three digits.
-std::string length(double metres) {
+/// A number in a sentence, to three digits.
+std::string digits(double value) {
   std::ostringstream text;
   text.precision(3);
-  text << metres << " m";
+  text << value;
   return text.str();
 }
+std::string length(double metres) { return digits(metres) + " m"; }
 
 std::string json_text(const std::string &text) {
   std::string quoted = "\"";
@@ -191,6 +192,24 @@ void Terrain::check_steps(const std::vector<double> &z, const std::string &file)
   if (step_at >= 0) refuse(step_at, text_of("is ", length(highest), " lower than the place beside it"), "");
 }
 
+void Terrain::check_feet(const std::vector<double> &slip, const std::string &name) const {
+  constexpr double foot = 0.3048, near = 0.1;  // by a tenth the depth of a slide may change the ratio
+  double low = std::numeric_limits<double>::infinity(), high = -low, gap = low, area = 0;
+  std::size_t at = 0;
+  for (std::size_t k = 0; k < slip.size(); ++k) {
+    if (std::isnan(slip[k])) continue;
+    const double ratio = slip[k] / ground()[k];
+    low = std::min(low, ratio), high = std::max(high, ratio), gap = std::min(gap, std::abs(slip[k] - ground()[k]));
+    area += ground_.spacing * ground_.spacing, at = k;
+  }
+  const auto all_near = [&](double ratio) { return low > (1 - near) * ratio && high < (1 + near) * ratio; };
+  if (gap > 0.5 * std::sqrt(area) && (all_near(foot) || all_near(1 / foot)))  // farther away than any slide is deep
+    complain(text_of(name, " has the elevation ", slip[at], " m at ", place(static_cast<int>(at)), ", where ",
+                     ground_.file, " has ", ground()[at], " m, and everywhere ", digits(low), " to ", digits(high),
+                     " times those of the ground: one of the two seems to be in feet. Convert it to metres, "
+                     "such as by gdal_calc.py --calc=A*0.3048"));
+}
+
 std::vector<double> Terrain::slip_surface(const Grid &grid) {
   const auto remember = [&](const Location &location, const std::vector<std::string> &remarks) {
     check_same_projection(location, projection_, grid.file);
@@ -256,6 +275,7 @@ void Terrain::take_slip_surface(const Grid &grid) {
     complain(name + " does not lie in the window of " + grid.file +
              (options_.outline.empty() ? "" : ", or no elevation of the grid is in it") +
              "; both count in the same coordinates");
+  if (!options_.slip_surface.empty()) check_feet(slip, name);
   if (nearest >= 0)
     complain(text_of(name, " lies above the ground everywhere, by ", length(nearest),
                      " at least, so that nothing slides; check its elevations, or lower it"));

@@ -93,6 +93,8 @@ class Terrain {
   std::vector<double> slip_surface(const Outline &outline) const;
   void take_layers(const Grid &grid);
   void check_base() const;
+  /// Refuses a slip surface whose elevations stand to those of the ground as feet and metres do.
+  void check_feet(const std::vector<double> &slip, const std::string &name) const;
   /// Refuses elevations that no ground has: single places, or edges of areas, far above or below those around them.
   void check_steps(const std::vector<double> &z, const std::string &file) const;
   /// Refuses a slip surface that does not come up to the ground, and notes where it ends below it. `slip` is not a

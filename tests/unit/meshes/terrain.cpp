@@ -251,6 +251,19 @@ TEST_F(TerrainFiles, AreRefusedInDegreesAndFeet) {
   expect_words(complaint(options(file)), {"coordinates in degrees", "project it to metres"});
   expect_words(complaint(options(geotiff(plane, 2225))), {"US survey foot", "project it to metres"});
 }
+TEST_F(TerrainFiles, AreRefusedWithCellsThatAreNotSquareOrTurned) {
+  const auto with = [&](double dx_row, double dy_column, double dy_row) {
+    const std::string file = geotiff(plane, 31254);
+    const std::unique_ptr<GDALDataset> data(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
+    double map[] = {east, 10, dx_row, south, dy_column, dy_row};
+    data->SetGeoTransform(map);
+    return options(file);
+  };
+  expect_words(complaint(with(0, 0, -20)), {"a.tif: must have square cells, but they are 10 wide and 20 high; resample "
+                                            "it, such as by gdalwarp -tr 10 10"});
+  expect_words(complaint(with(1, 2, -10)), {"a.tif: must have rows from west to east, but from one column to the next "
+                                            "x changes by 10 and y by 2, and from one row to the next by 1 and -10"});
+}
 TEST_F(TerrainFiles, AreRefusedWhereTheyDoNotFit) {
   TerrainOptions o = options(ascii(plane));
   o.window = {east - 10, south, east + 100, south + 100};
@@ -386,6 +399,31 @@ TEST_F(TerrainFiles, DoNotMeetImpossibleSlipSurfaces) {
   EXPECT_TRUE(doubts(o, "the ellipsoid ends 11.8 m below"));
   o.ellipsoid->centre[2] = 1140;
   expect_words(complaint(o), {"lies wholly below the ground", "50.", "raise its centre"});
+}
+
+/// Which of the two is in feet no file says: both are named, and not a place that stands out.
+TEST_F(TerrainFiles, AreNotMixedInFeetAndMetres) {
+  const Elevation high = [](double x, double y) { return plane(x, y) + 600; };
+  const Elevation slip = [&](double x, double y) {
+    const double depth = 12 - 0.005 * (std::pow(x - 5080, 2) + std::pow(y - 2080, 2));
+    return depth > -3 ? high(x, y) - depth : -9999;
+  };
+  const auto feet = [](const Elevation &of) {
+    return [of](double x, double y) { return of(x, y) < 0 ? -9999 : of(x, y) / 0.3048; };
+  };
+  TerrainOptions o = options(ascii(feet(high)));
+  o.size = 4, o.slip_surface = ascii(slip, "slip.asc");
+  expect_words(complaint(o), {"slip.asc has the elevation ", " m at (5", ", where ", "a.asc has ",
+                              "and everywhere 0.299 to 0.306 times those of the ground: one of the two seems to be in "
+                              "feet. Convert it to metres"});
+  o.file = ascii(high), o.slip_surface = ascii(feet(slip), "slip.asc");
+  expect_words(complaint(o), {"one of the two seems to be in feet"});
+  o.slip_surface = ascii(slip, "slip.asc");
+  EXPECT_EQ(complaint(o), "");
+  const Elevation low = [&](double x, double y) { return high(x, y) - 660; };  // 10 m above the sea and 3 m of it ...
+  o.file = ascii([&](double x, double y) { return low(x, y) > 10 ? low(x, y) : 10; });
+  o.slip_surface = ascii([&](double x, double) { return x > 5140 && x < 5180 ? 3. : -9999; }, "slip.asc");
+  EXPECT_EQ(complaint(o).find("feet"), std::string::npos) << "... are a slide that is not deep: " << complaint(o);
 }
 
 /// The rim of an ellipsoid is where both sides meet.
