@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <tuple>
-#include <utility>
 
 #include "base/gather.h"
+#include "physics/boundary/node_normals.h"
 #include "physics/laws/update_stress.h"
 
 namespace talus {
@@ -57,8 +56,31 @@ BaseForce<dim> force_on_base(const Vec<dim> &spring, const Vec<dim> &normal, dou
 }
 
 template <int dim>
+PetscErrorCode BaseContact<dim>::find_normals() {
+  PetscFunctionBeginUser;
+  std::vector<SourceFacets<dim>> bases;
+  for (int s = 0; s < static_cast<int>(sources_.size()); ++s)
+    if (sources_[s].kind.quasi_static == OnSoil::contact)
+      for (const std::string &group : sources_[s].groups) bases.push_back({s, soil_.mesh().facets(group)});
+  std::vector<NodeNormal<dim>> found;
+  PetscCall(find_node_normals(soil_.mesh(), bases, found));
+  for (const NodeNormal<dim> &n : found) normals_[{n.source, n.node}].push_back(n.normal);
+  PetscFunctionReturn(0);
+}
+
+/// That of the patch to which the facet belongs.
+template <int dim>
+Vec<dim> BaseContact<dim>::normal_at(int source, const Facet<dim> &facet, int mesh_node) const {
+  const std::vector<Vec<dim>> &of_patches = normals_.at({source, mesh_node});
+  return *std::max_element(of_patches.begin(), of_patches.end(), [&facet](const Vec<dim> &a, const Vec<dim> &b) {
+    return dot<dim>(a, facet.normal) < dot<dim>(b, facet.normal);
+  });
+}
+
+template <int dim>
 PetscErrorCode BaseContact<dim>::activate() {
   PetscFunctionBeginUser;
+  if (normals_.empty() && any()) PetscCall(find_normals());
   const BackgroundMesh<dim> &mesh = soil_.mesh();
   const ElementNodes<dim> &nodes = soil_.nodes();
   const Quadrature<dim - 1> rule = load_quadrature<dim - 1>();
@@ -77,14 +99,20 @@ PetscErrorCode BaseContact<dim>::activate() {
         }
         const double height = dim * mesh.volume[facet.cell] / facet.area;
         const double modulus = constrained_modulus(soil_.points()[soil_.body_of(facet.cell)].law);
+        std::array<Vec<dim>, dim> at_vertex;  // normals, in the order of the element's nodes
+        for (const int mesh_node : facet.node)
+          at_vertex[std::find(node.begin(), node.end(), nodes.at_vertex(mesh_node)) - node.begin()] =
+              normal_at(s, facet, mesh_node);
         for (size_t a = 0; a < node.size(); ++a) {
           std::array<Vec<dim>, 2> ends{nodes.position[node[a]], nodes.position[node[a]]};
+          Vec<dim> normal = a < dim ? at_vertex[a] : Vec<dim>{};
           if (a >= dim) {
             const auto [first, second] = simplex_edges<dim - 1>[a - dim];
             ends = {nodes.position[node[first]], nodes.position[node[second]]};
+            map<dim>(normal) = (map<dim>(at_vertex[first]) + map<dim>(at_vertex[second])).normalized();
           }
           const double area = share[a] * facet.area;
-          all.push_back({nodes.global()[node[a]], s, facet.normal, area, area * modulus / height,
+          all.push_back({nodes.global()[node[a]], s, normal, area, area * modulus / height,
                          element_size<dim>(mesh.volume[facet.cell]), ends});
         }
       }

@@ -1,8 +1,11 @@
 #pragma once
 /// Contact of the finite elements with the rigid bases of a scene, docs/theory/finite_elements.md section 2.1: soil
 /// that does not enter the base, may lift off it, and slides against Coulomb friction and adhesion without dilating.
-/// Each facet normal of a base at a node is a constraint of its own, as in motion. Stiff springs between soil and base
+/// Each patch of a base at a node is a constraint of its own, with the normal that it has in motion
+/// (physics/boundary/node_normals.h). Stiff springs between soil and base
 /// carry the force; what friction cannot bear of it is taken off.
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "base/archive.h"
@@ -110,7 +113,7 @@ class BaseContact {
   std::vector<NormalForce> normal_forces() const;
 
  private:
-  struct Point {  ///< one facet normal of a base at a node that this rank owns
+  struct Point {  ///< one patch of a base at a node that this rank owns
     int node, source;
     Vec<dim> normal;
     double area;                        ///< [m2]
@@ -128,9 +131,12 @@ class BaseContact {
     return unit;
   }
   BaseForce<dim> borne(const Point &point, const Vec<dim> &spring) const;
+  PetscErrorCode find_normals();
+  Vec<dim> normal_at(int source, const Facet<dim> &facet, int mesh_node) const;
 
   const SoilElements<dim> &soil_;
   const std::vector<Source> &sources_;
+  std::map<std::pair<int, int>, std::vector<Vec<dim>>> normals_;  ///< of the patches, by boundary and node of the mesh
   std::vector<Point> points_;
   std::vector<PetscInt> point_;  ///< of the DMPlex, by node, when the points were found
   double factor_ = 0;

@@ -83,7 +83,7 @@ def draw_motion(results, softer, path):
         rise.annotate(f"{level}", (t, 1.01), xycoords=("data", "axes fraction"), ha="center", va="bottom", size=8)
     rise.annotate("m of water", (70, 1.01), xycoords=("data", "axes fraction"), va="bottom", size=8)
     slow.axhline(0.5, color="black", linewidth=0.7, linestyle=":")
-    slow.annotate("paper, fig. 22: 0.5 m/s", (0.98, 0.5), xycoords=("axes fraction", "data"), ha="right", va="bottom", size=8.5)
+    slow.annotate("paper, fig. 22: 0.5 m/s", (0.82, 0.5), xycoords=("axes fraction", "data"), ha="right", va="bottom", size=8.5)
     slow.set(xlabel="displacement [m]", ylabel="speed, mean over 2 s [m/s]", xlim=(0, None), ylim=(0, None), title="base 12°, up to 60 m of water")
     slow.title.set(size=9)
     for run, label, colour in ((results, "base 0°", "C0"), (softer, "base 5°", "C1")):

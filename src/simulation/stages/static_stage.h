@@ -146,9 +146,9 @@ class StaticStage : public StageRunner<dim> {
                "with damping, or make base or soil stronger there; finer or coarser cells may do where it is little "
                "soil";
       else if (soil_moves() && !path_.last.moved_most.empty())
-        text << "; that need not mean that base or soil is too weak there: a few cells at the rim of the soil that "
-                "yield can keep the iterations from an equilibrium of the rest. Motion shows whether it stands: a "
-                "dynamic stage with damping, from the start or (when_lost = \"next_stage\") from here";
+        text << "; either base or soil is too weak there, or a few cells at the rim of the soil that yield keep the "
+                "iterations from an equilibrium of the rest. Motion shows which: a dynamic stage with damping, from "
+                "the start or (when_lost = \"next_stage\") from here";
       else if (soil_moves() && !path_.last.fails)
         text << "; the slope may be too weak to stand, or other load_steps (here " << stage_.load_steps
              << ") may help, or, where the stage is the first, initial_stress = \"k0\"";
