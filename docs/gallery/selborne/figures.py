@@ -88,7 +88,7 @@ def draw_strength(line, results):
     draw_mean_path(path, relative, mean)
     friction.plot(relative, mean["mean_mobilised_friction_deg"], color=style.INK, lw=1.4)
     friction.set(xlabel="t* = t / time of failure", ylabel="mean mobilised friction φ' [deg]", title="mean along the slip surface (paper's fig. 12)",
-                 xlim=FROM_START, ylim=(0, 16))
+                 xlim=FROM_START, ylim=(0, 20))
     for state, colour in zip(style.STATES[1:], ("#f2b705", *style.STATE_COLOURS[2:])):  # the yellow of a thin line is darker
         shares.plot(relative, 100 * mean[f"share_{state}"], color=colour, lw=1.6, label=state)
     shares.set(xlabel="t* = t / time of failure", ylabel="share of the slip surface [%]", title="states of its soil", xlim=FROM_FIRST_YIELD, ylim=(-1, 100))
