@@ -156,12 +156,14 @@ void Statics<dim>::check_supports(bool soil_moves) const {
   if (elements() != Elements::quadratic && !world_.mesh.report().one_element_slice) {
     std::vector<char> thin;
     require(problem_->find_thin_bodies(&thin));
+    const bool on_base = dim == 3 && std::ranges::any_of(world_.conditions.sources(), [](const NamedBoundary &source) {
+                           return source.kind.quasi_static == OnSoil::contact;
+                         });  // which has no quadratic elements
     for (size_t b = 0; b < thin.size(); ++b)
       if (thin[b])
-        throw RunFailure(
-            "body." + world_.scene.body[b].name +
-            " is one element across, which elements of first order cannot resolve; refine the mesh there, or set "
-            "quasi_static.elements = \"quadratic\"");
+        throw RunFailure("body." + world_.scene.body[b].name +
+                         " is one element across, which elements of first order cannot resolve; refine the mesh there" +
+                         (on_base ? "" : ", or set quasi_static.elements = \"quadratic\""));
   }
 }
 

@@ -237,7 +237,8 @@ TEST(BaseContact, bears_soil_on_rough_ground) {
 }
 
 /// Motion and finite elements have the same normals of a base, also on relief, so that soil stays where these have put
-/// it. Gravity has done work by the settlement; if each facet had a normal of its own it would do another 25 % in motion.
+/// it. Gravity has done work by the settlement; if each facet had a normal of its own it would do another 25 % in
+/// motion.
 TEST(BaseContact, soil_on_rough_ground_stays_when_motion_begins) {
   const HistoryTable history =
       stand_on_rough_ground({"mesh.size=12"}, "[[stage]]\nname = \"motion\"\nduration = 0.5\n").history;
