@@ -65,6 +65,7 @@ PetscErrorCode BaseContact<dim>::find_normals() {
   std::vector<NodeNormal<dim>> found;
   PetscCall(find_node_normals(soil_.mesh(), bases, found));
   for (const NodeNormal<dim> &n : found) normals_[{n.source, n.node}].push_back(n.normal);
+  knows_normals_ = true;  // on ranks without a base too
   PetscFunctionReturn(0);
 }
 
@@ -80,7 +81,7 @@ Vec<dim> BaseContact<dim>::normal_at(int source, const Facet<dim> &facet, int me
 template <int dim>
 PetscErrorCode BaseContact<dim>::activate() {
   PetscFunctionBeginUser;
-  if (normals_.empty() && any()) PetscCall(find_normals());
+  if (!knows_normals_ && any()) PetscCall(find_normals());
   const BackgroundMesh<dim> &mesh = soil_.mesh();
   const ElementNodes<dim> &nodes = soil_.nodes();
   const Quadrature<dim - 1> rule = load_quadrature<dim - 1>();

@@ -137,6 +137,7 @@ class BaseContact {
   const SoilElements<dim> &soil_;
   const std::vector<Source> &sources_;
   std::map<std::pair<int, int>, std::vector<Vec<dim>>> normals_;  ///< of the patches, by boundary and node of the mesh
+  bool knows_normals_ = false;
   std::vector<Point> points_;
   std::vector<PetscInt> point_;  ///< of the DMPlex, by node, when the points were found
   double factor_ = 0;
