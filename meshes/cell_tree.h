@@ -3,29 +3,15 @@
 #include <algorithm>
 #include <vector>
 
+#include "meshes/box.h"
 #include "meshes/simplices.h"
 
 namespace talus {
 
-/// A box along the axes.
-template <int dim>
-struct Box {
-  Vec<dim> low, high;
-
-  bool meets(const Box &other) const {
-    for (int d = 0; d < dim; ++d)
-      if (low[d] > other.high[d] || high[d] < other.low[d]) return false;
-    return true;
-  }
-  void enclose(const Box &other) {
-    for (int d = 0; d < dim; ++d) low[d] = std::min(low[d], other.low[d]), high[d] = std::max(high[d], other.high[d]);
-  }
-};
-
 template <int dim>
 Box<dim> box_around(const std::array<Vec<dim>, dim + 1> &corner) {
   Box<dim> box{corner[0], corner[0]};
-  for (const Vec<dim> &x : corner) box.enclose({x, x});
+  for (const Vec<dim> &x : corner) box.enclose(x);
   return box;
 }
 

@@ -1,5 +1,7 @@
 #include "solvers/quasi_static/hanging_pieces.h"
 
+#include <algorithm>
+#include <map>
 #include <numeric>
 
 #include "solvers/quasi_static/pieces.h"

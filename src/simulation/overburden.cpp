@@ -16,7 +16,7 @@ template <int dim>
 Overburden<dim>::Overburden(const BackgroundMesh<dim> &mesh, const std::vector<Block> &mine, int vertical)
     : vertical_(vertical) {
   for (const Block &block : mine)
-    for (const Vec<dim> &corner : block.corner) extent_.take_in(corner);
+    for (const Vec<dim> &corner : block.corner) extent_.enclose(corner);
   MPI_Allreduce(MPI_IN_PLACE, extent_.low.data(), dim, MPI_DOUBLE, MPI_MIN, mesh.comm());
   MPI_Allreduce(MPI_IN_PLACE, extent_.high.data(), dim, MPI_DOUBLE, MPI_MAX, mesh.comm());
   double reach = 0;  // verticals stand a little beside their places
@@ -32,7 +32,7 @@ Overburden<dim>::Overburden(const BackgroundMesh<dim> &mesh, const std::vector<B
     near.push_back(r), sent.emplace_back();
     for (const Block &block : mine) {
       Box<dim> around;
-      for (const Vec<dim> &corner : block.corner) around.take_in(corner);
+      for (const Vec<dim> &corner : block.corner) around.enclose(corner);
       if (around.meets(parts[r], reach, vertical)) sent.back().push_back(block);
     }
   }
