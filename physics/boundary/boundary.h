@@ -31,11 +31,11 @@ class Boundary {
   OnSoil in_motion, quasi_static;
   OnWater water;
   OnGas gas;
-  int precedence = 2;       ///< of a support
-  bool follows = false;     ///< of a load
-  bool open_water = false;  ///< of a pressure or seepage
-  bool remembers = false;   ///< of a contact: what it bears depends on how far soil has slipped on it
-  bool changes = false;     ///< with time: one of the functions that the scene gives does
+  int precedence = 2;                    ///< of a support
+  bool follows = false;                  ///< of a load
+  bool open_water = false;               ///< of a pressure or seepage
+  bool remembers = false;                ///< of a contact: what it bears depends on how far soil has slipped on it
+  double last_change = Function::never;  ///< t from which on the functions that the scene gives keep their values [s]
   /// Keys and numbers of components of the vectors that the scene gives as functions; each must have one per dimension.
   std::vector<std::pair<std::string, int>> vectors;
 
@@ -87,16 +87,16 @@ Boundary read_boundary(const DeferredTable &table);
 
 // ---- templates ----
 
-/// Visits the fields of a kind for its functions: which are vectors, and does one depend on time?
+/// Visits the fields of a kind for its functions: which are vectors, and until when do they change with time?
 struct Boundary::FindFunctions {
   std::vector<std::pair<std::string, int>> &vectors;
-  bool &changes;
+  double &last_change;
   void functions(const char *key, const std::vector<Function> &value, Unit, const char *, const char *) {
     if (!value.empty()) vectors.emplace_back(key, static_cast<int>(value.size()));
-    for (const Function &component : value) changes |= component.depends_on_time();
+    for (const Function &component : value) last_change = std::max(last_change, component.last_change());
   }
   void function(const char *, const Function &value, Unit, Range, const char *, const char *) {
-    changes |= value.depends_on_time();
+    last_change = std::max(last_change, value.last_change());
   }
   void number(const char *, double &, Unit, Range, const char *) {}
   void flag(const char *, bool &, const char *) {}
@@ -133,7 +133,7 @@ requires(!std::same_as<Kind, Boundary>) Boundary::Boundary(Kind of)
   static_assert(PossibleOnFluids<Kind>, "a wall, and the surface of the soil, act on liquid and gas alike");
   static_assert(CompleteOnSoil<Kind>, "members are missing or never asked for: see OnSoil in kind.h");
   static_assert(CompleteOnFluids<Kind>, "members are missing or never asked for: see OnWater and OnGas in kind.h");
-  of.fields(FindFunctions{vectors, changes});
+  of.fields(FindFunctions{vectors, last_change});
   const auto kind = std::make_shared<const Kind>(std::move(of));
   on_soil_2d_ = functions_of<2>(kind), on_soil_3d_ = functions_of<3>(kind);
   if constexpr (member::precedence<Kind>) precedence = Kind::precedence;

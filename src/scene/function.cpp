@@ -53,12 +53,13 @@ struct Function::Expression {
     return nullptr;
   }
 
+  /// Keeps the first value that its key does not admit.
+  void report(double value) const;
+  double last_change() const;
+
   mu::Parser parser;
   NamedFunctions functions;
   NamedGrids grids;
-  /// Keeps the first value that its key does not admit.
-  void report(double value) const;
-
   std::set<std::string> used;
   std::shared_ptr<const FunctionLimits> limits;
   double scale;
@@ -110,6 +111,18 @@ std::string message(const mu::Parser::exception_type &error, const std::string &
 
 }  // namespace
 
+double Function::Expression::last_change() const {
+  double last = never;
+  std::string rest = parser.GetExpr();
+  for (const auto &[name, function] : functions) {
+    const std::regex call("\\b" + name + "\\s*\\(\\s*t\\s*\\)");
+    if (!std::regex_search(rest, call)) continue;
+    last = std::max(last, function.last_change());
+    rest = std::regex_replace(rest, call, "0");
+  }
+  return std::regex_search(rest, std::regex("\\bt\\b")) ? std::numeric_limits<double>::infinity() : last;
+}
+
 void Function::Expression::report(double value) const {
   if (!limits->fault.empty()) return;
   std::ostringstream text;
@@ -158,6 +171,12 @@ Function::Function(const std::string &expression, double scale, const NamedFunct
   } catch (const mu::Parser::exception_type &error) {
     throw std::invalid_argument(message(error, expression, functions, grids));
   }
+}
+
+double Function::last_change() const {
+  for (std::size_t i = times_.size(); i-- > 1;)
+    if (values_[i] != values_[i - 1]) return times_[i];
+  return uses("t") ? expression_->last_change() : never;
 }
 
 bool Function::uses(const std::string &variable) const { return expression_ && expression_->used.contains(variable); }

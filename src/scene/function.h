@@ -1,5 +1,6 @@
 #pragma once
 /// A function of place and time given by a scene: a number, a table of [t, value] points, or an expression.
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -48,6 +49,11 @@ class Function {
   bool given() const { return given_; }
   bool constant() const { return given_ && !expression_ && times_.empty(); }
   bool depends_on_time() const { return !times_.empty() || uses("t"); }
+  /// The t from which on it keeps its value [s]: that of the last point of a table, or of the tables that an expression
+  /// calls at t, that has another value than the point before; `never` where there is none, and infinite for an
+  /// expression that has t in another place too, which does not tell.
+  double last_change() const;
+  static constexpr double never = -std::numeric_limits<double>::infinity();
   /// Does the expression name this variable: x, y, z, t, table or slip?
   bool uses(const std::string &variable) const;
 

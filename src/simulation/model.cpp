@@ -11,6 +11,7 @@
 #include "output/json.h"
 #include "output/together.h"
 #include "scene/reader.h"
+#include "simulation/changing_loads.h"
 #include "simulation/dynamics.h"
 #include "simulation/scene_keys.h"
 #include "solvers/quasi_static/pore_flow.h"
@@ -315,7 +316,7 @@ class Model {
         .add("soil", json::text(action_on_soil(action, kind.template on_soil<dim>())))
         .add("water", json::text(water[static_cast<int>(kind.water)]))
         .add("gas", json::text(gas[static_cast<int>(kind.gas)]))
-        .add("changes", json_of(kind.changes))
+        .add("changes", json_of(kind.last_change > Function::never))
         .add("values", values.str())
         .add("level", level)
         .add("faces", drawn)
@@ -460,16 +461,8 @@ class Model {
     stage.fields(fields);
     const std::array<double, 3> acceleration = scene_.acceleration_in(stage);
     std::vector<std::string> changes;
-    if (!stage.hold_loads) {
-      for (const std::vector<Source> *sources : {&world_.conditions.sources(), &world_.seepage_sources})
-        for (const Source &source : *sources)
-          if (source.kind.changes) changes.push_back("boundary." + source.name);
-      if (scene_.water.level.depends_on_time()) changes.push_back("water.level");
-      if (scene_.water.excess.depends_on_time()) changes.push_back("water.excess");
-      for (const BodySource &body : scene_.body)
-        if (std::ranges::any_of(body.body_acceleration, &Function::depends_on_time))
-          changes.push_back("body." + body.name + ".body_acceleration");
-    }
+    if (!stage.hold_loads)
+      for (const ChangingLoad &load : changing_loads(world_)) changes.push_back(load.key);
     return fields.object
         .add("acceleration", json_of(std::vector<double>(acceleration.begin(), acceleration.begin() + dim)))
         .add("integrator",

@@ -7,25 +7,22 @@
 namespace talus {
 
 /// Gas flows with the density of the cells that it comes from, and none leaves cells that have only their residual gas,
-/// theory (4.9). Collective.
+/// theory (4.9). A cell may be much thinner in gas than those beside it: what nodes take out of it is therefore found
+/// with the density with which they take. Collective.
 template <int dim, class Phases>
 PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<dim> *gas,
                                                 const Vec<dim> *solid) requires Phases::gas {
   PetscFunctionBeginUser;
-  constexpr int
-      width = 4,
-      share = 3;  // of a node: volume taken, mass taken, resistance of residual gas; share of the gas in the pores
+  constexpr int width = 2;  // of a node: volume and mass taken
   constexpr double empty = 1e-30;
   FilledGrid<dim> &grid = frame.grid;
-  const auto pore_share = [&](int i) { return nodes_[i].whole(1) > 0 ? nodes_[i].mass(1) / nodes_[i].whole(1) : 0; };
-  for (int i = 0; i < grid.node_count(); ++i) {
-    talus::store<4>(&nodal_[i * width], Quad{0, 0, 0, pore_share(i)});
+  const int nodes = grid.node_count(), cells = grid.cell_count();
+  double *taken = nodal_.data(), *density = taken + width * nodes, *resistance = density + nodes;
+  for (int i = 0; i < nodes; ++i)
     for (int d = 0; d < dim; ++d) flux_[1][i][d] = gas[i][d] - solid[i][d];
-  }
-  for (int c = 0; c < grid.cell_count(); ++c) {
+  const auto takes = [&](int c) {  // volume that each node takes from a cell, if its pores were full of gas
     const Shape<dim> &shape = grid.shape[c];
-    const CellPores &cell = cells_[c];
-    double takes[dim + 1], out = 0;  // volume that a node takes from the cell
+    std::array<double, dim + 1> volume;
     Vec<dim> first{};
     for (int k = dim; k >= 0; --k) {
       if (k)
@@ -34,27 +31,38 @@ PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<di
       const int i = shape.node[k];
       double towards = 0;
       for (int d = 0; d < dim; ++d) towards += (g[d] - reference_[c][k] * gap_[i][d]) * flux_[1][i][d];
-      takes[k] = frame.weight[c] * std::max(0., towards);
-      out += takes[k] * nodal_[i * width + share];
+      volume[k] = frame.weight[c] * std::max(0., towards);
     }
+    return volume;
+  };
+  std::fill_n(taken, width * nodes, 0.);
+  for (int c = 0; c < cells; ++c) {
+    const auto volume = takes(c);
+    for (int k = 0; k <= dim; ++k) {
+      double *node = &taken[grid.shape[c].node[k] * width];
+      node[0] += volume[k], node[1] += volume[k] * cells_[c].density[1];
+    }
+  }
+  PetscCall(grid.sum(taken, width));
+  for (int i = 0; i < nodes; ++i) {
+    const double volume = taken[i * width], share = nodes_[i].whole(1) > 0 ? nodes_[i].mass(1) / nodes_[i].whole(1) : 0;
+    density[i] = share * (volume > 0 ? taken[i * width + 1] / volume : gas_.density), resistance[i] = 0;
+  }
+  for (int c = 0; c < cells; ++c) {
+    const auto &node = grid.shape[c].node;
+    const CellPores &cell = cells_[c];
+    const auto volume = takes(c);
+    double out = 0;  // mass
+    for (int k = 0; k <= dim; ++k) out += volume[k] * density[node[k]];
     if (!(out > 0)) continue;
     const double free = 1 - residual_gas / std::max(1 - cell.saturation, empty);  // share of the gas that may leave
-    const double open = std::clamp(
-        std::min(free / residual_gas * (1 - cell.saturation), free * cell.mass[1] / (2 * out * cell.density[1])), empty,
-        1.);
-    const double resistance = 1 / open - 1;
-    for (int k = 0; k <= dim; ++k) {  // without branches: no processor predicts which nodes take
-      double *node = &nodal_[shape.node[k] * width];
-      talus::store<4>(node,
-                      load<4>(node) + Quad{takes[k], takes[k] * cell.density[1], takes[k] > 0 ? resistance : 0, 0});
-    }
+    const double open =
+        std::clamp(std::min(free / residual_gas * (1 - cell.saturation), free * cell.mass[1] / (2 * out)), empty, 1.);
+    for (int k = 0; k <= dim; ++k) resistance[node[k]] += volume[k] > 0 ? 1 / open - 1 : 0;
   }
-  PetscCall(grid.sum(nodal_.data(), width));
-  for (int i = 0; i < grid.node_count(); ++i) {
-    const double *node = &nodal_[i * width], rho = node[0] > 0 ? node[1] / node[0] : gas_.density;
-    const double density = prescribed ? 0 : pore_share(i) * rho / (1 + node[2]);
-    for (int d = 0; d < dim; ++d) flux_[1][i][d] *= density;
-  }
+  PetscCall(grid.sum(resistance, 1));
+  for (int i = 0; i < nodes; ++i)
+    for (int d = 0; d < dim; ++d) flux_[1][i][d] *= prescribed ? 0 : density[i] / (1 + resistance[i]);
   PetscFunctionReturn(0);
 }
 

@@ -79,6 +79,38 @@ TEST(FrictionalBase, remembers_slip_and_heat_where_the_stage_says_so) {
   EXPECT_NEAR(at_end("softening=false", "base_friction"), std::tan(M_PI / 9), 0.1 * std::tan(M_PI / 9));
 }
 
+/// The block stands until its base loses friction at 0.6 s, long after a stage would have ended by its rest: the stage
+/// waits for that, unless loads are held, a later stage is there for it, or nothing will change.
+TEST(FrictionalBase, a_stage_does_not_end_by_rest_before_loads_have_changed) {
+  const auto run = [](const std::string &friction, const std::string &stages) {
+    Scene scene = read_scene(block, {"boundary.base.friction_angle=" + friction, "output.interval=0",
+                                     "functions.loss=[[0, 40], [0.6, 40], [0.61, 20]]", "stage=[" + stages + "]"});
+    RunOptions options;
+    options.pictures = options.screen = false;
+    auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+    simulation->run();
+    return simulation;
+  };
+  const std::string rest = "name='first', duration=1.5, until='rest', rest_speed=0.02, damping=0.5";
+  const auto waits = run("'loss(t)'", "{" + rest + "}");
+  EXPECT_NEAR(waits->history().column("time_s").back(), 1.5, 1e-9);
+  EXPECT_LT(waits->history().column("work_base_J").back(), -100);
+  ASSERT_FALSE(waits->events().empty());
+  EXPECT_EQ(
+      waits->events()[0].text,
+      "all soil is at rest, but the stage first goes on: boundary.base changes until t = 0.61 s; hold_loads = true "
+      "would keep loads as they are");
+  const std::string unknown = run("'t < 2 ? 40 : 20'", "{" + rest + "}")->events().at(0).text;
+  EXPECT_NE(unknown.find("boundary.base is a function of t; "), std::string::npos) << unknown;
+  for (const auto &[friction, stages] : {std::pair<std::string, std::string>{"40", "{" + rest + "}"},
+                                         {"'loss(t)'", "{" + rest + ", hold_loads=true}"},
+                                         {"'loss(t)'", "{" + rest + "}, {name='second', duration=0.01}"}}) {
+    const auto ends = run(friction, stages);
+    EXPECT_EQ(ends->events().at(0).text, "stage first came to rest") << stages;
+    EXPECT_LT(ends->history().column("time_s").back(), 0.6) << stages;
+  }
+}
+
 /// The columns of a base: friction over normal force is that of the forces in the same row once all nodes slide, since
 /// all friction of a plane points up the slope then; before, a vibrating node may slide upwards for a moment. Soil that
 /// starts 20 mm higher has 20 mm more clearance, in the same cells.

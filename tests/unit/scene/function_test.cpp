@@ -86,6 +86,24 @@ TEST(Function, CallsNamedFunctions) {
   EXPECT_DOUBLE_EQ(function(30, 0, 0, 5), 5);
 }
 
+TEST(Function, KnowsWhenItsLastChangeIs) {
+  EXPECT_EQ(Function(3.).last_change(), Function::never);
+  EXPECT_EQ(Function(Numbers{0, 10}, Numbers{2, 2}).last_change(), Function::never);
+  EXPECT_EQ(Function(Numbers{0, 10, 20}, Numbers{2, 3, 3}).last_change(), 10);
+  EXPECT_EQ(Function("x + 1", 1).last_change(), Function::never);
+  EXPECT_TRUE(std::isinf(Function("min(t, 3)", 1).last_change()));
+  const NamedFunctions named = {{"rain", Function(Numbers{0, 10}, Numbers{0, 5})},
+                                {"more_rain", Function(Numbers{0, 20, 30}, Numbers{0, 5, 5})},
+                                {"still", Function(7.)}};
+  const auto last = [&](const char *text) { return Function(text, 1, named).last_change(); };
+  EXPECT_EQ(last("(x < 24) * rain( t ) + still(t)"), 10);
+  EXPECT_EQ(last("rain(t) + more_rain (t)"), 20);
+  EXPECT_EQ(last("still(t)"), Function::never);
+  EXPECT_EQ(last("rain(3)"), Function::never);
+  EXPECT_TRUE(std::isinf(last("rain(t - 1)")));
+  EXPECT_TRUE(std::isinf(last("rain(t) + t")));
+}
+
 TEST(Function, RefusesABadExpressionWithTheParsersMessage) {
   EXPECT_TRUE(contains(complaint([] { Function("1 +* x", 1); }), "Unexpected operator \"*\""));
   EXPECT_TRUE(contains(complaint([] { Function("2 * q", 1); }), "q"));

@@ -1,0 +1,20 @@
+#pragma once
+/// What a scene changes with time while its soil moves.
+#include <string>
+#include <vector>
+
+#include "simulation/world.h"
+
+namespace talus {
+
+/// A load, a support or a strength that functions of time give.
+struct ChangingLoad {
+  std::string key;  ///< boundary.NAME, or the path of another key
+  double until;     ///< t from which on it keeps its value [s]; infinite where the scene does not tell
+};
+
+/// All of a scene, in the order of its boundaries, water and bodies.
+template <int dim>
+std::vector<ChangingLoad> changing_loads(const World<dim> &world);
+
+}  // namespace talus
