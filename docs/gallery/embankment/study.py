@@ -50,7 +50,7 @@ STUDIES = {
         "three phases, gas of Table 3": GAS,
         "slice of tetrahedra": SLICE,
         "storage of the water in rate form": ("water.storage=rate",),
-        "three phases, gas of Table 3, step 0.59 of the critical (0.6)": (*GAS, "integrator.fraction=0.59"),
+        "three phases, gas of Table 3, step 0.3 of the critical (0.6)": (*GAS, "integrator.fraction=0.3"),
     },
 }
 UNTIL_REST = "stage.rain.duration=60"  # the slide is over by then
