@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "base/rounded.h"
 #include "meshes/outline.h"
 
 namespace talus {
@@ -24,12 +25,7 @@ std::string text_of(const Part &...part) {
 }
 
 /// A number in a sentence, to three digits.
-std::string digits(double value) {
-  std::ostringstream text;
-  text.precision(3);
-  text << value;
-  return text.str();
-}
+std::string digits(double value) { return rounded(value, 3); }
 std::string length(double metres) { return digits(metres) + " m"; }
 
 std::string json_text(const std::string &text) {

@@ -153,6 +153,7 @@ class SoilMotion final : public AnySoilMotion<dim> {
   // velocities
   typename Conditions<dim>::Pores contact(double t, double gamma);
   void constrain(double t, Vec<dim> *v);
+  PetscErrorCode to_particles_and_back(const Vec<dim> *in, Vec<dim> *out);
   typename PoreFluid<dim, Phases>::Frame pore_frame(double t, const State &state) requires Phases::liquid;
 
   const BackgroundMesh<dim> &mesh_;

@@ -31,11 +31,11 @@ class Boundary {
   OnSoil in_motion, quasi_static;
   OnWater water;
   OnGas gas;
-  int precedence = 2;                    ///< of a support
-  bool follows = false;                  ///< of a load
-  bool open_water = false;               ///< of a pressure or seepage
-  bool remembers = false;                ///< of a contact: what it bears depends on how far soil has slipped on it
-  double last_change = Function::never;  ///< t from which on the functions that the scene gives keep their values [s]
+  int precedence = 2;             ///< of a support
+  bool follows = false;           ///< of a load
+  bool open_water = false;        ///< of a pressure or seepage
+  bool remembers = false;         ///< of a contact: what it bears depends on how far soil has slipped on it
+  std::vector<TimeSpan> changes;  ///< when the functions that the scene gives change with time
   /// Keys and numbers of components of the vectors that the scene gives as functions; each must have one per dimension.
   std::vector<std::pair<std::string, int>> vectors;
 
@@ -87,17 +87,19 @@ Boundary read_boundary(const DeferredTable &table);
 
 // ---- templates ----
 
-/// Visits the fields of a kind for its functions: which are vectors, and until when do they change with time?
+/// Visits the fields of a kind for its functions: which are vectors, and when do they change with time?
 struct Boundary::FindFunctions {
   std::vector<std::pair<std::string, int>> &vectors;
-  double &last_change;
+  std::vector<TimeSpan> &changes;
+  void add(const Function &function) {
+    const std::vector<TimeSpan> its = function.changes();
+    changes.insert(changes.end(), its.begin(), its.end());
+  }
   void functions(const char *key, const std::vector<Function> &value, Unit, const char *, const char *) {
     if (!value.empty()) vectors.emplace_back(key, static_cast<int>(value.size()));
-    for (const Function &component : value) last_change = std::max(last_change, component.last_change());
+    for (const Function &component : value) add(component);
   }
-  void function(const char *, const Function &value, Unit, Range, const char *, const char *) {
-    last_change = std::max(last_change, value.last_change());
-  }
+  void function(const char *, const Function &value, Unit, Range, const char *, const char *) { add(value); }
   void number(const char *, double &, Unit, Range, const char *) {}
   void flag(const char *, bool &, const char *) {}
   template <class Enum>
@@ -133,7 +135,7 @@ requires(!std::same_as<Kind, Boundary>) Boundary::Boundary(Kind of)
   static_assert(PossibleOnFluids<Kind>, "a wall, and the surface of the soil, act on liquid and gas alike");
   static_assert(CompleteOnSoil<Kind>, "members are missing or never asked for: see OnSoil in kind.h");
   static_assert(CompleteOnFluids<Kind>, "members are missing or never asked for: see OnWater and OnGas in kind.h");
-  of.fields(FindFunctions{vectors, last_change});
+  of.fields(FindFunctions{vectors, changes});
   const auto kind = std::make_shared<const Kind>(std::move(of));
   on_soil_2d_ = functions_of<2>(kind), on_soil_3d_ = functions_of<3>(kind);
   if constexpr (member::precedence<Kind>) precedence = Kind::precedence;

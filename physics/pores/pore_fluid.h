@@ -92,6 +92,10 @@ class PoreFluid {
   void constrain(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid,
                  Vec<dim> *fluid) const;
 
+  /// Brings the gas from nodes to particles and back: velocities `in` and `out` [1 + fluids][nodes], of which the
+  /// skeleton's are there in `out`. Collective.
+  PetscErrorCode gas_to_particles_and_back(FilledGrid<dim> &grid, const Vec<dim> *in,
+                                           Vec<dim> *out) requires Phases::gas;
   /// Finds the divergence of the mass fluxes in cells, over displacements u [1 + fluids][nodes] from the accepted
   /// state. `frame` is the accepted one; its `trial` alone tells whether the step is one. Collective.
   PetscErrorCode find_divergence(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *u);

@@ -40,12 +40,14 @@ struct NodalVelocities {
   }
   /// Share by which nodes relax in a step [s], docs/theory (4.10).
   double relaxed_in(double step) const { return 1 - std::exp(-step / relaxation_time); }
-  /// Once `start` is known: what of it mapping to particles and back loses. Collective.
-  PetscErrorCode find_unmapped_start(FilledGrid<dim> &grid) {
+  /// Once `start` is known: what of it mapping to particles and back, `map(in, out)`, loses on so many nodes.
+  /// Collective.
+  template <class Map>
+  PetscErrorCode find_unmapped_start(int nodes, Map &&map) {
     PetscFunctionBeginUser;
     if (!relaxes) PetscFunctionReturn(0);
-    PetscCall((to_particles_and_back<dim, fields>(grid, start.data(), unmapped_start.data())));
-    for (int i = 0; i < grid.node_count() * fields; ++i)
+    PetscCall(map(start.data(), unmapped_start.data()));
+    for (int i = 0; i < nodes * fields; ++i)
       for (int d = 0; d < dim; ++d) unmapped_start[i][d] = start[i][d] - unmapped_start[i][d];
     PetscFunctionReturn(0);
   }

@@ -128,7 +128,8 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double t) {
     std::copy_n(now.begin() + nodes, nodes * fluids, start.begin() + nodes);
     std::copy_n(now.begin(), nodes * fields, velocities_.before_step.begin());
   }
-  PetscCall(velocities_.find_unmapped_start(grid_));
+  PetscCall(velocities_.find_unmapped_start(
+      nodes, [this](const Vec<dim> *in, Vec<dim> *out) { return to_particles_and_back(in, out); }));
   if constexpr (Phases::prescribed) PetscCall(water_.begin(grid_, load_time));
   for (size_t b = 0; b < bodies_.size(); ++b)
     if (nonlocal_[b]) PetscCall(nonlocal_[b]->begin(grid_, points_[b]));

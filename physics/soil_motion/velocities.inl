@@ -64,6 +64,14 @@ void SoilMotion<dim, Phases>::constrain(double t, Vec<dim> *v) {
 }
 
 template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::to_particles_and_back(const Vec<dim> *in, Vec<dim> *out) {
+  PetscFunctionBeginUser;
+  PetscCall((talus::to_particles_and_back<dim, fields>(grid_, in, out)));
+  if constexpr (Phases::gas) PetscCall(fluid_.gas_to_particles_and_back(grid_, in, out));
+  PetscFunctionReturn(0);
+}
+
+template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double *v, double *w) {
   PetscFunctionBeginUser;
   Vec<dim> *velocity = reinterpret_cast<Vec<dim> *>(v), *mapped = reinterpret_cast<Vec<dim> *>(w);
@@ -76,7 +84,7 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
     const double share = velocities_.relaxes ? velocities_.relaxed_in(gamma) : 0;
     for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) scratch_[i][d] = velocity[i][d] - (1 - share) * before[i][d];
-    PetscCall((to_particles_and_back<dim, fields>(grid_, scratch_.data(), mapped)));
+    PetscCall(to_particles_and_back(scratch_.data(), mapped));
     for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) mapped[i][d] += (1 - share) * before[i][d];
     constrain(t, mapped);
@@ -88,7 +96,7 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
     PetscFunctionReturn(0);
   }
   if (velocities_.relaxes) {
-    PetscCall((to_particles_and_back<dim, fields>(grid_, velocity, mapped)));
+    PetscCall(to_particles_and_back(velocity, mapped));
     const double share = velocities_.relaxed_in(gamma), own = velocities_.own_share_at(t);
     for (int i = 0; i < nodes; ++i)
       for (int d = 0; d < dim; ++d) {
@@ -99,7 +107,7 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
   } else {  // the same sum, mapped once
     for (int i = 0; i < nodes; ++i)
       for (int d = 0; d < dim; ++d) scratch_[i][d] = velocity[i][d] - start[i][d];
-    PetscCall((to_particles_and_back<dim, fields>(grid_, scratch_.data(), mapped)));
+    PetscCall(to_particles_and_back(scratch_.data(), mapped));
     for (int i = 0; i < nodes; ++i)
       for (int d = 0; d < dim; ++d) mapped[i][d] += start[i][d];
   }
@@ -119,7 +127,7 @@ PetscErrorCode SoilMotion<dim, Phases>::rates(double t, const double *u, const d
   std::copy_n(reinterpret_cast<const Vec<dim> *>(v), all, supported);
   constrain(t, supported);
   if (velocities_.relaxes) {
-    PetscCall((to_particles_and_back<dim, fields>(grid_, supported, mapped)));
+    PetscCall(to_particles_and_back(supported, mapped));
     const double own = velocities_.own_share_at(t);
     for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) {
@@ -129,7 +137,7 @@ PetscErrorCode SoilMotion<dim, Phases>::rates(double t, const double *u, const d
   } else {  // the same sum, mapped once
     for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) supported[i][d] -= start[i][d];
-    PetscCall((to_particles_and_back<dim, fields>(grid_, supported, mapped)));
+    PetscCall(to_particles_and_back(supported, mapped));
     for (int i = 0; i < all; ++i)
       for (int d = 0; d < dim; ++d) mapped[i][d] += start[i][d];
   }

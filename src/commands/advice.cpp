@@ -2,8 +2,8 @@
 // simulation/unlikely.h.
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
+#include "base/rounded.h"
 #include "commands/foreign_code.h"
 #include "commands/needs.h"
 #include "commands/scales.h"
@@ -14,13 +14,7 @@
 namespace talus {
 namespace {
 
-/// Four digits at most.
-std::string digits(double value, int count = 3) {
-  std::ostringstream text;
-  text.precision(count);
-  text << value;
-  return text.str();
-}
+std::string digits(double value, int count = 3) { return rounded(value, count); }
 
 /// Does softening depend on the size of the cells?
 bool unscaled(const Law &law) {

@@ -34,7 +34,8 @@ int run(const RunArguments &arguments) {
   options.replace = arguments.force;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error of writing, not the end
+  std::signal(SIGUSR1, on_signal);  // mpirun hands it on, and does not kill ranks after it
+  std::signal(SIGXFSZ, SIG_IGN);    // a limit on file sizes is an error of writing, not the end
   make_simulation(PETSC_COMM_WORLD, scene, options)->run();
   int rank;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);

@@ -131,7 +131,8 @@ int solve(const SolveArguments &arguments) {
   options.pictures = options.checkpoints = false, options.gauss_points = true;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error of writing, not the end
+  std::signal(SIGUSR1, on_signal);  // mpirun hands it on, and does not kill ranks after it
+  std::signal(SIGXFSZ, SIG_IGN);    // a limit on file sizes is an error of writing, not the end
   const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
   int rank;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);

@@ -55,7 +55,7 @@ struct Function::Expression {
 
   /// Keeps the first value that its key does not admit.
   void report(double value) const;
-  double last_change() const;
+  void add_changes(std::vector<TimeSpan> &spans) const;
 
   mu::Parser parser;
   NamedFunctions functions;
@@ -111,16 +111,17 @@ std::string message(const mu::Parser::exception_type &error, const std::string &
 
 }  // namespace
 
-double Function::Expression::last_change() const {
-  double last = never;
+void Function::Expression::add_changes(std::vector<TimeSpan> &spans) const {
   std::string rest = parser.GetExpr();
   for (const auto &[name, function] : functions) {
     const std::regex call("\\b" + name + "\\s*\\(\\s*t\\s*\\)");
     if (!std::regex_search(rest, call)) continue;
-    last = std::max(last, function.last_change());
+    const std::vector<TimeSpan> its = function.changes();
+    spans.insert(spans.end(), its.begin(), its.end());
     rest = std::regex_replace(rest, call, "0");
   }
-  return std::regex_search(rest, std::regex("\\bt\\b")) ? std::numeric_limits<double>::infinity() : last;
+  constexpr double ever = std::numeric_limits<double>::infinity();
+  if (std::regex_search(rest, std::regex("\\bt\\b"))) spans.push_back({-ever, ever});
 }
 
 void Function::Expression::report(double value) const {
@@ -173,10 +174,12 @@ Function::Function(const std::string &expression, double scale, const NamedFunct
   }
 }
 
-double Function::last_change() const {
-  for (std::size_t i = times_.size(); i-- > 1;)
-    if (values_[i] != values_[i - 1]) return times_[i];
-  return uses("t") ? expression_->last_change() : never;
+std::vector<TimeSpan> Function::changes() const {
+  std::vector<TimeSpan> spans;
+  for (std::size_t i = 1; i < times_.size(); ++i)
+    if (values_[i] != values_[i - 1]) spans.push_back({times_[i - 1], times_[i]});
+  if (uses("t")) expression_->add_changes(spans);
+  return spans;
 }
 
 bool Function::uses(const std::string &variable) const { return expression_ && expression_->used.contains(variable); }

@@ -1,6 +1,5 @@
 #pragma once
 /// A function of place and time given by a scene: a number, a table of [t, value] points, or an expression.
-#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -30,6 +29,10 @@ struct FunctionLimits {
   mutable std::string fault{};  ///< a sentence; empty: every value so far was admissible
 };
 
+struct TimeSpan {
+  double begin, end;  ///< [s]
+};
+
 /// Value of a function at x, y, z [m], t [s]; where a scene key offers them, `table` is the elevation of the water
 /// table at x and `slip` the accumulated slip of a base [m]. Copies share one parsed expression; evaluation allocates
 /// nothing. Not for use by several threads at once.
@@ -49,11 +52,9 @@ class Function {
   bool given() const { return given_; }
   bool constant() const { return given_ && !expression_ && times_.empty(); }
   bool depends_on_time() const { return !times_.empty() || uses("t"); }
-  /// The t from which on it keeps its value [s]: that of the last point of a table, or of the tables that an expression
-  /// calls at t, that has another value than the point before; `never` where there is none, and infinite for an
-  /// expression that has t in another place too, which does not tell.
-  double last_change() const;
-  static constexpr double never = -std::numeric_limits<double>::infinity();
+  /// When it changes: between the points of a table that have different values, and where an expression calls such
+  /// tables at t; an expression that has t in another place too does not tell, and may change at any time.
+  std::vector<TimeSpan> changes() const;
   /// Does the expression name this variable: x, y, z, t, table or slip?
   bool uses(const std::string &variable) const;
 

@@ -426,8 +426,9 @@ struct Stage {
     v.number("energy_ratio", energy_ratio, one, Range{0, 1},
              "equilibrium: largest ratio of kinetic to elastic strain energy");
     v.number("rest_speed", rest_speed, metre_per_second, Range{0, 1e6},
-             "rest: the root mean square speed of all soil remains below this value; a stage does not end by it while "
-             "functions of t still change what acts, unless it holds loads or a later stage does not");
+             "rest: the root mean square speed of all soil remains below this value and does not rise; a stage "
+             "does not end while what acts has still to change within its duration, or pore fluids move, unless "
+             "hold_loads = true");
     v.text("failure_point", failure_point, "failure: name of the output point whose velocity is tested");
     v.number("failure_speed", failure_speed, metre_per_second, Range{0, 1e6},
              "failure: speed that the mean velocity of the point in a tenth of failure_time must exceed");

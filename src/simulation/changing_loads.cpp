@@ -1,23 +1,24 @@
 #include "simulation/changing_loads.h"
 
-#include <algorithm>
+#include <utility>
 
 namespace talus {
 
 template <int dim>
 std::vector<ChangingLoad> changing_loads(const World<dim> &world) {
   std::vector<ChangingLoad> loads;
-  const auto add = [&](const std::string &key, double until) {
-    if (until > Function::never) loads.push_back({key, until});
+  const auto add = [&](const std::string &key, std::vector<TimeSpan> when) {
+    if (!when.empty()) loads.push_back({key, std::move(when)});
   };
   for (const std::vector<NamedBoundary> *sources : {&world.conditions.sources(), &world.seepage_sources})
-    for (const NamedBoundary &source : *sources) add("boundary." + source.name, source.kind.last_change);
-  add("water.level", world.scene.water.level.last_change());
-  add("water.excess", world.scene.water.excess.last_change());
+    for (const NamedBoundary &source : *sources) add("boundary." + source.name, source.kind.changes);
+  add("water.level", world.scene.water.level.changes());
+  add("water.excess", world.scene.water.excess.changes());
   for (const BodySource &body : world.scene.body) {
-    double until = Function::never;
-    for (const Function &component : body.body_acceleration) until = std::max(until, component.last_change());
-    add("body." + body.name + ".body_acceleration", until);
+    std::vector<TimeSpan> when;
+    for (const Function &component : body.body_acceleration)
+      for (const TimeSpan &span : component.changes()) when.push_back(span);
+    add("body." + body.name + ".body_acceleration", when);
   }
   return loads;
 }

@@ -10,7 +10,7 @@ namespace talus {
 /// A load, a support or a strength that functions of time give.
 struct ChangingLoad {
   std::string key;  ///< boundary.NAME, or the path of another key
-  double until;     ///< t from which on it keeps its value [s]; infinite where the scene does not tell
+  std::vector<TimeSpan> when;
 };
 
 /// All of a scene, in the order of its boundaries, water and bodies.

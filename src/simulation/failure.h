@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/rounded.h"
 #include "base/vec.h"
 #include "simulation.h"
 
@@ -22,14 +23,6 @@ class RunFailure : public RunError {
 /// Turns a PETSc error into an exception, where no PETSc function stands between thrower and catcher.
 inline void require(PetscErrorCode error) {
   if (error) throw RunFailure("PETSc reported error " + std::to_string(error) + " (its message stands above)");
-}
-
-/// Four digits, for messages.
-inline std::string rounded(double value) {
-  std::ostringstream text;
-  text.precision(4);
-  text << value;
-  return text.str();
 }
 
 /// The text of the first rank which has one, empty if none has. Collective.

@@ -316,7 +316,7 @@ class Model {
         .add("soil", json::text(action_on_soil(action, kind.template on_soil<dim>())))
         .add("water", json::text(water[static_cast<int>(kind.water)]))
         .add("gas", json::text(gas[static_cast<int>(kind.gas)]))
-        .add("changes", json_of(kind.last_change > Function::never))
+        .add("changes", json_of(!kind.changes.empty()))
         .add("values", values.str())
         .add("level", level)
         .add("faces", drawn)

@@ -66,6 +66,39 @@ PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<di
   PetscFunctionReturn(0);
 }
 
+/// What the gas does against the skeleton comes back from particles as momentum does at a remap: with the masses of the
+/// gas. With those of the grains it would gain energy where saturation varies from cell to cell, theory (4.7a).
+template <int dim, class Phases>
+PetscErrorCode PoreFluid<dim, Phases>::gas_to_particles_and_back(FilledGrid<dim> &grid, const Vec<dim> *in,
+                                                                 Vec<dim> *out) requires Phases::gas {
+  PetscFunctionBeginUser;
+  const int nodes = grid.node_count();
+  const Vec<dim> *gas = in + 2 * nodes;
+  Vec<dim> *mapped = out + 2 * nodes;
+  std::fill_n(mapped, nodes, Vec<dim>{});
+  for (int c = 0; c < grid.cell_count(); ++c) {
+    const auto &node = grid.shape[c].node;
+    const auto &matrix = grid.mass_matrix[c];
+    const Quad share = quad(cells_[c].mass[1] / grain_mass_[c]);
+    Quad v[dim + 1], sum[dim + 1];
+    for (int k = 0; k <= dim; ++k)
+      v[k] = load<dim>(gas[node[k]].data()) - load<dim>(in[node[k]].data()), sum[k] = quad(matrix[k]) * v[k];
+    for (int k = 0, pair = dim + 1; k <= dim; ++k)
+      for (int l = k + 1; l <= dim; ++l, ++pair)
+        sum[k] += quad(matrix[pair]) * v[l], sum[l] += quad(matrix[pair]) * v[k];
+    for (int k = 0; k <= dim; ++k) {
+      double *x = mapped[node[k]].data();
+      talus::store<dim>(x, load<dim>(x) + share * sum[k]);
+    }
+  }
+  PetscCall(grid.sum(mapped[0].data(), dim));
+  for (int i = 0; i < nodes; ++i) {
+    const double mass = nodes_[i].mass(1), scale = mass > 0 ? 1 / mass : 0;
+    for (int d = 0; d < dim; ++d) mapped[i][d] = out[i][d] + scale * mapped[i][d];
+  }
+  PetscFunctionReturn(0);
+}
+
 template <int dim, class Phases>
 PetscErrorCode PoreFluid<dim, Phases>::find_divergence(const Frame &frame, const PoreConditions<dim> &conditions,
                                                        const Vec<dim> *u) {

@@ -1,7 +1,8 @@
 #pragma once
 /// Once gravity is whole: out-of-balance forces are small against the applied ones, and kinetic energy against strain
-/// energy.
+/// energy; and nothing that acts on the soil has still to change.
 #include "simulation/run.h"
+#include "simulation/stops/loads_to_come.h"
 
 namespace talus {
 
@@ -18,6 +19,11 @@ class StopAtEquilibrium final : public StopCriterion<dim> {
     const bool balanced = sums.unbalanced <= stage_.force_ratio * sums.applied,
                quiet = sums.kinetic <= stage_.energy_ratio * sums.strain;
     if (!balanced || !quiet) return false;
+    if (const std::string load = loads_to_come(run); !load.empty()) {
+      if (!told_) run.recorder.note("the soil is in equilibrium, but the stage " + stage_.name + " goes on: " + load);
+      told_ = true;
+      return false;
+    }
     run.recorder.note("stage " + stage_.name + " is in equilibrium: unbalanced force ratio " +
                       std::to_string(sums.ratio()));
     return true;
@@ -25,6 +31,7 @@ class StopAtEquilibrium final : public StopCriterion<dim> {
 
  private:
   const Stage &stage_;
+  bool told_ = false;  ///< why the stage goes on
 };
 
 }  // namespace talus

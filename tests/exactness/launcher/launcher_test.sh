@@ -42,4 +42,23 @@ done
 claim "a run waits for a build" "waiting for another build" "$(timeout 2 "$tree/talus" run slope.toml 2>&1 8>&-)"
 mv "$build/bin/talus" "$build/bin/elsewhere"
 claim "without a program check waits" "waiting for another build" "$(timeout 2 "$tree/talus" check slope.toml 2>&1 8>&-)"
+mv "$build/bin/elsewhere" "$build/bin/talus"
+flock -u 8
+
+# ranks have the time to write what they have computed, also more than the second that mpirun gives them
+cat >"$build/bin/talus" <<'TEXT'
+#!/bin/sh
+trap 'sleep 3; echo "ended in order"; exit 3' USR1
+touch "$BEGUN.$OMPI_COMM_WORLD_RANK"
+while :; do sleep 0.1; done
+TEXT
+for signal in TERM INT; do
+  export BEGUN=$tree/begun_$signal
+  # with job control, since what bash starts in the background without it ignores SIGINT
+  output=$(set -m; timeout 60 "$tree/talus" run slope.toml -n 2 2>&1 & launcher=$!
+           for _ in {1..200}; do [[ -e $BEGUN.0 && -e $BEGUN.1 ]] && break; sleep 0.1; done
+           kill -$signal $launcher; wait $launcher; echo "status $?")
+  claim "ranks end in order by SIG$signal" "2" "$(grep -c "ended in order" <<<"$output")"
+  claim "the launcher has the status of the ranks" "status 3" "$output"
+done
 exit $((failures > 0))

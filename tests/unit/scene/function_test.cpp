@@ -86,22 +86,29 @@ TEST(Function, CallsNamedFunctions) {
   EXPECT_DOUBLE_EQ(function(30, 0, 0, 5), 5);
 }
 
-TEST(Function, KnowsWhenItsLastChangeIs) {
-  EXPECT_EQ(Function(3.).last_change(), Function::never);
-  EXPECT_EQ(Function(Numbers{0, 10}, Numbers{2, 2}).last_change(), Function::never);
-  EXPECT_EQ(Function(Numbers{0, 10, 20}, Numbers{2, 3, 3}).last_change(), 10);
-  EXPECT_EQ(Function("x + 1", 1).last_change(), Function::never);
-  EXPECT_TRUE(std::isinf(Function("min(t, 3)", 1).last_change()));
+TEST(Function, KnowsWhenItChanges) {
+  using Spans = std::vector<std::pair<double, double>>;
+  const auto spans = [](const Function &function) {
+    Spans found;
+    for (const TimeSpan &span : function.changes()) found.emplace_back(span.begin, span.end);
+    return found;
+  };
+  const double ever = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(spans(Function(3.)), Spans{});
+  EXPECT_EQ(spans(Function(Numbers{0, 10}, Numbers{2, 2})), Spans{});
+  EXPECT_EQ(spans(Function(Numbers{0, 10, 20, 30}, Numbers{2, 3, 3, 1})), (Spans{{0, 10}, {20, 30}}));
+  EXPECT_EQ(spans(Function("x + 1", 1)), Spans{});
+  EXPECT_EQ(spans(Function("min(t, 3)", 1)), (Spans{{-ever, ever}}));
   const NamedFunctions named = {{"rain", Function(Numbers{0, 10}, Numbers{0, 5})},
                                 {"more_rain", Function(Numbers{0, 20, 30}, Numbers{0, 5, 5})},
                                 {"still", Function(7.)}};
-  const auto last = [&](const char *text) { return Function(text, 1, named).last_change(); };
-  EXPECT_EQ(last("(x < 24) * rain( t ) + still(t)"), 10);
-  EXPECT_EQ(last("rain(t) + more_rain (t)"), 20);
-  EXPECT_EQ(last("still(t)"), Function::never);
-  EXPECT_EQ(last("rain(3)"), Function::never);
-  EXPECT_TRUE(std::isinf(last("rain(t - 1)")));
-  EXPECT_TRUE(std::isinf(last("rain(t) + t")));
+  const auto of = [&](const char *text) { return spans(Function(text, 1, named)); };
+  EXPECT_EQ(of("(x < 24) * rain( t ) + still(t)"), (Spans{{0, 10}}));
+  EXPECT_EQ(of("rain(t) + more_rain(t )").size(), 2u);
+  EXPECT_EQ(of("still(t)"), Spans{});
+  EXPECT_EQ(of("rain(3)"), Spans{});
+  EXPECT_EQ(of("rain(t - 1)"), (Spans{{-ever, ever}}));
+  EXPECT_EQ(of("rain(t) + t").size(), 2u);
 }
 
 TEST(Function, RefusesABadExpressionWithTheParsersMessage) {
