@@ -23,18 +23,18 @@ std::unique_ptr<AnySimulation> column(const std::vector<std::string> &overrides)
   return make_simulation(PETSC_COMM_WORLD, scenes.back(), options);
 }
 
-std::vector<double> gas_pressures(const AnySimulation &simulation) {
+std::vector<double> gas_pressures(AnySimulation &simulation) {
   const Snapshot now = simulation.snapshot();
   return std::ranges::find(now.columns, "gas_pressure", &Column::name)->values;
 }
 
-double lowest(const AnySimulation &simulation) {
+double lowest(AnySimulation &simulation) {
   double least = std::ranges::min(gas_pressures(simulation));
   MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_DOUBLE, MPI_MIN, PETSC_COMM_WORLD);
   return least;
 }
 
-double mean_square(const AnySimulation &simulation) {
+double mean_square(AnySimulation &simulation) {
   double sum[2] = {0, 0};
   for (const double p : gas_pressures(simulation)) sum[0] += p * p, sum[1] += 1;
   MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
