@@ -16,6 +16,8 @@ struct PorePressures {
 
 /// Gas share below which soil counts as saturated: the pressure of its gas means nothing then [-].
 inline constexpr double residual_gas = 1e-4;
+/// Gas share at which the pressure of the gas follows from that of the liquid and not from its mass [-].
+inline constexpr double no_gas = 1e-6 * residual_gas;
 
 /// A few points side by side, so that their iterations run in vector registers. A lane does not depend on the
 /// others.
@@ -117,8 +119,10 @@ inline void three_phase_pressures(const SoilPores &soil, const Liquid &liquid, c
     }
 #pragma omp simd
     for (int i = 0; i < lanes; ++i) {
-      p.liquid[i] = law.pressure_at(p.liquid_content[i] / (1 - p.gas_share[i]));
-      p.gas[i] = gas.pressure_at(p.gas_content[i] / p.gas_share[i]);
+      const double y = p.gas_share[i], suction = soil.suction(y);
+      p.liquid[i] = law.pressure_at(p.liquid_content[i] / (1 - y));
+      // where hardly any gas is left its density is that of two vanishing numbers
+      p.gas[i] = y > no_gas ? gas.pressure_at(p.gas_content[i] / y) : p.liquid[i] + suction;
     }
   });
 }
@@ -141,7 +145,7 @@ struct StorageTangent {
 };
 inline StorageTangent storage_tangent(const SoilPores &soil, const Liquid &liquid, const PoreGas &gas,
                                       const PorePressures &p, double gas_share) {
-  const double y = std::max(gas_share, residual_gas * 1e-6), rho_l = liquid.density_at(p.liquid),
+  const double y = std::max(gas_share, no_gas), rho_l = liquid.density_at(p.liquid),
                rho_g = gas.density_at(p.gas);
   const double capacity = 1 / std::max(soil.at(y).slope, 1e-300);  // -dS_l/ds
   return {(1 - y) * liquid.density_slope(rho_l) / rho_l + capacity, -capacity,

@@ -14,7 +14,7 @@ PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<di
                                                 const Vec<dim> *solid) requires Phases::gas {
   PetscFunctionBeginUser;
   constexpr int width = 2;  // of a node: volume and mass taken
-  constexpr double empty = 1e-30;
+  constexpr double empty = 1e-300;
   FilledGrid<dim> &grid = frame.grid;
   const int nodes = grid.node_count(), cells = grid.cell_count();
   double *taken = nodal_.data(), *density = taken + width * nodes, *resistance = density + nodes;
