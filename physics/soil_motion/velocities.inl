@@ -66,7 +66,7 @@ void SoilMotion<dim, Phases>::constrain(double t, Vec<dim> *v) {
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::to_particles_and_back(const Vec<dim> *in, Vec<dim> *out) {
   PetscFunctionBeginUser;
-  PetscCall((talus::to_particles_and_back<dim, fields>(grid_, in, out)));
+  PetscCall((talus::to_particles_and_back<dim, fields - Phases::gas>(grid_, in, out)));
   if constexpr (Phases::gas) PetscCall(fluid_.gas_to_particles_and_back(grid_, in, out));
   PetscFunctionReturn(0);
 }
