@@ -145,8 +145,7 @@ struct StorageTangent {
 };
 inline StorageTangent storage_tangent(const SoilPores &soil, const Liquid &liquid, const PoreGas &gas,
                                       const PorePressures &p, double gas_share) {
-  const double y = std::max(gas_share, no_gas), rho_l = liquid.density_at(p.liquid),
-               rho_g = gas.density_at(p.gas);
+  const double y = std::max(gas_share, no_gas), rho_l = liquid.density_at(p.liquid), rho_g = gas.density_at(p.gas);
   const double capacity = 1 / std::max(soil.at(y).slope, 1e-300);  // -dS_l/ds
   return {(1 - y) * liquid.density_slope(rho_l) / rho_l + capacity, -capacity,
           y * gas.density_slope() / rho_g + capacity};
