@@ -19,11 +19,7 @@ class StopAtEquilibrium final : public StopCriterion<dim> {
     const bool balanced = sums.unbalanced <= stage_.force_ratio * sums.applied,
                quiet = sums.kinetic <= stage_.energy_ratio * sums.strain;
     if (!balanced || !quiet) return false;
-    if (const std::string load = loads_to_come(run); !load.empty()) {
-      if (!told_) run.recorder.note("the soil is in equilibrium, but the stage " + stage_.name + " goes on: " + load);
-      told_ = true;
-      return false;
-    }
+    if (loads_to_come_.hold_up(run, "the soil is in equilibrium", loads_to_come_(run))) return false;
     run.recorder.note("stage " + stage_.name + " is in equilibrium: unbalanced force ratio " +
                       std::to_string(sums.ratio()));
     return true;
@@ -31,7 +27,7 @@ class StopAtEquilibrium final : public StopCriterion<dim> {
 
  private:
   const Stage &stage_;
-  bool told_ = false;  ///< why the stage goes on
+  LoadsToCome<dim> loads_to_come_;
 };
 
 }  // namespace talus

@@ -4,36 +4,53 @@
 #include <cmath>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "simulation/changing_loads.h"
 #include "simulation/run.h"
 
 namespace talus {
 
-/// What will change yet within the duration of the present stage, in words; empty: nothing.
+/// What the scene will change yet within the duration of the present stage, and whether that was said.
 template <int dim>
-std::string loads_to_come(const Run<dim> &run) {
-  const Stage &stage = run.stage();
-  const double since_begin = run.clock.time - run.progress.begin;
-  if (since_begin < stage.gravity_ramp) return "gravity still increases";
-  if (stage.hold_loads) return "";
-  const double now = run.clock.load_time, end = now + stage.duration - since_begin;
-  for (const ChangingLoad &load : changing_loads(run.world)) {
-    double until = now;
-    bool tells = true;
-    for (const TimeSpan &span : load.when)
-      if (span.begin < end) until = std::max(until, std::min(span.end, end)), tells = tells && std::isfinite(span.end);
-    if (until <= now) continue;
-    std::ostringstream text;
-    text << load.key;
-    if (tells)
-      text << " changes until t = " << until << " s";
-    else
-      text << " is a function of t";
-    text << "; hold_loads = true would keep loads as they are";
-    return text.str();
+class LoadsToCome {
+ public:
+  /// In words; empty: nothing.
+  std::string operator()(const Run<dim> &run) {
+    const Stage &stage = run.stage();
+    const double since_begin = run.clock.time - run.progress.begin;
+    if (since_begin < stage.gravity_ramp) return "gravity still increases";
+    if (stage.hold_loads) return "";
+    if (!known_) loads_ = changing_loads(run.world), known_ = true;
+    const double now = run.clock.load_time, end = now + stage.duration - since_begin;
+    for (const ChangingLoad &load : loads_) {
+      double until = now;
+      bool tells = true;
+      for (const TimeSpan &span : load.when)
+        if (span.begin < end)
+          until = std::max(until, std::min(span.end, end)), tells = tells && std::isfinite(span.end);
+      if (until <= now) continue;
+      std::ostringstream text;
+      text << load.key;
+      if (tells)
+        text << " changes until t = " << until << " s";
+      else
+        text << " is a function of t";
+      text << "; hold_loads = true would keep loads as they are";
+      return text.str();
+    }
+    return "";
   }
-  return "";
-}
+  /// Says once why a stage goes on though the soil is as the stage asks, `state`. True unless `why` is empty.
+  bool hold_up(Run<dim> &run, const std::string &state, const std::string &why) {
+    if (why.empty()) return false;
+    if (!told_) run.recorder.note(state + ", but the stage " + run.stage().name + " goes on: " + why);
+    return told_ = true;
+  }
+
+ private:
+  std::vector<ChangingLoad> loads_;  ///< of the scene, once they are known
+  bool known_ = false, told_ = false;
+};
 
 }  // namespace talus

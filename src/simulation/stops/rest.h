@@ -26,11 +26,7 @@ class StopAtRest final : public StopCriterion<dim> {
     if (quiet_checks_ < checks_of_rest) return false;
     quiet_checks_ = 0;                       // unless all is over, it is looked at for as long again
     if (speed > first_speed_) return false;  // soil that sets out is slow too
-    if (const std::string load = still_to_come(run); !load.empty()) {
-      if (!told_) run.recorder.note("all soil is at rest, but the stage " + stage_.name + " goes on: " + load);
-      told_ = true;
-      return false;
-    }
+    if (loads_to_come_.hold_up(run, "all soil is at rest", still_to_come(run))) return false;
     if (const auto left = still_moving(run.world.comm, run.recorder.snapshot()))
       run.recorder.note("stage " + stage_.name + " ended: the rms speed of all soil is below rest_speed = " +
                         rounded(stage_.rest_speed) + " m/s, but " + left->sentence());
@@ -42,8 +38,8 @@ class StopAtRest final : public StopCriterion<dim> {
 
  private:
   /// Water that moves may set soil in motion later, as rain does that seeps in.
-  std::string still_to_come(const Run<dim> &run) const {
-    if (const std::string load = loads_to_come(run); !load.empty()) return load;
+  std::string still_to_come(const Run<dim> &run) {
+    if (const std::string load = loads_to_come_(run); !load.empty()) return load;
     if (stage_.hold_loads || !stage_.pore_flow || !fluids_move(run.scene.phases)) return "";
     return "pore fluids move; with hold_loads = true it would end when the soil is at rest";
   }
@@ -51,7 +47,7 @@ class StopAtRest final : public StopCriterion<dim> {
   const Stage &stage_;
   int quiet_checks_ = 0;    ///< in a row
   double first_speed_ = 0;  ///< at the first of them [m/s]
-  bool told_ = false;       ///< why the stage goes on
+  LoadsToCome<dim> loads_to_come_;
 };
 
 }  // namespace talus
