@@ -15,6 +15,7 @@
 #include <system_error>
 #include <vector>
 
+#include "base/temporary_folder.h"
 #include "base/version.h"
 #include "commands/commands.h"
 #include "commands/trials.h"
@@ -139,6 +140,16 @@ int perform(int argc, char **argv, MPI_Comm failures, int rank) {
   return 0;
 }
 
+/// Open MPI keeps its files of all programs of a user that mpirun has not started in one folder, and the last of them
+/// removes it: a program that starts at that moment fails. Here each has a folder of its own, as long as `folder`
+/// lives.
+void keep_apart_from_other_programs(talus::TemporaryFolder &folder) {
+  constexpr const char *place = "OMPI_MCA_orte_tmpdir_base";
+  for (const char *launched : {"OMPI_COMM_WORLD_SIZE", "PMIX_NAMESPACE", "PMI_RANK", place})
+    if (std::getenv(launched)) return;
+  if (folder.make()) setenv(place, folder.path().c_str(), 1);
+}
+
 /// MPI starts with files in the folder for temporary ones, and says little where it cannot write them.
 bool can_write_temporary_files() {
   std::error_code error;
@@ -161,6 +172,8 @@ bool can_write_temporary_files() {
 int main(int argc, char **argv) {
   talus::end_with_starter();
   if (!can_write_temporary_files()) return 1;
+  talus::TemporaryFolder files_of_mpi;
+  keep_apart_from_other_programs(files_of_mpi);
   // everything behind a lone "--" is PETSc's
   int own = argc;
   for (int i = 1; i < argc; ++i)

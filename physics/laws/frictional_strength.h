@@ -75,6 +75,7 @@ struct FrictionalStrength {
   }
 
   bool softens() const { return shape_factor > 0; }
+  bool cohesionless() const { return cohesion == 0 || residual_cohesion == 0; }
   bool strength_varies() const { return softens() || reads_shares; }
 
   /// Divides c and tan(phi), of peak and residual, by `factor`; psi is at most the reduced phi.

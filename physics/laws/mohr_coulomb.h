@@ -47,7 +47,7 @@ struct MohrCoulomb : IsotropicElastic, FrictionalStrength {
     return FrictionalStrength::problem();
   }
 
-  bool cohesionless() const { return cohesion == 0 && suction_cohesion == 0; }
+  bool cohesionless() const { return FrictionalStrength::cohesionless() && suction_cohesion == 0; }
   bool reads_suction() const { return suction_cohesion > 0 || suction_friction_rate > 0; }
   bool strength_varies() const { return FrictionalStrength::strength_varies() || reads_suction(); }
 

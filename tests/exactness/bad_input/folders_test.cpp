@@ -130,6 +130,19 @@ TEST(Start, NeedsRoomForTemporaryFiles) {
   EXPECT_TRUE(ending.says("set TMPDIR")) << ending.output;
 }
 
+/// Open MPI would make a folder of this name for all programs of a user, and remove it while others start.
+TEST(Start, SharesNoFilesWithOtherPrograms) {
+  const Folder folder;
+  char host[256] = "";
+  gethostname(host, sizeof host - 1);
+  const std::string shared = "ompi." + std::string(host) + "." + std::to_string(getuid());
+  folder.write(shared, "");
+  const Ending ending = Program(folder, {"env", "TMPDIR=" + folder / ".", TALUS, "describe", "gravity"}).end();
+  EXPECT_EQ(ending.status, 0) << ending.output;
+  const std::filesystem::directory_iterator left(folder / ".");
+  EXPECT_EQ(std::distance(begin(left), end(left)), 1) << "the program leaves nothing behind";
+}
+
 /// Of a section that has the same contents and is asked for in the same way, wherever its file is.
 TEST(Start, TakesAMeshThatIsKept) {
   const Folder folder;
