@@ -98,7 +98,8 @@ inline Umat::Trouble law_trouble(const Law &law) {
   return umat ? umat->trouble() : Umat::Trouble{};
 }
 
-/// Does soil of this law open without resistance, from the start or once it has softened? Then the volume that its particles gain by opening is that of gaps.
+/// Does soil of this law open without resistance, from the start or once it has softened? Then the volume that its
+/// particles gain by opening is that of gaps.
 inline bool cohesionless(const Law &law) {
   return std::visit([](const auto &one) { return one.cohesionless(); }, law);
 }

@@ -136,10 +136,11 @@ TEST(Start, SharesNoFilesWithOtherPrograms) {
   char host[256] = "";
   gethostname(host, sizeof host - 1);
   const std::string shared = "ompi." + std::string(host) + "." + std::to_string(getuid());
-  folder.write(shared, "");
-  const Ending ending = Program(folder, {"env", "TMPDIR=" + folder / ".", TALUS, "describe", "gravity"}).end();
+  std::filesystem::create_directory(folder / "temporary");
+  folder.write("temporary/" + shared, "");
+  const Ending ending = Program(folder, {"env", "TMPDIR=" + folder / "temporary", TALUS, "describe", "gravity"}).end();
   EXPECT_EQ(ending.status, 0) << ending.output;
-  const std::filesystem::directory_iterator left(folder / ".");
+  const std::filesystem::directory_iterator left(folder / "temporary");
   EXPECT_EQ(std::distance(begin(left), end(left)), 1) << "the program leaves nothing behind";
 }
 
