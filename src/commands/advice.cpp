@@ -335,8 +335,9 @@ class Adviser {
         last = share;
       }
       if (first > 0)
-        say("The equations of " + scene_.body[b].name + " are not hyperbolic at saturations from " +
-            digits(1 - last, 4) + " to " + digits(1 - first, 4) +
+        say("The equations of " + scene_.body[b].name + " are not hyperbolic at " +
+            (last > first ? "saturations from " + digits(1 - last, 4) + " to " : std::string("a saturation of ")) +
+            digits(1 - first, 4) +
             " with net stress and no drag: short waves grow there unless permeability is low; set water.stress = "
             "\"bishop\", or take stiffer soil or water.");
     }

@@ -80,9 +80,11 @@ class Body {
   PetscErrorCode sort(int cell_count);
   /// Takes out the particles `which` (ascending); the others keep their order. For this rank alone.
   PetscErrorCode remove(const std::vector<int> &which);
-  /// Sends each leaver (particle, rank) away; collective, also for ranks without leavers. Afterwards the arrived
-  /// particles are the last ones: `first_arrival` is the index of the first.
-  PetscErrorCode migrate(const std::vector<std::pair<int, int>> &leavers, int *first_arrival);
+  /// Sends each leaver (particle, neighbour of the mesh) away, particles ascending; collective, also for ranks without
+  /// leavers. The last particles take the places of those that left, and the arrived ones come behind:
+  /// `first_arrival` is the index of the first.
+  PetscErrorCode migrate(const BackgroundMesh<dim> &mesh, const std::vector<std::pair<int, int>> &leavers,
+                         int *first_arrival);
   /// All particles of this rank, with every field that is registered, as rows of their cells.
   PetscErrorCode serialize(Archive &archive, const BackgroundMesh<dim> &mesh);
 
@@ -90,12 +92,16 @@ class Body {
   PetscErrorCode borrow();     ///< takes the arrays from the swarm
   PetscErrorCode give_back();  ///< returns them to the swarm, which every change of its size requires
   void rearrange();            ///< particle p goes to order_[p]
+  /// Calls f(array, bytes of a particle) for each field.
+  template <class F>
+  void each_field(F &&f);
 
   const BodySource *source_ = nullptr;
   Law law_;
   int history_count_ = 0, expansion_field_ = -1, fluids_ = 0, face_count_ = 0;
   double volume_cap_ = 0;
   bool borrowed_ = false;
+  PetscInt room_ = 0;  ///< particles for which the swarm has memory
   Dm swarm_;
   ParticleArrays<dim> arrays_;
   std::vector<int> start_, order_;

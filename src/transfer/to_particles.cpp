@@ -84,7 +84,7 @@ PetscErrorCode relocate(Body<dim> &body, const BackgroundMesh<dim> &mesh, std::v
     if (alone && ranks == 1) break;
     PetscCallMPI(MPI_Allreduce(&leaving, &any, 1, MPI_INT, MPI_MAX, mesh.comm()));
     if (!any) break;
-    PetscCall(body.migrate(leavers, &arrival));
+    PetscCall(body.migrate(mesh, leavers, &arrival));
     migrated = true, first = movers.size();
     for (int i = arrival; i < body.particles().count; ++i) movers.push_back(i);
   }
