@@ -90,6 +90,7 @@ class Adviser {
     dimension();
     water();
     suction();
+    gas_without_drag();
     return std::move(advice_);
   }
 
@@ -316,6 +317,26 @@ class Adviser {
       say("phases = \"dry\" is right for soil without water, or with total-stress strengths; with water in its pores "
           "the soil would be drained in " +
           time + " for " + bounds + " and undrained below " + digits(d.undrained_below, 1) + " m/s.");
+  }
+
+  /// Gas that drag hardly holds: its waves between cells lose less of their speed than they gain at a wetting front.
+  void gas_without_drag() {
+    constexpr double held = 0.2;  // share of the angular frequency of a wave of two cells; 0.25 held, 0.1 did not
+    if (scene_.phases != PhaseModel::three_phase) return;
+    const PoreGas gas(scene_.gas);
+    for (std::size_t b = 0; b < scene_.body.size(); ++b) {
+      if (!needs_.bodies[b].there()) continue;
+      const SoilPores soil(scene_.body[b], scene_.water.density * (needs_.gravity > 0 ? needs_.gravity : 9.81),
+                           scene_.water.viscosity);
+      const double lost = soil.porosity() * gas.viscosity / (soil.gas_permeability() * gas.density),
+                   turns = 2 * std::sqrt(gas.bulk_modulus / gas.density) / needs_.bodies[b].body.cell_size;
+      if (lost < held * turns)
+        say("Gas moves through " + scene_.body[b].name + " with hardly any drag: it loses its speed at " +
+            digits(lost, 3) + " 1/s, and its waves between cells turn at " + digits(turns, 3) +
+            " rad/s. Where water comes in such gas gains energy and may throw soil out; a gas_permeability below " +
+            digits(lost / (held * turns) * soil.gas_permeability(), 2) +
+            " m2 holds it, and phases = \"unsaturated\" leaves it out.");
+    }
   }
 
   /// Gas shares at which waves of some body grow without bound.

@@ -5,7 +5,7 @@
 #include <functional>
 #include <sstream>
 
-#include "bad_input/scene.h"
+#include "bad_input/refused.h"
 
 namespace talus {
 namespace {
@@ -86,6 +86,8 @@ TEST(Check, SaysWhatTheCriticalStepIsTakenFromAndWhy) {
                                "--json",
                                "--set",
                                "phases=saturated",
+                               "body.sand.porosity=0.4",
+                               "body.sand.grain_density=2650",
                                "body.sand.permeability=1e-10",
                                "water.table=[[0, 0.5], [2, 0.5]]"};
   wet.insert(wet.end(), in_3d.begin(), in_3d.end());
@@ -735,6 +737,17 @@ TEST(Check, WarnsOfBrittleSoftening) {
     text << std::ifstream(folder / file).rdbuf();
     EXPECT_NE(text.str().find(warning), std::string::npos) << file;
   }
+}
+
+/// Air in cells of 0.25 m loses its speed at 6e-6 / k 1/s, and its waves from cell to cell turn at 2300 rad/s.
+TEST(Check, NamesGasThatDragHardlyHolds) {
+  const Folder folder;
+  folder.write("scene.toml", sound_scene("three-phase")), folder.write("section.csv", good_section);
+  const auto page = [&](const std::string &permeability) {
+    return talus(folder, {"check", "scene.toml", "--set", "body.sand.gas_permeability=" + permeability});
+  };
+  EXPECT_TRUE(page("1e-7").says("Gas moves through sand with hardly any drag"));
+  EXPECT_FALSE(page("1e-9").says("hardly any drag"));
 }
 
 struct Case {
