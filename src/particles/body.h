@@ -68,9 +68,13 @@ class Body {
   /// the cap times e^(plastic expansion), where the law dilates, and at least 1/e of the initial volume.
   double admissible_volume(double volume, double initial, const double *history) const {
     if (!capped()) return volume;
-    const double expansion = expansion_field_ < 0 ? 0 : history[expansion_field_];
-    const double largest = volume_cap_ * initial * (expansion > 0 ? exponential(expansion) : 1);
+    const double largest = volume_cap_ * volume_without_gaps(initial, history);
     return std::min(std::max(volume, smallest_volume_share * initial), largest);
+  }
+  /// The largest volume of a point in which no gaps have opened, uncompressed [m3].
+  double volume_without_gaps(double initial, const double *history) const {
+    const double expansion = expansion_field_ < 0 ? 0 : history[expansion_field_];
+    return initial * (expansion > 0 ? exponential(expansion) : 1);
   }
   /// Is the volume of a particle limited?
   bool capped() const { return volume_cap_ != std::numeric_limits<double>::infinity(); }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <sstream>
 
 #include "base/freed_memory.h"
 #include "simulation/softening.h"
@@ -23,11 +24,40 @@ void Simulation<dim>::run() {
     run_stages();
     for (const std::string &sentence : unlikely_strains(run_.world.comm, run_.world.report(), snapshot()))
       run_.recorder.note("warning: " + sentence);
+    note_gaps();
     run_.recorder.note_cut_off();
     if (run_.options.resume && run_.clock.steps == before)
       run_.recorder.note("nothing was left to do: the run had reached its end before it was resumed");
   });
   run_.recorder.close(run_.motion_left);
+}
+
+/// Where no cap holds the volume of particles, gaps between the pieces of soil that has come apart count as soil.
+template <int dim>
+void Simulation<dim>::note_gaps() {
+  constexpr double visible = 0.02;  // of the volume of a body
+  if (fluids_move(run_.scene.phases)) return;
+  for (const auto &body : run_.world.bodies) {
+    const ParticleArrays<dim> &p = body->particles();
+    double sum[2] = {0, 0}, largest = 0;  // of gaps, and of the rest [m3]; share of its own volume that a particle has
+    for (int i = 0; i < p.count; ++i) {
+      const double *history = p.history ? p.history + static_cast<std::size_t>(i) * body->history_count() : nullptr;
+      const double rest = body->volume_without_gaps(p.initial_volume[i], history);
+      sum[0] += std::max(0., p.volume[i] - rest), sum[1] += rest, largest = std::max(largest, p.volume[i] / rest);
+    }
+    require(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, run_.world.comm));
+    require(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, run_.world.comm));
+    if (sum[0] <= visible * sum[1]) continue;
+    std::ostringstream text;
+    text.precision(3);
+    text << "warning: body." << body->name()
+         << " has come apart, and the gaps between its pieces count as soil: " << 100 * sum[0] / sum[1]
+         << " % of its volume, and up to " << largest
+         << " times the volume of a particle. Thickness, volume and area of a deposit are too large by as much, and "
+            "such particles may throw others out; volume_cap = 1 leaves gaps out, as it does by default for soil "
+            "whose cohesion is or becomes 0";
+    run_.recorder.note(text.str());
+  }
 }
 
 /// Free space is called "air", or "air_1" and so on between cuts; a region of another name that no body fills was

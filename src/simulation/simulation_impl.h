@@ -45,6 +45,7 @@ class Simulation final : public AnySimulation {
   std::vector<std::string> regions_without_soil() const;
   void begin();
   void note_bodies();
+  void note_gaps();
   void run_stages();
   void step_until(double t);
   FactorOfSafety reduce_strength();
