@@ -32,12 +32,17 @@ void Simulation<dim>::run() {
   run_.recorder.close(run_.motion_left);
 }
 
-/// Where no cap holds the volume of particles, gaps between the pieces of soil that has come apart count as soil.
+/// Where no cap holds the volume of particles, gaps between the pieces of soil that has come apart count as soil. Soil
+/// that its law lets swell or stretch is not apart.
 template <int dim>
 void Simulation<dim>::note_gaps() {
+  const auto frictional = [](const auto &law) {
+    return requires { law.residual_cohesion; };
+  };
   constexpr double visible = 0.02;  // of the volume of a body
   if (fluids_move(run_.scene.phases)) return;
   for (const auto &body : run_.world.bodies) {
+    if (!std::visit(frictional, body->law())) continue;
     const ParticleArrays<dim> &p = body->particles();
     double sum[2] = {0, 0}, largest = 0;  // of gaps, and of the rest [m3]; share of its own volume that a particle has
     for (int i = 0; i < p.count; ++i) {
