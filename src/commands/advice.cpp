@@ -319,6 +319,11 @@ class Adviser {
           time + " for " + bounds + " and undrained below " + digits(d.undrained_below, 1) + " m/s.");
   }
 
+  SoilPores pores_of(std::size_t b) const {
+    return {scene_.body[b], scene_.water.density * (needs_.gravity > 0 ? needs_.gravity : 9.81),
+            scene_.water.viscosity};
+  }
+
   /// Gas that drag hardly holds: its waves between cells lose less of their speed than they gain at a wetting front.
   void gas_without_drag() {
     constexpr double held = 0.2;  // share of the angular frequency of a wave of two cells; 0.25 held, 0.1 did not
@@ -326,8 +331,7 @@ class Adviser {
     const PoreGas gas(scene_.gas);
     for (std::size_t b = 0; b < scene_.body.size(); ++b) {
       if (!needs_.bodies[b].there()) continue;
-      const SoilPores soil(scene_.body[b], scene_.water.density * (needs_.gravity > 0 ? needs_.gravity : 9.81),
-                           scene_.water.viscosity);
+      const SoilPores soil = pores_of(b);
       const double lost = soil.porosity() * gas.viscosity / (soil.gas_permeability() * gas.density),
                    turns = 2 * std::sqrt(gas.bulk_modulus / gas.density) / needs_.bodies[b].body.cell_size;
       if (lost < held * turns)
@@ -345,8 +349,7 @@ class Adviser {
     if (scene_.phases != PhaseModel::unsaturated && !gas_moves) return;
     const Liquid liquid(scene_.water);
     for (std::size_t b = 0; b < scene_.body.size(); ++b) {
-      const SoilPores soil(scene_.body[b], scene_.water.density * (needs_.gravity > 0 ? needs_.gravity : 9.81),
-                           scene_.water.viscosity);
+      const SoilPores soil = pores_of(b);
       double first = 0, last = 0;
       for (double share = 2 * residual_gas; share < 0.99 * soil.largest_gas_share(); share *= 1.05) {
         if (hyperbolic(soil, liquid, PoreGas(scene_.gas), constrained_modulus(needs_.bodies[b].law),
