@@ -61,7 +61,7 @@ struct CamClay {
   static constexpr bool by_place = false, rate_dependent = false, stiffens = true;
   bool reads_suction() const { return false; }
   bool strength_varies() const { return true; }
-  bool cohesionless() const { return false; }
+  bool comes_apart() const { return false; }
   /// At the preconsolidation pressure [Pa].
   double bulk_modulus() const { return (1 + void_ratio) * (preconsolidation_pressure + attraction) / swelling_slope; }
   double shear_modulus() const { return shear_over_bulk() * bulk_modulus(); }  ///< [Pa]

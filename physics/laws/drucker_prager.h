@@ -32,7 +32,6 @@ struct DruckerPrager : IsotropicElastic, FrictionalStrength {
         "Mohr-Coulomb strength that the cone matches: triaxial compression, extension, their mean, or plane strain");
   }
 
-  bool cohesionless() const { return FrictionalStrength::cohesionless(); }
   bool strength_varies() const { return FrictionalStrength::strength_varies(); }
 
   // Of the parameters alone, set by prepare().

@@ -75,7 +75,8 @@ struct FrictionalStrength {
   }
 
   bool softens() const { return shape_factor > 0; }
-  bool cohesionless() const { return cohesion == 0 || residual_cohesion == 0; }
+  /// Cohesion bears tension up to the apex of the yield surface, and without friction it has none.
+  bool comes_apart() const { return friction_angle > 0 || cohesion == 0; }
   bool strength_varies() const { return softens() || reads_shares; }
 
   /// Divides c and tan(phi), of peak and residual, by `factor`; psi is at most the reduced phi.

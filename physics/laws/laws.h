@@ -17,7 +17,7 @@
 /// - `correct(s, history, around)`: returns the trial stress to the yield surface; does not change admissible stress
 /// - `reduce_strength(factor)`: divides its strength, for factors of safety; a law that cannot has `no_reduction`, the
 /// reason that completes "law umat ...", and a law without any limit of strength also has `never_fails`
-/// - `bulk_modulus()`, `shear_modulus()`, `elastic_energy(s)`, `cohesionless()`, `strength_varies()`
+/// - `bulk_modulus()`, `shear_modulus()`, `elastic_energy(s)`, `comes_apart()`, `strength_varies()`
 /// `trial` and `correct` are templates over the number type too: a run with Duals (dual.h) gives the consistent
 /// tangent. History takes values only (`value_of`).
 ///
@@ -98,10 +98,10 @@ inline Umat::Trouble law_trouble(const Law &law) {
   return umat ? umat->trouble() : Umat::Trouble{};
 }
 
-/// Does soil of this law open without resistance, from the start or once it has softened? Then the volume that its
-/// particles gain by opening is that of gaps.
-inline bool cohesionless(const Law &law) {
-  return std::visit([](const auto &one) { return one.cohesionless(); }, law);
+/// Does soil of this law bear no or only so much tension, and open freely beyond? Then the volume that its particles
+/// gain by opening is that of gaps.
+inline bool comes_apart(const Law &law) {
+  return std::visit([](const auto &one) { return one.comes_apart(); }, law);
 }
 
 /// Does strength differ from point to point? Then averaged stress may lie outside the yield surface of the mean

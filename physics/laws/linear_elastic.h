@@ -14,7 +14,7 @@ struct LinearElastic : IsotropicElastic {
   static constexpr bool never_fails = true;
   static constexpr const char *no_reduction = "is elastic and never fails";
 
-  bool cohesionless() const { return false; }
+  bool comes_apart() const { return false; }
 
   template <int dim, class Number>
   [[gnu::always_inline]] void correct(Stress<dim, Number> &, History &, const Surroundings &) const {}

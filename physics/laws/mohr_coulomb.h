@@ -47,7 +47,7 @@ struct MohrCoulomb : IsotropicElastic, FrictionalStrength {
     return FrictionalStrength::problem();
   }
 
-  bool cohesionless() const { return FrictionalStrength::cohesionless() && suction_cohesion == 0; }
+  bool comes_apart() const { return FrictionalStrength::comes_apart() || tension_cutoff >= 0; }
   bool reads_suction() const { return suction_cohesion > 0 || suction_friction_rate > 0; }
   bool strength_varies() const { return FrictionalStrength::strength_varies() || reads_suction(); }
 

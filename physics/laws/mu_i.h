@@ -42,7 +42,7 @@ struct MuI : IsotropicElastic {
     if (limiting_friction >= static_friction) return "";
     return "limiting_friction must not be below static_friction, " + shortest(static_friction);
   }
-  bool cohesionless() const { return true; }
+  bool comes_apart() const { return true; }
 
   double rate = 0;  ///< I_0 / (d sqrt(rho_s)), set by prepare() [1/(s sqrt(Pa))]
   void prepare() {

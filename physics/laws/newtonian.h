@@ -25,7 +25,7 @@ struct Newtonian : IsotropicElastic {
     v.number("viscosity", viscosity, pascal_second, Range{1e-9, 1e15}, "dynamic viscosity mu");
   }
 
-  bool cohesionless() const { return true; }  // a fluid opens without resistance
+  bool comes_apart() const { return true; }
 
   /// Viscous flow during the step, driven by the shear stress above `threshold` [Pa]. Tension is removed.
   template <int dim, class Number>

@@ -47,7 +47,7 @@ struct Umat : IsotropicElastic {
   /// Calls the UMAT with stress and strain of the order of kPa and per mille; what is wrong with what it does, or "".
   std::string problem_in(int dim) const;
 
-  bool cohesionless() const { return false; }
+  bool comes_apart() const { return false; }
   bool strength_varies() const { return nstatv > 0; }
 
   /// One point. `stress` and `strain` (tensor components) in the order of stress.h, already turned to the end of the

@@ -58,7 +58,7 @@ PetscErrorCode Body<dim>::create(MPI_Comm comm, const BodySource &source, Law la
   PetscFunctionBeginUser;
   source_ = &source, law_ = std::move(law), history_count_ = history_size(law_), fluids_ = fluids, face_count_ = faces;
   // where fluids move pressure follows volume: a cap would pump it up, pores.md section 4
-  const bool capped = source.volume_cap > 0 || (source.volume_cap < 0 && fluids == 0 && cohesionless(law_));
+  const bool capped = source.volume_cap > 0 || (source.volume_cap < 0 && fluids == 0 && comes_apart(law_));
   volume_cap_ = !capped ? std::numeric_limits<double>::infinity() : source.volume_cap > 0 ? source.volume_cap : 1;
   for (int h = 0; h < history_count_; ++h)
     if (dilates(law_) && std::string(history_fields(law_)[h].name) == "plastic_volume") expansion_field_ = h;

@@ -36,13 +36,10 @@ void Simulation<dim>::run() {
 /// that its law lets swell or stretch is not apart.
 template <int dim>
 void Simulation<dim>::note_gaps() {
-  const auto frictional = [](const auto &law) {
-    return requires { law.residual_cohesion; };
-  };
   constexpr double visible = 0.02;  // of the volume of a body
   if (fluids_move(run_.scene.phases)) return;
   for (const auto &body : run_.world.bodies) {
-    if (!std::visit(frictional, body->law())) continue;
+    if (!comes_apart(body->law())) continue;
     const ParticleArrays<dim> &p = body->particles();
     double sum[2] = {0, 0}, largest = 0;  // of gaps, and of the rest [m3]; share of its own volume that a particle has
     for (int i = 0; i < p.count; ++i) {
@@ -59,8 +56,8 @@ void Simulation<dim>::note_gaps() {
          << " has come apart, and the gaps between its pieces count as soil: " << 100 * sum[0] / sum[1]
          << " % of its volume, and up to " << largest
          << " times the volume of a particle. Thickness, volume and area of a deposit are too large by as much, and "
-            "such particles may throw others out; volume_cap = 1 leaves gaps out, as it does by default for soil "
-            "whose cohesion is or becomes 0";
+            "such particles may throw others out; volume_cap = 1, which is the default of such soil, leaves "
+            "gaps out";
     run_.recorder.note(text.str());
   }
 }

@@ -114,13 +114,14 @@ TEST_F(Results, GoOnBehindDamagedFiles) {
   expect(read, 0, {"read 000000 000002 000003 000004"});
 }
 
-/// A block with cohesion whose parts fly apart: without a cap its particles grow with the gaps between them.
+/// A block with cohesion whose parts fly apart: without the cap that it has by default its particles grow with the gaps
+/// between them.
 TEST_F(Results, SayWhereGapsCountAsSoil) {
   for (const int ranks : {1, 2})
     for (const bool capped : {false, true}) {
       const Ending ending =
           end_of({"--force", "--set", "gravity=0", "body.sand.cohesion=10", "stage.0.duration=0.04",
-                  "body.sand.velocity=['10 * x', '0']", "body.sand.volume_cap=" + std::string(capped ? "1" : "-1")},
+                  "body.sand.velocity=['10 * x', '0']", "body.sand.volume_cap=" + std::string(capped ? "-1" : "0")},
                  ranks);
       EXPECT_EQ(ending.status, 0) << ending.output;
       EXPECT_EQ(ending.says("warning: body.sand has come apart"), !capped) << ending.output;

@@ -44,23 +44,21 @@ TEST(ReadLaw, fills_the_law_that_is_named) {
   EXPECT_DOUBLE_EQ(soil.reference_size, 0.2);
   EXPECT_EQ(soil.residual_cohesion, 0);
   EXPECT_LT(soil.residual_friction_angle, 0);
-  EXPECT_TRUE(cohesionless(law)) << "once it has softened";
   EXPECT_DOUBLE_EQ(constrained_modulus(law), 12e6);
 }
 
-TEST(ReadLaw, knows_cohesionless_soil) {
-  const std::string rest = "young_modulus = 1e7\npoisson_ratio = 0.3\ncohesion = 0\nfriction_angle = 30\n";
-  EXPECT_TRUE(cohesionless(read("law = \"drucker_prager\"\ncone = \"inner\"\n" + rest)));
-  EXPECT_TRUE(cohesionless(read("law = \"mohr_coulomb\"\n" + rest)));
-  for (const char *law : {"drucker_prager", "mohr_coulomb"}) {
-    const std::string soil = "law = \"" + std::string(law) +
-                             "\"\nyoung_modulus = 1e7\npoisson_ratio = 0.3\ncohesion = 10\n"
-                             "friction_angle = 30\nshape_factor = 20\n";
-    EXPECT_TRUE(cohesionless(read(soil + "residual_cohesion = 0")));
-    EXPECT_FALSE(cohesionless(read(soil + "residual_cohesion = 1")));
-    EXPECT_FALSE(cohesionless(read(soil + "residual_friction_angle = 20"))) << "the residual cohesion is the peak's";
+TEST(ReadLaw, knows_soil_that_comes_apart) {
+  const std::string elastic = "young_modulus = 1e7\npoisson_ratio = 0.3\n";
+  for (const char *law : {"drucker_prager", "mohr_coulomb", "hencky_mohr_coulomb"}) {
+    const std::string soil = "law = \"" + std::string(law) + "\"\n" + elastic;
+    EXPECT_TRUE(comes_apart(read(soil + "cohesion = 0\nfriction_angle = 30\n")));
+    EXPECT_TRUE(comes_apart(read(soil + "cohesion = 10\nfriction_angle = 30\n")));
+    EXPECT_TRUE(comes_apart(read(soil + "cohesion = 0\nfriction_angle = 0\n")));
+    EXPECT_FALSE(comes_apart(read(soil + "cohesion = 10\nfriction_angle = 0\n"))) << "it bears any tension";
   }
-  EXPECT_FALSE(cohesionless(read("law = \"linear_elastic\"\nyoung_modulus = 1e7\npoisson_ratio = 0.3\n")));
+  EXPECT_TRUE(
+      comes_apart(read("law = \"mohr_coulomb\"\ncohesion = 10\nfriction_angle = 0\ntension_cutoff = 5\n" + elastic)));
+  EXPECT_FALSE(comes_apart(read("law = \"linear_elastic\"\n" + elastic)));
 }
 
 /// Alonso et al. (2015), Table 3: its B and A go with kPa; without a unit they would be 1000 times too large.

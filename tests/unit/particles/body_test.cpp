@@ -34,13 +34,15 @@ double limit(const Law &law, double plastic_volume, double volume_cap = -1) {
   return admitted(std::numeric_limits<double>::infinity(), law, plastic_volume, volume_cap);
 }
 
-TEST(VolumeLimit, is_the_initial_volume_of_cohesionless_soil) {
+TEST(VolumeLimit, is_the_initial_volume_of_soil_that_comes_apart) {
+  constexpr double none = std::numeric_limits<double>::infinity();
   EXPECT_EQ(limit(soil(0, 0), 0), initial);
+  EXPECT_EQ(limit(soil(1e3, 0), 0), initial) << "also with cohesion";
   EXPECT_EQ(limit(MuI{}, 0), initial);
-  EXPECT_EQ(limit(soil(0, 0), 0, 1.2), 1.2 * initial);
-  EXPECT_EQ(limit(soil(1e3, 0), 0), std::numeric_limits<double>::infinity());
-  EXPECT_EQ(limit(soil(1e3, 0), 0, 1.2), 1.2 * initial) << "where the scene asks for it";
-  EXPECT_EQ(limit(soil(0, 0), 0, 0), std::numeric_limits<double>::infinity()) << "where the scene wants none";
+  EXPECT_EQ(limit(soil(1e3, 0), 0, 1.2), 1.2 * initial) << "where the scene asks for more";
+  EXPECT_EQ(limit(soil(0, 0), 0, 0), none) << "where the scene wants none";
+  EXPECT_EQ(limit(LinearElastic{}, 0), none) << "which does not come apart";
+  EXPECT_EQ(limit(LinearElastic{}, 0, 1.2), 1.2 * initial);
 }
 
 /// Dilatant soil grows as it shears: by ln(V / V_0), its plastic volumetric strain. The limit grows with it.
