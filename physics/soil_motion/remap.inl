@@ -43,7 +43,7 @@ void SoilMotion<dim, Phases>::refer_to_points(size_t b) {
   points.stress = own ? points.own_stress.data() : p.stress,
   points.history = own ? points.own_history.data() : p.history;
   points.volume = own ? points.own_volume.data() : p.volume,
-  points.limit = own ? points.own_limit.data() : p.initial_volume;
+  points.limit = own ? points.own_limit.data() : p.rest_volume;
   if (p.cohesion_share) {
     points.cohesion_share = own ? points.own_cohesion_share.data() : p.cohesion_share;
     points.friction_share = own ? points.own_friction_share.data() : p.friction_share;

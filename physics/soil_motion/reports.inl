@@ -106,8 +106,7 @@ void SoilMotion<dim, Phases>::state(int b, int i, double *stress, double *histor
   const int q = points.find(p.cell[i]);
   std::copy_n(&points.stress[q * components], components, stress);
   for (int h = 0; h < count; ++h) history[h] += points.history[q * count + h] - points.start_history[q * count + h];
-  *volume =
-      body.admissible_volume(p.volume[i] * points.volume[q] / points.start_volume[q], p.initial_volume[i], history);
+  *volume = body.admissible_volume(p.volume[i] * points.volume[q] / points.start_volume[q], p.rest_volume[i], history);
 }
 
 template <int dim, class Phases>

@@ -20,15 +20,11 @@ constexpr const char *fluid_mass[] = {"liquid_mass", "gas_mass"},
 
 template <int dim>
 std::vector<FieldSpec> field_specs(const Law &law, int fluids, int faces) {
-  std::vector<FieldSpec> specs{{"position", dim, PETSC_DOUBLE},
-                               {"velocity", dim, PETSC_DOUBLE},
-                               {"reference", dim, PETSC_DOUBLE},
-                               {"mass", 1, PETSC_DOUBLE},
-                               {"volume", 1, PETSC_DOUBLE},
-                               {"initial_volume", 1, PETSC_DOUBLE},
-                               {"stress", stress_size<dim>, PETSC_DOUBLE},
-                               {"cell", 1, PETSC_INT},
-                               {"id", 1, PETSC_INT}};
+  std::vector<FieldSpec> specs{{"position", dim, PETSC_DOUBLE},  {"velocity", dim, PETSC_DOUBLE},
+                               {"reference", dim, PETSC_DOUBLE}, {"mass", 1, PETSC_DOUBLE},
+                               {"volume", 1, PETSC_DOUBLE},      {"initial_volume", 1, PETSC_DOUBLE},
+                               {"rest_volume", 1, PETSC_DOUBLE}, {"stress", stress_size<dim>, PETSC_DOUBLE},
+                               {"cell", 1, PETSC_INT},           {"id", 1, PETSC_INT}};
   if (history_size(law)) specs.push_back({"history", history_size(law), PETSC_DOUBLE});
   if (reads_shares(law))
     specs.push_back({"cohesion_share", 1, PETSC_DOUBLE}), specs.push_back({"friction_share", 1, PETSC_DOUBLE});
@@ -39,19 +35,30 @@ std::vector<FieldSpec> field_specs(const Law &law, int fluids, int faces) {
   return specs;
 }
 
-/// Does shearing expand the soil?
-bool dilates(const Law &law) {
+/// The largest plastic expansion by a plastic strain of one: that of triaxial compression, 6 sin(psi) / (3 - sin(psi)).
+double dilatancy(const Law &law) {
   return std::visit(
       [](const auto &one) {
         if constexpr (requires { one.dilation_angle; })
-          return one.dilation_angle > 0;
+          return 6 * std::sin(one.dilation_angle) / (3 - std::sin(one.dilation_angle));
         else
-          return false;
+          return 0.;
       },
       law);
 }
 
 }  // namespace
+
+template <int dim>
+void Body<dim>::refer_to_stress(int i) {
+  const double *stress = &arrays_.stress[i * stress_size<dim>];
+  const double pressure = -(stress[0] + stress[1] + stress[2]) / 3;
+  double &rest = arrays_.rest_volume[i];
+  rest = arrays_.volume[i];
+  if (!comes_apart(law_)) return;
+  if (history_count_ > 0) rest /= expansion(arrays_.history + i * history_count_);
+  if (pressure > 0) rest *= std::exp(pressure / bulk_modulus(law_));
+}
 
 template <int dim>
 PetscErrorCode Body<dim>::create(MPI_Comm comm, const BodySource &source, Law law, int fluids, int faces) {
@@ -60,8 +67,9 @@ PetscErrorCode Body<dim>::create(MPI_Comm comm, const BodySource &source, Law la
   // where fluids move pressure follows volume: a cap would pump it up, pores.md section 4
   const bool capped = source.volume_cap > 0 || (source.volume_cap < 0 && fluids == 0 && comes_apart(law_));
   volume_cap_ = !capped ? std::numeric_limits<double>::infinity() : source.volume_cap > 0 ? source.volume_cap : 1;
+  dilatancy_ = dilatancy(law_), strain_field_ = plastic_strain_field(law_);
   for (int h = 0; h < history_count_; ++h)
-    if (dilates(law_) && std::string(history_fields(law_)[h].name) == "plastic_volume") expansion_field_ = h;
+    if (dilatancy_ > 0 && std::string(history_fields(law_)[h].name) == "plastic_volume") expansion_field_ = h;
   PetscCall(DMCreate(comm, swarm_.create()));
   PetscCall(DMSetType(swarm_, DMSWARM));
   PetscCall(DMSetDimension(swarm_, dim));
@@ -100,6 +108,7 @@ PetscErrorCode Body<dim>::borrow() {
   PetscCall(take("mass", arrays_.mass));
   PetscCall(take("volume", arrays_.volume));
   PetscCall(take("initial_volume", arrays_.initial_volume));
+  PetscCall(take("rest_volume", arrays_.rest_volume));
   PetscCall(take("stress", arrays_.stress));
   PetscCall(take("cell", arrays_.cell));
   PetscCall(take("id", arrays_.id));
@@ -175,6 +184,7 @@ void Body<dim>::each_field(F &&f) {
   visit(arrays_.mass, sizeof(double));
   visit(arrays_.volume, sizeof(double));
   visit(arrays_.initial_volume, sizeof(double));
+  visit(arrays_.rest_volume, sizeof(double));
   visit(arrays_.stress, sizeof(double) * stress_size<dim>);
   visit(arrays_.history, sizeof(double) * history_count_);
   visit(arrays_.cohesion_share, sizeof(double));

@@ -39,6 +39,7 @@ struct ParticleArrays {
   double *mass;            ///< [kg], in 2D per metre of thickness; of the grains alone where fluids move on their own
   double *volume;          ///< V_p [m3]
   double *initial_volume;  ///< V_p0 [m3]
+  double *rest_volume;     ///< without stress, gaps and plastic expansion [m3], theory (3.9)
   double *stress;          ///< [stress_size] Cauchy effective stress [Pa]
   double *history;         ///< [history_size(law)] internal variables of the law
   double *cohesion_share, *friction_share;  ///< of the law's c and phi [-]; null where the law reads none
@@ -49,7 +50,7 @@ struct ParticleArrays {
   PetscInt *id;                 ///< number that does not depend on the partition
 };
 
-/// Least volume of a particle whose volume is capped, as a share of its initial volume: 1/e, theory (3.9).
+/// Least volume of a particle whose volume is capped, as a share of its rest volume: 1/e, theory (3.9).
 inline constexpr double smallest_volume_share = 0.36787944117144233;
 
 template <int dim>
@@ -64,18 +65,18 @@ class Body {
   const std::string &name() const { return source_->name; }
   const Law &law() const { return law_; }
   int history_count() const { return history_count_; }
-  /// The volume closest to `volume` that a point may have whose initial volume is `initial` [m3], theory (3.9): at most
-  /// the cap times e^(plastic expansion), where the law dilates, and at least 1/e of the initial volume.
-  double admissible_volume(double volume, double initial, const double *history) const {
+  /// The volume closest to `volume` that a point of this rest volume may have [m3], theory (3.9): at most the cap times
+  /// e^(plastic expansion), where the law dilates, and at least 1/e of the rest volume.
+  double admissible_volume(double volume, double rest, const double *history) const {
     if (!capped()) return volume;
-    const double largest = volume_cap_ * volume_without_gaps(initial, history);
-    return std::min(std::max(volume, smallest_volume_share * initial), largest);
+    const double largest = volume_cap_ * volume_without_gaps(rest, history);
+    return std::min(std::max(volume, smallest_volume_share * rest), largest);
   }
   /// The largest volume of a point in which no gaps have opened, uncompressed [m3].
-  double volume_without_gaps(double initial, const double *history) const {
-    const double expansion = expansion_field_ < 0 ? 0 : history[expansion_field_];
-    return initial * (expansion > 0 ? exponential(expansion) : 1);
-  }
+  double volume_without_gaps(double rest, const double *history) const { return rest * expansion(history); }
+  /// Lets particle i, whose stress was set, have no gaps as it is: its volume is what the stress makes of its rest
+  /// volume.
+  void refer_to_stress(int i);
   /// Is the volume of a particle limited?
   bool capped() const { return volume_cap_ != std::numeric_limits<double>::infinity(); }
   const ParticleArrays<dim> &particles() const { return arrays_; }
@@ -93,6 +94,12 @@ class Body {
   PetscErrorCode serialize(Archive &archive, const BackgroundMesh<dim> &mesh);
 
  private:
+  /// Ratio of volumes by dilation, theory (3.10): what the law expands beyond it has opened as gaps.
+  double expansion(const double *history) const {
+    if (expansion_field_ < 0) return 1;
+    const double volume_strain = std::min(history[expansion_field_], dilatancy_ * history[strain_field_]);
+    return volume_strain > 0 ? exponential(volume_strain) : 1;
+  }
   PetscErrorCode borrow();     ///< takes the arrays from the swarm
   PetscErrorCode give_back();  ///< returns them to the swarm, which every change of its size requires
   void rearrange();            ///< particle p goes to order_[p]
@@ -102,8 +109,8 @@ class Body {
 
   const BodySource *source_ = nullptr;
   Law law_;
-  int history_count_ = 0, expansion_field_ = -1, fluids_ = 0, face_count_ = 0;
-  double volume_cap_ = 0;
+  int history_count_ = 0, expansion_field_ = -1, strain_field_ = -1, fluids_ = 0, face_count_ = 0;
+  double volume_cap_ = 0, dilatancy_ = 0;
   bool borrowed_ = false;
   PetscInt room_ = 0;  ///< particles for which the swarm has memory
   Dm swarm_;

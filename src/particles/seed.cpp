@@ -168,6 +168,7 @@ void seed(Body<dim> &body, const BackgroundMesh<dim> &mesh, int id_stride,
         for (int d = 0; d < dim; ++d) p.position[i][d] += value<dim>(source.displacement[d], x);
       }
       p.initial_volume[i] = p.volume[i];
+      body.refer_to_stress(i);
     }
   }
 }

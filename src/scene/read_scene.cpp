@@ -224,6 +224,10 @@ class Checks {
       reader_.complain(path, "needs region, the name (or list of names) of the mesh's physical groups that it fills" +
                                  (near.empty() ? "" : "; or is this body `" + near + "`, misspelt?"));
     }
+    if (body.volume_cap < 1 && body.volume_cap != 0 && body.volume_cap != -1)
+      reader_.complain(path + ".volume_cap",
+                       "must be 1 or more, 0 for no cap, or -1 for the default: soil has at least "
+                       "its own volume");
     functions(path + ".velocity", body.velocity, scene_.dimension);
     functions(path + ".displacement", body.displacement, scene_.dimension);
     functions(path + ".body_acceleration", body.body_acceleration, scene_.dimension);

@@ -203,8 +203,8 @@ struct BodySource {
   DeferredTable retention;                                            ///< [body.NAME.retention], read by physics/pores
   DeferredTable relative_permeability;                                ///< [body.NAME.relative_permeability], likewise
   int particles_per_cell = 0;                                         ///< 0: 3 a triangle, 4 a tetrahedron
-  double k0 = 0;                   ///< lateral over vertical effective stress at rest [-]; 0: 1 - sin phi (Jaky 1944)
-  double volume_cap = -1;          ///< largest V_p / V_p0; 0: none; -1: 1 for soil that comes apart, else none
+  double k0 = 0;           ///< lateral over vertical effective stress at rest [-]; 0: 1 - sin phi (Jaky 1944)
+  double volume_cap = -1;  ///< largest volume over rest volume; 0: none; -1: 1 for soil that comes apart, else none
   double averaging_length = 0;     ///< l of the average of plastic strain that the law takes for its own [m]; 0: none
   std::vector<Function> velocity;  ///< initial velocity, functions of the place [m/s]
   std::vector<Function> displacement;  ///< initial displacement, functions of the undeformed place [m]
@@ -260,8 +260,8 @@ struct BodySource {
              "ratio of lateral to vertical effective stress at rest, for stages with initial_stress = \"k0\"; 0: 1 - "
              "sin(friction_angle)");
     v.number("volume_cap", volume_cap, one, Range{-1, 100},
-             "largest ratio of the volume of a particle to its initial volume; 0: no cap; -1: a cap of 1 for soil that "
-             "comes apart, by friction or want of cohesion, where pore fluids do not move");
+             "largest ratio of the volume of a particle to that which it has without stress and gaps; 0: no cap; -1: a "
+             "cap of 1 for soil that comes apart, where pore fluids do not move");
     v.number("averaging_length", averaging_length, metre, Range{0, 1e4},
              "nonlocal softening: plastic strain is averaged over this length l, with 2 l in place of the cell size; "
              "0: no averaging; l should be 1.25 times the cell size or more");

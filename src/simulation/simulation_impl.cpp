@@ -37,14 +37,13 @@ void Simulation<dim>::run() {
 template <int dim>
 void Simulation<dim>::note_gaps() {
   constexpr double visible = 0.02;  // of the volume of a body
-  if (fluids_move(run_.scene.phases)) return;
   for (const auto &body : run_.world.bodies) {
     if (!comes_apart(body->law())) continue;
     const ParticleArrays<dim> &p = body->particles();
     double sum[2] = {0, 0}, largest = 0;  // of gaps, and of the rest [m3]; share of its own volume that a particle has
     for (int i = 0; i < p.count; ++i) {
       const double *history = p.history ? p.history + static_cast<std::size_t>(i) * body->history_count() : nullptr;
-      const double rest = body->volume_without_gaps(p.initial_volume[i], history);
+      const double rest = body->volume_without_gaps(p.rest_volume[i], history);
       sum[0] += std::max(0., p.volume[i] - rest), sum[1] += rest, largest = std::max(largest, p.volume[i] / rest);
     }
     require(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, run_.world.comm));
@@ -55,9 +54,10 @@ void Simulation<dim>::note_gaps() {
     text << "warning: body." << body->name()
          << " has come apart, and the gaps between its pieces count as soil: " << 100 * sum[0] / sum[1]
          << " % of its volume, and up to " << largest
-         << " times the volume of a particle. Thickness, volume and area of a deposit are too large by as much, and "
-            "such particles may throw others out; volume_cap = 1, which is the default of such soil, leaves "
-            "gaps out";
+         << " times the volume of a particle. Volume and area of a deposit come out too large, and such particles "
+            "may throw others out"
+         << (fluids_move(run_.scene.phases) ? ""
+                                            : "; volume_cap = 1, which is the default of such soil, leaves gaps out");
     run_.recorder.note(text.str());
   }
 }

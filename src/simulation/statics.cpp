@@ -286,6 +286,7 @@ void Statics<dim>::to_particles() {
       const int cell = p.cell[i];
       const Barycentric<dim> l = barycentric(world_.mesh.cells[cell], p.position[i]);
       interpolate(cell, l, false, &p.stress[i * stress_size<dim>], p.history + i * memory);
+      world_.bodies[b]->refer_to_stress(i);
       const Vec<dim> u = problem_->soil().displacement(cell, l);
       for (int d = 0; d < dim; ++d) p.reference[i][d] = p.position[i][d] - u[d], p.velocity[i][d] = 0;
     }

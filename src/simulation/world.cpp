@@ -476,6 +476,8 @@ void World<dim>::reset_displacement(double time) {
     std::copy_n(p.position, p.count, p.reference);
     std::fill_n(p.velocity, p.count, Vec<dim>{});
     const auto fields = history_fields(body->law());
+    for (int i = 0; i < p.count; ++i)
+      p.rest_volume[i] = body->volume_without_gaps(p.rest_volume[i], p.history + i * fields.size());
     for (size_t k = 0; k < fields.size(); ++k)
       for (int i = 0; !fields[k].kept && i < p.count; ++i) p.history[i * fields.size() + k] = 0;
     for (int a = 0; a < phases.fluids(); ++a) std::fill_n(p.fluid_velocity[a], p.count, Vec<dim>{});

@@ -96,8 +96,7 @@ class RunFromNodes {
         if (h < count) p.history[i * count + h] += first_gain_[h];
       p.volume[i] *= growth_;
       if constexpr (fluids > 0) pores = p.volume[i] - p.mass[i] * over_density_;
-      if (body_.capped())
-        p.volume[i] = body_.admissible_volume(p.volume[i], p.initial_volume[i], p.history + i * count);
+      if (body_.capped()) p.volume[i] = body_.admissible_volume(p.volume[i], p.rest_volume[i], p.history + i * count);
     }
     return {coordinates(x), pores};
   }
@@ -163,7 +162,7 @@ class RunToNodes {
 #pragma GCC unroll 4
       for (int h = 0; h < unrolled_history; ++h)
         if (h < count) history_[h] += p.volume[i] * p.history[i * count + h];
-      if (body_.capped()) limit_ += p.initial_volume[i];
+      if (body_.capped()) limit_ += p.rest_volume[i];
     }
     ++count_;
   }

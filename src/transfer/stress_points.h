@@ -14,7 +14,7 @@ struct PointSet {
   double *stress = nullptr;       ///< [count][stress_size] accepted stress [Pa]
   double *history = nullptr;      ///< [count][history]
   double *volume = nullptr;       ///< [count] [m3]
-  const double *limit = nullptr;  ///< [count] V_p0: the volume cap is a multiple of it [m3]
+  const double *limit = nullptr;  ///< [count] rest volume: the volume cap is a multiple of it [m3]
   const double *cohesion_share = nullptr, *friction_share = nullptr;  ///< [count] null where the law reads none
 
   // owned when stress is averaged; else only `own_cell` is used

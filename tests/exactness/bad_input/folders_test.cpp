@@ -128,6 +128,21 @@ TEST_F(Results, SayWhereGapsCountAsSoil) {
     }
 }
 
+/// Where pore fluids move there is no cap, which is therefore not recommended.
+TEST_F(Results, SayWhereGapsOfWetSoilCount) {
+  std::string wet = good_scene;
+  const auto change = [&wet](const std::string &from, const std::string &to) {
+    wet.replace(wet.find(from), from.size(), to);
+  };
+  change("gravity = 9.81", "gravity = 0\nphases = \"saturated\"");
+  change("density = 2000",
+         "porosity = 0.4\ngrain_density = 2600\npermeability = 1e-10\nvelocity = [\"10 * x\", \"0\"]");
+  folder_.write("scene.toml", wet + "[water]\ntable = [[0, 0.5], [2, 0.5]]\nbulk_modulus = \"20 kPa\"\n");
+  const Ending ending = end_of({});
+  expect(ending, 0, {"warning: body.sand has come apart"});
+  EXPECT_FALSE(ending.says("volume_cap")) << ending.output;
+}
+
 TEST_F(Results, ThatGetNoPicturesSaySo) {
   const Ending ending =
       Program(folder_, {"env", "PYTHONHOME=/nowhere", TALUS, "run", "scene.toml", "-o", "results"}).end();
