@@ -194,7 +194,7 @@ def column(talus, dimension, integration, average, particles, stiff=1):
     share = end["mass"][:, 0] / end["mass"].sum()
     start, stress = end["position"][:, 1] - end["displacement"][:, 1], end["stress"][:, 1]
     error = {"stress_percent": round(100 * np.sqrt(share @ (stress / WEIGHT / HEIGHT + 1 - start / HEIGHT) ** 2), 2),
-             "displacement_percent": round(100 * np.sqrt(share @ (end["displacement"][:, 1] - settled(start, stiff)) ** 2) / -settled(HEIGHT, stiff), 2),
+             "displacement_percent": round(100 * np.sqrt(share @ (end["displacement"][:, 1] - settled(start, stiff)) ** 2) / -settled(HEIGHT, stiff), 3),
              "speed_mm_s": round(1e3 * np.sqrt(share @ (end["velocity"] ** 2).sum(axis=1)), 3), "steps": run.steps, "wall_s": round(run.wall, 1), "broke": ""}
     return error, start, stress
 
