@@ -39,7 +39,7 @@ struct ParticleArrays {
   double *mass;            ///< [kg], in 2D per metre of thickness; of the grains alone where fluids move on their own
   double *volume;          ///< V_p [m3]
   double *initial_volume;  ///< V_p0 [m3]
-  double *rest_volume;     ///< without stress, gaps and plastic expansion [m3], theory (3.9)
+  double *rest_volume;     ///< without stress, gaps and dilation [m3], theory (3.9)
   double *stress;          ///< [stress_size] Cauchy effective stress [Pa]
   double *history;         ///< [history_size(law)] internal variables of the law
   double *cohesion_share, *friction_share;  ///< of the law's c and phi [-]; null where the law reads none
@@ -66,7 +66,7 @@ class Body {
   const Law &law() const { return law_; }
   int history_count() const { return history_count_; }
   /// The volume closest to `volume` that a point of this rest volume may have [m3], theory (3.9): at most the cap times
-  /// e^(plastic expansion), where the law dilates, and at least 1/e of the rest volume.
+  /// e^(dilation), (3.10), and at least 1/e of the rest volume.
   double admissible_volume(double volume, double rest, const double *history) const {
     if (!capped()) return volume;
     const double largest = volume_cap_ * volume_without_gaps(rest, history);
