@@ -20,8 +20,8 @@ struct CamClay {
   static constexpr const char *name = "cam_clay";
   static constexpr const char *meaning = "modified Cam-clay";
   static constexpr std::array<HistoryField, 4> history{{
-      plastic_strains[0],
-      plastic_strains[1],
+      field_of_plastic_strain,
+      {"plastic_volume", one, "plastic volumetric strain, positive in expansion"},
       {"volume_strain", one, "ln of the specific volume over its initial one", true},
       {"consolidation", one, "ln of the preconsolidation pressure over its initial one", true},
   }};

@@ -14,7 +14,7 @@ enum class Cone { outer, inner, compromise, plane_strain };
 struct DruckerPrager : IsotropicElastic, FrictionalStrength {
   static constexpr const char *name = "drucker_prager";
   static constexpr const char *meaning = "Drucker-Prager cone with dilation and strain softening";
-  static constexpr auto history = plastic_strains;
+  static constexpr auto history = frictional_history;
   using History = std::array<double, history.size()>;
 
   Cone cone = Cone::outer;
@@ -97,15 +97,16 @@ struct DruckerPragerCase : DruckerPrager {
   /// the start of the step would cause, as in MohrCoulomb.
   template <int dim, class Number>
   [[gnu::always_inline]] void correct(Stress<dim, Number> &s, History &history, const Surroundings &around) const {
-    auto &[plastic_strain, plastic_volume] = history;
+    auto &[plastic_strain, dilation] = history;
     const Invariants<dim, Number> trial(s);
     struct End {
-      Number p, q;
+      Number p, q, sheared_p;  ///< the last is that of shear alone, the trial's where the apex takes over
     };
     const auto end_of = [&](const Strength<Number> &m, const Number &over) __attribute__((always_inline)) {
       const Number f = trial.q + m.eta * trial.p - m.limit, to_cone = (f > 0 ? f : Number(0)) * over;
       const Number cone_p = trial.p - K * m.eta_bar * to_cone, cone_q = trial.q - G * to_cone;
-      return End{cone_p < m.apex ? cone_p : m.apex, cone_p < m.apex ? cone_q : Number(0)};
+      const bool sheared = cone_p < m.apex;
+      return End{sheared ? cone_p : m.apex, sheared ? cone_q : Number(0), sheared ? cone_p : trial.p};
     };
     const double shearing = 1 / (std::sqrt(3.) * G);  // plastic strain per loss of q
     End end;
@@ -121,7 +122,7 @@ struct DruckerPragerCase : DruckerPrager {
     const Number shrink = trial.q > 0 ? (trial.q - end.q) / trial.q : 0;
     trial.take_off(s, shrink, trial.p - end.p);
     plastic_strain += value_of(trial.q - end.q) * shearing;
-    plastic_volume += value_of(trial.p - end.p) * (1 / K);
+    dilation += value_of(trial.p - end.sheared_p) * (1 / K);
   }
 };
 

@@ -13,10 +13,17 @@ struct HistoryField {
   bool kept = false;  ///< part of the state: stays where a stage resets plastic strain or does not accumulate it
 };
 
-/// History of the frictional laws. Softening reads the first; the volume cap of dilatant soil reads the second.
-inline constexpr std::array<HistoryField, 2> plastic_strains{{
-    {"plastic_strain", one, "accumulated deviatoric plastic strain, the sum of sqrt(2/3 de_p : de_p)"},
-    {"plastic_volume", one, "plastic volumetric strain, positive in expansion"},
-}};
+/// What softening reads.
+inline constexpr HistoryField field_of_plastic_strain{
+    "plastic_strain", one, "accumulated deviatoric plastic strain, the sum of sqrt(2/3 de_p : de_p)"};
+/// What raises the volume cap, theory (3.10).
+inline constexpr HistoryField field_of_dilation{
+    "dilation", one,
+    "plastic volumetric strain of soil that shears, positive in expansion; not of soil that opens at the apex or the "
+    "tension cut-off"};
+/// History of fluids and of soil whose grains neither dilate nor soften.
+inline constexpr std::array shear_history{field_of_plastic_strain};
+/// History of the frictional laws.
+inline constexpr std::array frictional_history{field_of_plastic_strain, field_of_dilation};
 
 }  // namespace talus

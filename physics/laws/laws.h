@@ -65,13 +65,15 @@ inline bool reads_suction(const Law &law) {
 inline bool rate_dependent(const Law &law) {
   return std::visit([](const auto &one) { return one.rate_dependent; }, law);
 }
-/// Index among the history fields of the plastic strain that softening reads; -1 where there is none.
-inline int plastic_strain_field(const Law &law) {
+/// Index of a history field; -1 where the law has none of this name.
+inline int history_field(const Law &law, std::string_view name) {
   const auto fields = history_fields(law);
   for (std::size_t h = 0; h < fields.size(); ++h)
-    if (std::string_view(fields[h].name) == "plastic_strain") return static_cast<int>(h);
+    if (fields[h].name == name) return static_cast<int>(h);
   return -1;
 }
+/// Index among the history fields of the plastic strain that softening reads; -1 where there is none.
+inline int plastic_strain_field(const Law &law) { return history_field(law, field_of_plastic_strain.name); }
 
 inline double bulk_modulus(const Law &law) {  ///< K [Pa]
   return std::visit([](const auto &one) { return one.bulk_modulus(); }, law);

@@ -19,7 +19,7 @@ struct MohrCoulomb : IsotropicElastic, FrictionalStrength {
   static constexpr const char *meaning =
       "Mohr-Coulomb with dilation, tension cut-off, strain softening and strength from suction; Tresca where "
       "friction_angle = 0";
-  static constexpr auto history = plastic_strains;
+  static constexpr auto history = frictional_history;
   using History = std::array<double, history.size()>;
 
   double tension_cutoff = -1;        ///< T [Pa]; negative: none, the apex is the limit
@@ -186,24 +186,24 @@ struct MohrCoulombCase : MohrCoulomb {
   /// 2 G) times the error that the strength at the start would give.
   template <int dim, class Number>
   [[gnu::always_inline]] void correct(Stress<dim, Number> &stress, History &history, const Surroundings &around) const {
-    auto &[plastic_strain, plastic_volume] = history;
+    auto &[plastic_strain, dilation] = history;
     const PrincipalAxes<dim, Number> axes(stress);
     const auto trial = axes.values();
     using Value = decltype(trial.s1);
-    const auto change = [&](const Strength<Value> &strength) __attribute__((always_inline)) {
-      const Principal<Value> end = admissible(trial, strength);
+    const auto taken_to = [&](const Principal<Value> &end) __attribute__((always_inline)) {
       return Principal<Value>{trial.s1 - end.s1, trial.s2 - end.s2, trial.s3 - end.s3};
     };
     Strength<Value> now{peak.sin_phi, peak.sin_psi, peak.twice_c_cos_phi, peak.tension};
     if constexpr (softening || by_place) now = strength<Value, by_place>(Value(plastic_strain), around);
     if constexpr (softening) {
-      const Value predicted = plastic_strain + shearing(change(now));
+      const Value predicted = plastic_strain + shearing(taken_to(admissible(trial, now)));
       now = strength<Value, by_place>(predicted, around);
     }
-    const Principal<Value> taken = change(now);
+    const Principal<Value> end = admissible(trial, now), taken = taken_to(end);
+    const bool torn = !(end.s1 < now.tension);
     axes.subtract(taken, stress);
     plastic_strain += value_of(shearing(taken));
-    plastic_volume += value_of(taken.s1 + taken.s2 + taken.s3) * (1 / (3 * K));
+    dilation += torn ? 0 : value_of(taken.s1 + taken.s2 + taken.s3) * (1 / (3 * K));
   }
 };
 

@@ -14,7 +14,7 @@ namespace talus {
 struct MuI : IsotropicElastic {
   static constexpr const char *name = "mu_i";
   static constexpr const char *meaning = "dense granular flow with the friction mu(I)";
-  static constexpr auto history = plastic_strains;
+  static constexpr auto history = shear_history;
   using History = std::array<double, history.size()>;
   static constexpr bool rate_dependent = true;
   static constexpr const char *no_reduction =
@@ -67,9 +67,8 @@ struct MuI : IsotropicElastic {
     const Number shrink = trial.q > 0 ? (trial.q - q) / trial.q : 0;
     const Number lift = trial.p + pressure;
     trial.take_off(s, shrink, lift);
-    auto &[plastic_strain, plastic_volume] = history;
+    auto &[plastic_strain] = history;
     plastic_strain += value_of(trial.q - q) * (1 / (std::sqrt(3.) * G));
-    plastic_volume += value_of(lift) * (1 / K);
   }
 };
 

@@ -12,7 +12,7 @@ namespace talus {
 struct Newtonian : IsotropicElastic {
   static constexpr const char *name = "newtonian";
   static constexpr const char *meaning = "weakly compressible viscous fluid";
-  static constexpr auto history = plastic_strains;
+  static constexpr auto history = shear_history;
   using History = std::array<double, history.size()>;
   static constexpr bool rate_dependent = true;
   static constexpr const char *no_reduction = "is a fluid, whose shear stress depends on the rate of strain";
@@ -38,9 +38,8 @@ struct Newtonian : IsotropicElastic {
     const Number shrink = trial.q > 0 ? G * slip / trial.q : 0;
     const Number p = trial.p < 0 ? trial.p : 0;
     trial.take_off(s, shrink, trial.p - p);
-    auto &[plastic_strain, plastic_volume] = history;
+    auto &[plastic_strain] = history;
     plastic_strain += value_of(slip) * 0.57735026918962576;  // 1 / sqrt(3)
-    plastic_volume += value_of(trial.p - p) * (1 / K);
   }
 
   template <int dim, class Number>

@@ -35,18 +35,6 @@ std::vector<FieldSpec> field_specs(const Law &law, int fluids, int faces) {
   return specs;
 }
 
-/// The largest plastic expansion by a plastic strain of one: that of triaxial compression, 6 sin(psi) / (3 - sin(psi)).
-double dilatancy(const Law &law) {
-  return std::visit(
-      [](const auto &one) {
-        if constexpr (requires { one.dilation_angle; })
-          return 6 * std::sin(one.dilation_angle) / (3 - std::sin(one.dilation_angle));
-        else
-          return 0.;
-      },
-      law);
-}
-
 }  // namespace
 
 template <int dim>
@@ -67,9 +55,7 @@ PetscErrorCode Body<dim>::create(MPI_Comm comm, const BodySource &source, Law la
   // where fluids move pressure follows volume: a cap would pump it up, pores.md section 4
   const bool capped = source.volume_cap > 0 || (source.volume_cap < 0 && fluids == 0 && comes_apart(law_));
   volume_cap_ = !capped ? std::numeric_limits<double>::infinity() : source.volume_cap > 0 ? source.volume_cap : 1;
-  dilatancy_ = dilatancy(law_), strain_field_ = plastic_strain_field(law_);
-  for (int h = 0; h < history_count_; ++h)
-    if (dilatancy_ > 0 && std::string(history_fields(law_)[h].name) == "plastic_volume") expansion_field_ = h;
+  dilation_field_ = history_field(law_, field_of_dilation.name);
   PetscCall(DMCreate(comm, swarm_.create()));
   PetscCall(DMSetType(swarm_, DMSWARM));
   PetscCall(DMSetDimension(swarm_, dim));

@@ -94,10 +94,10 @@ class Body {
   PetscErrorCode serialize(Archive &archive, const BackgroundMesh<dim> &mesh);
 
  private:
-  /// Ratio of volumes by dilation, theory (3.10): what the law expands beyond it has opened as gaps.
+  /// Ratio of volumes by dilation, theory (3.10): not by the gaps that open.
   double expansion(const double *history) const {
-    if (expansion_field_ < 0) return 1;
-    const double volume_strain = std::min(history[expansion_field_], dilatancy_ * history[strain_field_]);
+    if (dilation_field_ < 0) return 1;
+    const double volume_strain = history[dilation_field_];
     return volume_strain > 0 ? exponential(volume_strain) : 1;
   }
   PetscErrorCode borrow();     ///< takes the arrays from the swarm
@@ -109,8 +109,8 @@ class Body {
 
   const BodySource *source_ = nullptr;
   Law law_;
-  int history_count_ = 0, expansion_field_ = -1, strain_field_ = -1, fluids_ = 0, face_count_ = 0;
-  double volume_cap_ = 0, dilatancy_ = 0;
+  int history_count_ = 0, dilation_field_ = -1, fluids_ = 0, face_count_ = 0;
+  double volume_cap_ = 0;
   bool borrowed_ = false;
   PetscInt room_ = 0;  ///< particles for which the swarm has memory
   Dm swarm_;

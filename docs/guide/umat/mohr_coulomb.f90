@@ -4,7 +4,7 @@
 !
 ! PROPS  1 E [Pa], 2 nu, 3 c, 4 phi, 5 psi [Pa, rad], 6 residual c, 7 residual phi, 8 eta,
 !        9 tangent: 0 the elastic stiffness, 1 difference quotients (for an implicit solver)
-! STATEV 1 accumulated deviatoric plastic strain, 2 plastic volume strain
+! STATEV 1 accumulated deviatoric plastic strain, 2 dilation: plastic volume strain where soil shears, not where it opens at the apex
 module mohr_coulomb_point
   implicit none
   double precision, parameter :: unlimited = 1d100
@@ -57,21 +57,30 @@ contains
     end do
   end subroutine eigen
 
+  ! Cohesion and friction angle after a plastic strain, and the tension that they bear.
+  subroutine strength(m, plastic_strain, c, phi, limit)
+    type(soil), intent(in) :: m
+    double precision, intent(in) :: plastic_strain
+    double precision, intent(out) :: c, phi, limit
+    double precision :: left
+    left = exp(-m%eta*plastic_strain)
+    phi = m%residual_phi + (m%phi - m%residual_phi)*left
+    c = m%residual_c + (m%c - m%residual_c)*left
+    limit = unlimited
+    if (sin(phi) > 0) limit = c*cos(phi)/sin(phi)
+  end subroutine strength
+
   ! Principal stresses that plastic flow leaves of a trial, at the strength after `plastic_strain`.
   function admissible(m, s, plastic_strain) result(x)
     type(soil), intent(in) :: m
     double precision, intent(in) :: s(3), plastic_strain
-    double precision :: x(3), left, phi, c, sphi, spsi, k, limit, side, greater, less, f, drop, gap12, gap23, d(3), slip
+    double precision :: x(3), phi, c, sphi, spsi, k, limit, side, greater, less, f, drop, gap12, gap23, d(3), slip
     double precision :: plane2, plane3, line3, opened3, low, det, drop1, drop3, line_slip, line_opening, middle
     logical :: upper
-    left = exp(-m%eta*plastic_strain)
-    phi = m%residual_phi + (m%phi - m%residual_phi)*left
-    c = m%residual_c + (m%c - m%residual_c)*left
+    call strength(m, plastic_strain, c, phi, limit)
     sphi = sin(phi)
     spsi = min(sin(m%psi), sphi)
     k = 2*c*cos(phi)
-    limit = unlimited
-    if (sphi > 0) limit = c*cos(phi)/sphi
     side = 2*m%lambda*spsi
     greater = side + 2*m%g*(1 + spsi)
     less = side - 2*m%g*(1 - spsi)
@@ -128,7 +137,7 @@ contains
     integer, intent(in) :: ntens
     double precision, intent(inout) :: stress(ntens), statev(2)
     double precision, intent(in) :: dstran(ntens)
-    double precision :: a(3, 3), s(3), v(3, 3), change(3), volume
+    double precision :: a(3, 3), s(3), v(3, 3), x(3), change(3), predicted, c, phi, limit, volume
     integer :: i
     volume = dstran(1) + dstran(2) + dstran(3)
     stress(1:3) = stress(1:3) + m%lambda*volume + 2*m%g*dstran(1:3)
@@ -146,11 +155,13 @@ contains
     a(3, 1) = a(1, 3)
     a(3, 2) = a(2, 3)
     call eigen(a, s, v)
-    change = s - admissible(m, s, statev(1))
-    change = s - admissible(m, s, statev(1) + shearing(m, change))
+    predicted = statev(1) + shearing(m, s - admissible(m, s, statev(1)))
+    x = admissible(m, s, predicted)
+    change = s - x
     if (maxval(abs(change)) == 0) return
     statev(1) = statev(1) + shearing(m, change)
-    statev(2) = statev(2) + sum(change)/(3*m%lambda + 2*m%g)
+    call strength(m, predicted, c, phi, limit)
+    if (x(1) < limit) statev(2) = statev(2) + sum(change)/(3*m%lambda + 2*m%g)
     do i = 1, 3
       a = a - change(i)*spread(v(:, i), 2, 3)*spread(v(:, i), 1, 3)
     end do

@@ -68,6 +68,7 @@ TEST(DruckerPrager, flows_along_its_potential) {
       EXPECT_NEAR(point.history[1], slip * eta_bar, 1e-13);
     } else {
       EXPECT_LT((matrix<3>(point.stress[0]) - apex * Matrix::Identity()).norm(), 1e-9);
+      EXPECT_EQ(point.history[1], 0) << "what opens is no dilation";
     }
     const Matrix plastic = elastic_strain(law, drop);
     const Matrix deviator = plastic - plastic.trace() / 3 * Matrix::Identity();

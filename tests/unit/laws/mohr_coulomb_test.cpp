@@ -316,8 +316,30 @@ TEST(MohrCoulomb, tears_at_its_tension_cutoff) {
   EXPECT_NEAR(point.stress[0][0], 4e3, 1e-8);
   EXPECT_NEAR(point.stress[1][1], 4e3, 1e-8);
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(point.stress[2][k], 4e3, 1e-8);
-  EXPECT_NEAR(point.history[2 * 2 + 1], 3e-2 - 4e3 / law.bulk_modulus(), 1e-12)
-      << "plastic volume takes all but the elastic";
+}
+
+/// What shear adds to the volume, sin(psi) times the shear strain of a plane, and none of what opens.
+TEST(MohrCoulomb, dilates_by_shear_and_not_by_opening) {
+  MohrCoulomb law = mohr_coulomb(20e3, 30, 10);
+  law.tension_cutoff = 4e3;
+  const auto dilation = [&](const Components<2> &strain) {
+    Points<2> point(law, 1);
+    point.stress[0] = {-1e5, -1e5, -1e5, 0};
+    point.increment[0].strain = strain;
+    point.update();
+    return point.history[1];
+  };
+  // under constant volume the pressure rises by K times the dilation, and with it the shear stress
+  const double sine = std::sin(10 * degree.si), sheared = dilation({0, 0, 0, 0.01});
+  const double K = law.bulk_modulus() + law.shear_modulus() / 3, rise = std::sin(30 * degree.si) * K * sheared;
+  const double shear_stress = 20e3 * std::cos(30 * degree.si) + std::sin(30 * degree.si) * 1e5 + rise;
+  EXPECT_NEAR(sheared, sine * (0.02 - shear_stress / law.shear_modulus()), 1e-12);
+  EXPECT_EQ(dilation({1e-2, 0, 0, 0}), 0) << "a plane opens";
+  EXPECT_EQ(dilation({1e-2, 1e-2, 0, 0}), 0) << "a line";
+  EXPECT_EQ(dilation({1e-2, 1e-2, 1e-2, 0}), 0) << "a corner";
+  EXPECT_EQ(dilation({1e-2, 0, 0, 1e-2}), 0) << "a plane opens and slides";
+  law.tension_cutoff = -1;
+  EXPECT_EQ(dilation({1e-2, 1e-2, 1e-2, 1e-3}), 0) << "the apex";
 }
 
 TEST(MohrCoulomb, without_cutoff_bears_tension_up_to_its_apex) {
@@ -449,6 +471,21 @@ TEST(MohrCoulomb, loses_dilation_as_it_loses_strength) {
   EXPECT_NEAR(law.strength(0., {1}).sin_psi, std::sin(10 * degree.si), 1e-15);
   EXPECT_NEAR(law.strength(0.02, {1}).sin_psi, std::sin(10 * degree.si) * std::exp(-40 * 0.02), 1e-15);
   EXPECT_LT(law.strength(10., {1}).sin_psi, 1e-100);
+}
+
+/// However far the soil shears on.
+TEST(MohrCoulomb, dilates_no_more_once_its_dilation_is_lost) {
+  MohrCoulomb law = softening_law();
+  law.residual_dilation_angle = 0;
+  Points<2> point(law, 1);
+  point.stress[0] = {-1e5, -1e5, -1e5, 0};
+  point.increment[0].strain = {0, 0, 0, 1e-4};
+  for (int step = 0; step < 2000; ++step) point.update();
+  const double after = point.history[1];
+  for (int step = 0; step < 2000; ++step) point.update();
+  EXPECT_GT(point.history[0], 0.4);
+  EXPECT_GT(after, 1e-3);
+  EXPECT_NEAR(point.history[1], after, 1e-3 * after);
 }
 
 /// Alonso et al. (2015), Table 3: dc_max = 15 kPa, B = 0.0007 and A = 0.0001 degrees per kPa give

@@ -48,7 +48,7 @@ TEST(Umat, mohr_coulomb_in_fortran_is_the_built_in_law) {
   MohrCoulomb softening = mohr_coulomb(20e3, 30, 10);
   softening.residual_cohesion = 1e3, softening.residual_friction_angle = 20 * degree.si, softening.shape_factor = 100;
   for (const MohrCoulomb &law : {mohr_coulomb(5e3, 35), mohr_coulomb(15e3, 0), mohr_coulomb(10e3, 25, 25), softening}) {
-    const Umat own = umat("mohr_coulomb", props_of(law), {"plastic_strain", "plastic_volume"});
+    const Umat own = umat("mohr_coulomb", props_of(law), {"plastic_strain", "dilation"});
     EXPECT_EQ(own.problem_in(2), "");
     EXPECT_EQ(own.problem_in(3), "");
     expect_the_same<2>(law, own);
@@ -61,7 +61,7 @@ TEST(Umat, mohr_coulomb_in_fortran_is_the_built_in_law) {
 TEST(Umat, ddsdde_is_the_tangent) {
   const MohrCoulomb law = mohr_coulomb(5e3, 30, 5);
   Random random;
-  Points<3> a(law, 200), b(umat("mohr_coulomb", props_of(law, true), {"plastic_strain", "plastic_volume"}), 200);
+  Points<3> a(law, 200), b(umat("mohr_coulomb", props_of(law, true), {"plastic_strain", "dilation"}), 200);
   for (int i = 0; i < 200; ++i) {
     a.stress[i] = b.stress[i] = {-1e5, -1e5, -1e5, 0, 0, 0};
     a.increment[i].strain = b.increment[i].strain = random.symmetric<3>(0.01);
@@ -85,7 +85,7 @@ TEST(Umat, goes_through_the_triaxial_test) {
   ElementTest test;
   test.name = "claim", test.cell_pressure = 50e3, test.strain = {0.05};
   const auto built_in = drive(law, test),
-             own = drive(umat("mohr_coulomb", props_of(law), {"plastic_strain", "plastic_volume"}), test);
+             own = drive(umat("mohr_coulomb", props_of(law), {"plastic_strain", "dilation"}), test);
   for (const int k : {50, 100, 200}) EXPECT_NEAR(own[k].deviator(), built_in[k].deviator(), 1e-3);
   EXPECT_NEAR(-own.back().stress[1], 203.7e3, 0.05e3);
 }

@@ -96,7 +96,7 @@ TEST(OutputFields, of_laws_are_not_a_number_where_a_body_has_another_law) {
   GaussPointState<2> point;
   point.history = history;
   for (point.body = 0; point.body < 2; ++point.body) fields.append(point, columns);
-  ASSERT_EQ(columns.back().name, "plastic_volume");
+  ASSERT_EQ(columns.back().name, "dilation");
   EXPECT_EQ(columns.back().values[0], 0.5);
   EXPECT_TRUE(std::isnan(columns.back().values[1]));
 }
