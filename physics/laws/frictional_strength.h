@@ -34,7 +34,8 @@ struct FrictionalStrength {
                "friction angle phi, at its peak if the soil softens");
     v.number("dilation_angle", dilation_angle, degree, Range{0, 70},
              "dilation angle psi; limited to phi where phi falls below it. Take psi = phi for a factor of safety to "
-             "compare with limit equilibrium; with psi < phi it is smaller");
+             "compare with limit equilibrium; with psi < phi it is smaller. Where soil slides, 0, or give it an end by "
+             "residual_dilation_angle: its volume grows as long as it shears");
     v.number("residual_cohesion", residual_cohesion, pascal, Range{-1, 1e9},
              "cohesion at large strain; negative: the peak value");
     v.number("residual_friction_angle", residual_friction_angle, degree, Range{-1, 70},

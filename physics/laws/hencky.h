@@ -18,7 +18,7 @@ struct Hencky : Base {
   static constexpr auto history = [] {
     std::array<HistoryField, Base::history.size() + 1> fields{};
     std::copy(Base::history.begin(), Base::history.end(), fields.begin());
-    fields.back() = {"volume_strain", one, "ln of the volume over its initial one", true};
+    fields.back() = {"volume_strain", one, "ln of the volume without gaps over the initial one", true};
     return fields;
   }();
   using History = std::array<double, history.size()>;
@@ -27,7 +27,7 @@ struct Hencky : Base {
   [[gnu::always_inline]] void advance(Stress<dim, Number> &s, const Strain<dim, Number> &e, History &history,
                                       const Surroundings &around) const {
     double &volume_strain = history.back();
-    const Number volume = exponential(volume_strain), after = exponential(volume_strain + (e.xx + e.yy + e.zz));
+    const Number volume = exponential(volume_strain);
     const Number pressure = (s.xx + s.yy + s.zz) * (volume / (9 * this->K)), over_2G = volume * (1 / (2 * this->G));
     const Number third = (s.xx + s.yy + s.zz) * over_2G * (1. / 3);
     // 2 eps_e = ln b_e, of the accepted stress and then of the trial
@@ -35,9 +35,10 @@ struct Hencky : Base {
     const Strain<dim, Number> b = sandwich<dim, Number>(exponential_of(e), exponential_of(elastic));
     const Strain<dim, Number> trial = logarithm_of(b);
     s = affine<dim, Number>(trial, this->G, (trial.xx + trial.yy + trial.zz) * (this->lambda / 2));
-    correct_kirchhoff(s, history, around);
-    s = affine<dim, Number>(s, 1 / after, 0);
-    volume_strain += value_of(e.xx + e.yy + e.zz);
+    const Number before = volume_strain + (e.xx + e.yy + e.zz), opened = correct_kirchhoff(s, history, around);
+    const Number after = before - opened;
+    s = affine<dim, Number>(s, exponential(-after), 0);
+    volume_strain = value_of(after);
   }
 
   template <int dim, class Number>
@@ -49,13 +50,21 @@ struct Hencky : Base {
   }
 
  private:
+  /// Returns the volumetric strain of gaps that open: what is plastic and no dilation.
   template <int dim, class Number>
-  [[gnu::always_inline]] void correct_kirchhoff(Stress<dim, Number> &s, History &history,
-                                                const Surroundings &around) const {
+  [[gnu::always_inline]] Number correct_kirchhoff(Stress<dim, Number> &s, History &history,
+                                                  const Surroundings &around) const {
     typename Base::History of_base;
     for (std::size_t k = 0; k < of_base.size(); ++k) of_base[k] = history[k];
+    const Number trial = s.xx + s.yy + s.zz;
     Base::correct(s, of_base, around);
+    Number opened = 0;
+    if constexpr (of_base.size() > 0) {
+      const bool dilates = of_base[1] != history[1];
+      opened = dilates ? Number(0) : (trial - (s.xx + s.yy + s.zz)) * (1 / (3 * this->K));
+    }
     for (std::size_t k = 0; k < of_base.size(); ++k) history[k] = of_base[k];
+    return opened;
   }
 };
 

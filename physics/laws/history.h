@@ -20,7 +20,8 @@ inline constexpr HistoryField field_of_plastic_strain{
 inline constexpr HistoryField field_of_dilation{
     "dilation", one,
     "plastic volumetric strain of soil that shears, positive in expansion; not of soil that opens at the apex or the "
-    "tension cut-off"};
+    "tension cut-off",
+    true};
 /// History of fluids and of soil whose grains neither dilate nor soften.
 inline constexpr std::array shear_history{field_of_plastic_strain};
 /// History of the frictional laws.

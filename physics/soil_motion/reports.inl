@@ -192,7 +192,7 @@ Archive::Rows SoilMotion<dim, Phases>::serialize_points(Archive &archive, size_t
     archive.column(rows, "history at the remap", p.start_history, history);
     archive.column(rows, "volume", p.own_volume);
     archive.column(rows, "volume at the remap", p.start_volume);
-    archive.column(rows, "initial volume", p.own_limit);
+    archive.column(rows, "rest volume", p.own_limit);
     if (reads_shares(bodies_[b]->law())) {
       archive.column(rows, "share of cohesion", p.own_cohesion_share);
       archive.column(rows, "share of friction", p.own_friction_share);

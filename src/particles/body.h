@@ -77,6 +77,8 @@ class Body {
   /// Lets particle i, whose stress was set, have no gaps as it is: its volume is what the stress makes of its rest
   /// volume.
   void refer_to_stress(int i);
+  /// Index of dilation among the history of the law, -1 where it has none.
+  int dilation_field() const { return dilation_field_; }
   /// Is the volume of a particle limited?
   bool capped() const { return volume_cap_ != std::numeric_limits<double>::infinity(); }
   const ParticleArrays<dim> &particles() const { return arrays_; }

@@ -439,7 +439,8 @@ struct Stage {
         "pore fluids move; if false, pore pressures are those of [water], scaled by the ramp, as for initial stress");
     v.flag(
         "softening", softening,
-        "plastic strain is recorded and softens the soil; if false, strength does not change, as for initial stress");
+        "plastic strain is recorded and softens the soil; if false, strength does not change, as for initial stress; "
+        "dilation is recorded in any case");
     v.flag("hold_loads", hold_loads,
            "functions of time stand still: their t advances only in stages with hold_loads = false");
     v.flag("reset_displacement", reset_displacement,

@@ -259,17 +259,27 @@ struct RunRow {
       column(b.name + "_excess_pressure", "Pa", b.base.pressure);
       column(b.name + "_heat", "J", b.base.heat);
     }
-    double done = 0;
-    const auto work_column = [&](const string &by, double joules) {
-      column("work_" + by, "J", joules);
-      done += joules;
-    };
-    for (const auto &b : boundaries) work_column(b.name, b.work);
-    work_column("gravity", work.gravity);
-    work_column("imposed", work.imposed);
-    work_column("damping", work.damping);
-    const double rest = first_energy + done - (balance.kinetic + balance.strain + escaped.energy);
-    column(string("dissipated"), "J", balanced ? rest : std::numeric_limits<double>::quiet_NaN());
+    each_work([&](const string &by, double joules) { column("work_" + by, "J", joules); });
+    column(string("dissipated"), "J", balanced ? dissipated() : std::numeric_limits<double>::quiet_NaN());
+  }
+  /// Calls f(by what, work [J]) for all that does work on the soil.
+  template <class F>
+  void each_work(F &&f) const {
+    for (const auto &b : boundaries) f(b.name, b.work);
+    f(std::string("gravity"), work.gravity), f(std::string("imposed"), work.imposed);
+    f(std::string("damping"), work.damping);
+  }
+  /// Energy that work has brought and that is there no more [J].
+  double dissipated() const {
+    double rest = first_energy;
+    each_work([&](const std::string &, double joules) { rest += joules; });
+    return rest - (balance.kinetic + balance.strain + escaped.energy);
+  }
+  /// Energy that was there or was brought, whatever its sign [J].
+  double turnover() const {
+    double sum = std::abs(first_energy);
+    each_work([&](const std::string &, double joules) { sum += std::abs(joules); });
+    return sum;
   }
   /// Mass of a fluid that the boundaries do not account for: it stays what it is [kg].
   double owned(std::size_t a) const {

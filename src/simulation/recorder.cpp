@@ -469,11 +469,15 @@ void Recorder<dim>::write_history() {
   if (of_.clock.time == 0) first_energy_ = run.balance.kinetic + run.balance.strain;
   run.first_energy = first_energy_, run.balanced = of_.clock.stage != strength_reduction;
   run.visit([&](const std::string &, const char *, double value) { row.push_back(value); });
+  const bool watched = run.balanced && !fluids_move(scene_.phases);  // a ledger without the energy of the fluids
+  const std::string created = watched ? energy_.look(run.dissipated(), run.turnover()) : "";
   row.insert(row.begin(), {of_.clock.time, static_cast<double>(of_.clock.steps)});
   history_.rows.push_back(row);
   if (results_)
     results_->history.row(of_.clock.time, of_.clock.steps, of_.clock.stage.empty() ? "start" : of_.clock.stage,
                           {row.begin() + 2, row.end()});
+  if (!created.empty()) note("warning: " + created);
+  if (energy_.beyond_all()) throw RunFailure(energy_.verdict());
 }
 
 // ---- snapshots ----
@@ -604,6 +608,7 @@ template <int dim>
 void Recorder<dim>::serialize(Archive &archive) {
   archive.serialize("results", last_row_step_, last_row_time_, snapshots_, impulse_time_, first_ledger_, first_energy_,
                     work_before_, fluids_before_, told_escaped_);
+  energy_.serialize(archive);
   point_rows_.serialize(archive);
   ends_.serialize(archive);
   of_.lines.serialize(archive);

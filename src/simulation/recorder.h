@@ -12,6 +12,7 @@
 #include "output/results_folder.h"
 #include "output/snapshots.h"
 #include "simulation/dynamics.h"
+#include "simulation/energy_watch.h"
 #include "simulation/followed_lines.h"
 #include "simulation/mesh_ends.h"
 #include "simulation/statics.h"
@@ -118,8 +119,9 @@ class Recorder {
   HistoryTable history_;
   std::vector<Event> events_;
   std::unique_ptr<Files> results_;
-  std::vector<double> first_ledger_;        ///< fluid masses at the start [kg]
-  double first_energy_ = 0;                 ///< [J]
+  std::vector<double> first_ledger_;  ///< fluid masses at the start [kg]
+  double first_energy_ = 0;           ///< [J]
+  EnergyWatch energy_;
   std::vector<double> work_before_;         ///< done before the run, where it starts at the state of another [J]
   std::vector<FluidLedger> fluids_before_;  ///< likewise what had passed the boundaries
   double impulse_time_ = 0;                 ///< since when forces are means [s]

@@ -25,6 +25,7 @@ void Simulation<dim>::run() {
     for (const std::string &sentence : unlikely_strains(run_.world.comm, run_.world.report(), snapshot()))
       run_.recorder.note("warning: " + sentence);
     note_gaps();
+    note_dilation();
     run_.recorder.note_cut_off();
     if (run_.options.resume && run_.clock.steps == before)
       run_.recorder.note("nothing was left to do: the run had reached its end before it was resumed");
@@ -58,6 +59,32 @@ void Simulation<dim>::note_gaps() {
             "may throw others out"
          << (fluids_move(run_.scene.phases) ? ""
                                             : "; volume_cap = 1, which is the default of such soil, leaves gaps out");
+    run_.recorder.note(text.str());
+  }
+}
+
+/// Soil that shears on dilates no more, once it is as loose as it can be; a constant dilation angle knows no such end.
+template <int dim>
+void Simulation<dim>::note_dilation() {
+  constexpr double visible = 0.05;  // of the volume of a body
+  for (const auto &body : run_.world.bodies) {
+    if (body->dilation_field() < 0) continue;
+    const ParticleArrays<dim> &p = body->particles();
+    double sum[2] = {0, 0}, largest = 1;  // of the rest volumes, with and without dilation [m3]; ratio of a particle
+    for (int i = 0; i < p.count; ++i) {
+      const double *history = p.history + static_cast<std::size_t>(i) * body->history_count();
+      const double dilated = body->volume_without_gaps(p.rest_volume[i], history);
+      sum[0] += dilated, sum[1] += p.rest_volume[i], largest = std::max(largest, dilated / p.rest_volume[i]);
+    }
+    require(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, run_.world.comm));
+    require(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, run_.world.comm));
+    if (sum[0] <= (1 + visible) * sum[1]) continue;
+    std::ostringstream text;
+    text.precision(3);
+    text << "warning: body." << body->name() << " has dilated to " << sum[0] / sum[1]
+         << " times its volume, and single particles to " << largest
+         << " times. Soil that shears on becomes no looser than it can be: give dilation an end, by "
+            "residual_dilation_angle = 0 and a shape_factor, or none";
     run_.recorder.note(text.str());
   }
 }

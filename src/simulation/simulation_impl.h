@@ -46,6 +46,7 @@ class Simulation final : public AnySimulation {
   void begin();
   void note_bodies();
   void note_gaps();
+  void note_dilation();
   void run_stages();
   void step_until(double t);
   FactorOfSafety reduce_strength();

@@ -476,8 +476,6 @@ void World<dim>::reset_displacement(double time) {
     std::copy_n(p.position, p.count, p.reference);
     std::fill_n(p.velocity, p.count, Vec<dim>{});
     const auto fields = history_fields(body->law());
-    for (int i = 0; i < p.count; ++i)
-      p.rest_volume[i] = body->volume_without_gaps(p.rest_volume[i], p.history + i * fields.size());
     for (size_t k = 0; k < fields.size(); ++k)
       for (int i = 0; !fields[k].kept && i < p.count; ++i) p.history[i * fields.size() + k] = 0;
     for (int a = 0; a < phases.fluids(); ++a) std::fill_n(p.fluid_velocity[a], p.count, Vec<dim>{});
@@ -490,10 +488,15 @@ double World<dim>::critical_step_of_cells(double time) {
   double local = std::numeric_limits<double>::infinity(), step;
   for (size_t b = 0; b < bodies.size(); ++b) {
     const PointSet &points = motion->points()[b];
+    const Body<dim> &body = *bodies[b];
+    const int memory = body.history_count(), field = body.capped() ? body.dilation_field() : -1;
     int last = -1;
-    for (int q = 0; q < points.count; ++q)
-      if (points.cell[q] != last)
-        local = std::min(local, critical_[b](motion->grid().mesh_cell[last = points.cell[q]]));
+    double of_cell = 0;  // of soil as dense as it was
+    for (int q = 0; q < points.count; ++q) {
+      if (points.cell[q] != last) of_cell = critical_[b](motion->grid().mesh_cell[last = points.cell[q]]);
+      const double dilation = field < 0 ? 0 : points.history[q * memory + field];
+      local = std::min(local, dilation > 0 ? of_cell * std::exp(-dilation / 2) : of_cell);
+    }
   }
   MPI_Allreduce(&local, &step, 1, MPI_DOUBLE, MPI_MIN, comm);
   return step;

@@ -38,6 +38,34 @@ void compare_functions() {
 
 TEST(Hencky, functions_of_tensors_are_exact_to_round_off) { compare_functions<2>(), compare_functions<3>(); }
 
+/// Soil that has come apart and closes again is as stiff and strong as it was: gaps are no part of J.
+template <class LawType>
+void opens_and_closes() {
+  LawType law;
+  law.young_modulus = 20e6, law.poisson_ratio = 0.3, law.cohesion = 0, law.friction_angle = 35 * degree.si;
+  law.dilation_angle = 5 * degree.si;
+  Points<3> closed(law, 1), opened(law, 1);
+  const auto strain = [](Points<3> &point, double e) {
+    point.increment[0].strain = {e, e, e, 0, 0, 0};
+    point.update();
+  };
+  for (int k = 0; k < 50; ++k) strain(opened, 0.01);
+  EXPECT_NEAR(opened.history.back(), 0, 1e-13);
+  for (int k = 0; k < 10; ++k) strain(opened, -0.001), strain(closed, -0.001);
+  EXPECT_LT(closed.stress[0][0], -4e5);
+  for (int s = 0; s < 6; ++s) EXPECT_NEAR(opened.stress[0][s], closed.stress[0][s], 1e-6);
+  closed.increment[0].strain = opened.increment[0].strain = {0, 0, 0, 0.02, 0, 0};
+  for (int k = 0; k < 5; ++k) closed.update(), opened.update();
+  for (int s = 0; s < 6; ++s) EXPECT_NEAR(opened.stress[0][s], closed.stress[0][s], 1e-6);
+  EXPECT_GT(opened.history[1], 1e-3) << "dilation";
+  const double J = std::exp(opened.history.back()), p = -talus::matrix<3>(opened.stress[0]).trace() / 3;
+  EXPECT_NEAR(std::log(J), opened.history[1] - J * p / law.bulk_modulus(), 1e-12);
+}
+TEST(Hencky, gaps_do_not_soften_the_soil) {
+  opens_and_closes<HenckyMohrCoulomb>();
+  opens_and_closes<HenckyDruckerPrager>();
+}
+
 /// A homogeneous deformation in steps: dF_k = F_{k+1} F_k^-1, each decomposed into R and ln U.
 class Deformed {
  public:

@@ -1,0 +1,33 @@
+// Energy that is created is told once, and a run that has created more than there was is to end.
+#include "simulation/energy_watch.h"
+
+#include <gtest/gtest.h>
+
+namespace talus {
+namespace {
+
+TEST(EnergyWatch, is_silent_while_energy_is_lost) {
+  EnergyWatch watch;
+  for (const double dissipated : {0., 10., 40., 39.5, 80., 79.}) EXPECT_EQ(watch.look(dissipated, 100), "");
+  EXPECT_FALSE(watch.beyond_all());
+}
+
+TEST(EnergyWatch, tells_once_what_is_created) {
+  EnergyWatch watch;
+  EXPECT_EQ(watch.look(40, 100), "");
+  const std::string told = watch.look(34, 100);
+  EXPECT_NE(told.find("energy is created: 6 J, of 100 J"), std::string::npos) << told;
+  EXPECT_EQ(watch.look(20, 100), "");
+  EXPECT_FALSE(watch.beyond_all());
+  EXPECT_EQ(watch.look(-61, 100), "");
+  EXPECT_TRUE(watch.beyond_all()) << watch.verdict();
+}
+
+TEST(EnergyWatch, takes_no_offence_at_nothing) {
+  EnergyWatch watch;
+  EXPECT_EQ(watch.look(0, 0), "");
+  EXPECT_FALSE(watch.beyond_all());
+}
+
+}  // namespace
+}  // namespace talus
