@@ -21,6 +21,8 @@ class EnergyWatch {
     told_ = true;
     return verdict() + ". What follows is not to be trusted";
   }
+  /// Where soil gets stress or places from elsewhere than its motion: energy may begin anew.
+  void restart(double dissipated) { most_ = dissipated; }
   /// Has more energy been created than there was?
   bool beyond_all() const { return told_ && !(created_ <= turnover_); }
   std::string verdict() const {

@@ -23,6 +23,15 @@ TEST(EnergyWatch, tells_once_what_is_created) {
   EXPECT_TRUE(watch.beyond_all()) << watch.verdict();
 }
 
+TEST(EnergyWatch, begins_anew_where_energy_does) {
+  EnergyWatch watch;
+  EXPECT_EQ(watch.look(40, 100), "");
+  watch.restart(-300);
+  EXPECT_EQ(watch.look(-300, 100), "");
+  EXPECT_EQ(watch.look(-304, 100), "");
+  EXPECT_NE(watch.look(-306, 100), "");
+}
+
 TEST(EnergyWatch, takes_no_offence_at_nothing) {
   EnergyWatch watch;
   EXPECT_EQ(watch.look(0, 0), "");
