@@ -22,7 +22,7 @@ inline constexpr HistoryField field_of_dilation{
     "plastic volumetric strain of soil that shears, positive in expansion; not of soil that opens at the apex or the "
     "tension cut-off",
     true};
-/// History of fluids and of soil whose grains neither dilate nor soften.
+/// History of laws that do not dilate: fluids and mu(I).
 inline constexpr std::array shear_history{field_of_plastic_strain};
 /// History of the frictional laws.
 inline constexpr std::array frictional_history{field_of_plastic_strain, field_of_dilation};

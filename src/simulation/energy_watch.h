@@ -28,9 +28,8 @@ class EnergyWatch {
   std::string verdict() const {
     return "energy is created: " + rounded(created_) + " J, of " + rounded(turnover_) +
            " J that were there or were brought (dissipated_J in history.csv falls). The steps are longer than this "
-           "soil "
-           "bears: take a smaller integrator.fraction. Soil that has grown much by dilation (volume, dilation of its "
-           "particles) needs a residual_dilation_angle";
+           "soil bears: take a smaller integrator.fraction. Soil that has grown much by dilation (volume, dilation of "
+           "its particles) needs a residual_dilation_angle";
   }
   void serialize(Archive &archive) { archive.serialize("energy watch", most_, turnover_, created_, told_); }
 
