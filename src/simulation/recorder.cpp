@@ -469,10 +469,9 @@ void Recorder<dim>::write_history() {
   if (of_.clock.time == 0) first_energy_ = run.balance.kinetic + run.balance.strain;
   run.first_energy = first_energy_, run.balanced = of_.clock.stage != strength_reduction;
   run.visit([&](const std::string &, const char *, double value) { row.push_back(value); });
-  const bool watched = run.balanced && !fluids_move(scene_.phases);  // a ledger without the energy of the fluids
-  if (of_.statics.current() || of_.clock.stage != watched_stage_) energy_.restart(run.dissipated());
-  watched_stage_ = of_.statics.current() ? "" : of_.clock.stage;
-  const std::string created = watched ? energy_.look(run.dissipated(), run.turnover()) : "";
+  // not in finite elements, and not with fluids, whose energy the ledger does not contain
+  const bool watched = run.balanced && !of_.statics.current() && !fluids_move(scene_.phases);
+  const std::string created = energy_.look(watched ? of_.clock.stage : "", run.dissipated(), run.turnover());
   row.insert(row.begin(), {of_.clock.time, static_cast<double>(of_.clock.steps)});
   history_.rows.push_back(row);
   if (results_)

@@ -122,7 +122,6 @@ class Recorder {
   std::vector<double> first_ledger_;  ///< fluid masses at the start [kg]
   double first_energy_ = 0;           ///< [J]
   EnergyWatch energy_;
-  std::string watched_stage_;               ///< in which it looked last; empty: in none
   std::vector<double> work_before_;         ///< done before the run, where it starts at the state of another [J]
   std::vector<FluidLedger> fluids_before_;  ///< likewise what had passed the boundaries
   double impulse_time_ = 0;                 ///< since when forces are means [s]

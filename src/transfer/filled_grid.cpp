@@ -51,12 +51,9 @@ void FilledGrid<dim>::complete() {
   }
   for (int i = 0; i < node_count_; ++i) mass[i] = 0, position[i] = mesh_->position[mesh_node[i]];
   for (int c = 0; c < cell_count_; ++c) {
-    const Cell<dim> &cell = mesh_->cells[mesh_cell[c]];
-    Shape<dim> &s = shape[c];
-    for (int k = 0; k <= dim; ++k) s.node[k] = find_node(cell.node[k]);
-    s.gradient = cell.gradient, s.volume = mesh_->volume[mesh_cell[c]];
+    const int cell = mesh_cell[c];
+    shape[c].volume = mesh_->volume[cell], size[c] = element_size_of(cell), patch[c] = mesh_->patch[cell];
   }
-  for (int c = 0; c < cell_count_; ++c) size[c] = element_size_of(mesh_cell[c]), patch[c] = mesh_->patch[mesh_cell[c]];
 }
 
 template <int dim>

@@ -30,11 +30,15 @@ class FilledGrid {
 
   /// Removes all nodes and cells.
   void clear();
-  /// Compact number of a mesh cell, which is the last one on first use: its sums over particles are then to be set.
+  /// Compact number of a mesh cell, which is the last one on first use: it has its nodes and gradients then, and its
+  /// sums over particles are to be set.
   [[gnu::always_inline]] int enter_cell(int cell) {
     if (compact_cell_[cell] == 0) {
+      const Cell<dim> &entered = mesh_->cells[cell];
+      Shape<dim> &s = shape[cell_count_];
+      for (int k = 0; k <= dim; ++k) s.node[k] = enter_node(entered.node[k]);
+      s.gradient = entered.gradient;
       mesh_cell[cell_count_] = cell, compact_cell_[cell] = ++cell_count_;
-      for (int node : mesh_->cells[cell].node) enter_node(node);
     }
     return find_cell(cell);
   }
@@ -72,8 +76,9 @@ class FilledGrid {
 
  private:
   double element_size_of(int mesh_cell);
-  void enter_node(int node) {
+  int enter_node(int node) {
     if (compact_node_[node] == 0) mesh_node[node_count_] = node, compact_node_[node] = ++node_count_;
+    return find_node(node);
   }
 
   const BackgroundMesh<dim> *mesh_;

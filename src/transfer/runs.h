@@ -188,7 +188,7 @@ class RunToNodes {
     double volume = 0;
 #pragma GCC unroll 8
     for (int k = 0; k < vertices; ++k) {
-      Vec<dim> &sum = momentum[grid_.find_node(grid_.mesh().cells[mesh_cell_].node[k])];
+      Vec<dim> &sum = momentum[grid_.shape[cell].node[k]];
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d) sum[d] += momentum_[d][k];
       volume += share_[k];

@@ -8,33 +8,49 @@ namespace {
 
 TEST(EnergyWatch, is_silent_while_energy_is_lost) {
   EnergyWatch watch;
-  for (const double dissipated : {0., 10., 40., 39.5, 80., 79.}) EXPECT_EQ(watch.look(dissipated, 100), "");
+  for (const double dissipated : {0., 10., 40., 39.5, 80., 79.}) EXPECT_EQ(watch.look("slide", dissipated, 100), "");
   EXPECT_FALSE(watch.beyond_all());
 }
 
 TEST(EnergyWatch, tells_once_what_is_created) {
   EnergyWatch watch;
-  EXPECT_EQ(watch.look(40, 100), "");
-  const std::string told = watch.look(34, 100);
+  EXPECT_EQ(watch.look("slide", 40, 100), "");
+  const std::string told = watch.look("slide", 34, 100);
   EXPECT_NE(told.find("energy is created: 6 J, of 100 J"), std::string::npos) << told;
-  EXPECT_EQ(watch.look(20, 100), "");
+  EXPECT_EQ(watch.look("slide", 20, 100), "");
   EXPECT_FALSE(watch.beyond_all());
-  EXPECT_EQ(watch.look(-61, 100), "");
+  EXPECT_EQ(watch.look("slide", -61, 100), "");
   EXPECT_TRUE(watch.beyond_all()) << watch.verdict();
 }
 
 TEST(EnergyWatch, begins_anew_where_energy_does) {
   EnergyWatch watch;
-  EXPECT_EQ(watch.look(40, 100), "");
-  watch.restart(-300);
-  EXPECT_EQ(watch.look(-300, 100), "");
-  EXPECT_EQ(watch.look(-304, 100), "");
-  EXPECT_NE(watch.look(-306, 100), "");
+  EXPECT_EQ(watch.look("slide", 40, 100), "");
+  EXPECT_EQ(watch.look("rest", -300, 100), "");
+  EXPECT_EQ(watch.look("rest", -304, 100), "");
+  EXPECT_NE(watch.look("rest", -306, 100), "");
+}
+
+TEST(EnergyWatch, does_not_look_at_finite_elements) {
+  EnergyWatch watch;
+  for (const double dissipated : {40., -300., -600.}) EXPECT_EQ(watch.look("", dissipated, 100), "");
+  EXPECT_FALSE(watch.beyond_all());
+}
+
+TEST(EnergyWatch, looks_on_where_a_run_goes_on) {
+  EnergyWatch stopped, resumed;
+  EXPECT_EQ(stopped.look("slide", 40, 100), "");
+  EXPECT_EQ(stopped.look("slide", 36, 100), "");
+  Archive written;
+  stopped.serialize(written);
+  Archive read(std::move(written).bytes());
+  resumed.serialize(read);
+  EXPECT_NE(resumed.look("slide", 34, 100), "") << "measured from 36, where it was stopped";
 }
 
 TEST(EnergyWatch, takes_no_offence_at_nothing) {
   EnergyWatch watch;
-  EXPECT_EQ(watch.look(0, 0), "");
+  EXPECT_EQ(watch.look("slide", 0, 0), "");
   EXPECT_FALSE(watch.beyond_all());
 }
 

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <petscsys.h>
 
+#include <cmath>
+
 namespace talus {
 namespace {
 
@@ -33,6 +35,39 @@ TEST(Unlikely, StrainsOfMoreThanAHundredthOfABodyAreDoubted) {
   const std::vector<std::string> found = doubts(6);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].find("3 % of body.clay has a plastic strain above 1000 %, up to 3100 %"), 0u) << found[0];
+}
+
+/// What is said of a heap of sand 3 m high with faces of `slope` degrees beside as much level ground, in cells of
+/// `size` [m].
+std::vector<std::string> doubts_about_heap(double slope, double size, double cohesion) {
+  const double rad = slope * M_PI / 180;
+  Scene scene;
+  scene.dimension = 2, scene.gravity = {0, -9.81};
+  const auto face = [](std::array<double, 3> from, std::array<double, 3> to) {
+    SoilFace made;
+    const double x = to[0] - from[0], y = to[1] - from[1];
+    made.corner = {from, to}, made.area = std::hypot(x, y), made.normal = {-y / made.area, x / made.area, 0};
+    return made;
+  };
+  const double run = 3 / std::tan(rad);
+  const std::vector<SoilFace> surface{face({0, 0}, {run, 3}), face({run, 3}, {run + 4, 3}), face({run + 4, 0}, {0, 0})};
+  BodyReport heap;
+  heap.name = "heap", heap.particles = 100, heap.mass = 1600, heap.volume = 1, heap.cell_size = size;
+  heap.high = {run + 4, 3, 0};
+  heap.strength.friction_angle = {0.6, 0.6}, heap.strength.cohesion = {cohesion, cohesion};
+  return coarse_cells(scene, {heap}, surface);
+}
+
+TEST(Unlikely, SandThatIsTooSteepIsDoubtedInFewCells) {
+  const std::vector<std::string> found = doubts_about_heap(50, 0.5, 0);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NE(found[0].find("% of the free surface of body.heap is more than 5 degrees steeper"), std::string::npos)
+      << found[0];
+  EXPECT_TRUE(doubts_about_heap(35, 0.5, 0).empty()) << "not steeper than its friction angle of 34 degrees";
+  EXPECT_TRUE(doubts_about_heap(50, 0.5, 2e3).empty()) << "with cohesion";
+  EXPECT_TRUE(doubts_about_heap(50, 0.25, 0).empty()) << "12 cells over its depth";
+  ASSERT_EQ(doubts_about_heap(50, 1, 0).size(), 1u);
+  EXPECT_NE(doubts_about_heap(50, 1, 0)[0].find("fewer than 4 cells"), std::string::npos) << "one sentence is enough";
 }
 
 }  // namespace
