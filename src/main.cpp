@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -184,6 +185,7 @@ int main(int argc, char **argv) {
   petsc_arguments.push_back(nullptr);
   char **petsc_argv = petsc_arguments.data();
   if (PetscInitialize(&petsc_count, &petsc_argv, nullptr, nullptr)) return 1;
+  std::signal(SIGPIPE, SIG_IGN);  // who reads the output may leave early; PETSc takes it for a fault of the program
   int rank;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   MPI_Comm failures;  // of its own, so that its messages are not taken for others

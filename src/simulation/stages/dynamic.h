@@ -99,12 +99,15 @@ class DynamicStage final : public StageRunner<dim> {
 
   void note_unmet() {
     const Balance sums = run_.balance();
+    const double speed = std::sqrt(2 * sums.kinetic / run_.world.total_mass);
     std::ostringstream text;
     text.precision(3);
     text << "stage " << stage_.name << " reached its duration of " << stage_.duration
          << " s before its stop criterion was met: unbalanced force ratio " << sums.ratio()
          << ", kinetic over strain energy " << (sums.kinetic > 0 ? sums.kinetic / sums.strain : 0) << ", rms speed "
-         << std::sqrt(2 * sums.kinetic / run_.world.total_mass) << " m/s";
+         << speed << " m/s";
+    if (stage_.until == StopWhen::rest && speed < stage_.rest_speed)
+      text << ", which is below rest_speed but has not stayed there without rising";
     run_.recorder.note(text.str());
   }
 

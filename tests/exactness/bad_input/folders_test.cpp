@@ -202,5 +202,11 @@ TEST(Start, TakesAMeshThatIsKept) {
   EXPECT_EQ(status(), 0) << "kept nowhere";
 }
 
+TEST(Output, MayBeReadInPart) {
+  const Folder folder;
+  const Ending ending = Program(folder, {"sh", "-c", TALUS " describe | head -1 > /dev/null"}).end();
+  EXPECT_EQ(ending.output, "");
+}
+
 }  // namespace
 }  // namespace talus
