@@ -1,25 +1,19 @@
 #include "simulation/recorder.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <numeric>
-#include <optional>
-#include <sstream>
 
 #include "base/version.h"
-#include "output/escaped_table.h"
 #include "output/pictures.h"
 #include "output/replace_file.h"
 #include "output/together.h"
-#include "scene/changes.h"
 #include "scene/reader.h"
 #include "scene/words.h"
 #include "simulation/base_clearance.h"
 #include "simulation/model.h"
 #include "simulation/output_fields.h"
-#include "simulation/ways_out.h"
 
 namespace talus {
 
@@ -175,207 +169,6 @@ void Recorder<dim>::check_intervals() {
                                " s, and nothing new happens in a thousandth of it");
 }
 
-// ---- what happens ----
-
-template <int dim>
-void Recorder<dim>::begin_stage(const Stage &stage) {
-  if (!results_) return;
-  const auto here = scene_.stage.begin() + (&stage - scene_.stage.data());
-  results_->progress.stage(stage.name,
-                           std::none_of(here, scene_.stage.end(), [](const Stage &s) { return is_static(s.kind); }));
-}
-
-template <int dim>
-void Recorder<dim>::progress() {
-  if (results_) results_->progress.step(of_.clock.time, of_.clock.steps, of_.world.particle_count);
-  if (told_escaped_ == 0) note_escaped();
-}
-
-template <int dim>
-void Recorder<dim>::seeking(int iteration, double out_of_balance) {
-  if (!results_) return;
-  std::ostringstream text;
-  text << of_.clock.stage << "  t = " << of_.clock.time << " s  iteration " << iteration << ": ";
-  text.precision(1);
-  text << std::scientific << out_of_balance << " of the forces out of balance";
-  results_->progress.seeking(text.str());
-}
-
-template <int dim>
-void Recorder<dim>::note(const std::string &text) {
-  note(text, of_.clock.time, of_.clock.load_time);
-}
-
-template <int dim>
-void Recorder<dim>::note(const std::string &text, double time, double load_time) {
-  events_.push_back({time, load_time, of_.clock.stage, text});
-  if (results_) results_->progress.note(text);
-}
-
-template <int dim>
-const std::vector<int> &Recorder<dim>::ways_out() {
-  if (known_ways_ != of_.world.escaped.sums().particles)
-    ways_out_ = talus::ways_out(of_.world), known_ways_ = of_.world.escaped.sums().particles;
-  return ways_out_;
-}
-
-/// The groups by which particles left the mesh, with their shares of the mass. Collective.
-template <int dim>
-std::string Recorder<dim>::ways_in_words() {
-  const std::vector<std::string> &names = of_.world.mesh.group_names();
-  std::vector<double> mass(names.size() + 1);  // the last: faces without a name
-  const auto &mine = of_.world.escaped.of_this_rank();
-  const std::vector<int> &groups = ways_out();
-  for (std::size_t i = 0; i < mine.size(); ++i) mass[groups[i] < 0 ? names.size() : groups[i]] += mine[i].mass;
-  MPI_Allreduce(MPI_IN_PLACE, mass.data(), static_cast<int>(mass.size()), MPI_DOUBLE, MPI_SUM, of_.world.comm);
-  std::vector<std::size_t> order(mass.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, std::greater{}, [&](std::size_t g) { return mass[g]; });
-  const double all = std::accumulate(mass.begin(), mass.end(), 0.);
-  std::ostringstream text;
-  text.precision(3);
-  for (const std::size_t g : order) {
-    if (mass[g] == 0) continue;
-    text << (g == order[0] ? "by " : ", ") << (g < names.size() ? names[g] : "faces without a name");
-    if (mass[g] < all) text << " " << 100 * mass[g] / all << " %";
-  }
-  return text.str();
-}
-
-/// Says what has left the mesh so far, if more has left than was told. Collective.
-template <int dim>
-void Recorder<dim>::note_escaped() {
-  const EscapedSums &sums = of_.world.escaped.sums();
-  if (sums.particles == told_escaped_) return;
-  std::ostringstream text;
-  text.precision(6);
-  if (told_escaped_ == 0) {
-    const auto &mine = of_.world.escaped.of_this_rank();
-    const bool any = !mine.empty();
-    text << "particles leave the mesh, the first near "
-         << place_of_first<dim>(of_.world.comm, any, any ? mine.front().position : Vec<dim>{})
-         << ", and are taken out; ";
-  }
-  text << "so far " << sums.particles << (sums.particles == 1 ? " has" : " have") << " left " << ways_in_words()
-       << ": mass " << sums.mass << " kg";
-  for (int a = 0; a < phases_.fluids(); ++a) text << (a ? ", gas " : ", water ") << sums.fluid_mass[a] << " kg";
-  text << ", momentum (";
-  for (int d = 0; d < dim; ++d) text << (d ? ", " : "") << sums.momentum[d];
-  text << ") kg m/s";
-  if (of_.world.particle_count == 0) text << "; no soil is left";
-  told_escaped_ = sums.particles;
-  note(text.str());
-}
-
-/// escaped.csv, whenever it does not hold all particles that have left. Collective.
-template <int dim>
-void Recorder<dim>::write_escaped() {
-  const EscapedParticles<dim> &escaped = of_.world.escaped;
-  if (written_escaped_ == escaped.sums().particles) return;
-  EscapedTable table;
-  table.names = {history_column("time", "s"), "id", "body", history_column("mass", "kg")};
-  for (int a = 0; a < phases_.fluids(); ++a) table.names.push_back(history_column(a ? "gas" : "water", "kg"));
-  for (const auto &[name, unit] : {std::pair{"", "m"}, {"velocity_", "m/s"}, {"momentum_", "kg m/s"}})
-    for (int d = 0; d < dim; ++d) table.names.push_back(history_column(std::string(name) + "xyz"[d], unit));
-  table.names.push_back("group"), table.groups = of_.world.mesh.group_names();
-  auto way = ways_out().begin();
-  for (const EscapedParticle<dim> &one : escaped.of_this_rank()) {
-    table.values.insert(table.values.end(),
-                        {one.time, static_cast<double>(one.id), static_cast<double>(one.body), one.mass});
-    table.values.insert(table.values.end(), one.fluid_mass, one.fluid_mass + phases_.fluids());
-    for (const Vec<dim> *x : {&one.position, &one.velocity, &one.momentum})
-      table.values.insert(table.values.end(), x->begin(), x->end());
-    table.values.push_back(*way++);
-  }
-  write_escaped_table(of_.world.comm, options_.directory + "/escaped.csv", header().bodies, table);
-  written_escaped_ = escaped.sums().particles;
-}
-
-/// Work of the rank that has most, over the mean of all ranks: says it when the run starts or is resumed. Collective.
-template <int dim>
-void Recorder<dim>::note_imbalance() {
-  int ranks;
-  MPI_Comm_size(of_.world.comm, &ranks);
-  if (ranks == 1 || imbalance_at_start_ > 0 || of_.world.particle_count == 0) return;
-  double work[2] = {of_.world.work_of_rank(), of_.world.work_of_rank()};
-  MPI_Allreduce(MPI_IN_PLACE, &work[0], 1, MPI_DOUBLE, MPI_MAX, of_.world.comm);
-  MPI_Allreduce(MPI_IN_PLACE, &work[1], 1, MPI_DOUBLE, MPI_SUM, of_.world.comm);
-  imbalance_at_start_ = work[0] * ranks / work[1];
-  std::string text = "particles are shared among " + std::to_string(ranks) + " ranks with imbalance " +
-                     rounded(imbalance_at_start_) + " (work of the rank that has most, over the mean)";
-  if (of_.world.mesh.heaviest_patch() > 0.05)
-    text += "; patches of cells stay whole, and the heaviest is " + rounded(of_.world.mesh.heaviest_patch()) +
-            " of the mean: a finer mesh or fewer ranks would be better balanced";
-  if (results_) results_->progress.note(text);
-}
-
-template <int dim>
-void Recorder<dim>::note_balancing(double expected) {
-  const Balancing &balancing = of_.dynamics.balancing();
-  constexpr long long told = 20;  // at which the log stops to tell each of them
-  if (!results_ || balancing.count() > told) return;
-  std::ostringstream text;
-  text.precision(3);
-  text << "the mesh was divided among the ranks in another way: imbalance " << balancing.imbalance() << " before, "
-       << expected << " now";
-  if (balancing.count() == told) text << "; further times are not told";
-  results_->progress.note(text.str());
-}
-
-/// How the work was shared among the ranks, for the log.
-template <int dim>
-void Recorder<dim>::note_sharing() {
-  const Balancing &balancing = of_.dynamics.balancing();
-  if (imbalance_at_start_ == 0) return;
-  std::ostringstream text;
-  text.precision(3);
-  text << "imbalance of ranks: " << imbalance_at_start_ << " at the start, "
-       << std::max(imbalance_at_start_, balancing.highest()) << " at most";
-  if (balancing.count() > 0) {
-    text << "; the mesh was divided in another way " << balancing.count()
-         << (balancing.count() == 1 ? " time" : " times") << ", in " << balancing.seconds() << " s";
-    if (balancing.saved() > 0)
-      text << ", which saved about " << 100 * balancing.saved() / (1 + balancing.saved())
-           << " % of the time of steps (by their work, had the imbalance lasted)";
-  }
-  results_->progress.note(text.str());
-}
-
-/// What the integrator did, for the log.
-template <int dim>
-void Recorder<dim>::note_steps() {
-  const StepStatistics &s = of_.dynamics.statistics();
-  if (s.steps == 0) return;  // nothing but equilibria
-  std::ostringstream text;
-  text.precision(3);
-  text << s.steps << " steps from " << s.shortest << " to " << s.longest << " s, " << s.evaluations
-       << " evaluations of the forces, " << s.rejections << " attempts rejected";
-  if (s.rejections > 0) text << " by the error test";
-  if (s.inversions > 0) text << ", " << s.inversions << " because a cell turned inside out";
-  note(text.str());
-  note("steps bounded by the error: " + std::to_string(s.by_error) + ", stability: " + std::to_string(s.by_stability) +
-       ", outputs: " + std::to_string(s.by_schedule));
-  note(of_.dynamics.step_bound().sentence());
-}
-
-template <int dim>
-void Recorder<dim>::fail(const std::string &cause) {
-  std::ostringstream message;
-  message.precision(12);  // the time as history.csv has it
-  message << cause << " (t = " << of_.clock.time << " s, step " << of_.clock.steps << ", stage " << of_.clock.stage
-          << ")";
-  if (results_) message << "; snapshots up to step " << results_->file.last_step() << " are in " << options_.directory;
-  if (checkpoint_time_ >= 0) message << ", and --resume goes on from t = " << checkpoint_time_ << " s";
-  if (results_) {
-    note_steps();
-    results_->progress.failure(message.str());
-    if (options_.pictures && !interrupted && results_->file.last_step() >= 0)
-      throw BrokenOff(message.str() + "; report.html there shows how far it came", options_.directory,
-                      scene_.output.picture);
-  }
-  throw RunError(message.str());
-}
-
 // ---- history ----
 
 template <int dim>
@@ -525,94 +318,6 @@ void Recorder<dim>::write_snapshot() {
   if (results_->file.last_step() == of_.clock.steps) return;
   results_->file.write(snapshot());
   snapshots_ = results_->file.count();
-}
-
-// ---- checkpoints ----
-
-template <int dim>
-CheckpointHeader Recorder<dim>::checkpoint_header(int stage) const {
-  CheckpointHeader header;
-  header.program = program, header.scene = scene_.root ? scene_.root->values() : "", header.stage = stage;
-  header.time = of_.clock.time, header.step = of_.clock.steps, header.number = checkpoints_ + 1;
-  MPI_Comm_size(of_.world.comm, &header.ranks);
-  const BackgroundMesh<dim> &mesh = of_.world.mesh;
-  header.mesh = mesh.fingerprint();
-  header.partition.resize(header.ranks);
-  const unsigned long long mine = mesh.partition_fingerprint();
-  MPI_Allgather(&mine, 1, MPI_UNSIGNED_LONG_LONG, header.partition.data(), 1, MPI_UNSIGNED_LONG_LONG, of_.world.comm);
-  for (const Cut &cut : mesh.cuts())
-    header.cuts.insert(header.cuts.end(), {cut.place, static_cast<double>(cut.axis), static_cast<double>(cut.patch)});
-  return header;
-}
-
-template <int dim>
-void Recorder<dim>::write_checkpoint(int stage, const Archive &state) {
-  talus::write_checkpoint(of_.world.comm, options_.directory, checkpoint_header(stage), state);
-  ++checkpoints_, checkpoint_time_ = of_.clock.time;
-}
-
-/// Why a key of the scene must be what it was: what the saved state has from it.
-std::string tie_of(const std::string &table) {
-  if (table == "mesh") return "particles, stresses and contacts in the checkpoint belong to the cells of the mesh";
-  if (table == "grids") return "functions of place take their values from it";
-  if (table == "boundary") return "the checkpoint holds reactions, contacts and work of the boundaries as they were";
-  return "the saved state has come about with it";
-}
-
-/// Only what the saved state does not depend on may differ: results, what becomes of particles that leave the mesh (up
-/// to the checkpoint either none has left, or they have been taken out), the search for factors of safety, and how long
-/// stages last that have not ended.
-template <int dim>
-Checkpoint Recorder<dim>::find_checkpoint() {
-  const std::string refusal = "the run in " + options_.directory + " cannot be resumed: ";
-  Checkpoint checkpoint;
-  const CheckpointHeader &found = checkpoint.header, mine = checkpoint_header(-1);
-  try {
-    checkpoint = read_checkpoint(of_.world.comm, options_.directory);
-  } catch (const std::invalid_argument &error) {
-    throw SceneError(refusal + error.what() + "; run the scene without --resume" +
-                     (std::filesystem::exists(options_.directory + "/history.csv")
-                          ? ", with --force to replace what is there"
-                          : ""));
-  }
-  if (found.program != mine.program)
-    throw SceneError(refusal + "it is one of " + found.program + ", this is " + mine.program);
-  changed_ = changed_keys(found.scene, mine.scene);
-  for (const std::string &path : changed_) {
-    const std::vector<std::string> words = split(path);
-    const bool listed = words.size() > 1 && words[0] == "stage";
-    const int stage = listed ? std::stoi(words[1]) : 0;
-    const bool result = words[0] == "title" || words[0] == "factor_of_safety" || path == "mesh.leaving_particles" ||
-                        path == "mesh.balance_ranks" ||
-                        (words[0] == "output" && words.size() > 1 && words[1] != "point");
-    const bool to_come =
-        listed &&
-        (stage > found.stage || (stage == found.stage && (words.back() == "duration" || words.back() == "rest_speed")));
-    if (!result && !to_come)
-      scene_.complain(path, "is not what it was when the run in " + options_.directory + " began, and " +
-                                tie_of(words[0]) +
-                                "; with --resume only title, [output] without its points, [factor_of_safety], "
-                                "mesh.leaving_particles, mesh.balance_ranks, duration and rest_speed of the present "
-                                "stage and the stages after it "
-                                "may change (repeat the --set of that run)");
-  }
-  if (found.ranks != mine.ranks) written_ranks_ = found.ranks;
-  return checkpoint;
-}
-
-template <int dim>
-void Recorder<dim>::take_checkpoint(const Checkpoint &found) {
-  checkpoints_ = found.last_number, checkpoint_time_ = found.header.time, passed_over_ = found.passed_over;
-}
-
-template <int dim>
-void Recorder<dim>::serialize(Archive &archive) {
-  archive.serialize("results", last_row_step_, last_row_time_, snapshots_, impulse_time_, first_ledger_, first_energy_,
-                    work_before_, fluids_before_, told_escaped_);
-  energy_.serialize(archive);
-  point_rows_.serialize(archive);
-  ends_.serialize(archive);
-  of_.lines.serialize(archive);
 }
 
 template class Recorder<2>;

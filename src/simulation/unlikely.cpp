@@ -37,6 +37,7 @@ struct Doubt {
 };
 
 constexpr double least_cohesion = 20;  ///< [Pa]; less is doubted whatever the height
+constexpr double no_effect = 1e-3;     ///< c over the weight per area of the soil: less does not decide what stands
 
 Extent extent_of(const std::vector<BodyReport> &bodies) {
   constexpr double far = std::numeric_limits<double>::infinity();
@@ -236,7 +237,6 @@ void doubt_steep_faces(const Scene &scene, int number, const BodyReport &body, c
   constexpr double enough = 10;             // cells over the depth
   constexpr double beyond = 5 * degree.si;  // the friction angle
   constexpr double share = 0.02;            // of the free surface, which contains level ground
-  constexpr double no_effect = 1e-3;        // of the weight over the depth, for cohesion
   const double weight = body.mass / body.volume * scene.gravity_size() * depth;
   const double phi = body.strength.friction_angle[1];
   if (phi == 0 || body.strength.cohesion[1] > no_effect * weight || depth >= enough * body.cell_size) return;
@@ -284,8 +284,7 @@ namespace {
 /// Strength and stiffness that make no sense for soil as deep as this, though some other soil may have them.
 void doubt_for_depth(const BodySource &source, const BodyReport &body, const Law &law, double weight,
                      std::vector<std::string> &sentences) {
-  // c over the weight per area of the soil: below, c does not decide whether anything stands; above, all does
-  constexpr double no_effect = 1e-3, stands_always = 100;
+  constexpr double stands_always = 100;    // c over the weight per area of the soil: all stands above
   constexpr double sand = 30 * degree.si;  // which is often given a trace of cohesion
   constexpr double rock = 1e6;             // [Pa]
   constexpr double fast = 2500;            // [m/s], waves in sound rock; dry soil has 150 to 1000

@@ -45,7 +45,7 @@ TEST(EnergyWatch, looks_on_where_a_run_goes_on) {
   stopped.serialize(written);
   Archive read(std::move(written).bytes());
   resumed.serialize(read);
-  EXPECT_NE(resumed.look("slide", 34, 100), "") << "measured from 36, where it was stopped";
+  EXPECT_NE(resumed.look("slide", 34, 100), "") << "measured from 40, which it had before it was stopped";
 }
 
 TEST(EnergyWatch, takes_no_offence_at_nothing) {

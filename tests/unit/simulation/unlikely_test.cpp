@@ -37,8 +37,8 @@ TEST(Unlikely, StrainsOfMoreThanAHundredthOfABodyAreDoubted) {
   EXPECT_EQ(found[0].find("3 % of body.clay has a plastic strain above 1000 %, up to 3100 %"), 0u) << found[0];
 }
 
-/// What is said of a heap of sand 3 m high with faces of `slope` degrees beside as much level ground, in cells of
-/// `size` [m].
+/// What is said of a heap 3 m high with a face of `slope` degrees below 4 m of level ground, in cells of `size` [m] and
+/// with a cohesion [Pa].
 std::vector<std::string> doubts_about_heap(double slope, double size, double cohesion) {
   const double rad = slope * M_PI / 180;
   Scene scene;
