@@ -489,13 +489,18 @@ double World<dim>::critical_step_of_cells(double time) {
   for (size_t b = 0; b < bodies.size(); ++b) {
     const PointSet &points = motion->points()[b];
     const Body<dim> &body = *bodies[b];
-    const int memory = body.history_count(), field = body.capped() ? body.dilation_field() : -1;
+    const int memory = body.history_count(), field = body.dilation_field();
+    // soil is lighter by what it has dilated, and without a cap by its gaps too
+    const auto share_of_step = [&](int q) {
+      if (!body.capped()) return 1 / std::sqrt(std::max(1., points.volume[q] / points.limit[q]));
+      const double dilation = field < 0 ? 0 : points.history[q * memory + field];
+      return dilation > 0 ? std::exp(-dilation / 2) : 1;
+    };
     int last = -1;
     double of_cell = 0;  // of soil as dense as it was
     for (int q = 0; q < points.count; ++q) {
       if (points.cell[q] != last) of_cell = critical_[b](motion->grid().mesh_cell[last = points.cell[q]]);
-      const double dilation = field < 0 ? 0 : points.history[q * memory + field];
-      local = std::min(local, dilation > 0 ? of_cell * std::exp(-dilation / 2) : of_cell);
+      local = std::min(local, of_cell * share_of_step(q));
     }
   }
   MPI_Allreduce(&local, &step, 1, MPI_DOUBLE, MPI_MIN, comm);

@@ -162,7 +162,7 @@ class RunToNodes {
 #pragma GCC unroll 4
       for (int h = 0; h < unrolled_history; ++h)
         if (h < count) history_[h] += p.volume[i] * p.history[i * count + h];
-      if (body_.capped()) limit_ += p.rest_volume[i];
+      limit_ += p.rest_volume[i];
     }
     ++count_;
   }
