@@ -26,8 +26,8 @@ Scene scene_of(const std::string &sand, const std::string &stages, double size =
 }
 
 struct Outcome {
-  double growth;    ///< volume of all soil over that at the start
-  double dilation;  ///< its largest
+  double growth;                       ///< volume of all soil over that at the start
+  double dilation;                     ///< its largest
   double shortest_step, longest_step;  ///< [s]
   HistoryTable history;
 };
@@ -99,10 +99,10 @@ TEST(Dilation, does_not_outgrow_the_step) {
 /// Without a cap so is soil between whose pieces gaps count: thrown apart, it falls back in a box. Its shortest step is
 /// 0.23 of the first one, and 0.93 where steps only follow the cells as they deform.
 TEST(Dilation, steps_follow_gaps_without_a_cap) {
-  const Outcome apart = outcome_of(scene_of(
-      "dilation_angle = 0\nvolume_cap = 0\nvelocity = [\"y > 0.5 ? 1.5*x : 0\", \"x\"]\n[boundary.surface]\n"
-      "kind = \"roller\"",
-      stage(1, "")));
+  const Outcome apart = outcome_of(
+      scene_of("dilation_angle = 0\nvolume_cap = 0\nvelocity = [\"y > 0.5 ? 1.5*x : 0\", \"x\"]\n[boundary.surface]\n"
+               "kind = \"roller\"",
+               stage(1, "")));
   EXPECT_GT(apart.growth, 1.1);
   EXPECT_LT(apart.shortest_step, 0.5 * apart.longest_step);
   EXPECT_LT(created(apart), 1);
