@@ -2,6 +2,7 @@
 /// Progress of a run on the screen and in run.log. Only rank 0 prints; on other ranks every call returns at once.
 #include <mpi.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <functional>
@@ -38,8 +39,11 @@ class Progress {
   /// Between two steps, while iterations of finite elements go on: a line of what they have come to.
   void seeking(const std::string &text);
 
-  /// The run goes on from here.
-  void resume(double time, long long number) { now_ = printed_ = {time, number, 0}; }
+  /// The run goes on from here, which lies beyond its end where its stages have become shorter.
+  void resume(double time, long long number) {
+    now_ = printed_ = {time, number, 0};
+    total_ = std::max(total_, time);
+  }
 
   /// A line of its own, on the screen and in the log.
   void note(const std::string &text);

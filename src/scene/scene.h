@@ -492,7 +492,7 @@ struct Transfer {
              "integration volume of a cell");
     v.flag("average_stress", average_stress, "one stress per cell and body, averaged at each remap");
     v.choice("locking", locking, {{"patches", Locking::patches}, {"none", Locking::none}, {"nodal", Locking::nodal}},
-             "cure of volumetric locking");
+             "cure of volumetric locking; nodal smooths strain alone, and creates energy in soil that dilates");
     v.choice("pore_smoothing", pore_smoothing, {{"nodal", PoreSmoothing::nodal}, {"none", PoreSmoothing::none}},
              "smoothing of pore pressures and fluid volumes of saturated cells through their nodes");
     v.number("remap_interval", remap_interval, one, Range{0, 0.3},

@@ -20,6 +20,12 @@ class RunFailure : public RunError {
   using RunError::RunError;
 };
 
+/// The same of soil in motion, which what has become of its volume may explain.
+class MotionFailure : public RunFailure {
+ public:
+  using RunFailure::RunFailure;
+};
+
 /// Turns a PETSc error into an exception, where no PETSc function stands between thrower and catcher.
 inline void require(PetscErrorCode error) {
   if (error) throw RunFailure("PETSc reported error " + std::to_string(error) + " (its message stands above)");

@@ -271,7 +271,7 @@ void Recorder<dim>::write_history() {
     results_->history.row(of_.clock.time, of_.clock.steps, of_.clock.stage.empty() ? "start" : of_.clock.stage,
                           {row.begin() + 2, row.end()});
   if (!created.empty()) note("warning: " + created);
-  if (energy_.beyond_all()) throw RunFailure(energy_.verdict());
+  if (energy_.beyond_all()) throw MotionFailure(energy_.verdict());
 }
 
 // ---- snapshots ----

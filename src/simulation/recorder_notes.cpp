@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include "output/escaped_table.h"
-#include "output/pictures.h"
 #include "simulation/recorder.h"
 #include "simulation/ways_out.h"
 

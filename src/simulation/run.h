@@ -1,5 +1,7 @@
 #pragma once
 /// The parts of a run, which its stages act on, and how far it is. None of the parts knows this one.
+#include <cmath>
+
 #include "output/deal.h"
 #include "simulation/recorder.h"
 #include "simulation/stops/stop_criterion.h"
@@ -26,6 +28,8 @@ struct Run {
   void begin_next_stage();
   /// Sums of the present state. Collective.
   Balance balance();
+  /// Root mean square speed of all soil [m/s].
+  double rms_speed(const Balance &sums) const { return std::sqrt(2 * sums.kinetic / world.total_mass); }
 
   /// Particles take over the state of the finite elements.
   void hand_to_particles();

@@ -24,13 +24,19 @@ void Simulation<dim>::run() {
     run_stages();
     for (const std::string &sentence : unlikely_strains(run_.world.comm, run_.world.report(), snapshot()))
       run_.recorder.note("warning: " + sentence);
-    note_gaps();
-    note_dilation();
+    note_volumes();
     run_.recorder.note_cut_off();
     if (run_.options.resume && run_.clock.steps == before)
       run_.recorder.note("nothing was left to do: the run had reached its end before it was resumed");
   });
   run_.recorder.close(run_.motion_left);
+}
+
+/// What has become of the volume of soil, at an end of the run in order or not. Collective.
+template <int dim>
+void Simulation<dim>::note_volumes() {
+  note_gaps();
+  note_dilation();
 }
 
 /// Where no cap holds the volume of particles, gaps between the pieces of soil that has come apart count as soil. Soil
@@ -49,7 +55,7 @@ void Simulation<dim>::note_gaps() {
     }
     require(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, run_.world.comm));
     require(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, run_.world.comm));
-    if (sum[0] <= visible * sum[1]) continue;
+    if (!(sum[0] > visible * sum[1])) continue;  // nor of volumes that are no numbers any more
     std::ostringstream text;
     text.precision(3);
     text << "warning: body." << body->name()
@@ -78,7 +84,7 @@ void Simulation<dim>::note_dilation() {
     }
     require(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, run_.world.comm));
     require(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, run_.world.comm));
-    if (sum[0] <= (1 + visible) * sum[1]) continue;
+    if (!(sum[0] > (1 + visible) * sum[1])) continue;
     std::ostringstream text;
     text.precision(3);
     text << "warning: body." << body->name() << " has dilated to " << sum[0] / sum[1]

@@ -45,6 +45,7 @@ class Simulation final : public AnySimulation {
   std::vector<std::string> regions_without_soil() const;
   void begin();
   void note_bodies();
+  void note_volumes();
   void note_gaps();
   void note_dilation();
   void run_stages();
@@ -62,6 +63,9 @@ template <class Act>
 auto Simulation<dim>::told(Act &&act) {
   try {
     return act();
+  } catch (const MotionFailure &failure) {
+    note_volumes();
+    run_.recorder.fail(failure.what());
   } catch (const RunFailure &failure) {
     run_.recorder.fail(failure.what());
   } catch (const RunError &) {

@@ -229,9 +229,8 @@ std::vector<std::string> unlikely_surroundings(const Scene &scene, const std::ve
 
 namespace {
 
-/// Sand that is steeper than its friction angle must fail, but in few cells over its depth it may stand. In a heap 3.2
-/// m high, 16 degrees too steep, cells of 0.7 and 0.45 m moved by up to 0.6 m and kept their slope, or failed, as the
-/// dilation angle was; with cells of 0.3 m it failed.
+/// Sand that is steeper than its friction angle must fail, but in few cells over its depth it may move a little and
+/// keep its slope.
 void doubt_steep_faces(const Scene &scene, int number, const BodyReport &body, const std::vector<SoilFace> &surface,
                        double depth, std::vector<std::string> &sentences) {
   constexpr double enough = 10;             // cells over the depth
@@ -350,6 +349,10 @@ std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<L
           if constexpr (requires { law.friction_angle; }) {
             doubts.push_back({"cohesion", law.cohesion, pascal, least_cohesion, none, {{"kPa", 1e3}}});
             doubts.push_back({"friction_angle", law.friction_angle, degree, 2 * degree.si, none, {{"radians", 1}}});
+            if (law.dilation_angle > 0 && scene.transfer.locking == Locking::nodal)
+              sentences.push_back("body." + body.name + ".dilation_angle and transfer.locking = \"nodal\": strain is "
+                                  "smoothed and stress is not, so that soil which dilates creates energy, in any step. "
+                                  "Take transfer.locking = \"patches\", which is the default");
           }
           if constexpr (requires { law.tension_cutoff; })
             if (const double apex = law.cohesion / std::tan(law.friction_angle);

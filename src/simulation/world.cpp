@@ -418,7 +418,7 @@ PetscErrorCode World<dim>::take_out(double time) {
     const bool mine = b < bodies.size();
     const std::string place =
         place_of_first<dim>(comm, mine, mine ? bodies[b]->particles().position[outside_[b][0]] : Vec<dim>{});
-    throw RunFailure("a particle left the mesh near " + place +
+    throw MotionFailure("a particle left the mesh near " + place +
                      "; add free space there, or a boundary that keeps soil in, or set mesh.leaving_particles = "
                      "\"remove\", which takes out what leaves (also with --resume)");
   }

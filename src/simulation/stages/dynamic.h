@@ -99,7 +99,7 @@ class DynamicStage final : public StageRunner<dim> {
 
   void note_unmet() {
     const Balance sums = run_.balance();
-    const double speed = std::sqrt(2 * sums.kinetic / run_.world.total_mass);
+    const double speed = run_.rms_speed(sums);
     std::ostringstream text;
     text.precision(3);
     text << "stage " << stage_.name << " reached its duration of " << stage_.duration

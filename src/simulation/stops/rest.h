@@ -2,7 +2,6 @@
 /// The root mean square speed of the soil stays below a limit and does not rise, while nothing that acts on it has
 /// still to change. A large model that stands may hide soil that still slides: the end is said to be rest only where
 /// none does. `ended_at_rest` (commands/comparison.h) reads these words.
-#include <cmath>
 
 #include "physics/phase_models.h"
 #include "simulation/run.h"
@@ -19,8 +18,7 @@ class StopAtRest final : public StopCriterion<dim> {
   bool met(Run<dim> &run, const Verdict &) override {
     constexpr int steps_between_checks = 25, checks_of_rest = 8;
     if (run.clock.steps % steps_between_checks) return false;
-    const Balance sums = run.balance();
-    const double speed = std::sqrt(2 * sums.kinetic / run.world.total_mass);
+    const double speed = run.rms_speed(run.balance());
     quiet_checks_ = speed < stage_.rest_speed ? quiet_checks_ + 1 : 0;
     if (quiet_checks_ == 1) first_speed_ = speed;
     if (quiet_checks_ < checks_of_rest) return false;

@@ -80,6 +80,15 @@ TEST_F(RunThatEnds, BecauseAParticleLeftTheMeshOnTwoRanks) {
   expect(Program(folder_, run(thrown_, 2)).end(), {"left the mesh near (2, 0.", "t = 0.0", "stage fall"}, 3);
 }
 
+/// Soil that has come apart on its way out has volume that is not soil, and the log says so at this end too.
+TEST_F(RunThatEnds, BecauseSoilThatHasComeApartLeftTheMesh) {
+  const std::string apart = changed(good_scene, "density = 2000",
+                                    "density = 2000\nvolume_cap = 0\nvelocity = [\"60*x\", \"20*y\"]");
+  for (const int ranks : {1, 2})
+    expect(Program(folder_, run(apart, ranks)).end(),
+           {"left the mesh near (", "body.sand has come apart, and the gaps between its pieces count as soil"}, 1);
+}
+
 TEST_F(RunThatEnds, BecauseALoadIsNoNumber) {
   const std::string scene =
       changed(good_scene, "density = 2000", "density = 2000\nbody_acceleration = [\"sqrt(0.025 - t)\", \"0\"]");

@@ -491,6 +491,16 @@ TEST(Check, DoubtsInterfacesFromBottomToTop) {
   EXPECT_TRUE(ending.says("'interface1' (line 8) lies above 'interface0' (line 6)")) << ending.output;
 }
 
+/// Strain that is smoothed without the stress, where it matters.
+TEST(Check, DoubtsNodalLockingOfSoilThatDilates) {
+  const Folder folder;
+  folder.write("section.csv", good_section);
+  const char *doubt = "body.sand.dilation_angle and transfer.locking";
+  EXPECT_TRUE(check(folder, {"transfer.locking=nodal", "body.sand.dilation_angle=5"}).says(doubt));
+  EXPECT_FALSE(check(folder, {"transfer.locking=nodal"}).says(doubt));
+  EXPECT_FALSE(check(folder, {"body.sand.dilation_angle=5"}).says(doubt));
+}
+
 TEST(Check, DoubtsWaterTablesOfASoilAboveItsGround) {
   const Folder folder;
   folder.write("top.csv", good_section + "b_top,0,0.5\nb_top,1,0.5\n");

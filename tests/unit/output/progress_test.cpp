@@ -57,6 +57,21 @@ TEST(Progress, tells_rate_and_remaining_time_now_and_then) {
   EXPECT_NE(said.log.find("slide  t = 6 of 1000 s  step 6000  done in 1 min 00 s"), std::string::npos) << said.log;
 }
 
+/// A run may go on from beyond its end, where its stages have become shorter.
+TEST(Progress, resumes_beyond_the_end) {
+  const SharedFolder folder;
+  std::FILE *screen = std::fopen((folder / ("screen" + std::to_string(world_rank()))).c_str(), "w+");
+  {
+    Progress progress(MPI_COMM_WORLD, folder / "run.log", 9, false, screen);
+    progress.resume(13.05, 100);
+    progress.finish();
+  }
+  std::fclose(screen);
+  if (world_rank()) return;
+  const std::string said = content(folder / "screen0");
+  EXPECT_NE(said.find("t = 13.05 of 13.05 s"), std::string::npos) << said;
+}
+
 /// What the screen of this rank shows of `run`(progress, clock).
 template <class Run>
 std::string said_of(const SharedFolder &folder, double total, Run run) {
