@@ -28,7 +28,8 @@ SoilMotion<dim, Phases>::SoilMotion(const MotionParts<dim> &parts)
       points_(parts.bodies.size()),
       next_points_(parts.bodies.size()),
       accepted_(parts.mesh.cell_count(), parts.bodies.size()),
-      velocities_(parts.mesh.node_count(), parts.relaxation_time, parts.scene.transfer.remap_interval > 0),
+      velocities_(parts.mesh.node_count(), parts.relaxation_time, parts.scene.transfer.remap_interval > 0,
+                  parts.scene.transfer.velocity == Velocity::flip ? 1 - parts.scene.transfer.pic_fraction : 0),
       water_(parts.mesh, parts.bodies, parts.pressure),
       work_(parts.mesh.node_count(),
             Phases::prescribed ||

@@ -14,9 +14,10 @@ template <int dim, int fields>
 struct NodalVelocities {
   using Field = std::vector<Vec<dim>>;
 
-  /// `relaxation_time` is tau of docs/theory (4.10) [s], 0: none; `between_remaps`: nodes relax in each step.
-  NodalVelocities(int nodes, double relaxation_time, bool between_remaps)
-      : relaxation_time(relaxation_time), relaxes(between_remaps && relaxation_time > 0) {
+  /// `relaxation_time` is tau of docs/theory (4.10) [s], 0: none; `between_remaps`: nodes relax in each step; `kept`:
+  /// share of its own velocity, which the nodes did not receive, that a remap leaves to a particle, (4.11).
+  NodalVelocities(int nodes, double relaxation_time, bool between_remaps, double kept)
+      : relaxation_time(relaxation_time), relaxes(between_remaps && relaxation_time > 0), kept(kept), own_share(kept) {
     make_room(momentum, nodes);
     for (Field *field : {&start, &now, &unmapped_start}) make_room(*field, static_cast<size_t>(nodes) * fields);
     if constexpr (fields > 1) make_room(before_step, static_cast<size_t>(nodes) * fields);
@@ -30,13 +31,14 @@ struct NodalVelocities {
 
   double relaxation_time;  ///< tau [s]
   bool relaxes;            ///< nodes relax in each step; otherwise only a remap relaxes
+  double kept;             ///< 1 - beta of docs/theory (4.10a), for the whole part
   double remap_time = 0;   ///< [s]
-  double own_share = 1;    ///< own_share_at of the accepted state
+  double own_share;        ///< own_share_at of the accepted state
 
-  /// Share of its own velocity, which the nodes did not receive, that a particle has kept at time t: a of docs/theory
+  /// Share of its own velocity, which the nodes did not receive, that a particle has at time t: a of docs/theory
   /// (4.10a).
   double own_share_at(double t) const {
-    return relaxation_time > 0 ? std::exp(-(t - remap_time) / relaxation_time) : 1;
+    return relaxation_time > 0 ? kept * std::exp(-(t - remap_time) / relaxation_time) : kept;
   }
   /// Share by which nodes relax in a step [s], docs/theory (4.10).
   double relaxed_in(double step) const { return 1 - std::exp(-step / relaxation_time); }

@@ -82,7 +82,7 @@ PetscErrorCode SoilMotion<dim, Phases>::begin(double t) {
   with_transfer(transfer_, [&]<bool averaged>() { gather<averaged>(); });
   grid_.complete();
   PetscCall(finish_gather(t));
-  velocities_.remap_time = t, velocities_.own_share = 1;
+  velocities_.remap_time = t, velocities_.own_share = velocities_.kept;
   gathered_ = true, accepted_time_ = t, moved_ = 0, smallest_ratio_ = 1, step_ratio_ = 1;
   PetscFunctionReturn(0);
 }
@@ -226,8 +226,7 @@ void SoilMotion<dim, Phases>::set_weights(const std::vector<double> &nodal) {
 /// that particles keep, theory (4.11).
 template <int dim, class Phases>
 double SoilMotion<dim, Phases>::prepare_update(double t) {
-  const bool flip = transfer_.velocity == Velocity::flip;
-  const double share = flip ? velocities_.own_share_at(t) * (1 - transfer_.pic_fraction) : 0;
+  const double share = velocities_.own_share_at(t);
   const std::vector<Vec<dim>> &now = velocities_.now, &start = velocities_.start;
   for (int i = 0; i < grid_.node_count(); ++i) {
     const Vec<dim> &v = now[i], &v0 = start[i], &x = grid_.position[i], &X = mesh_.position[grid_.mesh_node[i]];

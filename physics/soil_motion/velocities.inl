@@ -106,10 +106,10 @@ PetscErrorCode SoilMotion<dim, Phases>::map_back(double t, double gamma, double 
     constrain(t, velocity);
   } else {  // the same sum, mapped once
     for (int i = 0; i < nodes; ++i)
-      for (int d = 0; d < dim; ++d) scratch_[i][d] = velocity[i][d] - start[i][d];
+      for (int d = 0; d < dim; ++d) scratch_[i][d] = velocity[i][d] - velocities_.kept * start[i][d];
     PetscCall(to_particles_and_back(scratch_.data(), mapped));
     for (int i = 0; i < nodes; ++i)
-      for (int d = 0; d < dim; ++d) mapped[i][d] += start[i][d];
+      for (int d = 0; d < dim; ++d) mapped[i][d] += velocities_.kept * start[i][d];
   }
   constrain(t, mapped);
   PetscFunctionReturn(0);
@@ -136,10 +136,10 @@ PetscErrorCode SoilMotion<dim, Phases>::rates(double t, const double *u, const d
       }
   } else {  // the same sum, mapped once
     for (int i = 0; i < all; ++i)
-      for (int d = 0; d < dim; ++d) supported[i][d] -= start[i][d];
+      for (int d = 0; d < dim; ++d) supported[i][d] -= velocities_.kept * start[i][d];
     PetscCall(to_particles_and_back(supported, mapped));
     for (int i = 0; i < all; ++i)
-      for (int d = 0; d < dim; ++d) mapped[i][d] += start[i][d];
+      for (int d = 0; d < dim; ++d) mapped[i][d] += velocities_.kept * start[i][d];
   }
   constrain(t, mapped);
   PetscFunctionReturn(0);

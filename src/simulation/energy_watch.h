@@ -1,6 +1,8 @@
 #pragma once
 /// Explicit steps beyond the critical one create energy: what has been dissipated falls.
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 
 #include "base/archive.h"
@@ -10,37 +12,43 @@ namespace talus {
 
 class EnergyWatch {
  public:
+  /// What the sums contain: with pore fluids, not the energy that these have and bring.
+  enum class Sums { whole, without_fluids };
+
   /// Takes the energy that has been dissipated, and all that was there or was brought, in the order of time [J].
   /// Returns a sentence when energy is created for the first time. Sound runs lose at most 1 % of what they dissipated
-  /// again; such as are beyond their critical step begin with some per cent and multiply them within a few hundred
-  /// steps. Looks anew in each `stage`, and not in an empty one: there soil gets stress or places from elsewhere than
-  /// its motion.
-  std::string look(const std::string &stage, double dissipated, double turnover) {
+  /// again, and with pore fluids 15 % of what was brought; such as are beyond their critical step begin with some per
+  /// cent and multiply them within a few hundred steps. Looks anew in each `stage`, and not in an empty one: there soil
+  /// gets stress or places from elsewhere than its motion.
+  std::string look(const std::string &stage, double dissipated, double turnover, Sums sums = Sums::whole) {
     if (stage.empty() || stage != stage_) most_ = dissipated;
-    stage_ = stage;
+    stage_ = stage, whole_ = sums == Sums::whole;
     most_ = std::max(most_, dissipated), turnover_ = std::max({turnover_, turnover, dissipated});
     created_ = std::max(created_, most_ - dissipated);
-    if (told_ || !(created_ > visible * turnover_)) return "";
+    if (!stage.empty() && !std::isfinite(dissipated)) created_ = std::numeric_limits<double>::infinity();
+    if (told_ || !(created_ > (whole_ ? 0.05 : 0.5) * turnover_)) return "";
     told_ = true;
     return verdict() + ". What follows is not to be trusted";
   }
+  bool told() const { return told_; }
   /// Has more energy been created than there was?
   bool beyond_all() const { return told_ && !(created_ <= turnover_); }
   std::string verdict() const {
     return "energy is created: " + rounded(created_) + " J, of " + rounded(turnover_) +
-           " J that were there or were brought (dissipated_J in history.csv falls). Where a smaller "
-           "integrator.fraction "
+           " J that were there or were brought (dissipated_J in history.csv falls" +
+           (whole_ ? ")" : "; it lacks the energy of pore fluids, which is no reason for so much)") +
+           ". Where a smaller integrator.fraction "
            "creates less, the steps were longer than this soil bears: soil that has grown by dilation, or by gaps "
            "without a volume_cap, waits for shorter ones. Otherwise look at volume and dilation of its particles; "
-           "dilation needs an end (residual_dilation_angle)";
+           "dilation needs an end (residual_dilation_angle)" +
+           (whole_ ? "" : ", and pores of particles whose soil has come apart grow with the gaps");
   }
   void serialize(Archive &archive) { archive.serialize("energy watch", stage_, most_, turnover_, created_, told_); }
 
  private:
-  static constexpr double visible = 0.05;
   std::string stage_;
   double most_ = 0, turnover_ = 0, created_ = 0;  ///< [J]
-  bool told_ = false;
+  bool told_ = false, whole_ = true;
 };
 
 }  // namespace talus

@@ -262,9 +262,10 @@ void Recorder<dim>::write_history() {
   if (of_.clock.time == 0) first_energy_ = run.balance.kinetic + run.balance.strain;
   run.first_energy = first_energy_, run.balanced = of_.clock.stage != strength_reduction;
   run.visit([&](const std::string &, const char *, double value) { row.push_back(value); });
-  // not in finite elements, and not with fluids, whose energy the ledger does not contain
-  const bool watched = run.balanced && !of_.statics.current() && !fluids_move(scene_.phases);
-  const std::string created = energy_.look(watched ? of_.clock.stage : "", run.dissipated(), run.turnover());
+  const bool watched = run.balanced && !of_.statics.current();
+  const std::string created =
+      energy_.look(watched ? of_.clock.stage : "", run.dissipated(), run.turnover(),
+                   fluids_move(scene_.phases) ? EnergyWatch::Sums::without_fluids : EnergyWatch::Sums::whole);
   row.insert(row.begin(), {of_.clock.time, static_cast<double>(of_.clock.steps)});
   history_.rows.push_back(row);
   if (results_)

@@ -61,6 +61,10 @@ class Recorder {
   /// Says what happened, now or at other times.
   void note(const std::string &text);
   void note(const std::string &text, double time, double load_time);
+  /// At the end: how much energy was created in all, where it was told that some is.
+  void note_created_energy() {
+    if (energy_.told()) note("warning: in all, " + energy_.verdict());
+  }
   /// Warns of ends of the mesh that cut a slide off, at the end of a run. Collective.
   void note_cut_off() {
     for (const std::string &sentence : ends_.cut_off()) note("warning: " + sentence);

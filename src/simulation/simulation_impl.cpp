@@ -22,14 +22,25 @@ void Simulation<dim>::run() {
     hand_back_freed_memory();
     const long long before = run_.clock.steps;
     run_stages();
-    for (const std::string &sentence : unlikely_strains(run_.world.comm, run_.world.report(), snapshot()))
-      run_.recorder.note("warning: " + sentence);
+    note_state();
     note_volumes();
+    run_.recorder.note_created_energy();
     run_.recorder.note_cut_off();
     if (run_.options.resume && run_.clock.steps == before)
       run_.recorder.note("nothing was left to do: the run had reached its end before it was resumed");
   });
   run_.recorder.close(run_.motion_left);
+}
+
+/// What is unlikely of the state at the end. Collective.
+template <int dim>
+void Simulation<dim>::note_state() {
+  const Snapshot state = snapshot();
+  const std::vector<BodyReport> bodies = run_.world.report();
+  std::vector<std::string> doubts = unlikely_strains(run_.world.comm, bodies, state);
+  if (run_.scene.phases == PhaseModel::saturated)
+    std::ranges::copy(unlikely_suctions(run_.world.comm, bodies, state), std::back_inserter(doubts));
+  for (const std::string &sentence : doubts) run_.recorder.note("warning: " + sentence);
 }
 
 /// What has become of the volume of soil, at an end of the run in order or not. Collective.

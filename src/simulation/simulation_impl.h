@@ -45,6 +45,7 @@ class Simulation final : public AnySimulation {
   std::vector<std::string> regions_without_soil() const;
   void begin();
   void note_bodies();
+  void note_state();
   void note_volumes();
   void note_gaps();
   void note_dilation();

@@ -171,34 +171,71 @@ std::string unlikely_height(double height, const std::string &what) {
   return what + " is " + rounded(height) + " m high; coordinates count in metres. Is the mesh in millimetres or feet?";
 }
 
-std::vector<std::string> unlikely_strains(MPI_Comm comm, const std::vector<BodyReport> &bodies, const Snapshot &state) {
-  constexpr double large = 10, share = 0.01;
-  const auto column = [&](const char *name) -> const std::vector<double> * {
+namespace {
+
+/// How much of a body has a value beyond a limit.
+struct Beyond {
+  double share = 0;  ///< of its volume
+  double most = 0;   ///< of all values
+};
+
+/// Of each body, for the values of a column times `sign`; nothing where the state lacks the column. Collective.
+std::vector<Beyond> find_beyond(MPI_Comm comm, std::size_t bodies, const Snapshot &state, const char *name, double sign,
+                                double limit) {
+  const auto column = [&](const char *of) -> const std::vector<double> * {
     for (const Column &one : state.columns)
-      if (one.name == name) return &one.values;
+      if (one.name == of) return &one.values;
     return nullptr;
   };
-  const auto *strain = column("plastic_strain"), *volume = column("volume");
-  std::vector<std::string> sentences;
-  if (!strain || !volume) return sentences;  // of all ranks
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    double sums[2]{}, all[2], mine = 0, most = 0;
+  const auto *value = column(name), *volume = column("volume");
+  if (!value || !volume) return {};  // of all ranks
+  std::vector<Beyond> found(bodies);
+  for (std::size_t b = 0; b < bodies; ++b) {
+    double sums[2]{}, all[2], mine = 0;
     for (std::size_t i = 0; i < state.body.size(); ++i) {
       if (state.body[i] != static_cast<int>(b)) continue;
       sums[0] += (*volume)[i];
-      if (!((*strain)[i] > large)) continue;
-      sums[1] += (*volume)[i], mine = std::max(mine, (*strain)[i]);
+      if (!(sign * (*value)[i] > limit)) continue;
+      sums[1] += (*volume)[i], mine = std::max(mine, sign * (*value)[i]);
     }
     MPI_Allreduce(sums, all, 2, MPI_DOUBLE, MPI_SUM, comm);
-    MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE, MPI_MAX, comm);
-    if (all[1] <= share * all[0]) continue;
-    sentences.push_back(
-        rounded(100 * all[1] / all[0]) + " % of body." + bodies[b].name + " has a plastic strain above " +
-        rounded(100 * large) + " %, up to " + rounded(100 * most) +
-        " %: this is the way that soil slid over the width of its band, which is that of a cell or two "
-        "and no strain of a soil, so that smaller cells give more. Look at displacements instead; where "
-        "the soil slides on a surface, kind = \"friction\" is that surface");
+    MPI_Allreduce(&mine, &found[b].most, 1, MPI_DOUBLE, MPI_MAX, comm);
+    found[b].share = all[0] > 0 ? all[1] / all[0] : 0;
   }
+  return found;
+}
+
+constexpr double visible_share = 0.01;  // of a body; less are single particles
+
+}  // namespace
+
+std::vector<std::string> unlikely_strains(MPI_Comm comm, const std::vector<BodyReport> &bodies, const Snapshot &state) {
+  constexpr double large = 10;
+  std::vector<std::string> sentences;
+  const std::vector<Beyond> found = find_beyond(comm, bodies.size(), state, "plastic_strain", 1, large);
+  for (std::size_t b = 0; b < found.size(); ++b)
+    if (found[b].share > visible_share)
+      sentences.push_back(
+          rounded(100 * found[b].share) + " % of body." + bodies[b].name + " has a plastic strain above " +
+          rounded(100 * large) + " %, up to " + rounded(100 * found[b].most) +
+          " %: this is the way that soil slid over the width of its band, which is that of a cell or two "
+          "and no strain of a soil, so that smaller cells give more. Look at displacements instead; where "
+          "the soil slides on a surface, kind = \"friction\" is that surface");
+  return sentences;
+}
+
+std::vector<std::string> unlikely_suctions(MPI_Comm comm, const std::vector<BodyReport> &bodies,
+                                           const Snapshot &state) {
+  constexpr double atmosphere = 100e3;  // [Pa]
+  std::vector<std::string> sentences;
+  const std::vector<Beyond> found = find_beyond(comm, bodies.size(), state, "pore_pressure", -1, atmosphere);
+  for (std::size_t b = 0; b < found.size(); ++b)
+    if (found[b].share > visible_share)
+      sentences.push_back("The water in " + rounded(100 * found[b].share) + " % of body." + bodies[b].name +
+                          " is under more tension than the atmosphere presses, by up to " +
+                          rounded(found[b].most / 1e3) +
+                          " kPa: real water cavitates before, or air comes in, which phases = \"saturated\" does not "
+                          "have. Tension holds soil together that would come apart");
   return sentences;
 }
 
@@ -350,7 +387,8 @@ std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<L
             doubts.push_back({"cohesion", law.cohesion, pascal, least_cohesion, none, {{"kPa", 1e3}}});
             doubts.push_back({"friction_angle", law.friction_angle, degree, 2 * degree.si, none, {{"radians", 1}}});
             if (law.dilation_angle > 0 && scene.transfer.locking == Locking::nodal)
-              sentences.push_back("body." + body.name + ".dilation_angle and transfer.locking = \"nodal\": strain is "
+              sentences.push_back("body." + body.name +
+                                  ".dilation_angle and transfer.locking = \"nodal\": strain is "
                                   "smoothed and stress is not, so that soil which dilates creates energy, in any step. "
                                   "Take transfer.locking = \"patches\", which is the default");
           }

@@ -38,4 +38,7 @@ std::vector<std::string> coarse_cells(const Scene &scene, const std::vector<Body
 /// this rank. Collective.
 std::vector<std::string> unlikely_strains(MPI_Comm comm, const std::vector<BodyReport> &bodies, const Snapshot &state);
 
+/// The same of saturated soil of which more than a hundredth has a pore pressure below minus that of the atmosphere.
+std::vector<std::string> unlikely_suctions(MPI_Comm comm, const std::vector<BodyReport> &bodies, const Snapshot &state);
+
 }  // namespace talus

@@ -419,8 +419,8 @@ PetscErrorCode World<dim>::take_out(double time) {
     const std::string place =
         place_of_first<dim>(comm, mine, mine ? bodies[b]->particles().position[outside_[b][0]] : Vec<dim>{});
     throw MotionFailure("a particle left the mesh near " + place +
-                     "; add free space there, or a boundary that keeps soil in, or set mesh.leaving_particles = "
-                     "\"remove\", which takes out what leaves (also with --resume)");
+                        "; add free space there, or a boundary that keeps soil in, or set mesh.leaving_particles = "
+                        "\"remove\", which takes out what leaves (also with --resume)");
   }
   for (size_t b = 0; b < bodies.size(); ++b) {
     const std::vector<int> &gone = outside_[b];

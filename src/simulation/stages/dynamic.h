@@ -106,8 +106,11 @@ class DynamicStage final : public StageRunner<dim> {
          << " s before its stop criterion was met: unbalanced force ratio " << sums.ratio()
          << ", kinetic over strain energy " << (sums.kinetic > 0 ? sums.kinetic / sums.strain : 0) << ", rms speed "
          << speed << " m/s";
-    if (stage_.until == StopWhen::rest && speed < stage_.rest_speed)
-      text << ", which is below rest_speed but has not stayed there without rising";
+    if (stage_.until == StopWhen::rest && speed < stage_.rest_speed) {
+      const std::string why = run_.stop->waits_for();
+      text << ", which is below rest_speed"
+           << (why.empty() ? " but has not stayed there without rising" : " but is no rest: " + why);
+    }
     run_.recorder.note(text.str());
   }
 

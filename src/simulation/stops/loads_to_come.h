@@ -43,13 +43,16 @@ class LoadsToCome {
   }
   /// Says once why a stage goes on though the soil is as the stage asks, `state`. True unless `why` is empty.
   bool hold_up(Run<dim> &run, const std::string &state, const std::string &why) {
+    why_ = why;
     if (why.empty()) return false;
     if (!told_) run.recorder.note(state + ", but the stage " + run.stage().name + " goes on: " + why);
     return told_ = true;
   }
+  const std::string &why() const { return why_; }
 
  private:
   std::vector<ChangingLoad> loads_;  ///< of the scene, once they are known
+  std::string why_;                  ///< the stage went on when it was last asked
   bool known_ = false, told_ = false;
 };
 

@@ -24,7 +24,7 @@ class StopAtRest final : public StopCriterion<dim> {
     if (quiet_checks_ < checks_of_rest) return false;
     quiet_checks_ = 0;                       // unless all is over, it is looked at for as long again
     if (speed > first_speed_) return false;  // soil that sets out is slow too
-    if (loads_to_come_.hold_up(run, "all soil is at rest", still_to_come(run))) return false;
+    if (loads_to_come_.hold_up(run, "the rms speed of all soil is below rest_speed", still_to_come(run))) return false;
     if (const auto left = still_moving(run.world.comm, run.recorder.snapshot()))
       run.recorder.note("stage " + stage_.name + " ended: the rms speed of all soil is below rest_speed = " +
                         rounded(stage_.rest_speed) + " m/s, but " + left->sentence());
@@ -32,6 +32,7 @@ class StopAtRest final : public StopCriterion<dim> {
       run.recorder.note("stage " + stage_.name + " came to rest");
     return true;
   }
+  std::string waits_for() const override { return loads_to_come_.why(); }
   void serialize(Archive &archive) override { archive.serialize("rest", quiet_checks_, first_speed_); }
 
  private:

@@ -19,6 +19,8 @@ class StopCriterion {
   virtual bool met(Run<dim> &run, const Verdict &verdict) = 0;
   /// Name of the output point whose speed it needs after each step; empty: none.
   virtual std::string watched_point() const { return ""; }
+  /// What it waits for though the soil is as it asks; empty: nothing.
+  virtual std::string waits_for() const { return ""; }
   /// May it end the stage before its duration?
   virtual bool early() const { return true; }
   /// What it has seen of the stage.

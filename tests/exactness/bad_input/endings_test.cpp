@@ -82,8 +82,8 @@ TEST_F(RunThatEnds, BecauseAParticleLeftTheMeshOnTwoRanks) {
 
 /// Soil that has come apart on its way out has volume that is not soil, and the log says so at this end too.
 TEST_F(RunThatEnds, BecauseSoilThatHasComeApartLeftTheMesh) {
-  const std::string apart = changed(good_scene, "density = 2000",
-                                    "density = 2000\nvolume_cap = 0\nvelocity = [\"60*x\", \"20*y\"]");
+  const std::string apart =
+      changed(good_scene, "density = 2000", "density = 2000\nvolume_cap = 0\nvelocity = [\"60*x\", \"20*y\"]");
   for (const int ranks : {1, 2})
     expect(Program(folder_, run(apart, ranks)).end(),
            {"left the mesh near (", "body.sand has come apart, and the gaps between its pieces count as soil"}, 1);

@@ -96,12 +96,14 @@ TEST(FrictionalBase, a_stage_does_not_end_by_rest_before_loads_have_changed) {
   EXPECT_NEAR(waits->history().column("time_s").back(), 1.5, 1e-9);
   EXPECT_LT(waits->history().column("work_base_J").back(), -100);
   ASSERT_FALSE(waits->events().empty());
-  EXPECT_EQ(
-      waits->events()[0].text,
-      "all soil is at rest, but the stage first goes on: boundary.base changes until t = 0.61 s; hold_loads = true "
-      "would keep loads as they are");
+  EXPECT_EQ(waits->events()[0].text,
+            "the rms speed of all soil is below rest_speed, but the stage first goes on: boundary.base changes until t "
+            "= 0.61 s; hold_loads = true "
+            "would keep loads as they are");
   const std::string unknown = run("'t < 2 ? 40 : 20'", "{" + rest + "}")->events().at(0).text;
   EXPECT_NE(unknown.find("boundary.base is a function of t; "), std::string::npos) << unknown;
+  const std::string end = run("'t < 2 ? 40 : 20'", "{" + rest + "}")->events().back().text;
+  EXPECT_NE(end.find("below rest_speed but is no rest: boundary.base is a function of t"), std::string::npos) << end;
   for (const auto &[friction, stages] :
        {std::pair<std::string, std::string>{"40", "{" + rest + "}"},
         {"'loss(t)'", "{" + rest + ", hold_loads=true}"},

@@ -31,6 +31,28 @@ TEST(EnergyWatch, begins_anew_where_energy_does) {
   EXPECT_NE(watch.look("rest", -306, 100), "");
 }
 
+/// The sums lack the energy of pore fluids, which may take up as much again as soil gives.
+TEST(EnergyWatch, tells_of_half_where_pore_fluids_move) {
+  constexpr auto wet = EnergyWatch::Sums::without_fluids;
+  EnergyWatch watch;
+  EXPECT_EQ(watch.look("slide", 40, 100, wet), "");
+  EXPECT_EQ(watch.look("slide", -9, 100, wet), "");
+  const std::string told = watch.look("slide", -11, 100, wet);
+  EXPECT_NE(told.find("energy is created: 51 J, of 100 J"), std::string::npos) << told;
+  EXPECT_NE(told.find("it lacks the energy of pore fluids"), std::string::npos) << told;
+  EXPECT_FALSE(watch.beyond_all());
+  EXPECT_EQ(watch.look("slide", -61, 100, wet), "");
+  EXPECT_TRUE(watch.beyond_all());
+}
+
+TEST(EnergyWatch, ends_where_energy_is_no_number) {
+  EnergyWatch watch;
+  EXPECT_EQ(watch.look("", NAN, 100), "") << "nobody asks for it in the trials of a factor of safety";
+  EXPECT_EQ(watch.look("slide", 40, 100), "");
+  EXPECT_NE(watch.look("slide", NAN, 100), "");
+  EXPECT_TRUE(watch.beyond_all());
+}
+
 TEST(EnergyWatch, does_not_look_at_finite_elements) {
   EnergyWatch watch;
   for (const double dissipated : {40., -300., -600.}) EXPECT_EQ(watch.look("", dissipated, 100), "");
