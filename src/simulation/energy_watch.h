@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "base/archive.h"
@@ -12,19 +13,18 @@ namespace talus {
 
 class EnergyWatch {
  public:
-  /// What the sums contain: with pore fluids, not the energy that these have and bring.
-  enum class Sums { whole, without_fluids };
-
-  /// Takes the energy that has been dissipated, and all that was there or was brought, in the order of time [J].
+  /// Takes the energy that has been dissipated, and all that was there or was brought, in the order of time [J]. The
+  /// sums lack the energy of pore fluids: where these move, `in_motion` is the kinetic energy that soil has, or that it
+  /// left with, and no more than that counts as created.
   /// Returns a sentence when energy is created for the first time. Sound runs lose at most 1 % of what they dissipated
   /// again, and with pore fluids 15 % of what was brought; such as are beyond their critical step begin with some per
   /// cent and multiply them within a few hundred steps. Looks anew in each `stage`, and not in an empty one: there soil
   /// gets stress or places from elsewhere than its motion.
-  std::string look(const std::string &stage, double dissipated, double turnover, Sums sums = Sums::whole) {
+  std::string look(const std::string &stage, double dissipated, double turnover, std::optional<double> in_motion = {}) {
     if (stage.empty() || stage != stage_) most_ = dissipated;
-    stage_ = stage, whole_ = sums == Sums::whole;
+    stage_ = stage, whole_ = !in_motion;
     most_ = std::max(most_, dissipated), turnover_ = std::max({turnover_, turnover, dissipated});
-    created_ = std::max(created_, most_ - dissipated);
+    created_ = std::max(created_, std::min(most_ - dissipated, in_motion.value_or(most_ - dissipated)));
     if (!stage.empty() && !std::isfinite(dissipated)) created_ = std::numeric_limits<double>::infinity();
     if (told_ || !(created_ > (whole_ ? 0.05 : 0.5) * turnover_)) return "";
     told_ = true;

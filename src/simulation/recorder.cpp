@@ -263,9 +263,13 @@ void Recorder<dim>::write_history() {
   run.first_energy = first_energy_, run.balanced = of_.clock.stage != strength_reduction;
   run.visit([&](const std::string &, const char *, double value) { row.push_back(value); });
   const bool watched = run.balanced && !of_.statics.current();
-  const std::string created =
-      energy_.look(watched ? of_.clock.stage : "", run.dissipated(), run.turnover(),
-                   fluids_move(scene_.phases) ? EnergyWatch::Sums::without_fluids : EnergyWatch::Sums::whole);
+  std::optional<double> in_motion;
+  if (fluids_move(scene_.phases)) {
+    constexpr double slow = 0.1;  // [m/s]: soil that fluids push is slower where there is no other work to compare with
+    const double moving = run.balance.kinetic + run.escaped.energy;
+    in_motion = moving > of_.world.total_mass * slow * slow / 2 ? moving : 0;
+  }
+  const std::string created = energy_.look(watched ? of_.clock.stage : "", run.dissipated(), run.turnover(), in_motion);
   row.insert(row.begin(), {of_.clock.time, static_cast<double>(of_.clock.steps)});
   history_.rows.push_back(row);
   if (results_)

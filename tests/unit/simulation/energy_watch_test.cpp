@@ -31,17 +31,18 @@ TEST(EnergyWatch, begins_anew_where_energy_does) {
   EXPECT_NE(watch.look("rest", -306, 100), "");
 }
 
-/// The sums lack the energy of pore fluids, which may take up as much again as soil gives.
-TEST(EnergyWatch, tells_of_half_where_pore_fluids_move) {
-  constexpr auto wet = EnergyWatch::Sums::without_fluids;
+/// The sums lack the energy of pore fluids, which may stretch soil and lift it: what counts is motion.
+TEST(EnergyWatch, looks_at_motion_where_pore_fluids_move) {
   EnergyWatch watch;
-  EXPECT_EQ(watch.look("slide", 40, 100, wet), "");
-  EXPECT_EQ(watch.look("slide", -9, 100, wet), "");
-  const std::string told = watch.look("slide", -11, 100, wet);
+  EXPECT_EQ(watch.look("slide", 40, 100, 10), "");
+  EXPECT_EQ(watch.look("slide", -200, 100, 49), "") << "lifted";
+  EXPECT_EQ(watch.look("slide", -5, 100, 200), "") << "motion that work has brought";
+  const std::string told = watch.look("slide", -11, 100, 52);
   EXPECT_NE(told.find("energy is created: 51 J, of 100 J"), std::string::npos) << told;
   EXPECT_NE(told.find("it lacks the energy of pore fluids"), std::string::npos) << told;
+  EXPECT_EQ(watch.look("slide", -200, 100, 99), "");
   EXPECT_FALSE(watch.beyond_all());
-  EXPECT_EQ(watch.look("slide", -61, 100, wet), "");
+  EXPECT_EQ(watch.look("slide", -200, 100, 101), "");
   EXPECT_TRUE(watch.beyond_all());
 }
 
