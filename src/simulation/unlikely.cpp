@@ -286,9 +286,9 @@ void doubt_steep_faces(const Scene &scene, int number, const BodyReport &body, c
   if (steep <= share * all) return;
   sentences.push_back(rounded(100 * steep / all) + " % of the free surface of body." + body.name + " is more than " +
                       rounded(beyond / degree.si) + " degrees steeper than its friction angle of " +
-                      rounded(phi / degree.si) + " degrees, and it has hardly any cohesion: it has to fail. With fewer than " +
-                      rounded(enough) + " cells over its depth (" + rounded(depth) + " m, cells of " +
-                      rounded(body.cell_size) +
+                      rounded(phi / degree.si) +
+                      " degrees, and it has hardly any cohesion: it has to fail. With fewer than " + rounded(enough) +
+                      " cells over its depth (" + rounded(depth) + " m, cells of " + rounded(body.cell_size) +
                       " m) it may stand all the same. Take smaller cells (mesh.size, mesh.halvings) and compare two "
                       "sizes (talus converge)");
 }
