@@ -265,7 +265,7 @@ void Recorder<dim>::write_history() {
   const bool watched = run.balanced && !of_.statics.current();
   std::optional<double> in_motion;
   if (fluids_move(scene_.phases)) {
-    constexpr double slow = 0.1;  // [m/s]: soil that fluids push is slower where there is no other work to compare with
+    constexpr double slow = 1;  // [m/s]: soil that fluids push is slower where there is no other work to compare with
     const double moving = run.balance.kinetic + run.escaped.energy;
     in_motion = moving > of_.world.total_mass * slow * slow / 2 ? moving : 0;
   }
