@@ -15,7 +15,7 @@ struct NodalVelocities {
   using Field = std::vector<Vec<dim>>;
 
   /// `relaxation_time` is tau of docs/theory (4.10) [s], 0: none; `between_remaps`: nodes relax in each step; `kept`:
-  /// share of its own velocity, which the nodes did not receive, that a remap leaves to a particle, (4.11).
+  /// share of its own velocity, which the nodes did not receive, that a particle has once they have received the rest.
   NodalVelocities(int nodes, double relaxation_time, bool between_remaps, double kept)
       : relaxation_time(relaxation_time), relaxes(between_remaps && relaxation_time > 0), kept(kept), own_share(kept) {
     make_room(momentum, nodes);

@@ -66,7 +66,7 @@ void Simulation<dim>::note_gaps() {
     }
     require(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, run_.world.comm));
     require(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, run_.world.comm));
-    if (!(sum[0] > visible * sum[1])) continue;  // nor of volumes that are no numbers any more
+    if (!(sum[0] > visible * sum[1])) continue;  // nothing is said of volumes that are no numbers
     std::ostringstream text;
     text.precision(3);
     text << "warning: body." << body->name()
