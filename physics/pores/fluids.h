@@ -6,6 +6,10 @@
 
 namespace talus {
 
+/// Pressure at which liquid that fills the pores cavitates, theory of pores (3.1): an atmosphere below the atmosphere's
+/// [Pa].
+inline constexpr double cavitation_pressure = -100e3;
+
 struct Liquid {
   explicit Liquid(const Water &water)
       : density(water.density),

@@ -30,12 +30,17 @@ struct PoreLanes {
 };
 inline constexpr int most_iterations = 100;
 
-/// Pores full of liquid.
+/// Pores full of liquid, or of liquid and its vapour where it cavitates, (3.1); the vapour's share takes the place of
+/// the gas's.
 template <int lanes>
 inline void saturated_pressures(const Liquid &liquid, PoreLanes<lanes> &p) {
   liquid.with_compression([&](const auto &law) {
+    const double over_thinnest = 1 / law.density_at(cavitation_pressure);
 #pragma omp simd
-    for (int i = 0; i < lanes; ++i) p.liquid[i] = law.pressure_at(p.liquid_content[i]);
+    for (int i = 0; i < lanes; ++i) {
+      p.liquid[i] = std::max(law.pressure_at(p.liquid_content[i]), cavitation_pressure);
+      p.gas_share[i] = std::max(0., 1 - p.liquid_content[i] * over_thinnest);
+    }
   });
 }
 

@@ -227,7 +227,7 @@ void Recorder<dim>::write_history() {
       run.fluids[a].out -= fluids_before_[a].out, run.fluids[a].prescribed -= fluids_before_[a].prescribed;
     if (first_ledger_.empty())
       for (std::size_t a = 0; a < run.fluids.size(); ++a) first_ledger_.push_back(run.owned(a));
-    run.first_fluid = first_ledger_;
+    run.first_fluid = first_ledger_, water_drawn_ = -run.fluids[0].out;
   }
   if (has_flow_stages(scene_)) {
     const std::vector<double> inflow = of_.statics.inflow();

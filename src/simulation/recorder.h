@@ -77,6 +77,9 @@ class Recorder {
 
   /// Fluid masses count from the next row on: pores have been filled anew.
   void recount_fluids() { first_ledger_.clear(); }
+  /// Water that came in through boundaries and surfaces up to the last row of the history, as a share of what there was
+  /// at the start [-].
+  double water_drawn() const { return first_ledger_.empty() ? 0 : water_drawn_ / first_ledger_[0]; }
 
   CheckpointHeader checkpoint_header(int stage) const;
   void write_checkpoint(int stage, const Archive &state);
@@ -124,6 +127,7 @@ class Recorder {
   std::vector<Event> events_;
   std::unique_ptr<Files> results_;
   std::vector<double> first_ledger_;  ///< fluid masses at the start [kg]
+  double water_drawn_ = 0;            ///< [kg]
   double first_energy_ = 0;           ///< [J]
   EnergyWatch energy_;
   std::vector<double> work_before_;         ///< done before the run, where it starts at the state of another [J]

@@ -55,6 +55,7 @@ void Simulation<dim>::note_volumes() {
 template <int dim>
 void Simulation<dim>::note_gaps() {
   constexpr double visible = 0.02;  // of the volume of a body
+  bool apart = false;
   for (const auto &body : run_.world.bodies) {
     if (!comes_apart(body->law())) continue;
     const ParticleArrays<dim> &p = body->particles();
@@ -67,6 +68,7 @@ void Simulation<dim>::note_gaps() {
     require(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, run_.world.comm));
     require(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, run_.world.comm));
     if (!(sum[0] > visible * sum[1])) continue;  // nothing is said of volumes that are no numbers
+    apart = true;
     std::ostringstream text;
     text.precision(3);
     text << "warning: body." << body->name()
@@ -78,6 +80,23 @@ void Simulation<dim>::note_gaps() {
                                             : "; volume_cap = 1, which is the default of such soil, leaves gaps out");
     run_.recorder.note(text.str());
   }
+  if (apart) note_water_drawn();
+}
+
+/// Pores that open draw in water, also where no water stands outside.
+template <int dim>
+void Simulation<dim>::note_water_drawn() {
+  constexpr double visible = 0.05;
+  const double drawn = run_.recorder.water_drawn();
+  if (run_.scene.phases != PhaseModel::saturated || !(drawn > visible)) return;
+  std::ostringstream text;
+  text.precision(3);
+  text
+      << "warning: the pores have drawn in " << 100 * drawn
+      << " % of the water that they had. Where no water stands outside, gaps fill with air, which phases = "
+         "\"saturated\" does not have: this soil is too heavy, and suction holds its pieces together. Compare phases = "
+         "\"unsaturated\", or a lower permeability";
+  run_.recorder.note(text.str());
 }
 
 /// Soil that shears on dilates no more, once it is as loose as it can be; a constant dilation angle knows no such end.

@@ -48,6 +48,7 @@ class Simulation final : public AnySimulation {
   void note_state();
   void note_volumes();
   void note_gaps();
+  void note_water_drawn();
   void note_dilation();
   void run_stages();
   void step_until(double t);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "physics/pores/fluids.h"
 #include "scene/quantity.h"
 #include "scene/reader.h"
 #include "simulation/failure.h"
@@ -226,16 +227,17 @@ std::vector<std::string> unlikely_strains(MPI_Comm comm, const std::vector<BodyR
 
 std::vector<std::string> unlikely_suctions(MPI_Comm comm, const std::vector<BodyReport> &bodies,
                                            const Snapshot &state) {
-  constexpr double atmosphere = 100e3;  // [Pa]
+  constexpr double nearly_all = 0.95;  // smoothing takes a little of it
   std::vector<std::string> sentences;
-  const std::vector<Beyond> found = find_beyond(comm, bodies.size(), state, "pore_pressure", -1, atmosphere);
+  const std::vector<Beyond> found =
+      find_beyond(comm, bodies.size(), state, "pore_pressure", -1, -nearly_all * cavitation_pressure);
   for (std::size_t b = 0; b < found.size(); ++b)
     if (found[b].share > visible_share)
       sentences.push_back("The water in " + rounded(100 * found[b].share) + " % of body." + bodies[b].name +
-                          " is under more tension than the atmosphere presses, by up to " +
-                          rounded(found[b].most / 1e3) +
-                          " kPa: real water cavitates before, or air comes in, which phases = \"saturated\" does not "
-                          "have. Tension holds soil together that would come apart");
+                          " cavitates, at " + rounded(cavitation_pressure / 1e3) +
+                          " kPa: its pores have opened faster than water flows to them. This suction holds the soil "
+                          "together; where air comes in instead, which phases = \"saturated\" does not have, there is "
+                          "less of it");
   return sentences;
 }
 

@@ -26,7 +26,8 @@ struct WetBox : Box<dim, Phases> {
       p.mass[i] *= 0.7;
       const double pores = p.volume[i] - p.mass[i] / grain_density;
       const bool full = !Phases::suction || this->soil.mesh.patch[p.cell[i]] % 2 == 0 || p.cell[i] % 3 == 0;
-      const double wet = full ? 1 : 0.6 + 0.2 * drawn(i, 30);
+      const bool cavitates = !Phases::suction && p.cell[i] % 5 == 0;
+      const double wet = full && !cavitates ? 1 : 0.6 + 0.2 * drawn(i, 30);
       p.fluid_mass[0][i] = wet * water_density * (full ? 1 + (2e4 + 1e4 * drawn(i, 30)) / water_bulk : 1) * pores;
       if constexpr (Phases::gas) {  // a little gas in full pores too; its pressure is a few kPa
         const double air = full ? 0.005 : 1 - wet;
@@ -73,7 +74,7 @@ struct PoreEquations : Equations<dim, Phases> {
     for (int c = 0; c < this->cells; ++c) {
       const double pores = this->particle_volume[c] - grains[c] / grain_density, content = liquid[c] / pores;
       saturation.push_back(Phases::gas ? saturation_of(content, gas[c] / pores) : saturation_of(content));
-      density.push_back(content / saturation[c]);
+      density.push_back(content / saturation[c]);                         // without its vapour
       pressure.push_back(water_bulk * (density[c] / water_density - 1));  // (3.1), (3.2)
       if constexpr (Phases::gas)
         air[c] = gas[c] / pores / (1 - saturation[c]),
@@ -105,7 +106,7 @@ struct PoreEquations : Equations<dim, Phases> {
         const double part = this->weight[c] * reference[c][k];
         const V gradient = this->weight[c] * this->shape[c].gradient.row(k).transpose();
         volume[i] += part, whole[i] += part * density[c];
-        conductivity[i] += part * full_conductivity * std::pow(saturation[c], 3);  // (2.1)
+        conductivity[i] += part * full_conductivity * (Phases::suction ? std::pow(saturation[c], 3) : 1);  // (2.1)
         saturated[i] += part * full_conductivity;
         mass[i] += liquid[c] / row[c].sum() * row[c][k];
         air_mass[i] += gas[c] / row[c].sum() * row[c][k], air_whole[i] += part * air[c];
@@ -131,9 +132,11 @@ struct PoreEquations : Equations<dim, Phases> {
   }
 
   static double effective(double suction) { return 1 / std::sqrt(1 + std::pow(suction / curve_pressure, 2)); }
-  /// S of S rho(-s(S)) = content (3.2); 1 in full pores (3.1).
+  /// S of S rho(-s(S)) = content (3.2); 1 in full pores, less the share of vapour (3.1).
   static double saturation_of(double content) {
-    if (!Phases::suction || content >= water_density) return 1;
+    constexpr double thinnest = water_density * (1 - 100e3 / water_bulk);
+    if (!Phases::suction) return std::min(1., content / thinnest);
+    if (content >= water_density) return 1;
     double low = 0, high = 1e6;
     for (int i = 0; i < 200; ++i) {
       const double s = (low + high) / 2;
@@ -154,6 +157,7 @@ struct PoreEquations : Equations<dim, Phases> {
   }
   /// Are the pores of all cells of its patch full, so that (4.3) smooths there?
   bool full(int c) const {
+    if (!Phases::suction) return true;  // of liquid, or of it and its vapour
     for (int other = 0; other < this->cells; ++other)
       if (this->mesh.patch[other] == this->mesh.patch[c] && saturation[other] < 0.99) return false;
     return true;
@@ -196,7 +200,7 @@ struct PoreEquations : Equations<dim, Phases> {
   }
   /// W - V of (4.8a), in cells that are not full.
   double beyond_particles(int c) const {
-    return saturation[c] >= 0.99 ? 0 : this->weight[c] - this->particle_volume[c];
+    return !Phases::suction || saturation[c] >= 0.99 ? 0 : this->weight[c] - this->particle_volume[c];
   }
   /// The adjoint of (4.8a), on pressures.
   void share_pressure(std::vector<double> &p) const {

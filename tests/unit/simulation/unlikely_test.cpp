@@ -42,18 +42,17 @@ TEST(Unlikely, TensionOfMoreThanAnAtmosphereIsDoubted) {
   Column pressure{"pore_pressure", "Pa", "", 1, {}}, volume{"volume", "m3", "", 1, {}};
   std::vector<BodyReport> bodies(1);
   bodies[0].name = "clay";
-  state.body.assign(200, 0), volume.values.assign(200, 0.1), pressure.values.assign(200, -99e3);
+  state.body.assign(200, 0), volume.values.assign(200, 0.1), pressure.values.assign(200, -94e3);
   const auto said = [&] {
     state.columns = {pressure, volume};
     return unlikely_suctions(PETSC_COMM_WORLD, bodies, state);
   };
-  pressure.values[0] = -400e3;
+  pressure.values[0] = -100e3;
   EXPECT_TRUE(said().empty()) << "a single particle";
-  for (const int i : {1, 2, 3}) pressure.values[i] = -250e3;
+  for (const int i : {1, 2, 3}) pressure.values[i] = -98e3;
   const std::vector<std::string> found = said();
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0].find("The water in 2 % of body.clay is under more tension"), 0u) << found[0];
-  EXPECT_NE(found[0].find("up to 400 kPa"), std::string::npos) << found[0];
+  EXPECT_EQ(found[0].find("The water in 2 % of body.clay cavitates, at -100 kPa"), 0u) << found[0];
 }
 
 /// What is said of a heap 3 m high with a face of `slope` degrees below 4 m of level ground, in cells of `size` [m] and
