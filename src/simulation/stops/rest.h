@@ -1,7 +1,10 @@
 #pragma once
-/// The root mean square speed of the soil stays below a limit and does not rise, while nothing that acts on it has
-/// still to change. A large model that stands may hide soil that still slides: the end is said to be rest only where
-/// none does. `ended_at_rest` (commands/comparison.h) reads these words.
+/// The root mean square speed of the soil stays below a limit and does not rise, for as long as soil out of balance
+/// would take to pass the limit, while nothing that acts on it has still to change. A large model that stands may hide
+/// soil that still slides: the end is said to be rest only where none does. `ended_at_rest` (commands/comparison.h)
+/// reads these words.
+
+#include <cmath>
 
 #include "physics/phase_models.h"
 #include "simulation/run.h"
@@ -20,8 +23,8 @@ class StopAtRest final : public StopCriterion<dim> {
     if (run.clock.steps % steps_between_checks) return false;
     const double speed = run.rms_speed(run.balance());
     quiet_checks_ = speed < stage_.rest_speed ? quiet_checks_ + 1 : 0;
-    if (quiet_checks_ == 1) first_speed_ = speed;
-    if (quiet_checks_ < checks_of_rest) return false;
+    if (quiet_checks_ == 1) first_speed_ = speed, quiet_since_ = run.clock.time;
+    if (quiet_checks_ < checks_of_rest || run.clock.time - quiet_since_ < time_of_rest(run.scene)) return false;
     quiet_checks_ = 0;                       // unless all is over, it is looked at for as long again
     if (speed > first_speed_) return false;  // soil that sets out is slow too
     if (loads_to_come_.hold_up(run, "the rms speed of all soil is below rest_speed", still_to_come(run))) return false;
@@ -33,9 +36,18 @@ class StopAtRest final : public StopCriterion<dim> {
     return true;
   }
   std::string waits_for() const override { return loads_to_come_.why(); }
-  void serialize(Archive &archive) override { archive.serialize("rest", quiet_checks_, first_speed_); }
+  void serialize(Archive &archive) override { archive.serialize("rest", quiet_checks_, first_speed_, quiet_since_); }
 
  private:
+  /// Time in which soil out of balance by a small share of its weight passes the limit; damping of the stage takes its
+  /// share of that force [s].
+  double time_of_rest(const Scene &scene) const {
+    constexpr double out_of_balance = 0.02;
+    double square = 0;
+    for (const double a : scene.acceleration_in(stage_)) square += a * a;
+    const double driving = out_of_balance * (1 - stage_.damping) * std::sqrt(square);
+    return driving > 0 ? stage_.rest_speed / driving : 0;
+  }
   /// Water that moves may set soil in motion later, as rain does that seeps in.
   std::string still_to_come(const Run<dim> &run) {
     if (const std::string load = loads_to_come_(run); !load.empty()) return load;
@@ -46,6 +58,7 @@ class StopAtRest final : public StopCriterion<dim> {
   const Stage &stage_;
   int quiet_checks_ = 0;    ///< in a row
   double first_speed_ = 0;  ///< at the first of them [m/s]
+  double quiet_since_ = 0;  ///< time of the first of them [s]
   LoadsToCome<dim> loads_to_come_;
 };
 

@@ -148,16 +148,21 @@ class Outcomes(unittest.TestCase):
             self.assertTrue(last.endswith("; a longer duration of the stage slide would show where it stops (--resume goes on with it)"), last)
             self.assertIn(last.partition("  ")[2], done.stderr.splitlines()[-3:])
         # soil that stands lowers the speed below which a stage counts as at rest
-        stages = SCENE.replace('gravity_ramp = "1 s"\nuntil = "rest"', 'until = "rest"\nrest_speed = 0.3').replace(
+        stages = SCENE.replace('gravity_ramp = "1 s"\nuntil = "rest"', 'until = "rest"\nrest_speed = 0.1').replace(
             "[[stage]]", '[[stage]]\nname = "begin"\nduration = "2 s"\ngravity_ramp = "1 s"\n[[stage]]')
         (self.folder / "two.toml").write_text(stages)
-        done = self.ended("run", "two.toml", "-o", "moving", "--no-pictures", "--force", "--set", "body.clay.cohesion=2 kPa").stderr
-        self.assertIn("stage slide ended: the rms speed of all soil is below rest_speed = 0.3 m/s, but ", done)
+        done = self.ended("run", "two.toml", "-o", "moving", "--no-pictures", "--force", "--set", "body.clay.cohesion=1 kPa").stderr
+        self.assertIn("stage slide ended: the rms speed of all soil is below rest_speed = 0.1 m/s, but ", done)
         self.assertNotIn("came to rest", done)
         self.assertIn("the rms speed of all soil is below rest_speed, and a smaller rest_speed of the stage slide would show where it stops", done)
 
+        # damped soil that sets out is slower than a large limit for longer than 200 steps, 0.7 s
+        done = self.ended("run", "slope.toml", "-o", "damped", "--no-pictures", "--force", "--set", "body.clay.cohesion=4 kPa", "--set", "stage.slide.damping=0.8",
+                          "--set", "stage.slide.gravity_ramp=0", "--set", "stage.slide.rest_speed=0.1", "--set", "stage.slide.duration=6").stderr
+        self.assertNotIn("came to rest", done)
+
         # the run goes on with a smaller one
-        done = self.ended("run", "two.toml", "-o", "moving", "--no-pictures", "--resume", "--set", "body.clay.cohesion=2 kPa", "--set", "stage.slide.rest_speed=0.02").stderr
+        done = self.ended("run", "two.toml", "-o", "moving", "--no-pictures", "--resume", "--set", "body.clay.cohesion=1 kPa", "--set", "stage.slide.rest_speed=0.02").stderr
         self.assertIn("since then the scene has another stage.1.rest_speed", done)
         self.assertIn("stage slide came to rest", done)
         self.assertNotIn("nothing was left to do", done)
