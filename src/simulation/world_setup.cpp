@@ -1,0 +1,336 @@
+// From the scene to the first state: mesh, bodies, boundaries and motion.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/freed_memory.h"
+#include "base/sum.h"
+#include "scene/reader.h"
+#include "simulation/world.h"
+#include "solvers/quasi_static/pore_flow.h"
+
+namespace talus {
+
+template <int dim>
+World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &mesh_file, const Cuts &cuts)
+    : scene(of),
+      phases(phase_traits(of.phases)),
+      comm(world),
+      pressure(of),
+      rates_(WorkRates::with(of.transfer.average_stress)) {
+  read_laws();
+  std::vector<Source> sources = read_sources();
+  read_mesh(plex, mesh_file, cuts);
+  check_bodies();
+  find_strengths();
+  check_boundaries(sources);
+  require(conditions.setup(mesh, std::move(sources)));
+  conditions.use_stand_ins(scene.stage.front().hold_loads);
+  pressure.set_regions(bodies_of_cells(mesh, scene));
+  set_pore_pressure_ratios();
+  seed_bodies();
+  close_bases();                                 // from now on: soil has to be drawn inside
+  set_loading(scene.stage.front(), 0, Clock{});  // under which the first state is gathered
+  if (const std::string fault = function_fault(); !fault.empty()) throw SceneError(fault);
+  hand_back_freed_memory();
+}
+
+template <int dim>
+std::string World<dim>::function_fault() const {
+  const std::string mine = scene.function_fault();
+  return text_of_first(comm, !mine.empty(), mine);
+}
+
+template <int dim>
+void World<dim>::read_laws() {
+  for (const BodySource &body : scene.body) {
+    laws.push_back(read_law(body.law));
+    const std::string problem = law_problem(laws.back(), dim);
+    if (!problem.empty()) scene.complain("body." + body.name, "cannot be used: " + problem);
+    if (body.averaging_length > 0 && plastic_strain_field(laws.back()) < 0)
+      scene.complain("body." + body.name + ".averaging_length",
+                     "needs a law that remembers a plastic_strain, not " + std::string(law_name(laws.back())));
+  }
+}
+
+/// Least and largest strength of each body over the places where particles and Gauss points may lie; laws that a
+/// function of place gives their strength take the largest. Complains where a value is none. Collective.
+template <int dim>
+void World<dim>::find_strengths() {
+  const std::vector<int> body_of = bodies_of_cells(mesh, scene);
+  for (size_t b = 0; b < laws.size(); ++b) {
+    const BodySource &source = scene.body[b];
+    const std::string path = "body." + source.name;
+    StrengthRange range = strength_of(laws[b]);
+    const StrengthByPlace functions(source.law, laws[b]);
+    if (functions.given()) {
+      std::vector<Barycentric<dim>> places;
+      const auto add = [&](const std::vector<Barycentric<dim>> &more) {
+        places.insert(places.end(), more.begin(), more.end());
+      };
+      for (const int order : {1, 2}) add(stress_quadrature<dim>(order).point);
+      add(lattice<dim>(particles_per_cell<dim>(source)));
+      for (const DenseBox &box : source.dense) add(lattice<dim>(box.particles_per_cell));
+      for (int c = 0; c < mesh.cell_count(); ++c)
+        for (size_t k = 0; body_of[c] == static_cast<int>(b) && k < places.size(); ++k) {
+          const Vec<dim> where = place_in(mesh, c, places[k]);
+          functions.widen(range, where[0], where[1], dim == 3 ? where[dim - 1] : 0);
+        }
+      if (const std::string fault = function_fault(); !fault.empty()) throw SceneError(fault);
+      double ends[4] = {-range.cohesion[0], range.cohesion[1], -range.friction_angle[0], range.friction_angle[1]};
+      for (double &end : ends)
+        if (std::isnan(end)) end = std::numeric_limits<double>::lowest();  // no cell on this rank
+      MPI_Allreduce(MPI_IN_PLACE, ends, 4, MPI_DOUBLE, MPI_MAX, comm);
+      range = {{-ends[0], ends[1]}, {-ends[2], ends[3]}};
+      const bool empty = ends[0] == std::numeric_limits<double>::lowest();  // which seed_bodies() refuses
+      const std::string problem = empty ? "" : take_largest(laws[b], range);
+      const size_t key_ends = problem.find(' ');
+      if (!problem.empty())
+        scene.complain(path + "." + problem.substr(0, key_ends), problem.substr(key_ends + 1) + ", its largest value");
+    }
+    strength.push_back(range);
+  }
+}
+
+/// Boundaries of pore water in a drained scene belong to its seepage stages alone: the motion takes the pressure that
+/// they find.
+template <int dim>
+std::vector<typename World<dim>::Source> World<dim>::read_sources() {
+  std::vector<Source> sources;
+  const bool apart = phases.prescribed && has_flow_stages(scene);
+  for (const BoundarySource &b : scene.boundary) {
+    const Boundary kind = read_boundary(b.kind);
+    const bool seeps = apart && kind.fluids_only() && !kind.needs_gas();
+    (seeps ? seepage_sources : sources).push_back({b.name, b.group, kind});
+  }
+  return sources;
+}
+
+template <int dim>
+void World<dim>::read_mesh(DM plex, const std::string &mesh_file, const Cuts &cuts) {
+  std::vector<std::pair<std::string, double>> weights;
+  SeedCounts seeds{{}, id_stride()};
+  for (const BodySource &body : scene.body)
+    for (const std::string &region : body.region) {
+      weights.emplace_back(region, rates_.of_cell(particles_per_cell<dim>(body)));
+      seeds.per_cell.emplace_back(region, particles_per_cell<dim>(body));
+    }
+  if (plex)
+    mesh = BackgroundMesh<dim>::adopt(plex);
+  else
+    try {
+      mesh = BackgroundMesh<dim>::read(comm, mesh_file, weights, cuts, scene.mesh.halvings, seeds);
+    } catch (const std::invalid_argument &error) {
+      scene.complain(!scene.mesh.file.empty()      ? "mesh.file"
+                     : !scene.mesh.section.empty() ? "mesh.section"
+                                                   : "mesh.terrain",
+                     std::string("cannot serve: ") + error.what());
+    }
+  comm = mesh.comm();
+}
+
+template <int dim>
+double World<dim>::soil_density(const BodySource &source, const Vec<dim> &x, double t) const {
+  if (source.density > 0 && !phases.liquid) return source.density;
+  const int soil = static_cast<int>(&source - scene.body.data());
+  double density = (1 - source.porosity) *
+                   source.grain_density;  // where fluids move on their own, particles' mass is that of the grains
+  if (phases.prescribed) density += source.porosity * scene.water.density * pressure.saturation(source, x, t, soil);
+  return density;
+}
+
+template <int dim>
+typename Overburden<dim>::Block World<dim>::block_of(const BodySource &source, int cell, double water,
+                                                     double load_time) const {
+  typename Overburden<dim>::Block block;
+  Vec<dim> centre{};
+  for (int a = 0; a <= dim; ++a) {
+    block.corner[a] = mesh.position[mesh.cells[cell].node[a]];
+    for (int d = 0; d < dim; ++d) centre[d] += block.corner[a][d] / (dim + 1);
+  }
+  block.unit_weight = -scene.gravity[scene.vertical()] * (soil_density(source, centre, load_time) + water);
+  return block;
+}
+
+/// In bodies with a pore pressure ratio r_u the pressure is r_u times the weight of the soil above, as it lies at the
+/// start (Bishop and Morgenstern 1960), linear in cells.
+template <int dim>
+void World<dim>::set_pore_pressure_ratios() {
+  if (std::none_of(scene.body.begin(), scene.body.end(), [](const BodySource &b) { return b.pore_pressure_ratio > 0; }))
+    return;
+  const std::vector<int> body_of = bodies_of_cells(mesh, scene);
+  const std::vector<char> there = present_at_start();
+  std::vector<typename Overburden<dim>::Block> blocks;
+  for (int c = 0; c < mesh.cell_count(); ++c)
+    if (body_of[c] >= 0 && there[body_of[c]]) blocks.push_back(block_of(scene.body[body_of[c]], c, 0, 0));
+  const Overburden<dim> overburden(mesh, blocks, scene.vertical());
+  for (int b = 0; b < static_cast<int>(scene.body.size()); ++b) {
+    const double ratio = scene.body[b].pore_pressure_ratio;
+    if (ratio == 0) continue;
+    std::vector<double> cells;
+    for (int c = 0; c < mesh.cell_count(); ++c) {
+      if (body_of[c] != b) continue;
+      Vec<dim> centre{};
+      for (const int node : mesh.cells[c].node)
+        for (int d = 0; d < dim; ++d) centre[d] += mesh.position[node][d] / (dim + 1);
+      for (const int node : mesh.cells[c].node) {
+        const Vec<dim> &x = mesh.position[node];
+        constexpr double aside = 1e-7;  // into the cell, since soil may end at x
+        Vec<dim> near = x;
+        for (int d = 0; d < dim; ++d)
+          if (d != scene.vertical()) near[d] += aside * (centre[d] - x[d]);
+        double top;
+        cells.insert(cells.end(), x.begin(), x.end());
+        cells.push_back(ratio * overburden.above(near, &top));
+      }
+    }
+    auto field = std::make_shared<CellPressure<dim>>(comm, cells);
+    pressure.take_of(b, [field](const double *x) { return (*field)(x); });
+  }
+}
+
+/// Numbers of particles in a cell are below it, whatever boxes and stages add.
+template <int dim>
+int World<dim>::id_stride() const {
+  int stride = 1;
+  for (const BodySource &source : scene.body) {
+    stride = std::max(stride, particles_per_cell<dim>(source));
+    for (const DenseBox &box : source.dense) stride = std::max(stride, box.particles_per_cell);
+  }
+  return stride;
+}
+
+/// Cells in the regions of some bodies.
+template <int dim>
+std::vector<char> World<dim>::cells_of_bodies(const std::function<bool(size_t body)> &which) const {
+  std::vector<char> cells(mesh.cell_count(), 0);
+  for (size_t b = 0; b < scene.body.size(); ++b)
+    for (const std::string &region : scene.body[b].region)
+      for (int cell : mesh.region(region)) cells[cell] = which(b);
+  return cells;
+}
+
+/// What bodies need of the mesh as it is divided now.
+template <int dim>
+void World<dim>::settle_bodies() {
+  conditions.surface_loads().share(mesh, cells_of_bodies([](size_t) { return true; }));
+  smallest_altitude_ = mesh.report().smallest_altitude;
+  critical_.clear();
+  for (size_t b = 0; b < scene.body.size(); ++b) {
+    const BodySource &source = scene.body[b];
+    const double density = soil_density(source, Vec<dim>{}, 0);
+    wave_speed_ = std::max(wave_speed_, std::sqrt(constrained_modulus(laws[b]) / density));
+    critical_.emplace_back(mesh, laws[b], density, pore_stiffness(scene, source, phases.fluids()));
+  }
+}
+
+template <int dim>
+void World<dim>::close_bases() {
+  for (const auto &source : conditions.sources())
+    if (source.kind.keeps_soil_inside())
+      for (const std::string &group : source.groups) mesh.close(group);
+}
+
+template <int dim>
+void World<dim>::make_motion() {
+  const double relaxation = scene.transfer.relaxation * smallest_altitude_ / wave_speed_;
+  motion = make_soil_motion(
+      MotionParts<dim>{mesh, bodies, conditions, scene, pressure, relaxation, seeded_mass_, seeded_particles_});
+}
+
+/// Ways of a wave while friction adapts, docs/theory (6.2): in units of the altitude, and across elastic soil and back.
+template <int dim>
+void World<dim>::set_friction_delay() {
+  constexpr double shortest_way = 10, across_and_back = 2;
+  conditions.bases().set_friction_delay(std::max(shortest_way * smallest_altitude_, across_and_back * depth_on_bases_) /
+                                        wave_speed_);
+}
+
+template <int dim>
+void World<dim>::seed_bodies() {
+  const int stride = id_stride();
+  SurfaceLoads<dim> &loads = conditions.surface_loads();
+  settle_bodies();
+  movers_.resize(scene.body.size()), outside_.resize(scene.body.size());
+  for (size_t b = 0; b < scene.body.size(); ++b) {
+    const BodySource &source = scene.body[b];
+    bodies.push_back(std::make_unique<Body<dim>>());
+    Body<dim> &body = *bodies.back();
+    require(body.create(comm, source, laws[b], phases.fluids(), loads.face_count()));
+    seed<dim>(body, mesh, stride, [&](const Vec<dim> &x) { return soil_density(source, x, 0); });
+    loads.seed(body, mesh);
+    double sums[2] = {static_cast<double>(body.particles().count), 0}, totals[2];
+    sums[1] = sum_of(body.particles().mass, body.particles().count);
+    MPI_Allreduce(sums, totals, 2, MPI_DOUBLE, MPI_SUM, comm);
+    const std::string path = "body." + source.name;
+    if (totals[0] == 0) scene.complain(path, "is empty: its regions have no cells");
+    check_seeded(body, path);
+    particle_count += static_cast<long long>(totals[0]), total_mass += totals[1];
+    if (!source.displacement.empty())
+      for (int i = 0; i < body.particles().count; ++i) movers_[b].push_back(i);
+    require(relocate<dim>(body, mesh, movers_[b], outside_[b]));
+    const bool lost = !outside_[b].empty();
+    const std::string outside =
+        place_of_first<dim>(comm, lost, lost ? body.particles().position[outside_[b][0]] : Vec<dim>{});
+    if (!outside.empty()) scene.complain(path + ".displacement", "takes particles out of the mesh near " + outside);
+    require(body.sort(mesh.cell_count()));
+  }
+  const int idle = loads.find_idle(comm, bodies);
+  if (idle >= 0)
+    scene.complain("boundary." + conditions.sources()[idle].name + ".kind",
+                   "is a load on a face without soil behind it at the start; name a group on the surface of a body");
+  const int cancelled =  // by soil that is there from the start to the end
+      loads.find_cancelled(mesh, cells_of_bodies([&](size_t b) { return !comes_or_goes(scene.body[b]); }));
+  if (cancelled >= 0)
+    scene.complain("boundary." + conditions.sources()[cancelled].name + ".kind",
+                   "is a pressure on a face inside the soil, where it cancels: it pushes with the same force on both "
+                   "sides. Draw a crack as a gap in the outline of the section, and name a wall of it");
+  require(conditions.bases().find_depth(mesh, cells_of_bodies([&](size_t b) { return never_fails(laws[b]); }),
+                                        &depth_on_bases_));
+  set_friction_delay();
+  seeded_mass_ = total_mass, seeded_particles_ = particle_count;
+  make_motion();
+  require(motion->setup_pores(true));
+}
+
+/// Does a stage add or remove the body?
+template <int dim>
+bool World<dim>::comes_or_goes(const BodySource &body) const {
+  return std::ranges::any_of(scene.stage, [&](const Stage &stage) {
+    return std::ranges::count(stage.add, body.name) || std::ranges::count(stage.remove, body.name);
+  });
+}
+
+template <int dim>
+std::vector<char> World<dim>::present_at_start() const {
+  std::vector<char> there(scene.body.size(), 1);
+  for (const Stage &stage : scene.stage)
+    for (size_t b = 0; b < scene.body.size(); ++b)
+      if (std::count(stage.add.begin(), stage.add.end(), scene.body[b].name)) there[b] = 0;
+  return there;
+}
+
+template World<2>::World(MPI_Comm, const Scene &, DM, const std::string &, const Cuts &);
+template World<3>::World(MPI_Comm, const Scene &, DM, const std::string &, const Cuts &);
+template std::string World<2>::function_fault() const;
+template std::string World<3>::function_fault() const;
+template double World<2>::soil_density(const BodySource &, const Vec<2> &, double) const;
+template double World<3>::soil_density(const BodySource &, const Vec<3> &, double) const;
+template Overburden<2>::Block World<2>::block_of(const BodySource &, int, double, double) const;
+template Overburden<3>::Block World<3>::block_of(const BodySource &, int, double, double) const;
+template void World<2>::set_pore_pressure_ratios();
+template void World<3>::set_pore_pressure_ratios();
+template int World<2>::id_stride() const;
+template int World<3>::id_stride() const;
+template void World<2>::settle_bodies();
+template void World<3>::settle_bodies();
+template void World<2>::close_bases();
+template void World<3>::close_bases();
+template void World<2>::make_motion();
+template void World<3>::make_motion();
+template void World<2>::set_friction_delay();
+template void World<3>::set_friction_delay();
+template std::vector<char> World<2>::present_at_start() const;
+template std::vector<char> World<3>::present_at_start() const;
+
+}  // namespace talus
