@@ -1,0 +1,64 @@
+// Advice of `talus check`, one case a line: it is given where it is due.
+#include "check/check.h"
+
+namespace talus {
+namespace {
+
+struct Case {
+  const char *name;
+  std::vector<std::string> overrides;
+  const char *advice;
+};
+
+void PrintTo(const Case &one, std::ostream *out) { *out << one.name; }
+
+const Case cases[] = {
+    {"one_particle", {"body.sand.particles_per_cell=1"}, "One particle per cell in sand is too few"},
+    {"locking", {"body.sand.poisson_ratio=0.48", "transfer.locking=none"}, "makes linear cells lock"},
+    {"softening",
+     {"body.sand.residual_friction_angle=20", "body.sand.shape_factor=10"},
+     "softens without a reference_size"},
+    {"average_that_cells_do_not_resolve",
+     {"body.sand.residual_friction_angle=20", "body.sand.shape_factor=10", "body.sand.averaging_length=0.28"},
+     "do not resolve its averaging_length of 0.28 m"},
+    {"snap_back",
+     {"body.sand.residual_friction_angle=20", "body.sand.shape_factor=5000", "body.sand.reference_size=0.25"},
+     "snaps back"},
+    {"soft_soil", {"body.sand.young_modulus=2e4"}, "The weight of the soil strains it by"},
+    {"gravity_at_once", {}, "Gravity is applied at once"},
+    {"rest_after_motion",
+     {"stage=[{name='slide', duration=1}, {name='gravity', kind='quasi_static', duration=1}]"},
+     "Stage gravity would bring the soil to rest under its weight, but comes after slide"},
+    {"equilibrium_without_damping", {"stage.0.until=equilibrium"}, "waits for equilibrium without damping"},
+    {"equilibrium_too_soon", {"stage.0.until=equilibrium", "stage.0.duration=0.1"}, "too short for equilibrium"},
+    {"timid_step", {"integrator.step=1e-5"}, "of the critical step; without"},
+    {"small_cells",
+     {"mesh.refine=[{from = [0, 0], to = [0.1, 0.1], size = 0.02}]"},
+     "in mesh.refine.0, determine the step"},
+    {"remap_every_step", {"transfer.remap_interval=0"}, "A remap in every step costs"},
+    {"slice", {"dimension=3", "boundary.front.kind=roller", "boundary.back.kind=roller"}, "A slice of one element"},
+    {"ground_that_yields_at_rest",
+     {"stage.0.kind=quasi_static", "body.sand.poisson_ratio=0.2"},
+     "poisson_ratio above 0.25 (sin phi > 1 - 2 nu)"},
+    {"dry", {}, "is right for soil without water"},
+};
+
+class Advice : public testing::TestWithParam<Case> {};
+
+TEST_P(Advice, IsGivenWhereItIsDue) {
+  const Folder folder;
+  const Ending ending = check(folder, GetParam().overrides);
+  EXPECT_EQ(ending.status, 0);
+  EXPECT_TRUE(ending.says(GetParam().advice)) << ending.output;
+}
+
+TEST(NoAdvice, IsGivenWhereAllIsWell) {
+  const Folder folder;
+  const Ending ending = check(folder, {"gravity=0"});
+  EXPECT_TRUE(ending.says("\"advice\": []")) << ending.output;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Advice, testing::ValuesIn(cases), [](const auto &one) { return one.param.name; });
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,237 @@
+// Numbers of `talus check` are those of a run, and it writes nothing.
+#include <functional>
+#include <sstream>
+
+#include "check/check.h"
+
+namespace talus {
+namespace {
+
+TEST(Check, KnowsParticlesMassAndLayer) {
+  const Folder folder;
+  const Ending ending = check(folder, {});
+  ASSERT_EQ(ending.status, 0) << ending.output;
+  EXPECT_NEAR(number(ending, "mass_kg"), 2000 * 0.5, 1e-9);
+  EXPECT_NEAR(number(ending, "volume_m3"), 0.5, 1e-12);
+  const Ending page = talus(folder, {"check", "scene.toml"});
+  EXPECT_TRUE(page.says("0.5 m3/m in cells of ")) << page.output;
+  EXPECT_TRUE(page.says("steps: the fewest in that time, all as long as the first one")) << page.output;
+  EXPECT_NEAR(number(ending, "height_m"), 0.5, 1e-12);
+  const double modulus = 1e6 * 0.7 / (1.3 * 0.4);  // E (1 - nu) / ((1 + nu) (1 - 2 nu))
+  EXPECT_NEAR(number(ending, "gravity_strain"), 2000 * 9.81 * 0.5 / modulus, 1e-9);
+  EXPECT_NEAR(number(ending, "wave_speed_m_s"), std::sqrt(modulus / 2000), 1e-9);
+  EXPECT_NEAR(number(ending, "step_s"), 0.6 * number(ending, "critical_step_s"), 1e-15);
+  EXPECT_GT(number(ending, "burst_steps"), 10);
+}
+
+TEST(Check, TakesAPlaneSceneAsASliceBetweenRollers) {
+  const Folder folder;
+  folder.write("scene.toml", good_scene), folder.write("section.csv", good_section);
+  const Ending flag = talus(folder, {"check", "scene.toml", "--json", "--slice"});
+  ASSERT_EQ(flag.status, 0) << flag.output;
+  EXPECT_TRUE(flag.says("\"one_element_slice\": true")) << flag.output;
+  const Ending overrides = check(folder, {"dimension=3", "boundary.front.kind=roller", "boundary.back.kind=roller"});
+  EXPECT_EQ(number(flag, "critical_step_s"), number(overrides, "critical_step_s"));
+  EXPECT_EQ(number(flag, "mass_kg"), number(overrides, "mass_kg"));
+}
+
+TEST(Check, SaysWhatTheCriticalStepIsTakenFromAndWhy) {
+  const Folder folder;
+  const std::vector<std::string> in_3d{"dimension=3", "mesh.thickness=0.5", "mesh.layers=2",
+                                       "boundary.front.kind=roller", "boundary.back.kind=roller"};
+  const auto with = [&](const std::vector<std::string> &more) {
+    std::vector<std::string> all = in_3d;
+    all.insert(all.end(), more.begin(), more.end());
+    return check(folder, all);
+  };
+  const Ending mesh = with({}), cells = with({"integrator.omega_max=cells"});
+  EXPECT_TRUE(mesh.says("of the whole filled mesh (integrator.omega_max = \\\"auto\\\", on tetrahedra)"))
+      << mesh.output;
+  EXPECT_TRUE(cells.says("of the fastest filled cell (integrator.omega_max = \\\"cells\\\")")) << cells.output;
+  EXPECT_GT(number(mesh, "step_s"), 1.5 * number(cells, "step_s"));
+  const auto falls_back = [&](const Ending &ending, const std::string &why) {
+    EXPECT_TRUE(ending.says("of the fastest filled cell (integrator.omega_max = \\\"auto\\\", and " + why))
+        << ending.output;
+  };
+  falls_back(check(folder, {}), "in plane strain");
+  falls_back(with({"mesh.layers=1"}), "in plane strain");
+  falls_back(with({"integrator.step=1e-5"}), "integrator.step is fixed");
+  falls_back(with({"integrator.fraction=0.81"}), "integrator.fraction is above 0.8");
+  // a slip surface of 0.08 and of 8 m spreads by itself, below and above 1.5 times the height of 0.5 m
+  const auto softening = [&](const char *shape_factor) {
+    return with({"body.sand.cohesion=5e3", "body.sand.residual_cohesion=1e3", "body.sand.residual_friction_angle=25",
+                 std::string("body.sand.shape_factor=") + shape_factor});
+  };
+  falls_back(softening("1000"), "where softening is brittle");
+  EXPECT_TRUE(softening("10").says("on tetrahedra)"));
+  folder.write("scene.toml", changed(good_scene, "density = 2000", "porosity = 0.4\ngrain_density = 2600"));
+  std::vector<std::string> wet{"check",
+                               "scene.toml",
+                               "--json",
+                               "--set",
+                               "phases=saturated",
+                               "body.sand.porosity=0.4",
+                               "body.sand.grain_density=2650",
+                               "body.sand.permeability=1e-10",
+                               "water.table=[[0, 0.5], [2, 0.5]]"};
+  wet.insert(wet.end(), in_3d.begin(), in_3d.end());
+  falls_back(talus(folder, wet), "pore pressures of single cells scatter");
+}
+
+TEST(Check, FillsACellOnceThatTwoOfABodysRegionsName) {
+  const Folder folder;
+  EXPECT_NEAR(number(check(folder, {"body.sand.region=['sand', 'sand']"}), "mass_kg"), 1000, 1e-9);
+}
+
+TEST(Check, KnowsStagesByFiniteElements) {
+  const Folder folder;
+  const Ending ending = check(folder, {"stage.0.kind=quasi_static"});
+  EXPECT_EQ(number(ending, "run_time_s"), 0);
+  EXPECT_FALSE(ending.says("Gravity is applied at once")) << ending.output;
+}
+
+/// Soil that a stage adds has no particles yet: neither of it nor of a scene without other soil are numbers invented.
+TEST(Check, SaysWhichSoilAStageAdds) {
+  const Folder folder;
+  folder.write("scene.toml", good_scene), folder.write("section.csv", good_section);
+  const auto page = [&](std::vector<std::string> more) {
+    std::vector<std::string> words{"check", "scene.toml", "--set", "stage.0.kind=quasi_static"};
+    for (const std::string &one : more) words.insert(words.end(), {"--set", one});
+    return talus(folder, words);
+  };
+  const std::vector<std::string> fill{"body.fill.region=air", "body.fill.density=1800", "body.fill.law=linear_elastic",
+                                      "body.fill.young_modulus=1e6", "body.fill.poisson_ratio=0.3"};
+  std::vector<std::string> one = fill, all = fill;
+  one.push_back("stage.0.add=[\"fill\"]"), all.push_back("stage.0.add=[\"fill\", \"sand\"]");
+  for (const auto &[overrides, added, known] : {std::tuple{one, 1, true}, {all, 2, false}}) {
+    const Ending ending = page(overrides);
+    ASSERT_EQ(ending.status, 0) << ending.output;
+    EXPECT_EQ(ending.count("added by a stage, not there at the start"), added) << ending.output;
+    EXPECT_FALSE(ending.says("nan") || ending.says("-2147483648") || ending.says(" inf")) << ending.output;
+    EXPECT_EQ(ending.says("Stages add all soil"), !known) << ending.output;
+    EXPECT_EQ(ending.says("crossed by a wave"), known) << ending.output;
+  }
+}
+
+TEST(Check, TellsThatARunBreaksOffAtOnce) {
+  const Folder folder;
+  const Ending ending = check(folder, {"body.sand.velocity=['1e200', '0']"});
+  EXPECT_EQ(ending.status, 1);  // as the run itself ends
+  EXPECT_TRUE(ending.says("The run breaks off in its first steps: the velocity is not finite near (")) << ending.output;
+}
+
+TEST(Check, TriesFunctionsOverStagesAndPlaces) {
+  const Folder folder;
+  const std::string belt = "boundary.base={kind='velocity', velocity=['0', '";
+  EXPECT_FALSE(check(folder, {belt + "sqrt(0.06 - t)']}"}).says("A run ends where"));
+  EXPECT_TRUE(check(folder, {belt + "sqrt(0.04 - t)']}"}).says("no number at t = 0.04"));
+  EXPECT_TRUE(check(folder, {belt + "sqrt(0.7 - x)']}"})
+                  .says("breaks off in its first steps: --set: boundary.base.velocity.1"));
+}
+
+TEST(Check, SaysHowStagesTakeABaseThatRemembersSlip) {
+  const Folder folder;
+  const std::string weakens = "boundary.base={kind='friction', friction_angle='30 - slip'}";
+  EXPECT_FALSE(check(folder, {weakens}).says("boundary.base"));
+  EXPECT_TRUE(check(folder, {weakens, "stage.0.kind=quasi_static"})
+                  .says("Stage fall takes boundary.base at a slip of 0 and cold"));
+  EXPECT_TRUE(check(folder, {weakens, "stage.0.gravity_ramp=0.01"}).says("counts slip and heat; softening = false"));
+  EXPECT_TRUE(check(folder, {"boundary.base={kind='friction', friction_angle='30 - 100 * slip'}"})
+                  .says("must be a number from 0 to 89 deg; it is -70 deg at slip = 1 m"));
+}
+
+/// A slide on a slope is as deep as it is thick, not as its range of elevations. A grid of the friction of its base has
+/// to cover the ground downhill of it.
+TEST(Check, LooksAtASlideOnASlope) {
+  const Folder folder;
+  const auto grid = [](int west, int columns, const std::function<double(double x)> &value) {
+    std::ostringstream text;
+    text << "ncols " << columns << "\nnrows 11\nxllcenter " << west << "\nyllcenter 0\ncellsize 10\n";
+    for (int j = 0; j < 11; ++j)
+      for (int i = 0; i < columns; ++i) text << value(west + 10 * i) << (i + 1 < columns ? " " : "\n");
+    return text.str();
+  };
+  folder.write("ground.asc", grid(0, 21, [](double x) { return 200 - 0.5 * x; }));
+  folder.write("scene.toml", R"toml(dimension = 3
+up = "z"
+gravity = 9.81
+[mesh]
+size = 4
+[mesh.terrain]
+file = "ground.asc"
+air = 10
+far_size = 8
+[mesh.terrain.ellipsoid]
+centre = [60, 50, 170]
+semi_axes = [30, 20, 6]
+dip = 26.565
+dip_direction = 90
+[grids]
+bed = "bed.asc"
+[body.debris]
+region = "slide"
+unit_weight = "20 kN/m3"
+law = "mohr_coulomb"
+young_modulus = "20 MPa"
+poisson_ratio = 0.3
+friction_angle = 30
+cohesion = 0
+[boundary.base]
+kind = "friction"
+friction_angle = "bed(x, y)"
+[[stage]]
+duration = 1
+)toml");
+  const auto look = [&](int west, int columns) {
+    folder.write("bed.asc", grid(west, columns, [](double) { return 20; }));
+    const Ending ending = talus(folder, {"check", "scene.toml", "--json"});
+    EXPECT_EQ(ending.status, 0) << ending.output;
+    return ending;
+  };
+  const Ending whole = look(20, 19);  // what lies uphill is not asked for
+  EXPECT_TRUE(whole.says("by mesh.terrain.far_size and mesh.size")) << "keys, no options: " << whole.output;
+  EXPECT_FALSE(whole.says("--size"));
+  EXPECT_TRUE(whole.says("cells grow to 8 m on the way"));
+  const Ending halved = talus(folder, {"check", "scene.toml", "--json", "--set", "mesh.halvings=1"});
+  EXPECT_FALSE(halved.says("on the way")) << "of 4 m they are smaller than the slide is thick: " << halved.output;
+  const double exact =
+      1 / std::hypot(std::cos(26.565 * std::acos(-1) / 180) / 6, std::sin(26.565 * std::acos(-1) / 180) / 30);
+  EXPECT_NEAR(number(whole, "height_m"), exact, 3) << "to a cell; elevations range over 27 m";
+  EXPECT_GE(number(whole, "longest_run_time_s"), number(whole, "run_time_s"));
+  EXPECT_FALSE(whole.says("downhill"));
+  const Ending part = look(20, 12);
+  EXPECT_TRUE(part.says("bed.asc has no value at (13")) << part.output;
+  EXPECT_TRUE(part.says("That place lies downhill of the soil")) << part.output;
+}
+
+TEST(Check, FindsTheSameOnTwoRanks) {
+  const Folder folder;
+  const Ending one = check(folder, {}), two = check(folder, {}, 2);
+  ASSERT_EQ(two.status, 0) << two.output;
+  for (const char *key : {"cells", "nodes", "particles", "mass_kg", "critical_step_s", "height_m", "mean_quality"})
+    EXPECT_NEAR(number(two, key), number(one, key), 1e-12 * number(one, key)) << key;
+}
+
+TEST(Check, GivesTheCriticalStepThatARunIsRefusedAt) {
+  const Folder folder;
+  const double critical = number(check(folder, {}), "critical_step_s");
+  const auto run = [&](double step) {
+    return talus(folder, {"run", "scene.toml", "-o", "results", "--no-pictures", "--set",
+                          "integrator.step=" + std::to_string(step), "--set", "stage.0.duration=0.01"})
+        .status;
+  };
+  EXPECT_EQ(run(1.02 * critical), 2);
+  EXPECT_EQ(run(0.9 * critical), 0);
+}
+
+TEST(Check, WritesNothing) {
+  const Folder folder;
+  ASSERT_EQ(check(folder, {}).status, 0);
+  for (const auto &entry : std::filesystem::directory_iterator(folder.path())) {
+    const std::string name = entry.path().filename();
+    EXPECT_TRUE(name == "scene.toml" || name == "section.csv" || name == "output") << name;
+  }
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,227 @@
+// What `talus check` doubts of soil, units and sections.
+#include "check/check.h"
+
+namespace talus {
+namespace {
+
+/// A number without a unit counts in the unit of its key, which is not always the one that its writer had in mind.
+TEST(Check, DoubtsValuesThatNoSoilHas) {
+  const Folder folder;
+  EXPECT_FALSE(check(folder, {"body.sand.cohesion=7 kPa"}).says("hardly any soil has"));
+  EXPECT_TRUE(check(folder, {"body.sand.cohesion=7"}).says("body.sand.cohesion is 7 Pa, which hardly any soil has"));
+  EXPECT_TRUE(check(folder, {"body.sand.friction_angle=0.47"}).says("body.sand.friction_angle is 0.47 deg"));
+  EXPECT_TRUE(check(folder, {"body.sand.young_modulus=20"}).says("body.sand.young_modulus is 20 Pa"));
+  EXPECT_TRUE(check(folder, {"body.sand.density=1.9"}).says("Is it in t/m3?"));
+  EXPECT_TRUE(check(folder, {"body.sand.density=18"}).says("Is it in kN/m3 (key unit_weight)?"));
+  const Ending nothing = check(folder, {"body.sand.density=0.01"});
+  EXPECT_TRUE(nothing.says("density is 0.01 kg/m3, which hardly any soil has")) << nothing.output;
+  EXPECT_FALSE(nothing.says("Is it in")) << "no unit makes it a soil";
+}
+
+/// Each number is asked for in the unit in which it is one of soils, and the density that follows from it is not.
+TEST(Check, DoubtsUnitWeightsInTheUnitThatWasMeant) {
+  const Folder folder;
+  folder.write("section.csv", good_section);
+  folder.write("scene.toml", changed(good_scene, "density = 2000", "unit_weight = 1900"));
+  const auto asks = [&](const std::string &value, const std::string &question) {
+    const Ending ending = talus(folder, {"check", "scene.toml", "--set", "body.sand.unit_weight=" + value});
+    EXPECT_TRUE(ending.says("body.sand.unit_weight is ")) << ending.output;
+    EXPECT_FALSE(ending.says("body.sand.density is")) << ending.output;
+    EXPECT_EQ(ending.says("Is it in"), !question.empty()) << ending.output;
+    EXPECT_TRUE(ending.says(question)) << value << ": " << ending.output;
+  };
+  asks("1900", "Is it in kg/m3 (key density)?");
+  asks("90e3", "");
+  EXPECT_FALSE(
+      talus(folder, {"check", "scene.toml", "--set", "body.sand.unit_weight=19 kN/m3"}).says("hardly any soil"));
+}
+
+/// A section in feet is as large as it was drawn, and check says what was taken.
+TEST(Check, SaysTheUnitOfASection) {
+  const Folder folder;
+  folder.write("scene.toml", changed(good_scene, "size = 0.25", "size = \"0.25 ft\""));
+  folder.write("section.csv", changed(good_section, "part,x,y", "part,x [ft],y [ft]"));
+  const Ending ending = talus(folder, {"check", "scene.toml"});
+  EXPECT_EQ(ending.status, 0) << ending.output;
+  EXPECT_TRUE(ending.says("section.csv: all numbers are in feet (line 1) and turned into metres")) << ending.output;
+  const Ending mesh = talus(folder, {"mesh", "section.csv", "--size", "0.25 ft", "-o", "a.msh"});
+  EXPECT_TRUE(mesh.says("a.msh from section.csv, in cells of 0.0762 m\n")) << mesh.output;
+  EXPECT_TRUE(mesh.says("all numbers are in feet (line 1)")) << mesh.output;
+  EXPECT_TRUE(mesh.says("region sand: ")) << mesh.output;
+  EXPECT_TRUE(mesh.says(" cells, 0.0464")) << "half a square foot, in m2: " << mesh.output;
+}
+
+/// A region below soil that no body fills is a void, whose roof is soil.
+TEST(Check, DoubtsSoilOverAVoid) {
+  const Folder folder;
+  folder.write("scene.toml", good_scene);
+  const auto look = [&](const std::string &below, const std::vector<std::string> &more = {}) {
+    folder.write("section.csv",
+                 changed(good_section, "region_sand,0.5,0.25\n",
+                         "interface1,0,0.25\ninterface1,1,0.25\nregion_sand,0.5,0.4\nregion_" + below + ",0.5,0.1\n"));
+    std::vector<std::string> words{"check", "scene.toml", "--set", "mesh.size=0.1"};
+    for (const std::string &one : more) words.insert(words.end(), {"--set", one});
+    return talus(folder, words);
+  };
+  const Ending ending = look("clay");
+  EXPECT_TRUE(ending.says("The soil hangs over free space: nothing is below its faces at x = 0 to 1 m, y = 0.25 m"))
+      << ending.output;
+  EXPECT_FALSE(look("clay", {"body.sand.region=['sand', 'clay']"}).says("hangs over"));
+  const std::string held = "boundary.floor={group='floor', kind='fixed'}";
+  folder.write("floor.csv", changed(good_section, "region_sand,0.5,0.25\n",
+                                    "interface1,0,0.25\ninterface1,1,0.25\nregion_sand,0.5,0.4\nregion_clay,0.5,0.1\n"
+                                    "b_floor,0,0.25\nb_floor,1,0.25\n"));
+  EXPECT_FALSE(look("clay", {"mesh.section=floor.csv", held}).says("hangs over"));
+  EXPECT_FALSE(check(folder, {}).says("hangs over"));
+}
+
+TEST(Check, DoubtsWhatFitsTheSoilBadly) {
+  const Folder folder;
+  const auto says = [&](const std::vector<std::string> &overrides, const std::string &text) {
+    const Ending ending = check(folder, overrides);
+    EXPECT_EQ(ending.status, ending.says("breaks off in its first steps") ? 1 : 0) << ending.output;
+    return ending.says(text);
+  };
+  const std::string drained = "phases=drained", few = "fewer than 4 cells over the depth";
+  EXPECT_FALSE(says({"mesh.size=0.12"}, few));
+  EXPECT_TRUE(says({"mesh.size=0.3"}, few));
+  EXPECT_FALSE(says({"body.sand.tension_cutoff=1e3", "body.sand.cohesion=1e3"}, "has no effect"));
+  EXPECT_TRUE(
+      says({"body.sand.tension_cutoff=1e4", "body.sand.cohesion=1e3"}, "tension_cutoff is 1e+04 Pa and has no effect"));
+  EXPECT_FALSE(says({drained, "water.table=[[0, 0.4], [2, 0.2]]"}, "water.table"));
+  EXPECT_TRUE(says({drained, "water.table=[[0, 1000]]"}, "stands 999.5 m or more above the top of the soil"));
+  EXPECT_TRUE(says({drained, "water.table=[[0, 1e5], [2, 1e3]]"}, "breaks off in its first steps"))
+      << "a state that has broken off is not looked at";
+  EXPECT_TRUE(says({drained, "water.table=[[0, 0.4]]", "water.density=1"}, "Is it in t/m3?"));
+  EXPECT_TRUE(says({"gravity=9810"}, "Is it in mm/s2?"));
+  EXPECT_TRUE(says({"gravity=9.81 ft/s2"}, "gravity is 2.99 m/s2; that of the earth is 9.81 m/s2. Is it 9.81 m/s2"));
+  EXPECT_TRUE(says({"gravity=0.00981"}, "Is it 9.81 m/s2, and not mm/s2?"));
+  EXPECT_TRUE(says({"gravity=490.5"}, "Is this 50 times as much meant, as in a centrifuge?"));
+  for (const char *likely : {"gravity=9.81", "gravity=10", "gravity=32.2 ft/s2", "gravity=1.62", "gravity=0"})
+    EXPECT_FALSE(says({likely}, "that of the earth")) << likely;
+  EXPECT_TRUE(says({"body.sand.density=2.7"}, "a number without a unit counts in kg/m3. Is it in t/m3?"));
+  const Ending in_grams = check(folder, {"body.sand.density=2700 g/m3"});
+  EXPECT_TRUE(in_grams.says("hardly any soil has; the scene gives it as")) << in_grams.output;
+  EXPECT_FALSE(in_grams.says("t/m3?")) << in_grams.output;
+  EXPECT_TRUE(says({drained, "water.table=[[-9, 0.4], [-8, 0.2]]"}, "runs from x = -9 to -8 m, beside the soil"));
+  EXPECT_TRUE(says({drained, "water.table=[[0, -1]]"}, "it gives no pore pressure"));
+  EXPECT_FALSE(says({drained, "water.table=[[0, -1]]", "water.level=t"}, "it gives no pore pressure"));
+  folder.write("scene.toml", changed(good_scene, "density = 2000", "unit_weight = 1900"));
+  folder.write("section.csv", good_section);
+  EXPECT_TRUE(talus(folder, {"check", "scene.toml"}).says("unit_weight is 1900 N/m3")) << "kg/m3";
+  folder.write("mm.csv", "part,x,y\noutline,0,0\noutline,20e3,0\noutline,20e3,10e3\noutline,0,10e3\nregion_sand,5,5\n");
+  EXPECT_TRUE(talus(folder, {"check", "scene.toml", "--set", "mesh.section=mm.csv", "--set", "mesh.size=1000"})
+                  .says("Is the mesh in millimetres"));
+}
+
+/// Soil that was drawn and has no body would be a hole in the slope.
+TEST(Check, DoubtsRegionsThatNoBodyFills) {
+  const Folder folder;
+  folder.write("scene.toml", good_scene);
+  const auto says = [&](const std::string &name) {
+    std::string section = good_section;
+    if (!name.empty()) section = changed(section, "region_air", "region_" + name);
+    folder.write("section.csv", section);
+    return talus(folder, {"check", "scene.toml"}).says("no body fills the region");
+  };
+  EXPECT_FALSE(says(""));
+  EXPECT_FALSE(says("air_1"));  // between cuts
+  EXPECT_TRUE(says("gravel"));
+}
+
+/// A section of 20 m by 10 m that was drawn in millimetres; small cells in it are refused, with the same question.
+TEST(Check, DoubtsSectionsInMillimetresBeforeTheirMesh) {
+  const Folder folder;
+  folder.write("millimetres.csv", "part,x,y\noutline,0,0\noutline,20000,0\noutline,20000,10000\noutline,0,10000\n");
+  const Ending ending = talus(folder, {"mesh", "millimetres.csv", "--size", "2000", "-o", "a.msh"});
+  EXPECT_EQ(ending.status, 0) << ending.output;
+  EXPECT_TRUE(ending.says("The mesh is 1e+04 m high; coordinates count in metres. Is the mesh in millimetres or feet?"))
+      << ending.output;
+  const Ending fine = talus(folder, {"mesh", "millimetres.csv", "--size", "0.5", "-o", "b.msh"});
+  EXPECT_NE(fine.status, 0);
+  EXPECT_TRUE(fine.says("coordinates count in metres, are these in millimetres?")) << fine.output;
+  folder.write("section.csv", good_section);
+  EXPECT_FALSE(talus(folder, {"mesh", "section.csv", "--size", "0.25", "-o", "c.msh"}).says("millimetres"));
+}
+
+/// Interfaces listed from bottom to top: what the mesher doubts is said by check too.
+TEST(Check, DoubtsInterfacesFromBottomToTop) {
+  const Folder folder;
+  const std::string outline = "part,x,y\noutline,0,0\noutline,2,0\noutline,2,1\noutline,0,1\n";
+  folder.write("up.csv", outline + "interface0,0,0.25\ninterface0,2,0.25\ninterface1,0,0.5\ninterface1,2,0.5\n");
+  const std::vector<std::string> words{"mesh.section=up.csv", "body.sand.region=layer2"};
+  const Ending ending = check(folder, words);
+  EXPECT_TRUE(ending.says("'interface1' (line 8) lies above 'interface0' (line 6)")) << ending.output;
+}
+
+/// Strain that is smoothed without the stress, where it matters.
+TEST(Check, DoubtsNodalLockingOfSoilThatDilates) {
+  const Folder folder;
+  folder.write("section.csv", good_section);
+  const char *doubt = "body.sand.dilation_angle and transfer.locking";
+  EXPECT_TRUE(check(folder, {"transfer.locking=nodal", "body.sand.dilation_angle=5"}).says(doubt));
+  EXPECT_FALSE(check(folder, {"transfer.locking=nodal"}).says(doubt));
+  EXPECT_FALSE(check(folder, {"body.sand.dilation_angle=5"}).says(doubt));
+}
+
+/// Equilibrium of soil that ends with the mesh depends on what holds it there.
+TEST(Check, DoubtsMissingSupports) {
+  const Folder folder;
+  const auto advice = [&](const std::vector<std::string> &overrides, int ranks = 1) {
+    const Ending ending = check(folder, overrides, ranks);
+    EXPECT_EQ(ending.status, 0) << ending.output;
+    return ending;
+  };
+  const std::string still = "stage.0.kind=quasi_static";
+  const char *left = "The soil ends with the mesh at x = 0 m, and no boundary names its face there, y = 0 to 0.5 m",
+             *right = "The soil ends with the mesh at x = 1 m", *below = "Nothing holds the soil from below";
+  const std::string elsewhere = "boundary.left.group=right", side = "boundary.base={kind='fixed', group='right'}";
+  for (const int ranks : {1, 2}) EXPECT_TRUE(advice({still, elsewhere}, ranks).says(left));
+  EXPECT_TRUE(advice({"stage.0.until=equilibrium", elsewhere}).says(left));
+  EXPECT_FALSE(advice({elsewhere}).says(left)) << "run-out";
+  EXPECT_FALSE(advice({still}).says(left));
+  EXPECT_FALSE(advice({still}).says(right)) << "the mesh goes on beyond this face";
+  EXPECT_FALSE(advice({still, "boundary.left={kind='traction', traction=[0, 0]}"}).says(left)) << "said to be free";
+  EXPECT_FALSE(advice({}).says(below));
+  for (const int ranks : {1, 2})
+    EXPECT_TRUE(advice({side}, ranks).says(std::string(below) + ": its lowest faces, x = 0 to 1 m at y = 0 m"));
+  EXPECT_FALSE(advice({"boundary.base={kind='friction', friction_angle=20}"}).says(below));
+  folder.write("scene.toml", changed(good_scene, "density = 2000",
+                                     "porosity = 0.4\ngrain_density = 2650\nhydraulic_conductivity = 1e-5"));
+  const Ending seepage = talus(folder, {"check", "scene.toml", "--json", "--set", "phases=drained", "--set",
+                                        "stage.0.kind=seepage", "--set", "water.table=[[0, 0.4]]", "--set", elsewhere});
+  EXPECT_EQ(seepage.status, 0) << seepage.output;
+  EXPECT_FALSE(seepage.says(left)) << "soil at rest";
+}
+
+/// The height of the soil is 0.5 m, its weight 2000 9.81 0.5 Pa = 9.81 kPa: c / (gamma H) is doubted below 0.001, 9.81
+/// Pa, which is doubted at any height, and above 100. At 20 m the former is 392 Pa.
+TEST(Check, DoubtsStrengthThatMakesNoSenseForItsHeight) {
+  const Folder folder;
+  const auto says = [&](const std::vector<std::string> &overrides, const char *text) {
+    return check(folder, overrides).says(text);
+  };
+  EXPECT_FALSE(says({"body.sand.cohesion=0.9e6"}, "stands in any shape"));
+  EXPECT_TRUE(says({"body.sand.cohesion=1e6"}, "times the weight of the soil, 9.81 kPa over its depth"));
+  EXPECT_FALSE(says({"body.sand.cohesion=1e6", "body.sand.reduce_strength=false"}, "stands in any shape"));
+  EXPECT_TRUE(says({"body.sand.cohesion=0.3e6"},
+                   "The stiffness of body.sand, young_modulus = 1 MPa, is 3.333 times its cohesion"));
+  EXPECT_FALSE(says({"body.sand.cohesion=0.1e6"}, "times its cohesion"));
+  EXPECT_FALSE(says({"body.sand.young_modulus=5e9"}, "gives waves a speed of"));
+  EXPECT_TRUE(says({"body.sand.young_modulus=50e9"}, "The stiffness of body.sand gives waves a speed of 5801 m/s"));
+  EXPECT_FALSE(says({"body.sand.young_modulus=50e9", "body.sand.cohesion=2e6", "body.sand.reduce_strength=false"},
+                    "gives waves a speed of"))
+      << "rock";
+  folder.write("high.csv", "part,x,y\noutline,0,0\noutline,20,0\noutline,20,20\noutline,0,20\nregion_sand,5,5\n");
+  const auto high = [&](const std::vector<std::string> &overrides) {
+    std::vector<std::string> all{"mesh.section=high.csv", "mesh.size=4"};
+    all.insert(all.end(), overrides.begin(), overrides.end());
+    return says(all, "it decides nothing");
+  };
+  EXPECT_TRUE(high({"body.sand.cohesion=32.6", "body.sand.friction_angle=20"}));
+  EXPECT_FALSE(high({"body.sand.cohesion=400", "body.sand.friction_angle=20"}));
+  EXPECT_FALSE(high({"body.sand.cohesion=100", "body.sand.friction_angle=33"})) << "sand with a trace of cohesion";
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,223 @@
+// What `talus check` doubts of water, and of pores.
+#include "check/check.h"
+
+namespace talus {
+namespace {
+
+/// Pores are full of water below a water table, and not by an excess pressure alone.
+TEST(Check, DoubtsWetWeightsWithoutAWaterTable) {
+  const Folder folder;
+  folder.write("section.csv", good_section);
+  folder.write("scene.toml", changed(good_scene, "density = 2000",
+                                     "unit_weight = \"18 kN/m3\"\nsaturated_unit_weight = \"21 kN/m3\""));
+  const auto says = [&](const std::string &water) {
+    return talus(folder, {"check", "scene.toml", "--set", "phases=drained", "--set", "water={" + water + "}"})
+        .says("water.excess is the only pore pressure of body.sand");
+  };
+  EXPECT_TRUE(says("excess='max(0, 9810 * (0.4 - y))'"));
+  EXPECT_FALSE(says("table='0.4 - 0.1 * x'"));
+  EXPECT_FALSE(says("table='0.4 - 0.1 * x', excess='100 * x'"));
+}
+
+/// Soil whose pores are full everywhere weighs the same above and below any table.
+TEST(Check, DoesNotDoubtFullPoresWithoutAWaterTable) {
+  const Folder folder;
+  folder.write("section.csv", good_section);
+  folder.write("scene.toml",
+               changed(good_scene, "density = 2000", "porosity = 0.3\ngrain_density = 2650\nsaturation = 1"));
+  const auto says = [&](const std::string &saturation) {
+    return talus(folder, {"check", "scene.toml", "--set", "phases=drained", "--set",
+                          "water={excess='9810 * (0.5 - y)'}", "--set", "body.sand.saturation=" + saturation})
+        .says("water.excess is the only pore pressure of body.sand");
+  };
+  EXPECT_TRUE(says("0.5"));
+  EXPECT_FALSE(says("1"));
+}
+
+/// Open water is level and has a weight. The ground is level at y = 0.5 m up to x = 1 m, where it falls to 0 m at once.
+TEST(Check, DoubtsOpenWaterThatIsNotLevel) {
+  const Folder folder;
+  const auto advice = [&](std::vector<std::string> overrides, int ranks = 1) {
+    overrides.emplace_back("phases=drained");
+    const Ending ending = check(folder, overrides, ranks);
+    EXPECT_EQ(ending.status, 0) << ending.output;
+    return ending;
+  };
+  const std::string sloping = "water.table=[[0, 0.9], [1, 0.6]]";
+  for (const int ranks : {1, 2}) {
+    const Ending ending = advice({sloping}, ranks);
+    EXPECT_TRUE(
+        ending.says("water.table stands up to 0.6 m above the ground from x = 0 to 1 m and is not level there: "
+                    "it lies between y = 0.6 and 0.9 m"))
+        << ending.output;
+  }
+  const char *doubt = "is not level there";
+  EXPECT_FALSE(advice({"water.table=[[0, 0.9], [1, 0.9]]"}).says(doubt)) << "a pond";
+  for (const int ranks : {1, 2})
+    EXPECT_FALSE(advice({"water.table=[[0, 0.5], [1, 0]]"}, ranks).says(doubt)) << "water in the soil";
+  EXPECT_FALSE(advice({"water.table=[[0, 0.502], [1, 0.49]]"}).says(doubt)) << "a film";
+  EXPECT_FALSE(advice({sloping, "water.open_water_load=false"}).says(doubt)) << "a head";
+  EXPECT_FALSE(advice({"water.table=[[0, 0.4], [1, 0.1]]"}).says(doubt));
+  EXPECT_TRUE(advice({"water.table=[[0, 0.4], [1, 0.1]]", "water.level=[[0, 0], [0.05, 0.5]]"}).says(doubt))
+      << "a table that rises above the ground";
+  // a peak that lasts shorter than the times at which functions are looked at
+  EXPECT_TRUE(
+      advice({"water.table=[[0, 0.4], [1, 0.1]]", "water.level=[[0, 0], [0.0301, 0], [0.0305, 0.5], [0.0309, 0]]"})
+          .says("water.table stands up to 0.6 m above the ground"))
+      << "the deepest at the points of water.level";
+  EXPECT_FALSE(advice({"water.table=[[0, 0.9], [0.1, 0.9], [0.2, 0.4], [0.8, 0.4], [0.9, 0.7], [1, 0.7]]"}).says(doubt))
+      << "two ponds, of which each is level";
+}
+
+/// A ditch from x = 0.5 to 1.5 m in ground at y = 0.5 m, 0.3 m deep.
+TEST(Check, DoubtsPondsInHollowsOfTheGround) {
+  const Folder folder;
+  folder.write("ditch.csv",
+               "part,x,y\noutline,0,0\noutline,2,0\noutline,2,1\noutline,0,1\ninterface0,0,0.5\ninterface0,0.5,0.5\n"
+               "interface0,0.8,0.2\ninterface0,1.2,0.2\ninterface0,1.5,0.5\ninterface0,2,0.5\n"
+               "region_sand,0.5,0.25\nregion_air,1,0.7\n");
+  const auto advice = [&](const std::string &table, std::vector<std::string> overrides = {}) {
+    overrides.insert(overrides.end(), {"phases=drained", "mesh.section=ditch.csv", "mesh.size=0.1", table,
+                                       "boundary.right.kind=roller"});
+    const Ending ending = check(folder, overrides);
+    EXPECT_EQ(ending.status, 0) << ending.output;
+    return ending;
+  };
+  const Ending level = advice("water.table=[[0, 0.4]]");
+  EXPECT_TRUE(level.says("water.table makes a pond of up to 0.2 m in a hollow of the ground from x = 0.6"))
+      << level.output;
+  const char *doubt = "makes a pond of up to";
+  EXPECT_TRUE(advice("water.table=[[0, 0.4], [2, 0.4]]").says(doubt)) << "no point in the hollow";
+  EXPECT_TRUE(advice("water.table=[[0, 0.1]]", {"water.level=[[0, 0], [0.05, 0.3]]"}).says(doubt)) << "it rises";
+  EXPECT_FALSE(advice("water.table=[[0, 0.4], [0.6, 0.4], [1.4, 0.4], [2, 0.4]]").says(doubt))
+      << "points at the shores";
+  EXPECT_FALSE(advice("water.table=[[0, 0.4], [0.7, 0.1], [1.3, 0.1], [2, 0.4]]").says(doubt)) << "below the bottom";
+  EXPECT_FALSE(advice("water.table=[[0, 0.15]]").says(doubt));
+  EXPECT_FALSE(advice("water.table=[[0, 0.4]]", {"water.open_water_load=false"}).says(doubt));
+  EXPECT_FALSE(advice("water.table=[[0, 0.9]]").says(doubt)) << "a lake to both ends";
+}
+
+/// Undrained clay below a water table, and motion for days.
+TEST(Check, DoubtsWaterOverSoilWithoutFriction) {
+  const Folder folder;
+  const auto doubted = [&](std::vector<std::string> overrides) {
+    return check(folder, overrides).says("body.sand has no friction (friction_angle = 0)");
+  };
+  const std::vector<std::string> clay{"phases=drained", "water.table=[[0, 0.4]]", "body.sand.friction_angle=0",
+                                      "body.sand.cohesion=5 kPa"};
+  const auto with = [&](const std::vector<std::string> &more) {
+    std::vector<std::string> all = clay;
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  EXPECT_TRUE(doubted(clay));
+  EXPECT_FALSE(doubted(with({"body.sand.friction_angle=20"})));
+  EXPECT_FALSE(doubted(with({"water.table=[[0, -1]]"}))) << "no water in it";
+  EXPECT_TRUE(doubted(with({"water.table=[[0, -1]]", "water.level=[[0, 0], [0.05, 1.2]]"}))) << "it rises";
+  EXPECT_FALSE(doubted({"body.sand.friction_angle=0", "body.sand.cohesion=5 kPa"})) << "dry";
+}
+
+TEST(Check, DoubtsMotionOverDays) {
+  const Folder folder;
+  const char *doubt = "Stage fall lets the soil move for 3 d";
+  EXPECT_TRUE(check(folder, {"stage.0.duration=3 d"}).says(doubt));
+  EXPECT_FALSE(check(folder, {"stage.0.duration=20 h"}).says("lets the soil move for"));
+  EXPECT_FALSE(check(folder, {"stage.0.duration=3 d", "stage.0.kind=quasi_static"}).says("lets the soil move for"));
+}
+
+TEST(Check, DoubtsWaterTablesOfASoilAboveItsGround) {
+  const Folder folder;
+  folder.write("top.csv", good_section + "b_top,0,0.5\nb_top,1,0.5\n");
+  const auto advice = [&](std::vector<std::string> overrides) {
+    overrides.insert(overrides.end(), {"phases=drained", "water.density=1000", "mesh.section=top.csv"});
+    const Ending ending = check(folder, overrides);
+    EXPECT_EQ(ending.status, 0) << ending.output;
+    return ending;
+  };
+  const std::string own = "body.sand.water_table=[[0, 0.8], [1, 0.6]]";
+  const char *doubt = "body.sand.water_table stands up to ";
+  const Ending ending = advice({own});
+  EXPECT_TRUE(ending.says(std::string(doubt) +
+                          "0.3 m above the free surface of this soil and the open water on it, from x = 0 to 1 m"))
+      << ending.output;
+  EXPECT_FALSE(advice({own, "water.table=[[0, 0.8], [1, 0.8]]"}).says(doubt)) << "under a pond as high";
+  EXPECT_FALSE(advice({"body.sand.water_table=[[0, 0.4], [1, 0]]"}).says(doubt));
+  EXPECT_FALSE(advice({"body.sand.water_table=[[0, 0.5], [1, 0.3]]"}).says(doubt)) << "water leaves at the steep face";
+  EXPECT_FALSE(advice({own, "water.open_water_load=false"}).says(doubt)) << "a head";
+  EXPECT_FALSE(advice({own, "boundary.top={kind='traction', pressure=3e3}"}).says(doubt)) << "a load bears against it";
+}
+
+/// Pressure at the surface of the soil counts as the load of open water. Under sealed ground there is none.
+TEST(Check, DoubtsSeepageUnderSealedGround) {
+  const Folder folder;
+  folder.write("section.csv", good_section);
+  folder.write("scene.toml",
+               changed(good_scene, "density = 2000", "porosity = 0.3\ngrain_density = 2650\npermeability = 1e-12"));
+  const auto advice = [&](const std::vector<std::string> &overrides) {
+    std::vector<std::string> words{"check",          "scene.toml", "--set",
+                                   "phases=drained", "--set",      "water.table=[[0, 0.3], [1, 0.1]]"};
+    for (const std::string &one : overrides) words.insert(words.end(), {"--set", one});
+    const Ending ending = talus(folder, words);
+    EXPECT_EQ(ending.status, 0) << ending.output;
+    return ending;
+  };
+  const std::string seepage = "stage.0.kind=seepage",
+                    sealed = "boundary.ground={kind='impermeable', group='free_surface'}";
+  const char *doubt = "boundary.ground lets no water through the ground";
+  EXPECT_TRUE(advice({seepage, sealed}).says(doubt));
+  EXPECT_FALSE(advice({seepage, sealed, "water.open_water_load=false"}).says(doubt));
+  const std::string second = "[[stage]]\nname = \"rain\"\nkind = \"seepage\"\nduration = 1\n",
+                    dries =
+                        "[body.sand.retention]\ncurve = \"van_genuchten\"\nreference_suction = 1e4\nshape = 0.5\n"
+                        "[body.sand.relative_permeability]\ncurve = \"van_genuchten_mualem\"\nshape = 0.5\n";
+  folder.write("scene.toml",
+               changed(good_scene, "density = 2000", "porosity = 0.3\ngrain_density = 2650\npermeability = 1e-12") +
+                   dries + second);
+  const char *early = "water.suction acts from the first stage of seepage on, rain";
+  EXPECT_TRUE(advice({"water.suction=5e4"}).says(early));
+  EXPECT_FALSE(advice({"water.suction=5e4", seepage}).says(early));
+  EXPECT_FALSE(advice({}).says(early));
+  EXPECT_FALSE(advice({seepage, "boundary.ground={kind='impermeable', group='right'}"}).says(doubt)) << "a side";
+  EXPECT_FALSE(advice({seepage, "boundary.ground={kind='rainfall', group='free_surface', intensity=0}"}).says(doubt));
+}
+
+/// A pressure pushes both sides of a line in the soil with the same force. Where soil comes or goes it does not.
+TEST(Check, RefusesAPressureInsideTheSoil) {
+  const Folder folder;
+  const std::string crack = good_section + "b_crack,0.5,0.25\nb_crack,0.5,0.5\n";
+  const std::string load = "[boundary.crack]\nkind = \"traction\"\n";
+  const auto end_with = [&](const std::string &keys, const std::string &section) {
+    folder.write("section.csv", section), folder.write("scene.toml", good_scene + load + keys);
+    return talus(folder, {"check", "scene.toml"});
+  };
+  for (const int ranks : {1, 2}) {
+    (void)end_with("pressure = 1e3\n", crack);
+    const Ending refused = talus(folder, {"check", "scene.toml"}, ranks);
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_TRUE(refused.says("boundary.crack.kind = \"traction\" is a pressure on a face inside the soil"))
+        << refused.output;
+  }
+  EXPECT_EQ(end_with("traction = [1e3, 0]\n", crack).status, 0) << "an anchor";
+  const std::string longer = good_section + "b_crack,0.5,0.5\nb_crack,1,0.5\nb_crack,1,0.25\n";
+  EXPECT_EQ(end_with("pressure = 1e3\n", longer).status, 0) << "the surface";
+  const std::string later =
+      "[body.fill]\nregion = \"fill\"\ndensity = 2000\nlaw = \"linear_elastic\"\n"
+      "young_modulus = 1e6\npoisson_ratio = 0.3\n[[stage]]\nkind = \"quasi_static\"\n"
+      "duration = 1\nadd = [\"fill\"]\n";
+  const std::string filled = changed(longer, "region_air,1.5,0.5", "region_fill,1.5,0.5");
+  EXPECT_EQ(end_with("pressure = 1e3\n" + later, filled).status, 0) << "fill that comes later";
+}
+
+/// Air in cells of 0.25 m loses its speed at 6e-6 / k 1/s, and its waves from cell to cell turn at 2300 rad/s.
+TEST(Check, NamesGasThatDragHardlyHolds) {
+  const Folder folder;
+  folder.write("scene.toml", sound_scene("three-phase")), folder.write("section.csv", good_section);
+  const auto page = [&](const std::string &permeability) {
+    return talus(folder, {"check", "scene.toml", "--set", "body.sand.gas_permeability=" + permeability});
+  };
+  EXPECT_TRUE(page("1e-7").says("Gas moves through sand with hardly any drag"));
+  EXPECT_FALSE(page("1e-9").says("hardly any drag"));
+}
+
+}  // namespace
+}  // namespace talus
