@@ -43,8 +43,8 @@ void Recorder<dim>::write_checkpoint(int stage, const Archive &state) {
 }
 
 /// Only what the saved state does not depend on may differ: results, what becomes of particles that leave the mesh (up
-/// to the checkpoint either none has left, or they have been taken out), the search for factors of safety, and how long
-/// stages last that have not ended.
+/// to the checkpoint either none has left, or they have been taken out), the search for factors of safety, how long
+/// stages last that have not ended, and the length of the steps to come.
 template <int dim>
 Checkpoint Recorder<dim>::find_checkpoint() {
   const std::string refusal = "the run in " + options_.directory + " cannot be resumed: ";
@@ -66,18 +66,19 @@ Checkpoint Recorder<dim>::find_checkpoint() {
     const bool listed = words.size() > 1 && words[0] == "stage";
     const int stage = listed ? std::stoi(words[1]) : 0;
     const bool result = words[0] == "title" || words[0] == "factor_of_safety" || path == "mesh.leaving_particles" ||
-                        path == "mesh.balance_ranks" ||
+                        path == "mesh.balance_ranks" || path == "integrator.fraction" ||
                         (words[0] == "output" && words.size() > 1 && words[1] != "point");
     const bool to_come =
         listed &&
         (stage > found.stage || (stage == found.stage && (words.back() == "duration" || words.back() == "rest_speed")));
     if (!result && !to_come)
-      scene_.complain(path, "is not what it was when the run in " + options_.directory + " began, and " +
-                                tie_of(words[0]) +
-                                "; with --resume only title, [output] without its points, [factor_of_safety], "
-                                "mesh.leaving_particles, mesh.balance_ranks, duration and rest_speed of the present "
-                                "stage and the stages after it "
-                                "may change (repeat the --set of that run)");
+      scene_.complain(
+          path,
+          "is not what it was when the run in " + options_.directory + " began, and " + tie_of(words[0]) +
+              "; with --resume only title, [output] without its points, [factor_of_safety], "
+              "mesh.leaving_particles, mesh.balance_ranks, integrator.fraction, duration and rest_speed of the present "
+              "stage and the stages after it "
+              "may change (repeat the --set of that run)");
   }
   if (found.ranks != mine.ranks) written_ranks_ = found.ranks;
   return checkpoint;

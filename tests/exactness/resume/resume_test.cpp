@@ -463,6 +463,21 @@ TEST_F(EndedRun, GoesOnWithALongerStage) {
   EXPECT_NE(longer.find("\n0.08,"), std::string::npos);
 }
 
+/// As the log advises where a run ends because motion creates energy.
+TEST_F(EndedRun, GoesOnInShorterSteps) {
+  const auto steps = [this] {  // the second number of the last row
+    std::istringstream rows(content("results/history.csv"));
+    std::string row, last;
+    while (std::getline(rows, row)) last = row;
+    return std::stod(last.substr(last.find(',') + 1));
+  };
+  const double before = steps();
+  const Ending ending = run({"--resume", "--set", "stage.0.duration=0.1", "--set", "integrator.fraction=0.2"});
+  ASSERT_EQ(ending.status, 0) << ending.output;
+  EXPECT_TRUE(ending.says("since then the scene has another integrator.fraction")) << ending.output;
+  EXPECT_NEAR((steps() - before) / before, 0.6 / 0.2, 0.5);
+}
+
 TEST_F(EndedRun, IsNotResumedWithAnotherSoil) {
   expect_refused(run({"--resume", "--set", "body.sand.friction_angle=31"}),
                  {"body.sand.friction_angle = 31", "--resume"});
