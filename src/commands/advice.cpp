@@ -277,6 +277,14 @@ class Adviser {
     if (t.remap_interval == 0)
       say("A remap in every step costs twice the time or more and adds cell-crossing noise; transfer.remap_interval = "
           "0.1 is the default.");
+    if (t.velocity == Velocity::pic)
+      say("transfer.velocity = \"pic\" damps motion at each remap: a slide is slower and comes less far, the more so "
+          "the oftener particles are remapped. The default keeps the velocity of particles and damps what no node "
+          "sees.");
+    else if (t.relaxation == 0 && t.pic_fraction == 0)
+      say("With transfer.relaxation = 0 nothing damps the velocities that particles have and no node sees: soil goes "
+          "on "
+          "shaking where it should come to rest. The default is 3.");
     if (t.integration == Integration::particle || t.integration == Integration::mixed)
       say("Integration by particle volumes was four to nine times less accurate than \"blended\" where particles cross "
           "cells.");

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "simulation/world.h"
+#include "scene/scene.h"
 
 namespace talus {
 
@@ -14,7 +14,6 @@ struct ChangingLoad {
 };
 
 /// All of a scene, in the order of its boundaries, water and bodies.
-template <int dim>
-std::vector<ChangingLoad> changing_loads(const World<dim> &world);
+std::vector<ChangingLoad> changing_loads(const Scene &scene);
 
 }  // namespace talus

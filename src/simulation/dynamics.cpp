@@ -199,10 +199,10 @@ void Dynamics<dim>::refuse_broken() {
   const std::string place = place_of_first<dim>(world_.comm, refused, where);
   if (!place.empty()) throw RunFailure("near " + place + ", " + text_of_first(world_.comm, refused, cause));
   const bool mine = world_.motion->find_broken(&where);
-  throw MotionFailure(
-      "the velocity is not finite near " + place_of_first<dim>(world_.comm, mine, where) +
-      "; look at the loads there; a smaller integrator.fraction, a volume_cap or transfer.remap_interval "
-      "= 0 may help");
+  throw MotionFailure("the velocity is not finite near " + place_of_first<dim>(world_.comm, mine, where) +
+                      "; look at the loads there; a smaller integrator.fraction" +
+                      (world_.phases.fluids() > 0 ? "" : ", a volume_cap") +
+                      " or transfer.remap_interval = 0 may help");
 }
 
 template <int dim>

@@ -37,9 +37,10 @@ class EnergyWatch {
     return "energy is created: " + rounded(created_) + " J, of " + rounded(turnover_) +
            " J that were there or were brought (dissipated_J in history.csv falls" +
            (whole_ ? ")" : "; it lacks the energy of pore fluids, which is no reason for so much)") +
-           ". Where a smaller integrator.fraction "
-           "creates less, the steps were longer than this soil bears: soil that has grown by dilation, or by gaps "
-           "without a volume_cap, waits for shorter ones. Otherwise look at volume and dilation of its particles; "
+           ". Where a smaller integrator.fraction (which --resume takes) "
+           "creates less, the steps were longer than this soil bears: soil that has grown by dilation, or by gaps" +
+           (whole_ ? " without a volume_cap" : "") +
+           ", waits for shorter ones. Otherwise look at volume and dilation of its particles; "
            "dilation needs an end (residual_dilation_angle)" +
            (whole_ ? "" : ", and pores of particles whose soil has come apart grow with the gaps");
   }

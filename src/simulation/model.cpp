@@ -462,7 +462,7 @@ class Model {
     const std::array<double, 3> acceleration = scene_.acceleration_in(stage);
     std::vector<std::string> changes;
     if (!stage.hold_loads)
-      for (const ChangingLoad &load : changing_loads(world_)) changes.push_back(load.key);
+      for (const ChangingLoad &load : changing_loads(world_.scene)) changes.push_back(load.key);
     return fields.object
         .add("acceleration", json_of(std::vector<double>(acceleration.begin(), acceleration.begin() + dim)))
         .add("integrator",

@@ -162,8 +162,12 @@ void Run<dim>::resume() {
   } catch (const std::invalid_argument &error) {
     throw SceneError("the run in " + options.directory + " cannot be resumed: " + error.what());
   }
-  if (recorder.has_changed("stage." + std::to_string(progress.number) + ".rest_speed")) {
-    progress.met = false;  // it has to stay below the new speed
+  const auto changed = [this](const char *key) {
+    return recorder.has_changed("stage." + std::to_string(progress.number) + "." + key);
+  };
+  const bool waits_for_loads = stage().until == StopWhen::rest || stage().until == StopWhen::equilibrium;
+  if (changed("rest_speed") || (changed("duration") && waits_for_loads && !is_static(stage().kind))) {
+    progress.met = false;  // it has to stay below the new speed, and more loads may come within a longer duration
     stop = make_stop_criterion<dim>(stage());
   }
   recorder.append(std::move(folder));

@@ -25,6 +25,8 @@ struct Run {
 
   const Stage &stage() const { return scene.stage[progress.number]; }
   bool last_stage() const { return progress.number + 1 == static_cast<int>(scene.stage.size()); }
+  /// Has the present stage lasted longer than its duration, which a resumed run may shorten?
+  bool is_past_stage() const { return clock.time > (progress.begin + stage().duration) * (1 + 1e-9); }
   void begin_next_stage();
   /// Sums of the present state. Collective.
   Balance balance();

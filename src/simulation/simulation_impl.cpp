@@ -27,7 +27,9 @@ void Simulation<dim>::run() {
     run_.recorder.note_created_energy();
     run_.recorder.note_cut_off();
     if (run_.options.resume && run_.clock.steps == before)
-      run_.recorder.note("nothing was left to do: the run had reached its end before it was resumed");
+      run_.recorder.note(run_.is_past_stage()
+                             ? "nothing was left to do: the last stage had lasted longer than its duration is now"
+                             : "nothing was left to do: the run had reached its end before it was resumed");
   });
   run_.recorder.close(run_.motion_left);
 }

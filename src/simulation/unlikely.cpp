@@ -245,6 +245,7 @@ std::vector<std::string> unlikely_surroundings(const Scene &scene, const std::ve
                                                const std::vector<SoilFace> &surface) {
   constexpr double lowest = 0.01;  // [m], an experiment on a table
   std::vector<std::string> sentences;
+  doubt_stages(scene, sentences);
   const double g = scene.gravity_size();
   if (g == 0) return sentences;
   if (const std::string sentence = doubt_about_gravity(g); !sentence.empty()) sentences.push_back(sentence);
@@ -403,6 +404,11 @@ std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<L
                                   rounded(apex) + " Pa");
         },
         laws[b]);
+    if (body.volume_cap > 0 && fluids_move(scene.phases))
+      sentences.push_back("body." + body.name + ".volume_cap = " + rounded(body.volume_cap) + " and phases = \"" +
+                          name_of(scene.phases) +
+                          "\": pores whose volume is held while gaps open are compressed when they close, each time a "
+                          "little more, and their pressure throws soil out. Leave volume_cap out");
     if (bodies[b].particles > 0)
       doubt_water_without_friction(scene, static_cast<int>(b), bodies[b], laws[b], sentences);
     if (bodies[b].particles > 0 && scene.gravity_size() > 0 && depth > 0)

@@ -1,5 +1,5 @@
 #pragma once
-/// The subjects of unlikely.h, a file each: water, ends of the mesh. Each function adds its sentences.
+/// The subjects of unlikely.h, a file each: water, ends of the mesh, stages. Each function adds its sentences.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -26,6 +26,8 @@ void doubt_water(const Scene &scene, const Extent &soil, const std::vector<SoilF
 /// Soil of one body without friction, from whose strength the water takes nothing.
 void doubt_water_without_friction(const Scene &scene, int body, const BodyReport &report, const Law &law,
                                   std::vector<std::string> &sentences);
+/// Loads that act too late, gravity that is not all there.
+void doubt_stages(const Scene &scene, std::vector<std::string> &sentences);
 /// Ends and base of the soil that no boundary holds.
 void doubt_ends(const Scene &scene, const Extent &soil, const std::vector<SoilFace> &surface,
                 std::vector<std::string> &sentences);

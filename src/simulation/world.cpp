@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 #include "base/sum.h"
 
@@ -106,6 +107,18 @@ PetscErrorCode World<dim>::release(double time, bool to_next) {
   PetscFunctionReturn(0);
 }
 
+/// What is said of a particle that leaves faster than soil that falls through all of the mesh could be.
+template <int dim>
+std::string World<dim>::thrown(double speed) const {
+  constexpr double surely = 3;
+  if (fastest_fall_ == 0 || !(speed > surely * fastest_fall_)) return "";
+  std::ostringstream text;
+  text << " at " << rounded(speed) << " m/s, and soil that falls through all of the mesh has " << rounded(fastest_fall_)
+       << " m/s: it was thrown, by motion that is not to be trusted. Look at what the soil did before; a smaller "
+          "integrator.fraction may help (also with --resume). Otherwise";
+  return text.str();
+}
+
 /// Particles that left the mesh: out of the bodies and into the ledger, or the end of the run.
 template <int dim>
 PetscErrorCode World<dim>::take_out(double time) {
@@ -116,7 +129,8 @@ PetscErrorCode World<dim>::take_out(double time) {
     const bool mine = b < bodies.size();
     const std::string place =
         place_of_first<dim>(comm, mine, mine ? bodies[b]->particles().position[outside_[b][0]] : Vec<dim>{});
-    throw MotionFailure("a particle left the mesh near " + place +
+    const double speed = mine ? map<dim>(bodies[b]->particles().velocity[outside_[b][0]]).norm() : 0;
+    throw MotionFailure("a particle left the mesh near " + place + text_of_first(comm, mine, thrown(speed)) +
                         "; add free space there, or a boundary that keeps soil in, or set mesh.leaving_particles = "
                         "\"remove\", which takes out what leaves (also with --resume)");
   }
@@ -257,6 +271,21 @@ std::vector<BodyReport> World<dim>::report() {
 }
 
 /// "particle 12 of body.sand" of this rank, the nearest to a place.
+template <int dim>
+double World<dim>::largest_displacement() const {
+  double square = 0;
+  for (const auto &body : bodies) {
+    const ParticleArrays<dim> &p = body->particles();
+    for (int i = 0; i < p.count; ++i) {
+      Vec<dim> x, v;
+      motion->present(*body, i, &x, &v);
+      square = std::max(square, (map<dim>(x) - map<dim>(p.reference[i])).squaredNorm());
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &square, 1, MPI_DOUBLE, MPI_MAX, comm);
+  return std::sqrt(square);
+}
+
 template <int dim>
 std::string World<dim>::nearest_particle(const Vec<dim> &where) const {
   double nearest = std::numeric_limits<double>::infinity();

@@ -73,6 +73,8 @@ class World {
   std::string function_fault() const;
   /// Of each body: do its particles on any rank have shares of a strength that varies with place? Collective.
   std::vector<char> strength_varies() const;
+  /// Of particles [m]. Collective.
+  double largest_displacement() const;
   /// Position of a particle of this rank and its number, the nearest to a place, in words.
   std::string nearest_particle(const Vec<dim> &where) const;
   /// Of mesh nodes [m]; only nodes of the filled grid have one. Collective.
@@ -123,6 +125,7 @@ class World {
   void set_pore_pressure_ratios();
   std::vector<char> cells_of_bodies(const std::function<bool(size_t body)> &which) const;
   void seed_bodies();
+  void find_fastest_fall();
   void settle_bodies();
   void close_bases();
   void make_motion();
@@ -130,10 +133,12 @@ class World {
   void count_particles();
   void count_runs();  ///< where particles have another cell or place in memory
   PetscErrorCode take_out(double time);
+  std::string thrown(double speed) const;
 
   std::vector<CriticalStep<dim>> critical_;
   double wave_speed_ = 0;         ///< the largest of the bodies [m/s]
   double smallest_altitude_ = 0;  ///< of the cells of the mesh [m]
+  double fastest_fall_ = 0;       ///< through the mesh, with the largest velocity at the start [m/s]
   double depth_on_bases_ = 0;     ///< of elastic soil at the start [m]
   const WorkRates rates_;
   long long runs_ = 0;                     ///< of particles of one cell, on this rank

@@ -289,8 +289,23 @@ void World<dim>::seed_bodies() {
                                         &depth_on_bases_));
   set_friction_delay();
   seeded_mass_ = total_mass, seeded_particles_ = particle_count;
+  find_fastest_fall();
   make_motion();
   require(motion->setup_pores(true));
+}
+
+/// Of soil that falls through all of the mesh with the largest speed at the start. Collective.
+template <int dim>
+void World<dim>::find_fastest_fall() {
+  constexpr double lowest = std::numeric_limits<double>::lowest();
+  double ends[3] = {lowest, lowest, 0};  // of elevations, the lower one with its sign changed; square of the speed
+  for (const Vec<dim> &x : mesh.position)
+    ends[0] = std::max(ends[0], x[scene.vertical()]), ends[1] = std::max(ends[1], -x[scene.vertical()]);
+  for (const auto &body : bodies)
+    for (int i = 0; i < body->particles().count; ++i)
+      ends[2] = std::max(ends[2], map<dim>(body->particles().velocity[i]).squaredNorm());
+  MPI_Allreduce(MPI_IN_PLACE, ends, 3, MPI_DOUBLE, MPI_MAX, comm);
+  fastest_fall_ = std::sqrt(2 * scene.gravity_size() * (ends[0] + ends[1]) + ends[2]);
 }
 
 /// Does a stage add or remove the body?

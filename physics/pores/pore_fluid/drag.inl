@@ -131,7 +131,9 @@ void PoreFluid<dim, Phases>::limits(const Frame &frame, const PoreConditions<dim
       [&](int i) {
         return LiquidAtNode{nodes_[i].mass(0), nodes_[i].volume()};
       },
-      limit);
+      [&](int i, const Vec<dim> &n, double low, double high) {  // a flux does nothing to a fluid that does not move
+        prescribed ? limit(i, n, std::min(low, 0.), std::max(high, 0.)) : limit(i, n, low, high);
+      });
 }
 
 template <int dim, class Phases>

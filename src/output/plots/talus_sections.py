@@ -188,9 +188,9 @@ class Painter:
         spans = [high - low for low, high in self.corners]
         wide = (WIDTH - LEFT - RIGHT - BESIDE * (columns - 1)) / columns
         widths = {k: (wide - BESIDE * (len(row) - 1)) / len(row) for row in rows for k in row}
-        for k in widths:  # a map may be much longer to the north than to the east
-            if isinstance(self.views[k], MapView):
-                widths[k] = min(widths[k], TALLEST * widths[k] * spans[k][0] / spans[k][1])
+        for k in widths:  # a map may be much longer to the north than to the east, and a column is taller than wide
+            tallest = TALLEST if isinstance(self.views[k], MapView) else 1.0
+            widths[k] = min(widths[k], tallest * widths[k] * spans[k][0] / spans[k][1])
         heights = {k: widths[k] * spans[k][1] / spans[k][0] for k in widths}
         since = {self.since.get(snapshot.step) for snapshot in snapshots}
         titles = {(n, k): wrapped(self._title(snapshot, k, note if k == rows[0][0] else None, len(since) > 1), widths[k])

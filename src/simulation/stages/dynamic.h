@@ -71,13 +71,21 @@ class DynamicStage final : public StageRunner<dim> {
   }
 
   void finish() {
-    if (!run_.progress.met && !run_.progress.told && run_.stop->early()) note_unmet();
+    if (!run_.progress.met && !run_.progress.told && run_.stop->early() && !run_.is_past_stage()) note_unmet();
     run_.progress.told = true;
     run_.recorder.write_history();
     run_.recorder.write_snapshot();
     run_.write_checkpoint();
     if (run_.last_stage()) find_motion_left();  // before a reset sets it to zero
-    if (stage_.reset_displacement) run_.reset_displacement();
+    if (stage_.reset_displacement) note_reset(), run_.reset_displacement();
+  }
+
+  void note_reset() {
+    std::ostringstream text;
+    text.precision(3);
+    text << "stage " << stage_.name << " sets displacements to zero, of up to " << run_.world.largest_displacement()
+         << " m";
+    run_.recorder.note(text.str());
   }
 
   void find_motion_left() {

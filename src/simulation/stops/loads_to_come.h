@@ -21,7 +21,7 @@ class LoadsToCome {
     const double since_begin = run.clock.time - run.progress.begin;
     if (since_begin < stage.gravity_ramp) return "gravity still increases";
     if (stage.hold_loads) return "";
-    if (!known_) loads_ = changing_loads(run.world), known_ = true;
+    if (!known_) loads_ = changing_loads(run.scene), known_ = true;
     const double now = run.clock.load_time, end = now + stage.duration - since_begin;
     for (const ChangingLoad &load : loads_) {
       double until = now;

@@ -117,6 +117,22 @@ TEST(Check, DoubtsWaterOverSoilWithoutFriction) {
   EXPECT_FALSE(doubted({"body.sand.friction_angle=0", "body.sand.cohesion=5 kPa"})) << "dry";
 }
 
+/// Without fluids that move the cap is the default.
+TEST(Check, DoubtsAVolumeCapOnPores) {
+  const Folder folder;
+  folder.write("section.csv", good_section);
+  folder.write("scene.toml", changed(good_scene, "density = 2000", "porosity = 0.4\ngrain_density = 2600"));
+  const auto says_it = [&](const std::string &phases, const std::string &cap) {
+    const Ending ending = talus(folder, {"check", "scene.toml", "--json", "--set", "phases=" + phases, "--set",
+                                         "body.sand.permeability=1e-10", "--set", "body.sand.volume_cap=" + cap});
+    EXPECT_TRUE(ending.status == 0) << ending.output;
+    return ending.says("body.sand.volume_cap = 1 and phases");
+  };
+  EXPECT_FALSE(says_it("saturated", "-1"));
+  EXPECT_TRUE(says_it("saturated", "1"));
+  EXPECT_FALSE(says_it("dry", "1"));
+}
+
 TEST(Check, DoubtsMotionOverDays) {
   const Folder folder;
   const char *doubt = "Stage fall lets the soil move for 3 d";

@@ -463,6 +463,30 @@ TEST_F(EndedRun, GoesOnWithALongerStage) {
   EXPECT_NE(longer.find("\n0.08,"), std::string::npos);
 }
 
+TEST_F(EndedRun, SaysThatItsStageHadLastedLonger) {
+  const Ending ending = run({"--resume", "--set", "stage.0.duration=0.03"});
+  EXPECT_EQ(ending.status, 0) << ending.output;
+  EXPECT_TRUE(ending.says("nothing was left to do: the last stage had lasted longer than its duration is now"));
+  EXPECT_FALSE(ending.says("reached its duration")) << ending.output;
+}
+
+/// Soil at rest waits for a load that the longer duration brings.
+TEST_F(EndedRun, WaitsForALoadWithALongerStage) {
+  const std::vector<std::string> late{"--set", "stage.0.until=rest",
+                                      "--set", "gravity=0",
+                                      "--set", "functions.pull=[[0, 0], [2, 0], [3, 1]]",
+                                      "--set", "body.sand.body_acceleration=[\"pull(t)\", \"0\"]"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), late.begin(), late.end());
+    return run(more);
+  };
+  const Ending early = with({"--force", "--set", "stage.0.duration=1.5"});
+  ASSERT_TRUE(early.says("came to rest")) << early.output;
+  const Ending ending = with({"--resume", "--set", "stage.0.duration=4"});
+  EXPECT_EQ(ending.status, 0) << ending.output;
+  EXPECT_TRUE(ending.says("goes on: body.sand.body_acceleration changes until t = 3 s")) << ending.output;
+}
+
 /// As the log advises where a run ends because motion creates energy.
 TEST_F(EndedRun, GoesOnInShorterSteps) {
   const auto steps = [this] {  // the second number of the last row

@@ -139,6 +139,26 @@ void faces_that_limit_the_flux_act_on_both_phases() {
 }
 TALUS_IN_2D_AND_3D(Pores, faces_that_limit_the_flux_act_on_both_phases)
 
+/// Where fluids do not move no flux is there to act: liquid and skeleton have one velocity, and keep their momentum.
+template <int dim>
+void a_flux_does_nothing_where_fluids_stand() {
+  for (const char *inflow : {"0.3", "-0.3"}) {
+    WetBox<dim, Saturated> box(water(std::string("[boundary.top]\nkind = \"flux\"\ninflow = ") + inflow + "\n"));
+    const PoreEquations<dim, Saturated> exact(box.soil, true, false, nullptr);
+    box.soil.motion->loading.pore_flow = false;
+    ASSERT_EQ(box.soil.motion->begin(0), 0);
+    auto wanted = fields(box, 1, 1);
+    std::vector<double> x = to_motion(box, wanted);
+    ASSERT_EQ(box.soil.motion->apply_boundaries_and_drag(0, 2e-3, x.data()), 0);
+    const auto found = all_from_motion(box, x.data());
+    for (int i = 0; i < exact.nodes; ++i) {
+      const double gap = (found[1][i] - found[0][i]).norm();
+      EXPECT_LT(gap, 1e-4) << "inflow " << inflow << ", node " << i;
+    }
+  }
+}
+TALUS_IN_2D_AND_3D(Pores, a_flux_does_nothing_where_fluids_stand)
+
 /// A support takes the momentum of the skeleton and of all water along the normal of its wall.
 template <int dim>
 void supports_stop_skeleton_and_water() {

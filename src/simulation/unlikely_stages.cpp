@@ -1,0 +1,40 @@
+// What is unlikely of stages: loads that never act, gravity that never acts in full.
+#include <algorithm>
+#include <sstream>
+
+#include "base/rounded.h"
+#include "simulation/changing_loads.h"
+#include "simulation/unlikely_parts.h"
+
+namespace talus {
+
+void doubt_stages(const Scene &scene, std::vector<std::string> &sentences) {
+  double end = 0;  // of the load time [s]
+  for (const Stage &stage : scene.stage) {
+    if (!stage.hold_loads) end += stage.duration;
+    if (!(stage.gravity_ramp > stage.duration)) continue;
+    std::ostringstream text;
+    text << "stage." << stage.name << ".gravity_ramp is " << rounded(stage.gravity_ramp)
+         << " s, longer than the duration of " << rounded(stage.duration)
+         << " s: gravity does not come to its full value"
+         << (&stage == &scene.stage.back() ? "" : ", and the next stage begins with all of it at once")
+         << ". Give the stage more time, or a shorter ramp";
+    sentences.push_back(text.str());
+  }
+  for (const ChangingLoad &load : changing_loads(scene)) {
+    const auto first = std::ranges::min_element(load.when, {}, &TimeSpan::begin);
+    if (end > 0 && first->begin < end) continue;
+    std::ostringstream text;
+    text << load.key;
+    if (end > 0)
+      text << " changes only from t = " << rounded(first->begin) << " s on, and the stages end at t = " << rounded(end)
+           << " s: it acts as it does at t = 0 in all of the run. Give the stages more time";
+    else
+      text << " is a function of t, and all stages hold their loads: it acts as it does at t = 0 in all of the run. "
+              "Give a stage without hold_loads";
+    text << ", or leave the function out";
+    sentences.push_back(text.str());
+  }
+}
+
+}  // namespace talus
