@@ -482,9 +482,9 @@ TEST_F(EndedRun, WaitsForALoadWithALongerStage) {
   };
   const Ending early = with({"--force", "--set", "stage.0.duration=1.5"});
   ASSERT_TRUE(early.says("came to rest")) << early.output;
-  const Ending ending = with({"--resume", "--set", "stage.0.duration=4"});
+  const Ending ending = with({"--resume", "--set", "stage.0.duration=2.3"});
   EXPECT_EQ(ending.status, 0) << ending.output;
-  EXPECT_TRUE(ending.says("goes on: body.sand.body_acceleration changes until t = 3 s")) << ending.output;
+  EXPECT_TRUE(ending.says("goes on: body.sand.body_acceleration changes until t = 2.3 s")) << ending.output;
 }
 
 /// As the log advises where a run ends because motion creates energy.
