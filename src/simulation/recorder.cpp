@@ -12,6 +12,7 @@
 #include "scene/reader.h"
 #include "scene/words.h"
 #include "simulation/base_clearance.h"
+#include "simulation/dynamics.h"
 #include "simulation/model.h"
 #include "simulation/output_fields.h"
 
@@ -156,16 +157,18 @@ void Recorder<dim>::check_pictures() {
 /// Results closer than a thousandth of a step are no results, and steps that reached each of them would go on for ever.
 template <int dim>
 void Recorder<dim>::check_intervals() {
+  if (scene_.water.drag == PoreDrag::at_start) return;  // its steps are as short as pores are tight
   double step = std::numeric_limits<double>::infinity();
   for (const BodyReport &body : of_.world.report()) step = std::min(step, body.critical_step);
   if (std::isinf(step)) return;  // all soil comes later
+  if (const double fixed = step_rule(choose_integrator(scene_)).fixed; fixed > 0) step = std::min(step, fixed);
   const double least = step / 1000;
   const Output &output = scene_.output;
   for (const auto &[key, interval] : {std::pair{"output.interval", output.interval},
                                       {"output.history_interval", output.history_interval},
                                       {"output.checkpoint_interval", output.checkpoint_interval}})
     if (interval > 0 && interval < least)
-      scene_.complain(key, "must be 0, or " + rounded(least) + " s or more: the critical step is " + rounded(step) +
+      scene_.complain(key, "must be 0, or " + rounded(least) + " s or more: the longest step is " + rounded(step) +
                                " s, and nothing new happens in a thousandth of it");
 }
 

@@ -175,14 +175,15 @@ def map_of(talus):
 
 
 def stable_at(talus, words, step, count=1500):
-    """Does the layer keep its energy over so many steps of a length? Waves that set out from rest gain some, but little beside what the load stores."""
+    """Does the layer keep its energy over so many steps of a length? Waves that set out from rest gain some, but little beside what the load stores, and never
+    more than that: waves that grow without bound come to an end where the water cavitates."""
     with tempfile.TemporaryDirectory() as folder:
         results = run(talus, TERZAGHI, [*words, *of_step(step), f"stage.0.duration={count * step!r}", f"output.history_interval={count / 50 * step!r}"], folder)
         if not results:
             return False
         kinetic = results.history.columns["kinetic_J"]
         little = 1e-3 * LOAD**2 / (2 * MODULUS)  # [J/m3], and a cubic metre
-        return bool(np.isfinite(kinetic).all() and kinetic[-5:].max() <= max(little, 2 * kinetic[: len(kinetic) // 2].max()))
+        return bool(np.isfinite(kinetic).all() and kinetic.max() <= LOAD**2 / MODULUS and kinetic[-5:].max() <= max(little, 2 * kinetic[: len(kinetic) // 2].max()))
 
 
 def largest_stable(talus, words, step):
