@@ -234,7 +234,7 @@ std::vector<std::string> unlikely_suctions(MPI_Comm comm, const std::vector<Body
   for (std::size_t b = 0; b < found.size(); ++b)
     if (found[b].share > visible_share)
       sentences.push_back("The water in " + rounded(100 * found[b].share) + " % of body." + bodies[b].name +
-                          " cavitates, at " + rounded(cavitation_pressure / 1e3) +
+                          " cavitates at the end, at " + rounded(cavitation_pressure / 1e3) +
                           " kPa: its pores have opened faster than water flows to them. This suction holds the soil "
                           "together; where air comes in instead, which phases = \"saturated\" does not have, there is "
                           "less of it");

@@ -52,7 +52,7 @@ TEST(Unlikely, TensionOfMoreThanAnAtmosphereIsDoubted) {
   for (const int i : {1, 2, 3}) pressure.values[i] = -98e3;
   const std::vector<std::string> found = said();
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0].find("The water in 2 % of body.clay cavitates, at -100 kPa"), 0u) << found[0];
+  EXPECT_EQ(found[0].find("The water in 2 % of body.clay cavitates at the end, at -100 kPa"), 0u) << found[0];
 }
 
 /// What is said of a heap 3 m high with a face of `slope` degrees below 4 m of level ground, in cells of `size` [m] and
