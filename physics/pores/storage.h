@@ -35,7 +35,8 @@ inline constexpr int most_iterations = 100;
 template <int lanes>
 inline void saturated_pressures(const Liquid &liquid, PoreLanes<lanes> &p) {
   liquid.with_compression([&](const auto &law) {
-    const double over_thinnest = 1 / law.density_at(cavitation_pressure);
+    // a liquid much softer than water has no density at which it would cavitate
+    const double over_thinnest = 1 / std::max(law.density_at(cavitation_pressure), 1e-300);
 #pragma omp simd
     for (int i = 0; i < lanes; ++i) {
       p.liquid[i] = std::max(law.pressure_at(p.liquid_content[i]), cavitation_pressure);

@@ -40,7 +40,7 @@ class StopAtRest final : public StopCriterion<dim> {
       run.recorder.note("stage " + stage_.name + " came to rest");
     return true;
   }
-  std::string waits_for() const override { return too_short_.empty() ? loads_to_come_.why() : too_short_; }
+  std::string waits_for() const override { return loads_to_come_.why().empty() ? too_short_ : loads_to_come_.why(); }
   void serialize(Archive &archive) override { archive.serialize("rest", quiet_checks_, first_speed_, quiet_since_); }
 
  private:

@@ -27,7 +27,7 @@ struct WetBox : Box<dim, Phases> {
       const double pores = p.volume[i] - p.mass[i] / grain_density;
       const bool full = !Phases::suction || this->soil.mesh.patch[p.cell[i]] % 2 == 0 || p.cell[i] % 3 == 0;
       const bool cavitates = !Phases::suction && p.cell[i] % 5 == 0;
-      const double wet = full && !cavitates ? 1 : 0.6 + 0.2 * drawn(i, 30);
+      const double wet = cavitates ? 0.98 + 0.01 * drawn(i, 30) : full ? 1 : 0.6 + 0.2 * drawn(i, 30);
       p.fluid_mass[0][i] = wet * water_density * (full ? 1 + (2e4 + 1e4 * drawn(i, 30)) / water_bulk : 1) * pores;
       if constexpr (Phases::gas) {  // a little gas in full pores too; its pressure is a few kPa
         const double air = full ? 0.005 : 1 - wet;

@@ -48,21 +48,21 @@ TEST(Storage, liquids_invert_their_density) {
   }
 }
 
-TEST(Storage, liquid_that_fills_the_pores_cavitates_and_keeps_its_mass) {
-  for (const Compression law : {Compression::linear, Compression::exponential}) {
-    Water w;
-    w.bulk_modulus = 2e7, w.compression = law;
-    const Liquid liquid(w);
-    const double thinnest = liquid.density_at(-100e3);
-    for (const double content : {1020., 1000., 1.0001 * thinnest, 0.9999 * thinnest, 700., 10.}) {
-      PoreLanes<1> p{{content}, {0}, {0.5}, {}, {}, {}};
-      saturated_pressures(liquid, p);
-      EXPECT_NEAR((1 - p.gas_share[0]) * liquid.density_at(p.liquid[0]), content, 1e-9);
-      EXPECT_EQ(p.gas_share[0] > 0, content < thinnest) << content;
-      EXPECT_GE(p.liquid[0], -100e3);
-      EXPECT_NEAR(p.liquid[0], content > thinnest ? liquid.pressure_at(content) : -100e3, 1e-6);
+TEST(Storage, liquid_that_cavitates_keeps_its_mass) {
+  for (const double stiffness : {2e7, 2e4})  // the softer one has no density at which it would
+    for (const Compression law : {Compression::linear, Compression::exponential}) {
+      Water w;
+      w.bulk_modulus = stiffness, w.compression = law;
+      const Liquid liquid(w);
+      const double thinnest = liquid.density_at(-100e3);
+      for (const double content : {1020., 1000., 1.0001 * thinnest, 0.9999 * thinnest, 700., 10.}) {
+        if (content <= 0) continue;
+        PoreLanes<1> p{{content}, {0}, {0.5}, {}, {}, {}};
+        saturated_pressures(liquid, p);
+        EXPECT_NEAR(p.liquid[0], std::max(liquid.pressure_at(content), -100e3), 1e-6);
+        EXPECT_NEAR((1 - p.gas_share[0]) * std::max(content, thinnest), content, 1e-9);
+      }
     }
-  }
 }
 
 TEST(Storage, unsaturated_pressure_holds_the_content) {

@@ -47,12 +47,12 @@ inline void large_strain_consolidation(Rung &rung) {
                  1e-10, run.history.column("water_kg").front());
   };
   // first order in the cells: 1 % in cells of 25 mm; pressure has the scatter of the surface's cells on top
-  consolidate(2, 0.1, 0.05, 0.02);
+  consolidate(2, 0.1, 0.05, 0.03);
   consolidate(2, 0.1, 0.025, 0.01);
   if (!rung.longer()) return;
-  consolidate(2, 0.5, 0.05, 0.02);
+  consolidate(2, 0.5, 0.05, 0.03);
   consolidate(2, 0.5, 0.025, 0.01);
-  consolidate(3, 0.1, 0.05, 0.02);
+  consolidate(3, 0.1, 0.05, 0.03);
 }
 
 }  // namespace talus::rungs
