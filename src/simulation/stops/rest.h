@@ -24,12 +24,8 @@ class StopAtRest final : public StopCriterion<dim> {
     const double speed = run.rms_speed(run.balance());
     quiet_checks_ = speed < stage_.rest_speed ? quiet_checks_ + 1 : 0;
     if (quiet_checks_ == 1) first_speed_ = speed, quiet_since_ = run.clock.time;
-    const double quiet_for = run.clock.time - quiet_since_, needed = time_of_rest(run.scene);
-    too_short_.clear();
-    if (quiet_checks_ > 0 && quiet_for < needed)
-      too_short_ = "it was so for " + rounded(quiet_for) + " s, and soil that sets out may take " + rounded(needed) +
-                   " s to pass it; a smaller rest_speed or less damping takes less time";
-    if (quiet_checks_ < checks_of_rest || quiet_for < needed) return false;
+    quiet_for_ = quiet_checks_ > 0 ? run.clock.time - quiet_since_ : 0, needed_ = time_of_rest(run.scene);
+    if (quiet_checks_ < checks_of_rest || quiet_for_ < needed_) return false;
     quiet_checks_ = 0;                       // unless all is over, it is looked at for as long again
     if (speed > first_speed_) return false;  // soil that sets out is slow too
     if (loads_to_come_.hold_up(run, "the rms speed of all soil is below rest_speed", still_to_come(run))) return false;
@@ -40,7 +36,11 @@ class StopAtRest final : public StopCriterion<dim> {
       run.recorder.note("stage " + stage_.name + " came to rest");
     return true;
   }
-  std::string waits_for() const override { return loads_to_come_.why().empty() ? too_short_ : loads_to_come_.why(); }
+  std::string waits_for() const override {
+    if (!loads_to_come_.why().empty() || quiet_for_ == 0 || quiet_for_ >= needed_) return loads_to_come_.why();
+    return "it was so for " + rounded(quiet_for_) + " s, and soil that sets out may take " + rounded(needed_) +
+           " s to pass it; a smaller rest_speed or less damping takes less time";
+  }
   void serialize(Archive &archive) override { archive.serialize("rest", quiet_checks_, first_speed_, quiet_since_); }
 
  private:
@@ -65,7 +65,7 @@ class StopAtRest final : public StopCriterion<dim> {
   double first_speed_ = 0;  ///< at the first of them [m/s]
   double quiet_since_ = 0;  ///< time of the first of them [s]
   LoadsToCome<dim> loads_to_come_;
-  std::string too_short_;  ///< the time of quiet so far; empty where it is long enough, or none
+  double quiet_for_ = 0, needed_ = 0;  ///< time of quiet at the last check, and what rest takes [s]
 };
 
 }  // namespace talus
