@@ -1,9 +1,6 @@
 // A run that has ended, or was interrupted, and is resumed with a changed scene: what may change goes on, what cannot
 // be resumed is refused and left as it is.
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include "tests/exactness/bad_input/scene.h"
 
