@@ -110,12 +110,14 @@ template <int dim>
 double Dynamics<dim>::critical_step() {
   double step = world_.critical_step_of_cells(clock_.time);
   if (bound_.by == FrequencyBound::mesh) {
-    constexpr int first = 60, further = 6,
-                  apart = 8;  // iterations; steps between two estimates where remaps come thick and fast
+    constexpr int first = 60, further = 6;  // iterations
+    // between two estimates: steps, and what nodes moved in mean edges, by which the default transfer remaps
+    constexpr int apart = 8;
+    constexpr double moved = 0.1;
     const bool anew = omega_step_ < 0;
-    if (anew || clock_.steps >= omega_step_ + apart) {
+    if (anew || (clock_.steps >= omega_step_ + apart && moved_since_estimate_ >= moved)) {
       require(world_.motion->largest_frequency(anew ? first : further, &omega_max_));
-      omega_step_ = clock_.steps;
+      omega_step_ = clock_.steps, moved_since_estimate_ = 0;
     }
     step = std::max(step, 2 / omega_max_);
   }
@@ -187,6 +189,7 @@ Verdict Dynamics<dim>::agree() {
   const Verdict verdict{all[0], all[1], {all[5], all[6], all[7]}, all[2] > 0, all[3] > 0, all[4] > 0};
   shrink_ = 1 / verdict.shrink;
   if (verdict.moved > world_.scene.transfer.remap_interval || verdict.inverted) remap_due_ = true;
+  if (remap_due_) moved_since_estimate_ += verdict.moved;
   return verdict;
 }
 
@@ -230,7 +233,8 @@ PetscErrorCode Dynamics<dim>::remap() {
 template <int dim>
 void Dynamics<dim>::serialize(Archive &archive) {
   notice_release();
-  archive.serialize("dynamics", remaps_, since_sort_, critical_step_, shrink_, omega_max_, omega_step_, remap_due_);
+  archive.serialize("dynamics", remaps_, since_sort_, critical_step_, shrink_, omega_max_, omega_step_,
+                    moved_since_estimate_, remap_due_);
   balancing_.serialize(archive);
   if (archive.reading()) integrator_ = make_integrator(settings_);  // the nodes are others
   integrator_->serialize(archive);
