@@ -1,5 +1,6 @@
 #include "physics/boundary/pore_conditions.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <tuple>
@@ -17,13 +18,11 @@ PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const
   std::set<std::pair<int, int>> open;  // facets with a face of the fluids
   std::vector<SourceFacets<dim>> walls;
   for (int s = 0; s < static_cast<int>(sources.size()); ++s) {
+    if (std::ranges::count(sources[s].groups, std::string(free_surface))) rain_ = s;
     if (!sources[s].kind.fluid_face()) continue;
     groups_.emplace_back(s, std::vector<Facet<dim>>{});
     for (const std::string &group : sources[s].groups) {
-      if (group == free_surface) {
-        rain_ = s;
-        continue;
-      }
+      if (group == free_surface) continue;
       for (const Facet<dim> &f : mesh.facets(group)) groups_.back().second.push_back(f), open.emplace(f.cell, f.face);
     }
   }
@@ -46,7 +45,7 @@ PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const
     walls_[index].add(n.normal, n.source);
   }
   for (auto *field : {&taken_, &taken_moment_}) make_room(*field, mesh.node_count());
-  for (auto *field : {&at_gap_, &at_surface_}) make_room(*field, mesh.node_count());
+  make_room(at_gap_, mesh.node_count()), make_room(face_of_node_, mesh.node_count());
   make_room(nodal_, mesh.node_count());
   active_walls_.reserve(walls_.size()), faces_.reserve(mesh.node_count()), gaps_.reserve(mesh.node_count()),
       gap_cells_.reserve((dim + 1) * mesh.cell_count());
@@ -57,10 +56,10 @@ template <int dim>
 void PoreConditions<dim>::add_face(int node, int source, const Vec<dim> &area, const Vec<dim> &moment) {
   double length = 0;
   for (double a : area) length += a * a;
-  Face face{node, source, area, area, moment};
+  Face face{node, source, face_of_node_[node], area, area, moment};
   for (double &n : face.normal) n /= std::sqrt(length);
+  face_of_node_[node] = static_cast<int>(faces_.size());
   faces_.push_back(face);
-  at_surface_[node] = 1;
 }
 
 template <int dim>
@@ -70,7 +69,7 @@ PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vect
   const BackgroundMesh<dim> &mesh = grid.mesh();
   const int nodes = grid.node_count();
   active_walls_.clear(), faces_.clear();
-  std::fill_n(at_surface_.begin(), nodes, 0);
+  std::fill_n(face_of_node_.begin(), nodes, -1);
   for (auto *field : {&taken_, &taken_moment_}) std::fill_n(field->begin(), nodes, Vec<dim>{});
   for (int i = 0; i < nodes; ++i) {
     const int index = wall_of_node_[grid.mesh_node[i]];

@@ -3,7 +3,9 @@
 /// let no fluid pass, faces have a pressure or a flux beyond them. Everywhere else the atmosphere acts on the surface
 /// of the soil, where that is now: the sum of w grad N at a node is the area vector of the surface there. Where it is
 /// small there is a gap between particles: the pressure beyond it is that of the neighbouring cells. The group name
-/// `free_surface` in a scene stands for the surface of the soil.
+/// `free_surface` in a scene stands for the surface of the soil; a wall there stops the liquid alone.
+#include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -68,7 +70,7 @@ class PoreConditions {
     for (const int node : gaps_) put(node, open_area(grid, node, surface(node)));
   }
   /// Has the node a face, named or where the soil's surface is now?
-  bool at_surface(int node) const { return at_surface_[node]; }
+  bool at_surface(int node) const { return face_of_node_[node] >= 0; }
   /// (gap node, cell, number of the node in it) of all cells of this rank at gaps.
   const std::vector<std::array<int, 3>> &gap_cells() const { return gap_cells_; }
   /// Calls limit(node, n, low, high) for every face whose outflow has limits: relative velocities of the liquid along n
@@ -85,6 +87,7 @@ class PoreConditions {
         const double z = dim == 3 ? x[dim - 1] : 0;
         const Boundary &kind = (*sources_)[f.source].kind;
         if (kind.water == OnWater::outflow) least = 0;
+        if (kind.water == OnWater::wall) least = most = 0;
         if (kind.water == OnWater::flux) least = most = -kind.inflow(x[0], x[1], z, t);
         if (kind.water == OnWater::seepage && kind.outside(x[0], x[1], z, t, {unit_weight, x[vertical_]}) <= 0)
           least = -kind.supply(x[0], x[1], z, t);
@@ -101,7 +104,28 @@ class PoreConditions {
     for (const ActiveWall &w : active_walls_)
       for (int k = 0; k < w.wall->count; ++k) wall(w.node, w.wall->direction[k]);
   }
-  /// Calls wall(n) for those normals at one node.
+  /// Calls along(n, all) for orthonormal directions in which boundaries fix how fluids at a node move against the
+  /// skeleton: all of them along normals of walls, and only the liquid along those of faces with a flux and of a
+  /// surface of the soil that is sealed.
+  template <class Put>
+  void fixed_at(const FilledGrid<dim> &grid, int node, Put &&along) const {
+    std::array<Vec<dim>, dim> known;
+    int count = 0;
+    walls_at(grid, node, [&](const Vec<dim> &n) { along(known[count++] = n, true); });
+    for (int f = face_of_node_[node]; f >= 0 && count < dim; f = faces_[f].further) {
+      if (faces_[f].source == atmosphere) continue;
+      const OnWater water = (*sources_)[faces_[f].source].kind.water;
+      if (water != OnWater::flux && water != OnWater::wall) continue;
+      Vec<dim> n = faces_[f].normal;
+      for (int k = 0; k < count; ++k) add_scaled<dim>(n, -dot<dim>(n, known[k]), known[k]);
+      const double length = std::sqrt(dot<dim>(n, n));
+      constexpr double parallel = 1e-3;  // to what is known: the rest is round-off
+      if (length < parallel) continue;
+      for (double &x : n) x /= length;
+      along(known[count++] = n, false);
+    }
+  }
+  /// Calls wall(n) for the normals of walls at one node.
   template <class Put>
   void walls_at(const FilledGrid<dim> &grid, int node, Put &&wall) const {
     const int index = wall_of_node_[grid.mesh_node[node]];
@@ -117,6 +141,7 @@ class PoreConditions {
   };
   struct Face {
     int node, source;               ///< compact; a source or the atmosphere
+    int further;                    ///< another face of the node, -1: none
     Vec<dim> area, normal, moment;  ///< moment: of the area, in depth below the node [m3]
   };
   void add_face(int node, int source, const Vec<dim> &area, const Vec<dim> &moment);
@@ -136,7 +161,8 @@ class PoreConditions {
   std::vector<Face> faces_;
   std::vector<int> gaps_;
   std::vector<std::array<int, 3>> gap_cells_;
-  std::vector<char> at_gap_, at_surface_;
+  std::vector<char> at_gap_;
+  std::vector<int> face_of_node_;               ///< -1: none
   std::vector<std::array<Vec<dim>, 2>> nodal_;  ///< of a named face: area and moment
   std::vector<Vec<dim>> taken_, taken_moment_;
 };

@@ -69,9 +69,9 @@ class Dynamics {
   const StepBound bound_;
   const IntegratorSettings settings_;
   std::unique_ptr<Integrator> integrator_;
-  double critical_step_ = 0;  ///< at the last remap; 0: not known [s]
-  double shrink_ = 1;         ///< of the critical step since then
-  double omega_max_ = 0;      ///< of the filled mesh, at step omega_step_ [1/s]
+  double critical_step_ = 0;         ///< at the last remap; 0: not known [s]
+  double shrink_ = 1;                ///< of the critical step since then
+  double omega_max_ = 0;             ///< of the filled mesh, at step omega_step_ [1/s]
   double moved_since_estimate_ = 0;  ///< by nodes, in mean edges, up to the last remap
   long long omega_step_ = -1, remaps_ = 0, since_sort_ = 0, known_releases_ = 0;
   bool remap_due_ = false, just_remapped_ = false;

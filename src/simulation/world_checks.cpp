@@ -187,6 +187,11 @@ void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
       if (!mesh.has_group(group) && !(source.kind.fluids_only() && group == free_surface))
         scene.complain(path + ".group", "must name groups of facets; the mesh has no \"" + group + "\"; " +
                                             suggestion(group, mesh.group_names()));
+    if (source.kind.water == OnWater::wall && phases.gas &&
+        std::ranges::count(source.groups, std::string(free_surface)))
+      scene.complain(path + ".kind",
+                     "would have to stop gas, which goes freely through group = \"free_surface\"; take kind = \"flux\" "
+                     "with inflow = 0 there, which stops water");
     if (source.kind.fluids_only() && !phases.liquid)
       scene.complain(path, std::string("is a boundary of moving pore water, but phases = \"") + phases.name +
                                "\" has none; set phases = \"saturated\", \"unsaturated\" or \"three-phase\"");

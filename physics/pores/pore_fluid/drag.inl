@@ -78,19 +78,22 @@ void PoreFluid<dim, Phases>::apply_drag_to_solid(double step, const Frame &frame
   conditions.walls([&](int i, const Vec<dim> &n) { share(i, n, fluids, 0, 0); });
 }
 
-/// A support stops the skeleton, all of a fluid along the normals of walls, and in other directions the part of a fluid
-/// that drag takes along in a step [kg].
+/// A support stops the skeleton, all of a fluid along the normals of walls and of faces with a flux, and in other
+/// directions the part of a fluid that drag takes along in a step [kg].
 template <int dim, class Phases>
 Square<dim> PoreFluid<dim, Phases>::inertia(double step, const FilledGrid<dim> &grid,
                                             const PoreConditions<dim> &conditions, int i) const {
-  double dragged = grid.mass[i], rest = 0;
+  double dragged = grid.mass[i], liquid = 0, rest = 0;
   for (int a = 0; a < fluids; ++a) {
     const NodalFluid at = over_step(i, a);
     const double free = at.mass / (1 + drag_number(step, at));
     dragged += at.mass - free, rest += free;
+    if (a == 0) liquid = free;
   }
   Square<dim> inertia = dragged * Square<dim>::Identity();
-  conditions.walls_at(grid, i, [&](const Vec<dim> &n) { inertia += rest * map<dim>(n) * map<dim>(n).transpose(); });
+  conditions.fixed_at(grid, i, [&](const Vec<dim> &n, bool all) {
+    inertia += (all ? rest : liquid) * map<dim>(n) * map<dim>(n).transpose();
+  });
   return inertia;
 }
 

@@ -159,27 +159,54 @@ void a_flux_does_nothing_where_fluids_stand() {
 }
 TALUS_IN_2D_AND_3D(Pores, a_flux_does_nothing_where_fluids_stand)
 
-/// A support takes the momentum of the skeleton and of all water along the normal of its wall.
+/// The surface of the soil, where it is sealed, lets no liquid through along its normal.
+template <int dim>
+void a_wall_on_the_free_surface_seals_it() {
+  for (const bool sealed : {true, false}) {
+    WetBox<dim, Saturated> box(
+        water(sealed ? "[boundary.seal]\ngroup = \"free_surface\"\nkind = \"impermeable\"\n" : ""));
+    const PoreEquations<dim, Saturated> exact(box.soil, true, false, nullptr);
+    ASSERT_EQ(box.soil.motion->begin(0), 0);
+    std::vector<double> x = to_motion(box, fields(box, 1, 1));
+    ASSERT_EQ(box.soil.motion->apply_boundaries_and_drag(0, 2e-3, x.data()), 0);
+    const auto after = all_from_motion(box, x.data());
+    int surface = 0, passes = 0;
+    for (int i = 0; i < exact.nodes; ++i) {
+      if (exact.gap[i].norm() > 0 || exact.area[i].norm() < 1e-9) continue;
+      ++surface, passes += std::abs((after[1][i] - after[0][i]).dot(exact.area[i].normalized())) > 1e-9;
+    }
+    ASSERT_GT(surface, 2);
+    EXPECT_EQ(passes, sealed ? 0 : surface);
+  }
+}
+TALUS_IN_2D_AND_3D(Pores, a_wall_on_the_free_surface_seals_it)
+
+/// A support takes the momentum of the skeleton and of all water along the normal of its wall, or of a face through
+/// which water is pumped.
 template <int dim>
 void supports_stop_skeleton_and_water() {
-  WetBox<dim, Saturated> box(water() + "[boundary.base]\nkind = \"roller\"\n");
-  const PoreEquations<dim, Saturated> exact(box.soil, true, false);
-  ASSERT_EQ(box.soil.motion->begin(0), 0);
-  const Fields<dim, Saturated> v = fields(box, 1, 1);
-  std::vector<double> x = to_motion(box, v);
-  std::vector<Vec<dim>> impulse;
-  ASSERT_EQ(box.soil.conditions.take_impulses(PETSC_COMM_WORLD, impulse), 0);
-  ASSERT_EQ(box.soil.motion->apply_boundaries_and_drag(0, 2e-3, x.data()), 0);
-  ASSERT_EQ(box.soil.conditions.take_impulses(PETSC_COMM_WORLD, impulse), 0);
-  double wanted = 0;
-  for (int i = 0; i < exact.nodes; ++i)
-    if (box.on("base", i)) wanted -= exact.Equations<dim, Saturated>::mass[i] * v[0][i][1] + exact.mass[i] * v[1][i][1];
-  EXPECT_NEAR(impulse[0][1], wanted, 1e-9);
-  const auto after = all_from_motion(box, x.data());
-  for (int i = 0; i < exact.nodes; ++i)
-    if (box.on("base", i)) {
-      EXPECT_LT(std::abs(after[0][i][1]) + std::abs(after[1][i][1]), 1e-12);
+  for (const double inflow : {0., 0.3}) {
+    const bool pumps = inflow > 0;
+    WetBox<dim, Saturated> box(water() + "[boundary.base]\nkind = \"roller\"\n" +
+                               (pumps ? "[boundary.pump]\ngroup = \"base\"\nkind = \"flux\"\ninflow = 0.3\n" : ""));
+    const PoreEquations<dim, Saturated> exact(box.soil, true, false);
+    ASSERT_EQ(box.soil.motion->begin(0), 0);
+    const Fields<dim, Saturated> v = fields(box, 1, 1);
+    std::vector<double> x = to_motion(box, v);
+    std::vector<Vec<dim>> impulse;
+    ASSERT_EQ(box.soil.conditions.take_impulses(PETSC_COMM_WORLD, impulse), 0);
+    ASSERT_EQ(box.soil.motion->apply_boundaries_and_drag(0, 2e-3, x.data()), 0);
+    ASSERT_EQ(box.soil.conditions.take_impulses(PETSC_COMM_WORLD, impulse), 0);
+    const auto after = all_from_motion(box, x.data());
+    double wanted = 0;
+    for (int i = 0; i < exact.nodes; ++i) {
+      if (!box.on("base", i)) continue;
+      const double in = inflow * water_density * exact.volume[i] / exact.mass[i];  // against the skeleton, upwards
+      wanted -= exact.Equations<dim, Saturated>::mass[i] * v[0][i][1] + exact.mass[i] * (v[1][i][1] - in);
+      EXPECT_LT(std::abs(after[0][i][1]) + std::abs(after[1][i][1] - in), 1e-12);
     }
+    EXPECT_NEAR(impulse[0][1], wanted, 1e-9) << "inflow " << inflow;
+  }
 }
 TALUS_IN_2D_AND_3D(Pores, supports_stop_skeleton_and_water)
 
