@@ -6,6 +6,7 @@
 
 #include "physics/boundary/boundary.h"
 #include "physics/boundary/pore_conditions.h"
+#include "physics/phase_models.h"
 #include "scene/water_table.h"
 #include "simulation/failure.h"
 #include "simulation/unlikely_parts.h"
@@ -173,6 +174,29 @@ void doubt_ponds_in_hollows(const Scene &scene, const Extent &soil, const std::v
                       "each shore, or set water.open_water_load = false for none that loads");
 }
 
+/// Water that moves meets the air at the surface of the soil, unless a boundary puts water there.
+void doubt_dry_ponds(const Scene &scene, double height, const std::vector<SoilFace> &surface,
+                     std::vector<std::string> &sentences) {
+  const WaterTable &table = scene.water.table;
+  if (!table.given()) return;
+  for (const BoundarySource &boundary : scene.boundary)
+    if (read_boundary(boundary.kind).open_water) return;
+  const double level = levels_of(scene).front();
+  const Pond *deepest = nullptr;
+  const auto ponds = ponds_of(surface, scene.dimension, scene.vertical(), visible * height,
+                              [&](const auto &x) { return table_at(table, x) + level; });
+  for (const Pond &pond : ponds)
+    if (!deepest || pond.depth > deepest->depth) deepest = &pond;
+  if (!deepest) return;
+  sentences.push_back(
+      "water.table stands up to " + rounded(deepest->depth) + " m above the ground from x = " + rounded(deepest->west) +
+      " to " + rounded(deepest->east) +
+      " m. Where pore water moves, the table says what is in the pores at the start: no water rests on "
+      "the ground, and the pressure runs off through it. For open water give the ground a boundary with "
+      "group = \"free_surface\", kind = \"head\" and level = " +
+      rounded(deepest->highest) + " m");
+}
+
 /// The water table of one soil gives pore pressure and no open water: above the free surface of this soil nothing
 /// bears against it.
 void doubt_own_tables(const Scene &scene, double height, const std::vector<SoilFace> &surface,
@@ -268,6 +292,7 @@ void doubt_water(const Scene &scene, const Extent &soil, const std::vector<SoilF
   const double height = soil.of(scene.vertical());
   doubt_table(scene, soil, surface, sentences);
   doubt_excess_alone(scene, sentences);
+  if (phase_traits(scene.phases).liquid) doubt_dry_ponds(scene, height, surface, sentences);
   if (scene.phases != PhaseModel::drained) return;
   doubt_early_suction(scene, sentences);
   if (!scene.water.open_water_load) return;

@@ -69,6 +69,33 @@ TEST(Check, DoubtsOpenWaterThatIsNotLevel) {
       << "two ponds, of which each is level";
 }
 
+/// Water that moves does not rest on the ground by its table.
+TEST(Check, DoubtsPondsOfMovingWaterWithoutABoundary) {
+  const Folder folder;
+  const std::string pond = "water.table=[[0, 0.9], [1, 0.9]]";
+  folder.write("section.csv", good_section);
+  folder.write("scene.toml",
+               changed(good_scene, "density = 2000", "porosity = 0.4\ngrain_density = 2650\npermeability = 1e-10"));
+  const auto output = [&](const std::vector<std::string> &overrides) {
+    std::vector<std::string> arguments{"check", "scene.toml", "--json", "--set", "phases=saturated"};
+    for (const std::string &one : overrides) arguments.insert(arguments.end(), {"--set", one});
+    const Ending ending = talus(folder, arguments);
+    EXPECT_EQ(ending.status, 0) << ending.output;
+    return ending;
+  };
+  const Ending dry = output({pond});
+  EXPECT_TRUE(
+      dry.says("water.table stands up to 0.9 m above the ground from x = 0 to 1 m. Where pore water moves, the table "
+               "says what is in the pores at "
+               "the start"))
+      << dry.output;
+  const char *doubt = "Where pore water moves";
+  EXPECT_FALSE(output({"water.table=[[0, 0.4], [1, 0]]"}).says(doubt)) << "in the soil";
+  EXPECT_FALSE(output({pond, "boundary.lake.group=free_surface", "boundary.lake.kind=head", "boundary.lake.level=0.9"})
+                   .says(doubt))
+      << "a lake";
+}
+
 /// A ditch from x = 0.5 to 1.5 m in ground at y = 0.5 m, 0.3 m deep.
 TEST(Check, DoubtsPondsInHollowsOfTheGround) {
   const Folder folder;
