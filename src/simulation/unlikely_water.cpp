@@ -174,19 +174,21 @@ void doubt_ponds_in_hollows(const Scene &scene, const Extent &soil, const std::v
                       "each shore, or set water.open_water_load = false for none that loads");
 }
 
-/// Water that moves meets the air at the surface of the soil, unless a boundary puts water there.
-void doubt_dry_ponds(const Scene &scene, double height, const std::vector<SoilFace> &surface,
+/// Water that moves meets the air at the surface of the soil, unless a boundary puts water there. An upright face
+/// alone, such as that of a wet column about to be set free, is none on which water would stand.
+void doubt_dry_ponds(const Scene &scene, const Extent &soil, const std::vector<SoilFace> &surface,
                      std::vector<std::string> &sentences) {
   const WaterTable &table = scene.water.table;
   if (!table.given()) return;
   for (const BoundarySource &boundary : scene.boundary)
     if (read_boundary(boundary.kind).open_water) return;
   const double level = levels_of(scene).front();
+  const double film = visible * soil.of(scene.vertical()), narrow = visible * soil.of(0);
   const Pond *deepest = nullptr;
-  const auto ponds = ponds_of(surface, scene.dimension, scene.vertical(), visible * height,
+  const auto ponds = ponds_of(surface, scene.dimension, scene.vertical(), film,
                               [&](const auto &x) { return table_at(table, x) + level; });
   for (const Pond &pond : ponds)
-    if (!deepest || pond.depth > deepest->depth) deepest = &pond;
+    if (pond.east - pond.west > narrow && (!deepest || pond.depth > deepest->depth)) deepest = &pond;
   if (!deepest) return;
   sentences.push_back(
       "water.table stands up to " + rounded(deepest->depth) + " m above the ground from x = " + rounded(deepest->west) +
@@ -292,7 +294,7 @@ void doubt_water(const Scene &scene, const Extent &soil, const std::vector<SoilF
   const double height = soil.of(scene.vertical());
   doubt_table(scene, soil, surface, sentences);
   doubt_excess_alone(scene, sentences);
-  if (phase_traits(scene.phases).liquid) doubt_dry_ponds(scene, height, surface, sentences);
+  if (phase_traits(scene.phases).liquid) doubt_dry_ponds(scene, soil, surface, sentences);
   if (scene.phases != PhaseModel::drained) return;
   doubt_early_suction(scene, sentences);
   if (!scene.water.open_water_load) return;

@@ -91,6 +91,7 @@ TEST(Check, DoubtsPondsOfMovingWaterWithoutABoundary) {
       << dry.output;
   const char *doubt = "Where pore water moves";
   EXPECT_FALSE(output({"water.table=[[0, 0.4], [1, 0]]"}).says(doubt)) << "in the soil";
+  EXPECT_FALSE(output({"water.table=[[0, 0.5], [1, 0.5]]"}).says(doubt)) << "up to the ground, beside a step down";
   EXPECT_FALSE(output({pond, "boundary.lake.group=free_surface", "boundary.lake.kind=head", "boundary.lake.level=0.9"})
                    .says(doubt))
       << "a lake";
