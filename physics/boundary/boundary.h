@@ -65,6 +65,8 @@ class Boundary {
   }
   /// Do the pore fluids have a face of its own here, neither a wall nor the surface of the soil?
   bool fluid_face() const { return water != OnWater::wall && water != OnWater::surface; }
+  /// Does it say what happens to the liquid, and not only of itself, as supports do, that none passes?
+  bool decides_on_liquid() const { return fluid_face() || (water == OnWater::wall && fluids_only()); }
 
  private:
   struct FindFunctions;

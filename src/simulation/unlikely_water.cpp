@@ -180,8 +180,12 @@ void doubt_dry_ponds(const Scene &scene, const Extent &soil, const std::vector<S
                      std::vector<std::string> &sentences) {
   const WaterTable &table = scene.water.table;
   if (!table.given()) return;
-  for (const BoundarySource &boundary : scene.boundary)
+  std::string instead;
+  for (const BoundarySource &boundary : scene.boundary) {
     if (read_boundary(boundary.kind).open_water) return;
+    if (std::ranges::count(boundary.group, std::string(free_surface)))
+      instead = ", in place of boundary." + boundary.name;
+  }
   const double level = levels_of(scene).front();
   const double film = visible * soil.of(scene.vertical()), narrow = visible * soil.of(0);
   const Pond *deepest = nullptr;
@@ -193,10 +197,9 @@ void doubt_dry_ponds(const Scene &scene, const Extent &soil, const std::vector<S
   sentences.push_back(
       "water.table stands up to " + rounded(deepest->depth) + " m above the ground from x = " + rounded(deepest->west) +
       " to " + rounded(deepest->east) +
-      " m. Where pore water moves, the table says what is in the pores at the start: no water rests on "
-      "the ground, and the pressure runs off through it. For open water give the ground a boundary with "
-      "group = \"free_surface\", kind = \"head\" and level = " +
-      rounded(deepest->highest) + " m");
+      " m. Where pore water moves, the table says what is in the pores at the start, and no water rests on the ground. "
+      "For open water give the ground a boundary with group = \"free_surface\", kind = \"head\" and level = " +
+      rounded(deepest->highest) + " m" + instead);
 }
 
 /// The water table of one soil gives pore pressure and no open water: above the free surface of this soil nothing

@@ -124,7 +124,9 @@ void World<dim>::check_one_of_two(const std::vector<Source> &sources) const {
       const auto of_other = others.template on_soil<dim>().directions;
       for (const std::string &group : sources[s].groups) {
         if (other == s || !std::count(sources[other].groups.begin(), sources[other].groups.end(), group)) continue;
-        if (other < s && mine.fluid_face() && others.fluid_face() && mine.needs_gas() == others.needs_gas())
+        const bool contrary = mine.decides_on_liquid() && others.decides_on_liquid() &&
+                              (mine.fluid_face() || others.fluid_face());  // two walls agree
+        if (other < s && contrary && mine.needs_gas() == others.needs_gas())
           refuse(sources[s], "decides on the pore fluids at", group, sources[other]);
         if (!mesh.has_group(group)) continue;  // such as free_surface
         int clash = 0, held = 0;               // the same direction twice; all directions by the other
