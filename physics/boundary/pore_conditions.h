@@ -5,7 +5,6 @@
 /// small there is a gap between particles: the pressure beyond it is that of the neighbouring cells. The group name
 /// `free_surface` in a scene stands for the surface of the soil; a wall there stops the liquid alone.
 #include <array>
-#include <cmath>
 #include <string>
 #include <vector>
 
@@ -109,21 +108,16 @@ class PoreConditions {
   /// surface of the soil that is sealed.
   template <class Put>
   void fixed_at(const FilledGrid<dim> &grid, int node, Put &&along) const {
-    std::array<Vec<dim>, dim> known;
-    int count = 0;
-    walls_at(grid, node, [&](const Vec<dim> &n) { along(known[count++] = n, true); });
-    for (int f = face_of_node_[node]; f >= 0 && count < dim; f = faces_[f].further) {
+    PrescribedDirections<dim> known;
+    walls_at(grid, node, [&](const Vec<dim> &n) { known.add(n, atmosphere); });
+    const int walls = known.count;
+    for (int f = face_of_node_[node]; f >= 0; f = faces_[f].further) {
       if (faces_[f].source == atmosphere) continue;
       const OnWater water = (*sources_)[faces_[f].source].kind.water;
       if (water != OnWater::flux && water != OnWater::wall) continue;
-      Vec<dim> n = faces_[f].normal;
-      for (int k = 0; k < count; ++k) add_scaled<dim>(n, -dot<dim>(n, known[k]), known[k]);
-      const double length = std::sqrt(dot<dim>(n, n));
-      constexpr double parallel = 1e-3;  // to what is known: the rest is round-off
-      if (length < parallel) continue;
-      for (double &x : n) x /= length;
-      along(known[count++] = n, false);
+      known.add(faces_[f].normal, faces_[f].source);
     }
+    for (int k = 0; k < known.count; ++k) along(known.direction[k], k < walls);
   }
   /// Calls wall(n) for the normals of walls at one node.
   template <class Put>
