@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <tuple>
 
 #include "base/room.h"
-#include "physics/boundary/node_normals.h"
 
 namespace talus {
 
@@ -16,16 +16,17 @@ PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const
   PetscFunctionBeginUser;
   sources_ = &sources, sealed_ = sealed, vertical_ = vertical;
   std::set<std::pair<int, int>> open;  // facets with a face of the fluids
-  std::vector<SourceFacets<dim>> walls;
+  std::vector<SourceFacets<dim>> walls, faces;
   for (int s = 0; s < static_cast<int>(sources.size()); ++s) {
     if (std::ranges::count(sources[s].groups, std::string(free_surface))) rain_ = s;
     if (!sources[s].kind.fluid_face()) continue;
-    groups_.emplace_back(s, std::vector<Facet<dim>>{});
+    faces.push_back({s, {}});
     for (const std::string &group : sources[s].groups) {
       if (group == free_surface) continue;
-      for (const Facet<dim> &f : mesh.facets(group)) groups_.back().second.push_back(f), open.emplace(f.cell, f.face);
+      for (const Facet<dim> &f : mesh.facets(group)) faces.back().facets.push_back(f), open.emplace(f.cell, f.face);
     }
   }
+  PetscCall(set_corners(mesh, faces));
   for (int s = 0; s < static_cast<int>(sources.size()); ++s) {
     if (sources[s].kind.water != OnWater::wall) continue;
     walls.push_back({s, {}});
@@ -52,12 +53,58 @@ PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const
   PetscFunctionReturn(0);
 }
 
+/// Facets of a boundary make one face at a node. Where it prescribes a flux, they make one for each of the boundary's
+/// patches there, so that every side of an edge has its own. Collective.
 template <int dim>
-void PoreConditions<dim>::add_face(int node, int source, const Vec<dim> &area, const Vec<dim> &moment) {
-  double length = 0;
-  for (double a : area) length += a * a;
-  Face face{node, source, face_of_node_[node], area, area, moment};
-  for (double &n : face.normal) n /= std::sqrt(length);
+PetscErrorCode PoreConditions<dim>::set_corners(const BackgroundMesh<dim> &mesh,
+                                                const std::vector<SourceFacets<dim>> &faces) {
+  PetscFunctionBeginUser;
+  std::vector<SourceFacets<dim>> pumps;
+  for (const SourceFacets<dim> &face : faces)
+    if (prescribes(face.source)) pumps.push_back(face);
+  std::vector<NodeNormal<dim>> normals;
+  if (!pumps.empty()) PetscCall(find_node_normals(mesh, pumps, normals));
+  std::map<std::pair<int, int>, std::vector<Vec<dim>>> sides;  // of a source at a node
+  std::vector<int> most(sources_->size(), 1);                  // sides at a node
+  for (const NodeNormal<dim> &n : normals) {
+    auto &at = sides[{n.source, n.node}];
+    at.push_back(n.normal);
+    most[n.source] = std::max(most[n.source], static_cast<int>(at.size()));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most.data(), static_cast<int>(most.size()), MPI_INT, MPI_MAX, mesh.comm()));
+  for (const auto &[source, facets] : faces) {
+    const size_t first = named_.size();
+    named_.resize(first + most[source], {source, {}});
+    for (const Facet<dim> &f : facets)
+      for (const int node : f.node) {
+        int side = 0;
+        if (const auto found = sides.find({source, node}); found != sides.end())
+          for (int k = 1; k < static_cast<int>(found->second.size()); ++k)
+            if (dot<dim>(f.normal, found->second[k]) > dot<dim>(f.normal, found->second[side])) side = k;
+        double depth = 0;
+        for (int other : f.node) depth += mesh.position[node][vertical_] - mesh.position[other][vertical_];
+        named_[first + side].corners.push_back({f.cell, node, f.normal, f.area, depth});
+      }
+  }
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+void PoreConditions<dim>::add_face(const FilledGrid<dim> &grid, int node, int source, const NamedFace &named) {
+  const double length = std::sqrt(dot<dim>(named.area, named.area));
+  Face face{node, source, face_of_node_[node], named.area, named.area, named.moment};
+  for (double &n : face.normal) n /= length;
+  if (named.facets > 0) face.spread = named.facets / length;
+  if (prescribes(source)) {
+    PrescribedDirections<dim> known;
+    fixed_at(grid, node, [&](const Vec<dim> &n, bool) { known.direction[known.count++] = n; });
+    const int before = known.count;
+    known.add(face.normal, source);
+    if (known.count > before) {
+      face.direction = known.direction[before];
+      face.across = dot<dim>(face.normal, face.direction);
+    }
+  }
   face_of_node_[node] = static_cast<int>(faces_.size());
   faces_.push_back(face);
 }
@@ -81,26 +128,26 @@ PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vect
     const double edge = mesh.mean_edge[grid.mesh_node[node]];
     return std::sqrt(square) > least * (dim == 2 ? edge : edge * edge);
   };
-  for (const auto &[source, facets] : groups_) {
-    std::fill_n(nodal_.begin(), nodes, std::array<Vec<dim>, 2>{});
-    for (const Facet<dim> &f : facets) {
-      const int cell = grid.find_cell(f.cell);
+  for (const auto &[source, corners] : named_) {
+    std::fill_n(nodal_.begin(), nodes, NamedFace{});
+    for (const Corner &corner : corners) {
+      const int cell = grid.find_cell(corner.cell);
       if (cell < 0) continue;
-      const double part = std::min(1., filling[cell]) * f.area / dim;
-      for (int node : f.node) {
-        double depth = 0;  // of the other nodes below this one
-        for (int other : f.node) depth += mesh.position[node][vertical_] - mesh.position[other][vertical_];
-        auto &[area, own_moment] = nodal_[grid.find_node(node)];
-        for (int d = 0; d < dim; ++d)
-          area[d] += part * f.normal[d], own_moment[d] += part / (dim + 1) * depth * f.normal[d];
+      const double part = std::min(1., filling[cell]) * corner.area / dim;
+      NamedFace &face = nodal_[grid.find_node(corner.node)];
+      for (int d = 0; d < dim; ++d) {
+        face.area[d] += part * corner.normal[d];
+        face.moment[d] += part / (dim + 1) * corner.depth * corner.normal[d];
       }
+      face.facets += part;
     }
-    PetscCall(grid.sum(nodal_[0][0].data(), 2 * dim));
-    for (int i = 0; i < nodes; ++i)
-      if (large(i, nodal_[i][0], 1e-9)) {
-        add_face(i, source, nodal_[i][0], nodal_[i][1]);
-        for (int d = 0; d < dim; ++d) taken_[i][d] += nodal_[i][0][d], taken_moment_[i][d] += nodal_[i][1][d];
-      }
+    PetscCall(grid.sum(nodal_[0].area.data(), 2 * dim + 1));
+    for (int i = 0; i < nodes; ++i) {
+      const NamedFace &face = nodal_[i];
+      if (!large(i, face.area, 1e-9)) continue;
+      add_face(grid, i, source, face);
+      for (int d = 0; d < dim; ++d) taken_[i][d] += face.area[d], taken_moment_[i][d] += face.moment[d];
+    }
   }
   gaps_.clear(), gap_cells_.clear();
   for (int i = 0; i < nodes; ++i) {
@@ -110,7 +157,7 @@ PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vect
     constexpr double least = dim == 2 ? 0.3 : 0.3 * 0.3, nothing = 1e-10;
     at_gap_[i] = 0;
     if (large(i, rest, least))
-      add_face(i, rain_, rest, open_water() ? open_part(grid, i, moment[i], taken_moment_[i]) : Vec<dim>{});
+      add_face(grid, i, rain_, {rest, open_water() ? open_part(grid, i, moment[i], taken_moment_[i]) : Vec<dim>{}, 0});
     else if (large(i, rest, nothing))
       gaps_.push_back(i), at_gap_[i] = 1;
   }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "physics/boundary/conditions.h"
+#include "physics/boundary/node_normals.h"
 #include "physics/boundary/prescribed_directions.h"
 
 namespace talus {
@@ -86,15 +87,14 @@ class PoreConditions {
         const double z = dim == 3 ? x[dim - 1] : 0;
         const Boundary &kind = (*sources_)[f.source].kind;
         if (kind.water == OnWater::outflow) least = 0;
-        if (kind.water == OnWater::wall) least = most = 0;
-        if (kind.water == OnWater::flux) least = most = -kind.inflow(x[0], x[1], z, t);
+        if (f.across > 0) least = most = outflow(t, grid, f);
         if (kind.water == OnWater::seepage && kind.outside(x[0], x[1], z, t, {unit_weight, x[vertical_]}) <= 0)
           least = -kind.supply(x[0], x[1], z, t);
       }
       if (least == -1e300) continue;
       const LiquidAtNode at = liquid_at(f.node);
       const double scale = at.mass > 0 ? density * at.volume / at.mass : 0;
-      limit(f.node, f.normal, least * scale, most * scale);
+      limit(f.node, f.across > 0 ? f.direction : f.normal, least * scale, most * scale);
     }
   }
   /// Calls wall(node, n) for every normal of walls that let no fluid pass; those of a node are orthonormal.
@@ -108,16 +108,9 @@ class PoreConditions {
   /// surface of the soil that is sealed.
   template <class Put>
   void fixed_at(const FilledGrid<dim> &grid, int node, Put &&along) const {
-    PrescribedDirections<dim> known;
-    walls_at(grid, node, [&](const Vec<dim> &n) { known.add(n, atmosphere); });
-    const int walls = known.count;
-    for (int f = face_of_node_[node]; f >= 0; f = faces_[f].further) {
-      if (faces_[f].source == atmosphere) continue;
-      const OnWater water = (*sources_)[faces_[f].source].kind.water;
-      if (water != OnWater::flux && water != OnWater::wall) continue;
-      known.add(faces_[f].normal, faces_[f].source);
-    }
-    for (int k = 0; k < known.count; ++k) along(known.direction[k], k < walls);
+    walls_at(grid, node, [&](const Vec<dim> &n) { along(n, true); });
+    for (int f = face_of_node_[node]; f >= 0; f = faces_[f].further)
+      if (faces_[f].across > 0) along(faces_[f].direction, false);
   }
   /// Calls wall(n) for the normals of walls at one node.
   template <class Put>
@@ -135,10 +128,48 @@ class PoreConditions {
   };
   struct Face {
     int node, source;               ///< compact; a source or the atmosphere
-    int further;                    ///< another face of the node, -1: none
+    int further;                    ///< an earlier face of the node, -1: none
     Vec<dim> area, normal, moment;  ///< moment: of the area, in depth below the node [m3]
+    double spread = 1;              ///< sum of the areas of its facets over the length of their sum
+    /// Of a face that prescribes the velocity of the liquid along its normal: the part of the normal across those of
+    /// walls and of such faces before it, as a unit vector, and its length; 0 where they leave nothing to prescribe.
+    Vec<dim> direction;
+    double across = 0;
   };
-  void add_face(int node, int source, const Vec<dim> &area, const Vec<dim> &moment);
+  /// The share of a node in a facet of a boundary.
+  struct Corner {
+    int cell, node;  ///< of the mesh
+    Vec<dim> normal;
+    double area, depth;  ///< of the facet; sum of the depths of its other nodes below this one [m]
+  };
+  /// Corners of a boundary, of which those at one node make one face there.
+  struct Corners {
+    int source;
+    std::vector<Corner> corners;
+  };
+  struct NamedFace {
+    Vec<dim> area, moment;
+    double facets;  ///< sum of their areas [m2], 0: none
+  };
+  PetscErrorCode set_corners(const BackgroundMesh<dim> &mesh, const std::vector<SourceFacets<dim>> &faces);
+  void add_face(const FilledGrid<dim> &grid, int node, int source, const NamedFace &face);
+  bool prescribes(int source) const {
+    if (source == atmosphere) return false;
+    const OnWater water = (*sources_)[source].kind.water;
+    return water == OnWater::flux || water == OnWater::wall;
+  }
+  /// Volume that leaves per area and time along the direction of a face, so that along its normal what the face
+  /// prescribes leaves, whatever faces before it prescribe.
+  double outflow(double t, const FilledGrid<dim> &grid, const Face &f) const {
+    const Vec<dim> &x = grid.position[f.node];
+    const Boundary &kind = (*sources_)[f.source].kind;
+    double out = kind.inflow ? -f.spread * kind.inflow(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t) : 0;
+    for (int before = f.further; before >= 0; before = faces_[before].further) {
+      const Face &g = faces_[before];
+      if (g.across > 0) out -= dot<dim>(f.normal, g.direction) * outflow(t, grid, g);
+    }
+    return out / f.across;
+  }
   Vec<dim> open_area(const FilledGrid<dim> &grid, int node, const Vec<dim> &surface) const {
     return open_part(grid, node, surface, taken_[node]);
   }
@@ -150,14 +181,14 @@ class PoreConditions {
   int rain_ = atmosphere;  ///< what acts on the free surface
   std::vector<int> wall_of_node_;
   std::vector<Wall> walls_;
-  std::vector<std::pair<int, std::vector<Facet<dim>>>> groups_;
+  std::vector<Corners> named_;  ///< the same sources on all ranks
   std::vector<ActiveWall> active_walls_;
   std::vector<Face> faces_;
   std::vector<int> gaps_;
   std::vector<std::array<int, 3>> gap_cells_;
   std::vector<char> at_gap_;
-  std::vector<int> face_of_node_;               ///< -1: none
-  std::vector<std::array<Vec<dim>, 2>> nodal_;  ///< of a named face: area and moment
+  std::vector<int> face_of_node_;  ///< the last one; -1: none
+  std::vector<NamedFace> nodal_;
   std::vector<Vec<dim>> taken_, taken_moment_;
 };
 

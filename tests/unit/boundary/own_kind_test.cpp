@@ -3,6 +3,9 @@
 // side y = 0 of length 1; expected values are exact, so errors are round-off of a few operations.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "physics/boundary/kinds.h"
 #include "physics/boundary/pore_conditions.h"
 #include "solvers/quasi_static/loads.h"
@@ -264,6 +267,69 @@ TEST(OwnBoundary, LimitsAndWallsTheLiquid) {
     EXPECT_EQ(walls, soil == &belt ? base : 0);
     EXPECT_EQ(limits, soil == &raft ? base : 0);
   }
+}
+
+/// A square whose base rises from its middle on; the group `middle` is this part of the base.
+test::BoxMesh bent_square(double rise) {
+  test::BoxMesh box(2, 4);
+  std::vector<std::vector<int>> facets;
+  std::vector<int> tags;
+  for (std::size_t f = 0; f < box.facet.size(); ++f) {
+    if (box.facet_tag[f] == 13) continue;
+    const double x = (box.node[box.facet[f][0]][0] + box.node[box.facet[f][1]][0]) / 2;
+    facets.push_back(box.facet[f]), tags.push_back(box.facet_tag[f] == 11 && x > 0.5 ? 13 : box.facet_tag[f]);
+  }
+  box.facet = facets, box.facet_tag = tags;
+  for (auto &x : box.node) {
+    if (x[1] == 0) x[0] = std::round(4 * x[0]) / 4;
+    x[1] += (1 - x[1]) * rise * std::max(0., x[0] - 0.5);
+  }
+  return box;
+}
+
+/// Velocities of the liquid against the skeleton after all limits and walls, from rest.
+std::vector<Vec<2>> pumped(Square1m &soil, PoreConditions<2> &pores) {
+  EXPECT_EQ(pores.setup(soil.mesh, soil.sources, false, 1), 0);
+  std::vector<Vec<2>> w(soil.grid.node_count(), Vec<2>{});
+  EXPECT_EQ(pores.begin(soil.grid, soil.filling, w, w), 0);
+  const auto limit = [&](int node, const Vec<2> &n, double low, double high) {
+    const double out = dot<2>(w[node], n);
+    add_scaled<2>(w[node], std::clamp(out, low, high) - out, n);
+  };
+  pores.limits(
+      1, soil.grid, 1000, 1e4,
+      [](int) {
+        return LiquidAtNode{1000, 1};
+      },
+      limit);
+  pores.walls([&](int node, const Vec<2> &n) { limit(node, n, 0, 0); });
+  return w;
+}
+
+/// All the water that a flux over both sides of an edge states comes in, in the direction that gives each its own: by
+/// one boundary over both, by one for each, and beside a wall, which lets none pass.
+TEST(OwnBoundary, PumpsThroughTheSidesOfAnEdge) {
+  struct Pump {
+    std::vector<Square1m::Source> sources;
+    double base, rise;  ///< inflow [m/s]
+  };
+  const Boundary whole{Flux{1.}}, half{Flux{0.5}};
+  for (const double rise : {1., 0.1, -5.})  // an edge of 45 degrees, relief, an edge of 79 degrees
+    for (const Pump &pump : {Pump{{{"both", {"base", "middle"}, whole}}, 1, 1},
+                             Pump{{{"base", {"base"}, whole}, {"rise", {"middle"}, half}}, 1, 0.5},
+                             Pump{{{"base", {"base"}, whole}, {"rise", {"middle"}, Roller{}}}, 1, 0}}) {
+      Square1m soil(pump.sources, bent_square(rise));
+      PoreConditions<2> pores;
+      const std::vector<Vec<2>> w = pumped(soil, pores);
+      double in = 0, stated = 0;
+      for (const auto &[group, inflow] : {std::pair{"base", pump.base}, std::pair{"middle", pump.rise}})
+        for (const Facet<2> &f : soil.mesh.facets(group))
+          for (const int node : f.node) {
+            stated += f.area / 2 * inflow;
+            in -= f.area / 2 * dot<2>(w[soil.grid.find_node(node)], f.normal);
+          }
+      EXPECT_NEAR(sum(in), sum(stated), 1e-12) << "rise " << rise << ", boundaries " << pump.sources.size();
+    }
 }
 
 TEST(OwnBoundary, SupportsAndLoadsFiniteElements) {

@@ -12,9 +12,9 @@ namespace talus {
 struct Square1m {
   using Source = Conditions<2>::Source;
 
-  explicit Square1m(std::vector<Source> of)
+  explicit Square1m(std::vector<Source> of, const test::BoxMesh &box = test::BoxMesh(2, 4))
       : scene(parse_host_scene(text, "square")),
-        file(test::BoxMesh(2, 4)),
+        file(box),
         mesh(BackgroundMesh<2>::read(PETSC_COMM_WORLD, file.name(), {})),
         sources(std::move(of)),
         grid(mesh),
