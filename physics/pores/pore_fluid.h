@@ -241,8 +241,10 @@ class PoreFluid {
   Array gap_flux_[fluids];     ///< of a node: mass flux through the gap were it open, over that volume [kg/(m3 s)]
   std::vector<std::array<double, dim + 1>> mean_,
       reference_;  ///< of a cell: mean place of its particles, and the place at which it has its pressure
-  std::vector<std::array<double, dim + 1>> rows_;       ///< sums over rows of the solid's mass matrices [kg]
-  Array grain_mass_;                                    ///< of a cell [kg]
+  std::vector<std::array<double, dim + 1>> rows_;  ///< sums over rows of the solid's mass matrices [kg]
+  Array grain_mass_;                               ///< of a cell [kg]
+  [[no_unique_address]] If<Phases::gas, std::vector<std::array<double, dim + 1>>>
+      uptake_;  ///< of a cell: volume that its nodes take from it, if its pores were full of gas [m3]
   std::vector<std::array<Quad, dim>> impulse_[fluids];  ///< of a cell [component][vertex]: sum m_s N v_a [kg m/s]
   std::vector<std::array<Quad, fluids>> momentum_;      ///< of a node: m_a v_a [kg m/s], m_a in the last lane
   Array divergence_[fluids], smooth_[fluids], head_, nodal_head_, nodal_;

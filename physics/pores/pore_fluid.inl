@@ -38,6 +38,7 @@ PoreFluid<dim, Phases>::PoreFluid(const BackgroundMesh<dim> &mesh, std::vector<s
   }
   make_room(nodal_, 4 * nodes);
   if constexpr (Phases::suction) make_room(patch_pores_, mesh.patch_count);
+  if constexpr (Phases::gas) make_room(uptake_, cells);
   for (auto *all : {&points_, &next_points_})
     for (size_t b = 0; b < bodies.size(); ++b)
       (*all)[b].reserve(scene.transfer.average_stress ? static_cast<int>(cells) : bodies[b]->particles().count);

@@ -18,29 +18,30 @@ PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<di
   FilledGrid<dim> &grid = frame.grid;
   const int nodes = grid.node_count(), cells = grid.cell_count();
   double *taken = nodal_.data(), *density = taken + width * nodes, *resistance = density + nodes;
-  for (int i = 0; i < nodes; ++i)
-    for (int d = 0; d < dim; ++d) flux_[1][i][d] = gas[i][d] - solid[i][d];
-  const auto takes = [&](int c) {  // volume that each node takes from a cell, if its pores were full of gas
+  double *through_gap = gap_flux_[1].data();
+  for (int i = 0; i < nodes; ++i) {
+    double sum = 0;
+    for (int d = 0; d < dim; ++d) {
+      const double against = gas[i][d] - solid[i][d];
+      flux_[1][i][d] = against, sum += gap_[i][d] * against;
+    }
+    through_gap[i] = sum;
+  }
+  std::fill_n(taken, width * nodes, 0.);
+  for (int c = 0; c < cells; ++c) {
     const Shape<dim> &shape = grid.shape[c];
-    std::array<double, dim + 1> volume;
+    const double mass = cells_[c].density[1];
     Vec<dim> first{};
     for (int k = dim; k >= 0; --k) {
       if (k)
         for (int d = 0; d < dim; ++d) first[d] -= shape.gradient[k - 1][d];
       const Vec<dim> &g = k ? shape.gradient[k - 1] : first;
       const int i = shape.node[k];
-      double towards = 0;
-      for (int d = 0; d < dim; ++d) towards += (g[d] - reference_[c][k] * gap_[i][d]) * flux_[1][i][d];
-      volume[k] = frame.weight[c] * std::max(0., towards);
-    }
-    return volume;
-  };
-  std::fill_n(taken, width * nodes, 0.);
-  for (int c = 0; c < cells; ++c) {
-    const auto volume = takes(c);
-    for (int k = 0; k <= dim; ++k) {
-      double *node = &taken[grid.shape[c].node[k] * width];
-      node[0] += volume[k], node[1] += volume[k] * cells_[c].density[1];
+      // the volume that the node takes from the cell, if its pores were full of gas
+      const double towards = dot<dim>(g, flux_[1][i]) - reference_[c][k] * through_gap[i];
+      const double volume = frame.weight[c] * std::max(0., towards);
+      uptake_[c][k] = volume;
+      taken[i * width] += volume, taken[i * width + 1] += volume * mass;
     }
   }
   PetscCall(grid.sum(taken, width));
@@ -51,7 +52,7 @@ PetscErrorCode PoreFluid<dim, Phases>::gas_flux(const Frame &frame, const Vec<di
   for (int c = 0; c < cells; ++c) {
     const auto &node = grid.shape[c].node;
     const CellPores &cell = cells_[c];
-    const auto volume = takes(c);
+    const auto &volume = uptake_[c];
     double out = 0;  // mass
     for (int k = 0; k <= dim; ++k) out += volume[k] * density[node[k]];
     if (!(out > 0)) continue;
@@ -164,9 +165,10 @@ PetscErrorCode PoreFluid<dim, Phases>::share_divergence(const Frame &frame,
     for (int i : frame.shape[c].node)
       nodal_[i * 2] += frame.particle_volume[c], nodal_[i * 2 + 1] += volume_beyond_particles(frame, c) * divergence[c];
   PetscCall(frame.grid.sum(nodal_.data(), 2));
+  for (int i = 0; i < frame.grid.node_count(); ++i) nodal_[i * 2 + 1] /= nodal_[i * 2];
   for (int c = 0; c < cells; ++c) {
     double from_nodes = 0;
-    for (int i : frame.shape[c].node) from_nodes += nodal_[i * 2 + 1] / nodal_[i * 2];
+    for (int i : frame.shape[c].node) from_nodes += nodal_[i * 2 + 1];
     divergence[c] = (frame.weight[c] - volume_beyond_particles(frame, c)) * divergence[c] +
                     frame.particle_volume[c] / (dim + 1) * from_nodes;
   }
@@ -184,9 +186,10 @@ PetscErrorCode PoreFluid<dim, Phases>::share_pressure(const Frame &frame, Array 
     for (int i : frame.shape[c].node)
       nodal_[i * 2] += frame.particle_volume[c], nodal_[i * 2 + 1] += frame.particle_volume[c] * pressure[c];
   PetscCall(frame.grid.sum(nodal_.data(), 2));
+  for (int i = 0; i < frame.grid.node_count(); ++i) nodal_[i * 2 + 1] /= nodal_[i * 2] * (dim + 1);
   for (int c = 0; c < cells; ++c) {
     double around = 0;
-    for (int i : frame.shape[c].node) around += nodal_[i * 2 + 1] / nodal_[i * 2] / (dim + 1);
+    for (int i : frame.shape[c].node) around += nodal_[i * 2 + 1];
     pressure[c] += volume_beyond_particles(frame, c) / frame.weight[c] * (around - pressure[c]);
   }
   PetscFunctionReturn(0);
