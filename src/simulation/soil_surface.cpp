@@ -39,14 +39,22 @@ std::vector<SoilFace> World<dim>::surface() const {
   const std::vector<int> body_of = bodies_of_cells(mesh, scene);
   const std::vector<char> there = present_at_start();
   const auto has_soil = [&](int cell) { return body_of[cell] >= 0 && there[body_of[cell]]; };
-  std::map<std::pair<int, int>, bool> given;  // by cell and face: does a boundary there hold the soil?
+  struct Given {
+    bool held = false;
+    int open_water = -1;
+  };
+  std::map<std::pair<int, int>, Given> given;  // by cell and face: what boundaries do there
   for (const std::vector<Source> *sources : {&conditions.sources(), &seepage_sources})
     for (const Source &source : *sources) {
       if (source.kind.fluids_only() && !source.kind.open_water) continue;
       const bool holds = !source.kind.fluids_only() && source.kind.in_motion != OnSoil::load;
+      const auto named = std::ranges::find(scene.boundary, source.name, &BoundarySource::name);
       for (const std::string &group : source.groups)
-        for (const Facet<dim> &facet : mesh.has_group(group) ? mesh.facets(group) : std::vector<Facet<dim>>{})
-          given[{facet.cell, facet.face}] |= holds;
+        for (const Facet<dim> &facet : mesh.has_group(group) ? mesh.facets(group) : std::vector<Facet<dim>>{}) {
+          Given &at = given[{facet.cell, facet.face}];
+          at.held |= holds;
+          if (source.kind.open_water) at.open_water = static_cast<int>(named - scene.boundary.begin());
+        }
     }
   std::vector<SoilFace> mine, inside;  // `inside`: on faces between ranks
   for (int c = 0; c < mesh.cell_count(); ++c) {
@@ -64,7 +72,7 @@ std::vector<SoilFace> World<dim>::surface() const {
       for (int d = 0; d < dim; ++d) face.normal[d] = -gradient[k][d] / size;
       const auto found = given.find({c, k});
       face.conditioned = found != given.end();
-      face.held = face.conditioned && found->second;
+      if (face.conditioned) face.held = found->second.held, face.open_water = found->second.open_water;
       (beyond < boundary ? inside : mine).push_back(face);
     }
   }

@@ -174,32 +174,93 @@ void doubt_ponds_in_hollows(const Scene &scene, const Extent &soil, const std::v
                       "each shore, or set water.open_water_load = false for none that loads");
 }
 
-/// Water that moves meets the air at the surface of the soil, unless a boundary puts water there. An upright face
-/// alone, such as that of a wet column about to be set free, is none on which water would stand.
+/// Surfaces of the water that boundaries put on faces of the soil at the start.
+class OpenWater {
+ public:
+  explicit OpenWater(const Scene &scene) : scene_(scene), up_(scene.vertical()) {
+    for (std::size_t b = 0; b < scene.boundary.size(); ++b) {
+      boundary_.push_back(read_boundary(scene.boundary[b].kind));
+      if (std::ranges::count(scene.boundary[b].group, std::string(free_surface))) elsewhere_ = static_cast<int>(b);
+    }
+  }
+  /// The boundary that acts on faces without one of their own, -1: none.
+  int elsewhere() const { return elsewhere_; }
+  /// The boundary that puts water on a face, -1: none.
+  int on(const SoilFace &face) const {
+    if (face.open_water >= 0) return face.open_water;
+    return elsewhere_ >= 0 && boundary_[elsewhere_].open_water ? elsewhere_ : -1;
+  }
+  /// Elevation of the water at a place on the face, that of the place itself where it is dry [m].
+  double at(const SoilFace &face, const std::array<double, 3> &x) const {
+    const int boundary = on(face);
+    if (boundary < 0) return x[up_];
+    const double g = scene_.gravity.empty() ? 0 : -scene_.gravity[up_];
+    const LiquidBeyond water{scene_.water.density * g, x[up_]};
+    if (!(water.unit_weight > 0)) return x[up_];
+    return x[up_] + std::max(0., boundary_[boundary].outside(x[0], x[1], x[2], 0, water)) / water.unit_weight;
+  }
+
+ private:
+  const Scene &scene_;
+  int up_, elsewhere_ = -1;
+  std::vector<Boundary> boundary_;
+};
+
+/// Water that moves meets the air at the surface of the soil, unless a boundary puts water there: as deep as the table
+/// stands above the ground, or the pores are not at rest with it. An upright face alone, such as that of a wet column
+/// about to be set free, is none on which water would stand.
 void doubt_dry_ponds(const Scene &scene, const Extent &soil, const std::vector<SoilFace> &surface,
                      std::vector<std::string> &sentences) {
   const WaterTable &table = scene.water.table;
   if (!table.given()) return;
-  std::string instead;
-  for (const BoundarySource &boundary : scene.boundary) {
-    if (read_boundary(boundary.kind).open_water) return;
-    if (std::ranges::count(boundary.group, std::string(free_surface)))
-      instead = ", in place of boundary." + boundary.name;
-  }
+  const OpenWater open(scene);
   const double level = levels_of(scene).front();
-  const double film = visible * soil.of(scene.vertical()), narrow = visible * soil.of(0);
+  const int up = scene.vertical();
+  const double film = visible * soil.of(up), narrow = visible * soil.of(0);
+  const auto stands = [&](const std::array<double, 3> &x) { return table_at(table, x) + level; };
+  std::vector<SoilFace> bare;  // the table stands higher than the open water on them
+  double most = film;
+  std::array<double, 3> place{};
+  int flooded = -1;  // the boundary whose water stands highest above the table
+  for (const SoilFace &face : surface) {
+    bool misses = false;
+    for (int a = 0; a < scene.dimension && may_be_flooded(face, up); ++a) {
+      const auto &x = face.corner[a];
+      const double water = open.at(face, x), pores = std::max(stands(x), x[up]);
+      misses |= pores - water > film;
+      if (water - pores > most) most = water - pores, place = x, flooded = open.on(face);
+    }
+    if (misses) bare.push_back(face);
+  }
+  if (flooded >= 0)
+    sentences.push_back("boundary." + scene.boundary[flooded].name + " puts water on the ground that stands " +
+                        rounded(most) + " m above ground and water.table at x = " + rounded(place[0]) + ", " +
+                        axis_names[up] + " = " + rounded(place[up]) +
+                        " m: the pores start with less water than is at rest under it, and it enters at once. Is this "
+                        "meant? Else give water.table the level of the open water there");
+  const std::vector<Pond> ponds = ponds_of(bare, scene.dimension, up, film, stands);
   const Pond *deepest = nullptr;
-  const auto ponds = ponds_of(surface, scene.dimension, scene.vertical(), film,
-                              [&](const auto &x) { return table_at(table, x) + level; });
   for (const Pond &pond : ponds)
     if (pond.east - pond.west > narrow && (!deepest || pond.depth > deepest->depth)) deepest = &pond;
   if (!deepest) return;
-  sentences.push_back(
-      "water.table stands up to " + rounded(deepest->depth) + " m above the ground from x = " + rounded(deepest->west) +
-      " to " + rounded(deepest->east) +
-      " m. Where pore water moves, the table says what is in the pores at the start, and no water rests on the ground. "
-      "For open water give the ground a boundary with group = \"free_surface\", kind = \"head\" and level = " +
-      rounded(deepest->highest) + " m" + instead);
+  std::string text = "water.table stands up to " + rounded(deepest->depth) +
+                     " m above the ground from x = " + rounded(deepest->west) + " to " + rounded(deepest->east) +
+                     " m. Where pore water moves, the table says what is in the pores at the start, and ";
+  int lower = -1;  // a boundary whose water does not come up to the table there
+  for (const SoilFace &face : bare)
+    for (int a = 0; a < scene.dimension && lower < 0; ++a)
+      if (open.on(face) >= 0 && face.corner[a][0] >= deepest->west && face.corner[a][0] <= deepest->east)
+        lower = open.on(face);
+  if (lower >= 0)
+    text += "the water of boundary." + scene.boundary[lower].name +
+            ", which rests on the ground, stands lower there. Give both one level";
+  else
+    text +=
+        "no water rests on the ground there. For open water give it a boundary with kind = \"head\" and level = " +
+        rounded(deepest->highest) + " m, on group = \"free_surface\" or on groups that reach to the shore" +
+        (open.elsewhere() >= 0 ? "; on the free surface in place of boundary." + scene.boundary[open.elsewhere()].name
+                               : "");
+  sentences.push_back(text);
 }
 
 /// The water table of one soil gives pore pressure and no open water: above the free surface of this soil nothing

@@ -92,9 +92,16 @@ TEST(Check, DoubtsPondsOfMovingWaterWithoutABoundary) {
   const char *doubt = "Where pore water moves";
   EXPECT_FALSE(output({"water.table=[[0, 0.4], [1, 0]]"}).says(doubt)) << "in the soil";
   EXPECT_FALSE(output({"water.table=[[0, 0.5], [1, 0.5]]"}).says(doubt)) << "up to the ground, beside a step down";
-  EXPECT_FALSE(output({pond, "boundary.lake.group=free_surface", "boundary.lake.kind=head", "boundary.lake.level=0.9"})
-                   .says(doubt))
-      << "a lake";
+  const auto lake = [&](const char *level) {
+    return output({pond, "boundary.lake.group=free_surface", "boundary.lake.kind=head",
+                   std::string("boundary.lake.level=") + level});
+  };
+  const char *enters = "boundary.lake puts water on the ground";
+  EXPECT_FALSE(lake("0.9").says(doubt) || lake("0.9").says(enters)) << "a lake";
+  EXPECT_TRUE(lake("0.7").says("the water of boundary.lake, which rests on the ground, stands lower there")) << "low";
+  EXPECT_TRUE(lake("1.1").says("boundary.lake puts water on the ground that stands 0.2 m above ground and water.table"))
+      << lake("1.1").output;
+  EXPECT_FALSE(lake("0.7").says(enters) || lake("1.1").says(doubt));
 }
 
 /// A ditch from x = 0.5 to 1.5 m in ground at y = 0.5 m, 0.3 m deep.
