@@ -61,4 +61,13 @@ for signal in TERM INT; do
   claim "ranks end in order by SIG$signal" "2" "$(grep -c "ended in order" <<<"$output")"
   claim "the launcher has the status of the ranks" "status 3" "$output"
 done
+
+# whether ranks are bound to cores, on a machine that has two
+printf '#!/bin/sh\necho 2\n' >"$tree/tools/nproc"
+printf '#!/bin/sh\necho "binding: $OMPI_MCA_hwloc_base_binding_policy"\n' >"$build/bin/talus"
+chmod +x "$tree/tools/nproc" "$build/bin/talus"
+claim "as many ranks as cores are bound" "binding: core" "$(launch run slope.toml -n 2)"
+claim "one rank is not" "binding: none" "$(launch run slope.toml)"
+claim "more ranks than cores are not" "binding: none" "$(launch run slope.toml -n 3)"
+claim "a choice of the user's stands" "binding: socket" "$(OMPI_MCA_hwloc_base_binding_policy=socket launch run slope.toml -n 2)"
 exit $((failures > 0))
