@@ -423,8 +423,15 @@ void Terrain::find_distances() {
       const double share =
           std::clamp((from[0] * along[0] + from[1] * along[1]) / (along[0] * along[0] + along[1] * along[1]), 0., 1.);
       const double away = std::hypot(from[0] - share * along[0], from[1] - share * along[1]);
-      d[k] = std::min(d[k], std::max(0., away - options_.way_width / 2));
+      const double beside = std::max(0., away - options_.way_width / 2);
+      way_in_window_ |= beside == 0, way_meets_slide_ |= beside == 0 && ground()[k] > bed()[k];
+      d[k] = std::min(d[k], beside);
     }
+  if (slides() && !w.empty() && !way_in_window_)
+    complain(text_of("--way, which begins at x = ", w[0], ", y = ", w[1],
+                     " m, lies beside the terrain that is meshed, which ranges from x = ", origin_[0] + x(0), " to ",
+                     origin_[0] + x(columns() - 1), " and from y = ", origin_[1] + y(0), " to ",
+                     origin_[1] + y(rows() - 1), " m: its points are given in the coordinates of the grid"));
   const auto learn = [&](int i, int j, int di, int dj) {
     if (i + di < 0 || i + di >= columns() || j + dj < 0 || j + dj >= rows()) return;
     double &mine = d[j * columns() + i];
@@ -474,11 +481,11 @@ std::vector<std::string> Terrain::doubts() const {
                                 " degrees: dip direction is the azimuth (clockwise from north) towards which the "
                                 "surface dips. Is it meant to dip the other way?"));
   const double deep = slide_volume_ / slide_area_;
-  const double meshed = options_.way.empty() ? options_.far_size : options_.size,
+  const double meshed = way_meets_slide_ ? options_.size : options_.far_size,
                on_way = std::ldexp(meshed, -options_.halvings);
   if (on_way > deep)
     sentences.push_back(text_of(
-        options_.way.empty() ? "cells grow to " : "cells measure ", length(on_way),
+        way_meets_slide_ ? "cells measure " : "cells grow to ", length(on_way),
         options_.halvings > 0 ? text_of(" (", length(meshed), " with edges halved ",
                                         options_.halvings == 1 ? "once" : text_of(options_.halvings, " times"), ")")
                               : "",

@@ -110,7 +110,8 @@ class Terrain {
   std::string projection_;
   std::vector<std::string> remarks_;  ///< on how files were read
   Grid ground_, bed_;
-  Grid distance_;  ///< from the slide and its way, seen from above [m]
+  Grid distance_;                                         ///< from the slide and its way, seen from above [m]
+  bool way_in_window_ = false, way_meets_slide_ = false;  ///< the strip along --way
   std::vector<Grid> layer_;
   double slide_area_ = 0, slide_volume_ = 0;
 };

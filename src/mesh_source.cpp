@@ -266,6 +266,12 @@ MeshFile::MeshFile(MPI_Comm comm, const Scene &scene) {
     path_ = beside_scene(scene, source.file);
     if (rank == 0) read_origin(std::filesystem::path(path_).replace_extension(".origin.json"));
     MPI_Bcast(origin_.data(), 2, MPI_DOUBLE, 0, comm);
+    int terrain = !made_.origin.empty();
+    MPI_Bcast(&terrain, 1, MPI_INT, 0, comm);
+    if (terrain && scene.vertical() != 2)
+      scene.complain("mesh.file",
+                     "is a mesh of terrain, whose elevations are z, as the .origin.json beside it says: set "
+                     "dimension = 3 and up = \"z\"");
     return;
   }
   int status = 0;

@@ -95,7 +95,7 @@ struct SoilFace {
   bool ends_mesh = false;                         ///< no cell beyond either
   bool held = false;                              ///< by a support, a rigid base or a dashpot
   bool conditioned = false;                       ///< held or loaded: a boundary says what is there
-  int open_water = -1;                            ///< boundary of the scene that puts open water there, -1: none
+  int water = -1;                                 ///< boundary of the scene that decides on its water, -1: none
 };
 
 class AnySimulation {

@@ -48,8 +48,10 @@ PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const
   for (auto *field : {&taken_, &taken_moment_}) make_room(*field, mesh.node_count());
   make_room(at_gap_, mesh.node_count()), make_room(face_of_node_, mesh.node_count());
   make_room(nodal_, mesh.node_count());
-  active_walls_.reserve(walls_.size()), faces_.reserve(mesh.node_count()), gaps_.reserve(mesh.node_count()),
-      gap_cells_.reserve((dim + 1) * mesh.cell_count());
+  size_t most_faces = mesh.node_count();
+  for (const Corners &named : named_) most_faces += named.corners.size();
+  active_walls_.reserve(walls_.size()), faces_.reserve(most_faces), gaps_.reserve(mesh.node_count());
+  gap_cells_.reserve((dim + 1) * mesh.cell_count());
   PetscFunctionReturn(0);
 }
 
@@ -90,23 +92,48 @@ PetscErrorCode PoreConditions<dim>::set_corners(const BackgroundMesh<dim> &mesh,
 }
 
 template <int dim>
-void PoreConditions<dim>::add_face(const FilledGrid<dim> &grid, int node, int source, const NamedFace &named) {
-  const double length = std::sqrt(dot<dim>(named.area, named.area));
+void PoreConditions<dim>::add_face(int node, int source, const NamedFace &named) {
   Face face{node, source, face_of_node_[node], named.area, named.area, named.moment};
-  for (double &n : face.normal) n /= length;
-  if (named.facets > 0) face.spread = named.facets / length;
-  if (prescribes(source)) {
-    PrescribedDirections<dim> known;
-    fixed_at(grid, node, [&](const Vec<dim> &n, bool) { known.direction[known.count++] = n; });
-    const int before = known.count;
-    known.add(face.normal, source);
-    if (known.count > before) {
-      face.direction = known.direction[before];
-      face.across = dot<dim>(face.normal, face.direction);
-    }
-  }
+  face.length = std::sqrt(dot<dim>(named.area, named.area));
+  for (double &n : face.normal) n /= face.length;
+  if (named.facets > 0) face.spread = named.facets / face.length;
   face_of_node_[node] = static_cast<int>(faces_.size());
   faces_.push_back(face);
+}
+
+/// Finds which faces of a node lie in one plane, and the directions in which fluxes are prescribed there. `surface` as
+/// for `begin`.
+template <int dim>
+void PoreConditions<dim>::relate_faces(const FilledGrid<dim> &grid, const std::vector<Vec<dim>> &surface) {
+  for (Face &f : faces_) {
+    for (int before = f.further; before >= 0; before = faces_[before].further)
+      if (same_side(f.normal, faces_[before].normal))
+        f.leads = faces_[before].leads >= 0 ? faces_[before].leads : before;
+    if (f.leads < 0) continue;
+    Face &leader = faces_[f.leads];
+    f.next = leader.next, leader.next = static_cast<int>(&f - faces_.data());
+  }
+  for (Face &f : faces_) {
+    bool pumps = false;
+    for (const Face *g = &f; g && f.leads < 0; g = g->next >= 0 ? &faces_[g->next] : nullptr)
+      pumps |= prescribes(g->source);
+    if (!pumps) continue;
+    PrescribedDirections<dim> known;
+    walls_at(grid, f.node, [&](const Vec<dim> &n) {
+      if (in_plane_of_wall(f.normal, n)) {
+        f.wall = std::max(0., dot<dim>(surface[f.node], f.normal) - dot<dim>(taken_[f.node], f.normal));
+      } else {
+        known.direction[known.count++] = n;
+      }
+    });
+    for (int before = f.further; before >= 0; before = faces_[before].further)
+      if (faces_[before].across > 0) known.add(faces_[before].direction, faces_[before].source);
+    const int before = known.count;
+    known.add(f.normal, f.source);
+    if (known.count == before) continue;
+    f.direction = known.direction[before];
+    f.across = dot<dim>(f.normal, f.direction);
+  }
 }
 
 template <int dim>
@@ -118,10 +145,6 @@ PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vect
   active_walls_.clear(), faces_.clear();
   std::fill_n(face_of_node_.begin(), nodes, -1);
   for (auto *field : {&taken_, &taken_moment_}) std::fill_n(field->begin(), nodes, Vec<dim>{});
-  for (int i = 0; i < nodes; ++i) {
-    const int index = wall_of_node_[grid.mesh_node[i]];
-    if (index >= 0) active_walls_.push_back({i, &walls_[index]});
-  }
   const auto large = [&](int node, const Vec<dim> &area, double least) {
     double square = 0;
     for (double a : area) square += a * a;
@@ -145,7 +168,7 @@ PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vect
     for (int i = 0; i < nodes; ++i) {
       const NamedFace &face = nodal_[i];
       if (!large(i, face.area, 1e-9)) continue;
-      add_face(grid, i, source, face);
+      add_face(i, source, face);
       for (int d = 0; d < dim; ++d) taken_[i][d] += face.area[d], taken_moment_[i][d] += face.moment[d];
     }
   }
@@ -157,9 +180,17 @@ PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vect
     constexpr double least = dim == 2 ? 0.3 : 0.3 * 0.3, nothing = 1e-10;
     at_gap_[i] = 0;
     if (large(i, rest, least))
-      add_face(grid, i, rain_, {rest, open_water() ? open_part(grid, i, moment[i], taken_moment_[i]) : Vec<dim>{}, 0});
+      add_face(i, rain_, {rest, open_water() ? open_part(grid, i, moment[i], taken_moment_[i]) : Vec<dim>{}, 0});
     else if (large(i, rest, nothing))
       gaps_.push_back(i), at_gap_[i] = 1;
+  }
+  relate_faces(grid, surface);
+  for (int i = 0; i < nodes; ++i) {
+    ActiveWall wall{i, {}};
+    walls_at(grid, i, [&](const Vec<dim> &n) {
+      if (!pumped(i, n)) wall.wall.direction[wall.wall.count++] = n;
+    });
+    if (wall.wall.count) active_walls_.push_back(wall);
   }
   for (int c = 0; c < grid.cell_count(); ++c)
     for (int k = 0; k <= dim; ++k)

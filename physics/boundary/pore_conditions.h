@@ -79,38 +79,40 @@ class PoreConditions {
   void limits(double t, const FilledGrid<dim> &grid, double density, double unit_weight, At &&liquid_at,
               Limit &&limit) const {
     for (const Face &f : faces_) {
-      double least = -1e300, most = 1e300;  // of the volume that leaves per area and time
-      if (f.source == atmosphere) {
-        if (sealed_) least = 0;
-      } else {
-        const Vec<dim> &x = grid.position[f.node];
-        const double z = dim == 3 ? x[dim - 1] : 0;
-        const Boundary &kind = (*sources_)[f.source].kind;
-        if (kind.water == OnWater::outflow) least = 0;
-        if (f.across > 0) least = most = outflow(t, grid, f);
-        if (kind.water == OnWater::seepage && kind.outside(x[0], x[1], z, t, {unit_weight, x[vertical_]}) <= 0)
-          least = -kind.supply(x[0], x[1], z, t);
+      if (f.leads >= 0) continue;
+      Vec<dim> n = f.across > 0 ? f.direction : f.normal;
+      Outflow out = f.across > 0 ? outflow_of_pumps(t, grid, f) : outflow_in_plane(t, grid, f, unit_weight);
+      if (out.least == none) continue;
+      if (f.across == 0) {  // with what is prescribed, only the rest of the normal is free
+        each_pump(f.node, [&](const Face &g) {
+          const double part = dot<dim>(f.normal, g.direction);
+          out.least -= part * outflow_of_pumps(t, grid, g).least, add_scaled<dim>(n, -part, g.direction);
+        });
+        const double rest = std::sqrt(dot<dim>(n, n));
+        if (rest < least_angle_sine) continue;
+        for (double &x : n) x /= rest;
+        out.least /= rest;
       }
-      if (least == -1e300) continue;
       const LiquidAtNode at = liquid_at(f.node);
       const double scale = at.mass > 0 ? density * at.volume / at.mass : 0;
-      limit(f.node, f.across > 0 ? f.direction : f.normal, least * scale, most * scale);
+      limit(f.node, n, out.least * scale, out.most * scale);
     }
   }
   /// Calls wall(node, n) for every normal of walls that let no fluid pass; those of a node are orthonormal.
   template <class Put>
   void walls(Put &&wall) const {
     for (const ActiveWall &w : active_walls_)
-      for (int k = 0; k < w.wall->count; ++k) wall(w.node, w.wall->direction[k]);
+      for (int k = 0; k < w.wall.count; ++k) wall(w.node, w.wall.direction[k]);
   }
   /// Calls along(n, all) for orthonormal directions in which boundaries fix how fluids at a node move against the
   /// skeleton: all of them along normals of walls, and only the liquid along those of faces with a flux and of a
   /// surface of the soil that is sealed.
   template <class Put>
   void fixed_at(const FilledGrid<dim> &grid, int node, Put &&along) const {
-    walls_at(grid, node, [&](const Vec<dim> &n) { along(n, true); });
-    for (int f = face_of_node_[node]; f >= 0; f = faces_[f].further)
-      if (faces_[f].across > 0) along(faces_[f].direction, false);
+    each_pump(node, [&](const Face &f) { along(f.direction, false); });
+    walls_at(grid, node, [&](const Vec<dim> &n) {
+      if (!pumped(node, n)) along(n, true);
+    });
   }
   /// Calls wall(n) for the normals of walls at one node.
   template <class Put>
@@ -124,17 +126,25 @@ class PoreConditions {
   using Wall = PrescribedDirections<dim>;
   struct ActiveWall {
     int node;  ///< compact
-    const Wall *wall;
+    Wall wall;
+  };
+  static constexpr double none = -1e300;  ///< no limit
+  /// Volume of liquid that leaves per area and time.
+  struct Outflow {
+    double least = none, most = -none;
   };
   struct Face {
     int node, source;               ///< compact; a source or the atmosphere
     int further;                    ///< an earlier face of the node, -1: none
     Vec<dim> area, normal, moment;  ///< moment: of the area, in depth below the node [m3]
+    double length = 0;              ///< of `area` [m2]
     double spread = 1;              ///< sum of the areas of its facets over the length of their sum
-    /// Of a face that prescribes the velocity of the liquid along its normal: the part of the normal across those of
-    /// walls and of such faces before it, as a unit vector, and its length; 0 where they leave nothing to prescribe.
-    Vec<dim> direction;
-    double across = 0;
+    int leads = -1, next = -1;      ///< an earlier face of the node in the same plane; another one that this one leads
+    /// Of a face that leads one which prescribes the flux, or prescribes it itself: the part of the normal across those
+    /// of walls and of such faces before it, as a unit vector, and its length, 0 where they leave nothing to prescribe;
+    /// and the area of walls in its plane [m2].
+    Vec<dim> direction{};
+    double across = 0, wall = 0;
   };
   /// The share of a node in a facet of a boundary.
   struct Corner {
@@ -152,23 +162,72 @@ class PoreConditions {
     double facets;  ///< sum of their areas [m2], 0: none
   };
   PetscErrorCode set_corners(const BackgroundMesh<dim> &mesh, const std::vector<SourceFacets<dim>> &faces);
-  void add_face(const FilledGrid<dim> &grid, int node, int source, const NamedFace &face);
+  void add_face(int node, int source, const NamedFace &face);
+  void relate_faces(const FilledGrid<dim> &grid, const std::vector<Vec<dim>> &surface);
   bool prescribes(int source) const {
     if (source == atmosphere) return false;
     const OnWater water = (*sources_)[source].kind.water;
     return water == OnWater::flux || water == OnWater::wall;
   }
-  /// Volume that leaves per area and time along the direction of a face, so that along its normal what the face
-  /// prescribes leaves, whatever faces before it prescribe.
-  double outflow(double t, const FilledGrid<dim> &grid, const Face &f) const {
+  static bool same_side(const Vec<dim> &a, const Vec<dim> &b) { return dot<dim>(a, b) > same_direction; }
+  /// A wall inside the mesh stops fluids on both of its sides, and its normal may be that of either.
+  static bool in_plane_of_wall(const Vec<dim> &a, const Vec<dim> &wall) {
+    return std::abs(dot<dim>(a, wall)) > same_direction;
+  }
+  /// Calls use(face) for the faces of a node that prescribe the flux, the last one first.
+  template <class Use>
+  void each_pump(int node, Use &&use) const {
+    for (int f = face_of_node_[node]; f >= 0; f = faces_[f].further)
+      if (faces_[f].across > 0) use(faces_[f]);
+  }
+  /// Does a face that prescribes the flux lie in the plane of a wall with the normal n?
+  bool pumped(int node, const Vec<dim> &n) const {
+    bool any = false;
+    each_pump(node, [&](const Face &f) { any |= in_plane_of_wall(f.normal, n); });
+    return any;
+  }
+  Outflow outflow_of(double t, const FilledGrid<dim> &grid, const Face &f, double unit_weight) const {
+    if (f.source == atmosphere) return {sealed_ ? 0 : none};
     const Vec<dim> &x = grid.position[f.node];
+    const double z = dim == 3 ? x[dim - 1] : 0;
     const Boundary &kind = (*sources_)[f.source].kind;
-    double out = kind.inflow ? -f.spread * kind.inflow(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t) : 0;
+    if (kind.water == OnWater::outflow) return {0};
+    if (kind.water == OnWater::wall) return {0, 0};
+    if (kind.water == OnWater::flux) {
+      const double out = -f.spread * kind.inflow(x[0], x[1], z, t);
+      return {out, out};
+    }
+    if (kind.water == OnWater::seepage && kind.outside(x[0], x[1], z, t, {unit_weight, x[vertical_]}) <= 0)
+      return {-kind.supply(x[0], x[1], z, t)};
+    return {};
+  }
+  /// Faces of a node in one plane share its velocity: what leaves by all of them together has the sum of their limits.
+  /// Beside a face without a limit each keeps its own.
+  Outflow outflow_in_plane(double t, const FilledGrid<dim> &grid, const Face &f, double unit_weight) const {
+    if (f.next < 0) return outflow_of(t, grid, f, unit_weight);
+    double area = 0, sum = 0, tightest = none;
+    bool all = true;
+    for (const Face *g = &f; g; g = g->next >= 0 ? &faces_[g->next] : nullptr) {
+      const double least = outflow_of(t, grid, *g, unit_weight).least;
+      all &= least > none, area += g->length, sum += g->length * least, tightest = std::max(tightest, least);
+    }
+    return {all ? sum / area : tightest};
+  }
+  /// Of the plane of a face where a flux is prescribed: nothing passes by its walls and its faces without a flux. It
+  /// leaves along the direction of the face, so that this much leaves along its normal, whatever faces before it
+  /// prescribe.
+  Outflow outflow_of_pumps(double t, const FilledGrid<dim> &grid, const Face &f) const {
+    double volume = 0, area = f.wall;
+    for (const Face *g = &f; g; g = g->next >= 0 ? &faces_[g->next] : nullptr) {
+      area += g->length;
+      if (prescribes(g->source)) volume += g->length * outflow_of(t, grid, *g, 0).least;
+    }
+    double out = volume / area;
     for (int before = f.further; before >= 0; before = faces_[before].further) {
       const Face &g = faces_[before];
-      if (g.across > 0) out -= dot<dim>(f.normal, g.direction) * outflow(t, grid, g);
+      if (g.across > 0) out -= dot<dim>(f.normal, g.direction) * outflow_of_pumps(t, grid, g).least;
     }
-    return out / f.across;
+    return {out / f.across, out / f.across};
   }
   Vec<dim> open_area(const FilledGrid<dim> &grid, int node, const Vec<dim> &surface) const {
     return open_part(grid, node, surface, taken_[node]);

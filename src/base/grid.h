@@ -19,16 +19,23 @@ struct Grid {
 
   double east() const { return west + (columns - 1) * spacing; }
   double north() const { return south + (rows - 1) * spacing; }
-  /// Linear between values along both axes; not a number outside and beside holes.
+  /// Linear between values along both axes; not a number outside and where one of the values in between has no data. At
+  /// a node or on a line of the grid its own values alone count.
   double at(double x, double y) const {
     const double i = (x - west) / spacing, j = (y - south) / spacing, near = 1e-6;
     if (!(i >= -near && i <= columns - 1 + near && j >= -near && j <= rows - 1 + near))
       return std::numeric_limits<double>::quiet_NaN();
+    const auto part = [near](double beyond) { return beyond < near ? 0 : beyond > 1 - near ? 1 : beyond; };
     const int a = std::clamp(static_cast<int>(i), 0, std::max(0, columns - 2)),
               b = std::clamp(static_cast<int>(j), 0, std::max(0, rows - 2));
-    const double s = std::clamp(i - a, 0., 1.), t = std::clamp(j - b, 0., 1.);
+    const double s = part(i - a), t = part(j - b);
     const double *z = &values[static_cast<std::size_t>(b) * columns + a];
-    return (1 - t) * ((1 - s) * z[0] + s * z[1]) + t * ((1 - s) * z[columns] + s * z[columns + 1]);
+    double sum = 0;
+    const auto add = [&](double weight, int place) {
+      if (weight > 0) sum += weight * z[place];
+    };
+    add((1 - t) * (1 - s), 0), add((1 - t) * s, 1), add(t * (1 - s), columns), add(t * s, columns + 1);
+    return sum;
   }
 };
 

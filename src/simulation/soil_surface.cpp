@@ -40,20 +40,21 @@ std::vector<SoilFace> World<dim>::surface() const {
   const std::vector<char> there = present_at_start();
   const auto has_soil = [&](int cell) { return body_of[cell] >= 0 && there[body_of[cell]]; };
   struct Given {
-    bool held = false;
-    int open_water = -1;
+    bool acts = false, held = false;
+    int water = -1;
   };
   std::map<std::pair<int, int>, Given> given;  // by cell and face: what boundaries do there
   for (const std::vector<Source> *sources : {&conditions.sources(), &seepage_sources})
     for (const Source &source : *sources) {
-      if (source.kind.fluids_only() && !source.kind.open_water) continue;
+      const bool acts = !source.kind.fluids_only() || source.kind.open_water;
+      if (!acts && !source.kind.fluid_face()) continue;
       const bool holds = !source.kind.fluids_only() && source.kind.in_motion != OnSoil::load;
       const auto named = std::ranges::find(scene.boundary, source.name, &BoundarySource::name);
       for (const std::string &group : source.groups)
         for (const Facet<dim> &facet : mesh.has_group(group) ? mesh.facets(group) : std::vector<Facet<dim>>{}) {
           Given &at = given[{facet.cell, facet.face}];
-          at.held |= holds;
-          if (source.kind.open_water) at.open_water = static_cast<int>(named - scene.boundary.begin());
+          at.acts |= acts, at.held |= holds;
+          if (source.kind.fluid_face()) at.water = static_cast<int>(named - scene.boundary.begin());
         }
     }
   std::vector<SoilFace> mine, inside;  // `inside`: on faces between ranks
@@ -71,8 +72,10 @@ std::vector<SoilFace> World<dim>::surface() const {
         if (a != k) std::copy_n(mesh.position[mesh.cells[c].node[a]].begin(), dim, face.corner[n++].begin());
       for (int d = 0; d < dim; ++d) face.normal[d] = -gradient[k][d] / size;
       const auto found = given.find({c, k});
-      face.conditioned = found != given.end();
-      if (face.conditioned) face.held = found->second.held, face.open_water = found->second.open_water;
+      if (found != given.end()) {
+        const Given &at = found->second;
+        face.conditioned = at.acts, face.held = at.held, face.water = at.water;
+      }
       (beyond < boundary ? inside : mine).push_back(face);
     }
   }

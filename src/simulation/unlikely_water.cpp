@@ -187,7 +187,7 @@ class OpenWater {
   int elsewhere() const { return elsewhere_; }
   /// The boundary that puts water on a face, -1: none.
   int on(const SoilFace &face) const {
-    if (face.open_water >= 0) return face.open_water;
+    if (face.water >= 0) return boundary_[face.water].open_water ? face.water : -1;
     return elsewhere_ >= 0 && boundary_[elsewhere_].open_water ? elsewhere_ : -1;
   }
   /// Elevation of the water at a place on the face, that of the place itself where it is dry [m].
@@ -261,6 +261,29 @@ void doubt_dry_ponds(const Scene &scene, const Extent &soil, const std::vector<S
         (open.elsewhere() >= 0 ? "; on the free surface in place of boundary." + scene.boundary[open.elsewhere()].name
                                : "");
   sentences.push_back(text);
+}
+
+/// Faces of a boundary belong to the mesh. Soil that settles or slides away from them leaves the boundary without soil.
+void doubt_faces_of_water(const Scene &scene, const std::vector<SoilFace> &surface,
+                          std::vector<std::string> &sentences) {
+  if (std::ranges::none_of(scene.stage, [](const Stage &s) { return !is_static(s.kind) && s.pore_flow; })) return;
+  for (int b = 0; b < static_cast<int>(scene.boundary.size()); ++b) {
+    const BoundarySource &boundary = scene.boundary[b];
+    if (!read_boundary(boundary.kind).fluid_face() || std::ranges::count(boundary.group, std::string(free_surface)))
+      continue;
+    bool touched = false, beside_air = false;
+    for (const SoilFace &face : surface)
+      if (face.water == b) touched = true, beside_air |= !face.ends_mesh;
+    if (!touched)
+      sentences.push_back("boundary." + boundary.name +
+                          " decides on the water at faces of the mesh that no soil touches at the start, and brings or "
+                          "takes none there. The surface of the soil has the group free_surface");
+    else if (beside_air)
+      sentences.push_back("boundary." + boundary.name +
+                          " decides on the water at faces where the soil begins, and these stay where they are: soil "
+                          "that settles or slides from them by a third of a cell has the atmosphere there instead. A "
+                          "boundary on the group free_surface follows the soil");
+  }
 }
 
 /// The water table of one soil gives pore pressure and no open water: above the free surface of this soil nothing
@@ -358,7 +381,10 @@ void doubt_water(const Scene &scene, const Extent &soil, const std::vector<SoilF
   const double height = soil.of(scene.vertical());
   doubt_table(scene, soil, surface, sentences);
   doubt_excess_alone(scene, sentences);
-  if (phase_traits(scene.phases).liquid) doubt_dry_ponds(scene, soil, surface, sentences);
+  if (phase_traits(scene.phases).liquid) {
+    doubt_dry_ponds(scene, soil, surface, sentences);
+    doubt_faces_of_water(scene, surface, sentences);
+  }
   if (scene.phases != PhaseModel::drained) return;
   doubt_early_suction(scene, sentences);
   if (!scene.water.open_water_load) return;

@@ -104,6 +104,27 @@ TEST(Check, DoubtsPondsOfMovingWaterWithoutABoundary) {
   EXPECT_FALSE(lake("0.7").says(enters) || lake("1.1").says(doubt));
 }
 
+/// Boundaries of water on faces that have no soil, or that soil may leave.
+TEST(Check, DoubtsFacesOfWaterThatSoilLeaves) {
+  const Folder folder;
+  folder.write("section.csv", good_section);
+  folder.write("scene.toml",
+               changed(good_scene, "density = 2000", "porosity = 0.4\ngrain_density = 2650\npermeability = 1e-10"));
+  const auto output = [&](const std::string &group) {
+    const Ending ending = talus(folder, {"check", "scene.toml", "--json", "--set", "phases=saturated", "--set",
+                                         "boundary.pump.kind=flux", "--set", "boundary.pump.group=" + group});
+    EXPECT_EQ(ending.status, 0) << ending.output;
+    return ending;
+  };
+  const char *bare = "boundary.pump decides on the water at faces of the mesh that no soil touches",
+             *left = "boundary.pump decides on the water at faces where the soil begins";
+  EXPECT_TRUE(output("surface").says(bare)) << output("surface").output;
+  EXPECT_FALSE(output("left").says(bare) || output("left").says(left)) << "at the end of the mesh";
+  EXPECT_FALSE(output("free_surface").says(bare) || output("free_surface").says(left));
+  folder.write("section.csv", good_section + std::string("b_ground,0,0.5\nb_ground,1,0.5\n"));
+  EXPECT_TRUE(output("ground").says(left)) << output("ground").output;
+}
+
 /// A ditch from x = 0.5 to 1.5 m in ground at y = 0.5 m, 0.3 m deep.
 TEST(Check, DoubtsPondsInHollowsOfTheGround) {
   const Folder folder;

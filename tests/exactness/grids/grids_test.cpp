@@ -303,6 +303,24 @@ TEST_F(Grids, have_the_projection_of_the_terrain) {
   }
 }
 
+/// A mesh of terrain says so beside it, and gravity along its y would pull to the south.
+TEST_F(Grids, have_z_up_in_meshes_of_terrain) {
+  if (rank() == 0) {
+    std::ofstream(in_folder("m.msh")) << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
+    std::ofstream(in_folder("m.origin.json")) << "{\"origin_m\": [5000, 2000]}\n";
+  }
+  MPI_Barrier(PETSC_COMM_WORLD);
+  const auto run = [&] {
+    make_simulation(PETSC_COMM_WORLD,
+                    parse_scene("dimension = 3\nphases = \"dry\"\ngravity = 9.81\n[mesh]\nfile = \"m.msh\"\n"
+                                "[body.soil]\nregion = \"soil\"\nlaw = \"linear_elastic\"\nyoung_modulus = 1e7\n"
+                                "poisson_ratio = 0.3\ndensity = 2000\n[[stage]]\nduration = 1\n",
+                                in_folder("scene.toml")),
+                    quiet());
+  };
+  expect_refused(run, {"mesh.file", "is a mesh of terrain", "set dimension = 3 and up = \"z\""});
+}
+
 /// Seen from above, with y up, north is -z.
 TEST_F(Grids, are_not_mirrored) {
   const auto read = [](const std::string &up, const std::string &call) {

@@ -63,6 +63,7 @@ for signal in TERM INT; do
 done
 
 # whether ranks are bound to cores, on a machine that has two
+unset OMPI_MCA_hwloc_base_binding_policy
 printf '#!/bin/sh\necho 2\n' >"$tree/tools/nproc"
 printf '#!/bin/sh\necho "binding: $OMPI_MCA_hwloc_base_binding_policy"\n' >"$build/bin/talus"
 chmod +x "$tree/tools/nproc" "$build/bin/talus"

@@ -290,8 +290,14 @@ test::BoxMesh bent_square(double rise) {
 /// Velocities of the liquid against the skeleton after all limits and walls, from rest.
 std::vector<Vec<2>> pumped(Square1m &soil, PoreConditions<2> &pores) {
   EXPECT_EQ(pores.setup(soil.mesh, soil.sources, false, 1), 0);
-  std::vector<Vec<2>> w(soil.grid.node_count(), Vec<2>{});
-  EXPECT_EQ(pores.begin(soil.grid, soil.filling, w, w), 0);
+  std::vector<Vec<2>> w(soil.grid.node_count(), Vec<2>{}), surface = w;
+  for (int c = 0; c < soil.mesh.cell_count(); ++c) {
+    const auto gradient = barycentric_gradients<2>(soil.mesh.cells[c]);
+    for (int k = 0; k <= 2; ++k)
+      add_scaled<2>(surface[soil.grid.find_node(soil.mesh.cells[c].node[k])], soil.mesh.volume[c], gradient[k]);
+  }
+  EXPECT_EQ(soil.grid.sum(surface[0].data(), 2), 0);
+  EXPECT_EQ(pores.begin(soil.grid, soil.filling, surface, w), 0);
   const auto limit = [&](int node, const Vec<2> &n, double low, double high) {
     const double out = dot<2>(w[node], n);
     add_scaled<2>(w[node], std::clamp(out, low, high) - out, n);
@@ -307,16 +313,18 @@ std::vector<Vec<2>> pumped(Square1m &soil, PoreConditions<2> &pores) {
 }
 
 /// All the water that a flux over both sides of an edge states comes in, in the direction that gives each its own: by
-/// one boundary over both, by one for each, and beside a wall, which lets none pass.
+/// one boundary over both, by one for each, and beside a wall, which lets none pass. On a flat face too, where the node
+/// in between has one velocity for both sides.
 TEST(OwnBoundary, PumpsThroughTheSidesOfAnEdge) {
   struct Pump {
     std::vector<Square1m::Source> sources;
     double base, rise;  ///< inflow [m/s]
   };
   const Boundary whole{Flux{1.}}, half{Flux{0.5}};
-  for (const double rise : {1., 0.1, -5.})  // an edge of 45 degrees, relief, an edge of 79 degrees
+  for (const double rise : {1., 0.1, -5., 0.})  // an edge of 45 degrees, relief, an edge of 79 degrees, none
     for (const Pump &pump : {Pump{{{"both", {"base", "middle"}, whole}}, 1, 1},
                              Pump{{{"base", {"base"}, whole}, {"rise", {"middle"}, half}}, 1, 0.5},
+                             Pump{{{"base", {"base"}, whole}, {"rain", {"middle"}, Rainfall{}}}, 1, 0},
                              Pump{{{"base", {"base"}, whole}, {"rise", {"middle"}, Roller{}}}, 1, 0}}) {
       Square1m soil(pump.sources, bent_square(rise));
       PoreConditions<2> pores;

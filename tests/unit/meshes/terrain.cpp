@@ -385,7 +385,7 @@ TEST_F(TerrainFiles, DoNotMeetImpossibleSlipSurfaces) {
   o.slip_surface = slip([](double, double) { return 0; });
   EXPECT_FALSE(doubts(o, "wall"));
   o.slip_surface = slip([](double x, double) { return x - east - 80; });  // ends in the middle
-  EXPECT_TRUE(doubts(o, "slip.asc ends 11.5 m below the ground at (5070, 2080), and it is 11.5 m deep at most"));
+  EXPECT_TRUE(doubts(o, "slip.asc ends 12 m below the ground at (5080, 2080), and it is 12 m deep at most"));
   o.slip_surface = slip([](double x, double y) { return x == east + 70 && y == south + 80; });  // a hole
   EXPECT_TRUE(doubts(o, "vertical wall"));
   o.slip_surface = ascii([&](double x, double y) { return high(x, y) - 60; }, "slip.asc");
@@ -537,6 +537,16 @@ TEST_F(TerrainFiles, HaveLayers) {
   expect_words(complaint(o), {"far.asc has no elevation at (5000, 2000), where layer clay needs one"});
 }
 
+/// A place without data counts only where it has a part in the value.
+TEST(GridValues, NeedTheValuesThatCount) {
+  Grid grid;
+  grid.columns = 3, grid.rows = 2, grid.spacing = 10, grid.values = {1, 2, std::nan(""), 3, 4, std::nan("")};
+  EXPECT_EQ(grid.at(10, 0), 2);
+  EXPECT_EQ(grid.at(10, 5), 3);
+  EXPECT_EQ(grid.at(5, 10), 3.5);
+  EXPECT_TRUE(std::isnan(grid.at(11, 5)) && std::isnan(grid.at(20, 0)));
+}
+
 /// Cells are as small along the way as in the slide, and grow beside it.
 TEST_F(TerrainFiles, AreFineAlongTheWay) {
   TerrainOptions o = options(ascii(plane));
@@ -556,6 +566,11 @@ TEST_F(TerrainFiles, AreFineAlongTheWay) {
   EXPECT_DOUBLE_EQ(terrain.size_at(160, 90, 50), 4);
   EXPECT_DOUBLE_EQ(terrain.size_at(100, 100, 70), 4);
   EXPECT_NEAR(terrain.size_at(100, 150, 70), 4 + 0.2 * 50, 1);
+  o.way = {east + 180, south + 20, east + 190, south + 30}, o.way_width = 10;
+  EXPECT_TRUE(doubts(o, "cells grow to 30 m on the way")) << "a way that the slide does not take";
+  o.way = {50, 80, 120, 80};
+  expect_words(complaint(o), {"--way, which begins at x = 50, y = 80 m, lies beside the terrain that is meshed",
+                              "from x = 5000 to 5200", "in the coordinates of the grid"});
   o.way.pop_back();
   expect_words(complaint(o), {"two points"});
   o.way = {1, 1, 2, 2}, o.way_width = 0;
