@@ -148,7 +148,7 @@ struct MeshSource {
     v.integer("layers", layers, Range{0, 1000}, "element layers over the thickness; 0 gives unstructured tetrahedra");
     v.point("cuts", cuts, metre,
             "ascending z that divide the thickness: regions are then named region_1, region_2, ... along z");
-    v.list("refine", refine, "boxes with smaller cells");
+    v.list("refine", refine, "boxes with smaller cells, of a section; on terrain see mesh.terrain");
     v.integer("halvings", halvings, Range{0, 4},
               "how often the edges of all cells are halved, each time for 4 times as many triangles or 8 times as many "
               "tetrahedra; ranks do it after the mesh has been divided among them, so that none holds all cells");

@@ -293,7 +293,7 @@ def write_vectors(maps, path):
 
 
 def checked(folder):
-    """The results of a run in 3D that can be mapped; what is incomplete about them is said."""
+    """The results of a run in 3D that can be mapped."""
     results = Results(folder)
     if not results.snapshots:
         raise ValueError(f"{folder} contains no snapshots")
@@ -303,13 +303,16 @@ def checked(folder):
     for field in ("displacement", "velocity", "volume"):
         if field not in results.snapshots[-1]:
             raise ValueError(f"{folder} has no field {field}, which maps need")
+    return results
+
+
+def say_what_is_missing(results):
     if cause := results.broke_off():
         warn(f"the run {'is incomplete' if cause == NOT_ENDED else 'broke off'}: {cause}; the maps show it up to {results.snapshots[-1].time:g} s")
     gone = left_mesh(results)
     if len(gone):
-        volume = first.column("volume").values[np.isin(first.ids(), gone, assume_unique=True)].sum()
+        volume = results.snapshots[0].column("volume").values[np.isin(results.snapshots[0].ids(), gone, assume_unique=True)].sum()
         warn(f"{len(gone)} particles with a volume of {volume:.4g} m3 at the start left the mesh: the deposit is without them")
-    return results
 
 
 def main():
@@ -321,6 +324,7 @@ def main():
     given = parser.parse_args()
     try:
         maps = Maps(checked(given.folder), given.spacing, given.limit)
+        say_what_is_missing(maps.results)
         folder = pathlib.Path(given.folder) / "maps"
         folder.mkdir(exist_ok=True)
         write_rasters(maps, folder, given.ascii)
