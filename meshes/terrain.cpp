@@ -424,7 +424,8 @@ void Terrain::find_distances() {
           std::clamp((from[0] * along[0] + from[1] * along[1]) / (along[0] * along[0] + along[1] * along[1]), 0., 1.);
       const double away = std::hypot(from[0] - share * along[0], from[1] - share * along[1]);
       const double beside = std::max(0., away - options_.way_width / 2);
-      way_in_window_ |= beside == 0, way_meets_slide_ |= beside == 0 && ground()[k] > bed()[k];
+      const bool on_way = beside < ground_.spacing * std::sqrt(0.5);  // or less: a narrow strip may meet no node
+      way_in_window_ |= on_way, way_meets_slide_ |= on_way && ground()[k] > bed()[k];
       d[k] = std::min(d[k], beside);
     }
   if (slides() && !w.empty() && !way_in_window_)

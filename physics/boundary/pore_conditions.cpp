@@ -114,9 +114,9 @@ void PoreConditions<dim>::relate_faces(const FilledGrid<dim> &grid, const std::v
     f.next = leader.next, leader.next = static_cast<int>(&f - faces_.data());
   }
   for (Face &f : faces_) {
+    if (f.leads >= 0) continue;
     bool pumps = false;
-    for (const Face *g = &f; g && f.leads < 0; g = g->next >= 0 ? &faces_[g->next] : nullptr)
-      pumps |= prescribes(g->source);
+    each_in_plane(f, [&](const Face &g) { pumps |= prescribes(g.source); });
     if (!pumps) continue;
     PrescribedDirections<dim> known;
     walls_at(grid, f.node, [&](const Vec<dim> &n) {

@@ -81,12 +81,16 @@ class PoreConditions {
     for (const Face &f : faces_) {
       if (f.leads >= 0) continue;
       Vec<dim> n = f.across > 0 ? f.direction : f.normal;
-      Outflow out = f.across > 0 ? outflow_of_pumps(t, grid, f) : outflow_in_plane(t, grid, f, unit_weight);
+      Outflow out;
+      if (f.across > 0)
+        out.least = out.most = outflow_of_pumps(t, grid, f);
+      else
+        out = outflow_in_plane(t, grid, f, unit_weight);
       if (out.least == none) continue;
       if (f.across == 0) {  // with what is prescribed, only the rest of the normal is free
         each_pump(f.node, [&](const Face &g) {
           const double part = dot<dim>(f.normal, g.direction);
-          out.least -= part * outflow_of_pumps(t, grid, g).least, add_scaled<dim>(n, -part, g.direction);
+          out.least -= part * outflow_of_pumps(t, grid, g), add_scaled<dim>(n, -part, g.direction);
         });
         const double rest = std::sqrt(dot<dim>(n, n));
         if (rest < least_angle_sine) continue;
@@ -180,6 +184,11 @@ class PoreConditions {
     for (int f = face_of_node_[node]; f >= 0; f = faces_[f].further)
       if (faces_[f].across > 0) use(faces_[f]);
   }
+  /// Calls use(face) for a face that leads and for those of its plane that it leads.
+  template <class Use>
+  void each_in_plane(const Face &f, Use &&use) const {
+    for (const Face *g = &f; g; g = g->next >= 0 ? &faces_[g->next] : nullptr) use(*g);
+  }
   /// Does a face that prescribes the flux lie in the plane of a wall with the normal n?
   bool pumped(int node, const Vec<dim> &n) const {
     bool any = false;
@@ -207,27 +216,27 @@ class PoreConditions {
     if (f.next < 0) return outflow_of(t, grid, f, unit_weight);
     double area = 0, sum = 0, tightest = none;
     bool all = true;
-    for (const Face *g = &f; g; g = g->next >= 0 ? &faces_[g->next] : nullptr) {
-      const double least = outflow_of(t, grid, *g, unit_weight).least;
-      all &= least > none, area += g->length, sum += g->length * least, tightest = std::max(tightest, least);
-    }
+    each_in_plane(f, [&](const Face &g) {
+      const double least = outflow_of(t, grid, g, unit_weight).least;
+      all &= least > none, area += g.length, sum += g.length * least, tightest = std::max(tightest, least);
+    });
     return {all ? sum / area : tightest};
   }
   /// Of the plane of a face where a flux is prescribed: nothing passes by its walls and its faces without a flux. It
   /// leaves along the direction of the face, so that this much leaves along its normal, whatever faces before it
   /// prescribe.
-  Outflow outflow_of_pumps(double t, const FilledGrid<dim> &grid, const Face &f) const {
+  double outflow_of_pumps(double t, const FilledGrid<dim> &grid, const Face &f) const {
     double volume = 0, area = f.wall;
-    for (const Face *g = &f; g; g = g->next >= 0 ? &faces_[g->next] : nullptr) {
-      area += g->length;
-      if (prescribes(g->source)) volume += g->length * outflow_of(t, grid, *g, 0).least;
-    }
+    each_in_plane(f, [&](const Face &g) {
+      area += g.length;
+      if (prescribes(g.source)) volume += g.length * outflow_of(t, grid, g, 0).least;
+    });
     double out = volume / area;
     for (int before = f.further; before >= 0; before = faces_[before].further) {
       const Face &g = faces_[before];
-      if (g.across > 0) out -= dot<dim>(f.normal, g.direction) * outflow_of_pumps(t, grid, g).least;
+      if (g.across > 0) out -= dot<dim>(f.normal, g.direction) * outflow_of_pumps(t, grid, g);
     }
-    return {out / f.across, out / f.across};
+    return out / f.across;
   }
   Vec<dim> open_area(const FilledGrid<dim> &grid, int node, const Vec<dim> &surface) const {
     return open_part(grid, node, surface, taken_[node]);

@@ -256,7 +256,8 @@ void doubt_dry_ponds(const Scene &scene, const Extent &soil, const std::vector<S
             ", which rests on the ground, stands lower there. Give both one level";
   else
     text +=
-        "no water rests on the ground there. For open water give it a boundary with kind = \"head\" and level = " +
+        "no water rests on the ground there. For open water give the ground a boundary with kind = \"head\" and level "
+        "= " +
         rounded(deepest->highest) + " m, on group = \"free_surface\" or on groups that reach to the shore" +
         (open.elsewhere() >= 0 ? "; on the free surface in place of boundary." + scene.boundary[open.elsewhere()].name
                                : "");

@@ -69,13 +69,18 @@ TEST(Check, DoubtsOpenWaterThatIsNotLevel) {
       << "two ponds, of which each is level";
 }
 
+/// The good scene with soil whose water moves.
+void write_wet_block(const Folder &folder) {
+  folder.write("section.csv", good_section);
+  folder.write("scene.toml",
+               changed(good_scene, "density = 2000", "porosity = 0.4\ngrain_density = 2650\npermeability = 1e-10"));
+}
+
 /// Water that moves does not rest on the ground by its table.
 TEST(Check, DoubtsPondsOfMovingWaterWithoutABoundary) {
   const Folder folder;
   const std::string pond = "water.table=[[0, 0.9], [1, 0.9]]";
-  folder.write("section.csv", good_section);
-  folder.write("scene.toml",
-               changed(good_scene, "density = 2000", "porosity = 0.4\ngrain_density = 2650\npermeability = 1e-10"));
+  write_wet_block(folder);
   const auto output = [&](const std::vector<std::string> &overrides) {
     std::vector<std::string> arguments{"check", "scene.toml", "--json", "--set", "phases=saturated"};
     for (const std::string &one : overrides) arguments.insert(arguments.end(), {"--set", one});
@@ -107,9 +112,7 @@ TEST(Check, DoubtsPondsOfMovingWaterWithoutABoundary) {
 /// Boundaries of water on faces that have no soil, or that soil may leave.
 TEST(Check, DoubtsFacesOfWaterThatSoilLeaves) {
   const Folder folder;
-  folder.write("section.csv", good_section);
-  folder.write("scene.toml",
-               changed(good_scene, "density = 2000", "porosity = 0.4\ngrain_density = 2650\npermeability = 1e-10"));
+  write_wet_block(folder);
   const auto output = [&](const std::string &group) {
     const Ending ending = talus(folder, {"check", "scene.toml", "--json", "--set", "phases=saturated", "--set",
                                          "boundary.pump.kind=flux", "--set", "boundary.pump.group=" + group});

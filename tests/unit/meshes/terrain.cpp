@@ -568,6 +568,8 @@ TEST_F(TerrainFiles, AreFineAlongTheWay) {
   EXPECT_NEAR(terrain.size_at(100, 150, 70), 4 + 0.2 * 50, 1);
   o.way = {east + 180, south + 20, east + 190, south + 30}, o.way_width = 10;
   EXPECT_TRUE(doubts(o, "cells grow to 30 m on the way")) << "a way that the slide does not take";
+  o.way = {east + 50, south + 85, east + 120, south + 85}, o.way_width = 2;
+  EXPECT_FALSE(doubts(o, "cells grow to")) << "between two rows of the grid";
   o.way = {50, 80, 120, 80};
   expect_words(complaint(o), {"--way, which begins at x = 50, y = 80 m, lies beside the terrain that is meshed",
                               "from x = 5000 to 5200", "in the coordinates of the grid"});
