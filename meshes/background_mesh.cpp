@@ -126,7 +126,7 @@ PetscErrorCode BackgroundMesh<dim>::settle(MeshPart<dim> part) {
 
 template <int dim>
 Cuts BackgroundMesh<dim>::balanced_cuts(const std::vector<FilledCell<dim>> &filled, double cost,
-                                        double *imbalance) const {
+                                        PartitionForecast *forecast) const {
   const std::vector<FilledCell<dim>> mine = in_larger_cells(filled, 1LL << dim * halvings_);
   int rank, ranks, count = static_cast<int>(mine.size() * sizeof(FilledCell<dim>));
   MPI_Comm_rank(comm(), &rank), MPI_Comm_size(comm(), &ranks);
@@ -138,10 +138,10 @@ Cuts BackgroundMesh<dim>::balanced_cuts(const std::vector<FilledCell<dim>> &fill
   Cuts cuts(ranks - 1);
   if (rank == 0) {
     const auto balance = whole_->balance(all, cost, ranks);
-    cuts = balance.cuts, *imbalance = balance.imbalance;
+    cuts = balance.cuts, *forecast = balance.forecast;
   }
   MPI_Bcast(cuts.data(), static_cast<int>(cuts.size() * sizeof(Cut)), MPI_BYTE, 0, comm());
-  MPI_Bcast(imbalance, 1, MPI_DOUBLE, 0, comm());
+  MPI_Bcast(forecast, sizeof *forecast, MPI_BYTE, 0, comm());
   return cuts;
 }
 

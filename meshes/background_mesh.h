@@ -80,9 +80,8 @@ class BackgroundMesh {
   double heaviest_patch() const { return heaviest_patch_; }
   const Cuts &cuts() const { return cuts_; }  ///< the partition; empty where the mesh is not divisible
   /// The partition with nearly equal sums of weight, where `filled` are the cells of this rank that weigh something,
-  /// and a new partition costs as much as `cost` of weight in a step. `imbalance`: the weight of the rank that gets
-  /// most, over the mean. Collective, the same on all ranks.
-  Cuts balanced_cuts(const std::vector<FilledCell<dim>> &filled, double cost, double *imbalance) const;
+  /// and a new partition costs as much as `cost` of weight in a step. Collective, the same on all ranks.
+  Cuts balanced_cuts(const std::vector<FilledCell<dim>> &filled, double cost, PartitionForecast *forecast) const;
   /// This mesh on another partition: the mesh that `read` would give with these cuts, to the bit. Collective.
   BackgroundMesh divided(const Cuts &cuts) const;
 

@@ -25,18 +25,19 @@ class Bisection {
     const int lower_ranks = ranks / 2;
     const double share = static_cast<double>(lower_ranks) / ranks;
     std::size_t lower = 0;
-    double least = std::numeric_limits<double>::infinity();
+    double least = std::numeric_limits<double>::infinity(), least_crossing = 0;
     Cut best;
     for (int axis = 0; axis < dim; ++axis) {
       auto sorted = patches;
       const std::size_t at = cut(sorted, axis, share);
-      const double cost = cost_of_faces(sorted, at) + cost_of_motion(sorted, at, axis);
+      const double crossing = crossing_weight(sorted, at, axis);
+      const double cost = cost_of_faces(sorted, at) + cost_of_crossing(crossing, load_.partition_cost);
       if (cost >= least) continue;
-      least = cost, lower = at, best_ = sorted;
+      least = cost, least_crossing = crossing, lower = at, best_ = sorted;
       best = {std::numeric_limits<double>::infinity(), axis, 0};
       if (at < sorted.size()) best.place = centre_[sorted[at]][axis], best.patch = sorted[at];
     }
-    cuts.push_back(best);
+    cuts.push_back(best), most_crossing = std::max(most_crossing, least_crossing);
     const std::vector<int> halves[2] = {{best_.begin(), best_.begin() + lower}, {best_.begin() + lower, best_.end()}};
     divide(halves[0], lower_ranks);
     divide(halves[1], ranks - lower_ranks);
@@ -52,6 +53,7 @@ class Bisection {
 
  public:
   Cuts cuts;
+  double most_crossing = 0;  // of the cuts
 
  private:
   /// Sorts patches along an axis; returns how many of them hold `share` of the weight.
@@ -81,9 +83,8 @@ class Bisection {
     return cost;
   }
 
-  /// If weight s crosses the cut in each step, n steps lose s n^2 / 2, and a new partition, which costs C, is due when
-  /// they have lost as much: both together cost sqrt(2 C s) in each step.
-  double cost_of_motion(const std::vector<int> &patches, std::size_t lower, int axis) const {
+  /// Weight that crosses the cut in a step.
+  double crossing_weight(const std::vector<int> &patches, std::size_t lower, int axis) const {
     constexpr double share_of_extent = 0.1;  // which the fastest goes, so that many patches can cross the cut
     if (load_.way.empty() || lower == patches.size()) return 0;
     double low = std::numeric_limits<double>::max(), high = -low, fastest = 0;
@@ -100,7 +101,7 @@ class Bisection {
       const bool is_lower = centre_[p][axis] + steps * load_.way[p][axis] < place;
       crossed += (i < lower) == is_lower ? 0 : i < lower ? load_.weight[p] : -load_.weight[p];
     }
-    return steps > 0 ? std::sqrt(2 * load_.partition_cost * std::abs(crossed) / steps) : 0;
+    return steps > 0 ? std::abs(crossed) / steps : 0;
   }
 };
 
@@ -108,11 +109,16 @@ class Bisection {
 
 template <int dim>
 Cuts find_cuts(const std::vector<Vec<dim>> &centre, const PatchLoad<dim> &load,
-               const std::vector<std::vector<int>> &touching, int ranks) {
+               const std::vector<std::vector<int>> &touching, int ranks, PartitionForecast *forecast) {
   Bisection<dim> bisection(centre, load, touching);
   std::vector<int> all(centre.size());
   std::iota(all.begin(), all.end(), 0);
   bisection.divide(all, ranks);
+  const std::vector<int> rank = ranks_by_cuts<dim>(centre, bisection.cuts);
+  std::vector<double> sum(ranks, 0);
+  for (std::size_t p = 0; p < rank.size(); ++p) sum[rank[p]] += load.weight[p];
+  const double mean = std::accumulate(sum.begin(), sum.end(), 0.) / ranks;
+  *forecast = {mean > 0 ? *std::max_element(sum.begin(), sum.end()) / mean : 1, bisection.most_crossing};
   return bisection.cuts;
 }
 
@@ -135,9 +141,9 @@ std::vector<int> ranks_by_cuts(const std::vector<Vec<dim>> &centre, const Cuts &
 }
 
 template Cuts find_cuts<2>(const std::vector<Vec<2>> &, const PatchLoad<2> &, const std::vector<std::vector<int>> &,
-                           int);
+                           int, PartitionForecast *);
 template Cuts find_cuts<3>(const std::vector<Vec<3>> &, const PatchLoad<3> &, const std::vector<std::vector<int>> &,
-                           int);
+                           int, PartitionForecast *);
 template std::vector<int> ranks_by_cuts<2>(const std::vector<Vec<2>> &, const Cuts &);
 template std::vector<int> ranks_by_cuts<3>(const std::vector<Vec<3>> &, const Cuts &);
 

@@ -10,13 +10,6 @@ namespace {
 /// alone is divided too.
 constexpr double empty_weight = 1e-3;
 
-/// The largest sum of weight on a rank.
-double largest_share(const std::vector<double> &weight, const std::vector<int> &rank, int ranks) {
-  std::vector<double> sum(ranks, 0);
-  for (std::size_t k = 0; k < weight.size(); ++k) sum[rank[k]] += weight[k];
-  return *std::max_element(sum.begin(), sum.end());
-}
-
 }  // namespace
 
 template <int dim>
@@ -94,11 +87,11 @@ typename WholeMesh<dim>::Balance WholeMesh<dim>::balance(const std::vector<Fille
     map<dim>(load.way[p]) += one.weight * map<dim>(one.way);
   }
   for (std::size_t p = 0; p < load.way.size(); ++p) map<dim>(load.way[p]) /= load.weight[p];
-  const Cuts cuts = find_cuts<dim>(centre_, load, touching_, ranks);
+  Balance balance;
+  balance.cuts = find_cuts<dim>(centre_, load, touching_, ranks, &balance.forecast);
   const double all = std::accumulate(load.weight.begin(), load.weight.end(), 0.);
-  if (!(all > 0)) return {cuts, 1, 0};
-  return {cuts, ranks * largest_share(load.weight, ranks_by_cuts<dim>(centre_, cuts), ranks) / all,
-          ranks * *std::max_element(load.weight.begin(), load.weight.end()) / all};
+  if (all > 0) balance.heaviest_patch = ranks * *std::max_element(load.weight.begin(), load.weight.end()) / all;
+  return balance;
 }
 
 template class WholeMesh<2>;

@@ -31,11 +31,11 @@ class WholeMesh {
   std::size_t cell_count() const { return patch_.size(); }
   MeshPart<dim> part() const;  ///< all of it
   std::vector<int> ranks_of_cells(const Cuts &cuts) const;
-  /// Cuts that balance the weights of these cells, where a new partition costs as much as `cost` of weight in a step;
-  /// of the weights the largest sum on a rank, and the heaviest patch, over the mean of ranks.
+  /// Cuts that balance the weights of these cells, where a new partition costs as much as `cost` of weight in a step.
   struct Balance {
     Cuts cuts;
-    double imbalance, heaviest_patch;
+    PartitionForecast forecast;
+    double heaviest_patch = 0;  ///< its weight over the mean of ranks
   };
   Balance balance(const std::vector<FilledCell<dim>> &filled, double cost, int ranks) const;
 

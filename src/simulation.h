@@ -83,6 +83,7 @@ struct BodyReport {
   double cell_size = 0;                              ///< side of the regular simplex of the mean size of its cells [m]
   double critical_step = 0, mean_critical_step = 0;  ///< least and mean over its cells [s]
   std::array<double, 3> slowest_cell{};              ///< centroid of the cell with the least [m]
+  bool one_element_across = false;                   ///< no node inside, and the mesh is no slice of one element
   StrengthRange strength;                            ///< over the places of the body at the start
 };
 
@@ -94,7 +95,8 @@ struct SoilFace {
   int body = 0;                                   ///< number of the body behind it
   bool ends_mesh = false;                         ///< no cell beyond either
   bool held = false;                              ///< by a support, a rigid base or a dashpot
-  bool conditioned = false;                       ///< held or loaded: a boundary says what is there
+  bool conditioned = false;                       ///< held or loaded, by water too: a boundary says what is there
+  bool bounded = false;                           ///< held or loaded by a boundary of the soil itself
   int water = -1;                                 ///< boundary of the scene that decides on its water, -1: none
 };
 

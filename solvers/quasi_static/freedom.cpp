@@ -1,5 +1,5 @@
 /// What is wrong with a problem before it is solved: rigid motions that supports leave to a piece of soil (the null
-/// space of its stiffness), and bodies that have one element across.
+/// space of its stiffness).
 #include <algorithm>
 #include <map>
 #include <sstream>
@@ -88,37 +88,6 @@ PetscErrorCode QuasiStatic<dim>::find_freedom(double load_time, std::string *fre
   PetscFunctionReturn(0);
 }
 
-template <int dim>
-PetscErrorCode QuasiStatic<dim>::find_thin_bodies(std::vector<char> *thin) const {
-  const BackgroundMesh<dim> &mesh = soil_.mesh();
-  const ElementNodes<dim> &nodes = soil_.nodes();
-  PetscFunctionBeginUser;
-  thin->assign(soil_.points().size(), 0);
-  for (size_t b = 0; b < thin->size(); ++b) {
-    std::vector<PetscInt> touched(nodes.count(), 0), surface(nodes.count(), 0);
-    for (int c = 0; c < mesh.cell_count(); ++c) {
-      if (!soil_.active(c)) continue;
-      const Cell<dim> &cell = mesh.cells[c];
-      for (int k = 0; k <= dim; ++k) {
-        const int across = cell.neighbour[k], node = nodes.at_vertex(cell.node[k]);
-        (soil_.body_of(c) == static_cast<int>(b) ? touched : surface)[node] = 1;
-        if (across == boundary || (across >= 0 && !soil_.active(across)))
-          for (int a = 0; a <= dim; ++a)
-            if (a != k) surface[nodes.at_vertex(cell.node[a])] = 1;
-      }
-    }
-    PetscCall(nodes.maximum(touched));
-    PetscCall(nodes.maximum(surface));
-    int inside = 0;
-    for (int i = 0; i < nodes.count(); ++i) inside |= touched[i] && !surface[i];
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &inside, 1, MPI_INT, MPI_MAX, nodes.comm()));
-    (*thin)[b] = soil_.points()[b].present && !inside;
-  }
-  PetscFunctionReturn(0);
-}
-
-template PetscErrorCode QuasiStatic<2>::find_thin_bodies(std::vector<char> *) const;
-template PetscErrorCode QuasiStatic<3>::find_thin_bodies(std::vector<char> *) const;
 template PetscErrorCode QuasiStatic<2>::find_freedom(double, std::string *);
 template PetscErrorCode QuasiStatic<3>::find_freedom(double, std::string *);
 

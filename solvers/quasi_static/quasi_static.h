@@ -66,8 +66,6 @@ class QuasiStatic {
   /// Rigid motions that supports, and bases with their strength at `load_time`, leave to some piece of soil, in words;
   /// empty if there are none. Collective.
   PetscErrorCode find_freedom(double load_time, std::string *freedom);  // freedom.cpp
-  /// Bodies without a vertex inside: one element across. Collective.
-  PetscErrorCode find_thin_bodies(std::vector<char> *thin) const;  // freedom.cpp
   /// Gravity, and what else pulls on all mass along the next paths [m/s2].
   void set_acceleration(const std::array<double, 3> &of) { std::copy_n(of.begin(), dim, loads_.acceleration.begin()); }
   /// Begins a path from the present state at `load_time`: what is out of balance there is released along the path.

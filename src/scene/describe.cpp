@@ -166,7 +166,8 @@ void Describer::points(const char *key, const std::vector<std::vector<double>> &
 }
 
 void Describer::water_table(const char *key, const WaterTable &, Unit unit, const char *meaning) {
-  line(key, number_in(unit) + std::string(", list of points, or an expression of ") + of::place, "", meaning, unit);
+  line(key, number_in(unit) + std::string(", list of points [x, elevation], or an expression of ") + of::place, "",
+       meaning, unit);
 }
 
 void Describer::function(const char *key, const Function &value, Unit unit, Range range, const char *variables,

@@ -200,12 +200,16 @@ void TableReader::water_table(const char *key, WaterTable &value, Unit unit, con
   const auto given = find(key, meaning);
   if (!given) return;
   constexpr Range elevations{-1e4, 1e4};
-  if (given->node().is_string()) {
+  if (given->node().is_string() || given->node().is_number()) {
     const Function elevation = given->function(unit, elevations, of::place);
-    if (!elevation.constant()) return void(value.elevation = elevation);
+    if (elevation.constant())
+      value.points = {{0, elevation(0)}};
+    else
+      value.elevation = elevation;
+    return;
   }
   if (!given->node().is_array())
-    given->must_be("a list of points [x, elevation] or an expression of " + std::string(of::place));
+    given->must_be("an elevation, a list of points [x, elevation] or an expression of " + std::string(of::place));
   points(key, value.points, unit, meaning);
 }
 

@@ -175,7 +175,7 @@ Verdict Dynamics<dim>::agree() {
                     watched[0],
                     watched[1],
                     watched[2],
-                    world_.work_of_rank()};
+                    world_.work_of_rank(balancing_.steps() + 1)};
   for (const auto &body : world_.bodies)
     if (!law_trouble(body->law()).text.empty()) mine[3] = 1;
   if (!world_.scene.function_fault().empty()) mine[3] = 1;

@@ -195,6 +195,7 @@ struct BoundaryRow {
   std::string name;
   bool loads = false;  ///< it loads the soil: the mean displacement of its faces is shown, otherwise the force by which
                        ///< it supports the soil
+  bool of_water = false;                  ///< it is one of the water in the pores alone, and has neither
   bool inflow = false;                    ///< the water that enters through it is shown
   bool is_base = false;                   ///< its friction, and the clearance of the soil over it, are shown
   bool remembers = false, heats = false;  ///< a base: its slip is shown; and the heat of its shear zone
@@ -247,7 +248,7 @@ struct RunRow {
     for (const auto &b : boundaries)
       if (b.inflow) column(b.name + "_inflow", "m3/s", b.water);
     for (const auto &b : boundaries)
-      for (int d = 0; d < dim; ++d)
+      for (int d = 0; d < dim && !b.of_water; ++d)
         column(b.name + (b.loads ? "_displacement_" : "_force_") + "xyz"[d], b.loads ? "m" : "N", b.value[d]);
     for (const auto &b : boundaries) {
       if (b.remembers) column(b.name + "_slip", "m", b.base.slip);
@@ -265,7 +266,8 @@ struct RunRow {
   /// Calls f(by what, work [J]) for all that does work on the soil.
   template <class F>
   void each_work(F &&f) const {
-    for (const auto &b : boundaries) f(b.name, b.work);
+    for (const auto &b : boundaries)
+      if (!b.of_water) f(b.name, b.work);
     f(std::string("gravity"), work.gravity), f(std::string("imposed"), work.imposed);
     f(std::string("damping"), work.damping);
   }

@@ -197,6 +197,7 @@ RunRow<dim> Recorder<dim>::run_row() const {
     const auto &source = world.conditions.sources()[s];
     row.boundaries.push_back({source.name,
                               world.conditions.loads(static_cast<int>(s)),
+                              source.kind.fluids_only(),
                               has_flow_stages(scene_) && source.kind.has_inflow(),
                               source.kind.in_motion == OnSoil::contact,
                               source.kind.remembers,

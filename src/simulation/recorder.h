@@ -70,7 +70,7 @@ class Recorder {
     for (const std::string &sentence : ends_.cut_off()) note("warning: " + sentence);
   }
   /// Says that the mesh was divided in another way, which is expected to bring this imbalance.
-  void note_balancing(double expected);
+  void note_balancing(double before, double expected);
   /// Ends the run: throws RunError with the cause, where the run stood and what is left of it; BrokenOff if pictures of
   /// that are wanted.
   [[noreturn]] void fail(const std::string &cause);

@@ -129,7 +129,7 @@ void Recorder<dim>::note_imbalance() {
   int ranks;
   MPI_Comm_size(of_.world.comm, &ranks);
   if (ranks == 1 || imbalance_at_start_ > 0 || of_.world.particle_count == 0) return;
-  double work[2] = {of_.world.work_of_rank(), of_.world.work_of_rank()};
+  double work[2] = {of_.world.work_of_rank(0), of_.world.work_of_rank(0)};
   MPI_Allreduce(MPI_IN_PLACE, &work[0], 1, MPI_DOUBLE, MPI_MAX, of_.world.comm);
   MPI_Allreduce(MPI_IN_PLACE, &work[1], 1, MPI_DOUBLE, MPI_SUM, of_.world.comm);
   imbalance_at_start_ = work[0] * ranks / work[1];
@@ -142,14 +142,14 @@ void Recorder<dim>::note_imbalance() {
 }
 
 template <int dim>
-void Recorder<dim>::note_balancing(double expected) {
+void Recorder<dim>::note_balancing(double before, double expected) {
   const Balancing &balancing = of_.dynamics.balancing();
   constexpr long long told = 20;  // at which the log stops to tell each of them
   if (!results_ || balancing.count() > told) return;
   std::ostringstream text;
   text.precision(3);
-  text << "the mesh was divided among the ranks in another way: imbalance " << balancing.imbalance() << " before, "
-       << expected << " now";
+  text << "the mesh was divided among the ranks in another way: imbalance " << before << " before, " << expected
+       << " now";
   if (balancing.count() == told) text << "; further times are not told";
   results_->progress.note(text.str());
 }
@@ -228,8 +228,8 @@ template void Recorder<2>::write_escaped();
 template void Recorder<3>::write_escaped();
 template void Recorder<2>::note_imbalance();
 template void Recorder<3>::note_imbalance();
-template void Recorder<2>::note_balancing(double);
-template void Recorder<3>::note_balancing(double);
+template void Recorder<2>::note_balancing(double, double);
+template void Recorder<3>::note_balancing(double, double);
 template void Recorder<2>::note_sharing();
 template void Recorder<3>::note_sharing();
 template void Recorder<2>::note_steps();

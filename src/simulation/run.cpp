@@ -130,14 +130,15 @@ Archive Run<dim>::state_of(Checkpoint found) const {
 }
 
 template <int dim>
-void Run<dim>::balance_ranks() {
+void Run<dim>::balance_ranks(double end) {
   Balancing &balancing = dynamics.balancing();
   if (!dynamics.just_remapped() || !balancing.due()) return;
-  PetscLogDouble start, end;
+  PetscLogDouble start, now;
   require(PetscTime(&start));
-  double expected;
-  const Cuts cuts = world.mesh.balanced_cuts(world.work_of_cells(clock.last_step), balancing.cost(), &expected);
-  if (!balancing.worth(expected)) return;
+  PartitionForecast forecast;
+  const Cuts cuts = world.mesh.balanced_cuts(world.work_of_cells(clock.last_step, balancing.steps_before()),
+                                             balancing.cost(), &forecast);
+  if (!balancing.worth(forecast, (end - clock.time) / clock.last_step)) return;
   Archive state;
   require(serialize(state));
   world.divide(cuts);
@@ -146,9 +147,10 @@ void Run<dim>::balance_ranks() {
   state = deal(world.comm, part, holdings());
   part.clear();
   require(serialize(state));
-  require(PetscTime(&end));
-  balancing.done(end - start);
-  recorder.note_balancing(expected);
+  require(PetscTime(&now));
+  const double before = balancing.smoothed();
+  balancing.done(now - start);
+  recorder.note_balancing(before, forecast.imbalance);
 }
 
 template <int dim>

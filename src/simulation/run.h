@@ -42,8 +42,9 @@ struct Run {
   /// Displacements, velocities and plastic strain are zero from now on.
   void reset_displacement();
   /// Divides the mesh among the ranks in another way, if soil has moved so far that it is worth it: the state goes
-  /// through memory as it would through a checkpoint that is resumed on another partition. Collective.
-  void balance_ranks();
+  /// through memory as it would through a checkpoint that is resumed on another partition. Motion goes on up to time
+  /// `end` at least, as far as is known. Collective.
+  void balance_ranks(double end);
   /// Ends the run with checkpoint, history and snapshot if a signal has asked for it.
   void heed(const Verdict &verdict);
 

@@ -1,6 +1,7 @@
 #include "simulation/simulation_impl.h"
 
 #include <algorithm>
+#include <limits>
 #include <set>
 #include <sstream>
 
@@ -196,7 +197,7 @@ void Simulation<dim>::step_until(double t) {
   told([&] {
     run_.dynamics.set_loading(run_.scene.stage.front(), run_.clock.time);
     const Verdict verdict = run_.dynamics.cycle(t);
-    run_.balance_ranks();
+    run_.balance_ranks(std::numeric_limits<double>::infinity());
     run_.heed(verdict);
   });
 }

@@ -40,7 +40,7 @@ std::vector<SoilFace> World<dim>::surface() const {
   const std::vector<char> there = present_at_start();
   const auto has_soil = [&](int cell) { return body_of[cell] >= 0 && there[body_of[cell]]; };
   struct Given {
-    bool acts = false, held = false;
+    bool acts = false, bounded = false, held = false;
     int water = -1;
   };
   std::map<std::pair<int, int>, Given> given;  // by cell and face: what boundaries do there
@@ -53,7 +53,7 @@ std::vector<SoilFace> World<dim>::surface() const {
       for (const std::string &group : source.groups)
         for (const Facet<dim> &facet : mesh.has_group(group) ? mesh.facets(group) : std::vector<Facet<dim>>{}) {
           Given &at = given[{facet.cell, facet.face}];
-          at.acts |= acts, at.held |= holds;
+          at.acts |= acts, at.held |= holds, at.bounded |= !source.kind.fluids_only();
           if (source.kind.fluid_face()) at.water = static_cast<int>(named - scene.boundary.begin());
         }
     }
@@ -74,7 +74,7 @@ std::vector<SoilFace> World<dim>::surface() const {
       const auto found = given.find({c, k});
       if (found != given.end()) {
         const Given &at = found->second;
-        face.conditioned = at.acts, face.held = at.held, face.water = at.water;
+        face.conditioned = at.acts, face.held = at.held, face.water = at.water, face.bounded = at.bounded;
       }
       (beyond < boundary ? inside : mine).push_back(face);
     }

@@ -13,6 +13,8 @@
 #include "scene/reader.h"
 #include "scene/words.h"
 #include "simulation/softening.h"
+#include "simulation/unlikely.h"
+#include "solvers/quasi_static/thin_bodies.h"
 
 namespace talus {
 
@@ -154,16 +156,12 @@ void Statics<dim>::check_supports(bool soil_moves) const {
     throw RunFailure("the supports leave soil free to move as a whole: " + freedom +
                      "; hold it by fixed or roller boundaries, or by a base with friction");
   if (elements() != Elements::quadratic && !world_.mesh.report().one_element_slice) {
-    std::vector<char> thin;
-    require(problem_->find_thin_bodies(&thin));
-    const bool on_base = dim == 3 && std::ranges::any_of(world_.conditions.sources(), [](const NamedBoundary &source) {
-                           return source.kind.quasi_static == OnSoil::contact;
-                         });  // which has no quadratic elements
+    std::vector<int> body_of(world_.mesh.cell_count(), -1);
+    for (int c = 0; c < world_.mesh.cell_count(); ++c)
+      if (problem_->soil().active(c)) body_of[c] = problem_->soil().body_of(c);
+    const std::vector<char> thin = find_thin_bodies(world_.mesh, body_of, world_.bodies.size());
     for (size_t b = 0; b < thin.size(); ++b)
-      if (thin[b])
-        throw RunFailure("body." + world_.scene.body[b].name +
-                         " is one element across, which elements of first order cannot resolve; refine the mesh there" +
-                         (on_base ? "" : ", or set quasi_static.elements = \"quadratic\""));
+      if (thin[b]) throw RunFailure(one_element_across(world_.scene, world_.scene.body[b].name));
   }
 }
 

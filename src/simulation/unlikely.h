@@ -29,6 +29,9 @@ std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<L
 std::vector<std::string> unlikely_surroundings(const Scene &scene, const std::vector<BodyReport> &bodies,
                                                const std::vector<SoilFace> &surface);
 
+/// What is wrong with a body that is one element across where elements are of first order, and what to do.
+std::string one_element_across(const Scene &scene, const std::string &body);
+
 /// A sentence for each body whose cells are too large for the depth of the soil, or to let sand fail that is steeper
 /// than its friction angle.
 std::vector<std::string> coarse_cells(const Scene &scene, const std::vector<BodyReport> &bodies,

@@ -32,18 +32,20 @@ void doubt_sides(const Scene &scene, const Extent &soil, int up, const std::vect
       const double end = sign < 0 ? soil.low[d] : soil.high[d], near = 1e-6 * soil.of(d);
       double all = 0, free = 0;
       Span span;
+      bool wet = false;
       for (const SoilFace &face : surface) {
         const auto beside = [&](int a) { return std::abs(face.corner[a][d] - end) > near; };
         if (!face.ends_mesh || sign * face.normal[d] < 0.9 || beside(0) || beside(1)) continue;
         all += face.area;
-        if (face.conditioned) continue;
-        free += face.area;
+        if (face.bounded) continue;
+        free += face.area, wet |= face.water >= 0;
         for (int a = 0; a < scene.dimension; ++a) span.widen(face.corner[a][up]);
       }
       if (2 * free <= all || span.to - span.from < thin * soil.of(up)) continue;
       const std::string zero = scene.dimension == 2 ? "[0, 0]" : "[0, 0, 0]";
       sentences.push_back(std::string("The soil ends with the mesh at ") + axis_names[d] + " = " + rounded(end) +
-                          " m, and no boundary names its face there, " + axis_names[up] + " = " + span.text() +
+                          " m, and " + (wet ? "only a boundary of the water in its pores" : "no boundary") +
+                          " names its face there, " + axis_names[up] + " = " + span.text() +
                           ": it is free to move outwards, as no soil that goes on there would be, and may fail first. "
                           "Give it kind = \"roller\" or \"fixed\"; kind = \"traction\" with traction = " +
                           zero + " says that it is a free face");

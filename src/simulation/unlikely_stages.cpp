@@ -3,7 +3,9 @@
 #include <sstream>
 
 #include "base/rounded.h"
+#include "physics/boundary/boundary.h"
 #include "simulation/changing_loads.h"
+#include "simulation/unlikely.h"
 #include "simulation/unlikely_parts.h"
 
 namespace talus {
@@ -35,6 +37,24 @@ void doubt_stages(const Scene &scene, std::vector<std::string> &sentences) {
     text << ", or leave the function out";
     sentences.push_back(text.str());
   }
+}
+
+std::string one_element_across(const Scene &scene, const std::string &body) {
+  // a base with friction has no quadratic elements in 3D
+  const bool on_base = scene.dimension == 3 && std::ranges::any_of(scene.boundary, [](const BoundarySource &source) {
+                         return read_boundary(source.kind).quasi_static == OnSoil::contact;
+                       });
+  return "body." + body +
+         " is one element across, which elements of first order cannot resolve; refine the mesh there" +
+         (on_base ? "" : ", or set quasi_static.elements = \"quadratic\"");
+}
+
+void doubt_thin_bodies(const Scene &scene, const std::vector<BodyReport> &bodies, std::vector<std::string> &sentences) {
+  const auto first = std::ranges::find_if(scene.stage, [](const Stage &stage) { return is_static(stage.kind); });
+  if (first == scene.stage.end() || scene.quasi_static.elements == Elements::quadratic) return;
+  for (const BodyReport &body : bodies)
+    if (body.one_element_across)
+      sentences.push_back("stage." + first->name + " will end the run: " + one_element_across(scene, body.name));
 }
 
 }  // namespace talus

@@ -212,12 +212,13 @@ class OpenWater {
 void doubt_dry_ponds(const Scene &scene, const Extent &soil, const std::vector<SoilFace> &surface,
                      std::vector<std::string> &sentences) {
   const WaterTable &table = scene.water.table;
-  if (!table.given()) return;
   const OpenWater open(scene);
   const double level = levels_of(scene).front();
   const int up = scene.vertical();
   const double film = visible * soil.of(up), narrow = visible * soil.of(0);
-  const auto stands = [&](const std::array<double, 3> &x) { return table_at(table, x) + level; };
+  const auto stands = [&](const std::array<double, 3> &x) {
+    return table.given() ? table_at(table, x) + level : -std::numeric_limits<double>::infinity();
+  };
   std::vector<SoilFace> bare;  // the table stands higher than the open water on them
   double most = film;
   std::array<double, 3> place{};
@@ -234,10 +235,12 @@ void doubt_dry_ponds(const Scene &scene, const Extent &soil, const std::vector<S
   }
   if (flooded >= 0)
     sentences.push_back("boundary." + scene.boundary[flooded].name + " puts water on the ground that stands " +
-                        rounded(most) + " m above ground and water.table at x = " + rounded(place[0]) + ", " +
-                        axis_names[up] + " = " + rounded(place[up]) +
-                        " m: the pores start with less water than is at rest under it, and it enters at once. Is this "
-                        "meant? Else give water.table the level of the open water there");
+                        rounded(most) + " m above " + (table.given() ? "ground and water.table" : "the ground") +
+                        " at x = " + rounded(place[0]) + ", " + axis_names[up] + " = " + rounded(place[up]) +
+                        " m: the pores start with less water than is at rest under it" +
+                        (table.given() ? "" : ", since the scene gives no water.table") +
+                        ", and it enters at once. Is this meant? Else give water.table the level of the open water "
+                        "there");
   const std::vector<Pond> ponds = ponds_of(bare, scene.dimension, up, film, stands);
   const Pond *deepest = nullptr;
   for (const Pond &pond : ponds)
@@ -249,7 +252,8 @@ void doubt_dry_ponds(const Scene &scene, const Extent &soil, const std::vector<S
   int lower = -1;  // a boundary whose water does not come up to the table there
   for (const SoilFace &face : bare)
     for (int a = 0; a < scene.dimension && lower < 0; ++a)
-      if (open.on(face) >= 0 && face.corner[a][0] >= deepest->west && face.corner[a][0] <= deepest->east)
+      if (const auto &x = face.corner[a];
+          x[0] >= deepest->west && x[0] <= deepest->east && open.at(face, x) > x[up] + film)
         lower = open.on(face);
   if (lower >= 0)
     text += "the water of boundary." + scene.boundary[lower].name +

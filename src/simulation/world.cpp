@@ -9,6 +9,8 @@
 #include <sstream>
 
 #include "base/sum.h"
+#include "solvers/quasi_static/pore_flow.h"
+#include "solvers/quasi_static/thin_bodies.h"
 
 namespace talus {
 
@@ -101,6 +103,7 @@ PetscErrorCode World<dim>::release(double time, bool to_next) {
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &lost, 1, MPI_INT, MPI_MAX, comm));
   if (lost) PetscCall(take_out(time));
   count_runs();
+  count_movers();
   ++releases_;
   PetscCall(PetscTime(&end));
   breakdown.release += middle - start, breakdown.relocate += end - middle;
@@ -222,6 +225,12 @@ double World<dim>::critical_step_of_cells(double time) {
 template <int dim>
 std::vector<BodyReport> World<dim>::report() {
   constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::vector<int> body_of = bodies_of_cells(mesh, scene);
+  const std::vector<char> there = present_at_start();
+  for (int &body : body_of)
+    if (body >= 0 && !there[body]) body = -1;
+  const std::vector<char> thin = find_thin_bodies(mesh, body_of, bodies.size());
+  const bool slice = mesh.report().one_element_slice;
   std::vector<BodyReport> reports;
   for (size_t b = 0; b < bodies.size(); ++b) {
     const ParticleArrays<dim> &p = bodies[b]->particles();
@@ -265,6 +274,7 @@ std::vector<BodyReport> World<dim>::report() {
     // the side of a regular simplex of the mean size: sqrt(4 A / sqrt 3), (6 sqrt 2 V)^(1/3), as softening takes it
     report.cell_size = sums[5] / sums[1] * (dim == 2 ? std::sqrt(4 / std::sqrt(3.)) : std::cbrt(6 * std::sqrt(2.)));
     report.strength = strength[b];
+    report.one_element_across = thin[b] && !slice;
     reports.push_back(report);
   }
   return reports;
@@ -353,6 +363,7 @@ PetscErrorCode World<dim>::serialize(Archive &archive) {
   escaped.serialize(archive);
   for (const auto &body : bodies) PetscCall(body->serialize(archive, mesh));
   PetscCall(motion->serialize(archive));
+  archive.sums("movers", counts_.movers);
   if (archive.reading()) count_runs();
   PetscFunctionReturn(0);
 }

@@ -81,10 +81,10 @@ class World {
   std::vector<Vec<dim>> nodal_displacement();
   /// Bodies, motion and boundaries. Collective.
   PetscErrorCode serialize(Archive &archive);
-  /// Work that this rank has in a step (simulation/work.h), with the runs of particles that `count_runs` found.
-  double work_of_rank() const;
-  /// The filled cells of this rank with their work; a step of `step` seconds. After a remap.
-  std::vector<FilledCell<dim>> work_of_cells(double step) const;
+  /// Work that this rank has in a step (simulation/work.h), of `steps` since the last remap; 0: the usual number.
+  double work_of_rank(long long steps) const;
+  /// The filled cells of this rank with their work, after a remap that followed on `steps` steps of `step` seconds.
+  std::vector<FilledCell<dim>> work_of_cells(double step, long long steps) const;
   /// Divides the mesh among the ranks in another way. Particles, and all that nodes and cells hold, are gone:
   /// `serialize` brings them back from a state that was dealt out to the new partition. Collective.
   void divide(const Cuts &cuts);
@@ -131,7 +131,8 @@ class World {
   void make_motion();
   void set_friction_delay();
   void count_particles();
-  void count_runs();  ///< where particles have another cell or place in memory
+  void count_runs();    ///< where particles have another cell or place in memory
+  void count_movers();  ///< after a release
   PetscErrorCode take_out(double time);
   std::string thrown(double speed) const;
 
@@ -141,7 +142,8 @@ class World {
   double fastest_fall_ = 0;       ///< through the mesh, with the largest velocity at the start [m/s]
   double depth_on_bases_ = 0;     ///< of elastic soil at the start [m]
   const WorkRates rates_;
-  long long runs_ = 0;                     ///< of particles of one cell, on this rank
+  WorkCounts counts_;                      ///< runs and movers of this rank; the rest is counted where it is asked for
+  std::vector<int> cells_of_movers_;       ///< into which they went at the last release
   double seeded_mass_ = 0;                 ///< of all ranks [kg]
   long long seeded_particles_ = 0;         ///< of all ranks
   std::vector<std::vector<int>> movers_;   ///< [body] particles that left their cells at the last release ...

@@ -185,10 +185,12 @@ void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
       std::any_of(scene.stage.begin(), scene.stage.end(), [](const Stage &stage) { return is_static(stage.kind); });
   for (const auto &source : sources) {
     const std::string path = "boundary." + source.name;
+    std::vector<std::string> groups = mesh.group_names();
+    if (source.kind.fluids_only()) groups.emplace_back(free_surface);
     for (const std::string &group : source.groups)
-      if (!mesh.has_group(group) && !(source.kind.fluids_only() && group == free_surface))
-        scene.complain(path + ".group", "must name groups of facets; the mesh has no \"" + group + "\"; " +
-                                            suggestion(group, mesh.group_names()));
+      if (std::ranges::count(groups, group) == 0)
+        scene.complain(path + ".group",
+                       "must name groups of facets; the mesh has no \"" + group + "\"; " + suggestion(group, groups));
     if (source.kind.water == OnWater::wall && phases.gas &&
         std::ranges::count(source.groups, std::string(free_surface)))
       scene.complain(path + ".kind",

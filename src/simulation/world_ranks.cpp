@@ -5,10 +5,11 @@
 namespace talus {
 
 template <int dim>
-double World<dim>::work_of_rank() const {
-  double work = rates_.per_cell * motion->grid().cell_count() + rates_.per_run * runs_;
-  for (const auto &body : bodies) work += body->particles().count;
-  return work;
+double World<dim>::work_of_rank(long long steps) const {
+  WorkCounts counts = counts_;
+  counts.cells = motion->grid().cell_count();
+  for (const auto &body : bodies) counts.particles += body->particles().count;
+  return steps > 0 ? rates_.of(counts, static_cast<double>(steps)) : rates_.of(counts);
 }
 
 namespace {
@@ -30,25 +31,41 @@ void World<dim>::count_runs() {
   int ranks;
   MPI_Comm_size(comm, &ranks);
   if (ranks == 1) return;  // which shares its work with nobody
-  runs_ = 0;
-  for_each_run(bodies, [this](int) { ++runs_; });
+  counts_.runs = 0;
+  for_each_run(bodies, [this](int) { ++counts_.runs; });
+}
+
+/// Particles change places in memory when they are sorted: what is kept of the movers is their cells.
+template <int dim>
+void World<dim>::count_movers() {
+  int ranks;
+  MPI_Comm_size(comm, &ranks);
+  if (ranks == 1) return;
+  cells_of_movers_.clear();
+  for (size_t b = 0; b < bodies.size(); ++b)
+    for (const int i : movers_[b]) cells_of_movers_.push_back(bodies[b]->particles().cell[i]);
+  counts_.movers = static_cast<double>(cells_of_movers_.size());
 }
 
 template <int dim>
-std::vector<FilledCell<dim>> World<dim>::work_of_cells(double step) const {
-  std::vector<FilledCell<dim>> all(mesh.cell_count()), filled;
+std::vector<FilledCell<dim>> World<dim>::work_of_cells(double step, long long steps) const {
+  std::vector<WorkCounts> counts(mesh.cell_count());
+  std::vector<Vec<dim>> speed(mesh.cell_count(), Vec<dim>{});  // sums over particles
   for (const auto &body : bodies) {
     const ParticleArrays<dim> &p = body->particles();
     for (int i = 0; i < p.count; ++i)
-      all[p.cell[i]].weight += 1, map<dim>(all[p.cell[i]].way) += map<dim>(p.velocity[i]);
+      counts[p.cell[i]].particles += 1, map<dim>(speed[p.cell[i]]) += map<dim>(p.velocity[i]);
   }
+  for_each_run(bodies, [&](int cell) { counts[cell].runs += 1; });
+  for (const int cell : cells_of_movers_) counts[cell].movers += 1;
+  std::vector<FilledCell<dim>> filled;
   for (int c = 0; c < mesh.cell_count(); ++c) {
-    if (all[c].weight == 0) continue;
-    filled.push_back({mesh.global_cell[c], all[c].weight + rates_.per_cell, {}});
-    map<dim>(filled.back().way) = step / all[c].weight * map<dim>(all[c].way);
-    all[c].number = static_cast<long long>(filled.size()) - 1;
+    if (counts[c].particles == 0) continue;
+    counts[c].cells = 1;
+    const double work = rates_.of(counts[c], static_cast<double>(steps));
+    filled.push_back({mesh.global_cell[c], WorkRates::without_round_off(work), {}});
+    map<dim>(filled.back().way) = step / counts[c].particles * map<dim>(speed[c]);
   }
-  for_each_run(bodies, [&](int cell) { filled[all[cell].number].weight += rates_.per_run; });
   return filled;
 }
 
@@ -72,12 +89,14 @@ void World<dim>::divide(const Cuts &cuts) {
   require(motion->setup_pores(false));
 }
 
-template double World<2>::work_of_rank() const;
-template double World<3>::work_of_rank() const;
+template double World<2>::work_of_rank(long long) const;
+template double World<3>::work_of_rank(long long) const;
 template void World<2>::count_runs();
 template void World<3>::count_runs();
-template std::vector<FilledCell<2>> World<2>::work_of_cells(double) const;
-template std::vector<FilledCell<3>> World<3>::work_of_cells(double) const;
+template void World<2>::count_movers();
+template void World<3>::count_movers();
+template std::vector<FilledCell<2>> World<2>::work_of_cells(double, long long) const;
+template std::vector<FilledCell<3>> World<3>::work_of_cells(double, long long) const;
 template void World<2>::divide(const Cuts &);
 template void World<3>::divide(const Cuts &);
 

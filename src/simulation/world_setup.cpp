@@ -13,11 +13,7 @@ namespace talus {
 
 template <int dim>
 World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &mesh_file, const Cuts &cuts)
-    : scene(of),
-      phases(phase_traits(of.phases)),
-      comm(world),
-      pressure(of),
-      rates_(WorkRates::with(of.transfer.average_stress)) {
+    : scene(of), phases(phase_traits(of.phases)), comm(world), pressure(of), rates_(of.transfer) {
   read_laws();
   std::vector<Source> sources = read_sources();
   read_mesh(plex, mesh_file, cuts);
@@ -112,7 +108,8 @@ void World<dim>::read_mesh(DM plex, const std::string &mesh_file, const Cuts &cu
   SeedCounts seeds{{}, id_stride()};
   for (const BodySource &body : scene.body)
     for (const std::string &region : body.region) {
-      weights.emplace_back(region, rates_.of_cell(particles_per_cell<dim>(body)));
+      const WorkCounts sorted{.particles = double(particles_per_cell<dim>(body)), .runs = 1, .cells = 1};
+      weights.emplace_back(region, WorkRates::without_round_off(rates_.of(sorted)));
       seeds.per_cell.emplace_back(region, particles_per_cell<dim>(body));
     }
   if (plex)

@@ -60,7 +60,7 @@ class DynamicStage final : public StageRunner<dim> {
                  checkpoint = next_time(begin, checkpoint_interval_, now);
     set_loading();
     const Verdict verdict = run_.dynamics.cycle(run_.dynamics.fixed_step() ? end() : std::min(end(), snapshot));
-    run_.balance_ranks();
+    run_.balance_ranks(end());
     run_.recorder.progress();
     if (reached(row, now)) run_.recorder.write_history();
     if (reached(snapshot, now) && !reached(end(), now)) run_.recorder.write_snapshot();

@@ -153,6 +153,11 @@ TEST_F(RunThatEnds, BecauseALayerIsOneElementThick) {
   const std::string scene = changed(changed(good_scene, "name = \"fall\"", "kind = \"quasi_static\""), "[output]",
                                     "[quasi_static]\nelements = \"linear\"\n[output]");
   folder_.write("scene.toml", scene);
+  for (const bool linear : {true, false}) {
+    const Ending told = talus(folder_, {"check", "scene.toml", "--set",
+                                        std::string("quasi_static.elements=") + (linear ? "linear" : "quadratic")});
+    EXPECT_EQ(told.says("stage.0 will end the run: body.sand is one element across"), linear) << told.output;
+  }
   expect(Program(folder_, talus_words({"solve", "scene.toml", "-o", "results", "--no-pictures", "--force"})).end(),
          {"body.sand is one element across", "refine the mesh there, or set quasi_static.elements = \"quadratic\"",
           "snapshots up to step 0"},

@@ -107,6 +107,27 @@ TEST(Check, DoubtsPondsOfMovingWaterWithoutABoundary) {
   EXPECT_TRUE(lake("1.1").says("boundary.lake puts water on the ground that stands 0.2 m above ground and water.table"))
       << lake("1.1").output;
   EXPECT_FALSE(lake("0.7").says(enters) || lake("1.1").says(doubt));
+  const auto pool = [&](const char *level) {  // the soil is 0.5 m high
+    return output({"water={}", "boundary.lake.group=free_surface", "boundary.lake.kind=head",
+                   std::string("boundary.lake.level=") + level});
+  };
+  EXPECT_TRUE(pool("0.7").says("0.7 m above the ground at x = 1, y = 0 m")) << "at the foot of its free side";
+  EXPECT_TRUE(pool("0.7").says("since the scene gives no water.table")) << pool("0.7").output;
+  EXPECT_FALSE(pool("-0.1").says(enters));
+}
+
+/// A boundary of water holds no soil.
+TEST(Check, DoubtsEndsOfWetSoilThatNothingHolds) {
+  const Folder folder;
+  write_wet_block(folder);
+  const auto output = [&](const char *left) {
+    return talus(folder, {"check", "scene.toml", "--json", "--set", "phases=saturated", "--set",
+                          "stage.0.until=equilibrium", "--set", "boundary.left.group=right", "--set", left});
+  };
+  const char *doubt = "The soil ends with the mesh at x = 0 m, and only a boundary of the water in its pores names";
+  const Ending drain = output("boundary.lake={kind='head', group='left', level=0.4}");
+  EXPECT_TRUE(drain.says(doubt)) << drain.output;
+  EXPECT_FALSE(output("boundary.wall={kind='roller', group='left'}").says("The soil ends with the mesh at x = 0 m"));
 }
 
 /// Boundaries of water on faces that have no soil, or that soil may leave.

@@ -30,11 +30,13 @@ struct Bar {
   void move(Velocity velocity) {
     for (const Vec<2> &x : centre) load.way.push_back(velocity(x));
   }
-  Cut cut() const { return find_cuts<2>(centre, load, touching, 2).front(); }
+  Cut cut() { return find_cuts<2>(centre, load, touching, 2, &forecast).front(); }
+  PartitionForecast forecast;  // of the last cut
 };
 
 TEST(Partition, CutsTheFewestFacesOfSoilAtRest) {
-  const Cut of_bar = Bar(12, 4, 12).cut();
+  Bar bar(12, 4, 12);
+  const Cut of_bar = bar.cut();
   EXPECT_EQ(of_bar.axis, 0);
   EXPECT_EQ(of_bar.place, 6.5);  // centre of the first patch above
   EXPECT_EQ(Bar(12, 4, 2).cut().axis, 1) << "faces in the air cost nothing: 2 are cut for 4";
@@ -45,6 +47,20 @@ TEST(Partition, CutsAlongTheWayOfSoilThatSlides) {
   bar.move([](const Vec<2> &) { return Vec<2>{1e-3, 0}; });
   EXPECT_EQ(bar.cut().axis, 1);
   EXPECT_EQ(bar.cut().place, 2.5);
+  EXPECT_EQ(bar.forecast.imbalance, 1);
+  EXPECT_EQ(bar.forecast.crossing, 0);
+}
+
+/// Soil that flows askew is cut where less of it crosses: of a column of twelve patches, with a weight of 10 each, a
+/// thousandth in each step.
+TEST(Partition, TellsWhatWillCrossItsCuts) {
+  Bar bar(24, 12, 24);
+  bar.move([](const Vec<2> &) { return Vec<2>{1e-3, 4e-3}; });
+  EXPECT_EQ(bar.cut().axis, 0);
+  EXPECT_NEAR(bar.forecast.crossing, 0.12, 0.02) << "whole patches cross, over a tenth of the length of the bar";
+  Bar uneven(11, 1, 11);
+  uneven.cut();
+  EXPECT_DOUBLE_EQ(uneven.forecast.imbalance, 6 / 5.5);
 }
 
 TEST(Partition, CutsAcrossSoilThatFlowsToBothSides) {
@@ -63,7 +79,7 @@ TEST(Partition, TakesFewerFacesWhereMotionIsSlow) {
 TEST(Partition, SharesEqually) {
   Bar bar(12, 4, 12);
   bar.move([](const Vec<2> &x) { return Vec<2>{1e-3, 1e-3 * x[0]}; });
-  const Cuts cuts = find_cuts<2>(bar.centre, bar.load, bar.touching, 4);
+  const Cuts cuts = find_cuts<2>(bar.centre, bar.load, bar.touching, 4, &bar.forecast);
   ASSERT_EQ(cuts.size(), 3u);
   std::vector<int> patches(4, 0);
   for (const int rank : ranks_by_cuts<2>(bar.centre, cuts)) ++patches[rank];

@@ -274,13 +274,14 @@ TYPED_TEST(RefinedMesh, IsDividedAnew) {
     }
     return work;
   };
-  double imbalance, expected_imbalance;
+  PartitionForecast forecast, expected_forecast;
   const auto before = this->read(PETSC_COMM_WORLD, 0);
-  const Cuts cuts = this->mesh.balanced_cuts(work_on(this->mesh, this->children), 0, &imbalance),
-             expected = before.balanced_cuts(work_on(before, 1), 0, &expected_imbalance);
+  const Cuts cuts = this->mesh.balanced_cuts(work_on(this->mesh, this->children), 0, &forecast),
+             expected = before.balanced_cuts(work_on(before, 1), 0, &expected_forecast);
   ASSERT_EQ(cuts.size(), expected.size());
   for (std::size_t k = 0; k < cuts.size(); ++k) EXPECT_EQ(cuts[k].place, expected[k].place);
-  EXPECT_EQ(imbalance, expected_imbalance);  // the work of a cell is a sum of parts that have no round-off
+  EXPECT_EQ(forecast.imbalance,
+            expected_forecast.imbalance);  // the work of a cell is a sum of parts that have no round-off
 
   const auto divided = this->mesh.divided(cuts), read = this->read(PETSC_COMM_WORLD, this->halvings, cuts);
   EXPECT_EQ(divided.partition_fingerprint(), read.partition_fingerprint());
