@@ -7,6 +7,8 @@
 #include <map>
 #include <numeric>
 
+#include "meshes/flat_cells.h"
+
 namespace talus {
 namespace {
 
@@ -14,7 +16,7 @@ namespace model = gmsh::model;
 namespace geo = gmsh::model::geo;
 
 /// Simplices of one dimension by the names of their groups: numbers of nodes, one simplex after the other.
-using Named = std::map<std::string, std::vector<std::size_t>>;
+using Named = std::map<std::string, NodeList>;
 
 class TerrainModel {
  public:
@@ -130,7 +132,7 @@ class TerrainModel {
     return layer.empty() ? "ground" : layer;
   }
 
-  static std::vector<std::size_t> simplices_of(int type, int entity) {
+  static NodeList simplices_of(int type, int entity) {
     std::vector<std::size_t> tags, nodes;
     model::mesh::getElementsByType(type, tags, nodes, entity);
     return nodes;
@@ -143,13 +145,23 @@ class TerrainModel {
     model::mesh::getNodes(nodes, x, parametric);
     std::map<std::size_t, std::size_t> index;
     for (std::size_t i = 0; i < nodes.size(); ++i) index[nodes[i]] = i;
+    std::vector<NodeList> facets_of, cells_of;  // by surface, by volume
+    for (const auto &[surface, name] : name_) facets_of.push_back(simplices_of(2, surface));
+    for (const int volume : volumes_) cells_of.push_back(simplices_of(4, volume));
+    drop_flat_cells(
+        [&](std::size_t node) {
+          const double *at = &x[3 * index.at(node)];
+          return Vec<3>{at[0], at[1], at[2]};
+        },
+        cells_of, facets_of);
     Named cells, facets;
+    std::size_t s = 0;
     for (const auto &[surface, name] : name_) {
-      const std::vector<std::size_t> of = simplices_of(2, surface);
-      facets[name].insert(facets[name].end(), of.begin(), of.end());
+      facets[name].insert(facets[name].end(), facets_of[s].begin(), facets_of[s].end());
+      ++s;
     }
     for (std::size_t v = 0; v < volumes_.size(); ++v) {
-      const std::vector<std::size_t> of = simplices_of(4, volumes_[v]);
+      const NodeList &of = cells_of[v];
       for (std::size_t k = 0; k < of.size(); k += 4) {
         double middle[3] = {};
         for (int a = 0; a < 4; ++a)
