@@ -61,15 +61,16 @@ class Ground:
             lowest = np.minimum(lowest, self.highest((share @ corner[steps == count]).reshape(-1, 3), sign=-1.0))
         return lowest
 
-    def surface(self, position, size):
-        """Heights of the soil's surface, and where there is soil, from the places [n, 3] and widths [n] of the particles. The surface is the envelope
-        of the highest particles, closed over gaps as wide as in sections, smoothed, and raised by the half width that soil reaches beyond its
-        particles. Soil that flies or spreads so thin that it would stand on mostly air is laid down."""
+    def surface(self, position, size, volume):
+        """Heights of the soil's surface, and where there is soil, from the places [n, 3], widths [n] and volumes [n] of the particles. The surface is
+        the envelope of the highest particles, closed over gaps as wide as in sections, smoothed, and raised by the half width that soil reaches beyond
+        its particles. Soil that flies or spreads so thin that it would stand on mostly air is laid down: widths are in steps, and would not tell how
+        much air is in it."""
         frame = Frame(self.low[self.level][::-1], (self.low[self.level] + np.array(self.shape) * self.cell)[::-1], self.shape[1])
         owner = tiles(position[:, self.level[::-1]], size, frame)[:self.shape[0], :self.shape[1]]
         soil = (owner >= 0) & self.inside
         highest, number = self.highest(position), self.number(position)
-        held = np.bincount(number[number >= 0], size[number >= 0] ** 3, self.base.size).reshape(self.shape) / self.cell**2
+        held = np.bincount(number[number >= 0], volume[number >= 0], self.base.size).reshape(self.shape) / self.cell**2
         top = self.base.copy()
         over, count = (smoothed(np.where(soil, of, 0.0), 2 * self.spacing / self.cell) for of in (np.log2(size[owner] / self.spacing), 1.0))
         coarser = np.where(soil, np.clip(np.round(over / np.maximum(count, 1e-9)), 0, 5), -1)  # how much larger particles are there, as a power of two

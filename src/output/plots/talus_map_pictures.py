@@ -72,12 +72,12 @@ def places_of_labels(lines, low, high, taken, apart):
     return found
 
 
-def place_of_scale(soil, spacing, low, length, inch):
-    """The left end of a scale so long [m] on a map with so much soil (a mask of cells): in the corner that has least of it, the first of those that have none.
-    In the upper right one the arrow points to the north."""
-    size = np.array(soil.shape) * spacing
-    edge, tall = 0.04 * size, 0.3 * inch  # with its number above it
-    corners = [edge, [size[0] - edge[0] - length, edge[1]], [edge[0], size[1] - edge[1] - tall]]
+def place_of_scale(soil, spacing, low, shown, length, inch):
+    """The left end of a scale so long [m] on a map with so much soil (a mask of cells from `low` on): in the corner of what is `shown` of the ground, its
+    corners [2, 2], that has least soil, the first of those that have none. In the upper right one the arrow points to the north."""
+    edge, tall = 0.04 * (shown[1] - shown[0]), 0.3 * inch  # with its number above it
+    (west, south), (east, north) = shown[0] + edge - low, shown[1] - edge - low
+    corners = [[west, south], [east - length, south], [west, north - tall]]
 
     def covered(at):
         (west, south), (east, north) = (np.floor(np.array(end) / spacing).astype(int) for end in (at, np.add(at, [length, tall])))
@@ -127,6 +127,7 @@ def draw_map(maps, path):
     axes.plot([], [], color=style.INK, lw=1.0, label=f"outline of the {'soil that slid' if maps.moving else 'deposit'}")
     axes.plot([], [], color=style.INK, lw=1.0, ls="--", label="outline at the start")
     low, high = origin + grid.low, origin + grid.low + size
+    shown = origin + [ground.low[:2], ground.high[:2]]  # the outermost cells of the grid reach beyond it
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="east [m]", ylabel="north [m]", aspect="equal")
     ticks_of(axes, min(wide, tall * size[0] / size[1]), min(tall, wide * size[1] / size[0]))
     axes.ticklabel_format(useOffset=False, style="plain")
@@ -134,22 +135,22 @@ def draw_map(maps, path):
     length = round_length(0.25 * size[0])
     inch = size[0] / min(wide, tall * size[0] / size[1])  # [m]
     soil = near(maps.covered | (maps.thickness[0] >= maps.limit), int(np.ceil(0.2 * inch / grid.spacing)))
-    at = place_of_scale(soil, grid.spacing, low, length, inch)
+    at = place_of_scale(soil, grid.spacing, low, shown, length, inch)
 
     def taken(place):
         """By the scale, the arrow to the north, and the soil at the start and at the end."""
         scale = ((place > at - 0.3 * inch) & (place < at + [length + 0.3 * inch, 0.45 * inch])).all(axis=1)
-        arrow = (place > high - [0.45 * inch, 0.75 * inch]).all(axis=1)
+        arrow = (place > shown[1] - [0.45 * inch, 0.75 * inch]).all(axis=1)
         column, row = np.clip(((place - low) / grid.spacing).astype(int), 0, np.array(grid.shape) - 1).T
         return scale | arrow | soil[column, row]
 
-    if len(places := places_of_labels(lines, low, high, taken, 0.4 * inch)):
+    if len(places := places_of_labels(lines, *shown, taken, 0.4 * inch)):
         axes.clabel(lines, fontsize=6, fmt="%g", colors=style.INK, manual=[tuple(place) for place in places])
     axes.plot([at[0], at[0] + length], [at[1]] * 2, color=style.INK, lw=3, solid_capstyle="butt", zorder=5)
     axes.annotate(f"{length:g} m", (at[0] + length / 2, at[1]), (0, 4), textcoords="offset points", ha="center", fontsize=8, zorder=5,
                   bbox={"fc": "white", "ec": "none", "alpha": 0.7, "pad": 1})
-    head, foot = (offset_copy(axes.transAxes, figure, -14, down, units="points") for down in (-20, -46))
-    axes.annotate("N", (1, 1), (1, 1), xycoords=foot, textcoords=head, ha="center", fontsize=10, zorder=5,
+    head, foot = (offset_copy(axes.transData, figure, -14, down, units="points") for down in (-20, -46))
+    axes.annotate("N", shown[1], shown[1], xycoords=foot, textcoords=head, ha="center", fontsize=10, zorder=5,
                   arrowprops={"arrowstyle": "<-", "color": style.INK, "lw": 1.4})
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.55 / tall), ncols=3, fontsize=8)
     style.headline(figure, maps.headline(), maps.results.title)
@@ -163,6 +164,8 @@ def line_along(maps):
     place = way.at(distance)
     low = maps.ground.low[:2]
     inside = ((place >= low) & (place <= low + np.array(maps.ground.shape) * maps.ground.cell)).all(axis=1)
+    there, = between(maps.ground.inside[..., None], [(place[:, k] - low[k]) / maps.ground.cell for k in (0, 1)])
+    inside &= there > 0.5
     return place[inside], distance[inside] - distance[inside][0]
 
 
@@ -174,6 +177,12 @@ def around_motion(lines, least):
         return slice(None)
     beside = int(np.ceil(AROUND * (moved[-1] - moved[0])))
     return slice(max(0, moved[0] - beside), moved[-1] + beside + 1)
+
+
+def with_ends(mask):
+    """Places of a line that are in the mask or next to it, where the surface of soil comes down to the ground."""
+    wider = np.pad(mask, 1)
+    return wider[:-2] | wider[1:-1] | wider[2:]
 
 
 def draw_section(maps, path):
@@ -194,7 +203,7 @@ def draw_section(maps, path):
     axes.plot(distance, lines[0], color=style.INK, lw=1.0, ls="--", label="surface before")
     colours = plt.get_cmap("viridis")(np.linspace(0.75, 0.1, len(chosen)))
     for k, colour, line in zip(chosen, colours, lines[1:]):
-        axes.plot(distance, np.where(line > base + 1e-3 * maps.size, line, np.nan), color=colour, lw=1.1, label=f"surface at {maps.moment(k)}")
+        axes.plot(distance, np.where(with_ends(line > base + 1e-3 * maps.size), line, np.nan), color=colour, lw=1.1, label=f"surface at {maps.moment(k)}")
     axes.set(xlabel="distance along the path of the slide [m]", ylabel="elevation [m]", aspect="equal", xlim=(0, distance[-1]), ylim=(base.min() - 0.05 * height, None))
     axes.ticklabel_format(useOffset=False, style="plain")
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1.01), ncols=3, fontsize=8)

@@ -174,7 +174,7 @@ class Maps:
     def surface(self, snapshot):
         """Elevations of the surface on the grid of self.ground."""
         position, volume = self.axes.level(snapshot.position()), snapshot.column("volume").values[:, 0]
-        top, soil = self.ground.surface(position, np.cbrt(volume))
+        top, soil = self.ground.surface(position, np.cbrt(volume), volume)
         return np.where(soil, top, self.ground.base)
 
     def moment(self, snapshot=-1):

@@ -81,6 +81,19 @@ def outline(cells):
     return edges[first[count == 1]]
 
 
+def common_edges(first, second):
+    """Edges [n, 2, 3] that some triangles [m, 3, 3] share with others."""
+    found = [np.concatenate([cells[:, [0, 1]], cells[:, [1, 2]], cells[:, [2, 0]]]) for cells in (first, second)]
+    edges = np.concatenate(found)
+    if not len(edges):
+        return edges
+    size = np.ptp(edges.reshape(-1, 3), axis=0).max()
+    _, node = np.unique(np.round(edges.reshape(-1, 3) / (1e-7 * size)).astype(np.int64), axis=0, return_inverse=True)
+    _, one, number = np.unique(np.sort(node.reshape(-1, 2), axis=1), axis=0, return_index=True, return_inverse=True)
+    of_first, of_second = (np.isin(np.arange(len(one)), part) for part in np.split(number, [len(found[0])]))
+    return edges[one[of_first & of_second]]
+
+
 def read_model(folder):
     """The model of a run, or None where the run has left no document of it."""
     path = folder / "run" / "model.json"

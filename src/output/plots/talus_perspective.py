@@ -5,7 +5,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_rgb
 
 import talus_style as style
-from talus_modelled import WATER, outline
+from talus_modelled import WATER, common_edges
 from talus_symbols import SYMBOL, Symbols, keep_apart, named_points
 from talus_units import quantity
 
@@ -84,7 +84,8 @@ class Views:
             symbols_of(axes, boundary, camera, metres)
         if number == 0:
             if len(self.rim):
-                axes.add_collection(LineCollection(camera.flat(self.rim), colors=style.INK, linewidths=0.9, zorder=3), autolim=False)
+                seen = self.rim[~hidden(self.rim, np.concatenate([self.model.corners, self.ground]), camera)]
+                axes.add_collection(LineCollection(camera.flat(seen), colors=style.INK, linewidths=0.9, zorder=3), autolim=False)
             self.water(axes, camera, metres)
             named_points(axes, self.model, camera.flat)
         edges(axes, camera, self.lows[number], self.highs[number], metres)
@@ -130,16 +131,34 @@ def normals_of(faces, up):
 
 
 def ground_of(model, up):
-    """The bottom of the mesh where no soil lies on it, triangles [n, 3, 3], and the rim of the soil upon it, pieces of a line [m, 2, 3]; of faces on which
-    some boundary acts."""
-    faces = [(boundary.corners[down], boundary.has_soil[down]) for boundary in model.boundaries if len(boundary.corners)
-             for down in [boundary.normal @ up < LOWER]]
+    """The bottom of the mesh where no soil lies on it, triangles [n, 3, 3], and the rim of the soil upon it, pieces of a line [m, 2, 3]: where soil ends
+    at the edge of the mesh there is none. Of faces on which some boundary acts."""
+    faces = [(boundary.corners, boundary.has_soil, boundary.normal @ up < LOWER) for boundary in model.boundaries if len(boundary.corners)]
     if not faces:
         return np.zeros((0, 3, 3)), np.zeros((0, 2, 3))
-    corners, soil = (np.concatenate(parts) for parts in zip(*faces))
+    corners, soil, down = (np.concatenate(parts) for parts in zip(*faces))
     _, first = np.unique(np.round(corners.mean(axis=1), 6), axis=0, return_index=True)  # of two boundaries
-    corners, soil = corners[first], soil[first]
-    return corners[~soil], np.array(outline(corners[soil])).reshape(-1, 2, 3)
+    corners, soil, down = corners[first], soil[first], down[first]
+    ground = corners[~soil & down]
+    return ground, common_edges(corners[soil], ground)
+
+
+def hidden(edges, faces, camera):
+    """Which of some edges [n, 2, 3] lie behind faces [m, 3, 3], by more than their own length: soil has steps as high as a cell is."""
+    result = np.zeros(len(edges), bool)
+    flat, depth = camera.flat(faces), camera.depth(faces)
+    low, high, nearest = flat.min(axis=1), flat.max(axis=1), depth.min(axis=1)
+    middle = edges.mean(axis=1)
+    sight = camera.depth(middle) - np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1)
+    for k, at in enumerate(camera.flat(middle)):
+        near = np.flatnonzero((nearest < sight[k]) & (low <= at).all(axis=1) & (high >= at).all(axis=1))
+        corner = flat[near] - at
+        second, third = np.roll(corner, -1, axis=1), np.roll(corner, -2, axis=1)
+        share = second[..., 0] * third[..., 1] - second[..., 1] * third[..., 0]  # of each corner, times twice the area
+        total = share.sum(axis=1)
+        inside = (share * np.sign(total)[:, None] >= 0).all(axis=1) & (total != 0)
+        result[k] = ((share[inside] * depth[near[inside]]).sum(axis=1) / total[inside] < sight[k]).any()
+    return result
 
 
 def facing(model, up):

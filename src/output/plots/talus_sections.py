@@ -87,6 +87,10 @@ class Painter:
             margin = np.ptp(flat, axis=0).max() * np.array([0.1, 0.05])  # for the dimensions
             return flat.min(axis=0) - margin, flat.max(axis=0) + margin
         low, high = view.limits(*((self.low, self.high) if self.ground is None else (self.ground.low, self.ground.high)))
+        if view.plane:  # as far as the ground is shown, and as high: above the crown of a slide it rises over all soil
+            along, base = self._line_of_bottom(view)
+            if (shown := np.isfinite(base)).any():
+                low, high = np.array([along[shown].min(), low[1]]), np.array([along[shown].max(), max(high[1], base[shown].max())])
         margin = 0.012 * (high - low) + (GAP if self.ground is None else GAP_IN_SPACE) * self._sizes(self.results.snapshots[0]).max()
         return low - margin, high + margin
 
@@ -119,7 +123,9 @@ class Painter:
     def _surface(self, snapshot):
         """Heights of the ground at a snapshot, and where there is soil."""
         if snapshot.step not in self._surfaces:
-            self._surfaces[snapshot.step] = self.ground.surface(snapshot.position(), self._sizes(snapshot))
+            size = self._sizes(snapshot)
+            volume = snapshot.column("volume").values[:, 0] if "volume" in snapshot else size**3
+            self._surfaces[snapshot.step] = self.ground.surface(snapshot.position(), size, volume)
         return self._surfaces[snapshot.step]
 
     def _sight(self, snapshot, k, columns):
@@ -276,9 +282,10 @@ class Painter:
             axes.invert_yaxis()
 
     def _north(self, axes):
-        """The arrow to the north, in the upper right corner."""
-        head, foot = (offset_copy(axes.transAxes, axes.figure, -12, down, units="points") for down in (-16, -40))
-        axes.annotate("N", (1, 1), (1, 1), xycoords=foot, textcoords=head, ha="center", fontsize=9, zorder=5, path_effects=[HALO],
+        """The arrow to the north, in the upper right corner of the ground, off its edge and the outline of soil there."""
+        head, foot = (offset_copy(axes.transData, axes.figure, -12, down, units="points") for down in (-16, -40))
+        corner = self.ground.high[self.ground.level]
+        axes.annotate("N", corner, corner, xycoords=foot, textcoords=head, ha="center", fontsize=9, zorder=5, path_effects=[HALO],
                       arrowprops={"arrowstyle": "<-", "color": style.INK, "lw": 1.2})
 
     def _contours(self, axes, snapshot):
@@ -292,13 +299,17 @@ class Painter:
 
     def _bottom(self, axes, view):
         """The bottom of the mesh below a section."""
+        along, base = self._line_of_bottom(view)
+        axes.fill_between(along, base, axes.get_ylim()[0], color=EARTH, linewidth=0)
+        axes.plot(along, base, color=style.SOFT, linewidth=0.8)
+
+    def _line_of_bottom(self, view):
+        """The bottom of the mesh in a section: places along the picture, and heights, which are no numbers beyond what is shown of the ground."""
         ground = self.ground
         along, at = view.line(ground, 400)
         base, inside = between(np.stack([ground.base, ground.inside], axis=-1), [(at[axis] - ground.low[axis]) / ground.cell for axis in ground.level])
         beyond = np.any([(at[axis] < ground.low[axis]) | (at[axis] > ground.high[axis]) for axis in ground.level], axis=0)
-        base = np.where((inside > 0.5) & ~beyond, base, np.nan)
-        axes.fill_between(along, base, axes.get_ylim()[0], color=EARTH, linewidth=0)
-        axes.plot(along, base, color=style.SOFT, linewidth=0.8)
+        return along, np.where((inside > 0.5) & ~beyond, base, np.nan)
 
     def _mark_points(self, axes, view, time, highest):
         """The named points of history.csv, where they are at a time, those that are the same particle with one name; names of points that are higher than

@@ -321,6 +321,33 @@ class Maps(unittest.TestCase):
                     for other, text in zip(boxes[:k], texts):
                         self.assertFalse(one.overlaps(other), f"{results}: {texts[k].get_text()} over {text.get_text()}")
 
+    def test_arrow_and_scale_lie_on_the_ground_where_cells_reach_beyond_it(self):
+        maps = talus_maps.Maps(talus_maps.checked(FOLDER / "plane1"), 50.0)
+        with unittest.mock.patch.object(talus_map_pictures.style, "save", side_effect=lambda figure, path: figure):
+            figure = talus_map_pictures.draw_map(maps, "map.png")
+        figure.canvas.draw()
+        axes = figure.axes[0]
+        low, high = maps.ground.low[:2] + [WEST, SOUTH], maps.ground.high[:2] + [WEST, SOUTH]
+        self.assertGreater(axes.get_xlim()[1], high[0] + 10)
+        north, = [text for text in axes.texts if text.get_text() == "N"]
+        box = north.get_window_extent().transformed(axes.transData.inverted())
+        scale, = [line.get_xydata() for line in axes.lines if line.get_linewidth() == 3]
+        for place in (box.min, box.max, *scale):
+            self.assertTrue((place > low).all() and (place < high).all())
+
+    def test_surfaces_in_a_section_end_on_the_ground(self):
+        maps = talus_maps.Maps(talus_maps.checked(FOLDER / "plane1"))
+        with unittest.mock.patch.object(talus_map_pictures.style, "save", side_effect=lambda figure, path: figure):
+            axes = talus_map_pictures.draw_section(maps, "section.png").axes[0]
+        lines = {line.get_label(): line.get_ydata() for line in axes.lines}
+        ends = 0
+        for name, line in lines.items():
+            there = np.isfinite(line)
+            last = np.flatnonzero(there[1:-1] & ~(there[:-2] & there[2:])) + 1
+            np.testing.assert_allclose(line[last], lines["bottom of the mesh"][last], atol=1e-3 * maps.size, err_msg=name)
+            ends += len(last)
+        self.assertGreater(ends, 1)
+
     def test_soil_that_stands_has_not_slid(self):
         velocity = ["--set", 'body.block.velocity=["0.5","0","0"]']  # 0.05 m at the end, a third of the spacing of particles
         talus("run", "block.toml", "-o", "stands", "--no-pictures", *velocity)

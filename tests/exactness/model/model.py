@@ -15,7 +15,7 @@ TALUS, MPIRUN, PLOTS = sys.argv.pop(1), sys.argv.pop(1), sys.argv.pop(1)
 sys.path.insert(0, PLOTS)
 from talus_model import dimensions, plt  # noqa: E402
 from talus_modelled import Model, notes, outline, stage_rows  # noqa: E402
-from talus_perspective import Views  # noqa: E402
+from talus_perspective import Views, hidden  # noqa: E402
 from talus_symbols import chains, keep_apart, movable, named_points  # noqa: E402
 from talus_units import duration, span, text_of  # noqa: E402
 
@@ -366,6 +366,27 @@ class Terrain(unittest.TestCase):
         self.assertEqual([views.title(number) for number in (0, 1)], ["terrain (grey) and soil from above, from the south", "from below, from the north"])
         self.assertLess(views.towards[1], 0)
         np.testing.assert_allclose([views.lows[0], views.highs[0]], [[0, 0, 0], [3, 3, 1.6]], atol=0.11)
+
+    def test_has_a_rim_where_soil_ends_upon_it_and_not_at_the_edge_of_the_mesh(self):
+        bed, = self.model.boundaries
+        bed.has_soil = bed.corners[..., 0].max(axis=1) <= 1  # along the west
+        rim = Views(self.model).rim
+        self.assertAlmostEqual(np.linalg.norm(rim[:, 1] - rim[:, 0], axis=1).sum(), 3 * np.sqrt(1.25))
+        np.testing.assert_allclose(rim[..., 0], 1)
+        bed.has_soil[:] = True
+        views = Views(self.model)
+        self.assertEqual((len(views.ground), len(views.rim)), (0, 0))
+
+    def test_hides_the_rim_behind_its_soil(self):
+        views = Views(self.model)
+        camera = views.cameras[0]  # in the south
+        self.assertFalse(hidden(views.rim, np.concatenate([self.model.corners, views.ground]), camera).any())
+        face = np.array([[1, 1, 0.5], [2, 1, 0.5], [2, 1, 4.5], [1, 1, 4.5]])  # of soil of 4 m
+        behind = hidden(views.rim, np.stack([face[[0, 1, 2]], face[[0, 2, 3]]]), camera)
+        north = (views.rim[..., 1] == 2).all(axis=1)
+        self.assertEqual(north.sum(), 1)
+        self.assertTrue(behind[north].all())
+        self.assertFalse(behind[(views.rim[..., 1] == 1).all(axis=1)].any())
 
     def test_that_faces_nowhere_is_seen_from_the_largest_coordinates(self):
         self.model.normal = np.tile([0.0, 0, 1], (2, 1))

@@ -671,8 +671,11 @@ class Scale(unittest.TestCase):
     def test_of_a_map_stands_where_no_soil_is(self):
         soil, low = np.zeros((50, 50), bool), np.array([1000.0, 2000.0])
 
-        def place():
-            return tuple(talus_map_pictures.place_of_scale(soil, 2.0, low, 20.0, 15.0))  # a map of 100 m on 6.7 inches
+        def place(beyond=0.0):
+            shown = np.array([low + beyond, low + 100 - beyond])
+            return tuple(talus_map_pictures.place_of_scale(soil, 2.0, low, shown, 20.0, 15.0))  # a map of 100 m on 6.7 inches
+
+        self.assertEqual(place(beyond=10.0), (1013.2, 2013.2))  # on the ground, where cells reach beyond it
 
         self.assertEqual(place(), (1004.0, 2004.0))
         soil[5, 2] = True

@@ -55,12 +55,17 @@ def layer(low, high, thickness=0.3, up=2):
     return turned(at, up)
 
 
+def lattice(low, high, apart):
+    """Particles so far apart, in rows along the axes between two corners."""
+    return np.stack(np.meshgrid(*(np.arange(a + apart / 2, b, apart) for a, b in zip(low, high)), indexing="ij"), axis=-1).reshape(-1, 3)
+
+
 def ground(up=2):
     return Ground(turned(LOW, up), turned(HIGH, up), SPACING, level_of(up), up, mesh(up))
 
 
 def surface(of, position):
-    return of.surface(position, np.full(len(position), SPACING))
+    return of.surface(position, np.full(len(position), SPACING), np.full(len(position), SPACING**3))
 
 
 def centres(of):
@@ -83,10 +88,20 @@ class Heights(unittest.TestCase):
     def test_the_surface_of_large_particles_beside_small_ones_has_no_pits(self):
         of, small, large = ground(), layer((0, 0), (1, 1.2)), layer((1, 0), (2, 1.2))[::20]  # of 2.7 times the width
         at = np.concatenate([small, large])
-        top, soil = of.surface(at, np.repeat([SPACING, 20 ** (1 / 3) * SPACING], [len(small), len(large)]))
+        size = np.repeat([SPACING, 20 ** (1 / 3) * SPACING], [len(small), len(large)])
+        top, soil = of.surface(at, size, size**3)
         self.assertTrue(soil.all())
         off = top - BOTTOM * centres(of)[..., 0] - 0.3
         self.assertLess(np.abs(off[2:-2, 2:-2]).max(), 2 * SPACING)
+
+    def test_the_surface_has_no_dent_where_particles_are_larger_than_their_widths_tell(self):
+        of, apart = ground(), 4 ** (1 / 3) * SPACING  # still below the next step of widths
+        at = lattice((0, 0, 0), (2, 1.2, 4 * apart), apart)
+        at[:, 2] += BOTTOM * at[:, 0]
+        size = np.full(len(at), SPACING)
+        off = [of.surface(at, size, share * size**3)[0] - BOTTOM * centres(of)[..., 0] - 4 * apart for share in (4, 1)]
+        self.assertLess(np.abs(off[0][2:-2, 2:-2]).max(), 1.5 * SPACING)
+        self.assertLess(off[1][2:-2, 2:-2].max(), -1.5 * SPACING)  # as if it were loose
 
     def test_bodies_apart_have_a_gap_between_them(self):
         of = ground()
@@ -301,8 +316,38 @@ class Pictures(unittest.TestCase):
         self.assertEqual(painter.views[-1].labels, ["x, east [m]", "y, north [m]"])
         with unittest.mock.patch.object(talus_sections.style, "save", lambda figure, path: figure):
             drawn = painter.large("displacement", colours, snapshots, None)
-        self.assertEqual([text.get_text() for axes in drawn.axes for text in axes.texts if text.get_text() == "N"], ["N"])
+        (axes, north), = [(axes, text) for axes in drawn.axes for text in axes.texts if text.get_text() == "N"]
+        drawn.canvas.draw()
+        box = north.get_window_extent().transformed(axes.transData.inverted())
+        self.assertTrue((painter.ground.low[:2] < box.min).all() and (box.max < painter.ground.high[:2]).all())  # not on the edge of the ground
         self.assertFalse(any(axes.yaxis_inverted() or axes.xaxis_inverted() for axes in drawn.axes))
+
+    def test_a_section_shows_the_ground_whole(self):
+        """A thin slide on a steep slope, downhill and aside: behind its crown the ground is higher than all soil, and its way begins before the ground."""
+        node, cell = mesh()
+        node = node * [1, 1, 6]
+        start = lattice((1.2, 0.1, 0), (1.6, 0.5, 0.06), 0.03)
+        start[:, 2] += 6 * BOTTOM * start[:, 0]
+        away = [step * np.array([-0.25, 0.15, -0.25 * 6 * BOTTOM]) for step in range(4)]
+        snapshots = [types.SimpleNamespace(step=step, time=float(step), position=lambda step=step: start + away[step], ids=lambda: np.arange(len(start)))
+                     for step in range(4)]
+        for shown in snapshots:
+            shown.column = lambda name: types.SimpleNamespace(values=np.full((len(start), 1), 0.03**3))
+        with_volume = type("Snapshot", (types.SimpleNamespace,), {"__contains__": lambda self, name: name == "volume"})
+        snapshots = [with_volume(**vars(shown)) for shown in snapshots]
+        results = types.SimpleNamespace(snapshots=snapshots, up_axis=lambda: 2, mesh=lambda: (node, cell), scene={}, folder=pathlib.Path("nowhere"),
+                                        bodies=["soil"], escaped=None)
+        painter = Painter(results, snapshots, 40)
+        view, (low, high) = painter.views[painter.section], painter.corners[painter.section]
+        self.assertEqual(view.name, "section along the slide")
+        along, base = painter._line_of_bottom(view)
+        there = np.isfinite(base)
+        self.assertGreater(np.ptp(along), 1.05 * np.ptp(along[there]))
+        self.assertGreater(base[there].max(), painter.ground.high[2])
+        self.assertLess(base[there].max(), high[1])
+        np.testing.assert_allclose([low[0], high[0]], [along[there][0], along[there][-1]], atol=0.1 * np.ptp(along[there]))
+        self.assertLessEqual(low[0], along[there][0])
+        self.assertGreaterEqual(high[0], along[there][-1])
 
     def titles_keep_apart(self, painter, colours, snapshots):
         """What all panels count from is said once, and what differs in titles that do not cover each other; the slip surface has its time in its title."""
