@@ -94,8 +94,12 @@ struct TerrainSource {
   template <class Visitor>
   void fields(Visitor &&v) {
     v.text("file", file, "terrain file, ESRI ASCII or GeoTIFF with coordinates and elevations in metres");
-    v.point("window", window, metre, "west, south, east, north in the coordinates of the file; default: all of it");
-    v.integer("step", step, Range{1, 1000}, "decimation: every so many-th row and column of the file is used");
+    v.point("window", window, metre,
+            "west, south, east, north in the coordinates of the file, each moved to the nearest column or row of it; "
+            "default: all of it");
+    v.integer("step", step, Range{1, 1000},
+              "decimation: every so many-th row and column of the file is used, and a slip surface and layers "
+              "are known at these places alone");
     v.point("base", base, metre,
             "elevation of a flat base: soil is meshed from there to the ground; without it the mesh is the space above "
             "the bed, which is the ground lowered to the slip surface");

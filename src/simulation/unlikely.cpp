@@ -359,6 +359,20 @@ void doubt_for_depth(const BodySource &source, const BodyReport &body, const Law
                         "large? Soils have 1 MPa to 1 GPa");
 }
 
+/// The share of a load that water takes at once where it cannot flow, Skempton (1954), B = 1 / (1 + n K / K_l).
+void doubt_soft_water(const Scene &scene, const BodySource &body, const Law &law, std::vector<std::string> &sentences) {
+  constexpr double nearly_all = 0.8;
+  if (!fluids_move(scene.phases) || !(body.porosity > 0)) return;
+  const double stiffness = scene.water.bulk_modulus / body.porosity,
+               share = stiffness / (stiffness + bulk_modulus(law));
+  if (share >= nearly_all) return;
+  sentences.push_back("water.bulk_modulus = " + rounded(scene.water.bulk_modulus / 1e6) +
+                      " MPa is so soft beside body." + body.name + " (K = " + rounded(bulk_modulus(law) / 1e6) +
+                      " MPa) that undrained load raises the pore pressure by " + rounded(100 * share) +
+                      " % of it only. Water has 2200 MPa; a softer one allows longer steps, and hardly changes the "
+                      "answer while it takes more than 90 %");
+}
+
 }  // namespace
 
 std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<Law> &laws,
@@ -381,6 +395,7 @@ std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<L
         {"grain_density", weighed ? 0 : body.grain_density, kilogram_per_cubic_metre, 500, 10e3, {{"t/m3", 1e3}}},
         {"unit_weight", body.unit_weight, newton_per_cubic_metre, 5e3, 60e3, of_weights},
         {"saturated_unit_weight", body.saturated_unit_weight, newton_per_cubic_metre, 8e3, 60e3, of_weights},
+        {"porosity", body.porosity, one, 0, 0.9, {}},
         {"permeability", body.permeability, square_metre, 0, 1e-6, {{"m/s (key hydraulic_conductivity)", water_flow}}},
     };
     std::visit(
@@ -415,15 +430,18 @@ std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<L
     if (bodies[b].particles > 0 && scene.gravity_size() > 0 && depth > 0)
       doubt_for_depth(body, bodies[b], laws[b], bodies[b].mass / bodies[b].volume * scene.gravity_size() * depth,
                       sentences);
-    for (const Doubt &one : doubts) {
-      if (one.value <= 0 || one.likely(one.value)) continue;
-      const std::string path = "body." + body.name + "." + one.key,
-                        given = scene.root ? scene.root->written_at(path) : "";
-      sentences.push_back(
-          path + " is " + rounded(one.value / one.unit.si) + " " + one.unit.name + ", which hardly any soil has" +
-          (has_unit(given)
-               ? "; the scene gives it as " + given + ". Is another unit meant?"
-               : std::string("; a number without a unit counts in ") + one.unit.name + "." + one.question()));
+    doubt_soft_water(scene, body, laws[b], sentences);
+    for (const Doubt &doubt : doubts) {
+      if (doubt.value <= 0 || doubt.likely(doubt.value)) continue;
+      const std::string path = "body." + body.name + "." + doubt.key,
+                        given = scene.root ? scene.root->written_at(path) : "", unit = doubt.unit.name;
+      std::string text = path + " is " + rounded(doubt.value / doubt.unit.si) + (unit == "-" ? "" : " " + unit) +
+                         ", which hardly any soil has";
+      if (has_unit(given))
+        text += "; the scene gives it as " + given + ". Is another unit meant?";
+      else if (unit != "-")
+        text += "; a number without a unit counts in " + unit + "." + doubt.question();
+      sentences.push_back(text);
     }
   }
   return sentences;

@@ -116,6 +116,20 @@ TEST(Check, DoubtsPondsOfMovingWaterWithoutABoundary) {
   EXPECT_FALSE(pool("-0.1").says(enters));
 }
 
+/// Water that is softer than the soil takes no load: B = 1 / (1 + 0.4 * 0.83 MPa / 2.2 MPa).
+TEST(Check, DoubtsSoftWaterAndHugePores) {
+  const Folder folder;
+  write_wet_block(folder);
+  const auto output = [&](const std::string &one) {
+    return talus(folder, {"check", "scene.toml", "--json", "--set", "phases=saturated", "--set", one});
+  };
+  const char *soft = "is so soft beside body.sand", *pores = "body.sand.porosity is ";
+  EXPECT_TRUE(output("water.bulk_modulus=1 MPa").says(soft)) << output("water.bulk_modulus=1 MPa").output;
+  EXPECT_FALSE(output("water.bulk_modulus=20 MPa").says(soft));
+  EXPECT_TRUE(output("body.sand.porosity=0.95").says("body.sand.porosity is 0.95, which hardly any soil has"));
+  EXPECT_FALSE(output("body.sand.porosity=0.6").says(pores));
+}
+
 /// A boundary of water holds no soil.
 TEST(Check, DoubtsEndsOfWetSoilThatNothingHolds) {
   const Folder folder;
