@@ -4,7 +4,9 @@
 /// of the soil, where that is now: the sum of w grad N at a node is the area vector of the surface there. Where it is
 /// small there is a gap between particles: the pressure beyond it is that of the neighbouring cells. The group name
 /// `free_surface` in a scene stands for the surface of the soil; a wall there stops the liquid alone.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,47 @@ inline constexpr const char *free_surface = "free_surface";
 struct LiquidAtNode {
   double mass, volume;  ///< m_l [kg], V [m3]
 };
+
+/// Bounds of the velocity of a fluid against the skeleton along a unit vector [m/s].
+template <int dim>
+struct FlowLimit {
+  Vec<dim> n;
+  double low, high;
+  bool wall;         ///< of all fluids
+  double taken = 0;  ///< by `hold_within`: the change along n [m/s]
+};
+
+/// What bounds the velocity of the fluids at a node.
+template <int dim>
+struct FlowLimits {
+  std::array<FlowLimit<dim>, 24> all;  ///< a node of so many planes would be no node of a mesh
+  int count = 0;
+  void add(const FlowLimit<dim> &one) {
+    if (count < static_cast<int>(all.size())) all[count++] = one;
+  }
+};
+
+/// The least change of a velocity against the skeleton that brings it within all limits: `taken` along each of them.
+/// Limits whose normals are neither equal nor at right angles act on each other, so that one after the other would let
+/// through an edge what each of its sides stops. Hildreth (1957): each takes in turn what it needs beside the others.
+template <int dim>
+void hold_within(FlowLimits<dim> &limits, Vec<dim> velocity) {
+  constexpr int most = 3000;         // sweeps: what is left falls by the square of the cosine between normals
+  constexpr double settled = 1e-12;  // of what is taken
+  for (int k = 0; k < limits.count; ++k) limits.all[k].taken = 0;
+  for (int sweep = 0; sweep < most; ++sweep) {
+    double change = 0, taken = 0;
+    for (int k = 0; k < limits.count; ++k) {
+      FlowLimit<dim> &one = limits.all[k];
+      const double without = dot<dim>(velocity, one.n) - one.taken;
+      const double needed = std::clamp(without, one.low, one.high) - without, more = needed - one.taken;
+      add_scaled<dim>(velocity, more, one.n);
+      one.taken = needed;
+      change = std::max(change, std::abs(more)), taken = std::max(taken, std::abs(needed));
+    }
+    if (limits.count == 1 || change <= settled * taken) return;
+  }
+}
 
 template <int dim>
 class PoreConditions {
@@ -73,40 +116,28 @@ class PoreConditions {
   bool at_surface(int node) const { return face_of_node_[node] >= 0; }
   /// (gap node, cell, number of the node in it) of all cells of this rank at gaps.
   const std::vector<std::array<int, 3>> &gap_cells() const { return gap_cells_; }
-  /// Calls limit(node, n, low, high) for every face whose outflow has limits: relative velocities of the liquid along n
-  /// must be between them [m/s]. `liquid_at(node)` is LiquidAtNode; `density` that of the liquid beyond [kg/m3].
-  template <class At, class Limit>
+  /// Calls hold(node, limits) for every node with faces whose outflow has limits, or with walls that let no fluid pass:
+  /// first the limits of faces, which are those of the liquid alone, and then the normals of walls, which are
+  /// orthonormal. `liquid_at(node)` is LiquidAtNode; `density` that of the liquid beyond [kg/m3].
+  template <class At, class Hold>
   void limits(double t, const FilledGrid<dim> &grid, double density, double unit_weight, At &&liquid_at,
-              Limit &&limit) const {
-    for (const Face &f : faces_) {
-      if (f.leads >= 0) continue;
-      Vec<dim> n = f.across > 0 ? f.direction : f.normal;
-      Outflow out;
-      if (f.across > 0)
-        out.least = out.most = outflow_of_pumps(t, grid, f);
-      else
-        out = outflow_in_plane(t, grid, f, unit_weight);
-      if (out.least == none) continue;
-      if (f.across == 0) {  // with what is prescribed, only the rest of the normal is free
-        each_pump(f.node, [&](const Face &g) {
-          const double part = dot<dim>(f.normal, g.direction);
-          out.least -= part * outflow_of_pumps(t, grid, g), add_scaled<dim>(n, -part, g.direction);
-        });
-        const double rest = std::sqrt(dot<dim>(n, n));
-        if (rest < least_angle_sine) continue;
-        for (double &x : n) x /= rest;
-        out.least /= rest;
-      }
-      const LiquidAtNode at = liquid_at(f.node);
-      const double scale = at.mass > 0 ? density * at.volume / at.mass : 0;
-      limit(f.node, n, out.least * scale, out.most * scale);
+              Hold &&hold) const {
+    FlowLimits<dim> limits;
+    const auto hold_all = [&](int node) {
+      walls_at(grid, node, [&](const Vec<dim> &n) {
+        if (!pumped(node, n)) limits.add({n, 0, 0, true});
+      });
+      if (limits.count > 0) hold(node, limits);
+      limits.count = 0;
+    };
+    for (std::size_t last = 0; last < faces_.size(); ++last) {
+      const int node = faces_[last].node;
+      if (face_of_node_[node] != static_cast<int>(last)) continue;
+      limits_of_faces(t, grid, density, unit_weight, liquid_at, node, limits);
+      hold_all(node);
     }
-  }
-  /// Calls wall(node, n) for every normal of walls that let no fluid pass; those of a node are orthonormal.
-  template <class Put>
-  void walls(Put &&wall) const {
     for (const ActiveWall &w : active_walls_)
-      for (int k = 0; k < w.wall.count; ++k) wall(w.node, w.wall.direction[k]);
+      if (face_of_node_[w.node] < 0) hold_all(w.node);
   }
   /// Calls along(n, all) for orthonormal directions in which boundaries fix how fluids at a node move against the
   /// skeleton: all of them along normals of walls, and only the liquid along those of faces with a flux and of a
@@ -237,6 +268,36 @@ class PoreConditions {
       if (g.across > 0) out -= dot<dim>(f.normal, g.direction) * outflow_of_pumps(t, grid, g);
     }
     return out / f.across;
+  }
+  /// The limits of the faces of a node, the earliest first.
+  template <class At>
+  void limits_of_faces(double t, const FilledGrid<dim> &grid, double density, double unit_weight, At &&liquid_at,
+                       int node, FlowLimits<dim> &limits) const {
+    const LiquidAtNode at = liquid_at(node);
+    const double scale = at.mass > 0 ? density * at.volume / at.mass : 0;
+    for (int index = face_of_node_[node]; index >= 0; index = faces_[index].further) {
+      const Face &f = faces_[index];
+      if (f.leads >= 0) continue;
+      Vec<dim> n = f.across > 0 ? f.direction : f.normal;
+      Outflow out;
+      if (f.across > 0)
+        out.least = out.most = outflow_of_pumps(t, grid, f);
+      else
+        out = outflow_in_plane(t, grid, f, unit_weight);
+      if (out.least == none) continue;
+      if (f.across == 0) {  // with what is prescribed, only the rest of the normal is free
+        each_pump(f.node, [&](const Face &g) {
+          const double part = dot<dim>(f.normal, g.direction);
+          out.least -= part * outflow_of_pumps(t, grid, g), add_scaled<dim>(n, -part, g.direction);
+        });
+        const double rest = std::sqrt(dot<dim>(n, n));
+        if (rest < least_angle_sine) continue;
+        for (double &x : n) x /= rest;
+        out.least /= rest;
+      }
+      limits.add({n, out.least * scale, out.most * scale, false});
+    }
+    std::reverse(limits.all.begin(), limits.all.begin() + limits.count);
   }
   Vec<dim> open_area(const FilledGrid<dim> &grid, int node, const Vec<dim> &surface) const {
     return open_part(grid, node, surface, taken_[node]);

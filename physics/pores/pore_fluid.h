@@ -202,8 +202,8 @@ class PoreFluid {
   void average_over_patches(const Frame &frame, std::vector<CellPores> &pores) requires Phases::suction;
   void save_pressures(const Frame &frame);
   void set_masses_by_rate(const Frame &frame);
-  template <class Limit>
-  void limits(const Frame &frame, const PoreConditions<dim> &conditions, Limit &&limit) const;
+  template <class Hold>
+  void limits(const Frame &frame, const PoreConditions<dim> &conditions, Hold &&hold) const;
   PetscErrorCode share_divergence(const Frame &frame, Array &divergence) requires Phases::suction;
   PetscErrorCode share_pressure(const Frame &frame, Array &pressure) requires Phases::suction;
   /// Integration volume of a cell minus the volume of its particles; 0 in nearly full cells [m3].

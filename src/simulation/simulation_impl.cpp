@@ -178,7 +178,8 @@ void Simulation<dim>::note_bodies() {
   for (const BodyReport &body : run_.world.report())
     if (body.particles > 0)
       run_.recorder.note(body.name + ": " + rounded(body.volume) + (dim == 2 ? " m3/m, " : " m3, ") +
-                         rounded(body.mass) + (dim == 2 ? " kg/m in " : " kg in ") + std::to_string(body.particles) +
+                         rounded(body.mass) + (dim == 2 ? " kg/m" : " kg") +
+                         (run_.world.phases.liquid ? " of grains in " : " in ") + std::to_string(body.particles) +
                          " particles");
 }
 

@@ -17,7 +17,8 @@ struct Span {
   std::string text() const { return rounded(from) + (to > from ? " to " + rounded(to) : "") + " m"; }
 };
 
-/// Where equilibrium is asked for, soil that ends with the mesh is mostly cut off there and goes on in nature.
+/// Where equilibrium is asked for, soil that ends with the mesh is mostly cut off there and goes on in nature. In
+/// motion it leaves the mesh there, which ends the run unless the scene lets particles go.
 void doubt_sides(const Scene &scene, const Extent &soil, int up, const std::vector<SoilFace> &surface,
                  std::vector<std::string> &sentences) {
   constexpr double thin = 0.1;  // of the height of the soil: a layer that comes to light there decides little
@@ -25,7 +26,9 @@ void doubt_sides(const Scene &scene, const Extent &soil, int up, const std::vect
     return stage.kind == StageKind::quasi_static || stage.kind == StageKind::consolidation ||
            (stage.kind == StageKind::dynamic && stage.until == StopWhen::equilibrium);
   };
-  if (std::none_of(scene.stage.begin(), scene.stage.end(), asks)) return;
+  const bool stops = scene.mesh.leaving_particles == WhenOutside::stop;
+  const auto ends = [&](const Stage &stage) { return asks(stage) || (stops && stage.kind == StageKind::dynamic); };
+  if (std::none_of(scene.stage.begin(), scene.stage.end(), ends)) return;
   for (int d = 0; d < scene.dimension; ++d)
     for (const double sign : {-1., 1.}) {
       if (d == up) continue;
@@ -46,9 +49,10 @@ void doubt_sides(const Scene &scene, const Extent &soil, int up, const std::vect
       sentences.push_back(std::string("The soil ends with the mesh at ") + axis_names[d] + " = " + rounded(end) +
                           " m, and " + (wet ? "only a boundary of the water in its pores" : "no boundary") +
                           " names its face there, " + axis_names[up] + " = " + span.text() +
-                          ": it is free to move outwards, as no soil that goes on there would be, and may fail first. "
-                          "Give it kind = \"roller\" or \"fixed\"; kind = \"traction\" with traction = " +
-                          zero + " says that it is a free face");
+                          ": it is free to move outwards, as no soil that goes on there would be, and may fail first" +
+                          (stops ? " or leave the mesh" : "") +
+                          ". Give it kind = \"roller\" or \"fixed\"; kind = \"traction\" with traction = " + zero +
+                          " says that it is a free face");
     }
 }
 

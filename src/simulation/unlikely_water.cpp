@@ -291,6 +291,47 @@ void doubt_faces_of_water(const Scene &scene, const std::vector<SoilFace> &surfa
   }
 }
 
+/// The table is what pores begin with where their water moves, and no stage looks at it again unless it prescribes the
+/// pressure.
+void doubt_changing_table(const Scene &scene, std::vector<std::string> &sentences) {
+  if (std::ranges::any_of(scene.stage, [](const Stage &s) { return is_static(s.kind) || !s.pore_flow; })) return;
+  for (const auto &[name, changes] : {std::pair{"level", scene.water.level.depends_on_time()},
+                                      std::pair{"excess", scene.water.excess.depends_on_time()}})
+    if (changes)
+      sentences.push_back(
+          std::string("water.") + name +
+          " changes with time, and pore water moves in all stages: its value at the start alone counts, "
+          "since the table says what is in the pores then. Water that rises or falls beside the soil is "
+          "a boundary with kind = \"head\" and a level that changes");
+}
+
+/// Saturated soil has no air: where no boundary of water is on its surface, the pressure there is zero, as under a film
+/// of water, and above the water table water enters.
+void doubt_film_on_ground(const Scene &scene, double height, const std::vector<SoilFace> &surface,
+                          std::vector<std::string> &sentences) {
+  constexpr double share = 0.05;  // of the ground
+  const WaterTable &table = scene.water.table;
+  if (scene.phases != PhaseModel::saturated || !table.given() || OpenWater(scene).elsewhere() >= 0) return;
+  if (std::ranges::none_of(scene.stage, [](const Stage &s) { return !is_static(s.kind) && s.pore_flow; })) return;
+  const double level = levels_of(scene).front();
+  const int up = scene.vertical();
+  double all = 0, dry = 0, most = 0;
+  for (const SoilFace &face : surface) {
+    if (!may_be_flooded(face, up) || face.ends_mesh) continue;
+    all += face.area;
+    double above = std::numeric_limits<double>::infinity();  // the table, of the lowest corner
+    for (int a = 0; a < scene.dimension; ++a)
+      above = std::min(above, face.corner[a][up] - table_at(table, face.corner[a]) - level);
+    if (face.water < 0 && above > visible * height) dry += face.area, most = std::max(most, above);
+  }
+  if (dry <= share * all) return;
+  sentences.push_back(rounded(100 * dry / all) + " % of the free surface lies above water.table, by up to " +
+                      rounded(most) +
+                      " m, and no boundary of pore water is there. phases = \"saturated\" has no air: the pressure at "
+                      "the surface is zero, as under a film of water, and water enters the ground as long as it lasts. "
+                      "Name it with kind = \"impermeable\", or take phases = \"unsaturated\"");
+}
+
 /// The water table of one soil gives pore pressure and no open water: above the free surface of this soil nothing
 /// bears against it.
 void doubt_own_tables(const Scene &scene, double height, const std::vector<SoilFace> &surface,
@@ -389,6 +430,8 @@ void doubt_water(const Scene &scene, const Extent &soil, const std::vector<SoilF
   if (phase_traits(scene.phases).liquid) {
     doubt_dry_ponds(scene, soil, surface, sentences);
     doubt_faces_of_water(scene, surface, sentences);
+    doubt_changing_table(scene, sentences);
+    doubt_film_on_ground(scene, height, surface, sentences);
   }
   if (scene.phases != PhaseModel::drained) return;
   doubt_early_suction(scene, sentences);

@@ -44,9 +44,6 @@ double PoreFluid<dim, Phases>::drag_rate(const FilledGrid<dim> &grid) const {
   return largest;
 }
 
-/// Smallest change of x that brings it between low and high.
-inline double into(double x, double low, double high) { return std::clamp(x, low, high) - x; }
-
 /// A face or wall that stops a fluid acts on the skeleton too: fluid and skeleton share their momentum along its
 /// normal. In this way a surface that lets no water in bears the suction, and a wall that supports the skeleton bears
 /// the weight of the water, theory (4.6a).
@@ -64,18 +61,24 @@ void PoreFluid<dim, Phases>::apply_drag_to_solid(double step, const Frame &frame
       resolve_drag<fluids>(step, grid.mass[i], solid[i][d], at, v);
     }
   }
-  const auto share = [&](int i, const Vec<dim> &n, int count, double low, double high) {
-    double momentum = 0, mass = grid.mass[i];
-    for (int a = 0; a < count; ++a) {
-      const NodalFluid at = over_step(i, a);
-      double out = 0;
-      for (int d = 0; d < dim; ++d) out += (fluid[a * nodes + i][d] - solid[i][d]) * n[d];
-      momentum -= at.mass * into(out / (1 + drag_number(step, at)), low, high), mass += at.mass;
+  limits(frame, conditions, [&](int i, FlowLimits<dim> &all) {
+    NodalFluid at[fluids];
+    double mass = grid.mass[i];  // of those that a wall stops
+    for (int a = 0; a < fluids; ++a) at[a] = over_step(i, a), mass += at[a].mass;
+    const Vec<dim> before = solid[i];
+    const auto against = [&](int a) {
+      Vec<dim> v;
+      for (int d = 0; d < dim; ++d) v[d] = (fluid[a * nodes + i][d] - before[d]) / (1 + drag_number(step, at[a]));
+      return v;
+    };
+    hold_within<dim>(all, against(0));
+    for (int k = 0; k < all.count; ++k) {
+      const FlowLimit<dim> &one = all.all[k];
+      double momentum = at[0].mass * one.taken;
+      for (int a = 1; a < fluids && one.wall; ++a) momentum -= at[a].mass * dot<dim>(against(a), one.n);
+      add_scaled<dim>(solid[i], -momentum / (one.wall ? mass : grid.mass[i] + at[0].mass), one.n);
     }
-    for (int d = 0; d < dim; ++d) solid[i][d] += momentum / mass * n[d];
-  };
-  limits(frame, conditions, [&](int i, const Vec<dim> &n, double low, double high) { share(i, n, 1, low, high); });
-  conditions.walls([&](int i, const Vec<dim> &n) { share(i, n, fluids, 0, 0); });
+  });
 }
 
 /// A support stops the skeleton, all of a fluid along the normals of walls and of faces with a flux, and in other
@@ -127,15 +130,19 @@ void PoreFluid<dim, Phases>::apply_drag_to_fluids(double step, const Frame &fram
 }
 
 template <int dim, class Phases>
-template <class Limit>
-void PoreFluid<dim, Phases>::limits(const Frame &frame, const PoreConditions<dim> &conditions, Limit &&limit) const {
+template <class Hold>
+void PoreFluid<dim, Phases>::limits(const Frame &frame, const PoreConditions<dim> &conditions, Hold &&hold) const {
   conditions.limits(
       frame.time, frame.grid, liquid_.density, unit_weight(frame),
       [&](int i) {
         return LiquidAtNode{nodes_[i].mass(0), nodes_[i].volume()};
       },
-      [&](int i, const Vec<dim> &n, double low, double high) {  // a flux does nothing to a fluid that does not move
-        prescribed ? limit(i, n, std::min(low, 0.), std::max(high, 0.)) : limit(i, n, low, high);
+      [&](int i, FlowLimits<dim> &all) {
+        for (int k = 0; k < all.count && prescribed; ++k) {  // a flux does nothing to a fluid that does not move
+          FlowLimit<dim> &one = all.all[k];
+          one.low = std::min(one.low, 0.), one.high = std::max(one.high, 0.);
+        }
+        hold(i, all);
       });
 }
 
@@ -143,18 +150,20 @@ template <int dim, class Phases>
 void PoreFluid<dim, Phases>::constrain(const Frame &frame, const PoreConditions<dim> &conditions, const Vec<dim> *solid,
                                        Vec<dim> *fluid) const {
   const int nodes = frame.grid.node_count();
-  const auto bring_within = [&](int i, const Vec<dim> &n, int count, double low, double high) {
-    for (int a = 0; a < count; ++a) {
-      Vec<dim> &v = fluid[a * nodes + i];
-      double out = 0;
-      for (int d = 0; d < dim; ++d) out += (v[d] - solid[i][d]) * n[d];
-      const double change = into(out, low, high);
-      for (int d = 0; d < dim; ++d) v[d] += change * n[d];
+  limits(frame, conditions, [&](int i, FlowLimits<dim> &all) {
+    const auto against = [&](int a) {
+      Vec<dim> v;
+      for (int d = 0; d < dim; ++d) v[d] = fluid[a * nodes + i][d] - solid[i][d];
+      return v;
+    };
+    hold_within<dim>(all, against(0));
+    for (int k = 0; k < all.count; ++k) {
+      const FlowLimit<dim> &one = all.all[k];
+      add_scaled<dim>(fluid[i], one.taken, one.n);
+      for (int a = 1; a < fluids && one.wall; ++a)
+        add_scaled<dim>(fluid[a * nodes + i], -dot<dim>(against(a), one.n), one.n);
     }
-  };
-  limits(frame, conditions,
-         [&](int i, const Vec<dim> &n, double low, double high) { bring_within(i, n, 1, low, high); });
-  conditions.walls([&](int i, const Vec<dim> &n) { bring_within(i, n, fluids, 0, 0); });
+  });
 }
 
 }  // namespace talus

@@ -178,7 +178,8 @@ TEST(Check, DoubtsMissingSupports) {
   const std::string elsewhere = "boundary.left.group=right", side = "boundary.base={kind='fixed', group='right'}";
   for (const int ranks : {1, 2}) EXPECT_TRUE(advice({still, elsewhere}, ranks).says(left));
   EXPECT_TRUE(advice({"stage.0.until=equilibrium", elsewhere}).says(left));
-  EXPECT_FALSE(advice({elsewhere}).says(left)) << "run-out";
+  EXPECT_TRUE(advice({elsewhere}).says(left)) << "a particle that leaves the mesh ends the run";
+  EXPECT_FALSE(advice({elsewhere, "mesh.leaving_particles=remove"}).says(left)) << "run-out";
   EXPECT_FALSE(advice({still}).says(left));
   EXPECT_FALSE(advice({still}).says(right)) << "the mesh goes on beyond this face";
   EXPECT_FALSE(advice({still, "boundary.left={kind='traction', traction=[0, 0]}"}).says(left)) << "said to be free";

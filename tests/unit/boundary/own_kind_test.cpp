@@ -234,13 +234,12 @@ TEST(OwnBoundary, PassesWaterOfAPressureAndStopsNone) {
     if (soil.mesh.owned[soil.grid.mesh_node[node]]) push += area[1] / p;
   });
   EXPECT_NEAR(sum(push), -1, round_off);  // the whole base, with its outer normal
-  pores.walls([](int, const Vec<2> &) { ADD_FAILURE() << "a wall where water passes"; });
   pores.limits(
       0, soil.grid, 1000, 1e4,
       [](int) {
         return LiquidAtNode{1, 1};
       },
-      [](int, const Vec<2> &, double, double) { ADD_FAILURE() << "a limit where water moves freely"; });
+      [](int, const FlowLimits<2> &) { ADD_FAILURE() << "a limit or wall where water moves freely"; });
 }
 
 TEST(OwnBoundary, LimitsAndWallsTheLiquid) {
@@ -253,16 +252,19 @@ TEST(OwnBoundary, LimitsAndWallsTheLiquid) {
     ASSERT_EQ(pores.begin(soil->grid, soil->filling, nothing, nothing), 0);
     double walls = 0, limits = 0, base = 0;
     for (int i = 0; i < soil->grid.node_count(); ++i) base += soil->at_base(i);
-    pores.walls([&](int node, const Vec<2> &n) { walls += soil->at_base(node) && n[1] == -1; });
     pores.limits(
         3, soil->grid, 1000, 1e4,
         [](int) {
           return LiquidAtNode{1000, 2};
         },
-        [&](int node, const Vec<2> &n, double low, double high) {
-          limits += soil->at_base(node) && n[1] == -1;
-          EXPECT_NEAR(low, -3e-6 * 2, 1e-18);  // times density over density at the node
-          EXPECT_EQ(high, low);
+        [&](int node, const FlowLimits<2> &all) {
+          for (int k = 0; k < all.count; ++k) {
+            const FlowLimit<2> &one = all.all[k];
+            const bool here = soil->at_base(node) && one.n[1] == -1;
+            walls += one.wall && here, limits += !one.wall && here;
+            EXPECT_NEAR(one.low, one.wall ? 0 : -3e-6 * 2, 1e-18);  // times density over density at the node
+            EXPECT_EQ(one.high, one.low);
+          }
         });
     EXPECT_EQ(walls, soil == &belt ? base : 0);
     EXPECT_EQ(limits, soil == &raft ? base : 0);
@@ -298,18 +300,42 @@ std::vector<Vec<2>> pumped(Square1m &soil, PoreConditions<2> &pores) {
   }
   EXPECT_EQ(soil.grid.sum(surface[0].data(), 2), 0);
   EXPECT_EQ(pores.begin(soil.grid, soil.filling, surface, w), 0);
-  const auto limit = [&](int node, const Vec<2> &n, double low, double high) {
-    const double out = dot<2>(w[node], n);
-    add_scaled<2>(w[node], std::clamp(out, low, high) - out, n);
-  };
   pores.limits(
       1, soil.grid, 1000, 1e4,
       [](int) {
         return LiquidAtNode{1000, 1};
       },
-      limit);
-  pores.walls([&](int node, const Vec<2> &n) { limit(node, n, 0, 0); });
+      [&](int node, FlowLimits<2> &all) {
+        hold_within<2>(all, w[node]);
+        for (int k = 0; k < all.count; ++k) add_scaled<2>(w[node], all.all[k].taken, all.all[k].n);
+      });
   return w;
+}
+
+/// An edge whose sides let no water in lets none in, and out no more than drives out: one side after the other would
+/// let water through at any angle but a right one.
+TEST(OwnBoundary, HoldsWaterAtBothSidesOfAnEdge) {
+  constexpr double open = 1e300;
+  for (const double degrees : {30., 60., 90., 120., 150., 175.}) {  // within the soil
+    const double turn = (180 - degrees) * std::atan(1.) / 45;
+    const Vec<2> first{0, 1}, second{std::sin(turn), std::cos(turn)};
+    const auto held = [&](const Vec<2> &w, double low) {
+      FlowLimits<2> all;
+      all.add({first, low, open, false}), all.add({second, 0, open, false});
+      hold_within<2>(all, w);
+      Vec<2> end = w;
+      for (int k = 0; k < all.count; ++k) add_scaled<2>(end, all.all[k].taken, all.all[k].n);
+      return end;
+    };
+    Vec<2> inwards{};
+    add_scaled<2>(inwards, -1, first), add_scaled<2>(inwards, -0.5, second);
+    for (const double x : held(inwards, 0)) EXPECT_NEAR(x, 0, 1e-6) << degrees;
+    const Vec<2> along{first[1], -first[0]};  // slides along the first side, out of the second
+    for (int d = 0; d < 2; ++d) EXPECT_NEAR(held(along, 0)[d], along[d], 1e-12) << degrees;
+    const Vec<2> rained = held(inwards, -0.1);
+    EXPECT_GE(dot<2>(rained, first), -0.1 - 1e-6) << degrees;
+    EXPECT_GE(dot<2>(rained, second), -1e-6) << degrees;
+  }
 }
 
 /// All the water that a flux over both sides of an edge states comes in, in the direction that gives each its own: by
