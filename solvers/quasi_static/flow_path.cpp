@@ -13,6 +13,7 @@ PetscErrorCode follow_flow(MPI_Comm comm, QuasiStatic<dim> *soil, PoreFlow<dim> 
   PetscFunctionBeginUser;
   constexpr double first = 1e-4, growth = 2, shrinkage = 0.2, safety = 0.9, steady_growth = 4, longest_steady = 1e9,
                    still = 1e-7;
+  constexpr double slight = 0.01;  // of the pressure: changes that are less are resolved no better, nor is their noise
   FlowStep<dim> step_of_flow(soil, flow, settings);
   PetscCall(step_of_flow.setup());
   const int count = flow.nodes().count();
@@ -33,11 +34,12 @@ PetscErrorCode follow_flow(MPI_Comm comm, QuasiStatic<dim> *soil, PoreFlow<dim> 
     PetscCall(
         step_of_flow.solve(path.load_at(to), path.steady ? 0 : path.load_at(to) - path.load_at(*share), dt, outcome));
     *iterations += outcome->iterations;
-    double error[2]{};  // of the step, and the largest change of pressure so far
+    double error[2]{};  // of the step, and the largest change of pressure so far, or what is slight
     if (outcome->converged) {
       measure(now);
       for (int i = 0; i < count; ++i) {
-        error[1] = std::max(error[1], std::abs(now[i].pressure - start[i].pressure));
+        error[1] =
+            std::max({error[1], std::abs(now[i].pressure - start[i].pressure), slight * std::abs(flow.pressure[i])});
         if (known < 2) continue;
         const double weight = dt / (dt + last);
         error[0] =

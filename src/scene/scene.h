@@ -537,7 +537,7 @@ struct QuasiStaticSource {
              "unknowns");
     v.number("step_error", step_error, one, Range{1e-8, 1},
              "seepage and consolidation: allowed error of a time step, of pressure relative to its largest change so "
-             "far, and of saturation");
+             "far, which counts as a hundredth of the largest pressure at least, and of saturation");
   }
 };
 

@@ -246,6 +246,19 @@ TEST(Water, leaves_as_the_soil_settles) {
   EXPECT_NEAR(water, way.back(), 1e-6 * std::abs(way.back()));
 }
 
+/// Slow rain above a water table changes pressures by little: steps do not follow the round-off of these changes.
+TEST(Water, moves_on_where_little_changes) {
+  const std::string text = wet_block +
+                           "[body.soil.retention]\nmaterial = \"silt\"\n"
+                           "[body.soil.relative_permeability]\ncurve = \"van_genuchten_mualem\"\nshape = 0.27\n"
+                           "[boundary.rain]\ngroup = \"surface\"\nkind = \"rainfall\"\nintensity = 1e-8\n"
+                           "[[stage]]\nname = \"rain\"\nkind = \"seepage\"\nduration = \"1 day\"\n";
+  for (const char *table : {"water.table=[[0, 0.5]]", "water.table=[[0, 0]]"}) {
+    const Solved solved = solve(text, {"phases=unsaturated", "body.soil.permeability=1e-13", table});
+    EXPECT_LT(solved.history.column("time_s").size(), 100u) << table;
+  }
+}
+
 /// The error of a step is of second order in its length, theory of seepage (3.1): a quarter of the permitted error
 /// takes twice as many steps.
 TEST(Water, takes_steps_by_the_root_of_their_error) {
