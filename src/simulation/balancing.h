@@ -23,7 +23,6 @@ class Balancing {
     constexpr double newest = 1. / 20;  // runs grow with the remaps since the last sort (simulation/work.h)
     mean_ = all / ranks_;
     imbalance_ = mean_ > 0 ? largest_ / mean_ : 1;
-    if (started_ < 1) started_ = imbalance_;
     highest_ = std::max(highest_, imbalance_);
     const double loss = largest_ - mean_;
     loss_ += newest * (loss - loss_);
@@ -61,12 +60,10 @@ class Balancing {
   long long steps() const { return steps_; }                             ///< since the last remap
   long long steps_before() const { return before_remap_; }               ///< that the last remap followed on
   double cost() const { return cost_; }                                  ///< of a new partition, in work
-  double imbalance() const { return imbalance_; }                        ///< up to the last remap
   double smoothed() const { return mean_ > 0 ? 1 + loss_ / mean_ : 1; }  ///< imbalance, over some remaps
-  double at_start() const { return started_; }  ///< since this program began or resumed the run; 0: not known
-  double highest() const { return highest_; }   ///< likewise
-  long long count() const { return count_; }    ///< of balancings in the whole run
-  double seconds() const { return seconds_; }   ///< that they took since this program began or resumed the run [s]
+  double highest() const { return highest_; }  ///< imbalance since this program began or resumed the run
+  long long count() const { return count_; }   ///< of balancings in the whole run
+  double seconds() const { return seconds_; }  ///< that they took since this program began or resumed the run [s]
   /// Work that the steps would have had in addition without them, over the work that they had: an estimate, as if the
   /// imbalance before the first balancing, or a larger one later, had lasted.
   double saved() const { return done_ > 0 ? saved_ / done_ : 0; }
@@ -88,7 +85,7 @@ class Balancing {
   long long steps_ = 0;  ///< since the last remap
   long long before_remap_ = 1;
   long long count_ = 0;
-  double mean_ = 0, imbalance_ = 1, cost_ = 0, started_ = 0, highest_ = 0, saved_ = 0, done_ = 0, seconds_ = 0;
+  double mean_ = 0, imbalance_ = 1, cost_ = 0, highest_ = 0, saved_ = 0, done_ = 0, seconds_ = 0;
 };
 
 }  // namespace talus
