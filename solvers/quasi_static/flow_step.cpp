@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/quasi_static/line_search.h"
+
 namespace talus {
 
 /// Calls put(cell, Gauss point, places of the cell, its volume, gradients of the displacement's shape functions).
@@ -80,7 +82,6 @@ PetscErrorCode FlowStep<dim>::make_solver() {
   PetscInt unknowns;
   KSP ksp;
   PC pc;
-  SNESLineSearch search;
   PetscFunctionBeginUser;
   const Mat matrix = soil_ ? static_cast<Mat>(matrix_) : static_cast<Mat>(flow_matrix_);
   PetscCall(SNESCreate(flow_.nodes().comm(), solver_.create()));
@@ -88,8 +89,7 @@ PetscErrorCode FlowStep<dim>::make_solver() {
   PetscCall(SNESSetFunction(solver_, f_, snes_function, this));
   PetscCall(SNESSetJacobian(solver_, matrix, matrix, snes_jacobian, this));
   PetscCall(SNESSetType(solver_, SNESNEWTONLS));
-  PetscCall(SNESGetLineSearch(solver_, &search));
-  PetscCall(SNESLineSearchSetType(search, soil_ ? SNESLINESEARCHCP : SNESLINESEARCHBT));
+  PetscCall(set_line_search(solver_, soil_ ? SNESLINESEARCHCP : SNESLINESEARCHBT));
   PetscCall(SNESSetTolerances(solver_, 0, settings_.tolerance, 0, settings_.iterations, PETSC_MAX_INT));
   PetscCall(SNESSetConvergenceTest(solver_, snes_converged, this, nullptr));
   PetscCall(SNESGetKSP(solver_, &ksp));

@@ -11,6 +11,9 @@ namespace talus {
 namespace {
 
 constexpr double earth = 9.81;  // [m/s2], for a hydraulic conductivity in a scene without gravity
+/// Share of pressures and water contents by which their differences are never said to be smaller: water that does not
+/// move at all would be sought to within round-off.
+constexpr double hardly = 1e-6;
 
 }  // namespace
 
@@ -260,15 +263,19 @@ void PoreFlow<dim>::balance(double t, double dt, WaterBalance *balance) const {
     }
     for (int d = 0; d < dim; ++d)
       slope += drive[d] * drive[d], drive[d] -= liquid_.density * gravity_[d], weight += gravity_[d] * gravity_[d];
-    const double conducts = dt * mesh_.volume[c] * conductivity(c) * passes;
+    const double conducts = dt * mesh_.volume[c] * conductivity(c) * passes, pores = mesh_.volume[c] / (dim + 1);
+    double length[dim + 1], steepest = 0;
     for (int a = 0; a <= dim; ++a) {
-      double flux = 0, length = 0;
-      for (int d = 0; d < dim; ++d) flux += drive[d] * gradient[a][d], length += gradient[a][d] * gradient[a][d];
-      add(node[a], conducts * flux,
-          conducts * std::sqrt(length) * (std::sqrt(slope) + liquid_.density * std::sqrt(weight)));
-      const double stored =
-          mesh_.volume[c] / (dim + 1) * (content(body, pressure[node[a]]) - content(body, accepted[node[a]]));
-      add(node[a], stored, std::abs(stored));
+      length[a] = map<dim>(gradient[a]).norm();
+      steepest += length[a] * std::abs(pressure[node[a]]);
+    }
+    const double drives = std::sqrt(slope) + liquid_.density * std::sqrt(weight) + hardly * steepest;
+    for (int a = 0; a <= dim; ++a) {
+      double flux = 0;
+      for (int d = 0; d < dim; ++d) flux += drive[d] * gradient[a][d];
+      add(node[a], conducts * flux, conducts * length[a] * drives);
+      const double before = content(body, accepted[node[a]]), stored = content(body, pressure[node[a]]) - before;
+      add(node[a], pores * stored, pores * (std::abs(stored) + hardly * before));
     }
   }
   for (const Supply &s : supplies_) {

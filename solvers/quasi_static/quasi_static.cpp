@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/local_numbers.h"
+#include "solvers/quasi_static/line_search.h"
 
 namespace talus {
 
@@ -37,7 +38,6 @@ template <int dim>
 PetscErrorCode QuasiStatic<dim>::make_solver(SNESLineSearchType line_search) {
   KSP ksp;
   PC pc;
-  SNESLineSearch search;
   constexpr long long largest_direct = dim == 2 ? 400000 : 40000;  // unknowns
   const QuasiStaticSource &settings = scene_.quasi_static;
   PetscFunctionBeginUser;
@@ -48,8 +48,7 @@ PetscErrorCode QuasiStatic<dim>::make_solver(SNESLineSearchType line_search) {
   PetscCall(SNESSetFunction(solver_, f_, snes_function, this));
   PetscCall(SNESSetJacobian(solver_, matrix_, matrix_, snes_jacobian, this));
   PetscCall(SNESSetType(solver_, SNESNEWTONLS));
-  PetscCall(SNESGetLineSearch(solver_, &search));
-  PetscCall(SNESLineSearchSetType(search, line_search));
+  PetscCall(set_line_search(solver_, line_search));
   PetscCall(SNESSetTolerances(solver_, 0, settings.tolerance, 0, settings.iterations, PETSC_MAX_INT));
   PetscCall(SNESSetConvergenceTest(solver_, snes_converged, this, nullptr));
   PetscCall(SNESGetKSP(solver_, &ksp));
