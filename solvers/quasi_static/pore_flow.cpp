@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "base/local_numbers.h"
 
@@ -330,8 +331,21 @@ void PoreFlow<dim>::commit(double t, double dt, const std::vector<double> &rest)
   accepted = pressure;
   std::fill(inflow_.begin(), inflow_.end(), 0.);
   for (int i = 0; i < nodes_.count(); ++i)
-    if (nodes_.owned[i] && fixed_[i] && pressed_[i] >= 0) inflow_[pressed_[i]] += rest[i] / dt;
-  for (const Supply &s : supplies_) inflow_[s.source] += s.area * inflow_at(s, t);
+    if (nodes_.owned[i] && fixed_[i]) {
+      entered_ += liquid_.density * rest[i];
+      if (pressed_[i] >= 0) inflow_[pressed_[i]] += rest[i] / dt;
+    }
+  for (const Supply &s : supplies_) {
+    const double water = s.area * inflow_at(s, t);
+    inflow_[s.source] += water, entered_ += liquid_.density * water * dt;
+  }
+}
+
+template <int dim>
+double PoreFlow<dim>::take_entered() {
+  double sum = std::exchange(entered_, 0);
+  MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, nodes_.comm());
+  return sum;
 }
 
 template <int dim>

@@ -88,6 +88,8 @@ class PoreFlow {
   std::vector<double> inflow() const;
   /// The same of the boundaries that only the flow has, by their names. Collective.
   std::vector<std::pair<std::string, double>> own_inflow() const;
+  /// Mass of water that has entered through all boundaries since this was asked last [kg]. Collective.
+  double take_entered();
   int cell_count() const { return mesh_.cell_count(); }
   /// Coordinates [m] and accepted pressure [Pa] of the vertices of active cells, one after another.
   std::vector<double> pressure_of_cells() const;
@@ -131,6 +133,7 @@ class PoreFlow {
   std::vector<char> open_, fixed_;  ///< seepage nodes that have the pressure beyond; nodes whose pressure is known
   std::vector<Supply> supplies_;
   std::vector<double> inflow_;  ///< by source, of this rank [m3/s]
+  double entered_ = 0;          ///< on this rank [kg]
 };
 
 }  // namespace talus

@@ -25,7 +25,7 @@ std::vector<std::string> possible_columns(const Scene &scene) {
       names.push_back(history_column(prefix + quantity, unit));
   }
   RunRow<dim> row;
-  row.fluids.resize(phases.fluids());
+  row.fluids.resize(phases.fluids()), row.handed.resize(phases.fluids());
   for (const bool loads : {false, true})
     for (const BoundarySource &one : scene.boundary) {
       BoundaryRow<dim> boundary;

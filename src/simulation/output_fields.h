@@ -220,6 +220,7 @@ struct RunRow {
   WorkDone work;
   std::vector<FluidLedger> fluids;  ///< that move on their own: water, then gas
   std::vector<double> first_fluid;  ///< their masses at the start, those that had left by then among them [kg]
+  std::vector<double> handed;       ///< FluidBooks::handed; empty where no stage hands states over [kg]
   std::vector<BoundaryRow<dim>> boundaries;
 
   /// Calls column(quantity, unit, value) for each column, in the order of the file.
@@ -243,6 +244,7 @@ struct RunRow {
       column(fluid + "_out", "kg", fluids[a].out);
       column(fluid + "_given", "kg", fluids[a].prescribed);
       column(fluid + "_escaped", "kg", escaped.fluid_mass[a]);
+      if (!handed.empty()) column(fluid + "_handed", "kg", handed[a]);
       column(fluid + "_error", "kg", owned(a) - first);
     }
     for (const auto &b : boundaries)
@@ -285,7 +287,8 @@ struct RunRow {
   }
   /// Mass of a fluid that the boundaries do not account for: it stays what it is [kg].
   double owned(std::size_t a) const {
-    return fluids[a].stored + fluids[a].out - fluids[a].prescribed + escaped.fluid_mass[a];
+    return fluids[a].stored + fluids[a].out - fluids[a].prescribed + escaped.fluid_mass[a] -
+           (handed.empty() ? 0 : handed[a]);
   }
 };
 

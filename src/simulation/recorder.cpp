@@ -193,6 +193,8 @@ RunRow<dim> Recorder<dim>::run_row() const {
   row.load_time = of_.clock.load_time;
   row.escaped = world.escaped.sums();
   row.fluids.resize(phases_.fluids());
+  if (std::ranges::any_of(scene_.stage, [](const Stage &stage) { return is_static(stage.kind); }))
+    row.handed.resize(row.fluids.size());
   for (size_t s = 0; s < world.conditions.sources().size(); ++s) {
     const auto &source = world.conditions.sources()[s];
     row.boundaries.push_back({source.name,
@@ -225,13 +227,7 @@ void Recorder<dim>::write_history() {
   if (of_.statics.current()) run.balance.strain = of_.statics.strain_energy();
   if (phases_.liquid) {
     require(of_.world.motion->fluid_ledger(run.fluids.data()));
-    if (of_.clock.time == 0) fluids_before_ = run.fluids;
-    fluids_before_.resize(run.fluids.size());
-    for (std::size_t a = 0; a < run.fluids.size(); ++a)
-      run.fluids[a].out -= fluids_before_[a].out, run.fluids[a].prescribed -= fluids_before_[a].prescribed;
-    if (first_ledger_.empty())
-      for (std::size_t a = 0; a < run.fluids.size(); ++a) first_ledger_.push_back(run.owned(a));
-    run.first_fluid = first_ledger_, water_drawn_ = -run.fluids[0].out;
+    fluids_.show(of_.clock.time, run);
   }
   if (has_flow_stages(scene_)) {
     const std::vector<double> inflow = of_.statics.inflow();

@@ -13,6 +13,7 @@
 #include "output/snapshots.h"
 #include "simulation/dynamics.h"
 #include "simulation/energy_watch.h"
+#include "simulation/fluid_books.h"
 #include "simulation/followed_lines.h"
 #include "simulation/mesh_ends.h"
 #include "simulation/statics.h"
@@ -75,11 +76,7 @@ class Recorder {
   /// that are wanted.
   [[noreturn]] void fail(const std::string &cause);
 
-  /// Fluid masses count from the next row on: pores have been filled anew.
-  void recount_fluids() { first_ledger_.clear(); }
-  /// Water that came in through boundaries and surfaces up to the last row of the history, as a share of what there was
-  /// at the start [-].
-  double water_drawn() const { return first_ledger_.empty() ? 0 : water_drawn_ / first_ledger_[0]; }
+  FluidBooks &fluids() { return fluids_; }
 
   CheckpointHeader checkpoint_header(int stage) const;
   void write_checkpoint(int stage, const Archive &state);
@@ -126,13 +123,11 @@ class Recorder {
   HistoryTable history_;
   std::vector<Event> events_;
   std::unique_ptr<Files> results_;
-  std::vector<double> first_ledger_;  ///< fluid masses at the start [kg]
-  double water_drawn_ = 0;            ///< [kg]
-  double first_energy_ = 0;           ///< [J]
+  FluidBooks fluids_;
+  double first_energy_ = 0;  ///< [J]
   EnergyWatch energy_;
-  std::vector<double> work_before_;         ///< done before the run, where it starts at the state of another [J]
-  std::vector<FluidLedger> fluids_before_;  ///< likewise what had passed the boundaries
-  double impulse_time_ = 0;                 ///< since when forces are means [s]
+  std::vector<double> work_before_;  ///< done before the run, where it starts at the state of another [J]
+  double impulse_time_ = 0;          ///< since when forces are means [s]
   PointRows<dim> point_rows_;
   MeshEnds<dim> ends_;
   std::vector<std::string> changed_;  ///< keys of the scene that are others than before the run was resumed

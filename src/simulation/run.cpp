@@ -63,8 +63,17 @@ Balance Run<dim>::balance() {
 
 template <int dim>
 void Run<dim>::hand_to_particles() {
+  if (!world.phases.liquid) return statics.to_particles();
+  const std::vector<FluidLedger> had = fluids();
   statics.to_particles();
-  if (world.phases.liquid) recorder.recount_fluids();
+  recorder.fluids().hand_over(had, fluids(), statics.flow().take_entered());
+}
+
+template <int dim>
+std::vector<FluidLedger> Run<dim>::fluids() {
+  std::vector<FluidLedger> sums(world.phases.fluids());
+  require(world.motion->fluid_ledger(sums.data()));
+  return sums;
 }
 
 template <int dim>

@@ -35,6 +35,7 @@ struct Run {
 
   /// Particles take over the state of the finite elements.
   void hand_to_particles();
+  std::vector<FluidLedger> fluids();  ///< as motion has counted them; collective
 
   void write_checkpoint();
   /// Goes on from the checkpoint in the directory. Throws std::invalid_argument where that cannot be. Collective.

@@ -90,7 +90,7 @@ void Simulation<dim>::note_gaps() {
 template <int dim>
 void Simulation<dim>::note_water_drawn() {
   constexpr double visible = 0.05;
-  const double drawn = run_.recorder.water_drawn();
+  const double drawn = run_.recorder.fluids().drawn();
   if (run_.scene.phases != PhaseModel::saturated || !(drawn > visible)) return;
   std::ostringstream text;
   text.precision(3);

@@ -239,7 +239,8 @@ void Statics<dim>::serialize(Archive &archive) {
 template <int dim>
 std::vector<double> Statics<dim>::inflow() const {
   if (flow_ && current_) return flow_->inflow();
-  return std::vector<double>(world_.conditions.sources().size(), 0);
+  return std::vector<double>(world_.conditions.sources().size(),
+                             world_.phases.liquid ? std::numeric_limits<double>::quiet_NaN() : 0);
 }
 
 /// Stress is linear between the Gauss points of a cell; history too, but not beyond what the points have: strength must

@@ -59,7 +59,8 @@ class Statics {
   PathWork work() const { return made() ? problem_->work() : PathWork{}; }
   double imposed_work() const { return work().imposed() + imposed_; }
   double strain_energy() const;
-  /// Volume per time that enters through each boundary of the motion [m3/s]; none while the motion has the soil.
+  /// Volume per time that enters through each boundary of the motion [m3/s]; while motion has the soil not
+  /// known, and none where water moves in these stages alone.
   /// Collective.
   std::vector<double> inflow() const;
 

@@ -11,7 +11,9 @@ class ConsolidationStage final : public FlowStage<dim> {
 
  private:
   using typename StaticStage<dim>::Path;
-  void describe(const Path &path, std::ostream &text) override { this->describe_equilibrium(path, text); }
+  void describe(const Path &path, std::ostream &text) override {
+    this->describe_equilibrium(path, text), this->describe_water(text);
+  }
 };
 
 }  // namespace talus

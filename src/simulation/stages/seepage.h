@@ -18,6 +18,7 @@ class SeepageStage final : public FlowStage<dim> {
          << " iterations";
     for (const auto &[name, inflow] : this->run_.statics.flow().own_inflow())
       text << "; " << inflow << " m3/s enter at " << name;
+    this->describe_water(text);
   }
 };
 

@@ -277,6 +277,33 @@ TEST(Water, stays_where_nothing_moves_it) {
   }
 }
 
+/// The books of the water go on through motion, seepage and motion: rain on elements has entered, what particles do not
+/// take of it is named, and nothing else is missing.
+TEST(Water, is_counted_through_all_stages) {
+  constexpr double rain = 1e-6, lasts = 5e3;
+  const std::string text = wet_block +
+                           "[body.soil.retention]\nmaterial = \"silt\"\n"
+                           "[body.soil.relative_permeability]\ncurve = \"van_genuchten_mualem\"\nshape = 0.27\n"
+                           "[boundary.rain]\ngroup = \"surface\"\nkind = \"rainfall\"\nintensity = 1e-6\n"
+                           "[[stage]]\nname = \"before\"\nduration = 0.2\ndamping = 0.5\n"
+                           "[[stage]]\nname = \"rain\"\nkind = \"seepage\"\nduration = 5e3\n"
+                           "[[stage]]\nname = \"after\"\nduration = 0.2\ndamping = 0.5\n";
+  const Solved solved = solve(text, {"phases=unsaturated", "water.table=[[0, 0.2]]", "water.bulk_modulus=1e7"});
+  const auto column = [&](const char *name) { return solved.history.column(name); };
+  const auto time = column("time_s"), out = column("water_out_kg"), handed = column("water_handed_kg"),
+             error = column("water_error_kg"), stored = column("water_kg");
+  const auto row_at = [&](double t) {
+    return static_cast<size_t>(std::lower_bound(time.begin(), time.end(), t - 1e-9) - time.begin());
+  };
+  const size_t moved = row_at(0.2), rained = row_at(lasts + 0.2);
+  ASSERT_LT(rained, time.size() - 1);
+  EXPECT_NEAR(out[moved] - out[rained], 1000 * rain * lasts, 1e-6);  // 5 kg a metre
+  EXPECT_GT(std::abs(handed[rained]), 1e-3);
+  EXPECT_EQ(handed.back(), handed[rained]);
+  EXPECT_NEAR(stored[rained] - stored[moved], 5 + handed[rained], 1e-6);
+  for (const double e : error) EXPECT_NEAR(e, 0, 1e-9 * stored[0]);
+}
+
 /// The error of a step is of second order in its length, theory of seepage (3.1): a quarter of the permitted error
 /// takes twice as many steps.
 TEST(Water, takes_steps_by_the_root_of_their_error) {

@@ -106,7 +106,7 @@ TEST(RunRow, names_what_it_holds_and_closes_its_ledgers) {
   row.balance.kinetic = 1, row.balance.strain = 2, row.first_energy = 30;
   row.work = {4, 5, -6};
   row.escaped = {.particles = 3, .mass = 50, .fluid_mass = {6, 0}, .momentum = {70, -80}, .energy = 9};
-  row.fluids = {{100, 7, 2}}, row.first_fluid = {104};
+  row.fluids = {{100, 7, 2}}, row.first_fluid = {104}, row.handed = {3};
   const RigidBases<2>::Report base{.slip = 15, .friction = 16, .temperature = 17, .hottest = 18, .pressure = 19};
   row.boundaries = {{.name = "base",
                      .inflow = true,
@@ -140,6 +140,7 @@ TEST(RunRow, names_what_it_holds_and_closes_its_ledgers) {
                           "water_out_kg",
                           "water_given_kg",
                           "water_escaped_kg",
+                          "water_handed_kg",
                           "water_error_kg",
                           "base_inflow_m3_s",
                           "base_force_x_N",
@@ -159,7 +160,7 @@ TEST(RunRow, names_what_it_holds_and_closes_its_ledgers) {
                           "work_imposed_J",
                           "work_damping_J",
                           "dissipated_J"}));
-  EXPECT_EQ(value["water_error_kg"], 100 + 7 - 2 + 6 - 104);  // stored, and gone, and not put in, since the start
+  EXPECT_EQ(value["water_error_kg"], 100 + 7 - 2 + 6 - 3 - 104);  // stored, and gone, and not put in, since the start
   EXPECT_EQ(value["escaped_momentum_y_kg_m_s"], -80);
   EXPECT_EQ(value["base_inflow_m3_s"], 10);
   EXPECT_EQ(value["base_force_y_N"], 9);
