@@ -433,6 +433,13 @@ void Terrain::find_distances() {
                      " m, lies beside the terrain that is meshed, which ranges from x = ", origin_[0] + x(0), " to ",
                      origin_[0] + x(columns() - 1), " and from y = ", origin_[1] + y(0), " to ",
                      origin_[1] + y(rows() - 1), " m: its points are given in the coordinates of the grid"));
+  for (std::size_t a = 0; slides() && a + 1 < w.size(); a += 2) {
+    const double i = (w[a] - origin_[0] - x(0)) / ground_.spacing, j = (w[a + 1] - origin_[1] - y(0)) / ground_.spacing;
+    if (i >= 0 && i <= columns() - 1 && j >= 0 && j <= rows() - 1) continue;
+    remarks_.push_back(text_of("the way leaves the terrain that is meshed: its point ", a / 2 + 1, " is at x = ", w[a],
+                               ", y = ", w[a + 1], " m, and the slide would leave the mesh there"));
+    break;
+  }
   const auto learn = [&](int i, int j, int di, int dj) {
     if (i + di < 0 || i + di >= columns() || j + dj < 0 || j + dj >= rows()) return;
     double &mine = d[j * columns() + i];

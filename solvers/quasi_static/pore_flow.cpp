@@ -15,6 +15,12 @@ constexpr double earth = 9.81;  // [m/s2], for a hydraulic conductivity in a sce
 /// Share of pressures and water contents by which their differences are never said to be smaller: water that does not
 /// move at all would be sought to within round-off.
 constexpr double hardly = 1e-6;
+/// Barycentric coordinates of the Gauss points of a face, as many as it has corners: they lie inside, so that a
+/// function that jumps at an edge of the mesh is integrated exactly.
+template <int dim>
+constexpr double near_gauss = dim == 2 ? 0.78867513459481287 : 2. / 3;
+template <int dim>
+constexpr double far_gauss = dim == 2 ? 0.21132486540518713 : 1. / 6;
 
 }  // namespace
 
@@ -108,9 +114,19 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
       static_cast<int>(sources_.size()) +
       1;  // order in which boundaries count where several meet at a node: pressures, open water, rain, the atmosphere
   const auto put = [&](const Facet<dim> &facet, int source, int rank, bool supplied) {
-    for (int node : nodes_.of_facet(facet.cell, facet.face)) {
+    const auto corners = nodes_.of_facet(facet.cell, facet.face);
+    for (int node : corners) {
       if (rank >= 0) beyond[node] = std::max<PetscInt>(beyond[node], rank * count + source + 1);
-      if (supplied) supplies_.push_back({node, source, facet.area / dim});
+      if (!supplied) continue;
+      Supply supply{node, source, facet.area / dim, {}};
+      int further = 1;
+      for (int nearest : corners) {
+        Vec<dim> &place = supply.place[nearest == node ? 0 : further++];
+        for (int corner : corners)
+          for (int d = 0; d < dim; ++d)
+            place[d] += (corner == nearest ? near_gauss<dim> : far_gauss<dim>)*nodes_.position[corner][d];
+      }
+      supplies_.push_back(supply);
     }
   };
   const auto put_source = [&](const Facet<dim> &facet, int s) {
@@ -231,10 +247,15 @@ double PoreFlow<dim>::content_slope(int body, double p) const {
 
 template <int dim>
 double PoreFlow<dim>::inflow_at(const Supply &supply, double t) const {
-  const Vec<dim> &x = nodes_.position[supply.node];
-  const double z = dim == 3 ? x[dim - 1] : 0;
   const Boundary &kind = sources_[supply.source].kind;
-  return kind.water == OnWater::flux ? kind.inflow(x[0], x[1], z, t) : kind.supply(x[0], x[1], z, t);
+  double mean = 0;
+  for (int g = 0; g < dim; ++g) {
+    const Vec<dim> &x = supply.place[g];
+    const double z = dim == 3 ? x[dim - 1] : 0;
+    mean += (g == 0 ? near_gauss<dim> : far_gauss<dim>)*(kind.water == OnWater::flux ? kind.inflow(x[0], x[1], z, t)
+                                                                                     : kind.supply(x[0], x[1], z, t));
+  }
+  return mean;
 }
 
 /// Gradients of the shape functions 0..dim.

@@ -104,13 +104,14 @@ class PoreFlow {
   struct Supply {  ///< a boundary that supplies water at a node of a face
     int node, source;
     double area;
+    std::array<Vec<dim>, dim> place;  ///< Gauss points of the face, the nearest to the node first
   };
   double saturation_of(int body, double p) const;
   double saturation_slope_of(int body, double p) const;
   double relative_permeability(int body, double p) const;
   double content(int body, double p) const;        ///< of water per volume of soil, at its density without pressure [-]
   double content_slope(int body, double p) const;  ///< [1/Pa]
-  double inflow_at(const Supply &supply, double t) const;
+  double inflow_at(const Supply &supply, double t) const;  ///< mean, weighted by the node's shape function [m/s]
   double outside(int node, double t) const;
   bool has_curve(int body) const { return suction_ && scene_.body[body].retention.reader; }
 

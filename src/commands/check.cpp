@@ -165,7 +165,7 @@ void print_scales(const Needs &n) {
   const LayerNeeds &layer = n.layer;
   line("scales", "%.3g m deep at most, crossed by a wave in %s", layer.height, spoken(layer.transit).c_str());
   if (n.gravity > 0) {
-    line("", "weight, %.3g kPa over M = %.3g MPa: strain %.2g %% at the foot, settlement %.2g m",
+    line("", "weight, %.3g kPa over M = %.3g MPa: strain of %.2g %% at most, settlement %.2g m",
          layer.gravity_stress / 1e3, layer.modulus / 1e6, 100 * layer.gravity_strain, layer.settlement);
     line("", "fall of its height: %s, and then %.2g of the wave speed",
          spoken(scales::fall_time(layer.height, n.gravity)).c_str(),

@@ -31,13 +31,14 @@ BodyNeeds needs_of(const BodyReport &report, const BodySource &source) {
 
 LayerNeeds layer_of(const Scene &scene, const std::vector<BodyNeeds> &bodies, double gravity, double depth) {
   LayerNeeds layer;
-  double mass = 0, volume = 0;
+  double mass = 0, volume = 0, softness = 0, slowness = 0;
   std::array<double, 3> low = bodies[0].body.low, high = bodies[0].body.high;
-  layer.modulus = std::numeric_limits<double>::infinity(), layer.wave_speed = layer.modulus;
-  for (const BodyNeeds &b : bodies) {
-    mass += b.body.mass, volume += b.body.volume;
-    layer.modulus = std::min(layer.modulus, constrained_modulus(b.law));
-    layer.wave_speed = std::min(layer.wave_speed, b.wave_speed);
+  const double water = fluids_move(scene.phases) ? scene.water.density : 0;
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    const BodyNeeds &b = bodies[k];
+    if (!(b.body.volume > 0)) continue;  // a stage adds it
+    mass += b.body.mass + scene.body[k].porosity * water * b.body.volume, volume += b.body.volume;
+    softness += b.body.volume / constrained_modulus(b.law), slowness += b.body.volume / b.wave_speed;
     for (int d = 0; d < 3; ++d) low[d] = std::min(low[d], b.body.low[d]), high[d] = std::max(high[d], b.body.high[d]);
   }
   for (int d = 0; d < scene.dimension; ++d) {
@@ -48,9 +49,15 @@ LayerNeeds layer_of(const Scene &scene, const std::vector<BodyNeeds> &bodies, do
   const bool downwards = gravity > 0 && std::abs(scene.gravity[scene.vertical()]) == gravity;
   if (downwards && depth > 0) layer.height = depth;
   const double density = mass / volume;
+  layer.modulus = volume / softness, layer.wave_speed = volume / slowness;
   layer.transit = scales::transit(layer.height, layer.wave_speed);
   layer.gravity_stress = density * gravity * layer.height;
-  layer.gravity_strain = scales::own_weight_strain(density, gravity, layer.height, layer.modulus);
+  for (const BodyNeeds &b : bodies) {
+    const int up = scene.vertical();
+    const double above = downwards ? std::min(layer.height, high[up] - b.body.low[up]) : layer.height;
+    layer.gravity_strain =
+        std::max(layer.gravity_strain, scales::own_weight_strain(density, gravity, above, constrained_modulus(b.law)));
+  }
   layer.settlement = scales::settlement(density, gravity, layer.height, layer.modulus);
   return layer;
 }

@@ -20,14 +20,15 @@ struct BodyNeeds {
   bool there() const { return body.particles > 0; }  ///< at the start; else a stage adds it
 };
 
-/// All bodies taken for one layer, as deep as their soil is below its surface.
+/// All bodies taken for one layer, as deep as their soil is below its surface: a stack in which each is as thick as its
+/// share of the volume.
 struct LayerNeeds {
   double height = 0;          ///< depth where gravity points down, else extent along it or, without it, largest [m]
-  double modulus = 0;         ///< M = K + 4/3 G of the softest body [Pa]
-  double transit = 0;         ///< of the slowest compression wave over the height [s]
-  double wave_speed = 0;      ///< of that wave [m/s]
-  double gravity_stress = 0;  ///< mean density g height [Pa]
-  double gravity_strain = 0;  ///< that over M [-]
+  double modulus = 0;         ///< M = K + 4/3 G of the stack [Pa]
+  double transit = 0;         ///< of a compression wave of the skeleton through the stack [s]
+  double wave_speed = 0;      ///< mean of that wave [m/s]
+  double gravity_stress = 0;  ///< mean density g height, with the water in full pores that the scene computes [Pa]
+  double gravity_strain = 0;  ///< largest of a body, under such weight above its foot [-]
   double settlement = 0;      ///< of its top under its weight [m]
 };
 

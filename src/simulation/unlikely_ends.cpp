@@ -127,8 +127,9 @@ std::vector<std::vector<const SoilFace *>> connected(const std::vector<const Soi
 /// Soil over free space: mostly a region of the section that no body fills.
 void doubt_voids(const Scene &scene, int up, const std::vector<SoilFace> &surface,
                  std::vector<std::string> &sentences) {
-  constexpr double level = 0.5;        // of the normal along the vertical: a steeper face is a wall
-  constexpr std::size_t few = 3;       // faces: fewer are the raggedness of a surface that cells follow
+  constexpr double level = 0.5;  // of the normal along the vertical: a steeper face is a wall
+  // Fewer faces are the raggedness of a surface that cells follow: three edges, or triangles over as much both ways.
+  const std::size_t few = scene.dimension == 3 ? 12 : 3;
   constexpr double negligible = 0.01;  // of the area of the soil from above
   std::vector<const SoilFace *> roofs;
   double above = 0;

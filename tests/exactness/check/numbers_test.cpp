@@ -24,6 +24,26 @@ TEST(Check, KnowsParticlesMassAndLayer) {
   EXPECT_GT(number(ending, "burst_steps"), 10);
 }
 
+/// Soft soil of which there is little does not carry the weight of all: a tenth of the height with a hundredth of the
+/// stiffness lies on top here. Full pores weigh too.
+TEST(Check, StacksBodiesOfALayer) {
+  const Folder folder;
+  const std::string soft =
+      "[body.soft]\nregion = \"soft\"\ndensity = 2000\nlaw = \"linear_elastic\"\n"
+      "young_modulus = \"10 kPa\"\npoisson_ratio = 0.3\n";
+  folder.write("scene.toml", changed(good_scene, "[body.sand]", soft + "[body.sand]"));
+  folder.write("section.csv",
+               "part,x,y\noutline,0,0\noutline,1,0\noutline,1,0.5\noutline,0,0.5\ninterface0,0,0.45\n"
+               "interface0,1,0.45\nregion_sand,0.5,0.25\nregion_soft,0.5,0.475\n");
+  const Ending ending = talus(folder, {"check", "scene.toml", "--json"});
+  ASSERT_EQ(ending.status, 0) << ending.output;
+  const double modulus = 1e6 * 0.7 / (1.3 * 0.4), weight = 2000 * 9.81;
+  const double stack = modulus / (0.9 + 0.1 * 100);
+  EXPECT_NEAR(number(ending, "settlement_m"), weight * 0.5 * 0.5 / 2 / stack, 1e-9);
+  EXPECT_NEAR(number(ending, "gravity_strain"), weight * 0.05 / (modulus / 100), 1e-9);
+  EXPECT_NEAR(number(ending, "transit_s"), 0.5 * (0.9 + 0.1 * 10) / std::sqrt(modulus / 2000), 1e-9);
+}
+
 TEST(Check, TakesAPlaneSceneAsASliceBetweenRollers) {
   const Folder folder;
   folder.write("scene.toml", good_scene), folder.write("section.csv", good_section);

@@ -77,6 +77,19 @@ TEST(Water, passes_through_at_the_rate_of_the_rain) {
   }
 }
 
+/// A flux that jumps at an edge of the mesh, or in the middle of one, brings what its function says.
+TEST(Water, enters_on_the_side_of_a_jump_where_it_is_pumped) {
+  const std::string text = wet_block +
+                           "[boundary.rain]\ngroup = \"surface\"\nkind = \"flux\"\ninflow = \"x < 0.5 ? 5e-6 : 0\"\n"
+                           "[boundary.well]\ngroup = \"base\"\nkind = \"pore_pressure\"\npressure = 7e3\n"
+                           "[[stage]]\nname = \"water\"\nkind = \"seepage\"\nsteady = true\nduration = 1\n";
+  for (const char *size : {"mesh.size=0.25", "mesh.size=0.35"}) {
+    const Solved solved = solve(text, {size});
+    EXPECT_NEAR(solved.history.column("rain_inflow_m3_s").back(), 2.5e-6, 1e-14) << size;
+    EXPECT_NEAR(solved.history.column("well_inflow_m3_s").back(), -2.5e-6, 1e-10) << size;
+  }
+}
+
 /// A seepage face lets water out and draws none in, theory of seepage (4.1): wet ground above a low water table hangs
 /// on it by suction.
 TEST(Water, is_not_drawn_from_the_air) {

@@ -566,6 +566,9 @@ TEST_F(TerrainFiles, AreFineAlongTheWay) {
   EXPECT_DOUBLE_EQ(terrain.size_at(160, 90, 50), 4);
   EXPECT_DOUBLE_EQ(terrain.size_at(100, 100, 70), 4);
   EXPECT_NEAR(terrain.size_at(100, 150, 70), 4 + 0.2 * 50, 1);
+  EXPECT_FALSE(doubts(o, "the way leaves the terrain"));
+  o.way[4] += 30;
+  EXPECT_TRUE(doubts(o, "the way leaves the terrain that is meshed: its point 3 is at x = 5230, y = "));
   o.way = {east + 180, south + 20, east + 190, south + 30}, o.way_width = 10;
   EXPECT_TRUE(doubts(o, "cells grow to 30 m on the way")) << "a way that the slide does not take";
   o.way = {east + 50, south + 85, east + 120, south + 85}, o.way_width = 2;
