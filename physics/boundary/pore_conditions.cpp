@@ -50,7 +50,7 @@ PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const
   make_room(nodal_, mesh.node_count());
   size_t most_faces = mesh.node_count();
   for (const Corners &named : named_) most_faces += named.corners.size();
-  active_walls_.reserve(walls_.size()), faces_.reserve(most_faces), gaps_.reserve(mesh.node_count());
+  walls_alone_.reserve(mesh.node_count()), faces_.reserve(most_faces), gaps_.reserve(mesh.node_count());
   gap_cells_.reserve((dim + 1) * mesh.cell_count());
   PetscFunctionReturn(0);
 }
@@ -142,7 +142,7 @@ PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vect
   PetscFunctionBeginUser;
   const BackgroundMesh<dim> &mesh = grid.mesh();
   const int nodes = grid.node_count();
-  active_walls_.clear(), faces_.clear();
+  walls_alone_.clear(), faces_.clear();
   std::fill_n(face_of_node_.begin(), nodes, -1);
   for (auto *field : {&taken_, &taken_moment_}) std::fill_n(field->begin(), nodes, Vec<dim>{});
   const auto large = [&](int node, const Vec<dim> &area, double least) {
@@ -185,13 +185,8 @@ PetscErrorCode PoreConditions<dim>::begin(FilledGrid<dim> &grid, const std::vect
       gaps_.push_back(i), at_gap_[i] = 1;
   }
   relate_faces(grid, surface);
-  for (int i = 0; i < nodes; ++i) {
-    ActiveWall wall{i, {}};
-    walls_at(grid, i, [&](const Vec<dim> &n) {
-      if (!pumped(i, n)) wall.wall.direction[wall.wall.count++] = n;
-    });
-    if (wall.wall.count) active_walls_.push_back(wall);
-  }
+  for (int i = 0; i < nodes; ++i)
+    if (wall_of_node_[grid.mesh_node[i]] >= 0 && face_of_node_[i] < 0) walls_alone_.push_back(i);
   for (int c = 0; c < grid.cell_count(); ++c)
     for (int k = 0; k <= dim; ++k)
       if (at_gap_[grid.shape[c].node[k]]) gap_cells_.push_back({grid.shape[c].node[k], c, k});

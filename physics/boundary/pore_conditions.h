@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "physics/boundary/conditions.h"
+#include "physics/boundary/flow_limits.h"
 #include "physics/boundary/node_normals.h"
 #include "physics/boundary/prescribed_directions.h"
 
@@ -22,47 +23,6 @@ inline constexpr const char *free_surface = "free_surface";
 struct LiquidAtNode {
   double mass, volume;  ///< m_l [kg], V [m3]
 };
-
-/// Bounds of the velocity of a fluid against the skeleton along a unit vector [m/s].
-template <int dim>
-struct FlowLimit {
-  Vec<dim> n;
-  double low, high;
-  bool wall;         ///< of all fluids
-  double taken = 0;  ///< by `hold_within`: the change along n [m/s]
-};
-
-/// What bounds the velocity of the fluids at a node.
-template <int dim>
-struct FlowLimits {
-  std::array<FlowLimit<dim>, 24> all;  ///< a node of so many planes would be no node of a mesh
-  int count = 0;
-  void add(const FlowLimit<dim> &one) {
-    if (count < static_cast<int>(all.size())) all[count++] = one;
-  }
-};
-
-/// The least change of a velocity against the skeleton that brings it within all limits: `taken` along each of them.
-/// Limits whose normals are neither equal nor at right angles act on each other, so that one after the other would let
-/// through an edge what each of its sides stops. Hildreth (1957): each takes in turn what it needs beside the others.
-template <int dim>
-void hold_within(FlowLimits<dim> &limits, Vec<dim> velocity) {
-  constexpr int most = 3000;         // sweeps: what is left falls by the square of the cosine between normals
-  constexpr double settled = 1e-12;  // of what is taken
-  for (int k = 0; k < limits.count; ++k) limits.all[k].taken = 0;
-  for (int sweep = 0; sweep < most; ++sweep) {
-    double change = 0, taken = 0;
-    for (int k = 0; k < limits.count; ++k) {
-      FlowLimit<dim> &one = limits.all[k];
-      const double without = dot<dim>(velocity, one.n) - one.taken;
-      const double needed = std::clamp(without, one.low, one.high) - without, more = needed - one.taken;
-      add_scaled<dim>(velocity, more, one.n);
-      one.taken = needed;
-      change = std::max(change, std::abs(more)), taken = std::max(taken, std::abs(needed));
-    }
-    if (limits.count == 1 || change <= settled * taken) return;
-  }
-}
 
 template <int dim>
 class PoreConditions {
@@ -136,8 +96,7 @@ class PoreConditions {
       limits_of_faces(t, grid, density, unit_weight, liquid_at, node, limits);
       hold_all(node);
     }
-    for (const ActiveWall &w : active_walls_)
-      if (face_of_node_[w.node] < 0) hold_all(w.node);
+    for (const int node : walls_alone_) hold_all(node);
   }
   /// Calls along(n, all) for orthonormal directions in which boundaries fix how fluids at a node move against the
   /// skeleton: all of them along normals of walls, and only the liquid along those of faces with a flux and of a
@@ -159,10 +118,6 @@ class PoreConditions {
  private:
   static constexpr int atmosphere = -1;
   using Wall = PrescribedDirections<dim>;
-  struct ActiveWall {
-    int node;  ///< compact
-    Wall wall;
-  };
   static constexpr double none = -1e300;  ///< no limit
   /// Volume of liquid that leaves per area and time.
   struct Outflow {
@@ -310,8 +265,8 @@ class PoreConditions {
   int rain_ = atmosphere;  ///< what acts on the free surface
   std::vector<int> wall_of_node_;
   std::vector<Wall> walls_;
-  std::vector<Corners> named_;  ///< the same sources on all ranks
-  std::vector<ActiveWall> active_walls_;
+  std::vector<Corners> named_;    ///< the same sources on all ranks
+  std::vector<int> walls_alone_;  ///< nodes with a wall and without a face
   std::vector<Face> faces_;
   std::vector<int> gaps_;
   std::vector<std::array<int, 3>> gap_cells_;

@@ -122,9 +122,10 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
       int further = 1;
       for (int nearest : corners) {
         Vec<dim> &place = supply.place[nearest == node ? 0 : further++];
-        for (int corner : corners)
-          for (int d = 0; d < dim; ++d)
-            place[d] += (corner == nearest ? near_gauss<dim> : far_gauss<dim>)*nodes_.position[corner][d];
+        for (int corner : corners) {
+          const double share = corner == nearest ? near_gauss<dim> : far_gauss<dim>;
+          for (int d = 0; d < dim; ++d) place[d] += share * nodes_.position[corner][d];
+        }
       }
       supplies_.push_back(supply);
     }
@@ -252,8 +253,8 @@ double PoreFlow<dim>::inflow_at(const Supply &supply, double t) const {
   for (int g = 0; g < dim; ++g) {
     const Vec<dim> &x = supply.place[g];
     const double z = dim == 3 ? x[dim - 1] : 0;
-    mean += (g == 0 ? near_gauss<dim> : far_gauss<dim>)*(kind.water == OnWater::flux ? kind.inflow(x[0], x[1], z, t)
-                                                                                     : kind.supply(x[0], x[1], z, t));
+    const double share = g == 0 ? near_gauss<dim> : far_gauss<dim>;
+    mean += share * (kind.water == OnWater::flux ? kind.inflow(x[0], x[1], z, t) : kind.supply(x[0], x[1], z, t));
   }
   return mean;
 }

@@ -53,7 +53,7 @@ class Balancing {
   }
   /// It was done, in this time of the clock [s].
   void done(double seconds) {
-    before_ = std::max(before_, smoothed()), lost_ = 0, loss_ = 0, ++count_;
+    before_ = std::max(before_, smoothed()), lost_ = 0, loss_ = 0, ++count_, ++here_;
     seconds_ += seconds;
   }
 
@@ -61,9 +61,10 @@ class Balancing {
   long long steps_before() const { return before_remap_; }               ///< that the last remap followed on
   double cost() const { return cost_; }                                  ///< of a new partition, in work
   double smoothed() const { return mean_ > 0 ? 1 + loss_ / mean_ : 1; }  ///< imbalance, over some remaps
-  double highest() const { return highest_; }  ///< imbalance since this program began or resumed the run
-  long long count() const { return count_; }   ///< of balancings in the whole run
-  double seconds() const { return seconds_; }  ///< that they took since this program began or resumed the run [s]
+  double highest() const { return highest_; }     ///< imbalance since this program began or resumed the run
+  long long count() const { return count_; }      ///< of balancings in the whole run
+  long long count_here() const { return here_; }  ///< of those since this program began or resumed the run
+  double seconds() const { return seconds_; }     ///< that these took [s]
   /// Work that the steps would have had in addition without them, over the work that they had: an estimate, as if the
   /// imbalance before the first balancing, or a larger one later, had lasted.
   double saved() const { return done_ > 0 ? saved_ / done_ : 0; }
@@ -84,7 +85,7 @@ class Balancing {
   double before_ = 0;    ///< largest imbalance at a balancing
   long long steps_ = 0;  ///< since the last remap
   long long before_remap_ = 1;
-  long long count_ = 0;
+  long long count_ = 0, here_ = 0;
   double mean_ = 0, imbalance_ = 1, cost_ = 0, highest_ = 0, saved_ = 0, done_ = 0, seconds_ = 0;
 };
 

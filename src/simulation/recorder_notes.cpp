@@ -165,7 +165,12 @@ void Recorder<dim>::note_sharing() {
        << std::max(imbalance_at_start_, balancing.highest()) << " at most";
   if (balancing.count() > 0) {
     text << "; the mesh was divided in another way " << balancing.count()
-         << (balancing.count() == 1 ? " time" : " times") << ", in " << balancing.seconds() << " s";
+         << (balancing.count() == 1 ? " time" : " times");
+    if (balancing.count_here() == balancing.count())
+      text << ", in " << balancing.seconds() << " s";
+    else
+      text << " (" << balancing.count_here() << " of them since the run was resumed, in " << balancing.seconds()
+           << " s)";
     if (balancing.saved() > 0)
       text << ", which saved about " << 100 * balancing.saved() / (1 + balancing.saved())
            << " % of the time of steps (by their work, had the imbalance lasted)";

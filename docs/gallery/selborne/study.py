@@ -158,7 +158,7 @@ DAYS = {**{f"{size} m": (until_lost, [f"mesh.size={size}"]) for size in (1.4, 1.
         **{f"coupled, {size} m": (coupled, [f"mesh.size={size}"]) for size in (1.4, 1.0, 0.7)},
         **{f"permeability {k} m/s": (until_lost, both("hydraulic_conductivity", f"{k} m/s")) for k in ("1e-10", "1e-9", "3e-9", "3e-8", "1e-7")},
         **{f"storage of the skeleton times {f}": (until_lost, [f"water.bulk_modulus={5.9 / f} MPa"]) for f in (0.5, 2)},
-        "ground sealed, coupled, 1.0 m": (coupled, ["mesh.size=1", "boundary.ground.kind=impermeable"])}
+        **{f"ground sealed, coupled, {size} m": (coupled, [f"mesh.size={size}", "boundary.ground.kind=impermeable"]) for size in (1.4, 1.0, 0.7)}}
 
 
 def endure(talus, variant):
