@@ -88,8 +88,9 @@ class Views:
                 axes.add_collection(LineCollection(camera.flat(seen), colors=style.INK, linewidths=0.9, zorder=3), autolim=False)
             self.water(axes, camera, metres)
             named_points(axes, self.model, camera.flat)
-        edges(axes, camera, self.lows[number], self.highs[number], metres)
-        directions(axes, camera, metres, ("x, east", "y, north", "z") if self.model.terrain else "xyz")
+        lines = edges(axes, camera, self.lows[number], self.highs[number], metres)
+        soil = camera.flat(np.concatenate([self.model.corners, self.ground if number == 0 else self.ground[:0]]).reshape(-1, 3))
+        directions(axes, camera, metres, ("x, east", "y, north", "z") if self.model.terrain else "xyz", np.concatenate([soil, *lines]))
         keep_apart(axes)
 
     def faces(self, axes, camera, ground):
@@ -193,8 +194,10 @@ def symbols_of(axes, boundary, camera, metres):
 
 
 def edges(axes, camera, low, high, metres):
-    """The three dimensions of the soil, each beside that edge of its box that lies lowest in the picture, or furthest right."""
+    """The three dimensions of the soil, each beside that edge of its box that lies lowest in the picture, or furthest right. Points along the three lines, each
+    [21, 2]."""
     middle = camera.flat((low + high) / 2)
+    lines = []
     for axis in range(3):
         others = [one for one in range(3) if one != axis]
         ends = []
@@ -207,18 +210,38 @@ def edges(axes, camera, low, high, metres):
                 ends.append(camera.flat([begin, end]))
         lowest = min(ends, key=lambda edge: -edge[:, 0].mean() if camera.up[axis] else edge[:, 1].mean())
         away = lowest.mean(axis=0) - middle
-        lowest = lowest + 0.28 * metres * away / np.linalg.norm(away)
-        axes.annotate("", *lowest, zorder=9, annotation_clip=False, arrowprops={"arrowstyle": "<->", "color": style.SOFT, "lw": 0.8, "shrinkA": 0, "shrinkB": 0})
-        axes.text(*lowest.mean(axis=0), f"{'xyz'[axis]}: {quantity(float(f'{high[axis] - low[axis]:.3g}'), 'm')}", ha="center", va="center", fontsize=8, zorder=10,
+        lines.append(np.linspace(*(lowest + 0.28 * metres * away / np.linalg.norm(away)), 21))
+    labelled = []
+    for axis, line in enumerate(lines):
+        axes.annotate("", line[0], line[-1], zorder=9, annotation_clip=False,
+                      arrowprops={"arrowstyle": "<->", "color": style.SOFT, "lw": 0.8, "shrinkA": 0, "shrinkB": 0})
+        beside = np.concatenate(lines[:axis] + lines[axis + 1:])
+        places = line[[10, 7, 13, 4, 16]]  # the middle, unless another line or its label is there
+        free = [min(gap(place[None], beside), 0.5 * gap(place[None], np.array(labelled))) if labelled else gap(place[None], beside) for place in places]
+        at = places[next((k for k, distance in enumerate(free) if distance > 0.45 * metres), int(np.argmax(free)))]
+        labelled.append(at)
+        axes.text(*at, f"{'xyz'[axis]}: {quantity(float(f'{high[axis] - low[axis]:.3g}'), 'm')}", ha="center", va="center", fontsize=8, zorder=10,
                   bbox={"fc": "white", "ec": "none", "pad": 1.2})
+    return lines
 
 
-def directions(axes, camera, metres, names):
-    """Arrows along the axes of coordinates in the lower left corner."""
-    corner = np.array([axes.get_xlim()[0], axes.get_ylim()[0]]) + (0.45 * metres, 0.36 * metres)
-    for axis, name in enumerate(np.eye(3)):
-        way = 0.34 * metres * np.array([name @ camera.right, name @ camera.top])
+def gap(some, others):
+    """The least distance between points [n, 2] and [m, 2]."""
+    return np.linalg.norm(some[:, None] - others[None], axis=2).min()
+
+
+def directions(axes, camera, metres, names, taken):
+    """Arrows along the axes of coordinates in the lower left corner, or at the lower or upper right, which are free of titles, where they are further from the
+    points `taken` [n, 2]."""
+    limits = np.array([axes.get_xlim(), axes.get_ylim()])
+    ways = 0.34 * metres * np.array([[axis @ camera.right, axis @ camera.top] for axis in np.eye(3)])
+    lengths = np.maximum(np.linalg.norm(ways, axis=1, keepdims=True), 0.05 * metres)
+    beyond = ways * (1 + 0.12 * metres / lengths)
+    level = np.where(ways[:, :1] > 0.1 * metres, 1, np.where(ways[:, :1] < -0.1 * metres, -1, 0))
+    words = [beyond + share * metres * np.concatenate([level, 0 * level], axis=1) for share in (0, 0.25, 0.5)]
+    corners = [np.array([limits[0][i] + (0.45, -0.45)[i] * metres, limits[1][j] + (0.36, -0.36)[j] * metres]) for i, j in ((0, 0), (1, 0), (1, 1))]
+    free = [gap(corner + np.concatenate([ways, *words]), taken) for corner in corners]
+    corner = corners[0 if free[0] > 0.15 * metres else int(np.argmax(free))]
+    for way, label, name, side in zip(ways, beyond, names, level[:, 0]):
         axes.annotate("", corner + way, corner, zorder=9, arrowprops={"arrowstyle": "->", "color": style.INK, "lw": 0.9, "shrinkA": 0, "shrinkB": 0})
-        beyond = corner + way * (1 + 0.12 * metres / max(np.linalg.norm(way), 0.05 * metres))
-        axes.text(*beyond, names[axis], ha="left" if way[0] > 0.1 * metres else "right" if way[0] < -0.1 * metres else "center",
-                  va="top" if way[1] < -0.1 * metres else "center", fontsize=7.5, zorder=10)
+        axes.text(*(corner + label), name, ha=("center", "left", "right")[side], va="top" if way[1] < -0.1 * metres else "center", fontsize=7.5, zorder=10)
