@@ -20,11 +20,28 @@ namespace {
   throw std::invalid_argument(file + ": " + text);
 }
 
+bool is_collection(const OGRGeometry &geometry) {
+  const auto type = wkbFlatten(geometry.getGeometryType());
+  return type == wkbMultiPolygon || type == wkbGeometryCollection;
+}
+
+/// The polygons of a geometry, of whatever kind. Throws std::invalid_argument for one that crosses itself.
+void add_polygons(const std::string &file, const OGRGeometry &geometry, OGRMultiPolygon &polygons) {
+  if (is_collection(geometry)) {
+    for (const OGRGeometry *part : *geometry.toGeometryCollection()) add_polygons(file, *part, polygons);
+  } else if (wkbFlatten(geometry.getGeometryType()) == wkbPolygon) {
+    std::unique_ptr<OGRGeometry> flat(geometry.clone());
+    flat->flattenTo2D();
+    if (!flat->IsValid())
+      complain(file, "has a polygon that crosses itself, or whose holes do; mend it, such as by ogr2ogr -makevalid");
+    polygons.addGeometryDirectly(flat.release());
+  }
+}
+
 void add_rings(const OGRGeometry &geometry, Outline &outline) {
-  if (const auto type = wkbFlatten(geometry.getGeometryType());
-      type == wkbMultiPolygon || type == wkbGeometryCollection) {
+  if (is_collection(geometry)) {
     for (const OGRGeometry *part : *geometry.toGeometryCollection()) add_rings(*part, outline);
-  } else if (type == wkbPolygon) {
+  } else if (wkbFlatten(geometry.getGeometryType()) == wkbPolygon) {
     for (const OGRLinearRing *ring : *geometry.toPolygon()) {
       outline.rings.emplace_back();
       for (const OGRPoint &point : *ring) outline.rings.back().push_back({point.getX(), point.getY()});
@@ -84,12 +101,13 @@ Outline read_outline(const std::string &file) {
   if (!data) complain(file, "is no file of outlines that GDAL reads; give a Shapefile (.shp) or a GeoPackage (.gpkg)");
   Outline outline;
   outline.location.file = file, outline.location.vector = true;
+  OGRMultiPolygon polygons;
   for (OGRLayer *layer : data->GetLayers()) {
-    const std::size_t before = outline.rings.size();
+    const int before = polygons.getNumGeometries();
     for (const OGRFeatureUniquePtr &feature : *layer)
-      if (const OGRGeometry *geometry = feature->GetGeometryRef()) add_rings(*geometry, outline);
+      if (const OGRGeometry *geometry = feature->GetGeometryRef()) add_polygons(file, *geometry, polygons);
     const OGRSpatialReference *reference = layer->GetSpatialRef();
-    if (outline.rings.size() == before || !reference || !outline.location.projection.empty()) continue;
+    if (polygons.getNumGeometries() == before || !reference || !outline.location.projection.empty()) continue;
     if (reference->IsGeographic() || (reference->IsProjected() && std::abs(reference->GetLinearUnits() - 1) > 1e-9))
       complain(file, std::string("has coordinates in ") +
                          (reference->IsGeographic() ? "degrees" : "another unit than metres") +
@@ -98,6 +116,13 @@ Outline read_outline(const std::string &file) {
     reference->exportToWkt(&text);
     outline.location.projection = text;
     CPLFree(text);
+  }
+  if (polygons.getNumGeometries() > 1) {  // what several cover is inside, though it is in two of them
+    const std::unique_ptr<OGRGeometry> all(polygons.UnionCascaded());
+    if (!all) complain(file, "has polygons that GDAL cannot unite; draw the outline as one polygon");
+    add_rings(*all, outline);
+  } else {
+    add_rings(polygons, outline);
   }
   if (outline.rings.empty())
     complain(file, "has no polygons; draw the outline as a polygon, or make one of its lines by ogr2ogr or QGIS");

@@ -489,6 +489,13 @@ std::vector<std::string> Terrain::doubts() const {
                                 " degrees: dip direction is the azimuth (clockwise from north) towards which the "
                                 "surface dips. Is it meant to dip the other way?"));
   const double deep = slide_volume_ / slide_area_;
+  double deepest = 0;
+  for (std::size_t k = 0; k < ground().size(); ++k) deepest = std::max(deepest, ground()[k] - bed()[k]);
+  if (options_.air > 0 && options_.air < deepest)
+    sentences.push_back(
+        text_of("the mesh reaches ", length(options_.air),
+                " above the ground (--air, mesh.terrain.air), and the slide is up to ", length(deepest),
+                " thick: soil that runs over steep ground leaves it by the top; more air costs little"));
   const double meshed = way_meets_slide_ ? options_.size : options_.far_size,
                on_way = std::ldexp(meshed, -options_.halvings);
   if (on_way > deep)

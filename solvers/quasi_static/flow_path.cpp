@@ -13,7 +13,9 @@ PetscErrorCode follow_flow(MPI_Comm comm, QuasiStatic<dim> *soil, PoreFlow<dim> 
   PetscFunctionBeginUser;
   constexpr double first = 1e-4, growth = 2, shrinkage = 0.2, safety = 0.9, steady_growth = 4, longest_steady = 1e9,
                    still = 1e-7;
+  constexpr double soon = 1e-6;    // of the path: events that are nearer to the last are passed over
   constexpr double slight = 0.01;  // of the pressure: changes that are less are resolved no better, nor is their noise
+  constexpr double driest = 1e9;   // [Pa]: suction at which soil holds no water any more, Fredlund & Xing (1994)
   FlowStep<dim> step_of_flow(soil, flow, settings);
   PetscCall(step_of_flow.setup());
   const int count = flow.nodes().count();
@@ -29,15 +31,18 @@ PetscErrorCode follow_flow(MPI_Comm comm, QuasiStatic<dim> *soil, PoreFlow<dim> 
   *share = 0, *iterations = 0;
   while (*share < 1) {
     double to = path.steady ? 1 : *share + step / path.duration;
+    const auto next = std::ranges::find_if(path.events, [&](double event) { return event > *share + soon; });
+    if (next != path.events.end() && to > *next) to = *next;
     if (to > 1 - 1e-9) to = 1;
     const double dt = path.steady ? step : (to - *share) * path.duration;
     PetscCall(
         step_of_flow.solve(path.load_at(to), path.steady ? 0 : path.load_at(to) - path.load_at(*share), dt, outcome));
     *iterations += outcome->iterations;
-    double error[2]{};  // of the step, and the largest change of pressure so far, or what is slight
+    double error[4]{};  // of the step; the largest change of pressure so far, or what is slight; suction and pressure
     if (outcome->converged) {
       measure(now);
       for (int i = 0; i < count; ++i) {
+        error[2] = std::max(error[2], -flow.pressure[i]), error[3] = std::max(error[3], flow.pressure[i]);
         error[1] =
             std::max({error[1], std::abs(now[i].pressure - start[i].pressure), slight * std::abs(flow.pressure[i])});
         if (known < 2) continue;
@@ -46,8 +51,10 @@ PetscErrorCode follow_flow(MPI_Comm comm, QuasiStatic<dim> *soil, PoreFlow<dim> 
             std::max({error[0], weight * std::abs(now[i].pressure - before[i].pressure - dt * rate[i].pressure) / range,
                       weight * std::abs(now[i].saturation - before[i].saturation - dt * rate[i].saturation)});
       }
-      MPI_Allreduce(MPI_IN_PLACE, error, 2, MPI_DOUBLE, MPI_MAX, comm);
+      MPI_Allreduce(MPI_IN_PLACE, error, 4, MPI_DOUBLE, MPI_MAX, comm);
       range = std::max({range, error[1], 1e-300});
+      outcome->dry = error[2] > std::min(driest, flow.liquid().bulk_modulus), outcome->shut = error[3] > driest;
+      if (outcome->dry || outcome->shut) PetscFunctionReturn(0);
     }
     const double least = settings.smallest_step * first * path.duration;
     if (!outcome->converged || (!path.steady && error[0] > 2 * settings.step_error && dt > 10 * least)) {

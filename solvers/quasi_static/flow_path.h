@@ -2,6 +2,7 @@
 /// Steps of seepage and consolidation in time, docs/theory/seepage.md section 3: implicit Euler, each step as long as
 /// its error allows.
 #include <functional>
+#include <vector>
 
 #include "solvers/quasi_static/flow_step.h"
 
@@ -15,6 +16,7 @@ struct FlowPath {
   bool softening;                               ///< soil remembers plastic strain
   std::function<double(double share)> load_at;  ///< load time at a share of the path [s]
   std::function<void(double share)> done;       ///< told after each step
+  std::vector<double> events;                   ///< shares at which steps end, ascending: there loads change
 };
 
 /// Carries the flow, and with it the equilibrium of `soil` unless it is null (soil at rest), from share 0 towards 1.

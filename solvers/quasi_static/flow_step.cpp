@@ -40,7 +40,7 @@ PetscErrorCode FlowStep<dim>::setup() {
     PetscCall(soil_->soil().nodes().global_vector(force_));
     PetscCall(VecGetLocalSize(u_, &rows_u_));
   }
-  PetscCall(flow_matrix_.make(comm, rows_p_, rows_p_, 1, [&] { return flow_.tangent(1, flow_matrix_); }));
+  PetscCall(flow_matrix_.make(comm, rows_p_, rows_p_, 1, [&] { return flow_.tangent(1, true, flow_matrix_); }));
   PetscCall(VecCreateMPI(comm, rows_u_ + rows_p_, PETSC_DETERMINE, x_.create()));
   PetscCall(VecDuplicate(x_, f_.create()));
   if (soil_) {
@@ -89,8 +89,10 @@ PetscErrorCode FlowStep<dim>::make_solver() {
   PetscCall(SNESSetFunction(solver_, f_, snes_function, this));
   PetscCall(SNESSetJacobian(solver_, matrix, matrix, snes_jacobian, this));
   PetscCall(SNESSetType(solver_, SNESNEWTONLS));
-  PetscCall(set_line_search(solver_, soil_ ? SNESLINESEARCHCP : SNESLINESEARCHBT));
-  PetscCall(SNESSetTolerances(solver_, 0, settings_.tolerance, 0, settings_.iterations, PETSC_MAX_INT));
+  PetscCall(set_line_search(solver_, soil_ ? SNESLINESEARCHCP : newton_ ? SNESLINESEARCHBT : SNESLINESEARCHBASIC));
+  PetscCall(SNESSetTolerances(solver_, 0, settings_.tolerance, 0,
+                              newton_ ? settings_.iterations : picard_iterations * settings_.iterations,
+                              PETSC_MAX_INT));
   PetscCall(SNESSetConvergenceTest(solver_, snes_converged, this, nullptr));
   PetscCall(SNESGetKSP(solver_, &ksp));
   PetscCall(KSPGetPC(ksp, &pc));
@@ -193,7 +195,7 @@ template <int dim>
 PetscErrorCode FlowStep<dim>::jacobian(Mat matrix) {
   PetscFunctionBeginUser;
   PetscCall(flow_matrix_.clear());
-  PetscCall(flow_.tangent(dt_, flow_matrix_));
+  PetscCall(flow_.tangent(dt_, newton_, flow_matrix_));
   PetscCall(flow_matrix_.finish());
   if (!soil_) PetscFunctionReturn(0);
   PetscCall(soil_->tangent());
@@ -212,7 +214,8 @@ PetscErrorCode FlowStep<dim>::snes_jacobian(SNES, ::Vec, Mat, Mat matrix, void *
   return static_cast<FlowStep *>(step)->jacobian(matrix);
 }
 
-/// Forces and water must each be balanced to the tolerance.
+/// Forces and water must each be balanced to the tolerance, or to a hundred times as much where the search finds
+/// nothing better: beside saturation a permeability by van Genuchten and Mualem rises without bound in its slope.
 template <int dim>
 PetscErrorCode FlowStep<dim>::snes_converged(SNES solver, PetscInt iteration, PetscReal, PetscReal, PetscReal norm,
                                              SNESConvergedReason *reason, void *context) {
@@ -234,7 +237,10 @@ PetscErrorCode FlowStep<dim>::snes_converged(SNES solver, PetscInt iteration, Pe
   const double tolerance = step.settings_.tolerance, forces = step.soil_ ? step.soil_->force_scale() : 0;
   // water that does not move before the soil does is measured by what the soil moves, once its forces are in balance
   const double water = step.soil_ ? std::max(step.water_scale_, step.water_moved_) : step.water_scale_;
-  step.balanced_ = std::sqrt(sums[0]) <= tolerance * forces && std::sqrt(sums[1]) <= tolerance * water;
+  const auto within = [&](double share) {
+    return std::sqrt(sums[0]) <= share * forces && std::sqrt(sums[1]) <= share * water;
+  };
+  step.balanced_ = within(tolerance), step.nearly_balanced_ = within(stalled * tolerance);
   if (!std::isfinite(norm))
     *reason = SNES_DIVERGED_FNORM_NAN;
   else if (step.balanced_)
@@ -242,32 +248,53 @@ PetscErrorCode FlowStep<dim>::snes_converged(SNES solver, PetscInt iteration, Pe
   PetscFunctionReturn(0);
 }
 
+/// Newton's method stalls where nodes near saturation change sides; Picard's (Celia, Bouloutas & Zarba 1990) goes on
+/// there.
 template <int dim>
 PetscErrorCode FlowStep<dim>::solve(double load_time, double travel, double dt, StepOutcome *outcome) {
+  double *value;
+  PetscFunctionBeginUser;
+  *outcome = {}, load_time_ = load_time, dt_ = dt;
+  for (const bool newton : {true, false}) {
+    if (newton_ != newton) {
+      newton_ = newton;
+      PetscCall(make_solver());
+    }
+    water_scale_ = 0;
+    flow_.begin(load_time, travel);
+    PetscCall(VecZeroEntries(x_));
+    if (soil_) {
+      PetscCall(VecGetArray(x_, &value));
+      PetscCall(VecPlaceArray(u_, value));
+      PetscCall(soil_->prepare(1, load_time, load_time - travel, travel, u_));
+      PetscCall(VecResetArray(u_));
+      PetscCall(VecRestoreArray(x_, &value));
+    }
+    PetscCall(seek(outcome));
+    if (outcome->converged || soil_) break;
+  }
+  if (!outcome->converged) PetscCall(make_solver());
+  PetscFunctionReturn(0);
+}
+
+/// Solves with the faces that are open, and opens and closes them, until none changes.
+template <int dim>
+PetscErrorCode FlowStep<dim>::seek(StepOutcome *outcome) {
   constexpr int most_changes = 50;  // of the seepage faces
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
   PetscInt iterations;
   double *value;
   PetscFunctionBeginUser;
-  *outcome = {}, load_time_ = load_time, dt_ = dt, water_scale_ = 0;
-  flow_.begin(load_time);
-  PetscCall(VecZeroEntries(x_));
-  if (soil_) {
-    PetscCall(VecGetArray(x_, &value));
-    PetscCall(VecPlaceArray(u_, value));
-    PetscCall(soil_->prepare(1, load_time, load_time - travel, travel, u_));
-    PetscCall(VecResetArray(u_));
-    PetscCall(VecRestoreArray(x_, &value));
-  }
   for (int change = 0;; ++change) {
     PetscCall(VecGetArray(x_, &value));
     for (PetscInt row = 0; row < rows_p_; ++row) value[rows_u_ + row] = flow_.pressure[owned_[row]];
     PetscCall(VecRestoreArray(x_, &value));
-    scale_open_ = true, balanced_ = false;
+    scale_open_ = true, balanced_ = nearly_balanced_ = false;
     PetscCall(SNESSolve(solver_, nullptr, x_));
     PetscCall(SNESGetConvergedReason(solver_, &reason));
     PetscCall(SNESGetIterationNumber(solver_, &iterations));
     outcome->iterations += static_cast<int>(iterations);
+    balanced_ |= nearly_balanced_ && (reason == SNES_DIVERGED_LINE_SEARCH || reason == SNES_DIVERGED_LOCAL_MIN);
     if (!balanced_) break;
     PetscCall(residual(x_, f_));  // the state that counts, not the last that the line search tried
     if (!flow_.update_seepage(rest_)) break;
@@ -277,7 +304,6 @@ PetscErrorCode FlowStep<dim>::solve(double load_time, double travel, double dt, 
     }
   }
   outcome->converged = balanced_, outcome->singular = reason == SNES_DIVERGED_LINEAR_SOLVE;
-  if (!outcome->converged) PetscCall(make_solver());
   PetscFunctionReturn(0);
 }
 

@@ -34,6 +34,7 @@ class FlowStep {
   static PetscErrorCode snes_jacobian(SNES, ::Vec, Mat, Mat, void *);
   static PetscErrorCode snes_converged(SNES, PetscInt, PetscReal, PetscReal, PetscReal, SNESConvergedReason *, void *);
   PetscErrorCode make_solver();
+  PetscErrorCode seek(StepOutcome *outcome);
 
   QuasiStatic<dim> *soil_;
   PoreFlow<dim> &flow_;
@@ -49,7 +50,11 @@ class FlowStep {
   double water_scale_ = 0;  ///< size of the terms of the balance of water before the first iteration [m3]
   double water_moved_ = 0;  ///< that of the last evaluation [m3]
   bool scale_open_ = true;
-  bool balanced_ = false;  ///< the last iterate, as for equilibrium alone
+  bool balanced_ = false;         ///< the last iterate, as for equilibrium alone
+  bool nearly_balanced_ = false;  ///< to `stalled` times the tolerance
+  bool newton_ = true;            ///< else Picard's method, which takes more iterations
+  static constexpr int picard_iterations = 4;
+  static constexpr double stalled = 100;
 };
 
 }  // namespace talus

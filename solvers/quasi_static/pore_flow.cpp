@@ -190,8 +190,8 @@ double PoreFlow<dim>::outside(int node, double t) const {
 }
 
 template <int dim>
-void PoreFlow<dim>::begin(double t) {
-  pressure = accepted;
+void PoreFlow<dim>::begin(double t, double travel) {
+  pressure = accepted, travel_ = travel;
   for (int i = 0; i < nodes_.count(); ++i) {
     if (pressed_[i] == none) continue;
     const double p = outside(i, t);
@@ -254,7 +254,11 @@ double PoreFlow<dim>::inflow_at(const Supply &supply, double t) const {
     const Vec<dim> &x = supply.place[g];
     const double z = dim == 3 ? x[dim - 1] : 0;
     const double share = g == 0 ? near_gauss<dim> : far_gauss<dim>;
-    mean += share * (kind.water == OnWater::flux ? kind.inflow(x[0], x[1], z, t) : kind.supply(x[0], x[1], z, t));
+    for (const double later : {near_gauss<2>, far_gauss<2>}) {  // at two times of the step
+      const double then = t - later * travel_;
+      mean += share / 2 *
+              (kind.water == OnWater::flux ? kind.inflow(x[0], x[1], z, then) : kind.supply(x[0], x[1], z, then));
+    }
   }
   return mean;
 }
@@ -308,7 +312,7 @@ void PoreFlow<dim>::balance(double t, double dt, WaterBalance *balance) const {
 }
 
 template <int dim>
-PetscErrorCode PoreFlow<dim>::tangent(double dt, SparseMatrix &matrix) const {
+PetscErrorCode PoreFlow<dim>::tangent(double dt, bool newton, SparseMatrix &matrix) const {
   PetscFunctionBeginUser;
   double largest = 0;
   for (int c = 0; c < mesh_.cell_count(); ++c) {
@@ -320,8 +324,9 @@ PetscErrorCode PoreFlow<dim>::tangent(double dt, SparseMatrix &matrix) const {
     for (int a = 0; a <= dim; ++a) {
       const double p = pressure[node[a]], step = 1e-6 * (std::abs(p) + 10);
       passes += relative_permeability(body, p) / (dim + 1);
-      passes_slope[a] =
-          (relative_permeability(body, p + step) - relative_permeability(body, p - step)) / (2 * step) / (dim + 1);
+      passes_slope[a] = newton ? (relative_permeability(body, p + step) - relative_permeability(body, p - step)) /
+                                     (2 * step) / (dim + 1)
+                               : 0;
       for (int d = 0; d < dim; ++d) drive[d] += p * gradient[a][d];
     }
     for (int d = 0; d < dim; ++d) drive[d] -= liquid_.density * gravity_[d];

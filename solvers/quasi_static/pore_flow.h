@@ -49,11 +49,12 @@ class PoreFlow {
 
   /// Begins a step that ends at the loads of time t: finds the nodes whose pressure boundaries prescribe (`fixed`) and
   /// writes it into `pressure`. The pressures of the other nodes are unknown.
-  void begin(double t);
+  void begin(double t, double travel);
   /// Balance of a step dt from the accepted pressures to `pressure`, without the volume strain of the soil.
   void balance(double t, double dt, WaterBalance *balance) const;
   /// Adds its derivative to the rows and columns of nodes that are not fixed.
-  PetscErrorCode tangent(double dt, SparseMatrix &matrix) const;
+  /// Without `newton` the permeability counts as it is (Picard), which converges slower and from further away.
+  PetscErrorCode tangent(double dt, bool newton, SparseMatrix &matrix) const;
   /// Seepage faces: opens nodes that are under pressure, and closes those that would draw in more than the supply.
   /// `rest` is the balance of the solved step, summed over ranks. True, on all ranks alike, if any changed.
   bool update_seepage(const std::vector<double> &rest);
@@ -135,6 +136,7 @@ class PoreFlow {
   std::vector<Supply> supplies_;
   std::vector<double> inflow_;  ///< by source, of this rank [m3/s]
   double entered_ = 0;          ///< on this rank [kg]
+  double travel_ = 0;           ///< load time of the step [s]
 };
 
 }  // namespace talus

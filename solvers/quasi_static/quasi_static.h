@@ -29,6 +29,8 @@ struct StepOutcome {
   bool singular = false;  ///< the linear system had no solution
   bool fails = false;     ///< a mechanism of failure was found for the loads at the end of the path
   bool stopped = false;   ///< somebody asked the program to stop
+  bool dry = false;       ///< pores would need a suction at which soil has no water, or water tears
+  bool shut = false;      ///< water that enters has no way out but by pressures beyond any soil
   std::string moving;     ///< soil on bases that moves although its prop gives way: where, how much, and on what
   std::string
       moved_most;  ///< soil on bases in the last of iterations that were lost, which may move for no other reason

@@ -317,11 +317,11 @@ class Adviser {
       say("A prescribed pore pressure is right where soil drains in the " + time + " of the stages, " + bounds +
           " (less in proportion where a stage represents a longer time). Below " + digits(d.undrained_below, 1) +
           " m/s failure is undrained: use total-stress strengths; in between pore pressure has to be computed.");
-    else if (fluids_move(scene_.phases))
+    else if (fluids_move(scene_.phases) && !needs_.drainage.computed)
       say("Moving pore water is needed for k between " + digits(d.undrained_below, 1) +
           " m/s, below which soil stays undrained in the " + time + " of the stages, and " +
           digits(d.drained_above, 1) + " m/s, above which phases = \"drained\" gives the same result at lower cost.");
-    else
+    else if (!fluids_move(scene_.phases))
       say("phases = \"dry\" is right for soil without water, or with total-stress strengths; with water in its pores "
           "the soil would be drained in " +
           time + " for " + bounds + " and undrained below " + digits(d.undrained_below, 1) + " m/s.");

@@ -412,7 +412,7 @@ struct Stage {
               {"consolidation", StageKind::consolidation}},
              "motion by the material point method, or by finite elements: static equilibrium, flow of pore water "
              "through soil at rest, or consolidation (both in time)");
-    v.number("duration", duration, second, Range{0, 1e9}, "longest duration of the stage");
+    v.number("duration", duration, second, Range{0, 1e12}, "longest duration of the stage");
     v.choice("until", until,
              {{"duration", StopWhen::duration},
               {"equilibrium", StopWhen::equilibrium},

@@ -1,5 +1,6 @@
 #pragma once
 /// What a scene changes with time while its soil moves.
+#include <array>
 #include <string>
 #include <vector>
 
@@ -15,5 +16,12 @@ struct ChangingLoad {
 
 /// All of a scene, in the order of its boundaries, water and bodies.
 std::vector<ChangingLoad> changing_loads(const Scene &scene);
+
+/// Times between `begin` and `end` at which steps have to end in order to see all that changes, ascending: where tables
+/// bend, before expressions of time jump, and where these have changed by a quarter of their range, at one of three
+/// places between the corners `low` and `high` of the soil [m]. A change of an expression that lasts for less than
+/// 1/4000 of the time may be missed.
+std::vector<double> load_events(const Scene &scene, const std::array<double, 3> &low, const std::array<double, 3> &high,
+                                double begin, double end);
 
 }  // namespace talus

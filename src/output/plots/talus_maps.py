@@ -23,6 +23,7 @@ from talus_units import words
 
 NO_DATA = -9999.0
 LIMIT = 0.5  # least thickness of soil that counts, over the size of particles: thinner soil is single particles
+LEFT_OUT = 0.02  # share of the volume that slid: less that moved and is not mapped is not told
 SPACING = 2.0  # of the grids where there is no terrain file, over the size of particles
 MOST_CELLS = 50_000_000  # of one grid
 
@@ -114,11 +115,20 @@ class Maps:
             raise ValueError(f"{results.folder}: no soil has slid far enough for a map: the largest displacement, {moved:.3g} m, is below the spacing of "
                              f"particles, {self.size:.3g} m")
         self.moving = still_moving(last, self.sliding)
+        self.last = last
         self._accumulate()
         self.covered = self.thickness[-1] >= self.limit
         if not self.covered.any():
             raise ValueError(f"the deposit is nowhere as thick as --limit {self.limit:g} m; its largest thickness is {self.thickness[-1].max():.3g} m")
         self._elevations(first, last)
+
+    def left_out(self):
+        """Volume that moved by more than the size of particles and is not mapped [m3], and its least and largest displacement [m]."""
+        moved = self.last.scalar("displacement")[0]
+        some = (moved > self.size) & ~np.isin(self.last.ids(), self.sliding, assume_unique=True)
+        if not some.any():
+            return 0.0, (0.0, 0.0)
+        return float(self.last.column("volume").values[some, 0].sum()), (float(moved[some].min()), float(moved[some].max()))
 
     def _usual_spacing(self):
         """That of the terrain file, without one SPACING times the size of the particles."""
@@ -339,6 +349,11 @@ def main():
     if maps.moving:
         warn(f"the soil has not come to rest: {100 * maps.moving[0]:.3g} % of what slid is faster than {SLOW:g} m/s, at up to {maps.moving[1]:.3g} m/s; outline, "
              f"run-out and angle of reach are those at {maps.moment()} and not of a final deposit, for which its last stage takes a longer duration")
+    left_out, moved = maps.left_out()
+    if left_out > LEFT_OUT * maps.volume[-1]:
+        warn(f"{left_out:.3g} m3 that moved by {moved[0]:.3g} to {moved[1]:.3g} m are not mapped, and are {100 * left_out / (left_out + maps.volume[-1]):.2g} % of "
+             f"what moved by more than a particle: soil slides in these maps where it moved by more than a tenth of the largest displacement, which 99.9 % "
+             f"of the mass have at most")
     print(f"maps of {maps.results.title}: {maps.headline()[0].lower() + maps.headline()[1:]}, cells of {maps.grid.spacing:g} m, {maps.grid.shape[0]} x {maps.grid.shape[1]}")
     print(f"projection: {'that of the terrain file' if maps.axes.projection else 'none, coordinates are ' + ('those of the terrain file' if maps.axes.terrain else 'local')}")
     for name, value in maps.numbers().items():

@@ -1,5 +1,6 @@
 #pragma once
 /// What stages in which pore water flows have in common, docs/theory/seepage.md.
+#include "simulation/changing_loads.h"
 #include "simulation/stages/static_stage.h"
 #include "solvers/quasi_static/flow_path.h"
 
@@ -20,24 +21,47 @@ class FlowStage : public StaticStage<dim> {
                         stage.load_steps,
                         stage.softening,
                         [this](double share) { return this->load_at(share); },
-                        [this](double share) { this->done(share); }};
+                        [this](double share) { this->done(share); },
+                        events()};
     Statics<dim> &statics = this->run_.statics;
     const FluidBooks &books = this->run_.recorder.fluids();
     const double seeped = books.seeped(), handed = books.handed(0);
     require(follow_flow(this->run_.world.comm, this->soil_moves() ? &statics.problem() : nullptr, statics.flow(),
                         this->run_.scene.quasi_static, flow, &path.share, &path.last, &path.iterations));
     entered_ = books.seeped() - seeped, handed_ = books.handed(0) - handed;
+    if (this->run_.world.phases.liquid) water_ = this->run_.fluids()[0].stored;
   }
   /// Water that entered, and what of it particles hold where water moves with them.
   void describe_water(std::ostream &text) const {
     if (!this->run_.world.phases.liquid) return;
+    const double took = entered_ + handed_;
+    const auto digits = text.precision(6);
     text << "; " << std::abs(entered_) << " kg of water " << (entered_ < 0 ? "left" : "entered")
-         << ", and particles hold " << std::abs(entered_ + handed_) << " kg "
-         << (entered_ + handed_ < 0 ? "less" : "more");
+         << ", of which particles took over " << (entered_ < 0 ? -took : took) << " kg";
+    text.precision(digits);
+    if (std::abs(handed_) > visible * std::abs(entered_) && std::abs(handed_) > visible / 100 * water_)
+      text << " (smaller cells, and fewer changes between motion and such stages, lose or gain less: water_handed_kg)";
   }
 
  private:
-  double entered_ = 0, handed_ = 0;  ///< [kg]
+  /// Shares of the stage at which what acts changes.
+  std::vector<double> events() const {
+    const Stage &stage = this->stage_;
+    if (stage.hold_loads || stage.steady) return {};
+    std::array<double, 3> low{}, high{};
+    std::fill_n(low.begin(), dim, std::numeric_limits<double>::max()), std::fill_n(high.begin(), dim, -low[0]);
+    for (const Vec<dim> &x : this->run_.world.mesh.position)
+      for (int d = 0; d < dim; ++d) low[d] = std::min(low[d], x[d]), high[d] = std::max(high[d], x[d]);
+    MPI_Allreduce(MPI_IN_PLACE, low.data(), dim, MPI_DOUBLE, MPI_MIN, this->run_.world.comm);
+    MPI_Allreduce(MPI_IN_PLACE, high.data(), dim, MPI_DOUBLE, MPI_MAX, this->run_.world.comm);
+    const double begin = this->load_at(0), end = this->load_at(1);
+    std::vector<double> shares = load_events(this->run_.scene, low, high, begin, end);
+    for (double &t : shares) t = (t - begin) / (end - begin);
+    return shares;
+  }
+
+  static constexpr double visible = 0.1;         ///< of the water that enters
+  double entered_ = 0, handed_ = 0, water_ = 0;  ///< water_: in the soil [kg]
 };
 
 }  // namespace talus

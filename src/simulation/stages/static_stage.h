@@ -86,6 +86,7 @@ class StaticStage : public StageRunner<dim> {
   void begin() {
     run_.clock.stage = stage_.name, run_.clock.hold_loads = stage_.hold_loads;
     run_.recorder.begin_stage(stage_);
+    run_.dynamics.set_loading(stage_, 0);  // particles take over what is computed, whatever the stage before prescribed
     run_.statics.begin_stage(stage_, soil_moves());
     run_.statics.problem().iterated = [&run = run_](int k, double unbalanced) { run.recorder.seeking(k, unbalanced); };
     begin_strain_ = run_.statics.softening_strain();
@@ -124,7 +125,10 @@ class StaticStage : public StageRunner<dim> {
     if (path_.share < 1) {
       text << (soil_moves() ? "no equilibrium beyond " : "no flow was found beyond ") << 100 * path_.share
            << " % of the " << (soil_moves() ? "loads" : "duration") << " of stage " << stage_.name << ": "
-           << (path_.last.fails      ? "a mechanism of failure was found under all of them, even with psi = phi"
+           << (path_.last.fails  ? "a mechanism of failure was found under all of them, even with psi = phi"
+               : path_.last.dry  ? "more water is drawn from the soil than it can give: suction passed 1 GPa, at which "
+                                   "soil is dry (Fredlund & Xing 1994), or the stiffness of the water"
+               : path_.last.shut ? "water that enters has no way out: pore pressure passed 1 GPa"
                : path_.last.singular ? "the stiffness became singular"
                                      : "Newton's iterations did not converge")
            << " (" << path_.last.iterations << " iterations";
@@ -134,6 +138,9 @@ class StaticStage : public StageRunner<dim> {
       else if (!water_flows())
         text << ", and the displacement ran away";
       text << ")";
+      if (water_flows() && !path_.last.dry && !path_.last.shut)
+        text << "; a larger quasi_static.step_error or tolerance, a smaller smallest_step, or a load that comes in the "
+                "course of an hour rather than at once may help";
       if (!path_.last.moving.empty()) text << "; " << path_.last.moving;
       if (!path_.last.moved_most.empty()) text << "; in the last iteration " << path_.last.moved_most;
       const bool softened = soil_moves() && run_.statics.softening_strain() > begin_strain_;
@@ -149,7 +156,7 @@ class StaticStage : public StageRunner<dim> {
         text << "; either base or soil is too weak there, or a few cells at the rim of the soil that yield keep the "
                 "iterations from an equilibrium of the rest. Motion shows which: a dynamic stage with damping, from "
                 "the start or (when_lost = \"next_stage\") from here";
-      else if (soil_moves() && !path_.last.fails)
+      else if (soil_moves() && !path_.last.fails && !path_.last.dry && !path_.last.shut)
         text << "; the slope may be too weak to stand, or other load_steps (here " << stage_.load_steps
              << ") may help, or, where the stage is the first, initial_stress = \"k0\"";
       const bool goes_on = run_.statics.for_factor && !water_flows();

@@ -77,7 +77,8 @@ class TerrainFiles : public ::testing::Test {
 
   using Ring = std::vector<std::array<double, 2>>;
   /// A polygon, with its holes, of a GeoPackage.
-  std::string package(const std::vector<Ring> &rings, int projection) const {
+  std::string package(const std::vector<Ring> &rings, int projection) const { return package_of({rings}, projection); }
+  std::string package_of(const std::vector<std::vector<Ring>> &polygons, int projection) const {
     GDALAllRegister();
     const std::string file = in_folder("outline.gpkg");
     std::filesystem::remove(file);
@@ -86,16 +87,18 @@ class TerrainFiles : public ::testing::Test {
     OGRSpatialReference reference;
     reference.importFromEPSG(projection);
     OGRLayer *layer = data->CreateLayer("slide", &reference, wkbPolygon);
-    OGRPolygon polygon;
-    for (const Ring &places : rings) {
-      OGRLinearRing ring;
-      for (const auto &[x, y] : places) ring.addPoint(x, y);
-      ring.closeRings();
-      polygon.addRing(&ring);
+    for (const std::vector<Ring> &rings : polygons) {
+      OGRPolygon polygon;
+      for (const Ring &places : rings) {
+        OGRLinearRing ring;
+        for (const auto &[x, y] : places) ring.addPoint(x, y);
+        ring.closeRings();
+        polygon.addRing(&ring);
+      }
+      OGRFeature feature(layer->GetLayerDefn());
+      feature.SetGeometry(&polygon);
+      EXPECT_EQ(layer->CreateFeature(&feature), OGRERR_NONE);
     }
-    OGRFeature feature(layer->GetLayerDefn());
-    feature.SetGeometry(&polygon);
-    EXPECT_EQ(layer->CreateFeature(&feature), OGRERR_NONE);
     return file;
   }
   /// A circle with a round hole around its centre, radius 0 for none.
@@ -474,6 +477,26 @@ TEST_F(TerrainFiles, SlideInAnOutline) {
   expect_words(complaint(o), {"a.asc: is no file of outlines that GDAL reads"});
 }
 
+/// What two polygons cover is inside, and so is one that is there twice.
+TEST_F(TerrainFiles, OutlineOfSeveralPolygons) {
+  TerrainOptions o = options(geotiff([](double x, double) { return 500 - 0.3 * (x - east); }, 31254, 2));
+  std::filesystem::rename(o.file, in_folder("terrain.tif"));
+  o.file = in_folder("terrain.tif"), o.size = 2, o.depth = 6, o.bowl = false;
+  const auto box = [](double from, double to) {
+    return Ring{{east + from, south + 4}, {east + to, south + 4}, {east + to, south + 20}, {east + from, south + 20}};
+  };
+  const auto volume = [&](const std::vector<std::vector<Ring>> &polygons) {
+    o.outline = package_of(polygons, 31254);
+    return Terrain(o).slide_volume();
+  };
+  EXPECT_NEAR(volume({{box(5, 19)}, {box(13, 29)}}), volume({{box(5, 29)}}), 1e-9);
+  EXPECT_NEAR(volume({{box(5, 19)}, {box(5, 19)}}), volume({{box(5, 19)}}), 1e-9);
+  EXPECT_NEAR(volume({{box(5, 11)}, {box(21, 29)}}), volume({{box(5, 11)}}) + volume({{box(21, 29)}}), 1e-9);
+  const Ring crossed{{east + 4, south + 4}, {east + 20, south + 20}, {east + 20, south + 4}, {east + 4, south + 20}};
+  o.outline = package({crossed}, 31254);
+  expect_words(complaint(o), {"outline.gpkg: has a polygon that crosses itself", "makevalid"});
+}
+
 /// The volume is that of the outline wherever its middle lies between nodes, and with a radius of six nodes.
 TEST_F(TerrainFiles, HaveTheVolumeOfAnOutlineBetweenNodes) {
   TerrainOptions o = options(ascii([](double, double) { return 500; }));
@@ -567,6 +590,10 @@ TEST_F(TerrainFiles, AreFineAlongTheWay) {
   EXPECT_DOUBLE_EQ(terrain.size_at(100, 100, 70), 4);
   EXPECT_NEAR(terrain.size_at(100, 150, 70), 4 + 0.2 * 50, 1);
   EXPECT_FALSE(doubts(o, "the way leaves the terrain"));
+  EXPECT_FALSE(doubts(o, "the mesh reaches"));
+  o.air = 5;
+  EXPECT_TRUE(doubts(o, "the mesh reaches 5 m above the ground (--air, mesh.terrain.air), and the slide is up to"));
+  o.air = 30;
   o.way[4] += 30;
   EXPECT_TRUE(doubts(o, "the way leaves the terrain that is meshed: its point 3 is at x = 5230, y = "));
   o.way = {east + 180, south + 20, east + 190, south + 30}, o.way_width = 10;
