@@ -184,12 +184,18 @@ std::vector<TimeSpan> Function::changes() const {
 
 bool Function::uses(const std::string &variable) const { return expression_ && expression_->used.contains(variable); }
 
-double Function::operator()(double x, double y, double z, double t, double table, double slip) const {
+double Function::unlimited(double x, double y, double z, double t, double table, double slip) const {
   if (!times_.empty()) return interpolate(t);
   if (!expression_) return value_;
   Expression &e = *expression_;
   e.x = x, e.y = y, e.z = z, e.t = t, e.table = table, e.slip = slip;
-  const double value = e.scale * e.value();
+  return e.scale * e.value();
+}
+
+double Function::operator()(double x, double y, double z, double t, double table, double slip) const {
+  const double value = unlimited(x, y, z, t, table, slip);
+  if (!expression_) return value;
+  Expression &e = *expression_;
   const bool admissible = !e.limits || (value >= e.limits->low && value <= e.limits->high);  // false also for NaN
   if (!admissible) e.report(value);
   return value;

@@ -63,6 +63,8 @@ class Function {
 
   double operator()(double x, double y, double z, double t, double table = 0, double slip = 0) const;
   double operator()(double t) const { return (*this)(0, 0, 0, t); }
+  /// The value, whether or not the limits admit it, without a fault: for places and times that nobody may ask for.
+  double unlimited(double x, double y, double z, double t, double table = 0, double slip = 0) const;
 
   /// From now on values are held against these limits; numbers and tables, whose values the reader has checked, need
   /// none.

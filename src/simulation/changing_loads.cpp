@@ -35,7 +35,7 @@ std::array<double, 3> values_at(const Function &function, const std::array<doubl
   std::array<double, 3> values;
   for (int k = 0; k < 3; ++k) {
     const auto at = [&](int d) { return low[d] + k * (high[d] - low[d]) / 2; };
-    values[k] = function(at(0), at(1), at(2), t, high[1]);
+    values[k] = function.unlimited(at(0), at(1), at(2), t, high[1]);
   }
   return values;
 }
