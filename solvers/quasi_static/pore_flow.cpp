@@ -39,6 +39,9 @@ PoreFlow<dim>::PoreFlow(const BackgroundMesh<dim> &mesh, const Scene &scene, con
   for (int d = 0; d < dim; ++d) gravity_[d] = scene.gravity[d], square += gravity_[d] * gravity_[d];
   for (const BodySource &body : scene.body)
     soils_.emplace_back(body, scene.water.density * (square > 0 ? std::sqrt(square) : earth), scene.water.viscosity);
+  mean_permeability_.resize(soils_.size());
+  for (int b = 0; b < static_cast<int>(soils_.size()); ++b)
+    if (has_curve(b)) mean_permeability_[b].emplace(soils_[b]);
   pressure_of_point_.assign(mesh_.element_plex().number.size(), std::numeric_limits<double>::quiet_NaN());
   sources_.insert(sources_.end(), more.begin(), more.end());
   inflow_.assign(sources_.size(), 0);
@@ -228,12 +231,23 @@ template <int dim>
 double PoreFlow<dim>::saturation_slope_of(int body, double p) const {
   return has_curve(body) && p < 0 ? -talus::saturation_slope(soils_[body].retention(), -p) : 0;
 }
+/// Gradients of the shape functions 0..dim.
 template <int dim>
-double PoreFlow<dim>::relative_permeability(int body, double p) const {
-  if (!has_curve(body) || p >= 0) return 1;
-  const Retention &curve = soils_[body].retention();
-  const double wet = std::visit([&](const auto &one) { return one.effective(-p); }, curve);
-  return talus::liquid_permeability(soils_[body].relative(), {wet, 1 - wet, -p});
+std::array<Vec<dim>, dim + 1> all_gradients(const Cell<dim> &cell) {
+  std::array<Vec<dim>, dim + 1> gradient{};
+  for (int k = 0; k < dim; ++k)
+    for (int d = 0; d < dim; ++d) gradient[k + 1][d] = cell.gradient[k][d], gradient[0][d] -= cell.gradient[k][d];
+  return gradient;
+}
+
+template <int dim>
+CellPermeability<dim> PoreFlow<dim>::relative_permeability(int c, const std::array<Vec<dim>, dim + 1> &gradient,
+                                                           bool with_slope) const {
+  const int body = body_of_[c];
+  if (!has_curve(body)) return {};
+  std::array<double, dim + 1> at;
+  for (int a = 0; a <= dim; ++a) at[a] = pressure[nodes_.of_cell(c)[a]];
+  return cell_permeability<dim>(soils_[body], *mean_permeability_[body], at, gradient, unit_weight(), with_slope);
 }
 template <int dim>
 double PoreFlow<dim>::content(int body, double p) const {
@@ -263,15 +277,6 @@ double PoreFlow<dim>::inflow_at(const Supply &supply, double t) const {
   return mean;
 }
 
-/// Gradients of the shape functions 0..dim.
-template <int dim>
-std::array<Vec<dim>, dim + 1> all_gradients(const Cell<dim> &cell) {
-  std::array<Vec<dim>, dim + 1> gradient{};
-  for (int k = 0; k < dim; ++k)
-    for (int d = 0; d < dim; ++d) gradient[k + 1][d] = cell.gradient[k][d], gradient[0][d] -= cell.gradient[k][d];
-  return gradient;
-}
-
 template <int dim>
 void PoreFlow<dim>::balance(double t, double dt, WaterBalance *balance) const {
   balance->rest.assign(nodes_.count(), 0), balance->size = balance->rest;
@@ -283,14 +288,13 @@ void PoreFlow<dim>::balance(double t, double dt, WaterBalance *balance) const {
     const int *node = nodes_.of_cell(c), body = body_of_[c];
     Vec<dim> drive{};
     const auto gradient = all_gradients<dim>(mesh_.cells[c]);
-    double passes = 0, slope = 0, weight = 0;
-    for (int a = 0; a <= dim; ++a) {
-      passes += relative_permeability(body, pressure[node[a]]) / (dim + 1);
+    double slope = 0, weight = 0;
+    for (int a = 0; a <= dim; ++a)
       for (int d = 0; d < dim; ++d) drive[d] += pressure[node[a]] * gradient[a][d];
-    }
     for (int d = 0; d < dim; ++d)
       slope += drive[d] * drive[d], drive[d] -= liquid_.density * gravity_[d], weight += gravity_[d] * gravity_[d];
-    const double conducts = dt * mesh_.volume[c] * conductivity(c) * passes, pores = mesh_.volume[c] / (dim + 1);
+    const double conducts = dt * mesh_.volume[c] * conductivity(c) * relative_permeability(c, gradient, false).value,
+                 pores = mesh_.volume[c] / (dim + 1);
     double length[dim + 1], steepest = 0;
     for (int a = 0; a <= dim; ++a) {
       length[a] = map<dim>(gradient[a]).norm();
@@ -320,15 +324,9 @@ PetscErrorCode PoreFlow<dim>::tangent(double dt, bool newton, SparseMatrix &matr
     const int *node = nodes_.of_cell(c), body = body_of_[c];
     Vec<dim> drive{};
     const auto gradient = all_gradients<dim>(mesh_.cells[c]);
-    double passes = 0, passes_slope[dim + 1];
-    for (int a = 0; a <= dim; ++a) {
-      const double p = pressure[node[a]], step = 1e-6 * (std::abs(p) + 10);
-      passes += relative_permeability(body, p) / (dim + 1);
-      passes_slope[a] = newton ? (relative_permeability(body, p + step) - relative_permeability(body, p - step)) /
-                                     (2 * step) / (dim + 1)
-                               : 0;
-      for (int d = 0; d < dim; ++d) drive[d] += p * gradient[a][d];
-    }
+    const CellPermeability<dim> passes = relative_permeability(c, gradient, newton);
+    for (int a = 0; a <= dim; ++a)
+      for (int d = 0; d < dim; ++d) drive[d] += pressure[node[a]] * gradient[a][d];
     for (int d = 0; d < dim; ++d) drive[d] -= liquid_.density * gravity_[d];
     const double conducts = dt * mesh_.volume[c] * conductivity(c);
     double entry[(dim + 1) * (dim + 1)];
@@ -340,7 +338,7 @@ PetscErrorCode PoreFlow<dim>::tangent(double dt, bool newton, SparseMatrix &matr
       for (int b = 0; b <= dim; ++b) {
         double cross = 0;
         for (int d = 0; d < dim; ++d) cross += gradient[a][d] * gradient[b][d];
-        entry[a * (dim + 1) + b] = conducts * (passes * cross + passes_slope[b] * flux);
+        entry[a * (dim + 1) + b] = conducts * (passes.value * cross + passes.slope[b] * flux);
       }
       entry[a * (dim + 2)] += mesh_.volume[c] / (dim + 1) * content_slope(body, pressure[node[a]]);
       largest = std::max(largest, std::abs(entry[a * (dim + 2)]));

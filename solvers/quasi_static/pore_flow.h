@@ -3,11 +3,13 @@
 /// Darcy's law with the retention curves and permeabilities of the scene, storage lumped at the nodes and conserved as
 /// mass. Boundaries act as their kinds state (physics/boundary/kind.h), as in the motion of the fluids.
 #include <functional>
+#include <optional>
 
 #include "base/archive.h"
 #include "physics/boundary/pore_conditions.h"
 #include "physics/pores/fluids.h"
 #include "physics/pores/soil_pores.h"
+#include "solvers/quasi_static/cell_permeability.h"
 #include "solvers/quasi_static/element_nodes.h"
 #include "solvers/quasi_static/linear_system.h"
 
@@ -109,7 +111,8 @@ class PoreFlow {
   };
   double saturation_of(int body, double p) const;
   double saturation_slope_of(int body, double p) const;
-  double relative_permeability(int body, double p) const;
+  CellPermeability<dim> relative_permeability(int cell, const std::array<Vec<dim>, dim + 1> &gradient,
+                                              bool with_slope) const;
   double content(int body, double p) const;        ///< of water per volume of soil, at its density without pressure [-]
   double content_slope(int body, double p) const;  ///< [1/Pa]
   double inflow_at(const Supply &supply, double t) const;  ///< mean, weighted by the node's shape function [m/s]
@@ -125,6 +128,7 @@ class PoreFlow {
   Liquid liquid_;
   Vec<dim> gravity_;
   std::vector<SoilPores> soils_;
+  std::vector<std::optional<MeanPermeability>> mean_permeability_;  ///< of soils_ whose pores may dry
   std::vector<char> active_;
   std::vector<int> body_of_node_;  ///< of one of the cells around it
   ElementNodes<dim> nodes_;

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "fixtures.h"
+#include "physics/pores/mean_permeability.h"
+#include "solvers/quasi_static/cell_permeability.h"
 
 namespace talus {
 namespace {
@@ -82,6 +84,69 @@ TEST(Curves, relative_permeabilities_end_at_one_and_nothing) {
     EXPECT_NEAR(gas_permeability(curve, full), 0, 1e-12);
     EXPECT_NEAR(gas_permeability(curve, empty), 1, 1e-3);
   }
+}
+
+/// Over suctions from a hundredth of a pascal to a megapascal: narrow and wide ranges, with and without a part in full
+/// pores, against an integral over the logarithm of suction.
+TEST(Curves, mean_permeability_is_the_mean_over_pressures) {
+  for (const std::string &text : soils) {
+    const SoilPores soil = soil_of(text);
+    const MeanPermeability mean(soil);
+    const auto at = [&](double p) { return liquid_permeability_at(soil, p); };
+    const auto integral = [&](double wet, double dry) {  // of suctions
+      constexpr int parts = 20000;
+      const double least = std::max(wet, 1e-7);
+      double sum = least - wet;  // where soil is full
+      for (int k = 0; k < parts; ++k) {
+        const double a = least * std::pow(dry / least, static_cast<double>(k) / parts),
+                     b = least * std::pow(dry / least, (k + 1.) / parts);
+        sum += (b - a) * (at(-a) + 4 * at(-(a + b) / 2) + at(-b)) / 6;
+      }
+      return sum;
+    };
+    for (const double p : {300., 0., -1e-2, -7., -3e3, -2e4, -4e5})
+      for (const double q : {-1.1e-2, -7.2, -8., -3.1e3, -3e4, -1e6}) {
+        const double wet = std::max(p, q), dry = std::min(p, q);
+        const double expected = (std::max(0., wet) + integral(std::max(0., -wet), -dry)) / (wet - dry);
+        // kinks of measured points and of an air entry are smoothed over an interval of the table, 2 % of a suction
+        EXPECT_NEAR(mean.between(p, at(p), q, at(q)), expected, 1e-3 * expected + 1e-12) << text << p << " " << q;
+        EXPECT_EQ(mean.between(p, at(p), q, at(q)), mean.between(q, at(q), p, at(p)));
+      }
+    EXPECT_EQ(mean.between(5, 1, 700, 1), 1);
+  }
+}
+
+/// Along a line of pressures it is the mean over them without weight, and that of the vertices where nothing but weight
+/// drives; its derivative is its own.
+TEST(Curves, permeability_of_a_cell_is_that_of_its_pressures_or_of_its_vertices) {
+  const SoilPores soil = soil_of(silt);
+  const MeanPermeability mean(soil);
+  const std::array<Vec<2>, 3> gradient{{{-2, -1.5}, {2, 0}, {0, 1.5}}};
+  const auto cell = [&](std::array<double, 3> p, double weight, bool slope = false) {
+    return cell_permeability<2>(soil, mean, p, gradient, weight, slope);
+  };
+  const auto at = [&](double p) { return liquid_permeability_at(soil, p); };
+  const double along = mean.between(0, 1, -2e5, at(-2e5)), vertices = (1 + 2 * at(-2e5)) / 3;
+  EXPECT_NEAR(cell({0, -2e5, -2e5}, 0).value, along, 1e-14);
+  EXPECT_NEAR(cell({0, -2e5, -2e5}, 1e20).value, vertices, 1e-14);
+  EXPECT_NEAR(cell({0, -2e5, -2e5}, 5e5).value, (along + vertices) / 2, 1e-14);  // as steep as heavy
+  EXPECT_NEAR(cell({-1e4, -1e4, -1e4}, 0).value, at(-1e4), 1e-14);
+  EXPECT_EQ(cell({0, 4, 5}, 1e4).value, 1);
+  // pressures that differ by their last digit have no gradient, and no weight is there either
+  const std::array<Vec<2>, 3> flat{};
+  EXPECT_NEAR(cell_permeability<2>(soil, mean, {-5e4, std::nextafter(-5e4, 0.), -5e4}, flat, 0, true).value, at(-5e4),
+              1e-12);
+  for (const auto &p : {std::array{100., -3e4, -2e5}, {-1e3, -1.01e3, -5e4}, {-2e4, -2.1e4, -2.05e4}})
+    for (const double weight : {0., 1e4, 1e6}) {
+      const auto found = cell(p, weight, true);
+      for (int a = 0; a < 3; ++a) {
+        const double step = 1e-4 * std::abs(p[a]);
+        auto more = p, less = p;
+        more[a] += step, less[a] -= step;
+        const double slope = (cell(more, weight).value - cell(less, weight).value) / (2 * step);
+        EXPECT_NEAR(found.slope[a], slope, 1e-3 * std::abs(slope) + 1e-6 * found.value / 1e4) << p[0] << " " << a;
+      }
+    }
 }
 
 TEST(Curves, permeability_follows_porosity) {
