@@ -10,7 +10,7 @@ namespace talus {
 
 Action add_maps(CLI::App &app) {
   struct Arguments {
-    std::string directory, spacing, limit;
+    std::string directory, spacing, limit, moved;
     bool ascii = false;
   };
   auto arguments = std::make_shared<Arguments>();
@@ -27,6 +27,10 @@ Action add_maps(CLI::App &app) {
                    "least thickness [m] of soil that counts for outline, arrival time and speed; by default half the "
                    "size of the particles")
       ->check(above_zero);
+  command
+      ->add_option("--moved", arguments->moved,
+                   "displacement [m] beyond which soil counts as sliding; by default a tenth of the largest")
+      ->check(above_zero);
   command->add_flag("--ascii", arguments->ascii, "write the grids as ESRI ASCII too");
   return [arguments] {
     if (!std::filesystem::is_regular_file(std::filesystem::path(arguments->directory) / "run.h5"))
@@ -37,6 +41,7 @@ Action add_maps(CLI::App &app) {
     std::vector<std::string> options{arguments->directory};
     if (!arguments->spacing.empty()) options.insert(options.end(), {"--spacing", arguments->spacing});
     if (!arguments->limit.empty()) options.insert(options.end(), {"--limit", arguments->limit});
+    if (!arguments->moved.empty()) options.insert(options.end(), {"--moved", arguments->moved});
     if (arguments->ascii) options.push_back("--ascii");
     return run_script("talus_maps.py", options);
   };

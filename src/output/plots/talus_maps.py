@@ -97,7 +97,7 @@ class Grid:
 class Maps:
     """Everything that is mapped, on one grid: thickness and speed are of the soil that slides, the change of thickness is of all soil."""
 
-    def __init__(self, results, spacing=None, limit=None):
+    def __init__(self, results, spacing=None, limit=None, beyond=None):
         self.results, self.axes = results, Axes(results)
         first, last = results.snapshots[0], results.snapshots[-1]
         node, self.cells = results.mesh()
@@ -109,11 +109,12 @@ class Maps:
         if self.grid.spacing < 1.5 * self.size:
             warn(f"cells of {self.grid.spacing:g} m are not much wider than the particles ({self.size:.3g} m): single particles show in the grids; "
                  f"less so with --spacing {SPACING * self.size:.2g} or more")
-        self.sliding = np.union1d(Thickness(last, self.axes.up).sliding, left_mesh(results))
+        sliding = Thickness(last, self.axes.up).sliding if beyond is None else last.ids()[last.scalar("displacement")[0] > beyond]
+        self.sliding = np.union1d(sliding, left_mesh(results))
         moved = largest_displacement(last)
         if not len(self.sliding) or (moved < self.size and not len(left_mesh(results))):
-            raise ValueError(f"{results.folder}: no soil has slid far enough for a map: the largest displacement, {moved:.3g} m, is below the spacing of "
-                             f"particles, {self.size:.3g} m")
+            least = f"the spacing of particles, {self.size:.3g} m" if beyond is None or moved < self.size else f"--moved {beyond:g} m"
+            raise ValueError(f"{results.folder}: no soil has slid far enough for a map: the largest displacement, {moved:.3g} m, is below {least}")
         self.moving = still_moving(last, self.sliding)
         self.last = last
         self._accumulate()
@@ -330,10 +331,11 @@ def main():
     parser.add_argument("folder", metavar="DIR", help="folder of the run")
     parser.add_argument("--spacing", type=float, help="of the grids [m]")
     parser.add_argument("--limit", type=float, help="least thickness [m] of soil that counts for outline, arrival and speed")
+    parser.add_argument("--moved", type=float, help="displacement [m] beyond which soil counts as sliding")
     parser.add_argument("--ascii", action="store_true", help="write the grids as ESRI ASCII too")
     given = parser.parse_args()
     try:
-        maps = Maps(checked(given.folder), given.spacing, given.limit)
+        maps = Maps(checked(given.folder), given.spacing, given.limit, given.moved)
         say_what_is_missing(maps.results)
         folder = pathlib.Path(given.folder) / "maps"
         folder.mkdir(exist_ok=True)
@@ -352,8 +354,9 @@ def main():
     left_out, moved = maps.left_out()
     if left_out > LEFT_OUT * maps.volume[-1]:
         warn(f"{left_out:.3g} m3 that moved by {moved[0]:.3g} to {moved[1]:.3g} m are not mapped, and are {100 * left_out / (left_out + maps.volume[-1]):.2g} % of "
-             f"what moved by more than a particle: soil slides in these maps where it moved by more than a tenth of the largest displacement, which 99.9 % "
-             f"of the mass have at most")
+             f"what moved by more than a particle: soil slides in these maps where it moved by more than "
+             + (f"--moved {given.moved:g} m" if given.moved else "a tenth of the largest displacement, which 99.9 % of the mass have at most")
+             + f"; --moved {maps.size:.2g} maps all of it")
     print(f"maps of {maps.results.title}: {maps.headline()[0].lower() + maps.headline()[1:]}, cells of {maps.grid.spacing:g} m, {maps.grid.shape[0]} x {maps.grid.shape[1]}")
     print(f"projection: {'that of the terrain file' if maps.axes.projection else 'none, coordinates are ' + ('those of the terrain file' if maps.axes.terrain else 'local')}")
     for name, value in maps.numbers().items():

@@ -5,6 +5,7 @@
 import contextlib
 import os
 import pathlib
+import shutil
 import sqlite3
 import subprocess
 import sys
@@ -363,6 +364,22 @@ class Maps(unittest.TestCase):
         self.assertIn(f"with a volume of {gone:.4g} m3 at the start left the mesh", said)
         arrival, _, _ = read(FOLDER / "left/maps/arrival_time.tif")
         self.assertTrue(np.isfinite(arrival[3:12, 1]).all())  # also where soil went that has left
+
+    def test_soil_that_moved_less_than_a_tenth_is_told_and_mapped_on_request(self):
+        shutil.copytree(FOLDER / "block1", FOLDER / "torn", dirs_exist_ok=True)
+        with h5py.File(sorted((FOLDER / "torn/run").glob("0*.h5"))[-1], "r+") as last:
+            moved, volume = last["displacement"][:], last["volume"][:, 0]
+            slow = np.arange(len(moved)) % 4 == 0
+            moved[~slow] *= 20  # the others move by a twentieth of that
+            last["displacement"][...] = moved
+        said = talus("maps", "torn", "--spacing", 0.25)
+        self.assertIn(f"{volume[slow].sum():.3g} m3 that moved by 1 to 1 m are not mapped", said)
+        self.assertIn("by more than a tenth of the largest displacement", said)
+        self.assertAlmostEqual(read(FOLDER / "torn/maps/thickness.tif")[0].sum() * 0.0625, volume[~slow].sum(), delta=1e-6)
+        said = talus("maps", "torn", "--spacing", 0.25, "--moved", 0.9)
+        self.assertNotIn("not mapped", said)
+        self.assertAlmostEqual(read(FOLDER / "torn/maps/thickness.tif")[0].sum() * 0.0625, volume.sum(), delta=1e-6)
+        self.assertIn("is below --moved 50 m", talus("maps", "block1", "--moved", 50, status=2))
 
     def test_what_cannot_be_mapped_is_refused(self):
         (FOLDER / "empty").mkdir(exist_ok=True)
