@@ -145,7 +145,8 @@ void Terrain::take_window(const Grid &grid) {
   if (holes)
     complain(text_of(grid.file, ": the window has no data at ", holes, " of ", ground_.values.size(),
                      " places, the first at ", place(first),
-                     "; fill the holes, such as by gdal_fillnodata.py, or take another window by --window"));
+                     "; fill the holes, such as by gdal_fillnodata.py (and look at what it fills: far from data it "
+                     "makes steps), or take another window by --window"));
   check_steps(ground(), grid.file);
 }
 
@@ -492,10 +493,9 @@ std::vector<std::string> Terrain::doubts() const {
   double deepest = 0;
   for (std::size_t k = 0; k < ground().size(); ++k) deepest = std::max(deepest, ground()[k] - bed()[k]);
   if (options_.air > 0 && options_.air < deepest)
-    sentences.push_back(
-        text_of("the mesh reaches ", length(options_.air),
-                " above the ground (--air, mesh.terrain.air), and the slide is up to ", length(deepest),
-                " thick: soil that runs over steep ground leaves it by the top; more air costs little"));
+    sentences.push_back(text_of(
+        "the mesh reaches ", length(options_.air), " above the ground (--air), and the slide is up to ",
+        length(deepest), " thick: soil that runs over steep ground leaves it by the top; more air costs little"));
   const double meshed = way_meets_slide_ ? options_.size : options_.far_size,
                on_way = std::ldexp(meshed, -options_.halvings);
   if (on_way > deep)

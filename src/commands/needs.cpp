@@ -164,8 +164,8 @@ void sample_functions(const Scene &scene, const std::vector<BodyReport> &bodies)
   });
 }
 
-/// Asks the friction of each base for its value where soil lies and downhill of it. Values that a key does not admit,
-/// as beyond a grid, are remembered by the scene. Collective.
+/// Asks the friction of each base, and the water table that drained soil meets there, for their values where soil lies
+/// and downhill of it. Values that a key does not admit, as beyond a grid, are remembered by the scene. Collective.
 void try_ground_downhill(const Scene &scene, const AnySimulation &simulation) {
   for (const BoundarySource &source : scene.boundary) {
     const Boundary kind = read_boundary(source.kind);
@@ -174,6 +174,9 @@ void try_ground_downhill(const Scene &scene, const AnySimulation &simulation) {
     for (const auto &value : {kind.friction_coefficient, kind.adhesion})
       for (const auto &[x, y, z] : places)
         if (value) (void)value(x, y, z, 0, 0);
+    const WaterTable &table = scene.water.table;
+    for (const auto &[x, y, z] : places)
+      if (kind.friction_coefficient && table.given() && scene.phases == PhaseModel::drained) (void)table.at(x, y, z);
   }
 }
 

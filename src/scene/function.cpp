@@ -31,6 +31,8 @@ struct Function::Expression {
     for (auto &[name, grid] : grids) parser.DefineFunUserData(name, look_up, grid.get(), false);
     parser.SetExpr(text);
     for (const auto &[name, address] : parser.GetUsedVar()) used.insert(name);
+    for (auto &[name, grid] : grids)
+      if (std::regex_search(text, std::regex("\\b" + name + "\\s*\\("))) reads = grid;
     (void)parser.Eval();  // translates the text, so that later calls only run it
     if (parser.GetNumResults() != 1) throw std::invalid_argument("two values; decimals are written with a point");
   }
@@ -43,6 +45,10 @@ struct Function::Expression {
   /// Value before `scale`; not a number where a grid has none, also where the expression went on without it.
   double value() {
     for (auto &[name, grid] : grids) grid->missed = false;
+    if (reads) {
+      const auto &[low, high] = reads->mesh;
+      x = std::clamp(x, low[0], high[0]), y = std::clamp(y, low[1], high[1]), z = std::clamp(z, low[2], high[2]);
+    }
     const double found = parser.Eval();
     return missed() ? std::numeric_limits<double>::quiet_NaN() : found;
   }
@@ -60,6 +66,7 @@ struct Function::Expression {
   mu::Parser parser;
   NamedFunctions functions;
   NamedGrids grids;
+  std::shared_ptr<const PlaceGrid> reads;  ///< one of the grids that the expression calls, all of which know the mesh
   std::set<std::string> used;
   std::shared_ptr<const FunctionLimits> limits;
   double scale;

@@ -87,7 +87,9 @@ struct Pond {
   double west, east;       ///< its ends [m]
   double lowest, highest;  ///< surface of the water [m]
   double depth;            ///< greatest [m]
+  int corners = 1;         ///< of faces under it
   void widen(double x, double surface, double ground) {
+    ++corners;
     west = std::min(west, x), east = std::max(east, x);
     lowest = std::min(lowest, surface), highest = std::max(highest, surface);
     depth = std::max(depth, surface - ground);
@@ -95,7 +97,7 @@ struct Pond {
 };
 
 /// The ponds that stand on the surface of the soil where water rises to `elevation`; less than `film` deep counts as
-/// dry.
+/// dry. In 3D the rim of thin soil on a slope is ragged, and what lies under water in the nooks of a few cells is none.
 std::vector<Pond> ponds_of(const std::vector<SoilFace> &surface, int dimension, int up, double film,
                            const std::function<double(const std::array<double, 3> &)> &elevation) {
   std::map<std::array<double, 3>, int> number;  // of the corners under water
@@ -118,10 +120,12 @@ std::vector<Pond> ponds_of(const std::vector<SoilFace> &surface, int dimension, 
   std::map<int, Pond> ponds;
   for (const auto &[x, corner] : number) {
     const double level = elevation(x);
-    ponds.try_emplace(first(corner), Pond{x[0], x[0], level, level, 0}).first->second.widen(x[0], level, x[up]);
+    ponds.try_emplace(first(corner), Pond{x[0], x[0], level, level, 0, 0}).first->second.widen(x[0], level, x[up]);
   }
+  constexpr int fewest = 12;  // corners
   std::vector<Pond> list;
-  for (const auto &[corner, pond] : ponds) list.push_back(pond);
+  for (const auto &[corner, pond] : ponds)
+    if (dimension == 2 || pond.corners > fewest) list.push_back(pond);
   return list;
 }
 

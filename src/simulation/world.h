@@ -96,6 +96,7 @@ class World {
   std::vector<Source> seepage_sources;  ///< boundaries of pore water in a drained scene: its seepage stages know them,
                                         ///< the motion does not
   BackgroundMesh<dim> mesh;
+  std::array<std::array<double, 3>, 2> mesh_box{};  ///< corners of the box around it, of all ranks [m]
   MPI_Comm comm;
   PrescribedPressure<dim> pressure;  ///< of drained scenes
   std::vector<std::unique_ptr<Body<dim>>> bodies;
@@ -112,6 +113,7 @@ class World {
   void find_strengths();
   std::vector<Source> read_sources();
   void read_mesh(DM plex, const std::string &mesh_file, const Cuts &cuts);
+  void find_mesh_box();
   void check_bodies() const;                                        // world_checks.cpp
   void check_boundaries(const std::vector<Source> &) const;         // world_checks.cpp
   void check_quasi_static_base(const std::string &path) const;      // world_checks.cpp

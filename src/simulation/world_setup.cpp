@@ -5,6 +5,7 @@
 
 #include "base/freed_memory.h"
 #include "base/sum.h"
+#include "scene/place_grid.h"
 #include "scene/reader.h"
 #include "simulation/world.h"
 #include "solvers/quasi_static/pore_flow.h"
@@ -124,6 +125,20 @@ void World<dim>::read_mesh(DM plex, const std::string &mesh_file, const Cuts &cu
                      std::string("cannot serve: ") + error.what());
     }
   comm = mesh.comm();
+  find_mesh_box();
+}
+
+/// Grids of the scene are told of it.
+template <int dim>
+void World<dim>::find_mesh_box() {
+  auto &[low, high] = mesh_box;
+  std::fill_n(low.begin(), dim, std::numeric_limits<double>::max()), std::fill_n(high.begin(), dim, -low[0]);
+  for (const Vec<dim> &x : mesh.position)
+    for (int d = 0; d < dim; ++d) low[d] = std::min(low[d], x[d]), high[d] = std::max(high[d], x[d]);
+  MPI_Allreduce(MPI_IN_PLACE, low.data(), dim, MPI_DOUBLE, MPI_MIN, comm);
+  MPI_Allreduce(MPI_IN_PLACE, high.data(), dim, MPI_DOUBLE, MPI_MAX, comm);
+  if (!scene.root) return;
+  for (const auto &[name, grid] : scene.root->grids()) grid->mesh = mesh_box;
 }
 
 template <int dim>
@@ -215,7 +230,10 @@ void World<dim>::settle_bodies() {
   critical_.clear();
   for (size_t b = 0; b < scene.body.size(); ++b) {
     const BodySource &source = scene.body[b];
-    const double density = soil_density(source, Vec<dim>{}, 0);
+    double density = source.density;  // at its lightest, above the water table
+    if (!(density > 0) || phases.liquid) density = (1 - source.porosity) * source.grain_density;
+    if (phases.prescribed && !(source.density > 0))
+      density += source.porosity * scene.water.density * source.saturation;
     wave_speed_ = std::max(wave_speed_, std::sqrt(constrained_modulus(laws[b]) / density));
     critical_.emplace_back(mesh, laws[b], density, pore_stiffness(scene, source, phases.fluids()));
   }

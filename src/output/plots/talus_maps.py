@@ -123,6 +123,13 @@ class Maps:
             raise ValueError(f"the deposit is nowhere as thick as --limit {self.limit:g} m; its largest thickness is {self.thickness[-1].max():.3g} m")
         self._elevations(first, last)
 
+    def released(self):
+        """Volumes at the start of the soil that is mapped, with what has left the mesh, and of the latter alone [m3]. The deposit has less: it is without what
+        left and it is denser, and its outline encloses less still, as soil that is thinner than the limit does not count."""
+        first = self.results.snapshots[0]
+        volume = first.column("volume").values[:, 0]
+        return tuple(float(volume[np.isin(first.ids(), of, assume_unique=True)].sum()) for of in (self.sliding, left_mesh(self.results)))
+
     def left_out(self):
         """Volume that moved by more than the size of particles and is not mapped [m3], and its least and largest displacement [m]."""
         moved = self.last.scalar("displacement")[0]
@@ -362,6 +369,8 @@ def main():
     for name, value in maps.numbers().items():
         quantity, _, unit = name.rpartition("_")
         print(f"  {words(quantity):20} {value:12.6g} {unit}")
+    released, gone = maps.released()
+    print(f"  {'released':20} {released:12.6g} m3, the volume of this soil at the start{f', of which {gone:.4g} m3 left the mesh' if gone else ''}")
     print(f"  {'volume that slid':20} {maps.volume[-1]:12.6g} m3, in the grid {maps.thickness[-1].sum() * maps.grid.spacing**2:.6g} m3")
     print(f"maps are in {folder}: grids as .tif{', .asc' if given.ascii else ''}, deposit.gpkg, map.png, section.png")
 

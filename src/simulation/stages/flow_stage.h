@@ -48,12 +48,7 @@ class FlowStage : public StaticStage<dim> {
   std::vector<double> events() const {
     const Stage &stage = this->stage_;
     if (stage.hold_loads || stage.steady) return {};
-    std::array<double, 3> low{}, high{};
-    std::fill_n(low.begin(), dim, std::numeric_limits<double>::max()), std::fill_n(high.begin(), dim, -low[0]);
-    for (const Vec<dim> &x : this->run_.world.mesh.position)
-      for (int d = 0; d < dim; ++d) low[d] = std::min(low[d], x[d]), high[d] = std::max(high[d], x[d]);
-    MPI_Allreduce(MPI_IN_PLACE, low.data(), dim, MPI_DOUBLE, MPI_MIN, this->run_.world.comm);
-    MPI_Allreduce(MPI_IN_PLACE, high.data(), dim, MPI_DOUBLE, MPI_MAX, this->run_.world.comm);
+    const auto &[low, high] = this->run_.world.mesh_box;
     const double begin = this->load_at(0), end = this->load_at(1);
     std::vector<double> shares = load_events(this->run_.scene, low, high, begin, end);
     for (double &t : shares) t = (t - begin) / (end - begin);

@@ -100,12 +100,8 @@ class StaticStage : public StageRunner<dim> {
   /// A base of small strains lets soil slide any way at no cost, until its force has found a place where it holds.
   void refuse_soil_that_slid_away() const {
     if (!soil_moves()) return;
-    double low[dim], high[dim], square = 0;
-    std::fill_n(low, dim, std::numeric_limits<double>::max()), std::fill_n(high, dim, -low[0]);
-    for (const Vec<dim> &x : run_.world.mesh.position)
-      for (int d = 0; d < dim; ++d) low[d] = std::min(low[d], x[d]), high[d] = std::max(high[d], x[d]);
-    MPI_Allreduce(MPI_IN_PLACE, low, dim, MPI_DOUBLE, MPI_MIN, run_.world.comm);
-    MPI_Allreduce(MPI_IN_PLACE, high, dim, MPI_DOUBLE, MPI_MAX, run_.world.comm);
+    const auto &[low, high] = run_.world.mesh_box;
+    double square = 0;
     for (int d = 0; d < dim; ++d) square += (high[d] - low[d]) * (high[d] - low[d]);
     const double moved = run_.statics.problem().soil().largest_displacement();
     if (moved <= std::sqrt(square)) return;
@@ -166,6 +162,8 @@ class StaticStage : public StageRunner<dim> {
                          "loads came, and this on the steps: other load_steps may find the equilibrium; with "
                          "softening = false soil keeps the strength that it has at the beginning of the stage");
       if (stage_.when_lost == WhenLost::stop && !goes_on) throw RunFailure(text.str());
+      if (!goes_on && !stage_.hold_loads && stage_.duration > 0)
+        text << "; the next stage begins with the loads of t = " << run_.clock.load_time << " s";
       if (goes_on) {
         run_.statics.lost_stages.push_back(stage_.name);
         run_.clock.time = begin_ + stage_.duration, run_.clock.load_time = load_at(1);

@@ -222,6 +222,15 @@ duration = 1
   const Ending part = look(20, 12);
   EXPECT_TRUE(part.says("bed.asc has no value at (13")) << part.output;
   EXPECT_TRUE(part.says("That place lies downhill of the soil")) << part.output;
+  // so has one of the water table
+  folder.write("bed.asc", grid(20, 19, [](double) { return 20; }));
+  folder.write("water.asc", grid(20, 12, [](double x) { return 190 - 0.5 * x; }));
+  const Ending wet =
+      talus(folder, {"check", "scene.toml", "--json", "--set", "phases=drained", "--set", "grids.water=water.asc",
+                     "--set", "water.table=water(x, y)", "--set", "body.debris.saturated_unit_weight=21 kN/m3"});
+  EXPECT_TRUE(wet.says("water.asc has no value at (13")) << wet.output;
+  EXPECT_TRUE(wet.says("That place lies downhill of the soil")) << wet.output;
+  EXPECT_FALSE(wet.says("above the ground")) << "ten metres below it, and rims are no ponds: " << wet.output;
 }
 
 TEST(Check, FindsTheSameOnTwoRanks) {

@@ -248,6 +248,29 @@ TEST_F(Grids, have_values_where_they_are_asked) {
   expect_refused(with(hole, "angle(x)"), {"boundary.base.friction_angle"});
 }
 
+/// Soil that lies beside the origin of the mesh, and a water table that has values where the soil lies.
+TEST_F(Grids, are_asked_where_soil_lies) {
+  const std::string table = grid(
+      "table.asc", [](double x, double) { return 0.2 * x; }, 9, 9, 1.5, -1);
+  if (rank() == 0)
+    std::ofstream(in_folder("box.csv")) << "part,x,y\noutline,2,0\noutline,3,0\noutline,3,1\noutline,2,1\n"
+                                           "region_soil,2.5,0.5\n";
+  MPI_Barrier(PETSC_COMM_WORLD);
+  const auto end_with = [&](const std::string &table) {
+    Scene read = parse_scene("phases = \"drained\"\ngravity = 10\n[mesh]\nsection = \"box.csv\"\nsize = 0.3\n" +
+                                 ("[grids]\nwater = \"" + in_folder("table.asc")) + "\"\n[water]\ntable = " + table +
+                                 "\n[body.soil]\nregion = \"soil\"\nporosity = 0.4\ngrain_density = 2650\n"
+                                 "saturation = 0.5\nlaw = \"linear_elastic\"\nyoung_modulus = 1e7\n"
+                                 "poisson_ratio = 0.2\n[boundary.walls]\ngroup = [\"base\", \"left\", \"right\"]\n"
+                                 "kind = \"roller\"\n[[stage]]\nduration = 0.01\n",
+                             in_folder("scene.toml"));
+    const auto simulation = make_simulation(PETSC_COMM_WORLD, read, quiet());
+    simulation->run();
+    return simulation->snapshot();
+  };
+  expect_same(end_with("\"0.2 * x\""), end_with("\"water(x, 0)\""));
+}
+
 /// A grid in another projection than the terrain is refused, whether the mesh is made by the scene or is a file;
 /// results of both have the origin of the map.
 TEST_F(Grids, have_the_projection_of_the_terrain) {

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "complaint.h"
+#include "scene/place_grid.h"
 
 namespace {
 std::atomic<long> allocations = 0;
@@ -84,6 +85,23 @@ TEST(Function, CallsNamedFunctions) {
   const Function function("(x < 24) * rain(t) + rain(10)", 1, named);
   EXPECT_DOUBLE_EQ(function(0, 0, 0, 5), 7.5);
   EXPECT_DOUBLE_EQ(function(30, 0, 0, 5), 5);
+}
+
+/// The outermost values of a grid hold for half a spacing, and what an expression asks of it is asked inside the mesh.
+TEST(Function, ReadsGridsAsFarAsTheirCellsReach) {
+  const auto grid = std::make_shared<PlaceGrid>();
+  grid->grid.columns = grid->grid.rows = 2;
+  grid->grid.spacing = 4;
+  grid->grid.values = {1, 2, 3, 4};
+  const Function function("bed(x, y) + 0 * z", 1, {}, {{"bed", grid}}), other("x", 1, {}, {{"bed", grid}});
+  EXPECT_DOUBLE_EQ(function(2, 2, 0, 0), 2.5);
+  EXPECT_DOUBLE_EQ(function(-1.9, 5.9, 0, 0), 3) << "half a spacing";
+  EXPECT_TRUE(std::isnan(function(-2.1, 0, 0, 0)));
+  EXPECT_TRUE(std::isnan(function(0, 6.1, 0, 0)));
+  grid->mesh = {std::array{-1., -1., 0.}, std::array{4., 4., 9.}};
+  EXPECT_DOUBLE_EQ(function(-7, 0, 0, 0), 1) << "a node that has left the mesh";
+  EXPECT_DOUBLE_EQ(function(11, 4.5, 20, 0), 4);
+  EXPECT_DOUBLE_EQ(other(-7, 0, 0, 0), -7) << "an expression without grids is asked anywhere";
 }
 
 TEST(Function, KnowsWhenItChanges) {
