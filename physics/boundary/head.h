@@ -22,8 +22,11 @@ struct Head {
   void fields(Visitor &&v) {
     v.function("level", level, metre, {-1e5, 1e5}, of::time, "elevation of the water level, along `up`, function of t");
   }
+  /// At the level itself the face is wet: its pressure is that of a film, and not zero, as of a face that may dry.
   double outside(double, double, double, double t, const LiquidBeyond &liquid) const {
-    return std::max(0., liquid.unit_weight * (level(t) - liquid.elevation));
+    constexpr double film = 1e-6;  // [m]
+    const double above = level(t) - liquid.elevation;
+    return above > -film ? liquid.unit_weight * std::max(above, film) : 0;
   }
   /// Nothing enters where the face is dry.
   double supply(double, double, double, double) const { return 0; }

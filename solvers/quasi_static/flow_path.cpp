@@ -16,7 +16,7 @@ PetscErrorCode follow_flow(MPI_Comm comm, QuasiStatic<dim> *soil, PoreFlow<dim> 
   constexpr double soon = 1e-6;    // of the path: events that are nearer to the last are passed over
   constexpr double slight = 0.01;  // of the pressure: changes that are less are resolved no better, nor is their noise
   constexpr double driest = 1e9;   // [Pa]: suction at which soil holds no water any more, Fredlund & Xing (1994)
-  FlowStep<dim> step_of_flow(soil, flow, settings);
+  FlowStep<dim> step_of_flow(soil, flow, settings, path.steady);
   PetscCall(step_of_flow.setup());
   const int count = flow.nodes().count();
   std::vector<FlowMeasure> before(count), now(count), rate(count), start(count);

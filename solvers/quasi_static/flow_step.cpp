@@ -145,6 +145,7 @@ PetscErrorCode FlowStep<dim>::residual(::Vec x, ::Vec f) {
   if (soil_) PetscCall(volume_strain(balance.rest, balance.size));
   PetscCall(flow_.nodes().add_to_global(balance.size, water_));
   PetscCall(VecNorm(water_, NORM_2, &water_moved_));
+  if (steady_) PetscCall(flow_.nodes().to_local(water_, size_));
   if (scale_open_) water_scale_ = std::max(water_scale_, water_moved_);
   PetscCall(flow_.nodes().add_to_global(balance.rest, water_));
   PetscCall(flow_.nodes().to_local(water_, rest_));
@@ -234,11 +235,16 @@ PetscErrorCode FlowStep<dim>::snes_converged(SNES solver, PetscInt iteration, Pe
   for (PetscInt k = 0; k < step.rows_u_ + step.rows_p_; ++k) sums[k >= step.rows_u_] += value[k] * value[k];
   PetscCall(VecRestoreArrayRead(f, &value));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, step.flow_.nodes().comm()));
+  double worst = 0;  // of a node, by its own terms
+  for (const PetscInt i : step.owned_)
+    if (step.steady_ && !step.flow_.fixed(static_cast<int>(i)) && step.size_[i] > 0)
+      worst = std::max(worst, std::abs(step.rest_[i]) / step.size_[i]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE, MPI_MAX, step.flow_.nodes().comm()));
   const double tolerance = step.settings_.tolerance, forces = step.soil_ ? step.soil_->force_scale() : 0;
   // water that does not move before the soil does is measured by what the soil moves, once its forces are in balance
   const double water = step.soil_ ? std::max(step.water_scale_, step.water_moved_) : step.water_scale_;
   const auto within = [&](double share) {
-    return std::sqrt(sums[0]) <= share * forces && std::sqrt(sums[1]) <= share * water;
+    return std::sqrt(sums[0]) <= share * forces && std::sqrt(sums[1]) <= share * water && worst <= share;
   };
   step.balanced_ = within(tolerance), step.nearly_balanced_ = within(stalled * tolerance);
   if (!std::isfinite(norm))

@@ -12,8 +12,8 @@ template <int dim>
 class FlowStep {
  public:
   /// Without `soil` it is at rest. Both must be active and outlive the steps.
-  FlowStep(QuasiStatic<dim> *soil, PoreFlow<dim> &flow, const QuasiStaticSource &settings)
-      : soil_(soil), flow_(flow), settings_(settings) {}
+  FlowStep(QuasiStatic<dim> *soil, PoreFlow<dim> &flow, const QuasiStaticSource &settings, bool steady)
+      : soil_(soil), flow_(flow), settings_(settings), steady_(steady) {}
   PetscErrorCode setup();
   /// Solves for the state a step dt later, at the loads of `load_time`; prescribed motion acts over (load_time -
   /// travel, load_time). What it found is a trial state until `commit`. Collective.
@@ -45,6 +45,8 @@ class FlowStep {
   Matrix blocks_, matrix_;
   NonlinearSolver solver_;
   std::vector<double> rest_;     ///< water balance of the last residual, of local nodes [m3]
+  std::vector<double> size_;     ///< sizes of its terms, of steady flow [m3]
+  bool steady_;                  ///< each node is in balance by its own terms: those of dry soil are small
   std::vector<PetscInt> owned_;  ///< local pressure nodes in the order of their rows
   double load_time_ = 0, dt_ = 0;
   double water_scale_ = 0;  ///< size of the terms of the balance of water before the first iteration [m3]

@@ -175,9 +175,10 @@ class StaticStage : public StageRunner<dim> {
     run_.dynamics.set_loading(stage_, 0);
     const Balance sums = run_.balance();
     if (sums.applied > 0) text << "; unbalanced force ratio of the particles that take it over " << sums.ratio();
-    if (sums.applied > 0 && sums.ratio() > swings)
-      text << ", by which soil at rest swings as soon as it may move: quasi_static.elements = \"patches\" or a dynamic "
-              "stage with damping after this one lets it rest";
+    if (sums.applied > 0 && sums.ratio() > swings && soil_moves())
+      text << ", by which soil at rest swings as soon as it may move: "
+           << (water_flows() ? "" : "quasi_static.elements = \"patches\" or ")
+           << "a dynamic stage with damping after this one lets it rest";
     run_.recorder.note(text.str());
     run_.progress.met = true;
     if (sets_pressure()) run_.statics.take_seeped_pressure();
