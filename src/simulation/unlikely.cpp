@@ -397,6 +397,12 @@ std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<L
         {"saturated_unit_weight", body.saturated_unit_weight, newton_per_cubic_metre, 8e3, 60e3, of_weights},
         {"porosity", body.porosity, one, 0, 0.9, {}},
         {"permeability", body.permeability, square_metre, 0, 1e-6, {{"m/s (key hydraulic_conductivity)", water_flow}}},
+        {"hydraulic_conductivity",
+         body.hydraulic_conductivity,
+         metre_per_second,
+         0,
+         1,
+         {{"mm/s", 1e-3}, {"m/h", 1. / 3600}, {"m/day", 1. / 86400}}},
     };
     std::visit(
         [&](const auto &law) {

@@ -295,6 +295,48 @@ void doubt_faces_of_water(const Scene &scene, const std::vector<SoilFace> &surfa
   }
 }
 
+/// Open water that stands on none of its faces at any time, and rain that no sky has: levels and intensities in another
+/// unit.
+void doubt_levels_and_rain(const Scene &scene, const std::vector<SoilFace> &surface,
+                           std::vector<std::string> &sentences) {
+  constexpr double heaviest = 1e-3, mm_per_hour = 1e-3 / 3600;  // [m/s]; 1.8 m have fallen in a day, 0.4 m in an hour
+  constexpr int intervals = 50;
+  const int up = scene.vertical();
+  double end = 0;
+  for (const Stage &stage : scene.stage)
+    if (!stage.hold_loads) end += stage.duration;
+  const double g = scene.gravity.empty() ? 0 : -scene.gravity[up];
+  for (std::size_t b = 0; b < scene.boundary.size(); ++b) {
+    const Boundary kind = read_boundary(scene.boundary[b].kind);
+    const bool anywhere = std::ranges::count(scene.boundary[b].group, std::string(free_surface));
+    if (kind.water != OnWater::seepage) continue;
+    double pressure = 0, rain = 0;
+    bool touched = false;
+    for (const SoilFace &face : surface) {
+      if (!(face.water == static_cast<int>(b) || (anywhere && face.water < 0))) continue;
+      touched = true;
+      const auto &x = face.corner[0];
+      for (int k = 0; k <= intervals; ++k) {
+        const double t = end * k / intervals;
+        for (int a = 0; a < scene.dimension && kind.open_water; ++a) {
+          const auto &corner = face.corner[a];
+          pressure = std::max(pressure,
+                              kind.outside(corner[0], corner[1], corner[2], t, {scene.water.density * g, corner[up]}));
+        }
+        if (kind.supply) rain = std::max(rain, kind.supply(x[0], x[1], x[2], t));
+      }
+    }
+    if (touched && kind.open_water && !(pressure > 0))
+      sentences.push_back("boundary." + scene.boundary[b].name +
+                          " has its water below all of its faces at all times, so that none stands on them and water "
+                          "may only leave there. Is its level meant?");
+    if (rain > heaviest)
+      sentences.push_back("boundary." + scene.boundary[b].name + " brings up to " + rounded(rain / mm_per_hour) +
+                          " mm/h of rain, more than ever fell; a number without a unit counts in m/s. Is it in mm/h or "
+                          "mm/day, as \"20 mm/h\"?");
+  }
+}
+
 /// The table is what pores begin with where their water moves, and no stage looks at it again unless it prescribes the
 /// pressure.
 void doubt_changing_table(const Scene &scene, std::vector<std::string> &sentences) {
@@ -430,6 +472,7 @@ void doubt_water(const Scene &scene, const Extent &soil, const std::vector<SoilF
                  std::vector<std::string> &sentences) {
   const double height = soil.of(scene.vertical());
   doubt_table(scene, soil, surface, sentences);
+  doubt_levels_and_rain(scene, surface, sentences);
   doubt_excess_alone(scene, sentences);
   if (phase_traits(scene.phases).liquid) {
     doubt_dry_ponds(scene, soil, surface, sentences);

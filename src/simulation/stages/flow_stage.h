@@ -36,8 +36,8 @@ class FlowStage : public StaticStage<dim> {
     if (!this->run_.world.phases.liquid) return;
     const double took = entered_ + handed_;
     const auto digits = text.precision(6);
-    text << "; " << std::abs(entered_) << " kg of water " << (entered_ < 0 ? "left" : "entered") << ", and particles hold "
-         << std::abs(took) << " kg " << (took < 0 ? "less" : "more") << " than before";
+    text << "; " << std::abs(entered_) << " kg of water " << (entered_ < 0 ? "left" : "entered")
+         << ", and particles hold " << std::abs(took) << " kg " << (took < 0 ? "less" : "more") << " than before";
     text.precision(digits);
     if (std::abs(handed_) > visible * std::abs(entered_) && std::abs(handed_) > visible / 100 * water_)
       text << " (smaller cells, and fewer changes between motion and such stages, lose or gain less: water_handed_kg)";

@@ -116,6 +116,42 @@ TEST(Check, DoubtsPondsOfMovingWaterWithoutABoundary) {
   EXPECT_FALSE(pool("-0.1").says(enters));
 }
 
+/// Levels below all soil, rain of metres a second and conductivities of gravel pits are in other units mostly.
+TEST(Check, DoubtsLevelsAndRainInOtherUnits) {
+  const Folder folder;
+  write_wet_block(folder);
+  const auto output = [&](const std::vector<std::string> &overrides) {
+    std::vector<std::string> arguments{"check",
+                                       "scene.toml",
+                                       "--json",
+                                       "--set",
+                                       "phases=unsaturated",
+                                       "--set",
+                                       "body.sand.retention.material=loam",
+                                       "--set",
+                                       "body.sand.relative_permeability.curve=constant"};
+    for (const std::string &one : overrides) arguments.insert(arguments.end(), {"--set", one});
+    const Ending ending = talus(folder, arguments);
+    EXPECT_EQ(ending.status, 0) << ending.output;
+    return ending;
+  };
+  const auto with = [&](const char *kind, const char *value) {
+    return output({"boundary.top.group=free_surface", std::string("boundary.top.kind=") + kind,
+                   std::string("boundary.top.") + value});
+  };
+  const char *low = "boundary.top has its water below all of its faces", *heavy = "of rain, more than ever fell";
+  EXPECT_TRUE(with("head", "level=-5").says(low)) << with("head", "level=-5").output;
+  EXPECT_FALSE(with("head", "level=0.4").says(low));
+  EXPECT_FALSE(with("head", "level=[[0, -5], [0.04, 1]]").says(low)) << "it rises";
+  EXPECT_TRUE(with("rainfall", "intensity=2").says("boundary.top brings up to 7200000 mm/h of rain"))
+      << with("rainfall", "intensity=2").output;
+  EXPECT_FALSE(with("rainfall", "intensity=20 mm/h").says(heavy));
+  const char *fast = "body.sand.hydraulic_conductivity is 4 m/s, which hardly any soil has";
+  EXPECT_TRUE(output({"body.sand.permeability=0", "body.sand.hydraulic_conductivity=4"}).says(fast) ||
+              output({"body.sand.hydraulic_conductivity=4"}).says(fast))
+      << output({"body.sand.hydraulic_conductivity=4"}).output;
+}
+
 /// Water that is softer than the soil takes no load: B = 1 / (1 + 0.4 * 0.83 MPa / 2.2 MPa).
 TEST(Check, DoubtsSoftWaterAndHugePores) {
   const Folder folder;

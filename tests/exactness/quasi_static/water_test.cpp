@@ -274,6 +274,41 @@ TEST(Water, moves_on_where_little_changes) {
     }
 }
 
+/// The steady state of a closed column above a water table is that of rest, from whatever suction it starts, though
+/// sand that dries hardly conducts; and ground at the level of a head is wet.
+TEST(Water, ends_at_rest_whatever_it_starts_from) {
+  const std::string text = wet_block +
+                           "[body.soil.retention]\ncurve = \"van_genuchten\"\nreference_suction = 1e3\nshape = 0.7\n"
+                           "[body.soil.relative_permeability]\ncurve = \"van_genuchten_mualem\"\nshape = 0.7\n"
+                           "[boundary.well]\ngroup = \"base\"\nkind = \"pore_pressure\"\npressure = 0\n"
+                           "[boundary.cover]\ngroup = \"surface\"\nkind = \"impermeable\"\n"
+                           "[[stage]]\nname = \"rest\"\nkind = \"seepage\"\nsteady = true\nduration = \"1 day\"\n";
+  for (const char *start : {"water.suction=4e3", "water.suction=20e3"}) {
+    const Solved solved = solve(text, {"phases=unsaturated", "water.table=[[0, 0]]", start});
+    EXPECT_LT(
+        largest(solved, 1,
+                [&](size_t p, int) { return solved.value("pore_pressure", p) / 1e4 + solved.value("position", p, 1); }),
+        1e-4)
+        << start;  // of a metre of water; a balance of the sum over all nodes leaves 0.1
+  }
+}
+
+TEST(Water, enters_ground_at_its_level) {
+  const std::string text = wet_block +
+                           "[body.soil.retention]\nmaterial = \"loam\"\n"
+                           "[body.soil.relative_permeability]\ncurve = \"van_genuchten_mualem\"\nshape = 0.36\n"
+                           "[boundary.film]\ngroup = \"surface\"\nkind = \"head\"\n"
+                           "[[stage]]\nname = \"wetting\"\nkind = \"seepage\"\nduration = \"2 h\"\n";
+  const auto entered = [&](const char *level) {
+    const Solved solved = solve(text, {"phases=unsaturated", "water.table=[[0, -9]]", "water.suction=50e3", level});
+    return -solved.history.column("water_out_kg").back();
+  };
+  const double above = entered("boundary.film.level=1.001");
+  EXPECT_GT(above, 10);
+  EXPECT_NEAR(entered("boundary.film.level=1"), above, 0.01 * above);
+  EXPECT_LT(entered("boundary.film.level=0.999"), 1e-6 * above);
+}
+
 /// Dry soil that is wetted from one side takes as much water in cells that are wider than its front as in fine ones:
 /// 1.04 in cells of 0.3 m, 1.00 in 0.15 m, of what it takes in 0.05 m; with the mean of the vertices 1.44 and 1.21.
 TEST(Water, enters_dry_soil_alike_in_coarse_cells) {
