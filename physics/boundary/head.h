@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <limits>
 
 #include "base/units.h"
 #include "physics/boundary/kind.h"
@@ -22,11 +23,13 @@ struct Head {
   void fields(Visitor &&v) {
     v.function("level", level, metre, {-1e5, 1e5}, of::time, "elevation of the water level, along `up`, function of t");
   }
-  /// At the level itself the face is wet: its pressure is that of a film, and not zero, as of a face that may dry.
+  /// At the level itself, to round-off, the face is wet: its pressure is the least above zero, and not that of a face
+  /// which may dry.
   double outside(double, double, double, double t, const LiquidBeyond &liquid) const {
-    constexpr double film = 1e-6;  // [m]
+    constexpr double round_off = 1e-6;  // [m]
     const double above = level(t) - liquid.elevation;
-    return above > -film ? liquid.unit_weight * std::max(above, film) : 0;
+    if (above < -round_off || !(liquid.unit_weight > 0)) return 0;
+    return std::max(liquid.unit_weight * above, std::numeric_limits<double>::min());
   }
   /// Nothing enters where the face is dry.
   double supply(double, double, double, double) const { return 0; }
