@@ -230,10 +230,15 @@ void World<dim>::settle_bodies() {
   critical_.clear();
   for (size_t b = 0; b < scene.body.size(); ++b) {
     const BodySource &source = scene.body[b];
-    double density = source.density;  // at its lightest, above the water table
-    if (!(density > 0) || phases.liquid) density = (1 - source.porosity) * source.grain_density;
-    if (phases.prescribed && !(source.density > 0))
-      density += source.porosity * scene.water.density * source.saturation;
+    double density = 0;  // where its soil is heaviest
+    for (const std::string &region : source.region)
+      for (const int cell : mesh.region(region)) {
+        Vec<dim> centre{};
+        for (const int node : mesh.cells[cell].node)
+          for (int d = 0; d < dim; ++d) centre[d] += mesh.position[node][d] / (dim + 1);
+        density = std::max(density, soil_density(source, centre, 0));
+      }
+    MPI_Allreduce(MPI_IN_PLACE, &density, 1, MPI_DOUBLE, MPI_MAX, comm);
     wave_speed_ = std::max(wave_speed_, std::sqrt(constrained_modulus(laws[b]) / density));
     critical_.emplace_back(mesh, laws[b], density, pore_stiffness(scene, source, phases.fluids()));
   }
