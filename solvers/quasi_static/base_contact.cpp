@@ -45,13 +45,18 @@ BaseForce<dim> force_at_given_friction(const Vec<dim> &spring, const Vec<dim> &n
   return f;
 }
 
+/// Adhesion comes with the force that presses, along a steep line: at once, it would make the force of soil that is
+/// about to lift off jump, and iterations go to and fro there.
 template <int dim>
 BaseForce<dim> force_on_base(const Vec<dim> &spring, const Vec<dim> &normal, double friction, double adhesion) {
+  constexpr double steep = 3;  // most shear over normal force: with 10, soil that leans on a base wedges itself
   const ColumnVector<dim> s = map<dim>(spring), n = map<dim>(normal);
   const double pressing = s.dot(n);
   if (pressing < 0) return {{}, Square<dim>::Zero(), false, false};
-  BaseForce<dim> f = force_at_given_friction<dim>(spring, normal, adhesion + friction * pressing);
-  if (f.slides) f.tangent += friction * (s - pressing * n).normalized() * n.transpose();
+  const double full = friction * pressing + adhesion, most = std::min(full, std::max(steep, friction) * pressing);
+  const double rise = most < full ? std::max(steep, friction) : friction;
+  BaseForce<dim> f = force_at_given_friction<dim>(spring, normal, most);
+  if (f.slides) f.tangent += rise * (s - pressing * n).normalized() * n.transpose();
   return f;
 }
 

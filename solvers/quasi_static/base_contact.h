@@ -25,8 +25,8 @@ struct BaseForce {
 };
 
 /// Coulomb's law. `friction` is the tangent of the friction angle, `adhesion` the force that the base bears along
-/// itself without normal force [N]. Slip leaves the normal force as it is, and a base that nothing presses on bears
-/// nothing.
+/// itself beside friction [N], though no more with it than three times the normal force. Slip leaves the normal force
+/// as it is, and a base that nothing presses on bears nothing.
 template <int dim>
 BaseForce<dim> force_on_base(const Vec<dim> &spring, const Vec<dim> &n, double friction, double adhesion);
 /// The same with a friction of `most` [N] whatever presses on the base, as in the trials of a factor of safety: the

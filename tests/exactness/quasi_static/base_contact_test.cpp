@@ -294,6 +294,16 @@ TEST(BaseContact, bears_what_coulomb_admits) {
     }
 }
 
+/// Adhesion comes with the force that presses, so that nothing jumps where soil lifts off, and acts in full where that
+/// force is a half of it, for friction of 1.
+TEST(BaseContact, does_not_jump_as_soil_lifts_off) {
+  const Vec<2> n{0, -1};
+  EXPECT_NEAR(force_on_base<2>({5, -1e-9}, n, 1, 4).borne[0], 3e-9, 1e-20);
+  EXPECT_EQ(force_on_base<2>({5, 1e-9}, n, 1, 4).borne[0], 0);
+  EXPECT_NEAR(force_on_base<2>({9, -2}, n, 1, 4).borne[0], 6, 1e-12);
+  EXPECT_NEAR(force_on_base<2>({9, -3}, n, 1, 4).borne[0], 7, 1e-12);
+}
+
 /// Where friction is given, no admissible force is closer to that of the spring: the way to each of them leads away
 /// from it.
 TEST(BaseContact, bears_the_closest_force_where_friction_is_given) {
