@@ -87,7 +87,7 @@ TEST(Check, DoubtsWhatFitsTheSoilBadly) {
   EXPECT_TRUE(says({"mesh.size=0.3"}, few));
   EXPECT_FALSE(says({"body.sand.tension_cutoff=1e3", "body.sand.cohesion=1e3"}, "has no effect"));
   EXPECT_TRUE(
-      says({"body.sand.tension_cutoff=1e4", "body.sand.cohesion=1e3"}, "tension_cutoff is 1e+04 Pa and has no effect"));
+      says({"body.sand.tension_cutoff=1e4", "body.sand.cohesion=1e3"}, "tension_cutoff is 10000 Pa and has no effect"));
   EXPECT_FALSE(says({drained, "water.table=[[0, 0.4], [2, 0.2]]"}, "water.table"));
   EXPECT_TRUE(says({drained, "water.table=[[0, 1000]]"}, "stands 999.5 m or more above the top of the soil"));
   EXPECT_TRUE(says({drained, "water.table=[[0, 1e5], [2, 1e3]]"}, "breaks off in its first steps"))
@@ -135,7 +135,7 @@ TEST(Check, DoubtsSectionsInMillimetresBeforeTheirMesh) {
   folder.write("millimetres.csv", "part,x,y\noutline,0,0\noutline,20000,0\noutline,20000,10000\noutline,0,10000\n");
   const Ending ending = talus(folder, {"mesh", "millimetres.csv", "--size", "2000", "-o", "a.msh"});
   EXPECT_EQ(ending.status, 0) << ending.output;
-  EXPECT_TRUE(ending.says("The mesh is 1e+04 m high; coordinates count in metres. Is the mesh in millimetres or feet?"))
+  EXPECT_TRUE(ending.says("The mesh is 10000 m high; coordinates count in metres. Is the mesh in millimetres or feet?"))
       << ending.output;
   const Ending fine = talus(folder, {"mesh", "millimetres.csv", "--size", "0.5", "-o", "b.msh"});
   EXPECT_NE(fine.status, 0);

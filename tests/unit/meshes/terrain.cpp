@@ -592,7 +592,7 @@ TEST_F(TerrainFiles, AreFineAlongTheWay) {
   EXPECT_FALSE(doubts(o, "the way leaves the terrain"));
   EXPECT_FALSE(doubts(o, "the mesh reaches"));
   o.air = 5;
-  EXPECT_TRUE(doubts(o, "the mesh reaches 5 m above the ground (--air, mesh.terrain.air), and the slide is up to"));
+  EXPECT_TRUE(doubts(o, "the mesh reaches 5 m above the ground (--air), and the slide is up to"));
   o.air = 30;
   o.way[4] += 30;
   EXPECT_TRUE(doubts(o, "the way leaves the terrain that is meshed: its point 3 is at x = 5230, y = "));
