@@ -1,5 +1,5 @@
 #pragma once
-/// Relative permeability of a cell in which the pressure is linear, docs/theory/seepage.md (2.2) and (2.3).
+/// Relative permeability of a cell in which the pressure is linear, docs/theory/seepage.md (2.2).
 #include <array>
 #include <cmath>
 

@@ -295,16 +295,12 @@ void doubt_faces_of_water(const Scene &scene, const std::vector<SoilFace> &surfa
   }
 }
 
-/// Open water that stands on none of its faces at any time, and rain that no sky has: levels and intensities in another
-/// unit.
+/// Open water that stands on none of its faces, and rain that no sky has: levels and intensities in another unit. What
+/// changes is asked for the start alone, as water.level is (levels_of).
 void doubt_levels_and_rain(const Scene &scene, const std::vector<SoilFace> &surface,
                            std::vector<std::string> &sentences) {
   constexpr double heaviest = 1e-3, mm_per_hour = 1e-3 / 3600;  // [m/s]; 1.8 m have fallen in a day, 0.4 m in an hour
-  constexpr int intervals = 50;
   const int up = scene.vertical();
-  double end = 0;
-  for (const Stage &stage : scene.stage)
-    if (!stage.hold_loads) end += stage.duration;
   const double g = scene.gravity.empty() ? 0 : -scene.gravity[up];
   for (std::size_t b = 0; b < scene.boundary.size(); ++b) {
     const Boundary kind = read_boundary(scene.boundary[b].kind);
@@ -316,19 +312,16 @@ void doubt_levels_and_rain(const Scene &scene, const std::vector<SoilFace> &surf
       if (!(face.water == static_cast<int>(b) || (anywhere && face.water < 0))) continue;
       touched = true;
       const auto &x = face.corner[0];
-      for (int k = 0; k <= intervals; ++k) {
-        const double t = end * k / intervals;
-        for (int a = 0; a < scene.dimension && kind.open_water; ++a) {
-          const auto &corner = face.corner[a];
-          pressure = std::max(pressure,
-                              kind.outside(corner[0], corner[1], corner[2], t, {scene.water.density * g, corner[up]}));
-        }
-        if (kind.supply) rain = std::max(rain, kind.supply(x[0], x[1], x[2], t));
+      for (int a = 0; a < scene.dimension && kind.open_water; ++a) {
+        const auto &corner = face.corner[a];
+        pressure =
+            std::max(pressure, kind.outside(corner[0], corner[1], corner[2], 0, {scene.water.density * g, corner[up]}));
       }
+      if (kind.supply) rain = std::max(rain, kind.supply(x[0], x[1], x[2], 0));
     }
-    if (touched && kind.open_water && !(pressure > 0))
+    if (touched && kind.open_water && kind.changes.empty() && !(pressure > 0))
       sentences.push_back("boundary." + scene.boundary[b].name +
-                          " has its water below all of its faces at all times, so that none stands on them and water "
+                          " has its water below all of its faces, so that none stands on them and water "
                           "may only leave there. Is its level meant?");
     if (rain > heaviest)
       sentences.push_back("boundary." + scene.boundary[b].name + " brings up to " + rounded(rain / mm_per_hour) +
