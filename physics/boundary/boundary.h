@@ -47,7 +47,8 @@ class Boundary {
       return on_soil_3d_;
   }
   std::function<double(double x, double y, double z, double t, const LiquidBeyond &)> outside;
-  std::function<double(double x, double y, double z, double t)> supply, inflow, gas_outside;
+  std::function<double(double x, double y, double z, double t)> inflow, gas_outside;
+  std::function<double(double x, double y, double z, double t, double upward)> supply;
   std::function<double(double x, double y, double z, double t, double slip)> friction_coefficient, adhesion;
   std::optional<ShearZone> shear_zone;  ///< of a contact that rubbing heats
 
@@ -156,7 +157,7 @@ requires(!std::same_as<Kind, Boundary>) Boundary::Boundary(Kind of)
       return kind->outside(x, y, z, t, liquid);
     };
   if constexpr (member::supply<Kind>)
-    supply = [kind](double x, double y, double z, double t) { return kind->supply(x, y, z, t); };
+    supply = [kind](double x, double y, double z, double t, double upward) { return kind->supply(x, y, z, t, upward); };
   if constexpr (member::inflow<Kind>)
     inflow = [kind](double x, double y, double z, double t) { return kind->inflow(x, y, z, t); };
   if constexpr (member::gas_outside<Kind>)

@@ -32,7 +32,7 @@ struct Head {
     return std::max(liquid.unit_weight * above, std::numeric_limits<double>::min());
   }
   /// Nothing enters where the face is dry.
-  double supply(double, double, double, double) const { return 0; }
+  double supply(double, double, double, double, double) const { return 0; }
 };
 
 }  // namespace talus

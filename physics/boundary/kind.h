@@ -124,10 +124,11 @@ template <class Kind>
 concept open_water = requires {
   { Kind::open_water } -> std::convertible_to<bool>;
 };
-/// `supply(x, y, z, t)`: volume of liquid that may enter per area and time [m/s].
+/// `supply(x, y, z, t, upward)`: volume of liquid that may enter per area and time [m/s] by a face whose outer normal
+/// has the component `upward` against gravity [-].
 template <class Kind>
 concept supply = requires(const Kind &kind) {
-  { kind.supply(0., 0., 0., 0.) } -> std::same_as<double>;
+  { kind.supply(0., 0., 0., 0., 1.) } -> std::same_as<double>;
 };
 /// `inflow(x, y, z, t)`: volume of liquid that enters per area and time [m/s].
 template <class Kind>

@@ -12,9 +12,9 @@ namespace talus {
 
 template <int dim>
 PetscErrorCode PoreConditions<dim>::setup(const BackgroundMesh<dim> &mesh, const std::vector<Source> &sources,
-                                          bool sealed, int vertical) {
+                                          bool sealed, int vertical, const Vec<dim> &upward) {
   PetscFunctionBeginUser;
-  sources_ = &sources, sealed_ = sealed, vertical_ = vertical;
+  sources_ = &sources, sealed_ = sealed, vertical_ = vertical, upward_ = upward;
   std::set<std::pair<int, int>> open;  // facets with a face of the fluids
   std::vector<SourceFacets<dim>> walls, faces;
   for (int s = 0; s < static_cast<int>(sources.size()); ++s) {

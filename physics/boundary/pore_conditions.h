@@ -28,8 +28,10 @@ template <int dim>
 class PoreConditions {
  public:
   using Source = NamedBoundary;
-  /// `sealed`: the surface of the soil, where no boundary acts on it, lets water out and not in. Collective.
-  PetscErrorCode setup(const BackgroundMesh<dim> &mesh, const std::vector<Source> &sources, bool sealed, int vertical);
+  /// `sealed`: the surface of the soil, where no boundary acts on it, lets water out and not in. `upward`: unit vector
+  /// against gravity. Collective.
+  PetscErrorCode setup(const BackgroundMesh<dim> &mesh, const std::vector<Source> &sources, bool sealed, int vertical,
+                       const Vec<dim> &upward);
   /// Is there open water on the free surface, so that `begin` needs its moments?
   bool open_water() const { return rain_ != atmosphere && (*sources_)[rain_].kind.open_water; }
   /// Picks nodes and faces of the filled grid; `surface` [node] is the sum of w grad N over all cells [m2], `moment`
@@ -193,7 +195,7 @@ class PoreConditions {
       return {out, out};
     }
     if (kind.water == OnWater::seepage && kind.outside(x[0], x[1], z, t, {unit_weight, x[vertical_]}) <= 0)
-      return {-kind.supply(x[0], x[1], z, t)};
+      return {-kind.supply(x[0], x[1], z, t, dot<dim>(f.normal, upward_))};
     return {};
   }
   /// Faces of a node in one plane share its velocity: what leaves by all of them together has the sum of their limits.
@@ -261,7 +263,8 @@ class PoreConditions {
 
   const std::vector<Source> *sources_ = nullptr;
   bool sealed_ = false;
-  int vertical_ = 1;
+  int vertical_ = 1;  ///< component of a place that is its elevation
+  Vec<dim> upward_{};
   int rain_ = atmosphere;  ///< what acts on the free surface
   std::vector<int> wall_of_node_;
   std::vector<Wall> walls_;

@@ -6,6 +6,7 @@
 ///   -> smooth_divergence -> change_masses -> update_pressures] ... -> write_update
 /// Particles receive from the nodes and give to them in the sweeps of the soil (transfer/), between `write_update` and
 /// `gather`.
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -61,6 +62,11 @@ class PoreFluid {
   void swap_points() { std::swap(points_, next_points_); }
   /// The component of a place that is its elevation.
   int vertical() const { return scene_.vertical(); }
+  Vec<dim> upward() const {  ///< against gravity
+    Vec<dim> direction;
+    std::copy_n(scene_.upward().begin(), dim, direction.begin());
+    return direction;
+  }
   /// Completes the nodes once the particles of all bodies have been added to points and cells: their pressures, the
   /// boundaries, and the velocities of the fluids, which go to `velocity` [fluids][nodes].
   PetscErrorCode gather(const Frame &frame, PoreConditions<dim> &conditions, const Array &filling,

@@ -55,7 +55,7 @@ typename PoreFluid<dim, Phases>::Frame SoilMotion<dim, Phases>::pore_frame(doubl
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::start_pores(bool fill) requires Phases::liquid {
   PetscFunctionBeginUser;
-  PetscCall(pore_conditions_.setup(mesh_, conditions_.sources(), Phases::suction, fluid_.vertical()));
+  PetscCall(pore_conditions_.setup(mesh_, conditions_.sources(), Phases::suction, fluid_.vertical(), fluid_.upward()));
   if (fill) fluid_.fill(0);
   PetscFunctionReturn(0);
 }

@@ -36,7 +36,8 @@ PoreFlow<dim>::PoreFlow(const BackgroundMesh<dim> &mesh, const Scene &scene, con
       bishop_(scene.water.stress == PoreStress::bishop),
       liquid_(scene.water) {
   double square = 0;
-  for (int d = 0; d < dim; ++d) gravity_[d] = scene.gravity[d], square += gravity_[d] * gravity_[d];
+  for (int d = 0; d < dim; ++d)
+    gravity_[d] = scene.gravity[d], upward_[d] = scene.upward()[d], square += gravity_[d] * gravity_[d];
   for (const BodySource &body : scene.body)
     soils_.emplace_back(body, scene.water.density * (square > 0 ? std::sqrt(square) : earth), scene.water.viscosity);
   mean_permeability_.resize(soils_.size());
@@ -69,11 +70,12 @@ void PoreFlow<dim>::serialize(Archive &archive) {
   }
   archive.column(archive.rows("wet nodes", Belongs::to_points, wet), "accepted pressure", pressures);
   const LocalNumbers node_of(present), point_of(numbers);
-  std::vector<double> trial = pressure;
+  std::vector<double> trial = pressure, above = above_mean;
   std::vector<char> open = open_;
   const Archive::Rows rows = archive.rows("nodes of flow", Belongs::to_points, present);
   archive.column(rows, "pressure of flow", trial);
   archive.column(rows, "open seepage faces", open);
+  archive.column(rows, "pressure above the mean of particles", above);
   archive.sums("inflow", inflow_);
   if (!archive.reading()) return;
   std::fill(pressure_of_point_.begin(), pressure_of_point_.end(), std::numeric_limits<double>::quiet_NaN());
@@ -81,7 +83,8 @@ void PoreFlow<dim>::serialize(Archive &archive) {
     if (const int p = point_of.find(wet[k]); p >= 0) pressure_of_point_[p] = pressures[k];
   for (int i = 0; i < nodes_.count(); ++i) accepted[i] = pressure_of_point_[nodes_.point[i]];
   for (size_t k = 0; k < present.size(); ++k)
-    if (const int i = node_of.find(present[k]); i >= 0) pressure[i] = trial[k], open_[i] = open[k];
+    if (const int i = node_of.find(present[k]); i >= 0)
+      pressure[i] = trial[k], open_[i] = open[k], above_mean[i] = above[k];
 }
 
 // ---- cells and boundaries ----
@@ -99,6 +102,7 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
     if (std::isnan(accepted[i])) accepted[i] = fresh(nodes_.position[i]);
   }
   pressure = accepted;
+  above_mean.assign(nodes_.count(), 0);
   body_of_node_.assign(nodes_.count(), 0);
   for (int c = 0; c < mesh_.cell_count(); ++c)
     for (int a = 0; a <= dim && active_[c]; ++a) body_of_node_[nodes_.of_cell(c)[a]] = body_of_[c];
@@ -121,7 +125,7 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
     for (int node : corners) {
       if (rank >= 0) beyond[node] = std::max<PetscInt>(beyond[node], rank * count + source + 1);
       if (!supplied) continue;
-      Supply supply{node, source, facet.area / dim, {}};
+      Supply supply{node, source, facet.area / dim, dot<dim>(facet.normal, upward_), {}};
       int further = 1;
       for (int nearest : corners) {
         Vec<dim> &place = supply.place[nearest == node ? 0 : further++];
@@ -166,9 +170,10 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
         double g = 0;
         for (int j = 0; j < dim; ++j)
           g += k == 0 ? -mesh_.cells[c].gradient[j][d] : j == k - 1 ? mesh_.cells[c].gradient[j][d] : 0;
-        square += g * g;
+        facet.normal[d] = -g, square += g * g;
       }
       facet.area = std::sqrt(square) * dim * mesh_.volume[c];
+      for (double &n : facet.normal) n /= std::sqrt(square);
       if (rain == atmosphere)
         put(facet, atmosphere, suction_ ? 0 : 3, false);
       else
@@ -271,7 +276,8 @@ double PoreFlow<dim>::inflow_at(const Supply &supply, double t) const {
     for (const double later : {near_gauss<2>, far_gauss<2>}) {  // at two times of the step
       const double then = t - later * travel_;
       mean += share / 2 *
-              (kind.water == OnWater::flux ? kind.inflow(x[0], x[1], z, then) : kind.supply(x[0], x[1], z, then));
+              (kind.water == OnWater::flux ? kind.inflow(x[0], x[1], z, then)
+                                           : kind.supply(x[0], x[1], z, then, supply.upward));
     }
   }
   return mean;

@@ -102,11 +102,14 @@ class PoreFlow {
 
   std::vector<double> pressure;  ///< trial, of local nodes [Pa]
   std::vector<double> accepted;  ///< at the start of the step [Pa]
+  /// By how much the accepted pressure is above the mean of the particles around a node that have their pressure from
+  /// it, of local nodes [Pa]; 0 where it is not known.
+  std::vector<double> above_mean;
 
  private:
   struct Supply {  ///< a boundary that supplies water at a node of a face
     int node, source;
-    double area;
+    double area, upward;              ///< [m2]; component of the face's normal against gravity [-]
     std::array<Vec<dim>, dim> place;  ///< Gauss points of the face, the nearest to the node first
   };
   double saturation_of(int body, double p) const;
@@ -126,7 +129,7 @@ class PoreFlow {
   std::vector<int> body_of_;
   bool suction_, bishop_;
   Liquid liquid_;
-  Vec<dim> gravity_;
+  Vec<dim> gravity_, upward_;
   std::vector<SoilPores> soils_;
   std::vector<std::optional<MeanPermeability>> mean_permeability_;  ///< of soils_ whose pores may dry
   std::vector<char> active_;

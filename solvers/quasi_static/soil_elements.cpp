@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <utility>
 
 #include "base/local_numbers.h"
 #include "physics/laws/strength_by_place.h"
@@ -344,7 +345,9 @@ void SoilElements<dim>::reset_displacement() {
   std::fill(displacement_.begin(), displacement_.end(), 0.);
   std::fill(displacement_of_point_.begin(), displacement_of_point_.end(), 0.);
   for (GaussPoints<dim> &p : points_) {
-    std::fill(p.history.begin(), p.history.end(), 0.);
+    const auto fields = history_fields(p.law);
+    for (size_t k = 0; k < fields.size(); ++k)
+      for (size_t q = k; q < p.history.size() && !fields[k].kept; q += fields.size()) p.history[q] = 0;
     std::fill(p.total_strain.begin(), p.total_strain.end(), 0.);
   }
 }
@@ -419,6 +422,22 @@ Vec<dim> SoilElements<dim>::displacement(int cell, const Barycentric<dim> &place
   for (int a = 0; a < element_nodes<dim>(order_); ++a)
     for (int d = 0; d < dim; ++d) u[d] += shape[a] * displacement_[nodes_.of_cell(cell)[a] * dim + d];
   return u;
+}
+
+template <int dim>
+void SoilElements<dim>::add_displacement(const std::vector<double> &more) {
+  std::vector<char> done(nodes_.count(), 0);
+  const auto add = [&](int node, int a, int b) {
+    if (std::exchange(done[node], 1)) return;
+    for (int d = 0; d < dim; ++d) displacement_[node * dim + d] += (more[a * dim + d] + more[b * dim + d]) / 2;
+  };
+  for (int c = 0; c < mesh_.cell_count(); ++c) {
+    if (!active_[c]) continue;
+    const int *node = nodes_.of_cell(c);
+    for (int a = 0; a <= dim; ++a) add(node[a], node[a], node[a]);
+    for (int e = 0; order_ > 1 && e < static_cast<int>(simplex_edges<dim>.size()); ++e)
+      add(node[dim + 1 + e], node[simplex_edges<dim>[e].first], node[simplex_edges<dim>[e].second]);
+  }
 }
 
 template <int dim>

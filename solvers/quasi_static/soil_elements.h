@@ -132,6 +132,8 @@ class SoilElements {
   const std::vector<double> &displacement() const { return displacement_; }  ///< of local nodes, committed [m]
   /// Displacement at a place of a cell given in barycentric coordinates [m].
   Vec<dim> displacement(int cell, const Barycentric<dim> &place) const;
+  /// Adds what motion has displaced the soil by: `more` [node][d] of vertices, edges take the mean of their ends [m].
+  void add_displacement(const std::vector<double> &more);
   /// Largest displacement of a node [m]; collective.
   double largest_displacement() const;
   /// Does a law read suction? Pressure below zero is then suction, not stress.

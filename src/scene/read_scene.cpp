@@ -546,6 +546,14 @@ double Scene::gravity_size() const {
   return std::sqrt(std::inner_product(gravity.begin(), gravity.end(), gravity.begin(), 0.));
 }
 
+std::array<double, 3> Scene::upward() const {
+  std::array<double, 3> direction{};
+  direction[vertical()] = 1;
+  if (const double g = gravity_size(); g > 0)
+    for (std::size_t d = 0; d < gravity.size(); ++d) direction[d] = -gravity[d] / g;
+  return direction;
+}
+
 std::array<double, 3> Scene::acceleration_in(const Stage &one) const {
   std::array<double, 3> acceleration{};
   std::copy(gravity.begin(), gravity.end(), acceleration.begin());

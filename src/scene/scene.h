@@ -688,6 +688,8 @@ struct Scene {
   double gravity_size() const;  ///< magnitude of gravity [m/s2]
   /// Number of the component of a place that is its elevation: the one place that says which way is up.
   int vertical() const { return static_cast<int>(up); }
+  /// Unit vector against gravity, without gravity along `up`; zero beyond the dimension.
+  std::array<double, 3> upward() const;
   /// The first value of a function that its key does not admit, on this rank; empty if there was none.
   std::string function_fault() const;
   /// Gravity and the pseudo-static acceleration of a stage, zero beyond the dimension [m/s2].

@@ -356,7 +356,7 @@ class Model {
       if (kind.open_water && weight > 0 && p > 0) level = elevation + p / weight;
       values.add(p < 0 ? "suction" : "pore pressure", "Pa", std::abs(p));
     }
-    if (kind.supply && !kind.open_water) values.add("supply", "m/s", kind.supply(x, y, z, 0));
+    if (kind.supply && !kind.open_water) values.add("supply", "m/s", kind.supply(x, y, z, 0, 1));
     if (kind.inflow) values.add("inflow", "m/s", kind.inflow(x, y, z, 0));
     if (kind.gas_outside) values.add("gas pressure", "Pa", kind.gas_outside(x, y, z, 0));
     return level;

@@ -78,7 +78,7 @@ std::vector<FluidLedger> Run<dim>::fluids() {
 
 template <int dim>
 void Run<dim>::reset_displacement() {
-  if (statics.current()) statics.problem().soil().reset_displacement();
+  statics.reset_displacement();
   world.reset_displacement(clock.time);
 }
 

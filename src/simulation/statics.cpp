@@ -390,6 +390,7 @@ void Statics<dim>::to_gauss_points() {
   pressure_from_particles();
   if (world_.motion->gathered()) require(world_.release(clock_.time));
   check_places();
+  displacement_from_particles();
   for (size_t b = 0; b < world_.bodies.size(); ++b) {
     const ParticleArrays<dim> &p = world_.bodies[b]->particles();
     GaussPoints<dim> &points = problem_->soil().points()[b];
@@ -431,28 +432,106 @@ void Statics<dim>::check_places() const {
                      "end the motion earlier");
 }
 
-/// Nodes take the mean of the particles around them, weighted by volume and shape function.
+/// Means over the particles around the nodes of the flow, weighted by volume and shape function; not a number where
+/// there are none.
 template <int dim>
-void Statics<dim>::pressure_from_particles() {
-  if (world_.phases.liquid) {
-    require(world_.motion->begin(clock_.time));
-    std::vector<double> sum(flow_->nodes().count(), 0), weight = sum;
-    for (const auto &body : world_.bodies) {
-      const ParticleArrays<dim> &p = body->particles();
-      for (int i = 0; i < p.count; ++i) {
-        if (!flow_->active(p.cell[i])) continue;
-        const Barycentric<dim> l = barycentric(world_.mesh.cells[p.cell[i]], p.position[i]);
-        for (int a = 0; a <= dim; ++a) {
-          const int node = flow_->nodes().of_cell(p.cell[i])[a];
-          weight[node] += p.volume[i] * l[a], sum[node] += p.volume[i] * l[a] * world_.motion->pores(*body, i).liquid;
-        }
+struct Statics<dim>::AroundNodes {
+  std::vector<double> pressure;  ///< [Pa]
+  /// How much of what a node knew beyond this mean still holds: all of it in soil that has stayed where it was at the
+  /// last state of finite elements, nothing where soil has moved by half a cell.
+  std::vector<double> stayed;
+};
+
+template <int dim>
+typename Statics<dim>::AroundNodes Statics<dim>::around_nodes() {
+  require(world_.motion->begin(clock_.time));
+  std::vector<double> pressure(flow_->nodes().count(), 0), moved = pressure, weight = pressure;
+  for (const auto &body : world_.bodies) {
+    const ParticleArrays<dim> &p = body->particles();
+    for (int i = 0; i < p.count; ++i) {
+      const int cell = p.cell[i];
+      if (!flow_->active(cell)) continue;
+      const Barycentric<dim> l = barycentric(world_.mesh.cells[cell], p.position[i]);
+      const Vec<dim> way = moved_since(p, i);
+      const double cells = std::sqrt(dot<dim>(way, way)) / element_size<dim>(world_.mesh.volume[cell]);
+      for (int a = 0; a <= dim; ++a) {
+        const int node = flow_->nodes().of_cell(cell)[a];
+        const double w = p.volume[i] * l[a];
+        weight[node] += w, pressure[node] += w * world_.motion->pores(*body, i).liquid, moved[node] += w * cells;
       }
     }
-    require(flow_->nodes().sum(sum));
-    require(flow_->nodes().sum(weight));
-    for (size_t i = 0; i < sum.size(); ++i)
-      if (weight[i] > 0) flow_->accepted[i] = flow_->pressure[i] = sum[i] / weight[i];
   }
+  for (std::vector<double> *sum : {&pressure, &moved, &weight}) require(flow_->nodes().sum(*sum));
+  constexpr double half_a_cell = 0.5;
+  for (size_t i = 0; i < weight.size(); ++i)
+    pressure[i] = weight[i] > 0 ? pressure[i] / weight[i] : std::numeric_limits<double>::quiet_NaN(),
+    moved[i] = weight[i] > 0 ? std::max(0., 1 - moved[i] / weight[i] / half_a_cell) : 0;
+  return {pressure, moved};
+}
+
+/// Displacement of a particle since finite elements had it.
+template <int dim>
+Vec<dim> Statics<dim>::moved_since(const ParticleArrays<dim> &p, int i) const {
+  Vec<dim> way = problem_->soil().displacement(p.cell[i], barycentric(world_.mesh.cells[p.cell[i]], p.position[i]));
+  for (int d = 0; d < dim; ++d) way[d] = p.position[i][d] - p.reference[i][d] - way[d];
+  return way;
+}
+
+/// Nodes move on by the mean of the particles around them, so that displacement counts through all stages.
+template <int dim>
+void Statics<dim>::displacement_from_particles() {
+  const SoilElements<dim> &soil = problem_->soil();
+  std::vector<double> weight(static_cast<size_t>(soil.nodes().count()) * dim, 0), way = weight;
+  for (const auto &body : world_.bodies) {
+    const ParticleArrays<dim> &p = body->particles();
+    for (int i = 0; i < p.count; ++i) {
+      if (!soil.active(p.cell[i])) continue;
+      const Barycentric<dim> l = barycentric(world_.mesh.cells[p.cell[i]], p.position[i]);
+      const Vec<dim> moved = moved_since(p, i);
+      for (int a = 0; a <= dim; ++a)
+        for (int d = 0; d < dim; ++d) {
+          const int n = soil.nodes().of_cell(p.cell[i])[a] * dim + d;
+          weight[n] += p.volume[i] * l[a], way[n] += p.volume[i] * l[a] * moved[d];
+        }
+    }
+  }
+  for (std::vector<double> *sum : {&weight, &way}) require(soil.nodes().sum(*sum));
+  for (size_t n = 0; n < way.size(); ++n) way[n] = weight[n] > 0 ? way[n] / weight[n] : 0;
+  problem_->soil().add_displacement(way);
+}
+
+template <int dim>
+void Statics<dim>::remember_nodes() {
+  if (!world_.phases.liquid) return;
+  const AroundNodes around = around_nodes();
+  for (size_t i = 0; i < around.pressure.size(); ++i)
+    flow_->above_mean[i] = std::isnan(around.pressure[i]) ? 0 : flow_->accepted[i] - around.pressure[i];
+}
+
+template <int dim>
+void Statics<dim>::forget_nodes() {
+  if (flow_) std::fill(flow_->above_mean.begin(), flow_->above_mean.end(), 0.);
+}
+
+template <int dim>
+void Statics<dim>::reset_displacement() {
+  if (!problem_) return;
+  if (!current_ && world_.phases.liquid) {
+    const AroundNodes around = around_nodes();
+    for (size_t i = 0; i < around.stayed.size(); ++i) flow_->above_mean[i] *= around.stayed[i];
+  }
+  problem_->soil().reset_displacement();
+}
+
+/// Nodes take the mean of the particles around them, and keep by how much they were above it before soil moved: the
+/// mean alone would flatten every front, and lose the water that it leaves out, docs/theory/seepage.md section 4.
+template <int dim>
+void Statics<dim>::pressure_from_particles() {
+  if (!world_.phases.liquid) return;
+  const AroundNodes around = around_nodes();
+  for (size_t i = 0; i < around.pressure.size(); ++i)
+    if (!std::isnan(around.pressure[i]))
+      flow_->accepted[i] = flow_->pressure[i] = around.pressure[i] + around.stayed[i] * flow_->above_mean[i];
 }
 
 template <int dim>

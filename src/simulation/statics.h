@@ -28,6 +28,12 @@ class Statics {
   void begin_stage(const Stage &stage, bool soil_moves);
   /// The motion has the soil from now on: results are those of the particles.
   void leave() { current_ = false, moved_since_ = true; }
+  /// Nodes of the flow remember by how much they differ from the particles that have their pressure from them, before
+  /// these move; `forget_nodes` if the pressure of particles comes from elsewhere. Collective.
+  void remember_nodes();
+  void forget_nodes();
+  /// Displacement counts from here, whoever has the soil. Collective.
+  void reset_displacement();
 
   /// Particles stay where they are and take stress, history and pore water; the displacement moves the place it is
   /// counted from. Stress is linear between the Gauss points of a cell.
@@ -79,6 +85,10 @@ class Statics {
   void start_stress();  // initial_stress.cpp
   void to_gauss_points();
   void check_places() const;
+  struct AroundNodes;
+  AroundNodes around_nodes();
+  Vec<dim> moved_since(const ParticleArrays<dim> &p, int i) const;
+  void displacement_from_particles();
   void pressure_from_particles();
   void use_seeped_pressure();
   int cell_at(const Vec<dim> &x) const;

@@ -317,7 +317,7 @@ void doubt_levels_and_rain(const Scene &scene, const std::vector<SoilFace> &surf
         pressure =
             std::max(pressure, kind.outside(corner[0], corner[1], corner[2], 0, {scene.water.density * g, corner[up]}));
       }
-      if (kind.supply) rain = std::max(rain, kind.supply(x[0], x[1], x[2], 0));
+      if (kind.supply) rain = std::max(rain, kind.supply(x[0], x[1], x[2], 0, 1));
     }
     if (touched && kind.open_water && kind.changes.empty() && !(pressure > 0))
       sentences.push_back("boundary." + scene.boundary[b].name +

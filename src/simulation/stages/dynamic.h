@@ -34,6 +34,7 @@ class DynamicStage final : public StageRunner<dim> {
   double end() const { return run_.progress.begin + stage_.duration; }
 
   void begin() {
+    const bool handed_over = run_.statics.current();
     run_.statics.leave();
     require(run_.world.fix_dashpots(stage_.hold_loads, run_.clock.time));
     run_.clock.stage = stage_.name;
@@ -49,6 +50,10 @@ class DynamicStage final : public StageRunner<dim> {
     history_interval_ = output.history_interval > 0 ? output.history_interval : longest / 200;
     checkpoint_interval_ = output.checkpoint_interval > 0 ? output.checkpoint_interval : output.interval;
     set_loading();
+    if (!stage_.pore_flow)
+      run_.statics.forget_nodes();
+    else if (handed_over)
+      run_.statics.remember_nodes();
   }
   void set_loading() { run_.dynamics.set_loading(stage_, run_.clock.time - run_.progress.begin); }
 

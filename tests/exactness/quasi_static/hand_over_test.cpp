@@ -71,6 +71,49 @@ TEST(QuasiStatic, stress_comes_from_a_motion_that_was_first) {
   EXPECT_LT(moved(text), 1e-3);  // the motion has come to rest by far more
 }
 
+/// A reset sets plastic strain to zero and not the state of the soil: what clay has been consolidated to stays, in
+/// elements as in particles.
+TEST(QuasiStatic, consolidation_of_clay_stays_where_plastic_strain_is_reset) {
+  const std::string text = R"(
+gravity = 10
+[mesh]
+section = "box.csv"
+size = 0.3
+[body.soil]
+region = "soil"
+density = 2000
+law = "cam_clay"
+compression_slope = 0.1
+swelling_slope = 0.01
+critical_stress_ratio = 1.2
+poisson_ratio = 0.3
+void_ratio = 1
+preconsolidation_pressure = 4e3
+[boundary.base]
+kind = "fixed"
+[boundary.sides]
+group = ["left", "right"]
+kind = "roller"
+[[stage]]
+name = "load"
+kind = "quasi_static"
+duration = 1
+reset_displacement = true
+[[stage]]
+name = "again"
+kind = "quasi_static"
+duration = 1
+hold_loads = true
+)";
+  const auto consolidated = [&](const std::vector<std::string> &keys) {
+    const Solved solved = solve(text, keys);
+    return largest(solved, 1, [&](size_t p, int) { return solved.value("consolidation", p); });
+  };
+  const double reset = consolidated({});
+  EXPECT_GT(reset, 0.5);  // ln of three times the pressure that it had borne
+  EXPECT_NEAR(reset, consolidated({"stage.0.reset_displacement=false"}), 1e-9);
+}
+
 /// Finite elements have no cells where soil has flown to.
 TEST(QuasiStatic, soil_that_has_left_its_region_is_refused) {
   const std::string text =

@@ -224,7 +224,7 @@ TEST(OwnBoundary, LoadsTheParticlesBehindIt) {
 TEST(OwnBoundary, PassesWaterOfAPressureAndStopsNone) {
   Square1m soil({{"base", {"base"}, PorousStone{}}});
   PoreConditions<2> pores;
-  ASSERT_EQ(pores.setup(soil.mesh, soil.sources, false, 1), 0);
+  ASSERT_EQ(pores.setup(soil.mesh, soil.sources, false, 1, {0, 1}), 0);
   const std::vector<Vec<2>> nothing(soil.grid.node_count(), Vec<2>{});
   ASSERT_EQ(pores.begin(soil.grid, soil.filling, nothing, nothing), 0);
   double push = 0;
@@ -247,7 +247,7 @@ TEST(OwnBoundary, LimitsAndWallsTheLiquid) {
       cushion({{"base", {"base"}, Cushion{}}});
   for (Square1m *soil : {&raft, &belt, &cushion}) {
     PoreConditions<2> pores;
-    ASSERT_EQ(pores.setup(soil->mesh, soil->sources, false, 1), 0);
+    ASSERT_EQ(pores.setup(soil->mesh, soil->sources, false, 1, {0, 1}), 0);
     const std::vector<Vec<2>> nothing(soil->grid.node_count(), Vec<2>{});
     ASSERT_EQ(pores.begin(soil->grid, soil->filling, nothing, nothing), 0);
     double walls = 0, limits = 0, base = 0;
@@ -271,6 +271,31 @@ TEST(OwnBoundary, LimitsAndWallsTheLiquid) {
   }
 }
 
+/// In motion too rain counts per level area: on ground that slopes by 30 degrees (the vertical is turned) it brings the
+/// cosine of its intensity, and under an overhang none.
+TEST(OwnBoundary, RainsOnTheAreaOfTheMap) {
+  Square1m soil({{"rain", {"base"}, Rainfall{1e-6}}});
+  const std::vector<Vec<2>> nothing(soil.grid.node_count(), Vec<2>{});
+  for (const auto &[upward, part] :
+       {std::pair{Vec<2>{0, -1}, 1.}, std::pair{Vec<2>{0.5, -std::sqrt(0.75)}, std::sqrt(0.75)},
+        std::pair{Vec<2>{0, 1}, 0.}}) {
+    PoreConditions<2> pores;
+    ASSERT_EQ(pores.setup(soil.mesh, soil.sources, false, 1, upward), 0);
+    ASSERT_EQ(pores.begin(soil.grid, soil.filling, nothing, nothing), 0);
+    int limits = 0;
+    pores.limits(
+        0, soil.grid, 1000, 1e4,
+        [](int) {
+          return LiquidAtNode{1000, 1};
+        },
+        [&](int, const FlowLimits<2> &all) {
+          limits += all.count;
+          for (int k = 0; k < all.count; ++k) EXPECT_NEAR(all.all[k].low, -part * 1e-6, 1e-18) << part;
+        });
+    EXPECT_GT(sum(limits), 0);
+  }
+}
+
 /// A square whose base rises from its middle on; the group `middle` is this part of the base.
 test::BoxMesh bent_square(double rise) {
   test::BoxMesh box(2, 4);
@@ -291,7 +316,7 @@ test::BoxMesh bent_square(double rise) {
 
 /// Velocities of the liquid against the skeleton after all limits and walls, from rest.
 std::vector<Vec<2>> pumped(Square1m &soil, PoreConditions<2> &pores) {
-  EXPECT_EQ(pores.setup(soil.mesh, soil.sources, false, 1), 0);
+  EXPECT_EQ(pores.setup(soil.mesh, soil.sources, false, 1, {0, 1}), 0);
   std::vector<Vec<2>> w(soil.grid.node_count(), Vec<2>{}), surface = w;
   for (int c = 0; c < soil.mesh.cell_count(); ++c) {
     const auto gradient = barycentric_gradients<2>(soil.mesh.cells[c]);
