@@ -236,10 +236,12 @@ PetscErrorCode FlowStep<dim>::snes_converged(SNES solver, PetscInt iteration, Pe
   PetscCall(VecRestoreArrayRead(f, &value));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, step.flow_.nodes().comm()));
   double worst = 0;  // of a node, by its own terms
-  for (const PetscInt i : step.owned_)
-    if (step.steady_ && !step.flow_.fixed(static_cast<int>(i)) && step.size_[i] > 0)
-      worst = std::max(worst, std::abs(step.rest_[i]) / step.size_[i]);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE, MPI_MAX, step.flow_.nodes().comm()));
+  if (step.steady_) {
+    for (const PetscInt i : step.owned_)
+      if (!step.flow_.fixed(static_cast<int>(i)) && step.size_[i] > 0)
+        worst = std::max(worst, std::abs(step.rest_[i]) / step.size_[i]);
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE, MPI_MAX, step.flow_.nodes().comm()));
+  }
   const double tolerance = step.settings_.tolerance, forces = step.soil_ ? step.soil_->force_scale() : 0;
   // water that does not move before the soil does is measured by what the soil moves, once its forces are in balance
   const double water = step.soil_ ? std::max(step.water_scale_, step.water_moved_) : step.water_scale_;

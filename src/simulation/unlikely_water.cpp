@@ -299,30 +299,38 @@ void doubt_faces_of_water(const Scene &scene, const std::vector<SoilFace> &surfa
 /// changes is asked for the start alone, as water.level is (levels_of).
 void doubt_levels_and_rain(const Scene &scene, const std::vector<SoilFace> &surface,
                            std::vector<std::string> &sentences) {
-  constexpr double heaviest = 1e-3, mm_per_hour = 1e-3 / 3600;  // [m/s]; 1.8 m have fallen in a day, 0.4 m in an hour
+  constexpr double heaviest = 1e-3, mm_per_hour = 1e-3 / 3600,
+                   vertical = 1e-6;  // [m/s]; 1.8 m have fallen in a day, 0.4 m in an hour
   const int up = scene.vertical();
   const double g = scene.gravity.empty() ? 0 : -scene.gravity[up];
   for (std::size_t b = 0; b < scene.boundary.size(); ++b) {
     const Boundary kind = read_boundary(scene.boundary[b].kind);
     const bool anywhere = std::ranges::count(scene.boundary[b].group, std::string(free_surface));
     if (kind.water != OnWater::seepage) continue;
-    double pressure = 0, rain = 0;
+    double pressure = 0, rain = 0, upward = 0;
     bool touched = false;
     for (const SoilFace &face : surface) {
       if (!(face.water == static_cast<int>(b) || (anywhere && face.water < 0))) continue;
       touched = true;
+      double facing = 0;
       const auto &x = face.corner[0];
       for (int a = 0; a < scene.dimension && kind.open_water; ++a) {
         const auto &corner = face.corner[a];
         pressure =
             std::max(pressure, kind.outside(corner[0], corner[1], corner[2], 0, {scene.water.density * g, corner[up]}));
       }
+      for (int d = 0; d < scene.dimension; ++d) facing += face.normal[d] * scene.upward()[d];
+      upward = std::max(upward, facing);
       if (kind.supply) rain = std::max(rain, kind.supply(x[0], x[1], x[2], 0, 1));
     }
     if (touched && kind.open_water && kind.changes.empty() && !(pressure > 0))
       sentences.push_back("boundary." + scene.boundary[b].name +
                           " has its water below all of its faces, so that none stands on them and water "
                           "may only leave there. Is its level meant?");
+    if (rain > 0 && upward < vertical)
+      sentences.push_back("boundary." + scene.boundary[b].name +
+                          " lies on faces that are vertical or overhang, and rain counts per level area: none enters "
+                          "there. What wets a wall is a \"flux\" or a \"head\"");
     if (rain > heaviest)
       sentences.push_back("boundary." + scene.boundary[b].name + " brings up to " + rounded(rain / mm_per_hour) +
                           " mm/h of rain, more than ever fell; a number without a unit counts in m/s. Is it in mm/h or "

@@ -191,6 +191,11 @@ void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
       if (std::ranges::count(groups, group) == 0)
         scene.complain(path + ".group",
                        "must name groups of facets; the mesh has no \"" + group + "\"; " + suggestion(group, groups));
+    for (const OutputPoint &point : scene.output.point)
+      if (point.name == source.name && source.kind.in_motion == OnSoil::load)
+        scene.complain("output.point." + point.name,
+                       "has the name of boundary." + source.name +
+                           ", and both have columns of displacement in history.csv; give one of them another name");
     if (source.kind.water == OnWater::wall && phases.gas &&
         std::ranges::count(source.groups, std::string(free_surface)))
       scene.complain(path + ".kind",

@@ -146,6 +146,16 @@ TEST(Check, DoubtsLevelsAndRainInOtherUnits) {
   EXPECT_TRUE(with("rainfall", "intensity=2").says("boundary.top brings up to 7200000 mm/h of rain"))
       << with("rainfall", "intensity=2").output;
   EXPECT_FALSE(with("rainfall", "intensity=20 mm/h").says(heavy));
+  const char *wall = "boundary.top lies on faces that are vertical or overhang";
+  EXPECT_FALSE(with("rainfall", "intensity=20 mm/h").says(wall));
+  EXPECT_TRUE(
+      output({"boundary.top.group=left", "boundary.top.kind=rainfall", "boundary.top.intensity=1e-6"}).says(wall))
+      << with("rainfall", "intensity=20 mm/h").output;
+  const char *goes_on = "boundary.top goes on with 2e-06 m/s when its table is over, from t = 0.01 s";
+  EXPECT_TRUE(with("rainfall", "intensity=[[0, 0], [0.01, 2e-6]]").says(goes_on))
+      << with("rainfall", "intensity=[[0, 0], [0.01, 2e-6]]").output;
+  EXPECT_TRUE(with("flux", "inflow=[[0, 0], [0.01, 2e-6]]").says(goes_on));
+  EXPECT_FALSE(with("rainfall", "intensity=[[0, 0], [0.01, 2e-6], [0.02, 0]]").says("goes on with"));
   const char *fast = "body.sand.hydraulic_conductivity is 4 m/s, which hardly any soil has";
   EXPECT_TRUE(output({"body.sand.permeability=0", "body.sand.hydraulic_conductivity=4"}).says(fast) ||
               output({"body.sand.hydraulic_conductivity=4"}).says(fast))
