@@ -28,9 +28,12 @@ void Simulation<dim>::run() {
     run_.recorder.note_created_energy();
     run_.recorder.note_cut_off();
     if (run_.options.resume && run_.clock.steps == before)
-      run_.recorder.note(run_.is_past_stage()
-                             ? "nothing was left to do: the last stage had lasted longer than its duration is now"
-                             : "nothing was left to do: the run had reached its end before it was resumed");
+      run_.recorder.note(
+          run_.is_past_stage() ? "nothing was left to do: the last stage had lasted longer than its duration is now"
+          : run_.recorder.has_changed("stage." + std::to_string(run_.progress.number) + ".duration")
+              ? "nothing was left to do: the last stage had followed its loads to their end, which another duration "
+                "would spread otherwise; add a stage to go on from here"
+              : "nothing was left to do: the run had reached its end before it was resumed");
   });
   run_.recorder.close(run_.motion_left);
 }

@@ -65,6 +65,19 @@ TEST_F(EndedRun, SaysThatItsStageHadLastedLonger) {
   EXPECT_FALSE(ending.says("reached its duration")) << ending.output;
 }
 
+/// Loads come in shares of the duration of a stage by finite elements: it is not prolonged, and says so.
+TEST_F(EndedRun, IsNotProlongedByElements) {
+  const std::vector<std::string> elements{"--set", "stage.0.kind=quasi_static", "--set", "gravity=0"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), elements.begin(), elements.end());
+    return run(more);
+  };
+  ASSERT_EQ(with({"--force"}).status, 0);
+  const Ending ending = with({"--resume", "--set", "stage.0.duration=0.3"});
+  EXPECT_EQ(ending.status, 0) << ending.output;
+  EXPECT_TRUE(ending.says("add a stage to go on from here")) << ending.output;
+}
+
 /// Soil at rest waits for a load that the longer duration brings.
 TEST_F(EndedRun, WaitsForALoadWithALongerStage) {
   const std::vector<std::string> late{"--set", "stage.0.until=rest",
