@@ -1,0 +1,188 @@
+// The slip surface of a slide on terrain: from an ellipsoid, a grid or an outline, and what none of them may be.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "meshes/outline.h"
+#include "meshes/terrain.h"
+#include "meshes/terrain_words.h"
+
+namespace talus {
+
+using namespace terrain_words;
+
+std::vector<double> Terrain::slip_surface(const Grid &grid) {
+  const auto remember = [&](const Location &location, const std::vector<std::string> &remarks) {
+    check_same_projection(location, projection_, grid.file);
+    remarks_.insert(remarks_.end(), remarks.begin(), remarks.end());
+  };
+  const auto at_places = [&](const auto &elevation) {
+    std::vector<double> z;
+    for (int k = 0; k < static_cast<int>(ground().size()); ++k)
+      z.push_back(elevation(origin_[0] + x(k % columns()), origin_[1] + y(k / columns())));
+    return z;
+  };
+  if (options_.ellipsoid) return at_places([&](double x, double y) { return options_.ellipsoid->bottom(x, y); });
+  if (!options_.slip_surface.empty()) {
+    const Grid given = read_elevations(options_.slip_surface);
+    remember(location_of(given), given.remarks);
+    return at_places([&](double x, double y) { return given.at(x, y); });
+  }
+  const Outline outline = read_outline(options_.outline);
+  remember(outline.location, {});
+  if (!(options_.depth > 0))
+    complain("--depth must be above 0 m: the largest depth of the slip surface in the outline");
+  return slip_surface(outline);
+}
+
+/// A place on the outline counts alike on all sides: a bowl is 0 deep there, and a constant depth half as deep, so that
+/// the wall, which needs the width of a cell, stands on the outline.
+std::vector<double> Terrain::slip_surface(const Outline &outline) const {
+  constexpr double near = 1e-6;  // of the spacing
+  const double h = ground_.spacing;
+  std::vector<char> inside, on;
+  std::vector<std::array<double, 4>> rim;
+  for (int k = 0; k < static_cast<int>(ground().size()); ++k) {
+    const double x = origin_[0] + this->x(k % columns()), y = origin_[1] + this->y(k / columns());
+    on.push_back(outline.touches(x, y, near * h));
+    inside.push_back(!on.back() && outline.contains(x, y));
+    rim.push_back(inside.back() ? outline.sides_around(x, y, h) : std::array<double, 4>{});
+    for (double &away : rim.back()) away = away > (1 - near) * h ? 1 : away / h;
+  }
+  std::vector<double> z =
+      options_.bowl ? bowl(inside, rim, columns(), options_.depth) : std::vector<double>(inside.size(), options_.depth);
+  for (std::size_t k = 0; k < z.size(); ++k)
+    if (inside[k] || (on[k] && !options_.bowl))
+      z[k] = ground()[k] - (on[k] ? z[k] / 2 : z[k]);
+    else
+      z[k] = std::numeric_limits<double>::quiet_NaN();
+  return z;
+}
+
+void Terrain::take_slip_surface(const Grid &grid) {
+  if (!options_.slip_surface.empty() + options_.ellipsoid.has_value() + !options_.outline.empty() > 1)
+    complain("give one slip surface: --slip-surface, --ellipsoid or --outline");
+  const std::vector<double> slip = slip_surface(grid);
+  double nearest = std::numeric_limits<double>::infinity();  // of the surface over the ground
+  for (std::size_t k = 0; k < slip.size(); ++k) {
+    if (std::isnan(slip[k])) continue;  // beside it nothing slides
+    nearest = std::min(nearest, slip[k] - bed_.values[k]);
+    bed_.values[k] = std::min(bed_.values[k], slip[k]);
+  }
+  const std::string name = options_.ellipsoid               ? "the ellipsoid"
+                           : !options_.slip_surface.empty() ? options_.slip_surface
+                                                            : options_.outline;
+  if (std::isinf(nearest))
+    complain(name + " does not lie in the window of " + grid.file +
+             (options_.outline.empty() ? "" : ", or no elevation of the grid is in it") +
+             "; both count in the same coordinates");
+  if (!options_.slip_surface.empty()) check_feet(slip, name);
+  if (nearest >= 0)
+    complain(text_of(name, " lies above the ground everywhere, by ", length(nearest),
+                     " at least, so that nothing slides; check its elevations, or lower it"));
+  for (int k = 0; k < static_cast<int>(bed().size()); ++k) {
+    const int i = k % columns(), j = k / columns();
+    const double share = (i == 0 || i == columns() - 1 ? 0.5 : 1) * (j == 0 || j == rows() - 1 ? 0.5 : 1),
+                 area = share * ground_.spacing * ground_.spacing;  // around the place
+    slide_volume_ += area * (ground()[k] - bed()[k]);
+    if (ground()[k] > bed()[k]) slide_area_ += area;
+  }
+  if (!options_.slip_surface.empty()) check_steps(bed(), name);  // an ellipsoid may be as steep as its wall is high
+  if (options_.outline.empty()) check_slip_surface(slip, name);  // that of an outline is as deep as was asked for
+}
+
+void Terrain::check_feet(const std::vector<double> &slip, const std::string &name) const {
+  constexpr double foot = 0.3048, near = 0.1;  // by a tenth the depth of a slide may change the ratio
+  double low = std::numeric_limits<double>::infinity(), high = -low, gap = low, area = 0;
+  std::size_t at = 0;
+  for (std::size_t k = 0; k < slip.size(); ++k) {
+    if (std::isnan(slip[k])) continue;
+    const double ratio = slip[k] / ground()[k];
+    low = std::min(low, ratio), high = std::max(high, ratio), gap = std::min(gap, std::abs(slip[k] - ground()[k]));
+    area += ground_.spacing * ground_.spacing, at = k;
+  }
+  const auto all_near = [&](double ratio) { return low > (1 - near) * ratio && high < (1 + near) * ratio; };
+  if (gap > 0.5 * std::sqrt(area) && (all_near(foot) || all_near(1 / foot)))  // farther away than any slide is deep
+    complain(text_of(name, " has the elevation ", slip[at], " m at ", place(static_cast<int>(at)), ", where ",
+                     ground_.file, " has ", ground()[at], " m, and everywhere ", digits(low), " to ", digits(high),
+                     " times those of the ground: one of the two seems to be in feet. Convert it to metres, "
+                     "such as by gdal_calc.py --calc=A*0.3048"));
+}
+
+void Terrain::check_slip_surface(const std::vector<double> &slip, const std::string &name) {
+  const bool by_grid = !options_.slip_surface.empty();
+  const double deep = slide_volume_ / slide_area_;
+  double highest = -std::numeric_limits<double>::infinity(), lowest = -highest, deepest = 0;
+  int deepest_at = 0;
+  bool emerges = false;  // the upper side of an ellipsoid
+  for (int k = 0; k < static_cast<int>(slip.size()); ++k) {
+    const double depth = ground()[k] - slip[k];
+    if (options_.ellipsoid) {
+      const double east = origin_[0] + x(k % columns()), north = origin_[1] + y(k / columns());
+      emerges = emerges || options_.ellipsoid->top(east, north) > ground()[k];
+    }
+    if (!(depth > 0)) continue;
+    highest = std::max(highest, slip[k]), lowest = std::min(lowest, ground()[k]);
+    if (depth > deepest) deepest = depth, deepest_at = k;
+  }
+  if (options_.ellipsoid && !emerges)
+    complain(text_of("the ellipsoid lies wholly below the ground, ", length(deepest), " deep at ", place(deepest_at),
+                     ", so that the slide would have a vertical wall all round; raise its centre, in elevation, to "
+                     "the ground or near it"));
+  if (by_grid && lowest - highest > 0.5 * deep)
+    complain(text_of(name, " reaches up to ", highest, " m only, ", length(lowest - highest),
+                     " below the lowest ground above it, so that the slide is ", length(deep),
+                     " thick and its surface comes to light nowhere. Are these depths? Elevations are asked for: the "
+                     "ground minus the depth, such as by gdal_calc.py"));
+  const double wide = std::sqrt(slide_area_);
+  double least = deepest;  // depth of the surface
+  for (std::size_t k = 0; k < slip.size(); ++k)
+    least = std::min(least, std::isnan(slip[k]) ? least : ground()[k] - slip[k]);
+  if (by_grid && least > 0.5 * deep) {
+    const std::string sentence =
+        text_of(name, " lies below the ground everywhere, by ", length(least), " at least and ", length(deep),
+                " on average, so that all ground above it slides and its surface comes to light nowhere. ");
+    if (deep > 0.1 * wide)
+      complain(sentence +
+               "Check its elevations, or lift its rim above the ground; a slide that is as deep everywhere is given by "
+               "--outline, --depth and --depth-shape constant");
+    remarks_.push_back(sentence + "Is this meant?");
+  }
+  if (deep > 0.5 * wide)
+    remarks_.push_back(text_of("the slide is ", length(deep), " thick on average and covers ", slide_area_,
+                               " m2 only, so that it is a shaft rather than a slide. Are elevations and coordinates "
+                               "in metres, and ",
+                               name, " an elevation and not a depth?"));
+  // where the surface ends below the ground, the slide ends at a wall
+  double wall = deepest / 3;
+  std::string where;
+  const auto note = [&](double height, const std::string &at) {
+    if (height > wall) wall = height, where = at;
+  };
+  for (int k = 0; by_grid && k < static_cast<int>(slip.size()); ++k)
+    for (const auto &[a, b] : {std::array{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+      const int i = k % columns() + a, j = k / columns() + b, behind = k - a - b * columns();
+      if (!(slip[k] < ground()[k]) || i < 0 || j < 0 || i >= columns() || j >= rows()) continue;
+      if (!std::isnan(slip[j * columns() + i])) continue;
+      const int i_behind = k % columns() - a, j_behind = k / columns() - b;
+      const bool inside = i_behind >= 0 && j_behind >= 0 && i_behind < columns() && j_behind < rows();
+      const double depth = ground()[k] - slip[k];
+      const double inwards = inside && !std::isnan(slip[behind]) ? ground()[behind] - slip[behind] : depth;
+      note(std::min(depth, 2 * depth - inwards), place(k));  // it may rise to the ground within its last cell
+    }
+  constexpr int round = 180;
+  for (int k = 0; options_.ellipsoid && k < round; ++k) {
+    const auto [east, north, elevation] = options_.ellipsoid->rim(2 * 3.14159265358979323846 * k / round);
+    note(ground_at(east - origin_[0], north - origin_[1]) - elevation,
+         text_of("(", std::round(east), ", ", std::round(north), ")"));
+  }
+  if (where.empty()) return;
+  remarks_.push_back(text_of(name, " ends ", length(wall), " below the ground at ", where, ", and it is ",
+                             length(deepest), " deep at most: the slide has a vertical wall there. ",
+                             by_grid ? "Go on with the grid until it is above the ground, also inside, where it has no "
+                                       "data (gdal_fillnodata.py)"
+                                     : "Raise the centre of the ellipsoid, or turn it, until its rim is above the "
+                                       "ground"));
+}
+
+}  // namespace talus

@@ -1,0 +1,213 @@
+// Slip surfaces on terrain, from ellipsoids, grids and outlines: where they lie, how much slides, what is refused.
+#include "tests/unit/meshes/terrain_files.h"
+
+namespace talus::terrain_files {
+namespace {
+
+/// Dip direction is the azimuth towards which the surface dips: points on the lower side, by vectors written out.
+TEST_F(TerrainFiles, MeetAnEllipsoidThatDipsWhereItShould) {
+  const double c = std::cos(30 * radian), s = std::sin(30 * radian);
+  const struct {
+    double direction;
+    std::array<double, 3> first, second, third;
+  } cases[] = {{90, {c, 0, -s}, {0, 1, 0}, {s, 0, c}},      // east
+               {0, {0, c, -s}, {1, 0, 0}, {0, s, c}},       // north
+               {180, {0, -c, -s}, {1, 0, 0}, {0, -s, c}}};  // south
+  for (const auto &one : cases) {
+    const Ellipsoid e{{100, 200, 50}, {30, 20, 10}, 30 * radian, one.direction * radian};
+    for (const auto &[u, v] : {std::pair{0., 0.}, {0.3, 0.2}, {-0.4, 0.3}, {0.2, -0.6}}) {
+      const double w = -std::sqrt(1 - u * u - v * v);
+      std::array<double, 3> x = e.centre;
+      for (int d = 0; d < 3; ++d) x[d] += 30 * u * one.first[d] + 20 * v * one.second[d] + 10 * w * one.third[d];
+      EXPECT_NEAR(e.bottom(x[0], x[1]), x[2], 1e-9) << one.direction;
+    }
+    EXPECT_TRUE(std::isnan(e.bottom(140, 240)));
+  }
+}
+
+/// Half an ellipsoid below level ground; the grid cuts its rim in steps.
+TEST_F(TerrainFiles, SlideWithTheVolumeOfAnEllipsoid) {
+  TerrainOptions o = options(ascii([](double, double) { return 50; }, "a.asc", 2));
+  o.ellipsoid = Ellipsoid{{east + 20, south + 16, 50}, {15, 12, 6}, 0, 0.3};
+  const Terrain terrain(o);
+  const double pi = 180 * radian;
+  EXPECT_NEAR(terrain.slide_volume() / (2. / 3 * pi * 15 * 12 * 6), 1, 0.02);
+  EXPECT_NEAR(terrain.slide_area() / (pi * 15 * 12), 1, 0.04);
+  EXPECT_NEAR(terrain.bed_at(20, 16), 44, 1e-9);
+}
+
+/// The wall behind an ellipsoid that dips into a steep slope is no spike: what is wrong is the dip, or the elevation.
+TEST_F(TerrainFiles, DoubtTheEllipsoidAndNotTheGround) {
+  TerrainOptions o = options(ascii([](double x, double) { return 1000 - 0.8 * (x - east); }));
+  o.size = 5;
+  o.ellipsoid = Ellipsoid{{east + 100, south + 80, 920}, {80, 60, 15}, 39 * radian, 270 * radian};
+  EXPECT_EQ(complaint(o), "");
+  EXPECT_TRUE(doubts(o, "dips towards 270 degrees from north, into the slope, which falls towards 90 degrees"));
+  o.ellipsoid->dip_direction = 90 * radian;
+  EXPECT_FALSE(doubts(o, "into the slope"));
+  o.ellipsoid->centre[2] = 780;
+  expect_words(complaint(o), {"the ellipsoid lies wholly below the ground"});
+}
+
+/// Slip surfaces that no slide has.
+TEST_F(TerrainFiles, DoNotMeetImpossibleSlipSurfaces) {
+  const Elevation bowl = [](double x, double y) {
+    return 12 - 0.005 * (std::pow(x - 5080, 2) + std::pow(y - 2080, 2));  // depth below the plane, to a radius of 49 m
+  };
+  const Elevation high = [](double x, double y) { return plane(x, y) + 1100; };
+  TerrainOptions o = options(ascii(high));
+  o.size = 4;
+  o.slip_surface = ascii(bowl, "depth.asc");
+  expect_words(complaint(o), {"depth.asc reaches up to 12 m only", "thick", "Are these depths?"});
+  const auto slip = [&](const Elevation &hides) {
+    return ascii([&](double x, double y) { return hides(x, y) > 0 ? -9999 : high(x, y) - bowl(x, y); }, "slip.asc");
+  };
+  o.slip_surface = slip([](double, double) { return 0; });
+  EXPECT_FALSE(doubts(o, "wall"));
+  o.slip_surface = slip([](double x, double) { return x - east - 80; });  // ends in the middle
+  EXPECT_TRUE(doubts(o, "slip.asc ends 12 m below the ground at (5080, 2080), and it is 12 m deep at most"));
+  o.slip_surface = slip([](double x, double y) { return x == east + 70 && y == south + 80; });  // a hole
+  EXPECT_TRUE(doubts(o, "vertical wall"));
+  o.slip_surface = ascii([&](double x, double y) { return high(x, y) - 60; }, "slip.asc");
+  expect_words(complaint(o), {"slip.asc lies below the ground everywhere, by 60 m at least and 60 m on average"});
+  o.slip_surface = ascii([&](double x, double y) { return high(x, y) - 3; }, "slip.asc");  // loose soil, all of it
+  EXPECT_TRUE(doubts(o, "slip.asc lies below the ground everywhere, by 3 m at least"));
+  o.slip_surface.clear();
+  o.ellipsoid = Ellipsoid{{east + 100, south + 80, 1170}, {60, 40, 20}, 17 * radian, 90 * radian};
+  EXPECT_FALSE(doubts(o, "wall"));
+  o.ellipsoid->centre[2] = 1160;  // a dome still comes out
+  EXPECT_TRUE(doubts(o, "the ellipsoid ends 11.8 m below"));
+  o.ellipsoid->centre[2] = 1140;
+  expect_words(complaint(o), {"lies wholly below the ground", "50.", "raise its centre"});
+}
+
+/// Which of the two is in feet no file says: both are named, and not a place that stands out.
+TEST_F(TerrainFiles, AreNotMixedInFeetAndMetres) {
+  const Elevation high = [](double x, double y) { return plane(x, y) + 600; };
+  const Elevation slip = [&](double x, double y) {
+    const double depth = 12 - 0.005 * (std::pow(x - 5080, 2) + std::pow(y - 2080, 2));
+    return depth > -3 ? high(x, y) - depth : -9999;
+  };
+  const auto feet = [](const Elevation &of) {
+    return [of](double x, double y) { return of(x, y) < 0 ? -9999 : of(x, y) / 0.3048; };
+  };
+  TerrainOptions o = options(ascii(feet(high)));
+  o.size = 4, o.slip_surface = ascii(slip, "slip.asc");
+  expect_words(complaint(o), {"slip.asc has the elevation ", " m at (5", ", where ", "a.asc has ",
+                              "and everywhere 0.299 to 0.306 times those of the ground: one of the two seems to be in "
+                              "feet. Convert it to metres"});
+  o.file = ascii(high), o.slip_surface = ascii(feet(slip), "slip.asc");
+  expect_words(complaint(o), {"one of the two seems to be in feet"});
+  o.slip_surface = ascii(slip, "slip.asc");
+  EXPECT_EQ(complaint(o), "");
+  const Elevation low = [&](double x, double y) { return high(x, y) - 660; };  // 10 m above the sea and 3 m of it ...
+  o.file = ascii([&](double x, double y) { return low(x, y) > 10 ? low(x, y) : 10; });
+  o.slip_surface = ascii([&](double x, double) { return x > 5140 && x < 5180 ? 3. : -9999; }, "slip.asc");
+  EXPECT_EQ(complaint(o).find("feet"), std::string::npos) << "... are a slide that is not deep: " << complaint(o);
+}
+
+/// The rim of an ellipsoid is where both sides meet.
+TEST_F(TerrainFiles, MeetAnEllipsoidUpToItsRim) {
+  const Ellipsoid e{{100, 200, 50}, {30, 20, 10}, 30 * radian, 40 * radian};
+  for (const double angle : {0., 1., 2.5, 4., 6.}) {
+    const auto [x, y, z] = e.rim(angle);
+    const double inside = 1 - 1e-10;  // towards the centre, where the root is real; sides part by its root, 1e-5
+    const double u = 100 + inside * (x - 100), v = 200 + inside * (y - 200);
+    EXPECT_NEAR(e.bottom(u, v), z, 1e-3);
+    EXPECT_NEAR(e.top(u, v), z, 1e-3);
+    EXPECT_TRUE(std::isnan(e.top(100 + 1.001 * (x - 100), 200 + 1.001 * (y - 200))));
+  }
+}
+
+/// In a circle the bowl is a paraboloid, half as deep on average as in the middle.
+TEST_F(TerrainFiles, SlideInAnOutline) {
+  TerrainOptions o = options(geotiff([](double x, double) { return 500 - 0.3 * (x - east); }, 31254, 2));
+  std::filesystem::rename(o.file, in_folder("terrain.tif"));
+  o.file = in_folder("terrain.tif"), o.size = 2;
+  o.outline = outline(east + 20, south + 16, 14.9, 0, 31254), o.depth = 6;
+  const double circle = 180 * radian * 14.9 * 14.9;
+  const Terrain bowl(o);
+  // at nodes the depth is that of the paraboloid but for the sides of the polygon, 0.1 %; sums over 180 nodes, 2 m
+  // apart
+  EXPECT_NEAR(bowl.slide_area() / circle, 1, 0.03);
+  EXPECT_NEAR(bowl.slide_volume() / (circle * 6 / 2), 1, 0.01);
+  EXPECT_NEAR(bowl.ground_at(20, 16) - bowl.bed_at(20, 16), 6, 1e-9);
+  EXPECT_NEAR(bowl.ground_at(28, 16) - bowl.bed_at(28, 16), 6 * (1 - std::pow(8. / 14.9, 2)), 0.01);
+  EXPECT_TRUE(bowl.doubts().empty());
+  o.bowl = false;
+  EXPECT_NEAR(Terrain(o).slide_volume() / (circle * 6), 1, 0.03);
+  o.outline = outline(east + 20, south + 16, 14.9, 7.45, 31254);
+  EXPECT_NEAR(Terrain(o).slide_volume() / (circle * 6 * 0.75), 1, 0.03);
+  o.depth = 0;
+  expect_words(complaint(o), {"--depth must be above 0 m"});
+  o.depth = 6, o.outline = outline(east + 500, south + 16, 14.9, 0, 31254);
+  expect_words(complaint(o), {"outline.gpkg does not lie in the window"});
+  o.outline = outline(east + 20, south + 16, 14.9, 0, 31255);
+  expect_words(complaint(o), {"outline.gpkg: has the projection MGI / Austria GK Central", "ogr2ogr -t_srs"});
+  o.outline = outline(east + 20, south + 16, 14.9, 0, 2225);
+  expect_words(complaint(o), {"outline.gpkg: has coordinates in another unit than metres"});
+  o.outline = outline(10, 47, 1, 0, 4326);
+  expect_words(complaint(o), {"outline.gpkg: has coordinates in degrees"});
+  o.slip_surface = in_folder("terrain.tif");
+  expect_words(complaint(o), {"give one slip surface"});
+  o.slip_surface.clear(), o.outline = ascii(plane);
+  expect_words(complaint(o), {"a.asc: is no file of outlines that GDAL reads"});
+}
+
+/// What two polygons cover is inside, and so is one that is there twice.
+TEST_F(TerrainFiles, OutlineOfSeveralPolygons) {
+  TerrainOptions o = options(geotiff([](double x, double) { return 500 - 0.3 * (x - east); }, 31254, 2));
+  std::filesystem::rename(o.file, in_folder("terrain.tif"));
+  o.file = in_folder("terrain.tif"), o.size = 2, o.depth = 6, o.bowl = false;
+  const auto box = [](double from, double to) {
+    return Ring{{east + from, south + 4}, {east + to, south + 4}, {east + to, south + 20}, {east + from, south + 20}};
+  };
+  const auto volume = [&](const std::vector<std::vector<Ring>> &polygons) {
+    o.outline = package_of(polygons, 31254);
+    return Terrain(o).slide_volume();
+  };
+  EXPECT_NEAR(volume({{box(5, 19)}, {box(13, 29)}}), volume({{box(5, 29)}}), 1e-9);
+  EXPECT_NEAR(volume({{box(5, 19)}, {box(5, 19)}}), volume({{box(5, 19)}}), 1e-9);
+  EXPECT_NEAR(volume({{box(5, 11)}, {box(21, 29)}}), volume({{box(5, 11)}}) + volume({{box(21, 29)}}), 1e-9);
+  const Ring crossed{{east + 4, south + 4}, {east + 20, south + 20}, {east + 20, south + 4}, {east + 4, south + 20}};
+  o.outline = package({crossed}, 31254);
+  expect_words(complaint(o), {"outline.gpkg: has a polygon that crosses itself", "makevalid"});
+}
+
+/// The volume is that of the outline wherever its middle lies between nodes, and with a radius of six nodes.
+TEST_F(TerrainFiles, HaveTheVolumeOfAnOutlineBetweenNodes) {
+  TerrainOptions o = options(ascii([](double, double) { return 500; }));
+  for (const double radius : {60., 70.})
+    for (const auto &[x, y] : {std::pair{100., 80.}, {103., 81.}, {105., 80.}, {105., 75.}, {98.3, 83.1}}) {
+      o.outline = outline(east + x, south + y, radius, 0, 31254), o.depth = 15;
+      EXPECT_NEAR(Terrain(o).slide_volume() / (180 * radian * radius * radius * 15 / 2), 1, 0.03)
+          << radius << " " << x << " " << y;
+    }
+}
+
+/// Sides on nodes, and turned by right angles: nodes on the outline count alike on all sides.
+TEST_F(TerrainFiles, HaveOneVolumeInAllDirections) {
+  const Ring corners{{-60, -30}, {40, -30}, {60, -10}, {60, 50}, {-20, 50}, {-20, 10}, {-60, 10}};
+  const double area = 120 * 80 - 40 * 40 - 20 * 20 / 2;
+  for (const bool bowl : {true, false}) {
+    double first = 0;
+    for (int turn = 0; turn < 4; ++turn) {
+      Ring ring;
+      for (const auto &[u, v] : corners) {
+        const std::array<double, 2> turned[] = {{u, v}, {-v, u}, {-u, -v}, {v, -u}};
+        ring.push_back({east + 100 + turned[turn][0], south + 80 + turned[turn][1]});
+      }
+      TerrainOptions o = options(ascii([](double, double) { return 500; }));
+      o.outline = package({ring}, 31254), o.depth = 15, o.bowl = bowl;
+      const double volume = Terrain(o).slide_volume();
+      if (turn == 0) first = volume;
+      EXPECT_NEAR(volume, first, 1e-6 * first) << bowl << " " << turn;
+      if (bowl) continue;
+      // by Pick's theorem: corners count as sides do, one cell too much in all
+      EXPECT_NEAR(volume, (area + spacing * spacing) * 15, 1e-6 * volume);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace talus::terrain_files

@@ -1,0 +1,195 @@
+// Files of elevations: what is read, cut out and refused.
+#include "tests/unit/meshes/terrain_files.h"
+
+namespace talus::terrain_files {
+namespace {
+
+/// Rows of the file run from north to south, and its elevations are those of the centres of cells.
+TEST_F(TerrainFiles, HaveTheirElevationsWhereTheFormulaHasThem) {
+  const Elevation formula = [](double x, double y) { return 50 + 0.2 * (x - east) - 0.1 * (y - south); };
+  for (const std::string &file : {ascii(formula), geotiff(formula, 31254)}) {
+    const Grid grid = read_grid(file);
+    EXPECT_NEAR(grid.west, east, 1e-9);
+    EXPECT_NEAR(grid.south, south, 1e-9);
+    EXPECT_NEAR(grid.at(east + 33, south + 77), formula(east + 33, south + 77), 1e-4);
+    EXPECT_TRUE(std::isnan(grid.at(east - 1, south)));
+  }
+  EXPECT_NE(read_grid(in_folder("a.tif")).projection.find("31254"), std::string::npos);
+  EXPECT_EQ(read_grid(in_folder("a.asc")).projection, "");
+}
+
+TEST_F(TerrainFiles, GiveTheirWindowAndEveryOtherRow) {
+  TerrainOptions o = options(ascii([](double x, double y) { return x + 3 * y; }));
+  o.window = {east + 20, south + 30, east + 140, south + 110}, o.step = 2;
+  const Terrain terrain(o);
+  EXPECT_EQ(terrain.columns(), 7);
+  EXPECT_EQ(terrain.rows(), 5);
+  EXPECT_DOUBLE_EQ(terrain.x(6), 120);
+  EXPECT_DOUBLE_EQ(terrain.y(4), 80);
+  EXPECT_DOUBLE_EQ(terrain.ground_at(20, 40), east + 40 + 3 * (south + 70));
+  expect_words(terrain.origin_document(), {"\"origin_m\": [5020, 2030]", "a.asc"});
+}
+
+TEST_F(TerrainFiles, AreRefusedWithHoles) {
+  TerrainOptions o =
+      options(ascii([](double x, double y) { return x == east + 30 && y > south + 100 ? -9999. : 50.; }));
+  expect_words(complaint(o), {"no data at 6 of 357 places", "(5030, 2110)", "gdal_fillnodata.py", "--window"});
+  o.window = {east + 40, south, east + 200, south + 160};
+  EXPECT_EQ(complaint(o), "");
+}
+TEST_F(TerrainFiles, AreRefusedInDegreesAndFeet) {
+  const Elevation hill = [](double, double y) { return 1000 + 1e4 * (y - 47); };
+  expect_words(complaint(options(ascii(hill, "d.asc", 0.001, 10.2, 47))),
+               {"seem to be degrees", "project it to metres"});
+  expect_words(complaint(options(geotiff(hill, 4326, 0.001, 10.2, 47))),
+               {"coordinates in degrees", "project it to metres"});
+  expect_words(complaint(options(geotiff(plane, 4326))), {"says that its coordinates are degrees", "gdal_edit.py"});
+  const std::string file = geotiff(hill, 4326, 0.001, 10.2, 47);
+  {  // degrees are seldom square
+    const std::unique_ptr<GDALDataset> data(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
+    double map[] = {10.2, 0.0015, 0, 47.016, 0, -0.001};
+    data->SetGeoTransform(map);
+  }
+  expect_words(complaint(options(file)), {"coordinates in degrees", "project it to metres"});
+  expect_words(complaint(options(geotiff(plane, 2225))), {"US survey foot", "project it to metres"});
+}
+TEST_F(TerrainFiles, AreRefusedWithCellsThatAreNotSquareOrTurned) {
+  const auto with = [&](double dx_row, double dy_column, double dy_row) {
+    const std::string file = geotiff(plane, 31254);
+    const std::unique_ptr<GDALDataset> data(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
+    double map[] = {east, 10, dx_row, south, dy_column, dy_row};
+    data->SetGeoTransform(map);
+    return options(file);
+  };
+  expect_words(complaint(with(0, 0, -20)), {"a.tif: must have square cells, but they are 10 wide and 20 high; resample "
+                                            "it, such as by gdalwarp -tr 10 10"});
+  expect_words(complaint(with(1, 2, -10)), {"a.tif: must have rows from west to east, but from one column to the next "
+                                            "x changes by 10 and y by 2, and from one row to the next by 1 and -10"});
+}
+TEST_F(TerrainFiles, AreRefusedWhereTheyDoNotFit) {
+  TerrainOptions o = options(ascii(plane));
+  o.window = {east - 10, south, east + 100, south + 100};
+  expect_words(complaint(o),
+               {"--window 4990 2000 5100 2100 reaches out of the grid", "(5000, 2000) to (5200, 2160) m"});
+  o.window = {east + 100, south, east, south + 100};
+  expect_words(complaint(o), {"east > west"});
+  o.window.clear(), o.step = 20;
+  expect_words(complaint(o), {"smaller --step"});
+  o.step = 1, o.base = 41;
+  expect_words(complaint(o), {"--base 41 m must lie below the lowest ground, which is at 40 m, at (5200, 2000)"});
+  o.base.reset(), o.air = 0;
+  expect_words(complaint(o), {"--air must be above 0 m"});
+  o.air = 30, o.size = 500;
+  expect_words(complaint(o), {"--size 500 m is larger than the window"});
+  o.size = 20, o.slip_surface = ascii([](double x, double y) { return plane(x, y) + 2; }, "slip.asc");
+  expect_words(complaint(o), {"slip.asc lies above the ground everywhere, by 2 m", "lower it"});
+  o.slip_surface = ascii(plane, "far.asc", 10, 9000);
+  expect_words(complaint(o), {"does not lie in the window"});
+  expect_words(complaint(options(in_folder("none.asc"))), {"none.asc: cannot be opened"});
+  std::ofstream(in_folder("bad.asc")) << "no grid\n";
+  expect_words(complaint(options(in_folder("bad.asc"))), {"bad.asc: is no grid that GDAL reads"});
+}
+
+/// Elevations stored as 0.1 z + 1000 are those of the formula, and a hole is told by its stored value.
+TEST_F(TerrainFiles, HaveTheScaleAndOffsetOfTheirBand) {
+  const std::string file = geotiff([](double x, double y) { return x == east ? -5 : (plane(x, y) - 1000) / 0.1; },
+                                   31254, spacing, east, south, 2,
+                                   [](GDALRasterBand &band) {
+                                     band.SetScale(0.1), band.SetOffset(1000), band.SetNoDataValue(-5);
+                                     band.SetDescription("ground");
+                                   });
+  const Grid grid = read_grid(file);
+  EXPECT_NEAR(grid.at(east + 100, south + 50), plane(east + 100, 0), 1e-3);  // stored in single precision
+  EXPECT_TRUE(std::isnan(grid.at(east, south)));
+  ASSERT_EQ(grid.remarks.size(), 2u);
+  expect_words(grid.remarks[0], {"of its 2 bands the first is taken, `ground`", "gdal_translate -b"});
+  expect_words(grid.remarks[1], {"values are 0.1 times those stored plus 1000"});
+  TerrainOptions o = options(file);
+  o.window = {east + 10, south, east + 200, south + 160};
+  EXPECT_TRUE(doubts(o, "0.1 times those stored plus 1000"));
+}
+
+/// One sentence, and not one of GDAL for each row that is missing.
+TEST_F(TerrainFiles, AreRefusedWhenTheyEndEarly) {
+  const std::string file = ascii(plane);
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  const Answer answer = run(file + " -o " + in_folder("m.msh") + " --size 20 --air 20");
+  EXPECT_EQ(answer.status, 2);
+  expect_words(answer.text, {"a.asc: ends early or is damaged, so that not all of its 17 rows"});
+  EXPECT_EQ(std::count(answer.text.begin(), answer.text.end(), '\n'), 1) << answer.text;
+}
+
+/// At once, however many rows are missing, and wherever the grid is read: GDAL's search for a row that is not there
+/// doubles with each of them.
+TEST_F(TerrainFiles, AreRefusedAtOnceWhenMostOfThemIsMissing) {
+  std::ofstream(in_folder("begun.asc")) << "ncols 3\nnrows 500\nxllcenter " << east << "\nyllcenter " << south
+                                        << "\ncellsize 10\n90 80 70\n90 80 70\n";
+  const std::string begun = in_folder("begun.asc"), mesh = " -o " + in_folder("m.msh"), cells = " --size 20 --air 20";
+  for (const std::string &arguments :
+       {begun + mesh + cells, begun + mesh + " --values", ascii(plane) + mesh + cells + " --slip-surface " + begun}) {
+    const Answer answer = run(arguments);
+    EXPECT_EQ(answer.status, 2) << arguments;  // 124: it was still reading
+    expect_words(answer.text, {"begun.asc: ends early or is damaged, so that not all of its 500 rows of 3 values"});
+  }
+}
+
+/// Elevations that no ground has, on a slope and on rough ground; the roughness itself passes, and so does a cliff.
+TEST_F(TerrainFiles, AreRefusedWithSpikes) {
+  const auto with = [&](double value, const Elevation &elevation) {
+    return options(
+        ascii([=](double x, double y) { return x == east + 60 && y == south + 50 ? value : elevation(x, y); }));
+  };
+  const Elevation rough = [](double x, double y) { return plane(x, y) + 4 * std::sin(x) * std::cos(y) + 200; };
+  for (const Elevation &ground : {Elevation(plane), rough})
+    for (const double value : {9999., -9998., 0.}) {
+      std::ostringstream words;
+      words << "the elevation " << value << " m at (5060, 2050) stands ";
+      expect_words(complaint(with(value, ground)), {words.str(), "gdal_translate -a_nodata", "gdal_fillnodata.py"});
+    }
+  EXPECT_EQ(complaint(with(plane(east + 60, 0) + 10, plane)), "");
+  EXPECT_EQ(complaint(options(ascii(rough))), "");
+  const Elevation wild = [](double x, double y) { return plane(x, y) + 30 * std::sin(x) * std::cos(y); };
+  EXPECT_EQ(complaint(options(ascii(wild))), "") << "places stand out by more than two spacings, and so do all others";
+  EXPECT_EQ(complaint(options(ascii([](double x, double y) { return plane(x, y) + (x < east + 90 ? 80 : 0); }))), "");
+  const Elevation half = [](double x, double y) { return x < east + 90 ? -9998 : plane(x, y); };
+  expect_words(complaint(options(ascii(half))), {"the elevation -9998 m at (5080, ", "lower than the place beside it"});
+  TerrainOptions o = options(ascii(plane));
+  o.slip_surface = ascii([](double x, double y) { return x > east + 100 ? -9998 : plane(x, y) - 5; }, "slip.asc");
+  expect_words(complaint(o), {"slip.asc: the elevation -9998 m"});
+}
+
+/// A place without data counts only where it has a part in the value.
+TEST(GridValues, NeedTheValuesThatCount) {
+  Grid grid;
+  grid.columns = 3, grid.rows = 2, grid.spacing = 10, grid.values = {1, 2, std::nan(""), 3, 4, std::nan("")};
+  EXPECT_EQ(grid.at(10, 0), 2);
+  EXPECT_EQ(grid.at(10, 5), 3);
+  EXPECT_EQ(grid.at(5, 10), 3.5);
+  EXPECT_TRUE(std::isnan(grid.at(11, 5)) && std::isnan(grid.at(20, 0)));
+}
+
+/// A slip surface in another projection is refused; the same one by another name, or none, is not.
+TEST_F(TerrainFiles, CompareProjections) {
+  TerrainOptions o = options(geotiff(plane, 31254));
+  std::filesystem::rename(o.file, in_folder("terrain.tif"));
+  o.file = in_folder("terrain.tif"), o.size = 4;
+  const Elevation slip = [](double x, double y) { return plane(x, y) - 0.01 * (200 - x + east); };
+  o.slip_surface = geotiff(slip, 31255);
+  expect_words(complaint(o), {"a.tif: has the projection MGI / Austria GK Central, and ",
+                              "terrain.tif has MGI / Austria GK West", "gdalwarp -t_srs"});
+  o.slip_surface = geotiff(slip, 31254);
+  EXPECT_EQ(complaint(o), "");
+  o.slip_surface = ascii(slip, "slip.asc");
+  EXPECT_EQ(complaint(o), "");
+  OGRSpatialReference west;
+  west.importFromEPSG(31254), west.morphToESRI();
+  char *text = nullptr;
+  west.exportToWkt(&text);
+  std::ofstream(in_folder("slip.prj")) << text;  // as other programs write it beside ESRI ASCII
+  CPLFree(text);
+  EXPECT_NE(read_grid(o.slip_surface).projection, "");
+  EXPECT_EQ(complaint(o), "");
+}
+
+}  // namespace
+}  // namespace talus::terrain_files
