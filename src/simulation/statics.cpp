@@ -443,30 +443,43 @@ struct Statics<dim>::AroundNodes {
 };
 
 template <int dim>
-typename Statics<dim>::AroundNodes Statics<dim>::around_nodes() {
-  require(world_.motion->begin(clock_.time));
-  std::vector<double> pressure(flow_->nodes().count(), 0), moved = pressure, weight = pressure;
+template <int count, class Value>
+std::vector<double> Statics<dim>::mean_of_particles(const ElementNodes<dim> &nodes, Value &&value) const {
+  std::vector<double> sum(static_cast<size_t>(nodes.count()) * count, 0), weight = sum;
   for (const auto &body : world_.bodies) {
     const ParticleArrays<dim> &p = body->particles();
     for (int i = 0; i < p.count; ++i) {
       const int cell = p.cell[i];
-      if (!flow_->active(cell)) continue;
+      if (!problem_->soil().active(cell)) continue;
       const Barycentric<dim> l = barycentric(world_.mesh.cells[cell], p.position[i]);
-      const Vec<dim> way = moved_since(p, i);
-      const double cells = std::sqrt(dot<dim>(way, way)) / element_size<dim>(world_.mesh.volume[cell]);
-      for (int a = 0; a <= dim; ++a) {
-        const int node = flow_->nodes().of_cell(cell)[a];
-        const double w = p.volume[i] * l[a];
-        weight[node] += w, pressure[node] += w * world_.motion->pores(*body, i).liquid, moved[node] += w * cells;
-      }
+      const std::array<double, count> own = value(*body, i);
+      for (int a = 0; a <= dim; ++a)
+        for (int k = 0; k < count; ++k) {
+          const int n = nodes.of_cell(cell)[a] * count + k;
+          weight[n] += p.volume[i] * l[a], sum[n] += p.volume[i] * l[a] * own[k];
+        }
     }
   }
-  for (std::vector<double> *sum : {&pressure, &moved, &weight}) require(flow_->nodes().sum(*sum));
+  for (std::vector<double> *all : {&sum, &weight}) require(nodes.sum(*all));
+  for (size_t n = 0; n < sum.size(); ++n)
+    sum[n] = weight[n] > 0 ? sum[n] / weight[n] : std::numeric_limits<double>::quiet_NaN();
+  return sum;
+}
+
+template <int dim>
+typename Statics<dim>::AroundNodes Statics<dim>::around_nodes() {
+  require(world_.motion->begin(clock_.time));
+  AroundNodes around;
+  around.pressure = mean_of_particles<1>(flow_->nodes(), [this](const Body<dim> &body, int i) {
+    return std::array{world_.motion->pores(body, i).liquid};
+  });
+  around.stayed = mean_of_particles<1>(flow_->nodes(), [this](const Body<dim> &body, int i) {
+    const Vec<dim> way = moved_since(body.particles(), i);
+    return std::array{std::sqrt(dot<dim>(way, way)) / element_size<dim>(world_.mesh.volume[body.particles().cell[i]])};
+  });
   constexpr double half_a_cell = 0.5;
-  for (size_t i = 0; i < weight.size(); ++i)
-    pressure[i] = weight[i] > 0 ? pressure[i] / weight[i] : std::numeric_limits<double>::quiet_NaN(),
-    moved[i] = weight[i] > 0 ? std::max(0., 1 - moved[i] / weight[i] / half_a_cell) : 0;
-  return {pressure, moved};
+  for (double &moved : around.stayed) moved = std::isnan(moved) ? 0 : std::max(0., 1 - moved / half_a_cell);
+  return around;
 }
 
 /// Displacement of a particle since finite elements had it.
@@ -480,23 +493,9 @@ Vec<dim> Statics<dim>::moved_since(const ParticleArrays<dim> &p, int i) const {
 /// Nodes move on by the mean of the particles around them, so that displacement counts through all stages.
 template <int dim>
 void Statics<dim>::displacement_from_particles() {
-  const SoilElements<dim> &soil = problem_->soil();
-  std::vector<double> weight(static_cast<size_t>(soil.nodes().count()) * dim, 0), way = weight;
-  for (const auto &body : world_.bodies) {
-    const ParticleArrays<dim> &p = body->particles();
-    for (int i = 0; i < p.count; ++i) {
-      if (!soil.active(p.cell[i])) continue;
-      const Barycentric<dim> l = barycentric(world_.mesh.cells[p.cell[i]], p.position[i]);
-      const Vec<dim> moved = moved_since(p, i);
-      for (int a = 0; a <= dim; ++a)
-        for (int d = 0; d < dim; ++d) {
-          const int n = soil.nodes().of_cell(p.cell[i])[a] * dim + d;
-          weight[n] += p.volume[i] * l[a], way[n] += p.volume[i] * l[a] * moved[d];
-        }
-    }
-  }
-  for (std::vector<double> *sum : {&weight, &way}) require(soil.nodes().sum(*sum));
-  for (size_t n = 0; n < way.size(); ++n) way[n] = weight[n] > 0 ? way[n] / weight[n] : 0;
+  std::vector<double> way = mean_of_particles<dim>(
+      problem_->soil().nodes(), [this](const Body<dim> &body, int i) { return moved_since(body.particles(), i); });
+  for (double &w : way) w = std::isnan(w) ? 0 : w;
   problem_->soil().add_displacement(way);
 }
 

@@ -85,6 +85,10 @@ class Statics {
   void start_stress();  // initial_stress.cpp
   void to_gauss_points();
   void check_places() const;
+  /// Means over the particles around the vertices of elements, weighted by volume and shape function: `value`(body,
+  /// particle) has `count` components; [node][count], not a number where there are no particles. Collective.
+  template <int count, class Value>
+  std::vector<double> mean_of_particles(const ElementNodes<dim> &nodes, Value &&value) const;
   struct AroundNodes;
   AroundNodes around_nodes();
   Vec<dim> moved_since(const ParticleArrays<dim> &p, int i) const;
