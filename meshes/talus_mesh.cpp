@@ -199,6 +199,43 @@ double volume_of(const std::string &name) {
   return volume;
 }
 
+/// Area of a group of facets on which cells of a group stand [m2].
+double area_under(const std::string &cells, const std::string &facets) {
+  std::vector<std::array<std::size_t, 3>> faces;
+  double area = 0;
+  for (const int dim : {3, 2}) {
+    gmsh::vectorpair groups;
+    gmsh::model::getPhysicalGroups(groups, dim);
+    for (const auto &[dimension, group] : groups) {
+      std::string found;
+      gmsh::model::getPhysicalName(dimension, group, found);
+      if (found != (dim == 3 ? cells : facets)) continue;
+      std::vector<int> tags;
+      gmsh::model::getEntitiesForPhysicalGroup(dimension, group, tags);
+      for (const int tag : tags) {
+        std::vector<std::size_t> elements, nodes;
+        gmsh::model::mesh::getElementsByType(dim == 3 ? 4 : 2, elements, nodes, tag);
+        const auto corners = dim == 2 ? corners_of<2, 3>(tag) : std::vector<std::array<Vec<3>, 3>>{};
+        for (std::size_t e = 0; e < elements.size(); ++e) {
+          const std::size_t *of = &nodes[e * (dim + 1)];
+          for (int left_out = dim == 3 ? 0 : 3; left_out <= 3; ++left_out) {
+            std::array<std::size_t, 3> face;
+            for (int a = 0, k = 0; a <= dim; ++a)
+              if (a != left_out) face[k++] = of[a];
+            std::ranges::sort(face);
+            if (dim == 3)
+              faces.push_back(face);
+            else if (std::ranges::binary_search(faces, face))
+              area += measure<2, 3>(corners[e]);
+          }
+        }
+      }
+    }
+    if (dim == 3) std::ranges::sort(faces);
+  }
+  return area;
+}
+
 void report_terrain(const Terrain &terrain) {
   if (terrain.slides()) {
     const double cells = volume_of("slide"), exact = terrain.slide_volume();
@@ -209,6 +246,15 @@ void report_terrain(const Terrain &terrain) {
     if (cells > 0 && std::abs(cells / exact - 1) > much)
       std::cout << "warning: the cells of the slide hold " << cells << " m3, and between slip surface and ground are "
                 << exact << " m3: a cell belongs to the slide if its centre does. Take a smaller --size\n";
+    if (!terrain.options().base && cells > 0) {
+      const double surface = terrain.slip_surface_area(), stands = area_under("slide", "terrain");
+      std::cout << "slip surface " << surface << " m2 under the slide; its cells stand on " << stands << " m2 ("
+                << std::showpos << 100 * (stands / surface - 1) << std::noshowpos << " %)\n";
+      if (std::abs(stands / surface - 1) > much)
+        std::cout << "warning: the cells of the slide stand on " << stands << " m2 of the slip surface, which measures "
+                  << surface << " m2 under the slide: friction does not depend on it, and adhesion of the base acts on "
+                  << "so much " << (stands < surface ? "less" : "more") << ". Take a smaller --size\n";
+    }
     if (cells == 0)
       complain("the slide is thinner than its cells, and none has its centre in it; take a smaller --size");
   }

@@ -54,6 +54,7 @@ class Terrain {
   bool slides() const { return slide_area_ > 0; }
   double slide_area() const { return slide_area_; }      ///< seen from above [m2]
   double slide_volume() const { return slide_volume_; }  ///< [m3]
+  double slip_surface_area() const;                      ///< under the slide, as the surface lies [m2]
   /// The layer to which ground at a place belongs; empty: none.
   std::string layer_at(double x, double y, double z) const;
   /// The next layer whose surface lies above that of layer `index` wherever this is above the base, so that it has no

@@ -109,6 +109,19 @@ void Terrain::check_feet(const std::vector<double> &slip, const std::string &nam
                      "such as by gdal_calc.py --calc=A*0.3048"));
 }
 
+double Terrain::slip_surface_area() const {
+  double sum = 0;
+  const double h = ground_.spacing;
+  for (int j = 0; j + 1 < rows(); ++j)
+    for (int i = 0; i + 1 < columns(); ++i) {
+      const int k = j * columns() + i, corner[] = {k, k + 1, k + columns(), k + columns() + 1};
+      const double share = std::ranges::count_if(corner, [&](int c) { return ground()[c] > bed()[c]; }) / 4.;
+      const auto z = [&](int c) { return bed()[corner[c]]; };
+      sum += share * h * std::hypot(h, (z(1) + z(3) - z(0) - z(2)) / 2, (z(2) + z(3) - z(0) - z(1)) / 2);
+    }
+  return sum;
+}
+
 void Terrain::check_slip_surface(const std::vector<double> &slip, const std::string &name) {
   const bool by_grid = !options_.slip_surface.empty();
   const double deep = slide_volume_ / slide_area_;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "physics/boundary/pore_conditions.h"
 #include "physics/prescribed_pressure.h"
+#include "solvers/quasi_static/unnamed_faces.h"
 
 namespace talus {
 
@@ -20,6 +22,13 @@ void Loads<dim>::activate() {
                            soil_.nodes().of_facet(facet.cell, facet.face)});
       }
   }
+  const auto open = std::ranges::find_if(sources_, [](const Source &source) {
+    return source.kind.open_water && std::ranges::count(source.groups, std::string(free_surface));
+  });
+  if (open == sources_.end()) return;
+  for (const Facet<dim> &facet : unnamed_faces(mesh, soil_.active(), sources_))
+    facets_.push_back(
+        {facet, static_cast<int>(open - sources_.begin()), 1., soil_.nodes().of_facet(facet.cell, facet.face)});
 }
 
 template <int dim>

@@ -25,7 +25,7 @@ class Loads {
         facet_rule_(load_quadrature<dim - 1>()) {
     std::copy_n(scene.gravity.begin(), dim, acceleration.begin());
   }
-  /// Finds the loaded faces of the soil that is active now.
+  /// Finds the loaded faces of the soil that is active now. Collective.
   void activate();
   /// Forces on local nodes at time t, this rank's part [N]; of all active cells or of those that `counts` names.
   void force(double t, std::vector<double> &force, const std::function<bool(int cell)> &counts = {}) const;

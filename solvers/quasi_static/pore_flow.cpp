@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <utility>
 
 #include "base/local_numbers.h"
+#include "solvers/quasi_static/unnamed_faces.h"
 
 namespace talus {
 namespace {
@@ -114,7 +114,6 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
     return active_across[-2 - neighbour] != 0;
   };
 
-  std::set<std::pair<int, int>> taken;  // faces with a boundary of their own
   std::vector<PetscInt> beyond(nodes_.count(), -1);
   supplies_.clear();
   const int count =
@@ -156,29 +155,15 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
       if (!mesh_.has_group(group)) continue;
       for (const Facet<dim> &f : mesh_.facets(group)) {
         if (!active_[f.cell] || soil_across(mesh_.cells[f.cell].neighbour[f.face])) continue;
-        taken.emplace(f.cell, f.face);
         if (kind.water != OnWater::wall) put_source(f, s);
       }
     }
   }
-  for (int c = 0; c < mesh_.cell_count(); ++c)
-    for (int k = 0; k <= dim && active_[c]; ++k) {
-      if (soil_across(mesh_.cells[c].neighbour[k]) || taken.count({c, k})) continue;
-      Facet<dim> facet{c, k, {}, {}, 0};
-      double square = 0;  // its area is that of the cell's gradient: |grad l_k| = area / (dim volume)
-      for (int d = 0; d < dim; ++d) {
-        double g = 0;
-        for (int j = 0; j < dim; ++j)
-          g += k == 0 ? -mesh_.cells[c].gradient[j][d] : j == k - 1 ? mesh_.cells[c].gradient[j][d] : 0;
-        facet.normal[d] = -g, square += g * g;
-      }
-      facet.area = std::sqrt(square) * dim * mesh_.volume[c];
-      for (double &n : facet.normal) n /= std::sqrt(square);
-      if (rain == atmosphere)
-        put(facet, atmosphere, suction_ ? 0 : 3, false);
-      else
-        put_source(facet, rain);
-    }
+  for (const Facet<dim> &facet : unnamed_faces(mesh_, active_, sources_))
+    if (rain == atmosphere)
+      put(facet, atmosphere, suction_ ? 0 : 3, false);
+    else
+      put_source(facet, rain);
   PetscCall(nodes_.maximum(beyond));
   pressed_.assign(nodes_.count(), none);
   may_close_.assign(nodes_.count(), 0), fixed_.assign(nodes_.count(), 0), open_.assign(nodes_.count(), 0);

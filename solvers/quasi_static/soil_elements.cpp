@@ -115,6 +115,7 @@ void SoilElements<dim>::place_points() {
     }
   }
   displacement_of_point_.assign(mesh_.element_plex().number.size() * dim, 0);
+  taken_of_point_ = displacement_of_point_;
 }
 
 template <int dim>
@@ -128,11 +129,13 @@ PetscErrorCode SoilElements<dim>::activate(const std::vector<char> &present) {
     for (int q = 0; q < p.count(); ++q)
       if (!active_[p.cell[q]]) p.increment[q].strain.fill(0);
   for (int i = 0; i < nodes_.count(); ++i)
-    std::copy_n(&displacement_[i * dim], dim, &displacement_of_point_[nodes_.point[i] * dim]);
+    std::copy_n(&displacement_[i * dim], dim, &displacement_of_point_[nodes_.point[i] * dim]),
+        std::copy_n(&taken_[i * dim], dim, &taken_of_point_[nodes_.point[i] * dim]);
   PetscCall(nodes_.setup(mesh_, order_, active_));
-  displacement_.resize(static_cast<size_t>(nodes_.count()) * dim);
+  displacement_.resize(static_cast<size_t>(nodes_.count()) * dim), taken_.resize(displacement_.size());
   for (int i = 0; i < nodes_.count(); ++i)
-    std::copy_n(&displacement_of_point_[nodes_.point[i] * dim], dim, &displacement_[i * dim]);
+    std::copy_n(&displacement_of_point_[nodes_.point[i] * dim], dim, &displacement_[i * dim]),
+        std::copy_n(&taken_of_point_[nodes_.point[i] * dim], dim, &taken_[i * dim]);
   make_groups();
   PetscFunctionReturn(0);
 }
@@ -344,6 +347,7 @@ template <int dim>
 void SoilElements<dim>::reset_displacement() {
   std::fill(displacement_.begin(), displacement_.end(), 0.);
   std::fill(displacement_of_point_.begin(), displacement_of_point_.end(), 0.);
+  taken_ = displacement_, taken_of_point_ = displacement_of_point_, restarted_ = true;
   for (GaussPoints<dim> &p : points_) {
     const auto fields = history_fields(p.law);
     for (size_t k = 0; k < fields.size(); ++k)
@@ -376,6 +380,7 @@ void SoilElements<dim>::serialize(Archive &archive) {
         std::memcpy(&displacement_of_point_[p * dim], &displacement[k * dim], width);
     for (int i = 0; i < nodes_.count(); ++i)
       std::copy_n(&displacement_of_point_[nodes_.point[i] * dim], dim, &displacement_[i * dim]);
+    taken_ = displacement_, taken_of_point_ = displacement_of_point_;  // a checkpoint comes after the hand-over
   }
   for (GaussPoints<dim> &p : points_) serialize_points(archive, p);
 }
@@ -415,12 +420,25 @@ void SoilElements<dim>::admit() {
 
 template <int dim>
 Vec<dim> SoilElements<dim>::displacement(int cell, const Barycentric<dim> &place) const {
+  return interpolate(displacement_, cell, place);
+}
+
+template <int dim>
+Vec<dim> SoilElements<dim>::further_displacement(int cell, const Barycentric<dim> &place) const {
+  Vec<dim> u = interpolate(displacement_, cell, place);
+  add_scaled<dim>(u, -1, interpolate(taken_, cell, place));
+  return u;
+}
+
+template <int dim>
+Vec<dim> SoilElements<dim>::interpolate(const std::vector<double> &nodal, int cell,
+                                        const Barycentric<dim> &place) const {
   std::array<double, element_nodes<dim>(2)> shape;
   Vec<dim> u{};
   if (!active_[cell]) return u;
   shape_functions<dim>(order_, place, shape.data());
   for (int a = 0; a < element_nodes<dim>(order_); ++a)
-    for (int d = 0; d < dim; ++d) u[d] += shape[a] * displacement_[nodes_.of_cell(cell)[a] * dim + d];
+    for (int d = 0; d < dim; ++d) u[d] += shape[a] * nodal[nodes_.of_cell(cell)[a] * dim + d];
   return u;
 }
 
@@ -429,7 +447,10 @@ void SoilElements<dim>::add_displacement(const std::vector<double> &more) {
   std::vector<char> done(nodes_.count(), 0);
   const auto add = [&](int node, int a, int b) {
     if (std::exchange(done[node], 1)) return;
-    for (int d = 0; d < dim; ++d) displacement_[node * dim + d] += (more[a * dim + d] + more[b * dim + d]) / 2;
+    for (int d = 0; d < dim; ++d) {
+      const double half_way = (more[a * dim + d] + more[b * dim + d]) / 2;
+      displacement_[node * dim + d] += half_way, taken_[node * dim + d] += half_way;
+    }
   };
   for (int c = 0; c < mesh_.cell_count(); ++c) {
     if (!active_[c]) continue;

@@ -132,6 +132,11 @@ class SoilElements {
   const std::vector<double> &displacement() const { return displacement_; }  ///< of local nodes, committed [m]
   /// Displacement at a place of a cell given in barycentric coordinates [m].
   Vec<dim> displacement(int cell, const Barycentric<dim> &place) const;
+  /// The same since `displacement_is_taken` [m].
+  Vec<dim> further_displacement(int cell, const Barycentric<dim> &place) const;
+  void displacement_is_taken() { taken_ = displacement_, restarted_ = false; }
+  /// Has displacement been counted anew since then?
+  bool restarted() const { return restarted_; }
   /// Adds what motion has displaced the soil by: `more` [node][d] of vertices, edges take the mean of their ends [m].
   void add_displacement(const std::vector<double> &more);
   /// Largest displacement of a node [m]; collective.
@@ -149,6 +154,7 @@ class SoilElements {
     size_t mean_gradient;   ///< in gradient_: [node]
   };
   void place_points();
+  Vec<dim> interpolate(const std::vector<double> &nodal, int cell, const Barycentric<dim> &place) const;
   void make_groups();
   void serialize_points(Archive &archive, GaussPoints<dim> &points);
 
@@ -165,7 +171,10 @@ class SoilElements {
   std::vector<int> group_node_;
   std::vector<Vec<dim>> gradient_;
   std::vector<double> displacement_;           // of local nodes, committed
-  std::vector<double> displacement_of_point_;  // the same by point of the DMPlex, kept while nodes come and go
+  std::vector<double> taken_;                  // the part of it that particles have
+  std::vector<double> displacement_of_point_;  // `displacement_` by point of the DMPlex, kept while nodes come and go
+  std::vector<double> taken_of_point_;         // `taken_`
+  bool restarted_ = false;
 };
 
 }  // namespace talus

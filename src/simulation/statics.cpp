@@ -102,6 +102,7 @@ void Statics<dim>::prepare() {
 template <int dim>
 void Statics<dim>::begin_stage(const Stage &stage, bool soil_moves) {
   if (!problem_) prepare();
+  moved_.reset();
   if (moved_since_) to_gauss_points();
   const double before = strain_energy();
   world_.choose_bodies(stage, clock_);
@@ -278,6 +279,7 @@ void Statics<dim>::interpolate(int cell, const Barycentric<dim> &l, bool between
 template <int dim>
 void Statics<dim>::to_particles() {
   if (world_.motion->gathered()) require(world_.release(clock_.time));
+  const bool anew = problem_->soil().restarted();
   for (size_t b = 0; b < world_.bodies.size(); ++b) {
     const ParticleArrays<dim> &p = world_.bodies[b]->particles();
     const int memory = world_.bodies[b]->history_count();
@@ -286,10 +288,12 @@ void Statics<dim>::to_particles() {
       const Barycentric<dim> l = barycentric(world_.mesh.cells[cell], p.position[i]);
       interpolate(cell, l, false, &p.stress[i * stress_size<dim>], p.history + i * memory);
       world_.bodies[b]->refer_to_stress(i);
-      const Vec<dim> u = problem_->soil().displacement(cell, l);
-      for (int d = 0; d < dim; ++d) p.reference[i][d] = p.position[i][d] - u[d], p.velocity[i][d] = 0;
+      const Vec<dim> u = anew ? problem_->soil().displacement(cell, l) : problem_->soil().further_displacement(cell, l);
+      for (int d = 0; d < dim; ++d)
+        p.reference[i][d] = (anew ? p.position[i][d] : p.reference[i][d]) - u[d], p.velocity[i][d] = 0;
     }
   }
+  problem_->soil().displacement_is_taken();
   require(
       world_.conditions.bases().set_normal_forces(world_.mesh, problem_->bases().normal_forces(), clock_.load_time));
   if (world_.phases.liquid)
@@ -387,9 +391,10 @@ bool Statics<dim>::bears(int cell, const ParticleState<dim> &state) const {
 template <int dim>
 void Statics<dim>::to_gauss_points() {
   problem_->bases().release();
-  pressure_from_particles();
   if (world_.motion->gathered()) require(world_.release(clock_.time));
   check_places();
+  find_what_moved();
+  pressure_from_particles();
   displacement_from_particles();
   for (size_t b = 0; b < world_.bodies.size(); ++b) {
     const ParticleArrays<dim> &p = world_.bodies[b]->particles();
@@ -495,8 +500,53 @@ template <int dim>
 void Statics<dim>::displacement_from_particles() {
   std::vector<double> way = mean_of_particles<dim>(
       problem_->soil().nodes(), [this](const Body<dim> &body, int i) { return moved_since(body.particles(), i); });
-  for (double &w : way) w = std::isnan(w) ? 0 : w;
+  spread(way);
   problem_->soil().add_displacement(way);
+}
+
+/// Vertices without particles around them take the mean of those beside them, from the soil on outwards. Collective.
+template <int dim>
+void Statics<dim>::spread(std::vector<double> &way) const {
+  const SoilElements<dim> &soil = problem_->soil();
+  const ElementNodes<dim> &nodes = soil.nodes();
+  for (int found = 1; found;) {
+    std::vector<double> sum(way.size(), 0), weight = sum;
+    for (int c = 0; c < world_.mesh.cell_count(); ++c)
+      for (int a = 0; a <= dim && soil.active(c); ++a)
+        for (int b = 0; b <= dim; ++b)
+          for (int d = 0; d < dim; ++d)
+            if (const double w = way[nodes.of_cell(c)[a] * dim + d]; !std::isnan(w))
+              sum[nodes.of_cell(c)[b] * dim + d] += w, weight[nodes.of_cell(c)[b] * dim + d] += 1;
+    for (std::vector<double> *all : {&sum, &weight}) require(nodes.sum(*all));
+    found = 0;
+    for (size_t n = 0; n < way.size(); ++n)
+      if (std::isnan(way[n]) && weight[n] > 0) way[n] = sum[n] / weight[n], found = 1;
+    MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, world_.comm);
+  }
+  for (double &w : way) w = std::isnan(w) ? 0 : w;  // middles of edges, which follow from their ends
+}
+
+template <int dim>
+void Statics<dim>::find_what_moved() {
+  Moved found;
+  std::vector<char> filled(world_.mesh.cell_count(), 0);
+  for (const auto &body : world_.bodies) {
+    const ParticleArrays<dim> &p = body->particles();
+    for (int i = 0; i < p.count; ++i) {
+      const Vec<dim> way = moved_since(p, i), &v = p.velocity[i];
+      filled[p.cell[i]] = 1;
+      found.way = std::max(found.way, std::sqrt(dot<dim>(way, way)));
+      found.speed = std::max(found.speed, std::sqrt(dot<dim>(v, v)));
+    }
+  }
+  double largest[2] = {found.way, found.speed}, volume[2] = {};
+  for (int c = 0; c < world_.mesh.cell_count(); ++c)
+    if (problem_->soil().active(c))
+      volume[0] += world_.mesh.volume[c], volume[1] += filled[c] ? 0 : world_.mesh.volume[c];
+  MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPI_DOUBLE, MPI_MAX, world_.comm);
+  MPI_Allreduce(MPI_IN_PLACE, volume, 2, MPI_DOUBLE, MPI_SUM, world_.comm);
+  found.way = largest[0], found.speed = largest[1], found.emptied = volume[0] > 0 ? volume[1] / volume[0] : 0;
+  moved_ = found;
 }
 
 template <int dim>

@@ -76,6 +76,12 @@ class Statics {
   /// Elements of first order make factors too large: a factor of safety has always those of second order.
   Elements elements() const { return for_factor ? Elements::quadratic : world_.scene.quasi_static.elements; }
   std::vector<std::string> lost_stages;  ///< names of these stages
+  /// What motion had done to the soil when the stage under way began.
+  struct Moved {
+    double way = 0, speed = 0;  ///< of the particle that has moved farthest, and of the fastest [m], [m/s]
+    double emptied = 0;         ///< share of the cells of the soil, by volume, in which no particle is any more
+  };
+  const std::optional<Moved> &moved() const { return moved_; }  ///< none if it does not follow motion
 
  private:
   void make();
@@ -93,6 +99,8 @@ class Statics {
   AroundNodes around_nodes();
   Vec<dim> moved_since(const ParticleArrays<dim> &p, int i) const;
   void displacement_from_particles();
+  void spread(std::vector<double> &way) const;
+  void find_what_moved();
   void pressure_from_particles();
   void use_seeped_pressure();
   int cell_at(const Vec<dim> &x) const;
@@ -107,6 +115,7 @@ class Statics {
   std::vector<double> seeped_cells_;  ///< of this rank, as CellPressure takes them
   std::shared_ptr<const CellPressure<dim>> seeped_;
   bool current_ = false, moved_since_ = false;
+  std::optional<Moved> moved_;
   double imposed_ = 0;  ///< strain energy that stages began with, less what left with bodies [J]
 };
 

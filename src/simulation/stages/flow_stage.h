@@ -40,7 +40,7 @@ class FlowStage : public StaticStage<dim> {
          << ", and particles hold " << std::abs(took) << " kg " << (took < 0 ? "less" : "more") << " than before";
     text.precision(digits);
     if (std::abs(handed_) > visible * std::abs(entered_) && std::abs(handed_) > visible / 100 * water_)
-      text << " (smaller cells lose or gain less: water_handed_kg)";
+      text << " (water_handed_kg of the history; smaller cells lose or gain less at fronts of the water)";
   }
 
  private:

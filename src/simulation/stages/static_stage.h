@@ -88,9 +88,32 @@ class StaticStage : public StageRunner<dim> {
     run_.recorder.begin_stage(stage_);
     run_.dynamics.set_loading(stage_, 0);  // particles take over what is computed, whatever the stage before prescribed
     run_.statics.begin_stage(stage_, soil_moves());
+    note_what_moved();
     run_.statics.problem().iterated = [&run = run_](int k, double unbalanced) { run.recorder.seeking(k, unbalanced); };
     begin_strain_ = run_.statics.softening_strain();
     begin_ = run_.clock.time, begin_load_ = run_.clock.load_time;
+  }
+
+  /// Soil that finite elements do not have where it is, or stop.
+  void note_what_moved() {
+    constexpr double visible = 0.01, fast = 0.1;  // of the soil; [m/s]
+    const auto &moved = run_.statics.moved();
+    if (!moved) return;
+    std::ostringstream text;
+    text.precision(3);
+    if (moved->emptied > visible) {
+      text << "warning: stage " << stage_.name << " computes the soil where it lay at the start, and "
+           << 100 * moved->emptied << " % of it is there no more: motion has carried soil by up to " << moved->way
+           << " m. What acts at the ground acts where the ground was"
+           << (run_.world.phases.liquid ? ", and water that enters there reaches no particle" : "");
+      run_.recorder.note(text.str());
+      text.str("");
+    }
+    if (moved->speed > fast) {
+      text << "warning: stage " << stage_.name << " stops the soil, which was moving at up to " << moved->speed
+           << " m/s: finite elements know no motion. A longer stage before it lets the soil come to rest";
+      run_.recorder.note(text.str());
+    }
   }
 
   void refuse_bad_functions() const {
@@ -174,7 +197,8 @@ class StaticStage : public StageRunner<dim> {
     }
     run_.dynamics.set_loading(stage_, 0);
     const Balance sums = run_.balance();
-    if (sums.applied > 0) text << "; unbalanced force ratio of the particles that take it over " << sums.ratio();
+    if (sums.applied > 0 && soil_moves())
+      text << "; unbalanced force ratio of the particles that take it over " << sums.ratio();
     if (sums.applied > 0 && sums.ratio() > swings && soil_moves())
       text << ", by which soil at rest swings as soon as it may move: "
            << (water_flows() ? "" : "quasi_static.elements = \"patches\" or ")
