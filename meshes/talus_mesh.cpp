@@ -247,7 +247,7 @@ void report_terrain(const Terrain &terrain) {
       std::cout << "warning: the cells of the slide hold " << cells << " m3, and between slip surface and ground are "
                 << exact << " m3: a cell belongs to the slide if its centre does. Take a smaller --size\n";
     if (!terrain.options().base && cells > 0) {
-      const double surface = terrain.slip_surface_area(), stands = area_under("slide", "terrain");
+      const double surface = terrain.slip_surface_area(), stands = area_under("slide", "base");
       std::cout << "slip surface " << surface << " m2 under the slide; its cells stand on " << stands << " m2 ("
                 << std::showpos << 100 * (stands / surface - 1) << std::noshowpos << " %)\n";
       if (std::abs(stands / surface - 1) > much)

@@ -52,9 +52,9 @@ class Terrain {
   double ground_at(double x, double y) const { return ground_.at(x, y); }
   double bed_at(double x, double y) const { return bed_.at(x, y); }
   bool slides() const { return slide_area_ > 0; }
-  double slide_area() const { return slide_area_; }      ///< seen from above [m2]
-  double slide_volume() const { return slide_volume_; }  ///< [m3]
-  double slip_surface_area() const;                      ///< under the slide, as the surface lies [m2]
+  double slide_area() const { return slide_area_; }                ///< seen from above [m2]
+  double slide_volume() const { return slide_volume_; }            ///< [m3]
+  double slip_surface_area() const { return slip_surface_area_; }  ///< under the slide, as the surface lies [m2]
   /// The layer to which ground at a place belongs; empty: none.
   std::string layer_at(double x, double y, double z) const;
   /// The next layer whose surface lies above that of layer `index` wherever this is above the base, so that it has no
@@ -74,10 +74,14 @@ class Terrain {
   std::vector<double> slip_surface(const Grid &grid);
   /// The same of one in an outline.
   std::vector<double> slip_surface(const Outline &outline) const;
+  /// Area of a slip surface below the ground [m2].
+  double area_of(const std::vector<double> &slip) const;
   void take_layers(const Grid &grid);
   void check_base() const;
   /// Refuses a slip surface whose elevations stand to those of the ground as feet and metres do.
   void check_feet(const std::vector<double> &slip, const std::string &name) const;
+  /// Refuses a slip surface with places without data amid the slide.
+  void check_holes(const std::vector<double> &slip, const std::string &name) const;
   /// Refuses elevations that no ground has: single places, or edges of areas, far above or below those around them.
   void check_steps(const std::vector<double> &z, const std::string &file) const;
   /// Refuses a slip surface that does not come up to the ground, and notes where it ends below it. `slip` is not a
@@ -96,7 +100,7 @@ class Terrain {
   Grid distance_;                                         ///< from the slide and its way, seen from above [m]
   bool way_in_window_ = false, way_meets_slide_ = false;  ///< the strip along --way
   std::vector<Grid> layer_;
-  double slide_area_ = 0, slide_volume_ = 0;
+  double slide_area_ = 0, slide_volume_ = 0, slip_surface_area_ = 0;
 };
 
 }  // namespace talus

@@ -87,6 +87,8 @@ void Terrain::take_slip_surface(const Grid &grid) {
     slide_volume_ += area * (ground()[k] - bed()[k]);
     if (ground()[k] > bed()[k]) slide_area_ += area;
   }
+  slip_surface_area_ = area_of(slip);
+  if (!options_.slip_surface.empty()) check_holes(slip, name);
   if (!options_.slip_surface.empty()) check_steps(bed(), name);  // an ellipsoid may be as steep as its wall is high
   if (options_.outline.empty()) check_slip_surface(slip, name);  // that of an outline is as deep as was asked for
 }
@@ -106,18 +108,56 @@ void Terrain::check_feet(const std::vector<double> &slip, const std::string &nam
     complain(text_of(name, " has the elevation ", slip[at], " m at ", place(static_cast<int>(at)), ", where ",
                      ground_.file, " has ", ground()[at], " m, and everywhere ", digits(low), " to ", digits(high),
                      " times those of the ground: one of the two seems to be in feet. Convert it to metres, "
-                     "such as by gdal_calc.py --calc=A*0.3048"));
+                     "such as by gdal_calc.py --calc=\"A*0.3048\""));
 }
 
-double Terrain::slip_surface_area() const {
-  double sum = 0;
+/// Places without data from which no way leads to the edge of the window but through the slide.
+void Terrain::check_holes(const std::vector<double> &slip, const std::string &name) const {
+  std::vector<char> reached(slip.size(), 0);
+  std::vector<int> next;
+  const auto reach = [&](int i, int j) {
+    if (i < 0 || j < 0 || i >= columns() || j >= rows()) return;
+    const int k = j * columns() + i;
+    if (!std::isnan(slip[k]) && slip[k] < ground()[k]) return;
+    if (!reached[k]) reached[k] = 1, next.push_back(k);
+  };
+  for (int i = 0; i < columns(); ++i) reach(i, 0), reach(i, rows() - 1);
+  for (int j = 0; j < rows(); ++j) reach(0, j), reach(columns() - 1, j);
+  while (!next.empty()) {
+    const int i = next.back() % columns(), j = next.back() / columns();
+    next.pop_back();
+    reach(i + 1, j), reach(i - 1, j), reach(i, j + 1), reach(i, j - 1);
+  }
+  for (int k = 0; k < static_cast<int>(slip.size()); ++k)
+    if (std::isnan(slip[k]) && !reached[k])
+      complain(name + " has no elevation at " + place(k) +
+               ", in the middle of the slide; fill the hole, such as by gdal_fillnodata.py");
+}
+
+/// By sixteen places of each cell of the grid, between whose corners surface and ground are interpolated: as a sum over
+/// nodes the area of a slide of ten nodes across would be a tenth too small. By the corners beside places without data,
+/// and where the surface goes on along the ground and does not cross it.
+double Terrain::area_of(const std::vector<double> &slip) const {
+  constexpr int parts = 4;
+  constexpr double on_it = 1e-4;  // of the spacing
   const double h = ground_.spacing;
+  double sum = 0;
   for (int j = 0; j + 1 < rows(); ++j)
     for (int i = 0; i + 1 < columns(); ++i) {
       const int k = j * columns() + i, corner[] = {k, k + 1, k + columns(), k + columns() + 1};
-      const double share = std::ranges::count_if(corner, [&](int c) { return ground()[c] > bed()[c]; }) / 4.;
-      const auto z = [&](int c) { return bed()[corner[c]]; };
-      sum += share * h * std::hypot(h, (z(1) + z(3) - z(0) - z(2)) / 2, (z(2) + z(3) - z(0) - z(1)) / 2);
+      double z[4], depth[4];
+      bool known = true;
+      for (int c = 0; c < 4; ++c)
+        z[c] = slip[corner[c]], depth[c] = ground()[corner[c]] - z[c], known = known && std::abs(depth[c]) > on_it * h;
+      for (int c = 0; c < 4 && !known; ++c) z[c] = bed()[corner[c]], depth[c] = ground()[corner[c]] > z[c] ? 1 : -1;
+      int inside = 0;
+      for (int a = 0; a < parts * parts; ++a) {
+        const double x = (a % parts + 0.5) / parts, y = (std::floor(a / parts) + 0.5) / parts;
+        const double here = (1 - y) * ((1 - x) * depth[0] + x * depth[1]) + y * ((1 - x) * depth[2] + x * depth[3]);
+        inside += here > 0;
+      }
+      sum += inside / double(parts * parts) * h *
+             std::hypot(h, (z[1] + z[3] - z[0] - z[2]) / 2, (z[2] + z[3] - z[0] - z[1]) / 2);
     }
   return sum;
 }
@@ -192,8 +232,7 @@ void Terrain::check_slip_surface(const std::vector<double> &slip, const std::str
   if (where.empty()) return;
   remarks_.push_back(text_of(name, " ends ", length(wall), " below the ground at ", where, ", and it is ",
                              length(deepest), " deep at most: the slide has a vertical wall there. ",
-                             by_grid ? "Go on with the grid until it is above the ground, also inside, where it has no "
-                                       "data (gdal_fillnodata.py)"
+                             by_grid ? "Go on with the grid until it is above the ground"
                                      : "Raise the centre of the ellipsoid, or turn it, until its rim is above the "
                                        "ground"));
 }

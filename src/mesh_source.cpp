@@ -96,7 +96,8 @@ MeshRun plain(MeshRun run) {
 
 /// With the keys of a scene in place of options of talus-mesh: mesh.size for --size.
 std::string in_keys(const std::string &text) {
-  static const std::regex option("(^|[ (])--([a-z][a-z-]*)");  // and no part of a file's name
+  static const std::regex option(
+      "(^|[ (])--([a-z][a-z-]*)(?![a-z=-])");  // no part of a file's name, nor other programs' --key=value
   static const std::set<std::string> of_sections{"size", "thickness", "layers", "cuts", "refine"};
   std::string keys;
   std::size_t end = 0;

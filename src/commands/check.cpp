@@ -155,9 +155,12 @@ void print_costs(const Scene &scene, const Needs &n) {
   if (n.burst_steps)
     line("run time",
          "about %s to %s on %d rank%s for these steps: an estimate from %d steps of %s each with soil at rest, and of "
-         "%s with a remap, which fast soil has in each step; the mesh, files and pictures come on top",
+         "%s with a remap, which fast soil has in each step; the mesh, files and pictures come on top%s",
          spoken(n.run_time()).c_str(), spoken(n.longest_run_time()).c_str(), n.ranks, n.ranks > 1 ? "s" : "",
-         n.burst_steps, spoken(n.seconds_per_step).c_str(), spoken(n.seconds_per_remap).c_str());
+         n.burst_steps, spoken(n.seconds_per_step).c_str(), spoken(n.seconds_per_remap).c_str(),
+         std::ranges::any_of(scene.stage, [](const Stage &s) { return is_static(s.kind); })
+             ? ", and stages by finite elements, which may take longer than the motion"
+             : "");
 }
 
 void print_scales(const Needs &n) {

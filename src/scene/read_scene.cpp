@@ -162,12 +162,16 @@ class Checks {
       reader_.complain("gravity", "must be one number, which acts downwards, or have " + dimension() + " components");
     if (-gravity[scene_.vertical()] < scene_.gravity_size() / 2) {
       const bool other = scene_.dimension == 3 && -gravity[3 - scene_.vertical()] >= scene_.gravity_size() / 2;
-      reader_.complain("gravity", "must point down, within 60 degrees of -" + up() +
-                                      ", since elevations are counted along up = \"" + up() + "\": " +
-                                      (other ? "set up = \"" + std::string(scene_.up == Up::y ? "z" : "y") + "\""
-                                             : "turn the mesh, or set gravity to a number, which acts along -" + up()));
+      reader_.complain(
+          "gravity", "must point down, within 60 degrees of -" + up() + ", since elevations are counted along up = \"" +
+                         up() + "\": " +
+                         (other && mesh_is_terrain() ? "turn gravity to [0, 0, -9.81], since terrain has z up"
+                          : other ? "set up = \"" + std::string(scene_.up == Up::y ? "z" : "y") + "\""
+                                  : "turn the mesh, or set gravity to a number, which acts along -" + up()));
     }
   }
+
+  bool mesh_is_terrain() const { return !scene_.mesh.terrain.file.empty(); }
 
   /// Does gravity act against up, as elevations are counted, or not at all?
   bool gravity_is_down() const { return -scene_.gravity[scene_.vertical()] >= (1 - 1e-12) * scene_.gravity_size(); }

@@ -263,6 +263,7 @@ std::vector<std::string> unlikely_surroundings(const Scene &scene, const std::ve
                         " m high; coordinates count in metres. Is the mesh in kilometres?");
   doubt_water(scene, soil, surface, sentences);
   doubt_ends(scene, soil, surface, sentences);
+  doubt_bases(scene, surface, sentences);
   doubt_thin_bodies(scene, bodies, sentences);
   doubt_durations(scene, sentences);
   return sentences;

@@ -119,6 +119,16 @@ TEST_F(TerrainFiles, BecomeMeshesAboveASlipSurface) {
   EXPECT_EQ(of_group(answer, "ground"), 0);
   EXPECT_EQ(of_group(answer, "terrain"), 0);
   EXPECT_GT(of_group(answer, "base"), 200 * 160 * std::hypot(1, 0.3));
+  double surface = 0;  // of the slip surface under the slide, by rings
+  for (double r = 0.25; r < std::sqrt(12 / 0.005); r += 0.5)
+    for (int k = 0; k < 360; ++k)
+      surface +=
+          0.5 * r * radian * std::hypot(1, -0.3 + 0.01 * r * std::cos(k * radian), 0.01 * r * std::sin(k * radian));
+  std::smatch found;
+  const std::regex areas("slip surface (\\S+) m2 under the slide; its cells stand on (\\S+) m2");
+  ASSERT_TRUE(std::regex_search(answer.text, found, areas)) << answer.text;
+  EXPECT_NEAR(std::stod(found[1]) / surface, 1, 0.04);
+  EXPECT_NEAR(std::stod(found[2]) / surface, 1, 0.15);  // 0.88: cells whose middle is above the soil do not count
   const std::string first = content(in_folder("m.msh"));
   run(arguments);
   EXPECT_EQ(first, content(in_folder("m.msh")));
