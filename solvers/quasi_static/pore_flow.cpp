@@ -97,10 +97,27 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
   active_ = active;
   PetscCall(nodes_.setup(mesh_, 1, active_, 1));
   accepted.resize(nodes_.count());
+  std::vector<PetscInt> wet(nodes_.count(), 0);  // new nodes at a jump from suction to water, as beside a water table
   for (int i = 0; i < nodes_.count(); ++i) {
     accepted[i] = pressure_of_point_[nodes_.point[i]];
-    if (std::isnan(accepted[i])) accepted[i] = fresh(nodes_.position[i]);
+    if (!std::isnan(accepted[i])) continue;
+    accepted[i] = fresh(nodes_.position[i]);
+    wet[i] = accepted[i] < 0 ? -1 : 0;
   }
+  for (int c = 0; c < mesh_.cell_count(); ++c)
+    for (int a = 0; a <= dim && active_[c]; ++a) {
+      const int node = nodes_.of_cell(c)[a];
+      if (wet[node] >= 0) continue;
+      Vec<dim> inside = nodes_.position[node];
+      constexpr double little = 1e-6;  // of the way to the middle of the cell
+      for (int b = 0; b <= dim; ++b)
+        for (int d = 0; d < dim; ++d)
+          inside[d] += little / (dim + 1) * (nodes_.position[nodes_.of_cell(c)[b]][d] - nodes_.position[node][d]);
+      if (fresh(inside) >= 0) wet[node] = 1;
+    }
+  PetscCall(nodes_.maximum(wet));
+  for (int i = 0; i < nodes_.count(); ++i)
+    if (wet[i] > 0) accepted[i] = 0;
   pressure = accepted;
   above_mean.assign(nodes_.count(), 0);
   body_of_node_.assign(nodes_.count(), 0);

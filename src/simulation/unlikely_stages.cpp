@@ -38,6 +38,18 @@ void doubt_elements_after_a_slide(const Scene &scene, std::vector<std::string> &
   }
 }
 
+/// Stages that prescribe the pressure of the table anew after water has flowed.
+void doubt_water_undone(const Scene &scene, std::vector<std::string> &sentences) {
+  std::string flowed;
+  for (const Stage &stage : scene.stage) {
+    if (!stage.pore_flow && !water_flows(stage.kind) && !flowed.empty())
+      sentences.push_back("stage." + stage.name +
+                          ".pore_flow = false gives the pores the pressure of [water] again: what stage." + flowed +
+                          " has brought or taken is undone. Leave it out where water is to stay as it is");
+    if (water_flows(stage.kind)) flowed = stage.name;
+  }
+}
+
 }  // namespace
 
 void doubt_stages(const Scene &scene, std::vector<std::string> &sentences) {
@@ -69,6 +81,7 @@ void doubt_stages(const Scene &scene, std::vector<std::string> &sentences) {
   }
   doubt_water_that_goes_on(scene, end, sentences);
   doubt_elements_after_a_slide(scene, sentences);
+  doubt_water_undone(scene, sentences);
 }
 
 std::string one_element_across(const Scene &scene, const std::string &body) {

@@ -4,9 +4,11 @@
 #include <map>
 #include <optional>
 
+#include "base/rounded.h"
 #include "physics/boundary/boundary.h"
 #include "physics/boundary/pore_conditions.h"
 #include "physics/phase_models.h"
+#include "physics/pores/soil_pores.h"
 #include "scene/water_table.h"
 #include "simulation/failure.h"
 #include "simulation/unlikely_parts.h"
@@ -327,6 +329,10 @@ void doubt_levels_and_rain(const Scene &scene, const std::vector<SoilFace> &surf
       sentences.push_back("boundary." + scene.boundary[b].name +
                           " has its water below all of its faces, so that none stands on them and water "
                           "may only leave there. Is its level meant?");
+    if (!touched && kind.supply && !kind.open_water)
+      sentences.push_back("boundary." + scene.boundary[b].name +
+                          " touches no soil at the start, so that no water enters there. Is group = \"free_surface\" "
+                          "meant, or a group of the ground?");
     if (rain > 0 && upward < vertical)
       sentences.push_back("boundary." + scene.boundary[b].name +
                           " lies on faces that are vertical or overhang, and rain counts per level area: none enters "
@@ -469,12 +475,37 @@ void doubt_water_without_friction(const Scene &scene, int body, const BodyReport
                       "not weaken this soil. If its cohesion is that of drained soil, give its friction_angle too");
 }
 
+/// Pores that dry and conduct as if they were full, and such whose permeability is gone with the first water.
+void doubt_permeability(const Scene &scene, std::vector<std::string> &sentences) {
+  constexpr double first = 1e-3, steep = 0.5;
+  if (std::ranges::none_of(scene.stage, [](const Stage &s) { return water_flows(s.kind); })) return;
+  for (const BodySource &body : scene.body) {
+    if (!body.retention.reader) continue;
+    if (!body.relative_permeability.reader) {
+      sentences.push_back("body." + body.name +
+                          " has a retention curve and no relative_permeability: it conducts water as if its pores were "
+                          "full, however dry they are. Give [body." +
+                          body.name + ".relative_permeability], such as van_genuchten_mualem");
+      continue;
+    }
+    const SoilPores pores(body, scene.water.density, scene.water.viscosity);
+    const double left = pores.at(first).liquid;
+    if (left < steep)
+      sentences.push_back(
+          "body." + body.name + " conducts " + rounded(100 * left) +
+          " % of what it conducts in full when a thousandth of its pores has dried: where water reaches "
+          "such soil, seepage may find no flow however short its steps are. A larger shape of "
+          "van_genuchten_mualem (0.2 or more), or a curve of another kind, is found");
+  }
+}
+
 void doubt_water(const Scene &scene, const Extent &soil, const std::vector<SoilFace> &surface,
                  std::vector<std::string> &sentences) {
   const double height = soil.of(scene.vertical());
   doubt_table(scene, soil, surface, sentences);
   doubt_levels_and_rain(scene, surface, sentences);
   doubt_excess_alone(scene, sentences);
+  doubt_permeability(scene, sentences);
   if (phase_traits(scene.phases).liquid) {
     doubt_dry_ponds(scene, soil, surface, sentences);
     doubt_faces_of_water(scene, surface, sentences);

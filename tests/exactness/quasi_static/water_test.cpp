@@ -456,6 +456,20 @@ TEST(Water, is_counted_through_all_stages) {
   for (const double e : error) EXPECT_NEAR(e, 0, 1e-9 * stored[0]);
 }
 
+/// Ground at the level of a water table above which suction is uniform is wet, and loses nothing by standing still.
+TEST(Water, stays_below_a_table_at_the_ground) {
+  const std::string text = wet_block +
+                           "[body.soil.retention]\nmaterial = \"silt\"\n"
+                           "[body.soil.relative_permeability]\ncurve = \"van_genuchten_mualem\"\nshape = 0.27\n"
+                           "[boundary.cover]\ngroup = \"surface\"\nkind = \"impermeable\"\n"
+                           "[[stage]]\nname = \"rest\"\nkind = \"quasi_static\"\nduration = 1\n";
+  for (const char *level : {"water.table=[[0, 1]]", "water.table=[[0, 0]]"}) {  // wet, dry
+    const Solved solved = solve(text, {"phases=unsaturated", "water.suction=20e3", "water.bulk_modulus=1e7", level});
+    const auto stored = solved.history.column("water_kg");
+    EXPECT_NEAR(stored.back(), stored.front(), 1e-6 * stored.front()) << level;
+  }
+}
+
 /// Nodes that motion leaves as they were are those of flow without motion: five turns would lose two thirds of the rain
 /// if nodes began with the mean of the particles around them.
 TEST(Water, is_not_flattened_by_motion_in_between) {
