@@ -35,6 +35,7 @@ constexpr NamedUnit named_units[] = {
     {"Pa", 1, pressure, true},
     {"bar", 1e5, pressure, true},
     {"atm", 101325, pressure, false},
+    {"in", foot / 12, length, false},
     {"ft", foot, length, false},
     {"psf", pound_force / (foot * foot), pressure, false},
     {"psi", pound_force / (foot * foot / 144), pressure, false},

@@ -106,6 +106,14 @@ Function TableReader::Value::function(Unit unit, Range range, const char *variab
       number_in(range, unit) + (of_time ? ", a list of [t, value] points" : "") + " or an expression of " + variables;
   const auto value = [&](const Value &element) { return element.number(unit, range) * unit.si; };
   if (node_->is_array() && of_time) return table(expected, value);
+  if (!is_number() && looks_like_quantity(string(expected)) &&
+      string(expected).find_first_of("*+<>=?(") != std::string::npos) {
+    try {
+      (void)parse_quantity(string(expected));  // units have * and ( too
+    } catch (const std::invalid_argument &) {
+      must_be(expected, std::string("numbers in an expression have no units: they count in ") + unit.name);
+    }
+  }
   if (is_number() || looks_like_quantity(string(expected))) return value(*this);
   return limited_expression(expected, unit, range, variables);
 }

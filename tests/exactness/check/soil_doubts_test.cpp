@@ -75,6 +75,16 @@ TEST(Check, DoubtsSoilOverAVoid) {
   EXPECT_FALSE(check(folder, {}).says("hangs over"));
 }
 
+TEST(Check, DoubtsBasesInOtherUnits) {
+  const Folder folder;
+  const auto advice = [&](const std::string &base) {
+    return check(folder, {"boundary.base={kind='friction', " + base + "}"});
+  };
+  EXPECT_TRUE(advice("friction_angle=0.35").says("boundary.base has a friction angle of 0.35 deg"));
+  EXPECT_TRUE(advice("friction_angle=20, adhesion=17").says("boundary.base has an adhesion of 17 Pa"));
+  EXPECT_FALSE(advice("friction_angle=20, adhesion=17e3").says("boundary.base has a"));
+}
+
 TEST(Check, DoubtsWhatFitsTheSoilBadly) {
   const Folder folder;
   const auto says = [&](const std::vector<std::string> &overrides, const std::string &text) {

@@ -156,6 +156,22 @@ TEST(Check, DoubtsLevelsAndRainInOtherUnits) {
       << with("rainfall", "intensity=[[0, 0], [0.01, 2e-6]]").output;
   EXPECT_TRUE(with("flux", "inflow=[[0, 0], [0.01, 2e-6]]").says(goes_on));
   EXPECT_FALSE(with("rainfall", "intensity=[[0, 0], [0.01, 2e-6], [0.02, 0]]").says("goes on with"));
+  EXPECT_TRUE(output({"boundary.top.group=surface", "boundary.top.kind=rainfall", "boundary.top.intensity=1e-6"})
+                  .says("boundary.top touches no soil at the start"));
+  const auto stages = [&](const char *more, std::vector<std::string> keys = {}) {
+    keys.push_back(std::string("stage=[{name='rain', kind='seepage', duration=9}") + more + "]");
+    return output(keys);
+  };
+  const char *undone = "stage.then.pore_flow = false gives the pores the pressure of [water] again";
+  EXPECT_TRUE(stages(", {name='then', duration=1, pore_flow=false}").says(undone));
+  EXPECT_FALSE(stages(", {name='then', duration=1}").says(undone));
+  const auto curve = [&](const char *shape) {
+    return stages("", {"body.sand.relative_permeability.curve=van_genuchten_mualem",
+                       std::string("body.sand.relative_permeability.shape=") + shape})
+        .says("of what it conducts in full when a thousandth of its pores has dried");
+  };
+  EXPECT_TRUE(curve("0.083"));
+  EXPECT_FALSE(curve("0.36"));
   const char *fast = "body.sand.hydraulic_conductivity is 4 m/s, which hardly any soil has";
   EXPECT_TRUE(output({"body.sand.permeability=0", "body.sand.hydraulic_conductivity=4"}).says(fast) ||
               output({"body.sand.hydraulic_conductivity=4"}).says(fast))

@@ -322,6 +322,13 @@ TEST(TableReader, RefusesNamedFunctionsThatAreNone) {
   EXPECT_TRUE(contains(refusal("functions = 1"), "must be a table, [functions]"));
 }
 
+TEST(TableReader, SaysThatNumbersOfExpressionsHaveNoUnits) {
+  for (const char *angle : {"10 deg * (t < 3600)", "10 deg * sin(t)"})
+    EXPECT_TRUE(contains(refusal("angle = '" + std::string(angle) + "'"),
+                         "numbers in an expression have no units: they count in deg"))
+        << angle;
+}
+
 // ---- overrides ----
 
 TEST(Overrides, ReplaceAValueWhereverItIs) {
