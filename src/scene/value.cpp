@@ -107,7 +107,8 @@ Function TableReader::Value::function(Unit unit, Range range, const char *variab
   const auto value = [&](const Value &element) { return element.number(unit, range) * unit.si; };
   if (node_->is_array() && of_time) return table(expected, value);
   if (!is_number() && looks_like_quantity(string(expected)) &&
-      string(expected).find_first_of("*+<>=?(") != std::string::npos) {
+      string(expected).find_first_of("*+<>=?(") != std::string::npos &&
+      string(expected).find(',') == std::string::npos) {
     try {
       (void)parse_quantity(string(expected));  // units have * and ( too
     } catch (const std::invalid_argument &) {

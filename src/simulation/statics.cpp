@@ -570,6 +570,7 @@ void Statics<dim>::reset_displacement() {
     for (size_t i = 0; i < around.stayed.size(); ++i) flow_->above_mean[i] *= around.stayed[i];
   }
   problem_->soil().reset_displacement();
+  problem_->soil().displacement_is_taken();  // particles count anew too
 }
 
 /// Nodes take the mean of the particles around them, and keep by how much they were above it before soil moved: the
