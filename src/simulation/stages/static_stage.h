@@ -103,8 +103,8 @@ class StaticStage : public StageRunner<dim> {
     text.precision(3);
     if (moved->emptied > visible) {
       text << "warning: stage " << stage_.name << " computes the soil where it lay at the start, and "
-           << 100 * moved->emptied << " % of it is there no more: motion has carried soil by up to " << moved->way
-           << " m. What acts at the ground acts where the ground was"
+           << 100 * moved->emptied << " % of it is there no more: the motion before has carried soil by up to "
+           << moved->way << " m. What acts at the ground acts where the ground was"
            << (run_.world.phases.liquid ? ", and water that enters there reaches no particle" : "");
       run_.recorder.note(text.str());
       text.str("");
