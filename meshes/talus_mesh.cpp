@@ -182,57 +182,58 @@ void check_writable(const std::string &file) {
     throw std::runtime_error(file + ": cannot be written; check the folder and its permissions");
 }
 
-/// Volume of a group of cells; 0 where there is none [m3].
-double volume_of(const std::string &name) {
-  double volume = 0;
+/// Calls use(tag) for the entities of a group; for none where there is no such group.
+template <class Use>
+void each_entity(int dim, const std::string &name, Use &&use) {
   gmsh::vectorpair groups;
-  gmsh::model::getPhysicalGroups(groups, 3);
+  gmsh::model::getPhysicalGroups(groups, dim);
   for (const auto &[dimension, group] : groups) {
     std::string found;
     gmsh::model::getPhysicalName(dimension, group, found);
     std::vector<int> tags;
     gmsh::model::getEntitiesForPhysicalGroup(dimension, group, tags);
     for (const int tag : tags)
-      if (found == name)
-        for (const auto &corner : corners_of<3>(tag)) volume += measure<3, 3>(corner);
+      if (found == name) use(tag);
   }
+}
+
+/// Volume of a group of cells; 0 where there is none [m3].
+double volume_of(const std::string &name) {
+  double volume = 0;
+  each_entity(3, name, [&](int tag) {
+    for (const auto &corner : corners_of<3>(tag)) volume += measure<3, 3>(corner);
+  });
   return volume;
 }
 
 /// Area of a group of facets on which cells of a group stand [m2].
 double area_under(const std::string &cells, const std::string &facets) {
-  std::vector<std::array<std::size_t, 3>> faces;
+  using Face = std::array<std::size_t, 3>;
+  const auto nodes_of = [](int type, int tag) {
+    std::vector<std::size_t> elements, nodes;
+    gmsh::model::mesh::getElementsByType(type, elements, nodes, tag);
+    return nodes;
+  };
+  const auto sorted = [](Face face) {
+    std::ranges::sort(face);
+    return face;
+  };
+  std::vector<Face> faces;
+  each_entity(3, cells, [&](int tag) {
+    const auto nodes = nodes_of(4, tag);
+    for (std::size_t c = 0; c < nodes.size(); c += 4)
+      for (const auto &[i, j, k] : {Face{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}})
+        faces.push_back(sorted({nodes[c + i], nodes[c + j], nodes[c + k]}));
+  });
+  std::ranges::sort(faces);
   double area = 0;
-  for (const int dim : {3, 2}) {
-    gmsh::vectorpair groups;
-    gmsh::model::getPhysicalGroups(groups, dim);
-    for (const auto &[dimension, group] : groups) {
-      std::string found;
-      gmsh::model::getPhysicalName(dimension, group, found);
-      if (found != (dim == 3 ? cells : facets)) continue;
-      std::vector<int> tags;
-      gmsh::model::getEntitiesForPhysicalGroup(dimension, group, tags);
-      for (const int tag : tags) {
-        std::vector<std::size_t> elements, nodes;
-        gmsh::model::mesh::getElementsByType(dim == 3 ? 4 : 2, elements, nodes, tag);
-        const auto corners = dim == 2 ? corners_of<2, 3>(tag) : std::vector<std::array<Vec<3>, 3>>{};
-        for (std::size_t e = 0; e < elements.size(); ++e) {
-          const std::size_t *of = &nodes[e * (dim + 1)];
-          for (int left_out = dim == 3 ? 0 : 3; left_out <= 3; ++left_out) {
-            std::array<std::size_t, 3> face;
-            for (int a = 0, k = 0; a <= dim; ++a)
-              if (a != left_out) face[k++] = of[a];
-            std::ranges::sort(face);
-            if (dim == 3)
-              faces.push_back(face);
-            else if (std::ranges::binary_search(faces, face))
-              area += measure<2, 3>(corners[e]);
-          }
-        }
-      }
-    }
-    if (dim == 3) std::ranges::sort(faces);
-  }
+  each_entity(2, facets, [&](int tag) {
+    const auto nodes = nodes_of(2, tag);
+    const auto corners = corners_of<2, 3>(tag);
+    for (std::size_t f = 0; f < corners.size(); ++f)
+      if (std::ranges::binary_search(faces, sorted({nodes[3 * f], nodes[3 * f + 1], nodes[3 * f + 2]})))
+        area += measure<2, 3>(corners[f]);
+  });
   return area;
 }
 

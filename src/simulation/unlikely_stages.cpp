@@ -11,21 +11,6 @@
 namespace talus {
 namespace {
 
-/// Rain and fluxes whose table is over before the stages are, and not with zero.
-void doubt_water_that_goes_on(const Scene &scene, double end, std::vector<std::string> &sentences) {
-  for (const BoundarySource &source : scene.boundary) {
-    const Boundary kind = read_boundary(source.kind);
-    if (kind.changes.empty() || !(kind.supply || kind.inflow)) continue;
-    const double last = std::ranges::max_element(kind.changes, {}, &TimeSpan::end)->end;
-    if (!(last < end)) continue;
-    const double rate = kind.supply ? kind.supply(0, 0, 0, last, 1) : kind.inflow(0, 0, 0, last);
-    if (rate != 0)
-      sentences.push_back("boundary." + source.name + " goes on with " + rounded(rate) +
-                          " m/s when its table is over, from t = " + rounded(last) + " s until the stages end at t = " +
-                          rounded(end) + " s. End the table with 0 if the water is to stop there");
-  }
-}
-
 /// Finite elements after soil has slid.
 void doubt_elements_after_a_slide(const Scene &scene, std::vector<std::string> &sentences) {
   for (std::size_t s = 1; s < scene.stage.size(); ++s) {
@@ -79,7 +64,6 @@ void doubt_stages(const Scene &scene, std::vector<std::string> &sentences) {
     text << ", or leave the function out";
     sentences.push_back(text.str());
   }
-  doubt_water_that_goes_on(scene, end, sentences);
   doubt_elements_after_a_slide(scene, sentences);
   doubt_water_undone(scene, sentences);
 }

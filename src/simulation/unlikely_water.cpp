@@ -301,8 +301,8 @@ void doubt_faces_of_water(const Scene &scene, const std::vector<SoilFace> &surfa
 /// changes is asked for the start alone, as water.level is (levels_of).
 void doubt_levels_and_rain(const Scene &scene, const std::vector<SoilFace> &surface,
                            std::vector<std::string> &sentences) {
-  constexpr double heaviest = 1e-3, mm_per_hour = 1e-3 / 3600,
-                   vertical = 1e-6;  // [m/s]; 1.8 m have fallen in a day, 0.4 m in an hour
+  constexpr double heaviest = 1e-3, mm_per_hour = 1e-3 / 3600;  // [m/s]; 1.8 m have fallen in a day, 0.4 m in an hour
+  constexpr double vertical = 1e-6;                             // of a normal, to round-off
   const int up = scene.vertical();
   const double g = scene.gravity.empty() ? 0 : -scene.gravity[up];
   for (std::size_t b = 0; b < scene.boundary.size(); ++b) {
@@ -341,6 +341,29 @@ void doubt_levels_and_rain(const Scene &scene, const std::vector<SoilFace> &surf
       sentences.push_back("boundary." + scene.boundary[b].name + " brings up to " + rounded(rain / mm_per_hour) +
                           " mm/h of rain, more than ever fell; a number without a unit counts in m/s. Is it in mm/h or "
                           "mm/day, as \"20 mm/h\"?");
+  }
+}
+
+/// Rain and fluxes whose table is over before the stages are, and not with zero; asked at a face of theirs.
+void doubt_water_that_goes_on(const Scene &scene, const std::vector<SoilFace> &surface,
+                              std::vector<std::string> &sentences) {
+  double end = 0;  // of the load time [s]
+  for (const Stage &stage : scene.stage)
+    if (!stage.hold_loads) end += stage.duration;
+  for (std::size_t b = 0; b < scene.boundary.size(); ++b) {
+    const Boundary kind = read_boundary(scene.boundary[b].kind);
+    if (kind.changes.empty() || !(kind.supply || kind.inflow)) continue;
+    const double last = std::ranges::max_element(kind.changes, {}, &TimeSpan::end)->end;
+    const bool anywhere = std::ranges::count(scene.boundary[b].group, std::string(free_surface));
+    const auto face = std::ranges::find_if(
+        surface, [&](const SoilFace &one) { return one.water == static_cast<int>(b) || (anywhere && one.water < 0); });
+    if (!(last < end) || face == surface.end()) continue;
+    const auto &[x, y, z] = face->corner[0];
+    const double rate = kind.supply ? kind.supply(x, y, z, last, 1) : kind.inflow(x, y, z, last);
+    if (rate != 0)
+      sentences.push_back("boundary." + scene.boundary[b].name + " goes on with " + rounded(rate) +
+                          " m/s when its table is over, from t = " + rounded(last) + " s until the stages end at t = " +
+                          rounded(end) + " s. End the table with 0 if the water is to stop there");
   }
 }
 
@@ -504,6 +527,7 @@ void doubt_water(const Scene &scene, const Extent &soil, const std::vector<SoilF
   const double height = soil.of(scene.vertical());
   doubt_table(scene, soil, surface, sentences);
   doubt_levels_and_rain(scene, surface, sentences);
+  doubt_water_that_goes_on(scene, surface, sentences);
   doubt_excess_alone(scene, sentences);
   doubt_permeability(scene, sentences);
   if (phase_traits(scene.phases).liquid) {
