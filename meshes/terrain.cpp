@@ -235,7 +235,8 @@ double Terrain::size_at(double x, double y, double z) const {
 
 std::string Terrain::origin_document() const {
   return text_of("{\"terrain\": ", json_text(options_.file), ",\n \"origin_m\": [", origin_[0], ", ", origin_[1],
-                 "],\n \"meaning\": \"x and y of the map are those of the mesh plus the origin; z is the elevation\",\n"
+                 "],\n \"spacing_m\": ", ground_.spacing / options_.step,
+                 ",\n \"meaning\": \"x and y of the map are those of the mesh plus the origin; z is the elevation\",\n"
                  " \"projection\": ",
                  json_text(projection_), "}\n");
 }

@@ -114,11 +114,11 @@ def draw_map(maps, path):
     axes.imshow(shade(before, ground.cell).T, cmap="gray", vmin=0, vmax=1, origin="lower", extent=extent(ground.low[:2], ground.cell, ground.shape, origin))
     levels = MaxNLocator(12).tick_values(before.min(), before.max())
     lines = axes.contour(east, north, before.T, levels, colors=style.SOFT, linewidths=0.5)
-    deposit = np.ma.masked_where(~maps.covered, maps.thickness[-1])
+    deposit = np.ma.masked_where(~maps.covered[-1], maps.thickness[-1])
     image = axes.imshow(deposit.T, cmap=style.colours_of("thickness"), vmin=0, origin="lower", alpha=0.85, zorder=2,
                         extent=extent(grid.low, grid.spacing, grid.shape, origin))
     figure.colorbar(image, ax=axes, shrink=0.75, label=f"thickness at {maps.moment()} [m]")
-    for rings, dashes in ((maps.rings(maps.covered), "-"), (maps.rings(maps.thickness[0] >= maps.limit), "--")):
+    for rings, dashes in ((maps.rings(maps.covered[-1]), "-"), (maps.rings(maps.covered[0]), "--")):
         for ring in rings:
             axes.plot(*ring.T, color=style.INK, lw=1.0, ls=dashes, zorder=3)
     way = maps.path[:, :2] + origin
@@ -134,7 +134,7 @@ def draw_map(maps, path):
     axes.tick_params(axis="y", labelrotation=90)
     length = round_length(0.25 * size[0])
     inch = size[0] / min(wide, tall * size[0] / size[1])  # [m]
-    soil = near(maps.covered | (maps.thickness[0] >= maps.limit), int(np.ceil(0.2 * inch / grid.spacing)))
+    soil = near(maps.covered[-1] | maps.covered[0], int(np.ceil(0.2 * inch / grid.spacing)))
     at = place_of_scale(soil, grid.spacing, low, shown, length, inch)
 
     def taken(place):

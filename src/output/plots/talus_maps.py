@@ -25,6 +25,7 @@ NO_DATA = -9999.0
 LIMIT = 0.5  # least thickness of soil that counts, over the size of particles: thinner soil is single particles
 LEFT_OUT = 0.02  # share of the volume that slid: less that moved and is not mapped is not told
 SPACING = 2.0  # of the grids where there is no terrain file, over the size of particles
+EVEN = 3.0  # length over which thickness is evened out, over the size of particles: about the edge of a cell of the mesh with a few particles
 MOST_CELLS = 50_000_000  # of one grid
 
 gdal.UseExceptions()
@@ -50,7 +51,7 @@ class Axes:
         found = json.loads(path.read_text()) if path.exists() else {}
         self.origin = np.array([*found.get("origin_m", (0.0, 0.0)), 0.0])
         self.projection = found.get("projection", "")
-        self.terrain = found.get("terrain", "")
+        self.spacing = found.get("spacing_m")  # of the terrain file; None without one
 
     def level(self, vectors):
         """Vectors [n, 3] in the order east, north, up, without the origin."""
@@ -58,12 +59,15 @@ class Axes:
 
 
 class Grid:
-    """Square cells over the extent of the mesh. Cells are centred on its southwest corner, as those of the terrain file are. Arrays on the grid are
-    [cells to the east, cells to the north]; coordinates are without the origin of the map."""
+    """Square cells over the extent of the mesh. Arrays on the grid are [cells to the east, cells to the north]; coordinates are without the origin of the
+    map. The southwest corner of the mesh is the centre of a cell of the terrain file, whose spacing is `terrain` [m]: the grid begins at the edge of that
+    cell, so that its cells hold whole cells of the terrain where its spacing is a multiple of theirs. Without a terrain its own first cell has its centre
+    there."""
 
-    def __init__(self, low, high, spacing):
-        self.spacing, self.low = spacing, low[:2] - spacing / 2
-        count = np.round((high - low)[:2] / spacing - 1e-6) + 1
+    def __init__(self, low, high, spacing, terrain=None):
+        beyond = terrain or spacing  # by half of this the outermost cells reach beyond the mesh
+        self.spacing, self.low = spacing, low[:2] - beyond / 2
+        count = np.ceil(((high - low)[:2] + (beyond if terrain else spacing / 2)) / spacing - 1e-6)
         if count.prod() > MOST_CELLS:
             raise ValueError(f"--spacing {spacing:g} m makes {count.prod():.3g} cells, more than {MOST_CELLS:.3g}: choose a larger spacing")
         self.shape = tuple(count.astype(int).tolist())
@@ -93,6 +97,23 @@ class Grid:
                 sums += np.bincount(number, weight * value, len(sums))
         return result.reshape(-1, *self.shape)
 
+    def evened_out(self, values, where, length):
+        """Values [cells, cells] whose differences between neighbouring cells of the mask `where` have evened out by diffusion, as far as a cell of the mesh
+        with linear shape functions of this length [m] would spread them. The sum stays, the mask's edge stays sharp, and so do uniform values."""
+        result = values.copy()
+        if not where.any():
+            return result
+        part = tuple(slice(at.min(), at.max() + 1) for at in np.nonzero(where))
+        turns = length**2 / 6 / (2 * self.spacing**2)  # a hat function that ends at +-length has the variance length^2 / 6
+        count = int(np.ceil(turns / 0.2))
+        ways = [(some, both[1:] & both[:-1]) for some, both in ((result[part], where[part]), (result[part].T, where[part].T))]
+        for _ in range(count):
+            for some, both in ways:
+                flow = turns / count * np.where(both, np.diff(some, axis=0), 0)
+                some[:-1] += flow
+                some[1:] -= flow
+        return result
+
 
 class Maps:
     """Everything that is mapped, on one grid: thickness and speed are of the soil that slides, the change of thickness is of all soil."""
@@ -105,10 +126,12 @@ class Maps:
         volume = first.column("volume").values[:, 0]
         self.size = float(volume.mean()) ** (1 / 3)
         self.limit = LIMIT * self.size if limit is None else limit
-        self.grid = Grid(self.node.min(axis=0), self.node.max(axis=0), spacing or self._usual_spacing())
+        terrain = self.axes.spacing
+        self.grid = Grid(self.node.min(axis=0), self.node.max(axis=0), spacing or terrain or SPACING * self.size, terrain)
         if self.grid.spacing < 1.5 * self.size:
-            warn(f"cells of {self.grid.spacing:g} m are not much wider than the particles ({self.size:.3g} m): single particles show in the grids; "
-                 f"less so with --spacing {SPACING * self.size:.2g} or more")
+            wider = SPACING * self.size if not terrain else terrain * np.ceil(SPACING * self.size / terrain)
+            warn(f"cells of {self.grid.spacing:g} m are not much wider than the particles ({self.size:.3g} m): single particles show in the outline and "
+                 f"where the soil is thin; less so with --spacing {wider:.4g}{f', a multiple of the spacing of the terrain file,' if terrain else ''} or more")
         sliding = Thickness(last, self.axes.up).sliding if beyond is None else last.ids()[last.scalar("displacement")[0] > beyond]
         self.sliding = np.union1d(sliding, left_mesh(results))
         moved = largest_displacement(last)
@@ -118,8 +141,7 @@ class Maps:
         self.moving = still_moving(last, self.sliding)
         self.last = last
         self._accumulate()
-        self.covered = self.thickness[-1] >= self.limit
-        if not self.covered.any():
+        if not self.covered[-1].any():
             raise ValueError(f"the deposit is nowhere as thick as --limit {self.limit:g} m; its largest thickness is {self.thickness[-1].max():.3g} m")
         self._elevations(first, last)
 
@@ -138,19 +160,14 @@ class Maps:
             return 0.0, (0.0, 0.0)
         return float(self.last.column("volume").values[some, 0].sum()), (float(moved[some].min()), float(moved[some].max()))
 
-    def _usual_spacing(self):
-        """That of the terrain file, without one SPACING times the size of the particles."""
-        coarse = SPACING * self.size
-        if not self.axes.terrain:
-            return coarse
-        try:
-            return abs(gdal.Open(self.axes.terrain).GetGeoTransform()[1])
-        except RuntimeError as error:
-            warn(f"cannot read the spacing of the terrain file, and take {coarse:.3g} m, {SPACING:g} times the size of the particles: {error}")
-            return coarse
+    def _even(self, held):
+        """Thickness [m] from the volumes above cells. Particles lie where the mesh put them and where the motion took them, so that a column holds one more
+        or one less: this evens out within soil that is thick enough to count, so that neither outline nor volume change."""
+        thickness = held / self.grid.spacing**2
+        return self.grid.evened_out(thickness, thickness >= self.limit, EVEN * self.size)
 
     def _accumulate(self):
-        self.times, self.thickness, self.path, self.volume = [], [], [], []
+        self.times, self.thickness, self.covered, self.path, self.volume = [], [], [], [], []
         nothing = np.full(self.grid.shape, np.nan)
         self.largest_speed, self.arrival = nothing.copy(), nothing.copy()
         for snapshot in self.results.snapshots:
@@ -158,13 +175,13 @@ class Maps:
             place, volume = self.axes.level(snapshot.position())[moves], snapshot.column("volume").values[moves, 0]
             velocity = self.axes.level(snapshot.column("velocity").values)[moves]
             held, *flow = self.grid.spread(place, np.cbrt(volume), [volume, *(volume * velocity.T)])
-            thickness = held / self.grid.spacing**2
-            there = thickness >= self.limit
+            there = held >= self.limit * self.grid.spacing**2
             speed = np.linalg.norm(np.divide(flow, held, out=np.zeros_like(flow), where=there), axis=0)
             self.largest_speed = np.where(there, np.fmax(self.largest_speed, speed), self.largest_speed)
             self.arrival = np.where(there & ~np.isfinite(self.arrival), snapshot.time, self.arrival)
             self.times.append(snapshot.time)
-            self.thickness.append(thickness)
+            self.thickness.append(self._even(held))
+            self.covered.append(there)
             self.volume.append(volume.sum())
             self.path.append(np.average(place, axis=0, weights=volume) if len(place) else np.full(3, np.nan))
         self.thickness, self.path = np.array(self.thickness), np.array(self.path)
@@ -172,7 +189,7 @@ class Maps:
     def _column(self, snapshot):
         """Thickness of all soil."""
         volume = snapshot.column("volume").values[:, 0]
-        return self.grid.spread(self.axes.level(snapshot.position()), np.cbrt(volume), [volume])[0] / self.grid.spacing**2
+        return self._even(self.grid.spread(self.axes.level(snapshot.position()), np.cbrt(volume), [volume])[0])
 
     def _elevations(self, first, last):
         """Surface of the soil and, where there is none, bottom of the mesh, at the start and at all snapshots that the section shows."""
@@ -182,7 +199,7 @@ class Maps:
         start = self.axes.level(first.position())[np.isin(first.ids(), self.sliding, assume_unique=True)]
         self.crown = start[start[:, 2].argmax()]
         # the toe is the cell of the deposit that is furthest from the crown; its elevation is that of the lowest particle there
-        east, north = (at[self.covered] for at in np.meshgrid(*self.grid.centres(), indexing="ij"))
+        east, north = (at[self.covered[-1]] for at in np.meshgrid(*self.grid.centres(), indexing="ij"))
         far = np.hypot(east - self.crown[0], north - self.crown[1]).argmax()
         toe = np.array([east[far], north[far], 0.0])
         end = self.axes.level(last.position())[np.isin(last.ids(), self.sliding, assume_unique=True)]
@@ -200,7 +217,7 @@ class Maps:
         return self.results.when(self.results.snapshots[snapshot]).removeprefix("t = ")
 
     def headline(self):
-        return f"Soil at {self.moment()}, still moving at up to {self.moving[1]:.3g} m/s" if self.moving else f"Deposit at {self.moment()}"
+        return f"Soil at {self.moment()}, {100 * self.moving[0]:.3g} % of it still moving, at up to {self.moving[1]:.3g} m/s" if self.moving else f"Deposit at {self.moment()}"
 
     def polygons(self, mask):
         """Outline of the cells of a mask along their edges, with holes, as one OGR multipolygon in the coordinates of the map."""
@@ -218,9 +235,9 @@ class Maps:
 
     def numbers(self):
         """Measures of the deposit, by their names with units, as attributes of its outline."""
-        deposit, area = self.thickness[-1], self.covered.sum() * self.grid.spacing**2
+        deposit, area = self.thickness[-1], self.covered[-1].sum() * self.grid.spacing**2
         run_out, fall = np.linalg.norm((self.toe - self.crown)[:2]), self.crown[2] - self.toe[2]
-        inside = deposit[self.covered].sum() * self.grid.spacing**2
+        inside = deposit[self.covered[-1]].sum() * self.grid.spacing**2
         return {"area_m2": area, "volume_m3": inside, "run_out_m": run_out, "fall_height_m": fall,
                 "angle_of_reach_deg": np.degrees(np.arctan2(fall, run_out)), "mean_thickness_m": inside / area,
                 "largest_thickness_m": deposit.max(), "least_thickness_m": self.limit, "time_s": self.times[-1]}
@@ -295,7 +312,7 @@ def write_vectors(maps, path):
     for place in places + maps.axes.origin:
         line.AddPoint(*map(float, place))
     length = np.linalg.norm(np.diff(places, axis=0), axis=1).sum()
-    layers = (("outline", ogr.wkbMultiPolygon, maps.polygons(maps.covered),
+    layers = (("outline", ogr.wkbMultiPolygon, maps.polygons(maps.covered[-1]),
                maps.numbers() | {"still_moving": bool(maps.moving), "speed_m_s": maps.moving[1] if maps.moving else 0.0}),
               ("path", ogr.wkbLineString25D, line, {"length_m": length, "start_s": maps.times[0], "end_s": maps.times[-1]}))
     for name, kind, geometry, numbers in layers:
@@ -365,7 +382,7 @@ def main():
              + (f"--moved {given.moved:g} m" if given.moved else "a tenth of the largest displacement, which 99.9 % of the mass have at most")
              + f"; --moved {maps.size:.2g} maps all of it")
     print(f"maps of {maps.results.title}: {maps.headline()[0].lower() + maps.headline()[1:]}, cells of {maps.grid.spacing:g} m, {maps.grid.shape[0]} x {maps.grid.shape[1]}")
-    print(f"projection: {'that of the terrain file' if maps.axes.projection else 'none, coordinates are ' + ('those of the terrain file' if maps.axes.terrain else 'local')}")
+    print(f"projection: {'that of the terrain file' if maps.axes.projection else 'none, coordinates are ' + ('those of the terrain file' if maps.axes.spacing else 'local')}")
     for name, value in maps.numbers().items():
         quantity, _, unit = name.rpartition("_")
         print(f"  {words(quantity):20} {value:12.6g} {unit}")

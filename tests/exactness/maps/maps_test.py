@@ -169,6 +169,31 @@ class Grids(unittest.TestCase):
         self.assertAlmostEqual(volume.sum(), 0.15, delta=1e-12)
 
 
+    def test_thickness_evens_out_within_the_soil(self):
+        grid = talus_maps.Grid(np.zeros(3), np.array([20.0, 20.0, 1.0]), 1.0)
+        east, north = np.meshgrid(*grid.centres(), indexing="ij")
+        point = np.where((east == 10) & (north == 10), 4.0, 0.0)
+        even = grid.evened_out(point, point >= 0, 6.0)
+        self.assertAlmostEqual(even.sum(), 4, delta=1e-12)
+        for place in (east, north):
+            self.assertAlmostEqual((even * (place - 10) ** 2).sum() / 4, 6, delta=0.02)  # the variance of a hat function of half-width 6
+        soil = np.hypot(east - 9, north - 11) < 6
+        np.testing.assert_array_equal(grid.evened_out(np.where(soil, 2.0, 0.1), soil, 6.0), np.where(soil, 2.0, 0.1))
+        rough = np.where(soil, 2 + np.sin(7 * east + 3 * north), 0.1)
+        even = grid.evened_out(rough, soil, 6.0)
+        np.testing.assert_array_equal(even[~soil], 0.1)
+        self.assertAlmostEqual(even.sum(), rough.sum(), delta=1e-12)
+        self.assertLess(np.abs(even[soil] - 2).max(), 0.3)
+        nothing = np.zeros(grid.shape)
+        np.testing.assert_array_equal(grid.evened_out(nothing, nothing > 0, 6.0), nothing)
+
+    def test_cells_hold_whole_cells_of_the_terrain(self):
+        for spacing in (2.5, 5.0, 10.0, 15.0):
+            grid = talus_maps.Grid(np.zeros(3), np.array([100.0, 70.0, 1.0]), spacing, 5.0)
+            np.testing.assert_allclose(grid.low, -2.5)
+            self.assertEqual(grid.shape, tuple(int(np.ceil(one / spacing)) for one in (105, 75)))
+
+
 class Maps(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -179,6 +204,7 @@ class Maps(unittest.TestCase):
         for ranks in (1, 2):
             for name in ("block", "plane"):
                 talus("run", f"{name}.toml", "-o", f"{name}{ranks}", "--no-pictures", ranks=ranks)
+        (FOLDER / "plane.tif").unlink()
 
     def test_block_with_y_up(self):
         for ranks in (1, 2):
@@ -226,7 +252,7 @@ class Maps(unittest.TestCase):
                 # it flies on at 10 m/s: this is no deposit
                 self.assertEqual(numbers["still_moving"], 1)
                 self.assertAlmostEqual(numbers["speed_m_s"], 10, delta=1e-3)
-                self.assertIn("soil at 0.100 s, still moving at up to 10 m/s", said)
+                self.assertIn("soil at 0.100 s, 100 % of it still moving, at up to 10 m/s", said)
                 self.assertIn("100 % of what slid is faster than 0.1 m/s", said)
                 # from the crown, at the upper face of the block at the start, to the middle of the furthest cell
                 self.assertTrue(0.5 < numbers["run_out_m"] < np.hypot(1.5, 0.6) + cell)
@@ -243,7 +269,7 @@ class Maps(unittest.TestCase):
                 results = f"plane{ranks}"
                 talus("maps", results)
                 thickness, low, spacing = read(FOLDER / results / "maps/thickness.tif")
-                # the cells are those of the terrain file
+                # the cells are those of the terrain file, which need not be there any more
                 self.assertEqual((spacing, thickness.shape), (SPACING, (21, 15)))
                 np.testing.assert_array_equal(low, [WEST - SPACING / 2, SOUTH - SPACING / 2])
                 volume = volume_of(results)
@@ -294,7 +320,7 @@ class Maps(unittest.TestCase):
             if len(away) > 3:
                 np.testing.assert_allclose(0.2 * away[:, 0] + 0.1 * away[:, 1], np.mean(0.2 * away[:, 0] + 0.1 * away[:, 1]), atol=0.3)
         drawn = [line.get_xydata() for line in axes.lines if len(line.get_xydata()) > 4]
-        for ring in maps.rings(maps.covered):
+        for ring in maps.rings(maps.covered[-1]):
             self.assertTrue(any(one.shape == ring.shape and np.allclose(one, ring) for one in drawn))
 
     def test_only_soil_at_rest_is_a_deposit(self):
@@ -304,7 +330,7 @@ class Maps(unittest.TestCase):
             for maps.moving in (maps.moving, None):
                 figure = talus_map_pictures.draw_map(maps, "map.png")
                 said.append((figure._suptitle.get_text().strip(), [text.get_text() for text in figure.axes[0].get_legend().get_texts()][1]))
-        self.assertEqual(said, [("Soil at 0.100 s, still moving at up to 10 m/s", "outline of the soil that slid"), ("Deposit at 0.100 s", "outline of the deposit")])
+        self.assertEqual(said, [("Soil at 0.100 s, 100 % of it still moving, at up to 10 m/s", "outline of the soil that slid"), ("Deposit at 0.100 s", "outline of the deposit")])
 
     def test_texts_of_a_map_keep_apart(self):
         for results in ("block1", "plane1"):
@@ -390,6 +416,13 @@ class Maps(unittest.TestCase):
         self.assertIn("nowhere as thick", talus("maps", "block1", "--limit", 5, status=2))
         self.assertIn("choose a larger spacing", talus("maps", "block1", "--spacing", 1e-5, status=2))
         self.assertIn("single particles show", talus("maps", "block1", "--spacing", 0.06))
+
+    def test_thickness_does_not_depend_on_the_cells(self):
+        """The block is 0.5 m thick everywhere. Its particles are as irregular as the tetrahedra they are in: their columns have up to twice that."""
+        for spacing in (0.05, 0.1, 0.25):
+            talus("maps", "block1", "--spacing", spacing)
+            numbers, _, _ = feature("block1", "outline")
+            self.assertAlmostEqual(numbers["largest_thickness_m"], 0.5, delta=0.2, msg=f"cells of {spacing} m")
 
     def test_interrupted_run(self):
         talus("run", "block.toml", "-o", "broken", "--no-pictures")

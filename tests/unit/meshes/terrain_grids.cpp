@@ -27,7 +27,7 @@ TEST_F(TerrainFiles, GiveTheirWindowAndEveryOtherRow) {
   EXPECT_DOUBLE_EQ(terrain.x(6), 120);
   EXPECT_DOUBLE_EQ(terrain.y(4), 80);
   EXPECT_DOUBLE_EQ(terrain.ground_at(20, 40), east + 40 + 3 * (south + 70));
-  expect_words(terrain.origin_document(), {"\"origin_m\": [5020, 2030]", "a.asc"});
+  expect_words(terrain.origin_document(), {"\"origin_m\": [5020, 2030]", "\"spacing_m\": 10,", "a.asc"});
 }
 
 TEST_F(TerrainFiles, AreRefusedWithHoles) {
