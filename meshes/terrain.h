@@ -2,6 +2,8 @@
 /// Terrain as it is to be meshed: a window of a grid, and what lies above a slip surface. x points east, y north, z up;
 /// x and y of the mesh are those of the grid less a local origin, so that large coordinates cost no digits.
 #include <array>
+#include <cmath>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,8 +43,8 @@ class Terrain {
   int columns() const { return ground_.columns; }
   int rows() const { return ground_.rows; }
   /// Of the mesh [m].
-  double x(int column) const { return ground_.west + column * ground_.spacing; }
-  double y(int row) const { return ground_.south + row * ground_.spacing; }
+  double x(int column) const { return ground_.x(column); }
+  double y(int row) const { return ground_.y(row); }
   double width() const { return x(columns() - 1); }
   double depth() const { return y(rows() - 1); }
   /// [rows][columns] [m]
@@ -50,7 +52,18 @@ class Terrain {
   /// The ground, lowered to the slip surface where there is one below it.
   const std::vector<double> &bed() const { return bed_.values; }
   double ground_at(double x, double y) const { return ground_.at(x, y); }
-  double bed_at(double x, double y) const { return bed_.at(x, y); }
+  double bed_at(double x, double y) const {
+    const double z = near_slide_.values.empty() ? bed_.at(x, y) : near_slide_.at(x, y);
+    return std::isnan(z) ? bed_.at(x, y) : z;
+  }
+  /// The bed around the slide, at places between those of the terrain too, as near as cells need them; empty: none.
+  struct Refined {
+    int column = 0, row = 0;    ///< of the terrain, where it begins
+    int columns = 0, rows = 0;  ///< of the terrain, that it covers
+    int parts = 1;              ///< into which it parts their spacing
+  };
+  const Grid &near_slide() const { return near_slide_; }
+  const Refined &refined() const { return refined_; }
   bool slides() const { return slide_area_ > 0; }
   double slide_area() const { return slide_area_; }                ///< seen from above [m2]
   double slide_volume() const { return slide_volume_; }            ///< [m3]
@@ -70,10 +83,12 @@ class Terrain {
  private:
   void take_window(const Grid &grid);
   void take_slip_surface(const Grid &grid);
-  /// Elevations of the slip surface at the places of the window; not a number where there is none.
-  std::vector<double> slip_surface(const Grid &grid);
+  /// Elevations of the slip surface at the places of a grid of the ground; not a number where there is none.
+  using SlipSurface = std::function<std::vector<double>(const Grid &ground)>;
+  SlipSurface slip_surface(const Grid &grid);
   /// The same of one in an outline.
-  std::vector<double> slip_surface(const Outline &outline) const;
+  std::vector<double> slip_surface(const Outline &outline, const Grid &ground) const;
+  void refine_bed(const SlipSurface &surface);
   /// Area of a slip surface below the ground [m2].
   double area_of(const std::vector<double> &slip) const;
   void take_layers(const Grid &grid);
@@ -96,7 +111,8 @@ class Terrain {
   std::array<double, 2> origin_{};  ///< of the mesh in the coordinates of the grid [m]
   std::string projection_;
   std::vector<std::string> remarks_;  ///< on how files were read
-  Grid ground_, bed_;
+  Grid ground_, bed_, near_slide_;
+  Refined refined_;
   Grid distance_;                                         ///< from the slide and its way, seen from above [m]
   bool way_in_window_ = false, way_meets_slide_ = false;  ///< the strip along --way
   std::vector<Grid> layer_;

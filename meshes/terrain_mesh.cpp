@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <map>
-#include <numeric>
+#include <tuple>
 
 #include "meshes/flat_cells.h"
+#include "meshes/simplex.h"
 
 namespace talus {
 namespace {
@@ -26,7 +29,10 @@ class TerrainModel {
       for (double &z : top) z += terrain.options().air;
       add_surface(top, "top");
     }
-    add_surface(terrain.options().base ? terrain.ground() : terrain.bed(), terrain.options().base ? "terrain" : "base");
+    if (terrain.options().base)
+      add_surface(terrain.ground(), "terrain");
+    else
+      add_surface(terrain.bed(), "base", terrain.refined());
   }
 
   void build() {
@@ -46,6 +52,7 @@ class TerrainModel {
 
  private:
   const Terrain &terrain_;
+  std::size_t next_node_ = 1;
   std::vector<int> surfaces_;  // from top to bottom; the curves of surface s are its sides south, east, north, west
   std::map<int, std::string> name_;
   std::vector<int> volumes_;
@@ -56,26 +63,41 @@ class TerrainModel {
   }
 
   /// A surface of the triangles between elevations, as Gmsh's tutorial x2 does it; its points and curves have the same
-  /// numbers.
-  void add_surface(const std::vector<double> &z, const std::string &name) {
-    const int columns = terrain_.columns(), rows = terrain_.rows(), s = static_cast<int>(surfaces_.size());
+  /// numbers. Of the bed a part has more places than the terrain.
+  void add_surface(const std::vector<double> &z, const std::string &name, const Terrain::Refined &part = {}) {
+    const int columns = terrain_.columns(), rows = terrain_.rows(), surface = static_cast<int>(surfaces_.size()) + 1;
     const std::array<int, 4> corner = corners(surfaces_.size());
-    const std::size_t first = static_cast<std::size_t>(s) * columns * rows + 1;
     const std::array<int, 2> at[] = {{0, 0}, {columns - 1, 0}, {columns - 1, rows - 1}, {0, rows - 1}};
-    const auto node = [&](int i, int j) { return first + static_cast<std::size_t>(j) * columns + i; };
     for (int k = 0; k < 4; ++k) {
       model::addDiscreteEntity(0, corner[k]);
       model::setCoordinates(corner[k], terrain_.x(at[k][0]), terrain_.y(at[k][1]), z[at[k][1] * columns + at[k][0]]);
     }
     for (int k = 0; k < 4; ++k) model::addDiscreteEntity(1, corner[k], {corner[k], corner[(k + 1) % 4]});
-    const int surface = s + 1;
     model::addDiscreteEntity(2, surface, {corner.begin(), corner.end()});
-    std::vector<std::size_t> nodes(z.size());
-    std::iota(nodes.begin(), nodes.end(), first);
+    const Grid &fine = terrain_.near_slide();
+    const std::size_t first = next_node_, first_fine = first + z.size();
+    const auto in_part = [&](int i, int j) {
+      return part.parts > 1 && i >= part.column && i <= part.column + part.columns && j >= part.row &&
+             j <= part.row + part.rows;
+    };
+    const auto fine_node = [&](int i, int j) { return first_fine + static_cast<std::size_t>(j) * fine.columns + i; };
+    const auto node = [&](int i, int j) {
+      return in_part(i, j) ? fine_node((i - part.column) * part.parts, (j - part.row) * part.parts)
+                           : first + static_cast<std::size_t>(j) * columns + i;
+    };
+    std::vector<std::size_t> nodes;
     std::vector<double> places;
+    const auto add = [&](std::size_t number, double x, double y, double height) {
+      nodes.push_back(number), places.insert(places.end(), {x, y, height});
+    };
     for (int j = 0; j < rows; ++j)
-      for (int i = 0; i < columns; ++i) places.insert(places.end(), {terrain_.x(i), terrain_.y(j), z[j * columns + i]});
+      for (int i = 0; i < columns; ++i)
+        if (!in_part(i, j)) add(node(i, j), terrain_.x(i), terrain_.y(j), z[j * columns + i]);
+    for (int j = 0; part.parts > 1 && j < fine.rows; ++j)
+      for (int i = 0; i < fine.columns; ++i)
+        add(fine_node(i, j), fine.x(i), fine.y(j), fine.values[j * fine.columns + i]);
     model::mesh::addNodes(2, surface, nodes, places);
+    next_node_ = first_fine + (part.parts > 1 ? fine.values.size() : 0);
     for (int k = 0; k < 4; ++k) {
       model::mesh::addElementsByType(corner[k], 15, {}, {node(at[k][0], at[k][1])});
       const auto &a = at[k], &b = at[(k + 1) % 4];
@@ -88,10 +110,37 @@ class TerrainModel {
       model::mesh::addElementsByType(corner[k], 1, {}, segments);
     }
     std::vector<std::size_t> triangles;
+    const auto add_square = [&](const auto &number, int i, int j) {
+      triangles.insert(triangles.end(), {number(i, j), number(i + 1, j), number(i, j + 1), number(i + 1, j),
+                                         number(i + 1, j + 1), number(i, j + 1)});
+    };
     for (int j = 0; j + 1 < rows; ++j)
-      for (int i = 0; i + 1 < columns; ++i)
-        triangles.insert(triangles.end(), {node(i, j), node(i + 1, j), node(i, j + 1), node(i + 1, j),
-                                           node(i + 1, j + 1), node(i, j + 1)});
+      for (int i = 0; i + 1 < columns; ++i) {
+        const std::array<int, 2> around[] = {{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}};
+        int shared = -1, within = 0;  // the side where the part begins
+        for (int k = 0; k < 4; ++k) {
+          const auto &[a, b] = std::tie(around[k], around[(k + 1) % 4]);
+          within += in_part(a[0], a[1]);
+          if (in_part(a[0], a[1]) && in_part(b[0], b[1])) shared = k;
+        }
+        if (within == 4) continue;
+        if (shared < 0) {
+          add_square(node, i, j);
+          continue;
+        }
+        const auto &a = around[shared], &b = around[(shared + 1) % 4], &c = around[(shared + 2) % 4],
+                   &d = around[(shared + 3) % 4];
+        for (int n = 0; n < part.parts; ++n) {
+          const auto along = [&](int m) {
+            return fine_node((a[0] - part.column) * part.parts + (b[0] - a[0]) * m,
+                             (a[1] - part.row) * part.parts + (b[1] - a[1]) * m);
+          };
+          triangles.insert(triangles.end(), {along(n), along(n + 1), node(d[0], d[1])});
+        }
+        triangles.insert(triangles.end(), {node(b[0], b[1]), node(c[0], c[1]), node(d[0], d[1])});
+      }
+    for (int j = 0; part.parts > 1 && j + 1 < fine.rows; ++j)
+      for (int i = 0; i + 1 < fine.columns; ++i) add_square(fine_node, i, j);
     model::mesh::addElementsByType(surface, 2, {}, triangles);
     surfaces_.push_back(surface), name_[surface] = name;
   }
@@ -121,15 +170,39 @@ class TerrainModel {
     surfaces_.push_back(surface), name_[surface] = "base";
   }
 
-  /// What a cell of a volume is made of. Above a flat base the ground is a surface of the mesh, that parts air from
-  /// soil; above a bed it is not.
-  std::string name_of(std::size_t volume, double x, double y, double z) const {
+  /// How deep a place of a volume lies within the slide, below the ground over a bed, above the slip surface over a
+  /// flat base [m]; negative outside. Above a flat base the ground is a surface of the mesh, that parts air from soil;
+  /// above a bed it is not.
+  double depth_in_slide(std::size_t volume, double x, double y, double z) const {
     const double ground = terrain_.ground_at(x, y), bed = terrain_.bed_at(x, y);
-    if (!terrain_.options().base) return bed < ground && z < ground ? "slide" : "air";
-    if (volume + 1 < volumes_.size()) return "air";
-    if (bed < ground && z > bed) return "slide";
+    const bool soil = !terrain_.options().base || volume + 1 == volumes_.size();
+    return !(bed < ground) || !soil  ? -std::numeric_limits<double>::infinity()
+           : terrain_.options().base ? z - bed
+                                     : ground - z;
+  }
+
+  /// What a cell of a volume is made of that is no part of the slide.
+  std::string name_of(std::size_t volume, double x, double y, double z) const {
+    if (!terrain_.options().base || volume + 1 < volumes_.size()) return "air";
     const std::string layer = terrain_.layer_at(x, y, z);
     return layer.empty() ? "ground" : layer;
+  }
+
+  /// The depth of the middle of cells from which on they are the slide, such that they have its volume. By a depth of 0
+  /// it would be 4 % too small where a slide ends thin: the middles of the cells at its rim lie above the ground.
+  template <class Cells>
+  double least_depth(const Cells &cells) const {
+    std::vector<std::array<double, 2>> depth_and_size;
+    for (const auto &cell : cells) depth_and_size.push_back({cell.depth, cell.size});
+    std::sort(depth_and_size.begin(), depth_and_size.end(), std::greater<>());
+    const double most = terrain_.options().size / 8;
+    double left = terrain_.slide_volume();
+    for (const auto &[depth, size] : depth_and_size) {
+      if (std::abs(depth) <= most && left < size / 2) return depth;
+      if (depth < -most) break;
+      left -= size;
+    }
+    return left > 0 ? -most : most;
   }
 
   static NodeList simplices_of(int type, int entity) {
@@ -160,15 +233,28 @@ class TerrainModel {
       facets[name].insert(facets[name].end(), facets_of[s].begin(), facets_of[s].end());
       ++s;
     }
-    for (std::size_t v = 0; v < volumes_.size(); ++v) {
-      const NodeList &of = cells_of[v];
-      for (std::size_t k = 0; k < of.size(); k += 4) {
-        double middle[3] = {};
+    struct Cell {
+      std::size_t volume;
+      const std::size_t *nodes;
+      double middle[3], size, depth;
+    };
+    std::vector<Cell> all;
+    for (std::size_t v = 0; v < volumes_.size(); ++v)
+      for (std::size_t k = 0; k < cells_of[v].size(); k += 4) {
+        Cell cell{v, &cells_of[v][k], {}, 0, 0};
+        std::array<Vec<3>, 4> corner;
         for (int a = 0; a < 4; ++a)
-          for (int d = 0; d < 3; ++d) middle[d] += x[3 * index.at(of[k + a]) + d] / 4;
-        std::vector<std::size_t> &group = cells[name_of(v, middle[0], middle[1], middle[2])];
-        group.insert(group.end(), of.begin() + static_cast<long>(k), of.begin() + static_cast<long>(k) + 4);
+          for (int d = 0; d < 3; ++d)
+            corner[a][d] = x[3 * index.at(cell.nodes[a]) + d], cell.middle[d] += corner[a][d] / 4;
+        cell.size = std::abs(Simplex<3>(corner).volume);
+        cell.depth = depth_in_slide(v, cell.middle[0], cell.middle[1], cell.middle[2]);
+        all.push_back(cell);
       }
+    const double least = least_depth(all);
+    for (const Cell &cell : all) {
+      std::vector<std::size_t> &group =
+          cells[cell.depth > least ? "slide" : name_of(cell.volume, cell.middle[0], cell.middle[1], cell.middle[2])];
+      group.insert(group.end(), cell.nodes, cell.nodes + 4);
     }
     model::add("named");
     int tag = 0;

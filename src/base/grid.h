@@ -17,6 +17,8 @@ struct Grid {
   std::string unit;                  ///< of the values, as the file names it; mostly empty
   std::vector<std::string> remarks;  ///< sentences on how the file was read
 
+  double x(int column) const { return west + column * spacing; }
+  double y(int row) const { return south + row * spacing; }
   double east() const { return west + (columns - 1) * spacing; }
   double north() const { return south + (rows - 1) * spacing; }
   /// Linear between values along both axes; not a number outside and where one of the values in between has no data. At

@@ -36,6 +36,40 @@ TEST_F(TerrainFiles, SlideWithTheVolumeOfAnEllipsoid) {
   EXPECT_NEAR(terrain.bed_at(20, 16), 44, 1e-9);
 }
 
+/// The lip of a scarp is as sharp with elevations 10 m apart as cells of 4 m can show it: bilinear between them the bed
+/// would be up to 5 m above the ellipsoid.
+TEST_F(TerrainFiles, HaveTheSlipSurfaceBetweenTheirPlacesToo) {
+  TerrainOptions o = options(ascii(plane));
+  o.size = 4;
+  o.ellipsoid = Ellipsoid{{east + 101, south + 82, 69}, {43, 31, 12}, 17 * radian, 90 * radian};
+  const Terrain terrain(o);
+  double worst = 0, deepest = 0;
+  for (double x = 0.7; x < 200; x += 1.3)
+    for (double y = 0.4; y < 160; y += 1.1) {
+      const double bottom = o.ellipsoid->bottom(east + x, south + y), ground = plane(east + x, 0);
+      const double bed = bottom < ground ? bottom : ground;
+      deepest = std::max(deepest, ground - bed), worst = std::max(worst, std::abs(terrain.bed_at(x, y) - bed));
+    }
+  EXPECT_GT(deepest, 11);
+  EXPECT_LT(worst, 2.5);  // 1.8 m at the rim, where the ellipsoid is as steep as a wall
+  const Ellipsoid small{{east + 50, south + 40, 84.5}, {25, 20, 9}, 17 * radian, 90 * radian};
+  double volume = 0;
+  for (double x = 0.25; x < 100; x += 0.5)
+    for (double y = 0.25; y < 80; y += 0.5)
+      if (const double depth = plane(east + x, 0) - small.bottom(east + x, south + y); depth > 0)
+        volume += 0.25 * depth;
+  const auto areas = [&](double spacing) {
+    const Answer answer = run(ascii(plane, "a.asc", spacing) + " -o " + in_folder("m.msh") +
+                              " --size 4 --far-size 12 --air 20 --ellipsoid 5050 2040 84.5 25 20 9 17 90");
+    EXPECT_EQ(answer.status, 0) << answer.text;
+    const double extent = 320 * spacing * spacing;
+    EXPECT_NEAR((of_group(answer, "slide") + of_group(answer, "air") - 20 * extent) / volume, 1, 0.03) << spacing;
+    EXPECT_NEAR(of_group(answer, "slide") / volume, 1, 0.03) << spacing;
+    return of_group(answer, "base") - extent * std::hypot(1, 0.3);
+  };
+  EXPECT_NEAR(areas(10) / areas(5), 1, 0.1);
+}
+
 /// The wall behind an ellipsoid that dips into a steep slope is no spike: what is wrong is the dip, or the elevation.
 TEST_F(TerrainFiles, DoubtTheEllipsoidAndNotTheGround) {
   TerrainOptions o = options(ascii([](double x, double) { return 1000 - 0.8 * (x - east); }));
