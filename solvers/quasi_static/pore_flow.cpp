@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/gather.h"
 #include "base/local_numbers.h"
 #include "solvers/quasi_static/unnamed_faces.h"
 
@@ -45,7 +46,7 @@ PoreFlow<dim>::PoreFlow(const BackgroundMesh<dim> &mesh, const Scene &scene, con
     if (has_curve(b)) mean_permeability_[b].emplace(soils_[b]);
   pressure_of_point_.assign(mesh_.element_plex().number.size(), std::numeric_limits<double>::quiet_NaN());
   sources_.insert(sources_.end(), more.begin(), more.end());
-  inflow_.assign(sources_.size(), 0);
+  inflow_.assign(sources_.size() + 1, 0);
 }
 
 template <int dim>
@@ -194,9 +195,12 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
 template <int dim>
 double PoreFlow<dim>::outside(int node, double t) const {
   if (pressed_[node] < 0) return 0;
-  const Vec<dim> &x = nodes_.position[node];
-  return sources_[pressed_[node]].kind.outside(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t,
-                                               {unit_weight(), x[scene_.vertical()]});
+  return outside(pressed_[node], nodes_.position[node], t);
+}
+
+template <int dim>
+double PoreFlow<dim>::outside(int source, const Vec<dim> &x, double t) const {
+  return sources_[source].kind.outside(x[0], x[1], dim == 3 ? x[dim - 1] : 0, t, {unit_weight(), x[scene_.vertical()]});
 }
 
 template <int dim>
@@ -366,7 +370,7 @@ void PoreFlow<dim>::commit(double t, double dt, const std::vector<double> &rest)
   for (int i = 0; i < nodes_.count(); ++i)
     if (nodes_.owned[i] && fixed_[i]) {
       entered_ += liquid_.density * rest[i];
-      if (pressed_[i] >= 0) inflow_[pressed_[i]] += rest[i] / dt;
+      (pressed_[i] >= 0 ? inflow_[pressed_[i]] : inflow_.back()) += rest[i] / dt;
     }
   for (const Supply &s : supplies_) {
     const double water = s.area * inflow_at(s, t);
@@ -410,6 +414,13 @@ std::vector<std::pair<std::string, double>> PoreFlow<dim>::own_inflow() const {
   return own;
 }
 
+template <int dim>
+double PoreFlow<dim>::unnamed_inflow() const {
+  double sum = inflow_.back();
+  MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, nodes_.comm());
+  return sum;
+}
+
 // ---- pressures and masses for the soil ----
 
 template <int dim>
@@ -446,15 +457,67 @@ double PoreFlow<dim>::water_density(int cell, const Barycentric<dim> &l) const {
 }
 
 template <int dim>
-std::vector<double> PoreFlow<dim>::pressure_of_cells() const {
-  std::vector<double> cells;
+PetscErrorCode PoreFlow<dim>::find_open_water(double t, std::function<double(const Vec<dim> &)> *pressure) const {
+  PetscFunctionBeginUser;
+  struct Shore {
+    Vec<dim> place;
+    int source;  ///< whose water stands there, or none
+  };
+  std::vector<Shore> shores;
+  for (int i = 0; i < nodes_.count(); ++i)
+    if (nodes_.owned[i] && pressed_[i] != none)
+      shores.push_back(
+          {nodes_.position[i], pressed_[i] >= 0 && sources_[pressed_[i]].kind.open_water ? pressed_[i] : none});
+  int rank, ranks;
+  PetscCallMPI(MPI_Comm_rank(nodes_.comm(), &rank));
+  PetscCallMPI(MPI_Comm_size(nodes_.comm(), &ranks));
+  std::vector<int> others;
+  for (int r = 0; r < ranks; ++r)
+    if (r != rank) others.push_back(r);
+  PetscCall(gather_from(nodes_.comm(), others, shores));
+  if (std::ranges::all_of(shores, [](const Shore &shore) { return shore.source == none; })) shores.clear();
+  *pressure = [this, t, shores](const Vec<dim> &x) {
+    double highest = 0;  // of what any of them would put there
+    for (int s = 0; s < static_cast<int>(sources_.size()) && !shores.empty(); ++s)
+      if (sources_[s].kind.open_water) highest = std::max(highest, outside(s, x, t));
+    if (!(highest > 0)) return 0.;
+    const auto square = [&](const Shore &shore) {
+      double sum = 0;
+      for (int d = 0; d < dim; ++d) sum += (shore.place[d] - x[d]) * (shore.place[d] - x[d]);
+      return sum;
+    };
+    const Shore &nearest = *std::ranges::min_element(shores, {}, [&](const Shore &shore) {
+      return std::pair(square(shore), shore.source);  // of two as near always the same one, on any number of ranks
+    });
+    return nearest.source == none ? 0 : outside(nearest.source, x, t);
+  };
+  PetscFunctionReturn(0);
+}
+
+template <int dim>
+PetscErrorCode PoreFlow<dim>::pressure_of_cells(double t, std::vector<double> *cells) const {
+  PetscFunctionBeginUser;
+  std::function<double(const Vec<dim> &)> open_water;
+  PetscCall(find_open_water(t, &open_water));
+  std::vector<double> water(mesh_.node_count(), 0);
+  std::vector<char> beside(mesh_.node_count(), 0);
   for (int c = 0; c < cell_count(); ++c)
-    for (int a = 0; a <= dim && active_[c]; ++a) {
-      const int node = nodes_.of_cell(c)[a];
-      cells.insert(cells.end(), nodes_.position[node].begin(), nodes_.position[node].end());
-      cells.push_back(accepted[node]);
-    }
-  return cells;
+    for (const int node : mesh_.cells[c].node) beside[node] |= !active_[c];
+  for (int node = 0; node < mesh_.node_count(); ++node)
+    if (beside[node]) water[node] = open_water(mesh_.position[node]);
+  cells->clear();
+  const auto add = [&](const Vec<dim> &place, double p) {
+    cells->insert(cells->end(), place.begin(), place.end());
+    cells->push_back(p);
+  };
+  for (int c = 0; c < cell_count(); ++c) {
+    const auto &corner = mesh_.cells[c].node;
+    if (active_[c])
+      for (int a = 0; a <= dim; ++a) add(nodes_.position[nodes_.of_cell(c)[a]], accepted[nodes_.of_cell(c)[a]]);
+    else if (std::ranges::any_of(corner, [&](int node) { return water[node] > 0; }))
+      for (const int node : corner) add(mesh_.position[node], water[node]);
+  }
+  PetscFunctionReturn(0);
 }
 
 template class PoreFlow<2>;

@@ -91,11 +91,18 @@ class PoreFlow {
   std::vector<double> inflow() const;
   /// The same of the boundaries that only the flow has, by their names. Collective.
   std::vector<std::pair<std::string, double>> own_inflow() const;
+  /// The same of faces of the soil that no boundary names. Collective.
+  double unnamed_inflow() const;
   /// Mass of water that has entered through all boundaries since this was asked last [kg]. Collective.
   double take_entered();
   int cell_count() const { return mesh_.cell_count(); }
-  /// Coordinates [m] and accepted pressure [Pa] of the vertices of active cells, one after another.
-  std::vector<double> pressure_of_cells() const;
+  /// Coordinates [m] and pressure [Pa] of the vertices of cells, one after another: the accepted pressure in active
+  /// cells, and that of open water at time t in the others which it fills. Collective.
+  PetscErrorCode pressure_of_cells(double t, std::vector<double> *cells) const;
+
+  /// The pressure of open water at time t as a function of places on the surface of the soil and beyond [Pa]: of the
+  /// water that stands on the face of the soil which is nearest. Collective.
+  PetscErrorCode find_open_water(double t, std::function<double(const Vec<dim> &)> *pressure) const;
 
   /// The state in a checkpoint, between two steps.
   void serialize(Archive &archive);
@@ -120,6 +127,7 @@ class PoreFlow {
   double content_slope(int body, double p) const;  ///< [1/Pa]
   double inflow_at(const Supply &supply, double t) const;  ///< mean, weighted by the node's shape function [m/s]
   double outside(int node, double t) const;
+  double outside(int source, const Vec<dim> &x, double t) const;
   bool has_curve(int body) const { return suction_ && scene_.body[body].retention.reader; }
 
   const BackgroundMesh<dim> &mesh_;
@@ -141,7 +149,7 @@ class PoreFlow {
   std::vector<char> may_close_;     ///< 1 at seepage faces, where water leaves and no more than the supply enters
   std::vector<char> open_, fixed_;  ///< seepage nodes that have the pressure beyond; nodes whose pressure is known
   std::vector<Supply> supplies_;
-  std::vector<double> inflow_;  ///< by source, of this rank [m3/s]
+  std::vector<double> inflow_;  ///< by source, and at last of faces without one, of this rank [m3/s]
   double entered_ = 0;          ///< on this rank [kg]
   double travel_ = 0;           ///< load time of the step [s]
 };

@@ -194,12 +194,14 @@ class Adviser {
   }
 
   void start() {
-    if (needs_.gravity == 0 || is_static(scene_.stage.front().kind)) return;
-    const Stage &first = scene_.stage.front();
+    const auto found =  // the first in which soil moves or comes to rest
+        std::ranges::find_if(scene_.stage, [](const Stage &stage) { return stage.kind != StageKind::seepage; });
+    if (needs_.gravity == 0 || found == scene_.stage.end() || is_static(found->kind)) return;
+    const Stage &first = *found;
     const bool stressed =
         std::all_of(scene_.body.begin(), scene_.body.end(), [](const auto &b) { return !b.stress.empty(); });
     if (stressed || first.gravity_ramp > 0 || first.damping > 0) return;
-    const auto at_rest = [](const Stage &stage) { return is_static(stage.kind); };
+    const auto at_rest = [](const Stage &stage) { return is_static(stage.kind) && stage.kind != StageKind::seepage; };
     if (const auto later = std::ranges::find_if(scene_.stage, at_rest); later != scene_.stage.end())
       say("Stage " + later->name + " would bring the soil to rest under its weight, but comes after " + first.name +
           ", in which soil without stress falls under it at once; the stage at rest is usually the first.");

@@ -39,6 +39,8 @@ void Statics<dim>::start_stress() {
     blocks.push_back(world_.block_of(world_.scene.body[b], c, water, clock_.load_time));
   }
   const Overburden<dim> overburden(world_.mesh, blocks, vertical);
+  std::function<double(const Vec<dim> &)> open_water;  // where pore water moves
+  if (world_.phases.liquid) require(flow_->find_open_water(clock_.load_time, &open_water));
   for (size_t b = 0; b < world_.bodies.size(); ++b) {
     GaussPoints<dim> &points = problem_->soil().points()[b];
     if (!world_.present[b]) continue;
@@ -50,9 +52,11 @@ void Statics<dim>::start_stress() {
         pressure = world_.pressure(x, clock_.load_time, static_cast<int>(b));
         if (world_.scene.water.open_water_load) weight += world_.pressure(surface, clock_.load_time, common_water);
       }
-      if (world_.phases.liquid)
+      if (world_.phases.liquid) {
+        weight += open_water(surface);
         pressure = flow_->stress_pressure(points.cell[q],
                                           problem_->soil().rule().point[q % problem_->soil().points_per_cell()]);
+      }
       const double k0 = earth_pressure_at_rest(world_.scene.body[b], world_.laws[b],
                                                points.friction_share.empty() ? 1 : points.friction_share[q]);
       double *stress = &points.stress[q * stress_size<dim>];

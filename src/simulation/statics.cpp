@@ -168,7 +168,7 @@ void Statics<dim>::check_supports(bool soil_moves) const {
 
 template <int dim>
 void Statics<dim>::take_seeped_pressure() {
-  seeped_cells_ = flow_->pressure_of_cells();
+  require(flow_->pressure_of_cells(clock_.load_time, &seeped_cells_));
   use_seeped_pressure();
 }
 
@@ -196,7 +196,11 @@ void Statics<dim>::use_seeped_pressure() {
       const double p = (*found)(x);
       return std::isnan(p) ? p : talus::saturation(pores[&body - first].retention(), std::max(0., -p));
     };
-  world_.pressure.take([felt](const double *x) { return (*felt)(x); }, saturation);
+  const auto or_none = [felt](const double *x) {  // beside soil and open water
+    const double p = (*felt)(x);
+    return std::isnan(p) ? 0 : p;
+  };
+  world_.pressure.take(or_none, saturation);
 }
 
 template <int dim>

@@ -18,6 +18,12 @@ namespace {
 
 double table_at(const WaterTable &table, const std::array<double, 3> &x) { return table.at(x[0], x[1], x[2]); }
 
+/// The first stage of seepage, or the end of the stages.
+std::vector<Stage>::const_iterator first_seepage(const Scene &scene) {
+  return std::find_if(scene.stage.begin(), scene.stage.end(),
+                      [](const Stage &stage) { return stage.kind == StageKind::seepage; });
+}
+
 /// The water table of [water], which lies level beyond its ends.
 void doubt_table(const Scene &scene, const Extent &soil, const std::vector<SoilFace> &surface,
                  std::vector<std::string> &sentences) {
@@ -277,7 +283,9 @@ void doubt_dry_ponds(const Scene &scene, const Extent &soil, const std::vector<S
 /// Faces of a boundary belong to the mesh. Soil that settles or slides away from them leaves the boundary without soil.
 void doubt_faces_of_water(const Scene &scene, const std::vector<SoilFace> &surface,
                           std::vector<std::string> &sentences) {
-  if (std::ranges::none_of(scene.stage, [](const Stage &s) { return !is_static(s.kind) && s.pore_flow; })) return;
+  const bool moves = phase_traits(scene.phases).liquid &&
+                     std::ranges::any_of(scene.stage, [](const Stage &s) { return !is_static(s.kind) && s.pore_flow; });
+  if (!moves && std::ranges::none_of(scene.stage, [](const Stage &s) { return water_flows(s.kind); })) return;
   for (int b = 0; b < static_cast<int>(scene.boundary.size()); ++b) {
     const BoundarySource &boundary = scene.boundary[b];
     if (!read_boundary(boundary.kind).fluid_face() || std::ranges::count(boundary.group, std::string(free_surface)))
@@ -289,7 +297,7 @@ void doubt_faces_of_water(const Scene &scene, const std::vector<SoilFace> &surfa
       sentences.push_back("boundary." + boundary.name +
                           " decides on the water at faces of the mesh that no soil touches at the start, and brings or "
                           "takes none there. The surface of the soil has the group free_surface");
-    else if (beside_air)
+    else if (beside_air && moves)
       sentences.push_back("boundary." + boundary.name +
                           " decides on the water at faces where the soil begins, and these stay where they are: soil "
                           "that settles or slides from them by a third of a cell has the atmosphere there instead. A "
@@ -365,6 +373,48 @@ void doubt_water_that_goes_on(const Scene &scene, const std::vector<SoilFace> &s
                           " m/s when its table is over, from t = " + rounded(last) + " s until the stages end at t = " +
                           rounded(end) + " s. End the table with 0 if the water is to stop there");
   }
+}
+
+/// Open water that rises or falls in a stage of elements whose pore water stays: its load changes, and the pressure in
+/// the pores does not.
+void doubt_open_water_without_flow(const Scene &scene, double height, std::vector<std::string> &sentences) {
+  constexpr double deep = -1e4;  // elevation below all levels that are asked [m]
+  double from = 0;               // load time [s]
+  for (const Stage &stage : scene.stage) {
+    const double to = from + (stage.hold_loads ? 0 : stage.duration);
+    for (std::size_t b = 0; b < scene.boundary.size() && is_static(stage.kind) && !water_flows(stage.kind); ++b) {
+      const Boundary kind = read_boundary(scene.boundary[b].kind);
+      if (!kind.open_water) continue;
+      const auto level = [&](double t) { return kind.outside(0, 0, 0, t, {1, deep}) + deep; };
+      if (std::abs(level(to) - level(from)) < visible * height) continue;
+      sentences.push_back("the water of boundary." + scene.boundary[b].name + " goes from " + rounded(level(from)) +
+                          " to " + rounded(level(to)) + " m in stage " + stage.name +
+                          ", in which no pore water moves: it loads the soil, whose pore pressure stays as it is, so "
+                          "that rising water makes a slope safer than it is. kind = \"consolidation\" lets both "
+                          "follow; or let a stage with kind = \"seepage\" follow the water first, and hold_loads in "
+                          "this one");
+    }
+    from = to;
+  }
+}
+
+/// Pores that cannot dry have no suction with which to hold back what an open surface offers.
+void doubt_open_ground(const Scene &scene, const std::vector<SoilFace> &surface, std::vector<std::string> &sentences) {
+  const auto dries = [](const BodySource &body) { return static_cast<bool>(body.retention.reader); };
+  if (first_seepage(scene) == scene.stage.end() || std::ranges::any_of(scene.body, dries)) return;
+  for (const BoundarySource &boundary : scene.boundary)
+    if (read_boundary(boundary.kind).fluids_only() && std::ranges::count(boundary.group, std::string(free_surface)))
+      return;
+  const int up = scene.vertical();
+  const auto bare = std::ranges::find_if(surface, [&](const SoilFace &face) {
+    return face.water < 0 && may_be_flooded(face, up) && face.normal[up] > 0.1;
+  });
+  if (bare == surface.end()) return;
+  sentences.push_back("the ground at x = " + rounded(bare->corner[0][0]) + ", " + axis_names[up] + " = " +
+                      rounded(bare->corner[0][up]) +
+                      " m has no boundary of water, so that its pressure is 0 in stages of seepage: as under a film of "
+                      "water, which enters without limit. Where the ground is dry, give group = \"free_surface\" a "
+                      "boundary with kind = \"rainfall\" and intensity = 0, or the soil a retention curve");
 }
 
 /// The table is what pores begin with where their water moves, and no stage looks at it again unless it prescribes the
@@ -445,12 +495,6 @@ void doubt_own_tables(const Scene &scene, double height, const std::vector<SoilF
 
 // ---- seepage ----
 
-/// The first stage of seepage, or the end of the stages.
-std::vector<Stage>::const_iterator first_seepage(const Scene &scene) {
-  return std::find_if(scene.stage.begin(), scene.stage.end(),
-                      [](const Stage &stage) { return stage.kind == StageKind::seepage; });
-}
-
 /// Pressure rises under ground that lets no water out, where none stands that would bear against it.
 void doubt_sealed_ground(const Scene &scene, std::vector<std::string> &sentences) {
   if (first_seepage(scene) == scene.stage.end()) return;
@@ -530,14 +574,16 @@ void doubt_water(const Scene &scene, const Extent &soil, const std::vector<SoilF
   doubt_water_that_goes_on(scene, surface, sentences);
   doubt_excess_alone(scene, sentences);
   doubt_permeability(scene, sentences);
+  doubt_faces_of_water(scene, surface, sentences);
   if (phase_traits(scene.phases).liquid) {
     doubt_dry_ponds(scene, soil, surface, sentences);
-    doubt_faces_of_water(scene, surface, sentences);
+    doubt_open_water_without_flow(scene, height, sentences);
     doubt_changing_table(scene, sentences);
     doubt_film_on_ground(scene, height, surface, sentences);
   }
   if (scene.phases != PhaseModel::drained) return;
   doubt_early_suction(scene, sentences);
+  doubt_open_ground(scene, surface, sentences);
   if (!scene.water.open_water_load) return;
   doubt_ponds(scene, height, surface, sentences);
   doubt_ponds_in_hollows(scene, soil, surface, sentences);

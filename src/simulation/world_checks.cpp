@@ -203,7 +203,11 @@ void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
                      "with inflow = 0 there, which stops water");
     if (source.kind.fluids_only() && !phases.liquid)
       scene.complain(path, std::string("is a boundary of moving pore water, but phases = \"") + phases.name +
-                               "\" has none; set phases = \"saturated\", \"unsaturated\" or \"three-phase\"");
+                               "\" has none" +
+                               (phases.prescribed ? " but in stages of seepage: give the scene one (in a run from "
+                                                    "which another starts too), or "
+                                                  : "; ") +
+                               "set phases = \"saturated\", \"unsaturated\" or \"three-phase\"");
     if (source.kind.needs_gas() && !phases.gas)
       scene.complain(path + ".kind", std::string("is a boundary of moving pore gas, but phases = \"") + phases.name +
                                          "\" has none; set phases = \"three-phase\"");

@@ -18,6 +18,8 @@ class SeepageStage final : public FlowStage<dim> {
          << " iterations";
     for (const auto &[name, inflow] : this->run_.statics.flow().own_inflow())
       text << "; " << inflow << " m3/s enter at " << name;
+    if (const double inflow = this->run_.statics.flow().unnamed_inflow(); inflow != 0)
+      text << "; " << inflow << " m3/s enter by faces that no boundary names";
     this->describe_water(text);
   }
 };

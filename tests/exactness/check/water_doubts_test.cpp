@@ -178,6 +178,38 @@ TEST(Check, DoubtsLevelsAndRainInOtherUnits) {
       << output({"body.sand.hydraulic_conductivity=4"}).output;
 }
 
+/// Water that rises where that in the pores stays, and ground that drinks as if it were flooded.
+TEST(Check, DoubtsOpenWaterThatPoresDoNotFollow) {
+  const Folder folder;
+  write_wet_block(folder);
+  const auto output = [&](const char *phases, const std::string &level, const std::string &stage) {
+    const Ending ending =
+        talus(folder, {"check", "scene.toml", "--json", "--set", std::string("phases=") + phases, "--set",
+                       "boundary.top={group='free_surface', kind='head', level=" + level + "}", "--set",
+                       "stage=[{name='rest', duration=9, " + stage + "}]"});
+    EXPECT_EQ(ending.status, 0) << ending.output;
+    return ending;
+  };
+  const std::string rises = "[[0, 0.6], [9, 0.9]]";
+  const char *stays = "the water of boundary.top goes from 0.6 to 0.9 m in stage rest, in which no pore water moves";
+  const Ending doubted = output("saturated", rises, "kind='quasi_static'");
+  EXPECT_TRUE(doubted.says(stays)) << doubted.output;
+  EXPECT_FALSE(output("saturated", rises, "kind='consolidation'").says("in which no pore water moves"));
+  EXPECT_FALSE(output("saturated", rises, "kind='quasi_static', hold_loads=true").says("in which no pore water moves"));
+  EXPECT_FALSE(output("saturated", "0.6", "kind='quasi_static'").says("in which no pore water moves"));
+  const auto open = [&](const std::string &boundary, const std::string &more = "body.sand.saturation=1") {
+    const Ending ending =
+        talus(folder, {"check", "scene.toml", "--json", "--set", "phases=drained", "--set", "water.table=[[0, 0.2]]",
+                       "--set", boundary, "--set", "stage=[{name='seep', kind='seepage', duration=9}]", "--set", more});
+    EXPECT_EQ(ending.status, 0) << ending.output;
+    return ending;
+  };
+  const char *drinks = "has no boundary of water, so that its pressure is 0 in stages of seepage";
+  EXPECT_TRUE(open("boundary.well={group='left', kind='pore_pressure', pressure=1e3}").says(drinks))
+      << open("boundary.well={group='left', kind='pore_pressure', pressure=1e3}").output;
+  EXPECT_FALSE(open("boundary.top={group='free_surface', kind='rainfall', intensity=0}").says(drinks));
+}
+
 /// Water that is softer than the soil takes no load: B = 1 / (1 + 0.4 * 0.83 MPa / 2.2 MPa).
 TEST(Check, DoubtsSoftWaterAndHugePores) {
   const Folder folder;

@@ -152,6 +152,43 @@ TEST(Water, of_a_lake_rests_on_the_ground) {
   }
 }
 
+/// Its weight is part of the total stress of soil at rest, of whose effective part the sides have a share.
+TEST(Water, of_a_lake_counts_in_the_earth_pressure_at_rest) {
+  const std::string text =
+      wet_block +
+      "[boundary.lake]\ngroup = \"free_surface\"\nkind = \"head\"\nlevel = 4\n"
+      "[[stage]]\nname = \"soil\"\nkind = \"quasi_static\"\nduration = 1\ninitial_stress = \"k0\"\n";
+  const Solved solved = solve(text, {"body.soil.k0=0.6", "water.table=[[0, 4]]"});
+  const double weight = 10 * (0.7 * 2600 - 0.7 * 1000);
+  for (const int k : {0, 1})
+    EXPECT_LT(largest(solved, 1,
+                      [&](size_t p, int) {
+                        return solved.value("stress", p, k) / weight +
+                               (k == 0 ? 0.6 : 1) * (1 - solved.value("position", p, 1));
+                      }),
+              1e-4)  // of 30 kPa of water above
+        << k;
+}
+
+/// Soft soil bulges into the lake beside it, whose water is that of the seepage and not of the table before it.
+TEST(Water, of_a_lake_is_there_into_which_soil_slides) {
+  const std::string text = wet_block +
+                           "[boundary.lake]\ngroup = \"free_surface\"\nkind = \"head\"\nlevel = 1.3\n"
+                           "[[stage]]\nname = \"water\"\nkind = \"seepage\"\nsteady = true\nduration = 1\n"
+                           "[[stage]]\nname = \"bulge\"\nduration = 0.3\n"
+                           "[output]\nhistory_interval = 0.01\n[output.point.edge]\nposition = [1, 0.3]\n";
+  const auto way = [&](const char *table) {
+    const Solved solved =
+        solve(text, {"phases=drained", "mesh.section=" TALUS_LAKE, "mesh.size=0.15", "body.soil.young_modulus=50 kPa",
+                     "body.soil.saturation=1", "boundary.walls.group=[\"base\", \"left\"]",
+                     std::string("water.table=[[0, ") + table + "]]"});
+    return solved.history.column("edge_displacement_m").back();
+  };
+  const double expected = way("1.3");
+  EXPECT_GT(expected, 0.05);  // out of the cells where it was
+  for (const char *table : {"0.2", "1.6"}) EXPECT_NEAR(way(table) / expected, 1, 1e-6) << table;
+}
+
 /// Suction is no stress in net stress; in Bishop's it acts with the degree of saturation.
 TEST(Water, that_is_sucked_acts_as_the_stress_variable_says) {
   const std::string text = wet_block +
