@@ -92,7 +92,10 @@ void burst(AnySimulation &simulation, Scene &scene, Needs &needs) {
     timed(burst_length / 2, longest_burst / 2, remaps, needs.seconds_per_remap);
     needs.seconds_per_remap = std::max(needs.seconds_per_remap, needs.seconds_per_step);
   } catch (const RunError &error) {
-    if (time < end || !scene.function_fault().empty()) needs.burst_failure = error.what();
+    if (time < end)
+      needs.burst_failure = error.what();
+    else
+      scene.forget_function_faults();
   }
   scene.transfer.remap_interval = interval;
   (void)PetscMemoryGetCurrentUsage(&mine[0]);

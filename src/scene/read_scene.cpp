@@ -567,6 +567,9 @@ std::array<double, 3> Scene::acceleration_in(const Stage &one) const {
 }
 
 std::string Scene::function_fault() const { return root ? root->function_fault() : ""; }
+void Scene::forget_function_faults() const {
+  if (root) root->forget_function_faults();
+}
 
 void Scene::complain(const std::string &key_path, const std::string &sentence) const {
   if (root) root->complain(key_path, sentence);

@@ -226,6 +226,10 @@ std::string TableReader::function_fault() const {
   return "";
 }
 
+void TableReader::forget_function_faults() const {
+  for (const auto &[function, limits] : document_->expressions) limits->fault.clear();
+}
+
 void TableReader::each_expression(const std::function<void(const Function &)> &visit) const {
   for (const auto &[function, limits] : document_->expressions) visit(function);
 }

@@ -107,6 +107,7 @@ class TableReader {
   /// The first value of a function that its key does not admit, as a sentence with key, line, place and time; empty if
   /// there was none.
   std::string function_fault() const;
+  void forget_function_faults() const;
   /// Calls visit for each function of the file that is an expression.
   void each_expression(const std::function<void(const Function &)> &visit) const;
 

@@ -692,6 +692,8 @@ struct Scene {
   std::array<double, 3> upward() const;
   /// The first value of a function that its key does not admit, on this rank; empty if there was none.
   std::string function_fault() const;
+  /// Takes faults for never made: those of a trial beyond the end of the run.
+  void forget_function_faults() const;
   /// Gravity and the pseudo-static acceleration of a stage, zero beyond the dimension [m/s2].
   std::array<double, 3> acceleration_in(const Stage &one) const;
 

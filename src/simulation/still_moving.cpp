@@ -89,8 +89,14 @@ std::optional<MotionLeft> still_moving(MPI_Comm comm, const Snapshot &state) {
                space = sum_of_ranks(comm, std::accumulate(volume->values.begin(), volume->values.end(), 0.));
   if (particles == 0) return {};
   const Distribution displacements(comm, ways);
+  double moved = 0, number = 0;
+  for (std::size_t i = 0; i < count; ++i)
+    if (ways[i].first > std::pow(volume->values[i], 1. / displacement->components)) moved += mass->values[i], ++number;
+  moved = sum_of_ranks(comm, moved), number = sum_of_ranks(comm, number);
+  double single = (1 - nearly_all) * displacements.total();
+  if (number >= several) single = std::min(single, of_moved * moved);
   const double spacing = std::pow(space / particles, 1. / displacement->components),
-               largest = displacements.at(nearly_all * displacements.total());
+               largest = displacements.at(displacements.total() - single);
   if (largest <= slides_least * spacing) return {};
   double slid = 0, fast = 0;
   for (std::size_t i = 0; i < count; ++i) {

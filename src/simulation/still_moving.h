@@ -14,7 +14,9 @@ inline constexpr double slides_share = 0.1;  ///< of the largest displacement, b
 inline constexpr double slides_least = 0.1;  ///< of the spacing of particles, below which no soil has slid
 inline constexpr double slow = 0.1;          ///< speed that soil at rest does not have [m/s]
 inline constexpr double restless = 0.01;     ///< share of the mass that slid: if more is faster than `slow`, it moves
-inline constexpr double nearly_all = 0.999;  ///< share that counts for largest values: single particles do not
+inline constexpr double nearly_all = 0.999;  ///< share that counts for largest values: single particles do not ...
+inline constexpr double of_moved = 0.05;  ///< ... but no more than this share of what moved by more than its own size
+inline constexpr double several = 50;     ///< particles that make this a small slide, and not single particles
 
 struct MotionLeft {
   double share;  ///< of the mass that slid, faster than `slow`

@@ -166,6 +166,15 @@ double greatest_depth(const std::vector<SoilFace> &surface, int dimension, int u
   return greatest;
 }
 
+/// How deep a body is at most, about: no deeper than three times its mean over the ground that it has, so that a slide
+/// has not the depth of the rock below it [m].
+double depth_of(int number, const BodyReport &body, const std::vector<SoilFace> &surface, int up, double greatest) {
+  double ground = 0;
+  for (const SoilFace &face : surface)
+    if (face.body == number) ground += face.area * std::max(0., face.normal[up]);
+  return ground > 0 ? std::min(greatest, 3 * body.volume / ground) : greatest;
+}
+
 std::string unlikely_height(double height, const std::string &what) {
   constexpr double highest = 5000;  // [m], a mountain
   if (height <= highest) return "";
@@ -315,7 +324,8 @@ std::vector<std::string> coarse_cells(const Scene &scene, const std::vector<Body
                           " cells over the depth resolve neither stress nor slip surface. Take smaller cells "
                           "(mesh.size, mesh.halvings)");
     else if (scene.phases == PhaseModel::dry)
-      doubt_steep_faces(scene, static_cast<int>(b), body, surface, depth, sentences);
+      doubt_steep_faces(scene, static_cast<int>(b), body, surface,
+                        depth_of(static_cast<int>(b), body, surface, scene.vertical(), depth), sentences);
   }
   return sentences;
 }
@@ -435,7 +445,9 @@ std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<L
     if (bodies[b].particles > 0)
       doubt_water_without_friction(scene, static_cast<int>(b), bodies[b], laws[b], sentences);
     if (bodies[b].particles > 0 && scene.gravity_size() > 0 && depth > 0)
-      doubt_for_depth(body, bodies[b], laws[b], bodies[b].mass / bodies[b].volume * scene.gravity_size() * depth,
+      doubt_for_depth(body, bodies[b], laws[b],
+                      bodies[b].mass / bodies[b].volume * scene.gravity_size() *
+                          depth_of(static_cast<int>(b), bodies[b], surface, scene.vertical(), depth),
                       sentences);
     doubt_soft_water(scene, body, laws[b], sentences);
     for (const Doubt &doubt : doubts) {

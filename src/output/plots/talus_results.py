@@ -136,8 +136,12 @@ def spacing(snapshot):
     return float(volume.mean()) ** (1 / snapshot.position().shape[1]) if len(volume) else 0.0
 
 
+OF_MOVED, SEVERAL = 0.05, 50
+
+
 def largest_displacement(snapshot, share=0.999):
-    """The displacement that this share of the mass has at most [m]: the largest, without single particles."""
+    """The displacement that this share of the mass has at most [m]: the largest, without single particles. Where SEVERAL particles or more moved by more
+    than their own size, single ones are no more than OF_MOVED of the mass of these: so that a small slide in a large model is none of them."""
     moved = snapshot.scalar("displacement")[0]
     if not len(moved):
         return 0.0
@@ -145,8 +149,13 @@ def largest_displacement(snapshot, share=0.999):
         mass = snapshot.column("mass").values[:, 0]
     except KeyError:  # results of other programs
         mass = np.ones(len(moved))
+    single = (1 - share) * mass.sum()
+    if "volume" in snapshot:
+        slid = moved > snapshot.column("volume").values[:, 0] ** (1 / snapshot.position().shape[1])
+        if slid.sum() >= SEVERAL:
+            single = min(single, OF_MOVED * mass[slid].sum())
     order = np.argsort(moved)
-    return float(moved[order][np.searchsorted(np.cumsum(mass[order]), share * mass.sum())])
+    return float(moved[order][np.searchsorted(np.cumsum(mass[order]), mass.sum() - single)])
 
 
 def sliding(last):

@@ -29,7 +29,7 @@ import talus_soil  # noqa: E402
 import talus_sweep  # noqa: E402
 from talus_colours import Colours  # noqa: E402
 from talus_histories import base_friction, draw_histories, drawn_energies, potential_that_left  # noqa: E402
-from talus_measures import flow  # noqa: E402
+from talus_measures import MEASURES, flow  # noqa: E402
 from talus_moments import chosen_snapshots, since_reset, telling, with_stress  # noqa: E402
 from talus_outcomes import FAILS, STANDS  # noqa: E402
 from talus_paths import grouped, label_of, name_envelopes, name_of_mean_stress  # noqa: E402
@@ -42,6 +42,7 @@ from talus_soils import moved_away, painted, tints  # noqa: E402
 from talus_symbols import keep_apart, named_points  # noqa: E402
 from talus_tiles import Frame  # noqa: E402
 from talus_views import Oblique, View, views_of  # noqa: E402
+from talus_way import Way  # noqa: E402
 
 
 def matplotlib_colour(name):
@@ -107,10 +108,39 @@ class Views(unittest.TestCase):
         np.testing.assert_allclose(flat[:, 1], middle[:, 2])
         np.testing.assert_allclose(section.aside(middle[1:2] + [3, -3, 5]), 3 * np.sqrt(2), rtol=1e-6)
         # beyond its corners the way goes on straight
-        first = section.plane.corners[0] - [1, 1]
+        out = section.plane.corners[0] - section.plane.corners[1]
+        first = section.plane.corners[0] + np.sqrt(2) * out / np.linalg.norm(out)
         self.assertAlmostEqual(section.flat(np.array([[*first, 0]]))[0, 0], -np.sqrt(2), places=9)
         normal, place = cut.cut
-        self.assertAlmostEqual(normal @ np.array([*section.plane.corners[-1], 0]), place, places=9)
+        self.assertAlmostEqual(normal @ middle[-1], place, places=9)  # through the middle of the deposit
+        chord = section.plane.corners[-1] - section.plane.corners[0]
+        self.assertAlmostEqual(normal[:2] @ chord, 0, places=9)
+
+    def test_a_way_leads_from_the_crown_to_the_toe_past_the_hook_at_the_end_of_the_path(self):
+        """A slide to the west that turns to the south, up the flank and back, and has its front 150 m to the south of its middle."""
+        bend = np.array([[400.0, 400], [300, 400], [200, 395], [120, 370], [80, 320], [80, 280], [100, 240], [130, 210], [137, 195], [127, 180]])
+        release = np.array([[480.0, 402], [440, 420], [440, 380], [400, 400]])
+        north, aside = np.meshgrid(np.arange(30, 330, 5.0), np.arange(-10, 11, 5.0))
+        deposit = np.column_stack([120 + aside.ravel() + (north.ravel() - 180) / 10, north.ravel()])
+        way = Way.of(bend, release, np.array([1050.0, 1040, 1040, 1020]), deposit, 3.0)
+        crown = release[0]
+        toe = deposit[np.linalg.norm(deposit - crown, axis=1).argmax()]
+        along, off = way.beside(np.array([crown, bend[0], bend[-1], toe]))
+        np.testing.assert_allclose(off, [0, 0, 0, 0], atol=3)
+        self.assertTrue((np.diff(along) > 0).all())
+        self.assertGreater(way.length, along[-1] + 50)
+        self.assertGreater(way.beside(bend[-2:-1])[1][0], 5)  # not along the hook
+        steps = np.diff(way.corners[-4:], axis=0)
+        steps /= np.linalg.norm(steps, axis=1)[:, None]
+        self.assertGreater((steps[1:] * steps[:-1]).sum(axis=1).min(), np.cos(np.radians(45)))
+
+    def test_a_way_goes_straight_on_where_soil_is_nearly_as_far_as_the_toe(self):
+        east, north = (one.ravel() for one in np.meshgrid(np.arange(-100, 101, 5.0), np.arange(400, 601, 5.0)))
+        deposit = np.column_stack([east, north])
+        path = np.column_stack([np.zeros(6), np.linspace(0, 500, 6)])
+        way = Way.of(path, np.array([[0.0, -50], [30, -20], [-30, -20]]), np.array([50.0, 40, 40]), deposit, 3.0)
+        np.testing.assert_allclose(way.corners[:, 0], 0, atol=1e-9)
+        self.assertGreater(way.corners[-1][1], 600)
 
     def test_a_section_that_all_soil_has_left_is_empty(self):
         painter = Painter.__new__(Painter)
@@ -433,11 +463,28 @@ class Motion(unittest.TestCase):
         self.assertEqual(self.moving(10, of=100), (0.1, 3.0))  # of what slid
         self.assertIsNone(self.moving(1000, of=0))
 
+    def test_of_a_small_slide_in_a_large_model_is_the_largest(self):
+        """A slide of 60 of 100,000 particles on soil that settles; as few as 40 are single particles."""
+
+        def largest(slid, displacement=12.0):
+            moved = np.where(np.arange(100_000) < slid, displacement, 0.1)
+            columns = {"mass": np.ones((100_000, 1)), "volume": np.full((100_000, 1), 8.0)}
+            snapshot = unittest.mock.MagicMock()
+            snapshot.scalar, snapshot.position = lambda name: (moved, "m"), lambda: np.zeros((100_000, 3))
+            snapshot.column, snapshot.__contains__ = lambda name: unittest.mock.Mock(values=columns[name]), lambda self, name: name in columns
+            return talus_results.largest_displacement(snapshot)
+
+        self.assertEqual(largest(60), 12.0)
+        self.assertEqual(largest(40), 0.1)
+        self.assertEqual(largest(60, displacement=1.9), 0.1)  # less than their size
+        self.assertEqual(largest(1000), 12.0)
+
     def test_is_told_from_the_same_limits_by_the_program(self):
         header = (pathlib.Path(talus_plot.__file__).parents[2] / "simulation/still_moving.h").read_text()
         stated = {name: float(number) for name, number in re.findall(r"constexpr double (\w+) = ([\d.]+);", header)}
         self.assertEqual(stated, {"slides_share": talus_results.SLIDES, "slides_least": talus_results.SMALL, "slow": talus_results.SLOW,
-                                  "restless": talus_results.RESTLESS, "nearly_all": talus_outcomes.SHARE})
+                                  "restless": talus_results.RESTLESS, "nearly_all": talus_outcomes.SHARE,
+                                  "of_moved": talus_results.OF_MOVED, "several": talus_results.SEVERAL})
 
     def test_is_told_by_the_report(self):
         last = Moving(np.full(1000, 11.4))
@@ -667,7 +714,43 @@ class Histories(unittest.TestCase):
         self.assertEqual([text.get_text() for text in seen[0].axes[0].get_legend().get_texts()], ["crest, shoulder", "toe"])
 
 
+class Values(unittest.TestCase):
+    """Soil of which a part has no plastic strain, as its law is elastic."""
+
+    def results(self, *strain):
+        last = Moving(np.array(strain))
+        last["plastic_strain"], last.position, last.time = last.pop("velocity"), lambda: np.zeros((len(strain), 3)), 1.0
+        last.column = lambda name: types.SimpleNamespace(values=last[name][:, None])
+        return types.SimpleNamespace(snapshots=[last], history=None, escaped=None, bodies=["rock", "debris"], scene={}, folder=pathlib.Path("nowhere"))
+
+    def test_that_are_none_do_not_count(self):
+        results = self.results(np.nan, 0.5, 1.5, np.nan)
+        self.assertEqual((MEASURES["largest"](results, "plastic_strain"), MEASURES["mean"](results, "plastic_strain")), (1.5, 1.0))
+        with self.assertRaisesRegex(KeyError, "no particle has a value of plastic_strain"):
+            MEASURES["mean"](self.results(np.nan, np.nan), "plastic_strain")
+        results.history = types.SimpleNamespace(columns={"toe_velocity_m_s": np.array([np.nan, 2.0, 1.0])})
+        self.assertEqual((MEASURES["largest_in_history"](results, "toe_velocity_m_s"), MEASURES["largest_speed"](results, "toe")), (2.0, 2.0))
+
+    def test_that_are_none_do_not_stand_in_a_report(self):
+        cards = {what: number for what, number, _ in key_results(self.results(np.nan, 0.5, 1.5))}
+        self.assertEqual(cards["Largest plastic strain"], "1.5")
+        self.assertNotIn("Largest plastic strain", {what for what, _, _ in key_results(self.results(np.nan, np.nan))})
+
+
 class Scale(unittest.TestCase):
+    def test_of_a_map_leaves_the_corner_of_the_arrow_to_the_north(self):
+        soil, low = np.zeros((50, 50), bool), np.array([1000.0, 2000.0])
+        shown = np.array([low, low + 100])
+        corner = lambda: talus_map_pictures.corner_of_arrow(soil, 2.0, low, shown, 15.0)
+        place = lambda arrow: tuple(talus_map_pictures.place_of_scale(soil, 2.0, low, shown, 20.0, 15.0, arrow))
+        self.assertEqual(corner(), (1, 1))
+        soil[:, 46:] = True
+        self.assertEqual(corner(), (1, 0))
+        self.assertEqual(place((1, 0)), (1004.0, 2004.0))
+        soil[40:, :8] = True
+        self.assertEqual(corner(), (0, 0))
+        self.assertEqual(place((0, 0))[0], 1076.0)
+
     def test_of_a_map_stands_where_no_soil_is(self):
         soil, low = np.zeros((50, 50), bool), np.array([1000.0, 2000.0])
 
