@@ -96,16 +96,41 @@ void Terrain::take_window(const Grid &grid) {
   check_steps(ground(), grid.file);
 }
 
+/// A cliff, the edge of a mesa or the tip of a spur stands far above or below most of the places around it and goes on
+/// in one or two of them; what goes on nowhere is no ground. Places without data lie together and share one value.
+double Terrain::stands_out(const std::vector<double> &z, int at, double sign, double allowed) const {
+  constexpr std::size_t few = 2, few_without_data = 8;
+  std::vector<int> group{at};
+  double least = std::numeric_limits<double>::infinity();
+  bool same = sign < 0;  // those above the ground, such as 9999, make steps that are high enough to be told by them
+  for (std::size_t n = 0; n < group.size(); ++n) {
+    const int i = group[n] % columns(), j = group[n] / columns();
+    for (int b = std::max(0, j - 1); b <= std::min(rows() - 1, j + 1); ++b)
+      for (int a = std::max(0, i - 1); a <= std::min(columns() - 1, i + 1); ++a) {
+        const int beside = b * columns() + a;
+        if (std::find(group.begin(), group.end(), beside) != group.end()) continue;
+        const double height = sign * (z[group[n]] - z[beside]);
+        if (height > allowed) {
+          least = std::min(least, height);
+          continue;
+        }
+        group.push_back(beside), same = same && z[beside] == z[at];
+        if (group.size() > (same ? few_without_data : few)) return 0;
+      }
+  }
+  return std::isinf(least) ? 0 : least;
+}
+
 void Terrain::check_steps(const std::vector<double> &z, const std::string &file) const {
   constexpr double steep = 2, rare = 15;  // a spike is this steep on all sides, and so much more than the roughness
   constexpr double cliff = 10;            // rise over run of a step that no cell can follow
-  const auto refuse = [&](int at, const std::string &how, const std::string &others) {
-    complain(text_of(file, ": the elevation ", z[at], " m at ", place(at), " ", how, ", as no ground does", others,
-                     ". Correct it; if ", z[at],
+  constexpr double highest_cliff = 500;   // [m], as some sea cliffs are
+  const auto refuse = [&](int at, const std::string &how) {
+    complain(text_of(file, ": the elevation ", z[at], " m at ", place(at), " ", how, "; if ", z[at],
                      " stands for a place without data, say so by gdal_translate -a_nodata ", z[at],
                      " and fill it by gdal_fillnodata.py; or take a window without it by --window"));
   };
-  std::vector<double> beside, off(z.size());
+  std::vector<double> beside, roughness(z.size());
   int step_at = -1;
   double highest = cliff * std::max(ground_.spacing, options_.size);
   for (int k = 0; k < static_cast<int>(z.size()); ++k) {
@@ -116,23 +141,31 @@ void Terrain::check_steps(const std::vector<double> &z, const std::string &file)
         if (a != i || b != j) beside.push_back(z[b * columns() + a]);
     const auto middle = beside.begin() + static_cast<long>(beside.size() / 2);
     std::nth_element(beside.begin(), middle, beside.end());
-    off[k] = z[k] - *middle;
+    roughness[k] = std::abs(z[k] - *middle);
     for (const int next : {i > 0 ? k - 1 : k, j > 0 ? k - columns() : k})
       if (std::abs(z[k] - z[next]) > highest) highest = std::abs(z[k] - z[next]), step_at = z[k] < z[next] ? k : next;
   }
-  std::vector<double> roughness;
-  for (const double one : off) roughness.push_back(std::abs(one));
   const auto most = roughness.begin() + static_cast<long>(0.95 * static_cast<double>(roughness.size() - 1));
   std::nth_element(roughness.begin(), most, roughness.end());
   const double allowed = std::max(steep * ground_.spacing, rare * *most);
-  const auto spikes = std::count_if(off.begin(), off.end(), [&](double one) { return std::abs(one) > allowed; });
-  const auto worst =
-      std::max_element(off.begin(), off.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  int spikes = 0, spike_at = -1;
+  double spike = 0;
+  for (int k = 0; k < static_cast<int>(z.size()); ++k)
+    for (const double sign : {1., -1.})
+      if (const double height = stands_out(z, k, sign, allowed); height > 0) {
+        ++spikes;
+        if (height > std::abs(spike)) spike = sign * height, spike_at = k;
+      }
   if (spikes)
-    refuse(static_cast<int>(worst - off.begin()),
-           text_of("stands ", length(std::abs(*worst)), " ", *worst > 0 ? "above" : "below", " the places around it"),
-           spikes > 1 ? text_of(" (so do ", spikes, " places)") : "");
-  if (step_at >= 0) refuse(step_at, text_of("is ", length(highest), " lower than the place beside it"), "");
+    refuse(spike_at, text_of("stands ", length(std::abs(spike)), " ", spike > 0 ? "above" : "below",
+                             " all places around it, as no ground does",
+                             spikes > 1 ? text_of(" (so do ", spikes, " places)") : "", ". Correct it"));
+  if (step_at >= 0)
+    refuse(step_at, text_of("is ", length(highest), " lower than the place beside it, more than ", cliff,
+                            " cells (--size) or spacings are high. ",
+                            highest < highest_cliff ? text_of("If this is a cliff, take a --size of ",
+                                                              length(1.05 * highest / cliff), " or more")
+                                                    : "Correct it"));
 }
 
 void Terrain::take_layers(const Grid &grid) {

@@ -97,6 +97,9 @@ class Terrain {
   void check_feet(const std::vector<double> &slip, const std::string &name) const;
   /// Refuses a slip surface with places without data amid the slide.
   void check_holes(const std::vector<double> &slip, const std::string &name) const;
+  /// By how much more than allowed a place, and the few that it stands with, is above (`sign` 1) or below (-1) all
+  /// those around them; 0 where it is not.
+  double stands_out(const std::vector<double> &z, int at, double sign, double allowed) const;
   /// Refuses elevations that no ground has: single places, or edges of areas, far above or below those around them.
   void check_steps(const std::vector<double> &z, const std::string &file) const;
   /// Refuses a slip surface that does not come up to the ground, and notes where it ends below it. `slip` is not a

@@ -158,6 +158,45 @@ TEST_F(TerrainFiles, AreRefusedWithSpikes) {
   expect_words(complaint(o), {"slip.asc: the elevation -9998 m"});
 }
 
+/// Walls that turn, as cliffs do: a mesa, a wavy edge, a corner of a plateau and of a quarry, a spur. Half of the
+/// places around one at their edge are as low as it is; a spur ends in one place.
+TEST_F(TerrainFiles, MayHaveCliffs) {
+  const double x0 = east + 100, y0 = south + 80;
+  const Elevation walls[] = {
+      [=](double x, double y) { return std::hypot(x - x0, y - y0) < 55 ? 60. : 0.; },
+      [=](double x, double y) { return x > x0 + 16 * std::sin(y / 30) + 8 * std::sin(y / 10) ? 60. : 0.; },
+      [=](double x, double y) { return x > x0 && y > y0 ? 60. : 0.; },
+      [=](double x, double y) { return x > x0 && y > y0 ? -60. : 0.; },
+      [=](double x, double y) { return x >= x0 - 50 && std::abs(y - y0) <= 0.25 * (x - x0 + 50) ? 60. : 0.; }};
+  const auto with = [&](const Elevation &wall) {
+    return options(
+        ascii([=](double x, double y) { return 300 + plane(x, y) + std::sin(x) * std::cos(y) + wall(x, y); }));
+  };
+  for (const Elevation &wall : walls) EXPECT_EQ(complaint(with(wall)), "") << &wall - walls;
+  TerrainOptions fine = with(walls[0]);
+  fine.size = 5, fine.file = ascii([&](double x, double y) { return 2 * walls[0](x, y); });
+  expect_words(complaint(fine),
+               {"is 120 m lower than the place beside it", "If this is a cliff, take a --size of 12.6 m"});
+}
+
+/// Wherever they are: at an edge, in a corner, two side by side, a few without data, at the edge of a cliff.
+TEST_F(TerrainFiles, AreRefusedWithSpikesWhereverTheyAre) {
+  using Places = std::vector<std::array<int, 2>>;
+  const Places places[] = {{{0, 0}},           {{columns - 1, 7}},      {{columns - 1, rows - 1}}, {{6, 5}, {7, 5}},
+                           {{6, 5}, {7, 6}},   {{0, 5}, {0, 6}},        {{0, 0}, {1, 0}},          {{10, 8}},
+                           {{10, 8}, {11, 8}}, {{9, 3}, {9, 4}, {9, 5}}};
+  for (const Places &wrong : places)
+    for (const double value : {0., -32768., 9999.}) {
+      if (wrong.size() > 2 && value > 0) continue;
+      TerrainOptions o = options(ascii([&](double x, double y) {
+        for (const auto &[i, j] : wrong)
+          if (x == east + i * spacing && y == south + j * spacing) return value;
+        return plane(x, y) + (x > east + 95 ? 60 : 0);
+      }));
+      expect_words(complaint(o), {"the elevation ", " stands ", "all places around it, as no ground does"});
+    }
+}
+
 /// A place without data counts only where it has a part in the value.
 TEST(GridValues, NeedTheValuesThatCount) {
   Grid grid;
