@@ -13,6 +13,10 @@
 #include <stdexcept>
 
 namespace talus {
+
+QuietGdal::QuietGdal() { CPLPushErrorHandler(CPLQuietErrorHandler); }
+QuietGdal::~QuietGdal() { CPLPopErrorHandler(); }
+
 namespace {
 
 [[noreturn]] void complain(const std::string &file, const std::string &text) {
@@ -79,14 +83,12 @@ void check_elevations(const Grid &grid) {
 void read_values(GDALRasterBand &band, bool from_north, Grid &grid) {
   grid.values.resize(static_cast<std::size_t>(grid.columns) * grid.rows);
   CPLErrorReset();
-  CPLPushErrorHandler(CPLQuietErrorHandler);  // of a file that ends early GDAL complains once for each line
   bool complete = true;
   for (int line = 0; line < grid.rows && complete; ++line) {
     const std::size_t row = from_north ? grid.rows - 1 - line : line;
     complete = band.RasterIO(GF_Read, 0, line, grid.columns, 1, &grid.values[row * grid.columns], grid.columns, 1,
                              GDT_Float64, 0, 0, nullptr) == CE_None;
   }
-  CPLPopErrorHandler();
   if (!complete)
     complain(grid.file, "ends early or is damaged, so that not all of its " + std::to_string(grid.rows) + " rows of " +
                             std::to_string(grid.columns) +
@@ -112,9 +114,8 @@ Grid read_grid(const std::string &file) {
   if (!std::filesystem::exists(file)) complain(file, "cannot be opened; check the path");
   GDALAllRegister();
   CPLSetConfigOption("AAIGRID_DATATYPE", "Float64");  // GDAL reads ESRI ASCII in single precision else
-  CPLPushErrorHandler(CPLQuietErrorHandler);
+  const QuietGdal quiet;                              // of a file that ends early GDAL complains once for each line
   const std::unique_ptr<GDALDataset> data(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
-  CPLPopErrorHandler();
   if (!data)
     complain(file, "is no grid that GDAL reads; give ESRI ASCII (.asc) or GeoTIFF (.tif)" +
                        (*CPLGetLastErrorMsg() ? ": " + std::string(CPLGetLastErrorMsg()) : ""));
@@ -164,12 +165,11 @@ void check_same_projection(const Location &here, const std::string &projection, 
                                  "IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", nullptr};
   if (own.IsSame(&other, options)) return;
   // one definition has many spellings, of which places tell more than names
-  CPLPushErrorHandler(CPLQuietErrorHandler);
+  const QuietGdal quiet;
   const std::unique_ptr<OGRCoordinateTransformation> to_other(OGRCreateCoordinateTransformation(&own, &other));
   auto [x, y] = here.middle;
   const bool near =
       to_other && to_other->Transform(1, &x, &y) && std::hypot(x - here.middle[0], y - here.middle[1]) < here.near;
-  CPLPopErrorHandler();
   if (near) return;
   const auto name = [](const OGRSpatialReference &one) {
     const char *text = one.GetName();

@@ -8,6 +8,13 @@
 
 namespace talus {
 
+/// While one lives, GDAL prints nothing: what is wrong with a file is said in one sentence of ours.
+struct QuietGdal {
+  QuietGdal();
+  ~QuietGdal();
+  QuietGdal(const QuietGdal &) = delete;
+};
+
 /// The values of the first band, with the scale and the offset that the file gives it. Throws std::invalid_argument for
 /// a file that is no grid, cells that are not square or do not face north, and coordinates in degrees or feet.
 Grid read_grid(const std::string &file);

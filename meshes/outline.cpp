@@ -6,9 +6,11 @@
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 
 #include "meshes/polygon.h"
@@ -25,6 +27,17 @@ bool is_collection(const OGRGeometry &geometry) {
   return type == wkbMultiPolygon || type == wkbGeometryCollection;
 }
 
+/// " at (x, y)" where a message of GDAL names a point.
+std::string place_in(const std::string &message) {
+  const std::size_t point = message.find("point ");
+  double x = 0, y = 0;
+  if (point == std::string::npos || std::sscanf(message.c_str() + point, "point %lf %lf", &x, &y) != 2) return "";
+  std::ostringstream text;
+  text.precision(9);
+  text << " at (" << x << ", " << y << ")";
+  return text.str();
+}
+
 /// The polygons of a geometry, of whatever kind. Throws std::invalid_argument for one that crosses itself.
 void add_polygons(const std::string &file, const OGRGeometry &geometry, OGRMultiPolygon &polygons) {
   if (is_collection(geometry)) {
@@ -32,8 +45,10 @@ void add_polygons(const std::string &file, const OGRGeometry &geometry, OGRMulti
   } else if (wkbFlatten(geometry.getGeometryType()) == wkbPolygon) {
     std::unique_ptr<OGRGeometry> flat(geometry.clone());
     flat->flattenTo2D();
+    CPLErrorReset();
     if (!flat->IsValid())
-      complain(file, "has a polygon that crosses itself, or whose holes do; mend it, such as by ogr2ogr -makevalid");
+      complain(file, "has a polygon that crosses itself" + place_in(CPLGetLastErrorMsg()) +
+                         ", or whose holes do; mend it, such as by ogr2ogr -makevalid");
     polygons.addGeometryDirectly(flat.release());
   }
 }
@@ -95,9 +110,8 @@ std::array<double, 4> Outline::sides_around(double x, double y, double farthest)
 Outline read_outline(const std::string &file) {
   if (!std::filesystem::exists(file)) complain(file, "cannot be opened; check the path");
   GDALAllRegister();
-  CPLPushErrorHandler(CPLQuietErrorHandler);
+  const QuietGdal quiet;
   const std::unique_ptr<GDALDataset> data(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY));
-  CPLPopErrorHandler();
   if (!data) complain(file, "is no file of outlines that GDAL reads; give a Shapefile (.shp) or a GeoPackage (.gpkg)");
   Outline outline;
   outline.location.file = file, outline.location.vector = true;
