@@ -181,6 +181,35 @@ void check_same_projection(const Location &here, const std::string &projection, 
                                        : "gdalwarp -t_srs, or correct what the file says by gdal_edit.py -a_srs"));
 }
 
+std::array<double, 2> map_scale(const Location &location) {
+  constexpr double not_known = std::numeric_limits<double>::quiet_NaN(), radian = 3.14159265358979323846 / 180;
+  constexpr double half = 50;  // of the lengths that are compared [m]
+  std::array<double, 2> scale{not_known, not_known};
+  OGRSpatialReference map;
+  const QuietGdal quiet;
+  if (location.projection.empty() || map.importFromWkt(location.projection.c_str()) != OGRERR_NONE) return scale;
+  map.StripVertical();
+  if (!map.IsProjected()) return scale;
+  const std::unique_ptr<OGRSpatialReference> earth(map.CloneGeogCS());
+  if (!earth) return scale;
+  map.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER), earth->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  const std::unique_ptr<OGRCoordinateTransformation> to_earth(OGRCreateCoordinateTransformation(&map, earth.get()));
+  if (!to_earth) return scale;
+  const double inverse = earth->GetInvFlattening(), flattening = inverse > 0 ? 1 / inverse : 0,
+               eccentricity = flattening * (2 - flattening);  // squared
+  for (int d = 0; d < 2; ++d) {
+    double x[] = {location.middle[0], location.middle[0]}, y[] = {location.middle[1], location.middle[1]};
+    (d == 0 ? x : y)[0] -= half, (d == 0 ? x : y)[1] += half;
+    if (!to_earth->Transform(2, x, y)) continue;
+    const double latitude = (y[0] + y[1]) / 2 * radian, w = 1 - eccentricity * std::pow(std::sin(latitude), 2);
+    const double across = earth->GetSemiMajor() / std::sqrt(w), along = across * (1 - eccentricity) / w;  // radii
+    const double length = std::hypot(across * std::cos(latitude) * std::remainder(x[1] - x[0], 360) * radian,
+                                     along * (y[1] - y[0]) * radian);
+    if (length > 0 && std::isfinite(length)) scale[d] = 2 * half / length;
+  }
+  return scale;
+}
+
 void write_values(const Grid &grid, const std::string &file) {
   std::ofstream out(file, std::ios::binary);
   out.precision(17);

@@ -28,6 +28,7 @@ Terrain::Terrain(const TerrainOptions &options) : options_(options) {
   projection_ = grid.projection, remarks_ = grid.remarks;
   if (!(options.far_size >= options.size)) options_.far_size = options.size;
   take_window(grid);
+  check_scale();
   bed_ = ground_;
   if (options.ellipsoid || !options.slip_surface.empty() || !options.outline.empty()) take_slip_surface(grid);
   take_layers(grid);
@@ -94,6 +95,23 @@ void Terrain::take_window(const Grid &grid) {
                      "; fill the holes, such as by gdal_fillnodata.py (and look at what it fills: far from data it "
                      "makes steps), or take another window by --window"));
   check_steps(ground(), grid.file);
+}
+
+void Terrain::check_scale() {
+  constexpr double much = 0.01;  // UTM is out by 0.0004 in the middle of a zone and by 0.001 at its edge
+  const Location window{ground_.file, projection_, {origin_[0] + width() / 2, origin_[1] + depth() / 2}, 0};
+  const auto [east, north] = map_scale(window);
+  if (!(std::abs(east - 1) > much || std::abs(north - 1) > much)) return;
+  remarks_.push_back(text_of(
+      ground_.file, ": lengths of its projection are no metres on the ground: in the middle of the window they are ",
+      digits(east), " times as long",
+      std::abs(east - north) > much ? text_of(" from west to east and ", digits(north), " times from south to north")
+                                    : "",
+      ", while elevations are true, so that slopes are ", east + north > 2 ? "gentler" : "steeper",
+      " than they are, and areas and volumes ", digits(east * north),
+      " times theirs. Project it to metres, such as by gdalwarp -t_srs EPSG:CODE (CODE of a UTM zone or of the "
+      "national "
+      "grid)"));
 }
 
 /// A cliff, the edge of a mesa or the tip of a spur stands far above or below most of the places around it and goes on

@@ -82,6 +82,7 @@ class Terrain {
 
  private:
   void take_window(const Grid &grid);
+  void check_scale();  ///< notes a projection whose lengths are not those of the ground
   void take_slip_surface(const Grid &grid);
   /// Elevations of the slip surface at the places of a grid of the ground; not a number where there is none.
   using SlipSurface = std::function<std::vector<double>(const Grid &ground)>;

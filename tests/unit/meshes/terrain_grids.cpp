@@ -207,6 +207,34 @@ TEST(GridValues, NeedTheValuesThatCount) {
   EXPECT_TRUE(std::isnan(grid.at(11, 5)) && std::isnan(grid.at(20, 0)));
 }
 
+/// Web Mercator counts in metres that are longer than those on the ground the farther north they are: by 1 /
+/// cos(latitude) on a sphere, 48.2 degrees here.
+TEST_F(TerrainFiles, DoubtLengthsThatAreNotThoseOfTheGround) {
+  const auto at = [&](int projection, double west, double bottom) {
+    return options(geotiff([=](double x, double) { return 500 - 0.3 * (x - west); }, projection, 10, west, bottom));
+  };
+  const TerrainOptions mercator = at(3857, 1.5e6, 6.14e6);
+  EXPECT_TRUE(doubts(mercator, "in the middle of the window they are 1.5 times as long"));
+  EXPECT_TRUE(doubts(mercator, "areas and volumes 2.25 times theirs. Project it to metres, such as by gdalwarp"));
+  const double latitude = (2 * std::atan(std::exp(6.14008e6 / 6378137)) * 180 / (180 * radian) - 90) * radian;
+  const auto [east_west, south_north] = map_scale(location_of(read_grid(mercator.file)));
+  const double e2 = 0.00669438, w = 1 - e2 * std::pow(std::sin(latitude), 2);
+  EXPECT_NEAR(east_west, std::sqrt(w) / std::cos(latitude), 1e-5);
+  EXPECT_NEAR(south_north, w * std::sqrt(w) / (1 - e2) / std::cos(latitude), 1e-5);
+  const TerrainOptions plate = at(32662, 1.5e6, 5.3e6);  // degrees times a constant
+  EXPECT_TRUE(doubts(plate, " times as long from west to east and "));
+  for (const auto &[projection, west, bottom] : {std::tuple{32633, 4.12e5, 5.253e6},
+                                                 {32633, 1.7e5, 5.3e6},
+                                                 {2154, 9.6e5, 6.45e6},
+                                                 {31287, 4e5, 4.5e5},
+                                                 {31254, 5000., 2000.},
+                                                 {2056, 2.6e6, 1.2e6},
+                                                 {32633, 9e12, 9e12}})
+    EXPECT_FALSE(doubts(at(projection, west, bottom), "lengths of its projection")) << projection;
+  EXPECT_FALSE(doubts(options(ascii(plane)), "lengths of its projection"));
+  EXPECT_TRUE(std::isnan(map_scale({"", "no projection", {0, 0}, 0})[0]));
+}
+
 /// A slip surface in another projection is refused; the same one by another name, or none, is not.
 TEST_F(TerrainFiles, CompareProjections) {
   TerrainOptions o = options(geotiff(plane, 31254));
