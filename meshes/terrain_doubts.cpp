@@ -43,12 +43,21 @@ std::vector<std::string> Terrain::doubts() const {
   std::array<double, 2> dip = downhill(bed());
   if (options_.ellipsoid)
     dip = {std::sin(options_.ellipsoid->dip_direction), std::cos(options_.ellipsoid->dip_direction)};
-  if ((!options_.ellipsoid || options_.ellipsoid->dip > 0) && dip[0] * slope[0] + dip[1] * slope[1] < 0)
-    sentences.push_back(text_of("the slip surface dips towards ", std::lround(azimuth(dip)),
-                                " degrees from north, into the slope, which falls towards ",
+  const double level = 0.02 * 2 * slide_area_ / ground_.spacing;  // sums over slopes that fall nowhere in particular
+  double off = std::abs(azimuth(dip) - azimuth(slope));           // [degrees]
+  off = std::min(off, 360 - off);
+  const bool falls = std::hypot(slope[0], slope[1]) > level,
+             dips = options_.ellipsoid ? options_.ellipsoid->dip > 0 : std::hypot(dip[0], dip[1]) > level;
+  if (falls && dips && off > 60) {
+    const bool into = off > 120;
+    sentences.push_back(text_of("the slip surface dips towards ", std::lround(azimuth(dip)), " degrees from north, ",
+                                into ? "into" : "across", " the slope, which falls towards ",
                                 std::lround(azimuth(slope)),
-                                " degrees: dip direction is the azimuth (clockwise from north) towards which the "
-                                "surface dips. Is it meant to dip the other way?"));
+                                " degrees: ", into ? "" : "soil on it sets out sideways. The ",
+                                "dip direction is the azimuth (clockwise from north) towards which the surface dips. ",
+                                into ? "Is it meant to dip the other way?"
+                                     : "Is it meant to dip down the slope, and this is the azimuth of the strike?"));
+  }
   const double deep = slide_volume_ / slide_area_;
   double deepest = 0;
   for (std::size_t k = 0; k < ground().size(); ++k) deepest = std::max(deepest, ground()[k] - bed()[k]);

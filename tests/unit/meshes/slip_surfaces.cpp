@@ -78,7 +78,22 @@ TEST_F(TerrainFiles, DoubtTheEllipsoidAndNotTheGround) {
   EXPECT_EQ(complaint(o), "");
   EXPECT_TRUE(doubts(o, "dips towards 270 degrees from north, into the slope, which falls towards 90 degrees"));
   o.ellipsoid->dip_direction = 90 * radian;
-  EXPECT_FALSE(doubts(o, "into the slope"));
+  EXPECT_FALSE(doubts(o, "the slip surface dips"));
+  for (const double direction : {145., 35.}) {
+    o.ellipsoid->dip_direction = direction * radian;
+    EXPECT_FALSE(doubts(o, "the slip surface dips")) << direction;
+  }
+  for (const double direction : {0., 180., 205.}) {
+    o.ellipsoid->dip_direction = direction * radian;
+    EXPECT_TRUE(doubts(o, "degrees from north, across the slope, which falls towards 90 degrees")) << direction;
+    EXPECT_FALSE(doubts(o, "into the slope")) << direction;
+  }
+  o.ellipsoid->dip_direction = 215 * radian;
+  EXPECT_TRUE(doubts(o, "dips towards 215 degrees from north, into the slope"));
+  o.file = ascii([](double x, double y) { return 920 + 0.1 * std::sin(x + y); });  // which falls nowhere
+  EXPECT_FALSE(doubts(o, "the slip surface dips"));
+  o.file = ascii([](double x, double) { return 1000 - 0.8 * (x - east); });
+  o.ellipsoid->dip_direction = 90 * radian;
   o.ellipsoid->centre[2] = 780;
   expect_words(complaint(o), {"the ellipsoid lies wholly below the ground"});
 }
