@@ -237,6 +237,12 @@ double area_under(const std::string &cells, const std::string &facets) {
   return area;
 }
 
+/// Before anything is printed, and before the mesh is written.
+void check_slide(const Terrain &terrain) {
+  if (terrain.slides() && volume_of("slide") == 0)
+    complain("the slide is thinner than its cells, and none has its centre in it; take a smaller --size");
+}
+
 void report_terrain(const Terrain &terrain) {
   if (terrain.slides()) {
     const double cells = volume_of("slide"), exact = terrain.slide_volume();
@@ -256,8 +262,6 @@ void report_terrain(const Terrain &terrain) {
                   << surface << " m2 under the slide: friction does not depend on it, and adhesion of the base acts on "
                   << "so much " << (stands < surface ? "less" : "more") << ". Take a smaller --size\n";
     }
-    if (cells == 0)
-      complain("the slide is thinner than its cells, and none has its centre in it; take a smaller --size");
   }
   const auto &layers = terrain.options().layers;
   for (std::size_t k = 0; k < layers.size(); ++k) {
@@ -320,6 +324,7 @@ void run(const Request &request) {
   gmsh::initialize();
   try {
     section ? mesh_section(*section, request.options) : mesh_terrain(*terrain);
+    if (terrain) check_slide(*terrain);
     gmsh::option::setNumber("Mesh.MshFileVersion", request.format == "2.2" ? 2.2 : 4.1);
     gmsh::write(request.file);
     std::cout << request.file << " from " << request.source << ", in " << sizes(request, section) << "\n";

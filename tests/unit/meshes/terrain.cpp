@@ -134,6 +134,16 @@ TEST_F(TerrainFiles, BecomeMeshesAboveASlipSurface) {
   EXPECT_EQ(first, content(in_folder("m.msh")));
 }
 
+/// What is wrong stands alone, with no report of a mesh before it.
+TEST_F(TerrainFiles, SayOnlyThatTheSlideIsThinnerThanItsCells) {
+  const Answer answer = run(ascii(plane) + " -o " + in_folder("m.msh") + " --size 60 --air 60 --depth 0.3 --outline " +
+                            outline(east + 100, south + 80, 30, 0, 31254));
+  EXPECT_EQ(answer.status, 2);
+  EXPECT_TRUE(answer.text.starts_with("talus-mesh: the slide is thinner than its cells")) << answer.text;
+  EXPECT_EQ(std::count(answer.text.begin(), answer.text.end(), '\n'), 1) << answer.text;
+  EXPECT_FALSE(std::filesystem::exists(in_folder("m.msh")));
+}
+
 TEST_F(TerrainFiles, AreToldFromSections) {
   const std::string file = ascii(plane), out = " -o " + in_folder("m.msh") + " --size 20 ";
   const Answer layers = run(file + out + "--air 20 --layers 2"), air = run(TALUS_SECTIONS "box.csv" + out + "--air 20");
