@@ -57,14 +57,59 @@ void add_rings(const OGRGeometry &geometry, Outline &outline) {
   if (is_collection(geometry)) {
     for (const OGRGeometry *part : *geometry.toGeometryCollection()) add_rings(*part, outline);
   } else if (wkbFlatten(geometry.getGeometryType()) == wkbPolygon) {
+    const int number = outline.polygon.empty() ? 0 : outline.polygon.back() + 1;
     for (const OGRLinearRing *ring : *geometry.toPolygon()) {
-      outline.rings.emplace_back();
+      outline.rings.emplace_back(), outline.polygon.push_back(number);
       for (const OGRPoint &point : *ring) outline.rings.back().push_back({point.getX(), point.getY()});
     }
   }
 }
 
 }  // namespace
+
+std::vector<Outline> Outline::parts() const {
+  std::vector<Outline> parts;
+  for (std::size_t k = 0; k < rings.size(); ++k) {
+    if (k == 0 || polygon[k] != polygon[k - 1]) parts.emplace_back().location = location;
+    parts.back().rings.push_back(rings[k]), parts.back().polygon.push_back(0);
+  }
+  return parts;
+}
+
+double Outline::area() const {
+  double sum = 0;
+  for (std::size_t k = 0; k < rings.size(); ++k) {
+    const bool hole = k > 0 && polygon[k] == polygon[k - 1];
+    sum += (hole ? -1 : 1) * std::abs(signed_area({rings[k].begin(), rings[k].end()}));
+  }
+  return sum;
+}
+
+double Outline::perimeter() const {
+  double sum = 0;
+  for (const auto &ring : rings)
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const auto &a = ring[k], &b = ring[(k + 1) % ring.size()];
+      sum += std::hypot(b[0] - a[0], b[1] - a[1]);
+    }
+  return sum;
+}
+
+std::array<double, 2> Outline::low() const {
+  std::array<double, 2> corner = rings.front().front();
+  for (const auto &ring : rings)
+    for (const auto &point : ring)
+      for (int d = 0; d < 2; ++d) corner[d] = std::min(corner[d], point[d]);
+  return corner;
+}
+
+std::array<double, 2> Outline::high() const {
+  std::array<double, 2> corner = rings.front().front();
+  for (const auto &ring : rings)
+    for (const auto &point : ring)
+      for (int d = 0; d < 2; ++d) corner[d] = std::max(corner[d], point[d]);
+  return corner;
+}
 
 bool Outline::contains(double x, double y) const {
   bool inside = false;
@@ -140,11 +185,7 @@ Outline read_outline(const std::string &file) {
   }
   if (outline.rings.empty())
     complain(file, "has no polygons; draw the outline as a polygon, or make one of its lines by ogr2ogr or QGIS");
-  constexpr double far = std::numeric_limits<double>::infinity();
-  std::array<double, 2> low{far, far}, high{-far, -far};
-  for (const auto &ring : outline.rings)
-    for (const auto &point : ring)
-      for (int d = 0; d < 2; ++d) low[d] = std::min(low[d], point[d]), high[d] = std::max(high[d], point[d]);
+  const auto low = outline.low(), high = outline.high();
   outline.location.middle = {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2};
   outline.location.near = 1;  // [m], less than any outline of a slide is known by
   return outline;

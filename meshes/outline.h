@@ -11,6 +11,14 @@ namespace talus {
 struct Outline {
   Location location;
   std::vector<std::vector<std::array<double, 2>>> rings;  ///< of all polygons, also around their holes [m]
+  std::vector<int> polygon;                               ///< of each ring, from 0 on
+  /// The polygons, each for itself.
+  std::vector<Outline> parts() const;
+  double area() const;       ///< less that of holes [m2]
+  double perimeter() const;  ///< with that of holes [m]
+  /// Of its extent [m].
+  std::array<double, 2> low() const;
+  std::array<double, 2> high() const;
   /// Is a place in one of the polygons and in none of their holes?
   bool contains(double x, double y) const;
   /// Is a place on a side of a polygon, to within a distance?

@@ -237,6 +237,31 @@ double area_under(const std::string &cells, const std::string &facets) {
   return area;
 }
 
+/// Of several polygons of an outline one may have no cells though their sum has its volume.
+void report_parts(const Terrain &terrain) {
+  constexpr double much = 0.3;
+  const auto &parts = terrain.parts();
+  if (parts.size() < 2) return;
+  std::vector<double> volume(parts.size(), 0);
+  each_entity(3, "slide", [&](int tag) {
+    for (const auto &corner : corners_of<3>(tag)) {
+      Vec<3> middle{};
+      for (const Vec<3> &x : corner)
+        for (int d = 0; d < 3; ++d) middle[d] += x[d] / 4;
+      volume[terrain.part_at(middle[0], middle[1])] += measure<3, 3>(corner);
+    }
+  });
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (!(parts[k].volume > 0) || std::abs(volume[k] / parts[k].volume - 1) < much) continue;
+    std::cout << "warning: " << terrain.name_of(parts[k]) << ", has ";
+    if (volume[k] > 0)
+      std::cout << "cells of " << volume[k] << " m3, and " << parts[k].volume << " m3";
+    else
+      std::cout << "no cells, and " << parts[k].volume << " m3 of soil";
+    std::cout << " between slip surface and ground. Take a smaller --size\n";
+  }
+}
+
 /// Before anything is printed, and before the mesh is written.
 void check_slide(const Terrain &terrain) {
   if (terrain.slides() && volume_of("slide") == 0)
@@ -263,6 +288,7 @@ void report_terrain(const Terrain &terrain) {
                   << "so much " << (stands < surface ? "less" : "more") << ". Take a smaller --size\n";
     }
   }
+  report_parts(terrain);
   const auto &layers = terrain.options().layers;
   for (std::size_t k = 0; k < layers.size(); ++k) {
     const auto &[name, file] = layers[k];

@@ -10,10 +10,9 @@
 
 #include "meshes/ellipsoid.h"
 #include "meshes/grid.h"
+#include "meshes/outline.h"
 
 namespace talus {
-
-struct Outline;
 
 struct TerrainOptions {
   std::string file;
@@ -68,6 +67,17 @@ class Terrain {
   double slide_area() const { return slide_area_; }                ///< seen from above [m2]
   double slide_volume() const { return slide_volume_; }            ///< [m3]
   double slip_surface_area() const { return slip_surface_area_; }  ///< under the slide, as the surface lies [m2]
+  /// A polygon of the outline.
+  struct Part {
+    Outline outline;
+    double volume = 0;  ///< that slides in it, as the bed has it [m3]
+    int places = 0;     ///< of the bed that lie in it, where it is lower than the ground
+  };
+  const std::vector<Part> &parts() const { return parts_; }
+  /// The part in which a place of the mesh lies, or beside which it does.
+  int part_at(double x, double y) const;
+  /// The part in a sentence.
+  std::string name_of(const Part &part) const;
   /// The layer to which ground at a place belongs; empty: none.
   std::string layer_at(double x, double y, double z) const;
   /// The next layer whose surface lies above that of layer `index` wherever this is above the base, so that it has no
@@ -90,6 +100,10 @@ class Terrain {
   /// The same of one in an outline.
   std::vector<double> slip_surface(const Outline &outline, const Grid &ground) const;
   void refine_bed(const SlipSurface &surface);
+  void measure_parts();
+  bool in_window(const Part &part) const;
+  /// Notes parts that are smaller than what the bed or the cells can show.
+  void check_parts();
   /// Area of a slip surface below the ground [m2].
   double area_of(const std::vector<double> &slip) const;
   void take_layers(const Grid &grid);
@@ -120,6 +134,7 @@ class Terrain {
   Grid distance_;                                         ///< from the slide and its way, seen from above [m]
   bool way_in_window_ = false, way_meets_slide_ = false;  ///< the strip along --way
   std::vector<Grid> layer_;
+  std::vector<Part> parts_;
   double slide_area_ = 0, slide_volume_ = 0, slip_surface_area_ = 0;
 };
 

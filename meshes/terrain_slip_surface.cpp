@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include "meshes/outline.h"
 #include "meshes/terrain.h"
 #include "meshes/terrain_words.h"
 
@@ -34,6 +33,7 @@ Terrain::SlipSurface Terrain::slip_surface(const Grid &grid) {
   remember(outline.location, {});
   if (!(options_.depth > 0))
     complain("--depth must be above 0 m: the largest depth of the slip surface in the outline");
+  for (const Outline &part : outline.parts()) parts_.push_back({part});
   return [this, outline](const Grid &ground) { return slip_surface(outline, ground); };
 }
 
@@ -76,6 +76,15 @@ void Terrain::refine_bed(const SlipSurface &surface) {
     for (int d = 0; d < 2; ++d) low[d] = std::min(low[d], at[d]), high[d] = std::max(high[d], at[d]);
   }
   const int count[2] = {columns(), rows()};
+  for (const Part &part : parts_) {  // which no place of the terrain may meet
+    const std::array<double, 2> corners[] = {part.outline.low(), part.outline.high()};
+    int from[2], to[2];
+    for (int d = 0; d < 2; ++d)
+      from[d] = static_cast<int>(std::floor((corners[0][d] - origin_[d]) / ground_.spacing)),
+      to[d] = static_cast<int>(std::ceil((corners[1][d] - origin_[d]) / ground_.spacing));
+    if (from[0] < 0 || from[1] < 0 || to[0] >= columns() || to[1] >= rows()) continue;
+    for (int d = 0; d < 2; ++d) low[d] = std::min(low[d], from[d] + 1), high[d] = std::max(high[d], to[d] - 1);
+  }
   bool whole = true;
   for (int d = 0; d < 2; ++d) {  // the rim lies within the next place; the edge of the window is that of the terrain
     whole = whole && low[d] > 1 && high[d] < count[d] - 2;
@@ -120,10 +129,13 @@ void Terrain::take_slip_surface(const Grid &grid) {
   const std::string name = options_.ellipsoid               ? "the ellipsoid"
                            : !options_.slip_surface.empty() ? options_.slip_surface
                                                             : options_.outline;
+  if (std::isinf(nearest) &&
+      std::any_of(parts_.begin(), parts_.end(), [&](const Part &part) { return in_window(part); }))
+    complain(text_of(name, " has no elevation of ", grid.file, " in it, which are ", length(ground_.spacing),
+                     " apart, so that nothing slides; take terrain whose elevations are closer together",
+                     options_.step > 1 ? ", or a smaller --step" : ""));
   if (std::isinf(nearest))
-    complain(name + " does not lie in the window of " + grid.file +
-             (options_.outline.empty() ? "" : ", or no elevation of the grid is in it") +
-             "; both count in the same coordinates");
+    complain(name + " does not lie in the window of " + grid.file + "; both count in the same coordinates");
   if (!options_.slip_surface.empty()) check_feet(slip, name);
   if (nearest >= 0)
     complain(text_of(name, " lies above the ground everywhere, by ", length(nearest),
@@ -140,6 +152,67 @@ void Terrain::take_slip_surface(const Grid &grid) {
   if (!options_.slip_surface.empty()) check_steps(bed(), name);  // an ellipsoid may be as steep as its wall is high
   if (options_.outline.empty()) check_slip_surface(slip, name);  // that of an outline is as deep as was asked for
   refine_bed(surface);
+  measure_parts();
+  check_parts();
+}
+
+int Terrain::part_at(double x, double y) const {
+  int nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  const double at[] = {origin_[0] + x, origin_[1] + y};
+  for (int p = 0; p < static_cast<int>(parts_.size()); ++p) {
+    const Outline &outline = parts_[p].outline;
+    if (outline.contains(at[0], at[1])) return p;
+    double away = 0;  // from its extent
+    for (int d = 0; d < 2; ++d) away = std::max({away, outline.low()[d] - at[d], at[d] - outline.high()[d]});
+    if (away < least) least = away, nearest = p;
+  }
+  return nearest;
+}
+
+void Terrain::measure_parts() {
+  if (parts_.empty()) return;
+  const Grid &fine = near_slide_.values.empty() ? bed_ : near_slide_;
+  for (int k = 0; k < fine.columns * fine.rows; ++k) {
+    const double x = fine.x(k % fine.columns), y = fine.y(k / fine.columns), deep = ground_at(x, y) - fine.values[k];
+    if (!(deep > 0)) continue;
+    Part &part = parts_[part_at(x, y)];
+    ++part.places, part.volume += fine.spacing * fine.spacing * deep;
+  }
+}
+
+std::string Terrain::name_of(const Part &part) const {
+  const auto low = part.outline.low(), high = part.outline.high();
+  return text_of(options_.outline, ": the polygon around (", std::round((low[0] + high[0]) / 2), ", ",
+                 std::round((low[1] + high[1]) / 2), "), ", digits(part.outline.area()), " m2");
+}
+
+bool Terrain::in_window(const Part &part) const {
+  const auto low = part.outline.low(), high = part.outline.high();
+  return high[0] > origin_[0] && high[1] > origin_[1] && low[0] < origin_[0] + width() && low[1] < origin_[1] + depth();
+}
+
+void Terrain::check_parts() {
+  constexpr int few = 9;
+  const double apart = near_slide_.values.empty() ? ground_.spacing : near_slide_.spacing;
+  for (const Part &part : parts_) {
+    if (!in_window(part)) {
+      remarks_.push_back(name_of(part) + ", does not lie in the window: nothing slides there. Take a larger window");
+      continue;
+    }
+    const double wide = 2 * part.outline.area() / part.outline.perimeter();  // of a strip; the radius of a circle
+    const bool narrow = wide < options_.size, rough = part.places < few || wide < apart;
+    if (!narrow && !rough) continue;
+    std::string advice = narrow ? text_of("a --size of ", rounded(wide * 2 / 3, 2), " m or less") : "";
+    if (rough && !(narrow && options_.bowl)) advice += (narrow ? ", and " : "") + std::string("finer terrain");
+    const std::string places = part.places == 0   ? "no place"
+                               : part.places == 1 ? "1 place"
+                                                  : text_of(part.places, " places");
+    remarks_.push_back(text_of(name_of(part), ", holds ", places, " of the slip surface, which are ", length(apart),
+                               " apart", narrow ? text_of(", and cells of ", length(options_.size)) : "",
+                               part.places ? ": what slides there is known roughly" : ": nothing slides there",
+                               ". Take ", advice, ", or leave it out"));
+  }
 }
 
 void Terrain::check_feet(const std::vector<double> &slip, const std::string &name) const {

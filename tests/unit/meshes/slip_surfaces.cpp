@@ -225,6 +225,61 @@ TEST_F(TerrainFiles, OutlineOfSeveralPolygons) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "GDAL speaks in our sentence";
 }
 
+/// Polygons that the places of the terrain, or the cells, are too far apart for are named.
+TEST_F(TerrainFiles, DoubtOutlinesSmallerThanTheirSpacing) {
+  TerrainOptions o = options(ascii([](double, double) { return 500; }));
+  o.depth = 4;
+  const std::string small = "outline.gpkg: the polygon around (5101, 2081), 28.3 m2, holds ";
+  o.size = 12, o.outline = outline(east + 101, south + 81, 3, 0, 31254);
+  EXPECT_TRUE(doubts(o, small + "3 places of the slip surface, which are 3.33 m apart, and cells of 12 m"));
+  EXPECT_TRUE(doubts(o, "Take a --size of 2 m or less"));
+  o.size = 2;
+  EXPECT_FALSE(doubts(o, small));
+  EXPECT_NEAR(Terrain(o).slide_volume() / (180 * radian * 3 * 3 * 4 / 2), 1, 0.03);
+  o.bowl = false;  // a wall needs the spacing of the terrain
+  EXPECT_TRUE(doubts(o, small + "1 place of the slip surface, which are 10 m apart: "));
+  EXPECT_TRUE(doubts(o, "Take finer terrain"));
+  o.outline = outline(east + 105, south + 85, 3, 0, 31254);
+  expect_words(complaint(o), {"outline.gpkg has no elevation of ", "in it, which are 10 m apart", "closer together"});
+  const auto box = [](double x, double y, double wide, double high) {
+    return Ring{{east + x, south + y},
+                {east + x + wide, south + y},
+                {east + x + wide, south + y + high},
+                {east + x, south + y + high}};
+  };
+  const Ring large = box(22, 22, 60, 60);
+  o.size = 5, o.outline = package_of({{large}, {box(104, 31, 4, 90)}}, 31254);
+  EXPECT_TRUE(doubts(o, "the polygon around (5106, 2076), 360 m2, holds no place of the slip surface"));
+  o.outline = package_of({{large}, {box(104, 31, 28, 90)}}, 31254);
+  EXPECT_FALSE(doubts(o, "the polygon around"));
+  o.outline = package_of({{large}, {box(404, 31, 28, 90)}}, 31254);
+  EXPECT_TRUE(doubts(o, "the polygon around (5418, 2076), 2520 m2, does not lie in the window"));
+  o.bowl = true, o.size = 2, o.outline = package_of({{large}, {box(104, 31, 4, 9)}}, 31254);
+  EXPECT_FALSE(doubts(o, "the polygon around")) << "between the places of the terrain, and asked there";
+  ASSERT_EQ(Terrain(o).parts().size(), 2u);
+  EXPECT_GT(Terrain(o).parts()[1].places, 9);
+}
+
+/// The volume of the slide is that of one polygon, though another one, which is shallow, has no cells.
+TEST_F(TerrainFiles, NameThePolygonWithoutCells) {
+  const std::string file = ascii([](double, double) { return 500; });
+  const auto ring = [](double x, double radius) {
+    Ring places;
+    for (int k = 0; k < 60; ++k)
+      places.push_back({east + x + radius * std::cos(6 * k * radian), south + 80 + radius * std::sin(6 * k * radian)});
+    return places;
+  };
+  const auto with = [&](double radius, const std::string &size) {
+    return run(file + " -o " + in_folder("m.msh") + " --air 20 --depth 15 --size " + size + " --outline " +
+               package_of({{ring(65, 55)}, {ring(160, radius)}}, 31254));
+  };
+  const Answer coarse = with(18, "12");
+  EXPECT_EQ(coarse.status, 0);
+  expect_words(coarse.text, {"outline.gpkg: the polygon around (5160, 2080), ", ", has no cells, and "});
+  EXPECT_EQ(coarse.text.find("around (5065"), std::string::npos) << coarse.text;
+  EXPECT_EQ(with(30, "6").text.find("the polygon around"), std::string::npos);
+}
+
 /// The volume is that of the outline wherever its middle lies between nodes, and with a radius of six nodes.
 TEST_F(TerrainFiles, HaveTheVolumeOfAnOutlineBetweenNodes) {
   TerrainOptions o = options(ascii([](double, double) { return 500; }));
