@@ -53,6 +53,12 @@ void add_polygons(const std::string &file, const OGRGeometry &geometry, OGRMulti
   }
 }
 
+bool beyond_degrees(const OGRGeometry &geometry) {
+  OGREnvelope extent;
+  geometry.getEnvelope(&extent);
+  return std::max({std::abs(extent.MinX), std::abs(extent.MaxX), std::abs(extent.MinY), std::abs(extent.MaxY)}) > 360;
+}
+
 void add_rings(const OGRGeometry &geometry, Outline &outline) {
   if (is_collection(geometry)) {
     for (const OGRGeometry *part : *geometry.toGeometryCollection()) add_rings(*part, outline);
@@ -167,6 +173,7 @@ Outline read_outline(const std::string &file) {
       if (const OGRGeometry *geometry = feature->GetGeometryRef()) add_polygons(file, *geometry, polygons);
     const OGRSpatialReference *reference = layer->GetSpatialRef();
     if (polygons.getNumGeometries() == before || !reference || !outline.location.projection.empty()) continue;
+    if (reference->IsGeographic() && beyond_degrees(polygons)) continue;  // as GDAL names a GeoPackage without any
     if (reference->IsGeographic() || (reference->IsProjected() && std::abs(reference->GetLinearUnits() - 1) > 1e-9))
       complain(file, std::string("has coordinates in ") +
                          (reference->IsGeographic() ? "degrees" : "another unit than metres") +

@@ -280,6 +280,16 @@ TEST_F(TerrainFiles, NameThePolygonWithoutCells) {
   EXPECT_EQ(with(30, "6").text.find("the polygon around"), std::string::npos);
 }
 
+/// GDAL gives a GeoPackage without a projection one of degrees.
+TEST_F(TerrainFiles, TakeAnOutlineBeyondDegreesAsOneWithoutProjection) {
+  TerrainOptions o = options(geotiff(plane, 31254));
+  o.depth = 6, o.outline = outline(east + 100, south + 80, 45, 0, 4326);
+  EXPECT_EQ(complaint(o), "");
+  EXPECT_EQ(read_outline(o.outline).location.projection, "");
+  o.outline = outline(10, 47, 1, 0, 4326);
+  expect_words(complaint(o), {"outline.gpkg: has coordinates in degrees"});
+}
+
 /// The volume is that of the outline wherever its middle lies between nodes, and with a radius of six nodes.
 TEST_F(TerrainFiles, HaveTheVolumeOfAnOutlineBetweenNodes) {
   TerrainOptions o = options(ascii([](double, double) { return 500; }));
