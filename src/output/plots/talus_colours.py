@@ -28,6 +28,7 @@ class Colours:
 
     def __init__(self, field, snapshots, log=False, spacing=0.0, shown=()):
         values = np.concatenate([snapshot.scalar(field)[0] for snapshot in snapshots])
+        self.gaps = not np.isfinite(values).all()
         values = values[np.isfinite(values)]
         low, high = np.percentile(values, [0.1, 99.9]) if len(values) else (0.0, 0.0)
         floor = floor_of(field, snapshots, spacing)
@@ -70,7 +71,7 @@ class Colours:
             return f"{soil}: all of it"
         if self.names or self.signed:
             return f"{soil}: {self.names[0] if self.names else 0}"
-        return f"{soil}: below {self.faint:.2g} {self.unit}".rstrip()
+        return f"{soil}: below {self.faint:.2g} {self.unit}".rstrip() + ", or without a value" * self.gaps
 
     def bar(self, figure, place):
         """The bar of the scale in new axes at `place`, with its unit above it. Returns its axes."""

@@ -7,6 +7,7 @@ from talus_tiles import EDGE, GAP, Frame, shifted, tiles
 MOST_CELLS = 700  # of the level grid along its longer side
 MOST_BOXES = 12_000_000  # of the grid in space that holds a field
 BOX, EMPTY = 1.25, 0.3  # size of such a box, over the spacing of particles, and weight of one that has none
+KNOWN = 0.4  # share of the particles near a place, within one or two boxes, that have a value where the field has one: single particles without do not count
 LOOSE = 1.5  # most heights of soil over the height that its volume fills
 SMOOTH = 1.0  # standard deviation of the smoothing of the surface, over the spacing of particles
 
@@ -127,27 +128,35 @@ def smoothed(values, deviation):
 
 
 class Filling:
-    """A field inside the soil: means over boxes in space of about the spacing of particles, interpolated linearly. Particles whose value is not
-    a number do not count."""
+    """A field inside the soil: means over boxes in space of about the spacing of particles, interpolated linearly. Single particles whose value is not
+    a number do not count; where most are such, as in soil of a law without this field, it has no value."""
 
     def __init__(self, position, value, spacing):
         known = np.isfinite(value)
-        position, value = position[known], value[known]
         self.low = position.min(axis=0) - 1.5 * spacing if len(position) else np.zeros(3)
         size = position.max(axis=0) + 1.5 * spacing - self.low if len(position) else np.ones(3)
         self.box = max(BOX * spacing, float((np.prod(size) / MOST_BOXES) ** (1 / 3)))
         self.shape = np.ceil(size / self.box).astype(int) + 1
         index = np.floor((position - self.low) / self.box).astype(int)
         number = np.ravel_multi_index(index.T, self.shape)
-        total, count = (np.bincount(number, weights, np.prod(self.shape)).reshape(self.shape) for weights in (value, np.ones(len(value))))
-        near_total, near_count = (smoothed(array, 1.0) for array in (total, count))
+        total, count = (np.bincount(number[known], weights, np.prod(self.shape)).reshape(self.shape) for weights in (value[known], None))
+        near_total, near_count = (smoothed(array.astype(float), 1.0) for array in (total, count))
         # boxes that chance left empty have the mean of their neighbours, with a smaller weight
         self.weight = np.where(count > 0, 1, EMPTY * np.minimum(near_count, 1)).ravel().astype(np.float32)
         near_mean, mean = (np.divide(*parts, out=np.zeros(self.shape), where=parts[1] > 1e-9) for parts in ((near_total, near_count), (total, count)))
         self.mean = np.where(count > 0, mean, near_mean).ravel().astype(np.float32)
+        self.all = None  # where not all have a value: particles near each box, and the share of those that have one
+        if not known.all():
+            near_all = smoothed(np.bincount(number, None, np.prod(self.shape)).reshape(self.shape).astype(float), 1.0)
+            self.all = near_all.ravel().astype(np.float32)
+            self.share = np.divide(near_count, near_all, out=np.zeros(self.shape), where=near_all > 1e-9).ravel().astype(np.float32)
 
     def at(self, places):
-        """The field at places [n, 3]; not a number where no particle is near."""
+        """The field at places [n, 3]; not a number where no particle is near, or where few of those have a value."""
+        field = self._interpolated(places, self.mean, self.weight)
+        return field if self.all is None else np.where(self._interpolated(places, self.share, self.all) >= KNOWN, field, np.nan)
+
+    def _interpolated(self, places, mean, of_box):
         exact = np.clip((places - self.low) / self.box - 0.5, 0, self.shape - 1.001)
         first = exact.astype(np.int32)
         share = (exact - first).astype(np.float32)
@@ -159,7 +168,7 @@ class Filling:
             for axis, upper in enumerate(corner):
                 weight *= share[:, axis] if upper else 1 - share[:, axis]
             at = row + int(corner @ stride)
-            weight *= self.weight[at]
-            total += weight * self.mean[at]
+            weight *= of_box[at]
+            total += weight * mean[at]
             count += weight
         return np.divide(total, count, out=np.full(len(places), np.nan), where=count > 1e-9)

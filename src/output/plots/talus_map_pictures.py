@@ -7,14 +7,15 @@ from matplotlib.transforms import offset_copy
 
 import talus_style as style
 from talus_ground import smoothed
-from talus_relief import between
-from talus_way import Way
+from talus_relief import between, without_flats
 
 STATES = 5  # surfaces in the section, at most
 LAMPS = ((315, 0.6), (270, 0.2), (0, 0.2))  # azimuths of the light on a map and their shares: one alone leaves slopes along it without relief
 HEIGHT = 45  # of the lamps above the horizon [deg]
 DARK, LIGHT = 0.45, 0.95  # greys of slopes in shade and in full light: neither black nor white
 MOVED = 0.3  # of the size of particles: a surface that changed by less stands still in the section
+LEVEL = 1 / 40  # of the shorter side of the map: level ground is wider than twice this
+ARROW = np.array([0.45, 0.8])  # room for the arrow to the north, from its corner on [inch]
 AROUND = 0.15  # of the length of what moved: what is shown of the section before and behind it
 
 
@@ -72,18 +73,30 @@ def places_of_labels(lines, low, high, taken, apart):
     return found
 
 
-def place_of_scale(soil, spacing, low, shown, length, inch):
-    """The left end of a scale so long [m] on a map with so much soil (a mask of cells from `low` on): in the corner of what is `shown` of the ground, its
-    corners [2, 2], that has least soil, the first of those that have none. In the upper right one the arrow points to the north."""
+def covered(soil, spacing, low, high):
+    """How many cells of a mask lie between two corners, which count from that of the mask [m]."""
+    (west, south), (east, north) = (np.floor(np.array(end) / spacing).astype(int) for end in (low, high))
+    return np.count_nonzero(soil[max(west, 0):east + 1, max(south, 0):north + 1])
+
+
+def corner_of_arrow(soil, spacing, low, shown, inch):
+    """The corner of what is `shown` of the ground, as two numbers 0 or 1 to the east and to the north, in which the arrow to the north stands on a map with so
+    much soil (a mask of cells from `low` on): that with least soil, the first of those that have none."""
+    size = ARROW * inch
+
+    def on_soil(corner):
+        at = np.where(corner, shown[1] - size, shown[0]) - low
+        return covered(soil, spacing, at, at + size)
+
+    return min([(1, 1), (0, 1), (1, 0), (0, 0)], key=on_soil)
+
+
+def place_of_scale(soil, spacing, low, shown, length, inch, arrow=(1, 1)):
+    """The left end of a scale so long [m] in the corner that has least soil, of those that the arrow leaves."""
     edge, tall = 0.04 * (shown[1] - shown[0]), 0.3 * inch  # with its number above it
     (west, south), (east, north) = shown[0] + edge - low, shown[1] - edge - low
-    corners = [[west, south], [east - length, south], [west, north - tall]]
-
-    def covered(at):
-        (west, south), (east, north) = (np.floor(np.array(end) / spacing).astype(int) for end in (at, np.add(at, [length, tall])))
-        return np.count_nonzero(soil[max(west, 0):east + 1, max(south, 0):north + 1])
-
-    return low + min(corners, key=covered)
+    corners = {(0, 0): [west, south], (1, 0): [east - length, south], (0, 1): [west, north - tall], (1, 1): [east - length, north - tall]}
+    return low + min((at for corner, at in corners.items() if corner != arrow), key=lambda at: covered(soil, spacing, at, np.add(at, [length, tall])))
 
 
 def ticks_of(axes, width, height):
@@ -113,7 +126,8 @@ def draw_map(maps, path):
     before = smoothed_evenly(maps.before, grid.spacing / (2 * ground.cell))
     axes.imshow(shade(before, ground.cell).T, cmap="gray", vmin=0, vmax=1, origin="lower", extent=extent(ground.low[:2], ground.cell, ground.shape, origin))
     levels = MaxNLocator(12).tick_values(before.min(), before.max())
-    lines = axes.contour(east, north, before.T, levels, colors=style.SOFT, linewidths=0.5)
+    level = without_flats(before, levels, max(1, int(LEVEL * min(before.shape))))
+    lines = axes.contour(east, north, level.T, levels, colors=style.SOFT, linewidths=0.5)
     deposit = np.ma.masked_where(~maps.covered[-1], maps.thickness[-1])
     image = axes.imshow(deposit.T, cmap=style.colours_of("thickness"), vmin=0, origin="lower", alpha=0.85, zorder=2,
                         extent=extent(grid.low, grid.spacing, grid.shape, origin))
@@ -135,12 +149,13 @@ def draw_map(maps, path):
     length = round_length(0.25 * size[0])
     inch = size[0] / min(wide, tall * size[0] / size[1])  # [m]
     soil = near(maps.covered[-1] | maps.covered[0], int(np.ceil(0.2 * inch / grid.spacing)))
-    at = place_of_scale(soil, grid.spacing, low, shown, length, inch)
+    corner = np.array(corner_of_arrow(soil, grid.spacing, low, shown, inch))
+    at = place_of_scale(soil, grid.spacing, low, shown, length, inch, tuple(corner))
 
     def taken(place):
         """By the scale, the arrow to the north, and the soil at the start and at the end."""
         scale = ((place > at - 0.3 * inch) & (place < at + [length + 0.3 * inch, 0.45 * inch])).all(axis=1)
-        arrow = (place > shown[1] - [0.45 * inch, 0.75 * inch]).all(axis=1)
+        arrow = (np.where(corner, shown[1] - place, place - shown[0]) < ARROW * inch).all(axis=1)
         column, row = np.clip(((place - low) / grid.spacing).astype(int), 0, np.array(grid.shape) - 1).T
         return scale | arrow | soil[column, row]
 
@@ -149,17 +164,20 @@ def draw_map(maps, path):
     axes.plot([at[0], at[0] + length], [at[1]] * 2, color=style.INK, lw=3, solid_capstyle="butt", zorder=5)
     axes.annotate(f"{length:g} m", (at[0] + length / 2, at[1]), (0, 4), textcoords="offset points", ha="center", fontsize=8, zorder=5,
                   bbox={"fc": "white", "ec": "none", "alpha": 0.7, "pad": 1})
-    head, foot = (offset_copy(axes.transData, figure, -14, down, units="points") for down in (-20, -46))
-    axes.annotate("N", shown[1], shown[1], xycoords=foot, textcoords=head, ha="center", fontsize=10, zorder=5,
+    head, foot = (offset_copy(axes.transData, figure, -14 if corner[0] else 14, (0 if corner[1] else 57) + down, units="points") for down in (-20, -46))
+    tip = shown[corner, [0, 1]]
+    axes.annotate("N", tip, tip, xycoords=foot, textcoords=head, ha="center", fontsize=10, zorder=5,
                   arrowprops={"arrowstyle": "<-", "color": style.INK, "lw": 1.4})
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.55 / tall), ncols=3, fontsize=8)
+    # in the middle of the figure, which is wider than some maps
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 0), bbox_transform=figure.transFigure, ncols=3, fontsize=8).set_in_layout(False)
+    figure.supxlabel(" ", fontsize=12)  # keeps the room
     style.headline(figure, maps.headline(), maps.results.title)
     return style.save(figure, path)
 
 
 def line_along(maps):
     """Places [n, 2] along the way of the slide, half a cell apart, and their distances [m]."""
-    way = Way.of(maps.path[:, :2], maps.crown[:2], maps.toe[:2], maps.size)
+    way = maps.way
     distance = np.arange(0, way.length, maps.ground.cell)
     place = way.at(distance)
     low = maps.ground.low[:2]

@@ -20,10 +20,13 @@ from talus_ground import Ground
 from talus_map_pictures import draw_map, draw_section
 from talus_results import NOT_ENDED, SLOW, Results, Thickness, largest_displacement, still_moving
 from talus_units import words
+from talus_way import Way
 
 NO_DATA = -9999.0
 LIMIT = 0.5  # least thickness of soil that counts, over the size of particles: thinner soil is single particles
 LEFT_OUT = 0.02  # share of the volume that slid: less that moved and is not mapped is not told
+THIN = 0.1  # share of the deposit: less that the outline leaves out is not told
+TAKEN_IN = 0.95  # share of the deposit that the outline holds with the limit that is proposed
 SPACING = 2.0  # of the grids where there is no terrain file, over the size of particles
 EVEN = 3.0  # length over which thickness is evened out, over the size of particles: about the edge of a cell of the mesh with a few particles
 MOST_CELLS = 50_000_000  # of one grid
@@ -123,8 +126,13 @@ class Maps:
         first, last = results.snapshots[0], results.snapshots[-1]
         node, self.cells = results.mesh()
         self.node = self.axes.level(node)
-        volume = first.column("volume").values[:, 0]
-        self.size = float(volume.mean()) ** (1 / 3)
+        sliding = Thickness(last, self.axes.up).sliding if beyond is None else last.ids()[last.scalar("displacement")[0] > beyond]
+        self.sliding = np.union1d(sliding, left_mesh(results))
+        self.size = self._size_of(first)
+        moved = largest_displacement(last)
+        if not len(self.sliding) or (moved < self.size and not len(left_mesh(results))):
+            least = f"the spacing of particles, {self.size:.3g} m" if beyond is None or moved < self.size else f"--moved {beyond:g} m"
+            raise ValueError(f"{results.folder}: no soil has slid far enough for a map: the largest displacement, {moved:.3g} m, is below {least}")
         self.limit = LIMIT * self.size if limit is None else limit
         terrain = self.axes.spacing
         self.grid = Grid(self.node.min(axis=0), self.node.max(axis=0), spacing or terrain or SPACING * self.size, terrain)
@@ -132,18 +140,18 @@ class Maps:
             wider = SPACING * self.size if not terrain else terrain * np.ceil(SPACING * self.size / terrain)
             warn(f"cells of {self.grid.spacing:g} m are not much wider than the particles ({self.size:.3g} m): single particles show in the outline and "
                  f"where the soil is thin; less so with --spacing {wider:.4g}{f', a multiple of the spacing of the terrain file,' if terrain else ''} or more")
-        sliding = Thickness(last, self.axes.up).sliding if beyond is None else last.ids()[last.scalar("displacement")[0] > beyond]
-        self.sliding = np.union1d(sliding, left_mesh(results))
-        moved = largest_displacement(last)
-        if not len(self.sliding) or (moved < self.size and not len(left_mesh(results))):
-            least = f"the spacing of particles, {self.size:.3g} m" if beyond is None or moved < self.size else f"--moved {beyond:g} m"
-            raise ValueError(f"{results.folder}: no soil has slid far enough for a map: the largest displacement, {moved:.3g} m, is below {least}")
         self.moving = still_moving(last, self.sliding)
         self.last = last
         self._accumulate()
         if not self.covered[-1].any():
             raise ValueError(f"the deposit is nowhere as thick as --limit {self.limit:g} m; its largest thickness is {self.thickness[-1].max():.3g} m")
         self._elevations(first, last)
+
+    def _size_of(self, first):
+        """Mean size of the particles that slide, or of all where none does [m]: those of a slide may be much smaller than those of the ground below it."""
+        volume = first.column("volume").values[:, 0]
+        slides = np.isin(first.ids(), self.sliding, assume_unique=True)
+        return float((volume[slides] if slides.any() else volume).mean()) ** (1 / 3)
 
     def released(self):
         """Volumes at the start of the soil that is mapped, with what has left the mesh, and of the latter alone [m3]. The deposit has less: it is without what
@@ -159,6 +167,13 @@ class Maps:
         if not some.any():
             return 0.0, (0.0, 0.0)
         return float(self.last.column("volume").values[some, 0].sum()), (float(moved[some].min()), float(moved[some].max()))
+
+    def limit_of(self, share):
+        """The limit of thickness [m], of two digits, with which the outline holds this share of the deposit."""
+        thickness = np.sort(self.thickness[-1], axis=None)[::-1]
+        limit = thickness[np.searchsorted(np.cumsum(thickness), share * thickness.sum())]
+        step = 10.0 ** (np.floor(np.log10(limit)) - 1)
+        return float(np.floor(limit / step) * step)
 
     def _even(self, held):
         """Thickness [m] from the volumes above cells. Particles lie where the mesh put them and where the motion took them, so that a column holds one more
@@ -202,6 +217,7 @@ class Maps:
         east, north = (at[self.covered[-1]] for at in np.meshgrid(*self.grid.centres(), indexing="ij"))
         far = np.hypot(east - self.crown[0], north - self.crown[1]).argmax()
         toe = np.array([east[far], north[far], 0.0])
+        self.way = Way.of(self.path[:, :2], start[:, :2], start[:, 2], np.column_stack([east, north]), self.size)  # of the section
         end = self.axes.level(last.position())[np.isin(last.ids(), self.sliding, assume_unique=True)]
         near = np.abs(end[:, :2] - toe[:2]).max(axis=1) <= (self.grid.spacing + self.size) / 2
         self.toe = np.array([*toe[:2], end[near, 2].min()])
@@ -381,6 +397,11 @@ def main():
              f"what moved by more than a particle: soil slides in these maps where it moved by more than "
              + (f"--moved {given.moved:g} m" if given.moved else "a tenth of the largest displacement, which 99.9 % of the mass have at most")
              + f"; --moved {maps.size:.2g} maps all of it")
+    inside, deposit = maps.numbers()["volume_m3"], maps.thickness[-1].sum() * maps.grid.spacing**2
+    if inside < (1 - THIN) * deposit:
+        warn(f"the outline holds {inside:.6g} m3 of the deposit of {deposit:.6g} m3: the other {100 * (1 - inside / deposit):.2g} % are thinner than the limit "
+             f"of {maps.limit:.3g} m; --limit {maps.limit_of(TAKEN_IN):.2g} takes in {100 * TAKEN_IN:.3g} % of it. A flow that is thinner than one or two "
+             f"particles, {maps.size:.3g} m each, is not resolved: smaller cells of the mesh have smaller particles")
     print(f"maps of {maps.results.title}: {maps.headline()[0].lower() + maps.headline()[1:]}, cells of {maps.grid.spacing:g} m, {maps.grid.shape[0]} x {maps.grid.shape[1]}")
     print(f"projection: {'that of the terrain file' if maps.axes.projection else 'none, coordinates are ' + ('those of the terrain file' if maps.axes.spacing else 'local')}")
     for name, value in maps.numbers().items():

@@ -96,7 +96,7 @@ def displacement(results, point, stage=None):
 @measure
 def largest_speed(results, point):
     """Largest speed of a tracked point in the rows of the history [m/s]."""
-    return results.history.columns[f"{point}_velocity_m_s"].max()
+    return np.nanmax(results.history.columns[f"{point}_velocity_m_s"])
 
 
 @measure
@@ -217,22 +217,32 @@ def flow(results, states=10):
 
 # ---- fields ----
 
+def known(snapshot, field):
+    """The values of a field that are numbers: elastic soil has no plastic strain, and soil without stress mobilises no friction. Raises KeyError without
+    one."""
+    values = snapshot.scalar(field)[0]
+    values = values[np.isfinite(values)]
+    if not len(values):
+        raise KeyError(f"no particle has a value of {field}")
+    return values
+
+
 @measure
 def largest(results, field, time=None):
-    """Largest value of a field over the particles, at a time or at the end."""
-    return at(results, time).scalar(field)[0].max()
+    """Largest value of a field over the particles that have one, at a time or at the end."""
+    return known(at(results, time), field).max()
 
 
 @measure
 def mean(results, field, time=None):
-    """Mean of a field over the particles, at a time or at the end."""
-    return at(results, time).scalar(field)[0].mean()
+    """Mean of a field over the particles that have a value, at a time or at the end."""
+    return known(at(results, time), field).mean()
 
 
 @measure
 def largest_in_history(results, column):
-    """Largest magnitude in a column of history.csv."""
-    return np.abs(results.history.columns[column]).max()
+    """Largest magnitude in a column of history.csv; rows without a number do not count."""
+    return np.nanmax(np.abs(results.history.columns[column]))
 
 
 @measure

@@ -16,6 +16,7 @@ FINER = 2  # samples per pixel along each axis
 RAISED, TURNED = np.radians(30), np.radians(50)  # the eye above the horizon, and beside the direction of the slide
 DARKEST = 0.55
 NOTHING, GROUND, BODY = 0, 1, 2  # what a pixel shows
+FLAT = 0.005  # of the interval of contours: ground that differs by less is level
 
 
 class Eye:
@@ -147,6 +148,13 @@ def seen(ground, top, soil, eye, low, high, columns, cut=None):
     side = lightness(wall, eye)
     shine = np.where(k == 1, side[:, None], take(light, k))
     return Sight(point.transpose(1, 0, 2), what.T, shine.T)
+
+
+def without_flats(height, levels, reach):
+    """Heights [rows, columns] without those that are level ground at one of the `levels` of contours, wider than twice `reach` [cells]: there a contour would
+    follow round-off."""
+    off = np.abs((height - levels[0]) / (levels[1] - levels[0]) % 1 - 0.5)  # half an interval at a level, 0 between two
+    return np.ma.masked_where(without_islands(np.ma.filled(off > 0.5 - FLAT, False), reach), height)
 
 
 def smoothed_inside(values, deviation):

@@ -8,7 +8,7 @@ import numpy as np
 
 from talus_factor import factor_lines, read_factor, short
 from talus_histories import base_friction
-from talus_measures import flow
+from talus_measures import flow, known
 from talus_model import draw_model
 from talus_modelled import read_model, stage_rows
 from talus_outcomes import in_words, outcome
@@ -108,8 +108,8 @@ def key_results(results):
     if speed:
         found.append(("Largest velocity", quantity(speed[0], "m/s"), f"{speed[2]}, {at_time(speed[1], last.time)}"))
     found += bases(results)
-    if "plastic_strain" in last and len(last.position()):
-        found.append(("Largest plastic strain", f"{last.column('plastic_strain').values.max():.3g}", when))
+    if "plastic_strain" in last and np.isfinite(last.scalar("plastic_strain")[0]).any():  # elastic soil has none
+        found.append(("Largest plastic strain", f"{known(last, 'plastic_strain').max():.3g}", when))
     mass = results.history.columns.get("mass_kg") if results.history else None
     gone = results.history.columns.get("escaped_mass_kg", 0 * mass) if mass is not None else None
     if results.escaped and len(results.escaped.time):
@@ -181,7 +181,7 @@ def top_speed(results):
     best = None
     for snapshot in results.snapshots:
         if "velocity" in snapshot and len(snapshot.position()):
-            speed = snapshot.scalar("velocity")[0].max()
+            speed = np.nanmax(snapshot.scalar("velocity")[0])
             best = max(best or (0,), (float(speed), snapshot.time, "of all particles"))
     if results.history:
         for name, values in results.history.groups().get(("velocity", "m/s"), {}).items():

@@ -150,10 +150,13 @@ def largest_displacement(snapshot, share=0.999):
     except KeyError:  # results of other programs
         mass = np.ones(len(moved))
     single = (1 - share) * mass.sum()
-    if "volume" in snapshot:
-        slid = moved > snapshot.column("volume").values[:, 0] ** (1 / snapshot.position().shape[1])
-        if slid.sum() >= SEVERAL:
-            single = min(single, OF_MOVED * mass[slid].sum())
+    try:
+        size = snapshot.column("volume").values[:, 0] ** (1 / snapshot.position().shape[1])
+    except KeyError:
+        size = np.inf
+    slid = moved > size
+    if slid.sum() >= SEVERAL:
+        single = min(single, OF_MOVED * mass[slid].sum())
     order = np.argsort(moved)
     return float(moved[order][np.searchsorted(np.cumsum(mass[order]), mass.sum() - single)])
 

@@ -18,7 +18,7 @@ from talus_modelled import read_model
 from talus_moments import chosen_snapshots, origins, scaled_by, since_reset, telling, with_stress
 from talus_outcomes import cell_size
 from talus_perspective import edges
-from talus_relief import EARTH, SOIL, between, seen, seen_from_above
+from talus_relief import EARTH, SOIL, between, seen, seen_from_above, without_flats
 from talus_results import MECHANISM, together
 from talus_soils import middles, moved_away, painted, tints
 from talus_symbols import AROUND as SIDES, WHITE, keep_apart, movable
@@ -36,6 +36,7 @@ TALLEST = 0.8  # height of a map over the width of its column
 ISLAND = 0.35  # half the width of one or two cells that are not shown as soil without a value amid others, over their size
 AROUND = 0.06  # of the size of the soil: what is shown of the mesh's bottom beside it
 ROOM = 0.28  # which the name of a point needs above it [inch]
+RELIEF = 2.0  # least difference of heights that has contours, over the spacing of particles: the surface is rough by about one, the least interval
 APART = 0.1  # crosses of particles that left the mesh [inch]
 
 
@@ -293,8 +294,12 @@ class Painter:
         top, soil = self._surface(snapshot)
         at = [self.ground.low[axis] + (np.arange(count) + 0.5) * self.ground.cell for axis, count in zip(self.ground.level, self.ground.shape)]
         heights = np.ma.masked_where(~soil, top).T
-        levels = MaxNLocator(10).tick_values(heights.min(), heights.max())
+        particles = (heights.max() - heights.min()) / self.spacing
+        if particles < RELIEF:
+            return
+        levels = MaxNLocator(int(min(particles, 10))).tick_values(heights.min(), heights.max())
         levels = levels + 0.5 * (levels[1] - levels[0])  # level ground often lies at a round height
+        heights = without_flats(heights, levels, int(np.ceil(self.spacing / self.ground.cell)))
         axes.contour(*at, heights, levels=levels, colors=style.INK, linewidths=0.4, alpha=0.5)
 
     def _bottom(self, axes, view):

@@ -10,6 +10,7 @@ from talus_way import Way
 
 ASTRAY = 2.0  # how far the way of a slide may leave a plane of two axes, over the spacing of particles, and is still shown there
 STATIONS = 20  # places of the centre of mass on the way of a slide, or some more
+AHEAD = 0.005  # share of the soil that slides which single particles before its front are at most
 
 
 class View:
@@ -100,8 +101,8 @@ class Oblique:
 
 
 def views_of(results):
-    """The views that suit a run: one of a section or a thin slice; of a body the whole one, cut open, its central section, and from above. Cut and
-    section follow the way of a slide that leaves the plane of two axes."""
+    """The views that suit a run: one of a section or a thin slice; of a body the whole one, cut open, its central section, and from above. The
+    section follows the way of a slide that leaves the plane of two axes, and the cut leads through the middle of its deposit."""
     first = results.snapshots[0].position()
     if first.shape[1] == 2:
         return [View("section", 0, 1)]
@@ -118,12 +119,12 @@ def views_of(results):
     centre = weighted_median(start[:, aside], np.abs(moved[:, along])) if len(start) else np.median(first[:, aside])
     above = MapView("from above", 0, 1, on_terrain(results)) if up == 2 else MapView("from above", along, aside)
     way = way_of(results, moved, level)
-    if way is not None and np.abs(way.at(np.linspace(0, way.length, 50))[:, level.index(aside)] - centre).max() > ASTRAY * spacing_of(results):
+    if way is not None and np.abs(way.ahead[:, level.index(aside)] - centre).max() > ASTRAY * spacing_of(results):
         ahead, normal = np.zeros(3), np.zeros(3)
         ahead[level] = way.chord()
         normal[level] = np.array([-1, 1]) * way.chord()[::-1]
         eye = Eye.before(ahead, up)
-        return [Oblique("from above in front", eye), Oblique("cut open along the slide", eye, (normal, way.corners[0] @ normal[level])),
+        return [Oblique("from above in front", eye), Oblique("cut open along the slide", eye, (normal, way.end @ normal[level])),
                 WayView("section along the slide", way, level, up), above]
     at = f"at {'xyz'[aside]} = {centre:.3g} m"
     eye = Eye.in_front(moved[:, along].sum(), along, up)
@@ -147,10 +148,10 @@ def way_of(results, moved, level):
     every = max(1, len(results.snapshots) // STATIONS)
     clouds = [shown.position()[np.isin(shown.ids(), ids, assume_unique=True)] for shown in (*results.snapshots[::every], last)]
     path = np.array([cloud[:, level].mean(axis=0) for cloud in clouds])
-    up = results.up_axis()
-    crown = clouds[0][clouds[0][:, up].argmax()][level]
-    toe = clouds[-1][np.linalg.norm(clouds[-1][:, level] - crown, axis=1).argmax()][level]
-    return Way.of(path, crown, toe, spacing_of(results))
+    up, size = results.up_axis(), spacing_of(results)
+    start, end = clouds[0], clouds[-1][:, level]
+    distance = np.linalg.norm(end - start[start[:, up].argmax()][level], axis=1)
+    return Way.of(path, start[:, level], start[:, up], end[distance <= np.quantile(distance, 1 - AHEAD)], size)
 
 
 def weighted_median(values, weights):

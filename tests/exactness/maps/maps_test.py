@@ -5,6 +5,7 @@
 import contextlib
 import os
 import pathlib
+import re
 import shutil
 import sqlite3
 import subprocess
@@ -347,6 +348,61 @@ class Maps(unittest.TestCase):
                 for k, one in enumerate(boxes):
                     for other, text in zip(boxes[:k], texts):
                         self.assertFalse(one.overlaps(other), f"{results}: {texts[k].get_text()} over {text.get_text()}")
+
+    def test_contours_of_a_map_do_not_follow_round_off_on_level_ground(self):
+        maps = talus_maps.Maps(talus_maps.checked(FOLDER / "plane1"))
+        east, _ = np.meshgrid(*(np.arange(count) * maps.ground.cell for count in maps.ground.shape), indexing="ij")
+        maps.before = 300 + np.maximum(0, east - 60) + 1e-6 * np.random.default_rng(1).standard_normal(east.shape)
+        with unittest.mock.patch.object(talus_map_pictures.style, "save", side_effect=lambda figure, path: figure):
+            axes = talus_map_pictures.draw_map(maps, "map.png").axes[0]
+        contours = np.concatenate([path.vertices for collection in axes.collections for path in collection.get_paths() if len(path.vertices)])
+        self.assertGreater(len(contours), 50)
+        self.assertGreater(contours[:, 0].min() - WEST, 60)
+
+    def test_a_section_leads_through_crown_and_toe_or_soil_as_far(self):
+        maps = talus_maps.Maps(talus_maps.checked(FOLDER / "plane1"))
+        self.assertLess(maps.way.beside(maps.crown[None, :2])[1][0], 2 * maps.size)
+        place, _ = talus_map_pictures.line_along(maps)
+        east, north = np.floor((place - maps.grid.low) / maps.grid.spacing).astype(int).T
+        on_soil = place[maps.covered[-1][np.clip(east, 0, 20), np.clip(north, 0, 14)]]
+        run_out = np.linalg.norm((maps.toe - maps.crown)[:2])
+        self.assertGreater(np.linalg.norm(on_soil - maps.crown[:2], axis=1).max(), 0.95 * run_out - maps.grid.spacing)
+
+    def legend_is_whole(self, maps):
+        with unittest.mock.patch.object(talus_map_pictures.style, "save", side_effect=lambda figure, path: figure):
+            figure = talus_map_pictures.draw_map(maps, "map.png")
+        figure.canvas.draw()
+        axes = figure.axes[0]
+        box = axes.get_legend().get_window_extent()
+        self.assertGreaterEqual(box.x0, 0)
+        self.assertLessEqual(box.x1, figure.bbox.x1)
+        self.assertGreaterEqual(box.y0, 0)
+        self.assertLess(box.y1, axes.xaxis.label.get_window_extent().y0)
+
+    def test_legend_of_a_wide_and_of_a_narrow_map_is_not_cut_off(self):
+        self.legend_is_whole(talus_maps.Maps(talus_maps.checked(FOLDER / "block1")))
+        maps = talus_maps.Maps(talus_maps.checked(FOLDER / "plane1"))
+        self.legend_is_whole(maps)
+        cells = 5  # of 15 to the north
+        count = int(cells * maps.grid.spacing / maps.ground.cell)
+        maps.grid.shape, maps.ground.shape = (cells, 15), (count, maps.ground.shape[1])
+        maps.ground.high[0] = maps.ground.low[0] + count * maps.ground.cell
+        maps.before, maps.thickness, maps.covered = maps.before[:count], maps.thickness[:, :cells], [one[:cells] for one in maps.covered]
+        self.legend_is_whole(maps)
+
+    def test_an_outline_that_leaves_out_much_of_the_deposit_is_told(self):
+        said = talus("maps", "block1", "--spacing", 0.25, "--limit", 0.5)
+        found = re.search(r"the outline holds (\S+) m3 of the deposit of (\S+) m3: the other \S+ % are thinner than the limit of 0.5 m; "
+                          r"--limit (\S+) takes in 95 % of it", said)
+        inside, whole, limit = map(float, found.groups())
+        numbers, _, _ = feature("block1", "outline")
+        self.assertAlmostEqual(inside, numbers["volume_m3"], delta=1e-5 * inside)
+        self.assertAlmostEqual(whole, volume_of("block1"), delta=1e-5 * whole)
+        self.assertLess(inside, 0.9 * whole)
+        said = talus("maps", "block1", "--spacing", 0.25, "--limit", limit)
+        self.assertNotIn("the outline holds", said)
+        numbers, _, _ = feature("block1", "outline")
+        self.assertGreaterEqual(numbers["volume_m3"], 0.95 * whole)
 
     def test_arrow_and_scale_lie_on_the_ground_where_cells_reach_beyond_it(self):
         maps = talus_maps.Maps(talus_maps.checked(FOLDER / "plane1"), 50.0)

@@ -7,6 +7,7 @@ import types
 import unittest
 import unittest.mock
 
+import matplotlib.pyplot as plt
 import numpy as np
 from PIL import Image
 
@@ -141,6 +142,24 @@ class Fields(unittest.TestCase):
         value = np.where(RANDOM.random(len(at)) < 0.3, np.nan, 4.0)
         self.assertTrue(np.allclose(Filling(at, value, SPACING).at(at), 4.0))
 
+    def test_soil_of_which_no_particle_has_a_value_has_none(self):
+        """Half of a layer has values, between x = 0.6 and 1.4 m; the rest, out to the edges of the model, is that of a law without the field."""
+        of, at = ground(), lattice((0, 0, 0), (2, 1.2, 0.3), SPACING)
+        at[:, 2] += BOTTOM * at[:, 0]
+        middle = np.abs(at[:, 0] - 1) < 0.4
+        value = np.where(middle, 4.0, np.nan)
+        filling = Filling(at, value, SPACING)
+        self.assertTrue(np.allclose(filling.at(at[np.abs(at[:, 0] - 1) < 0.3]), 4.0))
+        self.assertTrue(np.isnan(filling.at(at[np.abs(at[:, 0] - 1) > 0.5])).all())
+        self.assertTrue(np.isnan(filling.at(np.array([[0.0, 0.6, 0.3], [2.0, 0, 0.7]]))).all())
+        colours = Colours("plastic_strain", [types.SimpleNamespace(scalar=lambda field: (value, ""), stage="slide")])
+        self.assertTrue(colours.in_words("grey").endswith(", or without a value"))
+        sight = relief.seen_from_above(of, *surface(of, at), relief.Eye.in_front(1, 0, 2), LOW[:2], HIGH[:2], 100)
+        sight.light = np.ones_like(sight.light)
+        coloured = (np.abs(sight.painted(at, value, colours, SPACING) - relief.SOIL) > 0.02).any(axis=2)
+        self.assertTrue(coloured[:, 35:65].all())
+        self.assertFalse(coloured[3:-3, 3:25].any() or coloured[3:-3, 75:-3].any())
+
     def test_thickness_is_the_volume_over_the_area(self):
         at = np.stack(np.meshgrid(*(np.arange(0.5, n) * SPACING for n in (10, 10, 3)), indexing="ij"), axis=-1).reshape(-1, 3)  # 1 x 1 x 0.3 m
         volume = np.full((len(at), 1), SPACING**3)
@@ -154,6 +173,36 @@ class Fields(unittest.TestCase):
         inner = at[:, 0] < 0.2  # up to the edges
         self.assertLess(np.abs(values[inner] - 0.3).max(), 0.02)
         self.assertEqual(np.abs(values[at[:, 0] >= 0.5]).max(), 0)
+
+
+class Contours(unittest.TestCase):
+    def drawn(self, height):
+        """Contours at 0, 10, 20 ... m of heights over a level grid."""
+        levels = np.arange(0, 50, 10.0)
+        figure, axes = plt.subplots()
+        lines = axes.contour(np.ma.filled(relief.without_flats(height, levels, 3), np.nan).T, levels)
+        plt.close(figure)
+        return {level: sum(map(len, segments)) for level, segments in zip(lines.levels, lines.allsegs)}
+
+    def test_do_not_follow_round_off_on_level_ground(self):
+        """A slope comes down to a plain at exactly 10 m, and goes on below it beyond that."""
+        x = np.meshgrid(np.arange(120.0), np.arange(40.0), indexing="ij")[0]
+        noise = 1e-5 * np.random.default_rng(1).standard_normal(x.shape)
+        drawn = self.drawn(np.where(x < 80, np.maximum(10, 45 - x), 10 - 0.4 * np.maximum(0, x - 110)) + noise)
+        self.assertEqual(drawn[10], 0)
+        self.assertGreater(drawn[20], 30)
+        self.assertGreater(self.drawn(45 - x + noise)[10], 0)  # a slope alone has them all
+
+    def test_are_not_drawn_where_the_relief_is_that_of_particles(self):
+        of = ground()
+        painter = Painter.__new__(Painter)
+        painter.ground, painter.spacing = of, SPACING
+        for relief_of_soil, count in ((1.5 * SPACING, 0), (8 * SPACING, 1)):
+            top = relief_of_soil * np.random.default_rng(1).random(of.shape)
+            painter._surface = lambda snapshot: (top, np.ones(of.shape, bool))
+            axes = unittest.mock.Mock()
+            painter._contours(axes, None)
+            self.assertEqual(axes.contour.call_count, count)
 
 
 class Sections(unittest.TestCase):
