@@ -172,6 +172,13 @@ TEST(Check, DoubtsLevelsAndRainInOtherUnits) {
   };
   EXPECT_TRUE(curve("0.083"));
   EXPECT_FALSE(curve("0.36"));
+  const auto gravel = [&](const char *suction) {
+    return stages("", {"body.sand.retention={curve='van_genuchten', shape=0.5, reference_suction=" +
+                       std::string(suction) + "}"})
+        .says("body.sand loses half of its water at a suction below 150 Pa");
+  };
+  EXPECT_TRUE(gravel("20"));
+  EXPECT_FALSE(gravel("500"));
   const char *fast = "body.sand.hydraulic_conductivity is 4 m/s, which hardly any soil has";
   EXPECT_TRUE(output({"body.sand.permeability=0", "body.sand.hydraulic_conductivity=4"}).says(fast) ||
               output({"body.sand.hydraulic_conductivity=4"}).says(fast))
