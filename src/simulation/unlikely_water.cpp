@@ -1,4 +1,4 @@
-// Doubts about water tables, open water and seepage.
+// Doubts about water tables and the open water that they make.
 #include <cmath>
 #include <functional>
 #include <map>
@@ -8,7 +8,6 @@
 #include "physics/boundary/boundary.h"
 #include "physics/boundary/pore_conditions.h"
 #include "physics/phase_models.h"
-#include "physics/pores/soil_pores.h"
 #include "scene/water_table.h"
 #include "simulation/failure.h"
 #include "simulation/unlikely_parts.h"
@@ -17,12 +16,6 @@ namespace talus {
 namespace {
 
 double table_at(const WaterTable &table, const std::array<double, 3> &x) { return table.at(x[0], x[1], x[2]); }
-
-/// The first stage of seepage, or the end of the stages.
-std::vector<Stage>::const_iterator first_seepage(const Scene &scene) {
-  return std::find_if(scene.stage.begin(), scene.stage.end(),
-                      [](const Stage &stage) { return stage.kind == StageKind::seepage; });
-}
 
 /// The water table of [water], which lies level beyond its ends.
 void doubt_table(const Scene &scene, const Extent &soil, const std::vector<SoilFace> &surface,
@@ -87,9 +80,6 @@ std::vector<double> levels_of(const Scene &scene) {
   return levels;
 }
 
-/// May water stand on the face? Not on what faces down, and not where a support is.
-bool may_be_flooded(const SoilFace &face, int up) { return !face.held && face.normal[up] > -1e-6; }
-
 /// Ground under water that hangs together.
 struct Pond {
   double west, east;       ///< its ends [m]
@@ -136,8 +126,6 @@ std::vector<Pond> ponds_of(const std::vector<SoilFace> &surface, int dimension, 
     if (dimension == 2 || pond.corners > fewest) list.push_back(pond);
   return list;
 }
-
-constexpr double visible = 0.01;  // of the height of the soil: what no table follows the ground more closely than
 
 /// Open water rests on the ground with its weight, so that a table that stands above the ground has to be level there.
 void doubt_ponds(const Scene &scene, double height, const std::vector<SoilFace> &surface,
@@ -280,143 +268,6 @@ void doubt_dry_ponds(const Scene &scene, const Extent &soil, const std::vector<S
   sentences.push_back(text);
 }
 
-/// Faces of a boundary belong to the mesh. Soil that settles or slides away from them leaves the boundary without soil.
-void doubt_faces_of_water(const Scene &scene, const std::vector<SoilFace> &surface,
-                          std::vector<std::string> &sentences) {
-  const bool moves = phase_traits(scene.phases).liquid &&
-                     std::ranges::any_of(scene.stage, [](const Stage &s) { return !is_static(s.kind) && s.pore_flow; });
-  if (!moves && std::ranges::none_of(scene.stage, [](const Stage &s) { return water_flows(s.kind); })) return;
-  for (int b = 0; b < static_cast<int>(scene.boundary.size()); ++b) {
-    const BoundarySource &boundary = scene.boundary[b];
-    if (!read_boundary(boundary.kind).fluid_face() || std::ranges::count(boundary.group, std::string(free_surface)))
-      continue;
-    bool touched = false, beside_air = false;
-    for (const SoilFace &face : surface)
-      if (face.water == b) touched = true, beside_air |= !face.ends_mesh;
-    if (!touched)
-      sentences.push_back("boundary." + boundary.name +
-                          " decides on the water at faces of the mesh that no soil touches at the start, and brings or "
-                          "takes none there. The surface of the soil has the group free_surface");
-    else if (beside_air && moves)
-      sentences.push_back("boundary." + boundary.name +
-                          " decides on the water at faces where the soil begins, and these stay where they are: soil "
-                          "that settles or slides from them by a third of a cell has the atmosphere there instead. A "
-                          "boundary on the group free_surface follows the soil");
-  }
-}
-
-/// Open water that stands on none of its faces, and rain that no sky has: levels and intensities in another unit. What
-/// changes is asked for the start alone, as water.level is (levels_of).
-void doubt_levels_and_rain(const Scene &scene, const std::vector<SoilFace> &surface,
-                           std::vector<std::string> &sentences) {
-  constexpr double heaviest = 1e-3, mm_per_hour = 1e-3 / 3600;  // [m/s]; 1.8 m have fallen in a day, 0.4 m in an hour
-  constexpr double vertical = 1e-6;                             // of a normal, to round-off
-  const int up = scene.vertical();
-  const double g = scene.gravity.empty() ? 0 : -scene.gravity[up];
-  for (std::size_t b = 0; b < scene.boundary.size(); ++b) {
-    const Boundary kind = read_boundary(scene.boundary[b].kind);
-    const bool anywhere = std::ranges::count(scene.boundary[b].group, std::string(free_surface));
-    if (kind.water != OnWater::seepage) continue;
-    double pressure = 0, rain = 0, upward = 0;
-    bool touched = false;
-    for (const SoilFace &face : surface) {
-      if (!(face.water == static_cast<int>(b) || (anywhere && face.water < 0))) continue;
-      touched = true;
-      double facing = 0;
-      const auto &x = face.corner[0];
-      for (int a = 0; a < scene.dimension && kind.open_water; ++a) {
-        const auto &corner = face.corner[a];
-        pressure =
-            std::max(pressure, kind.outside(corner[0], corner[1], corner[2], 0, {scene.water.density * g, corner[up]}));
-      }
-      for (int d = 0; d < scene.dimension; ++d) facing += face.normal[d] * scene.upward()[d];
-      upward = std::max(upward, facing);
-      if (kind.supply) rain = std::max(rain, kind.supply(x[0], x[1], x[2], 0, 1));
-    }
-    if (touched && kind.open_water && kind.changes.empty() && !(pressure > 0))
-      sentences.push_back("boundary." + scene.boundary[b].name +
-                          " has its water below all of its faces, so that none stands on them and water "
-                          "may only leave there. Is its level meant?");
-    if (!touched && kind.supply && !kind.open_water)
-      sentences.push_back("boundary." + scene.boundary[b].name +
-                          " touches no soil at the start, so that no water enters there. Is group = \"free_surface\" "
-                          "meant, or a group of the ground?");
-    if (rain > 0 && upward < vertical)
-      sentences.push_back("boundary." + scene.boundary[b].name +
-                          " lies on faces that are vertical or overhang, and rain counts per level area: none enters "
-                          "there. What wets a wall is a \"flux\" or a \"head\"");
-    if (rain > heaviest)
-      sentences.push_back("boundary." + scene.boundary[b].name + " brings up to " + rounded(rain / mm_per_hour) +
-                          " mm/h of rain, more than ever fell; a number without a unit counts in m/s. Is it in mm/h or "
-                          "mm/day, as \"20 mm/h\"?");
-  }
-}
-
-/// Rain and fluxes whose table is over before the stages are, and not with zero; asked at a face of theirs.
-void doubt_water_that_goes_on(const Scene &scene, const std::vector<SoilFace> &surface,
-                              std::vector<std::string> &sentences) {
-  double end = 0;  // of the load time [s]
-  for (const Stage &stage : scene.stage)
-    if (!stage.hold_loads) end += stage.duration;
-  for (std::size_t b = 0; b < scene.boundary.size(); ++b) {
-    const Boundary kind = read_boundary(scene.boundary[b].kind);
-    if (kind.changes.empty() || !(kind.supply || kind.inflow)) continue;
-    const double last = std::ranges::max_element(kind.changes, {}, &TimeSpan::end)->end;
-    const bool anywhere = std::ranges::count(scene.boundary[b].group, std::string(free_surface));
-    const auto face = std::ranges::find_if(
-        surface, [&](const SoilFace &one) { return one.water == static_cast<int>(b) || (anywhere && one.water < 0); });
-    if (!(last < end) || face == surface.end()) continue;
-    const auto &[x, y, z] = face->corner[0];
-    const double rate = kind.supply ? kind.supply(x, y, z, last, 1) : kind.inflow(x, y, z, last);
-    if (rate != 0)
-      sentences.push_back("boundary." + scene.boundary[b].name + " goes on with " + rounded(rate) +
-                          " m/s when its table is over, from t = " + rounded(last) + " s until the stages end at t = " +
-                          rounded(end) + " s. End the table with 0 if the water is to stop there");
-  }
-}
-
-/// Open water that rises or falls in a stage of elements whose pore water stays: its load changes, and the pressure in
-/// the pores does not.
-void doubt_open_water_without_flow(const Scene &scene, double height, std::vector<std::string> &sentences) {
-  constexpr double deep = -1e4;  // elevation below all levels that are asked [m]
-  double from = 0;               // load time [s]
-  for (const Stage &stage : scene.stage) {
-    const double to = from + (stage.hold_loads ? 0 : stage.duration);
-    for (std::size_t b = 0; b < scene.boundary.size() && is_static(stage.kind) && !water_flows(stage.kind); ++b) {
-      const Boundary kind = read_boundary(scene.boundary[b].kind);
-      if (!kind.open_water) continue;
-      const auto level = [&](double t) { return kind.outside(0, 0, 0, t, {1, deep}) + deep; };
-      if (std::abs(level(to) - level(from)) < visible * height) continue;
-      sentences.push_back("the water of boundary." + scene.boundary[b].name + " goes from " + rounded(level(from)) +
-                          " to " + rounded(level(to)) + " m in stage " + stage.name +
-                          ", in which no pore water moves: it loads the soil, whose pore pressure stays as it is, so "
-                          "that rising water makes a slope safer than it is. kind = \"consolidation\" lets both "
-                          "follow; or let a stage with kind = \"seepage\" follow the water first, and hold_loads in "
-                          "this one");
-    }
-    from = to;
-  }
-}
-
-/// Pores that cannot dry have no suction with which to hold back what an open surface offers.
-void doubt_open_ground(const Scene &scene, const std::vector<SoilFace> &surface, std::vector<std::string> &sentences) {
-  const auto dries = [](const BodySource &body) { return static_cast<bool>(body.retention.reader); };
-  if (first_seepage(scene) == scene.stage.end() || std::ranges::any_of(scene.body, dries)) return;
-  for (const BoundarySource &boundary : scene.boundary)
-    if (read_boundary(boundary.kind).fluids_only() && std::ranges::count(boundary.group, std::string(free_surface)))
-      return;
-  const int up = scene.vertical();
-  const auto bare = std::ranges::find_if(surface, [&](const SoilFace &face) {
-    return face.water < 0 && may_be_flooded(face, up) && face.normal[up] > 0.1;
-  });
-  if (bare == surface.end()) return;
-  sentences.push_back("the ground at x = " + rounded(bare->corner[0][0]) + ", " + axis_names[up] + " = " +
-                      rounded(bare->corner[0][up]) +
-                      " m has no boundary of water, so that its pressure is 0 in stages of seepage: as under a film of "
-                      "water, which enters without limit. Where the ground is dry, give group = \"free_surface\" a "
-                      "boundary with kind = \"rainfall\" and intensity = 0, or the soil a retention curve");
-}
-
 /// The table is what pores begin with where their water moves, and no stage looks at it again unless it prescribes the
 /// pressure.
 void doubt_changing_table(const Scene &scene, std::vector<std::string> &sentences) {
@@ -493,31 +344,6 @@ void doubt_own_tables(const Scene &scene, double height, const std::vector<SoilF
   }
 }
 
-// ---- seepage ----
-
-/// Pressure rises under ground that lets no water out, where none stands that would bear against it.
-void doubt_sealed_ground(const Scene &scene, std::vector<std::string> &sentences) {
-  if (first_seepage(scene) == scene.stage.end()) return;
-  for (const BoundarySource &boundary : scene.boundary)
-    if (std::count(boundary.group.begin(), boundary.group.end(), free_surface) &&
-        read_boundary(boundary.kind).water == OnWater::wall)
-      sentences.push_back("boundary." + boundary.name +
-                          " lets no water through the ground, so that pore pressure may rise there, and "
-                          "water.open_water_load = true takes this pressure for the load of water on the ground: it "
-                          "would not weaken the soil. Set water.open_water_load = false, or let water out with kind = "
-                          "\"rainfall\" and intensity = 0");
-}
-
-/// The suction of drained soil is where its seepage begins, and no stage before that sees it.
-void doubt_early_suction(const Scene &scene, std::vector<std::string> &sentences) {
-  const auto first = first_seepage(scene);
-  if (scene.water.suction.given() && first != scene.stage.end() && first != scene.stage.begin())
-    sentences.push_back("water.suction acts from the first stage of seepage on, " + first->name +
-                        ": the soil of stage " + scene.stage.front().name +
-                        " has none. If its strength depends on suction, put a stage of seepage with hold_loads = true "
-                        "before it");
-}
-
 }  // namespace
 
 void doubt_water_without_friction(const Scene &scene, int body, const BodyReport &report, const Law &law,
@@ -542,58 +368,22 @@ void doubt_water_without_friction(const Scene &scene, int body, const BodyReport
                       "not weaken this soil. If its cohesion is that of drained soil, give its friction_angle too");
 }
 
-/// Pores that dry and conduct as if they were full, and such whose permeability is gone with the first water.
-void doubt_permeability(const Scene &scene, std::vector<std::string> &sentences) {
-  constexpr double first = 1e-3, steep = 0.5;
-  if (std::ranges::none_of(scene.stage, [](const Stage &s) { return water_flows(s.kind); })) return;
-  constexpr double coarse = 150, dry = 1e8;  // [Pa]: coarse sand keeps half of its water beyond that; no soil this
-  for (const BodySource &body : scene.body) {
-    if (!body.retention.reader) continue;
-    const SoilPores own(body, scene.water.density, scene.water.viscosity);
-    if (saturation(own.retention(), coarse) < (1 + saturation(own.retention(), dry)) / 2)
-      sentences.push_back("body." + body.name + " loses half of its water at a suction below " + rounded(coarse) +
-                          " Pa, a column of " + rounded(coarse / (scene.water.density * 9.81) * 1e3) +
-                          " mm, as gravel does and no sand. Is the suction of its retention curve in kPa?");
-    if (!body.relative_permeability.reader) {
-      sentences.push_back("body." + body.name +
-                          " has a retention curve and no relative_permeability: it conducts water as if its pores were "
-                          "full, however dry they are. Give [body." +
-                          body.name + ".relative_permeability], such as van_genuchten_mualem");
-      continue;
-    }
-    const double left = own.at(first).liquid;
-    if (left < steep)
-      sentences.push_back(
-          "body." + body.name + " conducts " + rounded(100 * left) +
-          " % of what it conducts in full when a thousandth of its pores has dried: where water reaches "
-          "such soil, seepage may find no flow however short its steps are. A larger shape of "
-          "van_genuchten_mualem (0.2 or more), or a curve of another kind, is found");
-  }
-}
-
 void doubt_water(const Scene &scene, const Extent &soil, const std::vector<SoilFace> &surface,
                  std::vector<std::string> &sentences) {
   const double height = soil.of(scene.vertical());
   doubt_table(scene, soil, surface, sentences);
-  doubt_levels_and_rain(scene, surface, sentences);
-  doubt_water_that_goes_on(scene, surface, sentences);
   doubt_excess_alone(scene, sentences);
-  doubt_permeability(scene, sentences);
-  doubt_faces_of_water(scene, surface, sentences);
+  doubt_water_boundaries(scene, height, surface, sentences);
+  doubt_pores(scene, sentences);
   if (phase_traits(scene.phases).liquid) {
     doubt_dry_ponds(scene, soil, surface, sentences);
-    doubt_open_water_without_flow(scene, height, sentences);
     doubt_changing_table(scene, sentences);
     doubt_film_on_ground(scene, height, surface, sentences);
   }
-  if (scene.phases != PhaseModel::drained) return;
-  doubt_early_suction(scene, sentences);
-  doubt_open_ground(scene, surface, sentences);
-  if (!scene.water.open_water_load) return;
+  if (scene.phases != PhaseModel::drained || !scene.water.open_water_load) return;
   doubt_ponds(scene, height, surface, sentences);
   doubt_ponds_in_hollows(scene, soil, surface, sentences);
   doubt_own_tables(scene, height, surface, sentences);
-  doubt_sealed_ground(scene, sentences);
 }
 
 }  // namespace talus
