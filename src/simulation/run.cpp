@@ -129,7 +129,9 @@ Holdings Run<dim>::holdings() const {
 template <int dim>
 Archive Run<dim>::state_of(Checkpoint found) const {
   if (found.header.mesh != world.mesh.fingerprint())
-    throw std::invalid_argument("its mesh was another one; has the section or mesh file changed?");
+    throw std::invalid_argument(
+        "its mesh was another one: the section, terrain or mesh file has changed since, or another build of the "
+        "program meshed it");
   int rank, ranks;
   MPI_Comm_rank(world.comm, &rank), MPI_Comm_size(world.comm, &ranks);
   int same = found.header.ranks == ranks && found.header.partition[rank] == world.mesh.partition_fingerprint();
