@@ -142,7 +142,7 @@ def draw_map(maps, path):
     axes.plot([], [], color=style.INK, lw=1.0, ls="--", label="outline at the start")
     low, high = origin + grid.low, origin + grid.low + size
     shown = origin + [ground.low[:2], ground.high[:2]]  # the outermost cells of the grid reach beyond it
-    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="east [m]", ylabel="north [m]", aspect="equal")
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel=f"east [m]   {maps.axes.name[:60]}".rstrip(), ylabel="north [m]", aspect="equal")
     ticks_of(axes, min(wide, tall * size[0] / size[1]), min(tall, wide * size[1] / size[0]))
     axes.ticklabel_format(useOffset=False, style="plain")
     axes.tick_params(axis="y", labelrotation=90)

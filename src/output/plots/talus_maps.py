@@ -54,6 +54,7 @@ class Axes:
         found = json.loads(path.read_text()) if path.exists() else {}
         self.origin = np.array([*found.get("origin_m", (0.0, 0.0)), 0.0])
         self.projection = found.get("projection", "")
+        self.name = reference_of(self.projection).GetName() if self.projection else ""  # of the projection
         self.spacing = found.get("spacing_m")  # of the terrain file; None without one
 
     def level(self, vectors):

@@ -311,6 +311,7 @@ class Maps(unittest.TestCase):
         maps = talus_maps.Maps(talus_maps.checked(FOLDER / "plane1"))
         with unittest.mock.patch.object(talus_map_pictures.style, "save", side_effect=lambda figure, path: figure):
             axes = talus_map_pictures.draw_map(maps, "map.png").axes[0]
+        self.assertEqual(axes.get_xlabel(), "east [m]   CH1903+ / LV95")
         lines = {line.get_label(): line.get_xydata() for line in axes.lines}
         np.testing.assert_allclose(lines["path of the centre of mass"], maps.path[:, :2] + [WEST, SOUTH])
         contours = [path.vertices for collection in axes.collections for path in collection.get_paths() if len(path.vertices) > 3]
