@@ -480,6 +480,9 @@ int main(int argc, char **argv) {
     return 1;
   } catch (const std::string &error) {
     std::cerr << "talus-mesh: Gmsh: " << error << "\n";
+    if (error.find("PLC Error") != std::string::npos)
+      std::cerr << "talus-mesh: two surfaces of the mesh cross; where a cliff is higher than the free space above the "
+                   "ground, more --air keeps them apart, else a smaller --size\n";
     return 1;
   }
   return 0;

@@ -104,8 +104,8 @@ class Terrain {
   bool in_window(const Part &part) const;
   /// Notes parts that are smaller than what the bed or the cells can show.
   void check_parts();
-  /// Area of a slip surface below the ground [m2].
-  double area_of(const std::vector<double> &slip) const;
+  /// Area of the bed under the slide [m2].
+  double area_of_bed() const;
   void take_layers(const Grid &grid);
   void check_base() const;
   /// Refuses a slip surface whose elevations stand to those of the ground as feet and metres do.

@@ -147,11 +147,11 @@ void Terrain::take_slip_surface(const Grid &grid) {
     slide_volume_ += area * (ground()[k] - bed()[k]);
     if (ground()[k] > bed()[k]) slide_area_ += area;
   }
-  slip_surface_area_ = area_of(slip);
   if (!options_.slip_surface.empty()) check_holes(slip, name);
   if (!options_.slip_surface.empty()) check_steps(bed(), name);  // an ellipsoid may be as steep as its wall is high
   if (options_.outline.empty()) check_slip_surface(slip, name);  // that of an outline is as deep as was asked for
   refine_bed(surface);
+  slip_surface_area_ = area_of_bed();
   measure_parts();
   check_parts();
 }
@@ -256,30 +256,24 @@ void Terrain::check_holes(const std::vector<double> &slip, const std::string &na
                ", in the middle of the slide; fill the hole, such as by gdal_fillnodata.py");
 }
 
-/// By sixteen places of each cell of the grid, between whose corners surface and ground are interpolated: as a sum over
-/// nodes the area of a slide of ten nodes across would be a tenth too small. By the corners beside places without data,
-/// and where the surface goes on along the ground and does not cross it.
-double Terrain::area_of(const std::vector<double> &slip) const {
-  constexpr int parts = 4;
+/// With the walls in which the slide ends. A square that the slide fills in part counts by half, but for a wall, which
+/// stands across it.
+double Terrain::area_of_bed() const {
+  const Grid &bed = near_slide_.values.empty() ? bed_ : near_slide_;
   constexpr double on_it = 1e-4;  // of the spacing
-  const double h = ground_.spacing;
+  const double h = bed.spacing;
+  const auto deep = [&](int i, int j) {
+    return ground_at(bed.x(i), bed.y(j)) - bed.values[j * bed.columns + i] > on_it * h;
+  };
   double sum = 0;
-  for (int j = 0; j + 1 < rows(); ++j)
-    for (int i = 0; i + 1 < columns(); ++i) {
-      const int k = j * columns() + i, corner[] = {k, k + 1, k + columns(), k + columns() + 1};
-      double z[4], depth[4];
-      bool known = true;
-      for (int c = 0; c < 4; ++c)
-        z[c] = slip[corner[c]], depth[c] = ground()[corner[c]] - z[c], known = known && std::abs(depth[c]) > on_it * h;
-      for (int c = 0; c < 4 && !known; ++c) z[c] = bed()[corner[c]], depth[c] = ground()[corner[c]] > z[c] ? 1 : -1;
-      int inside = 0;
-      for (int a = 0; a < parts * parts; ++a) {
-        const double x = (a % parts + 0.5) / parts, y = (std::floor(a / parts) + 0.5) / parts;
-        const double here = (1 - y) * ((1 - x) * depth[0] + x * depth[1]) + y * ((1 - x) * depth[2] + x * depth[3]);
-        inside += here > 0;
-      }
-      sum += inside / double(parts * parts) * h *
-             std::hypot(h, (z[1] + z[3] - z[0] - z[2]) / 2, (z[2] + z[3] - z[0] - z[1]) / 2);
+  for (int j = 0; j + 1 < bed.rows; ++j)
+    for (int i = 0; i + 1 < bed.columns; ++i) {
+      const int inside = deep(i, j) + deep(i + 1, j) + deep(i, j + 1) + deep(i + 1, j + 1);
+      if (inside == 0) continue;
+      const double *z = &bed.values[j * bed.columns + i], *north = z + bed.columns;
+      const double rise = std::hypot((z[1] + north[1] - z[0] - north[0]) / 2, (north[0] + north[1] - z[0] - z[1]) / 2);
+      const bool wall = !options_.outline.empty() && !options_.bowl;
+      sum += (inside == 4 || wall ? 1 : 0.5) * h * std::hypot(h, rise);
     }
   return sum;
 }

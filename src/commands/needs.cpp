@@ -29,7 +29,9 @@ BodyNeeds needs_of(const BodyReport &report, const BodySource &source) {
   return b;
 }
 
-LayerNeeds layer_of(const Scene &scene, const std::vector<BodyNeeds> &bodies, double gravity, double depth) {
+LayerNeeds layer_of(const Scene &scene, const std::vector<BodyNeeds> &bodies, double gravity,
+                    const std::vector<SoilFace> &surface) {
+  const double depth = greatest_depth(surface, scene.dimension, scene.vertical());
   LayerNeeds layer;
   double mass = 0, volume = 0, softness = 0, slowness = 0;
   std::array<double, 3> low = bodies[0].body.low, high = bodies[0].body.high;
@@ -52,9 +54,12 @@ LayerNeeds layer_of(const Scene &scene, const std::vector<BodyNeeds> &bodies, do
   layer.modulus = volume / softness, layer.wave_speed = volume / slowness;
   layer.transit = scales::transit(layer.height, layer.wave_speed);
   layer.gravity_stress = density * gravity * layer.height;
-  for (const BodyNeeds &b : bodies) {
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    const BodyNeeds &b = bodies[k];
     const int up = scene.vertical();
-    const double above = downwards ? std::min(layer.height, high[up] - b.body.low[up]) : layer.height;
+    const double above = downwards ? depth_of(static_cast<int>(k), b.body, surface, up,
+                                              std::min(layer.height, high[up] - b.body.low[up]))
+                                   : layer.height;
     layer.gravity_strain =
         std::max(layer.gravity_strain, scales::own_weight_strain(density, gravity, above, constrained_modulus(b.law)));
   }
@@ -215,8 +220,7 @@ Needs find_needs(Scene &scene, bool with_model) {
     if (reports[b].critical_step < reports[needs.slowest].critical_step) needs.slowest = static_cast<int>(b);
   }
   const std::vector<SoilFace> surface = simulation->surface();
-  needs.layer =
-      layer_of(scene, needs.bodies, needs.gravity, greatest_depth(surface, scene.dimension, scene.vertical()));
+  needs.layer = layer_of(scene, needs.bodies, needs.gravity, surface);
   std::vector<Law> laws;
   for (const BodyNeeds &b : needs.bodies) laws.push_back(b.law);
   const std::vector<Softening> softening = softening_of(scene, laws, reports);

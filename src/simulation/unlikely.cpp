@@ -166,13 +166,11 @@ double greatest_depth(const std::vector<SoilFace> &surface, int dimension, int u
   return greatest;
 }
 
-/// How deep a body is at most, about: no deeper than three times its mean over the ground that it has, so that a slide
-/// has not the depth of the rock below it [m].
 double depth_of(int number, const BodyReport &body, const std::vector<SoilFace> &surface, int up, double greatest) {
   double ground = 0;
   for (const SoilFace &face : surface)
     if (face.body == number) ground += face.area * std::max(0., face.normal[up]);
-  return ground > 0 ? std::min(greatest, 3 * body.volume / ground) : greatest;
+  return ground > 0 ? std::min(greatest, 2 * body.volume / ground) : greatest;
 }
 
 std::string unlikely_height(double height, const std::string &what) {

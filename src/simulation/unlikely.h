@@ -44,4 +44,8 @@ std::vector<std::string> unlikely_strains(MPI_Comm comm, const std::vector<BodyR
 /// The same of saturated soil of which more than a hundredth has a pore pressure below minus that of the atmosphere.
 std::vector<std::string> unlikely_suctions(MPI_Comm comm, const std::vector<BodyReport> &bodies, const Snapshot &state);
 
+/// How deep a body is at most, about: no deeper than twice its mean over the ground that it has, as a bowl is, so that
+/// a slide has not the depth of the rock below it; the greatest depth of all soil where it has no ground [m].
+double depth_of(int number, const BodyReport &body, const std::vector<SoilFace> &surface, int up, double greatest);
+
 }  // namespace talus

@@ -38,7 +38,9 @@ void doubt_table(const Scene &scene, const Extent &soil, const std::vector<SoilF
     sentences.push_back("water.table stands " + rounded(least + level - soil.high[up]) +
                         " m or more above the top of the soil, which is " + rounded(height) +
                         " m high: all of it lies deep under open water. Is this meant?");
-  if (!scene.water.level.depends_on_time() && scene.phases == PhaseModel::drained && most + level <= soil.low[up])
+  const bool lasts = first_seepage(scene) == scene.stage.end();  // else it is the first state, and no more
+  if (lasts && !scene.water.level.depends_on_time() && scene.phases == PhaseModel::drained &&
+      most + level <= soil.low[up])
     sentences.push_back(std::string("water.table lies below all soil (its highest point is at ") + axis_names[up] +
                         " = " + rounded(most + level) + " m, the lowest soil at " + rounded(soil.low[up]) +
                         " m): it gives no pore pressure");
@@ -381,6 +383,7 @@ void doubt_water(const Scene &scene, const Extent &soil, const std::vector<SoilF
     doubt_film_on_ground(scene, height, surface, sentences);
   }
   if (scene.phases != PhaseModel::drained || !scene.water.open_water_load) return;
+  if (first_seepage(scene) == scene.stage.begin()) return;  // which finds the water that counts
   doubt_ponds(scene, height, surface, sentences);
   doubt_ponds_in_hollows(scene, soil, surface, sentences);
   doubt_own_tables(scene, height, surface, sentences);

@@ -145,7 +145,8 @@ class Maps:
         self.last = last
         self._accumulate()
         if not self.covered[-1].any():
-            raise ValueError(f"the deposit is nowhere as thick as --limit {self.limit:g} m; its largest thickness is {self.thickness[-1].max():.3g} m")
+            raise ValueError(f"the deposit is nowhere as thick as --limit {self.limit:g} m; its largest thickness is {self.thickness[-1].max():.3g} m"
+                             + (f". {self.beside(beyond)}" if self.left_out()[0] > LEFT_OUT * self.volume[-1] else ""))
         self._elevations(first, last)
 
     def _size_of(self, first):
@@ -168,6 +169,14 @@ class Maps:
         if not some.any():
             return 0.0, (0.0, 0.0)
         return float(self.last.column("volume").values[some, 0].sum()), (float(moved[some].min()), float(moved[some].max()))
+
+    def beside(self, beyond):
+        """What is not mapped though it moved, in words; `beyond` is the displacement that was asked for [m], or None."""
+        left_out, moved = self.left_out()
+        return (f"{left_out:.3g} m3 that moved by {moved[0]:.3g} to {moved[1]:.3g} m are not mapped, and are {100 * left_out / (left_out + self.volume[-1]):.3g} % of "
+                "what moved by more than a particle: soil slides in these maps where it moved by more than "
+                + (f"--moved {beyond:g} m" if beyond else "a tenth of the largest displacement, which 99.9 % of the mass have at most")
+                + f"; --moved {self.size:.2g} maps all of it")
 
     def limit_of(self, share):
         """The limit of thickness [m], of two digits, with which the outline holds this share of the deposit."""
@@ -219,8 +228,9 @@ class Maps:
         far = np.hypot(east - self.crown[0], north - self.crown[1]).argmax()
         toe = np.array([east[far], north[far], 0.0])
         self.way = Way.of(self.path[:, :2], start[:, :2], start[:, 2], np.column_stack([east, north]), self.size)  # of the section
-        end = self.axes.level(last.position())[np.isin(last.ids(), self.sliding, assume_unique=True)]
-        near = np.abs(end[:, :2] - toe[:2]).max(axis=1) <= (self.grid.spacing + self.size) / 2
+        slid = np.isin(last.ids(), self.sliding, assume_unique=True)
+        end, size = self.axes.level(last.position())[slid], np.cbrt(last.column("volume").values[slid, 0])
+        near = np.abs(end[:, :2] - toe[:2]).max(axis=1) <= 1.000001 * (self.grid.spacing + size) / 2
         self.toe = np.array([*toe[:2], end[near, 2].min()])
 
     def surface(self, snapshot):
@@ -392,12 +402,8 @@ def main():
     if maps.moving:
         warn(f"the soil has not come to rest: {100 * maps.moving[0]:.3g} % of what slid is faster than {SLOW:g} m/s, at up to {maps.moving[1]:.3g} m/s; outline, "
              f"run-out and angle of reach are those at {maps.moment()} and not of a final deposit, for which its last stage takes a longer duration")
-    left_out, moved = maps.left_out()
-    if left_out > LEFT_OUT * maps.volume[-1]:
-        warn(f"{left_out:.3g} m3 that moved by {moved[0]:.3g} to {moved[1]:.3g} m are not mapped, and are {100 * left_out / (left_out + maps.volume[-1]):.2g} % of "
-             f"what moved by more than a particle: soil slides in these maps where it moved by more than "
-             + (f"--moved {given.moved:g} m" if given.moved else "a tenth of the largest displacement, which 99.9 % of the mass have at most")
-             + f"; --moved {maps.size:.2g} maps all of it")
+    if maps.left_out()[0] > LEFT_OUT * maps.volume[-1]:
+        warn(maps.beside(given.moved))
     inside, deposit = maps.numbers()["volume_m3"], maps.thickness[-1].sum() * maps.grid.spacing**2
     if inside < (1 - THIN) * deposit:
         warn(f"the outline holds {inside:.6g} m3 of the deposit of {deposit:.6g} m3: the other {100 * (1 - inside / deposit):.2g} % are thinner than the limit "
