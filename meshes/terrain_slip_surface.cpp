@@ -259,7 +259,8 @@ void Terrain::check_holes(const std::vector<double> &slip, const std::string &na
 /// With the walls in which the slide ends. A square that the slide fills in part counts by half, but for a wall, which
 /// stands across it.
 double Terrain::area_of_bed() const {
-  const Grid &bed = near_slide_.values.empty() ? bed_ : near_slide_;
+  const bool by_grid = !options_.slip_surface.empty();  // which may go on along the ground, and thinly part from it
+  const Grid &bed = near_slide_.values.empty() || by_grid ? bed_ : near_slide_;
   constexpr double on_it = 1e-4;  // of the spacing
   const double h = bed.spacing;
   const auto deep = [&](int i, int j) {
