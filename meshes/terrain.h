@@ -104,7 +104,8 @@ class Terrain {
   bool in_window(const Part &part) const;
   /// Notes parts that are smaller than what the bed or the cells can show.
   void check_parts();
-  /// Area of the bed under the slide [m2].
+  /// Area of a slip surface below the ground, and of the bed under the slide [m2].
+  double area_of(const std::vector<double> &slip) const;
   double area_of_bed() const;
   void take_layers(const Grid &grid);
   void check_base() const;
