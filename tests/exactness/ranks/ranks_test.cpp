@@ -169,8 +169,9 @@ TEST(Ranks, column_of_wet_sand_is_the_same) {
 }
 TEST(Ranks, drained_slope_of_two_soils_is_the_same) { expect_the_same(slope, {}); }
 
-/// The example of the guide's page on terrain, coarser.
-TEST(Ranks, slide_on_terrain_is_the_same) { expect_the_same(TALUS_GUIDE "/valley.toml", {"mesh.size=12"}); }
+/// The example of the guide's page on terrain, coarser. Its 200 steps are 18 s, in which the soil runs over the lip of
+/// its scarp: that amplifies round-off, to 3e-10 of the largest stress.
+TEST(Ranks, slide_on_terrain_is_the_same) { expect_the_same(TALUS_GUIDE "/valley.toml", {"mesh.size=12"}, 3e-9); }
 
 /// The same where the mesh is divided anew at every remap: everything moves from rank to rank again and again.
 void expect_the_same_when_balanced(const std::string &file, std::vector<std::string> overrides) {

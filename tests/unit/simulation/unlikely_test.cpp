@@ -70,10 +70,22 @@ std::vector<std::string> doubts_about_heap(double slope, double size, double coh
   const double run = 3 / std::tan(rad);
   const std::vector<SoilFace> surface{face({0, 0}, {run, 3}), face({run, 3}, {run + 4, 3}), face({run + 4, 0}, {0, 0})};
   BodyReport heap;
-  heap.name = "heap", heap.particles = 100, heap.mass = 1600, heap.volume = 1, heap.cell_size = size;
+  heap.name = "heap", heap.particles = 100, heap.volume = 12 + 1.5 * run, heap.mass = 1600 * heap.volume;
+  heap.cell_size = size;
   heap.high = {run + 4, 3, 0};
   heap.strength.friction_angle = {0.6, 0.6}, heap.strength.cohesion = {cohesion, cohesion};
   return coarse_cells(scene, {heap}, surface);
+}
+
+/// A bowl of soil on rock that is 200 m deep is no deeper than twice its mean.
+TEST(Unlikely, ABodyHasItsOwnDepth) {
+  SoilFace ground;
+  ground.body = 1, ground.area = 100, ground.normal = {0, 0, 1};
+  BodyReport slide;
+  slide.volume = 500;
+  EXPECT_DOUBLE_EQ(depth_of(1, slide, {ground}, 2, 200), 10);
+  EXPECT_DOUBLE_EQ(depth_of(1, slide, {ground}, 2, 8), 8);
+  EXPECT_DOUBLE_EQ(depth_of(0, slide, {ground}, 2, 200), 200) << "below other soil";
 }
 
 TEST(Unlikely, SandThatIsTooSteepIsDoubtedInFewCells) {
