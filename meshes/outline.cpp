@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <sstream>
@@ -71,6 +72,17 @@ void add_rings(const OGRGeometry &geometry, Outline &outline) {
   }
 }
 
+/// The corner of the extent whose coordinates come before those of all points.
+template <class Before>
+std::array<double, 2> corner_of(const std::vector<std::vector<std::array<double, 2>>> &rings, Before before) {
+  std::array<double, 2> corner = rings.front().front();
+  for (const auto &ring : rings)
+    for (const auto &point : ring)
+      for (int d = 0; d < 2; ++d)
+        if (before(point[d], corner[d])) corner[d] = point[d];
+  return corner;
+}
+
 }  // namespace
 
 std::vector<Outline> Outline::parts() const {
@@ -101,21 +113,8 @@ double Outline::perimeter() const {
   return sum;
 }
 
-std::array<double, 2> Outline::low() const {
-  std::array<double, 2> corner = rings.front().front();
-  for (const auto &ring : rings)
-    for (const auto &point : ring)
-      for (int d = 0; d < 2; ++d) corner[d] = std::min(corner[d], point[d]);
-  return corner;
-}
-
-std::array<double, 2> Outline::high() const {
-  std::array<double, 2> corner = rings.front().front();
-  for (const auto &ring : rings)
-    for (const auto &point : ring)
-      for (int d = 0; d < 2; ++d) corner[d] = std::max(corner[d], point[d]);
-  return corner;
-}
+std::array<double, 2> Outline::low() const { return corner_of(rings, std::less<>()); }
+std::array<double, 2> Outline::high() const { return corner_of(rings, std::greater<>()); }
 
 bool Outline::contains(double x, double y) const {
   bool inside = false;
