@@ -6,6 +6,8 @@
 namespace talus {
 namespace {
 
+bool narrow(double low, double high) { return high - low <= bracket_width * high; }
+
 class Search {
  public:
   FactorBracket bracket;
@@ -24,6 +26,7 @@ class Search {
     b.decided = !open();
   }
 
+  bool open_to(double factor) const { return factor > bracket.lower && (bracket.upper == 0 || factor < bracket.upper); }
   /// The factor of the next trial; 0 if there is none.
   double next() const {
     constexpr double stride = 1.25;  // of the factor until it is bracketed
@@ -44,8 +47,6 @@ class Search {
 
  private:
   bool open() const { return most_open_ > 0; }
-  static bool narrow(double low, double high) { return high - low <= bracket_width * high; }
-
   double least_open_ = 0, most_open_ = 0;  ///< factors of undecided trials in the bracket; 0 if there are none
 };
 
@@ -62,6 +63,44 @@ PetscErrorCode bracket_factor(double first, const TryFactor &attempt, FactorBrac
     search.learn(factor, outcome);
   }
   *result = search.bracket;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode climb_to_factor(const std::vector<double> &first, double ceiling, const TryFactor &attempt,
+                               FactorBracket *result, bool *interrupted) {
+  constexpr double largest_step = 0.05, stride = 1.25;  // of the factor, up and down
+  PetscFunctionBeginUser;
+  FactorBracket b;
+  b.upper = ceiling, *interrupted = false;
+  double step = largest_step, to = first[0];
+  for (size_t given = 1; to > smallest_factor && to < largest_factor;) {
+    TrialOutcome outcome;
+    PetscCall(attempt(to, &outcome, interrupted));
+    if (*interrupted) break;
+    if (outcome == TrialOutcome::equilibrium) {
+      b.lower = to;
+    } else {
+      given = first.size();
+      if (b.lower > 0 && narrow(b.lower, to)) {
+        b.decided = outcome == TrialOutcome::mechanism;
+        if (b.decided) b.upper = to;
+        break;
+      }
+      step = b.lower > 0 ? (to / b.lower - 1) / 2 : step;
+    }
+    if (b.lower == 0) {
+      to = to / stride;
+    } else if (given < first.size()) {
+      to = first[given++];
+    } else {
+      to = b.lower * (1 + step);
+      if (ceiling > 0 && to >= ceiling) {
+        if (narrow(b.lower, ceiling)) break;
+        to = std::sqrt(b.lower * ceiling);
+      }
+    }
+  }
+  *result = b;
   PetscFunctionReturn(0);
 }
 

@@ -3,6 +3,7 @@
 #include <petscsys.h>
 
 #include <functional>
+#include <vector>
 
 #include "solvers/quasi_static/factor_of_safety.h"
 
@@ -17,5 +18,11 @@ using TryFactor = std::function<PetscErrorCode(double factor, TrialOutcome *outc
 /// if none up to `largest_factor` found a mechanism.
 PetscErrorCode bracket_factor(double first, const TryFactor &attempt, FactorBracket *result, bool *interrupted);
 constexpr double bracket_width = 0.005, smallest_factor = 0.02, largest_factor = 20;
+
+/// The same for soil whose failure depends on its way there (psi < phi): the factor grows in steps from the last
+/// equilibrium, which are halved where they fail. Only a mechanism within `bracket_width` of an equilibrium counts.
+/// `first`, in ascending order, are the first trials; a mechanism is known at `ceiling`, 0 if there is none.
+PetscErrorCode climb_to_factor(const std::vector<double> &first, double ceiling, const TryFactor &attempt,
+                               FactorBracket *result, bool *interrupted);
 
 }  // namespace talus

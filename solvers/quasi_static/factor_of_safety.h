@@ -1,6 +1,7 @@
 #pragma once
 /// Result of a strength reduction, docs/theory/finite_elements.md section 5.
 #include <array>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,13 +26,33 @@ inline const char *name_of(TrialOutcome outcome) {
   return "";
 }
 
+/// How soil flows in a trial, docs/theory/finite_elements.md section 5.
+enum class TrialFlow {
+  own,    ///< with its own dilation angle, psi < phi
+  davis,  ///< psi = phi and the strength of a plane on which it slips with its own psi (Davis 1968): lower estimate
+  associated,  ///< psi = phi: upper bound (Radenkovic 1961)
+};
+constexpr TrialFlow all_flows[] = {TrialFlow::own, TrialFlow::davis, TrialFlow::associated};
+inline const char *name_of(TrialFlow flow) {
+  switch (flow) {
+    case TrialFlow::own:
+      return "own";
+    case TrialFlow::davis:
+      return "davis";
+    case TrialFlow::associated:
+      return "associated";
+  }
+  return "";
+}
+
 /// One trial: strength divided by `factor`.
 struct StrengthTrial {
   int search = 1;  ///< 1: for the critical mechanism; then one for each time that soil was held at its strength
   double factor = 0;
   TrialOutcome outcome = TrialOutcome::undecided;
-  bool dilating = false;    ///< with psi = phi, for the upper end of the spread; else with the soil's own psi
+  TrialFlow flow = TrialFlow::associated;
   int iterations = 0;       ///< linear systems that were solved
+  int steps = 0;            ///< of damped motion, where the iterations stalled
   double residual = 0;      ///< out-of-balance force over the size of the forces where the trial ended [-]
   double displacement = 0;  ///< largest displacement of a node since strength was first changed [m]
   double surplus = 0;       ///< of a mechanism: share of the work of the loads that the soil does not take up [-]
@@ -54,18 +75,18 @@ struct FactorBracket {
 
 /// A motion by which soil fails, and the factor of safety at which it does.
 struct Mechanism : FactorBracket {
-  FactorBracket dilating;               ///< of the same soil with psi = phi, if FactorOfSafety::davis
-  double moving_volume = 0;             ///< of the soil that moves [m3], in 2D per metre of thickness
-  std::array<double, 3> low{}, high{};  ///< corners of the box around it [m]
-  double of_critical = 1;               ///< share of the soil of the critical mechanism that it moves too [-]
+  std::map<TrialFlow, FactorBracket> by_flow;  ///< the same soil by each flow that was tried
+  double moving_volume = 0;                    ///< of the soil that moves [m3], in 2D per metre of thickness
+  std::array<double, 3> low{}, high{};         ///< corners of the box around it [m]
+  double of_critical = 1;                      ///< share of the soil of the critical mechanism that it moves too [-]
   std::vector<std::array<double, 2>> slip_surface;  ///< 2D: where it shears most, along x [m]
 };
 
 /// The critical mechanism, with the least factor, and those that were searched for besides.
 struct FactorOfSafety : Mechanism {
-  bool davis = false;                    ///< some soil has psi < phi: its strength is that of Davis (1968)
-  std::vector<Mechanism> further;        ///< with larger factors, in the order in which they were found
-  std::vector<std::string> lost_stages;  ///< stages before it that found no equilibrium
+  TrialFlow flow = TrialFlow::associated;  ///< of the factor itself: `own` where some soil has psi < phi
+  std::vector<Mechanism> further;          ///< with larger factors, in the order in which they were found
+  std::vector<std::string> lost_stages;    ///< stages before it that found no equilibrium
   std::vector<StrengthTrial> trials;
 };
 

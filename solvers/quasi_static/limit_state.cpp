@@ -6,12 +6,9 @@
 namespace talus {
 namespace {
 
-// Out-of-balance force over the size of the forces at which soil is in equilibrium. A slide of a hundredth of the soil
-// then misses a thousandth of its own weight, a fifth of the width of the bracket of a factor of safety.
-constexpr double small_residual = 1e-5;
-// A mechanism has moved by this much more than elastic soil under the same loads, and while the prop became ten times
-// softer its force has decreased by less than a quarter. The force on soil in equilibrium would be a tenth.
-constexpr double far = 10, lasting = 0.75;
+// While the prop became ten times softer its force has decreased by less than a quarter, where soil fails. The force on
+// soil in equilibrium would be a tenth.
+constexpr double lasting = 0.75;
 // Stiffness of the prop over that of elastic soil. With the last one, soil that has moved by 10,000 times the elastic
 // displacement is still in equilibrium.
 constexpr double first_prop = 1e-2, last_prop = 1e-9;
@@ -153,7 +150,7 @@ PetscErrorCode LimitState<dim>::search(LimitSearch *result) {
       break;
     }
     const double decades = last_force > 0 ? std::log10(last_prop_tried / prop_) : 0;
-    if (settled && decades > 0 && result->displacement > far * elastic_displacement_ &&
+    if (settled && decades > 0 && result->displacement > far_from_elastic * elastic_displacement_ &&
         force > std::pow(lasting, decades) * last_force) {
       double on_prop, of_loads;
       PetscCall(VecDot(of_prop_, x_, &on_prop));

@@ -12,12 +12,19 @@
 
 namespace talus {
 
+// Out-of-balance force over the size of the forces at which soil is in equilibrium. A slide of a hundredth of the soil
+// then misses a thousandth of its own weight, a fifth of the width of the bracket of a factor of safety.
+constexpr double small_residual = 1e-5;
+/// A mechanism has moved by this much more than elastic soil under the same loads.
+constexpr double far_from_elastic = 10;
+
 enum class LimitVerdict { equilibrium, mechanism, undecided, interrupted };
 
 /// How a search ended.
 struct LimitSearch {
   LimitVerdict verdict = LimitVerdict::undecided;
   int iterations = 0;       ///< linear systems that were solved
+  int steps = 0;            ///< of damped motion
   double residual = 0;      ///< out-of-balance force without the prop over the size of the forces at the end [-]
   double displacement = 0;  ///< largest displacement of a node during the search [m]
   double surplus = 0;       ///< of a mechanism: share of the work of the loads that the prop takes up [-]
@@ -38,6 +45,10 @@ class LimitState {
   /// Searches from the state of the problem. An equilibrium is committed (with the history of the laws unchanged); in
   /// every other case the problem keeps its state. Collective.
   PetscErrorCode search(LimitSearch *result);
+  /// The same by damped motion of the elements, for soil without an energy (psi < phi), where iterations stall.
+  /// Sources: Otter, Cassell & Hobbs (1966), Proc. Inst. Civ. Eng. 35; Cundall (1987), in Analytical and Computational
+  /// Methods in Engineering Rock Mechanics. Docs/theory/finite_elements.md section 5.
+  PetscErrorCode move(LimitSearch *result);  // damped_motion.cpp
   /// Moves the soil along the mechanism that was found last, so far that its largest displacement is `size` [m].
   /// Collective.
   PetscErrorCode move_along(double size);

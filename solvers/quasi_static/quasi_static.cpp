@@ -303,6 +303,15 @@ PetscErrorCode QuasiStatic<dim>::commit(::Vec x, bool softening) {
   PetscFunctionReturn(0);
 }
 
+template <int dim>
+PetscErrorCode QuasiStatic<dim>::accept(::Vec x) {
+  std::vector<double> u;
+  PetscFunctionBeginUser;
+  PetscCall(unknowns_.displacement_of(x, true, u));
+  soil_.accept(u, false), bases_.commit(u);
+  PetscFunctionReturn(0);
+}
+
 /// At the last converged state. What the soil did not bear when the path began counts by the share of the path.
 template <int dim>
 PetscErrorCode QuasiStatic<dim>::working_forces(Working *forces) const {

@@ -88,6 +88,8 @@ class QuasiStatic {
   PetscErrorCode solve_linear(::Vec b, ::Vec x, bool *solved);
   ::Vec loads() const { return target_; }  ///< nodal forces that the soil has to carry after `prepare` [N]
   PetscErrorCode commit(::Vec x, bool softening);
+  /// Soil and bases go on from the trial state of the last `residual(x)`; without its work, and without softening.
+  PetscErrorCode accept(::Vec x);
   Mat matrix() const { return matrix_; }
   double force_scale() const { return force_scale_; }  ///< what forces are small against [N]
   void close_scale() { scale_open_ = false; }          ///< an iterate that goes astray must not widen it

@@ -331,8 +331,7 @@ double SoilElements<dim>::strain_energy() const {
 // ---- states ----
 
 template <int dim>
-void SoilElements<dim>::commit(const std::vector<double> &u, bool softening) {
-  deform(u);
+void SoilElements<dim>::accept(const std::vector<double> &u, bool softening) {
   for (size_t i = 0; i < u.size(); ++i) displacement_[i] += u[i];
   for (GaussPoints<dim> &p : points_) {
     if (!p.present) continue;

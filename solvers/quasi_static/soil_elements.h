@@ -97,8 +97,9 @@ class SoilElements {
   double stress_work() const;
   /// Strain energy at the committed state, this rank's part [J].
   double strain_energy() const;
-  /// Accepts the trial state that `u` led to.
-  void commit(const std::vector<double> &u, bool softening);
+  /// Accepts the trial state to which `u` has led.
+  void accept(const std::vector<double> &u, bool softening);
+  void commit(const std::vector<double> &u, bool softening) { deform(u), accept(u, softening); }
   /// Displacement counts from here; so does plastic strain.
   void reset_displacement();
   /// Brings the present stress to what the laws admit now, as after a change of strength.

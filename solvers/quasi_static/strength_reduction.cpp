@@ -56,7 +56,7 @@ PetscErrorCode find_failure(QuasiStatic<dim> &problem, const std::vector<Law> &l
   PetscFunctionBeginUser;
   const auto before = problem.save();
   TrialStrength<dim> strength(problem.soil(), problem.bases(), laws);
-  strength.set(1, true);
+  strength.set(1, TrialFlow::associated);
   LimitState<dim> limit(problem);
   LimitSearch found;
   PetscCall(limit.setup(load_time, time));
@@ -91,7 +91,7 @@ PetscErrorCode settle_propped(QuasiStatic<dim> &problem, const std::vector<Law> 
   if (!outcome->converged && !outcome->stopped) {
     problem.restore(before);
     TrialStrength<dim> strength(problem.soil(), problem.bases(), laws);
-    strength.set(1, true);
+    strength.set(1, TrialFlow::associated);
     PetscCall(search());
     strength.restore();
     *dilated = outcome->converged;
@@ -115,54 +115,53 @@ template <int dim>
 class Reduction {
  public:
   Reduction(QuasiStatic<dim> &problem, TrialStrength<dim> &strength, const ReductionSettings<dim> &settings,
-            bool dilating, int search, LimitState<dim> &limit, std::vector<StrengthTrial> &trials)
+            TrialFlow flow, int search, LimitState<dim> &limit, std::vector<StrengthTrial> &trials)
       : problem_(problem),
         strength_(strength),
         settings_(settings),
-        dilating_(dilating),
+        flow_(flow),
         search_(search),
         limit_(limit),
         trials_(trials) {}
 
-  /// Brackets the factor; the first trial divides strength by `first`. Leaves the problem in the state of the largest
-  /// factor with an equilibrium.
+  /// Brackets the factor of soil with an energy, whose first trial divides strength by `first`. Leaves the problem in
+  /// the state of the largest factor with an equilibrium.
   PetscErrorCode bracket(double first, FactorBracket *result, bool *interrupted) {
     PetscFunctionBeginUser;
     start_ = stable_ = problem_.save();
-    const TryFactor attempt = [this](double factor, TrialOutcome *outcome, bool *stopped) {
-      return this->attempt(factor, outcome, stopped);
-    };
-    PetscCall(bracket_factor(first, attempt, result, interrupted));
+    PetscCall(bracket_factor(first, attempts(), result, interrupted));
+    problem_.restore(stable_);
+    PetscFunctionReturn(0);
+  }
+  /// The same for soil with psi < phi, see climb_to_factor.
+  PetscErrorCode climb(const std::vector<double> &first, double ceiling, FactorBracket *result, bool *interrupted) {
+    PetscFunctionBeginUser;
+    start_ = stable_ = problem_.save();
+    PetscCall(climb_to_factor(first, ceiling, attempts(), result, interrupted));
     problem_.restore(stable_);
     PetscFunctionReturn(0);
   }
 
  private:
+  using State = typename QuasiStatic<dim>::State;
+  TryFactor attempts() {
+    return [this](double factor, TrialOutcome *outcome, bool *stopped) { return attempt(factor, outcome, stopped); };
+  }
+
   PetscErrorCode attempt(double factor, TrialOutcome *outcome, bool *interrupted) {
     PetscFunctionBeginUser;
     const auto begin = std::chrono::steady_clock::now();
-    SoilElements<dim> &soil = problem_.soil();
     StrengthTrial trial;
-    trial.search = search_, trial.factor = factor, trial.dilating = dilating_;
-    for (const auto *state : {&stable_, &start_}) {  // from the first state too, where the last one leads nowhere
-      if (state == &start_ && !any_stable_) break;   // they are the same
-      problem_.restore(*state);
-      strength_.set(factor, dilating_);
-      LimitSearch found;
-      PetscCall(limit_.search(&found));
-      trial.iterations += found.iterations, trial.residual = found.residual, trial.surplus = found.surplus;
-      trial.curve = std::move(found.curve);
-      *interrupted = found.verdict == LimitVerdict::interrupted;
-      if (*interrupted) PetscFunctionReturn(0);
-      if (found.verdict != LimitVerdict::undecided) {
-        const bool stands = found.verdict == LimitVerdict::equilibrium;
-        trial.outcome = stands ? TrialOutcome::equilibrium : TrialOutcome::mechanism;
-        trial.displacement = stands ? soil.largest_displacement() : found.displacement;
-        if (stands) stable_ = problem_.save(), any_stable_ = true;
-        break;
-      }
-      trial.displacement = found.displacement;
-    }
+    trial.search = search_, trial.factor = factor, trial.flow = flow_;
+    const bool energy = flow_ != TrialFlow::own;
+    PetscCall(attempt_from(stable_, &LimitState<dim>::search, &trial, interrupted));
+    const auto open = [&] { return trial.outcome == TrialOutcome::undecided && !*interrupted; };
+    if (!energy && trial.outcome == TrialOutcome::mechanism) trial.outcome = TrialOutcome::undecided;
+    // from the first state too, where the last one leads nowhere
+    if (open() && energy && any_stable_) PetscCall(attempt_from(start_, &LimitState<dim>::search, &trial, interrupted));
+    if (open()) PetscCall(attempt_from(stable_, &LimitState<dim>::move, &trial, interrupted));
+    if (*interrupted) PetscFunctionReturn(0);
+    if (trial.outcome == TrialOutcome::equilibrium) stable_ = problem_.save(), any_stable_ = true;
     trial.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     *outcome = trial.outcome;
     trials_.push_back(trial);
@@ -170,14 +169,32 @@ class Reduction {
     PetscFunctionReturn(0);
   }
 
+  using Way = PetscErrorCode (LimitState<dim>::*)(LimitSearch *);
+  PetscErrorCode attempt_from(const State &state, Way way, StrengthTrial *trial, bool *interrupted) {
+    PetscFunctionBeginUser;
+    LimitSearch found;
+    problem_.restore(state);
+    strength_.set(trial->factor, flow_);
+    PetscCall((limit_.*way)(&found));
+    trial->iterations += found.iterations, trial->steps += found.steps;
+    trial->residual = found.residual, trial->surplus = found.surplus, trial->displacement = found.displacement;
+    trial->curve = std::move(found.curve);
+    *interrupted = found.verdict == LimitVerdict::interrupted;
+    trial->outcome = found.verdict == LimitVerdict::equilibrium ? TrialOutcome::equilibrium
+                     : found.verdict == LimitVerdict::mechanism ? TrialOutcome::mechanism
+                                                                : TrialOutcome::undecided;
+    if (trial->outcome == TrialOutcome::equilibrium) trial->displacement = problem_.soil().largest_displacement();
+    PetscFunctionReturn(0);
+  }
+
   QuasiStatic<dim> &problem_;
   TrialStrength<dim> &strength_;
   const ReductionSettings<dim> &settings_;
-  bool dilating_;
+  TrialFlow flow_;
   int search_;
   LimitState<dim> &limit_;
   std::vector<StrengthTrial> &trials_;
-  typename QuasiStatic<dim>::State start_, stable_;
+  State start_, stable_;
   bool any_stable_ = false;
 };
 
@@ -196,9 +213,10 @@ class MechanismSearch {
     State shown;  // the critical mechanism
     double first = 1;
     for (int search = 1; search <= most_searches; ++search) {
-      FactorBracket bracket;
-      PetscCall(reduction(!result_.davis, search).bracket(first, &bracket, interrupted));
+      std::map<TrialFlow, FactorBracket> by_flow;
+      PetscCall(bracket_each_flow(search, first, &by_flow, interrupted));
       if (*interrupted) PetscFunctionReturn(0);
+      const FactorBracket &bracket = by_flow.at(result_.flow);
       if (bracket.lower == 0 || bracket.upper == 0) {
         if (search == 1) static_cast<FactorBracket &>(result_) = bracket;
         break;
@@ -210,14 +228,8 @@ class MechanismSearch {
       bool grown;
       PetscCall(take_pieces(bracket, &fresh, &grown));
       problem_.restore(stable);
-      if (result_.davis && !fresh.empty()) {
-        FactorBracket dilating;
-        PetscCall(reduction(true, search).bracket(bracket.upper, &dilating, interrupted));
-        if (*interrupted) PetscFunctionReturn(0);
-        for (Mechanism &one : fresh) one.dilating = dilating;
-        problem_.restore(stable);
-      }
       for (Mechanism &one : fresh) {
+        one.by_flow = by_flow;
         if (count_ == 0)
           static_cast<Mechanism &>(result_) = one;
         else
@@ -234,8 +246,63 @@ class MechanismSearch {
 
  private:
   using State = typename QuasiStatic<dim>::State;
-  Reduction<dim> reduction(bool dilating, int search) {
-    return {problem_, strength_, settings_, dilating, search, limit_, result_.trials};
+  Reduction<dim> reduction(TrialFlow flow, int search) {
+    return {problem_, strength_, settings_, flow, search, limit_, result_.trials};
+  }
+
+  /// The factor by the flow of the result and, where this is the soil's own, by those of its bounds. Leaves the problem
+  /// in the state of the largest factor with an equilibrium, and that mechanism in `limit_` which was found last.
+  PetscErrorCode bracket_each_flow(int search, double first, std::map<TrialFlow, FactorBracket> *by_flow,
+                                   bool *interrupted) {
+    constexpr double weaker = 0.95;  // Davis's soil fails first
+    PetscFunctionBeginUser;
+    const State begin = problem_.save();
+    FactorBracket &upper = (*by_flow)[TrialFlow::associated];
+    PetscCall(reduction(TrialFlow::associated, search).bracket(first, &upper, interrupted));
+    if (*interrupted || result_.flow == TrialFlow::associated) PetscFunctionReturn(0);
+    problem_.restore(begin);
+    FactorBracket &lower = (*by_flow)[TrialFlow::davis];
+    PetscCall(reduction(TrialFlow::davis, search)
+                  .bracket(upper.lower > 0 ? weaker * upper.lower : first, &lower, interrupted));
+    if (*interrupted) PetscFunctionReturn(0);
+    problem_.restore(begin);
+    PetscCall(bracket_own_flow(search, first, lower.lower, upper.upper, &(*by_flow)[TrialFlow::own], interrupted));
+    PetscFunctionReturn(0);
+  }
+
+  /// Soil with psi < phi goes on from the state of the stages. If that was found with psi = phi, or not at all, the
+  /// soil is first so strong that it is elastic, and weakens from there.
+  PetscErrorCode bracket_own_flow(int search, double first, double low, double ceiling, FactorBracket *own,
+                                  bool *interrupted) {
+    PetscFunctionBeginUser;
+    if (search > 1 || settings_.by_own_flow) {
+      std::vector<double> climb{first};
+      if (low > first) climb.push_back(low);
+      PetscCall(reduction(TrialFlow::own, search).climb(climb, ceiling, own, interrupted));
+      PetscFunctionReturn(0);
+    }
+    const State begin = problem_.save();
+    bool strong;
+    PetscCall(strengthen(&strong, interrupted));
+    if (*interrupted) PetscFunctionReturn(0);
+    if (strong) PetscCall(reduction(TrialFlow::own, search).climb({low > 0 ? low : first}, ceiling, own, interrupted));
+    if (*interrupted || own->lower >= 1 || !settings_.stands) PetscFunctionReturn(0);
+    problem_.restore(begin);
+    PetscCall(reduction(TrialFlow::own, search).climb({first}, ceiling, own, interrupted));
+    PetscFunctionReturn(0);
+  }
+
+  /// Puts the loads on soil without stress that hardly yields.
+  PetscErrorCode strengthen(bool *found, bool *interrupted) {
+    constexpr double divisor = 0.05;  // of strength
+    PetscFunctionBeginUser;
+    LimitSearch search;
+    strength_.set(divisor, TrialFlow::associated);
+    for (GaussPoints<dim> &p : problem_.soil().points()) std::fill(p.stress.begin(), p.stress.end(), 0.);
+    PetscCall(limit_.search(&search));
+    *found = search.verdict == LimitVerdict::equilibrium;
+    *interrupted = search.verdict == LimitVerdict::interrupted;
+    PetscFunctionReturn(0);
   }
 
   /// Sorts the pieces of soil that move now into new mechanisms and shoulders of those that were found before. `grown`
@@ -290,7 +357,7 @@ PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law>
                                const ReductionSettings<dim> &settings, FactorOfSafety *result, bool *interrupted) {
   PetscFunctionBeginUser;
   *result = {}, *interrupted = false;
-  result->davis = std::any_of(laws.begin(), laws.end(), non_associated);
+  if (std::any_of(laws.begin(), laws.end(), non_associated)) result->flow = TrialFlow::own;
   std::vector<std::vector<double>> history;  // displacement counts from here, strength as it is
   for (const GaussPoints<dim> &p : problem.soil().points()) history.push_back(p.history);
   problem.soil().reset_displacement();

@@ -16,19 +16,19 @@ void if_frictional(AnyLaw &law, const Visit &visit) {
       law);
 }
 
-/// With the tensile strength and what suction adds to c divided by `factor`, the latter also times what slip without
-/// dilation leaves of it; c and phi come from the shares of the points, and psi = phi.
-Law law_of_trial(const Law &law, double factor, bool dilating) {
+/// With the tensile strength and what suction adds to c divided by `factor`, the latter also times what Davis's
+/// strength leaves of it; c and phi come from the shares of the points. `psi` is that of the soil's own flow [rad].
+Law law_of_trial(const Law &law, double psi, double factor, TrialFlow flow) {
   Law trial = with_reduced_strength(law, factor);
   if_frictional(trial, [&](auto &one) {
     using OneLaw = std::decay_t<decltype(one)>;
     const OneLaw &own = std::get<OneLaw>(law);
     if constexpr (requires { one.suction_cohesion; }) {
       const FrictionalPoint peak{1, own.friction_angle, own.dilation_angle};
-      one.suction_cohesion = own.suction_cohesion * strength_of_trial(peak, factor, dilating).c;
+      one.suction_cohesion = own.suction_cohesion * strength_of_trial(peak, factor, flow).c;
     }
     one.cohesion = own.cohesion, one.friction_angle = own.friction_angle, one.reads_shares = true;
-    one.dilation_angle = FrictionalStrength::right_angle;  // that is phi, which it cannot exceed
+    one.dilation_angle = flow == TrialFlow::own ? psi : FrictionalStrength::right_angle;  // but never above phi
     one.residual_cohesion = one.residual_friction_angle = one.residual_dilation_angle = -1, one.shape_factor = 0;
   });
   return trial;
@@ -42,12 +42,13 @@ bool non_associated(const Law &law) {
   return found;
 }
 
-FrictionalPoint strength_of_trial(const FrictionalPoint &own, double factor, bool dilating) {
+FrictionalPoint strength_of_trial(const FrictionalPoint &own, double factor, TrialFlow flow) {
   FrictionalStrength divided;
   divided.cohesion = own.c, divided.friction_angle = own.phi, divided.dilation_angle = own.psi;
   divided.reduce_strength(factor);
   const double phi = divided.friction_angle, psi = divided.dilation_angle;
-  const double beta = dilating ? 1 : std::cos(psi) * std::cos(phi) / (1 - std::sin(psi) * std::sin(phi));
+  if (flow != TrialFlow::davis) return {divided.cohesion, phi, flow == TrialFlow::own ? psi : phi};
+  const double beta = std::cos(psi) * std::cos(phi) / (1 - std::sin(psi) * std::sin(phi));
   const double reduced = std::atan(beta * std::tan(phi));
   return {beta * divided.cohesion, reduced, reduced};
 }
@@ -63,13 +64,16 @@ TrialStrength<dim>::TrialStrength(SoilElements<dim> &soil, BaseContact<dim> &bas
     if_frictional(laws[b], [&](auto law) {
       law.prepare();
       const int field = plastic_strain_field(laws[b]), size = history_size(laws[b]);
+      double volume = 0;
       for (int q = 0; q < p.count(); ++q) {
         Surroundings around{p.size[q]};
         if (!p.cohesion_share.empty()) around.cohesion = p.cohesion_share[q];
         if (!p.friction_share.empty()) around.friction = p.friction_share[q];
         const auto now = law.template faded<true>(p.history[q * size + field], around);
         body.own.push_back({now.c, now.phi, std::asin(std::min(now.sin_psi, std::sin(now.phi)))});
+        volume += p.volume[q], body.psi += p.volume[q] * body.own.back().psi;
       }
+      if (volume > 0) body.psi /= volume;
     });
   }
 }
@@ -119,18 +123,18 @@ PetscErrorCode TrialStrength<dim>::hold(const CellSet &cells, double divisor) {
 }
 
 template <int dim>
-void TrialStrength<dim>::set(double factor, bool dilating) {
+void TrialStrength<dim>::set(double factor, TrialFlow flow) {
   bases_.set_trial(factor);
   for (size_t b = 0; b < bodies_.size(); ++b) {
     GaussPoints<dim> &p = soil_.points()[b];
     const OfBody &body = bodies_[b];
-    p.law = law_of_trial(laws_[b], body.kept ? 1 : factor, dilating);
+    p.law = law_of_trial(laws_[b], body.psi, body.kept ? 1 : factor, flow);
     if_frictional(laws_[b], [&](const auto &law) {
       const auto share = [](double part, double whole) { return whole > 0 ? part / whole : 1; };
       p.cohesion_share.resize(p.count()), p.friction_share.resize(p.count());
       for (int q = 0; q < p.count(); ++q) {
         const FrictionalPoint now =
-            strength_of_trial(body.own[q], body.divisor[q] > 0 ? body.divisor[q] : factor, dilating);
+            strength_of_trial(body.own[q], body.divisor[q] > 0 ? body.divisor[q] : factor, flow);
         p.cohesion_share[q] = share(now.c, law.cohesion), p.friction_share[q] = share(now.phi, law.friction_angle);
       }
     });

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "solvers/quasi_static/base_contact.h"
+#include "solvers/quasi_static/factor_of_safety.h"
 #include "solvers/quasi_static/moving_soil.h"
 #include "solvers/quasi_static/soil_elements.h"
 
@@ -13,10 +14,8 @@ struct FrictionalPoint {
   double c, phi, psi;
 };
 
-/// This strength divided by `factor` and then with associated flow (psi = phi), which makes the limit load unique. With
-/// `dilating` cohesion and friction are those of (5.1). Else soil with psi < phi gets the strength that it has along a
-/// plane on which it slips (Davis 1968), (5.2).
-FrictionalPoint strength_of_trial(const FrictionalPoint &own, double factor, bool dilating);
+/// Strength of the soil in a trial: (5.1), for `davis` (5.2), each with the dilation of its flow.
+FrictionalPoint strength_of_trial(const FrictionalPoint &own, double factor, TrialFlow flow);
 
 /// Has the law a friction angle above its dilation angle?
 bool non_associated(const Law &law);
@@ -40,12 +39,13 @@ class TrialStrength {
   /// Strength of these cells, and of the bases under them, is divided by `divisor` in all trials from now on.
   /// Collective.
   PetscErrorCode hold(const CellSet &cells, double divisor);
-  void set(double factor, bool dilating);
+  void set(double factor, TrialFlow flow);
 
  private:
   struct OfBody {
     std::vector<FrictionalPoint> own;  ///< of points; none where the law has no such strength
     std::vector<double> divisor;       ///< of points; 0: that of the trial
+    double psi = 0;                    ///< mean of its points, by volume [rad]
     bool kept = false;                 ///< no trial divides its strength
     Law law;                           ///< with which the points came, and their shares
     std::vector<double> cohesion_share, friction_share;

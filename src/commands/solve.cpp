@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 
@@ -33,7 +34,13 @@ std::string to_json(const FactorBracket &bracket) {
       .str();
 }
 
-std::string to_json(const Mechanism &mechanism, bool davis) {
+std::string to_json(const std::map<TrialFlow, FactorBracket> &by_flow) {
+  json::Object object;
+  for (const auto &[flow, bracket] : by_flow) object.add(name_of(flow), to_json(bracket));
+  return object.str();
+}
+
+std::string to_json(const Mechanism &mechanism) {
   const auto point = [](const auto &x) {
     std::string text;
     for (const double coordinate : x) text += (text.empty() ? "" : ", ") + json::number(coordinate);
@@ -41,7 +48,7 @@ std::string to_json(const Mechanism &mechanism, bool davis) {
   };
   return json::Object()
       .add("factor_of_safety", to_json(static_cast<const FactorBracket &>(mechanism)))
-      .add("with_psi_equal_phi", davis ? to_json(mechanism.dilating) : "null")
+      .add("by_flow", to_json(mechanism.by_flow))
       .add("moving_volume_m3", mechanism.moving_volume)
       .add("low_m", point(mechanism.low))
       .add("high_m", point(mechanism.high))
@@ -62,20 +69,21 @@ std::string to_json(const FactorOfSafety &factor) {
     return json::Object()
         .add("search", t.search)
         .add("factor", t.factor)
-        .add("psi_is_phi", t.dilating ? "true" : "false")
+        .add("flow", json::text(name_of(t.flow)))
         .add("outcome", json::text(name_of(t.outcome)))
         .add("iterations", t.iterations)
+        .add("steps", t.steps)
         .add("residual", t.residual)
         .add("displacement_m", t.displacement)
         .add("surplus_of_work", t.surplus)
         .add("wall_s", t.wall_seconds)
         .str();
   };
-  const auto mechanism = [&](const Mechanism &m) { return to_json(m, factor.davis); };
+  const auto mechanism = [](const Mechanism &m) { return to_json(m); };
   return json::Object()
       .add("factor_of_safety", to_json(static_cast<const FactorBracket &>(factor)))
-      .add("flow", json::text(factor.davis ? "davis" : "associated"))
-      .add("with_psi_equal_phi", factor.davis ? to_json(factor.dilating) : "null")
+      .add("flow", json::text(name_of(factor.flow)))
+      .add("by_flow", to_json(factor.by_flow))
       .add("stages_without_equilibrium", json::array(factor.lost_stages, json::text))
       .add("mechanisms", json::array(mechanisms_of(factor), mechanism))
       .add("trials", json::array(factor.trials, trial))
@@ -96,18 +104,23 @@ std::string in_words(const FactorBracket &b) {
   return text;
 }
 
+/// What psi < phi leaves open.
+void print_bounds(const Mechanism &m) {
+  if (!m.by_flow.contains(TrialFlow::own)) return;
+  std::printf("  with psi = phi, an upper bound, which limit equilibrium assumes: %s\n",
+              in_words(m.by_flow.at(TrialFlow::associated)).c_str());
+  std::printf("  with the strength of Davis (1968), a lower estimate: %s\n",
+              in_words(m.by_flow.at(TrialFlow::davis)).c_str());
+}
+
 void print(const FactorOfSafety &factor) {
   std::printf("factor of safety %s\n", in_words(factor).c_str());
-  if (factor.davis)
-    std::printf(
-        "This is the factor with the strength of Davis (1968), because psi < phi. With psi = phi, which limit "
-        "equilibrium assumes, the factor of safety is %s\n",
-        in_words(factor.dilating).c_str());
+  print_bounds(factor);
   for (size_t k = 0; k < factor.further.size(); ++k) {
     const Mechanism &m = factor.further[k];
     std::printf("mechanism %zu, from x = %.4g to %.4g m, which moves %.3g %% of the soil of mechanism 1: %s\n", k + 2,
                 m.low[0], m.high[0], 100 * m.of_critical, in_words(m).c_str());
-    if (factor.davis) std::printf("With psi = phi it is %s\n", in_words(m.dilating).c_str());
+    print_bounds(m);
   }
 }
 
@@ -140,7 +153,8 @@ int solve(const SolveArguments &arguments) {
   if (arguments.factor_of_safety) {
     const FactorOfSafety factor = simulation->factor_of_safety();
     for (const Mechanism &m : mechanisms_of(factor))
-      if (!m.decided || (factor.davis && !m.dilating.decided)) status = undecided_status;
+      if (!m.decided || std::ranges::any_of(m.by_flow, [](const auto &f) { return !f.second.decided; }))
+        status = undecided_status;
     if (rank == 0) {
       const std::string document = to_json(factor) + "\n";
       std::ofstream(options.directory + "/factor_of_safety.json") << document;

@@ -97,6 +97,13 @@ std::string bracket_in_words(const FactorBracket &b) {
          " (equilibrium with strength divided by " + rounded(b.lower) + ", a mechanism with " + rounded(b.upper) + ")";
 }
 
+/// What psi < phi leaves open.
+std::string bounds_in_words(const Mechanism &m) {
+  return "lower estimate with the strength of Davis (1968) " + bracket_in_words(m.by_flow.at(TrialFlow::davis)) +
+         ", upper bound with psi = phi, which limit equilibrium assumes, " +
+         bracket_in_words(m.by_flow.at(TrialFlow::associated));
+}
+
 /// Volume and place of the soil that moves.
 std::string motion_in_words(const Mechanism &m, int dim) {
   return "moves " + rounded(m.moving_volume) + (dim == 2 ? " m3 of soil per metre" : " m3 of soil") +
@@ -126,11 +133,15 @@ constexpr double too_far = 0.2;  ///< displacement over the height of the soil; 
 /// A trial goes on from the state of the one before, and where that bears the loads with the new strength too there is
 /// nothing to iterate.
 std::string trial_in_words(const StrengthTrial &t, double height) {
-  std::string text =
-      "strength divided by " + rounded(t.factor) + (t.dilating ? ", psi = phi" : "") + ": " + name_of(t.outcome);
-  const bool at_once = t.outcome == TrialOutcome::equilibrium && t.iterations == 0;
+  std::string text = "strength divided by " + rounded(t.factor) +
+                     (t.flow == TrialFlow::associated ? ""
+                      : t.flow == TrialFlow::own      ? ", own psi"
+                                                      : ", strength of Davis") +
+                     ": " + name_of(t.outcome);
+  const bool at_once = t.outcome == TrialOutcome::equilibrium && t.iterations == 0 && t.steps == 0;
   text += at_once ? " at once, since the state that the trials before have led to bears it; "
-                  : " after " + std::to_string(t.iterations) + (t.iterations == 1 ? " iteration, " : " iterations, ");
+                  : " after " + std::to_string(t.iterations) + (t.iterations == 1 ? " iteration" : " iterations") +
+                        (t.steps > 0 ? " and " + std::to_string(t.steps) + " steps of damped motion, " : ", ");
   if (t.outcome == TrialOutcome::mechanism)
     return text + "displacement grows without bound, and " + rounded(100 * t.surplus) +
            " % of the work of the loads finds no resistance";
@@ -183,7 +194,8 @@ class FactorTables {
     curves_ = std::fopen((name + "_curves.csv").c_str(), "w");
     surfaces_ = std::fopen((name + "_slip_surfaces.csv").c_str(), "w");
     if (trials_)
-      std::fprintf(trials_, "factor,psi,outcome,iterations,residual,displacement_m,surplus_of_work,wall_s,search\n");
+      std::fprintf(trials_,
+                   "factor,flow,outcome,iterations,steps,residual,displacement_m,surplus_of_work,wall_s,search\n");
     if (curves_) std::fprintf(curves_, "trial,factor,iteration,displacement_m,residual\n");
     if (surfaces_) std::fprintf(surfaces_, "mechanism,equilibrium,failure,x_m,y_m\n");
   }
@@ -195,8 +207,8 @@ class FactorTables {
   void add(const StrengthTrial &t) {
     ++trial_count_;
     if (trials_)
-      std::fprintf(trials_, "%.6g,%s,%s,%d,%.3g,%.6g,%.3g,%.3g,%d\n", t.factor, t.dilating ? "phi" : "own",
-                   name_of(t.outcome), t.iterations, t.residual, t.displacement, t.surplus, t.wall_seconds, t.search),
+      std::fprintf(trials_, "%.6g,%s,%s,%d,%d,%.3g,%.6g,%.3g,%.3g,%d\n", t.factor, name_of(t.flow), name_of(t.outcome),
+                   t.iterations, t.steps, t.residual, t.displacement, t.surplus, t.wall_seconds, t.search),
           std::fflush(trials_);
     for (size_t k = 0; curves_ && k < t.curve.size(); ++k)
       std::fprintf(curves_, "%d,%.6g,%zu,%.6g,%.3g\n", trial_count_, t.factor, k, t.curve[k].first, t.curve[k].second);
@@ -241,6 +253,7 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   bool stopped = false;
   const SearchRegion region(run_.scene.factor_of_safety);
   ReductionSettings<dim> settings;
+  settings.stands = run_.statics.lost_stages.empty(), settings.by_own_flow = settings.stands && !run_.statics.dilated;
   settings.load_time = run_.clock.load_time, settings.time = run_.clock.time;
   settings.shown_displacement = 0.01 * extent, settings.mechanisms = run_.scene.factor_of_safety.mechanisms;
   if (!region.everywhere())
@@ -276,15 +289,12 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
                      motion_in_words(result, dim));
   tables.add(result);
   doubt(result);
-  if (result.davis)
-    run_.recorder.note(
-        "psi < phi: this is the factor of soil with the strength of Davis (1968) on its slip surface; with "
-        "psi = phi, as limit equilibrium assumes, it is " +
-        bracket_in_words(result.dilating));
+  if (result.flow == TrialFlow::own)
+    run_.recorder.note("this is the factor of soil with its own psi < phi; " + bounds_in_words(result));
   for (size_t k = 0; k < result.further.size(); ++k) {
     const Mechanism &m = result.further[k];
     run_.recorder.note("mechanism " + std::to_string(k + 2) + ": factor of safety " + bracket_in_words(m) +
-                       (result.davis ? ", with psi = phi " + bracket_in_words(m.dilating) : "") + "; it " +
+                       (result.flow == TrialFlow::own ? ", " + bounds_in_words(m) : "") + "; it " +
                        motion_in_words(m, dim) + ", and " + rounded(100 * m.of_critical) +
                        " % of the soil of mechanism 1");
     tables.add(m);

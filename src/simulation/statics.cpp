@@ -218,7 +218,7 @@ template <int dim>
 void Statics<dim>::serialize(Archive &archive) {
   bool begun = made();
   PathWork done = work();
-  archive.serialize("statics", begun, current_, moved_since_);
+  archive.serialize("statics", begun, current_, moved_since_, dilated);
   archive.serialize("work of statics", imposed_, done.stress, done.gravity, done.of_boundary);
   archive.records("pressure of seepage", seeped_cells_);
   std::string lost;

@@ -76,6 +76,7 @@ class Statics {
   /// Elements of first order make factors too large: a factor of safety has always those of second order.
   Elements elements() const { return for_factor ? Elements::quadratic : world_.scene.quasi_static.elements; }
   std::vector<std::string> lost_stages;  ///< names of these stages
+  bool dilated = false;                  ///< a stage found its equilibrium with psi = phi, see settle_propped
   /// What motion had done to the soil when the stage under way began.
   struct Moved {
     double way = 0, speed = 0;  ///< of the particle that has moved farthest, and of the fastest [m], [m/s]

@@ -13,6 +13,7 @@ BRIGHT = 0.97  # share of the soil that shears less than the end of the colour s
 ARROWS = 22  # squares over the longer side of the soil, with an arrow each
 LONGEST = 1.3  # length of an arrow over the side of its square
 TOO_FAR = 0.2  # displacement over the height of the soil, beyond which it has no meaning, as next to a mechanism: the balance of forces alone counts; also in factor_of_safety.cpp
+FLOWS = (("own", style.LINES[0], "psi < phi"), ("associated", style.LINES[1], "psi = phi"), ("davis", style.LINES[2], "strength of Davis"))
 MOVES = 0.1  # of the largest displacement: less has no arrow
 WIDTH, BESIDE, AROUND = 9.0, 1.9, 1.5  # of the picture, left and right of the soil, above and below it [inch]
 
@@ -38,9 +39,10 @@ def in_words(bracket):
 def factor_lines(factor):
     """Sentences for the report: the factor, what it assumes, and what was done to the strength."""
     lines = [f"Factor of safety {in_words(factor['factor_of_safety'])}."]
-    if factor["with_psi_equal_phi"]:
-        lines.append("Some soil has psi < phi: the factor is that of the strength of Davis (1968). "
-                     f"With psi = phi, as limit equilibrium assumes, it is {in_words(factor['with_psi_equal_phi'])}.")
+    if factor["flow"] == "own":
+        lines.append("Some soil has psi < phi, whose factor scatters with mesh and initial stress. "
+                     f"Upper bound, psi = phi as limit equilibrium assumes: {in_words(factor['by_flow']['associated'])}. "
+                     f"Lower estimate, strength of Davis (1968): {in_words(factor['by_flow']['davis'])}.")
     for number, mechanism in enumerate(factor["mechanisms"][1:], 2):
         lines.append(f"Mechanism {number}, from x = {mechanism['low_m'][0]:.4g} to {mechanism['high_m'][0]:.4g} m, which moves "
                      f"{100 * mechanism['share_of_critical_soil']:.0f} % of the soil of mechanism 1 too: "
@@ -124,19 +126,13 @@ def height_of(results):
 
 
 def draw_displacement(factor, headline, title, path, height=np.inf):
-    """Largest displacement of the trials in equilibrium, and lines at the factors for which it grows without bound. Trials with psi = phi go on from
-    the last state with psi < phi: those that moved no further have no displacement of their own and are diamonds at that of this state."""
+    """Largest displacement of the trials in equilibrium, and lines at the factors for which it grows without bound."""
     figure, axes = plt.subplots(figsize=(7.6, 4.0), layout="constrained")
-    before = 0.0  # the displacement with which the trials of a kind begin
-    for dilating, colour, name in ((False, style.LINES[0], "psi < phi"), (True, style.LINES[1], "psi = phi")):
-        trials = [t for t in factor["trials"] if t["psi_is_phi"] == dilating and t["search"] == 1]
-        stable = sorted((t["factor"], t["displacement_m"]) for t in trials if t["outcome"] == "equilibrium" and t["displacement_m"] > 1.0001 * before)
+    for flow, colour, name in FLOWS:
+        trials = [t for t in factor["trials"] if t["flow"] == flow and t["search"] == 1]
+        stable = sorted((t["factor"], t["displacement_m"]) for t in trials if t["outcome"] == "equilibrium")
         if stable:
-            axes.plot(*np.array(stable).T, "o-", color=colour, ms=4, label=f"equilibrium, {name}" + ", from the last of psi < phi on" * (before > 0))
-            before = stable[-1][1]
-        elif before > 0 and any(t["outcome"] == "equilibrium" for t in trials):
-            resting = sorted(t["factor"] for t in trials if t["outcome"] == "equilibrium")
-            axes.plot(resting, [before] * len(resting), ls="", marker="D", mfc="white", color=colour, ms=4, label=f"equilibrium, {name}, which moved no further")
+            axes.plot(*np.array(stable).T, "o-", color=colour, ms=4, label=f"equilibrium, {name}")
         for k, failed in enumerate(sorted(t["factor"] for t in trials if t["outcome"] == "mechanism")):
             axes.axvline(failed, color=colour, lw=0.8, ls=":", label=f"mechanism, {name}, the lowest at {failed:.4g}" if k == 0 else None)
         for k, open_one in enumerate(sorted(t["factor"] for t in trials if t["outcome"] == "undecided")):

@@ -8,6 +8,7 @@ import re
 
 import numpy as np
 
+from talus_factor import read_factor
 from talus_results import Thickness, largest_displacement, sliding, spacing
 
 MEASURES = {}
@@ -70,10 +71,10 @@ def load_time_of_failure(results):
 
 
 @measure
-def factor_of_safety(results, mechanism=1):
-    """What `talus solve --factor-of-safety` printed: the middle of its bracket, of the critical mechanism or a further one."""
-    before = "factor of safety" if mechanism == 1 else rf"mechanism {mechanism}, .*:"
-    return float(re.search(rf"{before} ([\d.]+)", (results.folder / "printed.txt").read_text())[1])
+def factor_of_safety(results, mechanism=1, flow=None):
+    """The middle of its bracket, of the critical mechanism or a further one; of soil with psi < phi also by another `flow`: davis, associated."""
+    found = read_factor(results)["mechanisms"][mechanism - 1]
+    return (found["by_flow"][flow] if flow else found["factor_of_safety"])["value"]
 
 
 @measure

@@ -45,7 +45,7 @@ class EquilibriumStage final : public StaticStage<dim> {
   void settle(Path &path) {
     left_at_ = path.share;
     require(settle_propped(this->run_.statics.problem(), this->run_.world.laws, this->load_at(1), this->run_.clock.time,
-                           &dilated_, &path.last));
+                           &this->run_.statics.dilated, &path.last));
     path.iterations += path.last.iterations;
     if (path.last.converged) path.share = 1, this->done(1);
   }
@@ -54,13 +54,12 @@ class EquilibriumStage final : public StaticStage<dim> {
     if (left_at_ >= 0)
       text << "; its load steps ended at " << 100 * left_at_
            << " %, and the rest came at once, against an elastic prop that was then taken away"
-           << (dilated_ ? ", in soil that moved with psi = phi: it bears this stress with its own psi too, but lateral "
+           << (this->run_.statics.dilated ? ", in soil that moved with psi = phi: it bears this stress with its own psi too, but lateral "
                           "stress and displacements are those of soil that dilates"
                         : ": displacements depend on this way more than stresses do")
            << ". Other load_steps (here " << this->stage_.load_steps
            << ") may do without, and so may initial_stress = \"k0\"";
   }
-  bool dilated_ = false;
   double left_at_ = -1;  ///< share of the loads where Newton's iterations ended before; -1: they did not
 };
 
