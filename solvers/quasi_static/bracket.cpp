@@ -52,10 +52,11 @@ class Search {
 
 }  // namespace
 
-PetscErrorCode bracket_factor(double first, const TryFactor &attempt, FactorBracket *result, bool *interrupted) {
+PetscErrorCode bracket_factor(double first, double ceiling, const TryFactor &attempt, FactorBracket *result,
+                              bool *interrupted) {
   PetscFunctionBeginUser;
   Search search;
-  *interrupted = false;
+  search.bracket.upper = ceiling, *interrupted = false;
   for (double factor = first; factor > 0; factor = search.next()) {
     TrialOutcome outcome;
     PetscCall(attempt(factor, &outcome, interrupted));

@@ -13,10 +13,12 @@ namespace talus {
 using TryFactor = std::function<PetscErrorCode(double factor, TrialOutcome *outcome, bool *interrupted)>;
 
 /// Brackets the factor by an equilibrium and a mechanism until the bracket is narrower than `bracket_width` of the
-/// factor; the first trial divides strength by `first`. Trials that are undecided leave the bracket wider, then
+/// factor; the first trial divides strength by `first`, and `ceiling` is known to be a mechanism, 0 if none is. Trials
+/// that are undecided leave the bracket wider, then
 /// `decided` is false. `result` has lower = 0 if no trial down to `smallest_factor` found an equilibrium, and upper = 0
 /// if none up to `largest_factor` found a mechanism.
-PetscErrorCode bracket_factor(double first, const TryFactor &attempt, FactorBracket *result, bool *interrupted);
+PetscErrorCode bracket_factor(double first, double ceiling, const TryFactor &attempt, FactorBracket *result,
+                              bool *interrupted);
 constexpr double bracket_width = 0.005, smallest_factor = 0.02, largest_factor = 20;
 
 /// The same for soil whose failure depends on its way there (psi < phi): the factor grows in steps from the last

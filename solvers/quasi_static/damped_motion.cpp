@@ -55,6 +55,10 @@ PetscErrorCode LimitState<dim>::move(LimitSearch *result) {
   constexpr int most_steps = 100000, between = 50, first_look = 200, looks = 2;  // in the time that doubles
   // Soil that goes on at one speed moves twice as far in twice the time, soil that comes to rest hardly further.
   constexpr double going_on = 1.6;
+  // Heavy soil goes slowly: after so many steps one that still goes on under a force that lasts has failed however far
+  // it went, where it goes four times as far in twice the time, or at the end.
+  constexpr int settled = 20000;
+  constexpr double accelerating = 3, lasting_force = 0.9;
   PetscFunctionBeginUser;
   *result = {};
   const auto before = problem_.save();
@@ -92,10 +96,13 @@ PetscErrorCode LimitState<dim>::move(LimitSearch *result) {
     auto &curve = result->curve;
     curve.emplace_back(result->displacement, result->residual);
     const auto way_before = [&](size_t doublings) {
-      return curve.size() > doublings * looks ? curve[curve.size() - 1 - doublings * looks].first : 0;
+      return curve.size() > doublings * looks ? curve[curve.size() - 1 - doublings * looks].first : 0.;
     };
-    const double recent = result->displacement - way_before(1), before_it = way_before(1) - way_before(2);
-    if (result->displacement > far_from_elastic * elastic_displacement_ && recent > going_on * before_it) {
+    const auto gained = [&](size_t doublings) { return way_before(doublings) - way_before(doublings + 1); };
+    const bool far = result->displacement > far_from_elastic * elastic_displacement_;
+    const bool lasts = step > settled && result->residual > lasting_force * curve[curve.size() - 1 - 2 * looks].second;
+    const double pace = std::min(gained(0) / gained(1), lasts ? gained(1) / gained(2) : 1e300);
+    if (pace > going_on && (far || (lasts && (pace > accelerating || look > most_steps)))) {
       double work, of_loads;
       PetscCall(VecDot(force_, velocity, &work));
       PetscCall(VecDot(problem_.loads(), velocity, &of_loads));

@@ -85,8 +85,11 @@ struct Mechanism : FactorBracket {
 /// The critical mechanism, with the least factor, and those that were searched for besides.
 struct FactorOfSafety : Mechanism {
   TrialFlow flow = TrialFlow::associated;  ///< of the factor itself: `own` where some soil has psi < phi
-  std::vector<Mechanism> further;          ///< with larger factors, in the order in which they were found
-  std::vector<std::string> lost_stages;    ///< stages before it that found no equilibrium
+  /// Of soil with psi < phi that weakens from great strength, where it is less than 1 though the stages found an
+  /// equilibrium with psi = phi; else empty.
+  FactorBracket weakened;
+  std::vector<Mechanism> further;        ///< with larger factors, in the order in which they were found
+  std::vector<std::string> lost_stages;  ///< stages before it that found no equilibrium
   std::vector<StrengthTrial> trials;
 };
 

@@ -124,12 +124,12 @@ class Reduction {
         limit_(limit),
         trials_(trials) {}
 
-  /// Brackets the factor of soil with an energy, whose first trial divides strength by `first`. Leaves the problem in
-  /// the state of the largest factor with an equilibrium.
-  PetscErrorCode bracket(double first, FactorBracket *result, bool *interrupted) {
+  /// Brackets the factor of soil with an energy, see bracket_factor. Leaves the problem in the state of the largest
+  /// factor with an equilibrium.
+  PetscErrorCode bracket(double first, double ceiling, FactorBracket *result, bool *interrupted) {
     PetscFunctionBeginUser;
     start_ = stable_ = problem_.save();
-    PetscCall(bracket_factor(first, attempts(), result, interrupted));
+    PetscCall(bracket_factor(first, ceiling, attempts(), result, interrupted));
     problem_.restore(stable_);
     PetscFunctionReturn(0);
   }
@@ -258,12 +258,12 @@ class MechanismSearch {
     PetscFunctionBeginUser;
     const State begin = problem_.save();
     FactorBracket &upper = (*by_flow)[TrialFlow::associated];
-    PetscCall(reduction(TrialFlow::associated, search).bracket(first, &upper, interrupted));
+    PetscCall(reduction(TrialFlow::associated, search).bracket(first, 0, &upper, interrupted));
     if (*interrupted || result_.flow == TrialFlow::associated) PetscFunctionReturn(0);
     problem_.restore(begin);
     FactorBracket &lower = (*by_flow)[TrialFlow::davis];
     PetscCall(reduction(TrialFlow::davis, search)
-                  .bracket(upper.lower > 0 ? weaker * upper.lower : first, &lower, interrupted));
+                  .bracket(upper.lower > 0 ? weaker * upper.lower : first, upper.upper, &lower, interrupted));
     if (*interrupted) PetscFunctionReturn(0);
     problem_.restore(begin);
     PetscCall(bracket_own_flow(search, first, lower.lower, upper.upper, &(*by_flow)[TrialFlow::own], interrupted));
@@ -287,6 +287,7 @@ class MechanismSearch {
     if (*interrupted) PetscFunctionReturn(0);
     if (strong) PetscCall(reduction(TrialFlow::own, search).climb({low > 0 ? low : first}, ceiling, own, interrupted));
     if (*interrupted || own->lower >= 1 || !settings_.stands) PetscFunctionReturn(0);
+    result_.weakened = *own;
     problem_.restore(begin);
     PetscCall(reduction(TrialFlow::own, search).climb({first}, ceiling, own, interrupted));
     PetscFunctionReturn(0);

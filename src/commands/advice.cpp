@@ -158,7 +158,7 @@ class Adviser {
   }
 
   /// Soil that keeps its strength, where finite elements are asked how much it bears. The first stage at rest is mostly
-  /// that of its own weight. A search for the factor of safety takes the strength of Davis, whose load is unique.
+  /// that of its own weight.
   void flow(const BodyNeeds &b) {
     if (b.softening.slope != 0 || flow_off_normal(b.law) <= flow_far_off_normal) return;
     const std::string off = "The friction angle of " + b.body.name + " exceeds its dilation angle by " +
@@ -177,10 +177,10 @@ class Adviser {
           "with associated flow and the strength of Davis (1968).");
     if (scene_.root->has("factor_of_safety"))
       say(off +
-          "its load at failure is not unique, so the factor of safety is that with the strength of Davis (1968), " +
-          digits(davis_share(b.law), 2) +
-          " of its shear strength, which is usually on the safe side; the factor with psi = phi, which is given "
-          "too, is an upper limit.");
+          "its load at failure is not unique, and its factor of safety differs by some per cent from mesh to mesh; "
+          "compute it with two. It is given between an upper bound, psi = phi, and a lower estimate, the strength of "
+          "Davis (1968), " +
+          digits(davis_share(b.law), 2) + " of its shear strength.");
   }
 
   void stiffness() {

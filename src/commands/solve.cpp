@@ -84,6 +84,7 @@ std::string to_json(const FactorOfSafety &factor) {
       .add("factor_of_safety", to_json(static_cast<const FactorBracket &>(factor)))
       .add("flow", json::text(name_of(factor.flow)))
       .add("by_flow", to_json(factor.by_flow))
+      .add("weakened", factor.weakened.upper > 0 ? to_json(factor.weakened) : "null")
       .add("stages_without_equilibrium", json::array(factor.lost_stages, json::text))
       .add("mechanisms", json::array(mechanisms_of(factor), mechanism))
       .add("trials", json::array(factor.trials, trial))
@@ -116,6 +117,9 @@ void print_bounds(const Mechanism &m) {
 void print(const FactorOfSafety &factor) {
   std::printf("factor of safety %s\n", in_words(factor).c_str());
   print_bounds(factor);
+  if (factor.weakened.upper > 0)
+    std::printf("  of soil that weakens from great strength, in place of the stress of the stages: %s\n",
+                in_words(factor.weakened).c_str());
   for (size_t k = 0; k < factor.further.size(); ++k) {
     const Mechanism &m = factor.further[k];
     std::printf("mechanism %zu, from x = %.4g to %.4g m, which moves %.3g %% of the soil of mechanism 1: %s\n", k + 2,

@@ -291,6 +291,12 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   doubt(result);
   if (result.flow == TrialFlow::own)
     run_.recorder.note("this is the factor of soil with its own psi < phi; " + bounds_in_words(result));
+  if (result.weakened.upper > 0)
+    run_.recorder.note(
+        "it begins with the stress that the stages found with psi = phi; if this soil weakens from great "
+        "strength, it fails already " +
+        bracket_in_words(result.weakened) +
+        ": whether it stands with its own strength depends on how it came to its stress");
   for (size_t k = 0; k < result.further.size(); ++k) {
     const Mechanism &m = result.further[k];
     run_.recorder.note("mechanism " + std::to_string(k + 2) + ": factor of safety " + bracket_in_words(m) +
@@ -303,11 +309,11 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   if (static_cast<int>(result.further.size()) + 1 < settings.mechanisms)
     run_.recorder.note("no further mechanism was found: the rest of the soil stands while that of those found is held");
   for (const std::string &stage : result.lost_stages)
-    run_.recorder.note(
-        "warning: stage " + stage +
-        " found no equilibrium, so the search for the factor began out of balance: the factor is doubtful, "
-        "and displacement and stress of that stage are not those of this soil. Search again where the "
-        "stage has an equilibrium: with other load_steps, initial_stress = \"k0\", or other cells");
+    run_.recorder.note("stage " + stage + " found no equilibrium" +
+                       (result.lower < 1
+                            ? ": the soil does not stand with its own strength"
+                            : " by its load steps, though the soil stands: displacement and stress of that "
+                              "stage are not those of this soil. The factor does not need them"));
   ++run_.clock.steps;
   run_.hand_to_particles();
   run_.recorder.write_history();

@@ -51,10 +51,10 @@ def overrides_of(name):
 
 
 def rows_of(answer, **facts):
-    """One row for psi = 0 and one for psi = phi."""
-    for psi, bracket in (("0", answer["factor_of_safety"]), ("phi", answer["with_psi_equal_phi"])):
+    """One row for each flow: the soil's own psi = 0, and its bounds."""
+    for flow, bracket in answer["by_flow"].items():
         value = f"{bracket['value']:.3f}" if bracket["decided"] else f"{bracket['equilibrium']:.3f} to {bracket['mechanism']:.3f}"
-        yield {**facts, "psi": psi, "lower": f"{bracket['equilibrium']:.4f}", "upper": f"{bracket['mechanism']:.4f}", "factor": value}
+        yield {**facts, "flow": flow, "lower": f"{bracket['equilibrium']:.4f}", "upper": f"{bracket['mechanism']:.4f}", "factor": value}
 
 
 def write(name, rows):
@@ -73,7 +73,7 @@ def slopes(talus):
         for size in sizes:
             answer, _ = solve(talus, scene, [*overrides, f"mesh.size={size}"])
             rows += rows_of(answer, slope=name, published=published, spencer=spencer, spencer_davis=davis, size_m=size)
-            print(*rows[-2:], sep="\n", flush=True)
+            print(*rows[-3:], sep="\n", flush=True)
             write("factors.csv", rows)
 
 
@@ -82,7 +82,7 @@ def meshes(talus):
     for size in GUIDE_SIZES:
         answer, seconds = solve(talus, "guide_slope.toml", [f"mesh.size={size}"])
         rows += rows_of(answer, size_m=size, cpu_s=f"{seconds:.1f}")
-        print(*rows[-2:], sep="\n", flush=True)
+        print(*rows[-3:], sep="\n", flush=True)
         write("meshes.csv", rows)
 
 

@@ -49,10 +49,17 @@ def factor_lines(factor):
                      f"{in_words(mechanism['factor_of_safety'])}.")
     if not factor["factor_of_safety"]["decided"]:
         lines.append("Trials between the two ends found neither an equilibrium nor a mechanism, so there is no number.")
-    for stage in factor["stages_without_equilibrium"]:
-        lines.append(f"Warning: stage {stage} found no equilibrium, so the search began out of balance: the factor is doubtful, and displacement and "
-                     "stress of that stage are not those of this soil.")
+    if factor["stages_without_equilibrium"]:
+        lines.append(f"{lost_stages(factor).capitalize()}.")
     return lines
+
+
+def lost_stages(factor):
+    """What stages without equilibrium mean, in words."""
+    of = f"stage {', '.join(factor['stages_without_equilibrium'])} found no equilibrium"
+    if factor["factor_of_safety"]["equilibrium"] < 1:
+        return f"{of}: the soil does not stand with its own strength"
+    return f"{of} by its load steps, though the soil stands: displacement and stress of that stage are not those of this soil"
 
 
 def draw_factor(results, folder):

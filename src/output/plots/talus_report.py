@@ -6,7 +6,7 @@ import pathlib
 
 import numpy as np
 
-from talus_factor import factor_lines, read_factor, short
+from talus_factor import factor_lines, lost_stages, read_factor, short
 from talus_histories import base_friction
 from talus_measures import flow, known
 from talus_model import draw_model
@@ -80,7 +80,7 @@ def key_results(results):
     """[(what, number, note)] that a reader wants first."""
     last = results.snapshots[-1]
     factor = read_factor(results)
-    found = [] if factor is None else [("Factor of safety", short(factor["factor_of_safety"]), ends_of(factor["factor_of_safety"]) + doubt(factor))]
+    found = [] if factor is None else [("Factor of safety", short(factor["factor_of_safety"]), ends_of(factor["factor_of_safety"]) + bounds(factor))]
     lost = (factor or {}).get("stages_without_equilibrium", ())
     found.append(("Particles", thousands(len(last.position())), ", ".join(results.bodies)))
     when = "at the end" if factor is None else "before the strength is reduced"
@@ -93,7 +93,7 @@ def key_results(results):
         if "volume" in last:
             came_to = outcome(results)
             if lost:
-                found.append((f"State {when}", "no equilibrium", f"stage {', '.join(lost)} found none: displacements are those of the last state on the way to its loads"))
+                found.append((f"State {when}", "no equilibrium", f"{lost_stages(factor)}; displacements are those of the last state on the way to its loads"))
             else:
                 found.append((f"State {when}", came_to["state"], in_words(came_to, came_to["cell_m"]) + motion_at_end(last)))
             volume = came_to["volume_of_slide_m3"]
@@ -134,10 +134,11 @@ def ends_of(bracket):
     return f"equilibrium with strength divided by {bracket['equilibrium']:.4g}, a mechanism with {bracket['mechanism']:.4g}"
 
 
-def doubt(factor):
-    """What makes the number doubtful, in words; empty where nothing does."""
-    lost = factor.get("stages_without_equilibrium")
-    return f"; doubtful: stage {', '.join(lost)} found no equilibrium, so the search began out of balance" if lost else ""
+def bounds(factor):
+    """What psi < phi leaves open, in words; empty where psi = phi."""
+    if factor["flow"] != "own":
+        return ""
+    return f"; soil with psi < phi: lower estimate {short(factor['by_flow']['davis'])} (strength of Davis), upper bound {short(factor['by_flow']['associated'])} (psi = phi)"
 
 
 def motion_at_end(last):

@@ -85,12 +85,12 @@ TEST(Block, has_its_exact_factor_with_and_without_dilation) {
       Overrides dilating = soil;
       dilating.push_back("body.soil.dilation_angle=" + std::to_string(phi));
       const FactorOfSafety none = factor_of(soil), full = factor_of(dilating);
-      EXPECT_EQ(none.davis, phi > 0);
-      EXPECT_FALSE(full.davis);
+      EXPECT_EQ(none.flow, phi > 0 ? TrialFlow::own : TrialFlow::associated);
+      EXPECT_EQ(full.flow, TrialFlow::associated);
       const double angle = phi * degree.si;
-      expect_holds(none, exact_factor(c, angle, true));
-      expect_holds(full, exact_factor(c, angle, false));
-      if (none.davis) expect_holds(none.dilating, exact_factor(c, angle, false));
+      for (const FactorOfSafety &factor : {none, full})
+        for (const auto &[flow, bracket] : factor.by_flow)
+          expect_holds(bracket, exact_factor(c, angle, flow == TrialFlow::davis));
     }
 }
 
@@ -293,22 +293,18 @@ TEST(FactorBracket, is_no_answer_where_it_is_wide) {
   EXPECT_FALSE((FactorBracket{.lower = 0.209, .upper = 1.003, .decided = true}.failed()));
 }
 
-/// A linear solver that gives up, here for want of iterations, leaves trials undecided: their factors are no answer.
+/// A linear solver that gives up, here for want of iterations, leaves trials to damped motion, which needs none.
 struct FewIterations {
   explicit FewIterations(int most) { PetscOptionsSetValue(nullptr, "-talus_ksp_max_it", std::to_string(most).c_str()); }
   ~FewIterations() { PetscOptionsClearValue(nullptr, "-talus_ksp_max_it"); }
 };
 
-TEST(Block, has_no_factor_where_trials_lead_nowhere) {
+TEST(Block, has_the_same_factor_by_damped_motion) {
+  const double exact = exact_factor(14e3, 0, false);
   const FewIterations none(1);
-  try {
-    factor_of({"quasi_static.linear_solver=iterative", "gravity=10"});
-    ADD_FAILURE() << "a factor without a trial";
-  } catch (const RunError &error) {
-    EXPECT_NE(std::string(error.what()).find(", but no mechanism: the iterations of the others led nowhere"),
-              std::string::npos)
-        << error.what();
-  }
+  const FactorOfSafety factor = factor_of({"quasi_static.linear_solver=iterative"});
+  EXPECT_TRUE(std::ranges::any_of(factor.trials, [](const StrengthTrial &t) { return t.steps > 0; }));
+  expect_holds(factor, exact);
 }
 
 }  // namespace

@@ -633,8 +633,9 @@ class Resets(unittest.TestCase):
 class Factors(unittest.TestCase):
     def test_that_are_brackets_have_a_headline_with_room_and_a_legend_beside_the_lines(self):
         bracket = {"decided": False, "equilibrium": 1.083, "mechanism": 1.0912}
-        trials = [{"psi_is_phi": dilating, "search": 1, "factor": factor, "outcome": outcome, "displacement_m": size} for dilating, factor, outcome, size in
-                  ((False, 1.0, "equilibrium", 0.1), (False, 1.083, "equilibrium", 0.6), (False, 1.0912, "mechanism", 9), (True, 1.17, "equilibrium", 6), (True, 1.18, "mechanism", 9))]
+        trials = [{"flow": flow, "search": 1, "factor": factor, "outcome": outcome, "displacement_m": size} for flow, factor, outcome, size in
+                  (("own", 1.0, "equilibrium", 0.1), ("own", 1.083, "equilibrium", 0.6), ("own", 1.0912, "mechanism", 9), ("associated", 1.17, "equilibrium", 6),
+                   ("associated", 1.18, "mechanism", 9))]
         with unittest.mock.patch.object(talus_factor.style, "save", lambda figure, path: figure):
             figure = talus_factor.draw_displacement({"trials": trials}, f"Factor of safety {talus_factor.in_words(bracket)}", "Cut of 14 m", None)
         figure.canvas.draw()
@@ -1364,18 +1365,6 @@ class Mechanisms(unittest.TestCase):
         # below the axis a second line of words was cut off in a low section
         self.assertEqual(figure.axes[0].get_xlabel(), "x [m]")
         self.assertIn("whose size is free", figure.axes[0].get_title(loc="left"))
-
-    def test_a_displacement_that_another_search_has_left_is_no_curve(self):
-        def trial(factor, dilating, outcome, displacement):
-            return {"factor": factor, "psi_is_phi": dilating, "search": 1, "outcome": outcome, "displacement_m": displacement}
-        own = [trial(1.0, False, "equilibrium", 0.01), trial(1.2, False, "equilibrium", 0.03), trial(1.3, False, "mechanism", 1)]
-        for further, curves in (([trial(1.25, True, "equilibrium", 0.03)], 1), ([trial(1.25, True, "equilibrium", 0.03), trial(1.3, True, "equilibrium", 0.05)], 2)):
-            factor = {"trials": own + further + [trial(1.4, True, "mechanism", 1)]}
-            drawn = self.figure(lambda: talus_factor.draw_displacement(factor, "", "", None)).axes[0].lines
-            lines, resting = ([line for line in drawn if line.get_marker() == marker] for marker in "oD")
-            self.assertEqual((len(lines), len(resting)), (curves, 2 - curves))
-        self.assertEqual(lines[1].get_xdata().tolist(), [1.3])
-        self.assertIn("from the last", lines[1].get_label())
 
 
 if __name__ == "__main__":

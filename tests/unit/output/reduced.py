@@ -55,17 +55,17 @@ class Doubts(unittest.TestCase):
                                         per_metre=lambda unit: unit)
         came_to = {"state": "stands", "cell_m": 1.0, "largest_displacement_m": 0.01, "volume_of_slide_m3": None}
         for lost in ((), ("gravity",)):
-            factor = {"factor_of_safety": BRACKET, "stages_without_equilibrium": lost}
+            factor = {"factor_of_safety": BRACKET, "flow": "associated", "stages_without_equilibrium": lost}
             with unittest.mock.patch("talus_report.read_factor", lambda results: factor), unittest.mock.patch("talus_report.outcome", lambda results: came_to), \
                     unittest.mock.patch("talus_report.motion_at_end", lambda last: ""), unittest.mock.patch("talus_report.largest_displacement", lambda last: 0.01), \
                     unittest.mock.patch("talus_report.flow", lambda results: None), unittest.mock.patch("talus_report.top_speed", lambda results: None):
                 cards = {what: (number, note) for what, number, note in key_results(results)}
             self.assertEqual(cards["State before the strength is reduced"][0], "no equilibrium" if lost else "stands")
-            self.assertEqual("doubtful: stage gravity found no equilibrium" in cards["Factor of safety"][1], bool(lost))
+            self.assertEqual("stage gravity found no equilibrium" in cards["State before the strength is reduced"][1], bool(lost))
 
     def test_an_equilibrium_that_moved_further_than_the_soil_is_high_is_doubted(self):
         for way, doubted in ((3.5, False), (23.65, True)):
-            trials = [{"psi_is_phi": True, "search": 1, "factor": 1.142, "outcome": "equilibrium", "displacement_m": way}]
+            trials = [{"flow": "associated", "search": 1, "factor": 1.142, "outcome": "equilibrium", "displacement_m": way}]
             with unittest.mock.patch.object(talus_factor.style, "save", lambda figure, path: figure):
                 figure = talus_factor.draw_displacement({"trials": trials}, "", "", None, 18.0)
             self.assertEqual("displacement has no meaning: the balance of forces alone counts" in figure.axes[0].get_title(loc="left"), doubted)

@@ -35,6 +35,7 @@ inline void fem_infinite_slope(Rung &rung) {
                "body.soil.dilation_angle=" + number(dilation), "boundary.left.traction" + traction(-1),
                "boundary.right.traction" + traction(1),
                "stage.0.seismic_coefficient=[" + number(k * std::cos(b)) + ", " + number(k * std::sin(b)) + "]"})
+          .by_flow.at(dilation > 0 ? TrialFlow::associated : TrialFlow::davis)
           .value();
     };
     const std::string name = "slope of " + number(slope) + " deg, phi = " + number(phi) + " deg";
