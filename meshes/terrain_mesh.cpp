@@ -44,7 +44,9 @@ class TerrainModel {
     for (const char *off : {"Mesh.MeshSizeFromPoints", "Mesh.MeshSizeExtendFromBoundary", "Mesh.MeshSizeMin"})
       gmsh::option::setNumber(off, 0);
     gmsh::option::setNumber("Mesh.Algorithm", 6);
-    model::mesh::setSizeCallback([this](int, int, double x, double y, double z) { return terrain_.size_at(x, y, z); });
+    // Gmsh 4.8 passes a place, 4.13 also the size that other settings ask for
+    model::mesh::setSizeCallback(
+        [this](int, int, double x, double y, double z, auto...) { return terrain_.size_at(x, y, z); });
     model::mesh::generate(3);
     model::mesh::removeSizeCallback();
     rebuild();

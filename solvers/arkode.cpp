@@ -1,13 +1,12 @@
 #include "solvers/arkode.h"
 
-#include <arkode/arkode_arkstep.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
 
 #include "solvers/nodal_vector.h"
+#include "solvers/sundials_versions.h"
 
 namespace talus {
 namespace {
@@ -78,9 +77,12 @@ struct Arkode::Memory {
   std::string obstacle;
   int component = -1;
   SUNNonlinearSolver drag = nullptr;
+  sundials::StepControl control{next_step, this};
+  int order = 0;  // of the method
 
   ~Memory() {
-    if (solver) ARKStepFree(&solver);
+    if (solver) ARKodeFree(&solver);
+    control.release();
     if (drag) SUNNonlinSolFreeEmpty(drag);
     if (first) N_VDestroy(first);
     if (error) N_VDestroy(error);
@@ -93,14 +95,14 @@ struct Arkode::Memory {
   static int rates(double t, N_Vector y, N_Vector rate, void *self);
   static int solve_drag(SUNNonlinearSolver, N_Vector, N_Vector change, N_Vector, double, int, void *solver);
   static int accept(double t, N_Vector y, void *self);
-  /// The step h whose error e, of order p + 1 for an embedded method of order p, just meets the tolerance. ARKODE's own
-  /// controllers look back over several steps; that history does not survive a remap.
-  static int next_step(N_Vector, double, double h, double, double, double e, double, double, int, int p, double *next,
-                       void *self) {
-    constexpr double shrink = 0.1, growth = 5;
-    const double factor = e > 0 ? std::pow(e, -1. / (p + 1)) : growth;
-    *next = static_cast<Memory *>(self)->wanted = h * std::clamp(factor, shrink, growth);
-    return 0;
+  /// The step whose error just meets the tolerance with some caution, after a step h with error e. The error of the
+  /// embedded method is of the order of the method. ARKODE's own controllers look back over several steps; that history
+  /// does not survive a remap.
+  static double next_step(double h, double e, void *self) {
+    constexpr double shrink = 0.1, growth = 5, caution = 1.5;
+    Memory &m = *static_cast<Memory *>(self);
+    const double factor = e > 0 ? std::pow(caution * e, -1. / m.order) : growth;
+    return m.wanted = h * std::clamp(factor, shrink, growth);
   }
   static constexpr double cfl = 0.9;  // ARKODE wants a fraction below 1; `stable_step` makes up for it
   static int stable_step(N_Vector, double, double *step, void *self) {
@@ -130,13 +132,12 @@ int Arkode::Memory::solve_drag(SUNNonlinearSolver, N_Vector, N_Vector change, N_
   double t, gamma;
   N_Vector predicted, known, stage, rate;
   void *self;
-  if (ARKStepGetNonlinearSystemData(solver, &t, &predicted, &stage, &rate, &gamma, &known, &self))
-    return SUN_NLS_MEM_NULL;
+  if (ARKodeGetNonlinearSystemData(solver, &t, &predicted, &stage, &rate, &gamma, &known, &self)) return -1;
   Memory &m = *static_cast<Memory *>(self);
   N_VLinearSum(1, predicted, 1, known, change);
   m.failure = m.space.motion->apply_drag(t, gamma, velocity_of(change));
   N_VLinearSum(1, change, -1, predicted, change);
-  return m.failure ? SUN_NLS_EXT_FAIL : SUN_NLS_SUCCESS;
+  return m.failure ? -1 : 0;
 }
 
 /// A step has passed its error test: boundaries take their share, history is committed, and displacement counts from
@@ -155,9 +156,10 @@ int Arkode::Memory::accept(double t, N_Vector y, void *self) {
 
 PetscErrorCode Arkode::Memory::create(const ArkodeSettings &settings, Motion &motion, double t) {
   PetscFunctionBeginUser;
-  MPI_Comm comm = motion.comm();
+  const MPI_Comm comm = motion.comm();
   space = {&motion, settings.displacement_tolerance, settings.velocity_tolerance};
-  PetscCheck(SUNContext_Create(&comm, &context) == 0, comm, PETSC_ERR_LIB, "SUNContext_Create");
+  order = settings.order;
+  PetscCheck(sundials::create_context(comm, &context) == 0, comm, PETSC_ERR_LIB, "SUNContext_Create");
   PetscCall(make_nodal_vector(space, context, &state));
   error = N_VClone(state), first = N_VClone(state);
   const ARKRhsFn no_rate = [](double, N_Vector, N_Vector rate, void *) {
@@ -173,23 +175,22 @@ PetscErrorCode Arkode::Memory::create(const ArkodeSettings &settings, Motion &mo
     drag->ops->gettype = [](SUNNonlinearSolver) { return SUNNONLINEARSOLVER_FIXEDPOINT; };
     drag->ops->setsysfn = [](SUNNonlinearSolver, SUNNonlinSolSysFn) { return 0; };
     drag->ops->solve = solve_drag;
-    bad |= ARKStepSetNonlinearSolver(solver, drag);
-    bad |= ARKStepSetDeduceImplicitRhs(solver, 1);
+    bad |= ARKodeSetNonlinearSolver(solver, drag);
+    bad |= ARKodeSetDeduceImplicitRhs(solver, 1);
   }
-  bad |= ARKStepSetUserData(solver, this);
-  bad |= ARKStepWFtolerances(solver, [](N_Vector, N_Vector weight, void *) { return N_VConst(1, weight), 0; });
-  bad |= ARKStepSetPostprocessStepFn(solver, accept);
-  bad |= ARKStepSetStabilityFn(solver, stable_step, this);
-  bad |= ARKStepSetCFLFraction(solver, cfl);
-  bad |= ARKStepSetAdaptivityFn(solver, next_step, this);
-  bad |= ARKStepSetFixedStepBounds(solver, 1, 1.001);  // a step cut short for an output is made up for at once
-  bad |= ARKStepSetInterpolantType(solver, ARK_INTERP_LAGRANGE);
-  bad |= ARKStepSetInterpolantDegree(solver, 1);  // nobody asks for values between steps
-  bad |= ARKStepSetMaxErrTestFails(solver, 30);
-  bad |= ARKStepSetMaxNumSteps(solver, -1);
-  bad |= ARKStepSetMaxHnilWarns(solver, -1);
-  bad |= ARKStepSetErrHandlerFn(
-      solver, [](int, const char *, const char *, char *, void *) {}, nullptr);
+  bad |= ARKodeSetUserData(solver, this);
+  bad |= ARKodeWFtolerances(solver, [](N_Vector, N_Vector weight, void *) { return N_VConst(1, weight), 0; });
+  bad |= ARKodeSetPostprocessStepFn(solver, accept);
+  bad |= ARKodeSetStabilityFn(solver, stable_step, this);
+  bad |= ARKodeSetCFLFraction(solver, cfl);
+  bad |= control.give_to(solver, context);
+  bad |= ARKodeSetFixedStepBounds(solver, 1, 1.001);  // a step cut short for an output is made up for at once
+  bad |= ARKodeSetInterpolantType(solver, ARK_INTERP_LAGRANGE);
+  bad |= ARKodeSetInterpolantDegree(solver, 1);  // nobody asks for values between steps
+  bad |= ARKodeSetMaxErrTestFails(solver, 30);
+  bad |= ARKodeSetMaxNumSteps(solver, -1);
+  bad |= ARKodeSetMaxHnilWarns(solver, -1);
+  bad |= sundials::silence(solver, context);
   PetscCheck(!bad, comm, PETSC_ERR_LIB, "ARKStep refuses its settings");
   PetscFunctionReturn(0);
 }
@@ -197,7 +198,7 @@ PetscErrorCode Arkode::Memory::create(const ArkodeSettings &settings, Motion &mo
 /// Who asks for the step that is too short: the node with the largest share of the error.
 void Arkode::Memory::name_obstacle(double floor) {
   Motion &motion = *space.motion;
-  ARKStepGetEstLocalErrors(solver, error);
+  ARKodeGetEstLocalErrors(solver, error);
   const int size = motion.size();
   const double *u = displacement_of(error), *v = velocity_of(error);
   double largest[2] = {0, 0};
@@ -259,7 +260,7 @@ PetscErrorCode Arkode::advance(Motion &motion, double t, const StepBounds &bound
   }
   // Each step begins from what a checkpoint knows: ARKODE's own time and step differ from these by round-off, which a
   // resumed run would not have.
-  PetscCheck(ARKStepReset(m.solver, t, m.state) == 0, motion.comm(), PETSC_ERR_LIB, "ARKStepReset");
+  PetscCheck(ARKodeReset(m.solver, t, m.state) == 0, motion.comm(), PETSC_ERR_LIB, "ARKodeReset");
   m.largest = settings_.rule().share * bounds.critical, m.started = t;
   if (m.wanted == 0) m.wanted = 0.1 * m.largest;
   const double wanted = m.wanted,
@@ -267,23 +268,23 @@ PetscErrorCode Arkode::advance(Motion &motion, double t, const StepBounds &bound
   const double floor = settings_.floor * bounds.critical;
   int bad = 0;
   if (fixed) {
-    bad |= ARKStepSetFixedStep(m.solver, step);
+    bad |= ARKodeSetFixedStep(m.solver, step);
   } else {
-    bad |= ARKStepSetInitStep(m.solver, step);
-    bad |= ARKStepSetMinStep(m.solver, std::min(floor, 0.5 * step));
+    bad |= ARKodeSetInitStep(m.solver, step);
+    bad |= ARKodeSetMinStep(m.solver, std::min(floor, 0.5 * step));
   }
-  bad |= ARKStepSetStopTime(m.solver, t + step);
+  bad |= ARKodeSetStopTime(m.solver, t + step);
   PetscCheck(!bad, motion.comm(), PETSC_ERR_LIB, "ARKStep refuses a step of %g s", step);
   double reached = t;
-  const int ended = ARKStepEvolve(m.solver, t + step, m.state, &reached, ARK_ONE_STEP);
+  const int ended = ARKodeEvolve(m.solver, t + step, m.state, &reached, ARK_ONE_STEP);
   PetscCall(m.failure);
   long rejections;
-  ARKStepGetNumErrTestFails(m.solver, &rejections);
+  ARKodeGetNumErrTestFails(m.solver, &rejections);
   const long long inversions = m.space.inversions - std::exchange(m.inversions, m.space.inversions);
   statistics_.evaluations += std::exchange(m.evaluations, 0), statistics_.inversions += inversions;
   statistics_.rejections += rejections - std::exchange(m.rejections, rejections) - inversions;
   if (ended < 0) {
-    PetscCheck(ended == ARK_ERR_FAILURE, motion.comm(), PETSC_ERR_LIB, "ARKStepEvolve returned %d", ended);
+    PetscCheck(ended == ARK_ERR_FAILURE, motion.comm(), PETSC_ERR_LIB, "ARKodeEvolve returned %d", ended);
     m.name_obstacle(floor);
     *taken = 0;
     PetscFunctionReturn(0);

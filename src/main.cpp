@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <new>
 #include <stdexcept>
@@ -141,14 +142,25 @@ int perform(int argc, char **argv, MPI_Comm failures, int rank) {
   return 0;
 }
 
-/// Open MPI keeps its files of all programs of a user that mpirun has not started in one folder, and the last of them
-/// removes it: a program that starts at that moment fails. Here each has a folder of its own, as long as `folder`
-/// lives.
-void keep_apart_from_other_programs(talus::TemporaryFolder &folder) {
-  constexpr const char *place = "OMPI_MCA_orte_tmpdir_base";
-  for (const char *launched : {"OMPI_COMM_WORLD_SIZE", "PMIX_NAMESPACE", "PMI_RANK", place})
-    if (std::getenv(launched)) return;
-  if (folder.make()) setenv(place, folder.path().c_str(), 1);
+/// Starts PETSc and MPI. Open MPI keeps files of all programs of a user that mpirun has not started in one folder of
+/// TMPDIR: version 4 removes it when the last of them ends, and a program that starts at that moment fails; version 5
+/// leaves it. Here each such program has `files` for that, as long as it lives. Version 5 also leaves a file of shared
+/// memory, which one rank does not need.
+PetscErrorCode start(int *count, char ***arguments, talus::TemporaryFolder &files) {
+  PetscFunctionBeginUser;
+  constexpr const char *ranks_of[] = {"OMPI_COMM_WORLD_SIZE", "PMIX_NAMESPACE", "PMI_RANK"};
+  const bool alone =
+      std::none_of(std::begin(ranks_of), std::end(ranks_of), [](auto name) { return std::getenv(name); });
+  const char *const set = std::getenv("TMPDIR");
+  const std::string usual = set ? set : "";
+  if (alone) setenv("OMPI_MCA_btl", "self", 0);
+  if (alone && files.make()) setenv("TMPDIR", files.path().c_str(), 1);
+  PetscCall(PetscInitialize(count, arguments, nullptr, nullptr));
+  if (set)
+    setenv("TMPDIR", usual.c_str(), 1);
+  else
+    unsetenv("TMPDIR");
+  PetscFunctionReturn(0);
 }
 
 /// MPI starts with files in the folder for temporary ones, and says little where it cannot write them.
@@ -174,7 +186,6 @@ int main(int argc, char **argv) {
   talus::end_with_starter();
   if (!can_write_temporary_files()) return 1;
   talus::TemporaryFolder files_of_mpi;
-  keep_apart_from_other_programs(files_of_mpi);
   // everything behind a lone "--" is PETSc's
   int own = argc;
   for (int i = 1; i < argc; ++i)
@@ -184,7 +195,7 @@ int main(int argc, char **argv) {
   int petsc_count = static_cast<int>(petsc_arguments.size());
   petsc_arguments.push_back(nullptr);
   char **petsc_argv = petsc_arguments.data();
-  if (PetscInitialize(&petsc_count, &petsc_argv, nullptr, nullptr)) return 1;
+  if (start(&petsc_count, &petsc_argv, files_of_mpi)) return 1;
   std::signal(SIGPIPE, SIG_IGN);  // who reads the output may leave early; PETSc takes it for a fault of the program
   int rank;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);

@@ -13,7 +13,7 @@ inline std::vector<char *> environment_without_mpi() {
   for (char **variable = environ; *variable; ++variable) {
     const std::string_view text(*variable);
     if (!text.starts_with("OMPI_") && !text.starts_with("PMIX_") && !text.starts_with("PMI_") &&
-        !text.starts_with("ORTE_"))
+        !text.starts_with("ORTE_") && !text.starts_with("PRTE_"))
       kept.push_back(*variable);
   }
   kept.push_back(nullptr);
