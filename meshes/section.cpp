@@ -13,7 +13,7 @@ namespace talus {
 namespace {
 
 [[noreturn]] void complain(const Section &section, int line, const std::string &text) {
-  throw std::invalid_argument(section.file + " " + section.entry(line) + ": " + text);
+  throw std::invalid_argument(section.file + " line " + std::to_string(line) + ": " + text);
 }
 
 bool starts_with(const std::string &text, const std::string &start) { return text.rfind(start, 0) == 0; }
@@ -190,10 +190,10 @@ void check_outline(const Section &section, double tolerance) {
   if (count < 3) complain(section, outline.lines.back(), "an outline needs at least 3 points");
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = 0; j < i; ++j)
-      if (std::hypot(x[i][0] - x[j][0], x[i][1] - x[j][1]) <= tolerance)
-        complain(
-            section, outline.lines[i],
-            "repeats the point of " + section.entry(outline.lines[j]) + "; leave it out (an outline closes itself)");
+      if (std::hypot(x[i][0] - x[j][0], x[i][1] - x[j][1]) <= same_point * section.largest_extent())
+        complain(section, outline.lines[i],
+                 "repeats the point of line " + std::to_string(outline.lines[j]) +
+                     "; leave it out (an outline closes itself)");
   const auto crosses = [&](std::size_t i, std::size_t j) {
     const Vec<2> &a = x[i], &b = x[(i + 1) % count], &c = x[j], &d = x[(j + 1) % count];
     if ((j + 1) % count == i)
@@ -207,7 +207,7 @@ void check_outline(const Section &section, double tolerance) {
       if (crosses(i, j))
         complain(section, outline.lines[i],
                  "the outline crosses itself: segment " + segment_text(outline, i) + " meets segment " +
-                     segment_text(outline, j) + " of " + section.entry(outline.lines[j]) +
+                     segment_text(outline, j) + " of line " + std::to_string(outline.lines[j]) +
                      "; give its points in order around the section");
 }
 
@@ -295,7 +295,7 @@ void check_polyline(const Section &section, const Polyline &polyline, const std:
   if (polyline.points.size() < 2) complain(section, polyline.lines.back(), what + " needs at least 2 points");
   for (std::size_t i = 1; i < polyline.points.size(); ++i)
     if (std::hypot(polyline.points[i][0] - polyline.points[i - 1][0],
-                   polyline.points[i][1] - polyline.points[i - 1][1]) <= tolerance)
+                   polyline.points[i][1] - polyline.points[i - 1][1]) <= same_point * section.largest_extent())
       complain(section, polyline.lines[i], what + " repeats its last point; leave it out");
   if (!reaches(polyline, domain, edge_counts, tolerance))
     complain(section, polyline.lines[0],
@@ -407,8 +407,8 @@ std::string doubt_about_order(const Section &section) {
     compare(lower, upper, above, below), compare(upper, lower, below, above);
     if (above == 0 || below > 0) continue;
     std::ostringstream text;
-    text << "'" << lower.part << "' (" << section.entry(lower.lines[0]) << ") lies above '" << upper.part << "' ("
-         << section.entry(upper.lines[0])
+    text << "'" << lower.part << "' (line " << lower.lines[0] << ") lies above '" << upper.part << "' (line "
+         << upper.lines[0]
          << "), and interfaces are numbered from top to bottom. Layers count from the top whatever these numbers are: "
             "layer0 lies above all interfaces, layer"
          << lines.size()
@@ -435,8 +435,6 @@ std::string Section::layer_at(const Vec<2> &x) const {
   for (const Polyline &polyline : interfaces) layer += is_below(polyline, x, largest_extent());
   return "layer" + std::to_string(layer);
 }
-
-std::string Section::entry(int line) const { return (drawn ? "entity " : "line ") + std::to_string(line); }
 
 Section section_of(const SectionRows &rows, const std::string &file, bool drawn) {
   Section section = Reader(file, drawn).read(rows);

@@ -22,11 +22,14 @@
 
 namespace talus {
 
+/// Points nearer than this share of a section are one: a side as short would make cells as small.
+inline constexpr double same_point = 1e-6;
+
 /// A point of a part, in the order of the file.
 struct SectionRow {
   std::string part;
   Vec<2> numbers;  ///< coordinates; of free_space its height and extra width
-  int line;        ///< of the file; of a drawing the number of the entity
+  int line;        ///< of the file; of a drawing where the entity begins
 };
 /// What a file says, in its own unit.
 struct SectionRows {
@@ -37,7 +40,7 @@ struct SectionRows {
 struct Polyline {
   std::string part;            ///< its name in the file
   std::vector<Vec<2>> points;  ///< [m]
-  std::vector<int> lines;      ///< line of each point in the file; of a drawing its entity
+  std::vector<int> lines;      ///< of the file, of each point; of a drawing where its entity begins
 };
 struct Seed {
   std::string name;
@@ -51,7 +54,7 @@ struct RefinedBox {
 
 struct Section {
   std::string file;
-  bool drawn = false;        ///< read from a drawing, whose entities take the place of lines
+  bool drawn = false;        ///< read from a drawing
   LengthUnit unit = metres;  ///< of the file
   std::string unit_stated;   ///< where in the file; empty: nowhere
   Polyline outline;
@@ -62,8 +65,7 @@ struct Section {
   bool has_free_space = false;
   double free_height = 0, free_extra = 0;  ///< [m]
 
-  std::string entry(int line) const;  ///< "line 5", or "entity 5" of a drawing
-  double largest_extent() const;      ///< of the outline, width or height [m]
+  double largest_extent() const;  ///< of the outline, width or height [m]
   std::vector<Vec<2>> domain()
       const;            ///< polygon that is meshed: the outline, with free space above it where asked for
   double area() const;  ///< of the domain [m2]

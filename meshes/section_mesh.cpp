@@ -168,9 +168,9 @@ class SectionModel {
       const int tag = piece_at(seed.point);
       const auto [at, is_new] = seeded.try_emplace(tag, &seed);
       if (!is_new && at->second->name != seed.name)
-        throw std::invalid_argument(section_.file + " " + section_.entry(seed.line) + ": the point region_" +
-                                    seed.name + " lies in the same piece as region_" + at->second->name + " in " +
-                                    section_.entry(at->second->line) + "; part them by an interface");
+        throw std::invalid_argument(section_.file + " line " + std::to_string(seed.line) + ": the point region_" +
+                                    seed.name + " lies in the same piece as region_" + at->second->name + " in line " +
+                                    std::to_string(at->second->line) + "; part them by an interface");
       pieces_.at(tag).name = seed.name;
     }
     if (const auto crossing = crossing_interfaces(section_)) require_seeds(*crossing, seeded);
@@ -182,10 +182,9 @@ class SectionModel {
       if (seeded.count(tag) || piece.name == "air") continue;
       const Vec<2> at = centre(piece.triangles[0]);
       std::ostringstream text;
-      text << section_.file << " " << section_.entry(crossing.second_line) << ": '" << crossing.second->part
-           << "' crosses '" << crossing.first->part << "' of " << section_.entry(crossing.first_line) << " near ("
-           << crossing.place[0] << ", " << crossing.place[1]
-           << "), so layers cannot be counted; end one at the other, or name every piece of soil "
+      text << section_.file << " line " << crossing.second_line << ": '" << crossing.second->part << "' crosses '"
+           << crossing.first->part << "' of line " << crossing.first_line << " near (" << crossing.place[0] << ", "
+           << crossing.place[1] << "), so layers cannot be counted; end one at the other, or name every piece of soil "
            << "by a point region_NAME (there is none in the piece around (" << at[0] << ", " << at[1] << "))";
       throw std::invalid_argument(text.str());
     }
@@ -241,7 +240,7 @@ class SectionModel {
     for (const Polyline &polyline : section_.boundaries)
       if (!found.count(polyline.part))
         throw std::invalid_argument(
-            section_.file + " " + section_.entry(polyline.lines[0]) + ": the boundary 'b_" + polyline.part +
+            section_.file + " line " + std::to_string(polyline.lines[0]) + ": the boundary 'b_" + polyline.part +
             "' has no facets; lay it along the outline, or inside from edge to edge, and not under "
             "another boundary");
   }

@@ -10,11 +10,6 @@
 namespace talus {
 namespace {
 
-std::string trimmed(const std::string &text) {
-  const auto first = text.find_first_not_of(" \t");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
 /// Does the character stand in a line outside quotes, before a `#`?
 bool stands_in(const std::string &line, char wanted) {
   bool quoted = false;
@@ -53,7 +48,7 @@ std::vector<std::string> cells_of(const std::string &line, char separator) {
     else
       cells.back() += c;
   }
-  for (std::string &cell : cells) cell = trimmed(cell);
+  for (std::string &cell : cells) cell = trim(cell);
   while (!cells.empty() && cells.back().empty()) cells.pop_back();
   return cells;
 }
@@ -81,7 +76,12 @@ bool Spreadsheet::number(const std::string &cell, double &value) const {
   return error == std::errc() && at == end && std::isfinite(value);
 }
 
-Spreadsheet read_spreadsheet(const std::string &file) {
+std::string trim(const std::string &text) {
+  const auto first = text.find_first_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::vector<std::string> text_lines(const std::string &file, const std::string &form) {
   std::string text;
   try {
     text = read_file(file);
@@ -89,11 +89,15 @@ Spreadsheet read_spreadsheet(const std::string &file) {
     throw std::invalid_argument(file + ": cannot be read (" + error.code().message() +
                                 "); check the path and its permissions");
   }
-  if (text.empty()) throw std::invalid_argument(file + ": is empty; save the table as CSV again");
+  if (text.empty()) throw std::invalid_argument(file + ": is empty; save it again as " + form);
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
   if (text.find('\0') != std::string::npos || text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
-    throw std::invalid_argument(file + ": is no text in UTF-8; save the table as \"CSV UTF-8\"");
-  const std::vector<std::string> lines = lines_of(text);
+    throw std::invalid_argument(file + ": is no text in UTF-8; save it as " + form);
+  return lines_of(text);
+}
+
+Spreadsheet read_spreadsheet(const std::string &file) {
+  const std::vector<std::string> lines = text_lines(file, "CSV UTF-8");
   const char separator = separator_of(lines);
   Spreadsheet sheet;
   sheet.decimal_comma = separator != ',';

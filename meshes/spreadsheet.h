@@ -23,4 +23,11 @@ struct Spreadsheet {
 /// Throws std::invalid_argument where the file cannot be read, is empty, or is no text in UTF-8.
 Spreadsheet read_spreadsheet(const std::string &file);
 
+/// The lines of a text, one at least, ended by LF, CRLF or CR. Throws std::invalid_argument where the file cannot be
+/// read, is empty, or is no text in UTF-8; it is to be saved as `form`.
+std::vector<std::string> text_lines(const std::string &file, const std::string &form);
+
+/// Without blanks and tabs at its ends.
+std::string trim(const std::string &text);
+
 }  // namespace talus

@@ -21,6 +21,39 @@ std::string json_text(const std::string &text) {
   return quoted + "\"";
 }
 
+/// Fills places that are not a number: inwards from those that are, then as a soap film does.
+void interpolate(std::vector<double> &z, int columns) {
+  constexpr int sweeps = 100;
+  const int count = static_cast<int>(z.size());
+  const auto mean_beside = [&](int k) {
+    double sum = 0;
+    int known = 0;
+    const auto add = [&](bool inside, int at) {
+      if (inside && !std::isnan(z[at])) sum += z[at], ++known;
+    };
+    add(k % columns > 0, k - 1), add(k % columns < columns - 1, k + 1);
+    add(k >= columns, k - columns), add(k + columns < count, k + columns);
+    return known ? sum / known : std::numeric_limits<double>::quiet_NaN();
+  };
+  std::vector<int> holes, filled;  // in the order in which they are filled
+  for (int k = 0; k < count; ++k)
+    if (std::isnan(z[k])) holes.push_back(k);
+  for (std::vector<int> left = holes; !left.empty();) {
+    std::vector<int> next;
+    std::vector<std::pair<int, double>> known;
+    for (const int k : left)
+      if (const double mean = mean_beside(k); std::isnan(mean))
+        next.push_back(k);
+      else
+        known.emplace_back(k, mean);
+    if (known.empty()) return;  // there is no data at all
+    for (const auto &[k, mean] : known) z[k] = mean;
+    left = std::move(next);
+  }
+  for (int sweep = 0; sweep < sweeps; ++sweep)
+    for (const int k : holes) z[k] = mean_beside(k);
+}
+
 }  // namespace
 
 Terrain::Terrain(const TerrainOptions &options) : options_(options) {
@@ -62,16 +95,18 @@ void Terrain::take_window(const Grid &grid) {
                                      ", ", grid.north(), ") m");
   int from[2] = {0, 0}, to[2] = {grid.columns - 1, grid.rows - 1};
   if (!w.empty()) {
-    if (!(w[2] > w[0] && w[3] > w[1]))
-      complain("--window west south east north must have east > west and north > south");
-    const double near = 1e-6 * grid.spacing;
-    if (w[0] < grid.west - near || w[1] < grid.south - near || w[2] > grid.east() + near || w[3] > grid.north() + near)
+    const double south = std::min(w[1], w[3]), north = std::max(w[1], w[3]);  // gdalinfo has the upper corner first
+    if (!(w[2] > w[0] && north > south))
+      complain("--window west south east north must have east > west, and two norths");
+    const double near = (0.5 + 1e-6) * grid.spacing;  // the cells of the file reach half a spacing beyond their centres
+    if (w[0] < grid.west - near || south < grid.south - near || w[2] > grid.east() + near ||
+        north > grid.north() + near)
       complain(text_of("--window ", w[0], " ", w[1], " ", w[2], " ", w[3], " reaches out of the grid: ", extent,
                        "; take a window inside"));
-    const double start[2] = {grid.west, grid.south};
+    const double low[2] = {w[0] - grid.west, south - grid.south}, high[2] = {w[2] - grid.west, north - grid.south};
     for (int d = 0; d < 2; ++d) {
-      from[d] = static_cast<int>(std::lround((w[d] - start[d]) / grid.spacing));
-      to[d] = static_cast<int>(std::lround((w[d + 2] - start[d]) / grid.spacing));
+      from[d] = std::max(0, static_cast<int>(std::lround(low[d] / grid.spacing)));
+      to[d] = std::min(to[d], static_cast<int>(std::lround(high[d] / grid.spacing)));
     }
   }
   if (options_.step < 1) complain("--step must be 1 or more");
@@ -81,20 +116,53 @@ void Terrain::take_window(const Grid &grid) {
     complain(text_of("the window has ", to[0] - from[0] + 1, " columns and ", to[1] - from[1] + 1,
                      " rows of the grid; take a larger window or a smaller --step"));
   origin_ = {grid.west + from[0] * grid.spacing, grid.south + from[1] * grid.spacing};
-  int holes = 0, first = 0;
   for (int j = 0; j < ground_.rows; ++j)
-    for (int i = 0; i < ground_.columns; ++i) {
-      const double z = grid.values[static_cast<std::size_t>(from[1] + j * options_.step) * grid.columns + from[0] +
-                                   i * options_.step];
-      if (std::isnan(z) && !holes++) first = static_cast<int>(ground_.values.size());
-      ground_.values.push_back(z);
-    }
-  if (holes)
-    complain(text_of(grid.file, ": the window has no data at ", holes, " of ", ground_.values.size(),
-                     " places, the first at ", place(first),
-                     "; fill the holes, such as by gdal_fillnodata.py (and look at what it fills: far from data it "
-                     "makes steps), or take another window by --window"));
+    for (int i = 0; i < ground_.columns; ++i)
+      ground_.values.push_back(grid.values[static_cast<std::size_t>(from[1] + j * options_.step) * grid.columns +
+                                           from[0] + i * options_.step]);
+  take_voids();
   check_steps(ground(), grid.file);
+}
+
+namespace {
+
+constexpr const char *fill_voids =
+    "fill them, such as by gdal_fillnodata.py (and look at what it fills: far from data it makes steps), or take "
+    "another window by --window";
+
+}  // namespace
+
+std::string Terrain::voids_in_words() const {
+  return text_of(ground_.file, ": the window has no data at ", std::count(void_.begin(), void_.end(), 1), " of ",
+                 void_.size(), " places");
+}
+
+void Terrain::take_voids() {
+  std::vector<double> &z = ground_.values;
+  for (const double one : z) void_.push_back(std::isnan(one));
+  const auto first = std::find(void_.begin(), void_.end(), 1);
+  if (first == void_.end()) return void_.clear();
+  bool some = false;
+  for (int j = 0; j + 1 < rows(); ++j)
+    for (int i = 0; i + 1 < columns(); ++i)
+      some = some || !is_void(x(i) + 0.5 * ground_.spacing, y(j) + 0.5 * ground_.spacing);
+  if (!some) complain(voids_in_words() + ", and nowhere at the four corners of a square; " + fill_voids);
+  interpolate(z, columns());
+  remarks_.push_back(text_of(voids_in_words(), ", the first at ", place(static_cast<int>(first - void_.begin())),
+                             ": cells whose centre lies there are left out of the mesh, which ends there at the group "
+                             "void, and soil that comes there leaves the mesh. Where the ground matters, ",
+                             fill_voids));
+}
+
+bool Terrain::is_void(double x, double y) const {
+  if (void_.empty()) return false;
+  const int i = std::clamp(static_cast<int>(x / ground_.spacing), 0, columns() - 2),
+            j = std::clamp(static_cast<int>(y / ground_.spacing), 0, rows() - 2), k = j * columns() + i;
+  return void_[k] || void_[k + 1] || void_[k + columns()] || void_[k + columns() + 1];
+}
+
+void Terrain::refuse_void(int index, const std::string &where) const {
+  complain(text_of(voids_in_words(), ", and that at ", place(index), " lies ", where, "; ", fill_voids));
 }
 
 void Terrain::check_scale() {
@@ -143,13 +211,15 @@ void Terrain::check_steps(const std::vector<double> &z, const std::string &file)
   constexpr double steep = 2, rare = 15;  // a spike is this steep on all sides, and so much more than the roughness
   constexpr double cliff = 10;            // rise over run of a step that no cell can follow
   constexpr double highest_cliff = 500;   // [m], as some sea cliffs are
+  const auto times = [&](int at) { return std::count(z.begin(), z.end(), z[at]); };
   const auto refuse = [&](int at, const std::string &how) {
-    complain(text_of(file, ": the elevation ", z[at], " m at ", place(at), " ", how, "; if ", z[at],
+    complain(text_of(file, ": the elevation ", z[at], " m at ", place(at),
+                     times(at) > 1 ? text_of(", which ", times(at), " places have,") : "", " ", how, "; if ", z[at],
                      " stands for a place without data, say so by gdal_translate -a_nodata ", z[at],
                      " and fill it by gdal_fillnodata.py; or take a window without it by --window"));
   };
   std::vector<double> beside, roughness(z.size());
-  int step_at = -1;
+  int step_at = -1, step_beside = -1;
   double highest = cliff * std::max(ground_.spacing, options_.size);
   for (int k = 0; k < static_cast<int>(z.size()); ++k) {
     const int i = k % columns(), j = k / columns();
@@ -161,7 +231,7 @@ void Terrain::check_steps(const std::vector<double> &z, const std::string &file)
     std::nth_element(beside.begin(), middle, beside.end());
     roughness[k] = std::abs(z[k] - *middle);
     for (const int next : {i > 0 ? k - 1 : k, j > 0 ? k - columns() : k})
-      if (std::abs(z[k] - z[next]) > highest) highest = std::abs(z[k] - z[next]), step_at = z[k] < z[next] ? k : next;
+      if (std::abs(z[k] - z[next]) > highest) highest = std::abs(z[k] - z[next]), step_at = k, step_beside = next;
   }
   const auto most = roughness.begin() + static_cast<long>(0.95 * static_cast<double>(roughness.size() - 1));
   std::nth_element(roughness.begin(), most, roughness.end());
@@ -178,19 +248,28 @@ void Terrain::check_steps(const std::vector<double> &z, const std::string &file)
     refuse(spike_at, text_of("stands ", length(std::abs(spike)), " ", spike > 0 ? "above" : "below",
                              " all places around it, as no ground does",
                              spikes > 1 ? text_of(" (so do ", spikes, " places)") : "", ". Correct it"));
-  if (step_at >= 0)
-    refuse(step_at, text_of("is ", length(highest), " lower than the place beside it, more than ", cliff,
-                            " cells (--size) or spacings are high. ",
-                            highest < highest_cliff ? text_of("If this is a cliff, take a --size of ",
-                                                              length(1.05 * highest / cliff), " or more")
-                                                    : "Correct it"));
+  if (step_at < 0) return;
+  // the one of the two that is farther from the ground: from the middle of all other elevations
+  std::vector<double> others;
+  for (const double one : z)
+    if (one != z[step_at] && one != z[step_beside]) others.push_back(one);
+  const auto middle = others.begin() + static_cast<long>(others.size() / 2);
+  std::nth_element(others.begin(), middle, others.end());
+  const double ground = others.empty() ? std::max(z[step_at], z[step_beside]) : *middle;
+  if (std::abs(z[step_beside] - ground) > std::abs(z[step_at] - ground)) std::swap(step_at, step_beside);
+  refuse(step_at, text_of("is ", length(highest), z[step_at] < z[step_beside] ? " lower" : " higher",
+                          " than the place beside it, more than ", cliff, " cells (--size) or spacings are high. ",
+                          highest < highest_cliff ? text_of("If this is a cliff, take a --size of ",
+                                                            length(1.05 * highest / cliff), " or more")
+                                                  : "Correct it"));
 }
 
 void Terrain::take_layers(const Grid &grid) {
   if (!options_.layers.empty() && !options_.base)
     complain("--layer NAME FILE parts the ground over a flat base: give --base, or leave the layers out");
   for (const auto &[name, file] : options_.layers) {
-    for (const char *own : {"slide", "ground", "air", "base", "terrain", "top", "west", "east", "south", "north"})
+    for (const char *own :
+         {"slide", "ground", "air", "base", "terrain", "top", "void", "west", "east", "south", "north"})
       if (name == own)
         complain("--layer " + name + " " + file + ": " + name + " is a group of the mesh already; name it otherwise");
     const Grid given = read_elevations(file);
@@ -199,11 +278,14 @@ void Terrain::take_layers(const Grid &grid) {
     Grid &surface = layer_.emplace_back(ground_);
     for (int k = 0; k < static_cast<int>(surface.values.size()); ++k) {
       surface.values[k] = given.at(origin_[0] + x(k % columns()), origin_[1] + y(k / columns()));
-      if (std::isnan(surface.values[k]))
+      if (has_voids() && void_[k])
+        surface.values[k] = std::numeric_limits<double>::quiet_NaN();
+      else if (std::isnan(surface.values[k]))
         complain(file + " has no elevation at " + place(k) + ", where layer " + name +
                  " needs one; give a grid that covers the "
                  "window, and an elevation below the base where the layer is absent");
     }
+    interpolate(surface.values, columns());
     for (double &z : surface.values) z = std::max(z, *options_.base);  // where it is absent
     check_steps(surface.values, file);
   }
@@ -249,6 +331,7 @@ void Terrain::find_distances() {
       const double away = std::hypot(from[0] - share * along[0], from[1] - share * along[1]);
       const double beside = std::max(0., away - options_.way_width / 2);
       const bool on_way = beside < ground_.spacing * std::sqrt(0.5);  // or less: a narrow strip may meet no node
+      if (on_way && has_voids() && void_[k]) refuse_void(k, "on the way of the slide (--way)");
       way_in_window_ |= on_way, way_meets_slide_ |= on_way && ground()[k] > bed()[k];
       d[k] = std::min(d[k], beside);
     }

@@ -50,6 +50,9 @@ class Terrain {
   const std::vector<double> &ground() const { return ground_.values; }
   /// The ground, lowered to the slip surface where there is one below it.
   const std::vector<double> &bed() const { return bed_.values; }
+  /// Is the ground at a place not known, and interpolated? Nothing is meshed there.
+  bool is_void(double x, double y) const;
+  bool has_voids() const { return !void_.empty(); }
   double ground_at(double x, double y) const { return ground_.at(x, y); }
   double bed_at(double x, double y) const {
     const double z = near_slide_.values.empty() ? bed_.at(x, y) : near_slide_.at(x, y);
@@ -92,6 +95,11 @@ class Terrain {
 
  private:
   void take_window(const Grid &grid);
+  /// Notes places without data and interpolates the ground there.
+  void take_voids();
+  /// Refuses a place without data that soil is in, or comes to.
+  [[noreturn]] void refuse_void(int index, const std::string &where) const;
+  std::string voids_in_words() const;
   void check_scale();  ///< notes a projection whose lengths are not those of the ground
   void take_slip_surface(const Grid &grid);
   /// Elevations of the slip surface at the places of a grid of the ground; not a number where there is none.
@@ -111,6 +119,11 @@ class Terrain {
   void check_base() const;
   /// Refuses a slip surface whose elevations stand to those of the ground as feet and metres do.
   void check_feet(const std::vector<double> &slip, const std::string &name) const;
+  /// Refuses places without data of the terrain in the slide or beside it.
+  void check_voids() const;
+  /// Are the values of a slip surface, which lies `least` below the ground or more, depths in place of elevations? As
+  /// elevations they would make a slide that is `thick` for its width.
+  bool seem_depths(const std::vector<double> &slip, double least, bool thick) const;
   /// Refuses a slip surface with places without data amid the slide.
   void check_holes(const std::vector<double> &slip, const std::string &name) const;
   /// By how much more than allowed a place, and the few that it stands with, is above (`sign` 1) or below (-1) all
@@ -131,6 +144,7 @@ class Terrain {
   std::string projection_;
   std::vector<std::string> remarks_;  ///< on how files were read
   Grid ground_, bed_, near_slide_;
+  std::vector<char> void_;  ///< [rows][columns]: no data; empty: there are none
   Refined refined_;
   Grid distance_;                                         ///< from the slide and its way, seen from above [m]
   bool way_in_window_ = false, way_meets_slide_ = false;  ///< the strip along --way

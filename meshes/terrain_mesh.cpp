@@ -7,6 +7,8 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <numeric>
+#include <set>
 #include <tuple>
 
 #include "meshes/flat_cells.h"
@@ -207,6 +209,76 @@ class TerrainModel {
     return left > 0 ? -most : most;
   }
 
+  struct Cell {
+    std::size_t volume;
+    const std::size_t *nodes;
+    double middle[3], size, depth;
+  };
+  using Face = std::array<std::size_t, 3>;
+  static Face face_of(const std::size_t *nodes, int without) {
+    Face face{};
+    for (int a = 0, k = 0; a < 4; ++a)
+      if (a != without) face[k++] = nodes[a];
+    std::sort(face.begin(), face.end());
+    return face;
+  }
+
+  /// Drops cells over places without data, and those that hang together with the rest by no face; facets go with them,
+  /// and the faces that come to light are a group of their own.
+  void leave_out_voids(std::vector<Cell> &cells, Named &facets) const {
+    std::erase_if(cells, [&](const Cell &cell) { return terrain_.is_void(cell.middle[0], cell.middle[1]); });
+    struct Side {
+      Face face;
+      std::size_t cell;
+      bool operator<(const Side &other) const { return std::tie(face, cell) < std::tie(other.face, other.cell); }
+    };
+    std::vector<Side> sides;
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      for (int k = 0; k < 4; ++k) sides.push_back({face_of(cells[c].nodes, k), c});
+    std::sort(sides.begin(), sides.end());
+    std::vector<std::size_t> part(cells.size());  // the cell that stands for all of a part
+    std::iota(part.begin(), part.end(), 0);
+    const auto root = [&](std::size_t c) {
+      while (part[c] != c) c = part[c] = part[part[c]];
+      return c;
+    };
+    for (std::size_t k = 0; k + 1 < sides.size(); ++k)
+      if (sides[k].face == sides[k + 1].face) part[root(sides[k].cell)] = root(sides[k + 1].cell);
+    std::map<std::size_t, std::size_t> size;
+    for (std::size_t c = 0; c < cells.size(); ++c) ++size[root(c)];
+    std::size_t largest = 0, most = 0;
+    for (const auto &[c, count] : size)
+      if (count > most) largest = c, most = count;
+    std::erase_if(sides, [&](const Side &side) { return root(side.cell) != largest; });
+    std::vector<Cell> kept;
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      if (root(c) == largest) kept.push_back(cells[c]);
+    cells = std::move(kept);
+    std::vector<Face> named, open;
+    for (auto &[name, nodes] : facets) {
+      NodeList left;
+      for (std::size_t k = 0; k < nodes.size(); k += 3) {
+        Face face{nodes[k], nodes[k + 1], nodes[k + 2]};
+        std::sort(face.begin(), face.end());
+        const auto at = std::lower_bound(sides.begin(), sides.end(), Side{face, 0});
+        if (at == sides.end() || at->face != face) continue;
+        left.insert(left.end(), &nodes[k], &nodes[k] + 3), named.push_back(face);
+      }
+      nodes = std::move(left);
+    }
+    std::erase_if(facets, [](const auto &group) { return group.second.empty(); });
+    std::sort(named.begin(), named.end());
+    NodeList &nodes = facets["void"];
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      const Face &face = sides[k].face;
+      if (k + 1 < sides.size() && sides[k + 1].face == face)
+        ++k;  // between two cells
+      else if (!std::binary_search(named.begin(), named.end(), face))
+        nodes.insert(nodes.end(), face.begin(), face.end());
+    }
+    if (nodes.empty()) facets.erase("void");
+  }
+
   static NodeList simplices_of(int type, int entity) {
     std::vector<std::size_t> tags, nodes;
     model::mesh::getElementsByType(type, tags, nodes, entity);
@@ -235,11 +307,6 @@ class TerrainModel {
       facets[name].insert(facets[name].end(), facets_of[s].begin(), facets_of[s].end());
       ++s;
     }
-    struct Cell {
-      std::size_t volume;
-      const std::size_t *nodes;
-      double middle[3], size, depth;
-    };
     std::vector<Cell> all;
     for (std::size_t v = 0; v < volumes_.size(); ++v)
       for (std::size_t k = 0; k < cells_of[v].size(); k += 4) {
@@ -252,6 +319,16 @@ class TerrainModel {
         cell.depth = depth_in_slide(v, cell.middle[0], cell.middle[1], cell.middle[2]);
         all.push_back(cell);
       }
+    if (terrain_.has_voids()) {
+      leave_out_voids(all, facets);
+      std::set<std::size_t> used;
+      for (const Cell &cell : all) used.insert(cell.nodes, cell.nodes + 4);
+      nodes.assign(used.begin(), used.end());
+      std::vector<double> places;
+      for (const std::size_t node : nodes)
+        places.insert(places.end(), &x[3 * index.at(node)], &x[3 * index.at(node)] + 3);
+      x = std::move(places);
+    }
     const double least = least_depth(all);
     for (const Cell &cell : all) {
       std::vector<std::size_t> &group =

@@ -12,7 +12,8 @@ namespace talus {
 ///
 /// Groups of cells: slide (above the slip surface and below the ground), ground (below it, on a flat base), air. Groups
 /// of facets: base (the flat base, or the bed), terrain (the ground, where a flat base lies below it), top (of the
-/// air), west, east, south, north. The mesh is the same every time.
+/// air), west, east, south, north, and void, where cells are left out because the terrain has no data. The mesh is the
+/// same every time.
 void mesh_terrain(const Terrain &terrain);
 
 }  // namespace talus

@@ -103,7 +103,9 @@ void Terrain::refine_bed(const SlipSurface &surface) {
     fine.values.push_back(ground_at(fine.x(k % fine.columns), fine.y(k / fine.columns)));
   const std::vector<double> slip = surface(fine);
   for (std::size_t k = 0; k < slip.size(); ++k)
-    if (slip[k] < fine.values[k]) fine.values[k] = slip[k];
+    if (slip[k] < fine.values[k] &&
+        !is_void(fine.x(static_cast<int>(k) % fine.columns), fine.y(static_cast<int>(k) / fine.columns)))
+      fine.values[k] = slip[k];
   near_slide_ = std::move(fine), refined_ = part;
   if (!whole) return;
   slide_volume_ = slide_area_ = 0;
@@ -119,7 +121,9 @@ void Terrain::take_slip_surface(const Grid &grid) {
   if (!options_.slip_surface.empty() + options_.ellipsoid.has_value() + !options_.outline.empty() > 1)
     complain("give one slip surface: --slip-surface, --ellipsoid or --outline");
   const SlipSurface surface = slip_surface(grid);
-  const std::vector<double> slip = surface(ground_);
+  std::vector<double> slip = surface(ground_);
+  for (std::size_t k = 0; k < void_.size(); ++k)
+    if (void_[k]) slip[k] = std::numeric_limits<double>::quiet_NaN();
   double nearest = std::numeric_limits<double>::infinity();  // of the surface over the ground
   for (std::size_t k = 0; k < slip.size(); ++k) {
     if (std::isnan(slip[k])) continue;  // beside it nothing slides
@@ -140,6 +144,7 @@ void Terrain::take_slip_surface(const Grid &grid) {
   if (nearest >= 0)
     complain(text_of(name, " lies above the ground everywhere, by ", length(nearest),
                      " at least, so that nothing slides; check its elevations, or lower it"));
+  check_voids();
   for (int k = 0; k < static_cast<int>(bed().size()); ++k) {
     const int i = k % columns(), j = k / columns();
     const double share = (i == 0 || i == columns() - 1 ? 0.5 : 1) * (j == 0 || j == rows() - 1 ? 0.5 : 1),
@@ -154,6 +159,16 @@ void Terrain::take_slip_surface(const Grid &grid) {
   slip_surface_area_ = options_.slip_surface.empty() ? area_of_bed() : area_of(slip);
   measure_parts();
   check_parts();
+}
+
+void Terrain::check_voids() const {
+  for (int k = 0; k < static_cast<int>(void_.size()); ++k)
+    for (int b = -1; void_[k] && b <= 1; ++b)
+      for (int a = -1; a <= 1; ++a) {
+        const int i = k % columns() + a, j = k / columns() + b, beside = j * columns() + i;
+        if (i < 0 || j < 0 || i >= columns() || j >= rows()) continue;
+        if (ground()[beside] > bed()[beside]) refuse_void(k, "in the slide or beside it");
+      }
 }
 
 int Terrain::part_at(double x, double y) const {
@@ -306,6 +321,20 @@ double Terrain::area_of_bed() const {
   return sum;
 }
 
+/// Values of one sign, none of which is as large as the least depth at which the surface would lie below the ground:
+/// depths, unless the surface is a thin layer's over ground that hardly rises.
+bool Terrain::seem_depths(const std::vector<double> &slip, double least, bool thick) const {
+  constexpr double shallow = 0.25;  // of the height of the ground over it
+  double low = std::numeric_limits<double>::infinity(), high = -low, lowest = low, highest = high;
+  for (std::size_t k = 0; k < slip.size(); ++k) {
+    if (std::isnan(slip[k])) continue;
+    low = std::min(low, slip[k]), high = std::max(high, slip[k]);
+    lowest = std::min(lowest, ground()[k]), highest = std::max(highest, ground()[k]);
+  }
+  const double largest = std::max(high, -low);
+  return (low >= 0 || high <= 0) && largest <= least && (thick || largest < shallow * (highest - lowest));
+}
+
 void Terrain::check_slip_surface(const std::vector<double> &slip, const std::string &name) {
   const bool by_grid = !options_.slip_surface.empty();
   const double deep = slide_volume_ / slide_area_;
@@ -326,15 +355,16 @@ void Terrain::check_slip_surface(const std::vector<double> &slip, const std::str
     complain(text_of("the ellipsoid lies wholly below the ground, ", length(deepest), " deep at ", place(deepest_at),
                      ", so that the slide would have a vertical wall all round; raise its centre, in elevation, to "
                      "the ground or near it"));
-  if (by_grid && lowest - highest > 0.5 * deep)
-    complain(text_of(name, " reaches up to ", highest, " m only, ", length(lowest - highest),
-                     " below the lowest ground above it, so that the slide is ", length(deep),
-                     " thick and its surface comes to light nowhere. Are these depths? Elevations are asked for: the "
-                     "ground minus the depth, such as by gdal_calc.py"));
   const double wide = std::sqrt(slide_area_);
   double least = deepest;  // depth of the surface
   for (std::size_t k = 0; k < slip.size(); ++k)
     least = std::min(least, std::isnan(slip[k]) ? least : ground()[k] - slip[k]);
+  if (by_grid && (lowest - highest > 0.5 * deep || seem_depths(slip, least, deep > 0.1 * wide)))
+    complain(text_of(name, " reaches up to ", highest, " m only, the ground above it down to ", lowest,
+                     " m, so that the slide is ", length(deep),
+                     " thick on average and its surface comes to light nowhere. Are these depths? Elevations are asked "
+                     "for, the ground minus the depth: gdal_calc.py -A ",
+                     ground_.file, " -B ", name, " --calc=\"A-B\" --outfile=slip_surface.tif"));
   if (by_grid && least > 0.5 * deep) {
     const std::string sentence =
         text_of(name, " lies below the ground everywhere, by ", length(least), " at least and ", length(deep),

@@ -46,31 +46,79 @@ void each_point(const SoilElements<2> &soil, const Visit &visit) {
     for (int q = 0; p.present && q < p.count(); ++q) visit(p, q);
 }
 
+/// Columns of bins, and the way through them from the first column to the last that costs least: a step costs the mean
+/// resistance of its two bins. Returns whether the way enters each bin.
+std::vector<char> way_through(const std::vector<double> &resistance, size_t columns, size_t rows) {
+  const auto step = [&](size_t a, size_t b) { return (resistance[a] + resistance[b]) / 2; };
+  std::vector<double> cost(columns * rows, 0);
+  std::vector<size_t> from(columns * rows);  // the bin before; itself where the way begins
+  for (size_t k = 0; k < cost.size(); ++k) {
+    from[k] = k < rows ? k : k - rows;
+    cost[k] = k < rows ? resistance[k] / 2 : cost[k - rows] + step(k - rows, k);
+    if (k % rows + 1 < rows) continue;
+    const auto learn = [&](size_t bin, size_t beside) {  // up and down the column
+      const double other = cost[beside] + step(beside, bin);
+      if (other < cost[bin]) cost[bin] = other, from[bin] = beside;
+    };
+    for (size_t bin = k - rows + 2; bin <= k; ++bin) learn(bin, bin - 1);
+    for (size_t bin = k; bin > k - rows + 1; --bin) learn(bin - 1, bin);
+  }
+  std::vector<char> on_way(cost.size(), 0);
+  size_t bin = static_cast<size_t>(std::min_element(cost.end() - static_cast<long>(rows), cost.end()) - cost.begin());
+  for (; from[bin] != bin; bin = from[bin]) on_way[bin] = 1;
+  on_way[bin] = 1;
+  return on_way;
+}
+
+/// In each strip of the moving soil, as wide as a cell, the middle of the shear band: of the points in the bins of one
+/// line and next to it, weighted with a power of their shear. The largest shear of a strip may lie beside the band,
+/// such as at a toe above it: the line is the way through bins that shear much compared with their strip.
 std::vector<std::array<double, 2>> slip_surface(const SoilElements<2> &soil, const CellSet &piece, double low,
                                                 double high) {
+  constexpr double least = 0.1;  // of the shear of a strip: soil that shears less resists alike
+  constexpr int sharp = 3;       // the power: a band is wider on one side of where it shears most
   const MPI_Comm comm = soil.nodes().comm();
   const double width = cell_size(soil);
-  const size_t strips = static_cast<size_t>((high - low) / width) + 1;
-  // the strip of a point; none beside the piece
-  const auto strip_of = [&](const GaussPoints<2> &p, int q) {
-    const double place = (p.position[q][0] - low) / width;
-    return place < 0 || place >= static_cast<double>(strips) ? strips : static_cast<size_t>(place);
-  };
-  std::vector<double> most(strips + 1, 0), moves(strips + 1, 0), height(strips + 1, -1e300), place = height;
+  std::vector<double> range{-1e300, -1e300};  // highest and lowest point, the latter negative
   each_point(soil, [&](const GaussPoints<2> &p, int q) {
-    const size_t s = strip_of(p, q);
-    most[s] = std::max(most[s], shearing_of(p.increment[q].strain));
-    if (piece[p.cell[q]]) moves[s] = 1;
+    range[0] = std::max(range[0], p.position[q][1]), range[1] = std::max(range[1], -p.position[q][1]);
+  });
+  reduce(comm, range, MPI_MAX);
+  const size_t strips = static_cast<size_t>((high - low) / width) + 1,
+               rows = static_cast<size_t>((range[0] + range[1]) / width) + 1, bins = strips * rows;
+  // the bin of a point; none beside the piece
+  const auto bin_of = [&](const GaussPoints<2> &p, int q) {
+    const double place = (p.position[q][0] - low) / width;
+    if (place < 0 || place >= static_cast<double>(strips)) return bins;
+    return static_cast<size_t>(place) * rows + static_cast<size_t>((p.position[q][1] + range[1]) / width);
+  };
+  std::vector<double> most(bins + 1, 0), moves(strips + 1, 0);
+  each_point(soil, [&](const GaussPoints<2> &p, int q) {
+    const size_t k = bin_of(p, q);
+    most[k] = std::max(most[k], shearing_of(p.increment[q].strain));
+    if (piece[p.cell[q]]) moves[k / rows] = 1;
   });
   reduce(comm, most, MPI_MAX), reduce(comm, moves, MPI_MAX);
+  std::vector<double> largest(strips), resistance(bins);
+  for (size_t s = 0; s < strips; ++s) largest[s] = *std::max_element(&most[s * rows], &most[s * rows] + rows);
+  for (size_t k = 0; k < bins; ++k) resistance[k] = 1 / (least + (most[k] > 0 ? most[k] / largest[k / rows] : 0));
+  const std::vector<char> on_way = way_through(resistance, strips, rows);
+  std::vector<double> sums(3 * strips, 0);  // of weights, weights times x and y
   each_point(soil, [&](const GaussPoints<2> &p, int q) {
-    const size_t s = strip_of(p, q);
-    if (shearing_of(p.increment[q].strain) == most[s]) place[s] = p.position[q][0], height[s] = p.position[q][1];
+    const size_t k = bin_of(p, q);
+    if (k == bins) return;
+    const bool below = k % rows > 0 && on_way[k - 1], above = k % rows + 1 < rows && on_way[k + 1];
+    if (!on_way[k] && !below && !above) return;
+    const double shear = shearing_of(p.increment[q].strain),
+                 weight = shear > 0 ? p.volume[q] * std::pow(shear / largest[k / rows], sharp) : 0;
+    sums[k / rows * 3] += weight;
+    for (int d = 0; d < 2; ++d) sums[k / rows * 3 + 1 + d] += weight * p.position[q][d];
   });
-  reduce(comm, place, MPI_MAX), reduce(comm, height, MPI_MAX);
+  reduce(comm, sums, MPI_SUM);
   std::vector<std::array<double, 2>> surface;
   for (size_t s = 0; s < strips; ++s)
-    if (moves[s] > 0) surface.push_back({place[s], height[s]});
+    if (moves[s] > 0 && sums[3 * s] > 0)
+      surface.push_back({sums[3 * s + 1] / sums[3 * s], sums[3 * s + 2] / sums[3 * s]});
   return surface;
 }
 

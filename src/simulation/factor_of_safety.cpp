@@ -308,6 +308,11 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   }
   if (static_cast<int>(result.further.size()) + 1 < settings.mechanisms)
     run_.recorder.note("no further mechanism was found: the rest of the soil stands while that of those found is held");
+  run_.recorder.note_cut_off([&](const auto &visit) {
+    run_.statics.each_gauss_point([&](const Vec<dim> &x, const Vec<dim> &way, double mass, double strain) {
+      visit({x, way, mass, strain});
+    });
+  });
   for (const std::string &stage : result.lost_stages)
     run_.recorder.note("stage " + stage + " found no equilibrium" +
                        (result.lower < 1

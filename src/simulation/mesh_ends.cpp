@@ -136,35 +136,29 @@ std::vector<std::string> MeshEnds<dim>::newly_reached(const std::string &stage) 
 }
 
 template <int dim>
-typename MeshEnds<dim>::Sheared MeshEnds<dim>::sheared(const OfPlanes &size) const {
+typename MeshEnds<dim>::Sheared MeshEnds<dim>::sheared(const Soil &soil, const OfPlanes &size, bool mechanism) const {
   constexpr double strip = 0.2;    // of the height of the soil: of selborne, whatever its cells, a shear band and more
   constexpr double hardly = 0.01;  // strain of soil that slides without shearing
   constexpr double few = 0.3;      // of the mean mass: parts with less of it are corners
   constexpr double bare = 0.05;    // of the bottom
+  constexpr double thin = 2;       // cells
   constexpr int most_parts = 100;  // along an axis
   const int up = world_.scene.vertical();
-  const auto each_particle = [&](const auto &visit) {
-    for (const auto &body : world_.bodies) {
-      const ParticleArrays<dim> &p = body->particles();
-      const int memory = body->history_count(), field = plastic_strain_field(body->law());
-      for (int i = 0; i < p.count; ++i)
-        visit(p.reference[i], p.mass[i], field < 0 ? 0 : p.history[static_cast<std::size_t>(i) * memory + field]);
-    }
-  };
   constexpr double far = std::numeric_limits<double>::infinity();
   double range[2]{-far, -far}, sums[2]{};  // highest and lowest soil, the latter negative
-  each_particle([&](const Vec<dim> &x, double mass, double strain) {
-    range[0] = std::max(range[0], x[up]), range[1] = std::max(range[1], -x[up]);
-    sums[0] += mass * strain, sums[1] += mass * strain * strain;
+  soil([&](const Point &p) {
+    range[0] = std::max(range[0], p.start[up]), range[1] = std::max(range[1], -p.start[up]);
+    sums[0] += p.mass * p.strain, sums[1] += p.mass * p.strain * p.strain;
   });
   MPI_Allreduce(MPI_IN_PLACE, range, 2, MPI_DOUBLE, MPI_MAX, world_.comm);
   MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, world_.comm);
   Sheared found;
   found.mean = sums[0] > 0 ? sums[1] / sums[0] : 0;
-  if (found.mean < hardly) return found;
+  if (!mechanism && found.mean < hardly) return found;
   for (int plane = 0; plane < planes; ++plane) {
     if (size[plane] == 0) continue;
-    const double within = found.within[plane] = std::max(strip * (range[0] + range[1]), size[plane]);
+    const double within = found.within[plane] =
+        mechanism ? size[plane] : std::max(strip * (range[0] + range[1]), size[plane]);
     int parts[dim], all = 1;  // of the plane, as long as the strip is wide
     for (int d = 0; d < dim; ++d) {
       const double length = -end_[2 * d + 1] - end_[2 * d];
@@ -180,10 +174,12 @@ typename MeshEnds<dim>::Sheared MeshEnds<dim>::sheared(const OfPlanes &size) con
     };
     std::vector<double> of(3 * static_cast<std::size_t>(all));
     double *mass = of.data(), *strain = mass + all, *faces = strain + all;
-    each_particle([&](const Vec<dim> &x, double m, double e) {
-      if (-end_[plane] - (plane % 2 ? 1 : -1) * x[plane / 2] > within) return;
-      const int part = part_at(x);
-      mass[part] += m, strain[part] += m * e;
+    std::vector<double> top(all, -far);
+    soil([&](const Point &p) {
+      const int part = part_at(p.start);
+      top[part] = std::max(top[part], p.start[up]);
+      if (-end_[plane] - (plane % 2 ? 1 : -1) * p.start[plane / 2] > within) return;
+      mass[part] += p.mass, strain[part] += p.mass * p.strain;
     });
     for (const Face &face : faces_) {
       if (face.plane != plane) continue;
@@ -193,13 +189,16 @@ typename MeshEnds<dim>::Sheared MeshEnds<dim>::sheared(const OfPlanes &size) con
       ++faces[part_at(middle)];
     }
     MPI_Allreduce(MPI_IN_PLACE, of.data(), static_cast<int>(of.size()), MPI_DOUBLE, MPI_SUM, world_.comm);
+    MPI_Allreduce(MPI_IN_PLACE, top.data(), all, MPI_DOUBLE, MPI_MAX, world_.comm);
     double total = 0;
+    bool ground = false;  // comes down to the bottom, which is then that of a slope on firm ground
     int filled = 0, covered = 0, with_faces = 0;
     for (int k = 0; k < all; ++k) {
       total += mass[k], filled += mass[k] > 0;
       with_faces += faces[k] > 0, covered += faces[k] > 0 && mass[k] > 0;
+      ground = ground || (mechanism && mass[k] > 0 && top[k] - end_[bottom()] < thin * size[plane]);
     }
-    if (plane == bottom() && covered < (1 - bare) * with_faces) continue;
+    if (plane == bottom() && (ground || covered < (1 - bare) * with_faces)) continue;
     for (int k = 0; k < all; ++k)
       if (mass[k] > few * total / filled) found.beside[plane] = std::max(found.beside[plane], strain[k] / mass[k]);
   }
@@ -207,7 +206,7 @@ typename MeshEnds<dim>::Sheared MeshEnds<dim>::sheared(const OfPlanes &size) con
 }
 
 template <int dim>
-std::vector<std::string> MeshEnds<dim>::cut_off() const {
+std::vector<typename MeshEnds<dim>::Reached> MeshEnds<dim>::reached(const Soil &soil, bool mechanism) const {
   constexpr double along = 0.5;  // cosine of way and normal, from which on a side is in front of a slide or behind it
   const int up = world_.scene.vertical();
   OfPlanes size{}, most{};
@@ -218,57 +217,97 @@ std::vector<std::string> MeshEnds<dim>::cut_off() const {
     if (face.plane == bottom() || (face.slips && face.plane / 2 != up))
       size[face.plane] = std::max(size[face.plane], face.depth), group[face.plane] = face.group;
   MPI_Allreduce(MPI_IN_PLACE, size.data(), planes, MPI_DOUBLE, MPI_MAX, world_.comm);
-  for (const auto &body : world_.bodies) {
-    const ParticleArrays<dim> &p = body->particles();
-    for (int i = 0; i < p.count; ++i) {
-      double square = 0;
-      for (int d = 0; d < dim; ++d) square += std::pow(p.position[i][d] - p.reference[i][d], 2);
-      const double moved = std::sqrt(square);
-      largest = std::max(largest, moved);
-      for (int d = 0; d < dim; ++d)
-        if (d != up) slid[d] += p.mass[i] * (p.position[i][d] - p.reference[i][d]);
-      for (int plane = 0; plane < planes; ++plane) {
-        const double outward = (plane % 2 ? 1 : -1) * p.reference[i][plane / 2];
-        if (-end_[plane] - outward <= size[plane]) most[plane] = std::max(most[plane], moved);
-      }
+  soil([&](const Point &p) {
+    double square = 0;
+    for (const double part : p.way) square += part * part;
+    const double moved = std::sqrt(square);
+    largest = std::max(largest, moved);
+    for (int d = 0; d < dim; ++d)
+      if (d != up) slid[d] += p.mass * p.way[d];
+    for (int plane = 0; plane < planes; ++plane) {
+      const double outward = (plane % 2 ? 1 : -1) * p.start[plane / 2];
+      if (-end_[plane] - outward <= size[plane]) most[plane] = std::max(most[plane], moved);
     }
-  }
+  });
   MPI_Allreduce(MPI_IN_PLACE, most.data(), planes, MPI_DOUBLE, MPI_MAX, world_.comm);
   MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, world_.comm);
   MPI_Allreduce(MPI_IN_PLACE, slid, dim, MPI_DOUBLE, MPI_SUM, world_.comm);
   MPI_Allreduce(MPI_IN_PLACE, group, planes, MPI_INT, MPI_MAX, world_.comm);
   double way = 0;
   for (const double part : slid) way += part * part;
-  const Sheared sheared = this->sheared(size);
-  const auto percent = [](double share) { return rounded(100 * share) + " %"; };
-  std::vector<std::string> sentences;
+  const Sheared sheared = this->sheared(soil, size, mechanism);
+  std::vector<Reached> ends;
   for (int plane = 0; plane < planes; ++plane) {
-    if (size[plane] == 0 || largest <= size[plane]) continue;
+    if (size[plane] == 0 || (!mechanism && largest <= size[plane])) continue;
     const bool below = plane == bottom();
     const double outward = (plane % 2 ? 1 : -1) * slid[plane / 2] / std::sqrt(way > 0 ? way : 1);
     if (!below && std::abs(outward) < along) continue;
+    const bool cuts = !below && most[plane] > (mechanism ? mechanism_share : cut_share) * largest;
+    if (!cuts && sheared.beside[plane] <= reached_share * sheared.mean) continue;
     const std::string &name = group[plane] < 0 ? "" : world_.mesh.group_names()[static_cast<std::size_t>(group[plane])];
-    const std::string place = name.empty() ? std::string(plane % 2 ? "at the largest " : "at the smallest ") +
-                                                 "xyz"[plane / 2] + std::string(", which no group names,")
-                                           : "at the group " + name;
-    const std::string advice =
-        std::string("Extend the section ") +
-        (below         ? "downwards, unless firm ground begins there in nature"
-         : outward < 0 ? "behind the crest, unless the soil ends there in nature or this is a plane of symmetry"
-                       : "in front of the toe, unless the soil ends there in nature or this is a plane of symmetry");
-    if (!below && most[plane] > cut_share * largest)
-      sentences.push_back("the end of the mesh " + place + " cuts the slide off: soil that lay there has moved by " +
-                          rounded(most[plane]) + " m, " + percent(most[plane] / largest) +
-                          " of the largest displacement (" + rounded(largest) + " m; more than " + percent(cut_share) +
-                          " counts). " + advice);
-    else if (sheared.beside[plane] > reached_share * sheared.mean)
-      sentences.push_back(
-          std::string("the slide reaches the ") + (below ? "fixed bottom" : "end") + " of the mesh " + place +
-          ": soil within " + rounded(sheared.within[plane]) + " m of it has a plastic strain of up to " +
-          rounded(sheared.beside[plane]) + ", " + percent(sheared.beside[plane] / sheared.mean) +
-          " of the mean of what has sheared (" + rounded(sheared.mean) + "; more than " + percent(reached_share) +
-          " counts), so that the load at failure and the run-out depend on where the mesh ends. " + advice);
+    ends.push_back(
+        {below, cuts,
+         name.empty() ? std::string(plane % 2 ? "at the largest " : "at the smallest ") + "xyz"[plane / 2] +
+                            std::string(", which no group names,")
+                      : "at the group " + name,
+         most[plane], largest, sheared.beside[plane], sheared.mean, sheared.within[plane],
+         std::string("Extend the section ") +
+             (below ? "downwards, unless firm ground begins there in nature"
+              : outward < 0
+                  ? "behind the crest, unless the soil ends there in nature or this is a plane of symmetry"
+                  : "in front of the toe, unless the soil ends there in nature or this is a plane of symmetry")});
   }
+  return ends;
+}
+
+namespace {
+
+std::string percent(double share) { return rounded(100 * share) + " %"; }
+
+}  // namespace
+
+template <int dim>
+std::vector<std::string> MeshEnds<dim>::cut_off() const {
+  const Soil particles = [this](const std::function<void(const Point &)> &visit) {
+    for (const auto &body : world_.bodies) {
+      const ParticleArrays<dim> &p = body->particles();
+      const int memory = body->history_count(), field = plastic_strain_field(body->law());
+      for (int i = 0; i < p.count; ++i) {
+        Point point{p.reference[i], {}, p.mass[i], 0};
+        for (int d = 0; d < dim; ++d) point.way[d] = p.position[i][d] - p.reference[i][d];
+        if (field >= 0) point.strain = p.history[static_cast<std::size_t>(i) * memory + field];
+        visit(point);
+      }
+    }
+  };
+  std::vector<std::string> sentences;
+  for (const Reached &end : reached(particles, false))
+    sentences.push_back(
+        end.cuts
+            ? "the end of the mesh " + end.place + " cuts the slide off: soil that lay there has moved by " +
+                  rounded(end.moved) + " m, " + percent(end.moved / end.of) + " of the largest displacement (" +
+                  rounded(end.of) + " m; more than " + percent(cut_share) + " counts). " + end.advice
+            : std::string("the slide reaches the ") + (end.below ? "fixed bottom" : "end") + " of the mesh " +
+                  end.place + ": soil within " + rounded(end.within) + " m of it has a plastic strain of up to " +
+                  rounded(end.strain) + ", " + percent(end.strain / end.mean) + " of the mean of what has sheared (" +
+                  rounded(end.mean) + "; more than " + percent(reached_share) +
+                  " counts), so that the load at failure and the run-out depend on where the mesh ends. " + end.advice);
+  return sentences;
+}
+
+template <int dim>
+std::vector<std::string> MeshEnds<dim>::cut_off(const Soil &mechanism) const {
+  std::vector<std::string> sentences;
+  for (const Reached &end : reached(mechanism, true))
+    sentences.push_back(
+        (end.cuts ? "the end of the mesh " + end.place + " cuts the mechanism off: soil there moves by " +
+                        percent(end.moved / end.of) + " of its largest displacement (more than " +
+                        percent(mechanism_share) + " counts)"
+                  : std::string("the mechanism reaches the ") + (end.below ? "fixed bottom" : "end") + " of the mesh " +
+                        end.place + ": soil within " + rounded(end.within) + " m of it shears by " +
+                        percent(end.strain / end.mean) + " of the mean of what shears (more than " +
+                        percent(reached_share) + " counts)") +
+        ", so that the factor of safety depends on where the mesh ends and may be too large. " + end.advice);
   return sentences;
 }
 

@@ -2,6 +2,7 @@
 /// Where the mesh ends beside, above and below the soil, which of these ends moving soil has come to, so that the
 /// run-out is that of the mesh from then on, and which of them a slide reaches, so that they decide part of its load.
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,13 @@ class MeshEnds {
   /// A sentence for each plane whose cells contain, for the first time, soil that has moved towards it by more than the
   /// size of its cell. Collective.
   std::vector<std::string> newly_reached(const std::string &stage);
+  /// A point of the soil: where it lay at the last reset, how far it has moved and how much it has sheared since.
+  struct Point {
+    Vec<dim> start, way;
+    double mass, strain;
+  };
+  /// Calls a function for each point of this rank.
+  using Soil = std::function<void(const std::function<void(const Point &)> &)>;
   /// A sentence for each side of the mesh behind or in front of a slide, and for its fixed bottom, that decides part of
   /// the slide. Of a side it is said where soil that lay at it has moved by more than `cut_share` of the largest
   /// displacement since the last reset, or where soil beside it has sheared by more than `reached_share` of the mean of
@@ -25,8 +33,13 @@ class MeshEnds {
   /// where it faces the slide's way or its rear: sides along the way are often planes of symmetry. The bottom counts
   /// where soil lies on all of it: a bare one is the ground over which soil runs out. Collective.
   std::vector<std::string> cut_off() const;
+  /// The same of a mechanism of finite elements, whose size is free: it reaches an end where cells at this end shear.
+  /// The bottom does not count where the ground comes down to it, at the toe of a slope on firm ground.
+  std::vector<std::string> cut_off(const Soil &mechanism) const;
   /// The rear of the gallery's selborne moves by 0.03 in cells of 1.4 m, soil that stands by less.
   static constexpr double cut_share = 0.02;
+  /// Soil that moves by less is no part of a mechanism, see moving_pieces: it yields beside it.
+  static constexpr double mechanism_share = 0.1;
   /// In cells of 2 to 0.7 m the rear of selborne has 0.08 to 0.14 where the base is deep or not, and its base 0.5 to
   /// 0.7; with both far away 0, and 0.03 to 0.05: to move them farther then changes the load at failure by 1 %.
   static constexpr double reached_share = 0.06;
@@ -46,7 +59,15 @@ class MeshEnds {
     OfPlanes within{};  ///< this distance of it [m]
   };
   /// `size` of the largest cell at each plane [m], 0: does not count. Collective.
-  Sheared sheared(const OfPlanes &size) const;
+  Sheared sheared(const Soil &soil, const OfPlanes &size, bool mechanism) const;
+  struct Reached {
+    bool below, cuts;             ///< the bottom; soil that lay there has moved, or else has sheared near it
+    std::string place;            ///< "at the group rear"
+    double moved, of;             ///< there, and at most [m]
+    double strain, mean, within;  ///< near it, of what has sheared, and how near [m]
+    std::string advice;
+  };
+  std::vector<Reached> reached(const Soil &soil, bool mechanism) const;
 
   struct Face {
     int cell, plane;

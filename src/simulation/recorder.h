@@ -70,6 +70,10 @@ class Recorder {
   void note_cut_off() {
     for (const std::string &sentence : ends_.cut_off()) note("warning: " + sentence);
   }
+  /// The same of the mechanism of a factor of safety. Collective.
+  void note_cut_off(const typename MeshEnds<dim>::Soil &mechanism) {
+    for (const std::string &sentence : ends_.cut_off(mechanism)) note("warning: " + sentence);
+  }
   /// Says that the mesh was divided in another way, which is expected to bring this imbalance.
   void note_balancing(double before, double expected);
   /// Ends the run: throws RunError with the cause, where the run stood and what is left of it; BrokenOff if pictures of

@@ -427,6 +427,23 @@ Snapshot Statics<dim>::gauss_points() const {
   return s;
 }
 
+template <int dim>
+void Statics<dim>::each_gauss_point(
+    const std::function<void(const Vec<dim> &, const Vec<dim> &, double, double)> &visit) const {
+  const SoilElements<dim> &soil = problem_->soil();
+  for (int b = 0; b < static_cast<int>(world_.bodies.size()); ++b) {
+    const GaussPoints<dim> &p = soil.points()[b];
+    for (int q = 0; p.present && q < p.count(); ++q) {
+      const int cell = p.cell[q];
+      Stress<dim> strain;
+      std::copy_n(&p.total_strain[q * stress_size<dim>], stress_size<dim>, &strain.xx);
+      visit(p.position[q], soil.displacement(cell, soil.rule().point[q - soil.first_point(cell)]),
+            p.volume[q] * world_.soil_density(world_.scene.body[b], p.position[q], clock_.load_time),
+            Invariants<dim>(strain).q * std::sqrt(4. / 3));
+    }
+  }
+}
+
 template class Statics<2>;
 template class Statics<3>;
 

@@ -1,6 +1,7 @@
 #pragma once
 /// Equilibrium, seepage and consolidation by finite elements on the world's mesh, laws and boundaries, and what they
 /// hand to the particles and take from them, docs/theory/finite_elements.md and seepage.md.
+#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -55,6 +56,8 @@ class Statics {
   PoreFlow<dim> &flow() { return *flow_; }
   /// Columns of the Gauss points, in place of particles.
   Snapshot gauss_points() const;
+  /// Calls visit(place, displacement, mass, shear strain) for each of them, the last two since displacement was reset.
+  void each_gauss_point(const std::function<void(const Vec<dim> &, const Vec<dim> &, double, double)> &visit) const;
   /// The state at a place in the soil, or at the nearest place of the soil if it is outside: displacement by the shape
   /// functions, stress and history between the Gauss points of the cell; at rest. Beyond the Gauss points stress goes
   /// on linearly where the soil bears it, else it is that of the nearest place between them. None where another rank

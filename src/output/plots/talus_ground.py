@@ -9,6 +9,7 @@ MOST_BOXES = 12_000_000  # of the grid in space that holds a field
 BOX, EMPTY = 1.25, 0.3  # size of such a box, over the spacing of particles, and weight of one that has none
 KNOWN = 0.4  # share of the particles near a place, within one or two boxes, that have a value where the field has one: single particles without do not count
 LOOSE = 1.5  # most heights of soil over the height that its volume fills
+BESIDE = 5  # rounds, each of two cells, in which heights go on beyond the ground for its shading
 SMOOTH = 1.0  # standard deviation of the smoothing of the surface, over the spacing of particles
 
 
@@ -28,7 +29,7 @@ class Ground:
         self.base = self._bottom(node, cell) if len(cell) else np.full(self.shape, low[up])
         self.inside = np.isfinite(self.base)
         self.floor = float(self.base[self.inside].min()) if self.inside.any() else float(low[up])  # the lowest point that is shown
-        self.base = np.where(self.inside, self.base, self.floor)
+        self.base = beside(self.base, self.inside, self.floor)
 
     def number(self, position):
         """The cell of each place as one number, -1 outside the grid."""
@@ -60,7 +61,16 @@ class Ground:
             keep = first + second <= count
             share = np.stack([first[keep], second[keep], count - first[keep] - second[keep]], axis=1) / count
             lowest = np.minimum(lowest, self.highest((share @ corner[steps == count]).reshape(-1, 3), sign=-1.0))
-        return lowest
+        return self._without_overhangs(lowest, float(np.median(longest)))
+
+    def _without_overhangs(self, lowest, width):
+        """Cells of the mesh that hang over a place where it has none, at the rough edge of a hole, are no ground: narrow peaks, higher than wide."""
+        hole = ~np.isfinite(lowest)
+        if not hole.any():
+            return lowest
+        reach = max(1, int(round(width / self.cell)))
+        opened = widest(np.where(hole, -np.inf, -widest(-lowest, reach)), reach)
+        return np.where(~hole & (widest(hole.astype(float), reach) > 0) & (lowest > opened + width), np.inf, lowest)
 
     def surface(self, position, size, volume):
         """Heights of the soil's surface, and where there is soil, from the places [n, 3], widths [n] and volumes [n] of the particles. The surface is
@@ -125,6 +135,16 @@ def smoothed(values, deviation):
             result[(*at, to)] += weight * values[(*at, source)]
         values = result
     return values
+
+
+def beside(values, known, otherwise):
+    """Values around those that are known: means of the cells beside them, some cells away `otherwise`."""
+    for _ in range(BESIDE if not known.all() else 0):
+        weight, total = (smoothed(array, 1.0) for array in (known.astype(float), np.where(known, values, 0.0)))
+        found = ~known & (weight > 1e-6)
+        values = np.where(found, total / np.maximum(weight, 1e-6), values)
+        known = known | found
+    return np.where(known, values, otherwise)
 
 
 class Filling:

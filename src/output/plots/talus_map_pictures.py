@@ -124,9 +124,10 @@ def draw_map(maps, path):
     figure, axes = plt.subplots(figsize=(wide + 1.4, tall + 1.4), layout="constrained")
     east, north = (origin[k] + ground.low[k] + (np.arange(ground.shape[k]) + 0.5) * ground.cell for k in (0, 1))
     before = smoothed_evenly(maps.before, grid.spacing / (2 * ground.cell))
-    axes.imshow(shade(before, ground.cell).T, cmap="gray", vmin=0, vmax=1, origin="lower", extent=extent(ground.low[:2], ground.cell, ground.shape, origin))
+    light = np.ma.masked_where(~ground.inside, shade(before, ground.cell))
+    axes.imshow(light.T, cmap="gray", vmin=0, vmax=1, origin="lower", extent=extent(ground.low[:2], ground.cell, ground.shape, origin))
     levels = MaxNLocator(12).tick_values(before.min(), before.max())
-    level = without_flats(before, levels, max(1, int(LEVEL * min(before.shape))))
+    level = np.ma.masked_where(~ground.inside, without_flats(before, levels, max(1, int(LEVEL * min(before.shape)))))
     lines = axes.contour(east, north, level.T, levels, colors=style.SOFT, linewidths=0.5)
     deposit = np.ma.masked_where(~maps.covered[-1], maps.thickness[-1])
     image = axes.imshow(deposit.T, cmap=style.colours_of("thickness"), vmin=0, origin="lower", alpha=0.85, zorder=2,

@@ -76,13 +76,22 @@ Section section_in(const std::string &content, std::vector<std::string> *doubts 
   }
 }
 
-void expect_refused(const Dxf &dxf, const std::string &words) {
+void expect_refused(const std::string &content, const std::string &words) {
   try {
-    section_in(dxf.content());
+    section_in(content);
     ADD_FAILURE() << "taken, not refused with: " << words;
   } catch (const std::invalid_argument &error) {
     EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what() << "\nlacks: " << words;
   }
+}
+
+void expect_refused(const Dxf &dxf, const std::string &words) { expect_refused(dxf.content(), words); }
+
+/// The text with other lines in place of those that it has once.
+std::string changed(std::string text, const std::string &from, const std::string &to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
 const std::vector<Vec<2>> box{{0, 0}, {25, 0}, {25, 8}, {0, 8}}, ground{{0, 7}, {10, 7}, {15, 2}, {25, 2}};
@@ -159,24 +168,87 @@ TEST(Drawing, TurnsArcsIntoChords) {
 }
 
 TEST(Drawing, RefusesWhatIsNoSection) {
-  expect_refused(Dxf().polyline("outline", box, false), "entity 1: the outline is open between (0, 8) and (0, 0) m");
+  expect_refused(Dxf().polyline("outline", box, false), "line 6: the outline is open between (0, 8) and (0, 0) m");
   expect_refused(
       Dxf().line("outline", {0, 0}, {5, 0}).line("outline", {5.1, 0}, {5, 5}),
-      "entity 2: layer 'outline' does not join into one line: between (5, 0) and (5.1, 0) m its pieces are 0.1 m");
+      "line 22: layer 'outline' does not join into one line: between (5, 0) and (5.1, 0) m its pieces are 0.1 m");
   expect_refused(slope().line("b_wall", {0, 0}, {0, 3}).line("b_wall", {0, 3}, {0, 0}),
-                 "entity 6: layer 'b_wall' has this line twice, also as entity 5");
-  expect_refused(slope().line("b_wall", {0, 0}, {0, 3}, 2.5), "entity 5: layer 'b_wall' has a point with z = 2.5");
+                 "layer 'b_wall' has this line twice, also in line ");
+  expect_refused(slope().line("b_wall", {0, 0}, {0, 3}, 2.5), ": layer 'b_wall' has a point with z = 2.5");
   expect_refused(slope().polyline("region_sand", box, false), "a region is named by a point or a text inside it");
   expect_refused(slope().point("b_wall", {0, 1}), "it takes lines and polylines");
   expect_refused(slope(8), "unit 8 of $INSUNITS");
   expect_refused(Dxf().polyline("interface0", ground, false), "has no outline");
-  expect_refused(slope().line("b_wall", {50, 0}, {60, 0}), "entity 5: the boundary 'b_wall' lies outside the outline");
+  expect_refused(slope().line("b_wall", {50, 0}, {60, 0}), ": the boundary 'b_wall' lies outside the outline");
   expect_refused(slope().line("interface_x", {0, 1}, {25, 1}), "'interface_x' is no part of a section");
 }
 
 TEST(Drawing, RefusesWhatIsNoDrawing) {
   EXPECT_THROW(section_in("outline,0,0\n"), std::invalid_argument);
   EXPECT_THROW(read_drawing("/nowhere/slope.dxf"), std::invalid_argument);
+}
+
+TEST(Drawing, ReadsNumbersWholeOrRefusesThem) {
+  const std::string good = slope(6).content();
+  expect_refused(changed(good, "\n10\n  20\n7\n", "\n10\n  20\n7,25\n"),
+                 "group 20 of the VERTEX on layer 'interface0' must be a number, not '7,25'; a DXF file has decimal "
+                 "points");
+  expect_refused(changed(good, "  10\n15\n", "  10\n15 m\n"),
+                 "line 86: group 10 of the VERTEX on layer 'interface0' must");
+  expect_refused(changed(good, "  10\n15\n", "  10\nnan\n"), "must be a number, not 'nan'");
+  expect_refused(changed(good, "  10\n15\n", "  1O\n15\n"), "line 85: '  1O' stands where a DXF file has the code");
+  expect_refused(changed(good, "  20\n2\n", ""), "the VERTEX on layer 'interface0' lacks a number, group 20 (y)");
+  expect_refused(changed(good, "  70\n6\n", "  70\nmetres\n"), "line 8: $INSUNITS must be followed by group 70");
+  expect_slope(section_in(changed(good, "  10\n15\n", "  10\n   1.5e+1  \n")));
+  const std::string light = Dxf().light_polyline("outline", box, true).light_polyline("b_x", ground, false).content();
+  expect_refused(changed(light, "  20\n8\n", ""), "lacks a number, group 20 (y)");
+  expect_refused(changed(light, "  10\n25\n  20\n8\n", ""), "says that it has 4 points, and it has 3");
+  expect_refused(changed(light, "  90\n4\n", ""), "the LWPOLYLINE on layer 'outline' lacks a number, group 90");
+}
+
+/// A file that is cut anywhere is refused, until its last word is whole.
+TEST(Drawing, RefusesWhatIsCutOff) {
+  std::ifstream file(TALUS_GUIDE "/slope.dxf");
+  const std::string whole{std::istreambuf_iterator<char>(file), {}};
+  for (std::size_t length = 0; length + 1 < whole.size(); length += length + 20 < whole.size() ? 10 : 1)
+    EXPECT_THROW(section_in(whole.substr(0, length)), std::invalid_argument) << "the first " << length << " bytes";
+  expect_slope(section_in(whole.substr(0, whole.size() - 1)));
+  expect_refused(whole.substr(0, 400), "the drawing ends here without the group EOF");
+  expect_refused(changed(whole, "  0\nENDSEC\n  0\nEOF", "  0\nEOF"), "which no ENDSEC ends");
+  expect_refused(changed(whole, "  0\nSEQEND\n", ""), "has no SEQEND before this");
+  expect_refused("AutoCAD Binary DXF\r\n" + std::string(1, '\x1a') + std::string(9, '\0'), "DXF in text form (ASCII)");
+  std::string lines = whole;
+  for (std::size_t at = 0; (at = lines.find('\n', at)) != std::string::npos; at += 2) lines.replace(at, 1, "\r\n");
+  expect_slope(section_in(lines));
+}
+
+TEST(Drawing, RefusesEntitiesThatGdalLeavesOut) {
+  expect_refused(slope().polyline("b_wall", {}, false), "line 110: the POLYLINE on layer 'b_wall' has no vertices");
+  expect_refused(slope().light_polyline("b_wall", {{0, 0}}, false), "the LWPOLYLINE on layer 'b_wall' has 1 vertex");
+  expect_refused(slope().line("b_wall", {0, 3}, {0, 3}), "layer 'b_wall' has a line without length at (0, 3)");
+  const std::string wall = slope().line("b_wall", {0, 0}, {0, 3}).content();
+  for (const char *kind : {"HATCH", "SOLID", "XLINE", "ACAD_PROXY_ENTITY"})
+    expect_refused(changed(wall, "LINE\n  8\nb_wall", kind + std::string("\n  8\nb_wall")),
+                   "the " + std::string(kind) + " on layer 'b_wall' is neither a line nor a point that is read");
+  expect_slope(section_in(changed(wall, "LINE\n  8\nb_wall", "SOLID\n  8\ndetails")));
+}
+
+/// A bulge of 1 is half a circle; the parts of a block keep their layers, and those on layer 0 take that of the insert.
+TEST(Drawing, ReadsBulgesAndBlocks) {
+  const std::string light = Dxf().light_polyline("outline", {{0, 0}, {10, 0}, {10, 5}, {0, 5}}, true).content();
+  EXPECT_NEAR(section_in(changed(light, "  10\n10\n  20\n5\n", "  10\n10\n  20\n5\n  42\n1\n")).area(),
+              50 + M_PI * 12.5, 0.1);
+  std::string block = slope(6).content();
+  block = changed(block, "  0\nSECTION\n  2\nENTITIES\n",
+                  "  0\nSECTION\n  2\nBLOCKS\n  0\nBLOCK\n  8\n0\n  2\nSlope\n  10\n0\n  20\n0\n");
+  block = changed(block, "  0\nENDSEC\n  0\nEOF",
+                  "  0\nLINE\n  8\n0\n  10\n0\n  20\n0\n  11\n0\n  21\n3\n  0\nENDBLK\n  0\nENDSEC\n  0\nSECTION\n  2\n"
+                  "ENTITIES\n  0\nINSERT\n  8\nb_wall\n  2\nSLOPE\n  10\n0\n  20\n0\n  0\nENDSEC\n  0\nEOF");
+  const Section section = section_in(block);
+  expect_slope(section);
+  ASSERT_EQ(section.boundaries.size(), 1u);
+  EXPECT_EQ(section.boundaries[0].points[1], (Vec<2>{0, 3}));
+  expect_refused(changed(block, "SLOPE", "other"), "inserts the block 'other', which the drawing does not have");
 }
 
 }  // namespace

@@ -219,6 +219,7 @@ TEST(BadSection, NamesTheLine) {
   expect_words(complaint(square + "free_space,0,1\n"), {"line 6", "height"});
   expect_words(complaint(square + "region_soil,5,1\n"), {"line 6", "region_soil", "outside"});
   expect_words(complaint(square + "outline,4,3\n"), {"line 6", "repeats", "line 4"});
+  expect_words(complaint(square + "outline,0.000001,3\n"), {"line 6", "repeats", "line 5"});
 }
 
 TEST(BadSection, TheOutlineMustBeAPolygon) {

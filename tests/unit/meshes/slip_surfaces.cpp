@@ -107,7 +107,7 @@ TEST_F(TerrainFiles, DoNotMeetImpossibleSlipSurfaces) {
   TerrainOptions o = options(ascii(high));
   o.size = 4;
   o.slip_surface = ascii(bowl, "depth.asc");
-  expect_words(complaint(o), {"depth.asc reaches up to 12 m only", "thick", "Are these depths?"});
+  expect_words(complaint(o), {"depth.asc reaches up to 12 m only", "thick", "Are these depths?", "--calc=\"A-B\""});
   const auto slip = [&](const Elevation &hides) {
     return ascii([&](double x, double y) { return hides(x, y) > 0 ? -9999 : high(x, y) - bowl(x, y); }, "slip.asc");
   };
@@ -128,6 +128,30 @@ TEST_F(TerrainFiles, DoNotMeetImpossibleSlipSurfaces) {
   EXPECT_TRUE(doubts(o, "the ellipsoid ends 11.8 m below"));
   o.ellipsoid->centre[2] = 1140;
   expect_words(complaint(o), {"lies wholly below the ground", "50.", "raise its centre"});
+}
+
+/// Depths in place of elevations are told where they are far below the ground at all places, also in low country; a
+/// slip surface at and below the level of the sea is one.
+TEST_F(TerrainFiles, DoNotTakeDepthsForElevations) {
+  const Elevation bowl = [](double x, double y) {
+    return std::max(0., 12 - 0.005 * (std::pow(x - 5080, 2) + std::pow(y - 2080, 2)));
+  };
+  const Elevation hill = [](double x, double y) { return plane(x, y) - 25; };  // 75 to 15 m
+  TerrainOptions o = options(ascii(hill));
+  o.size = 4;
+  for (const double sign : {1, -1}) {
+    o.slip_surface = ascii([&](double x, double y) { return sign * bowl(x, y); }, "depth.asc");
+    expect_words(complaint(o), {"depth.asc reaches up to ", " m only", "Are these depths?"});
+  }
+  const auto shore = [&](double level) {  // of the lowest ground
+    o.file = ascii([&](double x, double y) { return plane(x, y) - 40 + level; });
+    o.slip_surface = ascii([&](double x, double y) { return plane(x, y) - 40 + level - bowl(x, y); }, "slip.asc");
+    return complaint(o);
+  };
+  for (const double level : {0., -30., -61., 5.}) EXPECT_EQ(shore(level), "") << level;
+  o.file = ascii([](double x, double) { return 3 + 0.045 * (x - east); });  // a plain, and loose soil on all of it
+  o.slip_surface = ascii([](double x, double) { return 0.0125 * (x - east); }, "slip.asc");
+  EXPECT_EQ(complaint(o), "");
 }
 
 /// Which of the two is in feet no file says: both are named, and not a place that stands out.

@@ -30,12 +30,52 @@ TEST_F(TerrainFiles, GiveTheirWindowAndEveryOtherRow) {
   expect_words(terrain.origin_document(), {"\"origin_m\": [5020, 2030]", "\"spacing_m\": 10,", "a.asc"});
 }
 
-TEST_F(TerrainFiles, AreRefusedWithHoles) {
-  TerrainOptions o =
-      options(ascii([](double x, double y) { return x == east + 30 && y > south + 100 ? -9999. : 50.; }));
-  expect_words(complaint(o), {"no data at 6 of 357 places", "(5030, 2110)", "gdal_fillnodata.py", "--window"});
-  o.window = {east + 40, south, east + 200, south + 160};
+/// The extent that gdalinfo prints is that of the cells, half a spacing wider than their centres; it begins in the
+/// north.
+TEST_F(TerrainFiles, GiveTheWindowThatGdalinfoPrints) {
+  TerrainOptions o = options(ascii(plane));
+  for (const std::vector<double> &window : {std::vector<double>{east - 5, south - 5, east + 205, south + 165},
+                                            {east - 5, south + 165, east + 205, south - 5}}) {
+    o.window = window;
+    const Terrain terrain(o);
+    EXPECT_EQ(terrain.columns(), columns);
+    EXPECT_EQ(terrain.rows(), rows);
+    EXPECT_DOUBLE_EQ(terrain.ground_at(200, 0), 40);
+  }
+}
+
+/// Places without data are left out beside the slide and its way, with their volume; in it or on its way they are
+/// refused.
+TEST_F(TerrainFiles, MayHaveHolesBesideTheSlide) {
+  const auto with_hole = [&](double x0, double x1, double y0, double y1) {
+    return ascii([=](double x, double y) {
+      return x >= east + x0 && x <= east + x1 && y >= south + y0 && y <= south + y1 ? -9999. : plane(x, y);
+    });
+  };
+  const std::string file = with_hole(120, 150, 20, 50),
+                    corner = " --size 8 --far-size 12 --air 20 -o " + in_folder("m.msh");
+  const Answer answer = run(file + corner + " --ellipsoid 5050 2110 84.5 25 20 9 17 90");
+  EXPECT_EQ(answer.status, 0) << answer.text;
+  expect_words(answer.text,
+               {"warning: ", "no data at 16 of 357 places, the first at (5120, 2020): cells", "group void"});
+  EXPECT_NEAR((of_group(answer, "slide") + of_group(answer, "air")) / (20. * (200 * 160 - 50 * 50) + 10149), 1, 0.01)
+      << answer.text;
+  EXPECT_NEAR(of_group(answer, "void") / (4 * 50 * 20), 1.5, 0.5) << "its walls are as rough as cells";
+  const Answer solid = run(file + corner + " --base 10");
+  EXPECT_EQ(solid.status, 0) << solid.text;
+  EXPECT_NEAR(of_group(solid, "ground") / (60 * 200 * 160 - 50 * 50 * (100 - 0.3 * 135 - 10)), 1, 0.01) << solid.text;
+  TerrainOptions o = options(file);
+  o.size = 5, o.ellipsoid = Ellipsoid{{east + 50, south + 110, 84.5}, {25, 20, 9}, 17 * radian, 90 * radian};
   EXPECT_EQ(complaint(o), "");
+  o.way = {east + 50, south + 110, east + 135, south + 25}, o.way_width = 20;
+  expect_words(complaint(o),
+               {"a.asc: the window has no data at 16 of 357 places, and that at (5120, 2020) lies on the way",
+                "gdal_fillnodata.py", "--window"});
+  o.way = {east + 50, south + 110, east + 200, south + 110};
+  EXPECT_EQ(complaint(o), "");
+  o.file = with_hole(30, 40, 90, 100);
+  expect_words(complaint(o), {"no data at 4 of 357 places, and that at (5040, 2090) lies in the slide or beside it"});
+  expect_words(complaint(options(with_hole(-1, 1000, -1, 1000))), {"no data at 357 of 357 places, and nowhere at"});
 }
 TEST_F(TerrainFiles, AreRefusedInDegreesAndFeet) {
   const Elevation hill = [](double, double y) { return 1000 + 1e4 * (y - 47); };
@@ -153,6 +193,11 @@ TEST_F(TerrainFiles, AreRefusedWithSpikes) {
   EXPECT_EQ(complaint(options(ascii([](double x, double y) { return plane(x, y) + (x < east + 90 ? 80 : 0); }))), "");
   const Elevation half = [](double x, double y) { return x < east + 90 ? -9998 : plane(x, y); };
   expect_words(complaint(options(ascii(half))), {"the elevation -9998 m at (5080, ", "lower than the place beside it"});
+  const Elevation high = [](double x, double y) { return y < south + 30 ? 65535 : plane(x, y); };
+  expect_words(
+      complaint(options(ascii(high))),
+      {"the elevation 65535 m at (5200, 2020), which 63 places have, is 65495 m higher than the place beside it",
+       "if 65535 stands for a place without data"});
   TerrainOptions o = options(ascii(plane));
   o.slip_surface = ascii([](double x, double y) { return x > east + 100 ? -9998 : plane(x, y) - 5; }, "slip.asc");
   expect_words(complaint(o), {"slip.asc: the elevation -9998 m"});
