@@ -201,7 +201,7 @@ int main(int argc, char **argv) {
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   MPI_Comm failures;  // of its own, so that its messages are not taken for others
   MPI_Comm_dup(PETSC_COMM_WORLD, &failures);
-  const int status = perform(own, argv, failures, rank);
+  const int status = talus::status_for_starter(perform(own, argv, failures, rank));
   MPI_Comm_free(&failures);
   if (PetscFinalize()) return 1;
   return status;

@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <chrono>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -61,7 +62,7 @@ std::vector<std::string> options_of_section(const Scene &scene) {
 std::vector<std::string> of_terrain(const Scene &scene, const std::string &file) {
   const TerrainSource &t = scene.mesh.terrain;
   std::vector<std::string> arguments{
-      beside_scene(scene, t.file), "-o", file, "--size", number(scene.mesh.size), "--step", std::to_string(t.step)};
+      t.file, "-o", file, "--size", number(scene.mesh.size), "--step", std::to_string(t.step)};
   const auto add = [&](const char *option, const std::vector<double> &values) {
     arguments.push_back(option);
     for (const double value : values) arguments.push_back(number(value));
@@ -71,13 +72,11 @@ std::vector<std::string> of_terrain(const Scene &scene, const std::string &file)
   if (t.air > 0) add("--air", {t.air});
   if (t.far_size > 0) add("--far-size", {t.far_size});
   if (scene.mesh.halvings > 0) arguments.insert(arguments.end(), {"--halvings", std::to_string(scene.mesh.halvings)});
-  if (!t.slip_surface.empty())
-    arguments.insert(arguments.end(), {"--slip-surface", beside_scene(scene, t.slip_surface)});
-  if (!t.outline.empty()) arguments.insert(arguments.end(), {"--outline", beside_scene(scene, t.outline)});
+  if (!t.slip_surface.empty()) arguments.insert(arguments.end(), {"--slip-surface", t.slip_surface});
+  if (!t.outline.empty()) arguments.insert(arguments.end(), {"--outline", t.outline});
   if (t.depth > 0) add("--depth", {t.depth});
   if (t.depth_shape == DepthShape::constant) arguments.insert(arguments.end(), {"--depth-shape", "constant"});
-  for (const LayerSource &layer : t.layer)
-    arguments.insert(arguments.end(), {"--layer", layer.name, beside_scene(scene, layer.file)});
+  for (const LayerSource &layer : t.layer) arguments.insert(arguments.end(), {"--layer", layer.name, layer.file});
   for (const std::vector<double> &point : t.way) add("--way", point);
   if (t.way_width > 0) add("--way-width", {t.way_width});
   if (const EllipsoidSource &e = t.ellipsoid; e.given)
@@ -251,12 +250,11 @@ MeshRun run_talus_mesh(const std::vector<std::string> &arguments) {
   int status;
   waitpid(child, &status, 0);
   run.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) {
+    interrupted = 1;  // from outside, as this program could have been: the scene has not failed
+    run.output += "talus-mesh was killed, as the system does where memory does not suffice";
+  }
   return run;
-}
-
-std::string beside_scene(const Scene &scene, const std::string &path) {
-  const std::filesystem::path p(path);
-  return p.is_absolute() ? path : (std::filesystem::path(scene.file).parent_path() / p).lexically_normal().string();
 }
 
 MeshFile::MeshFile(MPI_Comm comm, const Scene &scene) {
@@ -264,7 +262,7 @@ MeshFile::MeshFile(MPI_Comm comm, const Scene &scene) {
   int rank;
   MPI_Comm_rank(comm, &rank);
   if (!source.file.empty()) {
-    path_ = beside_scene(scene, source.file);
+    path_ = source.file;
     if (rank == 0) read_origin(std::filesystem::path(path_).replace_extension(".origin.json"));
     MPI_Bcast(origin_.data(), 2, MPI_DOUBLE, 0, comm);
     int terrain = !made_.origin.empty();
@@ -317,7 +315,7 @@ MeshRun MeshFile::make(const Scene &scene) {
   if (source.section.empty()) {
     arguments = of_terrain(scene, path_);
   } else {
-    const std::string section = beside_scene(scene, source.section);
+    const std::string &section = source.section;
     arguments = options_of_section(scene);
     if (kept.emplace(section, arguments).copy_to(path_)) return {0, ""};
     arguments.insert(arguments.begin(), {section, "-o", path_});

@@ -48,7 +48,4 @@ class MeshFile {
 std::vector<std::string> read_grids(MPI_Comm comm, const Scene &scene, std::array<double, 2> origin,
                                     const std::string &document);
 
-/// `path` as written in a scene: relative to the scene's own folder.
-std::string beside_scene(const Scene &scene, const std::string &path);
-
 }  // namespace talus

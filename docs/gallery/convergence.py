@@ -12,7 +12,7 @@ import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
-VERDICT = {"equal": "does not decide", "settles": "settles", "open": "decides"}
+VERDICT = {"equal": "does not decide", "settles": "settles", "open": "decides", "swings": "swings", "missing": "missing in some"}
 NAMES = {"load_time_of_failure_s": "time t of the loads at failure [s]", "largest_displacement_m": "largest displacement [m]",
          "travel_distance_m": "travel of the front [m]", "volume_of_slide_m3": "volume of the slide [m³]", "depth_of_slide_m": "depth of the slip surface [m]"}
 
@@ -22,7 +22,7 @@ def name_of(quantity):
 
 
 def four_digits(value):
-    return f"{value:.4g}" if abs(value) < 1e4 else f"{value:.0f}"
+    return "none" if value is None else f"{value:.4g}" if abs(value) < 1e4 else f"{value:.0f}"
 
 
 def main():
@@ -48,7 +48,7 @@ def main():
             if wanted and one["quantity"] not in wanted:
                 continue
             found = one["values"]
-            apart = 100 * (max(found) - min(found)) / abs(found[-1]) if found[-1] else 0.0
+            apart = 100 * (max(found) - min(found)) / abs(found[-1]) if None not in found and found[-1] else 0.0
             lines.append(common | {"quantity": name_of(one["quantity"]), "apart_percent": f"{apart:.1f}", "verdict": VERDICT[one["state"]],
                                    **dict(zip(("coarse", "middle", "fine"), map(four_digits, found)))})
     with open(HERE / page / "convergence.csv", "w", newline="") as file:

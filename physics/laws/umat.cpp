@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 
 #include "scene/quantity.h"
@@ -54,7 +55,8 @@ std::string Umat::problem() {
     return "state has " + std::to_string(state.size()) + " names for nstatv = " + std::to_string(nstatv) +
            " state variables";
   loaded_ = std::make_shared<Loaded>();
-  loaded_->handle = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
+  loaded_->handle =
+      dlopen(std::filesystem::absolute(library).c_str(), RTLD_NOW | RTLD_LOCAL);  // without a folder it is searched for
   if (!loaded_->handle) {
     const char *why = dlerror();
     return "library cannot be loaded: " + std::string(why ? why : library.c_str()) + "; compile it with -shared -fPIC";

@@ -7,6 +7,7 @@
 #include "commands/foreign_code.h"
 #include "commands/needs.h"
 #include "commands/scales.h"
+#include "particles/body.h"
 #include "physics/boundary/boundary.h"
 #include "physics/pores/hyperbolicity.h"
 #include "scene/reader.h"
@@ -105,8 +106,9 @@ class Adviser {
       say(std::to_string(fewest) + " particles per cell in " + b.body.name +
           " are few if soil with pore fluids flows far: a column of saturated sand ran out a fifth less far with 3 per "
           "triangle than with 6 or 12; look with `talus converge --by particles`.");
-    if (fewest >= (plane ? 3 : 4)) return;
-    const std::string wanted = plane ? "three or more per triangle" : "four or more per tetrahedron";
+    const int usual = plane ? particles_per_cell<2>(BodySource()) : particles_per_cell<3>(BodySource());
+    if (fewest >= usual) return;
+    const std::string wanted = std::to_string(usual) + " or more per " + (plane ? "triangle" : "tetrahedron");
     if (fewest == 1)
       say("One particle per cell in " + b.body.name + " is too few: the error of stress was " +
           (plane ? "10 % at rest and 23 % in motion, compared with 1.2 % and 5 % with three" : "13 to 18 %") +
@@ -255,9 +257,10 @@ class Adviser {
   }
 
   void step() {
-    if (needs_.fixed_step && needs_.step < 0.3 * needs_.critical_step)
+    if (needs_.fixed_step && needs_.step < needs_.usual_step / 2)
       say("The fixed step is " + digits(needs_.step / needs_.critical_step, 2) +
-          " of the critical step; without integrator.step it would be 0.6 of it.");
+          " of the critical step; without integrator.step it would be " +
+          digits(needs_.usual_step / needs_.critical_step, 2) + " of it.");
     const BodyReport &b = needs_.slowest_body().body;
     if (b.critical_step > 0.4 * b.mean_critical_step) return;
     std::string at = std::string("(") + digits(b.slowest_cell[0]) + ", " + digits(b.slowest_cell[1]) +
@@ -277,16 +280,17 @@ class Adviser {
   void transfer() {
     const Transfer &t = scene_.transfer;
     if (t.remap_interval == 0)
-      say("A remap in every step costs twice the time or more and adds cell-crossing noise; transfer.remap_interval = "
-          "0.1 is the default.");
+      say("A remap in every step costs twice the time or more and adds cell-crossing noise; transfer.remap_interval "
+          "= " +
+          digits(Transfer().remap_interval) + " is the default.");
     if (t.velocity == Velocity::pic)
       say("transfer.velocity = \"pic\" damps motion at each remap: a slide is slower and comes less far, the more so "
           "the oftener particles are remapped. The default keeps the velocity of particles and damps what no node "
           "sees.");
     else if (t.relaxation == 0 && t.pic_fraction == 0)
       say("With transfer.relaxation = 0 nothing damps the velocities that particles have and no node sees: soil goes "
-          "on "
-          "shaking where it should come to rest. The default is 3.");
+          "on shaking where it should come to rest. The default is " +
+          digits(Transfer().relaxation) + ".");
     if (t.integration == Integration::particle || t.integration == Integration::mixed)
       say("Integration by particle volumes was four to nine times less accurate than \"blended\" where particles cross "
           "cells.");

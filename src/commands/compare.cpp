@@ -6,12 +6,11 @@
 #include <iomanip>
 #include <map>
 
+#include "base/rounded.h"
 #include "commands/commands.h"
 #include "commands/comparison.h"
 #include "commands/gallery.h"
 #include "commands/trials.h"
-#include "output/csv.h"
-#include "output/script.h"
 #include "scene/reader.h"
 #include "scene/scene.h"
 
@@ -20,11 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct CompareArguments {
-  std::string scene, directory, measure, exact, reference;
-  std::vector<std::string> series, set;
-  int jobs = 0;
-  bool force = false, no_plot = false;
+struct CompareArguments : TrialOptions {
+  std::string scene, measure, exact, reference;
+  std::vector<std::string> series;
 };
 
 /// One run of the matrix; its label is the name of its series.
@@ -37,10 +34,18 @@ struct Variant : Trial {
   long long steps = 0, evaluations = 0, rejections = 0;
 };
 
-std::vector<Variant> matrix(const CompareArguments &arguments) {
+std::vector<Variant> matrix(const CompareArguments &arguments, const Scene &scene) {
   std::vector<Variant> trials;
-  for (const std::string &text : arguments.series) {
+  const auto parsed = [&](const char *option, const std::string &text) {
     const Series series = parse_series(text);
+    std::vector<std::string> keys;
+    for (const auto &[key, values] : series.lists) keys.push_back(key);
+    if (const std::string wrong = same_keys(scene, keys); !wrong.empty())
+      throw SceneError(std::string(option) + " \"" + text + "\" " + wrong);
+    return series;
+  };
+  for (const std::string &text : arguments.series) {
+    const Series series = parsed("--series", text);
     for (const auto &overrides : products(series)) {
       Variant trial;
       trial.label = series.name, trial.overrides = overrides;
@@ -57,7 +62,7 @@ std::vector<Variant> matrix(const CompareArguments &arguments) {
   for (const auto &[key, values] : settings) share_unit(key, values);
   for (Variant &trial : trials) trial.parameter = number_of(trial.setting.text);
   if (!arguments.reference.empty()) {
-    const Series series = parse_series(arguments.reference);
+    const Series series = parsed("--reference", arguments.reference);
     const auto overrides = products(series);
     if (overrides.size() != 1)
       throw SceneError("--reference \"" + arguments.reference + "\" must be one run: one value for each key");
@@ -106,43 +111,21 @@ Reference reference_of(const CompareArguments &arguments, const std::vector<Vari
   return best;
 }
 
-void write_csv(const std::string &path, const std::vector<Variant> &trials) {
-  std::ofstream file(path);
-  file.precision(10);
-  file << "series,overrides,key,unit,parameter,value,error,processor_s,wall_s,steps,evaluations,rejections,pareto,"
-          "failure,"
-          "warnings\n";
-  for (const Variant &t : trials) {
-    const bool beaten = std::any_of(trials.begin(), trials.end(),
-                                    [&](const Variant &o) { return !o.failed && o.cpu < t.cpu && o.error < t.error; });
-    file << csv_field(t.label) << "," << csv_field(joined(t.overrides)) << "," << t.key << ","
-         << csv_field(t.setting.unit) << "," << t.parameter << "," << t.value << "," << t.error << "," << t.cpu << ","
-         << t.wall << "," << t.steps << "," << t.evaluations << "," << t.rejections << ","
-         << (!t.failed && std::isfinite(t.error) && !beaten) << "," << csv_field(t.cause) << ","
-         << csv_field(warnings_of(t)) << "\n";
-  }
-}
-
-/// Starts the script that prints the table of the runs and draws their chart. Returns its status.
-int tell(const CompareArguments &arguments, const char *script) {
-  std::vector<std::string> words{arguments.directory};
-  if (arguments.no_plot) words.push_back("--no-plot");
-  std::fflush(stdout);
-  return run_script(script, words);
+/// Does no other run take less time and have a smaller error?
+bool on_front(const Variant &t, const std::vector<Variant> &trials) {
+  return !t.failed && std::isfinite(t.error) && std::none_of(trials.begin(), trials.end(), [&](const Variant &o) {
+    return !o.is_reference && !o.failed && o.cpu < t.cpu && o.error < t.error;
+  });
 }
 
 /// Outcomes of each run against the last key of its series: whether and when it fails, how far and how fast it moves.
-int sweep(const CompareArguments &arguments, const std::vector<Variant> &trials) {
-  std::ofstream file(arguments.directory + "/runs.csv");
-  file << "series,overrides,key,value,unit,folder,processor_s,wall_s,failure,warnings\n";
-  for (const Variant &t : trials) {
-    file << csv_field(t.label) << "," << csv_field(joined(t.overrides)) << "," << t.key << ","
-         << csv_field(t.setting.text) << "," << csv_field(t.setting.unit) << ","
-         << fs::path(t.folder).filename().string() << "," << t.cpu << "," << t.wall << "," << csv_field(t.cause) << ","
-         << csv_field(warnings_of(t)) << "\n";
-  }
-  if (!file.flush()) throw std::runtime_error("cannot write " + arguments.directory + "/runs.csv");
-  const int status = tell(arguments, "talus_sweep.py");
+int sweep(const CompareArguments &arguments, const std::vector<Variant> &trials, const Trials &runs) {
+  runs.write("runs.csv", {"series", "overrides", "key", "value", "unit"},
+             [&](std::size_t i) -> std::vector<std::string> {
+               const Variant &t = trials[i];
+               return {t.label, joined(t.overrides), t.key, t.setting.text, t.setting.unit};
+             });
+  const int status = runs.tell("talus_sweep.py");
   std::fprintf(stderr, "sweep.csv%s in %s\n", arguments.no_plot ? " is" : " and sweep.png are",
                arguments.directory.c_str());
   return status;
@@ -151,7 +134,7 @@ int sweep(const CompareArguments &arguments, const std::vector<Variant> &trials)
 int compare(CompareArguments arguments) {
   require_one_rank("compare");
   arguments.scene = find_scene(arguments.scene);
-  read_scene(arguments.scene, arguments.set);
+  const Scene scene = read_scene(arguments.scene, arguments.set);
   if (arguments.directory.empty())
     arguments.directory =
         (arguments.measure.empty() ? "results/sweep_" : "results/compare_") + short_name(arguments.scene);
@@ -162,34 +145,42 @@ int compare(CompareArguments arguments) {
     throw SceneError("--exact and --reference both define the true value: give one of them");
   if (!arguments.exact.empty() && !std::isfinite(number_of(arguments.exact)))
     throw SceneError("--exact " + arguments.exact + " must be a number");
-  std::vector<Variant> trials = matrix(arguments);
+  std::vector<Variant> trials = matrix(arguments, scene);
   std::vector<Trial *> pointers;
   for (Variant &trial : trials) pointers.push_back(&trial);
-  TrialPlan plan{arguments.scene, arguments.set, arguments.jobs};
-  plan.replace = arguments.force;
+  TrialPlan plan{arguments.scene, arguments.set, arguments};
   if (!arguments.measure.empty()) plan.measures = {measure};
-  run_trials(plan, pointers);
-  const std::vector<SharedWarning> warnings = warnings_of(pointers);
-  write_warnings(arguments.directory, warnings);
-  if (arguments.measure.empty()) {
-    const int status = sweep(arguments, trials);
-    print_warnings(warnings, trials.size());
-    return status;
-  }
+  Trials runs(plan, pointers);
+  runs.run();
+  if (arguments.measure.empty()) return sweep(arguments, trials, runs);
   for (Variant &trial : trials)
     if (!trial.failed) trial.value = value_of(trial.folder + "/history.csv", measure), read_counts(trial);
   const Reference reference = reference_of(arguments, trials);
-  if (trials.back().is_reference) {
-    if (trials.back().failed) throw std::runtime_error("the run of --reference failed: " + trials.back().cause);
-    trials.pop_back();
-  }
+  if (trials.back().is_reference && trials.back().failed)
+    throw std::runtime_error("the run of --reference failed: " + trials.back().cause);
   for (Variant &trial : trials) trial.error = std::abs(trial.value - reference.value);
-  write_csv(arguments.directory + "/compare.csv", trials);
+  runs.write("compare.csv",
+             {"series", "overrides", "key", "unit", "parameter", "value", "error", "steps", "evaluations", "rejections",
+              "pareto"},
+             [&](std::size_t i) -> std::vector<std::string> {
+               const Variant &t = trials[i];
+               if (t.is_reference) return {};
+               return {t.label,
+                       joined(t.overrides),
+                       t.key,
+                       t.setting.unit,
+                       rounded(t.parameter, 10),
+                       rounded(t.value, 10),
+                       rounded(t.error, 10),
+                       std::to_string(t.steps),
+                       std::to_string(t.evaluations),
+                       std::to_string(t.rejections),
+                       std::to_string(on_front(t, trials))};
+             });
   std::ofstream(arguments.directory + "/reference.csv")
       << std::setprecision(12) << "measure,value,uncertainty,origin\n\"" << arguments.measure << "\","
       << reference.value << "," << reference.uncertainty << ",\"" << reference.origin << "\"\n";
-  tell(arguments, "talus_compare.py");
-  print_warnings(warnings, pointers.size());
+  runs.tell("talus_compare.py");
   std::fprintf(stderr, "table%s in %s\n", arguments.no_plot ? " is" : " and chart are", arguments.directory.c_str());
   return std::any_of(trials.begin(), trials.end(), [](const Variant &t) { return t.failed; }) ? 1 : 0;
 }
@@ -216,14 +207,9 @@ Action add_compare(CLI::App &app) {
   command->add_option("--reference", arguments->reference,
                       "the run whose value counts as true: \"NAME: key=a; key=b\", such as \"finite elements: "
                       "stage.0.kind=quasi_static\"");
-  command->add_option("--set", arguments->set, "override a key in all runs: key.path=value")->take_all();
-  command->add_option(
-      "-o,--output", arguments->directory,
+  add_trial_options(
+      *command, *arguments, "override a key in all runs: key.path=value",
       "folder of runs, tables and charts (default results/compare_NAME, without --measure results/sweep_NAME)");
-  command->add_option("-j,--jobs", arguments->jobs, "runs at the same time (default: one per core)")
-      ->check(CLI::Range(1, 1024));
-  command->add_flag("--force", arguments->force, "replace runs of another scene or of other values in that folder");
-  command->add_flag("--no-plot", arguments->no_plot, "do not draw the chart");
   return [arguments] { return compare(*arguments); };
 }
 

@@ -3,15 +3,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <map>
 
 #include "commands/commands.h"
 #include "commands/comparison.h"
 #include "commands/gallery.h"
 #include "commands/trials.h"
-#include "output/csv.h"
-#include "output/script.h"
 #include "scene/quantity.h"
 #include "scene/reader.h"
 #include "scene/scene.h"
@@ -26,14 +23,11 @@ namespace fs = std::filesystem;
 
 enum class Refined { cells, steps, particles };
 
-struct ConvergeArguments {
-  std::string scene, directory;
+struct ConvergeArguments : TrialOptions {
+  std::string scene;
   Refined refined = Refined::cells;
   std::vector<double> values;
-  std::vector<std::string> set;
   double within = 5;  ///< [%]
-  int jobs = 0;
-  bool force = false, no_plot = false;
 };
 
 /// The keys that are refined together, at their values in the scene, and the refinement.
@@ -93,7 +87,7 @@ Refinement refinement_of(const Scene &scene, const ConvergeArguments &arguments)
 }
 
 /// Four digits, so that sizes read well in tables and names.
-double rounded(double value) {
+double four_digits(double value) {
   const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) - 3);
   return unit < 1 ? std::round(value / unit) / std::round(1 / unit) : std::round(value);
 }
@@ -104,21 +98,11 @@ std::vector<Trial> trials_of(const Refinement &r, const std::string &directory) 
   for (const double value : r.values) {
     Trial trial;
     for (const auto &[key, start] : r.keys)
-      trial.overrides.push_back(key + "=" + shortest(rounded(start * value / own)));
-    trial.folder = (fs::path(directory) / ("run_" + shortest(rounded(value)))).string();
+      trial.overrides.push_back(key + "=" + shortest(four_digits(start * value / own)));
+    trial.folder = (fs::path(directory) / ("run_" + shortest(four_digits(value)))).string();
     trials.push_back(trial);
   }
   return trials;
-}
-
-/// What the script needs to know of the runs.
-void write_runs(const std::string &path, const Refinement &r, const std::vector<Trial> &trials) {
-  std::ofstream file(path);
-  file << "value,unit,overrides,folder,processor_s,wall_s,failure,warnings\n";
-  for (std::size_t i = 0; i < trials.size(); ++i)
-    file << shortest(rounded(r.values[i])) << "," << r.unit << "," << csv_field(joined(trials[i].overrides)) << ","
-         << fs::path(trials[i].folder).filename().string() << "," << trials[i].cpu << "," << trials[i].wall << ","
-         << csv_field(trials[i].cause) << "," << csv_field(warnings_of(trials[i])) << "\n";
 }
 
 int converge(ConvergeArguments arguments) {
@@ -130,20 +114,18 @@ int converge(ConvergeArguments arguments) {
   std::vector<Trial> trials = trials_of(refinement, arguments.directory);
   std::vector<Trial *> pointers;
   for (Trial &trial : trials) pointers.push_back(&trial);
-  TrialPlan plan{arguments.scene, arguments.set, arguments.jobs};
-  plan.replace = arguments.force;
-  run_trials(plan, pointers);
-  write_runs(arguments.directory + "/runs.csv", refinement, trials);
-  const std::vector<SharedWarning> warnings = warnings_of(pointers);
-  write_warnings(arguments.directory, warnings);
+  const TrialPlan plan{arguments.scene, arguments.set, arguments};
+  Trials runs(plan, pointers);
+  runs.run();
+  runs.write("runs.csv", {"value", "unit", "overrides"}, [&](std::size_t i) -> std::vector<std::string> {
+    return {shortest(four_digits(refinement.values[i])), refinement.unit, joined(trials[i].overrides)};
+  });
   const char *refined[] = {"cells", "steps", "particles"};
-  std::vector<std::string> words{arguments.directory, "--by", refined[static_cast<int>(arguments.refined)], "--within",
+  std::vector<std::string> words{"--by", refined[static_cast<int>(arguments.refined)], "--within",
                                  shortest(arguments.within / 100)};
-  if (arguments.no_plot) words.push_back("--no-plot");
   if (std::any_of(scene.body.begin(), scene.body.end(), [](const BodySource &b) { return softens(read_law(b.law)); }))
     words.push_back("--softening");
-  const int status = run_script("talus_converge.py", words);
-  print_warnings(warnings, trials.size());
+  const int status = runs.tell("talus_converge.py", words);
   std::fprintf(stderr, "tables%s are in %s\n", arguments.no_plot ? "" : " and picture", arguments.directory.c_str());
   return status;
 }
@@ -181,15 +163,9 @@ Action add_converge(CLI::App &app) {
       ->add_option("--within", arguments->within,
                    "results that differ by no more than this share of the finest run's count as equal [%] (default 5)")
       ->check(CLI::Range(0.01, 100.));
-  command->add_option("--set", arguments->set, "override a key in all runs: key.path=value")
-      ->take_all()
+  add_trial_options(*command, *arguments, "override a key in all runs: key.path=value",
+                    "folder of runs, converge.csv, converge.json and converge.png (default results/converge_NAME)")
       ->allow_extra_args(false);
-  command->add_option("-o,--output", arguments->directory,
-                      "folder of runs, converge.csv, converge.json and converge.png (default results/converge_NAME)");
-  command->add_option("-j,--jobs", arguments->jobs, "runs at the same time (default: one per core)")
-      ->check(CLI::Range(1, 1024));
-  command->add_flag("--force", arguments->force, "replace runs of another scene or of other values in that folder");
-  command->add_flag("--no-plot", arguments->no_plot, "do not draw the picture");
   return [arguments] { return converge(*arguments); };
 }
 

@@ -5,14 +5,13 @@
 #include <fstream>
 #include <map>
 
+#include "base/rounded.h"
 #include "commands/commands.h"
 #include "commands/comparison.h"
 #include "commands/gallery.h"
 #include "commands/study_file.h"
 #include "commands/trials.h"
-#include "output/csv.h"
 #include "output/json.h"
-#include "output/script.h"
 #include "scene/words.h"
 
 namespace talus {
@@ -20,11 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct StudyArguments {
-  std::string file, directory;
-  std::vector<std::string> set;
-  int jobs = 0;
-  bool no_plot = false, force = false;
+struct StudyArguments : TrialOptions {
+  std::string file;
 };
 
 /// A variable with its kind read.
@@ -51,39 +47,40 @@ std::string in_digits(double value) {
 /// A variant of the scene, with the value of each variable.
 struct Variant : Trial {
   std::vector<std::string> values;
-  std::vector<double> measured;
 };
 
 class Study {
  public:
-  Study(const std::string &path, const StudyArguments &arguments)
-      : root_(TableReader::from_file(path, arguments.set)), arguments_(arguments) {
+  explicit Study(const StudyArguments &arguments)
+      : root_(TableReader::from_file(arguments.file, arguments.set)), options_(arguments) {
+    const std::string &path = arguments.file;
     TableReader(root_).fill(file_);
     read_scene_name(path);
     read_variables();
     read_correlation();
     check_samples();
     check_outcomes();
-    directory_ = arguments.directory.empty() ? "results/study_" + short_name(path) : arguments.directory;
+    if (options_.directory.empty()) options_.directory = "results/study_" + short_name(path);
   }
 
   int perform() {
     make_variants();
     check_runs_before();
     check_extremes();
-    TrialPlan plan{scene_, file_.set, arguments_.jobs};
+    TrialPlan plan{scene_, file_.set, options_};
     for (const std::string &measure : file_.measures) plan.measures.push_back(parse_measure(measure));
-    plan.replace = arguments_.force, plan.refusal_ends = false;
+    plan.refusal_ends = false;
     if (file_.runs == StudyRuns::factor_of_safety) plan.command = {"solve", "--factor-of-safety"};
     std::vector<Trial *> pointers;
     for (Variant &variant : variants_) pointers.push_back(&variant);
+    Trials trials(plan, pointers);
     try {
-      run_trials(plan, pointers);
+      trials.run();
     } catch (const Interrupted &) {
-      if (std::any_of(pointers.begin(), pointers.end(), [](const Trial *t) { return t->done; })) conclude();
+      if (std::any_of(pointers.begin(), pointers.end(), [](const Trial *t) { return t->done; })) conclude(trials);
       throw;
     }
-    return conclude();
+    return conclude(trials);
   }
 
  private:
@@ -95,17 +92,18 @@ class Study {
     } catch (const SceneError &error) {
       root_.complain("scene", std::string("cannot be found: ") + error.what());
     }
-    const Scene scene = read_scene(scene_, file_.set);
-    for (const auto &point : scene.output.point) points_.push_back(point.name);
+    base_ = read_scene(scene_, file_.set);
+    for (const auto &point : base_.output.point) points_.push_back(point.name);
   }
 
   void read_variables() {
     if (file_.variable.empty()) root_.complain("variable", "is missing: add a table [variable.NAME] with key and kind");
+    std::vector<std::string> keys;
     for (const StudyVariable &one : file_.variable) {
       Varying v{one, {}, {}};
       const std::string path = "variable." + v.name;
-      for (const char *taken : {"run", "folder", "processor_s", "wall_s", "failure", "warnings", "state"})
-        if (v.name == taken) root_.complain(path, "must have another name: study.csv has a column of this name");
+      if (v.name == "run" || v.name == "state" || std::ranges::count(columns_of_trials, v.name))
+        root_.complain(path, "must have another name: study.csv has a column of this name");
       if (v.key.empty())
         root_.complain(path, "needs key, the key of the scene that varies, such as body.clay.cohesion");
       read_one_of(v.kind, "kind", v.variation);
@@ -118,6 +116,8 @@ class Study {
       if (!v.unit.empty() && !v.numeric()) root_.complain(path + ".unit", "belongs to numbers; write units in choices");
       if (!v.unit.empty()) check_unit(path + ".unit", v.unit);
       variables_.push_back(v);
+      keys.insert(keys.end(), v.key.begin(), v.key.end());
+      if (const std::string wrong = same_keys(base_, keys); !wrong.empty()) root_.complain(path + ".key", wrong);
     }
   }
 
@@ -265,7 +265,7 @@ class Study {
     std::vector<std::string> all = file_.set;
     for (const std::string &one : v.overrides(value)) all.push_back(one);
     try {
-      read_wholly(scene_, all);
+      read_wholly(scene_, all, options_.no_umat);
     } catch (const SceneError &error) {
       root_.complain("variable." + v.name,
                      "takes the value " + value + (v.unit.empty() ? "" : " " + v.unit) +
@@ -276,11 +276,11 @@ class Study {
 
   /// Fewer samples than were run before would cut the tables of the study.
   void check_runs_before() const {
-    if (arguments_.force) return;
+    if (options_.force) return;
     std::size_t before = variants_.size();
     while (fs::exists(folder_of(before) + "/trial")) ++before;
     if (before > variants_.size())
-      throw SceneError(directory_ + " holds " + std::to_string(before) + " runs of this study, and " +
+      throw SceneError(options_.directory + " holds " + std::to_string(before) + " runs of this study, and " +
                        std::to_string(variants_.size()) +
                        " are asked for: the tables would lose the others. Ask for as many as there are, choose another "
                        "folder with -o, or give --force to leave them out of the tables; their folders stay");
@@ -289,48 +289,29 @@ class Study {
   std::string folder_of(std::size_t run) const {
     char name[32];
     std::snprintf(name, sizeof name, "run%05zu", run);
-    return (fs::path(directory_) / name).string();
+    return (fs::path(options_.directory) / name).string();
   }
 
-  int conclude() {
-    write_runs();
-    write_design();
-    std::vector<Trial *> trials;
-    for (Variant &variant : variants_) trials.push_back(&variant);
-    const std::vector<SharedWarning> warnings = warnings_of(trials);
-    write_warnings(directory_, warnings);
-    std::vector<std::string> words{directory_};
-    if (arguments_.no_plot) words.push_back("--no-plot");
-    const int status = run_script("talus_study.py", words);
-    const auto done = std::count_if(trials.begin(), trials.end(), [](const Trial *t) { return t->done; });
-    print_warnings(warnings, static_cast<std::size_t>(done));
-    std::fprintf(stderr, "study.csv, study.json%s are in %s\n", arguments_.no_plot ? "" : " and pictures",
-                 directory_.c_str());
-    return status;
-  }
-
-  void write_runs() const {
-    std::ofstream file(directory_ + "/runs.csv");
-    file << "run";
-    for (const Varying &v : variables_) file << "," << csv_field(v.name);
-    for (const std::string &measure : file_.measures) file << "," << csv_field(measure);
-    file << ",folder,processor_s,wall_s,failure,warnings\n";
-    for (std::size_t i = 0; i < variants_.size(); ++i) {
+  int conclude(const Trials &trials) {
+    std::vector<std::string> columns{"run"};
+    for (const Varying &v : variables_) columns.push_back(v.name);
+    columns.insert(columns.end(), file_.measures.begin(), file_.measures.end());
+    trials.write("runs.csv", columns, [&](std::size_t i) {
       const Variant &variant = variants_[i];
-      if (!variant.done) continue;
-      file << i;
-      for (const std::string &value : variant.values) file << "," << csv_field(value);
+      std::vector<std::string> cells{std::to_string(i)};
+      cells.insert(cells.end(), variant.values.begin(), variant.values.end());
       for (const std::string &measure : file_.measures) {
-        file << ",";
         const double value =
             variant.failed ? NAN : talus::value_of(variant.folder + "/history.csv", parse_measure(measure));
-        if (std::isfinite(value)) file << value;
+        cells.push_back(std::isfinite(value) ? rounded(value, 6) : "");
       }
-      file << "," << fs::path(variant.folder).filename().string() << "," << variant.cpu << "," << variant.wall << ","
-           << csv_field(variant.failed && variant.cause.empty() ? "the run ended without a message" : variant.cause)
-           << "," << csv_field(warnings_of(variant)) << "\n";
-    }
-    if (!file.flush()) throw std::runtime_error("cannot write " + directory_ + "/runs.csv");
+      return cells;
+    });
+    write_design();
+    const int status = trials.tell("talus_study.py");
+    std::fprintf(stderr, "study.csv, study.json%s are in %s\n", options_.no_plot ? "" : " and pictures",
+                 options_.directory.c_str());
+    return status;
   }
 
   /// Asked and found correlation of the random variables: of the pairs that shall be correlated, and of others whose
@@ -378,22 +359,23 @@ class Study {
           .add("limit", below ? c.below : c.above)
           .str();
     };
-    std::ofstream(directory_ + "/design.json") << json::Object()
-                                                      .add("title", json::text(file_.title))
-                                                      .add("confidence", file_.confidence)
-                                                      .add("planned", static_cast<double>(variants_.size()))
-                                                      .add("variables", json::array(variables_, variable))
-                                                      .add("correlations", correlations())
-                                                      .add("measures", json::array(file_.measures, json::text))
-                                                      .add("criteria", json::array(file_.criterion, criterion))
-                                                      .str()
-                                               << "\n";
+    std::ofstream(options_.directory + "/design.json") << json::Object()
+                                                              .add("title", json::text(file_.title))
+                                                              .add("confidence", file_.confidence)
+                                                              .add("planned", static_cast<double>(variants_.size()))
+                                                              .add("variables", json::array(variables_, variable))
+                                                              .add("correlations", correlations())
+                                                              .add("measures", json::array(file_.measures, json::text))
+                                                              .add("criteria", json::array(file_.criterion, criterion))
+                                                              .str()
+                                                       << "\n";
   }
 
   TableReader root_;
-  const StudyArguments &arguments_;
+  TrialOptions options_;
   StudyFile file_;
-  std::string scene_, directory_;
+  std::string scene_;
+  Scene base_;  ///< without variables
   std::vector<std::string> points_;
   std::vector<Varying> variables_;
   std::vector<std::vector<double>> asked_, triangle_;  ///< correlation of the random variables, and its triangle
@@ -403,7 +385,7 @@ class Study {
 
 int study(const StudyArguments &arguments) {
   require_one_rank("study");
-  return Study(arguments.file, arguments).perform();
+  return Study(arguments).perform();
 }
 
 }  // namespace
@@ -414,13 +396,8 @@ Action add_study(CLI::App &app) {
       "study",
       "run a scene over lists, grids or samples of distributions: outcomes, sensitivities, probability of failure");
   command->add_option("FILE", arguments->file, "study file (.toml), see docs/guide/study.md")->required();
-  command->add_option("--set", arguments->set, "override a key of the study: samples=400")->take_all();
-  command->add_option("-o,--output", arguments->directory,
-                      "folder of runs, tables and pictures (default results/study_NAME)");
-  command->add_option("-j,--jobs", arguments->jobs, "runs at the same time (default: one per core)")
-      ->check(CLI::Range(1, 1024));
-  command->add_flag("--force", arguments->force, "replace runs of another study in that folder");
-  command->add_flag("--no-plot", arguments->no_plot, "do not draw the pictures");
+  add_trial_options(*command, *arguments, "override a key of the study: samples=400",
+                    "folder of runs, tables and pictures (default results/study_NAME)");
   return [arguments] { return study(*arguments); };
 }
 

@@ -17,17 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Opens and locks a file that stays there, empty. A file system without locks lets all runs pass.
-int lock(const std::string &path) {
-  const std::string file = path + "/.lock";
-  const int lock = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (lock < 0) throw std::runtime_error("cannot write " + file + ": " + std::strerror(errno));
-  if (::flock(lock, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return lock;
-  ::close(lock);
-  throw std::invalid_argument("another run is writing into " + path +
-                              "; wait for its end, or choose another folder with -o");
-}
-
 /// Is it the folder of a study, a comparison or a refinement? Each of their runs has a file that says what it depends
 /// on.
 bool holds_trials(const std::string &path) {
@@ -43,7 +32,9 @@ ResultsFolder::ResultsFolder(MPI_Comm comm, const std::string &path, FolderUse u
     if (fs::exists(path) && !fs::is_directory(path))
       throw std::invalid_argument(path + " is a file, and results need a folder: choose another one with -o");
     make_folder(path);
-    lock_ = lock(path);
+    if (!lock_.emplace(path).taken())
+      throw std::invalid_argument("another run is writing into " + path +
+                                  "; wait for its end, or choose another folder with -o");
     if (use == FolderUse::resume) return;
     const bool used = fs::exists(path + "/run.h5") || fs::exists(path + "/history.csv");
     if (used && use == FolderUse::start)
@@ -58,8 +49,17 @@ ResultsFolder::ResultsFolder(MPI_Comm comm, const std::string &path, FolderUse u
   });
 }
 
-ResultsFolder::~ResultsFolder() {
-  if (lock_ >= 0) ::close(lock_);
+/// The file of the lock stays there, empty.
+FolderLock::FolderLock(const std::string &folder) {
+  const std::string name = folder + "/.lock";
+  file_ = ::open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (file_ < 0) throw std::runtime_error("cannot write " + name + ": " + std::strerror(errno));
+  if (::flock(file_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  ::close(file_), file_ = -1;
+}
+
+FolderLock::~FolderLock() {
+  if (file_ >= 0) ::close(file_);
 }
 
 }  // namespace talus

@@ -2,6 +2,7 @@
 /// The folder of a run's results: one run at a time writes into it, and none replaces another's results unasked.
 #include <mpi.h>
 
+#include <optional>
 #include <string>
 
 namespace talus {
@@ -13,6 +14,21 @@ enum class FolderUse {
   resume,   ///< goes on with what is there
 };
 
+/// Keeps other programs out of a folder as long as this object lives; the system ends the lock with the program,
+/// however that ends. A file system without locks lets all pass.
+class FolderLock {
+ public:
+  /// Takes the lock if nobody has it. Throws std::runtime_error where the folder cannot be written.
+  explicit FolderLock(const std::string &folder);
+  FolderLock(const FolderLock &) = delete;
+  FolderLock &operator=(const FolderLock &) = delete;
+  ~FolderLock();
+  bool taken() const { return file_ >= 0; }
+
+ private:
+  int file_;  // descriptor
+};
+
 class ResultsFolder {
  public:
   /// Makes the folder and locks it while this object lives. A run that replaces another removes its checkpoints first,
@@ -21,10 +37,9 @@ class ResultsFolder {
   ResultsFolder(MPI_Comm comm, const std::string &path, FolderUse use);
   ResultsFolder(const ResultsFolder &) = delete;
   ResultsFolder &operator=(const ResultsFolder &) = delete;
-  ~ResultsFolder();
 
  private:
-  int lock_ = -1;  // file descriptor on rank 0; the system ends the lock with the program, however that ends
+  std::optional<FolderLock> lock_;  // on rank 0
 };
 
 }  // namespace talus

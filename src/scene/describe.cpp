@@ -144,7 +144,7 @@ void Describer::text(const char *key, const std::string &value, const char *mean
 }
 
 void Describer::path(const char *key, const std::string &value, const char *meaning) {
-  line(key, "file", value, meaning);
+  line(key, "path", value, meaning);
 }
 
 void Describer::quantities(const char *key, const std::vector<double> &, const char *meaning) {

@@ -146,11 +146,7 @@ void TableReader::text(const char *key, std::string &value, const char *meaning)
 void TableReader::path(const char *key, std::string &value, const char *meaning) {
   const auto given = find(key, meaning);
   if (!given) return;
-  const std::filesystem::path path(given->string("the name of a file"));
-  value = path.is_absolute() ? path.string()
-                             : std::filesystem::absolute(std::filesystem::path(document_->file).parent_path() / path)
-                                   .lexically_normal()
-                                   .string();
+  value = document_->beside(given->string("the name of a file"));
 }
 
 void TableReader::texts(const char *key, std::vector<std::string> &value, const char *meaning) {
@@ -219,6 +215,20 @@ void TableReader::function(const char *key, Function &value, Unit unit, Range ra
 }
 
 const NamedGrids &TableReader::grids() const { return document_->grids; }
+
+const std::set<std::string> &TableReader::files() const { return document_->files; }
+
+std::string TableReader::one_path(const std::string &key_path) const {
+  const toml::node *node = static_cast<const toml::table *>(table_);
+  std::string path;
+  for (const std::string &word : split(key_path)) {
+    const toml::array *list = node ? node->as_array() : nullptr;
+    const std::size_t at = list ? position(*list, word) : 0;
+    path += (path.empty() ? "" : ".") + (list && at < list->size() ? std::to_string(at) : word);
+    if (node) node = child(*node, word);
+  }
+  return path;
+}
 
 std::string TableReader::function_fault() const {
   for (const auto &[function, limits] : document_->expressions)

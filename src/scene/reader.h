@@ -10,6 +10,7 @@
 #include <initializer_list>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -59,7 +60,7 @@ class TableReader {
   void integer(const char *key, int &value, Range range, const char *meaning);
   void flag(const char *key, bool &value, const char *meaning);
   void text(const char *key, std::string &value, const char *meaning);
-  /// A file; relative to the folder of this one.
+  /// A file or a folder, relative to the folder of this file; it becomes one of `files`.
   void path(const char *key, std::string &value, const char *meaning);
   /// A string or a list of strings.
   void texts(const char *key, std::vector<std::string> &value, const char *meaning);
@@ -118,6 +119,12 @@ class TableReader {
   std::string values() const;
   /// The files of [grids], whose values arrive later.
   const NamedGrids &grids() const;
+  /// The files and folders that keys and [grids] have named so far, as the program opens them; those of a deferred
+  /// table come when it is read.
+  const std::set<std::string> &files() const;
+  /// A path with the positions of entries of lists in place of their names, so that one key has one path:
+  /// stage.0.duration for stage.gravity.duration. Words that the scene lacks stay as they are.
+  std::string one_path(const std::string &key_path) const;
 
   /// Number of the kind named at `key`; 0 for an absent key unless `deferred` announced it.
   std::size_t kind(const char *key, const std::vector<std::string> &kinds);

@@ -68,7 +68,7 @@ struct LayerSource {
   std::string file;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.text("file", file, "grid of the elevations of the upper surface of the layer, relative to the scene");
+    v.path("file", file, "grid of the elevations of the upper surface of the layer, relative to the scene");
   }
 };
 
@@ -93,7 +93,7 @@ struct TerrainSource {
   double way_width = 0;                  ///< [m]
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.text("file", file, "terrain file, ESRI ASCII or GeoTIFF with coordinates and elevations in metres");
+    v.path("file", file, "terrain file, ESRI ASCII or GeoTIFF with coordinates and elevations in metres");
     v.point("window", window, metre,
             "west, south, east, north in the coordinates of the file, each moved to the nearest column or row of it; "
             "default: all of it");
@@ -106,9 +106,9 @@ struct TerrainSource {
     v.number("air", air, metre, Range{0, 1e4}, "height of the free space above the ground, in which soil may move");
     v.number("far_size", far_size, metre, Range{0, 1e5},
              "cell size far from the slide, and from the ground below it; 0: mesh.size everywhere");
-    v.text("slip_surface", slip_surface, "grid of the elevations of a slip surface, relative to the scene");
+    v.path("slip_surface", slip_surface, "grid of the elevations of a slip surface, relative to the scene");
     v.table("ellipsoid", ellipsoid, "slip surface: the lower side of an ellipsoid");
-    v.text("outline", outline,
+    v.path("outline", outline,
            "outline of a slide, whose slip surface is `depth` below the ground within it: polygons of a Shapefile or "
            "GeoPackage in the projection of the terrain, relative to the scene");
     v.number("depth", depth, metre, Range{0, 1e4}, "largest depth of the slip surface within the outline");
@@ -142,8 +142,8 @@ struct MeshSource {
   BalanceRanks balance_ranks = BalanceRanks::when_it_pays;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.text("file", file, "Gmsh mesh file (.msh, format 2.2 or 4.1) with physical groups, relative to the scene");
-    v.text("section", section,
+    v.path("file", file, "Gmsh mesh file (.msh, format 2.2 or 4.1) with physical groups, relative to the scene");
+    v.path("section", section,
            "section, a CSV file or a DXF drawing, that talus-mesh turns into a mesh; relative to the scene");
     v.number("size", size, metre, Range{0, 1e5},
              "cell size of a mesh made from a section or terrain; of terrain in the slide and at the ground");
@@ -625,7 +625,7 @@ struct StartFrom {
   bool reset_displacement = false;  ///< displacements, velocities and plastic strain are zeroed first
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.text("folder", folder,
+    v.path("folder", folder,
            "results of another run of the same mesh, bodies and phases, relative to the scene: this run starts at the "
            "state of its last checkpoint, which is its end if it has ended, at time 0 and with stages of its own");
     v.flag("reset_displacement", reset_displacement,

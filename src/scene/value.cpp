@@ -19,6 +19,16 @@ std::string number_in(Range range, Unit unit) {
   return "a number from " + shortest(range.low) + " to " + shortest(range.high) + in;
 }
 
+std::string TableReader::Document::beside(const std::string &name) const {
+  if (name.empty()) return name;
+  const std::filesystem::path path(name);
+  return *files
+              .insert(path.is_absolute()
+                          ? name
+                          : (std::filesystem::path(file).parent_path() / path).lexically_normal().string())
+              .first;
+}
+
 void TableReader::Value::must_be(const std::string &expected, const std::string &why) const {
   throw SceneError(place(document_->file, *node_, false) + ": " + path_ + written(*node_) + " (" + meaning_ +
                    ") must be " + expected + (why.empty() ? "" : "; " + why));
@@ -157,11 +167,8 @@ Function TableReader::Value::limited_expression(const std::string &expected, Uni
 
 std::shared_ptr<PlaceGrid> TableReader::Value::named_grid() const {
   const std::string expected = "the name of a grid file, ESRI ASCII or GeoTIFF, relative to the scene";
-  const std::filesystem::path given(string(expected));
   auto grid = std::make_shared<PlaceGrid>();
-  grid->file = given.is_absolute()
-                   ? given.string()
-                   : (std::filesystem::path(document_->file).parent_path() / given).lexically_normal().string();
+  grid->file = document_->beside(string(expected));
   return grid;
 }
 

@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,11 @@ struct TableReader::Document {
   NamedFunctions functions;
   NamedGrids grids;
   mutable std::vector<std::pair<Function, std::shared_ptr<const FunctionLimits>>> expressions;  ///< of all keys
+  mutable std::set<std::string> files;  ///< and folders that keys have named
+
+  /// A file or folder that a key names, relative to the folder of this file; enters it into `files`. An empty name
+  /// stays empty.
+  std::string beside(const std::string &name) const;
 };
 
 /// One value of the file and what complaints say about it.

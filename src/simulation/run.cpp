@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "mesh_source.h"
 #include "scene/reader.h"
 #include "simulation/start_from.h"
 
@@ -189,7 +188,7 @@ void Run<dim>::resume() {
 /// A remap makes that what nodes and cells hold comes about anew, at time 0 and with the keys of this scene.
 template <int dim>
 void Run<dim>::start_from_other_run() {
-  const std::string folder = beside_scene(scene, scene.start_from.folder);
+  const std::string folder = scene.start_from.folder;
   std::error_code missing;
   if (!options.directory.empty() && std::filesystem::equivalent(folder, options.directory, missing))
     scene.complain("start_from.folder", "must not be the folder of this run's own results; choose another one with -o");

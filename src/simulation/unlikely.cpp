@@ -378,7 +378,8 @@ void doubt_soft_water(const Scene &scene, const BodySource &body, const Law &law
   sentences.push_back("water.bulk_modulus = " + rounded(scene.water.bulk_modulus / 1e6) +
                       " MPa is so soft beside body." + body.name + " (K = " + rounded(bulk_modulus(law) / 1e6) +
                       " MPa) that undrained load raises the pore pressure by " + rounded(100 * share) +
-                      " % of it only. Water has 2200 MPa; a softer one allows longer steps, and hardly changes the "
+                      " % of it only. Water has " + rounded(Water().bulk_modulus / 1e6) +
+                      " MPa; a softer one allows longer steps, and hardly changes the "
                       "answer while it takes more than 90 %");
 }
 

@@ -8,6 +8,7 @@ import csv
 import pathlib
 import re
 
+from talus_outcomes import losses
 from talus_results import Results
 from talus_style import FAINT, INK, LINES, few_log_ticks, headline, np, plt, save
 from talus_sweep import named
@@ -87,11 +88,11 @@ def varied(row, series):
 
 def table(rows, width=None):
     """Lines of the table of all runs."""
-    texts = []
+    texts, more = [], losses(rows)
     for row in rows:
         keys = [row["series"], varied(row, [other for other in rows if other["series"] == row["series"]])]
-        texts.append(keys + ([f"broke off: {row['failure']}"] if row["failure"] else [format(float(row[key]), digits) for key, _, digits in COLUMNS]))
-    return lines_of(["series", "varied", *(heading for _, heading, _ in COLUMNS)], texts, keys=2, width=width)
+        texts.append(keys + ([f"broke off: {row['failure']}"] if row["failure"] else [*(format(float(row[key]), digits) for key, _, digits in COLUMNS), *(text(row) for text in more.values())]))
+    return lines_of(["series", "varied", *(heading for _, heading, _ in COLUMNS), *more], texts, keys=2, width=width)
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ import pathlib
 import sys
 
 from talus_colours import Colours
-from talus_outcomes import FAILS, MOVES, STANDS, cell_size, outcome, warnings_in, write_json
+from talus_outcomes import FAILS, MOVES, STANDS, cell_size, losses, outcome, warnings_in, write_json
 from talus_results import Results
 from talus_sections import BELOW, BESIDE, HEAD, LEFT, RIGHT, TITLE, WIDTH, Painter, plt
 import talus_style as style
@@ -41,15 +41,45 @@ def percent(difference, values):
     return f"{share:.2g} %" if share >= 0.01 else "0 %"
 
 
-def settles(values, within, least=0.0):
-    """Whether refinement still changes a quantity: "equal" if all runs agree, "settles" if the changes decrease by half or more from each
-    refinement to the next and the last one is within the tolerance, else "open". Differences up to `least` count as none."""
+ORDERS = (0.5, 3.0)  # of convergence: errors of cells and steps have 1 or 2; beyond 3 two values are near by chance
+MISSING = "missing"  # a quantity that only some of the runs have
+
+
+def order_of(sizes, values):
+    """The order p in ORDERS with which three values, from coarse to fine, go one way to a limit: value = limit + C size**p. None where there is none: their
+    changes grow, or shrink too little or too much."""
+    before, last = values[1] - values[0], values[2] - values[1]
+    if last == 0:
+        return None
+    def ratio(p):  # of the changes; it grows with p
+        return (sizes[0] ** p - sizes[1] ** p) / (sizes[1] ** p - sizes[2] ** p)
+    low, high = ORDERS
+    if not ratio(low) <= before / last <= ratio(high):
+        return None
+    for _ in range(50):
+        middle = (low + high) / 2
+        low, high = (middle, high) if ratio(middle) < before / last else (low, middle)
+    return low
+
+
+def settles(sizes, values, within, least=0.0):
+    """What refinement does to a quantity, whose `sizes` and `values` go from coarse to fine. Allowed is a share `within` of the finest value, or `least`.
+    "equal": all values differ by no more than what is allowed.
+    "settles": the values go one way to a limit, and every three of them as if their error was a power of the size between the ORDERS; neither the last change
+    nor the rest up to that limit is more than what is allowed.
+    "swings": the values go to and fro.
+    "open": all else."""
     allowed = max(within * abs(values[-1]), least)
     if max(values) - min(values) <= allowed:
         return "equal"
-    changes = [abs(b - a) for a, b in zip(values, values[1:])]
-    shrinking = all(2 * after <= before for before, after in zip(changes, changes[1:]))
-    return "settles" if shrinking and changes[-1] <= allowed else "open"
+    changes = [after - before for before, after in zip(values, values[1:])]
+    if min(changes) < 0 < max(changes):
+        return "swings"
+    orders = [order_of(sizes[k:k + 3], values[k:k + 3]) for k in range(len(values) - 2)]
+    if None in orders:
+        return "open"
+    rest = abs(changes[-1]) / ((sizes[-2] / sizes[-1]) ** orders[-1] - 1)
+    return "settles" if max(abs(changes[-1]), rest) <= allowed else "open"
 
 
 def in_words(row, by):
@@ -67,10 +97,11 @@ def judge(rows, by, within, softening=False, volumes="m³"):
     if len(rows) < 3:
         return sentences + ["Fewer than three runs came to their end, so that nothing can be said."], True, judged
     cell = max(row["cell_m"] for row in rows)
+    sizes = [1 / row["value"] if by == "particles" else row["value"] for row in rows]
     verbs = {FAILS: "fails", MOVES: f"moves by less than a cell of {cell:.2g} m", STANDS: "stands"}
     states = {state: [row for row in rows if row["state"] == state] for state in verbs}
     states = {state: some for state, some in states.items() if some}
-    if len(states) > 1 and settles([row["largest_displacement_m"] for row in rows], within) != "equal":
+    if len(states) > 1 and settles(sizes, [row["largest_displacement_m"] for row in rows], within) != "equal":
         each = [f"{verbs[state]} with {', '.join(in_words(row, by) for row in some)}" for state, some in states.items()]
         sentences.append(f"The slope {', '.join(each[:-1])} and {each[-1]}: the {thing} decides whether it fails.")
         return sentences + [remedy], True, judged
@@ -84,9 +115,16 @@ def judge(rows, by, within, softening=False, volumes="m³"):
               ("depth_of_slide_m", "The depth of the slip surface", "m", cell)]
     for key, name, unit, least in asked:
         values = [row.get(key) for row in rows]
-        if any(value is None for value in values):
+        without = [in_words(row, by) for row, value in zip(rows, values) if value is None]
+        if len(without) == len(rows):
             continue
-        state = settles(values, within, least)
+        if without:
+            judged.append({"quantity": key, "values": values, "state": MISSING})
+            known = ", ".join(f"{value:.4g} {unit} with {in_words(row, by)}" for row, value in zip(rows, values) if value is not None)
+            sentences.append(f"{name} is missing with {', '.join(without)}, and {known}: the {thing} decides it.")
+            decides = True
+            continue
+        state = settles(sizes, values, within, least)
         judged.append({"quantity": key, "values": values, "state": state})
         factor, unit = readable_unit(max(map(abs, values)), unit)
         known = f" or one cell of {cell:.2g} m" if least and within * abs(values[-1]) < least else ""
@@ -98,7 +136,7 @@ def judge(rows, by, within, softening=False, volumes="m³"):
             text += f"it settles, and the last refinement changes it by {percent(last, values)}"
             text += f", less than one cell of {cell:.2g} m." if last > within * abs(values[-1]) else "."
         else:
-            text += f"the {thing} decides it."
+            text += f"it {'swings' if state == 'swings' else 'does not settle'}, and the {thing} decides it."
             decides = True
         sentences.append(text)
     return sentences + ([remedy] if decides else []), decides, judged
@@ -113,11 +151,12 @@ COLUMNS = (("load_time_of_failure_s", "failure at t [s]"), ("largest_displacemen
 
 def table(rows, by, volumes, width=None):
     """Lines of the table of all runs."""
-    texts = []
+    texts, more = [], losses(rows)
     for row in rows:
-        shown = [f"{row[key]:,d}" if isinstance(row[key], int) else "-" if row[key] is None else f"{row[key]:.4g}" for key, _ in COLUMNS if not row["failure"]]
+        shown = [f"{row[key]:,d}" if isinstance(row[key], int) else "none" if row[key] is None else f"{row[key]:.4g}" for key, _ in COLUMNS if not row["failure"]]
+        shown += [text(row) for text in more.values()]
         texts.append([f"{row['value']:g}"] + ([f"broke off: {row['failure']}"] if row["failure"] else [row["state"], *shown]))
-    return lines_of([by, "state", *(heading.format(volumes) for _, heading in COLUMNS)], texts, width=width)
+    return lines_of([by, "state", *(heading.format(volumes) for _, heading in COLUMNS), *more], texts, width=width)
 
 
 def write_tables(rows, sentences, judged, decides, by, within, folder):
@@ -178,8 +217,9 @@ def main():
         runs = list(csv.DictReader(file))
     rows, ended = [], []
     for run in runs:
-        row = {"value": float(run["value"]), "unit": run["unit"], "overrides": run["overrides"], "wall_s": float(run["wall_s"]),
-               "processor_s": float(run["processor_s"]), "failure": run["failure"], "warnings": run["warnings"]}
+        row = {key: text for key, text in run.items() if key != "folder"}
+        row |= {key: float(run[key]) if run[key] else None for key in ("value", "wall_s", "processor_s", "escaped_mass_kg", "escaped_share")}
+        row["warning_count"] = int(run["warning_count"])
         if not row["failure"]:
             ended.append(Results(given.folder / run["folder"]))
         rows.append(row)

@@ -71,6 +71,13 @@ def in_words(row, cell):
     return f"no soil moved by more than {100 * SMALL:g} % of a cell of {cell:.2g} m" if small else "soil deformed as a whole, without sliding"
 
 
+def losses(rows):
+    """Further columns of a table of runs, {heading: function of a row}: the soil that left the mesh and the number of warnings, where some run has any.
+    `rows` have the columns that the program writes of each run."""
+    columns = {"left the mesh": lambda row: f"{100 * float(row.get('escaped_share') or 0):.3g} %", "warnings": lambda row: f"{float(row.get('warning_count') or 0):g}"}
+    return {heading: text for heading, text in columns.items() if any(text(row) not in ("0", "0 %") for row in rows)}
+
+
 def finite(value):
     """A number; None where it is none or infinite."""
     return float(value) if math.isfinite(value) else None

@@ -14,7 +14,7 @@ import textwrap
 
 import numpy as np
 
-from talus_outcomes import FAILS, MOVES, STANDS, outcome
+from talus_outcomes import FAILS, MOVES, STANDS, losses, outcome
 from talus_results import UNITS, Results
 import talus_style as style
 from talus_style import plt
@@ -247,13 +247,14 @@ def axis_title(rows):
 def table(rows, in_plane=False, width=None):
     """Lines of the table of all runs."""
     columns = [(named(column, in_plane), column) for _, of in charted(rows) for column in of.values()]
-    texts = []
+    texts, more = [], losses(rows)
     for line, row in zip(series_lines(rows), rows):
         keys = [line, row["value"]]
         texts.append(keys + ([f"broke off: {row['failure']}"] if row["failure"] else
-                             [row["state"] if "state" in row else "", *("-" if row.get(column) is None else f"{row[column]:.4g}" for _, column in columns)]))
+                             [row["state"] if "state" in row else "", *("-" if row.get(column) is None else f"{row[column]:.4g}" for _, column in columns),
+                              *(text(row) for text in more.values())]))
     value = words(axis_title(rows).rpartition(".")[2]) if len({row["key"] for row in rows}) == 1 else "value"
-    return lines_of(["series", value, "state", *(name for name, _ in columns)], texts, 2, width)
+    return lines_of(["series", value, "state", *(name for name, _ in columns), *more], texts, 2, width)
 
 
 def main():

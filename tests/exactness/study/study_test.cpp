@@ -39,6 +39,14 @@ outcome = "corner_largest_speed_m_s"
 above = 0.4
 )";
 
+/// One quick run.
+const std::string short_study = R"(scene = "scene.toml"
+[variable.density]
+key = "body.sand.density"
+kind = "list"
+values = [1800]
+)";
+
 class Study : public testing::Test {
  protected:
   Study() {
@@ -53,6 +61,20 @@ class Study : public testing::Test {
   }
   Ending study(const std::vector<std::string> &more = {"--no-plot"}) const {
     return Program(folder_, words(more)).end();
+  }
+  Ending command(const std::vector<std::string> &words) const { return Program(folder_, talus_words(words)).end(); }
+  /// Processes whose command line has this text, in the folder of the test.
+  std::vector<pid_t> processes_with(const std::string &text) const {
+    std::vector<pid_t> found;
+    for (const auto &entry : std::filesystem::directory_iterator("/proc")) {
+      std::ifstream file(entry.path() / "cmdline");
+      const std::string words{std::istreambuf_iterator<char>(file), {}};
+      std::error_code none;
+      if (words.find(text) != std::string::npos &&
+          std::filesystem::read_symlink(entry.path() / "cwd", none) == folder_.path())
+        found.push_back(std::stoi(entry.path().filename().string()));
+    }
+    return found;
   }
   const Folder folder_;
 };
@@ -156,24 +178,14 @@ TEST_F(Study, TakesItsRunsAlongWhenItIsKilled) {
 TEST_F(Study, TakesItsRunsAlongBeforeTheirFirstStep) {
   Program program(folder_, words({"--no-plot", "--set", "set=[\"mesh.size=0.005\"]"}));
   ASSERT_TRUE(program.wait_for(folder_ / "out/run00000/screen")) << program.end().output;
-  const auto runs = [&] {
-    int found = 0;
-    for (const auto &entry : std::filesystem::directory_iterator("/proc")) {
-      std::ifstream file(entry.path() / "cmdline");
-      std::string words{std::istreambuf_iterator<char>(file), {}};
-      std::error_code none;
-      found += words.find("out/run00000") != std::string::npos &&
-               std::filesystem::read_symlink(entry.path() / "cwd", none) == folder_.path();
-    }
-    return found;
-  };
+  const auto runs = [&] { return processes_with("out/run00000").size(); };
   for (int i = 0; i < 1000 && runs() == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   std::this_thread::sleep_for(std::chrono::seconds(1));  // it has begun to listen to signals
-  ASSERT_GT(runs(), 0);
+  ASSERT_GT(runs(), 0u);
   program.signal(SIGKILL);
   program.end();
   for (int i = 0; i < 90 && runs() > 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  EXPECT_EQ(runs(), 0) << "nine seconds after its study was killed";
+  EXPECT_EQ(runs(), 0u) << "nine seconds after its study was killed";
 }
 
 TEST_F(Study, EntersRunsThatFail) {
@@ -188,6 +200,132 @@ TEST_F(Study, EntersRunsThatFail) {
   EXPECT_TRUE(ending.says("in 0 of 6 runs, probability 0, 95 % interval 0 to 0.4593")) << ending.output;
   EXPECT_TRUE(ending.says("in 0 of 0 runs, probability unknown, 95 % interval 0 to 1; unknown in 6 runs"))
       << ending.output;
+}
+
+TEST_F(Study, RepeatsRunsThatFailedOnlyWhereForced) {
+  folder_.write("study.toml", R"toml(scene = "scene.toml"
+[variable.speed]
+key = "body.sand.velocity"
+kind = "choice"
+choices = ['["0", "0"]', '["400", "0"]']
+)toml");
+  EXPECT_EQ(study().status, 0);
+  EXPECT_TRUE(study().says("2 of 2 runs were completed before"));
+  EXPECT_TRUE(study({"--no-plot", "--force"}).says("1 of 2 runs were completed before"));
+}
+
+/// What ends a run from outside says nothing about its scene: the same command repeats it, and no table has it.
+TEST_F(Study, RepeatsRunsThatWereKilled) {
+  folder_.write("study.toml", "set = [\"stage.fall.duration=0.2\"]\n" + changed(short_study, "1800", "1800, 2000"));
+  for (const auto &[signal, force] : {std::pair{SIGKILL, false}, {SIGTERM, true}}) {
+    const std::string out = force ? "forced" : "out";
+    std::vector<std::string> words{"study", "study.toml", "-o", out, "-j", "1", "--no-plot"};
+    Program program(folder_, talus_words(words));
+    ASSERT_TRUE(program.wait_for(folder_ / (out + "/run00001/history.csv"))) << program.end().output;
+    const std::vector<pid_t> run = processes_with(out + "/run00001");
+    ASSERT_EQ(run.size(), 1u);
+    kill(run.front(), signal);
+    const Ending ending = program.end();
+    EXPECT_EQ(ending.status, 1) << ending.output;
+    EXPECT_TRUE(ending.says("1 of 2 runs were ended from outside")) << ending.output;
+    EXPECT_EQ(csv_table(folder_ / (out + "/study.csv")).size(), 1u);
+    if (force) words.push_back("--force");
+    const Ending again = command(words);
+    EXPECT_EQ(again.status, 0) << again.output;
+    EXPECT_TRUE(again.says("1 of 2 runs were completed before")) << again.output;
+    const auto rows = csv_table(folder_ / (out + "/study.csv"));
+    ASSERT_EQ(rows.size(), 2u);
+    for (const Row &row : rows) EXPECT_EQ(row.at("failure"), "");
+  }
+}
+
+/// A run depends on the files that its scene names, in studies and comparisons alike.
+TEST_F(Study, RepeatsRunsWhoseFilesHaveChanged) {
+  const auto grid = [](const std::string &value) {
+    return "ncols 2\nnrows 2\nxllcorner -10\nyllcorner -10\ncellsize 20\n" + value + " " + value + "\n" + value + " " +
+           value + "\n";
+  };
+  folder_.write("push.asc", grid("1"));
+  folder_.write("scene.toml", changed(good_scene, "cohesion", "velocity = [\"push(x, 0)\", \"0\"]\ncohesion") +
+                                  "[grids]\npush = \"push.asc\"\n");
+  folder_.write("study.toml", short_study);
+  const std::pair<std::vector<std::string>, std::string> commands[] = {
+      {{"study", "study.toml", "-o", "out", "--no-plot"}, "out/study.csv"},
+      {{"compare", "scene.toml", "-o", "compared", "--no-plot", "--series", "sand: body.sand.density=1800"},
+       "compared/sweep.csv"}};
+  const auto moved = [&](const std::string &table) {
+    return std::stod(csv_table(folder_ / table).back().at("largest_displacement_m"));
+  };
+  for (const auto &[words, table] : commands) {
+    folder_.write("push.asc", grid("1"));
+    ASSERT_EQ(command(words).status, 0);
+    const double before = moved(table);
+    folder_.write("push.asc", grid("2"));
+    const Ending ending = command(words);
+    EXPECT_TRUE(ending.says("push.asc has changed; runs to repeat: 1")) << ending.output;
+    EXPECT_FALSE(ending.says("completed before")) << ending.output;
+    EXPECT_GT(moved(table), 1.5 * before) << table;
+  }
+  folder_.write("section.csv", changed(good_section, "region_air,1.5,0.5", "region_air,1.6,0.5"));
+  EXPECT_TRUE(command(commands[0].first).says("section.csv has changed; runs to repeat: 1"));
+}
+
+/// The lock of a program that was killed is gone with it, though its file stays.
+TEST_F(Study, KeepsASecondOneOutOfItsFolder) {
+  folder_.write("study.toml", short_study);
+  std::filesystem::create_directories(folder_ / "out");
+  const int file = open((folder_ / "out/.lock").c_str(), O_RDWR | O_CREAT, 0666);
+  ASSERT_EQ(flock(file, LOCK_EX), 0);
+  const Ending second = study();
+  EXPECT_EQ(second.status, 2);
+  EXPECT_TRUE(second.says("is writing into out; wait for its end, or choose another folder with -o")) << second.output;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/run00000"));
+  close(file);
+  EXPECT_EQ(study().status, 0);
+}
+
+/// Soil that left, and warnings, are columns of each run and a sentence of the summary.
+TEST_F(Study, TellsOfSoilThatLeftTheMesh) {
+  folder_.write("study.toml", R"toml(scene = "scene.toml"
+set = ["mesh.leaving_particles=remove"]
+[variable.speed]
+key = "body.sand.velocity"
+kind = "choice"
+choices = ['["0", "0"]', '["0", "100 * max(0, x - 0.8)"]']
+)toml");
+  ;
+  const Ending ending = study();
+  ASSERT_EQ(ending.status, 0) << ending.output;
+  const auto rows = csv_table(folder_ / "out/study.csv");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(std::stod(rows[0].at("escaped_mass_kg")), 0);
+  const double gone = std::stod(rows[1].at("escaped_mass_kg")), share = std::stod(rows[1].at("escaped_share"));
+  EXPECT_GT(gone, 10);
+  EXPECT_NEAR(share, gone / 1000, 1e-3 * share) << "of a block of 1000 kg/m";
+  EXPECT_TRUE(ending.says("soil left the mesh in 1 of 2 runs (at most ")) << ending.output;
+  EXPECT_TRUE(ending.says("% of it, run00001), and ")) << ending.output;
+  for (const Row &row : rows)
+    EXPECT_EQ(std::stoi(row.at("warning_count")),
+              row.at("warnings").empty() ? 0 : 1 + std::ranges::count(row.at("warnings"), '|'));
+}
+
+/// The library is not looked for, so that it need not be there.
+TEST_F(Study, LoadsNoLibraryWhereThatIsForbidden) {
+  folder_.write("scene.toml", changed(good_scene,
+                                      "law = \"mohr_coulomb\"\nyoung_modulus = \"1 MPa\"\npoisson_ratio = "
+                                      "0.3\ncohesion = 0\nfriction_angle = 30\n",
+                                      "law = \"umat\"\nlibrary = \"none.so\"\n"));
+  folder_.write("study.toml", short_study);
+  for (const std::vector<std::string> &words :
+       {std::vector<std::string>{"study", "study.toml"},
+        {"compare", "scene.toml", "--series", "sand: body.sand.density=1800,2000"},
+        {"converge", "scene.toml"}}) {
+    std::vector<std::string> forbidden = words;
+    forbidden.insert(forbidden.end(), {"-o", "out", "--no-umat"});
+    const Ending ending = command(forbidden);
+    EXPECT_EQ(ending.status, 2);
+    EXPECT_TRUE(ending.says("body.sand.law = \"umat\" must not be a UMAT with --no-umat")) << ending.output;
+  }
 }
 
 TEST_F(Study, ComputesFactorsOfSafety) {
@@ -227,6 +365,13 @@ TEST_F(Study, RefusesWhatItCannotDo) {
         {"\"corner_largest_speed_m_s\"", "\"corner_speed\"", "criterion.moves.outcome"},
         {"above = 0.4", "above = 0.4\nbelow = 1", "needs one of below and above"},
         {"high = 2100", "high = 2e9", "cut the distribution off with low and high"},
+        {"\"body.sand.density\"", "\"body.sand.young_modulus\"",
+         "variable.density.key = \"body.sand.young_modulus\" gives a second value to body.sand.young_modulus: one "
+         "value"},
+        {"\"body.sand.density\"", "[\"stage.0.duration\", \"stage.fall.duration\"]",
+         "gives a second value to stage.0.duration, which is stage.fall.duration too"},
+        {"\"body.sand.density\"", "\"body.sand\"",
+         "gives a value to body.sand.velocity and one to the table body.sand in which it lies"},
         {"max:corner_velocity", "corner_velocity@now", "must be COLUMN, COLUMN@TIME or max:COLUMN"},
         {"scene.toml", "scen.toml", "study.toml line 1: scene"}}) {
     folder_.write("study.toml", changed(good_study, from, to));

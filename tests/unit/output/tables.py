@@ -34,6 +34,14 @@ class Tables(unittest.TestCase):
         self.assertLessEqual(max(map(len, lines)), 80)
         self.assertIn("[m³/m]", " ".join(lines))
 
+    def test_have_columns_for_lost_soil_and_warnings_where_runs_have_some(self):
+        told = {"value": 0.4, "escaped_share": "0.104", "warning_count": "2"}
+        rows = [ENDED | told, ENDED | told | {"escaped_share": "", "warning_count": "0", "load_time_of_failure_s": None}]
+        lines = talus_converge.table(rows, "cells", "m³/m")
+        self.assertEqual([line.split()[-3:] for line in lines[-2:]], [["10.4", "%", "2"], ["0", "%", "0"]])
+        self.assertEqual(lines[-1].split()[2], "none")  # a time of failure
+        self.assertEqual(talus_converge.losses([ENDED | {"escaped_share": "0", "warning_count": "0"}]), {})
+
     def test_of_errors_say_what_differs_within_a_series(self):
         common = {"failure": "", "value": "1.2345678", "error": "1e-3", "processor_s": "12.3", "steps": "16425", "evaluations": "16425", "rejections": "0"}
         rows = [common | {"series": "arkode", "overrides": f"integrator.kind=arkode integrator.velocity_tolerance={value}"} for value in ("1e-2", "1e-4")]
