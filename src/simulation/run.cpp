@@ -41,7 +41,8 @@ Run<dim>::Run(MPI_Comm comm, const Scene &of, const RunOptions &with, const std:
       lines(world),
       dynamics((world.take_out_later_bodies(), world), clock, integrator),
       statics(world, clock),
-      recorder({world, clock, dynamics, statics, points, lines}, options) {
+      energies(world, clock, statics),
+      recorder({world, clock, dynamics, statics, points, lines, energies}, options) {
   if (!scene.start_from.folder.empty() && !options.resume) start_from_other_run();
 }
 
@@ -101,6 +102,7 @@ PetscErrorCode Run<dim>::serialize(Archive &archive) {
   const bool staged = progress.number >= 0;  // a host program steps without stages
   if (archive.reading() && staged) stop = make_stop_criterion<dim>(stage());
   if (staged) stop->serialize(archive);
+  energies.serialize(archive);
   recorder.serialize(archive);
   dynamics.serialize(archive);
   PetscFunctionReturn(0);

@@ -58,6 +58,7 @@ struct Run {
   FollowedLines<dim> lines;
   Dynamics<dim> dynamics;
   Statics<dim> statics;
+  EnergyLedger<dim> energies;
   Recorder<dim> recorder;
   StageProgress progress;
   std::unique_ptr<StopCriterion<dim>> stop;  ///< of the present stage
