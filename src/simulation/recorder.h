@@ -71,6 +71,8 @@ class Recorder {
   void note_cut_off() {
     for (const std::string &sentence : ends_.cut_off()) note("warning: " + sentence);
   }
+  /// Warns of soil that has left the mesh, at the end of a run. Collective.
+  void note_lost_soil();
   /// Says that the mesh was divided in another way, which is expected to bring this imbalance.
   void note_balancing(double before, double expected);
   /// Ends the run: throws RunError with the cause, where the run stood and what is left of it; BrokenOff if pictures of

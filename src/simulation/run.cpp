@@ -9,6 +9,7 @@
 
 #include "mesh_source.h"
 #include "scene/reader.h"
+#include "simulation/moved_before.h"
 #include "simulation/start_from.h"
 
 namespace talus {
@@ -83,6 +84,24 @@ void Run<dim>::reset_displacement() {
   world.reset_displacement(clock.time);
 }
 
+template <int dim>
+void Run<dim>::end_by_reset() {
+  double mass[2] = {0, 0};  // that has yielded, and all
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+    const ParticleArrays<dim> &p = world.bodies[b]->particles();
+    for (int i = 0; i < p.count; ++i) {
+      mass[1] += p.mass[i];
+      if (world.motion->softened_by(static_cast<int>(b), i).plastic_strain > yielded) mass[0] += p.mass[i];
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, mass, 2, MPI_DOUBLE, MPI_SUM, world.comm);
+  const double elastic = elastic_settlement(world.report(), world.laws, scene.gravity_size(), dim, scene.vertical());
+  const std::string sentence =
+      moved_before_reset(stage().name, world.largest_displacement(), elastic, mass[1] > 0 ? mass[0] / mass[1] : 0);
+  if (!sentence.empty()) recorder.note("warning: " + (moved_before = sentence));
+  reset_displacement();
+}
+
 /// What does not depend on stages, integrator and output of the scene, and so may be read by a run with others.
 template <int dim>
 PetscErrorCode Run<dim>::serialize_state(Archive &archive) {
@@ -102,6 +121,7 @@ PetscErrorCode Run<dim>::serialize(Archive &archive) {
   const bool staged = progress.number >= 0;  // a host program steps without stages
   if (archive.reading() && staged) stop = make_stop_criterion<dim>(stage());
   if (staged) stop->serialize(archive);
+  archive.serialize("moved before", moved_before);
   energies.serialize(archive);
   recorder.serialize(archive);
   dynamics.serialize(archive);

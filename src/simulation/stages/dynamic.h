@@ -94,7 +94,7 @@ class DynamicStage final : public StageRunner<dim> {
     run_.recorder.write_snapshot();
     run_.write_checkpoint();
     if (run_.last_stage()) find_motion_left();  // before a reset sets it to zero
-    if (stage_.reset_displacement) note_reset(), run_.reset_displacement();
+    if (stage_.reset_displacement) note_reset(), run_.end_by_reset();
   }
 
   void note_reset() {
