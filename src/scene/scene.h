@@ -389,8 +389,8 @@ struct Stage {
   double energy_ratio = 1e-6;   ///< equilibrium: kinetic over strain energy [-]
   double rest_speed = 1e-3;     ///< rest: the root mean square speed of all soil stays below this [m/s]
   std::string failure_point;    ///< failure: named output point that is watched
-  double failure_speed = 0.01;  ///< failure: its speed passes this [m/s] ...
-  double failure_time = 1;      ///< ... and keeps rising for this long [s]
+  double failure_speed = 0.01;  ///< failure: its mean speed passes this [m/s] ...
+  double failure_time = 1;      ///< ... over this time [s]
   bool pore_flow = true;        ///< pore fluids move; false: pore pressures are those of [water], as in a drained scene
   bool softening = true;        ///< soil remembers plastic strain; false: it keeps the strength it has
   bool hold_loads = false;      ///< functions of time stand still: their t counts only stages that do not hold loads
@@ -435,9 +435,11 @@ struct Stage {
              "hold_loads = true");
     v.text("failure_point", failure_point, "failure: name of the output point whose velocity is tested");
     v.number("failure_speed", failure_speed, metre_per_second, Range{0, 1e6},
-             "failure: speed that the mean velocity of the point in a tenth of failure_time must exceed");
+             "failure: speed that the mean velocity of the point over failure_time must exceed");
     v.number("failure_time", failure_time, second, Range{0, 1e9},
-             "failure: the mean velocity of the point must then increase from each tenth of this time to the next");
+             "failure: time of this mean, no shorter than the period of the slowest vibration; from half of it on, the "
+             "soil must "
+             "store less than a fifth of the energy that it receives");
     v.flag(
         "pore_flow", pore_flow,
         "pore fluids move; if false, pore pressures are those of [water], scaled by the ramp, as for initial stress");

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "base/archive.h"
 #include "base/rounded.h"
@@ -13,19 +14,20 @@ namespace talus {
 
 class EnergyWatch {
  public:
+  /// Looks anew, after soil has got stress or places from elsewhere than its motion.
+  void begin() { begins_ = true; }
   /// Takes the energy that has been dissipated, and all that was there or was brought, in the order of time [J]. The
   /// sums lack the energy of pore fluids: where these move, `in_motion` is the kinetic energy that soil has, or that it
   /// left with, and no more than that counts as created.
   /// Returns a sentence when energy is created for the first time. Sound runs lose at most 1 % of what they dissipated
   /// again, and with pore fluids 15 % of what was brought; such as are beyond their critical step begin with some per
-  /// cent and multiply them within a few hundred steps. Looks anew in each `stage`, and not in an empty one: there soil
-  /// gets stress or places from elsewhere than its motion.
-  std::string look(const std::string &stage, double dissipated, double turnover, std::optional<double> in_motion = {}) {
-    if (stage.empty() || stage != stage_) most_ = dissipated;
-    stage_ = stage, whole_ = !in_motion;
+  /// cent and multiply them within a few hundred steps.
+  std::string look(double dissipated, double turnover, std::optional<double> in_motion = {}) {
+    if (std::exchange(begins_, false)) most_ = dissipated;
+    whole_ = !in_motion;
     most_ = std::max(most_, dissipated), turnover_ = std::max({turnover_, turnover, dissipated});
     created_ = std::max(created_, std::min(most_ - dissipated, in_motion.value_or(most_ - dissipated)));
-    if (!stage.empty() && !std::isfinite(dissipated)) created_ = std::numeric_limits<double>::infinity();
+    if (!std::isfinite(dissipated)) created_ = std::numeric_limits<double>::infinity();
     if (told_ || !(created_ > (whole_ ? 0.05 : 0.5) * turnover_)) return "";
     told_ = true;
     return verdict() + ". What follows is not to be trusted";
@@ -44,10 +46,10 @@ class EnergyWatch {
            "dilation needs an end (residual_dilation_angle)" +
            (whole_ ? "" : ", and pores of particles whose soil has come apart grow with the gaps");
   }
-  void serialize(Archive &archive) { archive.serialize("energy watch", stage_, most_, turnover_, created_, told_); }
+  void serialize(Archive &archive) { archive.serialize("energy watch", begins_, most_, turnover_, created_, told_); }
 
  private:
-  std::string stage_;
+  bool begins_ = true;
   double most_ = 0, turnover_ = 0, created_ = 0;  ///< [J]
   bool told_ = false, whole_ = true;
 };

@@ -16,6 +16,7 @@
 #include "physics/any_soil_motion.h"
 #include "physics/laws/present_strength.h"
 #include "physics/laws/strength_by_place.h"
+#include "simulation/energy_sums.h"
 
 namespace talus {
 
@@ -201,7 +202,6 @@ struct BoundaryRow {
   bool remembers = false, heats = false;  ///< a base: its slip is shown; and the heat of its shear zone
   Vec<dim> value{};                       ///< displacement [m] or force [N]
   double water = 0;                       ///< entering [m3/s]
-  double work = 0;                        ///< done on the soil since the start [J]
   double clearance = 0;                   ///< of the soil over a base [m]
   typename RigidBases<dim>::Report base{};
 };
@@ -209,15 +209,13 @@ struct BoundaryRow {
 /// The whole run in a row of history.csv: sums over all ranks.
 template <int dim>
 struct RunRow {
-  Balance balance;
-  double potential = 0;     ///< energy in gravity [J]
-  double mass = 0;          ///< of the particles [kg]
-  double particles = 0;     ///< their number
-  double load_time = 0;     ///< time that functions of the scene see [s]
-  double first_energy = 0;  ///< kinetic and strain energy at the start [J]
-  bool balanced = true;     ///< energy has a balance: not that of a mechanism, whose size is free
-  EscapedSums escaped;      ///< what left the mesh and was taken out
-  WorkDone work;
+  EnergySums energy;
+  double potential = 0;             ///< energy in gravity [J]
+  double mass = 0;                  ///< of the particles [kg]
+  double particles = 0;             ///< their number
+  double load_time = 0;             ///< time that functions of the scene see [s]
+  bool balanced = true;             ///< energy has a balance: not that of a mechanism, whose size is free
+  EscapedSums escaped;              ///< what left the mesh and was taken out
   std::vector<FluidLedger> fluids;  ///< that move on their own: water, then gas
   std::vector<double> first_fluid;  ///< their masses at the start, those that had left by then among them [kg]
   std::vector<double> handed;       ///< FluidBooks::handed; empty where no stage hands states over [kg]
@@ -227,8 +225,8 @@ struct RunRow {
   template <class Visitor>
   void visit(Visitor &&column) const {
     using std::string;
-    column(string("kinetic"), "J", balance.kinetic);
-    column(string("strain"), "J", balance.strain);
+    column(string("kinetic"), "J", energy.balance.kinetic);
+    column(string("strain"), "J", energy.balance.strain);
     column(string("potential"), "J", potential);
     column(string("mass"), "kg", mass);
     column(string("particles"), "-", particles);
@@ -262,28 +260,12 @@ struct RunRow {
       column(b.name + "_excess_pressure", "Pa", b.base.pressure);
       column(b.name + "_heat", "J", b.base.heat);
     }
-    each_work([&](const string &by, double joules) { column("work_" + by, "J", joules); });
-    column(string("dissipated"), "J", balanced ? dissipated() : std::numeric_limits<double>::quiet_NaN());
-  }
-  /// Calls f(by what, work [J]) for all that does work on the soil.
-  template <class F>
-  void each_work(F &&f) const {
-    for (const auto &b : boundaries)
-      if (!b.of_water) f(b.name, b.work);
-    f(std::string("gravity"), work.gravity), f(std::string("imposed"), work.imposed);
-    f(std::string("damping"), work.damping);
-  }
-  /// Energy that work has brought and that is there no more [J].
-  double dissipated() const {
-    double rest = first_energy;
-    each_work([&](const std::string &, double joules) { rest += joules; });
-    return rest - (balance.kinetic + balance.strain + escaped.energy);
-  }
-  /// Energy that was there or was brought, whatever its sign [J].
-  double turnover() const {
-    double sum = std::abs(first_energy);
-    each_work([&](const std::string &, double joules) { sum += std::abs(joules); });
-    return sum;
+    for (std::size_t s = 0; s < boundaries.size(); ++s)
+      if (!boundaries[s].of_water)
+        column("work_" + boundaries[s].name, "J", s < energy.of_boundary.size() ? energy.of_boundary[s] : 0);
+    column(string("work_gravity"), "J", energy.work.gravity), column(string("work_imposed"), "J", energy.work.imposed);
+    column(string("work_damping"), "J", energy.work.damping);
+    column(string("dissipated"), "J", balanced ? energy.dissipated() : std::numeric_limits<double>::quiet_NaN());
   }
   /// Mass of a fluid that the boundaries do not account for: it stays what it is [kg].
   double owned(std::size_t a) const {

@@ -22,7 +22,9 @@ std::vector<double> PointRows<dim>::at(double time, const Statics<dim> &statics)
   std::vector<double> found;  // of each point: its fields, its velocity, and on how many ranks it is
   for (auto &point : points_.all()) {
     std::optional<ParticleState<dim>> state;
-    if (statics.current())
+    if (!world_.present[point.body])
+      state = std::nullopt;  // also in stages by finite elements, which would give the nearest soil there is
+    else if (statics.current())
       state = statics.state_at(point.place);
     else if (const int i = points_.find(point); i >= 0)
       state.emplace(world_.phases, *world_.motion, *world_.bodies[point.body], point.body, i);

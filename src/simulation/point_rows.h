@@ -17,7 +17,8 @@ class PointRows {
 
   /// Names of the columns of one point, which begin with `prefix`.
   std::vector<std::string> names(const std::string &prefix) const;
-  /// The columns of all points at a time [s], point by point; those of a point whose particle is gone are NaN. The
+  /// The columns of all points at a time [s], point by point; those of a point without soil are NaN: its
+  /// particle is gone, or its body is not there. The
   /// acceleration is the change of velocity since the last call over the time since then, or since the call before that
   /// where the last one was a short while ago (less than half of the time between these two): the velocity of a single
   /// step tells nothing of a mean. It is zero in the first call, and in stages by finite elements. Collective, the same

@@ -207,7 +207,6 @@ RunRow<dim> Recorder<dim>::run_row() const {
                               {},
                               0,
                               0,
-                              0,
                               {}});
   }
   return row;
@@ -222,9 +221,8 @@ void Recorder<dim>::write_history() {
   last_row_step_ = of_.clock.steps, last_row_time_ = of_.clock.time;
   note_imbalance();
   RunRow<dim> run = run_row();
-  require(of_.world.motion->balance(of_.clock.time, &run.balance));
-  for (int d = 0; d < dim; ++d) run.potential -= scene_.gravity[d] * run.balance.moment[d];
-  if (of_.statics.current()) run.balance.strain = of_.statics.strain_energy();
+  run.energy = of_.energies.sums(), run.balanced = of_.clock.stage != strength_reduction;
+  for (int d = 0; d < dim; ++d) run.potential -= scene_.gravity[d] * run.energy.balance.moment[d];
   if (phases_.liquid) {
     require(of_.world.motion->fluid_ledger(run.fluids.data()));
     fluids_.show(of_.clock.time, run);
@@ -247,36 +245,12 @@ void Recorder<dim>::write_history() {
     for (int d = 0; d < dim; ++d)
       run.boundaries[s].value[d] = run.boundaries[s].loads ? faces[s][d] : elapsed > 0 ? impulses[s][d] / elapsed : 0;
   impulse_time_ = of_.clock.time;
-  std::vector<double> work = of_.world.conditions.work();
-  const WorkDone &done = of_.world.motion->work();
-  work.insert(work.end(), {done.gravity, done.imposed, done.damping});
-  MPI_Allreduce(MPI_IN_PLACE, work.data(), static_cast<int>(work.size()), MPI_DOUBLE, MPI_SUM, of_.world.comm);
-  const PathWork by_statics = of_.statics.work();
-  for (std::size_t s = 0; s < by_statics.of_boundary.size(); ++s) work[s] += by_statics.of_boundary[s];
-  work.end()[-3] += by_statics.gravity, work.end()[-2] += of_.statics.imposed_work();
-  if (of_.clock.time == 0) work_before_ = work;
-  work_before_.resize(work.size());
-  for (std::size_t k = 0; k < work.size(); ++k) work[k] -= work_before_[k];
-  for (size_t s = 0; s < run.boundaries.size(); ++s) run.boundaries[s].work = work[s];
-  run.work = {work.end()[-3], work.end()[-2], work.end()[-1]};
-  if (of_.clock.time == 0) first_energy_ = run.balance.kinetic + run.balance.strain;
-  run.first_energy = first_energy_, run.balanced = of_.clock.stage != strength_reduction;
   run.visit([&](const std::string &, const char *, double value) { row.push_back(value); });
-  const bool watched = run.balanced && !of_.statics.current();
-  std::optional<double> in_motion;
-  if (fluids_move(scene_.phases)) {
-    constexpr double slow = 1;  // [m/s]: soil that fluids push is slower where there is no other work to compare with
-    const double moving = run.balance.kinetic + run.escaped.energy;
-    in_motion = moving > of_.world.total_mass * slow * slow / 2 ? moving : 0;
-  }
-  const std::string created = energy_.look(watched ? of_.clock.stage : "", run.dissipated(), run.turnover(), in_motion);
   row.insert(row.begin(), {of_.clock.time, static_cast<double>(of_.clock.steps)});
   history_.rows.push_back(row);
   if (results_)
     results_->history.row(of_.clock.time, of_.clock.steps, of_.clock.stage.empty() ? "start" : of_.clock.stage,
                           {row.begin() + 2, row.end()});
-  if (!created.empty()) note("warning: " + created);
-  if (energy_.beyond_all()) throw MotionFailure(energy_.verdict());
 }
 
 // ---- snapshots ----

@@ -12,7 +12,7 @@
 #include "output/results_folder.h"
 #include "output/snapshots.h"
 #include "simulation/dynamics.h"
-#include "simulation/energy_watch.h"
+#include "simulation/energy_ledger.h"
 #include "simulation/fluid_books.h"
 #include "simulation/followed_lines.h"
 #include "simulation/mesh_ends.h"
@@ -33,6 +33,7 @@ struct Sources {
   Statics<dim> &statics;
   TrackedPoints<dim> &points;
   FollowedLines<dim> &lines;
+  EnergyLedger<dim> &energies;
 };
 
 template <int dim>
@@ -64,7 +65,7 @@ class Recorder {
   void note(const std::string &text, double time, double load_time);
   /// At the end: how much energy was created in all, where it was told that some is.
   void note_created_energy() {
-    if (energy_.told()) note("warning: in all, " + energy_.verdict());
+    if (of_.energies.watch().told()) note("warning: in all, " + of_.energies.watch().verdict());
   }
   /// Warns of ends of the mesh that cut a slide off, at the end of a run. Collective.
   void note_cut_off() {
@@ -74,6 +75,8 @@ class Recorder {
   void note_cut_off(const typename MeshEnds<dim>::Soil &mechanism) {
     for (const std::string &sentence : ends_.cut_off(mechanism)) note("warning: " + sentence);
   }
+  /// Warns of soil that has left the mesh, at the end of a run. Collective.
+  void note_lost_soil();
   /// Says that the mesh was divided in another way, which is expected to bring this imbalance.
   void note_balancing(double before, double expected);
   /// Ends the run: throws RunError with the cause, where the run stood and what is left of it; BrokenOff if pictures of
@@ -128,10 +131,7 @@ class Recorder {
   std::vector<Event> events_;
   std::unique_ptr<Files> results_;
   FluidBooks fluids_;
-  double first_energy_ = 0;  ///< [J]
-  EnergyWatch energy_;
-  std::vector<double> work_before_;  ///< done before the run, where it starts at the state of another [J]
-  double impulse_time_ = 0;          ///< since when forces are means [s]
+  double impulse_time_ = 0;  ///< since when forces are means [s]
   PointRows<dim> point_rows_;
   MeshEnds<dim> ends_;
   std::vector<std::string> changed_;  ///< keys of the scene that are others than before the run was resumed

@@ -91,10 +91,8 @@ void Recorder<dim>::take_checkpoint(const Checkpoint &found) {
 
 template <int dim>
 void Recorder<dim>::serialize(Archive &archive) {
-  archive.serialize("results", last_row_step_, last_row_time_, snapshots_, impulse_time_, first_energy_, work_before_,
-                    told_escaped_);
+  archive.serialize("results", last_row_step_, last_row_time_, snapshots_, impulse_time_, told_escaped_);
   fluids_.serialize(archive);
-  energy_.serialize(archive);
   point_rows_.serialize(archive);
   ends_.serialize(archive);
   of_.lines.serialize(archive);

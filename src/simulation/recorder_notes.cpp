@@ -99,6 +99,15 @@ void Recorder<dim>::note_escaped() {
   note(text.str());
 }
 
+template <int dim>
+void Recorder<dim>::note_lost_soil() {
+  const EscapedSums &sums = of_.world.escaped.sums();
+  if (sums.particles == 0) return;
+  const std::string ways = ways_in_words();
+  note("warning: " + rounded(100 * sums.mass / (sums.mass + of_.world.total_mass)) + " % of the soil, " +
+       rounded(sums.mass) + " kg, has left the mesh " + ways + ": displacements and volumes are those of the rest");
+}
+
 /// escaped.csv, whenever it does not hold all particles that have left. Collective.
 template <int dim>
 void Recorder<dim>::write_escaped() {
@@ -229,6 +238,8 @@ template std::string Recorder<2>::ways_in_words();
 template std::string Recorder<3>::ways_in_words();
 template void Recorder<2>::note_escaped();
 template void Recorder<3>::note_escaped();
+template void Recorder<2>::note_lost_soil();
+template void Recorder<3>::note_lost_soil();
 template void Recorder<2>::write_escaped();
 template void Recorder<3>::write_escaped();
 template void Recorder<2>::note_imbalance();

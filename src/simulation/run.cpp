@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "scene/reader.h"
+#include "simulation/moved_before.h"
 #include "simulation/start_from.h"
 
 namespace talus {
@@ -40,7 +41,8 @@ Run<dim>::Run(MPI_Comm comm, const Scene &of, const RunOptions &with, const std:
       lines(world),
       dynamics((world.take_out_later_bodies(), world), clock, integrator),
       statics(world, clock),
-      recorder({world, clock, dynamics, statics, points, lines}, options) {
+      energies(world, clock, statics),
+      recorder({world, clock, dynamics, statics, points, lines, energies}, options) {
   if (!scene.start_from.folder.empty() && !options.resume) start_from_other_run();
 }
 
@@ -81,6 +83,24 @@ void Run<dim>::reset_displacement() {
   world.reset_displacement(clock.time);
 }
 
+template <int dim>
+void Run<dim>::end_by_reset() {
+  double mass[2] = {0, 0};  // that has yielded, and all
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+    const ParticleArrays<dim> &p = world.bodies[b]->particles();
+    for (int i = 0; i < p.count; ++i) {
+      mass[1] += p.mass[i];
+      if (world.motion->softened_by(static_cast<int>(b), i).plastic_strain > yielded) mass[0] += p.mass[i];
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, mass, 2, MPI_DOUBLE, MPI_SUM, world.comm);
+  const double elastic = elastic_settlement(world.report(), world.laws, scene.gravity_size(), dim, scene.vertical());
+  const std::string sentence =
+      moved_before_reset(stage().name, world.largest_displacement(), elastic, mass[1] > 0 ? mass[0] / mass[1] : 0);
+  if (!sentence.empty()) recorder.note("warning: " + (moved_before = sentence));
+  reset_displacement();
+}
+
 /// What does not depend on stages, integrator and output of the scene, and so may be read by a run with others.
 template <int dim>
 PetscErrorCode Run<dim>::serialize_state(Archive &archive) {
@@ -100,6 +120,8 @@ PetscErrorCode Run<dim>::serialize(Archive &archive) {
   const bool staged = progress.number >= 0;  // a host program steps without stages
   if (archive.reading() && staged) stop = make_stop_criterion<dim>(stage());
   if (staged) stop->serialize(archive);
+  archive.serialize("moved before", moved_before);
+  energies.serialize(archive);
   recorder.serialize(archive);
   dynamics.serialize(archive);
   PetscFunctionReturn(0);

@@ -42,6 +42,8 @@ struct Run {
   void resume();
   /// Displacements, velocities and plastic strain are zero from now on.
   void reset_displacement();
+  /// The present stage ends by that: warns if soil has moved further than elastic soil would. Collective.
+  void end_by_reset();
   /// Divides the mesh among the ranks in another way, if soil has moved so far that it is worth it: the state goes
   /// through memory as it would through a checkpoint that is resumed on another partition. Motion goes on up to time
   /// `end` at least, as far as is known. Collective.
@@ -58,9 +60,11 @@ struct Run {
   FollowedLines<dim> lines;
   Dynamics<dim> dynamics;
   Statics<dim> statics;
+  EnergyLedger<dim> energies;
   Recorder<dim> recorder;
   StageProgress progress;
   std::unique_ptr<StopCriterion<dim>> stop;  ///< of the present stage
+  std::string moved_before;                  ///< what `end_by_reset` has warned of last
   std::string motion_left;                   ///< at the end of the last stage; empty where soil is at rest
   std::vector<std::string> start_notes;      ///< where the state at the start is from, if not from the scene
 

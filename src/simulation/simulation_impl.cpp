@@ -26,6 +26,7 @@ void Simulation<dim>::run() {
     note_state();
     note_volumes();
     run_.recorder.note_created_energy();
+    run_.recorder.note_lost_soil();
     run_.recorder.note_cut_off();
     if (run_.options.resume && run_.clock.steps == before)
       run_.recorder.note(
@@ -46,6 +47,10 @@ void Simulation<dim>::note_state() {
   std::vector<std::string> doubts = unlikely_strains(run_.world.comm, bodies, state);
   if (run_.scene.phases == PhaseModel::saturated)
     std::ranges::copy(unlikely_suctions(run_.world.comm, bodies, state), std::back_inserter(doubts));
+  for (const std::string &point : run_.points.without_soil())
+    doubts.push_back("output.point." + point +
+                     " has no soil at the end: what stood there has left the mesh, or no stage has added it");
+  if (!run_.moved_before.empty()) doubts.push_back(run_.moved_before);  // in the summary too
   for (const std::string &sentence : doubts) run_.recorder.note("warning: " + sentence);
 }
 

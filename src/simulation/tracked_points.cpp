@@ -116,6 +116,17 @@ bool TrackedPoints<dim>::velocity(const std::string &name, Vec<3> *v) {
   return false;
 }
 
+template <int dim>
+std::vector<std::string> TrackedPoints<dim>::without_soil() {
+  std::vector<int> there;
+  for (Point &point : points_) there.push_back(find(point) >= 0);
+  MPI_Allreduce(MPI_IN_PLACE, there.data(), static_cast<int>(there.size()), MPI_INT, MPI_MAX, world_.comm);
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < points_.size(); ++k)
+    if (!there[k]) names.push_back(points_[k].name);
+  return names;
+}
+
 template class TrackedPoints<2>;
 template class TrackedPoints<3>;
 

@@ -32,6 +32,8 @@ class TrackedPoints {
   const std::vector<Point> &all() const { return points_; }
   /// Index of a point's particle in its body, -1 where another rank has it.
   int find(Point &point) const;
+  /// Names of the points that have no soil now: their particle has left the mesh, or its body is not there. Collective.
+  std::vector<std::string> without_soil();
   /// Present velocity of the point of that name [m/s]; false where another rank has it.
   bool velocity(const std::string &name, Vec<3> *v);
 

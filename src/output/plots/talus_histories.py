@@ -27,6 +27,7 @@ def draw_histories(results, folder):
     for (quantity, unit), lines in whole.groups().items():
         history = since if quantity in RESET else whole  # what is set to 0 begins there, so that the settlement before does not set the scale
         lines = {", ".join(same.get(name, [name])): values for name, values in history.groups()[quantity, unit].items() if name not in others}
+        lines = {name: values for name, values in lines.items() if np.isfinite(values).any()}  # others are points that have had no soil
         if quantity in ELSEWHERE or quantity.startswith("stress_") or not any(changes(values) for values in lines.values()):
             continue
         if quantity == "energy":

@@ -60,7 +60,7 @@ def failure(results):
 
 @measure
 def time_of_failure(results):
-    """Time at which the watched point passed its speed and kept accelerating [s]."""
+    """Time at which the watched point passed its speed and its soil failed [s]."""
     return failure(results)[0]
 
 

@@ -74,6 +74,8 @@ def draw(folder, fields=None, times=None, log=False, slip_surface=False):
     tell_of_times(results, times)
     if results.broke_off() == NOT_ENDED:  # a run that broke off has said why
         print(f"talus: the run in {folder} is incomplete: {NOT_ENDED}; the pictures show it up to {results.snapshots[-1].time:.6g} s", file=sys.stderr)
+    if cut := results.cut_history():
+        print(f"talus: {cut}", file=sys.stderr)
     pictures = results.folder / "pictures"
     slip, without = [], None
     if slip_surface:  # before the sections, which show it

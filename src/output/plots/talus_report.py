@@ -11,6 +11,7 @@ from talus_histories import base_friction
 from talus_measures import flow, known
 from talus_model import draw_model
 from talus_modelled import read_model, stage_rows
+from talus_moments import moved_before
 from talus_outcomes import in_words, outcome
 from talus_results import NOT_ENDED, SLOW, largest_displacement, sliding, still_moving
 from talus_units import Keys, at_time, capital, readable_unit, text_of, words
@@ -73,6 +74,8 @@ def header(results):
 def warnings(results):
     """What the run warned of in its log, each sentence once."""
     found = dict.fromkeys(line.split("  warning: ", 1)[1] for line in results.log_lines() if "  warning: " in line)
+    if cut := results.cut_history():
+        found[cut] = None
     return section("Warnings", "".join(f"<p>{html.escape(sentence)}</p>" for sentence in found))
 
 
@@ -80,7 +83,7 @@ def key_results(results):
     """[(what, number, note)] that a reader wants first."""
     last = results.snapshots[-1]
     factor = read_factor(results)
-    found = [] if factor is None else [("Factor of safety", short(factor["factor_of_safety"]), ends_of(factor["factor_of_safety"]) + bounds(factor))]
+    found = doubts(results) + ([] if factor is None else [("Factor of safety", short(factor["factor_of_safety"]), ends_of(factor["factor_of_safety"]) + bounds(factor))])
     lost = (factor or {}).get("stages_without_equilibrium", ())
     found.append(("Particles", thousands(len(last.position())), ", ".join(results.bodies)))
     when = "at the end" if factor is None else "before the strength is reduced"
@@ -112,9 +115,6 @@ def key_results(results):
         found.append(("Largest plastic strain", f"{known(last, 'plastic_strain').max():.3g}", when))
     mass = results.history.columns.get("mass_kg") if results.history else None
     gone = results.history.columns.get("escaped_mass_kg", 0 * mass) if mass is not None else None
-    if results.escaped and len(results.escaped.time):
-        note = f"{thousands(len(results.escaped.time))} particles, from {at_time(results.escaped.time[0], last.time)} on{ways_out(results.escaped)}"
-        found.append(("Left the mesh", quantity(results.escaped.columns["mass_kg"].sum() / 1e3, results.per_metre("t")), note))
     if mass is not None and len(mass) and mass[0]:
         lost = mass[-1] + gone[-1] - mass[0]
         end = quantity(mass[-1] / 1e3, results.per_metre("t"))
@@ -123,6 +123,26 @@ def key_results(results):
         share = "" if closed else f"; {abs(lost) / mass[0]:.1e} of the mass at the start has {'appeared' if lost > 0 else 'vanished'}"
         found.append(("Mass ledger", "closed" if closed else error, f"{end} at the end{share}"))
     return found
+
+
+def doubts(results):
+    """What makes the other numbers doubtful: soil that slid before displacements were set to zero, soil that left the mesh, points without soil."""
+    last, found = results.snapshots[-1], []
+    moved = moved_before(results)
+    if moved:
+        found.append(("Moved before the start", quantity(moved[0], "m"), f"set to zero at the end of stage {moved[1]}: more than elastic soil settles, see the warnings"))
+    if results.escaped and len(results.escaped.time):
+        note = f"{thousands(len(results.escaped.time))} particles, from {at_time(results.escaped.time[0], last.time)} on{ways_out(results.escaped)}"
+        found.append(("Left the mesh", quantity(results.escaped.columns["mass_kg"].sum() / 1e3, results.per_metre("t")), note))
+    if gone := points_without_soil(results.history):
+        found.append(("Points without soil", ", ".join(map(words, gone)), "at the end: what stood there has left the mesh, or no stage has added it"))
+    return found
+
+
+def points_without_soil(history):
+    """Names of the points that have no value in the last row."""
+    columns = {name: history.columns[f"{name}_x_m"] for name in history.points(0)} if history else {}
+    return [name for name, x in columns.items() if len(x) and np.isnan(x[-1])]
 
 
 def level_and_upright(vectors, up):

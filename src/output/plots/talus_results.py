@@ -219,13 +219,18 @@ class Thickness:
 
 
 class History:
-    """history.csv: `time` [rows] in s, `stage` and `step` of each row, and columns of numbers by their names. Raises OSError where the file has no
-    rows or is damaged."""
+    """history.csv: `time` [rows] in s, `stage` and `step` of each row, and columns of numbers by their names. A line that is not whole is left out,
+    and `cut` says so in words. Raises OSError where the file has no rows or is damaged."""
 
     def __init__(self, path):
-        with open(path, newline="") as file:
-            lines = list(csv.reader(file))
-        header, rows = (lines[0], [row for row in lines[1:] if len(row) == len(lines[0])]) if lines else ([], [])
+        text = pathlib.Path(path).read_text()
+        lines = list(csv.reader(text.splitlines()))
+        header = lines[0] if lines else []
+        last = len(lines) - (not text.endswith("\n"))  # a line without its end may lack digits
+        whole = [k for k in range(1, last) if len(lines[k]) == len(header)]
+        rows = [lines[k] for k in whole]
+        broken = len(lines) - 1 - len(rows)
+        self.cut = "" if broken <= 0 else "its last line is incomplete" if broken == 1 and whole == [*range(1, len(lines) - 1)] else f"{broken} lines are incomplete"
         self.columns = {}
         try:
             for k, name in enumerate(header):
@@ -238,6 +243,22 @@ class History:
         self.time = self.columns.pop("time_s")
         self.step = self.columns.pop("step", None)
         self.stage = [row[header.index("stage")] for row in rows] if "stage" in header else [""] * len(rows)
+
+    def missing_rows(self, until):
+        """Where rows are missing, in words; empty where none are. A row follows on the one before after an interval that changes at most once in a stage of
+        motion, give or take a step; `until` [s] is the time of the last snapshot, which a row is near to."""
+        gaps, found = np.diff(self.time), []
+        if not len(gaps) or self.step is None:
+            return ""
+        steps = np.diff(self.step)
+        for k, gap in enumerate(gaps):
+            beside = [gaps[j] for j in (k - 1, k + 1) if 0 <= j < len(gaps) and self.stage[j + 1] == self.stage[k + 1]]
+            if beside and steps[k] > 1 and gap > 1.5 * max(beside) + 2 * gap / steps[k]:
+                found.append(f"between {self.time[k]:.6g} and {self.time[k + 1]:.6g} s")
+        step = gaps[-1] / max(steps[-1], 1)
+        if until > self.time[-1] + 1.5 * max(gaps[-2:]) + 2 * step:
+            found.append(f"after {self.time[-1]:.6g} s")
+        return "rows are missing " + ", ".join(found[:3]) + " and elsewhere" * (len(found) > 3) if found else ""
 
     def __contains__(self, name):
         return name in self.columns
@@ -507,6 +528,12 @@ class Results:
         if causes:
             return causes[-1]
         return "" if not said or any(map(is_end, said)) else NOT_ENDED
+
+    def cut_history(self):
+        """What history.csv lacks of the run, as a sentence; empty if it is whole."""
+        faults = [] if self.history is None else [self.history.cut, self.history.missing_rows(self.snapshots[-1].time)]
+        faults = [fault for fault in faults if fault]
+        return f"history.csv in {self.folder} is cut, as {' and '.join(faults)}: curves show the rest" if faults else ""
 
     def when(self, snapshot):
         """The time of a snapshot in words. In a run of days the time in a stage of less than a day is counted from the snapshot before it."""

@@ -35,6 +35,7 @@ class DynamicStage final : public StageRunner<dim> {
 
   void begin() {
     const bool handed_over = run_.statics.current();
+    if (run_.clock.time == run_.progress.begin) run_.energies.begin_stage();
     run_.statics.leave();
     require(run_.world.fix_dashpots(stage_.hold_loads, run_.clock.time));
     run_.clock.stage = stage_.name;
@@ -67,12 +68,23 @@ class DynamicStage final : public StageRunner<dim> {
     const Verdict verdict = run_.dynamics.cycle(run_.dynamics.fixed_step() ? end() : std::min(end(), snapshot));
     run_.balance_ranks(end());
     run_.recorder.progress();
+    watch_energy();
     if (reached(row, now)) run_.recorder.write_history();
     if (reached(snapshot, now) && !reached(end(), now)) run_.recorder.write_snapshot();
     run_.progress.met = run_.stop->met(run_, verdict);
     run_.progress.told = false;
     if (reached(checkpoint, now) && !reached(end(), now)) run_.write_checkpoint();
     run_.heed(verdict);
+  }
+
+  /// A motion that has created more energy than there was goes on no further.
+  void watch_energy() {
+    constexpr int steps_between_looks = 100;
+    if (run_.clock.steps % steps_between_looks) return;
+    if (const std::string created = run_.energies.look(); !created.empty()) run_.recorder.note("warning: " + created);
+    if (!run_.energies.watch().beyond_all()) return;
+    run_.recorder.write_history();
+    throw MotionFailure(run_.energies.watch().verdict());
   }
 
   void finish() {
@@ -82,7 +94,7 @@ class DynamicStage final : public StageRunner<dim> {
     run_.recorder.write_snapshot();
     run_.write_checkpoint();
     if (run_.last_stage()) find_motion_left();  // before a reset sets it to zero
-    if (stage_.reset_displacement) note_reset(), run_.reset_displacement();
+    if (stage_.reset_displacement) note_reset(), run_.end_by_reset();
   }
 
   void note_reset() {

@@ -23,7 +23,7 @@ class StaticStage : public StageRunner<dim> {
       follow(path_);
       finish();
     }
-    if (stage_.reset_displacement) run_.reset_displacement();
+    if (stage_.reset_displacement) run_.end_by_reset();
   }
 
  protected:

@@ -1,5 +1,6 @@
 #pragma once
-/// A point passes a speed and keeps accelerating: its mean velocity is larger in each tenth of a watching time.
+/// Soil has failed when it moves fast and stores no more of the energy that loads bring, docs/theory section 5.3.
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -7,8 +8,9 @@
 
 namespace talus {
 
-/// The velocity is averaged over tenths of `failure_time`, as a vector, so that a vibration about a place does not look
-/// like motion, nor its backward swing like an end of acceleration.
+/// The velocity of the point is a mean over `failure_time`, as a vector, so that a vibration about a place does not
+/// look like motion. Once it passes `failure_speed`, energies tell soil that has failed from soil that follows its
+/// loads.
 template <int dim>
 class StopAtFailure final : public StopCriterion<dim> {
  public:
@@ -16,46 +18,68 @@ class StopAtFailure final : public StopCriterion<dim> {
 
   std::string watched_point() const override { return stage_.failure_point; }
 
-  /// Counts tenths that are fast and faster than the one before; ends when one and ten further ones are.
   bool met(Run<dim> &run, const Verdict &verdict) override {
-    const double now = run.clock.time, step = run.clock.last_step;
-    for (int d = 0; d < 3; ++d) seen_.path[d] += verdict.watched_velocity[d] * step;
-    seen_.elapsed += step;
-    if (seen_.elapsed < stage_.failure_time / 10 * (1 - 1e-9)) return false;
-    const double speed = std::hypot(seen_.path[0], seen_.path[1], seen_.path[2]) / seen_.elapsed;
-    const bool accelerates = speed > seen_.last_speed, fast = speed > stage_.failure_speed;
-    if (!fast || !accelerates) seen_.watched = 0;
-    if (fast && seen_.watched++ == 0) pass(run.clock, speed);
-    seen_.last_speed = speed, seen_.last_middle = now - seen_.elapsed / 2;
-    seen_.path = {}, seen_.elapsed = 0;
-    constexpr int tenths = 10;
-    if (seen_.watched <= tenths) return false;
+    Tenth &present = seen_.tenth[seen_.ended % tenths];
+    const double step = run.clock.last_step;
+    for (int d = 0; d < 3; ++d) present.path[d] += verdict.watched_velocity[d] * step;
+    present.elapsed += step;
+    if (present.elapsed < stage_.failure_time / tenths * (1 - 1e-9)) return false;
+    const bool failed = ++seen_.ended >= tenths && watch(run);
+    seen_.tenth[seen_.ended % tenths] = {};
+    if (!failed) return false;
     std::ostringstream text;
     text.precision(8);
     text << "failure at " << seen_.time << " s (loads at t = " << seen_.load_time << " s): point "
-         << stage_.failure_point << " passed " << stage_.failure_speed << " m/s and kept accelerating";
+         << stage_.failure_point << " passed " << stage_.failure_speed
+         << " m/s, and from then on the soil stored less than a fifth of the energy that it received";
     run.recorder.note(text.str(), seen_.time, seen_.load_time);
     return true;
   }
   void serialize(Archive &archive) override { archive.serialize("failure", seen_); }
 
  private:
-  /// Notes when the speed was passed: between the middle of this tenth and, if that was slower, of the last one.
-  void pass(const Clock &clock, double speed) {
-    const double middle = clock.time - seen_.elapsed / 2, limit = stage_.failure_speed;
-    const bool between = seen_.last_speed >= 0 && seen_.last_speed < limit;
-    seen_.time =
-        between ? middle - (middle - seen_.last_middle) * (speed - limit) / (speed - seen_.last_speed) : middle;
-    seen_.load_time = clock.load_time - (clock.hold_loads ? 0 : clock.time - seen_.time);
+  static constexpr int tenths = 10;
+  static constexpr double not_stored_over_stored = 4;
+
+  /// Looks at the end of a tenth: has the soil failed?
+  bool watch(Run<dim> &run) {
+    std::array<double, 3> path{};
+    double elapsed = 0;
+    for (const Tenth &one : seen_.tenth) {
+      for (int d = 0; d < 3; ++d) path[d] += one.path[d];
+      elapsed += one.elapsed;
+    }
+    const double speed = std::hypot(path[0], path[1], path[2]) / elapsed, middle = run.clock.time - elapsed / 2;
+    const double last_speed = seen_.speed, last_middle = seen_.middle, limit = stage_.failure_speed;
+    seen_.speed = speed, seen_.middle = middle;
+    if (!(speed > limit)) {
+      seen_.fast = 0;
+      return false;
+    }
+    const EnergySums energies = run.energies.sums();
+    const double stored = energies.balance.strain, not_stored = energies.not_stored();
+    if (seen_.fast++ == 0) {
+      const bool between = last_speed >= 0 && last_speed < limit;
+      seen_.time = between ? middle - (middle - last_middle) * (speed - limit) / (speed - last_speed) : middle;
+      seen_.load_time = run.clock.load_time - (run.clock.hold_loads ? 0 : run.clock.time - seen_.time);
+      seen_.stored = stored, seen_.not_stored = not_stored, seen_.change = 0;
+    }
+    seen_.change = std::max(seen_.change, std::abs(stored - seen_.stored));
+    return seen_.fast > tenths / 2 && not_stored - seen_.not_stored > not_stored_over_stored * seen_.change;
   }
 
+  struct Tenth {
+    std::array<double, 3> path{};  ///< of the point [m]
+    double elapsed = 0;            ///< [s]
+  };
   struct Seen {
-    std::array<double, 3> path{};    ///< of the point in the present tenth [m]
-    double elapsed = 0;              ///< of the present tenth [s]
-    double last_speed = -1;          ///< mean of the tenth before; -1: there is none [m/s]
-    double last_middle = 0;          ///< of the tenth before [s]
-    double time = 0, load_time = 0;  ///< when the speed was passed [s]
-    long long watched = 0;           ///< tenths in a row, each faster than the one before
+    std::array<Tenth, tenths> tenth{};  ///< the last ones of failure_time; the present one at place ended % 10
+    long long ended = 0;                ///< that have ended
+    double speed = -1, middle = 0;      ///< mean over the last ten of them, and their middle; -1: none [m/s], [s]
+    long long fast = 0;                 ///< tenths since the speed was passed, this one included
+    double time = 0, load_time = 0;     ///< when it was passed [s]
+    double stored = 0, not_stored = 0;  ///< EnergySums then [J]
+    double change = 0;                  ///< largest change of the stored energy since then [J]
   };
   const Stage &stage_;
   Seen seen_;

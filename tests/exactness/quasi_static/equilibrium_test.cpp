@@ -181,6 +181,26 @@ TEST(QuasiStatic, excavation_and_fill) {
   EXPECT_NEAR(filled.history.column("mass_kg").back(), 2000, 1e-9);
 }
 
+/// A point has values while its body is there.
+TEST(QuasiStatic, points_have_no_values_without_soil) {
+  const std::string layer =
+      "density = 2000\nlaw = \"linear_elastic\"\nyoung_modulus = \"10 MPa\"\npoisson_ratio = 0.3\n";
+  const auto stage = [](const std::string &name, const std::string &key) {
+    return "[[stage]]\nname = \"" + name + "\"\nkind = \"quasi_static\"\nduration = 1\n" + key;
+  };
+  const Solved built = solve("gravity = 10\n[mesh]\nsection = \"" + std::string(TALUS_LAYERS) +
+                             "\"\nsize = 0.25\n[body.lower]\nregion = \"lower\"\n" + layer +
+                             "[body.upper]\nregion = \"upper\"\n" + layer +
+                             "[boundary.walls]\ngroup = [\"base\", \"left\", \"right\"]\nkind = \"roller\"\n"
+                             "[output.point.top]\nposition = [0.5, 0.9]\n" +
+                             stage("gravity", "") + stage("fill", "add = \"upper\"\n") +
+                             stage("cut", "remove = \"upper\"\n"));
+  const std::vector<double> time = built.history.column("time_s"), moved = built.history.column("top_displacement_m");
+  ASSERT_FALSE(time.empty());
+  for (std::size_t k = 0; k < time.size(); ++k)
+    EXPECT_EQ(std::isnan(moved[k]), time[k] <= 1 || time[k] > 2) << "at t = " << time[k] << " s: " << moved[k];
+}
+
 /// One element across a layer is too few for elements of first order.
 TEST(QuasiStatic, one_element_across_is_refused) {
   try {

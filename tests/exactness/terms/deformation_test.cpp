@@ -1,5 +1,7 @@
 // Strain, stress and volume of cells that deform, and the step that they bear: docs/theory (2.5), (3.1) to (3.9),
 // (4.6), (4.7), (5.5), (5.6).
+#include <petscsys.h>
+
 #include <Eigen/Eigenvalues>
 
 #include "base/eigenvalues.h"

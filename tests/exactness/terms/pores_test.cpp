@@ -1,4 +1,6 @@
 // Pore water and gas that move: docs/theory/pores.md (2.1), (3.1) to (3.3), (4.2) to (4.8a), (5.1), on a few cells.
+#include <petscsys.h>
+
 #include "base/eigenvalues.h"
 #include "physics/pores/pore_fluid.inl"  // emits what libraries have only inline
 #include "pore_equations.h"

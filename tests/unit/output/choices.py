@@ -722,7 +722,7 @@ class Values(unittest.TestCase):
         last = Moving(np.array(strain))
         last["plastic_strain"], last.position, last.time = last.pop("velocity"), lambda: np.zeros((len(strain), 3)), 1.0
         last.column = lambda name: types.SimpleNamespace(values=last[name][:, None])
-        return types.SimpleNamespace(snapshots=[last], history=None, escaped=None, bodies=["rock", "debris"], scene={}, folder=pathlib.Path("nowhere"))
+        return types.SimpleNamespace(snapshots=[last], history=None, escaped=None, bodies=["rock", "debris"], scene={}, folder=pathlib.Path("nowhere"), log_lines=lambda: [])
 
     def test_that_are_none_do_not_count(self):
         results = self.results(np.nan, 0.5, 1.5, np.nan)
@@ -736,6 +736,44 @@ class Values(unittest.TestCase):
         cards = {what: number for what, number, _ in key_results(self.results(np.nan, 0.5, 1.5))}
         self.assertEqual(cards["Largest plastic strain"], "1.5")
         self.assertNotIn("Largest plastic strain", {what for what, _, _ in key_results(self.results(np.nan, np.nan))})
+
+    def test_that_are_doubtful_come_first(self):
+        results = self.results(0.5)
+        results.log_lines = lambda: ["t = 4 s  warning: stage gravity has moved soil by up to 1.531 m before displacements are set to zero; elastic soil of ..."]
+        results.history = types.SimpleNamespace(columns={"toe_x_m": np.array([4.0, np.nan]), "crest_x_m": np.array([np.nan, 1.0])}, points=lambda time: {"toe": (), "crest": ()},
+                                                groups=dict)
+        (moved, way, note), (points, names, _) = key_results(results)[:2]
+        self.assertEqual((moved, way, points, names), ("Moved before the start", "1.53 m", "Points without soil", "toe"))
+        self.assertIn("stage gravity", note)
+
+
+class CutHistory(unittest.TestCase):
+    """A stage by finite elements with steps of any length, then motion with a row every 0.1 s in steps of 0.03 s, then one every 0.5 s after a resume."""
+
+    def rows(self):
+        rows = [(0, 0, "start"), (1, 1, "static"), (5, 2, "static"), (5.2, 3, "static")]
+        steps = [round(0.1 * k / 0.03 + 0.5) for k in range(1, 21)] + [round((2 + 0.5 * k) / 0.03 + 0.5) for k in range(1, 5)]
+        return rows + [(round(5.2 + 0.03 * step, 6), 3 + step, "motion") for step in steps]
+
+    def said(self, rows, end="\n"):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "history.csv"
+            path.write_text("time_s,step,stage,kinetic_J\n" + "\n".join(f"{time},{step},{stage},1.5" for time, step, stage in rows) + end)
+            results = Results.__new__(Results)
+            results.folder, results.history, results.snapshots = pathlib.Path("run"), History(path), [types.SimpleNamespace(time=self.rows()[-1][0])]
+            return results.cut_history()
+
+    def test_that_is_whole_says_nothing(self):
+        self.assertEqual(self.said(self.rows()), "")
+
+    def test_with_half_a_line_says_so(self):
+        for end in ("", "\n9.3,"):
+            self.assertEqual(self.said(self.rows(), end), "history.csv in run is cut, as its last line is incomplete: curves show the rest")
+
+    def test_without_rows_says_where(self):
+        rows = self.rows()
+        self.assertRegex(self.said(rows[:10] + rows[13:]), "rows are missing between 5.83 and 6.22 s: curves")
+        self.assertRegex(self.said(rows[:15]), "rows are missing after 6.31 s: curves")
 
 
 class Scale(unittest.TestCase):
