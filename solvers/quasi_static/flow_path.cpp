@@ -5,6 +5,44 @@
 
 namespace talus {
 
+namespace {
+
+/// Soil that fails while its water has no time to flow: steps of consolidation then become shorter and shorter.
+class FailureWatch {
+ public:
+  FailureWatch(const FlowPath &path, double longest, double drainage)
+      : path_(path), longest_(longest), drainage_(drainage), ask_below_(small * longest) {}
+
+  /// To be told of each try of a step of dt [s] from `share`; `outcome` says so if the path has to end.
+  PetscErrorCode tried(double share, double dt, bool converged, StepOutcome *outcome) {
+    PetscFunctionBeginUser;
+    if (!path_.find_failure) PetscFunctionReturn(0);
+    failed_ = converged ? 0 : failed_ + 1;
+    if (failed_ == doubtful || dt < ask_below_) {
+      ask_below_ = std::min(ask_below_, dt) * small;
+      PetscCall(path_.find_failure(std::min(1., share + drainage_ / path_.duration), outcome));
+      if (outcome->fails || outcome->stopped) PetscFunctionReturn(0);
+    }
+    if (dt > small * std::min(longest_, drainage_)) tries_ = 0, first_ = share;
+    shortest_ = tries_++ == 0 ? dt : std::min(shortest_, dt);
+    if (tries_ < many) PetscFunctionReturn(0);
+    if (share - first_ < small) outcome->crawl = shortest_;
+    tries_ = 0, first_ = share;
+    PetscFunctionReturn(0);
+  }
+
+ private:
+  static constexpr double small = 0.01;
+  static constexpr int doubtful = 2, many = 100;  // failed steps, tries
+  const FlowPath &path_;
+  double longest_, drainage_;  ///< of steps, and of the water of one cell [s]
+  double ask_below_;           ///< [s]
+  int failed_ = 0, tries_ = 0;
+  double first_ = 0, shortest_ = 0;
+};
+
+}  // namespace
+
 /// The error of a step is what its end misses of the line through the last two states.
 template <int dim>
 PetscErrorCode follow_flow(MPI_Comm comm, QuasiStatic<dim> *soil, PoreFlow<dim> &flow,
@@ -25,8 +63,9 @@ PetscErrorCode follow_flow(MPI_Comm comm, QuasiStatic<dim> *soil, PoreFlow<dim> 
   };
   measure(start), before = start;
   const double longest = path.steady ? longest_steady * path.duration : path.duration / path.load_steps;
-  double step = std::min(longest, std::max(first * path.duration, soil ? step_of_flow.shortest_step() : 0)), last = 0,
-         range = 0;
+  const double drainage = soil ? step_of_flow.shortest_step() : 0;
+  double step = std::min(longest, std::max(first * path.duration, drainage)), last = 0, range = 0;
+  FailureWatch watch(path, longest, drainage);
   int known = 0;  // steps behind: the first takes what is put on at once, so that the line starts with the second
   *share = 0, *iterations = 0;
   while (*share < 1) {
@@ -56,6 +95,8 @@ PetscErrorCode follow_flow(MPI_Comm comm, QuasiStatic<dim> *soil, PoreFlow<dim> 
       outcome->dry = error[2] > std::min(driest, flow.liquid().bulk_modulus), outcome->shut = error[3] > driest;
       if (outcome->dry || outcome->shut) PetscFunctionReturn(0);
     }
+    PetscCall(watch.tried(*share, dt, outcome->converged, outcome));
+    if (outcome->fails || outcome->stopped || outcome->crawl > 0) PetscFunctionReturn(0);
     const double least = settings.smallest_step * first * path.duration;
     if (!outcome->converged || (!path.steady && error[0] > 2 * settings.step_error && dt > 10 * least)) {
       if (dt / 4 < least) PetscFunctionReturn(0);

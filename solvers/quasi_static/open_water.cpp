@@ -16,7 +16,7 @@ PetscErrorCode PoreFlow<dim>::find_open_water(double t, std::function<double(con
   };
   std::vector<Shore> shores;
   for (int i = 0; i < nodes_.count(); ++i)
-    if (nodes_.owned[i] && pressed_[i] != none)
+    if (nodes_.owned[i] && at_surface_[i] && pressed_[i] != none)
       shores.push_back(
           {nodes_.position[i], pressed_[i] >= 0 && sources_[pressed_[i]].kind.open_water ? pressed_[i] : none});
   int rank, ranks;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/local_numbers.h"
+#include "solvers/quasi_static/faces_inside.h"
 #include "solvers/quasi_static/unnamed_faces.h"
 
 namespace talus {
@@ -131,7 +132,7 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
     return active_across[-2 - neighbour] != 0;
   };
 
-  std::vector<PetscInt> beyond(nodes_.count(), -1);
+  std::vector<PetscInt> beyond(nodes_.count(), -1), surface(nodes_.count(), 0);
   supplies_.clear();
   const int count =
       static_cast<int>(sources_.size()) +
@@ -139,6 +140,7 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
   const auto put = [&](const Facet<dim> &facet, int source, int rank, bool supplied) {
     const auto corners = nodes_.of_facet(facet.cell, facet.face);
     for (int node : corners) {
+      if (!soil_across(mesh_.cells[facet.cell].neighbour[facet.face])) surface[node] = 1;
       if (rank >= 0) beyond[node] = std::max<PetscInt>(beyond[node], rank * count + source + 1);
       if (!supplied) continue;
       Supply supply{node, source, facet.area / dim, dot<dim>(facet.normal, upward_), {}};
@@ -164,6 +166,7 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
         seeps || kind.water == OnWater::flux);
   };
   int rain = atmosphere;
+  const FacesInside<dim> inside(mesh_, scene_);
   for (int s = 0; s < static_cast<int>(sources_.size()); ++s) {
     const Boundary &kind = sources_[s].kind;
     if (kind.water == OnWater::surface) continue;
@@ -171,7 +174,7 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
       if (kind.fluids_only() && group == free_surface) rain = s;
       if (!mesh_.has_group(group)) continue;
       for (const Facet<dim> &f : mesh_.facets(group)) {
-        if (!active_[f.cell] || soil_across(mesh_.cells[f.cell].neighbour[f.face])) continue;
+        if (!active_[f.cell] || (soil_across(mesh_.cells[f.cell].neighbour[f.face]) && !inside.holds(f))) continue;
         if (kind.water != OnWater::wall) put_source(f, s);
       }
     }
@@ -182,6 +185,8 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
     else
       put_source(facet, rain);
   PetscCall(nodes_.maximum(beyond));
+  PetscCall(nodes_.maximum(surface));
+  at_surface_.assign(surface.begin(), surface.end());
   pressed_.assign(nodes_.count(), none);
   may_close_.assign(nodes_.count(), 0), fixed_.assign(nodes_.count(), 0), open_.assign(nodes_.count(), 0);
   for (int i = 0; i < nodes_.count(); ++i)

@@ -146,6 +146,7 @@ class PoreFlow {
   std::vector<double> pressure_of_point_;  ///< accepted, by point of the DMPlex; NaN where water never was
   static constexpr int atmosphere = -1, none = -2;
   std::vector<int> pressed_;        ///< of nodes: source of the pressure beyond the face, the atmosphere, or none
+  std::vector<char> at_surface_;    ///< nodes of faces without soil beyond
   std::vector<char> may_close_;     ///< 1 at seepage faces, where water leaves and no more than the supply enters
   std::vector<char> open_, fixed_;  ///< seepage nodes that have the pressure beyond; nodes whose pressure is known
   std::vector<Supply> supplies_;

@@ -265,7 +265,7 @@ PetscErrorCode QuasiStatic<dim>::advance(double share, double load_time, double 
   const auto ended = [&] { return balanced_ || stopped_ || !outcome->moving.empty(); };
   PetscCall(search(SNESLINESEARCHCP));
   const bool bare = share_ == 0;  // contact opens and closes at many nodes
-  if (!ended() && bases_.any() && bare) {
+  if (!ended() && (bare || !bases_.any())) {
     PetscCall(relaxed());
     before = outcome->iterations;
   }

@@ -24,14 +24,16 @@ using NonlinearSolver = Owned<SNES, SNESDestroy>;
 struct StepOutcome {
   bool converged = false;
   int iterations = 0;
-  double residual = 0;    ///< out-of-balance force over the size of the forces
-  double largest = 0;     ///< largest displacement of a node in the step [m]
-  bool singular = false;  ///< the linear system had no solution
-  bool fails = false;     ///< a mechanism of failure was found for the loads at the end of the path
-  bool stopped = false;   ///< somebody asked the program to stop
-  bool dry = false;       ///< pores would need a suction at which soil has no water, or water tears
-  bool shut = false;      ///< water that enters has no way out but by pressures beyond any soil
-  std::string moving;     ///< soil on bases that moves although its prop gives way: where, how much, and on what
+  double residual = 0;     ///< out-of-balance force over the size of the forces
+  double largest = 0;      ///< largest displacement of a node in the step [m]
+  bool singular = false;   ///< the linear system had no solution
+  bool fails = false;      ///< a mechanism of failure was found for the loads at the end of the path
+  bool undrained = false;  ///< that mechanism is one of soil whose pore water does not flow
+  double crawl = 0;        ///< steps became shorter than this, in which no water drains [s]; 0: they did not
+  bool stopped = false;    ///< somebody asked the program to stop
+  bool dry = false;        ///< pores would need a suction at which soil has no water, or water tears
+  bool shut = false;       ///< water that enters has no way out but by pressures beyond any soil
+  std::string moving;      ///< soil on bases that moves although its prop gives way: where, how much, and on what
   std::string
       moved_most;  ///< soil on bases in the last of iterations that were lost, which may move for no other reason
 };

@@ -1,5 +1,6 @@
 #pragma once
 /// A simulation of one dimension: its run, stage by stage, and what a host program asks of it.
+#include "simulation/drains.h"
 #include "simulation/model.h"
 #include "simulation/run.h"
 
@@ -25,7 +26,7 @@ class Simulation final : public AnySimulation {
   std::string step_bound() const override { return run_.dynamics.step_bound().sentence(); }
   MeshReport mesh_report() const override {
     MeshReport report = run_.world.mesh.report();
-    for (const auto &more : {run_.options.mesh.remarks, regions_without_soil()})
+    for (const auto &more : {run_.options.mesh.remarks, regions_without_soil(), water_without_soil(run_.world)})
       report.remarks.insert(report.remarks.end(), more.begin(), more.end());
     return report;
   }

@@ -13,21 +13,14 @@ namespace {
 /// Faces of a boundary belong to the mesh. Soil that settles or slides away from them leaves the boundary without soil.
 void doubt_faces_of_water(const Scene &scene, const std::vector<SoilFace> &surface,
                           std::vector<std::string> &sentences) {
-  const bool moves = phase_traits(scene.phases).liquid &&
-                     std::ranges::any_of(scene.stage, [](const Stage &s) { return !is_static(s.kind) && s.pore_flow; });
-  if (!moves && std::ranges::none_of(scene.stage, [](const Stage &s) { return water_flows(s.kind); })) return;
+  if (!phase_traits(scene.phases).liquid ||
+      std::ranges::none_of(scene.stage, [](const Stage &s) { return !is_static(s.kind) && s.pore_flow; }))
+    return;
   for (int b = 0; b < static_cast<int>(scene.boundary.size()); ++b) {
     const BoundarySource &boundary = scene.boundary[b];
     if (!read_boundary(boundary.kind).fluid_face() || std::ranges::count(boundary.group, std::string(free_surface)))
       continue;
-    bool touched = false, beside_air = false;
-    for (const SoilFace &face : surface)
-      if (face.water == b) touched = true, beside_air |= !face.ends_mesh;
-    if (!touched)
-      sentences.push_back("boundary." + boundary.name +
-                          " decides on the water at faces of the mesh that no soil touches at the start, and brings or "
-                          "takes none there. The surface of the soil has the group free_surface");
-    else if (beside_air && moves)
+    if (std::ranges::any_of(surface, [b](const SoilFace &face) { return face.water == b && !face.ends_mesh; }))
       sentences.push_back("boundary." + boundary.name +
                           " decides on the water at faces where the soil begins, and these stay where they are: soil "
                           "that settles or slides from them by a third of a cell has the atmosphere there instead. A "

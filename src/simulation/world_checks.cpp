@@ -7,6 +7,7 @@
 #include "physics/boundary/prescribed_directions.h"
 #include "scene/reader.h"
 #include "scene/words.h"
+#include "simulation/drains.h"
 #include "simulation/world.h"
 
 namespace talus {
@@ -225,6 +226,7 @@ void World<dim>::check_boundaries(const std::vector<Source> &sources) const {
   }
   check_one_of_two(sources);
   check_one_of_two(seepage_sources);
+  check_drains<dim>(mesh, scene);
 }
 
 /// What the functions of place made of a body's particles. Collective.

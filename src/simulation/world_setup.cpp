@@ -7,6 +7,7 @@
 #include "base/sum.h"
 #include "scene/place_grid.h"
 #include "scene/reader.h"
+#include "simulation/gap_walls.h"
 #include "simulation/world.h"
 #include "solvers/quasi_static/pore_flow.h"
 
@@ -22,6 +23,7 @@ World<dim>::World(MPI_Comm world, const Scene &of, DM plex, const std::string &m
   find_strengths();
   check_boundaries(sources);
   require(conditions.setup(mesh, std::move(sources)));
+  check_gap_walls(*this);
   conditions.use_stand_ins(scene.stage.front().hold_loads);
   pressure.set_regions(bodies_of_cells(mesh, scene));
   set_pore_pressure_ratios();

@@ -3,6 +3,7 @@
 #include "simulation/changing_loads.h"
 #include "simulation/stages/static_stage.h"
 #include "solvers/quasi_static/flow_path.h"
+#include "solvers/quasi_static/undrained_strength.h"
 
 namespace talus {
 
@@ -16,14 +17,20 @@ class FlowStage : public StaticStage<dim> {
   bool water_flows() const final { return true; }
   void follow(Path &path) final {
     const Stage &stage = this->stage_;
-    const FlowPath flow{stage.duration,
-                        stage.steady,
-                        stage.load_steps,
-                        stage.softening,
-                        [this](double share) { return this->load_at(share); },
-                        [this](double share) { this->done(share); },
-                        events()};
     Statics<dim> &statics = this->run_.statics;
+    FlowPath flow{stage.duration,
+                  stage.steady,
+                  stage.load_steps,
+                  stage.softening,
+                  [this](double share) { return this->load_at(share); },
+                  [this](double share) { this->done(share); },
+                  events(),
+                  {}};
+    if (this->soil_moves() && !statics.problem().supports().moves())
+      flow.find_failure = [&](double share, StepOutcome *outcome) {
+        return find_undrained_failure(statics.problem(), statics.flow(), this->run_.world.laws, this->load_at(share),
+                                      this->run_.clock.time, outcome);
+      };
     const FluidBooks &books = this->run_.recorder.fluids();
     const double seeped = books.seeped(), handed = books.handed(0);
     require(follow_flow(this->run_.world.comm, this->soil_moves() ? &statics.problem() : nullptr, statics.flow(),

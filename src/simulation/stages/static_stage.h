@@ -144,7 +144,10 @@ class StaticStage : public StageRunner<dim> {
     if (path_.share < 1) {
       text << (soil_moves() ? "no equilibrium beyond " : "no flow was found beyond ") << 100 * path_.share
            << " % of the " << (soil_moves() ? "loads" : "duration") << " of stage " << stage_.name << ": "
-           << (path_.last.fails  ? "a mechanism of failure was found under all of them, even with psi = phi"
+           << (path_.last.undrained ? "the soil fails before its pore water can flow"
+               : path_.last.fails   ? "a mechanism of failure was found under all of them, even with psi = phi"
+               : path_.last.crawl > 0
+                   ? "steps became as short as " + rounded(path_.last.crawl) + " s, in which no water drains"
                : path_.last.dry  ? "more water is drawn from the soil than it can give: suction passed 1 GPa, at which "
                                    "soil is dry (Fredlund & Xing 1994), or the stiffness of the water"
                : path_.last.shut ? "water that enters has no way out: pore pressure passed 1 GPa"
@@ -157,7 +160,7 @@ class StaticStage : public StageRunner<dim> {
       else if (!water_flows())
         text << ", and the displacement ran away";
       text << ")";
-      if (water_flows() && !path_.last.dry && !path_.last.shut)
+      if (water_flows() && !path_.last.fails && !path_.last.dry && !path_.last.shut)
         text << "; a larger quasi_static.step_error or tolerance, a smaller smallest_step, or a load that comes in the "
                 "course of an hour rather than at once may help";
       if (!path_.last.moving.empty()) text << "; " << path_.last.moving;

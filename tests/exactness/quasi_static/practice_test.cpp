@@ -118,6 +118,23 @@ initial_stress = "k0"
   EXPECT_LT(largest(solved, 1, [&](size_t q, int) { return solved.value("stress", q, 1) + 0.7 * total(q); }), 1e-6);
 }
 
+/// What fills a crack presses on both of its walls; a wall that is held needs no load.
+TEST(Practice, loads_both_walls_of_a_crack) {
+  const std::string text = walls +
+                           "[boundary.near]\nkind = \"traction\"\npressure = \"1e4 * (1 - y)\"\n"
+                           "[[stage]]\nkind = \"quasi_static\"\nduration = 1\n";
+  const std::vector<std::string> slot{"mesh.section=" + std::string(TALUS_SLOT), "body.soil.density=2000"};
+  try {
+    (void)solve(text, slot);
+    ADD_FAILURE();
+  } catch (const SceneError &error) {
+    EXPECT_NE(std::string(error.what()).find("the wall opposite, 0.1 m away, has no load"), std::string::npos)
+        << error.what();
+  }
+  (void)solve(text, slot + std::vector<std::string>{"boundary.far.kind=roller"});
+  (void)solve(text, slot + std::vector<std::string>{"boundary.near.group=[\"near\", \"far\"]"});
+}
+
 // ---- strength that differs from place to place ----
 
 /// What the cohesion limits [Pa]: sqrt(J2) of Drucker-Prager; else the radius of Mohr's circle in the plane, which is

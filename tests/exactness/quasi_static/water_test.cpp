@@ -104,6 +104,107 @@ TEST(Water, of_rain_falls_on_the_area_of_the_map) {
   entered({left, "gravity=[5, -8.660254037844386]", "boundary.walls.group=[\"base\", \"right\"]"}, 0.5);
 }
 
+/// A drain across the soil takes the water that comes from a pond above; below it, over a closed base, water is at
+/// rest.
+const std::string drained_block =
+    wet_block + "[boundary.pond]\ngroup = \"surface\"\nkind = \"head\"\nlevel = 1.2\n" +
+    "[[stage]]\nname = \"water\"\nkind = \"seepage\"\nsteady = true\nduration = \"1 day\"\n";
+const std::vector<std::string> with_drain{"mesh.section=" + std::string(TALUS_DRAIN), "water.table=[[0, 1.2]]",
+                                          "body.soil.region=[\"upper\", \"lower\"]"};
+
+TEST(Water, leaves_by_a_drain_inside_the_soil) {
+  constexpr double taken = 1e-5 * (1.2 - 0.4) / 0.6;  // conductivity, head and length of the way from the pond
+  for (const int dim : {2, 3})
+    for (const std::vector<std::string> &kind :
+         {std::vector<std::string>{"boundary.drain.kind=pore_pressure"},
+          {"boundary.drain.kind=head", "boundary.drain.level=0.4"},
+          {"boundary.drain.kind=flux", "boundary.drain.inflow=-6.6666666667e-6"}}) {
+      const Solved solved = solve(
+          drained_block, with_drain + kind +
+                             (dim == 3 ? in_3d + std::vector<std::string>{"boundary.ends.group=[\"front\", \"back\"]",
+                                                                          "boundary.ends.kind=roller"}
+                                       : std::vector<std::string>{}));
+      EXPECT_NEAR(solved.history.column("drain_inflow_m3_s").back(), -taken, 1e-5 * taken) << dim << kind[0];
+      EXPECT_LT(largest(solved, 1,
+                        [&](size_t p, int) {
+                          const double y = solved.value("position", p, 1);
+                          const double exact = y > 0.4 ? 2e3 * (y - 0.4) / 0.6 : 1e4 * (0.4 - y);
+                          return (solved.value("pore_pressure", p) - exact) / 1e4;
+                        }),
+                1e-5)
+          << dim << kind[0];
+    }
+}
+
+/// Motion knows no drains and seepage no walls there, and a face on which a stage puts soil is the ground alone.
+TEST(Water, has_no_other_boundaries_inside_the_soil) {
+  const auto complaint = [&](const std::vector<std::string> &keys) {
+    try {
+      (void)solve(drained_block, with_drain + keys);
+    } catch (const SceneError &error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string moves = "stage.0.kind=dynamic", inside = "boundary.drain.group must lie";
+  EXPECT_NE(
+      complaint({"boundary.drain.kind=pore_pressure", moves, "stage.0.steady=false"}).find("lies inside the soil"),
+      std::string::npos);
+  EXPECT_NE(complaint({"boundary.drain.kind=impermeable"}).find("lies inside the soil"), std::string::npos);
+  EXPECT_NE(complaint({"boundary.drain.kind=rainfall"}).find("lies inside the soil"), std::string::npos);
+}
+
+/// Half of a strip of 4 m on clay whose undrained strength grows with depth, loaded within an hour.
+const std::string loaded_clay = R"(
+phases = "saturated"
+gravity = 9.81
+[mesh]
+size = 1
+[body.clay]
+region = "clay"
+porosity = 0.5
+grain_density = 2700
+hydraulic_conductivity = "1e-9 m/s"
+law = "mohr_coulomb"
+young_modulus = "10 MPa"
+poisson_ratio = 0.33
+cohesion = "5 kPa"
+friction_angle = 25
+[water]
+table = [[0, 6], [12, 6]]
+[boundary.base]
+kind = "fixed"
+[boundary.sides]
+group = ["left", "right"]
+kind = "roller"
+[boundary.strip]
+kind = "traction"
+[[stage]]
+kind = "quasi_static"
+duration = 1
+initial_stress = "k0"
+[[stage]]
+name = "fill"
+kind = "consolidation"
+duration = 3600
+)";
+const std::vector<std::string> strip{"mesh.section=" + std::string(TALUS_STRIP)};
+
+/// A load that the clay bears is borne, and one of twice its undrained limit ends the stage in few steps.
+TEST(Water, of_clay_that_fails_undrained_ends_its_consolidation) {
+  const Solved stands =
+      solve(loaded_clay, strip + std::vector<std::string>{"boundary.strip.pressure=[[1, 0], [3601, 20e3]]"});
+  EXPECT_LT(stands.history.column("time_s").size(), 40u);
+  try {
+    (void)solve(loaded_clay, strip + std::vector<std::string>{"boundary.strip.pressure=[[1, 0], [3601, 80e3]]"});
+    ADD_FAILURE();
+  } catch (const RunError &error) {
+    const std::string said = error.what();
+    EXPECT_NE(said.find("of the loads of stage fill: the soil fails before its pore water can flow"), std::string::npos)
+        << said;
+  }
+}
+
 /// A flux that jumps at an edge of the mesh, or in the middle of one, brings what its function says.
 TEST(Water, enters_on_the_side_of_a_jump_where_it_is_pumped) {
   const std::string text = wet_block +

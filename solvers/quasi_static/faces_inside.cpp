@@ -1,0 +1,23 @@
+#include "solvers/quasi_static/faces_inside.h"
+
+#include <algorithm>
+
+namespace talus {
+
+template <int dim>
+FacesInside<dim>::FacesInside(const BackgroundMesh<dim> &mesh, const Scene &scene)
+    : mesh_(mesh), lasting_(mesh.cell_count(), 0) {
+  for (const BodySource &body : scene.body) {
+    const bool lasts = std::ranges::none_of(scene.stage, [&](const Stage &stage) {
+      return std::ranges::count(stage.add, body.name) || std::ranges::count(stage.remove, body.name);
+    });
+    for (const std::string &region : body.region)
+      for (const int cell : mesh.region(region)) lasting_[cell] = lasts;
+  }
+  lasting_across_ = mesh.across(lasting_);
+}
+
+template class FacesInside<2>;
+template class FacesInside<3>;
+
+}  // namespace talus

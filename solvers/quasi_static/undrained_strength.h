@@ -1,0 +1,25 @@
+#pragma once
+/// Strength of soil whose pore water does not flow while it fails, docs/theory/finite_elements.md section 5.2.
+#include "solvers/quasi_static/strength_reduction.h"
+#include "solvers/quasi_static/trial_strength.h"
+
+namespace talus {
+
+/// Strength of the Gauss points of each body, as trials divide it: c = s_u and phi = 0 where pores are full, and the
+/// soil's own c and phi elsewhere, with psi = phi. None where the law has no such strength. `laws` are those of the
+/// bodies.
+template <int dim>
+std::vector<std::vector<FrictionalPoint>> undrained_strength(const SoilElements<dim> &soil, const PoreFlow<dim> &flow,
+                                                             const std::vector<Law> &laws);
+
+/// Gives the points of a body a strength with psi = phi in place of that of their law.
+template <int dim>
+void put_strength(const std::vector<FrictionalPoint> &strength, GaussPoints<dim> &points);
+
+/// Says in `outcome` whether soil in its present state whose pore water does not flow fails under the loads of
+/// `load_time`. The problem keeps its state. Supports must not move. Collective.
+template <int dim>
+PetscErrorCode find_undrained_failure(QuasiStatic<dim> &problem, PoreFlow<dim> &flow, const std::vector<Law> &laws,
+                                      double load_time, double time, StepOutcome *outcome);
+
+}  // namespace talus
