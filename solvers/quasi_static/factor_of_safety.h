@@ -31,8 +31,9 @@ enum class TrialFlow {
   own,    ///< with its own dilation angle, psi < phi
   davis,  ///< psi = phi and the strength of a plane on which it slips with its own psi (Davis 1968): lower estimate
   associated,  ///< psi = phi: upper bound (Radenkovic 1961)
+  undrained,   ///< no pore water flows, so that volumes stay: s_u of the stress before, section 5.2
 };
-constexpr TrialFlow all_flows[] = {TrialFlow::own, TrialFlow::davis, TrialFlow::associated};
+constexpr TrialFlow all_flows[] = {TrialFlow::own, TrialFlow::davis, TrialFlow::associated, TrialFlow::undrained};
 inline const char *name_of(TrialFlow flow) {
   switch (flow) {
     case TrialFlow::own:
@@ -41,6 +42,8 @@ inline const char *name_of(TrialFlow flow) {
       return "davis";
     case TrialFlow::associated:
       return "associated";
+    case TrialFlow::undrained:
+      return "undrained";
   }
   return "";
 }
@@ -84,7 +87,9 @@ struct Mechanism : FactorBracket {
 
 /// The critical mechanism, with the least factor, and those that were searched for besides.
 struct FactorOfSafety : Mechanism {
-  TrialFlow flow = TrialFlow::associated;  ///< of the factor itself: `own` where some soil has psi < phi
+  /// Of the factor itself: `own` where some soil has psi < phi, and `undrained` where pore water moves and the factor
+  /// without flow is the lower one.
+  TrialFlow flow = TrialFlow::associated;
   /// Of soil with psi < phi that weakens from great strength, where it is less than 1 though the stages found an
   /// equilibrium with psi = phi; else empty.
   FactorBracket weakened;
@@ -92,5 +97,20 @@ struct FactorOfSafety : Mechanism {
   std::vector<std::string> lost_stages;  ///< stages before it that found no equilibrium
   std::vector<StrengthTrial> trials;
 };
+
+/// The flow of soil that fails while its pore pressure is held.
+inline TrialFlow drained_flow(const Mechanism &m) {
+  return m.by_flow.contains(TrialFlow::own) ? TrialFlow::own : TrialFlow::associated;
+}
+/// What is said of the pore water, before the number of a factor; empty where it does not move.
+inline std::string about_water(const Mechanism &m, TrialFlow flow) {
+  if (!m.by_flow.contains(TrialFlow::undrained)) return "";
+  return flow == TrialFlow::undrained ? ", no flow during failure (undrained)"
+                                      : ", with the pore pressure of the stage held";
+}
+/// The flow that the factor is not of, where pore water moves.
+inline TrialFlow other_flow(const Mechanism &m, TrialFlow flow) {
+  return flow == TrialFlow::undrained ? drained_flow(m) : TrialFlow::undrained;
+}
 
 }  // namespace talus

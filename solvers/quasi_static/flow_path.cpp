@@ -18,10 +18,12 @@ class FailureWatch {
     PetscFunctionBeginUser;
     if (!path_.find_failure) PetscFunctionReturn(0);
     failed_ = converged ? 0 : failed_ + 1;
-    if (failed_ == doubtful || dt < ask_below_) {
-      ask_below_ = std::min(ask_below_, dt) * small;
-      PetscCall(path_.find_failure(std::min(1., share + drainage_ / path_.duration), outcome));
-      if (outcome->fails || outcome->stopped) PetscFunctionReturn(0);
+    if (failed_ >= doubtful || dt < ask_below_) {
+      const double least = small * path_.duration, ahead = std::min(drainage_, std::max(dt, least));
+      PetscCall(path_.find_failure(std::min(1., share + ahead / path_.duration), outcome));
+      if (outcome->stopped || (outcome->fails && dt <= least)) PetscFunctionReturn(0);
+      if (!outcome->fails) failed_ = 0, ask_below_ = small * std::min(ask_below_, dt);
+      outcome->fails = outcome->undrained = false;  // it may bear the loads of a shorter step
     }
     if (dt > small * std::min(longest_, drainage_)) tries_ = 0, first_ = share;
     shortest_ = tries_++ == 0 ? dt : std::min(shortest_, dt);

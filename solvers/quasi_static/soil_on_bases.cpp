@@ -1,5 +1,5 @@
-// Equilibrium of soil on bases with friction, where the search for the smallest residual fails,
-// docs/theory/finite_elements.md section 2.1.
+// Equilibrium where Newton's iterations fail, of soil on bases with friction above all, docs/theory/finite_elements.md
+// sections 2.1 and 3.
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -10,9 +10,9 @@
 
 namespace talus {
 
-/// Newton's iterations of soil on bases, with full steps, against a prop of elastic stiffness that works on the step of
-/// an iteration only: where contact opens, nothing else may hold a corner of the soil. The prop becomes softer as the
-/// forces out of balance become smaller, and stiffer where they become larger than those at the start.
+/// Newton's iterations with full steps, against a prop of elastic stiffness that works on the step of an iteration
+/// only: where contact opens, nothing else may hold a corner of the soil. The prop becomes softer as the forces out of
+/// balance become smaller, and stiffer where they become larger than those at the start.
 template <int dim>
 PetscErrorCode QuasiStatic<dim>::relax(int *iterations, double *unbalanced, Way *way) {
   constexpr double first_prop = 0.1, stiffest = 1e6;  // of the elastic stiffness
@@ -121,12 +121,12 @@ PetscErrorCode QuasiStatic<dim>::find_moving(::Vec direction, const char *how) {
        << " around (";
   text.precision(6);
   for (int d = 0; d < dim; ++d) text << (d ? ", " : "") << sums[5 + d] / sums[0];
-  text << ") m, ";
+  text << ") m";
   text.precision(2);
-  if (sums[2] == 0)
-    text << "away from all bases";
-  else
-    text << "with the base under them open over " << 100 * sums[3] / sums[2] << " % of its area and slipping over "
+  if (bases_.any() && sums[2] == 0)
+    text << ", away from all bases";
+  else if (bases_.any())
+    text << ", with the base under them open over " << 100 * sums[3] / sums[2] << " % of its area and slipping over "
          << 100 * sums[4] / sums[2] << " %";
   moving_where_ = text.str();
   PetscFunctionReturn(0);
@@ -139,7 +139,7 @@ PetscErrorCode QuasiStatic<dim>::leave_out_hanging(bool *found) {
   LeftOut<dim> more;
   PetscFunctionBeginUser;
   *found = false;
-  if (share_ != 0) PetscFunctionReturn(0);
+  if (share_ != 0 || !bases_.any()) PetscFunctionReturn(0);
   PetscCall(hanging_pieces(soil_, moving_, &hanging, &more));
   if (more.pieces == 0 || left_out_.share + more.share > most_left_out) PetscFunctionReturn(0);
   *found = true;

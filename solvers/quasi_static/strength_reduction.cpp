@@ -7,6 +7,7 @@
 #include "solvers/quasi_static/bracket.h"
 #include "solvers/quasi_static/limit_state.h"
 #include "solvers/quasi_static/trial_strength.h"
+#include "solvers/quasi_static/undrained_strength.h"
 
 namespace talus {
 
@@ -204,17 +205,26 @@ class MechanismSearch {
  public:
   MechanismSearch(QuasiStatic<dim> &problem, TrialStrength<dim> &strength, const ReductionSettings<dim> &settings,
                   FactorOfSafety *result)
-      : problem_(problem), strength_(strength), settings_(settings), result_(*result), limit_(problem) {}
+      : problem_(problem),
+        strength_(strength),
+        settings_(settings),
+        result_(*result),
+        limit_(problem),
+        undrained_limit_(problem),
+        drained_(result->flow) {}
 
   PetscErrorCode run(bool *interrupted) {
     constexpr int most_searches = 20;
     PetscFunctionBeginUser;
     PetscCall(limit_.setup(settings_.load_time, settings_.time));
+    if (settings_.flow) PetscCall(undrained_limit_.setup(settings_.load_time, settings_.time));
     State shown;  // the critical mechanism
     double first = 1;
     for (int search = 1; search <= most_searches; ++search) {
       std::map<TrialFlow, FactorBracket> by_flow;
+      const State begin = problem_.save();
       PetscCall(bracket_each_flow(search, first, &by_flow, interrupted));
+      if (settings_.flow && !*interrupted) PetscCall(bracket_undrained(search, first, begin, &by_flow, interrupted));
       if (*interrupted) PetscFunctionReturn(0);
       const FactorBracket &bracket = by_flow.at(result_.flow);
       if (bracket.lower == 0 || bracket.upper == 0) {
@@ -222,7 +232,8 @@ class MechanismSearch {
         break;
       }
       const State stable = problem_.save();
-      PetscCall(limit_.move_along(settings_.shown_displacement));
+      LimitState<dim> &limit = result_.flow == TrialFlow::undrained ? undrained_limit_ : limit_;
+      PetscCall(limit.move_along(settings_.shown_displacement));
       if (search == 1) shown = problem_.save();
       std::vector<Mechanism> fresh;
       bool grown;
@@ -247,7 +258,28 @@ class MechanismSearch {
  private:
   using State = typename QuasiStatic<dim>::State;
   Reduction<dim> reduction(TrialFlow flow, int search) {
-    return {problem_, strength_, settings_, flow, search, limit_, result_.trials};
+    LimitState<dim> &limit = flow == TrialFlow::undrained ? undrained_limit_ : limit_;
+    return {problem_, strength_, settings_, flow, search, limit, result_.trials};
+  }
+
+  /// The factor without flow, from `begin` on; the first search takes it for the result if it is the lower one. Leaves
+  /// the problem in the state of the result's flow.
+  PetscErrorCode bracket_undrained(int search, double first, const State &begin,
+                                   std::map<TrialFlow, FactorBracket> *by_flow, bool *interrupted) {
+    PetscFunctionBeginUser;
+    const State drained = problem_.save();
+    const FactorBracket &held = by_flow->at(drained_);
+    problem_.restore(begin);
+    FactorBracket undrained;
+    PetscCall(reduction(TrialFlow::undrained, search).bracket(first, 0, &undrained, interrupted));
+    if (*interrupted) PetscFunctionReturn(0);
+    if (search == 1) {
+      const bool found = undrained.lower > 0 && undrained.upper > 0, never = held.lower > 0 && held.upper == 0;
+      if (found && (never || undrained.value() < held.value())) result_.flow = TrialFlow::undrained;
+    }
+    (*by_flow)[TrialFlow::undrained] = undrained;
+    if (result_.flow != TrialFlow::undrained) problem_.restore(drained);
+    PetscFunctionReturn(0);
   }
 
   /// The factor by the flow of the result and, where this is the soil's own, by those of its bounds. Leaves the problem
@@ -259,7 +291,7 @@ class MechanismSearch {
     const State begin = problem_.save();
     FactorBracket &upper = (*by_flow)[TrialFlow::associated];
     PetscCall(reduction(TrialFlow::associated, search).bracket(first, 0, &upper, interrupted));
-    if (*interrupted || result_.flow == TrialFlow::associated) PetscFunctionReturn(0);
+    if (*interrupted || drained_ == TrialFlow::associated) PetscFunctionReturn(0);
     problem_.restore(begin);
     FactorBracket &lower = (*by_flow)[TrialFlow::davis];
     PetscCall(reduction(TrialFlow::davis, search)
@@ -346,7 +378,8 @@ class MechanismSearch {
   TrialStrength<dim> &strength_;
   const ReductionSettings<dim> &settings_;
   FactorOfSafety &result_;
-  LimitState<dim> limit_;
+  LimitState<dim> limit_, undrained_limit_;
+  TrialFlow drained_;  ///< of the factor with pore pressure held
   int count_ = 0;
   std::vector<CellSet> moved_, held_;  ///< by each mechanism with its shoulders, and the soil held for it
 };
@@ -364,6 +397,7 @@ PetscErrorCode reduce_strength(QuasiStatic<dim> &problem, const std::vector<Law>
   problem.soil().reset_displacement();
   for (size_t b = 0; b < history.size(); ++b) problem.soil().points()[b].history = history[b];
   TrialStrength<dim> strength(problem.soil(), problem.bases(), laws);
+  if (settings.flow) strength.take_undrained(undrained_strength(problem.soil(), *settings.flow, laws));
   for (size_t b = 0; b < settings.kept.size(); ++b)
     if (settings.kept[b]) strength.keep(b);
   if (settings.divided) settings.tell_confined(strength.confine(settings.divided));

@@ -41,12 +41,13 @@ PetscErrorCode settle_propped(QuasiStatic<dim> &problem, const std::vector<Law> 
 /// What a strength reduction needs of its surroundings.
 template <int dim>
 struct ReductionSettings {
-  double load_time = 0, time = 0;  ///< of the loads and of prescribed motions [s]
-  std::vector<char> kept;          ///< [body] its strength is not divided; empty: all are
-  double shown_displacement = 0;   ///< largest displacement to which the mechanism is scaled at the end [m]
-  int mechanisms = 1;              ///< that are searched for
-  bool stands = true;              ///< the stages before ended in equilibrium
-  bool by_own_flow = true;         ///< and soil moved there with its own dilation, not with psi = phi
+  double load_time = 0, time = 0;       ///< of the loads and of prescribed motions [s]
+  std::vector<char> kept;               ///< [body] its strength is not divided; empty: all are
+  double shown_displacement = 0;        ///< largest displacement to which the mechanism is scaled at the end [m]
+  int mechanisms = 1;                   ///< that are searched for
+  bool stands = true;                   ///< the stages before ended in equilibrium
+  bool by_own_flow = true;              ///< and soil moved there with its own dilation, not with psi = phi
+  const PoreFlow<dim> *flow = nullptr;  ///< of pore water that moves, for a factor without flow too; null: none does
   /// Is strength divided at this place, in an element of this size [m]? Empty: everywhere.
   std::function<bool(const Vec<dim> &, double)> divided;
   std::function<void(double share)> tell_confined;  ///< before the trials, if `divided`: in which share of the soil
@@ -56,7 +57,8 @@ struct ReductionSettings {
 };
 
 /// Brackets the factor from the present state of the problem by equilibria and mechanisms, until the bracket is
-/// narrower than `bracket_width` of the factor; if some soil has psi < phi also by the flows that bound it. Further
+/// narrower than `bracket_width` of the factor; if some soil has psi < phi also by the flows that bound it, and where
+/// pore water moves also without flow: the lower one is the factor. Further
 /// mechanisms are searched for with the soil of those before held at its strength, finite_elements.md section 5.1;
 /// there may be fewer than asked for. The problem is left in the state of the largest factor that has an equilibrium,
 /// moved along the critical mechanism so far that it shows. A bracket may be open on one side, see bracket.h.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/quasi_static/undrained_strength.h"
+
 namespace talus {
 namespace {
 
@@ -123,18 +125,30 @@ PetscErrorCode TrialStrength<dim>::hold(const CellSet &cells, double divisor) {
 }
 
 template <int dim>
+void TrialStrength<dim>::take_undrained(const std::vector<std::vector<FrictionalPoint>> &strength) {
+  for (size_t b = 0; b < bodies_.size(); ++b) bodies_[b].undrained = strength[b];
+}
+
+template <int dim>
 void TrialStrength<dim>::set(double factor, TrialFlow flow) {
   bases_.set_trial(factor);
   for (size_t b = 0; b < bodies_.size(); ++b) {
     GaussPoints<dim> &p = soil_.points()[b];
     const OfBody &body = bodies_[b];
+    const auto divisor = [&](int q) { return body.divisor[q] > 0 ? body.divisor[q] : factor; };
+    if (flow == TrialFlow::undrained) {
+      std::vector<FrictionalPoint> divided;
+      for (int q = 0; q < static_cast<int>(body.undrained.size()); ++q)
+        divided.push_back(strength_of_trial(body.undrained[q], divisor(q), flow));
+      put_strength(divided, p);
+      continue;
+    }
     p.law = law_of_trial(laws_[b], body.psi, body.kept ? 1 : factor, flow);
     if_frictional(laws_[b], [&](const auto &law) {
       const auto share = [](double part, double whole) { return whole > 0 ? part / whole : 1; };
       p.cohesion_share.resize(p.count()), p.friction_share.resize(p.count());
       for (int q = 0; q < p.count(); ++q) {
-        const FrictionalPoint now =
-            strength_of_trial(body.own[q], body.divisor[q] > 0 ? body.divisor[q] : factor, flow);
+        const FrictionalPoint now = strength_of_trial(body.own[q], divisor(q), flow);
         p.cohesion_share[q] = share(now.c, law.cohesion), p.friction_share[q] = share(now.phi, law.friction_angle);
       }
     });

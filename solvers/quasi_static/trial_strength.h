@@ -39,15 +39,18 @@ class TrialStrength {
   /// Strength of these cells, and of the bases under them, is divided by `divisor` in all trials from now on.
   /// Collective.
   PetscErrorCode hold(const CellSet &cells, double divisor);
+  /// The strength of each body's points that `undrained` trials divide, see undrained_strength.h.
+  void take_undrained(const std::vector<std::vector<FrictionalPoint>> &strength);
   void set(double factor, TrialFlow flow);
 
  private:
   struct OfBody {
-    std::vector<FrictionalPoint> own;  ///< of points; none where the law has no such strength
-    std::vector<double> divisor;       ///< of points; 0: that of the trial
-    double psi = 0;                    ///< mean of its points, by volume [rad]
-    bool kept = false;                 ///< no trial divides its strength
-    Law law;                           ///< with which the points came, and their shares
+    std::vector<FrictionalPoint> own;        ///< of points; none where the law has no such strength
+    std::vector<FrictionalPoint> undrained;  ///< likewise, without flow of the pore water
+    std::vector<double> divisor;             ///< of points; 0: that of the trial
+    double psi = 0;                          ///< mean of its points, by volume [rad]
+    bool kept = false;                       ///< no trial divides its strength
+    Law law;                                 ///< with which the points came, and their shares
     std::vector<double> cohesion_share, friction_share;
   };
   SoilElements<dim> &soil_;

@@ -28,7 +28,7 @@ void on_signal(int) {
 std::string to_json(const FactorBracket &bracket) {
   return json::Object()
       .add("decided", bracket.decided ? "true" : "false")
-      .add("value", bracket.decided ? json::number(bracket.value()) : "null")
+      .add("value", bracket.decided && bracket.lower > 0 && bracket.upper > 0 ? json::number(bracket.value()) : "null")
       .add("equilibrium", bracket.lower)
       .add("mechanism", bracket.upper)
       .str();
@@ -105,8 +105,16 @@ std::string in_words(const FactorBracket &b) {
   return text;
 }
 
-/// What psi < phi leaves open.
-void print_bounds(const Mechanism &m) {
+/// The factor with the other assumption on the pore water, and what psi < phi leaves open.
+void print_bounds(const Mechanism &m, TrialFlow flow) {
+  if (m.by_flow.contains(TrialFlow::undrained)) {
+    const TrialFlow other = other_flow(m, flow);
+    const FactorBracket &b = m.by_flow.at(other);
+    std::printf("factor of safety%s: %s\n", about_water(m, other).c_str(),
+                b.lower == 0   ? "none, the soil does not stand"
+                : b.upper == 0 ? "none, the soil does not fail"
+                               : in_words(b).c_str());
+  }
   if (!m.by_flow.contains(TrialFlow::own)) return;
   std::printf("  with psi = phi, an upper bound, which limit equilibrium assumes: %s\n",
               in_words(m.by_flow.at(TrialFlow::associated)).c_str());
@@ -115,8 +123,9 @@ void print_bounds(const Mechanism &m) {
 }
 
 void print(const FactorOfSafety &factor) {
-  std::printf("factor of safety %s\n", in_words(factor).c_str());
-  print_bounds(factor);
+  const std::string water = about_water(factor, factor.flow);
+  std::printf("factor of safety%s %s\n", (water + (water.empty() ? "" : ":")).c_str(), in_words(factor).c_str());
+  print_bounds(factor, factor.flow);
   if (factor.weakened.upper > 0)
     std::printf("  of soil that weakens from great strength, in place of the stress of the stages: %s\n",
                 in_words(factor.weakened).c_str());
@@ -124,7 +133,7 @@ void print(const FactorOfSafety &factor) {
     const Mechanism &m = factor.further[k];
     std::printf("mechanism %zu, from x = %.4g to %.4g m, which moves %.3g %% of the soil of mechanism 1: %s\n", k + 2,
                 m.low[0], m.high[0], 100 * m.of_critical, in_words(m).c_str());
-    print_bounds(m);
+    print_bounds(m, factor.flow);
   }
 }
 

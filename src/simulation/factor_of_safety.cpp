@@ -134,9 +134,10 @@ constexpr double too_far = 0.2;  ///< displacement over the height of the soil; 
 /// nothing to iterate.
 std::string trial_in_words(const StrengthTrial &t, double height) {
   std::string text = "strength divided by " + rounded(t.factor) +
-                     (t.flow == TrialFlow::associated ? ""
-                      : t.flow == TrialFlow::own      ? ", own psi"
-                                                      : ", strength of Davis") +
+                     (t.flow == TrialFlow::associated  ? ""
+                      : t.flow == TrialFlow::own       ? ", own psi"
+                      : t.flow == TrialFlow::undrained ? ", no flow"
+                                                       : ", strength of Davis") +
                      ": " + name_of(t.outcome);
   const bool at_once = t.outcome == TrialOutcome::equilibrium && t.iterations == 0 && t.steps == 0;
   text += at_once ? " at once, since the state that the trials before have led to bears it; "
@@ -182,6 +183,15 @@ std::string why_open(const FactorBracket &b, bool confined) {
   return "the trials found " + found +
          ": the iterations of the others led nowhere, and there is no factor of safety; factor_of_safety.csv lists "
          "them. Take quasi_static.linear_solver = \"direct\" or another mesh";
+}
+
+/// The factor with the other assumption on the pore water; empty where it does not move.
+std::string other_water_in_words(const Mechanism &m, TrialFlow flow) {
+  if (!m.by_flow.contains(TrialFlow::undrained)) return "";
+  const TrialFlow other = other_flow(m, flow);
+  const FactorBracket &b = m.by_flow.at(other);
+  return "the factor" + about_water(m, other) + ": " +
+         (b.lower > 0 && b.upper > 0 ? bracket_in_words(b) : why_open(b, false));
 }
 
 /// Tables of the trials, of their load-displacement curves, and of the slip surfaces that were found.
@@ -253,6 +263,7 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   bool stopped = false;
   const SearchRegion region(run_.scene.factor_of_safety);
   ReductionSettings<dim> settings;
+  if (world.phases.liquid) settings.flow = &run_.statics.flow();
   settings.stands = run_.statics.lost_stages.empty(), settings.by_own_flow = settings.stands && !run_.statics.dilated;
   settings.load_time = run_.clock.load_time, settings.time = run_.clock.time;
   settings.shown_displacement = 0.01 * extent, settings.mechanisms = run_.scene.factor_of_safety.mechanisms;
@@ -285,12 +296,17 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   const auto doubt = [&](const Mechanism &m) {
     if (const std::string sentence = too_few_cells(world, m); !sentence.empty()) run_.recorder.note(sentence);
   };
-  run_.recorder.note("factor of safety " + bracket_in_words(result) + "; the mechanism " +
-                     motion_in_words(result, dim));
+  const auto named = [&](const Mechanism &m) {
+    const std::string water = about_water(m, result.flow);
+    return "factor of safety" + water + (water.empty() ? " " : ": ") + bracket_in_words(m);
+  };
+  run_.recorder.note(named(result) + "; the mechanism " + motion_in_words(result, dim));
   tables.add(result);
   doubt(result);
-  if (result.flow == TrialFlow::own)
-    run_.recorder.note("this is the factor of soil with its own psi < phi; " + bounds_in_words(result));
+  if (const std::string other = other_water_in_words(result, result.flow); !other.empty()) run_.recorder.note(other);
+  if (result.by_flow.contains(TrialFlow::own))
+    run_.recorder.note(std::string(result.flow == TrialFlow::own ? "this" : "that") +
+                       " is the factor of soil with its own psi < phi; " + bounds_in_words(result));
   if (result.weakened.upper > 0)
     run_.recorder.note(
         "it begins with the stress that the stages found with psi = phi; if this soil weakens from great "
@@ -299,8 +315,9 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
         ": whether it stands with its own strength depends on how it came to its stress");
   for (size_t k = 0; k < result.further.size(); ++k) {
     const Mechanism &m = result.further[k];
-    run_.recorder.note("mechanism " + std::to_string(k + 2) + ": factor of safety " + bracket_in_words(m) +
-                       (result.flow == TrialFlow::own ? ", " + bounds_in_words(m) : "") + "; it " +
+    const std::string other = other_water_in_words(m, result.flow);
+    run_.recorder.note("mechanism " + std::to_string(k + 2) + ": " + named(m) + (other.empty() ? "" : "; " + other) +
+                       (m.by_flow.contains(TrialFlow::own) ? ", " + bounds_in_words(m) : "") + "; it " +
                        motion_in_words(m, dim) + ", and " + rounded(100 * m.of_critical) +
                        " % of the soil of mechanism 1");
     tables.add(m);

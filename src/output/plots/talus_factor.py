@@ -13,7 +13,8 @@ BRIGHT = 0.97  # share of the soil that shears less than the end of the colour s
 ARROWS = 22  # squares over the longer side of the soil, with an arrow each
 LONGEST = 1.3  # length of an arrow over the side of its square
 TOO_FAR = 0.2  # displacement over the height of the soil, beyond which it has no meaning, as next to a mechanism: the balance of forces alone counts; also in factor_of_safety.cpp
-FLOWS = (("own", style.LINES[0], "psi < phi"), ("associated", style.LINES[1], "psi = phi"), ("davis", style.LINES[2], "strength of Davis"))
+FLOWS = (("own", style.LINES[0], "psi < phi"), ("associated", style.LINES[1], "psi = phi"), ("davis", style.LINES[2], "strength of Davis"), ("undrained", style.LINES[3], "no flow of pore water"))
+WATER = {True: "no flow during failure (undrained)", False: "with the pore pressure of the stage held"}
 MOVES = 0.1  # of the largest displacement: less has no arrow
 WIDTH, BESIDE, AROUND = 9.0, 1.9, 1.5  # of the picture, left and right of the soil, above and below it [inch]
 
@@ -31,15 +32,26 @@ def short(bracket):
 
 def in_words(bracket):
     """'1.234 (equilibrium at 1.231, mechanism at 1.237)', or what lies between the two."""
+    if bracket["equilibrium"] == 0 or bracket["mechanism"] == 0:
+        return "none, the soil does not " + ("fail" if bracket["mechanism"] == 0 else "stand")
     if not bracket["decided"]:
         return f"between {bracket['equilibrium']:.4g} (equilibrium) and {bracket['mechanism']:.4g} (mechanism)"
     return f"{short(bracket)} (equilibrium at {bracket['equilibrium']:.4g}, mechanism at {bracket['mechanism']:.4g})"
 
 
+def about_water(factor):
+    """What the factor assumes of the pore water where it moves, before the number."""
+    return f", {WATER[factor['flow'] == 'undrained']}:" if "undrained" in factor["by_flow"] else ""
+
+
 def factor_lines(factor):
     """Sentences for the report: the factor, what it assumes, and what was done to the strength."""
-    lines = [f"Factor of safety {in_words(factor['factor_of_safety'])}."]
-    if factor["flow"] == "own":
+    lines = [f"Factor of safety{about_water(factor)} {in_words(factor['factor_of_safety'])}."]
+    if "undrained" in factor["by_flow"]:
+        undrained = factor["flow"] == "undrained"
+        other = "undrained" if not undrained else "own" if "own" in factor["by_flow"] else "associated"
+        lines.append(f"Factor of safety, {WATER[not undrained]}: {in_words(factor['by_flow'][other])}.")
+    if "own" in factor["by_flow"]:
         lines.append("Some soil has psi < phi, whose factor scatters with mesh and initial stress. "
                      f"Upper bound, psi = phi as limit equilibrium assumes: {in_words(factor['by_flow']['associated'])}. "
                      f"Lower estimate, strength of Davis (1968): {in_words(factor['by_flow']['davis'])}.")
@@ -67,7 +79,7 @@ def draw_factor(results, folder):
     factor = read_factor(results)
     if factor is None:
         return []
-    headline = f"Factor of safety {in_words(factor['factor_of_safety'])}"
+    headline = f"Factor of safety{about_water(factor)} {in_words(factor['factor_of_safety'])}"
     pictures = [("displacement against factor", draw_displacement(factor, headline, results.title, folder / "factor_displacement.png", height_of(results)))]
     if factor["mechanisms"][0]["slip_surface_m"] and results.snapshots[-1].position().shape[1] == 2:
         pictures.insert(0, ("mechanism and slip surface", draw_mechanism(results, factor, headline, folder / "factor_mechanism.png")))

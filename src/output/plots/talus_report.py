@@ -6,7 +6,7 @@ import pathlib
 
 import numpy as np
 
-from talus_factor import factor_lines, lost_stages, read_factor, short
+from talus_factor import about_water, factor_lines, lost_stages, read_factor, short
 from talus_histories import base_friction
 from talus_measures import flow, known
 from talus_model import draw_model
@@ -83,7 +83,7 @@ def key_results(results):
     """[(what, number, note)] that a reader wants first."""
     last = results.snapshots[-1]
     factor = read_factor(results)
-    found = doubts(results) + ([] if factor is None else [("Factor of safety", short(factor["factor_of_safety"]), ends_of(factor["factor_of_safety"]) + bounds(factor))])
+    found = doubts(results) + ([] if factor is None else [(f"Factor of safety{about_water(factor).rstrip(':')}", short(factor["factor_of_safety"]), ends_of(factor["factor_of_safety"]) + bounds(factor))])
     lost = (factor or {}).get("stages_without_equilibrium", ())
     found.append(("Particles", thousands(len(last.position())), ", ".join(results.bodies)))
     when = "at the end" if factor is None else "before the strength is reduced"

@@ -130,5 +130,29 @@ TEST(FactorOfSafety, leaves_elastic_soil_beside_other_soil_as_it_is) {
   EXPECT_EQ(std::count_if(cut.events.begin(), cut.events.end(), says), 1);
 }
 
+/// Clay loaded within an hour, whose water does not flow: the factor without flow is the lower one, and that of the
+/// same soil in total stress with s_u = c cos(phi) + s' sin(phi). The load hardly changes s' before it yields.
+TEST(FactorOfSafety, of_clay_that_does_not_drain_is_that_of_its_undrained_strength) {
+  const std::string common =
+      "gravity = 9.81\n[mesh]\nsection = \"" + std::string(TALUS_STRIP) +
+      "\"\nsize = 1\n[body.clay]\nregion = \"clay\"\nlaw = \"mohr_coulomb\"\nyoung_modulus = \"10 MPa\"\n"
+      "poisson_ratio = 0.33\n[boundary.base]\nkind = \"fixed\"\n[boundary.sides]\ngroup = [\"left\", \"right\"]\n"
+      "kind = \"roller\"\n[boundary.strip]\nkind = \"traction\"\npressure = [[1, 0], [3601, 20e3]]\n"
+      "[[stage]]\nkind = \"quasi_static\"\nduration = 1\n[[stage]]\nname = \"fill\"\nduration = 3600\n";
+  const FactorOfSafety effective =
+      reduce(common, {"phases=saturated", "body.clay.porosity=0.5", "body.clay.grain_density=2700",
+                      "body.clay.hydraulic_conductivity=1e-9", "body.clay.cohesion=5e3", "body.clay.friction_angle=25",
+                      "water.table=[[0, 6], [12, 6]]", "stage.0.initial_stress=k0", "stage.1.kind=consolidation"})
+          .factor;
+  const FactorOfSafety total =
+      reduce(common, {"body.clay.density=1850", "body.clay.friction_angle=0",
+                      "body.clay.cohesion=\"4532 + 2779 * (6 - y)\"", "stage.1.kind=quasi_static"})
+          .factor;
+  EXPECT_EQ(effective.flow, TrialFlow::undrained);
+  EXPECT_FALSE(total.by_flow.contains(TrialFlow::undrained));
+  EXPECT_NEAR(effective.value(), total.value(), 0.05 * total.value());
+  EXPECT_GT(effective.by_flow.at(TrialFlow::own).value(), 1.2 * effective.value());
+}
+
 }  // namespace
 }  // namespace talus
