@@ -156,7 +156,7 @@ def ends_of(bracket):
 
 def bounds(factor):
     """What psi < phi leaves open, in words; empty where psi = phi."""
-    if factor["flow"] != "own":
+    if "own" not in factor["by_flow"]:
         return ""
     return f"; soil with psi < phi: lower estimate {short(factor['by_flow']['davis'])} (strength of Davis), upper bound {short(factor['by_flow']['associated'])} (psi = phi)"
 

@@ -55,7 +55,7 @@ class Doubts(unittest.TestCase):
                                         per_metre=lambda unit: unit)
         came_to = {"state": "stands", "cell_m": 1.0, "largest_displacement_m": 0.01, "volume_of_slide_m3": None}
         for lost in ((), ("gravity",)):
-            factor = {"factor_of_safety": BRACKET, "flow": "associated", "stages_without_equilibrium": lost}
+            factor = {"factor_of_safety": BRACKET, "flow": "associated", "by_flow": {}, "stages_without_equilibrium": lost}
             with unittest.mock.patch("talus_report.read_factor", lambda results: factor), unittest.mock.patch("talus_report.outcome", lambda results: came_to), \
                     unittest.mock.patch("talus_report.motion_at_end", lambda last: ""), unittest.mock.patch("talus_report.largest_displacement", lambda last: 0.01), \
                     unittest.mock.patch("talus_report.flow", lambda results: None), unittest.mock.patch("talus_report.top_speed", lambda results: None):
