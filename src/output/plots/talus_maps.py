@@ -9,11 +9,7 @@ import pathlib
 import sys
 
 import numpy as np
-
-try:
-    from osgeo import gdal, ogr, osr
-except ImportError:
-    sys.exit("talus_maps: the Python module of GDAL is missing; install the package python3-gdal")
+from osgeo import gdal, ogr, osr
 
 import talus_style as style
 from talus_ground import Ground
@@ -397,8 +393,8 @@ def main():
     except ValueError as error:  # of what these results or this choice cannot give
         print(f"talus: {error}", file=sys.stderr)
         sys.exit(2)
-    except (OSError, RuntimeError) as error:
-        sys.exit(f"talus_maps: {error}")
+    except RuntimeError as error:  # of GDAL
+        sys.exit(f"talus: {error}")
     if maps.moving:
         warn(f"the soil has not come to rest: {100 * maps.moving[0]:.3g} % of what slid is faster than {SLOW:g} m/s, at up to {maps.moving[1]:.3g} m/s; outline, "
              f"run-out and angle of reach are those at {maps.moment()} and not of a final deposit, for which its last stage takes a longer duration")

@@ -6,16 +6,11 @@ import talus_interrupt  # noqa: F401  before all that takes time
 
 import argparse
 import pathlib
-import sys
 import textwrap
 
-try:
-    import matplotlib.pyplot as plt
-    import numpy as np
-    import talus_style as style
-except ImportError as error:
-    sys.exit(f"talus_model: pictures need Python with NumPy and Matplotlib (Debian: python3-matplotlib): {error}")
-
+import matplotlib.pyplot as plt
+import numpy as np
+import talus_style as style
 from matplotlib.collections import LineCollection, PolyCollection
 from talus_modelled import WATER, Model, notes, outline, stage_rows
 from talus_perspective import Views
@@ -237,10 +232,7 @@ def main():
     parser.add_argument("model", type=pathlib.Path, help="the document of the program (JSON)")
     parser.add_argument("picture", type=pathlib.Path, help="PNG file to write")
     given = parser.parse_args()
-    try:
-        draw_model(Model(given.model.read_text()), given.picture)
-    except OSError as error:
-        sys.exit(f"talus_model: {error}")
+    draw_model(Model(given.model.read_text()), given.picture)
 
 
 if __name__ == "__main__":

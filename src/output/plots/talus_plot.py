@@ -122,8 +122,8 @@ def main():
     except NoSuchField as error:
         print(f"talus: {error}", file=sys.stderr)
         return 2
-    except (OSError, ValueError) as error:
-        sys.exit(f"talus_plot: {error}")
+    except ValueError as error:
+        sys.exit(f"talus: {error}")
     return 0
 
 

@@ -12,6 +12,7 @@ Units are SI, as in the files. Stress is positive in tension, pore pressure in c
 
 import copy
 import csv
+import functools
 import difflib
 import json
 import pathlib
@@ -218,10 +219,24 @@ class Thickness:
         return thickness, "m"
 
 
+def of_file(read):
+    """A constructor that reads a file of results: whatever is wrong in the file is an OSError that names it."""
+    @functools.wraps(read)
+    def reads(self, path):
+        try:
+            read(self, path)
+        except UnicodeDecodeError as error:
+            raise OSError(f"{path} is damaged: it is no text") from error
+        except (ValueError, LookupError, TypeError) as error:
+            raise OSError(f"{path} is damaged: {error}") from error
+    return reads
+
+
 class History:
     """history.csv: `time` [rows] in s, `stage` and `step` of each row, and columns of numbers by their names. A line that is not whole is left out,
     and `cut` says so in words. Raises OSError where the file has no rows or is damaged."""
 
+    @of_file
     def __init__(self, path):
         text = pathlib.Path(path).read_text()
         lines = list(csv.reader(text.splitlines()))
@@ -232,12 +247,9 @@ class History:
         broken = len(lines) - 1 - len(rows)
         self.cut = "" if broken <= 0 else "its last line is incomplete" if broken == 1 and whole == [*range(1, len(lines) - 1)] else f"{broken} lines are incomplete"
         self.columns = {}
-        try:
-            for k, name in enumerate(header):
-                if name != "stage":
-                    self.columns[name] = np.array([float(row[k]) for row in rows])
-        except ValueError as error:
-            raise OSError(f"{path} is damaged: {error}") from error
+        for k, name in enumerate(header):
+            if name != "stage":
+                self.columns[name] = np.array([float(row[k]) for row in rows])
         if "time_s" not in self.columns:
             raise OSError(f"{path} is damaged: it has no column time_s")
         self.time = self.columns.pop("time_s")
@@ -348,19 +360,24 @@ def split_name(name):
 class Escaped:
     """escaped.csv: the particles that left the mesh, in the order of time."""
 
+    @of_file
     def __init__(self, path):
         with open(path, newline="") as file:
-            rows = list(csv.DictReader(file))
+            table = csv.DictReader(file)
+            names, rows = table.fieldnames or (), list(table)
+        if "time_s" not in names:
+            raise ValueError("it has no column time_s")
         self.body = [row["body"] for row in rows]
         self.group = [row.get("group", "") for row in rows]  # of faces by which it left; empty where these have no name
-        self.columns = {name: np.array([float(row[name]) for row in rows]) for name in (rows[0] if rows else ()) if name not in ("body", "group")}
-        self.time = self.columns.get("time_s", np.zeros(0))
+        self.columns = {name: np.array([float(row[name]) for row in rows]) for name in names if name not in ("body", "group")}
+        self.time = self.columns["time_s"]
         self.position = np.column_stack([self.columns[f"{axis}_m"] for axis in "xyz" if f"{axis}_m" in self.columns] or [self.time])
 
 
 class Line:
     """A line that was followed with the soil, line_NAME.csv: columns [times, places] by their names, `time` in s and `stage` of each time."""
 
+    @of_file
     def __init__(self, path):
         self.name = path.stem[len("line_"):]
         with open(path, newline="") as file:
@@ -399,6 +416,7 @@ class Table:
     """A table of outcomes that `talus study`, `compare` or `converge` wrote (study.csv, compare.csv, ...): columns by their names, as numbers
     [rows] where all of its entries are numbers or empty (then NaN), otherwise as text [rows]."""
 
+    @of_file
     def __init__(self, path):
         with open(path, newline="") as file:
             lines = [row for row in csv.reader(file) if row]

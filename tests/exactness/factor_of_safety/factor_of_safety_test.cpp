@@ -96,6 +96,32 @@ TEST(FactorOfSafety, leaves_named_points_with_a_stress_that_the_soil_bears) {
   for (const double of_path : dissipated) EXPECT_TRUE(std::isfinite(of_path));
 }
 
+/// Clay in a deep foundation slips as deep as the mesh lets it, which is said; a slope whose toe is on the bottom of
+/// the mesh stands on firm ground. The line through the shear band has no spikes: a point is nearer to the chord of its
+/// neighbours than half a cell.
+TEST(FactorOfSafety, says_where_the_mechanism_ends_with_the_mesh_and_traces_it_smoothly) {
+  const auto told = [](const Overrides &overrides) {
+    RunOptions options;
+    options.pictures = options.screen = false;
+    const Scene scene = read_scene(std::string(TALUS_SLOPES) + "/scene.toml", overrides);
+    const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+    const auto line = simulation->factor_of_safety().slip_surface;
+    EXPECT_GE(line.size(), 8u);
+    for (size_t k = 1; k + 1 < line.size(); ++k) {
+      const double dx = line[k + 1][0] - line[k - 1][0], dy = line[k + 1][1] - line[k - 1][1];
+      const double off = (line[k][0] - line[k - 1][0]) * dy - (line[k][1] - line[k - 1][1]) * dx;
+      EXPECT_LT(std::abs(off) / std::hypot(dx, dy), 1) << line[k][0] << ", " << line[k][1];
+    }
+    return std::ranges::any_of(simulation->events(), [](const Event &event) {
+      return event.text.find("the mechanism reaches the fixed bottom of the mesh at the group base") !=
+             std::string::npos;
+    });
+  };
+  EXPECT_TRUE(told(
+      {"mesh.size=2", "mesh.section=griffiths_lane_2.csv", "body.soil.friction_angle=0", "body.soil.cohesion=50e3"}));
+  EXPECT_FALSE(told({"mesh.size=2"}));
+}
+
 /// Soil with half of the strength has half of the factor, though it does not stand; with twice of it, twice the factor.
 TEST(FactorOfSafety, is_proportional_to_strength) {
   const Overrides flow{"body.soil.dilation_angle=20"};

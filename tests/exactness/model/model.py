@@ -290,7 +290,8 @@ class Pictures(unittest.TestCase):
         (self.folder.path / "matplotlib.py").write_text("raise ImportError('there is none')\n")
         status, said = self.check("--picture", environment={"PYTHONPATH": str(self.folder.path)})
         self.assertEqual(status, 1, said)
-        self.assertIn("pictures need Python with NumPy and Matplotlib", said)
+        self.assertIn("talus: pictures and maps need Python modules of which one cannot be loaded (there is none); install python3-numpy", said)
+        self.assertNotIn("Traceback", said)
 
     def test_and_tables_are_in_the_report(self):
         status, said = self.folder.talus("run", "block.toml", "-o", "out")

@@ -172,6 +172,23 @@ class Interrupted(unittest.TestCase):
     def test_scripts_say_one_line(self):
         self.assertEqual(self.ended(self.command, lambda script: script.send_signal(signal.SIGINT)), (130, "talus: interrupted\n"))
 
+    def test_scripts_say_errors_in_one_line(self):
+        for damaged, said in (("missing", "no results/history.csv: Is a directory"), ("text", "history.csv is damaged: it is no text"),
+                              ("module", "cannot be loaded (No module named 'h5py'); install python3-h5py")):
+            folder = self.pipe.parent / damaged
+            folder.mkdir()
+            (folder / "h5py.py").write_text("raise ModuleNotFoundError(\"No module named 'h5py'\")\n")
+            (folder / "history.csv").write_bytes(b"\xff\xfe")
+            script = ("import sys, runpy; sys.path.insert(0, sys.argv[1]); import talus_interrupt; sys.excepthook = talus_interrupt.say_error\n"
+                      + {"missing": "raise IsADirectoryError(21, 'Is a directory', 'no results/history.csv')",
+                         "text": "from talus_results import History; History(sys.argv[2] + '/history.csv')",
+                         "module": "sys.path.insert(0, sys.argv[2]); import h5py"}[damaged])
+            ended = subprocess.run([sys.executable, "-B", "-c", script, str(pathlib.Path(talus_plot.__file__).parent), str(folder)],
+                                   stderr=subprocess.PIPE, text=True)
+            self.assertEqual(ended.returncode, 1)
+            self.assertIn(said, ended.stderr)
+            self.assertRegex(ended.stderr, "^talus: [^\n]*\n$")
+
     @unittest.skipUnless(sys.platform == "linux", "other systems do not tell a process of its parent's end")
     def test_scripts_end_with_the_program(self):
         program = [sys.executable, "-c", "import subprocess, sys; subprocess.run(sys.argv[1:])", *self.command]
