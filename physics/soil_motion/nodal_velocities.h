@@ -24,7 +24,7 @@ struct NodalVelocities {
   }
 
   Field momentum;        ///< of the solid on this rank, [node], filled while particles are gathered [kg m/s]
-  Field start;           ///< v^0, what particles have in common with the nodes; particles keep the rest [m/s]
+  Field start;           ///< v^0, what the nodes received of the particles, which keep the rest [m/s]
   Field now;             ///< v [m/s]
   Field unmapped_start;  ///< (I - S) v^0, where nodes relax in each step [m/s]
   [[no_unique_address]] If<(fields > 1), Field> before_step;  ///< v at the start of a step, where fluids move [m/s]

@@ -134,6 +134,8 @@ PetscErrorCode SoilMotion<dim, Phases>::serialize(Archive &archive) {
     archive.column(grid.nodes, "velocity at the remap", velocities_.start.data() + first, sizeof(Vec<dim>));
     archive.column(grid.nodes, "velocity", velocities_.now.data() + first, sizeof(Vec<dim>));
     archive.column(grid.nodes, "unmapped velocity", velocities_.unmapped_start.data() + first, sizeof(Vec<dim>));
+    if constexpr (fields > 1)
+      archive.column(grid.nodes, "velocity before", velocities_.before_step.data() + first, sizeof(Vec<dim>));
   }
   archive.serialize("velocities", velocities_.remap_time, velocities_.own_share);
   archive.column(grid.cells, "particle volume", accepted_.particle_volume);
@@ -159,7 +161,6 @@ PetscErrorCode SoilMotion<dim, Phases>::serialize(Archive &archive) {
   if (archive.reading()) conditions_.surface_loads().begin(bodies_, grid_);
   if constexpr (Phases::liquid) {
     fluid_.serialize(archive, grid, points);
-    velocities_.before_step = velocities_.now;
     if (archive.reading())
       PetscCall(pore_conditions_.begin(grid_, filling_, fluid_.surface(), fluid_.surface_moment()));
   }
