@@ -94,7 +94,7 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double t) {
   PetscFunctionBeginUser;
   constexpr int width = dim + 2;  // mass, momentum, volume
   const int nodes = grid_.node_count(), cells = grid_.cell_count();
-  [[maybe_unused]] const double load_time = loading.time_at(t);
+  const double load_time = loading.time_at(t);
   std::vector<Vec<dim>> &start = velocities_.start, &now = velocities_.now;
   std::fill_n(nodal_.begin(), nodes * width, 0.);
   for (int c = 0; c < cells; ++c) {
@@ -123,6 +123,8 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double t) {
   conditions_.surface_loads().begin(bodies_, grid_);
   // what boundaries take from these velocities they take in the first step, as an impulse like any other
   std::copy_n(start.begin(), nodes, now.begin());
+  std::copy_n(start.begin(), nodes, velocities_.moving.begin());
+  conditions_.constrain(load_time, grid_, velocities_.moving.data(), false);
   if constexpr (Phases::liquid) {
     PetscCall(fluid_.gather(pore_frame(t, accepted_), pore_conditions_, filling_, start.data(), now.data() + nodes));
     std::copy_n(now.begin() + nodes, nodes * fluids, start.begin() + nodes);
