@@ -131,8 +131,12 @@ TEST(FactorOfSafety, leaves_elastic_soil_beside_other_soil_as_it_is) {
 }
 
 /// Clay loaded within an hour, whose water does not flow: the factor without flow is the lower one, and that of the
-/// same soil in total stress with s_u = c cos(phi) + s' sin(phi). The load hardly changes s' before it yields.
+/// same soil in total stress with s_u = c cos(phi) + s' sin(phi). The ground lets no water out, since cells of this
+/// size would drain at it. Elements of pressure keep the volume of cells and not of each point, hence 2 %.
 TEST(FactorOfSafety, of_clay_that_does_not_drain_is_that_of_its_undrained_strength) {
+  int ranks;
+  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  if (ranks > 1) return;  // once is enough
   const std::string common =
       "gravity = 9.81\n[mesh]\nsection = \"" + std::string(TALUS_STRIP) +
       "\"\nsize = 1\n[body.clay]\nregion = \"clay\"\nlaw = \"mohr_coulomb\"\nyoung_modulus = \"10 MPa\"\n"
@@ -142,7 +146,8 @@ TEST(FactorOfSafety, of_clay_that_does_not_drain_is_that_of_its_undrained_streng
   const FactorOfSafety effective =
       reduce(common, {"phases=saturated", "body.clay.porosity=0.5", "body.clay.grain_density=2700",
                       "body.clay.hydraulic_conductivity=1e-9", "body.clay.cohesion=5e3", "body.clay.friction_angle=25",
-                      "water.table=[[0, 6], [12, 6]]", "stage.0.initial_stress=k0", "stage.1.kind=consolidation"})
+                      "water.table=[[0, 6], [12, 6]]", "stage.0.initial_stress=k0", "stage.1.kind=consolidation",
+                      "boundary.cover={kind='impermeable', group=['surface', 'strip']}"})
           .factor;
   const FactorOfSafety total =
       reduce(common, {"body.clay.density=1850", "body.clay.friction_angle=0",
@@ -150,8 +155,8 @@ TEST(FactorOfSafety, of_clay_that_does_not_drain_is_that_of_its_undrained_streng
           .factor;
   EXPECT_EQ(effective.flow, TrialFlow::undrained);
   EXPECT_FALSE(total.by_flow.contains(TrialFlow::undrained));
-  EXPECT_NEAR(effective.value(), total.value(), 0.05 * total.value());
-  EXPECT_GT(effective.by_flow.at(TrialFlow::own).value(), 1.2 * effective.value());
+  EXPECT_NEAR(effective.value(), total.value(), 0.02 * total.value());
+  EXPECT_GT(effective.by_flow.at(TrialFlow::own).value(), 1.1 * effective.value());
 }
 
 }  // namespace

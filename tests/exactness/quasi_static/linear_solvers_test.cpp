@@ -100,21 +100,16 @@ TEST(QuasiStatic, linear_solver_follows_size_and_options) {
 }
 
 /// PETSc's search for a critical point says "converged" where force and step are perpendicular; here it is made to say
-/// so of any step. The search for the smallest residual, which comes second, finds the equilibrium.
+/// so of any step. The iterations against a prop, which come second, find the equilibrium.
 TEST(QuasiStatic, a_search_that_gives_up_is_no_equilibrium) {
   const std::string column =
       "gravity = 10\n" + block + "[boundary.walls]\ngroup = [\"base\", \"left\", \"right\"]\nkind = \"roller\"\n";
   const auto wanted = solve(column).column("displacement").values;
   const std::string gives_up = "-talus_snes_linesearch_atol 1e9 -talus_flow_snes_linesearch_atol 1e9";
-  {
-    const Options given(gives_up.c_str());
-    const auto found = solve(column).column("displacement").values;
-    ASSERT_EQ(found.size(), wanted.size());
-    for (size_t i = 0; i < wanted.size(); ++i) EXPECT_NEAR(found[i], wanted[i], 1e-8);  // the tolerance of Newton
-  }
-  const Options given((gives_up + " -talus_snes_linesearch_type cp").c_str());  // both times
-  const std::string said = solve(column).events.back().text;  // found in another way, without Newton's steps
-  EXPECT_NE(said.find("its load steps ended at 0 %"), std::string::npos) << said;
+  const Options given(gives_up.c_str());
+  const auto found = solve(column).column("displacement").values;
+  ASSERT_EQ(found.size(), wanted.size());
+  for (size_t i = 0; i < wanted.size(); ++i) EXPECT_NEAR(found[i], wanted[i], 1e-8);  // the tolerance of Newton
 }
 
 /// What several ranks add to one number, they add in an order of their own, and factors are not shared: the same run
