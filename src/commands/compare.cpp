@@ -41,7 +41,7 @@ std::vector<Variant> matrix(const CompareArguments &arguments, const Scene &scen
     std::vector<std::string> keys;
     for (const auto &[key, values] : series.lists) keys.push_back(key);
     if (const std::string wrong = same_keys(scene, keys); !wrong.empty())
-      throw SceneError(std::string(option) + " \"" + text + "\" must give values to different keys; it has " + wrong);
+      throw SceneError(std::string(option) + " \"" + text + "\" " + wrong);
     return series;
   };
   for (const std::string &text : arguments.series) {

@@ -14,8 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Endings of files that are read with a file of the same name: by GDAL, and by the reader of meshes.
-constexpr const char *companions[] = {".prj", ".tfw", ".wld", ".aux.xml", ".shx", ".dbf", ".cpg", ".origin.json"};
+/// Endings of files that are read with a file of the same name: by GDAL, and by the reader of meshes. Statistics that
+/// viewers leave in .aux.xml change no result.
+constexpr const char *companions[] = {".prj", ".tfw", ".wld", ".shx", ".dbf", ".cpg", ".origin.json"};
 
 /// By FNV-1a over words of 8 bytes, which finds edited files and not forged ones.
 std::string state_of(const std::string &path) {
@@ -49,8 +50,7 @@ std::set<std::string> files_of(const std::string &named) {
     return files;
   }
   files.insert(named);
-  for (const char *ending : companions)
-    files.insert({fs::path(path).replace_extension(ending).string(), named + ending});
+  for (const char *ending : companions) files.insert(fs::path(path).replace_extension(ending).string());
   return files;
 }
 

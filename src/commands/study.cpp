@@ -117,8 +117,7 @@ class Study {
       if (!v.unit.empty()) check_unit(path + ".unit", v.unit);
       variables_.push_back(v);
       keys.insert(keys.end(), v.key.begin(), v.key.end());
-      if (const std::string wrong = same_keys(base_, keys); !wrong.empty())
-        root_.complain(path + ".key", "must vary no key that varies already; there are " + wrong);
+      if (const std::string wrong = same_keys(base_, keys); !wrong.empty()) root_.complain(path + ".key", wrong);
     }
   }
 

@@ -227,8 +227,8 @@ std::string trouble_in_short(const std::vector<Trial *> &trials) {
     if (share > most) most = share, where = name_of(*trial);
   }
   return "soil left the mesh in " + std::to_string(lost) + " of " + std::to_string(done) + " runs" +
-         (lost ? ", at most " + rounded(100 * most) + " % of it (" + where + ")" : "") + "; " + std::to_string(warned) +
-         " of them have warnings";
+         (lost ? " (at most " + rounded(100 * most) + " % of it, " + where + ")" : "") + ", and " +
+         std::to_string(warned) + " have warnings";
 }
 
 }  // namespace
@@ -243,12 +243,13 @@ std::string same_keys(const Scene &scene, const std::vector<std::string> &keys) 
   for (std::size_t i = 0; i < keys.size(); ++i)
     for (std::size_t k = i + 1; k < keys.size(); ++k) {
       const std::string a = scene.root->one_path(keys[i]), b = scene.root->one_path(keys[k]);
+      const std::string ends = ": one value would replace the other";
       if (a == b)
-        return keys[i] + (keys[k] == keys[i] ? " twice" : " and " + keys[k] + ", which are the same key") +
-               ": one value would replace the other";
-      for (const auto &[outer, inner] : {std::pair{i, k}, {k, i}})
-        if ((inner == k ? b : a).starts_with((outer == i ? a : b) + "."))
-          return keys[inner] + " and the table " + keys[outer] + " in which it lies: one value would replace the other";
+        return "gives a second value to " + keys[i] + (keys[i] == keys[k] ? "" : ", which is " + keys[k] + " too") +
+               ends;
+      for (const auto &[outer, inner] : {std::pair{a, b}, {b, a}})
+        if (inner.starts_with(outer + "."))
+          return "gives a value to " + inner + " and one to the table " + outer + " in which it lies" + ends;
     }
   return "";
 }
@@ -368,8 +369,7 @@ void Trials::mark_done() {
     for (const std::string &path : paths) ++changed[path];
   }
   for (const auto &[path, runs] : changed)
-    std::fprintf(stderr, "%s has changed: %d runs that were completed before it did are repeated\n", path.c_str(),
-                 runs);
+    std::fprintf(stderr, "%s has changed; runs to repeat: %d\n", path.c_str(), runs);
 }
 
 void Trials::run() {
@@ -436,7 +436,8 @@ void Trials::run() {
     running.erase(found);
     trial.failed = !WIFEXITED(status) || (WEXITSTATUS(status) != 0 && WEXITSTATUS(status) != undecided_status);
     if (trial.failed && (interrupted || ended_from_outside(status))) {  // it is run again
-      std::fprintf(stderr, "%s %s was ended from outside\n", trial.label.c_str(), joined(trial.overrides).c_str());
+      if (!interrupted)
+        std::fprintf(stderr, "%s %s was ended from outside\n", trial.label.c_str(), joined(trial.overrides).c_str());
       ended = trial.folder;
       continue;
     }

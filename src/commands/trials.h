@@ -61,8 +61,8 @@ Scene read_wholly(const std::string &file, const std::vector<std::string> &set, 
 /// Words with a space between them.
 std::string joined(const std::vector<std::string> &words);
 
-/// What is wrong with keys of a scene that take values together: two of them are the same, or one lies in the table at
-/// another, so that one value would replace the other. Empty if nothing is.
+/// What is wrong with a list of keys of a scene that take values together, as a sentence that goes on from it: two are
+/// the same key, or one lies in the table at another. Empty if nothing is.
 std::string same_keys(const Scene &scene, const std::vector<std::string> &keys);
 
 /// Columns that the tables of all commands have of each run: `escaped_share` is the share of the soil that left the

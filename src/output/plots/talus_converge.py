@@ -217,7 +217,9 @@ def main():
         runs = list(csv.DictReader(file))
     rows, ended = [], []
     for run in runs:
-        row = {key: text for key, text in run.items() if key != "folder"} | {key: float(run[key]) for key in ("value", "wall_s", "processor_s")}
+        row = {key: text for key, text in run.items() if key != "folder"}
+        row |= {key: float(run[key]) if run[key] else None for key in ("value", "wall_s", "processor_s", "escaped_mass_kg", "escaped_share")}
+        row["warning_count"] = int(run["warning_count"])
         if not row["failure"]:
             ended.append(Results(given.folder / run["folder"]))
         rows.append(row)

@@ -74,7 +74,7 @@ def in_words(row, cell):
 def losses(rows):
     """Further columns of a table of runs, {heading: function of a row}: the soil that left the mesh and the number of warnings, where some run has any.
     `rows` have the columns that the program writes of each run."""
-    columns = {"left the mesh": lambda row: f"{100 * float(row.get('escaped_share') or 0):.3g} %", "warnings": lambda row: row.get("warning_count") or "0"}
+    columns = {"left the mesh": lambda row: f"{100 * float(row.get('escaped_share') or 0):.3g} %", "warnings": lambda row: f"{float(row.get('warning_count') or 0):g}"}
     return {heading: text for heading, text in columns.items() if any(text(row) not in ("0", "0 %") for row in rows)}
 
 

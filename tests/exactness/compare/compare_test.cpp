@@ -127,7 +127,7 @@ TEST_F(Compare, RefusesWhatItCannotRun) {
         {{"--series", "stiff: body.sand.young_modulus=1 MPa", "--series", "x: body.sand.young_modulus=stiff"},
          "the values 1 [MPa] and stiff [Pa], which cannot share an axis"},
         {{"--series", "twice: stage.0.duration=0.1; stage.fall.duration=0.2"},
-         "stage.0.duration and stage.fall.duration, which are the same key"},
+         "gives a second value to stage.0.duration, which is stage.fall.duration too"},
         {{"--series", "euler:", "--exact", "one"}, "must be a number"},
         {{"--series", "euler:", "--exact", "1", "--reference", "fem: stage.fall.kind=quasi_static"},
          "give one of them"},

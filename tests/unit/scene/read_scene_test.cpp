@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <set>
 
 #include "complaint.h"
 #include "scene/reader.h"
@@ -300,6 +301,33 @@ TEST(ReadScene, LeavesTheMeshToAHost) {
   EXPECT_EQ(parse_host_scene(rest, "host").body[0].name, "a");
   EXPECT_TRUE(contains(complaint([&] { parse_host_scene("[mesh]\nfile = 'a.msh'\n" + rest, "host"); }),
                        "host line 1: mesh has a source, but the host program brings the mesh"));
+}
+
+/// Each key that names a file says so itself: what a run reads is known before it runs.
+TEST(ReadScene, KnowsTheFilesThatItNames) {
+  const std::string named =
+      "[mesh]\nfile = 'slope.msh'\n[grids]\nwet = '/data/wet.tif'\n[start_from]\nfolder = 'results/before'\n"
+      "[body.a]\nregion = 'a'\ndensity = 2000\nlaw = 'linear_elastic'\n[[stage]]\nduration = 1\n";
+  const std::set<std::string> always{"/data/wet.tif", "folder/results/before"};
+  const auto files = [&](const std::vector<std::string> &overrides, std::set<std::string> more) {
+    more.insert(always.begin(), always.end());
+    EXPECT_EQ(parse_scene(named, "folder/scene.toml", overrides).root->files(), more);
+  };
+  files({}, {"folder/slope.msh"});
+  files({"mesh={section='../slope.csv', size=1}"}, {"slope.csv"});
+  const std::string terrain = "mesh={size=1, terrain={file='dem.asc', base=[0], layer.clay.file='clay.asc', ";
+  files({"dimension=3", "up=z", terrain + "slip_surface='slip.asc'}}"},
+        {"folder/dem.asc", "folder/clay.asc", "folder/slip.asc"});
+  files({"dimension=3", "up=z", terrain + "outline='slide.shp', depth=2}}"},
+        {"folder/dem.asc", "folder/clay.asc", "folder/slide.shp"});
+}
+
+TEST(ReadScene, HasOnePathForAKeyOfAList) {
+  const Scene scene = parse_scene(dry, "slope.toml");
+  EXPECT_EQ(scene.root->one_path("stage.creep.duration"), "stage.0.duration");
+  EXPECT_EQ(scene.root->one_path("stage.00.duration"), "stage.0.duration");
+  EXPECT_EQ(scene.root->one_path("body.sand.cohesion"), "body.sand.cohesion");
+  EXPECT_EQ(scene.root->one_path("nothing.there"), "nothing.there");
 }
 
 }  // namespace
