@@ -23,8 +23,8 @@ struct Drawing {
 bool is_drawing(const std::string &file);  ///< by the ending of its name
 
 /// Throws std::invalid_argument with file, line and what to do for files that are no drawing or no whole one
-/// (drawing_text.h), units that are no length, points out of the plane, pieces that do not join, and entities of another
-/// kind than their layer asks for.
+/// (drawing_text.h), units that are no length, points out of the plane, pieces that do not join, and entities of
+/// another kind than their layer asks for.
 Drawing read_drawing(const std::string &file);
 
 }  // namespace talus

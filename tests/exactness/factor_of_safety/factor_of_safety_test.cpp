@@ -119,7 +119,7 @@ TEST(FactorOfSafety, says_where_the_mechanism_ends_with_the_mesh_and_traces_it_s
   };
   EXPECT_TRUE(told(
       {"mesh.size=2", "mesh.section=griffiths_lane_2.csv", "body.soil.friction_angle=0", "body.soil.cohesion=50e3"}));
-  EXPECT_FALSE(told({"mesh.size=2"}));
+  EXPECT_FALSE(told({"mesh.size=3"}));
 }
 
 /// Soil with half of the strength has half of the factor, though it does not stand; with twice of it, twice the factor.
