@@ -76,7 +76,7 @@ inline double y_of(long long id) { return 0.1 * static_cast<double>(id / 20); }
 /// `count` particles dealt out to all ranks but the last (which has some only where it is the first), that sink with
 /// time.
 inline Snapshot small_snapshot(double time, long long step, long long count = 200) {
-  Snapshot s{time, step, "slide", {}, {}, {}};
+  Snapshot s{time, step, "slide", {}, {}, {}, {}};
   Column position{"position", "m", "position", 2, {}}, displacement{"displacement", "m", "displacement", 2, {}};
   Column stress{"stress", "Pa", "effective stress", 4, {}}, strain{"plastic_strain", "-", "plastic strain", 1, {}};
   for (long long id = count - 1; id >= 0; --id) {

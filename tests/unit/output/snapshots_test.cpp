@@ -478,7 +478,9 @@ TEST(Snapshots, in_parts_give_way_with_them) {
   MPI_Barrier(MPI_COMM_WORLD);
   {
     RunFile resumed = RunFile::append(MPI_COMM_WORLD, dir, small_header(), small_mesh(), 2, few_rows);
-    if (world_rank() == 0) EXPECT_EQ(parts_of(dir, "000002"), 0);
+    if (world_rank() == 0) {
+      EXPECT_EQ(parts_of(dir, "000002"), 0);
+    }
     resumed.write(small_snapshot(0.15, 2, 70));
   }
   if (world_rank() == 0) expect_snapshot(dir, "000001", 0.1), expect_snapshot(dir, "000002", 0.15, 70);
