@@ -1,9 +1,9 @@
 #pragma once
 /// Eigenvalues of a real matrix that need not be symmetric, by LAPACK. The solver of Eigen does the same, and takes the
 /// compiler ten seconds wherever it is used.
-// clang-format off: the second header needs the first
+#include <petscsys.h>  // which the next header needs
+// clang-format off
 #include <petscblaslapack.h>
-#include <petscsys.h>
 // clang-format on
 
 #include <Eigen/Core>
