@@ -223,8 +223,8 @@ class SectionModel {
   /// Ending of the group of cells at z.
   std::string part_at(double z) const {
     if (options_.cuts.empty()) return "";
-    return "_" +
-           std::to_string(std::upper_bound(options_.cuts.begin(), options_.cuts.end(), z) - options_.cuts.begin() + 1);
+    const auto part = std::upper_bound(options_.cuts.begin(), options_.cuts.end(), z) - options_.cuts.begin() + 1;
+    return std::string("_").append(std::to_string(part));
   }
 
   void name_facets() {
