@@ -26,7 +26,7 @@ struct Soil {
       *stop = static_cast<int>(tried.size()) == stop_after;
       return 0;
     };
-    EXPECT_EQ(bracket_factor(first, attempt, &result, &interrupted), 0);
+    EXPECT_EQ(bracket_factor(first, 0, attempt, &result, &interrupted), 0);
     return result;
   }
 };
@@ -93,6 +93,37 @@ TEST(Bracket, ends_when_a_trial_is_interrupted) {
   soil.bracket(1, 3);
   EXPECT_TRUE(soil.interrupted);
   EXPECT_EQ(soil.tried.size(), 3u);
+}
+
+/// Soil that fails where strength falls by more than 3 % at once, whatever its limit: small steps come to the limit,
+/// and the mechanisms of larger steps do not count.
+TEST(Climb, holds_the_limit_of_small_steps) {
+  for (const double ceiling : {0., 1.55}) {
+    double stands = 1;
+    const TryFactor attempt = [&](double factor, TrialOutcome *outcome, bool *) -> PetscErrorCode {
+      const bool bears = factor <= 1.4 && factor <= 1.03 * stands;
+      *outcome = bears ? TrialOutcome::equilibrium : TrialOutcome::mechanism;
+      if (bears) stands = std::max(stands, factor);
+      return 0;
+    };
+    FactorBracket result;
+    bool interrupted;
+    EXPECT_EQ(climb_to_factor({1}, ceiling, attempt, &result, &interrupted), 0);
+    expect_narrow(result, 1.4);
+  }
+}
+
+/// Nothing fails below the ceiling, which is a mechanism by itself.
+TEST(Climb, ends_at_the_ceiling) {
+  const TryFactor attempt = [](double, TrialOutcome *outcome, bool *) -> PetscErrorCode {
+    *outcome = TrialOutcome::equilibrium;
+    return 0;
+  };
+  FactorBracket result;
+  bool interrupted;
+  EXPECT_EQ(climb_to_factor({1, 1.2}, 1.25, attempt, &result, &interrupted), 0);
+  EXPECT_EQ(result.upper, 1.25);
+  expect_narrow(result, result.lower);
 }
 
 }  // namespace
