@@ -43,7 +43,6 @@ struct Balance {
   double unbalanced = 0, applied = 0;  ///< sums of nodal force magnitudes [N]
   double kinetic = 0, strain = 0;      ///< [J]
   std::array<double, 3> moment{};      ///< mass times place, of the particles [kg m]
-  double moving = 0;                   ///< mass times the square of the speed at which the particles move [J]
   /// Unbalanced over applied force; 0 where no force acts at all [-].
   double ratio() const { return unbalanced == 0 ? 0 : unbalanced / applied; }
 };

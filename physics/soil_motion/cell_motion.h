@@ -8,10 +8,9 @@ namespace talus {
 
 template <int dim>
 struct CellMotion {
-  std::array<Vec<dim>, dim + 1> way{};    ///< of each node since the last remap [m]
-  std::array<Vec<dim>, dim + 1> speed{};  ///< at which each node moves [m/s]
-  std::array<Vec<dim>, dim + 1> gain{};   ///< velocity that each node gives in place of the share that it had [m/s]
-  double own_share = 1;                   ///< of its velocity, that a particle keeps
+  std::array<Vec<dim>, dim + 1> way{};   ///< of each node since the last remap [m]
+  std::array<Vec<dim>, dim + 1> gain{};  ///< velocity that each node gives in place of the share that it had [m/s]
+  double own_share = 1;                  ///< of its velocity, that a particle keeps
 
   /// Of a particle with barycentric coordinates n that was at `place` at the last remap.
   Vec<dim> position(const std::array<double, dim + 1> &n, Vec<dim> place) const {
@@ -19,13 +18,7 @@ struct CellMotion {
       for (int d = 0; d < dim; ++d) place[d] += n[k] * way[k][d];
     return place;
   }
-  /// The velocity at which it moves, and by which results show it.
-  Vec<dim> moving(const std::array<double, dim + 1> &n) const {
-    Vec<dim> v{};
-    for (int k = 0; k <= dim; ++k) add_scaled<dim>(v, n[k], speed[k]);
-    return v;
-  }
-  /// The velocity that carries its momentum, where that was `own` at the last remap.
+  /// ... and that had the velocity `own` there.
   Vec<dim> velocity(const std::array<double, dim + 1> &n, Vec<dim> own) const {
     for (double &component : own) component *= own_share;
     for (int k = 0; k <= dim; ++k)

@@ -138,8 +138,6 @@ PetscErrorCode SoilMotion<dim, Phases>::accept(double t, const double *u, const 
   if (v != velocity[0].data())
     std::copy_n(reinterpret_cast<const Vec<dim> *>(v), grid_.node_count() * fields, velocity.begin());
   PetscCall(deform(t, displacement, accepted_));
-  for (int i = 0; i < grid_.node_count(); ++i)
-    for (int d = 0; d < dim; ++d) velocities_.moving[i][d] = displacement[i][d] / (t - accepted_time_);
   accepted_time_ = t;
   conditions_.add_work(displacement);
   Vec<dim> gravity = loading.gravity;

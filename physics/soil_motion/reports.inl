@@ -77,13 +77,11 @@ CellMotion<dim> SoilMotion<dim, Phases>::cell_motion(int mesh_cell) const {
   if (!gathered_) return motion;
   motion.own_share = velocities_.own_share;  // as a remap would find it now
   const auto &node = grid_.shape[grid_.find_cell(mesh_cell)].node;
-  for (int k = 0; k <= dim; ++k) {
-    motion.speed[k] = velocities_.moving[node[k]];
+  for (int k = 0; k <= dim; ++k)
     for (int d = 0; d < dim; ++d) {
       motion.way[k][d] = grid_.position[node[k]][d] - mesh_.position[grid_.mesh_node[node[k]]][d];
       motion.gain[k][d] = velocities_.now[node[k]][d] - velocities_.own_share * velocities_.start[node[k]][d];
     }
-  }
   return motion;
 }
 
@@ -92,7 +90,7 @@ void SoilMotion<dim, Phases>::present(const Body<dim> &body, int i, Vec<dim> *po
   const ParticleArrays<dim> &p = body.particles();
   const auto n = barycentric(mesh_.cells[p.cell[i]], p.position[i]);
   const CellMotion<dim> motion = cell_motion(p.cell[i]);
-  *position = motion.position(n, p.position[i]), *velocity = gathered_ ? motion.moving(n) : p.velocity[i];
+  *position = motion.position(n, p.position[i]), *velocity = motion.velocity(n, p.velocity[i]);
 }
 
 template <int dim, class Phases>
@@ -136,10 +134,7 @@ PetscErrorCode SoilMotion<dim, Phases>::serialize(Archive &archive) {
     archive.column(grid.nodes, "velocity at the remap", velocities_.start.data() + first, sizeof(Vec<dim>));
     archive.column(grid.nodes, "velocity", velocities_.now.data() + first, sizeof(Vec<dim>));
     archive.column(grid.nodes, "unmapped velocity", velocities_.unmapped_start.data() + first, sizeof(Vec<dim>));
-    if constexpr (fields > 1)
-      archive.column(grid.nodes, "velocity before", velocities_.before_step.data() + first, sizeof(Vec<dim>));
   }
-  archive.column(grid.nodes, "velocity of motion", velocities_.moving.data(), sizeof(Vec<dim>));
   archive.serialize("velocities", velocities_.remap_time, velocities_.own_share);
   archive.column(grid.cells, "particle volume", accepted_.particle_volume);
   archive.column(grid.cells, "weight", accepted_.weight);
@@ -164,6 +159,7 @@ PetscErrorCode SoilMotion<dim, Phases>::serialize(Archive &archive) {
   if (archive.reading()) conditions_.surface_loads().begin(bodies_, grid_);
   if constexpr (Phases::liquid) {
     fluid_.serialize(archive, grid, points);
+    velocities_.before_step = velocities_.now;
     if (archive.reading())
       PetscCall(pore_conditions_.begin(grid_, filling_, fluid_.surface(), fluid_.surface_moment()));
   }
@@ -209,7 +205,7 @@ Archive::Rows SoilMotion<dim, Phases>::serialize_points(Archive &archive, size_t
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::balance(double, Balance *sums) {
   PetscFunctionBeginUser;
-  double local[5 + dim]{}, total[5 + dim];
+  double local[4 + dim]{}, total[4 + dim];
   PetscCall(total_force(loading.set_at, accepted_));
   std::copy_n(force_.begin(), grid_.node_count(), scratch_.begin());
   conditions_.project(velocities_.now.data(), scratch_.data());
@@ -232,26 +228,24 @@ PetscErrorCode SoilMotion<dim, Phases>::balance(double, Balance *sums) {
     for (int d = 0; d < dim; ++d) force_[i][d] += grid_.mass[i] * (loading.ramp * loading.gravity[d]);
     local[1] += magnitude(force_[i]);
   }
-  // of the particles: nodes also carry modes that no particle feels. The energy is that of their momentum: forces work
-  // on the velocity at which they move, which is that of the nodes mapped to particles and back
+  // of the particles: nodes also carry modes that no particle feels
   for (const auto &body : bodies_) {
     const ParticleArrays<dim> &p = body->particles();
     CellMotion<dim> motion;
     for (int i = 0; i < p.count; ++i) {
       if (i == 0 || p.cell[i] != p.cell[i - 1]) motion = cell_motion(p.cell[i]);
       const auto n = barycentric(mesh_.cells[p.cell[i]], p.position[i]);
-      const Vec<dim> x = motion.position(n, p.position[i]), v = motion.velocity(n, p.velocity[i]),
-                     w = gathered_ ? motion.moving(n) : p.velocity[i];
-      local[2] += p.mass[i] * dot<dim>(v, v) / 2, local[4] += p.mass[i] * dot<dim>(w, w);
-      for (int d = 0; d < dim; ++d) local[5 + d] += p.mass[i] * x[d];
+      const Vec<dim> x = motion.position(n, p.position[i]), v = motion.velocity(n, p.velocity[i]);
+      local[2] += p.mass[i] * dot<dim>(v, v) / 2;
+      for (int d = 0; d < dim; ++d) local[4 + d] += p.mass[i] * x[d];
     }
   }
   for (size_t b = 0; b < bodies_.size(); ++b)
     for (int q = 0; q < points_[b].count; ++q)
       local[3] += points_[b].volume[q] * stored_energy<dim>(bodies_[b]->law(), &points_[b].stress[q * components]);
-  PetscCallMPI(MPI_Allreduce(local, total, 5 + dim, MPI_DOUBLE, MPI_SUM, mesh_.comm()));
-  *sums = {total[0], total[1], total[2], total[3], {}, total[4]};
-  std::copy_n(total + 5, dim, sums->moment.begin());
+  PetscCallMPI(MPI_Allreduce(local, total, 4 + dim, MPI_DOUBLE, MPI_SUM, mesh_.comm()));
+  *sums = {total[0], total[1], total[2], total[3]};
+  std::copy_n(total + 4, dim, sums->moment.begin());
   PetscFunctionReturn(0);
 }
 
