@@ -17,6 +17,7 @@
 #include <system_error>
 #include <vector>
 
+#include "base/blas_buffer.h"
 #include "base/temporary_folder.h"
 #include "base/version.h"
 #include "commands/commands.h"
@@ -201,7 +202,11 @@ int main(int argc, char **argv) {
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   MPI_Comm failures;  // of its own, so that its messages are not taken for others
   MPI_Comm_dup(PETSC_COMM_WORLD, &failures);
-  const int status = talus::status_for_starter(perform(own, argv, failures, rank));
+  int status = 1;
+  if (talus::take_blas_buffer())
+    status = talus::status_for_starter(perform(own, argv, failures, rank));
+  else if (rank == 0)
+    std::fprintf(stderr, "talus: %s\n", out_of_memory);
   MPI_Comm_free(&failures);
   if (PetscFinalize()) return 1;
   return status;

@@ -4,9 +4,10 @@
 #include <cmath>
 
 namespace talus {
-namespace {
 
-bool narrow(double low, double high) { return high - low <= bracket_width * high; }
+bool narrow(double lower, double upper) { return upper - lower <= bracket_width * upper; }
+
+namespace {
 
 class Search {
  public:
@@ -79,7 +80,7 @@ PetscErrorCode climb_to_factor(const std::vector<double> &first, double ceiling,
     PetscCall(attempt(to, &outcome, interrupted));
     if (*interrupted) break;
     if (outcome == TrialOutcome::equilibrium) {
-      b.lower = to;
+      b.lower = to, step = std::min(largest_step, 2 * step);
     } else {
       given = first.size();
       if (b.lower > 0 && narrow(b.lower, to)) {

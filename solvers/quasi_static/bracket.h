@@ -21,8 +21,12 @@ PetscErrorCode bracket_factor(double first, double ceiling, const TryFactor &att
                               bool *interrupted);
 constexpr double bracket_width = 0.005, smallest_factor = 0.02, largest_factor = 20;
 
+/// Is this bracket as narrow as was asked for?
+bool narrow(double lower, double upper);
+
 /// The same for soil whose failure depends on its way there (psi < phi): the factor grows in steps from the last
-/// equilibrium, which are halved where they fail. Only a mechanism within `bracket_width` of an equilibrium counts.
+/// equilibrium, which are halved where they fail and doubled where they do not. Only a mechanism of a `narrow` step
+/// counts.
 /// `first`, in ascending order, are the first trials; a mechanism is known at `ceiling`, 0 if there is none.
 PetscErrorCode climb_to_factor(const std::vector<double> &first, double ceiling, const TryFactor &attempt,
                                FactorBracket *result, bool *interrupted);

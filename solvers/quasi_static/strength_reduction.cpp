@@ -160,9 +160,12 @@ class Reduction {
     if (!energy && trial.outcome == TrialOutcome::mechanism) trial.outcome = TrialOutcome::undecided;
     // from the first state too, where the last one leads nowhere
     if (open() && energy && any_stable_) PetscCall(attempt_from(start_, &LimitState<dim>::search, &trial, interrupted));
-    if (open()) PetscCall(attempt_from(stable_, &LimitState<dim>::move, &trial, interrupted));
+    // soil with psi < phi takes a smaller step first
+    const bool last = energy || !any_stable_ || narrow(stable_factor_, factor);
+    if (open() && last) PetscCall(attempt_from(stable_, &LimitState<dim>::move, &trial, interrupted));
     if (*interrupted) PetscFunctionReturn(0);
-    if (trial.outcome == TrialOutcome::equilibrium) stable_ = problem_.save(), any_stable_ = true;
+    if (trial.outcome == TrialOutcome::equilibrium)
+      stable_ = problem_.save(), any_stable_ = true, stable_factor_ = factor;
     trial.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     *outcome = trial.outcome;
     trials_.push_back(trial);
@@ -197,6 +200,7 @@ class Reduction {
   std::vector<StrengthTrial> &trials_;
   State start_, stable_;
   bool any_stable_ = false;
+  double stable_factor_ = 0;
 };
 
 /// Mechanisms one after the other.

@@ -388,6 +388,7 @@ class Maps(unittest.TestCase):
         count = int(cells * maps.grid.spacing / maps.ground.cell)
         maps.grid.shape, maps.ground.shape = (cells, 15), (count, maps.ground.shape[1])
         maps.ground.high[0] = maps.ground.low[0] + count * maps.ground.cell
+        maps.ground.inside = maps.ground.inside[:count]
         maps.before, maps.thickness, maps.covered = maps.before[:count], maps.thickness[:, :cells], [one[:cells] for one in maps.covered]
         self.legend_is_whole(maps)
 
