@@ -26,7 +26,7 @@ PUBLISHED = {
     "GL-1": ("griffiths_lane_1.csv", 14.9626, 20, 19.6359, (1.5, 0.75), "1.38"),
     "GL-2": ("griffiths_lane_2.csv", 14.9626, 20, 19.6359, (2, 1), "1.38"),
 }
-OWN = {"weak seam": ("weak_seam.toml", (1, 0.5)), "layered": ("layered.toml", (1, 0.5))}
+OWN = {"weak seam": ("weak_seam.toml", (1,)), "layered": ("layered.toml", (1,))}
 GUIDE_SIZES = (0.8, 0.6, 0.5, 0.4, 0.35)
 
 
