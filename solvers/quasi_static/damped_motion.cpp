@@ -59,14 +59,15 @@ PetscErrorCode LimitState<dim>::move(LimitSearch *result) {
   PetscFunctionBeginUser;
   *result = {};
   const auto before = problem_.save();
-  Vector mass, velocity, way;
-  for (Vector *v : {&mass, &velocity, &way}) PetscCall(problem_.soil().nodes().global_vector(*v));
+  Vector mass, velocity, way, way_then;  // at the last look
+  for (Vector *v : {&mass, &velocity, &way, &way_then}) PetscCall(problem_.soil().nodes().global_vector(*v));
   PetscCall(masses_of(elastic_, mass));
   PetscCall(problem_.prepare(1, load_time_, time_, 0, x_));
   PetscCall(problem_.residual(x_, force_));
   problem_.close_scale();
   PetscCall(VecZeroEntries(velocity));
   PetscCall(VecZeroEntries(way));
+  PetscCall(VecZeroEntries(way_then));
   double look = first_look;
   for (int step = 1; step <= most_steps; ++step) {
     PetscCall(VecScale(force_, -1));
@@ -100,12 +101,13 @@ PetscErrorCode LimitState<dim>::move(LimitSearch *result) {
     const bool lasts = step > settled && gained(1) > going_on * gained(2);
     if (gained(0) > going_on * gained(1) && (far || lasts)) {
       double work, of_loads;
-      PetscCall(VecDot(force_, velocity, &work));
-      PetscCall(VecDot(problem_.loads(), velocity, &of_loads));
+      PetscCall(VecWAXPY(mechanism_, -1, way_then, way));
+      PetscCall(VecDot(force_, mechanism_, &work));
+      PetscCall(VecDot(problem_.loads(), mechanism_, &of_loads));
       result->verdict = LimitVerdict::mechanism, result->surplus = -work / of_loads;
-      PetscCall(VecCopy(velocity, mechanism_));
       break;
     }
+    PetscCall(VecCopy(way, way_then));
   }
   if (result->verdict == LimitVerdict::equilibrium) {
     PetscCall(VecZeroEntries(x_));
