@@ -54,9 +54,10 @@ class EquilibriumStage final : public StaticStage<dim> {
     if (left_at_ >= 0)
       text << "; its load steps ended at " << 100 * left_at_
            << " %, and the rest came at once, against an elastic prop that was then taken away"
-           << (this->run_.statics.dilated ? ", in soil that moved with psi = phi: it bears this stress with its own psi too, but lateral "
-                          "stress and displacements are those of soil that dilates"
-                        : ": displacements depend on this way more than stresses do")
+           << (this->run_.statics.dilated
+                   ? ", in soil that moved with psi = phi: it bears this stress with its own psi too, but lateral "
+                     "stress and displacements are those of soil that dilates"
+                   : ": displacements depend on this way more than stresses do")
            << ". Other load_steps (here " << this->stage_.load_steps
            << ") may do without, and so may initial_stress = \"k0\"";
   }

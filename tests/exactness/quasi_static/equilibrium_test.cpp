@@ -188,13 +188,12 @@ TEST(QuasiStatic, points_have_no_values_without_soil) {
   const auto stage = [](const std::string &name, const std::string &key) {
     return "[[stage]]\nname = \"" + name + "\"\nkind = \"quasi_static\"\nduration = 1\n" + key;
   };
-  const Solved built = solve("gravity = 10\n[mesh]\nsection = \"" + std::string(TALUS_LAYERS) +
-                             "\"\nsize = 0.25\n[body.lower]\nregion = \"lower\"\n" + layer +
-                             "[body.upper]\nregion = \"upper\"\n" + layer +
-                             "[boundary.walls]\ngroup = [\"base\", \"left\", \"right\"]\nkind = \"roller\"\n"
-                             "[output.point.top]\nposition = [0.5, 0.9]\n" +
-                             stage("gravity", "") + stage("fill", "add = \"upper\"\n") +
-                             stage("cut", "remove = \"upper\"\n"));
+  const Solved built = solve(
+      "gravity = 10\n[mesh]\nsection = \"" + std::string(TALUS_LAYERS) +
+      "\"\nsize = 0.25\n[body.lower]\nregion = \"lower\"\n" + layer + "[body.upper]\nregion = \"upper\"\n" + layer +
+      "[boundary.walls]\ngroup = [\"base\", \"left\", \"right\"]\nkind = \"roller\"\n"
+      "[output.point.top]\nposition = [0.5, 0.9]\n" +
+      stage("gravity", "") + stage("fill", "add = \"upper\"\n") + stage("cut", "remove = \"upper\"\n"));
   const std::vector<double> time = built.history.column("time_s"), moved = built.history.column("top_displacement_m");
   ASSERT_FALSE(time.empty());
   for (std::size_t k = 0; k < time.size(); ++k)

@@ -456,7 +456,7 @@ class Reduction(unittest.TestCase):
     def test_is_what_a_report_begins_with(self):
         bracket = {"decided": False, "equilibrium": 1.083, "mechanism": 1.091}
         came_to = {"state": STANDS, "cell_m": 1.0, "largest_displacement_m": 0.07, "volume_of_slide_m3": None}
-        with unittest.mock.patch("talus_report.read_factor", lambda results: {"factor_of_safety": bracket}), unittest.mock.patch("talus_report.outcome", lambda results: came_to):
+        with unittest.mock.patch("talus_report.read_factor", lambda results: {"factor_of_safety": bracket, "by_flow": {}}), unittest.mock.patch("talus_report.outcome", lambda results: came_to):
             found = key_results(self.results.before_reduction())
         self.assertEqual(found[0][:2], ("Factor of safety", "between 1.083 and 1.091"))
         cards = {what: (number, note) for what, number, note in found}
