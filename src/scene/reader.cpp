@@ -146,7 +146,7 @@ void TableReader::text(const char *key, std::string &value, const char *meaning)
 void TableReader::path(const char *key, std::string &value, const char *meaning) {
   const auto given = find(key, meaning);
   if (!given) return;
-  value = document_->beside(given->string("the name of a file"));
+  value = document_->beside(given->string("the name of a file in quotes"));
 }
 
 void TableReader::texts(const char *key, std::vector<std::string> &value, const char *meaning) {

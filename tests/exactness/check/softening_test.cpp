@@ -46,7 +46,7 @@ TEST(Check, WarnsOfFlowFarFromTheNormal) {
 TEST(Check, SaysWhatFlowFarFromTheNormalDoesToLoadsAndFactors) {
   const Folder folder;
   const char *load = "finds no more equilibrium is not unique",
-             *factor = "so the factor of safety is that with the strength of Davis (1968), 0.85 of";
+             *factor = "a lower estimate, the strength of Davis (1968), 0.85 of its shear strength";
   const std::string gravity = "{name='gravity', kind='quasi_static', duration=1}";
   const auto angles = [](const char *phi, const std::string &last) {
     return std::vector<std::string>{std::string("body.sand.friction_angle=") + phi, "body.sand.dilation_angle=5", last};
