@@ -33,7 +33,6 @@ enum class TrialFlow {
   associated,  ///< psi = phi: upper bound (Radenkovic 1961)
   undrained,   ///< no pore water flows, so that volumes stay: s_u of the stress before, section 5.2
 };
-constexpr TrialFlow all_flows[] = {TrialFlow::own, TrialFlow::davis, TrialFlow::associated, TrialFlow::undrained};
 inline const char *name_of(TrialFlow flow) {
   switch (flow) {
     case TrialFlow::own:

@@ -322,8 +322,8 @@ class MechanismSearch {
     PetscCall(strengthen(&strong, interrupted));
     if (*interrupted) PetscFunctionReturn(0);
     if (strong) PetscCall(reduction(TrialFlow::own, search).climb({low > 0 ? low : first}, ceiling, own, interrupted));
-    if (*interrupted || own->lower >= 1 || !settings_.stands) PetscFunctionReturn(0);
-    result_.weakened = *own;
+    if (*interrupted || own->lower >= 1 || (strong && !settings_.stands)) PetscFunctionReturn(0);
+    if (strong) result_.weakened = *own;
     problem_.restore(begin);
     PetscCall(reduction(TrialFlow::own, search).climb({first}, ceiling, own, interrupted));
     PetscFunctionReturn(0);
