@@ -43,6 +43,7 @@ struct Balance {
   double unbalanced = 0, applied = 0;  ///< sums of nodal force magnitudes [N]
   double kinetic = 0, strain = 0;      ///< [J]
   std::array<double, 3> moment{};      ///< mass times place, of the particles [kg m]
+  double moving = 0;                   ///< mass times the square of the velocity at which the particles move [J]
   /// Unbalanced over applied force; 0 where no force acts at all [-].
   double ratio() const { return unbalanced == 0 ? 0 : unbalanced / applied; }
 };
@@ -81,8 +82,12 @@ class AnySoilMotion : public Motion {
   /// Place and cause of the first call in which a law of this rank went wrong; false when there is none.
   virtual bool find_trouble(Vec<dim> *where, std::string *cause) const = 0;
 
-  /// Position and velocity of a particle within the Lagrangian part.
+  /// Position of a particle within the Lagrangian part, and the velocity of its momentum, docs/theory (4.10a).
   virtual void present(const Body<dim> &body, int particle, Vec<dim> *position, Vec<dim> *velocity) const = 0;
+  /// `begin`, then finds the velocities at which the nodes move, docs/theory (4.9), for results. Collective.
+  virtual PetscErrorCode begin_results(double t) = 0;
+  /// Velocity at which a particle moves, docs/theory (4.12a); after `begin_results` of the same state.
+  virtual Vec<dim> moving_velocity(const Body<dim> &body, int particle) const = 0;
   /// Stress [stress_size], history and volume of a particle within the Lagrangian part.
   virtual void state(int body, int particle, double *stress, double *history, double *volume) const = 0;
   /// By what the law has softened the strength to which this stress belongs.

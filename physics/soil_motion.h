@@ -62,6 +62,8 @@ class SoilMotion final : public AnySoilMotion<dim> {
   bool find_broken(Vec<dim> *where) const override;
   bool find_trouble(Vec<dim> *where, std::string *cause) const override;
   void present(const Body<dim> &body, int particle, Vec<dim> *position, Vec<dim> *velocity) const override;
+  PetscErrorCode begin_results(double t) override;
+  Vec<dim> moving_velocity(const Body<dim> &body, int particle) const override;
   void state(int body, int particle, double *stress, double *history, double *volume) const override;
   SofteningInput softened_by(int body, int particle) const override;
   const WorkDone &work() const override { return work_.done(); }
@@ -142,6 +144,7 @@ class SoilMotion final : public AnySoilMotion<dim> {
   bool is_trial(const State &state) const { return &state != &accepted_; }
   /// How a cell has moved since the last remap; not at all before `begin`.
   CellMotion<dim> cell_motion(int mesh_cell) const;
+  PetscErrorCode find_moving(double t);
   // forces
   void internal_force(const State &state);
   void add_body_forces(double load_time);

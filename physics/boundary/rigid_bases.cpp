@@ -28,7 +28,7 @@ template <int dim>
 void RigidBases<dim>::add_contact(int node, int source, const Vec<dim> &normal, double area) {
   int &index = first_contact_of_node_[node];
   if (index < 0) index = static_cast<int>(contacts_.size()), contacts_.emplace_back();
-  contacts_[index].push_back({node, source, normal, area, 0, 0, never, false, 0, -1, false});
+  contacts_[index].push_back({node, source, normal, area, 0, 0, never, false, 0, 0, 0, 0, -1, false});
 }
 
 template <int dim>
@@ -56,25 +56,39 @@ PetscErrorCode RigidBases<dim>::begin(FilledGrid<dim> &grid, const std::vector<d
   const int nodes = grid.node_count();
   for (auto &of_node : contacts_)
     for (Contact &c : of_node)
-      if (grid.find_node(c.node) < 0)
+      if (grid.find_node(c.node) < 0) {
         c.capacity = 0, c.gathered = c.since_pressed = never;  // soil that arrives here later has not pressed yet
-  zeros_with_room(nodal_, nodes);
+        c.slip = c.beside = c.covered * c.slip + (1 - c.covered) * c.beside;
+        c.covered = c.passed = 0;
+      }
+  enum { area, soil, room, width };  // with soil behind it [m2]; volume in the cells beside it, and theirs [m3]
+  zeros_with_room(nodal_, static_cast<size_t>(nodes) * width);
   for (const auto &[source, facets] : facets_)
     for (const Facet<dim> &f : facets) {
       const int cell = grid.find_cell(f.cell);
-      if (cell < 0) continue;
-      for (int node : f.node) nodal_[grid.find_node(node)] += f.area / dim * std::min(1., filling[cell]);
+      const auto &vertex = grid.mesh().cells[f.cell].node;
+      for (int k = 0; k <= dim; ++k) {
+        const int node = k == f.face ? -1 : grid.find_node(vertex[k]);
+        if (node < 0) continue;
+        double *of = &nodal_[node * width];
+        of[room] += grid.mesh().volume[f.cell] / (dim + 1);
+        if (cell < 0) continue;
+        of[area] += f.area / dim * std::min(1., filling[cell]);
+        of[soil] += grid.nodal_share[cell][k];
+      }
     }
-  PetscCall(grid.sum(nodal_.data(), 1));
+  PetscCall(grid.sum(nodal_.data(), width));
   for (int i = 0; i < nodes; ++i) {
     const int index = first_contact_of_node_[grid.mesh_node[i]];
     if (index < 0) continue;
+    const double *of = &nodal_[i * width];
     double total = 0;
     for (const Contact &c : contacts_[index]) total += c.area;
-    for (Contact &c : contacts_[index])
+    for (Contact &c : contacts_[index]) {
+      cover(c, of[soil] / of[room]);
       active_.push_back({.node = i,
                          .contact = &c,
-                         .area = nodal_[i] * c.area / total,
+                         .area = of[area] * c.area / total,
                          .force = 0,
                          .presses = c.rests,
                          .sticks = c.rests,
@@ -84,8 +98,22 @@ PetscErrorCode RigidBases<dim>::begin(FilledGrid<dim> &grid, const std::vector<d
                          .pressed = 0,
                          .rubs = 0,
                          .capacity = 0});
+    }
   }
   PetscFunctionReturn(0);
+}
+
+/// Soil covers this share of the place of a contact now, and what it has covered since it came. The ground that it
+/// comes to brings its own slip, docs/theory (6.7a). Soil that has passed from one end of the place to the other has
+/// covered all of it, however thin it is.
+template <int dim>
+void RigidBases<dim>::cover(Contact &c, double share) {
+  const double length = dim == 2 ? 2 * c.area : 2 * std::sqrt(3 * c.area / M_PI);
+  const double now = std::clamp(share, c.covered, 1.);
+  if (c.passed >= length)
+    c.covered = 1;
+  else if (now > c.covered)
+    c.slip += (now - c.covered) / now * (c.beside - c.slip), c.covered = now;
 }
 
 template <int dim>
@@ -302,7 +330,7 @@ void RigidBases<dim>::resolve(double t, double gamma, const FilledGrid<dim> &gri
 template <int dim>
 void RigidBases<dim>::add_slip(const Vec<dim> *u) {
   for (Active &c : active_)
-    if (remembers_ && kinds_[c.contact->source].remembers) add_slip(c, u[c.node]);
+    if (kinds_[c.contact->source].remembers) add_slip(c, u[c.node]);
 }
 
 /// Slip is the way of a node along the base while it touches it; the work of friction on this way becomes heat.
@@ -312,7 +340,10 @@ void RigidBases<dim>::add_slip(Active &c, const Vec<dim> &u) {
   if (contact.since_pressed > friction_delay_) return;
   Vec<dim> along = u;
   add_scaled<dim>(along, -dot<dim>(along, contact.normal), contact.normal);
-  contact.slip += std::sqrt(dot<dim>(along, along));
+  const double way = std::sqrt(dot<dim>(along, along));
+  contact.passed += way;
+  if (!remembers_) return;
+  contact.slip += way;
   const double work = -dot<dim>(c.rubbed, u) / resolved_step_;
   if (contact.zone < 0 || c.area <= 0 || work == 0) return;
   grid_of(contact).add_heat(work / c.area, zone_of(contact));
@@ -344,7 +375,7 @@ double RigidBases<dim>::left_by_pressure(const Active &c, double rubbing, double
 template <int dim>
 void RigidBases<dim>::forget_slip() {
   for (auto &of_node : contacts_)
-    for (Contact &c : of_node) c.slip = 0, c.warm = false;
+    for (Contact &c : of_node) c.slip = c.beside = 0, c.warm = false;
   std::fill(zone_state_.begin(), zone_state_.end(), 0);
 }
 
@@ -395,7 +426,7 @@ void RigidBases<dim>::serialize(Archive &archive, const FilledGrid<dim> &grid) {
 template <int dim>
 void RigidBases<dim>::serialize_contacts(Archive &archive, const BackgroundMesh<dim> &mesh) {
   struct Stored {
-    double capacity, gathered, since_pressed, slip;
+    double capacity, gathered, since_pressed, slip, beside, covered, passed;
     int place, state;
   };
   struct StoredNow {
@@ -409,17 +440,20 @@ void RigidBases<dim>::serialize_contacts(Archive &archive, const BackgroundMesh<
   for (auto &of_node : contacts_)
     for (Contact &c : of_node) {
       if (archive.reading())
-        c.capacity = c.slip = 0, c.gathered = c.since_pressed = never, c.rests = c.warm = false;
-      else if (c.capacity != 0 || c.gathered != never || c.since_pressed != never || c.rests || c.slip != 0 || c.warm)
+        c.capacity = c.slip = c.beside = c.covered = c.passed = 0, c.gathered = c.since_pressed = never,
+        c.rests = c.warm = false;
+      else if (c.capacity != 0 || c.gathered != never || c.since_pressed != never || c.rests || c.slip != 0 ||
+               c.beside != 0 || c.covered != 0 || c.warm)
         nodes.push_back(mesh.global_node[c.node]),
-            stored.push_back({c.capacity, c.gathered, c.since_pressed, c.slip, static_cast<int>(&c - of_node.data()),
-                              (c.rests ? rests : 0) | (c.warm ? warm : 0)});
+            stored.push_back({c.capacity, c.gathered, c.since_pressed, c.slip, c.beside, c.covered, c.passed,
+                              static_cast<int>(&c - of_node.data()), (c.rests ? rests : 0) | (c.warm ? warm : 0)});
     }
   archive.column(archive.rows("nodes of contacts", Belongs::to_points, nodes), "contacts", stored);
   for (size_t k = 0; archive.reading() && k < nodes.size(); ++k) {
     const Stored &s = stored[k];
     Contact &c = contacts_.at(first_contact_of_node_[node_of(nodes[k])]).at(s.place);
-    c.capacity = s.capacity, c.gathered = s.gathered, c.since_pressed = s.since_pressed, c.slip = s.slip;
+    c.capacity = s.capacity, c.gathered = s.gathered, c.since_pressed = s.since_pressed;
+    c.slip = s.slip, c.beside = s.beside, c.covered = s.covered, c.passed = s.passed;
     c.rests = s.state & rests, c.warm = s.state & warm;
   }
 

@@ -37,7 +37,10 @@ class RigidBases {
     double gathered;       // time since which `capacity` gathers, where soil was at the start; elsewhere infinite [s]
     double since_pressed;  // time since the node last pressed on the base [s]
     bool rests;            // in equilibrium as finite elements have found it, until the next `resolve`
-    double slip;           // along the base since the start [m]
+    double slip;           // along the base since the start, where soil covers the place [m]
+    double beside;         // slip of the rest of the place [m]
+    double covered;        // share of the place that soil has covered since it came
+    double passed;         // way of the soil since it came [m]
     int zone;              // place of its shear zone in zone_state_; -1: none
     bool warm;             // the shear zone has been heated
   };
@@ -121,6 +124,7 @@ class RigidBases {
                    const PoresInContact<dim> &pores, const Vec<dim> &before);
   void commit(Active &c, double gamma);
   bool none() const { return facets_.empty(); }
+  void cover(Contact &c, double share);
   void serialize_contacts(Archive &archive, const BackgroundMesh<dim> &mesh);
   void serialize_zones(Archive &archive, const BackgroundMesh<dim> &mesh);
   ShearZoneGrid &grid_of(const Contact &c) { return *zone_grids_[c.source]; }

@@ -20,12 +20,14 @@ struct NodalVelocities {
       : relaxation_time(relaxation_time), relaxes(between_remaps && relaxation_time > 0), kept(kept), own_share(kept) {
     make_room(momentum, nodes);
     for (Field *field : {&start, &now, &unmapped_start}) make_room(*field, static_cast<size_t>(nodes) * fields);
+    make_room(moving, nodes);
     if constexpr (fields > 1) make_room(before_step, static_cast<size_t>(nodes) * fields);
   }
 
   Field momentum;        ///< of the solid on this rank, [node], filled while particles are gathered [kg m/s]
-  Field start;           ///< v^0, what particles have in common with the nodes; particles keep the rest [m/s]
+  Field start;           ///< v^0, what the nodes received of the particles, which keep the rest [m/s]
   Field now;             ///< v [m/s]
+  Field moving;          ///< at which the nodes of the solid move, w of docs/theory (4.9), once results need it [m/s]
   Field unmapped_start;  ///< (I - S) v^0, where nodes relax in each step [m/s]
   [[no_unique_address]] If<(fields > 1), Field> before_step;  ///< v at the start of a step, where fluids move [m/s]
 

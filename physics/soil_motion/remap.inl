@@ -94,7 +94,7 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double t) {
   PetscFunctionBeginUser;
   constexpr int width = dim + 2;  // mass, momentum, volume
   const int nodes = grid_.node_count(), cells = grid_.cell_count();
-  const double load_time = loading.time_at(t);
+  [[maybe_unused]] const double load_time = loading.time_at(t);
   std::vector<Vec<dim>> &start = velocities_.start, &now = velocities_.now;
   std::fill_n(nodal_.begin(), nodes * width, 0.);
   for (int c = 0; c < cells; ++c) {
@@ -121,12 +121,13 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double t) {
   for (int c = 0; c < cells; ++c) filling_[c] = accepted_.weight[c] / grid_.shape[c].volume;
   PetscCall(conditions_.begin(grid_, impedance_, filling_));
   conditions_.surface_loads().begin(bodies_, grid_);
-  conditions_.constrain(load_time, grid_, start.data(), false);
+  // what boundaries take from these velocities they take in the first step, as an impulse like any other
   std::copy_n(start.begin(), nodes, now.begin());
   if constexpr (Phases::liquid) {
     PetscCall(fluid_.gather(pore_frame(t, accepted_), pore_conditions_, filling_, start.data(), now.data() + nodes));
     std::copy_n(now.begin() + nodes, nodes * fluids, start.begin() + nodes);
     std::copy_n(now.begin(), nodes * fields, velocities_.before_step.begin());
+    fluid_.constrain(pore_frame(t, accepted_), pore_conditions_, now.data(), now.data() + nodes);
   }
   PetscCall(velocities_.find_unmapped_start(
       nodes, [this](const Vec<dim> *in, Vec<dim> *out) { return to_particles_and_back(in, out); }));

@@ -94,6 +94,41 @@ void SoilMotion<dim, Phases>::present(const Body<dim> &body, int i, Vec<dim> *po
 }
 
 template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::begin_results(double t) {
+  PetscFunctionBeginUser;
+  PetscCall(begin(t));
+  PetscCall(find_moving(t));
+  PetscFunctionReturn(0);
+}
+
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::find_moving(double t) {
+  PetscFunctionBeginUser;
+  const int nodes = grid_.node_count();
+  std::vector<Vec<dim>> &moving = velocities_.moving;
+  std::copy_n(velocities_.now.begin(), nodes, moving.begin());
+  if constexpr (!Phases::liquid) {  // where fluids move, nodes have what is mapped back already
+    const double own = velocities_.own_share;
+    for (int i = 0; i < nodes; ++i) add_scaled<dim>(moving[i], -own, velocities_.start[i]);
+    std::copy_n(moving.begin(), nodes, scratch_.begin());
+    PetscCall(to_particles_and_back(scratch_.data(), moving.data()));
+    for (int i = 0; i < nodes; ++i) add_scaled<dim>(moving[i], own, velocities_.start[i]);
+  }
+  conditions_.constrain(loading.time_at(t), grid_, moving.data(), true);
+  PetscFunctionReturn(0);
+}
+
+template <int dim, class Phases>
+Vec<dim> SoilMotion<dim, Phases>::moving_velocity(const Body<dim> &body, int i) const {
+  const ParticleArrays<dim> &p = body.particles();
+  const auto n = barycentric(mesh_.cells[p.cell[i]], p.position[i]);
+  const auto &node = grid_.shape[grid_.find_cell(p.cell[i])].node;
+  Vec<dim> v{};
+  for (int k = 0; k <= dim; ++k) add_scaled<dim>(v, n[k], velocities_.moving[node[k]]);
+  return v;
+}
+
+template <int dim, class Phases>
 void SoilMotion<dim, Phases>::state(int b, int i, double *stress, double *history, double *volume) const {
   const Body<dim> &body = *bodies_[b];
   const ParticleArrays<dim> &p = body.particles();
@@ -134,6 +169,8 @@ PetscErrorCode SoilMotion<dim, Phases>::serialize(Archive &archive) {
     archive.column(grid.nodes, "velocity at the remap", velocities_.start.data() + first, sizeof(Vec<dim>));
     archive.column(grid.nodes, "velocity", velocities_.now.data() + first, sizeof(Vec<dim>));
     archive.column(grid.nodes, "unmapped velocity", velocities_.unmapped_start.data() + first, sizeof(Vec<dim>));
+    if constexpr (fields > 1)
+      archive.column(grid.nodes, "velocity before", velocities_.before_step.data() + first, sizeof(Vec<dim>));
   }
   archive.serialize("velocities", velocities_.remap_time, velocities_.own_share);
   archive.column(grid.cells, "particle volume", accepted_.particle_volume);
@@ -159,7 +196,6 @@ PetscErrorCode SoilMotion<dim, Phases>::serialize(Archive &archive) {
   if (archive.reading()) conditions_.surface_loads().begin(bodies_, grid_);
   if constexpr (Phases::liquid) {
     fluid_.serialize(archive, grid, points);
-    velocities_.before_step = velocities_.now;
     if (archive.reading())
       PetscCall(pore_conditions_.begin(grid_, filling_, fluid_.surface(), fluid_.surface_moment()));
   }
@@ -203,9 +239,9 @@ Archive::Rows SoilMotion<dim, Phases>::serialize_points(Archive &archive, size_t
 }
 
 template <int dim, class Phases>
-PetscErrorCode SoilMotion<dim, Phases>::balance(double, Balance *sums) {
+PetscErrorCode SoilMotion<dim, Phases>::balance(double t, Balance *sums) {
   PetscFunctionBeginUser;
-  double local[4 + dim]{}, total[4 + dim];
+  double local[5 + dim]{}, total[5 + dim];
   PetscCall(total_force(loading.set_at, accepted_));
   std::copy_n(force_.begin(), grid_.node_count(), scratch_.begin());
   conditions_.project(velocities_.now.data(), scratch_.data());
@@ -237,15 +273,17 @@ PetscErrorCode SoilMotion<dim, Phases>::balance(double, Balance *sums) {
       const auto n = barycentric(mesh_.cells[p.cell[i]], p.position[i]);
       const Vec<dim> x = motion.position(n, p.position[i]), v = motion.velocity(n, p.velocity[i]);
       local[2] += p.mass[i] * dot<dim>(v, v) / 2;
-      for (int d = 0; d < dim; ++d) local[4 + d] += p.mass[i] * x[d];
+      for (int d = 0; d < dim; ++d) local[5 + d] += p.mass[i] * x[d];
     }
   }
   for (size_t b = 0; b < bodies_.size(); ++b)
     for (int q = 0; q < points_[b].count; ++q)
       local[3] += points_[b].volume[q] * stored_energy<dim>(bodies_[b]->law(), &points_[b].stress[q * components]);
-  PetscCallMPI(MPI_Allreduce(local, total, 4 + dim, MPI_DOUBLE, MPI_SUM, mesh_.comm()));
-  *sums = {total[0], total[1], total[2], total[3]};
-  std::copy_n(total + 4, dim, sums->moment.begin());
+  PetscCall(find_moving(t));
+  local[4] = talus::seen_square<dim, 1>(grid_, velocities_.moving.data());
+  PetscCallMPI(MPI_Allreduce(local, total, 5 + dim, MPI_DOUBLE, MPI_SUM, mesh_.comm()));
+  *sums = {total[0], total[1], total[2], total[3], {}, total[4]};
+  std::copy_n(total + 5, dim, sums->moment.begin());
   PetscFunctionReturn(0);
 }
 

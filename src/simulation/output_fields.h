@@ -42,6 +42,7 @@ struct ParticleState {
       : body(b), history(source.history_count()) {
     const ParticleArrays<dim> &p = source.particles();
     motion.present(source, i, &position, &velocity);
+    velocity = motion.moving_velocity(source, i);
     motion.state(b, i, stress.data(), history.data(), &volume);
     for (int d = 0; d < dim; ++d) displacement[d] = position[d] - p.reference[i][d];
     mass = p.mass[i];

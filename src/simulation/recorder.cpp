@@ -214,7 +214,7 @@ RunRow<dim> Recorder<dim>::run_row() const {
 
 template <int dim>
 void Recorder<dim>::write_history() {
-  require(of_.world.motion->begin(of_.clock.time));
+  require(of_.world.motion->begin_results(of_.clock.time));
   if (last_row_step_ == of_.clock.steps) return;
   std::vector<double> row = point_rows_.at(of_.clock.time, of_.statics);
   of_.lines.write(of_.clock, of_.statics);
@@ -262,7 +262,7 @@ Snapshot Recorder<dim>::snapshot() {
 
 template <int dim>
 Snapshot Recorder<dim>::particles() {
-  if (phases_.liquid) require(of_.world.motion->begin(of_.clock.time));  // pressures follow from what cells hold
+  require(of_.world.motion->begin_results(of_.clock.time));
   Snapshot s;
   s.time = of_.clock.time, s.step = of_.clock.steps, s.stage = of_.clock.stage;
   const StepStatistics &sums = of_.dynamics.statistics();

@@ -31,7 +31,7 @@ struct Run {
   /// Sums of the present state. Collective.
   Balance balance();
   /// Root mean square speed of all soil [m/s].
-  double rms_speed(const Balance &sums) const { return std::sqrt(2 * sums.kinetic / world.total_mass); }
+  double rms_speed(const Balance &sums) const { return std::sqrt(sums.moving / world.total_mass); }
 
   /// Particles take over the state of the finite elements.
   void hand_to_particles();

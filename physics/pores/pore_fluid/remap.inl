@@ -107,7 +107,6 @@ PetscErrorCode PoreFluid<dim, Phases>::gather(const Frame &frame, PoreConditions
   for (int i = 0; i < nodes; ++i) talus::store<dim>(surface_[i].data(), nodes_[i].geometry);
   if (conditions.open_water()) PetscCall(find_moment(frame));
   PetscCall(conditions.begin(grid, filling, surface_, moment_));
-  constrain(frame, conditions, solid, velocity);
   PetscFunctionReturn(0);
 }
 

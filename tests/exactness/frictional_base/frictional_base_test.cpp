@@ -114,8 +114,8 @@ TEST(FrictionalBase, a_stage_does_not_end_by_rest_before_loads_have_changed) {
   }
 }
 
-/// The columns of a base: friction over normal force is that of the forces in the same row once all nodes slide, since
-/// all friction of a plane points up the slope then; before, a vibrating node may slide upwards for a moment. Soil that
+/// The columns of a base: friction over normal force is that of the forces in the same row, less what acts on nodes
+/// that slide upwards for a moment, as light nodes do in front of the soil and behind it. Soil that
 /// starts 20 mm higher has 20 mm more clearance, in the same cells.
 TEST(FrictionalBase, reports_its_friction_and_the_clearance_of_the_soil) {
   const auto run = [](std::vector<std::string> more) {
@@ -132,7 +132,7 @@ TEST(FrictionalBase, reports_its_friction_and_the_clearance_of_the_soil) {
              y = slides->history().column("base_force_y_N");
   ASSERT_GE(friction.size(), 17u);
   for (size_t i = 1; i < friction.size(); ++i) EXPECT_GT(friction[i], -x[i] / y[i] - 1e-9);
-  for (size_t i = friction.size() - 4; i < friction.size(); ++i) EXPECT_NEAR(friction[i], -x[i] / y[i], 1e-9);
+  for (size_t i = friction.size() - 4; i < friction.size(); ++i) EXPECT_NEAR(friction[i], -x[i] / y[i], 2e-3);
   EXPECT_NEAR(friction.back(), std::tan(M_PI / 9), 0.1 * std::tan(M_PI / 9));
   const double lies = slides->history().column("base_clearance_m").front(),
                raised = run({"body.block.displacement=['0', '0.02']"})->history().column("base_clearance_m").front();
@@ -315,6 +315,111 @@ TEST(FrictionalBase, rock_stays_at_rest_on_two_planes_that_are_mirrored) {
 /// spent on it. Where the rollers acted after the base, the rock moved by 4 m in 40 s.
 TEST(FrictionalBase, rock_stays_at_rest_on_two_planes_in_a_slice) {
   expect_rest_on_two_planes({"mesh.size=30", "dimension=3", "boundary.front.kind=roller", "boundary.back.kind=roller"});
+}
+
+/// Speeds of a soil of the block's scene at the end of its stage: root mean square of the velocities that results show,
+/// and that of the kinetic energy [m/s].
+std::array<double, 2> speeds_at_end(std::vector<std::string> overrides, int dim, bool wet, double duration) {
+  const auto add = [&](std::initializer_list<std::string> more) { overrides.insert(overrides.end(), more); };
+  add({"body.block.young_modulus=1e6", "body.block.poisson_ratio=0.25", "output.interval=0"});
+  if (dim == 3) {
+    add({"dimension=3", "boundary.front.kind=roller", "boundary.back.kind=roller"});
+    add({"body.block.stress=['0', '0', '0', '0', '0', '0']"});
+  } else {
+    add({"body.block.stress=['0', '0', '0', '0']"});
+  }
+  if (wet)
+    add({"phases=saturated", "water.bulk_modulus=2e6", "water.excess=0", "body.block.porosity=0.4",
+         "body.block.grain_density=2650", "body.block.permeability=1e-9"});
+  overrides.push_back("stage.0.duration=" + std::to_string(duration));
+  Scene scene = read_scene(
+      std::string(TALUS_VERIFICATION) + (wet ? "/wet_incline/scene.toml" : "/incline_block/scene.toml"), overrides);
+  RunOptions options;
+  options.pictures = options.screen = false;
+  const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+  simulation->run();
+  const Snapshot end = simulation->snapshot();
+  double sums[] = {0, static_cast<double>(end.id.size())};
+  for (const Column &column : end.columns)
+    if (column.name == "velocity")
+      for (const double v : column.values) sums[0] += v * v;
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  const double kinetic = simulation->history().column("kinetic_J").back();
+  return {std::sqrt(sums[0] / sums[1]), std::sqrt(2 * kinetic / simulation->mass())};
+}
+
+/// A block on an incline that is rough enough to hold it swings and comes to rest: round-off in dry soil, the last of
+/// its consolidation in saturated soil.
+TEST(FrictionalBase, block_on_rough_incline_is_at_rest) {
+  for (const int dim : {2, 3})
+    for (const bool wet : {false, true}) {
+      const std::string gravity = dim == 2 ? "gravity=[4.905, -8.4957]" : "gravity=[4.905, -8.4957, 0]";
+      for (const double speed :
+           speeds_at_end({gravity, "boundary.base.friction_angle=40", "mesh.size=0.25", "stage.0.damping=0.1"}, dim,
+                         wet, dim == 3 && wet ? 30 : 100))
+        EXPECT_LT(speed, wet ? 1e-6 : 1e-12) << dim << "D" << (wet ? ", saturated" : "");
+    }
+}
+
+/// A layer of sand slides over bends of its bed at up to 3 m/s and comes to rest: the velocities that results show, and
+/// those of the energy. Single grains may still roll.
+TEST(FrictionalBase, thin_soil_comes_to_rest_on_relief) {
+  const char *bed[] = {"0,1.4", "2,0.3", "2.6,0.4", "3.4,0.1", "4,0.2", "7,0.1"};
+  std::string text;
+  for (const char *place : bed) text += std::string("outline,") + place + "\n";
+  text +=
+      "outline,7,1.8\noutline,0,1.8\ninterface0,0.5,1.125\ninterface0,0.6,1.33\ninterface0,1.6,0.78\n"
+      "interface0,1.6,0.52\nregion_block,1,0.95\nregion_air,4,1.5\n";
+  for (const char *place : bed) text += std::string("b_base,") + place + "\n";
+  const SectionFile section(text);
+  for (const auto &[dim, wet] : {std::pair{2, false}, std::pair{2, true}, std::pair{3, false}})
+    for (const double speed :
+         speeds_at_end({"mesh.section=" + section.name(), "mesh.size=0.2", "gravity=9.81",
+                        "body.block.law=mohr_coulomb", "body.block.friction_angle=33", "body.block.cohesion=0",
+                        "boundary.base.friction_angle=22", "stage.0.damping=0"},
+                       dim, wet, 20))
+      EXPECT_LT(speed, 5e-3) << dim << "D" << (wet ? ", saturated" : "");
+}
+
+/// An elastic block of 1 m by 0.2 m with 3.5 m/s slides on a base that weakens over 0.3 m of slip, and stops
+/// after 2.061 m (elastic_block.py). Its front comes to fresh ground: where a node had slipped as soon as soil was in
+/// one of its cells, the block went 11 % too far in cells of 0.1 m and 7 % in cells of 0.06 m. Now it is 1.2 and 0.8 %:
+/// friction follows the normal force with its delay, in which the block goes up to 4 % of its length (docs/theory,
+/// section 7).
+double way_on_weakening_base(std::vector<std::string> overrides) {
+  const SectionFile section(
+      "outline,0,0\noutline,6,0\noutline,6,0.6\noutline,0,0.6\ninterface0,0.5,0\ninterface0,0.5,0.2\n"
+      "interface0,1.5,0.2\ninterface0,1.5,0\nregion_block,1,0.1\nregion_air,4,0.3\n");
+  overrides.push_back("mesh.section=" + section.name());
+  for (const char *more :
+       {"boundary.base.friction_angle='8 + 22 * exp(-slip / 0.3)'", "stage.0.duration=1.8", "output.interval=0"})
+    overrides.emplace_back(more);
+  Scene scene = read_scene(block, overrides);
+  RunOptions options;
+  options.pictures = options.screen = false;
+  const auto simulation = make_simulation(PETSC_COMM_WORLD, scene, options);
+  simulation->run();
+  const Snapshot end = simulation->snapshot();
+  double sums[] = {0, static_cast<double>(end.id.size())};
+  for (const Column &column : end.columns)
+    if (column.name == "displacement")
+      for (size_t i = 0; i < end.id.size(); ++i) sums[0] += column.values[i * column.components];
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  return sums[0] / sums[1];
+}
+TEST(FrictionalBase, weakens_with_the_slip_of_the_place) {
+  constexpr double exact = 2.061;
+  for (const char *size : {"0.1", "0.06"})
+    EXPECT_NEAR(way_on_weakening_base({std::string("mesh.size=") + size, "gravity=[0, -9.81]",
+                                       "body.block.velocity=['3.5 + 0 * x', '0 * x']",
+                                       "body.block.stress=['0', '-2000 * 9.81 * (0.2 - y)', '0', '0']"}),
+                exact, 0.015 * exact)
+        << size;
+  EXPECT_NEAR(
+      way_on_weakening_base({"mesh.size=0.1", "dimension=3", "boundary.front.kind=roller", "boundary.back.kind=roller",
+                             "gravity=[0, -9.81, 0]", "body.block.velocity=['3.5 + 0 * x', '0 * x', '0 * x']",
+                             "body.block.stress=['0', '-2000 * 9.81 * (0.2 - y)', '0', '0', '0', '0']"}),
+      exact, 0.015 * exact);
 }
 
 }  // namespace

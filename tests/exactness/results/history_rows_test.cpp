@@ -154,7 +154,8 @@ TEST(HistoryRows, mobilised_friction_is_that_of_the_strain_by_which_soil_softens
   }
 }
 
-/// Until the wave from the base arrives, after 12 ms, the top of a column falls freely; the acceleration of a row is
+/// Until the wave from the base arrives, after 12 ms, the top of a column falls freely, but for what mapping spreads
+/// over cells before it; the acceleration of a row is
 /// the change of velocity since the row before over the time between them.
 TEST(HistoryRows, show_the_mean_acceleration_since_the_row_before) {
   const HistoryTable history = solve(column + "[output.point.top]\nposition = [0.5, 1]\n[[stage]]\nduration = 0.1\n",
@@ -163,7 +164,7 @@ TEST(HistoryRows, show_the_mean_acceleration_since_the_row_before) {
   const std::vector<double> a = history.column("top_acceleration_m_s2"), v = history.column("top_velocity_m_s"),
                             t = history.column("time_s");
   EXPECT_EQ(a[0], 0);
-  for (size_t i = 1; t[i] < 0.004; ++i) EXPECT_NEAR(a[i], 10, 0.01) << t[i];
+  for (size_t i = 1; t[i] < 0.004; ++i) EXPECT_NEAR(a[i], 10, 0.02) << t[i];
   int rising = 0;
   for (size_t i = 1; i < t.size(); ++i) {
     EXPECT_GE(a[i] * (t[i] - t[i - 1]), std::abs(v[i] - v[i - 1]) * (1 - 1e-12)) << t[i];

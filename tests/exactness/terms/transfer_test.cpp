@@ -59,7 +59,8 @@ void velocities_are_mapped_back_and_relax() {
 }
 TALUS_IN_2D_AND_3D(Transfer, velocities_are_mapped_back_and_relax)
 
-/// What particles take from the nodes at a remap (4.11), (4.12), and what results show before it (4.10a).
+/// What particles take from the nodes at a remap (4.11), (4.12), what they have before it (4.10a), and the velocity
+/// that results show (4.12a).
 template <int dim>
 void particles_take_the_change_of_the_nodes() {
   constexpr double tau = 0.2, time = 0.05;
@@ -73,7 +74,10 @@ void particles_take_the_change_of_the_nodes() {
     const Nodes<dim> v = box.field(1, 8), u = box.field(1e-3, 9);
     const std::vector<double> velocity = box.to_motion(v), way = box.to_motion(u);
     ASSERT_EQ(motion.accept(time, way.data(), velocity.data()), 0);
-    Nodes<dim> shown, wanted, places, taken, gone, shown_places;
+    ASSERT_EQ(motion.begin_results(time), 0);
+    Nodes<dim> shown, wanted, places, taken, gone, shown_places, moving, w = exact.back_and_forth(v);
+    const Nodes<dim> Sv0 = exact.back_and_forth(exact.start);
+    for (int i = 0; i < exact.nodes; ++i) w[i] += kept * (exact.start[i] - Sv0[i]);
     for (int p = 0; p < exact.particles.count; ++p) {
       Vec<dim> x, s;
       motion.present(*box.soil.bodies[0], p, &x, &s);
@@ -81,9 +85,12 @@ void particles_take_the_change_of_the_nodes() {
       const ColumnVector<dim> own = exact.velocity[p] - exact.at(p, exact.start);
       wanted.push_back(exact.at(p, v) + kept * own), taken.push_back(wanted.back());
       places.push_back(exact.position[p] + exact.at(p, u));
+      const Vec<dim> speed = motion.moving_velocity(*box.soil.bodies[0], p);
+      moving.push_back(map<dim>(speed) - exact.at(p, w));
     }
     expect_equal<dim>(shown, wanted, 1, "(4.10a)");
     expect_equal<dim>(shown_places, places, 1, "places shown");
+    expect_equal<dim>(moving, Nodes<dim>(moving.size(), ColumnVector<dim>::Zero()), 1, "(4.12a)");
     std::vector<std::vector<int>> movers(1);
     ASSERT_EQ(motion.update_particles(time, movers), 0);
     Nodes<dim> found;

@@ -73,7 +73,7 @@ inline void curved_chute(Rung &rung) {
       const Run run = rung.run(in_dimension(dimension, more));
       const Place from = place(run.start), to = place(run.end);
       rung.compare(name + (time == 1 ? "way after 1 s" : "way to its place of rest") + " [deg]",
-                   (start - exact(time)) / degree, (from.angle - to.angle) / degree, 0.015);
+                   (start - exact(time)) / degree, (from.angle - to.angle) / degree, 0.004);
       if (time == 1) continue;
       rung.compare(name + "rise over the base in cells", 0, (to.height - from.height) / size, 0.1, 1);
       rung.compare(name + "fastest particle at rest [m/s]", 0, fastest(run.end, dimension), 0.04, 1);
