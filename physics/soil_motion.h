@@ -145,6 +145,7 @@ class SoilMotion final : public AnySoilMotion<dim> {
   /// How a cell has moved since the last remap; not at all before `begin`.
   CellMotion<dim> cell_motion(int mesh_cell) const;
   PetscErrorCode find_moving(double t);
+  PetscErrorCode meet_boundaries(double load_time);
   // forces
   void internal_force(const State &state);
   void add_body_forces(double load_time);

@@ -94,7 +94,7 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double t) {
   PetscFunctionBeginUser;
   constexpr int width = dim + 2;  // mass, momentum, volume
   const int nodes = grid_.node_count(), cells = grid_.cell_count();
-  [[maybe_unused]] const double load_time = loading.time_at(t);
+  const double load_time = loading.time_at(t);
   std::vector<Vec<dim>> &start = velocities_.start, &now = velocities_.now;
   std::fill_n(nodal_.begin(), nodes * width, 0.);
   for (int c = 0; c < cells; ++c) {
@@ -121,7 +121,7 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double t) {
   for (int c = 0; c < cells; ++c) filling_[c] = accepted_.weight[c] / grid_.shape[c].volume;
   PetscCall(conditions_.begin(grid_, impedance_, filling_));
   conditions_.surface_loads().begin(bodies_, grid_);
-  // what boundaries take from these velocities they take in the first step, as an impulse like any other
+  PetscCall(meet_boundaries(load_time));
   std::copy_n(start.begin(), nodes, now.begin());
   if constexpr (Phases::liquid) {
     PetscCall(fluid_.gather(pore_frame(t, accepted_), pore_conditions_, filling_, start.data(), now.data() + nodes));
@@ -135,6 +135,24 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double t) {
   for (size_t b = 0; b < bodies_.size(); ++b)
     if (nonlocal_[b]) PetscCall(nonlocal_[b]->begin(grid_, points_[b]));
   if (transfer_.average_stress) admit_mean_stress();
+  PetscFunctionReturn(0);
+}
+
+/// Gives nodes at boundaries the velocity at which soil meets these, docs/theory (4.2a): it is taken in the first step,
+/// as an impulse like any other. Collective.
+template <int dim, class Phases>
+PetscErrorCode SoilMotion<dim, Phases>::meet_boundaries(double load_time) {
+  PetscFunctionBeginUser;
+  const int nodes = grid_.node_count();
+  std::vector<Vec<dim>> &start = velocities_.start, &met = velocities_.moving;
+  PetscCall((talus::to_particles_and_back<dim, 1>(grid_, start.data(), met.data())));
+  for (int i = 0; i < nodes; ++i)
+    for (int d = 0; d < dim; ++d) met[i][d] = 2 * start[i][d] - met[i][d];
+  std::copy_n(met.begin(), nodes, scratch_.begin());
+  conditions_.constrain(load_time, grid_, scratch_.data(), false);
+  conditions_.constrain(load_time, grid_, start.data(), false);
+  for (int i = 0; i < nodes; ++i)
+    for (int d = 0; d < dim; ++d) start[i][d] += met[i][d] - scratch_[i][d];
   PetscFunctionReturn(0);
 }
 
