@@ -92,8 +92,10 @@ void Progress::stage(const std::string &name, bool to_the_end) {
 void Progress::look_at_clock() {
   const double clock = clock_();
   const double per_step = (clock - looked_at_) / static_cast<double>(steps_between_looks_);
-  const double steps = per_step > 0 ? look_interval / per_step : 2 * static_cast<double>(steps_between_looks_);
-  steps_between_looks_ = std::clamp(std::llround(std::min(steps, 1e9)), 1LL, most_steps);
+  // at most twice as many as before: a quick step says little of those that write
+  const double steps =
+      std::min(look_interval / std::max(per_step, 1e-9), 2 * static_cast<double>(steps_between_looks_));
+  steps_between_looks_ = std::clamp(std::llround(steps), 1LL, most_steps);
   until_clock_ = steps_between_looks_;
   looked_at_ = clock;
   if (clock < next_print_ && clock < next_log_) return;

@@ -23,7 +23,9 @@ def without_islands(plain, reach):
         return plain
     kept = ~widest(~plain, reach)
     for _ in range(4 * reach):
-        kept = touching(kept) & plain
+        before, kept = kept, touching(kept) & plain
+        if np.array_equal(kept, before):
+            break
     return kept
 
 

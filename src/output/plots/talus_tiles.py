@@ -7,6 +7,7 @@ from matplotlib.tri import Triangulation
 GAP = 1.4   # widest gap between particles that is closed, as a radius over their spacing
 GAP_IN_SPACE = 2.2  # the same in 3D, where the few particles of a tetrahedron leave larger gaps
 EDGE = 0.5  # soil beyond its outermost particles, over their spacing
+POINT = 4000  # pixels that take as long as what a point takes whatever its size
 
 
 class Frame:
@@ -31,16 +32,14 @@ def tiles(points, size, frame, aside=None):
     owner, _ = nearest((points - frame.low) / frame.pixel, frame.shape, gap, size, None if aside is None else aside / frame.pixel)
     soil = owner >= 0
     rim = np.argwhere(~soil & touching(soil))[:, ::-1] + 0.5
-    _, depth = nearest(rim, frame.shape, gap * size.max(initial=0), np.ones(len(rim)))
+    _, depth = nearest(rim, frame.shape, (gap - EDGE) * size.max(initial=0), np.ones(len(rim), np.float32))
     owner[soil & (depth <= (gap - EDGE) * size[owner])] = -1
     return owner
 
 
 def nearest(points, shape, reach, size, aside=None):
     """Number of and distance to the nearest of some points (in pixels: column, row, and their distance aside), -1 and infinity beyond `reach`.
-    Distances are counted in the size of the point.
-
-    Jump flooding: Rong & Tan (2006), Jump flooding in GPU with applications to Voronoi diagrams."""
+    Distances are counted in the size of the point."""
     owner = np.full(shape, -1, np.int32)
     if not len(points):
         return owner, np.full(shape, np.inf, np.float32)
@@ -49,6 +48,43 @@ def nearest(points, shape, reach, size, aside=None):
     z2 = np.zeros_like(x) if aside is None else aside.astype(np.float32) ** 2
     row, column = y.astype(int), x.astype(int)
     seen = (row >= 0) & (row < shape[0]) & (column >= 0) & (column < shape[1])
+    jumps = [*(2**k for k in range(int(np.ceil(np.log2(max(reach * np.max(size), 1)))), -1, -1)), 1]
+    pixels_around = (2 * reach * size[seen].astype(float)) ** 2
+    if np.sum(pixels_around + POINT) < 8 * len(jumps) * owner.size:
+        squared = by_points(np.flatnonzero(seen), x, y, z2, scale, reach * size, owner)
+    else:
+        squared = by_jumps(seen, jumps, x, y, z2, scale, owner)
+    far = squared > reach**2
+    owner[far] = -1
+    distance = np.sqrt(squared)
+    distance[far] = np.inf
+    return owner, distance
+
+
+def by_points(seen, x, y, z2, scale, half, owner):
+    """The squares of the distances to the nearest points, whose numbers `owner` gets: point by point, in the square of `half` a width around it. Cheap where
+    points are few and large."""
+    shape = owner.shape
+    squared = np.full(shape, np.inf, np.float32)
+    centre_y, centre_x = (np.arange(size, dtype=np.float32) + 0.5 for size in shape)
+    centre = np.column_stack([y, x])
+    low, high = (np.clip(np.floor(centre + side * half[:, None]).astype(int), 0, shape) for side in (-1, 1))
+    for k in seen:
+        around = slice(low[k, 0], high[k, 0] + 1), slice(low[k, 1], high[k, 1] + 1)
+        distance = (centre_x[around[1]] - x[k]) ** 2 + ((centre_y[around[0]] - y[k]) ** 2 + z2[k])[:, None]
+        distance *= scale[k]
+        nearer = distance < squared[around]
+        np.copyto(squared[around], distance, where=nearer)
+        np.copyto(owner[around], k, where=nearer)
+    return squared
+
+
+def by_jumps(seen, jumps, x, y, z2, scale, owner):
+    """The same for all pixels at once, which ask those so many jumps away for their points. Cheap where points are many.
+
+    Jump flooding: Rong & Tan (2006), Jump flooding in GPU with applications to Voronoi diagrams."""
+    shape = owner.shape
+    row, column = y.astype(int), x.astype(int)
     seen = np.flatnonzero(seen)[np.argsort(-(scale * z2)[seen], kind="stable")]  # of several in a pixel the one nearest to the plane stays
     owner[row[seen], column[seen]] = seen
     centre_y, centre_x = (np.arange(size, dtype=np.float32) + 0.5 for size in shape)
@@ -65,7 +101,7 @@ def nearest(points, shape, reach, size, aside=None):
     rows, columns = np.divmod(pixels, shape[1])
     mine = owner.ravel()[pixels]
     own(pixels, mine, scale[mine] * ((x[mine] - centre_x[columns]) ** 2 + (y[mine] - centre_y[rows]) ** 2 + z2[mine]))
-    for step in [*(2**k for k in range(int(np.ceil(np.log2(max(reach * np.max(size), 1)))), -1, -1)), 1]:
+    for step in jumps:
         for down, right in ((i, j) for i in (-step, 0, step) for j in (-step, 0, step) if i or j):
             to_rows, from_rows = shifted(shape[0], down)
             to_columns, from_columns = shifted(shape[1], right)
@@ -80,11 +116,7 @@ def nearest(points, shape, reach, size, aside=None):
             rows, columns = np.divmod(nearer, max(1, distance.shape[1]))
             pixels = (rows + to_rows.start) * shape[1] + columns + to_columns.start
             own(pixels, owner.ravel()[pixels + down * shape[1] + right], distance.ravel()[nearer])
-    far = squared > reach**2
-    owner[far] = -1
-    distance = np.sqrt(squared)
-    distance[far] = np.inf
-    return owner, distance
+    return squared
 
 
 def shifted(size, by):

@@ -1,12 +1,12 @@
 #pragma once
 /// The program as a user runs it: in a folder of its own, to its end or to a signal.
-#include <fcntl.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -49,23 +49,25 @@ struct Ending {
   }
 };
 
-/// A program that runs in a folder; its output goes to a file there.
+/// A program that runs in a folder. Its output goes to a file without a name, its own: another program may run there
+/// too.
 class Program {
  public:
-  Program(const Folder &folder, std::vector<std::string> words) : output_(folder / "output") {
+  Program(const Folder &folder, std::vector<std::string> words) : output_(std::tmpfile()) {
+    if (!output_) throw std::runtime_error("cannot make a temporary file");
     std::vector<char *> arguments;
     for (std::string &word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     process_ = fork();
     if (process_) return;
-    const int file = open(output_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    dup2(file, 1), dup2(file, 2);
+    dup2(fileno(output_), 1), dup2(fileno(output_), 2);
     if (chdir(folder.path().c_str())) _exit(126);
     execvp(arguments[0], arguments.data());
     _exit(127);
   }
   ~Program() {
     if (process_ > 0) kill(process_, SIGKILL), waitpid(process_, nullptr, 0);
+    std::fclose(output_);
   }
   Program(const Program &) = delete;
   Program &operator=(const Program &) = delete;
@@ -76,9 +78,9 @@ class Program {
     const rlimit limit{bytes, bytes};
     prlimit(process_, RLIMIT_FSIZE, &limit, nullptr);
   }
-  /// Waits until a file exists; false when the program ends or half a minute passes before that.
+  /// Waits until a file exists; false when the program ends or five minutes pass before that: machines may be slow.
   bool wait_for(const std::string &file) {
-    for (int i = 0; i < 3000 && !ended(); ++i) {
+    for (int i = 0; i < 30000 && !ended(); ++i) {
       if (std::filesystem::exists(file)) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
@@ -87,9 +89,11 @@ class Program {
   Ending end() {
     int status = 0;
     if (process_ > 0 && waitpid(process_, &status, 0) > 0) exit_ = status, process_ = -1;
-    std::ostringstream text;
-    text << std::ifstream(output_).rdbuf();
-    return {WIFEXITED(exit_) ? WEXITSTATUS(exit_) : -1, text.str()};
+    std::string text;
+    char part[4096];
+    for (ssize_t got; (got = pread(fileno(output_), part, sizeof part, static_cast<off_t>(text.size()))) > 0;)
+      text.append(part, static_cast<std::size_t>(got));
+    return {WIFEXITED(exit_) ? WEXITSTATUS(exit_) : -1, text};
   }
 
  private:
@@ -100,7 +104,7 @@ class Program {
     return true;
   }
 
-  std::string output_;
+  std::FILE *output_;
   pid_t process_;
   int exit_ = 0;
 };

@@ -87,30 +87,31 @@ inline std::vector<Fault> read_faults(const std::string &file) {
   return faults;
 }
 
-/// The fault in a folder: `run` and `check` refuse it with status 2 and one message that has these words, and nothing
-/// is written.
-inline void expect_refused(const Fault &fault) {
+/// The fault in a folder: the commands refuse it with status 2 and one message that has these words, and nothing is
+/// written.
+inline void expect_refused(const Fault &fault, const std::vector<std::string> &commands) {
   std::string scene = sound_scene(fault.base), section = good_section, mesh = good_mesh;
   std::string &spoilt = fault.file == "mesh.msh" ? mesh : fault.file == "section.csv" ? section : scene;
   spoilt = fault.from.empty() ? spoilt + fault.to + "\n" : changed(spoilt, fault.from, fault.to);
   const Folder folder;
   folder.write("scene.toml", scene), folder.write("section.csv", section), folder.write("mesh.msh", mesh);
-  for (const std::vector<std::string> &command :
-       {std::vector<std::string>{"run", "scene.toml", "-o", "results", "--no-pictures"}, {"check", "scene.toml"}}) {
-    const Ending ending = talus(folder, command, fault.ranks);
+  for (const std::string &command : commands) {
+    std::vector<std::string> line{command, "scene.toml"};
+    if (command == "run") line.insert(line.end(), {"-o", "results", "--no-pictures"});
+    const Ending ending = talus(folder, line, fault.ranks);
     EXPECT_EQ(ending.status, 2);
     for (const std::string &words : fault.words) EXPECT_TRUE(ending.says(words)) << words;
     EXPECT_EQ(ending.count("talus: "), 1) << "one message";
     EXPECT_FALSE(ending.says("PETSC ERROR"));
     EXPECT_FALSE(std::filesystem::exists(folder / "results"));
-    if (testing::Test::HasFailure()) ADD_FAILURE() << command[0] << ": " << ending.output;
+    if (testing::Test::HasFailure()) ADD_FAILURE() << command << ": " << ending.output;
   }
 }
 
-/// The faults of a table as tests, each by its name.
-#define TALUS_REFUSES(Table, file)                                                         \
+/// The faults of a table as tests, each by its name: TALUS_REFUSES(Table, file, commands).
+#define TALUS_REFUSES(Table, file, ...)                                                    \
   class Table : public testing::TestWithParam<Fault> {};                                   \
-  TEST_P(Table, AreRefused) { expect_refused(GetParam()); }                                \
+  TEST_P(Table, AreRefused) { expect_refused(GetParam(), {__VA_ARGS__}); }                 \
   INSTANTIATE_TEST_SUITE_P(All, Table, testing::ValuesIn(read_faults(TALUS_REFUSED file)), \
                            [](const auto &fault) { return fault.param.name; })
 

@@ -5,10 +5,10 @@
 namespace talus {
 namespace {
 
-TALUS_REFUSES(Scenes, "scenes.txt");      // text, and keys that contradict each other or the mesh
-TALUS_REFUSES(Keys, "keys.txt");          // single keys: range, type, unit; unknown keys of every table
-TALUS_REFUSES(Sections, "sections.txt");  // files of sections
-TALUS_REFUSES(Meshes, "meshes.txt");      // files of meshes
+TALUS_REFUSES(Scenes, "scenes.txt", "run", "check");      // text, and keys that contradict each other or the mesh
+TALUS_REFUSES(Keys, "keys.txt", "run");                   // single keys, which one reader reads for all commands
+TALUS_REFUSES(Sections, "sections.txt", "run", "check");  // files of sections
+TALUS_REFUSES(Meshes, "meshes.txt", "run", "check");      // files of meshes
 
 }  // namespace
 }  // namespace talus

@@ -258,7 +258,7 @@ TEST(Check, WritesNothing) {
   ASSERT_EQ(check(folder, {}).status, 0);
   for (const auto &entry : std::filesystem::directory_iterator(folder.path())) {
     const std::string name = entry.path().filename();
-    EXPECT_TRUE(name == "scene.toml" || name == "section.csv" || name == "output") << name;
+    EXPECT_TRUE(name == "scene.toml" || name == "section.csv") << name;
   }
 }
 

@@ -73,7 +73,7 @@ TEST(Check, WarnsOfBrittleSoftening) {
   EXPECT_TRUE(check(folder, with(softening, "body.sand.shape_factor=500")).says(warning));
   std::vector<std::string> words{"run", "scene.toml", "-o", "results", "--set"};
   words.insert(words.end(), softening.begin(), softening.end());
-  words.emplace_back("body.sand.shape_factor=500");
+  words.insert(words.end(), {"body.sand.shape_factor=500", "output.picture=['displacement']"});
   const Ending ending = talus(folder, words);
   ASSERT_EQ(ending.status, 0) << ending.output;
   for (const char *file : {"results/run.log", "results/report.html"}) {

@@ -79,33 +79,22 @@ class Leaving : public testing::Test {
 };
 class EachLeaving : public Leaving, public testing::WithParamInterface<Variant> {};
 
-/// Half of the block is gone at 0.19 s, all of it at 0.25 s.
-TEST_P(EachLeaving, ClosesItsLedger) {
-  const Ending half = run("out.toml", "half", GetParam().set), all = run("whole.toml", "all", GetParam().set);
-  ASSERT_EQ(half.status, 0) << half.output;
-  ASSERT_EQ(all.status, 0) << all.output;
-  EXPECT_TRUE(half.says("particles leave the mesh, the first near (3, ")) << half.output;
-  EXPECT_TRUE(all.says(" left by right: mass ")) << all.output;
-  EXPECT_TRUE(all.says("; no soil is left")) << all.output;
-  expect({"closes", "half"}), expect({"closes", "all", "all"});
-}
-
-TEST_P(EachLeaving, IsTheSameOnSeveralRanks) {
-  ASSERT_EQ(run("whole.toml", "one", GetParam().set).status, 0);
-  for (const int ranks : {2, 4}) {
-    const std::string results = std::to_string(ranks);
-    const Ending ending = run("whole.toml", results, GetParam().set, ranks);
-    ASSERT_EQ(ending.status, 0) << ending.output;
-    expect({"closes", results, "all"}), expect({"agree", "one", results});
-  }
-}
-
-/// The run ends when half of the block has left, and goes on with one more stage.
-TEST_P(EachLeaving, GoesOnToTheBit) {
-  for (const int ranks : {1, 2}) {
+/// Half of the block is gone at 0.19 s, all of it at 0.25 s. The run that ends when half of it has left goes on with
+/// one more stage and is then the whole one to the bit; on several ranks it is the same but for round-off.
+TEST_P(EachLeaving, ClosesItsLedgerOnSeveralRanksAndGoesOnToTheBit) {
+  for (const int ranks : {1, 2, 4}) {
+    SCOPED_TRACE(ranks);
     const std::string whole = "whole" + std::to_string(ranks), resumed = "resumed" + std::to_string(ranks);
-    ASSERT_EQ(run("whole.toml", whole, GetParam().set, ranks).status, 0);
-    ASSERT_EQ(run("out.toml", resumed, GetParam().set, ranks).status, 0);
+    const Ending all = run("whole.toml", whole, GetParam().set, ranks);
+    ASSERT_EQ(all.status, 0) << all.output;
+    EXPECT_TRUE(all.says(" left by right: mass ") && all.says("; no soil is left")) << all.output;
+    expect({"closes", whole, "all"});
+    if (ranks > 1) expect({"agree", "whole1", whole});
+    if (ranks > 2) continue;
+    const Ending half = run("out.toml", resumed, GetParam().set, ranks);
+    ASSERT_EQ(half.status, 0) << half.output;
+    EXPECT_TRUE(half.says("particles leave the mesh, the first near (3, ")) << half.output;
+    expect({"closes", resumed});
     const Ending ending = run("whole.toml", resumed, GetParam().set, ranks, {"--resume"});
     ASSERT_EQ(ending.status, 0) << ending.output;
     expect({"same", whole, resumed});

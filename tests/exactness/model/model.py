@@ -294,7 +294,7 @@ class Pictures(unittest.TestCase):
         self.assertNotIn("Traceback", said)
 
     def test_and_tables_are_in_the_report(self):
-        status, said = self.folder.talus("run", "block.toml", "-o", "out")
+        status, said = self.folder.talus("run", "block.toml", "-o", "out", "--set", "output.picture=['displacement']")
         self.assertEqual(status, 0, said)
         report = (self.folder.path / "out/report.html").read_text()
         self.assertLess(report.index('alt="Model at the start"'), report.index('alt="Displacement"'))
