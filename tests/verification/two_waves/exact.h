@@ -35,8 +35,9 @@ inline void two_waves(Rung &rung) {
   };
   for (const int dimension : {2, 3})
     for (const bool ponded : {false, true}) {
-      // behind two fronts stress rings, by a part that falls with the cells; the exact values have three digits
-      wave(dimension, ponded, 0.0125, share * 2000, 0.02, true);
+      // behind two fronts stress rings, by a part that falls with the cells, and differs from mesh to mesh by as much:
+      // up to 2.8 % in cells of 11.5 to 13.5 mm; the exact values have three digits
+      wave(dimension, ponded, 0.0125, share * 2000, 0.03, true);
       if (dimension == 2 || !ponded || rung.longer()) wave(dimension, ponded, 0.0025, share * 2000, 0.005, true);
     }
   wave(2, false, 0.0025, 2000, 0.01, false);  // the face crosses a cell, and nothing is linear any more
