@@ -21,7 +21,7 @@ from talus_results import Thickness  # noqa: E402
 from talus_colours import Colours  # noqa: E402
 from talus_sections import Painter  # noqa: E402
 from talus_views import Oblique  # noqa: E402
-from talus_tiles import Frame, tiles  # noqa: E402
+from talus_tiles import Frame, nearest, tiles  # noqa: E402
 
 SPACING = 0.1
 RANDOM = np.random.default_rng(7)
@@ -206,6 +206,16 @@ class Contours(unittest.TestCase):
 
 
 class Sections(unittest.TestCase):
+    def test_few_large_particles_own_the_pixels_that_are_nearest_to_them(self):
+        random = np.random.default_rng(1)
+        at, size = 100 * random.random((9, 2)), np.array([10, 20, 5] * 3, np.float32)
+        owner, distance = nearest(at, (100, 100), 1.4, size)
+        row, column = np.mgrid[:100, :100] + 0.5
+        all_of = np.hypot(column[..., None] - at[:, 0], row[..., None] - at[:, 1]) / size
+        within = all_of.min(axis=-1) < 1.4
+        np.testing.assert_array_equal(owner, np.where(within, all_of.argmin(axis=-1), -1))
+        np.testing.assert_allclose(distance[within], all_of.min(axis=-1)[within], atol=1e-5)
+
     def test_a_section_has_no_holes_and_shows_the_nearest_particles(self):
         at = RANDOM.random((12000, 3)) * [2, 1, 1]
         spacing = (2 / len(at)) ** (1 / 3)
