@@ -103,8 +103,8 @@ TEST(OutputFields, of_laws_are_not_a_number_where_a_body_has_another_law) {
 
 TEST(RunRow, names_what_it_holds_and_closes_its_ledgers) {
   RunRow<2> row;
-  row.energy = {.first = 30, .escaped = 9, .of_boundary = {11, 14}, .work = {4, 5, -6}};
-  row.energy.balance.kinetic = 1, row.energy.balance.strain = 2;
+  row.energy = {
+      .balance = {.kinetic = 1, .strain = 2}, .first = 30, .escaped = 9, .of_boundary = {11, 14}, .work = {4, 5, -6}};
   row.escaped = {.particles = 3, .mass = 50, .fluid_mass = {6, 0}, .momentum = {70, -80}, .energy = 9};
   row.fluids = {{100, 7, 2}}, row.first_fluid = {104}, row.handed = {3};
   const RigidBases<2>::Report base{.slip = 15, .friction = 16, .temperature = 17, .hottest = 18, .pressure = 19};
