@@ -101,7 +101,7 @@ for field in whole:
     a, b = whole[field], started[field]
     assert a.shape == b.shape, field
     assert numpy.allclose(a, b, rtol=0, atol=1e-7 * numpy.abs(a).max(initial=0) + 1e-15, equal_nan=True), f'{field} {numpy.abs(a - b).max()} of {numpy.abs(a).max()}'
-assert numpy.abs(whole['velocity']).max() > 1e-3
+assert numpy.abs(whole['velocity']).max() > 1e-4
 a, b = rows('whole', 'fall')[-1], rows('started', 'fall')[-1]
 before = [row for row in csv.DictReader(open('results/whole/history.csv')) if row['stage'] != 'fall'][-1]
 for name in a:
