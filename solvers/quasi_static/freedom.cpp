@@ -78,7 +78,7 @@ PetscErrorCode QuasiStatic<dim>::find_freedom(double load_time, std::string *fre
   PetscCallMPI(add_up());
   std::ostringstream text;
   for (size_t k = 0; k < number.size(); ++k) {
-    const Eigen::SelfAdjointEigenSolver<Square<modes>> eigen(Eigen::Map<const Square<modes>>(&sums[k * width]));
+    const Eigen::SelfAdjointEigenSolver<Square<modes>> eigen{Eigen::Map<const Square<modes>>(&sums[k * width])};
     if (eigen.eigenvalues()[0] > 1e-8 * std::max(1., eigen.eigenvalues()[modes - 1])) continue;
     text << (text.tellp() > 0 ? "; " : "") << "the piece around (";
     for (int d = 0; d < dim; ++d) text << (d ? ", " : "") << centre[k][d];

@@ -310,8 +310,9 @@ std::string RunFile::xdmf_particles(const Entry &entry) const {
                      "\" NodesPerElement=\"1\">" + data_item(points_file, "point", entry.particles, 1, "Int") +
                      "</Topology>\n";
   std::vector<Shape> columns = entry.columns;
-  std::ranges::stable_partition(
-      columns, [](const Shape &column) { return column.name == "plastic_strain" || column.name == "shear_strain"; });
+  std::stable_partition(columns.begin(), columns.end(), [](const Shape &column) {
+    return column.name == "plastic_strain" || column.name == "shear_strain";
+  });
   for (const auto &[name, unit, components] : columns) {
     const std::string data = data_item(file, name, entry.particles, components);
     // a tensor is a matrix, because ParaView's readers interpret the type Tensor6 differently

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string_view>
 
 #include "scene/reader.h"
 #include "simulation.h"
@@ -51,7 +52,7 @@ Snapshot after(MPI_Comm comm, const std::string &law, int steps = 0) {
   return simulation->snapshot();
 }
 
-const Column &column(const Snapshot &s, const std::string &name) {
+const Column &column(const Snapshot &s, std::string_view name) {
   return *std::find_if(s.columns.begin(), s.columns.end(), [&](const Column &c) { return c.name == name; });
 }
 
@@ -67,7 +68,9 @@ void expect_the_same(const Snapshot &a, const Snapshot &b, const std::string &na
       largest =
           std::max(largest, std::abs(x.values[i * x.components + k] - y.values[place.at(a.id[i]) * x.components + k]));
   EXPECT_LT(largest / scale, 1e-10) << name;
-  if (name != "velocity") EXPECT_GT(scale, 1e-3) << name;
+  if (name != "velocity") {
+    EXPECT_GT(scale, 1e-3) << name;
+  }
 }
 
 const std::string umats = UMATS;
