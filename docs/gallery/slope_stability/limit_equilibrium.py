@@ -19,10 +19,10 @@ SLICES = 60
 
 class Slope:
     """Layers (top line or None for all below, c, phi, gamma), from the top down; `ground` and top lines are polylines, toe at the
-    right. `seam`: height of a level slip line, if there is one."""
+    right. `seam`: height of a level slip line, if there is one. `ru`: pore pressure over the weight per area above."""
 
-    def __init__(self, ground, layers, seam=None, deepest=-math.inf):
-        self.ground, self.layers, self.seam, self.deepest = np.array(ground, float), layers, seam, deepest
+    def __init__(self, ground, layers, seam=None, deepest=-math.inf, ru=0):
+        self.ground, self.layers, self.seam, self.deepest, self.ru = np.array(ground, float), layers, seam, deepest, ru
 
     def surface(self, x):
         return np.interp(x, *self.ground.T)
@@ -57,7 +57,7 @@ def factor(slope, x, y, davis=False):
         if davis:  # strength on a slip plane of soil with psi = 0, at the reduced strength: both times cos(phi_F)
             lost = np.cos(np.arctan(tangent / F))
             tangent, cohesion = tangent * lost, c * lost
-        resisting = weight * np.cos(alpha) * tangent + cohesion * width / np.cos(alpha)
+        resisting = weight * (np.cos(alpha) - slope.ru / np.cos(alpha)) * tangent + cohesion * width / np.cos(alpha)
         driving = weight * np.sin(alpha)
         inner = np.where(np.arange(len(alpha)) < len(alpha) - 1, 1.0, 0.0)  # no force behind the last slice
         outer = np.concatenate([[0.0], inner[:-1]])
@@ -145,6 +145,7 @@ SLOPES = {
     "AT-1": Slope([(0, 35), (18, 35), (48, 15), (66, 15)], [(None, 41.65, 15, 18.82)], deepest=0),
     "GL-1": Slope([(0, 15.24), (18.288, 15.24), (48.768, 0)], [(None, 14.9626, 20, 19.6359)], deepest=0),
     "GL-2": Slope([(0, 15.24), (18.288, 15.24), (48.768, 0), (79.248, 0)], [(None, 14.9626, 20, 19.6359)], deepest=-7.62),
+    "SP-1969": Slope([(-10, 40), (10, 40), (70, 10), (100, 10)], [(None, 10.8, 40, 18)], deepest=0, ru=0.5),
     "weak seam": Slope([(0, 10), (15, 10), (35, 0), (50, 0)],
                        [(None, 10, 30, 19), ([(0, -1), (50, -1)], 2, 12, 18)], seam=-1.39, deepest=-1.4),
     "layered": Slope([(0, 10), (15, 10), (35, 0), (50, 0)],
