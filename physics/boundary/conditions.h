@@ -36,6 +36,8 @@ class Conditions {
   /// Imposes prescribed velocities and keeps nodes from entering a base. With `sticking`, nodes that stuck in the last
   /// `resolve` do not slide.
   void constrain(double t, const FilledGrid<dim> &grid, Vec<dim> *v, bool sticking);
+  /// Takes from velocities what goes into a base.
+  void leave_base(Vec<dim> *v) { bases_.leave_base(prescribed_, v); }
   /// Subtracts from nodal forces the forces of dashpots and friction at velocities `v`, and the parts that supports and
   /// bases bear.
   void project(const Vec<dim> *v, Vec<dim> *force);

@@ -224,6 +224,13 @@ void RigidBases<dim>::constrain(double t, const FilledGrid<dim> &grid, Prescribe
 }
 
 template <int dim>
+void RigidBases<dim>::leave_base(PrescribedMotion<dim> &prescribed, Vec<dim> *v) {
+  take_turns_at_nodes(
+      prescribed, v, [](const Active &, double, Vec<dim> &) { return false; },
+      [](const typename PrescribedMotion<dim>::Active &, Vec<dim> &) {});
+}
+
+template <int dim>
 void RigidBases<dim>::project(PrescribedMotion<dim> &prescribed, const Vec<dim> *v, Vec<dim> *force) {
   using Support = typename PrescribedMotion<dim>::Active;
   take_turns_at_nodes(

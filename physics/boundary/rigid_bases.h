@@ -88,6 +88,9 @@ class RigidBases {
   /// Keeps nodes from entering a base, with what else `prescribed` demands of them. With `sticking`, nodes that stuck
   /// in the last `resolve` do not slide.
   void constrain(double t, const FilledGrid<dim> &grid, PrescribedMotion<dim> &prescribed, Vec<dim> *v, bool sticking);
+  /// Takes from velocities what goes into a base.
+  void leave_base(PrescribedMotion<dim> &prescribed, Vec<dim> *v);
+  bool none() const { return facets_.empty(); }  ///< in the scene
   /// Subtracts from nodal forces the friction at velocities `v`, and what bases and supports bear beside each other.
   void project(PrescribedMotion<dim> &prescribed, const Vec<dim> *v, Vec<dim> *force);
   /// Applies contact with friction, implicitly over a step gamma, and leaves in `change` what each contact did, and
@@ -123,7 +126,6 @@ class RigidBases {
   Vec<dim> respond(Active &c, double t, double gamma, const Vec<dim> &x, const Square<dim> &mass,
                    const PoresInContact<dim> &pores, const Vec<dim> &before);
   void commit(Active &c, double gamma);
-  bool none() const { return facets_.empty(); }
   void cover(Contact &c, double share);
   void serialize_contacts(Archive &archive, const BackgroundMesh<dim> &mesh);
   void serialize_zones(Archive &archive, const BackgroundMesh<dim> &mesh);

@@ -138,21 +138,21 @@ PetscErrorCode SoilMotion<dim, Phases>::finish_gather(double t) {
   PetscFunctionReturn(0);
 }
 
-/// Gives nodes at boundaries the velocity at which soil meets these, docs/theory (4.2a): it is taken in the first step,
-/// as an impulse like any other. Collective.
+/// Imposes the velocities of boundaries, and leaves nodes of a base the velocity at which soil meets it, docs/theory
+/// (4.2a): it is taken in the first step, as an impulse like any other. Collective.
 template <int dim, class Phases>
 PetscErrorCode SoilMotion<dim, Phases>::meet_boundaries(double load_time) {
   PetscFunctionBeginUser;
   const int nodes = grid_.node_count();
-  std::vector<Vec<dim>> &start = velocities_.start, &met = velocities_.moving;
-  PetscCall((talus::to_particles_and_back<dim, 1>(grid_, start.data(), met.data())));
-  for (int i = 0; i < nodes; ++i)
-    for (int d = 0; d < dim; ++d) met[i][d] = 2 * start[i][d] - met[i][d];
-  std::copy_n(met.begin(), nodes, scratch_.begin());
-  conditions_.constrain(load_time, grid_, scratch_.data(), false);
+  std::vector<Vec<dim>> &start = velocities_.start, &met = velocities_.moving, &left = scratch_;
+  const bool bases = !conditions_.bases().none();
+  if (bases) PetscCall((talus::to_particles_and_back<dim, 1>(grid_, start.data(), met.data())));
+  for (int i = 0; bases && i < nodes; ++i)
+    for (int d = 0; d < dim; ++d) left[i][d] = met[i][d] = 2 * start[i][d] - met[i][d];
   conditions_.constrain(load_time, grid_, start.data(), false);
-  for (int i = 0; i < nodes; ++i)
-    for (int d = 0; d < dim; ++d) start[i][d] += met[i][d] - scratch_[i][d];
+  if (bases) conditions_.leave_base(left.data());
+  for (int i = 0; bases && i < nodes; ++i)
+    for (int d = 0; d < dim; ++d) start[i][d] += met[i][d] - left[i][d];
   PetscFunctionReturn(0);
 }
 

@@ -40,7 +40,7 @@ def bars(program, folder):
         f'body.bars.stress=["{lateral}", "{vertical}", "{lateral}", "0 * x", "0 * x", "0 * x"]').snapshots[-1])
     return [
         within("profile off in the mean", plane["profile"], 0, 0.005, "m"),
-        within("toe, 99.5 % of the mass", plane["toe"], 0.401, 0.02, "m"),
+        within("toe, 99.5 % of the mass", plane["toe"], 0.442, 0.02, "m"),
         within("foot of the failure line", plane["foot"], 0.179, 0.01, "m"),
         within("slice: profile off in the mean", slice_["profile"], 0, 0.005, "m"),
     ]
