@@ -4,6 +4,7 @@
 #include <ogr_spatialref.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -108,6 +109,26 @@ void read_values(GDALRasterBand &band, bool from_north, Grid &grid) {
   grid.remarks.push_back(text.str());
 }
 
+/// GDAL reads as many values of an ESRI ASCII grid as its header names, wherever its lines end, and leaves the rest.
+void check_count(const Grid &grid) {
+  std::ifstream in(grid.file);
+  std::string line, word;
+  long long values = 0, wide = 0;
+  while (std::getline(in, line)) {
+    std::istringstream words(line);
+    if (!(words >> word) || (std::isalpha(static_cast<unsigned char>(word[0])) && values == 0)) continue;
+    long long here = 1;
+    while (words >> word) ++here;
+    values += here, wide = std::max(wide, here);
+  }
+  const long long named = static_cast<long long>(grid.rows) * grid.columns;
+  if (values > named)
+    complain(grid.file, "holds " + std::to_string(values) + " values, of up to " + std::to_string(wide) +
+                            " in a line, where its header says " + std::to_string(grid.rows) + " rows of " +
+                            std::to_string(grid.columns) + ", " + std::to_string(named) +
+                            " values; correct nrows and ncols, or write the file again");
+}
+
 }  // namespace
 
 Grid read_grid(const std::string &file) {
@@ -140,6 +161,7 @@ Grid read_grid(const std::string &file) {
                            "; another one makes a file of its own by gdal_translate -b NUMBER");
   }
   read_values(*band, from_north, grid);
+  if (std::string(data->GetDriver()->GetDescription()) == "AAIGrid") check_count(grid);
   if (const char *text = data->GetProjectionRef()) grid.projection = text;
   return grid;
 }

@@ -159,6 +159,25 @@ TEST_F(TerrainFiles, AreRefusedWhenTheyEndEarly) {
   EXPECT_EQ(std::count(answer.text.begin(), answer.text.end(), '\n'), 1) << answer.text;
 }
 
+/// Whose rows are longer or more than the header says: each row would begin where the one before ends.
+TEST_F(TerrainFiles, AreRefusedWithMoreValuesThanTheirHeaderNames) {
+  const std::string rows = "3\nxllcenter 0\nyllcenter 0\ncellsize 10\n90 80 70 60\n90 80 70 60\n90 80 70 60\n";
+  for (const auto &[size, words] :
+       {std::pair{"ncols 3\nnrows ", "3 rows of 3, 9 values"}, std::pair{"ncols 4\nnrows ", ""}}) {
+    std::ofstream(in_folder("rows.asc")) << size << rows;
+    std::string said;
+    try {
+      read_grid(in_folder("rows.asc"));
+    } catch (const std::invalid_argument &refusal) {
+      said = refusal.what();
+    }
+    if (*words)
+      expect_words(said, {"rows.asc: holds 12 values, of up to 4 in a line", words});
+    else
+      EXPECT_EQ(said, "");
+  }
+}
+
 /// At once, however many rows are missing, and wherever the grid is read: GDAL's search for a row that is not there
 /// doubles with each of them.
 TEST_F(TerrainFiles, AreRefusedAtOnceWhenMostOfThemIsMissing) {
