@@ -397,7 +397,8 @@ def main():
         sys.exit(f"talus: {error}")
     if maps.moving:
         warn(f"the soil has not come to rest: {100 * maps.moving[0]:.3g} % of what slid is faster than {SLOW:g} m/s, at up to {maps.moving[1]:.3g} m/s; outline, "
-             f"run-out and angle of reach are those at {maps.moment()} and not of a final deposit, for which its last stage takes a longer duration")
+             f"run-out and angle of reach are those at {maps.moment()} and not of a final deposit, for which its last stage "
+             "takes a longer duration or, where it ended by rest, a smaller rest_speed")
     if maps.left_out()[0] > LEFT_OUT * maps.volume[-1]:
         warn(maps.beside(given.moved))
     inside, deposit = maps.numbers()["volume_m3"], maps.thickness[-1].sum() * maps.grid.spacing**2

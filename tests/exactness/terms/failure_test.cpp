@@ -109,11 +109,12 @@ TEST(Failure, is_told_at_the_limit_load_of_finite_elements) {
     ASSERT_TRUE(failure) << "cells of " << size << " m";
     EXPECT_NEAR(failure->load_time, limit, 0.05 * limit) << "cells of " << size << " m";
   }
-  // loaded to its limit in 4 s the crest passes the speed at two thirds of it
-  const auto fast = failure_of(
-      slope("strip_on_slope.csv", clay, "[7.9, 7.95]", 0.05) + strip("[[0, 0], [9, \"100 kPa\"]]"), {"mesh.size=0.6"});
+  // softer clay that is loaded to its limit in 4 s passes the speed at three quarters of it
+  const auto fast =
+      failure_of(slope("strip_on_slope.csv", clay, "[7.9, 7.95]", 0.05) + strip("[[0, 0], [9, \"100 kPa\"]]"),
+                 {"mesh.size=0.6", "body.soil.young_modulus=4e6"});
   ASSERT_TRUE(fast);
-  EXPECT_NEAR(fast->load_time, 11.25 * 9 / 25, 0.08 * 11.25 * 9 / 25);
+  EXPECT_NEAR(fast->load_time, 11.25 * 9 / 25, 0.05 * 11.25 * 9 / 25);
   const std::string cut =
       "region = \"clay\"\nyoung_modulus = \"20 MPa\"\npoisson_ratio = 0.3\ncohesion = \"15 kPa\"\nfriction_angle = "
       "15\n";
