@@ -58,16 +58,16 @@ class StopAtFailure final : public StopCriterion<dim> {
       return false;
     }
     const EnergySums energies = run.energies.sums();
-    const double stored = energies.balance.strain, not_stored = energies.not_stored();
+    const double stored = energies.balance.strain, not_stored = energies.not_stored(),
+                 excess = failing * stored - not_stored;
     if (seen_.fast++ == 0) {
       const bool between = last_speed >= 0 && last_speed < limit;
       seen_.time = between ? middle - (middle - last_middle) * (speed - limit) / (speed - last_speed) : middle;
       seen_.load_time = run.clock.load_time - (run.clock.hold_loads ? 0 : run.clock.time - seen_.time);
-      seen_.stored = stored, seen_.not_stored = not_stored, seen_.change = 0;
-      seen_.excess = failing * stored - not_stored;
+      seen_.stored = stored, seen_.not_stored = not_stored, seen_.change = 0, seen_.excess = excess;
     }
     // soil that follows fast loads passes the speed long before it fails
-    if (const double excess = failing * stored - not_stored; excess > seen_.excess)
+    if (excess > seen_.excess)
       seen_.excess = excess, seen_.time = run.clock.time, seen_.load_time = run.clock.load_time;
     seen_.change = std::max(seen_.change, std::abs(stored - seen_.stored));
     return seen_.fast > tenths / 2 && not_stored - seen_.not_stored > failed * seen_.change;
