@@ -13,6 +13,7 @@ numbers.toml beside its README.md:
     command = "solve"                # run (the default), solve, or factor_of_safety
     cost = "quick"                   # quick: in ./talus test; long: only with --long
     unchecked = "why"                # not rerun with the present program
+    listed = false                   # checked, but not in the page's table
     numbers = [
       {quantity = "crest displacement", measure = "displacement", point = "crest", unit = "m", value = 12.4, tolerance = 0.5, because = "..."},
     ]
@@ -31,7 +32,7 @@ pictures from there:
     compare = {crest_m = 0.05}
     because = "..."
     tables = [{name = "crest", rows = ["eta"], column = "size_m", value = "crest_m", digits = 1}]   # tables of the page, made from the file;
-                                     # digits may be "as written" there; {name = "printed", text = "sizes.txt"} shows a file that the study
+                                     # digits may be "as written" there; without = {column = "value"} leaves rows out; {name = "printed", text = "sizes.txt"} shows a file that the study
                                      # writes beside the page as it is
 
 A page with `model = "scene.toml"` at the head of its file shows what that scene models in a picture model.png, which --write draws again; it carries the
@@ -117,7 +118,7 @@ class Page:
         if stated.get("verdict"):
             tables["verdict"] = table_of_verdict(stated["verdict"], stated.get("run", {}))
         if stated.get("run"):
-            tables["numbers"] = table_of_runs(stated["run"], self.name)
+            tables["numbers"] = table_of_runs({name: run for name, run in stated["run"].items() if run.get("listed", True)}, self.name)
         if stated.get("study"):
             tables["studies"] = table_of_studies(stated["study"])
         for name, study in stated.get("study", {}).items():
@@ -252,7 +253,7 @@ def table_of_studies(studies):
 def table_of_study(path, wanted, study):
     """A CSV as a table: one line for each combination of the columns `rows`, one column for each value of `column`."""
     with open(path, newline="") as file:
-        rows = list(csv.DictReader(file))
+        rows = [row for row in csv.DictReader(file) if not any(row[column] == value for column, value in wanted.get("without", {}).items())]
     heads, across = wanted["rows"], wanted.get("column")
     columns = list(dict.fromkeys(row[across] for row in rows)) if across else wanted["values"]
     lines = {}
