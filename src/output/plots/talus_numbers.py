@@ -492,7 +492,7 @@ def main():
                     if not check_study(page, name, study, given.talus, given.write):
                         faults.append(f"{page.name}: study {name} ({study['about']})")
         if not put_in_step(page, given.write):
-            faults.append(f"{page.name}: tables of {page.readme.name}")
+            faults.append(f"{page.name}: tables of its pages")
         if page.model:
             if given.write:
                 draw_model(page, given.talus)
