@@ -13,6 +13,7 @@ numbers.toml beside its README.md:
     command = "solve"                # run (the default), solve, or factor_of_safety
     cost = "quick"                   # quick: in ./talus test; long: only with --long
     unchecked = "why"                # not rerun with the present program
+    listed = false                   # checked, but not in the page's table
     numbers = [
       {quantity = "crest displacement", measure = "displacement", point = "crest", unit = "m", value = 12.4, tolerance = 0.5, because = "..."},
     ]
@@ -31,14 +32,22 @@ pictures from there:
     compare = {crest_m = 0.05}
     because = "..."
     tables = [{name = "crest", rows = ["eta"], column = "size_m", value = "crest_m", digits = 1}]   # tables of the page, made from the file;
-                                     # digits may be "as written" there; {name = "printed", text = "sizes.txt"} shows a file that the study
+                                     # digits may be "as written" there; without = {column = "value"} leaves rows out; {name = "printed", text = "sizes.txt"} shows a file that the study
                                      # writes beside the page as it is
 
 A page with `model = "scene.toml"` at the head of its file shows what that scene models in a picture model.png, which --write draws again; it carries the
 digest of the scene, by which --pages finds that it is of another one.
 
-The tables stand in README.md between the lines `<!-- numbers -->`, `<!-- studies -->` (a list of them) or `<!-- sizes: crest -->` (a table of a
-study), and `<!-- end -->`.
+The table at the head of a page compares with a reference. A row names a number of a run, or gives text:
+
+    [[verdict]]
+    quantity = "crest displacement"
+    reference = "about 4 m"
+    of = ["scene", "displacement of the crest"]   # run and quantity; or talus = "4 m" where a study or another command gives the value
+    is = "same within 1 %"                        # same, chosen, fitted, differs: why
+
+The tables stand in README.md or in another page (.md) of the folder between the lines `<!-- verdict -->`, `<!-- numbers -->`, `<!-- studies -->` (a list
+of them) or `<!-- sizes: crest -->` (a table of a study), and `<!-- end -->`.
 """
 
 import talus_interrupt  # noqa: F401  before all that takes time
@@ -106,8 +115,10 @@ class Page:
         """{marker: lines of the table} of the page."""
         stated = tomllib.loads(self.file.read_text())
         tables = {}
+        if stated.get("verdict"):
+            tables["verdict"] = table_of_verdict(stated["verdict"], stated.get("run", {}))
         if stated.get("run"):
-            tables["numbers"] = table_of_runs(stated["run"], self.name)
+            tables["numbers"] = table_of_runs({name: run for name, run in stated["run"].items() if run.get("listed", True)}, self.name)
         if stated.get("study"):
             tables["studies"] = table_of_studies(stated["study"])
         for name, study in stated.get("study", {}).items():
@@ -116,16 +127,22 @@ class Page:
                                                        else table_of_study(self.folder / study["file"], wanted, study))
         return tables
 
-    def text_in_step(self):
-        """README.md with the tables that its files give. Raises ValueError where a table has no place."""
-        text = self.readme.read_text()
+    def texts(self):
+        """{file: text} of README.md and of the pages beside it."""
+        return {file: file.read_text() for file in [self.readme, *sorted(set(self.folder.glob("*.md")) - {self.readme})]}
+
+    def texts_in_step(self):
+        """The pages with the tables that their files give. Raises ValueError where a table has no place."""
+        texts = self.texts()
         for marker, lines in self.tables().items():
             pattern = rf"<!-- {re.escape(marker)} -->\n.*?<!-- end -->"
-            if not re.search(pattern, text, flags=re.S):
-                raise ValueError(f"{self.readme} has no line <!-- {marker} --> with <!-- end --> after its table")
+            places = [file for file, text in texts.items() if re.search(pattern, text, flags=re.S)]
+            if not places:
+                raise ValueError(f"{self.readme} and the pages beside it have no line <!-- {marker} --> with <!-- end --> after its table")
             block = "\n".join([f"<!-- {marker} -->", *lines, "<!-- end -->"])
-            text = re.sub(pattern, lambda _: block, text, flags=re.S)
-        return text
+            for file in places:
+                texts[file] = re.sub(pattern, lambda _: block, texts[file], flags=re.S)
+        return texts
 
 
 def decimals(tolerance):
@@ -164,6 +181,19 @@ def unit_of(number):
 
 def title_of(run):
     return run["about"] + (" *(not checked with the present program)*" if "unchecked" in run else "")
+
+
+def table_of_verdict(rows, runs):
+    """A reference, the value of Talus and how they agree, row by row."""
+    lines = ["| | reference | Talus | |", "|---|---|---|---|"]
+    for row in rows:
+        value = row.get("talus")
+        if "of" in row:
+            run, quantity = row["of"]
+            number = next(number for number in runs[run]["numbers"] if number["quantity"] == quantity)
+            value = stated(number) + unit_of(number)
+        lines.append(f"| {row['quantity']} | {row['reference']} | {value} | {row['is']} |")
+    return lines
 
 
 def table_of_runs(runs, page):
@@ -223,7 +253,7 @@ def table_of_studies(studies):
 def table_of_study(path, wanted, study):
     """A CSV as a table: one line for each combination of the columns `rows`, one column for each value of `column`."""
     with open(path, newline="") as file:
-        rows = list(csv.DictReader(file))
+        rows = [row for row in csv.DictReader(file) if not any(row[column] == value for column, value in wanted.get("without", {}).items())]
     heads, across = wanted["rows"], wanted.get("column")
     columns = list(dict.fromkeys(row[across] for row in rows)) if across else wanted["values"]
     lines = {}
@@ -390,7 +420,7 @@ def draw_model(page, talus):
 def model_in_step(page):
     """Whether the page shows the model of its scene as it is."""
     picture = page.folder / "model.png"
-    fault = ("has no picture model.png" if not picture.exists() else "does not show model.png" if "](model.png)" not in page.readme.read_text()
+    fault = ("has no picture model.png" if not picture.exists() else "does not show model.png" if not any("](model.png)" in text for text in page.texts().values())
              else "shows the model of another scene" if Image.open(picture).info.get("scene") != digest_of(page) else "")
     if fault:
         print(f"{page.name}: FAIL: {page.readme.name} {fault}: ./talus verify --gallery {page.name} --pages --write")
@@ -412,18 +442,18 @@ def pages_of(gallery, names):
 def put_in_step(page, write):
     """Writes the page's tables, or says whether they are what its files give."""
     try:
-        wanted = page.text_in_step()
-    except (ValueError, OSError, KeyError) as error:
-        print(f"{page.name}: FAIL: {error}")
+        wanted = page.texts_in_step()
+    except (ValueError, OSError, KeyError, StopIteration) as error:
+        print(f"{page.name}: FAIL: {error!r}" if isinstance(error, (KeyError, StopIteration)) else f"{page.name}: FAIL: {error}")
         return False
-    if page.readme.read_text() == wanted:
-        return True
-    if write:
-        page.readme.write_text(wanted)
-        print(f"{page.name}: tables of {page.readme.name} written")
-        return True
-    print(f"{page.name}: FAIL: tables of {page.readme.name} are not made from its numbers.toml: ./talus verify --gallery {page.name} --pages --write")
-    return False
+    changed = {file: wanted[file] for file, text in page.texts().items() if text != wanted[file]}
+    for file, text in changed.items():
+        if write:
+            file.write_text(text)
+            print(f"{page.name}: tables of {file.name} written")
+        else:
+            print(f"{page.name}: FAIL: tables of {file.name} are not made from its numbers.toml: ./talus verify --gallery {page.name} --pages --write")
+    return write or not changed
 
 
 def main():
@@ -432,7 +462,7 @@ def main():
     parser.add_argument("talus", metavar="TALUS")
     parser.add_argument("names", metavar="PAGE", nargs="*")
     parser.add_argument("--long", action="store_true", help="the long runs and the studies too")
-    parser.add_argument("--write", action="store_true", help="write what is computed into numbers.toml and README.md")
+    parser.add_argument("--write", action="store_true", help="write what is computed into numbers.toml and the pages")
     parser.add_argument("--pages", action="store_true", help="run nothing: are the tables of the pages in step?")
     parser.add_argument("--only", metavar="NAME", action="append", help="of all the page states only this run or study")
     parser.add_argument("--list", action="store_true", help="name the runs and what they cost")
@@ -462,7 +492,7 @@ def main():
                     if not check_study(page, name, study, given.talus, given.write):
                         faults.append(f"{page.name}: study {name} ({study['about']})")
         if not put_in_step(page, given.write):
-            faults.append(f"{page.name}: tables of {page.readme.name}")
+            faults.append(f"{page.name}: tables of its pages")
         if page.model:
             if given.write:
                 draw_model(page, given.talus)

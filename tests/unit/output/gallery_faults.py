@@ -93,6 +93,58 @@ class Faults(unittest.TestCase):
             (page / "said.txt").write_text("the slope\n\nstands\n")
             self.assertEqual(verify("--pages").returncode, 1)
 
+    def test_tables_stand_on_pages_beside_the_first(self):
+        with tempfile.TemporaryDirectory() as name:
+            page = pathlib.Path(name) / "docs" / "gallery" / "small"
+            page.mkdir(parents=True)
+            (page / "numbers.toml").write_text(NUMBERS + """
+[[verdict]]
+quantity = "number of steps"
+reference = "about 10"
+of = ["slow", "steps"]
+is = "same"
+
+[[verdict]]
+quantity = "crest"
+reference = "-"
+talus = "2 m"
+is = "chosen"
+""")
+            (page / "sizes.csv").write_text("size_m,crest_m\n1,2\n")
+            (page / "README.md").write_text("<!-- verdict -->\n<!-- end -->\n<!-- studies -->\n<!-- end -->\n")
+
+            def verify(*words):
+                return subprocess.run([sys.executable, "-B", SCRIPT, page.parent, "/bin/false", "--pages", *words], capture_output=True, text=True)
+            told = verify("--write")
+            self.assertEqual(told.returncode, 1)
+            self.assertIn("no line <!-- numbers -->", told.stdout)
+            (page / "runs.md").write_text("<!-- numbers -->\n<!-- end -->\n")
+            self.assertEqual(verify().returncode, 1)
+            self.assertEqual(verify("--write").returncode, 0)
+            self.assertIn("| number of steps | about 10 | 10 | same |\n| crest | - | 2 m | chosen |\n<!-- end -->", (page / "README.md").read_text())
+            self.assertIn("| the scene as it is | steps | 10 | none: exact |", (page / "runs.md").read_text())
+            (page / "runs.md").write_text((page / "runs.md").read_text().replace("| 10 |", "| 11 |"))
+            told = verify()
+            self.assertEqual(told.returncode, 1)
+            self.assertIn("tables of runs.md are not made from its numbers.toml", told.stdout)
+
+    def test_a_table_leaves_out_what_it_is_told_to(self):
+        with tempfile.TemporaryDirectory() as name:
+            page = pathlib.Path(name) / "docs" / "gallery" / "small"
+            page.mkdir(parents=True)
+            (page / "numbers.toml").write_text(NUMBERS + 'tables = [{name = "crest", rows = ["size_m"], values = ["crest_m"], without = {size_m = "1"}}]\n'
+                                               + NUMBERS.split("\n\n")[0].replace("slow", "other").replace("the scene", "listed = no").replace(
+                                                   'cost =', 'listed = false\ncost =') + "\n")
+            (page / "sizes.csv").write_text("size_m,crest_m\n1,2\n3,4\n")
+            (page / "README.md").write_text("".join(f"<!-- {marker} -->\n<!-- end -->\n" for marker in ("numbers", "studies", "sizes: crest")))
+            subprocess.run([sys.executable, "-B", SCRIPT, page.parent, "/bin/false", "--pages", "--write"], check=True, stdout=subprocess.DEVNULL)
+            text = (page / "README.md").read_text()
+            self.assertIn("| 3 | 4 |", text)
+            self.assertNotIn("| 1 | 2 |", text)
+            self.assertNotIn("listed = no", text)
+            told = subprocess.run([sys.executable, "-B", SCRIPT, page.parent, "/bin/false", "--list"], capture_output=True, text=True)
+            self.assertIn("listed = no", told.stdout)
+
 
 if __name__ == "__main__":
     unittest.main()
