@@ -76,8 +76,8 @@ PetscErrorCode follow_flow(MPI_Comm comm, QuasiStatic<dim> *soil, PoreFlow<dim> 
     if (next != path.events.end() && to > *next) to = *next;
     if (to > 1 - 1e-9) to = 1;
     const double dt = path.steady ? step : (to - *share) * path.duration;
-    PetscCall(
-        step_of_flow.solve(path.load_at(to), path.steady ? 0 : path.load_at(to) - path.load_at(*share), dt, outcome));
+    PetscCall(step_of_flow.solve(path.load_at(to), path.steady ? 0 : path.load_at(to) - path.load_at(*share),
+                                 *share * path.duration, dt, outcome));
     *iterations += outcome->iterations;
     double error[4]{};  // of the step; the largest change of pressure so far, or what is slight; suction and pressure
     if (outcome->converged) {

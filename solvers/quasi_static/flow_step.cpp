@@ -36,6 +36,9 @@ PetscErrorCode FlowStep<dim>::setup() {
     if (nodes.owned[i]) owned_.push_back(i);
   std::sort(owned_.begin(), owned_.end(), [&](int a, int b) { return nodes.global()[a] < nodes.global()[b]; });
   if (soil_) {
+    std::vector<double> storages;
+    for (int b = 0; b < static_cast<int>(soil_->soil().points().size()); ++b) storages.push_back(storage(b));
+    flow_.drain_in_layers(storages);
     PetscCall(soil_->soil().nodes().global_vector(u_));
     PetscCall(soil_->soil().nodes().global_vector(force_));
     PetscCall(VecGetLocalSize(u_, &rows_u_));
@@ -259,7 +262,7 @@ PetscErrorCode FlowStep<dim>::snes_converged(SNES solver, PetscInt iteration, Pe
 /// Newton's method stalls where nodes near saturation change sides; Picard's (Celia, Bouloutas & Zarba 1990) goes on
 /// there.
 template <int dim>
-PetscErrorCode FlowStep<dim>::solve(double load_time, double travel, double dt, StepOutcome *outcome) {
+PetscErrorCode FlowStep<dim>::solve(double load_time, double travel, double begin, double dt, StepOutcome *outcome) {
   double *value;
   PetscFunctionBeginUser;
   *outcome = {}, load_time_ = load_time, dt_ = dt;
@@ -269,7 +272,7 @@ PetscErrorCode FlowStep<dim>::solve(double load_time, double travel, double dt, 
       PetscCall(make_solver());
     }
     water_scale_ = 0;
-    flow_.begin(load_time, travel);
+    PetscCall(flow_.begin(load_time, travel, begin, begin + dt));
     PetscCall(VecZeroEntries(x_));
     if (soil_) {
       PetscCall(VecGetArray(x_, &value));
@@ -330,6 +333,12 @@ PetscErrorCode FlowStep<dim>::commit(bool softening) {
   PetscFunctionReturn(0);
 }
 
+/// Of water per volume of soil that cannot widen, and pressure [1/Pa].
+template <int dim>
+double FlowStep<dim>::storage(int body) const {
+  return 1 / constrained_modulus(soil_->soil().points()[body].law) + flow_.porosity(body) / flow_.liquid().bulk_modulus;
+}
+
 template <int dim>
 double FlowStep<dim>::shortest_step() const {
   double shortest = 1e300;
@@ -338,9 +347,7 @@ double FlowStep<dim>::shortest_step() const {
     double square = 0;
     for (const Vec<dim> &g : soil_->soil().mesh().cells[c].gradient)
       square = std::max(square, map<dim>(g).squaredNorm());
-    const double storage = 1 / constrained_modulus(soil_->soil().points()[flow_.body_of(c)].law) +
-                           flow_.porosity(c) / flow_.liquid().bulk_modulus;
-    shortest = std::min(shortest, storage / (6 * square * flow_.conductivity(c)));
+    shortest = std::min(shortest, storage(flow_.body_of(c)) / (6 * square * flow_.conductivity(c)));
   }
   MPI_Allreduce(MPI_IN_PLACE, &shortest, 1, MPI_DOUBLE, MPI_MIN, flow_.nodes().comm());
   return shortest;

@@ -15,15 +15,17 @@ class FlowStep {
   FlowStep(QuasiStatic<dim> *soil, PoreFlow<dim> &flow, const QuasiStaticSource &settings, bool steady)
       : soil_(soil), flow_(flow), settings_(settings), steady_(steady) {}
   PetscErrorCode setup();
-  /// Solves for the state a step dt later, at the loads of `load_time`; prescribed motion acts over (load_time -
-  /// travel, load_time). What it found is a trial state until `commit`. Collective.
-  PetscErrorCode solve(double load_time, double travel, double dt, StepOutcome *outcome);
+  /// Solves for the state a step dt later, which begins `begin` [s] after the stage, at the loads of `load_time`;
+  /// prescribed motion acts over (load_time - travel, load_time). What it found is a trial state until `commit`.
+  /// Collective.
+  PetscErrorCode solve(double load_time, double travel, double begin, double dt, StepOutcome *outcome);
   PetscErrorCode commit(bool softening);
   /// Shortest time in which pressure crosses a cell of consolidating soil: shorter first steps overshoot beside drained
   /// faces (Vermeer & Verruijt 1981) [s]. Collective.
   double shortest_step() const;
 
  private:
+  double storage(int body) const;
   PetscErrorCode residual(::Vec x, ::Vec f);
   PetscErrorCode jacobian(Mat matrix);
   PetscErrorCode couple();

@@ -133,12 +133,13 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
   };
 
   std::vector<PetscInt> beyond(nodes_.count(), -1), surface(nodes_.count(), 0);
-  supplies_.clear();
+  supplies_.clear(), pressed_faces_.clear(), layers_ = {};
   const int count =
       static_cast<int>(sources_.size()) +
       1;  // order in which boundaries count where several meet at a node: pressures, open water, rain, the atmosphere
   const auto put = [&](const Facet<dim> &facet, int source, int rank, bool supplied) {
     const auto corners = nodes_.of_facet(facet.cell, facet.face);
+    if (rank >= 2) pressed_faces_.push_back(facet);
     for (int node : corners) {
       if (!soil_across(mesh_.cells[facet.cell].neighbour[facet.face])) surface[node] = 1;
       if (rank >= 0) beyond[node] = std::max<PetscInt>(beyond[node], rank * count + source + 1);
@@ -188,7 +189,7 @@ PetscErrorCode PoreFlow<dim>::activate(const std::vector<char> &active,
   PetscCall(nodes_.maximum(surface));
   at_surface_.assign(surface.begin(), surface.end());
   pressed_.assign(nodes_.count(), none);
-  may_close_.assign(nodes_.count(), 0), fixed_.assign(nodes_.count(), 0), open_.assign(nodes_.count(), 0);
+  may_close_.assign(nodes_.count(), 0), fixed_ = open_ = layered_ = may_close_;
   for (int i = 0; i < nodes_.count(); ++i)
     if (beyond[i] >= 0)
       pressed_[i] = static_cast<int>(beyond[i] % count) - 1, may_close_[i] = beyond[i] / count < 3,
@@ -208,15 +209,32 @@ double PoreFlow<dim>::outside(int source, const Vec<dim> &x, double t) const {
 }
 
 template <int dim>
-void PoreFlow<dim>::begin(double t, double travel) {
+void PoreFlow<dim>::drain_in_layers(const std::vector<double> &storage) {
+  std::vector<typename DrainedLayers<dim>::Face> faces;
+  for (const Facet<dim> &f : pressed_faces_) {
+    const int body = body_of_[f.cell];
+    faces.push_back({{}, f.area, dim * mesh_.volume[f.cell] / f.area, conductivity(f.cell), 0});
+    if (!has_curve(body)) faces.back().storage = storage[body];
+    std::ranges::copy(nodes_.of_facet(f.cell, f.face), faces.back().node.begin());
+  }
+  layers_.setup(nodes_, std::move(faces));
+}
+
+template <int dim>
+PetscErrorCode PoreFlow<dim>::begin(double t, double travel, double from, double to) {
+  PetscFunctionBeginUser;
   pressure = accepted, travel_ = travel;
+  beyond_.assign(nodes_.count(), 0);
+  PetscCall(layers_.begin(from, to));
   for (int i = 0; i < nodes_.count(); ++i) {
     if (pressed_[i] == none) continue;
-    const double p = outside(i, t);
-    fixed_[i] = !may_close_[i] || p > 0 || open_[i];  // below open water the pressure is that of the water
+    const double p = beyond_[i] = outside(i, t);
+    layered_[i] = layers_.ends_at(i) && (!may_close_[i] || p > 0);
+    fixed_[i] = !layered_[i] && (!may_close_[i] || p > 0 || open_[i]);  // below open water the pressure is its own
     if (fixed_[i]) pressure[i] = p;
     if (p > 0) open_[i] = 1;  // once the water level has fallen below the node, water seeps out here at first
   }
+  PetscFunctionReturn(0);
 }
 
 template <int dim>
@@ -226,7 +244,7 @@ bool PoreFlow<dim>::update_seepage(const std::vector<double> &rest) {
   for (double p : pressure) scale = std::max(scale, std::abs(p));
   MPI_Allreduce(MPI_IN_PLACE, &scale, 1, MPI_DOUBLE, MPI_MAX, nodes_.comm());
   for (int i = 0; i < nodes_.count(); ++i) {
-    if (!may_close_[i]) continue;
+    if (!may_close_[i] || layered_[i]) continue;
     if (fixed_[i] && pressure[i] == 0 && rest[i] > 0)
       fixed_[i] = open_[i] = 0, changed = 1;  // the node would draw in more than the supply
     else if (!fixed_[i] && pressure[i] > 1e-9 * scale)
@@ -329,6 +347,8 @@ void PoreFlow<dim>::balance(double t, double dt, WaterBalance *balance) const {
     const double water = dt * s.area * inflow_at(s, t);
     add(s.node, -water, std::abs(water));
   }
+  for (int i = 0; i < nodes_.count(); ++i)
+    if (layered_[i]) add(i, out_of_layer(i), std::abs(out_of_layer(i)));
 }
 
 template <int dim>
@@ -363,7 +383,10 @@ PetscErrorCode PoreFlow<dim>::tangent(double dt, bool newton, SparseMatrix &matr
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, nodes_.comm()));
   for (int i = 0; i < nodes_.count(); ++i)
-    if (fixed_[i] && nodes_.owned[i]) PetscCall(matrix.add(1, &nodes_.global()[i], 1, &nodes_.global()[i], &largest));
+    if (fixed_[i] && nodes_.owned[i])
+      PetscCall(matrix.add(1, &nodes_.global()[i], 1, &nodes_.global()[i], &largest));
+    else if (const double passes = layered_[i] ? layers_.passes(i) : 0; passes > 0)
+      PetscCall(matrix.add(1, &nodes_.global()[i], 1, &nodes_.global()[i], &passes));
   PetscFunctionReturn(0);
 }
 
@@ -371,11 +394,12 @@ template <int dim>
 void PoreFlow<dim>::commit(double t, double dt, const std::vector<double> &rest) {
   accepted = pressure;
   std::fill(inflow_.begin(), inflow_.end(), 0.);
-  for (int i = 0; i < nodes_.count(); ++i)
-    if (nodes_.owned[i] && fixed_[i]) {
-      entered_ += liquid_.density * rest[i];
-      (pressed_[i] >= 0 ? inflow_[pressed_[i]] : inflow_.back()) += rest[i] / dt;
-    }
+  for (int i = 0; i < nodes_.count(); ++i) {
+    const double water = layered_[i] ? -out_of_layer(i) : fixed_[i] && nodes_.owned[i] ? rest[i] : 0;
+    if (water == 0) continue;
+    entered_ += liquid_.density * water;
+    (pressed_[i] >= 0 ? inflow_[pressed_[i]] : inflow_.back()) += water / dt;
+  }
   for (const Supply &s : supplies_) {
     const double water = s.area * inflow_at(s, t);
     inflow_[s.source] += water, entered_ += liquid_.density * water * dt;

@@ -10,6 +10,7 @@
 #include "physics/pores/fluids.h"
 #include "physics/pores/soil_pores.h"
 #include "solvers/quasi_static/cell_permeability.h"
+#include "solvers/quasi_static/drained_layers.h"
 #include "solvers/quasi_static/element_nodes.h"
 #include "solvers/quasi_static/linear_system.h"
 
@@ -49,9 +50,13 @@ class PoreFlow {
   /// Sets the cells through which water flows. Nodes retain their pressure, new ones take `fresh`(x). Collective.
   PetscErrorCode activate(const std::vector<char> &active, const std::function<double(const Vec<dim> &)> &fresh);
 
-  /// Begins a step that ends at the loads of time t: finds the nodes whose pressure boundaries prescribe (`fixed`) and
-  /// writes it into `pressure`. The pressures of the other nodes are unknown.
-  void begin(double t, double travel);
+  /// Lets water leave by layers that are thinner than cells: `storage` [1/Pa] is that of the soil of each body, with
+  /// its skeleton. Without it faces drain as deep as cells are. To be told after `activate`.
+  void drain_in_layers(const std::vector<double> &storage);
+  /// Begins a step that ends at the loads of time t, `from` to `to` [s] after the stage began: finds the nodes whose
+  /// pressure boundaries prescribe (`fixed`) and writes it into `pressure`. The pressures of the other nodes are
+  /// unknown. Collective.
+  PetscErrorCode begin(double t, double travel, double from, double to);
   /// Balance of a step dt from the accepted pressures to `pressure`, without the volume strain of the soil.
   void balance(double t, double dt, WaterBalance *balance) const;
   /// Adds its derivative to the rows and columns of nodes that are not fixed.
@@ -80,7 +85,7 @@ class PoreFlow {
   double conductivity(int cell) const {
     return soils_[body_of_[cell]].permeability() / liquid_.viscosity;
   }  ///< of full pores [m2/(Pa s)]
-  double porosity(int cell) const { return soils_[body_of_[cell]].porosity(); }
+  double porosity(int body) const { return soils_[body].porosity(); }
   const Liquid &liquid() const { return liquid_; }
   /// Weight of the water [N/m3].
   double unit_weight() const;
@@ -126,6 +131,8 @@ class PoreFlow {
   double content(int body, double p) const;        ///< of water per volume of soil, at its density without pressure [-]
   double content_slope(int body, double p) const;  ///< [1/Pa]
   double inflow_at(const Supply &supply, double t) const;  ///< mean, weighted by the node's shape function [m/s]
+  /// In the step [m3].
+  double out_of_layer(int node) const { return layers_.passes(node) * (pressure[node] - beyond_[node]); }
   double outside(int node, double t) const;
   double outside(int source, const Vec<dim> &x, double t) const;
   bool has_curve(int body) const { return suction_ && scene_.body[body].retention.reader; }
@@ -149,7 +156,11 @@ class PoreFlow {
   std::vector<char> at_surface_;    ///< nodes of faces without soil beyond
   std::vector<char> may_close_;     ///< 1 at seepage faces, where water leaves and no more than the supply enters
   std::vector<char> open_, fixed_;  ///< seepage nodes that have the pressure beyond; nodes whose pressure is known
+  std::vector<char> layered_;       ///< nodes that water leaves through a layer of layers_
+  std::vector<double> beyond_;      ///< pressure beyond, of nodes that are pressed [Pa]
   std::vector<Supply> supplies_;
+  std::vector<Facet<dim>> pressed_faces_;  ///< beyond which the pressure is prescribed
+  DrainedLayers<dim> layers_;
   std::vector<double> inflow_;  ///< by source, and at last of faces without one, of this rank [m3/s]
   double entered_ = 0;          ///< on this rank [kg]
   double travel_ = 0;           ///< load time of the step [s]

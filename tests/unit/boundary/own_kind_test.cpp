@@ -422,7 +422,7 @@ TEST(OwnBoundary, DrainsAndWatersSeepage) {
   Square1m soil({{"base", {"base"}, PorousStone{}}, {"top", {"top"}, WetRaft{}}});
   PoreFlow<2> flow(soil.mesh, soil.scene, soil.sources, false);
   ASSERT_EQ(flow.activate(std::vector<char>(soil.mesh.cell_count(), 1), [](const Vec<2> &) { return 0.; }), 0);
-  flow.begin(1, 0);
+  ASSERT_EQ(flow.begin(1, 0, 0, 1), 0);
   for (int i = 0; i < flow.nodes().count(); ++i)
     if (const Vec<2> &x = flow.nodes().position[i]; x[1] == 0) {
       EXPECT_TRUE(flow.fixed(i));
