@@ -190,7 +190,7 @@ def table_of_verdict(rows, runs):
         value = row.get("talus")
         if "of" in row:
             run, quantity = row["of"]
-            number = next(number for number in runs[run]["numbers"] if number["quantity"] == quantity)
+            number = {number["quantity"]: number for number in runs[run]["numbers"]}[quantity]
             value = stated(number) + unit_of(number)
         lines.append(f"| {row['quantity']} | {row['reference']} | {value} | {row['is']} |")
     return lines
@@ -443,8 +443,11 @@ def put_in_step(page, write):
     """Writes the page's tables, or says whether they are what its files give."""
     try:
         wanted = page.texts_in_step()
-    except (ValueError, OSError, KeyError, StopIteration) as error:
-        print(f"{page.name}: FAIL: {error!r}" if isinstance(error, (KeyError, StopIteration)) else f"{page.name}: FAIL: {error}")
+    except KeyError as error:
+        print(f"{page.name}: FAIL: numbers.toml or a table of it has no {error}")
+        return False
+    except (ValueError, OSError) as error:
+        print(f"{page.name}: FAIL: {error}")
         return False
     changed = {file: wanted[file] for file, text in page.texts().items() if text != wanted[file]}
     for file, text in changed.items():
