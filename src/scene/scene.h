@@ -1,7 +1,7 @@
 #pragma once
 /// The scene as plain structs: SI units, radians, defaults; no PETSc, no TOML. `fields` names every key once; the
 /// reader, `talus describe`, the header of results and the test that every key is documented all visit it
-/// (docs/guide/scene.md).
+/// (docs/reference/values.md).
 #include <array>
 #include <functional>
 #include <limits>
