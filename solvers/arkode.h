@@ -25,15 +25,15 @@ struct ArkodeSettings : StepKeys {
     v.integer("order", order, Range{2, 5},
               "order of the Runge-Kutta method, 3 where pore fluids move; its embedded method, one order lower, "
               "estimates the error");
-    v.number("velocity_tolerance", velocity_tolerance, metre_per_second, Range{1e-12, 1e3},
+    v.number("velocity_tolerance", velocity_tolerance, metre_per_second, Range{1e-12, 1e3, {1e-8, 0.1}},
              "allowed error of the velocity in one step, mass-weighted root mean square");
-    v.number("displacement_tolerance", displacement_tolerance, metre, Range{1e-15, 1e3},
+    v.number("displacement_tolerance", displacement_tolerance, metre, Range{1e-15, 1e3, {1e-10, 1e-2}},
              "allowed error of the displacement in one step, mass-weighted root mean square");
     step_fields(v, "fixed time step without error control; 0: steps by the tolerances",
                 "ratio of the largest step to the stability limit of the method: 2, 1.73, 2.83, 1.0 over omega_max for "
                 "orders 2 to 5, 1.56 where pore fluids move");
     frequency_bound(v, bound);
-    v.number("floor", floor, one, Range{1e-12, 1},
+    v.number("floor", floor, one, Range{1e-12, 1, {1e-8, 0.1}},
              "smallest ratio of the step to the critical step 2 / omega_max; a run that needs a shorter step ends");
   }
   StepRule rule() const;

@@ -22,7 +22,7 @@ struct EulerSettings : StepKeys {
     step_fields(v, "fixed time step; 0: a fraction of the critical step",
                 "ratio of the time step to the critical step 2 / omega_max, which is recomputed during the run");
     v.number(
-        "limit", limit, one, Range{1, 1e12},
+        "limit", limit, one, Range{1, 1e12, {1, 1}},
         "largest allowed ratio of a fixed step to the critical step; values above 1 are for studies of instability");
     frequency_bound(v, bound);
   }

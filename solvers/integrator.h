@@ -54,7 +54,7 @@ struct StepKeys {
   template <class Visitor>
   void step_fields(Visitor &&v, const char *step_meaning, const char *fraction_meaning) {
     v.number("step", step, second, Range{0, 1e9}, step_meaning);
-    v.number("fraction", fraction, one, Range{0.001, 1}, fraction_meaning);
+    v.number("fraction", fraction, one, Range{0.001, 1, {0.1, 0.95}}, fraction_meaning);
   }
 };
 

@@ -4,7 +4,6 @@ cell sizes; writes sizes.csv beside itself, and of the three default sizes conve
 
 import csv
 import pathlib
-import re
 import subprocess
 import sys
 import textwrap
@@ -13,6 +12,7 @@ HERE = pathlib.Path(__file__).parent
 SIZES = (0.8, 0.6, 0.5, 0.45, 0.4, 0.35, 0.3, 0.25)  # [m]
 BRITTLE = 100  # shape factor; the scene has 30
 WIDTH = 150  # of the page [characters]
+SHOWN = ("The slope fails", "The load time", "The displacement of crest", "The travel distance", "The volume")
 
 
 def converge(talus, folder, *options):
@@ -26,14 +26,8 @@ def converge(talus, folder, *options):
 
 
 def on_the_page(text):
-    """Table and sentences as a page shows them: without the columns that follow the depth, and without the name of the folder."""
-    paragraphs = text.split("\n\n")
-    k = next(k for k, paragraph in enumerate(paragraphs) if re.search(r"cells +state", paragraph))
-    lines = paragraphs[k].splitlines()
-    first = next(n for n, line in enumerate(lines) if "depth" in line) - 1  # the heading has three lines
-    end = next(line.index("depth") for line in lines if "depth" in line) + len("depth")
-    sentences = [line for line in paragraphs[k + 1].splitlines() if not line.startswith("tables and picture")]
-    return "\n".join([*(f"{row[:end]}   ...".rstrip() for row in lines[first:]), "", *(textwrap.fill(line, WIDTH) for line in sentences)]) + "\n"
+    """The sentences that a page shows."""
+    return "\n".join(textwrap.fill(line, WIDTH) for line in text.splitlines() if line.startswith(SHOWN)) + "\n"
 
 
 def main():

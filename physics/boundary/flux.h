@@ -15,7 +15,7 @@ struct Flux {
   Function inflow = 0.0;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.function("inflow", inflow, metre_per_second, {-1e3, 1e3}, of::place_and_time,
+    v.function("inflow", inflow, metre_per_second, {-1e3, 1e3, {-1e-2, 1e-2}}, of::place_and_time,
                "volume of liquid that enters per area and time, function of x, y, z, t; negative for outflow; taken at "
                "the nodes of the face where water moves with the soil, "
                "so that a jump is spread over an edge");

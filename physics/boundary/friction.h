@@ -20,9 +20,9 @@ struct Friction {
   Function base_adhesion = 0.0;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.function("friction_angle", friction_angle, degree, {0, 89}, of::place_time_and_slip,
+    v.function("friction_angle", friction_angle, degree, {0, 89, {3, 45, or_zero}}, of::place_time_and_slip,
                "friction angle phi_b of the base, function of x, y, z, t and of the slip of the base at the place [m]");
-    v.function("adhesion", base_adhesion, pascal, {0, 1e9}, of::place_time_and_slip,
+    v.function("adhesion", base_adhesion, pascal, {0, 1e9, {100, 1e7, or_zero}}, of::place_time_and_slip,
                "adhesion of the base, function of x, y, z, t, slip");
   }
   double friction_coefficient(double x, double y, double z, double t, double slip) const {

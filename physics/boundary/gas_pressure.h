@@ -16,7 +16,7 @@ struct PrescribedGasPressure {
   Function pressure = 0.0;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.function("pressure", pressure, pascal, {-1e6, 1e9}, of::place_and_time,
+    v.function("pressure", pressure, pascal, {-1e6, 1e9, {-1e5, 1e6}}, of::place_and_time,
                "gauge pressure of the gas, function of x, y, z, t");
   }
   double gas_outside(double x, double y, double z, double t) const { return pressure(x, y, z, t); }

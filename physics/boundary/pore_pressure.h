@@ -17,7 +17,7 @@ struct PrescribedPorePressure {
   Function pressure = 0.0;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.function("pressure", pressure, pascal, {-1e9, 1e9}, of::place_and_time,
+    v.function("pressure", pressure, pascal, {-1e9, 1e9, {-1e6, 1e7}}, of::place_and_time,
                "pore pressure, function of x, y, z, t; negative for suction");
   }
   double outside(double x, double y, double z, double t, const LiquidBeyond &) const { return pressure(x, y, z, t); }

@@ -21,7 +21,7 @@ struct Rainfall {
   Function intensity = 0.0;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.function("intensity", intensity, metre_per_second, {0, 1e3}, of::place_and_time,
+    v.function("intensity", intensity, metre_per_second, {0, 1e3, {0, 1e-4}}, of::place_and_time,
                "rain, volume per level area and time as a gauge has it, function of x, y, z, t; steep faces get less, "
                "walls none");
   }

@@ -22,20 +22,21 @@ struct ShearZone {
 
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.number("thickness", thickness, metre, Range{1e-6, 10}, "thickness of the shear zone, which friction heats");
+    v.number("thickness", thickness, metre, Range{1e-6, 10, {1e-4, 1}},
+             "thickness of the shear zone, which friction heats");
     v.number("reach", reach, metre, Range{1e-5, 1e3},
              "distance from the middle of the shear zone to which heat and excess pressure spread: there the ground is "
              "drained, and no heat passes");
-    v.number("heat_capacity", heat_capacity, joule_per_cubic_metre_kelvin, Range{1e3, 1e9},
+    v.number("heat_capacity", heat_capacity, joule_per_cubic_metre_kelvin, Range{1e3, 1e9, {1e6, 5e6}},
              "heat capacity of the ground per volume, grains and water together");
-    v.number("thermal_conductivity", thermal_conductivity, watt_per_metre_kelvin, Range{0, 1e4},
+    v.number("thermal_conductivity", thermal_conductivity, watt_per_metre_kelvin, Range{0, 1e4, {0.1, 10, or_zero}},
              "thermal conductivity of the ground");
-    v.number("hydraulic_conductivity", hydraulic_conductivity, metre_per_second, Range{0, 1},
+    v.number("hydraulic_conductivity", hydraulic_conductivity, metre_per_second, Range{0, 1, {1e-14, 1e-3, or_zero}},
              "hydraulic conductivity of the ground for water of 9.81 kN/m3; 0: undrained");
-    v.number("storage", storage, per_pascal, Range{1e-13, 1e-3},
+    v.number("storage", storage, per_pascal, Range{1e-13, 1e-3, {1e-12, 1e-6}},
              "water that a volume of ground stores per pressure: compressibility of the pores plus porosity times that "
              "of water");
-    v.number("thermal_pressurisation", thermal_pressurisation, pascal_per_kelvin, Range{0, 1e8},
+    v.number("thermal_pressurisation", thermal_pressurisation, pascal_per_kelvin, Range{0, 1e8, {1e4, 2e6, or_zero}},
              "increase of pore pressure per increase of temperature in undrained ground; 0: heat without effect");
   }
   /// What is wrong between the keys; empty: nothing.

@@ -16,7 +16,7 @@ struct PrescribedSuction {
   Function suction = 0.0;
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.function("suction", suction, pascal, {0, 1e9}, of::place_and_time, "suction, function of x, y, z, t");
+    v.function("suction", suction, pascal, {0, 1e9, {0, 1e6}}, of::place_and_time, "suction, function of x, y, z, t");
   }
   double outside(double x, double y, double z, double t, const LiquidBeyond &) const { return -suction(x, y, z, t); }
 };

@@ -22,7 +22,7 @@ struct Traction {
   void fields(Visitor &&v) {
     v.functions("traction", traction, pascal, of::place_and_time,
                 "force per undeformed area, one function of the undeformed x, y, z and of t per component");
-    v.function("pressure", pressure, pascal, {-1e12, 1e12}, of::place_and_time,
+    v.function("pressure", pressure, pascal, {-1e12, 1e12, {-1e8, 1e8}}, of::place_and_time,
                "pressure normal to the deformed face, function of x, y, z, t");
   }
   std::string problem() const {

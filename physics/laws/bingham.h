@@ -14,7 +14,7 @@ struct Bingham : Newtonian {
   template <class Visitor>
   void fields(Visitor &&v) {
     Newtonian::fields(v);
-    v.number("yield_stress", yield_stress, pascal, Range{0, 1e9}, "yield stress in simple shear");
+    v.number("yield_stress", yield_stress, pascal, Range{0, 1e9, {0, 1e6}}, "yield stress in simple shear");
   }
 
   template <int dim, class Number>

@@ -40,16 +40,17 @@ struct CamClay {
 
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.number("compression_slope", compression_slope, one, Range{1e-4, 10},
+    v.number("compression_slope", compression_slope, one, Range{1e-4, 10, {0.01, 1}},
              "lambda: slope of normal compression, v against ln p");
-    v.number("swelling_slope", swelling_slope, one, Range{1e-5, 10}, "kappa: slope of unloading, v against ln p");
-    v.number("critical_stress_ratio", critical_stress_ratio, one, Range{0.1, 3},
+    v.number("swelling_slope", swelling_slope, one, Range{1e-5, 10, {1e-3, 0.2}},
+             "kappa: slope of unloading, v against ln p");
+    v.number("critical_stress_ratio", critical_stress_ratio, one, Range{0.1, 3, {0.5, 1.8}},
              "M: q / p at critical state; 6 sin(phi) / (3 - sin(phi)) in triaxial compression");
-    v.number("poisson_ratio", poisson_ratio, one, Range{0, 0.49}, "Poisson's ratio nu");
-    v.number("void_ratio", void_ratio, one, Range{0.01, 20}, "void ratio e at the start");
-    v.number("preconsolidation_pressure", preconsolidation_pressure, pascal, Range{1, 1e9},
+    v.number("poisson_ratio", poisson_ratio, one, Range{0, 0.49, {0.1, 0.45}}, "Poisson's ratio nu");
+    v.number("void_ratio", void_ratio, one, Range{0.01, 20, {0.2, 5}}, "void ratio e at the start");
+    v.number("preconsolidation_pressure", preconsolidation_pressure, pascal, Range{1, 1e9, {1e3, 1e7}},
              "largest past mean effective stress, at the start");
-    v.number("attraction", attraction, pascal, Range{1e-3, 1e7},
+    v.number("attraction", attraction, pascal, Range{1e-3, 1e7, {1e-3, 1e5}},
              "mean tension that the soil can carry; it gives the soil a stiffness at zero stress");
   }
   std::string problem() const {

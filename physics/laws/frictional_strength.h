@@ -28,22 +28,23 @@ struct FrictionalStrength {
 
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.by_place("cohesion", cohesion, reads_shares, pascal, Range{0, 1e9},
+    v.by_place("cohesion", cohesion, reads_shares, pascal, Range{0, 1e9, {100, 1e8, or_zero}},
                "cohesion c, at its peak if the soil softens");
-    v.by_place("friction_angle", friction_angle, reads_shares, degree, Range{0, 70},
+    v.by_place("friction_angle", friction_angle, reads_shares, degree, Range{0, 70, {5, 50, or_zero}},
                "friction angle phi, at its peak if the soil softens");
-    v.number("dilation_angle", dilation_angle, degree, Range{0, 70},
+    v.number("dilation_angle", dilation_angle, degree, Range{0, 70, {0, 25}},
              "dilation angle psi; limited to phi where phi falls below it. Take psi = phi for a factor of safety to "
              "compare with limit equilibrium; with psi < phi it is smaller. Where soil slides, 0, or give it an end by "
              "residual_dilation_angle: its volume grows as long as it shears");
-    v.number("residual_cohesion", residual_cohesion, pascal, Range{-1, 1e9},
+    v.number("residual_cohesion", residual_cohesion, pascal, Range{-1, 1e9, {100, 1e8, or_zero}},
              "cohesion at large strain; negative: the peak value");
-    v.number("residual_friction_angle", residual_friction_angle, degree, Range{-1, 70},
+    v.number("residual_friction_angle", residual_friction_angle, degree, Range{-1, 70, {3, 45, or_zero}},
              "friction angle at large strain; negative: the peak value");
-    v.number("residual_dilation_angle", residual_dilation_angle, degree, Range{-1, 70},
+    v.number("residual_dilation_angle", residual_dilation_angle, degree, Range{-1, 70, {0, 25}},
              "dilation angle at large strain; negative: the peak value");
-    v.number("shape_factor", shape_factor, one, Range{0, 1e6}, "eta: strength falls with exp(-eta plastic_strain)");
-    v.number("reference_size", reference_size, metre, Range{0, 1e4},
+    v.number("shape_factor", shape_factor, one, Range{0, 1e6, {0.1, 1e3, or_zero}},
+             "eta: strength falls with exp(-eta plastic_strain)");
+    v.number("reference_size", reference_size, metre, Range{0, 1e4, {1e-3, 50, or_zero}},
              "element size to which shape_factor belongs; in cells of size h it is multiplied by h / reference_size; "
              "0: no scaling");
   }

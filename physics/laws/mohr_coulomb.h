@@ -31,9 +31,9 @@ struct MohrCoulomb : IsotropicElastic, FrictionalStrength {
   void fields(Visitor &&v) {
     IsotropicElastic::fields(v);
     FrictionalStrength::fields(v);
-    v.number("tension_cutoff", tension_cutoff, pascal, Range{-1, 1e9},
+    v.number("tension_cutoff", tension_cutoff, pascal, Range{-1, 1e9, {0, 1e7}},
              "tensile strength; negative: no cut-off below the apex");
-    v.number("suction_cohesion", suction_cohesion, pascal, Range{0, 1e9},
+    v.number("suction_cohesion", suction_cohesion, pascal, Range{0, 1e9, {0, 1e6}},
              "largest increase of cohesion by suction: c = c' + suction_cohesion (1 - exp(-suction_cohesion_rate s))");
     v.number("suction_cohesion_rate", suction_cohesion_rate, per_pascal, Range{0, 1e-4},
              "rate of the increase of cohesion with suction, per pressure, such as \"0.0007 1/kPa\"");

@@ -29,14 +29,15 @@ struct MuI : IsotropicElastic {
   template <class Visitor>
   void fields(Visitor &&v) {
     IsotropicElastic::fields(v);
-    v.number("static_friction", static_friction, one, Range{0, 2},
+    v.number("static_friction", static_friction, one, Range{0, 2, {0.1, 1}},
              "mu_s: ratio of shear stress to pressure at which flow begins");
-    v.number("limiting_friction", limiting_friction, one, Range{0, 4},
+    v.number("limiting_friction", limiting_friction, one, Range{0, 4, {0.2, 1.5}},
              "mu_2: ratio of shear stress to pressure in fast flow");
-    v.number("inertial_number", inertial_number, one, Range{1e-6, 1e3},
+    v.number("inertial_number", inertial_number, one, Range{1e-6, 1e3, {0.01, 2}},
              "I_0: inertial number at which friction is the mean of mu_s and mu_2");
-    v.number("grain_size", grain_size, metre, Range{1e-7, 10}, "diameter of the grains");
-    v.number("solid_density", solid_density, kilogram_per_cubic_metre, Range{100, 1e4}, "density of the grains in I");
+    v.number("grain_size", grain_size, metre, Range{1e-7, 10, {1e-5, 1}}, "diameter of the grains");
+    v.number("solid_density", solid_density, kilogram_per_cubic_metre, Range{100, 1e4, {2000, 3500}},
+             "density of the grains in I");
   }
   std::string problem() const {
     if (limiting_friction >= static_friction) return "";

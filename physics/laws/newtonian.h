@@ -22,7 +22,7 @@ struct Newtonian : IsotropicElastic {
   template <class Visitor>
   void fields(Visitor &&v) {
     IsotropicElastic::fields(v);
-    v.number("viscosity", viscosity, pascal_second, Range{1e-9, 1e15}, "dynamic viscosity mu");
+    v.number("viscosity", viscosity, pascal_second, Range{1e-9, 1e15, {1e-4, 1e10}}, "dynamic viscosity mu");
   }
 
   bool comes_apart() const { return true; }

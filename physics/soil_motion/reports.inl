@@ -276,9 +276,13 @@ PetscErrorCode SoilMotion<dim, Phases>::balance(double t, Balance *sums) {
       for (int d = 0; d < dim; ++d) local[5 + d] += p.mass[i] * x[d];
     }
   }
+  // over the volumes that the forces have: work and what it stores would else differ
   for (size_t b = 0; b < bodies_.size(); ++b)
-    for (int q = 0; q < points_[b].count; ++q)
-      local[3] += points_[b].volume[q] * stored_energy<dim>(bodies_[b]->law(), &points_[b].stress[q * components]);
+    for (int q = 0; q < points_[b].count; ++q) {
+      const int c = points_[b].cell[q];
+      const double volume = points_[b].volume[q] * (accepted_.weight[c] / accepted_.particle_volume[c]);
+      local[3] += volume * stored_energy<dim>(bodies_[b]->law(), &points_[b].stress[q * components]);
+    }
   PetscCall(find_moving(t));
   local[4] = talus::seen_square<dim, 1>(grid_, velocities_.moving.data());
   PetscCallMPI(MPI_Allreduce(local, total, 5 + dim, MPI_DOUBLE, MPI_SUM, mesh_.comm()));

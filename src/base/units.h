@@ -1,5 +1,6 @@
 #pragma once
 /// Units of scene quantities: a name, its factor to SI, and its dimension as exponents of kg, m, s (and angle, K).
+#include <limits>
 
 namespace talus {
 
@@ -29,9 +30,17 @@ inline constexpr Unit joule_per_cubic_metre_kelvin{"J/(m3 K)", 1, {1, -1, -2, 0,
 inline constexpr Unit watt_per_metre_kelvin{"W/(m K)", 1, {1, 1, -3, 0, -1}};
 inline constexpr Unit pascal_per_kelvin{"Pa/K", 1, {1, -1, -2, 0, -1}};
 
-/// Allowed values of a scene key, in the unit the key is stated in.
+/// Values of a scene key that engineers use, in the unit of the key; the program doubts others (scene/usual.h).
+struct Usual {
+  double low = -std::numeric_limits<double>::infinity(), high = -low;
+  bool or_zero = false;  ///< 0 has a meaning of its own
+};
+inline constexpr bool or_zero = true;
+
+/// Allowed values of a scene key, in the unit of the key.
 struct Range {
   double low, high;
+  Usual usual{};
 };
 
 }  // namespace talus

@@ -73,7 +73,8 @@ class Adviser {
           "the stages.");
     if (!needs_.downhill_fault.empty())
       say(needs_.downhill_fault + ". That place lies downhill of the soil: the run ends if a slide comes so far.");
-    for (const std::string &sentence : needs_.unlikely) say(sentence + (sentence.ends_with('?') ? "" : "."));
+    for (const std::string &sentence : needs_.unlikely)
+      say(sentence + (sentence.ends_with('?') || sentence.ends_with(']') ? "" : "."));
     if (needs_.particles() == 0) {
       say("Stages add all soil, and none is there at the start: steps, times and scales are not known before a run. "
           "Without `add` in the stages check estimates them of the whole soil.");

@@ -395,7 +395,7 @@ Action add_study(CLI::App &app) {
   CLI::App *command = app.add_subcommand(
       "study",
       "run a scene over lists, grids or samples of distributions: outcomes, sensitivities, probability of failure");
-  command->add_option("FILE", arguments->file, "study file (.toml), see docs/guide/study.md")->required();
+  command->add_option("FILE", arguments->file, "study file (.toml), see docs/reference/study.md")->required();
   add_trial_options(*command, *arguments, "override a key of the study: samples=400",
                     "folder of runs, tables and pictures (default results/study_NAME)");
   return [arguments] { return study(*arguments); };

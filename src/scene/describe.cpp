@@ -8,6 +8,7 @@
 #include "scene/quantity.h"
 #include "scene/reader.h"
 #include "scene/scene.h"
+#include "scene/usual.h"
 #include "scene/words.h"
 
 namespace talus {
@@ -26,7 +27,11 @@ std::string number_in(Unit unit) { return plain(unit) ? "number" : unit.name; }
 
 bool has_time(const char *variables) { return std::string(variables).find('t') != std::string::npos; }
 
-std::string from_to(Range range) { return rounded(range.low) + " to " + rounded(range.high); }
+std::string usually(const Usual &usual) { return has_usual(usual) ? ", usual " + text_of(usual) : ""; }
+
+std::string from_to(const Range &range) {
+  return rounded(range.low) + " to " + rounded(range.high) + usually(range.usual);
+}
 
 std::string coordinates(const std::vector<double> &point, Unit unit) {
   std::string text;
@@ -159,6 +164,11 @@ void Describer::point(const char *key, const std::vector<double> &value, Unit un
   line(key, number_in(unit) + ", list", coordinates(value, unit), meaning, unit);
 }
 
+void Describer::point(const char *key, const std::vector<double> &value, Unit unit, const Usual &usual,
+                      const char *meaning) {
+  line(key, number_in(unit) + ", list" + usually(usual), coordinates(value, unit), meaning, unit);
+}
+
 void Describer::points(const char *key, const std::vector<std::vector<double>> &value, Unit unit, const char *meaning) {
   std::string initial;
   for (const std::vector<double> &point : value) initial += (initial.empty() ? "" : ", ") + coordinates(point, unit);
@@ -182,10 +192,12 @@ void Describer::functions(const char *key, const std::vector<Function> &, Unit u
 }
 
 void Describer::elasticity(double, double) {
-  line("young_modulus", "Pa, above 0", "two of four", "Young's modulus E", pascal);
-  line("poisson_ratio", "number, between -1 and 0.5", "two of four", "Poisson's ratio nu");
-  line("shear_modulus", "Pa, above 0", "two of four", "shear modulus G", pascal);
-  line("bulk_modulus", "Pa, above 0", "two of four", "bulk modulus K", pascal);
+  const std::string stiffness = "Pa, above 0" + usually(elastic::stiffness.usual);
+  line("young_modulus", stiffness, "two of four", "Young's modulus E", pascal);
+  line("poisson_ratio", "number, between -1 and 0.5" + usually(elastic::poisson_ratio.usual), "two of four",
+       "Poisson's ratio nu");
+  line("shear_modulus", stiffness, "two of four", "shear modulus G", pascal);
+  line("bulk_modulus", stiffness, "two of four", "bulk modulus K", pascal);
 }
 
 void Describer::deferred(const char *key, const DeferredTable &, const char *meaning) {

@@ -61,6 +61,7 @@ class Describer {
   void choice(const char *key, Enum value,
               std::initializer_list<std::pair<const char *, std::type_identity_t<Enum>>> choices, const char *meaning);
   void point(const char *key, const std::vector<double> &value, Unit unit, const char *meaning);
+  void point(const char *key, const std::vector<double> &value, Unit unit, const Usual &usual, const char *meaning);
   void water_table(const char *key, const WaterTable &value, Unit unit, const char *meaning);
   void points(const char *key, const std::vector<std::vector<double>> &value, Unit unit, const char *meaning);
   void function(const char *key, const Function &value, Unit unit, Range range, const char *variables,

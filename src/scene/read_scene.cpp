@@ -4,6 +4,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "scene/doubt_names.h"
 #include "scene/quantity.h"
 #include "scene/reader.h"
 #include "scene/scene.h"
@@ -46,6 +47,10 @@ class Checks {
       reader_.complain(
           "start_from.reset_displacement",
           "has no effect without start_from.folder, the results of the run at whose state this one starts");
+    const std::vector<std::string> names(std::begin(doubt_names), std::end(doubt_names));
+    for (const std::string &name : scene_.acknowledge)
+      if (std::ranges::find(names, name) == names.end())
+        reader_.complain("acknowledge", "names no doubt by " + name + "; " + suggestion(name, names));
   }
 
  private:

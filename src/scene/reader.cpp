@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <numeric>
 #include <sstream>
 #include <system_error>
 
@@ -15,6 +16,7 @@
 #include "scene/overrides.h"
 #include "scene/quantity.h"
 #include "scene/toml_nodes.h"
+#include "scene/usual.h"
 #include "scene/value.h"
 #include "scene/words.h"
 
@@ -104,9 +106,11 @@ std::string read_text(const std::string &file) {
 // ---- the visitor ----
 
 void TableReader::number(const char *key, double &value, Unit unit, Range range, const char *meaning) {
-  if (const auto given = find(key, meaning))
-    value = given->number(unit, range) * unit.si;
-  else if (std::isnan(value))
+  if (const auto given = find(key, meaning)) {
+    const double number = given->number(unit, range);
+    if (number * unit.si != value) given->doubt(number, unit, range.usual);
+    value = number * unit.si;
+  } else if (std::isnan(value))
     complain("", std::string("needs ") + key + " (" + meaning + "), " + number_in(range, unit) + misspelt(key));
 }
 
@@ -129,6 +133,7 @@ void TableReader::integer(const char *key, int &value, Range range, const char *
   const double number = given->is_number() ? number_of(given->node()) : range.low - 1;
   if (!(range.low <= number && number <= range.high) || number != std::floor(number))
     given->must_be("a whole number from " + shortest(range.low) + " to " + shortest(range.high));
+  if (number != value) given->doubt(number, one, range.usual);
   value = static_cast<int>(number);
 }
 
@@ -173,6 +178,14 @@ void TableReader::point(const char *key, std::vector<double> &value, Unit unit, 
   if (const auto given = find(key, meaning)) value = given->point(unit);
 }
 
+void TableReader::point(const char *key, std::vector<double> &value, Unit unit, const Usual &usual,
+                        const char *meaning) {
+  const auto given = find(key, meaning);
+  if (!given) return;
+  value = given->point(unit);
+  given->doubt(std::sqrt(std::inner_product(value.begin(), value.end(), value.begin(), 0.)) / unit.si, unit, usual);
+}
+
 void TableReader::quantities(const char *key, std::vector<double> &value, const char *meaning) {
   const auto given = find(key, meaning);
   if (!given) return;
@@ -214,6 +227,8 @@ void TableReader::function(const char *key, Function &value, Unit unit, Range ra
   if (const auto given = find(key, meaning)) value = given->function(unit, range, variables);
 }
 
+const std::map<std::string, Doubt> &TableReader::unusual() const { return document_->unusual; }
+
 const NamedGrids &TableReader::grids() const { return document_->grids; }
 
 const std::set<std::string> &TableReader::files() const { return document_->files; }
@@ -254,17 +269,19 @@ void TableReader::functions(const char *key, std::vector<Function> &value, Unit 
 }
 
 void TableReader::elasticity(double &young_modulus, double &poisson_ratio) {
-  constexpr Range stiffness{1e-6, 1e15};
   std::vector<std::string> names;
   const auto constant = [&](const char *key, Unit unit, Range range, const char *meaning) {
     const auto given = find(key, meaning);
-    if (given) names.push_back(key);
-    return given ? given->number(unit, range) : 0;
+    if (!given) return 0.;
+    names.push_back(key);
+    const double number = given->number(unit, range);
+    given->doubt(number, unit, range.usual);
+    return number;
   };
-  double E = constant("young_modulus", pascal, stiffness, "Young's modulus E");
-  double nu = constant("poisson_ratio", one, Range{-1, 0.5}, "Poisson's ratio nu");
-  const double G = constant("shear_modulus", pascal, stiffness, "shear modulus G");
-  const double K = constant("bulk_modulus", pascal, stiffness, "bulk modulus K");
+  double E = constant("young_modulus", pascal, elastic::stiffness, "Young's modulus E");
+  double nu = constant("poisson_ratio", one, elastic::poisson_ratio, "Poisson's ratio nu");
+  const double G = constant("shear_modulus", pascal, elastic::stiffness, "shear modulus G");
+  const double K = constant("bulk_modulus", pascal, elastic::stiffness, "bulk modulus K");
   if (names.size() != 2)
     complain("", "needs exactly two of young_modulus, poisson_ratio, shear_modulus, bulk_modulus; it has " +
                      (names.empty() ? "none" : join(names)));

@@ -8,6 +8,7 @@
 #include <concepts>
 #include <functional>
 #include <initializer_list>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -20,6 +21,7 @@
 
 #include "base/units.h"
 #include "scene/deferred.h"
+#include "scene/doubt.h"
 #include "scene/function.h"
 #include "scene/water_table.h"
 
@@ -71,6 +73,8 @@ class TableReader {
   void quantities(const char *key, std::vector<double> &value, const char *meaning);
   /// A list of quantities; a single one gives a vector of size 1.
   void point(const char *key, std::vector<double> &value, Unit unit, const char *meaning);
+  /// The same of a vector, with the usual range of its magnitude.
+  void point(const char *key, std::vector<double> &value, Unit unit, const Usual &usual, const char *meaning);
   /// A list of points [x, elevation], or an expression of the place.
   void water_table(const char *key, WaterTable &value, Unit unit, const char *meaning);
   void points(const char *key, std::vector<std::vector<double>> &value, Unit unit, const char *meaning);
@@ -111,6 +115,11 @@ class TableReader {
   void forget_function_faults() const;
   /// Calls visit for each function of the file that is an expression.
   void each_expression(const std::function<void(const Function &)> &visit) const;
+
+  /// A doubt about each value so far that is not usual, by the path of its key; the key is its name, and the sentence
+  /// is `slope.toml line 14: damping = 0.7 in stage "slide"; usual 0 to 0.1`. A value at its default is none, and the
+  /// values of an expression are not looked at.
+  const std::map<std::string, Doubt> &unusual() const;
 
   /// The value at a key as the scene writes it, with its unit if it has one; the key is given by its path from here.
   /// Empty if it is not there, or is a table.

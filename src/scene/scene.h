@@ -1,12 +1,14 @@
 #pragma once
 /// The scene as plain structs: SI units, radians, defaults; no PETSc, no TOML. `fields` names every key once; the
 /// reader, `talus describe`, the header of results and the test that every key is documented all visit it
-/// (docs/guide/scene.md).
+/// (docs/reference/values.md).
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/units.h"
@@ -179,14 +181,14 @@ struct DenseBox {
   void fields(Visitor &&v) {
     v.point("from", from, metre, "corner of the box with the smallest coordinates");
     v.point("to", to, metre, "corner of the box with the largest coordinates");
-    v.integer("particles_per_cell", particles_per_cell, Range{1, 1000},
+    v.integer("particles_per_cell", particles_per_cell, Range{1, 1000, {1, 64}},
               "particles per cell at the start, in cells whose centre is in the box");
   }
 };
 
 enum class PermeabilityChange { none, kozeny_carman, grain_share };
 
-inline constexpr Range weight_of_soil{1e3, 1e5};  ///< of unit weights [N/m3]
+inline constexpr Range weight_of_soil{1e3, 1e5, {10e3, 30e3}};  ///< of unit weights [N/m3]
 
 struct BodySource {
   std::string name;                   ///< the table's own name, [body.NAME]
@@ -220,21 +222,18 @@ struct BodySource {
   void fields(Visitor &&v) {
     v.texts("region", region,
             "name (or list of names) of the physical groups of cells that the body fills at the start");
-    v.number("density", density, kilogram_per_cubic_metre, Range{1e-3, 1e5},
+    v.number("density", density, kilogram_per_cubic_metre, Range{1e-3, 1e5, {800, 3500}},
              "total density, above and below the water table; or give unit_weight, or porosity and grain_density");
-    v.number(
-        "unit_weight", unit_weight, newton_per_cubic_metre, weight_of_soil,
-        "total unit weight, of soil mostly 14 to 24 kN/m3, in place of density; with saturated_unit_weight that above "
-        "the water table");
+    v.number("unit_weight", unit_weight, newton_per_cubic_metre, weight_of_soil,
+             "total unit weight in place of density; with saturated_unit_weight that above the water table");
     v.number("saturated_unit_weight", saturated_unit_weight, newton_per_cubic_metre, weight_of_soil,
-             "total unit weight of saturated soil, mostly 16 to 24 kN/m3: below the water table, with unit_weight "
-             "above it; where pore fluids "
+             "total unit weight of saturated soil: below the water table, with unit_weight above it; where pore fluids "
              "move, with porosity and in place of grain_density");
-    v.number("porosity", porosity, one, Range{0, 0.99}, "porosity n");
-    v.number("grain_density", grain_density, kilogram_per_cubic_metre, Range{1, 1e5},
+    v.number("porosity", porosity, one, Range{0, 0.99, {0.05, 0.8}}, "porosity n");
+    v.number("grain_density", grain_density, kilogram_per_cubic_metre, Range{1, 1e5, {2000, 3500}},
              "density of the solid grains rho_s");
     v.number("saturation", saturation, one, Range{0, 1}, "degree of saturation above the water table");
-    v.number("pore_pressure_ratio", pore_pressure_ratio, one, Range{0, 1},
+    v.number("pore_pressure_ratio", pore_pressure_ratio, one, Range{0, 1, {0, 0.7}},
              "r_u: pore pressure over the weight per area of the soil above, as it lies at the start, in place of that "
              "of [water]; needs phases = \"drained\" and unit_weight");
     v.water_table(
@@ -245,11 +244,11 @@ struct BodySource {
     v.flag(
         "reduce_strength", reduce_strength,
         "a factor of safety divides the strength of this body; false: it keeps its strength, as rock or a structure");
-    v.number("permeability", permeability, square_metre, Range{0, 1e-3},
+    v.number("permeability", permeability, square_metre, Range{0, 1e-3, {1e-20, 1e-8}},
              "intrinsic permeability k; or give hydraulic_conductivity");
-    v.number("hydraulic_conductivity", hydraulic_conductivity, metre_per_second, Range{0, 1e3},
+    v.number("hydraulic_conductivity", hydraulic_conductivity, metre_per_second, Range{0, 1e3, {1e-13, 0.1}},
              "hydraulic conductivity k rho_w g / mu_w; or give permeability");
-    v.number("gas_permeability", gas_permeability, square_metre, Range{0, 1e-3},
+    v.number("gas_permeability", gas_permeability, square_metre, Range{0, 1e-3, {1e-20, 1e-8, or_zero}},
              "intrinsic permeability for the gas; 0: the same as for the liquid");
     v.choice("permeability_change", permeability_change,
              {{"none", PermeabilityChange::none},
@@ -258,15 +257,15 @@ struct BodySource {
              "dependence of permeability on porosity n: none, n^3 / (1 - n)^2, or 1 / (1 - n)^2");
     v.deferred_table("retention", retention, "degree of saturation over suction");
     v.deferred_table("relative_permeability", relative_permeability, "permeability over degree of saturation");
-    v.integer("particles_per_cell", particles_per_cell, Range{0, 1000},
+    v.integer("particles_per_cell", particles_per_cell, Range{0, 1000, {1, 64, or_zero}},
               "particles per cell at the start; 0: 3 in a triangle, 4 in a tetrahedron");
-    v.number("k0", k0, one, Range{0, 10},
+    v.number("k0", k0, one, Range{0, 10, {0.2, 3, or_zero}},
              "ratio of lateral to vertical effective stress at rest, for stages with initial_stress = \"k0\"; 0: 1 - "
              "sin(friction_angle)");
-    v.number("volume_cap", volume_cap, one, Range{-1, 100},
+    v.number("volume_cap", volume_cap, one, Range{-1, 100, {-1, 2}},
              "largest ratio of the volume of a particle to that which it has without stress and gaps; 0: no cap; -1: a "
              "cap of 1 for soil that comes apart, where pore fluids do not move");
-    v.number("averaging_length", averaging_length, metre, Range{0, 1e4},
+    v.number("averaging_length", averaging_length, metre, Range{0, 1e4, {1e-3, 50, or_zero}},
              "nonlocal softening: plastic strain is averaged over this length l, with 2 l in place of the cell size; "
              "0: no averaging; l should be 1.25 times the cell size or more");
     v.functions("velocity", velocity, metre_per_second, of::place,
@@ -316,9 +315,10 @@ struct Water {
   template <class Visitor>
   void fields(Visitor &&v) {
     given = true;
-    v.number("density", density, kilogram_per_cubic_metre, Range{1, 1e4}, "density of the pore water");
-    v.number("bulk_modulus", bulk_modulus, pascal, Range{1e3, 1e11}, "bulk modulus K_l of the pore water");
-    v.number("viscosity", viscosity, pascal_second, Range{1e-8, 1e3}, "dynamic viscosity of the pore water");
+    v.number("density", density, kilogram_per_cubic_metre, Range{1, 1e4, {950, 1250}}, "density of the pore water");
+    v.number("bulk_modulus", bulk_modulus, pascal, Range{1e3, 1e11, {1e6, 3e9}}, "bulk modulus K_l of the pore water");
+    v.number("viscosity", viscosity, pascal_second, Range{1e-8, 1e3, {2e-4, 2e-3}},
+             "dynamic viscosity of the pore water");
     v.choice("compression", compression, {{"linear", Compression::linear}, {"exponential", Compression::exponential}},
              "density as a function of pressure P: rho_0 (1 + P / K_l) or rho_0 exp(P / K_l)");
     v.choice("stress", stress, {{"net", PoreStress::net}, {"bishop", PoreStress::bishop}},
@@ -332,14 +332,14 @@ struct Water {
         "storage", storage, {{"mass", PoreStorage::mass}, {"rate", PoreStorage::rate}},
         "computation of pore pressure: from the mass of water in the pores, or by its rate from the present storage "
         "coefficient; rate is for comparison (it loses water near saturation) and needs phases = \"unsaturated\"");
-    v.function("suction", suction, pascal, Range{0, 1e9}, of::place,
+    v.function("suction", suction, pascal, Range{0, 1e9, {0, 1e6}}, of::place,
                "initial suction above the water table, function of x, y, z; default: hydrostatic");
     v.water_table("table", table, metre,
                   "water table: polyline of points [x, elevation], or an expression of the level place for its "
                   "elevation, such as that of a grid, water(x, y); pressure is hydrostatic below it");
     v.function("level", level, metre, Range{-1e4, 1e4}, of::time, "rise of the whole water table, function of t");
     v.function(
-        "excess", excess, pascal, Range{-1e9, 1e9}, of::place_time_and_table,
+        "excess", excess, pascal, Range{-1e9, 1e9, {-1e7, 1e7}}, of::place_time_and_table,
         "excess pressure, added to the hydrostatic pressure, function of x, y, z, t and `table` (elevation of "
         "the water table there); where it does not vanish at the surface of the soil it loads the surface too, so "
         "that a uniform excess has no effect");
@@ -358,12 +358,13 @@ struct Gas {
   template <class Visitor>
   void fields(Visitor &&v) {
     given = true;
-    v.number("density", density, kilogram_per_cubic_metre, Range{1e-6, 1e3},
+    v.number("density", density, kilogram_per_cubic_metre, Range{1e-6, 1e3, {0.5, 2}},
              "density of the pore gas at atmospheric pressure");
-    v.number("bulk_modulus", bulk_modulus, pascal, Range{1, 1e9},
+    v.number("bulk_modulus", bulk_modulus, pascal, Range{1, 1e9, {5e4, 1.5e5}},
              "bulk modulus K_g; for an ideal gas it is the atmospheric pressure");
-    v.number("viscosity", viscosity, pascal_second, Range{1e-9, 1e3}, "dynamic viscosity of the pore gas");
-    v.function("pressure", pressure, pascal, Range{-1e6, 1e9}, of::place,
+    v.number("viscosity", viscosity, pascal_second, Range{1e-9, 1e3, {1e-5, 3e-5}},
+             "dynamic viscosity of the pore gas");
+    v.function("pressure", pressure, pascal, Range{-1e6, 1e9, {-1e5, 1e6}}, of::place,
                "initial gauge pressure of the gas above the water table, function of x, y, z");
   }
 };
@@ -402,6 +403,8 @@ struct Stage {
   WhenLost when_lost = WhenLost::stop;
   bool steady = false;                      ///< seepage: the flow that the loads at the stage's end keep up
   std::vector<double> seismic_coefficient;  ///< pseudo-static inertia over weight, by axis [-]; empty: none
+  /// Is the soil brought to rest, so that damping does no harm?
+  bool settles() const { return until == StopWhen::equilibrium || gravity_ramp > 0; }
   template <class Visitor>
   void fields(Visitor &&v) {
     v.text("name", name, "name of the stage in logs and results; default: its number, from 0");
@@ -412,31 +415,35 @@ struct Stage {
               {"consolidation", StageKind::consolidation}},
              "motion by the material point method, or by finite elements: static equilibrium, flow of pore water "
              "through soil at rest, or consolidation (both in time)");
-    v.number("duration", duration, second, Range{0, 1e12}, "longest duration of the stage");
     v.choice("until", until,
              {{"duration", StopWhen::duration},
               {"equilibrium", StopWhen::equilibrium},
               {"rest", StopWhen::rest},
               {"failure", StopWhen::failure}},
              "criterion that ends the stage before its duration");
-    v.number("damping", damping, one, Range{0, 0.99}, "local (Cundall) damping factor");
-    v.point("seismic_coefficient", seismic_coefficient, one,
-            "pseudo-static earthquake: inertia force over weight, one component per dimension, positive along the "
-            "axes, such as [0.15, 0]; it acts on soil and pore water, and the water table stays where it is");
+    v.number("duration", duration, second, Range{0, 1e12, is_static(kind) ? Usual{} : Usual{0, 86400}},
+             "longest duration of the stage. Motion takes steps shorter than a wave through a cell, and slides take "
+             "seconds to minutes: what goes on for days belongs to stages of another kind");
     v.number("gravity_ramp", gravity_ramp, second, Range{0, 1e9},
              "time in which gravity and pore pressure increase linearly from 0");
-    v.number("force_ratio", force_ratio, one, Range{0, 1},
+    v.number("damping", damping, one, Range{0, 0.99, settles() ? Usual{0, 0.8} : Usual{0, 0.1}},
+             "local (Cundall) damping factor; soil that slides is slowed by it, soil that settles (until = "
+             "\"equilibrium\" or a gravity_ramp) comes to rest fastest with 0.7");
+    v.point("seismic_coefficient", seismic_coefficient, one, Usual{0, 0.6},
+            "pseudo-static earthquake: inertia force over weight, one component per dimension, positive along the "
+            "axes, such as [0.15, 0]; it acts on soil and pore water, and the water table stays where it is");
+    v.number("force_ratio", force_ratio, one, Range{0, 1, {1e-6, 0.05}},
              "equilibrium: largest ratio of unbalanced to applied nodal forces");
-    v.number("energy_ratio", energy_ratio, one, Range{0, 1},
+    v.number("energy_ratio", energy_ratio, one, Range{0, 1, {1e-12, 1e-2}},
              "equilibrium: largest ratio of kinetic to elastic strain energy");
-    v.number("rest_speed", rest_speed, metre_per_second, Range{0, 1e6},
+    v.number("rest_speed", rest_speed, metre_per_second, Range{0, 1e6, {1e-5, 0.1}},
              "rest: the root mean square speed of all soil remains below this value and does not rise; a stage "
              "does not end while what acts has still to change within its duration, or pore fluids move, unless "
              "hold_loads = true");
     v.text("failure_point", failure_point, "failure: name of the output point whose velocity is tested");
-    v.number("failure_speed", failure_speed, metre_per_second, Range{0, 1e6},
+    v.number("failure_speed", failure_speed, metre_per_second, Range{0, 1e6, {1e-4, 1}},
              "failure: speed that the mean velocity of the point over failure_time must exceed");
-    v.number("failure_time", failure_time, second, Range{0, 1e9},
+    v.number("failure_time", failure_time, second, Range{0, 1e9, {0.01, 60}},
              "failure: time of this mean, no shorter than the period of the slowest vibration; from half of it on, the "
              "soil must "
              "store less than a fifth of the energy that it receives");
@@ -452,7 +459,7 @@ struct Stage {
     v.flag("reset_displacement", reset_displacement,
            "set displacement, velocity and plastic strain to zero at the end of the stage");
     v.integer(
-        "load_steps", load_steps, Range{1, 10000},
+        "load_steps", load_steps, Range{1, 10000, {1, 200}},
         "quasi-static: number of steps in which loads are applied; a step is halved where Newton's iterations fail");
     v.choice("initial_stress", initial_stress, {{"kept", InitialStress::kept}, {"k0", InitialStress::k0}},
              "quasi-static: stress at the start of the stage: the present stress, or vertical stress from the weight "
@@ -487,9 +494,10 @@ struct Transfer {
     v.choice("velocity", velocity, {{"flip", Velocity::flip}, {"pic", Velocity::pic}},
              "how particles take their velocity from the nodes");
     v.number(
-        "relaxation", relaxation, one, Range{0, 1e9},
+        "relaxation", relaxation, one, Range{0, 1e9, {20, 1e4}},
         "time constant of the relaxation of FLIP to PIC, in units of smallest altitude / wave speed; 0: no relaxation");
-    v.number("pic_fraction", pic_fraction, one, Range{0, 1}, "PIC share at each remap, in addition to the relaxation");
+    v.number("pic_fraction", pic_fraction, one, Range{0, 1, {0, 0.1}},
+             "PIC share at each remap, in addition to the relaxation");
     v.choice("integration", integration,
              {{"blended", Integration::blended},
               {"particle", Integration::particle},
@@ -525,11 +533,11 @@ struct QuasiStaticSource {
              "displacement of second order, of first order, or of first order with the patches against locking that "
              "the motion of particles uses");
     v.number(
-        "tolerance", tolerance, one, Range{1e-14, 1e-2},
+        "tolerance", tolerance, one, Range{1e-14, 1e-2, {1e-12, 1e-4}},
         "Newton's iterations end when the ratio of the out-of-balance force to the applied forces is below this value");
-    v.integer("iterations", iterations, Range{1, 1000},
+    v.integer("iterations", iterations, Range{1, 1000, {5, 200}},
               "largest number of iterations in a load step, after which the step is halved");
-    v.number("smallest_step", smallest_step, one, Range{1e-9, 1},
+    v.number("smallest_step", smallest_step, one, Range{1e-9, 1, {1e-6, 0.1}},
              "smallest step, as a share of the loads of the stage; equilibrium is lost if a smaller one is needed");
     v.choice("linear_solver", linear_solver,
              {{"automatic", LinearSolver::automatic},
@@ -537,7 +545,7 @@ struct QuasiStaticSource {
               {"iterative", LinearSolver::iterative}},
              "direct: LU (MUMPS); iterative: GMRES with algebraic multigrid (GAMG); automatic: chosen by the number of "
              "unknowns");
-    v.number("step_error", step_error, one, Range{1e-8, 1},
+    v.number("step_error", step_error, one, Range{1e-8, 1, {1e-5, 0.05}},
              "seepage and consolidation: allowed error of a time step, of pressure relative to its largest change so "
              "far, which counts as a hundredth of the largest pressure at least, and of saturation");
   }
@@ -657,6 +665,7 @@ struct Scene {
   QuasiStaticSource quasi_static;
   FactorSource factor_of_safety;
   Output output;
+  std::vector<std::string> acknowledge;  ///< names of doubts that are meant
   template <class Visitor>
   void fields(Visitor &&v) {
     v.text("title", title, "one line that says what the scene shows");
@@ -668,7 +677,7 @@ struct Scene {
               {"three-phase", PhaseModel::three_phase}},
              "phase model");
     v.integer("dimension", dimension, Range{2, 3}, "2: plane strain on triangles, 3: tetrahedra");
-    v.point("gravity", gravity, metre_per_second_squared,
+    v.point("gravity", gravity, metre_per_second_squared, Usual{9.7, 10},
             "acceleration of gravity, one component per dimension; a single number acts downwards, against `up`");
     v.choice("up", up, {{"y", Up::y}, {"z", Up::z}},
              "axis along which elevations are counted, of water tables, levels and vertical stress; z (as in terrain) "
@@ -685,8 +694,13 @@ struct Scene {
     v.table("quasi_static", quasi_static, "finite elements of quasi-static stages");
     v.table("factor_of_safety", factor_of_safety, "search for the factor of safety");
     v.table("output", output, "results that are written");
+    v.texts("acknowledge", acknowledge,
+            "doubts that are meant and not to be said: the names in brackets at the end of warnings, such as "
+            "[\"damping\"]");
   }
 
+  /// Does the scene acknowledge doubts of this name?
+  bool acknowledges(std::string_view doubt) const { return std::ranges::count(acknowledge, doubt) > 0; }
   double gravity_size() const;  ///< magnitude of gravity [m/s2]
   /// Number of the component of a place that is its elevation: the one place that says which way is up.
   int vertical() const { return static_cast<int>(up); }

@@ -1,6 +1,7 @@
 #include "scene/value.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -8,15 +9,17 @@
 #include <regex>
 #include <string_view>
 
+#include "base/rounded.h"
 #include "scene/quantity.h"
 #include "scene/toml_nodes.h"
+#include "scene/usual.h"
+#include "scene/words.h"
 
 namespace talus {
 
 std::string number_in(Range range, Unit unit) {
-  const std::string in = unit.dimension == Dimension{} ? "" : std::string(" ") + unit.name;
-  if (std::isinf(range.low)) return in.empty() ? "a number" : "a number in" + in;
-  return "a number from " + shortest(range.low) + " to " + shortest(range.high) + in;
+  if (std::isinf(range.low)) return in(unit).empty() ? "a number" : "a number in" + in(unit);
+  return "a number from " + shortest(range.low) + " to " + shortest(range.high) + in(unit);
 }
 
 std::string TableReader::Document::beside(const std::string &name) const {
@@ -42,8 +45,30 @@ std::string TableReader::Value::string(const std::string &expected) const {
 
 double TableReader::Value::number(Unit unit, Range range) const {
   const double number = is_number() ? number_of(*node_) : quantity(unit, range);
-  if (!std::isfinite(number) || !(range.low <= number && number <= range.high)) must_be(number_in(range, unit));
+  if (!std::isfinite(number) || !(range.low <= number && number <= range.high))
+    must_be(number_in(range, unit), has_usual(range.usual) ? "usual " + text_of(range.usual) + in(unit) : "");
   return number;
+}
+
+void TableReader::Value::doubt(double number, Unit unit, const Usual &usual) const {
+  if (is_usual(number, usual)) return;
+  std::vector<std::string> words = split(path_);
+  const auto counts = [](const std::string &word) { return std::ranges::all_of(word, ::isdigit); };
+  while (words.size() > 1 && counts(words.back())) words.pop_back();  // a point of a list
+  const std::string key = words.back(), path = join(words, ".");
+  words.pop_back();
+  std::string table;
+  if (!words.empty() && counts(words.back())) {  // stage.0
+    const toml::table *own = document_->root[words.front()][std::stoul(words.back())].as_table();
+    const auto name = own ? (*own)["name"].value<std::string>() : std::nullopt;
+    words.back() = name ? '"' + *name + '"' : words.back();
+  }
+  if (!words.empty()) table = " in " + (words.size() == 1 ? "[" + words[0] + "]" : join(words, " "));
+  const std::string meant = is_number() ? unit_meant(number, unit, usual) : "";
+  const std::string sentence = place(document_->file, *node_, false) + ": " + key + " = " + rounded(number) + in(unit) +
+                               table + "; usual " + text_of(usual) + in(unit) +
+                               (meant.empty() ? "" : "; is it in " + meant + "?");
+  document_->unusual.try_emplace(path, Doubt{key, sentence});
 }
 
 std::vector<TableReader::Value> TableReader::Value::elements(const std::string &expected) const {
@@ -114,7 +139,11 @@ Function TableReader::Value::function(Unit unit, Range range, const char *variab
   const bool of_time = std::string_view(variables).find('t') != std::string_view::npos;
   const std::string expected =
       number_in(range, unit) + (of_time ? ", a list of [t, value] points" : "") + " or an expression of " + variables;
-  const auto value = [&](const Value &element) { return element.number(unit, range) * unit.si; };
+  const auto value = [&](const Value &element) {
+    const double number = element.number(unit, range);
+    element.doubt(number, unit, range.usual);
+    return number * unit.si;
+  };
   if (node_->is_array() && of_time) return table(expected, value);
   if (!is_number() && looks_like_quantity(string(expected)) &&
       string(expected).find_first_of("*+<>=?(") != std::string::npos &&
@@ -156,10 +185,9 @@ Function TableReader::Value::limited_expression(const std::string &expected, Uni
     if (function.uses(name) && known.find(" " + name + ",") == std::string::npos)
       must_be(expected, "it cannot depend on " + name);
   constexpr double largest = std::numeric_limits<double>::max();
-  const std::string in = unit.dimension == Dimension{} ? "" : std::string(" ") + unit.name;
-  const auto limits = std::make_shared<const FunctionLimits>(
-      FunctionLimits{place(document_->file, *node_, false) + ": " + path_ + written(*node_), number_in(range, unit), in,
-                     std::max(-largest, range.low * unit.si), std::min(largest, range.high * unit.si), unit.si});
+  const auto limits = std::make_shared<const FunctionLimits>(FunctionLimits{
+      place(document_->file, *node_, false) + ": " + path_ + written(*node_), number_in(range, unit), in(unit),
+      std::max(-largest, range.low * unit.si), std::min(largest, range.high * unit.si), unit.si});
   function.limit(limits);
   document_->expressions.emplace_back(function, limits);
   return function;

@@ -4,6 +4,7 @@
 #include <toml++/toml.h>
 
 #include <limits>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -25,7 +26,8 @@ struct TableReader::Document {
   NamedFunctions functions;
   NamedGrids grids;
   mutable std::vector<std::pair<Function, std::shared_ptr<const FunctionLimits>>> expressions;  ///< of all keys
-  mutable std::set<std::string> files;  ///< and folders that keys have named
+  mutable std::set<std::string> files;             ///< and folders that keys have named
+  mutable std::map<std::string, Doubt> unusual{};  ///< see TableReader::unusual
 
   /// A file or folder that a key names, relative to the folder of this file; enters it into `files`. An empty name
   /// stays empty.
@@ -57,6 +59,8 @@ class TableReader::Value {
   std::shared_ptr<PlaceGrid> named_grid() const;
   /// A function of [functions]: of t alone, its values in any unit.
   Function named_function() const;
+  /// Doubts a number of this value, in the unit of its key, that is not usual.
+  void doubt(double number, Unit unit, const Usual &usual) const;
   /// A number or a quantity of any unit, in SI.
   double any_quantity() const;
 

@@ -42,9 +42,9 @@ bool has_control_characters(const std::string &name) {
   return std::any_of(name.begin(), name.end(), [](unsigned char c) { return std::iscntrl(c); });
 }
 
-std::string join(const std::vector<std::string> &words) {
+std::string join(const std::vector<std::string> &words, const char *between) {
   std::string list;
-  for (const std::string &word : words) list += (list.empty() ? "" : ", ") + word;
+  for (const std::string &word : words) list += (list.empty() ? "" : between) + word;
   return list;
 }
 

@@ -19,8 +19,8 @@ std::vector<std::string> split(const std::string &path);
 /// Line breaks and the like, which have no place in names.
 bool has_control_characters(const std::string &name);
 
-/// "a, b, c"
-std::string join(const std::vector<std::string> &words);
+/// "a, b, c", or with another word between
+std::string join(const std::vector<std::string> &words, const char *between = ", ");
 
 /// "did you mean `x`?" where a candidate is near, else "known are a, b, c".
 std::string suggestion(const std::string &word, const std::vector<std::string> &candidates);

@@ -137,7 +137,8 @@ std::vector<std::string> MeshEnds<dim>::newly_reached(const std::string &stage) 
 
 template <int dim>
 typename MeshEnds<dim>::Sheared MeshEnds<dim>::sheared(const Soil &soil, const OfPlanes &size, bool mechanism) const {
-  constexpr double strip = 0.2;    // of the height of the soil: of selborne, whatever its cells, a shear band and more
+  constexpr double strip =
+      0.2;  // of the height of the soil: of selborne_absolute, whatever its cells, a shear band and more
   constexpr double hardly = 0.01;  // strain of soil that slides without shearing
   constexpr double few = 0.3;      // of the mean mass: parts with less of it are corners
   constexpr double bare = 0.05;    // of the bottom

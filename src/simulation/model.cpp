@@ -101,6 +101,9 @@ struct Fields {
   void text(const char *key, const std::string &value, const char *) { object.add(key, json::text(value)); }
   void texts(const char *key, const std::vector<std::string> &value, const char *) { object.add(key, json_of(value)); }
   void point(const char *key, const std::vector<double> &value, Unit, const char *) { object.add(key, json_of(value)); }
+  void point(const char *key, const std::vector<double> &value, Unit, const Usual &, const char *) {
+    object.add(key, json_of(value));
+  }
   template <class Enum>
   void choice(const char *key, Enum value,
               std::initializer_list<std::pair<const char *, std::type_identity_t<Enum>>> choices, const char *) {

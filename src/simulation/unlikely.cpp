@@ -14,29 +14,6 @@
 namespace talus {
 namespace {
 
-/// What the number of a key may have been meant in.
-struct Meant {
-  const char *text;  ///< unit or key
-  double si;         ///< of the key for a number of 1 [SI]
-};
-
-/// A key whose value lies outside of what soils have, and the units in which its number may have been meant.
-struct Doubt {
-  const char *key;
-  double value;        ///< SI
-  Unit unit;           ///< in which the key counts numbers
-  double least, most;  ///< of soils, from laboratory models of dust to rock, SI
-  std::vector<Meant> meant;
-
-  bool likely(double si) const { return least <= si && si <= most; }
-  /// A question for the first unit in which the number is one of soils; empty if it is in none.
-  std::string question() const {
-    for (const Meant &one : meant)
-      if (likely(value / unit.si * one.si)) return std::string(" Is it in ") + one.text + "?";
-    return "";
-  }
-};
-
 constexpr double least_cohesion = 20;  ///< [Pa]; less is doubted whatever the height
 constexpr double no_effect = 1e-3;     ///< c over the weight per area of the soil: less does not decide what stands
 
@@ -47,46 +24,6 @@ Extent extent_of(const std::vector<BodyReport> &bodies) {
     for (int d = 0; d < 3 && b.particles > 0; ++d)
       box.low[d] = std::min(box.low[d], b.low[d]), box.high[d] = std::max(box.high[d], b.high[d]);
   return box;
-}
-
-/// Of the earth, in the units that are mixed up with m/s2, and as in a centrifuge, which is meant; empty if it is
-/// likely.
-std::string doubt_about_gravity(double g) {
-  constexpr double earth = 9.81, least = 0.1, most = 30, alike = 0.01;
-  constexpr double foot = 0.3048;
-  struct {
-    double factor;
-    const char *question;
-  } const mistakes[] = {
-      {1e3, "Is it in mm/s2?"},
-      {1 / foot, "Is it in ft/s2?"},
-      {foot, "Is it 9.81 m/s2, or 32.2 ft/s2, and not 9.81 ft/s2?"},
-      {1e-2, "Is it 9.81 m/s2, and not cm/s2?"},
-      {1e-3, "Is it 9.81 m/s2, and not mm/s2?"},
-  };
-  const std::string said = "gravity is " + rounded(g) + " m/s2; that of the earth is 9.81 m/s2";
-  for (const auto &[factor, question] : mistakes)
-    if (std::abs(g / (earth * factor) - 1) <= alike) return said + ". " + question;
-  if (g > most) return said + ". Is this " + rounded(g / earth) + " times as much meant, as in a centrifuge?";
-  return g < least ? said + ". Is it in another unit than m/s2?" : "";
-}
-
-/// Is a value of the scene, as it is written there, a number with a unit?
-bool has_unit(std::string written) {
-  std::erase(written, '"');
-  return looks_like_quantity(written) && !parse_quantity(written).plain;
-}
-
-/// Motion is computed wave by wave: slides take seconds to minutes, and what takes days is slow enough for equilibrium.
-void doubt_durations(const Scene &scene, std::vector<std::string> &sentences) {
-  constexpr double day = 86400;  // [s]
-  for (const Stage &stage : scene.stage)
-    if (stage.kind == StageKind::dynamic && stage.duration >= day)
-      sentences.push_back("Stage " + stage.name + " lets the soil move for " + rounded(stage.duration / day) +
-                          " d, in steps that are shorter than a wave takes through a cell; slides take seconds to "
-                          "minutes. Let rain, seepage and consolidation go on in stages of kind = \"seepage\", "
-                          "\"consolidation\" or \"quasi_static\", which take as long as they like, and let the soil "
-                          "move when it fails. Is the duration in another unit than seconds?");
 }
 
 /// The faces of one side of the soil, found by their place on the level.
@@ -253,12 +190,7 @@ std::vector<std::string> unlikely_surroundings(const Scene &scene, const std::ve
   constexpr double lowest = 0.01;  // [m], an experiment on a table
   std::vector<std::string> sentences;
   doubt_stages(scene, sentences);
-  const double g = scene.gravity_size();
-  if (g == 0) return sentences;
-  if (const std::string sentence = doubt_about_gravity(g); !sentence.empty()) sentences.push_back(sentence);
-  if (scene.water.given && (scene.water.density < 500 || scene.water.density > 3000))
-    sentences.push_back("water.density is " + rounded(scene.water.density) +
-                        " kg/m3, which hardly any water has; a number without a unit counts in kg/m3. Is it in t/m3?");
+  if (scene.gravity_size() == 0) return sentences;
   const Extent soil = extent_of(bodies);
   const int up = scene.vertical();
   const double height = soil.of(up);
@@ -270,9 +202,7 @@ std::vector<std::string> unlikely_surroundings(const Scene &scene, const std::ve
                         " m high; coordinates count in metres. Is the mesh in kilometres?");
   doubt_water(scene, soil, surface, sentences);
   doubt_ends(scene, soil, surface, sentences);
-  doubt_bases(scene, surface, sentences);
   doubt_thin_bodies(scene, bodies, sentences);
-  doubt_durations(scene, sentences);
   return sentences;
 }
 
@@ -387,46 +317,21 @@ void doubt_soft_water(const Scene &scene, const BodySource &body, const Law &law
 
 std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<Law> &laws,
                                          const std::vector<BodyReport> &bodies, const std::vector<SoilFace> &surface) {
-  constexpr double none = 1e300, g = 9.81;  // [m/s2]
-  constexpr double water_flow = 1e-7;       // permeability over hydraulic conductivity [m s]
-  const std::vector<Meant> of_weights{{"kg/m3 (key density)", g}};
   std::vector<std::string> sentences;
+  if (scene.root)
+    for (const auto &[path, doubt] : scene.root->unusual())
+      if (!scene.acknowledges(doubt.name)) sentences.push_back(doubt.text());
   const double depth = greatest_depth(surface, scene.dimension, scene.vertical());
   for (std::size_t b = 0; b < laws.size(); ++b) {
     const BodySource &body = scene.body[b];
-    const bool weighed = body.unit_weight > 0 || body.saturated_unit_weight > 0;  // densities follow from it
-    std::vector<Doubt> doubts{
-        {"density",
-         weighed ? 0 : body.density,
-         kilogram_per_cubic_metre,
-         100,
-         10e3,
-         {{"t/m3", 1e3}, {"kN/m3 (key unit_weight)", 1e3 / g}, {"N/m3 (key unit_weight)", 1 / g}}},
-        {"grain_density", weighed ? 0 : body.grain_density, kilogram_per_cubic_metre, 500, 10e3, {{"t/m3", 1e3}}},
-        {"unit_weight", body.unit_weight, newton_per_cubic_metre, 5e3, 60e3, of_weights},
-        {"saturated_unit_weight", body.saturated_unit_weight, newton_per_cubic_metre, 8e3, 60e3, of_weights},
-        {"porosity", body.porosity, one, 0, 0.9, {}},
-        {"permeability", body.permeability, square_metre, 0, 1e-6, {{"m/s (key hydraulic_conductivity)", water_flow}}},
-        {"hydraulic_conductivity",
-         body.hydraulic_conductivity,
-         metre_per_second,
-         0,
-         1,
-         {{"mm/s", 1e-3}, {"m/h", 1. / 3600}, {"m/day", 1. / 86400}}},
-    };
     std::visit(
         [&](const auto &law) {
-          if constexpr (requires { law.young_modulus; })
-            doubts.push_back({"young_modulus", law.young_modulus, pascal, 5e3, none, {{"kPa or MPa", 1e6}}});
-          if constexpr (requires { law.friction_angle; }) {
-            doubts.push_back({"cohesion", law.cohesion, pascal, least_cohesion, none, {{"kPa", 1e3}}});
-            doubts.push_back({"friction_angle", law.friction_angle, degree, 2 * degree.si, none, {{"radians", 1}}});
+          if constexpr (requires { law.dilation_angle; })
             if (law.dilation_angle > 0 && scene.transfer.locking == Locking::nodal)
               sentences.push_back("body." + body.name +
                                   ".dilation_angle and transfer.locking = \"nodal\": strain is "
                                   "smoothed and stress is not, so that soil which dilates creates energy, in any step. "
                                   "Take transfer.locking = \"patches\", which is the default");
-          }
           if constexpr (requires { law.tension_cutoff; })
             if (const double apex = law.cohesion / std::tan(law.friction_angle);
                 law.tension_cutoff > 0 && law.friction_angle > 0 && law.tension_cutoff >= apex)
@@ -449,18 +354,6 @@ std::vector<std::string> unlikely_values(const Scene &scene, const std::vector<L
                           depth_of(static_cast<int>(b), bodies[b], surface, scene.vertical(), depth),
                       sentences);
     doubt_soft_water(scene, body, laws[b], sentences);
-    for (const Doubt &doubt : doubts) {
-      if (doubt.value <= 0 || doubt.likely(doubt.value)) continue;
-      const std::string path = "body." + body.name + "." + doubt.key,
-                        given = scene.root ? scene.root->written_at(path) : "", unit = doubt.unit.name;
-      std::string text = path + " is " + rounded(doubt.value / doubt.unit.si) + (unit == "-" ? "" : " " + unit) +
-                         ", which hardly any soil has";
-      if (has_unit(given))
-        text += "; the scene gives it as " + given + ". Is another unit meant?";
-      else if (unit != "-")
-        text += "; a number without a unit counts in " + unit + "." + doubt.question();
-      sentences.push_back(text);
-    }
   }
   return sentences;
 }

@@ -168,23 +168,4 @@ void doubt_ends(const Scene &scene, const Extent &soil, const std::vector<SoilFa
   doubt_voids(scene, scene.vertical(), surface, sentences);
 }
 
-void doubt_bases(const Scene &scene, const std::vector<SoilFace> &surface, std::vector<std::string> &sentences) {
-  constexpr double least_angle = 1.5, least_adhesion = 100;  // [deg], [Pa]: no rock or soil is so smooth or so loose
-  const auto at = std::ranges::max_element(surface, {}, [](const SoilFace &face) { return face.held ? face.area : 0; });
-  if (at == surface.end() || !at->held) return;
-  for (const BoundarySource &source : scene.boundary) {
-    const Boundary kind = read_boundary(source.kind);
-    if (!kind.friction_coefficient) continue;
-    const auto &[x, y, z] = at->corner[0];
-    const double angle = std::atan(kind.friction_coefficient(x, y, z, 0, 0)) / degree.si,
-                 adhesion = kind.adhesion(x, y, z, 0, 0);
-    if (angle > 0 && angle < least_angle)
-      sentences.push_back("boundary." + source.name + " has a friction angle of " + rounded(angle) +
-                          " deg; a number without a unit counts in degrees. Is it in radians, or its tangent?");
-    if (adhesion > 0 && adhesion < least_adhesion)
-      sentences.push_back("boundary." + source.name + " has an adhesion of " + rounded(adhesion) +
-                          " Pa; a number without a unit counts in Pa. Is it in kPa?");
-  }
-}
-
 }  // namespace talus

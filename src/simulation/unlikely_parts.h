@@ -43,8 +43,6 @@ void doubt_water_without_friction(const Scene &scene, int body, const BodyReport
 void doubt_stages(const Scene &scene, std::vector<std::string> &sentences);
 /// Soil that equilibrium by elements of first order will refuse, since these are one across it.
 void doubt_thin_bodies(const Scene &scene, const std::vector<BodyReport> &bodies, std::vector<std::string> &sentences);
-/// Friction and adhesion of bases in other units.
-void doubt_bases(const Scene &scene, const std::vector<SoilFace> &surface, std::vector<std::string> &sentences);
 /// Ends and base of the soil that no boundary holds.
 void doubt_ends(const Scene &scene, const Extent &soil, const std::vector<SoilFace> &surface,
                 std::vector<std::string> &sentences);

@@ -17,33 +17,15 @@ void doubt_early_suction(const Scene &scene, std::vector<std::string> &sentences
                         "before it");
 }
 
-/// Pores that dry and conduct as if they were full, and such whose permeability is gone with the first water.
+/// Pores that dry and conduct as if they were full.
 void doubt_permeability(const Scene &scene, std::vector<std::string> &sentences) {
-  constexpr double first = 1e-3, steep = 0.5;
   if (std::ranges::none_of(scene.stage, [](const Stage &s) { return water_flows(s.kind); })) return;
-  constexpr double coarse = 150, dry = 1e8;  // [Pa]: coarse sand keeps half of its water beyond that; no soil this
-  for (const BodySource &body : scene.body) {
-    if (!body.retention.reader) continue;
-    const SoilPores own(body, scene.water.density, scene.water.viscosity);
-    if (saturation(own.retention(), coarse) < (1 + saturation(own.retention(), dry)) / 2)
-      sentences.push_back("body." + body.name + " loses half of its water at a suction below " + rounded(coarse) +
-                          " Pa, a column of " + rounded(coarse / (scene.water.density * 9.81) * 1e3) +
-                          " mm, as gravel does and no sand. Is the suction of its retention curve in kPa?");
-    if (!body.relative_permeability.reader) {
+  for (const BodySource &body : scene.body)
+    if (body.retention.reader && !body.relative_permeability.reader)
       sentences.push_back("body." + body.name +
                           " has a retention curve and no relative_permeability: it conducts water as if its pores were "
                           "full, however dry they are. Give [body." +
                           body.name + ".relative_permeability], such as van_genuchten_mualem");
-      continue;
-    }
-    const double left = own.at(first).liquid;
-    if (left < steep)
-      sentences.push_back(
-          "body." + body.name + " conducts " + rounded(100 * left) +
-          " % of what it conducts in full when a thousandth of its pores has dried: where water reaches "
-          "such soil, seepage may find no flow however short its steps are. A larger shape of "
-          "van_genuchten_mualem (0.2 or more), or a curve of another kind, is found");
-  }
 }
 
 }  // namespace

@@ -41,14 +41,14 @@ void doubt_stages(const Scene &scene, std::vector<std::string> &sentences) {
   double end = 0;  // of the load time [s]
   for (const Stage &stage : scene.stage) {
     if (!stage.hold_loads) end += stage.duration;
-    if (!(stage.gravity_ramp > stage.duration)) continue;
-    std::ostringstream text;
-    text << "stage." << stage.name << ".gravity_ramp is " << rounded(stage.gravity_ramp)
-         << " s, longer than the duration of " << rounded(stage.duration)
-         << " s: gravity does not come to its full value"
-         << (&stage == &scene.stage.back() ? "" : ", and the next stage begins with all of it at once")
-         << ". Give the stage more time, or a shorter ramp";
-    sentences.push_back(text.str());
+    if (stage.gravity_ramp > stage.duration)
+      sentences.push_back("stage." + stage.name + ".gravity_ramp is " + rounded(stage.gravity_ramp) +
+                          " s, longer than the duration of " + rounded(stage.duration) +
+                          " s: gravity does not come to its full value in it");
+    if (stage.until == StopWhen::failure && stage.failure_time > stage.duration)
+      sentences.push_back("stage." + stage.name + ".failure_time is " + rounded(stage.failure_time) +
+                          " s, longer than the duration of " + rounded(stage.duration) +
+                          " s: no failure is found in it");
   }
   for (const ChangingLoad &load : changing_loads(scene)) {
     const auto first = std::ranges::min_element(load.when, {}, &TimeSpan::begin);

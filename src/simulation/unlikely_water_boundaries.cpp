@@ -28,12 +28,11 @@ void doubt_faces_of_water(const Scene &scene, const std::vector<SoilFace> &surfa
   }
 }
 
-/// Open water that stands on none of its faces, and rain that no sky has: levels and intensities in another unit. What
-/// changes is asked for the start alone, as water.level is (levels_of).
+/// Open water that stands on none of its faces, and rain that reaches none. What changes is asked for the start alone,
+/// as water.level is (levels_of).
 void doubt_levels_and_rain(const Scene &scene, const std::vector<SoilFace> &surface,
                            std::vector<std::string> &sentences) {
-  constexpr double heaviest = 1e-3, mm_per_hour = 1e-3 / 3600;  // [m/s]; 1.8 m have fallen in a day, 0.4 m in an hour
-  constexpr double vertical = 1e-6;                             // of a normal, to round-off
+  constexpr double vertical = 1e-6;  // of a normal, to round-off
   const int up = scene.vertical();
   const double g = scene.gravity.empty() ? 0 : -scene.gravity[up];
   for (std::size_t b = 0; b < scene.boundary.size(); ++b) {
@@ -68,10 +67,6 @@ void doubt_levels_and_rain(const Scene &scene, const std::vector<SoilFace> &surf
       sentences.push_back("boundary." + scene.boundary[b].name +
                           " lies on faces that are vertical or overhang, and rain counts per level area: none enters "
                           "there. What wets a wall is a \"flux\" or a \"head\"");
-    if (rain > heaviest)
-      sentences.push_back("boundary." + scene.boundary[b].name + " brings up to " + rounded(rain / mm_per_hour) +
-                          " mm/h of rain, more than ever fell; a number without a unit counts in m/s. Is it in mm/h or "
-                          "mm/day, as \"20 mm/h\"?");
   }
 }
 

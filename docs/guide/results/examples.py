@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws examples.png: the commands of results.md one after the other, and their pictures side by side.  examples.py TALUS FOLDER"""
+"""Draws examples.png: the commands of docs/reference/python.md one after the other, and their pictures side by side.  examples.py TALUS FOLDER"""
 import os
 import subprocess
 import sys

@@ -14,7 +14,8 @@ struct BrooksCoreyPermeability {
   double pore_size_index = required;  ///< l [-]
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.number("pore_size_index", pore_size_index, one, Range{0.05, 20}, "exponent lambda, as in the retention curve");
+    v.number("pore_size_index", pore_size_index, one, Range{0.05, 20, {0.1, 5}},
+             "exponent lambda, as in the retention curve");
   }
 
   double liquid(const Wetness &w) const { return std::pow(w.wet, 3 + 2 / pore_size_index); }

@@ -13,7 +13,7 @@ struct GardnerPermeability {
   double decay_suction = required;  ///< 1 / alpha [Pa]
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.number("decay_suction", decay_suction, pascal, Range{1, 1e9},
+    v.number("decay_suction", decay_suction, pascal, Range{1, 1e9, {300, 1e7}},
              "suction 1 / alpha over which permeability falls by a factor e");
   }
 

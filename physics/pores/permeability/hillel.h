@@ -13,7 +13,7 @@ struct Hillel {
   double exponent = 3;  ///< m [-]
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.number("exponent", exponent, one, Range{0.5, 20}, "power of the effective saturation");
+    v.number("exponent", exponent, one, Range{0.5, 20, {1, 10}}, "power of the effective saturation");
   }
 
   double liquid(const Wetness &w) const { return std::pow(w.wet, exponent); }

@@ -14,7 +14,8 @@ struct VanGenuchtenMualem {
   double shape = required;  ///< l [-]
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.number("shape", shape, one, Range{0.02, 0.95}, "exponent lambda = 1 - 1/n, as in the retention curve");
+    v.number("shape", shape, one, Range{0.02, 0.95, {0.2, 0.85}},
+             "exponent lambda = 1 - 1/n, as in the retention curve");
   }
 
   double liquid(const Wetness &w) const {

@@ -15,8 +15,8 @@ struct BrooksCorey : ResidualWater {
   template <class Visitor>
   void fields(Visitor &&v) {
     ResidualWater::fields(v);
-    v.number("air_entry", air_entry, pascal, Range{1, 1e9}, "suction P_e at which air enters the pores");
-    v.number("pore_size_index", pore_size_index, one, Range{0.05, 20}, "exponent lambda");
+    v.number("air_entry", air_entry, pascal, Range{1, 1e9, {200, 1e7}}, "suction P_e at which air enters the pores");
+    v.number("pore_size_index", pore_size_index, one, Range{0.05, 20, {0.1, 5}}, "exponent lambda");
   }
 
   double effective(double s) const { return s > air_entry ? std::pow(air_entry / s, pore_size_index) : 1; }

@@ -16,7 +16,7 @@ struct Gardner : ResidualWater {
   template <class Visitor>
   void fields(Visitor &&v) {
     ResidualWater::fields(v);
-    v.number("decay_suction", decay_suction, pascal, Range{1, 1e9},
+    v.number("decay_suction", decay_suction, pascal, Range{1, 1e9, {300, 1e7}},
              "suction 1 / alpha over which effective saturation falls by a factor e");
   }
 

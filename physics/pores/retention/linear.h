@@ -16,7 +16,7 @@ struct LinearRetention : ResidualWater {
   template <class Visitor>
   void fields(Visitor &&v) {
     ResidualWater::fields(v);
-    v.number("drying_suction", drying_suction, pascal, Range{1, 1e9},
+    v.number("drying_suction", drying_suction, pascal, Range{1, 1e9, {300, 1e7}},
              "suction at which the line reaches zero effective saturation");
   }
 

@@ -9,7 +9,7 @@ struct ResidualWater {
   double residual_saturation = 0;  ///< S_r: water that suction does not draw out [-]
   template <class Visitor>
   void fields(Visitor &&v) {
-    v.number("residual_saturation", residual_saturation, one, Range{0, 0.9},
+    v.number("residual_saturation", residual_saturation, one, Range{0, 0.9, {0, 0.5}},
              "residual degree of saturation at large suction");
   }
 };

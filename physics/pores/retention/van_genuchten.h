@@ -17,9 +17,9 @@ struct VanGenuchten : ResidualWater {
   template <class Visitor>
   void fields(Visitor &&v) {
     ResidualWater::fields(v);
-    v.number("reference_suction", reference_suction, pascal, Range{1, 1e9},
+    v.number("reference_suction", reference_suction, pascal, Range{1, 1e9, {300, 1e7}},
              "suction P_0 = rho_w g / alpha that scales the curve");
-    v.number("shape", shape, one, Range{0.02, 0.95}, "exponent lambda = 1 - 1/n");
+    v.number("shape", shape, one, Range{0.02, 0.95, {0.1, 0.85}}, "exponent lambda = 1 - 1/n");
   }
 
   double effective(double s) const {

@@ -14,6 +14,7 @@ numbers.toml beside its README.md:
     cost = "quick"                   # quick: in ./talus test; long: only with --long
     unchecked = "why"                # not rerun with the present program
     listed = false                   # checked, but not in the page's table
+    table = "crack"                  # the table <!-- numbers: crack --> shows this run, in place of <!-- numbers -->
     numbers = [
       {quantity = "crest displacement", measure = "displacement", point = "crest", unit = "m", value = 12.4, tolerance = 0.5, because = "..."},
     ]
@@ -47,7 +48,8 @@ The table at the head of a page compares with a reference. A row names a number 
     is = "same within 1 %"                        # same, chosen, fitted, differs: why
 
 The tables stand in README.md or in another page (.md) of the folder between the lines `<!-- verdict -->`, `<!-- numbers -->`, `<!-- studies -->` (a list
-of them) or `<!-- sizes: crest -->` (a table of a study), and `<!-- end -->`.
+of them) or `<!-- sizes: crest -->` (a table of a study), and `<!-- end -->`. Between `<!-- file: crack.toml -->` and `<!-- end -->` a page shows that file
+of its folder.
 """
 
 import talus_interrupt  # noqa: F401  before all that takes time
@@ -117,8 +119,12 @@ class Page:
         tables = {}
         if stated.get("verdict"):
             tables["verdict"] = table_of_verdict(stated["verdict"], stated.get("run", {}))
-        if stated.get("run"):
-            tables["numbers"] = table_of_runs({name: run for name, run in stated["run"].items() if run.get("listed", True)}, self.name)
+        groups = {}
+        for name, run in stated.get("run", {}).items():
+            if run.get("listed", True):
+                groups.setdefault(run.get("table"), {})[name] = run
+        for group, runs in groups.items():
+            tables[f"numbers: {group}" if group else "numbers"] = table_of_runs(runs, None if group else self.name)
         if stated.get("study"):
             tables["studies"] = table_of_studies(stated["study"])
         for name, study in stated.get("study", {}).items():
@@ -142,7 +148,12 @@ class Page:
             block = "\n".join([f"<!-- {marker} -->", *lines, "<!-- end -->"])
             for file in places:
                 texts[file] = re.sub(pattern, lambda _: block, texts[file], flags=re.S)
-        return texts
+        return {file: re.sub(r"<!-- file: (\S+) -->\n.*?<!-- end -->", self._shown, text, flags=re.S) for file, text in texts.items()}
+
+    def _shown(self, found):
+        """A file of the folder as a block of a page."""
+        language = {".toml": "toml", ".py": "python"}.get(pathlib.Path(found[1]).suffix, "")
+        return f"<!-- file: {found[1]} -->\n```{language}\n{(self.folder / found[1]).read_text().rstrip()}\n```\n<!-- end -->"
 
 
 def decimals(tolerance):
@@ -197,7 +208,7 @@ def table_of_verdict(rows, runs):
 
 
 def table_of_runs(runs, page):
-    """One or two runs: a line for each number. More: one line for each run, or for each quantity, whichever gives the longer table."""
+    """One or two runs: a line for each number. More: one line for each run, or for each quantity, whichever gives the longer table. `page` is named below it."""
     quantities = {}
     for run in runs.values():
         for number in run["numbers"]:
@@ -227,7 +238,7 @@ def table_of_runs(runs, page):
             rows.append(["for comparison", *(number.get("beside", "") for number in quantities.values())])
     lines = ["| " + " | ".join(row) + " |" for row in rows]
     lines.insert(1, "|" + "---|" * len(rows[0]))
-    return lines + ["", "This table is made from [numbers.toml](numbers.toml), which gives the reasons of the tolerances.",
+    return lines if page is None else lines + ["", "This table is made from [numbers.toml](numbers.toml), which gives the reasons of the tolerances.",
                     f"`./talus verify --gallery {page}{' --long' if any(run['cost'] == 'long' for run in runs.values()) else ''}` runs the scenes again and compares."]
 
 

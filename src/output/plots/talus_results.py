@@ -1,4 +1,4 @@
-"""Reads what a run of Talus left in its folder. It stands on NumPy and h5py alone; docs/guide/results.md has examples.
+"""Reads what a run of Talus left in its folder. It stands on NumPy and h5py alone; docs/reference/python.md has examples.
 
     from talus_results import Results
     results = Results("results/slope")

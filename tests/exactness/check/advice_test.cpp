@@ -56,6 +56,10 @@ const Case cases[] = {
     {"gravity_that_does_not_come",
      {"stage.0.gravity_ramp=0.1"},
      "stage.fall.gravity_ramp is 0.1 s, longer than the duration of 0.05 s"},
+    {"failure_that_is_not_found",
+     {"stage.0.until=failure", "stage.0.failure_point=toe", "output.point.toe.position=[1, 0]",
+      "stage.0.failure_time=0.1"},
+     "stage.fall.failure_time is 0.1 s, longer than the duration of 0.05 s"},
     {"dry", {}, "is right for soil without water"},
 };
 
@@ -70,7 +74,7 @@ TEST_P(Advice, IsGivenWhereItIsDue) {
 
 TEST(NoAdvice, IsGivenWhereAllIsWell) {
   const Folder folder;
-  const Ending ending = check(folder, {"gravity=0"});
+  const Ending ending = check(folder, {"gravity=0", "acknowledge=gravity"});
   EXPECT_TRUE(ending.says("\"advice\": []")) << ending.output;
 }
 

@@ -1,4 +1,4 @@
-"""The module talus_results on a run of the guide's slope, and the examples of docs/guide/results.md on it:
+"""The module talus_results on a run of the guide's slope, and the examples of docs/reference/python.md on it:
 results.py PROGRAM SOURCES"""
 
 import csv

@@ -264,7 +264,7 @@ void work_is_force_times_way() {
 }
 TALUS_IN_2D_AND_3D(Boundaries, work_is_force_times_way)
 
-/// Energies of the particles: m v^2 / 2, and what their stress stores.
+/// Energies: m v^2 / 2 of the particles, and what stress stores in the volumes on which it does work.
 template <int dim>
 void balance_sums_what_particles_have() {
   Box<dim> box("", "[boundary.base]\nkind = \"fixed\"\n");
@@ -283,8 +283,8 @@ void balance_sums_what_particles_have() {
     kinetic += exact.particles.mass[p] / 2 * exact.velocity[p].squaredNorm();
   for (int c = 0; c < exact.cells; ++c) {
     const Tensor dev = exact.stress[c] - exact.stress[c].trace() / 3 * Tensor::Identity();
-    stored += exact.particle_volume[c] *
-              (std::pow(exact.stress[c].trace() / 3, 2) / (2 * bulk) + dev.squaredNorm() / (4 * shear));
+    stored +=
+        exact.weight[c] * (std::pow(exact.stress[c].trace() / 3, 2) / (2 * bulk) + dev.squaredNorm() / (4 * shear));
   }
   Balance sums;
   ASSERT_EQ(motion.balance(0, &sums), 0);

@@ -204,7 +204,7 @@ TEST(ReadScene, ChecksOneKeyAgainstAnother) {
       {with_unit_weights,
        {"body.clay.pore_pressure_ratio=0.3", "body.clay.saturated_unit_weight=20 kN/m3"},
        "needs a weight that does not depend on a water table"},
-      {dry, {"body.clay={region=\"a\", unit_weight=18}"}, "of soil mostly 14 to 24 kN/m3"},
+      {dry, {"body.clay={region=\"a\", unit_weight=18}"}, "must be a number from 1000 to 1e5 N/m3; usual 10000 to 30000 N/m3"},
       {with_unit_weights,
        {"body.clay.pore_pressure_ratio=0.2", "gravity=[3.4, -9.2]"},
        "needs gravity along -y, since it counts the soil above along y"},
