@@ -17,6 +17,9 @@ import numpy
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "src/output/plots"))
+
+from talus_results import read_events  # noqa: E402
+
 GROUND = "(x < 18 ? 15 : x < 36 ? 15 - (x - 18) / 2 : 6)"
 # effective vertical stress of the first stage: soil of 2200 kg/m3, water below the table of 5.6 m
 VERTICAL = f"-9.81 * (2200 * ({GROUND} - y) - 1000 * max(0, (x < 18 ? 5.6 : x < 36 ? max(5.6 + 0.4 * (x - 18) / 18, 5.6) : 6) - y))"
@@ -122,13 +125,11 @@ def run(talus, overrides):
         if done.returncode:
             print(done.stderr[-600:])
             return {"pressure_kPa": "", "table_m": "", "crest_m": "", "speed_m_s": "", "acceleration_g": "", "toe_m": "", "steps": "", "particles": ""}
-        log = Path(f"{folder}/run/run.log").read_text()
-        return outcomes(log, list(csv.DictReader(open(f"{folder}/run/history.csv"))), text, keys)
+        return outcomes(read_events(f"{folder}/run", "failure"), list(csv.DictReader(open(f"{folder}/run/history.csv"))), text, keys)
 
 
-def outcomes(log, rows, text, keys):
-    failure = re.search(r"failure at ([\d.]+) s \(loads at t = ([\d.]+) s\)", log)
-    at = table_height(float(failure[2]), text, keys) if failure else None
+def outcomes(failure, rows, text, keys):
+    at = table_height(failure[0]["load_time_s"], text, keys) if failure else None
     column = lambda name: numpy.array([float(r[name]) for r in rows if r["stage"] != "gravity"])
     time, speed = column("time_s"), column("crest_velocity_m_s")
     return {"pressure_kPa": round(9.81 * at, 2) if at else "", "table_m": round(at, 3) if at else "",

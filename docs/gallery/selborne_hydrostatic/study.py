@@ -15,6 +15,9 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "src/output/plots"))
+
+from talus_results import read_events  # noqa: E402
+
 GROUND = "(x < 18 ? 15 : x < 36 ? 15 - (x - 18) / 2 : 6)"
 VERTICAL = f"-(2200 - 1000) * 9.81 * ({GROUND} - y)"
 
@@ -49,13 +52,12 @@ def run(talus, text, slide=True):
         scene.write_text(text)
         arguments = [] if slide else ["--set", "stage.slide.duration=0.01"]
         done = subprocess.run([talus, "run", scene, "-o", f"{folder}/run", "--no-pictures", "--force", *arguments], capture_output=True, text=True)
-        log = Path(f"{folder}/run/run.log").read_text()
+        failure = read_events(f"{folder}/run", "failure")
         rows = list(csv.DictReader(open(f"{folder}/run/history.csv")))
-    failure = re.search(r"failure at ([\d.]+) s \(loads at t = ([\d.]+) s\)", log)
     if done.returncode or not failure:
         return {"failure_time_s": "", "excess_kPa": "", "crest_m": "", "steps": "", "particles": rows[0]["particles"]}
-    load = float(failure[2])
-    return {"failure_time_s": float(failure[1]), "excess_kPa": 2 * load, "crest_m": float(rows[-1]["crest_displacement_m"]),
+    load = failure[0]["load_time_s"]
+    return {"failure_time_s": failure[0]["time_s"], "excess_kPa": 2 * load, "crest_m": float(rows[-1]["crest_displacement_m"]),
             "steps": int(rows[-1]["step"]), "particles": int(float(rows[-1]["particles"]))}
 
 
@@ -125,9 +127,9 @@ def limit(talus):
                 text = re.sub(r"^(friction_angle = )(.*)$", r"\1\2\ndilation_angle = \2", text, flags=re.M)
             with tempfile.TemporaryDirectory() as folder:
                 (Path(folder) / "scene.toml").write_text(text)
-                done = subprocess.run([talus, "solve", f"{folder}/scene.toml", "-o", f"{folder}/run", "--no-pictures", "--force"], capture_output=True, text=True)
-            lost = re.search(r"no equilibrium beyond ([\d.e+-]+) % of the loads of stage recharge", done.stdout + done.stderr)
-            rows.append({"elements": elements, "flow": flow, "k0": "gravity" if k0 is None else k0, "excess_kPa": round(1.2 * float(lost[1]), 1) if lost else ""})
+                subprocess.run([talus, "solve", f"{folder}/scene.toml", "-o", f"{folder}/run", "--no-pictures", "--force"], capture_output=True)
+                lost = [event["values"]["share_of_loads"] for event in read_events(f"{folder}/run", "equilibrium_lost") if event["stage"] == "recharge"]
+            rows.append({"elements": elements, "flow": flow, "k0": "gravity" if k0 is None else k0, "excess_kPa": round(120 * lost[0], 1) if lost else ""})
             print(rows[-1], flush=True)
             write("limit.csv", rows)
 
