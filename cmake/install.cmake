@@ -3,7 +3,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 # How a host finds again what the rooms link; TalusConfig.cmake looks for the same. Eigen stays inside: its alignment depends on -march.
-set(known_outside MPI::MPI_CXX PkgConfig::PETSC PkgConfig::LAPACK PkgConfig::HDF5 PkgConfig::MUPARSER tomlplusplus::tomlplusplus SUNDIALS::arkode SUNDIALS::nvecpetsc)
+set(known_outside MPI::MPI_CXX PkgConfig::PETSC PkgConfig::LAPACK PkgConfig::HDF5 PkgConfig::MUPARSER tomlplusplus::tomlplusplus nlohmann_json::nlohmann_json SUNDIALS::arkode SUNDIALS::nvecpetsc)
 
 # The static libraries that `target` stands on, itself included, and what they link from outside.
 function(collect_rooms target rooms outside)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "meshes/terrain_words.h"
 
@@ -11,15 +12,6 @@ namespace talus {
 using namespace terrain_words;
 
 namespace {
-
-std::string json_text(const std::string &text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c == '\n' ? ' ' : c;
-  }
-  return quoted + "\"";
-}
 
 /// Fills places that are not a number: inwards from those that are, then as a soap film does.
 void interpolate(std::vector<double> &z, int columns) {
@@ -368,11 +360,13 @@ double Terrain::size_at(double x, double y, double z) const {
 }
 
 std::string Terrain::origin_document() const {
-  return text_of("{\"terrain\": ", json_text(options_.file), ",\n \"origin_m\": [", origin_[0], ", ", origin_[1],
-                 "],\n \"spacing_m\": ", ground_.spacing / options_.step,
-                 ",\n \"meaning\": \"x and y of the map are those of the mesh plus the origin; z is the elevation\",\n"
-                 " \"projection\": ",
-                 json_text(projection_), "}\n");
+  const nlohmann::ordered_json document{
+      {"terrain", options_.file},
+      {"origin_m", {origin_[0], origin_[1]}},
+      {"spacing_m", ground_.spacing / options_.step},
+      {"meaning", "x and y of the map are those of the mesh plus the origin; z is the elevation"},
+      {"projection", projection_}};
+  return document.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace talus

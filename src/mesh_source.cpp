@@ -14,6 +14,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <regex>
 #include <set>
@@ -177,17 +178,14 @@ std::string digest_of(const Grid &grid) {
   return text.str();
 }
 
-/// Text at a key of a document of an origin (Terrain::origin_document); empty where it has none.
-std::string text_in(const std::string &document, const std::string &key) {
-  const std::string opening = "\"" + key + "\": \"";
-  const std::size_t begin = document.find(opening);
-  std::string text;
-  for (std::size_t i = begin + opening.size(); begin != std::string::npos && i < document.size(); ++i) {
-    if (document[i] == '"') return text;
-    if (document[i] == '\\') ++i;
-    text += document[i];
+/// Value at a key of a document of an origin (Terrain::origin_document), or another one where it has none.
+template <class Value>
+Value value_in(const std::string &document, const std::string &key, const Value &otherwise) {
+  try {
+    return nlohmann::json::parse(document).at(key).get<Value>();
+  } catch (const nlohmann::json::exception &) {
+    return otherwise;
   }
-  return "";
 }
 
 /// What talus-mesh has warned of.
@@ -206,8 +204,9 @@ MeshRun values_of(const std::string &file, const std::string &document, Grid &gr
   if (!folder.make()) return no_folder;
   const std::string values = folder.path() + "/values";
   std::vector<std::string> arguments{file, "--values", "-o", values};
-  if (const std::string projection = text_in(document, "projection"); !projection.empty())
-    arguments.insert(arguments.end(), {"--projection", projection, "--projection-of", text_in(document, "terrain")});
+  const auto text = [&](const char *key) { return value_in(document, key, std::string()); };
+  if (const std::string projection = text("projection"); !projection.empty())
+    arguments.insert(arguments.end(), {"--projection", projection, "--projection-of", text("terrain")});
   MeshRun run = plain(run_talus_mesh(arguments));
   if (run.status) return run;
   std::ifstream in(values, std::ios::binary);
@@ -300,10 +299,7 @@ void MeshFile::read_origin(const std::string &name) {
   std::ostringstream document;
   if (std::ifstream file(name); file) document << file.rdbuf();
   made_.origin = document.str();
-  const std::string key = "\"origin_m\": [";
-  const std::size_t begin = made_.origin.find(key);
-  if (begin != std::string::npos)
-    std::sscanf(made_.origin.c_str() + begin + key.size(), "%lf, %lf", &origin_[0], &origin_[1]);
+  origin_ = value_in(made_.origin, "origin_m", origin_);
 }
 
 MeshRun MeshFile::make(const Scene &scene) {

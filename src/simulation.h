@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "meshes/mesh_report.h"
+#include "output/events.h"
 #include "output/results.h"
 #include "physics/laws/strength_range.h"
 #include "scene/scene.h"
@@ -52,12 +53,6 @@ struct RunOptions {
       false;          ///< snapshots of quasi-static stages hold Gauss points, not the particles they are handed to
   DM plex = nullptr;  ///< mesh of a host program, instead of the scene's
   MadeMesh mesh;      ///< filled by make_simulation
-};
-
-/// What happened when: failure, end of stages.
-struct Event {
-  double time, load_time;  ///< [s]; load_time is what functions of the scene see as t
-  std::string stage, text;
 };
 
 /// Values over time, as in history.csv.

@@ -17,7 +17,7 @@ template <int dim>
 PetscErrorCode QuasiStatic<dim>::relax(int *iterations, double *unbalanced, Way *way) {
   constexpr double first_prop = 0.1, stiffest = 1e6;  // of the elastic stiffness
   constexpr double largest_growth = 4;  // of the force out of balance over that at the start: contact that opens
-  constexpr double lasting = 0.75;      // share of this force that is left where soil moves
+  constexpr double lasting = 0.75;      // share of the push on the prop that is left where soil moves
   Vector direction, trial;
   double norm, after, first_norm, step;
   bool solved;
@@ -37,8 +37,8 @@ PetscErrorCode QuasiStatic<dim>::relax(int *iterations, double *unbalanced, Way 
   first_norm = share_ > 0 ? std::max(norm, force_scale_) : norm;
   double prop = first_prop, ratio = 1;
   struct Mark {  ///< an iterate to which later ones are compared
-    double norm, prop, step;
-  } mark{0, 0, 0};
+    double push, prop;
+  } mark{0, 0};
   for (int k = 0;; ++k) {
     *iterations = k, *unbalanced = force_scale_ > 0 ? norm / force_scale_ : norm;
     balanced_ = norm <= scene_.quasi_static.tolerance * force_scale_;
@@ -58,7 +58,7 @@ PetscErrorCode QuasiStatic<dim>::relax(int *iterations, double *unbalanced, Way 
     }
     if (!solved || !(after <= largest_growth * first_norm)) {
       if (prop >= stiffest) break;
-      prop *= 10, mark = {0, 0, 0};
+      prop *= 10, mark = {0, 0};
       PetscCall(residual(x_, f_));
       continue;
     }
@@ -67,11 +67,13 @@ PetscErrorCode QuasiStatic<dim>::relax(int *iterations, double *unbalanced, Way 
     PetscCall(VecCopy(trial, x_));
     norm = after;
 
-    // what moves goes ten times as far against a prop ten times softer, and as much is out of balance
+    // what moves goes ten times as far against a prop ten times softer, which it pushes as much; the force out of
+    // balance tells less, since it has what yields to and fro in soil that moves
     double moved;
     PetscCall(VecNorm(x_, NORM_INFINITY, &moved));
-    if (!(norm > lasting * mark.norm && norm < mark.norm / lasting)) mark = {norm, prop, step};
-    if (prop < 0.101 * mark.prop && step > 5 * mark.step && moved > size) {
+    const double push = prop * step;
+    if (!(push > lasting * mark.push && push < mark.push / lasting)) mark = {push, prop};
+    if (prop < 0.101 * mark.prop && moved > size) {
       *way = Way::moving, *iterations = k + 1, *unbalanced = norm / force_scale_;
       break;
     }

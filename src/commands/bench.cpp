@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <thread>
 
@@ -142,36 +143,38 @@ std::string processor() {
 
 void print_json(const std::vector<BenchCase> &cases, const std::vector<BenchScene> &scenes,
                 const std::vector<LawRate> &rates) {
-  std::printf(
-      "{\"machine\": {\"processor\": \"%s\", \"cores\": %u, \"memory_bandwidth_per_core\": %.4g, \"program\": \"Talus "
-      "%s\"}, \"cases\": [",
-      processor().c_str(), std::thread::hardware_concurrency(), bandwidth(), version);
-  for (size_t i = 0; i < cases.size(); ++i) {
-    const BenchCase &c = cases[i];
-    std::printf(
-        "%s\n {\"dimension\": %d, \"phases\": \"%s\", \"law\": \"%s\", \"transfer\": \"%s\", \"ranks\": %d, "
-        "\"particles\": %lld, "
-        "\"updates_per_second_per_core\": %.5g, \"wall_seconds_per_simulated_second\": %.4g, "
-        "\"breakdown_ns\": {\"step\": %.3g, \"to_particles\": %.3g, \"relocate_and_sort\": %.3g, \"to_nodes\": %.3g}}",
-        i ? "," : "", c.dimension, c.phases.c_str(), c.law.c_str(), c.transfer.c_str(), c.ranks, c.particles, c.rate,
-        1 / c.simulated_per_wall, 1e9 * c.breakdown.step, 1e9 * c.breakdown.release, 1e9 * c.breakdown.relocate,
-        1e9 * c.breakdown.gather);
-  }
-  std::printf("], \"scenes\": [");
-  for (size_t i = 0; i < scenes.size(); ++i) {
-    const BenchScene &s = scenes[i];
-    std::printf(
-        "%s\n {\"scene\": \"%s\", \"transfer\": \"%s\", \"ranks\": %d, \"particles\": %lld, \"steps\": %lld, "
-        "\"remaps\": %lld, "
-        "\"wall_seconds_per_simulated_second\": %.4g}",
-        i ? "," : "", s.scene.c_str(), s.transfer.c_str(), s.ranks, s.particles, s.steps, s.remaps,
-        s.wall_per_simulated);
-  }
-  std::printf("], \"laws\": [");
-  for (size_t i = 0; i < rates.size(); ++i)
-    std::printf("%s\n {\"law\": \"%s\", \"plane_ns\": %.3g, \"solid_ns\": %.3g, \"solid_with_tangent_ns\": %.3g}",
-                i ? "," : "", rates[i].law.c_str(), rates[i].plane, rates[i].solid, rates[i].tangent);
-  std::printf("]}\n");
+  nlohmann::ordered_json page;
+  page["machine"] = {{"processor", processor()},
+                     {"cores", std::thread::hardware_concurrency()},
+                     {"memory_bandwidth_per_core", bandwidth()},
+                     {"program", std::string("Talus ") + version}};
+  for (const char *list : {"cases", "scenes", "laws"}) page[list] = nlohmann::ordered_json::array();
+  for (const BenchCase &c : cases)
+    page["cases"].push_back({{"dimension", c.dimension},
+                             {"phases", c.phases},
+                             {"law", c.law},
+                             {"transfer", c.transfer},
+                             {"ranks", c.ranks},
+                             {"particles", c.particles},
+                             {"updates_per_second_per_core", c.rate},
+                             {"wall_seconds_per_simulated_second", 1 / c.simulated_per_wall},
+                             {"breakdown_ns",
+                              {{"step", 1e9 * c.breakdown.step},
+                               {"to_particles", 1e9 * c.breakdown.release},
+                               {"relocate_and_sort", 1e9 * c.breakdown.relocate},
+                               {"to_nodes", 1e9 * c.breakdown.gather}}}});
+  for (const BenchScene &s : scenes)
+    page["scenes"].push_back({{"scene", s.scene},
+                              {"transfer", s.transfer},
+                              {"ranks", s.ranks},
+                              {"particles", s.particles},
+                              {"steps", s.steps},
+                              {"remaps", s.remaps},
+                              {"wall_seconds_per_simulated_second", s.wall_per_simulated}});
+  for (const LawRate &one : rates)
+    page["laws"].push_back(
+        {{"law", one.law}, {"plane_ns", one.plane}, {"solid_ns", one.solid}, {"solid_with_tangent_ns", one.tangent}});
+  std::printf("%s\n", page.dump(1).c_str());
 }
 
 void print_line(const BenchCase &c) {

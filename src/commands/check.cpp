@@ -4,6 +4,7 @@
 #include <cstdarg>
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "commands/commands.h"
 #include "commands/foreign_code.h"
@@ -11,12 +12,13 @@
 #include "commands/needs.h"
 #include "commands/scales.h"
 #include "commands/slice.h"
-#include "output/json.h"
 #include "output/pictures.h"
 #include "scene/reader.h"
 
 namespace talus {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 struct CheckArguments {
   std::string scene;
@@ -207,77 +209,67 @@ void print_page(const Scene &scene, const Needs &needs, const std::vector<std::s
 }
 
 void print_json(const Scene &scene, const Needs &n, const std::vector<std::string> &advice) {
-  using json::Object;
-  const auto body = [](const BodyNeeds &b) {
-    return Object()
-        .add("name", json::text(b.body.name))
-        .add("law", json::text(law_name(b.law)))
-        .add("particles", static_cast<double>(b.body.particles))
-        .add("cells", static_cast<double>(b.body.cells))
-        .add("fewest_particles_per_cell", b.body.fewest_per_cell)
-        .add("mass_kg", b.body.mass)
-        .add("volume_m3", b.body.volume)
-        .add("density_kg_m3", b.density)
-        .add("wave_speed_m_s", b.wave_speed)
-        .add("shear_wave_speed_m_s", b.shear_speed)
-        .add("cell_size_m", b.body.cell_size)
-        .add("critical_step_s", b.body.critical_step)
-        .add("softening_slope_over_2G", b.softening.slope)
-        .add("critical_slip_length_m", b.softening.critical_length)
-        .str();
-  };
-  const auto stage = [](const StageNeeds &s) {
-    return Object()
-        .add("name", json::text(s.name))
-        .add("duration_s", s.duration)
-        .add("steps", s.steps)
-        .add("transits", s.transits)
-        .add("run_time_s", s.run_time)
-        .str();
-  };
-  Object page;
-  page.add("title", json::text(scene.title))
-      .add("dimension", scene.dimension)
-      .add("phases", json::text(name_of(scene.phases)))
-      .add("ranks", n.ranks)
-      .add("mesh", Object()
-                       .add("cells", static_cast<double>(n.mesh.cells))
-                       .add("nodes", static_cast<double>(n.mesh.nodes))
-                       .add("smallest_altitude_m", n.mesh.smallest_altitude)
-                       .add("smallest_quality", n.mesh.smallest_quality)
-                       .add("mean_quality", n.mesh.mean_quality)
-                       .add("one_element_slice", n.mesh.one_element_slice ? "true" : "false")
-                       .str())
-      .add("particles", static_cast<double>(n.particles()))
-      .add("bodies", json::array(n.bodies, body))
-      .add("layer", Object()
-                        .add("height_m", n.layer.height)
-                        .add("modulus_Pa", n.layer.modulus)
-                        .add("transit_s", n.layer.transit)
-                        .add("gravity_stress_Pa", n.layer.gravity_stress)
-                        .add("gravity_strain", n.layer.gravity_strain)
-                        .add("settlement_m", n.layer.settlement)
-                        .str())
-      .add("critical_step_s", n.critical_step)
-      .add("step_bound", json::text(n.step_bound))
-      .add("altitude_rule_s", n.altitude_rule)
-      .add("step_s", n.step)
-      .add("stages", json::array(n.stages, stage))
-      .add("burst_steps", n.burst_steps)
-      .add("seconds_per_step", n.seconds_per_step)
-      .add("run_time_s", n.run_time())
-      .add("longest_run_time_s", n.longest_run_time())
-      .add("memory_B", n.memory)
-      .add("snapshots", static_cast<double>(n.snapshots))
-      .add("snapshots_B", n.results)
-      .add("drainage", Object()
-                           .add("time_s", n.drainage.time)
-                           .add("drained_above_m_s", n.drainage.drained_above)
-                           .add("undrained_below_m_s", n.drainage.undrained_below)
-                           .add("drag_relaxation_s", n.drainage.drag_relaxation)
-                           .str())
-      .add("advice", json::array(advice, json::text));
-  std::printf("%s\n", page.str().c_str());
+  Json bodies = Json::array(), stages = Json::array();
+  for (const BodyNeeds &b : n.bodies)
+    bodies.push_back({{"name", b.body.name},
+                      {"law", law_name(b.law)},
+                      {"particles", b.body.particles},
+                      {"cells", b.body.cells},
+                      {"fewest_particles_per_cell", b.body.fewest_per_cell},
+                      {"mass_kg", b.body.mass},
+                      {"volume_m3", b.body.volume},
+                      {"density_kg_m3", b.density},
+                      {"wave_speed_m_s", b.wave_speed},
+                      {"shear_wave_speed_m_s", b.shear_speed},
+                      {"cell_size_m", b.body.cell_size},
+                      {"critical_step_s", b.body.critical_step},
+                      {"softening_slope_over_2G", b.softening.slope},
+                      {"critical_slip_length_m", b.softening.critical_length}});
+  for (const StageNeeds &s : n.stages)
+    stages.push_back({{"name", s.name},
+                      {"duration_s", s.duration},
+                      {"steps", s.steps},
+                      {"transits", s.transits},
+                      {"run_time_s", s.run_time}});
+  const Json page{{"title", scene.title},
+                  {"dimension", scene.dimension},
+                  {"phases", name_of(scene.phases)},
+                  {"ranks", n.ranks},
+                  {"mesh",
+                   {{"cells", n.mesh.cells},
+                    {"nodes", n.mesh.nodes},
+                    {"smallest_altitude_m", n.mesh.smallest_altitude},
+                    {"smallest_quality", n.mesh.smallest_quality},
+                    {"mean_quality", n.mesh.mean_quality},
+                    {"one_element_slice", n.mesh.one_element_slice}}},
+                  {"particles", n.particles()},
+                  {"bodies", bodies},
+                  {"layer",
+                   {{"height_m", n.layer.height},
+                    {"modulus_Pa", n.layer.modulus},
+                    {"transit_s", n.layer.transit},
+                    {"gravity_stress_Pa", n.layer.gravity_stress},
+                    {"gravity_strain", n.layer.gravity_strain},
+                    {"settlement_m", n.layer.settlement}}},
+                  {"critical_step_s", n.critical_step},
+                  {"step_bound", n.step_bound},
+                  {"altitude_rule_s", n.altitude_rule},
+                  {"step_s", n.step},
+                  {"stages", stages},
+                  {"burst_steps", n.burst_steps},
+                  {"seconds_per_step", n.seconds_per_step},
+                  {"run_time_s", n.run_time()},
+                  {"longest_run_time_s", n.longest_run_time()},
+                  {"memory_B", n.memory},
+                  {"snapshots", n.snapshots},
+                  {"snapshots_B", n.results},
+                  {"drainage",
+                   {{"time_s", n.drainage.time},
+                    {"drained_above_m_s", n.drainage.drained_above},
+                    {"undrained_below_m_s", n.drainage.undrained_below},
+                    {"drag_relaxation_s", n.drainage.drag_relaxation}}},
+                  {"advice", advice}};
+  std::printf("%s\n", page.dump(1).c_str());
 }
 
 /// The file of the picture. A wrong name is refused before the work.

@@ -78,15 +78,13 @@ std::vector<Variant> matrix(const CompareArguments &arguments, const Scene &scen
   return trials;
 }
 
-/// Steps, evaluations and rejections out of the last note of run.log; they stay 0 if the run did not come so far.
+/// Steps, evaluations and rejections at the end of a run; they stay 0 if it did not come so far.
 void read_counts(Variant &trial) {
-  std::ifstream file(trial.folder + "/run.log");
-  for (std::string line; std::getline(file, line);) {
-    const size_t steps = line.find(" steps from "), evaluations = line.find(" evaluations of"),
-                 rejections = line.find(" attempts rejected");
-    if (steps == std::string::npos || evaluations == std::string::npos || rejections == std::string::npos) continue;
-    const auto before = [&](size_t at) { return std::atoll(line.c_str() + line.rfind(' ', at - 1) + 1); };
-    trial.steps = before(steps), trial.evaluations = before(evaluations), trial.rejections = before(rejections);
+  for (const Event &one : read_events(trial.folder)) {
+    if (one.kind != event::steps) continue;
+    const std::map<std::string, double> counts(one.values.begin(), one.values.end());
+    trial.steps = std::llround(counts.at("steps")), trial.evaluations = std::llround(counts.at("evaluations")),
+    trial.rejections = std::llround(counts.at("rejections"));
   }
 }
 

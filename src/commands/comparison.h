@@ -2,6 +2,7 @@
 /// The arithmetic of `talus compare`: what its arguments mean, and what a series converges to.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <regex>
 #include <sstream>
@@ -10,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "output/events.h"
 #include "scene/reader.h"
 #include "scene/words.h"
 
@@ -173,18 +175,12 @@ inline void require_column(const std::vector<std::string> &names, const std::str
     throw SceneError("history.csv has no column " + column + "; " + suggestion(column, names));
 }
 
-/// Did the run with this history.csv end with its soil at rest, by rest_speed, or in equilibrium? Its log says so of
-/// the last stage.
+/// Did the run with this history.csv end with its soil at rest, by rest_speed, or in equilibrium?
 inline bool ended_at_rest(const std::string &history, const std::string &last_stage) {
-  std::ifstream log(history.substr(0, history.rfind("history.csv")) + "run.log");
-  const std::string rest = "  stage " + last_stage + " came to rest",
-                    slow = "  stage " + last_stage + " ended: the rms speed of all soil is below rest_speed",
-                    equilibrium = "  stage " + last_stage + " is in equilibrium";
-  for (std::string line; std::getline(log, line);)
-    if (line.find(rest) != std::string::npos || line.find(slow) != std::string::npos ||
-        line.find(equilibrium) != std::string::npos)
-      return true;
-  return false;
+  return std::ranges::any_of(read_events(std::filesystem::path(history).parent_path()), [&](const Event &one) {
+    return one.stage == last_stage &&
+           (one.kind == event::rest || one.kind == event::slow || one.kind == event::equilibrium);
+  });
 }
 
 /// The measure of a history.csv, linear between its lines. At a time after the end of a run that came to rest before,

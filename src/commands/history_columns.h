@@ -18,11 +18,10 @@ std::vector<std::string> possible_columns(const Scene &scene) {
   const PhaseTraits phases = phase_traits(scene.phases);
   const auto of_points = output_fields<ParticleState<dim>>(phases, {});  // without what follows from the laws
   for (const auto &point : scene.output.point) {
-    const std::string prefix = point.name + "_";
-    for (const std::string &name : of_points.tracked_names(prefix)) names.push_back(name);
-    for (const auto &[quantity, unit] : {std::pair{"acceleration", "m/s2"}, std::pair{"mobilised_friction", "deg"},
-                                         std::pair{"state", "-"}, std::pair{"plastic_strain", "-"}})
-      names.push_back(history_column(prefix + quantity, unit));
+    auto columns = of_points.tracked();
+    columns.insert(columns.end(),
+                   {{"acceleration", "m/s2"}, {"mobilised_friction", "deg"}, {"state", "-"}, {"plastic_strain", "-"}});
+    for (const auto &[quantity, unit] : columns) names.push_back(column_of("point", point.name, quantity, unit).name);
   }
   RunRow<dim> row;
   row.fluids.resize(phases.fluids()), row.handed.resize(phases.fluids());
@@ -33,9 +32,8 @@ std::vector<std::string> possible_columns(const Scene &scene) {
       boundary.inflow = boundary.is_base = boundary.remembers = boundary.heats = true;
       row.boundaries.push_back(boundary);
     }
-  row.visit([&](const std::string &quantity, const char *unit, double) {
-    const std::string name = history_column(quantity, unit);
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  row.visit([&](const HistoryColumn &column, double) {
+    if (std::ranges::find(names, column.name) == names.end()) names.push_back(column.name);
   });
   return names;
 }

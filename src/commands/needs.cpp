@@ -225,7 +225,7 @@ Needs find_needs(Scene &scene, bool with_model) {
   for (const BodyNeeds &b : needs.bodies) laws.push_back(b.law);
   const std::vector<Softening> softening = softening_of(scene, laws, reports);
   for (std::size_t b = 0; b < reports.size(); ++b) needs.bodies[b].softening = softening[b];
-  needs.brittle = brittle_soils(scene, laws, reports);
+  for (const auto &[sentence, length] : brittle_soils(scene, laws, reports)) needs.brittle.push_back(sentence);
   needs.unlikely = unlikely_values(scene, laws, reports, surface);
   for (const auto &more : {unlikely_surroundings(scene, reports, surface), coarse_cells(scene, reports, surface)})
     needs.unlikely.insert(needs.unlikely.end(), more.begin(), more.end());

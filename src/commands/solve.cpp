@@ -1,18 +1,21 @@
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "commands/commands.h"
 #include "commands/foreign_code.h"
 #include "commands/gallery.h"
 #include "commands/trials.h"
-#include "output/json.h"
 #include "output/pictures.h"
 #include "scene/reader.h"
 #include "simulation.h"
 
 namespace talus {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 struct SolveArguments {
   std::string scene, directory;
@@ -25,36 +28,28 @@ void on_signal(int) {
   end_soon_without_starter();
 }
 
-std::string to_json(const FactorBracket &bracket) {
-  return json::Object()
-      .add("decided", bracket.decided ? "true" : "false")
-      .add("value", bracket.decided && bracket.lower > 0 && bracket.upper > 0 ? json::number(bracket.value()) : "null")
-      .add("equilibrium", bracket.lower)
-      .add("mechanism", bracket.upper)
-      .str();
+Json json_of(const FactorBracket &bracket) {
+  const bool known = bracket.decided && bracket.lower > 0 && bracket.upper > 0;
+  return {{"decided", bracket.decided},
+          {"value", known ? bracket.value() : NAN},
+          {"equilibrium", bracket.lower},
+          {"mechanism", bracket.upper}};
 }
 
-std::string to_json(const std::map<TrialFlow, FactorBracket> &by_flow) {
-  json::Object object;
-  for (const auto &[flow, bracket] : by_flow) object.add(name_of(flow), to_json(bracket));
-  return object.str();
+Json json_of(const std::map<TrialFlow, FactorBracket> &by_flow) {
+  Json object = Json::object();
+  for (const auto &[flow, bracket] : by_flow) object[name_of(flow)] = json_of(bracket);
+  return object;
 }
 
-std::string to_json(const Mechanism &mechanism) {
-  const auto point = [](const auto &x) {
-    std::string text;
-    for (const double coordinate : x) text += (text.empty() ? "" : ", ") + json::number(coordinate);
-    return "[" + text + "]";
-  };
-  return json::Object()
-      .add("factor_of_safety", to_json(static_cast<const FactorBracket &>(mechanism)))
-      .add("by_flow", to_json(mechanism.by_flow))
-      .add("moving_volume_m3", mechanism.moving_volume)
-      .add("low_m", point(mechanism.low))
-      .add("high_m", point(mechanism.high))
-      .add("share_of_critical_soil", mechanism.of_critical)
-      .add("slip_surface_m", json::array(mechanism.slip_surface, point))
-      .str();
+Json json_of(const Mechanism &mechanism) {
+  return {{"factor_of_safety", json_of(static_cast<const FactorBracket &>(mechanism))},
+          {"by_flow", json_of(mechanism.by_flow)},
+          {"moving_volume_m3", mechanism.moving_volume},
+          {"low_m", mechanism.low},
+          {"high_m", mechanism.high},
+          {"share_of_critical_soil", mechanism.of_critical},
+          {"slip_surface_m", mechanism.slip_surface}};
 }
 
 /// The critical mechanism, then the others.
@@ -64,31 +59,27 @@ std::vector<Mechanism> mechanisms_of(const FactorOfSafety &factor) {
   return all;
 }
 
-std::string to_json(const FactorOfSafety &factor) {
-  const auto trial = [](const StrengthTrial &t) {
-    return json::Object()
-        .add("search", t.search)
-        .add("factor", t.factor)
-        .add("flow", json::text(name_of(t.flow)))
-        .add("outcome", json::text(name_of(t.outcome)))
-        .add("iterations", t.iterations)
-        .add("steps", t.steps)
-        .add("residual", t.residual)
-        .add("displacement_m", t.displacement)
-        .add("surplus_of_work", t.surplus)
-        .add("wall_s", t.wall_seconds)
-        .str();
-  };
-  const auto mechanism = [](const Mechanism &m) { return to_json(m); };
-  return json::Object()
-      .add("factor_of_safety", to_json(static_cast<const FactorBracket &>(factor)))
-      .add("flow", json::text(name_of(factor.flow)))
-      .add("by_flow", to_json(factor.by_flow))
-      .add("weakened", factor.weakened.upper > 0 ? to_json(factor.weakened) : "null")
-      .add("stages_without_equilibrium", json::array(factor.lost_stages, json::text))
-      .add("mechanisms", json::array(mechanisms_of(factor), mechanism))
-      .add("trials", json::array(factor.trials, trial))
-      .str();
+Json json_of(const FactorOfSafety &factor) {
+  Json mechanisms = Json::array(), trials = Json::array();
+  for (const Mechanism &m : mechanisms_of(factor)) mechanisms.push_back(json_of(m));
+  for (const StrengthTrial &t : factor.trials)
+    trials.push_back({{"search", t.search},
+                      {"factor", t.factor},
+                      {"flow", name_of(t.flow)},
+                      {"outcome", name_of(t.outcome)},
+                      {"iterations", t.iterations},
+                      {"steps", t.steps},
+                      {"residual", t.residual},
+                      {"displacement_m", t.displacement},
+                      {"surplus_of_work", t.surplus},
+                      {"wall_s", t.wall_seconds}});
+  return {{"factor_of_safety", json_of(static_cast<const FactorBracket &>(factor))},
+          {"flow", name_of(factor.flow)},
+          {"by_flow", json_of(factor.by_flow)},
+          {"weakened", factor.weakened.upper > 0 ? json_of(factor.weakened) : Json()},
+          {"stages_without_equilibrium", factor.lost_stages},
+          {"mechanisms", mechanisms},
+          {"trials", trials}};
 }
 
 std::string in_words(const FactorBracket &b) {
@@ -169,7 +160,7 @@ int solve(const SolveArguments &arguments) {
       if (!m.decided || std::ranges::any_of(m.by_flow, [](const auto &f) { return !f.second.decided; }))
         status = undecided_status;
     if (rank == 0) {
-      const std::string document = to_json(factor) + "\n";
+      const std::string document = json_of(factor).dump(1) + "\n";
       std::ofstream(options.directory + "/factor_of_safety.json") << document;
       arguments.json ? static_cast<void>(std::fputs(document.c_str(), stdout)) : print(factor);
     }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "base/rounded.h"
 #include "commands/commands.h"
@@ -11,13 +12,13 @@
 #include "commands/gallery.h"
 #include "commands/study_file.h"
 #include "commands/trials.h"
-#include "output/json.h"
 #include "scene/words.h"
 
 namespace talus {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
 struct StudyArguments : TrialOptions {
   std::string file;
@@ -316,7 +317,7 @@ class Study {
 
   /// Asked and found correlation of the random variables: of the pairs that shall be correlated, and of others whose
   /// sample is by chance. As JSON.
-  std::string correlations() const {
+  Json correlations() const {
     struct Pair {
       std::size_t a, b;
     };
@@ -328,47 +329,35 @@ class Study {
     for (std::size_t b = 0; samples > 1 && b < names.size(); ++b)
       for (std::size_t a = 0; a < b; ++a)
         if (asked_[a][b] != 0 || far({a, b})) pairs.push_back({a, b});
-    return json::array(pairs, [&](const Pair &p) {
-      return json::Object()
-          .add("between", json::array(std::vector{names[p.a], names[p.b]}, json::text))
-          .add("asked", asked_[p.a][p.b])
-          .add("sample", found(p))
-          .add("samples", static_cast<double>(samples))
-          .add("far", far(p) ? "true" : "false")
-          .str();
-    });
+    Json all = Json::array();
+    for (const Pair &p : pairs)
+      all.push_back({{"between", std::vector{names[p.a], names[p.b]}},
+                     {"asked", asked_[p.a][p.b]},
+                     {"sample", found(p)},
+                     {"samples", samples},
+                     {"far", far(p)}});
+    return all;
   }
 
   /// What the script needs to know of the study.
   void write_design() const {
-    const auto variable = [](const Varying &v) {
-      return json::Object()
-          .add("name", json::text(v.name))
-          .add("key", json::text(join(v.key)))
-          .add("unit", json::text(v.numeric() ? value_at(v.key.front(), "1 " + v.unit).unit : ""))
-          .add("random", v.random() ? "true" : "false")
-          .add("numeric", v.numeric() ? "true" : "false")
-          .str();
-    };
-    const auto criterion = [](const StudyCriterion &c) {
+    Json design{{"title", file_.title}, {"confidence", file_.confidence}, {"planned", variants_.size()}};
+    design["variables"] = Json::array(), design["criteria"] = Json::array();
+    for (const Varying &v : variables_)
+      design["variables"].push_back({{"name", v.name},
+                                     {"key", join(v.key)},
+                                     {"unit", v.numeric() ? value_at(v.key.front(), "1 " + v.unit).unit : ""},
+                                     {"random", v.random()},
+                                     {"numeric", v.numeric()}});
+    for (const StudyCriterion &c : file_.criterion) {
       const bool below = c.below > any_number.low;
-      return json::Object()
-          .add("name", json::text(c.name))
-          .add("outcome", json::text(c.outcome))
-          .add("side", json::text(below ? "below" : "above"))
-          .add("limit", below ? c.below : c.above)
-          .str();
-    };
-    std::ofstream(options_.directory + "/design.json") << json::Object()
-                                                              .add("title", json::text(file_.title))
-                                                              .add("confidence", file_.confidence)
-                                                              .add("planned", static_cast<double>(variants_.size()))
-                                                              .add("variables", json::array(variables_, variable))
-                                                              .add("correlations", correlations())
-                                                              .add("measures", json::array(file_.measures, json::text))
-                                                              .add("criteria", json::array(file_.criterion, criterion))
-                                                              .str()
-                                                       << "\n";
+      design["criteria"].push_back({{"name", c.name},
+                                    {"outcome", c.outcome},
+                                    {"side", below ? "below" : "above"},
+                                    {"limit", below ? c.below : c.above}});
+    }
+    design["correlations"] = correlations(), design["measures"] = file_.measures;
+    std::ofstream(options_.directory + "/design.json") << design.dump(1) << "\n";
   }
 
   TableReader root_;

@@ -100,7 +100,8 @@ void remember(const std::string &described, const std::vector<std::string> &file
 }
 
 pid_t start(const TrialPlan &plan, const Trial &trial) {
-  for (const char *of_a_run_before : {"/trial", "/history.csv"}) fs::remove(trial.folder + of_a_run_before);
+  for (const char *of_a_run_before : {"/trial", "/history.csv", "/events.jsonl"})
+    fs::remove(trial.folder + of_a_run_before);
   std::vector<std::string> words{"talus"};
   words.insert(words.end(), plan.command.begin(), plan.command.end());
   words.insert(words.end(), {plan.scene, "-o", trial.folder, "--no-pictures", "--force"});
@@ -134,16 +135,11 @@ std::string last_line(const std::string &path) {
 
 void on_signal(int) { interrupted = 1; }
 
-/// The sentences behind "warning:" in the log of a run, each once.
+/// What a run has warned of, each sentence once.
 std::vector<std::string> sentences_of(const Trial &trial) {
-  static const std::string mark = "  warning: ";
   std::vector<std::string> found;
-  std::ifstream file(trial.folder + "/run.log");
-  for (std::string line; std::getline(file, line);)
-    if (const std::size_t at = line.find(mark); at != std::string::npos) {
-      const std::string sentence = line.substr(at + mark.size());
-      if (std::find(found.begin(), found.end(), sentence) == found.end()) found.push_back(sentence);
-    }
+  for (const Event &one : read_events(trial.folder))
+    if (one.warning && std::ranges::find(found, one.text) == found.end()) found.push_back(one.text);
   return found;
 }
 

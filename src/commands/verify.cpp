@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <sstream>
+#include <nlohmann/json.hpp>
 
 #include "commands/case_page.h"
 #include "commands/commands.h"
@@ -86,35 +86,24 @@ void print(const Outcome &outcome) {
   std::fflush(stdout);
 }
 
-/// A number of a JSON document, which knows no NaN.
-std::string json(double x) {
-  if (!std::isfinite(x)) return "null";
-  std::ostringstream text;
-  text.precision(17);
-  text << x;
-  return text.str();
-}
-
 /// Claims only. A case that broke off has a last entry without numbers.
 void print_json(const std::vector<Outcome> &outcomes) {
-  const char *separator = "\n";
-  const auto put = [&](const char *name, const std::string &quantity, double exact, double computed, double error,
-                       double tolerance, double wall) {
-    std::printf(
-        "%s  {\"name\": \"%s\", \"quantity\": \"%s\", \"exact\": %s, \"computed\": %s, \"relative_error\": %s, "
-        "\"tolerance\": %s, \"wall_seconds\": %s}",
-        separator, name, quantity.c_str(), json(exact).c_str(), json(computed).c_str(), json(error).c_str(),
-        json(tolerance).c_str(), json(wall).c_str());
-    separator = ",\n";
+  nlohmann::ordered_json cases = nlohmann::ordered_json::array();
+  const auto put = [&](const std::string &name, const Checked &q) {
+    cases.push_back({{"name", name},
+                     {"quantity", q.name},
+                     {"exact", q.exact},
+                     {"computed", q.computed},
+                     {"relative_error", q.relative_error},
+                     {"tolerance", q.tolerance},
+                     {"wall_seconds", q.wall_seconds}});
   };
-  std::printf("{\"cases\": [");
   for (const Outcome &outcome : outcomes) {
     for (const Checked &q : outcome.quantities)
-      if (std::isfinite(q.tolerance))
-        put(outcome.entry->name, q.name, q.exact, q.computed, q.relative_error, q.tolerance, q.wall_seconds);
-    if (!outcome.error.empty()) put(outcome.entry->name, "completed", 1, 0, 1, 0, NAN);
+      if (std::isfinite(q.tolerance)) put(outcome.entry->name, q);
+    if (!outcome.error.empty()) put(outcome.entry->name, {"completed", 1, 0, 1, 0, NAN});
   }
-  std::printf("\n]}\n");
+  std::printf("%s\n", nlohmann::ordered_json{{"cases", cases}}.dump(1).c_str());
 }
 
 /// Writes the table of the case's page, or says what of it is not what was computed; true if the page is in step.

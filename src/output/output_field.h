@@ -24,6 +24,15 @@ inline std::string history_column(const std::string &quantity, std::string unit)
   return quantity + "_" + unit;
 }
 
+/// A column of history.csv as history_columns.csv describes it: a quantity of a point, a boundary or the run.
+struct HistoryColumn {
+  std::string name, quantity, unit, of, which;  ///< of: "point", "boundary" or "run"; which of them, or of their parts
+};
+inline HistoryColumn column_of(const std::string &of, const std::string &which, const std::string &quantity,
+                               const std::string &unit) {
+  return {history_column(which + "_" + quantity, unit), quantity, unit, of, which};
+}
+
 /// What history.csv holds of a field for each tracked point: nothing, its value, the magnitude of a vector, this and
 /// its components, the components of the position, which are named x, y and z, or the components of a tensor.
 enum class Tracked { no, value, magnitude, vector, coordinates, components };
@@ -72,19 +81,19 @@ class OutputFields {
     }
   }
 
-  /// Names of the columns of history.csv for a tracked point; they begin with `prefix`.
-  std::vector<std::string> tracked_names(const std::string &prefix) const {
-    std::vector<std::string> names;
+  /// Quantities and units of the columns of history.csv for a tracked point.
+  std::vector<std::pair<std::string, std::string>> tracked() const {
+    std::vector<std::pair<std::string, std::string>> columns;
     for (const auto &field : list_)
       if (field.tracked == Tracked::coordinates)
-        for (int d = 0; d < field.components; ++d) names.push_back(history_column(prefix + "xyz"[d], field.unit));
+        for (int d = 0; d < field.components; ++d) columns.emplace_back(std::string(1, "xyz"[d]), field.unit);
       else if (field.tracked != Tracked::no) {
-        if (field.tracked != Tracked::components) names.push_back(history_column(prefix + field.name, field.unit));
+        if (field.tracked != Tracked::components) columns.emplace_back(field.name, field.unit);
         if (field.tracked == Tracked::components || field.tracked == Tracked::vector)
           for (const std::string &component : component_names(field.components))
-            names.push_back(history_column(prefix + field.name + "_" + component, field.unit));
+            columns.emplace_back(field.name + "_" + component, field.unit);
       }
-    return names;
+    return columns;
   }
   /// Appends the values of these columns: zeros where `point` is null, so that sums over ranks are those of the rank
   /// that has the point.

@@ -59,6 +59,15 @@ void on_first_rank(MPI_Comm comm, Work &&work) {
   });
 }
 
+/// Collective. The text of rank 0, on all ranks.
+inline std::string from_first_rank(MPI_Comm comm, std::string text) {
+  int length = static_cast<int>(text.size());
+  check_mpi(MPI_Bcast(&length, 1, MPI_INT, 0, comm), "sending a text");
+  text.resize(length);
+  check_mpi(MPI_Bcast(text.data(), length, MPI_CHAR, 0, comm), "sending a text");
+  return text;
+}
+
 /// Collective. The ranks' values one after the other, on rank 0; elsewhere empty. `row` values stay together, so that
 /// counts are rows: up to 2^31 of them.
 template <class T>

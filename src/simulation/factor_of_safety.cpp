@@ -97,6 +97,10 @@ std::string bracket_in_words(const FactorBracket &b) {
          " (equilibrium with strength divided by " + rounded(b.lower) + ", a mechanism with " + rounded(b.upper) + ")";
 }
 
+EventValues values_of(const FactorBracket &b, int mechanism) {
+  return {{"mechanism", mechanism}, {"factor", b.value()}, {"equilibrium_at", b.lower}, {"mechanism_at", b.upper}};
+}
+
 /// What psi < phi leaves open.
 std::string bounds_in_words(const Mechanism &m) {
   return "lower estimate with the strength of Davis (1968) " + bracket_in_words(m.by_flow.at(TrialFlow::davis)) +
@@ -162,10 +166,9 @@ std::string too_few_cells(const World<dim> &world, const Mechanism &m) {
   const int up = world.scene.vertical();
   const double height = m.high[up] - m.low[up], size = cell_size_in(world, m);
   if (size == 0 || height >= enough * size) return "";
-  return "warning: the mechanism from x = " + rounded(m.low[0]) + " to " + rounded(m.high[0]) + " m is " +
-         rounded(height) + " m high, and its cells measure " + rounded(size) +
-         " m: the factor of a mechanism of fewer than " + rounded(enough) +
-         " cells is some per cent too large. Take smaller cells there ([[mesh.refine]]) and compare";
+  return "the mechanism from x = " + rounded(m.low[0]) + " to " + rounded(m.high[0]) + " m is " + rounded(height) +
+         " m high, and its cells measure " + rounded(size) + " m: the factor of a mechanism of fewer than " +
+         rounded(enough) + " cells is some per cent too large. Take smaller cells there ([[mesh.refine]]) and compare";
 }
 
 /// Why a bracket has one end, or none; `confined` to a part of the soil.
@@ -286,7 +289,8 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   };
   for (const BodySource &body : run_.scene.body) settings.kept.push_back(!body.reduce_strength);
   settings.tell = [&](const StrengthTrial &t) {
-    run_.recorder.note(trial_in_words(t, height));
+    run_.recorder.note(trial_in_words(t, height), event::strength_trial,
+                       {{"factor", t.factor}, {"displacement_m", t.displacement}});
     tables.add(t);
   };
   require(talus::reduce_strength<dim>(run_.statics.problem(), world.laws, settings, &result, &stopped));
@@ -294,13 +298,14 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
   if (stopped) throw RunFailure("interrupted");
   if (result.lower == 0 || result.upper == 0) throw RunFailure(why_open(result, !region.everywhere()));
   const auto doubt = [&](const Mechanism &m) {
-    if (const std::string sentence = too_few_cells(world, m); !sentence.empty()) run_.recorder.note(sentence);
+    if (const std::string sentence = too_few_cells(world, m); !sentence.empty()) run_.recorder.warn(sentence);
   };
   const auto named = [&](const Mechanism &m) {
     const std::string water = about_water(m, result.flow);
     return "factor of safety" + water + (water.empty() ? " " : ": ") + bracket_in_words(m);
   };
-  run_.recorder.note(named(result) + "; the mechanism " + motion_in_words(result, dim));
+  run_.recorder.note(named(result) + "; the mechanism " + motion_in_words(result, dim), event::factor_of_safety,
+                     values_of(result, 1));
   tables.add(result);
   doubt(result);
   if (const std::string other = other_water_in_words(result, result.flow); !other.empty()) run_.recorder.note(other);
@@ -317,9 +322,10 @@ FactorOfSafety Simulation<dim>::reduce_strength() {
     const Mechanism &m = result.further[k];
     const std::string other = other_water_in_words(m, result.flow);
     run_.recorder.note("mechanism " + std::to_string(k + 2) + ": " + named(m) + (other.empty() ? "" : "; " + other) +
-                       (m.by_flow.contains(TrialFlow::own) ? ", " + bounds_in_words(m) : "") + "; it " +
-                       motion_in_words(m, dim) + ", and " + rounded(100 * m.of_critical) +
-                       " % of the soil of mechanism 1");
+                           (m.by_flow.contains(TrialFlow::own) ? ", " + bounds_in_words(m) : "") + "; it " +
+                           motion_in_words(m, dim) + ", and " + rounded(100 * m.of_critical) +
+                           " % of the soil of mechanism 1",
+                       event::factor_of_safety, values_of(m, static_cast<int>(k) + 2));
     tables.add(m);
     doubt(m);
   }

@@ -68,7 +68,7 @@ FollowedLines<dim>::Line::Line(const World<dim> &world, const OutputLine &of)
 template <int dim>
 std::vector<std::string> FollowedLines<dim>::Line::columns() const {
   std::vector<std::string> names{history_column("distance", "m")};
-  for (const std::string &column : rows.names("")) names.push_back(column);
+  for (const auto &[quantity, unit] : rows.columns()) names.push_back(history_column(quantity, unit));
   return names;
 }
 

@@ -4,11 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
 
-#include "output/json.h"
 #include "output/together.h"
 #include "scene/reader.h"
 #include "simulation/changing_loads.h"
@@ -19,7 +18,7 @@
 namespace talus {
 namespace {
 
-using json::Object;
+using Json = nlohmann::ordered_json;
 
 constexpr int free_space = -1;
 
@@ -66,75 +65,51 @@ std::vector<Piece<dim>> gathered(MPI_Comm comm, const std::vector<Piece<dim>> &m
   return in_order(gather(comm, mine));
 }
 
-std::string json_of(const std::vector<double> &values) {
-  std::string list;
-  for (const double value : values) list += (list.empty() ? "" : ", ") + json::number(value);
-  return "[" + list + "]";
+template <class Values, class ToJson>
+Json list(const Values &values, const ToJson &to_json) {
+  Json all = Json::array();
+  for (const auto &value : values) all.push_back(to_json(value));
+  return all;
 }
 
 template <int dim>
-std::string json_of(const Vec<dim> &x) {
-  return json_of(std::vector<double>(x.begin(), x.end()));
+std::vector<Vec<dim>> corners(const Piece<dim> &piece, int count) {
+  return {piece.corner.begin(), piece.corner.begin() + count};
 }
-
-std::string json_of(const std::vector<std::string> &words) { return json::array(words, json::text); }
-
-std::string json_of(const std::vector<std::vector<double>> &points) {
-  return json::array(points, [](const std::vector<double> &point) { return json_of(point); });
-}
-
-template <int dim>
-std::string corners(const Piece<dim> &piece, int count) {
-  const std::vector<Vec<dim>> all(piece.corner.begin(), piece.corner.begin() + count);
-  return json::array(all, [](const Vec<dim> &x) { return json_of<dim>(x); });
-}
-
-const char *json_of(bool yes) { return yes ? "true" : "false"; }
 
 /// Writes the fields of a struct, with the defaults that the scene has not changed, in SI.
 struct Fields {
-  Object object;
+  Json object;
 
-  void number(const char *key, double value, Unit, Range, const char *) { object.add(key, value); }
-  void integer(const char *key, int value, Range, const char *) { object.add(key, value); }
-  void flag(const char *key, bool value, const char *) { object.add(key, json_of(value)); }
-  void text(const char *key, const std::string &value, const char *) { object.add(key, json::text(value)); }
-  void texts(const char *key, const std::vector<std::string> &value, const char *) { object.add(key, json_of(value)); }
-  void point(const char *key, const std::vector<double> &value, Unit, const char *) { object.add(key, json_of(value)); }
+  void number(const char *key, double value, Unit, Range, const char *) { object[key] = value; }
+  void integer(const char *key, int value, Range, const char *) { object[key] = value; }
+  void flag(const char *key, bool value, const char *) { object[key] = value; }
+  void text(const char *key, const std::string &value, const char *) { object[key] = value; }
+  void texts(const char *key, const std::vector<std::string> &value, const char *) { object[key] = value; }
+  void point(const char *key, const std::vector<double> &value, Unit, const char *) { object[key] = value; }
   void point(const char *key, const std::vector<double> &value, Unit, const Usual &, const char *) {
-    object.add(key, json_of(value));
+    object[key] = value;
   }
   template <class Enum>
   void choice(const char *key, Enum value,
               std::initializer_list<std::pair<const char *, std::type_identity_t<Enum>>> choices, const char *) {
     for (const auto &[name, meant] : choices)
-      if (meant == value) object.add(key, json::text(name));
+      if (meant == value) object[key] = name;
   }
 };
 
-/// 0, 1, ... for each entry of a list.
-template <class List>
-std::vector<std::size_t> numbers_of(const List &list) {
-  std::vector<std::size_t> numbers(list.size());
-  std::iota(numbers.begin(), numbers.end(), 0);
-  return numbers;
-}
-
 /// Units by path of the table, kind ("": all kinds) and key.
-std::string units() {
+Json units() {
   const Describer known = scene_keys();
-  std::map<std::string, Object> tables;
+  Json tables;
   for (const Describer::Block &block : known.blocks()) {
-    Object keys;
+    Json keys = Json::object();
     for (const Describer::Key &key : block.keys)
       if (!key.unit.empty() || key.over_time)
-        keys.add(key.path.substr(key.path.rfind('.') + 1),
-                 Object().add("unit", json::text(key.unit)).add("over_time", json_of(key.over_time)).str());
-    tables[block.path].add(block.kind, keys.str());
+        keys[key.path.substr(key.path.rfind('.') + 1)] = {{"unit", key.unit}, {"over_time", key.over_time}};
+    tables[block.path][block.kind] = keys;
   }
-  Object all;
-  for (const auto &[path, kinds] : tables) all.add(path, kinds.str());
-  return all.str();
+  return tables;
 }
 
 /// Makes the document; each part of it is collective.
@@ -149,33 +124,23 @@ class Model {
 
   std::string document() {
     surface_ = world_.surface();
-    Object all;
-    all.add("title", json::text(scene_.title))
-        .add("dimension", dim)
-        .add("phases", json::text(name_of(scene_.phases)))
-        .add("gravity", json_of(scene_.gravity))
-        .add("up", json::text(scene_.up == Up::y ? "y" : "z"))
-        .add("scene", json::lines(scene_.root ? scene_.root->values() : scene_.source))
-        .add("keys", units())
-        .add("bodies", bodies())
-        .add("cells", cells())
-        .add("boundaries", boundaries())
-        .add("water", Object()
-                          .add("tables", water_tables())
-                          .add("line", line_of_no_pressure())
-                          .add("surface", water_surface())
-                          .str())
-        .add("stages", json::array(scene_.stage, [&](Stage stage) { return stage_of(stage); }))
-        .add("points",
-             json::array(
-                 scene_.output.point,
-                 [](const OutputPoint &point) {
-                   return Object().add("name", json::text(point.name)).add("position", json_of(point.position)).str();
-                 }))
-        .add("lines", json::array(scene_.output.line, [](const OutputLine &line) {
-               return Object().add("name", json::text(line.name)).add("points", json_of(line.points)).str();
-             }));
-    return rank_in(world_.comm) == 0 ? std::move(all).str() : "";
+    const auto point = [](const OutputPoint &one) { return Json{{"name", one.name}, {"position", one.position}}; };
+    const auto line = [](const OutputLine &one) { return Json{{"name", one.name}, {"points", one.points}}; };
+    Json all{
+        {"title", scene_.title}, {"dimension", dim}, {"phases", name_of(scene_.phases)}, {"gravity", scene_.gravity}};
+    all["up"] = scene_.up == Up::y ? "y" : "z";
+    all["scene"] = scene_.root ? scene_.root->values() : scene_.source;
+    all["keys"] = units();
+    all["bodies"] = bodies();
+    all["cells"] = cells();
+    all["boundaries"] = boundaries();
+    all["water"]["tables"] = water_tables();
+    all["water"]["line"] = line_of_no_pressure();
+    all["water"]["surface"] = water_surface();
+    all["stages"] = list(scene_.stage, [&](Stage stage) { return stage_of(stage); });
+    all["points"] = list(scene_.output.point, point);
+    all["lines"] = list(scene_.output.line, line);
+    return rank_in(world_.comm) == 0 ? all.dump(-1, ' ', false, Json::error_handler_t::replace) : "";
   }
 
  private:
@@ -183,13 +148,14 @@ class Model {
 
   bool has_soil(int cell) const { return body_of_[cell] >= 0 && there_[body_of_[cell]]; }
 
-  std::string bodies() const {
-    return json::array(numbers_of(scene_.body), [&](std::size_t b) {
-      return Object().add("name", json::text(scene_.body[b].name)).add("there", json_of(bool(there_[b]))).str();
-    });
+  Json bodies() const {
+    Json all = Json::array();
+    for (std::size_t b = 0; b < scene_.body.size(); ++b)
+      all.push_back({{"name", scene_.body[b].name}, {"there", bool(there_[b])}});
+    return all;
   }
 
-  std::string cells() const {
+  Json cells() const {
     std::vector<Piece<dim>> mine;
     if constexpr (dim == 2) {
       for (int c = 0; c < world_.mesh.cell_count(); ++c) {
@@ -201,12 +167,8 @@ class Model {
     } else if (rank_in(world_.comm) == 0) {  // has the surface of all ranks
       for (const SoilFace &face : surface_) mine.push_back(piece_of(face));
     }
-    return json::array(gathered(world_.comm, mine), [](const Piece<dim> &cell) {
-      return Object()
-          .add("corners", corners(cell, 3))
-          .add("normal", json_of<dim>(cell.normal))
-          .add("body", cell.body)
-          .str();
+    return list(gathered(world_.comm, mine), [](const Piece<dim> &cell) {
+      return Json{{"corners", corners(cell, 3)}, {"normal", cell.normal}, {"body", cell.body}};
     });
   }
 
@@ -218,7 +180,7 @@ class Model {
     return piece;
   }
 
-  std::string boundaries() const {
+  Json boundaries() const {
     std::vector<const Source *> sources;
     for (const std::vector<Source> *some : {&world_.conditions.sources(), &world_.seepage_sources})
       for (const Source &source : *some) sources.push_back(&source);
@@ -251,12 +213,11 @@ class Model {
       }
     }
     all = in_order(all);
-    return json::array(numbers_of(sources), [&](std::size_t s) {
-      std::vector<Piece<dim>> faces;
-      for (const Piece<dim> &piece : all)
-        if (piece.source == static_cast<int>(s)) faces.push_back(piece);
-      return boundary(*sources[s], faces);
-    });
+    std::vector<std::vector<Piece<dim>>> faces(sources.size());
+    for (const Piece<dim> &piece : all) faces[piece.source].push_back(piece);
+    Json found = Json::array();
+    for (std::size_t s = 0; s < sources.size(); ++s) found.push_back(boundary(*sources[s], faces[s]));
+    return found;
   }
 
   /// Least and largest value of what a boundary prescribes.
@@ -267,14 +228,10 @@ class Model {
       const auto [at, is_new] = found_.emplace(name, Span{unit, value, value});
       at->second.low = std::min(at->second.low, value), at->second.high = std::max(at->second.high, value);
     }
-    std::string str() const {
-      return json::array(found_, [](const auto &one) {
-        return Object()
-            .add("name", json::text(one.first))
-            .add("unit", json::text(one.second.unit))
-            .add("low", one.second.low)
-            .add("high", one.second.high)
-            .str();
+    Json json() const {
+      return list(found_, [](const auto &one) {
+        const auto &[name, span] = one;
+        return Json{{"name", name}, {"unit", span.unit}, {"low", span.low}, {"high", span.high}};
       });
     }
 
@@ -286,14 +243,14 @@ class Model {
     std::map<std::string, Span> found_;
   };
 
-  std::string boundary(const Source &source, const std::vector<Piece<dim>> &faces) const {
+  Json boundary(const Source &source, const std::vector<Piece<dim>> &faces) const {
     const Boundary &kind = source.kind;
     const OnSoil action = kind.in_motion != OnSoil::none ? kind.in_motion : kind.quasi_static;
     constexpr const char *water[] = {"surface", "wall", "pressure", "seepage", "flux", "outflow"};
     constexpr const char *gas[] = {"surface", "wall", "atmosphere", "pressure"};
     Values values;
     double level = std::numeric_limits<double>::quiet_NaN();
-    const std::string drawn = json::array(faces, [&](const Piece<dim> &face) {
+    const Json drawn = list(faces, [&](const Piece<dim> &face) {
       Vec<dim> centre{}, vector{};
       for (int a = 0; a < dim; ++a)
         for (int d = 0; d < dim; ++d) centre[d] += face.corner[a][d] / dim;
@@ -306,24 +263,18 @@ class Model {
           look_at_pores(kind, face.corner[a], values);
         }
       }
-      return Object()
-          .add("corners", corners(face, dim))
-          .add("normal", json_of<dim>(face.normal))
-          .add("soil", json_of(face.body >= 0))
-          .add("vector", json_of<dim>(vector))
-          .str();
+      return Json{
+          {"corners", corners(face, dim)}, {"normal", face.normal}, {"soil", face.body >= 0}, {"vector", vector}};
     });
-    return Object()
-        .add("name", json::text(source.name))
-        .add("groups", json_of(source.groups))
-        .add("soil", json::text(action_on_soil(action, kind.template on_soil<dim>())))
-        .add("water", json::text(water[static_cast<int>(kind.water)]))
-        .add("gas", json::text(gas[static_cast<int>(kind.gas)]))
-        .add("changes", json_of(!kind.changes.empty()))
-        .add("values", values.str())
-        .add("level", level)
-        .add("faces", drawn)
-        .str();
+    return {{"name", source.name},
+            {"groups", source.groups},
+            {"soil", action_on_soil(action, kind.template on_soil<dim>())},
+            {"water", water[static_cast<int>(kind.water)]},
+            {"gas", gas[static_cast<int>(kind.gas)]},
+            {"changes", !kind.changes.empty()},
+            {"values", values.json()},
+            {"level", level},
+            {"faces", drawn}};
   }
 
   /// Load [Pa] or velocity [m/s] at a place of a face at the start; `values` takes what the boundary prescribes there.
@@ -385,7 +336,7 @@ class Model {
   }
 
   /// The common water table, and those of bodies that have one of their own, as far as they are polylines.
-  std::string water_tables() const {
+  Json water_tables() const {
     struct Table {
       std::string body;
       const std::vector<std::vector<double>> *points;
@@ -395,16 +346,16 @@ class Model {
     for (const BodySource &body : scene_.body)
       if (!body.water_table.points.empty()) tables.push_back({body.name, &body.water_table.points});
     const double rise = tables.empty() ? 0 : scene_.water.level(0);
-    return json::array(tables, [&](const Table &table) {
+    return list(tables, [&](const Table &table) {
       std::vector<std::vector<double>> points = *table.points;
       for (std::vector<double> &point : points) point[1] += rise;
-      return Object().add("body", json::text(table.body)).add("points", json_of(points)).str();
+      return Json{{"body", table.body}, {"points", points}};
     });
   }
 
   /// Water tables that are functions of the level place, such as grids, over the faces of the ground of their soil: a
   /// triangle in the middle of each, since a grid need not reach beyond the soil.
-  std::string water_surface() const {
+  Json water_surface() const {
     std::vector<Piece<dim>> pieces;
     const int up = scene_.vertical();
     constexpr double steep = 0.2, share = 0.7;  // of the normal of ground, and of the size of the face
@@ -422,11 +373,11 @@ class Model {
       }
       pieces.push_back(piece);
     }
-    return json::array(in_order(pieces), [](const Piece<dim> &piece) { return corners(piece, 3); });
+    return list(in_order(pieces), [](const Piece<dim> &piece) { return corners(piece, 3); });
   }
 
   /// Where the prescribed pore pressure ends in the soil, if it is not only that of a polyline; in plane strain.
-  std::string line_of_no_pressure() const {
+  Json line_of_no_pressure() const {
     std::vector<Piece<dim>> mine;
     const Function &excess = scene_.water.excess;
     const bool by_ratio =
@@ -456,22 +407,20 @@ class Model {
       }
       if (ends == 2) mine.push_back(piece);
     }
-    return json::array(gathered(world_.comm, mine), [](const Piece<dim> &piece) { return corners(piece, 2); });
+    return list(gathered(world_.comm, mine), [](const Piece<dim> &piece) { return corners(piece, 2); });
   }
 
-  std::string stage_of(Stage &stage) const {
+  Json stage_of(Stage &stage) const {
     Fields fields;
     stage.fields(fields);
     const std::array<double, 3> acceleration = scene_.acceleration_in(stage);
     std::vector<std::string> changes;
     if (!stage.hold_loads)
       for (const ChangingLoad &load : changing_loads(world_.scene)) changes.push_back(load.key);
-    return fields.object
-        .add("acceleration", json_of(std::vector<double>(acceleration.begin(), acceleration.begin() + dim)))
-        .add("integrator",
-             json::text(std::visit([](const auto &settings) { return settings.name; }, choose_integrator(scene_))))
-        .add("changes", json_of(changes))
-        .str();
+    fields.object["acceleration"] = std::vector<double>(acceleration.begin(), acceleration.begin() + dim);
+    fields.object["integrator"] = std::visit([](const auto &one) { return one.name; }, choose_integrator(scene_));
+    fields.object["changes"] = changes;
+    return fields.object;
   }
 
   const World<dim> &world_;

@@ -222,51 +222,67 @@ struct RunRow {
   std::vector<double> handed;       ///< FluidBooks::handed; empty where no stage hands states over [kg]
   std::vector<BoundaryRow<dim>> boundaries;
 
-  /// Calls column(quantity, unit, value) for each column, in the order of the file.
+  /// Calls column(HistoryColumn, value) for each column, in the order of the file.
   template <class Visitor>
   void visit(Visitor &&column) const {
     using std::string;
-    column(string("kinetic"), "J", energy.balance.kinetic);
-    column(string("strain"), "J", energy.balance.strain);
-    column(string("potential"), "J", potential);
-    column(string("mass"), "kg", mass);
-    column(string("particles"), "-", particles);
-    column(string("load_time"), "s", load_time);
-    column(string("escaped_particles"), "-", escaped.particles);
-    column(string("escaped_mass"), "kg", escaped.mass);
-    for (int d = 0; d < dim; ++d) column(string("escaped_momentum_") + "xyz"[d], "kg m/s", escaped.momentum[d]);
-    column(string("escaped_energy"), "J", escaped.energy);
+    const auto of_run = [&](const string &quantity, const string &unit, double value) {
+      column(HistoryColumn{history_column(quantity, unit), quantity, unit, "run", ""}, value);
+    };
+    const auto part = [&](const string &name, const string &quantity, const string &which, const string &unit,
+                          double value) {
+      column(HistoryColumn{history_column(name, unit), quantity, unit, "run", which}, value);
+    };
+    const auto joules = [&](const string &which, double value) { part(which, "energy", which, "J", value); };
+    const auto of = [&](const BoundaryRow<dim> &b, const string &quantity, const string &unit, double value) {
+      column(column_of("boundary", b.name, quantity, unit), value);
+    };
+    joules("kinetic", energy.balance.kinetic);
+    joules("strain", energy.balance.strain);
+    joules("potential", potential);
+    of_run("mass", "kg", mass);
+    of_run("particles", "-", particles);
+    of_run("load_time", "s", load_time);
+    of_run("escaped_particles", "-", escaped.particles);
+    of_run("escaped_mass", "kg", escaped.mass);
+    for (int d = 0; d < dim; ++d) {
+      const string axis(1, "xyz"[d]);
+      part("escaped_momentum_" + axis, "escaped_momentum", axis, "kg m/s", escaped.momentum[d]);
+    }
+    joules("escaped_energy", escaped.energy);
     for (std::size_t a = 0; a < fluids.size(); ++a) {
       const string fluid = a ? "gas" : "water";
       const double first = a < first_fluid.size() ? first_fluid[a] : 0;
-      column(fluid, "kg", fluids[a].stored);
-      column(fluid + "_out", "kg", fluids[a].out);
-      column(fluid + "_given", "kg", fluids[a].prescribed);
-      column(fluid + "_escaped", "kg", escaped.fluid_mass[a]);
-      if (!handed.empty()) column(fluid + "_handed", "kg", handed[a]);
-      column(fluid + "_error", "kg", owned(a) - first);
+      const auto ledger = [&](const string &which, double value) {
+        part(which == "stored" ? fluid : fluid + "_" + which, fluid + "_ledger", which, "kg", value);
+      };
+      ledger("stored", fluids[a].stored);
+      ledger("out", fluids[a].out);
+      ledger("given", fluids[a].prescribed);
+      ledger("escaped", escaped.fluid_mass[a]);
+      if (!handed.empty()) ledger("handed", handed[a]);
+      ledger("error", owned(a) - first);
     }
     for (const auto &b : boundaries)
-      if (b.inflow) column(b.name + "_inflow", "m3/s", b.water);
+      if (b.inflow) of(b, "inflow", "m3/s", b.water);
     for (const auto &b : boundaries)
       for (int d = 0; d < dim && !b.of_water; ++d)
-        column(b.name + (b.loads ? "_displacement_" : "_force_") + "xyz"[d], b.loads ? "m" : "N", b.value[d]);
+        of(b, string(b.loads ? "displacement_" : "force_") + "xyz"[d], b.loads ? "m" : "N", b.value[d]);
     for (const auto &b : boundaries) {
-      if (b.remembers) column(b.name + "_slip", "m", b.base.slip);
-      if (b.is_base)
-        column(b.name + "_friction", "-", b.base.friction), column(b.name + "_clearance", "m", b.clearance);
+      if (b.remembers) of(b, "slip", "m", b.base.slip);
+      if (b.is_base) of(b, "friction", "-", b.base.friction), of(b, "clearance", "m", b.clearance);
       if (!b.heats) continue;
-      column(b.name + "_temperature", "K", b.base.temperature);
-      column(b.name + "_hottest", "K", b.base.hottest);
-      column(b.name + "_excess_pressure", "Pa", b.base.pressure);
-      column(b.name + "_heat", "J", b.base.heat);
+      of(b, "temperature", "K", b.base.temperature);
+      of(b, "hottest", "K", b.base.hottest);
+      of(b, "excess_pressure", "Pa", b.base.pressure);
+      joules(b.name + "_heat", b.base.heat);
     }
     for (std::size_t s = 0; s < boundaries.size(); ++s)
       if (!boundaries[s].of_water)
-        column("work_" + boundaries[s].name, "J", s < energy.of_boundary.size() ? energy.of_boundary[s] : 0);
-    column(string("work_gravity"), "J", energy.work.gravity), column(string("work_imposed"), "J", energy.work.imposed);
-    column(string("work_damping"), "J", energy.work.damping);
-    column(string("dissipated"), "J", balanced ? energy.dissipated() : std::numeric_limits<double>::quiet_NaN());
+        joules("work_" + boundaries[s].name, s < energy.of_boundary.size() ? energy.of_boundary[s] : 0);
+    joules("work_gravity", energy.work.gravity), joules("work_imposed", energy.work.imposed);
+    joules("work_damping", energy.work.damping);
+    joules("dissipated", balanced ? energy.dissipated() : std::numeric_limits<double>::quiet_NaN());
   }
   /// Mass of a fluid that the boundaries do not account for: it stays what it is [kg].
   double owned(std::size_t a) const {

@@ -9,10 +9,10 @@
 namespace talus {
 
 template <int dim>
-std::vector<std::string> PointRows<dim>::names(const std::string &prefix) const {
-  auto names = output_fields<ParticleState<dim>>(world_.phases, world_.bodies).tracked_names(prefix);
-  names.push_back(history_column(prefix + "acceleration", "m/s2"));
-  return names;
+std::vector<std::pair<std::string, std::string>> PointRows<dim>::columns() const {
+  auto columns = output_fields<ParticleState<dim>>(world_.phases, world_.bodies).tracked();
+  columns.emplace_back("acceleration", "m/s2");
+  return columns;
 }
 
 template <int dim>

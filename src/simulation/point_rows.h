@@ -15,8 +15,8 @@ class PointRows {
   /// The references must outlive it.
   PointRows(const World<dim> &world, TrackedPoints<dim> &points) : world_(world), points_(points) {}
 
-  /// Names of the columns of one point, which begin with `prefix`.
-  std::vector<std::string> names(const std::string &prefix) const;
+  /// Quantities and units of the columns of one point.
+  std::vector<std::pair<std::string, std::string>> columns() const;
   /// The columns of all points at a time [s], point by point; those of a point without soil are NaN: its
   /// particle is gone, or its body is not there. The
   /// acceleration is the change of velocity since the last call over the time since then, or since the call before that

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/version.h"
+#include "output/csv.h"
 #include "output/pictures.h"
 #include "output/replace_file.h"
 #include "output/together.h"
@@ -42,11 +43,12 @@ void Recorder<dim>::open() {
   RunFile file(of_.world.comm, options_.directory, header(), mesh_picture());
   History rows(of_.world.comm, options_.directory + "/history.csv", {history_.names.begin() + 2, history_.names.end()});
   results_.reset(new Files{std::move(folder), std::move(file), std::move(rows),
-                           Progress(of_.world.comm, options_.directory + "/run.log", longest_duration())});
-  write_model();
+                           Progress(of_.world.comm, options_.directory + "/run.log", longest_duration()),
+                           EventFile(of_.world.comm, options_.directory, events_)});
+  write_model(), write_columns();
   of_.lines.open(options_.directory);
-  for (const std::string &sentence : of_.lines.left_out()) results_->progress.note(sentence);
-  for (const std::string &sentence : of_.points.far_off()) results_->progress.note("warning: " + sentence);
+  for (const std::string &sentence : of_.lines.left_out()) note(sentence);
+  for (const std::string &sentence : of_.points.far_off()) warn(sentence);
   write_escaped();  // in place of that of a run that was here before
 }
 
@@ -89,25 +91,25 @@ void Recorder<dim>::append(std::unique_ptr<ResultsFolder> folder) {
   History rows =
       History::append(of_.world.comm, table, {history_.names.begin() + 2, history_.names.end()}, last_row_time_);
   results_.reset(new Files{std::move(folder), std::move(file), std::move(rows),
-                           Progress(of_.world.comm, options_.directory + "/run.log", longest_duration(), true)});
-  write_model();
+                           Progress(of_.world.comm, options_.directory + "/run.log", longest_duration(), true),
+                           EventFile(of_.world.comm, options_.directory, events_)});
+  write_model(), write_columns();
   of_.lines.append(options_.directory, last_row_time_);
   results_->progress.resume(of_.clock.time, of_.clock.steps);
-  results_->progress.note("resumed at t = " + rounded(of_.clock.time) + " s, step " + std::to_string(of_.clock.steps));
-  if (!passed_over_.empty())
-    results_->progress.note("warning: " + passed_over_ + "; the run goes on from the checkpoint before it");
+  note("resumed at t = " + rounded(of_.clock.time) + " s, step " + std::to_string(of_.clock.steps), event::resumed,
+       {{"step", of_.clock.steps}});
+  if (!passed_over_.empty()) warn(passed_over_ + "; the run goes on from the checkpoint before it");
   if (written_ranks_ > 0)
-    results_->progress.note("before it ran on " + std::to_string(written_ranks_) +
-                            (written_ranks_ == 1 ? " rank" : " ranks") +
-                            ": the answer differs by round-off from that of a run on the same number");
-  for (const std::string &key : changed_) results_->progress.note("since then the scene has another " + key);
+    note("before it ran on " + std::to_string(written_ranks_) + (written_ranks_ == 1 ? " rank" : " ranks") +
+         ": the answer differs by round-off from that of a run on the same number");
+  for (const std::string &key : changed_) note("since then the scene has another " + key);
   if (!has_table)
-    results_->progress.note("warning: history.csv was missing; it begins here");
+    warn("history.csv was missing; it begins here");
   else if (results_->history.has_gap())
-    results_->progress.note("warning: history.csv was damaged; rows before this time are missing");
+    warn("history.csv was damaged; rows before this time are missing");
   for (const std::string &line : of_.lines.with_gaps())
-    results_->progress.note("warning: line_" + line + ".csv was missing or damaged; rows before this time are missing");
-  for (const std::string &one : damaged) results_->progress.note("warning: " + one);
+    warn("line_" + line + ".csv was missing or damaged; rows before this time are missing");
+  for (const std::string &one : damaged) warn(one);
   write_escaped();
   of_.statics.save_seeped_pressure(options_.directory);
 }
@@ -117,7 +119,9 @@ void Recorder<dim>::close(const std::string &last_words) {
   if (!results_) return;
   note_steps();
   note_sharing();
-  if (!last_words.empty()) note(last_words);
+  if (!last_words.empty()) note(last_words, event::still_moving);
+  record({event::end, "the run came to its end"});
+  results_->events.complete(events_);
   results_->progress.finish();
   if (!options_.pictures) return;
   int rank, drawn = 1;
@@ -177,11 +181,22 @@ void Recorder<dim>::check_intervals() {
 template <int dim>
 void Recorder<dim>::name_columns() {
   history_.names = {history_column("time", "s"), "step"};
+  columns_.clear();
   for (const auto &point : of_.points.all())
-    for (const std::string &name : point_rows_.names(point.name + "_")) history_.names.push_back(name);
-  run_row().visit([&](const std::string &quantity, const char *unit, double) {
-    history_.names.push_back(history_column(quantity, unit));
-  });
+    for (const auto &[quantity, unit] : point_rows_.columns())
+      columns_.push_back(column_of("point", point.name, quantity, unit));
+  run_row().visit([&](const HistoryColumn &column, double) { columns_.push_back(column); });
+  for (const HistoryColumn &one : columns_) history_.names.push_back(one.name);
+}
+
+/// history_columns.csv. Collective.
+template <int dim>
+void Recorder<dim>::write_columns() const {
+  std::string table = "column,quantity,unit,of,which\n";
+  for (const HistoryColumn &one : columns_)
+    table += csv_field(one.name) + "," + one.quantity + "," + (one.unit == "-" ? "" : one.unit) + "," + one.of + "," +
+             csv_field(one.which) + "\n";
+  on_first_rank(of_.world.comm, [&] { replace_file(options_.directory + "/history_columns.csv", table); });
 }
 
 /// A row of the history with what needs no sum over ranks.
@@ -245,7 +260,7 @@ void Recorder<dim>::write_history() {
     for (int d = 0; d < dim; ++d)
       run.boundaries[s].value[d] = run.boundaries[s].loads ? faces[s][d] : elapsed > 0 ? impulses[s][d] / elapsed : 0;
   impulse_time_ = of_.clock.time;
-  run.visit([&](const std::string &, const char *, double value) { row.push_back(value); });
+  run.visit([&](const HistoryColumn &, double value) { row.push_back(value); });
   row.insert(row.begin(), {of_.clock.time, static_cast<double>(of_.clock.steps)});
   history_.rows.push_back(row);
   if (results_)
@@ -291,7 +306,7 @@ Snapshot Recorder<dim>::particles() {
 template <int dim>
 void Recorder<dim>::write_snapshot() {
   note_escaped();
-  for (const std::string &sentence : ends_.newly_reached(of_.clock.stage)) note("warning: " + sentence);
+  for (const std::string &sentence : ends_.newly_reached(of_.clock.stage)) warn(sentence);
   if (!results_) return;
   write_escaped();
   if (results_->file.last_step() == of_.clock.steps) return;

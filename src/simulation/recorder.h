@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "output/checkpoint.h"
+#include "output/events.h"
 #include "output/history.h"
+#include "output/output_field.h"
 #include "output/progress.h"
 #include "output/results_folder.h"
 #include "output/snapshots.h"
@@ -60,20 +62,29 @@ class Recorder {
   void write_snapshot();
   /// The state as it would be written. Collective.
   Snapshot snapshot();
-  /// Says what happened, now or at other times.
-  void note(const std::string &text);
-  void note(const std::string &text, double time, double load_time);
+  /// Writes down what happens in the present stage, now if the event has no time.
+  void record(Event event);
+  /// The same, and says so on the screen and in the log.
+  void tell(const Event &event);
+  void note(const std::string &text, const char *kind = event::remark, const EventValues &values = {}) {
+    tell({kind, text, values});
+  }
+  void warn(const std::string &text, const char *kind = event::warning, const EventValues &values = {}) {
+    tell({kind, text, values, true});
+  }
+  /// Has an event of this kind happened since that time [s]?
+  bool happened(const char *kind, double since) const;
   /// At the end: how much energy was created in all, where it was told that some is.
   void note_created_energy() {
-    if (of_.energies.watch().told()) note("warning: in all, " + of_.energies.watch().verdict());
+    if (of_.energies.watch().told()) warn("in all, " + of_.energies.watch().verdict(), event::created_energy);
   }
   /// Warns of ends of the mesh that cut a slide off, at the end of a run. Collective.
   void note_cut_off() {
-    for (const std::string &sentence : ends_.cut_off()) note("warning: " + sentence);
+    for (const std::string &sentence : ends_.cut_off()) warn(sentence, event::cut_off);
   }
   /// The same of the mechanism of a factor of safety. Collective.
   void note_cut_off(const typename MeshEnds<dim>::Soil &mechanism) {
-    for (const std::string &sentence : ends_.cut_off(mechanism)) note("warning: " + sentence);
+    for (const std::string &sentence : ends_.cut_off(mechanism)) warn(sentence, event::cut_off);
   }
   /// Warns of soil that has left the mesh, at the end of a run. Collective.
   void note_lost_soil();
@@ -105,6 +116,7 @@ class Recorder {
     RunFile file;
     History history;
     Progress progress;
+    EventFile events;
   };
   void check_pictures();
   void check_intervals();
@@ -112,6 +124,7 @@ class Recorder {
   MeshPicture mesh_picture() const;
   void write_model() const;
   void name_columns();
+  void write_columns() const;
   RunRow<dim> run_row() const;
   void note_imbalance();
   void note_sharing();
@@ -128,6 +141,7 @@ class Recorder {
   const PhaseTraits phases_;
   const RunOptions &options_;
   HistoryTable history_;
+  std::vector<HistoryColumn> columns_;  ///< of history.csv, after time, step and stage
   std::vector<Event> events_;
   std::unique_ptr<Files> results_;
   FluidBooks fluids_;

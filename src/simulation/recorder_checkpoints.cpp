@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "base/version.h"
+#include "output/together.h"
 #include "scene/changes.h"
 #include "scene/reader.h"
 #include "scene/words.h"
@@ -96,6 +97,9 @@ void Recorder<dim>::serialize(Archive &archive) {
   point_rows_.serialize(archive);
   ends_.serialize(archive);
   of_.lines.serialize(archive);
+  std::string lines = archive.reading() ? "" : from_first_rank(of_.world.comm, to_lines(events_));
+  archive.serialize("events", lines);
+  if (archive.reading()) events_ = events_in(lines);
 }
 
 template CheckpointHeader Recorder<2>::checkpoint_header(int) const;

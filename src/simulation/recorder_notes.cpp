@@ -1,5 +1,6 @@
 // What the recorder says while a run goes on: on the terminal, in its log and in its list of events.
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <sstream>
 
@@ -34,14 +35,22 @@ void Recorder<dim>::seeking(int iteration, double out_of_balance) {
 }
 
 template <int dim>
-void Recorder<dim>::note(const std::string &text) {
-  note(text, of_.clock.time, of_.clock.load_time);
+void Recorder<dim>::record(Event event) {
+  if (std::isnan(event.time)) event.time = of_.clock.time, event.load_time = of_.clock.load_time;
+  event.stage = of_.clock.stage;
+  if (results_) results_->events.add(event);
+  events_.push_back(std::move(event));
 }
 
 template <int dim>
-void Recorder<dim>::note(const std::string &text, double time, double load_time) {
-  events_.push_back({time, load_time, of_.clock.stage, text});
-  if (results_) results_->progress.note(text);
+void Recorder<dim>::tell(const Event &event) {
+  record(event);
+  if (results_) results_->progress.note(std::string(event.warning ? "warning: " : "") + event.text);
+}
+
+template <int dim>
+bool Recorder<dim>::happened(const char *kind, double since) const {
+  return std::ranges::any_of(events_, [&](const Event &one) { return one.kind == kind && one.time >= since; });
 }
 
 template <int dim>
@@ -96,7 +105,7 @@ void Recorder<dim>::note_escaped() {
   text << ") kg m/s";
   if (of_.world.particle_count == 0) text << "; no soil is left";
   told_escaped_ = sums.particles;
-  note(text.str());
+  note(text.str(), event::escaped, {{"particles", sums.particles}, {"mass_kg", sums.mass}});
 }
 
 template <int dim>
@@ -104,8 +113,10 @@ void Recorder<dim>::note_lost_soil() {
   const EscapedSums &sums = of_.world.escaped.sums();
   if (sums.particles == 0) return;
   const std::string ways = ways_in_words();
-  note("warning: " + rounded(100 * sums.mass / (sums.mass + of_.world.total_mass)) + " % of the soil, " +
-       rounded(sums.mass) + " kg, has left the mesh " + ways + ": displacements and volumes are those of the rest");
+  const double share = sums.mass / (sums.mass + of_.world.total_mass);
+  warn(rounded(100 * share) + " % of the soil, " + rounded(sums.mass) + " kg, has left the mesh " + ways +
+           ": displacements and volumes are those of the rest",
+       event::lost_soil, {{"share", share}, {"mass_kg", sums.mass}});
 }
 
 /// escaped.csv, whenever it does not hold all particles that have left. Collective.
@@ -147,7 +158,7 @@ void Recorder<dim>::note_imbalance() {
   if (of_.world.mesh.heaviest_patch() > 0.05)
     text += "; patches of cells stay whole, and the heaviest is " + rounded(of_.world.mesh.heaviest_patch()) +
             " of the mean: a finer mesh or fewer ranks would be better balanced";
-  if (results_) results_->progress.note(text);
+  if (results_) note(text, event::ranks);
 }
 
 template <int dim>
@@ -160,7 +171,7 @@ void Recorder<dim>::note_balancing(double before, double expected) {
   text << "the mesh was divided among the ranks in another way: imbalance " << before << " before, " << expected
        << " now";
   if (balancing.count() == told) text << "; further times are not told";
-  results_->progress.note(text.str());
+  note(text.str(), event::ranks);
 }
 
 /// How the work was shared among the ranks, for the log.
@@ -170,8 +181,8 @@ void Recorder<dim>::note_sharing() {
   if (imbalance_at_start_ == 0) return;
   std::ostringstream text;
   text.precision(3);
-  text << "imbalance of ranks: " << imbalance_at_start_ << " at the start, "
-       << std::max(imbalance_at_start_, balancing.highest()) << " at most";
+  const double most = std::max(imbalance_at_start_, balancing.highest());
+  text << "imbalance of ranks: " << imbalance_at_start_ << " at the start, " << most << " at most";
   if (balancing.count() > 0) {
     text << "; the mesh was divided in another way " << balancing.count()
          << (balancing.count() == 1 ? " time" : " times");
@@ -184,7 +195,7 @@ void Recorder<dim>::note_sharing() {
       text << ", which saved about " << 100 * balancing.saved() / (1 + balancing.saved())
            << " % of the time of steps (by their work, had the imbalance lasted)";
   }
-  results_->progress.note(text.str());
+  note(text.str(), event::ranks, {{"imbalance_at_start", imbalance_at_start_}, {"largest_imbalance", most}});
 }
 
 /// What the integrator did, for the log.
@@ -198,7 +209,16 @@ void Recorder<dim>::note_steps() {
        << " evaluations of the forces, " << s.rejections << " attempts rejected";
   if (s.rejections > 0) text << " by the error test";
   if (s.inversions > 0) text << ", " << s.inversions << " because a cell turned inside out";
-  note(text.str());
+  note(text.str(), event::steps,
+       {{"steps", s.steps},
+        {"shortest_step_s", s.shortest},
+        {"longest_step_s", s.longest},
+        {"evaluations", s.evaluations},
+        {"rejections", s.rejections},
+        {"inversions", s.inversions},
+        {"by_error", s.by_error},
+        {"by_stability", s.by_stability},
+        {"by_outputs", s.by_schedule}});
   note("steps bounded by the error: " + std::to_string(s.by_error) + ", stability: " + std::to_string(s.by_stability) +
        ", outputs: " + std::to_string(s.by_schedule));
   note(of_.dynamics.step_bound().sentence());
@@ -214,6 +234,7 @@ void Recorder<dim>::fail(const std::string &cause) {
   if (checkpoint_time_ >= 0) message << ", and --resume goes on from t = " << checkpoint_time_ << " s";
   if (results_) {
     note_steps();
+    record({event::broke_off, message.str()});
     results_->progress.failure(message.str());
     if (options_.pictures && !interrupted && results_->file.last_step() >= 0)
       throw BrokenOff(message.str() + "; report.html there shows how far it came", options_.directory,
@@ -228,10 +249,12 @@ template void Recorder<2>::progress();
 template void Recorder<3>::progress();
 template void Recorder<2>::seeking(int, double);
 template void Recorder<3>::seeking(int, double);
-template void Recorder<2>::note(const std::string &);
-template void Recorder<3>::note(const std::string &);
-template void Recorder<2>::note(const std::string &, double, double);
-template void Recorder<3>::note(const std::string &, double, double);
+template void Recorder<2>::record(Event);
+template void Recorder<3>::record(Event);
+template void Recorder<2>::tell(const Event &);
+template void Recorder<3>::tell(const Event &);
+template bool Recorder<2>::happened(const char *, double) const;
+template bool Recorder<3>::happened(const char *, double) const;
 template const std::vector<int> &Recorder<2>::ways_out();
 template const std::vector<int> &Recorder<3>::ways_out();
 template std::string Recorder<2>::ways_in_words();

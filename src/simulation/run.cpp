@@ -95,9 +95,10 @@ void Run<dim>::end_by_reset() {
   }
   MPI_Allreduce(MPI_IN_PLACE, mass, 2, MPI_DOUBLE, MPI_SUM, world.comm);
   const double elastic = elastic_settlement(world.report(), world.laws, scene.gravity_size(), dim, scene.vertical());
-  const std::string sentence =
-      moved_before_reset(stage().name, world.largest_displacement(), elastic, mass[1] > 0 ? mass[0] / mass[1] : 0);
-  if (!sentence.empty()) recorder.note("warning: " + (moved_before = sentence));
+  const double largest = world.largest_displacement();
+  const std::string sentence = moved_before_reset(stage().name, largest, elastic, mass[1] > 0 ? mass[0] / mass[1] : 0);
+  if (!sentence.empty())
+    recorder.warn(moved_before = sentence, event::moved_before_reset, {{"largest_displacement_m", largest}});
   reset_displacement();
 }
 
@@ -220,8 +221,7 @@ void Run<dim>::start_from_other_run() {
     const std::vector<char> varies = world.strength_varies();
     for (std::size_t b = 0; b < varies.size(); ++b)
       if (varies[b]) check_strength_by_place(scene, scene.body[b].name, changed);
-    if (!found.passed_over.empty())
-      start_notes.push_back("warning: " + found.passed_over + "; the checkpoint before it is taken");
+    if (!found.passed_over.empty()) start_warning = found.passed_over + "; the checkpoint before it is taken";
     Archive archive = state_of(std::move(found));
     try {
       require(serialize_state(archive));

@@ -67,6 +67,7 @@ struct Run {
   std::string moved_before;                  ///< what `end_by_reset` has warned of last
   std::string motion_left;                   ///< at the end of the last stage; empty where soil is at rest
   std::vector<std::string> start_notes;      ///< where the state at the start is from, if not from the scene
+  std::string start_warning;                 ///< what was wrong with it, or ""
 
  private:
   /// Takes the state of another run's last checkpoint (scene.start_from). Throws SceneError where that cannot be.

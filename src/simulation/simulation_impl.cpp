@@ -51,7 +51,7 @@ void Simulation<dim>::note_state() {
     doubts.push_back("output.point." + point +
                      " has no soil at the end: what stood there has left the mesh, or no stage has added it");
   if (!run_.moved_before.empty()) doubts.push_back(run_.moved_before);  // in the summary too
-  for (const std::string &sentence : doubts) run_.recorder.note("warning: " + sentence);
+  for (const std::string &sentence : doubts) run_.recorder.warn(sentence);
 }
 
 /// What has become of the volume of soil, at an end of the run in order or not. Collective.
@@ -82,14 +82,14 @@ void Simulation<dim>::note_gaps() {
     apart = true;
     std::ostringstream text;
     text.precision(3);
-    text << "warning: body." << body->name()
+    text << "body." << body->name()
          << " has come apart, and the gaps between its pieces count as soil: " << 100 * sum[0] / sum[1]
          << " % of its volume, and up to " << largest
          << " times the volume of a particle. Volume and area of a deposit come out too large, and such particles "
             "may throw others out"
          << (fluids_move(run_.scene.phases) ? ""
                                             : "; volume_cap = 1, which is the default of such soil, leaves gaps out");
-    run_.recorder.note(text.str());
+    run_.recorder.warn(text.str(), event::came_apart, {{"share_of_gaps", sum[0] / sum[1]}, {"largest_ratio", largest}});
   }
   if (apart) note_water_drawn();
 }
@@ -103,11 +103,11 @@ void Simulation<dim>::note_water_drawn() {
   std::ostringstream text;
   text.precision(3);
   text
-      << "warning: the pores have drawn in " << 100 * drawn
+      << "the pores have drawn in " << 100 * drawn
       << " % of the water that they had. Where no water stands outside, gaps fill with air, which phases = "
          "\"saturated\" does not have: this soil is too heavy, and suction holds its pieces together. Compare phases = "
          "\"unsaturated\", or a lower permeability";
-  run_.recorder.note(text.str());
+  run_.recorder.warn(text.str(), event::water_drawn, {{"share", drawn}});
 }
 
 /// Soil that shears on dilates no more, once it is as loose as it can be; a constant dilation angle knows no such end.
@@ -128,11 +128,11 @@ void Simulation<dim>::note_dilation() {
     if (!(sum[0] > (1 + visible) * sum[1])) continue;
     std::ostringstream text;
     text.precision(3);
-    text << "warning: body." << body->name() << " has dilated to " << sum[0] / sum[1]
+    text << "body." << body->name() << " has dilated to " << sum[0] / sum[1]
          << " times its volume, and single particles to " << largest
          << " times. Soil that shears on becomes no looser than it can be: give dilation an end, by "
             "residual_dilation_angle = 0 and a shape_factor, or none";
-    run_.recorder.note(text.str());
+    run_.recorder.warn(text.str(), event::dilated, {{"ratio", sum[0] / sum[1]}, {"largest_ratio", largest}});
   }
 }
 
@@ -164,15 +164,16 @@ std::vector<std::string> Simulation<dim>::regions_without_soil() const {
 /// What is written of the state at the start.
 template <int dim>
 void Simulation<dim>::begin() {
+  if (!run_.start_warning.empty()) run_.recorder.warn(run_.start_warning);
   for (const std::string &sentence : run_.start_notes) run_.recorder.note(sentence);
   if (run_.recorder.writes()) note_bodies();
-  for (const std::string &sentence : mesh_report().remarks) run_.recorder.note("warning: mesh: " + sentence);
-  for (const std::string &sentence : brittle_soils(run_.scene, run_.world.laws, run_.world.report()))
-    run_.recorder.note("warning: " + sentence);
+  for (const std::string &sentence : mesh_report().remarks) run_.recorder.warn("mesh: " + sentence);
+  for (const auto &[sentence, length] : brittle_soils(run_.scene, run_.world.laws, run_.world.report()))
+    run_.recorder.warn(sentence, event::brittle, {{"slip_length_m", length}});
   const std::vector<SoilFace> surface = run_.world.surface();
   for (const auto &doubts : {unlikely_values(run_.scene, run_.world.laws, run_.world.report(), surface),
                              unlikely_surroundings(run_.scene, run_.world.report(), surface)})
-    for (const std::string &sentence : doubts) run_.recorder.note("warning: " + sentence);
+    for (const std::string &sentence : doubts) run_.recorder.warn(sentence);
   run_.recorder.write_history();
   if (run_.options.gauss_points && is_static(run_.scene.stage.front().kind)) run_.statics.prepare();
   run_.recorder.write_snapshot();
@@ -185,10 +186,11 @@ template <int dim>
 void Simulation<dim>::note_bodies() {
   for (const BodyReport &body : run_.world.report())
     if (body.particles > 0)
-      run_.recorder.note(body.name + ": " + rounded(body.volume) + (dim == 2 ? " m3/m, " : " m3, ") +
-                         rounded(body.mass) + (dim == 2 ? " kg/m" : " kg") +
-                         (run_.world.phases.liquid ? " of grains in " : " in ") + std::to_string(body.particles) +
-                         " particles");
+      run_.recorder.note(
+          body.name + ": " + rounded(body.volume) + (dim == 2 ? " m3/m, " : " m3, ") + rounded(body.mass) +
+              (dim == 2 ? " kg/m" : " kg") + (run_.world.phases.liquid ? " of grains in " : " in ") +
+              std::to_string(body.particles) + " particles",
+          event::body, {{"volume_m3", body.volume}, {"mass_kg", body.mass}, {"particles", body.particles}});
 }
 
 template <int dim>

@@ -15,6 +15,10 @@ import time
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "src/output/plots"))
+
+from talus_results import read_events  # noqa: E402
+
 RATE = 3.0  # of the excess pressure [kPa/s]
 
 
@@ -41,10 +45,9 @@ def run(talus, dimension, size, ranks):
         start = time.time()
         done = subprocess.run(command, capture_output=True, text=True)
         wall = time.time() - start
-        log = Path(f"{folder}/run/run.log").read_text()
+        failure = read_events(f"{folder}/run", "failure")
         rows = list(csv.DictReader(open(f"{folder}/run/history.csv")))
-    failure = re.search(r"failure at ([\d.]+) s \(loads at t = ([\d.]+) s\)", log)
-    load = float(failure[2]) if failure else float("nan")
+    load = failure[0]["load_time_s"] if failure else float("nan")
     last = rows[-1]
     return {"dimension": dimension, "size_m": size, "ranks": ranks, "particles": int(float(last["particles"])), "steps": int(last["step"]),
             "excess_kPa": round(RATE * load, 1), "crest_m": round(float(last["crest_displacement_m"]), 3),

@@ -3,12 +3,17 @@
 Runs into FOLDER and writes storm.csv; with `factors` the factor of safety over time, storm_factors.csv."""
 
 import csv
+import json
 import pathlib
 import re
 import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "src/output/plots"))
+
+from talus_results import read_events  # noqa: E402
+
 RUNS = {
     **{name: (f"mesh.size={size}",) for name, size in (("the scene: cells of 1 m", 1), ("cells of 0.7 m", 0.7), ("cells of 1.2 m", 1.2), ("cells of 1.4 m", 1.4))},
     **{f"elements of second order, cells of {size} m": (f"mesh.size={size}", "quasi_static.elements=quadratic") for size in (1, 0.7, 0.5)},
@@ -40,11 +45,11 @@ def row_of(talus, folder, name, keys):
     (folder / "scene.toml").write_text(text)
     (folder / "stands.toml").write_text(every_six_hours(text))
     done = run(talus, folder / "stands.toml", folder / "stands", keys)
-    lost = re.search(r"of the loads of stage stands_(\d+)", done.stderr)
+    lost = [event["stage"].removeprefix("stands_") for event in read_events(folder / "stands", "equilibrium_lost")]
     if done.returncode and not lost:
         raise SystemExit(done.stderr[-600:])
-    row = {"run": name, "lost_h": lost[1] if lost else "stands"}
-    if not lost or int(lost[1]) > 96 or "quasi_static.elements=quadratic" in keys:  # particles move with patches
+    row = {"run": name, "lost_h": lost[0] if lost else "stands"}
+    if not lost or int(lost[0]) > 96 or "quasi_static.elements=quadratic" in keys:  # particles move with patches
         return row
     done = run(talus, folder / "scene.toml", folder / "slide", keys)
     if done.returncode:
@@ -60,10 +65,10 @@ def factor_after(talus, folder, hours):
     rain = f'[[stage]]\nname = "rain"\nkind = "seepage"\nduration = "{hours} h"\n[[stage]]\nname = "stands"\nkind = "quasi_static"\nduration = 1\nhold_loads = true\n'
     (folder / "factor.toml").write_text(re.sub(r'(?s)\[\[stage\]\]\nname = "first_day".*?\[quasi_static\]', lambda _: rain + "\n[quasi_static]", text))
     done = subprocess.run([talus, "solve", folder / "factor.toml", "--factor-of-safety", "-o", folder / "factor", "--force"], capture_output=True, text=True)
-    found = re.search(r"factor of safety ([\d.]+): .*?the factor of safety is ([\d.]+)", done.stdout + done.stderr, flags=re.S)
-    if not found:
+    if done.returncode:
         raise SystemExit(done.stderr[-600:])
-    return {"hours": hours, "davis": found[1], "associated": found[2]}
+    factors = json.loads((folder / "factor/factor_of_safety.json").read_text())["by_flow"]
+    return {"hours": hours, **{flow: f"{factors[flow]['value']:.3f}" for flow in ("davis", "associated")}}
 
 
 def write(name, columns, rows):

@@ -18,7 +18,7 @@ sys.path[:0] = [str(HERE.parents[2] / "src/output/plots"), str(HERE)]
 import figure  # noqa: E402
 import measures  # noqa: E402
 import talus_measures  # noqa: E402
-from talus_results import Results  # noqa: E402
+from talus_results import Results, read_events  # noqa: E402
 
 SLICE = ("dimension=3", "boundary.front.kind=roller", "boundary.back.kind=roller")  # as --slice
 PAPER = ("body.soil.permeability=1e-10", "water.bulk_modulus=100e6", "stage.rain.duration=400")  # wetting takes ten times as long
@@ -80,7 +80,7 @@ def run(talus, scene, out, overrides=()):
         before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
         ended = subprocess.run([talus, "run", scene, "-o", out, "--no-pictures", "--force", *(word for key in overrides for word in ("--set", key))],
                                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        if ended.returncode and not ((out / "run.log").exists() and "broke off" in (out / "run.log").read_text()):
+        if ended.returncode and not read_events(out, "broke_off"):
             sys.exit(ended.stderr[-600:])
         cost.write_text(f"{resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before:.1f}")
     return Results(out), float(cost.read_text())

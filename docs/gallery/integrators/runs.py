@@ -8,7 +8,6 @@ beside it.
 """
 import csv
 import os
-import re
 import resource
 import subprocess
 import sys
@@ -17,6 +16,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
 sys.path.insert(0, str(ROOT / "src/output/plots"))
+
+from talus_results import read_events  # noqa: E402
+
 RUNS = ROOT / "results/integrators/runs"
 VERIFICATION = ROOT / "tests/verification"
 KINDS = {"euler": [], **{f"arkode {k}": ["integrator.kind=arkode", f"integrator.order={k}"] for k in (2, 3, 4, 5)},
@@ -33,8 +35,8 @@ def run(talus, scene, name, overrides):
     if not (folder / "history.csv").exists():
         raise SystemExit(done.stderr)
     rows = [{k: float(v) for k, v in r.items() if k != "stage"} for r in csv.DictReader(open(folder / "history.csv"))]
-    counts = re.findall(r"(\d+) evaluations of", (folder / "run.log").read_text())
-    return None if done.returncode else rows, after.ru_utime - before.ru_utime, int(counts[-1]) if counts else 0
+    counts = read_events(folder, "steps")
+    return None if done.returncode else rows, after.ru_utime - before.ru_utime, int(counts[-1]["values"]["evaluations"]) if counts else 0
 
 
 def write(name, rows):
@@ -133,10 +135,10 @@ def bound(talus):
             for fraction in (0.3, 0.4, 0.6, 0.8):
                 name = f"bound {scene} {of} {fraction}"
                 history, seconds, count = run(talus, HERE.parent / folder / "scene.toml", name, ["output.interval=0", f"integrator.omega_max={of}", f"integrator.fraction={fraction}", *overrides])
-                failure = re.search(r"loads at t = ([\d.]+) s", (RUNS / name.replace(" ", "_") / "run.log").read_text())
+                failure = read_events(RUNS / name.replace(" ", "_"), "failure")
                 end = history[-1]["time_s"] if history else 0
                 rows.append({"scene": scene, "omega_max": of, "fraction": fraction, "steps": count, "mean_step_ms": round(1e3 * end / count, 4), "processor_s": round(seconds, 2),
-                             "failure_load_time_s": round(float(failure[1]), 3) if failure else "", "front_or_crest_m": round(history[-1][column], 4) if history else "failed"})
+                             "failure_load_time_s": round(failure[0]["load_time_s"], 3) if failure else "", "front_or_crest_m": round(history[-1][column], 4) if history else "failed"})
                 print(rows[-1], flush=True)
                 write("bound", rows)
 
@@ -248,8 +250,8 @@ def brittle(talus):
             for of, fraction in (("cells", 0.6), ("mesh", 0.3), ("mesh", 0.6)):
                 name = f"brittle {kind} {shape} {of} {fraction}"
                 history, _, count = run(talus, file, name, [f"integrator.omega_max={of}", f"integrator.fraction={fraction}"])
-                log = (RUNS / name.replace(" ", "_") / "run.log").read_text()
-                failure, length = float(re.search(r"loads at t = ([\d.]+) s", log)[1]), float(re.search(r"slip surface of about ([\d.]+) m", log)[1])
+                events = {event["kind"]: event for event in read_events(RUNS / name.replace(" ", "_"))}
+                failure, length = events["failure"]["load_time_s"], float(f"{events['brittle']['values']['slip_length_m']:.3g}")
                 rows.append({"scene": kind, "shape_factor": shape, "critical_length_m": length, "omega_max": of, "fraction": fraction, "steps": count, "failure_load_time_s": round(failure, 3),
                              "failure_load_g": round(1 + 0.3 * failure / 9.81, 4), "crest_m": round(history[-1]["crest_displacement_m"], 3), "toe_m": round(history[-1]["toe_displacement_m"], 3)})
                 print(rows[-1], flush=True)

@@ -3,17 +3,22 @@
 
     slides.py TALUS [NAME ...]
 
-Writes slides.csv beside this file: one line a run, out of the last note of its run.log; a run that is there already is kept, unless it is named.
+Writes slides.csv beside this file: one line a run, out of the events of the run; a run that is there already is kept, unless it is named.
 """
 import csv
-import re
 import subprocess
 import sys
 import time
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "src/output/plots"))
+
+from talus_results import read_events  # noqa: E402
+
 RUNS = HERE.parents[2] / "results/integrators/slides"
+COUNTS = {"steps": "steps", "shortest_s": "shortest_step_s", "longest_s": "longest_step_s", "evaluations": "evaluations", "rejected": "rejections", "by_error": "by_error",
+          "by_stability": "by_stability", "by_output": "by_outputs"}
 SIDES = ["boundary.front.kind=roller", "boundary.back.kind=roller"]
 SIDE, TOP = '"-9.81 * 2650 * (0.1 - y) * 0.3 / 0.7"', '"-9.81 * 2650 * (0.1 - y)"'
 COLUMN3D = ["dimension=3", *SIDES, "output.point.corner.position=[0.2, 0.1, 0]", f'body.bars.stress=[{SIDE}, {TOP}, {SIDE}, "0 * x", "0 * x", "0 * x"]']
@@ -47,15 +52,14 @@ def run(talus, name):
     start = time.time()
     done = subprocess.run([str(w) for w in words], capture_output=True, text=True)
     wall = time.time() - start
-    log = (folder / "run.log").read_text()
-    steps = re.findall(r"(\d+) steps from (\S+) to (\S+) s, (\d+) evaluations of the forces, (\d+) attempts rejected[\s\S]*?the error: (\d+), stability: (\d+), outputs: (\d+)", log)[-1]
-    failure = re.search(r"loads at t = ([\d.]+) s", log)
+    events = {event["kind"]: event for event in read_events(folder)}
+    steps = {key: f"{events['steps']['values'][name]:.3g}" if name.endswith("_s") else round(events["steps"]["values"][name]) for key, name in COUNTS.items()}
     last = list(csv.DictReader(open(folder / "history.csv")))[-1]
-    end = "failed: " + done.stderr.strip().splitlines()[-1] if done.returncode else "at rest" if "came to rest" in log or "is below rest_speed" in log else f"{float(last['time_s']):.3g} s"
+    end = "failed: " + done.stderr.strip().splitlines()[-1] if done.returncode else "at rest" if events.keys() & {"rest", "slow"} else f"{float(last['time_s']):.3g} s"
     moved = last["corner_x_m" if scene == "column" else "crest_displacement_m"]
-    return {"run": name, "ranks": ranks, "particles": int(float(last["particles"])), "end": end, "failure_load_time_s": failure[1] if failure else "",
+    return {"run": name, "ranks": ranks, "particles": int(float(last["particles"])), "end": end, "failure_load_time_s": f"{events['failure']['load_time_s']:.8g}" if "failure" in events else "",
             "front_or_crest_m": round(float(moved), 4),
-            **dict(zip(("steps", "shortest_s", "longest_s", "evaluations", "rejected", "by_error", "by_stability", "by_output"), steps)), "wall_s": round(wall, 1)}
+            **steps, "wall_s": round(wall, 1)}
 
 
 if __name__ == "__main__":

@@ -50,8 +50,7 @@ STUDIES = {
         "water that moves": ("moving.toml", []),
         "absolute pressure": ("../selborne_absolute/scene.toml", [], "slip_surface"),
     },
-    "meshes": {f"lower clay {clay}, {size} m": ("scene.toml", [f"mesh.size={size}", *lower_clay(eta)])
-               for clay, eta in (("as the scene", 50), ("with eta = 500", 500)) for size in (1.4, 1.0, 0.7, 0.5)},
+    "meshes": {f"{size} m": ("scene.toml", [f"mesh.size={size}"]) for size in (1.4, 1.0, 0.7, 0.5)},
 }
 
 

@@ -13,6 +13,8 @@ import tempfile
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[2] / "src/output/plots"))
+from talus_results import read_events  # noqa: E402
 
 
 def both(key, value):
@@ -61,10 +63,11 @@ def endure(talus, variant):
         words = [word for key in keys for word in ("--set", key)]
         done = subprocess.run([talus, "run", f"{folder}/scene.toml", "-o", f"{folder}/run", "--no-pictures", "--force", *words], capture_output=True, text=True)
         rows = list(csv.DictReader(open(f"{folder}/run/history.csv")))
-        if done.returncode and "no equilibrium beyond" not in done.stderr:
+        lost = read_events(f"{folder}/run", "equilibrium_lost")
+        if done.returncode and not lost:
             raise SystemExit(done.stderr[-600:])
     last = rows[-1]
-    return {"ended": "no equilibrium" if done.returncode else "stands", "days": round(float(last["time_s"]) / 86400), "base_kPa": float(last["base_pore_pressure_Pa"]) / 1e3,
+    return {"ended": "no equilibrium" if lost else "stands", "days": round(float(last["time_s"]) / 86400), "base_kPa": float(last["base_pore_pressure_Pa"]) / 1e3,
             "P2_kPa": float(last["P2_pore_pressure_Pa"]) / 1e3, "below_toe_kPa": float(last["below_toe_pore_pressure_Pa"]) / 1e3,
             "crest_mm": 1e3 * float(last["crest_displacement_m"])}
 

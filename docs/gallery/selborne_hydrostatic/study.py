@@ -14,6 +14,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[2] / "src/output/plots"))
+from talus_results import read_events  # noqa: E402
 GROUND = "(x < 18 ? 15 : x < 36 ? 15 - (x - 18) / 2 : 6)"
 VERTICAL = f"-(2200 - 1000) * 9.81 * ({GROUND} - y)"
 
@@ -43,13 +44,12 @@ def run(talus, text):
         scene.write_text(text)
         done = subprocess.run([talus, "run", scene, "-o", f"{folder}/run", "--no-pictures", "--force", "--set", "stage.slide.duration=0.01"],
                               capture_output=True, text=True)
-        log = Path(f"{folder}/run/run.log").read_text()
+        failure = read_events(f"{folder}/run", "failure")
         rows = list(csv.DictReader(open(f"{folder}/run/history.csv")))
-    failure = re.search(r"failure at ([\d.]+) s \(loads at t = ([\d.]+) s\)", log)
     if done.returncode or not failure:
         return {"failure_time_s": "", "excess_kPa": "", "crest_m": "", "steps": "", "particles": rows[0]["particles"]}
-    load = float(failure[2])
-    return {"failure_time_s": float(failure[1]), "excess_kPa": 2 * load, "crest_m": float(rows[-1]["crest_displacement_m"]),
+    load = failure[0]["load_time_s"]
+    return {"failure_time_s": failure[0]["time_s"], "excess_kPa": 2 * load, "crest_m": float(rows[-1]["crest_displacement_m"]),
             "steps": int(rows[-1]["step"]), "particles": int(float(rows[-1]["particles"]))}
 
 

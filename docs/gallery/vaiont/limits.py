@@ -10,7 +10,6 @@ import csv
 import math
 import os
 import pathlib
-import re
 import subprocess
 import sys
 
@@ -21,7 +20,7 @@ sys.path.insert(0, str(HERE.parents[2] / "src/output/plots"))
 sys.path.insert(0, str(HERE))
 
 import measures  # noqa: E402
-from talus_results import Results  # noqa: E402
+from talus_results import Results, read_events  # noqa: E402
 
 SIZES = (17, 16.5, 16, 15.5, 15, 14, 13, 12.5, 12, 11, 10, 9.5, 9, 8)  # m
 MOST = tuple(size for size in SIZES if size not in (9.5, 9))  # m, of which ...
@@ -72,11 +71,12 @@ def level_without_equilibrium(talus, out, keys):
     """Level of the water beyond which finite elements found no equilibrium [m]; "stands" where they found one at 60 m, "gravity" where they found none
     without water."""
     text = run(talus, "solve", out, (*FINITE_ELEMENTS, *keys))
-    if lost := re.search(r"no equilibrium beyond ([\d.]+) % of the loads of stage water", text):
-        return f"{np.interp(0.6 * float(lost[1]), (0, 20, 40, 50, 60), (0, 30, 53, 57, 60)):.0f}"
-    if "of the loads of stage gravity" in text:
+    lost = {event["stage"]: event["values"]["share_of_loads"] for event in read_events(out, "equilibrium_lost")}
+    if "water" in lost:
+        return f"{np.interp(60 * lost['water'], (0, 20, 40, 50, 60), (0, 30, 53, 57, 60)):.0f}"
+    if "gravity" in lost:
         return "gravity"
-    if "stage water is in equilibrium" in text:
+    if any(event["stage"] == "water" for event in read_events(out, "equilibrium")):
         return "stands"
     sys.exit(f"{out.name}: {text.strip()[-600:]}")
 

@@ -7,11 +7,11 @@ from matplotlib.ticker import FixedLocator, MaxNLocator
 import talus_style as style
 from talus_modelled import read_model
 from talus_moments import RESET, after, last_reset
-from talus_results import ESCAPED, together
+from talus_results import together
 from talus_units import at_time, capital, clock, readable_unit, with_unit, words
 
 # coordinates, stress and state of points: sections and stress paths show them better; the clock of the loads says nothing as a curve
-ELSEWHERE = ("load_time", "x", "y", "z", "mean_pressure", "deviator", "mobilised_friction", "state", "displacement_x", "displacement_y", "displacement_z")
+ELSEWHERE = ("load_time", "x", "y", "z", "mean_pressure", "deviator", "mobilised_friction", "state")
 OF_ALL_SOIL = ("J", "W", "N", "kg", "kg m/s")
 
 
@@ -28,7 +28,7 @@ def draw_histories(results, folder):
         history = since if quantity in RESET else whole  # what is set to 0 begins there, so that the settlement before does not set the scale
         lines = {", ".join(same.get(name, [name])): values for name, values in history.groups()[quantity, unit].items() if name not in others}
         lines = {name: values for name, values in lines.items() if np.isfinite(values).any()}  # others are points that have had no soil
-        if quantity in ELSEWHERE or quantity.startswith("stress_") or not any(changes(values) for values in lines.values()):
+        if quantity in ELSEWHERE or quantity.startswith("stress_") or quantity.endswith(("_x", "_y", "_z")) or not any(changes(values) for values in lines.values()):
             continue
         if quantity == "energy":
             if "potential" in lines:
@@ -122,8 +122,8 @@ def draw_ledger(history, quantity, lines, title, per, path, ramp=""):
     that ends with this row."""
     since = {name: values - values[0] for name, values in lines.items()}
     gains = {"gained": since["stored"], "came in": -since["out"], "was given": since["given"]}
-    if ESCAPED in lines:
-        gains["left with soil"] = since[ESCAPED]
+    if "escaped" in lines:
+        gains["left with soil"] = since["escaped"]
     gains = {name: values for name, values in gains.items() if np.ptp(values) > 0}
     figure, (upper, lower) = plt.subplots(2, 1, sharex=True, figsize=(7.6, 4.9), gridspec_kw={"height_ratios": [3, 1.4]})
     plot_lines(upper, history, gains or {"gained": 0 * history.time}, "kg", "mass", per)

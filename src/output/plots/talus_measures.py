@@ -4,8 +4,6 @@ Each takes the results of the run (talus_results.Results) and the keys that the 
 in SI units. A page may have measures of its own in a file measures.py beside its numbers.toml, written alike.
 """
 
-import re
-
 import numpy as np
 
 from talus_factor import read_factor
@@ -17,10 +15,6 @@ MEASURES = {}
 def measure(function):
     MEASURES[function.__name__] = function
     return function
-
-
-def log(results):
-    return (results.folder / "run.log").read_text(errors="replace")
 
 
 def at(results, time):
@@ -52,10 +46,10 @@ def particle_updates(results):
 
 def failure(results):
     """Time of failure and load time at failure [s]: when the watched point passed its speed. Raises LookupError where nothing failed."""
-    found = re.search(r"failure at (\S+) s \(loads at t = (\S+) s\)", log(results))
+    found = results.events("failure")
     if not found:
         raise LookupError("nothing failed")
-    return float(found[1]), float(found[2])
+    return found[0]["time_s"], found[0]["load_time_s"]
 
 
 @measure
@@ -80,8 +74,8 @@ def factor_of_safety(results, mechanism=1, flow=None):
 @measure
 def share_of_loads(results, stage):
     """Share of a quasi-static stage's loads beyond which there was no equilibrium; 1 if there was one to the end."""
-    found = re.search(rf"no equilibrium beyond (\S+) % of the loads of stage {stage}\b", log(results))
-    return float(found[1]) / 100 if found else 1.0
+    found = [event for event in results.events("equilibrium_lost") if event["stage"] == stage]
+    return found[0]["values"]["share_of_loads"] if found else 1.0
 
 
 # ---- motion ----

@@ -1,6 +1,5 @@
 """The times of a run that pictures show."""
 
-import re
 import types
 
 import numpy as np
@@ -64,15 +63,11 @@ def resets(results):
     return [(one.time, one.stage) for one, after in zip(results.snapshots, results.snapshots[1:]) if one.stage in names and one.stage != after.stage]
 
 
-MOVED_BEFORE = re.compile(r"warning: stage (.+) has moved soil by up to (\S+) m before displacements are set to zero")  # in the log
-
-
 def moved_before(results):
     """The displacement [m], and the stage at whose end it was set to zero, by which soil slid before the run begins, if it is more than elastic soil
     settles; None otherwise."""
-    found = [MOVED_BEFORE.search(line) for line in results.log_lines()]
-    found = [(float(one[2]), one[1]) for one in found if one]
-    return max(found) if found else None
+    found = [(event["values"]["largest_displacement_m"], event["stage"]) for event in results.events("moved_before_reset")]
+    return max(found, default=None)
 
 
 def last_reset(results):

@@ -72,8 +72,8 @@ def header(results):
 
 
 def warnings(results):
-    """What the run warned of in its log, each sentence once."""
-    found = dict.fromkeys(line.split("  warning: ", 1)[1] for line in results.log_lines() if "  warning: " in line)
+    """What the run warned of, each sentence once."""
+    found = dict.fromkeys(event["text"] for event in results.events() if event["warning"])
     if cut := results.cut_history():
         found[cut] = None
     return section("Warnings", "".join(f"<p>{html.escape(sentence)}</p>" for sentence in found))

@@ -16,23 +16,15 @@ import functools
 import difflib
 import json
 import pathlib
-import re
 import tomllib
+import typing
 
 import h5py
 import numpy as np
 
 from talus_units import DAY, at_time
 
-# ending of a history column -> unit
-UNITS = {"kg_m_s": "kg m/s", "m_s2": "m/s²", "m_s": "m/s", "m": "m", "m3": "m³", "J": "J", "W": "W", "Pa": "Pa", "N": "N", "kg": "kg", "s": "s", "deg": "deg"}
-# words that may stand before the unit: what is left is the name of a point
-QUANTITIES = ("displacement", "velocity", "acceleration", "mean_pressure", "deviator", "pore_pressure", "gas_pressure", "pressure", "suction", "saturation",
-              "plastic_strain", "mobilised_friction", "state", "displacement_x", "displacement_y", "displacement_z", *(f"stress_{axes}" for axes in ("xx", "yy", "zz", "xy", "yz", "xz")), "x", "y", "z")
-ESCAPED = "escaped"  # in columns of what left the mesh
-BROKE_OFF = "the run broke off: "  # in the log, before the cause
 NOT_ENDED = "it was killed, or still runs, since run.log has no end"
-FLUIDS = ("water", "gas")  # whose ledgers history.csv holds
 MECHANISM = "strength reduction"  # stage of the last state after a factor of safety: a mechanism, whose size is free
 
 
@@ -232,13 +224,24 @@ def of_file(read):
     return reads
 
 
+class Quantity(typing.NamedTuple):
+    """What a column of history.csv is: a quantity of a "point", of a "boundary" or of the "run"; `which` names the point, the boundary or the part, such as
+    `kinetic` of the energy."""
+
+    quantity: str
+    unit: str
+    of: str
+    which: str
+
+
 class History:
     """history.csv: `time` [rows] in s, `stage` and `step` of each row, and columns of numbers by their names. A line that is not whole is left out,
     and `cut` says so in words. Raises OSError where the file has no rows or is damaged."""
 
     @of_file
     def __init__(self, path):
-        text = pathlib.Path(path).read_text()
+        self._path = pathlib.Path(path)
+        text = self._path.read_text()
         lines = list(csv.reader(text.splitlines()))
         header = lines[0] if lines else []
         last = len(lines) - (not text.endswith("\n"))  # a line without its end may lack digits
@@ -288,7 +291,13 @@ class History:
     def unit(self, name):
         """Unit of a column, empty if it has none. Raises KeyError."""
         self[name]
-        return split_name(name)[2]
+        return self.quantities[name].unit
+
+    @functools.cached_property
+    def quantities(self):
+        """What the columns are, as history_columns.csv beside the file says: {column: Quantity}. Raises OSError without it."""
+        with open(self._path.with_name("history_columns.csv"), newline="") as file:
+            return {row["column"]: Quantity(row["quantity"], row["unit"].translate(str.maketrans("23", "²³")), row["of"], row["which"]) for row in csv.DictReader(file)}
 
     def without(self, stage):
         """The same without the rows of a stage."""
@@ -303,22 +312,18 @@ class History:
         return other
 
     def groups(self):
-        """{(quantity, unit): {label: values}}; energies are one group, and so is each measure of the named points."""
+        """{(quantity, unit): {label: values}}; energies are one group, and so is each measure of the named points. A quantity of a boundary is one alone."""
         groups = {}
         for name, values in self.columns.items():
-            label, quantity, unit = split_name(name)
-            groups.setdefault((quantity, unit), {})[label] = values
+            quantity, unit, of, which = self.quantities[name]
+            key, label = ((f"{which}_{quantity}", unit), "") if of == "boundary" else ((quantity, unit), which)
+            groups.setdefault(key, {})[label] = values
         return groups
 
     def points(self, time):
         """Where the named points are at a time [s]: {name: coordinates}."""
-        places = {}
-        for name in self.columns:
-            if name.endswith("_x_m") and not name.endswith("_displacement_x_m") and len(self.time):
-                point = name[: -len("_x_m")]
-                axes = [self.columns[f"{point}_{axis}_m"] for axis in "xyz" if f"{point}_{axis}_m" in self.columns]
-                places[point] = np.array([np.interp(time, self.time, axis) for axis in axes])
-        return places
+        names = [one.which for one in self.quantities.values() if (one.of, one.quantity) == ("point", "x")] if len(self.time) else []
+        return {name: np.array([np.interp(time, self.time, axis) for axis in self.way(name).T]) for name in names}
 
     def way(self, point):
         """The coordinates of a named point over time [rows, axes]."""
@@ -335,26 +340,6 @@ def together(values):
     for name, numbers in values.items():
         groups.setdefault(np.asarray(numbers).tobytes(), []).append(name)
     return list(groups.values())
-
-
-def split_name(name):
-    """'crest_displacement_m' -> ('crest', 'displacement', 'm'); 'kinetic_J' -> ('kinetic', 'energy', 'J')."""
-    unit = next((ending for ending in UNITS if name.endswith("_" + ending)), None)
-    stem = name[: -len(unit) - 1] if unit else name
-    if unit == "J":
-        return stem, "energy", "J"
-    if stem.startswith(ESCAPED + "_"):
-        quantity, _, axis = stem.rpartition("_")  # escaped_momentum_x
-        return (axis, quantity, UNITS[unit]) if axis in ("x", "y", "z") else ("", stem, UNITS.get(unit, ""))
-    fluid, _, part = stem.partition("_")
-    if unit == "kg" and fluid in FLUIDS:
-        return part or "stored", fluid + "_ledger", "kg"
-    for quantity in QUANTITIES:
-        if stem == quantity:
-            return "", quantity, UNITS.get(unit, "")
-        if stem.endswith("_" + quantity):
-            return stem[: -len(quantity) - 1], quantity, UNITS.get(unit, "")
-    return "", stem, UNITS.get(unit, "")
 
 
 class Escaped:
@@ -537,15 +522,14 @@ class Results:
         path = self.folder / "run.log"
         return path.read_text(errors="replace").splitlines() if path.exists() else []
 
+    def events(self, kind=None):
+        """What happened in the run, see read_events."""
+        return read_events(self.folder, kind)
+
     def broke_off(self):
-        """Why and where the run ended early; empty if it came to its end. A run that was killed or still runs has no end in its log."""
-        said = [line.partition("  ")[2] for line in self.log_lines()]
-        starts = [k for k, text in enumerate(said) if text.startswith("resumed at ")]
-        said = said[starts[-1]:] if starts else said
-        causes = [text[len(BROKE_OFF):] for text in said if text.startswith(BROKE_OFF)]
-        if causes:
-            return causes[-1]
-        return "" if not said or any(map(is_end, said)) else NOT_ENDED
+        """Why and where the run ended early; empty if it came to its end. A run that was killed or still runs has no end among its events."""
+        last = {event["kind"]: event for event in self.events()}
+        return last["broke_off"]["text"] if "broke_off" in last else "" if "end" in last or not last else NOT_ENDED
 
     def cut_history(self):
         """What history.csv lacks of the run, as a sentence; empty if it is whole."""
@@ -569,13 +553,12 @@ class Results:
         return "xyz".index(self.scene.get("up", "y"))
 
 
-def is_end(line):
-    """Is a line of the log one that only a run at its end writes? The last state of progress says "done". Logs of before that have the sums of the
-    steps, or where nothing but equilibria were sought a state of progress after which nothing is left."""
-    if re.search(r"  step \d+  done in ", line) or " evaluations of the forces, " in line:
-        return True
-    found = re.search(r"  t = (\S+) / (\S+) s  step \d+(.*)", line)
-    return bool(found) and not found[3].endswith(" left") and (found[1] == found[2] or "particle-updates/s" in found[3])
+def read_events(folder, kind=None):
+    """What happened in the run with the results in a folder, in order, or what of it is of one kind: dictionaries with kind, stage, time_s, load_time_s, values
+    (numbers by names with units), warning (is it one?) and text. A last line that is not whole is left out."""
+    path = pathlib.Path(folder) / "events.jsonl"
+    lines = path.read_text().split("\n")[:-1] if path.exists() else []
+    return [event for event in map(json.loads, lines) if kind in (None, event["kind"])]
 
 
 def parsed(text):

@@ -15,7 +15,7 @@ import textwrap
 import numpy as np
 
 from talus_outcomes import FAILS, MOVES, STANDS, losses, outcome
-from talus_results import UNITS, Results
+from talus_results import Results
 import talus_style as style
 from talus_style import plt
 from talus_table import folded, lines_of
@@ -23,6 +23,7 @@ from talus_units import with_unit, words
 
 NO_SLIDE = ("travel_distance_m", "volume_of_slide_m3", "depth_of_slide_m")  # 0 where the slope stands
 LEFT_OUT = ("cell_m", "deepest_at_x_m")  # outcomes that no chart shows
+UNITS = {"_m_s": "m/s", "_m3": "m³", "_m": "m", "_s": "s"}  # by the endings of outcomes
 MOST = 5  # named points that charts and the table show
 INSIDE = 6  # lines whose names have room in their chart
 TITLES = {"load_time_of_failure_s": "time t of the loads at failure [s]", "travel_distance_m": "travel distance, from the rear of the slide to its front [m]",
@@ -64,8 +65,8 @@ def title_of(outcome, in_plane):
 
 def named(outcome, in_plane):
     """The name of an outcome as its column has it, in words, with its unit."""
-    unit = next((ending for ending in UNITS if outcome.endswith("_" + ending)), None)
-    title = with_unit(words(outcome[: -len(unit) - 1]), UNITS[unit]) if unit else words(outcome)
+    ending = next((ending for ending in UNITS if outcome.endswith(ending)), "")
+    title = with_unit(words(outcome.removesuffix(ending)), UNITS[ending]) if ending else words(outcome)
     return title.replace("[m³]", "[m³/m]") if in_plane else title
 
 

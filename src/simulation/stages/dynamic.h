@@ -81,7 +81,8 @@ class DynamicStage final : public StageRunner<dim> {
   void watch_energy() {
     constexpr int steps_between_looks = 100;
     if (run_.clock.steps % steps_between_looks) return;
-    if (const std::string created = run_.energies.look(); !created.empty()) run_.recorder.note("warning: " + created);
+    if (const std::string created = run_.energies.look(); !created.empty())
+      run_.recorder.warn(created, event::created_energy);
     if (!run_.energies.watch().beyond_all()) return;
     run_.recorder.write_history();
     throw MotionFailure(run_.energies.watch().verdict());
@@ -100,9 +101,9 @@ class DynamicStage final : public StageRunner<dim> {
   void note_reset() {
     std::ostringstream text;
     text.precision(3);
-    text << "stage " << stage_.name << " sets displacements to zero, of up to " << run_.world.largest_displacement()
-         << " m";
-    run_.recorder.note(text.str());
+    const double largest = run_.world.largest_displacement();
+    text << "stage " << stage_.name << " sets displacements to zero, of up to " << largest << " m";
+    run_.recorder.note(text.str(), event::reset, {{"largest_displacement_m", largest}});
   }
 
   void find_motion_left() {
@@ -136,7 +137,8 @@ class DynamicStage final : public StageRunner<dim> {
       text << ", which is below rest_speed"
            << (why.empty() ? " but has not stayed there without rising" : " but is no rest: " + why);
     }
-    run_.recorder.note(text.str());
+    run_.recorder.note(text.str(), event::duration_over,
+                       {{"unbalanced_force_ratio", sums.ratio()}, {"rms_speed_m_s", speed}});
   }
 
   Run<dim> &run_;

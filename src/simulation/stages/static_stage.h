@@ -102,17 +102,17 @@ class StaticStage : public StageRunner<dim> {
     std::ostringstream text;
     text.precision(3);
     if (moved->emptied > visible) {
-      text << "warning: stage " << stage_.name << " computes the soil where it lay at the start, and "
-           << 100 * moved->emptied << " % of it is there no more: the motion before has carried soil by up to "
-           << moved->way << " m. What acts at the ground acts where the ground was"
+      text << "stage " << stage_.name << " computes the soil where it lay at the start, and " << 100 * moved->emptied
+           << " % of it is there no more: the motion before has carried soil by up to " << moved->way
+           << " m. What acts at the ground acts where the ground was"
            << (run_.world.phases.liquid ? ", and water that enters there reaches no particle" : "");
-      run_.recorder.note(text.str());
+      run_.recorder.warn(text.str());
       text.str("");
     }
     if (moved->speed > fast) {
-      text << "warning: stage " << stage_.name << " stops the soil, which was moving at up to " << moved->speed
+      text << "stage " << stage_.name << " stops the soil, which was moving at up to " << moved->speed
            << " m/s: finite elements know no motion. A longer stage before it lets the soil come to rest";
-      run_.recorder.note(text.str());
+      run_.recorder.warn(text.str());
     }
   }
 
@@ -140,8 +140,19 @@ class StaticStage : public StageRunner<dim> {
     run_.recorder.write_snapshot();
     std::ostringstream text;
     text.precision(3);
+    const bool lost = path_.share < 1;
+    const char *kind = lost && soil_moves() ? event::equilibrium_lost
+                       : lost               ? event::flow_lost
+                       : soil_moves()       ? event::equilibrium
+                                            : event::stage_end;
+    EventValues values{{"iterations", path_.iterations}};
+    if (lost) values = {{soil_moves() ? "share_of_loads" : "share_of_duration", path_.share}};
+    const auto fail = [&](const std::string &cause) {
+      run_.recorder.record({kind, text.str(), values});
+      throw RunFailure(cause);
+    };
     if (path_.last.stopped) throw RunFailure("interrupted");
-    if (path_.share < 1) {
+    if (lost) {
       text << (soil_moves() ? "no equilibrium beyond " : "no flow was found beyond ") << 100 * path_.share
            << " % of the " << (soil_moves() ? "loads" : "duration") << " of stage " << stage_.name << ": "
            << (path_.last.undrained ? "the soil fails before its pore water can flow"
@@ -183,11 +194,11 @@ class StaticStage : public StageRunner<dim> {
              << ") may help, or, where the stage is the first, initial_stress = \"k0\"";
       const bool goes_on = run_.statics.for_factor && !water_flows();
       if (goes_on && stage_.softening && std::ranges::any_of(run_.world.laws, softens))
-        throw RunFailure(text.str() +
-                         "; there is no factor of safety, since the strength that is left depends on how far the "
-                         "loads came, and this on the steps: other load_steps may find the equilibrium; with "
-                         "softening = false soil keeps the strength that it has at the beginning of the stage");
-      if (stage_.when_lost == WhenLost::stop && !goes_on) throw RunFailure(text.str());
+        fail(text.str() +
+             "; there is no factor of safety, since the strength that is left depends on how far the "
+             "loads came, and this on the steps: other load_steps may find the equilibrium; with "
+             "softening = false soil keeps the strength that it has at the beginning of the stage");
+      if (stage_.when_lost == WhenLost::stop && !goes_on) fail(text.str());
       if (!goes_on && !stage_.hold_loads && stage_.duration > 0)
         text << "; the next stage begins with the loads of t = " << run_.clock.load_time << " s";
       if (goes_on) {
@@ -206,7 +217,7 @@ class StaticStage : public StageRunner<dim> {
       text << ", by which soil at rest swings as soon as it may move: "
            << (water_flows() ? "" : "quasi_static.elements = \"patches\" or ")
            << "a dynamic stage with damping after this one lets it rest";
-    run_.recorder.note(text.str());
+    run_.recorder.note(text.str(), kind, values);
     run_.progress.met = true;
     if (sets_pressure()) run_.statics.take_seeped_pressure();
     if (sets_pressure() && run_.recorder.writes()) run_.statics.save_seeped_pressure(run_.options.directory);

@@ -20,8 +20,9 @@ class StopAtEquilibrium final : public StopCriterion<dim> {
                quiet = sums.kinetic <= stage_.energy_ratio * sums.strain;
     if (!balanced || !quiet) return false;
     if (loads_to_come_.hold_up(run, "the soil is in equilibrium", loads_to_come_(run))) return false;
-    run.recorder.note("stage " + stage_.name + " is in equilibrium: unbalanced force ratio " +
-                      std::to_string(sums.ratio()));
+    run.recorder.note(
+        "stage " + stage_.name + " is in equilibrium: unbalanced force ratio " + std::to_string(sums.ratio()),
+        event::equilibrium, {{"unbalanced_force_ratio", sums.ratio()}});
     return true;
   }
 

@@ -32,7 +32,12 @@ class StopAtFailure final : public StopCriterion<dim> {
     text << "failure at " << seen_.time << " s (loads at t = " << seen_.load_time << " s): point "
          << stage_.failure_point << " passed " << stage_.failure_speed
          << " m/s, and from then on the soil stored less than a third of the energy that it received";
-    run.recorder.note(text.str(), seen_.time, seen_.load_time);
+    run.recorder.tell({event::failure,
+                       text.str(),
+                       {{"failure_speed_m_s", stage_.failure_speed}},
+                       false,
+                       seen_.time,
+                       seen_.load_time});
     return true;
   }
   void serialize(Archive &archive) override { archive.serialize("failure", seen_); }

@@ -11,7 +11,7 @@
 
 namespace talus {
 
-/// What the scene will change yet within the duration of the present stage, and whether that was said.
+/// What the scene will change yet within the duration of the present stage.
 template <int dim>
 class LoadsToCome {
  public:
@@ -45,15 +45,16 @@ class LoadsToCome {
   bool hold_up(Run<dim> &run, const std::string &state, const std::string &why) {
     why_ = why;
     if (why.empty()) return false;
-    if (!told_) run.recorder.note(state + ", but the stage " + run.stage().name + " goes on: " + why);
-    return told_ = true;
+    if (!run.recorder.happened(event::waits_for_loads, run.progress.begin))
+      run.recorder.note(state + ", but the stage " + run.stage().name + " goes on: " + why, event::waits_for_loads);
+    return true;
   }
   const std::string &why() const { return why_; }
 
  private:
   std::vector<ChangingLoad> loads_;  ///< of the scene, once they are known
   std::string why_;                  ///< the stage went on when it was last asked
-  bool known_ = false, told_ = false;
+  bool known_ = false;
 };
 
 }  // namespace talus

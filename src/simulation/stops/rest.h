@@ -1,8 +1,7 @@
 #pragma once
 /// The root mean square speed of the soil stays below a limit and does not rise, for as long as soil out of balance
 /// would take to pass the limit, while nothing that acts on it has still to change. A large model that stands may hide
-/// soil that still slides: the end is said to be rest only where none does. `ended_at_rest` (commands/comparison.h)
-/// reads these words.
+/// soil that still slides: the end is said to be rest only where none does.
 
 #include <cmath>
 
@@ -31,9 +30,10 @@ class StopAtRest final : public StopCriterion<dim> {
     if (loads_to_come_.hold_up(run, "the rms speed of all soil is below rest_speed", still_to_come(run))) return false;
     if (const auto left = still_moving(run.world.comm, run.recorder.snapshot()))
       run.recorder.note("stage " + stage_.name + " ended: the rms speed of all soil is below rest_speed = " +
-                        rounded(stage_.rest_speed) + " m/s, but " + left->sentence());
+                            rounded(stage_.rest_speed) + " m/s, but " + left->sentence(),
+                        event::slow, {{"rest_speed_m_s", stage_.rest_speed}});
     else
-      run.recorder.note("stage " + stage_.name + " came to rest");
+      run.recorder.note("stage " + stage_.name + " came to rest", event::rest);
     return true;
   }
   std::string waits_for() const override {

@@ -48,6 +48,22 @@ class RunThatEnds : public testing::Test {
     if (HasFailure()) ADD_FAILURE() << ending.output;
   }
 
+  /// The last event says how the run ended, and no other does; each is a line.
+  void expect_events() {
+    const Ending ending = Program(folder_, {PYTHON, "-c", R"(
+import json
+events = [json.loads(line) for line in open('results/events.jsonl')]
+assert events[0]['kind'] == 'body' and events[0]['values']['particles'] > 100, events[0]
+kinds = [event['kind'] for event in events]
+assert kinds[-1] == 'broke_off' and kinds.count('broke_off') == 1 and kinds.count('steps') == 1 and 'end' not in kinds, kinds
+last = events[-1]
+assert last['stage'] == 'fall' and last['time_s'] > 0 and 'left the mesh near (2, 0.' in last['text'], last
+print('as it was')
+)"})
+                              .end();
+    EXPECT_TRUE(ending.says("as it was")) << ending.output;
+  }
+
   const Folder folder_;
   const std::string thrown_ = changed(good_scene, "density = 2000", "density = 2000\nvelocity = [\"40\", \"5\"]");
   const std::string endless_ = changed(changed(good_scene, "duration = 0.05", "duration = 1000"), "interval = 0.01",
@@ -74,10 +90,12 @@ TEST_F(RunThatEnds, BecauseAParticleLeftTheMesh) {
          {"left the mesh near (2, 0.", "mesh.leaving_particles = \"remove\"", "t = 0.0", "stage fall",
           "snapshots up to step", "are in results"},
          3);
+  expect_events();
 }
 
 TEST_F(RunThatEnds, BecauseAParticleLeftTheMeshOnTwoRanks) {
   expect(Program(folder_, run(thrown_, 2)).end(), {"left the mesh near (2, 0.", "t = 0.0", "stage fall"}, 3);
+  expect_events();
 }
 
 /// Soil that has come apart on its way out has volume that is not soil, and the log says so at this end too.
@@ -258,8 +276,13 @@ TEST_F(RunThatEnds, ByInterrupt) {
   }
 }
 
+/// mpirun kills ranks a second after it is terminated, in which they do not come to an end on a busy machine: it waits
+/// longer here.
 TEST_F(RunThatEnds, ByTerminationOfTwoRanks) {
-  Program program(folder_, run(endless_, 2));
+  std::vector<std::string> words = run(endless_, 2);
+  words.insert(words.begin(),
+               {"env", "OMPI_MCA_odls_base_sigkill_timeout=10", "PRTE_MCA_odls_base_sigkill_timeout=10"});
+  Program program(folder_, words);
   ASSERT_TRUE(program.wait_for(folder_ / "results/run/000001.h5")) << program.end().output;
   program.signal(SIGTERM);
   EXPECT_NE(program.end().status, 0);  // mpirun's own, and what the ranks still say may not pass it: the log has it

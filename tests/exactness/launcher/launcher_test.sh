@@ -62,11 +62,12 @@ for signal in TERM INT; do
   claim "the launcher has the status of the ranks" "status 3" "$output"
 done
 
-# whether ranks are bound to cores, on a machine that has two
+# whether ranks are bound to cores, on a machine that has two: what mpirun is told, and the program where it runs alone
 unset OMPI_MCA_hwloc_base_binding_policy PRTE_MCA_hwloc_default_binding_policy
 printf '#!/bin/sh\necho 2\n' >"$tree/tools/nproc"
 printf '#!/bin/sh\necho "binding: $OMPI_MCA_hwloc_base_binding_policy, $PRTE_MCA_hwloc_default_binding_policy"\n' >"$build/bin/talus"
-chmod +x "$tree/tools/nproc" "$build/bin/talus"
+cp "$build/bin/talus" "$tree/tools/mpirun"
+chmod +x "$tree/tools/nproc" "$build/bin/talus" "$tree/tools/mpirun"
 claim "as many ranks as cores are bound" "binding: core:if-supported, core:if-supported" "$(launch run slope.toml -n 2)"
 claim "one rank is not" "binding: none, none" "$(launch run slope.toml)"
 claim "more ranks than cores are not" "binding: none, none" "$(launch run slope.toml -n 3)"

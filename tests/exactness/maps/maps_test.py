@@ -484,11 +484,11 @@ class Maps(unittest.TestCase):
 
     def test_interrupted_run(self):
         talus("run", "block.toml", "-o", "broken", "--no-pictures")
-        log = FOLDER / "broken/run.log"
+        log = FOLDER / "broken/events.jsonl"
         whole = log.read_text()
-        log.write_text(whole + "0.1 s  the run broke off: the disk is full\n")
+        log.write_text(whole + '{"kind": "broke_off", "text": "the disk is full"}\n')
         self.assertIn("the run broke off: the disk is full; the maps show it up to 0.1 s", talus("maps", "broken", "--spacing", 0.25))
-        log.write_text("".join(line for line in whole.splitlines(keepends=True) if "done in" not in line and "evaluations" not in line))
+        log.write_text("".join(line for line in whole.splitlines(keepends=True) if '"end"' not in line))
         said = talus("maps", "broken", "--spacing", 0.25)
         self.assertIn("warning: the run is incomplete: it was killed, or still runs, since run.log has no end; the maps show it up to 0.1 s", said)
         log.write_text(whole)

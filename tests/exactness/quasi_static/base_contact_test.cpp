@@ -34,7 +34,7 @@ const std::string push =
 /// Load time at which equilibrium ended.
 double end_of_equilibrium(const Solved &solved) {
   for (const Event &event : solved.events)
-    if (event.text.find("no equilibrium beyond") != std::string::npos) return event.load_time;
+    if (event.kind == event::equilibrium_lost) return event.load_time;
   return -1;
 }
 

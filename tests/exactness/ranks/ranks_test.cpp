@@ -261,7 +261,7 @@ double failure_time(MPI_Comm comm) {
   const auto simulation = make_simulation(comm, scene, options);
   simulation->run();
   for (const Event &event : simulation->events())
-    if (event.text.find("failure at") == 0) return event.load_time;
+    if (event.kind == event::failure) return event.load_time;
   return -1;
 }
 

@@ -53,7 +53,8 @@ class Module(unittest.TestCase):
 
     @classmethod
     def call(cls, *words):
-        done = subprocess.run(list(map(str, words)), capture_output=True, text=True, env={"PYTHONPATH": MODULE, "PATH": "/usr/bin:/bin"})
+        alone = {"PYTHONPATH": MODULE, "PATH": "/usr/bin:/bin", "HOME": str(cls.folder)}  # Open MPI 5 does not start without a home
+        done = subprocess.run(list(map(str, words)), capture_output=True, text=True, env=alone)
         if done.returncode:
             raise AssertionError(f"{words} ended with {done.returncode}: {done.stdout} {done.stderr}")
         return done.stdout

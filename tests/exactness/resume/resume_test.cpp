@@ -131,9 +131,9 @@ class Resumed : public testing::TestWithParam<Variant> {
 };
 
 /// The first snapshots value by value, and the rows of history.csv and of a followed line up to them character by
-/// character.
+/// character. Each event is there once, in order, but for those that tell that the run goes on.
 const char *comparison = R"(
-import h5py, numpy
+import csv, h5py, json, numpy
 runs = [h5py.File(name + '/run.h5')['snapshots'] for name in ('whole', 'resumed')]
 for number in [f'{k:06d}' for k in range(24)]:
     a, b = (run[number] for run in runs)
@@ -145,6 +145,14 @@ for file in ('history.csv', 'line_down.csv'):
     rows = [[line for line in open(f'{name}/{file}')] for name in ('whole', 'resumed')]
     kept = [[line for line in some[1:] if float(line.split(',')[0]) <= end] for some in rows]
     assert kept[0] == kept[1] and len(kept[0]) > 15, file
+columns = [row['column'] for row in csv.DictReader(open('resumed/history_columns.csv'))]
+assert ['time_s', 'step', 'stage'] + columns == next(csv.reader(open('resumed/history.csv'))), columns
+events = [[json.loads(line) for line in open(name + '/events.jsonl')] for name in ('whole', 'resumed')]
+resumed = sum(event['kind'] == 'resumed' for event in events[1])
+assert resumed == TIMES, f'resumed {resumed} times'
+events = [[event for event in some if event['time_s'] <= end and event['kind'] not in ('resumed', 'ranks')] for some in events]
+assert events[0] == events[1], f'{events[0]} {events[1]}'
+assert [event['kind'] for event in events[0]].count('body') == 1 and [event['kind'] for event in events[0]].count('reset') == 1
 print('the same')
 )";
 
@@ -153,7 +161,8 @@ TEST_P(Resumed, IsTheSameToTheBit) {
   for (bool resume = false; const char *snapshot : GetParam().until)
     run_until("resumed", snapshot, GetParam().signal, resume), resume = true;
   run_until("resumed", "000024", SIGINT, true);
-  const Ending ending = Program(folder_, {PYTHON, "-c", comparison}).end();
+  const std::string script = "TIMES = " + std::to_string(GetParam().until.size()) + comparison;
+  const Ending ending = Program(folder_, {PYTHON, "-c", script}).end();
   EXPECT_TRUE(ending.says("the same")) << ending.output;
 }
 

@@ -81,23 +81,19 @@ TEST(Comparison, without_convergence_the_finest_run_is_as_uncertain_as_its_last_
 
 TEST(Comparison, after_the_end_of_a_run_at_rest_its_last_row_counts) {
   const std::string folder = testing::TempDir(), path = folder + "history.csv";
-  const auto value = [&](const std::string &log, const std::string &measure) {
+  const auto value = [&](const std::string &stage, const char *kind, const std::string &measure) {
     std::ofstream(path) << "time_s,step,stage,x_m\n0,0,start,0\n1,5,fall,4\n2,9,slide,2\n";
-    std::ofstream(folder + "run.log") << "2026-01-01 12:00:00  stage slide\n" << log;
+    std::ofstream(folder + "events.jsonl") << to_lines({{event::remark, "slide"}, {kind, "", {}, false, 2, 2, stage}});
     return value_of(path, parse_measure(measure));
   };
-  EXPECT_EQ(value("2026-01-01 12:00:00  stage slide came to rest\n", "x_m@30"), 2);
-  EXPECT_EQ(
-      value("2026-01-01 12:00:00  stage slide ended: the rms speed of all soil is below rest_speed = 0.1 m/s, but 2 "
-            "% of what slid is faster\n",
-            "x_m@30"),
-      2);
-  EXPECT_EQ(value("2026-01-01 12:00:00  stage slide is in equilibrium: unbalanced\n", "x_m@30"), 2);
-  for (const char *log : {"", "2026-01-01 12:00:00  stage fall came to rest\n",
-                          "2026-01-01 12:00:00  stage slide reached its duration of 2 s\n"})
-    EXPECT_TRUE(std::isnan(value(log, "x_m@30"))) << log;
-  EXPECT_EQ(value("", "x_m@1.5"), 3);
-  std::remove(path.c_str()), std::remove((folder + "run.log").c_str());
+  for (const char *kind : {event::rest, event::slow, event::equilibrium}) {
+    EXPECT_EQ(value("slide", kind, "x_m@30"), 2) << kind;
+    EXPECT_TRUE(std::isnan(value("fall", kind, "x_m@30"))) << kind;
+  }
+  for (const char *kind : {event::duration_over, event::equilibrium_lost, event::remark})
+    EXPECT_TRUE(std::isnan(value("slide", kind, "x_m@30"))) << kind;
+  EXPECT_EQ(value("slide", event::remark, "x_m@1.5"), 3);
+  std::remove(path.c_str()), std::remove((folder + "events.jsonl").c_str());
 }
 
 TEST(Comparison, measures_are_read_off_a_history) {

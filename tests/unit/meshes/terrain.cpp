@@ -101,7 +101,7 @@ TEST_F(TerrainFiles, BecomeMeshesOverAFlatBase) {
   EXPECT_NEAR(of_group(answer, "east"), 80 * (70 - 10 + 30), 0.1);
   EXPECT_NEAR(of_group(answer, "north"), of_group(answer, "south"), 0.1);
   expect_words(answer.text, {"smallest altitude", " m at (", "quality"});
-  expect_words(content(in_folder("m.origin.json")), {"\"origin_m\": [5000, 2000]"});
+  expect_words(content(in_folder("m.origin.json")), {"\"origin_m\":[5000.0,2000.0]"});
 }
 
 /// The space above the bed: its cells of soil fill what lies between slip surface and ground.

@@ -27,7 +27,7 @@ TEST_F(TerrainFiles, GiveTheirWindowAndEveryOtherRow) {
   EXPECT_DOUBLE_EQ(terrain.x(6), 120);
   EXPECT_DOUBLE_EQ(terrain.y(4), 80);
   EXPECT_DOUBLE_EQ(terrain.ground_at(20, 40), east + 40 + 3 * (south + 70));
-  expect_words(terrain.origin_document(), {"\"origin_m\": [5020, 2030]", "\"spacing_m\": 10,", "a.asc"});
+  expect_words(terrain.origin_document(), {"\"origin_m\":[5020.0,2030.0]", "\"spacing_m\":10.0,", "a.asc"});
 }
 
 /// The extent that gdalinfo prints is that of the cells, half a spacing wider than their centres; it begins in the

@@ -739,7 +739,7 @@ class Values(unittest.TestCase):
         last = Moving(np.array(strain))
         last["plastic_strain"], last.position, last.time = last.pop("velocity"), lambda: np.zeros((len(strain), 3)), 1.0
         last.column = lambda name: types.SimpleNamespace(values=last[name][:, None])
-        return types.SimpleNamespace(snapshots=[last], history=None, escaped=None, bodies=["rock", "debris"], scene={}, folder=pathlib.Path("nowhere"), log_lines=lambda: [])
+        return types.SimpleNamespace(snapshots=[last], history=None, escaped=None, bodies=["rock", "debris"], scene={}, folder=pathlib.Path("nowhere"), events=lambda kind=None: [])
 
     def test_that_are_none_do_not_count(self):
         results = self.results(np.nan, 0.5, 1.5, np.nan)
@@ -756,12 +756,35 @@ class Values(unittest.TestCase):
 
     def test_that_are_doubtful_come_first(self):
         results = self.results(0.5)
-        results.log_lines = lambda: ["t = 4 s  warning: stage gravity has moved soil by up to 1.531 m before displacements are set to zero; elastic soil of ..."]
+        results.events = lambda kind: [{"kind": kind, "stage": "gravity", "values": {"largest_displacement_m": 1.531}}] * (kind == "moved_before_reset")
         results.history = types.SimpleNamespace(columns={"toe_x_m": np.array([4.0, np.nan]), "crest_x_m": np.array([np.nan, 1.0])}, points=lambda time: {"toe": (), "crest": ()},
                                                 groups=dict)
         (moved, way, note), (points, names, _) = key_results(results)[:2]
         self.assertEqual((moved, way, points, names), ("Moved before the start", "1.53 m", "Points without soil", "toe"))
         self.assertIn("stage gravity", note)
+
+
+class Columns(unittest.TestCase):
+    """history.csv with a point, a base and energies, and what history_columns.csv says of its columns."""
+
+    ROWS = (("crest_x_m", "x", "m", "point", "crest"), ("crest_velocity_m_s", "velocity", "m/s", "point", "crest"), ("toe_x_m", "x", "m", "point", "toe"),
+            ("kinetic_J", "energy", "J", "run", "kinetic"), ("base_force_x_N", "force_x", "N", "boundary", "base"), ("base_inflow_m3_s", "inflow", "m3/s", "boundary", "base"),
+            ("mass_kg", "mass", "kg", "run", ""))
+
+    def test_are_what_their_table_says(self):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            (folder / "history.csv").write_text("time_s,step,stage," + ",".join(row[0] for row in self.ROWS) + "\n" + "".join(f"{t},{t},fall,{t},2,3,4,5,6,7\n" for t in (0, 1)))
+            history = talus_results.History(folder / "history.csv")
+            self.assertEqual(history["mass_kg"].tolist(), [7, 7])
+            with self.assertRaisesRegex(OSError, "history_columns.csv"):
+                history.groups()
+            (folder / "history_columns.csv").write_text("column,quantity,unit,of,which\n" + "".join(",".join(row) + "\n" for row in self.ROWS))
+            groups = {key: {label: values.tolist() for label, values in lines.items()} for key, lines in history.groups().items()}
+            self.assertEqual(groups, {("x", "m"): {"crest": [0, 1], "toe": [3, 3]}, ("velocity", "m/s"): {"crest": [2, 2]}, ("energy", "J"): {"kinetic": [4, 4]},
+                                      ("base_force_x", "N"): {"": [5, 5]}, ("base_inflow", "m³/s"): {"": [6, 6]}, ("mass", "kg"): {"": [7, 7]}})
+            self.assertEqual({name: place.tolist() for name, place in history.points(0.5).items()}, {"crest": [0.5], "toe": [3]})
+            self.assertEqual(history.unit("crest_velocity_m_s"), "m/s")
 
 
 class CutHistory(unittest.TestCase):
@@ -1147,39 +1170,30 @@ class Report(unittest.TestCase):
         self.assertTrue(note.endswith("last row; lowest particles 12.1 mm above it"), note)
 
 
-class Ends(unittest.TestCase):
-    """The last lines of run.log of a run in motion, of one of nothing but equilibria, and of one that broke off."""
+class Events(unittest.TestCase):
+    """events.jsonl of a run that came to its end, of one that broke off, and of one that was killed."""
 
-    SUMS = "246 steps from 0.0168 to 0.0645 s, 246 evaluations of the forces, 0 attempts rejected by the error test"
-    RATE = "step 246  2.2 M particle-updates/s"
+    def read(self, *kinds, last_line="\n"):
+        with tempfile.TemporaryDirectory() as folder:
+            results = Results.__new__(Results)
+            results.folder = pathlib.Path(folder)
+            if kinds:
+                lines = [json.dumps({"kind": kind, "text": f"the {kind}\u2028"}, ensure_ascii=False) for kind in kinds]
+                (results.folder / "events.jsonl").write_text("\n".join(lines) + last_line)
+            return results.broke_off(), [event["kind"] for event in results.events()], len(results.events("warning"))
 
-    def why(self, *said):
-        run = types.SimpleNamespace(log_lines=lambda: [f"2026-11-25 18:46:39  {text}" for text in said])
-        return Results.broke_off(run)
+    def test_tell_how_a_run_ended(self):
+        self.assertEqual(self.read("body", "warning", "end"), ("", ["body", "warning", "end"], 1))
+        self.assertEqual(self.read("body", "end", "factor_of_safety")[0], "")
+        self.assertEqual(self.read("body", "broke_off")[0], "the broke_off\u2028")
+        self.assertEqual(self.read("end", "strength_trial", "broke_off")[0], "the broke_off\u2028")
+        self.assertEqual(self.read("body", "warning")[0], NOT_ENDED)
 
-    def test_of_a_run_that_was_killed_are_missing(self):
-        self.assertEqual(self.why("stage slide"), NOT_ENDED)
-        self.assertEqual(self.why("stage slide", f"slide  t = 12.62 / 40 s  {self.RATE}  at most 4 s left"), NOT_ENDED)
-        self.assertEqual(self.why("stage slide", f"slide  t = 40 / 40 s  {self.RATE}  at most 0 s left"), NOT_ENDED)
-        self.assertEqual(self.why("stage slide", "slide  t = 12.62 / 40 s  step 246"), NOT_ENDED)  # within a slow step
+    def test_are_whole_lines(self):
+        self.assertEqual(self.read("body", "warning", "warning", last_line=""), (NOT_ENDED, ["body", "warning"], 1))
 
-    def test_are_the_sums_of_the_steps_or_progress_without_a_rest(self):
-        self.assertEqual(self.why("stage slide", self.SUMS, "slide  t = 20.2 / 60 s  step 246"), "")  # at rest
-        self.assertEqual(self.why("stage gravity", "gravity  t = 1 / 1 s  step 5"), "")
-        self.assertEqual(self.why("stage flow", "flow  t = 3 / 9 s  step 5  22 k particle-updates/s", "factor of safety 1.112"), "")
-
-    def test_are_said_by_the_last_state_of_progress(self):
-        for last, why in (("slide  t = 20.2 of 60 s  step 246  done in 12 s", ""), ("slide  t = 60 of 60 s  step 246  5 k updates/s", NOT_ENDED),
-                          ("gravity  t = 1 of 1 s  step 5", NOT_ENDED)):
-            self.assertEqual(self.why("stage slide", last), why)
-
-    def test_count_from_where_the_run_was_resumed(self):
-        self.assertEqual(self.why(self.SUMS, "the run broke off: interrupted"), "interrupted")
-        self.assertEqual(self.why(self.SUMS, "the run broke off: interrupted", "resumed at t = 1 s, step 9"), NOT_ENDED)
-        self.assertEqual(self.why("the run broke off: interrupted", "resumed at t = 1 s, step 9", self.SUMS), "")
-
-    def test_of_a_run_without_a_log_are_not_known(self):
-        self.assertEqual(self.why(), "")
+    def test_of_a_run_without_them_are_not_known(self):
+        self.assertEqual(self.read(), ("", [], 0))
 
 
 class Charts(unittest.TestCase):

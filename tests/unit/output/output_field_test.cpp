@@ -48,10 +48,12 @@ TEST(OutputFields, fill_the_columns_of_a_snapshot) {
 
 TEST(OutputFields, name_and_fill_the_history_of_a_tracked_point) {
   const auto fields = three_fields();
-  EXPECT_EQ(fields.tracked_names("crest_"),
-            (std::vector<std::string>{"crest_x_m", "crest_y_m", "crest_speed_m_s", "crest_pressure_Pa",
-                                      "crest_stress_xx_Pa", "crest_stress_yy_Pa", "crest_stress_zz_Pa",
-                                      "crest_stress_xy_Pa", "crest_way_m", "crest_way_x_m", "crest_way_y_m"}));
+  std::vector<std::string> names;
+  for (const auto &[quantity, unit] : fields.tracked())
+    names.push_back(column_of("point", "crest", quantity, unit).name);
+  EXPECT_EQ(names, (std::vector<std::string>{"crest_x_m", "crest_y_m", "crest_speed_m_s", "crest_pressure_Pa",
+                                             "crest_stress_xx_Pa", "crest_stress_yy_Pa", "crest_stress_zz_Pa",
+                                             "crest_stress_xy_Pa", "crest_way_m", "crest_way_x_m", "crest_way_y_m"}));
   const Point point{{1, 2}, {3, 4}, 5};
   std::vector<double> row{-1};
   fields.append_tracked(&point, row);
@@ -120,10 +122,22 @@ TEST(RunRow, names_what_it_holds_and_closes_its_ledgers) {
                     {.name = "footing", .loads = true, .value = {12, 13}}};
   Names names;
   std::map<std::string, double> value;
-  row.visit([&](const std::string &quantity, const char *unit, double number) {
-    names.push_back(history_column(quantity, unit));
-    value[names.back()] = number;
+  std::map<std::string, HistoryColumn> column;
+  row.visit([&](const HistoryColumn &one, double number) {
+    names.push_back(one.name);
+    value[one.name] = number, column[one.name] = one;
   });
+  const auto says = [&](const char *name) {
+    const HistoryColumn &one = column.at(name);
+    return one.quantity + "; " + one.unit + "; " + one.of + "; " + one.which;
+  };
+  EXPECT_EQ(says("kinetic_J"), "energy; J; run; kinetic");
+  EXPECT_EQ(says("mass_kg"), "mass; kg; run; ");
+  EXPECT_EQ(says("escaped_momentum_x_kg_m_s"), "escaped_momentum; kg m/s; run; x");
+  EXPECT_EQ(says("water_kg"), "water_ledger; kg; run; stored");
+  EXPECT_EQ(says("water_out_kg"), "water_ledger; kg; run; out");
+  EXPECT_EQ(says("base_inflow_m3_s"), "inflow; m3/s; boundary; base");
+  EXPECT_EQ(says("footing_displacement_x_m"), "displacement_x; m; boundary; footing");
   EXPECT_EQ(names, (Names{"kinetic_J",
                           "strain_J",
                           "potential_J",

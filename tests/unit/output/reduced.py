@@ -52,7 +52,7 @@ class Doubts(unittest.TestCase):
 
     def test_a_stage_without_equilibrium_is_no_state_that_stands(self):
         results = types.SimpleNamespace(snapshots=[Snapshot(displacement=0, volume=0)], bodies=["clay"], history=None, escaped=None, scene={}, up_axis=lambda: 1,
-                                        per_metre=lambda unit: unit, log_lines=lambda: [])
+                                        per_metre=lambda unit: unit, events=lambda kind=None: [])
         came_to = {"state": "stands", "cell_m": 1.0, "largest_displacement_m": 0.01, "volume_of_slide_m3": None}
         for lost in ((), ("gravity",)):
             factor = {"factor_of_safety": BRACKET, "flow": "associated", "by_flow": {}, "stages_without_equilibrium": lost}
