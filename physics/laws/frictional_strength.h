@@ -32,7 +32,7 @@ struct FrictionalStrength {
                "cohesion c, at its peak if the soil softens");
     v.by_place("friction_angle", friction_angle, reads_shares, degree, Range{0, 70, {5, 50, or_zero}},
                "friction angle phi, at its peak if the soil softens");
-    v.number("dilation_angle", dilation_angle, degree, Range{0, 70, {0, 25}},
+    v.number("dilation_angle", dilation_angle, degree, Range{0, 70, {0, 35}},
              "dilation angle psi; limited to phi where phi falls below it. Take psi = phi for a factor of safety to "
              "compare with limit equilibrium; with psi < phi it is smaller. Where soil slides, 0, or give it an end by "
              "residual_dilation_angle: its volume grows as long as it shears");
@@ -40,7 +40,7 @@ struct FrictionalStrength {
              "cohesion at large strain; negative: the peak value");
     v.number("residual_friction_angle", residual_friction_angle, degree, Range{-1, 70, {3, 45, or_zero}},
              "friction angle at large strain; negative: the peak value");
-    v.number("residual_dilation_angle", residual_dilation_angle, degree, Range{-1, 70, {0, 25}},
+    v.number("residual_dilation_angle", residual_dilation_angle, degree, Range{-1, 70, {0, 35}},
              "dilation angle at large strain; negative: the peak value");
     v.number("shape_factor", shape_factor, one, Range{0, 1e6, {0.1, 1e3, or_zero}},
              "eta: strength falls with exp(-eta plastic_strain)");

@@ -205,6 +205,22 @@ void BaseContact<dim>::add_trial_force(const std::vector<double> &u, std::vector
 }
 
 template <int dim>
+double BaseContact<dim>::until_turn(const std::vector<double> &u) const {
+  double share = 1;
+  for (const Point &p : points_) {
+    const BaseForce<dim> f = borne(p, p.trial);
+    if (!f.presses || !f.slides) continue;
+    const ColumnVector<dim> n = map<dim>(p.normal);
+    ColumnVector<dim> along = map<dim>(p.trial), way;
+    for (int d = 0; d < dim; ++d) way[d] = stiffer * p.stiffness * u[p.node * dim + d];
+    along -= along.dot(n) * n, way -= way.dot(n) * n;
+    const double forth = along.squaredNorm(), change = along.dot(way);
+    if (change < -forth) share = std::min(share, -forth / change);
+  }
+  return share;
+}
+
+template <int dim>
 void BaseContact<dim>::add_force(std::vector<double> &force, std::vector<Vec<dim>> *of_source) const {
   for (const Point &p : points_) {
     const double pressing = map<dim>(p.spring).dot(map<dim>(p.normal));

@@ -60,6 +60,9 @@ class BaseContact {
   /// Adds the forces of the soil on the base to those of local nodes, after nodal increments `u` of the last converged
   /// state, on the rank that owns the node [N].
   void add_trial_force(const std::vector<double> &u, std::vector<double> &force);
+  /// The largest share of nodal increments `u` of the trial state, up to 1, after which the slip of no point of this
+  /// rank has turned by more than a right angle.
+  double until_turn(const std::vector<double> &u) const;
   /// The same at the last converged state; `of_source`, if given, receives the force of each boundary on the soil.
   void add_force(std::vector<double> &force, std::vector<Vec<dim>> *of_source = nullptr) const;
   /// Adds to the work of each boundary on the soil what the forces of the last converged state, times `share`, do on

@@ -1,5 +1,5 @@
 #pragma once
-/// Water that leaves consolidating soil through a face before the change of pressure has crossed the cells beneath,
+/// Water that leaves consolidating soil through a face while the change of pressure crosses the cells beneath,
 /// docs/theory/seepage.md (3.2).
 #include <array>
 #include <vector>
@@ -22,15 +22,17 @@ class DrainedLayers {
   void setup(const ElementNodes<dim> &nodes, std::vector<Face> faces) { nodes_ = &nodes, faces_ = std::move(faces); }
   /// A step between two times after the change [s]. Collective.
   PetscErrorCode begin(double from, double to);
-  /// Does the drained layer at a node end within the cells, so that the node has the pressure behind it?
-  bool ends_at(int node) const { return node < static_cast<int>(thin_.size()) && thin_[node]; }
+  /// Does water leave a node through a layer, so that the node has the pressure behind it?
+  bool at(int node) const { return node < static_cast<int>(layered_.size()) && layered_[node]; }
   /// Volume of water that crosses the layers of this rank's faces in the step, per pressure of the node [m3/Pa].
   double passes(int node) const { return passes_[node]; }
 
  private:
+  static double crossing_time(const Face &f);
+  static double passed(const Face &f, double t);
   const ElementNodes<dim> *nodes_ = nullptr;
   std::vector<Face> faces_;
-  std::vector<char> thin_;
+  std::vector<char> layered_;
   std::vector<double> passes_;
 };
 

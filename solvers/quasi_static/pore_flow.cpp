@@ -229,7 +229,7 @@ PetscErrorCode PoreFlow<dim>::begin(double t, double travel, double from, double
   for (int i = 0; i < nodes_.count(); ++i) {
     if (pressed_[i] == none) continue;
     const double p = beyond_[i] = outside(i, t);
-    layered_[i] = layers_.ends_at(i) && (!may_close_[i] || p > 0);
+    layered_[i] = layers_.at(i) && (!may_close_[i] || p > 0);
     fixed_[i] = !layered_[i] && (!may_close_[i] || p > 0 || open_[i]);  // below open water the pressure is its own
     if (fixed_[i]) pressure[i] = p;
     if (p > 0) open_[i] = 1;  // once the water level has fallen below the node, water seeps out here at first

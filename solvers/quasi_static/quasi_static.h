@@ -145,6 +145,7 @@ class QuasiStatic {
   PetscErrorCode activate_again();
   // soil_on_bases.cpp
   enum class Way { balanced, moving, lost };
+  PetscErrorCode share_of_step(::Vec direction, ::Vec last, double *share);
   PetscErrorCode relax(int *iterations, double *unbalanced, Way *way);
   PetscErrorCode find_moving(::Vec direction, const char *how);
   PetscErrorCode leave_out_hanging(bool *found);

@@ -10,6 +10,30 @@
 
 namespace talus {
 
+/// Where slip turns back within a step, the next step leads back, and both repeat without end: of a step that goes
+/// against the `last` one, which then becomes `direction`, the share is taken after which slip has turned by a right
+/// angle somewhere. All of other steps is taken.
+template <int dim>
+PetscErrorCode QuasiStatic<dim>::share_of_step(::Vec direction, ::Vec last, double *share) {
+  constexpr double against = -0.5;  // cosine
+  constexpr double least = 1. / 16, of_no_turn = 0.5;
+  double now, before, along;
+  PetscFunctionBeginUser;
+  *share = 1;
+  PetscCall(VecNorm(direction, NORM_2, &now));
+  PetscCall(VecNorm(last, NORM_2, &before));
+  PetscCall(VecDot(direction, last, &along));
+  PetscCall(VecCopy(direction, last));
+  if (!(along < against * now * before)) PetscFunctionReturn(0);
+  std::vector<double> u;
+  PetscCall(unknowns_.displacement_of(direction, false, u));
+  for (double &way : u) way = -way;
+  double turn = bases_.until_turn(u);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &turn, 1, MPI_DOUBLE, MPI_MIN, soil_.nodes().comm()));
+  *share = turn < 1 ? std::max(turn, least) : of_no_turn;
+  PetscFunctionReturn(0);
+}
+
 /// Newton's iterations with full steps, against a prop of elastic stiffness that works on the step of an iteration
 /// only: where contact opens, nothing else may hold a corner of the soil. The prop becomes softer as the forces out of
 /// balance become smaller, and stiffer where they become larger than those at the start.
@@ -18,14 +42,16 @@ PetscErrorCode QuasiStatic<dim>::relax(int *iterations, double *unbalanced, Way 
   constexpr double first_prop = 0.1, stiffest = 1e6;  // of the elastic stiffness
   constexpr double largest_growth = 4;  // of the force out of balance over that at the start: contact that opens
   constexpr double lasting = 0.75;      // share of the push on the prop that is left where soil moves
-  Vector direction, trial;
-  double norm, after, first_norm, step;
+  Vector direction, last, trial;
+  double norm, after, first_norm, step, share;
   bool solved;
   PetscFunctionBeginUser;
   const int most = 2 * scene_.quasi_static.iterations;
   *way = Way::lost;
   PetscCall(VecDuplicate(x_, direction.create()));
+  PetscCall(VecDuplicate(x_, last.create()));
   PetscCall(VecDuplicate(x_, trial.create()));
+  PetscCall(VecZeroEntries(last));
   PetscCall(residual(x_, f_));
   scale_open_ = false;
   PetscCall(VecNorm(f_, NORM_2, &norm));
@@ -52,7 +78,8 @@ PetscErrorCode QuasiStatic<dim>::relax(int *iterations, double *unbalanced, Way 
     PetscCall(stiffness(1, prop));
     PetscCall(solve_linear(f_, direction, &solved));
     if (solved) {
-      PetscCall(VecWAXPY(trial, -1, direction, x_));
+      PetscCall(share_of_step(direction, last, &share));
+      PetscCall(VecWAXPY(trial, -share, direction, x_));
       PetscCall(residual(trial, f_));
       PetscCall(VecNorm(f_, NORM_2, &after));
     }

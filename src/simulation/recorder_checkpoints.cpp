@@ -66,8 +66,9 @@ Checkpoint Recorder<dim>::find_checkpoint() {
     const std::vector<std::string> words = split(path);
     const bool listed = words.size() > 1 && words[0] == "stage";
     const int stage = listed ? std::stoi(words[1]) : 0;
-    const bool result = words[0] == "title" || words[0] == "factor_of_safety" || path == "mesh.leaving_particles" ||
-                        path == "mesh.balance_ranks" || path == "integrator.fraction" ||
+    const bool result = words[0] == "title" || words[0] == "acknowledge" || words[0] == "factor_of_safety" ||
+                        path == "mesh.leaving_particles" || path == "mesh.balance_ranks" ||
+                        path == "integrator.fraction" ||
                         (words[0] == "output" && words.size() > 1 && words[1] != "point");
     const bool to_come =
         listed &&
@@ -76,7 +77,7 @@ Checkpoint Recorder<dim>::find_checkpoint() {
       scene_.complain(
           path,
           "is not what it was when the run in " + options_.directory + " began, and " + tie_of(words[0]) +
-              "; with --resume only title, [output] without its points, [factor_of_safety], "
+              "; with --resume only title, acknowledge, [output] without its points, [factor_of_safety], "
               "mesh.leaving_particles, mesh.balance_ranks, integrator.fraction, duration and rest_speed of the present "
               "stage and the stages after it "
               "may change (repeat the --set of that run)");

@@ -19,6 +19,7 @@ using Words = std::vector<std::string>;
 std::string tie_of(const Words &words, PhaseModel phases) {
   const std::string &table = words[0], key = words.size() > 1 ? words[1] : "", last = words.size() > 2 ? words[2] : "";
   static const std::set<std::string> free{"title",
+                                          "acknowledge",
                                           "start_from",
                                           "stage",
                                           "integrator",
