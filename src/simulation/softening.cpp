@@ -97,7 +97,7 @@ std::vector<std::string> brittle_soils(const Scene &scene, const std::vector<Law
         "on the initial stress (elastic soil presses sideways with nu / (1 - nu) = " +
         rounded(nu / (1 - nu)) +
         "). `talus converge` shows by how much; a smaller shape_factor or a larger reference_size makes "
-        "the surface longer.");
+        "the surface longer");
   }
   return sentences;
 }
