@@ -35,7 +35,7 @@ class MeshEnds {
   std::vector<std::string> cut_off() const;
   /// The same of a mechanism of finite elements, whose size is free: it reaches an end where cells at this end shear.
   /// The bottom does not count where the ground comes down to it, at the toe of a slope on firm ground.
-  std::vector<std::string> cut_off(const Soil &mechanism) const;
+  std::vector<std::string> cut_off(const Soil &mechanism) const { return sentences(mechanism, true); }
   /// The rear of the gallery's selborne moves by 0.03 in cells of 1.4 m, soil that stands by less.
   static constexpr double cut_share = 0.02;
   /// Soil that moves by less is no part of a mechanism, see moving_pieces: it yields beside it.
@@ -68,6 +68,7 @@ class MeshEnds {
     std::string advice;
   };
   std::vector<Reached> reached(const Soil &soil, bool mechanism) const;
+  std::vector<std::string> sentences(const Soil &soil, bool mechanism) const;
 
   struct Face {
     int cell, plane;
