@@ -42,6 +42,10 @@ struct MadeMesh {
   std::array<double, 2> corner{};    ///< from which x and y of the mesh count on the map, on all ranks [m]
 };
 
+class AnySimulation;
+/// Sentences for the log of a run, without their full stop. Collective.
+using Remarks = std::function<std::vector<std::string>(AnySimulation &)>;
+
 struct RunOptions {
   std::string directory;    ///< of the results; empty: nothing is written
   bool resume = false;      ///< go on from the checkpoint in the directory
@@ -53,6 +57,7 @@ struct RunOptions {
       false;          ///< snapshots of quasi-static stages hold Gauss points, not the particles they are handed to
   DM plex = nullptr;  ///< mesh of a host program, instead of the scene's
   MadeMesh mesh;      ///< filled by make_simulation
+  Remarks doubts_at_start, doubts_at_end;  ///< the program's are in src/doubts; a host program may have none
 };
 
 /// Values over time, as in history.csv.

@@ -372,6 +372,11 @@ class MechanismSearch {
       }
       CellSet held = moved_[like];
       PetscCall(grow_by(soil, margin * std::pow(volume_of(soil, held), 1. / dim), &held));
+      if (volume_of(soil, held) <=
+          volume_of(soil, held_[like])) {  // a shoulder within soil that is held: along its rim
+        held = held_[like];
+        PetscCall(grow_by(soil, margin * std::pow(volume_of(soil, held), 1. / dim), &held));
+      }
       *grown = *grown || volume_of(soil, held) > volume_of(soil, held_[like]);
       held_[like] = held;
     }

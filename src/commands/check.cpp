@@ -9,9 +9,9 @@
 #include "commands/commands.h"
 #include "commands/foreign_code.h"
 #include "commands/gallery.h"
-#include "commands/needs.h"
-#include "commands/scales.h"
 #include "commands/slice.h"
+#include "doubts/needs.h"
+#include "doubts/scales.h"
 #include "output/pictures.h"
 #include "scene/reader.h"
 

@@ -3,10 +3,10 @@
 #include <filesystem>
 
 #include "commands/commands.h"
+#include "doubts/doubts.h"
 #include "mesh_source.h"
 #include "scene/quantity.h"
 #include "scene/reader.h"
-#include "simulation/unlikely.h"
 #include "solvers/critical_step.h"
 
 namespace talus {
@@ -107,7 +107,7 @@ void report_mesh(const MeshArguments &arguments, const LinearElastic &soil, doub
   for (const std::string &remark : report.remarks) std::printf("warning: %s\n", remark.c_str());
   double low = mesh.position[0][up], high = low;
   for (const auto &x : mesh.position) low = std::min(low, x[up]), high = std::max(high, x[up]);
-  if (const std::string sentence = unlikely_height(high - low, "The mesh"); !sentence.empty())
+  if (const std::string sentence = unlikely_height(high - low); !sentence.empty())
     std::printf("warning: %s\n", sentence.c_str());
 }
 

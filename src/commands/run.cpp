@@ -5,6 +5,7 @@
 #include "commands/gallery.h"
 #include "commands/slice.h"
 #include "commands/trials.h"
+#include "doubts/doubts.h"
 #include "scene/reader.h"
 #include "simulation.h"
 
@@ -32,6 +33,7 @@ int run(const RunArguments &arguments) {
   options.pictures = !arguments.no_pictures;
   options.resume = arguments.resume;
   options.replace = arguments.force;
+  say_doubts(options, scene);
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   std::signal(SIGUSR1, on_signal);  // mpirun hands it on, and does not kill ranks after it

@@ -8,6 +8,7 @@
 #include "commands/foreign_code.h"
 #include "commands/gallery.h"
 #include "commands/trials.h"
+#include "doubts/doubts.h"
 #include "output/pictures.h"
 #include "scene/reader.h"
 #include "simulation.h"
@@ -146,6 +147,7 @@ int solve(const SolveArguments &arguments) {
       arguments.directory.empty() ? default_results(file, arguments.set, "_solve") : arguments.directory;
   options.replace = arguments.force;
   options.pictures = options.checkpoints = false, options.gauss_points = true;
+  say_doubts(options, scene);
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   std::signal(SIGUSR1, on_signal);  // mpirun hands it on, and does not kill ranks after it

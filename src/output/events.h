@@ -35,7 +35,6 @@ inline constexpr const char *created_energy = "created_energy";
 inline constexpr const char *came_apart = "came_apart";              // share_of_gaps, largest_ratio
 inline constexpr const char *water_drawn = "water_drawn";            // share
 inline constexpr const char *dilated = "dilated";                    // ratio, largest_ratio
-inline constexpr const char *brittle = "brittle";                    // slip_length_m
 inline constexpr const char *strength_trial = "strength_trial";      // factor, displacement_m
 inline constexpr const char *factor_of_safety = "factor_of_safety";  // mechanism, factor, equilibrium_at, mechanism_at
 inline constexpr const char *ranks = "ranks";                        // how they share the work

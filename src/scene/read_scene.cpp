@@ -1,7 +1,9 @@
 /// Reading a scene as a whole, and what its keys demand of one another.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
+#include <sstream>
 #include <tuple>
 
 #include "scene/doubt_names.h"
@@ -47,9 +49,10 @@ class Checks {
       reader_.complain(
           "start_from.reset_displacement",
           "has no effect without start_from.folder, the results of the run at whose state this one starts");
-    const std::vector<std::string> names(std::begin(doubt_names), std::end(doubt_names));
+    std::istringstream words{std::string(doubt_names)};
+    const std::vector<std::string> names{std::istream_iterator<std::string>(words), {}};
     for (const std::string &name : scene_.acknowledge)
-      if (std::ranges::find(names, name) == names.end())
+      if (!is_doubt_name(name))
         reader_.complain("acknowledge", "names no doubt by " + name + "; " + suggestion(name, names));
   }
 

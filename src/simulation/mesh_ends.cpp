@@ -121,6 +121,7 @@ std::vector<std::string> MeshEnds<dim>::newly_reached(const std::string &stage) 
     }
     if (!first || told_[plane]) continue;
     told_[plane] = 1;
+    if (world_.scene.acknowledges("mesh_end")) continue;
     std::string place;
     for (int d = 0; d < dim; ++d) place += (d ? ", " : "") + rounded(first->place[d]);
     const bool top = plane == 2 * world_.scene.vertical() + 1;
@@ -130,15 +131,14 @@ std::vector<std::string> MeshEnds<dim>::newly_reached(const std::string &stage) 
                              : "the group " + world_.mesh.group_names()[static_cast<std::size_t>(first->group)]) +
                         ", in stage " + stage + ": from now on " + (top ? "its height" : "its run-out") +
                         " is that of the mesh. Give the mesh more free space " + (top ? "above" : "there") +
-                        ", unless a wall stands there in nature");
+                        ", unless a wall stands there in nature [mesh_end]");
   }
   return sentences;
 }
 
 template <int dim>
 typename MeshEnds<dim>::Sheared MeshEnds<dim>::sheared(const Soil &soil, const OfPlanes &size, bool mechanism) const {
-  constexpr double strip =
-      0.2;  // of the height of the soil: of selborne_absolute, whatever its cells, a shear band and more
+  constexpr double strip = 0.2;    // of the height of the soil: of selborne, whatever its cells, a shear band and more
   constexpr double hardly = 0.01;  // strain of soil that slides without shearing
   constexpr double few = 0.3;      // of the mean mass: parts with less of it are corners
   constexpr double bare = 0.05;    // of the bottom
@@ -261,55 +261,41 @@ std::vector<typename MeshEnds<dim>::Reached> MeshEnds<dim>::reached(const Soil &
   return ends;
 }
 
-namespace {
-
-std::string percent(double share) { return rounded(100 * share) + " %"; }
-
-}  // namespace
-
 template <int dim>
 std::vector<std::string> MeshEnds<dim>::cut_off() const {
-  const Soil particles = [this](const std::function<void(const Point &)> &visit) {
-    for (const auto &body : world_.bodies) {
-      const ParticleArrays<dim> &p = body->particles();
-      const int memory = body->history_count(), field = plastic_strain_field(body->law());
-      for (int i = 0; i < p.count; ++i) {
-        Point point{p.reference[i], {}, p.mass[i], 0};
-        for (int d = 0; d < dim; ++d) point.way[d] = p.position[i][d] - p.reference[i][d];
-        if (field >= 0) point.strain = p.history[static_cast<std::size_t>(i) * memory + field];
-        visit(point);
-      }
-    }
-  };
-  std::vector<std::string> sentences;
-  for (const Reached &end : reached(particles, false))
-    sentences.push_back(
-        end.cuts
-            ? "the end of the mesh " + end.place + " cuts the slide off: soil that lay there has moved by " +
-                  rounded(end.moved) + " m, " + percent(end.moved / end.of) + " of the largest displacement (" +
-                  rounded(end.of) + " m; more than " + percent(cut_share) + " counts). " + end.advice
-            : std::string("the slide reaches the ") + (end.below ? "fixed bottom" : "end") + " of the mesh " +
-                  end.place + ": soil within " + rounded(end.within) + " m of it has a plastic strain of up to " +
-                  rounded(end.strain) + ", " + percent(end.strain / end.mean) + " of the mean of what has sheared (" +
-                  rounded(end.mean) + "; more than " + percent(reached_share) +
-                  " counts), so that the load at failure and the run-out depend on where the mesh ends. " + end.advice);
-  return sentences;
+  return sentences(
+      [this](const std::function<void(const Point &)> &visit) {
+        for (const auto &body : world_.bodies) {
+          const ParticleArrays<dim> &p = body->particles();
+          const int memory = body->history_count(), field = plastic_strain_field(body->law());
+          for (int i = 0; i < p.count; ++i) {
+            Point point{p.reference[i], {}, p.mass[i], 0};
+            for (int d = 0; d < dim; ++d) point.way[d] = p.position[i][d] - p.reference[i][d];
+            if (field >= 0) point.strain = p.history[static_cast<std::size_t>(i) * memory + field];
+            visit(point);
+          }
+        }
+      },
+      false);
 }
 
 template <int dim>
-std::vector<std::string> MeshEnds<dim>::cut_off(const Soil &mechanism) const {
-  std::vector<std::string> sentences;
-  for (const Reached &end : reached(mechanism, true))
-    sentences.push_back(
-        (end.cuts ? "the end of the mesh " + end.place + " cuts the mechanism off: soil there moves by " +
-                        percent(end.moved / end.of) + " of its largest displacement (more than " +
-                        percent(mechanism_share) + " counts)"
-                  : std::string("the mechanism reaches the ") + (end.below ? "fixed bottom" : "end") + " of the mesh " +
-                        end.place + ": soil within " + rounded(end.within) + " m of it shears by " +
-                        percent(end.strain / end.mean) + " of the mean of what shears (more than " +
-                        percent(reached_share) + " counts)") +
-        ", so that the factor of safety depends on where the mesh ends and may be too large. " + end.advice);
-  return sentences;
+std::vector<std::string> MeshEnds<dim>::sentences(const Soil &soil, bool mechanism) const {
+  std::vector<std::string> all;
+  if (world_.scene.acknowledges("mesh_end")) return all;
+  const std::string what = mechanism ? "mechanism" : "slide";
+  const auto percent = [](double share) { return rounded(100 * share) + " %"; };
+  for (const Reached &end : reached(soil, mechanism))
+    all.push_back((end.cuts ? "the end of the mesh " + end.place + " cuts the " + what +
+                                  " off: soil that lay there has moved by " +
+                                  (mechanism ? "" : rounded(end.moved) + " m, ") + percent(end.moved / end.of) +
+                                  " of the largest displacement"
+                            : "the " + what + " reaches the " + (end.below ? "fixed bottom" : "end") + " of the mesh " +
+                                  end.place + ": soil within " + rounded(end.within) + " m of it shears by " +
+                                  percent(end.strain / end.mean) + " of the mean of what shears") +
+                  ", so that the " + (mechanism ? "factor of safety" : "load at failure and the run-out") +
+                  " depend on where the mesh ends. " + end.advice + " [mesh_end]");
+  return all;
 }
 
 template class MeshEnds<2>;

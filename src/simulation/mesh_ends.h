@@ -35,13 +35,13 @@ class MeshEnds {
   std::vector<std::string> cut_off() const;
   /// The same of a mechanism of finite elements, whose size is free: it reaches an end where cells at this end shear.
   /// The bottom does not count where the ground comes down to it, at the toe of a slope on firm ground.
-  std::vector<std::string> cut_off(const Soil &mechanism) const;
-  /// The rear of the gallery's selborne_absolute moves by 0.03 in cells of 1.4 m, soil that stands by less.
+  std::vector<std::string> cut_off(const Soil &mechanism) const { return sentences(mechanism, true); }
+  /// The rear of the gallery's selborne moves by 0.03 in cells of 1.4 m, soil that stands by less.
   static constexpr double cut_share = 0.02;
   /// Soil that moves by less is no part of a mechanism, see moving_pieces: it yields beside it.
   static constexpr double mechanism_share = 0.1;
-  /// In cells of 2 to 0.7 m the rear of selborne_absolute has 0.08 to 0.14 where the base is deep or not, and its base
-  /// 0.5 to 0.7; with both far away 0, and 0.03 to 0.05: to move them farther then changes the load at failure by 1 %.
+  /// In cells of 2 to 0.7 m the rear of selborne has 0.08 to 0.14 where the base is deep or not, and its base 0.5 to
+  /// 0.7; with both far away 0, and 0.03 to 0.05: to move them farther then changes the load at failure by 1 %.
   static constexpr double reached_share = 0.06;
   /// Saves or loads which ends have been told of. The mesh may be divided in another way when it is loaded. Collective.
   void serialize(Archive &archive);
@@ -68,6 +68,7 @@ class MeshEnds {
     std::string advice;
   };
   std::vector<Reached> reached(const Soil &soil, bool mechanism) const;
+  std::vector<std::string> sentences(const Soil &soil, bool mechanism) const;
 
   struct Face {
     int cell, plane;

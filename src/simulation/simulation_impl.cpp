@@ -6,9 +6,7 @@
 #include <sstream>
 
 #include "base/freed_memory.h"
-#include "simulation/softening.h"
 #include "simulation/stages/stage_runner.h"
-#include "simulation/unlikely.h"
 
 namespace talus {
 
@@ -42,11 +40,8 @@ void Simulation<dim>::run() {
 /// What is unlikely of the state at the end. Collective.
 template <int dim>
 void Simulation<dim>::note_state() {
-  const Snapshot state = snapshot();
-  const std::vector<BodyReport> bodies = run_.world.report();
-  std::vector<std::string> doubts = unlikely_strains(run_.world.comm, bodies, state);
-  if (run_.scene.phases == PhaseModel::saturated)
-    std::ranges::copy(unlikely_suctions(run_.world.comm, bodies, state), std::back_inserter(doubts));
+  std::vector<std::string> doubts;
+  if (run_.options.doubts_at_end) doubts = run_.options.doubts_at_end(*this);
   for (const std::string &point : run_.points.without_soil())
     doubts.push_back("output.point." + point +
                      " has no soil at the end: what stood there has left the mesh, or no stage has added it");
@@ -168,12 +163,8 @@ void Simulation<dim>::begin() {
   for (const std::string &sentence : run_.start_notes) run_.recorder.note(sentence);
   if (run_.recorder.writes()) note_bodies();
   for (const std::string &sentence : mesh_report().remarks) run_.recorder.warn("mesh: " + sentence);
-  for (const auto &[sentence, length] : brittle_soils(run_.scene, run_.world.laws, run_.world.report()))
-    run_.recorder.warn(sentence, event::brittle, {{"slip_length_m", length}});
-  const std::vector<SoilFace> surface = run_.world.surface();
-  for (const auto &doubts : {unlikely_values(run_.scene, run_.world.laws, run_.world.report(), surface),
-                             unlikely_surroundings(run_.scene, run_.world.report(), surface)})
-    for (const std::string &sentence : doubts) run_.recorder.warn(sentence);
+  if (run_.options.doubts_at_start)
+    for (const std::string &sentence : run_.options.doubts_at_start(*this)) run_.recorder.warn(sentence);
   run_.recorder.write_history();
   if (run_.options.gauss_points && is_static(run_.scene.stage.front().kind)) run_.statics.prepare();
   run_.recorder.write_snapshot();

@@ -77,9 +77,9 @@ std::vector<Softening> softening_of(const Scene &scene, const std::vector<Law> &
   return all;
 }
 
-std::vector<std::pair<std::string, double>> brittle_soils(const Scene &scene, const std::vector<Law> &laws,
-                                                          const std::vector<BodyReport> &bodies) {
-  std::vector<std::pair<std::string, double>> sentences;
+std::vector<std::string> brittle_soils(const Scene &scene, const std::vector<Law> &laws,
+                                       const std::vector<BodyReport> &bodies) {
+  std::vector<std::string> sentences;
   const std::vector<Softening> softening = softening_of(scene, laws, bodies);
   double gravity = 0;
   for (const double component : scene.gravity) gravity += component * component;
@@ -90,15 +90,14 @@ std::vector<std::pair<std::string, double>> brittle_soils(const Scene &scene, co
     const double length = softening[b].critical_length;
     if (length == 0 || length >= 1.5 * height) continue;
     const double nu = poisson_ratio(laws[b]);
-    sentences.emplace_back(
+    sentences.push_back(
         "Softening of " + bodies[b].name + " is brittle: a slip surface of about " + rounded(length) +
-            " m spreads without more load, and the soil is " + rounded(height) +
-            " m high. The slope then falls from one place inside it, at a load that depends on the cells and "
-            "on the initial stress (elastic soil presses sideways with nu / (1 - nu) = " +
-            rounded(nu / (1 - nu)) +
-            "). `talus converge` shows by how much; a smaller shape_factor or a larger reference_size makes "
-            "the surface longer.",
-        length);
+        " m spreads without more load, and the soil is " + rounded(height) +
+        " m high. The slope then falls from one place inside it, at a load that depends on the cells and "
+        "on the initial stress (elastic soil presses sideways with nu / (1 - nu) = " +
+        rounded(nu / (1 - nu)) +
+        "). `talus converge` shows by how much; a smaller shape_factor or a larger reference_size makes "
+        "the surface longer");
   }
   return sentences;
 }

@@ -34,7 +34,7 @@ std::vector<Softening> softening_of(const Scene &scene, const std::vector<Law> &
 /// from one place inside it, at a load that depends on the cells and on the initial stress. docs/theory/README.md,
 /// below (2.12): loads at failure with seven cell sizes are 4 % apart where the critical length is twice the height,
 /// 19 % at 1.3, and 67 % at 0.8.
-std::vector<std::pair<std::string, double>> brittle_soils(const Scene &scene, const std::vector<Law> &laws,
-                                                          const std::vector<BodyReport> &bodies);
+std::vector<std::string> brittle_soils(const Scene &scene, const std::vector<Law> &laws,
+                                       const std::vector<BodyReport> &bodies);
 
 }  // namespace talus

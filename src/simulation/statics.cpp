@@ -9,14 +9,28 @@
 
 #include "output/replace_file.h"
 #include "output/together.h"
+#include "physics/boundary/boundary.h"
 #include "physics/pores/soil_pores.h"
 #include "scene/reader.h"
 #include "scene/words.h"
 #include "simulation/softening.h"
-#include "simulation/unlikely.h"
 #include "solvers/quasi_static/thin_bodies.h"
 
 namespace talus {
+namespace {
+
+/// What is wrong with a body that is one element across where elements are of first order, and what to do.
+std::string one_element_across(const Scene &scene, const std::string &body) {
+  // a base with friction has no quadratic elements in 3D
+  const bool on_base = scene.dimension == 3 && std::ranges::any_of(scene.boundary, [](const BoundarySource &source) {
+                         return read_boundary(source.kind).quasi_static == OnSoil::contact;
+                       });
+  return "body." + body +
+         " is one element across, which elements of first order cannot resolve; refine the mesh there" +
+         (on_base ? "" : ", or set quasi_static.elements = \"quadratic\"");
+}
+
+}  // namespace
 
 template <int dim>
 Statics<dim>::Statics(World<dim> &world, const Clock &clock) : world_(world), clock_(clock) {

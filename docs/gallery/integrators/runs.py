@@ -7,6 +7,7 @@ Each study writes NAME.csv beside this file, `figure` draws drift.png, orders.pn
 beside it.
 """
 import csv
+import json
 import os
 import resource
 import subprocess
@@ -247,11 +248,13 @@ def brittle(talus):
             file = RUNS / "brittle.toml"
             (RUNS / "section.csv").write_text(CUT_SECTION)
             file.write_text(CUT.format(**keys, shape=shape))
+            checked = json.loads(subprocess.run([talus, "check", file, "--json"], check=True, capture_output=True, text=True).stdout)
+            length = float(f"{max(body['critical_slip_length_m'] for body in checked['bodies']):.3g}")
             for of, fraction in (("cells", 0.6), ("mesh", 0.3), ("mesh", 0.6)):
                 name = f"brittle {kind} {shape} {of} {fraction}"
                 history, _, count = run(talus, file, name, [f"integrator.omega_max={of}", f"integrator.fraction={fraction}"])
-                events = {event["kind"]: event for event in read_events(RUNS / name.replace(" ", "_"))}
-                failure, length = events["failure"]["load_time_s"], float(f"{events['brittle']['values']['slip_length_m']:.3g}")
+                [failed] = read_events(RUNS / name.replace(" ", "_"), "failure")
+                failure = failed["load_time_s"]
                 rows.append({"scene": kind, "shape_factor": shape, "critical_length_m": length, "omega_max": of, "fraction": fraction, "steps": count, "failure_load_time_s": round(failure, 3),
                              "failure_load_g": round(1 + 0.3 * failure / 9.81, 4), "crest_m": round(history[-1]["crest_displacement_m"], 3), "toe_m": round(history[-1]["toe_displacement_m"], 3)})
                 print(rows[-1], flush=True)

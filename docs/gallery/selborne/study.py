@@ -38,7 +38,7 @@ def lower_clay(eta):
 AVERAGED = [*both("averaging_length", "1 m"), *both("reference_size", "1.4 m")]
 CURED = ["transfer.locking=patches"]
 
-# name of a study: {name of a run: (scene, overrides, the line that stands for its slip surface if it is not the contact)}
+# name of a study: {name of a run: (scene, overrides)}
 STUDIES = {
     "choices": {
         "the scene": ("scene.toml", []),
@@ -48,7 +48,6 @@ STUDIES = {
         "locking cured": ("scene.toml", CURED),
         "averaged and cured": ("scene.toml", [*AVERAGED, *CURED]),
         "water that moves": ("moving.toml", []),
-        "absolute pressure": ("../selborne_absolute/scene.toml", [], "slip_surface"),
     },
     "meshes": {f"{size} m": ("scene.toml", [f"mesh.size={size}"]) for size in (1.4, 1.0, 0.7, 0.5)},
 }
@@ -85,24 +84,22 @@ def scene_text(name):
 
 def run(talus, variant, folder=None):
     """Runs a variant; returns what the page compares with the paper."""
-    scene, keys, *line = variant
+    scene, keys = variant
     with tempfile.TemporaryDirectory() as made:
         folder = Path(folder or made)
         (folder / "scene.toml").write_text(scene_text(scene))
         words = [word for key in keys for word in ("--set", key)]
         subprocess.run([talus, "run", f"{folder}/scene.toml", "-o", f"{folder}/run", "--no-pictures", "--force", *words], check=True, capture_output=True)
-        return outcomes(Results(folder / "run"), not line, *line)
+        return outcomes(Results(folder / "run"))
 
 
-def outcomes(results, under_lake, line="contact"):
-    """What the page compares with the paper; pressures under the lake are the excess over its own."""
-    _, base = measures.column(results, "base_pore_pressure_Pa")
-    rise = measures.rise_at_failure(results, "base") + (0 if under_lake else base[0])
-    return {"pressure_kPa": f"{rise / 1e3:.0f}", "crest_m": f"{talus_measures.displacement(results, 'crest'):.2f}", "upper_m": f"{talus_measures.displacement(results, 'upper'):.2f}",
+def outcomes(results):
+    """What the page compares with the paper."""
+    return {"pressure_kPa": f"{measures.rise_at_failure(results, 'base') / 1e3:.0f}", "crest_m": f"{talus_measures.displacement(results, 'crest'):.2f}", "upper_m": f"{talus_measures.displacement(results, 'upper'):.2f}",
             "toe_m": f"{talus_measures.displacement(results, 'toe'):.2f}",
             "speed_m_s": f"{max(talus_measures.largest_speed(results, point) for point in ('crest', 'upper')):.2f}",
             "acceleration_g": f"{measures.acceleration(results, 'crest') / 9.81:.3f}", "time_s": f"{measures.sliding_time(results, 'crest'):.1f}",
-            "first_yield": f"{measures.first_yield(results, line):.2f}", "plateau_deg": f"{measures.plateau(results, line):.1f}", "steps": results.snapshots[-1].step}
+            "first_yield": f"{measures.first_yield(results, 'contact'):.2f}", "plateau_deg": f"{measures.plateau(results, 'contact'):.1f}", "steps": results.snapshots[-1].step}
 
 
 def study(talus, name):

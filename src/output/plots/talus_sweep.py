@@ -23,7 +23,8 @@ from talus_units import with_unit, words
 
 NO_SLIDE = ("travel_distance_m", "volume_of_slide_m3", "depth_of_slide_m")  # 0 where the slope stands
 LEFT_OUT = ("cell_m", "deepest_at_x_m")  # outcomes that no chart shows
-UNITS = {"_m_s": "m/s", "_m3": "m³", "_m": "m", "_s": "s"}  # by the endings of outcomes
+UNITS = {"_kg_m_s": "kg m/s", "_m_s2": "m/s²", "_m3_s": "m³/s", "_m_s": "m/s", "_m3": "m³", "_m": "m", "_J": "J", "_Pa": "Pa", "_N": "N", "_kg": "kg", "_K": "K", "_s": "s",
+         "_deg": "deg"}  # by the endings of outcomes
 MOST = 5  # named points that charts and the table show
 INSIDE = 6  # lines whose names have room in their chart
 TITLES = {"load_time_of_failure_s": "time t of the loads at failure [s]", "travel_distance_m": "travel distance, from the rear of the slide to its front [m]",

@@ -47,8 +47,8 @@ TEST(Check, DoubtsOpenWaterThatIsNotLevel) {
   for (const int ranks : {1, 2}) {
     const Ending ending = advice({sloping}, ranks);
     EXPECT_TRUE(
-        ending.says("water.table stands up to 0.6 m above the ground from x = 0 to 1 m and is not level there: "
-                    "it lies between y = 0.6 and 0.9 m"))
+        ending.says("water.table stands up to 0.6 m above the ground from x = 0 to 1 m and is not level there, "
+                    "at 0.6 to 0.9 m"))
         << ending.output;
   }
   const char *doubt = "is not level there";
@@ -90,11 +90,10 @@ TEST(Check, DoubtsPondsOfMovingWaterWithoutABoundary) {
   };
   const Ending dry = output({pond});
   EXPECT_TRUE(
-      dry.says("water.table stands up to 0.9 m above the ground from x = 0 to 1 m. Where pore water moves, the table "
-               "says what is in the pores at "
-               "the start"))
+      dry.says("water.table stands up to 0.9 m above the ground from x = 0 to 1 m, and no boundary puts water of this "
+               "level on the ground there"))
       << dry.output;
-  const char *doubt = "Where pore water moves";
+  const char *doubt = "[dry_pond]";
   EXPECT_FALSE(output({"water.table=[[0, 0.4], [1, 0]]"}).says(doubt)) << "in the soil";
   EXPECT_FALSE(output({"water.table=[[0, 0.5], [1, 0.5]]"}).says(doubt)) << "up to the ground, beside a step down";
   const auto lake = [&](const char *level) {
@@ -103,7 +102,7 @@ TEST(Check, DoubtsPondsOfMovingWaterWithoutABoundary) {
   };
   const char *enters = "boundary.lake puts water on the ground";
   EXPECT_FALSE(lake("0.9").says(doubt) || lake("0.9").says(enters)) << "a lake";
-  EXPECT_TRUE(lake("0.7").says("the water of boundary.lake, which rests on the ground, stands lower there")) << "low";
+  EXPECT_TRUE(lake("0.7").says(doubt)) << "low";
   EXPECT_TRUE(lake("1.1").says("boundary.lake puts water on the ground that stands 0.2 m above ground and water.table"))
       << lake("1.1").output;
   EXPECT_FALSE(lake("0.7").says(enters) || lake("1.1").says(doubt));
@@ -112,7 +111,6 @@ TEST(Check, DoubtsPondsOfMovingWaterWithoutABoundary) {
                    std::string("boundary.lake.level=") + level});
   };
   EXPECT_TRUE(pool("0.7").says("0.7 m above the ground at x = 1, y = 0 m")) << "at the foot of its free side";
-  EXPECT_TRUE(pool("0.7").says("since the scene gives no water.table")) << pool("0.7").output;
   EXPECT_FALSE(pool("-0.1").says(enters));
 }
 
@@ -203,7 +201,7 @@ TEST(Check, DoubtsSoftWater) {
   const auto output = [&](const std::string &one) {
     return talus(folder, {"check", "scene.toml", "--json", "--set", "phases=saturated", "--set", one});
   };
-  const char *soft = "is so soft beside body.sand";
+  const char *soft = "[soft_water]";
   EXPECT_TRUE(output("water.bulk_modulus=1 MPa").says(soft)) << output("water.bulk_modulus=1 MPa").output;
   EXPECT_FALSE(output("water.bulk_modulus=20 MPa").says(soft));
 }
@@ -216,10 +214,10 @@ TEST(Check, DoubtsEndsOfWetSoilThatNothingHolds) {
     return talus(folder, {"check", "scene.toml", "--json", "--set", "phases=saturated", "--set",
                           "stage.0.until=equilibrium", "--set", "boundary.left.group=right", "--set", left});
   };
-  const char *doubt = "The soil ends with the mesh at x = 0 m, and only a boundary of the water in its pores names";
+  const char *doubt = "the soil ends with the mesh at x = 0 m, and no boundary of the soil names";
   const Ending drain = output("boundary.lake={kind='head', group='left', level=0.4}");
   EXPECT_TRUE(drain.says(doubt)) << drain.output;
-  EXPECT_FALSE(output("boundary.wall={kind='roller', group='left'}").says("The soil ends with the mesh at x = 0 m"));
+  EXPECT_FALSE(output("boundary.wall={kind='roller', group='left'}").says("the soil ends with the mesh at x = 0 m"));
 }
 
 /// Boundaries of water on faces that have no soil, or that soil may leave.
@@ -256,9 +254,8 @@ TEST(Check, DoubtsPondsInHollowsOfTheGround) {
     return ending;
   };
   const Ending level = advice("water.table=[[0, 0.4]]");
-  EXPECT_TRUE(level.says("water.table makes a pond of up to 0.2 m in a hollow of the ground from x = 0.6"))
-      << level.output;
-  const char *doubt = "makes a pond of up to";
+  EXPECT_TRUE(level.says("water.table makes a pond up to 0.2 m above the ground from x = 0.6")) << level.output;
+  const char *doubt = "water.table makes a pond up to";
   EXPECT_TRUE(advice("water.table=[[0, 0.4], [2, 0.4]]").says(doubt)) << "no point in the hollow";
   EXPECT_TRUE(advice("water.table=[[0, 0.1]]", {"water.level=[[0, 0], [0.05, 0.3]]"}).says(doubt)) << "it rises";
   EXPECT_FALSE(advice("water.table=[[0, 0.4], [0.6, 0.4], [1.4, 0.4], [2, 0.4]]").says(doubt))
@@ -273,7 +270,7 @@ TEST(Check, DoubtsPondsInHollowsOfTheGround) {
 TEST(Check, DoubtsWaterOverSoilWithoutFriction) {
   const Folder folder;
   const auto doubted = [&](std::vector<std::string> overrides) {
-    return check(folder, overrides).says("body.sand has no friction (friction_angle = 0)");
+    return check(folder, overrides).says("[undrained_strength]");
   };
   const std::vector<std::string> clay{"phases=drained", "water.table=[[0, 0.4]]", "body.sand.friction_angle=0",
                                       "body.sand.cohesion=5 kPa"};
@@ -298,7 +295,7 @@ TEST(Check, DoubtsAVolumeCapOnPores) {
     const Ending ending = talus(folder, {"check", "scene.toml", "--json", "--set", "phases=" + phases, "--set",
                                          "body.sand.permeability=1e-10", "--set", "body.sand.volume_cap=" + cap});
     EXPECT_TRUE(ending.status == 0) << ending.output;
-    return ending.says("body.sand.volume_cap = 1 and phases");
+    return ending.says("[pore_volume_cap]");
   };
   EXPECT_FALSE(says_it("saturated", "-1"));
   EXPECT_TRUE(says_it("saturated", "1"));
@@ -317,9 +314,7 @@ TEST(Check, DoubtsWaterTablesOfASoilAboveItsGround) {
   const std::string own = "body.sand.water_table=[[0, 0.8], [1, 0.6]]";
   const char *doubt = "body.sand.water_table stands up to ";
   const Ending ending = advice({own});
-  EXPECT_TRUE(ending.says(std::string(doubt) +
-                          "0.3 m above the free surface of this soil and the open water on it, from x = 0 to 1 m"))
-      << ending.output;
+  EXPECT_TRUE(ending.says(std::string(doubt) + "0.3 m above the ground from x = 0 to 1 m")) << ending.output;
   EXPECT_FALSE(advice({own, "water.table=[[0, 0.8], [1, 0.8]]"}).says(doubt)) << "under a pond as high";
   EXPECT_FALSE(advice({"body.sand.water_table=[[0, 0.4], [1, 0]]"}).says(doubt));
   EXPECT_FALSE(advice({"body.sand.water_table=[[0, 0.5], [1, 0.3]]"}).says(doubt)) << "water leaves at the steep face";

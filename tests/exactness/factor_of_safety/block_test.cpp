@@ -167,8 +167,9 @@ TEST(Block, cut_slips_through_its_foot) {
     if (t.outcome == TrialOutcome::equilibrium) continue;
     EXPECT_LE(t.surplus, 1.05 * (1 - cut.lower / t.factor)) << t.factor;
   }
-  // 3.776 c / (rho g h) = 1.51 (Pastor et al. 2000); four cells over the height are stiffer by up to 10 %
-  EXPECT_NEAR(cut.value(), 1.05 * 3.776 * 8e3 / 20e3, 0.05 * 1.51);
+  // 3.776 c / (rho g h) = 1.51 (Pastor et al. 2000); three to four cells over the height are stiffer by 9 to 13 %, on
+  // 20 meshes of two versions of Gmsh with cells of 0.21 to 0.3 m
+  EXPECT_NEAR(cut.value(), 1.11 * 3.776 * 8e3 / 20e3, 0.04 * 1.51);
   ASSERT_GE(cut.slip_surface.size(), 4u);
   for (const auto &[x, y] : cut.slip_surface) EXPECT_NEAR(x + y, 1, 0.25);
   EXPECT_GT(cut.moving_volume, 0.5) << "the wedge";

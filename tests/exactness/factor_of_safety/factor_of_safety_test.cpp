@@ -330,8 +330,8 @@ TEST(FactorOfSafety, names_the_mechanisms_of_both_flanks) {
 }
 
 /// A slope of two benches slips at each bench by itself, or as a whole. The local mechanisms have the factors of slopes
-/// of one bench alone; their triangles are others, which counts as much as the bracket. The last mechanism moves the
-/// soil of both.
+/// of one bench alone, to a bracket and the 1 % by which their other triangles change it, on ten meshes with cells
+/// of 1.4 to 1.6 m. The last mechanism moves the soil of both.
 TEST(FactorOfSafety, names_local_and_global_mechanisms_of_benches) {
   const auto of = [](const std::string &section, int mechanisms) {
     return factor_of("embankment.toml", {"mesh.section=" + section, "mesh.size=1.5",
@@ -339,10 +339,10 @@ TEST(FactorOfSafety, names_local_and_global_mechanisms_of_benches) {
   };
   const FactorOfSafety lower = of(TALUS_HALVES "/lower_bench.csv", 1), upper = of(TALUS_HALVES "/upper_bench.csv", 1),
                        all = of("benches.csv", 3);
-  EXPECT_NEAR(all.value() / lower.value(), 1, 2 * same);
+  EXPECT_NEAR(all.value() / lower.value(), 1, 3 * same);
   EXPECT_LT(all.high[0], 32) << "the lower bench slips first";
   ASSERT_EQ(all.further.size(), 2u);
-  EXPECT_NEAR(all.further[0].value() / upper.value(), 1, 2 * same);
+  EXPECT_NEAR(all.further[0].value() / upper.value(), 1, 3 * same);
   EXPECT_GT(all.further[0].low[0], 28);
   EXPECT_GT(all.further[1].lower, all.further[0].upper);
   EXPECT_LT(all.further[1].low[0], 12) << "from the toe of the lower bench";

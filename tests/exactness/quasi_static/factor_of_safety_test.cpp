@@ -132,8 +132,9 @@ TEST(FactorOfSafety, leaves_elastic_soil_beside_other_soil_as_it_is) {
 
 /// Clay loaded within an hour, whose water does not flow: the factor without flow is the lower one, and that of the
 /// same soil in total stress with s_u = c cos(phi) + s' sin(phi), 1.66. Elements of pressure keep the volume of cells
-/// and not of each point, hence 2 %. Ground that lets water out drains 8 cm deep, which a cell of 1 m spreads over its
-/// height: 3 % more. Were it to drain as deep as the cell is high, the factor would be 1.92.
+/// and not of each point: by the mesh this is 2.5 % more to 1.7 % less, of ten meshes with cells of 0.9 to 1.1 m.
+/// Ground that lets water out drains 8 cm deep, which a cell of 1 m spreads over its height: 1 to 4 % more than with a
+/// cover, on the same meshes. Were it to drain as deep as the cell is high, it would be 18 % more.
 TEST(FactorOfSafety, of_clay_that_does_not_drain_is_that_of_its_undrained_strength) {
   int ranks;
   MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
@@ -161,8 +162,9 @@ TEST(FactorOfSafety, of_clay_that_does_not_drain_is_that_of_its_undrained_streng
           .factor;
   EXPECT_EQ(effective.flow, TrialFlow::undrained);
   EXPECT_FALSE(total.by_flow.contains(TrialFlow::undrained));
-  EXPECT_NEAR(effective.value(), total.value(), 0.02 * total.value());
-  EXPECT_NEAR(open.value(), total.value(), 0.05 * total.value());
+  EXPECT_NEAR(effective.value(), total.value(), 0.03 * total.value());
+  EXPECT_GT(open.value(), effective.value());
+  EXPECT_LT(open.value(), 1.06 * effective.value());
   EXPECT_GT(effective.by_flow.at(TrialFlow::own).value(), 1.1 * effective.value());
 }
 

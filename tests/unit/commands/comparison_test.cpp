@@ -83,7 +83,8 @@ TEST(Comparison, after_the_end_of_a_run_at_rest_its_last_row_counts) {
   const std::string folder = testing::TempDir(), path = folder + "history.csv";
   const auto value = [&](const std::string &stage, const char *kind, const std::string &measure) {
     std::ofstream(path) << "time_s,step,stage,x_m\n0,0,start,0\n1,5,fall,4\n2,9,slide,2\n";
-    std::ofstream(folder + "events.jsonl") << to_lines({{event::remark, "slide"}, {kind, "", {}, false, 2, 2, stage}});
+    std::ofstream(folder + "events.jsonl")
+        << to_lines({{event::remark, "slide", {}, false, 0, 0, "slide"}, {kind, "", {}, false, 2, 2, stage}});
     return value_of(path, parse_measure(measure));
   };
   for (const char *kind : {event::rest, event::slow, event::equilibrium}) {

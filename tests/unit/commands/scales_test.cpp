@@ -1,5 +1,5 @@
-// Claims of commands/scales.h.
-#include "commands/scales.h"
+// Claims of doubts/scales.h.
+#include "doubts/scales.h"
 
 #include <gtest/gtest.h>
 

@@ -34,7 +34,7 @@ from talus_moments import chosen_snapshots, since_reset, telling, with_stress  #
 from talus_outcomes import FAILS, STANDS  # noqa: E402
 from talus_paths import grouped, label_of, name_envelopes, name_of_mean_stress  # noqa: E402
 from talus_report import bases, key_results, motion_at_end, ways_out  # noqa: E402
-from talus_results import MECHANISM, NOT_ENDED, History, Results, still_moving  # noqa: E402
+from talus_results import MECHANISM, NOT_ENDED, History, Quantity, Results, still_moving  # noqa: E402
 from talus_relief import Eye  # noqa: E402
 from talus_sections import Painter  # noqa: E402
 from talus_slip import said_of_ends, said_of_line, slip_surface  # noqa: E402
@@ -695,6 +695,7 @@ class Histories(unittest.TestCase):
         history.time, history.step, history.stage = np.arange(6.0), np.arange(6), ["start", "gravity", "gravity", "rain", "rain", "rain"]
         history.columns = {"water_kg": np.array([90.0, 60, 50, 52, 55, 57]), "water_out_kg": np.array([0.0, 0, 0, -2, -5, -7]),
                            "water_given_kg": np.array([0.0, -30, -40, -40, -40, -40]), "water_error_kg": np.zeros(6)}
+        history.quantities = {f"water{'' if part == 'stored' else '_' + part}_kg": Quantity("water_ledger", "kg", "run", part) for part in ("stored", "out", "given", "error")}
         for flows, first in ((False, 2.0), (True, 0.0)):
             scene, seen = {"stage": [{"name": "gravity", "gravity_ramp": 1, "pore_flow": flows}, {"name": "rain"}]}, {}
             results = types.SimpleNamespace(history=history, scene=scene, snapshots=[], title="", per_metre=lambda text: text)
@@ -709,6 +710,7 @@ class Histories(unittest.TestCase):
         history = History.__new__(History)
         history.time, history.step, history.stage = np.arange(6.0), np.arange(6), ["start", "gravity", "gravity", "rain", "rain", "rain"]
         history.columns = {"crest_displacement_m": np.array([0, 0.2, 0.3, 0, 1e-3, 2e-3]), "crest_velocity_m_s": np.array([0, 0.2, 0.1, 0, 1e-3, 1e-3])}
+        history.quantities = {"crest_displacement_m": Quantity("displacement", "m", "point", "crest"), "crest_velocity_m_s": Quantity("velocity", "m/s", "point", "crest")}
         snapshots = [types.SimpleNamespace(time=float(time), stage=stage) for time, stage in zip(history.time, history.stage)]
         for resets, first in ((True, 3.0), (False, 0.0)):
             scene, seen = {"stage": [{"name": "gravity", "reset_displacement": resets}, {"name": "rain"}]}, {}
@@ -726,6 +728,7 @@ class Histories(unittest.TestCase):
         history.time, history.step, history.stage = np.arange(3.0), np.arange(3), ["start", "slide", "slide"]
         ways = {"crest": [0.0, 1, 2], "toe": [0.0, 2, 4], "shoulder": [0.0, 1, 2]}
         history.columns = {f"{name}_{what}": np.array(way) for name, way in ways.items() for what in ("x_m", "y_m", "displacement_m")}
+        history.quantities = {f"{name}_{what}_m": Quantity(what, "m", "point", name) for name in ways for what in ("x", "y", "displacement")}
         results, seen = types.SimpleNamespace(history=history, scene={}, snapshots=[], title="", per_metre=lambda text: text), []
         with unittest.mock.patch.object(talus_sweep.style, "save", lambda figure, path: seen.append(figure)):
             draw_histories(results, pathlib.Path())
@@ -1227,6 +1230,7 @@ class Charts(unittest.TestCase):
         history = History.__new__(History)
         history.time, history.step, history.stage = np.array([0.0, 1.0]), np.array([0, 1]), ["slide", "slide"]
         history.columns = {"kinetic_J": np.array([0.0, 2e3]), "crest_displacement_m": np.array([0.0, 1.0])}
+        history.quantities = {"kinetic_J": Quantity("energy", "J", "run", "kinetic"), "crest_displacement_m": Quantity("displacement", "m", "point", "crest")}
         for per, unit in (("/m", "kJ/m"), ("", "kJ")):
             results = types.SimpleNamespace(history=history, scene={}, snapshots=[], title="", per_metre=lambda text, per=per: text + per)
             seen = []

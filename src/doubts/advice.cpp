@@ -1,12 +1,10 @@
-// What `check` advises: particles, cells, softening, stages, steps, water. The doubts about values are in
-// simulation/unlikely.h.
+// What `check` advises: particles, cells, softening, stages, steps, water. Doubts are in doubts.h.
 #include <algorithm>
 #include <cmath>
 
 #include "base/rounded.h"
-#include "commands/foreign_code.h"
-#include "commands/needs.h"
-#include "commands/scales.h"
+#include "doubts/needs.h"
+#include "doubts/scales.h"
 #include "particles/body.h"
 #include "physics/boundary/boundary.h"
 #include "physics/pores/hyperbolicity.h"
@@ -50,6 +48,10 @@ double davis_share(const Law &law) {
       law);
 }
 
+constexpr const char *not_unique =
+    "it differs from mesh to mesh by some per cent, in fine cells too; repeat with other sizes (`talus "
+    "converge`), and compare with associated flow and the strength of Davis (1968)";
+
 /// From here on loads at failure scatter from mesh to mesh [rad]: vaiont with 42 degrees does, and selborne's with 26
 /// falls smoothly as cells get smaller.
 constexpr double flow_far_off_normal = 30 * degree.si;
@@ -59,10 +61,10 @@ class Adviser {
   Adviser(const Scene &scene, const Needs &needs) : scene_(scene), needs_(needs) {}
 
   std::vector<std::string> all() {
-    for (const std::string &body : bodies_with_umat(scene_))
-      say("body." + body +
-          " runs the library of its UMAT, which can do whatever a program can: take such a scene only from people "
-          "whom you would trust with a program, or check and run it with --no-umat, which refuses it.");
+    for (const BodyNeeds &b : needs_.bodies)
+      if (std::holds_alternative<Umat>(b.law))
+        say("body." + b.body.name +
+            " runs the library of its UMAT, which can do whatever a program can; --no-umat refuses it.");
     if (!needs_.burst_failure.empty()) say("The run breaks off in its first steps: " + needs_.burst_failure + ".");
     for (const std::string &remark : needs_.mesh.remarks) say(remark);
     for (const BodyNeeds &b : needs_.bodies)
@@ -73,8 +75,7 @@ class Adviser {
           "the stages.");
     if (!needs_.downhill_fault.empty())
       say(needs_.downhill_fault + ". That place lies downhill of the soil: the run ends if a slide comes so far.");
-    for (const std::string &sentence : needs_.unlikely)
-      say(sentence + (sentence.ends_with('?') || sentence.ends_with(']') ? "" : "."));
+    for (const std::string &doubt : needs_.doubts) say(doubt);
     if (needs_.particles() == 0) {
       say("Stages add all soil, and none is there at the start: steps, times and scales are not known before a run. "
           "Without `add` in the stages check estimates them of the whole soil.");
@@ -82,7 +83,6 @@ class Adviser {
     }
     if (!scene_.root->has("gravity"))
       say("The scene gives no gravity, so that soil has no weight; gravity = 0 says that this is meant.");
-    for (const std::string &sentence : needs_.brittle) say(sentence);
     stiffness();
     start();
     for (std::size_t i = 0; i < scene_.stage.size(); ++i) stage(scene_.stage[i]);
@@ -102,29 +102,28 @@ class Adviser {
   void particles(const BodyNeeds &b) {
     const int fewest = b.body.fewest_per_cell;
     const bool plane = scene_.dimension == 2;
+    const std::string each = " particles per cell in " + b.body.name + " are few ";
     const auto moves = [](const Stage &stage) { return !is_static(stage.kind) && stage.pore_flow; };
     if (fluids_move(scene_.phases) && std::ranges::any_of(scene_.stage, moves) && fewest < (plane ? 6 : 8))
-      say(std::to_string(fewest) + " particles per cell in " + b.body.name +
-          " are few if soil with pore fluids flows far: a column of saturated sand ran out a fifth less far with 3 per "
-          "triangle than with 6 or 12; look with `talus converge --by particles`.");
+      say(std::to_string(fewest) + each +
+          "if soil with pore fluids flows far: a column of saturated sand ran out a fifth "
+          "less far with 3 per triangle than with 6 or 12; look with `talus converge --by particles`.");
     const int usual = plane ? particles_per_cell<2>(BodySource()) : particles_per_cell<3>(BodySource());
     if (fewest >= usual) return;
-    const std::string wanted = std::to_string(usual) + " or more per " + (plane ? "triangle" : "tetrahedron");
-    if (fewest == 1)
-      say("One particle per cell in " + b.body.name + " is too few: the error of stress was " +
-          (plane ? "10 % at rest and 23 % in motion, compared with 1.2 % and 5 % with three" : "13 to 18 %") +
-          "; take " + wanted + ".");
-    else
-      say(std::to_string(fewest) + " particles per cell in " + b.body.name +
-          " are few where cells lose particles; take " + wanted + ".");
+    const std::string wanted =
+        "take " + std::to_string(usual) + " or more per " + (plane ? "triangle." : "tetrahedron.");
+    say(fewest == 1 ? "One particle per cell in " + b.body.name + " is too few: the error of stress was " +
+                          (plane ? "10 % at rest and 23 % in motion, compared with 1.2 % and 5 % with three; "
+                                 : "13 to 18 %; ") +
+                          wanted
+                    : std::to_string(fewest) + each + "where cells lose particles; " + wanted);
   }
 
   void locking(const BodyNeeds &b) {
     const double K = bulk_modulus(b.law), G = shear_modulus(b.law), nu = (3 * K - 2 * G) / (2 * (3 * K + G));
     if (nu > 0.45 && scene_.transfer.locking == Locking::none)
       say("Poisson's ratio " + digits(nu) + " in " + b.body.name +
-          " makes linear cells lock (the load of a footing was 45 % too high at 0.49); take transfer.locking = "
-          "\"patches\".");
+          " makes linear cells lock (the load of a footing was 45 % too high at 0.49) without transfer.locking.");
   }
 
   void softening(const BodyNeeds &b) {
@@ -135,29 +134,24 @@ class Adviser {
     const double largest = resolved * b.averaging_length;
     if (b.averaging_length > 0 && b.body.cell_size > largest)
       say("Cells of " + b.body.name + ", " + digits(b.body.cell_size) + " m, do not resolve its averaging_length of " +
-          digits(b.averaging_length) +
-          " m: the average hardly reaches the next cell, and the soil seems stronger than it is; take cells of at "
-          "most " +
-          digits(largest) + " m.");
+          digits(b.averaging_length) + " m, and the soil seems stronger than it is; take at most " + digits(largest) +
+          " m.");
     if (flow_off_normal(b.law) > flow_far_off_normal)
       say("Soil of " + b.body.name + " softens, and its friction angle exceeds its dilation angle by " +
-          digits(flow_off_normal(b.law) / degree.si) +
-          " degrees: a load at failure is then not unique and differs from mesh to mesh by some per cent of strength, "
-          "in fine cells as in coarse ones (the gallery's vaiont); repeat it with other cell sizes (`talus converge`), "
-          "and compare it with finite elements of second order, the strength of Davis (1968) and associated flow.");
+          digits(flow_off_normal(b.law) / degree.si) + " degrees: a load at failure is then not unique: " + not_unique +
+          ".");
     if (b.averaging_length > 0) return;  // bands are wider than a cell, and cells do not snap back alone
     if (unscaled(b.law))
       say(b.body.name +
-          " softens without a reference_size: shear bands are one cell wide, so the result depends on the mesh; give "
-          "the element size to which shape_factor belongs, or an averaging_length.");
+          " softens without a reference_size: shear bands are one cell wide, so the result depends on the "
+          "mesh; give the element size to which shape_factor belongs, or an averaging_length.");
     constexpr double snap_back =
         0.87;  // sqrt(3) / 2: strength of simple shear falls as fast as elastic strain gives way
     if (slope > snap_back / 2)
       say("Strength of " + b.body.name + " decreases with plastic strain at " + digits(slope, 2) +
           " of 2 G in cells of " + digits(b.body.cell_size) + " m, " +
           (slope > snap_back ? "above the " : "near the ") + digits(snap_back) +
-          " at which a sheared cell snaps back and loses its strength at once; take smaller cells with a "
-          "reference_size, or a smaller shape_factor.");
+          " at which a sheared cell snaps back; take smaller cells with a reference_size, or a smaller shape_factor.");
   }
 
   /// Soil that keeps its strength, where finite elements are asked how much it bears. The first stage at rest is mostly
@@ -174,15 +168,11 @@ class Adviser {
       loaded = true;
     }
     if (!loads.empty())
-      say(off + "the load at which stage " + loads +
-          " finds no more equilibrium is not unique and differs from mesh to mesh, in fine cells and with elements of "
-          "second order too (the gallery's vaiont); repeat it with other cell sizes (`talus converge`), and compare it "
-          "with associated flow and the strength of Davis (1968).");
+      say(off + "the load at which stage " + loads + " finds no more equilibrium is not unique: " + not_unique + ".");
     if (scene_.root->has("factor_of_safety"))
       say(off +
-          "its load at failure is not unique, and its factor of safety differs by some per cent from mesh to mesh; "
-          "compute it with two. It is given between an upper bound, psi = phi, and a lower estimate, the strength of "
-          "Davis (1968), " +
+          "its factor of safety differs by some per cent from mesh to mesh; compute it with two. It is given "
+          "between an upper bound, psi = phi, and a lower estimate, the strength of Davis (1968), " +
           digits(davis_share(b.law), 2) + " of its shear strength.");
   }
 
@@ -192,8 +182,7 @@ class Adviser {
       say("The weight of the soil strains it by " + digits(100 * layer.gravity_strain) +
           " %: soil that falls by its height arrives at " +
           digits(100 * scales::fall_speed(layer.height, needs_.gravity) / layer.wave_speed) +
-          " % of the wave speed and bounces; with a stiffer soil the number of steps increases with the root of the "
-          "stiffness.");
+          " % of the wave speed and bounces.");
   }
 
   void start() {
@@ -207,7 +196,7 @@ class Adviser {
     const auto at_rest = [](const Stage &stage) { return is_static(stage.kind) && stage.kind != StageKind::seepage; };
     if (const auto later = std::ranges::find_if(scene_.stage, at_rest); later != scene_.stage.end())
       say("Stage " + later->name + " would bring the soil to rest under its weight, but comes after " + first.name +
-          ", in which soil without stress falls under it at once; the stage at rest is usually the first.");
+          ", in which soil without stress falls under it at once.");
     else
       say("Gravity is applied at once to soil without stress, which oscillates up to twice the static strain; give "
           "body.NAME.stress, or a first stage with gravity_ramp = " +
@@ -228,16 +217,15 @@ class Adviser {
     constexpr double locks = 0.45;
     say("Elastic ground of " + b.body.name +
         " at rest has the lateral stress ratio nu / (1 - nu) = " + digits(nu / (1 - nu), 2) +
-        ", less than its friction angle requires without cohesion: much of it yields under its weight alone, and "
-        "Newton's iterations may stall; take initial_stress = \"k0\"" +
+        ", less than its friction angle requires without cohesion: much of it yields under its weight alone; take "
+        "initial_stress = \"k0\"" +
         (enough < locks ? ", or poisson_ratio above " + digits(enough, 2) + " (sin phi > 1 - 2 nu)." : "."));
   }
 
   void stage(const Stage &stage) {
     if (is_static(stage.kind)) return;
     if (stage.until == StopWhen::equilibrium && stage.damping == 0)
-      say("Stage " + stage.name +
-          " waits for equilibrium without damping, so waves hardly decay; damping = 0.7 is the fastest way to rest.");
+      say("Stage " + stage.name + " waits for equilibrium without damping, so waves hardly decay.");
     if (stage.until == StopWhen::equilibrium && stage.duration < 20 * needs_.layer.transit)
       say("Stage " + stage.name + " lasts " + digits(stage.duration / needs_.layer.transit) +
           " wave transits, too short for equilibrium; give it " + digits(50 * needs_.layer.transit, 1) + " s or more.");
@@ -285,13 +273,7 @@ class Adviser {
           "= " +
           digits(Transfer().remap_interval) + " is the default.");
     if (t.velocity == Velocity::pic)
-      say("transfer.velocity = \"pic\" damps motion at each remap: a slide is slower and comes less far, the more so "
-          "the oftener particles are remapped. The default keeps the velocity of particles and damps what no node "
-          "sees.");
-    else if (t.relaxation == 0 && t.pic_fraction == 0)
-      say("With transfer.relaxation = 0 nothing damps the velocities that particles have and no node sees: soil goes "
-          "on shaking where it should come to rest. The default is " +
-          digits(Transfer().relaxation) + ".");
+      say("transfer.velocity = \"pic\" damps motion at each remap: a slide is slower and comes less far.");
     if (t.integration == Integration::particle || t.integration == Integration::mixed)
       say("Integration by particle volumes was four to nine times less accurate than \"blended\" where particles cross "
           "cells.");
@@ -317,21 +299,21 @@ class Adviser {
     const Drainage &d = needs_.drainage;
     if (d.time == 0) return;
     const std::string bounds = std::string("k above ") + digits(d.drained_above, 1) + " m/s", time = spoken(d.time);
+    const std::string undrained = digits(d.undrained_below, 1) + " m/s";
     if (scene_.phases == PhaseModel::drained && needs_.drainage.computed)
-      say("The water stands still while the soil moves: that is right where soil drains in the " + time +
+      say("The water stands still while the soil moves: right where soil drains in the " + time +
           " of the dynamic stages, " + bounds + ".");
     else if (scene_.phases == PhaseModel::drained)
       say("A prescribed pore pressure is right where soil drains in the " + time + " of the stages, " + bounds +
-          " (less in proportion where a stage represents a longer time). Below " + digits(d.undrained_below, 1) +
-          " m/s failure is undrained: use total-stress strengths; in between pore pressure has to be computed.");
+          "; below " + undrained + " failure is undrained: use total-stress strengths.");
     else if (fluids_move(scene_.phases) && !needs_.drainage.computed)
-      say("Moving pore water is needed for k between " + digits(d.undrained_below, 1) +
-          " m/s, below which soil stays undrained in the " + time + " of the stages, and " +
-          digits(d.drained_above, 1) + " m/s, above which phases = \"drained\" gives the same result at lower cost.");
+      say("Moving pore water is needed for k between " + undrained + " (undrained in the " + time +
+          " of the stages) and " + digits(d.drained_above, 1) + " m/s (drained).");
     else if (!fluids_move(scene_.phases))
-      say("phases = \"dry\" is right for soil without water, or with total-stress strengths; with water in its pores "
-          "the soil would be drained in " +
-          time + " for " + bounds + " and undrained below " + digits(d.undrained_below, 1) + " m/s.");
+      say("phases = \"dry\" is right for soil without water, or with total-stress strengths; with water the soil would "
+          "be "
+          "drained in " +
+          time + " for " + bounds + " and undrained below " + undrained + ".");
   }
 
   SoilPores pores_of(std::size_t b) const {
@@ -350,11 +332,10 @@ class Adviser {
       const double lost = soil.porosity() * gas.viscosity / (soil.gas_permeability() * gas.density),
                    turns = 2 * std::sqrt(gas.bulk_modulus / gas.density) / needs_.bodies[b].body.cell_size;
       if (lost < held * turns)
-        say("Gas moves through " + scene_.body[b].name + " with hardly any drag: it loses its speed at " +
-            digits(lost, 3) + " 1/s, and its waves between cells turn at " + digits(turns, 3) +
-            " rad/s. Where water comes in such gas gains energy and may throw soil out; a gas_permeability below " +
-            digits(lost / (held * turns) * soil.gas_permeability(), 2) +
-            " m2 holds it, and phases = \"unsaturated\" leaves it out.");
+        say("Gas moves through " + scene_.body[b].name +
+            " with hardly any drag, gains energy where water comes in and may throw "
+            "soil out; a gas_permeability below " +
+            digits(lost / (held * turns) * soil.gas_permeability(), 2) + " m2 holds it.");
     }
   }
 

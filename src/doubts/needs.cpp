@@ -1,4 +1,4 @@
-#include "commands/needs.h"
+#include "doubts/needs.h"
 
 #include <petsctime.h>
 
@@ -6,12 +6,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "commands/foreign_code.h"
-#include "commands/scales.h"
+#include "doubts/doubts.h"
+#include "doubts/scales.h"
 #include "physics/boundary/boundary.h"
-#include "physics/laws/strength_by_place.h"
 #include "scene/reader.h"
-#include "simulation/unlikely.h"
 
 namespace talus {
 namespace {
@@ -19,9 +17,8 @@ namespace {
 constexpr int burst_length = 40;
 constexpr double longest_burst = 5;  // [s]
 
-BodyNeeds needs_of(const BodyReport &report, const BodySource &source) {
-  BodyNeeds b{report, read_law(source.law)};
-  take_largest(b.law, report.strength);
+BodyNeeds needs_of(const BodyReport &report, const Law &law, const BodySource &source) {
+  BodyNeeds b{report, law};
   b.averaging_length = source.averaging_length;
   b.density = report.mass / report.volume;
   b.wave_speed = std::sqrt(constrained_modulus(b.law) / b.density);
@@ -29,9 +26,8 @@ BodyNeeds needs_of(const BodyReport &report, const BodySource &source) {
   return b;
 }
 
-LayerNeeds layer_of(const Scene &scene, const std::vector<BodyNeeds> &bodies, double gravity,
-                    const std::vector<SoilFace> &surface) {
-  const double depth = greatest_depth(surface, scene.dimension, scene.vertical());
+LayerNeeds layer_of(const Start &start, const std::vector<BodyNeeds> &bodies, double gravity) {
+  const Scene &scene = start.scene;
   LayerNeeds layer;
   double mass = 0, volume = 0, softness = 0, slowness = 0;
   std::array<double, 3> low = bodies[0].body.low, high = bodies[0].body.high;
@@ -49,17 +45,15 @@ LayerNeeds layer_of(const Scene &scene, const std::vector<BodyNeeds> &bodies, do
         gravity > 0 ? layer.height + extent * std::abs(scene.gravity[d]) / gravity : std::max(layer.height, extent);
   }
   const bool downwards = gravity > 0 && std::abs(scene.gravity[scene.vertical()]) == gravity;
-  if (downwards && depth > 0) layer.height = depth;
+  if (downwards && start.depth > 0) layer.height = start.depth;
   const double density = mass / volume;
   layer.modulus = volume / softness, layer.wave_speed = volume / slowness;
   layer.transit = scales::transit(layer.height, layer.wave_speed);
   layer.gravity_stress = density * gravity * layer.height;
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     const BodyNeeds &b = bodies[k];
-    const int up = scene.vertical();
-    const double above = downwards ? depth_of(static_cast<int>(k), b.body, surface, up,
-                                              std::min(layer.height, high[up] - b.body.low[up]))
-                                   : layer.height;
+    const double above =
+        downwards ? start.depth_of(k, std::min(layer.height, high[start.up] - b.body.low[start.up])) : layer.height;
     layer.gravity_strain =
         std::max(layer.gravity_strain, scales::own_weight_strain(density, gravity, above, constrained_modulus(b.law)));
   }
@@ -213,22 +207,20 @@ Needs find_needs(Scene &scene, bool with_model) {
   needs.mesh = simulation->mesh_report();
   needs.gravity = scene.gravity_size();
   double fastest = 0;
-  const auto reports = simulation->bodies();
+  const Start start(scene, *simulation);
+  const std::vector<BodyReport> &reports = start.bodies;
+  const std::vector<Softening> softening = softening_of(scene, start.laws, reports);
   for (std::size_t b = 0; b < reports.size(); ++b) {
-    needs.bodies.push_back(needs_of(reports[b], scene.body[b]));
+    needs.bodies.push_back(needs_of(reports[b], start.laws[b], scene.body[b]));
+    needs.bodies[b].softening = softening[b];
     fastest = std::max(fastest, needs.bodies[b].wave_speed);
     if (reports[b].critical_step < reports[needs.slowest].critical_step) needs.slowest = static_cast<int>(b);
   }
-  const std::vector<SoilFace> surface = simulation->surface();
-  needs.layer = layer_of(scene, needs.bodies, needs.gravity, surface);
-  std::vector<Law> laws;
-  for (const BodyNeeds &b : needs.bodies) laws.push_back(b.law);
-  const std::vector<Softening> softening = softening_of(scene, laws, reports);
-  for (std::size_t b = 0; b < reports.size(); ++b) needs.bodies[b].softening = softening[b];
-  for (const auto &[sentence, length] : brittle_soils(scene, laws, reports)) needs.brittle.push_back(sentence);
-  needs.unlikely = unlikely_values(scene, laws, reports, surface);
-  for (const auto &more : {unlikely_surroundings(scene, reports, surface), coarse_cells(scene, reports, surface)})
-    needs.unlikely.insert(needs.unlikely.end(), more.begin(), more.end());
+  needs.layer = layer_of(start, needs.bodies, needs.gravity);
+  needs.doubts = doubts_about(start);
+  Doubts cells(scene);  // which a run does not repeat
+  doubt_cells(start, cells);
+  needs.doubts.insert(needs.doubts.end(), cells.sentences().begin(), cells.sentences().end());
   const StepRule rule = step_rule(read_integrator(scene.integrator, fluids_move(scene.phases)));
   needs.critical_step = simulation->critical_step();
   needs.step_bound = simulation->step_bound();

@@ -61,10 +61,9 @@ struct Needs {
   std::vector<BodyNeeds> bodies;
   LayerNeeds layer;
   std::vector<StageNeeds> stages;
-  std::string downhill_fault;         ///< the same, of ground that a slide may reach
-  std::string function_fault;         ///< a value of a function that its key does not admit, as a sentence
-  std::vector<std::string> unlikely;  ///< sentences on values that hardly any soil has
-  std::vector<std::string> brittle;   ///< sentences on soils that soften fast for the height of the ground
+  std::string downhill_fault;       ///< the same, of ground that a slide may reach
+  std::string function_fault;       ///< a value of a function that its key does not admit, as a sentence
+  std::vector<std::string> doubts;  ///< sentences, see doubts.h
   std::vector<HeatedBaseNeeds> heated_bases;
   Drainage drainage;             ///< time = 0 without gravity
   double gravity;                ///< [m/s2]

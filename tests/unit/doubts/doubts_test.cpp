@@ -1,10 +1,12 @@
-// Claims of simulation/unlikely.h about results.
-#include "simulation/unlikely.h"
+// Claims of doubts/doubts.h.
+#include "doubts/doubts.h"
 
 #include <gtest/gtest.h>
 #include <petscsys.h>
 
 #include <cmath>
+
+#include "simulation/scene_keys.h"
 
 namespace talus {
 namespace {
@@ -26,10 +28,10 @@ std::vector<std::string> doubts(int sheared) {
   state.columns = {strain, volume};
   std::vector<BodyReport> bodies(2);
   bodies[0].name = "clay", bodies[1].name = "sand";
-  return unlikely_strains(PETSC_COMM_WORLD, bodies, state);
+  return doubts_about_end(Scene(), PETSC_COMM_WORLD, bodies, state);
 }
 
-TEST(Unlikely, StrainsOfMoreThanAHundredthOfABodyAreDoubted) {
+TEST(Doubts, StrainsOfMoreThanAHundredthOfABodyAreDoubted) {
   EXPECT_TRUE(doubts(0).empty());
   EXPECT_TRUE(doubts(1).empty()) << "single particles";
   const std::vector<std::string> found = doubts(6);
@@ -37,22 +39,24 @@ TEST(Unlikely, StrainsOfMoreThanAHundredthOfABodyAreDoubted) {
   EXPECT_EQ(found[0].find("3 % of body.clay has a plastic strain above 1000 %, up to 3100 %"), 0u) << found[0];
 }
 
-TEST(Unlikely, TensionOfMoreThanAnAtmosphereIsDoubted) {
+TEST(Doubts, TensionOfMoreThanAnAtmosphereIsDoubted) {
   Snapshot state;
   Column pressure{"pore_pressure", "Pa", "", 1, {}}, volume{"volume", "m3", "", 1, {}};
   std::vector<BodyReport> bodies(1);
   bodies[0].name = "clay";
   state.body.assign(200, 0), volume.values.assign(200, 0.1), pressure.values.assign(200, -94e3);
   const auto said = [&] {
+    Scene scene;
+    scene.phases = PhaseModel::saturated;
     state.columns = {pressure, volume};
-    return unlikely_suctions(PETSC_COMM_WORLD, bodies, state);
+    return doubts_about_end(scene, PETSC_COMM_WORLD, bodies, state);
   };
   pressure.values[0] = -100e3;
   EXPECT_TRUE(said().empty()) << "a single particle";
   for (const int i : {1, 2, 3}) pressure.values[i] = -98e3;
   const std::vector<std::string> found = said();
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0].find("The water in 2 % of body.clay cavitates at the end, at -100 kPa"), 0u) << found[0];
+  EXPECT_EQ(found[0].find("the water in 2 % of body.clay cavitates at the end, at -100 kPa"), 0u) << found[0];
 }
 
 /// What is said of a heap 3 m high with a face of `slope` degrees below 4 m of level ground, in cells of `size` [m] and
@@ -74,30 +78,57 @@ std::vector<std::string> doubts_about_heap(double slope, double size, double coh
   heap.cell_size = size;
   heap.high = {run + 4, 3, 0};
   heap.strength.friction_angle = {0.6, 0.6}, heap.strength.cohesion = {cohesion, cohesion};
-  return coarse_cells(scene, {heap}, surface);
+  Doubts doubts(scene);
+  doubt_cells(Start(scene, {heap}, surface), doubts);
+  return doubts.sentences();
 }
 
 /// A bowl of soil on rock that is 200 m deep is no deeper than twice its mean.
-TEST(Unlikely, ABodyHasItsOwnDepth) {
+TEST(Doubts, ABodyHasItsOwnDepth) {
   SoilFace ground;
   ground.body = 1, ground.area = 100, ground.normal = {0, 0, 1};
   BodyReport slide;
   slide.volume = 500;
-  EXPECT_DOUBLE_EQ(depth_of(1, slide, {ground}, 2, 200), 10);
-  EXPECT_DOUBLE_EQ(depth_of(1, slide, {ground}, 2, 8), 8);
-  EXPECT_DOUBLE_EQ(depth_of(0, slide, {ground}, 2, 200), 200) << "below other soil";
+  Scene scene;
+  scene.dimension = 3, scene.up = Up::z;
+  const Start start(scene, {slide, slide}, {ground});
+  EXPECT_DOUBLE_EQ(start.depth_of(1, 200), 10);
+  EXPECT_DOUBLE_EQ(start.depth_of(1, 8), 8);
+  EXPECT_DOUBLE_EQ(start.depth_of(0, 200), 200) << "below other soil";
 }
 
-TEST(Unlikely, SandThatIsTooSteepIsDoubtedInFewCells) {
+TEST(Doubts, SandThatIsTooSteepIsDoubtedInFewCells) {
   const std::vector<std::string> found = doubts_about_heap(50, 0.5, 0);
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_NE(found[0].find("% of the free surface of body.heap is more than 5 degrees steeper"), std::string::npos)
+  EXPECT_NE(found[0].find("% of the free surface of body.heap is steeper than its friction angle by more than 5 deg"),
+            std::string::npos)
       << found[0];
   EXPECT_TRUE(doubts_about_heap(35, 0.5, 0).empty()) << "not steeper than its friction angle of 34 degrees";
   EXPECT_TRUE(doubts_about_heap(50, 0.5, 2e3).empty()) << "with cohesion";
   EXPECT_TRUE(doubts_about_heap(50, 0.25, 0).empty()) << "12 cells over its depth";
   ASSERT_EQ(doubts_about_heap(50, 1, 0).size(), 1u);
   EXPECT_NE(doubts_about_heap(50, 1, 0)[0].find("fewer than 4 cells"), std::string::npos) << "one sentence is enough";
+}
+
+/// What a key is doubted by can be acknowledged.
+TEST(Doubts, HaveAKnownName) {
+  const Describer keys = scene_keys();
+  for (const Describer::Block &block : keys.blocks())
+    for (const Describer::Key &key : block.keys) {
+      const bool doubted = key.allowed.find("usual") != std::string::npos;
+      EXPECT_TRUE(!doubted || is_doubt_name(key.path.substr(key.path.rfind('.') + 1))) << key.path;
+    }
+}
+
+TEST(Doubts, AreSilentWhereTheSceneAcknowledgesThem) {
+  Scene scene;
+  scene.acknowledge = {"pond"};
+  Doubts doubts(scene);
+  doubts.say("pond", "meant");
+  doubts.say("open_water", "not meant");
+  doubts.say_unusual("stiffness", "a ratio", 3, one, {5, 10});
+  EXPECT_EQ(doubts.sentences(),
+            (std::vector<std::string>{"not meant [open_water]", "a ratio = 3; usual 5 to 10 [stiffness]"}));
 }
 
 }  // namespace
