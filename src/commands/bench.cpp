@@ -98,8 +98,8 @@ struct BenchScene {
 const std::vector<BenchScene> scenes = {
     {"column", "default", "", 0.1, 0.3},
     {"column", "remap every step", "transfer.remap_interval=0", 0.1, 0.3},
-    {"selborne", "default", "", 1, 3},
-    {"selborne", "remap every step", "transfer.remap_interval=0", 1, 3},
+    {"selborne_absolute", "default", "", 1, 3},
+    {"selborne_absolute", "remap every step", "transfer.remap_interval=0", 1, 3},
 };
 
 void measure(BenchScene &s) {

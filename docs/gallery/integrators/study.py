@@ -39,7 +39,7 @@ STUDIES = {
                   [FRACTIONS] + [arkode(k, "1e-2,1e-3,1e-4,1e-5,1e-6,1e-7") for k in (2, 3, 4)]),
     "column": ("docs/gallery/column/scene.toml", "corner_x_m@0.15", ["mesh.size=0.01", "stage.0.duration=0.2"],
                [FRACTIONS] + [arkode(k, "1e-2,1e-3,1e-4,1e-5,1e-6,1e-7") for k in (2, 3, 4)]),
-    "selborne": ("docs/gallery/selborne/scene.toml", "max:crest_displacement_m", ["mesh.size=0.9"],
+    "selborne": ("docs/gallery/selborne_absolute/scene.toml", "max:crest_displacement_m", ["mesh.size=0.9"],
                  ["euler: integrator.fraction=0.9,0.6,0.4,0.2,0.1,0.05", arkode(4, "1e-2,1e-3,1e-4,3e-5,1e-5,3e-6")]),
     "remap": ("docs/gallery/column/scene.toml", "corner_x_m", ["mesh.size=0.01"],
               ["euler: transfer.remap_interval=0.3,0.2,0.1,0.05,0.02,0", "arkode 3: integrator.kind=arkode; transfer.remap_interval=0.3,0.2,0.1,0.05,0.02"]),

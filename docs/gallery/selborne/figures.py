@@ -1,6 +1,5 @@
-"""The pictures of this page, from a run of the scene and from the tables that study.py writes."""
+"""The pictures of this page, from runs of the scene and of moving.toml."""
 import csv
-import re
 import shutil
 import subprocess
 import tempfile
@@ -17,21 +16,21 @@ from talus_style import plt
 HERE = Path(__file__).resolve().parent
 COPIED = {"plastic_strain_large": "slide", "displacement_large": "run_out"}
 POINTS = ("crest", "upper", "lower", "toe")
-FROM_FIRST_YIELD = (0.88, 1.06)  # t* that the states of the slip surface are shown for
+FROM_FIRST_YIELD = (0.6, 1.06)  # t* that the states of the slip surface are shown for
 FROM_START = (0, 1.06)  # and its mean friction
-PLACES = (8, 20, 32)  # distances along the slip surface of the places that stand for the paper's P1, P5 and P7 [m]
+PLACES = (5, 12, 19)  # distances along the slip surface of the places that stand for the paper's P1, P5 and P7 [m]
 
 
-def draw(talus, folder=None, saturated=None):
-    """Runs both scenes, or reads the results in `folder` and `saturated`, and draws all."""
+def draw(talus, folder=None, moving=None):
+    """Runs both scenes, or reads the results in `folder` and `moving`, and draws all."""
     with tempfile.TemporaryDirectory() as made:
         if folder is None:
             folder = made
             subprocess.run([talus, "run", HERE / "scene.toml", "-o", folder, "--force"], check=True)
-        if saturated is None:
-            saturated = f"{made}/saturated"
-            subprocess.run([talus, "run", HERE / "saturated.toml", "-o", saturated, "--force", "--no-pictures"], check=True)
-        draw_pressures(*history_of(saturated))
+        if moving is None:
+            moving = f"{made}/moving"
+            subprocess.run([talus, "run", HERE / "moving.toml", "-o", moving, "--force", "--no-pictures"], check=True)
+        draw_pressures(*history_of(moving))
         results = Results(folder)
         for source, name in COPIED.items():
             shutil.copy(f"{folder}/pictures/{source}.png", HERE / f"{name}.png")
@@ -39,10 +38,9 @@ def draw(talus, folder=None, saturated=None):
         shutil.copy(surface, HERE / "failure.png")
         history, relative = history_of(folder)
         draw_motion(history, relative)
-        draw_strength(results.lines()["slip_surface"], results)
+        draw_strength(results.lines()["contact"], results)
         draw_paths(history, relative)
         draw_inclinometers([line for name, line in results.lines().items() if name.startswith("I")], results)
-    draw_tables()
 
 
 def history_of(folder):
@@ -75,8 +73,8 @@ def draw_motion(history, relative):
         for axis, (name, factor) in zip(axes, (("displacement_m", 1), ("velocity_m_s", 1), ("acceleration_m_s2", 1 / 9.81))):
             axis.plot(relative, factor * history[f"{point}_{name}"], color=colour, lw=1.2, label=point)
     for axis, title in zip(axes, ("displacement [m]", "speed [m/s]", "acceleration [g]")):
-        axis.set(xlabel="t* = t / time of failure", title=title, xlim=(0.95, 1.25), ylim=(0, None))
-    axes[2].set_ylim(0, 0.4)
+        axis.set(xlabel="t* = t / time of failure", title=title, xlim=(0.97, 1.2), ylim=(0, None))
+    axes[2].set_ylim(0, 0.1)
     axes[0].legend(fontsize=8)
     save(figure, "motion")
 
@@ -103,7 +101,7 @@ def draw_strength(line, results):
 def draw_along(axis, line, relative):
     """Mobilised friction along the slip surface at some times, with the states of its soil."""
     along = line.columns["distance_m"][0]
-    for k, t in enumerate((0.02, 0.8, 0.97, 0.99, 1.0, 1.02)):
+    for k, t in enumerate((0.02, 0.65, 0.75, 0.95, 1.0, 1.02)):
         row = int(np.nanargmin(np.abs(relative - t)))
         mobilised = np.sin(np.radians(line.columns["mobilised_friction_deg"][row]))
         axis.plot(along, mobilised, color=plt.get_cmap("viridis")(k / 5.5), lw=1.3, label=f"t* = {relative[row]:.3f}")
@@ -136,9 +134,9 @@ def draw_places(friction, moved, line, relative):
         place = int(np.abs(line.columns["distance_m"][0] - distance).argmin())
         friction.plot(relative, line.columns["mobilised_friction_deg"][:, place], color=colour, lw=1.3, label=f"{name}, {distance} m from the rear end")
         moved.plot(relative, line.columns["displacement_m"][:, place], color=colour, lw=1.3, label=name)
-    friction.set(xlabel="t* = t / time of failure", ylabel="mobilised friction φ' [deg]", title="three places of the slip surface (paper's fig. 14)", xlim=(0.9, 1.25),
+    friction.set(xlabel="t* = t / time of failure", ylabel="mobilised friction φ' [deg]", title="three places of the slip surface (paper's fig. 14)", xlim=(0.6, 1.2),
                  ylim=(0, None))
-    moved.set(xlabel="t* = t / time of failure", ylabel="displacement [m]", title="displacement of the three places", xlim=(0.9, 1.25), ylim=(0, None))
+    moved.set(xlabel="t* = t / time of failure", ylabel="displacement [m]", title="displacement of the three places", xlim=(0.6, 1.2), ylim=(0, None))
     friction.legend(fontsize=8, loc="lower right")
     moved.legend(fontsize=8, loc="upper left", bbox_to_anchor=(0.0, 0.9))
 
@@ -168,39 +166,10 @@ def draw_inclinometers(lines, results):
     figure, axes = plt.subplots(1, len(lines), figsize=(11.5, 3.8), layout="constrained", sharex=True, sharey=True)
     for axis, line in zip(axes, lines):
         relative = dimensionless(results, line.time)
-        for t, colour in ((0.9, style.LINES[0]), (0.98, style.LINES[4]), (1, style.LINES[1])):
+        for t, colour in ((0.65, style.LINES[0]), (0.95, style.LINES[4]), (1, style.LINES[1])):
             row = int(np.nanargmin(np.abs(relative - t)))
             axis.plot(1e3 * line.columns["displacement_x_m"][row], line.columns["y_m"][0], color=colour, lw=1.3, label=f"t* = {relative[row]:.3f}")
-        axis.set(title=f"{line.name}, x = {line.columns['x_m'][0].mean():.0f} m", xlabel="level displacement since gravity [mm]", xlim=(0, None))
-    axes[0].set_ylabel("elevation [m]")
+        axis.set(title=f"{line.name}, x = {line.columns['x_m'][0].mean():.0f} m", xlabel="level displacement since gravity [mm]")
+    axes[0].set(ylabel="elevation [m]", xlim=(0, None))
     axes[-1].legend(fontsize=8, loc="upper right")
     save(figure, "inclinometers")
-
-
-def table(name):
-    path = HERE / f"{name}.csv"
-    return [row for row in csv.DictReader(open(path)) if row["crest_m"]] if path.exists() else []
-
-
-def draw_tables():
-    figure, (cells, residual, load) = plt.subplots(1, 3, figsize=(11.5, 3.9), layout="constrained")
-    for kind, name, marker in (("nonlocal", "averaged over 1 m", "o-"), ("of the cell", "of the cell", "s--")):
-        rows = [row for row in table("cells") if row["run"].startswith(kind)]
-        size = [float(row["run"].split(",")[1].split()[0]) for row in rows]
-        cells.plot(size, [float(row["crest_m"]) for row in rows], marker, ms=4, label=name)
-        load.plot(size, [float(row["pressure_kPa"]) for row in rows], marker, ms=4, label=name)
-    rows = [row for row in table("residual") if re.fullmatch(r"[\d.]+ kPa", row["run"])]  # of the weathered clay, each at its own load
-    residual.plot([float(row["run"].split()[0]) for row in rows], [float(row["crest_m"]) for row in rows], "o-", ms=4)
-    for k, row in enumerate(rows):  # the last but one below the line, where there is space
-        residual.annotate(f"at {float(row['pressure_kPa']):.0f} kPa", (float(row["run"].split()[0]), float(row["crest_m"])), fontsize=8, color=style.SOFT,
-                          xytext=(4, -13 if k == len(rows) - 2 else 6), textcoords="offset points", ha="right" if k == len(rows) - 1 else "left")
-    for axis, at in ((cells, 1.44), (residual, 10.3)):
-        axis.axhline(4, color="0.6", lw=1, ls=":")
-        axis.set(ylabel="displacement of the crest [m]", ylim=(0, 8.4))
-        axis.text(at, 3.93, "recorded in the experiment", ha="right", va="top", color="0.4", fontsize=8)
-    cells.set(xlabel="cell size [m]", xlim=(0.45, 1.45), title="cells and run-out")
-    load.set(xlabel="cell size [m]", ylabel="pressure at the base at failure [kPa]", xlim=(0.45, 1.45), ylim=(0, 130), title="cells and load at failure")
-    residual.set(xlabel="residual cohesion of the weathered clay [kPa]", xlim=(0, 10.4), title="strength, run-out and pressure at failure")
-    for axis in (cells, load):
-        axis.legend(fontsize=8, title="softening", title_fontsize=8, alignment="left", loc="lower left" if axis is load else "upper right")
-    save(figure, "sensitivity")

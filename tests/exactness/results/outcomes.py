@@ -251,7 +251,7 @@ class Outcomes(unittest.TestCase):
         for rear, reached in ((-2, True), (-20, False)):  # m; the base of both is 5 m deeper than that of the gallery's scene, whose rear, at 0, is nearly cut off
             section = re.sub(r"^(outline|b_recharge_base|b_recharge_side),(\d+),0$", r"\1,\2,-5", text, flags=re.M)
             (self.folder / "ends.csv").write_text(re.sub(r"^(outline|interface\d|b_recharge_base|b_recharge_side),0,", rf"\1,{rear},", section, flags=re.M))
-            (self.folder / "ends.toml").write_text((root / "docs/gallery/selborne/scene.toml").read_text().replace("../../../meshes/selborne.csv", "ends.csv"))
+            (self.folder / "ends.toml").write_text((root / "docs/gallery/selborne_absolute/scene.toml").read_text().replace("../../../meshes/selborne.csv", "ends.csv"))
             done = self.ended("run", "ends.toml", "-o", "ends", "--no-pictures", "--force", "--set", "mesh.size=2", "--set", "output.interval=0").stderr
             self.assertEqual(said in done, reached, done)
             self.assertNotIn("cuts the slide off", done)  # less than 2 % of the largest displacement
