@@ -218,6 +218,19 @@ TEST(Water, of_clay_that_fails_undrained_ends_its_consolidation) {
   }
 }
 
+/// A load that grows for days, in cells that drainage crosses meanwhile: were the pressure of the ground to jump then,
+/// steps would become so short that it takes 290 of them, or the stage breaks off.
+TEST(Water, goes_on_when_drainage_has_crossed_a_cell) {
+  int ranks;
+  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  if (ranks > 1) return;  // once is enough
+  const Solved loaded = solve(
+      loaded_clay, strip + std::vector<std::string>{
+                               "mesh.size=0.75", "body.clay.cohesion=1e6", "body.clay.young_modulus=3e6",
+                               "boundary.strip.pressure=[[1, 0], [604800, 25e3]]", "stage.fill.duration=1728000"});
+  EXPECT_LT(loaded.history.column("time_s").size(), 150u);
+}
+
 /// A flux that jumps at an edge of the mesh, or in the middle of one, brings what its function says.
 TEST(Water, enters_on_the_side_of_a_jump_where_it_is_pumped) {
   const std::string text = wet_block +
