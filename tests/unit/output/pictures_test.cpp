@@ -14,6 +14,11 @@
 namespace talus {
 namespace {
 
+/// history_columns.csv of a history made by hand.
+void describe(const std::string &dir, const std::string &rows) {
+  std::ofstream(dir + "/history_columns.csv") << "column,quantity,unit,of,which\n" + rows;
+}
+
 TEST(Pictures, and_a_report_are_drawn_from_the_results) {
   const SharedFolder folder;
   const std::string dir = folder / "run";
@@ -24,6 +29,8 @@ TEST(Pictures, and_a_report_are_drawn_from_the_results) {
     history.row(n, n, "slide", {0.1 * n, 2. * n, 100});
   }
   if (world_rank()) return;
+  describe(dir,
+           "crest_displacement_m,displacement,m,point,crest\nkinetic_J,energy,J,run,kinetic\nmass_kg,mass,kg,run,\n");
   ASSERT_TRUE(draw_pictures(dir));
   for (const char *name : {"displacement.png", "plastic_strain.png", "history_displacement.png", "energy.png"})
     EXPECT_EQ(content(dir + "/pictures/" + name).substr(1, 3), "PNG") << name;
@@ -106,6 +113,12 @@ TEST(Pictures, show_stress_paths_and_the_water_ledger) {
     history.row(n, n, "slide", {0.5, 0.4, 5e3 * n, 4e3 * n, 10. * n, 100. - n, 1. * n, 0, 1e-14 * n});
   }
   if (world_rank()) return;
+  describe(dir,
+           "crest_x_m,x,m,point,crest\ncrest_y_m,y,m,point,crest\ncrest_mean_pressure_Pa,mean_pressure,Pa,point,crest\n"
+           "crest_deviator_Pa,deviator,Pa,point,crest\n"
+           "crest_mobilised_friction_deg,mobilised_friction,deg,point,crest\nwater_kg,water_ledger,kg,run,stored\n"
+           "water_out_kg,water_ledger,kg,run,out\nwater_given_kg,water_ledger,kg,run,given\nwater_error_kg,water_"
+           "ledger,kg,run,error\n");
   ASSERT_TRUE(draw_pictures(dir));
   EXPECT_EQ(content(dir + "/pictures/strength.csv").substr(0, 40), "body,state,suction_Pa,slope,intercept_Pa");
   for (const char *name : {"stress_paths.png", "mobilised_friction.png", "state.png", "water_ledger.png"})
@@ -124,15 +137,19 @@ TEST(Pictures, and_report_tell_how_a_run_broke_off) {
     const std::string report = content(dir + "/report.html");
     return report.substr(report.find("<header>"), report.find("</header>") - report.find("<header>"));
   };
-  std::ofstream log(dir + "/run.log");
-  log << "12:00:00  stage slide\n12:00:01  the run broke off: a particle left the mesh near (3, 1) m\n" << std::flush;
+  const auto happens = [&](const std::vector<std::string> &kinds) {
+    std::ofstream events(dir + "/events.jsonl");
+    for (const std::string &kind : kinds)
+      events << R"({"kind": ")" << kind
+             << R"(", "stage": "slide", "time_s": 1, "load_time_s": 1, "values": {}, "warning": false, "text": )"
+             << "\"a particle left the mesh near (3, 1) m\"}\n";
+  };
+  happens({"broke_off"});
   EXPECT_NE(top_of_report().find("a particle left the mesh near (3, 1) m"), std::string::npos);
-  log << "12:01:00  resumed at t = 1 s, step 9\n12:01:02  slide  t = 2 / 4 s  step 12  5 k particle-updates/s  at most "
-         "4 s left\n"
-      << std::flush;
+  happens({"resumed"});
   EXPECT_EQ(top_of_report().find("broke off"), std::string::npos);
   EXPECT_NE(top_of_report().find("it was killed, or still runs"), std::string::npos);
-  log << "12:01:03  slide  t = 4 / 4 s  step 24  5 k particle-updates/s\n" << std::flush;
+  happens({"resumed", "end"});
   EXPECT_EQ(top_of_report().find("class=\"ending\""), std::string::npos);
 }
 
@@ -147,6 +164,9 @@ TEST(Pictures, and_report_count_what_left_the_mesh) {
     History history(MPI_COMM_SELF, dir + "/history.csv",
                     {"kinetic_J", "escaped_energy_J", "mass_kg", "escaped_mass_kg"});
     history.row(0, 0, "slide", {1, 0, 1000, 0}), history.row(1, 1, "slide", {2, 3, 900 - lost, 100});
+    describe(dir,
+             "kinetic_J,energy,J,run,kinetic\nescaped_energy_J,energy,J,run,escaped_energy\nmass_kg,mass,kg,run,\n"
+             "escaped_mass_kg,escaped_mass,kg,run,\n");
     EXPECT_TRUE(draw_pictures(dir, {{"displacement"}, {}}));
     const std::string report = content(dir + "/report.html");
     return report.substr(report.find("Mass ledger"), 120);
