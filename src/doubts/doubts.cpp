@@ -14,8 +14,7 @@ void Doubts::add(const Doubt &doubt) {
 void Doubts::say(DoubtName name, const std::string &sentence) { add({std::string(name.name), sentence}); }
 
 void Doubts::say_unusual(DoubtName name, const std::string &what, double value, Unit unit, const Usual &usual) {
-  if (!is_usual(value, usual))
-    say(name, what + " = " + rounded(value) + in(unit) + "; usual " + text_of(usual) + in(unit));
+  if (!is_usual(value, usual)) say(name, what + " = " + rounded(value) + in(unit) + "; usual " + text_of(usual, unit));
 }
 
 std::string Span::text(int axis) const {

@@ -27,7 +27,7 @@ std::string number_in(Unit unit) { return plain(unit) ? "number" : unit.name; }
 
 bool has_time(const char *variables) { return std::string(variables).find('t') != std::string::npos; }
 
-std::string usually(const Usual &usual) { return has_usual(usual) ? ", usual " + text_of(usual) : ""; }
+std::string usually(const Usual &usual) { return has_usual(usual) ? ", usual " + text_of(usual, one) : ""; }
 
 std::string from_to(const Range &range) {
   return rounded(range.low) + " to " + rounded(range.high) + usually(range.usual);

@@ -13,8 +13,8 @@ bool is_usual(double number, const Usual &usual) {
   return (usual.low <= number + round_off && number - round_off <= usual.high) || (usual.or_zero && number == 0);
 }
 
-std::string text_of(const Usual &usual) {
-  return shortest(usual.low) + " to " + shortest(usual.high) + (usual.or_zero ? ", or 0" : "");
+std::string text_of(const Usual &usual, Unit unit) {
+  return shortest(usual.low) + " to " + shortest(usual.high) + in(unit) + (usual.or_zero ? ", or 0" : "");
 }
 
 std::string unit_meant(double number, Unit unit, const Usual &usual) {

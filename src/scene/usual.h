@@ -16,7 +16,7 @@ bool has_usual(const Usual &usual);
 /// Does a number in the unit of its key lie inside? To round-off, which a unit in the scene may add.
 bool is_usual(double number, const Usual &usual);
 /// "0 to 0.1", "5 to 50, or 0"
-std::string text_of(const Usual &usual);
+std::string text_of(const Usual &usual, Unit unit);
 /// The first unit in which a number that is not usual would be; empty if it would be in none. The number may have been
 /// meant in it.
 std::string unit_meant(double number, Unit unit, const Usual &usual);

@@ -46,7 +46,7 @@ std::string TableReader::Value::string(const std::string &expected) const {
 double TableReader::Value::number(Unit unit, Range range) const {
   const double number = is_number() ? number_of(*node_) : quantity(unit, range);
   if (!std::isfinite(number) || !(range.low <= number && number <= range.high))
-    must_be(number_in(range, unit), has_usual(range.usual) ? "usual " + text_of(range.usual) + in(unit) : "");
+    must_be(number_in(range, unit), has_usual(range.usual) ? "usual " + text_of(range.usual, unit) : "");
   return number;
 }
 
@@ -66,7 +66,7 @@ void TableReader::Value::doubt(double number, Unit unit, const Usual &usual) con
   if (!words.empty()) table = " in " + (words.size() == 1 ? "[" + words[0] + "]" : join(words, " "));
   const std::string meant = is_number() ? unit_meant(number, unit, usual) : "";
   const std::string sentence = place(document_->file, *node_, false) + ": " + key + " = " + rounded(number) + in(unit) +
-                               table + "; usual " + text_of(usual) + in(unit) +
+                               table + "; usual " + text_of(usual, unit) +
                                (meant.empty() ? "" : "; is it in " + meant + "?");
   document_->unusual.try_emplace(path, Doubt{key, sentence});
 }

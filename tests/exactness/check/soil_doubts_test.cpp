@@ -80,7 +80,8 @@ TEST(Check, DoubtsWhatFitsTheSoilBadly) {
   EXPECT_FALSE(says({drained, "water.table=[[0, -1]]", "water.level=t"}, "it gives no pore pressure"));
   folder.write("scene.toml", good_scene);
   folder.write("mm.csv", "part,x,y\noutline,0,0\noutline,20e3,0\noutline,20e3,10e3\noutline,0,10e3\nregion_sand,5,5\n");
-  EXPECT_TRUE(talus(folder, {"check", "scene.toml", "--set", "mesh.section=mm.csv", "--set", "mesh.size=1000"})
+  EXPECT_TRUE(talus(folder, {"check", "scene.toml", "--set", "mesh.section=mm.csv", "--set", "mesh.size=1000", "--set",
+                             "output.interval=0"})
                   .says("is it in millimetres"));
 }
 

@@ -348,7 +348,7 @@ TEST(Check, DoubtsSeepageUnderSealedGround) {
   folder.write("scene.toml",
                changed(good_scene, "density = 2000", "porosity = 0.3\ngrain_density = 2650\npermeability = 1e-12") +
                    dries + second);
-  const char *early = "water.suction acts from the first stage of seepage on, rain";
+  const char *early = "water.suction acts from the first stage of seepage on: the soil of stage.";
   EXPECT_TRUE(advice({"water.suction=5e4"}).says(early));
   EXPECT_FALSE(advice({"water.suction=5e4", seepage}).says(early));
   EXPECT_FALSE(advice({}).says(early));

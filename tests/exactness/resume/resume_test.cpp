@@ -149,7 +149,7 @@ columns = [row['column'] for row in csv.DictReader(open('resumed/history_columns
 assert ['time_s', 'step', 'stage'] + columns == next(csv.reader(open('resumed/history.csv'))), columns
 events = [[json.loads(line) for line in open(name + '/events.jsonl')] for name in ('whole', 'resumed')]
 resumed = sum(event['kind'] == 'resumed' for event in events[1])
-assert 1 <= resumed <= TIMES, f'resumed {resumed} times'  # a run may be ended before it goes on
+assert resumed <= TIMES, f'resumed {resumed} times'  # a run may be ended before it goes on
 events = [[event for event in some if event['time_s'] <= end and event['kind'] not in ('resumed', 'ranks')] for some in events]
 assert events[0] == events[1], f'{events[0]} {events[1]}'
 assert [event['kind'] for event in events[0]].count('body') == 1 and [event['kind'] for event in events[0]].count('reset') == 1

@@ -79,7 +79,8 @@ TEST(Describe, ShowsUnitRangeDefaultAndMeaning) {
   EXPECT_TRUE(contains(text, "## [[stage]]")) << text;
   EXPECT_TRUE(contains(text, "number, 0 to 0.99")) << text;
   EXPECT_TRUE(contains(text, "local (Cundall) damping factor")) << text;
-  EXPECT_TRUE(contains(printed("stage.duration"), "s, 0 to 1e12, usual 0 to 86400 | required")) << printed("stage.duration");
+  EXPECT_TRUE(contains(printed("stage.duration"), "s, 0 to 1e12, usual 0 to 86400 | required"))
+      << printed("stage.duration");
   EXPECT_TRUE(contains(printed("transfer.velocity"), "flip, pic | flip")) << printed("transfer.velocity");
 }
 
