@@ -50,8 +50,11 @@ TEST(Events, ComeBackFromTheirLines) {
 TEST(Events, AreInTheFileAtOnce) {
   const SharedFolder folder;
   EXPECT_TRUE(read_events(folder / "").empty());
+  MPI_Barrier(MPI_COMM_WORLD);  // the first rank writes
   EventFile file(MPI_COMM_WORLD, folder / "", {story[0]});
+  MPI_Barrier(MPI_COMM_WORLD);
   expect_same(read_events(folder / ""), {story[0]});
+  MPI_Barrier(MPI_COMM_WORLD);
   file.add(story[1]);
   MPI_Barrier(MPI_COMM_WORLD);
   expect_same(read_events(folder / ""), {story[0], story[1]});
