@@ -28,7 +28,9 @@ void doubt_stages(const Scene &scene, Doubts &doubts) {
   }
   for (const ChangingLoad &load : changing_loads(scene)) {
     const double begin = std::ranges::min_element(load.when, {}, &TimeSpan::begin)->begin;
-    if (begin >= end)
+    if (end == 0)
+      doubts.say("late_load", load.key + " is a function of t, and all stages hold their loads: it acts as at t = 0");
+    else if (begin >= end)
       doubts.say("late_load", load.key + " changes from t = " + rounded(begin) +
                                   " s on, and the loads of the stages end at t = " + rounded(end) +
                                   " s: it acts as at t = 0 in all of the run");

@@ -47,7 +47,7 @@ const Case cases[] = {
      "body.sand.body_acceleration changes from t = 20 s on, and the loads of the stages end at t = 0.05 s"},
     {"load_that_is_held",
      {"stage.0.hold_loads=true", "body.sand.body_acceleration=[\"sin(t)\", \"0\"]"},
-     "the loads of the stages end at t = 0 s: it acts as at t = 0 in all of the run"},
+     "is a function of t, and all stages hold their loads"},
     {"gravity_that_does_not_come",
      {"stage.0.gravity_ramp=0.1"},
      "stage.fall.gravity_ramp = 0.1 s is longer than the stage"},
