@@ -250,7 +250,7 @@ class Model {
     constexpr const char *gas[] = {"surface", "wall", "atmosphere", "pressure"};
     Values values;
     double level = std::numeric_limits<double>::quiet_NaN();
-    const Json drawn = list(faces, [&](const Piece<dim> &face) {
+    Json drawn = list(faces, [&](const Piece<dim> &face) {
       Vec<dim> centre{}, vector{};
       for (int a = 0; a < dim; ++a)
         for (int d = 0; d < dim; ++d) centre[d] += face.corner[a][d] / dim;
@@ -274,7 +274,7 @@ class Model {
             {"changes", !kind.changes.empty()},
             {"values", values.json()},
             {"level", level},
-            {"faces", drawn}};
+            {"faces", std::move(drawn)}};
   }
 
   /// Load [Pa] or velocity [m/s] at a place of a face at the start; `values` takes what the boundary prescribes there.
