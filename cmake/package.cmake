@@ -6,7 +6,7 @@ list(FILTER started INCLUDE REGEX "^(python3.*|openmpi-bin|libopenblas.*)$")
 list(JOIN started ", " CPACK_DEBIAN_PACKAGE_DEPENDS)
 # what find_package(Talus) needs
 set(for_hosts ${packages})
-list(FILTER for_hosts INCLUDE REGEX "^(g[+][+]|gfortran|cmake|pkg-config|petsc-dev|lib.*-dev)$")
+list(FILTER for_hosts INCLUDE REGEX "^(g[+][+]|gfortran|cmake|pkg-config|petsc-dev|nlohmann-json3-dev|lib.*-dev)$")
 list(FILTER for_hosts EXCLUDE REGEX "^lib(eigen3|cli11|gmsh|gdal|gtest)-dev$")
 list(JOIN for_hosts ", " CPACK_DEBIAN_PACKAGE_RECOMMENDS)
 
